@@ -1,0 +1,19 @@
+// Files are written whole or not at all.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace ropewalk {
+
+// Throws InputError when it cannot be read.
+std::string read_file(const std::string& path);
+
+// Writes a temporary file beside `path`, flushes it to the disk and renames it. Throws InputError (disk full,
+// no permission, ...) and leaves an existing file untouched.
+void write_file_atomically(const std::string& path, std::string_view content);
+
+// xxh64 as 16 hex digits.
+std::string hash_hex(std::string_view content);
+
+}  // namespace ropewalk

@@ -1,0 +1,123 @@
+// Elastic bond between consecutive elements of a tube: the vector-based (V-) model.
+//
+// With a the equilibrium length, r = x_j - x_i, D = |r|, d = r/D, orthonormal body frames (e1, e2, t) where t
+// is the tube axis, c = t_i.t_j and w = e1_i.e1_j + e2_i.e2_j, the energy is the sum of four parts that are
+// each zero at rest and each have a plain meaning:
+//
+//   stretch  EA/(2a) (D - a)^2
+//   bend     EI/a (1 - c)                                            ~ EI delta^2/(2a), delta = angle(t_i, t_j)
+//   shear    12 EI/a (1 - (t_i + t_j).d/2) - 3 EI/a (1 - c)          ~ 6 EI/a psi^2, psi = mean angle to d
+//   twist    GJ/(2a) (1 + c - w) = GJ/(2a) (1 + c)(1 - cos phi)      ~ GJ phi^2/(2a)
+//
+// Their sum is Kuzkin and Asonov's
+//   B1/2 (D-a)^2 - B2/2 (t_i + t_j).d - B3 t_i.t_j - B4/2 w + const,
+//   B1 = EA/a, B2 = 12 EI/a, B3 = -2 EI/a - GJ/(2a), B4 = GJ/a,
+// which has the stretching, bending and torsional stiffness of an Euler-Bernoulli beam. It is a total energy,
+// so nothing drifts with the path. Limits: the torque of twist peaks at phi = 90 degrees and is zero at 180;
+// beyond the peak a bond slips, and the simulator stops before it does.
+//
+// Units eV, nm. Net force and net torque vanish identically.
+// Source: V. A. Kuzkin, I. E. Asonov, Phys. Rev. E 86, 051301 (2012), DOI 10.1103/PhysRevE.86.051301.
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+
+#include "model/units.hpp"
+
+namespace ropewalk {
+
+template <class T>
+using Vec3 = Eigen::Matrix<T, 3, 1>;
+using Vector3 = Vec3<double>;
+
+struct BondStiffness {
+  double stretch = 0;  // EA, eV/nm
+  double bend = 0;     // EI, eV nm
+  double twist = 0;    // GJ, eV nm
+};
+
+// Body frame of an element: e1 and e2 span the cross-section, t is the tube axis (local z).
+template <class T>
+struct Frame {
+  Vec3<T> e1, e2, t;
+};
+
+template <class T>
+struct BondEnergy {
+  T stretch{0}, shear{0}, bend{0}, twist{0};
+  T total() const { return stretch + shear + bend + twist; }
+};
+
+template <class T>
+struct BondForce {
+  BondEnergy<T> energy;
+  Vec3<T> force_j;            // on element j; element i feels the opposite
+  Vec3<T> torque_i, torque_j; // about the element centres
+};
+
+template <class T>
+BondEnergy<T> bond_energy(const BondStiffness& k, double a, const Vec3<T>& separation, const Frame<T>& i,
+                          const Frame<T>& j) {
+  using std::sqrt;
+  const T length = sqrt(separation.dot(separation));
+  const Vec3<T> d = separation / length;
+  const T stretch = length - a;
+  // 1 - u.v is written as |u - v|^2/2 so that small bends do not drown in rounding.
+  const T one_minus_c = (i.t - j.t).squaredNorm() * 0.5;
+  const T one_minus_td = ((i.t - d).squaredNorm() + (j.t - d).squaredNorm()) * 0.25;
+  const T frame_misfit = ((i.e1 - j.e1).squaredNorm() + (i.e2 - j.e2).squaredNorm()) * 0.5;  // 2 - w
+  BondEnergy<T> e;
+  e.stretch = 0.5 * k.stretch / a * stretch * stretch;
+  e.bend = k.bend / a * one_minus_c;
+  e.shear = k.bend / a * (12.0 * one_minus_td - 3.0 * one_minus_c);
+  e.twist = 0.5 * k.twist / a * (frame_misfit - one_minus_c);
+  return e;
+}
+
+template <class T>
+BondForce<T> bond_energy_and_gradient(const BondStiffness& k, double a, const Vec3<T>& separation,
+                                      const Frame<T>& i, const Frame<T>& j) {
+  using std::sqrt;
+  const T length = sqrt(separation.dot(separation));
+  const Vec3<T> d = separation / length;
+  const double b2 = 12.0 * k.bend / a;
+  const double b3 = -2.0 * k.bend / a - 0.5 * k.twist / a;
+  const double b4 = k.twist / a;
+
+  BondForce<T> out;
+  out.energy = bond_energy(k, a, separation, i, j);
+  const Vec3<T> s = i.t + j.t;
+  out.force_j = -(k.stretch / a) * (length - a) * d + (0.5 * b2 / length) * (s - s.dot(d) * d);
+  // For a body vector u with g = dU/du the torque is g x u.
+  const Vec3<T> frames = (0.5 * b4) * (i.e1.cross(j.e1) + i.e2.cross(j.e2)) + b3 * i.t.cross(j.t);
+  out.torque_i = -(0.5 * b2) * d.cross(i.t) + frames;
+  out.torque_j = -(0.5 * b2) * d.cross(j.t) - frames;
+  return out;
+}
+
+// Twist angle of a bond in (-pi, pi], positive when frame j is turned against frame i by the right-hand rule
+// about the common axis; a bend of the axis does not enter.
+template <class T>
+T bond_twist_angle(const Frame<T>& i, const Frame<T>& j) {
+  using std::atan2;
+  return atan2(i.e2.dot(j.e1) - i.e1.dot(j.e2), i.e1.dot(j.e1) + i.e2.dot(j.e2));
+}
+
+// Largest angular frequency (rad/ps) of an infinite straight chain of such bonds: longitudinal and torsional
+// branches at the zone boundary, and the coupled deflection-rotation branch searched over the wave vector.
+// mass in eV ps^2/nm^2, isotropic inertia in eV ps^2.
+inline double stiffest_chain_frequency(const BondStiffness& k, double a, double mass, double inertia) {
+  double largest = std::fmax(4.0 * k.stretch / (a * mass), 4.0 * k.twist / (a * inertia));
+  for (int step = 0; step <= 256; ++step) {
+    const double q = units::pi * step / 256.0;
+    // Finite-element beam: K_uu, K_phiphi and the coupling, made symmetric by the masses.
+    const double uu = 24.0 * k.bend / (a * a * a) * (1.0 - std::cos(q)) / mass;
+    const double pp = k.bend / a * (8.0 + 4.0 * std::cos(q)) / inertia;
+    const double up = 12.0 * k.bend / (a * a) * std::sin(q) / std::sqrt(mass * inertia);
+    largest = std::fmax(largest, 0.5 * (uu + pp) + std::sqrt(0.25 * (uu - pp) * (uu - pp) + up * up));
+  }
+  return std::sqrt(largest);
+}
+
+}  // namespace ropewalk
