@@ -48,36 +48,37 @@ struct PairTerms {
   T d_c_crossing;  // the part of d_c that comes from the crossing factor alone (legacy torque)
 };
 
-// The published exponents (9.5, 4, -7.5) from reciprocals and one square root: no pow, and so vectorisable.
+// x^-alpha, x^-beta and x^delta, given 1/x. The published exponents (9.5, 4, -7.5) need one square root and no
+// pow, so that a loop over pairs vectorises.
 struct PublishedPowers {
   template <class T>
-  static T repulsive(T x, double) {
-    const T i = 1 / x, i2 = i * i, i4 = i2 * i2;
-    return i4 * i4 * i * std::sqrt(i);
+  static T repulsive(T, T inverse, double) {
+    const T i2 = inverse * inverse, i4 = i2 * i2;
+    return i4 * i4 * inverse * std::sqrt(inverse);
   }
   template <class T>
-  static T attractive(T x, double) {
-    const T i = 1 / x, i2 = i * i;
+  static T attractive(T, T inverse, double) {
+    const T i2 = inverse * inverse;
     return i2 * i2;
   }
   template <class T>
-  static T crossing(T x, double) {
-    const T i = 1 / x, i2 = i * i;
-    return i2 * i2 * i2 * i * std::sqrt(i);
+  static T crossing(T, T inverse, double) {
+    const T i2 = inverse * inverse;
+    return i2 * i2 * i2 * inverse * std::sqrt(inverse);
   }
 };
 
 struct GeneralPowers {
   template <class T>
-  static T repulsive(T x, double alpha) {
+  static T repulsive(T x, T, double alpha) {
     return std::pow(x, T(-alpha));
   }
   template <class T>
-  static T attractive(T x, double beta) {
+  static T attractive(T x, T, double beta) {
     return std::pow(x, T(-beta));
   }
   template <class T>
-  static T crossing(T x, double delta) {
+  static T crossing(T x, T, double delta) {
     return std::pow(x, T(delta));
   }
 };
@@ -105,14 +106,18 @@ struct PaperContact {
   // U and its derivatives. Plain arithmetic and selections only, so that a loop over pairs vectorises.
   template <class Powers, class T>
   inline __attribute__((always_inline)) PairTerms<T> terms(T r, T p, T q, T c) const {
+    const T inv_radius = T(1 / radius), inv_blend = T(1 / bisector_blend);
+    const T inv_freeze = T(0.5 / freeze_blend), inv_switch = T(1 / (cutoff_ratio - switch_start));
+
     // x = cos^2 theta for the two bisectors, and the weight of the first.
-    const T y = std::min(std::max(c / T(bisector_blend), T(-1)), T(1));
+    const T y = std::min(std::max(c * inv_blend, T(-1)), T(1));
     const T w = T(0.5) + y * (T(0.75) - T(0.25) * y * y);
-    const T w_c = T(0.75) * (1 - y * y) / T(bisector_blend);
+    const T w_c = T(0.75) * (1 - y * y) * inv_blend;
     const T sum = p + q, dif = p - q;
     // Where a denominator could vanish its weight is zero: the bound only keeps 0 * (0/0) away.
-    const T ip = 1 / std::max(2 + 2 * c, T(1));
-    const T im = 1 / std::max(2 - 2 * c, T(1));
+    const T np = std::max(2 + 2 * c, T(1)), nm = std::max(2 - 2 * c, T(1));
+    const T both = 1 / (np * nm);
+    const T ip = nm * both, im = np * both;
     const T xp = sum * sum * ip, xm = dif * dif * im;
     const T x = w * xp + (1 - w) * xm;
     const T gp = 2 * w * sum * ip, gm = 2 * (1 - w) * dif * im;
@@ -128,12 +133,13 @@ struct PaperContact {
     const T theta_x = 2 * (c1 + 2 * c2 * u1 + 3 * c3 * u2 + 4 * c4 * u3 + 5 * c5 * u4);
 
     // V with its core.
-    const T inv_rt = 1 / (T(radius) * theta);
-    const T d = r * inv_rt - 2;
+    const T rho = r * inv_radius;
+    const T inv_theta = 1 / theta;
+    const T d = rho * inv_theta - 2;
     const T dv = std::max(d, T(core_gap));
     const T inv_dv = 1 / dv;
-    const T rep = T(4 * epsilon * repulsion) * Powers::template repulsive<T>(dv, alpha);
-    const T att = T(4 * epsilon * attraction) * Powers::template attractive<T>(dv, beta);
+    const T rep = T(4 * epsilon * repulsion) * Powers::repulsive(dv, inv_dv, alpha);
+    const T att = T(4 * epsilon * attraction) * Powers::attractive(dv, inv_dv, beta);
     const T v0 = rep - att;
     const T v1 = (T(beta) * att - T(alpha) * rep) * inv_dv;
     const T v2 = (T(alpha * (alpha + 1)) * rep - T(beta * (beta + 1)) * att) * inv_dv * inv_dv;
@@ -142,25 +148,25 @@ struct PaperContact {
     const T v_d = v1 + e * v2;
 
     // Gamma, frozen by a smooth maximum.
-    const T rho = r / T(radius);
-    const T s = std::min(std::max((rho - T(freeze - freeze_blend)) / T(2 * freeze_blend), T(0)), T(1));
+    const T s = std::min(std::max((rho - T(freeze - freeze_blend)) * inv_freeze, T(0)), T(1));
     const T rho_e = std::max(rho, T(freeze + freeze_blend)) - T(freeze_blend) * (1 - s * s);
-    const T g = T(2 * crossing) * Powers::template crossing<T>(rho_e, delta);
+    const T inv_rho_e = 1 / rho_e;
+    const T g = T(2 * crossing) * Powers::crossing(rho_e, inv_rho_e, delta);
     const T sin2 = 1 - c * c;
     const T gam = 1 + g * sin2;
-    const T gam_r = g * sin2 * T(delta) / rho_e * s / T(radius);
+    const T gam_r = g * sin2 * T(delta) * inv_rho_e * s * inv_radius;
     const T gam_c = -2 * g * c;
 
     // W.
-    const T k = std::min(std::max((rho - T(switch_start)) / T(cutoff_ratio - switch_start), T(0)), T(1));
+    const T k = std::min(std::max((rho - T(switch_start)) * inv_switch, T(0)), T(1));
     const T sw = 1 - k * k * (3 - 2 * k);
-    const T sw_r = -6 * k * (1 - k) / T((cutoff_ratio - switch_start) * radius);
+    const T sw_r = -6 * k * (1 - k) * inv_switch * inv_radius;
 
     const T gv = gam * sw * v_d;
-    const T d_x = -gv * (d + 2) * theta_x / theta;  // dD/dx
+    const T d_x = -gv * (d + 2) * theta_x * inv_theta;  // dD/dx = -(D + 2) Theta'/Theta
     PairTerms<T> out;
     out.energy = gam * sw * v;
-    out.d_r = gv * inv_rt + (gam_r * sw + gam * sw_r) * v;
+    out.d_r = gv * inv_theta * inv_radius + (gam_r * sw + gam * sw_r) * v;
     out.d_p = d_x * x_p;
     out.d_q = d_x * x_q;
     out.d_c_crossing = gam_c * sw * v;

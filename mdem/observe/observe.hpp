@@ -2,7 +2,8 @@
 // State alone, so that `observe` on stored frames gives the numbers that the run logged.
 //
 // Centre line C(s): mean position of the elements of equal index s over all tubes (tubes of equal length;
-// otherwise only the quantities of single tubes are given). Its tangent is the local rope axis.
+// otherwise only the quantities of single tubes are given: physical twist and the counts of bonds). Its tangent
+// is the local rope axis. Twists and windings are positive where they are right-handed.
 #pragma once
 
 #include <Eigen/Core>
@@ -24,31 +25,34 @@ struct CrossSection {
   std::vector<int> neighbours;          // by distance, seed's definition
   std::vector<int> delaunay;            // by Delaunay triangulation of `points`
   int charge = 0;                       // Q = sum over internal tubes of 6 - neighbours
-  int charge_delaunay = 0;
+  int charge_delaunay = 0;              // by `delaunay`; in-plane distances mislead it beyond beta = 54 degrees
   int contacts = 0;                     // pairs of neighbours by distance
-  int voids = 0;                        // connected groups of Delaunay triangles too wide for a packed rope
+  int voids = 0;                        // closed groups of triangles too wide for a packed rope: voids.hpp
   double void_area = 0;                 // nm^2, their area less that of the same number of packed triangles
 };
 
 struct RopeObservation {
   double beta = 0;             // rad: mean angle of the outermost tubes to the local axis, middle third
   double physical_twist = 0;   // rad: sum of bond twist angles along a tube, mean over tubes
-  double geometric_twist = 0;  // rad: rotation of the tubes about the centre line, end to end, mean
+  double geometric_twist = 0;  // rad: rotation of the tubes about the centre line, end to end, mean over the
+                               // tubes that stay away from it; the writhe of a bent rope does not enter
   double radius_mid = 0;       // nm: outer radius (largest axis distance + r) of the middle section
   double radius_end = 0;       // nm: mean of the two end sections
   double length = 0;           // nm: arc length of the centre line
   double amplitude = 0;        // nm: largest distance of the centre line from its chord
-  double windings = 0;         // turns of the centre line about its chord (helix), 0 where it is straight
+  double windings = 0;         // turns of the centre line about its chord (helix), mean rate times length;
+                               // 0 where the amplitude is below one spacing
   std::vector<double> radius_profile;  // nm: outer radius, per element index
   std::vector<Vector3> centre_line;    // nm
   CrossSection middle;
-  int kinked = 0;         // bonds whose curvature exceeds the set's kink limit
-  int overtwisted = 0;    // bonds whose r * twist per length exceeds the set's limit
-  int overstretched = 0;  // bonds whose strain exceeds the set's limit
+  int kinked = 0;                 // bonds whose curvature exceeds the set's kink limit
+  int overtwisted = 0;            // bonds whose r * twist per length exceeds the set's limit
+  int overstretched = 0;          // bonds whose strain exceeds the set's limit
   double largest_bond_twist = 0;  // rad, absolute
 };
 
-// spacing: of the untwisted rope, nm; neighbour_radius 0: spacing (1 + sqrt 3)/2.
+// spacing: of the untwisted rope, nm; neighbour_radius 0: spacing (1 + sqrt 3)/2. Shells are taken in the middle
+// section; their spacing is the median over the tubes of the distance to the nearest one.
 RopeShells rope_shells(const Topology& topology, const State& reference, double neighbour_radius);
 
 // section: element index; distances between tubes are the smallest between elements section-1 .. section+1,

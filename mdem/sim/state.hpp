@@ -11,6 +11,9 @@ namespace ropewalk {
 
 using Quaternion = Eigen::Quaterniond;
 
+// Below so many elements a team of threads costs more than it saves.
+inline constexpr std::size_t parallel_from = 256;
+
 // Three arrays of one component each.
 struct Vec3Array {
   std::vector<double> x, y, z;

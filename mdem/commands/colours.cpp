@@ -1,0 +1,55 @@
+#include "commands/colours.hpp"
+
+#include "sim/neighbours.hpp"
+
+namespace ropewalk {
+namespace {
+
+void colour_contacts(const Topology& topology, const Interaction& in, const State& s, ElementColours& c) {
+  NeighbourList list;
+  list.cutoff = in.cutoff();
+  list.exclude_along_tube = in.exclude_along_tube;
+  list.build(topology, s.position);
+  for (int i = 0; i < topology.elements(); ++i)
+    for (std::size_t k = list.begin(i); k < list.begin(i + 1); ++k) {
+      const auto si = static_cast<std::size_t>(i), sj = static_cast<std::size_t>(list.indices()[k]);
+      const double e = in.paper->energy(s.position[sj] - s.position[si], axis_of(s.orientation[si]),
+                                        axis_of(s.orientation[sj]));
+      c.vdw_energy[si] += 0.5 * e;
+      c.vdw_energy[sj] += 0.5 * e;
+    }
+}
+
+// An inner element has two bonds, an end element one: means are over the bonds that are there.
+void colour_bonds(const Topology& topology, const Interaction& in, const State& s, ElementColours& c) {
+  const double a = topology.element_length;
+  for (int t = 0; t < topology.tubes(); ++t) {
+    const int from = topology.tube_begin[t], to = topology.tube_begin[t + 1];
+    for (int i = from; i + 1 < to; ++i) {
+      const auto si = static_cast<std::size_t>(i), sj = si + 1;
+      const Frame<double> fi = frame_of(s.orientation[si]), fj = frame_of(s.orientation[sj]);
+      const double energy = bond_energy(in.bond, a, Vector3(s.position[sj] - s.position[si]), fi, fj).total();
+      const double moment = in.bond.bend / a * 2.0 * std::asin(std::min(0.5 * (fi.t - fj.t).norm(), 1.0));
+      const double twist = bond_twist_angle(fi, fj);
+      const double wi = i == from ? 1.0 : 0.5, wj = i + 2 == to ? 1.0 : 0.5;
+      c.bond_energy[si] += 0.5 * energy;
+      c.bond_energy[sj] += 0.5 * energy;
+      c.bending_moment[si] += wi * moment;
+      c.bending_moment[sj] += wj * moment;
+      c.twist_angle[si] += wi * twist;
+      c.twist_angle[sj] += wj * twist;
+    }
+  }
+}
+
+}  // namespace
+
+ElementColours element_colours(const Topology& topology, const Interaction& in, const State& s) {
+  ElementColours c;
+  for (auto* v : {&c.bond_energy, &c.vdw_energy, &c.bending_moment, &c.twist_angle}) v->assign(s.size(), 0.0);
+  colour_bonds(topology, in, s, c);
+  if (in.paper) colour_contacts(topology, in, s, c);
+  return c;
+}
+
+}  // namespace ropewalk

@@ -1,0 +1,69 @@
+// The verbs of `ropewalk`. Each takes its options as plain data and returns the exit code; errors are thrown
+// and turned into one line by main.
+#pragma once
+
+#include <string>
+
+namespace ropewalk {
+
+struct RunArguments {
+  std::string scene;
+  std::string out;
+  int threads = 0;     // 0: all cores
+  long steps = -1;     // stop after so many steps; -1: the scene's duration
+  bool force = false;  // overwrite an earlier run
+  bool quiet = false;
+};
+int run_command(const RunArguments& arguments);
+
+struct ResumeArguments {
+  std::string dir;
+  int threads = 0;
+  long steps = -1;       // total steps at which to stop
+  double until_ps = -1;  // time at which to stop
+  bool quiet = false;
+};
+int resume_command(const ResumeArguments& arguments);
+
+struct ObserveArguments {
+  std::string dir;
+  double neighbour_radius = -1;  // nm; -1: the scene's
+  bool json = false;
+};
+int observe_command(const ObserveArguments& arguments);
+
+int report_command(const std::string& dir);
+
+struct NewArguments {
+  std::string name;
+  std::string kind = "rope";
+  bool list = false;
+  bool force = false;
+};
+int new_command(const NewArguments& arguments);
+
+int check_command(const std::string& scene);
+
+struct EnergyArguments {
+  std::string state;
+  std::string parameters;
+  std::string law = "paper";
+  bool legacy_torque = false;
+  bool reference = false;
+  bool json = false;
+  int exclude_along_tube = 20;
+  int threads = 0;
+};
+int energy_command(const EnergyArguments& arguments);
+
+struct BenchArguments {
+  std::string scene;
+  long steps = 200;
+  int threads = 1;
+  bool json = false;
+};
+int bench_command(const BenchArguments& arguments);
+
+void use_threads(int threads);
+
+}  // namespace ropewalk

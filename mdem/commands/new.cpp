@@ -1,0 +1,88 @@
+// `new` and `check`.
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "commands/commands.hpp"
+#include "io/files.hpp"
+#include "model/error.hpp"
+#include "scene/prepare.hpp"
+#include "scene/scene_toml.hpp"
+#include "scene/templates.hpp"
+
+namespace ropewalk {
+namespace {
+
+const SceneTemplate& find_template(const std::string& kind) {
+  for (const SceneTemplate& t : scene_templates())
+    if (t.name == kind) return t;
+  throw InputError({"", 0, "--kind"}, fmt::format("there is no template '{}'", kind), "see `ropewalk new --list`");
+}
+
+void say_source(const Scene& scene, const Prepared& p) {
+  const Topology& t = p.topology;
+  fmt::print("{} tubes, {} elements of {:.4g} nm", t.tubes(), t.elements(), t.element_length);
+  if (std::holds_alternative<RopeSource>(scene.source))
+    fmt::print(": a rope of {:.4g} nm, spacing {:.4g} nm", t.length_of(0) * t.element_length, p.spacing);
+  fmt::print("\nparameters {} ({}), EA {:.5g} nN, EI {:.5g} nN nm^2, GJ {:.5g} nN nm^2\n", scene.parameters.name,
+             scene.parameters.path, scene.parameters.bond.stretch * units::eV_in_nN_nm,
+             scene.parameters.bond.bend * units::eV_in_nN_nm, scene.parameters.bond.twist * units::eV_in_nN_nm);
+}
+
+void say_loads(const Scene& scene) {
+  if (!scene.loads.empty()) fmt::print("{} loads\n", scene.loads.size());
+  if (!scene.twist) return;
+  const TwistProtocol& w = *scene.twist;
+  fmt::print("twist: {:.4g} nN nm {} by {} on the grips, ramped in {:.4g} ps, held for {:.4g} ps; grips {} along the "
+             "axis, {} sideways{}\n",
+             w.moment / units::nN_nm, w.reading == TwistProtocol::Reading::per_tube ? "per tube" : "in total",
+             w.application == TwistProtocol::Application::couple ? "couples" : "tangential forces", w.ramp_time(), w.hold,
+             w.axial_free ? "free" : "held", w.lateral_free ? "free" : "held",
+             w.geometric_only ? "; spins relaxed (geometric twist only)" : "");
+}
+
+}  // namespace
+
+int new_command(const NewArguments& a) {
+  if (a.list) {
+    for (const SceneTemplate& t : scene_templates()) fmt::print("{:12} {}\n", t.name, t.description);
+    return 0;
+  }
+  if (a.name.empty())
+    throw InputError({"", 0, "name"}, "is missing", "give the scene a name: ropewalk new my-rope --kind rope");
+  const SceneTemplate& t = find_template(a.kind);
+  const std::string path = a.name.size() > 5 && a.name.compare(a.name.size() - 5, 5, ".toml") == 0 ? a.name : a.name + ".toml";
+  if (std::filesystem::exists(path) && !a.force)
+    throw InputError({path, 0, ""}, "exists", "choose another name or give --force");
+  write_file_atomically(path, t.text);
+  fmt::print("{} written. Look it over, then: ropewalk check {}; ropewalk run {} --out {}\n", path, path, path,
+             "run-" + std::filesystem::path(path).stem().string());
+  return 0;
+}
+
+int check_command(const std::string& path) {
+  Scene scene = read_scene(path);
+  const Prepared p = prepare(scene);
+  Simulation simulation = start(scene, p);
+  say_source(scene, p);
+  say_loads(scene);
+  fmt::print("time step {:.4g} fs; stability limit {:.4g} fs (chain {:.3g}, contact {:.3g} rad/ps, damping {:.3g} 1/ps)\n",
+             p.time_step / units::fs, p.limit.limit / units::fs, p.limit.chain_frequency, p.limit.contact_frequency,
+             p.limit.damping_rate);
+  const Energies& e = simulation.forces().energy;
+  fmt::print("start: {:.6g} eV in bonds, {:.6g} eV van der Waals, largest force {:.3g} eV/nm\n", e.bonds(), e.vdw,
+             simulation.largest_force());
+  if (scene.run.mode == RunOptions::Mode::relax) {
+    fmt::print("relaxation to {:.3g} eV/nm, at most {} steps\n", scene.run.force_tolerance, scene.run.max_steps);
+    return 0;
+  }
+  constexpr int sample = 20;
+  const auto began = std::chrono::steady_clock::now();
+  for (int k = 0; k < sample; ++k) simulation.step();
+  const double each = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count() / sample;
+  const double steps = p.duration / p.time_step;
+  fmt::print("{:.4g} ps = {:.0f} steps, about {:.0f} s on all cores\n", p.duration, steps, steps * each);
+  return 0;
+}
+
+}  // namespace ropewalk

@@ -1,0 +1,66 @@
+// The directory of one run and its files.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "io/log.hpp"
+#include "io/manifest.hpp"
+#include "observe/observe.hpp"
+#include "scene/prepare.hpp"
+
+namespace ropewalk {
+
+struct RunDirectory {
+  std::string path;
+
+  std::string file(const char* name) const { return path + "/" + name; }
+  std::string log() const { return file("log.csv"); }
+  std::string frames() const { return file("frames.lammpstrj"); }
+  std::string checkpoint() const { return file("checkpoint.bin"); }
+  std::string manifest() const { return file("manifest.json"); }
+  std::string scene() const { return file("scene.toml"); }
+  std::string parameters() const { return file("parameters.toml"); }
+  std::string state() const { return file("state.csv"); }
+  std::string report() const { return file("report.html"); }
+  std::string failed_state() const { return file("failed-state.csv"); }
+  std::string paraview() const { return file("paraview"); }
+};
+
+// Makes the directory. An earlier run in it is refused without `force`, and so is a directory with other
+// things in it even with `force`.
+void create_run_directory(const RunDirectory& dir, bool force);
+
+// The scene as the run had it: scene.toml, parameters.toml and state.csv of the directory.
+Scene read_run_scene(const RunDirectory& dir);
+
+// What a resumed run needs beyond the simulation itself.
+struct RunCheckpoint {
+  std::uint64_t log_bytes = 0;     // the files are cut back to these lengths
+  std::uint64_t frame_bytes = 0;
+  double first_energy = 0;         // eV, total at the start: origin of the balance
+  double wall_seconds = 0;
+  std::string simulation;
+};
+void write_checkpoint(const RunDirectory& dir, const RunCheckpoint& checkpoint);
+RunCheckpoint read_checkpoint(const RunDirectory& dir);
+
+// What a run looks at: shells of the untwisted rope and the scene's neighbour radius.
+struct Observer {
+  RopeShells shells;
+  double neighbour_radius = 0;
+  double spacing = 0;
+};
+Observer make_observer(const Scene& scene, const Prepared& prepared);
+
+RopeObservation look(const Observer& observer, const Scene& scene, const Topology& topology, const State& state);
+// The columns of a row that come from geometry alone.
+void fill_geometry(const RopeObservation& o, LogRow& row);
+
+// CSV in the format that [state] reads.
+std::string state_csv(const Topology& topology, const State& state);
+
+// Makes report.html from the files of the directory.
+void write_report(const RunDirectory& dir, const Scene& scene, const Prepared& prepared);
+
+}  // namespace ropewalk

@@ -1,0 +1,137 @@
+// ropewalk: the front door. Reads the command line, calls the verb, turns errors into one line and an exit
+// code: 0 done, 2 wrong input, 3 numerical failure, 128 + signal when interrupted.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+
+#include "commands/commands.hpp"
+#include "model/error.hpp"
+#include "scene/scene_toml.hpp"
+#include "version.hpp"
+
+namespace {
+
+using namespace ropewalk;
+
+struct Verbs {
+  RunArguments run;
+  ResumeArguments resume;
+  ObserveArguments observe;
+  NewArguments make;
+  EnergyArguments energy;
+  BenchArguments bench;
+  std::string report_dir, check_scene;
+  int code = 0;
+};
+
+void add_new(CLI::App& app, Verbs& v) {
+  CLI::App* c = app.add_subcommand("new", "Write a commented scene to start from");
+  c->add_option("name", v.make.name, "Name of the scene; NAME.toml is written");
+  c->add_option("--kind", v.make.kind, "Which template, see --list")->capture_default_str();
+  c->add_flag("--list", v.make.list, "List the templates");
+  c->add_flag("--force", v.make.force, "Overwrite an existing file");
+  c->callback([&v] { v.code = new_command(v.make); });
+}
+
+void add_check(CLI::App& app, Verbs& v) {
+  CLI::App* c = app.add_subcommand("check", "Read a scene, say what it would do and how long it would take");
+  c->add_option("scene", v.check_scene, "Scene file (TOML)")->required();
+  c->callback([&v] { v.code = check_command(v.check_scene); });
+}
+
+void add_run(CLI::App& app, Verbs& v) {
+  CLI::App* c = app.add_subcommand("run", "Run a scene");
+  c->add_option("scene", v.run.scene, "Scene file (TOML)")->required();
+  c->add_option("--out", v.run.out, "Directory of the run; made, never overwritten")->required();
+  c->add_option("--threads", v.run.threads, "Threads [default: all cores]; any number gives the same bits")
+      ->check(CLI::PositiveNumber);
+  c->add_option("--steps", v.run.steps, "Stop after so many time steps")->check(CLI::NonNegativeNumber);
+  c->add_flag("--force", v.run.force, "Replace an earlier run in --out");
+  c->add_flag("--quiet", v.run.quiet, "No progress line");
+  c->callback([&v] { v.code = run_command(v.run); });
+}
+
+void add_resume(CLI::App& app, Verbs& v) {
+  CLI::App* c = app.add_subcommand("resume", "Go on with a run from its last checkpoint, bit for bit");
+  c->add_option("dir", v.resume.dir, "Directory of the run")->required();
+  c->add_option("--threads", v.resume.threads, "Threads [default: all cores]")->check(CLI::PositiveNumber);
+  c->add_option("--steps", v.resume.steps, "Stop at this time step")->check(CLI::NonNegativeNumber);
+  c->add_option("--until", v.resume.until_ps, "Stop at this time (ps) instead of the scene's")
+      ->check(CLI::NonNegativeNumber);
+  c->add_flag("--quiet", v.resume.quiet, "No progress line");
+  c->callback([&v] { v.code = resume_command(v.resume); });
+}
+
+void add_observe(CLI::App& app, Verbs& v) {
+  CLI::App* c = app.add_subcommand("observe", "Measure the stored frames of a run: twist, packing, shape");
+  c->add_option("dir", v.observe.dir, "Directory of the run")->required();
+  c->add_option("--neighbour-radius", v.observe.neighbour_radius,
+                "Tubes closer than this are neighbours (nm) [default: the scene's]")
+      ->check(CLI::PositiveNumber);
+  c->add_flag("--json", v.observe.json, "JSON, with radius profile and centre line");
+  c->callback([&v] { v.code = observe_command(v.observe); });
+}
+
+void add_report(CLI::App& app, Verbs& v) {
+  CLI::App* c = app.add_subcommand("report", "Make report.html anew from the files of a run");
+  c->add_option("dir", v.report_dir, "Directory of the run")->required();
+  c->callback([&v] { v.code = report_command(v.report_dir); });
+}
+
+void add_energy(CLI::App& app, Verbs& v) {
+  CLI::App* c = app.add_subcommand(
+      "energy", "Energies (eV), forces (eV/nm) and torques (eV) of one state: CSV tube,x_nm,y_nm,z_nm,qw,qx,qy,qz");
+  c->add_option("state", v.energy.state, "State file; the tube axis is the body's z")->required();
+  c->add_option("--parameters", v.energy.parameters, "Parameter set: a file, or the name of a shipped one")->required();
+  c->add_option("--law", v.energy.law, "Contact law: paper or none")->capture_default_str();
+  c->add_option("--exclude-along-tube", v.energy.exclude_along_tube,
+                "Elements of one tube up to this many apart do not touch")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
+  c->add_option("--threads", v.energy.threads, "Threads [default: all cores]")->check(CLI::PositiveNumber);
+  c->add_flag("--legacy-torque", v.energy.legacy_torque, "Leave out the torque that the published code leaves out");
+  c->add_flag("--reference", v.energy.reference, "The plain O(N^2) path instead of the fast one");
+  c->add_flag("--json", v.energy.json, "JSON");
+  c->callback([&v] { v.code = energy_command(v.energy); });
+}
+
+void add_bench(CLI::App& app, Verbs& v) {
+  CLI::App* c = app.add_subcommand("bench", "Time the steps of a scene");
+  c->add_option("scene", v.bench.scene, "Scene file (TOML)")->required();
+  c->add_option("--steps", v.bench.steps, "Time steps")->capture_default_str()->check(CLI::PositiveNumber);
+  c->add_option("--threads", v.bench.threads, "Threads")->capture_default_str()->check(CLI::PositiveNumber);
+  c->add_flag("--json", v.bench.json, "JSON");
+  c->callback([&v] { v.code = bench_command(v.bench); });
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("ropewalk twists carbon-nanotube ropes by the mesoscopic distinct element method.\n"
+               "Units: nm, ps, eV; moments nN nm; every key of a scene carries its unit.");
+  app.set_version_flag("--version", std::string("ropewalk ") + version + " (" + git_id + ")");
+  app.require_subcommand(1);
+  app.footer(scene_key_help());
+  Verbs verbs;
+  add_new(app, verbs);
+  add_check(app, verbs);
+  add_run(app, verbs);
+  add_resume(app, verbs);
+  add_observe(app, verbs);
+  add_report(app, verbs);
+  add_energy(app, verbs);
+  add_bench(app, verbs);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    if (e.get_exit_code() == 0) return app.exit(e);
+    std::fprintf(stderr, "ropewalk: %s; see ropewalk --help\n", e.what());
+    return 2;
+  } catch (const InputError& e) {
+    std::fprintf(stderr, "ropewalk: %s\n", e.what());
+    return 2;
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "ropewalk: %s\n", e.what());
+    return 3;
+  }
+  return verbs.code;
+}

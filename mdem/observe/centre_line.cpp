@@ -1,0 +1,134 @@
+#include "observe/centre_line.hpp"
+
+#include <algorithm>
+
+#include "model/units.hpp"
+
+namespace ropewalk {
+namespace {
+
+using Eigen::Vector2d;
+
+constexpr double straight_fraction = 0.02;  // of the amplitude: nearer to the chord than that the line is straight
+
+Vector3 unit_or_z(const Vector3& v) {
+  const double norm = v.norm();
+  return norm > 0.0 ? Vector3(v / norm) : Vector3::UnitZ();
+}
+
+std::vector<Vector3> differences(const std::vector<Vector3>& line) {
+  std::vector<Vector3> tangents;
+  const int n = static_cast<int>(line.size());
+  for (int k = 0; k < n; ++k)
+    tangents.push_back(unit_or_z(line[std::min(k + 1, n - 1)] - line[std::max(k - 1, 0)]));
+  return tangents;
+}
+
+// Deviations from the chord, each as two coordinates normal to it. Empty where there is no chord.
+std::vector<Vector2d> deviations(const std::vector<Vector3>& line) {
+  std::vector<Vector2d> out;
+  if (line.size() < 2) return out;
+  const Vector3 chord = line.back() - line.front();
+  if (chord.norm() <= 1e-9 * arc_length(line)) return out;
+  const Vector3 z = chord.normalized();
+  const Vector3 x = z.unitOrthogonal();
+  const Vector3 y = z.cross(x);
+  for (const Vector3& p : line) out.emplace_back((p - line.front()).dot(x), (p - line.front()).dot(y));
+  return out;
+}
+
+double largest_norm(const std::vector<Vector2d>& v) {
+  double largest = 0.0;
+  for (const Vector2d& p : v) largest = std::max(largest, p.norm());
+  return largest;
+}
+
+// Less their least-squares line over the index.
+std::vector<Vector2d> detrended(std::vector<Vector2d> v) {
+  const double n = static_cast<double>(v.size());
+  const double middle = 0.5 * (n - 1.0);
+  Vector2d mean = Vector2d::Zero(), moment = Vector2d::Zero();
+  for (std::size_t k = 0; k < v.size(); ++k) {
+    mean += v[k] / n;
+    moment += (static_cast<double>(k) - middle) * v[k];
+  }
+  const Vector2d slope = moment * (12.0 / (n * (n * n - 1.0)));
+  for (std::size_t k = 0; k < v.size(); ++k) v[k] -= mean + slope * (static_cast<double>(k) - middle);
+  return v;
+}
+
+// Mean azimuth per step, weighted with the square of the distance from the axis. The cross product stands for
+// size times angle: it has no jumps where a line passes its axis.
+double azimuth_rate(const std::vector<Vector2d>& v) {
+  double swept = 0.0, weight = 0.0;
+  for (std::size_t k = 0; k + 1 < v.size(); ++k) {
+    swept += v[k].x() * v[k + 1].y() - v[k].y() * v[k + 1].x();
+    weight += 0.25 * (v[k] + v[k + 1]).squaredNorm();
+  }
+  return weight > 0.0 ? swept / weight : 0.0;
+}
+
+}  // namespace
+
+int common_length(const Topology& topology) {
+  if (topology.tubes() < 1) return 0;
+  const int n = topology.length_of(0);
+  for (int t = 1; t < topology.tubes(); ++t)
+    if (topology.length_of(t) != n) return 0;
+  return n;
+}
+
+Vector3 tube_tangent(const Topology& topology, const State& state, int tube, int index) {
+  const int first = topology.tube_begin[tube], n = topology.length_of(tube);
+  if (n < 2) return axis_of(state.orientation[first + index]);
+  const int before = std::max(index - 1, 0), after = std::min(index + 1, n - 1);
+  return unit_or_z(state.position[first + after] - state.position[first + before]);
+}
+
+CentreLine centre_line(const Topology& topology, const State& state) {
+  const int n = common_length(topology), tubes = topology.tubes();
+  CentreLine line;
+  line.points.assign(n, Vector3::Zero());
+  for (int t = 0; t < tubes && n > 0; ++t)
+    for (int k = 0; k < n; ++k) line.points[k] += state.position[topology.tube_begin[t] + k] / tubes;
+  line.tangents = differences(line.points);
+  if (n == 1) {
+    Vector3 sum = Vector3::Zero();
+    for (int t = 0; t < tubes; ++t) sum += tube_tangent(topology, state, t, 0);
+    line.tangents[0] = unit_or_z(sum);
+  }
+  return line;
+}
+
+double arc_length(const std::vector<Vector3>& line) {
+  double length = 0.0;
+  for (std::size_t k = 0; k + 1 < line.size(); ++k) length += (line[k + 1] - line[k]).norm();
+  return length;
+}
+
+double chord_amplitude(const std::vector<Vector3>& line) {
+  const std::vector<Vector2d> lateral = deviations(line);
+  if (!lateral.empty()) return largest_norm(lateral);
+  double largest = 0.0;
+  for (const Vector3& p : line) largest = std::max(largest, (p - line.front()).norm());
+  return largest;
+}
+
+// Counting the azimuth from end to end fails on real ropes: a helix whose ends lie on its axis has no azimuth
+// there, a chord that runs along the side of a helix (free ends) is no axis, and a plane bow or S has jumps of
+// pi. So the turns are the mean azimuth rate, weighted with the square of the distance from the axis, times
+// the length of the line that is not straight. The axis is the chord moved and tilted to the least-squares
+// line: right for a helix of any number of turns with free ends. On ideal helices of 1.5 turns and more with
+// constant, sine or plateau envelope this is within 0.15 turns; a plane curve has none. Below 1.5 turns helix
+// and bow are not well apart (1 turn reads as 1.0 to 1.4).
+double chord_windings(const std::vector<Vector3>& line) {
+  const std::vector<Vector2d> lateral = deviations(line);
+  if (lateral.size() < 3) return 0.0;
+  const double straight = straight_fraction * largest_norm(lateral);
+  int bent_steps = 0;
+  for (std::size_t k = 0; k + 1 < lateral.size(); ++k)
+    bent_steps += 0.5 * (lateral[k] + lateral[k + 1]).norm() > straight;
+  return azimuth_rate(detrended(lateral)) * bent_steps / (2.0 * units::pi);
+}
+
+}  // namespace ropewalk

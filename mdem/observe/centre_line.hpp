@@ -1,0 +1,33 @@
+// The centre line of a rope: mean position of the elements of equal index.
+#pragma once
+
+#include <vector>
+
+#include "sim/state.hpp"
+
+namespace ropewalk {
+
+struct CentreLine {
+  std::vector<Vector3> points;    // nm
+  std::vector<Vector3> tangents;  // unit: central differences, one-sided at the ends
+};
+
+// Elements per tube where all tubes have equally many, 0 otherwise.
+int common_length(const Topology& topology);
+
+// Empty where the tubes have no common length.
+CentreLine centre_line(const Topology& topology, const State& state);
+
+// Direction of a tube at one of its elements from the positions of the adjacent ones; the element's own axis
+// for a tube of one element.
+Vector3 tube_tangent(const Topology& topology, const State& state, int tube, int index);
+
+double arc_length(const std::vector<Vector3>& line);
+
+// Largest distance from the chord, nm. (From the first point, where the line is closed.)
+double chord_amplitude(const std::vector<Vector3>& line);
+
+// Turns about the axis of the helix, positive for a right-handed one; see the .cpp for the estimator.
+double chord_windings(const std::vector<Vector3>& line);
+
+}  // namespace ropewalk

@@ -1,0 +1,167 @@
+// Neighbours, packing charge and voids of one cross-section.
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "observe/centre_line.hpp"
+#include "observe/delaunay.hpp"
+#include "observe/observe.hpp"
+#include "observe/voids.hpp"
+
+namespace ropewalk {
+namespace {
+
+// Midway between the first and the second shell of the hexagonal packing, in spacings. The seed's own radius,
+// sqrt 3 times 1.76 nm, would count second neighbours at the spacing of its contact.
+const double between_shells = 0.5 * (1.0 + std::sqrt(3.0));
+
+double limit_of(double neighbour_radius, double spacing) {
+  return neighbour_radius > 0.0 ? neighbour_radius : between_shells * spacing;
+}
+
+// Smallest distance between the elements section-1 .. section+1 of two tubes.
+double tube_distance(const Topology& topology, const State& state, int a, int b, int section) {
+  const int n = topology.length_of(a);
+  const int from = std::max(section - 1, 0), to = std::min(section + 1, n - 1);
+  double smallest = std::numeric_limits<double>::infinity();
+  for (int i = from; i <= to; ++i)
+    for (int j = from; j <= to; ++j) {
+      const Vector3 d = state.position[topology.tube_begin[a] + i] - state.position[topology.tube_begin[b] + j];
+      smallest = std::min(smallest, d.squaredNorm());
+    }
+  return std::sqrt(smallest);
+}
+
+// Of every pair a < b, row by row.
+std::vector<double> tube_distances(const Topology& topology, const State& state, int section) {
+  std::vector<double> distances;
+  for (int a = 0; a < topology.tubes(); ++a)
+    for (int b = a + 1; b < topology.tubes(); ++b)
+      distances.push_back(tube_distance(topology, state, a, b, section));
+  return distances;
+}
+
+std::vector<int> neighbours_within(int tubes, const std::vector<double>& distances, double limit) {
+  std::vector<int> count(tubes, 0);
+  std::size_t pair = 0;
+  for (int a = 0; a < tubes; ++a)
+    for (int b = a + 1; b < tubes; ++b, ++pair)
+      if (distances[pair] < limit) {
+        ++count[a];
+        ++count[b];
+      }
+  return count;
+}
+
+// Median over the tubes of the distance to the nearest: the spacing of a rope, also a slightly perturbed one.
+double median_spacing(int tubes, const std::vector<double>& distances) {
+  if (tubes < 2) return 0.0;
+  std::vector<double> nearest(tubes, std::numeric_limits<double>::infinity());
+  std::size_t pair = 0;
+  for (int a = 0; a < tubes; ++a)
+    for (int b = a + 1; b < tubes; ++b, ++pair) {
+      nearest[a] = std::min(nearest[a], distances[pair]);
+      nearest[b] = std::min(nearest[b], distances[pair]);
+    }
+  std::nth_element(nearest.begin(), nearest.begin() + tubes / 2, nearest.end());
+  return nearest[tubes / 2];
+}
+
+int packing_charge(const RopeShells& shells, const std::vector<int>& neighbours) {
+  int charge = 0;
+  const std::size_t tubes = std::min(shells.internal.size(), neighbours.size());
+  for (std::size_t t = 0; t < tubes; ++t)
+    if (shells.internal[t]) charge += 6 - neighbours[t];
+  return charge;
+}
+
+// The plane normal to the local rope axis. x and y do not turn with the state: x is the space x axis seen
+// along the rope (y where that is the rope's direction), so that sections of successive frames compare.
+struct Plane {
+  Vector3 origin, x, y, normal;
+
+  Plane(const Vector3& origin_, const Vector3& normal_) : origin(origin_), normal(normal_) {
+    const Vector3 guide = std::abs(normal.x()) < 0.9 ? Vector3::UnitX() : Vector3::UnitY();
+    x = (guide - guide.dot(normal) * normal).normalized();
+    y = normal.cross(x);
+  }
+  double height(const Vector3& p) const { return (p - origin).dot(normal); }
+  Vector3 local(const Vector3& v) const { return {v.dot(x), v.dot(y), v.dot(normal)}; }
+};
+
+// Where the bond k, k+1 of a tube passes through the plane.
+std::optional<Vector3> piercing_of_bond(const Plane& plane, const State& state, int k) {
+  const Vector3 p = state.position[k], q = state.position[k + 1];
+  const double hp = plane.height(p), hq = plane.height(q);
+  if ((hp > 0.0) == (hq > 0.0)) return std::nullopt;
+  return Vector3(p + (q - p) * (hp / (hp - hq)));
+}
+
+// Where a tube pierces the plane, nearest to the section along the tube. The search goes as far as a tube
+// inclined by 60 degrees could need; a tube that does not pierce there (it ends, or lies in the plane) is
+// projected instead.
+Vector3 piercing(const Plane& plane, const Topology& topology, const State& state, int tube, int section) {
+  const int first = topology.tube_begin[tube], n = topology.length_of(tube);
+  const Vector3 at = state.position[first + section];
+  const double bonds_away = std::abs(plane.height(at)) / std::max(topology.element_length, 1e-9);
+  const int reach = 2 + static_cast<int>(std::min(2.0 * bonds_away, static_cast<double>(n)));
+  for (int d = 0; d < reach; ++d)
+    for (const int k : {section + d, section - 1 - d}) {
+      if (k < 0 || k + 1 >= n) continue;
+      if (const auto p = piercing_of_bond(plane, state, first + k)) return *p;
+    }
+  return at - plane.height(at) * plane.normal;
+}
+
+Vector3 along(const Vector3& tangent, const Vector3& axis) { return tangent.dot(axis) < 0.0 ? -tangent : tangent; }
+
+}  // namespace
+
+RopeShells rope_shells(const Topology& topology, const State& reference, double neighbour_radius) {
+  const int tubes = topology.tubes(), n = common_length(topology);
+  RopeShells shells;
+  shells.internal.assign(tubes, 0);
+  shells.outermost.assign(tubes, 1);
+  if (n == 0) return shells;
+  const std::vector<double> distances = tube_distances(topology, reference, n / 2);
+  const double limit = limit_of(neighbour_radius, median_spacing(tubes, distances));
+  const std::vector<int> neighbours = neighbours_within(tubes, distances, limit);
+  for (int t = 0; t < tubes; ++t) {
+    shells.internal[t] = neighbours[t] == 6;
+    shells.outermost[t] = !shells.internal[t];
+  }
+  return shells;
+}
+
+CrossSection cross_section(const Topology& topology, const State& state, const RopeShells& shells, int section,
+                           double neighbour_radius, double spacing) {
+  CrossSection out;
+  const int tubes = topology.tubes(), n = common_length(topology);
+  if (n == 0) return out;
+  section = std::clamp(section, 0, n - 1);
+  out.neighbours =
+      neighbours_within(tubes, tube_distances(topology, state, section), limit_of(neighbour_radius, spacing));
+  for (const int count : out.neighbours) out.contacts += count;
+  out.contacts /= 2;
+  out.charge = packing_charge(shells, out.neighbours);
+
+  const CentreLine line = centre_line(topology, state);
+  const Plane plane(line.points[section], line.tangents[section]);
+  std::vector<Vector3> points, tangents;
+  for (int t = 0; t < tubes; ++t) {
+    points.push_back(plane.local(piercing(plane, topology, state, t, section) - plane.origin));
+    tangents.push_back(plane.local(along(tube_tangent(topology, state, t, section), plane.normal)));
+    out.points.push_back(points.back().head<2>());
+  }
+  const std::vector<Triangle> triangles = delaunay(out.points);
+  out.delaunay = edge_counts(triangles, tubes);
+  if (!triangles.empty()) out.charge_delaunay = packing_charge(shells, out.delaunay);
+  const Voids voids = find_voids(triangles, points, tangents, spacing);
+  out.voids = voids.count;
+  out.void_area = voids.area;
+  return out;
+}
+
+}  // namespace ropewalk

@@ -1,0 +1,141 @@
+#include "observe/observe.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "observe/centre_line.hpp"
+
+namespace ropewalk {
+namespace {
+
+constexpr double on_axis = 0.25;  // of the spacing: nearer to the centre line a tube has no azimuth worth taking
+
+double angle_between(const Vector3& a, const Vector3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
+
+Vector3 normal_part(const Vector3& v, const Vector3& axis) { return v - v.dot(axis) * axis; }
+
+double twist_of_bond(const State& state, int i) {
+  return bond_twist_angle(frame_of(state.orientation[i]), frame_of(state.orientation[i + 1]));
+}
+
+bool beyond(double value, double limit) { return limit > 0.0 && value > limit; }
+
+void count_bond(const Topology& topology, const State& state, const Validity& validity, int i, double twist,
+                RopeObservation& out) {
+  const double a = topology.element_length;
+  out.largest_bond_twist = std::max(out.largest_bond_twist, std::abs(twist));
+  if (a <= 0.0) return;
+  const double bend = angle_between(axis_of(state.orientation[i]), axis_of(state.orientation[i + 1]));
+  const double strain = (state.position[i + 1] - state.position[i]).norm() / a - 1.0;
+  out.kinked += beyond(bend / a, validity.kink_curvature);
+  out.overtwisted += beyond(topology.radius * std::abs(twist) / a, validity.twist_collapse);
+  out.overstretched += beyond(std::abs(strain), validity.stretch);
+}
+
+// All that needs no common section.
+void observe_bonds(const Topology& topology, const State& state, const Validity& validity, RopeObservation& out) {
+  double sum = 0.0;
+  for (int t = 0; t < topology.tubes(); ++t)
+    for (int i = topology.tube_begin[t]; i + 1 < topology.tube_begin[t + 1]; ++i) {
+      const double twist = twist_of_bond(state, i);
+      sum += twist;
+      count_bond(topology, state, validity, i, twist, out);
+    }
+  if (topology.tubes() > 0) out.physical_twist = sum / topology.tubes();
+}
+
+// Mean over the outermost tubes in the middle third.
+double twist_angle(const Topology& topology, const State& state, const RopeShells& shells, const CentreLine& line) {
+  const int n = static_cast<int>(line.points.size());
+  const int tubes = std::min(topology.tubes(), static_cast<int>(shells.outermost.size()));
+  double sum = 0.0;
+  int count = 0;
+  for (int t = 0; t < tubes; ++t) {
+    if (!shells.outermost[t]) continue;
+    for (int k = n / 3; k < n - n / 3; ++k, ++count)
+      sum += angle_between(tube_tangent(topology, state, t, k), line.tangents[k]);
+  }
+  return count > 0 ? sum / count : 0.0;
+}
+
+// The rotations that carry a direction along the centre line without turning it about the line (a discrete
+// Bishop frame): what a tube turns against it is twist, whatever shape the line has; the line's writhe does
+// not enter.
+std::vector<Quaternion> transports(const CentreLine& line) {
+  std::vector<Quaternion> steps;
+  for (std::size_t k = 0; k + 1 < line.tangents.size(); ++k)
+    steps.push_back(Quaternion::FromTwoVectors(line.tangents[k], line.tangents[k + 1]));
+  return steps;
+}
+
+struct Turning {
+  double angle = 0;    // rad, end to end, right-handed positive
+  double nearest = 0;  // nm, smallest distance from the centre line
+};
+
+Turning turning_of(const Topology& topology, const State& state, const CentreLine& line,
+                   const std::vector<Quaternion>& steps, int tube) {
+  const int first = topology.tube_begin[tube];
+  const auto arm = [&](int k) { return normal_part(state.position[first + k] - line.points[k], line.tangents[k]); };
+  Vector3 last = arm(0);
+  Turning turning{0.0, last.norm()};
+  for (std::size_t k = 0; k < steps.size(); ++k) {
+    const Vector3 carried = steps[k] * last;
+    last = arm(static_cast<int>(k) + 1);
+    turning.angle += std::atan2(line.tangents[k + 1].dot(carried.cross(last)), carried.dot(last));
+    turning.nearest = std::min(turning.nearest, last.norm());
+  }
+  return turning;
+}
+
+double geometric_twist(const Topology& topology, const State& state, const CentreLine& line, double scale) {
+  const std::vector<Quaternion> steps = transports(line);
+  double sum = 0.0;
+  int count = 0;
+  for (int t = 0; t < topology.tubes(); ++t) {
+    const Turning turning = turning_of(topology, state, line, steps, t);
+    if (turning.nearest <= on_axis * scale) continue;
+    sum += turning.angle;
+    ++count;
+  }
+  return count > 0 ? sum / count : 0.0;
+}
+
+std::vector<double> outer_radii(const Topology& topology, const State& state, const CentreLine& line) {
+  std::vector<double> radii;
+  for (std::size_t k = 0; k < line.points.size(); ++k) {
+    double largest = 0.0;
+    for (int t = 0; t < topology.tubes(); ++t) {
+      const Vector3 arm = state.position[topology.tube_begin[t] + k] - line.points[k];
+      largest = std::max(largest, normal_part(arm, line.tangents[k]).norm());
+    }
+    radii.push_back(largest + topology.radius);
+  }
+  return radii;
+}
+
+}  // namespace
+
+RopeObservation observe(const Topology& topology, const State& state, const RopeShells& shells,
+                        const Validity& validity, double neighbour_radius, double spacing) {
+  RopeObservation out;
+  observe_bonds(topology, state, validity, out);
+  const int n = common_length(topology);
+  if (n == 0) return out;
+  const double scale = spacing > 0.0 ? spacing : 2.0 * topology.radius;  // a lone tube has no spacing
+  const CentreLine line = centre_line(topology, state);
+  out.beta = twist_angle(topology, state, shells, line);
+  out.geometric_twist = geometric_twist(topology, state, line, scale);
+  out.radius_profile = outer_radii(topology, state, line);
+  out.radius_mid = out.radius_profile[n / 2];
+  out.radius_end = 0.5 * (out.radius_profile.front() + out.radius_profile.back());
+  out.length = arc_length(line.points);
+  out.amplitude = chord_amplitude(line.points);
+  if (out.amplitude > scale) out.windings = chord_windings(line.points);
+  out.centre_line = line.points;
+  out.middle = cross_section(topology, state, shells, n / 2, neighbour_radius, spacing);
+  return out;
+}
+
+}  // namespace ropewalk

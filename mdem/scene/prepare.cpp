@@ -1,0 +1,134 @@
+#include "scene/prepare.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "model/error.hpp"
+
+namespace ropewalk {
+namespace {
+
+std::vector<int> selected_tubes(const Scene& scene, const Selection& on, const Topology& topology) {
+  std::vector<int> tubes;
+  if (on.all_tubes) {
+    for (int t = 0; t < topology.tubes(); ++t) tubes.push_back(t);
+    return tubes;
+  }
+  for (int t : on.tubes) {
+    if (t < 0 || t >= topology.tubes())
+      throw InputError({scene.path, 0, "load.tubes"}, fmt::format("there is no tube {}", t),
+                       fmt::format("tubes are numbered from 0 to {}", topology.tubes() - 1));
+    tubes.push_back(t);
+  }
+  return tubes;
+}
+
+std::vector<int> selected_elements(const Scene& scene, const Selection& on, const Topology& topology) {
+  std::vector<int> elements;
+  for (int t : selected_tubes(scene, on, topology)) {
+    const int length = topology.length_of(t);
+    if (on.all_elements) {
+      for (int e = 0; e < length; ++e) elements.push_back(topology.tube_begin[t] + e);
+      continue;
+    }
+    for (int e : on.elements) {
+      const int at = e < 0 ? length + e : e;
+      if (at < 0 || at >= length)
+        throw InputError({scene.path, 0, "load.elements"}, fmt::format("tube {} has no element {}", t, e),
+                         fmt::format("its elements are 0 to {}, or -1 to -{} from the end", length - 1, length));
+      elements.push_back(topology.tube_begin[t] + at);
+    }
+  }
+  return elements;
+}
+
+struct AddLoad {
+  const std::vector<int>& elements;
+  Drive& drive;
+
+  void operator()(const FixLoad& f) const {
+    for (int e : elements) drive.fixed.push_back({e, f.x, f.y, f.z, f.rotation});
+  }
+  void operator()(const ForceLoad& f) const {
+    for (int e : elements) drive.loads.push_back({e, f.force, Vector3::Zero()});
+  }
+  void operator()(const TorqueLoad& f) const {
+    for (int e : elements) drive.loads.push_back({e, Vector3::Zero(), f.torque});
+  }
+  void operator()(const RotateLoad& f) const {
+    drive.turned.push_back({elements, f.rate, f.angle, f.centre, f.axial_free, f.spin_free});
+  }
+};
+
+TwistDrive twist_of(const TwistProtocol& twist, const Topology& topology) {
+  TwistDrive d;
+  for (int t = 0; t < topology.tubes(); ++t) {
+    d.lower.push_back(topology.tube_begin[t]);
+    d.upper.push_back(topology.tube_begin[t + 1] - 1);
+  }
+  d.moment = twist.moment;
+  d.rate = twist.rate;
+  d.per_tube = twist.reading == TwistProtocol::Reading::per_tube;
+  d.tangential = twist.application == TwistProtocol::Application::tangential;
+  d.lateral_free = twist.lateral_free;
+  d.axial_free = twist.axial_free;
+  d.geometric_only = twist.geometric_only;
+  d.increment = twist.increment;
+  return d;
+}
+
+double chosen_step(const Scene& scene, const TimeStepLimit& limit) {
+  const double typed = scene.run.time_step;
+  if (typed <= 0) return default_step_fraction * limit.limit;
+  if (typed < limit.limit) return typed;
+  const char* why = limit.damping_rate * limit.limit > 1 ? "the strongest damping" : "the stiffest mode";
+  throw InputError({scene.path, 0, "run.time_step_fs"},
+                   fmt::format("{:.4g} fs is not below the stability limit of {:.4g} fs, set by {}", typed / units::fs,
+                               limit.limit / units::fs, why),
+                   fmt::format("take at most {:.3g}, or \"auto\"", 0.9 * limit.limit / units::fs));
+}
+
+}  // namespace
+
+Interaction interaction_of(const Scene& scene) {
+  Interaction in;
+  in.bond = scene.parameters.bond;
+  if (scene.contact.law == ContactOptions::Law::paper) in.paper = scene.parameters.paper;
+  in.legacy_torque = scene.contact.legacy_torque;
+  in.exclude_along_tube = scene.contact.exclude_along_tube;
+  in.damping = scene.damping;
+  return in;
+}
+
+Drive drive_of(const Scene& scene, const Topology& topology) {
+  Drive drive;
+  for (const Load& load : scene.loads) {
+    const std::vector<int> elements = selected_elements(scene, load.on, topology);
+    std::visit(AddLoad{elements, drive}, load.kind);
+  }
+  if (scene.twist) drive.twist.push_back(twist_of(*scene.twist, topology));
+  return drive;
+}
+
+Prepared prepare(Scene& scene) {
+  Prepared out;
+  BuiltScene built = build(scene);
+  out.topology = std::move(built.topology);
+  out.state = std::move(built.state);
+  out.spacing = built.spacing;
+  out.interaction = interaction_of(scene);
+  out.drive = drive_of(scene, out.topology);
+  out.limit = time_step_limit(out.topology, out.interaction, out.spacing);
+  out.time_step = chosen_step(scene, out.limit);
+  out.duration = scene.run.duration;
+  if (out.duration <= 0 && scene.twist) out.duration = scene.twist->ramp_time() + scene.twist->hold;
+  return out;
+}
+
+Simulation start(const Scene& scene, const Prepared& p) {
+  const double skin = scene.contact.skin > 0 ? scene.contact.skin : default_skin;
+  return Simulation(p.topology, p.interaction, p.drive, p.state, p.time_step, skin);
+}
+
+}  // namespace ropewalk

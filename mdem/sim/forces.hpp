@@ -1,0 +1,65 @@
+// Forces, torques and energies of a state: the fast path (Verlet list, OpenMP, vector kernels) and the plain
+// reference (every pair, one after another), which stays as the oracle. Both call the forms of mdem/model.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "sim/interaction.hpp"
+#include "sim/neighbours.hpp"
+#include "sim/state.hpp"
+
+namespace ropewalk {
+
+struct Forces {
+  Vec3Array force;   // eV/nm
+  Vec3Array torque;  // eV, about the element centres, space frame
+  Energies energy;
+  double damping_power = 0;  // work per time of the damping forces, never positive, eV/ps
+  int slipping_bond = -1;    // first element of a bond twisted by 90 degrees or more, -1: none
+
+  explicit Forces(std::size_t n = 0) : force(n), torque(n) {}
+};
+
+// Contact and damping of all pairs, bonds and bond damping. The list must be up to date.
+class ForceEngine {
+ public:
+  void compute(const Topology& topology, const Interaction& interaction, const NeighbourList& list,
+               const State& state, Forces& out);
+
+  // Wall time spent so far in each part, s.
+  struct Times {
+    double frames = 0, contact = 0, bonds = 0;
+  };
+  const Times& times() const { return times_; }
+  std::size_t bytes() const;
+
+ private:
+  struct Buffer {
+    std::vector<double> fx, fy, fz, tx, ty, tz;
+    double energy = 0, power = 0;
+  };
+  friend struct ContactKernel;
+
+  void make_frames(const State& state);
+
+  std::vector<Frame<double>> frames_;
+  Vec3Array axis_;
+  std::array<Buffer, NeighbourList::chunk_count> buffers_;
+  Times times_;
+};
+
+// The oracle: O(N^2), no list, no threads, no vectors.
+void compute_reference(const Topology& topology, const Interaction& interaction, const State& state,
+                       Forces& out);
+
+double kinetic_energy(const Topology& topology, const State& state);
+
+// Force and torque sums about the origin: both zero where nothing external acts.
+struct NetForce {
+  Vector3 force = Vector3::Zero();
+  Vector3 torque = Vector3::Zero();
+};
+NetForce net_force(const State& state, const Forces& forces);
+
+}  // namespace ropewalk

@@ -1,0 +1,68 @@
+#include "sim/forces.hpp"
+
+namespace ropewalk {
+namespace {
+
+void apply(const DampingForce& d, std::size_t i, std::size_t j, Forces& out) {
+  out.force.add(i, -d.force_j);
+  out.force.add(j, d.force_j);
+  out.torque.add(i, d.torque_i);
+  out.torque.add(j, d.torque_j);
+  out.damping_power += d.power;
+}
+
+void contact_pair(const Interaction& in, const State& s, std::size_t i, std::size_t j, Forces& out) {
+  const Vector3 separation = s.position[j] - s.position[i];
+  if (!(separation.norm() < in.cutoff())) return;
+  const Vector3 ni = axis_of(s.orientation[i]), nj = axis_of(s.orientation[j]);
+  const PairForce f = in.legacy_torque ? in.paper->legacy_torque(separation, ni, nj)
+                                       : in.paper->energy_and_gradient(separation, ni, nj);
+  out.energy.vdw += f.energy;
+  out.force.add(i, -f.force_j);
+  out.force.add(j, f.force_j);
+  out.torque.add(i, f.torque_i);
+  out.torque.add(j, f.torque_j);
+  if (in.damped_contact() && separation.norm() < in.damping.contact.outer)
+    apply(in.damping.contact.force(separation, s.velocity[i], s.angular_velocity[i], s.velocity[j],
+                                   s.angular_velocity[j]),
+          i, j, out);
+}
+
+void bond(const Topology& topology, const Interaction& in, const State& s, std::size_t i, Forces& out) {
+  const std::size_t j = i + 1;
+  const Vector3 separation = s.position[j] - s.position[i];
+  const Frame<double> fi = frame_of(s.orientation[i]), fj = frame_of(s.orientation[j]);
+  const BondForce<double> f = bond_energy_and_gradient(in.bond, topology.element_length, separation, fi, fj);
+  out.energy.stretch += f.energy.stretch;
+  out.energy.shear += f.energy.shear;
+  out.energy.bend += f.energy.bend;
+  out.energy.twist += f.energy.twist;
+  out.force.add(i, -f.force_j);
+  out.force.add(j, f.force_j);
+  out.torque.add(i, f.torque_i);
+  out.torque.add(j, f.torque_j);
+  if (std::fabs(bond_twist_angle(fi, fj)) >= 0.5 * units::pi && out.slipping_bond < 0)
+    out.slipping_bond = static_cast<int>(i);
+  if (in.damping.bond.rate > 0)
+    apply(in.damping.bond.force(topology.mass, topology.inertia, separation, s.velocity[i], s.angular_velocity[i],
+                                s.velocity[j], s.angular_velocity[j]),
+          i, j, out);
+}
+
+}  // namespace
+
+void compute_reference(const Topology& topology, const Interaction& in, const State& s, Forces& out) {
+  out = Forces(s.size());
+  for (int t = 0; t < topology.tubes(); ++t)
+    for (int i = topology.tube_begin[t]; i + 1 < topology.tube_begin[t + 1]; ++i)
+      bond(topology, in, s, static_cast<std::size_t>(i), out);
+  if (!in.paper) return;
+  for (int i = 0; i < topology.elements(); ++i)
+    for (int j = i + 1; j < topology.elements(); ++j) {
+      const bool same_tube = topology.tube_of(i) == topology.tube_of(j);
+      if (same_tube && j - i <= in.exclude_along_tube) continue;
+      contact_pair(in, s, static_cast<std::size_t>(i), static_cast<std::size_t>(j), out);
+    }
+}
+
+}  // namespace ropewalk

@@ -1,0 +1,173 @@
+#include "sim/neighbours.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+namespace ropewalk {
+namespace {
+
+// Elements sorted by the cell that they lie in.
+struct CellGrid {
+  std::array<double, 3> origin{};
+  std::array<int, 3> cells{1, 1, 1};
+  double width = 1;
+  std::vector<int> first;  // of each cell in `members`
+  std::vector<int> members;
+
+  std::array<int, 3> cell_of(const Vec3Array& p, std::size_t i) const {
+    const auto along = [&](double value, int axis) {
+      const double c = (value - origin[static_cast<std::size_t>(axis)]) / width;
+      const int most = cells[static_cast<std::size_t>(axis)] - 1;
+      return c > 0 ? std::min(static_cast<int>(std::min(c, 1e9)), most) : 0;  // NaN goes to cell 0
+    };
+    return {along(p.x[i], 0), along(p.y[i], 1), along(p.z[i], 2)};
+  }
+  std::size_t flat(int x, int y, int z) const {
+    return (static_cast<std::size_t>(x) * static_cast<std::size_t>(cells[1]) + static_cast<std::size_t>(y)) *
+               static_cast<std::size_t>(cells[2]) +
+           static_cast<std::size_t>(z);
+  }
+};
+
+CellGrid make_grid(const Vec3Array& p, double reach) {
+  CellGrid grid;
+  const std::size_t n = p.size();
+  std::array<const std::vector<double>*, 3> components{&p.x, &p.y, &p.z};
+  std::array<double, 3> extent{};
+  for (std::size_t a = 0; a < 3; ++a) {
+    double low = 0, high = 0;
+    bool any = false;
+    for (double value : *components[a]) {
+      if (!std::isfinite(value)) continue;
+      low = any ? std::min(low, value) : value;
+      high = any ? std::max(high, value) : value;
+      any = true;
+    }
+    grid.origin[a] = low;
+    extent[a] = high - low;
+  }
+  // Cells no narrower than the reach, and no more of them than a few per element however sparse the scene.
+  grid.width = reach;
+  const double most = 4.0 * static_cast<double>(n) + 64.0;
+  const auto count = [&](double width) {
+    double product = 1;
+    for (double e : extent) product *= std::floor(e / width) + 1;
+    return product;
+  };
+  while (count(grid.width) > most) grid.width *= 1.26;
+  for (std::size_t a = 0; a < 3; ++a) grid.cells[a] = static_cast<int>(extent[a] / grid.width) + 1;
+
+  std::vector<std::size_t> cell(n);
+  grid.first.assign(grid.flat(grid.cells[0] - 1, grid.cells[1] - 1, grid.cells[2] - 1) + 2, 0);
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto c = grid.cell_of(p, i);
+    cell[i] = grid.flat(c[0], c[1], c[2]);
+    ++grid.first[cell[i] + 1];
+  }
+  for (std::size_t c = 1; c < grid.first.size(); ++c) grid.first[c] += grid.first[c - 1];
+  std::vector<int> next(grid.first.begin(), grid.first.end() - 1);
+  grid.members.resize(n);
+  for (std::size_t i = 0; i < n; ++i) grid.members[static_cast<std::size_t>(next[cell[i]]++)] = static_cast<int>(i);
+  return grid;
+}
+
+}  // namespace
+
+bool NeighbourList::moved(const Vec3Array& p) const {
+  const double limit = 0.25 * skin * skin;
+  const std::size_t n = p.size();
+  const double *x = p.x.data(), *y = p.y.data(), *z = p.z.data();
+  const double *rx = reference_.x.data(), *ry = reference_.y.data(), *rz = reference_.z.data();
+  int far = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double dx = x[i] - rx[i], dy = y[i] - ry[i], dz = z[i] - rz[i];
+    far |= static_cast<int>(!(dx * dx + dy * dy + dz * dz <= limit));
+  }
+  return far != 0;
+}
+
+bool NeighbourList::update(const Topology& topology, const State& state) {
+  if (reference_.size() == state.size() && !moved(state.position)) return false;
+  build(topology, state.position);
+  return true;
+}
+
+void NeighbourList::build(const Topology& topology, const Vec3Array& p) {
+  const int n = static_cast<int>(p.size());
+  const double reach = cutoff + skin;
+  const double reach2 = reach * reach;
+  ++builds_;
+  reference_ = p;
+  begin_.assign(static_cast<std::size_t>(n) + 1, 0);
+  index_.clear();
+  if (cutoff > 0) {
+    const CellGrid grid = make_grid(p, reach);
+    std::vector<int> tube(static_cast<std::size_t>(n));
+    for (int t = 0; t < topology.tubes(); ++t)
+      std::fill(tube.begin() + topology.tube_begin[t], tube.begin() + topology.tube_begin[t + 1], t);
+
+    constexpr int parts = 64;
+    std::vector<std::vector<int>> found(parts);
+#pragma omp parallel for schedule(dynamic, 1) if (p.size() > parallel_from)
+    for (int part = 0; part < parts; ++part) {
+      const int from = static_cast<int>(static_cast<std::int64_t>(n) * part / parts);
+      const int to = static_cast<int>(static_cast<std::int64_t>(n) * (part + 1) / parts);
+      auto& list = found[static_cast<std::size_t>(part)];
+      for (int i = from; i < to; ++i) {
+        const std::size_t before = list.size();
+        const auto si = static_cast<std::size_t>(i);
+        const auto c = grid.cell_of(p, si);
+        for (int x = std::max(c[0] - 1, 0); x <= std::min(c[0] + 1, grid.cells[0] - 1); ++x)
+          for (int y = std::max(c[1] - 1, 0); y <= std::min(c[1] + 1, grid.cells[1] - 1); ++y) {
+            // Cells along z are consecutive in memory: one run.
+            const std::size_t low = grid.flat(x, y, std::max(c[2] - 1, 0));
+            const std::size_t high = grid.flat(x, y, std::min(c[2] + 1, grid.cells[2] - 1));
+            for (int k = grid.first[low]; k < grid.first[high + 1]; ++k) {
+              const int j = grid.members[static_cast<std::size_t>(k)];
+              if (j <= i) continue;
+              const auto sj = static_cast<std::size_t>(j);
+              const double dx = p.x[sj] - p.x[si], dy = p.y[sj] - p.y[si], dz = p.z[sj] - p.z[si];
+              if (!(dx * dx + dy * dy + dz * dz < reach2)) continue;
+              if (tube[si] == tube[sj] && j - i <= exclude_along_tube) continue;
+              list.push_back(j);
+            }
+          }
+        std::sort(list.begin() + static_cast<std::ptrdiff_t>(before), list.end());
+        begin_[si + 1] = list.size() - before;
+      }
+    }
+    std::size_t total = 0;
+    for (const auto& list : found) total += list.size();
+    index_.reserve(total);
+    for (const auto& list : found) index_.insert(index_.end(), list.begin(), list.end());
+    for (std::size_t i = 1; i < begin_.size(); ++i) begin_[i] += begin_[i - 1];
+  }
+  cut_into_chunks(n);
+}
+
+// Equal numbers of pairs, whatever the threads: the cut belongs to the list.
+void NeighbourList::cut_into_chunks(int n) {
+  chunks_.assign(chunk_count, Chunk{});
+  int from = 0;
+  for (int k = 0; k < chunk_count; ++k) {
+    Chunk& chunk = chunks_[static_cast<std::size_t>(k)];
+    const std::size_t target = pairs() * static_cast<std::size_t>(k + 1) / chunk_count;
+    int to = from;
+    if (k + 1 == chunk_count) {
+      to = n;
+    } else {
+      while (to < n && begin(to) < target) ++to;
+    }
+    chunk.begin = from;
+    chunk.end = to;
+    chunk.touched_begin = from;
+    chunk.touched_end = to;
+    for (std::size_t k2 = begin(from); k2 < begin(to); ++k2)
+      chunk.touched_end = std::max(chunk.touched_end, index_[k2] + 1);
+    from = to;
+  }
+}
+
+}  // namespace ropewalk

@@ -1,0 +1,52 @@
+// Verlet list: every pair of elements closer than cutoff + skin, found on a cell grid, valid until an
+// element has moved half the skin. Half list (j > i), sorted by j, so that the order of summation depends on
+// the positions at the last build alone, never on the number of threads or on the grid.
+#pragma once
+
+#include <vector>
+
+#include "sim/state.hpp"
+
+namespace ropewalk {
+
+class NeighbourList {
+ public:
+  // A contiguous range of elements whose pairs are one unit of parallel work. The number of chunks is fixed,
+  // and each sums into a buffer of its own that covers [touched_begin, touched_end).
+  struct Chunk {
+    int begin = 0, end = 0;
+    int touched_begin = 0, touched_end = 0;
+  };
+  static constexpr int chunk_count = 8;
+
+  double cutoff = 0;           // nm
+  double skin = 0;             // nm
+  int exclude_along_tube = 0;  // pairs of one tube up to this many elements apart are left out
+
+  // Builds anew where an element has moved too far. Returns whether it did. A position that is not finite
+  // counts as moved; the build then leaves that element without neighbours.
+  bool update(const Topology& topology, const State& state);
+  void build(const Topology& topology, const Vec3Array& position);
+
+  // First neighbour of i in `indices`; begin(elements) is the number of pairs.
+  std::size_t begin(int i) const { return begin_[static_cast<std::size_t>(i)]; }
+  const int* indices() const { return index_.data(); }
+  std::size_t pairs() const { return index_.size(); }
+  const std::vector<Chunk>& chunks() const { return chunks_; }
+  // Positions at the last build: with them a resumed run has the same list, hence the same bits.
+  const Vec3Array& reference() const { return reference_; }
+  long builds() const { return builds_; }
+  std::size_t bytes() const { return index_.capacity() * sizeof(int) + begin_.capacity() * sizeof(std::size_t); }
+
+ private:
+  bool moved(const Vec3Array& position) const;
+  void cut_into_chunks(int elements);
+
+  std::vector<std::size_t> begin_;
+  std::vector<int> index_;
+  std::vector<Chunk> chunks_;
+  Vec3Array reference_;
+  long builds_ = 0;
+};
+
+}  // namespace ropewalk

@@ -1,0 +1,376 @@
+#include "sim/simulation.hpp"
+
+#include <omp.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <stdexcept>
+#include <utility>
+
+#include "model/error.hpp"
+
+namespace ropewalk {
+namespace {
+
+// Second derivative in the spacing of the energy of one element against a parallel row of elements, maximal
+// over their offsets; taken where a rope under load may be, at 97 % of its spacing.
+double row_stiffness(const PaperContact& law, double element_length, double spacing) {
+  const Vector3 axis = Vector3::UnitZ();
+  double largest = 0;
+  for (double shift : {0.0, 0.25, 0.5}) {
+    const auto row = [&](double gap) {
+      double sum = 0;
+      const int reach = static_cast<int>(law.cutoff() / element_length) + 1;
+      for (int k = -reach; k <= reach; ++k) {
+        const Vector3 separation(gap, 0, (k + shift) * element_length);
+        if (separation.norm() < law.cutoff()) sum += law.energy(separation, axis, axis);
+      }
+      return sum;
+    };
+    const double at = 0.97 * spacing, h = 1e-3 * spacing;
+    largest = std::max(largest, (row(at + h) - 2 * row(at) + row(at - h)) / (h * h));
+  }
+  return largest;
+}
+
+// Sum of the viscosity's weights over the row of a neighbouring tube.
+double row_viscosity(const ContactViscosity& viscosity, double element_length, double spacing) {
+  double sum = 0;
+  for (int k = -64; k <= 64; ++k) sum += viscosity.weight(std::hypot(spacing, k * element_length));
+  return viscosity.eta * sum;
+}
+
+Quaternion rotation(const Vector3& angle) {
+  const double half = 0.5 * angle.norm();
+  const double scale = half > 1e-6 ? std::sin(half) / (2.0 * half) : 0.5 - half * half / 12.0;
+  return {std::cos(half), scale * angle.x(), scale * angle.y(), scale * angle.z()};
+}
+
+}  // namespace
+
+TimeStepLimit time_step_limit(const Topology& topology, const Interaction& in, double spacing) {
+  TimeStepLimit out;
+  const double a = topology.element_length;
+  out.chain_frequency = stiffest_chain_frequency(in.bond, a, topology.mass, topology.inertia);
+  if (in.paper && topology.tubes() > 1 && spacing > 0) {
+    // A triangular lattice of springs k: largest w^2 = 6 k/m.
+    out.contact_frequency = std::sqrt(std::max(6.0 * row_stiffness(*in.paper, a, spacing) / topology.mass, 0.0));
+    if (in.damped_contact()) {
+      const double row = row_viscosity(in.damping.contact, a, spacing);
+      const double arm = 0.5 * spacing;
+      // Six neighbours, opposite motions: 12 rows on a coordinate or, by the lever arm, on a spin.
+      out.damping_rate = 12.0 * row * std::max(1.0 / topology.mass, arm * arm / topology.inertia);
+    }
+  }
+  // Opposite motions of bonded neighbours: two bonds, twice the relative velocity of one.
+  out.damping_rate += 2.0 * in.damping.bond.rate;
+  const double w2 = out.chain_frequency * out.chain_frequency + out.contact_frequency * out.contact_frequency;
+  const double g = out.damping_rate;
+  out.limit = (std::sqrt(g * g + 4.0 * w2) - g) / w2;
+  return out;
+}
+
+Simulation::Simulation(Topology topology, Interaction interaction, Drive drive, State state, double time_step,
+                       double skin)
+    : topology_(std::move(topology)),
+      interaction_(std::move(interaction)),
+      drive_(std::move(drive)),
+      state_(std::move(state)),
+      time_step_(time_step),
+      forces_(state_.size()) {
+  list_.cutoff = interaction_.cutoff();
+  list_.exclude_along_tube = interaction_.exclude_along_tube;
+  list_.skin = skin;
+  list_.build(topology_, state_.position);
+  compute();
+  constrain(topology_, drive_, state_.time, forces_, 0.0, state_);
+}
+
+// Model forces at the present positions and velocities, plus loads; `forces_` holds the sum.
+void Simulation::compute() {
+  engine_.compute(topology_, interaction_, list_, state_, forces_);
+  point_loads(drive_, state_, state_.time, point_loads_);
+  for (const PointLoad& load : point_loads_) {
+    forces_.force.add(static_cast<std::size_t>(load.element), load.force);
+    forces_.torque.add(static_cast<std::size_t>(load.element), load.torque);
+  }
+}
+
+void Simulation::kick(double dt) {
+  work_ += 0.5 * dt * load_power(point_loads_, state_);
+  const double alpha = interaction_.damping.local;
+  const double im = dt / topology_.mass, ii = dt / topology_.inertia;
+  double removed = 0;
+  const auto n = static_cast<std::ptrdiff_t>(state_.size());
+  const auto push = [&](const std::vector<double>& force, double inverse, std::vector<double>& velocity) {
+    for (std::ptrdiff_t i = 0; i < n; ++i) velocity[i] += inverse * force[i];
+  };
+  const auto push_local = [&](const std::vector<double>& force, double inverse, std::vector<double>& velocity) {
+    for (std::ptrdiff_t i = 0; i < n; ++i) {
+      const double brake = pfc_local(alpha, force[i], velocity[i]);
+      const double next = velocity[i] + inverse * (force[i] + brake);
+      removed -= 0.5 * dt * brake * (velocity[i] + next);
+      velocity[i] = next;
+    }
+  };
+  const auto all = [&](const auto& f) {
+    f(forces_.force.x, im, state_.velocity.x);
+    f(forces_.force.y, im, state_.velocity.y);
+    f(forces_.force.z, im, state_.velocity.z);
+    f(forces_.torque.x, ii, state_.angular_velocity.x);
+    f(forces_.torque.y, ii, state_.angular_velocity.y);
+    f(forces_.torque.z, ii, state_.angular_velocity.z);
+  };
+  if (alpha > 0) {
+    all(push_local);
+  } else {
+    all(push);
+  }
+  dissipated_ += removed;
+  work_ += constrain(topology_, drive_, state_.time, forces_, dt, state_);
+  work_ += 0.5 * dt * load_power(point_loads_, state_);
+}
+
+void Simulation::drift(double dt) {
+  const auto n = static_cast<std::ptrdiff_t>(state_.size());
+#pragma omp parallel for schedule(static) if (state_.size() > parallel_from)
+  for (std::ptrdiff_t k = 0; k < n; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    state_.position.add(i, dt * state_.velocity[i]);
+    Quaternion q = rotation(dt * state_.angular_velocity[i]) * state_.orientation[i];
+    q.coeffs() *= 1.5 - 0.5 * q.squaredNorm();  // one Newton step to unit norm
+    state_.orientation.set(i, q);
+  }
+}
+
+void Simulation::step() {
+  const double dt = time_step_;
+  const double t0 = omp_get_wtime();
+  kick(0.5 * dt);
+  drift(dt);
+  ++state_.step;
+  state_.time += dt;
+  const double t1 = omp_get_wtime();
+  list_.update(topology_, state_);
+  const double t2 = omp_get_wtime();
+  compute();
+  const double t3 = omp_get_wtime();
+  check();
+  dissipated_ -= dt * forces_.damping_power;
+  kick(0.5 * dt);
+  relax_angles_if_due();
+  integration_seconds_ += (t1 - t0) + (omp_get_wtime() - t3);
+  list_seconds_ += t2 - t1;
+}
+
+void Simulation::check() const {
+  const double energy = forces_.energy.potential();
+  const double fastest = 0.25 * topology_.radius / time_step_;
+  int broken = -1;
+  for (std::size_t i = 0; i < state_.size() && broken < 0; ++i)
+    if (!(state_.velocity[i].squaredNorm() < fastest * fastest) ||
+        !(state_.angular_velocity[i].squaredNorm() * time_step_ * time_step_ < 0.25))
+      broken = static_cast<int>(i);
+  if (broken >= 0 || !std::isfinite(energy))
+    throw NumericalError(state_.step, broken, "the motion blew up (an element moves a quarter of its radius or "
+                         "turns half a radian in one step)",
+                         "use a smaller time step or a gentler start and load");
+  if (forces_.slipping_bond >= 0)
+    throw NumericalError(state_.step, forces_.slipping_bond,
+                         "the bond to the next element is twisted by 90 degrees, where its torque is largest: it "
+                         "is about to slip and forget a turn",
+                         "lower the twisting moment");
+}
+
+void Simulation::relax_angles_if_due() {
+  for (const TwistDrive& twist : drive_.twist) {
+    if (!twist.geometric_only) continue;
+    const auto increments = [&](double time) { return std::floor(time / twist.increment + 1e-9); };
+    if (increments(state_.time) == increments(state_.time - time_step_)) continue;
+    const double had = total_energy();
+    relax_spins(topology_, state_);
+    compute();
+    dissipated_ += had - total_energy();
+  }
+}
+
+double Simulation::largest_force() const {
+  // What the constraints let through of velocities is what they let through of forces.
+  State free = state_;
+  free.velocity = forces_.force;
+  free.angular_velocity = forces_.torque;
+  constrain(topology_, drive_, state_.time, forces_, 0.0, free);
+  double largest = 0;
+  for (std::size_t i = 0; i < free.size(); ++i)
+    largest = std::max({largest, free.velocity[i].norm(), free.angular_velocity[i].norm() / topology_.radius});
+  return largest;
+}
+
+// FIRE: E. Bitzek et al., Phys. Rev. Lett. 97, 170201 (2006), DOI 10.1103/PhysRevLett.97.170201, in the
+// semi-implicit form of J. Guenole et al., Comput. Mater. Sci. 175, 109584 (2020). Rotations take part with
+// their angular velocities scaled by sqrt(I/m), so that both kinds of motion mix in one power.
+bool Simulation::relax(double tolerance, long max_steps, const std::function<bool(long)>& progress) {
+  const double scale2 = topology_.inertia / topology_.mass;
+  const double dt_max = time_step_, dt_min = 1e-3 * time_step_;  // no step beyond the stability limit
+  double dt = 0.5 * time_step_, mix = 0.1;
+  int downhill = 0;
+  const std::size_t n = state_.size();
+  const auto stop = [&] {
+    state_.velocity = Vec3Array(n);
+    state_.angular_velocity = Vec3Array(n);
+  };
+  stop();
+  const double most_move = 0.05 * topology_.radius;
+  for (long k = 0; k < max_steps; ++k) {
+    if (k % 10 == 0 && largest_force() < tolerance) return true;
+    if (!progress(k)) return false;
+    double power = 0, v2 = 0, f2 = 0, fastest2 = 0;
+    for (std::size_t i = 0; i < n; ++i)
+      power += forces_.force[i].dot(state_.velocity[i]) + forces_.torque[i].dot(state_.angular_velocity[i]);
+    if (power > 0) {
+      if (++downhill > 5) {
+        dt = std::min(1.1 * dt, dt_max);
+        mix *= 0.99;
+      }
+    } else {
+      // Back by half a step, as the overshoot was.
+      if (k > 0) drift(-0.5 * dt);
+      stop();
+      downhill = 0;
+      dt = std::max(0.5 * dt, dt_min);
+      mix = 0.1;
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+      state_.velocity.add(i, dt / topology_.mass * forces_.force[i]);
+      state_.angular_velocity.add(i, dt / topology_.inertia * forces_.torque[i]);
+    }
+    constrain(topology_, drive_, state_.time, forces_, 0.0, state_);
+    for (std::size_t i = 0; i < n; ++i) {
+      v2 += state_.velocity[i].squaredNorm() + scale2 * state_.angular_velocity[i].squaredNorm();
+      f2 += forces_.force[i].squaredNorm() + forces_.torque[i].squaredNorm() / scale2;
+    }
+    const double turn = f2 > 0 ? mix * std::sqrt(v2 / f2) : 0.0;
+    for (std::size_t i = 0; i < n; ++i) {
+      state_.velocity.set(i, (1 - mix) * state_.velocity[i] + turn * forces_.force[i]);
+      state_.angular_velocity.set(i, (1 - mix) * state_.angular_velocity[i] + turn / scale2 * forces_.torque[i]);
+    }
+    constrain(topology_, drive_, state_.time, forces_, 0.0, state_);
+    for (std::size_t i = 0; i < n; ++i)
+      fastest2 = std::max(fastest2, state_.velocity[i].squaredNorm() + scale2 * state_.angular_velocity[i].squaredNorm());
+    if (!std::isfinite(fastest2))
+      throw NumericalError(k, -1, "relaxation met a force that is not finite", "start from a state without overlaps");
+    const double step = std::min(dt, fastest2 > 0 ? most_move / std::sqrt(fastest2) : dt);
+    drift(step);
+    ++state_.step;
+    list_.update(topology_, state_);
+    compute();
+    if (forces_.slipping_bond >= 0) check();
+  }
+  return largest_force() < tolerance;
+}
+
+std::size_t Simulation::bytes() const {
+  const std::size_t n = state_.size();
+  const std::size_t state = (3 + 4 + 3 + 3) * n, forces = 6 * n;
+  return (state + forces + 3 * n) * sizeof(double) + engine_.bytes() + list_.bytes();
+}
+
+namespace {
+
+constexpr char magic[] = "MDEM1";
+
+struct Writer {
+  std::string bytes;
+  template <class T>
+  void put(const T& value) {
+    bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+  }
+  void put(const std::vector<double>& v) {
+    bytes.append(reinterpret_cast<const char*>(v.data()), v.size() * sizeof(double));
+  }
+};
+
+struct Reader {
+  const std::string& bytes;
+  std::size_t at = 0;
+  void need(std::size_t count) const {
+    if (bytes.size() - at < count) throw std::runtime_error("the checkpoint ends too early");
+  }
+  template <class T>
+  void get(T& value) {
+    need(sizeof value);
+    std::memcpy(&value, bytes.data() + at, sizeof value);
+    at += sizeof value;
+  }
+  void get(std::vector<double>& v) {
+    need(v.size() * sizeof(double));
+    std::memcpy(v.data(), bytes.data() + at, v.size() * sizeof(double));
+    at += v.size() * sizeof(double);
+  }
+};
+
+template <class Stream, class Arrays>
+void each(const Arrays& arrays, Stream&& f) {
+  for (auto* v : arrays) f(*v);
+}
+
+}  // namespace
+
+std::string Simulation::serialise() const {
+  Writer w;
+  w.bytes.append(magic, sizeof magic);
+  w.put(static_cast<std::int64_t>(topology_.elements()));
+  w.put(static_cast<std::int64_t>(topology_.tubes()));
+  w.put(time_step_);
+  w.put(state_.time);
+  w.put(state_.step);
+  w.put(work_);
+  w.put(dissipated_);
+  w.put(list_.skin);
+  const Vec3Array& ref = list_.reference();
+  const State& s = state_;
+  const std::array<const std::vector<double>*, 22> arrays{
+      &s.position.x, &s.position.y, &s.position.z, &s.orientation.w, &s.orientation.x, &s.orientation.y,
+      &s.orientation.z, &s.velocity.x, &s.velocity.y, &s.velocity.z, &s.angular_velocity.x,
+      &s.angular_velocity.y, &s.angular_velocity.z, &forces_.force.x, &forces_.force.y, &forces_.force.z,
+      &forces_.torque.x, &forces_.torque.y, &forces_.torque.z, &ref.x, &ref.y, &ref.z};
+  each(arrays, [&](const std::vector<double>& v) { w.put(v); });
+  w.put(forces_.energy);
+  w.put(forces_.damping_power);
+  return std::move(w.bytes);
+}
+
+void Simulation::restore(const std::string& bytes) {
+  Reader r{bytes};
+  char found[sizeof magic];
+  r.get(found);
+  std::int64_t elements = 0, tubes = 0;
+  r.get(elements);
+  r.get(tubes);
+  if (std::memcmp(found, magic, sizeof magic) != 0) throw std::runtime_error("not a checkpoint of this version");
+  if (elements != topology_.elements() || tubes != topology_.tubes())
+    throw std::runtime_error("the checkpoint holds " + std::to_string(tubes) + " tubes of " +
+                             std::to_string(elements) + " elements, the scene " +
+                             std::to_string(topology_.tubes()) + " of " + std::to_string(topology_.elements()));
+  r.get(time_step_);
+  r.get(state_.time);
+  r.get(state_.step);
+  r.get(work_);
+  r.get(dissipated_);
+  r.get(list_.skin);
+  Vec3Array ref(state_.size());
+  State& s = state_;
+  const std::array<std::vector<double>*, 22> arrays{
+      &s.position.x, &s.position.y, &s.position.z, &s.orientation.w, &s.orientation.x, &s.orientation.y,
+      &s.orientation.z, &s.velocity.x, &s.velocity.y, &s.velocity.z, &s.angular_velocity.x,
+      &s.angular_velocity.y, &s.angular_velocity.z, &forces_.force.x, &forces_.force.y, &forces_.force.z,
+      &forces_.torque.x, &forces_.torque.y, &forces_.torque.z, &ref.x, &ref.y, &ref.z};
+  each(arrays, [&](std::vector<double>& v) { r.get(v); });
+  r.get(forces_.energy);
+  r.get(forces_.damping_power);
+  list_.build(topology_, ref);
+  point_loads(drive_, state_, state_.time, point_loads_);
+}
+
+}  // namespace ropewalk

@@ -1,0 +1,236 @@
+// Bundles of tubes: conservation in undamped motion, what the damping may take and what not, restarts.
+#include <gtest/gtest.h>
+
+#include "sim/simulation.hpp"
+#include "unit/support.hpp"
+
+namespace ropewalk {
+namespace {
+
+constexpr double spacing = 1.713;
+
+struct Bundle {
+  Topology topology = test::published_topology();
+  Interaction in;
+  State state;
+
+  Bundle(int tubes, int elements, double temperature) {
+    state = test::disordered_bundle(topology, tubes, elements, spacing, 0, 1);
+    in.bond = test::published_bond();
+    in.paper = test::published_contact();
+    // Maxwell velocities.
+    std::mt19937 engine(4);
+    std::normal_distribution<double> gauss;
+    const double v = std::sqrt(units::boltzmann * temperature / topology.mass);
+    const double w = std::sqrt(units::boltzmann * temperature / topology.inertia);
+    for (std::size_t i = 0; i < state.size(); ++i) {
+      state.velocity.set(i, v * Vector3(gauss(engine), gauss(engine), gauss(engine)));
+      state.angular_velocity.set(i, w * Vector3(gauss(engine), gauss(engine), gauss(engine)));
+    }
+  }
+  double step(double part = default_step_fraction) const {
+    return part * time_step_limit(topology, in, spacing).limit;
+  }
+  Simulation make(double dt) const { return Simulation(topology, in, {}, state, dt); }
+};
+
+Vector3 angular_momentum(const Simulation& s) {
+  Vector3 sum = Vector3::Zero();
+  for (std::size_t i = 0; i < s.state().size(); ++i)
+    sum += s.topology().mass * s.state().position[i].cross(s.state().velocity[i]) +
+           s.topology().inertia * s.state().angular_velocity[i];
+  return sum;
+}
+
+// Sum of the magnitudes: what a change of the angular momentum is compared with.
+double momentum_scale(const Simulation& s) {
+  double sum = 0;
+  for (std::size_t i = 0; i < s.state().size(); ++i)
+    sum += s.topology().mass * s.state().position[i].norm() * s.state().velocity[i].norm() +
+           s.topology().inertia * s.state().angular_velocity[i].norm();
+  return sum;
+}
+
+struct Drift {
+  double slope = 0;        // of the total energy by least squares, eV/ns
+  double fluctuation = 0;  // root mean square about the line, eV
+};
+
+Drift energy_drift(Simulation& s, double ps) {
+  const long steps = static_cast<long>(ps / s.time_step());
+  const long every = std::max(1L, steps / 4000);
+  double n = 0, st = 0, se = 0, stt = 0, ste = 0, see = 0;
+  const double first = s.total_energy();
+  for (long k = 0; k < steps; ++k) {
+    s.step();
+    if (k % every != 0) continue;
+    const double t = s.state().time * 1e-3, e = s.total_energy() - first;
+    n += 1, st += t, se += e, stt += t * t, ste += t * e, see += e * e;
+  }
+  Drift d;
+  d.slope = (n * ste - st * se) / (n * stt - st * st);
+  const double mean = se / n, variance = see / n - mean * mean;
+  d.fluctuation = std::sqrt(std::max(variance - d.slope * d.slope * (stt / n - st * st / n / n), 0.0));
+  return d;
+}
+
+TEST(UndampedBundle, EnergyAndAngularMomentumAreKeptOverOneNanosecond) {
+  const Bundle b(7, 5, 10);
+  Simulation s = b.make(b.step());
+  const double energy = std::fabs(s.total_energy());
+  const Vector3 before = angular_momentum(s);
+  const double scale = momentum_scale(s);
+  const Drift d = energy_drift(s, 1000);
+  EXPECT_LT(std::fabs(d.slope), 1e-4 * energy) << "energy " << energy << " eV, step " << b.step() << " ps";
+  EXPECT_LT(d.fluctuation, 1e-4 * energy);
+  EXPECT_LT((angular_momentum(s) - before).norm(), 1e-6 * scale);
+}
+
+// The error of a symplectic scheme is an oscillation that falls as dt^2; half the step, a quarter of it.
+TEST(UndampedBundle, EnergyErrorFallsWithTheSquareOfTheStep) {
+  const Bundle b(7, 5, 10);
+  Simulation coarse = b.make(0.016), fine = b.make(0.008);
+  const double ratio = energy_drift(coarse, 300).fluctuation / energy_drift(fine, 300).fluctuation;
+  EXPECT_NEAR(ratio, 4, 0.8);
+}
+
+// The test of the test: what the published code leaves out shows at once.
+TEST(UndampedBundle, LegacyTorqueFeedsEnergyIn) {
+  Bundle b(7, 5, 10);
+  b.in.legacy_torque = true;
+  Simulation s = b.make(0.02);
+  const double first = s.total_energy();
+  double gained = 0;
+  try {
+    for (int k = 0; k < 50000 && gained < 100; ++k) {
+      s.step();
+      gained = s.total_energy() - first;
+    }
+  } catch (const std::exception&) {
+    gained = 1e9;  // blown up altogether
+  }
+  EXPECT_GT(gained, 100);
+}
+
+TEST(SpinningRope, DampingTakesNothing) {
+  Bundle b(7, 20, 0);
+  b.in.damping.contact = {20, spacing, 1.5 * spacing};
+  b.in.damping.bond.rate = 1;
+  // Slow enough that the centrifugal strain does not matter; about an axis across the rope's own as well.
+  const Vector3 omega(0.004, 0, 0.01);
+  Vector3 centre = Vector3::Zero();
+  for (std::size_t i = 0; i < b.state.size(); ++i) centre += b.state.position[i] / static_cast<double>(b.state.size());
+  for (std::size_t i = 0; i < b.state.size(); ++i) {
+    b.state.velocity.set(i, omega.cross(b.state.position[i] - centre));
+    b.state.angular_velocity.set(i, omega);
+  }
+  Simulation s = b.make(b.step());
+  const Vector3 before = angular_momentum(s);
+  const double kinetic = kinetic_energy(s.topology(), s.state());
+  for (int k = 0; k < 5000; ++k) s.step();
+  EXPECT_LT((angular_momentum(s) - before).norm(), 1e-9 * before.norm());
+  EXPECT_NEAR(kinetic_energy(s.topology(), s.state()) / kinetic, 1, 2e-3);
+}
+
+TEST(SpinningRope, LocalDampingDoesBrake) {
+  Bundle b(7, 10, 0);
+  b.in.damping.local = 0.3;
+  for (std::size_t i = 0; i < b.state.size(); ++i) {
+    b.state.velocity.set(i, Vector3(0, 0, 0.05).cross(b.state.position[i]));
+    b.state.angular_velocity.set(i, {0, 0, 0.05});
+  }
+  Simulation s = b.make(b.step());
+  const double before = angular_momentum(s).z();
+  for (int k = 0; k < 5000; ++k) s.step();
+  EXPECT_LT(angular_momentum(s).z(), 0.99 * before);
+}
+
+// total energy - work + dissipated stays, with every load and damping in play.
+TEST(EnergyAccount, BalancesUnderLoadAndDamping) {
+  Bundle b(7, 12, 0);
+  b.in.damping.contact = {20, spacing, 1.5 * spacing};
+  b.in.damping.bond.rate = 1;
+  Drive drive;
+  drive.twist.resize(1);
+  TwistDrive& twist = drive.twist[0];
+  for (int t = 0; t < 7; ++t) {
+    twist.lower.push_back(b.topology.tube_begin[t]);
+    twist.upper.push_back(b.topology.tube_begin[t + 1] - 1);
+  }
+  twist.moment = 100;
+  twist.rate = 10;
+  for (bool tangential : {false, true}) {
+    drive.twist[0].tangential = tangential;
+    Simulation s(b.topology, b.in, drive, b.state, 0.005);
+    const double first = s.total_energy();
+    for (int k = 0; k < 4000; ++k) s.step();
+    const double balance = s.total_energy() - s.work() + s.dissipated() - first;
+    EXPECT_GT(s.work(), 50);
+    EXPECT_GT(s.dissipated(), 1);
+    EXPECT_LT(std::fabs(balance), 2e-3 * s.work()) << "work " << s.work() << " dissipated " << s.dissipated();
+  }
+}
+
+TEST(EnergyAccount, PrescribedRotationDoesTheWork) {
+  Bundle b(7, 12, 0);
+  Drive drive;
+  Turned upper, lower;
+  for (int t = 0; t < 7; ++t) {
+    lower.elements.push_back(b.topology.tube_begin[t]);
+    upper.elements.push_back(b.topology.tube_begin[t + 1] - 1);
+  }
+  upper.rate = 0.02, upper.angle = 0.4;
+  drive.turned = {upper, lower};
+  Simulation s(b.topology, b.in, drive, b.state, 0.005);
+  const double first = s.total_energy();
+  for (int k = 0; k < 5000; ++k) s.step();
+  const auto u = static_cast<std::size_t>(b.topology.tube_begin[2] - 1);
+  const Vector3 at = s.state().position[u], was = b.state.position[u];
+  EXPECT_NEAR(std::atan2(at.y(), at.x()) - std::atan2(was.y(), was.x()), 0.4, 1e-3);
+  EXPECT_GT(s.work(), 1);
+  EXPECT_LT(std::fabs(s.total_energy() - s.work() - first), 5e-3 * s.work());
+}
+
+TEST(Checkpoint, GoesOnBitForBitOnAnyThreads) {
+  Bundle b(7, 40, 50);
+  b.in.damping.contact = {20, spacing, 1.5 * spacing};
+  Simulation whole = b.make(b.step());
+  for (int k = 0; k < 700; ++k) whole.step();
+  const std::string saved = whole.serialise();
+  for (int k = 0; k < 700; ++k) whole.step();
+  Simulation resumed = b.make(b.step());
+  resumed.restore(saved);
+  for (int k = 0; k < 700; ++k) resumed.step();
+  EXPECT_EQ(whole.serialise(), resumed.serialise());
+  EXPECT_GT(whole.list().builds(), 1) << "the list was never rebuilt: the test shows nothing";
+}
+
+TEST(Relaxation, FindsTheHexagonalBundle) {
+  Bundle b(7, 10, 0);
+  for (std::size_t i = 0; i < b.state.size(); ++i)
+    b.state.position.set(i, Vector3(b.state.position[i].cwiseProduct(Vector3(1.05, 1.05, 1))));
+  Simulation s = b.make(b.step());
+  ASSERT_TRUE(s.relax(1e-5, 50000, [](long) { return true; }));
+  EXPECT_NEAR((s.state().position[15] - s.state().position[5]).head<2>().norm(), spacing, 0.01);
+}
+
+TEST(SpinRelaxation, TakesAwayTwistAndNothingElse) {
+  Bundle b(1, 30, 0);
+  // A helix with twisted frames.
+  for (int i = 0; i < 30; ++i) {
+    const double angle = 0.15 * i;
+    const Vector3 tangent = Vector3(-std::sin(angle), std::cos(angle), 1.2).normalized();
+    b.state.position.set(i, {6 * std::cos(angle), 6 * std::sin(angle), 1.1 * i});
+    const Quaternion q = Quaternion::FromTwoVectors(Vector3::UnitZ(), tangent);
+    b.state.orientation.set(i, test::turn(tangent, 0.3 * std::sin(i)) * q);
+  }
+  State relaxed = b.state;
+  relax_spins(b.topology, relaxed);
+  for (int i = 0; i + 1 < 30; ++i) {
+    EXPECT_NEAR(bond_twist_angle(frame_of(relaxed.orientation[i]), frame_of(relaxed.orientation[i + 1])), 0, 1e-12);
+    EXPECT_LT((axis_of(relaxed.orientation[i]) - axis_of(b.state.orientation[i])).norm(), 1e-12);
+  }
+}
+
+}  // namespace
+}  // namespace ropewalk

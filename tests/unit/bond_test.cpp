@@ -1,0 +1,147 @@
+#include <gtest/gtest.h>
+
+#include "model/bond.hpp"
+#include "unit/support.hpp"
+
+namespace ropewalk {
+namespace {
+
+using test::derivative;
+using test::Random;
+
+struct BondPose {
+  Vector3 separation;
+  Quaternion qi, qj;
+};
+
+BondPose random_pose(Random& random, double bend) {
+  const Quaternion q = random.orientation();
+  return {q * Vector3(0, 0, 1.356) + 0.2 * bend * random.direction(),
+          test::turn(random.direction(), random.uniform(0, bend)) * q,
+          test::turn(random.direction(), random.uniform(0, bend)) * q};
+}
+
+double energy(const BondPose& p) {
+  return bond_energy(test::published_bond(), test::element_length, p.separation, frame_of(p.qi), frame_of(p.qj))
+      .total();
+}
+
+BondForce<double> force(const BondPose& p) {
+  return bond_energy_and_gradient(test::published_bond(), test::element_length, p.separation, frame_of(p.qi),
+                                  frame_of(p.qj));
+}
+
+TEST(Bond, ForceAndTorquesAreTheGradient) {
+  Random random(3);
+  for (int n = 0; n < 3000; ++n) {
+    const BondPose p = random_pose(random, n % 2 ? 0.2 : 2.0);
+    const BondForce<double> f = force(p);
+    const double tight = 1e-7 * std::max({f.force_j.norm(), f.torque_i.norm(), 1.0});
+    for (int a = 0; a < 3; ++a) {
+      const Vector3 e = Vector3::Unit(a);
+      const double h = 1e-3;
+      const double fj = -derivative([&](double s) { return energy({p.separation + s * e, p.qi, p.qj}); }, h);
+      const double ti = -derivative([&](double s) { return energy({p.separation, test::turn(e, s) * p.qi, p.qj}); }, h);
+      const double tj = -derivative([&](double s) { return energy({p.separation, p.qi, test::turn(e, s) * p.qj}); }, h);
+      ASSERT_NEAR(f.force_j[a], fj, tight);
+      ASSERT_NEAR(f.torque_i[a], ti, tight);
+      ASSERT_NEAR(f.torque_j[a], tj, tight);
+    }
+  }
+}
+
+TEST(Bond, NetTorqueVanishes) {
+  Random random(4);
+  for (int n = 0; n < 1000; ++n) {
+    const BondPose p = random_pose(random, 1.5);
+    const BondForce<double> f = force(p);
+    ASSERT_LT((f.torque_i + f.torque_j + p.separation.cross(f.force_j)).norm(),
+              1e-12 * (f.torque_i.norm() + f.torque_j.norm() + 10 * f.force_j.norm() + 1e4));
+  }
+}
+
+TEST(Bond, FrameRotationAndSwap) {
+  Random random(5);
+  for (int n = 0; n < 500; ++n) {
+    const BondPose p = random_pose(random, 1.0);
+    const Quaternion r = random.orientation();
+    EXPECT_NEAR(energy({r * p.separation, r * p.qi, r * p.qj}), energy(p), 1e-9 * (1 + energy(p)));
+    // Read from the other end: both frames turned about e1 by 180 degrees.
+    const Quaternion back(0, 1, 0, 0);
+    EXPECT_NEAR(energy({-p.separation, p.qj * back, p.qi * back}), energy(p), 1e-9 * (1 + energy(p)));
+  }
+}
+
+// The parts and the published combination B1 .. B4 are one energy.
+TEST(Bond, PartsAddUpToTheVectorModel) {
+  Random random(6);
+  const BondStiffness k = test::published_bond();
+  const double a = test::element_length;
+  const double b1 = k.stretch / a, b2 = 12 * k.bend / a, b3 = -2 * k.bend / a - k.twist / (2 * a), b4 = k.twist / a;
+  for (int n = 0; n < 500; ++n) {
+    const BondPose p = random_pose(random, 2.0);
+    const Frame<double> i = frame_of(p.qi), j = frame_of(p.qj);
+    const double length = p.separation.norm();
+    const double published = 0.5 * b1 * (length - a) * (length - a) - 0.5 * b2 * (i.t + j.t).dot(p.separation) / length -
+                             b3 * i.t.dot(j.t) - 0.5 * b4 * (i.e1.dot(j.e1) + i.e2.dot(j.e2));
+    const double at_rest = -b2 - b3 - b4;
+    ASSERT_NEAR(energy(p), published - at_rest, 1e-9 * (std::fabs(published) + std::fabs(at_rest)));
+  }
+}
+
+TEST(Bond, SmallDeformationsAreABeam) {
+  const BondStiffness k = test::published_bond();
+  const double a = test::element_length;
+  const Vector3 z(0, 0, a);
+  const Frame<double> rest = frame_of(Quaternion::Identity());
+  const double small = 1e-3;
+  const auto turned = [&](const Vector3& axis, double angle) { return frame_of(test::turn(axis, angle)); };
+  const Vector3 x = Vector3::UnitX();
+
+  EXPECT_NEAR(bond_energy<double>(k, a, z * (1 + small), rest, rest).stretch, 0.5 * k.stretch * a * small * small, 1e-9);
+  const auto bent = bond_energy<double>(k, a, z, turned(x, -small / 2), turned(x, small / 2));
+  EXPECT_NEAR(bent.bend / (0.5 * k.bend / a * small * small), 1, 1e-6);
+  EXPECT_NEAR(bent.shear, 0, 1e-9);
+  const auto sheared = bond_energy<double>(k, a, z, turned(x, small), turned(x, small));
+  EXPECT_NEAR(sheared.shear / (6 * k.bend / a * small * small), 1, 1e-6);
+  EXPECT_NEAR(sheared.bend, 0, 1e-12);
+  const auto twisted = bond_energy<double>(k, a, z, rest, turned(Vector3::UnitZ(), small));
+  EXPECT_NEAR(twisted.twist / (0.5 * k.twist / a * small * small), 1, 1e-6);
+  EXPECT_NEAR(twisted.bend + twisted.shear + twisted.stretch, 0, 1e-12);
+}
+
+// Known limits of 1 - cos phi: -0.1 % at 0.1 rad and -8 % at 1 rad against phi^2/2, peak at 90 degrees.
+TEST(Bond, TwistSoftensAsOneMinusCosine) {
+  const BondStiffness k = test::published_bond();
+  const double a = test::element_length;
+  const Frame<double> rest = frame_of(Quaternion::Identity());
+  for (const auto& [phi, deficit] : {std::pair{0.1, 0.00083}, std::pair{1.0, 0.0806}}) {
+    const Frame<double> j = frame_of(test::turn(Vector3::UnitZ(), phi));
+    const double e = bond_energy<double>(k, a, {0, 0, a}, rest, j).twist;
+    EXPECT_NEAR(1 - e / (0.5 * k.twist / a * phi * phi), deficit, 1e-3 * phi);
+    EXPECT_NEAR(bond_twist_angle(rest, j), phi, 1e-12);
+    EXPECT_NEAR(bond_twist_angle(j, rest), -phi, 1e-12);
+  }
+}
+
+// The twist angle is blind to bending: bend first, then twist about the bent axis.
+TEST(Bond, TwistAngleIgnoresBend) {
+  Random random(12);
+  for (int n = 0; n < 200; ++n) {
+    const double phi = random.uniform(-1.4, 1.4);
+    const Quaternion qi = random.orientation();
+    const Vector3 sideways = (axis_of(qi).cross(random.direction())).normalized();
+    const Quaternion bent = test::turn(sideways, random.uniform(0, 1)) * qi;  // bend without twist
+    const Quaternion qj = test::turn(axis_of(bent), phi) * bent;
+    EXPECT_NEAR(bond_twist_angle(frame_of(qi), frame_of(qj)), phi, 1e-12);
+  }
+}
+
+TEST(Bond, StiffestFrequencyOfThePublishedChain) {
+  const Topology t = test::published_topology();
+  const double w = stiffest_chain_frequency(test::published_bond(), t.element_length, t.mass, t.inertia);
+  EXPECT_NEAR(2.0 / w, 0.046, 0.001);  // ps
+}
+
+}  // namespace
+}  // namespace ropewalk

@@ -1,0 +1,218 @@
+#include <gtest/gtest.h>
+
+#include "unit/support.hpp"
+
+namespace ropewalk {
+namespace {
+
+using test::derivative;
+using test::Random;
+
+struct Pose {
+  Vector3 separation, ni, nj;
+};
+
+Pose random_pose(Random& random, double near, double far) {
+  return {random.uniform(near, far) * random.direction(), random.direction(), random.direction()};
+}
+
+double scale_of(const PairForce& f) {
+  return std::max({f.force_j.norm(), f.torque_i.norm(), f.torque_j.norm(), std::fabs(f.energy), 1e-6});
+}
+
+// Force and both torques of a pose by differences of the energy.
+struct Differences {
+  Vector3 force_j, torque_i, torque_j;
+};
+
+Differences differences(const PaperContact& law, const Pose& p) {
+  Differences d;
+  const double h = 2e-4;
+  for (int a = 0; a < 3; ++a) {
+    const Vector3 e = Vector3::Unit(a);
+    d.force_j[a] = -derivative([&](double s) { return law.energy(p.separation + s * e, p.ni, p.nj); }, h);
+    d.torque_i[a] = -derivative([&](double s) { return law.energy(p.separation, test::turn(e, s) * p.ni, p.nj); }, h);
+    d.torque_j[a] = -derivative([&](double s) { return law.energy(p.separation, p.ni, test::turn(e, s) * p.nj); }, h);
+  }
+  return d;
+}
+
+// Distance (in c, R/r and D) to a place where the law is only C1: differences across it are less accurate.
+bool near_a_seam(const PaperContact& law, const Pose& p) {
+  const double rho = p.separation.norm() / law.radius;
+  const double c = std::fabs(p.ni.dot(p.nj));
+  const auto close = [](double a, double b, double width) { return std::fabs(a - b) < width; };
+  return close(c, law.bisector_blend, 2e-3) || close(rho, law.freeze - law.freeze_blend, 3e-3) ||
+         close(rho, law.freeze + law.freeze_blend, 3e-3) || close(rho, law.switch_start, 3e-3) ||
+         close(rho, law.cutoff_ratio, 3e-3);
+}
+
+class PaperContactTest : public ::testing::TestWithParam<bool> {
+ protected:
+  PaperContact law() const {
+    PaperContact k = test::published_contact();
+    if (GetParam()) {  // other exponents: the general powers
+      k.alpha = 9.2;
+      k.beta = 3.9;
+      k.delta = -7.1;
+    }
+    return k;
+  }
+};
+
+TEST_P(PaperContactTest, ForceAndTorquesAreTheGradient) {
+  const PaperContact k = law();
+  Random random(7);
+  int tested = 0;
+  double worst = 0;
+  for (int n = 0; n < 20000 && tested < 4000; ++n) {
+    const Pose p = random_pose(random, 1.3, 5.6);
+    if (near_a_seam(k, p)) continue;
+    const PairForce f = k.energy_and_gradient(p.separation, p.ni, p.nj);
+    // The core and the steep wall have derivatives so high that differences carry no seven digits.
+    if (std::fabs(f.energy) > 1.0) continue;
+    ++tested;
+    const Differences d = differences(k, p);
+    const double error = std::max({(f.force_j - d.force_j).norm(), (f.torque_i - d.torque_i).norm(),
+                                   (f.torque_j - d.torque_j).norm()});
+    worst = std::max(worst, error / scale_of(f));
+    ASSERT_LT(error, 1e-7 * scale_of(f)) << "R " << p.separation.norm() << " U " << f.energy;
+  }
+  EXPECT_GE(tested, 4000);
+  RecordProperty("worst_relative_error", std::to_string(worst));
+}
+
+TEST_P(PaperContactTest, CoreIsTheGradientToo) {
+  const PaperContact k = law();
+  Random random(8);
+  for (int n = 0; n < 500; ++n) {
+    const Pose p = random_pose(random, 0.3, 1.3);
+    const PairForce f = k.energy_and_gradient(p.separation, p.ni, p.nj);
+    const Differences d = differences(k, p);
+    ASSERT_LT((f.force_j - d.force_j).norm(), 1e-5 * scale_of(f));
+    ASSERT_LT((f.torque_i - d.torque_i).norm(), 1e-5 * scale_of(f));
+    ASSERT_LT((f.torque_j - d.torque_j).norm(), 1e-5 * scale_of(f));
+  }
+}
+
+TEST_P(PaperContactTest, AngularMomentumIsConserved) {
+  const PaperContact k = law();
+  Random random(9);
+  for (int n = 0; n < 4000; ++n) {
+    const Pose p = random_pose(random, 0.2, 5.6);
+    const PairForce f = k.energy_and_gradient(p.separation, p.ni, p.nj);
+    const Vector3 net = f.torque_i + f.torque_j + p.separation.cross(f.force_j);
+    ASSERT_LT(net.norm(), 1e-12 * (scale_of(f) + p.separation.norm() * f.force_j.norm()));
+  }
+}
+
+TEST_P(PaperContactTest, FrameSwapAndFlip) {
+  const PaperContact k = law();
+  Random random(10);
+  for (int n = 0; n < 2000; ++n) {
+    const Pose p = random_pose(random, 1.0, 5.6);
+    const PairForce f = k.energy_and_gradient(p.separation, p.ni, p.nj);
+    const double tight = 1e-10 * scale_of(f);
+
+    const Eigen::Matrix3d r = random.orientation().toRotationMatrix();
+    const PairForce turned = k.energy_and_gradient(r * p.separation, r * p.ni, r * p.nj);
+    ASSERT_NEAR(turned.energy, f.energy, tight);
+    ASSERT_LT((turned.force_j - r * f.force_j).norm(), tight);
+    ASSERT_LT((turned.torque_i - r * f.torque_i).norm(), tight);
+
+    const PairForce swapped = k.energy_and_gradient(-p.separation, p.nj, p.ni);
+    ASSERT_NEAR(swapped.energy, f.energy, tight);
+    ASSERT_LT((swapped.force_j + f.force_j).norm(), tight);
+    ASSERT_LT((swapped.torque_j - f.torque_i).norm(), tight);
+
+    const PairForce flipped = k.energy_and_gradient(p.separation, -p.ni, p.nj);
+    ASSERT_NEAR(flipped.energy, f.energy, tight);
+    ASSERT_LT((flipped.force_j - f.force_j).norm(), tight);
+    ASSERT_LT((flipped.torque_i - f.torque_i).norm(), tight);
+    ASSERT_LT((flipped.torque_j - f.torque_j).norm(), tight);
+  }
+}
+
+TEST_P(PaperContactTest, SpecialPosesAreFinite) {
+  const PaperContact k = law();
+  const Vector3 x = Vector3::UnitX(), y = Vector3::UnitY(), z = Vector3::UnitZ();
+  for (double distance : {0.0, 1e-9, 1e-3, 0.3, 1.356, 1.6272, 1.713, 2.3, 2.712, 4.068, 5.4, 5.424, 6.0})
+    for (const Vector3& along : {x, y, z, Vector3((x + y).normalized())})
+      for (const Vector3& ni : {z, Vector3(-z)})
+        for (const Vector3& nj : {z, Vector3(-z), x, Vector3((x + z).normalized()), y}) {
+          const PairForce f = k.energy_and_gradient(distance * along, ni, nj);
+          ASSERT_TRUE(std::isfinite(f.energy));
+          ASSERT_TRUE(f.force_j.allFinite() && f.torque_i.allFinite() && f.torque_j.allFinite());
+        }
+}
+
+// A walk through every seam: energy and force must not jump. The bound on a step is that of a slope.
+TEST_P(PaperContactTest, EnergyAndForceAreContinuous) {
+  const PaperContact k = law();
+  Random random(11);
+  for (int walk = 0; walk < 60; ++walk) {
+    const Vector3 from = random.uniform(0.2, 2.0) * random.direction(), to = 6.0 * random.direction();
+    const Vector3 ni = random.direction();
+    const Vector3 turn_axis = random.direction();
+    const auto at = [&](double s) {
+      return k.energy_and_gradient((1 - s) * from + s * to, ni, test::turn(turn_axis, 3 * s) * ni);
+    };
+    const auto jump = [&](double s, double h) {
+      const PairForce a = at(s), b = at(s + h);
+      return std::pair<double, double>(std::fabs(a.energy - b.energy), (a.force_j - b.force_j).norm());
+    };
+    for (double s = 0.001; s < 0.998; s += 1e-3) {
+      // A jump would not shrink with the step; a slope does, tenfold.
+      const auto coarse = jump(s, 1e-3);
+      double finest_energy = 0, finest_force = 0;
+      for (int m = 0; m < 10; ++m) {
+        const auto fine = jump(s + m * 1e-4, 1e-4);
+        finest_energy = std::max(finest_energy, fine.first);
+        finest_force = std::max(finest_force, fine.second);
+      }
+      // Locate the worst tenth and zoom twice more.
+      if (finest_energy > 1e-3 || finest_force > 1e-2) {
+        double lo = s, width = 1e-3;
+        double e = 0, f = 0;
+        for (int zoom = 0; zoom < 6; ++zoom) {
+          width /= 10;
+          int worst = 0;
+          e = f = -1;
+          for (int m = 0; m < 10; ++m) {
+            const auto fine = jump(lo + m * width, width);
+            if (fine.second > f) {
+              f = fine.second;
+              e = fine.first;
+              worst = m;
+            }
+          }
+          lo += worst * width;
+        }
+        ASSERT_LT(e, 1e-2 + 1e-6 * coarse.first) << "energy jumps at s = " << lo;
+        ASSERT_LT(f, 0.1 + 1e-2 * coarse.second) << "force jumps at s = " << lo;
+      }
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Powers, PaperContactTest, ::testing::Bool(),
+                         [](const auto& info) { return info.param ? "General" : "Published"; });
+
+TEST(PaperContact, LegacyTorqueBreaksAngularMomentum) {
+  const PaperContact k = test::published_contact();
+  const Vector3 separation(1.6, 0.2, 0.6), ni = Vector3::UnitZ(), nj = Vector3(0.1, 0.1, 1).normalized();
+  const PairForce f = k.legacy_torque(separation, ni, nj);
+  EXPECT_GT((f.torque_i + f.torque_j + separation.cross(f.force_j)).norm(), 1e-3);
+}
+
+TEST(PaperContact, BoundaryOfTheCoreIsSmooth) {
+  const PaperContact k = test::published_contact();
+  const Vector3 z = Vector3::UnitZ();
+  const double at = (k.core_gap + 2) * k.radius;  // parallel: Theta = 1
+  const auto slope = [&](double r) { return k.energy_and_gradient({r, 0, 0}, z, z).force_j.x(); };
+  EXPECT_NEAR(slope(at - 1e-7), slope(at + 1e-7), 1e-2);
+  EXPECT_GT(k.energy({0.01, 0, 0}, z, z), 1000) << "elements must not pass through one another";
+}
+
+}  // namespace
+}  // namespace ropewalk

@@ -1,0 +1,147 @@
+// The fast path is held to the reference by one body, for every variant of the interaction.
+#include <gtest/gtest.h>
+#include <omp.h>
+
+#include "sim/simulation.hpp"
+#include "unit/support.hpp"
+
+namespace ropewalk {
+namespace {
+
+struct Variant {
+  std::string name;
+  bool general_powers;
+  bool legacy;
+  double eta, rate;
+  double disorder;
+};
+
+class ForcesTest : public ::testing::TestWithParam<Variant> {
+ protected:
+  void SetUp() override {
+    const Variant& v = GetParam();
+    topology = test::published_topology();
+    state = test::disordered_bundle(topology, 7, 12, 1.75, v.disorder, 21);
+    in.bond = test::published_bond();
+    in.paper = test::published_contact();
+    if (v.general_powers) in.paper->alpha = 9.3;
+    in.legacy_torque = v.legacy;
+    in.exclude_along_tube = 3;
+    in.damping.contact = {v.eta, 1.713, 2.57};
+    in.damping.bond.rate = v.rate;
+  }
+
+  Forces fast(double skin, int threads) const {
+    omp_set_num_threads(threads);
+    NeighbourList list;
+    list.cutoff = in.cutoff();
+    list.skin = skin;
+    list.exclude_along_tube = in.exclude_along_tube;
+    list.build(topology, state.position);
+    ForceEngine engine;
+    Forces f(state.size());
+    engine.compute(topology, in, list, state, f);
+    return f;
+  }
+
+  Topology topology;
+  State state;
+  Interaction in;
+};
+
+void expect_equal(const Forces& a, const Forces& b, double relative) {
+  double scale_f = 0, scale_t = 0;
+  for (std::size_t i = 0; i < a.force.size(); ++i) {
+    scale_f = std::max(scale_f, b.force[i].norm());
+    scale_t = std::max(scale_t, b.torque[i].norm());
+  }
+  for (std::size_t i = 0; i < a.force.size(); ++i) {
+    ASSERT_LT((a.force[i] - b.force[i]).norm(), relative * scale_f) << "element " << i;
+    ASSERT_LT((a.torque[i] - b.torque[i]).norm(), relative * scale_t) << "element " << i;
+  }
+  EXPECT_NEAR(a.energy.vdw, b.energy.vdw, relative * std::fabs(b.energy.vdw));
+  EXPECT_NEAR(a.energy.bonds(), b.energy.bonds(), relative * b.energy.bonds());
+  EXPECT_NEAR(a.damping_power, b.damping_power, relative * std::fabs(b.damping_power));
+}
+
+TEST_P(ForcesTest, FastEqualsReference) {
+  Forces reference(state.size());
+  compute_reference(topology, in, state, reference);
+  EXPECT_GT(std::fabs(reference.energy.vdw), 50);  // the scene does have contacts
+  expect_equal(fast(0.0, 1), reference, 1e-12);
+  expect_equal(fast(0.4, 2), reference, 1e-12);
+}
+
+TEST_P(ForcesTest, SameBitsOnAnyNumberOfThreads) {
+  const Forces one = fast(0.2, 1);
+  for (int threads : {2, 3, 5}) {
+    const Forces many = fast(0.2, threads);
+    EXPECT_EQ(one.force.x, many.force.x);
+    EXPECT_EQ(one.force.y, many.force.y);
+    EXPECT_EQ(one.torque.z, many.torque.z);
+    EXPECT_EQ(one.energy.vdw, many.energy.vdw);
+    EXPECT_EQ(one.damping_power, many.damping_power);
+  }
+}
+
+TEST_P(ForcesTest, NetForceAndTorqueVanish) {
+  if (GetParam().legacy) GTEST_SKIP() << "the legacy torque does not conserve angular momentum";
+  const Forces f = fast(0.2, 2);
+  const NetForce net = net_force(state, f);
+  double scale = 0;
+  for (std::size_t i = 0; i < f.force.size(); ++i) scale += f.force[i].norm();
+  EXPECT_LT(net.force.norm(), 1e-13 * scale);
+  EXPECT_LT(net.torque.norm(), 1e-12 * scale * 10);
+}
+
+INSTANTIATE_TEST_SUITE_P(Variants, ForcesTest,
+                         ::testing::Values(Variant{"Ordered", false, false, 0, 0, 1e-3},
+                                           Variant{"Disordered", false, false, 0, 0, 0.08},
+                                           Variant{"Overlapping", false, false, 0, 0, 0.3},
+                                           Variant{"General", true, false, 0, 0, 0.05},
+                                           Variant{"Legacy", false, true, 0, 0, 0.05},
+                                           Variant{"GeneralLegacy", true, true, 0, 0, 0.05},
+                                           Variant{"Damped", false, false, 20, 1, 0.05}),
+                         [](const auto& info) { return info.param.name; });
+
+void PrintTo(const Variant& v, std::ostream* out) { *out << v.name; }
+
+TEST(NeighbourList, FindsExactlyThePairsWithinReach) {
+  Topology topology = test::published_topology();
+  const State s = test::disordered_bundle(topology, 7, 40, 1.8, 0.2, 5);
+  NeighbourList list;
+  list.cutoff = 3.1;
+  list.skin = 0.2;
+  list.exclude_along_tube = 2;
+  list.build(topology, s.position);
+  std::size_t expected = 0;
+  for (int i = 0; i < topology.elements(); ++i) {
+    std::vector<int> found(list.indices() + list.begin(i), list.indices() + list.begin(i + 1));
+    std::vector<int> truth;
+    for (int j = i + 1; j < topology.elements(); ++j) {
+      const bool near = (s.position[j] - s.position[i]).norm() < 3.3;
+      const bool excluded = topology.tube_of(i) == topology.tube_of(j) && j - i <= 2;
+      if (near && !excluded) truth.push_back(j);
+    }
+    ASSERT_EQ(found, truth) << "element " << i;
+    expected += truth.size();
+  }
+  EXPECT_EQ(list.pairs(), expected);
+}
+
+TEST(NeighbourList, SparseSceneNeedsNoHugeGrid) {
+  Topology topology = test::published_topology();
+  topology.add_tube(1);
+  topology.add_tube(1);
+  Vec3Array p(2);
+  p.set(1, {1e7, 1e7, 1e7});
+  NeighbourList list;
+  list.cutoff = 5;
+  list.build(topology, p);
+  EXPECT_EQ(list.pairs(), 0u);
+  p.set(1, {1e300, std::nan(""), 0});
+  list.build(topology, p);  // ends, without memory for a grid of that size
+}
+
+}  // namespace
+}  // namespace ropewalk

@@ -1,0 +1,85 @@
+// Shared by the tests: the published set typed once more (the shipped file is held to it by scene_test),
+// random poses, and central differences of a pair energy.
+#pragma once
+
+#include <cmath>
+#include <functional>
+#include <random>
+
+#include "model/contact_paper.hpp"
+#include "sim/interaction.hpp"
+#include "sim/state.hpp"
+
+namespace ropewalk::test {
+
+inline PaperContact published_contact() {
+  PaperContact k;
+  k.radius = 0.678;
+  k.epsilon = 0.03733;
+  k.repulsion = 0.0223;
+  k.attraction = 1.31;
+  k.angular = {0.35819, 0.03263, -0.00138, -0.00017, 0.00024};
+  k.crossing = 90;
+  return k;
+}
+
+inline constexpr double element_length = 1.356;
+
+inline BondStiffness published_bond() {
+  return {1470.0 * units::nN_nm, 358.4 * units::nN_nm, 319.5 * units::nN_nm};
+}
+
+inline Topology published_topology() {
+  Topology t;
+  t.element_length = element_length;
+  t.radius = 0.678;
+  t.mass = 220 * units::carbon_mass;
+  t.inertia = t.mass * t.radius * t.radius;
+  return t;
+}
+
+class Random {
+ public:
+  explicit Random(unsigned seed) : engine_(seed) {}
+  double uniform(double a, double b) { return std::uniform_real_distribution<double>(a, b)(engine_); }
+  Vector3 direction() {
+    std::normal_distribution<double> g;
+    return Vector3(g(engine_), g(engine_), g(engine_)).normalized();
+  }
+  Quaternion orientation() {
+    std::normal_distribution<double> g;
+    return Quaternion(g(engine_), g(engine_), g(engine_), g(engine_)).normalized();
+  }
+
+ private:
+  std::mt19937 engine_;
+};
+
+inline Quaternion turn(const Vector3& axis, double angle) { return Quaternion(Eigen::AngleAxisd(angle, axis)); }
+
+// Fourth-order central difference of f at 0.
+inline double derivative(const std::function<double(double)>& f, double h) {
+  return (8.0 * (f(h) - f(-h)) - (f(2 * h) - f(-2 * h))) / (12.0 * h);
+}
+
+// A rope of parallel tubes for force tests: seven tubes, bent and turned at random by `disorder`.
+inline State disordered_bundle(Topology& topology, int tubes, int elements, double spacing, double disorder,
+                               unsigned seed) {
+  Random random(seed);
+  for (int t = 0; t < tubes; ++t) topology.add_tube(elements);
+  State s(static_cast<std::size_t>(topology.elements()));
+  for (int t = 0; t < tubes; ++t) {
+    const double angle = t * units::pi / 3;
+    const Vector3 at = t == 0 ? Vector3::Zero() : Vector3(spacing * std::cos(angle), spacing * std::sin(angle), 0);
+    for (int e = 0; e < elements; ++e) {
+      const auto i = static_cast<std::size_t>(topology.tube_begin[t] + e);
+      s.position.set(i, at + Vector3(0, 0, e * topology.element_length) + disorder * random.direction());
+      s.orientation.set(i, turn(random.direction(), disorder * random.uniform(0, 2)));
+      s.velocity.set(i, random.uniform(0, 0.3) * random.direction());
+      s.angular_velocity.set(i, random.uniform(0, 0.3) * random.direction());
+    }
+  }
+  return s;
+}
+
+}  // namespace ropewalk::test
