@@ -12,7 +12,7 @@ namespace ropewalk {
 using Quaternion = Eigen::Quaterniond;
 
 // Below so many elements a team of threads costs more than it saves.
-inline constexpr std::size_t parallel_from = 256;
+inline constexpr std::size_t parallel_from = 512;
 
 // Three arrays of one component each.
 struct Vec3Array {

@@ -116,6 +116,9 @@ TEST(SpinningRope, DampingTakesNothing) {
   Bundle b(7, 20, 0);
   b.in.damping.contact = {20, spacing, 1.5 * spacing};
   b.in.damping.bond.rate = 1;
+  Simulation still = b.make(b.step());
+  ASSERT_TRUE(still.relax(1e-6, 50000, [](long) { return true; }));
+  b.state = still.state();
   // Slow enough that the centrifugal strain does not matter; about an axis across the rope's own as well.
   const Vector3 omega(0.004, 0, 0.01);
   Vector3 centre = Vector3::Zero();
@@ -192,7 +195,7 @@ TEST(EnergyAccount, PrescribedRotationDoesTheWork) {
 }
 
 TEST(Checkpoint, GoesOnBitForBitOnAnyThreads) {
-  Bundle b(7, 40, 50);
+  Bundle b(7, 40, 300);
   b.in.damping.contact = {20, spacing, 1.5 * spacing};
   Simulation whole = b.make(b.step());
   for (int k = 0; k < 700; ++k) whole.step();

@@ -21,7 +21,7 @@ class ForcesTest : public ::testing::TestWithParam<Variant> {
   void SetUp() override {
     const Variant& v = GetParam();
     topology = test::published_topology();
-    state = test::disordered_bundle(topology, 7, 12, 1.75, v.disorder, 21);
+    state = test::disordered_bundle(topology, 7, 80, 1.75, v.disorder, 21);
     in.bond = test::published_bond();
     in.paper = test::published_contact();
     if (v.general_powers) in.paper->alpha = 9.3;

@@ -1,0 +1,345 @@
+#include "io/toml_table.hpp"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <cctype>
+#include <climits>
+#include <cmath>
+#include <optional>
+#include <set>
+
+namespace ropewalk {
+namespace {
+
+std::string quoted(const std::string& text) { return "\"" + printable(text, 40) + "\""; }
+
+// What stands in the file, for "is ..., ... is needed".
+std::string describe(const toml::node& node) {
+  if (const auto* v = node.as_string()) return "the string " + quoted(v->get());
+  if (const auto* v = node.as_integer()) return fmt::format("the integer {}", v->get());
+  if (const auto* v = node.as_floating_point()) return fmt::format("the number {}", v->get());
+  if (const auto* v = node.as_boolean()) return fmt::format("the boolean {}", v->get());
+  if (const auto* v = node.as_array()) return fmt::format("an array of {}", v->size());
+  return node.is_table() ? "a table" : "a date or time";
+}
+
+std::string list_of(const std::vector<std::string>& words, const char* last) {
+  std::string text;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (i > 0) text += i + 1 == words.size() ? last : ", ";
+    text += words[i];
+  }
+  return text;
+}
+
+std::string lower(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
+// Insertions, deletions, replacements and swaps of neighbours.
+std::size_t edit_distance(const std::string& a, const std::string& b) {
+  std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
+  for (std::size_t i = 0; i <= a.size(); ++i) d[i][0] = i;
+  for (std::size_t j = 0; j <= b.size(); ++j) d[0][j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i)
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t replaced = d[i - 1][j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
+      d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, replaced});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+        d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
+    }
+  return d[a.size()][b.size()];
+}
+
+// `length` or `length_A` for `length_nm`: the same up to the unit.
+bool same_but_for_unit(const std::string& a, const std::string& b) {
+  const std::string stem_a = a.substr(0, a.find('_')), stem_b = b.substr(0, b.find('_'));
+  return stem_a == stem_b && (stem_a == a || stem_b == b || std::count(a.begin(), a.end(), '_') == 1) &&
+         std::count(b.begin(), b.end(), '_') <= 1;
+}
+
+int line_of(const toml::node& node) { return static_cast<int>(node.source().begin.line); }
+
+}  // namespace
+
+std::string printable(const std::string& text, std::size_t longest) {
+  std::string out;
+  for (const char c : text) {
+    const auto u = static_cast<unsigned char>(c);
+    if (c == '\n') out += "\\n";
+    else if (u < 0x20 || u == 0x7f) out += fmt::format("\\x{:02x}", u);
+    else out += c;
+  }
+  if (out.size() <= longest) return out;
+  // Never in the middle of a UTF-8 sequence.
+  while (longest > 0 && (static_cast<unsigned char>(out[longest]) & 0xc0) == 0x80) --longest;
+  return out.substr(0, longest) + "...";
+}
+
+std::string nearest_word(const std::string& word, const std::vector<std::string>& known) {
+  if (word.size() > 64) return "";
+  const std::string w = lower(word);
+  std::string best;
+  std::size_t least = 1 + std::min<std::size_t>(3, std::max<std::size_t>(1, w.size() / 3));
+  for (const std::string& k : known) {
+    const std::size_t d = same_but_for_unit(w, lower(k)) ? 0 : edit_distance(w, lower(k));
+    if (d < least) {
+      least = d;
+      best = k;
+    }
+  }
+  return best;
+}
+
+bool Bounds::allow(double value) const {
+  return std::isfinite(value) && (open ? value > least : value >= least) && value <= most;
+}
+
+std::string Bounds::words() const {
+  const bool below = std::isfinite(most);
+  if (!std::isfinite(least)) return below ? fmt::format("must be at most {}", most) : "must be a finite number";
+  if (open && least == 0) return below ? fmt::format("must be positive and at most {}", most) : "must be positive";
+  if (open) return fmt::format("must be above {}", least) + (below ? fmt::format(" and at most {}", most) : "");
+  if (below) return fmt::format("must lie between {} and {}", least, most);
+  return least == 0 ? "must not be negative" : fmt::format("must be at least {}", least);
+}
+
+struct TomlTable::Node {
+  std::string file;
+  std::string path;
+  std::shared_ptr<const toml::table> root;  // keeps `table` alive
+  const toml::table* table = nullptr;       // none: the table is missing
+  std::vector<std::string> keys;
+  std::set<std::string> asked;
+  std::vector<TomlTable> taken;
+
+  Node(std::string f, std::string p, std::shared_ptr<const toml::table> r, const toml::table* t)
+      : file(std::move(f)), path(std::move(p)), root(std::move(r)), table(t) {
+    if (table)
+      for (const auto& [key, value] : *table) keys.emplace_back(key.str());
+  }
+
+  std::string full(const std::string& key) const { return printable(path.empty() || key.empty() ? path + key : path + "." + key); }
+
+  const toml::node* find(const std::string& key) {
+    asked.insert(key);
+    return table ? table->get(key) : nullptr;
+  }
+
+  std::vector<std::string> strays() const {
+    std::vector<std::string> out;
+    for (const std::string& k : keys)
+      if (!asked.count(k)) out.push_back(k);
+    return out;
+  }
+};
+
+struct TomlTable::Stray {
+  const TomlTable* owner = nullptr;
+  std::string key;
+  int line = INT_MAX;
+};
+
+TomlTable TomlTable::parse(const std::string& text, const std::string& file) {
+  try {
+    const auto root = std::make_shared<const toml::table>(toml::parse(text, file));
+    return TomlTable(std::make_shared<Node>(file, "", root, root.get()));
+  } catch (const toml::parse_error& e) {
+    const int column = static_cast<int>(e.source().begin.column);
+    throw InputError({file, static_cast<int>(e.source().begin.line), ""},
+                     "is not valid TOML: " + printable(std::string(e.description())),
+                     fmt::format("mend the line near column {}", column));
+  }
+}
+
+bool TomlTable::has(const std::string& key) const { return node_->find(key) != nullptr; }
+
+bool TomlTable::is_string(const std::string& key) const {
+  const toml::node* n = node_->find(key);
+  return n && n->is_string();
+}
+
+const std::vector<std::string>& TomlTable::keys() const { return node_->keys; }
+const std::string& TomlTable::path() const { return node_->path; }
+
+int TomlTable::line() const { return node_->table && !node_->path.empty() ? line_of(*node_->table) : 0; }
+
+int TomlTable::line(const std::string& key) const {
+  if (node_->table) {
+    const auto at = node_->table->find(key);
+    if (at != node_->table->cend()) return static_cast<int>(at->first.source().begin.line);
+  }
+  return line();
+}
+
+InputError TomlTable::error(const std::string& key, const std::string& what, const std::string& remedy) const {
+  return InputError({node_->file, line(key), node_->full(key)}, what, remedy);
+}
+
+namespace {
+
+// Typed access by a visitor: `take` gets the node, or the missing key is an error.
+[[noreturn]] void refuse_type(const TomlTable& t, const std::string& key, const toml::node& found,
+                              const std::string& needed, const std::string& remedy) {
+  throw t.error(key, fmt::format("is {}, {} is needed", describe(found), needed), remedy);
+}
+
+[[noreturn]] void refuse_missing(const TomlTable& t, const std::string& key, const std::vector<std::string>& strays) {
+  const std::string near = nearest_word(key, strays);
+  if (!near.empty())
+    throw t.error(key, "is missing", fmt::format("did you mean it with \"{}\" in line {}?", printable(near), t.line(near)));
+  const std::string where = t.path().empty() ? "at the top, before the first table" : "to [" + printable(t.path()) + "]";
+  throw t.error(key, "is missing", fmt::format("add {} = ... {}", key, where));
+}
+
+double checked_number(const TomlTable& t, const std::string& key, const toml::node& n, const Bounds& bounds) {
+  if (!n.is_number())
+    refuse_type(t, key, n, "a number", n.is_string() ? "write it without quotes" : "write a plain number");
+  const double value = *n.value<double>();
+  if (!bounds.allow(value)) throw t.error(key, fmt::format("is {}", value), bounds.words());
+  return value;
+}
+
+long checked_integer(const TomlTable& t, const std::string& key, const toml::node& n, long least, long most) {
+  if (!n.is_integer())
+    refuse_type(t, key, n, "an integer", n.is_floating_point() ? "write a whole number without a decimal point"
+                                                                : "write a plain whole number");
+  const std::int64_t value = n.as_integer()->get();
+  if (value < least || value > most)
+    throw t.error(key, fmt::format("is {}", value), fmt::format("must lie between {} and {}", least, most));
+  return static_cast<long>(value);
+}
+
+const toml::array& checked_array(const TomlTable& t, const std::string& key, const toml::node& n,
+                                 const std::string& needed) {
+  if (!n.is_array()) refuse_type(t, key, n, needed, "write it in [ ]");
+  return *n.as_array();
+}
+
+}  // namespace
+
+double TomlTable::number(const std::string& key, const Bounds& bounds) const {
+  const toml::node* n = node_->find(key);
+  if (!n) refuse_missing(*this, key, node_->strays());
+  return checked_number(*this, key, *n, bounds);
+}
+
+long TomlTable::integer(const std::string& key, long least, long most) const {
+  const toml::node* n = node_->find(key);
+  if (!n) refuse_missing(*this, key, node_->strays());
+  return checked_integer(*this, key, *n, least, most);
+}
+
+bool TomlTable::boolean(const std::string& key) const {
+  const toml::node* n = node_->find(key);
+  if (!n) refuse_missing(*this, key, node_->strays());
+  if (!n->is_boolean()) refuse_type(*this, key, *n, "a boolean", "write true or false, without quotes");
+  return n->as_boolean()->get();
+}
+
+std::string TomlTable::string(const std::string& key) const {
+  const toml::node* n = node_->find(key);
+  if (!n) refuse_missing(*this, key, node_->strays());
+  if (!n->is_string()) refuse_type(*this, key, *n, "a string", "write it in quotes");
+  const std::string& text = n->as_string()->get();
+  if (text.empty()) throw error(key, "is empty", "give it a text or leave the key out");
+  return text;
+}
+
+std::size_t TomlTable::word_index(const std::string& key, const std::vector<std::string>& words) const {
+  const std::string text = string(key);
+  const auto at = std::find(words.begin(), words.end(), text);
+  if (at != words.end()) return static_cast<std::size_t>(at - words.begin());
+  std::vector<std::string> in_quotes;
+  for (const std::string& w : words) in_quotes.push_back(quoted(w));
+  const std::string near = nearest_word(text, words);
+  throw error(key, fmt::format("is {}", quoted(text)),
+              near.empty() ? "choose " + list_of(in_quotes, " or ")
+                           : fmt::format("did you mean {}? Choose {}", quoted(near), list_of(in_quotes, " or ")));
+}
+
+std::vector<double> TomlTable::numbers(const std::string& key, const Bounds& bounds, std::size_t size) const {
+  const std::string needed = fmt::format("an array of {} numbers", size);
+  const toml::node* n = node_->find(key);
+  if (!n) refuse_missing(*this, key, node_->strays());
+  const toml::array& array = checked_array(*this, key, *n, needed);
+  if (array.size() != size) refuse_type(*this, key, *n, needed, "give one number for each component");
+  std::vector<double> out;
+  for (const toml::node& element : array) out.push_back(checked_number(*this, key, element, bounds));
+  return out;
+}
+
+std::vector<long> TomlTable::integers(const std::string& key, long least, long most) const {
+  const toml::node* n = node_->find(key);
+  if (!n) refuse_missing(*this, key, node_->strays());
+  const toml::array& array = checked_array(*this, key, *n, "an array of integers");
+  if (array.empty()) throw error(key, "is an empty array", "name at least one");
+  std::vector<long> out;
+  for (const toml::node& element : array) out.push_back(checked_integer(*this, key, element, least, most));
+  return out;
+}
+
+double TomlTable::number_or(const std::string& key, double fallback, const Bounds& bounds) const {
+  return has(key) ? number(key, bounds) : fallback;
+}
+
+long TomlTable::integer_or(const std::string& key, long fallback, long least, long most) const {
+  return has(key) ? integer(key, least, most) : fallback;
+}
+
+bool TomlTable::boolean_or(const std::string& key, bool fallback) const {
+  return has(key) ? boolean(key) : fallback;
+}
+
+std::string TomlTable::string_or(const std::string& key, const std::string& fallback) const {
+  return has(key) ? string(key) : fallback;
+}
+
+TomlTable TomlTable::table(const std::string& key, const std::string& needed) const {
+  const toml::node* n = node_->find(key);
+  if (n && !n->is_table()) refuse_type(*this, key, *n, needed, fmt::format("see the documentation of {}", key));
+  const std::string path = node_->path.empty() ? key : node_->path + "." + key;
+  TomlTable out(std::make_shared<Node>(node_->file, path, node_->root, n ? n->as_table() : nullptr));
+  node_->taken.push_back(out);
+  return out;
+}
+
+std::vector<TomlTable> TomlTable::tables(const std::string& key) const {
+  const toml::node* n = node_->find(key);
+  if (!n) return {};
+  const std::string header = fmt::format("write [[{}]] above each of them", key);
+  if (!n->is_array()) refuse_type(*this, key, *n, "a list of tables", header);
+  const std::string path = node_->path.empty() ? key : node_->path + "." + key;
+  std::vector<TomlTable> out;
+  for (const toml::node& element : *n->as_array()) {
+    if (!element.is_table()) refuse_type(*this, key, element, "a list of tables", header);
+    out.push_back(TomlTable(std::make_shared<Node>(node_->file, path, node_->root, element.as_table())));
+    node_->taken.push_back(out.back());
+  }
+  return out;
+}
+
+void TomlTable::find_stray(Stray& first) const {
+  for (const std::string& key : node_->strays())
+    if (line(key) < first.line) first = {this, key, line(key)};
+  for (const TomlTable& t : node_->taken) t.find_stray(first);
+}
+
+void TomlTable::finish(const Elsewhere& elsewhere) const {
+  Stray stray;
+  find_stray(stray);
+  if (!stray.owner) return;
+  const Node& node = *stray.owner->node_;
+  const char* what = node.table->get(stray.key)->is_table() ? "unknown table" : "unknown key";
+  const std::vector<std::string> known(node.asked.begin(), node.asked.end());
+  const std::string near = nearest_word(stray.key, known);
+  if (!near.empty()) throw stray.owner->error(stray.key, what, fmt::format("did you mean \"{}\"?", near));
+  const std::string remedy = elsewhere ? elsewhere(stray.key) : "";
+  if (!remedy.empty()) throw stray.owner->error(stray.key, what, remedy);
+  throw stray.owner->error(stray.key, what, known.empty() ? "take it away" : "known here: " + list_of(known, ", "));
+}
+
+}  // namespace ropewalk
