@@ -54,11 +54,11 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
   return d[a.size()][b.size()];
 }
 
-// `length` or `length_A` for `length_nm`: the same up to the unit.
-bool same_but_for_unit(const std::string& a, const std::string& b) {
-  const std::string stem_a = a.substr(0, a.find('_')), stem_b = b.substr(0, b.find('_'));
-  return stem_a == stem_b && (stem_a == a || stem_b == b || std::count(a.begin(), a.end(), '_') == 1) &&
-         std::count(b.begin(), b.end(), '_') <= 1;
+// `length` or `length_A` for `length_nm`: the unit left out or another one.
+bool same_but_for_unit(const std::string& word, const std::string& known) {
+  const auto starts = [&](const std::string& stem) { return known.compare(0, stem.size() + 1, stem + "_") == 0; };
+  const std::size_t unit = word.rfind('_');
+  return starts(word) || (unit != std::string::npos && unit > 0 && starts(word.substr(0, unit)));
 }
 
 int line_of(const toml::node& node) { return static_cast<int>(node.source().begin.line); }
@@ -85,7 +85,7 @@ std::string nearest_word(const std::string& word, const std::vector<std::string>
   std::string best;
   std::size_t least = 1 + std::min<std::size_t>(3, std::max<std::size_t>(1, w.size() / 3));
   for (const std::string& k : known) {
-    const std::size_t d = same_but_for_unit(w, lower(k)) ? 0 : edit_distance(w, lower(k));
+    const std::size_t d = same_but_for_unit(w, lower(k)) ? 1 : edit_distance(w, lower(k));
     if (d < least) {
       least = d;
       best = k;
@@ -127,6 +127,22 @@ struct TomlTable::Node {
   const toml::node* find(const std::string& key) {
     asked.insert(key);
     return table ? table->get(key) : nullptr;
+  }
+
+  const toml::node& required(const TomlTable& self, const std::string& key) {
+    const toml::node* found = find(key);
+    if (!found) throw missing(self, key);
+    return *found;
+  }
+
+  // A misspelt key shows as one that is missing and one that nobody asked for yet.
+  InputError missing(const TomlTable& self, const std::string& key) const {
+    const std::string near = nearest_word(key, strays());
+    if (!near.empty())
+      return self.error(key, "is missing",
+                        fmt::format("did you mean it by \"{}\" in line {}?", printable(near), self.line(near)));
+    const std::string where = path.empty() ? "at the top, before the first table" : "to [" + printable(path) + "]";
+    return self.error(key, "is missing", fmt::format("add {} = ... {}", key, where));
   }
 
   std::vector<std::string> strays() const {
@@ -181,18 +197,9 @@ InputError TomlTable::error(const std::string& key, const std::string& what, con
 
 namespace {
 
-// Typed access by a visitor: `take` gets the node, or the missing key is an error.
 [[noreturn]] void refuse_type(const TomlTable& t, const std::string& key, const toml::node& found,
                               const std::string& needed, const std::string& remedy) {
   throw t.error(key, fmt::format("is {}, {} is needed", describe(found), needed), remedy);
-}
-
-[[noreturn]] void refuse_missing(const TomlTable& t, const std::string& key, const std::vector<std::string>& strays) {
-  const std::string near = nearest_word(key, strays);
-  if (!near.empty())
-    throw t.error(key, "is missing", fmt::format("did you mean it with \"{}\" in line {}?", printable(near), t.line(near)));
-  const std::string where = t.path().empty() ? "at the top, before the first table" : "to [" + printable(t.path()) + "]";
-  throw t.error(key, "is missing", fmt::format("add {} = ... {}", key, where));
 }
 
 double checked_number(const TomlTable& t, const std::string& key, const toml::node& n, const Bounds& bounds) {
@@ -222,31 +229,31 @@ const toml::array& checked_array(const TomlTable& t, const std::string& key, con
 }  // namespace
 
 double TomlTable::number(const std::string& key, const Bounds& bounds) const {
-  const toml::node* n = node_->find(key);
-  if (!n) refuse_missing(*this, key, node_->strays());
-  return checked_number(*this, key, *n, bounds);
+  const toml::node& n = node_->required(*this, key);
+  return checked_number(*this, key, n, bounds);
 }
 
 long TomlTable::integer(const std::string& key, long least, long most) const {
-  const toml::node* n = node_->find(key);
-  if (!n) refuse_missing(*this, key, node_->strays());
-  return checked_integer(*this, key, *n, least, most);
+  const toml::node& n = node_->required(*this, key);
+  return checked_integer(*this, key, n, least, most);
 }
 
 bool TomlTable::boolean(const std::string& key) const {
-  const toml::node* n = node_->find(key);
-  if (!n) refuse_missing(*this, key, node_->strays());
-  if (!n->is_boolean()) refuse_type(*this, key, *n, "a boolean", "write true or false, without quotes");
-  return n->as_boolean()->get();
+  const toml::node& n = node_->required(*this, key);
+  if (!n.is_boolean()) refuse_type(*this, key, n, "a boolean", "write true or false, without quotes");
+  return n.as_boolean()->get();
+}
+
+std::string TomlTable::text(const std::string& key) const {
+  const toml::node& n = node_->required(*this, key);
+  if (!n.is_string()) refuse_type(*this, key, n, "a string", "write it in quotes");
+  return n.as_string()->get();
 }
 
 std::string TomlTable::string(const std::string& key) const {
-  const toml::node* n = node_->find(key);
-  if (!n) refuse_missing(*this, key, node_->strays());
-  if (!n->is_string()) refuse_type(*this, key, *n, "a string", "write it in quotes");
-  const std::string& text = n->as_string()->get();
-  if (text.empty()) throw error(key, "is empty", "give it a text or leave the key out");
-  return text;
+  std::string value = text(key);
+  if (value.empty()) throw error(key, "is empty", "give it a text or leave the key out");
+  return value;
 }
 
 std::size_t TomlTable::word_index(const std::string& key, const std::vector<std::string>& words) const {
@@ -263,19 +270,17 @@ std::size_t TomlTable::word_index(const std::string& key, const std::vector<std:
 
 std::vector<double> TomlTable::numbers(const std::string& key, const Bounds& bounds, std::size_t size) const {
   const std::string needed = fmt::format("an array of {} numbers", size);
-  const toml::node* n = node_->find(key);
-  if (!n) refuse_missing(*this, key, node_->strays());
-  const toml::array& array = checked_array(*this, key, *n, needed);
-  if (array.size() != size) refuse_type(*this, key, *n, needed, "give one number for each component");
+  const toml::node& n = node_->required(*this, key);
+  const toml::array& array = checked_array(*this, key, n, needed);
+  if (array.size() != size) refuse_type(*this, key, n, needed, "give one number for each component");
   std::vector<double> out;
   for (const toml::node& element : array) out.push_back(checked_number(*this, key, element, bounds));
   return out;
 }
 
 std::vector<long> TomlTable::integers(const std::string& key, long least, long most) const {
-  const toml::node* n = node_->find(key);
-  if (!n) refuse_missing(*this, key, node_->strays());
-  const toml::array& array = checked_array(*this, key, *n, "an array of integers");
+  const toml::node& n = node_->required(*this, key);
+  const toml::array& array = checked_array(*this, key, n, "an array of integers");
   if (array.empty()) throw error(key, "is an empty array", "name at least one");
   std::vector<long> out;
   for (const toml::node& element : array) out.push_back(checked_integer(*this, key, element, least, most));

@@ -44,6 +44,7 @@ class TomlTable {
   double number(const std::string& key, const Bounds& bounds) const;
   long integer(const std::string& key, long least, long most) const;
   bool boolean(const std::string& key) const;
+  std::string text(const std::string& key) const;
   std::string string(const std::string& key) const;  // never empty
   std::vector<double> numbers(const std::string& key, const Bounds& bounds, std::size_t size) const;
   std::vector<long> integers(const std::string& key, long least, long most) const;  // never empty

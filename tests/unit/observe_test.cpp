@@ -191,6 +191,16 @@ TEST(Delaunay, PointsOnOneCircleAreTriangulated) {
   EXPECT_EQ(delaunay(ring).size(), 22u);
 }
 
+TEST(Delaunay, StraightHullHasNoTrianglesWithoutArea) {
+  for (const double angle : {0.0, 0.3, 1.0}) {
+    std::vector<Vector2d> points = hexagonal(5);
+    for (Vector2d& p : points) p = Eigen::Rotation2Dd(angle) * p;  // rounding takes the sides off their lines
+    const auto triangles = delaunay(points);
+    EXPECT_EQ(triangles.size(), 150u);
+    for (const Triangle& t : triangles) EXPECT_NEAR(area(points, t), 0.5 * one_cell, 1e-9);
+  }
+}
+
 TEST(Delaunay, DegenerateInputGivesNoTrianglesAndNoOutput) {
   testing::internal::CaptureStderr();
   testing::internal::CaptureStdout();
@@ -199,7 +209,11 @@ TEST(Delaunay, DegenerateInputGivesNoTrianglesAndNoOutput) {
   EXPECT_TRUE(delaunay({{0, 0}, {1, 1}, {2, 2}, {3, 3}, {4, 4}}).empty());
   EXPECT_TRUE(delaunay({{0, 0}, {1, 0}, {2, 0}, {3, 0}}).empty());
   EXPECT_TRUE(delaunay(std::vector<Vector2d>(6, Vector2d(1, 2))).empty());
-  EXPECT_TRUE(delaunay({{0, 0}, {1, 0}, {0, 1}, {1, std::nan("")}}).empty());
+  for (const double bad : {std::nan(""), HUGE_VAL}) {
+    std::vector<Vector2d> points = random_points(30);
+    points[17].y() = bad;
+    EXPECT_TRUE(delaunay(points).empty());
+  }
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
   EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
 }
@@ -225,6 +239,13 @@ TEST(ObservedShells, ToleratePerturbation) {
   Rope rope = straight_rope(hexagonal(5));
   add_noise(rope, 0.1);
   EXPECT_EQ(sum(rope_shells(rope.topology, rope.state, 0.0).internal), 61);
+}
+
+TEST(ObservedShells, TubesWithFiveNeighboursAreNotInternal) {
+  const Rope rope = straight_rope(without(hexagonal(5), {0}));
+  const RopeShells shells = rope_shells(rope.topology, rope.state, 0.0);
+  EXPECT_EQ(sum(shells.internal), 54);  // 61 less the missing one and the six around it
+  EXPECT_TRUE(shells.outermost[0]);
 }
 
 TEST(ObservedSection, ContactsOfHexagonalRopes) {
@@ -292,14 +313,16 @@ TEST(ObservedSection, DistanceCountLosesATubeThatMovesAwayAndDelaunayDoesNot) {
 }
 
 TEST(ObservedSection, DistanceIncludesTheAdjacentElementsAndNoFurther) {
-  // Two tubes that approach each other along z by 0.2 spacings per element; 1.5 spacings in the section.
-  const auto approach = [](double in_section) {
+  // Two tubes that approach each other along z, upwards or downwards, by 0.2 spacings per element.
+  const auto approach = [](double in_section, double per_element) {
     return place({{0, 0}, {1, 0}}, 9, [=](const Vector2d& p, int s) {
-      return Vector3(p.x() * spacing * (in_section - 0.2 * (s - 4)), 0, height(s, 9));
+      return Vector3(p.x() * spacing * (in_section - per_element * (s - 4)), 0, height(s, 9));
     });
   };
-  EXPECT_EQ(middle_of(approach(1.5)).contacts, 1);  // 1.3 at the next element, the limit is 1.366
-  EXPECT_EQ(middle_of(approach(1.7)).contacts, 0);  // 1.5 there, and 1.3 only at the one after it
+  for (const double per_element : {0.2, -0.2}) {
+    EXPECT_EQ(middle_of(approach(1.5, per_element)).contacts, 1);  // 1.3 at the next element; the limit is 1.366
+    EXPECT_EQ(middle_of(approach(1.7, per_element)).contacts, 0);  // 1.5 there, and 1.3 only one further on
+  }
 }
 
 TEST(ObservedSection, TubesThatSlidAlongThemselvesArePiercedInThePlane) {
@@ -322,13 +345,16 @@ TEST(ObservedSection, TubesThatSlidAlongThemselvesArePiercedInThePlane) {
 TEST(ObservedSection, PointsLieInThePlaneNormalToTheLocalAxis) {
   // The rope leans by 30 degrees in xz; its tubes keep their distances in the plane normal to it.
   const Eigen::AngleAxisd lean(units::pi / 6.0, Vector3::UnitY());
-  const Rope rope = place(hexagonal(5), 12, [&](const Vector2d& p, int s) {
-    return Vector3(lean * Vector3(p.x(), p.y(), height(s, 12)));
-  });
-  const CrossSection section = middle_of(rope);
   const auto lattice = hexagonal(5);
-  for (std::size_t t = 0; t < lattice.size(); ++t) EXPECT_LT((section.points[t] - lattice[t]).norm(), 1e-9);
-  EXPECT_EQ(section.voids, 0);
+  for (const int elements : {1, 2, 12}) {  // of one element the axis is all there is
+    Rope rope = place(lattice, elements, [&](const Vector2d& p, int s) {
+      return Vector3(lean * Vector3(p.x(), p.y(), height(s, elements)));
+    });
+    for (std::size_t i = 0; i < rope.state.size(); ++i) rope.state.orientation.set(i, Quaternion(lean));
+    const CrossSection section = middle_of(rope);
+    for (std::size_t t = 0; t < lattice.size(); ++t) EXPECT_LT((section.points[t] - lattice[t]).norm(), 1e-9);
+    EXPECT_EQ(section.voids, 0);
+  }
 }
 
 TEST(ObservedSection, EndsAndIndicesBeyondThemAreSafe) {
@@ -520,6 +546,17 @@ TEST(ObservedShape, GeometricTwistOfAHelixIsFreeOfItsWrithe) {
   for (const double twist : {0.0, 2.5, -9.0}) {
     const Rope rope = bent_rope(hexagonal(2), helix(119, 151.0, 6.0, 2.0), twist);
     EXPECT_NEAR(observe_rope(rope, shells_where(19, 7)).geometric_twist, twist, 0.02);
+  }
+}
+
+TEST(ObservedShape, GeometricTwistIsExactInSharpBends) {
+  // A pair of tubes aslant to the plane of a bend of 0.25 rad per element: nothing averages out.
+  std::vector<Vector3> arc;
+  for (int s = 0; s < 7; ++s) arc.emplace_back(20.0 * std::cos(0.25 * s), 0.0, 20.0 * std::sin(0.25 * s));
+  for (const double slant : {0.4, 0.8, 1.2}) {
+    const Vector2d p = 2.0 * spacing * Vector2d(std::cos(slant), std::sin(slant));
+    EXPECT_NEAR(observe_rope(bent_rope({p, -p}, arc, 0.0), shells_where(2, 0)).geometric_twist, 0.0, 1e-12);
+    EXPECT_NEAR(observe_rope(bent_rope({p, -p}, arc, 0.6), shells_where(2, 0)).geometric_twist, 0.6, 1e-12);
   }
 }
 

@@ -1,0 +1,174 @@
+#include "io/parameters_toml.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "io/files.hpp"
+#include "io/toml_table.hpp"
+
+namespace ropewalk {
+namespace {
+
+constexpr const char* not_published = "not published";
+
+void check_doi(const TomlTable& table, const std::string& doi) {
+  if (doi.compare(0, 3, "10.") != 0 || doi.find('/') == std::string::npos)
+    throw table.error("doi", fmt::format("is \"{}\"", printable(doi, 40)), "write it bare, as in 10.1000/182");
+}
+
+std::optional<double> read_standard_error(const TomlTable& q) {
+  if (!q.is_string("standard_error")) return q.number("standard_error", Bounds::non_negative());
+  if (q.string("standard_error") == not_published) return std::nullopt;
+  throw q.error("standard_error", fmt::format("is the string \"{}\"", printable(q.string("standard_error"), 40)),
+                fmt::format("write a number in the quantity's unit, or \"{}\"", not_published));
+}
+
+std::string read_origin(const TomlTable& q) {
+  static const Words<const char*> origins = {
+      {"published", "published"}, {"derived", "derived"}, {"calibrated", "calibrated"}, {"chosen", "chosen"}};
+  return q.word("origin", origins);
+}
+
+class Reader {
+ public:
+  explicit Reader(const std::string& path) : path_(path), text_(read_file(path)), top_(TomlTable::parse(text_, path)) {}
+
+  ParameterSet read() {
+    set_.path = path_;
+    set_.hash = hash_hex(text_);
+    read_meta(top_.table("meta"));
+    read_tube(top_.table("tube"));
+    read_bond(top_.table("bond"));
+    const TomlTable contact = top_.table("contact");
+    if (contact.has("paper")) set_.paper = read_paper(contact.table("paper"));
+    read_validity(top_.table("validity"));
+    top_.finish();
+    std::stable_sort(order_.begin(), order_.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    for (auto& [line, quantity] : order_) set_.quantities.push_back(std::move(quantity));
+    return std::move(set_);
+  }
+
+ private:
+  // One number with its unit and origin; the value in `unit`.
+  double quantity(const TomlTable& section, const std::string& key, const std::string& unit, const Bounds& bounds) {
+    const std::string form = fmt::format("{{ value, unit = \"{}\", standard_error, origin, doi }}", unit);
+    if (!section.has(key)) throw section.error(key, "is missing", fmt::format("add {} = {}", key, form));
+    const TomlTable q = section.table(key, "a table " + form);
+    Quantity out;
+    out.key = section.path() + "." + key;
+    out.value = q.number("value", bounds);
+    out.unit = q.string("unit");
+    if (out.unit != unit)
+      throw q.error("unit", fmt::format("is \"{}\"", printable(out.unit, 40)),
+                    fmt::format("convert the value to \"{}\"", unit));
+    out.standard_error = read_standard_error(q);
+    out.origin = read_origin(q);
+    q.string_or("note", "");  // for readers of the file
+    if (out.origin == "published" || q.has("doi")) {
+      out.doi = q.string("doi");
+      check_doi(q, out.doi);
+    }
+    order_.emplace_back(section.line(key), out);
+    return out.value;
+  }
+
+  void read_meta(const TomlTable& t) {
+    if (!top_.has("meta")) throw top_.error("meta", "is missing", fmt::format("a parameter set starts with [meta] format = \"{}\"", parameter_format));
+    const std::string format = t.string("format");
+    if (format != parameter_format)
+      throw t.error("format", fmt::format("is \"{}\"", printable(format, 40)),
+                    fmt::format("this program reads \"{}\"", parameter_format));
+    set_.name = t.string("name");
+    const std::vector<long> nm = t.integers("chirality", 0, 1000);
+    if (nm.size() == 2) set_.chirality = {static_cast<int>(nm[0]), static_cast<int>(nm[1])};
+    if (nm.size() != 2 || !set_.chirality.valid())
+      throw t.error("chirality", "is not that of a tube", "write [n, m] with n >= 1 and 0 <= m <= n");
+    set_.reference = t.string("reference");
+    set_.doi = t.string("doi");
+    check_doi(t, set_.doi);
+  }
+
+  // A slip of unit or of chirality shows as a factor; relaxation changes the rolled sheet by 2 %.
+  void check_geometry(const TomlTable& t, const char* key, double value, double rolled, const char* unit) const {
+    if (std::fabs(value / rolled - 1.0) < 0.1) return;
+    throw t.error(key, fmt::format("is {} {}", value, unit),
+                  fmt::format("a ({},{}) tube has about {:.4g} {}", set_.chirality.n, set_.chirality.m, rolled, unit));
+  }
+
+  void read_tube(const TomlTable& t) {
+    set_.radius = quantity(t, "radius", "nm", Bounds::positive());
+    check_geometry(t, "radius", set_.radius, tube_radius(set_.chirality), "nm");
+    set_.atoms_per_length = quantity(t, "atoms_per_length", "1/nm", Bounds::positive());
+    check_geometry(t, "atoms_per_length", set_.atoms_per_length, ropewalk::atoms_per_length(set_.chirality), "1/nm");
+    set_.element_length = quantity(t, "element_length", "nm", Bounds::range(0.05, 50));
+  }
+
+  void read_bond(const TomlTable& t) {
+    const Bounds stiffness = Bounds::positive(1e9);
+    set_.bond.stretch = quantity(t, "EA", "nN", stiffness) * units::nN_nm;
+    set_.bond.bend = quantity(t, "EI", "nN nm^2", stiffness) * units::nN_nm;
+    set_.bond.twist = quantity(t, "GJ", "nN nm^2", stiffness) * units::nN_nm;
+  }
+
+  PaperContact read_paper(const TomlTable& t) {
+    PaperContact k;
+    k.radius = set_.radius;
+    k.epsilon = quantity(t, "epsilon", "eV", Bounds::positive(100));
+    k.repulsion = quantity(t, "A", "1", Bounds::positive(1e6));
+    k.attraction = quantity(t, "B", "1", Bounds::positive(1e6));
+    k.alpha = quantity(t, "alpha", "1", Bounds::range(1, 100));
+    k.beta = quantity(t, "beta", "1", Bounds::range(1, 100));
+    for (std::size_t i = 0; i < k.angular.size(); ++i)
+      k.angular[i] = quantity(t, fmt::format("C{}", i + 1), "1", Bounds::range(-1, 1));
+    k.crossing = quantity(t, "C_gamma", "1", Bounds::non_negative(1e6));
+    k.delta = quantity(t, "delta", "1", Bounds::range(-100, 0));
+    k.freeze = quantity(t, "freeze", "r", Bounds::range(0.1, 100));
+    k.switch_start = quantity(t, "switch_start", "r", Bounds::range(2, 100));
+    k.cutoff_ratio = quantity(t, "cutoff", "r", Bounds::range(2, 100));
+    k.core_gap = quantity(t, "core_gap", "1", Bounds::range(0.01, 10));
+    check_paper(t, k);
+    return k;
+  }
+
+  static void check_paper(const TomlTable& t, const PaperContact& k) {
+    if (k.alpha <= k.beta)
+      throw t.error("alpha", fmt::format("is {}, not above beta = {}", k.alpha, k.beta),
+                    "repulsion must be the steeper of the two");
+    if (k.cutoff_ratio <= k.switch_start)
+      throw t.error("cutoff", fmt::format("is {} r, not above switch_start = {} r", k.cutoff_ratio, k.switch_start),
+                    "the switch needs room to fall to zero");
+    // V is lowest at D with (D^(alpha - beta)) = alpha A / (beta B): the core must lie inside of it.
+    const double lowest = std::pow(k.alpha * k.repulsion / (k.beta * k.attraction), 1 / (k.alpha - k.beta));
+    if (k.core_gap >= lowest)
+      throw t.error("core_gap", fmt::format("is {}", k.core_gap),
+                    fmt::format("must be below {:.4g}, where the contact is strongest", lowest));
+    for (int degree = 0; degree <= 90; ++degree) {
+      const double theta = degree * units::degree;
+      double stretch = 1;
+      for (int i = 1; i <= 5; ++i)
+        stretch += k.angular[static_cast<std::size_t>(i - 1)] * ((i % 2 ? 1 : -1) + std::cos(2 * i * theta));
+      if (stretch < 0.05)
+        throw t.error("C1", fmt::format("makes Theta({} deg) = {:.3g}", degree, stretch),
+                      "C1 .. C5 must keep Theta positive at every angle");
+    }
+  }
+
+  void read_validity(const TomlTable& t) {
+    set_.validity.kink_curvature = quantity(t, "kink_curvature", "1/nm", Bounds::positive(1e3));
+    set_.validity.twist_collapse = quantity(t, "twist_collapse", "1", Bounds::positive(10));
+    set_.validity.stretch = quantity(t, "stretch", "1", Bounds::positive(1));
+  }
+
+  std::string path_, text_;
+  TomlTable top_;
+  ParameterSet set_;
+  std::vector<std::pair<int, Quantity>> order_;
+};
+
+}  // namespace
+
+ParameterSet read_parameters(const std::string& path) { return Reader(path).read(); }
+
+}  // namespace ropewalk

@@ -1,0 +1,165 @@
+#include "scene/build.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "model/error.hpp"
+#include "scene/maxwell.hpp"
+#include "scene/random.hpp"
+#include "scene/state_csv.hpp"
+
+namespace ropewalk {
+namespace {
+
+constexpr double graphite_gap = 0.335;   // nm, between the walls of tubes for which there is no law
+constexpr double viscosity_reach = 1.5;  // spacings
+
+long hexagonal_number(long shells) { return 1 + 3 * shells * (shells + 1); }
+
+// Between two points that bracket a minimum.
+template <class F>
+double golden_section(F f, double a, double b, double tolerance) {
+  const double part = 0.5 * (std::sqrt(5.0) - 1);
+  double x1 = b - part * (b - a), x2 = a + part * (b - a);
+  double f1 = f(x1), f2 = f(x2);
+  while (b - a > tolerance) {
+    if (f1 < f2) {
+      b = x2;
+      x2 = x1;
+      f2 = f1;
+      x1 = b - part * (b - a);
+      f1 = f(x1);
+    } else {
+      a = x1;
+      x1 = x2;
+      f1 = f2;
+      x2 = a + part * (b - a);
+      f2 = f(x2);
+    }
+  }
+  return 0.5 * (a + b);
+}
+
+double spacing_of(const Scene& scene, double element_length) {
+  const auto* rope = std::get_if<RopeSource>(&scene.source);
+  if (rope && rope->spacing > 0) return rope->spacing;
+  if (scene.contact.law == ContactOptions::Law::none || !scene.parameters.paper)
+    return 2 * scene.parameters.radius + graphite_gap;
+  return pair_spacing(*scene.parameters.paper, element_length);
+}
+
+Topology empty_topology(const Scene& scene) {
+  Topology t;
+  t.element_length = scene.element_length;
+  t.radius = scene.parameters.radius;
+  t.mass = scene.parameters.element_mass(scene.element_length);
+  t.inertia = scene.parameters.element_inertia(scene.element_length);
+  return t;
+}
+
+// Straight tubes along z, centred on the origin.
+void add_tubes(const std::vector<std::pair<double, double>>& places, int elements, BuiltScene& out) {
+  for (std::size_t t = 0; t < places.size(); ++t) out.topology.add_tube(elements);
+  out.state = State(static_cast<std::size_t>(out.topology.elements()));
+  std::size_t i = 0;
+  for (const auto& [x, y] : places)
+    for (int e = 0; e < elements; ++e)
+      out.state.position.set(i++, {x, y, (e - 0.5 * (elements - 1)) * out.topology.element_length});
+}
+
+void displace(double amplitude, Random& random, State& state) {
+  for (std::size_t i = 0; i < state.size(); ++i) {
+    state.position.x[i] += random.uniform(-amplitude, amplitude);
+    state.position.y[i] += random.uniform(-amplitude, amplitude);
+  }
+}
+
+void place_elements(const Scene& scene, Random& random, BuiltScene& out) {
+  if (const auto* rope = std::get_if<RopeSource>(&scene.source)) {
+    add_tubes(hexagonal_lattice(rope->tubes, out.spacing), elements_of(*rope, scene.element_length), out);
+    if (rope->perturbation > 0) displace(rope->perturbation, random, out.state);
+  } else if (const auto* chain = std::get_if<ChainSource>(&scene.source)) {
+    add_tubes({{0.0, 0.0}}, chain->elements, out);
+  } else {
+    read_state_csv(std::get<StateSource>(scene.source).file, out.topology, out.state);
+  }
+}
+
+// What a state file may lack for the rest of the scene.
+void check_state(const Scene& scene, const BuiltScene& built) {
+  if (scene.temperature > 0 && built.state.size() < 2)
+    throw InputError({scene.path, 0, "start.temperature_K"}, "one element alone has no thermal motion about its centre",
+                     "take 0");
+  if (!scene.twist) return;
+  for (int t = 0; t < built.topology.tubes(); ++t)
+    if (built.topology.length_of(t) < 2)
+      throw InputError({scene.path, 0, "twist"}, fmt::format("tube {} has one element and no two grips", t),
+                       "take tubes of two elements or more");
+}
+
+}  // namespace
+
+std::pair<int, int> nearest_hexagonal(int tubes) {
+  long shells = 0;
+  while (hexagonal_number(shells + 1) <= tubes) ++shells;
+  const long below = hexagonal_number(shells);
+  return {static_cast<int>(below), static_cast<int>(below == tubes ? below : hexagonal_number(shells + 1))};
+}
+
+std::vector<std::pair<double, double>> hexagonal_lattice(int tubes, double spacing) {
+  const double h = 0.5 * std::sqrt(3.0);
+  // Unit steps, at 0, 60, ..., 300 degrees.
+  const std::pair<double, double> step[6] = {{1, 0}, {0.5, h}, {-0.5, h}, {-1, 0}, {-0.5, -h}, {0.5, -h}};
+  std::vector<std::pair<double, double>> places = {{0.0, 0.0}};
+  for (int shell = 1; static_cast<int>(places.size()) < tubes; ++shell)
+    for (int side = 0; side < 6; ++side)
+      for (int k = 0; k < shell; ++k) {
+        // From the corner of this side towards the next.
+        const auto& corner = step[side];
+        const auto& along = step[(side + 2) % 6];
+        places.emplace_back(spacing * (shell * corner.first + k * along.first),
+                            spacing * (shell * corner.second + k * along.second));
+      }
+  return places;
+}
+
+int elements_of(const RopeSource& rope, double element_length) {
+  return static_cast<int>(std::lround(rope.length / element_length));
+}
+
+double pair_energy_per_length(const PaperContact& contact, double element_length, double spacing) {
+  const int reach = static_cast<int>(contact.cutoff() / element_length) + 1;
+  double sum = 0;
+  for (int k = -reach; k <= reach; ++k)
+    sum += contact.energy({spacing, 0, k * element_length}, Vector3::UnitZ(), Vector3::UnitZ());
+  return sum / element_length;
+}
+
+double pair_spacing(const PaperContact& contact, double element_length) {
+  const auto energy = [&](double spacing) { return pair_energy_per_length(contact, element_length, spacing); };
+  // The well is found on a grid first: beyond it the energy is not convex.
+  constexpr int grid = 400;
+  const double from = 2 * contact.radius, step = (contact.cutoff() - from) / grid;
+  int lowest = 0;
+  for (int k = 1; k <= grid; ++k)
+    if (energy(from + k * step) < energy(from + lowest * step)) lowest = k;
+  if (lowest == 0 || lowest == grid || energy(from + lowest * step) >= 0)
+    throw InputError({"", 0, "contact.paper"}, "does not bind two parallel tubes", "type rope.spacing_nm");
+  return golden_section(energy, from + (lowest - 1) * step, from + (lowest + 1) * step, 1e-10);
+}
+
+BuiltScene build(Scene& scene) {
+  BuiltScene out;
+  out.topology = empty_topology(scene);
+  out.spacing = spacing_of(scene, scene.element_length);
+  scene.damping.contact.inner = out.spacing;
+  scene.damping.contact.outer = viscosity_reach * out.spacing;
+  Random random(scene.seed);
+  place_elements(scene, random, out);
+  check_state(scene, out);
+  if (scene.temperature > 0) set_thermal_velocities(out.topology, scene.temperature, random, out.state);
+  return out;
+}
+
+}  // namespace ropewalk

@@ -1,0 +1,36 @@
+// From a scene to its elements at time zero, and the geometry of a hexagonal rope.
+#pragma once
+
+#include <utility>
+
+#include "scene/scene.hpp"
+#include "sim/state.hpp"
+
+namespace ropewalk {
+
+inline constexpr int most_elements = 10000000;  // in a scene: about 10 GB
+
+struct BuiltScene {
+  Topology topology;
+  State state;
+  double spacing = 0;  // nm: distance of neighbouring tubes, typed or that of pair_spacing or 2 r + 0.335
+};
+
+// Also sets the reach of the scene's contact viscosity, which goes with the spacing.
+BuiltScene build(Scene& scene);
+
+// Energy per length (eV/nm) of two parallel infinite tubes, element beside element.
+double pair_energy_per_length(const PaperContact& contact, double element_length, double spacing);
+// The distance of their axes (nm) at which it is lowest.
+double pair_spacing(const PaperContact& contact, double element_length);
+
+// The largest hexagonal number (1, 7, 19, ...) that is not above `tubes`, and the smallest that is not below.
+std::pair<int, int> nearest_hexagonal(int tubes);
+
+// Places on the hexagonal lattice: the centre, then shell by shell, each counter-clockwise from the x axis.
+std::vector<std::pair<double, double>> hexagonal_lattice(int tubes, double spacing);
+
+// Elements of each tube: the length in whole elements.
+int elements_of(const RopeSource& rope, double element_length);
+
+}  // namespace ropewalk

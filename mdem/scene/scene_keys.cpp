@@ -1,0 +1,108 @@
+#include "scene/scene_keys.hpp"
+
+#include <fmt/format.h>
+
+namespace ropewalk {
+
+const std::vector<SceneTable>& scene_tables() {
+  static const std::vector<SceneTable> tables = {
+      {"", "the top of the file, before the first table"},
+      {"rope", "parallel tubes along z in hexagonal packing, centred on the origin"},
+      {"chain", "instead of [rope]: one straight tube along z"},
+      {"state", "instead of [rope]: elements from a CSV file tube,x_nm,y_nm,z_nm,qw,qx,qy,qz"},
+      {"start", "the state at time zero"},
+      {"contact", "van der Waals contact between elements"},
+      {"damping", "dissipation; 0 switches a term off"},
+      {"twist", "the grips (first and last element of every tube) are twisted about z, + at the upper end"},
+      {"load", "[[load]], any number of them: what else acts on elements"},
+      {"run", "what to do"},
+      {"observe", "what to measure"},
+  };
+  return tables;
+}
+
+const std::vector<SceneKey>& scene_keys() {
+  static const std::vector<SceneKey> keys = {
+      {"", "format", "", "\"ropewalk-scene-1\"", "required", "the version of this format"},
+      {"", "name", "", "\"my rope\"", "the file's name", "title in reports"},
+      {"", "parameters", "", "\"cnt-10-10-paper\"", "required",
+       "the tube: a file, looked for beside the scene, or the name of a shipped set"},
+      {"", "element_length_nm", "nm", "1.356", "the set's", "length of an element; law \"paper\" needs the set's"},
+
+      {"rope", "tubes", "", "91", "required", "a hexagonal number: 1, 7, 19, 37, 61, 91, 127, 169, 217, ..."},
+      {"rope", "length_nm", "nm", "67.8", "required", "length of the tubes, rounded to whole elements"},
+      {"rope", "spacing_nm", "nm", "1.713", "where two tubes bind best", "distance between tube axes"},
+      {"rope", "perturbation_nm", "nm", "0", "", "each element is displaced at random by up to this in x and y"},
+
+      {"chain", "elements", "", "41", "required", "number of elements, 2 or more"},
+
+      {"state", "file", "", "\"state.csv\"", "required", "looked for beside the scene"},
+
+      {"start", "temperature_K", "K", "0", "", "temperature of the random initial velocities"},
+      {"start", "seed", "", "1", "", "of all random numbers: the same seed gives the same run"},
+
+      {"contact", "law", "", "\"paper\"", "", "\"paper\" or \"none\""},
+      {"contact", "legacy_torque", "", "false", "",
+       "leave out the torque that the published code leaves out; gains energy, for comparison only"},
+      {"contact", "exclude_along_tube_elements", "elements", "20", "",
+       "elements of one tube up to this far apart do not touch"},
+      {"contact", "skin_nm", "nm", "0.15", "chosen by the program", "margin of the neighbour list; speed only"},
+
+      {"damping", "contact_viscosity_eV_ps_per_nm2", "eV ps/nm^2", "20", "", "against sliding at contact points"},
+      {"damping", "bond_damping_per_ps", "1/ps", "1", "", "against relative motion of bonded elements"},
+      {"damping", "pfc_local", "", "0", "", "PFC3D's local damping, 0 to 1; breaks momentum conservation"},
+
+      {"twist", "moment_nN_nm", "nN nm", "35", "required", "moment at the end of the ramp"},
+      {"twist", "rate_nN_nm_per_ps", "nN nm/ps", "1", "required", "rate of the ramp; 0: the moment acts at once"},
+      {"twist", "hold_ps", "ps", "0", "", "time under the full moment, after the ramp"},
+      {"twist", "reading", "", "\"per-tube\"", "", "the moment is that of each grip element, or of all: \"total\""},
+      {"twist", "application", "", "\"couple\"", "",
+       "a couple on each grip element, or \"tangential\" forces about the rope's axis"},
+      {"twist", "lateral", "", "\"free\"", "", "\"held\": the middle of a grip stays on the axis"},
+      {"twist", "axial", "", "\"free\"", "", "\"held\": grip elements keep their z"},
+      {"twist", "geometric_only", "", "false", "", "relax the tubes' own twist at each increment"},
+      {"twist", "increment_ps", "ps", "1", "", "time between such relaxations"},
+
+      {"load", "kind", "", "\"fix\"", "required", "\"fix\", \"force\", \"torque\" or \"rotate\""},
+      {"load", "tubes", "", "\"all\"", "", "\"all\" or numbers from 0: [0, 3]"},
+      {"load", "elements", "", "\"ends\"", "required", "\"all\", \"ends\" or numbers from 0, negative from the end"},
+      {"load", "axes", "", "\"xyz\"", "", "fix: coordinates that are held"},
+      {"load", "rotation", "", "true", "", "fix: orientation is held"},
+      {"load", "force_nN", "nN", "[0.01, 0, 0]", "required by force", "force on each element"},
+      {"load", "torque_nN_nm", "nN nm", "[0, 0, 1]", "required by torque", "torque on each element"},
+      {"load", "rate_deg_per_ps", "deg/ps", "1", "required by rotate",
+       "rotate: speed of the prescribed rotation about z, negative: left-handed"},
+      {"load", "angle_deg", "deg", "360", "required by rotate", "rotate: where it stops"},
+      {"load", "centre_nm", "nm", "[0, 0]", "", "rotate: x and y of the axis"},
+      {"load", "axial_free", "", "true", "", "rotate: z is free"},
+      {"load", "spin_free", "", "false", "", "rotate: elements may turn about their own axes"},
+
+      {"run", "mode", "", "\"dynamics\"", "", "\"dynamics\", or \"relax\": to the nearest minimum of the energy"},
+      {"run", "time_step_fs", "fs", "\"auto\"", "", "\"auto\": 0.6 of the stability limit"},
+      {"run", "duration_ps", "ps", "100", "ramp and hold of [twist]", "dynamics: simulated time"},
+      {"run", "frames_every_ps", "ps", "1", "40 frames", "time between stored frames"},
+      {"run", "log_every_ps", "ps", "0.1", "400 rows", "time between rows of the log"},
+      {"run", "checkpoint_every_s", "s", "60", "", "wall time between checkpoints"},
+      {"run", "force_tolerance_nN", "nN", "1.6e-5", "1e-4 eV/nm", "relax: done when no force is larger"},
+      {"run", "max_steps", "", "200000", "", "relax: give up after so many steps"},
+      {"run", "paraview", "", "false", "", "also write frames for ParaView (VTP)"},
+
+      {"observe", "neighbour_radius_nm", "nm", "2.34", "between first and second shell",
+       "tubes closer than this are neighbours"},
+  };
+  return keys;
+}
+
+std::string scene_key_help() {
+  std::string text = "Keys of a scene (TOML); `ropewalk new` writes commented ones.\n";
+  for (const SceneTable& t : scene_tables()) {
+    text += t.name.empty() ? fmt::format("\n{}\n", t.meaning) : fmt::format("\n[{}]  {}\n", t.name, t.meaning);
+    for (const SceneKey& k : scene_keys())
+      if (k.table == t.name)
+        text += fmt::format("  {:31} {:11} {:26} {}\n", k.key, k.unit, k.standard.empty() ? k.value : k.standard,
+                            k.meaning);
+  }
+  return text;
+}
+
+}  // namespace ropewalk

@@ -1,0 +1,424 @@
+#include "scene/scene_toml.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <set>
+
+#include "io/files.hpp"
+#include "io/parameters_toml.hpp"
+#include "io/toml_table.hpp"
+#include "scene/build.hpp"
+
+namespace ropewalk {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double longest_time = 1e7;   // ps
+constexpr double largest_force = 1e4;  // nN, nN nm
+constexpr double kilobytes_per_element = 1.0;
+
+std::string shipped_sets(const fs::path& folder) {
+  std::set<std::string> names;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder, error))
+    if (entry.path().extension() == ".toml") names.insert("\"" + entry.path().stem().string() + "\"");
+  if (names.empty()) return fmt::format("no set is shipped in {}; is ROPEWALK_DATA right?", folder.string());
+  std::string text;
+  for (const std::string& n : names) text += (text.empty() ? "" : ", ") + n;
+  return "name a file, or a shipped set: " + text;
+}
+
+// --- where the elements come from -------------------------------------------------------------------
+
+// Refuses more elements than fit, before anything is allocated.
+void check_size(const TomlTable& t, const std::string& key, double tubes, double elements) {
+  const double total = tubes * elements;
+  if (total <= most_elements) return;
+  throw t.error(key, fmt::format("asks for {:.0f} x {:.0f} = {:.3g} elements", tubes, elements, total),
+                fmt::format("at most {:.0e} are allowed; these would take about {:.3g} GB", double{most_elements},
+                            total * kilobytes_per_element * 1e-6));
+}
+
+RopeSource read_rope(const TomlTable& t, const Scene& scene) {
+  RopeSource rope;
+  rope.tubes = static_cast<int>(t.integer("tubes", 1, most_elements));
+  const auto [below, above] = nearest_hexagonal(rope.tubes);
+  if (below != above)
+    throw t.error("tubes", fmt::format("is {}, not a hexagonal number", rope.tubes),
+                  fmt::format("the nearest are {} and {}", below, above));
+  rope.length = t.number("length_nm", Bounds::positive(1e12));
+  const double elements = std::round(rope.length / scene.element_length);
+  if (elements < 3)
+    throw t.error("length_nm", fmt::format("is {} nm, {} elements of {} nm", rope.length, elements, scene.element_length),
+                  fmt::format("at least 3 elements, {:.4g} nm, are needed", 3 * scene.element_length));
+  check_size(t, "length_nm", rope.tubes, elements);
+  const double diameter = 2 * scene.parameters.radius;
+  if (t.has("spacing_nm")) rope.spacing = t.number("spacing_nm", {diameter, 10 * diameter, true});
+  rope.perturbation = t.number_or("perturbation_nm", 0, Bounds::non_negative(0.1));
+  return rope;
+}
+
+ChainSource read_chain(const TomlTable& t) {
+  const long elements = t.integer("elements", 2, 1000000000);
+  check_size(t, "elements", 1, static_cast<double>(elements));
+  return {static_cast<int>(elements)};
+}
+
+StateSource read_state_source(const TomlTable& t, const std::string& folder) {
+  return {(fs::path(folder) / t.string("file")).string()};
+}
+
+const std::vector<std::string> sources = {"rope", "chain", "state"};
+
+[[noreturn]] void refuse_no_source(const TomlTable& top) {
+  for (const std::string& key : top.keys()) {
+    const std::string near = nearest_word(key, sources);
+    if (!near.empty()) throw top.error(key, "unknown table", fmt::format("did you mean \"{}\"?", near));
+  }
+  throw top.error("", "there is nothing in the scene", "add one of the tables [rope], [chain] and [state]");
+}
+
+void read_source(const TomlTable& top, const std::string& folder, Scene& scene) {
+  std::vector<std::string> named;
+  for (const std::string& source : sources)
+    if (top.has(source)) named.push_back(source);
+  if (named.empty()) refuse_no_source(top);
+  if (named.size() > 1)
+    throw top.error(named[1], fmt::format("stands beside [{}]", named[0]),
+                    "a scene has exactly one of [rope], [chain] and [state]");
+  if (named[0] == "rope") scene.source = read_rope(top.table("rope"), scene);
+  if (named[0] == "chain") scene.source = read_chain(top.table("chain"));
+  if (named[0] == "state") scene.source = read_state_source(top.table("state"), folder);
+}
+
+// Tubes and elements per tube, as far as they are known before a state file is read.
+struct Sizes {
+  int tubes = 0;  // 0: not known
+  int elements = 0;
+};
+
+Sizes sizes_of(const Scene& scene) {
+  if (const auto* rope = std::get_if<RopeSource>(&scene.source))
+    return {rope->tubes, elements_of(*rope, scene.element_length)};
+  if (const auto* chain = std::get_if<ChainSource>(&scene.source)) return {1, chain->elements};
+  return {};
+}
+
+// --- how they interact ------------------------------------------------------------------------------
+
+void read_start(const TomlTable& t, Scene& scene) {
+  scene.temperature = t.number_or("temperature_K", 0, Bounds::range(0, 3000));
+  scene.seed = static_cast<std::uint64_t>(t.integer_or("seed", 1, 0, std::numeric_limits<long>::max()));
+}
+
+ContactOptions read_contact(const TomlTable& t, const Scene& scene) {
+  using Law = ContactOptions::Law;
+  static const Words<Law> laws = {{"paper", Law::paper}, {"none", Law::none}};
+  ContactOptions c;
+  c.law = t.word_or("law", c.law, laws);
+  if (c.law == Law::paper && !scene.parameters.paper)
+    throw t.error("law", fmt::format("is \"paper\", and the set {} has no [contact.paper]", scene.parameters.name),
+                  "take another set, or law = \"none\"");
+  c.legacy_torque = t.boolean_or("legacy_torque", c.legacy_torque);
+  c.exclude_along_tube =
+      static_cast<int>(t.integer_or("exclude_along_tube_elements", c.exclude_along_tube, 1, most_elements));
+  if (t.has("skin_nm")) c.skin = t.number("skin_nm", Bounds::positive(5));
+  return c;
+}
+
+double read_element_length(const TomlTable& top, const ParameterSet& set) {
+  return top.number_or("element_length_nm", set.element_length, Bounds::range(0.05, 50));
+}
+
+// The law's energy is that of a pair of elements, not of a length.
+void check_element_length(const TomlTable& top, const Scene& scene) {
+  const double set = scene.parameters.element_length;
+  if (scene.contact.law == ContactOptions::Law::none || std::fabs(scene.element_length - set) <= 1e-6) return;
+  throw top.error("element_length_nm", fmt::format("is {} nm", scene.element_length),
+                  fmt::format("law \"paper\" holds for the {} nm of the set alone; leave the key out", set));
+}
+
+Damping read_damping(const TomlTable& t) {
+  Damping d;
+  d.contact.eta = t.number_or("contact_viscosity_eV_ps_per_nm2", 20, Bounds::non_negative(1e6));
+  d.bond.rate = t.number_or("bond_damping_per_ps", 1, Bounds::non_negative(1e4));
+  d.local = t.number_or("pfc_local", 0, Bounds::range(0, 1));
+  return d;
+}
+
+// --- loads ------------------------------------------------------------------------------------------
+
+void check_index(const TomlTable& t, const char* key, const char* what, long index, int count) {
+  if (count == 0 || (index < count && index >= -count)) return;
+  const std::string from_end = std::string(key) == "elements" ? fmt::format(", or -1 to -{} from the end", count) : "";
+  throw t.error(key, fmt::format("there is no {} {}", what, index), fmt::format("they are 0 to {}{}", count - 1, from_end));
+}
+
+// Twice the same one would be loaded twice.
+void check_unique(const TomlTable& t, const char* key, std::vector<long> indices, int count) {
+  for (long& i : indices)
+    if (i < 0 && count > 0) i += count;
+  std::sort(indices.begin(), indices.end());
+  const auto twice = std::adjacent_find(indices.begin(), indices.end());
+  if (twice != indices.end()) throw t.error(key, fmt::format("names {} twice", *twice), "name each once");
+}
+
+std::vector<int> read_indices(const TomlTable& t, const char* key, const char* what, long least, int count) {
+  const std::vector<long> indices = t.integers(key, least, most_elements);
+  for (const long i : indices) check_index(t, key, what, i, count);
+  check_unique(t, key, indices, count);
+  return {indices.begin(), indices.end()};
+}
+
+Selection read_selection(const TomlTable& t, const Sizes& sizes) {
+  Selection on;
+  on.all_tubes = !t.has("tubes") || (t.is_string("tubes") && t.word("tubes", Words<bool>{{"all", true}}));
+  if (!on.all_tubes) on.tubes = read_indices(t, "tubes", "tube", 0, sizes.tubes);
+  if (!t.is_string("elements")) {
+    on.elements = read_indices(t, "elements", "element", -long{most_elements}, sizes.elements);
+    return on;
+  }
+  on.all_elements = t.word("elements", Words<bool>{{"all", true}, {"ends", false}});
+  if (!on.all_elements) on.elements = {0, -1};
+  return on;
+}
+
+FixLoad read_fix(const TomlTable& t) {
+  FixLoad fix;
+  if (t.has("axes")) {
+    // Empty is a text here: nothing but the orientation.
+    const std::string axes = t.text("axes");
+    fix.x = axes.find('x') != std::string::npos;
+    fix.y = axes.find('y') != std::string::npos;
+    fix.z = axes.find('z') != std::string::npos;
+    if (axes.size() != static_cast<std::size_t>(fix.x + fix.y + fix.z))
+      throw t.error("axes", fmt::format("is \"{}\"", printable(axes, 40)), "write x, y and z, each at most once: \"xy\"");
+  }
+  fix.rotation = t.boolean_or("rotation", true);
+  if (!fix.x && !fix.y && !fix.z && !fix.rotation)
+    throw t.error("axes", "is empty and rotation is false: nothing is fixed", "take the load away");
+  return fix;
+}
+
+Vector3 read_vector(const TomlTable& t, const char* key) {
+  const std::vector<double> v = t.numbers(key, Bounds::range(-largest_force, largest_force), 3);
+  const Vector3 out(v[0], v[1], v[2]);
+  if (out == Vector3::Zero()) throw t.error(key, "is zero", "take the load away");
+  return out * units::nN_nm;
+}
+
+RotateLoad read_rotate(const TomlTable& t) {
+  RotateLoad load;
+  load.rate = t.number("rate_deg_per_ps", Bounds::range(-360, 360)) * units::degree;
+  if (load.rate == 0)
+    throw t.error("rate_deg_per_ps", "is 0", "to hold elements where they are take kind = \"fix\"");
+  load.angle = std::copysign(t.number("angle_deg", Bounds::positive(1e6)) * units::degree, load.rate);
+  if (t.has("centre_nm")) {
+    const std::vector<double> c = t.numbers("centre_nm", Bounds::range(-1e6, 1e6), 2);
+    load.centre = {c[0], c[1], 0};
+  }
+  load.axial_free = t.boolean_or("axial_free", load.axial_free);
+  load.spin_free = t.boolean_or("spin_free", load.spin_free);
+  return load;
+}
+
+struct LoadKind {
+  const char* name;
+  std::vector<std::string> keys;  // of this kind alone
+};
+
+const std::vector<LoadKind>& load_kinds() {
+  static const std::vector<LoadKind> kinds = {
+      {"fix", {"axes", "rotation"}},
+      {"force", {"force_nN"}},
+      {"torque", {"torque_nN_nm"}},
+      {"rotate", {"rate_deg_per_ps", "angle_deg", "centre_nm", "axial_free", "spin_free"}}};
+  return kinds;
+}
+
+std::size_t read_load_kind(const TomlTable& t) {
+  Words<std::size_t> words;
+  for (const LoadKind& k : load_kinds()) words.emplace_back(k.name, words.size());
+  const std::size_t kind = t.word("kind", words);
+  for (const std::string& key : t.keys())
+    for (const LoadKind& other : load_kinds())
+      if (other.name != load_kinds()[kind].name && std::count(other.keys.begin(), other.keys.end(), key))
+        throw t.error(key, fmt::format("belongs to kind = \"{}\", and this load is \"{}\"", other.name,
+                                       load_kinds()[kind].name),
+                      "take the key away, or write a [[load]] of its own");
+  return kind;
+}
+
+Load read_load(const TomlTable& t, const Sizes& sizes) {
+  Load load;
+  const std::size_t kind = read_load_kind(t);
+  load.on = read_selection(t, sizes);
+  if (kind == 0) load.kind = read_fix(t);
+  if (kind == 1) load.kind = ForceLoad{read_vector(t, "force_nN")};
+  if (kind == 2) load.kind = TorqueLoad{read_vector(t, "torque_nN_nm")};
+  if (kind == 3) load.kind = read_rotate(t);
+  return load;
+}
+
+TwistProtocol read_twist(const TomlTable& t, const Sizes& sizes) {
+  using Reading = TwistProtocol::Reading;
+  using Application = TwistProtocol::Application;
+  static const Words<Reading> readings = {{"per-tube", Reading::per_tube}, {"total", Reading::total}};
+  static const Words<Application> applications = {{"couple", Application::couple},
+                                                  {"tangential", Application::tangential}};
+  static const Words<bool> grips = {{"free", true}, {"held", false}};
+  TwistProtocol w;
+  w.moment = t.number("moment_nN_nm", Bounds::positive(1e6)) * units::nN_nm;
+  w.rate = t.number("rate_nN_nm_per_ps", Bounds::non_negative(1e6)) * units::nN_nm;
+  w.hold = t.number_or("hold_ps", 0, Bounds::non_negative(longest_time));
+  w.reading = t.word_or("reading", w.reading, readings);
+  w.application = t.word_or("application", w.application, applications);
+  if (w.application == Application::tangential && sizes.tubes == 1)
+    throw t.error("application", "tangential forces about the axis of one tube have no arm", "take \"couple\"");
+  w.lateral_free = t.word_or("lateral", w.lateral_free, grips);
+  w.axial_free = t.word_or("axial", w.axial_free, grips);
+  w.geometric_only = t.boolean_or("geometric_only", w.geometric_only);
+  w.increment = t.number_or("increment_ps", w.increment, Bounds::positive(longest_time));
+  if (w.ramp_time() > longest_time)
+    throw t.error("rate_nN_nm_per_ps", fmt::format("makes a ramp of {:.3g} ps", w.ramp_time()), "ramp faster");
+  return w;
+}
+
+// --- the run ----------------------------------------------------------------------------------------
+
+double read_time_step(const TomlTable& t) {
+  if (t.is_string("time_step_fs")) return t.word("time_step_fs", Words<double>{{"auto", 0.0}});
+  return t.number_or("time_step_fs", 0, Bounds::positive(1000)) * units::fs;
+}
+
+// A key that would be without effect is refused, since it was meant to have one.
+void refuse_other_mode(const TomlTable& t, RunOptions::Mode mode) {
+  const bool relax = mode == RunOptions::Mode::relax;
+  const std::vector<const char*> others =
+      relax ? std::vector<const char*>{"duration_ps"} : std::vector<const char*>{"force_tolerance_nN", "max_steps"};
+  for (const char* key : others)
+    if (t.has(key))
+      throw t.error(key, fmt::format("belongs to mode = \"{}\"", relax ? "dynamics" : "relax"),
+                    fmt::format("take it away, or change the mode, now \"{}\"", relax ? "relax" : "dynamics"));
+}
+
+RunOptions read_run(const TomlTable& t) {
+  static const Words<RunOptions::Mode> modes = {{"dynamics", RunOptions::Mode::dynamics},
+                                                {"relax", RunOptions::Mode::relax}};
+  RunOptions r;
+  r.mode = t.word_or("mode", r.mode, modes);
+  refuse_other_mode(t, r.mode);
+  r.time_step = read_time_step(t);
+  if (t.has("duration_ps")) r.duration = t.number("duration_ps", Bounds::positive(longest_time));
+  if (t.has("frames_every_ps")) r.frames_every = t.number("frames_every_ps", Bounds::positive(longest_time));
+  if (t.has("log_every_ps")) r.log_every = t.number("log_every_ps", Bounds::positive(longest_time));
+  r.checkpoint_every = t.number_or("checkpoint_every_s", r.checkpoint_every, Bounds::range(1, 1e6));
+  if (t.has("force_tolerance_nN"))
+    r.force_tolerance = t.number("force_tolerance_nN", Bounds::range(1e-15, 1)) * units::nN_nm;
+  r.max_steps = t.integer_or("max_steps", r.max_steps, 1, 1000000000);
+  r.paraview = t.boolean_or("paraview", r.paraview);
+  return r;
+}
+
+void check_run(const TomlTable& top, const Scene& scene) {
+  if (scene.run.mode == RunOptions::Mode::relax) {
+    if (scene.twist)
+      throw top.error("twist", "a ramp needs time, and run.mode is \"relax\"",
+                      "take mode = \"dynamics\", or a [[load]] of kind \"torque\"");
+    for (const Load& load : scene.loads)
+      if (std::holds_alternative<RotateLoad>(load.kind))
+        throw top.error("load", "a rotation needs time, and run.mode is \"relax\"", "take mode = \"dynamics\"");
+    return;
+  }
+  const double protocol = scene.twist ? scene.twist->ramp_time() + scene.twist->hold : 0.0;
+  if (scene.run.duration <= 0 && protocol <= 0)
+    throw top.table("run").error("duration_ps", "is missing",
+                    scene.twist ? "ramp and hold of [twist] last no time; give a duration"
+                                : "a run without [twist] needs it: duration_ps = 100");
+}
+
+ObserveOptions read_observe(const TomlTable& t, const Scene& scene) {
+  const double diameter = 2 * scene.parameters.radius;
+  ObserveOptions o;
+  if (t.has("neighbour_radius_nm"))
+    o.neighbour_radius = t.number("neighbour_radius_nm", {diameter, 20 * diameter, true});
+  return o;
+}
+
+// --- all of it --------------------------------------------------------------------------------------
+
+void check_format(const TomlTable& top) {
+  if (!top.has("format"))
+    throw top.error("format", "is missing", fmt::format("a scene starts with format = \"{}\"", scene_format));
+  const std::string format = top.string("format");
+  if (format != scene_format)
+    throw top.error("format", fmt::format("is \"{}\"", printable(format, 40)),
+                    fmt::format("this program reads \"{}\"", scene_format));
+}
+
+std::string belongs_to(const std::string& key) {
+  for (const SceneKey& k : scene_keys())
+    if (k.key == key)
+      return k.table.empty() ? "it belongs to the top of the file, before the first table"
+                             : fmt::format("it belongs to [{}]", k.table);
+  for (const SceneTable& t : scene_tables())
+    if (!t.name.empty() && t.name == key) return fmt::format("[{}] is a table of its own", key);
+  return "";
+}
+
+void read_tables(const TomlTable& top, const std::string& folder, Scene& scene) {
+  read_source(top, folder, scene);
+  read_start(top.table("start"), scene);
+  scene.contact = read_contact(top.table("contact"), scene);
+  check_element_length(top, scene);
+  scene.damping = read_damping(top.table("damping"));
+  const Sizes sizes = sizes_of(scene);
+  for (const TomlTable& t : top.tables("load")) scene.loads.push_back(read_load(t, sizes));
+  if (top.has("twist")) scene.twist = read_twist(top.table("twist"), sizes);
+  scene.run = read_run(top.table("run"));
+  scene.observe = read_observe(top.table("observe"), scene);
+}
+
+}  // namespace
+
+std::string data_directory() {
+  const char* set = std::getenv("ROPEWALK_DATA");
+  return set && *set ? set : ROPEWALK_DATA_DIR;
+}
+
+std::string find_parameters(const std::string& name, const std::string& folder, const InputError::Place& place,
+                            const std::string& data) {
+  std::error_code error;
+  const fs::path beside = fs::path(folder) / name;
+  if (fs::is_regular_file(beside, error)) return beside.string();
+  const fs::path shipped = fs::path(data) / "parameters";
+  for (const std::string& file : {name + ".toml", name})
+    if (fs::is_regular_file(shipped / file, error)) return (shipped / file).string();
+  throw InputError(place, fmt::format("there is no parameter set \"{}\"", printable(name)), shipped_sets(shipped));
+}
+
+Scene read_scene(const std::string& path, const std::string& parameters) {
+  Scene scene;
+  scene.path = path;
+  scene.text = read_file(path);
+  scene.hash = hash_hex(scene.text);
+  const std::string folder = fs::path(path).parent_path().string();
+  const TomlTable top = TomlTable::parse(scene.text, path);
+  check_format(top);
+  scene.name = top.string_or("name", fs::path(path).stem().string());
+  const std::string set = top.string("parameters");
+  scene.parameters = read_parameters(
+      parameters.empty() ? find_parameters(set, folder, {path, top.line("parameters"), "parameters"}) : parameters);
+  scene.element_length = read_element_length(top, scene.parameters);
+  read_tables(top, folder, scene);
+  top.finish(belongs_to);
+  check_run(top, scene);
+  return scene;
+}
+
+}  // namespace ropewalk

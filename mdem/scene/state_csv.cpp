@@ -1,0 +1,151 @@
+#include "scene/state_csv.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <string_view>
+
+#include "io/files.hpp"
+#include "io/toml_table.hpp"  // printable
+#include "model/error.hpp"
+#include "scene/build.hpp"
+
+namespace ropewalk {
+namespace {
+
+constexpr const char* header = "tube,x_nm,y_nm,z_nm,qw,qx,qy,qz";
+constexpr std::array<const char*, 8> columns = {"tube", "x_nm", "y_nm", "z_nm", "qw", "qx", "qy", "qz"};
+constexpr double farthest = 1e7;      // nm
+constexpr double norm_slack = 1e-3;   // of a quaternion
+constexpr double shortest_bond = 0.1, longest_bond = 10;  // element lengths
+
+std::string_view trimmed(std::string_view text) {
+  const auto first = text.find_first_not_of(" \t\r");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
+}
+
+struct Row {
+  int tube = 0;
+  Vector3 position;
+  Quaternion orientation;
+};
+
+class Reader {
+ public:
+  Reader(const std::string& path, Topology& topology) : path_(path), topology_(topology) {}
+
+  State read() {
+    const std::string text = read_file(path_);
+    std::string_view rest = text;
+    if (rest.substr(0, 3) == "\xef\xbb\xbf") rest.remove_prefix(3);
+    while (!rest.empty()) {
+      const std::size_t end = rest.find('\n');
+      ++line_;
+      read_line(trimmed(rest.substr(0, end)));
+      rest = end == std::string_view::npos ? std::string_view() : rest.substr(end + 1);
+    }
+    if (!seen_header_) fail("", "is empty", fmt::format("the first line must be {}", header));
+    if (rows_.empty()) fail("", "has no elements", "write one line for each, below the header");
+    return state();
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& column, const std::string& what, const std::string& remedy) const {
+    throw InputError({path_, line_, column}, what, remedy);
+  }
+
+  void read_line(std::string_view line) {
+    if (line.empty() || line[0] == '#') return;
+    if (!seen_header_) return check_header(line);
+    if (rows_.size() == static_cast<std::size_t>(most_elements))
+      fail("", fmt::format("has more than {} elements", most_elements), "take fewer");
+    const Row row = parsed(line);
+    append_to_tubes(row);
+    rows_.push_back(row);
+  }
+
+  void check_header(std::string_view line) {
+    std::string squeezed;
+    for (const char c : line)
+      if (c != ' ' && c != '\t') squeezed += c;
+    if (squeezed != header)
+      fail("", fmt::format("the header is \"{}\"", printable(std::string(line), 60)), fmt::format("it must be {}", header));
+    seen_header_ = true;
+  }
+
+  Row parsed(std::string_view line) const {
+    std::array<double, 8> value{};
+    std::size_t count = 0;
+    while (true) {
+      const std::size_t comma = line.find(',');
+      if (count < value.size()) value[count] = number(trimmed(line.substr(0, comma)), columns[count]);
+      ++count;
+      if (comma == std::string_view::npos) break;
+      line.remove_prefix(comma + 1);
+    }
+    if (count != value.size()) fail("", fmt::format("has {} columns", count), fmt::format("8 are needed: {}", header));
+    const Quaternion q(value[4], value[5], value[6], value[7]);
+    if (!(std::fabs(q.norm() - 1) <= norm_slack))
+      fail("qw", fmt::format("the quaternion has length {:.6g}", q.norm()), "it must be 1 within 0.001");
+    return {tube_number(value[0]), {value[1], value[2], value[3]}, q.normalized()};
+  }
+
+  double number(std::string_view text, const char* column) const {
+    double value = 0;
+    // from_chars takes no plus sign.
+    const std::string_view digits = !text.empty() && text[0] == '+' ? text.substr(1) : text;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+    if (digits.empty() || error != std::errc() || end != digits.data() + digits.size())
+      fail(column, fmt::format("is \"{}\"", printable(std::string(text), 40)), "write a number");
+    if (!(std::fabs(value) <= farthest)) fail(column, fmt::format("is {}", value), fmt::format("must lie within {}", farthest));
+    return value;
+  }
+
+  int tube_number(double value) const {
+    if (value < 0 || value != std::floor(value)) fail("tube", fmt::format("is {}", value), "must be 0, 1, 2, ...");
+    return static_cast<int>(value);
+  }
+
+  void append_to_tubes(const Row& row) {
+    if (rows_.empty() || row.tube != rows_.back().tube) {
+      if (row.tube < topology_.tubes())
+        fail("tube", fmt::format("{} comes again after {}", row.tube, rows_.back().tube), "keep the lines of a tube together");
+      if (row.tube > topology_.tubes())
+        fail("tube", fmt::format("is {}, {} is next", row.tube, topology_.tubes()), "number the tubes 0, 1, 2, ... in order");
+      topology_.add_tube(1);
+      return;
+    }
+    ++topology_.tube_begin.back();
+    const double bond = (row.position - rows_.back().position).norm() / topology_.element_length;
+    if (bond < shortest_bond || bond > longest_bond)
+      fail("", fmt::format("lies {:.3g} nm from the element before it", bond * topology_.element_length),
+           fmt::format("elements of a tube follow one another at {:.4g} nm", topology_.element_length));
+  }
+
+  State state() const {
+    State s(rows_.size());
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      s.position.set(i, rows_[i].position);
+      s.orientation.set(i, rows_[i].orientation);
+    }
+    return s;
+  }
+
+  std::string path_;
+  Topology& topology_;
+  std::vector<Row> rows_;
+  int line_ = 0;
+  bool seen_header_ = false;
+};
+
+}  // namespace
+
+void read_state_csv(const std::string& path, Topology& topology, State& state) {
+  topology.tube_begin = {0};
+  state = Reader(path, topology).read();
+}
+
+}  // namespace ropewalk

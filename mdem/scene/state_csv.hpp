@@ -1,0 +1,15 @@
+// Elements from a CSV file: tube,x_nm,y_nm,z_nm,qw,qx,qy,qz, one element a line, those of a tube one after
+// another along it, tubes numbered 0, 1, 2, ... in order. Empty lines and lines that start with # are skipped.
+// The quaternion turns the element's own z into its tube axis.
+#pragma once
+
+#include <string>
+
+#include "sim/state.hpp"
+
+namespace ropewalk {
+
+// Fills tubes and state; topology.element_length must be set. Throws InputError with file, line and column.
+void read_state_csv(const std::string& path, Topology& topology, State& state);
+
+}  // namespace ropewalk

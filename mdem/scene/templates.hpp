@@ -1,0 +1,17 @@
+// The commented scenes that `ropewalk new` writes.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace ropewalk {
+
+struct SceneTemplate {
+  std::string name;
+  std::string description;  // one line
+  std::string text;         // TOML; every key with unit, meaning and default
+};
+
+const std::vector<SceneTemplate>& scene_templates();
+
+}  // namespace ropewalk

@@ -1,0 +1,262 @@
+// The program as a user meets it: command lines, exit codes, messages and files.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <regex>
+#include <sstream>
+#include <thread>
+
+#include "io/log.hpp"
+
+namespace fs = std::filesystem;
+
+namespace {
+
+using Json = nlohmann::json;
+
+std::string slurp(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::stringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+void spit(const fs::path& path, const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
+
+struct Outcome {
+  int code = -1;
+  std::string out, err;
+};
+
+class Cli : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
+    dir = fs::temp_directory_path() / ("ropewalk-" + std::string(info->name()) + "-" + std::to_string(getpid()));
+    fs::create_directories(dir);
+  }
+  void TearDown() override { fs::remove_all(dir); }
+
+  Outcome run(const std::string& arguments) const {
+    const std::string command = "cd '" + dir.string() + "' && '" ROPEWALK_PROGRAM "' " + arguments +
+                                " > stdout.txt 2> stderr.txt < /dev/null";
+    const int status = std::system(command.c_str());
+    Outcome o;
+    o.code = WIFEXITED(status) ? WEXITSTATUS(status) : 1000;
+    o.out = slurp(dir / "stdout.txt");
+    o.err = slurp(dir / "stderr.txt");
+    return o;
+  }
+
+  // A rope small enough for a test, twisted fast.
+  void small_rope(const std::string& name, const std::string& more = "", const std::string& rope = "") const {
+    spit(dir / name, "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-paper\"\n[rope]\ntubes = 19\n"
+                     "length_nm = 16\nperturbation_nm = 0.001\n" + rope +
+                     "[twist]\nmoment_nN_nm = 30\nrate_nN_nm_per_ps = 10\nhold_ps = 2\n"
+                     "[run]\nlog_every_ps = 0.5\nframes_every_ps = 1\n" + more);
+  }
+
+  fs::path dir;
+};
+
+TEST_F(Cli, HelpNamesEveryVerbAndUnits) {
+  const Outcome o = run("--help");
+  EXPECT_EQ(o.code, 0);
+  for (const char* word : {"new", "check", "run", "resume", "observe", "report", "energy", "bench", "length_nm",
+                           "moment_nN_nm", "time_step_fs"})
+    EXPECT_NE(o.out.find(word), std::string::npos) << word;
+  EXPECT_EQ(run("--version").code, 0);
+}
+
+TEST_F(Cli, WrongCommandLinesAreOneLine) {
+  for (const char* line : {"", "twist", "run", "run x.toml", "run nowhere.toml --out d", "bench nowhere.toml",
+                           "observe nowhere", "resume nowhere", "report nowhere", "energy none.csv --parameters cnt-10-10-paper",
+                           "new", "new x --kind cable", "check nowhere.toml", "run x --out y --threads 0"}) {
+    const Outcome o = run(line);
+    EXPECT_EQ(o.code, 2) << line;
+    EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << line << "\n" << o.err;
+    EXPECT_EQ(o.err.rfind("ropewalk: ", 0), 0u) << o.err;
+  }
+}
+
+TEST_F(Cli, EveryTemplateIsWrittenAndPassesItsCheck) {
+  const Outcome list = run("new --list");
+  ASSERT_EQ(list.code, 0);
+  std::istringstream lines(list.out);
+  std::string line;
+  int count = 0;
+  while (std::getline(lines, line)) {
+    const std::string kind = line.substr(0, line.find(' '));
+    if (kind == "helix") continue;  // 10 920 elements: checked by scene_test without the trial steps
+    ASSERT_EQ(run("new my-" + kind + " --kind " + kind).code, 0);
+    const Outcome o = run("check my-" + kind + ".toml");
+    EXPECT_EQ(o.code, 0) << o.err;
+    EXPECT_NE(o.out.find("time step"), std::string::npos);
+    ++count;
+  }
+  EXPECT_GE(count, 5);
+  EXPECT_EQ(run("new my-rope --kind rope").code, 2) << "an existing file must stand";
+}
+
+TEST_F(Cli, RunWritesEverythingAndProtectsIt) {
+  small_rope("s.toml", "paraview = true\n");
+  ASSERT_EQ(run("run s.toml --out d").code, 0);
+  for (const char* name : {"log.csv", "frames.lammpstrj", "manifest.json", "report.html", "checkpoint.bin", "scene.toml",
+                           "parameters.toml", "paraview/rope.pvd"})
+    EXPECT_TRUE(fs::exists(dir / "d" / name)) << name;
+  const Json manifest = Json::parse(slurp(dir / "d/manifest.json"));
+  EXPECT_EQ(manifest.at("status"), "finished");
+  const auto rows = ropewalk::read_log((dir / "d/log.csv").string());
+  ASSERT_GE(rows.size(), 10u);
+  EXPECT_NEAR(rows.back().time, 5.0, 0.02);
+  EXPECT_NEAR(rows.back().moment, 30, 1e-9);
+  EXPECT_GT(rows.back().twist, 100);
+  EXPECT_LT(std::fabs(rows.back().balance), 1e-2 * rows.back().work);
+
+  const std::string log = slurp(dir / "d/log.csv");
+  const Outcome again = run("run s.toml --out d");
+  EXPECT_EQ(again.code, 2);
+  EXPECT_NE(again.err.find("--force"), std::string::npos);
+  EXPECT_EQ(slurp(dir / "d/log.csv"), log);
+  EXPECT_EQ(run("run s.toml --out d --force --steps 3").code, 0);
+  EXPECT_NE(slurp(dir / "d/log.csv"), log);
+
+  spit(dir / "d/thesis.tex", "years of work");
+  EXPECT_EQ(run("run s.toml --out d --force --steps 3").code, 2);
+  EXPECT_TRUE(fs::exists(dir / "d/thesis.tex"));
+}
+
+TEST_F(Cli, ResumeGoesOnBitForBitOnOtherThreads) {
+  small_rope("s.toml");
+  ASSERT_EQ(run("run s.toml --out whole --threads 2").code, 0);
+  ASSERT_EQ(run("run s.toml --out parts --threads 1 --steps 77").code, 0);
+  ASSERT_EQ(run("resume parts --threads 2").code, 0);
+  const auto whole = ropewalk::read_log((dir / "whole/log.csv").string());
+  const auto parts = ropewalk::read_log((dir / "parts/log.csv").string());
+  for (const auto& column : ropewalk::log_columns())
+    EXPECT_EQ(whole.back().*column.value, parts.back().*column.value) << column.name;
+  const Json observed = Json::parse(run("observe parts --json").out);
+  EXPECT_GT(observed.size(), 3u);
+}
+
+TEST_F(Cli, ResumeCutsOffWhatWasWrittenAfterTheCheckpoint) {
+  small_rope("s.toml");
+  ASSERT_EQ(run("run s.toml --out whole").code, 0);
+  ASSERT_EQ(run("run s.toml --out d --steps 100").code, 0);
+  std::ofstream(dir / "d/log.csv", std::ios::app) << "half a li";
+  std::ofstream(dir / "d/frames.lammpstrj", std::ios::app) << "ITEM: TIMESTEP\n1234";
+  ASSERT_EQ(run("resume d").code, 0);
+  EXPECT_EQ(ropewalk::read_log((dir / "d/log.csv").string()).back().twist,
+            ropewalk::read_log((dir / "whole/log.csv").string()).back().twist);
+}
+
+TEST_F(Cli, DamagedCheckpointIsRefused) {
+  small_rope("s.toml");
+  ASSERT_EQ(run("run s.toml --out d --steps 20").code, 0);
+  std::string bytes = slurp(dir / "d/checkpoint.bin");
+  bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 1);
+  spit(dir / "d/checkpoint.bin", bytes);
+  const Outcome o = run("resume d");
+  EXPECT_EQ(o.code, 2);
+  EXPECT_NE(o.err.find("damaged"), std::string::npos);
+}
+
+TEST_F(Cli, SignalsWriteACheckpoint) {
+  for (const auto& [name, number] : {std::pair{"TERM", 15}, std::pair{"INT", 2}}) {
+    small_rope("s.toml", "duration_ps = 100000\n");
+    const std::string out = std::string("d") + name;
+    const std::string command = "cd '" + dir.string() + "' && { '" ROPEWALK_PROGRAM "' run s.toml --out " + out +
+                                " > stdout.txt 2> stderr.txt & pid=$!; sleep 1.5; kill -" + name +
+                                " $pid; wait $pid; } < /dev/null";
+    // A background job of a shell ignores SIGINT unless job control is on.
+    const int status = std::system(("bash -c \"set -m; " + std::regex_replace(command, std::regex("\\$"), "\\$") + "\"").c_str());
+    EXPECT_EQ(WEXITSTATUS(status), 128 + number);
+    const Json manifest = Json::parse(slurp(dir / out / "manifest.json"));
+    EXPECT_EQ(manifest.at("status"), "interrupted");
+    const auto before = ropewalk::read_log((dir / out / "log.csv").string());
+    const long steps = manifest.at("steps").get<long>();
+    EXPECT_EQ(run("resume " + out + " --steps " + std::to_string(steps + 40)).code, 0);
+    EXPECT_GE(ropewalk::read_log((dir / out / "log.csv").string()).size(), before.size());
+  }
+}
+
+TEST_F(Cli, BlowUpStopsWithAWrittenState) {
+  // Two tubes pushed into one another.
+  std::string csv = "tube,x_nm,y_nm,z_nm,qw,qx,qy,qz\n";
+  for (int t = 0; t < 2; ++t)
+    for (int e = 0; e < 5; ++e)
+      csv += std::to_string(t) + "," + std::to_string(0.4 * t) + ",0," + std::to_string(1.356 * e) + ",1,0,0,0\n";
+  spit(dir / "overlap.csv", csv);
+  spit(dir / "s.toml", "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-paper\"\n[state]\nfile = \"overlap.csv\"\n"
+                       "[run]\nduration_ps = 10\n");
+  const Outcome o = run("run s.toml --out d");
+  EXPECT_EQ(o.code, 3);
+  EXPECT_TRUE(std::regex_search(o.err, std::regex("step [0-9]+, element [0-9]+"))) << o.err;
+  EXPECT_TRUE(fs::exists(dir / "d/failed-state.csv"));
+  EXPECT_EQ(Json::parse(slurp(dir / "d/manifest.json")).at("status"), "failed");
+  // The written state can be read again.
+  EXPECT_EQ(run("energy d/failed-state.csv --parameters cnt-10-10-paper --json").code, 0);
+}
+
+TEST_F(Cli, EnergyGivesForcesThatSumToZeroAndEqualTheReference) {
+  spit(dir / "two.csv", "tube,x_nm,y_nm,z_nm,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n0,0.02,0,1.35,0.9998,0.02,0,0\n"
+                        "1,1.7,0.1,0.3,0.95,0.3,0.05,0.05\n1,1.72,-0.6,1.5,0.95,0.3,0.05,0.07\n");
+  const Outcome fast = run("energy two.csv --parameters cnt-10-10-paper --law paper --json");
+  ASSERT_EQ(fast.code, 0) << fast.err;
+  const Json f = Json::parse(fast.out);
+  const Json r = Json::parse(run("energy two.csv --parameters cnt-10-10-paper --reference --json").out);
+  for (const char* part : {"stretch", "shear", "bend", "twist", "vdw", "total"})
+    EXPECT_NEAR(f["energy_eV"][part].get<double>(), r["energy_eV"][part].get<double>(), 1e-10) << part;
+  ASSERT_EQ(f["force_eV_per_nm"].size(), 4u);
+  ASSERT_EQ(f["torque_eV"].size(), 4u);
+  for (int a = 0; a < 3; ++a) {
+    EXPECT_NEAR(f["net_force_eV_per_nm"][a].get<double>(), 0, 1e-9);
+    EXPECT_NEAR(f["net_torque_eV"][a].get<double>(), 0, 1e-9);
+    EXPECT_NEAR(f["force_eV_per_nm"][2][a].get<double>(), r["force_eV_per_nm"][2][a].get<double>(), 1e-9);
+  }
+  const Json none = Json::parse(run("energy two.csv --parameters cnt-10-10-paper --law none --json").out);
+  EXPECT_EQ(none["energy_eV"]["vdw"].get<double>(), 0);
+  const Json legacy = Json::parse(run("energy two.csv --parameters cnt-10-10-paper --legacy-torque --json").out);
+  EXPECT_GT(std::fabs(legacy["net_torque_eV"][1].get<double>()), 1e-3);
+  EXPECT_EQ(run("energy two.csv --parameters cnt-10-10-paper").code, 0);
+}
+
+TEST_F(Cli, BenchReportsItsKeys) {
+  small_rope("s.toml");
+  const Json b = Json::parse(run("bench s.toml --steps 20 --threads 1 --json").out);
+  for (const char* key : {"ns_per_element_step", "pairs_per_element", "split_ns_per_element_step", "bytes_per_element"})
+    EXPECT_TRUE(b.contains(key)) << key;
+  EXPECT_LT(b["bytes_per_element"].get<double>(), 1000);
+}
+
+TEST_F(Cli, RelaxationSaysHowItEnded) {
+  spit(dir / "s.toml", "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-paper\"\n[rope]\ntubes = 7\nlength_nm = 7\n"
+                       "perturbation_nm = 0.02\n[run]\nmode = \"relax\"\nforce_tolerance_nN = 1e-5\n");
+  const Outcome o = run("run s.toml --out d");
+  EXPECT_EQ(o.code, 0) << o.err;
+  EXPECT_NE(o.out.find("relaxed"), std::string::npos) << o.out;
+}
+
+// Every wrong file of tests/cli/bad: exit code 2, one line, what it expects.
+TEST_F(Cli, EveryWrongFileGetsOneClearLine) {
+  int count = 0;
+  for (const auto& entry : fs::directory_iterator(ROPEWALK_SOURCE_DIR "/tests/cli/bad")) {
+    if (entry.path().extension() != ".toml") continue;
+    ++count;
+    const std::string text = slurp(entry.path());
+    std::smatch expect;
+    ASSERT_TRUE(std::regex_search(text, expect, std::regex("# expect: (.*)"))) << entry.path();
+    const Outcome o = run("run '" + entry.path().string() + "' --out never");
+    EXPECT_EQ(o.code, 2) << entry.path() << "\n" << o.err;
+    EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << o.err;
+    EXPECT_NE(o.err.find(expect[1].str()), std::string::npos) << entry.path() << "\n" << o.err << "\n" << expect[1];
+    EXPECT_FALSE(fs::exists(dir / "never")) << entry.path();
+  }
+  EXPECT_GE(count, 40);
+}
+
+}  // namespace
