@@ -19,7 +19,8 @@ struct Verbs {
   NewArguments make;
   EnergyArguments energy;
   BenchArguments bench;
-  std::string report_dir, check_scene;
+  ReportArguments report;
+  std::string check_scene;
   int code = 0;
 };
 
@@ -73,8 +74,9 @@ void add_observe(CLI::App& app, Verbs& v) {
 
 void add_report(CLI::App& app, Verbs& v) {
   CLI::App* c = app.add_subcommand("report", "Make report.html anew from the files of a run");
-  c->add_option("dir", v.report_dir, "Directory of the run")->required();
-  c->callback([&v] { v.code = report_command(v.report_dir); });
+  c->add_option("dir", v.report.dir, "Directory of the run")->required();
+  c->add_option("--picture", v.report.picture, "Write a side view of the last frame to this SVG file instead");
+  c->callback([&v] { v.code = report_command(v.report); });
 }
 
 void add_energy(CLI::App& app, Verbs& v) {

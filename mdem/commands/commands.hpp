@@ -32,7 +32,11 @@ struct ObserveArguments {
 };
 int observe_command(const ObserveArguments& arguments);
 
-int report_command(const std::string& dir);
+struct ReportArguments {
+  std::string dir;
+  std::string picture;  // write the last frame as SVG here instead
+};
+int report_command(const ReportArguments& arguments);
 
 struct NewArguments {
   std::string name;

@@ -1,73 +1,147 @@
 #include "io/files.hpp"
 
-#define XXH_INLINE_ALL
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
-#include <xxhash.h>
 
+#include <atomic>
 #include <cerrno>
+#include <cstdint>
 #include <cstring>
-#include <fstream>
-#include <sstream>
+
+#define XXH_INLINE_ALL
+#include <xxhash.h>
 
 #include "model/error.hpp"
 
 namespace ropewalk {
 namespace {
 
-[[noreturn]] void cannot(const char* what, const std::string& path) {
-  throw InputError({path, 0, ""}, fmt::format("cannot be {}: {}", what, std::strerror(errno)),
-                   "check the path, its permissions and the free space");
+const char* remedy_for(int code) {
+  switch (code) {
+    case ENOENT: return "check the name, and that the directory exists";
+    case ENOTDIR: return "a part of the path is a file; choose another path";
+    case EISDIR: return "name a file, not a directory";
+    case EACCES:
+    case EPERM: return "check the permissions of the file and its directory";
+    case EROFS: return "the file system is read-only; choose another place";
+    case ENOSPC:
+    case EDQUOT: return "free some space on the disk, or choose another place";
+    case EFBIG: return "the limit on the size of files is reached; raise it (ulimit -f) or choose another place";
+    case EMFILE:
+    case ENFILE: return "too many files are open; raise the limit (ulimit -n)";
+    default: return "check the disk and the path";
+  }
 }
 
-void write_all(int file, std::string_view content, const std::string& temporary, const std::string& path) {
-  while (!content.empty()) {
-    const ssize_t done = ::write(file, content.data(), content.size());
-    if (done < 0) {
-      if (errno == EINTR) continue;
-      const int why = errno;
-      ::close(file);
-      ::unlink(temporary.c_str());
-      errno = why;
-      cannot("written", path);
-    }
-    content.remove_prefix(static_cast<std::size_t>(done));
+InputError failure(const std::string& path, const char* what, int code) {
+  return InputError({path, 0, ""}, fmt::format("{}: {}", what, std::strerror(code)), remedy_for(code));
+}
+
+// Closes on every way out; close() itself is called where its result matters.
+class Descriptor {
+ public:
+  explicit Descriptor(int fd) : fd_(fd) {}
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  ~Descriptor() { close(); }
+
+  bool open() const { return fd_ >= 0; }
+  int get() const { return fd_; }
+  int close() {
+    const int fd = fd_;
+    fd_ = -1;
+    return fd >= 0 ? ::close(fd) : 0;
   }
+
+ private:
+  int fd_;
+};
+
+// A name in the same directory, since rename() does not cross file systems. O_EXCL makes it ours alone.
+class TemporaryFile {
+ public:
+  explicit TemporaryFile(const std::string& path) : fd_(-1) {
+    static std::atomic<unsigned> counter{0};
+    do {
+      name_ = fmt::format("{}.part-{}-{}", path, ::getpid(), counter++);
+      fd_ = ::open(name_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    } while (fd_ < 0 && errno == EEXIST);
+  }
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  ~TemporaryFile() {
+    if (fd_ >= 0 && !renamed_) ::unlink(name_.c_str());
+  }
+
+  int descriptor() const { return fd_; }
+  bool rename_to(const std::string& path) {
+    renamed_ = ::rename(name_.c_str(), path.c_str()) == 0;
+    return renamed_;
+  }
+
+ private:
+  std::string name_;
+  int fd_;
+  bool renamed_ = false;
+};
+
+bool write_all(int fd, std::string_view content) {
+  while (!content.empty()) {
+    const ssize_t written = ::write(fd, content.data(), content.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) return false;
+    content.remove_prefix(static_cast<std::size_t>(written));
+  }
+  return true;
+}
+
+// The rename itself must reach the disk as well. Some file systems cannot do this for a directory, and the
+// file is whole either way: not an error.
+void flush_directory_of(const std::string& path) {
+  const std::size_t slash = path.rfind('/');
+  const std::string directory = slash == std::string::npos ? "." : slash == 0 ? "/" : path.substr(0, slash);
+  const Descriptor fd(::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (fd.open()) ::fsync(fd.get());
 }
 
 }  // namespace
 
 std::string read_file(const std::string& path) {
-  struct stat info {};
-  if (::stat(path.c_str(), &info) != 0) cannot("read", path);
-  if (S_ISDIR(info.st_mode)) throw InputError({path, 0, ""}, "is a directory", "name a file");
-  std::ifstream in(path, std::ios::binary);
-  if (!in) cannot("read", path);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
-
-void write_file_atomically(const std::string& path, std::string_view content) {
-  std::string temporary = path + ".XXXXXX";
-  const int file = ::mkstemp(temporary.data());
-  if (file < 0) cannot("written", path);
-  write_all(file, content, temporary, path);
-  ::fchmod(file, 0644);
-  const bool safe = ::fsync(file) == 0;
-  const bool closed = ::close(file) == 0;
-  if (!safe || !closed || ::rename(temporary.c_str(), path.c_str()) != 0) {
-    const int why = errno;
-    ::unlink(temporary.c_str());
-    errno = why;
-    cannot("written", path);
+  const Descriptor fd(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  if (!fd.open()) throw failure(path, "cannot be opened", errno);
+  struct stat status {};
+  if (::fstat(fd.get(), &status) != 0) throw failure(path, "cannot be read", errno);
+  std::string content;
+  if (status.st_size > 0) content.reserve(static_cast<std::size_t>(status.st_size) + 1);
+  char buffer[1 << 16];
+  for (;;) {
+    const ssize_t n = ::read(fd.get(), buffer, sizeof buffer);
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) throw failure(path, "cannot be read", errno);
+    if (n == 0) return content;
+    content.append(buffer, static_cast<std::size_t>(n));
   }
 }
 
+void write_file_atomically(const std::string& path, std::string_view content) {
+  constexpr const char* what = "cannot be written";
+  TemporaryFile temporary(path);
+  Descriptor fd(temporary.descriptor());
+  if (!fd.open()) throw failure(path, what, errno);
+  struct stat old {};
+  if (::stat(path.c_str(), &old) == 0 && S_ISREG(old.st_mode) && ::fchmod(fd.get(), old.st_mode & 0777) != 0)
+    throw failure(path, what, errno);
+  if (!write_all(fd.get(), content)) throw failure(path, what, errno);
+  if (::fsync(fd.get()) != 0) throw failure(path, what, errno);
+  if (fd.close() != 0) throw failure(path, what, errno);
+  if (!temporary.rename_to(path)) throw failure(path, what, errno);
+  flush_directory_of(path);
+}
+
 std::string hash_hex(std::string_view content) {
-  return fmt::format("{:016x}", XXH64(content.data(), content.size(), 0));
+  return fmt::format("{:016x}", static_cast<std::uint64_t>(XXH64(content.data(), content.size(), 0)));
 }
 
 }  // namespace ropewalk

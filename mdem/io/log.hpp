@@ -75,7 +75,8 @@ inline const std::vector<LogColumn>& log_columns() {
 std::string log_header();
 std::string log_line(const LogRow& row);  // full precision: reading it back gives the same bits
 
-// Throws InputError naming line and column.
+// Throws InputError naming line and column. A last line without its newline, as after a kill, is left out: its
+// last number may have lost digits.
 std::vector<LogRow> read_log(const std::string& path);
 
 }  // namespace ropewalk

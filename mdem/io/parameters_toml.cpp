@@ -33,7 +33,8 @@ std::string read_origin(const TomlTable& q) {
 
 class Reader {
  public:
-  explicit Reader(const std::string& path) : path_(path), text_(read_file(path)), top_(TomlTable::parse(text_, path)) {}
+  explicit Reader(const std::string& path)
+      : path_(path), text_(read_file(path)), top_(TomlTable::parse(text_, path)) {}
 
   ParameterSet read() {
     set_.path = path_;
@@ -55,7 +56,7 @@ class Reader {
   double quantity(const TomlTable& section, const std::string& key, const std::string& unit, const Bounds& bounds) {
     const std::string form = fmt::format("{{ value, unit = \"{}\", standard_error, origin, doi }}", unit);
     if (!section.has(key)) throw section.error(key, "is missing", fmt::format("add {} = {}", key, form));
-    const TomlTable q = section.table(key, "a table " + form);
+    const TomlTable q = section.table(key, form);
     Quantity out;
     out.key = section.path() + "." + key;
     out.value = q.number("value", bounds);
@@ -75,7 +76,9 @@ class Reader {
   }
 
   void read_meta(const TomlTable& t) {
-    if (!top_.has("meta")) throw top_.error("meta", "is missing", fmt::format("a parameter set starts with [meta] format = \"{}\"", parameter_format));
+    if (!top_.has("meta"))
+      throw top_.error("meta", "is missing",
+                       fmt::format("a parameter set starts with [meta] format = \"{}\"", parameter_format));
     const std::string format = t.string("format");
     if (format != parameter_format)
       throw t.error("format", fmt::format("is \"{}\"", printable(format, 40)),
@@ -93,15 +96,17 @@ class Reader {
   // A slip of unit or of chirality shows as a factor; relaxation changes the rolled sheet by 2 %.
   void check_geometry(const TomlTable& t, const char* key, double value, double rolled, const char* unit) const {
     if (std::fabs(value / rolled - 1.0) < 0.1) return;
-    throw t.error(key, fmt::format("is {} {}", value, unit),
-                  fmt::format("a ({},{}) tube has about {:.4g} {}", set_.chirality.n, set_.chirality.m, rolled, unit));
+    throw t.error(
+        key, fmt::format("is {} {}", value, unit),
+        fmt::format("a ({},{}) tube has about {:.4g} {}", set_.chirality.n, set_.chirality.m, rolled, unit));
   }
 
   void read_tube(const TomlTable& t) {
     set_.radius = quantity(t, "radius", "nm", Bounds::positive());
     check_geometry(t, "radius", set_.radius, tube_radius(set_.chirality), "nm");
     set_.atoms_per_length = quantity(t, "atoms_per_length", "1/nm", Bounds::positive());
-    check_geometry(t, "atoms_per_length", set_.atoms_per_length, ropewalk::atoms_per_length(set_.chirality), "1/nm");
+    check_geometry(t, "atoms_per_length", set_.atoms_per_length, ropewalk::atoms_per_length(set_.chirality),
+                   "1/nm");
     set_.element_length = quantity(t, "element_length", "nm", Bounds::range(0.05, 50));
   }
 
@@ -139,8 +144,11 @@ class Reader {
     if (k.cutoff_ratio <= k.switch_start)
       throw t.error("cutoff", fmt::format("is {} r, not above switch_start = {} r", k.cutoff_ratio, k.switch_start),
                     "the switch needs room to fall to zero");
-    // V is lowest at D with (D^(alpha - beta)) = alpha A / (beta B): the core must lie inside of it.
+    // V is lowest where D^(alpha - beta) = alpha A / (beta B): between the core and the switch.
     const double lowest = std::pow(k.alpha * k.repulsion / (k.beta * k.attraction), 1 / (k.alpha - k.beta));
+    if (lowest + 2 >= k.switch_start)
+      throw t.error("A", fmt::format("makes the contact strongest at {:.4g} r", lowest + 2),
+                    fmt::format("that must be inside of switch_start = {} r", k.switch_start));
     if (k.core_gap >= lowest)
       throw t.error("core_gap", fmt::format("is {}", k.core_gap),
                     fmt::format("must be below {:.4g}, where the contact is strongest", lowest));

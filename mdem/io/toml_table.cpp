@@ -55,10 +55,14 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
 }
 
 // `length` or `length_A` for `length_nm`: the unit left out or another one.
-bool same_but_for_unit(const std::string& word, const std::string& known) {
-  const auto starts = [&](const std::string& stem) { return known.compare(0, stem.size() + 1, stem + "_") == 0; };
-  const std::size_t unit = word.rfind('_');
-  return starts(word) || (unit != std::string::npos && unit > 0 && starts(word.substr(0, unit)));
+bool same_but_for_unit(const std::string& a, const std::string& b) {
+  const auto starts = [](const std::string& text, const std::string& stem) {
+    return !stem.empty() && text.compare(0, stem.size() + 1, stem + "_") == 0;
+  };
+  const auto without_unit = [](const std::string& text) {
+    return text.substr(0, std::min(text.rfind('_'), text.size()));
+  };
+  return starts(b, a) || starts(a, b) || starts(b, without_unit(a)) || starts(a, without_unit(b));
 }
 
 int line_of(const toml::node& node) { return static_cast<int>(node.source().begin.line); }
@@ -69,9 +73,12 @@ std::string printable(const std::string& text, std::size_t longest) {
   std::string out;
   for (const char c : text) {
     const auto u = static_cast<unsigned char>(c);
-    if (c == '\n') out += "\\n";
-    else if (u < 0x20 || u == 0x7f) out += fmt::format("\\x{:02x}", u);
-    else out += c;
+    if (c == '\n')
+      out += "\\n";
+    else if (u < 0x20 || u == 0x7f)
+      out += fmt::format("\\x{:02x}", u);
+    else
+      out += c;
   }
   if (out.size() <= longest) return out;
   // Never in the middle of a UTF-8 sequence.
@@ -83,10 +90,10 @@ std::string nearest_word(const std::string& word, const std::vector<std::string>
   if (word.size() > 64) return "";
   const std::string w = lower(word);
   std::string best;
-  std::size_t least = 1 + std::min<std::size_t>(3, std::max<std::size_t>(1, w.size() / 3));
+  std::size_t least = 1 + std::min<std::size_t>(3, 1 + w.size() / 4);
   for (const std::string& k : known) {
     const std::size_t d = same_but_for_unit(w, lower(k)) ? 1 : edit_distance(w, lower(k));
-    if (d < least) {
+    if (d < least && 2 * d < std::max(w.size(), k.size())) {
       least = d;
       best = k;
     }
@@ -110,6 +117,7 @@ std::string Bounds::words() const {
 struct TomlTable::Node {
   std::string file;
   std::string path;
+  bool listed = false;                      // one of several, [[path]]
   std::shared_ptr<const toml::table> root;  // keeps `table` alive
   const toml::table* table = nullptr;       // none: the table is missing
   std::vector<std::string> keys;
@@ -122,7 +130,9 @@ struct TomlTable::Node {
       for (const auto& [key, value] : *table) keys.emplace_back(key.str());
   }
 
-  std::string full(const std::string& key) const { return printable(path.empty() || key.empty() ? path + key : path + "." + key); }
+  std::string full(const std::string& key) const {
+    return printable(path.empty() || key.empty() ? path + key : path + "." + key);
+  }
 
   const toml::node* find(const std::string& key) {
     asked.insert(key);
@@ -141,9 +151,11 @@ struct TomlTable::Node {
     if (!near.empty())
       return self.error(key, "is missing",
                         fmt::format("did you mean it by \"{}\" in line {}?", printable(near), self.line(near)));
-    const std::string where = path.empty() ? "at the top, before the first table" : "to [" + printable(path) + "]";
+    const std::string where = path.empty() ? "at the top, before the first table" : "below " + header();
     return self.error(key, "is missing", fmt::format("add {} = ... {}", key, where));
   }
+
+  std::string header() const { return printable(listed ? "[[" + path + "]]" : "[" + path + "]"); }
 
   std::vector<std::string> strays() const {
     std::vector<std::string> out;
@@ -212,8 +224,9 @@ double checked_number(const TomlTable& t, const std::string& key, const toml::no
 
 long checked_integer(const TomlTable& t, const std::string& key, const toml::node& n, long least, long most) {
   if (!n.is_integer())
-    refuse_type(t, key, n, "an integer", n.is_floating_point() ? "write a whole number without a decimal point"
-                                                                : "write a plain whole number");
+    refuse_type(
+        t, key, n, "an integer",
+        n.is_floating_point() ? "write a whole number without a decimal point" : "write a plain whole number");
   const std::int64_t value = n.as_integer()->get();
   if (value < least || value > most)
     throw t.error(key, fmt::format("is {}", value), fmt::format("must lie between {} and {}", least, most));
@@ -303,10 +316,13 @@ std::string TomlTable::string_or(const std::string& key, const std::string& fall
   return has(key) ? string(key) : fallback;
 }
 
-TomlTable TomlTable::table(const std::string& key, const std::string& needed) const {
+TomlTable TomlTable::table(const std::string& key, const std::string& form) const {
   const toml::node* n = node_->find(key);
-  if (n && !n->is_table()) refuse_type(*this, key, *n, needed, fmt::format("see the documentation of {}", key));
   const std::string path = node_->path.empty() ? key : node_->path + "." + key;
+  if (n && !n->is_table())
+    refuse_type(
+        *this, key, *n, "a table",
+        form.empty() ? fmt::format("write [{}] above its keys", path) : fmt::format("write {} = {}", key, form));
   TomlTable out(std::make_shared<Node>(node_->file, path, node_->root, n ? n->as_table() : nullptr));
   node_->taken.push_back(out);
   return out;
@@ -322,6 +338,7 @@ std::vector<TomlTable> TomlTable::tables(const std::string& key) const {
   for (const toml::node& element : *n->as_array()) {
     if (!element.is_table()) refuse_type(*this, key, element, "a list of tables", header);
     out.push_back(TomlTable(std::make_shared<Node>(node_->file, path, node_->root, element.as_table())));
+    out.back().node_->listed = true;
     node_->taken.push_back(out.back());
   }
   return out;
@@ -338,12 +355,13 @@ void TomlTable::finish(const Elsewhere& elsewhere) const {
   find_stray(stray);
   if (!stray.owner) return;
   const Node& node = *stray.owner->node_;
-  const char* what = node.table->get(stray.key)->is_table() ? "unknown table" : "unknown key";
+  const toml::table* as_table = node.table->get_as<toml::table>(stray.key);
+  const char* what = as_table && !as_table->is_inline() ? "unknown table" : "unknown key";
+  const std::string remedy = elsewhere ? elsewhere(stray.key) : "";
+  if (!remedy.empty()) throw stray.owner->error(stray.key, what, remedy);
   const std::vector<std::string> known(node.asked.begin(), node.asked.end());
   const std::string near = nearest_word(stray.key, known);
   if (!near.empty()) throw stray.owner->error(stray.key, what, fmt::format("did you mean \"{}\"?", near));
-  const std::string remedy = elsewhere ? elsewhere(stray.key) : "";
-  if (!remedy.empty()) throw stray.owner->error(stray.key, what, remedy);
   throw stray.owner->error(stray.key, what, known.empty() ? "take it away" : "known here: " + list_of(known, ", "));
 }
 

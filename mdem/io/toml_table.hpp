@@ -65,9 +65,9 @@ class TomlTable {
     return has(key) ? word(key, words) : fallback;
   }
 
-  // A table of this table; an empty one where it is missing. `needed` is what the message asks for where the
-  // key is something else.
-  TomlTable table(const std::string& key, const std::string& needed = "a table") const;
+  // A table of this table; an empty one where it is missing. `form` is how to write it where that is not
+  // [key] and lines below.
+  TomlTable table(const std::string& key, const std::string& form = "") const;
   // [[key]]; none where it is missing.
   std::vector<TomlTable> tables(const std::string& key) const;
 

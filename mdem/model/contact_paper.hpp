@@ -124,13 +124,14 @@ struct PaperContact {
     const T x_p = gp + gm, x_q = gp - gm;
     const T x_c = w_c * (xp - xm) - 2 * w * xp * ip + 2 * (1 - w) * xm * im;
 
-    // Theta: cos 2 i theta is the Chebyshev polynomial T_i(z), z = 2x - 1.
-    const T z = 2 * x - 1;
-    const T t2 = 2 * z * z - 1, t3 = 2 * z * t2 - z, t4 = 2 * z * t3 - t2, t5 = 2 * z * t4 - t3;
-    const T u1 = 2 * z, u2 = 2 * z * u1 - 1, u3 = 2 * z * u2 - u1, u4 = 2 * z * u3 - u2;
+    // Theta: cos 2 i theta is the Chebyshev polynomial T_i(z), z = 2x - 1; the sum in powers of z, whose
+    // coefficients a compiler takes out of a loop over pairs.
     const T c1 = T(angular[0]), c2 = T(angular[1]), c3 = T(angular[2]), c4 = T(angular[3]), c5 = T(angular[4]);
-    const T theta = 1 + c1 * (1 + z) + c2 * (t2 - 1) + c3 * (1 + t3) + c4 * (t4 - 1) + c5 * (1 + t5);
-    const T theta_x = 2 * (c1 + 2 * c2 * u1 + 3 * c3 * u2 + 4 * c4 * u3 + 5 * c5 * u4);
+    const T a0 = 1 + c1 - 2 * c2 + c3 + c5, a1 = c1 - 3 * c3 + 5 * c5, a2 = 2 * c2 - 8 * c4;
+    const T a3 = 4 * c3 - 20 * c5, a4 = 8 * c4, a5 = 16 * c5;
+    const T z = 2 * x - 1;
+    const T theta = a0 + z * (a1 + z * (a2 + z * (a3 + z * (a4 + z * a5))));
+    const T theta_x = 2 * a1 + z * (4 * a2 + z * (6 * a3 + z * (8 * a4 + z * (10 * a5))));
 
     // V with its core.
     const T rho = r * inv_radius;

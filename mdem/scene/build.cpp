@@ -89,9 +89,12 @@ void place_elements(const Scene& scene, Random& random, BuiltScene& out) {
 // What a state file may lack for the rest of the scene.
 void check_state(const Scene& scene, const BuiltScene& built) {
   if (scene.temperature > 0 && built.state.size() < 2)
-    throw InputError({scene.path, 0, "start.temperature_K"}, "one element alone has no thermal motion about its centre",
-                     "take 0");
+    throw InputError({scene.path, 0, "start.temperature_K"},
+                     "one element alone has no thermal motion about its centre", "take 0");
   if (!scene.twist) return;
+  if (scene.twist->application == TwistProtocol::Application::tangential && built.topology.tubes() == 1)
+    throw InputError({scene.path, 0, "twist.application"},
+                     "tangential forces about the axis of one tube have no arm", "take \"couple\"");
   for (int t = 0; t < built.topology.tubes(); ++t)
     if (built.topology.length_of(t) < 2)
       throw InputError({scene.path, 0, "twist"}, fmt::format("tube {} has one element and no two grips", t),
@@ -146,7 +149,7 @@ double pair_spacing(const PaperContact& contact, double element_length) {
     if (energy(from + k * step) < energy(from + lowest * step)) lowest = k;
   if (lowest == 0 || lowest == grid || energy(from + lowest * step) >= 0)
     throw InputError({"", 0, "contact.paper"}, "does not bind two parallel tubes", "type rope.spacing_nm");
-  return golden_section(energy, from + (lowest - 1) * step, from + (lowest + 1) * step, 1e-10);
+  return golden_section(energy, from + (lowest - 1) * step, from + (lowest + 1) * step, 1e-9);
 }
 
 BuiltScene build(Scene& scene) {

@@ -1,6 +1,6 @@
 // A scene: everything that one run needs, as plain data in internal units (eV, nm, ps, rad). The TOML keys,
-// their units and defaults are listed in scene/scene_toml.cpp next to the code that reads them, and in the
-// commented scenes that `ropewalk new` writes.
+// their units and defaults are listed in scene/scene_keys.cpp, and in the commented scenes that `ropewalk new`
+// writes.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ inline constexpr const char* scene_format = "ropewalk-scene-1";
 struct RopeSource {
   int tubes = 91;       // a hexagonal number 1, 7, 19, 37, 61, 91, 127, 169, 217, ...
   double length = 0;    // nm, rounded to whole elements
-  double spacing = 0;   // nm; 0: the spacing at which the contact's cohesion of such a rope is largest
+  double spacing = 0;   // nm; 0: that at which two tubes bind best
   double perturbation = 0;  // nm: amplitude of a random lateral displacement of every element
 };
 

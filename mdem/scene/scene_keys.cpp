@@ -14,7 +14,7 @@ const std::vector<SceneTable>& scene_tables() {
       {"contact", "van der Waals contact between elements"},
       {"damping", "dissipation; 0 switches a term off"},
       {"twist", "the grips (first and last element of every tube) are twisted about z, + at the upper end"},
-      {"load", "[[load]], any number of them: what else acts on elements"},
+      {"load", "any number of these: what else acts on elements"},
       {"run", "what to do"},
       {"observe", "what to measure"},
   };
@@ -65,7 +65,8 @@ const std::vector<SceneKey>& scene_keys() {
 
       {"load", "kind", "", "\"fix\"", "required", "\"fix\", \"force\", \"torque\" or \"rotate\""},
       {"load", "tubes", "", "\"all\"", "", "\"all\" or numbers from 0: [0, 3]"},
-      {"load", "elements", "", "\"ends\"", "required", "\"all\", \"ends\" or numbers from 0, negative from the end"},
+      {"load", "elements", "", "\"ends\"", "required",
+       "\"all\", \"ends\" or numbers from 0, negative from the end"},
       {"load", "axes", "", "\"xyz\"", "", "fix: coordinates that are held"},
       {"load", "rotation", "", "true", "", "fix: orientation is held"},
       {"load", "force_nN", "nN", "[0.01, 0, 0]", "required by force", "force on each element"},
@@ -83,7 +84,7 @@ const std::vector<SceneKey>& scene_keys() {
       {"run", "frames_every_ps", "ps", "1", "40 frames", "time between stored frames"},
       {"run", "log_every_ps", "ps", "0.1", "400 rows", "time between rows of the log"},
       {"run", "checkpoint_every_s", "s", "60", "", "wall time between checkpoints"},
-      {"run", "force_tolerance_nN", "nN", "1.6e-5", "1e-4 eV/nm", "relax: done when no force is larger"},
+      {"run", "force_tolerance_nN", "nN", "1.6022e-5", "1e-4 eV/nm", "relax: done when no force is larger"},
       {"run", "max_steps", "", "200000", "", "relax: give up after so many steps"},
       {"run", "paraview", "", "false", "", "also write frames for ParaView (VTP)"},
 
@@ -96,10 +97,10 @@ const std::vector<SceneKey>& scene_keys() {
 std::string scene_key_help() {
   std::string text = "Keys of a scene (TOML); `ropewalk new` writes commented ones.\n";
   for (const SceneTable& t : scene_tables()) {
-    text += t.name.empty() ? fmt::format("\n{}\n", t.meaning) : fmt::format("\n[{}]  {}\n", t.name, t.meaning);
+    text += t.name.empty() ? fmt::format("\n{}\n", t.meaning) : fmt::format("\n{}  {}\n", t.header(), t.meaning);
     for (const SceneKey& k : scene_keys())
       if (k.table == t.name)
-        text += fmt::format("  {:31} {:11} {:26} {}\n", k.key, k.unit, k.standard.empty() ? k.value : k.standard,
+        text += fmt::format("  {:31} {:10} {:30} {}\n", k.key, k.unit, k.standard.empty() ? k.value : k.standard,
                             k.meaning);
   }
   return text;

@@ -10,14 +10,16 @@ namespace ropewalk {
 struct SceneTable {
   std::string name;  // empty: the top of the file
   std::string meaning;
+
+  std::string header() const { return name == "load" ? "[[load]]" : "[" + name + "]"; }
 };
 
 struct SceneKey {
   std::string table;
   std::string key;
-  std::string unit;     // empty: none
-  std::string value;    // the default as TOML, or an example of one
-  std::string standard; // what holds where the key is missing, in words; empty: `value`
+  std::string unit;      // empty: none
+  std::string value;     // the default as TOML, or an example of one
+  std::string standard;  // what holds where the key is missing, in words; empty: `value`
   std::string meaning;
 
   bool required() const { return standard == "required"; }

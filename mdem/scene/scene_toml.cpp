@@ -51,10 +51,11 @@ RopeSource read_rope(const TomlTable& t, const Scene& scene) {
   if (below != above)
     throw t.error("tubes", fmt::format("is {}, not a hexagonal number", rope.tubes),
                   fmt::format("the nearest are {} and {}", below, above));
-  rope.length = t.number("length_nm", Bounds::positive(1e12));
+  rope.length = t.number("length_nm", Bounds::positive(1e9));
   const double elements = std::round(rope.length / scene.element_length);
   if (elements < 3)
-    throw t.error("length_nm", fmt::format("is {} nm, {} elements of {} nm", rope.length, elements, scene.element_length),
+    throw t.error("length_nm",
+                  fmt::format("is {} nm, {} elements of {} nm", rope.length, elements, scene.element_length),
                   fmt::format("at least 3 elements, {:.4g} nm, are needed", 3 * scene.element_length));
   check_size(t, "length_nm", rope.tubes, elements);
   const double diameter = 2 * scene.parameters.radius;
@@ -155,8 +156,10 @@ Damping read_damping(const TomlTable& t) {
 
 void check_index(const TomlTable& t, const char* key, const char* what, long index, int count) {
   if (count == 0 || (index < count && index >= -count)) return;
-  const std::string from_end = std::string(key) == "elements" ? fmt::format(", or -1 to -{} from the end", count) : "";
-  throw t.error(key, fmt::format("there is no {} {}", what, index), fmt::format("they are 0 to {}{}", count - 1, from_end));
+  const std::string from_end =
+      std::string(key) == "elements" ? fmt::format(", or -1 to -{} from the end", count) : "";
+  throw t.error(key, fmt::format("there is no {} {}", what, index),
+                fmt::format("they are 0 to {}{}", count - 1, from_end));
 }
 
 // Twice the same one would be loaded twice.
@@ -197,7 +200,8 @@ FixLoad read_fix(const TomlTable& t) {
     fix.y = axes.find('y') != std::string::npos;
     fix.z = axes.find('z') != std::string::npos;
     if (axes.size() != static_cast<std::size_t>(fix.x + fix.y + fix.z))
-      throw t.error("axes", fmt::format("is \"{}\"", printable(axes, 40)), "write x, y and z, each at most once: \"xy\"");
+      throw t.error("axes", fmt::format("is \"{}\"", printable(axes, 40)),
+                    "write x, y and z, each at most once: \"xy\"");
   }
   fix.rotation = t.boolean_or("rotation", true);
   if (!fix.x && !fix.y && !fix.z && !fix.rotation)
@@ -248,9 +252,10 @@ std::size_t read_load_kind(const TomlTable& t) {
   for (const std::string& key : t.keys())
     for (const LoadKind& other : load_kinds())
       if (other.name != load_kinds()[kind].name && std::count(other.keys.begin(), other.keys.end(), key))
-        throw t.error(key, fmt::format("belongs to kind = \"{}\", and this load is \"{}\"", other.name,
-                                       load_kinds()[kind].name),
-                      "take the key away, or write a [[load]] of its own");
+        throw t.error(
+            key,
+            fmt::format("belongs to kind = \"{}\", and this load is \"{}\"", other.name, load_kinds()[kind].name),
+            "take the key away, or write a [[load]] of its own");
   return kind;
 }
 
@@ -265,7 +270,7 @@ Load read_load(const TomlTable& t, const Sizes& sizes) {
   return load;
 }
 
-TwistProtocol read_twist(const TomlTable& t, const Sizes& sizes) {
+TwistProtocol read_twist(const TomlTable& t) {
   using Reading = TwistProtocol::Reading;
   using Application = TwistProtocol::Application;
   static const Words<Reading> readings = {{"per-tube", Reading::per_tube}, {"total", Reading::total}};
@@ -278,8 +283,6 @@ TwistProtocol read_twist(const TomlTable& t, const Sizes& sizes) {
   w.hold = t.number_or("hold_ps", 0, Bounds::non_negative(longest_time));
   w.reading = t.word_or("reading", w.reading, readings);
   w.application = t.word_or("application", w.application, applications);
-  if (w.application == Application::tangential && sizes.tubes == 1)
-    throw t.error("application", "tangential forces about the axis of one tube have no arm", "take \"couple\"");
   w.lateral_free = t.word_or("lateral", w.lateral_free, grips);
   w.axial_free = t.word_or("axial", w.axial_free, grips);
   w.geometric_only = t.boolean_or("geometric_only", w.geometric_only);
@@ -338,8 +341,8 @@ void check_run(const TomlTable& top, const Scene& scene) {
   const double protocol = scene.twist ? scene.twist->ramp_time() + scene.twist->hold : 0.0;
   if (scene.run.duration <= 0 && protocol <= 0)
     throw top.table("run").error("duration_ps", "is missing",
-                    scene.twist ? "ramp and hold of [twist] last no time; give a duration"
-                                : "a run without [twist] needs it: duration_ps = 100");
+                                 scene.twist ? "ramp and hold of [twist] last no time; give a duration"
+                                             : "a run without [twist] needs it: duration_ps = 100");
 }
 
 ObserveOptions read_observe(const TomlTable& t, const Scene& scene) {
@@ -361,13 +364,15 @@ void check_format(const TomlTable& top) {
                     fmt::format("this program reads \"{}\"", scene_format));
 }
 
+// A key or table that is right elsewhere.
 std::string belongs_to(const std::string& key) {
-  for (const SceneKey& k : scene_keys())
-    if (k.key == key)
-      return k.table.empty() ? "it belongs to the top of the file, before the first table"
-                             : fmt::format("it belongs to [{}]", k.table);
-  for (const SceneTable& t : scene_tables())
-    if (!t.name.empty() && t.name == key) return fmt::format("[{}] is a table of its own", key);
+  for (const SceneTable& t : scene_tables()) {
+    if (!t.name.empty() && t.name == key) return fmt::format("{} is a table of its own", t.header());
+    for (const SceneKey& k : scene_keys())
+      if (k.table == t.name && k.key == key)
+        return fmt::format("it belongs to {}",
+                           t.name.empty() ? "the top of the file, before the first table" : t.header());
+  }
   return "";
 }
 
@@ -379,7 +384,7 @@ void read_tables(const TomlTable& top, const std::string& folder, Scene& scene) 
   scene.damping = read_damping(top.table("damping"));
   const Sizes sizes = sizes_of(scene);
   for (const TomlTable& t : top.tables("load")) scene.loads.push_back(read_load(t, sizes));
-  if (top.has("twist")) scene.twist = read_twist(top.table("twist"), sizes);
+  if (top.has("twist")) scene.twist = read_twist(top.table("twist"));
   scene.run = read_run(top.table("run"));
   scene.observe = read_observe(top.table("observe"), scene);
 }

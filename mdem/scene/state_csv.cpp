@@ -17,8 +17,8 @@ namespace {
 
 constexpr const char* header = "tube,x_nm,y_nm,z_nm,qw,qx,qy,qz";
 constexpr std::array<const char*, 8> columns = {"tube", "x_nm", "y_nm", "z_nm", "qw", "qx", "qy", "qz"};
-constexpr double farthest = 1e7;      // nm
-constexpr double norm_slack = 1e-3;   // of a quaternion
+constexpr double farthest = 1e7;                          // nm
+constexpr double norm_slack = 1e-3;                       // of a quaternion
 constexpr double shortest_bond = 0.1, longest_bond = 10;  // element lengths
 
 std::string_view trimmed(std::string_view text) {
@@ -72,7 +72,8 @@ class Reader {
     for (const char c : line)
       if (c != ' ' && c != '\t') squeezed += c;
     if (squeezed != header)
-      fail("", fmt::format("the header is \"{}\"", printable(std::string(line), 60)), fmt::format("it must be {}", header));
+      fail("", fmt::format("the header is \"{}\"", printable(std::string(line), 60)),
+           fmt::format("it must be {}", header));
     seen_header_ = true;
   }
 
@@ -86,7 +87,8 @@ class Reader {
       if (comma == std::string_view::npos) break;
       line.remove_prefix(comma + 1);
     }
-    if (count != value.size()) fail("", fmt::format("has {} columns", count), fmt::format("8 are needed: {}", header));
+    if (count != value.size())
+      fail("", fmt::format("has {} columns", count), fmt::format("8 are needed: {}", header));
     const Quaternion q(value[4], value[5], value[6], value[7]);
     if (!(std::fabs(q.norm() - 1) <= norm_slack))
       fail("qw", fmt::format("the quaternion has length {:.6g}", q.norm()), "it must be 1 within 0.001");
@@ -100,7 +102,8 @@ class Reader {
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
     if (digits.empty() || error != std::errc() || end != digits.data() + digits.size())
       fail(column, fmt::format("is \"{}\"", printable(std::string(text), 40)), "write a number");
-    if (!(std::fabs(value) <= farthest)) fail(column, fmt::format("is {}", value), fmt::format("must lie within {}", farthest));
+    if (!(std::fabs(value) <= farthest))
+      fail(column, fmt::format("is {}", value), fmt::format("must lie within {}", farthest));
     return value;
   }
 
@@ -112,9 +115,11 @@ class Reader {
   void append_to_tubes(const Row& row) {
     if (rows_.empty() || row.tube != rows_.back().tube) {
       if (row.tube < topology_.tubes())
-        fail("tube", fmt::format("{} comes again after {}", row.tube, rows_.back().tube), "keep the lines of a tube together");
+        fail("tube", fmt::format("{} comes again after {}", row.tube, rows_.back().tube),
+             "keep the lines of a tube together");
       if (row.tube > topology_.tubes())
-        fail("tube", fmt::format("is {}, {} is next", row.tube, topology_.tubes()), "number the tubes 0, 1, 2, ... in order");
+        fail("tube", fmt::format("is {}, {} is next", row.tube, topology_.tubes()),
+             "number the tubes 0, 1, 2, ... in order");
       topology_.add_tube(1);
       return;
     }

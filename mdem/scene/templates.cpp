@@ -24,7 +24,8 @@ struct Recipe {
 };
 
 std::vector<Block> twisted_rope(const char* length, std::map<std::string, std::string> twist) {
-  return {{"rope", {{"tubes", "91"}, {"length_nm", length}, {"perturbation_nm", "0.0005"}}}, {"twist", std::move(twist)}};
+  return {{"rope", {{"tubes", "91"}, {"length_nm", length}, {"perturbation_nm", "0.0005"}}},
+          {"twist", std::move(twist)}};
 }
 
 std::vector<Recipe> recipes() {
@@ -36,20 +37,26 @@ std::vector<Recipe> recipes() {
       {"helix", "91 tubes of 163 nm that buckle into a helix (Fig. 4)",
        twisted_rope("163", {{"moment_nN_nm", "32"}, {"rate_nN_nm_per_ps", "0.68"}, {"hold_ps", "600"}})},
       {"geometric", "91 tubes of 41 nm under geometric twist alone (Fig. 3b)",
-       twisted_rope("41", {{"moment_nN_nm", "35"}, {"rate_nN_nm_per_ps", "1.0"}, {"hold_ps", "100"},
-                           {"geometric_only", "true"}, {"increment_ps", "1"}})},
-      {"bundle", "7 short tubes at 10 K without damping: does energy stay?",
+       twisted_rope("41", {{"moment_nN_nm", "35"},
+                           {"rate_nN_nm_per_ps", "1.0"},
+                           {"hold_ps", "100"},
+                           {"geometric_only", "true"},
+                           {"increment_ps", "1"}})},
+      {"bundle",
+       "7 short tubes at 10 K without damping: does energy stay?",
        {{"rope", {{"tubes", "7"}, {"length_nm", "6.78"}}},
         {"start", {{"temperature_K", "10"}}},
         {"damping", {{"contact_viscosity_eV_ps_per_nm2", "0"}, {"bond_damping_per_ps", "0"}}},
         {"run", {{"duration_ps", "1000"}}}}},
-      {"chain", "a cantilever: one tube, one end fixed, a force on the other",
+      {"chain",
+       "a cantilever: one tube, one end fixed, a force on the other",
        {{"chain", {{"elements", "41"}}},
         {"contact", {{"law", "\"none\""}}},
         {"load", {{"kind", "\"fix\""}, {"elements", "[0]"}}},
         {"load", {{"kind", "\"force\""}, {"elements", "[-1]"}, {"force_nN", "[0.01, 0, 0]"}}},
         {"run", {{"mode", "\"relax\""}, {"force_tolerance_nN", "1e-8"}, {"max_steps", "400000"}}}}},
-      {"relax", "37 tubes relaxed to the nearest minimum of the energy",
+      {"relax",
+       "37 tubes relaxed to the nearest minimum of the energy",
        {{"rope", {{"tubes", "37"}, {"length_nm", "27.12"}, {"perturbation_nm", "0.0005"}}},
         {"run", {{"mode", "\"relax\""}}}}},
   };
@@ -58,8 +65,9 @@ std::vector<Recipe> recipes() {
 std::string key_line(const SceneKey& k, const std::string* value) {
   const std::string setting = fmt::format("{}{} = {}", value ? "" : "# ", k.key, value ? *value : k.value);
   std::string comment = k.unit.empty() ? k.meaning : k.unit + "; " + k.meaning;
-  if (!k.required()) comment += fmt::format(" ({}{})", k.standard.rfind("required", 0) == 0 ? "" : "default: ",
-                                            k.standard.empty() ? k.value : k.standard);
+  if (!k.required())
+    comment += fmt::format(" ({}{})", k.standard.rfind("required", 0) == 0 ? "" : "default: ",
+                           k.standard.empty() ? k.value : k.standard);
   return fmt::format("{:40} # {}\n", setting, comment);
 }
 
@@ -75,12 +83,11 @@ std::string keys_text(const std::string& table, const std::map<std::string, std:
 }
 
 std::string table_text(const SceneTable& table, const std::vector<Block>& blocks) {
-  const std::string header = table.name == "load" ? "[[load]]" : "[" + table.name + "]";
   std::string text = "\n# " + table.meaning + "\n";
   bool any = false;
   for (const Block& b : blocks) {
     if (b.table != table.name) continue;
-    text += (any ? "\n" : "") + header + "\n" + keys_text(table.name, b.set);
+    text += (any ? "\n" : "") + table.header() + "\n" + keys_text(table.name, b.set);
     any = true;
   }
   if (any) return text;
@@ -88,7 +95,7 @@ std::string table_text(const SceneTable& table, const std::vector<Block>& blocks
   const auto& keys = scene_keys();
   const bool optional = std::any_of(keys.begin(), keys.end(),
                                     [&](const SceneKey& k) { return k.table == table.name && k.required(); });
-  return text + (optional ? "# " : "") + header + "\n" + keys_text(table.name, {});
+  return text + (optional ? "# " : "") + table.header() + "\n" + keys_text(table.name, {});
 }
 
 std::string text_of(const Recipe& recipe) {

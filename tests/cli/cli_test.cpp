@@ -204,7 +204,7 @@ TEST_F(Cli, BlowUpStopsWithAWrittenState) {
 
 TEST_F(Cli, EnergyGivesForcesThatSumToZeroAndEqualTheReference) {
   spit(dir / "two.csv", "tube,x_nm,y_nm,z_nm,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n0,0.02,0,1.35,0.9998,0.02,0,0\n"
-                        "1,1.7,0.1,0.3,0.95,0.3,0.05,0.05\n1,1.72,-0.6,1.5,0.95,0.3,0.05,0.07\n");
+                        "1,1.7,0.1,0.3,0.95,0.3,0.05,0.0707\n1,1.72,-0.6,1.5,0.95,0.3,0.06,0.06\n");
   const Outcome fast = run("energy two.csv --parameters cnt-10-10-paper --law paper --json");
   ASSERT_EQ(fast.code, 0) << fast.err;
   const Json f = Json::parse(fast.out);

@@ -1,0 +1,136 @@
+// `report`: report.html from the files of a run.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "commands/commands.hpp"
+#include "commands/run_directory.hpp"
+#include "io/files.hpp"
+#include "io/frames.hpp"
+#include "io/report.hpp"
+#include "model/error.hpp"
+
+namespace ropewalk {
+namespace {
+
+constexpr std::size_t pictured = 6;
+
+std::vector<DumpFrame> read_frames(const RunDirectory& dir, const Topology& topology) {
+  std::vector<DumpFrame> all;
+  DumpReader reader(dir.frames());
+  DumpFrame frame;
+  while (reader.next(topology, frame)) all.push_back(frame);
+  if (all.size() <= pictured) return all;
+  // First, last and evenly between.
+  std::vector<DumpFrame> some;
+  for (std::size_t k = 0; k < pictured; ++k) some.push_back(all[k * (all.size() - 1) / (pictured - 1)]);
+  return some;
+}
+
+RopeView view_of(const Topology& topology, const DumpFrame& frame, double beta) {
+  RopeView view;
+  view.time_ps = frame.state.time;
+  view.beta_deg = beta;
+  const auto& moment = frame.colours.bending_moment;
+  for (int t = 0; t < topology.tubes(); ++t) {
+    const int from = topology.tube_begin[t], to = topology.tube_begin[t + 1];
+    std::vector<Vector3> line;
+    for (int e = from; e < to; ++e) line.push_back(frame.state.position[static_cast<std::size_t>(e)]);
+    view.tubes.push_back(std::move(line));
+    if (!moment.empty()) view.bending_moment_eV.emplace_back(moment.begin() + from, moment.begin() + to);
+  }
+  return view;
+}
+
+void add_run_facts(const Scene& scene, const Prepared& p, const Manifest& m, ReportInput& in) {
+  const auto add = [&](std::string key, std::string value, std::string remark = "") {
+    in.facts.push_back({std::move(key), std::move(value), std::move(remark)});
+  };
+  const Topology& t = p.topology;
+  add("scene", scene.name, "hash " + scene.hash);
+  add("tubes", fmt::format("{} with {} elements of {:.4g} nm in all", t.tubes(), t.elements(), t.element_length),
+      t.tubes() > 0 ? fmt::format("the first is {:.4g} nm long", t.length_of(0) * t.element_length) : "");
+  add("parameters", scene.parameters.name, "hash " + scene.parameters.hash);
+  add("contact law", scene.contact.law == ContactOptions::Law::paper ? "paper" : "none",
+      scene.contact.legacy_torque ? "legacy torque: not a gradient, energy is not conserved" : "full gradient");
+  add("damping", fmt::format("contact viscosity {:.4g} eV ps/nm^2, bonds {:.4g} 1/ps, PFC local {:.4g}",
+                             scene.damping.contact.eta, scene.damping.bond.rate, scene.damping.local));
+  if (scene.twist) {
+    const TwistProtocol& w = *scene.twist;
+    add("twist", fmt::format("{:.4g} nN nm {} as {}", w.moment / units::nN_nm,
+                             w.reading == TwistProtocol::Reading::per_tube ? "per tube" : "in total",
+                             w.application == TwistProtocol::Application::couple ? "couples" : "tangential forces"),
+        fmt::format("ramp {:.4g} ps, hold {:.4g} ps{}", w.ramp_time(), w.hold,
+                    w.geometric_only ? "; spins relaxed at each increment" : ""));
+  }
+  add("time step", fmt::format("{:.4g} fs", p.time_step / units::fs),
+      fmt::format("stability limit {:.4g} fs", p.limit.limit / units::fs));
+  add("seed", fmt::format("{}", m.seed));
+  add("program", fmt::format("ropewalk {} ({})", m.version, m.git_id), fmt::format("{}, {}", m.compiler, m.build_type));
+  add("wall time", fmt::format("{:.0f} s on {} threads", m.wall_seconds, m.threads), "started " + m.started);
+}
+
+void add_warnings(const Scene& scene, ReportInput& in) {
+  if (scene.contact.legacy_torque)
+    in.warnings.push_back("This run left out the torque that the published force code leaves out: it gains energy.");
+  if (scene.damping.local > 0)
+    in.warnings.push_back("PFC local damping depends on the frame and does not conserve momentum.");
+}
+
+ReportInput gather(const RunDirectory& dir, const Scene& scene, const Prepared& p) {
+  ReportInput in;
+  const Manifest m = read_manifest(dir.manifest());
+  in.name = scene.name;
+  in.status = m.status;
+  in.reason = m.reason;
+  add_run_facts(scene, p, m, in);
+  add_warnings(scene, in);
+  in.log = read_log(dir.log());
+  if (scene.twist) in.ramp_end_ps = scene.twist->ramp_time();
+  in.tube_radius = p.topology.radius;
+  in.spacing = p.spacing;
+  in.element_length = p.topology.element_length;
+  in.tubes = p.topology.tubes();
+  in.bonds = p.topology.bonds();
+  in.validity = scene.parameters.validity;
+  const Observer observer = make_observer(scene, p);
+  in.shells = observer.shells;
+  for (const DumpFrame& frame : read_frames(dir, p.topology)) {
+    const RopeObservation o = look(observer, scene, p.topology, frame.state);
+    const double beta = o.beta / units::degree;
+    in.sections.push_back({frame.state.time, beta, o.middle, o.radius_profile});
+    in.views.push_back(view_of(p.topology, frame, beta));
+  }
+  in.parameter_name = scene.parameters.name;
+  in.parameter_reference = scene.parameters.reference;
+  in.parameters = scene.parameters.quantities;
+  return in;
+}
+
+}  // namespace
+
+void write_report(const RunDirectory& dir, const Scene& scene, const Prepared& prepared) {
+  write_file_atomically(dir.report(), report_html(gather(dir, scene, prepared)));
+}
+
+int report_command(const ReportArguments& a) {
+  const RunDirectory dir{a.dir};
+  Scene scene = read_run_scene(dir);
+  const Prepared prepared = prepare(scene);
+  if (a.picture.empty()) {
+    write_report(dir, scene, prepared);
+    fmt::print("{} written\n", dir.report());
+    return 0;
+  }
+  const std::vector<DumpFrame> frames = read_frames(dir, prepared.topology);
+  if (frames.empty())
+    throw InputError({dir.frames(), 0, ""}, "holds no frame", "run the scene further with `ropewalk resume`");
+  const double beta = look(make_observer(scene, prepared), scene, prepared.topology, frames.back().state).beta;
+  write_file_atomically(a.picture, rope_svg(view_of(prepared.topology, frames.back(), beta / units::degree),
+                                            prepared.topology.radius));
+  fmt::print("{} written\n", a.picture);
+  return 0;
+}
+
+}  // namespace ropewalk

@@ -1,0 +1,85 @@
+#include "io/manifest.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "io/files.hpp"
+#include "model/error.hpp"
+
+namespace ropewalk {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* format = "ropewalk-manifest-1";
+constexpr const char* remedy = "is this the manifest.json of a run? Restore it, or run the scene again";
+
+// One list for writer and reader, in the order of the file.
+template <class M, class Visit>
+void visit(M& m, const Visit& v) {
+  v("version", m.version);
+  v("git_id", m.git_id);
+  v("compiler", m.compiler);
+  v("build_type", m.build_type);
+  v("threads", m.threads);
+  v("seed", m.seed);
+  v("scene_hash", m.scene_hash);
+  v("parameter_hash", m.parameter_hash);
+  v("started", m.started);
+  v("wall_seconds", m.wall_seconds);
+  v("steps", m.steps);
+  v("time_step_fs", m.time_step_fs);
+  v("status", m.status);
+  v("reason", m.reason);
+}
+
+int line_of_byte(const std::string& text, std::size_t byte) {
+  const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(byte, text.size()));
+  return 1 + static_cast<int>(std::count(text.begin(), end, '\n'));
+}
+
+Json parse(const std::string& path, const std::string& text) {
+  try {
+    Json json = Json::parse(text);
+    if (json.is_object() && json.value("format", "") == format) return json;
+  } catch (const Json::parse_error& e) {
+    throw InputError({path, line_of_byte(text, e.byte), ""}, "is not JSON", remedy);
+  } catch (const Json::type_error&) {  // format is no string
+  }
+  throw InputError({path, 0, "format"}, fmt::format("\"{}\" is needed", format), remedy);
+}
+
+template <class T>
+T value_of(const std::string& path, const Json& json, const char* key) {
+  if (!json.contains(key)) throw InputError({path, 0, key}, "is missing", remedy);
+  const Json& value = json.at(key);
+  const bool fits = std::is_same_v<T, std::string>      ? value.is_string()
+                    : std::is_floating_point_v<T>       ? value.is_number()
+                    : std::is_same_v<T, std::uint64_t>  ? value.is_number_unsigned()
+                                                        : value.is_number_integer();
+  if (!fits) throw InputError({path, 0, key}, fmt::format("{} is not of the right kind", value.dump()), remedy);
+  return value.get<T>();
+}
+
+}  // namespace
+
+std::string manifest_json(const Manifest& manifest) {
+  Json json;
+  json["format"] = format;
+  visit(manifest, [&](const char* key, const auto& value) { json[key] = value; });
+  // A message may quote a file that is not UTF-8.
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+Manifest read_manifest(const std::string& path) {
+  const Json json = parse(path, read_file(path));
+  Manifest manifest;
+  visit(manifest, [&](const char* key, auto& value) {
+    value = value_of<std::decay_t<decltype(value)>>(path, json, key);
+  });
+  return manifest;
+}
+
+}  // namespace ropewalk

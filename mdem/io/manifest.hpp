@@ -1,0 +1,32 @@
+// manifest.json: which program made a run from which inputs, and how it went. Nothing about the machine but
+// the number of threads.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace ropewalk {
+
+struct Manifest {
+  std::string version;
+  std::string git_id;
+  std::string compiler;
+  std::string build_type;
+  int threads = 0;
+  std::uint64_t seed = 0;
+  std::string scene_hash;      // xxh64, hex
+  std::string parameter_hash;  // xxh64, hex
+  std::string started;         // ISO 8601, UTC
+  double wall_seconds = 0;
+  std::int64_t steps = 0;
+  double time_step_fs = 0;
+  std::string status;  // running, finished, interrupted, failed
+  std::string reason;  // in words; may be empty
+};
+
+std::string manifest_json(const Manifest& manifest);
+
+// Throws InputError for a file that is missing, not JSON, or lacks a key.
+Manifest read_manifest(const std::string& path);
+
+}  // namespace ropewalk
