@@ -24,6 +24,8 @@ struct Verbs {
   int code = 0;
 };
 
+CLI::Range thread_range() { return CLI::Range(1, 1024); }
+
 void add_new(CLI::App& app, Verbs& v) {
   CLI::App* c = app.add_subcommand("new", "Write a commented scene to start from");
   c->add_option("name", v.make.name, "Name of the scene; NAME.toml is written");
@@ -44,7 +46,7 @@ void add_run(CLI::App& app, Verbs& v) {
   c->add_option("scene", v.run.scene, "Scene file (TOML)")->required();
   c->add_option("--out", v.run.out, "Directory of the run; made, never overwritten")->required();
   c->add_option("--threads", v.run.threads, "Threads [default: all cores]; any number gives the same bits")
-      ->check(CLI::PositiveNumber);
+      ->check(thread_range());
   c->add_option("--steps", v.run.steps, "Stop after so many time steps")->check(CLI::NonNegativeNumber);
   c->add_flag("--force", v.run.force, "Replace an earlier run in --out");
   c->add_flag("--quiet", v.run.quiet, "No progress line");
@@ -54,7 +56,7 @@ void add_run(CLI::App& app, Verbs& v) {
 void add_resume(CLI::App& app, Verbs& v) {
   CLI::App* c = app.add_subcommand("resume", "Go on with a run from its last checkpoint, bit for bit");
   c->add_option("dir", v.resume.dir, "Directory of the run")->required();
-  c->add_option("--threads", v.resume.threads, "Threads [default: all cores]")->check(CLI::PositiveNumber);
+  c->add_option("--threads", v.resume.threads, "Threads [default: all cores]")->check(thread_range());
   c->add_option("--steps", v.resume.steps, "Stop at this time step")->check(CLI::NonNegativeNumber);
   c->add_option("--until", v.resume.until_ps, "Stop at this time (ps) instead of the scene's")
       ->check(CLI::NonNegativeNumber);
@@ -89,7 +91,7 @@ void add_energy(CLI::App& app, Verbs& v) {
                 "Elements of one tube up to this many apart do not touch")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
-  c->add_option("--threads", v.energy.threads, "Threads [default: all cores]")->check(CLI::PositiveNumber);
+  c->add_option("--threads", v.energy.threads, "Threads [default: all cores]")->check(thread_range());
   c->add_flag("--legacy-torque", v.energy.legacy_torque, "Leave out the torque that the published code leaves out");
   c->add_flag("--reference", v.energy.reference, "The plain O(N^2) path instead of the fast one");
   c->add_flag("--json", v.energy.json, "JSON");
@@ -100,7 +102,7 @@ void add_bench(CLI::App& app, Verbs& v) {
   CLI::App* c = app.add_subcommand("bench", "Time the steps of a scene");
   c->add_option("scene", v.bench.scene, "Scene file (TOML)")->required();
   c->add_option("--steps", v.bench.steps, "Time steps")->capture_default_str()->check(CLI::PositiveNumber);
-  c->add_option("--threads", v.bench.threads, "Threads")->capture_default_str()->check(CLI::PositiveNumber);
+  c->add_option("--threads", v.bench.threads, "Threads")->capture_default_str()->check(thread_range());
   c->add_flag("--json", v.bench.json, "JSON");
   c->callback([&v] { v.code = bench_command(v.bench); });
 }

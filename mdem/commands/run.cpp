@@ -1,5 +1,4 @@
 // `run` and `resume`: the loop around the simulation, its files and its signals.
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <omp.h>
 #include <sys/stat.h>
@@ -260,6 +259,7 @@ class Run {
     m.time_step_fs = prepared_.time_step / units::fs;
     m.status = status;
     m.reason = reason;
+    m.scene = scene_.name;
     write_file_atomically(dir_.manifest(), manifest_json(m));
   }
 

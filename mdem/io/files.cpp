@@ -20,18 +20,27 @@ namespace {
 
 const char* remedy_for(int code) {
   switch (code) {
-    case ENOENT: return "check the name, and that the directory exists";
-    case ENOTDIR: return "a part of the path is a file; choose another path";
-    case EISDIR: return "name a file, not a directory";
+    case ENOENT:
+      return "check the name, and that the directory exists";
+    case ENOTDIR:
+      return "a part of the path is a file; choose another path";
+    case EISDIR:
+      return "name a file, not a directory";
     case EACCES:
-    case EPERM: return "check the permissions of the file and its directory";
-    case EROFS: return "the file system is read-only; choose another place";
+    case EPERM:
+      return "check the permissions of the file and its directory";
+    case EROFS:
+      return "the file system is read-only; choose another place";
     case ENOSPC:
-    case EDQUOT: return "free some space on the disk, or choose another place";
-    case EFBIG: return "the limit on the size of files is reached; raise it (ulimit -f) or choose another place";
+    case EDQUOT:
+      return "free some space on the disk, or choose another place";
+    case EFBIG:
+      return "the limit on the size of files is reached; raise it (ulimit -f) or choose another place";
     case EMFILE:
-    case ENFILE: return "too many files are open; raise the limit (ulimit -n)";
-    default: return "check the disk and the path";
+    case ENFILE:
+      return "too many files are open; raise the limit (ulimit -n)";
+    default:
+      return "check the disk and the path";
   }
 }
 

@@ -32,8 +32,8 @@ constexpr std::array<ColourColumn, 4> colour_columns = {{{"bond_energy_eV", &Ele
 
 // Names of the columns that every frame has. OVITO maps these, and only these, by itself.
 constexpr std::array<const char*, 13> fixed_columns = {
-    "id", "mol", "type", "x", "y", "z", "c_orient[1]", "c_orient[2]", "c_orient[3]", "c_orient[4]",
-    "c_shape[1]", "c_shape[2]", "c_shape[3]"};
+    "id",          "mol",         "type",        "x",          "y",          "z",         "c_orient[1]",
+    "c_orient[2]", "c_orient[3]", "c_orient[4]", "c_shape[1]", "c_shape[2]", "c_shape[3]"};
 enum Column { id, mol, type, x, y, z, qx, qy, qz, qw };
 
 // --- Dump, writing --------------------------------------------------------------------------------------
@@ -216,9 +216,10 @@ struct DumpReader::Impl {
     if (seen[e]) throw garbled(fmt::format("element {} comes twice in this frame", e + 1));
     seen[e] = 1;
     if (values[l.fixed[mol]] != topology.tube_of(e) + 1)
-      throw error("mol", fmt::format("element {} is of tube {}, not {}", e + 1, topology.tube_of(e) + 1,
-                                     values[l.fixed[mol]]),
-                  "is this the dump of the run whose scene is read?");
+      throw error(
+          "mol",
+          fmt::format("element {} is of tube {}, not {}", e + 1, topology.tube_of(e) + 1, values[l.fixed[mol]]),
+          "is this the dump of the run whose scene is read?");
     return static_cast<std::size_t>(e);
   }
 
@@ -334,8 +335,9 @@ std::string data_array(const char* name, int components, const std::vector<T>& v
   std::string bytes(sizeof size + size, '\0');
   std::memcpy(bytes.data(), &size, sizeof size);
   if (size > 0) std::memcpy(bytes.data() + sizeof size, values.data(), size);
-  return fmt::format("<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"binary\">{}</DataArray>\n",
-                     VtkType<T>::name, name, components, base64(bytes));
+  return fmt::format(
+      "<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"binary\">{}</DataArray>\n",
+      VtkType<T>::name, name, components, base64(bytes));
 }
 
 template <class Of>
@@ -362,9 +364,8 @@ std::string cells(const char* kind, const Topology& topology, bool single) {
 }
 
 std::string point_data(const Topology& topology, const State& state, const ElementColours& colours) {
-  std::string text = vectors("director", state, [&](std::size_t i) -> Vector3 {
-    return state.orientation[i].toRotationMatrix().col(0);
-  });
+  std::string text = vectors(
+      "director", state, [&](std::size_t i) -> Vector3 { return state.orientation[i].toRotationMatrix().col(0); });
   text += vectors("axis", state, [&](std::size_t i) { return axis_of(state.orientation[i]); });
   for (const ColourColumn& column : colour_columns)
     if (given(colours, column, state)) {
@@ -408,10 +409,10 @@ std::string vtp_frame(const Topology& topology, const State& state, const Elemen
 }
 
 std::string pvd_text(const std::vector<PvdEntry>& entries) {
-  std::string text =
-      "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n";
+  std::string text = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n";
   for (const PvdEntry& entry : entries)
-    text += fmt::format("<DataSet timestep=\"{}\" part=\"0\" file=\"{}\"/>\n", entry.time, escape_markup(entry.file));
+    text +=
+        fmt::format("<DataSet timestep=\"{}\" part=\"0\" file=\"{}\"/>\n", entry.time, escape_markup(entry.file));
   return text + "</Collection>\n</VTKFile>\n";
 }
 

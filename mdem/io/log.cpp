@@ -32,7 +32,8 @@ struct LineReader {
     double v = 0;
     const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), v);
     if (code != std::errc() || end != text.data() + text.size())
-      throw error(column.name, fmt::format("\"{}\" is not a number", printable(std::string(text), 40)), damaged_log);
+      throw error(column.name, fmt::format("\"{}\" is not a number", printable(std::string(text), 40)),
+                  damaged_log);
     if (column.whole && std::isfinite(v) && v != std::floor(v))
       throw error(column.name, fmt::format("{} is not an integer", v), damaged_log);
     return v;

@@ -33,6 +33,7 @@ void visit(M& m, const Visit& v) {
   v("time_step_fs", m.time_step_fs);
   v("status", m.status);
   v("reason", m.reason);
+  v("scene", m.scene);
 }
 
 int line_of_byte(const std::string& text, std::size_t byte) {
@@ -55,10 +56,10 @@ template <class T>
 T value_of(const std::string& path, const Json& json, const char* key) {
   if (!json.contains(key)) throw InputError({path, 0, key}, "is missing", remedy);
   const Json& value = json.at(key);
-  const bool fits = std::is_same_v<T, std::string>      ? value.is_string()
-                    : std::is_floating_point_v<T>       ? value.is_number()
-                    : std::is_same_v<T, std::uint64_t>  ? value.is_number_unsigned()
-                                                        : value.is_number_integer();
+  const bool fits = std::is_same_v<T, std::string>     ? value.is_string()
+                    : std::is_floating_point_v<T>      ? value.is_number()
+                    : std::is_same_v<T, std::uint64_t> ? value.is_number_unsigned()
+                                                       : value.is_number_integer();
   if (!fits) throw InputError({path, 0, key}, fmt::format("{} is not of the right kind", value.dump()), remedy);
   return value.get<T>();
 }
@@ -76,9 +77,8 @@ std::string manifest_json(const Manifest& manifest) {
 Manifest read_manifest(const std::string& path) {
   const Json json = parse(path, read_file(path));
   Manifest manifest;
-  visit(manifest, [&](const char* key, auto& value) {
-    value = value_of<std::decay_t<decltype(value)>>(path, json, key);
-  });
+  visit(manifest,
+        [&](const char* key, auto& value) { value = value_of<std::decay_t<decltype(value)>>(path, json, key); });
   return manifest;
 }
 

@@ -22,6 +22,7 @@ struct Manifest {
   double time_step_fs = 0;
   std::string status;  // running, finished, interrupted, failed
   std::string reason;  // in words; may be empty
+  std::string scene;   // its name
 };
 
 std::string manifest_json(const Manifest& manifest);

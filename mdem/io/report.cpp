@@ -10,7 +10,7 @@
 namespace ropewalk {
 namespace {
 
-constexpr std::size_t most_rows = 60;    // of a table under a chart
+constexpr std::size_t most_rows = 60;  // of a table under a chart
 constexpr std::size_t most_pictures = 6;
 
 // --- Small pieces of HTML -----------------------------------------------------------------------------------
@@ -164,8 +164,9 @@ std::string with_unit(const std::string& name, const std::string& unit) {
 }
 
 std::string not_drawn(const std::string& title) {
-  return fmt::format("<figure><h3>{}</h3>\n<p class=\"none\">Not drawn: there are fewer than two values.</p></figure>\n",
-                     escape_markup(title));
+  return fmt::format(
+      "<figure><h3>{}</h3>\n<p class=\"none\">Not drawn: there are fewer than two values.</p></figure>\n",
+      escape_markup(title));
 }
 
 std::string log_figure(const ReportInput& in, const Panel& panel, Figures& figures) {
@@ -176,7 +177,8 @@ std::string log_figure(const ReportInput& in, const Panel& panel, Figures& figur
   for (const Trace& trace : panel.traces)
     columns.push_back({with_unit(trace.name, panel.axis.unit), values_of(in.log, trace.value)});
   return fmt::format("<figure><h3>{}</h3>\n", escape_markup(panel.title)) + chart_svg(chart) +
-         figures.caption(panel.caption) + data_table(columns, "Every row and column is in log.csv.") + "</figure>\n";
+         figures.caption(panel.caption) + data_table(columns, "Every row and column is in log.csv.") +
+         "</figure>\n";
 }
 
 Panel bond_energies() {
@@ -190,7 +192,8 @@ Panel bond_energies() {
 }
 
 Panel other_energies(const std::vector<LogRow>& log) {
-  std::string caption = "Change since the start of the van der Waals energy between the tubes, the kinetic energy and the total.";
+  std::string caption =
+      "Change since the start of the van der Waals energy between the tubes, the kinetic energy and the total.";
   if (!log.empty())
     caption += fmt::format(" At the start: van der Waals {} eV, kinetic {} eV, total {} eV.",
                            number_text(log.front().vdw, 6), number_text(log.front().kinetic, 5),
@@ -233,11 +236,12 @@ Panel end_twists() {
 }
 
 Panel amplitude() {
-  return {"Deflection of the rope",
-          "Largest distance of the centre line from its chord. Where it grows to the radius of the rope and beyond, "
-          "the rope as a whole has buckled.",
-          {"amplitude", "nm", false},
-          {{"amplitude", [](const LogRow& r) { return r.amplitude; }, 0}}};
+  return {
+      "Deflection of the rope",
+      "Largest distance of the centre line from its chord. Where it grows to the radius of the rope and beyond, "
+      "the rope as a whole has buckled.",
+      {"amplitude", "nm", false},
+      {{"amplitude", [](const LogRow& r) { return r.amplitude; }, 0}}};
 }
 
 Panel windings() {
@@ -269,7 +273,8 @@ std::string balance_words(const std::vector<LogRow>& log) {
 Panel balance(const std::vector<LogRow>& log) {
   return {"Energy balance",
           "Total energy − work + dissipated energy, less its first value. It would stay at zero if time were "
-          "continuous; what is left is the error of the integration. " + balance_words(log),
+          "continuous; what is left is the error of the integration. " +
+              balance_words(log),
           {"balance", "eV", false},
           {{"balance", [](const LogRow& r) { return r.balance; }, 5}}};
 }
@@ -296,8 +301,9 @@ std::string radius_figure(const ReportInput& in, const std::vector<ReportSection
   }
   if (!can_draw(chart)) return not_drawn(title);
   return fmt::format("<figure><h3>{}</h3>\n", title) + chart_svg(chart) +
-         figures.caption("Distance of the outermost tube from the centre line, plus the radius of a tube, at the "
-                         "times of the cross-sections. The position is counted in elements from the lower end.") +
+         figures.caption(
+             "Distance of the outermost tube from the centre line, plus the radius of a tube, at the "
+             "times of the cross-sections. The position is counted in elements from the lower end.") +
          data_table(columns, "The frames are in frames.lammpstrj.") + "</figure>\n";
 }
 
@@ -310,29 +316,36 @@ std::string views_figure(const ReportInput& in, Figures& figures) {
   std::string html = "<figure class=\"strip\">\n";
   for (std::size_t k = 0; k < views.size(); ++k) {
     const std::string name = fmt::format("v{}t", static_cast<char>('a' + k));
-    html += fmt::format("<div class=\"view\"><div class=\"tag\">{} &#160; β = {}</div>\n", picoseconds(views[k].time_ps),
-                        degrees(views[k].beta_deg));
+    html += fmt::format("<div class=\"view\"><div class=\"tag\">{} &#160; β = {}</div>\n",
+                        picoseconds(views[k].time_ps), degrees(views[k].beta_deg));
     html += rope_picture(views[k], camera, in.tube_radius, name, k + 1 == views.size()) + "</div>\n";
   }
-  std::string caption = "The rope from the side, at the same scale and from the same direction; the tubes are drawn "
-                        "at their radius.";
+  std::string caption =
+      std::string(
+          "The rope from the side, at the same scale and from the same direction; the tubes are drawn "
+          "at their radius. ") +
+      fmt::format("The bar is {:g} nm long.", scale_bar_length(camera));
   if (camera.moment_eV > 0) {
     html += moment_bar(camera.moment_eV);
-    caption += " Colour: modulus of the bending moment of the tube; the scale ends where 99.5 % of the elements lie "
-               "below.";
+    caption +=
+        " Colour: modulus of the bending moment of the tube; the scale ends where 99.5 % of the elements lie "
+        "below.";
   }
   return html + figures.caption(caption) + "</figure>\n";
 }
 
 std::string key_of(const char* name, const char* words) {
-  return fmt::format("<span class=\"key\"><svg class=\"section\" width=\"14\" height=\"14\" viewBox=\"0 0 14 14\">"
-                     "<circle class=\"{}\" cx=\"7\" cy=\"7\" r=\"6\"/></svg> {}</span>\n", name, words);
+  return fmt::format(
+      "<span class=\"key\"><svg class=\"section\" width=\"14\" height=\"14\" viewBox=\"0 0 14 14\">"
+      "<circle class=\"{}\" cx=\"7\" cy=\"7\" r=\"6\"/></svg> {}</span>\n",
+      name, words);
 }
 
 std::string section_words(const ReportSection& s) {
-  std::string html = fmt::format("<div class=\"tag\">{} &#160; β = {}</div><div><b>Q = {}</b> &#160; Delaunay {}</div>",
-                                 picoseconds(s.time_ps), degrees(s.beta_deg), fixed_text(s.section.charge, 0),
-                                 fixed_text(s.section.charge_delaunay, 0));
+  std::string html =
+      fmt::format("<div class=\"tag\">{} &#160; β = {}</div><div><b>Q = {}</b> &#160; Delaunay {}</div>",
+                  picoseconds(s.time_ps), degrees(s.beta_deg), fixed_text(s.section.charge, 0),
+                  fixed_text(s.section.charge_delaunay, 0));
   if (s.section.voids > 0)
     html += fmt::format("<div class=\"soft\">{} {}, {} nm²</div>", s.section.voids,
                         s.section.voids == 1 ? "void" : "voids", number_text(s.section.void_area, 3));
@@ -342,17 +355,20 @@ std::string section_words(const ReportSection& s) {
 std::string sections_figure(const ReportInput& in, const std::vector<ReportSection>& sections, Figures& figures) {
   double half = 0;
   for (const ReportSection& s : sections) half = std::max(half, section_half_width(s.section, in.tube_radius));
-  const double pixels = sections.size() > 4 ? 156 : 220;  // six side by side
+  const double pixels = sections.size() > 4 ? 150 : 220;  // six side by side
   std::string html = "<figure class=\"sections\"><div class=\"row\">\n";
   for (const ReportSection& s : sections)
     if (!s.section.points.empty())
-      html += "<div class=\"cut\">" + section_picture(s.section, in.shells, in.tube_radius, half, pixels) + section_words(s) +
-              "</div>\n";
+      html += "<div class=\"cut\">" + section_picture(s.section, in.shells, in.tube_radius, half, pixels) +
+              section_words(s) + "</div>\n";
   html += "</div><div class=\"keys\">" + key_of("n6", "internal, six neighbours") + key_of("n5", "five") +
           key_of("n7", "seven") + key_of("nx", "another number") + key_of("outermost", "outermost") + "</div>\n";
-  return html + figures.caption("The middle section, normal to the axis of the rope, to scale: circles have the radius "
-                                "of a tube. A tube that leans by an angle is cut as a longer ellipse, which is not "
-                                "drawn. Colour: number of neighbours by distance.") + "</figure>\n";
+  return html +
+         figures.caption(
+             "The middle section, normal to the axis of the rope, to scale: circles have the radius "
+             "of a tube. A tube that leans by an angle is cut as a longer ellipse, which is not "
+             "drawn. Colour: number of neighbours by distance.") +
+         "</figure>\n";
 }
 
 bool any_internal(const RopeShells& shells) {
@@ -362,15 +378,18 @@ bool any_internal(const RopeShells& shells) {
 std::string sections_part(const ReportInput& in, const std::vector<ReportSection>& sections, Figures& figures) {
   const bool any = std::any_of(sections.begin(), sections.end(),
                                [](const ReportSection& s) { return s.section.points.size() > 1; });
-  if (!any) return paragraph("There are no cross-sections: a single tube, or tubes of different lengths, have none.");
+  if (!any)
+    return paragraph("There are no cross-sections: a single tube, or tubes of different lengths, have none.");
   return sections_figure(in, sections, figures);
 }
 
 // --- Words --------------------------------------------------------------------------------------------------
 
 std::string ending(const ReportInput& in) {
-  const std::string reason = in.reason.empty() ? "" : ": " + escape_markup(in.reason);
-  if (in.status == "finished") return "The run finished as planned" + reason + ".";
+  std::string reason = in.reason.empty() ? "" : ": " + escape_markup(in.reason);
+  while (!reason.empty() && reason.back() == '.') reason.pop_back();
+  if (in.status == "finished")
+    return (reason.empty() ? "The run finished as planned" : "The run finished" + reason) + ".";
   if (in.status == "interrupted") return "The run was interrupted" + reason + ". This page shows it up to there.";
   if (in.status == "failed") return "The run failed" + reason + ". This page shows it up to there.";
   if (in.status == "running") return "The run had not ended when this page was made" + reason + ".";
@@ -382,10 +401,11 @@ std::string summary(const ReportInput& in) {
   if (in.log.empty()) return ending(in) + " Its log has no rows.";
   const LogRow& r = in.log.back();
   const Clock clock = clock_of(in.log);
-  std::string html = clock.value == &LogRow::step ? fmt::format("After {} steps", number_text(r.step, 9))
+  std::string html = clock.value == &LogRow::step ? fmt::format("After {} steps", fixed_text(r.step, 0))
                                                   : fmt::format("After {}", picoseconds(r.time));
   if (std::isfinite(r.beta) && in.tubes != 1)
-    html += fmt::format(" the outermost tubes stand at <b>β = {}</b> to the axis of the rope, and", degrees(r.beta));
+    html +=
+        fmt::format(" the outermost tubes stand at <b>β = {}</b> to the axis of the rope, and", degrees(r.beta));
   const double bonds = r.stretch + r.shear + r.bend + r.twist;
   html += fmt::format(" the bonds hold <b>{} eV</b> (stretch {}, shear {}, bend {}, twist {})", number_text(bonds),
                       number_text(r.stretch, 3), number_text(r.shear, 3), number_text(r.bend, 3),
@@ -393,30 +413,39 @@ std::string summary(const ReportInput& in) {
   html += fmt::format(", the van der Waals contacts <b>{} eV</b>. The kinetic energy is {} eV, the total {} eV.",
                       number_text(r.vdw), number_text(r.kinetic, 3), number_text(total(r)));
   if (any_internal(in.shells))
-    html += fmt::format(" The packing charge of the middle section is <b>Q = {}</b> by distance, {} by Delaunay "
-                        "triangulation.", fixed_text(r.charge, 0), fixed_text(r.charge_delaunay, 0));
+    html += fmt::format(
+        " The packing charge of the middle section is <b>Q = {}</b> by distance, {} by Delaunay "
+        "triangulation.",
+        fixed_text(r.charge, 0), fixed_text(r.charge_delaunay, 0));
   return html + " " + ending(in);
 }
 
 struct Limit {
-  const char* what;      // "kinked"
+  const char* what;  // "kinked"
   double LogRow::*count;
-  std::string beyond;    // HTML: which limit
+  std::string beyond;  // HTML: which limit
   const char* meaning;
 };
 
 std::vector<Limit> limits(const Validity& v) {
   const auto limit = [](double value, const char* words, const char* unit) {
-    return value > 0 ? fmt::format("{} {}{}", words, number_text(value), unit) : std::string(words) + " the limit of the parameter set";
+    return value > 0 ? fmt::format("{} {}{}", words, number_text(value), unit)
+                     : std::string(words) + " the limit of the parameter set";
   };
-  return {{"Kinked", &LogRow::kinked, limit(v.kink_curvature, "curvature beyond", " nm⁻¹"),
-           "A real tube kinks there: its wall folds and it bends on at a fraction of the stiffness. The model bends "
-           "on elastically, and overestimates the bending energy."},
-          {"Overtwisted", &LogRow::overtwisted, limit(v.twist_collapse, "radius times twist per length beyond", ""),
-           "The wall of a real tube collapses into a ribbon there. The model stores more torsional energy than the "
-           "tube would."},
-          {"Overstretched", &LogRow::overstretched, limit(v.stretch, "strain beyond", ""),
-           "In compression the wall of a real tube buckles there; in tension the linear law overestimates the force."}};
+  return {
+      {"Kinked", &LogRow::kinked, limit(v.kink_curvature, "curvature beyond", " nm⁻¹"),
+       "A real tube kinks there: its wall folds and it bends on at a fraction of the stiffness. The model bends "
+       "on elastically, and overestimates the bending energy."},
+      {"Overtwisted", &LogRow::overtwisted, limit(v.twist_collapse, "radius times twist per length beyond", ""),
+       "The wall of a real tube collapses into a ribbon there. The model stores more torsional energy than the "
+       "tube would."},
+      {"Overstretched", &LogRow::overstretched, limit(v.stretch, "strain beyond", ""),
+       "In compression the wall of a real tube buckles there; in tension the linear law overestimates the force."}};
+}
+
+std::string moment_words(const std::vector<LogRow>& log, const LogRow& row) {
+  return clock_of(log).value == &LogRow::step ? "at step " + fixed_text(row.step, 0)
+                                              : "at " + picoseconds(row.time);
 }
 
 std::string limit_words(const ReportInput& in, const Limit& limit) {
@@ -430,22 +459,26 @@ std::string limit_words(const ReportInput& in, const Limit& limit) {
   if (!(most > 0)) return html + (in.bonds > 0 ? "none" + of : "no bond") + " at any logged time.</li>\n";
   html += fixed_text(last, 0) + of + " at the end";
   if (in.bonds > 0) html += fmt::format(" ({} %)", number_text(100 * last / in.bonds, 2));
-  if (most > last) html += fmt::format("; most at {}: {}", picoseconds(worst->time), fixed_text(most, 0));
+  if (most > last) html += fmt::format("; most {}: {}", moment_words(in.log, *worst), fixed_text(most, 0));
   return html + ". " + limit.meaning + "</li>\n";
 }
 
 std::string limits_part(const ReportInput& in) {
   if (in.log.empty()) return paragraph("The log has no rows, so nothing is known.");
   std::string html = paragraph(
-      "Elements are rigid and bonds are elastic without end; a tube is not. These bonds are beyond what the parameter "
-      "set gives as the limits of the model. The run is not stopped by them, but what they do is not to be trusted.");
+      "Elements are rigid and bonds are elastic without end; a tube is not. These bonds are beyond what the "
+      "parameter "
+      "set gives as the limits of the model. The run is not stopped by them, but what they do is not to be "
+      "trusted.");
   html += "<ul>\n";
   for (const Limit& limit : limits(in.validity)) html += limit_words(in, limit);
   double twist = 0;
   for (const LogRow& r : in.log)
     if (std::isfinite(r.largest_bond_twist)) twist = std::max(twist, r.largest_bond_twist);
-  html += fmt::format("<li>Largest twist of one bond: {}. The torque of a bond peaks at 90°, and beyond it the bond "
-                      "would slip.</li>\n", degrees(twist));
+  html += fmt::format(
+      "<li>Largest twist of one bond: {}. The torque of a bond peaks at 90°, and beyond it the bond "
+      "would slip.</li>\n",
+      degrees(twist));
   return html + "</ul>\n";
 }
 
@@ -479,13 +512,15 @@ std::string parameters_part(const ReportInput& in) {
                                   in.parameter_reference.empty() ? "" : ", after ",
                                   escape_markup(in.parameter_reference)));
   if (in.parameters.empty()) return html + paragraph("No parameters are listed.");
-  html += "<div class=\"scroll\"><table class=\"facts\"><thead><tr><th>Parameter</th><th class=\"number\">Value</th>"
-          "<th>Unit</th><th>Standard error</th><th>Origin</th><th>DOI</th></tr></thead><tbody>\n";
+  html +=
+      "<div class=\"scroll\"><table class=\"facts\"><thead><tr><th>Parameter</th><th class=\"number\">Value</th>"
+      "<th>Unit</th><th>Standard error</th><th>Origin</th><th>DOI</th></tr></thead><tbody>\n";
   for (const Quantity& q : in.parameters)
-    html += fmt::format("<tr><td>{}</td><td class=\"number\">{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
-                        escape_markup(q.key), plain_number(q.value), unit_text(q.unit),
-                        q.standard_error ? plain_number(*q.standard_error) : "<span class=\"soft\">not published</span>",
-                        escape_markup(q.origin), escape_markup(q.doi));
+    html += fmt::format(
+        "<tr><td>{}</td><td class=\"number\">{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
+        escape_markup(q.key), plain_number(q.value), unit_text(q.unit),
+        q.standard_error ? plain_number(*q.standard_error) : "<span class=\"soft\">not published</span>",
+        escape_markup(q.origin), escape_markup(q.doi));
   return html + "</tbody></table></div>\n";
 }
 
@@ -499,7 +534,8 @@ std::string warnings_part(const std::vector<std::string>& warnings) {
 // --- The page -----------------------------------------------------------------------------------------------
 
 const char* page_css = R"(*{box-sizing:border-box}
-body{margin:0;background:var(--paper);color:var(--ink);font:17px/1.55 Charter,"Bitstream Charter","Iowan Old Style",Palatino,"Liberation Serif",Georgia,serif}
+body{margin:0;background:var(--paper);color:var(--ink);
+font:17px/1.55 Charter,"Bitstream Charter","Iowan Old Style",Palatino,"Liberation Serif",Georgia,serif}
 main{max-width:1130px;margin:0 auto;padding:40px 28px 72px}
 p,ul,.warnings{max-width:74ch}
 h1{font-size:2.1rem;line-height:1.15;margin:.1em 0 .5em;font-weight:600;letter-spacing:-.01em;overflow-wrap:anywhere}
@@ -513,7 +549,8 @@ figure{margin:0 0 1.9em;min-width:0;break-inside:avoid}
 figcaption{font-size:.86rem;line-height:1.45;color:var(--soft);max-width:80ch;margin-top:.5em}
 figcaption b{color:var(--ink)}
 .pair{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(100%,460px),1fr));gap:0 34px}
-.strip .view{margin-bottom:14px}
+.pair figure{margin-bottom:1.3em}
+.strip{break-inside:auto}.strip .view{margin-bottom:14px;break-inside:avoid}
 .tag{font-size:.82rem;font-variant-numeric:tabular-nums;font-weight:600;margin-bottom:2px}
 .row{display:flex;flex-wrap:wrap;gap:22px 24px}
 .cut{font-size:.82rem;line-height:1.5;font-variant-numeric:tabular-nums}
@@ -533,12 +570,14 @@ thead th{color:var(--soft);font-weight:600;border-bottom-color:var(--soft)}
 .numbers td,.numbers th{white-space:nowrap}
 .facts tbody th{font-weight:600;padding-right:26px;white-space:nowrap}
 .facts td{overflow-wrap:anywhere}
-@media print{body{font-size:10.5pt}main{max-width:none;padding:0}h2{break-after:avoid}details{display:none}.pair{grid-template-columns:1fr 1fr}}
+@media print{body{font-size:10.5pt}main{max-width:none;padding:0}
+h2{break-after:avoid}details{display:none}.pair{grid-template-columns:1fr 1fr}}
 )";
 
 std::string head(const std::string& name) {
   return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n"
-         "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'\"/>\n"
+         "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src "
+         "'unsafe-inline'\"/>\n"
          "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n"
          "<meta name=\"color-scheme\" content=\"light dark\"/>\n<title>" +
          escape_markup(name) + " – Ropewalk</title>\n<style>\n" + svg_css() + page_css + "</style>\n</head>\n";
@@ -546,17 +585,20 @@ std::string head(const std::string& name) {
 
 std::string log_part(const ReportInput& in, const std::vector<ReportSection>& sections, Figures& figures) {
   if (in.log.size() < 2)
-    return heading("Course of the run") +
-           paragraph(in.log.empty() ? "The log has no rows, so there are no charts."
-                                    : "The log has one row, so there are no charts over time.");
+    return heading("Course of the run") + paragraph(in.log.empty()
+                                                        ? "The log has no rows, so there are no charts."
+                                                        : "The log has one row, so there are no charts over time.");
   const auto panel = [&](const Panel& p) { return log_figure(in, p, figures); };
-  const auto pair = [](const std::string& a, const std::string& b) { return "<div class=\"pair\">\n" + a + b + "</div>\n"; };
+  const auto pair = [](const std::string& a, const std::string& b) {
+    return "<div class=\"pair\">\n" + a + b + "</div>\n";
+  };
   // Named one by one: the order in which arguments are evaluated is not fixed, and figures are numbered.
   std::string html = heading("Energies");
   const std::string bonds = panel(bond_energies()), others = panel(other_energies(in.log));
   html += pair(bonds, others) + heading("Packing and twist");
   if (!any_internal(in.shells))
-    html += paragraph("No packing charge: no tube is internal, that is, has six neighbours in the untwisted state.");
+    html +=
+        paragraph("No packing charge: no tube is internal, that is, has six neighbours in the untwisted state.");
   const std::string charge = any_internal(in.shells) ? panel(packing_charge()) : "", beta = panel(twist_angle());
   html += pair(charge, beta);
   const std::string twists = panel(end_twists()), radius = radius_figure(in, sections, figures);

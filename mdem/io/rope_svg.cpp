@@ -22,6 +22,7 @@ constexpr std::size_t most_bytes = 60000;
 constexpr int moment_colours = 12;
 constexpr double reach = 1.25;           // half the stroke that separates a tube from its neighbours, radii
 constexpr double layer_thickness = 1.2;  // radii
+constexpr double overlap = 0.12;         // of two pieces of a tube, radii
 constexpr double per_nm = 100;           // coordinates are whole hundredths of a nanometre
 
 struct Span {
@@ -42,6 +43,7 @@ struct Seen {
 // Pieces of tubes as the camera sees them.
 struct Segment {
   Seen a, b;
+  std::size_t element;  // where a is
   double moment;
   bool visible;
 };
@@ -62,26 +64,30 @@ struct Detail {
   std::size_t stride;  // every so many-th point
   std::size_t block;   // segments that share one colour
 };
-constexpr Detail details[] = {{1, 1}, {1, 2}, {1, 3}, {1, 4}, {1, 6}, {2, 4}, {3, 4}, {4, 4}, {6, 4}, {9, 4}, {14, 4}, {30, 4}};
+constexpr Detail details[] = {{1, 1}, {1, 2}, {1, 3}, {1, 4},  {1, 6},  {2, 4}, {3, 4},
+                              {4, 4}, {6, 4}, {9, 4}, {14, 4}, {30, 4}, {80, 4}};
 
-std::vector<SeenTube> seen_tubes(const RopeView& view, const RopeCamera& camera, const Detail& detail) {
-  const std::size_t stride = detail.stride, coloured = stride * detail.block;
+std::vector<SeenTube> seen_tubes(const RopeView& view, const RopeCamera& camera, std::size_t stride) {
   std::vector<SeenTube> tubes;
-  for (std::size_t t = 0; t < view.tubes.size(); ++t) {
-    const std::vector<Vector3>& points = view.tubes[t];
-    static const std::vector<double> none;
-    const std::vector<double>& moments = t < view.bending_moment_eV.size() ? view.bending_moment_eV[t] : none;
+  for (const std::vector<Vector3>& points : view.tubes) {
     SeenTube tube;
     for (std::size_t i = 0; i + 1 < points.size(); i += stride) {
       const std::size_t j = std::min(i + stride, points.size() - 1);
       if (!points[i].allFinite() || !points[j].allFinite()) continue;
-      const std::size_t block = i / coloured * coloured;
-      tube.push_back({see(camera, points[i]), see(camera, points[j]), mean_moment(moments, block, block + coloured),
-                      false});
+      tube.push_back({see(camera, points[i]), see(camera, points[j]), i, 0, false});
     }
     tubes.push_back(std::move(tube));
   }
   return tubes;
+}
+
+// Every segment gets the mean of its block of elements.
+void set_moments(std::vector<SeenTube>& tubes, const RopeView& view, std::size_t block) {
+  for (std::size_t t = 0; t < std::min(tubes.size(), view.bending_moment_eV.size()); ++t)
+    for (Segment& s : tubes[t]) {
+      const std::size_t begin = s.element / block * block;
+      s.moment = mean_moment(view.bending_moment_eV[t], begin, begin + block);
+    }
 }
 
 // --- What is hidden ---------------------------------------------------------------------------------------
@@ -214,16 +220,17 @@ struct Painter {
     return {std::lround((x - camera.left) * per_nm), std::lround((top - y) * per_nm)};
   }
 
-  // A little beyond its ends, so that no seam shows where the next piece begins.
+  // A little beyond its ends, and from its far end to its near one: see paint_layer.
   void append(const SeenTube& tube, std::size_t begin, std::size_t end, Paths& paths) const {
     const auto beyond = [&](const Seen& p, const Seen& from) {
       const double length = std::hypot(p.x - from.x, p.y - from.y);
-      const double k = length > 0 ? 0.12 * radius / length : 0;
+      const double k = length > 0 ? overlap * radius / length : 0;
       return spot(p.x + k * (p.x - from.x), p.y + k * (p.y - from.y));
     };
     std::vector<Spot> spots{beyond(tube[begin].a, tube[begin].b)};
     for (std::size_t i = begin; i + 1 < end; ++i) spots.push_back(spot(tube[i].b.x, tube[i].b.y));
     spots.push_back(beyond(tube[end - 1].b, tube[end - 1].a));
+    if (tube[begin].a.depth > tube[end - 1].b.depth) std::reverse(spots.begin(), spots.end());
     paths[key(tube[begin])] += moves(spots, tolerance);
   }
 
@@ -282,13 +289,15 @@ std::string define_layer(const Paths& paths, int layer, const std::string& id) {
   return text + "</g>";
 }
 
-// Outline, body, highlight. Square ends of the body hide the seam between the outlines of two pieces; the
-// opacity is that of the whole highlight, so pieces that overlap do not show.
+// Outline, body, highlight. The outline leaves out the beginning of every piece, or its end would show as a
+// seam on the piece behind. The opacity is that of the whole highlight, so pieces that overlap do not show.
 std::string paint_layer(const Paths& paths, int layer, const std::string& id, double radius, bool coloured,
                         double depth) {
   const auto width = [&](double radii) { return std::lround(radii * radius * per_nm); };
-  std::string text = fmt::format("<use href=\"#{}\" stroke=\"#1d232b\" stroke-width=\"{}\"/>", id, width(2 * reach));
-  text += fmt::format("<g stroke-width=\"{}\" stroke-linecap=\"square\">", width(1.85));
+  std::string text = fmt::format(
+      "<use href=\"#{}\" stroke=\"#1d232b\" stroke-width=\"{}\" "
+      "stroke-dasharray=\"999999\" stroke-dashoffset=\"-{}\"/><g stroke-width=\"{}\">",
+      id, width(2 * reach), width(1.3 * overlap), width(1.85));
   for (auto p = paths.lower_bound({layer, 0}); p != paths.end() && p->first.layer == layer; ++p)
     text += fmt::format("<use href=\"#{}_{}\" stroke=\"{}\"/>", id, p->first.colour,
                         body_colour(coloured, p->first.colour, depth));
@@ -319,14 +328,20 @@ bool has_moments(const RopeView& view) {
 std::string rope_body(const RopeView& view, const RopeCamera& camera, double radius, double top,
                       const std::string& name) {
   std::string text;
+  std::vector<SeenTube> tubes;
+  std::size_t stride = 0;
   const bool coloured = camera.moment_eV > 0 && has_moments(view);
+  RopeCamera used = camera;
+  if (!coloured) used.moment_eV = 0;
   // Coarser and coarser until it is small enough.
   for (const Detail& detail : details) {
-    std::vector<SeenTube> tubes = seen_tubes(view, camera, detail);
-    mark_visible(tubes, radius);
-    RopeCamera plain = camera;
-    if (!coloured) plain.moment_eV = 0;
-    const Painter painter{plain, radius, top, 3.0 + static_cast<double>(detail.stride)};
+    if (detail.stride != stride) {
+      stride = detail.stride;
+      tubes = seen_tubes(view, camera, stride);
+      mark_visible(tubes, radius);
+    }
+    if (coloured) set_moments(tubes, view, detail.stride * detail.block);
+    const Painter painter{used, radius, top, 3.0 + static_cast<double>(stride)};
     Paths paths;
     for (const SeenTube& tube : tubes) painter.append(tube, paths);
     text = paint(paths, name, radius, coloured);
@@ -335,18 +350,12 @@ std::string rope_body(const RopeView& view, const RopeCamera& camera, double rad
   return text;
 }
 
-double nice_bar(double longest) {
-  const double base = std::pow(10.0, std::floor(std::log10(longest)));
-  for (const double m : {5.0, 2.0}) 
-    if (m * base <= longest) return m * base;
-  return base;
-}
-
 std::string scale_bar_at(const RopeCamera& camera, double x, double y, const char* ink) {
-  const double nm = nice_bar(std::max(1e-3, 0.12 * camera.width));
-  return fmt::format("<path d=\"M{0:.1f} {1:.1f}h{2:.1f}\" stroke=\"{3}\" stroke-width=\"3\"/>"
-                     "<text x=\"{4:.1f}\" y=\"{5:.1f}\" fill=\"{3}\">{6:g} nm</text>\n",
-                     x, y, nm * camera.scale, ink, x + nm * camera.scale + 8, y + 4, nm);
+  const double nm = scale_bar_length(camera);
+  return fmt::format(
+      "<path d=\"M{0:.1f} {1:.1f}h{2:.1f}\" stroke=\"{3}\" stroke-width=\"3\"/>"
+      "<text x=\"{4:.1f}\" y=\"{5:.1f}\" fill=\"{3}\">{6:g} nm</text>\n",
+      x, y, nm * camera.scale, ink, x + nm * camera.scale + 8, y + 4, nm);
 }
 
 // --- Camera -----------------------------------------------------------------------------------------------
@@ -357,8 +366,10 @@ std::vector<Vector3> mean_line(const RopeView& view) {
   for (std::size_t i = 0; i < view.tubes[0].size(); ++i) {
     Vector3 sum = Vector3::Zero();
     for (const auto& tube : view.tubes)
-      if (tube.size() == view.tubes[0].size()) sum += tube[i];
-      else return {};
+      if (tube.size() == view.tubes[0].size())
+        sum += tube[i];
+      else
+        return {};
     if (sum.allFinite()) line.push_back(sum / static_cast<double>(view.tubes.size()));
   }
   return line;
@@ -436,6 +447,14 @@ RopeCamera rope_camera(const std::vector<RopeView>& views, double radius, double
   return c;
 }
 
+double scale_bar_length(const RopeCamera& camera) {
+  const double longest = std::max(1e-3, 0.12 * camera.width);
+  const double base = std::pow(10.0, std::floor(std::log10(longest)));
+  for (const double m : {5.0, 2.0})
+    if (m * base <= longest) return m * base;
+  return base;
+}
+
 std::string rope_picture(const RopeView& view, const RopeCamera& camera, double radius, const std::string& name,
                          bool scale_bar) {
   const Span y = vertical_extent(view, camera, radius);
@@ -443,7 +462,8 @@ std::string rope_picture(const RopeView& view, const RopeCamera& camera, double 
   const double bar = scale_bar ? 24 : 0;
   std::string text = fmt::format(
       "<svg class=\"bar\" viewBox=\"0 0 {0:.1f} {1:.1f}\" width=\"{0:.0f}\" height=\"{1:.0f}\" role=\"img\" "
-      "aria-label=\"Side view at {2} ps\">\n<g fill=\"none\" stroke-linejoin=\"round\" transform=\"scale({3:.5f})\">",
+      "aria-label=\"Side view at {2} ps\">\n<g fill=\"none\" stroke-linejoin=\"round\" "
+      "transform=\"scale({3:.5f})\">",
       width, height + bar, number_text(view.time_ps), camera.scale / per_nm);
   text += rope_body(view, camera, radius, y.high, name) + "</g>\n";
   if (scale_bar) text += scale_bar_at(camera, 1.5 * radius * camera.scale, height + 14, "var(--ink)");
@@ -457,8 +477,8 @@ std::string bar_at(double moment_eV, double x, double y, const char* ink) {
   const double step = 18;
   std::string text;
   for (int k = 0; k < moment_colours; ++k)
-    text += fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"10\" fill=\"{}\"/>", x + k * step, y,
-                        step + 0.3, viridis((k + 0.5) / moment_colours));
+    text += fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"10\" fill=\"{}\"/>",
+                        x + k * step, y, step + 0.3, viridis((k + 0.5) / moment_colours));
   for (const int k : {0, 1, 2})
     text += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\" fill=\"{}\">{}{}</text>",
                         x + 0.5 * k * moment_colours * step, y + 24, ink, k == 2 ? "≥ " : "",
@@ -482,9 +502,11 @@ std::string rope_svg(const RopeView& view, double radius, double width) {
   const double rope = y.size() * camera.scale, height = rope + (coloured ? 62 : 44);
   const double left = 0.5 * (width - camera.width * camera.scale);
   std::string text = fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" width=\"{0:.0f}\" height=\"{1:.0f}\" "
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" width=\"{0:.0f}\" "
+      "height=\"{1:.0f}\" "
       "font-family=\"Helvetica,Arial,sans-serif\" font-size=\"13\">\n<rect width=\"100%\" height=\"100%\" "
-      "fill=\"#fff\"/>\n<g fill=\"none\" stroke-linejoin=\"round\" transform=\"translate({2:.1f} 10) scale({3:.5f})\">",
+      "fill=\"#fff\"/>\n<g fill=\"none\" stroke-linejoin=\"round\" transform=\"translate({2:.1f} 10) "
+      "scale({3:.5f})\">",
       width, height, left, camera.scale / per_nm);
   text += rope_body(view, camera, radius, y.high, "t") + "</g>\n";
   text += scale_bar_at(camera, left + 1.5 * radius * camera.scale, rope + 27, "#1c1e22");
@@ -500,10 +522,14 @@ const char* section_class(const CrossSection& section, const RopeShells& shells,
   if (tube >= shells.internal.size() || !shells.internal[tube] || tube >= section.neighbours.size())
     return "outermost";
   switch (section.neighbours[tube]) {
-    case 5: return "n5";
-    case 6: return "n6";
-    case 7: return "n7";
-    default: return "nx";
+    case 5:
+      return "n5";
+    case 6:
+      return "n6";
+    case 7:
+      return "n7";
+    default:
+      return "nx";
   }
 }
 
@@ -516,22 +542,24 @@ double section_half_width(const CrossSection& section, double radius) {
   return half;
 }
 
-std::string section_picture(const CrossSection& section, const RopeShells& shells, double radius,
-                            double half_width, double pixels) {
+std::string section_picture(const CrossSection& section, const RopeShells& shells, double radius, double half_width,
+                            double pixels) {
   const double scale = pixels / (2.04 * std::max(half_width, radius));
-  std::string text = fmt::format("<svg class=\"section\" viewBox=\"0 0 {0:.0f} {0:.0f}\" width=\"{0:.0f}\" "
-                                 "height=\"{0:.0f}\" role=\"img\" aria-label=\"Cross-section, Q = {1}\">\n",
-                                 pixels, section.charge);
+  std::string text = fmt::format(
+      "<svg class=\"section\" viewBox=\"0 0 {0:.0f} {0:.0f}\" width=\"{0:.0f}\" "
+      "height=\"{0:.0f}\" role=\"img\" aria-label=\"Cross-section, Q = {1}\">\n",
+      pixels, section.charge);
   for (std::size_t t = 0; t < section.points.size(); ++t) {
     const Eigen::Vector2d& p = section.points[t];
     if (!p.allFinite()) continue;
     const std::string name = section_class(section, shells, t);
-    const std::string circle = fmt::format("<circle class=\"{}\" cx=\"{:.2f}\" cy=\"{:.2f}\" r=\"{:.2f}\"", name,
-                                           0.5 * pixels + scale * p.x(), 0.5 * pixels - scale * p.y(), scale * radius);
+    const std::string circle =
+        fmt::format("<circle class=\"{}\" cx=\"{:.2f}\" cy=\"{:.2f}\" r=\"{:.2f}\"", name,
+                    0.5 * pixels + scale * p.x(), 0.5 * pixels - scale * p.y(), scale * radius);
     // The number of neighbours is told where it is not the usual one.
-    text += name == "n6" || name == "outermost"
-                ? circle + "/>"
-                : fmt::format("{}><title>tube {}: {} neighbours</title></circle>", circle, t + 1, section.neighbours[t]);
+    text += name == "n6" || name == "outermost" ? circle + "/>"
+                                                : fmt::format("{}><title>tube {}: {} neighbours</title></circle>",
+                                                              circle, t + 1, section.neighbours[t]);
   }
   return text + "\n</svg>\n";
 }

@@ -45,9 +45,12 @@ double text_width(std::string_view text) {
   for (const char c : text) {
     const auto u = static_cast<unsigned char>(c);
     if ((u & 0xc0) == 0x80) continue;  // the rest of a UTF-8 sequence
-    if (std::string_view(" .,:;'|!ijlftr()I").find(c) != std::string_view::npos) ems += 0.36;
-    else if (std::string_view("mwMW%@").find(c) != std::string_view::npos) ems += 0.92;
-    else ems += u >= 'A' && u <= 'Z' ? 0.72 : 0.59;
+    if (std::string_view(" .,:;'|!ijlftr()I").find(c) != std::string_view::npos)
+      ems += 0.36;
+    else if (std::string_view("mwMW%@").find(c) != std::string_view::npos)
+      ems += 0.92;
+    else
+      ems += u >= 'A' && u <= 'Z' ? 0.72 : 0.59;
   }
   return ems * font;
 }
@@ -130,8 +133,10 @@ using Stretch = std::vector<Point>;  // without a gap
 std::vector<Stretch> stretches(const ChartLine& line) {
   std::vector<Stretch> all(1);
   for (std::size_t i = 0; i < std::min(line.x.size(), line.y.size()); ++i) {
-    if (std::isfinite(line.x[i]) && std::isfinite(line.y[i])) all.back().push_back({line.x[i], line.y[i]});
-    else if (!all.back().empty()) all.emplace_back();
+    if (std::isfinite(line.x[i]) && std::isfinite(line.y[i]))
+      all.back().push_back({line.x[i], line.y[i]});
+    else if (!all.back().empty())
+      all.emplace_back();
   }
   if (all.back().empty()) all.pop_back();
   return all;
@@ -178,12 +183,15 @@ std::string path_of(const Plot& plot, const ChartLine& line) {
   std::size_t total = 0;
   for (const Stretch& s : all) total += s.size();
   for (const Stretch& whole : all) {
-    const Stretch s = thinned(whole, std::max<std::size_t>(4, most_points * whole.size() / std::max<std::size_t>(1, total)));
+    const Stretch s =
+        thinned(whole, std::max<std::size_t>(4, most_points * whole.size() / std::max<std::size_t>(1, total)));
     fmt::format_to(to, "M{:.1f} {:.1f}", plot.px(s[0].x), plot.py(s[0].y));
     if (s.size() == 1) d += "h0";  // a dot, by the round cap
     for (std::size_t i = 1; i < s.size(); ++i) {
-      if (line.steps) fmt::format_to(to, "H{:.1f}V{:.1f}", plot.px(s[i].x), plot.py(s[i].y));
-      else fmt::format_to(to, "L{:.1f} {:.1f}", plot.px(s[i].x), plot.py(s[i].y));
+      if (line.steps)
+        fmt::format_to(to, "H{:.1f}V{:.1f}", plot.px(s[i].x), plot.py(s[i].y));
+      else
+        fmt::format_to(to, "L{:.1f} {:.1f}", plot.px(s[i].x), plot.py(s[i].y));
     }
   }
   return d;
@@ -205,9 +213,11 @@ std::vector<EndLabel> end_labels(const LineChart& chart, const Plot& plot) {
     const double y = plot.py(all.back().back().y);
     labels.push_back({&line, y, y});
   }
-  std::stable_sort(labels.begin(), labels.end(), [](const EndLabel& a, const EndLabel& b) { return a.end < b.end; });
+  std::stable_sort(labels.begin(), labels.end(),
+                   [](const EndLabel& a, const EndLabel& b) { return a.end < b.end; });
   // Pushed down, then up again from the bottom: never nearer than a line of text.
-  for (std::size_t i = 1; i < labels.size(); ++i) labels[i].at = std::max(labels[i].at, labels[i - 1].at + label_distance);
+  for (std::size_t i = 1; i < labels.size(); ++i)
+    labels[i].at = std::max(labels[i].at, labels[i - 1].at + label_distance);
   double limit = plot.bottom;
   for (auto label = labels.rbegin(); label != labels.rend(); ++label) {
     label->at = std::min(label->at, limit);
@@ -224,9 +234,10 @@ std::string stroke_class(const ChartLine& line) {
 std::string draw_labels(const LineChart& chart, const Plot& plot) {
   std::string text;
   for (const EndLabel& label : end_labels(chart, plot))
-    text += fmt::format("<path class=\"{}\" d=\"M{:.1f} {:.1f}L{:.1f} {:.1f}h14\"/><text x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n",
-                        stroke_class(*label.line), plot.right + 1, label.end, plot.right + 9, label.at,
-                        plot.right + 28, label.at + 4, escape_markup(label.line->name));
+    text += fmt::format(
+        "<path class=\"{}\" d=\"M{:.1f} {:.1f}L{:.1f} {:.1f}h14\"/><text x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n",
+        stroke_class(*label.line), plot.right + 1, label.end, plot.right + 9, label.at, plot.right + 28,
+        label.at + 4, escape_markup(label.line->name));
   return text;
 }
 
@@ -272,14 +283,17 @@ std::string draw_axes(const LineChart& chart, const Plot& plot) {
   const auto to = std::back_inserter(text);
   for (std::size_t k = 0; k < plot.y.ticks.size(); ++k) {
     const double y = plot.py(plot.y.ticks[k]);
-    fmt::format_to(to, "<path class=\"{}\" d=\"M{:.1f} {:.1f}H{:.1f}\"/><text class=\"end\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n",
-                   plot.y.ticks[k] == 0 ? "zero" : "grid", plot.left, y, plot.right, plot.left - 6, y + 4,
-                   plot.y.labels[k]);
+    fmt::format_to(
+        to,
+        "<path class=\"{}\" d=\"M{:.1f} {:.1f}H{:.1f}\"/><text class=\"end\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n",
+        plot.y.ticks[k] == 0 ? "zero" : "grid", plot.left, y, plot.right, plot.left - 6, y + 4, plot.y.labels[k]);
   }
   for (std::size_t k = 0; k < plot.x.ticks.size(); ++k) {
     const double x = plot.px(plot.x.ticks[k]);
-    fmt::format_to(to, "<path class=\"axis\" d=\"M{:.1f} {:.1f}v4\"/><text class=\"mid\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n",
-                   x, plot.bottom, x, plot.bottom + 18, plot.x.labels[k]);
+    fmt::format_to(
+        to,
+        "<path class=\"axis\" d=\"M{:.1f} {:.1f}v4\"/><text class=\"mid\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", x,
+        plot.bottom, x, plot.bottom + 18, plot.x.labels[k]);
   }
   fmt::format_to(to, "<path class=\"axis\" d=\"M{:.1f} {:.1f}H{:.1f}\"/>", plot.left, plot.bottom, plot.right);
   fmt::format_to(to, "<text class=\"mid\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>", 0.5 * (plot.left + plot.right),
@@ -295,12 +309,23 @@ std::string escape_markup(std::string_view text) {
   std::string out;
   for (const char c : text) {
     switch (c) {
-      case '&': out += "&amp;"; break;
-      case '<': out += "&lt;"; break;
-      case '>': out += "&gt;"; break;
-      case '"': out += "&quot;"; break;
-      case '\'': out += "&#39;"; break;
-      default: out += static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\t' ? '?' : c;
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      case '\'':
+        out += "&#39;";
+        break;
+      default:
+        out += static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\t' ? '?' : c;
     }
   }
   return out;
@@ -330,13 +355,14 @@ std::string number_text(double value, int digits) {
 }
 
 std::string viridis(double at) {
-  static const double table[9][3] = {{68, 1, 84},    {71, 45, 123},  {59, 82, 139}, {44, 114, 142}, {33, 145, 140},
-                                     {40, 174, 128}, {94, 201, 98},  {173, 220, 48}, {253, 231, 37}};
+  static const double table[9][3] = {{68, 1, 84},    {71, 45, 123}, {59, 82, 139},  {44, 114, 142}, {33, 145, 140},
+                                     {40, 174, 128}, {94, 201, 98}, {173, 220, 48}, {253, 231, 37}};
   const double s = 8 * std::min(1.0, std::max(0.0, std::isnan(at) ? 0.0 : at));
   const int k = std::min(7, static_cast<int>(s));
   std::string text = "#";
   for (int c = 0; c < 3; ++c)
-    text += fmt::format("{:02x}", static_cast<int>(std::lround(table[k][c] + (s - k) * (table[k + 1][c] - table[k][c]))));
+    text += fmt::format("{:02x}",
+                        static_cast<int>(std::lround(table[k][c] + (s - k) * (table[k + 1][c] - table[k][c]))));
   return text;
 }
 
@@ -346,23 +372,29 @@ int sequential_colour(std::size_t k, std::size_t n) {
 }
 
 std::string svg_css() {
-  std::string css = R"(:root{--paper:#fff;--ink:#1c1e22;--soft:#5b616e;--rule:#d5d8de;--grid:#d9dce2;--load:#f2f3f5;--hold:#e2e5ea;
+  std::string css =
+      R"(:root{--paper:#fff;--ink:#1c1e22;--soft:#5b616e;--rule:#d5d8de;--grid:#d9dce2;
+--load:#f2f3f5;--hold:#e2e5ea;
 --c0:#0072b2;--c1:#d55e00;--c2:#009e73;--c3:#b0479a;--c4:#9a7500;--c5:#3f4a5a;
 --c6:#440154;--c7:#414487;--c8:#2a788e;--c9:#22a884;--c10:#5fae3c;--c11:#b5a51a}
 @media screen and (prefers-color-scheme:dark){
-:root{--paper:#16181c;--ink:#e6e7ea;--soft:#a3a9b5;--rule:#3a3f49;--grid:#333842;--load:#1e2127;--hold:#282c34;
+:root{--paper:#16181c;--ink:#e6e7ea;--soft:#a3a9b5;--rule:#3a3f49;--grid:#333842;
+--load:#1e2127;--hold:#282c34;
 --c0:#5ab4e6;--c1:#ff8f52;--c2:#3fcf9f;--c3:#e28ccb;--c4:#e3bb4a;--c5:#b9c0cc;
 --c6:#8a78d0;--c7:#6c8fd8;--c8:#3fa0b8;--c9:#35c59b;--c10:#86d957;--c11:#f2e03a}}
-.chart,.section,.bar{font:12px "Helvetica Neue",Helvetica,Arial,"Liberation Sans",sans-serif;font-variant-numeric:tabular-nums;max-width:100%;height:auto}
+.chart,.section,.bar{font:12px "Helvetica Neue",Helvetica,Arial,"Liberation Sans",sans-serif;
+font-variant-numeric:tabular-nums;max-width:100%;height:auto}
 .chart text,.section text,.bar text{fill:var(--ink)}
 .mid{text-anchor:middle}.end{text-anchor:end}.chart .soft{fill:var(--soft)}
 .axis{stroke:var(--soft);fill:none}.grid{stroke:var(--grid);stroke-width:.7}.zero{stroke:var(--soft);stroke-width:.9}
 .load{fill:var(--load)}.hold{fill:var(--hold)}
-.line{fill:none;stroke-width:1.7;stroke-linejoin:round;stroke-linecap:round}.dashed{stroke-dasharray:5 3.5;stroke-linecap:butt}
+.line{fill:none;stroke-width:1.7;stroke-linejoin:round;stroke-linecap:round}
+.dashed{stroke-dasharray:5 3.5;stroke-linecap:butt}
 .n5{fill:#d7352f}.n7{fill:#2b6cc4}.nx{fill:#e0a010}.n6{fill:#6b7078}.outermost{fill:#d4d7dc}
 .section circle{stroke:#4a4e55;stroke-width:.5}
 )";
-  for (int k = 0; k < categorical_colours + sequential_colours; ++k) css += fmt::format(".c{0}{{stroke:var(--c{0})}}", k);
+  for (int k = 0; k < categorical_colours + sequential_colours; ++k)
+    css += fmt::format(".c{0}{{stroke:var(--c{0})}}", k);
   return css + "\n";
 }
 
@@ -375,7 +407,8 @@ std::string chart_svg(const LineChart& chart) {
   if (!can_draw(chart)) return "";
   const Plot plot = layout(chart);
   std::string text = fmt::format(
-      "<svg class=\"chart\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\" role=\"img\" aria-label=\"{2}\">\n",
+      "<svg class=\"chart\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\" role=\"img\" "
+      "aria-label=\"{2}\">\n",
       chart.width, chart.height, escape_markup(chart.title));
   text += draw_bands(chart, plot) + draw_axes(chart, plot);
   for (const ChartLine& line : chart.lines)

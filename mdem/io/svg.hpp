@@ -91,7 +91,8 @@ RopeCamera rope_camera(const std::vector<RopeView>& views, double tube_radius, d
 // An <svg> element of at most 60 kB. `name` makes its ids unique in the page.
 std::string rope_picture(const RopeView& view, const RopeCamera& camera, double tube_radius,
                          const std::string& name, bool scale_bar);
-std::string moment_bar(double moment_eV);  // an <svg> element: the colours and their scale
+double scale_bar_length(const RopeCamera& camera);  // nm
+std::string moment_bar(double moment_eV);           // an <svg> element: the colours and their scale
 
 // A file of its own, on white, with scale bar and colours: for a README or a paper.
 std::string rope_svg(const RopeView& view, double tube_radius, double width = 1200);

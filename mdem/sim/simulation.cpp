@@ -310,9 +310,15 @@ struct Reader {
   }
 };
 
-template <class Stream, class Arrays>
-void each(const Arrays& arrays, Stream&& f) {
-  for (auto* v : arrays) f(*v);
+// The arrays of a checkpoint in their order; const or not, as the arguments are.
+template <class S, class F, class R>
+auto checkpoint_arrays(S& s, F& f, R& ref) {
+  return std::array{&s.position.x,         &s.position.y,         &s.position.z,         &s.orientation.w,
+                    &s.orientation.x,      &s.orientation.y,      &s.orientation.z,      &s.velocity.x,
+                    &s.velocity.y,         &s.velocity.z,         &s.angular_velocity.x, &s.angular_velocity.y,
+                    &s.angular_velocity.z, &f.force.x,            &f.force.y,            &f.force.z,
+                    &f.torque.x,           &f.torque.y,           &f.torque.z,           &ref.x,
+                    &ref.y,                &ref.z};
 }
 
 }  // namespace
@@ -328,14 +334,7 @@ std::string Simulation::serialise() const {
   w.put(work_);
   w.put(dissipated_);
   w.put(list_.skin);
-  const Vec3Array& ref = list_.reference();
-  const State& s = state_;
-  const std::array<const std::vector<double>*, 22> arrays{
-      &s.position.x, &s.position.y, &s.position.z, &s.orientation.w, &s.orientation.x, &s.orientation.y,
-      &s.orientation.z, &s.velocity.x, &s.velocity.y, &s.velocity.z, &s.angular_velocity.x,
-      &s.angular_velocity.y, &s.angular_velocity.z, &forces_.force.x, &forces_.force.y, &forces_.force.z,
-      &forces_.torque.x, &forces_.torque.y, &forces_.torque.z, &ref.x, &ref.y, &ref.z};
-  each(arrays, [&](const std::vector<double>& v) { w.put(v); });
+  for (const auto* v : checkpoint_arrays(state_, forces_, list_.reference())) w.put(*v);
   w.put(forces_.energy);
   w.put(forces_.damping_power);
   return std::move(w.bytes);
@@ -360,13 +359,7 @@ void Simulation::restore(const std::string& bytes) {
   r.get(dissipated_);
   r.get(list_.skin);
   Vec3Array ref(state_.size());
-  State& s = state_;
-  const std::array<std::vector<double>*, 22> arrays{
-      &s.position.x, &s.position.y, &s.position.z, &s.orientation.w, &s.orientation.x, &s.orientation.y,
-      &s.orientation.z, &s.velocity.x, &s.velocity.y, &s.velocity.z, &s.angular_velocity.x,
-      &s.angular_velocity.y, &s.angular_velocity.z, &forces_.force.x, &forces_.force.y, &forces_.force.z,
-      &forces_.torque.x, &forces_.torque.y, &forces_.torque.z, &ref.x, &ref.y, &ref.z};
-  each(arrays, [&](std::vector<double>& v) { r.get(v); });
+  for (auto* v : checkpoint_arrays(state_, forces_, ref)) r.get(*v);
   r.get(forces_.energy);
   r.get(forces_.damping_power);
   list_.build(topology_, ref);

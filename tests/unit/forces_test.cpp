@@ -85,13 +85,16 @@ TEST_P(ForcesTest, SameBitsOnAnyNumberOfThreads) {
 }
 
 TEST_P(ForcesTest, NetForceAndTorqueVanish) {
-  if (GetParam().legacy) GTEST_SKIP() << "the legacy torque does not conserve angular momentum";
   const Forces f = fast(0.2, 2);
   const NetForce net = net_force(state, f);
   double scale = 0;
   for (std::size_t i = 0; i < f.force.size(); ++i) scale += f.force[i].norm();
   EXPECT_LT(net.force.norm(), 1e-13 * scale);
-  EXPECT_LT(net.torque.norm(), 1e-12 * scale * 10);
+  if (GetParam().legacy) {
+    EXPECT_GT(net.torque.norm(), 1e-6 * scale) << "what the published code leaves out should show";
+  } else {
+    EXPECT_LT(net.torque.norm(), 1e-11 * scale);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Variants, ForcesTest,
