@@ -1,7 +1,10 @@
 // ropewalk: the front door. Reads the command line, calls the verb, turns errors into one line and an exit
 // code: 0 done, 2 wrong input, 3 numerical failure, 128 + signal when interrupted.
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <cstdlib>
 
 #include "commands/commands.hpp"
 #include "model/error.hpp"
@@ -11,6 +14,15 @@
 namespace {
 
 using namespace ropewalk;
+
+// By default the OpenMP runtime spins while it waits, and on a machine that does other work as well a step then
+// takes up to ten times as long. The runtime reads its settings before main: start once more with waiting
+// threads asleep, unless the user has chosen otherwise.
+void wait_asleep(char** argv) {
+  if (std::getenv("OMP_WAIT_POLICY") || std::getenv("GOMP_SPINCOUNT")) return;
+  setenv("OMP_WAIT_POLICY", "passive", 1);
+  execv("/proc/self/exe", argv);  // on failure go on as we are: only speed is lost
+}
 
 struct Verbs {
   RunArguments run;
@@ -110,6 +122,7 @@ void add_bench(CLI::App& app, Verbs& v) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  wait_asleep(argv);
   CLI::App app("ropewalk twists carbon-nanotube ropes by the mesoscopic distinct element method.\n"
                "Units: nm, ps, eV; moments nN nm; every key of a scene carries its unit.");
   app.set_version_flag("--version", std::string("ropewalk ") + version + " (" + git_id + ")");

@@ -211,8 +211,8 @@ Panel other_energies(const std::vector<LogRow>& log) {
 Panel packing_charge() {
   return {"Packing charge",
           "Q = Σ (6 − neighbours) over the internal tubes of the middle section: the sum of five-fold (+1) and "
-          "seven-fold (−1) defects. Neighbours by distance (solid), and by Delaunay triangulation (dashed), which "
-          "takes distances in the plane of the section and misleads beyond β = 54°.",
+          "seven-fold (−1) defects. Neighbours by distance (solid), and by Delaunay triangulation (dashed), "
+          "which takes distances in the plane of the section and misleads beyond β = 54°.",
           {"Q", "", true},
           {{"distance", [](const LogRow& r) { return r.charge; }, 1},
            {"Delaunay", [](const LogRow& r) { return r.charge_delaunay; }, 0, true}},
@@ -279,6 +279,16 @@ Panel balance(const std::vector<LogRow>& log) {
           {{"balance", [](const LogRow& r) { return r.balance; }, 5}}};
 }
 
+// When the k-th of n pictures is from: a relaxation has no times, only a beginning and an end.
+std::string when(const ReportInput& in, std::size_t k, std::size_t n, double time) {
+  if (clock_of(in.log).value == &LogRow::time) return picoseconds(time);
+  return k == 0 ? "start" : k + 1 == n ? "end" : "between";
+}
+
+std::string tag(const ReportInput& in, const std::string& when, double beta) {
+  return "<div class=\"tag\">" + when + (in.tubes == 1 ? "" : " &#160; β = " + degrees(beta)) + "</div>\n";
+}
+
 // --- Radius along the rope ----------------------------------------------------------------------------------
 
 std::string radius_figure(const ReportInput& in, const std::vector<ReportSection>& sections, Figures& figures) {
@@ -290,7 +300,7 @@ std::string radius_figure(const ReportInput& in, const std::vector<ReportSection
   std::vector<TableColumn> columns;
   for (std::size_t k = 0; k < sections.size(); ++k) {
     ChartLine line;
-    line.name = picoseconds(sections[k].time_ps);
+    line.name = when(in, k, sections.size(), sections[k].time_ps);
     line.y = sections[k].radius_profile;
     for (std::size_t i = 0; i < line.y.size(); ++i) line.x.push_back(static_cast<double>(i) * in.element_length);
     line.colour = sequential_colour(k, sections.size());
@@ -309,15 +319,25 @@ std::string radius_figure(const ReportInput& in, const std::vector<ReportSection
 
 // --- Pictures -----------------------------------------------------------------------------------------------
 
+// Short ropes stand side by side, a little smaller where that makes them fit.
+RopeCamera camera_for_page(const std::vector<RopeView>& views, double tube_radius) {
+  constexpr double page = 1040, gap = 28;
+  RopeCamera camera = rope_camera(views, tube_radius, page);
+  for (const int columns : {2, 3, 4}) {
+    const double column = (page - (columns - 1) * gap) / columns, width = camera.width * camera.scale;
+    if (width > column && width < 1.25 * column) camera.scale = column / camera.width;
+  }
+  return camera;
+}
+
 std::string views_figure(const ReportInput& in, Figures& figures) {
   const std::vector<RopeView> views = some(in.views);
   if (views.empty()) return paragraph("There are no frames to draw the rope from.");
-  const RopeCamera camera = rope_camera(views, in.tube_radius);
-  std::string html = "<figure class=\"strip\">\n";
+  const RopeCamera camera = camera_for_page(views, in.tube_radius);
+  std::string html = "<figure class=\"strip\"><div class=\"views\">\n";
   for (std::size_t k = 0; k < views.size(); ++k) {
     const std::string name = fmt::format("v{}t", static_cast<char>('a' + k));
-    html += fmt::format("<div class=\"view\"><div class=\"tag\">{} &#160; β = {}</div>\n",
-                        picoseconds(views[k].time_ps), degrees(views[k].beta_deg));
+    html += "<div class=\"view\">" + tag(in, when(in, k, views.size(), views[k].time_ps), views[k].beta_deg);
     html += rope_picture(views[k], camera, in.tube_radius, name, k + 1 == views.size()) + "</div>\n";
   }
   std::string caption =
@@ -325,6 +345,7 @@ std::string views_figure(const ReportInput& in, Figures& figures) {
           "The rope from the side, at the same scale and from the same direction; the tubes are drawn "
           "at their radius. ") +
       fmt::format("The bar is {:g} nm long.", scale_bar_length(camera));
+  html += "</div>\n";
   if (camera.moment_eV > 0) {
     html += moment_bar(camera.moment_eV);
     caption +=
@@ -342,10 +363,8 @@ std::string key_of(const char* name, const char* words) {
 }
 
 std::string section_words(const ReportSection& s) {
-  std::string html =
-      fmt::format("<div class=\"tag\">{} &#160; β = {}</div><div><b>Q = {}</b> &#160; Delaunay {}</div>",
-                  picoseconds(s.time_ps), degrees(s.beta_deg), fixed_text(s.section.charge, 0),
-                  fixed_text(s.section.charge_delaunay, 0));
+  std::string html = fmt::format("<div><b>Q = {}</b> &#160; Delaunay {}</div>", fixed_text(s.section.charge, 0),
+                                 fixed_text(s.section.charge_delaunay, 0));
   if (s.section.voids > 0)
     html += fmt::format("<div class=\"soft\">{} {}, {} nm²</div>", s.section.voids,
                         s.section.voids == 1 ? "void" : "voids", number_text(s.section.void_area, 3));
@@ -355,12 +374,14 @@ std::string section_words(const ReportSection& s) {
 std::string sections_figure(const ReportInput& in, const std::vector<ReportSection>& sections, Figures& figures) {
   double half = 0;
   for (const ReportSection& s : sections) half = std::max(half, section_half_width(s.section, in.tube_radius));
-  const double pixels = sections.size() > 4 ? 150 : 220;  // six side by side
-  std::string html = "<figure class=\"sections\"><div class=\"row\">\n";
-  for (const ReportSection& s : sections)
-    if (!s.section.points.empty())
-      html += "<div class=\"cut\">" + section_picture(s.section, in.shells, in.tube_radius, half, pixels) +
-              section_words(s) + "</div>\n";
+  const bool few = sections.size() <= 4;  // otherwise six side by side
+  std::string html = fmt::format("<figure><div class=\"row{}\">\n", few ? " few" : "");
+  for (std::size_t k = 0; k < sections.size(); ++k)
+    if (!sections[k].section.points.empty())
+      html += "<div class=\"cut\">" +
+              section_picture(sections[k].section, in.shells, in.tube_radius, half, few ? 220 : 150) +
+              tag(in, when(in, k, sections.size(), sections[k].time_ps), sections[k].beta_deg) +
+              section_words(sections[k]) + "</div>\n";
   html += "</div><div class=\"keys\">" + key_of("n6", "internal, six neighbours") + key_of("n5", "five") +
           key_of("n7", "seven") + key_of("nx", "another number") + key_of("outermost", "outermost") + "</div>\n";
   return html +
@@ -484,19 +505,19 @@ std::string limits_part(const ReportInput& in) {
 
 // --- Facts and parameters -----------------------------------------------------------------------------------
 
+// nm^2 as nm²; escaped.
+std::string with_powers(std::string text) {
+  for (const auto& [from, to] : {std::pair("^2", "²"), std::pair("^3", "³"), std::pair("^4", "⁴")})
+    for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from)) text.replace(at, 2, to);
+  return escape_markup(text);
+}
+
 std::string facts_part(const std::vector<ReportFact>& facts) {
   std::string html = "<div class=\"scroll\"><table class=\"facts\"><tbody>\n";
   for (const ReportFact& f : facts)
     html += fmt::format("<tr><th>{}</th><td>{}</td><td class=\"soft\">{}</td></tr>\n", escape_markup(f.key),
-                        escape_markup(f.value), escape_markup(f.remark));
+                        with_powers(f.value), with_powers(f.remark));
   return html + "</tbody></table></div>\n";
-}
-
-// nm^2 as nm².
-std::string unit_text(std::string unit) {
-  for (const auto& [from, to] : {std::pair("^2", "²"), std::pair("^3", "³"), std::pair("^4", "⁴")})
-    for (std::size_t at = unit.find(from); at != std::string::npos; at = unit.find(from)) unit.replace(at, 2, to);
-  return escape_markup(unit);
 }
 
 std::string plain_number(double value) {
@@ -518,7 +539,7 @@ std::string parameters_part(const ReportInput& in) {
   for (const Quantity& q : in.parameters)
     html += fmt::format(
         "<tr><td>{}</td><td class=\"number\">{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
-        escape_markup(q.key), plain_number(q.value), unit_text(q.unit),
+        escape_markup(q.key), plain_number(q.value), with_powers(q.unit),
         q.standard_error ? plain_number(*q.standard_error) : "<span class=\"soft\">not published</span>",
         escape_markup(q.origin), escape_markup(q.doi));
   return html + "</tbody></table></div>\n";
@@ -538,9 +559,11 @@ body{margin:0;background:var(--paper);color:var(--ink);
 font:17px/1.55 Charter,"Bitstream Charter","Iowan Old Style",Palatino,"Liberation Serif",Georgia,serif}
 main{max-width:1130px;margin:0 auto;padding:40px 28px 72px}
 p,ul,.warnings{max-width:74ch}
-h1{font-size:2.1rem;line-height:1.15;margin:.1em 0 .5em;font-weight:600;letter-spacing:-.01em;overflow-wrap:anywhere}
+h1{font-size:2.1rem;line-height:1.15;margin:.1em 0 .5em;font-weight:600;letter-spacing:-.01em;
+overflow-wrap:anywhere}
 h2{font-size:1.35rem;margin:1.7em 0 .7em;padding-top:.7em;border-top:1px solid var(--rule);font-weight:600}
-h3,.kicker,.tag,.cut,.keys,details,table,th{font-family:"Helvetica Neue",Helvetica,Arial,"Liberation Sans",sans-serif}
+h3,.kicker,.tag,.cut,.keys,details,table,th{
+font-family:"Helvetica Neue",Helvetica,Arial,"Liberation Sans",sans-serif}
 h3{font-size:.86rem;margin:0 0 .5em;font-weight:600}
 .kicker{margin:0;color:var(--soft);font-size:.82rem;letter-spacing:.04em}
 .lead{font-size:1.08rem}
@@ -548,11 +571,13 @@ h3{font-size:.86rem;margin:0 0 .5em;font-weight:600}
 figure{margin:0 0 1.9em;min-width:0;break-inside:avoid}
 figcaption{font-size:.86rem;line-height:1.45;color:var(--soft);max-width:80ch;margin-top:.5em}
 figcaption b{color:var(--ink)}
-.pair{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(100%,460px),1fr));gap:0 34px}
+.pair{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(100%,420px),1fr));gap:0 34px}
 .pair figure{margin-bottom:1.3em}
-.strip{break-inside:auto}.strip .view{margin-bottom:14px;break-inside:avoid}
+.strip{break-inside:auto}.view{max-width:100%;break-inside:avoid}
+.views{display:flex;flex-wrap:wrap;gap:14px 28px;align-items:flex-start;margin-bottom:12px}
 .tag{font-size:.82rem;font-variant-numeric:tabular-nums;font-weight:600;margin-bottom:2px}
-.row{display:flex;flex-wrap:wrap;gap:22px 24px}
+.row{display:grid;gap:22px;grid-template-columns:repeat(auto-fill,minmax(130px,1fr))}
+.row.few{grid-template-columns:repeat(auto-fill,minmax(190px,1fr))}
 .cut{font-size:.82rem;line-height:1.5;font-variant-numeric:tabular-nums}
 .cut svg{display:block;margin-bottom:6px}
 .keys{font-size:.82rem;margin-top:16px;display:flex;flex-wrap:wrap;gap:4px 20px}
@@ -596,12 +621,14 @@ std::string log_part(const ReportInput& in, const std::vector<ReportSection>& se
   std::string html = heading("Energies");
   const std::string bonds = panel(bond_energies()), others = panel(other_energies(in.log));
   html += pair(bonds, others) + heading("Packing and twist");
-  if (!any_internal(in.shells))
+  const bool packed = any_internal(in.shells), single = in.tubes == 1;
+  if (!packed)
     html +=
         paragraph("No packing charge: no tube is internal, that is, has six neighbours in the untwisted state.");
-  const std::string charge = any_internal(in.shells) ? panel(packing_charge()) : "", beta = panel(twist_angle());
+  const std::string charge = packed ? panel(packing_charge()) : "", beta = single ? "" : panel(twist_angle());
   html += pair(charge, beta);
-  const std::string twists = panel(end_twists()), radius = radius_figure(in, sections, figures);
+  const std::string twists = panel(end_twists());
+  const std::string radius = single ? "" : radius_figure(in, sections, figures);
   html += pair(twists, radius) + heading("Buckling of the rope");
   const std::string deflection = panel(amplitude()), turns = panel(windings());
   html += pair(deflection, turns) + heading("Energy balance");

@@ -18,11 +18,11 @@
 namespace ropewalk {
 namespace {
 
-constexpr std::size_t most_bytes = 60000;
+constexpr std::size_t most_bytes_in_page = 60000, most_bytes_of_file = 250000;
 constexpr int moment_colours = 12;
-constexpr double reach = 1.25;           // half the stroke that separates a tube from its neighbours, radii
+constexpr double reach = 1.28;           // half the stroke behind a tube, radii: closes the gap to its neighbour
 constexpr double layer_thickness = 1.2;  // radii
-constexpr double overlap = 0.12;         // of two pieces of a tube, radii
+constexpr double overlap = 0.25;         // of two pieces of a tube, radii
 constexpr double per_nm = 100;           // coordinates are whole hundredths of a nanometre
 
 struct Span {
@@ -297,7 +297,7 @@ std::string paint_layer(const Paths& paths, int layer, const std::string& id, do
   std::string text = fmt::format(
       "<use href=\"#{}\" stroke=\"#1d232b\" stroke-width=\"{}\" "
       "stroke-dasharray=\"999999\" stroke-dashoffset=\"-{}\"/><g stroke-width=\"{}\">",
-      id, width(2 * reach), width(1.3 * overlap), width(1.85));
+      id, width(2 * reach), width(0.8 * overlap), width(1.85));
   for (auto p = paths.lower_bound({layer, 0}); p != paths.end() && p->first.layer == layer; ++p)
     text += fmt::format("<use href=\"#{}_{}\" stroke=\"{}\"/>", id, p->first.colour,
                         body_colour(coloured, p->first.colour, depth));
@@ -326,7 +326,7 @@ bool has_moments(const RopeView& view) {
 }
 
 std::string rope_body(const RopeView& view, const RopeCamera& camera, double radius, double top,
-                      const std::string& name) {
+                      const std::string& name, std::size_t most_bytes) {
   std::string text;
   std::vector<SeenTube> tubes;
   std::size_t stride = 0;
@@ -448,7 +448,7 @@ RopeCamera rope_camera(const std::vector<RopeView>& views, double radius, double
 }
 
 double scale_bar_length(const RopeCamera& camera) {
-  const double longest = std::max(1e-3, 0.12 * camera.width);
+  const double longest = std::max(1e-3, 0.2 * camera.width);
   const double base = std::pow(10.0, std::floor(std::log10(longest)));
   for (const double m : {5.0, 2.0})
     if (m * base <= longest) return m * base;
@@ -465,7 +465,7 @@ std::string rope_picture(const RopeView& view, const RopeCamera& camera, double 
       "aria-label=\"Side view at {2} ps\">\n<g fill=\"none\" stroke-linejoin=\"round\" "
       "transform=\"scale({3:.5f})\">",
       width, height + bar, number_text(view.time_ps), camera.scale / per_nm);
-  text += rope_body(view, camera, radius, y.high, name) + "</g>\n";
+  text += rope_body(view, camera, radius, y.high, name, most_bytes_in_page) + "</g>\n";
   if (scale_bar) text += scale_bar_at(camera, 1.5 * radius * camera.scale, height + 14, "var(--ink)");
   return text + "</svg>\n";
 }
@@ -508,7 +508,7 @@ std::string rope_svg(const RopeView& view, double radius, double width) {
       "fill=\"#fff\"/>\n<g fill=\"none\" stroke-linejoin=\"round\" transform=\"translate({2:.1f} 10) "
       "scale({3:.5f})\">",
       width, height, left, camera.scale / per_nm);
-  text += rope_body(view, camera, radius, y.high, "t") + "</g>\n";
+  text += rope_body(view, camera, radius, y.high, "t", most_bytes_of_file) + "</g>\n";
   text += scale_bar_at(camera, left + 1.5 * radius * camera.scale, rope + 27, "#1c1e22");
   if (coloured) text += bar_at(camera.moment_eV, width - 400, rope + 22, "#1c1e22");
   return text + "</svg>\n";

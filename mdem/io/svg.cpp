@@ -386,7 +386,8 @@ std::string svg_css() {
 font-variant-numeric:tabular-nums;max-width:100%;height:auto}
 .chart text,.section text,.bar text{fill:var(--ink)}
 .mid{text-anchor:middle}.end{text-anchor:end}.chart .soft{fill:var(--soft)}
-.axis{stroke:var(--soft);fill:none}.grid{stroke:var(--grid);stroke-width:.7}.zero{stroke:var(--soft);stroke-width:.9}
+.axis{stroke:var(--soft);fill:none}.grid{stroke:var(--grid);stroke-width:.7}
+.zero{stroke:var(--soft);stroke-width:.9}
 .load{fill:var(--load)}.hold{fill:var(--hold)}
 .line{fill:none;stroke-width:1.7;stroke-linejoin:round;stroke-linecap:round}
 .dashed{stroke-dasharray:5 3.5;stroke-linecap:butt}
