@@ -97,7 +97,8 @@ void add_energy(CLI::App& app, Verbs& v) {
   CLI::App* c = app.add_subcommand(
       "energy", "Energies (eV), forces (eV/nm) and torques (eV) of one state: CSV tube,x_nm,y_nm,z_nm,qw,qx,qy,qz");
   c->add_option("state", v.energy.state, "State file; the tube axis is the body's z")->required();
-  c->add_option("--parameters", v.energy.parameters, "Parameter set: a file, or the name of a shipped one")->required();
+  c->add_option("--parameters", v.energy.parameters, "Parameter set: a file, or the name of a shipped one")
+      ->required();
   c->add_option("--law", v.energy.law, "Contact law: paper or none")->capture_default_str();
   c->add_option("--exclude-along-tube", v.energy.exclude_along_tube,
                 "Elements of one tube up to this many apart do not touch")
@@ -123,8 +124,9 @@ void add_bench(CLI::App& app, Verbs& v) {
 
 int main(int argc, char** argv) {
   wait_asleep(argv);
-  CLI::App app("ropewalk twists carbon-nanotube ropes by the mesoscopic distinct element method.\n"
-               "Units: nm, ps, eV; moments nN nm; every key of a scene carries its unit.");
+  CLI::App app(
+      "ropewalk twists carbon-nanotube ropes by the mesoscopic distinct element method.\n"
+      "Units: nm, ps, eV; moments nN nm; every key of a scene carries its unit.");
   app.set_version_flag("--version", std::string("ropewalk ") + version + " (" + git_id + ")");
   app.require_subcommand(1);
   app.footer(scene_key_help());

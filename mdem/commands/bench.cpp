@@ -53,19 +53,19 @@ int bench_command(const BenchArguments& a) {
     out["ns_per_element_step"] = wall;
     out["pairs_per_element"] = pairs;
     out["ns_per_pair"] = pairs > 0 ? contact / pairs : 0.0;
-    out["split_ns_per_element_step"] = {{"contact", contact}, {"bonds", bonds}, {"frames", frames},
-                                        {"list", list},       {"integration", integration}};
+    out["split_ns_per_element_step"] = {
+        {"contact", contact}, {"bonds", bonds}, {"frames", frames}, {"list", list}, {"integration", integration}};
     out["list_builds"] = after.builds - before.builds;
     out["bytes_per_element"] = bytes;
     out["list_bytes_per_element"] = list_bytes;
     fmt::print("{}\n", out.dump(1));
     return 0;
   }
-  fmt::print("{} elements, {} threads, {} steps of {:.3g} fs\n", prepared.topology.elements(), omp_get_max_threads(),
-             a.steps, prepared.time_step / units::fs);
+  fmt::print("{} elements, {} threads, {} steps of {:.3g} fs\n", prepared.topology.elements(),
+             omp_get_max_threads(), a.steps, prepared.time_step / units::fs);
   fmt::print("{:9.1f} ns per element-step\n{:9.1f} pairs per element (half list)\n", wall, pairs);
-  fmt::print("  contact {:.1f}  bonds {:.1f}  frames {:.1f}  list {:.1f}  integration {:.1f} ns\n", contact, bonds, frames,
-             list, integration);
+  fmt::print("  contact {:.1f}  bonds {:.1f}  frames {:.1f}  list {:.1f}  integration {:.1f} ns\n", contact, bonds,
+             frames, list, integration);
   fmt::print("{:9.0f} bytes per element, and {:.0f} for the list\n", bytes, list_bytes);
   fmt::print("{:9.2f} s of wall time per simulated ns\n", wall * n * 1e-9 / prepared.time_step * 1e3);
   return 0;

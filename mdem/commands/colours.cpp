@@ -13,8 +13,8 @@ void colour_contacts(const Topology& topology, const Interaction& in, const Stat
   for (int i = 0; i < topology.elements(); ++i)
     for (std::size_t k = list.begin(i); k < list.begin(i + 1); ++k) {
       const auto si = static_cast<std::size_t>(i), sj = static_cast<std::size_t>(list.indices()[k]);
-      const double e = in.paper->energy(s.position[sj] - s.position[si], axis_of(s.orientation[si]),
-                                        axis_of(s.orientation[sj]));
+      const double e =
+          in.paper->energy(s.position[sj] - s.position[si], axis_of(s.orientation[si]), axis_of(s.orientation[sj]));
       c.vdw_energy[si] += 0.5 * e;
       c.vdw_energy[sj] += 0.5 * e;
     }

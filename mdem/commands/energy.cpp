@@ -56,15 +56,16 @@ Json as_json(const Forces& f, const NetForce& net) {
 
 void print_table(const Forces& f, const NetForce& net) {
   const Energies& e = f.energy;
-  fmt::print("stretch {:16.9g} eV\nshear   {:16.9g} eV\nbend    {:16.9g} eV\ntwist   {:16.9g} eV\n"
-             "vdW     {:16.9g} eV\ntotal   {:16.9g} eV\n\n",
-             e.stretch, e.shear, e.bend, e.twist, e.vdw, e.potential());
+  fmt::print(
+      "stretch {:16.9g} eV\nshear   {:16.9g} eV\nbend    {:16.9g} eV\ntwist   {:16.9g} eV\n"
+      "vdW     {:16.9g} eV\ntotal   {:16.9g} eV\n\n",
+      e.stretch, e.shear, e.bend, e.twist, e.vdw, e.potential());
   fmt::print("{:>8} {:>14} {:>14} {:>14}  {:>14} {:>14} {:>14}\n", "element", "Fx eV/nm", "Fy", "Fz", "Mx eV", "My",
              "Mz");
   for (std::size_t i = 0; i < f.force.size(); ++i) {
     const Vector3 a = f.force[i], b = f.torque[i];
-    fmt::print("{:8} {:14.6e} {:14.6e} {:14.6e}  {:14.6e} {:14.6e} {:14.6e}\n", i, a.x(), a.y(), a.z(), b.x(), b.y(),
-               b.z());
+    fmt::print("{:8} {:14.6e} {:14.6e} {:14.6e}  {:14.6e} {:14.6e} {:14.6e}\n", i, a.x(), a.y(), a.z(), b.x(),
+               b.y(), b.z());
   }
   fmt::print("\nnet force  {:.3e} {:.3e} {:.3e} eV/nm\nnet torque {:.3e} {:.3e} {:.3e} eV about the origin\n",
              net.force.x(), net.force.y(), net.force.z(), net.torque.x(), net.torque.y(), net.torque.z());

@@ -1,6 +1,7 @@
 // `new` and `check`.
 #include <fmt/format.h>
 
+#include <chrono>
 #include <filesystem>
 
 #include "commands/commands.hpp"
@@ -33,12 +34,13 @@ void say_loads(const Scene& scene) {
   if (!scene.loads.empty()) fmt::print("{} loads\n", scene.loads.size());
   if (!scene.twist) return;
   const TwistProtocol& w = *scene.twist;
-  fmt::print("twist: {:.4g} nN nm {} by {} on the grips, ramped in {:.4g} ps, held for {:.4g} ps; grips {} along the "
-             "axis, {} sideways{}\n",
-             w.moment / units::nN_nm, w.reading == TwistProtocol::Reading::per_tube ? "per tube" : "in total",
-             w.application == TwistProtocol::Application::couple ? "couples" : "tangential forces", w.ramp_time(), w.hold,
-             w.axial_free ? "free" : "held", w.lateral_free ? "free" : "held",
-             w.geometric_only ? "; spins relaxed (geometric twist only)" : "");
+  fmt::print(
+      "twist: {:.4g} nN nm {} by {} on the grips, ramped in {:.4g} ps, held for {:.4g} ps; grips {} along the "
+      "axis, {} sideways{}\n",
+      w.moment / units::nN_nm, w.reading == TwistProtocol::Reading::per_tube ? "per tube" : "in total",
+      w.application == TwistProtocol::Application::couple ? "couples" : "tangential forces", w.ramp_time(), w.hold,
+      w.axial_free ? "free" : "held", w.lateral_free ? "free" : "held",
+      w.geometric_only ? "; spins relaxed (geometric twist only)" : "");
 }
 
 }  // namespace
@@ -51,7 +53,8 @@ int new_command(const NewArguments& a) {
   if (a.name.empty())
     throw InputError({"", 0, "name"}, "is missing", "give the scene a name: ropewalk new my-rope --kind rope");
   const SceneTemplate& t = find_template(a.kind);
-  const std::string path = a.name.size() > 5 && a.name.compare(a.name.size() - 5, 5, ".toml") == 0 ? a.name : a.name + ".toml";
+  const std::string path =
+      a.name.size() > 5 && a.name.compare(a.name.size() - 5, 5, ".toml") == 0 ? a.name : a.name + ".toml";
   if (std::filesystem::exists(path) && !a.force)
     throw InputError({path, 0, ""}, "exists", "choose another name or give --force");
   write_file_atomically(path, t.text);
@@ -66,9 +69,10 @@ int check_command(const std::string& path) {
   Simulation simulation = start(scene, p);
   say_source(scene, p);
   say_loads(scene);
-  fmt::print("time step {:.4g} fs; stability limit {:.4g} fs (chain {:.3g}, contact {:.3g} rad/ps, damping {:.3g} 1/ps)\n",
-             p.time_step / units::fs, p.limit.limit / units::fs, p.limit.chain_frequency, p.limit.contact_frequency,
-             p.limit.damping_rate);
+  fmt::print(
+      "time step {:.4g} fs; stability limit {:.4g} fs (chain {:.3g}, contact {:.3g} rad/ps, damping {:.3g} 1/ps)\n",
+      p.time_step / units::fs, p.limit.limit / units::fs, p.limit.chain_frequency, p.limit.contact_frequency,
+      p.limit.damping_rate);
   const Energies& e = simulation.forces().energy;
   fmt::print("start: {:.6g} eV in bonds, {:.6g} eV van der Waals, largest force {:.3g} eV/nm\n", e.bonds(), e.vdw,
              simulation.largest_force());

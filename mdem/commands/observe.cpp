@@ -49,10 +49,12 @@ Json as_json(const State& s, const RopeObservation& o) {
 
 void print_row(const State& s, const RopeObservation& o) {
   const double deg = units::degree;
-  fmt::print("{:9.2f} {:7.2f} {:9.1f} {:9.1f} {:4d} {:4d} {:8d} {:5d} {:8.2f} {:7.2f} {:7.2f} {:9.2f} {:8.2f} {:6d} {:6d}\n",
-             s.time, o.beta / deg, o.physical_twist / deg, o.geometric_twist / deg, o.middle.charge,
-             o.middle.charge_delaunay, o.middle.contacts, o.middle.voids, o.middle.void_area, o.radius_mid, o.radius_end,
-             o.amplitude, o.windings, o.kinked, o.overtwisted);
+  fmt::print(
+      "{:9.2f} {:7.2f} {:9.1f} {:9.1f} {:4d} {:4d} {:8d} {:5d} {:8.2f} {:7.2f} {:7.2f} {:9.2f} {:8.2f} {:6d} "
+      "{:6d}\n",
+      s.time, o.beta / deg, o.physical_twist / deg, o.geometric_twist / deg, o.middle.charge,
+      o.middle.charge_delaunay, o.middle.contacts, o.middle.voids, o.middle.void_area, o.radius_mid, o.radius_end,
+      o.amplitude, o.windings, o.kinked, o.overtwisted);
 }
 
 }  // namespace
@@ -66,8 +68,10 @@ int observe_command(const ObserveArguments& a) {
   DumpReader reader(dir.frames());
   Json all = Json::array();
   if (!a.json)
-    fmt::print("  time_ps beta_deg  physical geometric    Q Qdel contacts voids void_nm2  mid_nm  end_nm amplitude windings "
-               "kinked otwist\n");
+    fmt::print(
+        "  time_ps beta_deg  physical geometric    Q Qdel contacts voids void_nm2  mid_nm  end_nm amplitude "
+        "windings "
+        "kinked otwist\n");
   DumpFrame frame;
   while (reader.next(prepared.topology, frame)) {
     const RopeObservation o = look(observer, scene, prepared.topology, frame.state);

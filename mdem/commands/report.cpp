@@ -1,4 +1,6 @@
 // `report`: report.html from the files of a run.
+#include "io/report.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,7 +10,6 @@
 #include "commands/run_directory.hpp"
 #include "io/files.hpp"
 #include "io/frames.hpp"
-#include "io/report.hpp"
 #include "model/error.hpp"
 
 namespace ropewalk {
@@ -58,22 +59,25 @@ void add_run_facts(const Scene& scene, const Prepared& p, const Manifest& m, Rep
                              scene.damping.contact.eta, scene.damping.bond.rate, scene.damping.local));
   if (scene.twist) {
     const TwistProtocol& w = *scene.twist;
-    add("twist", fmt::format("{:.4g} nN nm {} as {}", w.moment / units::nN_nm,
-                             w.reading == TwistProtocol::Reading::per_tube ? "per tube" : "in total",
-                             w.application == TwistProtocol::Application::couple ? "couples" : "tangential forces"),
+    add("twist",
+        fmt::format("{:.4g} nN nm {} as {}", w.moment / units::nN_nm,
+                    w.reading == TwistProtocol::Reading::per_tube ? "per tube" : "in total",
+                    w.application == TwistProtocol::Application::couple ? "couples" : "tangential forces"),
         fmt::format("ramp {:.4g} ps, hold {:.4g} ps{}", w.ramp_time(), w.hold,
                     w.geometric_only ? "; spins relaxed at each increment" : ""));
   }
   add("time step", fmt::format("{:.4g} fs", p.time_step / units::fs),
       fmt::format("stability limit {:.4g} fs", p.limit.limit / units::fs));
   add("seed", fmt::format("{}", m.seed));
-  add("program", fmt::format("ropewalk {} ({})", m.version, m.git_id), fmt::format("{}, {}", m.compiler, m.build_type));
+  add("program", fmt::format("ropewalk {} ({})", m.version, m.git_id),
+      fmt::format("{}, {}", m.compiler, m.build_type));
   add("wall time", fmt::format("{:.0f} s on {} threads", m.wall_seconds, m.threads), "started " + m.started);
 }
 
 void add_warnings(const Scene& scene, ReportInput& in) {
   if (scene.contact.legacy_torque)
-    in.warnings.push_back("This run left out the torque that the published force code leaves out: it gains energy.");
+    in.warnings.push_back(
+        "This run left out the torque that the published force code leaves out: it gains energy.");
   if (scene.damping.local > 0)
     in.warnings.push_back("PFC local damping depends on the frame and does not conserve momentum.");
 }

@@ -5,11 +5,15 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
+#include <cstring>
+#include <ctime>
 #include <filesystem>
+#include <memory>
 
 #include "commands/colours.hpp"
 #include "commands/commands.hpp"
@@ -27,9 +31,7 @@ namespace {
 volatile std::sig_atomic_t caught_signal = 0;
 void on_signal(int signal) { caught_signal = signal; }
 
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
+double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 std::string iso_time() {
   const std::time_t t = std::time(nullptr);
@@ -163,10 +165,9 @@ class Run {
     write_row();
     write_frame();
     if (caught_signal) return false;
-    reason_ = converged
-                  ? fmt::format("relaxed: largest force below {:.3g} eV/nm", scene_.run.force_tolerance)
-                  : fmt::format("not relaxed after {} steps: largest force {:.3g} eV/nm; raise run.max_steps", most,
-                                simulation_.largest_force());
+    reason_ = converged ? fmt::format("relaxed: largest force below {:.3g} eV/nm", scene_.run.force_tolerance)
+                        : fmt::format("not relaxed after {} steps: largest force {:.3g} eV/nm; raise run.max_steps",
+                                      most, simulation_.largest_force());
     return true;
   }
 
@@ -175,8 +176,8 @@ class Run {
     std::string text = fmt::format("{:8.2f} ps", s.time);
     for (const TwistDrive& twist : prepared_.drive.twist)
       text += fmt::format("  moment {:5.1f} nN nm", twist.moment_at(s.time) / units::nN_nm);
-    return text + fmt::format("  beta {:5.1f} deg  Q {}  twist {:.0f}  bend {:.0f}  vdW {:.0f} eV",
-                              last_row_.beta, last_row_.charge, last_row_.twist, last_row_.bend, last_row_.vdw);
+    return text + fmt::format("  beta {:5.1f} deg  Q {}  twist {:.0f}  bend {:.0f}  vdW {:.0f} eV", last_row_.beta,
+                              last_row_.charge, last_row_.twist, last_row_.bend, last_row_.vdw);
   }
 
   LogRow row() {
@@ -274,8 +275,8 @@ class Run {
 
   int interrupted() {
     save();
-    const std::string reason = fmt::format("stopped by signal {} at {:.3f} ps", static_cast<int>(caught_signal),
-                                           simulation_.state().time);
+    const std::string reason =
+        fmt::format("stopped by signal {} at {:.3f} ps", static_cast<int>(caught_signal), simulation_.state().time);
     write_manifest("interrupted", reason);
     fmt::print(stderr, "\n{}; go on with: ropewalk resume {}\n", reason, dir_.path);
     return 128 + caught_signal;

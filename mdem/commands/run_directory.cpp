@@ -34,8 +34,9 @@ void create_run_directory(const RunDirectory& dir, bool force) {
       throw InputError({dir.path, 0, "--out"}, "exists and is not a directory", "choose another name");
     if (!fs::is_empty(dir.path, error)) {
       if (!force)
-        throw InputError({dir.path, 0, "--out"}, "is not empty",
-                         "choose another name, give --force to replace an earlier run, or go on with `ropewalk resume`");
+        throw InputError(
+            {dir.path, 0, "--out"}, "is not empty",
+            "choose another name, give --force to replace an earlier run, or go on with `ropewalk resume`");
       for (const auto& entry : fs::directory_iterator(dir.path))
         if (!belongs_to_a_run(entry.path().filename().string()))
           throw InputError({dir.path, 0, "--force"},
@@ -76,7 +77,8 @@ RunCheckpoint read_checkpoint(const RunDirectory& dir) {
     throw InputError(place, "there is no checkpoint", "start the run with `ropewalk run`");
   const std::string bytes = read_file(dir.checkpoint());
   const std::size_t head = std::strlen(checkpoint_title) + 17;
-  const bool titled = bytes.size() > head + 32 && bytes.compare(0, std::strlen(checkpoint_title), checkpoint_title) == 0;
+  const bool titled =
+      bytes.size() > head + 32 && bytes.compare(0, std::strlen(checkpoint_title), checkpoint_title) == 0;
   if (!titled || bytes.substr(head - 17, 16) != hash_hex(std::string_view(bytes).substr(head)))
     throw InputError(place, "is damaged or of another version", "start the run anew with `ropewalk run`");
   RunCheckpoint c;

@@ -36,9 +36,9 @@ Scene read_run_scene(const RunDirectory& dir);
 
 // What a resumed run needs beyond the simulation itself.
 struct RunCheckpoint {
-  std::uint64_t log_bytes = 0;     // the files are cut back to these lengths
+  std::uint64_t log_bytes = 0;  // the files are cut back to these lengths
   std::uint64_t frame_bytes = 0;
-  double first_energy = 0;         // eV, total at the start: origin of the balance
+  double first_energy = 0;  // eV, total at the start: origin of the balance
   double wall_seconds = 0;
   std::string simulation;
 };

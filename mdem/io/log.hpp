@@ -26,10 +26,10 @@ struct LogRow {
 };
 
 struct LogColumn {
-  const char* name;     // CSV header, with unit
+  const char* name;  // CSV header, with unit
   const char* meaning;
   double LogRow::*value;
-  bool whole;           // an integer
+  bool whole;  // an integer
 };
 
 // In file order.
@@ -54,8 +54,8 @@ inline const std::vector<LogColumn>& log_columns() {
       {"geometric_twist_deg", "rotation of the tubes about the rope's centre line, end to end",
        &LogRow::geometric_twist, false},
       {"Q", "packing charge of the middle section, by distance", &LogRow::charge, true},
-      {"Q_delaunay", "packing charge of the middle section, by Delaunay triangulation",
-       &LogRow::charge_delaunay, true},
+      {"Q_delaunay", "packing charge of the middle section, by Delaunay triangulation", &LogRow::charge_delaunay,
+       true},
       {"contacts", "pairs of neighbours in the middle section", &LogRow::contacts, true},
       {"voids", "voids in the middle section", &LogRow::voids, true},
       {"void_area_nm2", "their area", &LogRow::void_area, false},

@@ -52,8 +52,8 @@ struct BondEnergy {
 template <class T>
 struct BondForce {
   BondEnergy<T> energy;
-  Vec3<T> force_j;            // on element j; element i feels the opposite
-  Vec3<T> torque_i, torque_j; // about the element centres
+  Vec3<T> force_j;             // on element j; element i feels the opposite
+  Vec3<T> torque_i, torque_j;  // about the element centres
 };
 
 template <class T>

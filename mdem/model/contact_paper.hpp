@@ -84,20 +84,20 @@ struct GeneralPowers {
 };
 
 struct PaperContact {
-  double radius = 0;             // r, nm
-  double epsilon = 0;            // eV
-  double repulsion = 0;          // A
-  double attraction = 0;         // B
+  double radius = 0;      // r, nm
+  double epsilon = 0;     // eV
+  double repulsion = 0;   // A
+  double attraction = 0;  // B
   double alpha = 9.5;
   double beta = 4.0;
   std::array<double, 5> angular{};  // C_1 .. C_5
-  double crossing = 0;           // C_gamma
+  double crossing = 0;              // C_gamma
   double delta = -7.5;
-  double freeze = 2.75;          // R/r below which Gamma is frozen
-  double switch_start = 6.0;     // R/r
-  double cutoff_ratio = 8.0;     // R/r
-  double core_gap = 0.4;         // D below which V is continued by its Taylor polynomial
-  double freeze_blend = 0.02;    // R/r
+  double freeze = 2.75;                         // R/r below which Gamma is frozen
+  double switch_start = 6.0;                    // R/r
+  double cutoff_ratio = 8.0;                    // R/r
+  double core_gap = 0.4;                        // D below which V is continued by its Taylor polynomial
+  double freeze_blend = 0.02;                   // R/r
   double bisector_blend = 0.17364817766693033;  // |cos gamma|: within 10 degrees of a right angle
 
   double cutoff() const { return cutoff_ratio * radius; }

@@ -55,8 +55,8 @@ struct ContactViscosity {
 struct BondDamping {
   double rate = 0;  // lambda, 1/ps
 
-  DampingForce force(double mass, double inertia, const Vector3& separation, const Vector3& v_i,
-                     const Vector3& w_i, const Vector3& v_j, const Vector3& w_j) const {
+  DampingForce force(double mass, double inertia, const Vector3& separation, const Vector3& v_i, const Vector3& w_i,
+                     const Vector3& v_j, const Vector3& w_j) const {
     const Vector3 arm = 0.5 * separation;
     const Vector3 relative = v_j - v_i - (w_i + w_j).cross(arm);
     const Vector3 spin = w_j - w_i;

@@ -42,8 +42,8 @@ class NumericalError : public std::runtime_error {
  public:
   NumericalError(long step, int element, const std::string& what, const std::string& remedy)
       : std::runtime_error("step " + std::to_string(step) +
-                           (element >= 0 ? ", element " + std::to_string(element) : std::string()) + ": " +
-                           what + "; " + remedy),
+                           (element >= 0 ? ", element " + std::to_string(element) : std::string()) + ": " + what +
+                           "; " + remedy),
         step_(step),
         element_(element) {}
 

@@ -84,8 +84,8 @@ double chosen_step(const Scene& scene, const TimeStepLimit& limit) {
   if (typed < limit.limit) return typed;
   const char* why = limit.damping_rate * limit.limit > 1 ? "the strongest damping" : "the stiffest mode";
   throw InputError({scene.path, 0, "run.time_step_fs"},
-                   fmt::format("{:.4g} fs is not below the stability limit of {:.4g} fs, set by {}", typed / units::fs,
-                               limit.limit / units::fs, why),
+                   fmt::format("{:.4g} fs is not below the stability limit of {:.4g} fs, set by {}",
+                               typed / units::fs, limit.limit / units::fs, why),
                    fmt::format("take at most {:.3g}, or \"auto\"", 0.9 * limit.limit / units::fs));
 }
 

@@ -18,9 +18,9 @@ inline constexpr const char* scene_format = "ropewalk-scene-1";
 
 // [rope] hexagonally packed parallel tubes along z, centred on the origin.
 struct RopeSource {
-  int tubes = 91;       // a hexagonal number 1, 7, 19, 37, 61, 91, 127, 169, 217, ...
-  double length = 0;    // nm, rounded to whole elements
-  double spacing = 0;   // nm; 0: that at which two tubes bind best
+  int tubes = 91;           // a hexagonal number 1, 7, 19, 37, 61, 91, 127, 169, 217, ...
+  double length = 0;        // nm, rounded to whole elements
+  double spacing = 0;       // nm; 0: that at which two tubes bind best
   double perturbation = 0;  // nm: amplitude of a random lateral displacement of every element
 };
 
@@ -62,11 +62,11 @@ struct TorqueLoad {
   Vector3 torque = Vector3::Zero();  // eV on each element
 };
 struct RotateLoad {  // prescribed rotation of the selected elements as one body about a line along z
-  double rate = 0;     // rad/ps
-  double angle = 0;    // rad: stop there
+  double rate = 0;   // rad/ps
+  double angle = 0;  // rad: stop there
   Vector3 centre = Vector3::Zero();
-  bool axial_free = true;   // z coordinate free
-  bool spin_free = false;   // element free to turn about its own axis
+  bool axial_free = true;  // z coordinate free
+  bool spin_free = false;  // element free to turn about its own axis
 };
 struct Load {
   Selection on;
@@ -76,11 +76,11 @@ struct Load {
 // [twist] the two-stage protocol: the moment on the grip elements (first and last of every tube; + at the
 // upper end, - at the lower) is ramped at a rate and then held.
 struct TwistProtocol {
-  enum class Reading { per_tube, total };        // is the moment that of each grip element, or of all of them
-  enum class Application { couple, tangential }; // a couple on each element, or tangential forces on the grip
-  double moment = 0;  // eV
-  double rate = 0;    // eV/ps
-  double hold = 0;    // ps after the ramp
+  enum class Reading { per_tube, total };         // is the moment that of each grip element, or of all of them
+  enum class Application { couple, tangential };  // a couple on each element, or tangential forces on the grip
+  double moment = 0;                              // eV
+  double rate = 0;                                // eV/ps
+  double hold = 0;                                // ps after the ramp
   Reading reading = Reading::per_tube;
   Application application = Application::couple;
   bool lateral_free = true;
@@ -94,14 +94,14 @@ struct TwistProtocol {
 struct RunOptions {
   enum class Mode { dynamics, relax };
   Mode mode = Mode::dynamics;
-  double time_step = 0;   // ps; 0: chosen from the stiffest mode
-  double duration = 0;    // ps; 0 with [twist]: ramp plus hold
-  double frames_every = 0;  // ps; 0: 40 frames
-  double log_every = 0;     // ps; 0: 400 rows
-  double checkpoint_every = 60;  // s of wall time
-  double force_tolerance = 1e-4; // eV/nm, relax mode
-  long max_steps = 200000;       // relax mode
-  bool paraview = false;         // also write VTP/PVD
+  double time_step = 0;           // ps; 0: chosen from the stiffest mode
+  double duration = 0;            // ps; 0 with [twist]: ramp plus hold
+  double frames_every = 0;        // ps; 0: 40 frames
+  double log_every = 0;           // ps; 0: 400 rows
+  double checkpoint_every = 60;   // s of wall time
+  double force_tolerance = 1e-4;  // eV/nm, relax mode
+  long max_steps = 200000;        // relax mode
+  bool paraview = false;          // also write VTP/PVD
 };
 
 struct ObserveOptions {
@@ -116,7 +116,7 @@ struct Scene {
   ParameterSet parameters;
   double element_length = 0;  // nm
   std::variant<RopeSource, ChainSource, StateSource> source;
-  double temperature = 0;   // K, initial
+  double temperature = 0;  // K, initial
   std::uint64_t seed = 1;
   ContactOptions contact;
   Damping damping;

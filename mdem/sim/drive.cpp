@@ -111,8 +111,8 @@ double constrain(const Topology& topology, const Drive& drive, double time, cons
       turn(load, time, i, state);
       const Vector3 v1 = state.velocity[i], w1 = state.angular_velocity[i];
       // Free components satisfy v1 - v0 = dv and drop out.
-      work += 0.5 * topology.mass * (v1 - v0 - dv).dot(v1 + v0) +
-              0.5 * topology.inertia * (w1 - w0 - dw).dot(w1 + w0);
+      work +=
+          0.5 * topology.mass * (v1 - v0 - dv).dot(v1 + v0) + 0.5 * topology.inertia * (w1 - w0 - dw).dot(w1 + w0);
     }
   return work;
 }
@@ -122,8 +122,7 @@ void relax_spins(const Topology& topology, State& state) {
   const auto follow = [&](int from, int to) {
     const auto i = static_cast<std::size_t>(from), j = static_cast<std::size_t>(to);
     const Quaternion qi = state.orientation[i];
-    const Quaternion carried =
-        Quaternion::FromTwoVectors(axis_of(qi), axis_of(state.orientation[j])) * qi;
+    const Quaternion carried = Quaternion::FromTwoVectors(axis_of(qi), axis_of(state.orientation[j])) * qi;
     state.orientation.set(j, carried.normalized());
   };
   for (int t = 0; t < topology.tubes(); ++t) {

@@ -35,13 +35,13 @@ struct Turned {
 // Two-stage twisting: + moment on the upper grip, - on the lower, ramped and then held.
 struct TwistDrive {
   std::vector<int> upper, lower;
-  double moment = 0;      // eV, in its reading
-  double rate = 0;        // eV/ps
-  bool per_tube = true;   // moment of each grip element, or of the whole grip
+  double moment = 0;     // eV, in its reading
+  double rate = 0;       // eV/ps
+  bool per_tube = true;  // moment of each grip element, or of the whole grip
   bool tangential = false;
   bool lateral_free = true, axial_free = true;
   bool geometric_only = false;
-  double increment = 1;   // ps
+  double increment = 1;  // ps
 
   double moment_at(double time) const {
     const double ramped = rate > 0 ? rate * time : moment;

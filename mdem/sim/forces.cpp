@@ -186,8 +186,8 @@ struct ContactKernel {
   static void published(const KernelInput& in, const NeighbourList& list, const NeighbourList::Chunk& chunk,
                         Buffer& out);
   ROPEWALK_VECTOR_CLONES
-  static void published_legacy(const KernelInput& in, const NeighbourList& list,
-                               const NeighbourList::Chunk& chunk, Buffer& out);
+  static void published_legacy(const KernelInput& in, const NeighbourList& list, const NeighbourList::Chunk& chunk,
+                               Buffer& out);
   static void general(const KernelInput& in, const NeighbourList& list, const NeighbourList::Chunk& chunk,
                       Buffer& out, bool legacy) {
     if (legacy) {
@@ -307,9 +307,9 @@ void ForceEngine::compute(const Topology& topology, const Interaction& interacti
       sum.energy.twist += f.energy.twist;
       if (!(fi.e1.dot(fj.e1) + fi.e2.dot(fj.e2) > 0) && sum.slipping < 0) sum.slipping = i;
       if (interaction.damping.bond.rate > 0) {
-        const DampingForce d = interaction.damping.bond.force(
-            topology.mass, topology.inertia, separation, state.velocity[si], state.angular_velocity[si],
-            state.velocity[sj], state.angular_velocity[sj]);
+        const DampingForce d = interaction.damping.bond.force(topology.mass, topology.inertia, separation,
+                                                              state.velocity[si], state.angular_velocity[si],
+                                                              state.velocity[sj], state.angular_velocity[sj]);
         out.force.add(si, -d.force_j);
         out.force.add(sj, d.force_j);
         out.torque.add(si, d.torque_i);

@@ -50,8 +50,7 @@ class ForceEngine {
 };
 
 // The oracle: O(N^2), no list, no threads, no vectors.
-void compute_reference(const Topology& topology, const Interaction& interaction, const State& state,
-                       Forces& out);
+void compute_reference(const Topology& topology, const Interaction& interaction, const State& state, Forces& out);
 
 double kinetic_energy(const Topology& topology, const State& state);
 

@@ -173,7 +173,8 @@ void Simulation::check() const {
         !(state_.angular_velocity[i].squaredNorm() * time_step_ * time_step_ < 0.25))
       broken = static_cast<int>(i);
   if (broken >= 0 || !std::isfinite(energy))
-    throw NumericalError(state_.step, broken, "the motion blew up (an element moves a quarter of its radius or "
+    throw NumericalError(state_.step, broken,
+                         "the motion blew up (an element moves a quarter of its radius or "
                          "turns half a radian in one step)",
                          "use a smaller time step or a gentler start and load");
   if (forces_.slipping_bond >= 0)
@@ -257,9 +258,11 @@ bool Simulation::relax(double tolerance, long max_steps, const std::function<boo
     }
     constrain(topology_, drive_, state_.time, forces_, 0.0, state_);
     for (std::size_t i = 0; i < n; ++i)
-      fastest2 = std::max(fastest2, state_.velocity[i].squaredNorm() + scale2 * state_.angular_velocity[i].squaredNorm());
+      fastest2 =
+          std::max(fastest2, state_.velocity[i].squaredNorm() + scale2 * state_.angular_velocity[i].squaredNorm());
     if (!std::isfinite(fastest2))
-      throw NumericalError(k, -1, "relaxation met a force that is not finite", "start from a state without overlaps");
+      throw NumericalError(k, -1, "relaxation met a force that is not finite",
+                           "start from a state without overlaps");
     const double step = std::min(dt, fastest2 > 0 ? most_move / std::sqrt(fastest2) : dt);
     drift(step);
     ++state_.step;
@@ -313,12 +316,28 @@ struct Reader {
 // The arrays of a checkpoint in their order; const or not, as the arguments are.
 template <class S, class F, class R>
 auto checkpoint_arrays(S& s, F& f, R& ref) {
-  return std::array{&s.position.x,         &s.position.y,         &s.position.z,         &s.orientation.w,
-                    &s.orientation.x,      &s.orientation.y,      &s.orientation.z,      &s.velocity.x,
-                    &s.velocity.y,         &s.velocity.z,         &s.angular_velocity.x, &s.angular_velocity.y,
-                    &s.angular_velocity.z, &f.force.x,            &f.force.y,            &f.force.z,
-                    &f.torque.x,           &f.torque.y,           &f.torque.z,           &ref.x,
-                    &ref.y,                &ref.z};
+  return std::array{&s.position.x,
+                    &s.position.y,
+                    &s.position.z,
+                    &s.orientation.w,
+                    &s.orientation.x,
+                    &s.orientation.y,
+                    &s.orientation.z,
+                    &s.velocity.x,
+                    &s.velocity.y,
+                    &s.velocity.z,
+                    &s.angular_velocity.x,
+                    &s.angular_velocity.y,
+                    &s.angular_velocity.z,
+                    &f.force.x,
+                    &f.force.y,
+                    &f.force.z,
+                    &f.torque.x,
+                    &f.torque.y,
+                    &f.torque.z,
+                    &ref.x,
+                    &ref.y,
+                    &ref.z};
 }
 
 }  // namespace

@@ -30,7 +30,8 @@ void Bond(benchmark::State& bench) {
   test::Random random(2);
   const Frame<double> i = frame_of(random.orientation()), j = frame_of(test::turn(random.direction(), 0.1));
   const Vector3 separation(0.1, 0, 1.35);
-  for (auto _ : bench) benchmark::DoNotOptimize(bond_energy_and_gradient(k, test::element_length, separation, i, j));
+  for (auto _ : bench)
+    benchmark::DoNotOptimize(bond_energy_and_gradient(k, test::element_length, separation, i, j));
 }
 BENCHMARK(Bond);
 
@@ -51,9 +52,9 @@ void AllForces(benchmark::State& bench) {
   ForceEngine engine;
   Forces forces(state.size());
   for (auto _ : bench) engine.compute(topology, in, list, state, forces);
-  bench.counters["ns_per_pair"] = benchmark::Counter(static_cast<double>(list.pairs()) * 1e-9,
-                                                     benchmark::Counter::kIsIterationInvariantRate |
-                                                         benchmark::Counter::kInvert);
+  bench.counters["ns_per_pair"] =
+      benchmark::Counter(static_cast<double>(list.pairs()) * 1e-9,
+                         benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 BENCHMARK(AllForces)->Args({100, 0})->Args({100, 20});
 

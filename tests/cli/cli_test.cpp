@@ -54,10 +54,13 @@ class Cli : public ::testing::Test {
 
   // A rope small enough for a test, twisted fast.
   void small_rope(const std::string& name, const std::string& more = "", const std::string& rope = "") const {
-    spit(dir / name, "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-paper\"\n[rope]\ntubes = 19\n"
-                     "length_nm = 16\nperturbation_nm = 0.001\n" + rope +
-                     "[twist]\nmoment_nN_nm = 30\nrate_nN_nm_per_ps = 10\nhold_ps = 2\n"
-                     "[run]\nlog_every_ps = 0.5\nframes_every_ps = 1\n" + more);
+    spit(dir / name,
+         "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-paper\"\n[rope]\ntubes = 19\n"
+         "length_nm = 16\nperturbation_nm = 0.001\n" +
+             rope +
+             "[twist]\nmoment_nN_nm = 30\nrate_nN_nm_per_ps = 10\nhold_ps = 2\n"
+             "[run]\nlog_every_ps = 0.5\nframes_every_ps = 1\n" +
+             more);
   }
 
   fs::path dir;
@@ -73,9 +76,10 @@ TEST_F(Cli, HelpNamesEveryVerbAndUnits) {
 }
 
 TEST_F(Cli, WrongCommandLinesAreOneLine) {
-  for (const char* line : {"", "twist", "run", "run x.toml", "run nowhere.toml --out d", "bench nowhere.toml",
-                           "observe nowhere", "resume nowhere", "report nowhere", "energy none.csv --parameters cnt-10-10-paper",
-                           "new", "new x --kind cable", "check nowhere.toml", "run x --out y --threads 0"}) {
+  for (const char* line :
+       {"", "twist", "run", "run x.toml", "run nowhere.toml --out d", "bench nowhere.toml", "observe nowhere",
+        "resume nowhere", "report nowhere", "energy none.csv --parameters cnt-10-10-paper", "new",
+        "new x --kind cable", "check nowhere.toml", "run x --out y --threads 0"}) {
     const Outcome o = run(line);
     EXPECT_EQ(o.code, 2) << line;
     EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << line << "\n" << o.err;
@@ -102,11 +106,22 @@ TEST_F(Cli, EveryTemplateIsWrittenAndPassesItsCheck) {
   EXPECT_EQ(run("new my-rope --kind rope").code, 2) << "an existing file must stand";
 }
 
+// The scenes that the documentation speaks of are the templates.
+TEST_F(Cli, ShippedScenesAreTheTemplates) {
+  for (const auto& [kind, name] : {std::pair{"rope", "rope-67nm"}, std::pair{"bird-cage", "bird-cage-41nm"},
+                                   std::pair{"helix", "helix-163nm"}, std::pair{"geometric", "geometric-41nm"}}) {
+    ASSERT_EQ(run(std::string("new ") + name + " --kind " + kind).code, 0);
+    EXPECT_EQ(slurp(dir / (std::string(name) + ".toml")),
+              slurp(std::string(ROPEWALK_SOURCE_DIR "/data/scenes/") + name + ".toml"))
+        << "write it anew: ropewalk new data/scenes/" << name << " --force --kind " << kind;
+  }
+}
+
 TEST_F(Cli, RunWritesEverythingAndProtectsIt) {
   small_rope("s.toml", "paraview = true\n");
   ASSERT_EQ(run("run s.toml --out d").code, 0);
-  for (const char* name : {"log.csv", "frames.lammpstrj", "manifest.json", "report.html", "checkpoint.bin", "scene.toml",
-                           "parameters.toml", "paraview/rope.pvd"})
+  for (const char* name : {"log.csv", "frames.lammpstrj", "manifest.json", "report.html", "checkpoint.bin",
+                           "scene.toml", "parameters.toml", "paraview/rope.pvd"})
     EXPECT_TRUE(fs::exists(dir / "d" / name)) << name;
   const Json manifest = Json::parse(slurp(dir / "d/manifest.json"));
   EXPECT_EQ(manifest.at("status"), "finished");
@@ -173,7 +188,8 @@ TEST_F(Cli, SignalsWriteACheckpoint) {
                                 " > stdout.txt 2> stderr.txt & pid=$!; sleep 1.5; kill -" + name +
                                 " $pid; wait $pid; } < /dev/null";
     // A background job of a shell ignores SIGINT unless job control is on.
-    const int status = std::system(("bash -c \"set -m; " + std::regex_replace(command, std::regex("\\$"), "\\$") + "\"").c_str());
+    const int status =
+        std::system(("bash -c \"set -m; " + std::regex_replace(command, std::regex("\\$"), "\\$") + "\"").c_str());
     EXPECT_EQ(WEXITSTATUS(status), 128 + number);
     const Json manifest = Json::parse(slurp(dir / out / "manifest.json"));
     EXPECT_EQ(manifest.at("status"), "interrupted");
@@ -191,8 +207,9 @@ TEST_F(Cli, BlowUpStopsWithAWrittenState) {
     for (int e = 0; e < 5; ++e)
       csv += std::to_string(t) + "," + std::to_string(0.4 * t) + ",0," + std::to_string(1.356 * e) + ",1,0,0,0\n";
   spit(dir / "overlap.csv", csv);
-  spit(dir / "s.toml", "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-paper\"\n[state]\nfile = \"overlap.csv\"\n"
-                       "[run]\nduration_ps = 10\n");
+  spit(dir / "s.toml",
+       "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-paper\"\n[state]\nfile = \"overlap.csv\"\n"
+       "[run]\nduration_ps = 10\n");
   const Outcome o = run("run s.toml --out d");
   EXPECT_EQ(o.code, 3);
   EXPECT_TRUE(std::regex_search(o.err, std::regex("step [0-9]+, element [0-9]+"))) << o.err;
@@ -203,8 +220,9 @@ TEST_F(Cli, BlowUpStopsWithAWrittenState) {
 }
 
 TEST_F(Cli, EnergyGivesForcesThatSumToZeroAndEqualTheReference) {
-  spit(dir / "two.csv", "tube,x_nm,y_nm,z_nm,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n0,0.02,0,1.35,0.9998,0.02,0,0\n"
-                        "1,1.7,0.1,0.3,0.95,0.3,0.05,0.0707\n1,1.72,-0.6,1.5,0.95,0.3,0.06,0.06\n");
+  spit(dir / "two.csv",
+       "tube,x_nm,y_nm,z_nm,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n0,0.02,0,1.35,0.9998,0.02,0,0\n"
+       "1,1.7,0.1,0.3,0.95,0.3,0.05,0.0707\n1,1.72,-0.6,1.5,0.95,0.3,0.06,0.06\n");
   const Outcome fast = run("energy two.csv --parameters cnt-10-10-paper --law paper --json");
   ASSERT_EQ(fast.code, 0) << fast.err;
   const Json f = Json::parse(fast.out);
@@ -228,14 +246,16 @@ TEST_F(Cli, EnergyGivesForcesThatSumToZeroAndEqualTheReference) {
 TEST_F(Cli, BenchReportsItsKeys) {
   small_rope("s.toml");
   const Json b = Json::parse(run("bench s.toml --steps 20 --threads 1 --json").out);
-  for (const char* key : {"ns_per_element_step", "pairs_per_element", "split_ns_per_element_step", "bytes_per_element"})
+  for (const char* key :
+       {"ns_per_element_step", "pairs_per_element", "split_ns_per_element_step", "bytes_per_element"})
     EXPECT_TRUE(b.contains(key)) << key;
   EXPECT_LT(b["bytes_per_element"].get<double>(), 1000);
 }
 
 TEST_F(Cli, RelaxationSaysHowItEnded) {
-  spit(dir / "s.toml", "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-paper\"\n[rope]\ntubes = 7\nlength_nm = 7\n"
-                       "perturbation_nm = 0.02\n[run]\nmode = \"relax\"\nforce_tolerance_nN = 1e-5\n");
+  spit(dir / "s.toml",
+       "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-paper\"\n[rope]\ntubes = 7\nlength_nm = 7\n"
+       "perturbation_nm = 0.02\n[run]\nmode = \"relax\"\nforce_tolerance_nN = 1e-5\n");
   const Outcome o = run("run s.toml --out d");
   EXPECT_EQ(o.code, 0) << o.err;
   EXPECT_NE(o.out.find("relaxed"), std::string::npos) << o.out;

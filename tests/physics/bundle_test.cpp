@@ -122,7 +122,8 @@ TEST(SpinningRope, DampingTakesNothing) {
   // Slow enough that the centrifugal strain does not matter; about an axis across the rope's own as well.
   const Vector3 omega(0.004, 0, 0.01);
   Vector3 centre = Vector3::Zero();
-  for (std::size_t i = 0; i < b.state.size(); ++i) centre += b.state.position[i] / static_cast<double>(b.state.size());
+  for (std::size_t i = 0; i < b.state.size(); ++i)
+    centre += b.state.position[i] / static_cast<double>(b.state.size());
   for (std::size_t i = 0; i < b.state.size(); ++i) {
     b.state.velocity.set(i, omega.cross(b.state.position[i] - centre));
     b.state.angular_velocity.set(i, omega);

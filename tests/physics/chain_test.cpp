@@ -131,7 +131,9 @@ double ring_energy_error(int bonds, double circumference) {
     const auto frame = [&](double angle) {
       return frame_of(test::turn(Vector3::UnitX(), -angle));  // t from z towards y
     };
-    const auto at = [&](double angle) { return Vector3(0, radius * (1 - std::cos(angle)), radius * std::sin(angle)); };
+    const auto at = [&](double angle) {
+      return Vector3(0, radius * (1 - std::cos(angle)), radius * std::sin(angle));
+    };
     energy += bond_energy<double>(k, a, at(q) - at(p), frame(p), frame(q)).total();
   }
   const double turn = 2 * units::pi;
@@ -150,8 +152,10 @@ double wave_speed(bool torsion) {
   Chain c(101);
   const auto mode = [&](int i) { return std::cos(units::pi * i / c.last); };
   for (int i = 0; i <= c.last; ++i) {
-    if (torsion) c.state.angular_velocity.set(i, {0, 0, 1e-3 * mode(i)});
-    else c.state.velocity.set(i, {0, 0, 1e-3 * mode(i)});
+    if (torsion)
+      c.state.angular_velocity.set(i, {0, 0, 1e-3 * mode(i)});
+    else
+      c.state.velocity.set(i, {0, 0, 1e-3 * mode(i)});
   }
   Simulation s = c.make(0.2);
   const auto projection = [&] {
@@ -173,7 +177,7 @@ double wave_speed(bool torsion) {
   }
 }
 
-TEST(ChainDynamics, AxialWaveSpeed) { EXPECT_NEAR(wave_speed(false), 21.3, 0.21); }      // nm/ps = km/s
+TEST(ChainDynamics, AxialWaveSpeed) { EXPECT_NEAR(wave_speed(false), 21.3, 0.21); }  // nm/ps = km/s
 TEST(ChainDynamics, TorsionalWaveSpeed) { EXPECT_NEAR(wave_speed(true), 14.6, 0.146); }
 
 double energy_growth(double part) {

@@ -59,7 +59,10 @@ TEST(UntwistedRope, SpacingAndCohesion) {
   const int middle = 10;
   for (int t = 1; t <= 6; ++t)
     nearest += (s.state().position[static_cast<std::size_t>(p.topology.tube_begin[t] + middle)] -
-                s.state().position[static_cast<std::size_t>(middle)]).head<2>().norm() / 6;
+                s.state().position[static_cast<std::size_t>(middle)])
+                   .head<2>()
+                   .norm() /
+               6;
   EXPECT_NEAR(nearest, p.spacing, 0.01 * p.spacing);
   EXPECT_LT(nearest, p.spacing);
 }

@@ -1,6 +1,7 @@
+#include "model/bond.hpp"
+
 #include <gtest/gtest.h>
 
-#include "model/bond.hpp"
 #include "unit/support.hpp"
 
 namespace ropewalk {
@@ -41,8 +42,16 @@ TEST(Bond, ForceAndTorquesAreTheGradient) {
       const Vector3 e = Vector3::Unit(a);
       const double h = 1e-3;
       const double fj = -derivative([&](double s) { return energy({p.separation + s * e, p.qi, p.qj}); }, h);
-      const double ti = -derivative([&](double s) { return energy({p.separation, test::turn(e, s) * p.qi, p.qj}); }, h);
-      const double tj = -derivative([&](double s) { return energy({p.separation, p.qi, test::turn(e, s) * p.qj}); }, h);
+      const double ti = -derivative(
+          [&](double s) {
+            return energy({p.separation, test::turn(e, s) * p.qi, p.qj});
+          },
+          h);
+      const double tj = -derivative(
+          [&](double s) {
+            return energy({p.separation, p.qi, test::turn(e, s) * p.qj});
+          },
+          h);
       ASSERT_NEAR(f.force_j[a], fj, tight);
       ASSERT_NEAR(f.torque_i[a], ti, tight);
       ASSERT_NEAR(f.torque_j[a], tj, tight);
@@ -82,8 +91,9 @@ TEST(Bond, PartsAddUpToTheVectorModel) {
     const BondPose p = random_pose(random, 2.0);
     const Frame<double> i = frame_of(p.qi), j = frame_of(p.qj);
     const double length = p.separation.norm();
-    const double published = 0.5 * b1 * (length - a) * (length - a) - 0.5 * b2 * (i.t + j.t).dot(p.separation) / length -
-                             b3 * i.t.dot(j.t) - 0.5 * b4 * (i.e1.dot(j.e1) + i.e2.dot(j.e2));
+    const double published = 0.5 * b1 * (length - a) * (length - a) -
+                             0.5 * b2 * (i.t + j.t).dot(p.separation) / length - b3 * i.t.dot(j.t) -
+                             0.5 * b4 * (i.e1.dot(j.e1) + i.e2.dot(j.e2));
     const double at_rest = -b2 - b3 - b4;
     ASSERT_NEAR(energy(p), published - at_rest, 1e-9 * (std::fabs(published) + std::fabs(at_rest)));
   }
@@ -98,7 +108,8 @@ TEST(Bond, SmallDeformationsAreABeam) {
   const auto turned = [&](const Vector3& axis, double angle) { return frame_of(test::turn(axis, angle)); };
   const Vector3 x = Vector3::UnitX();
 
-  EXPECT_NEAR(bond_energy<double>(k, a, z * (1 + small), rest, rest).stretch, 0.5 * k.stretch * a * small * small, 1e-9);
+  EXPECT_NEAR(bond_energy<double>(k, a, z * (1 + small), rest, rest).stretch, 0.5 * k.stretch * a * small * small,
+              1e-9);
   const auto bent = bond_energy<double>(k, a, z, turned(x, -small / 2), turned(x, small / 2));
   EXPECT_NEAR(bent.bend / (0.5 * k.bend / a * small * small), 1, 1e-6);
   EXPECT_NEAR(bent.shear, 0, 1e-9);

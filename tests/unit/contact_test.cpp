@@ -31,8 +31,10 @@ Differences differences(const PaperContact& law, const Pose& p) {
   for (int a = 0; a < 3; ++a) {
     const Vector3 e = Vector3::Unit(a);
     d.force_j[a] = -derivative([&](double s) { return law.energy(p.separation + s * e, p.ni, p.nj); }, h);
-    d.torque_i[a] = -derivative([&](double s) { return law.energy(p.separation, test::turn(e, s) * p.ni, p.nj); }, h);
-    d.torque_j[a] = -derivative([&](double s) { return law.energy(p.separation, p.ni, test::turn(e, s) * p.nj); }, h);
+    d.torque_i[a] =
+        -derivative([&](double s) { return law.energy(p.separation, test::turn(e, s) * p.ni, p.nj); }, h);
+    d.torque_j[a] =
+        -derivative([&](double s) { return law.energy(p.separation, p.ni, test::turn(e, s) * p.nj); }, h);
   }
   return d;
 }
@@ -73,8 +75,8 @@ TEST_P(PaperContactTest, ForceAndTorquesAreTheGradient) {
     if (std::fabs(f.energy) > 1.0) continue;
     ++tested;
     const Differences d = differences(k, p);
-    const double error = std::max({(f.force_j - d.force_j).norm(), (f.torque_i - d.torque_i).norm(),
-                                   (f.torque_j - d.torque_j).norm()});
+    const double error = std::max(
+        {(f.force_j - d.force_j).norm(), (f.torque_i - d.torque_i).norm(), (f.torque_j - d.torque_j).norm()});
     worst = std::max(worst, error / scale_of(f));
     ASSERT_LT(error, 1e-7 * scale_of(f)) << "R " << p.separation.norm() << " U " << f.energy;
   }

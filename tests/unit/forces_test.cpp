@@ -97,15 +97,13 @@ TEST_P(ForcesTest, NetForceAndTorqueVanish) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Variants, ForcesTest,
-                         ::testing::Values(Variant{"Ordered", false, false, 0, 0, 1e-3},
-                                           Variant{"Disordered", false, false, 0, 0, 0.08},
-                                           Variant{"Overlapping", false, false, 0, 0, 0.3},
-                                           Variant{"General", true, false, 0, 0, 0.05},
-                                           Variant{"Legacy", false, true, 0, 0, 0.05},
-                                           Variant{"GeneralLegacy", true, true, 0, 0, 0.05},
-                                           Variant{"Damped", false, false, 20, 1, 0.05}),
-                         [](const auto& info) { return info.param.name; });
+INSTANTIATE_TEST_SUITE_P(
+    Variants, ForcesTest,
+    ::testing::Values(Variant{"Ordered", false, false, 0, 0, 1e-3}, Variant{"Disordered", false, false, 0, 0, 0.08},
+                      Variant{"Overlapping", false, false, 0, 0, 0.3}, Variant{"General", true, false, 0, 0, 0.05},
+                      Variant{"Legacy", false, true, 0, 0, 0.05}, Variant{"GeneralLegacy", true, true, 0, 0, 0.05},
+                      Variant{"Damped", false, false, 20, 1, 0.05}),
+    [](const auto& info) { return info.param.name; });
 
 void PrintTo(const Variant& v, std::ostream* out) { *out << v.name; }
 
