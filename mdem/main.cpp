@@ -17,7 +17,8 @@ using namespace ropewalk;
 
 // By default the OpenMP runtime spins while it waits, and on a machine that does other work as well a step then
 // takes up to ten times as long. The runtime reads its settings before main: start once more with waiting
-// threads asleep, unless the user has chosen otherwise.
+// threads asleep, unless the user has chosen otherwise. (Under valgrind, set OMP_WAIT_POLICY=passive yourself, or
+// the second start runs outside it.)
 void wait_asleep(char** argv) {
   if (std::getenv("OMP_WAIT_POLICY") || std::getenv("GOMP_SPINCOUNT")) return;
   setenv("OMP_WAIT_POLICY", "passive", 1);
