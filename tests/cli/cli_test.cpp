@@ -185,9 +185,10 @@ TEST_F(Cli, SignalsWriteACheckpoint) {
     small_rope("s.toml", "duration_ps = 100000\n");
     const std::string out = std::string("d") + name;
     const std::string command = "cd '" + dir.string() + "' && { '" ROPEWALK_PROGRAM "' run s.toml --out " + out +
-                                " > stdout.txt 2> stderr.txt & pid=$!; sleep 1.5; kill -" + name +
+                                " > stdout.txt 2> stderr.txt & pid=$!; for k in $(seq 300); do [ -e " + out +
+                                "/manifest.json ] && break; sleep 0.1; done; sleep 0.3; kill -" + name +
                                 " $pid; wait $pid; } < /dev/null";
-    // A background job of a shell ignores SIGINT unless job control is on.
+    // The manifest is there once signals are handled. A background job ignores SIGINT unless job control is on.
     const int status =
         std::system(("bash -c \"set -m; " + std::regex_replace(command, std::regex("\\$"), "\\$") + "\"").c_str());
     EXPECT_EQ(WEXITSTATUS(status), 128 + number);
