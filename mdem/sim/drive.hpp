@@ -54,8 +54,6 @@ struct Drive {
   std::vector<Fixed> fixed;
   std::vector<Turned> turned;
   std::vector<TwistDrive> twist;  // none or one
-
-  bool empty() const { return loads.empty() && fixed.empty() && turned.empty() && twist.empty(); }
 };
 
 // The loads at this time, element by element; an element may appear more than once.
