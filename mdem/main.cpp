@@ -100,7 +100,7 @@ void add_energy(CLI::App& app, Verbs& v) {
   c->add_option("state", v.energy.state, "State file; the tube axis is the body's z")->required();
   c->add_option("--parameters", v.energy.parameters, "Parameter set: a file, or the name of a shipped one")
       ->required();
-  c->add_option("--law", v.energy.law, "Contact law: paper or none")->capture_default_str();
+  c->add_option("--law", v.energy.law, "Contact law: line, paper or none [default: line where the set has it]");
   c->add_option("--exclude-along-tube", v.energy.exclude_along_tube,
                 "Elements of one tube up to this many apart do not touch")
       ->capture_default_str()

@@ -12,24 +12,27 @@ void colour_contacts(const Topology& topology, const Interaction& in, const Stat
   list.build(topology, s.position);
   for (int i = 0; i < topology.elements(); ++i)
     for (std::size_t k = list.begin(i); k < list.begin(i + 1); ++k) {
-      const auto si = static_cast<std::size_t>(i), sj = static_cast<std::size_t>(list.indices()[k]);
-      const double e =
-          in.paper->energy(s.position[sj] - s.position[si], axis_of(s.orientation[si]), axis_of(s.orientation[sj]));
+      const int j = list.indices()[k];
+      const auto si = static_cast<std::size_t>(i), sj = static_cast<std::size_t>(j);
+      const double e = with_law(topology, in, topology.tube_of(i), topology.tube_of(j), [&](const auto& law) {
+        return law.energy(s.position[sj] - s.position[si], axis_of(s.orientation[si]), axis_of(s.orientation[sj]));
+      });
       c.vdw_energy[si] += 0.5 * e;
       c.vdw_energy[sj] += 0.5 * e;
     }
 }
 
 // An inner element has two bonds, an end element one: means are over the bonds that are there.
-void colour_bonds(const Topology& topology, const Interaction& in, const State& s, ElementColours& c) {
-  const double a = topology.element_length;
+void colour_bonds(const Topology& topology, const State& s, ElementColours& c) {
   for (int t = 0; t < topology.tubes(); ++t) {
     const int from = topology.tube_begin[t], to = topology.tube_begin[t + 1];
+    const BondStiffness& bond = topology.type_of(t).bond;
+    const double a = topology.type_of(t).element_length;
     for (int i = from; i + 1 < to; ++i) {
       const auto si = static_cast<std::size_t>(i), sj = si + 1;
       const Frame<double> fi = frame_of(s.orientation[si]), fj = frame_of(s.orientation[sj]);
-      const double energy = bond_energy(in.bond, a, Vector3(s.position[sj] - s.position[si]), fi, fj).total();
-      const double moment = in.bond.bend / a * 2.0 * std::asin(std::min(0.5 * (fi.t - fj.t).norm(), 1.0));
+      const double energy = bond_energy(bond, a, Vector3(s.position[sj] - s.position[si]), fi, fj).total();
+      const double moment = bond.bend / a * 2.0 * std::asin(std::min(0.5 * (fi.t - fj.t).norm(), 1.0));
       const double twist = bond_twist_angle(fi, fj);
       const double wi = i == from ? 1.0 : 0.5, wj = i + 2 == to ? 1.0 : 0.5;
       c.bond_energy[si] += 0.5 * energy;
@@ -47,8 +50,8 @@ void colour_bonds(const Topology& topology, const Interaction& in, const State& 
 ElementColours element_colours(const Topology& topology, const Interaction& in, const State& s) {
   ElementColours c;
   for (auto* v : {&c.bond_energy, &c.vdw_energy, &c.bending_moment, &c.twist_angle}) v->assign(s.size(), 0.0);
-  colour_bonds(topology, in, s, c);
-  if (in.paper) colour_contacts(topology, in, s, c);
+  colour_bonds(topology, s, c);
+  if (in.has_contact()) colour_contacts(topology, in, s, c);
   return c;
 }
 

@@ -51,7 +51,7 @@ int check_command(const std::string& scene);
 struct EnergyArguments {
   std::string state;
   std::string parameters;
-  std::string law = "paper";
+  std::string law;  // empty: the line law where the set has it
   bool legacy_torque = false;
   bool reference = false;
   bool json = false;

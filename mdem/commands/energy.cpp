@@ -16,10 +16,18 @@ using Json = nlohmann::ordered_json;
 
 Json vector_json(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
 
-ContactOptions::Law law_named(const std::string& name) {
-  if (name == "paper") return ContactOptions::Law::paper;
-  if (name == "none") return ContactOptions::Law::none;
-  throw InputError({"", 0, "--law"}, fmt::format("there is no contact law '{}'", name), "choose paper or none");
+// Empty: the line law where the set has it, as in a scene.
+ContactOptions::Law law_named(const std::string& name, const ParameterSet& set) {
+  using Law = ContactOptions::Law;
+  const std::string law = !name.empty() ? name : set.line ? "line" : "paper";
+  if (law == "none") return Law::none;
+  if (law != "paper" && law != "line")
+    throw InputError({"", 0, "--law"}, fmt::format("there is no contact law '{}'", law),
+                     "choose line, paper or none");
+  if (law == "paper" ? !set.paper.has_value() : !set.line.has_value())
+    throw InputError({set.path, 0, "contact." + law}, fmt::format("the set has no `{}` law", law),
+                     "use --law none");
+  return law == "paper" ? Law::paper : Law::line;
 }
 
 Forces evaluate(const EnergyArguments& a, const BuiltScene& built, const Interaction& in) {
@@ -77,14 +85,12 @@ int energy_command(const EnergyArguments& a) {
   use_threads(a.threads);
   Scene scene;
   scene.path = a.state;
-  scene.parameters = read_parameters(find_parameters(a.parameters, ""));
-  scene.element_length = scene.parameters.element_length;
+  scene.sets = {read_parameters(find_parameters(a.parameters, ""))};
+  scene.element_length = scene.parameters().element_length;
   scene.source = StateSource{a.state};
-  scene.contact.law = law_named(a.law);
+  scene.contact.law = law_named(a.law, scene.parameters());
   scene.contact.legacy_torque = a.legacy_torque;
   scene.contact.exclude_along_tube = a.exclude_along_tube;
-  if (scene.contact.law == ContactOptions::Law::paper && !scene.parameters.paper)
-    throw InputError({scene.parameters.path, 0, "contact.paper"}, "the set has no `paper` law", "use --law none");
   const BuiltScene built = build(scene);
   const Forces forces = evaluate(a, built, interaction_of(scene));
   const NetForce net = net_force(built.state, forces);

@@ -22,12 +22,12 @@ const SceneTemplate& find_template(const std::string& kind) {
 
 void say_source(const Scene& scene, const Prepared& p) {
   const Topology& t = p.topology;
-  fmt::print("{} tubes, {} elements of {:.4g} nm", t.tubes(), t.elements(), t.element_length);
+  fmt::print("{} tubes, {} elements of {:.4g} nm", t.tubes(), t.elements(), t.longest_element());
   if (std::holds_alternative<RopeSource>(scene.source))
-    fmt::print(": a rope of {:.4g} nm, spacing {:.4g} nm", t.length_of(0) * t.element_length, p.spacing);
-  fmt::print("\nparameters {} ({}), EA {:.5g} nN, EI {:.5g} nN nm^2, GJ {:.5g} nN nm^2\n", scene.parameters.name,
-             scene.parameters.path, scene.parameters.bond.stretch * units::eV_in_nN_nm,
-             scene.parameters.bond.bend * units::eV_in_nN_nm, scene.parameters.bond.twist * units::eV_in_nN_nm);
+    fmt::print(": a rope of {:.4g} nm, spacing {:.4g} nm", t.length_of(0) * t.longest_element(), p.spacing);
+  fmt::print("\nparameters {} ({}), EA {:.5g} nN, EI {:.5g} nN nm^2, GJ {:.5g} nN nm^2\n", scene.parameters().name,
+             scene.parameters().path, scene.parameters().bond.stretch * units::eV_in_nN_nm,
+             scene.parameters().bond.bend * units::eV_in_nN_nm, scene.parameters().bond.twist * units::eV_in_nN_nm);
 }
 
 void say_loads(const Scene& scene) {

@@ -50,10 +50,10 @@ void add_run_facts(const Scene& scene, const Prepared& p, const Manifest& m, Rep
   };
   const Topology& t = p.topology;
   add("scene", scene.name, "hash " + scene.hash);
-  add("tubes", fmt::format("{} with {} elements of {:.4g} nm in all", t.tubes(), t.elements(), t.element_length),
-      t.tubes() > 0 ? fmt::format("the first is {:.4g} nm long", t.length_of(0) * t.element_length) : "");
-  add("parameters", scene.parameters.name, "hash " + scene.parameters.hash);
-  add("contact law", scene.contact.law == ContactOptions::Law::paper ? "paper" : "none",
+  add("tubes", fmt::format("{} with {} elements of {:.4g} nm in all", t.tubes(), t.elements(), t.longest_element()),
+      t.tubes() > 0 ? fmt::format("the first is {:.4g} nm long", t.length_of(0) * t.longest_element()) : "");
+  add("parameters", scene.parameters().name, "hash " + scene.parameters().hash);
+  add("contact law", law_name(scene.contact.law),
       scene.contact.legacy_torque ? "legacy torque: not a gradient, energy is not conserved" : "full gradient");
   add("damping", fmt::format("contact viscosity {:.4g} eV ps/nm^2, bonds {:.4g} 1/ps, PFC local {:.4g}",
                              scene.damping.contact.eta, scene.damping.bond.rate, scene.damping.local));
@@ -92,12 +92,12 @@ ReportInput gather(const RunDirectory& dir, const Scene& scene, const Prepared& 
   add_warnings(scene, in);
   in.log = read_log(dir.log());
   if (scene.twist) in.ramp_end_ps = scene.twist->ramp_time();
-  in.tube_radius = p.topology.radius;
+  in.tube_radius = p.topology.largest_radius();
   in.spacing = p.spacing;
-  in.element_length = p.topology.element_length;
+  in.element_length = p.topology.longest_element();
   in.tubes = p.topology.tubes();
   in.bonds = p.topology.bonds();
-  in.validity = scene.parameters.validity;
+  in.validity = scene.parameters().validity;
   const Observer observer = make_observer(scene, p);
   in.shells = observer.shells;
   for (const DumpFrame& frame : read_frames(dir, p.topology)) {
@@ -106,9 +106,9 @@ ReportInput gather(const RunDirectory& dir, const Scene& scene, const Prepared& 
     in.sections.push_back({frame.state.time, beta, o.middle, o.radius_profile});
     in.views.push_back(view_of(p.topology, frame, beta));
   }
-  in.parameter_name = scene.parameters.name;
-  in.parameter_reference = scene.parameters.reference;
-  in.parameters = scene.parameters.quantities;
+  in.parameter_name = scene.parameters().name;
+  in.parameter_reference = scene.parameters().reference;
+  in.parameters = scene.parameters().quantities;
   return in;
 }
 
@@ -132,7 +132,7 @@ int report_command(const ReportArguments& a) {
     throw InputError({dir.frames(), 0, ""}, "holds no frame", "run the scene further with `ropewalk resume`");
   const double beta = look(make_observer(scene, prepared), scene, prepared.topology, frames.back().state).beta;
   write_file_atomically(a.picture, rope_svg(view_of(prepared.topology, frames.back(), beta / units::degree),
-                                            prepared.topology.radius));
+                                            prepared.topology.largest_radius()));
   fmt::print("{} written\n", a.picture);
   return 0;
 }

@@ -253,7 +253,7 @@ class Run {
     m.threads = omp_get_max_threads();
     m.seed = scene_.seed;
     m.scene_hash = scene_.hash;
-    m.parameter_hash = scene_.parameters.hash;
+    m.parameter_hash = scene_.parameters().hash;
     m.started = started_at_;
     m.wall_seconds = wall();
     m.steps = simulation_.state().step;
@@ -316,7 +316,8 @@ int run_command(const RunArguments& a) {
   Run run(dir, scene, a.quiet);  // everything that can be wrong is found before a file is touched
   create_run_directory(dir, a.force);
   write_file_atomically(dir.scene(), scene.text);
-  write_file_atomically(dir.parameters(), read_file(scene.parameters.path));
+  for (std::size_t k = 0; k < scene.sets.size(); ++k)
+    write_file_atomically(dir.parameters(k), read_file(scene.sets[k].path));
   if (const auto* state = std::get_if<StateSource>(&scene.source))
     write_file_atomically(dir.state(), read_file(state->file));
   if (a.steps >= 0) run.stop_at(a.steps);

@@ -22,7 +22,14 @@ bool belongs_to_a_run(const std::string& name) {
   for (const char* known : {"log.csv", "frames.lammpstrj", "checkpoint.bin", "manifest.json", "scene.toml",
                             "parameters.toml", "state.csv", "report.html", "failed-state.csv", "paraview"})
     if (name == known) return true;
-  return false;
+  return name.compare(0, 11, "parameters-") == 0;
+}
+
+// By tube type.
+std::vector<Validity> validities(const Scene& scene) {
+  std::vector<Validity> all;
+  for (const ParameterSet& set : scene.sets) all.push_back(set.validity);
+  return all;
 }
 
 }  // namespace
@@ -55,7 +62,9 @@ Scene read_run_scene(const RunDirectory& dir) {
   if (!fs::exists(dir.scene()))
     throw InputError({dir.path, 0, ""}, "is not the directory of a run (no scene.toml in it)",
                      "name the directory that `ropewalk run --out` made");
-  Scene scene = read_scene(dir.scene(), dir.parameters());
+  std::vector<std::string> sets = {dir.parameters(0)};
+  while (fs::exists(dir.parameters(sets.size()))) sets.push_back(dir.parameters(sets.size()));
+  Scene scene = read_scene(dir.scene(), sets);
   if (auto* state = std::get_if<StateSource>(&scene.source)) state->file = dir.state();
   return scene;
 }
@@ -105,7 +114,7 @@ Observer make_observer(const Scene& scene, const Prepared& prepared) {
 }
 
 RopeObservation look(const Observer& o, const Scene& scene, const Topology& topology, const State& state) {
-  return observe(topology, state, o.shells, scene.parameters.validity, o.neighbour_radius, o.spacing);
+  return observe(topology, state, o.shells, validities(scene), o.neighbour_radius, o.spacing);
 }
 
 void fill_geometry(const RopeObservation& o, LogRow& r) {

@@ -20,7 +20,9 @@ struct RunDirectory {
   std::string checkpoint() const { return file("checkpoint.bin"); }
   std::string manifest() const { return file("manifest.json"); }
   std::string scene() const { return file("scene.toml"); }
-  std::string parameters() const { return file("parameters.toml"); }
+  std::string parameters(std::size_t type) const {
+    return type == 0 ? file("parameters.toml") : path + "/parameters-" + std::to_string(type) + ".toml";
+  }
   std::string state() const { return file("state.csv"); }
   std::string report() const { return file("report.html"); }
   std::string failed_state() const { return file("failed-state.csv"); }

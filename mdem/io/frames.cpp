@@ -51,7 +51,7 @@ Box box_of(const Topology& topology, const State& state) {
     box.low = box.low.cwiseMin(state.position[i]);
     box.high = box.high.cwiseMax(state.position[i]);
   }
-  const Vector3 margin = Vector3::Constant(topology.radius + topology.element_length);
+  const Vector3 margin = Vector3::Constant(topology.largest_radius() + topology.longest_element());
   if (!box.low.allFinite() || !box.high.allFinite()) return {-margin, margin};
   return {box.low - margin, box.high + margin};
 }
@@ -82,10 +82,11 @@ void append_columns(Buffer& out, const State& state, const ElementColours& colou
 void append_element(Buffer& out, const Topology& topology, const State& state, int tube, std::size_t i) {
   const Vector3 p = state.position[i];
   const Quaternion q = state.orientation[i];
+  const TubeType& type = topology.type_of(tube);
   fmt::format_to(std::back_inserter(out),
-                 "{} {} 1 {:.7f} {:.7f} {:.7f} {:.8f} {:.8f} {:.8f} {:.8f} {:.6g} {:.6g} {:.6g}", i + 1, tube + 1,
-                 p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w(), topology.radius, topology.radius,
-                 topology.element_length);
+                 "{} {} {} {:.7f} {:.7f} {:.7f} {:.8f} {:.8f} {:.8f} {:.8f} {:.6g} {:.6g} {:.6g}", i + 1, tube + 1,
+                 topology.tube_type[tube] + 1, p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w(), type.radius,
+                 type.radius, type.element_length);
 }
 
 // --- Dump, reading --------------------------------------------------------------------------------------

@@ -1,9 +1,11 @@
 #include "io/parameters_toml.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "io/files.hpp"
 #include "io/toml_table.hpp"
@@ -44,7 +46,11 @@ class Reader {
     read_bond(top_.table("bond"));
     const TomlTable contact = top_.table("contact");
     if (contact.has("paper")) set_.paper = read_paper(contact.table("paper"));
+    if (contact.has("line")) set_.line = read_line(contact.table("line"));
+    read_atomistic();
     read_validity(top_.table("validity"));
+    const TomlTable provenance = top_.table("provenance");
+    for (const std::string& key : provenance.keys()) set_.provenance.emplace_back(key, provenance.string(key));
     top_.finish();
     std::stable_sort(order_.begin(), order_.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
     for (auto& [line, quantity] : order_) set_.quantities.push_back(std::move(quantity));
@@ -66,7 +72,7 @@ class Reader {
                     fmt::format("convert the value to \"{}\"", unit));
     out.standard_error = read_standard_error(q);
     out.origin = read_origin(q);
-    q.string_or("note", "");  // for readers of the file
+    out.note = q.string_or("note", "");
     if (out.origin == "published" || q.has("doi")) {
       out.doi = q.string("doi");
       check_doi(q, out.doi);
@@ -163,10 +169,89 @@ class Reader {
     }
   }
 
+  // Five numbers for each parameter of the universal law.
+  static void read_row(const TomlTable& section, const char* key, UniversalLine::Row& out,
+                       UniversalLine::Row& errors) {
+    const std::string form = "{ values = [...], standard_errors = [...] }";
+    if (!section.has(key)) throw section.error(key, "is missing", fmt::format("add {} = {}", key, form));
+    const TomlTable q = section.table(key, form);
+    const std::vector<double> values = q.numbers("values", Bounds::range(-1e6, 1e6), UniversalLine::terms);
+    const std::vector<double> se = q.numbers("standard_errors", Bounds::non_negative(1e6), UniversalLine::terms);
+    std::copy(values.begin(), values.end(), out.begin());
+    std::copy(se.begin(), se.end(), errors.begin());
+  }
+
+  void read_universal(const TomlTable& t, LineParameters& line) {
+    line.has_universal = true;
+    read_row(t, "log_K", line.universal.log_K, line.universal.standard_errors.log_K);
+    read_row(t, "s", line.universal.s, line.universal.standard_errors.s);
+    read_row(t, "c", line.universal.c, line.universal.standard_errors.c);
+    read_row(t, "p", line.universal.p, line.universal.standard_errors.p);
+    read_row(t, "q", line.universal.q, line.universal.standard_errors.q);
+    quantity(t, "error", "1", Bounds::non_negative(1));
+  }
+
+  LineParameters read_line(const TomlTable& t) {
+    LineParameters line;
+    LineDensity& d = line.density;
+    UniversalLine& u = line.universal;
+    u.epsilon = quantity(t, "epsilon", "eV", Bounds::positive(10));
+    u.sigma = quantity(t, "sigma", "nm", Bounds::positive(10));
+    u.lj_cutoff = quantity(t, "lj_cutoff", "nm", Bounds::non_negative(100));
+    line.surface_density = quantity(t, "surface_density", "1/nm^2", Bounds::positive(1e3));
+    d.contact = 2 * set_.radius;
+    d.K = quantity(t, "K", "eV/nm^2", Bounds::positive(1e9));
+    d.s = quantity(t, "s", "nm", Bounds::positive(100));
+    d.c = quantity(t, "c", "nm", Bounds::range(-100, 100));
+    d.p = quantity(t, "p", "1", Bounds::positive(100));
+    d.q = quantity(t, "q", "1", Bounds::positive(100));
+    u.core_gap = d.core_gap = quantity(t, "core_gap", "nm", Bounds::range(-100, 100));
+    u.switch_gap = d.switch_gap = quantity(t, "switch_gap", "nm", Bounds::positive(100));
+    u.cutoff_gap = d.cutoff_gap = quantity(t, "cutoff_gap", "nm", Bounds::positive(100));
+    line.pair_spacing = quantity(t, "pair_spacing", "nm", Bounds::positive(1e3));
+    line.pair_energy = quantity(t, "pair_energy", "eV/nm", Bounds::range(-1e6, 0));
+    line.cross90_energy = quantity(t, "cross90_energy", "eV", Bounds::range(-1e6, 0));
+    check_line(t, d);
+    if (t.has("universal")) read_universal(t.table("universal"), line);
+    return line;
+  }
+
+  static void check_line(const TomlTable& t, const LineDensity& d) {
+    if (d.p <= d.q)
+      throw t.error("p", fmt::format("is {}, not above q = {}", d.p, d.q),
+                    "repulsion must be the steeper of the two");
+    if (d.core_gap + d.c <= 0)
+      throw t.error("core_gap", fmt::format("is {} nm, where the law has its pole at {:.4g} nm", d.core_gap, -d.c),
+                    "the core must begin outside of it");
+    // u is lowest where (s/(h + c))^(p - q) = q/p.
+    const double lowest = d.s * std::pow(d.p / d.q, 1 / (d.p - d.q)) - d.c;
+    if (lowest <= d.core_gap)
+      throw t.error("core_gap", fmt::format("is {} nm", d.core_gap),
+                    fmt::format("must be below {:.4g}, where the contact is strongest", lowest));
+    if (lowest >= d.switch_gap)
+      throw t.error("switch_gap", fmt::format("is {} nm", d.switch_gap),
+                    fmt::format("must be above {:.4g}, where the contact is strongest", lowest));
+    if (d.cutoff_gap <= d.switch_gap)
+      throw t.error("cutoff_gap", fmt::format("is {} nm, not above switch_gap = {}", d.cutoff_gap, d.switch_gap),
+                    "the switch needs room to fall to zero");
+  }
+
+  void read_atomistic() {
+    if (!top_.has("atomistic")) return;
+    const TomlTable t = top_.table("atomistic");
+    quantity(t, "natural_twist", "rad/nm", Bounds::range(-10, 10));
+    quantity(t, "coupling", "nN nm", Bounds::range(-1e6, 1e6));
+    quantity(t, "poisson", "1", Bounds::range(-1, 1));
+    quantity(t, "energy_per_atom", "eV", Bounds::range(-100, 0));
+  }
+
   void read_validity(const TomlTable& t) {
     set_.validity.kink_curvature = quantity(t, "kink_curvature", "1/nm", Bounds::positive(1e3));
     set_.validity.twist_collapse = quantity(t, "twist_collapse", "1", Bounds::positive(10));
     set_.validity.stretch = quantity(t, "stretch", "1", Bounds::positive(1));
+    if (t.has("linear_curvature")) quantity(t, "linear_curvature", "1/nm", Bounds::positive(1e3));
+    if (t.has("linear_twist")) quantity(t, "linear_twist", "1", Bounds::positive(10));
+    if (t.has("linear_stretch")) quantity(t, "linear_stretch", "1", Bounds::positive(1));
   }
 
   std::string path_, text_;
@@ -178,5 +263,58 @@ class Reader {
 }  // namespace
 
 ParameterSet read_parameters(const std::string& path) { return Reader(path).read(); }
+
+namespace {
+
+std::string quoted(const std::string& text) { return nlohmann::json(text).dump(); }
+
+std::string quantity_text(const Quantity& q, const std::string& key) {
+  std::string text = fmt::format(
+      "{:<16} = {{ value = {}, unit = {}, standard_error = {}, origin = {}", key, q.value, quoted(q.unit),
+      q.standard_error ? fmt::format("{}", *q.standard_error) : quoted(not_published), quoted(q.origin));
+  if (!q.doi.empty()) text += ", doi = " + quoted(q.doi);
+  if (!q.note.empty()) text += ", note = " + quoted(q.note);
+  return text + " }\n";
+}
+
+std::string numbers_text(const UniversalLine::Row& row) { return fmt::format("[{}]", fmt::join(row, ", ")); }
+
+std::string universal_rows(const ParameterSet& set) {
+  const UniversalLine& u = set.line->universal;
+  std::string text;
+  const auto add = [&](const char* key, const UniversalLine::Row& value, const UniversalLine::Row& error) {
+    text += fmt::format("{:<16} = {{ values = {}, standard_errors = {} }}\n", key, numbers_text(value),
+                        numbers_text(error));
+  };
+  const UniversalLine::Errors& e = u.standard_errors;
+  add("log_K", u.log_K, e.log_K);
+  add("s", u.s, e.s);
+  add("c", u.c, e.c);
+  add("p", u.p, e.p);
+  add("q", u.q, e.q);
+  return text;
+}
+
+}  // namespace
+
+std::string parameters_text(const ParameterSet& set, const std::string& comment) {
+  std::string text = comment;
+  text += fmt::format("\n[meta]\nformat = \"{}\"\nname = {}\nchirality = [{}, {}]\nreference = {}\ndoi = {}\n",
+                      parameter_format, quoted(set.name), set.chirality.n, set.chirality.m, quoted(set.reference),
+                      quoted(set.doi));
+  std::string section;
+  for (const Quantity& q : set.quantities) {
+    const std::size_t dot = q.key.rfind('.');
+    if (q.key.substr(0, dot) != section) {
+      section = q.key.substr(0, dot);
+      text += fmt::format("\n[{}]\n", section);
+      if (section == "contact.line.universal") text += universal_rows(set);
+    }
+    text += quantity_text(q, q.key.substr(dot + 1));
+  }
+  if (!set.provenance.empty()) text += "\n[provenance]\n";
+  for (const auto& [key, value] : set.provenance) text += fmt::format("{:<16} = {}\n", key, quoted(value));
+  return text;
+}
 
 }  // namespace ropewalk

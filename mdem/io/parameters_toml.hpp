@@ -11,4 +11,8 @@ namespace ropewalk {
 // physically impossible.
 ParameterSet read_parameters(const std::string& path);
 
+// The text of a parameter file from its meta data, quantities, universal law and provenance; `comment` heads it.
+// What is written is read back bit for bit.
+std::string parameters_text(const ParameterSet& set, const std::string& comment);
+
 }  // namespace ropewalk

@@ -300,6 +300,19 @@ std::vector<long> TomlTable::integers(const std::string& key, long least, long m
   return out;
 }
 
+std::vector<std::string> TomlTable::strings(const std::string& key) const {
+  const toml::node& n = node_->required(*this, key);
+  const toml::array& array = checked_array(*this, key, n, "an array of strings");
+  if (array.empty()) throw error(key, "is an empty array", "name at least one");
+  std::vector<std::string> out;
+  for (const toml::node& element : array) {
+    const auto text = element.value<std::string>();
+    if (!text || text->empty()) throw error(key, "holds what is not a text", "write \"...\" in quotes");
+    out.push_back(*text);
+  }
+  return out;
+}
+
 double TomlTable::number_or(const std::string& key, double fallback, const Bounds& bounds) const {
   return has(key) ? number(key, bounds) : fallback;
 }

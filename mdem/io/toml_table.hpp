@@ -48,6 +48,7 @@ class TomlTable {
   std::string string(const std::string& key) const;  // never empty
   std::vector<double> numbers(const std::string& key, const Bounds& bounds, std::size_t size) const;
   std::vector<long> integers(const std::string& key, long least, long most) const;  // never empty
+  std::vector<std::string> strings(const std::string& key) const;                   // never empty, nor any of them
   template <class E>
   E word(const std::string& key, const Words<E>& words) const {
     std::vector<std::string> names;

@@ -29,17 +29,9 @@
 #include <array>
 #include <cmath>
 
-#include "model/bond.hpp"  // Vec3
+#include "model/contact.hpp"
 
 namespace ropewalk {
-
-// Energy and force of a pair: on element j, and the torques about the two centres. Element i feels -force_j.
-struct PairForce {
-  double energy = 0;
-  Vector3 force_j = Vector3::Zero();
-  Vector3 torque_i = Vector3::Zero();
-  Vector3 torque_j = Vector3::Zero();
-};
 
 // dU with respect to the invariants of a pair.
 template <class T>
@@ -190,8 +182,6 @@ struct PaperContact {
 };
 
 namespace detail {
-
-inline double safe_distance(const Vector3& s) { return std::sqrt(std::max(s.squaredNorm(), 1e-12)); }
 
 inline PairForce assemble(const PairTerms<double>& t, double r, const Vector3& u, double p, double q,
                           const Vector3& n_i, const Vector3& n_j) {

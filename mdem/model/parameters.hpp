@@ -6,17 +6,28 @@
 //   [bond]      EA (nN), EI (nN nm^2), GJ (nN nm^2)
 //   [contact.paper]   present: the set has the `paper` law; epsilon (eV), A, B, alpha, beta, C1 .. C5,
 //               C_gamma, delta, freeze, switch_start, cutoff (all in units of the radius), core_gap
-//   [validity]  kink_curvature (1/nm), twist_collapse (r tau), stretch (strain): limits of the model
+//   [contact.line]    present: the set has the `line` law; epsilon (eV), sigma (nm), lj_cutoff (nm, 0: none) and
+//               surface_density (1/nm^2) that it was integrated from; K (eV/nm^2), s (nm), c (nm), p, q, core_gap,
+//               switch_gap, cutoff_gap (nm) of contact_line.hpp; pair_spacing (nm), pair_energy (eV/nm) and
+//               cross90_energy (eV) of that law
+//   [contact.line.universal]  the same law for any pair of radii: log_K, s, c, p, q, each
+//               { values = [5 numbers], standard_errors = [5 numbers] }, and error
+//   [atomistic] optional: natural_twist (rad/nm), coupling (nN nm), poisson, energy_per_atom (eV)
+//   [validity]  kink_curvature (1/nm), twist_collapse (r tau), stretch (strain): limits of the model; optional:
+//               linear_curvature, linear_twist, linear_stretch: where a stiffness is 1 % off
+//   [provenance] optional strings: what the set was made from and by
 //
-// Every number is an inline table { value, unit, standard_error, origin, doi }. The unit must be the one
+// Every number is an inline table { value, unit, standard_error, origin, doi, note }. The unit must be the one
 // above; standard_error is a number or "not published"; doi may be left out where origin is not "published".
 #pragma once
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "model/bond.hpp"
+#include "model/contact_line.hpp"
 #include "model/contact_paper.hpp"
 #include "model/tube.hpp"
 
@@ -32,6 +43,7 @@ struct Quantity {
   std::optional<double> standard_error;  // none: not published
   std::string origin;
   std::string doi;
+  std::string note;
 };
 
 // Beyond these the rigid-element model is no longer the tube.
@@ -39,6 +51,17 @@ struct Validity {
   double kink_curvature = 0;  // 1/nm
   double twist_collapse = 0;  // radius times twist per length
   double stretch = 0;         // strain, tension or compression
+};
+
+// The `line` law of a set, with what it was integrated from.
+struct LineParameters {
+  double surface_density = 0;  // atoms per nm^2
+  LineDensity density;         // of two tubes of this kind
+  double pair_spacing = 0;     // nm
+  double pair_energy = 0;      // eV/nm
+  double cross90_energy = 0;   // eV
+  UniversalLine universal;     // also epsilon, sigma and cutoff of the atom-atom law
+  bool has_universal = false;
 };
 
 struct ParameterSet {
@@ -51,10 +74,12 @@ struct ParameterSet {
   double element_length = 0;    // nm
   BondStiffness bond;           // eV/nm, eV nm
   std::optional<PaperContact> paper;
+  std::optional<LineParameters> line;
   Validity validity;
   std::vector<Quantity> quantities;  // every number of the file, in its order
-  std::string path;                  // where it was read from
-  std::string hash;                  // xxh64 of the file, hex
+  std::vector<std::pair<std::string, std::string>> provenance;
+  std::string path;  // where it was read from
+  std::string hash;  // xxh64 of the file, hex
 
   double element_mass(double length) const { return atoms_per_length * length * units::carbon_mass; }
   // Isotropic inertia m r^2: exact about the tube axis; the transverse value of a thin tube,

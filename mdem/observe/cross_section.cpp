@@ -105,7 +105,7 @@ std::optional<Vector3> piercing_of_bond(const Plane& plane, const State& state, 
 Vector3 piercing(const Plane& plane, const Topology& topology, const State& state, int tube, int section) {
   const int first = topology.tube_begin[tube], n = topology.length_of(tube);
   const Vector3 at = state.position[first + section];
-  const double bonds_away = std::abs(plane.height(at)) / std::max(topology.element_length, 1e-9);
+  const double bonds_away = std::abs(plane.height(at)) / std::max(topology.type_of(tube).element_length, 1e-9);
   const int reach = 2 + static_cast<int>(std::min(2.0 * bonds_away, static_cast<double>(n)));
   for (int d = 0; d < reach; ++d)
     for (const int k : {section + d, section - 1 - d}) {

@@ -21,26 +21,28 @@ double twist_of_bond(const State& state, int i) {
 
 bool beyond(double value, double limit) { return limit > 0.0 && value > limit; }
 
-void count_bond(const Topology& topology, const State& state, const Validity& validity, int i, double twist,
+void count_bond(const TubeType& type, const State& state, const Validity& validity, int i, double twist,
                 RopeObservation& out) {
-  const double a = topology.element_length;
+  const double a = type.element_length;
   out.largest_bond_twist = std::max(out.largest_bond_twist, std::abs(twist));
   if (a <= 0.0) return;
   const double bend = angle_between(axis_of(state.orientation[i]), axis_of(state.orientation[i + 1]));
   const double strain = (state.position[i + 1] - state.position[i]).norm() / a - 1.0;
   out.kinked += beyond(bend / a, validity.kink_curvature);
-  out.overtwisted += beyond(topology.radius * std::abs(twist) / a, validity.twist_collapse);
+  out.overtwisted += beyond(type.radius * std::abs(twist) / a, validity.twist_collapse);
   out.overstretched += beyond(std::abs(strain), validity.stretch);
 }
 
 // All that needs no common section.
-void observe_bonds(const Topology& topology, const State& state, const Validity& validity, RopeObservation& out) {
+void observe_bonds(const Topology& topology, const State& state, const std::vector<Validity>& validity,
+                   RopeObservation& out) {
   double sum = 0.0;
   for (int t = 0; t < topology.tubes(); ++t)
     for (int i = topology.tube_begin[t]; i + 1 < topology.tube_begin[t + 1]; ++i) {
       const double twist = twist_of_bond(state, i);
       sum += twist;
-      count_bond(topology, state, validity, i, twist, out);
+      count_bond(topology.type_of(t), state, validity[static_cast<std::size_t>(topology.tube_type[t])], i, twist,
+                 out);
     }
   if (topology.tubes() > 0) out.physical_twist = sum / topology.tubes();
 }
@@ -110,7 +112,7 @@ std::vector<double> outer_radii(const Topology& topology, const State& state, co
       const Vector3 arm = state.position[topology.tube_begin[t] + k] - line.points[k];
       largest = std::max(largest, normal_part(arm, line.tangents[k]).norm());
     }
-    radii.push_back(largest + topology.radius);
+    radii.push_back(largest + topology.largest_radius());
   }
   return radii;
 }
@@ -118,12 +120,12 @@ std::vector<double> outer_radii(const Topology& topology, const State& state, co
 }  // namespace
 
 RopeObservation observe(const Topology& topology, const State& state, const RopeShells& shells,
-                        const Validity& validity, double neighbour_radius, double spacing) {
+                        const std::vector<Validity>& validity, double neighbour_radius, double spacing) {
   RopeObservation out;
   observe_bonds(topology, state, validity, out);
   const int n = common_length(topology);
   if (n == 0) return out;
-  const double scale = spacing > 0.0 ? spacing : 2.0 * topology.radius;  // a lone tube has no spacing
+  const double scale = spacing > 0.0 ? spacing : 2.0 * topology.largest_radius();  // a lone tube has no spacing
   const CentreLine line = centre_line(topology, state);
   out.beta = twist_angle(topology, state, shells, line);
   out.geometric_twist = geometric_twist(topology, state, line, scale);

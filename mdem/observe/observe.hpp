@@ -61,6 +61,6 @@ CrossSection cross_section(const Topology& topology, const State& state, const R
                            double neighbour_radius, double spacing);
 
 RopeObservation observe(const Topology& topology, const State& state, const RopeShells& shells,
-                        const Validity& validity, double neighbour_radius, double spacing);
+                        const std::vector<Validity>& validity, double neighbour_radius, double spacing);
 
 }  // namespace ropewalk

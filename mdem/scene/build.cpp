@@ -44,28 +44,39 @@ double golden_section(F f, double a, double b, double tolerance) {
 double spacing_of(const Scene& scene, double element_length) {
   const auto* rope = std::get_if<RopeSource>(&scene.source);
   if (rope && rope->spacing > 0) return rope->spacing;
-  if (scene.contact.law == ContactOptions::Law::none || !scene.parameters.paper)
-    return 2 * scene.parameters.radius + graphite_gap;
-  return pair_spacing(*scene.parameters.paper, element_length);
+  double largest = 0;
+  switch (scene.contact.law) {
+    case ContactOptions::Law::paper:
+      return pair_spacing(*scene.parameters().paper, element_length);
+    case ContactOptions::Law::line:
+      for (const LineContact& pair : line_contacts(scene))
+        largest = std::max(largest, line_parallel_well(pair.density).distance);
+      return largest;
+    case ContactOptions::Law::none:
+      break;
+  }
+  for (const ParameterSet& set : scene.sets) largest = std::max(largest, set.radius);
+  return 2 * largest + graphite_gap;
 }
 
 Topology empty_topology(const Scene& scene) {
   Topology t;
-  t.element_length = scene.element_length;
-  t.radius = scene.parameters.radius;
-  t.mass = scene.parameters.element_mass(scene.element_length);
-  t.inertia = scene.parameters.element_inertia(scene.element_length);
+  t.types.clear();
+  for (const ParameterSet& set : scene.sets)
+    t.types.push_back({scene.element_length, set.radius, set.element_mass(scene.element_length),
+                       set.element_inertia(scene.element_length), set.bond});
   return t;
 }
 
 // Straight tubes along z, centred on the origin.
-void add_tubes(const std::vector<std::pair<double, double>>& places, int elements, BuiltScene& out) {
+void add_tubes(const std::vector<std::pair<double, double>>& places, int elements, double element_length,
+               BuiltScene& out) {
   for (std::size_t t = 0; t < places.size(); ++t) out.topology.add_tube(elements);
   out.state = State(static_cast<std::size_t>(out.topology.elements()));
   std::size_t i = 0;
   for (const auto& [x, y] : places)
     for (int e = 0; e < elements; ++e)
-      out.state.position.set(i++, {x, y, (e - 0.5 * (elements - 1)) * out.topology.element_length});
+      out.state.position.set(i++, {x, y, (e - 0.5 * (elements - 1)) * element_length});
 }
 
 void displace(double amplitude, Random& random, State& state) {
@@ -77,13 +88,24 @@ void displace(double amplitude, Random& random, State& state) {
 
 void place_elements(const Scene& scene, Random& random, BuiltScene& out) {
   if (const auto* rope = std::get_if<RopeSource>(&scene.source)) {
-    add_tubes(hexagonal_lattice(rope->tubes, out.spacing), elements_of(*rope, scene.element_length), out);
+    add_tubes(hexagonal_lattice(rope->tubes, out.spacing), elements_of(*rope, scene.element_length),
+              scene.element_length, out);
     if (rope->perturbation > 0) displace(rope->perturbation, random, out.state);
   } else if (const auto* chain = std::get_if<ChainSource>(&scene.source)) {
-    add_tubes({{0.0, 0.0}}, chain->elements, out);
+    add_tubes({{0.0, 0.0}}, chain->elements, scene.element_length, out);
   } else {
     read_state_csv(std::get<StateSource>(scene.source).file, out.topology, out.state);
   }
+}
+
+void set_tube_types(const Scene& scene, Topology& topology) {
+  if (scene.tube_types.empty()) return;
+  if (static_cast<int>(scene.tube_types.size()) != topology.tubes())
+    throw InputError(
+        {scene.path, 0, "tube_types"},
+        fmt::format("has {} numbers, and the scene has {} tubes", scene.tube_types.size(), topology.tubes()),
+        "write one for each tube");
+  topology.tube_type = scene.tube_types;
 }
 
 // What a state file may lack for the rest of the scene.
@@ -152,6 +174,22 @@ double pair_spacing(const PaperContact& contact, double element_length) {
   return golden_section(energy, from + (lowest - 1) * step, from + (lowest + 1) * step, 1e-9);
 }
 
+std::vector<LineContact> line_contacts(const Scene& scene) {
+  std::vector<LineContact> pairs;
+  for (const ParameterSet& a : scene.sets)
+    for (const ParameterSet& b : scene.sets) {
+      const LineParameters &i = *a.line, &j = *b.line;
+      LineContact pair;
+      pair.density =
+          &a == &b ? i.density : i.universal.density(a.radius, i.surface_density, b.radius, j.surface_density);
+      pair.length_i = pair.length_j = scene.element_length;
+      const int nodes = line_nodes(scene.element_length, line_parallel_well(pair.density).distance);
+      pair.nodes_i = pair.nodes_j = scene.contact.nodes > 0 ? scene.contact.nodes : nodes;
+      pairs.push_back(pair);
+    }
+  return pairs;
+}
+
 BuiltScene build(Scene& scene) {
   BuiltScene out;
   out.topology = empty_topology(scene);
@@ -160,6 +198,7 @@ BuiltScene build(Scene& scene) {
   scene.damping.contact.outer = viscosity_reach * out.spacing;
   Random random(scene.seed);
   place_elements(scene, random, out);
+  set_tube_types(scene, out.topology);
   check_state(scene, out);
   if (scene.temperature > 0) set_thermal_velocities(out.topology, scene.temperature, random, out.state);
   return out;

@@ -24,6 +24,9 @@ double pair_energy_per_length(const PaperContact& contact, double element_length
 // The distance of their axes (nm) at which it is lowest.
 double pair_spacing(const PaperContact& contact, double element_length);
 
+// The `line` law between all pairs of the scene's tube types, i, j at i * types + j.
+std::vector<LineContact> line_contacts(const Scene& scene);
+
 // The largest hexagonal number (1, 7, 19, ...) that is not above `tubes`, and the smallest that is not below.
 std::pair<int, int> nearest_hexagonal(int tubes);
 

@@ -93,8 +93,8 @@ double chosen_step(const Scene& scene, const TimeStepLimit& limit) {
 
 Interaction interaction_of(const Scene& scene) {
   Interaction in;
-  in.bond = scene.parameters.bond;
-  if (scene.contact.law == ContactOptions::Law::paper) in.paper = scene.parameters.paper;
+  if (scene.contact.law == ContactOptions::Law::paper) in.paper = scene.parameters().paper;
+  if (scene.contact.law == ContactOptions::Law::line) in.line = line_contacts(scene);
   in.legacy_torque = scene.contact.legacy_torque;
   in.exclude_along_tube = scene.contact.exclude_along_tube;
   in.damping = scene.damping;

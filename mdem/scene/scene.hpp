@@ -35,12 +35,17 @@ struct StateSource {
 };
 
 struct ContactOptions {
-  enum class Law { none, paper };
+  enum class Law { none, paper, line };
   Law law = Law::paper;
   bool legacy_torque = false;
   int exclude_along_tube = 20;  // pairs of one tube up to this many elements apart do not interact
   double skin = 0;              // nm; 0: chosen by the program
+  int nodes = 0;                // `line`: per element; 0: spaced by a sixth of the distance of two tubes
 };
+
+inline const char* law_name(ContactOptions::Law law) {
+  return law == ContactOptions::Law::line ? "line" : law == ContactOptions::Law::paper ? "paper" : "none";
+}
 
 // Elements that a load acts on: every combination of a tube and an element index; negative indices count
 // from the end of the tube.
@@ -111,10 +116,11 @@ struct ObserveOptions {
 struct Scene {
   std::string name;
   std::string path;
-  std::string text;  // the file as read, for the copy in the run directory
-  std::string hash;  // xxh64 of text, hex
-  ParameterSet parameters;
-  double element_length = 0;  // nm
+  std::string text;                // the file as read, for the copy in the run directory
+  std::string hash;                // xxh64 of text, hex
+  std::vector<ParameterSet> sets;  // of the tube types; never empty
+  std::vector<int> tube_types;     // of each tube, an index of `sets`; empty: all are of the first
+  double element_length = 0;       // nm
   std::variant<RopeSource, ChainSource, StateSource> source;
   double temperature = 0;  // K, initial
   std::uint64_t seed = 1;
@@ -124,6 +130,8 @@ struct Scene {
   std::optional<TwistProtocol> twist;
   RunOptions run;
   ObserveOptions observe;
+
+  const ParameterSet& parameters() const { return sets.front(); }
 };
 
 }  // namespace ropewalk

@@ -26,7 +26,8 @@ const std::vector<SceneKey>& scene_keys() {
       {"", "format", "", "\"ropewalk-scene-1\"", "required", "the version of this format"},
       {"", "name", "", "\"my rope\"", "the file's name", "title in reports"},
       {"", "parameters", "", "\"cnt-10-10-paper\"", "required",
-       "the tube: a file, looked for beside the scene, or the name of a shipped set"},
+       "the tube: a file, looked for beside the scene, or the name of a shipped set; [\"a\", \"b\"]: tube types"},
+      {"", "tube_types", "", "[0, 1, 1]", "all of the first", "which of the sets each tube is, from 0"},
       {"", "element_length_nm", "nm", "1.356", "the set's", "length of an element; law \"paper\" needs the set's"},
 
       {"rope", "tubes", "", "91", "required", "a hexagonal number: 1, 7, 19, 37, 61, 91, 127, 169, 217, ..."},
@@ -41,7 +42,8 @@ const std::vector<SceneKey>& scene_keys() {
       {"start", "temperature_K", "K", "0", "", "temperature of the random initial velocities"},
       {"start", "seed", "", "1", "", "of all random numbers: the same seed gives the same run"},
 
-      {"contact", "law", "", "\"paper\"", "", "\"paper\" or \"none\""},
+      {"contact", "law", "", "\"paper\"", "what the set has", "\"line\" (first choice), \"paper\" or \"none\""},
+      {"contact", "nodes_per_element", "", "5", "a sixth of the spacing apart", "line: nodes along an element"},
       {"contact", "legacy_torque", "", "false", "",
        "leave out the torque that the published code leaves out; gains energy, for comparison only"},
       {"contact", "exclude_along_tube_elements", "elements", "20", "",

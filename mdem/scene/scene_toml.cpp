@@ -21,6 +21,7 @@ namespace fs = std::filesystem;
 constexpr double longest_time = 1e7;   // ps
 constexpr double largest_force = 1e4;  // nN, nN nm
 constexpr double kilobytes_per_element = 1.0;
+constexpr long most_nodes = 64;
 
 std::string shipped_sets(const fs::path& folder) {
   std::set<std::string> names;
@@ -31,6 +32,57 @@ std::string shipped_sets(const fs::path& folder) {
   std::string text;
   for (const std::string& n : names) text += (text.empty() ? "" : ", ") + n;
   return "name a file, or a shipped set: " + text;
+}
+
+// --- what the tubes are ----------------------------------------------------------------------------
+
+// parameters = "set", or one set for each tube type: ["set", "other"].
+std::vector<std::string> read_set_names(const TomlTable& top) {
+  if (top.is_string("parameters") || !top.has("parameters")) return {top.string("parameters")};
+  return top.strings("parameters");
+}
+
+std::vector<ParameterSet> read_sets(const TomlTable& top, const std::string& path, const std::string& folder,
+                                    const std::vector<std::string>& copies) {
+  const std::vector<std::string> names = read_set_names(top);
+  std::vector<ParameterSet> sets;
+  for (std::size_t k = 0; k < names.size(); ++k)
+    sets.push_back(read_parameters(
+        k < copies.size() ? copies[k]
+                          : find_parameters(names[k], folder, {path, top.line("parameters"), "parameters"})));
+  return sets;
+}
+
+std::vector<int> read_tube_types(const TomlTable& top, std::size_t sets) {
+  if (!top.has("tube_types")) {
+    if (sets > 1)
+      throw top.error("tube_types", "is missing",
+                      "say for each tube which of the sets it is: tube_types = [0, 1, ...]");
+    return {};
+  }
+  const std::vector<long> types = top.integers("tube_types", 0, static_cast<long>(sets) - 1);
+  return {types.begin(), types.end()};
+}
+
+double largest_radius(const Scene& scene) {
+  double largest = 0;
+  for (const ParameterSet& set : scene.sets) largest = std::max(largest, set.radius);
+  return largest;
+}
+
+// Contact between tubes of two kinds comes from the universal law, which must be one and the same.
+void check_mixture(const TomlTable& top, const Scene& scene) {
+  if (scene.contact.law != ContactOptions::Law::line) return;
+  const LineParameters& first = *scene.sets[0].line;
+  for (const ParameterSet& set : scene.sets) {
+    if (scene.sets.size() > 1 && !set.line->has_universal)
+      throw top.error("parameters", fmt::format("{} has no [contact.line.universal]", set.name),
+                      "tubes of different kinds need it; make the set with `ropewalk calibrate`");
+    if (!(set.line->universal == first.universal))
+      throw top.error("parameters",
+                      fmt::format("{} and {} have different van der Waals laws", scene.sets[0].name, set.name),
+                      "calibrate both with the same --lj and --lj-cutoff");
+  }
 }
 
 // --- where the elements come from -------------------------------------------------------------------
@@ -58,7 +110,7 @@ RopeSource read_rope(const TomlTable& t, const Scene& scene) {
                   fmt::format("is {} nm, {} elements of {} nm", rope.length, elements, scene.element_length),
                   fmt::format("at least 3 elements, {:.4g} nm, are needed", 3 * scene.element_length));
   check_size(t, "length_nm", rope.tubes, elements);
-  const double diameter = 2 * scene.parameters.radius;
+  const double diameter = 2 * largest_radius(scene);
   if (t.has("spacing_nm")) rope.spacing = t.number("spacing_nm", {diameter, 10 * diameter, true});
   rope.perturbation = t.number_or("perturbation_nm", 0, Bounds::non_negative(0.1));
   return rope;
@@ -117,14 +169,31 @@ void read_start(const TomlTable& t, Scene& scene) {
   scene.seed = static_cast<std::uint64_t>(t.integer_or("seed", 1, 0, std::numeric_limits<long>::max()));
 }
 
+// The line law where all sets have it.
+ContactOptions::Law default_law(const Scene& scene) {
+  for (const ParameterSet& set : scene.sets)
+    if (!set.line) return ContactOptions::Law::paper;
+  return ContactOptions::Law::line;
+}
+
 ContactOptions read_contact(const TomlTable& t, const Scene& scene) {
   using Law = ContactOptions::Law;
-  static const Words<Law> laws = {{"paper", Law::paper}, {"none", Law::none}};
+  static const Words<Law> laws = {{"line", Law::line}, {"paper", Law::paper}, {"none", Law::none}};
   ContactOptions c;
-  c.law = t.word_or("law", c.law, laws);
-  if (c.law == Law::paper && !scene.parameters.paper)
-    throw t.error("law", fmt::format("is \"paper\", and the set {} has no [contact.paper]", scene.parameters.name),
-                  "take another set, or law = \"none\"");
+  c.law = t.word_or("law", default_law(scene), laws);
+  if (c.law != Law::none) {
+    const char* name = c.law == Law::paper ? "paper" : "line";
+    for (const ParameterSet& set : scene.sets)
+      if (c.law == Law::paper ? !set.paper.has_value() : !set.line.has_value())
+        throw t.error("law", fmt::format("is \"{}\", and the set {} has no [contact.{}]", name, set.name, name),
+                      "take another set, or law = \"none\"");
+  }
+  if (c.law == Law::paper && scene.sets.size() > 1)
+    throw t.error("law", "is \"paper\", which holds between tubes of one kind alone", "take law = \"line\"");
+  if (t.has("nodes_per_element")) {
+    if (c.law != Law::line) throw t.error("nodes_per_element", "belongs to law = \"line\"", "take it away");
+    c.nodes = static_cast<int>(t.integer("nodes_per_element", 1, most_nodes));
+  }
   c.legacy_torque = t.boolean_or("legacy_torque", c.legacy_torque);
   c.exclude_along_tube =
       static_cast<int>(t.integer_or("exclude_along_tube_elements", c.exclude_along_tube, 1, most_elements));
@@ -138,8 +207,8 @@ double read_element_length(const TomlTable& top, const ParameterSet& set) {
 
 // The law's energy is that of a pair of elements, not of a length.
 void check_element_length(const TomlTable& top, const Scene& scene) {
-  const double set = scene.parameters.element_length;
-  if (scene.contact.law == ContactOptions::Law::none || std::fabs(scene.element_length - set) <= 1e-6) return;
+  const double set = scene.parameters().element_length;
+  if (scene.contact.law != ContactOptions::Law::paper || std::fabs(scene.element_length - set) <= 1e-6) return;
   throw top.error("element_length_nm", fmt::format("is {} nm", scene.element_length),
                   fmt::format("law \"paper\" holds for the {} nm of the set alone; leave the key out", set));
 }
@@ -346,7 +415,7 @@ void check_run(const TomlTable& top, const Scene& scene) {
 }
 
 ObserveOptions read_observe(const TomlTable& t, const Scene& scene) {
-  const double diameter = 2 * scene.parameters.radius;
+  const double diameter = 2 * largest_radius(scene);
   ObserveOptions o;
   if (t.has("neighbour_radius_nm"))
     o.neighbour_radius = t.number("neighbour_radius_nm", {diameter, 20 * diameter, true});
@@ -381,6 +450,7 @@ void read_tables(const TomlTable& top, const std::string& folder, Scene& scene) 
   read_start(top.table("start"), scene);
   scene.contact = read_contact(top.table("contact"), scene);
   check_element_length(top, scene);
+  check_mixture(top, scene);
   scene.damping = read_damping(top.table("damping"));
   const Sizes sizes = sizes_of(scene);
   for (const TomlTable& t : top.tables("load")) scene.loads.push_back(read_load(t, sizes));
@@ -407,7 +477,7 @@ std::string find_parameters(const std::string& name, const std::string& folder, 
   throw InputError(place, fmt::format("there is no parameter set \"{}\"", printable(name)), shipped_sets(shipped));
 }
 
-Scene read_scene(const std::string& path, const std::string& parameters) {
+Scene read_scene(const std::string& path, const std::vector<std::string>& parameters) {
   Scene scene;
   scene.path = path;
   scene.text = read_file(path);
@@ -416,10 +486,9 @@ Scene read_scene(const std::string& path, const std::string& parameters) {
   const TomlTable top = TomlTable::parse(scene.text, path);
   check_format(top);
   scene.name = top.string_or("name", fs::path(path).stem().string());
-  const std::string set = top.string("parameters");
-  scene.parameters = read_parameters(
-      parameters.empty() ? find_parameters(set, folder, {path, top.line("parameters"), "parameters"}) : parameters);
-  scene.element_length = read_element_length(top, scene.parameters);
+  scene.sets = read_sets(top, path, folder, parameters);
+  scene.tube_types = read_tube_types(top, scene.sets.size());
+  scene.element_length = read_element_length(top, scene.parameters());
   read_tables(top, folder, scene);
   top.finish(belongs_to);
   check_run(top, scene);

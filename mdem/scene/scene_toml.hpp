@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "model/error.hpp"
 #include "scene/scene.hpp"
@@ -18,8 +19,8 @@ std::string find_parameters(const std::string& name, const std::string& folder,
                             const InputError::Place& place = {"", 0, "--parameters"},
                             const std::string& data = data_directory());
 
-// Throws InputError for anything that is not right, unknown keys included. `parameters` is read instead of the
-// set that the scene names where it is not empty (a run directory keeps its own copy).
-Scene read_scene(const std::string& path, const std::string& parameters = "");
+// Throws InputError for anything that is not right, unknown keys included. `parameters` are read instead of the
+// sets that the scene names where it is not empty (a run directory keeps its own copies).
+Scene read_scene(const std::string& path, const std::vector<std::string>& parameters = {});
 
 }  // namespace ropewalk

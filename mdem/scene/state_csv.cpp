@@ -124,10 +124,10 @@ class Reader {
       return;
     }
     ++topology_.tube_begin.back();
-    const double bond = (row.position - rows_.back().position).norm() / topology_.element_length;
+    const double bond = (row.position - rows_.back().position).norm() / element_length_;
     if (bond < shortest_bond || bond > longest_bond)
-      fail("", fmt::format("lies {:.3g} nm from the element before it", bond * topology_.element_length),
-           fmt::format("elements of a tube follow one another at {:.4g} nm", topology_.element_length));
+      fail("", fmt::format("lies {:.3g} nm from the element before it", bond * element_length_),
+           fmt::format("elements of a tube follow one another at {:.4g} nm", element_length_));
   }
 
   State state() const {
@@ -141,6 +141,7 @@ class Reader {
 
   std::string path_;
   Topology& topology_;
+  double element_length_ = topology_.types.front().element_length;
   std::vector<Row> rows_;
   int line_ = 0;
   bool seen_header_ = false;
@@ -150,6 +151,7 @@ class Reader {
 
 void read_state_csv(const std::string& path, Topology& topology, State& state) {
   topology.tube_begin = {0};
+  topology.tube_type.clear();
   state = Reader(path, topology).read();
 }
 

@@ -9,7 +9,8 @@
 
 namespace ropewalk {
 
-// Fills tubes and state; topology.element_length must be set. Throws InputError with file, line and column.
+// Fills tubes and state; all elements have the length of the first of topology.types. Throws InputError with file,
+// line and column.
 void read_state_csv(const std::string& path, Topology& topology, State& state);
 
 }  // namespace ropewalk

@@ -106,13 +106,13 @@ double constrain(const Topology& topology, const Drive& drive, double time, cons
   for (const Turned& load : drive.turned)
     for (int e : load.elements) {
       const auto i = static_cast<std::size_t>(e);
-      const Vector3 dv = kick / topology.mass * total.force[i], dw = kick / topology.inertia * total.torque[i];
+      const TubeType& type = topology.type_of_element(e);
+      const Vector3 dv = kick / type.mass * total.force[i], dw = kick / type.inertia * total.torque[i];
       const Vector3 v0 = state.velocity[i] - dv, w0 = state.angular_velocity[i] - dw;
       turn(load, time, i, state);
       const Vector3 v1 = state.velocity[i], w1 = state.angular_velocity[i];
       // Free components satisfy v1 - v0 = dv and drop out.
-      work +=
-          0.5 * topology.mass * (v1 - v0 - dv).dot(v1 + v0) + 0.5 * topology.inertia * (w1 - w0 - dw).dot(w1 + w0);
+      work += 0.5 * type.mass * (v1 - v0 - dv).dot(v1 + v0) + 0.5 * type.inertia * (w1 - w0 - dw).dot(w1 + w0);
     }
   return work;
 }

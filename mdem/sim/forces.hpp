@@ -5,6 +5,7 @@
 #include <array>
 #include <vector>
 
+#include "sim/contact_kernel.hpp"
 #include "sim/interaction.hpp"
 #include "sim/neighbours.hpp"
 #include "sim/state.hpp"
@@ -35,17 +36,16 @@ class ForceEngine {
   std::size_t bytes() const;
 
  private:
-  struct Buffer {
-    std::vector<double> fx, fy, fz, tx, ty, tz;
-    double energy = 0, power = 0;
-  };
-  friend struct ContactKernel;
-
   void make_frames(const State& state);
+  void make_tables(const Topology& topology, const Interaction& interaction);
+  void compute_contact(const Topology& topology, const Interaction& interaction, const NeighbourList& list,
+                       const State& state);
 
   std::vector<Frame<double>> frames_;
   Vec3Array axis_;
-  std::array<Buffer, NeighbourList::chunk_count> buffers_;
+  std::vector<int> tube_;            // of each element
+  std::vector<RadialTable> radial_;  // of each pair of tube types
+  std::array<ContactBuffer, NeighbourList::chunk_count> buffers_;
   Times times_;
 };
 

@@ -11,12 +11,19 @@ void apply(const DampingForce& d, std::size_t i, std::size_t j, Forces& out) {
   out.damping_power += d.power;
 }
 
-void contact_pair(const Interaction& in, const State& s, std::size_t i, std::size_t j, Forces& out) {
+PairForce contact_force(const Topology& topology, const Interaction& in, int tube_i, int tube_j,
+                        const Vector3& separation, const Vector3& n_i, const Vector3& n_j) {
+  if (in.paper && in.legacy_torque) return in.paper->legacy_torque(separation, n_i, n_j);
+  return with_law(topology, in, tube_i, tube_j,
+                  [&](const auto& law) { return law.energy_and_gradient(separation, n_i, n_j); });
+}
+
+void contact_pair(const Topology& topology, const Interaction& in, const State& s, int tube_i, int tube_j,
+                  std::size_t i, std::size_t j, Forces& out) {
   const Vector3 separation = s.position[j] - s.position[i];
   if (!(separation.norm() < in.cutoff())) return;
-  const Vector3 ni = axis_of(s.orientation[i]), nj = axis_of(s.orientation[j]);
-  const PairForce f = in.legacy_torque ? in.paper->legacy_torque(separation, ni, nj)
-                                       : in.paper->energy_and_gradient(separation, ni, nj);
+  const PairForce f =
+      contact_force(topology, in, tube_i, tube_j, separation, axis_of(s.orientation[i]), axis_of(s.orientation[j]));
   out.energy.vdw += f.energy;
   out.force.add(i, -f.force_j);
   out.force.add(j, f.force_j);
@@ -28,11 +35,11 @@ void contact_pair(const Interaction& in, const State& s, std::size_t i, std::siz
           i, j, out);
 }
 
-void bond(const Topology& topology, const Interaction& in, const State& s, std::size_t i, Forces& out) {
+void bond(const TubeType& type, const Interaction& in, const State& s, std::size_t i, Forces& out) {
   const std::size_t j = i + 1;
   const Vector3 separation = s.position[j] - s.position[i];
   const Frame<double> fi = frame_of(s.orientation[i]), fj = frame_of(s.orientation[j]);
-  const BondForce<double> f = bond_energy_and_gradient(in.bond, topology.element_length, separation, fi, fj);
+  const BondForce<double> f = bond_energy_and_gradient(type.bond, type.element_length, separation, fi, fj);
   out.energy.stretch += f.energy.stretch;
   out.energy.shear += f.energy.shear;
   out.energy.bend += f.energy.bend;
@@ -44,7 +51,7 @@ void bond(const Topology& topology, const Interaction& in, const State& s, std::
   if (std::fabs(bond_twist_angle(fi, fj)) >= 0.5 * units::pi && out.slipping_bond < 0)
     out.slipping_bond = static_cast<int>(i);
   if (in.damping.bond.rate > 0)
-    apply(in.damping.bond.force(topology.mass, topology.inertia, separation, s.velocity[i], s.angular_velocity[i],
+    apply(in.damping.bond.force(type.mass, type.inertia, separation, s.velocity[i], s.angular_velocity[i],
                                 s.velocity[j], s.angular_velocity[j]),
           i, j, out);
 }
@@ -55,13 +62,13 @@ void compute_reference(const Topology& topology, const Interaction& in, const St
   out = Forces(s.size());
   for (int t = 0; t < topology.tubes(); ++t)
     for (int i = topology.tube_begin[t]; i + 1 < topology.tube_begin[t + 1]; ++i)
-      bond(topology, in, s, static_cast<std::size_t>(i), out);
-  if (!in.paper) return;
+      bond(topology.type_of(t), in, s, static_cast<std::size_t>(i), out);
+  if (!in.has_contact()) return;
   for (int i = 0; i < topology.elements(); ++i)
     for (int j = i + 1; j < topology.elements(); ++j) {
-      const bool same_tube = topology.tube_of(i) == topology.tube_of(j);
-      if (same_tube && j - i <= in.exclude_along_tube) continue;
-      contact_pair(in, s, static_cast<std::size_t>(i), static_cast<std::size_t>(j), out);
+      const int tube_i = topology.tube_of(i), tube_j = topology.tube_of(j);
+      if (tube_i == tube_j && j - i <= in.exclude_along_tube) continue;
+      contact_pair(topology, in, s, tube_i, tube_j, static_cast<std::size_t>(i), static_cast<std::size_t>(j), out);
     }
 }
 

@@ -15,7 +15,8 @@ namespace {
 
 // Second derivative in the spacing of the energy of one element against a parallel row of elements, maximal
 // over their offsets; taken where a rope under load may be, at 97 % of its spacing.
-double row_stiffness(const PaperContact& law, double element_length, double spacing) {
+template <class Law>
+double row_stiffness(const Law& law, double element_length, double spacing) {
   const Vector3 axis = Vector3::UnitZ();
   double largest = 0;
   for (double shift : {0.0, 0.25, 0.5}) {
@@ -30,6 +31,21 @@ double row_stiffness(const PaperContact& law, double element_length, double spac
     };
     const double at = 0.97 * spacing, h = 1e-3 * spacing;
     largest = std::max(largest, (row(at + h) - 2 * row(at) + row(at - h)) / (h * h));
+  }
+  return largest;
+}
+
+// The stiffest contact of an element of this type: between tubes of one kind at the spacing of the rope; of
+// mixed kinds, each pair at its own well.
+double contact_stiffness(const Topology& topology, const Interaction& in, const TubeType& type, double spacing) {
+  if (in.paper) return row_stiffness(*in.paper, type.element_length, spacing);
+  const std::size_t types = topology.types.size();
+  const auto i = static_cast<std::size_t>(&type - topology.types.data());
+  double largest = 0;
+  for (std::size_t j = 0; j < types; ++j) {
+    const LineContact& law = in.line[i * types + j];
+    const double at = types == 1 ? spacing : line_parallel_well(law.density).distance;
+    largest = std::max(largest, row_stiffness(law, law.length_j, at));
   }
   return largest;
 }
@@ -51,16 +67,20 @@ Quaternion rotation(const Vector3& angle) {
 
 TimeStepLimit time_step_limit(const Topology& topology, const Interaction& in, double spacing) {
   TimeStepLimit out;
-  const double a = topology.element_length;
-  out.chain_frequency = stiffest_chain_frequency(in.bond, a, topology.mass, topology.inertia);
-  if (in.paper && topology.tubes() > 1 && spacing > 0) {
-    // A triangular lattice of springs k: largest w^2 = 6 k/m.
-    out.contact_frequency = std::sqrt(std::max(6.0 * row_stiffness(*in.paper, a, spacing) / topology.mass, 0.0));
-    if (in.damped_contact()) {
-      const double row = row_viscosity(in.damping.contact, a, spacing);
+  for (const TubeType& t : topology.types)
+    out.chain_frequency =
+        std::max(out.chain_frequency, stiffest_chain_frequency(t.bond, t.element_length, t.mass, t.inertia));
+  if (in.has_contact() && topology.tubes() > 1 && spacing > 0) {
+    for (const TubeType& t : topology.types) {
+      // A triangular lattice of springs k: largest w^2 = 6 k/m.
+      out.contact_frequency =
+          std::max(out.contact_frequency,
+                   std::sqrt(std::max(6.0 * contact_stiffness(topology, in, t, spacing) / t.mass, 0.0)));
+      if (!in.damped_contact()) continue;
+      const double row = row_viscosity(in.damping.contact, t.element_length, spacing);
       const double arm = 0.5 * spacing;
       // Six neighbours, opposite motions: 12 rows on a coordinate or, by the lever arm, on a spin.
-      out.damping_rate = 12.0 * row * std::max(1.0 / topology.mass, arm * arm / topology.inertia);
+      out.damping_rate = std::max(out.damping_rate, 12.0 * row * std::max(1.0 / t.mass, arm * arm / t.inertia));
     }
   }
   // Opposite motions of bonded neighbours: two bonds, twice the relative velocity of one.
@@ -100,21 +120,20 @@ void Simulation::compute() {
 void Simulation::kick(double dt) {
   work_ += 0.5 * dt * load_power(point_loads_, state_);
   const double alpha = interaction_.damping.local;
-  const double im = dt / topology_.mass, ii = dt / topology_.inertia;
   double removed = 0;
-  const auto n = static_cast<std::ptrdiff_t>(state_.size());
+  std::ptrdiff_t from = 0, to = 0;  // the elements of one tube
   const auto push = [&](const std::vector<double>& force, double inverse, std::vector<double>& velocity) {
-    for (std::ptrdiff_t i = 0; i < n; ++i) velocity[i] += inverse * force[i];
+    for (std::ptrdiff_t i = from; i < to; ++i) velocity[i] += inverse * force[i];
   };
   const auto push_local = [&](const std::vector<double>& force, double inverse, std::vector<double>& velocity) {
-    for (std::ptrdiff_t i = 0; i < n; ++i) {
+    for (std::ptrdiff_t i = from; i < to; ++i) {
       const double brake = pfc_local(alpha, force[i], velocity[i]);
       const double next = velocity[i] + inverse * (force[i] + brake);
       removed -= 0.5 * dt * brake * (velocity[i] + next);
       velocity[i] = next;
     }
   };
-  const auto all = [&](const auto& f) {
+  const auto all = [&](const auto& f, double im, double ii) {
     f(forces_.force.x, im, state_.velocity.x);
     f(forces_.force.y, im, state_.velocity.y);
     f(forces_.force.z, im, state_.velocity.z);
@@ -122,10 +141,15 @@ void Simulation::kick(double dt) {
     f(forces_.torque.y, ii, state_.angular_velocity.y);
     f(forces_.torque.z, ii, state_.angular_velocity.z);
   };
-  if (alpha > 0) {
-    all(push_local);
-  } else {
-    all(push);
+  for (int t = 0; t < topology_.tubes(); ++t) {
+    from = topology_.tube_begin[t];
+    to = topology_.tube_begin[t + 1];
+    const double im = dt / topology_.type_of(t).mass, ii = dt / topology_.type_of(t).inertia;
+    if (alpha > 0) {
+      all(push_local, im, ii);
+    } else {
+      all(push, im, ii);
+    }
   }
   dissipated_ += removed;
   work_ += constrain(topology_, drive_, state_.time, forces_, dt, state_);
@@ -166,7 +190,7 @@ void Simulation::step() {
 
 void Simulation::check() const {
   const double energy = forces_.energy.potential();
-  const double fastest = 0.25 * topology_.radius / time_step_;
+  const double fastest = 0.25 * topology_.largest_radius() / time_step_;
   int broken = -1;
   for (std::size_t i = 0; i < state_.size() && broken < 0; ++i)
     if (!(state_.velocity[i].squaredNorm() < fastest * fastest) ||
@@ -203,8 +227,9 @@ double Simulation::largest_force() const {
   free.angular_velocity = forces_.torque;
   constrain(topology_, drive_, state_.time, forces_, 0.0, free);
   double largest = 0;
+  const double radius = topology_.largest_radius();
   for (std::size_t i = 0; i < free.size(); ++i)
-    largest = std::max({largest, free.velocity[i].norm(), free.angular_velocity[i].norm() / topology_.radius});
+    largest = std::max({largest, free.velocity[i].norm(), free.angular_velocity[i].norm() / radius});
   return largest;
 }
 
@@ -212,7 +237,10 @@ double Simulation::largest_force() const {
 // semi-implicit form of J. Guenole et al., Comput. Mater. Sci. 175, 109584 (2020). Rotations take part with
 // their angular velocities scaled by sqrt(I/m), so that both kinds of motion mix in one power.
 bool Simulation::relax(double tolerance, long max_steps, const std::function<bool(long)>& progress) {
-  const double scale2 = topology_.inertia / topology_.mass;
+  // One ratio for all tube types: it only weighs turning against moving.
+  const TubeType& lightest = *std::min_element(topology_.types.begin(), topology_.types.end(),
+                                               [](const auto& a, const auto& b) { return a.mass < b.mass; });
+  const double scale2 = lightest.inertia / lightest.mass;
   const double dt_max = time_step_, dt_min = 1e-3 * time_step_;  // no step beyond the stability limit
   double dt = 0.5 * time_step_, mix = 0.1;
   int downhill = 0;
@@ -222,7 +250,7 @@ bool Simulation::relax(double tolerance, long max_steps, const std::function<boo
     state_.angular_velocity = Vec3Array(n);
   };
   stop();
-  const double most_move = 0.05 * topology_.radius;
+  const double most_move = 0.05 * lightest.radius;
   for (long k = 0; k < max_steps; ++k) {
     if (k % 10 == 0 && largest_force() < tolerance) return true;
     if (!progress(k)) return false;
@@ -242,9 +270,13 @@ bool Simulation::relax(double tolerance, long max_steps, const std::function<boo
       dt = std::max(0.5 * dt, dt_min);
       mix = 0.1;
     }
-    for (std::size_t i = 0; i < n; ++i) {
-      state_.velocity.add(i, dt / topology_.mass * forces_.force[i]);
-      state_.angular_velocity.add(i, dt / topology_.inertia * forces_.torque[i]);
+    for (int t = 0; t < topology_.tubes(); ++t) {
+      const TubeType& type = topology_.type_of(t);
+      for (int e = topology_.tube_begin[t]; e < topology_.tube_begin[t + 1]; ++e) {
+        const auto i = static_cast<std::size_t>(e);
+        state_.velocity.add(i, dt / type.mass * forces_.force[i]);
+        state_.angular_velocity.add(i, dt / type.inertia * forces_.torque[i]);
+      }
     }
     constrain(topology_, drive_, state_.time, forces_, 0.0, state_);
     for (std::size_t i = 0; i < n; ++i) {

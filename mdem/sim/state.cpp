@@ -9,4 +9,16 @@ int Topology::tube_of(int element) const {
   return static_cast<int>(after - tube_begin.begin()) - 1;
 }
 
+double Topology::largest_radius() const {
+  double largest = 0;
+  for (const TubeType& t : types) largest = std::max(largest, t.radius);
+  return largest;
+}
+
+double Topology::longest_element() const {
+  double longest = 0;
+  for (const TubeType& t : types) longest = std::max(longest, t.element_length);
+  return longest;
+}
+
 }  // namespace ropewalk

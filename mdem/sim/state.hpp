@@ -52,20 +52,34 @@ struct QuaternionArray {
   }
 };
 
-// Which elements form which tube. Tube t owns the elements tube_begin[t] .. tube_begin[t+1] - 1; consecutive
-// ones are bonded.
-struct Topology {
-  std::vector<int> tube_begin{0};
+// What all tubes of one kind share.
+struct TubeType {
   double element_length = 0;  // equilibrium length of a bond, nm
   double radius = 0;          // nm
   double mass = 0;            // of one element, eV ps^2/nm^2
   double inertia = 0;         // isotropic, eV ps^2
+  BondStiffness bond;
+};
+
+// Which elements form which tube. Tube t owns the elements tube_begin[t] .. tube_begin[t+1] - 1; consecutive
+// ones are bonded.
+struct Topology {
+  std::vector<int> tube_begin{0};
+  std::vector<int> tube_type;  // of each tube, an index of `types`
+  std::vector<TubeType> types = std::vector<TubeType>(1);
 
   int tubes() const { return static_cast<int>(tube_begin.size()) - 1; }
   int elements() const { return tube_begin.back(); }
   int bonds() const { return elements() - tubes(); }
   int length_of(int tube) const { return tube_begin[tube + 1] - tube_begin[tube]; }
-  void add_tube(int elements) { tube_begin.push_back(tube_begin.back() + elements); }
+  void add_tube(int elements, int type = 0) {
+    tube_begin.push_back(tube_begin.back() + elements);
+    tube_type.push_back(type);
+  }
+  const TubeType& type_of(int tube) const { return types[static_cast<std::size_t>(tube_type[tube])]; }
+  const TubeType& type_of_element(int element) const { return type_of(tube_of(element)); }
+  double largest_radius() const;
+  double longest_element() const;
   int tube_of(int element) const;
 };
 

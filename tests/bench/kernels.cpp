@@ -41,7 +41,6 @@ void AllForces(benchmark::State& bench) {
   Topology topology = test::published_topology();
   const State state = test::disordered_bundle(topology, 7, static_cast<int>(bench.range(0)), 1.75, 0.02, 3);
   Interaction in;
-  in.bond = test::published_bond();
   in.paper = test::published_contact();
   in.damping.contact = {static_cast<double>(bench.range(1)), 1.713, 2.57};
   NeighbourList list;

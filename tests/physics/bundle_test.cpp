@@ -16,13 +16,12 @@ struct Bundle {
 
   Bundle(int tubes, int elements, double temperature) {
     state = test::disordered_bundle(topology, tubes, elements, spacing, 0, 1);
-    in.bond = test::published_bond();
     in.paper = test::published_contact();
     // Maxwell velocities.
     std::mt19937 engine(4);
     std::normal_distribution<double> gauss;
-    const double v = std::sqrt(units::boltzmann * temperature / topology.mass);
-    const double w = std::sqrt(units::boltzmann * temperature / topology.inertia);
+    const double v = std::sqrt(units::boltzmann * temperature / topology.types[0].mass);
+    const double w = std::sqrt(units::boltzmann * temperature / topology.types[0].inertia);
     for (std::size_t i = 0; i < state.size(); ++i) {
       state.velocity.set(i, v * Vector3(gauss(engine), gauss(engine), gauss(engine)));
       state.angular_velocity.set(i, w * Vector3(gauss(engine), gauss(engine), gauss(engine)));
@@ -37,8 +36,8 @@ struct Bundle {
 Vector3 angular_momentum(const Simulation& s) {
   Vector3 sum = Vector3::Zero();
   for (std::size_t i = 0; i < s.state().size(); ++i)
-    sum += s.topology().mass * s.state().position[i].cross(s.state().velocity[i]) +
-           s.topology().inertia * s.state().angular_velocity[i];
+    sum += s.topology().types[0].mass * s.state().position[i].cross(s.state().velocity[i]) +
+           s.topology().types[0].inertia * s.state().angular_velocity[i];
   return sum;
 }
 
@@ -46,8 +45,8 @@ Vector3 angular_momentum(const Simulation& s) {
 double momentum_scale(const Simulation& s) {
   double sum = 0;
   for (std::size_t i = 0; i < s.state().size(); ++i)
-    sum += s.topology().mass * s.state().position[i].norm() * s.state().velocity[i].norm() +
-           s.topology().inertia * s.state().angular_velocity[i].norm();
+    sum += s.topology().types[0].mass * s.state().position[i].norm() * s.state().velocity[i].norm() +
+           s.topology().types[0].inertia * s.state().angular_velocity[i].norm();
   return sum;
 }
 

@@ -23,7 +23,6 @@ struct Chain {
 
   explicit Chain(int elements) {
     topology.add_tube(elements);
-    in.bond = test::published_bond();
     state = State(static_cast<std::size_t>(elements));
     for (int i = 0; i < elements; ++i) state.position.set(i, {0, 0, i * element_length});
     last = elements - 1;
@@ -44,7 +43,7 @@ TEST(ChainStatics, Cantilever) {
   c.drive.fixed.push_back({0});
   c.drive.loads.push_back({c.last, {force, 0, 0}, Vector3::Zero()});
   const Simulation s = c.relaxed(1e-6);
-  const double expected = force * std::pow(c.length(), 3) / (3 * c.in.bond.bend);
+  const double expected = force * std::pow(c.length(), 3) / (3 * c.topology.types[0].bond.bend);
   EXPECT_NEAR(s.state().position[c.last].x() / expected, 1, 1e-3);
 }
 
@@ -54,13 +53,13 @@ TEST(ChainStatics, Stretch) {
   c.drive.loads.push_back({c.last, {0, 0, 5.0}, Vector3::Zero()});
   const Simulation s = c.relaxed(1e-8);
   const double strain = s.state().position[c.last].z() / c.length() - 1;
-  EXPECT_NEAR(strain, 5.0 / c.in.bond.stretch, 1e-9);
+  EXPECT_NEAR(strain, 5.0 / c.topology.types[0].bond.stretch, 1e-9);
 }
 
 // Deflection under a small lateral load grows as 1/(1 - P/P_cr): three loads below extrapolate to P_cr.
 TEST(ChainBuckling, EulerColumn) {
   Chain c(31);
-  const double euler = units::pi * units::pi * c.in.bond.bend / (c.length() * c.length());
+  const double euler = units::pi * units::pi * c.topology.types[0].bond.bend / (c.length() * c.length());
   std::vector<double> load, stiffness;
   for (double part : {0.5, 0.7, 0.85}) {
     Chain column = c;
@@ -96,7 +95,7 @@ double lateral_stiffness(double moment, Ends ends) {
     c.drive.turned.push_back({{0}, 0, 0, Vector3::Zero(), false, true});
     c.drive.turned.push_back({{c.last}, 0, 0, Vector3::Zero(), true, true});
   }
-  const double twist = std::asin(moment * element_length / c.in.bond.twist);
+  const double twist = std::asin(moment * element_length / c.topology.types[0].bond.twist);
   for (int i = 0; i <= c.last; ++i)
     c.state.orientation.set(i, test::turn(Vector3::UnitZ(), (i - 0.5 * c.last) * twist));
   const Simulation s = c.relaxed(1e-7);
@@ -200,7 +199,7 @@ TEST(ChainDynamics, StabilityLimitIsWhereTheorySays) {
 
 TEST(ChainTwist, SlipIsRefused) {
   Chain c(11);
-  const double peak = c.in.bond.twist / element_length;
+  const double peak = c.topology.types[0].bond.twist / element_length;
   c.drive.fixed.push_back({0});
   c.drive.loads.push_back({c.last, Vector3::Zero(), {0, 0, 1.05 * peak}});
   c.in.damping.bond.rate = 2;
@@ -216,7 +215,7 @@ TEST(ChainTwist, SlipIsRefused) {
 
 TEST(ChainTwist, TurnsAreCountedBelowTheLimit) {
   Chain c(41);
-  const double moment = 0.3 * c.in.bond.twist / element_length;
+  const double moment = 0.3 * c.topology.types[0].bond.twist / element_length;
   c.drive.fixed.push_back({0});
   c.drive.loads.push_back({c.last, Vector3::Zero(), {0, 0, moment}});
   c.in.damping.bond.rate = 1;

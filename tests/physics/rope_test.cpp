@@ -11,8 +11,8 @@ namespace {
 
 Scene rope_scene(int tubes, double length, double perturbation = 0) {
   Scene scene;
-  scene.parameters = read_parameters(ROPEWALK_SOURCE_DIR "/data/parameters/cnt-10-10-paper.toml");
-  scene.element_length = scene.parameters.element_length;
+  scene.sets = {read_parameters(ROPEWALK_SOURCE_DIR "/data/parameters/cnt-10-10-paper.toml")};
+  scene.element_length = scene.parameters().element_length;
   RopeSource rope;
   rope.tubes = tubes;
   rope.length = length;
@@ -26,7 +26,7 @@ TEST(UntwistedRope, IsPackedHexagonallyWithoutCharge) {
   Scene scene = rope_scene(91, 27.12, 5e-4);
   const Prepared p = prepare(scene);
   const RopeShells shells = rope_shells(p.topology, p.state, 0);
-  const RopeObservation o = observe(p.topology, p.state, shells, scene.parameters.validity, 0, p.spacing);
+  const RopeObservation o = observe(p.topology, p.state, shells, {scene.parameters().validity}, 0, p.spacing);
   EXPECT_EQ(o.middle.charge, 0);
   EXPECT_EQ(o.middle.charge_delaunay, 0);
   EXPECT_EQ(o.middle.contacts, 240);  // 3 N - sqrt(12 N - 3)
@@ -39,8 +39,8 @@ TEST(UntwistedRope, IsPackedHexagonallyWithoutCharge) {
 // relaxed spacing is a little smaller.
 TEST(UntwistedRope, SpacingAndCohesion) {
   Scene scene = rope_scene(91, 27.12);
-  EXPECT_NEAR(pair_spacing(*scene.parameters.paper, 1.356), 1.713, 1e-3);
-  EXPECT_NEAR(pair_energy_per_length(*scene.parameters.paper, 1.356, 1.713), -2.19, 0.01);
+  EXPECT_NEAR(pair_spacing(*scene.parameters().paper, 1.356), 1.713, 1e-3);
+  EXPECT_NEAR(pair_energy_per_length(*scene.parameters().paper, 1.356, 1.713), -2.19, 0.01);
 
   // Difference of two lengths, so that the ends drop out.
   const auto vdw = [](double length) {

@@ -151,7 +151,8 @@ TEST(Bond, TwistAngleIgnoresBend) {
 // The physics test of the same name finds by dynamics that a chain is stable below and unstable above.
 TEST(Bond, StiffestFrequencyOfThePublishedChain) {
   const Topology t = test::published_topology();
-  const double w = stiffest_chain_frequency(test::published_bond(), t.element_length, t.mass, t.inertia);
+  const double w = stiffest_chain_frequency(test::published_bond(), t.types[0].element_length, t.types[0].mass,
+                                            t.types[0].inertia);
   EXPECT_NEAR(2.0 / w, 0.0483, 0.0001);  // ps
 }
 

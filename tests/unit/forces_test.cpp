@@ -22,7 +22,6 @@ class ForcesTest : public ::testing::TestWithParam<Variant> {
     const Variant& v = GetParam();
     topology = test::published_topology();
     state = test::disordered_bundle(topology, 7, 80, 1.75, v.disorder, 21);
-    in.bond = test::published_bond();
     in.paper = test::published_contact();
     if (v.general_powers) in.paper->alpha = 9.3;
     in.legacy_torque = v.legacy;

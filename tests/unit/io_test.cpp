@@ -732,8 +732,8 @@ ReportInput some_report(std::size_t rows) {
     in.views.push_back(twisted_rope(2, 40, 0.1 * n, 0, n == 7));
   }
   in.parameter_name = "set";
-  in.parameters = {{"bond.EI", 358.4, "nN nm^2", std::nullopt, "derived", "10.1016/j.jmps.2012.10.016"},
-                   {"contact.paper.C3", -0.00138, "1", 2e-5, "published", ""}};
+  in.parameters = {{"bond.EI", 358.4, "nN nm^2", std::nullopt, "derived", "10.1016/j.jmps.2012.10.016", ""},
+                   {"contact.paper.C3", -0.00138, "1", 2e-5, "published", "", ""}};
   return in;
 }
 

@@ -31,8 +31,8 @@ struct Rope {
 
 Topology equal_tubes(int tubes, int elements) {
   Topology t;
-  t.element_length = element_length;
-  t.radius = 0.678;
+  t.types[0].element_length = element_length;
+  t.types[0].radius = 0.678;
   for (int k = 0; k < tubes; ++k) t.add_tube(elements);
   return t;
 }
@@ -138,7 +138,7 @@ CrossSection middle_of(const Rope& rope, const RopeShells& shells, double neighb
 CrossSection middle_of(const Rope& rope) { return middle_of(rope, rope_shells(rope.topology, rope.state, 0.0)); }
 
 RopeObservation observe_rope(const Rope& rope, const RopeShells& shells, const Validity& validity = {}) {
-  return observe(rope.topology, rope.state, shells, validity, 0.0, spacing);
+  return observe(rope.topology, rope.state, shells, {validity}, 0.0, spacing);
 }
 
 int sum(const std::vector<char>& flags) {
@@ -507,7 +507,7 @@ TEST(ObservedTwist, PhysicalTwistOfABentTubeIsNotItsBend) {
     const double r = element_length / step;
     state.position.set(s, {r * (1.0 - std::cos(step * s)), 0.0, r * std::sin(step * s)});
   }
-  const RopeObservation seen = observe(topology, state, {}, {}, 0.0, 0.0);
+  const RopeObservation seen = observe(topology, state, {}, {Validity{}}, 0.0, 0.0);
   EXPECT_NEAR(seen.physical_twist, per_bond * 30, 1e-3);
 }
 
@@ -639,7 +639,7 @@ TEST(ObservedNoRope, TubesOfUnequalLengthsGiveTheQuantitiesOfTubes) {
   const RopeShells shells = rope_shells(topology, state, 0.0);
   EXPECT_EQ(sum(shells.internal), 0);
   EXPECT_EQ(sum(shells.outermost), 3);
-  const RopeObservation seen = observe(topology, state, shells, {0, 0.01, 0}, 0.0, spacing);
+  const RopeObservation seen = observe(topology, state, shells, {Validity{0, 0.01, 0}}, 0.0, spacing);
   EXPECT_NEAR(seen.physical_twist, 0.1 * (7 + 7 + 4) / 3.0, 1e-12);
   EXPECT_EQ(seen.overtwisted, 18);
   EXPECT_EQ(seen.length, 0.0);
@@ -653,7 +653,7 @@ TEST(ObservedNoRope, TubesOfUnequalLengthsGiveTheQuantitiesOfTubes) {
 TEST(ObservedNoRope, OneTubeIsItsOwnCentreLine) {
   const Rope rope = straight_rope({{0, 0}}, 20);
   const RopeShells shells = rope_shells(rope.topology, rope.state, 0.0);
-  const RopeObservation seen = observe(rope.topology, rope.state, shells, {}, 0.0, 0.0);
+  const RopeObservation seen = observe(rope.topology, rope.state, shells, {Validity{}}, 0.0, 0.0);
   EXPECT_EQ(seen.beta, 0.0);
   EXPECT_EQ(seen.geometric_twist, 0.0);
   EXPECT_EQ(seen.windings, 0.0);

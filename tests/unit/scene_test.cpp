@@ -191,7 +191,7 @@ TEST(ShippedSet, HasThePublishedValues) {
   EXPECT_DOUBLE_EQ(set.validity.kink_curvature, 0.087);
   EXPECT_DOUBLE_EQ(set.validity.twist_collapse, 0.05);
   EXPECT_DOUBLE_EQ(set.validity.stretch, 0.07);
-  EXPECT_NEAR(set.element_mass(1.356) / test::published_topology().mass, 1, 1e-10);
+  EXPECT_NEAR(set.element_mass(1.356) / test::published_topology().types[0].mass, 1, 1e-10);
 }
 
 TEST(ShippedSet, HasThePublishedContact) {
@@ -355,9 +355,9 @@ TEST(SceneFile, OtherElementLengthNeedsNoLaw) {
   Scene s = scene_from(
       "element_length_nm = 0.9\n[chain]\nelements = 5\n[contact]\nlaw = \"none\"\n[run]\nduration_ps = 1\n");
   const BuiltScene b = build(s);
-  EXPECT_EQ(b.topology.element_length, 0.9);
-  EXPECT_NEAR(b.topology.mass, s.parameters.atoms_per_length * 0.9 * units::carbon_mass, 1e-15);
-  EXPECT_NEAR(b.topology.inertia, b.topology.mass * 0.678 * 0.678, 1e-15);
+  EXPECT_EQ(b.topology.types[0].element_length, 0.9);
+  EXPECT_NEAR(b.topology.types[0].mass, s.parameters().atoms_per_length * 0.9 * units::carbon_mass, 1e-15);
+  EXPECT_NEAR(b.topology.types[0].inertia, b.topology.types[0].mass * 0.678 * 0.678, 1e-15);
 }
 
 TEST(SceneFile, AnotherSetMayBeGiven) {
@@ -365,7 +365,7 @@ TEST(SceneFile, AnotherSetMayBeGiven) {
   const std::string path = folder.write("scene.toml",
                                         "format = \"ropewalk-scene-1\"\nparameters = \"not-there\"\n"
                                         "[chain]\nelements = 5\n[run]\nduration_ps = 1\n");
-  EXPECT_EQ(read_scene(path, shipped_set).parameters.name, "cnt-10-10-paper");
+  EXPECT_EQ(read_scene(path, {shipped_set}).parameters().name, "cnt-10-10-paper");
   EXPECT_THROW(read_scene(path), InputError);
 }
 
@@ -551,9 +551,9 @@ TEST(Rope, ElementsAreOneLengthApartAndUpright) {
       EXPECT_EQ(b.state.orientation[e].w(), 1);
       EXPECT_EQ(b.state.velocity[e], Vector3::Zero());
     }
-  EXPECT_EQ(b.topology.radius, 0.678);
-  EXPECT_NEAR(b.topology.mass / test::published_topology().mass, 1, 1e-10);
-  EXPECT_NEAR(b.topology.inertia / test::published_topology().inertia, 1, 1e-10);
+  EXPECT_EQ(b.topology.types[0].radius, 0.678);
+  EXPECT_NEAR(b.topology.types[0].mass / test::published_topology().types[0].mass, 1, 1e-10);
+  EXPECT_NEAR(b.topology.types[0].inertia / test::published_topology().types[0].inertia, 1, 1e-10);
 }
 
 TEST(Rope, PairSpacingIsThePublishedContactsMinimum) {
@@ -624,7 +624,7 @@ TEST(Maxwell, TemperatureIsExactAndMomentaVanish) {
     EXPECT_EQ(thermal_freedoms(b.state), freedoms);
     EXPECT_NEAR(kinetic_energy(b.topology, b.state) / (0.5 * freedoms * kT), 1, 1e-12) << source;
     const Momenta net = net_momenta(b.topology, b.state);
-    const double p = b.topology.elements() * std::sqrt(kT * b.topology.mass);
+    const double p = b.topology.elements() * std::sqrt(kT * b.topology.types[0].mass);
     EXPECT_LT(net.linear.norm(), 1e-12 * p);
     EXPECT_LT(net.angular.norm(), 1e-11 * p * 67.8);
   }
@@ -639,7 +639,7 @@ TEST(Maxwell, EnergyIsSharedEquallyAndNormally) {
     w2 += b.state.angular_velocity[i].squaredNorm() / (3 * n);
     for (int a = 0; a < 3; ++a) v4 += std::pow(b.state.velocity[i][a], 4) / (3 * n);
   }
-  EXPECT_NEAR(b.topology.mass * v2 / (b.topology.inertia * w2), 1, 0.05);
+  EXPECT_NEAR(b.topology.types[0].mass * v2 / (b.topology.types[0].inertia * w2), 1, 0.05);
   EXPECT_NEAR(v4 / (v2 * v2), 3, 0.2);  // a normal distribution's kurtosis
 }
 
@@ -689,7 +689,7 @@ TEST(StateFile, IsRead) {
   ASSERT_EQ(b.topology.tubes(), 2);
   EXPECT_EQ(b.topology.length_of(0), 2);
   EXPECT_EQ(b.topology.length_of(1), 1);
-  EXPECT_EQ(b.topology.element_length, 1.356);
+  EXPECT_EQ(b.topology.types[0].element_length, 1.356);
   EXPECT_EQ(b.state.position[1], Vector3(0, 0, 0.678));
   EXPECT_NEAR(b.state.orientation[2].norm(), 1, 1e-15);  // eight digits in the file
   EXPECT_LT((axis_of(b.state.orientation[2]) - Vector3(0, -1, 0)).norm(), 1e-8);

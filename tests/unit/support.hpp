@@ -31,10 +31,8 @@ inline BondStiffness published_bond() {
 
 inline Topology published_topology() {
   Topology t;
-  t.element_length = element_length;
-  t.radius = 0.678;
-  t.mass = 220 * units::carbon_mass;
-  t.inertia = t.mass * t.radius * t.radius;
+  const double mass = 220 * units::carbon_mass, radius = 0.678;
+  t.types = {{element_length, radius, mass, mass * radius * radius, published_bond()}};
   return t;
 }
 
@@ -73,7 +71,7 @@ inline State disordered_bundle(Topology& topology, int tubes, int elements, doub
     const Vector3 at = t == 0 ? Vector3::Zero() : Vector3(spacing * std::cos(angle), spacing * std::sin(angle), 0);
     for (int e = 0; e < elements; ++e) {
       const auto i = static_cast<std::size_t>(topology.tube_begin[t] + e);
-      s.position.set(i, at + Vector3(0, 0, e * topology.element_length) + disorder * random.direction());
+      s.position.set(i, at + Vector3(0, 0, e * topology.types[0].element_length) + disorder * random.direction());
       s.orientation.set(i, turn(random.direction(), disorder * random.uniform(0, 2)));
       s.velocity.set(i, random.uniform(0, 0.3) * random.direction());
       s.angular_velocity.set(i, random.uniform(0, 0.3) * random.direction());

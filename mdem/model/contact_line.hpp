@@ -1,0 +1,230 @@
+// `line`: van der Waals contact of two rigid tube elements as the double line integral, along both axes, of an
+// isotropic line density u(rho), rho the distance of two points of the axes.
+//
+//   U = int ds_i int ds_j u(|x_j + s_j n_j - x_i - s_i n_i|)
+//     = sum_{k,l} w_i w_j u(rho_kl),   nodes s_k = ((k + 1/2)/N - 1/2) L, weights w = L/N     (midpoint rule)
+//
+//   u(rho) = K [ (s/(h + c))^p - (s/(h + c))^q ] W(h),     h = rho - r_i - r_j (the gap)
+//
+// W falls from 1 at switch_gap to 0 at cutoff_gap by the quintic smoothstep (C2). Below core_gap the second-order
+// Taylor polynomial in h continues u: finite, repulsive and C2 for any overlap.
+//
+// For straight tubes the surface integral of any isotropic atom-atom law equals this integral at every crossing
+// angle, u being the Abel inverse of the parallel-tube energy; so no angular factor is needed. The nodes of
+// consecutive elements form one uniform row, for which the midpoint rule converges exponentially: a spacing of
+// one sixth of the equilibrium distance leaves a corrugation below 1e-4 of the well.
+//
+// Forces are central between nodes, so force, torque and momentum balance are exact by construction.
+// Units eV, nm. u in eV/nm^2. Symmetric under exchange of i and j and under flipping either axis.
+// Sources: A. N. Volkov, L. V. Zhigilei, J. Phys. Chem. C 114, 5513 (2010), DOI 10.1021/jp906142h (tubular
+// potential, which this replaces by an exact line integral); the Abel inverse is derived in
+// calibrate/contact/van_der_waals.hpp.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "model/contact.hpp"
+
+namespace ropewalk {
+
+struct RadialTerms {
+  double energy = 0;      // u, eV/nm^2
+  double derivative = 0;  // du/drho, eV/nm^3
+};
+
+// u(rho) for one pair of tube types.
+struct LineDensity {
+  double contact = 0;  // r_i + r_j, nm
+  double K = 0;        // eV/nm^2
+  double s = 0;        // nm
+  double c = 0;        // nm
+  double p = 10;
+  double q = 4;
+  double core_gap = 0.2;    // nm
+  double switch_gap = 0.9;  // nm
+  double cutoff_gap = 1.2;  // nm
+
+  double cutoff() const { return contact + cutoff_gap; }  // of rho
+  RadialTerms terms(double rho) const;
+  double energy(double rho) const { return terms(rho).energy; }
+  bool operator!=(const LineDensity& o) const {
+    return contact != o.contact || K != o.K || s != o.s || c != o.c || p != o.p || q != o.q ||
+           core_gap != o.core_gap || switch_gap != o.switch_gap || cutoff_gap != o.cutoff_gap;
+  }
+};
+
+// One pair of elements.
+struct LineContact {
+  LineDensity density;
+  double length_i = 0, length_j = 0;  // nm
+  int nodes_i = 1, nodes_j = 1;
+
+  // Of the element centres: beyond it no two nodes reach each other, however the elements are turned.
+  double cutoff() const {
+    return density.cutoff() + 0.5 * (length_i * (1 - 1.0 / nodes_i) + length_j * (1 - 1.0 / nodes_j));
+  }
+  // separation = x_j - x_i; n_i, n_j unit axes.
+  PairForce energy_and_gradient(const Vector3& separation, const Vector3& n_i, const Vector3& n_j) const;
+  double energy(const Vector3& separation, const Vector3& n_i, const Vector3& n_j) const;
+};
+
+// Place of node k of `nodes` on an element, from its centre (nm).
+inline double line_node(int k, int nodes, double length) { return ((k + 0.5) / nodes - 0.5) * length; }
+
+// Nodes per element for a node spacing of at most a sixth of the equilibrium distance.
+inline int line_nodes(double length, double pair_spacing) {
+  return std::max(1, static_cast<int>(std::ceil(6.0 * length / pair_spacing - 1e-9)));
+}
+
+// Energy per length (eV/nm) of two infinite parallel tubes and energy (eV) of two infinite tubes crossed at
+// `angle`, by fine midpoint sums; and the distance (nm) at which each is lowest.
+struct LineWell {
+  double distance = 0, energy = 0;
+};
+double line_parallel_energy(const LineDensity& density, double distance);
+double line_crossed_energy(const LineDensity& density, double distance, double angle);
+LineWell line_parallel_well(const LineDensity& density);
+LineWell line_crossed_well(const LineDensity& density, double angle);
+
+// --- One law for all tubes --------------------------------------------------------------------------
+//
+// In units of the atom-atom law (length sigma, K in eps n_i n_j sigma^2) the parameters of u are smooth functions
+// of the two curvatures:
+//   x = sigma (1/r_i + 1/r_j)/2,   y = sigma^2 (1/r_i - 1/r_j)^2/4,
+//   ln K', s', c', p, q  =  a0 + a1 x + a2 x^2 + a3 x^3 + a4 y.
+// Valid for r = 0.3 .. 1.4 nm and for the cutoff (in units of sigma) that it was fitted for.
+struct UniversalLine {
+  static constexpr int terms = 5;
+  using Row = std::array<double, terms>;
+  double epsilon = 0;    // eV, of the atom-atom law
+  double sigma = 0;      // nm
+  double lj_cutoff = 0;  // nm; 0: none
+  Row log_K{}, s{}, c{}, p{}, q{};
+  struct Errors {
+    Row log_K{}, s{}, c{}, p{}, q{};
+  };
+  Errors standard_errors;
+  double core_gap = 0, switch_gap = 0, cutoff_gap = 0;  // nm
+
+  bool operator==(const UniversalLine& o) const {
+    return epsilon == o.epsilon && sigma == o.sigma && lj_cutoff == o.lj_cutoff && log_K == o.log_K && s == o.s &&
+           c == o.c && p == o.p && q == o.q && core_gap == o.core_gap && switch_gap == o.switch_gap &&
+           cutoff_gap == o.cutoff_gap;
+  }
+  // r nm, n atoms per nm^2.
+  LineDensity density(double r_i, double n_i, double r_j, double n_j) const;
+};
+
+// --- Definitions ------------------------------------------------------------------------------------
+
+inline RadialTerms LineDensity::terms(double rho) const {
+  if (rho >= cutoff()) return {};
+  const double h = rho - contact, e = std::min(h - core_gap, 0.0);
+  const double x = s / (h - e + c), inv = 1 / (h - e + c);
+  const double rep = K * std::pow(x, p), att = K * std::pow(x, q);
+  const double v0 = rep - att, v1 = (q * att - p * rep) * inv;
+  const double v2 = e < 0 ? (p * (p + 1) * rep - q * (q + 1) * att) * inv * inv : 0.0;
+  const double v = v0 + e * (v1 + 0.5 * e * v2), dv = v1 + e * v2;
+  const double width = cutoff_gap - switch_gap;
+  const double t = std::clamp((h - switch_gap) / width, 0.0, 1.0);
+  const double w = 1 - t * t * t * (10 - t * (15 - 6 * t)), dw = -30 * t * t * (1 - t) * (1 - t) / width;
+  return {v * w, dv * w + v * dw};
+}
+
+inline PairForce LineContact::energy_and_gradient(const Vector3& separation, const Vector3& n_i,
+                                                  const Vector3& n_j) const {
+  const double weight = length_i / nodes_i * length_j / nodes_j;
+  PairForce f;
+  for (int k = 0; k < nodes_i; ++k) {
+    const double si = line_node(k, nodes_i, length_i);
+    for (int l = 0; l < nodes_j; ++l) {
+      const double sj = line_node(l, nodes_j, length_j);
+      const Vector3 d = separation + sj * n_j - si * n_i;
+      const double rho = detail::safe_distance(d);
+      const RadialTerms t = density.terms(rho);
+      const Vector3 force = -weight * t.derivative / rho * d;
+      f.energy += weight * t.energy;
+      f.force_j += force;
+      f.torque_i -= si * n_i.cross(force);
+      f.torque_j += sj * n_j.cross(force);
+    }
+  }
+  return f;
+}
+
+inline double LineContact::energy(const Vector3& separation, const Vector3& n_i, const Vector3& n_j) const {
+  return energy_and_gradient(separation, n_i, n_j).energy;
+}
+
+namespace detail {
+
+template <class F>
+LineWell lowest_point(F energy, double from, double to) {
+  constexpr int grid = 200;
+  const double step = (to - from) / grid;
+  int lowest = 0;
+  for (int k = 1; k <= grid; ++k)
+    if (energy(from + k * step) < energy(from + lowest * step)) lowest = k;
+  const double part = 0.5 * (std::sqrt(5.0) - 1);
+  double a = from + std::max(lowest - 1, 0) * step, b = from + std::min(lowest + 1, grid) * step;
+  while (b - a > 1e-8) {
+    const double x1 = b - part * (b - a), x2 = a + part * (b - a);
+    (energy(x1) < energy(x2) ? b : a) = energy(x1) < energy(x2) ? x2 : x1;
+  }
+  return {0.5 * (a + b), energy(0.5 * (a + b))};
+}
+
+}  // namespace detail
+
+inline double line_parallel_energy(const LineDensity& density, double distance) {
+  const double reach2 = density.cutoff() * density.cutoff() - distance * distance;
+  if (reach2 <= 0) return 0;
+  constexpr int points = 200;  // the integrand and two derivatives vanish at the end: the rule is exact enough
+  const double step = std::sqrt(reach2) / points;
+  double sum = 0;
+  for (int k = 0; k < points; ++k) sum += density.energy(std::hypot(distance, (k + 0.5) * step));
+  return 2 * step * sum;
+}
+
+inline double line_crossed_energy(const LineDensity& density, double distance, double angle) {
+  constexpr int points = 400;
+  const double step = (density.cutoff() - distance) / points;
+  if (step <= 0) return 0;
+  double sum = 0;
+  for (int k = 0; k < points; ++k) {
+    const double rho = distance + (k + 0.5) * step;
+    sum += rho * density.energy(rho);
+  }
+  return 2 * units::pi * step * sum / std::sin(angle);
+}
+
+inline LineWell line_parallel_well(const LineDensity& d) {
+  return detail::lowest_point([&](double r) { return line_parallel_energy(d, r); }, d.contact + d.core_gap,
+                              d.cutoff());
+}
+
+inline LineWell line_crossed_well(const LineDensity& d, double angle) {
+  return detail::lowest_point([&](double r) { return line_crossed_energy(d, r, angle); }, d.contact + d.core_gap,
+                              d.cutoff());
+}
+
+inline LineDensity UniversalLine::density(double r_i, double n_i, double r_j, double n_j) const {
+  const double x = 0.5 * sigma * (1 / r_i + 1 / r_j);
+  const double y = 0.25 * sigma * sigma * (1 / r_i - 1 / r_j) * (1 / r_i - 1 / r_j);
+  const auto at = [&](const Row& a) { return a[0] + x * (a[1] + x * (a[2] + x * a[3])) + a[4] * y; };
+  LineDensity d;
+  d.contact = r_i + r_j;
+  d.K = epsilon * n_i * n_j * sigma * sigma * std::exp(at(log_K));
+  d.s = sigma * at(s);
+  d.c = sigma * at(c);
+  d.p = at(p);
+  d.q = at(q);
+  d.core_gap = core_gap;
+  d.switch_gap = switch_gap;
+  d.cutoff_gap = cutoff_gap;
+  return d;
+}
+
+}  // namespace ropewalk
