@@ -32,6 +32,7 @@ namespace ropewalk {
 struct RadialTerms {
   double energy = 0;      // u, eV/nm^2
   double derivative = 0;  // du/drho, eV/nm^3
+  double second = 0;      // d2u/drho2, eV/nm^4
 };
 
 // u(rho) for one pair of tube types.
@@ -125,12 +126,13 @@ inline RadialTerms LineDensity::terms(double rho) const {
   const double x = s / (h - e + c), inv = 1 / (h - e + c);
   const double rep = K * std::pow(x, p), att = K * std::pow(x, q);
   const double v0 = rep - att, v1 = (q * att - p * rep) * inv;
-  const double v2 = e < 0 ? (p * (p + 1) * rep - q * (q + 1) * att) * inv * inv : 0.0;
+  const double v2 = (p * (p + 1) * rep - q * (q + 1) * att) * inv * inv;
   const double v = v0 + e * (v1 + 0.5 * e * v2), dv = v1 + e * v2;
   const double width = cutoff_gap - switch_gap;
   const double t = std::clamp((h - switch_gap) / width, 0.0, 1.0);
   const double w = 1 - t * t * t * (10 - t * (15 - 6 * t)), dw = -30 * t * t * (1 - t) * (1 - t) / width;
-  return {v * w, dv * w + v * dw};
+  const double ddw = -60 * t * (1 - t) * (1 - 2 * t) / (width * width);
+  return {v * w, dv * w + v * dw, v2 * w + 2 * dv * dw + v * ddw};
 }
 
 inline PairForce LineContact::energy_and_gradient(const Vector3& separation, const Vector3& n_i,

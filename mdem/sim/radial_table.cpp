@@ -3,19 +3,15 @@
 namespace ropewalk {
 namespace {
 
-// u, du/dx and d2u/dx2 at x = rho^2; the second derivative by central differences of the exact first one.
+// u, du/dx and d2u/dx2 at x = rho^2.
 struct Jet {
   double u, u1, u2;
 };
 
-double slope(const LineDensity& d, double x) {
+Jet jet(const LineDensity& d, double x) {
   const double rho = std::sqrt(x);
-  return d.terms(rho).derivative / (2 * rho);
-}
-
-Jet jet(const LineDensity& d, double x, double h) {
-  return {d.energy(std::sqrt(x)), slope(d, x),
-          (8 * (slope(d, x + h) - slope(d, x - h)) - (slope(d, x + 2 * h) - slope(d, x - 2 * h))) / (12 * h)};
+  const RadialTerms t = d.terms(rho);
+  return {t.energy, t.derivative / (2 * rho), (t.second - t.derivative / rho) / (4 * x)};
 }
 
 }  // namespace
@@ -23,15 +19,17 @@ Jet jet(const LineDensity& d, double x, double h) {
 RadialTable RadialTable::of(const LineDensity& density) {
   RadialTable t;
   t.density = density;
-  const double low = 0.7 * density.contact, high = density.cutoff();
-  t.from = low * low;
+  const double low = 0.7 * density.contact, core = density.contact + density.core_gap, high = density.cutoff();
+  // A node lies where the core begins, since the third derivative jumps there.
+  const double below = std::round(intervals * (core * core - low * low) / (high * high - low * low));
+  const double width = (high * high - core * core) / (intervals - below);
+  t.from = core * core - below * width;
   t.to = high * high;
-  const double width = (t.to - t.from) / intervals;
   t.inverse_width = 1 / width;
   t.coefficients.resize(static_cast<std::size_t>(intervals) * (degree + 1));
-  Jet a = jet(density, t.from, 1e-2 * width);
+  Jet a = jet(density, t.from);
   for (int k = 0; k < intervals; ++k) {
-    const Jet b = jet(density, t.from + (k + 1) * width, 1e-2 * width);
+    const Jet b = jet(density, t.from + (k + 1) * width);
     double* c = &t.coefficients[static_cast<std::size_t>(k) * (degree + 1)];
     const double v1 = a.u1 * width, v2 = 0.5 * a.u2 * width * width;
     // What is left at the far end for the three highest terms: value, slope, half the curvature.

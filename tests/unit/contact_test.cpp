@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "model/contact_line.hpp"
 #include "unit/support.hpp"
 
 namespace ropewalk {
@@ -20,12 +21,29 @@ double scale_of(const PairForce& f) {
   return std::max({f.force_j.norm(), f.torque_i.norm(), f.torque_j.norm(), std::fabs(f.energy), 1e-6});
 }
 
+// A law under test; every law passes through the same body.
+struct Law {
+  std::string name;
+  std::function<PairForce(const Pose&)> force;
+  std::function<double(const Pose&)> energy_of;
+  std::function<PairForce(const Pose&)> swapped;  // the law between j and i
+  std::function<bool(const Pose&)> near_a_seam;   // where it is only C1 differences are less accurate
+  double core = 0, wall = 0, far = 0;             // centres: deep overlap, where differences are good, beyond reach
+
+  double energy(const Vector3& separation, const Vector3& ni, const Vector3& nj) const {
+    return energy_of({separation, ni, nj});
+  }
+  PairForce energy_and_gradient(const Vector3& separation, const Vector3& ni, const Vector3& nj) const {
+    return force({separation, ni, nj});
+  }
+};
+
 // Force and both torques of a pose by differences of the energy.
 struct Differences {
   Vector3 force_j, torque_i, torque_j;
 };
 
-Differences differences(const PaperContact& law, const Pose& p) {
+Differences differences(const Law& law, const Pose& p) {
   Differences d;
   const double h = 2e-4;
   for (int a = 0; a < 3; ++a) {
@@ -49,27 +67,62 @@ bool near_a_seam(const PaperContact& law, const Pose& p) {
          close(rho, law.cutoff_ratio, 3e-3);
 }
 
-class PaperContactTest : public ::testing::TestWithParam<bool> {
- protected:
-  PaperContact law() const {
-    PaperContact k = test::published_contact();
-    if (GetParam()) {  // other exponents: the general powers
-      k.alpha = 9.2;
-      k.beta = 3.9;
-      k.delta = -7.1;
-    }
-    return k;
+template <class Contact>
+Law law_of(std::string name, const Contact& k, std::function<bool(const Pose&)> seam, double core, double wall,
+           double far) {
+  const auto force = [k](const Pose& p) { return k.energy_and_gradient(p.separation, p.ni, p.nj); };
+  const auto energy = [k](const Pose& p) { return k.energy(p.separation, p.ni, p.nj); };
+  return {std::move(name), force, energy, force, std::move(seam), core, wall, far};
+}
+
+Law paper_law(bool general_powers) {
+  PaperContact k = test::published_contact();
+  if (general_powers) {
+    k.alpha = 9.2;
+    k.beta = 3.9;
+    k.delta = -7.1;
   }
+  return law_of(
+      general_powers ? "PaperGeneral" : "Paper", k, [k](const Pose& p) { return near_a_seam(k, p); }, 0.3, 1.3,
+      5.6);
+}
+
+// Whether a pair of nodes is near a gap where the third derivative of the line density jumps.
+bool near_a_seam(const LineContact& k, const Pose& p) {
+  const LineDensity& d = k.density;
+  for (int a = 0; a < k.nodes_i; ++a)
+    for (int b = 0; b < k.nodes_j; ++b) {
+      const Vector3 r =
+          p.separation + line_node(b, k.nodes_j, k.length_j) * p.nj - line_node(a, k.nodes_i, k.length_i) * p.ni;
+      for (double gap : {d.core_gap, d.switch_gap, d.cutoff_gap})
+        if (std::fabs(r.norm() - d.contact - gap) < 1e-3) return true;
+    }
+  return false;
+}
+
+Law line_law(int nodes_i, int nodes_j, double length_j) {
+  const LineContact k{test::line_density(), test::element_length, length_j, nodes_i, nodes_j};
+  const LineContact swapped{k.density, length_j, test::element_length, nodes_j, nodes_i};
+  Law law = law_of(
+      "Line" + std::to_string(nodes_i) + "x" + std::to_string(nodes_j), k,
+      [k](const Pose& p) { return near_a_seam(k, p); }, 0.3, 1.3, 4.0);
+  law.swapped = [swapped](const Pose& p) { return swapped.energy_and_gradient(p.separation, p.ni, p.nj); };
+  return law;
+}
+
+class ContactLawTest : public ::testing::TestWithParam<Law> {
+ protected:
+  const Law& law() const { return GetParam(); }
 };
 
-TEST_P(PaperContactTest, ForceAndTorquesAreTheGradient) {
-  const PaperContact k = law();
+TEST_P(ContactLawTest, ForceAndTorquesAreTheGradient) {
+  const Law& k = law();
   Random random(7);
   int tested = 0;
   double worst = 0;
   for (int n = 0; n < 20000 && tested < 4000; ++n) {
-    const Pose p = random_pose(random, 1.3, 5.6);
-    if (near_a_seam(k, p)) continue;
+    const Pose p = random_pose(random, k.wall, k.far);
+    if (k.near_a_seam(p)) continue;
     const PairForce f = k.energy_and_gradient(p.separation, p.ni, p.nj);
     // The core and the steep wall have derivatives so high that differences carry no seven digits.
     if (std::fabs(f.energy) > 1.0) continue;
@@ -84,11 +137,11 @@ TEST_P(PaperContactTest, ForceAndTorquesAreTheGradient) {
   RecordProperty("worst_relative_error", std::to_string(worst));
 }
 
-TEST_P(PaperContactTest, CoreIsTheGradientToo) {
-  const PaperContact k = law();
+TEST_P(ContactLawTest, CoreIsTheGradientToo) {
+  const Law& k = law();
   Random random(8);
   for (int n = 0; n < 500; ++n) {
-    const Pose p = random_pose(random, 0.3, 1.3);
+    const Pose p = random_pose(random, k.core, k.wall);
     const PairForce f = k.energy_and_gradient(p.separation, p.ni, p.nj);
     const Differences d = differences(k, p);
     ASSERT_LT((f.force_j - d.force_j).norm(), 1e-5 * scale_of(f));
@@ -97,22 +150,22 @@ TEST_P(PaperContactTest, CoreIsTheGradientToo) {
   }
 }
 
-TEST_P(PaperContactTest, AngularMomentumIsConserved) {
-  const PaperContact k = law();
+TEST_P(ContactLawTest, AngularMomentumIsConserved) {
+  const Law& k = law();
   Random random(9);
   for (int n = 0; n < 4000; ++n) {
-    const Pose p = random_pose(random, 0.2, 5.6);
+    const Pose p = random_pose(random, 0.2, k.far);
     const PairForce f = k.energy_and_gradient(p.separation, p.ni, p.nj);
     const Vector3 net = f.torque_i + f.torque_j + p.separation.cross(f.force_j);
     ASSERT_LT(net.norm(), 1e-12 * (scale_of(f) + p.separation.norm() * f.force_j.norm()));
   }
 }
 
-TEST_P(PaperContactTest, FrameSwapAndFlip) {
-  const PaperContact k = law();
+TEST_P(ContactLawTest, FrameSwapAndFlip) {
+  const Law& k = law();
   Random random(10);
   for (int n = 0; n < 2000; ++n) {
-    const Pose p = random_pose(random, 1.0, 5.6);
+    const Pose p = random_pose(random, 1.0, k.far);
     const PairForce f = k.energy_and_gradient(p.separation, p.ni, p.nj);
     const double tight = 1e-10 * scale_of(f);
 
@@ -122,7 +175,7 @@ TEST_P(PaperContactTest, FrameSwapAndFlip) {
     ASSERT_LT((turned.force_j - r * f.force_j).norm(), tight);
     ASSERT_LT((turned.torque_i - r * f.torque_i).norm(), tight);
 
-    const PairForce swapped = k.energy_and_gradient(-p.separation, p.nj, p.ni);
+    const PairForce swapped = k.swapped({-p.separation, p.nj, p.ni});
     ASSERT_NEAR(swapped.energy, f.energy, tight);
     ASSERT_LT((swapped.force_j + f.force_j).norm(), tight);
     ASSERT_LT((swapped.torque_j - f.torque_i).norm(), tight);
@@ -135,8 +188,8 @@ TEST_P(PaperContactTest, FrameSwapAndFlip) {
   }
 }
 
-TEST_P(PaperContactTest, SpecialPosesAreFinite) {
-  const PaperContact k = law();
+TEST_P(ContactLawTest, SpecialPosesAreFinite) {
+  const Law& k = law();
   const Vector3 x = Vector3::UnitX(), y = Vector3::UnitY(), z = Vector3::UnitZ();
   for (double distance : {0.0, 1e-9, 1e-3, 0.3, 1.356, 1.6272, 1.713, 2.3, 2.712, 4.068, 5.4, 5.424, 6.0})
     for (const Vector3& along : {x, y, z, Vector3((x + y).normalized())})
@@ -149,8 +202,8 @@ TEST_P(PaperContactTest, SpecialPosesAreFinite) {
 }
 
 // A walk through every seam: energy and force must not jump. The bound on a step is that of a slope.
-TEST_P(PaperContactTest, EnergyAndForceAreContinuous) {
-  const PaperContact k = law();
+TEST_P(ContactLawTest, EnergyAndForceAreContinuous) {
+  const Law& k = law();
   Random random(11);
   for (int walk = 0; walk < 60; ++walk) {
     const Vector3 from = random.uniform(0.2, 2.0) * random.direction(), to = 6.0 * random.direction();
@@ -197,8 +250,12 @@ TEST_P(PaperContactTest, EnergyAndForceAreContinuous) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Powers, PaperContactTest, ::testing::Bool(),
-                         [](const auto& info) { return info.param ? "General" : "Published"; });
+INSTANTIATE_TEST_SUITE_P(Laws, ContactLawTest,
+                         ::testing::Values(paper_law(false), paper_law(true), line_law(3, 3, test::element_length),
+                                           line_law(2, 4, 2.0), line_law(1, 1, test::element_length)),
+                         [](const auto& info) { return info.param.name; });
+
+void PrintTo(const Law& law, std::ostream* out) { *out << law.name; }
 
 TEST(PaperContact, LegacyTorqueBreaksAngularMomentum) {
   const PaperContact k = test::published_contact();

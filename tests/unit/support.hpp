@@ -6,6 +6,7 @@
 #include <functional>
 #include <random>
 
+#include "model/contact_line.hpp"
 #include "model/contact_paper.hpp"
 #include "sim/interaction.hpp"
 #include "sim/state.hpp"
@@ -23,7 +24,24 @@ inline PaperContact published_contact() {
   return k;
 }
 
+// The line law between two (10,10) tubes, as calibrate fits it.
+inline LineDensity line_density(double radius_i = 0.6785, double radius_j = 0.6785) {
+  LineDensity d;
+  d.contact = radius_i + radius_j;
+  d.K = 10;
+  d.s = 0.3;
+  d.c = 0;
+  d.p = 9.5;
+  d.q = 4.5;
+  d.core_gap = 0.2;
+  return d;
+}
+
 inline constexpr double element_length = 1.356;
+
+inline LineContact line_contact(double radius_i, int nodes_i, double radius_j, int nodes_j) {
+  return {line_density(radius_i, radius_j), element_length, element_length, nodes_i, nodes_j};
+}
 
 inline BondStiffness published_bond() {
   return {1470.0 * units::nN_nm, 358.4 * units::nN_nm, 319.5 * units::nN_nm};
