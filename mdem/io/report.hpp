@@ -5,15 +5,12 @@
 #include <vector>
 
 #include "io/log.hpp"
+#include "io/page.hpp"
 #include "io/svg.hpp"
 #include "model/parameters.hpp"
 #include "observe/observe.hpp"
 
 namespace ropewalk {
-
-struct ReportFact {
-  std::string key, value, remark;  // the remark may be empty
-};
 
 struct ReportSection {
   double time_ps = 0;

@@ -187,8 +187,11 @@ std::string path_of(const Plot& plot, const ChartLine& line) {
         thinned(whole, std::max<std::size_t>(4, most_points * whole.size() / std::max<std::size_t>(1, total)));
     fmt::format_to(to, "M{:.1f} {:.1f}", plot.px(s[0].x), plot.py(s[0].y));
     if (s.size() == 1) d += "h0";  // a dot, by the round cap
+    if (line.points && s.size() > 1) d += "h0";
     for (std::size_t i = 1; i < s.size(); ++i) {
-      if (line.steps)
+      if (line.points)
+        fmt::format_to(to, "M{:.1f} {:.1f}h0", plot.px(s[i].x), plot.py(s[i].y));
+      else if (line.steps)
         fmt::format_to(to, "H{:.1f}V{:.1f}", plot.px(s[i].x), plot.py(s[i].y));
       else
         fmt::format_to(to, "L{:.1f} {:.1f}", plot.px(s[i].x), plot.py(s[i].y));
@@ -228,7 +231,10 @@ std::vector<EndLabel> end_labels(const LineChart& chart, const Plot& plot) {
 
 std::string stroke_class(const ChartLine& line) {
   const int colours = categorical_colours + sequential_colours;
-  return fmt::format("line c{}{}", ((line.colour % colours) + colours) % colours, line.dashed ? " dashed" : "");
+  return fmt::format("line c{}{}", ((line.colour % colours) + colours) % colours,
+                     line.points   ? " points"
+                     : line.dashed ? " dashed"
+                                   : "");
 }
 
 std::string draw_labels(const LineChart& chart, const Plot& plot) {
@@ -390,6 +396,7 @@ font-variant-numeric:tabular-nums;max-width:100%;height:auto}
 .zero{stroke:var(--soft);stroke-width:.9}
 .load{fill:var(--load)}.hold{fill:var(--hold)}
 .line{fill:none;stroke-width:1.7;stroke-linejoin:round;stroke-linecap:round}
+.points{stroke-width:5.5}
 .dashed{stroke-dasharray:5 3.5;stroke-linecap:butt}
 .n5{fill:#d7352f}.n7{fill:#2b6cc4}.nx{fill:#e0a010}.n6{fill:#6b7078}.outermost{fill:#d4d7dc}
 .section circle{stroke:#4a4e55;stroke-width:.5}

@@ -40,7 +40,8 @@ struct ChartLine {
   std::vector<double> x, y;  // a NaN interrupts the line
   int colour = 0;
   bool dashed = false;
-  bool steps = false;  // holds its value until the next point
+  bool steps = false;   // holds its value until the next point
+  bool points = false;  // dots, not joined
 };
 
 struct ChartBand {
