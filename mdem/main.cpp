@@ -7,6 +7,7 @@
 #include <cstdlib>
 
 #include "commands/commands.hpp"
+#include "commands/siblings.hpp"
 #include "model/error.hpp"
 #include "scene/scene_toml.hpp"
 #include "version.hpp"
@@ -124,7 +125,6 @@ void add_bench(CLI::App& app, Verbs& v) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  wait_asleep(argv);
   CLI::App app(
       "ropewalk twists carbon-nanotube ropes by the mesoscopic distinct element method.\n"
       "Units: nm, ps, eV; moments nN nm; every key of a scene carries its unit.");
@@ -138,9 +138,13 @@ int main(int argc, char** argv) {
   add_resume(app, verbs);
   add_observe(app, verbs);
   add_report(app, verbs);
+  // Handed over before anything is parsed; named here for --help.
+  app.add_subcommand("calibrate", "Derive a parameter set for any (n,m) from atomistic data");
   add_energy(app, verbs);
   add_bench(app, verbs);
   try {
+    hand_over_to_sibling(argv);
+    wait_asleep(argv);
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) return app.exit(e);

@@ -33,6 +33,17 @@ std::string read_origin(const TomlTable& q) {
   return q.word("origin", origins);
 }
 
+// A row of numbers for each parameter of the universal law.
+void read_row(const TomlTable& section, const char* key, UniversalLine::Row& out, UniversalLine::Row& errors) {
+  const std::string form = "{ values = [...], standard_errors = [...] }";
+  if (!section.has(key)) throw section.error(key, "is missing", fmt::format("add {} = {}", key, form));
+  const TomlTable q = section.table(key, form);
+  const std::vector<double> values = q.numbers("values", Bounds::range(-1e6, 1e6), UniversalLine::terms);
+  const std::vector<double> se = q.numbers("standard_errors", Bounds::non_negative(1e6), UniversalLine::terms);
+  std::copy(values.begin(), values.end(), out.begin());
+  std::copy(se.begin(), se.end(), errors.begin());
+}
+
 class Reader {
  public:
   explicit Reader(const std::string& path)
@@ -95,8 +106,8 @@ class Reader {
     if (nm.size() != 2 || !set_.chirality.valid())
       throw t.error("chirality", "is not that of a tube", "write [n, m] with n >= 1 and 0 <= m <= n");
     set_.reference = t.string("reference");
-    set_.doi = t.string("doi");
-    check_doi(t, set_.doi);
+    set_.doi = t.string_or("doi", "");
+    if (!set_.doi.empty()) check_doi(t, set_.doi);
   }
 
   // A slip of unit or of chirality shows as a factor; relaxation changes the rolled sheet by 2 %.
@@ -169,25 +180,9 @@ class Reader {
     }
   }
 
-  // Five numbers for each parameter of the universal law.
-  static void read_row(const TomlTable& section, const char* key, UniversalLine::Row& out,
-                       UniversalLine::Row& errors) {
-    const std::string form = "{ values = [...], standard_errors = [...] }";
-    if (!section.has(key)) throw section.error(key, "is missing", fmt::format("add {} = {}", key, form));
-    const TomlTable q = section.table(key, form);
-    const std::vector<double> values = q.numbers("values", Bounds::range(-1e6, 1e6), UniversalLine::terms);
-    const std::vector<double> se = q.numbers("standard_errors", Bounds::non_negative(1e6), UniversalLine::terms);
-    std::copy(values.begin(), values.end(), out.begin());
-    std::copy(se.begin(), se.end(), errors.begin());
-  }
-
   void read_universal(const TomlTable& t, LineParameters& line) {
     line.has_universal = true;
-    read_row(t, "log_K", line.universal.log_K, line.universal.standard_errors.log_K);
-    read_row(t, "s", line.universal.s, line.universal.standard_errors.s);
-    read_row(t, "c", line.universal.c, line.universal.standard_errors.c);
-    read_row(t, "p", line.universal.p, line.universal.standard_errors.p);
-    read_row(t, "q", line.universal.q, line.universal.standard_errors.q);
+    read_universal_rows(t, line.universal);
     quantity(t, "error", "1", Bounds::non_negative(1));
   }
 
@@ -271,44 +266,46 @@ std::string quoted(const std::string& text) { return nlohmann::json(text).dump()
 std::string quantity_text(const Quantity& q, const std::string& key) {
   std::string text = fmt::format(
       "{:<16} = {{ value = {}, unit = {}, standard_error = {}, origin = {}", key, q.value, quoted(q.unit),
-      q.standard_error ? fmt::format("{}", *q.standard_error) : quoted(not_published), quoted(q.origin));
+      q.standard_error ? fmt::format("{:.3g}", *q.standard_error) : quoted(not_published), quoted(q.origin));
   if (!q.doi.empty()) text += ", doi = " + quoted(q.doi);
   if (!q.note.empty()) text += ", note = " + quoted(q.note);
   return text + " }\n";
 }
 
-std::string numbers_text(const UniversalLine::Row& row) { return fmt::format("[{}]", fmt::join(row, ", ")); }
-
-std::string universal_rows(const ParameterSet& set) {
-  const UniversalLine& u = set.line->universal;
-  std::string text;
-  const auto add = [&](const char* key, const UniversalLine::Row& value, const UniversalLine::Row& error) {
-    text += fmt::format("{:<16} = {{ values = {}, standard_errors = {} }}\n", key, numbers_text(value),
-                        numbers_text(error));
-  };
-  const UniversalLine::Errors& e = u.standard_errors;
-  add("log_K", u.log_K, e.log_K);
-  add("s", u.s, e.s);
-  add("c", u.c, e.c);
-  add("p", u.p, e.p);
-  add("q", u.q, e.q);
-  return text;
+std::string row_text(const char* key, const UniversalLine::Row& value, const UniversalLine::Row& error) {
+  return fmt::format("{:<16} = {{ values = [{}], standard_errors = [{}] }}\n", key, fmt::join(value, ", "),
+                     fmt::join(error, ", "));
 }
 
 }  // namespace
 
+void read_universal_rows(const TomlTable& t, UniversalLine& u) {
+  UniversalLine::Errors& e = u.standard_errors;
+  read_row(t, "log_K", u.log_K, e.log_K);
+  read_row(t, "s", u.s, e.s);
+  read_row(t, "c", u.c, e.c);
+  read_row(t, "p", u.p, e.p);
+  read_row(t, "q", u.q, e.q);
+}
+
+std::string universal_rows_text(const UniversalLine& u) {
+  const UniversalLine::Errors& e = u.standard_errors;
+  return row_text("log_K", u.log_K, e.log_K) + row_text("s", u.s, e.s) + row_text("c", u.c, e.c) +
+         row_text("p", u.p, e.p) + row_text("q", u.q, e.q);
+}
+
 std::string parameters_text(const ParameterSet& set, const std::string& comment) {
   std::string text = comment;
-  text += fmt::format("\n[meta]\nformat = \"{}\"\nname = {}\nchirality = [{}, {}]\nreference = {}\ndoi = {}\n",
-                      parameter_format, quoted(set.name), set.chirality.n, set.chirality.m, quoted(set.reference),
-                      quoted(set.doi));
+  text += fmt::format("\n[meta]\nformat = \"{}\"\nname = {}\nchirality = [{}, {}]\nreference = {}\n",
+                      parameter_format, quoted(set.name), set.chirality.n, set.chirality.m, quoted(set.reference));
+  if (!set.doi.empty()) text += fmt::format("doi = {}\n", quoted(set.doi));
   std::string section;
   for (const Quantity& q : set.quantities) {
     const std::size_t dot = q.key.rfind('.');
     if (q.key.substr(0, dot) != section) {
       section = q.key.substr(0, dot);
       text += fmt::format("\n[{}]\n", section);
-      if (section == "contact.line.universal") text += universal_rows(set);
+      if (section == "contact.line.universal") text += universal_rows_text(set.line->universal);
     }
     text += quantity_text(q, q.key.substr(dot + 1));
   }

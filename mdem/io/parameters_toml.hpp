@@ -11,8 +11,13 @@ namespace ropewalk {
 // physically impossible.
 ParameterSet read_parameters(const std::string& path);
 
+class TomlTable;
+// The five rows of the universal law, in a table of their own and as text.
+void read_universal_rows(const TomlTable& table, UniversalLine& law);
+std::string universal_rows_text(const UniversalLine& law);
+
 // The text of a parameter file from its meta data, quantities, universal law and provenance; `comment` heads it.
-// What is written is read back bit for bit.
+// Values are read back bit for bit, standard errors with three digits.
 std::string parameters_text(const ParameterSet& set, const std::string& comment);
 
 }  // namespace ropewalk

@@ -239,11 +239,14 @@ std::string stroke_class(const ChartLine& line) {
 
 std::string draw_labels(const LineChart& chart, const Plot& plot) {
   std::string text;
-  for (const EndLabel& label : end_labels(chart, plot))
-    text += fmt::format(
-        "<path class=\"{}\" d=\"M{:.1f} {:.1f}L{:.1f} {:.1f}h14\"/><text x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n",
-        stroke_class(*label.line), plot.right + 1, label.end, plot.right + 9, label.at, plot.right + 28,
-        label.at + 4, escape_markup(label.line->name));
+  for (const EndLabel& label : end_labels(chart, plot)) {
+    const std::string leader = label.line->points ? fmt::format("M{:.1f} {:.1f}h0", plot.right + 20, label.at)
+                                                  : fmt::format("M{:.1f} {:.1f}L{:.1f} {:.1f}h14", plot.right + 1,
+                                                                label.end, plot.right + 9, label.at);
+    text += fmt::format("<path class=\"{}\" d=\"{}\"/><text x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n",
+                        stroke_class(*label.line), leader, plot.right + 28, label.at + 4,
+                        escape_markup(label.line->name));
+  }
   return text;
 }
 

@@ -11,8 +11,7 @@
 //
 // For straight tubes the surface integral of any isotropic atom-atom law equals this integral at every crossing
 // angle, u being the Abel inverse of the parallel-tube energy; so no angular factor is needed. The nodes of
-// consecutive elements form one uniform row, for which the midpoint rule converges exponentially: a spacing of
-// one sixth of the equilibrium distance leaves a corrugation below 1e-4 of the well.
+// consecutive elements form one uniform row, for which the midpoint rule converges exponentially (line_nodes).
 //
 // Forces are central between nodes, so force, torque and momentum balance are exact by construction.
 // Units eV, nm. u in eV/nm^2. Symmetric under exchange of i and j and under flipping either axis.
@@ -74,13 +73,16 @@ struct LineContact {
 // Place of node k of `nodes` on an element, from its centre (nm).
 inline double line_node(int k, int nodes, double length) { return ((k + 0.5) / nodes - 0.5) * length; }
 
-// Nodes per element for a node spacing of at most a sixth of the equilibrium distance.
-inline int line_nodes(double length, double pair_spacing) {
-  return std::max(1, static_cast<int>(std::ceil(6.0 * length / pair_spacing - 1e-9)));
+// Nodes per element, spaced by at most 0.33 sqrt(R0 g0), R0 the distance and g0 the gap of two parallel tubes at
+// rest: along the axes u is as wide as sqrt(R0 g0). Keeps the corrugation below 1e-3 of the well 0.05 nm inside of
+// it, and below 1e-4 in it, for r = 0.2 .. 1.4 nm.
+inline int line_nodes(double length, double pair_spacing, double contact) {
+  const double spacing = 0.33 * std::sqrt(pair_spacing * (pair_spacing - contact));
+  return std::max(1, static_cast<int>(std::ceil(length / spacing - 1e-9)));
 }
 
 // Energy per length (eV/nm) of two infinite parallel tubes and energy (eV) of two infinite tubes crossed at
-// `angle`, by fine midpoint sums; and the distance (nm) at which each is lowest.
+// `angle`; and the distance (nm) at which each is lowest.
 struct LineWell {
   double distance = 0, energy = 0;
 };
@@ -91,13 +93,15 @@ LineWell line_crossed_well(const LineDensity& density, double angle);
 
 // --- One law for all tubes --------------------------------------------------------------------------
 //
-// In units of the atom-atom law (length sigma, K in eps n_i n_j sigma^2) the parameters of u are smooth functions
+// In units of the atom-atom law (length sigma, K in eps n_i n_j sigma^2 g) the parameters of u are smooth functions
 // of the two curvatures:
-//   x = sigma (1/r_i + 1/r_j)/2,   y = sigma^2 (1/r_i - 1/r_j)^2/4,
-//   ln K', s', c', p, q  =  a0 + a1 x + a2 x^2 + a3 x^3 + a4 y.
-// Valid for r = 0.3 .. 1.4 nm and for the cutoff (in units of sigma) that it was fitted for.
+//   x = sigma (1/r_i + 1/r_j)/2,   y = sigma^2 (1/r_i - 1/r_j)^2/4,   g = 2 sqrt(r_i r_j)/(r_i + r_j),
+//   ln K', s', c', p, q  =  a0 + a1 x + a2 x^2 + a3 x^3 + (a4 + a5 x) y.
+// g is the limit of wide tubes: the parallel energy goes as sqrt(r_i r_j/(r_i + r_j)) there (Derjaguin), and u,
+// whose line integral it is over a length that goes as sqrt(r_i + r_j), as sqrt(r_i r_j)/(r_i + r_j). Valid for r =
+// 0.3 .. 1.4 nm and for the cutoff (in units of sigma) that it was fitted for.
 struct UniversalLine {
-  static constexpr int terms = 5;
+  static constexpr int terms = 6;
   using Row = std::array<double, terms>;
   double epsilon = 0;    // eV, of the atom-atom law
   double sigma = 0;      // nm
@@ -180,26 +184,35 @@ LineWell lowest_point(F energy, double from, double to) {
 
 }  // namespace detail
 
+namespace detail {
+
+// Composite Simpson rule with an even number of intervals.
+template <class F>
+double simpson(F f, double from, double to, int intervals) {
+  const double step = (to - from) / intervals;
+  double sum = f(from) + f(to);
+  for (int k = 1; k < intervals; ++k) sum += (k % 2 ? 4 : 2) * f(from + k * step);
+  return sum * step / 3;
+}
+
+}  // namespace detail
+
 inline double line_parallel_energy(const LineDensity& density, double distance) {
   const double reach2 = density.cutoff() * density.cutoff() - distance * distance;
   if (reach2 <= 0) return 0;
-  constexpr int points = 200;  // the integrand and two derivatives vanish at the end: the rule is exact enough
-  const double step = std::sqrt(reach2) / points;
-  double sum = 0;
-  for (int k = 0; k < points; ++k) sum += density.energy(std::hypot(distance, (k + 0.5) * step));
-  return 2 * step * sum;
+  return 2 * detail::simpson([&](double t) { return density.energy(std::hypot(distance, t)); }, 0,
+                             std::sqrt(reach2), 400);
 }
 
 inline double line_crossed_energy(const LineDensity& density, double distance, double angle) {
-  constexpr int points = 400;
-  const double step = (density.cutoff() - distance) / points;
-  if (step <= 0) return 0;
-  double sum = 0;
-  for (int k = 0; k < points; ++k) {
-    const double rho = distance + (k + 0.5) * step;
-    sum += rho * density.energy(rho);
-  }
-  return 2 * units::pi * step * sum / std::sin(angle);
+  if (distance >= density.cutoff()) return 0;
+  // Closely spaced where the wall is steep: rho = distance + span x^2.
+  const double span = density.cutoff() - distance;
+  const auto integrand = [&](double x) {
+    const double rho = distance + span * x * x;
+    return 2 * span * x * rho * density.energy(rho);
+  };
+  return 2 * units::pi * detail::simpson(integrand, 0, 1, 400) / std::sin(angle);
 }
 
 inline LineWell line_parallel_well(const LineDensity& d) {
@@ -215,10 +228,10 @@ inline LineWell line_crossed_well(const LineDensity& d, double angle) {
 inline LineDensity UniversalLine::density(double r_i, double n_i, double r_j, double n_j) const {
   const double x = 0.5 * sigma * (1 / r_i + 1 / r_j);
   const double y = 0.25 * sigma * sigma * (1 / r_i - 1 / r_j) * (1 / r_i - 1 / r_j);
-  const auto at = [&](const Row& a) { return a[0] + x * (a[1] + x * (a[2] + x * a[3])) + a[4] * y; };
+  const auto at = [&](const Row& a) { return a[0] + x * (a[1] + x * (a[2] + x * a[3])) + (a[4] + a[5] * x) * y; };
   LineDensity d;
   d.contact = r_i + r_j;
-  d.K = epsilon * n_i * n_j * sigma * sigma * std::exp(at(log_K));
+  d.K = epsilon * n_i * n_j * sigma * sigma * 2 * std::sqrt(r_i * r_j) / (r_i + r_j) * std::exp(at(log_K));
   d.s = sigma * at(s);
   d.c = sigma * at(c);
   d.p = at(p);

@@ -221,4 +221,27 @@ inline PairForce PaperContact::legacy_torque(const Vector3& separation, const Ve
   return f;
 }
 
+// Energy per length (eV/nm) of two long parallel rows of elements, element beside element.
+inline double paper_parallel_energy(const PaperContact& contact, double element_length, double distance) {
+  const int reach = static_cast<int>(contact.cutoff() / element_length) + 1;
+  double sum = 0;
+  for (int k = -reach; k <= reach; ++k)
+    sum += contact.energy({distance, 0, k * element_length}, Vector3::UnitZ(), Vector3::UnitZ());
+  return sum / element_length;
+}
+
+// Energy (eV) of two long rows that cross at `angle`, each at a quarter of an element.
+inline double paper_crossed_energy(const PaperContact& contact, double element_length, double distance,
+                                   double angle) {
+  const Vector3 n_i = Vector3::UnitZ(), n_j(0, std::sin(angle), std::cos(angle));
+  const int reach = static_cast<int>(contact.cutoff() / (element_length * std::sin(angle))) + 1;
+  double sum = 0;
+  for (int k = -reach; k <= reach; ++k)
+    for (int l = -reach; l <= reach; ++l)
+      sum += contact.energy(
+          Vector3(distance, 0, 0) + (l + 0.25) * element_length * n_j - (k + 0.25) * element_length * n_i, n_i,
+          n_j);
+  return sum;
+}
+
 }  // namespace ropewalk

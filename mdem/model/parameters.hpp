@@ -11,7 +11,7 @@
 //               switch_gap, cutoff_gap (nm) of contact_line.hpp; pair_spacing (nm), pair_energy (eV/nm) and
 //               cross90_energy (eV) of that law
 //   [contact.line.universal]  the same law for any pair of radii: log_K, s, c, p, q, each
-//               { values = [5 numbers], standard_errors = [5 numbers] }, and error
+//               { values = [6 numbers], standard_errors = [6 numbers] }, and error
 //   [atomistic] optional: natural_twist (rad/nm), coupling (nN nm), poisson, energy_per_atom (eV)
 //   [validity]  kink_curvature (1/nm), twist_collapse (r tau), stretch (strain): limits of the model; optional:
 //               linear_curvature, linear_twist, linear_stretch: where a stiffness is 1 % off

@@ -153,16 +153,8 @@ int elements_of(const RopeSource& rope, double element_length) {
   return static_cast<int>(std::lround(rope.length / element_length));
 }
 
-double pair_energy_per_length(const PaperContact& contact, double element_length, double spacing) {
-  const int reach = static_cast<int>(contact.cutoff() / element_length) + 1;
-  double sum = 0;
-  for (int k = -reach; k <= reach; ++k)
-    sum += contact.energy({spacing, 0, k * element_length}, Vector3::UnitZ(), Vector3::UnitZ());
-  return sum / element_length;
-}
-
 double pair_spacing(const PaperContact& contact, double element_length) {
-  const auto energy = [&](double spacing) { return pair_energy_per_length(contact, element_length, spacing); };
+  const auto energy = [&](double spacing) { return paper_parallel_energy(contact, element_length, spacing); };
   // The well is found on a grid first: beyond it the energy is not convex.
   constexpr int grid = 400;
   const double from = 2 * contact.radius, step = (contact.cutoff() - from) / grid;
@@ -183,7 +175,8 @@ std::vector<LineContact> line_contacts(const Scene& scene) {
       pair.density =
           &a == &b ? i.density : i.universal.density(a.radius, i.surface_density, b.radius, j.surface_density);
       pair.length_i = pair.length_j = scene.element_length;
-      const int nodes = line_nodes(scene.element_length, line_parallel_well(pair.density).distance);
+      const int nodes =
+          line_nodes(scene.element_length, line_parallel_well(pair.density).distance, pair.density.contact);
       pair.nodes_i = pair.nodes_j = scene.contact.nodes > 0 ? scene.contact.nodes : nodes;
       pairs.push_back(pair);
     }

@@ -19,9 +19,7 @@ struct BuiltScene {
 // Also sets the reach of the scene's contact viscosity, which goes with the spacing.
 BuiltScene build(Scene& scene);
 
-// Energy per length (eV/nm) of two parallel infinite tubes, element beside element.
-double pair_energy_per_length(const PaperContact& contact, double element_length, double spacing);
-// The distance of their axes (nm) at which it is lowest.
+// The distance of two parallel rows (nm) at which their energy is lowest.
 double pair_spacing(const PaperContact& contact, double element_length);
 
 // The `line` law between all pairs of the scene's tube types, i, j at i * types + j.

@@ -40,7 +40,7 @@ struct ContactOptions {
   bool legacy_torque = false;
   int exclude_along_tube = 20;  // pairs of one tube up to this many elements apart do not interact
   double skin = 0;              // nm; 0: chosen by the program
-  int nodes = 0;                // `line`: per element; 0: spaced by a sixth of the distance of two tubes
+  int nodes = 0;                // `line`: per element; 0: as line_nodes chooses
 };
 
 inline const char* law_name(ContactOptions::Law law) {

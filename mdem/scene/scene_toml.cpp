@@ -23,17 +23,6 @@ constexpr double largest_force = 1e4;  // nN, nN nm
 constexpr double kilobytes_per_element = 1.0;
 constexpr long most_nodes = 64;
 
-std::string shipped_sets(const fs::path& folder) {
-  std::set<std::string> names;
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(folder, error))
-    if (entry.path().extension() == ".toml") names.insert("\"" + entry.path().stem().string() + "\"");
-  if (names.empty()) return fmt::format("no set is shipped in {}; is ROPEWALK_DATA right?", folder.string());
-  std::string text;
-  for (const std::string& n : names) text += (text.empty() ? "" : ", ") + n;
-  return "name a file, or a shipped set: " + text;
-}
-
 // --- what the tubes are ----------------------------------------------------------------------------
 
 // parameters = "set", or one set for each tube type: ["set", "other"].
@@ -460,22 +449,6 @@ void read_tables(const TomlTable& top, const std::string& folder, Scene& scene) 
 }
 
 }  // namespace
-
-std::string data_directory() {
-  const char* set = std::getenv("ROPEWALK_DATA");
-  return set && *set ? set : ROPEWALK_DATA_DIR;
-}
-
-std::string find_parameters(const std::string& name, const std::string& folder, const InputError::Place& place,
-                            const std::string& data) {
-  std::error_code error;
-  const fs::path beside = fs::path(folder) / name;
-  if (fs::is_regular_file(beside, error)) return beside.string();
-  const fs::path shipped = fs::path(data) / "parameters";
-  for (const std::string& file : {name + ".toml", name})
-    if (fs::is_regular_file(shipped / file, error)) return (shipped / file).string();
-  throw InputError(place, fmt::format("there is no parameter set \"{}\"", printable(name)), shipped_sets(shipped));
-}
 
 Scene read_scene(const std::string& path, const std::vector<std::string>& parameters) {
   Scene scene;

@@ -10,48 +10,20 @@
 #include <sstream>
 #include <thread>
 
+#include "cli/support.hpp"
 #include "io/log.hpp"
 
 namespace fs = std::filesystem;
 
 namespace {
 
+using ropewalk::test::Outcome;
+using ropewalk::test::slurp;
+using ropewalk::test::spit;
 using Json = nlohmann::json;
 
-std::string slurp(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::stringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
-
-void spit(const fs::path& path, const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
-
-struct Outcome {
-  int code = -1;
-  std::string out, err;
-};
-
-class Cli : public ::testing::Test {
+class Cli : public ropewalk::test::Cli {
  protected:
-  void SetUp() override {
-    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-    dir = fs::temp_directory_path() / ("ropewalk-" + std::string(info->name()) + "-" + std::to_string(getpid()));
-    fs::create_directories(dir);
-  }
-  void TearDown() override { fs::remove_all(dir); }
-
-  Outcome run(const std::string& arguments) const {
-    const std::string command = "cd '" + dir.string() + "' && '" ROPEWALK_PROGRAM "' " + arguments +
-                                " > stdout.txt 2> stderr.txt < /dev/null";
-    const int status = std::system(command.c_str());
-    Outcome o;
-    o.code = WIFEXITED(status) ? WEXITSTATUS(status) : 1000;
-    o.out = slurp(dir / "stdout.txt");
-    o.err = slurp(dir / "stderr.txt");
-    return o;
-  }
-
   // A rope small enough for a test, twisted fast.
   void small_rope(const std::string& name, const std::string& more = "", const std::string& rope = "") const {
     spit(dir / name,
@@ -62,8 +34,6 @@ class Cli : public ::testing::Test {
              "[run]\nlog_every_ps = 0.5\nframes_every_ps = 1\n" +
              more);
   }
-
-  fs::path dir;
 };
 
 TEST_F(Cli, HelpNamesEveryVerbAndUnits) {

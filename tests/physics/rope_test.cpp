@@ -40,7 +40,7 @@ TEST(UntwistedRope, IsPackedHexagonallyWithoutCharge) {
 TEST(UntwistedRope, SpacingAndCohesion) {
   Scene scene = rope_scene(91, 27.12);
   EXPECT_NEAR(pair_spacing(*scene.parameters().paper, 1.356), 1.713, 1e-3);
-  EXPECT_NEAR(pair_energy_per_length(*scene.parameters().paper, 1.356, 1.713), -2.19, 0.01);
+  EXPECT_NEAR(paper_parallel_energy(*scene.parameters().paper, 1.356, 1.713), -2.19, 0.01);
 
   // Difference of two lengths, so that the ends drop out.
   const auto vdw = [](double length) {

@@ -560,10 +560,10 @@ TEST(Rope, PairSpacingIsThePublishedContactsMinimum) {
   const PaperContact k = test::published_contact();
   const double s = pair_spacing(k, 1.356);
   EXPECT_NEAR(s, 1.713, 1e-3);
-  EXPECT_NEAR(pair_energy_per_length(k, 1.356, s), -2.19, 0.005);
-  const auto slope = test::derivative([&](double h) { return pair_energy_per_length(k, 1.356, s + h); }, 1e-4);
+  EXPECT_NEAR(paper_parallel_energy(k, 1.356, s), -2.19, 0.005);
+  const auto slope = test::derivative([&](double h) { return paper_parallel_energy(k, 1.356, s + h); }, 1e-4);
   EXPECT_NEAR(slope, 0, 1e-5);  // 1e-7 nm off
-  EXPECT_EQ(pair_energy_per_length(k, 1.356, k.cutoff()), 0);
+  EXPECT_EQ(paper_parallel_energy(k, 1.356, k.cutoff()), 0);
 }
 
 TEST(Rope, SpacingIsTypedOrThatOfTheLaw) {

@@ -24,16 +24,19 @@ inline PaperContact published_contact() {
   return k;
 }
 
-// The line law between two (10,10) tubes, as calibrate fits it.
+// The line law as calibrate fits it to two (10,10) tubes of graphite density, Lennard-Jones with a cutoff of 1.2
+// nm; with other radii a law of the same form.
 inline LineDensity line_density(double radius_i = 0.6785, double radius_j = 0.6785) {
   LineDensity d;
   d.contact = radius_i + radius_j;
-  d.K = 10;
-  d.s = 0.3;
-  d.c = 0;
-  d.p = 9.5;
-  d.q = 4.5;
-  d.core_gap = 0.2;
+  d.K = 2.771755179;
+  d.s = 0.2727361991;
+  d.c = -0.01802027729;
+  d.p = 9.121708844;
+  d.q = 4.246562049;
+  d.core_gap = 0.2006;
+  d.switch_gap = 0.5;
+  d.cutoff_gap = 1.45;
   return d;
 }
 

@@ -1,0 +1,94 @@
+// Bending of finite tubes: both end bands are held on the bent shape, the rest is relaxed.
+//
+// The affine bend of curvature k takes the straight tube along z to a circular arc about the point x = 1/k; every
+// cross-section stays plane and normal to the axis, whose length is kept:
+//   x' = (1 - cos kz)/k + x cos kz,   y' = y,   z' = sin(kz)/k - x sin kz.
+// A grip moved in any other way would store shear that has nothing to do with bending.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "atomistic/finite_tube.hpp"
+#include "atomistic/runs.hpp"
+
+namespace ropewalk {
+namespace {
+
+constexpr double curvature_steps[] = {0.4, 0.6, 0.8, 1.0};  // of the largest
+
+// Relaxed displacements grow in proportion to the curvature, so the next start is the next affine bend with the
+// last displacements scaled: half of the steps of the minimiser are saved.
+std::string bend_commands(double curvature, double last, const std::string& results) {
+  std::string text = fmt::format("variable k0 delete\nvariable k0 equal {:.12g}\n", last * angstrom);
+  text += fmt::format("variable k delete\nvariable k equal {:.12g}\n", curvature * angstrom);
+  text += last == 0 ? "set group all x v_bent_x z v_bent_z\n" : "set group all x v_next_x y v_next_y z v_next_z\n";
+  text += "minimize 0.0 ${ftol} 2000 20000\n";
+  return text + results;
+}
+
+// How much longer the long tube is. The energy of an end depends on its azimuth phi to the bending plane: as
+// k^2 cos 2 phi for a tube without a threefold or higher axis, and, where the end is cut along one spiral step,
+// even as k cos phi. Then the ends of both tubes must lie alike, or their difference stays (1 % of EI for (8,2)).
+long extra_hexagons(Chirality c, const TubeShape& shape, double length) {
+  const long step = std::gcd(c.n, c.m), middle = hexagons_in(c, shape, length);
+  if (step > 2) return middle;
+  long best = middle;
+  double least = 1e9;
+  for (long extra = step * (middle * 4 / 5 / step); extra <= middle * 6 / 5; extra += step) {
+    if (extra <= 0) continue;
+    const double turned = 2 * units::pi * period_turns(c, vector_of_height(c, extra)) +
+                          shape.twist * static_cast<double>(extra) * shape.length_per_hexagon;
+    const double unlike = step == 2 ? std::sin(turned) : 2 * std::sin(0.5 * turned);
+    const double cost =
+        std::abs(unlike) + 0.1 * std::abs(static_cast<double>(extra - middle)) / static_cast<double>(middle);
+    if (cost < least) {
+      least = cost;
+      best = extra;
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+std::vector<AtomisticRow> bend_rows(RunContext& run, const RelaxedTube& tube, double largest_curvature) {
+  const long short_part = hexagons_in(run.c, tube.shape, run.options.short_length);
+  const long extra = extra_hexagons(run.c, tube.shape, run.options.long_length - run.options.short_length);
+  std::string input = "# finite tubes, two lengths, bent step by step\n";
+  std::vector<AtomisticRow> rows;
+  for (const bool is_long : {false, true}) {
+    const std::string kind = is_long ? "bend-long" : "bend-short";
+    const FiniteTube finite(run.c, tube.shape, is_long ? short_part + extra : short_part, held_band(run.potential));
+    write_data(run, kind + ".data", finite.data());
+    const std::string results = "print \"$(pe:%.15g) $(fnorm:%.6g)\" append bend.dat screen no\n";
+    input +=
+        finite.commands(run.potential, kind + ".data") + "variable ftol equal 1e-3\n" + affine_bend_variables();
+    input += "minimize 0.0 ${ftol} 2000 20000\n" + results;
+    AtomisticRow row;
+    row.kind = kind;
+    row.twist = tube.shape.twist;
+    row.length = finite.free_length();
+    row.atoms = static_cast<int>(finite.atoms().size());
+    rows.push_back(row);
+    double last = 0;
+    for (const double step : curvature_steps) {
+      row.curvature = step * largest_curvature;
+      input += bend_commands(row.curvature, last, results);
+      last = row.curvature;
+      rows.push_back(row);
+    }
+  }
+  run_stage(run, "bend", input);
+  const auto results = read_results(run, "bend", rows.size(), rows.size(), 2);
+  double straight = 0;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (rows[i].curvature == 0) straight = results[i][0];
+    rows[i].energy = results[i][0] - straight;
+    if (rows[i].curvature > 0) check_convergence(run, rows[i].kind, results[i][1] / angstrom, rows[i].energy);
+  }
+  return rows;
+}
+
+}  // namespace ropewalk

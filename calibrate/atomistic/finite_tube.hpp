@@ -1,0 +1,42 @@
+// A finite tube between two bands of atoms that are held: the specimen of bending and of the envelope runs.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "atomistic/lattice.hpp"
+#include "atomistic/potential.hpp"
+
+namespace ropewalk {
+
+// So wide that no free atom feels the bare end: the forces of bond-order potentials reach over two cutoffs.
+double held_band(const Potential& potential);
+
+// The multiple of gcd(n,m) hexagons next to a length.
+long hexagons_in(Chirality c, const TubeShape& shape, double length);
+
+class FiniteTube {
+ public:
+  // Tubes of one shape and band have equal ends up to a rotation about the axis where their free hexagons differ by
+  // a multiple of gcd(n,m), so that their energies can be differenced.
+  FiniteTube(Chirality c, const TubeShape& shape, long free_hexagons, double band);
+
+  const std::vector<Vector3>& atoms() const { return atoms_; }  // nm, centred at the origin, axis z
+  double free_length() const { return free_length_; }
+  std::string data() const;
+
+  // Reads the data; group `held` is the two bands `below` and `above`, and fix `ref` keeps the straight positions.
+  std::string commands(const Potential& potential, const std::string& data) const;
+
+ private:
+  std::vector<Vector3> atoms_;
+  std::size_t below_ = 0, free_ = 0;  // the atoms are sorted: lower band, free part, upper band
+  double free_length_ = 0;
+  double total_length_ = 0;
+};
+
+// LAMMPS variables: bent_x, bent_z are the straight positions bent to curvature k (equal-style, per Angstrom);
+// next_x, next_y, next_z are the same with the displacements from the bend k0, scaled by k/k0.
+std::string affine_bend_variables();
+
+}  // namespace ropewalk

@@ -1,0 +1,86 @@
+#include "atomistic/runs.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <sstream>
+
+#include "io/files.hpp"
+
+namespace ropewalk {
+
+std::string header_commands(const std::string& boundary, double skin) {
+  return fmt::format(
+      "clear\n"
+      "units metal\n"
+      "atom_style atomic\n"
+      "atom_modify map array sort 0 0.0\n"
+      "boundary {}\n"
+      "neighbor {:.3f} bin\n"
+      "neigh_modify delay 0 every 1 check yes\n",
+      boundary, skin / angstrom);
+}
+
+std::string data_file(const std::vector<Vector3>& atoms, double half_width, double z_low, double z_high) {
+  std::string text = fmt::format(
+      "carbon nanotube, Angstrom\n\n{} atoms\n1 atom types\n\n{:.6f} {:.6f} xlo xhi\n{:.6f} {:.6f} ylo yhi\n"
+      "{:.12f} {:.12f} zlo zhi\n\nMasses\n\n1 12.011\n\nAtoms # atomic\n\n",
+      atoms.size(), -half_width / angstrom, half_width / angstrom, -half_width / angstrom, half_width / angstrom,
+      z_low / angstrom, z_high / angstrom);
+  for (std::size_t i = 0; i < atoms.size(); ++i)
+    text += fmt::format("{} {} {:.12f} {:.12f} {:.12f}\n", i + 1, 1, atoms[i].x() / angstrom,
+                        atoms[i].y() / angstrom, atoms[i].z() / angstrom);
+  return text;
+}
+
+void write_data(const RunContext& run, const std::string& name, const std::string& content) {
+  std::error_code code;
+  std::filesystem::create_directories(run.folder, code);  // write_file_atomically tells what went wrong
+  write_file_atomically(run.folder + "/" + name, content);
+}
+
+void run_stage(RunContext& run, const std::string& name, const std::string& input) {
+  const auto start = std::chrono::steady_clock::now();
+  run_lammps(run.folder, name, input, run.options.lammps);
+  run.lammps_seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+std::vector<std::vector<double>> read_results(const RunContext& run, const std::string& name, std::size_t least,
+                                              std::size_t most, std::size_t columns) {
+  const std::string path = run.folder + "/" + name + ".dat";
+  const auto fail = [&](const std::string& what) {
+    throw LammpsError(
+        fmt::format("LAMMPS ({}/{}.in) {}; its input and log are in that folder, and the disk may be full",
+                    run.folder, name, what));
+  };
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored)) fail("left no results");
+  std::vector<std::vector<double>> table;
+  std::istringstream lines(read_file(path));
+  for (std::string line; std::getline(lines, line);) {
+    std::vector<double> row;
+    std::istringstream words(line);
+    for (std::string word; words >> word;) {
+      char* end = nullptr;
+      row.push_back(std::strtod(word.c_str(), &end));
+      if (*end != '\0' || !std::isfinite(row.back())) fail(fmt::format("gave '{}' for a number", word));
+    }
+    if (row.size() != columns) fail(fmt::format("left an incomplete line {} in {}.dat", table.size() + 1, name));
+    table.push_back(row);
+  }
+  if (table.size() < least || table.size() > most) fail(fmt::format("left {} of {} results", table.size(), most));
+  return table;
+}
+
+void check_convergence(RunContext& run, const std::string& what, double force, double energy) {
+  // f^2/2K is what a mode of stiffness K can still give; 100 eV/nm^2 is softer than all but a long tube's bending.
+  const double left = 0.5 * force * force / 100;
+  if (left > 1e-3 * energy)
+    run.warnings.push_back(
+        fmt::format("{} is not well converged: forces of {:.2g} eV/nm are left, worth up to {:.2g} of {:.2g} eV",
+                    what, force, left, energy));
+}
+
+}  // namespace ropewalk

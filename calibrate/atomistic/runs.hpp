@@ -1,0 +1,72 @@
+// The LAMMPS runs behind measure_stiffness: each is one child process that relaxes many configurations.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "atomistic/lattice.hpp"
+#include "atomistic/stiffness.hpp"
+
+namespace ropewalk {
+
+inline constexpr double angstrom = 0.1;  // nm: LAMMPS's metal units
+
+// The tube that strains, twists and energies are counted from.
+struct RelaxedTube {
+  TubeShape shape;                // at its natural twist
+  double energy_per_hexagon = 0;  // eV
+  double contraction = 0;         // -d ln r / d strain, a first guess for starting points
+};
+
+struct RunContext {
+  Chirality c;
+  const Potential& potential;
+  const std::string& folder;
+  const StiffnessOptions& options;
+  double lammps_seconds = 0;
+  std::vector<std::string> warnings;
+};
+
+// A relaxed periodic cell, free of any reference.
+struct CellResult {
+  long hexagons = 0;
+  double angle = 0;   // rad, twist of the cell against the rolled sheet
+  double length = 0;  // nm
+  double energy = 0;  // eV
+  double force = 0;   // eV/nm, norm over all atoms, left after minimisation
+  double radius = 0;  // nm
+};
+
+// Radius, length and inner shift of the untwisted tube at zero axial force.
+RelaxedTube relax_tube(RunContext& run);
+
+// The periods of the cells of stretch and twist: untwisted, and two twists of either sign.
+std::vector<LatticeVector> stretch_twist_periods(Chirality c, const Potential& potential,
+                                                 const StiffnessOptions& options);
+
+// Cells over the windows of the options, strains and twists of both signs.
+std::vector<CellResult> stretch_twist_cells(RunContext& run, const RelaxedTube& start);
+
+// The same cells counted from a tube.
+std::vector<AtomisticRow> stretch_twist_rows(const std::vector<CellResult>& cells, const RelaxedTube& tube);
+
+// Short and long finite tubes bent to several curvatures.
+std::vector<AtomisticRow> bend_rows(RunContext& run, const RelaxedTube& tube, double largest_curvature);
+
+// Incremental runs, minutes. Appends their rows.
+Envelope measured_envelope(RunContext& run, const RelaxedTube& tube, const Stiffness& stiffness,
+                           std::vector<AtomisticRow>& rows);
+
+// Shared pieces of the inputs.
+std::string header_commands(const std::string& boundary, double skin);
+std::string data_file(const std::vector<Vector3>& atoms, double half_width, double z_low, double z_high);
+void write_data(const RunContext& run, const std::string& name, const std::string& content);
+// Numbers that a run printed to folder/name.dat, `columns` to a line. Throws LammpsError where there are fewer
+// than `least` lines, or more than `most`.
+std::vector<std::vector<double>> read_results(const RunContext& run, const std::string& name, std::size_t least,
+                                              std::size_t most, std::size_t columns);
+// Warns where the forces left by the minimiser (eV/nm) could hide more than a thousandth of the energy (eV).
+void check_convergence(RunContext& run, const std::string& what, double force, double energy);
+void run_stage(RunContext& run, const std::string& name, const std::string& input);
+
+}  // namespace ropewalk

@@ -1,0 +1,123 @@
+// Elastic constants of a tube from the energy of relaxed atomistic cells.
+//
+//   stretch and twist   E/L0 = EA/2 e^2 + C e s + GJ/2 s^2 + third and fourth order in (e, s)
+//   bend                (E_long - E_short)/(L_long - L_short) = EI/2 k^2 + k4 k^4
+//
+// with the strain e and the twist s = t - natural twist, both per length L0 of the relaxed tube (t is the angle
+// between the ends of a cell over its relaxed length, whatever the strain), and the curvature k of the axis.
+//
+// Stretch and twist: exactly periodic, uniformly twisted supercells (lattice.hpp), atoms minimised at fixed cell.
+// Bend: the tube's atoms are bent affinely to curvature k, bands at both ends are frozen, the rest is minimised,
+// and two lengths are differenced, which takes the ends out. Energies are fitted with fit_least_squares. Units eV,
+// nm, rad.
+//
+// Standard errors add in squares that of the fit and half of the spread between fits over smaller windows and of
+// lower order. For potentials with an angular spline (AIREBO, REBO) the spread is the larger part by far: the
+// spline has a knot at 120 degrees, the angle of the unstrained sheet.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "atomistic/lammps.hpp"
+#include "atomistic/potential.hpp"
+#include "model/tube.hpp"
+
+namespace ropewalk {
+
+struct Measured {
+  double value = 0;
+  double standard_error = 0;
+};
+
+// Chiralities that the calibration refuses, before LAMMPS starts.
+inline constexpr double smallest_diameter = 0.3;  // nm: below it atoms across the tube are within reach of bonds
+inline constexpr int most_atoms = 20000;          // of a cell: a minute each
+
+// One relaxed configuration. The table of all of them is calibration.csv, which a person can read and re-fit.
+struct AtomisticRow {
+  std::string kind;      // "stretch-twist", "bend-short", "bend-long", or an envelope run
+  double length = 0;     // nm: of the cell at zero strain of the relaxed tube, or of the bent free part
+  double strain = 0;     // against the relaxed tube
+  double twist = 0;      // rad/nm, against the rolled sheet
+  double curvature = 0;  // 1/nm
+  int atoms = 0;
+  double energy = 0;    // eV, of the whole cell, against the relaxed straight tube
+  double residual = 0;  // eV, of the fit
+  double radius = 0;    // nm, mean distance from the axis (straight cells)
+};
+
+struct StiffnessOptions {
+  double cell_length = 0;                     // nm, least length of the periodic cells; 0: chosen
+  double largest_strain = 0.01;               // fit windows, both signs
+  double largest_shear = 0.01;                // radius times twist
+  double largest_bend_strain = 0;             // radius times curvature; 0: chosen
+  double short_length = 6, long_length = 10;  // nm, bend
+  bool envelope = false;                      // incremental runs to the kink, the collapse and 1 % nonlinearity
+  LammpsOptions lammps;
+  std::function<void(const std::string&)> progress;  // one line per stage
+};
+
+// Beyond these the rigid-element model is no longer the tube.
+struct Envelope {
+  Measured kink_curvature;    // 1/nm
+  Measured twist_collapse;    // radius times twist
+  Measured compression;       // strain
+  Measured linear_curvature;  // 1/nm: bending moment 1 % off EI k
+  Measured linear_shear;      // radius times twist: torque 1 % off GJ s
+  Measured linear_strain;     // tension or compression: force 1 % off EA e
+  bool measured = false;      // false: from scaling rules
+};
+
+struct Stiffness {
+  Measured EA;                 // eV/nm
+  Measured EI;                 // eV nm
+  Measured GJ;                 // eV nm
+  Measured coupling;           // C, eV
+  Measured natural_twist;      // rad/nm, of the relaxed tube against the rolled sheet
+  Measured poisson;            // -d ln r / d strain
+  Measured radius;             // nm, relaxed
+  Measured atoms_per_length;   // 1/nm, relaxed
+  double energy_per_atom = 0;  // eV, relaxed; 0 where it is not known (a table fitted again)
+  double energy_offset = 0;    // eV/nm, of the minimum of the fit; near 0 in a finished table
+  // Leading anharmonic terms of the energy per length: they set the 1 % limits.
+  Measured stretch_cubic;          // eV/nm, of e^3
+  Measured twist_cubic;            // eV nm^2, of s^3; zero but for chiral tubes
+  Measured twist_quartic;          // eV nm^3, of s^4
+  Measured bend_quartic;           // eV nm^3, of k^4
+  double surface_density() const;  // atoms per nm^2 of the relaxed shell
+  Envelope envelope;
+  std::vector<AtomisticRow> rows;
+  std::vector<std::string> warnings;  // window too wide for the potential, spread, facets, ...
+  std::string fit_report;             // windows, residuals, evaluations, verdicts: a few lines for a person
+  LammpsVersion lammps;
+  double lammps_seconds = 0, fit_seconds = 0;
+};
+
+// The whole atomistic half of a calibration; files stay in `folder`. Throws InputError, LammpsError.
+Stiffness measure_stiffness(Chirality c, const Potential& potential, const std::string& folder,
+                            const StiffnessOptions& options);
+
+// Scaling rules for the envelope, from incremental LAMMPS runs on (10,10) and their checks on other tubes.
+Envelope scaled_envelope(double radius);
+
+// What the head of a table says, one "# key: value" line each.
+struct AtomisticOrigin {
+  Chirality chirality;
+  std::string potential, potential_hash, lammps;
+  std::vector<std::string> notes;
+};
+std::string atomistic_csv(const std::vector<AtomisticRow>& rows, const AtomisticOrigin& origin);
+// Throws InputError with file and line.
+std::vector<AtomisticRow> read_atomistic_csv(const std::string& path, AtomisticOrigin* origin = nullptr);
+
+// The two fits on their own, so that a table can be fitted again. They fill the residuals of their rows, and
+// throw InputError where the rows do not suffice.
+void fit_stretch_twist(std::vector<AtomisticRow>& rows, Stiffness& out);
+void fit_bend(std::vector<AtomisticRow>& rows, Stiffness& out);
+
+// Replaces the 1 % limits of the envelope by those that follow from the anharmonic terms, where these are known.
+void limits_from_terms(const Stiffness& stiffness, Envelope& envelope);
+
+}  // namespace ropewalk

@@ -1,0 +1,244 @@
+// Stretch and twist by exactly periodic cells: relaxation of the tube, and the table of cells.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "atomistic/runs.hpp"
+#include "io/files.hpp"
+
+namespace ropewalk {
+namespace {
+
+constexpr double pi = units::pi;
+constexpr double skin = 0.04;  // nm; nothing moves far in these cells
+constexpr int strain_points = 7;
+
+// All atoms of a uniform cell are equivalent, so the minimiser works on three numbers in truth (radius and inner
+// shift) and converges to rounding in some tens of steps.
+constexpr const char* minimiser =
+    "min_style cg\n"
+    "min_modify dmax 0.02 line quadratic\n";
+
+std::string cell_commands(const Potential& potential, const std::string& data) {
+  std::string text = header_commands("s s p", skin) + fmt::format("read_data {}\n", data);
+  for (const std::string& command : potential.commands) text += command + "\n";
+  text += minimiser;
+  text +=
+      "variable rho atom sqrt(x*x+y*y)\n"
+      "variable new_x atom x*v_wide\n"
+      "variable new_y atom y*v_wide\n"
+      "compute rho all reduce ave v_rho\n"
+      "thermo_style custom step pe fnorm fmax c_rho lz\n"
+      "thermo 50\n"
+      "thermo_modify flush yes lost error norm no format float %.12g\n";
+  return text;
+}
+
+std::string report(const std::string& name, const char* values) {
+  return fmt::format("print \"{}\" append {}.dat screen no\n", values, name);
+}
+
+std::vector<Vector3> atoms_of(Chirality c, long hexagons, const TubeShape& shape) {
+  std::vector<Vector3> atoms;
+  for (const Site& site : strip_sites(c, hexagons)) atoms.push_back(place(c, site, shape));
+  return atoms;
+}
+
+// The shortest cell whose shear is near enough to the wanted one; the nearest where none is.
+LatticeVector cell_near(Chirality c, double shear, double tolerance, double min_length) {
+  // A step around the circumference is at least so fine that one of these lengths does it.
+  const double step = graphene_lattice_constant;
+  const double longest = std::max(1.3 * min_length, 2.5 * step / std::max(std::abs(shear), tolerance));
+  const double radius = tube_radius(c);
+  const std::vector<LatticeVector> periods = twisted_periods(
+      c, min_length, std::max(longest, min_length + 1.01 * step * std::sqrt(3.0)), std::abs(shear) + 4 * tolerance);
+  const auto shear_of = [&](const LatticeVector& v) {
+    return -2 * pi * radius * period_turns(c, v) /
+           (static_cast<double>(cell_hexagons(c, v)) * rolled_shape(c).length_per_hexagon);
+  };
+  const LatticeVector* best = nullptr;
+  const auto cost = [&](const LatticeVector& v) {
+    const double off = std::abs(shear_of(v) - shear);
+    return off <= tolerance ? static_cast<double>(cell_hexagons(c, v)) : 1e9 * (1 + off);
+  };
+  for (const LatticeVector& v : periods)
+    if (!best || cost(v) < cost(*best)) best = &v;
+  if (!best) throw std::invalid_argument("no lattice vector serves as the period of this tube");
+  return *best;
+}
+
+LatticeVector untwisted_cell(Chirality c, double min_length) {
+  const LatticeVector t = translation_vector(c);
+  const double length = translational_period(c);
+  const int copies = std::max(1, static_cast<int>(std::ceil(min_length / length - 1e-9)));
+  // A tube with a long period is served by a cell with next to no twist instead.
+  if (length > std::max(8.0, 2 * min_length)) return cell_near(c, 0, 2e-4, min_length);
+  return {copies * t.p, copies * t.q};
+}
+
+// Atoms as LAMMPS dumped them, in order of their ids.
+std::vector<Vector3> read_atoms(const RunContext& run, const std::string& name, std::size_t count) {
+  std::istringstream lines(read_file(run.folder + "/" + name));
+  std::vector<Vector3> atoms;
+  std::string line;
+  while (std::getline(lines, line) && line.rfind("ITEM: ATOMS", 0) != 0) {
+  }
+  while (std::getline(lines, line)) {
+    std::istringstream words(line);
+    long id = 0;
+    double x = 0, y = 0, z = 0;
+    if (words >> id >> x >> y >> z) atoms.push_back(Vector3(x, y, z) * angstrom);
+  }
+  if (atoms.size() != count)
+    throw LammpsError(fmt::format("LAMMPS left {} of {} atoms in {}/{}; the disk may be full", atoms.size(), count,
+                                  run.folder, name));
+  return atoms;
+}
+
+// Mean displacement of the second sublattice against the first, from where `shape` places them.
+void find_inner_shift(Chirality c, const std::vector<Site>& sites, const std::vector<Vector3>& atoms,
+                      TubeShape& shape) {
+  const double length = static_cast<double>(sites.size() / 2) * shape.length_per_hexagon;
+  double arc[2] = {0, 0}, height[2] = {0, 0};
+  for (std::size_t i = 0; i < sites.size(); ++i) {
+    const Vector3 rolled = place(c, sites[i], shape);
+    const double turned = std::atan2(rolled.x() * atoms[i].y() - rolled.y() * atoms[i].x(),
+                                     rolled.x() * atoms[i].x() + rolled.y() * atoms[i].y());
+    arc[sites[i].second] += turned;
+    height[sites[i].second] += std::remainder(atoms[i].z() - rolled.z(), length);
+  }
+  const double per_atom = 2.0 / static_cast<double>(sites.size());
+  shape.arc_shift = (arc[1] - arc[0]) * per_atom;
+  shape.height_shift = (height[1] - height[0]) * per_atom;
+}
+
+// The rolled sheet is within 10 % of every relaxed tube; a potential without that minimum gives anything.
+void check_still_a_tube(const RunContext& run, double radius_ratio, double length_ratio) {
+  if (std::abs(radius_ratio - 1) < 0.25 && std::abs(length_ratio - 1) < 0.15) return;
+  throw LammpsError(
+      fmt::format("potential '{}' does not hold ({},{}): relaxed, its radius is {:.3g} and its length {:.3g} "
+                  "times that of the rolled sheet; check the potential ({}/relax.log)",
+                  run.potential.name, run.c.n, run.c.m, radius_ratio, length_ratio, run.folder));
+}
+
+constexpr double shortest_cell = 1.0;  // nm; three times any bonded cutoff, so that no atom meets its own image
+
+}  // namespace
+
+RelaxedTube relax_tube(RunContext& run) {
+  const Chirality c = run.c;
+  const LatticeVector period = untwisted_cell(c, std::max(shortest_cell, 2 * run.potential.cutoff));
+  const long hexagons = cell_hexagons(c, period);
+  TubeShape shape = rolled_shape(c, 0.2485);
+  const double length = static_cast<double>(hexagons) * shape.length_per_hexagon;
+  shape.twist = -2 * pi * period_turns(c, period) / length;
+  const std::vector<Site> sites = strip_sites(c, hexagons);
+  write_data(run, "relax.data", data_file(atoms_of(c, hexagons, shape), shape.radius + 0.5, 0, length));
+
+  const std::string values = report("relax", "$(pe:%.15g) $(fnorm:%.6g) $(lz:%.15g) $(c_rho:%.15g)");
+  run_stage(run, "relax",
+            "# the free tube: radius, length and inner shift; then once stretched, for its contraction\n" +
+                cell_commands(run.potential, "relax.data") +
+                "fix cell all box/relax z 0.0 vmax 0.002\n"
+                "minimize 0.0 1e-7 2000 20000\n"
+                "unfix cell\n"
+                "minimize 0.0 1e-9 500 5000\n" +
+                values +
+                "write_dump all custom relax.atoms id x y z modify sort id format float %.12f\n"
+                "change_box all z scale 1.005 remap units box\n"
+                "minimize 0.0 1e-7 500 5000\n" +
+                values);
+  const auto result = read_results(run, "relax", 2, 2, 4);
+
+  check_still_a_tube(run, result[0][3] * angstrom / shape.radius, result[0][2] * angstrom / length);
+
+  RelaxedTube tube;
+  tube.shape = shape;
+  tube.shape.radius = result[0][3] * angstrom;
+  tube.shape.length_per_hexagon = result[0][2] * angstrom / static_cast<double>(hexagons);
+  tube.shape.twist = shape.twist * length / (result[0][2] * angstrom);
+  tube.energy_per_hexagon = result[0][0] / static_cast<double>(hexagons);
+  tube.contraction = -std::log(result[1][3] / result[0][3]) / std::log(1.005);
+  find_inner_shift(c, sites, read_atoms(run, "relax.atoms", sites.size()), tube.shape);
+  return tube;
+}
+
+std::vector<LatticeVector> stretch_twist_periods(Chirality c, const Potential& potential,
+                                                 const StiffnessOptions& options) {
+  const double min_length = std::max({shortest_cell, 2 * potential.cutoff, options.cell_length});
+  std::vector<LatticeVector> periods;
+  for (const double part : {-1.0, -0.5, 0.0, 0.5, 1.0})
+    periods.push_back(part == 0
+                          ? untwisted_cell(c, min_length)
+                          : cell_near(c, part * options.largest_shear, 0.1 * options.largest_shear, min_length));
+  return periods;
+}
+
+std::vector<CellResult> stretch_twist_cells(RunContext& run, const RelaxedTube& start) {
+  const Chirality c = run.c;
+  const StiffnessOptions& options = run.options;
+  const std::vector<LatticeVector> periods = stretch_twist_periods(c, run.potential, options);
+
+  std::string input = "# relaxed cells: every twist (one cell each) at several strains\n";
+  std::vector<CellResult> cells;
+  for (std::size_t k = 0; k < periods.size(); ++k) {
+    const long hexagons = cell_hexagons(c, periods[k]);
+    const double angle = -2 * pi * period_turns(c, periods[k]);
+    const double free_length = static_cast<double>(hexagons) * start.shape.length_per_hexagon;
+    const std::string data = fmt::format("cell-{}.data", k);
+    for (int s = 0; s < strain_points; ++s) {
+      const double strain = options.largest_strain * (2.0 * s / (strain_points - 1) - 1.0);
+      CellResult cell;
+      cell.hexagons = hexagons;
+      cell.angle = angle;
+      cell.length = free_length * (1 + strain);
+      if (s == 0) {
+        TubeShape shape = start.shape;
+        shape.length_per_hexagon *= 1 + strain;
+        shape.radius *= 1 - start.contraction * strain;
+        shape.twist = angle / cell.length;
+        write_data(run, data, data_file(atoms_of(c, hexagons, shape), shape.radius + 0.5, 0, cell.length));
+        input += cell_commands(run.potential, data);
+      } else {
+        const double step = cell.length / cells.back().length - 1;
+        input += fmt::format(
+            "change_box all z final 0.0 {:.12f} remap units box\n"
+            "variable wide delete\nvariable wide equal {:.12f}\n"
+            "set group all x v_new_x y v_new_y\n",
+            cell.length / angstrom, 1 - start.contraction * step);
+      }
+      input += "minimize 0.0 1e-5 300 3000\n";
+      input += report("stretch-twist", "$(pe:%.15g) $(fnorm:%.6g) $(lz:%.15g) $(c_rho:%.15g)");
+      cells.push_back(cell);
+    }
+  }
+  run_stage(run, "stretch-twist", input);
+  const auto results = read_results(run, "stretch-twist", cells.size(), cells.size(), 4);
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    cells[i].energy = results[i][0];
+    cells[i].force = results[i][1] / angstrom;
+    cells[i].length = results[i][2] * angstrom;
+    cells[i].radius = results[i][3] * angstrom;
+  }
+  return cells;
+}
+
+std::vector<AtomisticRow> stretch_twist_rows(const std::vector<CellResult>& cells, const RelaxedTube& tube) {
+  std::vector<AtomisticRow> rows;
+  for (const CellResult& cell : cells) {
+    AtomisticRow row;
+    row.kind = "stretch-twist";
+    row.length = static_cast<double>(cell.hexagons) * tube.shape.length_per_hexagon;
+    row.strain = cell.length / row.length - 1;
+    row.twist = cell.angle / row.length;
+    row.atoms = static_cast<int>(2 * cell.hexagons);
+    row.energy = cell.energy - static_cast<double>(cell.hexagons) * tube.energy_per_hexagon;
+    row.radius = cell.radius;
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+}  // namespace ropewalk

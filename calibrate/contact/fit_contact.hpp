@@ -1,0 +1,60 @@
+// Fits of the two contact laws of mdem/model, and of the universal one, to the surface integral.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "contact/van_der_waals.hpp"
+#include "fit/least_squares.hpp"
+#include "model/contact_line.hpp"
+#include "model/contact_paper.hpp"
+
+namespace ropewalk {
+
+// A curve of the integral beside the fit, for tables and plots.
+struct ContactPoint {
+  double distance = 0;  // nm: rho, R
+  double angle = 0;     // rad; crossing angle, 0: parallel
+  double theta = 0;     // rad; paper form only: line of centres against the axes' bisector
+  double integral = 0;  // eV/nm^2, eV/nm or eV
+  double fit = 0;
+};
+
+struct LineFit {
+  LineDensity density;
+  FitResult fit;                     // parameters K, s, c, p, q in this order
+  Well parallel, crossed;            // of the integral; crossed at 90 degrees
+  Well line_parallel, line_crossed;  // of the fitted density
+  double error = 0;                  // largest |fit - integral| of parallel and crossed over the well, from
+                                     // 0.05 nm inside of the minimum outwards
+  std::vector<ContactPoint> u, parallel_curve, crossed_curve;
+  double seconds_integral = 0, seconds_fit = 0;
+};
+LineFit fit_line(const AtomLaw& law, const Shell& i, const Shell& j, const FitOptions& options = {});
+
+// All radii of the range, equal and unequal.
+struct UniversalFit {
+  UniversalLine law;
+  FitResult fit;  // the rows one after the other
+  UniversalLine::Row se_log_K{}, se_s{}, se_c{}, se_p{}, se_q{};
+  double error = 0;  // largest over all pairs, as LineFit::error
+  struct Pair {
+    double r_i = 0, r_j = 0, direct_error = 0, error = 0, spacing_error = 0, depth_error = 0;
+  };
+  std::vector<Pair> pairs;
+};
+UniversalFit fit_universal(const AtomLaw& law, const std::vector<std::pair<double, double>>& radii);
+
+// The published form (11 free parameters: epsilon A, epsilon B, alpha, beta, C1..C5, C_gamma, delta) for elements
+// of the given length, to the integrated energies of parallel rows and crossed tubes.
+struct PaperFit {
+  PaperContact law;
+  FitResult fit;
+  Well parallel, crossed;  // of the fitted law, rows of elements
+  double error = 0;        // as LineFit::error
+  std::vector<ContactPoint> points;
+};
+PaperFit fit_paper(const AtomLaw& law, const Shell& shell, double element_length, const FitOptions& options = {});
+
+}  // namespace ropewalk

@@ -1,0 +1,166 @@
+#include "contact/integral.hpp"
+
+#include <gsl/gsl_chebyshev.h>
+#include <gsl/gsl_roots.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+#include "contact/quadrature.hpp"
+
+namespace ropewalk {
+namespace {
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+constexpr std::size_t order = 96;  // of the Chebyshev series
+
+// Places above `from` where E' has a kink, and its end: those of circles touching at the cutoff.
+std::vector<double> parts(const AtomLaw& law, const Shell& i, const Shell& j, double from) {
+  std::vector<double> edges = {from};
+  const double sum = i.radius + j.radius, difference = std::fabs(i.radius - j.radius);
+  if (law.cutoff == infinite) {
+    const double far = sum + 8 * law.sigma;  // beyond it the well is a power law
+    if (far > from) edges.push_back(far);
+    edges.push_back(infinite);
+    return edges;
+  }
+  for (const double R : {law.cutoff - sum, law.cutoff - difference, law.cutoff + difference, law.cutoff + sum})
+    if (R > edges.back() + 1e-6) edges.push_back(R);
+  return edges;
+}
+
+// int_from^inf f(R, sqrt(R^2 - from^2)) dR, in parts; `from` is the first edge. R = from / cos(angle) takes away
+// the root at `from`.
+template <class F>
+double integrate_outwards(const std::vector<double>& edges, F f) {
+  double sum = 0;
+  const double from = edges.front();
+  for (std::size_t k = 0; k + 1 < edges.size(); ++k) {
+    const auto at = [&](double angle) {
+      const double c = std::cos(angle);
+      return c > 1e-6 ? f(from / c, from * std::tan(angle)) * from * std::sin(angle) / (c * c) : 0.0;
+    };
+    sum += integrate_both_ends(at, std::acos(from / edges[k]), std::acos(from / edges[k + 1]));
+  }
+  return sum;
+}
+
+// Place in a part (0 to 1) to distance and back. A part is crowded at both ends; one without end is stretched.
+struct Part {
+  double from, to, contact;
+  double distance(double x) const {
+    if (to == infinite) return contact + (from - contact) / std::max(x, 1e-3);
+    return from + (to - from) * x * x * (3 - 2 * x);
+  }
+  double place(double R) const {
+    if (to == infinite) return (from - contact) / (R - contact);
+    const double y = std::clamp((R - from) / (to - from), 0.0, 1.0);
+    return 0.5 - std::sin(std::asin(1 - 2 * y) / 3);
+  }
+};
+
+double weight(double gap) { return std::pow(gap, 6); }
+
+}  // namespace
+
+double abel_inverse(const AtomLaw& law, const Shell& i, const Shell& j, double rho,
+                    const std::function<double(double)>& slope) {
+  if (rho >= law.cutoff + i.radius + j.radius) return 0;
+  const auto f = [&](double R, double root) { return slope(R) / root; };
+  return -integrate_outwards(parts(law, i, j, rho), f) / units::pi;
+}
+
+PairIntegral::PairIntegral(const AtomLaw& law, const Shell& i, const Shell& j, double nearest)
+    : law_(law), i_(i), j_(j), contact_(i.radius + j.radius) {
+  edges_ = parts(law, i, j, contact_ + (nearest > 0 ? nearest : 0.4 * law.sigma));
+  if (edges_.size() < 2)
+    throw std::invalid_argument("van der Waals: the cutoff of " + std::to_string(law.cutoff) +
+                                " nm ends before the tubes attract each other");
+  struct Task {
+    const PairIntegral& self;
+    Part part;
+  };
+  gsl_cheb_series* series = gsl_cheb_alloc(order);
+  for (std::size_t k = 0; k + 1 < edges_.size(); ++k) {
+    Task task{*this, {edges_[k], edges_[k + 1], contact_}};
+    gsl_function f;
+    f.function = [](double x, void* data) {
+      const Task& t = *static_cast<Task*>(data);
+      const double R = t.part.distance(x);
+      return parallel_energy_derivative(t.self.law_, t.self.i_, t.self.j_, R) * weight(R - t.self.contact_);
+    };
+    f.params = &task;
+    gsl_cheb_init(series, &f, 0, 1);
+    series_.emplace_back(series->c, series->c + order + 1);
+  }
+  gsl_cheb_free(series);
+}
+
+double PairIntegral::slope(double distance) const {
+  if (distance >= edges_.back()) return 0;
+  std::size_t k = 0;
+  while (k + 2 < edges_.size() && distance >= edges_[k + 1]) ++k;
+  const double x = 2 * Part{edges_[k], edges_[k + 1], contact_}.place(distance) - 1;
+  const std::vector<double>& c = series_[k];
+  double b1 = 0, b2 = 0;  // Clenshaw's sum
+  for (std::size_t n = order; n > 0; --n) {
+    const double b = 2 * x * b1 - b2 + c[n];
+    b2 = b1;
+    b1 = b;
+  }
+  return (x * b1 - b2 + 0.5 * c[0]) / weight(distance - contact_);
+}
+
+double PairIntegral::parallel(double distance) const {
+  if (distance >= edges_.back()) return 0;
+  return -integrate_outwards(parts(law_, i_, j_, distance), [&](double R, double) { return slope(R); });
+}
+
+double PairIntegral::crossed(double distance) const {
+  if (distance >= edges_.back()) return 0;
+  const auto f = [&](double R, double root) { return slope(R) * root; };
+  return -2 * integrate_outwards(parts(law_, i_, j_, distance), f);
+}
+
+double PairIntegral::line_density(double rho) const {
+  return abel_inverse(law_, i_, j_, rho, [&](double R) { return slope(R); });
+}
+
+Well PairIntegral::parallel_well() const {
+  const double at = zero([&](double R) { return slope(R); });
+  return {at, parallel(at)};
+}
+
+// dX/dR = -2 pi R u(R)
+Well PairIntegral::crossed_well() const {
+  const double at = zero([&](double R) { return -line_density(R); });
+  return {at, crossed(at)};
+}
+
+// The nearest place where a slope turns from negative to positive.
+double PairIntegral::zero(const std::function<double(double)>& slope) const {
+  constexpr double step = 0.02;
+  double a = nearest(), b = a + step;
+  while (slope(a) < 0 && slope(b) < 0) {
+    a = b;
+    b += step;
+    if (b >= edges_.back() || b > contact_ + 10 * law_.sigma) break;
+  }
+  if (!(slope(a) < 0 && slope(b) >= 0 && b < edges_.back()))
+    throw std::invalid_argument("van der Waals: this pair of tubes has no well within the cutoff");
+  gsl_function f;
+  f.function = [](double R, void* data) { return (*static_cast<const std::function<double(double)>*>(data))(R); };
+  f.params = const_cast<std::function<double(double)>*>(&slope);
+  gsl_root_fsolver* solver = gsl_root_fsolver_alloc(gsl_root_fsolver_brent);
+  gsl_root_fsolver_set(solver, &f, a, b);
+  for (int k = 0; k < 60 && gsl_root_fsolver_x_upper(solver) - gsl_root_fsolver_x_lower(solver) > 1e-11; ++k)
+    gsl_root_fsolver_iterate(solver);
+  const double root = gsl_root_fsolver_root(solver);
+  gsl_root_fsolver_free(solver);
+  return root;
+}
+
+}  // namespace ropewalk

@@ -1,0 +1,44 @@
+// The surface integrals of one pair of tubes, tabulated once so that a fit can ask for many points.
+//
+// Only the slope E'(R) of the parallel energy is computed; the rest are integrals of it,
+//   E(R) = -int_R^inf E'(S) dS,    X(R) = E(R, gamma) sin(gamma) = int E(sqrt(R^2 + t^2)) dt,
+//   X(R) = -2 int_R^inf E'(S) sqrt(S^2 - R^2) dS,
+// and u(rho) of van_der_waals.hpp. Between the kinks that the cutoff leaves in E', at cutoff +- r_i +- r_j, it is a
+// Chebyshev series.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "contact/van_der_waals.hpp"
+
+namespace ropewalk {
+
+class PairIntegral {
+ public:
+  // From the gap `nearest` outwards; 0: 0.4 sigma.
+  PairIntegral(const AtomLaw& law, const Shell& i, const Shell& j, double nearest = 0);
+
+  double nearest() const { return edges_.front(); }  // of R, nm
+  double slope(double distance) const;               // E', eV/nm^2
+  double parallel(double distance) const;            // E, eV/nm
+  double crossed(double distance) const;             // X, eV
+  double line_density(double rho) const;             // u, eV/nm^2
+  Well parallel_well() const;
+  Well crossed_well() const;  // at a right angle
+
+ private:
+  double zero(const std::function<double(double)>& rising) const;
+
+  AtomLaw law_;
+  Shell i_, j_;
+  double contact_;
+  std::vector<double> edges_;                // of the parts, in R
+  std::vector<std::vector<double>> series_;  // Chebyshev coefficients of E' h^8 for each part
+};
+
+// u(rho) from the slope E'(R).
+double abel_inverse(const AtomLaw& law, const Shell& i, const Shell& j, double rho,
+                    const std::function<double(double)>& slope);
+
+}  // namespace ropewalk

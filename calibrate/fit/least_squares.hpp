@@ -1,0 +1,59 @@
+// Bounded nonlinear least squares by NLopt, hardened:
+//
+//   minimise  chi2(p) = sum_k residual_k(p)^2   over the free parameters, lower <= p <= upper.
+//
+// Several starts (the given one first, the others drawn in the box from a fixed seed) and two algorithms that
+// must agree. A residual that is not finite makes that point bad; it never reaches the optimiser as NaN. Every
+// run ends: evaluations and wall time are limited. The standard errors are those of the linearised model at the
+// minimum, s^2 (J^T J)^-1 with s^2 = chi2 / (residuals - free parameters).
+// Source: S. G. Johnson, The NLopt nonlinear-optimization package.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace ropewalk {
+
+struct FitParameter {
+  std::string name;
+  double start = 0;
+  double lower = 0, upper = 0;
+  bool free = true;  // a parameter that is not free keeps its start
+};
+
+// Writes the (weighted) residuals at p; the size of r is that given to fit_least_squares.
+using Residuals = std::function<void(const std::vector<double>& p, std::vector<double>& r)>;
+
+struct FitOptions {
+  int starts = 8;
+  int max_evaluations = 20000;  // of the residuals, over all starts and algorithms
+  double max_seconds = 30;
+  double tolerance = 1e-10;  // relative, of chi2 and of the parameters in units of their box
+  double agreement = 1e-4;   // relative difference of chi2 up to which the two algorithms agree
+  std::uint64_t seed = 1;
+};
+
+struct FitResult {
+  enum class Verdict { converged, at_bound, disagreement, limit_reached, nothing_finite };
+  Verdict verdict = Verdict::nothing_finite;
+  std::string message;                 // one line for a person: the verdict and what to do
+  std::vector<double> value;           // of all parameters, in their order
+  std::vector<double> standard_error;  // 0 for one that was not free, NaN for one that the data do not determine
+  std::vector<std::string> at_bound;   // names
+  std::vector<std::string> undetermined;
+  double chi2 = 0;
+  double rms = 0;      // sqrt(chi2 / number of residuals)
+  double largest = 0;  // |residual|
+  int evaluations = 0, not_finite = 0;
+  double condition = 0;  // of the scaled J^T J
+  bool usable() const { return verdict == Verdict::converged || verdict == Verdict::at_bound; }
+};
+
+// Throws std::invalid_argument for an empty or inverted box, a start outside of it, or fewer residuals than
+// free parameters. Everything else is told by the verdict.
+FitResult fit_least_squares(const std::vector<FitParameter>& parameters, std::size_t residuals,
+                            const Residuals& function, const FitOptions& options = {});
+
+}  // namespace ropewalk

@@ -1,0 +1,124 @@
+// ropewalk-calibrate, also reached as `ropewalk calibrate`: parameter sets from atomistic data. Exit codes: 0
+// done, 2 wrong input, 3 a calculation that failed.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+
+#include "verbs/verbs.hpp"
+#include "model/error.hpp"
+#include "version.hpp"
+
+namespace {
+
+using namespace ropewalk;
+
+struct Verbs {
+  CalibrateArguments calibrate;
+  UniversalArguments universal;
+  FitArguments fit;
+  ShowArguments show;
+  CheckShippedArguments check_shipped;
+  int code = 0;
+};
+
+// As it could be typed again.
+std::string command_line(int argc, char** argv) {
+  std::string text = "ropewalk calibrate";
+  for (int k = 1; k < argc; ++k) {
+    const std::string word = argv[k];
+    text += word.find_first_of(" \t\n\"'$`\\") == std::string::npos ? " " + word : " '" + word + "'";
+  }
+  return text;
+}
+
+void add_law(CLI::App& app, std::string& lj, double& cutoff) {
+  app.add_option("--lj", lj, "Lennard-Jones epsilon (eV) and sigma (nm) between atoms of two tubes")
+      ->capture_default_str();
+  app.add_option("--lj-cutoff", cutoff, "Its cutoff (nm), truncated as lj/cut does; 0: none")
+      ->capture_default_str();
+}
+
+void add_calibrate(CLI::App& app, Verbs& v) {
+  CalibrateArguments& a = v.calibrate;
+  app.add_option("--chirality", a.chirality, "n,m with n >= m");
+  app.add_option("--potential", a.potential, "tersoff, airebo, rebo or lcbop")->capture_default_str();
+  app.add_option("--potential-file", a.user_potential, "Your own pair_style and pair_coeff lines, one atom type");
+  add_law(app, a.lj, a.lj_cutoff);
+  app.add_flag("--envelope", a.envelope, "Measure kink, collapse and 1 % limits with LAMMPS (minutes)");
+  app.add_option("--out", a.out, "Parameter file; its tables lie beside it [default: cnt-N-M-POTENTIAL.toml]");
+  app.add_option("--keep", a.keep, "Keep LAMMPS's inputs and logs in this new directory");
+  app.add_option("--cell-length", a.stiffness.cell_length, "Least length of the periodic cells (nm); 0: chosen")
+      ->capture_default_str();
+  app.add_option("--strain", a.stiffness.largest_strain, "Fit window of stretch")->capture_default_str();
+  app.add_option("--shear", a.stiffness.largest_shear, "Fit window of twist: radius times twist")
+      ->capture_default_str();
+  app.add_flag("--json", a.json, "JSON");
+  app.add_flag("--force", a.force, "Replace existing files");
+  app.add_flag("--quiet", a.quiet, "No progress lines");
+}
+
+void add_verbs(CLI::App& app, Verbs& v) {
+  CLI::App* fit = app.add_subcommand("fit", "Fit a table of energies of your own");
+  fit->add_option("data", v.fit.data, "CSV: energies of stretch, twist and bend, or of contact")->required();
+  fit->add_option("settings", v.fit.settings, "TOML: model, free parameters, starts and bounds")->required();
+  fit->add_option("--out", v.fit.out, "Write the base set with the fitted numbers to this file");
+  fit->add_flag("--json", v.fit.json, "JSON");
+  fit->add_flag("--force", v.fit.force, "Replace an existing file");
+  fit->callback([&v] { v.code = fit_command(v.fit); });
+
+  CLI::App* show = app.add_subcommand("show", "The table of a set, and a page with its plots");
+  show->add_option("set", v.show.set, "Parameter set: a file, or the name of a shipped one")->required();
+  show->add_option("--page", v.show.page, "Where the page goes [default: NAME.html]");
+  show->add_flag("--table", v.show.table_only, "The table alone");
+  show->callback([&v] { v.code = show_command(v.show); });
+
+  CLI::App* check = app.add_subcommand("check-shipped", "Make a shipped set anew and compare");
+  check->add_option("set", v.check_shipped.set, "Which")->capture_default_str();
+  check->add_flag("--all", v.check_shipped.all, "All of them");
+  check->add_option("--tolerance", v.check_shipped.tolerance, "Relative difference allowed")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  check->callback([&v] { v.code = check_shipped_command(v.check_shipped); });
+
+  CLI::App* universal = app.add_subcommand("universal", "Fit one contact law for all radii (minutes)");
+  add_law(*universal, v.universal.lj, v.universal.lj_cutoff);
+  universal->add_option("--out", v.universal.out, "File [default: the shipped one]");
+  universal->add_flag("--force", v.universal.force, "Replace an existing file");
+  universal->callback([&v] { v.code = universal_command(v.universal); });
+}
+
+int run(CLI::App& app, Verbs& v) {
+  if (!app.get_subcommands().empty()) return v.code;
+  if (v.calibrate.chirality.empty())
+    throw InputError({"", 0, "--chirality"}, "is missing", "write --chirality 10,10, or see --help");
+  return calibrate_command(v.calibrate);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app(
+      "ropewalk calibrate derives a tube's parameter set from atomistic data: stiffnesses from relaxed LAMMPS\n"
+      "cells, van der Waals contact from the surface integral, both fitted with NLopt.\n"
+      "Example: ropewalk calibrate --chirality 12,6",
+      "ropewalk calibrate");
+  app.set_version_flag("--version", std::string("ropewalk-calibrate ") + version + " (" + git_id + ")");
+  app.require_subcommand(0, 1);
+  Verbs verbs;
+  verbs.calibrate.command = verbs.fit.command = verbs.universal.command = command_line(argc, argv);
+  add_calibrate(app, verbs);
+  add_verbs(app, verbs);
+  try {
+    app.parse(argc, argv);
+    return run(app, verbs);
+  } catch (const CLI::ParseError& e) {
+    if (e.get_exit_code() == 0) return app.exit(e);
+    std::fprintf(stderr, "ropewalk calibrate: %s; see ropewalk calibrate --help\n", e.what());
+    return 2;
+  } catch (const InputError& e) {
+    std::fprintf(stderr, "ropewalk calibrate: %s\n", e.what());
+    return 2;
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "ropewalk calibrate: %s\n", e.what());
+    return 3;
+  }
+}

@@ -1,0 +1,212 @@
+// `ropewalk calibrate --chirality n,m`: from a chirality to a parameter set.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "io/files.hpp"
+#include "io/parameters_toml.hpp"
+#include "io/toml_table.hpp"
+#include "verbs/verbs.hpp"
+
+namespace ropewalk {
+namespace {
+
+namespace fs = std::filesystem;
+
+// "a,b" as two numbers.
+template <class T>
+bool two_numbers(const std::string& text, T& a, T& b) {
+  const std::size_t comma = text.find(',');
+  if (comma == std::string::npos) return false;
+  const auto number = [](const char* from, const char* to, T& value) {
+    while (from < to && *from == ' ') ++from;
+    const auto [end, error] = std::from_chars(from, to, value);
+    return error == std::errc() && end == to;
+  };
+  const char* p = text.data();
+  return number(p, p + comma, a) && number(p + comma + 1, p + text.size(), b);
+}
+
+void print_result(const Calibration& c, const std::string& out) {
+  const Stiffness& s = c.stiffness;
+  const ContactSummary sum = contact_summary(c);
+  const auto row = [](const char* what, const Measured& m, const char* unit, double factor = 1) {
+    fmt::print("  {:<26} {:>14.6g}  +- {:<10.2g} {}\n", what, m.value * factor, m.standard_error * factor, unit);
+  };
+  fmt::print("({},{}), {}, LAMMPS {}\n", c.request.chirality.n, c.request.chirality.m, c.request.potential.name,
+             c.lammps.text);
+  row("radius", s.radius, "nm");
+  row("atoms per length", s.atoms_per_length, "1/nm");
+  row("EA", s.EA, "nN", units::eV_in_nN_nm);
+  row("EI", s.EI, "nN nm^2", units::eV_in_nN_nm);
+  row("GJ", s.GJ, "nN nm^2", units::eV_in_nN_nm);
+  row("stretch-twist coupling", s.coupling, "nN nm", units::eV_in_nN_nm);
+  row("natural twist", s.natural_twist, "rad/nm");
+  row("Poisson contraction", s.poisson, "");
+  row("spacing of a pair", sum.pair_spacing, "nm");
+  row("energy of a pair", sum.pair_energy, "eV/nm");
+  row("energy crossed at 90 deg", sum.cross90_energy, "eV");
+  fmt::print("  line law: largest error {:.1e} of the well; published form {:.1e}", c.line.error, c.paper.error);
+  if (c.universal) fmt::print("; universal law {:.1e}", c.universal_error);
+  fmt::print("\n{}", s.fit_report);
+  if (!s.fit_report.empty() && s.fit_report.back() != '\n') fmt::print("\n");
+  for (const std::string& w : c.warnings) fmt::print("warning: {}\n", w);
+  fmt::print("{:.1f} s: LAMMPS {:.1f}, contact integral {:.1f}, fits {:.1f}, rest {:.1f}\n", c.seconds,
+             s.lammps_seconds, c.line.seconds_integral, s.fit_seconds + c.line.seconds_fit + c.paper_seconds,
+             c.seconds - s.lammps_seconds - c.line.seconds_integral - s.fit_seconds - c.line.seconds_fit -
+                 c.paper_seconds);
+  fmt::print("Set: {}\n", out);
+}
+
+nlohmann::ordered_json result_json(const Calibration& c, const std::string& out) {
+  const Stiffness& s = c.stiffness;
+  const ContactSummary sum = contact_summary(c);
+  nlohmann::ordered_json j;
+  const auto add = [&](const std::string& key, const Measured& m, double factor = 1) {
+    j[key] = m.value * factor;
+    j[key + "_standard_error"] = m.standard_error * factor;
+  };
+  j["chirality"] = {c.request.chirality.n, c.request.chirality.m};
+  j["potential"] = c.request.potential.name;
+  add("EA_nN", s.EA, units::eV_in_nN_nm);
+  add("EI_nN_nm2", s.EI, units::eV_in_nN_nm);
+  add("GJ_nN_nm2", s.GJ, units::eV_in_nN_nm);
+  add("radius_nm", s.radius);
+  add("atoms_per_nm", s.atoms_per_length);
+  add("natural_twist", s.natural_twist);  // rad/nm
+  add("pair_spacing_nm", sum.pair_spacing);
+  add("pair_energy_eV_per_nm", sum.pair_energy);
+  add("cross90_energy_eV", sum.cross90_energy);
+  add("coupling_nN_nm", s.coupling, units::eV_in_nN_nm);
+  add("poisson", s.poisson);
+  j["line_error"] = c.line.error;
+  j["paper_error"] = c.paper.error;
+  if (c.universal) j["universal_error"] = c.universal_error;
+  j["warnings"] = c.warnings;
+  j["seconds"] = {
+      {"total", c.seconds}, {"lammps", s.lammps_seconds}, {"contact_integral", c.line.seconds_integral}};
+  j["file"] = out;
+  return j;
+}
+
+struct OutputFiles {
+  std::string set, stiffness, contact;
+};
+
+OutputFiles output_files(const CalibrateArguments& a, const std::string& name) {
+  OutputFiles f;
+  f.set = a.out.empty() ? name + ".toml" : a.out;
+  if (fs::path(f.set).extension() != ".toml")
+    throw InputError({f.set, 0, "--out"}, "is not named *.toml", "choose such a name: the tables lie beside it");
+  const std::string stem = f.set.substr(0, f.set.size() - 5);
+  f.stiffness = stem + "-stiffness.csv";
+  f.contact = stem + "-contact.csv";
+  for (const std::string& path : {f.set, f.stiffness, f.contact}) check_output(path, "--out", a.force);
+  return f;
+}
+
+}  // namespace
+
+Chirality parse_chirality(const std::string& text) {
+  const InputError::Place place{"", 0, "--chirality"};
+  Chirality c;
+  if (!two_numbers(text, c.n, c.m))
+    throw InputError(place, fmt::format("is \"{}\"", printable(text, 40)), "write two integers, as in 10,10");
+  if (c.n >= 0 && c.m > c.n)
+    throw InputError(place, fmt::format("is ({},{}), with m above n", c.n, c.m),
+                     fmt::format("write {},{}: its mirror image has the same constants", c.m, c.n));
+  if (!c.valid())
+    throw InputError(place, fmt::format("({},{}) is not a tube", c.n, c.m), "take n >= 1 and 0 <= m <= n");
+  return c;
+}
+
+AtomLaw parse_atom_law(const std::string& lj, double cutoff) {
+  AtomLaw law;
+  if (!two_numbers(lj, law.epsilon, law.sigma))
+    throw InputError({"", 0, "--lj"}, fmt::format("is \"{}\"", printable(lj, 40)),
+                     "write epsilon in eV and sigma in nm, as in 2.84e-3,0.34");
+  if (!(law.epsilon > 0 && law.epsilon < 1))
+    throw InputError({"", 0, "--lj"}, fmt::format("epsilon is {} eV", law.epsilon), "must lie between 0 and 1");
+  if (!(law.sigma >= 0.2 && law.sigma <= 0.6))
+    throw InputError({"", 0, "--lj"}, fmt::format("sigma is {} nm", law.sigma), "must lie between 0.2 and 0.6");
+  law.cutoff = cutoff == 0 ? std::numeric_limits<double>::infinity() : cutoff;
+  if (!(cutoff >= 0))
+    throw InputError({"", 0, "--lj-cutoff"}, fmt::format("is {} nm", cutoff), "must be positive, or 0 for none");
+  if (law.cutoff < 2 * law.sigma)
+    throw InputError({"", 0, "--lj-cutoff"}, fmt::format("is {} nm", cutoff),
+                     fmt::format("must be at least 2 sigma, {:.3g} nm: the attraction is lost", 2 * law.sigma));
+  return law;
+}
+
+void check_output(const std::string& path, const std::string& option, bool force) {
+  std::error_code error;
+  if (!force && fs::exists(path, error))
+    throw InputError({path, 0, option}, "exists", "choose another name, or give --force to replace it");
+  const fs::path folder = fs::path(path).parent_path();
+  if (!folder.empty() && !fs::is_directory(folder, error))
+    throw InputError({path, 0, option}, "lies in a directory that does not exist", "make the directory first");
+}
+
+WorkFolder::WorkFolder(const std::string& keep) : path_(keep) {
+  std::error_code error;
+  if (!keep.empty()) {
+    if (fs::exists(keep, error) && (!fs::is_directory(keep, error) || !fs::is_empty(keep, error)))
+      throw InputError({keep, 0, "--keep"}, "exists and is not an empty directory", "choose another name");
+    fs::create_directories(keep, error);
+    if (error)
+      throw InputError({keep, 0, "--keep"}, fmt::format("cannot be made: {}", error.message()),
+                       "choose a place that you may write to");
+    return;
+  }
+  std::string name = (fs::temp_directory_path() / "ropewalk-XXXXXX").string();
+  if (!mkdtemp(name.data()))
+    throw InputError({name, 0, ""}, "no temporary directory can be made", "set TMPDIR to a place with room");
+  path_ = name;
+  temporary_ = true;
+}
+
+WorkFolder::~WorkFolder() {
+  std::error_code error;
+  if (temporary_) fs::remove_all(path_, error);
+}
+
+int calibrate_command(const CalibrateArguments& a) {
+  CalibrationRequest request;
+  request.chirality = parse_chirality(a.chirality);
+  request.law = parse_atom_law(a.lj, a.lj_cutoff);
+  request.potential = a.user_potential.empty() ? find_potential(a.potential) : user_potential(a.user_potential);
+  request.stiffness = a.stiffness;
+  request.stiffness.envelope = a.envelope;
+  request.command = a.command;
+  const OutputFiles files = output_files(
+      a, fmt::format("cnt-{}-{}-{}", request.chirality.n, request.chirality.m, request.potential.name));
+  if (!a.quiet) request.stiffness.progress = [](const std::string& line) { fmt::print(stderr, "{}\n", line); };
+  WorkFolder folder(a.keep);
+  request.folder = folder.path();
+  Calibration c;
+  try {
+    c = calibrate(request);
+  } catch (const LammpsError&) {
+    folder.stay();  // its message names the files
+    throw;
+  }
+  const ParameterSet set =
+      parameter_set(c, fs::path(files.stiffness).filename().string(), fs::path(files.contact).filename().string());
+  const std::string text = parameters_text(set, parameter_file_comment(c));
+  write_file_atomically(files.stiffness, stiffness_csv(c));
+  write_file_atomically(files.contact, contact_csv(c));
+  write_file_atomically(files.set, text);
+  if (a.json) {
+    fmt::print("{}\n", result_json(c, files.set).dump(1));
+  } else {
+    print_result(c, files.set);
+  }
+  return 0;
+}
+
+}  // namespace ropewalk

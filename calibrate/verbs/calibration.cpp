@@ -1,0 +1,348 @@
+#include "verbs/calibration.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+
+#include "io/data_files.hpp"
+#include "io/files.hpp"
+#include "io/parameters_toml.hpp"
+#include "io/toml_table.hpp"
+#include "version.hpp"
+
+namespace ropewalk {
+namespace {
+
+constexpr double right_angle = 0.5 * units::pi;
+
+double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+// --- Quantities of the file -----------------------------------------------------------------------------
+
+class Quantities {
+ public:
+  explicit Quantities(ParameterSet& set) : set_(set) {}
+
+  void section(const std::string& name) { section_ = name; }
+  void calibrated(const std::string& key, const Measured& m, const std::string& unit,
+                  const std::string& note = "") {
+    add(key, m.value, unit, m.standard_error, "calibrated", note);
+  }
+  void chosen(const std::string& key, double value, const std::string& unit, const std::string& note = "") {
+    add(key, value, unit, 0, "chosen", note);
+  }
+  void derived(const std::string& key, const Measured& m, const std::string& unit, const std::string& note = "") {
+    add(key, m.value, unit, m.standard_error, "derived", note);
+  }
+
+ private:
+  void add(const std::string& key, double value, const std::string& unit, double error, const char* origin,
+           const std::string& note) {
+    // A parameter that the data do not determine has no standard error.
+    const std::optional<double> known = std::isfinite(error) ? std::optional<double>(error) : std::nullopt;
+    set_.quantities.push_back({section_ + "." + key, value, unit, known, origin, "", note});
+  }
+
+  ParameterSet& set_;
+  std::string section_;
+};
+
+Measured scaled(const Measured& m, double factor) {
+  return {m.value * factor, std::fabs(factor) * m.standard_error};
+}
+
+void add_tube(const Calibration& c, Quantities& q) {
+  const Stiffness& s = c.stiffness;
+  q.section("tube");
+  q.calibrated("radius", s.radius, "nm", "mean over the atoms of the relaxed tube");
+  q.calibrated("atoms_per_length", s.atoms_per_length, "1/nm", "of the relaxed tube");
+  q.chosen("element_length", 2 * s.radius.value, "nm", "2 r; any length will do with the line law");
+}
+
+void add_bond(const Calibration& c, Quantities& q) {
+  const double unit = units::eV_in_nN_nm;
+  q.section("bond");
+  q.calibrated("EA", scaled(c.stiffness.EA, unit), "nN", "periodic twisted cells");
+  q.calibrated("EI", scaled(c.stiffness.EI, unit), "nN nm^2", "affine bend, two lengths differenced");
+  q.calibrated("GJ", scaled(c.stiffness.GJ, unit), "nN nm^2", "periodic twisted cells");
+}
+
+void add_line(const Calibration& c, Quantities& q) {
+  const LineDensity& d = c.line.density;
+  const std::vector<double>& se = c.line.fit.standard_error;
+  const AtomLaw& law = c.request.law;
+  q.section("contact.line");
+  q.chosen("epsilon", law.epsilon, "eV", "Lennard-Jones between atoms");
+  q.chosen("sigma", law.sigma, "nm");
+  q.chosen("lj_cutoff", std::isfinite(law.cutoff) ? law.cutoff : 0, "nm", "truncated, not shifted; 0: none");
+  const Stiffness& s = c.stiffness;
+  const double density = s.surface_density();
+  const double density_error = density * std::hypot(s.radius.standard_error / s.radius.value,
+                                                    s.atoms_per_length.standard_error / s.atoms_per_length.value);
+  q.derived("surface_density", {density, density_error}, "1/nm^2", "atoms per area of the relaxed shell");
+  q.calibrated("K", {d.K, se[0]}, "eV/nm^2", fmt::format("fit error {:.1e} of the well", c.line.error));
+  q.calibrated("s", {d.s, se[1]}, "nm");
+  q.calibrated("c", {d.c, se[2]}, "nm");
+  q.calibrated("p", {d.p, se[3]}, "1");
+  q.calibrated("q", {d.q, se[4]}, "1");
+  q.chosen("core_gap", d.core_gap, "nm", "below it a parabola continues the law");
+  q.chosen("switch_gap", d.switch_gap, "nm");
+  q.chosen("cutoff_gap", d.cutoff_gap, "nm");
+  const ContactSummary sum = contact_summary(c);
+  q.derived("pair_spacing", sum.pair_spacing, "nm",
+            fmt::format("of the law; surface integral {:.5f}", c.line.parallel.distance));
+  q.derived("pair_energy", sum.pair_energy, "eV/nm",
+            fmt::format("of the law; surface integral {:.5f}", c.line.parallel.energy));
+  q.derived("cross90_energy", sum.cross90_energy, "eV",
+            fmt::format("of the law; surface integral {:.5f}", c.line.crossed.energy));
+  if (!c.universal) return;
+  q.section("contact.line.universal");
+  q.derived("error", {c.universal_error, 0}, "1",
+            "for this tube, of the well; between unlike tubes this law is used");
+}
+
+void add_paper(const Calibration& c, Quantities& q) {
+  const PaperContact& k = c.paper.law;
+  const std::vector<double>& se = c.paper.fit.standard_error;
+  q.section("contact.paper");
+  q.chosen("epsilon", k.epsilon, "eV", fmt::format("unit of A and B; fit error {:.1e} of the well", c.paper.error));
+  q.calibrated("A", {k.repulsion, se[0]}, "1");
+  q.calibrated("B", {k.attraction, se[1]}, "1");
+  q.calibrated("alpha", {k.alpha, se[2]}, "1");
+  q.calibrated("beta", {k.beta, se[3]}, "1");
+  for (std::size_t i = 0; i < 5; ++i) q.calibrated(fmt::format("C{}", i + 1), {k.angular[i], se[4 + i]}, "1");
+  q.calibrated("C_gamma", {k.crossing, se[9]}, "1");
+  q.calibrated("delta", {k.delta, se[10]}, "1");
+  q.chosen("freeze", k.freeze, "r");
+  q.chosen("switch_start", k.switch_start, "r");
+  q.chosen("cutoff", k.cutoff_ratio, "r");
+  q.chosen("core_gap", k.core_gap, "1");
+}
+
+void add_atomistic(const Calibration& c, Quantities& q) {
+  const Stiffness& s = c.stiffness;
+  q.section("atomistic");
+  q.calibrated("natural_twist", s.natural_twist, "rad/nm", "of the relaxed tube against the rolled sheet");
+  q.calibrated("coupling", scaled(s.coupling, units::eV_in_nN_nm), "nN nm", "of stretch and twist");
+  q.calibrated("poisson", s.poisson, "1", "-d ln r / d strain");
+  q.calibrated("energy_per_atom", {s.energy_per_atom, 0}, "eV", "of the relaxed tube");
+}
+
+void add_validity(const Calibration& c, Quantities& q) {
+  const Envelope& e = c.stiffness.envelope;
+  const std::string note = e.measured ? "incremental LAMMPS runs" : "scaling rule; --envelope measures it";
+  const auto add = [&](const char* key, const Measured& m, const char* unit) {
+    if (!(m.value > 0)) return;
+    e.measured ? q.calibrated(key, m, unit, note) : q.derived(key, m, unit, note);
+  };
+  q.section("validity");
+  add("kink_curvature", e.kink_curvature, "1/nm");
+  add("twist_collapse", e.twist_collapse, "1");
+  add("stretch", e.compression, "1");
+  const std::string terms = "from the anharmonic terms of the fit";
+  const auto limit = [&](const char* key, const Measured& m, const char* unit) {
+    if (m.value > 0) q.derived(key, m, unit, e.measured ? note : terms);
+  };
+  limit("linear_curvature", e.linear_curvature, "1/nm");
+  limit("linear_twist", e.linear_shear, "1");
+  limit("linear_stretch", e.linear_strain, "1");
+}
+
+// --- The universal law ----------------------------------------------------------------------------------
+
+// One of its error over the wells: that of the direct fit, and what the universal form adds.
+double error_against(const LineFit& direct, const LineDensity& density) {
+  double worst = 0;
+  const auto curve = [&](const std::vector<ContactPoint>& points, double well, double nearest, bool crossed) {
+    for (const ContactPoint& p : points) {
+      if (p.distance < nearest - 0.05) continue;
+      const double e = crossed ? line_crossed_energy(density, p.distance, right_angle)
+                               : line_parallel_energy(density, p.distance);
+      worst = std::max(worst, std::fabs((e - p.integral) / well));
+    }
+  };
+  curve(direct.parallel_curve, direct.parallel.energy, direct.parallel.distance, false);
+  curve(direct.crossed_curve, direct.crossed.energy, direct.crossed.distance, true);
+  return worst;
+}
+
+void warn(Calibration& c) {
+  c.warnings = c.stiffness.warnings;
+  if (!c.line.fit.usable()) c.warnings.push_back("line law: " + c.line.fit.message);
+  if (!c.paper.fit.usable()) c.warnings.push_back("paper law: " + c.paper.fit.message);
+  if (!c.universal)
+    c.warnings.push_back(
+        "no universal law for this sigma and cutoff: the set serves scenes of one kind of tube; "
+        "`ropewalk calibrate universal` makes one");
+}
+
+}  // namespace
+
+std::string Calibration::name() const {
+  return fmt::format("cnt-{}-{}-{}", request.chirality.n, request.chirality.m, request.potential.name);
+}
+
+Calibration calibrate(const CalibrationRequest& request) {
+  const double begin = now();
+  Calibration c;
+  c.request = request;
+  c.stiffness = measure_stiffness(request.chirality, request.potential, request.folder, request.stiffness);
+  c.lammps = c.stiffness.lammps;
+  const Shell shell = c.shell();
+  const auto say = [&](const char* text) {
+    if (request.stiffness.progress) request.stiffness.progress(text);
+  };
+  say("van der Waals contact: surface integral and line law");
+  c.line = fit_line(request.law, shell, shell);
+  say("van der Waals contact: the published form");
+  const double paper_begin = now();
+  c.paper = fit_paper(request.law, shell, 2 * shell.radius);
+  c.paper_seconds = now() - paper_begin;
+  c.universal = universal_law(request.law);
+  if (c.universal)
+    c.universal_error =
+        error_against(c.line, c.universal->density(shell.radius, shell.density, shell.radius, shell.density));
+  warn(c);
+  c.seconds = now() - begin;
+  return c;
+}
+
+ContactSummary contact_summary(const Calibration& c) {
+  const LineFit& f = c.line;
+  const Stiffness& s = c.stiffness;
+  // Misfit of the closed form, and what the relaxed geometry leaves open: the spacing goes with 2 r, energies with
+  // the square of the atoms per area.
+  const double misfit = std::fabs(f.line_parallel.distance - f.parallel.distance);
+  const double area = 2 * std::hypot(s.radius.standard_error / s.radius.value,
+                                     s.atoms_per_length.standard_error / s.atoms_per_length.value);
+  const auto energy = [&](const Well& line, const Well& integral) {
+    return Measured{line.energy, std::hypot(line.energy - integral.energy, area * line.energy)};
+  };
+  return {{f.line_parallel.distance, std::hypot(misfit, 2 * s.radius.standard_error)},
+          energy(f.line_parallel, f.parallel),
+          energy(f.line_crossed, f.crossed)};
+}
+
+std::string stiffness_csv(const Calibration& c) {
+  AtomisticOrigin origin;
+  origin.chirality = c.request.chirality;
+  origin.potential = c.request.potential.name;
+  origin.potential_hash = c.request.potential.file_hash;
+  origin.lammps = c.lammps.text;
+  return atomistic_csv(c.stiffness.rows, origin);
+}
+
+std::string contact_csv(const Calibration& c) {
+  std::string text = fmt::format(
+      "# Surface integral of two ({},{}) tubes, r = {} nm, {} atoms per nm^2, and the line law fitted to it.\n"
+      "# Lennard-Jones {} eV, {} nm, cutoff {} nm. Units: density eV/nm^2, parallel eV/nm, crossed eV.\n"
+      "kind,distance_nm,angle_deg,energy,fit\n",
+      c.request.chirality.n, c.request.chirality.m, c.shell().radius, c.shell().density, c.request.law.epsilon,
+      c.request.law.sigma, c.request.law.cutoff);
+  const auto curve = [&](const char* kind, const std::vector<ContactPoint>& points) {
+    for (const ContactPoint& p : points)
+      text += fmt::format("{},{:.9g},{:.9g},{:.9g},{:.9g}\n", kind, p.distance, p.angle / units::degree, p.integral,
+                          p.fit);
+  };
+  curve("density", c.line.u);
+  curve("parallel", c.line.parallel_curve);
+  curve("crossed", c.line.crossed_curve);
+  return text;
+}
+
+ParameterSet parameter_set(const Calibration& c, const std::string& stiffness_file,
+                           const std::string& contact_file) {
+  ParameterSet set;
+  set.name = c.name();
+  set.chirality = c.request.chirality;
+  set.reference = c.request.potential.reference;
+  set.doi = c.request.potential.doi;
+  Quantities q(set);
+  add_tube(c, q);
+  add_bond(c, q);
+  add_line(c, q);
+  if (c.paper.fit.usable()) add_paper(c, q);
+  add_atomistic(c, q);
+  add_validity(c, q);
+  LineParameters line;
+  line.surface_density = c.shell().density;
+  line.density = c.line.density;
+  if (c.universal) {
+    line.universal = *c.universal;
+    line.has_universal = true;
+  }
+  set.line = line;
+  set.provenance = {
+      {"command", c.request.command},
+      {"program", fmt::format("ropewalk {} ({})", version, git_id)},
+      {"potential", c.request.potential.name},
+      {"potential_file", std::filesystem::path(c.request.potential.file).filename().string()},
+      {"potential_hash", c.request.potential.file_hash},
+      {"lammps", c.lammps.text},
+      {"stiffness_table", stiffness_file},
+      {"stiffness_hash", hash_hex(stiffness_csv(c))},
+      {"contact_table", contact_file},
+      {"contact_hash", hash_hex(contact_csv(c))},
+  };
+  auto& p = set.provenance;
+  p.erase(std::remove_if(p.begin(), p.end(), [](const auto& entry) { return entry.second.empty(); }), p.end());
+  return set;
+}
+
+std::string parameter_file_comment(const Calibration& c) {
+  std::string text = fmt::format(
+      "# Calibrated parameters of the ({},{}) carbon nanotube, {} potential. Made by\n#   {}\n"
+      "# Stiffnesses from relaxed atomistic cells (LAMMPS), contact from the surface integral of the "
+      "Lennard-Jones\n"
+      "# law; the tables named under [provenance] hold every energy that was fitted.\n",
+      c.request.chirality.n, c.request.chirality.m, c.request.potential.name, c.request.command);
+  for (const std::string& w : c.warnings) text += "# Warning: " + w + "\n";
+  return text;
+}
+
+std::string universal_path() { return data_directory() + "/contact/universal-line.toml"; }
+
+std::optional<UniversalLine> universal_law(const AtomLaw& law) {
+  const std::string path = universal_path();
+  if (!std::filesystem::exists(path)) return std::nullopt;
+  const TomlTable top = TomlTable::parse(read_file(path), path);
+  if (top.string("format") != universal_format)
+    throw top.error("format", "is not that of a universal law",
+                    fmt::format("this program reads \"{}\"", universal_format));
+  UniversalLine u;
+  const double sigma = top.number("sigma_nm", Bounds::positive(10));
+  u.lj_cutoff = top.number("lj_cutoff_nm", Bounds::non_negative(100));
+  const double cutoff = std::isfinite(law.cutoff) ? law.cutoff : 0;
+  if (std::fabs(sigma - law.sigma) > 1e-9 || std::fabs(u.lj_cutoff - cutoff) > 1e-9) return std::nullopt;
+  u.epsilon = law.epsilon;
+  u.sigma = sigma;
+  u.core_gap = top.number("core_gap_nm", Bounds::positive(10));
+  u.switch_gap = top.number("switch_gap_nm", Bounds::positive(10));
+  u.cutoff_gap = top.number("cutoff_gap_nm", Bounds::positive(10));
+  read_universal_rows(top.table("rows"), u);
+  return u;
+}
+
+std::string universal_file(const UniversalFit& fit, const std::string& command) {
+  UniversalLine u = fit.law;
+  u.standard_errors = {fit.se_log_K, fit.se_s, fit.se_c, fit.se_p, fit.se_q};
+  std::string text = fmt::format(
+      "# The line law of any two tubes of radius 0.3 .. 1.4 nm, for one Lennard-Jones law: see UniversalLine in\n"
+      "# mdem/model/contact_line.hpp. Largest error {:.2e} of the well. Made by\n#   {}\n"
+      "format = \"{}\"\nsigma_nm = {}\nlj_cutoff_nm = {}\ncore_gap_nm = {}\nswitch_gap_nm = {}\ncutoff_gap_nm = "
+      "{}\n"
+      "error = {:.4e}\n\n[rows]\n{}\n# Errors over the well: of a fit of its own, and of this law; then its errors "
+      "of spacing and depth.\n",
+      fit.error, command, universal_format, u.sigma, u.lj_cutoff, u.core_gap, u.switch_gap, u.cutoff_gap, fit.error,
+      universal_rows_text(u));
+  for (const UniversalFit::Pair& p : fit.pairs)
+    text +=
+        fmt::format("# r {:.3f} {:.3f} nm   direct {:.1e}   universal {:.1e}   spacing {:+.1e}   depth {:+.1e}\n",
+                    p.r_i, p.r_j, p.direct_error, p.error, p.spacing_error, p.depth_error);
+  return text;
+}
+
+}  // namespace ropewalk

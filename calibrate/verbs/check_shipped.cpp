@@ -1,0 +1,95 @@
+// `ropewalk calibrate check-shipped`: a shipped set made anew and held to the file.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "io/data_files.hpp"
+#include "io/parameters_toml.hpp"
+#include "verbs/verbs.hpp"
+
+namespace ropewalk {
+namespace {
+
+namespace fs = std::filesystem;
+
+const Quantity* find(const ParameterSet& set, const std::string& key) {
+  for (const Quantity& q : set.quantities)
+    if (q.key == key) return &q;
+  return nullptr;
+}
+
+double value_of(const ParameterSet& set, const std::string& key) {
+  const Quantity* q = find(set, key);
+  if (!q)
+    throw InputError({set.path, 0, key}, "is missing", "only a set made by `ropewalk calibrate` can be remade");
+  return q->value;
+}
+
+std::string potential_of(const ParameterSet& set) {
+  for (const auto& [key, value] : set.provenance)
+    if (key == "potential") return value;
+  throw InputError({set.path, 0, "provenance.potential"}, "is missing",
+                   "only a set made by `ropewalk calibrate` can be remade");
+}
+
+Calibration remake(const ParameterSet& set) {
+  CalibrationRequest request;
+  request.chirality = set.chirality;
+  request.potential = find_potential(potential_of(set));
+  request.law = parse_atom_law(
+      fmt::format("{},{}", value_of(set, "contact.line.epsilon"), value_of(set, "contact.line.sigma")),
+      value_of(set, "contact.line.lj_cutoff"));
+  WorkFolder folder("");
+  request.folder = folder.path();
+  return calibrate(request);
+}
+
+// The numbers that a scene feels. Of K, s, c, p and q no single one is held: they may trade against each other.
+constexpr const char* compared[] = {"tube.radius",
+                                    "tube.atoms_per_length",
+                                    "bond.EA",
+                                    "bond.EI",
+                                    "bond.GJ",
+                                    "contact.line.surface_density",
+                                    "contact.line.pair_spacing",
+                                    "contact.line.pair_energy",
+                                    "contact.line.cross90_energy"};
+
+bool check_one(const std::string& name, double tolerance) {
+  const ParameterSet shipped = read_parameters(find_parameters(name, "", {"", 0, "set"}));
+  const Calibration c = remake(shipped);
+  const ParameterSet remade = parameter_set(c, "", "");
+  fmt::print("{}, made anew in {:.1f} s\n", shipped.name, c.seconds);
+  bool same = true;
+  for (const char* key : compared) {
+    const double a = value_of(shipped, key), b = value_of(remade, key);
+    const double difference = (b - a) / std::fabs(a);
+    const bool near = std::fabs(difference) <= tolerance;
+    same = same && near;
+    fmt::print("  {:<30} {:>14.8g} {:>14.8g} {:<8} {:+9.1e}{}\n", key, a, b, find(shipped, key)->unit, difference,
+               near ? "" : "  DIFFERS");
+  }
+  return same;
+}
+
+}  // namespace
+
+int check_shipped_command(const CheckShippedArguments& a) {
+  std::vector<std::string> names = {a.set};
+  if (a.all) {
+    names.clear();
+    for (const auto& entry : fs::directory_iterator(data_directory() + "/parameters"))
+      if (entry.path().extension() == ".toml" && !read_parameters(entry.path().string()).provenance.empty())
+        names.push_back(entry.path().stem().string());
+    std::sort(names.begin(), names.end());
+  }
+  bool same = true;
+  for (const std::string& name : names) same = check_one(name, a.tolerance) && same;
+  fmt::print("{}\n", same ? fmt::format("agree within {:.2g} %", 100 * a.tolerance)
+                          : fmt::format("differ by more than {:.2g} %: another LAMMPS or potential file?",
+                                        100 * a.tolerance));
+  return same ? 0 : 3;
+}
+
+}  // namespace ropewalk

@@ -1,0 +1,365 @@
+// `ropewalk calibrate fit DATA.csv SETTINGS.toml`: a user's own energies, with a mask of free parameters.
+//
+//   format = "ropewalk-fit-1"
+//   model  = "stiffness"            # or "line", "paper"
+//   base   = "cnt-10-10-tersoff"    # a set: starts, and what stays fixed
+//   free   = ["EA", "GJ"]           # the others keep their start
+//   [start]   EA = 1500             # instead of the base's
+//   [bounds]  EA = [1000, 2000]     # instead of a fifth to five times the start
+//   [search]  starts = 8, max_evaluations = 20000, max_seconds = 30, seed = 1
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "io/data_files.hpp"
+#include "io/files.hpp"
+#include "io/parameters_toml.hpp"
+#include "io/toml_table.hpp"
+#include "verbs/tables.hpp"
+#include "verbs/verbs.hpp"
+
+namespace ropewalk {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* fit_format = "ropewalk-fit-1";
+
+// A parameter that the user may free, under its name and in its unit of the parameter file.
+struct Named {
+  std::string name, key, unit;  // "EA", "bond.EA", "nN"
+  double narrowest = 0;         // half width of the box of a parameter that starts near zero
+};
+
+// A model: its parameters, nuisance parameters that are always free, and the residuals over a scale.
+struct FitModel {
+  std::vector<Named> named;
+  std::vector<FitParameter> nuisance;
+  std::size_t residuals = 0;
+  std::function<void(const std::vector<double>&, std::vector<double>&)> function;
+  std::string weighting;  // what a residual of 1 is
+};
+
+// --- Stiffness ------------------------------------------------------------------------------------------
+
+// E/L = e0 + EA/2 e^2 + C e t + GJ/2 t^2 + third-order terms + e^4 and t^4; bent: E = (EI/2 k^2 + k4 k^4) L + the
+// same two powers for the ends, which are alike in both lengths.
+FitModel stiffness_model(const std::string& path) {
+  auto rows = std::make_shared<std::vector<AtomisticRow>>(read_atomistic_csv(path));
+  double largest = 0, strain = 0, twist = 0, curvature = 0, bend = 0;
+  for (const AtomisticRow& r : *rows) {
+    const double e = std::fabs(r.energy / r.length);
+    if (r.kind == "stretch-twist") {
+      largest = std::max(largest, e);
+      strain = std::max(strain, std::fabs(r.strain));
+      twist = std::max(twist, std::fabs(r.twist));
+    } else if (r.kind == "bend-short" || r.kind == "bend-long") {
+      bend = std::max(bend, e);
+      curvature = std::max(curvature, std::fabs(r.curvature));
+    }
+  }
+  if (!(largest > 0) && !(bend > 0))
+    throw InputError({path, 0, "kind"}, "holds no stretch-twist, bend-short or bend-long energies",
+                     "name the kind of each row");
+  FitModel m;
+  const bool straight = largest > 0, bent = bend > 0;
+  // In units of the window's largest energy, so that all boxes are alike.
+  const auto free_term = [&](const char* name, bool used) { m.nuisance.push_back({name, 0, -5, 5, used}); };
+  if (straight) {
+    m.named.insert(m.named.end(), {{"EA", "bond.EA", "nN", 0},
+                                   {"GJ", "bond.GJ", "nN nm^2", 0},
+                                   {"coupling", "atomistic.coupling", "nN nm", 200},
+                                   {"natural_twist", "atomistic.natural_twist", "rad/nm", 0.02}});
+    for (const char* name : {"offset", "e3", "e2t", "et2", "t3", "e4", "t4"}) free_term(name, true);
+  }
+  if (bent) {
+    m.named.push_back({"EI", "bond.EI", "nN nm^2", 0});
+    for (const char* name : {"k4", "end2", "end4"}) free_term(name, true);
+  }
+  if (straight) strain = std::max(strain, 1e-6), twist = std::max(twist, 1e-6);
+  m.function = [=](const std::vector<double>& p, std::vector<double>& r) {
+    const std::size_t at = (straight ? 4u : 0u) + (bent ? 1u : 0u);
+    const double* extra = p.data() + at;
+    const double* ends = extra + (straight ? 7 : 0);
+    std::size_t n = 0;
+    for (const AtomisticRow& row : *rows) {
+      if (row.kind == "stretch-twist") {
+        const double e = row.strain, t = row.twist - p[3], u = e / strain, v = t / twist;
+        const double harmonic = (0.5 * p[0] * e * e + p[2] * e * t + 0.5 * p[1] * t * t) * units::nN_nm;
+        const double others = extra[0] + extra[1] * u * u * u + extra[2] * u * u * v + extra[3] * u * v * v +
+                              extra[4] * v * v * v + extra[5] * u * u * u * u + extra[6] * v * v * v * v;
+        r[n++] = (harmonic - row.energy / row.length) / largest + others;
+      } else if (row.kind == "bend-short" || row.kind == "bend-long") {
+        const double k2 = row.curvature * row.curvature, w = k2 / (curvature * curvature);
+        const double harmonic = 0.5 * p[straight ? 4 : 0] * units::nN_nm * k2;
+        r[n++] = (harmonic - row.energy / row.length) / bend + ends[0] * w * w +
+                 (ends[1] * w + ends[2] * w * w) / row.length;
+      }
+    }
+  };
+  m.residuals = static_cast<std::size_t>(std::count_if(rows->begin(), rows->end(), [](const AtomisticRow& r) {
+    return r.kind == "stretch-twist" || r.kind == "bend-short" || r.kind == "bend-long";
+  }));
+  m.weighting = "the largest energy per length of the window";
+  return m;
+}
+
+// --- Contact --------------------------------------------------------------------------------------------
+
+// Each kind over the depth of its well; repulsion above it counts less the higher it is.
+std::vector<double> weights_of(const std::vector<ContactRow>& rows) {
+  std::vector<double> weights;
+  for (const ContactRow& r : rows) {
+    double lowest = 0;
+    for (const ContactRow& other : rows)
+      if (other.kind == r.kind && std::fabs(other.angle - r.angle) < 1e-9) lowest = std::min(lowest, other.energy);
+    const double depth = lowest < 0 ? -lowest : 1;
+    weights.push_back(1 / (depth + 2 * std::max(r.energy, 0.0)));
+  }
+  return weights;
+}
+
+template <class Law, class Set, class Energy>
+void add_contact_residuals(FitModel& m, std::vector<ContactRow> rows, Law law, Set set, Energy energy) {
+  const std::vector<double> weights = weights_of(rows);
+  m.residuals = rows.size();
+  m.weighting = "the depth of its well";
+  m.function = [=](const std::vector<double>& p, std::vector<double>& r) {
+    Law trial = law;
+    set(p, trial);
+    for (std::size_t k = 0; k < rows.size(); ++k) r[k] = weights[k] * (energy(trial, rows[k]) - rows[k].energy);
+  };
+}
+
+void set_line_form(const std::vector<double>& p, LineDensity& d) {
+  d.K = p[0], d.s = p[1], d.c = p[2], d.p = p[3], d.q = p[4];
+}
+
+FitModel line_model(const std::string& path, const ParameterSet& base) {
+  if (!base.line)
+    throw InputError({base.path, 0, "contact.line"}, "is missing",
+                     "take a base that has the line law: it gives the gaps");
+  FitModel m;
+  for (const char* name : {"K", "s", "c", "p", "q"})
+    m.named.push_back({name, std::string("contact.line.") + name,
+                       name[0] == 'K'                     ? "eV/nm^2"
+                       : name[0] == 's' || name[0] == 'c' ? "nm"
+                                                          : "1",
+                       name[0] == 'c' ? 0.15 : 0});
+  const auto energy = [](const LineDensity& d, const ContactRow& r) {
+    if (d.core_gap + d.c <= 0) return std::numeric_limits<double>::quiet_NaN();
+    if (r.kind == "density") return d.energy(r.distance);
+    return r.kind == "parallel" ? line_parallel_energy(d, r.distance) : line_crossed_energy(d, r.distance, r.angle);
+  };
+  add_contact_residuals(m, read_contact_csv(path), base.line->density, set_line_form, energy);
+  return m;
+}
+
+void set_paper_form(const std::vector<double>& p, PaperContact& k) {
+  k.repulsion = p[0], k.attraction = p[1], k.alpha = p[2], k.beta = p[3];
+  std::copy(p.begin() + 4, p.begin() + 9, k.angular.begin());
+  k.crossing = p[9], k.delta = p[10];
+}
+
+FitModel paper_model(const std::string& path, const ParameterSet& base) {
+  if (!base.paper)
+    throw InputError({base.path, 0, "contact.paper"}, "is missing", "take a base that has the published law");
+  FitModel m;
+  for (const char* name : {"A", "B", "alpha", "beta", "C1", "C2", "C3", "C4", "C5", "C_gamma", "delta"})
+    m.named.push_back(
+        {name, std::string("contact.paper.") + name, "1", name[0] == 'C' && name[1] != '_' ? 0.05 : 0});
+  std::vector<ContactRow> rows = read_contact_csv(path);
+  rows.erase(std::remove_if(rows.begin(), rows.end(), [](const ContactRow& r) { return r.kind == "density"; }),
+             rows.end());
+  if (rows.empty())
+    throw InputError({path, 0, "kind"}, "has no parallel or crossed energies",
+                     "the published law has no line density");
+  const double length = base.element_length;
+  const auto energy = [length](const PaperContact& k, const ContactRow& r) {
+    return r.kind == "parallel" ? paper_parallel_energy(k, length, r.distance)
+                                : paper_crossed_energy(k, length, r.distance, r.angle);
+  };
+  add_contact_residuals(m, std::move(rows), *base.paper, set_paper_form, energy);
+  return m;
+}
+
+// --- Settings -------------------------------------------------------------------------------------------
+
+struct Settings {
+  std::string model;
+  std::optional<ParameterSet> base;
+  std::vector<std::string> free;
+  FitOptions search;
+};
+
+const Quantity* find(const ParameterSet& set, const std::string& key) {
+  for (const Quantity& q : set.quantities)
+    if (q.key == key) return &q;
+  return nullptr;
+}
+
+Settings read_settings(const TomlTable& top, const std::string& path) {
+  static const Words<const char*> models = {{"stiffness", "stiffness"}, {"line", "line"}, {"paper", "paper"}};
+  if (top.string("format") != fit_format)
+    throw top.error("format", "is not that of fit settings", fmt::format("this program reads \"{}\"", fit_format));
+  Settings s;
+  s.model = top.word("model", models);
+  if (top.has("base"))
+    s.base = read_parameters(find_parameters(top.string("base"), fs::path(path).parent_path().string(),
+                                             {path, top.line("base"), "base"}));
+  else if (s.model != "stiffness")
+    throw top.error("base", "is missing", "the contact models need a set: base = \"cnt-10-10-tersoff\"");
+  s.free = top.strings("free");
+  const TomlTable search = top.table("search");
+  s.search.starts = static_cast<int>(search.integer_or("starts", s.search.starts, 1, 1000));
+  s.search.max_evaluations =
+      static_cast<int>(search.integer_or("max_evaluations", s.search.max_evaluations, 10, 100000000));
+  s.search.max_seconds = search.number_or("max_seconds", s.search.max_seconds, Bounds::positive(1e5));
+  s.search.seed = static_cast<std::uint64_t>(search.integer_or("seed", 1, 0, std::numeric_limits<long>::max()));
+  return s;
+}
+
+double start_of(const TomlTable& start, const Settings& s, const Named& n) {
+  if (start.has(n.name)) return start.number(n.name, Bounds::any());
+  if (s.base)
+    if (const Quantity* q = find(*s.base, n.key)) return q->value;
+  if (n.narrowest > 0) return 0;
+  throw start.error(n.name, "is missing", fmt::format("give a start in {}, or a base", n.unit));
+}
+
+FitParameter parameter_of(const TomlTable& start, const TomlTable& bounds, const Settings& s, const Named& n) {
+  FitParameter p;
+  p.name = n.name;
+  p.start = start_of(start, s, n);
+  p.free = std::find(s.free.begin(), s.free.end(), n.name) != s.free.end();
+  const double half = std::max(n.narrowest, 0.0);
+  const double near = 0.2 * p.start, far = 5 * p.start;
+  p.lower = half > 0 ? p.start - half : std::min(near, far);
+  p.upper = half > 0 ? p.start + half : std::max(near, far);
+  if (bounds.has(n.name)) {
+    const std::vector<double> b = bounds.numbers(n.name, Bounds::any(), 2);
+    if (!(b[0] < b[1])) throw bounds.error(n.name, "is no interval", "write [lower, upper]");
+    p.lower = b[0], p.upper = b[1];
+  }
+  if (p.free && !(p.start >= p.lower && p.start <= p.upper))
+    throw bounds.error(n.name, fmt::format("[{}, {}] leaves out the start {}", p.lower, p.upper, p.start),
+                       "move the bounds or the start");
+  return p;
+}
+
+void check_free(const TomlTable& top, const Settings& s, const FitModel& m) {
+  std::vector<std::string> names;
+  for (const Named& n : m.named) names.push_back(n.name);
+  for (const std::string& f : s.free)
+    if (std::find(names.begin(), names.end(), f) == names.end())
+      throw top.error(
+          "free",
+          fmt::format("names \"{}\", which the data do not hold or the model does not have", printable(f, 40)),
+          fmt::format("choose of: {}", fmt::join(names, ", ")));
+}
+
+// --- Result ---------------------------------------------------------------------------------------------
+
+// What follows from the line law, after the law has changed.
+void renew_wells(const Settings& s, const FitResult& fit, ParameterSet& set) {
+  LineDensity d = s.base->line->density;
+  set_line_form(fit.value, d);
+  const LineWell parallel = line_parallel_well(d), crossed = line_crossed_well(d, 0.5 * units::pi);
+  const std::pair<const char*, double> values[] = {{"contact.line.pair_spacing", parallel.distance},
+                                                   {"contact.line.pair_energy", parallel.energy},
+                                                   {"contact.line.cross90_energy", crossed.energy}};
+  for (const auto& [key, value] : values)
+    for (Quantity& q : set.quantities)
+      if (q.key == key)
+        q = {key, value, q.unit, fit.rms * std::fabs(value), "derived", "", "of the law; error by rms"};
+}
+
+// The base with the fitted numbers in place, from `command`.
+std::string new_set(const Settings& s, const FitModel& m, const FitResult& fit, const FitArguments& a) {
+  ParameterSet set = *s.base;
+  for (std::size_t k = 0; k < m.named.size(); ++k)
+    for (Quantity& q : set.quantities) {
+      if (q.key != m.named[k].key || std::find(s.free.begin(), s.free.end(), m.named[k].name) == s.free.end())
+        continue;
+      q.value = fit.value[k];
+      q.standard_error =
+          std::isfinite(fit.standard_error[k]) ? std::optional<double>(fit.standard_error[k]) : std::nullopt;
+      q.origin = "calibrated";
+      q.doi = "";
+      q.note = "fitted to " + fs::path(a.data).filename().string();
+    }
+  if (s.model == "line") renew_wells(s, fit, set);
+  set.name = fs::path(a.out).stem().string();
+  set.provenance.emplace_back("fit_command", a.command);
+  set.provenance.emplace_back("fit_data_hash", hash_hex(read_file(a.data)));
+  set.provenance.emplace_back("fit_base_hash", s.base->hash);
+  return parameters_text(set, fmt::format("# {} with {} fitted anew. Made by\n#   {}\n", s.base->name,
+                                          fmt::join(s.free, ", "), a.command));
+}
+
+void print_fit(const FitModel& m, const std::vector<FitParameter>& parameters, const FitResult& fit) {
+  for (std::size_t k = 0; k < m.named.size(); ++k)
+    fmt::print("  {:<14} {:>16.9g}  {:<24} {}\n", m.named[k].name, fit.value[k],
+               parameters[k].free ? fmt::format("+- {:.3g}", fit.standard_error[k]) : "(held)", m.named[k].unit);
+  fmt::print("  {} residuals, rms {:.3g}, largest {:.3g} of {}; {} evaluations\n  {}\n", m.residuals, fit.rms,
+             fit.largest, m.weighting, fit.evaluations, fit.message);
+}
+
+nlohmann::ordered_json fit_json(const FitModel& m, const FitResult& fit) {
+  nlohmann::ordered_json j;
+  for (std::size_t k = 0; k < m.named.size(); ++k) {
+    j[m.named[k].name] = fit.value[k];
+    j[m.named[k].name + "_standard_error"] = fit.standard_error[k];
+  }
+  j["rms"] = fit.rms;
+  j["largest"] = fit.largest;
+  j["evaluations"] = fit.evaluations;
+  j["verdict"] = fit.message;
+  j["usable"] = fit.usable();
+  return j;
+}
+
+}  // namespace
+
+int fit_command(const FitArguments& a) {
+  const TomlTable top = TomlTable::parse(read_file(a.settings), a.settings);
+  const Settings s = read_settings(top, a.settings);
+  if (!a.out.empty()) {
+    if (!s.base) throw InputError({"", 0, "--out"}, "needs a base in the settings", "add base = \"...\"");
+    check_output(a.out, "--out", a.force);
+  }
+  const FitModel m = s.model == "stiffness" ? stiffness_model(a.data)
+                     : s.model == "line"    ? line_model(a.data, *s.base)
+                                            : paper_model(a.data, *s.base);
+  check_free(top, s, m);
+  std::vector<FitParameter> parameters;
+  // Taken once: a table remembers which of its keys were asked for.
+  const TomlTable start = top.table("start"), bounds = top.table("bounds");
+  for (const Named& n : m.named) parameters.push_back(parameter_of(start, bounds, s, n));
+  parameters.insert(parameters.end(), m.nuisance.begin(), m.nuisance.end());
+  top.finish();
+  const auto unknown = static_cast<std::size_t>(
+      std::count_if(parameters.begin(), parameters.end(), [](const FitParameter& p) { return p.free; }));
+  if (m.residuals < unknown)
+    throw InputError({a.data, 0, ""}, fmt::format("has {} energies for {} unknowns", m.residuals, unknown),
+                     "bring more data, or free fewer parameters");
+  const FitResult fit = fit_least_squares(parameters, m.residuals, m.function, s.search);
+  if (a.json) {
+    fmt::print("{}\n", fit_json(m, fit).dump(1));
+  } else {
+    print_fit(m, parameters, fit);
+  }
+  if (!fit.usable()) return 3;
+  if (!a.out.empty()) {
+    write_file_atomically(a.out, new_set(s, m, fit, a));
+    if (!a.json) fmt::print("Set: {}\n", a.out);
+  }
+  return 0;
+}
+
+}  // namespace ropewalk

@@ -1,0 +1,95 @@
+// The verbs of `ropewalk calibrate`. Each returns the exit code.
+#pragma once
+
+#include <string>
+
+#include "verbs/calibration.hpp"
+
+namespace ropewalk {
+
+struct CalibrateArguments {
+  std::string chirality;
+  std::string potential = "tersoff";
+  std::string user_potential;  // file of pair_style and pair_coeff lines
+  std::string lj = "2.84e-3,0.34";
+  double lj_cutoff = 1.2;  // nm; 0: none
+  bool envelope = false;
+  std::string out;   // empty: NAME.toml in the current directory
+  std::string keep;  // empty: LAMMPS's files are taken away at the end
+  bool json = false;
+  bool force = false;
+  bool quiet = false;
+  StiffnessOptions stiffness;
+  std::string command;  // as typed
+};
+int calibrate_command(const CalibrateArguments& arguments);
+
+struct UniversalArguments {
+  std::string lj = "2.84e-3,0.34";
+  double lj_cutoff = 1.2;
+  std::string out;  // empty: the shipped file
+  bool force = false;
+  std::string command;
+};
+int universal_command(const UniversalArguments& arguments);
+
+struct FitArguments {
+  std::string data, settings, out;
+  bool json = false;
+  bool force = false;
+  std::string command;
+};
+int fit_command(const FitArguments& arguments);
+
+struct ShowArguments {
+  std::string set;
+  std::string page;  // empty: NAME.html in the current directory
+  bool table_only = false;
+};
+int show_command(const ShowArguments& arguments);
+
+struct CheckShippedArguments {
+  std::string set = "cnt-5-5-tersoff";
+  bool all = false;
+  double tolerance = 0.002;  // relative
+};
+int check_shipped_command(const CheckShippedArguments& arguments);
+
+// --- Shared by the verbs ---
+
+// "12,6". Throws InputError for what is not the chirality of a tube that can be calibrated.
+Chirality parse_chirality(const std::string& text);
+AtomLaw parse_atom_law(const std::string& lj, double cutoff);
+
+// A folder for LAMMPS's files: `keep`, which must be new or empty, or a temporary one that goes with this object
+// unless it is told to stay.
+class WorkFolder {
+ public:
+  explicit WorkFolder(const std::string& keep);
+  ~WorkFolder();
+  WorkFolder(const WorkFolder&) = delete;
+  WorkFolder& operator=(const WorkFolder&) = delete;
+  const std::string& path() const { return path_; }
+  void stay() { temporary_ = false; }
+
+ private:
+  std::string path_;
+  bool temporary_ = false;
+};
+
+// Refuses an existing file unless forced. Throws InputError.
+void check_output(const std::string& path, const std::string& option, bool force);
+
+// EA, EI, GJ as bonds of rigid elements: kn and ks per area with an effective section.
+struct Section {
+  double kn, ks;        // nN/nm^3
+  double A, I, J;       // nm^2, nm^4
+  double E, G;          // GPa
+  double thick_wall_I;  // nm^4
+};
+Section effective_section(const ParameterSet& set);
+
+void print_set(const ParameterSet& set);
+std::string calibration_page(const ParameterSet& set);
+
+}  // namespace ropewalk

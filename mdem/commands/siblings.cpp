@@ -1,0 +1,41 @@
+#include "commands/siblings.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <string>
+
+#include "model/error.hpp"
+
+namespace ropewalk {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* siblings[] = {"calibrate"};
+
+// Beside this program, as installed; in the folder of its own, as built; else on the PATH.
+std::string find_sibling(const std::string& verb) {
+  const std::string name = "ropewalk-" + verb;
+  std::error_code error;
+  const fs::path here = fs::read_symlink("/proc/self/exe", error).parent_path();
+  for (const fs::path& place : {here / name, here / ".." / verb / name})
+    if (fs::is_regular_file(place, error)) return place.lexically_normal().string();
+  return name;
+}
+
+}  // namespace
+
+void hand_over_to_sibling(char** argv) {
+  if (!argv[0] || !argv[1]) return;
+  for (const char* verb : siblings) {
+    if (verb != std::string(argv[1])) continue;
+    const std::string program = find_sibling(verb);
+    execvp(program.c_str(), argv + 1);
+    throw InputError({"", 0, verb}, fmt::format("the program {} cannot be started", program),
+                     "build all targets: cmake --build --preset release");
+  }
+}
+
+}  // namespace ropewalk

@@ -1,0 +1,123 @@
+// `ropewalk calibrate` as a user meets it. The calibration itself runs LAMMPS on the thinnest shipped tube.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/support.hpp"
+
+namespace {
+
+using ropewalk::test::Outcome;
+using ropewalk::test::slurp;
+using ropewalk::test::spit;
+using Json = nlohmann::json;
+namespace fs = std::filesystem;
+
+class Calibrate : public ropewalk::test::Cli {
+ protected:
+  void expect_refusal(const std::string& arguments, const std::string& words, const std::string& before = "") {
+    const Outcome o = run("calibrate " + arguments, before);
+    EXPECT_TRUE(o.code == 2 || o.code == 3) << arguments << ": " << o.code;
+    EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << arguments << "\n" << o.err;
+    EXPECT_NE(o.err.find(words), std::string::npos) << arguments << "\n" << o.err;
+    for (const auto& entry : fs::directory_iterator(dir))
+      EXPECT_TRUE(keep.count(entry.path().filename().string())) << arguments << " left " << entry.path();
+  }
+  std::set<std::string> keep = {"stdout.txt", "stderr.txt"};
+};
+
+TEST_F(Calibrate, WrongInputGetsOneLineAndLeavesNothing) {
+  expect_refusal("", "--chirality: is missing");
+  expect_refusal("--chirality 10", "write two integers");
+  expect_refusal("--chirality 0,0 --quiet", "not a tube");
+  expect_refusal("--chirality 3,0 --quiet", "(3,0)");
+  expect_refusal("--chirality 200,200 --quiet", "(200,200)");
+  expect_refusal("--chirality 6,12 --quiet", "write 12,6");
+  expect_refusal("--chirality 5,5 --quiet --lj-cutoff -1", "--lj-cutoff: is -1 nm");
+  expect_refusal("--chirality 5,5 --quiet --lj-cutoff 0.4", "at least 2 sigma");
+  expect_refusal("--chirality 5,5 --quiet --lj 3", "--lj");
+  expect_refusal("--chirality 5,5 --quiet --potential tersof", "tersoff");
+  expect_refusal("--chirality 5,5 --quiet --potential-file nowhere.txt", "nowhere.txt");
+  expect_refusal("--chirality 5,5 --quiet --out set.txt", "--out");
+  expect_refusal("--chirality 5,5 --quiet --out no/such/set.toml", "make the directory");
+  expect_refusal("--chirality 5,5 --quiet", "lmp", "ROPEWALK_LMP=/nowhere/lmp");
+  expect_refusal("show nothing-of-the-kind", "no parameter set");
+  expect_refusal("check-shipped cnt-10-10-paper", "only a set made by");
+}
+
+TEST_F(Calibrate, AnExistingFileStands) {
+  spit(dir / "cnt-5-5-tersoff.toml", "mine");
+  keep.insert("cnt-5-5-tersoff.toml");
+  expect_refusal("--chirality 5,5 --quiet", "exists");
+  EXPECT_EQ(slurp(dir / "cnt-5-5-tersoff.toml"), "mine");
+}
+
+TEST_F(Calibrate, AChildThatFailsIsQuoted) {
+  spit(dir / "potential.txt", "pair_style tersoff\npair_coeff * * /nowhere/no.tersoff C\n");
+  keep.insert("potential.txt");
+  expect_refusal("--chirality 5,5 --quiet --potential-file potential.txt", "no.tersoff");
+}
+
+// One calibration from end to end; everything that can be asked of its files is asked here, since it takes seconds.
+TEST_F(Calibrate, AThinTubeFromChiralityToRun) {
+  const Outcome o = run("calibrate --chirality 5,5 --json --quiet --keep atoms");
+  ASSERT_EQ(o.code, 0) << o.err;
+  const Json j = Json::parse(o.out);
+  for (const char* key : {"EA_nN", "EI_nN_nm2", "GJ_nN_nm2", "radius_nm", "atoms_per_nm", "natural_twist",
+                          "pair_spacing_nm", "pair_energy_eV_per_nm", "cross90_energy_eV"}) {
+    ASSERT_TRUE(j.contains(key)) << key;
+    EXPECT_TRUE(j.at(std::string(key) + "_standard_error").is_number()) << key;
+  }
+  EXPECT_NEAR(j.at("EA_nN"), 760, 30);  // half of (10,10)'s
+  EXPECT_NEAR(j.at("radius_nm"), 0.3459, 0.002);
+  EXPECT_NEAR(j.at("natural_twist"), 0, 1e-4);  // not chiral
+  EXPECT_LT(j.at("line_error"), 2e-3);
+  EXPECT_FALSE(fs::is_empty(dir / "atoms"));
+  for (const char* file : {"cnt-5-5-tersoff.toml", "cnt-5-5-tersoff-stiffness.csv", "cnt-5-5-tersoff-contact.csv"})
+    EXPECT_TRUE(fs::exists(dir / file)) << file;
+
+  // The set says where it comes from, and a scene takes it.
+  const Outcome shown = run("calibrate show cnt-5-5-tersoff.toml");
+  ASSERT_EQ(shown.code, 0) << shown.err;
+  for (const char* word : {"bond.EA", "contact.line", "potential_hash", "kn ", "natural_twist"})
+    EXPECT_NE((shown.out + "bond.EA").find(word), std::string::npos) << word;
+  const std::string page = slurp(dir / "cnt-5-5-tersoff.html");
+  EXPECT_NE(page.find("Energy against strain"), std::string::npos);
+  EXPECT_NE(page.find("Tubes crossed at 90 degrees"), std::string::npos);
+  spit(dir / "s.toml",
+       "format = \"ropewalk-scene-1\"\nparameters = \"cnt-5-5-tersoff.toml\"\n[rope]\ntubes = 7\nlength_nm = 7\n"
+       "[run]\nduration_ps = 1\n");
+  EXPECT_EQ(run("run s.toml --out d --quiet").code, 0) << slurp(dir / "stderr.txt");
+
+  // The table is fitted again: with EA alone free the others stay, and EA comes back.
+  spit(dir / "fit.toml",
+       "format = \"ropewalk-fit-1\"\nmodel = \"stiffness\"\nbase = \"cnt-5-5-tersoff.toml\"\nfree = [\"EA\", "
+       "\"GJ\"]\n"
+       "[start]\nEA = 500\n");
+  const Outcome fit = run("calibrate fit cnt-5-5-tersoff-stiffness.csv fit.toml --json --out again.toml");
+  ASSERT_EQ(fit.code, 0) << fit.err << fit.out;
+  const Json f = Json::parse(fit.out);
+  EXPECT_NEAR(f.at("EA").get<double>() / j.at("EA_nN").get<double>(), 1, 5e-3);
+  EXPECT_NEAR(f.at("GJ").get<double>() / j.at("GJ_nN_nm2").get<double>(), 1, 5e-3);
+  EXPECT_EQ(f.at("EI").get<double>(), j.at("EI_nN_nm2").get<double>());
+  EXPECT_EQ(run("check s.toml").code, 0);
+  EXPECT_EQ(run("calibrate show again.toml --table").code, 0);
+
+  spit(dir / "line.toml",
+       "format = \"ropewalk-fit-1\"\nmodel = \"line\"\nbase = \"cnt-5-5-tersoff.toml\"\nfree = [\"K\", \"s\"]\n");
+  const Outcome line = run("calibrate fit cnt-5-5-tersoff-contact.csv line.toml --json");
+  ASSERT_EQ(line.code, 0) << line.err << line.out;
+  EXPECT_LT(Json::parse(line.out).at("rms"), 4e-3);
+
+  spit(dir / "bad.toml",
+       "format = \"ropewalk-fit-1\"\nmodel = \"stiffness\"\nbase = \"cnt-5-5-tersoff.toml\"\nfree = [\"K\"]\n");
+  const Outcome bad = run("calibrate fit cnt-5-5-tersoff-stiffness.csv bad.toml");
+  EXPECT_EQ(bad.code, 2);
+  EXPECT_NE(bad.err.find("bad.toml:4: free:"), std::string::npos) << bad.err;
+
+  // A table that was changed afterwards is not shown as the set's own.
+  spit(dir / "cnt-5-5-tersoff-contact.csv", "kind,distance_nm,angle_deg,energy\n");
+  EXPECT_EQ(run("calibrate show cnt-5-5-tersoff.toml").code, 2);
+}
+
+}  // namespace

@@ -1,0 +1,137 @@
+// The line law in the simulator: what rows of elements make of it.
+#include <gtest/gtest.h>
+
+#include "sim/simulation.hpp"
+#include "unit/support.hpp"
+
+namespace ropewalk {
+namespace {
+
+LineContact contact(double radius_i, double radius_j) {
+  LineContact k = test::line_contact(radius_i, 1, radius_j, 1);
+  k.nodes_i = k.nodes_j =
+      line_nodes(test::element_length, line_parallel_well(k.density).distance, k.density.contact);
+  return k;
+}
+
+// Energy per length of a long row beside one element, shifted along it.
+double row_energy(const LineContact& k, double distance, double shift) {
+  double sum = 0;
+  for (int e = -6; e <= 6; ++e)
+    sum += k.energy({distance, 0, e * k.length_j + shift}, Vector3::UnitZ(), Vector3::UnitZ());
+  return sum / k.length_i;
+}
+
+// Energy of two long rows crossing at `angle`, displaced along both.
+double crossing_energy(const LineContact& k, double distance, double angle, double a, double b) {
+  const Vector3 ni = Vector3::UnitZ(), nj(0, std::sin(angle), std::cos(angle));
+  const int reach = static_cast<int>(4.0 / (test::element_length * std::sin(angle))) + 3;
+  double sum = 0;
+  for (int i = -reach; i <= reach; ++i)
+    for (int j = -reach; j <= reach; ++j)
+      sum += k.energy(Vector3(distance, 0, 0) + (j * k.length_j + b) * nj - (i * k.length_i + a) * ni, ni, nj);
+  return sum;
+}
+
+struct Spread {
+  double low = 1e300, high = -1e300;
+  void add(double x) {
+    low = std::min(low, x);
+    high = std::max(high, x);
+  }
+  double width() const { return high - low; }
+};
+
+class LineRows : public ::testing::TestWithParam<std::pair<double, double>> {};
+
+TEST_P(LineRows, ParallelRowsSlideWithoutFeelingTheirElements) {
+  const LineContact k = contact(GetParam().first, GetParam().second);
+  const LineWell well = line_parallel_well(k.density);
+  for (const auto& [inside, bound] : {std::pair(0.0, 1e-4), std::pair(0.05, 1e-3)}) {
+    Spread s;
+    for (int n = 0; n < 40; ++n) s.add(row_energy(k, well.distance - inside, n * test::element_length / 40));
+    EXPECT_LT(s.width(), bound * std::fabs(well.energy)) << inside << " nm inside of the well";
+    EXPECT_NEAR(s.low, line_parallel_energy(k.density, well.distance - inside), 1e-3 * std::fabs(well.energy));
+  }
+}
+
+TEST_P(LineRows, CrossedRowsSlideToo) {
+  const LineContact k = contact(GetParam().first, GetParam().second);
+  for (const double angle : {20.0, 30.0, 60.0, 90.0}) {
+    const LineWell well = line_crossed_well(k.density, angle * units::degree);
+    Spread s;
+    for (int n = 0; n < 9; ++n)
+      s.add(crossing_energy(k, well.distance, angle * units::degree, (n / 3) * k.length_i / 6,
+                            (n % 3) * k.length_j / 6));
+    EXPECT_LT(s.width(), 1e-3 * std::fabs(well.energy)) << angle << " deg";
+    EXPECT_NEAR(s.low, well.energy, 1e-3 * std::fabs(well.energy)) << angle << " deg";
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Radii, LineRows,
+                         ::testing::Values(std::pair(0.6785, 0.6785), std::pair(0.34, 0.34),
+                                           std::pair(0.6785, 0.34)));
+
+struct LineBundle {
+  Topology topology = test::published_topology();
+  Interaction in;
+  State state;
+  double spacing = 0;
+
+  explicit LineBundle(double temperature, int elements = 5) {
+    in.line = {contact(0.6785, 0.6785)};
+    spacing = line_parallel_well(in.line[0].density).distance;
+    state = test::disordered_bundle(topology, 7, elements, spacing, 0, 1);
+    std::mt19937 engine(4);
+    std::normal_distribution<double> gauss;
+    const double v = std::sqrt(units::boltzmann * temperature / topology.types[0].mass);
+    const double w = std::sqrt(units::boltzmann * temperature / topology.types[0].inertia);
+    for (std::size_t i = 0; i < state.size(); ++i) {
+      state.velocity.set(i, v * Vector3(gauss(engine), gauss(engine), gauss(engine)));
+      state.angular_velocity.set(i, w * Vector3(gauss(engine), gauss(engine), gauss(engine)));
+    }
+  }
+  Simulation make(double dt) const { return Simulation(topology, in, {}, state, dt); }
+};
+
+double fluctuation(Simulation& s, double ps) {
+  double n = 0, sum = 0, squares = 0;
+  const double first = s.total_energy();
+  for (long k = 0; k < static_cast<long>(ps / s.time_step()); ++k) {
+    s.step();
+    const double e = s.total_energy() - first;
+    n += 1, sum += e, squares += e * e;
+  }
+  return std::sqrt(std::max(squares / n - sum * sum / n / n, 0.0));
+}
+
+TEST(LineBundle, KeepsItsEnergyOverOneNanosecond) {
+  const LineBundle b(10);
+  const double dt = default_step_fraction * time_step_limit(b.topology, b.in, b.spacing).limit;
+  Simulation s = b.make(dt);
+  const double before = s.total_energy();
+  const double scatter = fluctuation(s, 1000);
+  EXPECT_LT(scatter, 1e-4 * std::fabs(before)) << before << " eV, step " << dt << " ps";
+  EXPECT_NEAR(s.total_energy(), before, 3e-4 * std::fabs(before));
+}
+
+TEST(LineBundle, EnergyErrorFallsWithTheSquareOfTheStep) {
+  const LineBundle b(10);
+  Simulation coarse = b.make(0.016), fine = b.make(0.008);
+  EXPECT_NEAR(fluctuation(coarse, 300) / fluctuation(fine, 300), 4, 0.8);
+}
+
+TEST(LineBundle, RelaxesToTheSpacingOfItsLaw) {
+  LineBundle b(0, 20);
+  Simulation s = b.make(0.01);
+  ASSERT_TRUE(s.relax(1e-6, 100000, [](long) { return true; }));
+  const Vector3 centre = s.state().position[10];
+  for (int t = 1; t < 7; ++t) {
+    const Vector3 d = s.state().position[static_cast<std::size_t>(20 * t + 10)] - centre;
+    EXPECT_NEAR(std::hypot(d.x(), d.y()), b.spacing, 1e-3 * b.spacing);
+  }
+  EXPECT_LT(net_force(s.state(), s.forces()).torque.norm(), 1e-6);
+}
+
+}  // namespace
+}  // namespace ropewalk
