@@ -53,7 +53,11 @@ void print_result(const Calibration& c, const std::string& out) {
   row("energy crossed at 90 deg", sum.cross90_energy, "eV");
   fmt::print("  line law: largest error {:.1e} of the well; published form {:.1e}", c.line.error, c.paper.error);
   if (c.universal) fmt::print("; universal law {:.1e}", c.universal_error);
-  fmt::print("\n{}", s.fit_report);
+  fmt::print("\n");
+  if (c.registry)
+    fmt::print("  atom by atom, over all registries: mean {:+.3f} %, standard deviation {:.2f} % of the integral\n",
+               100 * (c.registry->mean - 1), 100 * c.registry->deviation);
+  fmt::print("{}", s.fit_report);
   if (!s.fit_report.empty() && s.fit_report.back() != '\n') fmt::print("\n");
   for (const std::string& w : c.warnings) fmt::print("warning: {}\n", w);
   fmt::print("{:.1f} s: LAMMPS {:.1f}, contact integral {:.1f}, fits {:.1f}, rest {:.1f}\n", c.seconds,
@@ -87,6 +91,7 @@ nlohmann::ordered_json result_json(const Calibration& c, const std::string& out)
   j["line_error"] = c.line.error;
   j["paper_error"] = c.paper.error;
   if (c.universal) j["universal_error"] = c.universal_error;
+  if (c.registry) j["registry"] = {{"mean", c.registry->mean}, {"standard_deviation", c.registry->deviation}};
   j["warnings"] = c.warnings;
   j["seconds"] = {
       {"total", c.seconds}, {"lammps", s.lammps_seconds}, {"contact_integral", c.line.seconds_integral}};

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "atomistic/lattice.hpp"
 #include "io/data_files.hpp"
 #include "io/files.hpp"
 #include "io/parameters_toml.hpp"
@@ -169,6 +170,22 @@ double error_against(const LineFit& direct, const LineDensity& density) {
   return worst;
 }
 
+// Of the rolled sheet, drawn to the relaxed radius: a real pair of tubes feels this much of its atoms.
+std::optional<RegistrySpread> registry_of(const Calibration& c) {
+  if (!std::isfinite(c.request.law.cutoff)) return std::nullopt;
+  const Chirality tube = c.request.chirality;
+  const double a = graphene_lattice_constant * c.stiffness.radius.value / tube_radius(tube);
+  const TubeCell cell = tube_cell(tube, translation_vector(tube), a);
+  const AtomColumn column{cell.atoms, cell.length};
+  const Shell shell{cell.radius, graphene_density(a)};
+  const Well well = parallel_well(c.request.law, shell, shell);
+  RegistrySpread s =
+      registry_spread(c.request.law, column, column, well.distance, cell.atoms.size() > 300 ? 300 : 2000);
+  for (double* value : {&s.mean, &s.deviation, &s.least, &s.largest}) *value /= well.energy;
+  s.deviation = std::fabs(s.deviation);
+  return s;
+}
+
 void warn(Calibration& c) {
   c.warnings = c.stiffness.warnings;
   if (!c.line.fit.usable()) c.warnings.push_back("line law: " + c.line.fit.message);
@@ -205,6 +222,7 @@ Calibration calibrate(const CalibrationRequest& request) {
   if (c.universal)
     c.universal_error =
         error_against(c.line, c.universal->density(shell.radius, shell.density, shell.radius, shell.density));
+  c.registry = registry_of(c);
   warn(c);
   c.seconds = now() - begin;
   return c;

@@ -29,6 +29,9 @@ struct Calibration {
   PaperFit paper;
   std::optional<UniversalLine> universal;  // none: there is none for this sigma and cutoff
   double universal_error = 0;              // of the universal law for this tube, as LineFit::error
+  // Atom by atom, two tubes side by side at the well, over all turns and shifts; over the surface integral. None
+  // without a cutoff.
+  std::optional<RegistrySpread> registry;
   std::vector<std::string> warnings;
   double seconds = 0, paper_seconds = 0;
 

@@ -47,12 +47,22 @@ struct LineDensity {
   double cutoff_gap = 1.2;  // nm
 
   double cutoff() const { return contact + cutoff_gap; }  // of rho
-  RadialTerms terms(double rho) const;
-  double energy(double rho) const { return terms(rho).energy; }
-  bool operator!=(const LineDensity& o) const {
-    return contact != o.contact || K != o.K || s != o.s || c != o.c || p != o.p || q != o.q ||
-           core_gap != o.core_gap || switch_gap != o.switch_gap || cutoff_gap != o.cutoff_gap;
+  // Plain arithmetic, selections, exp and log only, so that a loop over pairs of nodes vectorises.
+  inline __attribute__((always_inline)) RadialTerms terms(double rho) const {
+    const double h = rho - contact, e = std::min(h - core_gap, 0.0);
+    const double inv = 1 / (h - e + c), power = std::log(s * inv);
+    const double rep = K * std::exp(p * power), att = K * std::exp(q * power);
+    const double v0 = rep - att, v1 = (q * att - p * rep) * inv;
+    const double v2 = (p * (p + 1) * rep - q * (q + 1) * att) * inv * inv;
+    const double v = v0 + e * (v1 + 0.5 * e * v2), dv = v1 + e * v2;
+    const double per_width = 1 / (cutoff_gap - switch_gap);
+    const double t = std::min(std::max((h - switch_gap) * per_width, 0.0), 1.0);
+    // 1 at t = 0 and, in floating point too, 0 at t = 1: nothing beyond the cutoff needs a mask.
+    const double r = 1 - t, w = r * r * r * (1 + t * (3 + 6 * t));
+    const double dw = -30 * t * t * r * r * per_width, ddw = -60 * t * r * (1 - 2 * t) * per_width * per_width;
+    return {v * w, dv * w + v * dw, v2 * w + 2 * dv * dw + v * ddw};
   }
+  double energy(double rho) const { return terms(rho).energy; }
 };
 
 // One pair of elements.
@@ -123,21 +133,6 @@ struct UniversalLine {
 };
 
 // --- Definitions ------------------------------------------------------------------------------------
-
-inline RadialTerms LineDensity::terms(double rho) const {
-  if (rho >= cutoff()) return {};
-  const double h = rho - contact, e = std::min(h - core_gap, 0.0);
-  const double x = s / (h - e + c), inv = 1 / (h - e + c);
-  const double rep = K * std::pow(x, p), att = K * std::pow(x, q);
-  const double v0 = rep - att, v1 = (q * att - p * rep) * inv;
-  const double v2 = (p * (p + 1) * rep - q * (q + 1) * att) * inv * inv;
-  const double v = v0 + e * (v1 + 0.5 * e * v2), dv = v1 + e * v2;
-  const double width = cutoff_gap - switch_gap;
-  const double t = std::clamp((h - switch_gap) / width, 0.0, 1.0);
-  const double w = 1 - t * t * t * (10 - t * (15 - 6 * t)), dw = -30 * t * t * (1 - t) * (1 - t) / width;
-  const double ddw = -60 * t * (1 - t) * (1 - 2 * t) / (width * width);
-  return {v * w, dv * w + v * dw, v2 * w + 2 * dv * dw + v * ddw};
-}
 
 inline PairForce LineContact::energy_and_gradient(const Vector3& separation, const Vector3& n_i,
                                                   const Vector3& n_j) const {

@@ -5,7 +5,6 @@
 
 #include "sim/interaction.hpp"
 #include "sim/neighbours.hpp"
-#include "sim/radial_table.hpp"
 #include "sim/state.hpp"
 
 // One binary for every x86-64: the loader picks the widest vector unit that the machine has.
@@ -34,8 +33,7 @@ struct ContactInput {
   const State* state;
   const Vec3Array* axis;
   const NeighbourList* list;
-  const std::vector<int>* tube;            // of each element
-  const std::vector<RadialTable>* radial;  // of each pair of tube types; `line` law only
+  const std::vector<int>* tube;  // of each element
 };
 
 void paper_contact(const ContactInput& in, const NeighbourList::Chunk& chunk, ContactBuffer& out);

@@ -21,23 +21,17 @@ struct NodeSum {
   double fx, fy, fz, energy;
 };
 
-inline __attribute__((always_inline)) NodeSum evaluate(const RadialTable& table, NodeBlock& b, int count, double px,
-                                                       double py, double pz) {
-  const double from = table.from, to = table.to, inverse_width = table.inverse_width;
-  const double* coefficients = table.coefficients.data();
+inline __attribute__((always_inline)) NodeSum evaluate(const LineDensity& density, NodeBlock& b, int count,
+                                                       double px, double py, double pz) {
+  const LineDensity law = density;  // a local copy: the compiler need not fear that the stores below change it
   double fx = 0, fy = 0, fz = 0, energy = 0;
 #pragma omp simd reduction(+ : fx, fy, fz, energy)
   for (int m = 0; m < count; ++m) {
     const double dx = b.x[m] - px, dy = b.y[m] - py, dz = b.z[m] - pz;
-    const double r2 = dx * dx + dy * dy + dz * dz;
-    const double y = (std::min(std::max(r2, from), to) - from) * inverse_width;
-    const int k = std::min(static_cast<int>(y), RadialTable::intervals - 1);
-    const double t = y - k;
-    const double* c = coefficients + k * (RadialTable::degree + 1);
-    const double c0 = c[0], c1 = c[1], c2 = c[2], c3 = c[3], c4 = c[4], c5 = c[5];
-    // At `to` value and slope are zero, so nothing beyond needs a mask.
-    energy += c0 + t * (c1 + t * (c2 + t * (c3 + t * (c4 + t * c5))));
-    const double f = -2 * inverse_width * (c1 + t * (2 * c2 + t * (3 * c3 + t * (4 * c4 + t * 5 * c5))));
+    const double rho = std::sqrt(std::max(dx * dx + dy * dy + dz * dz, 1e-12));
+    const RadialTerms t = law.terms(rho);
+    const double f = -t.derivative / rho;
+    energy += t.energy;
     b.fx[m] += f * dx;
     b.fy[m] += f * dy;
     b.fz[m] += f * dz;
@@ -48,40 +42,10 @@ inline __attribute__((always_inline)) NodeSum evaluate(const RadialTable& table,
   return {fx, fy, fz, energy};
 }
 
-// Tubes that overlap by more than the table covers: the density itself.
-NodeSum evaluate_overlap(const RadialTable& table, NodeBlock& b, int count, double px, double py, double pz) {
-  NodeSum sum{0, 0, 0, 0};
-  for (int m = 0; m < count; ++m) {
-    const Vector3 d(b.x[m] - px, b.y[m] - py, b.z[m] - pz);
-    const double rho = detail::safe_distance(d);
-    const RadialTerms t = table.density.terms(rho);
-    const Vector3 f = -t.derivative / rho * d;
-    sum.energy += t.energy;
-    b.fx[m] += f.x();
-    b.fy[m] += f.y();
-    b.fz[m] += f.z();
-    sum.fx -= f.x();
-    sum.fy -= f.y();
-    sum.fz -= f.z();
-  }
-  return sum;
-}
-
-inline __attribute__((always_inline)) double nearest(const NodeBlock& b, int count, double px, double py,
-                                                     double pz) {
-  double least = 1e300;
-#pragma omp simd reduction(min : least)
-  for (int m = 0; m < count; ++m) {
-    const double dx = b.x[m] - px, dy = b.y[m] - py, dz = b.z[m] - pz;
-    least = std::min(least, dx * dx + dy * dy + dz * dz);
-  }
-  return least;
-}
-
 // All nodes of element i with those of the block; then forces and torques of the block's elements.
-inline __attribute__((always_inline)) void flush(const ContactInput& in, const LineContact& law,
-                                                 const RadialTable& table, int i, const NeighbourList::Chunk& chunk,
-                                                 NodeBlock& b, ElementSum& sum, ContactBuffer& out) {
+inline __attribute__((always_inline)) void flush(const ContactInput& in, const LineContact& law, int i,
+                                                 const NeighbourList::Chunk& chunk, NodeBlock& b, ElementSum& sum,
+                                                 ContactBuffer& out) {
   const int nodes = law.nodes_j, count = b.elements * nodes;
   const double nx = in.axis->x[i], ny = in.axis->y[i], nz = in.axis->z[i];
   const double weight = law.length_i / law.nodes_i * law.length_j / nodes;
@@ -91,8 +55,7 @@ inline __attribute__((always_inline)) void flush(const ContactInput& in, const L
   for (int k = 0; k < law.nodes_i; ++k) {
     const double s = line_node(k, law.nodes_i, law.length_i);
     const double px = s * nx, py = s * ny, pz = s * nz;
-    const NodeSum f = nearest(b, count, px, py, pz) < table.from ? evaluate_overlap(table, b, count, px, py, pz)
-                                                                 : evaluate(table, b, count, px, py, pz);
+    const NodeSum f = evaluate(law.density, b, count, px, py, pz);
     sum.energy += weight * f.energy;
     sum.fx += weight * f.fx;
     sum.fy += weight * f.fy;
@@ -153,21 +116,19 @@ void line_contact(const ContactInput& in, const NeighbourList::Chunk& chunk, Con
     ElementSum sum;
     int type_j = -1;  // of the block
     const LineContact* law = nullptr;
-    const RadialTable* table = nullptr;
     for (std::size_t k = in.list->begin(i); k < in.list->begin(i + 1); ++k) {
       const int j = index[k];
       const int type = topology.tube_type[(*in.tube)[j]];
       if (type != type_j) {
-        if (law) flush(in, *law, *table, i, chunk, b, sum, out);
+        if (law) flush(in, *law, i, chunk, b, sum, out);
         type_j = type;
         law = &interaction.line[static_cast<std::size_t>(type_i * types + type)];
-        table = &(*in.radial)[static_cast<std::size_t>(type_i * types + type)];
       }
       const Vector3 d = in.state->position[j] - x_i, n_j = (*in.axis)[j];
       if (damped && d.norm() < interaction.damping.contact.outer)
         damp_pair(in, i, j, d, chunk.touched_begin, sum, out);
       if (!within_reach(*law, d, n_i, n_j)) continue;
-      if ((b.elements + 1) * law->nodes_j > block) flush(in, *law, *table, i, chunk, b, sum, out);
+      if ((b.elements + 1) * law->nodes_j > block) flush(in, *law, i, chunk, b, sum, out);
       b.element[b.elements] = j;
       for (int l = 0; l < law->nodes_j; ++l) {
         const double s = line_node(l, law->nodes_j, law->length_j);
@@ -178,7 +139,7 @@ void line_contact(const ContactInput& in, const NeighbourList::Chunk& chunk, Con
       }
       ++b.elements;
     }
-    if (b.elements > 0) flush(in, *law, *table, i, chunk, b, sum, out);
+    if (b.elements > 0) flush(in, *law, i, chunk, b, sum, out);
     sum.add_to(out, i - chunk.touched_begin);
   }
 }

@@ -21,28 +21,18 @@ void ForceEngine::make_frames(const State& state) {
 std::size_t ForceEngine::bytes() const {
   std::size_t total = frames_.capacity() * sizeof(Frame<double>) + 3 * axis_.size() * sizeof(double);
   total += tube_.capacity() * sizeof(int);
-  for (const RadialTable& t : radial_) total += t.coefficients.capacity() * sizeof(double);
   for (const ContactBuffer& b : buffers_) total += 6 * b.fx.capacity() * sizeof(double);
   return total;
 }
 
-// The tables belong to the law: made anew only where it has changed.
-void ForceEngine::make_tables(const Topology& topology, const Interaction& interaction) {
+void ForceEngine::compute_contact(const Topology& topology, const Interaction& interaction,
+                                  const NeighbourList& list, const State& state) {
   if (tube_.size() != static_cast<std::size_t>(topology.elements())) {
     tube_.resize(static_cast<std::size_t>(topology.elements()));
     for (int t = 0; t < topology.tubes(); ++t)
       std::fill(tube_.begin() + topology.tube_begin[t], tube_.begin() + topology.tube_begin[t + 1], t);
   }
-  radial_.resize(interaction.line.size());
-  for (std::size_t k = 0; k < radial_.size(); ++k)
-    if (radial_[k].density != interaction.line[k].density)
-      radial_[k] = RadialTable::of(interaction.line[k].density);
-}
-
-void ForceEngine::compute_contact(const Topology& topology, const Interaction& interaction,
-                                  const NeighbourList& list, const State& state) {
-  make_tables(topology, interaction);
-  const ContactInput in{&topology, &interaction, &state, &axis_, &list, &tube_, &radial_};
+  const ContactInput in{&topology, &interaction, &state, &axis_, &list, &tube_};
 #pragma omp parallel for schedule(dynamic, 1) if (state.size() > parallel_from)
   for (int k = 0; k < NeighbourList::chunk_count; ++k) {
     const auto& chunk = list.chunks()[static_cast<std::size_t>(k)];

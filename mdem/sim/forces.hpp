@@ -37,14 +37,12 @@ class ForceEngine {
 
  private:
   void make_frames(const State& state);
-  void make_tables(const Topology& topology, const Interaction& interaction);
   void compute_contact(const Topology& topology, const Interaction& interaction, const NeighbourList& list,
                        const State& state);
 
   std::vector<Frame<double>> frames_;
   Vec3Array axis_;
-  std::vector<int> tube_;            // of each element
-  std::vector<RadialTable> radial_;  // of each pair of tube types
+  std::vector<int> tube_;  // of each element
   std::array<ContactBuffer, NeighbourList::chunk_count> buffers_;
   Times times_;
 };

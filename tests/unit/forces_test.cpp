@@ -87,8 +87,9 @@ void expect_equal(const Forces& a, const Forces& b, double relative) {
 TEST_P(ForcesTest, FastEqualsReference) {
   Forces reference(state.size());
   compute_reference(topology, in, state, reference);
-  EXPECT_GT(std::fabs(reference.energy.vdw), 50);                          // the scene does have contacts
-  const double tolerance = GetParam().kind == Kind::paper ? 1e-12 : 1e-8;  // the line law is tabulated
+  EXPECT_GT(std::fabs(reference.energy.vdw), 50);  // the scene does have contacts
+  const double tolerance =
+      GetParam().kind == Kind::paper ? 1e-12 : 1e-11;  // vector exp and log: 4 units in the last place
   expect_equal(fast(0.0, 1), reference, tolerance);
   expect_equal(fast(0.4, 2), reference, tolerance);
 }

@@ -1,0 +1,146 @@
+// The shipped sets in the simulator, held to the surface integral that they came from: rows of elements, as a rope
+// has them, against the integral over the two shells.
+#include <gtest/gtest.h>
+
+#include "atomistic/lattice.hpp"
+#include "contact/integral.hpp"
+#include "io/parameters_toml.hpp"
+#include "scene/build.hpp"
+#include "scene/scene_toml.hpp"
+#include "verbs/calibration.hpp"
+
+namespace ropewalk {
+namespace {
+
+ParameterSet shipped(const std::string& name) { return read_parameters(find_parameters(name, "")); }
+
+Scene scene_of(const std::vector<std::string>& names) {
+  Scene s;
+  for (const std::string& n : names) s.sets.push_back(shipped(n));
+  s.contact.law = ContactOptions::Law::line;
+  s.element_length = s.sets[0].element_length;
+  return s;
+}
+
+struct Pair {
+  const char *i, *j;
+};
+void PrintTo(const Pair& p, std::ostream* out) { *out << p.i << " beside " << p.j; }
+
+class ShippedPair : public ::testing::TestWithParam<Pair> {
+ protected:
+  void SetUp() override {
+    const Scene s = scene_of({GetParam().i, GetParam().j});
+    const std::vector<LineContact> all = line_contacts(s);
+    // A set beside itself is its own fit; beside another, the universal law.
+    contact = std::string(GetParam().i) == GetParam().j ? line_contacts(scene_of({GetParam().i}))[0] : all[1];
+    AtomLaw law;
+    const LineParameters &a = *s.sets[0].line, &b = *s.sets[1].line;
+    ASSERT_EQ(a.universal.epsilon, law.epsilon);
+    ASSERT_EQ(a.universal.lj_cutoff, law.cutoff);
+    integral = std::make_unique<PairIntegral>(law, Shell{s.sets[0].radius, a.surface_density},
+                                              Shell{s.sets[1].radius, b.surface_density});
+  }
+
+  double row(double distance, double shift) const {
+    double sum = 0;
+    for (int e = -20; e <= 20; ++e)
+      sum += contact.energy({distance, 0, e * contact.length_j + shift}, Vector3::UnitZ(), Vector3::UnitZ());
+    return sum / contact.length_i;
+  }
+  double crossing(double distance, double angle) const {
+    const Vector3 ni = Vector3::UnitZ(), nj(0, std::sin(angle), std::cos(angle));
+    const int reach = static_cast<int>(4.5 / (contact.length_i * std::sin(angle))) + 3;
+    double sum = 0;
+    for (int k = -reach; k <= reach; ++k)
+      for (int l = -reach; l <= reach; ++l)
+        sum += contact.energy(
+            Vector3(distance, 0, 0) + (l + 0.3) * contact.length_j * nj - (k - 0.1) * contact.length_i * ni, ni,
+            nj);
+    return sum;
+  }
+
+  LineContact contact;
+  std::unique_ptr<PairIntegral> integral;
+};
+
+TEST_P(ShippedPair, ParallelRowsHaveItsSpacingAndDepth) {
+  const Well well = integral->parallel_well();
+  double lowest = 0, at = 0;
+  for (int k = -200; k <= 200; ++k) {
+    const double R = well.distance * (1 + 1e-5 * k);
+    if (const double e = row(R, 0.13); e < lowest) lowest = e, at = R;
+  }
+  EXPECT_NEAR(at / well.distance, 1, 1e-3);
+  EXPECT_NEAR(lowest / well.energy, 1, 5e-3);
+}
+
+TEST_P(ShippedPair, CrossedRowsHaveItsEnergyAtEveryAngle) {
+  const Well well = integral->crossed_well();
+  for (const double degrees : {20.0, 30.0, 45.0, 60.0, 90.0}) {
+    const double angle = degrees * units::degree;
+    EXPECT_NEAR(crossing(well.distance, angle) * std::sin(angle) / well.energy, 1, 0.01) << degrees;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Sets, ShippedPair,
+                         ::testing::Values(Pair{"cnt-5-5-tersoff", "cnt-5-5-tersoff"},
+                                           Pair{"cnt-9-0-tersoff", "cnt-9-0-tersoff"},
+                                           Pair{"cnt-12-6-tersoff", "cnt-12-6-tersoff"},
+                                           Pair{"cnt-10-10-tersoff", "cnt-10-10-tersoff"},
+                                           Pair{"cnt-20-20-tersoff", "cnt-20-20-tersoff"},
+                                           Pair{"cnt-10-10-tersoff", "cnt-5-5-tersoff"}));
+
+TEST(ShippedSets, AreAllThereAndReadable) {
+  for (const char* tube :
+       {"5-5", "6-6", "8-8", "10-10", "12-12", "15-15", "20-20", "9-0", "17-0", "6-4", "8-2", "12-6", "16-4"}) {
+    const ParameterSet set = shipped("cnt-" + std::string(tube) + "-tersoff");
+    EXPECT_TRUE(set.line && set.line->has_universal) << tube;
+    EXPECT_TRUE(set.paper) << tube;
+    EXPECT_EQ(set.quantities[0].origin, "calibrated");
+    // A thin shell: EI = EA r^2/2 within a few per cent, whatever the chirality.
+    EXPECT_NEAR(set.bond.bend / (0.5 * set.bond.stretch * set.radius * set.radius), 1, 0.04) << tube;
+  }
+  for (const char* potential : {"airebo", "rebo", "lcbop"}) shipped("cnt-10-10-" + std::string(potential));
+}
+
+TEST(ShippedSets, TheTenTenTubeIsTheReference) {
+  const ParameterSet set = shipped("cnt-10-10-tersoff");
+  const double angstrom = 0.1;  // nm
+  EXPECT_NEAR(set.radius, 0.6888, 5e-5);
+  EXPECT_NEAR(set.bond.stretch * angstrom, 948, 0.005 * 948);
+  EXPECT_NEAR(set.bond.bend / angstrom, 22646, 0.005 * 22646);
+  EXPECT_NEAR(set.bond.twist / angstrom, 20604, 0.005 * 20604);
+}
+
+// Real atoms, of a chiral tube as well: over all registries their mean is the surface integral.
+TEST(AtomByAtom, MeanOverRegistryIsTheSurfaceIntegral) {
+  for (const Chirality c : {Chirality{8, 2}, Chirality{10, 10}}) {
+    const TubeCell cell = tube_cell(c, translation_vector(c));
+    const AtomColumn column{cell.atoms, cell.length};
+    const AtomLaw law;
+    const Shell shell{cell.radius, graphene_density(graphene_lattice_constant)};
+    const Well well = parallel_well(law, shell, shell);
+    const RegistrySpread spread = registry_spread(law, column, column, well.distance);
+    EXPECT_NEAR(spread.mean / well.energy, 1, 5e-3) << c.n << "," << c.m;
+    EXPECT_GT(spread.deviation, 0);
+    EXPECT_LT(spread.deviation, 0.03 * std::fabs(well.energy));
+    RecordProperty("registry_" + std::to_string(c.n) + "_" + std::to_string(c.m),
+                   std::to_string(spread.deviation / std::fabs(well.energy)));
+  }
+}
+
+TEST(UniversalLaw, ScalesWithEpsilonAndRefusesAnotherCutoff) {
+  AtomLaw law;
+  const auto one = universal_law(law);
+  ASSERT_TRUE(one);
+  law.epsilon *= 2;
+  const auto two = universal_law(law);
+  ASSERT_TRUE(two);
+  EXPECT_NEAR(two->density(0.5, 38, 0.7, 38).K / one->density(0.5, 38, 0.7, 38).K, 2, 1e-12);
+  law.cutoff = 1.0;
+  EXPECT_FALSE(universal_law(law));
+}
+
+}  // namespace
+}  // namespace ropewalk
