@@ -25,9 +25,14 @@ void say_source(const Scene& scene, const Prepared& p) {
   fmt::print("{} tubes, {} elements of {:.4g} nm", t.tubes(), t.elements(), t.longest_element());
   if (std::holds_alternative<RopeSource>(scene.source))
     fmt::print(": a rope of {:.4g} nm, spacing {:.4g} nm", t.length_of(0) * t.longest_element(), p.spacing);
-  fmt::print("\nparameters {} ({}), EA {:.5g} nN, EI {:.5g} nN nm^2, GJ {:.5g} nN nm^2\n", scene.parameters().name,
-             scene.parameters().path, scene.parameters().bond.stretch * units::eV_in_nN_nm,
-             scene.parameters().bond.bend * units::eV_in_nN_nm, scene.parameters().bond.twist * units::eV_in_nN_nm);
+  fmt::print("\n");
+  for (const ParameterSet& set : scene.sets)
+    fmt::print("parameters {} ({}), EA {:.5g} nN, EI {:.5g} nN nm^2, GJ {:.5g} nN nm^2\n", set.name, set.path,
+               set.bond.stretch * units::eV_in_nN_nm, set.bond.bend * units::eV_in_nN_nm,
+               set.bond.twist * units::eV_in_nN_nm);
+  fmt::print("contact law {}", law_name(scene.contact.law));
+  if (!p.interaction.line.empty()) fmt::print(", {} nodes on an element", p.interaction.line.front().nodes_i);
+  fmt::print("\n");
 }
 
 void say_loads(const Scene& scene) {

@@ -52,7 +52,11 @@ void add_run_facts(const Scene& scene, const Prepared& p, const Manifest& m, Rep
   add("scene", scene.name, "hash " + scene.hash);
   add("tubes", fmt::format("{} with {} elements of {:.4g} nm in all", t.tubes(), t.elements(), t.longest_element()),
       t.tubes() > 0 ? fmt::format("the first is {:.4g} nm long", t.length_of(0) * t.longest_element()) : "");
-  add("parameters", scene.parameters().name, "hash " + scene.parameters().hash);
+  for (std::size_t k = 0; k < scene.sets.size(); ++k) {
+    const auto tubes = std::count(t.tube_type.begin(), t.tube_type.end(), static_cast<int>(k));
+    add(k == 0 ? "parameters" : "parameters, type " + std::to_string(k), scene.sets[k].name,
+        (scene.sets.size() > 1 ? fmt::format("{} tubes, ", tubes) : "") + "hash " + scene.sets[k].hash);
+  }
   add("contact law", law_name(scene.contact.law),
       scene.contact.legacy_torque ? "legacy torque: not a gradient, energy is not conserved" : "full gradient");
   add("damping", fmt::format("contact viscosity {:.4g} eV ps/nm^2, bonds {:.4g} 1/ps, PFC local {:.4g}",

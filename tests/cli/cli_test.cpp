@@ -87,6 +87,31 @@ TEST_F(Cli, ShippedScenesAreTheTemplates) {
   }
 }
 
+// Thick and thin tubes in one rope: everything downstream knows which is which.
+TEST_F(Cli, MixedTubesRunAndResume) {
+  spit(dir / "s.toml",
+       "format = \"ropewalk-scene-1\"\nparameters = [\"cnt-10-10-tersoff\", \"cnt-5-5-tersoff\"]\n"
+       "tube_types = [1, 0, 0, 0, 0, 0, 1]\n[rope]\ntubes = 7\nlength_nm = 14\n[start]\ntemperature_K = 50\n"
+       "[run]\nduration_ps = 2\nframes_every_ps = 1\nlog_every_ps = 0.5\nparaview = true\n");
+  const Outcome check = run("check s.toml");
+  ASSERT_EQ(check.code, 0) << check.err;
+  EXPECT_NE(check.out.find("contact law line"), std::string::npos);
+  ASSERT_EQ(run("run s.toml --out d --quiet").code, 0) << slurp(dir / "stderr.txt");
+  ASSERT_EQ(run("run s.toml --out half --quiet --steps 40").code, 0);
+  ASSERT_EQ(run("resume half --quiet").code, 0) << slurp(dir / "stderr.txt");
+  const auto last_frame = [&](const char* file) {
+    const std::string all = slurp(dir / file);
+    return all.substr(all.rfind("ITEM: TIMESTEP"));
+  };
+  EXPECT_TRUE(last_frame("d/frames.lammpstrj") == last_frame("half/frames.lammpstrj"));
+  const std::string frames = slurp(dir / "d/frames.lammpstrj");
+  EXPECT_NE(frames.find("\n1 1 2 "), std::string::npos) << "the first tube is of the second type";
+  EXPECT_NE(frames.find("\n11 2 1 "), std::string::npos);
+  EXPECT_TRUE(fs::exists(dir / "d/parameters-1.toml"));
+  EXPECT_EQ(run("observe d --json").code, 0);
+  EXPECT_NE(slurp(dir / "d/report.html").find("cnt-5-5-tersoff"), std::string::npos);
+}
+
 TEST_F(Cli, RunWritesEverythingAndProtectsIt) {
   small_rope("s.toml", "paraview = true\n");
   ASSERT_EQ(run("run s.toml --out d").code, 0);
