@@ -33,7 +33,7 @@ void expect_sound(const LineDensity& d) {
   for (double rho = d.contact + 0.1; rho < d.cutoff() - 0.002; rho += 0.002)
     turns += d.terms(rho).derivative < 0 && d.terms(rho + 0.002).derivative >= 0;
   EXPECT_EQ(turns, 1);
-  EXPECT_EQ(d.energy(d.cutoff()), 0);
+  EXPECT_NEAR(d.energy(d.cutoff()), 0, 1e-30);
 }
 
 void expect_near_integral(const LineFit& f, double error) {
@@ -100,14 +100,13 @@ TEST(LineFit, OtherCutoffs) {
   expect_near_integral(fit_line({2.4e-3, 0.33, 1.5}, shell(0.6785), shell(0.6785)), 6e-3);
 }
 
-// Without a cutoff the tail beyond the law's own is missing: a few per cent of the well there, little at its
-// bottom.
+// Without a cutoff the law's own lies 3 nm out.
 TEST(LineFit, WithoutCutoff) {
   const LineFit f =
       fit_line({2.84e-3, 0.34, std::numeric_limits<double>::infinity()}, shell(0.6785), shell(0.6785));
   EXPECT_NEAR(f.parallel.energy, -1.1114, 2e-4);
-  EXPECT_NEAR(f.line_parallel.energy / f.parallel.energy, 1, 1e-2);
-  EXPECT_LT(f.error, 0.02);
+  EXPECT_NEAR(f.line_parallel.energy / f.parallel.energy, 1, 2e-3);
+  EXPECT_LT(f.error, 2e-3);
   expect_sound(f.density);
 }
 
