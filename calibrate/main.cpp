@@ -3,8 +3,8 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 
-#include "verbs/verbs.hpp"
 #include "model/error.hpp"
+#include "verbs/verbs.hpp"
 #include "version.hpp"
 
 namespace {
@@ -107,6 +107,7 @@ int main(int argc, char** argv) {
   verbs.calibrate.command = verbs.fit.command = verbs.universal.command = command_line(argc, argv);
   add_calibrate(app, verbs);
   add_verbs(app, verbs);
+  catch_interrupts();
   try {
     app.parse(argc, argv);
     return run(app, verbs);
@@ -118,6 +119,10 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "ropewalk calibrate: %s\n", e.what());
     return 2;
   } catch (const std::exception& e) {
+    if (interrupted_by() != 0) {
+      std::fprintf(stderr, "\nropewalk calibrate: interrupted; nothing was written\n");
+      return 128 + interrupted_by();
+    }
     std::fprintf(stderr, "ropewalk calibrate: %s\n", e.what());
     return 3;
   }

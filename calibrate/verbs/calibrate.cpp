@@ -187,6 +187,7 @@ int calibrate_command(const CalibrateArguments& a) {
   request.potential = a.user_potential.empty() ? find_potential(a.potential) : user_potential(a.user_potential);
   request.stiffness = a.stiffness;
   request.stiffness.envelope = a.envelope;
+  request.stiffness.lammps.interrupted = [] { return interrupted_by() != 0; };
   request.command = a.command;
   const OutputFiles files = output_files(
       a, fmt::format("cnt-{}-{}-{}", request.chirality.n, request.chirality.m, request.potential.name));
@@ -197,7 +198,7 @@ int calibrate_command(const CalibrateArguments& a) {
   try {
     c = calibrate(request);
   } catch (const LammpsError&) {
-    folder.stay();  // its message names the files
+    if (interrupted_by() == 0) folder.stay();  // its message names the files
     throw;
   }
   const ParameterSet set =

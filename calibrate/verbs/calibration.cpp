@@ -210,6 +210,8 @@ Calibration calibrate(const CalibrationRequest& request) {
   c.lammps = c.stiffness.lammps;
   const Shell shell = c.shell();
   const auto say = [&](const char* text) {
+    if (request.stiffness.lammps.interrupted && request.stiffness.lammps.interrupted())
+      throw LammpsError("interrupted");
     if (request.stiffness.progress) request.stiffness.progress(text);
   };
   say("van der Waals contact: surface integral and line law");

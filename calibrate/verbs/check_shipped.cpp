@@ -40,6 +40,7 @@ Calibration remake(const ParameterSet& set) {
   request.law = parse_atom_law(
       fmt::format("{},{}", value_of(set, "contact.line.epsilon"), value_of(set, "contact.line.sigma")),
       value_of(set, "contact.line.lj_cutoff"));
+  request.stiffness.lammps.interrupted = [] { return interrupted_by() != 0; };
   WorkFolder folder("");
   request.folder = folder.path();
   return calibrate(request);

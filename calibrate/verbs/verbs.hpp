@@ -57,6 +57,10 @@ int check_shipped_command(const CheckShippedArguments& arguments);
 
 // --- Shared by the verbs ---
 
+// Ctrl-C and TERM end the LAMMPS child first; temporary files go. The signal, or 0.
+void catch_interrupts();
+int interrupted_by();
+
 // "12,6". Throws InputError for what is not the chirality of a tube that can be calibrated.
 Chirality parse_chirality(const std::string& text);
 AtomLaw parse_atom_law(const std::string& lj, double cutoff);

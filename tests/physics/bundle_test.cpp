@@ -17,15 +17,7 @@ struct Bundle {
   Bundle(int tubes, int elements, double temperature) {
     state = test::disordered_bundle(topology, tubes, elements, spacing, 0, 1);
     in.paper = test::published_contact();
-    // Maxwell velocities.
-    std::mt19937 engine(4);
-    std::normal_distribution<double> gauss;
-    const double v = std::sqrt(units::boltzmann * temperature / topology.types[0].mass);
-    const double w = std::sqrt(units::boltzmann * temperature / topology.types[0].inertia);
-    for (std::size_t i = 0; i < state.size(); ++i) {
-      state.velocity.set(i, v * Vector3(gauss(engine), gauss(engine), gauss(engine)));
-      state.angular_velocity.set(i, w * Vector3(gauss(engine), gauss(engine), gauss(engine)));
-    }
+    test::set_velocities(topology, temperature, state);
   }
   double step(double part = default_step_fraction) const {
     return part * time_step_limit(topology, in, spacing).limit;

@@ -82,14 +82,7 @@ struct LineBundle {
     in.line = {contact(0.6785, 0.6785)};
     spacing = line_parallel_well(in.line[0].density).distance;
     state = test::disordered_bundle(topology, 7, elements, spacing, 0, 1);
-    std::mt19937 engine(4);
-    std::normal_distribution<double> gauss;
-    const double v = std::sqrt(units::boltzmann * temperature / topology.types[0].mass);
-    const double w = std::sqrt(units::boltzmann * temperature / topology.types[0].inertia);
-    for (std::size_t i = 0; i < state.size(); ++i) {
-      state.velocity.set(i, v * Vector3(gauss(engine), gauss(engine), gauss(engine)));
-      state.angular_velocity.set(i, w * Vector3(gauss(engine), gauss(engine), gauss(engine)));
-    }
+    test::set_velocities(topology, temperature, state);
   }
   Simulation make(double dt) const { return Simulation(topology, in, {}, state, dt); }
 };

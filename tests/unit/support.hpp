@@ -101,4 +101,16 @@ inline State disordered_bundle(Topology& topology, int tubes, int elements, doub
   return s;
 }
 
+// Maxwell velocities of a bundle of one tube type.
+inline void set_velocities(const Topology& topology, double temperature, State& s) {
+  std::mt19937 engine(4);
+  std::normal_distribution<double> gauss;
+  const double v = std::sqrt(units::boltzmann * temperature / topology.types[0].mass);
+  const double w = std::sqrt(units::boltzmann * temperature / topology.types[0].inertia);
+  for (std::size_t i = 0; i < s.size(); ++i) {
+    s.velocity.set(i, v * Vector3(gauss(engine), gauss(engine), gauss(engine)));
+    s.angular_velocity.set(i, w * Vector3(gauss(engine), gauss(engine), gauss(engine)));
+  }
+}
+
 }  // namespace ropewalk::test
