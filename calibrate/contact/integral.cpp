@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <stdexcept>
 #include <string>
 
@@ -83,7 +84,8 @@ PairIntegral::PairIntegral(const AtomLaw& law, const Shell& i, const Shell& j, d
     const PairIntegral& self;
     Part part;
   };
-  gsl_cheb_series* series = gsl_cheb_alloc(order);
+  // The energies may throw, through the loop below.
+  const std::unique_ptr<gsl_cheb_series, void (*)(gsl_cheb_series*)> series(gsl_cheb_alloc(order), gsl_cheb_free);
   for (std::size_t k = 0; k + 1 < edges_.size(); ++k) {
     Task task{*this, {edges_[k], edges_[k + 1], contact_}};
     gsl_function f;
@@ -93,10 +95,9 @@ PairIntegral::PairIntegral(const AtomLaw& law, const Shell& i, const Shell& j, d
       return parallel_energy_derivative(t.self.law_, t.self.i_, t.self.j_, R) * weight(R - t.self.contact_);
     };
     f.params = &task;
-    gsl_cheb_init(series, &f, 0, 1);
+    gsl_cheb_init(series.get(), &f, 0, 1);
     series_.emplace_back(series->c, series->c + order + 1);
   }
-  gsl_cheb_free(series);
 }
 
 double PairIntegral::slope(double distance) const {
@@ -154,12 +155,13 @@ double PairIntegral::zero(const std::function<double(double)>& slope) const {
   gsl_function f;
   f.function = [](double R, void* data) { return (*static_cast<const std::function<double(double)>*>(data))(R); };
   f.params = const_cast<std::function<double(double)>*>(&slope);
-  gsl_root_fsolver* solver = gsl_root_fsolver_alloc(gsl_root_fsolver_brent);
+  const std::unique_ptr<gsl_root_fsolver, void (*)(gsl_root_fsolver*)> owner(
+      gsl_root_fsolver_alloc(gsl_root_fsolver_brent), gsl_root_fsolver_free);
+  gsl_root_fsolver* solver = owner.get();
   gsl_root_fsolver_set(solver, &f, a, b);
   for (int k = 0; k < 60 && gsl_root_fsolver_x_upper(solver) - gsl_root_fsolver_x_lower(solver) > 1e-11; ++k)
     gsl_root_fsolver_iterate(solver);
   const double root = gsl_root_fsolver_root(solver);
-  gsl_root_fsolver_free(solver);
   return root;
 }
 
