@@ -140,6 +140,7 @@ int main(int argc, char** argv) {
   add_report(app, verbs);
   // Handed over before anything is parsed; named here for --help.
   app.add_subcommand("calibrate", "Derive a parameter set for any (n,m) from atomistic data");
+  app.add_subcommand("validate", "Hold the model against theory, atoms and other codes");
   add_energy(app, verbs);
   add_bench(app, verbs);
   try {

@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* siblings[] = {"calibrate"};
+constexpr const char* siblings[] = {"calibrate", "validate"};
 
 // Beside this program, as installed; in the folder of its own, as built; else on the PATH.
 std::string find_sibling(const std::string& verb) {

@@ -39,7 +39,7 @@ class Cli : public ropewalk::test::Cli {
 TEST_F(Cli, HelpNamesEveryVerbAndUnits) {
   const Outcome o = run("--help");
   EXPECT_EQ(o.code, 0);
-  for (const char* word : {"new", "check", "run", "resume", "observe", "report", "energy", "bench", "length_nm",
+  for (const char* word : {"new", "check", "run", "resume", "observe", "report", "energy", "bench", "calibrate", "validate", "length_nm",
                            "moment_nN_nm", "time_step_fs"})
     EXPECT_NE(o.out.find(word), std::string::npos) << word;
   EXPECT_EQ(run("--version").code, 0);

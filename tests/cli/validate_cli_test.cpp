@@ -1,0 +1,65 @@
+// `ropewalk validate` as a user meets it.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/support.hpp"
+
+namespace {
+
+using ropewalk::test::Outcome;
+using ropewalk::test::slurp;
+using ropewalk::test::spit;
+using Json = nlohmann::json;
+namespace fs = std::filesystem;
+
+class Validate : public ropewalk::test::Cli {};
+
+TEST_F(Validate, ListDescribesEveryCase) {
+  const Outcome o = run("validate list --json");
+  ASSERT_EQ(o.code, 0) << o.err;
+  const Json all = Json::parse(o.out);
+  ASSERT_GE(all.size(), 5u);
+  for (const Json& c : all)
+    for (const char* key : {"name", "tier", "against", "title", "why", "setup", "oracle"})
+      EXPECT_FALSE(c.at(key).get<std::string>().empty()) << c;
+  const Outcome table = run("validate list");
+  EXPECT_EQ(static_cast<std::size_t>(std::count(table.out.begin(), table.out.end(), '\n')), all.size());
+}
+
+TEST_F(Validate, WrongInputGetsOneLine) {
+  spit(dir / "file", "");
+  for (const auto& [line, words] :
+       {std::pair{"validate", "subcommand"}, std::pair{"validate run no-such-case", "there is no case"},
+        std::pair{"validate run euler-bucklin", "did you mean \"euler-buckling\"?"},
+        std::pair{"validate run --tier medium", "choose quick or full"},
+        std::pair{"validate run euler-buckling --out file", "not a directory"},
+        std::pair{"validate run euler-buckling --parameters nowhere", "no parameter set"},
+        std::pair{"validate report nowhere", "holds no results"}}) {
+    const Outcome o = run(line);
+    EXPECT_EQ(o.code, 2) << line;
+    EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << line << "\n" << o.err;
+    EXPECT_NE(o.err.find(words), std::string::npos) << line << "\n" << o.err;
+  }
+}
+
+TEST_F(Validate, OneCaseIsRunKeptAndReported) {
+  const Outcome o = run("validate run euler-buckling --out v");
+  ASSERT_EQ(o.code, 0) << o.out << o.err;
+  EXPECT_NE(o.out.find("holds"), std::string::npos);
+  const std::string page = slurp(dir / "v/report.html");
+  EXPECT_NE(page.find("1 of 1 cases hold"), std::string::npos);
+  EXPECT_NE(page.find("<svg"), std::string::npos);
+  EXPECT_EQ(page.find("<script"), std::string::npos);
+  const Json report = Json::parse(slurp(dir / "v/report.json"));
+  EXPECT_EQ(report.at("cases").at(0).at("verdict"), "holds");
+
+  const Outcome again = run("validate run euler-buckling --out v --json");
+  ASSERT_EQ(again.code, 0);
+  EXPECT_NE(again.err.find("kept"), std::string::npos) << again.err;
+  EXPECT_EQ(Json::parse(again.out).at("cases").at(0).at("checks"), report.at("cases").at(0).at("checks"));
+  EXPECT_EQ(run("validate report v").code, 0);
+  EXPECT_EQ(slurp(dir / "v/report.html"), page) << "the page is the same in every run";
+}
+
+}  // namespace

@@ -1,0 +1,160 @@
+// What becomes of the cases' numbers: verdicts, files, page.
+#include "runner/runner.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <set>
+
+#include "core/reference.hpp"
+#include "io/files.hpp"
+#include "model/error.hpp"
+
+namespace ropewalk {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+Check check(double value, double reference, double tolerance, bool relative = true) {
+  Check c;
+  c.name = "a <quantity>";
+  c.value = value;
+  c.reference = reference;
+  c.tolerance = tolerance;
+  c.relative = relative;
+  c.unit = "eV";
+  return c;
+}
+
+Outcome outcome_with(const std::vector<Check>& checks) {
+  Outcome o;
+  o.name = all_cases().front().name;
+  o.result.checks = checks;
+  return o;
+}
+
+TEST(ValidationCheck, HoldsWithinItsToleranceOnly) {
+  EXPECT_TRUE(check(1.009, 1, 0.01).holds());
+  EXPECT_FALSE(check(1.011, 1, 0.01).holds());
+  EXPECT_FALSE(check(-0.989, -1, 0.01).holds());
+  EXPECT_TRUE(check(-0.991, -1, 0.01).holds());
+  EXPECT_TRUE(check(0.009, 0, 0.01, false).holds());
+  EXPECT_FALSE(check(std::nan(""), 1, 0.01).holds());
+  EXPECT_FALSE(check(1, 0, 0.01).holds()) << "a relative difference from nothing";
+}
+
+TEST(ValidationCheck, InformativeOnesDecideNothing) {
+  Check c = check(2, 1, 0.01);
+  EXPECT_EQ(outcome_with({c}).verdict(), Outcome::Verdict::misses);
+  c.informative = true;
+  EXPECT_EQ(outcome_with({c}).verdict(), Outcome::Verdict::holds);
+  Outcome o = outcome_with({});
+  o.error = "lmp is not installed";
+  EXPECT_EQ(o.verdict(), Outcome::Verdict::failed);
+}
+
+TEST(ValidationOutcome, ComesBackFromItsFile) {
+  Outcome o = outcome_with({check(1.5, 1, 0.1), check(std::nan(""), 1, 0.1)});
+  o.key = "key";
+  o.result.remarks = {"why"};
+  o.result.sources = {"a.csv (stored)"};
+  CaseFigure f;
+  f.caption = "see";
+  f.chart.title = "t";
+  f.chart.x = {"angle", "deg"};
+  f.chart.y = {"energy", "eV"};
+  f.chart.lines = {{"model", {0, 1, 2}, {0, std::nan(""), 4}, 1}};
+  f.chart.lines[0].points = true;
+  o.result.figures = {f};
+  const std::string path = (std::filesystem::temp_directory_path() / "ropewalk-outcome.json").string();
+  write_file_atomically(path, outcome_json(o));
+  const Outcome back = read_outcome(path);
+  EXPECT_EQ(outcome_json(back), outcome_json(o));
+  EXPECT_TRUE(std::isnan(back.result.figures[0].chart.lines[0].y[1]));
+  write_file_atomically(path, "{}");
+  EXPECT_THROW(read_outcome(path), InputError);
+  std::filesystem::remove(path);
+}
+
+TEST(ValidationPage, TellsTheVerdictFirstAndEscapes) {
+  const std::string good = validation_page({outcome_with({check(1, 1, 0.1)})}, {"fact"});
+  EXPECT_THAT(good, HasSubstr("1 of 1 cases hold"));
+  EXPECT_THAT(good, HasSubstr("a &lt;quantity&gt;"));
+  EXPECT_THAT(good, Not(HasSubstr("✗")));
+  const std::string bad = validation_page({outcome_with({check(2, 1, 0.1)})}, {});
+  EXPECT_THAT(bad, HasSubstr("0 of 1 cases hold"));
+  EXPECT_THAT(bad, HasSubstr("✗ misses"));
+  EXPECT_LT(bad.find("✗ misses"), bad.find("<section"));
+  EXPECT_THAT(bad, Not(HasSubstr("<script")));
+}
+
+TEST(ValidationCases, AreDescribedInFull) {
+  std::set<std::string> names;
+  for (const Case& c : all_cases()) {
+    EXPECT_TRUE(names.insert(c.name).second) << c.name << " twice";
+    for (const std::string& text : {c.title, c.why, c.setup, c.oracle}) EXPECT_FALSE(text.empty()) << c.name;
+    EXPECT_TRUE(c.run) << c.name;
+    EXPECT_EQ(&find_case(c.name), &c);
+  }
+  EXPECT_THROW(find_case("no-such-case"), InputError);
+}
+
+TEST(Reference, ReadsWhatItWritesAndSaysWhatIsWrong) {
+  const std::string path = (std::filesystem::temp_directory_path() / "ropewalk-reference.csv").string();
+  ReferenceTable t;
+  t.add("title", "energy: of two tubes");
+  t.add("lammps", "29 Sep 2021");
+  t.columns = {"distance_nm", "energy_eV"};
+  t.rows = {{1.6, -12.25}, {1.7, -13.5}};
+  write_file_atomically(path, reference_csv(t));
+  const ReferenceTable back = read_reference(path);
+  EXPECT_EQ(back.origin, t.origin);
+  EXPECT_EQ(back.column("energy_eV"), (std::vector<double>{-12.25, -13.5}));
+  EXPECT_THROW(back.column("torque"), std::out_of_range);
+  write_file_atomically(path, "# title: x\na,b\n1,2\n1,x\n");
+  try {
+    read_reference(path);
+    FAIL();
+  } catch (const InputError& e) {
+    EXPECT_EQ(e.place().line, 4);
+  }
+  std::filesystem::remove(path);
+}
+
+TEST(Reference, FreshIsHeldToStored) {
+  const auto dir = std::filesystem::temp_directory_path() / "ropewalk-references";
+  std::filesystem::create_directories(dir / "work");
+  ReferenceTable t;
+  t.columns = {"x", "e"};
+  t.rows = {{0, 0}, {1, 10}};
+  CaseContext context;
+  context.references = dir.string();
+  context.work = (dir / "work").string();
+  CaseResult r;
+  EXPECT_THROW(reference(
+                   context, "pair", 0.01, [&] { return t; }, r),
+               InputError)
+      << "nothing is stored";
+  write_file_atomically((dir / "pair.csv").string(), reference_csv(t));
+  EXPECT_EQ(reference(context, "pair", 0.01, {}, r).rows, t.rows);
+  EXPECT_THAT(r.sources[0], HasSubstr("stored"));
+
+  context.fresh = true;
+  t.rows[1][1] = 10.5;
+  CaseResult fresh;
+  EXPECT_EQ(reference(
+                context, "pair", 0.01, [&] { return t; }, fresh)
+                .rows,
+            t.rows);
+  ASSERT_EQ(fresh.checks.size(), 2u);
+  EXPECT_TRUE(fresh.checks[0].holds());
+  EXPECT_FALSE(fresh.checks[1].holds()) << "5 % off";
+  EXPECT_TRUE(std::filesystem::exists(dir / "work/pair.csv"));
+  std::filesystem::remove_all(dir);
+}
+
+}  // namespace
+}  // namespace ropewalk

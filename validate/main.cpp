@@ -1,0 +1,68 @@
+// ropewalk-validate, also reached as `ropewalk validate`: the model against references that it did not fit.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+
+#include "model/error.hpp"
+#include "runner/runner.hpp"
+#include "version.hpp"
+
+namespace {
+
+using namespace ropewalk;
+
+struct Verbs {
+  ListArguments list;
+  ValidateArguments run;
+  ReportArguments report;
+  int code = 0;
+};
+
+void add_verbs(CLI::App& app, Verbs& v) {
+  CLI::App* list = app.add_subcommand("list", "The cases");
+  list->add_flag("--json", v.list.json, "JSON, with set-up, oracle and literature");
+  list->callback([&v] { v.code = list_command(v.list); });
+
+  CLI::App* run = app.add_subcommand("run", "Run cases and write the report");
+  run->add_option("cases", v.run.cases, "Names, see list [default: all of the tier]");
+  run->add_option("--tier", v.run.tier, "quick, or full (which has the quick ones too)")->capture_default_str();
+  run->add_option("--parameters", v.run.parameters,
+                  "A set of your own: theory takes any tube, atoms only the tube that they are");
+  run->add_option("--out", v.run.out, "Directory of results and report; finished cases in it are kept")
+      ->capture_default_str();
+  run->add_flag("--fresh", v.run.fresh, "Make the references anew with LAMMPS and compare with the stored ones");
+  run->add_flag("--again", v.run.again, "Run cases again that are finished");
+  run->add_flag("--json", v.run.json, "JSON");
+  run->add_flag("--quiet", v.run.quiet, "No progress lines");
+  run->callback([&v] { v.code = validate_command(v.run); });
+
+  CLI::App* report = app.add_subcommand("report", "Make report.html and report.json anew from the results");
+  report->add_option("dir", v.report.dir, "Directory of the results")->required();
+  report->callback([&v] { v.code = validation_report_command(v.report); });
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app(
+      "ropewalk validate holds the model against exact theory, LAMMPS references and other codes.\n"
+      "Exit code: 0 all hold, 1 some miss, 2 wrong input, 3 a case could not be run.",
+      "ropewalk validate");
+  app.set_version_flag("--version", std::string("ropewalk-validate ") + version + " (" + git_id + ")");
+  app.require_subcommand(1);
+  Verbs verbs;
+  add_verbs(app, verbs);
+  try {
+    app.parse(argc, argv);
+    return verbs.code;
+  } catch (const CLI::ParseError& e) {
+    if (e.get_exit_code() == 0) return app.exit(e);
+    std::fprintf(stderr, "ropewalk validate: %s; see ropewalk validate --help\n", e.what());
+    return 2;
+  } catch (const InputError& e) {
+    std::fprintf(stderr, "ropewalk validate: %s\n", e.what());
+    return 2;
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "ropewalk validate: %s\n", e.what());
+    return 3;
+  }
+}

@@ -1,0 +1,189 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "io/files.hpp"
+#include "model/error.hpp"
+#include "runner/runner.hpp"
+
+namespace ropewalk {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* outcome_format = "ropewalk-validation-1";
+
+// JSON has no NaN: null stands for it.
+Json number(double v) { return std::isfinite(v) ? Json(v) : Json(nullptr); }
+double number(const Json& j) { return j.is_null() ? std::numeric_limits<double>::quiet_NaN() : j.get<double>(); }
+
+Json numbers(const std::vector<double>& values) {
+  Json out = Json::array();
+  for (const double v : values) out.push_back(number(v));
+  return out;
+}
+
+std::vector<double> numbers(const Json& j) {
+  std::vector<double> values;
+  for (const Json& v : j) values.push_back(number(v));
+  return values;
+}
+
+Json to_json(const Check& c) {
+  return {{"name", c.name},
+          {"value", number(c.value)},
+          {"reference", number(c.reference)},
+          {"tolerance", c.tolerance},
+          {"relative", c.relative},
+          {"unit", c.unit},
+          {"informative", c.informative},
+          {"difference", number(c.difference())},
+          {"holds", c.holds()},
+          {"note", c.note}};
+}
+
+Check check_of(const Json& j) {
+  Check c;
+  c.name = j.at("name");
+  c.value = number(j.at("value"));
+  c.reference = number(j.at("reference"));
+  c.tolerance = j.at("tolerance");
+  c.relative = j.at("relative");
+  c.unit = j.at("unit");
+  c.informative = j.at("informative");
+  c.note = j.at("note");
+  return c;
+}
+
+Json to_json(const ChartAxis& a) { return {{"quantity", a.quantity}, {"unit", a.unit}, {"whole", a.whole}}; }
+ChartAxis axis_of(const Json& j) { return {j.at("quantity"), j.at("unit"), j.at("whole")}; }
+
+Json to_json(const CaseFigure& f) {
+  Json lines = Json::array(), bands = Json::array();
+  for (const ChartLine& l : f.chart.lines)
+    lines.push_back({{"name", l.name},
+                     {"x", numbers(l.x)},
+                     {"y", numbers(l.y)},
+                     {"colour", l.colour},
+                     {"dashed", l.dashed},
+                     {"steps", l.steps},
+                     {"points", l.points}});
+  for (const ChartBand& b : f.chart.bands)
+    bands.push_back({{"from", b.from}, {"to", b.to}, {"label", b.label}, {"dark", b.dark}});
+  return {{"title", f.chart.title}, {"x", to_json(f.chart.x)}, {"y", to_json(f.chart.y)},
+          {"lines", lines},         {"bands", bands},          {"caption", f.caption}};
+}
+
+CaseFigure figure_of(const Json& j) {
+  CaseFigure f;
+  f.chart.title = j.at("title");
+  f.chart.x = axis_of(j.at("x"));
+  f.chart.y = axis_of(j.at("y"));
+  for (const Json& l : j.at("lines")) {
+    ChartLine line;
+    line.name = l.at("name");
+    line.x = numbers(l.at("x"));
+    line.y = numbers(l.at("y"));
+    line.colour = l.at("colour");
+    line.dashed = l.at("dashed");
+    line.steps = l.at("steps");
+    line.points = l.at("points");
+    f.chart.lines.push_back(std::move(line));
+  }
+  for (const Json& b : j.at("bands"))
+    f.chart.bands.push_back({b.at("from"), b.at("to"), b.at("label"), b.at("dark")});
+  f.caption = j.at("caption");
+  return f;
+}
+
+const char* verdict_word(Outcome::Verdict v) {
+  return v == Outcome::Verdict::holds ? "holds" : v == Outcome::Verdict::misses ? "misses" : "failed";
+}
+
+Json body(const Outcome& o) {
+  Json checks = Json::array(), figures = Json::array();
+  for (const Check& c : o.result.checks) checks.push_back(to_json(c));
+  for (const CaseFigure& f : o.result.figures) figures.push_back(to_json(f));
+  return {{"format", outcome_format},
+          {"case", o.name},
+          {"verdict", verdict_word(o.verdict())},
+          {"checks", checks},
+          {"remarks", o.result.remarks},
+          {"sources", o.result.sources},
+          {"error", o.error},
+          {"key", o.key},
+          {"seconds", o.result.seconds},
+          {"figures", figures}};
+}
+
+std::string check_line(const Check& c) {
+  const std::string mark = c.informative ? "  " : c.holds() ? "ok" : "NO";
+  const std::string allowed = c.informative ? "shown only"
+                              : c.relative  ? fmt::format("within {:.3g} %", 100 * c.tolerance)
+                                            : fmt::format("within {:.3g} {}", c.tolerance, c.unit);
+  const std::string off =
+      c.relative ? fmt::format("{:+.3g} %", 100 * c.difference()) : fmt::format("{:+.3g}", c.difference());
+  return fmt::format("  {} {:<52} {:>12.6g} {:>12.6g} {:<10} {:>10}  {}\n", mark, c.name, c.value, c.reference,
+                     c.unit, off, allowed);
+}
+
+}  // namespace
+
+Outcome::Verdict Outcome::verdict() const {
+  if (!error.empty()) return Verdict::failed;
+  return result.holds() ? Verdict::holds : Verdict::misses;
+}
+
+std::string outcome_json(const Outcome& outcome) { return body(outcome).dump(1) + "\n"; }
+
+Outcome read_outcome(const std::string& path) {
+  try {
+    const Json j = Json::parse(read_file(path));
+    if (j.at("format") != outcome_format) throw std::runtime_error("another format");
+    Outcome o;
+    o.name = j.at("case");
+    o.error = j.at("error");
+    o.key = j.at("key");
+    for (const Json& c : j.at("checks")) o.result.checks.push_back(check_of(c));
+    for (const Json& f : j.at("figures")) o.result.figures.push_back(figure_of(f));
+    o.result.remarks = j.at("remarks").get<std::vector<std::string>>();
+    o.result.sources = j.at("sources").get<std::vector<std::string>>();
+    o.result.seconds = j.at("seconds");
+    return o;
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::exception&) {
+    throw InputError({path, 0, ""}, "is not a result of `ropewalk validate run`",
+                     "run the case again with --again");
+  }
+}
+
+std::string validation_json(const std::vector<Outcome>& outcomes) {
+  Json all = Json::array();
+  for (const Outcome& o : outcomes) {
+    Json j = body(o);
+    j.erase("figures");
+    j.erase("format");
+    all.push_back(std::move(j));
+  }
+  return Json{{"format", outcome_format}, {"cases", all}}.dump(1) + "\n";
+}
+
+std::string validation_table(const std::vector<Outcome>& outcomes) {
+  std::string text =
+      fmt::format("     {:<52} {:>12} {:>12} {:<10} {:>10}\n", "", "model", "oracle", "unit", "off by");
+  for (const Outcome& o : outcomes) {
+    text += fmt::format("{:<8} {} ({:.1f} s)\n",
+                        o.verdict() == Outcome::Verdict::holds    ? "holds"
+                        : o.verdict() == Outcome::Verdict::misses ? "MISSES"
+                                                                  : "FAILED",
+                        o.name, o.result.seconds);
+    if (!o.error.empty()) text += "  " + o.error + "\n";
+    for (const Check& c : o.result.checks) text += check_line(c);
+  }
+  return text;
+}
+
+}  // namespace ropewalk

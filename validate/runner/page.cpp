@@ -1,0 +1,162 @@
+#include "io/page.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "runner/runner.hpp"
+
+namespace ropewalk {
+namespace {
+
+const char* verdict_css = R"(
+.verdicts td,.verdicts th{padding:5px 16px 5px 0}
+.verdict{font-weight:600;white-space:nowrap}
+.good{color:#197a3a}.bad{color:#c0271d}.dim{color:var(--soft)}
+@media(prefers-color-scheme:dark){.good{color:#5fc784}.bad{color:#ff7b6e}}
+.case{scroll-margin-top:1em}
+)";
+
+std::string verdict_html(const Outcome& o) {
+  switch (o.verdict()) {
+    case Outcome::Verdict::holds:
+      return "<span class=\"verdict good\">✓ holds</span>";
+    case Outcome::Verdict::misses:
+      return "<span class=\"verdict bad\">✗ misses</span>";
+    case Outcome::Verdict::failed:
+      return "<span class=\"verdict bad\">✗ could not be run</span>";
+  }
+  return "";
+}
+
+std::string percent(const Check& c) {
+  if (!std::isfinite(c.value)) return "not finite";
+  return c.relative ? number_text(100 * c.difference(), 3) + " %" : number_text(c.difference(), 3) + " " + c.unit;
+}
+
+std::string allowed(const Check& c) {
+  if (c.informative) return "<span class=\"dim\">shown only</span>";
+  return c.relative ? number_text(100 * c.tolerance, 3) + " %"
+                    : number_text(c.tolerance, 3) + " " + escape_markup(c.unit);
+}
+
+// The check that is nearest to its bound, or furthest beyond it.
+const Check* worst_check(const CaseResult& r) {
+  const Check* worst = nullptr;
+  double ratio = -1;
+  for (const Check& c : r.checks) {
+    if (c.informative) continue;
+    const double used = std::isfinite(c.value) ? std::fabs(c.difference()) / c.tolerance : 1e300;
+    if (used > ratio) {
+      ratio = used;
+      worst = &c;
+    }
+  }
+  return worst;
+}
+
+std::string summary_row(const Outcome& o) {
+  const Case& c = find_case(o.name);
+  std::string tight = "<td></td>";
+  if (const Check* w = worst_check(o.result))
+    tight = fmt::format("<td>{}: {} of {} allowed</td>", escape_markup(w->name), percent(*w), allowed(*w));
+  if (!o.error.empty()) tight = "<td>" + escape_markup(o.error) + "</td>";
+  return fmt::format("<tr><td>{}</td><td><a href=\"#{}\">{}</a></td>{}<td class=\"dim\">{}</td></tr>\n",
+                     verdict_html(o), o.name, escape_markup(c.title), tight, group_name(c.group));
+}
+
+std::string checks_table(const CaseResult& r) {
+  if (r.checks.empty()) return "";
+  std::string html =
+      "<div class=\"scroll\"><table class=\"facts\"><thead><tr><th></th><th>Quantity</th><th "
+      "class=\"number\">Model</th>"
+      "<th class=\"number\">Oracle</th><th>Unit</th><th class=\"number\">Off by</th><th "
+      "class=\"number\">Allowed</th>"
+      "<th></th></tr></thead><tbody>\n";
+  for (const Check& c : r.checks)
+    html += fmt::format(
+        "<tr><td>{}</td><td>{}</td><td class=\"number\">{}</td><td class=\"number\">{}</td><td>{}</td>"
+        "<td class=\"number\">{}</td><td class=\"number\">{}</td><td class=\"dim\">{}</td></tr>\n",
+        c.informative ? ""
+        : c.holds()   ? "<span class=\"good\">✓</span>"
+                      : "<span class=\"bad\">✗</span>",
+        escape_markup(c.name), number_text(c.value, 6), number_text(c.reference, 6), escape_markup(c.unit),
+        percent(c), allowed(c), escape_markup(c.note));
+  return html + "</tbody></table></div>\n";
+}
+
+std::string figure_html(const CaseFigure& f, Figures& figures) {
+  const std::string svg = chart_svg(f.chart);
+  if (svg.empty()) return "";
+  std::vector<TableColumn> columns;
+  // One table where the lines share their abscissa, else one for the first.
+  for (const ChartLine& line : f.chart.lines) {
+    if (columns.empty()) columns.push_back({f.chart.x.quantity + " (" + f.chart.x.unit + ")", line.x});
+    if (line.x == columns[0].values) columns.push_back({line.name, line.y});
+  }
+  return "<figure>" + svg + figures.caption(escape_markup(f.caption)) +
+         data_table(columns, "All of them are in the JSON file of the case.") + "</figure>\n";
+}
+
+std::string figures_html(const CaseResult& r, Figures& figures) {
+  std::string html;
+  for (std::size_t k = 0; k < r.figures.size(); k += 2) {
+    html += "<div class=\"pair\">\n" + figure_html(r.figures[k], figures);
+    if (k + 1 < r.figures.size()) html += figure_html(r.figures[k + 1], figures);
+    html += "</div>\n";
+  }
+  return html;
+}
+
+std::string case_html(const Outcome& o, Figures& figures) {
+  const Case& c = find_case(o.name);
+  std::string html = fmt::format("<section class=\"case\" id=\"{}\">\n{}", o.name, heading(c.title));
+  html += paragraph(verdict_html(o) + ". " + escape_markup(c.why));
+  html += paragraph("<b>Set-up.</b> " + escape_markup(c.setup) + " <b>Oracle.</b> " + escape_markup(c.oracle));
+  if (!o.error.empty()) html += paragraph("<span class=\"bad\">" + escape_markup(o.error) + "</span>");
+  html += checks_table(o.result) + figures_html(o.result, figures);
+  for (const std::string& r : o.result.remarks) html += paragraph(escape_markup(r));
+  std::string sources = "<span class=\"soft\">Made anew by <code>ropewalk validate run " + o.name + "</code>. ";
+  for (const std::string& s : o.result.sources) sources += "Reference: " + escape_markup(s) + ". ";
+  if (!c.literature.empty()) sources += escape_markup(c.literature);
+  return html + paragraph(sources + "</span>") + "</section>\n";
+}
+
+std::string lead(const std::vector<Outcome>& outcomes) {
+  const auto count = [&](Outcome::Verdict v) {
+    return std::count_if(outcomes.begin(), outcomes.end(), [&](const Outcome& o) { return o.verdict() == v; });
+  };
+  const auto good = count(Outcome::Verdict::holds), miss = count(Outcome::Verdict::misses),
+             failed = count(Outcome::Verdict::failed);
+  std::string text = fmt::format("{} of {} cases hold", good, outcomes.size());
+  if (miss > 0) text += fmt::format(", <b class=\"bad\">{} {}</b>", miss, miss == 1 ? "misses" : "miss");
+  if (failed > 0) text += fmt::format(", <b class=\"bad\">{} could not be run</b>", failed);
+  return text +
+         ". A case holds when every number of the model lies within the tolerance that was fixed for it "
+         "beforehand; the "
+         "references were not fitted. What misses says which assumption it shows.";
+}
+
+}  // namespace
+
+std::string validation_page(const std::vector<Outcome>& outcomes, const std::vector<std::string>& facts) {
+  Figures figures;
+  std::string head = page_head("Validation");
+  head.insert(head.find("</style>"), verdict_css);
+  std::string html =
+      head +
+      "<body>\n<main>\n<p class=\"kicker\">Ropewalk: the model against exact theory, atoms and other "
+      "codes</p>\n<h1>Validation</h1>\n<p class=\"lead\">" +
+      lead(outcomes) +
+      "</p>\n<div class=\"scroll\"><table class=\"verdicts\"><thead><tr><th>Verdict</th>"
+      "<th>Case</th><th>Tightest check</th><th>Against</th></tr></thead><tbody>\n";
+  for (const Outcome& o : outcomes) html += summary_row(o);
+  html += "</tbody></table></div>\n";
+  for (const Outcome& o : outcomes) html += case_html(o, figures);
+  html += heading("How it was made");
+  for (const std::string& f : facts) html += paragraph(escape_markup(f));
+  return html + "</main>\n</body>\n</html>\n";
+}
+
+}  // namespace ropewalk
