@@ -2,10 +2,31 @@
 
 namespace ropewalk {
 
+// In the order of the report.
 const std::vector<Case>& all_cases() {
   static const std::vector<Case> cases = {
-      stretch_and_cantilever_case(), euler_buckling_case(), greenhill_case(),
-      michell_ring_case(),           ring_energy_case(),    wave_speeds_case(),
+      stretch_and_cantilever_case(),
+      euler_buckling_case(),
+      greenhill_case(),
+      michell_ring_case(),
+      ring_energy_case(),
+      wave_speeds_case(),
+      crossing_torque_case(),
+      peeling_force_case(),
+      hexagonal_cohesion_case(),
+      adhesive_ring_case(),
+      tube_stretch_case(),
+      tube_twist_case(),
+      tube_bend_case(),
+      pair_distance_case(),
+      pair_sliding_case(),
+      crossed_tubes_case(),
+      rope_7_5_5_short_case(),
+      rope_7_5_5_long_case(),
+      rope_7_10_10_case(),
+      isotropic_contact_case(),
+      legacy_torque_case(),
+      parallel_bond_case(),
   };
   return cases;
 }

@@ -11,5 +11,21 @@ Case greenhill_case();
 Case michell_ring_case();
 Case ring_energy_case();
 Case wave_speeds_case();
+Case crossing_torque_case();
+Case peeling_force_case();
+Case hexagonal_cohesion_case();
+Case adhesive_ring_case();
+Case tube_stretch_case();
+Case tube_twist_case();
+Case tube_bend_case();
+Case pair_distance_case();
+Case pair_sliding_case();
+Case crossed_tubes_case();
+Case rope_7_5_5_short_case();
+Case rope_7_5_5_long_case();
+Case rope_7_10_10_case();
+Case isotropic_contact_case();
+Case legacy_torque_case();
+Case parallel_bond_case();
 
 }  // namespace ropewalk

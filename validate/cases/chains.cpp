@@ -80,8 +80,7 @@ Eigen::MatrixXd tangent_stiffness(const BondStiffness& bond, double element_leng
     State plus = state, minus = state;
     displace(plus, freedom, h);
     displace(minus, freedom, -h);
-    const Eigen::VectorXd d =
-        chain_forces(bond, element_length, minus) - chain_forces(bond, element_length, plus);
+    const Eigen::VectorXd d = chain_forces(bond, element_length, minus) - chain_forces(bond, element_length, plus);
     for (Eigen::Index i = 0; i < n; ++i) stiffness(i, j) = d(freedoms[static_cast<std::size_t>(i)]) / (2 * h);
   }
   return stiffness;

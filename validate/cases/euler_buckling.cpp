@@ -28,8 +28,8 @@ CaseResult run(const CaseContext& context) {
   std::vector<double> lengths, loads;
   for (const int bonds : {16, 20, 24, 30, 40, 60}) {
     const double length = bonds * model.element_length, expected = euler(length);
-    const double load = zero_between([&](double p) { return lowest_under_load(model, bonds, p); }, 0.5 * expected,
-                                     2.5 * expected);
+    const double load =
+        zero_between([&](double p) { return lowest_under_load(model, bonds, p); }, 0.5 * expected, 2.5 * expected);
     lengths.push_back(length);
     loads.push_back(load);
     if (bonds == 20 || bonds == 60)
@@ -39,14 +39,15 @@ CaseResult run(const CaseContext& context) {
                                              "falls as their length squared"));
   }
   CaseFigure figure;
-  figure.chart = {"Euler load against the length of the column", {"length", "nm"}, {"critical load", "eV/nm"}, {},
-                  {}};
+  figure.chart = {
+      "Euler load against the length of the column", {"length", "nm"}, {"critical load", "eV/nm"}, {}, {}};
   figure.chart.lines.push_back(theory_curve("pi^2 EI/L^2", euler, lengths.front(), lengths.back()));
   figure.chart.lines.push_back(model_points("loss of stiffness of the chain", lengths, loads));
   figure.caption = "Load at which the lowest eigenvalue of the chain's stiffness passes zero.";
   result.figures.push_back(figure);
-  result.remarks.push_back("The threshold is where the straight chain loses stiffness, found by bisection of the "
-                           "lowest eigenvalue: no perturbation and no time enter.");
+  result.remarks.push_back(
+      "The threshold is where the straight chain loses stiffness, found by bisection of the "
+      "lowest eigenvalue: no perturbation and no time enter.");
   result.sources.push_back(set_name);
   return result;
 }
@@ -58,11 +59,13 @@ Case euler_buckling_case() {
   c.name = "euler-buckling";
   c.title = "Buckling of a compressed tube";
   c.why = "Tubes inside of a twisted rope are compressed and leave the straight line by this instability.";
-  c.setup = "Straight (10,10) tubes of 16 to 60 bonds, ends held on the axis and free to turn, under an axial load; "
-            "lowest eigenvalue of the tangent stiffness of the loaded chain.";
+  c.setup =
+      "Straight (10,10) tubes of 16 to 60 bonds, ends held on the axis and free to turn, under an axial load; "
+      "lowest eigenvalue of the tangent stiffness of the loaded chain.";
   c.oracle = "P = pi^2 EI/L^2.";
-  c.literature = "S. P. Timoshenko, J. M. Gere, Theory of Elastic Stability, 2nd ed. (McGraw-Hill, 1961); "
-                 "B. Audoly, Y. Pomeau, Elasticity and Geometry (2010), DOI 10.1115/1.4003442";
+  c.literature =
+      "S. P. Timoshenko, J. M. Gere, Theory of Elastic Stability, 2nd ed. (McGraw-Hill, 1961); "
+      "B. Audoly, Y. Pomeau, Elasticity and Geometry (Oxford, 2010)";
   c.run = run;
   return c;
 }

@@ -94,8 +94,8 @@ class TwistedRing {
 };
 
 double critical_twist(const ParameterSet& set, int elements, int waves, double expected) {
-  return zero_between([&](double twist) { return TwistedRing(set, elements, twist).lowest(waves); },
-                      0.6 * expected, 1.5 * expected);
+  return zero_between([&](double twist) { return TwistedRing(set, elements, twist).lowest(waves); }, 0.6 * expected,
+                      1.5 * expected);
 }
 
 CaseResult run(const CaseContext& context) {
@@ -119,9 +119,13 @@ CaseResult run(const CaseContext& context) {
     twists.push_back(critical_twist(model, n, 2, michell(2)));
   }
   CaseFigure figure;
-  figure.chart = {"Critical twist of a ring against the number of its elements", {"elements", "", true},
-                  {"critical twist", "rad"}, {}, {}};
-  figure.chart.lines.push_back(theory_curve("2 pi sqrt(3) EI/GJ", [&](double) { return michell(2); }, 0, 240));
+  figure.chart = {"Critical twist of a ring against the number of its elements",
+                  {"elements", "", true},
+                  {"critical twist", "rad"},
+                  {},
+                  {}};
+  figure.chart.lines.push_back(theory_curve(
+      "2 pi sqrt(3) EI/GJ", [&](double) { return michell(2); }, 0, 240));
   figure.chart.lines.push_back(model_points("ring of elements", elements, twists));
   figure.caption = "The error falls with the square of the twist in a bond.";
   result.figures.push_back(figure);
@@ -137,11 +141,13 @@ Case michell_ring_case() {
   c.name = "michell-ring";
   c.title = "A closed ring with twist leaves its plane";
   c.why = "It is where twist turns into writhe without ends or loads: the exchange that makes helices of ropes.";
-  c.setup = "Closed rings of 40 to 240 elements of the (10,10) tube with uniform twist; lowest eigenvalue of the "
-            "tangent stiffness for 2, 3 and 4 waves around the ring.";
+  c.setup =
+      "Closed rings of 40 to 240 elements of the (10,10) tube with uniform twist; lowest eigenvalue of the "
+      "tangent stiffness for 2, 3 and 4 waves around the ring.";
   c.oracle = "Phi = 2 pi sqrt(m^2 - 1) EI/GJ, first for m = 2.";
-  c.literature = "J. H. Michell, Messenger of Math. 19, 181 (1890); A. Goriely, J. Elasticity 84, 281 (2006), DOI "
-                 "10.1007/s10659-006-9055-3";
+  c.literature =
+      "J. H. Michell, Messenger of Math. 19, 181 (1890); A. Goriely, J. Elasticity 84, 281 (2006), DOI "
+      "10.1007/s10659-006-9055-3";
   c.run = run;
   return c;
 }

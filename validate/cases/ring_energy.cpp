@@ -13,9 +13,7 @@ double ring_energy(const ParameterSet& set, int elements, double circumference) 
   const double a = circumference / elements, step = 2 * units::pi / elements;
   const double radius = 0.5 * a / std::sin(0.5 * step);
   const auto frame = [&](int k) { return frame_of(turn_about(Vector3::UnitX(), -k * step)); };
-  const auto at = [&](int k) {
-    return Vector3(0, radius * (1 - std::cos(k * step)), radius * std::sin(k * step));
-  };
+  const auto at = [&](int k) { return Vector3(0, radius * (1 - std::cos(k * step)), radius * std::sin(k * step)); };
   return elements * bond_energy<double>(set.bond, a, at(1) - at(0), frame(0), frame(1)).total();
 }
 
@@ -41,11 +39,13 @@ CaseResult run(const CaseContext& context) {
   figure.chart.lines.push_back(theory_curve(
       "5/48 (2 pi/N)^2", [&](double n) { return 100 * 5 * turn * turn / (48 * n * n); }, 16, 100));
   figure.chart.lines.push_back(model_points("ring of elements", elements, errors));
-  figure.caption = "Bending energy of a circle of fixed circumference cut into N elements, against EI (2 pi)^2/2L. "
-                   "The line is the leading term of the bond's own energy, 12 (1 - cos(delta/2)) - 2 (1 - cos delta).";
+  figure.caption =
+      "Bending energy of a circle of fixed circumference cut into N elements, against EI (2 pi)^2/2L. "
+      "The line is the leading term of the bond's own energy, 12 (1 - cos(delta/2)) - 2 (1 - cos delta).";
   result.figures.push_back(figure);
-  result.remarks.push_back("A bond bent by delta between chords has 1 + 5 delta^2/48 times the energy of the arc: the "
-                           "error falls with the square of the element length.");
+  result.remarks.push_back(
+      "A bond bent by delta between chords has 1 + 5 delta^2/48 times the energy of the arc: the "
+      "error falls with the square of the element length.");
   result.sources.push_back(set_name);
   return result;
 }

@@ -35,8 +35,8 @@ CaseResult run(const CaseContext& context) {
                                          oracle.bond.stretch, 1e-4, "eV/nm", "linear spring: exact"));
   const EndMotion bent = loaded_end(model, {tip, 0, 0}, Vector3::Zero());
   result.checks.push_back(relative_check("bending stiffness F L^3/3w",
-                                         tip * std::pow(length, 3) / (3 * bent.displacement.x()),
-                                         oracle.bond.bend, 2e-3, "eV nm", "discrete beam: error of (a/L)^2"));
+                                         tip * std::pow(length, 3) / (3 * bent.displacement.x()), oracle.bond.bend,
+                                         2e-3, "eV nm", "discrete beam: error of (a/L)^2"));
   const EndMotion turned = loaded_end(model, Vector3::Zero(), {0, 0, couple});
   result.checks.push_back(relative_check("torsional stiffness M L/phi", couple * length / turned.rotation,
                                          oracle.bond.twist, 1e-4, "eV nm", "angle of 0.003 rad in each bond"));
@@ -47,13 +47,18 @@ CaseResult run(const CaseContext& context) {
     deflection.push_back(f > 0 ? loaded_end(model, {f, 0, 0}, Vector3::Zero()).displacement.x() : 0.0);
   }
   CaseFigure figure;
-  figure.chart = {"Cantilever: deflection of the end against the force on it", {"force", "eV/nm"},
-                  {"deflection", "nm"}, {}, {}};
+  figure.chart = {"Cantilever: deflection of the end against the force on it",
+                  {"force", "eV/nm"},
+                  {"deflection", "nm"},
+                  {},
+                  {}};
   const double compliance = std::pow(length, 3) / (3 * oracle.bond.bend);
-  figure.chart.lines.push_back(theory_curve("F L^3/3 EI", [&](double f) { return f * compliance; }, 0, 0.5));
+  figure.chart.lines.push_back(theory_curve(
+      "F L^3/3 EI", [&](double f) { return f * compliance; }, 0, 0.5));
   figure.chart.lines.push_back(model_points("chain of elements", force, deflection));
-  figure.caption = "The chain bends as the beam does; at the largest force the points fall below the line of small "
-                   "deflections, as an elastica does.";
+  figure.caption =
+      "The chain bends as the beam does; at the largest force the points fall below the line of small "
+      "deflections, as an elastica does.";
   result.figures.push_back(figure);
   result.remarks.push_back("The three stiffnesses are independent: each load measures one of them.");
   result.sources.push_back(set_name);
@@ -67,8 +72,9 @@ Case stretch_and_cantilever_case() {
   c.name = "stretch-and-cantilever";
   c.title = "One tube pulled, bent and twisted by its end";
   c.why = "Every elastic energy of a rope is made of EA, EI and GJ: the elements must give back what is put in.";
-  c.setup = "A straight (10,10) tube of 20 bonds, one end fixed; a force along it, a force across it, a couple about "
-            "it; relaxed to 1e-7 eV/nm.";
+  c.setup =
+      "A straight (10,10) tube of 20 bonds, one end fixed; a force along it, a force across it, a couple about "
+      "it; relaxed to 1e-7 eV/nm.";
   c.oracle = "u = F L/EA, w = F L^3/(3 EI), phi = M L/GJ.";
   c.literature = "L. D. Landau, E. M. Lifshitz, Theory of Elasticity, 3rd ed. (1986), DOI 10.1016/C2009-0-25521-8";
   c.run = run;

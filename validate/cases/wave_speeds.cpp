@@ -66,16 +66,16 @@ CaseResult run(const CaseContext& context) {
   const double torsional = std::sqrt(oracle.bond.twist / oracle.element_inertia(1));
   const StandingWave a = standing_wave(model, false), t = standing_wave(model, true);
   CaseResult result;
-  result.checks.push_back(relative_check("axial wave speed", a.speed, axial, 3e-3, "km/s",
-                                         "discrete chain and time step: below 1e-3"));
+  result.checks.push_back(
+      relative_check("axial wave speed", a.speed, axial, 3e-3, "km/s", "discrete chain and time step: below 1e-3"));
   result.checks.push_back(relative_check("torsional wave speed", t.speed, torsional, 3e-3, "km/s",
                                          "discrete chain and time step: below 1e-3"));
   CaseFigure figure;
-  figure.chart = {"First standing waves of a free tube", {"time", "ps"}, {"velocity of the mode, relative", ""}, {},
-                  {}};
+  figure.chart = {
+      "First standing waves of a free tube", {"time", "ps"}, {"velocity of the mode, relative", ""}, {}, {}};
   const double k = units::pi / ((bonds + 1) * oracle.element_length);
-  figure.chart.lines.push_back(theory_curve("axial, theory", [&](double x) { return std::cos(k * axial * x); }, 0,
-                                            a.time.back(), 0));
+  figure.chart.lines.push_back(theory_curve(
+      "axial, theory", [&](double x) { return std::cos(k * axial * x); }, 0, a.time.back(), 0));
   figure.chart.lines.push_back(thinned("axial, chain", a, 1));
   figure.chart.lines.push_back(theory_curve(
       "torsion, theory", [&](double x) { return std::cos(k * torsional * x); }, 0, t.time.back(), 2));
@@ -96,8 +96,9 @@ Case wave_speeds_case() {
   c.why = "Loads reach the middle of a rope at these speeds: they say which twisting rate is slow.";
   c.setup = "A free straight (10,10) tube of 61 elements, started in its first axial or torsional mode; undamped.";
   c.oracle = "c = sqrt(EA/mu) axial, c = sqrt(GJ/(mu r^2)) torsional, mu the mass per length.";
-  c.literature = "K. F. Graff, Wave Motion in Elastic Solids (Dover, 1991); carbon nanotubes: T. Natsuki, T. Hayashi, "
-                 "M. Endo, J. Appl. Phys. 97, 044307 (2005), DOI 10.1063/1.1849823";
+  c.literature =
+      "K. F. Graff, Wave Motion in Elastic Solids (Dover, 1991); carbon nanotubes: T. Natsuki, T. Hayashi, "
+      "M. Endo, J. Appl. Phys. 97, 044307 (2005)";
   c.run = run;
   return c;
 }

@@ -1,0 +1,133 @@
+// The twisted rope against stored references of LAMMPS: it passes, and every fault of the model that it can see
+// turns it red.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "cases/md_rope.hpp"
+#include "io/data_files.hpp"
+#include "io/parameters_toml.hpp"
+
+namespace ropewalk {
+
+Case rope_7_5_5_short_case();
+Case rope_7_10_10_case();
+
+namespace {
+
+CaseContext stored_context() {
+  CaseContext context;
+  context.parameters = [](const std::string& name) { return read_parameters(find_parameters(name, "")); };
+  context.references = ROPEWALK_SOURCE_DIR "/data/references";
+  return context;
+}
+
+CaseResult short_rope(const Fault& fault) {
+  CaseContext context = stored_context();
+  context.fault = fault;
+  return rope_7_5_5_short_case().run(context);
+}
+
+bool red(const CaseResult& result, const std::string& part_of_name) {
+  return std::any_of(result.checks.begin(), result.checks.end(), [&](const Check& c) {
+    return !c.informative && !c.holds() && c.name.find(part_of_name) != std::string::npos;
+  });
+}
+
+TEST(RopeCase, ShortRopeFollowsTheAtoms) {
+  const CaseResult result = short_rope({});
+  for (const Check& c : result.checks)
+    EXPECT_TRUE(c.informative || c.holds()) << c.name << ": " << c.value << " against " << c.reference;
+  EXPECT_TRUE(result.holds());
+  EXPECT_EQ(result.figures.size(), 5u);
+  for (const CaseFigure& figure : result.figures) EXPECT_TRUE(can_draw(figure.chart)) << figure.chart.title;
+}
+
+TEST(RopeCase, SoftTorsionShowsInTheTwistingEnergy) {
+  Fault fault;
+  fault.GJ = 0.9;
+  EXPECT_TRUE(red(short_rope(fault), "twisting energy"));
+}
+
+TEST(RopeCase, DoubledContactShowsInTheVdwEnergy) {
+  Fault fault;
+  fault.contact = 2;
+  EXPECT_TRUE(red(short_rope(fault), "vdW energy"));
+}
+
+TEST(RopeCase, StiffBendingShowsInTheTwistingEnergy) {
+  Fault fault;
+  fault.EI = 1.1;
+  EXPECT_TRUE(red(short_rope(fault), "twisting energy"));
+}
+
+// The known miss: tubes of six diameters, clamped, shear where they bend, and bonds do not. With what shear would
+// save taken off, all angles are within 5 %.
+TEST(RopeCase, WideShortTubesMissTheirShear) {
+  const CaseResult result = rope_7_10_10_case().run(stored_context());
+  EXPECT_FALSE(result.holds());
+  int corrected = 0;
+  for (const Check& c : result.checks) {
+    if (!c.informative && !c.holds()) {
+      EXPECT_GT(c.difference(), 0) << c.name;
+      EXPECT_LT(c.difference(), 0.15) << c.name;
+      EXPECT_TRUE(c.name.find("twisting energy") == 0 || c.name.find("end moment") == 0) << c.name;
+    }
+    if (c.name.find("would save") == std::string::npos) continue;
+    ++corrected;
+    EXPECT_TRUE(c.holds()) << c.name;
+  }
+  EXPECT_EQ(corrected, 6);
+}
+
+// The clamped length counts rows of atoms: one row more than the free ones, and the last held rows bound it.
+TEST(RopeCase, ClampedLengthReachesFromHeldRowToHeldRow) {
+  TwistedRope rope;
+  rope.free_rows = 10;
+  rope.band_rows = 3;
+  const ParameterSet set = stored_context().parameters("cnt-5-5-tersoff");
+  for (const RopeTube& tube : rope_atoms(rope, set)) {
+    const auto by_height = [](const Vector3& a, const Vector3& b) { return a.z() < b.z(); };
+    const double below = std::max_element(tube.below.begin(), tube.below.end(), by_height)->z();
+    const double above = std::min_element(tube.above.begin(), tube.above.end(), by_height)->z();
+    EXPECT_NEAR(above - below, clamped_length(rope, set), 1e-9);
+    EXPECT_EQ(tube.free.size(), 10u * 10u);  // ten atoms in a row of (5,5)
+    EXPECT_EQ(tube.below.size(), tube.above.size());
+  }
+}
+
+// Registries differ: no two tubes are turned and shifted alike.
+TEST(RopeCase, TubesAreTurnedAndShiftedAgainstEachOther) {
+  TwistedRope rope;
+  rope.free_rows = 4;
+  rope.band_rows = 1;
+  const ParameterSet set = stored_context().parameters("cnt-5-5-tersoff");
+  const std::vector<RopeTube> tubes = rope_atoms(rope, set);
+  ASSERT_EQ(tubes.size(), 7u);
+  for (std::size_t i = 0; i < tubes.size(); ++i)
+    for (std::size_t j = i + 1; j < tubes.size(); ++j)
+      EXPECT_GT(std::fabs(tubes[i].free[0].z() - tubes[j].free[0].z()), 1e-3) << i << " and " << j;
+}
+
+// An undamaged rope at rest pushes at its grips with nothing but its own shortening, and turns neither way.
+TEST(RopeCase, UntwistedElementsCarryNoMoment) {
+  TwistedRope rope;
+  rope.free_rows = 32;
+  rope.band_rows = 8;
+  rope.bonds = 6;
+  rope.step = 0.05;
+  rope.increments = 1;
+  const ParameterSet set = stored_context().parameters("cnt-5-5-tersoff");
+  const std::vector<TwistedState> states = twist_elements(rope, set, true);
+  ASSERT_EQ(states.size(), 2u);
+  EXPECT_NEAR(states[0].moment, 0, 1e-2);
+  EXPECT_NEAR(states[0].force, 0, 0.25);
+  // Energy is the work of the moment, which starts at zero and rises in proportion.
+  EXPECT_NEAR(states[1].total - states[0].total, 0.5 * 0.05 * states[1].moment,
+              0.02 * (states[1].total - states[0].total));
+}
+
+}  // namespace
+}  // namespace ropewalk

@@ -1,0 +1,73 @@
+// Cohesion of straight hexagonal ropes.
+#include <cmath>
+
+#include "cases/chains_contact.hpp"
+
+namespace ropewalk {
+namespace {
+
+constexpr const char* set_name = "cnt-10-10-tersoff";
+
+double vdw_energy(const ParameterSet& set, int tubes, int elements) {
+  const Bundle b = line_bundle(set, tubes, elements);
+  return Simulation(b.topology, b.interaction, {}, b.state, b.time_step).forces().energy.vdw;
+}
+
+// Of two lengths, so that the ends drop out; eV/nm.
+double energy_per_length(const ParameterSet& set, int tubes) {
+  return (vdw_energy(set, tubes, 16) - vdw_energy(set, tubes, 8)) / (8 * set.element_length);
+}
+
+double contacts(double tubes) { return 3 * tubes - std::sqrt(12 * tubes - 3); }
+
+CaseResult run(const CaseContext& context) {
+  const ParameterSet model = context.model(set_name), oracle = context.parameters(set_name);
+  const Well pair = surface_integral(oracle).parallel_well();
+  CaseResult result;
+  std::vector<double> tubes, energies;
+  for (const int n : {7, 19, 37, 61, 91}) {
+    const double energy = energy_per_length(model, n);
+    tubes.push_back(n);
+    energies.push_back(energy);
+    result.checks.push_back(relative_check("energy per length of " + std::to_string(n) + " tubes", energy,
+                                           contacts(n) * pair.energy, 3e-3, "eV/nm",
+                                           "contact fitted to 1.4e-3 of the well"));
+  }
+  result.checks.push_back(relative_check("spacing", line_parallel_well(model.line->density).distance, pair.distance,
+                                         1e-3, "nm", "place of the minimum"));
+  const double second = std::sqrt(3.0) * pair.distance;
+  result.checks.push_back(absolute_check("energy of second neighbours",
+                                         line_parallel_energy(model.line->density, second), 0, 1e-6, "eV/nm",
+                                         "the law ends before them"));
+  CaseFigure figure;
+  figure.chart = {"Cohesion of hexagonal ropes", {"tubes", "", true}, {"energy per length", "eV/nm"}, {}, {}};
+  figure.chart.lines.push_back(theory_curve(
+      "(3 N - sqrt(12 N - 3)) E(R0)", [&](double n) { return contacts(n) * pair.energy; }, 7, 91));
+  figure.chart.lines.push_back(model_points("ropes", tubes, energies));
+  figure.caption = "From 12 contacts of 7 tubes to 240 of 91.";
+  result.figures.push_back(figure);
+  result.remarks.push_back(
+      "Atoms of second neighbours are farther apart than the cutoff of the atom-atom law, so "
+      "the sum over contacts is the whole energy in the oracle too.");
+  result.sources.push_back(set_name);
+  return result;
+}
+
+}  // namespace
+
+Case hexagonal_cohesion_case() {
+  Case c;
+  c.name = "hexagonal-cohesion";
+  c.title = "Cohesion of straight ropes of 7 to 91 tubes";
+  c.why = "It is the energy that twisting has to work against when it opens voids and breaks contacts.";
+  c.setup =
+      "Straight (10,10) tubes on a hexagonal lattice of the law's spacing; energies of two lengths differenced.";
+  c.oracle = "E/L = (3 N - sqrt(12 N - 3)) E(R0), E(R0) the surface integral at its minimum.";
+  c.literature =
+      "H. Harborth, Elem. Math. 29, 14 (1974); L. A. Girifalco, M. Hodak, R. S. Lee, Phys. Rev. B 62, "
+      "13104 (2000), DOI 10.1103/PhysRevB.62.13104";
+  c.run = run;
+  return c;
+}
+
+}  // namespace ropewalk
