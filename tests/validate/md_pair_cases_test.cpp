@@ -62,6 +62,8 @@ struct Seen {
   std::set<std::string> known_misses;  // what the case's remarks discuss
 };
 
+void PrintTo(const Seen& seen, std::ostream* out) { *out << seen.make().name; }
+
 std::set<std::string> misses(const CaseResult& result) {
   std::set<std::string> names;
   for (const Check& check : result.checks)

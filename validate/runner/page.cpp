@@ -30,15 +30,18 @@ std::string verdict_html(const Outcome& o) {
   return "";
 }
 
+// A bare number has none.
+std::string unit_of(const Check& c) { return c.unit.empty() || c.unit == "1" ? "" : " " + c.unit; }
+
 std::string percent(const Check& c) {
   if (!std::isfinite(c.value)) return "not finite";
-  return c.relative ? number_text(100 * c.difference(), 3) + " %" : number_text(c.difference(), 3) + " " + c.unit;
+  return c.relative ? number_text(100 * c.difference(), 3) + " %" : number_text(c.difference(), 3) + unit_of(c);
 }
 
 std::string allowed(const Check& c) {
   if (c.informative) return "<span class=\"dim\">shown only</span>";
   return c.relative ? number_text(100 * c.tolerance, 3) + " %"
-                    : number_text(c.tolerance, 3) + " " + escape_markup(c.unit);
+                    : number_text(c.tolerance, 3) + escape_markup(unit_of(c));
 }
 
 // The check that is nearest to its bound, or furthest beyond it.
