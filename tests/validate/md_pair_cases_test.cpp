@@ -8,52 +8,17 @@
 #include <string>
 #include <vector>
 
-#include "core/case.hpp"
-#include "io/data_files.hpp"
-#include "io/parameters_toml.hpp"
 #include "model/error.hpp"
+#include "validate/support.hpp"
 
 namespace ropewalk {
 
-Case tube_stretch_case();
-Case tube_twist_case();
-Case tube_bend_case();
-Case pair_distance_case();
-Case pair_sliding_case();
-Case crossed_tubes_case();
-
 namespace {
 
-constexpr const char* references = ROPEWALK_SOURCE_DIR "/data/references";
-
-CaseResult result_of(const Case& c, const Fault& fault = {}) {
-  CaseContext context;
-  context.parameters = [](const std::string& name) { return read_parameters(find_parameters(name, "")); };
-  context.references = references;
-  context.fault = fault;
-  return c.run(context);
-}
-
-Fault stiffer_stretch() {
-  Fault f;
-  f.EA = 1.1;
-  return f;
-}
-Fault softer_twist() {
-  Fault f;
-  f.GJ = 0.9;
-  return f;
-}
-Fault stiffer_bend() {
-  Fault f;
-  f.EI = 1.1;
-  return f;
-}
-Fault twice_the_contact() {
-  Fault f;
-  f.contact = 2;
-  return f;
-}
+using test::softer_twist;
+using test::stiffer_bend;
+using test::stiffer_stretch;
+using test::twice_the_contact;
 
 struct Seen {
   Case (*make)();
@@ -74,20 +39,20 @@ std::set<std::string> misses(const CaseResult& result) {
 class MdPairCases : public ::testing::TestWithParam<Seen> {};
 
 TEST_P(MdPairCases, HoldOnTheirStoredReferencesButForKnownMisses) {
-  const CaseResult result = result_of(GetParam().make());
+  const CaseResult result = test::run(GetParam().make());
   EXPECT_FALSE(result.checks.empty());
   EXPECT_EQ(misses(result), GetParam().known_misses);
 }
 
 TEST_P(MdPairCases, TurnRedUnderTheirFault) {
-  const CaseResult result = result_of(GetParam().make(), GetParam().fault());
+  const CaseResult result = test::run(GetParam().make(), GetParam().fault());
   EXPECT_FALSE(result.holds());
   EXPECT_GT(misses(result).size(), GetParam().known_misses.size());
 }
 
 TEST_P(MdPairCases, DoNotSeeFaultsOfWhatTheyDoNotTouch) {
   for (const auto fault : GetParam().unseen)
-    EXPECT_EQ(misses(result_of(GetParam().make(), fault())), GetParam().known_misses);
+    EXPECT_EQ(misses(test::run(GetParam().make(), fault())), GetParam().known_misses);
 }
 
 TEST_P(MdPairCases, SayWhatTheyAre) {
@@ -99,7 +64,7 @@ TEST_P(MdPairCases, SayWhatTheyAre) {
 }
 
 TEST_P(MdPairCases, DrawFiguresAndNameTheirSources) {
-  const CaseResult result = result_of(GetParam().make());
+  const CaseResult result = test::run(GetParam().make());
   EXPECT_GE(result.figures.size(), 2u);
   for (const CaseFigure& figure : result.figures) {
     EXPECT_TRUE(can_draw(figure.chart)) << figure.chart.title;
@@ -131,13 +96,13 @@ Check check_of(const CaseResult& result, const std::string& name) {
 
 // The window ends before the collapse of a tube without held ends.
 TEST(TwistWindow, KeepsBothTubesWithinAPerCent) {
-  const CaseResult result = result_of(tube_twist_case());
+  const CaseResult result = test::run(tube_twist_case());
   for (const char* tube : {"(5,5)", "(10,10)"})
     EXPECT_LT(std::fabs(check_of(result, std::string(tube) + ": energy in the elastic window").difference()), 0.01);
 }
 
 TEST(PaperLaw, BindsAboutTwiceAsStronglyAsTheAtoms) {
-  const CaseResult result = result_of(pair_distance_case());
+  const CaseResult result = test::run(pair_distance_case());
   const Check ratio = check_of(result, "(10,10) paper law: cohesion over that of the atoms");
   EXPECT_TRUE(ratio.informative);
   EXPECT_NEAR(ratio.value, 2.1, 0.15);

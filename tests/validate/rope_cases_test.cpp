@@ -7,28 +7,15 @@
 #include <string>
 
 #include "cases/md_rope.hpp"
-#include "io/data_files.hpp"
-#include "io/parameters_toml.hpp"
+#include "validate/support.hpp"
 
 namespace ropewalk {
 
-Case rope_7_5_5_short_case();
-Case rope_7_10_10_case();
-
 namespace {
 
-CaseContext stored_context() {
-  CaseContext context;
-  context.parameters = [](const std::string& name) { return read_parameters(find_parameters(name, "")); };
-  context.references = ROPEWALK_SOURCE_DIR "/data/references";
-  return context;
-}
+using test::stored_context;
 
-CaseResult short_rope(const Fault& fault) {
-  CaseContext context = stored_context();
-  context.fault = fault;
-  return rope_7_5_5_short_case().run(context);
-}
+CaseResult short_rope(const Fault& fault) { return test::run(rope_7_5_5_short_case(), fault); }
 
 bool red(const CaseResult& result, const std::string& part_of_name) {
   return std::any_of(result.checks.begin(), result.checks.end(), [&](const Check& c) {
