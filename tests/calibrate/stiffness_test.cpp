@@ -164,6 +164,7 @@ TEST(Envelope, LimitsFollowFromTheTerms) {
   Envelope e = scaled_envelope(0.69);
   EXPECT_FALSE(e.measured);
   EXPECT_NEAR(e.kink_curvature.value, 0.04 / (0.69 * 0.69), 1e-12);
+  e.twist_collapse.value = 0.1;  // far away: it does not cap the twist
   limits_from_terms(s, e);
   EXPECT_NEAR(3 * 7166 * e.linear_strain.value, 0.01 * 9480, 1e-9);
   EXPECT_NEAR(4 * 30000 * std::pow(e.linear_curvature.value, 2), 0.01 * 2265, 1e-9);
@@ -178,6 +179,10 @@ TEST(Envelope, LimitsFollowFromTheTerms) {
     for (const double s1 : {t, -t})
       if (std::abs(3 * 40 * s1 + 4 * -1400 * s1 * s1) >= 0.01 * 2060) first = t;
   EXPECT_NEAR(e.linear_shear.value, 0.69 * first, 2e-6);
+  // A tube that collapses early has flattened before: three quarters of the way are left.
+  e.twist_collapse.value = 0.02;
+  limits_from_terms(s, e);
+  EXPECT_NEAR(e.linear_shear.value, 0.015, 1e-12);
 }
 
 class Table : public testing::Test {
