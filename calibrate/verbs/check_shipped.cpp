@@ -13,14 +13,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const Quantity* find(const ParameterSet& set, const std::string& key) {
-  for (const Quantity& q : set.quantities)
-    if (q.key == key) return &q;
-  return nullptr;
-}
-
 double value_of(const ParameterSet& set, const std::string& key) {
-  const Quantity* q = find(set, key);
+  const Quantity* q = find_quantity(set, key);
   if (!q)
     throw InputError({set.path, 0, key}, "is missing", "only a set made by `ropewalk calibrate` can be remade");
   return q->value;
@@ -68,8 +62,8 @@ bool check_one(const std::string& name, double tolerance) {
     const double difference = (b - a) / std::fabs(a);
     const bool near = std::fabs(difference) <= tolerance;
     same = same && near;
-    fmt::print("  {:<30} {:>14.8g} {:>14.8g} {:<8} {:+9.1e}{}\n", key, a, b, find(shipped, key)->unit, difference,
-               near ? "" : "  DIFFERS");
+    fmt::print("  {:<30} {:>14.8g} {:>14.8g} {:<8} {:+9.1e}{}\n", key, a, b, find_quantity(shipped, key)->unit,
+               difference, near ? "" : "  DIFFERS");
   }
   return same;
 }

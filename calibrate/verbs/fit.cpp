@@ -197,12 +197,6 @@ struct Settings {
   FitOptions search;
 };
 
-const Quantity* find(const ParameterSet& set, const std::string& key) {
-  for (const Quantity& q : set.quantities)
-    if (q.key == key) return &q;
-  return nullptr;
-}
-
 Settings read_settings(const TomlTable& top, const std::string& path) {
   static const Words<const char*> models = {{"stiffness", "stiffness"}, {"line", "line"}, {"paper", "paper"}};
   if (top.string("format") != fit_format)
@@ -227,7 +221,7 @@ Settings read_settings(const TomlTable& top, const std::string& path) {
 double start_of(const TomlTable& start, const Settings& s, const Named& n) {
   if (start.has(n.name)) return start.number(n.name, Bounds::any());
   if (s.base)
-    if (const Quantity* q = find(*s.base, n.key)) return q->value;
+    if (const Quantity* q = find_quantity(*s.base, n.key)) return q->value;
   if (n.narrowest > 0) return 0;
   throw start.error(n.name, "is missing", fmt::format("give a start in {}, or a base", n.unit));
 }

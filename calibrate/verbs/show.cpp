@@ -126,9 +126,8 @@ std::string elastic_part(const ParameterSet& set, Figures& figures) {
   if (path.empty()) return paragraph("The set names no table of energies, or it does not lie beside the set.");
   const std::vector<AtomisticRow> rows = read_atomistic_csv(path);
   Points stretch, twist, bend;
-  double natural = 0;
-  for (const Quantity& q : set.quantities)
-    if (q.key == "atomistic.natural_twist") natural = q.value;
+  const Quantity* twisted = find_quantity(set, "atomistic.natural_twist");
+  const double natural = twisted ? twisted->value : 0;
   for (const AtomisticRow& r : rows) {
     if (!(r.length > 0)) continue;
     const double e = r.energy / r.length, fit = (r.energy - r.residual) / r.length;
@@ -216,6 +215,12 @@ std::string provenance_part(const ParameterSet& set) {
 }
 
 }  // namespace
+
+const Quantity* find_quantity(const ParameterSet& set, const std::string& key) {
+  for (const Quantity& q : set.quantities)
+    if (q.key == key) return &q;
+  return nullptr;
+}
 
 Section effective_section(const ParameterSet& set) {
   Section s{};
