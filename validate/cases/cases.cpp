@@ -15,6 +15,9 @@ const std::vector<Case>& all_cases() {
       peeling_force_case(),
       hexagonal_cohesion_case(),
       adhesive_ring_case(),
+      racket_case(),
+      helix_threshold_case(),
+      packing_charge_case(),
       tube_stretch_case(),
       tube_twist_case(),
       tube_bend_case(),
@@ -24,9 +27,14 @@ const std::vector<Case>& all_cases() {
       rope_7_5_5_short_case(),
       rope_7_5_5_long_case(),
       rope_7_10_10_case(),
+      bent_bundle_case(),
+      warm_bundle_case(),
       isotropic_contact_case(),
       legacy_torque_case(),
       parallel_bond_case(),
+      rope_bead_spring_case(),
+      rope_parallel_bond_case(),
+      rope_legacy_torque_case(),
   };
   return cases;
 }

@@ -15,6 +15,9 @@ Case crossing_torque_case();
 Case peeling_force_case();
 Case hexagonal_cohesion_case();
 Case adhesive_ring_case();
+Case racket_case();
+Case helix_threshold_case();
+Case packing_charge_case();
 Case tube_stretch_case();
 Case tube_twist_case();
 Case tube_bend_case();
@@ -24,8 +27,13 @@ Case crossed_tubes_case();
 Case rope_7_5_5_short_case();
 Case rope_7_5_5_long_case();
 Case rope_7_10_10_case();
+Case bent_bundle_case();
+Case warm_bundle_case();
 Case isotropic_contact_case();
 Case legacy_torque_case();
 Case parallel_bond_case();
+Case rope_bead_spring_case();
+Case rope_parallel_bond_case();
+Case rope_legacy_torque_case();
 
 }  // namespace ropewalk

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "cases/chains_contact.hpp"
+#include "cases/rope_codes_beads.hpp"
 #include "scene/build.hpp"
 
 namespace ropewalk {
@@ -10,23 +11,6 @@ namespace {
 
 constexpr const char* set_name = "cnt-10-10-tersoff";
 constexpr const char* paper_name = "cnt-10-10-paper";
-
-// One bead in each element, 12-6, with the spacing and the mean energy per length of two parallel rows.
-struct BeadLaw {
-  double epsilon = 0, sigma = 0;
-
-  BeadLaw(double spacing, double energy, double element_length) {
-    // int (R^2 + z^2)^-3 dz = 3 pi/8 R^-5 and int (R^2 + z^2)^-6 dz = 63 pi/256 R^-11.
-    const double attraction = 3 * units::pi / 8, repulsion = 63 * units::pi / 256;
-    const double x = 5 * attraction / (11 * repulsion);  // (sigma/R)^6 at the minimum
-    sigma = spacing * std::pow(x, 1.0 / 6);
-    epsilon = energy * element_length * element_length / (4 * spacing * (x * x * repulsion - x * attraction));
-  }
-  double energy(const Vector3& separation, const Vector3&, const Vector3&) const {
-    const double y = std::pow(sigma * sigma / separation.squaredNorm(), 3);
-    return 4 * epsilon * (y * y - y);
-  }
-};
 
 struct Slide {
   std::vector<double> shift, energy;  // part of an element; per length, eV/nm

@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "atomistic/potential.hpp"
 #include "core/case.hpp"
 #include "core/reference.hpp"
 #include "model/bond.hpp"
@@ -42,6 +43,13 @@ struct RopeTube {
   std::vector<Vector3> below, free, above;  // nm
 };
 std::vector<RopeTube> rope_atoms(const TwistedRope& rope, const ParameterSet& set);
+
+// Pieces of a LAMMPS input with these atoms, tube by tube as types 1 to 7: the data file; one bonded potential for
+// each tube, which is faster than one for all and cannot bond two tubes, and Lennard-Jones between tubes; and the
+// groups below, above (the bands), held (both) and free.
+std::string rope_data(const std::vector<RopeTube>& rope);
+std::string rope_pairs(const Potential& potential, const UniversalLine& law);
+std::string rope_groups(const std::vector<RopeTube>& rope);
 
 // Columns axial_free, angle_rad, energy_eV, tersoff_eV, vdw_eV, moment_eV, force_eV_nm, rise_nm. Energies are
 // absolute. The moment is that on the upper grip which the rope resists with, the force pulls the grips together,

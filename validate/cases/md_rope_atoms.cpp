@@ -25,56 +25,6 @@ double part(double x) { return x - std::floor(x); }
 double turn_of(int tube, Chirality c) { return part(tube * golden) * 2 * units::pi / c.n; }
 double shift_of(int tube, double row) { return (part(tube * golden * golden * golden) - 0.5) * row; }
 
-std::string data_text(const std::vector<RopeTube>& rope) {
-  std::size_t count = 0;
-  double half = 0;
-  std::string atoms;
-  int type = 0;
-  for (const RopeTube& tube : rope) {
-    ++type;
-    for (const auto* group : {&tube.below, &tube.free, &tube.above})
-      for (const Vector3& atom : *group) {
-        half = std::max(half, atom.cwiseAbs().maxCoeff() + 1);
-        atoms += fmt::format("{} {} {:.12f} {:.12f} {:.12f}\n", ++count, type, atom.x() / angstrom,
-                             atom.y() / angstrom, atom.z() / angstrom);
-      }
-  }
-  std::string text = fmt::format("rope of nanotubes, Angstrom\n\n{} atoms\n{} atom types\n\n", count, tubes);
-  for (const char axis : {'x', 'y', 'z'})
-    text += fmt::format("{:.6f} {:.6f} {}lo {}hi\n", -half / angstrom, half / angstrom, axis, axis);
-  text += "\nMasses\n\n";
-  for (int t = 1; t <= tubes; ++t) text += fmt::format("{} {}\n", t, units::carbon_atomic_weight);
-  return text + "\nAtoms # atomic\n\n" + atoms;
-}
-
-// One tersoff for each tube, which is faster than one for all and cannot bond two tubes.
-std::string pair_text(const Potential& potential, const UniversalLine& law) {
-  std::string text = "pair_style hybrid/overlay";
-  for (int t = 0; t < tubes; ++t) text += " " + potential.pair_style;
-  text += fmt::format(" lj/cut {:.6f}\n", law.lj_cutoff / angstrom);
-  for (int t = 1; t <= tubes; ++t) {
-    text += fmt::format("pair_coeff * * {} {} {}", potential.pair_style, t, potential.file);
-    for (int k = 1; k <= tubes; ++k) text += k == t ? " C" : " NULL";
-    text += "\n";
-  }
-  for (int t = 1; t < tubes; ++t)
-    text += fmt::format("pair_coeff {} {}*{} lj/cut {:.8f} {:.6f}\n", t, t + 1, tubes, law.epsilon,
-                        law.sigma / angstrom);
-  return text;
-}
-
-std::string group_text(const std::vector<RopeTube>& rope) {
-  std::string below = "group below id", above = "group above id";
-  std::size_t first = 1;
-  for (const RopeTube& tube : rope) {
-    below += fmt::format(" {}:{}", first, first + tube.below.size() - 1);
-    first += tube.below.size() + tube.free.size();
-    above += fmt::format(" {}:{}", first, first + tube.above.size() - 1);
-    first += tube.above.size();
-  }
-  return below + "\n" + above + "\ngroup held union below above\ngroup free subtract all held\n";
-}
-
 // The grip's atoms move along the axis together: each feels the mean force.
 std::string hold_text(bool axial_free) {
   if (!axial_free) return "fix hold held setforce 0.0 0.0 0.0\n";
@@ -117,7 +67,7 @@ std::string increments_text(const TwistedRope& rope, double length, bool axial_f
 std::string input_text(const TwistedRope& rope, const ParameterSet& set, const Potential& potential,
                        const std::vector<RopeTube>& atoms, bool axial_free) {
   std::string text = header_commands("s s s", 0.05) + "read_data rope.data\n";
-  text += pair_text(potential, set.line->universal) + group_text(atoms);
+  text += rope_pairs(potential, set.line->universal) + rope_groups(atoms);
   text +=
       "fix ref all store/state 0 x y z\n"
       "compute lj all pair lj/cut\n"
@@ -150,6 +100,55 @@ void read_rows(const std::string& path, bool axial_free, const TwistedRope& rope
 }
 
 }  // namespace
+
+std::string rope_data(const std::vector<RopeTube>& rope) {
+  std::size_t count = 0;
+  double half = 0;
+  std::string atoms;
+  int type = 0;
+  for (const RopeTube& tube : rope) {
+    ++type;
+    for (const auto* group : {&tube.below, &tube.free, &tube.above})
+      for (const Vector3& atom : *group) {
+        half = std::max(half, atom.cwiseAbs().maxCoeff() + 1);
+        atoms += fmt::format("{} {} {:.12f} {:.12f} {:.12f}\n", ++count, type, atom.x() / angstrom,
+                             atom.y() / angstrom, atom.z() / angstrom);
+      }
+  }
+  std::string text = fmt::format("rope of nanotubes, Angstrom\n\n{} atoms\n{} atom types\n\n", count, tubes);
+  for (const char axis : {'x', 'y', 'z'})
+    text += fmt::format("{:.6f} {:.6f} {}lo {}hi\n", -half / angstrom, half / angstrom, axis, axis);
+  text += "\nMasses\n\n";
+  for (int t = 1; t <= tubes; ++t) text += fmt::format("{} {}\n", t, units::carbon_atomic_weight);
+  return text + "\nAtoms # atomic\n\n" + atoms;
+}
+
+std::string rope_pairs(const Potential& potential, const UniversalLine& law) {
+  std::string text = "pair_style hybrid/overlay";
+  for (int t = 0; t < tubes; ++t) text += " " + potential.pair_style;
+  text += fmt::format(" lj/cut {:.6f}\n", law.lj_cutoff / angstrom);
+  for (int t = 1; t <= tubes; ++t) {
+    text += fmt::format("pair_coeff * * {} {} {}", potential.pair_style, t, potential.file);
+    for (int k = 1; k <= tubes; ++k) text += k == t ? " C" : " NULL";
+    text += "\n";
+  }
+  for (int t = 1; t < tubes; ++t)
+    text += fmt::format("pair_coeff {} {}*{} lj/cut {:.8f} {:.6f}\n", t, t + 1, tubes, law.epsilon,
+                        law.sigma / angstrom);
+  return text;
+}
+
+std::string rope_groups(const std::vector<RopeTube>& rope) {
+  std::string below = "group below id", above = "group above id";
+  std::size_t first = 1;
+  for (const RopeTube& tube : rope) {
+    below += fmt::format(" {}:{}", first, first + tube.below.size() - 1);
+    first += tube.below.size() + tube.free.size();
+    above += fmt::format(" {}:{}", first, first + tube.above.size() - 1);
+    first += tube.above.size();
+  }
+  return below + "\n" + above + "\ngroup held union below above\ngroup free subtract all held\n";
+}
 
 double row_distance(const ParameterSet& set) {
   // n hexagons of two atoms each in a row of an armchair tube.
@@ -196,7 +195,7 @@ ReferenceTable twist_atoms(const TwistedRope& rope, const CaseContext& context) 
   table.columns = {"axial_free", "angle_rad", "energy_eV",   "tersoff_eV",
                    "vdw_eV",     "moment_eV", "force_eV_nm", "rise_nm"};
   std::filesystem::create_directories(context.work);
-  const std::string data = data_text(atoms);
+  const std::string data = rope_data(atoms);
   write_file_atomically(context.work + "/rope.data", data);
   std::string inputs = data;
   const auto start = std::chrono::steady_clock::now();

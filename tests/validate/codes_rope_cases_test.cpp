@@ -1,0 +1,100 @@
+// Ropes with the physics of other codes: green with the shipped sets, red under the faults that they are to see;
+// and the references themselves, which have to be what they stand for.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "cases/rope_codes_beads.hpp"
+#include "cases/rope_codes_incremental.hpp"
+#include "validate/support.hpp"
+
+namespace ropewalk {
+namespace {
+
+void expect_green(const Case& c) {
+  const CaseResult result = test::run(c);
+  EXPECT_EQ(c.group, Case::Group::codes);
+  for (const Check& check : result.checks) {
+    EXPECT_TRUE(check.informative || check.holds())
+        << c.name << ": " << check.name << " " << check.value << " against " << check.reference;
+    EXPECT_TRUE(std::isfinite(check.value)) << check.name;
+  }
+  ASSERT_FALSE(result.figures.empty());
+  for (const CaseFigure& figure : result.figures) EXPECT_TRUE(can_draw(figure.chart)) << figure.chart.title;
+  EXPECT_FALSE(result.remarks.empty());
+  EXPECT_FALSE(result.sources.empty());
+}
+
+ParameterSet shipped() { return test::stored_context().parameters("cnt-10-10-tersoff"); }
+
+BeadLaw bead_law(const ParameterSet& set) {
+  const Well pair = surface_integral(set).parallel_well();
+  return {pair.distance, pair.energy, set.element_length};
+}
+
+TEST(CodesRopeCases, BeadSpring) {
+  const Case c = rope_bead_spring_case();
+  expect_green(c);
+  for (const Fault& fault : {test::softer_twist(), test::twice_the_contact()})
+    EXPECT_FALSE(test::run(c, fault).holds());
+}
+
+TEST(CodesRopeCases, ParallelBond) {
+  const Case c = rope_parallel_bond_case();
+  expect_green(c);
+  EXPECT_FALSE(test::run(c, test::softer_twist()).holds());
+}
+
+TEST(CodesRopeCases, LegacyTorque) {
+  const Case c = rope_legacy_torque_case();
+  expect_green(c);
+  for (const Fault& fault : {test::softer_twist(), test::missing_torque()})
+    EXPECT_FALSE(test::run(c, fault).holds());
+}
+
+// The moment of the beads is the derivative of their energy at rest: their gradient is right, what they lack is
+// theirs.
+TEST(CodesRopeCases, BeadsAreConservative) {
+  const ParameterSet set = shipped();
+  BeadRope rope(GrippedRope(set, 8, ContactOptions::Law::line), bead_law(set));
+  const double h = 1e-3;
+  rope.turn(0.3 - h);
+  rope.relax();
+  const double before = rope.total();
+  rope.turn(h);
+  rope.relax();
+  const double moment = rope.moment();
+  rope.turn(h);
+  rope.relax();
+  EXPECT_NEAR(moment, (rope.total() - before) / (2 * h), 1e-4 * moment);
+}
+
+// Two long rows at rest have the spacing and the cohesion that the law was made for.
+TEST(CodesRopeCases, BeadsHaveTheMeanCohesion) {
+  const ParameterSet set = shipped();
+  const Well pair = surface_integral(set).parallel_well();
+  const BeadLaw law = bead_law(set);
+  const auto mean = [&](double distance) {
+    double sum = 0;
+    for (int k = -8000; k < 8000; ++k) sum += law.energy(distance * distance + std::pow(0.01 * (k + 0.5), 2));
+    return 0.01 * sum / (set.element_length * set.element_length);
+  };
+  EXPECT_NEAR(mean(pair.distance), pair.energy, 1e-4 * std::fabs(pair.energy));
+  EXPECT_GT(mean(pair.distance - 0.01), mean(pair.distance));
+  EXPECT_GT(mean(pair.distance + 0.01), mean(pair.distance));
+}
+
+// A held rope at rest stays there, with either bonds.
+TEST(CodesRopeCases, LedRopeRests) {
+  for (const auto bonds : {LedRope::Bonds::total_energy, LedRope::Bonds::incremental}) {
+    LedRope rope(shipped(), 4, bonds, 0.8, 1.5);
+    rope.rest(10);
+    const double energy = rope.energy();
+    rope.rest(2);
+    EXPECT_NEAR(rope.energy(), energy, 1e-6);
+    EXPECT_NEAR(rope.moment(), 0, 1e-4);
+  }
+}
+
+}  // namespace
+}  // namespace ropewalk
