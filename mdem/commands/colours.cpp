@@ -9,12 +9,12 @@ void colour_contacts(const Topology& topology, const Interaction& in, const Stat
   NeighbourList list;
   list.cutoff = in.cutoff();
   list.exclude_along_tube = in.exclude_along_tube;
-  list.build(topology, s.position);
+  list.build(topology, s);
   for (int i = 0; i < topology.elements(); ++i)
     for (std::size_t k = list.begin(i); k < list.begin(i + 1); ++k) {
       const int j = list.indices()[k];
       const auto si = static_cast<std::size_t>(i), sj = static_cast<std::size_t>(j);
-      const double e = with_law(topology, in, topology.tube_of(i), topology.tube_of(j), [&](const auto& law) {
+      const double e = with_law(topology, in, i, j, [&](const auto& law) {
         return law.energy(s.position[sj] - s.position[si], axis_of(s.orientation[si]), axis_of(s.orientation[sj]));
       });
       c.vdw_energy[si] += 0.5 * e;

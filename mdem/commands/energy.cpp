@@ -39,7 +39,7 @@ Forces evaluate(const EnergyArguments& a, const BuiltScene& built, const Interac
   NeighbourList list;
   list.cutoff = in.cutoff();
   list.exclude_along_tube = in.exclude_along_tube;
-  list.build(built.topology, built.state.position);
+  list.build(built.topology, built.state);
   ForceEngine engine;
   engine.compute(built.topology, in, list, built.state, forces);
   return forces;

@@ -167,18 +167,28 @@ double pair_spacing(const PaperContact& contact, double element_length) {
 }
 
 std::vector<LineContact> line_contacts(const Scene& scene) {
+  const std::size_t types = scene.sets.size();
   std::vector<LineContact> pairs;
-  for (const ParameterSet& a : scene.sets)
-    for (const ParameterSet& b : scene.sets) {
-      const LineParameters &i = *a.line, &j = *b.line;
+  std::vector<int> nodes(types, 1);  // of each type: what its most demanding partner needs
+  for (std::size_t a = 0; a < types; ++a)
+    for (std::size_t b = 0; b < types; ++b) {
+      const ParameterSet &i = scene.sets[a], &j = scene.sets[b];
       LineContact pair;
-      pair.density =
-          &a == &b ? i.density : i.universal.density(a.radius, i.surface_density, b.radius, j.surface_density);
+      pair.density = a == b ? i.line->density
+                            : i.line->universal.density(i.radius, i.line->surface_density, j.radius,
+                                                        j.line->surface_density);
       pair.length_i = pair.length_j = scene.element_length;
-      const int nodes =
+      const int needed =
           line_nodes(scene.element_length, line_parallel_well(pair.density).distance, pair.density.contact);
-      pair.nodes_i = pair.nodes_j = scene.contact.nodes > 0 ? scene.contact.nodes : nodes;
+      nodes[a] = std::max(nodes[a], scene.contact.nodes > 0 ? scene.contact.nodes : needed);
       pairs.push_back(pair);
+    }
+  for (std::size_t a = 0; a < types; ++a)
+    for (std::size_t b = 0; b < types; ++b) {
+      LineContact& pair = pairs[a * types + b];
+      pair.nodes_i = nodes[a];
+      pair.nodes_j = nodes[b];
+      pair.sparse_i = sparse_nodes(nodes[a]);
     }
   return pairs;
 }

@@ -6,13 +6,7 @@
 #include "sim/interaction.hpp"
 #include "sim/neighbours.hpp"
 #include "sim/state.hpp"
-
-// One binary for every x86-64: the loader picks the widest vector unit that the machine has.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
-#define ROPEWALK_VECTOR_CLONES __attribute__((target_clones("default", "arch=x86-64-v3", "arch=x86-64-v4")))
-#else
-#define ROPEWALK_VECTOR_CLONES
-#endif
+#include "sim/vector_clones.hpp"
 
 namespace ropewalk {
 
@@ -37,7 +31,6 @@ struct ContactInput {
 };
 
 void paper_contact(const ContactInput& in, const NeighbourList::Chunk& chunk, ContactBuffer& out);
-void line_contact(const ContactInput& in, const NeighbourList::Chunk& chunk, ContactBuffer& out);
 
 // What an element has collected over its neighbours.
 struct ElementSum {

@@ -7,38 +7,146 @@
 
 namespace ropewalk {
 
-void ForceEngine::make_frames(const State& state) {
-  const std::size_t n = state.size();
-  frames_.resize(n);
-  axis_.resize(n);
-#pragma omp parallel for schedule(static) if (n > parallel_from)
-  for (std::size_t i = 0; i < n; ++i) {
-    frames_[i] = frame_of(state.orientation[i]);
-    axis_.set(i, frames_[i].t);
+namespace {
+
+ROPEWALK_VECTOR_CLONES
+void frames_of(const QuaternionArray& q, std::ptrdiff_t begin, std::ptrdiff_t end, FrameArray& out) {
+  const double *w = q.w.data(), *x = q.x.data(), *y = q.y.data(), *z = q.z.data();
+  double *ax = out.e1.x.data(), *ay = out.e1.y.data(), *az = out.e1.z.data(), *bx = out.e2.x.data(),
+         *by = out.e2.y.data(), *bz = out.e2.z.data(), *tx = out.t.x.data(), *ty = out.t.y.data(),
+         *tz = out.t.z.data();
+#pragma omp simd
+  for (std::ptrdiff_t i = begin; i < end; ++i) {
+    const Frame<double> f = frame_of(Quaternion(w[i], x[i], y[i], z[i]));
+    ax[i] = f.e1.x(), ay[i] = f.e1.y(), az[i] = f.e1.z();
+    bx[i] = f.e2.x(), by[i] = f.e2.y(), bz[i] = f.e2.z();
+    tx[i] = f.t.x(), ty[i] = f.t.y(), tz[i] = f.t.z();
   }
 }
 
+// The bonds begin .. end - 1 of one tube. Returns their energies; `slips` becomes negative where a bond does.
+ROPEWALK_VECTOR_CLONES __attribute__((flatten))
+BondEnergy<double> bond_forces(const TubeType& type, const Vec3Array& position, const FrameArray& frames,
+                               std::ptrdiff_t begin, std::ptrdiff_t end, BondArray& out, double& slips) {
+  const double *x = position.x.data(), *y = position.y.data(), *z = position.z.data();
+  const Vec3Array &e1 = frames.e1, &e2 = frames.e2, &t = frames.t;
+  const double *ax = e1.x.data(), *ay = e1.y.data(), *az = e1.z.data(), *bx = e2.x.data(), *by = e2.y.data(),
+               *bz = e2.z.data(), *tx = t.x.data(), *ty = t.y.data(), *tz = t.z.data();
+  double *fx = out.force_j.x.data(), *fy = out.force_j.y.data(), *fz = out.force_j.z.data();
+  double *ix = out.torque_i.x.data(), *iy = out.torque_i.y.data(), *iz = out.torque_i.z.data();
+  double *jx = out.torque_j.x.data(), *jy = out.torque_j.y.data(), *jz = out.torque_j.z.data();
+  const BondStiffness k = type.bond;
+  const double a = type.element_length;
+  double stretch = 0, shear = 0, bend = 0, twist = 0, smallest = 1;
+#pragma omp simd reduction(+ : stretch, shear, bend, twist) reduction(min : smallest)
+  for (std::ptrdiff_t i = begin; i < end; ++i) {
+    const std::ptrdiff_t j = i + 1;
+    const Frame<double> fi{{ax[i], ay[i], az[i]}, {bx[i], by[i], bz[i]}, {tx[i], ty[i], tz[i]}};
+    const Frame<double> fj{{ax[j], ay[j], az[j]}, {bx[j], by[j], bz[j]}, {tx[j], ty[j], tz[j]}};
+    const BondForce<double> f =
+        bond_energy_and_gradient(k, a, Vector3(x[j] - x[i], y[j] - y[i], z[j] - z[i]), fi, fj);
+    fx[i] = f.force_j.x(), fy[i] = f.force_j.y(), fz[i] = f.force_j.z();
+    ix[i] = f.torque_i.x(), iy[i] = f.torque_i.y(), iz[i] = f.torque_i.z();
+    jx[i] = f.torque_j.x(), jy[i] = f.torque_j.y(), jz[i] = f.torque_j.z();
+    stretch += f.energy.stretch;
+    shear += f.energy.shear;
+    bend += f.energy.bend;
+    twist += f.energy.twist;
+    smallest = std::min(smallest, fi.e1.dot(fj.e1) + fi.e2.dot(fj.e2));
+  }
+  slips = smallest;
+  return {stretch, shear, bend, twist};
+}
+
+// Adds the damping of these bonds; returns its power.
+ROPEWALK_VECTOR_CLONES
+double bond_damping(const TubeType& type, const BondDamping& damping, const State& s, std::ptrdiff_t begin,
+                    std::ptrdiff_t end, BondArray& out) {
+  const double *x = s.position.x.data(), *y = s.position.y.data(), *z = s.position.z.data();
+  const double *vx = s.velocity.x.data(), *vy = s.velocity.y.data(), *vz = s.velocity.z.data();
+  const double *wx = s.angular_velocity.x.data(), *wy = s.angular_velocity.y.data(),
+               *wz = s.angular_velocity.z.data();
+  double *fx = out.force_j.x.data(), *fy = out.force_j.y.data(), *fz = out.force_j.z.data();
+  double *ix = out.torque_i.x.data(), *iy = out.torque_i.y.data(), *iz = out.torque_i.z.data();
+  double *jx = out.torque_j.x.data(), *jy = out.torque_j.y.data(), *jz = out.torque_j.z.data();
+  double power = 0;
+  const BondDamping law = damping;
+  const double mass = type.mass, inertia = type.inertia;
+#pragma omp simd reduction(+ : power)
+  for (std::ptrdiff_t i = begin; i < end; ++i) {
+    const std::ptrdiff_t j = i + 1;
+    const DampingForce d =
+        law.force(mass, inertia, Vector3(x[j] - x[i], y[j] - y[i], z[j] - z[i]), Vector3(vx[i], vy[i], vz[i]),
+                  Vector3(wx[i], wy[i], wz[i]), Vector3(vx[j], vy[j], vz[j]), Vector3(wx[j], wy[j], wz[j]));
+    fx[i] += d.force_j.x(), fy[i] += d.force_j.y(), fz[i] += d.force_j.z();
+    ix[i] += d.torque_i.x(), iy[i] += d.torque_i.y(), iz[i] += d.torque_i.z();
+    jx[i] += d.torque_j.x(), jy[i] += d.torque_j.y(), jz[i] += d.torque_j.z();
+    power += d.power;
+  }
+  return power;
+}
+
+// Bond i acts on the elements i and i + 1.
+ROPEWALK_VECTOR_CLONES
+void add_bonds(const std::vector<double>& on_i, double sign_i, const std::vector<double>& on_j, std::ptrdiff_t begin,
+               std::ptrdiff_t end, std::vector<double>& out) {
+  const double *a = on_i.data(), *b = on_j.data();
+  double* to = out.data();
+  if (begin + 1 >= end) return;
+  to[begin] += sign_i * a[begin];
+#pragma omp simd
+  for (std::ptrdiff_t i = begin + 1; i < end - 1; ++i) to[i] += sign_i * a[i] + b[i - 1];
+  to[end - 1] += b[end - 2];
+}
+
+}  // namespace
+
+void ForceEngine::make_frames(const State& state) {
+  const auto n = static_cast<std::ptrdiff_t>(state.size());
+  frames_.resize(state.size());
+  constexpr std::ptrdiff_t block = 512;
+#pragma omp parallel for schedule(static) if (state.size() > parallel_from)
+  for (std::ptrdiff_t i = 0; i < n; i += block) frames_of(state.orientation, i, std::min(i + block, n), frames_);
+}
+
+TubeSum ForceEngine::compute_bonds(const Topology& topology, const Interaction& interaction, const State& state,
+                                   int tube) {
+  const std::ptrdiff_t begin = topology.tube_begin[tube], end = topology.tube_begin[tube + 1];
+  const TubeType& type = topology.type_of(tube);
+  TubeSum sum;
+  double slips = 1;
+  sum.energy = bond_forces(type, state.position, frames_, begin, end - 1, bonds_, slips);
+  for (std::ptrdiff_t i = begin; !(slips > 0) && i + 1 < end && sum.slipping < 0; ++i) {
+    const Frame<double> fi = frames_[static_cast<std::size_t>(i)], fj = frames_[static_cast<std::size_t>(i + 1)];
+    if (!(fi.e1.dot(fj.e1) + fi.e2.dot(fj.e2) > 0)) sum.slipping = static_cast<int>(i);
+  }
+  if (interaction.damping.bond.rate > 0)
+    sum.power = bond_damping(type, interaction.damping.bond, state, begin, end - 1, bonds_);
+  return sum;
+}
+
 std::size_t ForceEngine::bytes() const {
-  std::size_t total = frames_.capacity() * sizeof(Frame<double>) + 3 * axis_.size() * sizeof(double);
-  total += tube_.capacity() * sizeof(int);
+  std::size_t total = 18 * frames_.t.size() * sizeof(double);
   for (const ContactBuffer& b : buffers_) total += 6 * b.fx.capacity() * sizeof(double);
-  return total;
+  return total + line_.bytes();
 }
 
 void ForceEngine::compute_contact(const Topology& topology, const Interaction& interaction,
                                   const NeighbourList& list, const State& state) {
+  buffers_.resize(list.chunks().size());
+  if (!interaction.paper) return line_.compute(topology, interaction, list, state, frames_.t, buffers_.data());
   if (tube_.size() != static_cast<std::size_t>(topology.elements())) {
     tube_.resize(static_cast<std::size_t>(topology.elements()));
     for (int t = 0; t < topology.tubes(); ++t)
       std::fill(tube_.begin() + topology.tube_begin[t], tube_.begin() + topology.tube_begin[t + 1], t);
   }
-  const ContactInput in{&topology, &interaction, &state, &axis_, &list, &tube_};
+  const ContactInput in{&topology, &interaction, &state, &frames_.t, &list, &tube_};
 #pragma omp parallel for schedule(dynamic, 1) if (state.size() > parallel_from)
-  for (int k = 0; k < NeighbourList::chunk_count; ++k) {
-    const auto& chunk = list.chunks()[static_cast<std::size_t>(k)];
-    ContactBuffer& b = buffers_[static_cast<std::size_t>(k)];
+  for (std::size_t k = 0; k < list.chunks().size(); ++k) {
+    const auto& chunk = list.chunks()[k];
+    ContactBuffer& b = buffers_[k];
     b.clear(static_cast<std::size_t>(chunk.touched_end - chunk.touched_begin));
-    interaction.paper ? paper_contact(in, chunk, b) : line_contact(in, chunk, b);
+    paper_contact(in, chunk, b);
   }
 }
 
@@ -54,12 +162,8 @@ void ForceEngine::compute(const Topology& topology, const Interaction& interacti
 
   // Tube by tube: collect the contact buffers in their fixed order, then add the bonds of this tube.
   const int tubes = topology.tubes();
-  struct TubeSum {
-    BondEnergy<double> energy;
-    double power = 0;
-    int slipping = -1;
-  };
   std::vector<TubeSum> sums(static_cast<std::size_t>(tubes));
+  for (Vec3Array* v : {&bonds_.force_j, &bonds_.torque_i, &bonds_.torque_j}) v->resize(state.size());
 #pragma omp parallel for schedule(static) if (state.size() > parallel_from)
   for (int t = 0; t < tubes; ++t) {
     const int from = topology.tube_begin[t], to = topology.tube_begin[t + 1];
@@ -67,9 +171,9 @@ void ForceEngine::compute(const Topology& topology, const Interaction& interacti
     clear(out.force.x), clear(out.force.y), clear(out.force.z);
     clear(out.torque.x), clear(out.torque.y), clear(out.torque.z);
     if (contact) {
-      for (int k = 0; k < NeighbourList::chunk_count; ++k) {
-        const auto& chunk = list.chunks()[static_cast<std::size_t>(k)];
-        const ContactBuffer& b = buffers_[static_cast<std::size_t>(k)];
+      for (std::size_t k = 0; k < list.chunks().size(); ++k) {
+        const auto& chunk = list.chunks()[k];
+        const ContactBuffer& b = buffers_[k];
         const int low = std::max(from, chunk.touched_begin), high = std::min(to, chunk.touched_end);
         for (int i = low; i < high; ++i) {
           const auto at = static_cast<std::size_t>(i - chunk.touched_begin);
@@ -81,34 +185,15 @@ void ForceEngine::compute(const Topology& topology, const Interaction& interacti
           out.torque.z[i] += b.tz[at];
         }
       }
+      if (!interaction.paper) line_.add_node_forces(topology, list, frames_.t, t, out.force, out.torque);
     }
-    TubeSum& sum = sums[static_cast<std::size_t>(t)];
-    const TubeType& type = topology.type_of(t);
-    for (int i = from; i + 1 < to; ++i) {
-      const auto si = static_cast<std::size_t>(i), sj = si + 1;
-      const Vector3 separation = state.position[sj] - state.position[si];
-      const Frame<double>&fi = frames_[si], &fj = frames_[sj];
-      const BondForce<double> f = bond_energy_and_gradient(type.bond, type.element_length, separation, fi, fj);
-      out.force.add(si, -f.force_j);
-      out.force.add(sj, f.force_j);
-      out.torque.add(si, f.torque_i);
-      out.torque.add(sj, f.torque_j);
-      sum.energy.stretch += f.energy.stretch;
-      sum.energy.shear += f.energy.shear;
-      sum.energy.bend += f.energy.bend;
-      sum.energy.twist += f.energy.twist;
-      if (!(fi.e1.dot(fj.e1) + fi.e2.dot(fj.e2) > 0) && sum.slipping < 0) sum.slipping = i;
-      if (interaction.damping.bond.rate > 0) {
-        const DampingForce d = interaction.damping.bond.force(type.mass, type.inertia, separation,
-                                                              state.velocity[si], state.angular_velocity[si],
-                                                              state.velocity[sj], state.angular_velocity[sj]);
-        out.force.add(si, -d.force_j);
-        out.force.add(sj, d.force_j);
-        out.torque.add(si, d.torque_i);
-        out.torque.add(sj, d.torque_j);
-        sum.power += d.power;
-      }
-    }
+    sums[static_cast<std::size_t>(t)] = compute_bonds(topology, interaction, state, t);
+    add_bonds(bonds_.force_j.x, -1, bonds_.force_j.x, from, to, out.force.x);
+    add_bonds(bonds_.force_j.y, -1, bonds_.force_j.y, from, to, out.force.y);
+    add_bonds(bonds_.force_j.z, -1, bonds_.force_j.z, from, to, out.force.z);
+    add_bonds(bonds_.torque_i.x, 1, bonds_.torque_j.x, from, to, out.torque.x);
+    add_bonds(bonds_.torque_i.y, 1, bonds_.torque_j.y, from, to, out.torque.y);
+    add_bonds(bonds_.torque_i.z, 1, bonds_.torque_j.z, from, to, out.torque.z);
   }
 
   out.energy = Energies{};

@@ -2,11 +2,11 @@
 // reference (every pair, one after another), which stays as the oracle. Both call the forms of mdem/model.
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "sim/contact_kernel.hpp"
 #include "sim/interaction.hpp"
+#include "sim/line_engine.hpp"
 #include "sim/neighbours.hpp"
 #include "sim/state.hpp"
 
@@ -22,6 +22,30 @@ struct Forces {
   explicit Forces(std::size_t n = 0) : force(n), torque(n) {}
 };
 
+// Body frames of all elements.
+struct FrameArray {
+  Vec3Array e1, e2, t;
+
+  void resize(std::size_t n) {
+    e1.resize(n);
+    e2.resize(n);
+    t.resize(n);
+  }
+  Frame<double> operator[](std::size_t i) const { return {e1[i], e2[i], t[i]}; }
+};
+
+// Of the bond from element i to i + 1, at i.
+struct BondArray {
+  Vec3Array force_j, torque_i, torque_j;
+};
+
+// What the bonds of one tube do, besides their forces.
+struct TubeSum {
+  BondEnergy<double> energy;
+  double power = 0;   // of their damping
+  int slipping = -1;  // first element of a bond twisted by 90 degrees or more
+};
+
 // Contact and damping of all pairs, bonds and bond damping. The list must be up to date.
 class ForceEngine {
  public:
@@ -33,17 +57,20 @@ class ForceEngine {
     double frames = 0, contact = 0, bonds = 0;
   };
   const Times& times() const { return times_; }
+  const LineEngine& line() const { return line_; }
   std::size_t bytes() const;
 
  private:
   void make_frames(const State& state);
+  TubeSum compute_bonds(const Topology& topology, const Interaction& interaction, const State& state, int tube);
   void compute_contact(const Topology& topology, const Interaction& interaction, const NeighbourList& list,
                        const State& state);
 
-  std::vector<Frame<double>> frames_;
-  Vec3Array axis_;
+  FrameArray frames_;
+  BondArray bonds_;
   std::vector<int> tube_;  // of each element
-  std::array<ContactBuffer, NeighbourList::chunk_count> buffers_;
+  std::vector<ContactBuffer> buffers_;  // of each chunk
+  LineEngine line_;
   Times times_;
 };
 

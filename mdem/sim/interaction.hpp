@@ -15,6 +15,9 @@ struct Interaction {
   std::optional<PaperContact> paper;  // at most one of `paper` and `line`; neither: no contact
   std::vector<LineContact> line;      // of tube types i, j at i * types + j
   bool legacy_torque = false;
+  // Of the line law: displacements between nodes in single precision, or all in double.
+  enum class Precision { mixed, full };
+  Precision precision = Precision::mixed;
   int exclude_along_tube = 20;  // pairs of one tube up to this many elements apart do not interact
   Damping damping;
 
@@ -25,15 +28,25 @@ struct Interaction {
     for (const LineContact& pair : line) reach = std::max(reach, pair.cutoff());
     return reach;
   }
+  // How far from its centre an element has points that interact.
+  double lever() const {
+    double longest = 0;
+    for (const LineContact& pair : line) longest = std::max(longest, 0.5 * pair.length_i);
+    return longest;
+  }
   bool damped_contact() const { return damping.contact.eta > 0; }
 };
 
-// The law between elements of two tubes, whichever it is.
+// The law between two elements, i < j, whichever it is.
 template <class F>
-auto with_law(const Topology& topology, const Interaction& in, int tube_i, int tube_j, F f) {
+auto with_law(const Topology& topology, const Interaction& in, int i, int j, F f) {
   if (in.paper) return f(*in.paper);
-  return f(in.line[static_cast<std::size_t>(topology.tube_type[tube_i]) * topology.types.size() +
-                   static_cast<std::size_t>(topology.tube_type[tube_j])]);
+  const int tube_i = topology.tube_of(i), tube_j = topology.tube_of(j);
+  LineContact law = in.line[static_cast<std::size_t>(topology.tube_type[tube_i]) * topology.types.size() +
+                            static_cast<std::size_t>(topology.tube_type[tube_j])];
+  law.j_begins = j == topology.tube_begin[tube_j];
+  law.j_ends = j + 1 == topology.tube_begin[tube_j + 1];
+  return f(law);
 }
 
 struct Energies {

@@ -2,8 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstdint>
+#include <limits>
+#include <utility>
+
+#include "sim/vector_clones.hpp"
 
 namespace ropewalk {
 namespace {
@@ -75,31 +80,58 @@ CellGrid make_grid(const Vec3Array& p, double reach) {
 
 }  // namespace
 
-bool NeighbourList::moved(const Vec3Array& p) const {
-  const double limit = 0.25 * skin * skin;
-  const std::size_t n = p.size();
-  const double *x = p.x.data(), *y = p.y.data(), *z = p.z.data();
-  const double *rx = reference_.x.data(), *ry = reference_.y.data(), *rz = reference_.z.data();
-  int far = 0;
+namespace {
+
+// The farthest that any point of an element has moved; infinite where a place is not finite.
+ROPEWALK_VECTOR_CLONES
+double farthest(const State& state, const Vec3Array& position, const Vec3Array& axis, double lever) {
+  const std::size_t n = state.size();
+  const double *x = state.position.x.data(), *y = state.position.y.data(), *z = state.position.z.data();
+  const double *rx = position.x.data(), *ry = position.y.data(), *rz = position.z.data();
+  const double *qw = state.orientation.w.data(), *qx = state.orientation.x.data(), *qy = state.orientation.y.data(),
+               *qz = state.orientation.z.data();
+  const double *nx = axis.x.data(), *ny = axis.y.data(), *nz = axis.z.data();
+  double largest = 0, sum = 0;
+#pragma omp simd reduction(max : largest) reduction(+ : sum)
   for (std::size_t i = 0; i < n; ++i) {
     const double dx = x[i] - rx[i], dy = y[i] - ry[i], dz = z[i] - rz[i];
-    far |= static_cast<int>(!(dx * dx + dy * dy + dz * dz <= limit));
+    const double ax = 2 * (qx[i] * qz[i] + qw[i] * qy[i]) - nx[i], ay = 2 * (qy[i] * qz[i] - qw[i] * qx[i]) - ny[i],
+                 az = 1 - 2 * (qx[i] * qx[i] + qy[i] * qy[i]) - nz[i];
+    const double d = std::sqrt(dx * dx + dy * dy + dz * dz) + lever * std::sqrt(ax * ax + ay * ay + az * az);
+    largest = std::max(largest, d);
+    sum += d;
   }
-  return far != 0;
+  return std::isfinite(sum) ? largest : std::numeric_limits<double>::infinity();
 }
 
+}  // namespace
+
 bool NeighbourList::update(const Topology& topology, const State& state) {
-  if (reference_.size() == state.size() && !moved(state.position)) return false;
-  build(topology, state.position);
+  if (reference_.size() == state.size()) {
+    displacement_ = farthest(state, reference_, reference_axis_, lever);
+    if (displacement_ <= 0.5 * skin) return false;
+  }
+  build(topology, state);
   return true;
 }
 
-void NeighbourList::build(const Topology& topology, const Vec3Array& p) {
+void NeighbourList::build(const Topology& topology, const State& state) {
+  Vec3Array axis(state.size());
+  for (std::size_t i = 0; i < state.size(); ++i) axis.set(i, axis_of(state.orientation[i]));
+  build(topology, state.position, std::move(axis));
+}
+
+void NeighbourList::build(const Topology& topology, Vec3Array position, Vec3Array axis) {
+  static std::atomic<long> stamps{0};
+  stamp_ = ++stamps;
+  displacement_ = 0;
+  reference_ = std::move(position);
+  reference_axis_ = std::move(axis);
+  const Vec3Array& p = reference_;
   const int n = static_cast<int>(p.size());
   const double reach = cutoff + skin;
   const double reach2 = reach * reach;
   ++builds_;
-  reference_ = p;
   begin_.assign(static_cast<std::size_t>(n) + 1, 0);
   index_.clear();
   if (cutoff > 0) {
@@ -149,13 +181,14 @@ void NeighbourList::build(const Topology& topology, const Vec3Array& p) {
 
 // Equal numbers of pairs, whatever the threads: the cut belongs to the list.
 void NeighbourList::cut_into_chunks(int n) {
-  chunks_.assign(chunk_count, Chunk{});
+  const int count = chunk_count(n);
+  chunks_.assign(static_cast<std::size_t>(count), Chunk{});
   int from = 0;
-  for (int k = 0; k < chunk_count; ++k) {
+  for (int k = 0; k < count; ++k) {
     Chunk& chunk = chunks_[static_cast<std::size_t>(k)];
-    const std::size_t target = pairs() * static_cast<std::size_t>(k + 1) / chunk_count;
+    const std::size_t target = pairs() * static_cast<std::size_t>(k + 1) / static_cast<std::size_t>(count);
     int to = from;
-    if (k + 1 == chunk_count) {
+    if (k + 1 == count) {
       to = n;
     } else {
       while (to < n && begin(to) < target) ++to;

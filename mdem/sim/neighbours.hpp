@@ -1,8 +1,9 @@
-// Verlet list: every pair of elements closer than cutoff + skin, found on a cell grid, valid until an
+// Verlet list: every pair of elements closer than cutoff + skin, found on a cell grid, valid until a point of an
 // element has moved half the skin. Half list (j > i), sorted by j, so that the order of summation depends on
 // the positions at the last build alone, never on the number of threads or on the grid.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "sim/state.hpp"
@@ -17,36 +18,44 @@ class NeighbourList {
     int begin = 0, end = 0;
     int touched_begin = 0, touched_end = 0;
   };
-  static constexpr int chunk_count = 8;
+  // As many as the elements can fill: their buffers overlap, and what overlaps costs time. Never by the threads.
+  static int chunk_count(int elements) { return std::min(64, std::max(4, elements / 2048)); }
 
   double cutoff = 0;           // nm
   double skin = 0;             // nm
+  double lever = 0;            // nm: turning moves the points of an element that are so far from its centre
   int exclude_along_tube = 0;  // pairs of one tube up to this many elements apart are left out
 
   // Builds anew where an element has moved too far. Returns whether it did. A position that is not finite
   // counts as moved; the build then leaves that element without neighbours.
   bool update(const Topology& topology, const State& state);
-  void build(const Topology& topology, const Vec3Array& position);
+  void build(const Topology& topology, const State& state);
+  void build(const Topology& topology, Vec3Array position, Vec3Array axis);
 
   // First neighbour of i in `indices`; begin(elements) is the number of pairs.
   std::size_t begin(int i) const { return begin_[static_cast<std::size_t>(i)]; }
   const int* indices() const { return index_.data(); }
   std::size_t pairs() const { return index_.size(); }
   const std::vector<Chunk>& chunks() const { return chunks_; }
-  // Positions at the last build: with them a resumed run has the same list, hence the same bits.
+  // Positions and axes at the last build: with them a resumed run has the same list, hence the same bits.
   const Vec3Array& reference() const { return reference_; }
+  const Vec3Array& reference_axis() const { return reference_axis_; }
   long builds() const { return builds_; }
+  // Another one for every build of any list.
+  long stamp() const { return stamp_; }
+  // The farthest that a point of an element was from its place at the last build, when `update` was last called.
+  double displacement() const { return displacement_; }
   std::size_t bytes() const { return index_.capacity() * sizeof(int) + begin_.capacity() * sizeof(std::size_t); }
 
  private:
-  bool moved(const Vec3Array& position) const;
   void cut_into_chunks(int elements);
 
   std::vector<std::size_t> begin_;
   std::vector<int> index_;
   std::vector<Chunk> chunks_;
-  Vec3Array reference_;
-  long builds_ = 0;
+  Vec3Array reference_, reference_axis_;
+  long builds_ = 0, stamp_ = 0;
+  double displacement_ = 0;
 };
 
 }  // namespace ropewalk

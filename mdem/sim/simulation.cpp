@@ -101,8 +101,9 @@ Simulation::Simulation(Topology topology, Interaction interaction, Drive drive, 
       forces_(state_.size()) {
   list_.cutoff = interaction_.cutoff();
   list_.exclude_along_tube = interaction_.exclude_along_tube;
+  list_.lever = interaction_.lever();
   list_.skin = skin;
-  list_.build(topology_, state_.position);
+  list_.build(topology_, state_);
   compute();
   constrain(topology_, drive_, state_.time, forces_, 0.0, state_);
 }
@@ -313,7 +314,7 @@ std::size_t Simulation::bytes() const {
 
 namespace {
 
-constexpr char magic[] = "MDEM1";
+constexpr char magic[] = "MDEM2";
 
 struct Writer {
   std::string bytes;
@@ -347,7 +348,7 @@ struct Reader {
 
 // The arrays of a checkpoint in their order; const or not, as the arguments are.
 template <class S, class F, class R>
-auto checkpoint_arrays(S& s, F& f, R& ref) {
+auto checkpoint_arrays(S& s, F& f, R& ref, R& ref_axis) {
   return std::array{&s.position.x,
                     &s.position.y,
                     &s.position.z,
@@ -369,7 +370,10 @@ auto checkpoint_arrays(S& s, F& f, R& ref) {
                     &f.torque.z,
                     &ref.x,
                     &ref.y,
-                    &ref.z};
+                    &ref.z,
+                    &ref_axis.x,
+                    &ref_axis.y,
+                    &ref_axis.z};
 }
 
 }  // namespace
@@ -385,7 +389,7 @@ std::string Simulation::serialise() const {
   w.put(work_);
   w.put(dissipated_);
   w.put(list_.skin);
-  for (const auto* v : checkpoint_arrays(state_, forces_, list_.reference())) w.put(*v);
+  for (const auto* v : checkpoint_arrays(state_, forces_, list_.reference(), list_.reference_axis())) w.put(*v);
   w.put(forces_.energy);
   w.put(forces_.damping_power);
   return std::move(w.bytes);
@@ -409,11 +413,11 @@ void Simulation::restore(const std::string& bytes) {
   r.get(work_);
   r.get(dissipated_);
   r.get(list_.skin);
-  Vec3Array ref(state_.size());
-  for (auto* v : checkpoint_arrays(state_, forces_, ref)) r.get(*v);
+  Vec3Array ref(state_.size()), ref_axis(state_.size());
+  for (auto* v : checkpoint_arrays(state_, forces_, ref, ref_axis)) r.get(*v);
   r.get(forces_.energy);
   r.get(forces_.damping_power);
-  list_.build(topology_, ref);
+  list_.build(topology_, std::move(ref), std::move(ref_axis));
   point_loads(drive_, state_, state_.time, point_loads_);
 }
 

@@ -47,7 +47,7 @@ void AllForces(benchmark::State& bench) {
   list.cutoff = in.cutoff();
   list.skin = 0.15;
   list.exclude_along_tube = in.exclude_along_tube;
-  list.build(topology, state.position);
+  list.build(topology, state);
   ForceEngine engine;
   Forces forces(state.size());
   for (auto _ : bench) engine.compute(topology, in, list, state, forces);

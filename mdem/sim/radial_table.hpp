@@ -1,0 +1,128 @@
+// The line density u as a piecewise polynomial in rho^2, for the contact kernel: no root, no division, no exp.
+//
+//   y = (rho^2 - core^2)/delta + 1 in [1, 16); its exponent and its first mantissa bits number the segment, which
+//   so are finest where u is steepest; t = y - (start of the segment);
+//   u = sum_k c_k t^k,    force on j along the separation d:  F = -2/delta (du/dy) d.
+//
+// delta puts the beginning of the switch, where the third derivative of u jumps, on the end of a segment. du/dy is
+// interpolated at Chebyshev points and integrated from the cutoff inwards: u is continuous, and the force is the
+// exact derivative of the energy whatever the error of the fit, which therefore costs accuracy (radial_table_test
+// has how much) but no conservation of energy. Closer than the core the parabola of the law itself is used.
+// Coordinates in units of `unit` (nm).
+#pragma once
+
+#include <Eigen/QR>
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include "model/contact_line.hpp"
+
+namespace ropewalk {
+
+// Exponent bias and mantissa bits of the number format.
+template <class T>
+struct FloatBits;
+template <>
+struct FloatBits<float> {
+  static constexpr int mantissa = 23, bias = 127;
+};
+template <>
+struct FloatBits<double> {
+  static constexpr int mantissa = 52, bias = 1023;
+};
+
+template <class T, int segments_, int degree_>
+struct RadialTable {
+  using Value = T;
+  static constexpr int segments = segments_, degree = degree_;
+  static constexpr int octaves = 4, per_octave = segments / octaves;
+  static constexpr int mantissa_left = FloatBits<T>::mantissa -
+                                       (per_octave == 8 ? 3 : per_octave == 16 ? 4 : per_octave == 32 ? 5 : -1);
+
+  alignas(64) T c[degree + 1][segments] = {};
+  T scale = 0, shift = 0;     // y = scale X + shift, X = rho^2 in units of unit^2
+  T core2 = 0, cutoff2 = 0;   // X
+  T force = 0;                // -2/delta unit: times du/dy and the separation in units gives eV/nm^3 times nm
+  T contact = 0, core = 0;    // of the law, nm
+  T v0 = 0, v1 = 0, v2 = 0;   // u = v0 + e (v1 + e v2/2), e = rho - contact - core, below the core
+  T unit = 0;                 // nm
+
+  RadialTable() = default;
+  RadialTable(const LineDensity& law, double unit_nm);
+};
+
+// Pair displacements in single precision, and all in double.
+using MixedTable = RadialTable<float, 32, 5>;
+using FullTable = RadialTable<double, 128, 7>;
+
+// --- Definitions ------------------------------------------------------------------------------------
+
+namespace detail {
+
+// Where the switch begins at the end of a segment, with the smallest delta that reaches the cutoff.
+inline double radial_delta(double core2, double switch2, double cutoff2, int octaves, int per_octave) {
+  const double last = std::exp2(octaves), smallest = (cutoff2 - core2) / (last - 1);
+  for (int k = octaves * per_octave - 1; k > 0; --k) {
+    const double start = std::exp2(k / per_octave) * (1 + static_cast<double>(k % per_octave) / per_octave);
+    const double delta = (switch2 - core2) / (start - 1);
+    if (delta >= smallest) return delta;
+  }
+  return smallest;
+}
+
+}  // namespace detail
+
+template <class T, int segments_, int degree_>
+RadialTable<T, segments_, degree_>::RadialTable(const LineDensity& law, double unit_nm) {
+  const auto squared = [](double x) { return x * x; };
+  const double core_at = squared(law.contact + law.core_gap), end_at = squared(law.cutoff());
+  const double delta =
+      detail::radial_delta(core_at, squared(law.contact + law.switch_gap), end_at, octaves, per_octave);
+  const auto y_of = [&](double x) { return 1 + (x - core_at) / delta; };
+  const auto slope = [&](double y) {  // du/dy
+    const double rho = std::sqrt(core_at + (y - 1) * delta);
+    return law.terms(rho).derivative * delta / (2 * rho);
+  };
+  unit = static_cast<T>(unit_nm);
+  scale = static_cast<T>(unit_nm * unit_nm / delta);
+  shift = static_cast<T>(1 - core_at / delta);
+  core2 = static_cast<T>(core_at / (unit_nm * unit_nm));
+  cutoff2 = static_cast<T>(end_at / (unit_nm * unit_nm));
+  force = static_cast<T>(-2 / delta * unit_nm);
+  contact = static_cast<T>(law.contact);
+  core = static_cast<T>(law.core_gap);
+  const RadialTerms at_core = law.terms(law.contact + law.core_gap);
+  v0 = static_cast<T>(at_core.energy);
+  v1 = static_cast<T>(at_core.derivative);
+  v2 = static_cast<T>(at_core.second);
+
+  constexpr int n = degree;  // terms of du/dy
+  Eigen::Matrix<double, n, n> powers;
+  Eigen::Matrix<double, n, 1> x;  // Chebyshev points of (0, 1)
+  for (int k = 0; k < n; ++k) {
+    x[k] = 0.5 - 0.5 * std::cos(units::pi * (k + 0.5) / n);
+    for (int m = 0; m < n; ++m) powers(k, m) = std::pow(x[k], m);
+  }
+  const Eigen::ColPivHouseholderQR<Eigen::Matrix<double, n, n>> solver(powers);
+  const double y_end = y_of(end_at);
+  double u_end = 0;  // at the end of the present segment
+  for (int k = segments - 1; k >= 0; --k) {
+    const double octave = std::exp2(k / per_octave);
+    const double start = octave * (1 + static_cast<double>(k % per_octave) / per_octave);
+    const double width = std::min(octave / per_octave, y_end - start);
+    if (width <= 0) continue;
+    Eigen::Matrix<double, n, 1> values;
+    for (int m = 0; m < n; ++m) values[m] = slope(start + width * x[m]) * width;
+    const Eigen::Matrix<double, n, 1> terms = solver.solve(values);
+    double u = u_end;
+    for (int m = 0; m < n; ++m) u -= terms[m] / (m + 1);
+    const auto at = static_cast<std::size_t>((FloatBits<T>::bias * per_octave + k) % segments);
+    c[0][at] = static_cast<T>(u);
+    for (int m = 0; m < n; ++m)
+      c[m + 1][at] = static_cast<T>(terms[m] / (m + 1) / std::pow(width, m + 1));
+    u_end = u;
+  }
+}
+
+}  // namespace ropewalk

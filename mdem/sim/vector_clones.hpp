@@ -1,0 +1,9 @@
+// One binary for every x86-64: of a function marked so the loader picks the version for the widest vector unit that
+// the machine has.
+#pragma once
+
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
+#define ROPEWALK_VECTOR_CLONES __attribute__((target_clones("default", "arch=x86-64-v3", "arch=x86-64-v4")))
+#else
+#define ROPEWALK_VECTOR_CLONES
+#endif
