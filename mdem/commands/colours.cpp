@@ -6,9 +6,7 @@ namespace ropewalk {
 namespace {
 
 void colour_contacts(const Topology& topology, const Interaction& in, const State& s, ElementColours& c) {
-  NeighbourList list;
-  list.cutoff = in.cutoff();
-  list.exclude_along_tube = in.exclude_along_tube;
+  NeighbourList list(in, 0);
   list.build(topology, s);
   for (int i = 0; i < topology.elements(); ++i)
     for (std::size_t k = list.begin(i); k < list.begin(i + 1); ++k) {

@@ -36,9 +36,7 @@ Forces evaluate(const EnergyArguments& a, const BuiltScene& built, const Interac
     compute_reference(built.topology, in, built.state, forces);
     return forces;
   }
-  NeighbourList list;
-  list.cutoff = in.cutoff();
-  list.exclude_along_tube = in.exclude_along_tube;
+  NeighbourList list(in, 0);
   list.build(built.topology, built.state);
   ForceEngine engine;
   engine.compute(built.topology, in, list, built.state, forces);

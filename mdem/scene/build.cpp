@@ -177,7 +177,6 @@ std::vector<LineContact> line_contacts(const Scene& scene) {
       pair.density = a == b ? i.line->density
                             : i.line->universal.density(i.radius, i.line->surface_density, j.radius,
                                                         j.line->surface_density);
-      pair.length_i = pair.length_j = scene.element_length;
       const int needed =
           line_nodes(scene.element_length, line_parallel_well(pair.density).distance, pair.density.contact);
       nodes[a] = std::max(nodes[a], scene.contact.nodes > 0 ? scene.contact.nodes : needed);
@@ -186,9 +185,8 @@ std::vector<LineContact> line_contacts(const Scene& scene) {
   for (std::size_t a = 0; a < types; ++a)
     for (std::size_t b = 0; b < types; ++b) {
       LineContact& pair = pairs[a * types + b];
-      pair.nodes_i = nodes[a];
-      pair.nodes_j = nodes[b];
-      pair.sparse_i = sparse_nodes(nodes[a]);
+      pair = line_pair(pair.density, scene.element_length, scene.element_length, nodes[a], nodes[b]);
+      if (scene.contact.all_nodes) pair.sparse_i = 0;
     }
   return pairs;
 }

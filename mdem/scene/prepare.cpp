@@ -95,6 +95,9 @@ Interaction interaction_of(const Scene& scene) {
   Interaction in;
   if (scene.contact.law == ContactOptions::Law::paper) in.paper = scene.parameters().paper;
   if (scene.contact.law == ContactOptions::Law::line) in.line = line_contacts(scene);
+  const bool relax = scene.run.mode == RunOptions::Mode::relax;
+  in.precision =
+      scene.contact.precision.value_or(relax ? Interaction::Precision::full : Interaction::Precision::mixed);
   in.legacy_torque = scene.contact.legacy_torque;
   in.exclude_along_tube = scene.contact.exclude_along_tube;
   in.damping = scene.damping;

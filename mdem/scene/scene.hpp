@@ -11,6 +11,7 @@
 
 #include "model/damping.hpp"
 #include "model/parameters.hpp"
+#include "sim/interaction.hpp"
 
 namespace ropewalk {
 
@@ -41,6 +42,9 @@ struct ContactOptions {
   int exclude_along_tube = 20;  // pairs of one tube up to this many elements apart do not interact
   double skin = 0;              // nm; 0: chosen by the program
   int nodes = 0;                // `line`: per element; 0: as line_nodes chooses
+  bool all_nodes = false;       // `line`: no sparse sums
+  // `line`: pair displacements in single precision; by default where nothing is relaxed to tight tolerances.
+  std::optional<Interaction::Precision> precision;
 };
 
 inline const char* law_name(ContactOptions::Law law) {

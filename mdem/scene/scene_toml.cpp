@@ -183,6 +183,10 @@ ContactOptions read_contact(const TomlTable& t, const Scene& scene) {
     if (c.law != Law::line) throw t.error("nodes_per_element", "belongs to law = \"line\"", "take it away");
     c.nodes = static_cast<int>(t.integer("nodes_per_element", 1, most_nodes));
   }
+  c.all_nodes = t.boolean_or("all_nodes", c.all_nodes);
+  static const Words<Interaction::Precision> precisions = {{"mixed", Interaction::Precision::mixed},
+                                                           {"double", Interaction::Precision::full}};
+  if (t.has("precision")) c.precision = t.word_or("precision", Interaction::Precision::mixed, precisions);
   c.legacy_torque = t.boolean_or("legacy_torque", c.legacy_torque);
   c.exclude_along_tube =
       static_cast<int>(t.integer_or("exclude_along_tube_elements", c.exclude_along_tube, 1, most_elements));

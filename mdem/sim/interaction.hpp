@@ -17,7 +17,7 @@ struct Interaction {
   bool legacy_torque = false;
   // Of the line law: displacements between nodes in single precision, or all in double.
   enum class Precision { mixed, full };
-  Precision precision = Precision::mixed;
+  Precision precision = Precision::full;
   int exclude_along_tube = 20;  // pairs of one tube up to this many elements apart do not interact
   Damping damping;
 

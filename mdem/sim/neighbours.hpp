@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "sim/interaction.hpp"
 #include "sim/state.hpp"
 
 namespace ropewalk {
@@ -25,6 +26,11 @@ class NeighbourList {
   double skin = 0;             // nm
   double lever = 0;            // nm: turning moves the points of an element that are so far from its centre
   int exclude_along_tube = 0;  // pairs of one tube up to this many elements apart are left out
+
+  NeighbourList() = default;
+  // For all that acts between elements; to be built.
+  NeighbourList(const Interaction& in, double skin_nm)
+      : cutoff(in.cutoff()), skin(skin_nm), lever(in.lever()), exclude_along_tube(in.exclude_along_tube) {}
 
   // Builds anew where an element has moved too far. Returns whether it did. A position that is not finite
   // counts as moved; the build then leaves that element without neighbours.

@@ -98,11 +98,8 @@ Simulation::Simulation(Topology topology, Interaction interaction, Drive drive, 
       drive_(std::move(drive)),
       state_(std::move(state)),
       time_step_(time_step),
+      list_(interaction_, skin),
       forces_(state_.size()) {
-  list_.cutoff = interaction_.cutoff();
-  list_.exclude_along_tube = interaction_.exclude_along_tube;
-  list_.lever = interaction_.lever();
-  list_.skin = skin;
   list_.build(topology_, state_);
   compute();
   constrain(topology_, drive_, state_.time, forces_, 0.0, state_);

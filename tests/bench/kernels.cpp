@@ -43,10 +43,7 @@ void AllForces(benchmark::State& bench) {
   Interaction in;
   in.paper = test::published_contact();
   in.damping.contact = {static_cast<double>(bench.range(1)), 1.713, 2.57};
-  NeighbourList list;
-  list.cutoff = in.cutoff();
-  list.skin = 0.15;
-  list.exclude_along_tube = in.exclude_along_tube;
+  NeighbourList list(in, 0.15);
   list.build(topology, state);
   ForceEngine engine;
   Forces forces(state.size());

@@ -57,10 +57,7 @@ class ForcesTest : public ::testing::TestWithParam<Variant> {
 
   Forces fast(double skin, int threads) const {
     omp_set_num_threads(threads);
-    NeighbourList list;
-    list.cutoff = in.cutoff();
-    list.skin = skin;
-    list.exclude_along_tube = in.exclude_along_tube;
+    NeighbourList list(in, skin);
     list.build(topology, state);
     ForceEngine engine;
     Forces f(state.size());

@@ -7,12 +7,9 @@
 namespace ropewalk {
 
 LineContact line_contact_of(const ParameterSet& set) {
-  LineContact pair;
-  pair.density = set.line->density;
-  pair.length_i = pair.length_j = set.element_length;
-  pair.nodes_i = pair.nodes_j =
-      line_nodes(set.element_length, line_parallel_well(pair.density).distance, pair.density.contact);
-  return pair;
+  const LineDensity& density = set.line->density;
+  const int nodes = line_nodes(set.element_length, line_parallel_well(density).distance, density.contact);
+  return line_pair(density, set.element_length, set.element_length, nodes, nodes);
 }
 
 PairIntegral surface_integral(const ParameterSet& set) {

@@ -46,11 +46,8 @@ class ClampedRope {
 };
 
 LineContact contact_of(const ParameterSet& set, double element_length) {
-  LineContact pair;
-  pair.density = set.line->density;
-  pair.length_i = pair.length_j = element_length;
-  pair.nodes_i = pair.nodes_j = line_nodes(element_length, set.line->pair_spacing, pair.density.contact);
-  return pair;
+  const int nodes = line_nodes(element_length, set.line->pair_spacing, set.line->density.contact);
+  return line_pair(set.line->density, element_length, element_length, nodes, nodes);
 }
 
 ClampedRope::ClampedRope(const TwistedRope& rope, const ParameterSet& set)

@@ -17,10 +17,8 @@ LedRope::LedRope(const ParameterSet& set, int bonds, Bonds kind, double step_fra
       move_(rope_.state.size()) {
   // The contact is the simulator's; without stiffness its bonds are silent.
   if (kind_ == Bonds::incremental) rope_.topology.types[0].bond = {};
-  list_.cutoff = rope_.interaction.cutoff();
-  list_.exclude_along_tube = rope_.interaction.exclude_along_tube;
-  list_.skin = default_skin;
-  list_.build(rope_.topology, rope_.state.position);
+  list_ = NeighbourList(rope_.interaction, default_skin);
+  list_.build(rope_.topology, rope_.state);
   forces();
 }
 
