@@ -123,10 +123,13 @@ inline int line_nodes(double length, double pair_spacing, double contact) {
 }
 
 // Nodes towards nearly parallel elements. At least two: a single one could not turn its element.
-inline int sparse_nodes(int nodes) { return std::min(nodes, std::max(2, static_cast<int>(std::ceil(0.309 * nodes)))); }
+inline int sparse_nodes(int nodes) {
+  return std::min(nodes, std::max(2, static_cast<int>(std::ceil(0.309 * nodes))));
+}
 
 // With sparse nodes.
-inline LineContact line_pair(const LineDensity& density, double length_i, double length_j, int nodes_i, int nodes_j) {
+inline LineContact line_pair(const LineDensity& density, double length_i, double length_j, int nodes_i,
+                             int nodes_j) {
   return {density, length_i, length_j, nodes_i, nodes_j, sparse_nodes(nodes_i)};
 }
 

@@ -130,8 +130,7 @@ Prepared prepare(Scene& scene) {
 }
 
 Simulation start(const Scene& scene, const Prepared& p) {
-  const double skin = scene.contact.skin > 0 ? scene.contact.skin : default_skin;
-  return Simulation(p.topology, p.interaction, p.drive, p.state, p.time_step, skin);
+  return Simulation(p.topology, p.interaction, p.drive, p.state, p.time_step, scene.contact.skin);
 }
 
 }  // namespace ropewalk

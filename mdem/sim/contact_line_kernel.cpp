@@ -39,8 +39,7 @@ template <class D, class I, class T, int segments>
 HWY_INLINE hn::Vec<D> look_up(D d, const T (&row)[segments], I index) {
 #if HWY_TARGET <= HWY_AVX3
   if constexpr (sizeof(T) == 4 && segments == 32)
-    return hn::Vec<D>{
-        _mm512_permutex2var_ps(hn::Load(d, row).raw, index.raw, hn::Load(d, row + 16).raw)};
+    return hn::Vec<D>{_mm512_permutex2var_ps(hn::Load(d, row).raw, index.raw, hn::Load(d, row + 16).raw)};
 #endif
   const hn::RebindToSigned<D> di;
   return hn::GatherIndex(d, row, hn::And(index, hn::Set(di, segments - 1)));
@@ -67,7 +66,8 @@ HWY_INLINE void radial(D d, const Table& t, hn::Vec<D> X, hn::Mask<D> wanted, hn
     const auto rho = hn::Sqrt(hn::Max(X, hn::Set(d, static_cast<T>(1e-12) / (t.unit * t.unit))));
     const auto e = hn::Sub(hn::Mul(rho, hn::Set(d, t.unit)), hn::Set(d, t.contact + t.core));
     const auto v1 = hn::Set(d, t.v1), v2 = hn::Set(d, t.v2);
-    const auto inner = hn::MulAdd(e, hn::MulAdd(hn::Mul(e, hn::Set(d, static_cast<T>(0.5))), v2, v1), hn::Set(d, t.v0));
+    const auto inner =
+        hn::MulAdd(e, hn::MulAdd(hn::Mul(e, hn::Set(d, static_cast<T>(0.5))), v2, v1), hn::Set(d, t.v0));
     // du/dy = du/drho unit/(2 rho scale), rho in units.
     const auto inner_slope =
         hn::Div(hn::Mul(hn::MulAdd(e, v2, v1), hn::Set(d, t.unit)), hn::Mul(rho, hn::Set(d, 2 * t.scale)));
@@ -96,9 +96,8 @@ HWY_INLINE Sums<D, K> no_sums(D d) {
 // any, belong to node `begin` first.
 template <int K, bool weighted, class Table, class C>
 HWY_INLINE void row(const Table& t, const LineNodes<C>& nodes, NodeForces<typename Table::Value>& out, int begin,
-                    int end, const C (*from)[3], typename Table::Value factor,
-                    const typename Table::Value* weight, typename Table::Value* energies,
-                    Sums<typename Lanes<typename Table::Value>::D, K>& sums) {
+                    int end, const C (*from)[3], typename Table::Value factor, const typename Table::Value* weight,
+                    typename Table::Value* energies, Sums<typename Lanes<typename Table::Value>::D, K>& sums) {
   using T = typename Table::Value;
   using L = Lanes<T>;
   const typename L::D d;
@@ -106,14 +105,20 @@ HWY_INLINE void row(const Table& t, const LineNodes<C>& nodes, NodeForces<typena
   const auto kf = hn::Set(d, t.force * factor);
   auto energy = hn::Zero(d);
   for (int m = begin; m < end; m += lanes) {
-    T *ox = out.x.data() + (m - out.first), *oy = out.y.data() + (m - out.first), *oz = out.z.data() + (m - out.first);
+    T *ox = out.x.data() + (m - out.first), *oy = out.y.data() + (m - out.first),
+      *oz = out.z.data() + (m - out.first);
     auto gx = hn::LoadU(d, ox), gy = hn::LoadU(d, oy), gz = hn::LoadU(d, oz);
     auto each = hn::Zero(d);
     const auto wanted = hn::FirstN(d, static_cast<std::size_t>(end - m));
+    const auto x0 = L::difference(nodes.x.data() + m, from[0][0]);
+    const auto y0 = L::difference(nodes.y.data() + m, from[0][1]);
+    const auto z0 = L::difference(nodes.z.data() + m, from[0][2]);
     for (int k = 0; k < K; ++k) {
-      const auto dx = L::difference(nodes.x.data() + m, from[k][0]);
-      const auto dy = L::difference(nodes.y.data() + m, from[k][1]);
-      const auto dz = L::difference(nodes.z.data() + m, from[k][2]);
+      // The nodes of one element are so close that their difference is exact in T.
+      const auto apart = [&](int a) { return hn::Set(d, static_cast<T>(from[k][a] - from[0][a])); };
+      const auto dx = k == 0 ? x0 : hn::Sub(x0, apart(0));
+      const auto dy = k == 0 ? y0 : hn::Sub(y0, apart(1));
+      const auto dz = k == 0 ? z0 : hn::Sub(z0, apart(2));
       hn::Vec<typename L::D> u, slope;
       radial(d, t, hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz))), wanted, u, slope);
       auto f = hn::Mul(slope, kf);
@@ -157,7 +162,9 @@ struct Element {
   hn::Vec<D> fx, fy, fz, mx, my, mz, energy;
   ElementSum sum;  // what does not come from nodes
 
-  const LineContact& law(int type_j) const { return in.interaction->line[row_of_types + static_cast<std::size_t>(type_j)]; }
+  const LineContact& law(int type_j) const {
+    return in.interaction->line[row_of_types + static_cast<std::size_t>(type_j)];
+  }
   const Table& table(int type_j) const { return in.tables[row_of_types + static_cast<std::size_t>(type_j)]; }
   HWY_INLINE void add_to(ContactBuffer& buffer, int i) {
     const auto total = [&](hn::Vec<D> v) { return static_cast<double>(hn::GetLane(hn::SumOfLanes(D(), v))); };
@@ -297,7 +304,8 @@ HWY_NOINLINE void mixed_run(E& e, const LineRun& run, LineScratch<typename E::Re
     // The share depends on the angle: a couple on both.
     const int j = run.element_begin + m, at = j - e.touched_begin;
     const double g = difference * share.derivative;
-    const double tx = g * (e.n[1] * axis.z[j] - e.n[2] * axis.y[j]), ty = g * (e.n[2] * axis.x[j] - e.n[0] * axis.z[j]),
+    const double tx = g * (e.n[1] * axis.z[j] - e.n[2] * axis.y[j]),
+                 ty = g * (e.n[2] * axis.x[j] - e.n[0] * axis.z[j]),
                  tz = g * (e.n[0] * axis.y[j] - e.n[1] * axis.x[j]);
     e.sum.tx -= tx;
     e.sum.ty -= ty;
@@ -329,8 +337,21 @@ HWY_INLINE void all_elements(const In& in, const NeighbourList::Chunk& chunk, Li
   for (int i = chunk.begin; i < chunk.end; ++i) {
     if (in.list->begin(i) == in.list->end(i)) continue;
     const auto none = hn::Zero(typename Element<In>::D());
-    Element<In> e{in, forces, out, chunk.touched_begin, static_cast<std::size_t>(in.type[i]) * types,
-                  {x.x[i], x.y[i], x.z[i]}, {n.x[i], n.y[i], n.z[i]}, none, none, none, none, none, none, none, {}};
+    Element<In> e{in,
+                  forces,
+                  out,
+                  chunk.touched_begin,
+                  static_cast<std::size_t>(in.type[i]) * types,
+                  {x.x[i], x.y[i], x.z[i]},
+                  {n.x[i], n.y[i], n.z[i]},
+                  none,
+                  none,
+                  none,
+                  none,
+                  none,
+                  none,
+                  none,
+                  {}};
     even.clear();
     for (const LineRun* run = in.list->begin(i); run != in.list->end(i); ++run) {
       if (static_cast<double>(run->beyond) > in.moved) continue;
@@ -402,13 +423,15 @@ void Damping(const Interaction& in, const State& state, const LineList& list, co
         const auto left = static_cast<std::size_t>(run->damped_end - j);
         const auto at = [&](const std::vector<double>& a) { return load_first(d, a.data() + j, left); };
         const auto of_i = [&](const std::vector<double>& a) { return hn::Set(d, a[static_cast<std::size_t>(i)]); };
-        const V dx = hn::Sub(at(x.x), of_i(x.x)), dy = hn::Sub(at(x.y), of_i(x.y)), dz = hn::Sub(at(x.z), of_i(x.z));
+        const V dx = hn::Sub(at(x.x), of_i(x.x)), dy = hn::Sub(at(x.y), of_i(x.y)),
+                dz = hn::Sub(at(x.z), of_i(x.z));
         const V distance = hn::Sqrt(hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz))));
         const V y = hn::Min(hn::Max(hn::Mul(hn::Sub(distance, inner), per_width), hn::Zero(d)), one);
         const V weight = hn::NegMulAdd(hn::Mul(y, y), hn::NegMulAdd(two, y, three), one);
         const V scale = hn::IfThenElseZero(hn::FirstN(d, left), hn::Mul(minus_eta, weight));
         const V ax = hn::Mul(half, dx), ay = hn::Mul(half, dy), az = hn::Mul(half, dz);
-        const V wx = hn::Add(at(w.x), of_i(w.x)), wy = hn::Add(at(w.y), of_i(w.y)), wz = hn::Add(at(w.z), of_i(w.z));
+        const V wx = hn::Add(at(w.x), of_i(w.x)), wy = hn::Add(at(w.y), of_i(w.y)),
+                wz = hn::Add(at(w.z), of_i(w.z));
         const V rx = hn::MulAdd(wz, ay, hn::NegMulAdd(wy, az, hn::Sub(at(v.x), of_i(v.x))));
         const V ry = hn::MulAdd(wx, az, hn::NegMulAdd(wz, ax, hn::Sub(at(v.y), of_i(v.y))));
         const V rz = hn::MulAdd(wy, ax, hn::NegMulAdd(wx, ay, hn::Sub(at(v.z), of_i(v.z))));
@@ -452,8 +475,8 @@ HWY_EXPORT(Mixed);
 HWY_EXPORT(Full);
 HWY_EXPORT(Damping);
 
-void line_damping(const Interaction& in, const State& state, const LineList& list, const NeighbourList::Chunk& chunk,
-                  ContactBuffer& out) {
+void line_damping(const Interaction& in, const State& state, const LineList& list,
+                  const NeighbourList::Chunk& chunk, ContactBuffer& out) {
   HWY_DYNAMIC_DISPATCH(Damping)(in, state, list, chunk, out);
 }
 

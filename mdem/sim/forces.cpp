@@ -25,9 +25,9 @@ void frames_of(const QuaternionArray& q, std::ptrdiff_t begin, std::ptrdiff_t en
 }
 
 // The bonds begin .. end - 1 of one tube. Returns their energies; `slips` becomes negative where a bond does.
-ROPEWALK_VECTOR_CLONES __attribute__((flatten))
-BondEnergy<double> bond_forces(const TubeType& type, const Vec3Array& position, const FrameArray& frames,
-                               std::ptrdiff_t begin, std::ptrdiff_t end, BondArray& out, double& slips) {
+ROPEWALK_VECTOR_CLONES __attribute__((flatten)) BondEnergy<double> bond_forces(
+    const TubeType& type, const Vec3Array& position, const FrameArray& frames, std::ptrdiff_t begin,
+    std::ptrdiff_t end, BondArray& out, double& slips) {
   const double *x = position.x.data(), *y = position.y.data(), *z = position.z.data();
   const Vec3Array &e1 = frames.e1, &e2 = frames.e2, &t = frames.t;
   const double *ax = e1.x.data(), *ay = e1.y.data(), *az = e1.z.data(), *bx = e2.x.data(), *by = e2.y.data(),
@@ -88,8 +88,8 @@ double bond_damping(const TubeType& type, const BondDamping& damping, const Stat
 
 // Bond i acts on the elements i and i + 1.
 ROPEWALK_VECTOR_CLONES
-void add_bonds(const std::vector<double>& on_i, double sign_i, const std::vector<double>& on_j, std::ptrdiff_t begin,
-               std::ptrdiff_t end, std::vector<double>& out) {
+void add_bonds(const std::vector<double>& on_i, double sign_i, const std::vector<double>& on_j,
+               std::ptrdiff_t begin, std::ptrdiff_t end, std::vector<double>& out) {
   const double *a = on_i.data(), *b = on_j.data();
   double* to = out.data();
   if (begin + 1 >= end) return;

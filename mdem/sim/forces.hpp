@@ -68,7 +68,7 @@ class ForceEngine {
 
   FrameArray frames_;
   BondArray bonds_;
-  std::vector<int> tube_;  // of each element
+  std::vector<int> tube_;               // of each element
   std::vector<ContactBuffer> buffers_;  // of each chunk
   LineEngine line_;
   Times times_;

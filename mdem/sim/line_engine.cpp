@@ -54,7 +54,8 @@ void LineEngine::describe(const Topology& topology, const Interaction& in, const
   const auto prepare = [&](auto& b, double unit) {
     make_tables(b, in, unit);
     b.nodes.per_unit = 1 / unit;
-    for (auto* v : {&b.nodes.x, &b.nodes.y, &b.nodes.z}) v->resize(static_cast<std::size_t>(list_.layout().total()));
+    for (auto* v : {&b.nodes.x, &b.nodes.y, &b.nodes.z})
+      v->resize(static_cast<std::size_t>(list_.layout().total()));
   };
   if (full_) {
     prepare(full_buffers_, 1);
@@ -71,11 +72,10 @@ void LineEngine::run(Buffers& b, const Topology& topology, const Interaction& in
   for (int t = 0; t < topology.tubes(); ++t)
     place_row(layout, topology, length_[static_cast<std::size_t>(topology.tube_type[t])], t, state, axis, b.nodes);
   const LineKernelInput<typename Buffers::Table, typename Buffers::C> input{
-      &topology, &in, &state, &axis, &list_, &b.nodes, b.tables.data(), type_.data(),
-      2 * list.displacement()};
+      &topology, &in, &state, &axis, &list_, &b.nodes, b.tables.data(), type_.data(), 2 * list.displacement()};
   b.forces.resize(list.chunks().size());
   b.scratch.resize(list.chunks().size());
-#pragma omp parallel for schedule(dynamic, 1) if (state.size() > parallel_from)
+#pragma omp parallel for schedule(static) if (state.size() > parallel_from)
   for (std::size_t k = 0; k < list.chunks().size(); ++k) {
     const NeighbourList::Chunk& chunk = list.chunks()[k];
     buffers[k].clear(static_cast<std::size_t>(chunk.touched_end - chunk.touched_begin));
@@ -83,7 +83,8 @@ void LineEngine::run(Buffers& b, const Topology& topology, const Interaction& in
       b.forces[k].clear(0, 0);
       continue;
     }
-    const int first_tube = topology.tube_of(chunk.touched_begin), last_tube = topology.tube_of(chunk.touched_end - 1);
+    const int first_tube = topology.tube_of(chunk.touched_begin),
+              last_tube = topology.tube_of(chunk.touched_end - 1);
     b.forces[k].clear(layout.first(topology, first_tube, chunk.touched_begin),
                       layout.first(topology, last_tube, chunk.touched_end));
     line_contact(input, chunk, b.scratch[k], b.forces[k], buffers[k]);
@@ -148,8 +149,8 @@ void LineEngine::add(const Buffers& b, const Topology& topology, const Neighbour
   }
 }
 
-void LineEngine::add_node_forces(const Topology& topology, const NeighbourList& list, const Vec3Array& axis, int tube,
-                                 Vec3Array& force, Vec3Array& torque) const {
+void LineEngine::add_node_forces(const Topology& topology, const NeighbourList& list, const Vec3Array& axis,
+                                 int tube, Vec3Array& force, Vec3Array& torque) const {
   if (full_) {
     add(full_buffers_, topology, list, axis, tube, force, torque);
   } else {

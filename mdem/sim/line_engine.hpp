@@ -84,8 +84,8 @@ void line_contact(const LineKernelInput<MixedTable, std::int32_t>& in, const Nei
                   LineScratch<float>& scratch, NodeForces<float>& forces, ContactBuffer& out);
 void line_contact(const LineKernelInput<FullTable, double>& in, const NeighbourList::Chunk& chunk,
                   LineScratch<double>& scratch, NodeForces<double>& forces, ContactBuffer& out);
-// Instruction sets of the kernel that this machine can run, best first; use_instructions limits the choice to one of
-// them ("" lifts the limit) and returns false where there is none of that name. For tests and `bench`.
+// Instruction sets of the kernel that this machine can run, best first; use_instructions limits the choice to one
+// of them ("" lifts the limit) and returns false where there is none of that name. For tests and `bench`.
 std::vector<std::string> instruction_sets();
 bool use_instructions(const std::string& name);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <stdexcept>
 
 namespace ropewalk {
@@ -13,13 +14,15 @@ NodeLayout layout_of(const Topology& topology, const Interaction& in) {
   for (std::size_t a = 0; a < types; ++a) {
     out.per_element.push_back(in.line[a * types].nodes_i);
     for (std::size_t b = 0; b < types; ++b)
-      if (in.line[a * types + b].nodes_i != out.per_element[a] || in.line[b * types + a].nodes_j != out.per_element[a])
+      if (in.line[a * types + b].nodes_i != out.per_element[a] ||
+          in.line[b * types + a].nodes_j != out.per_element[a])
         throw std::invalid_argument("a tube type has one number of nodes towards all others");
   }
   int at = 0;
   for (int t = 0; t < topology.tubes(); ++t) {
     out.begin.push_back(at);
-    at += topology.length_of(t) * out.per_element[static_cast<std::size_t>(topology.tube_type[t])] + NodeLayout::pad;
+    at +=
+        topology.length_of(t) * out.per_element[static_cast<std::size_t>(topology.tube_type[t])] + NodeLayout::pad;
   }
   out.begin.push_back(at);
   return out;
@@ -101,28 +104,41 @@ struct Side {
 
 }  // namespace
 
+void LineList::find_runs(const Topology& topology, const Interaction& in, const NeighbourList& list, int tube,
+                         std::vector<LineRun>& runs) {
+  const int* index = list.indices();
+  for (int i = topology.tube_begin[tube]; i < topology.tube_begin[tube + 1]; ++i) {
+    const std::size_t before = runs.size();
+    const std::size_t end = list.begin(i + 1);
+    int tube_j = tube;
+    for (std::size_t k = list.begin(i); k < end;) {
+      const int first = index[k];
+      while (first >= topology.tube_begin[tube_j + 1]) ++tube_j;
+      int last = first;
+      for (++k; k < end && index[k] < topology.tube_begin[tube_j + 1] && index[k] == last + 1; ++k) last = index[k];
+      Side{topology, in, list, layout_, i, tube, tube_j}.add(first, last, runs);
+    }
+    begin_[static_cast<std::size_t>(i) + 1] = runs.size() - before;
+  }
+}
+
 void LineList::build(const Topology& topology, const Interaction& in, const NeighbourList& list) {
-  const int n = topology.elements();
   layout_ = layout_of(topology, in);
   unit_ = unit_of(list.reference());
-  begin_.assign(static_cast<std::size_t>(n) + 1, 0);
+  begin_.assign(static_cast<std::size_t>(topology.elements()) + 1, 0);
   run_.clear();
-  const int* index = list.indices();
-  for (int t = 0, i = 0; t < topology.tubes(); ++t) {
-    for (; i < topology.tube_begin[t + 1]; ++i) {
-      std::size_t k = list.begin(i);
-      const std::size_t end = list.begin(i + 1);
-      int tube_j = t;
-      while (k < end) {
-        const int first = index[k];
-        while (first >= topology.tube_begin[tube_j + 1]) ++tube_j;
-        int last = first;
-        for (++k; k < end && index[k] < topology.tube_begin[tube_j + 1] && index[k] == last + 1; ++k) last = index[k];
-        Side{topology, in, list, layout_, i, t, tube_j}.add(first, last, run_);
-      }
-      begin_[static_cast<std::size_t>(i) + 1] = run_.size();
-    }
-  }
+  const int tubes = topology.tubes(), parts = std::min(tubes, 64);
+  std::vector<std::vector<LineRun>> found(static_cast<std::size_t>(parts));
+#pragma omp parallel for schedule(dynamic, 1) if (topology.elements() > static_cast <int>(parallel_from))
+  for (int part = 0; part < parts; ++part)
+    for (int t = static_cast<int>(static_cast<std::int64_t>(tubes) * part / parts);
+         t < static_cast<int>(static_cast<std::int64_t>(tubes) * (part + 1) / parts); ++t)
+      find_runs(topology, in, list, t, found[static_cast<std::size_t>(part)]);
+  std::size_t total = 0;
+  for (const auto& runs : found) total += runs.size();
+  run_.reserve(total);
+  for (const auto& runs : found) run_.insert(run_.end(), runs.begin(), runs.end());
+  for (std::size_t i = 1; i < begin_.size(); ++i) begin_[i] += begin_[i - 1];
 }
 
 }  // namespace ropewalk

@@ -50,6 +50,10 @@ class LineList {
   std::size_t runs() const { return run_.size(); }
 
  private:
+  // Of the elements of one tube, added to `runs`; begin_[i + 1] takes their number.
+  void find_runs(const Topology& topology, const Interaction& interaction, const NeighbourList& list, int tube,
+                 std::vector<LineRun>& runs);
+
   NodeLayout layout_;
   std::vector<std::size_t> begin_;
   std::vector<LineRun> run_;

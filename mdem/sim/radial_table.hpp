@@ -37,16 +37,18 @@ struct RadialTable {
   using Value = T;
   static constexpr int segments = segments_, degree = degree_;
   static constexpr int octaves = 4, per_octave = segments / octaves;
-  static constexpr int mantissa_left = FloatBits<T>::mantissa -
-                                       (per_octave == 8 ? 3 : per_octave == 16 ? 4 : per_octave == 32 ? 5 : -1);
+  static constexpr int mantissa_left = FloatBits<T>::mantissa - (per_octave == 8    ? 3
+                                                                 : per_octave == 16 ? 4
+                                                                 : per_octave == 32 ? 5
+                                                                                    : -1);
 
   alignas(64) T c[degree + 1][segments] = {};
-  T scale = 0, shift = 0;     // y = scale X + shift, X = rho^2 in units of unit^2
-  T core2 = 0, cutoff2 = 0;   // X
-  T force = 0;                // -2/delta unit: times du/dy and the separation in units gives eV/nm^3 times nm
-  T contact = 0, core = 0;    // of the law, nm
-  T v0 = 0, v1 = 0, v2 = 0;   // u = v0 + e (v1 + e v2/2), e = rho - contact - core, below the core
-  T unit = 0;                 // nm
+  T scale = 0, shift = 0;    // y = scale X + shift, X = rho^2 in units of unit^2
+  T core2 = 0, cutoff2 = 0;  // X
+  T force = 0;               // -2/delta unit: times du/dy and the separation in units gives eV/nm^3 times nm
+  T contact = 0, core = 0;   // of the law, nm
+  T v0 = 0, v1 = 0, v2 = 0;  // u = v0 + e (v1 + e v2/2), e = rho - contact - core, below the core
+  T unit = 0;                // nm
 
   RadialTable() = default;
   RadialTable(const LineDensity& law, double unit_nm);
@@ -119,8 +121,7 @@ RadialTable<T, segments_, degree_>::RadialTable(const LineDensity& law, double u
     for (int m = 0; m < n; ++m) u -= terms[m] / (m + 1);
     const auto at = static_cast<std::size_t>((FloatBits<T>::bias * per_octave + k) % segments);
     c[0][at] = static_cast<T>(u);
-    for (int m = 0; m < n; ++m)
-      c[m + 1][at] = static_cast<T>(terms[m] / (m + 1) / std::pow(width, m + 1));
+    for (int m = 0; m < n; ++m) c[m + 1][at] = static_cast<T>(terms[m] / (m + 1) / std::pow(width, m + 1));
     u_end = u;
   }
 }

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "model/error.hpp"
+#include "sim/motion.hpp"
 
 namespace ropewalk {
 namespace {
@@ -57,12 +58,6 @@ double row_viscosity(const ContactViscosity& viscosity, double element_length, d
   return viscosity.eta * sum;
 }
 
-Quaternion rotation(const Vector3& angle) {
-  const double half = 0.5 * angle.norm();
-  const double scale = half > 1e-6 ? std::sin(half) / (2.0 * half) : 0.5 - half * half / 12.0;
-  return {std::cos(half), scale * angle.x(), scale * angle.y(), scale * angle.z()};
-}
-
 }  // namespace
 
 TimeStepLimit time_step_limit(const Topology& topology, const Interaction& in, double spacing) {
@@ -98,7 +93,7 @@ Simulation::Simulation(Topology topology, Interaction interaction, Drive drive, 
       drive_(std::move(drive)),
       state_(std::move(state)),
       time_step_(time_step),
-      list_(interaction_, skin),
+      list_(interaction_, skin > 0 ? skin : default_skin(interaction_)),
       forces_(state_.size()) {
   list_.build(topology_, state_);
   compute();
@@ -156,14 +151,9 @@ void Simulation::kick(double dt) {
 
 void Simulation::drift(double dt) {
   const auto n = static_cast<std::ptrdiff_t>(state_.size());
+  constexpr std::ptrdiff_t block = 512;
 #pragma omp parallel for schedule(static) if (state_.size() > parallel_from)
-  for (std::ptrdiff_t k = 0; k < n; ++k) {
-    const auto i = static_cast<std::size_t>(k);
-    state_.position.add(i, dt * state_.velocity[i]);
-    Quaternion q = rotation(dt * state_.angular_velocity[i]) * state_.orientation[i];
-    q.coeffs() *= 1.5 - 0.5 * q.squaredNorm();  // one Newton step to unit norm
-    state_.orientation.set(i, q);
-  }
+  for (std::ptrdiff_t i = 0; i < n; i += block) move_elements(state_, dt, i, std::min(i + block, n));
 }
 
 void Simulation::step() {

@@ -35,12 +35,13 @@ TimeStepLimit time_step_limit(const Topology& topology, const Interaction& inter
 // Part of the limit that is used when the step is not typed.
 inline constexpr double default_step_fraction = 0.6;
 
-inline constexpr double default_skin = 0.15;  // nm
+// nm. The runs of the line law skip what is out of reach, so that a wide margin costs little.
+inline double default_skin(const Interaction& in) { return in.line.empty() ? 0.15 : 0.25; }
 
 class Simulation {
  public:
   Simulation(Topology topology, Interaction interaction, Drive drive, State state, double time_step,
-             double skin = default_skin);
+             double skin = 0);  // 0: the default
 
   void step();
   // Relaxes orientations and positions to a nearby minimum (FIRE). Returns whether the largest force

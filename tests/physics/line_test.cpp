@@ -8,10 +8,9 @@ namespace ropewalk {
 namespace {
 
 LineContact contact(double radius_i, double radius_j) {
-  LineContact k = test::line_contact(radius_i, 1, radius_j, 1);
-  k.nodes_i = k.nodes_j =
-      line_nodes(test::element_length, line_parallel_well(k.density).distance, k.density.contact);
-  return k;
+  const LineDensity density = test::line_density(radius_i, radius_j);
+  const int nodes = line_nodes(test::element_length, line_parallel_well(density).distance, density.contact);
+  return line_pair(density, test::element_length, test::element_length, nodes, nodes);
 }
 
 // Energy per length of a long row beside one element, shifted along it.
@@ -57,7 +56,8 @@ TEST_P(LineRows, ParallelRowsSlideWithoutFeelingTheirElements) {
 
 TEST_P(LineRows, CrossedRowsSlideToo) {
   const LineContact k = contact(GetParam().first, GetParam().second);
-  for (const double angle : {20.0, 30.0, 60.0, 90.0}) {
+  // Sparse sums up to 12 degrees, all nodes from 18 on, between them both.
+  for (const double angle : {6.0, 12.0, 15.0, 20.0, 30.0, 60.0, 90.0}) {
     const LineWell well = line_crossed_well(k.density, angle * units::degree);
     Spread s;
     for (int n = 0; n < 9; ++n)
@@ -65,6 +65,30 @@ TEST_P(LineRows, CrossedRowsSlideToo) {
                             (n % 3) * k.length_j / 6));
     EXPECT_LT(s.width(), 1e-3 * std::fabs(well.energy)) << angle << " deg";
     EXPECT_NEAR(s.low, well.energy, 1e-3 * std::fabs(well.energy)) << angle << " deg";
+  }
+}
+
+// Energy of two finite parallel tubes at rest, one of them drawn out by `shift`.
+double drawn_out(LineContact k, double shift) {
+  constexpr int elements = 14;
+  const double distance = line_parallel_well(k.density).distance;
+  double sum = 0;
+  for (int i = 0; i < elements; ++i)
+    for (int j = 0; j < elements; ++j) {
+      k.j_begins = j == 0;
+      k.j_ends = j + 1 == elements;
+      sum += k.energy({distance, 0, (j - i) * k.length_j + shift}, Vector3::UnitZ(), Vector3::UnitZ());
+    }
+  return sum;
+}
+
+// The force of pull-out is the binding energy of a length, wherever the ends stand against the nodes.
+TEST_P(LineRows, PullOutDoesNotFeelTheNodes) {
+  const LineContact k = contact(GetParam().first, GetParam().second);
+  const double well = std::fabs(line_parallel_well(k.density).energy), h = 1e-3;
+  for (int n = 0; n < 24; ++n) {
+    const double shift = (4 + n / 24.0) * k.length_j;
+    EXPECT_NEAR((drawn_out(k, shift + h) - drawn_out(k, shift - h)) / (2 * h), well, 0.01 * well) << shift;
   }
 }
 
@@ -78,7 +102,9 @@ struct LineBundle {
   State state;
   double spacing = 0;
 
-  explicit LineBundle(double temperature, int elements = 5) {
+  explicit LineBundle(double temperature, int elements = 5,
+                      Interaction::Precision precision = Interaction::Precision::full) {
+    in.precision = precision;
     in.line = {contact(0.6785, 0.6785)};
     spacing = line_parallel_well(in.line[0].density).distance;
     state = test::disordered_bundle(topology, 7, elements, spacing, 0, 1);
@@ -98,8 +124,10 @@ double fluctuation(Simulation& s, double ps) {
   return std::sqrt(std::max(squares / n - sum * sum / n / n, 0.0));
 }
 
-TEST(LineBundle, KeepsItsEnergyOverOneNanosecond) {
-  const LineBundle b(10);
+class LineBundles : public ::testing::TestWithParam<Interaction::Precision> {};
+
+TEST_P(LineBundles, KeepTheirEnergyOverOneNanosecond) {
+  const LineBundle b(10, 5, GetParam());
   const double dt = default_step_fraction * time_step_limit(b.topology, b.in, b.spacing).limit;
   Simulation s = b.make(dt);
   const double before = s.total_energy();
@@ -107,6 +135,12 @@ TEST(LineBundle, KeepsItsEnergyOverOneNanosecond) {
   EXPECT_LT(scatter, 1e-4 * std::fabs(before)) << before << " eV, step " << dt << " ps";
   EXPECT_NEAR(s.total_energy(), before, 3e-4 * std::fabs(before));
 }
+
+INSTANTIATE_TEST_SUITE_P(Precisions, LineBundles,
+                         ::testing::Values(Interaction::Precision::full, Interaction::Precision::mixed),
+                         [](const auto& info) {
+                           return info.param == Interaction::Precision::full ? "Double" : "Mixed";
+                         });
 
 TEST(LineBundle, EnergyErrorFallsWithTheSquareOfTheStep) {
   const LineBundle b(10);

@@ -257,6 +257,47 @@ INSTANTIATE_TEST_SUITE_P(Laws, ContactLawTest,
 
 void PrintTo(const Law& law, std::ostream* out) { *out << law.name; }
 
+// A law with sparse nodes, an inner element or one at the end of its tube.
+Law sparse_law(bool begins, bool ends) {
+  LineContact k = line_pair(test::line_density(), test::element_length, test::element_length, 5, 4);
+  k.j_begins = begins;
+  k.j_ends = ends;
+  const auto seam = [k](const Pose& p) {
+    LineContact sparse = k;
+    sparse.nodes_i = k.sparse_i;
+    const double c2 = std::pow(p.ni.dot(p.nj), 2);
+    return near_a_seam(k, p) || near_a_seam(sparse, p) || std::fabs(c2 - sparse_from_cos2) < 3e-3 ||
+           std::fabs(c2 - sparse_full_cos2) < 3e-3;
+  };
+  return law_of("Sparse", k, seam, 0.3, 1.3, 4.0);
+}
+
+TEST(LineContact, SparseSumsAreGradientsToo) {
+  for (const auto& [begins, ends] : {std::pair(false, false), std::pair(true, false), std::pair(false, true)}) {
+    const Law k = sparse_law(begins, ends);
+    Random random(11);
+    int tested = 0, between = 0;
+    for (int n = 0; n < 20000 && tested < 1500; ++n) {
+      Pose p = random_pose(random, k.wall, k.far);
+      p.nj = test::turn(p.ni.cross(random.direction()).normalized(), random.uniform(0, 0.4)) * p.ni;
+      if (k.near_a_seam(p)) continue;
+      const PairForce f = k.energy_and_gradient(p.separation, p.ni, p.nj);
+      if (std::fabs(f.energy) > 1.0) continue;
+      ++tested;
+      const double share = sparse_weight(p.ni.dot(p.nj)).value;
+      between += share > 0 && share < 1;
+      const Differences d = differences(k, p);
+      ASSERT_LT((f.force_j - d.force_j).norm(), 1e-6 * scale_of(f));
+      ASSERT_LT((f.torque_i - d.torque_i).norm(), 1e-6 * scale_of(f)) << share;
+      ASSERT_LT((f.torque_j - d.torque_j).norm(), 1e-6 * scale_of(f)) << share;
+      const Vector3 net = f.torque_i + f.torque_j + p.separation.cross(f.force_j);
+      ASSERT_LT(net.norm(), 1e-12 * (scale_of(f) + p.separation.norm() * f.force_j.norm()));
+    }
+    EXPECT_GE(tested, 1500);
+    EXPECT_GE(between, 200);
+  }
+}
+
 TEST(PaperContact, LegacyTorqueBreaksAngularMomentum) {
   const PaperContact k = test::published_contact();
   const Vector3 separation(1.6, 0.2, 0.6), ni = Vector3::UnitZ(), nj = Vector3(0.1, 0.1, 1).normalized();

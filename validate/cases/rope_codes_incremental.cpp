@@ -17,7 +17,7 @@ LedRope::LedRope(const ParameterSet& set, int bonds, Bonds kind, double step_fra
       move_(rope_.state.size()) {
   // The contact is the simulator's; without stiffness its bonds are silent.
   if (kind_ == Bonds::incremental) rope_.topology.types[0].bond = {};
-  list_ = NeighbourList(rope_.interaction, default_skin);
+  list_ = NeighbourList(rope_.interaction, default_skin(rope_.interaction));
   list_.build(rope_.topology, rope_.state);
   forces();
 }
