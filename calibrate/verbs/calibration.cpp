@@ -69,6 +69,13 @@ void add_bond(const Calibration& c, Quantities& q) {
   q.calibrated("EA", scaled(c.stiffness.EA, unit), "nN", "periodic twisted cells");
   q.calibrated("EI", scaled(c.stiffness.EI, unit), "nN nm^2", "affine bend, two lengths differenced");
   q.calibrated("GJ", scaled(c.stiffness.GJ, unit), "nN nm^2", "periodic twisted cells");
+  const Measured &torsion = c.stiffness.GJ, &radius = c.stiffness.radius;
+  const double shear =
+      unit * thin_tube_shear({c.stiffness.EA.value, c.stiffness.EI.value, torsion.value}, radius.value);
+  const double relative =
+      std::hypot(torsion.standard_error / torsion.value, 2 * radius.standard_error / radius.value);
+  q.derived("kGA", {shear, shear * relative}, "nN",
+            "thin tube: GA = GJ/r^2, k by Cowper, J. Appl. Mech. 33, 335 (1966)");
 }
 
 void add_line(const Calibration& c, Quantities& q) {

@@ -132,6 +132,7 @@ class Reader {
     set_.bond.stretch = quantity(t, "EA", "nN", stiffness) * units::nN_nm;
     set_.bond.bend = quantity(t, "EI", "nN nm^2", stiffness) * units::nN_nm;
     set_.bond.twist = quantity(t, "GJ", "nN nm^2", stiffness) * units::nN_nm;
+    if (t.has("kGA")) set_.bond.shear = quantity(t, "kGA", "nN", stiffness) * units::nN_nm;
   }
 
   PaperContact read_paper(const TomlTable& t) {

@@ -6,15 +6,18 @@
 //
 //   stretch  EA/(2a) (D - a)^2
 //   bend     EI/a (1 - c)                                            ~ EI delta^2/(2a), delta = angle(t_i, t_j)
-//   shear    12 EI/a (1 - (t_i + t_j).d/2) - 3 EI/a (1 - c)          ~ 6 EI/a psi^2, psi = mean angle to d
+//   shear    s [12 EI/a (1 - (t_i + t_j).d/2) - 3 EI/a (1 - c)]      ~ 6 s EI/a psi^2, psi = mean angle to d
 //   twist    GJ/(2a) (1 + c - w) = GJ/(2a) (1 + c)(1 - cos phi)      ~ GJ phi^2/(2a)
 //
 // Their sum is Kuzkin and Asonov's
 //   B1/2 (D-a)^2 - B2/2 (t_i + t_j).d - B3 t_i.t_j - B4/2 w + const,
-//   B1 = EA/a, B2 = 12 EI/a, B3 = -2 EI/a - GJ/(2a), B4 = GJ/a,
-// which has the stretching, bending and torsional stiffness of an Euler-Bernoulli beam. It is a total energy,
-// so nothing drifts with the path. Limits: the torque of twist peaks at phi = 90 degrees and is zero at 180;
-// beyond the peak a bond slips, and the simulator stops before it does.
+//   B1 = EA/a, B2 = 12 s EI/a, B3 = (1 - 3 s) EI/a - GJ/(2a), B4 = GJ/a,
+// which with s = 1 has the stretching, bending and torsional stiffness of an Euler-Bernoulli beam. Tubes whose
+// shape changes within a few diameters also shear: with
+//   s = 1/(1 + 12 EI/(kGA a^2)),    kGA the shear stiffness,
+// the bond is the exact element of a Timoshenko beam. It is a total energy, so nothing drifts with the path.
+// Limits: the torque of twist peaks at phi = 90 degrees and is zero at 180; beyond the peak a bond slips, and the
+// simulator stops before it does.
 //
 // Units eV, nm. Net force and net torque vanish identically.
 // Source: V. A. Kuzkin, I. E. Asonov, Phys. Rev. E 86, 051301 (2012), DOI 10.1103/PhysRevE.86.051301.
@@ -35,7 +38,18 @@ struct BondStiffness {
   double stretch = 0;  // EA, eV/nm
   double bend = 0;     // EI, eV nm
   double twist = 0;    // GJ, eV nm
+  double shear = 0;    // kGA, eV/nm; 0: rigid in shear, as in the published model
+
+  // s of a bond of length a.
+  double shear_share(double a) const { return shear > 0 ? 1 / (1 + 12 * bend / (shear * a * a)) : 1.0; }
 };
+
+// kGA of a thin tube: GA = GJ/r^2, k = 2 (1 + nu)/(4 + 3 nu) with Poisson's ratio from EA r^2/GJ = 2 (1 + nu).
+// G. R. Cowper, J. Appl. Mech. 33, 335 (1966), DOI 10.1115/1.3625046.
+inline double thin_tube_shear(const BondStiffness& k, double radius) {
+  const double nu = 0.5 * k.stretch * radius * radius / k.twist - 1;
+  return 2 * (1 + nu) / (4 + 3 * nu) * k.twist / (radius * radius);
+}
 
 // Body frame of an element: e1 and e2 span the cross-section, t is the tube axis (local z).
 template <class T>
@@ -70,7 +84,7 @@ BondEnergy<T> bond_energy(const BondStiffness& k, double a, const Vec3<T>& separ
   BondEnergy<T> e;
   e.stretch = 0.5 * k.stretch / a * stretch * stretch;
   e.bend = k.bend / a * one_minus_c;
-  e.shear = k.bend / a * (12.0 * one_minus_td - 3.0 * one_minus_c);
+  e.shear = k.shear_share(a) * k.bend / a * (12.0 * one_minus_td - 3.0 * one_minus_c);
   e.twist = 0.5 * k.twist / a * (frame_misfit - one_minus_c);
   return e;
 }
@@ -81,8 +95,9 @@ BondForce<T> bond_energy_and_gradient(const BondStiffness& k, double a, const Ve
   using std::sqrt;
   const T length = sqrt(separation.dot(separation));
   const Vec3<T> d = separation / length;
-  const double b2 = 12.0 * k.bend / a;
-  const double b3 = -2.0 * k.bend / a - 0.5 * k.twist / a;
+  const double share = k.shear_share(a);
+  const double b2 = 12.0 * share * k.bend / a;
+  const double b3 = (1.0 - 3.0 * share) * k.bend / a - 0.5 * k.twist / a;
   const double b4 = k.twist / a;
 
   BondForce<T> out;
@@ -108,13 +123,14 @@ T bond_twist_angle(const Frame<T>& i, const Frame<T>& j) {
 // branches at the zone boundary, and the coupled deflection-rotation branch searched over the wave vector.
 // mass in eV ps^2/nm^2, isotropic inertia in eV ps^2.
 inline double stiffest_chain_frequency(const BondStiffness& k, double a, double mass, double inertia) {
+  const double share = k.shear_share(a);
   double largest = std::fmax(4.0 * k.stretch / (a * mass), 4.0 * k.twist / (a * inertia));
   for (int step = 0; step <= 256; ++step) {
     const double q = units::pi * step / 256.0;
     // Finite-element beam: K_uu, K_phiphi and the coupling, made symmetric by the masses.
-    const double uu = 24.0 * k.bend / (a * a * a) * (1.0 - std::cos(q)) / mass;
-    const double pp = k.bend / a * (8.0 + 4.0 * std::cos(q)) / inertia;
-    const double up = 12.0 * k.bend / (a * a) * std::sin(q) / std::sqrt(mass * inertia);
+    const double uu = 24.0 * share * k.bend / (a * a * a) * (1.0 - std::cos(q)) / mass;
+    const double pp = k.bend / a * (2.0 - 2.0 * std::cos(q) + 6.0 * share * (1.0 + std::cos(q))) / inertia;
+    const double up = 12.0 * share * k.bend / (a * a) * std::sin(q) / std::sqrt(mass * inertia);
     largest = std::fmax(largest, 0.5 * (uu + pp) + std::sqrt(0.25 * (uu - pp) * (uu - pp) + up * up));
   }
   return std::sqrt(largest);

@@ -100,6 +100,7 @@ TEST(ShippedSets, AreAllThereAndReadable) {
     EXPECT_EQ(set.quantities[0].origin, "calibrated");
     // A thin shell: EI = EA r^2/2 within a few per cent, whatever the chirality.
     EXPECT_NEAR(set.bond.bend / (0.5 * set.bond.stretch * set.radius * set.radius), 1, 0.04) << tube;
+    EXPECT_NEAR(set.bond.shear / thin_tube_shear(set.bond, set.radius), 1, 1e-9) << tube;
   }
   for (const char* potential : {"airebo", "rebo", "lcbop"}) shipped("cnt-10-10-" + std::string(potential));
 }

@@ -47,6 +47,20 @@ TEST(ChainStatics, Cantilever) {
   EXPECT_NEAR(s.state().position[c.last].x() / expected, 1, 1e-3);
 }
 
+// The bond with a shear stiffness is the exact element of a Timoshenko beam, whatever its length.
+TEST(ChainStatics, CantileverThatShears) {
+  Chain c(7);
+  BondStiffness& k = c.topology.types[0].bond;
+  k.shear = thin_tube_shear(k, c.topology.types[0].radius);
+  const double force = 1e-2;  // eV/nm
+  c.drive.fixed.push_back({0});
+  c.drive.loads.push_back({c.last, {force, 0, 0}, Vector3::Zero()});
+  const Simulation s = c.relaxed(1e-8);
+  const double bending = force * std::pow(c.length(), 3) / (3 * k.bend), shear = force * c.length() / k.shear;
+  EXPECT_GT(shear, 0.03 * bending);
+  EXPECT_NEAR(s.state().position[c.last].x() / (bending + shear), 1, 1e-5);
+}
+
 TEST(ChainStatics, Stretch) {
   Chain c(11);
   c.drive.fixed.push_back({0});

@@ -22,21 +22,32 @@ BondPose random_pose(Random& random, double bend) {
           test::turn(random.direction(), random.uniform(0, bend)) * q};
 }
 
-double energy(const BondPose& p) {
-  return bond_energy(test::published_bond(), test::element_length, p.separation, frame_of(p.qi), frame_of(p.qj))
-      .total();
+BondStiffness shearing_bond() {
+  BondStiffness k = test::published_bond();
+  k.shear = thin_tube_shear(k, 0.678);
+  return k;
 }
 
-BondForce<double> force(const BondPose& p) {
-  return bond_energy_and_gradient(test::published_bond(), test::element_length, p.separation, frame_of(p.qi),
-                                  frame_of(p.qj));
+double energy(const BondPose& p, const BondStiffness& k = test::published_bond()) {
+  return bond_energy(k, test::element_length, p.separation, frame_of(p.qi), frame_of(p.qj)).total();
 }
 
-TEST(Bond, ForceAndTorquesAreTheGradient) {
+BondForce<double> force(const BondPose& p, const BondStiffness& k = test::published_bond()) {
+  return bond_energy_and_gradient(k, test::element_length, p.separation, frame_of(p.qi), frame_of(p.qj));
+}
+
+class BondGradient : public ::testing::TestWithParam<bool> {};
+INSTANTIATE_TEST_SUITE_P(Shear, BondGradient, ::testing::Bool());
+
+TEST_P(BondGradient, IsForceAndTorques) {
+  const BondStiffness k = GetParam() ? shearing_bond() : test::published_bond();
+  const auto energy = [&](const BondPose& p) {
+    return bond_energy(k, test::element_length, p.separation, frame_of(p.qi), frame_of(p.qj)).total();
+  };
   Random random(3);
   for (int n = 0; n < 3000; ++n) {
     const BondPose p = random_pose(random, n % 2 ? 0.2 : 2.0);
-    const BondForce<double> f = force(p);
+    const BondForce<double> f = force(p, k);
     const double tight = 1e-7 * std::max({f.force_j.norm(), f.torque_i.norm(), 1.0});
     for (int a = 0; a < 3; ++a) {
       const Vector3 e = Vector3::Unit(a);

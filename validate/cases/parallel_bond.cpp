@@ -41,7 +41,9 @@ Loop closed_loop(const ParameterSet& set, double amplitude) {
 }
 
 CaseResult run(const CaseContext& context) {
-  const ParameterSet model = context.model(set_name), oracle = context.parameters(set_name);
+  const ParameterSet oracle = context.parameters(set_name);
+  ParameterSet model = context.model(set_name);
+  model.bond.shear = 0;  // as in the bond that it is compared with
   const double length = bonds * model.element_length;
   const auto beam = [&](double force) { return force * std::pow(length, 3) / (3 * oracle.bond.bend); };
   // Two small rotations in turn differ from their sum by half of their product. Half of the spin is followed by the

@@ -43,7 +43,7 @@ Peel peel(const ParameterSet& set, double opening, double crack) {
     drive.fixed.push_back({(t + 1) * elements - 1, false, true, true, false});
   }
   const double step = default_step_fraction * time_step_limit(b.topology, b.interaction, b.spacing).limit;
-  const Simulation s = at_rest(Simulation(b.topology, b.interaction, drive, b.state, step), 1e-5, 60000);
+  const Simulation s = at_rest(Simulation(b.topology, b.interaction, drive, b.state, step), 1e-5, 400000);
   Peel out;
   out.opening = opening;
   for (const std::size_t end : {std::size_t{0}, static_cast<std::size_t>(elements)}) {

@@ -14,9 +14,8 @@ Case rope_7_5_5_short_case() {
   rope.increments = 12;
   rope.elastic_increments = 9;
   rope.remarks = {
-      "With the grips fixed the excess at 54 degrees is 3.9 of 112 eV. To first order the anharmonic terms of the "
-      "tubes take 1.7 eV of it and shear 1.0 eV; with the grips free, 0.4 and 1.0 of 1.9 eV. The rest is not "
-      "resolved.",
+      "With the grips fixed the excess at 54 degrees is 2.6 of 112 eV, of which the anharmonic terms of the tubes "
+      "take 1.7 eV to first order; with the grips free, 0.4 of 0.8 eV. The rest is not resolved.",
       "Stretch holds 6 % of the energy or less, so that a wrong EA does not show here."};
   return twisted_rope_case(rope, "(5,5)", "8.1");
 }
