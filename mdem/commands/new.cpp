@@ -1,6 +1,7 @@
 // `new` and `check`.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 
@@ -25,6 +26,11 @@ void say_source(const Scene& scene, const Prepared& p) {
   fmt::print("{} tubes, {} elements of {:.4g} nm", t.tubes(), t.elements(), t.longest_element());
   if (std::holds_alternative<RopeSource>(scene.source))
     fmt::print(": a rope of {:.4g} nm, spacing {:.4g} nm", t.length_of(0) * t.longest_element(), p.spacing);
+  if (std::holds_alternative<FilmSource>(scene.source)) {
+    const auto& z = p.state.position.z;
+    fmt::print(": a film of {:.4g} nm between its lowest and highest axis",
+               *std::max_element(z.begin(), z.end()) - *std::min_element(z.begin(), z.end()));
+  }
   fmt::print("\n");
   for (const ParameterSet& set : scene.sets)
     fmt::print("parameters {} ({}), EA {:.5g} nN, EI {:.5g} nN nm^2, GJ {:.5g} nN nm^2\n", set.name, set.path,

@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "model/error.hpp"
+#include "scene/film.hpp"
 #include "scene/maxwell.hpp"
 #include "scene/random.hpp"
 #include "scene/state_csv.hpp"
@@ -14,6 +16,7 @@ namespace {
 
 constexpr double graphite_gap = 0.335;   // nm, between the walls of tubes for which there is no law
 constexpr double viscosity_reach = 1.5;  // spacings
+constexpr double right_angle = 0.5 * units::pi;
 
 long hexagonal_number(long shells) { return 1 + 3 * shells * (shells + 1); }
 
@@ -41,6 +44,26 @@ double golden_section(F f, double a, double b, double tolerance) {
   return 0.5 * (a + b);
 }
 
+// The distance at which two tubes bind best, their energy given. `key` is what to type where they do not bind.
+template <class F>
+double lowest(const PaperContact& contact, const char* key, F energy) {
+  // The well is found on a grid first: beyond it the energy is not convex.
+  constexpr int grid = 400;
+  const double from = 2 * contact.radius, step = (contact.cutoff() - from) / grid;
+  std::vector<double> at;
+  for (int k = 0; k <= grid; ++k) at.push_back(energy(from + k * step));
+  const auto well = static_cast<int>(std::min_element(at.begin(), at.end()) - at.begin());
+  if (well == 0 || well == grid || at[static_cast<std::size_t>(well)] >= 0)
+    throw InputError({"", 0, "contact.paper"}, "does not bind two tubes", fmt::format("type {}", key));
+  return golden_section(energy, from + (well - 1) * step, from + (well + 1) * step, 1e-9);
+}
+
+double graphite_spacing(const Scene& scene) {
+  double largest = 0;
+  for (const ParameterSet& set : scene.sets) largest = std::max(largest, set.radius);
+  return 2 * largest + graphite_gap;
+}
+
 double spacing_of(const Scene& scene, double element_length) {
   const auto* rope = std::get_if<RopeSource>(&scene.source);
   if (rope && rope->spacing > 0) return rope->spacing;
@@ -55,8 +78,7 @@ double spacing_of(const Scene& scene, double element_length) {
     case ContactOptions::Law::none:
       break;
   }
-  for (const ParameterSet& set : scene.sets) largest = std::max(largest, set.radius);
-  return 2 * largest + graphite_gap;
+  return graphite_spacing(scene);
 }
 
 Topology empty_topology(const Scene& scene) {
@@ -88,9 +110,14 @@ void displace(double amplitude, Random& random, State& state) {
 
 void place_elements(const Scene& scene, Random& random, BuiltScene& out) {
   if (const auto* rope = std::get_if<RopeSource>(&scene.source)) {
-    add_tubes(hexagonal_lattice(rope->tubes, out.spacing), elements_of(*rope, scene.element_length),
+    add_tubes(hexagonal_lattice(rope->tubes, out.spacing), whole_elements(rope->length, scene.element_length),
               scene.element_length, out);
     if (rope->perturbation > 0) displace(rope->perturbation, random, out.state);
+  } else if (const auto* film = std::get_if<FilmSource>(&scene.source)) {
+    const int elements = whole_elements(film->length, scene.element_length);
+    const double spacing = film->spacing > 0 ? film->spacing : crossed_spacing(scene);
+    add_film(lay_film(*film, elements, scene.element_length, spacing, random), elements, scene.element_length,
+             out.topology, out.state);
   } else if (const auto* chain = std::get_if<ChainSource>(&scene.source)) {
     add_tubes({{0.0, 0.0}}, chain->elements, scene.element_length, out);
   } else {
@@ -149,21 +176,32 @@ std::vector<std::pair<double, double>> hexagonal_lattice(int tubes, double spaci
   return places;
 }
 
-int elements_of(const RopeSource& rope, double element_length) {
-  return static_cast<int>(std::lround(rope.length / element_length));
+int whole_elements(double length, double element_length) {
+  return static_cast<int>(std::lround(length / element_length));
 }
 
 double pair_spacing(const PaperContact& contact, double element_length) {
-  const auto energy = [&](double spacing) { return paper_parallel_energy(contact, element_length, spacing); };
-  // The well is found on a grid first: beyond it the energy is not convex.
-  constexpr int grid = 400;
-  const double from = 2 * contact.radius, step = (contact.cutoff() - from) / grid;
-  int lowest = 0;
-  for (int k = 1; k <= grid; ++k)
-    if (energy(from + k * step) < energy(from + lowest * step)) lowest = k;
-  if (lowest == 0 || lowest == grid || energy(from + lowest * step) >= 0)
-    throw InputError({"", 0, "contact.paper"}, "does not bind two parallel tubes", "type rope.spacing_nm");
-  return golden_section(energy, from + (lowest - 1) * step, from + (lowest + 1) * step, 1e-9);
+  return lowest(contact, "rope.spacing_nm",
+                [&](double spacing) { return paper_parallel_energy(contact, element_length, spacing); });
+}
+
+double crossed_spacing(const Scene& scene) {
+  double largest = 0;
+  switch (scene.contact.law) {
+    case ContactOptions::Law::paper: {
+      const PaperContact& contact = *scene.parameters().paper;
+      return lowest(contact, "film.spacing_nm", [&](double spacing) {
+        return paper_crossed_energy(contact, scene.element_length, spacing, right_angle);
+      });
+    }
+    case ContactOptions::Law::line:
+      for (const LineContact& pair : line_contacts(scene))
+        largest = std::max(largest, line_crossed_well(pair.density, right_angle).distance);
+      return largest;
+    case ContactOptions::Law::none:
+      break;
+  }
+  return graphite_spacing(scene);
 }
 
 std::vector<LineContact> line_contacts(const Scene& scene) {
@@ -174,9 +212,9 @@ std::vector<LineContact> line_contacts(const Scene& scene) {
     for (std::size_t b = 0; b < types; ++b) {
       const ParameterSet &i = scene.sets[a], &j = scene.sets[b];
       LineContact pair;
-      pair.density = a == b ? i.line->density
-                            : i.line->universal.density(i.radius, i.line->surface_density, j.radius,
-                                                        j.line->surface_density);
+      pair.density =
+          a == b ? i.line->density
+                 : i.line->universal.density(i.radius, i.line->surface_density, j.radius, j.line->surface_density);
       const int needed =
           line_nodes(scene.element_length, line_parallel_well(pair.density).distance, pair.density.contact);
       nodes[a] = std::max(nodes[a], scene.contact.nodes > 0 ? scene.contact.nodes : needed);

@@ -31,7 +31,11 @@ std::pair<int, int> nearest_hexagonal(int tubes);
 // Places on the hexagonal lattice: the centre, then shell by shell, each counter-clockwise from the x axis.
 std::vector<std::pair<double, double>> hexagonal_lattice(int tubes, double spacing);
 
-// Elements of each tube: the length in whole elements.
-int elements_of(const RopeSource& rope, double element_length);
+// The distance of two crossed tubes (nm) at which their energy is lowest; without a law, that of their walls in
+// graphite. Of several tube types, the largest.
+double crossed_spacing(const Scene& scene);
+
+// Elements of a tube: its length in whole elements.
+int whole_elements(double length, double element_length);
 
 }  // namespace ropewalk

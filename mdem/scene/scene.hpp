@@ -25,6 +25,15 @@ struct RopeSource {
   double perturbation = 0;  // nm: amplitude of a random lateral displacement of every element
 };
 
+// [film] straight tubes flat in a box, at random places and angles, laid one upon another.
+struct FilmSource {
+  int tubes = 0;
+  double length = 0;   // nm, rounded to whole elements
+  double width = 0;    // nm, of the box in x
+  double depth = 0;    // nm, in y
+  double spacing = 0;  // nm: no two axes are closer; 0: where two crossed tubes bind best
+};
+
 // [chain] one straight tube along z.
 struct ChainSource {
   int elements = 0;
@@ -125,7 +134,7 @@ struct Scene {
   std::vector<ParameterSet> sets;  // of the tube types; never empty
   std::vector<int> tube_types;     // of each tube, an index of `sets`; empty: all are of the first
   double element_length = 0;       // nm
-  std::variant<RopeSource, ChainSource, StateSource> source;
+  std::variant<RopeSource, FilmSource, ChainSource, StateSource> source;
   double temperature = 0;  // K, initial
   std::uint64_t seed = 1;
   ContactOptions contact;

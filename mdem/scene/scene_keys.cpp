@@ -8,6 +8,7 @@ const std::vector<SceneTable>& scene_tables() {
   static const std::vector<SceneTable> tables = {
       {"", "the top of the file, before the first table"},
       {"rope", "parallel tubes along z in hexagonal packing, centred on the origin"},
+      {"film", "instead of [rope]: straight tubes at random in a box, flat in x and y, laid one upon another"},
       {"chain", "instead of [rope]: one straight tube along z"},
       {"state", "instead of [rope]: elements from a CSV file tube,x_nm,y_nm,z_nm,qw,qx,qy,qz"},
       {"start", "the state at time zero"},
@@ -34,6 +35,13 @@ const std::vector<SceneKey>& scene_keys() {
       {"rope", "length_nm", "nm", "67.8", "required", "length of the tubes, rounded to whole elements"},
       {"rope", "spacing_nm", "nm", "1.713", "where two tubes bind best", "distance between tube axes"},
       {"rope", "perturbation_nm", "nm", "0", "", "each element is displaced at random by up to this in x and y"},
+
+      {"film", "tubes", "", "100", "required", "number of tubes"},
+      {"film", "length_nm", "nm", "68.9", "required", "length of the tubes, rounded to whole elements"},
+      {"film", "width_nm", "nm", "150", "required", "side of the box in x, not shorter than the tubes"},
+      {"film", "depth_nm", "nm", "100", "required", "side of the box in y, not shorter than the tubes"},
+      {"film", "spacing_nm", "nm", "1.7", "where two crossed tubes bind best",
+       "no two tube axes are closer at the start"},
 
       {"chain", "elements", "", "41", "required", "number of elements, 2 or more"},
 

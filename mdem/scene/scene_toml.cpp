@@ -105,6 +105,35 @@ RopeSource read_rope(const TomlTable& t, const Scene& scene) {
   return rope;
 }
 
+// Thicker films are no films, and laying them takes a time that grows with the square of the tubes.
+constexpr double most_covered = 50;  // areas of the box, by what the tubes cover one by one
+
+FilmSource read_film(const TomlTable& t, const Scene& scene) {
+  FilmSource film;
+  film.tubes = static_cast<int>(t.integer("tubes", 1, most_elements));
+  film.length = t.number("length_nm", Bounds::positive(1e6));
+  const double elements = std::round(film.length / scene.element_length);
+  const double length = elements * scene.element_length;
+  if (elements < 2)
+    throw t.error("length_nm", fmt::format("is {} nm, {} elements", film.length, elements),
+                  fmt::format("at least 2 elements, {:.4g} nm, are needed", 2 * scene.element_length));
+  check_size(t, "tubes", film.tubes, elements);
+  film.width = t.number("width_nm", Bounds::positive(1e6));
+  film.depth = t.number("depth_nm", Bounds::positive(1e6));
+  const char* shorter = film.width < film.depth ? "width_nm" : "depth_nm";
+  const double side = std::min(film.width, film.depth);
+  if (side < length)
+    throw t.error(shorter, fmt::format("is {} nm, and the tubes are {:.6g} nm long", side, length),
+                  "take a box that holds a tube at any angle, or shorter tubes");
+  const double diameter = 2 * largest_radius(scene);
+  const double covered = film.tubes * length * diameter / (film.width * film.depth);
+  if (covered > most_covered)
+    throw t.error("tubes", fmt::format("covers the box {:.3g} times", covered),
+                  fmt::format("at most {} times makes a film; take a larger box or fewer tubes", most_covered));
+  if (t.has("spacing_nm")) film.spacing = t.number("spacing_nm", {diameter, 10 * diameter, true});
+  return film;
+}
+
 ChainSource read_chain(const TomlTable& t) {
   const long elements = t.integer("elements", 2, 1000000000);
   check_size(t, "elements", 1, static_cast<double>(elements));
@@ -115,14 +144,14 @@ StateSource read_state_source(const TomlTable& t, const std::string& folder) {
   return {(fs::path(folder) / t.string("file")).string()};
 }
 
-const std::vector<std::string> sources = {"rope", "chain", "state"};
+const std::vector<std::string> sources = {"rope", "film", "chain", "state"};
 
 [[noreturn]] void refuse_no_source(const TomlTable& top) {
   for (const std::string& key : top.keys()) {
     const std::string near = nearest_word(key, sources);
     if (!near.empty()) throw top.error(key, "unknown table", fmt::format("did you mean \"{}\"?", near));
   }
-  throw top.error("", "there is nothing in the scene", "add one of the tables [rope], [chain] and [state]");
+  throw top.error("", "there is nothing in the scene", "add one of the tables [rope], [film], [chain] and [state]");
 }
 
 void read_source(const TomlTable& top, const std::string& folder, Scene& scene) {
@@ -132,8 +161,9 @@ void read_source(const TomlTable& top, const std::string& folder, Scene& scene) 
   if (named.empty()) refuse_no_source(top);
   if (named.size() > 1)
     throw top.error(named[1], fmt::format("stands beside [{}]", named[0]),
-                    "a scene has exactly one of [rope], [chain] and [state]");
+                    "a scene has exactly one of [rope], [film], [chain] and [state]");
   if (named[0] == "rope") scene.source = read_rope(top.table("rope"), scene);
+  if (named[0] == "film") scene.source = read_film(top.table("film"), scene);
   if (named[0] == "chain") scene.source = read_chain(top.table("chain"));
   if (named[0] == "state") scene.source = read_state_source(top.table("state"), folder);
 }
@@ -146,7 +176,9 @@ struct Sizes {
 
 Sizes sizes_of(const Scene& scene) {
   if (const auto* rope = std::get_if<RopeSource>(&scene.source))
-    return {rope->tubes, elements_of(*rope, scene.element_length)};
+    return {rope->tubes, whole_elements(rope->length, scene.element_length)};
+  if (const auto* film = std::get_if<FilmSource>(&scene.source))
+    return {film->tubes, whole_elements(film->length, scene.element_length)};
   if (const auto* chain = std::get_if<ChainSource>(&scene.source)) return {1, chain->elements};
   return {};
 }
@@ -455,9 +487,13 @@ void read_tables(const TomlTable& top, const std::string& folder, Scene& scene) 
 }  // namespace
 
 Scene read_scene(const std::string& path, const std::vector<std::string>& parameters) {
+  return scene_of_text(read_file(path), path, parameters);
+}
+
+Scene scene_of_text(const std::string& text, const std::string& path, const std::vector<std::string>& parameters) {
   Scene scene;
   scene.path = path;
-  scene.text = read_file(path);
+  scene.text = text;
   scene.hash = hash_hex(scene.text);
   const std::string folder = fs::path(path).parent_path().string();
   const TomlTable top = TomlTable::parse(scene.text, path);

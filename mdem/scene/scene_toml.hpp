@@ -15,4 +15,8 @@ namespace ropewalk {
 // sets that the scene names where it is not empty (a run directory keeps its own copies).
 Scene read_scene(const std::string& path, const std::vector<std::string>& parameters = {});
 
+// The same for a text; `path` names it in errors, and files are looked for beside it.
+Scene scene_of_text(const std::string& text, const std::string& path,
+                    const std::vector<std::string>& parameters = {});
+
 }  // namespace ropewalk

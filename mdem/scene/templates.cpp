@@ -48,6 +48,12 @@ std::vector<Recipe> recipes() {
         {"start", {{"temperature_K", "10"}}},
         {"damping", {{"contact_viscosity_eV_ps_per_nm2", "0"}, {"bond_damping_per_ps", "0"}}},
         {"run", {{"duration_ps", "1000"}}}}},
+      {"film",
+       "a thin film of 100 tubes of 68.9 nm, laid down at random, at 300 K",
+       {{"", {{"parameters", "\"cnt-10-10-tersoff\""}}},
+        {"film", {{"tubes", "100"}, {"length_nm", "68.9"}, {"width_nm", "150"}, {"depth_nm", "100"}}},
+        {"start", {{"temperature_K", "300"}}},
+        {"run", {{"duration_ps", "50"}}}}},
       {"chain",
        "a cantilever: one tube, one end fixed, a force on the other",
        {{"chain", {{"elements", "41"}}},
@@ -101,7 +107,12 @@ std::string table_text(const SceneTable& table, const std::vector<Block>& blocks
 std::string text_of(const Recipe& recipe) {
   std::string text = fmt::format("# {}.\n", recipe.description);
   text += "# Every key has its unit in its name; lines with a # in front show keys that are not set.\n\n";
-  text += keys_text("", {{"format", fmt::format("\"{}\"", scene_format)}, {"parameters", "\"cnt-10-10-paper\""}});
+  std::map<std::string, std::string> top = {{"format", fmt::format("\"{}\"", scene_format)},
+                                            {"parameters", "\"cnt-10-10-paper\""}};
+  for (const Block& b : recipe.blocks)
+    if (b.table.empty())
+      for (const auto& [key, value] : b.set) top[key] = value;
+  text += keys_text("", top);
   for (const SceneTable& t : scene_tables())
     if (!t.name.empty()) text += table_text(t, recipe.blocks);
   return text;
