@@ -115,9 +115,14 @@ void add_energy(CLI::App& app, Verbs& v) {
 
 void add_bench(CLI::App& app, Verbs& v) {
   CLI::App* c = app.add_subcommand("bench", "Time the steps of a scene");
-  c->add_option("scene", v.bench.scene, "Scene file (TOML)")->required();
+  c->add_option("scene", v.bench.scene, "Scene file (TOML), or a name of --list");
+  c->add_flag("--list", v.bench.list, "List the scenes that have a name");
+  c->add_option("--law", v.bench.law, "Contact law of a named scene: line or paper [default: line]")
+      ->check(CLI::IsMember({"line", "paper"}));
   c->add_option("--steps", v.bench.steps, "Time steps")->capture_default_str()->check(CLI::PositiveNumber);
-  c->add_option("--threads", v.bench.threads, "Threads")->capture_default_str()->check(thread_range());
+  c->add_option("--threads", v.bench.threads, "Threads; 1,2: both, one after the other [default: 1]")
+      ->delimiter(',')
+      ->check(thread_range());
   c->add_flag("--json", v.bench.json, "JSON");
   c->callback([&v] { v.code = bench_command(v.bench); });
 }

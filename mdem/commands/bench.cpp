@@ -1,73 +1,183 @@
 // `bench`: the cost of a step and where it goes.
 #include <fmt/format.h>
 #include <omp.h>
+#include <sys/resource.h>
+#include <time.h>
 
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "commands/bench_count.hpp"
+#include "commands/bench_scenes.hpp"
 #include "commands/commands.hpp"
+#include "model/error.hpp"
 #include "scene/prepare.hpp"
-#include "scene/scene_toml.hpp"
 
 namespace ropewalk {
 namespace {
 
 struct Timing {
-  double wall = 0, frames = 0, contact = 0, bonds = 0, list = 0, integration = 0;
+  double wall = 0, processor = 0, frames = 0, contact = 0, bonds = 0, list = 0, integration = 0;
   long builds = 0;
 };
 
-Timing timing(const Simulation& s, double wall) {
+// Of all threads. On a machine that does other work as well it says more than the wall time.
+double processor_seconds() {
+  timespec t{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+// The runs of the line law are part of the list.
+Timing timing(const Simulation& s, double wall, double processor) {
   const auto& t = s.engine().times();
-  return {wall, t.frames, t.contact, t.bonds, s.list_seconds(), s.integration_seconds(), s.list().builds()};
+  const double runs = s.engine().line().list_seconds();
+  return {wall,
+          processor,
+          t.frames,
+          t.contact - runs,
+          t.bonds,
+          s.list_seconds() + runs,
+          s.integration_seconds(),
+          s.list().builds()};
+}
+
+// Everything but the numbers of bytes is per element and step, times in ns.
+struct Cost {
+  Timing each;
+  RadialCount radial;
+  int threads = 1;
+  double pairs = 0;
+  double bytes = 0, list_bytes = 0;  // per element
+  double peak_bytes = 0;             // of the program so far
+};
+
+double peak_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) * 1024;
+}
+
+Timing per_element_step(const Timing& a, const Timing& b, double scale) {
+  return {b.wall,
+          b.processor,
+          (b.frames - a.frames) * scale,
+          (b.contact - a.contact) * scale,
+          (b.bonds - a.bonds) * scale,
+          (b.list - a.list) * scale,
+          (b.integration - a.integration) * scale,
+          b.builds - a.builds};
+}
+
+Cost measure(const Scene& scene, const Prepared& prepared, long steps, int threads) {
+  use_threads(threads);
+  Simulation simulation = start(scene, prepared);
+  for (long k = 0; k < std::max(5L, steps / 10); ++k) simulation.step();  // warm caches
+  Cost c;
+  const Timing before = timing(simulation, 0, 0);
+  // Counted a few times on the way: what is within reach changes between two builds of the list.
+  const long samples = std::min(10L, steps);
+  double wall = 0, processor = 0;
+  for (long part = 0; part < samples; ++part) {
+    const double began = omp_get_wtime(), used = processor_seconds();
+    for (long k = steps * part / samples; k < steps * (part + 1) / samples; ++k) simulation.step();
+    wall += omp_get_wtime() - began;
+    processor += processor_seconds() - used;
+    c.radial.add(count_radial(simulation), 1.0 / static_cast<double>(samples));
+  }
+  const double n = prepared.topology.elements(), scale = 1e9 / (n * static_cast<double>(steps));
+  c.each = per_element_step(before, timing(simulation, wall * scale, processor * scale), scale);
+  c.threads = omp_get_max_threads();
+  c.pairs = static_cast<double>(simulation.list().pairs()) / n;
+  c.list_bytes = static_cast<double>(simulation.list().bytes()) / n;
+  c.bytes = static_cast<double>(simulation.bytes()) / n - c.list_bytes;
+  c.peak_bytes = peak_bytes();
+  return c;
+}
+
+double per(double sum, double count) { return count > 0 ? sum / count : 0.0; }
+
+double operations_per_ns(const Cost& c, const Interaction& in) {
+  const int degree = in.precision == Interaction::Precision::mixed ? MixedTable::degree : FullTable::degree;
+  return per(c.radial.evaluations * radial_operations(degree), c.each.contact);
+}
+
+nlohmann::ordered_json json_of(const Cost& c, const BenchArguments& a, const Prepared& prepared) {
+  nlohmann::ordered_json out;
+  out["scene"] = a.scene;
+  out["elements"] = prepared.topology.elements();
+  out["threads"] = c.threads;
+  out["steps"] = a.steps;
+  out["time_step_fs"] = prepared.time_step / units::fs;
+  out["ns_per_element_step"] = c.each.wall;
+  out["processor_ns_per_element_step"] = c.each.processor;
+  out["pairs_per_element"] = c.pairs;
+  out["ns_per_pair"] = per(c.each.contact, c.pairs);
+  out["split_ns_per_element_step"] = {{"contact", c.each.contact},
+                                      {"bonds", c.each.bonds},
+                                      {"frames", c.each.frames},
+                                      {"list", c.each.list},
+                                      {"integration", c.each.integration}};
+  out["list_builds"] = c.each.builds;
+  out["list_share"] = per(c.each.list, c.each.wall);
+  if (!prepared.interaction.line.empty()) {
+    out["instructions"] = instruction_sets().front();
+    out["lanes"] = radial_lanes(prepared.interaction.precision);
+    out["runs_per_element"] = c.radial.runs;
+    out["nodes_per_run"] = per(c.radial.nodes, c.radial.runs);
+    out["radial_evaluations_per_element_step"] = c.radial.evaluations;
+    out["radial_evaluations_useful"] = c.radial.useful;
+    out["ns_per_radial_evaluation"] = per(c.each.contact, c.radial.evaluations);
+    out["contact_GFLOP_per_s"] = operations_per_ns(c, prepared.interaction);
+  }
+  out["bytes_per_element"] = c.bytes;
+  out["list_bytes_per_element"] = c.list_bytes;
+  out["peak_resident_MB"] = c.peak_bytes * 1e-6;
+  return out;
+}
+
+void print(const Cost& c, const BenchArguments& a, const Prepared& prepared) {
+  const Timing& t = c.each;
+  const double n = prepared.topology.elements();
+  fmt::print("{} elements, {} threads, {} steps of {:.3g} fs\n", n, c.threads, a.steps,
+             prepared.time_step / units::fs);
+  fmt::print("{:9.1f} ns per element-step, {:.1f} of processor time\n", t.wall, t.processor);
+  fmt::print("{:9.1f} pairs per element (half list)\n", c.pairs);
+  fmt::print("  contact {:.1f}  bonds {:.1f}  frames {:.1f}  list {:.1f}  integration {:.1f} ns; {} lists\n",
+             t.contact, t.bonds, t.frames, t.list, t.integration, t.builds);
+  if (c.radial.runs > 0)
+    fmt::print(
+        "{:9.1f} runs per element, {:.1f} nodes each; {:.0f} radial evaluations, {:.0f} % of them within the "
+        "cutoff, {:.3f} ns each; {:.1f} GFLOP/s in contact\n",
+        c.radial.runs, per(c.radial.nodes, c.radial.runs), c.radial.evaluations,
+        100 * per(c.radial.useful, c.radial.evaluations), per(t.contact, c.radial.evaluations),
+        operations_per_ns(c, prepared.interaction));
+  fmt::print("{:9.0f} bytes per element, and {:.0f} for the list; {:.0f} MB resident at most\n", c.bytes,
+             c.list_bytes, c.peak_bytes * 1e-6);
+  fmt::print("{:9.2f} s of wall time per simulated ns\n", t.wall * n * 1e-9 / prepared.time_step * 1e3);
 }
 
 }  // namespace
 
 int bench_command(const BenchArguments& a) {
-  use_threads(a.threads);
-  Scene scene = read_scene(a.scene);
-  const Prepared prepared = prepare(scene);
-  Simulation simulation = start(scene, prepared);
-  for (long k = 0; k < std::max(5L, a.steps / 10); ++k) simulation.step();  // warm caches
-  const Timing before = timing(simulation, omp_get_wtime());
-  for (long k = 0; k < a.steps; ++k) simulation.step();
-  const Timing after = timing(simulation, omp_get_wtime());
-
-  const double n = prepared.topology.elements();
-  const double scale = 1e9 / (n * static_cast<double>(a.steps));
-  const double wall = (after.wall - before.wall) * scale;
-  const double contact = (after.contact - before.contact) * scale, bonds = (after.bonds - before.bonds) * scale;
-  const double frames = (after.frames - before.frames) * scale, list = (after.list - before.list) * scale;
-  const double integration = (after.integration - before.integration) * scale;
-  const double pairs = static_cast<double>(simulation.list().pairs()) / n;
-  const double bytes = static_cast<double>(simulation.bytes() - simulation.list().bytes()) / n;
-  const double list_bytes = static_cast<double>(simulation.list().bytes()) / n;
-  if (a.json) {
-    nlohmann::ordered_json out;
-    out["scene"] = a.scene;
-    out["elements"] = prepared.topology.elements();
-    out["threads"] = omp_get_max_threads();
-    out["steps"] = a.steps;
-    out["time_step_fs"] = prepared.time_step / units::fs;
-    out["ns_per_element_step"] = wall;
-    out["pairs_per_element"] = pairs;
-    out["ns_per_pair"] = pairs > 0 ? contact / pairs : 0.0;
-    out["split_ns_per_element_step"] = {
-        {"contact", contact}, {"bonds", bonds}, {"frames", frames}, {"list", list}, {"integration", integration}};
-    out["list_builds"] = after.builds - before.builds;
-    out["bytes_per_element"] = bytes;
-    out["list_bytes_per_element"] = list_bytes;
-    fmt::print("{}\n", out.dump(1));
+  if (a.list) {
+    for (const BenchScene& s : bench_scenes()) fmt::print("{:14} {}\n", s.name, s.description);
     return 0;
   }
-  fmt::print("{} elements, {} threads, {} steps of {:.3g} fs\n", prepared.topology.elements(),
-             omp_get_max_threads(), a.steps, prepared.time_step / units::fs);
-  fmt::print("{:9.1f} ns per element-step\n{:9.1f} pairs per element (half list)\n", wall, pairs);
-  fmt::print("  contact {:.1f}  bonds {:.1f}  frames {:.1f}  list {:.1f}  integration {:.1f} ns\n", contact, bonds,
-             frames, list, integration);
-  fmt::print("{:9.0f} bytes per element, and {:.0f} for the list\n", bytes, list_bytes);
-  fmt::print("{:9.2f} s of wall time per simulated ns\n", wall * n * 1e-9 / prepared.time_step * 1e3);
+  if (a.scene.empty())
+    throw InputError({"", 0, "scene"}, "is missing", "give a file, or see `ropewalk bench --list`");
+  Scene scene = bench_scene(a.scene, a.law);
+  const Prepared prepared = prepare(scene);
+  nlohmann::ordered_json all = nlohmann::ordered_json::array();
+  for (const int threads : a.threads) {
+    const Cost cost = measure(scene, prepared, a.steps, threads);
+    if (a.json) {
+      all.push_back(json_of(cost, a, prepared));
+    } else {
+      print(cost, a, prepared);
+    }
+  }
+  if (a.json) fmt::print("{}\n", (all.size() == 1 ? all[0] : all).dump(1));
   return 0;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace ropewalk {
 
@@ -61,9 +62,11 @@ struct EnergyArguments {
 int energy_command(const EnergyArguments& arguments);
 
 struct BenchArguments {
-  std::string scene;
+  std::string scene;  // a file, or a name of --list
+  std::string law;    // of a named scene; empty: line
   long steps = 200;
-  int threads = 1;
+  std::vector<int> threads = {1};  // measured one after another
+  bool list = false;
   bool json = false;
 };
 int bench_command(const BenchArguments& arguments);

@@ -1,5 +1,7 @@
 #include "sim/line_engine.hpp"
 
+#include <omp.h>
+
 #include <algorithm>
 
 namespace ropewalk {
@@ -94,7 +96,11 @@ void LineEngine::run(Buffers& b, const Topology& topology, const Interaction& in
 
 void LineEngine::compute(const Topology& topology, const Interaction& in, const NeighbourList& list,
                          const State& state, const Vec3Array& axis, ContactBuffer* buffers) {
-  if (stamp_ != list.stamp()) describe(topology, in, list);
+  if (stamp_ != list.stamp()) {
+    const double began = omp_get_wtime();
+    describe(topology, in, list);
+    list_seconds_ += omp_get_wtime() - began;
+  }
   if (full_) {
     run(full_buffers_, topology, in, list, state, axis, buffers);
   } else {

@@ -102,6 +102,7 @@ class LineEngine {
   void add_node_forces(const Topology& topology, const NeighbourList& list, const Vec3Array& axis, int tube,
                        Vec3Array& force, Vec3Array& torque) const;
   const LineList& list() const { return list_; }
+  double list_seconds() const { return list_seconds_; }  // spent on it so far
   std::size_t bytes() const;
 
  private:
@@ -115,6 +116,7 @@ class LineEngine {
 
   LineList list_;
   long stamp_ = 0;
+  double list_seconds_ = 0;
   bool full_ = false;
   std::vector<int> type_;       // of each element
   std::vector<double> length_;  // of the elements of each type

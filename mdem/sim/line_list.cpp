@@ -113,7 +113,7 @@ void LineList::find_runs(const Topology& topology, const Interaction& in, const 
     int tube_j = tube;
     for (std::size_t k = list.begin(i); k < end;) {
       const int first = index[k];
-      while (first >= topology.tube_begin[tube_j + 1]) ++tube_j;
+      if (first >= topology.tube_begin[tube_j + 1]) tube_j = topology.tube_of(first);
       int last = first;
       for (++k; k < end && index[k] < topology.tube_begin[tube_j + 1] && index[k] == last + 1; ++k) last = index[k];
       Side{topology, in, list, layout_, i, tube, tube_j}.add(first, last, runs);

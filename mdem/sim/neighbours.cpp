@@ -179,9 +179,22 @@ void NeighbourList::build(const Topology& topology, Vec3Array position, Vec3Arra
   cut_into_chunks(n);
 }
 
-// Equal numbers of pairs, whatever the threads: the cut belongs to the list.
+// Whatever the threads: the cut belongs to the list. Where the chunks would touch too much in common, as they do
+// where tubes with far numbers cross, fewer are made: clearing and adding up their buffers would cost as much as
+// the contact itself.
 void NeighbourList::cut_into_chunks(int n) {
-  const int count = chunk_count(n);
+  constexpr int fewest = 16;         // enough for as many threads
+  constexpr double most_common = 3;  // buffers for each element
+  for (int count = chunk_count(n);; count = std::max(fewest, count / 2)) {
+    cut_into_chunks(n, count);
+    double touched = 0;
+    for (const Chunk& c : chunks_) touched += c.touched_end - c.touched_begin;
+    if (count <= fewest || touched <= most_common * n) return;
+  }
+}
+
+// Equal numbers of pairs.
+void NeighbourList::cut_into_chunks(int n, int count) {
   chunks_.assign(static_cast<std::size_t>(count), Chunk{});
   int from = 0;
   for (int k = 0; k < count; ++k) {

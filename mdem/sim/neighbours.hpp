@@ -19,7 +19,8 @@ class NeighbourList {
     int begin = 0, end = 0;
     int touched_begin = 0, touched_end = 0;
   };
-  // As many as the elements can fill: their buffers overlap, and what overlaps costs time. Never by the threads.
+  // At most. As many as the elements can fill: their buffers overlap, and what overlaps costs time. Never by the
+  // threads.
   static int chunk_count(int elements) { return std::min(64, std::max(4, elements / 2048)); }
 
   double cutoff = 0;           // nm
@@ -55,6 +56,7 @@ class NeighbourList {
 
  private:
   void cut_into_chunks(int elements);
+  void cut_into_chunks(int elements, int count);
 
   std::vector<std::size_t> begin_;
   std::vector<int> index_;

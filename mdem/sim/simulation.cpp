@@ -296,7 +296,8 @@ bool Simulation::relax(double tolerance, long max_steps, const std::function<boo
 std::size_t Simulation::bytes() const {
   const std::size_t n = state_.size();
   const std::size_t state = (3 + 4 + 3 + 3) * n, forces = 6 * n;
-  return (state + forces + 3 * n) * sizeof(double) + engine_.bytes() + list_.bytes();
+  const std::size_t reference = 6 * n;  // of the list
+  return (state + forces + reference) * sizeof(double) + engine_.bytes() + list_.bytes();
 }
 
 namespace {

@@ -1,11 +1,8 @@
-// Micro-benchmarks of the forms and of a whole force evaluation. Build with the preset `bench`.
-#include <benchmark/benchmark.h>
-#include <omp.h>
+// The forms alone, the paper law, lists, motion, and whole force evaluations.
+#include "bench/support.hpp"
+#include "sim/motion.hpp"
 
-#include "sim/forces.hpp"
-#include "unit/support.hpp"
-
-namespace ropewalk {
+namespace ropewalk::bench {
 namespace {
 
 void PaperPair(benchmark::State& bench) {
@@ -35,24 +32,59 @@ void Bond(benchmark::State& bench) {
 }
 BENCHMARK(Bond);
 
-// Arguments: elements per tube of a 7-tube bundle, contact viscosity.
-void AllForces(benchmark::State& bench) {
-  omp_set_num_threads(1);
-  Topology topology = test::published_topology();
-  const State state = test::disordered_bundle(topology, 7, static_cast<int>(bench.range(0)), 1.75, 0.02, 3);
-  Interaction in;
-  in.paper = test::published_contact();
-  in.damping.contact = {static_cast<double>(bench.range(1)), 1.713, 2.57};
-  NeighbourList list(in, 0.15);
-  list.build(topology, state);
-  ForceEngine engine;
-  Forces forces(state.size());
-  for (auto _ : bench) engine.compute(topology, in, list, state, forces);
-  bench.counters["ns_per_pair"] =
-      benchmark::Counter(static_cast<double>(list.pairs()) * 1e-9,
-                         benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+// Argument: tubes of 50 elements, as in all that follow.
+void PaperKernel(benchmark::State& bench) {
+  const Rope rope(static_cast<int>(bench.range(0)), 50, Law::paper);
+  std::vector<int> tube;
+  for (int i = 0; i < rope.topology.elements(); ++i) tube.push_back(rope.topology.tube_of(i));
+  const ContactInput in{&rope.topology, &rope.in, &rope.state, &rope.axis, &rope.list, &tube};
+  ContactBuffer buffer;
+  for (auto _ : bench)
+    for (const NeighbourList::Chunk& chunk : rope.list.chunks()) {
+      buffer.clear(static_cast<std::size_t>(chunk.touched_end - chunk.touched_begin));
+      paper_contact(in, chunk, buffer);
+    }
+  set_ns(bench, "ns/element", rope.elements());
+  set_ns(bench, "ns/pair", static_cast<double>(rope.list.pairs()));
 }
-BENCHMARK(AllForces)->Args({100, 0})->Args({100, 20});
+BENCHMARK(PaperKernel)->Arg(7)->Arg(91);
+
+void NeighbourListBuild(benchmark::State& bench) {
+  const Rope rope(static_cast<int>(bench.range(0)), 50, Law::line);
+  NeighbourList list = rope.list;
+  for (auto _ : bench) list.build(rope.topology, rope.state);
+  set_ns(bench, "ns/element", rope.elements());
+  bench.counters["pairs"] = static_cast<double>(list.pairs()) / rope.elements();
+}
+BENCHMARK(NeighbourListBuild)->Arg(7)->Arg(91);
+
+// What every step pays to find that the list still holds.
+void NeighbourListCheck(benchmark::State& bench) {
+  Rope rope(static_cast<int>(bench.range(0)), 50, Law::line);
+  for (auto _ : bench) benchmark::DoNotOptimize(rope.list.update(rope.topology, rope.state));
+  set_ns(bench, "ns/element", rope.elements());
+}
+BENCHMARK(NeighbourListCheck)->Arg(7)->Arg(91);
+
+void Motion(benchmark::State& bench) {
+  Rope rope(static_cast<int>(bench.range(0)), 50, Law::line);
+  for (auto _ : bench) move_elements(rope.state, 1e-9, 0, static_cast<std::ptrdiff_t>(rope.state.size()));
+  set_ns(bench, "ns/element", rope.elements());
+}
+BENCHMARK(Motion)->Arg(7)->Arg(91);
+
+// Contact with viscosity, bonds with damping.
+void AllForces(benchmark::State& bench, Law law, Interaction::Precision precision) {
+  const Rope rope(static_cast<int>(bench.range(0)), 50, law, precision, 20);
+  ForceEngine engine;
+  Forces forces(rope.state.size());
+  for (auto _ : bench) engine.compute(rope.topology, rope.in, rope.list, rope.state, forces);
+  set_ns(bench, "ns/element", rope.elements());
+  bench.counters["pairs"] = static_cast<double>(rope.list.pairs()) / rope.elements();
+}
+BENCHMARK_CAPTURE(AllForces, line_mixed, Law::line, Interaction::Precision::mixed)->Arg(7)->Arg(91);
+BENCHMARK_CAPTURE(AllForces, line_full, Law::line, Interaction::Precision::full)->Arg(7)->Arg(91);
+BENCHMARK_CAPTURE(AllForces, paper, Law::paper, Interaction::Precision::full)->Arg(7)->Arg(91);
 
 }  // namespace
-}  // namespace ropewalk
+}  // namespace ropewalk::bench

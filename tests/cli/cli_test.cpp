@@ -39,8 +39,8 @@ class Cli : public ropewalk::test::Cli {
 TEST_F(Cli, HelpNamesEveryVerbAndUnits) {
   const Outcome o = run("--help");
   EXPECT_EQ(o.code, 0);
-  for (const char* word : {"new", "check", "run", "resume", "observe", "report", "energy", "bench", "calibrate", "validate", "length_nm",
-                           "moment_nN_nm", "time_step_fs"})
+  for (const char* word : {"new", "check", "run", "resume", "observe", "report", "energy", "bench", "calibrate",
+                           "validate", "length_nm", "moment_nN_nm", "time_step_fs"})
     EXPECT_NE(o.out.find(word), std::string::npos) << word;
   EXPECT_EQ(run("--version").code, 0);
 }
@@ -48,8 +48,8 @@ TEST_F(Cli, HelpNamesEveryVerbAndUnits) {
 TEST_F(Cli, WrongCommandLinesAreOneLine) {
   for (const char* line :
        {"", "twist", "run", "run x.toml", "run nowhere.toml --out d", "bench nowhere.toml", "observe nowhere",
-        "resume nowhere", "report nowhere", "energy none.csv --parameters cnt-10-10-paper", "new",
-        "new x --kind cable", "check nowhere.toml", "run x --out y --threads 0"}) {
+        "resume nowhere", "report nowhere", "energy none.csv --parameters cnt-10-10-paper", "new", "bench",
+        "bench film-1e9", "new x --kind cable", "check nowhere.toml", "run x --out y --threads 0"}) {
     const Outcome o = run(line);
     EXPECT_EQ(o.code, 2) << line;
     EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << line << "\n" << o.err;
@@ -246,6 +246,31 @@ TEST_F(Cli, BenchReportsItsKeys) {
        {"ns_per_element_step", "pairs_per_element", "split_ns_per_element_step", "bytes_per_element"})
     EXPECT_TRUE(b.contains(key)) << key;
   EXPECT_LT(b["bytes_per_element"].get<double>(), 1000);
+}
+
+TEST_F(Cli, BenchKnowsScenesByName) {
+  const Outcome list = run("bench --list");
+  EXPECT_EQ(list.code, 0);
+  for (const char* name : {"chain", "rope-91x50", "rope-169x240", "film-1e5", "film-1e6"})
+    EXPECT_NE(list.out.find(name), std::string::npos) << name;
+  const Json both = Json::parse(run("bench film-1e3 --steps 5 --threads 1,2 --json").out);
+  ASSERT_EQ(both.size(), 2u);
+  EXPECT_EQ(both[0]["threads"], 1);
+  EXPECT_EQ(both[1]["threads"], 2);
+  for (const Json& b : both) {
+    EXPECT_EQ(b["elements"], 1000);
+    EXPECT_GT(b["runs_per_element"].get<double>(), 0.1);
+    EXPECT_GT(b["nodes_per_run"].get<double>(), 1);
+    EXPECT_GT(b["radial_evaluations_useful"].get<double>(), 1);
+    EXPECT_LT(b["radial_evaluations_useful"].get<double>(), b["radial_evaluations_per_element_step"].get<double>());
+    EXPECT_GT(b["contact_GFLOP_per_s"].get<double>(), 0);
+    EXPECT_LT(b["list_share"].get<double>(), 1);
+  }
+  const Json paper = Json::parse(run("bench rope-91x50 --law paper --steps 2 --json").out);
+  EXPECT_EQ(paper["elements"], 4550);
+  EXPECT_FALSE(paper.contains("runs_per_element"));
+  EXPECT_EQ(run("bench film-1e9").code, 2);
+  EXPECT_EQ(run("bench --law paper " ROPEWALK_SOURCE_DIR "/data/scenes/rope-67nm.toml").code, 2);
 }
 
 TEST_F(Cli, RelaxationSaysHowItEnded) {

@@ -1,0 +1,340 @@
+// The line law: one radial evaluation, the kernel for every instruction set and precision, its damping and its
+// list. It contains the kernel's source, whose inner functions no header shows: what is measured is what is
+// shipped.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "bench/line_kernel.cpp"
+#include <hwy/foreach_target.h>
+//
+#include "sim/contact_line_kernel.cpp"
+// The source has named itself; the passes for the other instruction sets must come here.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "bench/line_kernel.cpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace ropewalk::HWY_NAMESPACE {
+
+// u and du/dy of n squared distances, added up: `out` has two vectors' room. n is a multiple of 16.
+template <class Table>
+HWY_INLINE void radial_row(const Table& table, const typename Table::Value* X, std::size_t n,
+                           typename Table::Value* out) {
+  const typename Lanes<typename Table::Value>::D d;
+  auto us = hn::Zero(d), slopes = hn::Zero(d);
+  const auto all = hn::FirstN(d, hn::Lanes(d));
+  for (std::size_t i = 0; i < n; i += hn::Lanes(d)) {
+    hn::Vec<typename Lanes<typename Table::Value>::D> u, slope;
+    radial(d, table, hn::Load(d, X + i), all, u, slope);
+    us = hn::Add(us, u);
+    slopes = hn::Add(slopes, slope);
+  }
+  hn::StoreU(us, d, out);
+  hn::StoreU(slopes, d, out + hn::Lanes(d));
+}
+
+void RadialMixed(const MixedTable& table, const float* X, std::size_t n, float* out) {
+  radial_row(table, X, n, out);
+}
+void RadialFull(const FullTable& table, const double* X, std::size_t n, double* out) {
+  radial_row(table, X, n, out);
+}
+
+// 64 runs of `length` nodes, each `shift` nodes after the one before, against two nodes of an element.
+void Rows(const MixedTable& table, const LineNodes<std::int32_t>& nodes, int length, int shift,
+          NodeForces<float>& out, float* total) {
+  using D = Lanes<float>::D;
+  const std::int32_t from[2][3] = {{0, 0, 0}, {0, 0, 1 << 20}};
+  auto sums = no_sums<D, 2>(D());
+  for (int r = 0; r < 64; ++r)
+    row<2, false>(table, nodes, out, r * shift, r * shift + length, from, 0.1F, nullptr, nullptr, sums);
+  const auto all = hn::Add(hn::Add(sums.x[0], sums.x[1]), hn::Add(sums.z[0], sums.energy));
+  hn::StoreU(hn::Add(all, hn::Add(sums.y[0], hn::Add(sums.y[1], sums.z[1]))), D(), total);
+}
+
+std::size_t KernelLanes(bool full) { return full ? hn::Lanes(Lanes<double>::D()) : hn::Lanes(Lanes<float>::D()); }
+
+}  // namespace ropewalk::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+#include "bench/support.hpp"
+#include "sim/vector_clones.hpp"
+
+namespace ropewalk {
+HWY_EXPORT(RadialMixed);
+HWY_EXPORT(RadialFull);
+HWY_EXPORT(KernelLanes);
+HWY_EXPORT(Rows);
+}  // namespace ropewalk
+
+namespace ropewalk::bench {
+namespace {
+
+using Precision = Interaction::Precision;
+
+constexpr std::size_t distances = 1024;
+
+// Squared distances from the core to the cutoff.
+template <class T>
+struct Distances {
+  alignas(64) T X[distances];
+  Distances() {
+    const LineDensity law = test::line_density();
+    test::Random random(7);
+    for (T& x : X) {
+      const double rho = random.uniform(law.contact + law.core_gap, law.cutoff());
+      x = static_cast<T>(rho * rho);
+    }
+  }
+};
+
+// Counted in `radial`: y 2, s 1, u and du/dy by Horner's rule 4 degree - 2.
+constexpr double radial_flop(int degree) { return 3.0 + 4 * degree - 2; }
+
+void RadialTableFloat(benchmark::State& bench, const std::string& instructions) {
+  use_instructions(instructions);
+  const MixedTable table(test::line_density(), 1);
+  const Distances<float> at;
+  float out[32];
+  for (auto _ : bench) {
+    HWY_DYNAMIC_DISPATCH(RadialMixed)(table, at.X, distances, out);
+    benchmark::ClobberMemory();
+  }
+  set_ns(bench, "ns/evaluation", distances);
+  set_giga(bench, "GFLOP/s", distances * radial_flop(MixedTable::degree));
+  use_instructions("");
+}
+
+void RadialTableDouble(benchmark::State& bench, const std::string& instructions) {
+  use_instructions(instructions);
+  const FullTable table(test::line_density(), 1);
+  const Distances<double> at;
+  double out[16];
+  for (auto _ : bench) {
+    HWY_DYNAMIC_DISPATCH(RadialFull)(table, at.X, distances, out);
+    benchmark::ClobberMemory();
+  }
+  set_ns(bench, "ns/evaluation", distances);
+  set_giga(bench, "GFLOP/s", distances * radial_flop(FullTable::degree));
+  use_instructions("");
+}
+
+// Runs alone, two nodes of an element against each. Arguments: nodes in a run; nodes from one run to the next: as
+// many as a run has, it meets fresh forces, 0 those just stored, 6 those of the last runs, shifted by an element.
+void LineRows(benchmark::State& bench) {
+  const int length = static_cast<int>(bench.range(0)), shift = static_cast<int>(bench.range(1));
+  const int count = 64 * shift + length + NodeLayout::pad;
+  const double unit = std::exp2(-22);
+  const MixedTable table(test::line_density(), unit);
+  LineNodes<std::int32_t> nodes;
+  nodes.per_unit = 1 / unit;
+  for (int m = 0; m < count; ++m) {
+    nodes.x.push_back(nodes.coordinate(1.7));
+    nodes.y.push_back(nodes.coordinate(0.01 * (m % 7)));
+    nodes.z.push_back(nodes.coordinate(0.226 * (m % 10)));
+  }
+  NodeForces<float> forces;
+  forces.clear(0, count);
+  float total[16];
+  for (auto _ : bench) {
+    HWY_DYNAMIC_DISPATCH(Rows)(table, nodes, length, shift, forces, total);
+    benchmark::ClobberMemory();
+  }
+  const auto lanes = static_cast<int>(HWY_DYNAMIC_DISPATCH(KernelLanes)(false));
+  const double vectors = 64.0 * 2 * ((length + lanes - 1) / lanes);
+  set_ns(bench, "ns/vector", vectors);
+  set_ns(bench, "ns/run", 64);
+  set_giga(bench, "GFLOP/s", vectors * lanes * (radial_flop(MixedTable::degree) + 22));
+}
+BENCHMARK(LineRows)->ArgsProduct({{16, 32}, {0, 6, 32}})->Args({24, 6})->Args({512, 512});
+
+// The law itself, as its formula says: what the tables replace.
+ROPEWALK_VECTOR_CLONES
+void radial_direct(const LineDensity& of, const double* X, double& u, double& slope) {
+  const LineDensity law = of;
+  double us = 0, slopes = 0;
+#pragma omp simd reduction(+ : us, slopes)
+  for (std::size_t i = 0; i < distances; ++i) {
+    const double rho = std::sqrt(X[i]);
+    const RadialTerms t = law.terms(rho);
+    us += t.energy;
+    slopes += t.derivative / rho;
+  }
+  u = us;
+  slope = slopes;
+}
+
+void RadialDirect(benchmark::State& bench) {
+  const LineDensity law = test::line_density();
+  const Distances<double> at;
+  double u = 0, slope = 0;
+  for (auto _ : bench) {
+    radial_direct(law, at.X, u, slope);
+    benchmark::DoNotOptimize(u);
+    benchmark::DoNotOptimize(slope);
+  }
+  set_ns(bench, "ns/evaluation", distances);
+}
+BENCHMARK(RadialDirect);
+
+// --- How much the kernel does -----------------------------------------------------------------------
+
+// Radial evaluations: those of the vectors, full or not; and those within the cutoff.
+struct Work {
+  double lanes = 0, useful = 0, vectors = 0, runs = 0, skipped = 0, end_runs = 0;
+};
+
+// `on_i` nodes of element i against the nodes of a run. All elements must be nearly parallel.
+void add_run(const Rope& rope, const LineRun& run, int i, int on_i, int width, Work& work) {
+  const LineContact& law = rope.in.line[0];
+  const int vectors = (run.node_end - run.node_begin + width - 1) / width;
+  work.vectors += vectors * on_i;
+  work.lanes += vectors * on_i * width;
+  const double cutoff2 = law.density.cutoff() * law.density.cutoff();
+  for (int node = run.node_begin; node < run.node_end; ++node) {
+    const int l = node - run.row;
+    const auto j = static_cast<std::size_t>(run.element_begin + l / law.nodes_j);
+    const Vector3 at_j =
+        rope.state.position[j] + line_node(l % law.nodes_j, law.nodes_j, law.length_j) * rope.axis[j];
+    const auto si = static_cast<std::size_t>(i);
+    for (int k = 0; k < on_i; ++k) {
+      const Vector3 at_i = rope.state.position[si] + line_node(k, on_i, law.length_i) * rope.axis[si];
+      work.useful += (at_j - at_i).squaredNorm() < cutoff2;
+    }
+  }
+}
+
+Work work_of(const Rope& rope, const LineList& list, int width) {
+  const LineContact& law = rope.in.line[0];
+  Work work;
+  for (int i = 0; i < rope.topology.elements(); ++i)
+    for (const LineRun* run = list.begin(i); run != list.end(i); ++run) {
+      work.runs += 1;
+      if (static_cast<double>(run->beyond) > 2 * rope.list.displacement()) {
+        work.skipped += 1;
+        continue;
+      }
+      const bool ends = law.sparse_i > 0 && (run->begins || run->ends);
+      work.end_runs += ends;
+      if (law.sparse_i > 0) add_run(rope, *run, i, law.sparse_i, width, work);
+      if (law.sparse_i == 0 || ends) add_run(rope, *run, i, law.nodes_i, width, work);
+    }
+  return work;
+}
+
+// Counted in `row`, per lane: displacement 3, its square 5, force factor 1, energy 1, forces on i and j 12.
+constexpr double lane_flop(int degree) { return radial_flop(degree) + 22; }
+
+void set_counters(benchmark::State& bench, const Rope& rope, const LineList& list) {
+  const bool full = rope.in.precision == Precision::full;
+  const Work work = work_of(rope, list, static_cast<int>(HWY_DYNAMIC_DISPATCH(KernelLanes)(full)));
+  const double n = rope.elements();
+  set_ns(bench, "ns/element", n);
+  set_ns(bench, "ns/evaluation", work.lanes);
+  set_giga(bench, "GFLOP/s", work.lanes * lane_flop(full ? FullTable::degree : MixedTable::degree));
+  bench.counters["evaluations"] = work.lanes / n;
+  bench.counters["vectors"] = work.vectors / n;
+  bench.counters["useful"] = work.useful / work.lanes;
+  bench.counters["runs"] = work.runs / n;
+  bench.counters["skipped"] = work.skipped / n;
+  bench.counters["end_runs"] = work.end_runs / n;
+  bench.counters["pairs"] = static_cast<double>(rope.list.pairs()) / n;
+}
+
+// --- Benchmarks -------------------------------------------------------------------------------------
+
+struct Choice {
+  std::string instructions;
+  Precision precision;
+  Law law;
+  int tubes;
+  double worn;
+};
+
+// Rows, kernel and what it puts on the neighbours: all of the contact, as a step has it.
+void LineKernel(benchmark::State& bench, const Choice& c) {
+  use_instructions(c.instructions);
+  const Rope rope(c.tubes, 49, c.law, c.precision, 0, c.worn);
+  LineEngine engine;
+  std::vector<ContactBuffer> buffers(rope.list.chunks().size());
+  Vec3Array force(rope.state.size()), torque(rope.state.size());
+  for (auto _ : bench) {
+    engine.compute(rope.topology, rope.in, rope.list, rope.state, rope.axis, buffers.data());
+    for (int t = 0; t < rope.topology.tubes(); ++t)
+      engine.add_node_forces(rope.topology, rope.list, rope.axis, t, force, torque);
+    benchmark::ClobberMemory();
+  }
+  set_counters(bench, rope, engine.list());
+  use_instructions("");
+}
+
+// The second half of the above alone.
+void LineNodeForces(benchmark::State& bench) {
+  const Rope rope(static_cast<int>(bench.range(0)), 49, Law::line);
+  LineEngine engine;
+  std::vector<ContactBuffer> buffers(rope.list.chunks().size());
+  Vec3Array force(rope.state.size()), torque(rope.state.size());
+  engine.compute(rope.topology, rope.in, rope.list, rope.state, rope.axis, buffers.data());
+  for (auto _ : bench) {
+    for (int t = 0; t < rope.topology.tubes(); ++t)
+      engine.add_node_forces(rope.topology, rope.list, rope.axis, t, force, torque);
+    benchmark::ClobberMemory();
+  }
+  set_ns(bench, "ns/element", rope.elements());
+}
+BENCHMARK(LineNodeForces)->Arg(7)->Arg(91);
+
+void LineListBuild(benchmark::State& bench) {
+  const Rope rope(static_cast<int>(bench.range(0)), 49, Law::line, Precision::mixed, 20);
+  LineList list;
+  for (auto _ : bench) list.build(rope.topology, rope.in, rope.list);
+  set_ns(bench, "ns/element", rope.elements());
+  bench.counters["runs"] = static_cast<double>(list.runs()) / rope.elements();
+  bench.counters["bytes"] = static_cast<double>(list.bytes()) / rope.elements();
+}
+BENCHMARK(LineListBuild)->Arg(7)->Arg(91);
+
+void ViscousDamping(benchmark::State& bench) {
+  const Rope rope(static_cast<int>(bench.range(0)), 49, Law::line, Precision::mixed, 20);
+  LineList list;
+  list.build(rope.topology, rope.in, rope.list);
+  std::vector<ContactBuffer> buffers(rope.list.chunks().size());
+  for (std::size_t k = 0; k < buffers.size(); ++k) {
+    const NeighbourList::Chunk& chunk = rope.list.chunks()[k];
+    buffers[k].clear(static_cast<std::size_t>(chunk.touched_end - chunk.touched_begin));
+  }
+  for (auto _ : bench) {
+    for (std::size_t k = 0; k < buffers.size(); ++k)
+      if (rope.list.chunks()[k].begin < rope.list.chunks()[k].end)
+        line_damping(rope.in, rope.state, list, rope.list.chunks()[k], buffers[k]);
+    benchmark::ClobberMemory();
+  }
+  set_ns(bench, "ns/element", rope.elements());
+}
+BENCHMARK(ViscousDamping)->Arg(7)->Arg(91);
+
+void register_kernel(const Choice& c, const std::string& also = "") {
+  const std::string name = "LineKernel/" + c.instructions + (c.precision == Precision::full ? "/full" : "/mixed") +
+                           (c.law == Law::line ? "/sparse/" : "/all_nodes/") + std::to_string(c.tubes) + also;
+  benchmark::RegisterBenchmark(name.c_str(), LineKernel, c)->Unit(benchmark::kMicrosecond);
+}
+
+void register_kernels() {
+  for (const std::string& instructions : instruction_sets())
+    for (const Precision precision : {Precision::mixed, Precision::full})
+      for (const Law law : {Law::line, Law::line_all_nodes})
+        for (const int tubes : {7, 91}) register_kernel({instructions, precision, law, tubes, 0.5});
+  for (const Law law : {Law::line, Law::line_all_nodes})
+    register_kernel({instruction_sets()[0], Precision::mixed, law, 91, 0}, "/fresh_list");
+}
+
+const bool registered = [] {
+  for (const std::string& name : instruction_sets()) {
+    benchmark::RegisterBenchmark(("RadialTableFloat/" + name).c_str(), RadialTableFloat, name);
+    benchmark::RegisterBenchmark(("RadialTableDouble/" + name).c_str(), RadialTableDouble, name);
+  }
+  register_kernels();
+  return true;
+}();
+
+}  // namespace
+}  // namespace ropewalk::bench
+#endif  // HWY_ONCE

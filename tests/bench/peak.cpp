@@ -1,0 +1,148 @@
+// What this machine can do at most, for one thread: arithmetic (fused multiply-adds, products and sums where there
+// are none), lookups in a table held in registers, and transfer. The roofline that the kernels are held to.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "bench/peak.cpp"
+#include <hwy/foreach_target.h>
+//
+#include <hwy/highway.h>
+
+#include <cstddef>
+
+HWY_BEFORE_NAMESPACE();
+namespace ropewalk::bench::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+// Independent chains: more than latency times throughput of any unit here, and no more than 16 registers hold.
+constexpr int chains = 12;
+
+template <class T, int cap>
+HWY_INLINE std::size_t multiply_add(std::size_t rounds, T start, T* out) {
+  const hn::CappedTag<T, cap> d;
+  const auto factor = hn::Set(d, start), term = hn::Set(d, static_cast<T>(0.25));
+  hn::Vec<decltype(d)> a[chains];
+  for (int k = 0; k < chains; ++k) a[k] = hn::Set(d, static_cast<T>(k));
+  for (std::size_t r = 0; r < rounds; ++r)
+    for (int k = 0; k < chains; ++k) a[k] = hn::MulAdd(a[k], factor, term);
+  for (int k = 1; k < chains; ++k) a[0] = hn::Add(a[0], a[k]);
+  hn::StoreU(a[0], d, out);
+  return rounds * chains * 2 * hn::Lanes(d);
+}
+
+std::size_t Float(std::size_t rounds, float start, float* out) {
+  return multiply_add<float, 16>(rounds, start, out);
+}
+std::size_t Double(std::size_t rounds, double start, double* out) {
+  return multiply_add<double, 8>(rounds, start, out);
+}
+
+// Lookups in 32 floats in two registers; 0 where an instruction set has none.
+std::size_t LookUp([[maybe_unused]] std::size_t rounds, [[maybe_unused]] const float* table,
+                   [[maybe_unused]] float* out) {
+#if HWY_TARGET <= HWY_AVX3
+  const hn::CappedTag<float, 16> d;
+  const auto low = hn::LoadU(d, table), high = hn::LoadU(d, table + 16);
+  hn::Vec<decltype(d)> a[chains];
+  for (int k = 0; k < chains; ++k) a[k] = hn::Set(d, static_cast<float>(k));
+  for (std::size_t r = 0; r < rounds; ++r)
+    for (int k = 0; k < chains; ++k)
+      a[k].raw = _mm512_permutex2var_ps(low.raw, _mm512_castps_si512(a[k].raw), high.raw);
+  for (int k = 1; k < chains; ++k) a[0] = hn::Add(a[0], a[k]);
+  hn::StoreU(a[0], d, out);
+  return rounds * chains * 16;
+#else
+  return 0;
+#endif
+}
+
+// a = b + 3 c
+void Triad(double* HWY_RESTRICT a, const double* HWY_RESTRICT b, const double* HWY_RESTRICT c, std::size_t n) {
+  const hn::CappedTag<double, 8> d;
+  const auto three = hn::Set(d, 3.0);
+  for (std::size_t i = 0; i < n; i += hn::Lanes(d))
+    hn::Store(hn::MulAdd(hn::Load(d, c + i), three, hn::Load(d, b + i)), d, a + i);
+}
+
+}  // namespace ropewalk::bench::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+#include <hwy/aligned_allocator.h>
+
+#include "bench/support.hpp"
+
+namespace ropewalk::bench {
+
+HWY_EXPORT(Float);
+HWY_EXPORT(Double);
+HWY_EXPORT(LookUp);
+HWY_EXPORT(Triad);
+
+namespace {
+
+void PeakFloat(benchmark::State& bench, const std::string& instructions) {
+  use_instructions(instructions);
+  float start = 0.5F, out[16];
+  std::size_t flop = 0;
+  for (auto _ : bench) {
+    benchmark::DoNotOptimize(start);
+    flop = HWY_DYNAMIC_DISPATCH(Float)(10000, start, out);
+    benchmark::DoNotOptimize(out);
+  }
+  set_giga(bench, "GFLOP/s", static_cast<double>(flop));
+  use_instructions("");
+}
+
+void PeakDouble(benchmark::State& bench, const std::string& instructions) {
+  use_instructions(instructions);
+  double start = 0.5, out[8];
+  std::size_t flop = 0;
+  for (auto _ : bench) {
+    benchmark::DoNotOptimize(start);
+    flop = HWY_DYNAMIC_DISPATCH(Double)(10000, start, out);
+    benchmark::DoNotOptimize(out);
+  }
+  set_giga(bench, "GFLOP/s", static_cast<double>(flop));
+  use_instructions("");
+}
+
+void PeakLookUp(benchmark::State& bench) {
+  float table[32], out[16];
+  for (int k = 0; k < 32; ++k) table[k] = 1 + static_cast<float>(k) / 64;
+  std::size_t entries = 0;
+  for (auto _ : bench) {
+    benchmark::DoNotOptimize(table);
+    entries = HWY_DYNAMIC_DISPATCH(LookUp)(10000, table, out);
+    benchmark::DoNotOptimize(out);
+  }
+  if (entries == 0) return bench.SkipWithError("no lookups in registers here");
+  set_giga(bench, "Glookup/s", static_cast<double>(entries));
+}
+BENCHMARK(PeakLookUp);
+
+// Argument: KiB of the three arrays together. Counts 24 bytes per entry, as STREAM does.
+void PeakTriad(benchmark::State& bench) {
+  const auto n = static_cast<std::size_t>(bench.range(0)) * 1024 / 24 / 8 * 8;
+  const auto array = [&] { return hwy::AllocateAligned<double>(n); };
+  const auto a = array(), b = array(), c = array();
+  std::fill(a.get(), a.get() + n, 1.0);
+  std::fill(b.get(), b.get() + n, 2.0);
+  std::fill(c.get(), c.get() + n, 3.0);
+  for (auto _ : bench) {
+    HWY_DYNAMIC_DISPATCH(Triad)(a.get(), b.get(), c.get(), n);
+    benchmark::ClobberMemory();
+  }
+  set_giga(bench, "GB/s", 24.0 * static_cast<double>(n));
+}
+BENCHMARK(PeakTriad)->Arg(24)->Arg(512)->Arg(8 << 10)->Arg(384 << 10);
+
+const bool registered = [] {
+  for (const std::string& name : instruction_sets()) {
+    benchmark::RegisterBenchmark(("PeakFloat/" + name).c_str(), PeakFloat, name);
+    benchmark::RegisterBenchmark(("PeakDouble/" + name).c_str(), PeakDouble, name);
+  }
+  return true;
+}();
+
+}  // namespace
+}  // namespace ropewalk::bench
+#endif  // HWY_ONCE
