@@ -11,19 +11,7 @@
 namespace ropewalk {
 namespace {
 
-void expect_green(const Case& c) {
-  const CaseResult result = test::run(c);
-  EXPECT_EQ(c.group, Case::Group::codes);
-  for (const Check& check : result.checks) {
-    EXPECT_TRUE(check.informative || check.holds())
-        << c.name << ": " << check.name << " " << check.value << " against " << check.reference;
-    EXPECT_TRUE(std::isfinite(check.value)) << check.name;
-  }
-  ASSERT_FALSE(result.figures.empty());
-  for (const CaseFigure& figure : result.figures) EXPECT_TRUE(can_draw(figure.chart)) << figure.chart.title;
-  EXPECT_FALSE(result.remarks.empty());
-  EXPECT_FALSE(result.sources.empty());
-}
+using test::expect_green;
 
 ParameterSet shipped() { return test::stored_context().parameters("cnt-10-10-tersoff"); }
 

@@ -1,6 +1,10 @@
 // Shared by the tests of the cases: the faults, and a case run with one of them on the stored references.
 #pragma once
 
+#include <gtest/gtest.h>
+
+#include <cmath>
+
 #include "cases/cases.hpp"
 #include "io/data_files.hpp"
 #include "io/parameters_toml.hpp"
@@ -45,6 +49,26 @@ inline CaseResult run(const Case& c, const Fault& fault = {}) {
   CaseContext context = stored_context();
   context.fault = fault;
   return c.run(context);
+}
+
+// All checks hold, figures can be drawn, and the page has something to say.
+inline void expect_green(const Case& c) {
+  const CaseResult result = run(c);
+  ASSERT_FALSE(result.checks.empty());
+  for (const Check& check : result.checks) {
+    EXPECT_TRUE(check.informative || check.holds())
+        << c.name << ": " << check.name << " " << check.value << " against " << check.reference;
+    EXPECT_TRUE(std::isfinite(check.value)) << check.name;
+  }
+  ASSERT_FALSE(result.figures.empty());
+  for (const CaseFigure& figure : result.figures) {
+    EXPECT_TRUE(can_draw(figure.chart)) << figure.chart.title;
+    EXPECT_FALSE(figure.caption.empty());
+  }
+  for (const std::string& text : {c.name, c.title, c.why, c.setup, c.oracle, c.literature})
+    EXPECT_FALSE(text.empty());
+  EXPECT_FALSE(result.remarks.empty());
+  EXPECT_FALSE(result.sources.empty());
 }
 
 }  // namespace ropewalk::test

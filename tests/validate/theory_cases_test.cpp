@@ -7,26 +7,8 @@ namespace ropewalk {
 
 namespace {
 
+using test::expect_green;
 using test::run;
-
-// All checks hold, figures can be drawn, and the page has something to say.
-void expect_green(const Case& c) {
-  const CaseResult result = run(c);
-  ASSERT_FALSE(result.checks.empty());
-  for (const Check& check : result.checks) {
-    EXPECT_TRUE(check.informative || check.holds())
-        << c.name << ": " << check.name << " " << check.value << " against " << check.reference;
-  }
-  ASSERT_FALSE(result.figures.empty());
-  for (const CaseFigure& figure : result.figures) {
-    EXPECT_TRUE(can_draw(figure.chart)) << figure.chart.title;
-    EXPECT_FALSE(figure.caption.empty());
-  }
-  for (const std::string& text : {c.name, c.title, c.why, c.setup, c.oracle, c.literature})
-    EXPECT_FALSE(text.empty());
-  EXPECT_FALSE(result.remarks.empty());
-  EXPECT_FALSE(result.sources.empty());
-}
 
 TEST(TheoryCases, StretchAndCantilever) {
   const Case c = stretch_and_cantilever_case();
