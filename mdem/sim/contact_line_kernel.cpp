@@ -18,7 +18,6 @@ struct Lanes;
 template <>
 struct Lanes<float> {
   using D = hn::CappedTag<float, 16>;
-  using Coordinate = std::int32_t;
   static HWY_INLINE hn::Vec<D> difference(const std::int32_t* x, std::int32_t from) {
     const hn::RebindToSigned<D> di;
     return hn::ConvertTo(D(), hn::Sub(hn::LoadU(di, x), hn::Set(di, from)));
@@ -27,7 +26,6 @@ struct Lanes<float> {
 template <>
 struct Lanes<double> {
   using D = hn::CappedTag<double, 8>;
-  using Coordinate = double;
   static HWY_INLINE hn::Vec<D> difference(const double* x, double from) {
     const D d;
     return hn::Sub(hn::LoadU(d, x), hn::Set(d, from));
@@ -135,8 +133,9 @@ HWY_INLINE void row(const Table& t, const LineNodes<C>& nodes, NodeForces<typena
     hn::StoreU(gy, d, oy);
     hn::StoreU(gz, d, oz);
     if constexpr (weighted) {
-      hn::StoreU(hn::MulAdd(each, hn::Set(d, factor), hn::LoadU(d, energies + (m - begin))), d,
-                 energies + (m - begin));
+      if (energies)
+        hn::StoreU(hn::MulAdd(each, hn::Set(d, factor), hn::LoadU(d, energies + (m - begin))), d,
+                   energies + (m - begin));
       each = hn::Mul(each, hn::LoadU(d, weight + (m - begin)));
     }
     energy = hn::Add(energy, each);
@@ -258,14 +257,14 @@ HWY_NOINLINE void end_run(E& e, const LineRun& run, LineScratch<typename E::Real
   const int nodes = law.nodes_j, skipped = run.node_begin - run.row;
   const auto most = static_cast<std::size_t>(nodes + 2 * NodeLayout::pad);
   if (w.sparse.size() < most)
-    for (auto* v : {&w.sparse, &w.dense, &w.sparse_energy}) v->resize(most, Real{0});
+    for (auto* v : {&w.sparse, &w.dense}) v->resize(most, Real{0});
   for (int l = skipped; l < nodes; ++l) {
     const double share = end_ramp(l, nodes, run.begins, run.ends);
     w.sparse[static_cast<std::size_t>(l - skipped)] = static_cast<Real>(share);
     w.dense[static_cast<std::size_t>(l - skipped)] = static_cast<Real>(1 - share);
   }
-  node_sum<true>(e, run, law.sparse_i, w.sparse.data(), w.sparse_energy.data());
-  node_sum<true>(e, run, law.nodes_i, w.dense.data(), w.sparse_energy.data());
+  node_sum<true>(e, run, law.sparse_i, w.sparse.data());
+  node_sum<true>(e, run, law.nodes_i, w.dense.data());
 }
 
 // A run whose elements do not all take the same sum.
