@@ -7,11 +7,11 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "commands/bench_count.hpp"
 #include "commands/bench_scenes.hpp"
 #include "commands/commands.hpp"
 #include "model/error.hpp"
 #include "scene/prepare.hpp"
+#include "sim/line_count.hpp"
 
 namespace ropewalk {
 namespace {
@@ -69,10 +69,12 @@ Timing per_element_step(const Timing& a, const Timing& b, double scale) {
           b.builds - a.builds};
 }
 
+constexpr int most_counted = 4000;  // elements
+
 Cost measure(const Scene& scene, const Prepared& prepared, long steps, int threads) {
   use_threads(threads);
   Simulation simulation = start(scene, prepared);
-  for (long k = 0; k < std::max(5L, steps / 10); ++k) simulation.step();  // warm caches
+  for (long k = 0; k < std::max(5L, steps / 10); ++k) simulation.step(false);  // warm caches
   Cost c;
   const Timing before = timing(simulation, 0, 0);
   // Counted a few times on the way: what is within reach changes between two builds of the list.
@@ -80,10 +82,13 @@ Cost measure(const Scene& scene, const Prepared& prepared, long steps, int threa
   double wall = 0, processor = 0;
   for (long part = 0; part < samples; ++part) {
     const double began = omp_get_wtime(), used = processor_seconds();
-    for (long k = steps * part / samples; k < steps * (part + 1) / samples; ++k) simulation.step();
+    for (long k = steps * part / samples; k < steps * (part + 1) / samples; ++k) simulation.step(false);
     wall += omp_get_wtime() - began;
     processor += processor_seconds() - used;
-    c.radial.add(count_radial(simulation), 1.0 / static_cast<double>(samples));
+    c.radial.add(
+        count_radial(simulation.topology(), simulation.interaction(), simulation.state(),
+                     simulation.engine().line().list(), 2 * simulation.list().displacement(), most_counted),
+        1.0 / static_cast<double>(samples));
   }
   const double n = prepared.topology.elements(), scale = 1e9 / (n * static_cast<double>(steps));
   c.each = per_element_step(before, timing(simulation, wall * scale, processor * scale), scale);

@@ -137,10 +137,10 @@ class Run {
     Progress progress(quiet_, static_cast<double>(simulation_.state().step), static_cast<double>(last_step_));
     double checkpoint_at = now() + scene_.run.checkpoint_every;
     while (simulation_.state().step < last_step_) {
-      simulation_.step();
-      const std::int64_t step = simulation_.state().step;
-      const bool last = step == last_step_;
-      if (step % log_every_ == 0 || last) write_row();
+      const std::int64_t step = simulation_.state().step + 1;
+      const bool last = step == last_step_, logged = step % log_every_ == 0 || last;
+      simulation_.step(logged);
+      if (logged) write_row();
       if (step % frames_every_ == 0 || last) write_frame();
       if (caught_signal) return false;
       if (progress.due()) progress.show(static_cast<double>(step), status_text());

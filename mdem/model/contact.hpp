@@ -17,6 +17,12 @@ struct PairForce {
   Vector3 torque_j = Vector3::Zero();
 };
 
+// Whether an element is the first, the last one of its tube.
+struct TubeEnds {
+  bool begins = false, ends = false;
+  bool any() const { return begins || ends; }
+};
+
 namespace detail {
 
 inline double safe_distance(const Vector3& s) { return std::sqrt(std::max(s.squaredNorm(), 1e-12)); }

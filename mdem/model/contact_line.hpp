@@ -15,19 +15,22 @@
 //
 // Nearly parallel elements need fewer nodes. The double sum is off by the Fourier coefficients of u at the wave
 // vectors that both rows share: for rows of M and N nodes per length, crossing at an angle, at
-//   K^2 = (m^2 M^2 + n^2 N^2 + 2 m n M N cos)/sin^2 (2 pi/L)^2,    m, n integers, not both zero.
-// With M = N sin(18 deg) all of them lie as far out as those of N and N nodes, up to 18 degrees: i then has
-// `sparse_i` nodes and j all of its own, at a third of the cost and with the same corrugation. Between 12 and 18
-// degrees one sum goes over into the other, w a quintic smoothstep in (n_i.n_j)^2:
-//   U = w U_sparse + (1 - w) U_dense.
-// Where j's row ends, the sparse sum would feel single nodes of i: 12 % ripple in the force that pulls j out of a
-// bundle. Over the last element of a tube w therefore falls linearly from node to node, by r_l, to nothing at the
-// tip. As the ripple has a whole number of periods in an element, its mean under this ramp is zero:
-//   U = U_dense + w (U_sparse,r - U_dense,r),    the index r: nodes l of j weighted by r_l.
+//   K^2 = [(m M + n N)^2 + 2 |m n| M N (1 - cos)]/sin^2 (2 pi/L)^2,    m, n integers of opposite sign,
+// so for parallel rows at the common multiples of M and N alone. Rows of M and M + 1 nodes with M (M + 1) >= N
+// corrugate no more than two rows of N, and the wave (1, -1) stays as far out up to the angle
+//   sin^2 = 1/(N^2 - M (M + 1)).
+// For N = 6 that is 2 nodes against 3, a sixth of the evaluations, up to 10.5 degrees. From there down to two
+// thirds of the angle one sum goes over into the other, w a quintic smoothstep in (n_i.n_j)^2:
+//   U = w U_near + (1 - w) U_NN.
+// Where a row ends, the other's single nodes would be felt: a ripple of 12 % in the force that pulls a tube out of
+// a bundle. Over the last element of a tube the sparse sum therefore fades out linearly from node to node, by the
+// ramp r; as its ripple has a whole number of periods in an element, the mean under the ramp is zero. What the ramp
+// leaves is summed with the *other* row dense, which has no ripple (both dense where both rows end):
+//   U_near = sum_(M, M+1) r_k r_l (...) + sum_(M or N, M+1 or N) (1 - r_k r_l) (...).
 //
 // Forces are central between nodes, so force, torque and momentum balance are exact by construction.
-// Units eV, nm. u in eV/nm^2. Symmetric under flipping either axis and, without sparse nodes, under exchange of i
-// and j; with them i is the element of lower index.
+// Units eV, nm. u in eV/nm^2. Symmetric under flipping either axis (with the ends of its tube) and, without sparse
+// nodes, under exchange of i and j; with them i is the element of lower index.
 // Sources: A. N. Volkov, L. V. Zhigilei, J. Phys. Chem. C 114, 5513 (2010), DOI 10.1021/jp906142h (tubular
 // potential, which this replaces by an exact line integral); the Abel inverse is derived in
 // calibrate/contact/van_der_waals.hpp.
@@ -78,27 +81,36 @@ struct LineDensity {
   double energy(double rho) const { return terms(rho).energy; }
 };
 
-// Share of the sparse sum, and its derivative in n_i.n_j.
+// Share w of the sum of nearly parallel elements, and its derivative in n_i.n_j.
 struct SparseWeight {
   double value = 0, derivative = 0;
 };
-inline constexpr double sparse_from_cos2 = 0.90450849718747;  // 18 degrees
-inline constexpr double sparse_full_cos2 = 0.95677272821301;  // 12 degrees
-inline SparseWeight sparse_weight(double cosine) {
-  constexpr double per_width = 1 / (sparse_full_cos2 - sparse_from_cos2);
-  const double t = std::min(std::max((cosine * cosine - sparse_from_cos2) * per_width, 0.0), 1.0), r = 1 - t;
-  return {t * t * t * (10 - t * (15 - 6 * t)), 60 * t * t * r * r * cosine * per_width};
-}
+
+// Sparse nodes towards nearly parallel elements, and at which angles.
+struct SparseNodes {
+  int i = 0, j = 0;      // nodes of i, of j; 0: none, always all nodes
+  double from_cos2 = 1;  // w = 0 at larger angles
+  double full_cos2 = 1;  // w = 1 at smaller ones
+
+  bool none() const { return i == 0; }
+  SparseWeight weight(double cosine) const {
+    const double per_width = 1 / (full_cos2 - from_cos2);
+    const double t = std::min(std::max((cosine * cosine - from_cos2) * per_width, 0.0), 1.0), r = 1 - t;
+    return {t * t * t * (10 - t * (15 - 6 * t)), 60 * t * t * r * r * cosine * per_width};
+  }
+};
 
 // One pair of elements.
 struct LineContact {
   LineDensity density;
   double length_i = 0, length_j = 0;  // nm
   int nodes_i = 1, nodes_j = 1;
-  int sparse_i = 0;  // nodes of i towards a nearly parallel j; 0: always nodes_i
-  // Whether j is the first or the last element of its tube.
-  bool j_begins = false, j_ends = false;
+  SparseNodes sparse;
+  TubeEnds ends_i, ends_j;
 
+  // Nodes of what the ramps leave: a row is dense where the other one ends.
+  int near_end_nodes_i() const { return ends_j.any() ? nodes_i : sparse.i; }
+  int near_end_nodes_j() const { return ends_i.any() ? nodes_j : sparse.j; }
   // Of the element centres: beyond it no two nodes reach each other, however the elements are turned.
   double cutoff() const {
     return density.cutoff() + 0.5 * (length_i * (1 - 1.0 / nodes_i) + length_j * (1 - 1.0 / nodes_j));
@@ -108,7 +120,9 @@ struct LineContact {
   double energy(const Vector3& separation, const Vector3& n_i, const Vector3& n_j) const;
 
  private:
-  PairForce node_sum(int on_i, bool ramp, const Vector3& separation, const Vector3& n_i, const Vector3& n_j) const;
+  template <class Share>
+  PairForce node_sum(int on_i, int on_j, const Share& share, const Vector3& separation, const Vector3& n_i,
+                     const Vector3& n_j) const;
 };
 
 // Place of node k of `nodes` on an element, from its centre (nm).
@@ -122,21 +136,28 @@ inline int line_nodes(double length, double pair_spacing, double contact) {
   return std::max(1, static_cast<int>(std::ceil(length / spacing - 1e-9)));
 }
 
-// Nodes towards nearly parallel elements. At least two: a single one could not turn its element.
-inline int sparse_nodes(int nodes) {
-  return std::min(nodes, std::max(2, static_cast<int>(std::ceil(0.309 * nodes))));
+// For rows of `nodes` per element, the finest of a scene: one choice for all its tubes. At least two nodes: a
+// single one could not turn its element.
+inline SparseNodes sparse_nodes(int nodes) {
+  constexpr double widest = 0.09549150281253;  // sin^2 of 18 degrees
+  int m = 2;
+  while (m * (m + 1) < nodes) ++m;
+  if (m + 1 > nodes) return {};
+  const double from = std::min(widest, 1 / std::max(double(nodes) * nodes - m * (m + 1), 1.0));
+  const double full = std::sin(2.0 / 3 * std::asin(std::sqrt(from)));
+  return {m, m + 1, 1 - from, 1 - full * full};
 }
 
-// With sparse nodes.
+// With sparse nodes, for tubes of one type.
 inline LineContact line_pair(const LineDensity& density, double length_i, double length_j, int nodes_i,
                              int nodes_j) {
-  return {density, length_i, length_j, nodes_i, nodes_j, sparse_nodes(nodes_i)};
+  return {density, length_i, length_j, nodes_i, nodes_j, sparse_nodes(std::max(nodes_i, nodes_j)), {}, {}};
 }
 
-// r_l: share of the sparse sum in what acts on node l of j.
-inline double end_ramp(int l, int nodes, bool begins, bool ends) {
+// r: share of the sparse sum in what acts on node l of `nodes`.
+inline double end_ramp(int l, int nodes, const TubeEnds& ends) {
   const double along = (l + 0.5) / nodes;
-  return begins && ends ? 0.0 : begins ? along : ends ? 1 - along : 1.0;
+  return ends.begins && ends.ends ? 0.0 : ends.begins ? along : ends.ends ? 1 - along : 1.0;
 }
 
 // Energy per length (eV/nm) of two infinite parallel tubes and energy (eV) of two infinite tubes crossed at
@@ -182,15 +203,15 @@ struct UniversalLine {
 
 // --- Definitions ------------------------------------------------------------------------------------
 
-inline PairForce LineContact::node_sum(int on_i, bool ramp, const Vector3& separation, const Vector3& n_i,
-                                       const Vector3& n_j) const {
+template <class Share>
+PairForce LineContact::node_sum(int on_i, int on_j, const Share& share, const Vector3& separation,
+                                const Vector3& n_i, const Vector3& n_j) const {
   PairForce f;
   for (int k = 0; k < on_i; ++k) {
     const double si = line_node(k, on_i, length_i);
-    for (int l = 0; l < nodes_j; ++l) {
-      const double share = ramp ? end_ramp(l, nodes_j, j_begins, j_ends) : 1.0;
-      const double weight = share * length_i / on_i * length_j / nodes_j;
-      const double sj = line_node(l, nodes_j, length_j);
+    for (int l = 0; l < on_j; ++l) {
+      const double weight = share(k, l) * length_i / on_i * length_j / on_j;
+      const double sj = line_node(l, on_j, length_j);
       const Vector3 d = separation + sj * n_j - si * n_i;
       const double rho = detail::safe_distance(d);
       const RadialTerms t = density.terms(rho);
@@ -206,17 +227,29 @@ inline PairForce LineContact::node_sum(int on_i, bool ramp, const Vector3& separ
 
 inline PairForce LineContact::energy_and_gradient(const Vector3& separation, const Vector3& n_i,
                                                   const Vector3& n_j) const {
-  const SparseWeight w = sparse_i > 0 ? sparse_weight(n_i.dot(n_j)) : SparseWeight{};
-  if (w.value >= 1 && !j_begins && !j_ends) return node_sum(sparse_i, false, separation, n_i, n_j);
-  PairForce f = node_sum(nodes_i, false, separation, n_i, n_j);
-  if (w.value <= 0) return f;
-  const PairForce sparse = node_sum(sparse_i, true, separation, n_i, n_j);
-  const PairForce dense = node_sum(nodes_i, true, separation, n_i, n_j);
-  const Vector3 turn = (sparse.energy - dense.energy) * w.derivative * n_i.cross(n_j);
-  f.energy += w.value * (sparse.energy - dense.energy);
-  f.force_j += w.value * (sparse.force_j - dense.force_j);
-  f.torque_i += w.value * (sparse.torque_i - dense.torque_i) - turn;
-  f.torque_j += w.value * (sparse.torque_j - dense.torque_j) + turn;
+  const auto all = [](int, int) { return 1.0; };
+  const SparseWeight w = sparse.none() ? SparseWeight{} : sparse.weight(n_i.dot(n_j));
+  if (w.value <= 0) return node_sum(nodes_i, nodes_j, all, separation, n_i, n_j);
+
+  const auto faded = [&](int k, int l) { return end_ramp(k, sparse.i, ends_i) * end_ramp(l, sparse.j, ends_j); };
+  PairForce near = node_sum(sparse.i, sparse.j, faded, separation, n_i, n_j);
+  if (ends_i.any() || ends_j.any()) {
+    const int on_i = near_end_nodes_i(), on_j = near_end_nodes_j();
+    const auto left = [&](int k, int l) { return 1 - end_ramp(k, on_i, ends_i) * end_ramp(l, on_j, ends_j); };
+    const PairForce rest = node_sum(on_i, on_j, left, separation, n_i, n_j);
+    near.energy += rest.energy;
+    near.force_j += rest.force_j;
+    near.torque_i += rest.torque_i;
+    near.torque_j += rest.torque_j;
+  }
+  if (w.value >= 1) return near;
+
+  PairForce f = node_sum(nodes_i, nodes_j, all, separation, n_i, n_j);
+  const Vector3 turn = (near.energy - f.energy) * w.derivative * n_i.cross(n_j);
+  f.energy += w.value * (near.energy - f.energy);
+  f.force_j += w.value * (near.force_j - f.force_j);
+  f.torque_i += w.value * (near.torque_i - f.torque_i) - turn;
+  f.torque_j += w.value * (near.torque_j - f.torque_j) + turn;
   return f;
 }
 

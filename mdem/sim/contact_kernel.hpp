@@ -15,8 +15,10 @@ struct ContactBuffer {
   std::vector<double> fx, fy, fz, tx, ty, tz;
   double energy = 0, power = 0;
 
+  static constexpr std::size_t room = 8;  // behind the elements, for vectors that are not full
+
   void clear(std::size_t elements) {
-    for (auto* v : {&fx, &fy, &fz, &tx, &ty, &tz}) v->assign(elements, 0.0);
+    for (auto* v : {&fx, &fy, &fz, &tx, &ty, &tz}) v->assign(elements + room, 0.0);
     energy = power = 0;
   }
 };

@@ -43,8 +43,8 @@ HWY_INLINE hn::Vec<D> look_up(D d, const T (&row)[segments], I index) {
   return hn::GatherIndex(d, row, hn::And(index, hn::Set(di, segments - 1)));
 }
 
-// u and du/dy at squared distances X; zero beyond the cutoff and outside of `wanted`.
-template <class D, class Table>
+// u, if wanted, and du/dy at squared distances X; zero beyond the cutoff and outside of `wanted`.
+template <bool energies, class D, class Table>
 HWY_INLINE void radial(D d, const Table& t, hn::Vec<D> X, hn::Mask<D> wanted, hn::Vec<D>& u, hn::Vec<D>& slope) {
   using T = typename Table::Value;
   const hn::RebindToSigned<D> di;
@@ -52,12 +52,12 @@ HWY_INLINE void radial(D d, const Table& t, hn::Vec<D> X, hn::Mask<D> wanted, hn
   const auto index = hn::ShiftRight<Table::mantissa_left>(hn::BitCast(di, y));
   const auto start = hn::BitCast(d, hn::ShiftLeft<Table::mantissa_left>(index));
   const auto s = hn::Sub(y, start);
-  auto p = look_up(d, t.c[Table::degree], index);
-  auto dp = p;
-  p = hn::MulAdd(p, s, look_up(d, t.c[Table::degree - 1], index));
-  for (int k = Table::degree - 2; k >= 0; --k) {
-    dp = hn::MulAdd(dp, s, p);
-    p = hn::MulAdd(p, s, look_up(d, t.c[k], index));
+  auto dp = look_up(d, t.d[Table::degree - 1], index);
+  for (int k = Table::degree - 2; k >= 0; --k) dp = hn::MulAdd(dp, s, look_up(d, t.d[k], index));
+  auto p = hn::Zero(d);
+  if constexpr (energies) {
+    p = look_up(d, t.c[Table::degree], index);
+    for (int k = Table::degree - 1; k >= 0; --k) p = hn::MulAdd(p, s, look_up(d, t.c[k], index));
   }
   const auto core = hn::Lt(X, hn::Set(d, t.core2));
   if (HWY_UNLIKELY(!hn::AllFalse(d, core))) {
@@ -73,7 +73,7 @@ HWY_INLINE void radial(D d, const Table& t, hn::Vec<D> X, hn::Mask<D> wanted, hn
     dp = hn::IfThenElse(core, inner_slope, dp);
   }
   const auto near = hn::And(wanted, hn::Lt(X, hn::Set(d, t.cutoff2)));
-  u = hn::IfThenElseZero(near, p);
+  if constexpr (energies) u = hn::IfThenElseZero(near, p);
   slope = hn::IfThenElseZero(near, dp);
 }
 
@@ -90,27 +90,25 @@ HWY_INLINE Sums<D, K> no_sums(D d) {
   return s;
 }
 
-// Nodes of the neighbours begin .. end against K nodes of one element. `weight` and `energies`, where there are
-// any, belong to node `begin` first.
-template <int K, bool weighted, class Table, class C>
+// The nodes begin .. begin + count of a row against K nodes of one element; `at` is the place of node `begin` in
+// the buffers of forces.
+template <bool energies, int K, class Table, class C>
 HWY_INLINE void row(const Table& t, const LineNodes<C>& nodes, NodeForces<typename Table::Value>& out, int begin,
-                    int end, const C (*from)[3], typename Table::Value factor, const typename Table::Value* weight,
-                    typename Table::Value* energies, Sums<typename Lanes<typename Table::Value>::D, K>& sums) {
+                    int count, int at, const C (*from)[3], typename Table::Value factor,
+                    Sums<typename Lanes<typename Table::Value>::D, K>& sums) {
   using T = typename Table::Value;
   using L = Lanes<T>;
   const typename L::D d;
   const int lanes = static_cast<int>(hn::Lanes(d));
   const auto kf = hn::Set(d, t.force * factor);
   auto energy = hn::Zero(d);
-  for (int m = begin; m < end; m += lanes) {
-    T *ox = out.x.data() + (m - out.first), *oy = out.y.data() + (m - out.first),
-      *oz = out.z.data() + (m - out.first);
+  for (int m = 0; m < count; m += lanes) {
+    T *ox = out.x.data() + (at + m), *oy = out.y.data() + (at + m), *oz = out.z.data() + (at + m);
     auto gx = hn::LoadU(d, ox), gy = hn::LoadU(d, oy), gz = hn::LoadU(d, oz);
-    auto each = hn::Zero(d);
-    const auto wanted = hn::FirstN(d, static_cast<std::size_t>(end - m));
-    const auto x0 = L::difference(nodes.x.data() + m, from[0][0]);
-    const auto y0 = L::difference(nodes.y.data() + m, from[0][1]);
-    const auto z0 = L::difference(nodes.z.data() + m, from[0][2]);
+    const auto wanted = hn::FirstN(d, static_cast<std::size_t>(count - m));
+    const auto x0 = L::difference(nodes.x.data() + (begin + m), from[0][0]);
+    const auto y0 = L::difference(nodes.y.data() + (begin + m), from[0][1]);
+    const auto z0 = L::difference(nodes.z.data() + (begin + m), from[0][2]);
     for (int k = 0; k < K; ++k) {
       // The nodes of one element are so close that their difference is exact in T.
       const auto apart = [&](int a) { return hn::Set(d, static_cast<T>(from[k][a] - from[0][a])); };
@@ -118,10 +116,9 @@ HWY_INLINE void row(const Table& t, const LineNodes<C>& nodes, NodeForces<typena
       const auto dy = k == 0 ? y0 : hn::Sub(y0, apart(1));
       const auto dz = k == 0 ? z0 : hn::Sub(z0, apart(2));
       hn::Vec<typename L::D> u, slope;
-      radial(d, t, hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz))), wanted, u, slope);
-      auto f = hn::Mul(slope, kf);
-      if constexpr (weighted) f = hn::Mul(f, hn::LoadU(d, weight + (m - begin)));
-      each = hn::Add(each, u);
+      radial<energies>(d, t, hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz))), wanted, u, slope);
+      const auto f = hn::Mul(slope, kf);
+      if constexpr (energies) energy = hn::Add(energy, u);
       gx = hn::MulAdd(f, dx, gx);
       gy = hn::MulAdd(f, dy, gy);
       gz = hn::MulAdd(f, dz, gz);
@@ -132,248 +129,8 @@ HWY_INLINE void row(const Table& t, const LineNodes<C>& nodes, NodeForces<typena
     hn::StoreU(gx, d, ox);
     hn::StoreU(gy, d, oy);
     hn::StoreU(gz, d, oz);
-    if constexpr (weighted) {
-      if (energies)
-        hn::StoreU(hn::MulAdd(each, hn::Set(d, factor), hn::LoadU(d, energies + (m - begin))), d,
-                   energies + (m - begin));
-      each = hn::Mul(each, hn::LoadU(d, weight + (m - begin)));
-    }
-    energy = hn::Add(energy, each);
   }
-  sums.energy = hn::MulAdd(energy, hn::Set(d, factor), sums.energy);
-}
-
-// The element that the loop stands at.
-template <class In>
-struct Element {
-  using Table = typename In::Table;
-  using Real = typename Table::Value;
-  using C = typename In::Coordinate;
-  using D = typename Lanes<Real>::D;
-
-  const In& in;
-  NodeForces<Real>& forces;
-  ContactBuffer& out;
-  int touched_begin;
-  std::size_t row_of_types;  // of its type in the tables of pairs of types
-  double x[3], n[3];
-  // Forces on its nodes, and these times their places along it; lanes are added up at the end.
-  hn::Vec<D> fx, fy, fz, mx, my, mz, energy;
-  ElementSum sum;  // what does not come from nodes
-
-  const LineContact& law(int type_j) const {
-    return in.interaction->line[row_of_types + static_cast<std::size_t>(type_j)];
-  }
-  const Table& table(int type_j) const { return in.tables[row_of_types + static_cast<std::size_t>(type_j)]; }
-  HWY_INLINE void add_to(ContactBuffer& buffer, int i) {
-    const auto total = [&](hn::Vec<D> v) { return static_cast<double>(hn::GetLane(hn::SumOfLanes(D(), v))); };
-    const double m[3] = {total(mx), total(my), total(mz)};
-    sum.fx += total(fx);
-    sum.fy += total(fy);
-    sum.fz += total(fz);
-    sum.tx += n[1] * m[2] - n[2] * m[1];
-    sum.ty += n[2] * m[0] - n[0] * m[2];
-    sum.tz += n[0] * m[1] - n[1] * m[0];
-    sum.energy += total(energy);
-    sum.add_to(buffer, i - touched_begin);
-  }
-};
-
-// The nodes k .. k + K of `on_i` on an element, and their sums.
-template <class E, int K>
-struct Nodes {
-  using D = typename E::D;
-  typename E::C at[K][3];
-  double s[K];
-  Sums<D, K> sums;
-
-  HWY_INLINE Nodes(const E& e, int k, int on_i, double length) : sums(no_sums<D, K>(D())) {
-    for (int m = 0; m < K; ++m) {
-      s[m] = line_node(k + m, on_i, length);
-      for (int a = 0; a < 3; ++a) at[m][a] = e.in.nodes->coordinate(e.x[a] + s[m] * e.n[a]);
-    }
-  }
-  template <bool weighted = false>
-  HWY_INLINE void meet(E& e, const LineRun& run, double node_weight, const typename E::Real* weight = nullptr,
-                       typename E::Real* energies = nullptr) {
-    row<K, weighted>(e.table(run.type), *e.in.nodes, e.forces, run.node_begin, run.node_end, at,
-                     static_cast<typename E::Real>(node_weight), weight, energies, sums);
-  }
-  HWY_INLINE void collect(E& e) const {
-    for (int k = 0; k < K; ++k) {
-      const auto arm = hn::Set(D(), static_cast<typename E::Real>(s[k]));
-      e.fx = hn::Add(e.fx, sums.x[k]);
-      e.fy = hn::Add(e.fy, sums.y[k]);
-      e.fz = hn::Add(e.fz, sums.z[k]);
-      e.mx = hn::MulAdd(arm, sums.x[k], e.mx);
-      e.my = hn::MulAdd(arm, sums.y[k], e.my);
-      e.mz = hn::MulAdd(arm, sums.z[k], e.mz);
-    }
-    e.energy = hn::Add(e.energy, sums.energy);
-  }
-};
-
-HWY_INLINE double node_weight(const LineContact& law, int on_i) {
-  return law.length_i / on_i * law.length_j / law.nodes_j;
-}
-
-// K of the sparse nodes of an element, with runs of nearly parallel elements.
-template <int K, class E>
-HWY_INLINE void sparse_runs(E& e, int k, int on_i, const std::vector<const LineRun*>& runs) {
-  Nodes<E, K> nodes(e, k, on_i, e.law(runs[0]->type).length_i);
-  for (const LineRun* run : runs) nodes.meet(e, *run, node_weight(e.law(run->type), on_i));
-  nodes.collect(e);
-}
-
-// `on_i` nodes against those of one run, with a weight for each of these or without.
-template <bool weighted, class E>
-HWY_INLINE void node_sum(E& e, const LineRun& run, int on_i, const typename E::Real* weight = nullptr,
-                         typename E::Real* energies = nullptr) {
-  const LineContact& law = e.law(run.type);
-  const double w = node_weight(law, on_i);
-  int k = 0;
-  for (; k + 2 <= on_i; k += 2) {
-    Nodes<E, 2> nodes(e, k, on_i, law.length_i);
-    nodes.template meet<weighted>(e, run, w, weight, energies);
-    nodes.collect(e);
-  }
-  for (; k < on_i; ++k) {
-    Nodes<E, 1> nodes(e, k, on_i, law.length_i);
-    nodes.template meet<weighted>(e, run, w, weight, energies);
-    nodes.collect(e);
-  }
-}
-
-template <class E>
-HWY_NOINLINE void dense_run(E& e, const LineRun& run) {
-  node_sum<false>(e, run, e.law(run.type).nodes_i);
-}
-
-// The first or last element of a tube, nearly parallel: the shares of its nodes are those of the ramp alone.
-template <class E>
-HWY_NOINLINE void end_run(E& e, const LineRun& run, LineScratch<typename E::Real>& w) {
-  using Real = typename E::Real;
-  const LineContact& law = e.law(run.type);
-  const int nodes = law.nodes_j, skipped = run.node_begin - run.row;
-  const auto most = static_cast<std::size_t>(nodes + 2 * NodeLayout::pad);
-  if (w.sparse.size() < most)
-    for (auto* v : {&w.sparse, &w.dense}) v->resize(most, Real{0});
-  for (int l = skipped; l < nodes; ++l) {
-    const double share = end_ramp(l, nodes, run.begins, run.ends);
-    w.sparse[static_cast<std::size_t>(l - skipped)] = static_cast<Real>(share);
-    w.dense[static_cast<std::size_t>(l - skipped)] = static_cast<Real>(1 - share);
-  }
-  node_sum<true>(e, run, law.sparse_i, w.sparse.data());
-  node_sum<true>(e, run, law.nodes_i, w.dense.data());
-}
-
-// A run whose elements do not all take the same sum.
-template <class E>
-HWY_NOINLINE void mixed_run(E& e, const LineRun& run, LineScratch<typename E::Real>& w) {
-  using Real = typename E::Real;
-  const LineContact& law = e.law(run.type);
-  const Vec3Array& axis = *e.in.axis;
-  const int elements = run.element_end - run.element_begin, nodes = law.nodes_j, skipped = run.node_begin - run.row;
-  w.clear(static_cast<std::size_t>(std::max(elements * nodes - skipped, 0) + 2 * NodeLayout::pad));
-  bool sparse = false, dense = false;
-  for (int m = 0; m < elements; ++m) {
-    const int j = run.element_begin + m;
-    const double c = e.n[0] * axis.x[j] + e.n[1] * axis.y[j] + e.n[2] * axis.z[j];
-    const SparseWeight share = sparse_weight(c);
-    w.share.push_back(share);
-    sparse |= share.value > 0;
-    dense |= share.value < 1 || run.begins || run.ends;
-    for (int l = std::max(m * nodes - skipped, 0); l < (m + 1) * nodes - skipped; ++l) {
-      const double of_node = share.value * end_ramp(l + skipped - m * nodes, nodes, run.begins, run.ends);
-      w.sparse[static_cast<std::size_t>(l)] = static_cast<Real>(of_node);
-      w.dense[static_cast<std::size_t>(l)] = static_cast<Real>(1 - of_node);
-    }
-  }
-  if (!sparse) return dense_run(e, run);
-  node_sum<true>(e, run, law.sparse_i, w.sparse.data(), w.sparse_energy.data());
-  if (dense) node_sum<true>(e, run, law.nodes_i, w.dense.data(), w.dense_energy.data());
-  for (int m = 0; m < elements; ++m) {
-    const SparseWeight& share = w.share[static_cast<std::size_t>(m)];
-    if (share.value <= 0 || share.value >= 1) continue;
-    double difference = 0;
-    for (int l = std::max(m * nodes - skipped, 0); l < (m + 1) * nodes - skipped; ++l)
-      difference += end_ramp(l + skipped - m * nodes, nodes, run.begins, run.ends) *
-                    (static_cast<double>(w.sparse_energy[static_cast<std::size_t>(l)]) -
-                     static_cast<double>(w.dense_energy[static_cast<std::size_t>(l)]));
-    // The share depends on the angle: a couple on both.
-    const int j = run.element_begin + m, at = j - e.touched_begin;
-    const double g = difference * share.derivative;
-    const double tx = g * (e.n[1] * axis.z[j] - e.n[2] * axis.y[j]),
-                 ty = g * (e.n[2] * axis.x[j] - e.n[0] * axis.z[j]),
-                 tz = g * (e.n[0] * axis.y[j] - e.n[1] * axis.x[j]);
-    e.sum.tx -= tx;
-    e.sum.ty -= ty;
-    e.sum.tz -= tz;
-    e.out.tx[at] += tx;
-    e.out.ty[at] += ty;
-    e.out.tz[at] += tz;
-  }
-}
-
-// Whether all elements of the run cross element i at less than 12 degrees.
-template <class E>
-HWY_INLINE bool nearly_parallel(const E& e, const LineRun& run) {
-  const Vec3Array& axis = *e.in.axis;
-  double smallest = 1;
-  for (int j = run.element_begin; j < run.element_end; ++j) {
-    const double c = e.n[0] * axis.x[j] + e.n[1] * axis.y[j] + e.n[2] * axis.z[j];
-    smallest = std::min(smallest, c * c);
-  }
-  return smallest >= sparse_full_cos2;
-}
-
-template <class In, class Real>
-HWY_INLINE void all_elements(const In& in, const NeighbourList::Chunk& chunk, LineScratch<Real>& scratch,
-                             NodeForces<Real>& forces, ContactBuffer& out) {
-  const std::size_t types = in.topology->types.size();
-  const Vec3Array &x = in.state->position, &n = *in.axis;
-  std::vector<const LineRun*>& even = scratch.even;
-  for (int i = chunk.begin; i < chunk.end; ++i) {
-    if (in.list->begin(i) == in.list->end(i)) continue;
-    const auto none = hn::Zero(typename Element<In>::D());
-    Element<In> e{in,
-                  forces,
-                  out,
-                  chunk.touched_begin,
-                  static_cast<std::size_t>(in.type[i]) * types,
-                  {x.x[i], x.y[i], x.z[i]},
-                  {n.x[i], n.y[i], n.z[i]},
-                  none,
-                  none,
-                  none,
-                  none,
-                  none,
-                  none,
-                  none,
-                  {}};
-    even.clear();
-    for (const LineRun* run = in.list->begin(i); run != in.list->end(i); ++run) {
-      if (static_cast<double>(run->beyond) > in.moved) continue;
-      if (e.law(run->type).sparse_i == 0) {
-        dense_run(e, *run);
-      } else if (nearly_parallel(e, *run)) {
-        if (run->begins || run->ends) {
-          end_run(e, *run, scratch);
-        } else {
-          even.push_back(run);
-        }
-      } else {
-        mixed_run(e, *run, scratch);
-      }
-    }
-    if (!even.empty()) {
-      const int on_i = e.law(even[0]->type).sparse_i;
-      int k = 0;
-      for (; k + 2 <= on_i; k += 2) sparse_runs<2>(e, k, on_i, even);
-      for (; k < on_i; ++k) sparse_runs<1>(e, k, on_i, even);
-    }
-    e.add_to(out, i);
-  }
+  if constexpr (energies) sums.energy = hn::MulAdd(energy, hn::Set(d, factor), sums.energy);
 }
 
 // The first n entries at p, the others zero; p need not be aligned and nothing behind them is read.
@@ -390,19 +147,318 @@ HWY_INLINE hn::Vec<D> load_first(D d, const double* p, std::size_t n) {
 }
 
 template <class D>
-HWY_INLINE void store_first(hn::Vec<D> v, D d, double* p, std::size_t n) {
-#if HWY_TARGET <= HWY_AVX2
-  hn::BlendedStore(v, hn::FirstN(d, n), d, p);
-#else
-  if (n >= hn::Lanes(d)) return hn::StoreU(v, d, p);
-  alignas(64) double all[hn::MaxLanes(d)];
-  hn::Store(v, d, all);
-  for (std::size_t k = 0; k < n; ++k) p[k] = all[k];
+HWY_INLINE double total(D d, hn::Vec<D> v) {
+  return static_cast<double>(hn::GetLane(hn::SumOfLanes(d, v)));
+}
+
+// The sums of the lanes of three vectors.
+template <class V>
+HWY_INLINE void totals(V x, V y, V z, double (&out)[3]) {
+  const hn::DFromV<V> d;
+#if HWY_TARGET != HWY_SCALAR
+  if constexpr (sizeof(hn::TFromD<decltype(d)>) == 4) {
+    // Added while they are shuffled into one block: half the work of three sums.
+    const hn::Repartition<std::uint64_t, decltype(d)> pairs;
+    const auto xy = hn::Add(hn::InterleaveLower(d, x, y), hn::InterleaveUpper(d, x, y));  // x02 y02 x13 y13
+    const auto zz = hn::Add(hn::InterleaveLower(d, z, z), hn::InterleaveUpper(d, z, z));
+    const auto low = hn::InterleaveLower(pairs, hn::BitCast(pairs, xy), hn::BitCast(pairs, zz));
+    const auto high = hn::InterleaveUpper(pairs, hn::BitCast(pairs, xy), hn::BitCast(pairs, zz));
+    const auto blocks = hn::Add(hn::BitCast(d, low), hn::BitCast(d, high));  // x y z z in every block
+    alignas(64) float all[hn::MaxLanes(d)];
+    hn::Store(blocks, d, all);
+    for (std::size_t a = 0; a < 3; ++a) {
+      float sum = all[a];
+      for (std::size_t m = 4; m < hn::MaxLanes(d); m += 4) sum += all[m + a];
+      out[a] = static_cast<double>(sum);
+    }
+    return;
+  }
 #endif
+  out[0] = total(d, x), out[1] = total(d, y), out[2] = total(d, z);
+}
+
+// The element that the loop stands at.
+template <class In>
+struct Element {
+  using Table = typename In::Table;
+  using Real = typename Table::Value;
+  using C = typename In::Coordinate;
+  using D = typename Lanes<Real>::D;
+  using V = hn::Vec<D>;
+
+  const In& in;
+  const LineChunk& chunk;
+  LineWork<Real>& work;
+  ContactBuffer& out;
+  std::size_t row_of_types;  // of its type in the tables of pairs of types
+  TubeEnds ends;
+  double x[3], n[3];
+  // Forces on its nodes, and these times their places along it; lanes are added up at the end.
+  V fx, fy, fz, mx, my, mz, energy;
+  ElementSum sum;  // what does not come from nodes
+
+  const PairSum<Real>& sums(int type_j) const { return in.pairs[pair(type_j)]; }
+  std::size_t pair(int type_j) const { return row_of_types + static_cast<std::size_t>(type_j); }
+  const LineContact& law(int type_j) const { return in.interaction->line[pair(type_j)]; }
+  const Table& table(int type_j) const { return in.tables[pair(type_j)]; }
+  const TouchedTube& touched(const LineRun& run) const {
+    return chunk.touched[static_cast<std::size_t>(run.touched)];
+  }
+
+  HWY_INLINE Element(const In& input, const LineChunk& c, LineWork<Real>& w, ContactBuffer& o, int i, int tube)
+      : in(input), chunk(c), work(w), out(o) {
+    const Topology& topology = *in.topology;
+    row_of_types =
+        static_cast<std::size_t>(topology.tube_type[static_cast<std::size_t>(tube)]) * topology.types.size();
+    ends = topology.ends_of(i, tube);
+    const auto at = static_cast<std::size_t>(i);
+    const Vec3Array &place = in.state->position, &axis = *in.axis;
+    x[0] = place.x[at], x[1] = place.y[at], x[2] = place.z[at];
+    n[0] = axis.x[at], n[1] = axis.y[at], n[2] = axis.z[at];
+    fx = fy = fz = mx = my = mz = energy = hn::Zero(D());
+  }
+  template <bool energies>
+  HWY_INLINE void add_to(ContactBuffer& buffer, int at) {
+    double f[3], m[3];
+    totals(fx, fy, fz, f);
+    totals(mx, my, mz, m);
+    sum.fx += f[0];
+    sum.fy += f[1];
+    sum.fz += f[2];
+    sum.tx += n[1] * m[2] - n[2] * m[1];
+    sum.ty += n[2] * m[0] - n[0] * m[2];
+    sum.tz += n[0] * m[1] - n[1] * m[0];
+    if constexpr (energies) sum.energy += total(D(), energy);
+    sum.add_to(buffer, at);
+  }
+};
+
+// The nodes k .. k + K of `on_i` on an element, and their sums.
+template <class E, int K>
+struct Nodes {
+  using D = typename E::D;
+  typename E::C at[K][3];
+  double s[K];
+  Sums<D, K> sums;
+
+  HWY_INLINE Nodes(const E& e, const double* places) : sums(no_sums<D, K>(D())) {
+    for (int m = 0; m < K; ++m) {
+      s[m] = places[m];
+      for (int a = 0; a < 3; ++a) at[m][a] = e.in.nodes[0].coordinate(e.x[a] + s[m] * e.n[a]);
+    }
+  }
+  template <bool energies>
+  HWY_INLINE void meet(E& e, const LineRun& run, Rows kind, double weight) {
+    const int which = static_cast<int>(kind);
+    const TouchedTube::Row& of_tube = e.touched(run).row[which];
+    const int begin = of_tube.origin + run.element_begin * of_tube.per_element + run.nodes[which].from;
+    row<energies, K>(e.table(run.type), e.in.nodes[which], e.work.forces[which], begin, run.nodes[which].count,
+                     begin + of_tube.shift, at, static_cast<typename E::Real>(weight), sums);
+  }
+  HWY_INLINE void collect(E& e) const {
+    for (int k = 0; k < K; ++k) {
+      const auto arm = hn::Set(D(), static_cast<typename E::Real>(s[k]));
+      e.fx = hn::Add(e.fx, sums.x[k]);
+      e.fy = hn::Add(e.fy, sums.y[k]);
+      e.fz = hn::Add(e.fz, sums.z[k]);
+      e.mx = hn::MulAdd(arm, sums.x[k], e.mx);
+      e.my = hn::MulAdd(arm, sums.y[k], e.my);
+      e.mz = hn::MulAdd(arm, sums.z[k], e.mz);
+    }
+    e.energy = hn::Add(e.energy, sums.energy);
+  }
+};
+
+// K of the sparse nodes of an element, with the runs of nearly parallel elements.
+template <bool energies, int K, class E>
+HWY_INLINE void even_runs(E& e, int k, const std::vector<const LineRun*>& runs) {
+  Nodes<E, K> nodes(e, e.sums(runs[0]->type).places[1].data() + k);
+  for (const LineRun* run : runs) {
+    e.work.forces[1].use(e.touched(*run), Rows::sparse, run->touched);
+    nodes.template meet<energies>(e, *run, Rows::sparse, e.sums(run->type).weight[1]);
+  }
+  nodes.collect(e);
+}
+
+// All nodes against those of one run.
+template <bool energies, class E>
+HWY_NOINLINE void dense_run(E& e, const LineRun& run) {
+  const PairSum<typename E::Real>& sums = e.sums(run.type);
+  const double w = sums.weight[0], *places = sums.places[0].data();
+  const int count = static_cast<int>(sums.places[0].size());
+  e.work.forces[0].use(e.touched(run), Rows::all, run.touched);
+  int k = 0;
+  for (; k + 2 <= count; k += 2) {
+    Nodes<E, 2> nodes(e, places + k);
+    nodes.template meet<energies>(e, run, Rows::all, w);
+    nodes.collect(e);
+  }
+  for (; k < count; ++k) {
+    Nodes<E, 1> nodes(e, places + k);
+    nodes.template meet<energies>(e, run, Rows::all, w);
+    nodes.collect(e);
+  }
+}
+
+// Another element, from the one that the loop stands at, and what acts on it.
+template <class E>
+struct Partner {
+  using V = typename E::V;
+  double n[3];
+  typename E::Real d[3], nj[3], ni[3];  // separation and axes, in units of the list
+  V fx, fy, fz, mx, my, mz;
+
+  HWY_INLINE Partner(const E& e, int j) {
+    const auto sj = static_cast<std::size_t>(j);
+    const Vec3Array &x = e.in.state->position, &axis = *e.in.axis;
+    const double per_unit = e.in.nodes[0].per_unit;
+    const double place[3] = {x.x[sj], x.y[sj], x.z[sj]};
+    n[0] = axis.x[sj], n[1] = axis.y[sj], n[2] = axis.z[sj];
+    for (int a = 0; a < 3; ++a) {
+      d[a] = static_cast<typename E::Real>((place[a] - e.x[a]) * per_unit);
+      nj[a] = static_cast<typename E::Real>(n[a] * per_unit);
+      ni[a] = static_cast<typename E::Real>(e.n[a] * per_unit);
+    }
+    fx = fy = fz = mx = my = mz = hn::Zero(typename E::D());
+  }
+
+  // The pairs of nodes in `lanes`, times `share`. Returns their energy, if wanted, without the share.
+  template <bool energies>
+  HWY_INLINE double meet(E& e, const typename E::Table& t, const PairLanes<typename E::Real>& lanes, double share) {
+    const typename E::D tag;
+    const auto all = hn::FirstN(tag, hn::Lanes(tag));
+    const auto kf = hn::Set(tag, t.force * static_cast<typename E::Real>(share));
+    V energy = hn::Zero(tag);
+    for (std::size_t m = 0; m < lanes.weight.size(); m += hn::Lanes(tag)) {
+      const V si = hn::LoadU(tag, lanes.i.data() + m), sj = hn::LoadU(tag, lanes.j.data() + m);
+      const V w = hn::LoadU(tag, lanes.weight.data() + m);
+      const auto apart = [&](int a) {
+        return hn::NegMulAdd(si, hn::Set(tag, ni[a]), hn::MulAdd(sj, hn::Set(tag, nj[a]), hn::Set(tag, d[a])));
+      };
+      const V dx = apart(0), dy = apart(1), dz = apart(2);
+      V u, slope;
+      radial<energies>(tag, t, hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz))), all, u, slope);
+      const V f = hn::Mul(hn::Mul(slope, kf), w);
+      const V gx = hn::Mul(f, dx), gy = hn::Mul(f, dy), gz = hn::Mul(f, dz);
+      fx = hn::Add(fx, gx), fy = hn::Add(fy, gy), fz = hn::Add(fz, gz);
+      mx = hn::MulAdd(sj, gx, mx), my = hn::MulAdd(sj, gy, my), mz = hn::MulAdd(sj, gz, mz);
+      e.fx = hn::Sub(e.fx, gx), e.fy = hn::Sub(e.fy, gy), e.fz = hn::Sub(e.fz, gz);
+      e.mx = hn::NegMulAdd(si, gx, e.mx), e.my = hn::NegMulAdd(si, gy, e.my), e.mz = hn::NegMulAdd(si, gz, e.mz);
+      if constexpr (energies) energy = hn::MulAdd(w, u, energy);
+    }
+    if constexpr (!energies) return 0;
+    return total(tag, energy);
+  }
+
+  HWY_INLINE void add_to(ContactBuffer& out, std::size_t at) const {
+    double f[3], m[3];
+    totals(fx, fy, fz, f);
+    totals(mx, my, mz, m);
+    out.fx[at] += f[0];
+    out.fy[at] += f[1];
+    out.fz[at] += f[2];
+    out.tx[at] += n[1] * m[2] - n[2] * m[1];
+    out.ty[at] += n[2] * m[0] - n[0] * m[2];
+    out.tz[at] += n[0] * m[1] - n[1] * m[0];
+  }
+};
+
+// A run element by element: at the ends of tubes, and at angles where one sum goes over into the other.
+template <bool energies, class E>
+HWY_NOINLINE void pair_run(E& e, const LineRun& run) {
+  const LineContact& law = e.law(run.type);
+  const auto& table = e.table(run.type);
+  const PairSum<typename E::Real>& sums = e.sums(run.type);
+  const auto& near = sums.near[sums.index(e.ends)][sums.index(run.tube_ends())];
+  const int shift = e.touched(run).element_shift;
+  for (int j = run.element_begin; j < run.element_begin + run.elements; ++j) {
+    Partner<E> other(e, j);
+    const double c = e.n[0] * other.n[0] + e.n[1] * other.n[1] + e.n[2] * other.n[2];
+    const SparseWeight w = law.sparse.none() ? SparseWeight{} : law.sparse.weight(c);
+    const auto at = static_cast<std::size_t>(j + shift);
+    if (w.value <= 0 || w.value >= 1) {
+      e.sum.energy += other.template meet<energies>(e, table, w.value <= 0 ? sums.all : near, 1);
+    } else {
+      const double sparse = other.template meet<true>(e, table, near, w.value);
+      const double dense = other.template meet<true>(e, table, sums.all, 1 - w.value);
+      e.sum.energy += w.value * sparse + (1 - w.value) * dense;
+      // The share depends on the angle: a couple on both.
+      const double g = (sparse - dense) * w.derivative;
+      const double tx = g * (e.n[1] * other.n[2] - e.n[2] * other.n[1]),
+                   ty = g * (e.n[2] * other.n[0] - e.n[0] * other.n[2]),
+                   tz = g * (e.n[0] * other.n[1] - e.n[1] * other.n[0]);
+      e.sum.tx -= tx, e.sum.ty -= ty, e.sum.tz -= tz;
+      e.out.tx[at] += tx, e.out.ty[at] += ty, e.out.tz[at] += tz;
+    }
+    other.add_to(e.out, at);
+  }
+}
+
+// run_sum(); of most runs it is known since the list was built that all elements are nearly parallel, and of most
+// others one comparison tells.
+template <class E>
+HWY_INLINE RunSum kind_of_sum(const E& e, const LineRun& run) {
+  const LineContact& law = e.law(run.type);
+  const bool has_row = e.touched(run).row[0].per_element > 0;
+  if (HWY_LIKELY(e.in.turned < static_cast<double>(run.even))) return run_sum(law, e.ends, run, has_row, 1, 1);
+  const hn::CappedTag<double, 8> d;
+  const Vec3Array& axis = *e.in.axis;
+  const auto nx = hn::Set(d, e.n[0]), ny = hn::Set(d, e.n[1]), nz = hn::Set(d, e.n[2]);
+  const auto full = hn::Set(d, law.sparse.full_cos2);
+  auto largest = hn::Zero(d);
+  bool even = true;
+  for (int m = 0; m < run.elements; m += static_cast<int>(hn::Lanes(d))) {
+    const auto left = static_cast<std::size_t>(run.elements - m);
+    const auto at = [&](const std::vector<double>& a) {
+      return load_first(d, a.data() + run.element_begin + m, left);
+    };
+    const auto c = hn::MulAdd(nx, at(axis.x), hn::MulAdd(ny, at(axis.y), hn::Mul(nz, at(axis.z))));
+    const auto c2 = hn::Mul(c, c);  // of the lanes left over it is zero
+    largest = hn::Max(largest, c2);
+    even &= hn::AllFalse(d, hn::And(hn::FirstN(d, left), hn::Lt(c2, full)));
+  }
+  if (HWY_LIKELY(even)) return run_sum(law, e.ends, run, has_row, 1, 1);
+  return run_sum(law, e.ends, run, has_row, 0, hn::GetLane(hn::MaxOfLanes(d, largest)));
+}
+
+template <bool energies, class In, class Real>
+HWY_INLINE void all_elements(const In& in, const LineChunk& chunk, LineWork<Real>& work, ContactBuffer& out) {
+  const Topology& topology = *in.topology;
+  std::vector<const LineRun*>& even = work.even;
+  int tube = chunk.begin < chunk.end ? topology.tube_of(chunk.begin) : 0;
+  const int shift =
+      chunk.touched.empty() ? 0 : chunk.touched[0].element_shift;  // own tubes are first, and in order
+  for (int i = chunk.begin; i < chunk.end; ++i) {
+    while (i >= topology.tube_begin[tube + 1]) ++tube;
+    if (in.list->begin(i) == in.list->end(i)) continue;
+    Element<In> e(in, chunk, work, out, i, tube);
+    even.clear();
+    for (const LineRun* run = in.list->begin(i); run != in.list->end(i); ++run) {
+      if (static_cast<double>(run->beyond) > in.moved || run->elements == 0) continue;
+      switch (kind_of_sum(e, *run)) {
+        case RunSum::even:
+          even.push_back(run);
+          break;
+        case RunSum::rows:
+          dense_run<energies>(e, *run);
+          break;
+        case RunSum::pairs:
+          pair_run<energies>(e, *run);
+          break;
+      }
+    }
+    if (!even.empty()) {
+      const int on_i = static_cast<int>(e.sums(even[0]->type).places[1].size());
+      int k = 0;
+      for (; k + 2 <= on_i; k += 2) even_runs<energies, 2>(e, k, even);
+      for (; k < on_i; ++k) even_runs<energies, 1>(e, k, even);
+    }
+    e.template add_to<energies>(out, i + shift);
+  }
 }
 
 // ContactViscosity::force for a few neighbours at a time: two vectors of a few lanes beat one that is half empty.
-void Damping(const Interaction& in, const State& state, const LineList& list, const NeighbourList::Chunk& chunk,
+void Damping(const Interaction& in, const State& state, const LineList& list, const LineChunk& chunk,
              ContactBuffer& out) {
   const hn::CappedTag<double, 4> d;
   using V = hn::Vec<decltype(d)>;
@@ -411,15 +467,17 @@ void Damping(const Interaction& in, const State& state, const LineList& list, co
   const V inner = hn::Set(d, c.inner), per_width = hn::Set(d, 1 / (c.outer - c.inner)), half = hn::Set(d, 0.5);
   const V minus_eta = hn::Set(d, -c.eta), one = hn::Set(d, 1.0), two = hn::Set(d, 2.0), three = hn::Set(d, 3.0);
   const Vec3Array &x = state.position, &v = state.velocity, &w = state.angular_velocity;
-  const int first = chunk.touched_begin;
+  const int own_shift = chunk.touched.empty() ? 0 : chunk.touched[0].element_shift;
   V power = hn::Zero(d);
   for (int i = chunk.begin; i < chunk.end; ++i) {
     V sfx = hn::Zero(d), sfy = sfx, sfz = sfx, stx = sfx, sty = sfx, stz = sfx;
     bool any = false;
     for (const LineRun* run = list.begin(i); run != list.end(i); ++run) {
-      for (int j = run->damped_begin; j < run->damped_end; j += lanes) {
+      const int begin = run->element_begin + run->damped_from, end = begin + run->damped;
+      const int shift = chunk.touched[static_cast<std::size_t>(run->touched)].element_shift;
+      for (int j = begin; j < end; j += lanes) {
         any = true;
-        const auto left = static_cast<std::size_t>(run->damped_end - j);
+        const auto left = static_cast<std::size_t>(end - j);
         const auto at = [&](const std::vector<double>& a) { return load_first(d, a.data() + j, left); };
         const auto of_i = [&](const std::vector<double>& a) { return hn::Set(d, a[static_cast<std::size_t>(i)]); };
         const V dx = hn::Sub(at(x.x), of_i(x.x)), dy = hn::Sub(at(x.y), of_i(x.y)),
@@ -441,27 +499,28 @@ void Damping(const Interaction& in, const State& state, const LineList& list, co
         sfx = hn::Sub(sfx, fx), sfy = hn::Sub(sfy, fy), sfz = hn::Sub(sfz, fz);
         stx = hn::Add(stx, tx), sty = hn::Add(sty, ty), stz = hn::Add(stz, tz);
         const auto add = [&](std::vector<double>& a, V what) {
-          double* to = a.data() + (j - first);
-          store_first(hn::Add(load_first(d, to, left), what), d, to, left);
+          // Whole vectors: the lanes left over are zero, and the buffers have room.
+          double* to = a.data() + (j + shift);
+          hn::StoreU(hn::Add(hn::LoadU(d, to), what), d, to);
         };
         add(out.fx, fx), add(out.fy, fy), add(out.fz, fz), add(out.tx, tx), add(out.ty, ty), add(out.tz, tz);
       }
     }
     if (!any) continue;
-    const auto total = [&](V a) { return hn::GetLane(hn::SumOfLanes(d, a)); };
-    ElementSum{total(sfx), total(sfy), total(sfz), total(stx), total(sty), total(stz), 0.0}.add_to(out, i - first);
+    ElementSum{total(d, sfx), total(d, sfy), total(d, sfz), total(d, stx), total(d, sty), total(d, stz), 0.0}
+        .add_to(out, i + own_shift);
   }
   out.power += hn::GetLane(hn::SumOfLanes(d, power));
 }
 
-void Mixed(const LineKernelInput<MixedTable, std::int32_t>& in, const NeighbourList::Chunk& chunk,
-           LineScratch<float>& scratch, NodeForces<float>& forces, ContactBuffer& out) {
-  all_elements(in, chunk, scratch, forces, out);
+void Mixed(const LineKernelInput<MixedTable, std::int32_t>& in, const LineChunk& chunk, LineWork<float>& work,
+           ContactBuffer& out) {
+  in.energies ? all_elements<true>(in, chunk, work, out) : all_elements<false>(in, chunk, work, out);
 }
 
-void Full(const LineKernelInput<FullTable, double>& in, const NeighbourList::Chunk& chunk,
-          LineScratch<double>& scratch, NodeForces<double>& forces, ContactBuffer& out) {
-  all_elements(in, chunk, scratch, forces, out);
+void Full(const LineKernelInput<FullTable, double>& in, const LineChunk& chunk, LineWork<double>& work,
+          ContactBuffer& out) {
+  in.energies ? all_elements<true>(in, chunk, work, out) : all_elements<false>(in, chunk, work, out);
 }
 
 }  // namespace ropewalk::HWY_NAMESPACE
@@ -474,19 +533,19 @@ HWY_EXPORT(Mixed);
 HWY_EXPORT(Full);
 HWY_EXPORT(Damping);
 
-void line_damping(const Interaction& in, const State& state, const LineList& list,
-                  const NeighbourList::Chunk& chunk, ContactBuffer& out) {
+void line_damping(const Interaction& in, const State& state, const LineList& list, const LineChunk& chunk,
+                  ContactBuffer& out) {
   HWY_DYNAMIC_DISPATCH(Damping)(in, state, list, chunk, out);
 }
 
-void line_contact(const LineKernelInput<MixedTable, std::int32_t>& in, const NeighbourList::Chunk& chunk,
-                  LineScratch<float>& scratch, NodeForces<float>& forces, ContactBuffer& out) {
-  HWY_DYNAMIC_DISPATCH(Mixed)(in, chunk, scratch, forces, out);
+void line_contact(const LineKernelInput<MixedTable, std::int32_t>& in, const LineChunk& chunk,
+                  LineWork<float>& work, ContactBuffer& out) {
+  HWY_DYNAMIC_DISPATCH(Mixed)(in, chunk, work, out);
 }
 
-void line_contact(const LineKernelInput<FullTable, double>& in, const NeighbourList::Chunk& chunk,
-                  LineScratch<double>& scratch, NodeForces<double>& forces, ContactBuffer& out) {
-  HWY_DYNAMIC_DISPATCH(Full)(in, chunk, scratch, forces, out);
+void line_contact(const LineKernelInput<FullTable, double>& in, const LineChunk& chunk, LineWork<double>& work,
+                  ContactBuffer& out) {
+  HWY_DYNAMIC_DISPATCH(Full)(in, chunk, work, out);
 }
 
 std::vector<std::string> instruction_sets() {

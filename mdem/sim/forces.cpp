@@ -132,9 +132,9 @@ std::size_t ForceEngine::bytes() const {
 }
 
 void ForceEngine::compute_contact(const Topology& topology, const Interaction& interaction,
-                                  const NeighbourList& list, const State& state) {
+                                  const NeighbourList& list, const State& state, bool energies) {
+  if (!interaction.paper) return line_.compute(topology, interaction, list, state, frames_.t, energies);
   buffers_.resize(list.chunks().size());
-  if (!interaction.paper) return line_.compute(topology, interaction, list, state, frames_.t, buffers_.data());
   if (tube_.size() != static_cast<std::size_t>(topology.elements())) {
     tube_.resize(static_cast<std::size_t>(topology.elements()));
     for (int t = 0; t < topology.tubes(); ++t)
@@ -150,14 +150,32 @@ void ForceEngine::compute_contact(const Topology& topology, const Interaction& i
   }
 }
 
+// Of all chunks in their fixed order, on the elements from .. to.
+void ForceEngine::add_buffers(const NeighbourList& list, int from, int to, Forces& out) const {
+  for (std::size_t k = 0; k < list.chunks().size(); ++k) {
+    const auto& chunk = list.chunks()[k];
+    const ContactBuffer& b = buffers_[k];
+    const int low = std::max(from, chunk.touched_begin), high = std::min(to, chunk.touched_end);
+    for (int i = low; i < high; ++i) {
+      const auto at = static_cast<std::size_t>(i - chunk.touched_begin);
+      out.force.x[i] += b.fx[at];
+      out.force.y[i] += b.fy[at];
+      out.force.z[i] += b.fz[at];
+      out.torque.x[i] += b.tx[at];
+      out.torque.y[i] += b.ty[at];
+      out.torque.z[i] += b.tz[at];
+    }
+  }
+}
+
 void ForceEngine::compute(const Topology& topology, const Interaction& interaction, const NeighbourList& list,
-                          const State& state, Forces& out) {
+                          const State& state, Forces& out, bool energies) {
   const double t0 = omp_get_wtime();
   make_frames(state);
   const double t1 = omp_get_wtime();
 
   const bool contact = interaction.has_contact();
-  if (contact) compute_contact(topology, interaction, list, state);
+  if (contact) compute_contact(topology, interaction, list, state, energies);
   const double t2 = omp_get_wtime();
 
   // Tube by tube: collect the contact buffers in their fixed order, then add the bonds of this tube.
@@ -170,23 +188,8 @@ void ForceEngine::compute(const Topology& topology, const Interaction& interacti
     const auto clear = [&](std::vector<double>& v) { std::fill(v.begin() + from, v.begin() + to, 0.0); };
     clear(out.force.x), clear(out.force.y), clear(out.force.z);
     clear(out.torque.x), clear(out.torque.y), clear(out.torque.z);
-    if (contact) {
-      for (std::size_t k = 0; k < list.chunks().size(); ++k) {
-        const auto& chunk = list.chunks()[k];
-        const ContactBuffer& b = buffers_[k];
-        const int low = std::max(from, chunk.touched_begin), high = std::min(to, chunk.touched_end);
-        for (int i = low; i < high; ++i) {
-          const auto at = static_cast<std::size_t>(i - chunk.touched_begin);
-          out.force.x[i] += b.fx[at];
-          out.force.y[i] += b.fy[at];
-          out.force.z[i] += b.fz[at];
-          out.torque.x[i] += b.tx[at];
-          out.torque.y[i] += b.ty[at];
-          out.torque.z[i] += b.tz[at];
-        }
-      }
-      if (!interaction.paper) line_.add_node_forces(topology, list, frames_.t, t, out.force, out.torque);
-    }
+    if (contact && interaction.paper) add_buffers(list, from, to, out);
+    if (contact && !interaction.paper) line_.add_to_tube(topology, frames_.t, t, out.force, out.torque);
     sums[static_cast<std::size_t>(t)] = compute_bonds(topology, interaction, state, t);
     add_bonds(bonds_.force_j.x, -1, bonds_.force_j.x, from, to, out.force.x);
     add_bonds(bonds_.force_j.y, -1, bonds_.force_j.y, from, to, out.force.y);
@@ -207,12 +210,15 @@ void ForceEngine::compute(const Topology& topology, const Interaction& interacti
     out.damping_power += sum.power;
     if (out.slipping_bond < 0) out.slipping_bond = sum.slipping;
   }
-  if (contact) {
+  if (contact && !interaction.paper) {
+    out.energy.vdw = line_.energy();
+    out.damping_power += line_.damping_power();
+  }
+  if (contact && interaction.paper)
     for (const ContactBuffer& b : buffers_) {
       out.energy.vdw += b.energy;
       out.damping_power += b.power;
     }
-  }
   const double t3 = omp_get_wtime();
   times_.frames += t1 - t0;
   times_.contact += t2 - t1;

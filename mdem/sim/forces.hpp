@@ -49,8 +49,9 @@ struct TubeSum {
 // Contact and damping of all pairs, bonds and bond damping. The list must be up to date.
 class ForceEngine {
  public:
+  // Without `energies` that of the line law's contact may be left out; forces are the same bits.
   void compute(const Topology& topology, const Interaction& interaction, const NeighbourList& list,
-               const State& state, Forces& out);
+               const State& state, Forces& out, bool energies = true);
 
   // Wall time spent so far in each part, s.
   struct Times {
@@ -64,7 +65,8 @@ class ForceEngine {
   void make_frames(const State& state);
   TubeSum compute_bonds(const Topology& topology, const Interaction& interaction, const State& state, int tube);
   void compute_contact(const Topology& topology, const Interaction& interaction, const NeighbourList& list,
-                       const State& state);
+                       const State& state, bool energies);
+  void add_buffers(const NeighbourList& list, int from, int to, Forces& out) const;
 
   FrameArray frames_;
   BondArray bonds_;

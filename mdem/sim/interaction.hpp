@@ -44,8 +44,8 @@ auto with_law(const Topology& topology, const Interaction& in, int i, int j, F f
   const int tube_i = topology.tube_of(i), tube_j = topology.tube_of(j);
   LineContact law = in.line[static_cast<std::size_t>(topology.tube_type[tube_i]) * topology.types.size() +
                             static_cast<std::size_t>(topology.tube_type[tube_j])];
-  law.j_begins = j == topology.tube_begin[tube_j];
-  law.j_ends = j + 1 == topology.tube_begin[tube_j + 1];
+  law.ends_i = topology.ends_of(i, tube_i);
+  law.ends_j = topology.ends_of(j, tube_j);
   return f(law);
 }
 

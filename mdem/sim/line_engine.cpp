@@ -11,32 +11,82 @@ template <class Buffers>
 void make_tables(Buffers& b, const Interaction& in, double unit) {
   if (b.tables_unit == unit && b.tables.size() == in.line.size()) return;
   b.tables.clear();
-  for (const LineContact& pair : in.line) b.tables.emplace_back(pair.density, unit);
+  b.pairs.clear();
+  for (const LineContact& pair : in.line) {
+    b.tables.emplace_back(pair.density, unit);
+    b.pairs.emplace_back(pair);
+  }
   b.tables_unit = unit;
+}
+
+template <class C>
+C rounded(double v) {
+  return sizeof(C) == 4 ? static_cast<C>(std::lrint(v)) : static_cast<C>(v);
+}
+
+// One coordinate of a row: `elements` centres and axes in, `count` nodes for each out. A count known to the
+// compiler keeps the loop over it out of the way.
+template <int known, class C>
+void place_nodes(const double* x, const double* n, int elements, int count, const double* s, double unit, C* to) {
+  const int nodes = known > 0 ? known : count;
+  for (int i = 0; i < elements; ++i, to += nodes) {
+    const double centre = x[i] * unit, along = n[i];
+    for (int l = 0; l < nodes; ++l) to[l] = rounded<C>(centre + s[l] * along);
+  }
 }
 
 template <class C>
 void place_row(const NodeLayout& layout, const Topology& topology, double length, int tube, const State& state,
                const Vec3Array& axis, LineNodes<C>& nodes) {
   const int count = layout.per_element[static_cast<std::size_t>(topology.tube_type[tube])];
-  auto at = static_cast<std::size_t>(layout.begin[static_cast<std::size_t>(tube)]);
+  const auto at = static_cast<std::size_t>(layout.begin[static_cast<std::size_t>(tube)]);
+  const auto first = static_cast<std::size_t>(topology.tube_begin[tube]);
   const double unit = nodes.per_unit;
-  constexpr int most = 64;
-  double s[most];
-  for (int l = 0; l < std::min(count, most); ++l) s[l] = line_node(l, count, length) * unit;
+  thread_local std::vector<double> s;
+  s.resize(static_cast<std::size_t>(count));
+  for (int l = 0; l < count; ++l) s[static_cast<std::size_t>(l)] = line_node(l, count, length) * unit;
   const auto fill = [&](const std::vector<double>& x, const std::vector<double>& n, std::vector<C>& out) {
-    C* to = out.data() + at;
-    for (int i = topology.tube_begin[tube]; i < topology.tube_begin[tube + 1]; ++i, to += count) {
-      const double centre = x[static_cast<std::size_t>(i)] * unit, along = n[static_cast<std::size_t>(i)];
-      for (int l = 0; l < count; ++l) {
-        const double v = centre + (l < most ? s[l] : line_node(l, count, length) * unit) * along;
-        to[l] = sizeof(C) == 4 ? static_cast<C>(std::lrint(v)) : static_cast<C>(v);
-      }
-    }
+    const auto place = count == 3 ? place_nodes<3, C> : count == 6 ? place_nodes<6, C> : place_nodes<0, C>;
+    place(x.data() + first, n.data() + first, topology.length_of(tube), count, s.data(), unit, out.data() + at);
   };
   fill(state.position.x, axis.x, nodes.x);
   fill(state.position.y, axis.y, nodes.y);
   fill(state.position.z, axis.z, nodes.z);
+}
+
+// Force and first moment along the axis of each element's nodes, whose forces are x, y and z.
+template <class T>
+void add_rows(const T* x, const T* y, const T* z, int begin, int end, int count, double length,
+              const Vec3Array& axis, Vec3Array& force, Vec3Array& torque) {
+  const double step = length / count, middle = 0.5 * (count - 1);
+  for (int i = begin; i < end; ++i, x += count, y += count, z += count) {
+    T f[3] = {0, 0, 0}, m[3] = {0, 0, 0};
+    for (int l = 0; l < count; ++l) {
+      const T s = static_cast<T>(l - middle), v[3] = {x[l], y[l], z[l]};
+      for (int a = 0; a < 3; ++a) {
+        f[a] += v[a];
+        m[a] += s * v[a];
+      }
+    }
+    const auto at = static_cast<std::size_t>(i);
+    force.x[at] += static_cast<double>(f[0]);
+    force.y[at] += static_cast<double>(f[1]);
+    force.z[at] += static_cast<double>(f[2]);
+    const double nx = step * axis.x[at], ny = step * axis.y[at], nz = step * axis.z[at];
+    const double mx = static_cast<double>(m[0]), my = static_cast<double>(m[1]), mz = static_cast<double>(m[2]);
+    torque.x[at] += ny * mz - nz * my;
+    torque.y[at] += nz * mx - nx * mz;
+    torque.z[at] += nx * my - ny * mx;
+  }
+}
+
+void add_elements(const ContactBuffer& b, const TouchedTube& t, Vec3Array& force, Vec3Array& torque) {
+  const auto add = [&](const std::vector<double>& from, std::vector<double>& to) {
+    const double* source = from.data() + t.element_shift;
+    for (int i = t.begin; i < t.end; ++i) to[static_cast<std::size_t>(i)] += source[i];
+  };
+  add(b.fx, force.x), add(b.fy, force.y), add(b.fz, force.z);
+  add(b.tx, torque.x), add(b.ty, torque.y), add(b.tz, torque.z);
 }
 
 }  // namespace
@@ -45,20 +95,20 @@ void LineEngine::describe(const Topology& topology, const Interaction& in, const
   list_.build(topology, in, list);
   stamp_ = list.stamp();
   full_ = in.precision == Interaction::Precision::full;
-  const auto n = static_cast<std::size_t>(topology.elements());
-  type_.resize(n);
   length_.clear();
   for (std::size_t a = 0; a < topology.types.size(); ++a)
     length_.push_back(in.line[a * topology.types.size()].length_i);
-  for (int t = 0; t < topology.tubes(); ++t)
-    std::fill(type_.begin() + topology.tube_begin[t], type_.begin() + topology.tube_begin[t + 1],
-              topology.tube_type[t]);
   const auto prepare = [&](auto& b, double unit) {
     make_tables(b, in, unit);
-    b.nodes.per_unit = 1 / unit;
-    for (auto* v : {&b.nodes.x, &b.nodes.y, &b.nodes.z})
-      v->resize(static_cast<std::size_t>(list_.layout().total()));
+    b.work.resize(list_.chunks().size());
+    for (const Rows kind : {Rows::all, Rows::sparse}) {
+      auto& nodes = b.nodes[static_cast<int>(kind)];
+      nodes.per_unit = 1 / unit;
+      for (auto* v : {&nodes.x, &nodes.y, &nodes.z})
+        v->resize(static_cast<std::size_t>(list_.layout(kind).total() + NodeLayout::pad));
+    }
   };
+  buffers_.resize(list_.chunks().size());
   if (full_) {
     prepare(full_buffers_, 1);
   } else {
@@ -68,107 +118,116 @@ void LineEngine::describe(const Topology& topology, const Interaction& in, const
 
 template <class Buffers>
 void LineEngine::run(Buffers& b, const Topology& topology, const Interaction& in, const NeighbourList& list,
-                     const State& state, const Vec3Array& axis, ContactBuffer* buffers) {
-  const NodeLayout& layout = list_.layout();
-#pragma omp parallel for schedule(static) if (state.size() > parallel_from)
-  for (int t = 0; t < topology.tubes(); ++t)
-    place_row(layout, topology, length_[static_cast<std::size_t>(topology.tube_type[t])], t, state, axis, b.nodes);
+                     const State& state, const Vec3Array& axis, bool energies) {
   const LineKernelInput<typename Buffers::Table, typename Buffers::C> input{
-      &topology, &in, &state, &axis, &list_, &b.nodes, b.tables.data(), type_.data(), 2 * list.displacement()};
-  b.forces.resize(list.chunks().size());
-  b.scratch.resize(list.chunks().size());
-#pragma omp parallel for schedule(static) if (state.size() > parallel_from)
-  for (std::size_t k = 0; k < list.chunks().size(); ++k) {
-    const NeighbourList::Chunk& chunk = list.chunks()[k];
-    buffers[k].clear(static_cast<std::size_t>(chunk.touched_end - chunk.touched_begin));
-    if (chunk.begin == chunk.end) {
-      b.forces[k].clear(0, 0);
-      continue;
+      &topology,       &in,
+      &state,          &axis,
+      &list_,          b.nodes,
+      b.tables.data(), b.pairs.data(),
+      list.turn(),     2 * list.displacement(),
+      energies};
+#pragma omp parallel if (state.size() > parallel_from)
+  {
+#pragma omp for schedule(static)
+    for (int t = 0; t < topology.tubes(); ++t)
+      for (const Rows kind : {Rows::all, Rows::sparse})
+        if (list_.layout(kind).has_row(t))
+          place_row(list_.layout(kind), topology, length_[static_cast<std::size_t>(topology.tube_type[t])], t,
+                    state, axis, b.nodes[static_cast<int>(kind)]);
+#pragma omp for schedule(static)
+    for (std::size_t k = 0; k < list_.chunks().size(); ++k) {
+      const LineChunk& chunk = list_.chunks()[k];
+      buffers_[k].clear(static_cast<std::size_t>(chunk.elements));
+      b.work[k].start(chunk);
+      line_contact(input, chunk, b.work[k], buffers_[k]);
+      if (in.damped_contact()) line_damping(in, state, list_, chunk, buffers_[k]);
     }
-    const int first_tube = topology.tube_of(chunk.touched_begin),
-              last_tube = topology.tube_of(chunk.touched_end - 1);
-    b.forces[k].clear(layout.first(topology, first_tube, chunk.touched_begin),
-                      layout.first(topology, last_tube, chunk.touched_end));
-    line_contact(input, chunk, b.scratch[k], b.forces[k], buffers[k]);
-    if (in.damped_contact()) line_damping(in, state, list_, chunk, buffers[k]);
   }
 }
 
 void LineEngine::compute(const Topology& topology, const Interaction& in, const NeighbourList& list,
-                         const State& state, const Vec3Array& axis, ContactBuffer* buffers) {
+                         const State& state, const Vec3Array& axis, bool energies) {
   if (stamp_ != list.stamp()) {
     const double began = omp_get_wtime();
     describe(topology, in, list);
     list_seconds_ += omp_get_wtime() - began;
   }
   if (full_) {
-    run(full_buffers_, topology, in, list, state, axis, buffers);
+    run(full_buffers_, topology, in, list, state, axis, energies);
   } else {
-    run(mixed_, topology, in, list, state, axis, buffers);
+    run(mixed_, topology, in, list, state, axis, energies);
   }
 }
 
 template <class Buffers>
-void LineEngine::add(const Buffers& b, const Topology& topology, const NeighbourList& list, const Vec3Array& axis,
-                     int tube, Vec3Array& force, Vec3Array& torque) const {
+void LineEngine::add_nodes(const Buffers& b, const Topology& topology, const Vec3Array& axis, int tube,
+                           Vec3Array& force, Vec3Array& torque) const {
   using T = typename Buffers::T;
-  const NodeLayout& layout = list_.layout();
-  const std::size_t type = static_cast<std::size_t>(topology.tube_type[tube]);
-  const int count = layout.per_element[type];
   const int begin = topology.tube_begin[tube], end = topology.tube_begin[tube + 1];
-  const int first = layout.begin[static_cast<std::size_t>(tube)], nodes = (end - begin) * count;
+  const double length = length_[static_cast<std::size_t>(topology.tube_type[tube])];
   thread_local std::vector<T> sum[3];
-  for (auto& v : sum) v.assign(static_cast<std::size_t>(nodes), T{0});
-  for (std::size_t k = 0; k < list.chunks().size(); ++k) {
-    const NodeForces<T>& f = b.forces[k];
-    const NeighbourList::Chunk& chunk = list.chunks()[k];
-    const int low = std::max(begin, chunk.touched_begin), high = std::min(end, chunk.touched_end);
-    if (low >= high) continue;
-    const int from = (low - begin) * count, to = (high - begin) * count, shift = first - f.first;
-    const auto add_up = [&](const std::vector<T>& x, std::vector<T>& out) {
-      const T* source = x.data() + shift;
-      for (int m = from; m < to; ++m) out[static_cast<std::size_t>(m)] += source[m];
-    };
-    add_up(f.x, sum[0]);
-    add_up(f.y, sum[1]);
-    add_up(f.z, sum[2]);
-  }
-  const double step = length_[type] / count, middle = 0.5 * (count - 1);
-  const T *x = sum[0].data(), *y = sum[1].data(), *z = sum[2].data();
-  for (int i = begin; i < end; ++i, x += count, y += count, z += count) {
-    double f[3] = {0, 0, 0}, m[3] = {0, 0, 0};
-    for (int l = 0; l < count; ++l) {
-      const double s = l - middle, v[3] = {x[l], y[l], z[l]};
-      for (int a = 0; a < 3; ++a) {
-        f[a] += v[a];
-        m[a] += s * v[a];
-      }
+  for (int kind = 0; kind < row_kinds; ++kind) {
+    bool any = false;
+    int count = 0;
+    for (const LineList::Touch* touch = list_.touches_begin(tube); touch != list_.touches_end(tube); ++touch) {
+      const NodeForces<T>& f = b.work[static_cast<std::size_t>(touch->chunk)].forces[kind];
+      if (!f.used[static_cast<std::size_t>(touch->index)]) continue;
+      const TouchedTube& t =
+          list_.chunks()[static_cast<std::size_t>(touch->chunk)].touched[static_cast<std::size_t>(touch->index)];
+      const TouchedTube::Row& row = t.row[kind];
+      count = row.per_element;
+      const std::size_t nodes = static_cast<std::size_t>((end - begin) * count);
+      if (!any)
+        for (auto& v : sum) v.assign(nodes, T{0});
+      any = true;
+      const int from = (t.begin - begin) * count, to = (t.end - begin) * count;
+      const int shift = row.origin + begin * count + row.shift;
+      const auto add_up = [&](const std::vector<T>& x, std::vector<T>& out) {
+        const T* source = x.data() + shift;
+        T* into = out.data();
+        for (int m = from; m < to; ++m) into[m] += source[m];
+      };
+      add_up(f.x, sum[0]);
+      add_up(f.y, sum[1]);
+      add_up(f.z, sum[2]);
     }
-    const auto at = static_cast<std::size_t>(i);
-    force.x[at] += f[0];
-    force.y[at] += f[1];
-    force.z[at] += f[2];
-    const double nx = step * axis.x[at], ny = step * axis.y[at], nz = step * axis.z[at];
-    torque.x[at] += ny * m[2] - nz * m[1];
-    torque.y[at] += nz * m[0] - nx * m[2];
-    torque.z[at] += nx * m[1] - ny * m[0];
+    if (any) add_rows(sum[0].data(), sum[1].data(), sum[2].data(), begin, end, count, length, axis, force, torque);
   }
 }
 
-void LineEngine::add_node_forces(const Topology& topology, const NeighbourList& list, const Vec3Array& axis,
-                                 int tube, Vec3Array& force, Vec3Array& torque) const {
-  if (full_) {
-    add(full_buffers_, topology, list, axis, tube, force, torque);
-  } else {
-    add(mixed_, topology, list, axis, tube, force, torque);
+void LineEngine::add_to_tube(const Topology& topology, const Vec3Array& axis, int tube, Vec3Array& force,
+                             Vec3Array& torque) const {
+  for (const LineList::Touch* touch = list_.touches_begin(tube); touch != list_.touches_end(tube); ++touch) {
+    const auto chunk = static_cast<std::size_t>(touch->chunk);
+    add_elements(buffers_[chunk], list_.chunks()[chunk].touched[static_cast<std::size_t>(touch->index)], force,
+                 torque);
   }
+  if (full_) {
+    add_nodes(full_buffers_, topology, axis, tube, force, torque);
+  } else {
+    add_nodes(mixed_, topology, axis, tube, force, torque);
+  }
+}
+
+double LineEngine::energy() const {
+  double sum = 0;
+  for (const ContactBuffer& b : buffers_) sum += b.energy;
+  return sum;
+}
+
+double LineEngine::damping_power() const {
+  double sum = 0;
+  for (const ContactBuffer& b : buffers_) sum += b.power;
+  return sum;
 }
 
 std::size_t LineEngine::bytes() const {
-  std::size_t total = list_.bytes() + type_.capacity() * sizeof(int);
+  std::size_t total = list_.bytes();
+  for (const ContactBuffer& b : buffers_) total += 6 * b.fx.capacity() * sizeof(double);
   const auto count = [&](const auto& b) {
-    total += 3 * b.nodes.x.capacity() * sizeof(b.nodes.x[0]);
-    for (const auto& f : b.forces) total += 3 * f.x.capacity() * sizeof(f.x[0]);
+    for (const auto& nodes : b.nodes) total += 3 * nodes.x.capacity() * sizeof(nodes.x[0]);
+    for (const auto& work : b.work)
+      for (const auto& f : work.forces) total += 3 * f.x.capacity() * sizeof(f.x[0]);
   };
   count(mixed_);
   count(full_buffers_);

@@ -8,26 +8,6 @@
 namespace ropewalk {
 namespace {
 
-NodeLayout layout_of(const Topology& topology, const Interaction& in) {
-  NodeLayout out;
-  const std::size_t types = topology.types.size();
-  for (std::size_t a = 0; a < types; ++a) {
-    out.per_element.push_back(in.line[a * types].nodes_i);
-    for (std::size_t b = 0; b < types; ++b)
-      if (in.line[a * types + b].nodes_i != out.per_element[a] ||
-          in.line[b * types + a].nodes_j != out.per_element[a])
-        throw std::invalid_argument("a tube type has one number of nodes towards all others");
-  }
-  int at = 0;
-  for (int t = 0; t < topology.tubes(); ++t) {
-    out.begin.push_back(at);
-    at +=
-        topology.length_of(t) * out.per_element[static_cast<std::size_t>(topology.tube_type[t])] + NodeLayout::pad;
-  }
-  out.begin.push_back(at);
-  return out;
-}
-
 double unit_of(const Vec3Array& position) {
   double largest = 1;
   for (const auto* v : {&position.x, &position.y, &position.z})
@@ -43,102 +23,267 @@ double distance2(const Vector3& from_centre, const Vector3& axis, double half) {
   return (from_centre - along * axis).squaredNorm();
 }
 
+// One number for a type, whatever its partners.
+void check_nodes(const Topology& topology, const Interaction& in) {
+  const std::size_t types = topology.types.size();
+  for (std::size_t a = 0; a < types; ++a)
+    for (std::size_t b = 0; b < types; ++b) {
+      const LineContact &as_i = in.line[a * types + b], &as_j = in.line[b * types + a];
+      if (as_i.nodes_i != in.line[a * types].nodes_i || as_j.nodes_j != in.line[a * types].nodes_i ||
+          as_i.sparse.j != in.line[0].sparse.j)
+        throw std::invalid_argument("a tube type has one number of nodes towards all others");
+    }
+}
+
+constexpr short most_elements = 1000;  // of a run, whose counts are short
+
 // Element i of one tube before elements of another one.
 struct Side {
   const Topology& topology;
   const Interaction& in;
   const NeighbourList& list;
-  const NodeLayout& layout;
   int i, tube_i, tube_j;
+  bool all_rows_wanted = false;  // by a run whose elements are not nearly parallel
+
+  const LineContact& law() const {
+    return in.line[static_cast<std::size_t>(topology.tube_type[tube_i]) * topology.types.size() +
+                   static_cast<std::size_t>(topology.tube_type[tube_j])];
+  }
+  Vector3 place(int j) const { return list.reference()[static_cast<std::size_t>(j)]; }
+  Vector3 axis(int j) const { return list.reference_axis()[static_cast<std::size_t>(j)]; }
+  double to_node2(int j, int l, int count) const {
+    const LineContact& k = law();
+    return distance2(place(j) - place(i) + line_node(l, count, k.length_j) * axis(j), axis(i),
+                     0.5 * k.length_i * (1 - 1.0 / k.nodes_i));
+  }
+
+  // Those of the nodes 0 .. elements * count behind `first` that are within reach, looked for from both ends.
+  LineRun::Nodes nodes_in_reach(int first, int elements, int count, double reach2) const {
+    const auto near = [&](int m) { return to_node2(first + m / count, m % count, count) < reach2; };
+    int from = 0, to = elements * count;
+    while (from < to && !near(from)) ++from;
+    while (from < to && !near(to - 1)) --to;
+    return {static_cast<short>(from), static_cast<short>(to - from)};
+  }
+
+  // How far out of reach the nearest node is; less than zero where one is within the cutoff.
+  float beyond(int first, const LineRun::Nodes& nodes) const {
+    const LineContact& k = law();
+    const double cutoff = k.density.cutoff();
+    double nearest2 = 1e300;
+    const int middle = nodes.from + nodes.count / 2;  // most often the nearest
+    for (int n = 0; n < nodes.count && nearest2 > cutoff * cutoff; ++n) {
+      const int m = nodes.from + (middle - nodes.from + n) % nodes.count;
+      nearest2 = std::min(nearest2, to_node2(first + m / k.nodes_j, m % k.nodes_j, k.nodes_j));
+    }
+    return static_cast<float>(std::sqrt(nearest2) - cutoff - 1e-6);
+  }
 
   // What element i can reach of first .. last before the list is built again.
-  LineRun trimmed(int first, int last) const {
-    const int type_i = topology.tube_type[tube_i], type_j = topology.tube_type[tube_j];
-    const LineContact& law =
-        in.line[static_cast<std::size_t>(type_i) * topology.types.size() + static_cast<std::size_t>(type_j)];
-    const Vec3Array &x = list.reference(), &n = list.reference_axis();
-    const Vector3 x_i = x[static_cast<std::size_t>(i)], n_i = n[static_cast<std::size_t>(i)];
-    const double half = 0.5 * law.length_i * (1 - 1.0 / law.nodes_i), reach = law.density.cutoff() + list.skin;
-    const double damped = in.damped_contact() ? in.damping.contact.outer + list.skin : 0;
-    double nearest2 = reach * reach;
+  LineRun trimmed(int first, int last) {
+    const LineContact& k = law();
+    const double reach = k.density.cutoff() + list.skin, reach2 = reach * reach;
     LineRun run;
-    run.type = static_cast<short>(type_j);
+    run.type = static_cast<short>(topology.tube_type[tube_j]);
+    run.touched = tube_j;  // for now
     run.element_begin = first;
-    run.row = layout.first(topology, tube_j, first);
-    for (int j = first; j <= last; ++j) {
-      const Vector3 d = x[static_cast<std::size_t>(j)] - x_i, n_j = n[static_cast<std::size_t>(j)];
-      if (d.squaredNorm() < damped * damped) {
-        if (run.damped_end == 0) run.damped_begin = j;
-        run.damped_end = j + 1;
-      }
-      const int node = layout.first(topology, tube_j, j);
-      for (int l = 0; l < law.nodes_j; ++l) {
-        const double d2 = distance2(d + line_node(l, law.nodes_j, law.length_j) * n_j, n_i, half);
-        if (!(d2 < reach * reach)) continue;
-        nearest2 = std::min(nearest2, d2);
-        if (run.node_end == 0) run.node_begin = node + l;
-        run.node_end = node + l + 1;
-        if (run.element_end == 0) run.element_begin = j;
-        run.element_end = j + 1;
-      }
-    }
-    run.row = layout.first(topology, tube_j, run.element_begin);
-    run.beyond = static_cast<float>(std::sqrt(nearest2) - law.density.cutoff() - 1e-6);
     run.begins = first == topology.tube_begin[tube_j];
     run.ends = last + 1 == topology.tube_begin[tube_j + 1];
+    const int counts[row_kinds] = {k.nodes_j, k.sparse.j};
+    int from = last + 1, to = first;  // elements with nodes within reach
+    for (int kind = 0; kind < row_kinds; ++kind) {
+      const int count = counts[kind];
+      if (count == 0) continue;
+      LineRun::Nodes& nodes = run.nodes[kind] = nodes_in_reach(first, last + 1 - first, count, reach2);
+      if (nodes.count == 0) continue;
+      from = std::min(from, first + nodes.from / count);
+      to = std::max(to, first + (nodes.from + nodes.count - 1) / count + 1);
+    }
+    if (from < to) {
+      run.beyond = beyond(first, run.nodes[0]);
+      run.element_begin = from;
+      run.elements = static_cast<short>(to - from);
+      for (int kind = 0; kind < row_kinds; ++kind)
+        run.nodes[kind].from = static_cast<short>(run.nodes[kind].from - (from - first) * counts[kind]);
+      double largest = 0, smallest = 1;
+      for (int j = from; j < to; ++j) {
+        const double cosine2 = std::min(std::pow(axis(i).dot(axis(j)), 2), 1.0);
+        largest = std::max(largest, cosine2);
+        smallest = std::min(smallest, cosine2);
+      }
+      all_rows_wanted |= k.sparse.none() || largest <= k.sparse.from_cos2;
+      // Both elements may turn, by 1.01 times the change of an axis at most where that is small.
+      if (!k.sparse.none())
+        run.even = static_cast<float>(
+            (std::acos(std::sqrt(k.sparse.full_cos2)) - std::acos(std::sqrt(smallest))) / 2.02 - 1e-6);
+    }
+    find_damped(first, last, run);
     return run;
   }
 
+  void find_damped(int first, int last, LineRun& run) const {
+    if (!in.damped_contact()) return;
+    const double reach = in.damping.contact.outer + list.skin;
+    const auto near = [&](int j) { return (place(j) - place(i)).squaredNorm() < reach * reach; };
+    while (first <= last && !near(first)) ++first;
+    while (first <= last && !near(last)) --last;
+    run.damped_from = static_cast<short>(first - run.element_begin);
+    run.damped = static_cast<short>(last + 1 - first);
+  }
+
   // Consecutive elements; the first and the last one of the tube are runs of their own.
-  void add(int first, int last, std::vector<LineRun>& runs) const {
-    const int begin = topology.tube_begin[tube_j] + 1, end = topology.tube_begin[tube_j + 1] - 1;
-    const int cut[] = {first, std::max(first, begin), std::max(first, std::max(begin, end)), last + 1};
-    for (int k = 0; k < 3; ++k) {
-      const int from = cut[k], to = std::min(cut[k + 1], last + 1);
-      if (from >= to) continue;
-      const LineRun run = trimmed(from, to - 1);
-      if (run.element_end > 0 || run.damped_end > 0) runs.push_back(run);
+  void add(int first, int last, std::vector<LineRun>& runs) {
+    const int begin = topology.tube_begin[tube_j], end = topology.tube_begin[tube_j + 1];
+    for (int from = first; from <= last;) {
+      int to = std::min(last, from + most_elements - 1);
+      if (from == begin) to = from;
+      if (to == end - 1 && from < to) --to;
+      const LineRun run = trimmed(from, to);
+      if (run.elements > 0 || run.damped > 0) runs.push_back(run);
+      from = to + 1;
     }
   }
 };
 
 }  // namespace
 
-void LineList::find_runs(const Topology& topology, const Interaction& in, const NeighbourList& list, int tube,
-                         std::vector<LineRun>& runs) {
-  const int* index = list.indices();
-  for (int i = topology.tube_begin[tube]; i < topology.tube_begin[tube + 1]; ++i) {
-    const std::size_t before = runs.size();
-    const std::size_t end = list.begin(i + 1);
-    int tube_j = tube;
-    for (std::size_t k = list.begin(i); k < end;) {
-      const int first = index[k];
-      if (first >= topology.tube_begin[tube_j + 1]) tube_j = topology.tube_of(first);
-      int last = first;
-      for (++k; k < end && index[k] < topology.tube_begin[tube_j + 1] && index[k] == last + 1; ++k) last = index[k];
-      Side{topology, in, list, layout_, i, tube, tube_j}.add(first, last, runs);
+// Found by one thread.
+struct LineList::Part {
+  std::vector<LineRun> runs;
+  std::vector<std::size_t> count;  // runs of each element
+  std::vector<int> dense;          // tubes whose rows of all nodes are wanted
+
+  void find(const Topology& topology, const Interaction& in, const NeighbourList& list, int tube) {
+    const int* index = list.indices();
+    for (int i = topology.tube_begin[tube]; i < topology.tube_begin[tube + 1]; ++i) {
+      const std::size_t before = runs.size();
+      const std::size_t end = list.begin(i + 1);
+      int tube_j = tube;
+      for (std::size_t k = list.begin(i); k < end;) {
+        const int first = index[k];
+        if (first >= topology.tube_begin[tube_j + 1]) tube_j = topology.tube_of(first);
+        int last = first;
+        for (++k; k < end && index[k] < topology.tube_begin[tube_j + 1] && index[k] == last + 1; ++k)
+          last = index[k];
+        Side side{topology, in, list, i, tube, tube_j};
+        side.add(first, last, runs);
+        if (side.all_rows_wanted && (dense.empty() || dense.back() != tube_j)) dense.push_back(tube_j);
+      }
+      count.push_back(runs.size() - before);
     }
-    begin_[static_cast<std::size_t>(i) + 1] = runs.size() - before;
+  }
+};
+
+void LineList::lay_out_rows(const Topology& topology, const Interaction& in, const std::vector<char>& dense) {
+  const std::size_t types = topology.types.size();
+  for (const Rows kind : {Rows::all, Rows::sparse}) {
+    NodeLayout& layout = layout_[static_cast<int>(kind)];
+    layout = {};
+    for (std::size_t a = 0; a < types; ++a)
+      layout.per_element.push_back(kind == Rows::all ? in.line[a * types].nodes_i : in.line[0].sparse.j);
+    int at = 0;
+    for (int t = 0; t < topology.tubes(); ++t) {
+      layout.begin.push_back(at);
+      const int count = layout.per_element[static_cast<std::size_t>(topology.tube_type[t])];
+      const bool wanted = kind == Rows::all ? dense[static_cast<std::size_t>(t)] != 0 : count > 0;
+      if (wanted) at += topology.length_of(t) * count + NodeLayout::pad;
+    }
+    layout.begin.push_back(at);
   }
 }
 
+// The tubes that a chunk acts on, its own first, and their places in its buffers.
+void LineList::touch_tubes(const Topology& topology, LineChunk& chunk) {
+  std::vector<int> index(static_cast<std::size_t>(topology.tubes()), -1);
+  const auto touch = [&](int tube, int begin, int end) {
+    int& at = index[static_cast<std::size_t>(tube)];
+    if (at < 0) {
+      at = static_cast<int>(chunk.touched.size());
+      chunk.touched.push_back({tube, begin, end, 0, {}});
+    }
+    TouchedTube& t = chunk.touched[static_cast<std::size_t>(at)];
+    t.begin = std::min(t.begin, begin);
+    t.end = std::max(t.end, end);
+    return at;
+  };
+  for (int t = topology.tube_of(chunk.begin); t < topology.tubes() && topology.tube_begin[t] < chunk.end; ++t)
+    touch(t, std::max(chunk.begin, topology.tube_begin[t]), std::min(chunk.end, topology.tube_begin[t + 1]));
+  for (std::size_t k = begin_[static_cast<std::size_t>(chunk.begin)];
+       k < begin_[static_cast<std::size_t>(chunk.end)]; ++k) {
+    LineRun& run = run_[k];
+    const int tube = run.touched, damped = run.element_begin + run.damped_from;
+    if (run.elements > 0) run.touched = touch(tube, run.element_begin, run.element_begin + run.elements);
+    if (run.damped > 0) run.touched = touch(tube, damped, damped + run.damped);
+  }
+  for (TouchedTube& t : chunk.touched) {
+    t.element_shift = chunk.elements - t.begin;
+    chunk.elements += t.end - t.begin;
+    for (int kind = 0; kind < row_kinds; ++kind) {
+      if (!layout_[kind].has_row(t.tube)) continue;
+      TouchedTube::Row& row = t.row[kind];
+      row.per_element = layout_[kind].per_element[static_cast<std::size_t>(topology.tube_type[t.tube])];
+      row.origin =
+          layout_[kind].begin[static_cast<std::size_t>(t.tube)] - topology.tube_begin[t.tube] * row.per_element;
+      row.shift = chunk.nodes[kind] - (row.origin + t.begin * row.per_element);
+      chunk.nodes[kind] += (t.end - t.begin) * row.per_element;
+    }
+  }
+}
+
+void LineList::list_touches(const Topology& topology) {
+  touch_begin_.assign(static_cast<std::size_t>(topology.tubes()) + 1, 0);
+  for (const LineChunk& chunk : chunks_)
+    for (const TouchedTube& t : chunk.touched) ++touch_begin_[static_cast<std::size_t>(t.tube) + 1];
+  for (std::size_t t = 1; t < touch_begin_.size(); ++t) touch_begin_[t] += touch_begin_[t - 1];
+  std::vector<int> next(touch_begin_.begin(), touch_begin_.end() - 1);
+  touch_.resize(static_cast<std::size_t>(touch_begin_.back()));
+  for (std::size_t c = 0; c < chunks_.size(); ++c)
+    for (std::size_t k = 0; k < chunks_[c].touched.size(); ++k)
+      touch_[static_cast<std::size_t>(next[static_cast<std::size_t>(chunks_[c].touched[k].tube)]++)] = {
+          static_cast<int>(c), static_cast<int>(k)};
+}
+
 void LineList::build(const Topology& topology, const Interaction& in, const NeighbourList& list) {
-  layout_ = layout_of(topology, in);
+  check_nodes(topology, in);
   unit_ = unit_of(list.reference());
-  begin_.assign(static_cast<std::size_t>(topology.elements()) + 1, 0);
-  run_.clear();
+  const bool parallel = topology.elements() > static_cast<int>(parallel_from);
   const int tubes = topology.tubes(), parts = std::min(tubes, 64);
-  std::vector<std::vector<LineRun>> found(static_cast<std::size_t>(parts));
-#pragma omp parallel for schedule(dynamic, 1) if (topology.elements() > static_cast <int>(parallel_from))
+  std::vector<Part> found(static_cast<std::size_t>(parts));
+#pragma omp parallel for schedule(dynamic, 1) if (parallel)
   for (int part = 0; part < parts; ++part)
     for (int t = static_cast<int>(static_cast<std::int64_t>(tubes) * part / parts);
          t < static_cast<int>(static_cast<std::int64_t>(tubes) * (part + 1) / parts); ++t)
-      find_runs(topology, in, list, t, found[static_cast<std::size_t>(part)]);
+      found[static_cast<std::size_t>(part)].find(topology, in, list, t);
+
   std::size_t total = 0;
-  for (const auto& runs : found) total += runs.size();
+  for (const Part& part : found) total += part.runs.size();
+  run_.clear();
   run_.reserve(total);
-  for (const auto& runs : found) run_.insert(run_.end(), runs.begin(), runs.end());
-  for (std::size_t i = 1; i < begin_.size(); ++i) begin_[i] += begin_[i - 1];
+  begin_.assign(1, 0);
+  begin_.reserve(static_cast<std::size_t>(topology.elements()) + 1);
+  std::vector<char> dense(static_cast<std::size_t>(tubes), 0);
+  for (const Part& part : found) {
+    run_.insert(run_.end(), part.runs.begin(), part.runs.end());
+    for (std::size_t count : part.count) begin_.push_back(begin_.back() + count);
+    for (int t : part.dense) dense[static_cast<std::size_t>(t)] = 1;
+  }
+  lay_out_rows(topology, in, dense);
+
+  chunks_.assign(list.chunks().size(), LineChunk{});
+#pragma omp parallel for schedule(dynamic, 1) if (parallel)
+  for (std::size_t c = 0; c < chunks_.size(); ++c) {
+    chunks_[c].begin = list.chunks()[c].begin;
+    chunks_[c].end = list.chunks()[c].end;
+    if (chunks_[c].begin < chunks_[c].end) touch_tubes(topology, chunks_[c]);
+  }
+  list_touches(topology);
+}
+
+std::size_t LineList::bytes() const {
+  std::size_t total = run_.capacity() * sizeof(LineRun) + begin_.capacity() * sizeof(std::size_t) +
+                      touch_.capacity() * sizeof(Touch);
+  for (const LineChunk& chunk : chunks_) total += chunk.touched.capacity() * sizeof(TouchedTube);
+  return total;
 }
 
 }  // namespace ropewalk

@@ -10,6 +10,10 @@
 
 namespace ropewalk {
 
+// Two kinds of rows: with all nodes of the elements, and with the sparse ones that stand for j.
+enum class Rows { all = 0, sparse = 1 };
+inline constexpr int row_kinds = 2;
+
 // Nodes of all tubes one after another, each tube followed by `pad` nodes that are read with its last ones.
 struct NodeLayout {
   static constexpr int pad = 16;
@@ -17,22 +21,46 @@ struct NodeLayout {
   std::vector<int> per_element;  // of each tube type
   std::vector<int> begin;        // first node of each tube; begin[tubes] is the number of nodes with padding
 
-  int first(const Topology& topology, int tube, int element) const {
-    return begin[static_cast<std::size_t>(tube)] +
-           (element - topology.tube_begin[tube]) * per_element[static_cast<std::size_t>(topology.tube_type[tube])];
+  bool has_row(int tube) const {
+    return begin[static_cast<std::size_t>(tube) + 1] > begin[static_cast<std::size_t>(tube)];
   }
   int total() const { return begin.empty() ? 0 : begin.back(); }
 };
 
 // Neighbours of one element on one other tube, or on another part of its own.
 struct LineRun {
-  int element_begin = 0, element_end = 0;
-  int row = 0;                           // first node of element_begin
-  int node_begin = 0, node_end = 0;      // within reach
-  int damped_begin = 0, damped_end = 0;  // elements within reach of the contact viscosity
-  float beyond = 0;                      // nm: by so much the nearest node was out of reach at the build
-  short type = 0;                        // tube type
-  bool begins = false, ends = false;     // the element is the first, the last of its tube, and the only one here
+  struct Nodes {
+    short from = 0, count = 0;  // within reach; the first one counted from the first node of element_begin
+  };
+  int element_begin = 0;
+  int touched = 0;     // which of the chunk's touched tubes
+  float beyond = 0;    // nm: by so much the nearest node was out of reach at the build
+  float even = -1;     // rad: so long as no axis of the scene has turned by more, all elements are nearly parallel
+  short elements = 0;  // with nodes within reach
+  short type = 0;      // tube type
+  Nodes nodes[row_kinds];
+  short damped_from = 0, damped = 0;  // elements within reach of the contact viscosity, from element_begin
+  bool begins = false, ends = false;  // the element is the first, the last of its tube, and the only one here
+
+  const Nodes& of(Rows kind) const { return nodes[static_cast<int>(kind)]; }
+  TubeEnds tube_ends() const { return {begins, ends}; }
+};
+
+// The elements begin .. end of a tube that a chunk acts on, and where these are in the chunk's own buffers.
+struct TouchedTube {
+  int tube = 0, begin = 0, end = 0;
+  int element_shift = 0;  // element j is entry j + element_shift
+  struct Row {
+    int origin = 0, per_element = 0;  // the first node of element j is node origin + j per_element
+    int shift = 0;                    // node m is entry m + shift
+  } row[row_kinds];
+};
+
+// The elements begin .. end and all that they act on.
+struct LineChunk {
+  int begin = 0, end = 0;
+  std::vector<TouchedTube> touched;
+  int elements = 0, nodes[row_kinds] = {0, 0};  // sizes of the buffers
 };
 
 class LineList {
@@ -41,23 +69,53 @@ class LineList {
   // type has other numbers of nodes towards different partners.
   void build(const Topology& topology, const Interaction& interaction, const NeighbourList& list);
 
-  const NodeLayout& layout() const { return layout_; }
+  // Rows of all nodes exist where the build found tubes that are not nearly parallel.
+  const NodeLayout& layout(Rows kind) const { return layout_[static_cast<int>(kind)]; }
   const LineRun* begin(int i) const { return run_.data() + begin_[static_cast<std::size_t>(i)]; }
   const LineRun* end(int i) const { return run_.data() + begin_[static_cast<std::size_t>(i) + 1]; }
+  const std::vector<LineChunk>& chunks() const { return chunks_; }
+  // The touched tubes of all chunks that are this one: chunk and index, in the order of the chunks.
+  struct Touch {
+    int chunk = 0, index = 0;
+  };
+  const Touch* touches_begin(int tube) const {
+    return touch_.data() + touch_begin_[static_cast<std::size_t>(tube)];
+  }
+  const Touch* touches_end(int tube) const {
+    return touch_.data() + touch_begin_[static_cast<std::size_t>(tube) + 1];
+  }
+  std::size_t runs() const { return run_.size(); }
   // A power of two (nm) that resolves every coordinate in 29 bits.
   double unit() const { return unit_; }
-  std::size_t bytes() const { return run_.capacity() * sizeof(LineRun) + begin_.capacity() * sizeof(std::size_t); }
-  std::size_t runs() const { return run_.size(); }
+  std::size_t bytes() const;
 
  private:
-  // Of the elements of one tube, added to `runs`; begin_[i + 1] takes their number.
-  void find_runs(const Topology& topology, const Interaction& interaction, const NeighbourList& list, int tube,
-                 std::vector<LineRun>& runs);
+  struct Part;
+  void lay_out_rows(const Topology& topology, const Interaction& interaction, const std::vector<char>& dense);
+  void touch_tubes(const Topology& topology, LineChunk& chunk);
+  void list_touches(const Topology& topology);
 
-  NodeLayout layout_;
-  std::vector<std::size_t> begin_;
+  NodeLayout layout_[row_kinds];
   std::vector<LineRun> run_;
-  double unit_ = 0;
+  std::vector<std::size_t> begin_;
+  std::vector<LineChunk> chunks_;
+  std::vector<Touch> touch_;
+  std::vector<int> touch_begin_;
+  double unit_ = 1;
 };
+
+// How the kernel sums a run, by the smallest and the largest (n_i.n_j)^2 in it.
+enum class RunSum {
+  even,  // sparse nodes throughout
+  rows,  // all nodes throughout
+  pairs  // element by element
+};
+inline RunSum run_sum(const LineContact& law, const TubeEnds& ends_i, const LineRun& run, bool has_row,
+                      double smallest, double largest) {
+  const SparseNodes& sparse = law.sparse;
+  if (!sparse.none() && smallest >= sparse.full_cos2 && !run.begins && !run.ends && !ends_i.any())
+    return RunSum::even;
+  return has_row && (sparse.none() || largest <= sparse.from_cos2) ? RunSum::rows : RunSum::pairs;
+}
 
 }  // namespace ropewalk

@@ -82,33 +82,56 @@ CellGrid make_grid(const Vec3Array& p, double reach) {
 
 namespace {
 
-// The farthest that any point of an element has moved; infinite where a place is not finite.
+// How far any point of an element has moved at most, and how much any axis has changed.
+struct Change {
+  double moved = 0, turned = 0;
+};
+
+// Infinite where a place is not finite.
 ROPEWALK_VECTOR_CLONES
-double farthest(const State& state, const Vec3Array& position, const Vec3Array& axis, double lever) {
-  const std::size_t n = state.size();
+Change largest_change(const State& state, const Vec3Array& position, const Vec3Array& axis, double lever,
+                      std::ptrdiff_t begin, std::ptrdiff_t end) {
   const double *x = state.position.x.data(), *y = state.position.y.data(), *z = state.position.z.data();
   const double *rx = position.x.data(), *ry = position.y.data(), *rz = position.z.data();
   const double *qw = state.orientation.w.data(), *qx = state.orientation.x.data(), *qy = state.orientation.y.data(),
                *qz = state.orientation.z.data();
   const double *nx = axis.x.data(), *ny = axis.y.data(), *nz = axis.z.data();
-  double largest = 0, sum = 0;
-#pragma omp simd reduction(max : largest) reduction(+ : sum)
-  for (std::size_t i = 0; i < n; ++i) {
+  double largest = 0, largest_turn = 0, sum = 0;
+#pragma omp simd reduction(max : largest, largest_turn) reduction(+ : sum)
+  for (std::ptrdiff_t i = begin; i < end; ++i) {
     const double dx = x[i] - rx[i], dy = y[i] - ry[i], dz = z[i] - rz[i];
     const double ax = 2 * (qx[i] * qz[i] + qw[i] * qy[i]) - nx[i], ay = 2 * (qy[i] * qz[i] - qw[i] * qx[i]) - ny[i],
                  az = 1 - 2 * (qx[i] * qx[i] + qy[i] * qy[i]) - nz[i];
-    const double d = std::sqrt(dx * dx + dy * dy + dz * dz) + lever * std::sqrt(ax * ax + ay * ay + az * az);
+    const double turn = std::sqrt(ax * ax + ay * ay + az * az);
+    const double d = std::sqrt(dx * dx + dy * dy + dz * dz) + lever * turn;
     largest = std::max(largest, d);
+    largest_turn = std::max(largest_turn, turn);
     sum += d;
   }
-  return std::isfinite(sum) ? largest : std::numeric_limits<double>::infinity();
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  return std::isfinite(sum) ? Change{largest, largest_turn} : Change{infinity, infinity};
+}
+
+Change largest_change(const State& state, const Vec3Array& position, const Vec3Array& axis, double lever) {
+  const auto n = static_cast<std::ptrdiff_t>(state.size());
+  constexpr std::ptrdiff_t block = 1024;
+  double moved = 0, turned = 0;
+#pragma omp parallel for schedule(static) reduction(max : moved, turned) if (state.size() > parallel_from)
+  for (std::ptrdiff_t i = 0; i < n; i += block) {
+    const Change c = largest_change(state, position, axis, lever, i, std::min(i + block, n));
+    moved = std::max(moved, c.moved);
+    turned = std::max(turned, c.turned);
+  }
+  return {moved, turned};
 }
 
 }  // namespace
 
 bool NeighbourList::update(const Topology& topology, const State& state) {
   if (reference_.size() == state.size()) {
-    displacement_ = farthest(state, reference_, reference_axis_, lever);
+    const Change change = largest_change(state, reference_, reference_axis_, lever);
+    displacement_ = change.moved;
+    turn_ = change.turned;
     if (displacement_ <= 0.5 * skin) return false;
   }
   build(topology, state);
@@ -124,7 +147,7 @@ void NeighbourList::build(const Topology& topology, const State& state) {
 void NeighbourList::build(const Topology& topology, Vec3Array position, Vec3Array axis) {
   static std::atomic<long> stamps{0};
   stamp_ = ++stamps;
-  displacement_ = 0;
+  displacement_ = turn_ = 0;
   reference_ = std::move(position);
   reference_axis_ = std::move(axis);
   const Vec3Array& p = reference_;
@@ -187,6 +210,7 @@ void NeighbourList::cut_into_chunks(int n) {
   constexpr double most_common = 3;  // buffers for each element
   for (int count = chunk_count(n);; count = std::max(fewest, count / 2)) {
     cut_into_chunks(n, count);
+    if (!whole_ranges) return;
     double touched = 0;
     for (const Chunk& c : chunks_) touched += c.touched_end - c.touched_begin;
     if (count <= fewest || touched <= most_common * n) return;

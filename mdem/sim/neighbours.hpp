@@ -26,12 +26,17 @@ class NeighbourList {
   double cutoff = 0;           // nm
   double skin = 0;             // nm
   double lever = 0;            // nm: turning moves the points of an element that are so far from its centre
+  bool whole_ranges = false;   // buffers of the chunks cover [touched_begin, touched_end), used or not
   int exclude_along_tube = 0;  // pairs of one tube up to this many elements apart are left out
 
   NeighbourList() = default;
   // For all that acts between elements; to be built.
   NeighbourList(const Interaction& in, double skin_nm)
-      : cutoff(in.cutoff()), skin(skin_nm), lever(in.lever()), exclude_along_tube(in.exclude_along_tube) {}
+      : cutoff(in.cutoff()),
+        skin(skin_nm),
+        lever(in.lever()),
+        whole_ranges(in.paper.has_value()),
+        exclude_along_tube(in.exclude_along_tube) {}
 
   // Builds anew where an element has moved too far. Returns whether it did. A position that is not finite
   // counts as moved; the build then leaves that element without neighbours.
@@ -52,6 +57,8 @@ class NeighbourList {
   long stamp() const { return stamp_; }
   // The farthest that a point of an element was from its place at the last build, when `update` was last called.
   double displacement() const { return displacement_; }
+  // The largest change of an axis until then.
+  double turn() const { return turn_; }
   std::size_t bytes() const { return index_.capacity() * sizeof(int) + begin_.capacity() * sizeof(std::size_t); }
 
  private:
@@ -63,7 +70,7 @@ class NeighbourList {
   std::vector<Chunk> chunks_;
   Vec3Array reference_, reference_axis_;
   long builds_ = 0, stamp_ = 0;
-  double displacement_ = 0;
+  double displacement_ = 0, turn_ = 0;
 };
 
 }  // namespace ropewalk

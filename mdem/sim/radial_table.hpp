@@ -42,9 +42,10 @@ struct RadialTable {
                                                                  : per_octave == 32 ? 5
                                                                                     : -1);
 
-  alignas(64) T c[degree + 1][segments] = {};
-  T scale = 0, shift = 0;    // y = scale X + shift, X = rho^2 in units of unit^2
-  T core2 = 0, cutoff2 = 0;  // X
+  alignas(64) T c[degree + 1][segments] = {};  // of u
+  alignas(64) T d[degree][segments] = {};      // of du/dy: forces are the same bits with and without energies
+  T scale = 0, shift = 0;                      // y = scale X + shift, X = rho^2 in units of unit^2
+  T core2 = 0, cutoff2 = 0;                    // X
   T force = 0;               // -2/delta unit: times du/dy and the separation in units gives eV/nm^3 times nm
   T contact = 0, core = 0;   // of the law, nm
   T v0 = 0, v1 = 0, v2 = 0;  // u = v0 + e (v1 + e v2/2), e = rho - contact - core, below the core
@@ -121,7 +122,11 @@ RadialTable<T, segments_, degree_>::RadialTable(const LineDensity& law, double u
     for (int m = 0; m < n; ++m) u -= terms[m] / (m + 1);
     const auto at = static_cast<std::size_t>((FloatBits<T>::bias * per_octave + k) % segments);
     c[0][at] = static_cast<T>(u);
-    for (int m = 0; m < n; ++m) c[m + 1][at] = static_cast<T>(terms[m] / (m + 1) / std::pow(width, m + 1));
+    for (int m = 0; m < n; ++m) {
+      const double of_slope = terms[m] / std::pow(width, m + 1);
+      c[m + 1][at] = static_cast<T>(of_slope / (m + 1));
+      d[m][at] = static_cast<T>(of_slope);
+    }
     u_end = u;
   }
 }

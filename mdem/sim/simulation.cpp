@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 
@@ -101,8 +102,9 @@ Simulation::Simulation(Topology topology, Interaction interaction, Drive drive, 
 }
 
 // Model forces at the present positions and velocities, plus loads; `forces_` holds the sum.
-void Simulation::compute() {
-  engine_.compute(topology_, interaction_, list_, state_, forces_);
+void Simulation::compute(bool energies) {
+  engine_.compute(topology_, interaction_, list_, state_, forces_, energies);
+  if (!energies) forces_.energy.vdw = std::numeric_limits<double>::quiet_NaN();
   point_loads(drive_, state_, state_.time, point_loads_);
   for (const PointLoad& load : point_loads_) {
     forces_.force.add(static_cast<std::size_t>(load.element), load.force);
@@ -110,15 +112,17 @@ void Simulation::compute() {
   }
 }
 
-void Simulation::kick(double dt) {
-  work_ += 0.5 * dt * load_power(point_loads_, state_);
+// The elements of one tube; returns what the local damping takes out.
+double Simulation::kick_tube(int tube, double dt) {
   const double alpha = interaction_.damping.local;
+  const std::ptrdiff_t from = topology_.tube_begin[tube], to = topology_.tube_begin[tube + 1];
+  const double per_mass = dt / topology_.type_of(tube).mass, per_inertia = dt / topology_.type_of(tube).inertia;
   double removed = 0;
-  std::ptrdiff_t from = 0, to = 0;  // the elements of one tube
   const auto push = [&](const std::vector<double>& force, double inverse, std::vector<double>& velocity) {
-    for (std::ptrdiff_t i = from; i < to; ++i) velocity[i] += inverse * force[i];
-  };
-  const auto push_local = [&](const std::vector<double>& force, double inverse, std::vector<double>& velocity) {
+    if (alpha <= 0) {
+      for (std::ptrdiff_t i = from; i < to; ++i) velocity[i] += inverse * force[i];
+      return;
+    }
     for (std::ptrdiff_t i = from; i < to; ++i) {
       const double brake = pfc_local(alpha, force[i], velocity[i]);
       const double next = velocity[i] + inverse * (force[i] + brake);
@@ -126,25 +130,22 @@ void Simulation::kick(double dt) {
       velocity[i] = next;
     }
   };
-  const auto all = [&](const auto& f, double im, double ii) {
-    f(forces_.force.x, im, state_.velocity.x);
-    f(forces_.force.y, im, state_.velocity.y);
-    f(forces_.force.z, im, state_.velocity.z);
-    f(forces_.torque.x, ii, state_.angular_velocity.x);
-    f(forces_.torque.y, ii, state_.angular_velocity.y);
-    f(forces_.torque.z, ii, state_.angular_velocity.z);
-  };
-  for (int t = 0; t < topology_.tubes(); ++t) {
-    from = topology_.tube_begin[t];
-    to = topology_.tube_begin[t + 1];
-    const double im = dt / topology_.type_of(t).mass, ii = dt / topology_.type_of(t).inertia;
-    if (alpha > 0) {
-      all(push_local, im, ii);
-    } else {
-      all(push, im, ii);
-    }
-  }
-  dissipated_ += removed;
+  push(forces_.force.x, per_mass, state_.velocity.x);
+  push(forces_.force.y, per_mass, state_.velocity.y);
+  push(forces_.force.z, per_mass, state_.velocity.z);
+  push(forces_.torque.x, per_inertia, state_.angular_velocity.x);
+  push(forces_.torque.y, per_inertia, state_.angular_velocity.y);
+  push(forces_.torque.z, per_inertia, state_.angular_velocity.z);
+  return removed;
+}
+
+void Simulation::kick(double dt) {
+  work_ += 0.5 * dt * load_power(point_loads_, state_);
+  // Added up in the order of the tubes, whatever the threads.
+  removed_.resize(static_cast<std::size_t>(topology_.tubes()));
+#pragma omp parallel for schedule(static) if (state_.size() > parallel_from)
+  for (int t = 0; t < topology_.tubes(); ++t) removed_[static_cast<std::size_t>(t)] = kick_tube(t, dt);
+  for (double removed : removed_) dissipated_ += removed;
   work_ += constrain(topology_, drive_, state_.time, forces_, dt, state_);
   work_ += 0.5 * dt * load_power(point_loads_, state_);
 }
@@ -156,7 +157,9 @@ void Simulation::drift(double dt) {
   for (std::ptrdiff_t i = 0; i < n; i += block) move_elements(state_, dt, i, std::min(i + block, n));
 }
 
-void Simulation::step() {
+void Simulation::step(bool energies) {
+  energies = energies || std::any_of(drive_.twist.begin(), drive_.twist.end(),
+                                     [](const TwistDrive& twist) { return twist.geometric_only; });
   const double dt = time_step_;
   const double t0 = omp_get_wtime();
   kick(0.5 * dt);
@@ -166,9 +169,9 @@ void Simulation::step() {
   const double t1 = omp_get_wtime();
   list_.update(topology_, state_);
   const double t2 = omp_get_wtime();
-  compute();
+  compute(energies);
   const double t3 = omp_get_wtime();
-  check();
+  check(energies);
   dissipated_ -= dt * forces_.damping_power;
   kick(0.5 * dt);
   relax_angles_if_due();
@@ -176,14 +179,19 @@ void Simulation::step() {
   list_seconds_ += t2 - t1;
 }
 
-void Simulation::check() const {
-  const double energy = forces_.energy.potential();
+void Simulation::check(bool energies) const {
+  const double energy = energies ? forces_.energy.potential() : forces_.energy.bonds();
   const double fastest = 0.25 * topology_.largest_radius() / time_step_;
-  int broken = -1;
-  for (std::size_t i = 0; i < state_.size() && broken < 0; ++i)
-    if (!(state_.velocity[i].squaredNorm() < fastest * fastest) ||
-        !(state_.angular_velocity[i].squaredNorm() * time_step_ * time_step_ < 0.25))
-      broken = static_cast<int>(i);
+  const int none = topology_.elements();
+  int broken = none;
+#pragma omp parallel for schedule(static) reduction(min : broken) if (state_.size() > parallel_from)
+  for (int i = 0; i < none; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    if (!(state_.velocity[at].squaredNorm() < fastest * fastest) ||
+        !(state_.angular_velocity[at].squaredNorm() * time_step_ * time_step_ < 0.25))
+      broken = std::min(broken, i);
+  }
+  if (broken == none) broken = -1;
   if (broken >= 0 || !std::isfinite(energy))
     throw NumericalError(state_.step, broken,
                          "the motion blew up (an element moves a quarter of its radius or "
@@ -288,7 +296,7 @@ bool Simulation::relax(double tolerance, long max_steps, const std::function<boo
     ++state_.step;
     list_.update(topology_, state_);
     compute();
-    if (forces_.slipping_bond >= 0) check();
+    if (forces_.slipping_bond >= 0) check(true);
   }
   return largest_force() < tolerance;
 }

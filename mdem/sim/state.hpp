@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "model/bond.hpp"
+#include "model/contact.hpp"
 
 namespace ropewalk {
 
@@ -81,6 +82,9 @@ struct Topology {
   double largest_radius() const;
   double longest_element() const;
   int tube_of(int element) const;
+  TubeEnds ends_of(int element, int tube) const {
+    return {element == tube_begin[tube], element + 1 == tube_begin[tube + 1]};
+  }
 };
 
 struct State {

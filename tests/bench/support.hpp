@@ -23,7 +23,7 @@ inline LineContact line_law(bool sparse) {
   const double length = test::element_length;
   const int nodes = line_nodes(length, line_parallel_well(density).distance, density.contact);
   LineContact pair = line_pair(density, length, length, nodes, nodes);
-  if (!sparse) pair.sparse_i = 0;
+  if (!sparse) pair.sparse = {};
   return pair;
 }
 

@@ -34,7 +34,9 @@ class ForcesTest : public ::testing::TestWithParam<Variant> {
     } else {
       in.line = {test::line_contact(0.6785, 5, 0.6785, 5)};
       if (v.kind == Kind::mixed) mix_tube_types();
-      for (LineContact& pair : in.line) pair.sparse_i = v.sparse ? sparse_nodes(pair.nodes_i) : 0;
+      int finest = 0;
+      for (const LineContact& pair : in.line) finest = std::max(finest, pair.nodes_i);
+      for (LineContact& pair : in.line) pair.sparse = v.sparse ? sparse_nodes(finest) : SparseNodes{};
       in.precision = v.precision;
     }
     in.exclude_along_tube = 3;

@@ -77,8 +77,9 @@ PairForce row_contact(const LineContact& contact, const ElementRow& i, const Ele
       const Vector3 separation = j.centre + at_j - i.centre - at_i;
       if (separation.norm() > contact.cutoff()) continue;
       LineContact pair = contact;
-      pair.j_begins = l == 0;
-      pair.j_ends = l + 1 == j.elements;
+      // A row of one element stands for an inner one.
+      if (i.elements > 1) pair.ends_i = {k == 0, k + 1 == i.elements};
+      pair.ends_j = {l == 0, l + 1 == j.elements};
       const PairForce f = pair.energy_and_gradient(separation, i.axis, j.axis);
       sum.energy += f.energy;
       sum.force_j += f.force_j;

@@ -1,0 +1,34 @@
+// How much the kernel of the line law has to do, counted outside of it, for `bench` and the micro-benchmarks.
+#pragma once
+
+#include "sim/line_list.hpp"
+
+namespace ropewalk {
+
+// Floating-point operations (a fused multiply-add is two) of one radial evaluation, two nodes of two elements: 3
+// for the separation, 5 for its square, 3 + 2 (degree - 1) for the slope of the table's polynomial, 1 for the
+// force, 6 for each of the two sums of forces. Look-ups, comparisons and selections are not counted, nor energies,
+// which are only summed where they are reported.
+constexpr int radial_operations(int degree) { return 3 + 5 + 3 + 2 * (degree - 1) + 1 + 12; }
+
+// Numbers per element at one moment, or sums of them.
+struct RadialCount {
+  double runs = 0;         // within reach
+  double skipped = 0;      // out of it for now
+  double pairs = 0;        // of elements summed one by one: ends of tubes, and angles between sparse and dense
+  double nodes = 0;        // of the neighbours in the runs that are rows
+  double vectors = 0;      // evaluated
+  double evaluations = 0;  // radial ones, in all lanes of the vectors
+  double useful = 0;       // those of nodes closer than the cutoff
+
+  void add(const RadialCount& other, double share);
+};
+
+// Lanes of the kernel's vectors on this machine.
+int radial_lanes(Interaction::Precision precision);
+
+// Of the present state, from up to `most` of its elements; `moved` as the kernel has it (LineKernelInput).
+RadialCount count_radial(const Topology& topology, const Interaction& interaction, const State& state,
+                         const LineList& list, double moved, int most);
+
+}  // namespace ropewalk
