@@ -51,10 +51,12 @@ inline double thin_tube_shear(const BondStiffness& k, double radius) {
   return 2 * (1 + nu) / (4 + 3 * nu) * k.twist / (radius * radius);
 }
 
-// Body frame of an element: e1 and e2 span the cross-section, t is the tube axis (local z).
-template <class T>
+// Body frame of an element: e1 and e2 span the cross-section, t is the tube axis (local z). V: the vectors, Eigen's
+// or plain ones (sim/plain_vector.hpp), whose loops the compiler vectorises.
+template <class T, class V = Vec3<T>>
 struct Frame {
-  Vec3<T> e1, e2, t;
+  using Vector = V;
+  V e1, e2, t;
 };
 
 template <class T>
@@ -63,19 +65,19 @@ struct BondEnergy {
   T total() const { return stretch + shear + bend + twist; }
 };
 
-template <class T>
+template <class T, class V = Vec3<T>>
 struct BondForce {
   BondEnergy<T> energy;
-  Vec3<T> force_j;             // on element j; element i feels the opposite
-  Vec3<T> torque_i, torque_j;  // about the element centres
+  V force_j;             // on element j; element i feels the opposite
+  V torque_i, torque_j;  // about the element centres
 };
 
-template <class T>
-BondEnergy<T> bond_energy(const BondStiffness& k, double a, const Vec3<T>& separation, const Frame<T>& i,
-                          const Frame<T>& j) {
+template <class T, class V>
+BondEnergy<T> bond_energy(const BondStiffness& k, double a, const typename Frame<T, V>::Vector& separation,
+                          const Frame<T, V>& i, const Frame<T, V>& j) {
   using std::sqrt;
   const T length = sqrt(separation.dot(separation));
-  const Vec3<T> d = separation / length;
+  const V d = separation / length;
   const T stretch = length - a;
   // 1 - u.v is written as |u - v|^2/2 so that small bends do not drown in rounding.
   const T one_minus_c = (i.t - j.t).squaredNorm() * 0.5;
@@ -89,23 +91,24 @@ BondEnergy<T> bond_energy(const BondStiffness& k, double a, const Vec3<T>& separ
   return e;
 }
 
-template <class T>
-BondForce<T> bond_energy_and_gradient(const BondStiffness& k, double a, const Vec3<T>& separation,
-                                      const Frame<T>& i, const Frame<T>& j) {
+template <class T, class V>
+BondForce<T, V> bond_energy_and_gradient(const BondStiffness& k, double a,
+                                         const typename Frame<T, V>::Vector& separation, const Frame<T, V>& i,
+                                         const Frame<T, V>& j) {
   using std::sqrt;
   const T length = sqrt(separation.dot(separation));
-  const Vec3<T> d = separation / length;
+  const V d = separation / length;
   const double share = k.shear_share(a);
   const double b2 = 12.0 * share * k.bend / a;
   const double b3 = (1.0 - 3.0 * share) * k.bend / a - 0.5 * k.twist / a;
   const double b4 = k.twist / a;
 
-  BondForce<T> out;
+  BondForce<T, V> out;
   out.energy = bond_energy(k, a, separation, i, j);
-  const Vec3<T> s = i.t + j.t;
+  const V s = i.t + j.t;
   out.force_j = -(k.stretch / a) * (length - a) * d + (0.5 * b2 / length) * (s - s.dot(d) * d);
   // For a body vector u with g = dU/du the torque is g x u.
-  const Vec3<T> frames = (0.5 * b4) * (i.e1.cross(j.e1) + i.e2.cross(j.e2)) + b3 * i.t.cross(j.t);
+  const V frames = (0.5 * b4) * (i.e1.cross(j.e1) + i.e2.cross(j.e2)) + b3 * i.t.cross(j.t);
   out.torque_i = -(0.5 * b2) * d.cross(i.t) + frames;
   out.torque_j = -(0.5 * b2) * d.cross(j.t) - frames;
   return out;

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/plain_vector.hpp"
+
 namespace ropewalk {
 
 namespace {
@@ -38,16 +40,17 @@ ROPEWALK_VECTOR_CLONES __attribute__((flatten)) BondEnergy<double> bond_forces(
   const BondStiffness k = type.bond;
   const double a = type.element_length;
   double stretch = 0, shear = 0, bend = 0, twist = 0, smallest = 1;
-#pragma omp simd reduction(+ : stretch, shear, bend, twist) reduction(min : smallest)
+  // Not `omp simd`, whose reductions GCC 12 does not vectorise here; -ffast-math lets it reorder the sums.
+#pragma GCC ivdep
   for (std::ptrdiff_t i = begin; i < end; ++i) {
     const std::ptrdiff_t j = i + 1;
-    const Frame<double> fi{{ax[i], ay[i], az[i]}, {bx[i], by[i], bz[i]}, {tx[i], ty[i], tz[i]}};
-    const Frame<double> fj{{ax[j], ay[j], az[j]}, {bx[j], by[j], bz[j]}, {tx[j], ty[j], tz[j]}};
-    const BondForce<double> f =
-        bond_energy_and_gradient(k, a, Vector3(x[j] - x[i], y[j] - y[i], z[j] - z[i]), fi, fj);
-    fx[i] = f.force_j.x(), fy[i] = f.force_j.y(), fz[i] = f.force_j.z();
-    ix[i] = f.torque_i.x(), iy[i] = f.torque_i.y(), iz[i] = f.torque_i.z();
-    jx[i] = f.torque_j.x(), jy[i] = f.torque_j.y(), jz[i] = f.torque_j.z();
+    const Frame<double, PlainVector> fi{{ax[i], ay[i], az[i]}, {bx[i], by[i], bz[i]}, {tx[i], ty[i], tz[i]}};
+    const Frame<double, PlainVector> fj{{ax[j], ay[j], az[j]}, {bx[j], by[j], bz[j]}, {tx[j], ty[j], tz[j]}};
+    const BondForce<double, PlainVector> f =
+        bond_energy_and_gradient(k, a, {x[j] - x[i], y[j] - y[i], z[j] - z[i]}, fi, fj);
+    fx[i] = f.force_j.x, fy[i] = f.force_j.y, fz[i] = f.force_j.z;
+    ix[i] = f.torque_i.x, iy[i] = f.torque_i.y, iz[i] = f.torque_i.z;
+    jx[i] = f.torque_j.x, jy[i] = f.torque_j.y, jz[i] = f.torque_j.z;
     stretch += f.energy.stretch;
     shear += f.energy.shear;
     bend += f.energy.bend;

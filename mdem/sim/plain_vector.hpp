@@ -1,0 +1,19 @@
+// Three numbers with the operations of the bond's form, for hot loops: Eigen's expressions keep GCC 12 from
+// vectorising a loop over elements.
+#pragma once
+
+namespace ropewalk {
+
+struct PlainVector {
+  double x, y, z;
+
+  friend PlainVector operator+(PlainVector a, PlainVector b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+  friend PlainVector operator-(PlainVector a, PlainVector b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+  friend PlainVector operator*(double s, PlainVector a) { return {s * a.x, s * a.y, s * a.z}; }
+  friend PlainVector operator/(PlainVector a, double s) { return {a.x / s, a.y / s, a.z / s}; }
+  double dot(PlainVector b) const { return x * b.x + y * b.y + z * b.z; }
+  PlainVector cross(PlainVector b) const { return {y * b.z - z * b.y, z * b.x - x * b.z, x * b.y - y * b.x}; }
+  double squaredNorm() const { return dot(*this); }
+};
+
+}  // namespace ropewalk
