@@ -128,26 +128,14 @@ TubeSum ForceEngine::compute_bonds(const Topology& topology, const Interaction& 
 std::size_t ForceEngine::bytes() const {
   std::size_t total = 18 * frames_.t.size() * sizeof(double);
   for (const ContactBuffer& b : buffers_) total += 6 * b.fx.capacity() * sizeof(double);
-  return total + line_.bytes();
+  return total + line_.bytes() + paper_.bytes();
 }
 
 void ForceEngine::compute_contact(const Topology& topology, const Interaction& interaction,
                                   const NeighbourList& list, const State& state) {
   buffers_.resize(list.chunks().size());
   if (!interaction.paper) return line_.compute(topology, interaction, list, state, frames_.t, buffers_.data());
-  if (tube_.size() != static_cast<std::size_t>(topology.elements())) {
-    tube_.resize(static_cast<std::size_t>(topology.elements()));
-    for (int t = 0; t < topology.tubes(); ++t)
-      std::fill(tube_.begin() + topology.tube_begin[t], tube_.begin() + topology.tube_begin[t + 1], t);
-  }
-  const ContactInput in{&topology, &interaction, &state, &frames_.t, &list, &tube_};
-#pragma omp parallel for schedule(dynamic, 1) if (state.size() > parallel_from)
-  for (std::size_t k = 0; k < list.chunks().size(); ++k) {
-    const auto& chunk = list.chunks()[k];
-    ContactBuffer& b = buffers_[k];
-    b.clear(static_cast<std::size_t>(chunk.touched_end - chunk.touched_begin));
-    paper_contact(in, chunk, b);
-  }
+  paper_.compute(interaction, list, state, frames_.t, buffers_.data());
 }
 
 void ForceEngine::compute(const Topology& topology, const Interaction& interaction, const NeighbourList& list,
