@@ -73,10 +73,28 @@ struct GeneralPowers {
   };
 };
 
-// x = cos^2 theta and its derivatives.
+// x = cos^2 theta, and dx.
 template <class T>
 struct BisectorTerms {
   T x, x_p, x_q, x_c;
+};
+
+// D and dD.
+template <class T>
+struct GapTerms {
+  T d, d_r, d_p, d_q, d_c;
+};
+
+// V and dV/dD.
+template <class T>
+struct WellTerms {
+  T v, v_d;
+};
+
+// Gamma W, and its derivatives by r and c.
+template <class T>
+struct FactorTerms {
+  T f, f_r, f_c;
 };
 
 struct PaperContact {
@@ -111,17 +129,19 @@ struct PaperContact {
   PairForce legacy_torque(const Vector3& separation, const Vector3& n_i, const Vector3& n_j) const;
 };
 
-// The law with its constants in the precision T: what a loop over pairs calls.
+// The law in parts, with its constants in the precision T: plain arithmetic and selections only, so that loops over
+// pairs vectorise.
 template <class T>
 struct PaperTerms {
-  T inv_radius, blend, inv_blend;
+  T radius, inv_radius, blend, inv_blend;
   T theta[6], theta_x[5];  // coefficients of Theta(z) and of dTheta/dx, z = 2x - 1
   T core_gap, repulsion, attraction, alpha, beta, repulsion2, attraction2;
-  T freeze_begin, freeze_end, freeze_blend, inv_freeze, crossing, delta;
-  T switch_start, inv_switch;
+  T freeze_begin, freeze_end, freeze_blend, inv_freeze, crossing, delta, delta_per_radius;
+  T switch_start, inv_switch, switch_slope;
 
   explicit PaperTerms(const PaperContact& k)
-      : inv_radius(T(1 / k.radius)),
+      : radius(T(k.radius)),
+        inv_radius(T(1 / k.radius)),
         blend(T(k.bisector_blend)),
         inv_blend(T(1 / k.bisector_blend)),
         core_gap(T(k.core_gap)),
@@ -137,8 +157,10 @@ struct PaperTerms {
         inv_freeze(T(0.5 / k.freeze_blend)),
         crossing(T(2 * k.crossing)),
         delta(T(k.delta)),
+        delta_per_radius(T(k.delta / k.radius)),
         switch_start(T(k.switch_start)),
-        inv_switch(T(1 / (k.cutoff_ratio - k.switch_start))) {
+        inv_switch(T(1 / (k.cutoff_ratio - k.switch_start))),
+        switch_slope(T(-6 / ((k.cutoff_ratio - k.switch_start) * k.radius))) {
     // cos 2 i theta is the Chebyshev polynomial T_i(z).
     const auto& c = k.angular;
     const double a[6] = {1 + c[0] - 2 * c[1] + c[2] + c[4],
@@ -174,62 +196,65 @@ struct PaperTerms {
     return {w * xp + (1 - w) * xm, gp + gm, gp - gm, w_c * (xp - xm) - 2 * w * xp * ip + 2 * (1 - w) * xm * im};
   }
 
-  // U and its derivatives; `blended`: some |c| may be below `blend`. Plain arithmetic and selections only, so that
-  // a loop over pairs vectorises.
-  template <class Powers, bool blended>
-  inline __attribute__((always_inline)) PairTerms<T> of(T r, T p, T q, T c) const {
+  // `blended`: some |c| may be below `blend`.
+  template <bool blended>
+  inline __attribute__((always_inline)) GapTerms<T> gap(T r, T p, T q, T c) const {
     const BisectorTerms<T> b = blended ? two_bisectors(p, q, c) : one_bisector(p, q, c);
     const T *a = theta, *a_x = theta_x;
     const T z = 2 * b.x - 1;
     const T angle = a[0] + z * (a[1] + z * (a[2] + z * (a[3] + z * (a[4] + z * a[5]))));
     const T angle_x = a_x[0] + z * (a_x[1] + z * (a_x[2] + z * (a_x[3] + z * a_x[4])));
+    const T d_r = inv_radius / angle, d_2 = r * d_r;  // D + 2
+    const T d_x = -d_2 * angle_x * radius * d_r;      // -(D + 2) Theta'/Theta
+    return {d_2 - 2, d_r, d_x * b.x_p, d_x * b.x_q, d_x * b.x_c};
+  }
 
-    // V with its core.
-    const T rho = r * inv_radius;
-    const T inv_angle = 1 / angle;
-    const T d = rho * inv_angle - 2;
-    const T dv = std::max(d, core_gap);
+  // V; `core`: some D may be below `core_gap`.
+  template <class Powers, bool core>
+  inline __attribute__((always_inline)) WellTerms<T> well(T d) const {
+    const T dv = core ? std::max(d, core_gap) : d;
     const typename Powers::template Of<T> of_d(dv);
     const T rep = repulsion * of_d.repulsive(alpha);
     const T att = attraction * of_d.attractive(beta);
-    const T v0 = rep - att;
     const T v1 = (beta * att - alpha * rep) * of_d.inverse;
+    if (!core) return {rep - att, v1};
     const T v2 = (repulsion2 * rep - attraction2 * att) * of_d.inverse * of_d.inverse;
-    const T e = d - dv;
-    const T v = v0 + e * (v1 + T(0.5) * e * v2);
-    const T v_d = v1 + e * v2;
+    const T e = d - dv, bent = e * v2;
+    return {rep - att + e * (v1 + T(0.5) * bent), v1 + bent};
+  }
 
-    // Gamma, frozen by a smooth maximum.
+  // Gamma, frozen by a smooth maximum, and W.
+  template <class Powers>
+  inline __attribute__((always_inline)) FactorTerms<T> factor(T r, T c) const {
+    const T rho = r * inv_radius;
     const T s = std::min(std::max((rho - freeze_begin) * inv_freeze, T(0)), T(1));
     const T rho_e = std::max(rho, freeze_end) - freeze_blend * (1 - s * s);
     const typename Powers::template Of<T> of_rho(rho_e);
     const T g = crossing * of_rho.crossing(delta);
-    const T sin2 = 1 - c * c;
-    const T gam = 1 + g * sin2;
-    const T gam_r = g * sin2 * delta * of_rho.inverse * s * inv_radius;
-    const T gam_c = -2 * g * c;
+    const T gs = g * (1 - c * c), gamma = 1 + gs;
+    const T gamma_r = gs * delta_per_radius * of_rho.inverse * s;
 
-    // W.
     const T k = std::min(std::max((rho - switch_start) * inv_switch, T(0)), T(1));
-    const T sw = 1 - k * k * (3 - 2 * k);
-    const T sw_r = -6 * k * (1 - k) * inv_switch * inv_radius;
+    const T w = 1 - k * k * (3 - 2 * k);
+    const T w_r = k * (1 - k) * switch_slope;
+    return {gamma * w, gamma_r * w + gamma * w_r, -2 * g * c * w};
+  }
 
-    const T gv = gam * sw * v_d;
-    const T d_x = -gv * (d + 2) * angle_x * inv_angle;  // dD/dx = -(D + 2) Theta'/Theta
-    PairTerms<T> out;
-    out.energy = gam * sw * v;
-    out.d_r = gv * inv_angle * inv_radius + (gam_r * sw + gam * sw_r) * v;
-    out.d_p = d_x * b.x_p;
-    out.d_q = d_x * b.x_q;
-    out.d_c_crossing = gam_c * sw * v;
-    out.d_c = d_x * b.x_c + out.d_c_crossing;
-    return out;
+  // U and its derivatives.
+  template <class Powers>
+  PairTerms<T> of(T r, T p, T q, T c) const {
+    const GapTerms<T> d = gap<true>(r, p, q, c);
+    const WellTerms<T> v = well<Powers, true>(d.d);
+    const FactorTerms<T> f = factor<Powers>(r, c);
+    const T u_d = f.f * v.v_d, crossing_only = f.f_c * v.v;
+    return {f.f * v.v,   u_d * d.d_r + f.f_r * v.v,   u_d * d.d_p,
+            u_d * d.d_q, u_d * d.d_c + crossing_only, crossing_only};
   }
 };
 
 inline PairTerms<double> PaperContact::terms(double r, double p, double q, double c) const {
   const PaperTerms<double> k(*this);
-  return has_published_powers() ? k.of<PublishedPowers, true>(r, p, q, c) : k.of<GeneralPowers, true>(r, p, q, c);
+  return has_published_powers() ? k.of<PublishedPowers>(r, p, q, c) : k.of<GeneralPowers>(r, p, q, c);
 }
 
 namespace detail {

@@ -1,7 +1,5 @@
 #include "sim/pair_runs.hpp"
 
-#include <algorithm>
-
 namespace ropewalk {
 
 void PairRuns::build(const NeighbourList& list, double reach) {
@@ -11,21 +9,18 @@ void PairRuns::build(const NeighbourList& list, double reach) {
   const double far = reach + list.skin, far2 = far * far;
   begin_.assign(x.size() + 1, 0);
   run_.clear();
-  most_pairs_ = 0;
   for (int i = 0; i < n; ++i) {
     const Vector3 x_i = x[static_cast<std::size_t>(i)];
-    std::size_t pairs = 0;
     for (std::size_t k = list.begin(i); k < list.begin(i + 1); ++k) {
       const int j = index[k];
       if (!((x[static_cast<std::size_t>(j)] - x_i).squaredNorm() < far2)) continue;
-      if (pairs > 0 && run_.back().end == j) {
+      const bool any = run_.size() > begin_[static_cast<std::size_t>(i)];
+      if (any && run_.back().end == j && j - run_.back().begin < longest) {
         ++run_.back().end;
       } else {
         run_.push_back({j, j + 1});
       }
-      ++pairs;
     }
-    most_pairs_ = std::max(most_pairs_, pairs);
     begin_[static_cast<std::size_t>(i) + 1] = run_.size();
   }
 }

@@ -15,19 +15,18 @@ struct PairRun {
 
 class PairRuns {
  public:
+  static constexpr int longest = 64;  // longer ones are cut
   // The pairs of the list that can come closer than `reach` (nm) before it is built again.
   void build(const NeighbourList& list, double reach);
 
   const PairRun* begin(int i) const { return run_.data() + begin_[static_cast<std::size_t>(i)]; }
   const PairRun* end(int i) const { return run_.data() + begin_[static_cast<std::size_t>(i) + 1]; }
-  std::size_t most_pairs() const { return most_pairs_; }  // of one element
   std::size_t runs() const { return run_.size(); }
   std::size_t bytes() const { return run_.capacity() * sizeof(PairRun) + begin_.capacity() * sizeof(std::size_t); }
 
  private:
   std::vector<std::size_t> begin_;
   std::vector<PairRun> run_;
-  std::size_t most_pairs_ = 0;
 };
 
 }  // namespace ropewalk
