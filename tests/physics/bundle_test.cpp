@@ -77,7 +77,9 @@ TEST_P(UndampedBundles, EnergyAndAngularMomentumAreKeptOverOneNanosecond) {
   const Drift d = energy_drift(s, 1000);
   EXPECT_LT(std::fabs(d.slope), 1e-4 * energy) << "energy " << energy << " eV, step " << b.step() << " ps";
   EXPECT_LT(d.fluctuation, 1e-4 * energy);
-  EXPECT_LT((angular_momentum(s) - before).norm(), 1e-6 * scale);
+  // Rounded displacements of single precision are levers of forces that are a little too long or too short.
+  const double bound = b.in.precision == Interaction::Precision::mixed ? 1e-5 : 1e-6;
+  EXPECT_LT((angular_momentum(s) - before).norm(), bound * scale);
 }
 
 INSTANTIATE_TEST_SUITE_P(Precisions, UndampedBundles,
