@@ -217,6 +217,34 @@ TEST(PaperForces, CrossedAndClosedTubesEqualReference) {
   }
 }
 
+// Elements far shorter than the reach: more pairs than a block of the kernel holds.
+TEST(PaperForces, ManyPairsEqualReference) {
+  Topology topology = test::published_topology();
+  topology.types[0].bond = {};
+  State state(400);
+  test::Random random(3);
+  for (std::size_t i = 0; i < state.size(); ++i) {
+    state.position.set(i, Vector3(i < 200 ? 0.0 : 1.7, 0, 0.03 * static_cast<double>(i % 200)));
+    state.orientation.set(i, test::turn(random.direction(), 0.1));
+  }
+  topology.add_tube(200);
+  topology.add_tube(200);
+  Interaction in;
+  in.paper = test::published_contact();
+  in.exclude_along_tube = 200;
+  Forces reference(state.size()), f(state.size());
+  compute_reference(topology, in, state, reference);
+  NeighbourList list(in, 0.3);
+  list.build(topology, state);
+  for (const auto& [precision, bound] :
+       {std::pair(Interaction::Precision::full, 1e-12), std::pair(Interaction::Precision::mixed, 2e-5)}) {
+    in.precision = precision;
+    ForceEngine engine;
+    engine.compute(topology, in, list, state, f);
+    expect_equal(f, reference, bound);
+  }
+}
+
 TEST(PairRuns, HoldThePairsOfTheListWithinReach) {
   Topology topology = test::published_topology();
   const State s = test::disordered_bundle(topology, 7, 40, 1.8, 0.2, 5);
@@ -241,7 +269,6 @@ TEST(PairRuns, HoldThePairsOfTheListWithinReach) {
   }
 }
 
-// Elements far shorter than the reach: more pairs than a block of the kernel holds.
 TEST(PairRuns, AreCutAtTheirLongest) {
   Topology topology = test::published_topology();
   topology.add_tube(1);
