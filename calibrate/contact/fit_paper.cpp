@@ -39,8 +39,9 @@ Pose pose(const Vector3& separation, const Vector3& ni, const Vector3& nj, doubl
 }
 
 double sum_of(const PaperContact& law, const Target& t) {
+  const PaperTerms<double> terms(law);
   double sum = 0;
-  for (const Pose& x : t.poses) sum += x.weight * law.terms<GeneralPowers, double>(x.r, x.p, x.q, x.c).energy;
+  for (const Pose& x : t.poses) sum += x.weight * terms.of<GeneralPowers>(x.r, x.p, x.q, x.c).energy;
   return t.scale * sum;
 }
 

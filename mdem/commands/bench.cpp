@@ -31,7 +31,7 @@ double processor_seconds() {
 // The runs of the line law are part of the list.
 Timing timing(const Simulation& s, double wall, double processor) {
   const auto& t = s.engine().times();
-  const double runs = s.engine().line().list_seconds();
+  const double runs = s.engine().line().list_seconds() + s.engine().paper().list_seconds();
   return {wall,
           processor,
           t.frames,

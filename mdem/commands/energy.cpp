@@ -89,6 +89,7 @@ int energy_command(const EnergyArguments& a) {
   scene.contact.law = law_named(a.law, scene.parameters());
   scene.contact.legacy_torque = a.legacy_torque;
   scene.contact.exclude_along_tube = a.exclude_along_tube;
+  scene.contact.precision = Interaction::Precision::full;  // once, and compared with the reference
   const BuiltScene built = build(scene);
   const Forces forces = evaluate(a, built, interaction_of(scene));
   const NetForce net = net_force(built.state, forces);

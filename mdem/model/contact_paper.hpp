@@ -40,39 +40,61 @@ struct PairTerms {
   T d_c_crossing;  // the part of d_c that comes from the crossing factor alone (legacy torque)
 };
 
-// x^-alpha, x^-beta and x^delta, given 1/x. The published exponents (9.5, 4, -7.5) need one square root and no
-// pow, so that a loop over pairs vectorises.
+// x^-alpha, x^-beta and x^delta, of an x whose inverse is kept. The published exponents (9.5, 4, -7.5) need one
+// inverse root and no pow, so that a loop over pairs vectorises.
 struct PublishedPowers {
   template <class T>
-  static T repulsive(T, T inverse, double) {
-    const T i2 = inverse * inverse, i4 = i2 * i2;
-    return i4 * i4 * inverse * std::sqrt(inverse);
-  }
-  template <class T>
-  static T attractive(T, T inverse, double) {
-    const T i2 = inverse * inverse;
-    return i2 * i2;
-  }
-  template <class T>
-  static T crossing(T, T inverse, double) {
-    const T i2 = inverse * inverse;
-    return i2 * i2 * i2 * inverse * std::sqrt(inverse);
-  }
+  struct Of {
+    T root, inverse;  // x^-1/2, x^-1
+    inline __attribute__((always_inline)) explicit Of(T x) : root(1 / std::sqrt(x)), inverse(root * root) {}
+    inline __attribute__((always_inline)) T repulsive(T) const {
+      const T i2 = inverse * inverse, i4 = i2 * i2;
+      return i4 * i4 * inverse * root;
+    }
+    inline __attribute__((always_inline)) T attractive(T) const {
+      const T i2 = inverse * inverse;
+      return i2 * i2;
+    }
+    inline __attribute__((always_inline)) T crossing(T) const {
+      const T i2 = inverse * inverse;
+      return i2 * i2 * i2 * inverse * root;
+    }
+  };
 };
 
 struct GeneralPowers {
   template <class T>
-  static T repulsive(T x, T, double alpha) {
-    return std::pow(x, T(-alpha));
-  }
-  template <class T>
-  static T attractive(T x, T, double beta) {
-    return std::pow(x, T(-beta));
-  }
-  template <class T>
-  static T crossing(T x, T, double delta) {
-    return std::pow(x, T(delta));
-  }
+  struct Of {
+    T x, inverse;
+    inline __attribute__((always_inline)) explicit Of(T value) : x(value), inverse(1 / value) {}
+    inline __attribute__((always_inline)) T repulsive(T alpha) const { return std::pow(x, -alpha); }
+    inline __attribute__((always_inline)) T attractive(T beta) const { return std::pow(x, -beta); }
+    inline __attribute__((always_inline)) T crossing(T delta) const { return std::pow(x, delta); }
+  };
+};
+
+// x = cos^2 theta, and dx.
+template <class T>
+struct BisectorTerms {
+  T x, x_p, x_q, x_c;
+};
+
+// D and dD.
+template <class T>
+struct GapTerms {
+  T d, d_r, d_p, d_q, d_c;
+};
+
+// V and dV/dD.
+template <class T>
+struct WellTerms {
+  T v, v_d;
+};
+
+// Gamma W, and its derivatives by r and c.
+template <class T>
+struct FactorTerms {
+  T f, f_r, f_c;
 };
 
 struct PaperContact {
@@ -95,82 +117,8 @@ struct PaperContact {
   double cutoff() const { return cutoff_ratio * radius; }
   bool has_published_powers() const { return alpha == 9.5 && beta == 4.0 && delta == -7.5; }
 
-  // U and its derivatives. Plain arithmetic and selections only, so that a loop over pairs vectorises.
-  template <class Powers, class T>
-  inline __attribute__((always_inline)) PairTerms<T> terms(T r, T p, T q, T c) const {
-    const T inv_radius = T(1 / radius), inv_blend = T(1 / bisector_blend);
-    const T inv_freeze = T(0.5 / freeze_blend), inv_switch = T(1 / (cutoff_ratio - switch_start));
-
-    // x = cos^2 theta for the two bisectors, and the weight of the first.
-    const T y = std::min(std::max(c * inv_blend, T(-1)), T(1));
-    const T w = T(0.5) + y * (T(0.75) - T(0.25) * y * y);
-    const T w_c = T(0.75) * (1 - y * y) * inv_blend;
-    const T sum = p + q, dif = p - q;
-    // Where a denominator could vanish its weight is zero: the bound only keeps 0 * (0/0) away.
-    const T np = std::max(2 + 2 * c, T(1)), nm = std::max(2 - 2 * c, T(1));
-    const T both = 1 / (np * nm);
-    const T ip = nm * both, im = np * both;
-    const T xp = sum * sum * ip, xm = dif * dif * im;
-    const T x = w * xp + (1 - w) * xm;
-    const T gp = 2 * w * sum * ip, gm = 2 * (1 - w) * dif * im;
-    const T x_p = gp + gm, x_q = gp - gm;
-    const T x_c = w_c * (xp - xm) - 2 * w * xp * ip + 2 * (1 - w) * xm * im;
-
-    // Theta: cos 2 i theta is the Chebyshev polynomial T_i(z), z = 2x - 1; the sum in powers of z, whose
-    // coefficients a compiler takes out of a loop over pairs.
-    const T c1 = T(angular[0]), c2 = T(angular[1]), c3 = T(angular[2]), c4 = T(angular[3]), c5 = T(angular[4]);
-    const T a0 = 1 + c1 - 2 * c2 + c3 + c5, a1 = c1 - 3 * c3 + 5 * c5, a2 = 2 * c2 - 8 * c4;
-    const T a3 = 4 * c3 - 20 * c5, a4 = 8 * c4, a5 = 16 * c5;
-    const T z = 2 * x - 1;
-    const T theta = a0 + z * (a1 + z * (a2 + z * (a3 + z * (a4 + z * a5))));
-    const T theta_x = 2 * a1 + z * (4 * a2 + z * (6 * a3 + z * (8 * a4 + z * (10 * a5))));
-
-    // V with its core.
-    const T rho = r * inv_radius;
-    const T inv_theta = 1 / theta;
-    const T d = rho * inv_theta - 2;
-    const T dv = std::max(d, T(core_gap));
-    const T inv_dv = 1 / dv;
-    const T rep = T(4 * epsilon * repulsion) * Powers::repulsive(dv, inv_dv, alpha);
-    const T att = T(4 * epsilon * attraction) * Powers::attractive(dv, inv_dv, beta);
-    const T v0 = rep - att;
-    const T v1 = (T(beta) * att - T(alpha) * rep) * inv_dv;
-    const T v2 = (T(alpha * (alpha + 1)) * rep - T(beta * (beta + 1)) * att) * inv_dv * inv_dv;
-    const T e = d - dv;
-    const T v = v0 + e * (v1 + T(0.5) * e * v2);
-    const T v_d = v1 + e * v2;
-
-    // Gamma, frozen by a smooth maximum.
-    const T s = std::min(std::max((rho - T(freeze - freeze_blend)) * inv_freeze, T(0)), T(1));
-    const T rho_e = std::max(rho, T(freeze + freeze_blend)) - T(freeze_blend) * (1 - s * s);
-    const T inv_rho_e = 1 / rho_e;
-    const T g = T(2 * crossing) * Powers::crossing(rho_e, inv_rho_e, delta);
-    const T sin2 = 1 - c * c;
-    const T gam = 1 + g * sin2;
-    const T gam_r = g * sin2 * T(delta) * inv_rho_e * s * inv_radius;
-    const T gam_c = -2 * g * c;
-
-    // W.
-    const T k = std::min(std::max((rho - T(switch_start)) * inv_switch, T(0)), T(1));
-    const T sw = 1 - k * k * (3 - 2 * k);
-    const T sw_r = -6 * k * (1 - k) * inv_switch * inv_radius;
-
-    const T gv = gam * sw * v_d;
-    const T d_x = -gv * (d + 2) * theta_x * inv_theta;  // dD/dx = -(D + 2) Theta'/Theta
-    PairTerms<T> out;
-    out.energy = gam * sw * v;
-    out.d_r = gv * inv_theta * inv_radius + (gam_r * sw + gam * sw_r) * v;
-    out.d_p = d_x * x_p;
-    out.d_q = d_x * x_q;
-    out.d_c_crossing = gam_c * sw * v;
-    out.d_c = d_x * x_c + out.d_c_crossing;
-    return out;
-  }
-
-  PairTerms<double> terms(double r, double p, double q, double c) const {
-    return has_published_powers() ? terms<PublishedPowers, double>(r, p, q, c)
-                                  : terms<GeneralPowers, double>(r, p, q, c);
-  }
+  // U and its derivatives.
+  PairTerms<double> terms(double r, double p, double q, double c) const;
 
   // separation = x_j - x_i; n_i, n_j unit axes.
   PairForce energy_and_gradient(const Vector3& separation, const Vector3& n_i, const Vector3& n_j) const;
@@ -180,6 +128,134 @@ struct PaperContact {
   // energy: undamped systems gain energy. For comparison only.
   PairForce legacy_torque(const Vector3& separation, const Vector3& n_i, const Vector3& n_j) const;
 };
+
+// The law in parts, with its constants in the precision T: plain arithmetic and selections only, so that loops over
+// pairs vectorise.
+template <class T>
+struct PaperTerms {
+  T radius, inv_radius, blend, inv_blend;
+  T theta[6], theta_x[5];  // coefficients of Theta(z) and of dTheta/dx, z = 2x - 1
+  T core_gap, repulsion, attraction, alpha, beta, repulsion2, attraction2;
+  T freeze_begin, freeze_end, freeze_blend, inv_freeze, crossing, delta, delta_per_radius;
+  T switch_start, inv_switch, switch_slope;
+
+  explicit PaperTerms(const PaperContact& k)
+      : radius(T(k.radius)),
+        inv_radius(T(1 / k.radius)),
+        blend(T(k.bisector_blend)),
+        inv_blend(T(1 / k.bisector_blend)),
+        core_gap(T(k.core_gap)),
+        repulsion(T(4 * k.epsilon * k.repulsion)),
+        attraction(T(4 * k.epsilon * k.attraction)),
+        alpha(T(k.alpha)),
+        beta(T(k.beta)),
+        repulsion2(T(k.alpha * (k.alpha + 1))),
+        attraction2(T(k.beta * (k.beta + 1))),
+        freeze_begin(T(k.freeze - k.freeze_blend)),
+        freeze_end(T(k.freeze + k.freeze_blend)),
+        freeze_blend(T(k.freeze_blend)),
+        inv_freeze(T(0.5 / k.freeze_blend)),
+        crossing(T(2 * k.crossing)),
+        delta(T(k.delta)),
+        delta_per_radius(T(k.delta / k.radius)),
+        switch_start(T(k.switch_start)),
+        inv_switch(T(1 / (k.cutoff_ratio - k.switch_start))),
+        switch_slope(T(-6 / ((k.cutoff_ratio - k.switch_start) * k.radius))) {
+    // cos 2 i theta is the Chebyshev polynomial T_i(z).
+    const auto& c = k.angular;
+    const double a[6] = {1 + c[0] - 2 * c[1] + c[2] + c[4],
+                         c[0] - 3 * c[2] + 5 * c[4],
+                         2 * c[1] - 8 * c[3],
+                         4 * c[2] - 20 * c[4],
+                         8 * c[3],
+                         16 * c[4]};
+    for (int i = 0; i < 6; ++i) theta[i] = T(a[i]);
+    for (int i = 0; i < 5; ++i) theta_x[i] = T(2 * (i + 1) * a[i + 1]);
+  }
+
+  // Outside of the blend: the one bisector of the axes, the second flipped where they point against each other.
+  inline __attribute__((always_inline)) BisectorTerms<T> one_bisector(T p, T q, T c) const {
+    const T sign = c < 0 ? T(-1) : T(1);
+    const T sum = p + sign * q, inverse = 1 / (2 + 2 * sign * c), x_p = 2 * sum * inverse;
+    const T x = sum * sum * inverse;
+    return {x, x_p, sign * x_p, -2 * sign * x * inverse};
+  }
+
+  // Of both bisectors, and the weight w of the first.
+  inline __attribute__((always_inline)) BisectorTerms<T> two_bisectors(T p, T q, T c) const {
+    const T y = std::min(std::max(c * inv_blend, T(-1)), T(1));
+    const T w = T(0.5) + y * (T(0.75) - T(0.25) * y * y);
+    const T w_c = T(0.75) * (1 - y * y) * inv_blend;
+    const T sum = p + q, dif = p - q;
+    // Where a denominator could vanish its weight is zero: the bound only keeps 0 * (0/0) away.
+    const T np = std::max(2 + 2 * c, T(1)), nm = std::max(2 - 2 * c, T(1));
+    const T both = 1 / (np * nm);
+    const T ip = nm * both, im = np * both;
+    const T xp = sum * sum * ip, xm = dif * dif * im;
+    const T gp = 2 * w * sum * ip, gm = 2 * (1 - w) * dif * im;
+    return {w * xp + (1 - w) * xm, gp + gm, gp - gm, w_c * (xp - xm) - 2 * w * xp * ip + 2 * (1 - w) * xm * im};
+  }
+
+  // `blended`: some |c| may be below `blend`.
+  template <bool blended>
+  inline __attribute__((always_inline)) GapTerms<T> gap(T r, T p, T q, T c) const {
+    const BisectorTerms<T> b = blended ? two_bisectors(p, q, c) : one_bisector(p, q, c);
+    const T *a = theta, *a_x = theta_x;
+    const T z = 2 * b.x - 1;
+    const T angle = a[0] + z * (a[1] + z * (a[2] + z * (a[3] + z * (a[4] + z * a[5]))));
+    const T angle_x = a_x[0] + z * (a_x[1] + z * (a_x[2] + z * (a_x[3] + z * a_x[4])));
+    const T d_r = inv_radius / angle, d_2 = r * d_r;  // D + 2
+    const T d_x = -d_2 * angle_x * radius * d_r;      // -(D + 2) Theta'/Theta
+    return {d_2 - 2, d_r, d_x * b.x_p, d_x * b.x_q, d_x * b.x_c};
+  }
+
+  // V; `core`: some D may be below `core_gap`.
+  template <class Powers, bool core>
+  inline __attribute__((always_inline)) WellTerms<T> well(T d) const {
+    const T dv = core ? std::max(d, core_gap) : d;
+    const typename Powers::template Of<T> of_d(dv);
+    const T rep = repulsion * of_d.repulsive(alpha);
+    const T att = attraction * of_d.attractive(beta);
+    const T v1 = (beta * att - alpha * rep) * of_d.inverse;
+    if (!core) return {rep - att, v1};
+    const T v2 = (repulsion2 * rep - attraction2 * att) * of_d.inverse * of_d.inverse;
+    const T e = d - dv, bent = e * v2;
+    return {rep - att + e * (v1 + T(0.5) * bent), v1 + bent};
+  }
+
+  // Gamma, frozen by a smooth maximum, and W.
+  template <class Powers>
+  inline __attribute__((always_inline)) FactorTerms<T> factor(T r, T c) const {
+    const T rho = r * inv_radius;
+    const T s = std::min(std::max((rho - freeze_begin) * inv_freeze, T(0)), T(1));
+    const T rho_e = std::max(rho, freeze_end) - freeze_blend * (1 - s * s);
+    const typename Powers::template Of<T> of_rho(rho_e);
+    const T g = crossing * of_rho.crossing(delta);
+    const T gs = g * (1 - c * c), gamma = 1 + gs;
+    const T gamma_r = gs * delta_per_radius * of_rho.inverse * s;
+
+    const T k = std::min(std::max((rho - switch_start) * inv_switch, T(0)), T(1));
+    const T w = 1 - k * k * (3 - 2 * k);
+    const T w_r = k * (1 - k) * switch_slope;
+    return {gamma * w, gamma_r * w + gamma * w_r, -2 * g * c * w};
+  }
+
+  // U and its derivatives.
+  template <class Powers>
+  PairTerms<T> of(T r, T p, T q, T c) const {
+    const GapTerms<T> d = gap<true>(r, p, q, c);
+    const WellTerms<T> v = well<Powers, true>(d.d);
+    const FactorTerms<T> f = factor<Powers>(r, c);
+    const T u_d = f.f * v.v_d, crossing_only = f.f_c * v.v;
+    return {f.f * v.v,   u_d * d.d_r + f.f_r * v.v,   u_d * d.d_p,
+            u_d * d.d_q, u_d * d.d_c + crossing_only, crossing_only};
+  }
+};
+
+inline PairTerms<double> PaperContact::terms(double r, double p, double q, double c) const {
+  const PaperTerms<double> k(*this);
+  return has_published_powers() ? k.of<PublishedPowers>(r, p, q, c) : k.of<GeneralPowers>(r, p, q, c);
+}
 
 namespace detail {
 

@@ -52,7 +52,7 @@ struct ContactOptions {
   double skin = 0;              // nm; 0: chosen by the program
   int nodes = 0;                // `line`: per element; 0: as line_nodes chooses
   bool all_nodes = false;       // `line`: no sparse sums
-  // `line`: pair displacements in single precision; by default where nothing is relaxed to tight tolerances.
+  // Pairs in single precision or all in double; the former by default where nothing is relaxed to tight tolerances.
   std::optional<Interaction::Precision> precision;
 };
 

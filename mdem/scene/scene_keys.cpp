@@ -55,7 +55,7 @@ const std::vector<SceneKey>& scene_keys() {
       {"contact", "all_nodes", "", "false", "",
        "line: all nodes towards nearly parallel elements too; three times the cost, for comparison"},
       {"contact", "precision", "", "\"mixed\"", "mixed; double for mode = \"relax\"",
-       "line: \"mixed\" (pair displacements in single precision) or \"double\""},
+       "\"mixed\" (pairs in single precision) or \"double\""},
       {"contact", "legacy_torque", "", "false", "",
        "leave out the torque that the published code leaves out; gains energy, for comparison only"},
       {"contact", "exclude_along_tube_elements", "elements", "20", "",

@@ -7,6 +7,8 @@
 #include <hwy/foreach_target.h>
 //
 #include <hwy/highway.h>
+//
+#include "sim/contact_damping-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace ropewalk::HWY_NAMESPACE {
@@ -426,8 +428,7 @@ HWY_INLINE void all_elements(const In& in, const LineChunk& chunk, LineWork<Real
   const Topology& topology = *in.topology;
   std::vector<const LineRun*>& even = work.even;
   int tube = chunk.begin < chunk.end ? topology.tube_of(chunk.begin) : 0;
-  const int shift =
-      chunk.touched.empty() ? 0 : chunk.touched[0].element_shift;  // own tubes are first, and in order
+  const int shift = chunk.own_shift();
   for (int i = chunk.begin; i < chunk.end; ++i) {
     while (i >= topology.tube_begin[tube + 1]) ++tube;
     if (in.list->begin(i) == in.list->end(i)) continue;
@@ -457,60 +458,16 @@ HWY_INLINE void all_elements(const In& in, const LineChunk& chunk, LineWork<Real
   }
 }
 
-// ContactViscosity::force for a few neighbours at a time: two vectors of a few lanes beat one that is half empty.
 void Damping(const Interaction& in, const State& state, const LineList& list, const LineChunk& chunk,
              ContactBuffer& out) {
-  const hn::CappedTag<double, 4> d;
-  using V = hn::Vec<decltype(d)>;
-  const auto lanes = static_cast<int>(hn::Lanes(d));
-  const ContactViscosity& c = in.damping.contact;
-  const V inner = hn::Set(d, c.inner), per_width = hn::Set(d, 1 / (c.outer - c.inner)), half = hn::Set(d, 0.5);
-  const V minus_eta = hn::Set(d, -c.eta), one = hn::Set(d, 1.0), two = hn::Set(d, 2.0), three = hn::Set(d, 3.0);
-  const Vec3Array &x = state.position, &v = state.velocity, &w = state.angular_velocity;
-  const int own_shift = chunk.touched.empty() ? 0 : chunk.touched[0].element_shift;
-  V power = hn::Zero(d);
-  for (int i = chunk.begin; i < chunk.end; ++i) {
-    V sfx = hn::Zero(d), sfy = sfx, sfz = sfx, stx = sfx, sty = sfx, stz = sfx;
-    bool any = false;
+  const auto runs = [&](int i, const auto& f) HWY_ATTR {
     for (const LineRun* run = list.begin(i); run != list.end(i); ++run) {
-      const int begin = run->element_begin + run->damped_from, end = begin + run->damped;
-      const int shift = chunk.touched[static_cast<std::size_t>(run->touched)].element_shift;
-      for (int j = begin; j < end; j += lanes) {
-        any = true;
-        const auto left = static_cast<std::size_t>(end - j);
-        const auto at = [&](const std::vector<double>& a) { return load_first(d, a.data() + j, left); };
-        const auto of_i = [&](const std::vector<double>& a) { return hn::Set(d, a[static_cast<std::size_t>(i)]); };
-        const V dx = hn::Sub(at(x.x), of_i(x.x)), dy = hn::Sub(at(x.y), of_i(x.y)),
-                dz = hn::Sub(at(x.z), of_i(x.z));
-        const V distance = hn::Sqrt(hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz))));
-        const V y = hn::Min(hn::Max(hn::Mul(hn::Sub(distance, inner), per_width), hn::Zero(d)), one);
-        const V weight = hn::NegMulAdd(hn::Mul(y, y), hn::NegMulAdd(two, y, three), one);
-        const V scale = hn::IfThenElseZero(hn::FirstN(d, left), hn::Mul(minus_eta, weight));
-        const V ax = hn::Mul(half, dx), ay = hn::Mul(half, dy), az = hn::Mul(half, dz);
-        const V wx = hn::Add(at(w.x), of_i(w.x)), wy = hn::Add(at(w.y), of_i(w.y)),
-                wz = hn::Add(at(w.z), of_i(w.z));
-        const V rx = hn::MulAdd(wz, ay, hn::NegMulAdd(wy, az, hn::Sub(at(v.x), of_i(v.x))));
-        const V ry = hn::MulAdd(wx, az, hn::NegMulAdd(wz, ax, hn::Sub(at(v.y), of_i(v.y))));
-        const V rz = hn::MulAdd(wy, ax, hn::NegMulAdd(wx, ay, hn::Sub(at(v.z), of_i(v.z))));
-        const V fx = hn::Mul(scale, rx), fy = hn::Mul(scale, ry), fz = hn::Mul(scale, rz);
-        const V tx = hn::NegMulAdd(ay, fz, hn::Mul(az, fy)), ty = hn::NegMulAdd(az, fx, hn::Mul(ax, fz)),
-                tz = hn::NegMulAdd(ax, fy, hn::Mul(ay, fx));
-        power = hn::MulAdd(fx, rx, hn::MulAdd(fy, ry, hn::MulAdd(fz, rz, power)));
-        sfx = hn::Sub(sfx, fx), sfy = hn::Sub(sfy, fy), sfz = hn::Sub(sfz, fz);
-        stx = hn::Add(stx, tx), sty = hn::Add(sty, ty), stz = hn::Add(stz, tz);
-        const auto add = [&](std::vector<double>& a, V what) {
-          // Whole vectors: the lanes left over are zero, and the buffers have room.
-          double* to = a.data() + (j + shift);
-          hn::StoreU(hn::Add(hn::LoadU(d, to), what), d, to);
-        };
-        add(out.fx, fx), add(out.fy, fy), add(out.fz, fz), add(out.tx, tx), add(out.ty, ty), add(out.tz, tz);
-      }
+      const int begin = run->element_begin + run->damped_from;
+      if (run->damped > 0)
+        f(begin, begin + run->damped, chunk.touched[static_cast<std::size_t>(run->touched)].element_shift);
     }
-    if (!any) continue;
-    ElementSum{total(d, sfx), total(d, sfy), total(d, sfz), total(d, stx), total(d, sty), total(d, stz), 0.0}
-        .add_to(out, i + own_shift);
-  }
-  out.power += hn::GetLane(hn::SumOfLanes(d, power));
+  };
+  damping::chunk_damping(in.damping.contact, state, chunk.begin, chunk.end, chunk.own_shift(), runs, out);
 }
 
 void Mixed(const LineKernelInput<MixedTable, std::int32_t>& in, const LineChunk& chunk, LineWork<float>& work,

@@ -11,18 +11,19 @@ namespace ropewalk {
 
 namespace {
 
+// frame_of() over plain numbers, which the compiler vectorises.
 ROPEWALK_VECTOR_CLONES
 void frames_of(const QuaternionArray& q, std::ptrdiff_t begin, std::ptrdiff_t end, FrameArray& out) {
-  const double *w = q.w.data(), *x = q.x.data(), *y = q.y.data(), *z = q.z.data();
+  const double *qw = q.w.data(), *qx = q.x.data(), *qy = q.y.data(), *qz = q.z.data();
   double *ax = out.e1.x.data(), *ay = out.e1.y.data(), *az = out.e1.z.data(), *bx = out.e2.x.data(),
          *by = out.e2.y.data(), *bz = out.e2.z.data(), *tx = out.t.x.data(), *ty = out.t.y.data(),
          *tz = out.t.z.data();
-#pragma omp simd
+#pragma GCC ivdep
   for (std::ptrdiff_t i = begin; i < end; ++i) {
-    const Frame<double> f = frame_of(Quaternion(w[i], x[i], y[i], z[i]));
-    ax[i] = f.e1.x(), ay[i] = f.e1.y(), az[i] = f.e1.z();
-    bx[i] = f.e2.x(), by[i] = f.e2.y(), bz[i] = f.e2.z();
-    tx[i] = f.t.x(), ty[i] = f.t.y(), tz[i] = f.t.z();
+    const double w = qw[i], x = qx[i], y = qy[i], z = qz[i];
+    ax[i] = 1 - 2 * (y * y + z * z), ay[i] = 2 * (x * y + w * z), az[i] = 2 * (x * z - w * y);
+    bx[i] = 2 * (x * y - w * z), by[i] = 1 - 2 * (x * x + z * z), bz[i] = 2 * (y * z + w * x);
+    tx[i] = 2 * (x * z + w * y), ty[i] = 2 * (y * z - w * x), tz[i] = 1 - 2 * (x * x + y * y);
   }
 }
 
@@ -75,15 +76,15 @@ double bond_damping(const TubeType& type, const BondDamping& damping, const Stat
   double power = 0;
   const BondDamping law = damping;
   const double mass = type.mass, inertia = type.inertia;
-#pragma omp simd reduction(+ : power)
+#pragma GCC ivdep
   for (std::ptrdiff_t i = begin; i < end; ++i) {
     const std::ptrdiff_t j = i + 1;
-    const DampingForce d =
-        law.force(mass, inertia, Vector3(x[j] - x[i], y[j] - y[i], z[j] - z[i]), Vector3(vx[i], vy[i], vz[i]),
-                  Vector3(wx[i], wy[i], wz[i]), Vector3(vx[j], vy[j], vz[j]), Vector3(wx[j], wy[j], wz[j]));
-    fx[i] += d.force_j.x(), fy[i] += d.force_j.y(), fz[i] += d.force_j.z();
-    ix[i] += d.torque_i.x(), iy[i] += d.torque_i.y(), iz[i] += d.torque_i.z();
-    jx[i] += d.torque_j.x(), jy[i] += d.torque_j.y(), jz[i] += d.torque_j.z();
+    const PairDamping<PlainVector> d = law.force<PlainVector>(
+        mass, inertia, PlainVector{x[j] - x[i], y[j] - y[i], z[j] - z[i]}, PlainVector{vx[i], vy[i], vz[i]},
+        PlainVector{wx[i], wy[i], wz[i]}, PlainVector{vx[j], vy[j], vz[j]}, PlainVector{wx[j], wy[j], wz[j]});
+    fx[i] += d.force_j.x, fy[i] += d.force_j.y, fz[i] += d.force_j.z;
+    ix[i] += d.torque_i.x, iy[i] += d.torque_i.y, iz[i] += d.torque_i.z;
+    jx[i] += d.torque_j.x, jy[i] += d.torque_j.y, jz[i] += d.torque_j.z;
     power += d.power;
   }
   return power;
@@ -131,26 +132,14 @@ TubeSum ForceEngine::compute_bonds(const Topology& topology, const Interaction& 
 std::size_t ForceEngine::bytes() const {
   std::size_t total = 18 * frames_.t.size() * sizeof(double);
   for (const ContactBuffer& b : buffers_) total += 6 * b.fx.capacity() * sizeof(double);
-  return total + line_.bytes();
+  return total + line_.bytes() + paper_.bytes();
 }
 
 void ForceEngine::compute_contact(const Topology& topology, const Interaction& interaction,
                                   const NeighbourList& list, const State& state, bool energies) {
   if (!interaction.paper) return line_.compute(topology, interaction, list, state, frames_.t, energies);
   buffers_.resize(list.chunks().size());
-  if (tube_.size() != static_cast<std::size_t>(topology.elements())) {
-    tube_.resize(static_cast<std::size_t>(topology.elements()));
-    for (int t = 0; t < topology.tubes(); ++t)
-      std::fill(tube_.begin() + topology.tube_begin[t], tube_.begin() + topology.tube_begin[t + 1], t);
-  }
-  const ContactInput in{&topology, &interaction, &state, &frames_.t, &list, &tube_};
-#pragma omp parallel for schedule(dynamic, 1) if (state.size() > parallel_from)
-  for (std::size_t k = 0; k < list.chunks().size(); ++k) {
-    const auto& chunk = list.chunks()[k];
-    ContactBuffer& b = buffers_[k];
-    b.clear(static_cast<std::size_t>(chunk.touched_end - chunk.touched_begin));
-    paper_contact(in, chunk, b);
-  }
+  paper_.compute(interaction, list, state, frames_.t, buffers_.data(), energies);
 }
 
 // Of all chunks in their fixed order, on the elements from .. to.

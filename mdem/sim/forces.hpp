@@ -8,6 +8,7 @@
 #include "sim/interaction.hpp"
 #include "sim/line_engine.hpp"
 #include "sim/neighbours.hpp"
+#include "sim/paper_engine.hpp"
 #include "sim/state.hpp"
 
 namespace ropewalk {
@@ -59,6 +60,7 @@ class ForceEngine {
   };
   const Times& times() const { return times_; }
   const LineEngine& line() const { return line_; }
+  const PaperEngine& paper() const { return paper_; }
   std::size_t bytes() const;
 
  private:
@@ -70,9 +72,9 @@ class ForceEngine {
 
   FrameArray frames_;
   BondArray bonds_;
-  std::vector<int> tube_;               // of each element
   std::vector<ContactBuffer> buffers_;  // of each chunk
   LineEngine line_;
+  PaperEngine paper_;
   Times times_;
 };
 

@@ -15,7 +15,8 @@ struct Interaction {
   std::optional<PaperContact> paper;  // at most one of `paper` and `line`; neither: no contact
   std::vector<LineContact> line;      // of tube types i, j at i * types + j
   bool legacy_torque = false;
-  // Of the line law: displacements between nodes in single precision, or all in double.
+  // Displacements between nodes (line law) and all that belongs to a pair (paper law) in single precision, or all
+  // in double.
   enum class Precision { mixed, full };
   Precision precision = Precision::full;
   int exclude_along_tube = 20;  // pairs of one tube up to this many elements apart do not interact

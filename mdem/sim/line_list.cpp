@@ -8,15 +8,6 @@
 namespace ropewalk {
 namespace {
 
-double unit_of(const Vec3Array& position) {
-  double largest = 1;
-  for (const auto* v : {&position.x, &position.y, &position.z})
-    for (double x : *v)
-      if (std::isfinite(x)) largest = std::max(largest, std::fabs(x));
-  // Room for the lengths of elements and for what moves before the next build.
-  return std::exp2(std::ceil(std::log2(largest + 64)) - 28);
-}
-
 // Squared distance of a point from the nodes' part of element i's axis.
 double distance2(const Vector3& from_centre, const Vector3& axis, double half) {
   const double along = std::min(std::max(from_centre.dot(axis), -half), half);
@@ -245,7 +236,7 @@ void LineList::list_touches(const Topology& topology) {
 
 void LineList::build(const Topology& topology, const Interaction& in, const NeighbourList& list) {
   check_nodes(topology, in);
-  unit_ = unit_of(list.reference());
+  unit_ = list.coordinate_unit();
   const bool parallel = topology.elements() > static_cast<int>(parallel_from);
   const int tubes = topology.tubes(), parts = std::min(tubes, 64);
   std::vector<Part> found(static_cast<std::size_t>(parts));

@@ -61,6 +61,9 @@ struct LineChunk {
   int begin = 0, end = 0;
   std::vector<TouchedTube> touched;
   int elements = 0, nodes[row_kinds] = {0, 0};  // sizes of the buffers
+
+  // Of its own elements, whose tubes are the first touched ones, and in order.
+  int own_shift() const { return -begin; }
 };
 
 class LineList {

@@ -1,4 +1,5 @@
-// Free motion of all elements over a step: the only part of the integrator with more than a line of arithmetic.
+// Free motion of all elements over a step, the only part of the integrator with more than a line of arithmetic; and
+// how far it has brought them.
 #pragma once
 
 #include <cstddef>
@@ -10,5 +11,13 @@ namespace ropewalk {
 //   x += v dt,   q <- exp(w dt) q     for the elements begin .. end - 1
 // A velocity that is not finite gives places that are not; nothing is looked for here.
 void move_elements(State& state, double dt, std::ptrdiff_t begin, std::ptrdiff_t end);
+
+// How far (nm) any point of an element within `lever` of its centre has moved at most since `position` and `axis`,
+// how much any axis has changed, and the sum of the former, which alone tells where a place is not finite.
+struct Change {
+  double moved = 0, turned = 0, sum = 0;
+};
+Change largest_change(const State& state, const Vec3Array& position, const Vec3Array& axis, double lever,
+                      std::ptrdiff_t begin, std::ptrdiff_t end);
 
 }  // namespace ropewalk

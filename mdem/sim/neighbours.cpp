@@ -8,7 +8,7 @@
 #include <limits>
 #include <utility>
 
-#include "sim/vector_clones.hpp"
+#include "sim/motion.hpp"
 
 namespace ropewalk {
 namespace {
@@ -82,36 +82,7 @@ CellGrid make_grid(const Vec3Array& p, double reach) {
 
 namespace {
 
-// How far any point of an element has moved at most, and how much any axis has changed.
-struct Change {
-  double moved = 0, turned = 0;
-};
-
 // Infinite where a place is not finite.
-ROPEWALK_VECTOR_CLONES
-Change largest_change(const State& state, const Vec3Array& position, const Vec3Array& axis, double lever,
-                      std::ptrdiff_t begin, std::ptrdiff_t end) {
-  const double *x = state.position.x.data(), *y = state.position.y.data(), *z = state.position.z.data();
-  const double *rx = position.x.data(), *ry = position.y.data(), *rz = position.z.data();
-  const double *qw = state.orientation.w.data(), *qx = state.orientation.x.data(), *qy = state.orientation.y.data(),
-               *qz = state.orientation.z.data();
-  const double *nx = axis.x.data(), *ny = axis.y.data(), *nz = axis.z.data();
-  double largest = 0, largest_turn = 0, sum = 0;
-#pragma omp simd reduction(max : largest, largest_turn) reduction(+ : sum)
-  for (std::ptrdiff_t i = begin; i < end; ++i) {
-    const double dx = x[i] - rx[i], dy = y[i] - ry[i], dz = z[i] - rz[i];
-    const double ax = 2 * (qx[i] * qz[i] + qw[i] * qy[i]) - nx[i], ay = 2 * (qy[i] * qz[i] - qw[i] * qx[i]) - ny[i],
-                 az = 1 - 2 * (qx[i] * qx[i] + qy[i] * qy[i]) - nz[i];
-    const double turn = std::sqrt(ax * ax + ay * ay + az * az);
-    const double d = std::sqrt(dx * dx + dy * dy + dz * dz) + lever * turn;
-    largest = std::max(largest, d);
-    largest_turn = std::max(largest_turn, turn);
-    sum += d;
-  }
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  return std::isfinite(sum) ? Change{largest, largest_turn} : Change{infinity, infinity};
-}
-
 Change largest_change(const State& state, const Vec3Array& position, const Vec3Array& axis, double lever) {
   const auto n = static_cast<std::ptrdiff_t>(state.size());
   constexpr std::ptrdiff_t block = 1024;
@@ -119,10 +90,10 @@ Change largest_change(const State& state, const Vec3Array& position, const Vec3A
 #pragma omp parallel for schedule(static) reduction(max : moved, turned) if (state.size() > parallel_from)
   for (std::ptrdiff_t i = 0; i < n; i += block) {
     const Change c = largest_change(state, position, axis, lever, i, std::min(i + block, n));
-    moved = std::max(moved, c.moved);
-    turned = std::max(turned, c.turned);
+    moved = std::isfinite(c.sum) ? std::max(moved, c.moved) : std::numeric_limits<double>::infinity();
+    turned = std::isfinite(c.sum) ? std::max(turned, c.turned) : std::numeric_limits<double>::infinity();
   }
-  return {moved, turned};
+  return {moved, turned, 0};
 }
 
 }  // namespace
@@ -200,6 +171,14 @@ void NeighbourList::build(const Topology& topology, Vec3Array position, Vec3Arra
     for (std::size_t i = 1; i < begin_.size(); ++i) begin_[i] += begin_[i - 1];
   }
   cut_into_chunks(n);
+}
+
+double NeighbourList::coordinate_unit() const {
+  double largest = 1;
+  for (const auto* v : {&reference_.x, &reference_.y, &reference_.z})
+    for (double x : *v)
+      if (std::isfinite(x)) largest = std::max(largest, std::fabs(x));
+  return std::exp2(std::ceil(std::log2(largest + 64)) - 28);
 }
 
 // Whatever the threads: the cut belongs to the list. Where the chunks would touch too much in common, as they do

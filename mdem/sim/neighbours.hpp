@@ -53,6 +53,8 @@ class NeighbourList {
   const Vec3Array& reference() const { return reference_; }
   const Vec3Array& reference_axis() const { return reference_axis_; }
   long builds() const { return builds_; }
+  // A power of two (nm) that resolves every coordinate in 29 bits, with room for what moves before the next build.
+  double coordinate_unit() const;
   // Another one for every build of any list.
   long stamp() const { return stamp_; }
   // The farthest that a point of an element was from its place at the last build, when `update` was last called.

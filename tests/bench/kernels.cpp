@@ -32,22 +32,43 @@ void Bond(benchmark::State& bench) {
 }
 BENCHMARK(Bond);
 
-// Argument: tubes of 50 elements, as in all that follow.
-void PaperKernel(benchmark::State& bench) {
-  const Rope rope(static_cast<int>(bench.range(0)), 50, Law::paper);
-  std::vector<int> tube;
-  for (int i = 0; i < rope.topology.elements(); ++i) tube.push_back(rope.topology.tube_of(i));
-  const ContactInput in{&rope.topology, &rope.in, &rope.state, &rope.axis, &rope.list, &tube};
-  ContactBuffer buffer;
-  for (auto _ : bench)
-    for (const NeighbourList::Chunk& chunk : rope.list.chunks()) {
-      buffer.clear(static_cast<std::size_t>(chunk.touched_end - chunk.touched_begin));
-      paper_contact(in, chunk, buffer);
-    }
+// The contact as a step has it, for every instruction set and precision. Tubes of 50 elements, as in all that
+// follow.
+void PaperKernel(benchmark::State& bench, const std::string& instructions, Interaction::Precision precision) {
+  use_instructions(instructions);
+  const Rope rope(static_cast<int>(bench.range(0)), 50, Law::paper, precision);
+  PaperEngine engine;
+  std::vector<ContactBuffer> buffers(rope.list.chunks().size());
+  for (auto _ : bench) {
+    engine.compute(rope.in, rope.list, rope.state, rope.axis, buffers.data());
+    benchmark::ClobberMemory();
+  }
   set_ns(bench, "ns/element", rope.elements());
   set_ns(bench, "ns/pair", static_cast<double>(rope.list.pairs()));
+  bench.counters["runs"] = static_cast<double>(engine.runs().runs()) / rope.elements();
+  use_instructions("");
 }
-BENCHMARK(PaperKernel)->Arg(7)->Arg(91);
+
+const bool registered = [] {
+  for (const std::string& name : instruction_sets()) {
+    for (const auto precision : {Interaction::Precision::mixed, Interaction::Precision::full}) {
+      const char* how = precision == Interaction::Precision::full ? "/full" : "/mixed";
+      benchmark::RegisterBenchmark(("PaperKernel/" + name + how).c_str(), PaperKernel, name, precision)
+          ->Arg(7)
+          ->Arg(91)
+          ->Unit(benchmark::kMicrosecond);
+    }
+  }
+  return true;
+}();
+
+void PaperRunsBuild(benchmark::State& bench) {
+  const Rope rope(static_cast<int>(bench.range(0)), 50, Law::paper);
+  PairRuns runs;
+  for (auto _ : bench) runs.build(rope.list, rope.in.cutoff());
+  set_ns(bench, "ns/element", rope.elements());
+}
+BENCHMARK(PaperRunsBuild)->Arg(7)->Arg(91);
 
 void NeighbourListBuild(benchmark::State& bench) {
   const Rope rope(static_cast<int>(bench.range(0)), 50, Law::line);
@@ -84,7 +105,8 @@ void AllForces(benchmark::State& bench, Law law, Interaction::Precision precisio
 }
 BENCHMARK_CAPTURE(AllForces, line_mixed, Law::line, Interaction::Precision::mixed)->Arg(7)->Arg(91);
 BENCHMARK_CAPTURE(AllForces, line_full, Law::line, Interaction::Precision::full)->Arg(7)->Arg(91);
-BENCHMARK_CAPTURE(AllForces, paper, Law::paper, Interaction::Precision::full)->Arg(7)->Arg(91);
+BENCHMARK_CAPTURE(AllForces, paper_mixed, Law::paper, Interaction::Precision::mixed)->Arg(7)->Arg(91);
+BENCHMARK_CAPTURE(AllForces, paper_full, Law::paper, Interaction::Precision::full)->Arg(7)->Arg(91);
 
 }  // namespace
 }  // namespace ropewalk::bench

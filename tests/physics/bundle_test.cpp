@@ -65,8 +65,11 @@ Drift energy_drift(Simulation& s, double ps) {
   return d;
 }
 
-TEST(UndampedBundle, EnergyAndAngularMomentumAreKeptOverOneNanosecond) {
-  const Bundle b(7, 5, 10);
+class UndampedBundles : public ::testing::TestWithParam<Interaction::Precision> {};
+
+TEST_P(UndampedBundles, EnergyAndAngularMomentumAreKeptOverOneNanosecond) {
+  Bundle b(7, 5, 10);
+  b.in.precision = GetParam();
   Simulation s = b.make(b.step());
   const double energy = std::fabs(s.total_energy());
   const Vector3 before = angular_momentum(s);
@@ -74,8 +77,16 @@ TEST(UndampedBundle, EnergyAndAngularMomentumAreKeptOverOneNanosecond) {
   const Drift d = energy_drift(s, 1000);
   EXPECT_LT(std::fabs(d.slope), 1e-4 * energy) << "energy " << energy << " eV, step " << b.step() << " ps";
   EXPECT_LT(d.fluctuation, 1e-4 * energy);
-  EXPECT_LT((angular_momentum(s) - before).norm(), 1e-6 * scale);
+  // Rounded displacements of single precision are levers of forces that are a little too long or too short.
+  const double bound = b.in.precision == Interaction::Precision::mixed ? 1e-5 : 1e-6;
+  EXPECT_LT((angular_momentum(s) - before).norm(), bound * scale);
 }
+
+INSTANTIATE_TEST_SUITE_P(Precisions, UndampedBundles,
+                         ::testing::Values(Interaction::Precision::full, Interaction::Precision::mixed),
+                         [](const auto& info) {
+                           return info.param == Interaction::Precision::full ? "Double" : "Mixed";
+                         });
 
 // The error of a symplectic scheme is an oscillation that falls as dt^2; half the step, a quarter of it.
 TEST(UndampedBundle, EnergyErrorFallsWithTheSquareOfTheStep) {

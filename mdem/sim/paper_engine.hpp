@@ -1,0 +1,70 @@
+// Contact by the paper law: runs of neighbours and buffers around the kernel (contact_paper_kernel.cpp).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+#include <vector>
+
+#include "sim/contact_kernel.hpp"
+#include "sim/pair_runs.hpp"
+
+namespace ropewalk {
+
+// Places and axes of all elements as the kernel reads them: in nm, or in 32-bit integers, so that differences in
+// single precision are exact. Runs are read in whole vectors, hence the room behind.
+template <class T>
+struct PaperElements {
+  using Coordinate = std::conditional_t<sizeof(T) == 4, std::int32_t, double>;
+  static constexpr std::size_t pad = 16;
+  std::vector<Coordinate> x, y, z;
+  std::vector<T> nx, ny, nz;
+  double unit = 1;  // nm
+
+  void resize(std::size_t n) {
+    for (auto* v : {&x, &y, &z}) v->resize(n + pad);
+    for (auto* v : {&nx, &ny, &nz}) v->resize(n + pad);
+  }
+  void place(const Vec3Array& position, const Vec3Array& axis, std::size_t begin, std::size_t end);
+};
+
+template <class T>
+struct PaperKernelInput {
+  const PaperContact* law;
+  const PaperElements<T>* elements;
+  const Vec3Array* axis;
+  const PairRuns* runs;
+  bool legacy_torque;
+  bool energies;  // whether they are summed
+};
+
+// One chunk with the widest vectors that the machine has.
+void paper_contact(const PaperKernelInput<float>& in, const NeighbourList::Chunk& chunk, ContactBuffer& out);
+void paper_contact(const PaperKernelInput<double>& in, const NeighbourList::Chunk& chunk, ContactBuffer& out);
+
+// Viscous damping of the pairs of elements in the runs.
+void paper_damping(const ContactViscosity& viscosity, const State& state, const PairRuns& runs,
+                   const NeighbourList::Chunk& chunk, ContactBuffer& out);
+
+class PaperEngine {
+ public:
+  // Fills buffers[chunk].
+  void compute(const Interaction& interaction, const NeighbourList& list, const State& state, const Vec3Array& axis,
+               ContactBuffer* buffers, bool energies = true);
+  const PairRuns& runs() const { return runs_; }
+  double list_seconds() const { return list_seconds_; }  // spent on the runs so far
+  std::size_t bytes() const;
+
+ private:
+  template <class T>
+  void run(PaperElements<T>& elements, const Interaction& interaction, const NeighbourList& list,
+           const State& state, const Vec3Array& axis, ContactBuffer* buffers, bool energies);
+
+  PairRuns runs_, damped_;  // the latter within reach of the contact viscosity
+  PaperElements<float> mixed_;
+  PaperElements<double> full_;
+  long stamp_ = 0;
+  double list_seconds_ = 0;
+};
+
+}  // namespace ropewalk
