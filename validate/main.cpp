@@ -12,10 +12,21 @@ using namespace ropewalk;
 
 struct Verbs {
   ListArguments list;
-  ValidateArguments run;
+  ValidateArguments run, stability;
   ReportArguments report;
   int code = 0;
 };
+
+void add_run_options(CLI::App* verb, ValidateArguments& a) {
+  verb->add_option("cases", a.cases, "Names, see list [default: all of them]");
+  verb->add_option("--parameters", a.parameters,
+                   "A set of your own: theory takes any tube, atoms only the tube that they are");
+  verb->add_option("--out", a.out, "Directory of results and report; finished cases in it are kept")
+      ->capture_default_str();
+  verb->add_flag("--again", a.again, "Run cases again that are finished");
+  verb->add_flag("--json", a.json, "JSON");
+  verb->add_flag("--quiet", a.quiet, "No progress lines");
+}
 
 void add_verbs(CLI::App& app, Verbs& v) {
   CLI::App* list = app.add_subcommand("list", "The cases");
@@ -23,17 +34,17 @@ void add_verbs(CLI::App& app, Verbs& v) {
   list->callback([&v] { v.code = list_command(v.list); });
 
   CLI::App* run = app.add_subcommand("run", "Run cases and write the report");
-  run->add_option("cases", v.run.cases, "Names, see list [default: all of the tier]");
   run->add_option("--tier", v.run.tier, "quick, or full (which has the quick ones too)")->capture_default_str();
-  run->add_option("--parameters", v.run.parameters,
-                  "A set of your own: theory takes any tube, atoms only the tube that they are");
-  run->add_option("--out", v.run.out, "Directory of results and report; finished cases in it are kept")
-      ->capture_default_str();
   run->add_flag("--fresh", v.run.fresh, "Make the references anew with LAMMPS and compare with the stored ones");
-  run->add_flag("--again", v.run.again, "Run cases again that are finished");
-  run->add_flag("--json", v.run.json, "JSON");
-  run->add_flag("--quiet", v.run.quiet, "No progress lines");
+  add_run_options(run, v.run);
   run->callback([&v] { v.code = validate_command(v.run); });
+
+  v.stability.stability = true;
+  v.stability.out = "stability";
+  CLI::App* stability =
+      app.add_subcommand("stability", "Find the places where the methods fail, with theory beside them");
+  add_run_options(stability, v.stability);
+  stability->callback([&v] { v.code = validate_command(v.stability); });
 
   CLI::App* report = app.add_subcommand("report", "Make report.html and report.json anew from the results");
   report->add_option("dir", v.report.dir, "Directory of the results")->required();

@@ -78,14 +78,6 @@ void add_run_facts(const Scene& scene, const Prepared& p, const Manifest& m, Rep
   add("wall time", fmt::format("{:.0f} s on {} threads", m.wall_seconds, m.threads), "started " + m.started);
 }
 
-void add_warnings(const Scene& scene, ReportInput& in) {
-  if (scene.contact.legacy_torque)
-    in.warnings.push_back(
-        "This run left out the torque that the published force code leaves out: it gains energy.");
-  if (scene.damping.local > 0)
-    in.warnings.push_back("PFC local damping depends on the frame and does not conserve momentum.");
-}
-
 ReportInput gather(const RunDirectory& dir, const Scene& scene, const Prepared& p) {
   ReportInput in;
   const Manifest m = read_manifest(dir.manifest());
@@ -93,7 +85,7 @@ ReportInput gather(const RunDirectory& dir, const Scene& scene, const Prepared& 
   in.status = m.status;
   in.reason = m.reason;
   add_run_facts(scene, p, m, in);
-  add_warnings(scene, in);
+  in.warnings = warnings_of(scene);
   in.log = read_log(dir.log());
   if (scene.twist) in.ramp_end_ps = scene.twist->ramp_time();
   in.tube_radius = p.topology.largest_radius();
@@ -117,6 +109,26 @@ ReportInput gather(const RunDirectory& dir, const Scene& scene, const Prepared& 
 }
 
 }  // namespace
+
+std::vector<std::string> warnings_of(const Scene& scene) {
+  std::vector<std::string> warnings;
+  if (scene.contact.legacy_torque)
+    warnings.push_back("This run leaves out the torque that the published force code leaves out: it gains energy.");
+  if (scene.damping.local > 0)
+    warnings.push_back("PFC local damping depends on the frame and does not conserve momentum.");
+  if (scene.contact.law == ContactOptions::Law::line && scene.contact.nodes > 0) {
+    Scene free = scene;
+    free.contact.nodes = 0;
+    const int needed = line_contacts(free).front().nodes_i;
+    if (scene.contact.nodes < needed)
+      warnings.push_back(
+          fmt::format("With contact.nodes_per_element = {} tubes feel one another's elements: {} would keep the "
+                      "corrugation below "
+                      "1e-3 of the binding energy.",
+                      scene.contact.nodes, needed));
+  }
+  return warnings;
+}
 
 void write_report(const RunDirectory& dir, const Scene& scene, const Prepared& prepared) {
   write_file_atomically(dir.report(), report_html(gather(dir, scene, prepared)));

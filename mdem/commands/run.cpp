@@ -320,6 +320,7 @@ int run_command(const RunArguments& a) {
     write_file_atomically(dir.parameters(k), read_file(scene.sets[k].path));
   if (const auto* state = std::get_if<StateSource>(&scene.source))
     write_file_atomically(dir.state(), read_file(state->file));
+  for (const std::string& warning : warnings_of(scene)) fmt::print(stderr, "ropewalk: note: {}\n", warning);
   if (a.steps >= 0) run.stop_at(a.steps);
   run.begin();
   return run.go();

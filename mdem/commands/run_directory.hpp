@@ -62,6 +62,9 @@ void fill_geometry(const RopeObservation& o, LogRow& row);
 // CSV in the format that [state] reads.
 std::string state_csv(const Topology& topology, const State& state);
 
+// What a reader of the results must know: one sentence each.
+std::vector<std::string> warnings_of(const Scene& scene);
+
 // Makes report.html from the files of the directory.
 void write_report(const RunDirectory& dir, const Scene& scene, const Prepared& prepared);
 

@@ -122,19 +122,27 @@ T bond_twist_angle(const Frame<T>& i, const Frame<T>& j) {
   return atan2(i.e2.dot(j.e1) - i.e1.dot(j.e2), i.e1.dot(j.e1) + i.e2.dot(j.e2));
 }
 
+// Entries, over the masses, of the stiffness matrix of an infinite straight chain for deflections u and rotations
+// phi of wave number q (1/element); the coupling is made symmetric by the masses.
+struct ChainMode {
+  double uu = 0, pp = 0, up = 0;
+};
+inline ChainMode chain_mode(const BondStiffness& k, double q, double a, double mass, double inertia) {
+  const double share = k.shear_share(a);
+  return {24.0 * share * k.bend / (a * a * a) * (1.0 - std::cos(q)) / mass,
+          k.bend / a * (2.0 - 2.0 * std::cos(q) + 6.0 * share * (1.0 + std::cos(q))) / inertia,
+          12.0 * share * k.bend / (a * a) * std::sin(q) / std::sqrt(mass * inertia)};
+}
+
 // Largest angular frequency (rad/ps) of an infinite straight chain of such bonds: longitudinal and torsional
 // branches at the zone boundary, and the coupled deflection-rotation branch searched over the wave vector.
 // mass in eV ps^2/nm^2, isotropic inertia in eV ps^2.
 inline double stiffest_chain_frequency(const BondStiffness& k, double a, double mass, double inertia) {
-  const double share = k.shear_share(a);
   double largest = std::fmax(4.0 * k.stretch / (a * mass), 4.0 * k.twist / (a * inertia));
   for (int step = 0; step <= 256; ++step) {
-    const double q = units::pi * step / 256.0;
-    // Finite-element beam: K_uu, K_phiphi and the coupling, made symmetric by the masses.
-    const double uu = 24.0 * share * k.bend / (a * a * a) * (1.0 - std::cos(q)) / mass;
-    const double pp = k.bend / a * (2.0 - 2.0 * std::cos(q) + 6.0 * share * (1.0 + std::cos(q))) / inertia;
-    const double up = 12.0 * share * k.bend / (a * a) * std::sin(q) / std::sqrt(mass * inertia);
-    largest = std::fmax(largest, 0.5 * (uu + pp) + std::sqrt(0.25 * (uu - pp) * (uu - pp) + up * up));
+    const ChainMode m = chain_mode(k, units::pi * step / 256.0, a, mass, inertia);
+    largest =
+        std::fmax(largest, 0.5 * (m.uu + m.pp) + std::sqrt(0.25 * (m.uu - m.pp) * (m.uu - m.pp) + m.up * m.up));
   }
   return std::sqrt(largest);
 }

@@ -43,7 +43,7 @@ struct ContactViscosity {
 
   // separation = x_j - x_i, velocities and angular velocities of the two elements.
   DampingForce force(const Vector3& separation, const Vector3& v_i, const Vector3& w_i, const Vector3& v_j,
-                       const Vector3& w_j) const {
+                     const Vector3& w_j) const {
     const Vector3 arm = 0.5 * separation;  // from x_i to p; from x_j to p it is -arm
     const Vector3 relative = v_j - v_i - (w_i + w_j).cross(arm);
     DampingForce f;
@@ -58,10 +58,31 @@ struct ContactViscosity {
 struct BondDamping {
   double rate = 0;  // lambda, 1/ps
 
+  // Entries, over the masses, of the damping matrix of an infinite chain for deflections u and rotations phi of
+  // wave number q (1/element); the coupling is made symmetric by the masses.
+  struct Mode {
+    double uu = 0, pp = 0, up = 0;
+  };
+  Mode mode(double q, double a, double mass, double inertia) const {
+    return {rate * (1 - std::cos(q)), rate * (1 - std::cos(q) + 0.25 * mass * a * a / inertia * (1 + std::cos(q))),
+            0.5 * rate * a * std::sin(q) * std::sqrt(mass / inertia)};
+  }
+  // 1/ps, of the strongest damped motion of such a chain: opposite motions of neighbours, or all turning alike
+  // against their lever arms.
+  double largest_rate(double a, double mass, double inertia) const {
+    double largest = 0;
+    for (int step = 0; step <= 256; ++step) {
+      const Mode d = mode(units::pi * step / 256.0, a, mass, inertia);
+      largest =
+          std::fmax(largest, 0.5 * (d.uu + d.pp) + std::sqrt(0.25 * (d.uu - d.pp) * (d.uu - d.pp) + d.up * d.up));
+    }
+    return largest;
+  }
+
   template <class V = Vector3>
   PairDamping<V> force(double mass, double inertia, const std::common_type_t<V>& separation,
-                        const std::common_type_t<V>& v_i, const std::common_type_t<V>& w_i,
-                        const std::common_type_t<V>& v_j, const std::common_type_t<V>& w_j) const {
+                       const std::common_type_t<V>& v_i, const std::common_type_t<V>& w_i,
+                       const std::common_type_t<V>& v_j, const std::common_type_t<V>& w_j) const {
     const V arm = 0.5 * separation;
     const V relative = v_j - v_i - (w_i + w_j).cross(arm);
     const V spin = w_j - w_i;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 namespace ropewalk {
 namespace {
@@ -133,6 +134,16 @@ FilmTube random_tube(const FilmSource& film, double length, Random& random) {
   return t;
 }
 
+// Number of a tube's square along the Z-order curve (G. M. Morton, 1966): squares with near numbers are near each
+// other, so that the neighbours of a tube are near it in memory, however large the film is.
+std::uint64_t along_curve(const FilmTube& t, const FilmSource& film, double square) {
+  const auto column = static_cast<std::uint64_t>((t.x + 0.5 * film.width) / square);
+  const auto row = static_cast<std::uint64_t>((t.y + 0.5 * film.depth) / square);
+  std::uint64_t number = 0;
+  for (int bit = 0; bit < 32; ++bit) number |= (column >> bit & 1) << (2 * bit) | (row >> bit & 1) << (2 * bit + 1);
+  return number;
+}
+
 }  // namespace
 
 double projected_distance2(const FilmTube& a, const FilmTube& b, double length) {
@@ -161,10 +172,10 @@ std::vector<FilmTube> lay_film(const FilmSource& film, int elements, double elem
     floor.add(t, tube);
     tubes.push_back(tube);
   }
-  // Neighbours then have numbers that are not far apart, as the buffers of the forces want it.
-  const bool wide = film.width >= film.depth;
-  std::stable_sort(tubes.begin(), tubes.end(),
-                   [&](const FilmTube& a, const FilmTube& b) { return wide ? a.x < b.x : a.y < b.y; });
+  const double square = 0.5 * length;
+  std::stable_sort(tubes.begin(), tubes.end(), [&](const FilmTube& a, const FilmTube& b) {
+    return along_curve(a, film, square) < along_curve(b, film, square);
+  });
   return tubes;
 }
 

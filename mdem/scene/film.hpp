@@ -20,7 +20,8 @@ struct FilmTube {
 double projected_distance2(const FilmTube& a, const FilmTube& b, double length);
 
 // Lays down the tubes of `film` one after another, `elements` of `element_length` each. The box is centred on the
-// origin in x and y, and the lowest tubes lie at z = 0. Numbered along the longer side.
+// origin in x and y, and the lowest tubes lie at z = 0. Tubes with near numbers
+// are near each other.
 std::vector<FilmTube> lay_film(const FilmSource& film, int elements, double element_length, double spacing,
                                Random& random);
 

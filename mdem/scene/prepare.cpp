@@ -78,6 +78,8 @@ TwistDrive twist_of(const TwistProtocol& twist, const Topology& topology) {
   return d;
 }
 
+constexpr double most_steps = 1e12;  // years, even of a single tube
+
 double chosen_step(const Scene& scene, const TimeStepLimit& limit) {
   const double typed = scene.run.time_step;
   if (typed <= 0) return default_step_fraction * limit.limit;
@@ -126,6 +128,11 @@ Prepared prepare(Scene& scene) {
   out.time_step = chosen_step(scene, out.limit);
   out.duration = scene.run.duration;
   if (out.duration <= 0 && scene.twist) out.duration = scene.twist->ramp_time() + scene.twist->hold;
+  if (out.duration / out.time_step > most_steps)
+    throw InputError({scene.path, 0, "run"},
+                     fmt::format("{:.4g} ps in steps of {:.4g} fs are {:.1g} steps", out.duration,
+                                 out.time_step / units::fs, out.duration / out.time_step),
+                     fmt::format("at most {:.0g} can be counted; take a larger step or a shorter run", most_steps));
   return out;
 }
 

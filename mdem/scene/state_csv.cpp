@@ -128,6 +128,10 @@ class Reader {
     if (bond < shortest_bond || bond > longest_bond)
       fail("", fmt::format("lies {:.3g} nm from the element before it", bond * element_length_),
            fmt::format("elements of a tube follow one another at {:.4g} nm", element_length_));
+    const Vector3 along = row.position - rows_.back().position;
+    if (along.dot(axis_of(rows_.back().orientation)) <= 0 || along.dot(axis_of(row.orientation)) <= 0)
+      fail("qw", "the tube folds back: the bond to the element before it stands across or against an axis",
+           "turn the quaternions so that the local z of each element points along the tube");
   }
 
   State state() const {

@@ -139,7 +139,9 @@ void ForceEngine::compute_contact(const Topology& topology, const Interaction& i
                                   const NeighbourList& list, const State& state, bool energies) {
   if (!interaction.paper) return line_.compute(topology, interaction, list, state, frames_.t, energies);
   buffers_.resize(list.chunks().size());
-  paper_.compute(interaction, list, state, frames_.t, buffers_.data(), energies);
+  // Always with energies: its loops are the compiler's, who orders their sums as it likes, and forces must be the same
+  // bits whoever reads energies.
+  paper_.compute(interaction, list, state, frames_.t, buffers_.data());
 }
 
 // Of all chunks in their fixed order, on the elements from .. to.

@@ -79,8 +79,10 @@ TimeStepLimit time_step_limit(const Topology& topology, const Interaction& in, d
       out.damping_rate = std::max(out.damping_rate, 12.0 * row * std::max(1.0 / t.mass, arm * arm / t.inertia));
     }
   }
-  // Opposite motions of bonded neighbours: two bonds, twice the relative velocity of one.
-  out.damping_rate += 2.0 * in.damping.bond.rate;
+  double bonds = 0;
+  for (const TubeType& t : topology.types)
+    bonds = std::max(bonds, in.damping.bond.largest_rate(t.element_length, t.mass, t.inertia));
+  out.damping_rate += bonds;
   const double w2 = out.chain_frequency * out.chain_frequency + out.contact_frequency * out.contact_frequency;
   const double g = out.damping_rate;
   out.limit = (std::sqrt(g * g + 4.0 * w2) - g) / w2;

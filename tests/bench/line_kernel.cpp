@@ -22,7 +22,7 @@ HWY_INLINE void radial_row(const Table& table, const typename Table::Value* X, s
   const auto all = hn::FirstN(d, hn::Lanes(d));
   for (std::size_t i = 0; i < n; i += hn::Lanes(d)) {
     hn::Vec<typename Lanes<typename Table::Value>::D> u, slope;
-    radial(d, table, hn::Load(d, X + i), all, u, slope);
+    radial<true>(d, table, hn::Load(d, X + i), all, u, slope);
     us = hn::Add(us, u);
     slopes = hn::Add(slopes, slope);
   }
@@ -44,7 +44,7 @@ void Rows(const MixedTable& table, const LineNodes<std::int32_t>& nodes, int len
   const std::int32_t from[2][3] = {{0, 0, 0}, {0, 0, 1 << 20}};
   auto sums = no_sums<D, 2>(D());
   for (int r = 0; r < 64; ++r)
-    row<2, false>(table, nodes, out, r * shift, r * shift + length, from, 0.1F, nullptr, nullptr, sums);
+    row<false, 2>(table, nodes, out, r * shift, length, r * shift, from, 0.1F, sums);
   const auto all = hn::Add(hn::Add(sums.x[0], sums.x[1]), hn::Add(sums.z[0], sums.energy));
   hn::StoreU(hn::Add(all, hn::Add(sums.y[0], hn::Add(sums.y[1], sums.z[1]))), D(), total);
 }
@@ -56,6 +56,7 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 #include "bench/support.hpp"
+#include "sim/line_count.hpp"
 #include "sim/vector_clones.hpp"
 
 namespace ropewalk {
@@ -86,7 +87,7 @@ struct Distances {
   }
 };
 
-// Counted in `radial`: y 2, s 1, u and du/dy by Horner's rule 4 degree - 2.
+// Counted in `radial`: y 2, s 1, du/dy 2 (degree - 1) and u 2 degree by Horner's rule.
 constexpr double radial_flop(int degree) { return 3.0 + 4 * degree - 2; }
 
 void RadialTableFloat(benchmark::State& bench, const std::string& instructions) {
@@ -132,7 +133,7 @@ void LineRows(benchmark::State& bench) {
     nodes.z.push_back(nodes.coordinate(0.226 * (m % 10)));
   }
   NodeForces<float> forces;
-  forces.clear(0, count);
+  forces.start(count, 1);
   float total[16];
   for (auto _ : bench) {
     HWY_DYNAMIC_DISPATCH(Rows)(table, nodes, length, shift, forces, total);
@@ -142,7 +143,7 @@ void LineRows(benchmark::State& bench) {
   const double vectors = 64.0 * 2 * ((length + lanes - 1) / lanes);
   set_ns(bench, "ns/vector", vectors);
   set_ns(bench, "ns/run", 64);
-  set_giga(bench, "GFLOP/s", vectors * lanes * (radial_flop(MixedTable::degree) + 22));
+  set_giga(bench, "GFLOP/s", vectors * lanes * radial_operations(MixedTable::degree));
 }
 BENCHMARK(LineRows)->ArgsProduct({{16, 32}, {0, 6, 32}})->Args({24, 6})->Args({512, 512});
 
@@ -175,67 +176,21 @@ void RadialDirect(benchmark::State& bench) {
 }
 BENCHMARK(RadialDirect);
 
-// --- How much the kernel does -----------------------------------------------------------------------
-
-// Radial evaluations: those of the vectors, full or not; and those within the cutoff.
-struct Work {
-  double lanes = 0, useful = 0, vectors = 0, runs = 0, skipped = 0, end_runs = 0;
-};
-
-// `on_i` nodes of element i against the nodes of a run. All elements must be nearly parallel.
-void add_run(const Rope& rope, const LineRun& run, int i, int on_i, int width, Work& work) {
-  const LineContact& law = rope.in.line[0];
-  const int vectors = (run.node_end - run.node_begin + width - 1) / width;
-  work.vectors += vectors * on_i;
-  work.lanes += vectors * on_i * width;
-  const double cutoff2 = law.density.cutoff() * law.density.cutoff();
-  for (int node = run.node_begin; node < run.node_end; ++node) {
-    const int l = node - run.row;
-    const auto j = static_cast<std::size_t>(run.element_begin + l / law.nodes_j);
-    const Vector3 at_j =
-        rope.state.position[j] + line_node(l % law.nodes_j, law.nodes_j, law.length_j) * rope.axis[j];
-    const auto si = static_cast<std::size_t>(i);
-    for (int k = 0; k < on_i; ++k) {
-      const Vector3 at_i = rope.state.position[si] + line_node(k, on_i, law.length_i) * rope.axis[si];
-      work.useful += (at_j - at_i).squaredNorm() < cutoff2;
-    }
-  }
-}
-
-Work work_of(const Rope& rope, const LineList& list, int width) {
-  const LineContact& law = rope.in.line[0];
-  Work work;
-  for (int i = 0; i < rope.topology.elements(); ++i)
-    for (const LineRun* run = list.begin(i); run != list.end(i); ++run) {
-      work.runs += 1;
-      if (static_cast<double>(run->beyond) > 2 * rope.list.displacement()) {
-        work.skipped += 1;
-        continue;
-      }
-      const bool ends = law.sparse_i > 0 && (run->begins || run->ends);
-      work.end_runs += ends;
-      if (law.sparse_i > 0) add_run(rope, *run, i, law.sparse_i, width, work);
-      if (law.sparse_i == 0 || ends) add_run(rope, *run, i, law.nodes_i, width, work);
-    }
-  return work;
-}
-
-// Counted in `row`, per lane: displacement 3, its square 5, force factor 1, energy 1, forces on i and j 12.
-constexpr double lane_flop(int degree) { return radial_flop(degree) + 22; }
-
 void set_counters(benchmark::State& bench, const Rope& rope, const LineList& list) {
   const bool full = rope.in.precision == Precision::full;
-  const Work work = work_of(rope, list, static_cast<int>(HWY_DYNAMIC_DISPATCH(KernelLanes)(full)));
+  const RadialCount count =
+      count_radial(rope.topology, rope.in, rope.state, list, 2 * rope.list.displacement(), rope.elements());
   const double n = rope.elements();
   set_ns(bench, "ns/element", n);
-  set_ns(bench, "ns/evaluation", work.lanes);
-  set_giga(bench, "GFLOP/s", work.lanes * lane_flop(full ? FullTable::degree : MixedTable::degree));
-  bench.counters["evaluations"] = work.lanes / n;
-  bench.counters["vectors"] = work.vectors / n;
-  bench.counters["useful"] = work.useful / work.lanes;
-  bench.counters["runs"] = work.runs / n;
-  bench.counters["skipped"] = work.skipped / n;
-  bench.counters["end_runs"] = work.end_runs / n;
+  set_ns(bench, "ns/evaluation", count.evaluations * n);
+  set_giga(bench, "GFLOP/s",
+           count.evaluations * n * radial_operations(full ? FullTable::degree : MixedTable::degree));
+  bench.counters["evaluations"] = count.evaluations;
+  bench.counters["vectors"] = count.vectors;
+  bench.counters["useful"] = count.useful / count.evaluations;
+  bench.counters["runs"] = count.runs;
+  bench.counters["skipped"] = count.skipped;
+  bench.counters["end_pairs"] = count.pairs;
   bench.counters["pairs"] = static_cast<double>(rope.list.pairs()) / n;
 }
 
@@ -247,6 +202,7 @@ struct Choice {
   Law law;
   int tubes;
   double worn;
+  bool energies = false;
 };
 
 // Rows, kernel and what it puts on the neighbours: all of the contact, as a step has it.
@@ -254,12 +210,11 @@ void LineKernel(benchmark::State& bench, const Choice& c) {
   use_instructions(c.instructions);
   const Rope rope(c.tubes, 49, c.law, c.precision, 0, c.worn);
   LineEngine engine;
-  std::vector<ContactBuffer> buffers(rope.list.chunks().size());
   Vec3Array force(rope.state.size()), torque(rope.state.size());
   for (auto _ : bench) {
-    engine.compute(rope.topology, rope.in, rope.list, rope.state, rope.axis, buffers.data());
+    engine.compute(rope.topology, rope.in, rope.list, rope.state, rope.axis, c.energies);
     for (int t = 0; t < rope.topology.tubes(); ++t)
-      engine.add_node_forces(rope.topology, rope.list, rope.axis, t, force, torque);
+      engine.add_to_tube(rope.topology, rope.axis, t, force, torque);
     benchmark::ClobberMemory();
   }
   set_counters(bench, rope, engine.list());
@@ -270,12 +225,11 @@ void LineKernel(benchmark::State& bench, const Choice& c) {
 void LineNodeForces(benchmark::State& bench) {
   const Rope rope(static_cast<int>(bench.range(0)), 49, Law::line);
   LineEngine engine;
-  std::vector<ContactBuffer> buffers(rope.list.chunks().size());
   Vec3Array force(rope.state.size()), torque(rope.state.size());
-  engine.compute(rope.topology, rope.in, rope.list, rope.state, rope.axis, buffers.data());
+  engine.compute(rope.topology, rope.in, rope.list, rope.state, rope.axis, false);
   for (auto _ : bench) {
     for (int t = 0; t < rope.topology.tubes(); ++t)
-      engine.add_node_forces(rope.topology, rope.list, rope.axis, t, force, torque);
+      engine.add_to_tube(rope.topology, rope.axis, t, force, torque);
     benchmark::ClobberMemory();
   }
   set_ns(bench, "ns/element", rope.elements());
@@ -296,15 +250,12 @@ void ViscousDamping(benchmark::State& bench) {
   const Rope rope(static_cast<int>(bench.range(0)), 49, Law::line, Precision::mixed, 20);
   LineList list;
   list.build(rope.topology, rope.in, rope.list);
-  std::vector<ContactBuffer> buffers(rope.list.chunks().size());
-  for (std::size_t k = 0; k < buffers.size(); ++k) {
-    const NeighbourList::Chunk& chunk = rope.list.chunks()[k];
-    buffers[k].clear(static_cast<std::size_t>(chunk.touched_end - chunk.touched_begin));
-  }
+  std::vector<ContactBuffer> buffers(list.chunks().size());
+  for (std::size_t k = 0; k < buffers.size(); ++k)
+    buffers[k].clear(static_cast<std::size_t>(list.chunks()[k].elements));
   for (auto _ : bench) {
     for (std::size_t k = 0; k < buffers.size(); ++k)
-      if (rope.list.chunks()[k].begin < rope.list.chunks()[k].end)
-        line_damping(rope.in, rope.state, list, rope.list.chunks()[k], buffers[k]);
+      line_damping(rope.in, rope.state, list, list.chunks()[k], buffers[k]);
     benchmark::ClobberMemory();
   }
   set_ns(bench, "ns/element", rope.elements());
@@ -324,6 +275,7 @@ void register_kernels() {
         for (const int tubes : {7, 91}) register_kernel({instructions, precision, law, tubes, 0.5});
   for (const Law law : {Law::line, Law::line_all_nodes})
     register_kernel({instruction_sets()[0], Precision::mixed, law, 91, 0}, "/fresh_list");
+  register_kernel({instruction_sets()[0], Precision::mixed, Law::line, 91, 0.5, true}, "/energies");
 }
 
 const bool registered = [] {

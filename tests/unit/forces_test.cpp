@@ -114,6 +114,21 @@ TEST_P(ForcesTest, SameBitsOnAnyNumberOfThreads) {
   }
 }
 
+TEST_P(ForcesTest, SameBitsWhoeverReadsEnergies) {
+  NeighbourList list(in, 0.2);
+  list.build(topology, state);
+  Forces with(state.size()), without(state.size());
+  ForceEngine engine;
+  engine.compute(topology, in, list, state, with);
+  engine.compute(topology, in, list, state, without, false);
+  for (const auto& [a, b] : {std::pair(&with.force, &without.force), std::pair(&with.torque, &without.torque)}) {
+    EXPECT_EQ(a->x, b->x);
+    EXPECT_EQ(a->y, b->y);
+    EXPECT_EQ(a->z, b->z);
+  }
+  EXPECT_EQ(with.damping_power, without.damping_power);
+}
+
 TEST_P(ForcesTest, NetForceAndTorqueVanish) {
   const Forces f = fast(0.2, 2);
   const NetForce net = net_force(state, f);

@@ -35,6 +35,10 @@ const std::vector<Case>& all_cases() {
       rope_bead_spring_case(),
       rope_parallel_bond_case(),
       rope_legacy_torque_case(),
+      limit_chain_step_case(),
+      limit_contact_step_case(),
+      limit_tunnelling_case(),
+      limit_bond_slip_case(),
   };
   return cases;
 }

@@ -35,5 +35,9 @@ Case parallel_bond_case();
 Case rope_bead_spring_case();
 Case rope_parallel_bond_case();
 Case rope_legacy_torque_case();
+Case limit_chain_step_case();
+Case limit_contact_step_case();
+Case limit_tunnelling_case();
+Case limit_bond_slip_case();
 
 }  // namespace ropewalk

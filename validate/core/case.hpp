@@ -65,7 +65,8 @@ struct CaseContext {
 };
 
 struct Case {
-  enum class Group { theory, atoms, codes };
+  // The last: where a method fails, with theory beside it; of `validate stability`, not of `run`.
+  enum class Group { theory, atoms, codes, stability };
   enum class Tier { quick, full };
   std::string name;  // "euler-buckling": of the command line and the files
   Group group = Group::theory;

@@ -141,19 +141,29 @@ std::string lead(const std::vector<Outcome>& outcomes) {
          "references were not fitted. What misses says which assumption it shows.";
 }
 
+struct Heading {
+  std::string kicker, title;
+};
+
+Heading heading_of(const std::vector<Outcome>& outcomes) {
+  const bool limits = !outcomes.empty() && std::all_of(outcomes.begin(), outcomes.end(), [](const Outcome& o) {
+    return find_case(o.name).group == Case::Group::stability;
+  });
+  if (limits) return {"where the methods fail, and where theory says that they should", "Stability"};
+  return {"the model against exact theory, atoms and other codes", "Validation"};
+}
+
 }  // namespace
 
 std::string validation_page(const std::vector<Outcome>& outcomes, const std::vector<std::string>& facts) {
   Figures figures;
-  std::string head = page_head("Validation");
+  const Heading top = heading_of(outcomes);
+  std::string head = page_head(top.title);
   head.insert(head.find("</style>"), verdict_css);
-  std::string html =
-      head +
-      "<body>\n<main>\n<p class=\"kicker\">Ropewalk: the model against exact theory, atoms and other "
-      "codes</p>\n<h1>Validation</h1>\n<p class=\"lead\">" +
-      lead(outcomes) +
-      "</p>\n<div class=\"scroll\"><table class=\"verdicts\"><thead><tr><th>Verdict</th>"
-      "<th>Case</th><th>Tightest check</th><th>Against</th></tr></thead><tbody>\n";
+  std::string html = head + "<body>\n<main>\n<p class=\"kicker\">Ropewalk: " + top.kicker + "</p>\n<h1>" +
+                     top.title + "</h1>\n<p class=\"lead\">" + lead(outcomes) +
+                     "</p>\n<div class=\"scroll\"><table class=\"verdicts\"><thead><tr><th>Verdict</th>"
+                     "<th>Case</th><th>Tightest check</th><th>Against</th></tr></thead><tbody>\n";
   for (const Outcome& o : outcomes) html += summary_row(o);
   html += "</tbody></table></div>\n";
   for (const Outcome& o : outcomes) html += case_html(o, figures);

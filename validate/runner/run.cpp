@@ -31,7 +31,8 @@ std::vector<const Case*> chosen_cases(const ValidateArguments& a) {
   if (a.tier != "quick" && a.tier != "full")
     throw InputError({"", 0, "--tier"}, fmt::format("is \"{}\"", printable(a.tier, 40)), "choose quick or full");
   for (const Case& c : all_cases())
-    if (a.tier == "full" || c.tier == Case::Tier::quick) chosen.push_back(&c);
+    if ((c.group == Case::Group::stability) == a.stability && (a.tier == "full" || c.tier == Case::Tier::quick))
+      chosen.push_back(&c);
   return chosen;
 }
 
@@ -122,7 +123,17 @@ int exit_code(const std::vector<Outcome>& outcomes) {
 }  // namespace
 
 const char* group_name(Case::Group group) {
-  return group == Case::Group::theory ? "theory" : group == Case::Group::atoms ? "atoms" : "other codes";
+  switch (group) {
+    case Case::Group::theory:
+      return "theory";
+    case Case::Group::atoms:
+      return "atoms";
+    case Case::Group::codes:
+      return "other codes";
+    case Case::Group::stability:
+      return "stability";
+  }
+  return "";
 }
 
 const Case& find_case(const std::string& name) {

@@ -16,6 +16,7 @@ int list_command(const ListArguments& arguments);
 struct ValidateArguments {
   std::vector<std::string> cases;  // empty: all of the tier
   std::string tier = "quick";      // "full" has the quick ones too
+  bool stability = false;          // the cases that show where methods fail, instead of the others
   std::string parameters;          // a set, in place of the shipped ones where it fits
   std::string out = "validation";
   bool fresh = false;

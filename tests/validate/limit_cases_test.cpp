@@ -1,0 +1,47 @@
+// Cases of stability: the limits agree with theory, and another tube has other limits.
+#include <gtest/gtest.h>
+
+#include "cases/limits.hpp"
+#include "validate/support.hpp"
+
+namespace ropewalk {
+namespace {
+
+using test::expect_green;
+using test::run;
+
+TEST(LimitCases, ChainStep) {
+  const Case c = limit_chain_step_case();
+  expect_green(c);
+  Fault stiff;
+  stiff.EA = stiff.EI = stiff.GJ = 1.2;
+  EXPECT_FALSE(run(c, stiff).holds());
+}
+
+TEST(LimitCases, ContactStep) {
+  const Case c = limit_contact_step_case();
+  expect_green(c);
+  EXPECT_FALSE(run(c, test::twice_the_contact()).holds());
+}
+
+TEST(LimitCases, Tunnelling) {
+  const Case c = limit_tunnelling_case();
+  expect_green(c);
+  EXPECT_FALSE(run(c, test::twice_the_contact()).holds());
+}
+
+TEST(LimitCases, BondSlip) {
+  const Case c = limit_bond_slip_case();
+  expect_green(c);
+  EXPECT_FALSE(run(c, test::softer_twist()).holds());
+}
+
+TEST(Limits, BisectionFindsTheStepAndTellsWhereThereIsNone) {
+  const auto beyond_two = [](double x) { return x > 2; };
+  EXPECT_NEAR(limit_between(beyond_two, 1, 5, 1e-4), 2, 4e-4);
+  EXPECT_TRUE(std::isnan(limit_between(beyond_two, 3, 5)));
+  EXPECT_TRUE(std::isnan(limit_between(beyond_two, 0, 1)));
+}
+
+}  // namespace
+}  // namespace ropewalk
