@@ -81,15 +81,6 @@ double spacing_of(const Scene& scene, double element_length) {
   return graphite_spacing(scene);
 }
 
-Topology empty_topology(const Scene& scene) {
-  Topology t;
-  t.types.clear();
-  for (const ParameterSet& set : scene.sets)
-    t.types.push_back({scene.element_length, set.radius, set.element_mass(scene.element_length),
-                       set.element_inertia(scene.element_length), set.bond});
-  return t;
-}
-
 // Straight tubes along z, centred on the origin.
 void add_tubes(const std::vector<std::pair<double, double>>& places, int elements, double element_length,
                BuiltScene& out) {
@@ -227,6 +218,15 @@ std::vector<LineContact> line_contacts(const Scene& scene) {
       if (scene.contact.all_nodes) pair.sparse_i = 0;
     }
   return pairs;
+}
+
+Topology empty_topology(const Scene& scene) {
+  Topology t;
+  t.types.clear();
+  for (const ParameterSet& set : scene.sets)
+    t.types.push_back({scene.element_length, set.radius, set.element_mass(scene.element_length),
+                       set.element_inertia(scene.element_length), set.bond});
+  return t;
 }
 
 BuiltScene build(Scene& scene) {

@@ -19,6 +19,9 @@ struct BuiltScene {
 // Also sets the reach of the scene's contact viscosity, which goes with the spacing.
 BuiltScene build(Scene& scene);
 
+// The scene's tube types, and no tubes yet.
+Topology empty_topology(const Scene& scene);
+
 // The distance of two parallel rows (nm) at which their energy is lowest.
 double pair_spacing(const PaperContact& contact, double element_length);
 

@@ -57,6 +57,11 @@ class Simulation {
   const ForceEngine& engine() const { return engine_; }
   double time_step() const { return time_step_; }
   double work() const { return work_; }
+  // Goes on with the account of a run that another engine has carried on.
+  void set_account(double work, double dissipated) {
+    work_ = work;
+    dissipated_ = dissipated;
+  }
   double dissipated() const { return dissipated_; }
   double list_seconds() const { return list_seconds_; }
   double integration_seconds() const { return integration_seconds_; }
