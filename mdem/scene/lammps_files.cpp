@@ -149,13 +149,12 @@ namespace {
 std::string row_variables() {
   const std::array<const char*, lammps_row_numbers> names = {"time", "stretch", "shear", "bend",      "twist",
                                                              "vdw",  "kinetic", "work",  "dissipated"};
-  std::string text = "variable now equal step\nvariable step format now %.0f\n", row = "${step}";
+  std::string text = "variable now equal step\nvariable step format now %.0f\n";
   for (std::size_t k = 0; k < names.size(); ++k) {
     text +=
         fmt::format("variable {0}_now equal f_motion[{1}]\nvariable {0} format {0}_now %.17g\n", names[k], k + 1);
-    row += fmt::format(",${{{}}}", names[k]);
   }
-  return text + fmt::format("variable row string \"{}\"\n", row);
+  return text;
 }
 
 std::string pair_line(const LammpsScript& s) {
@@ -219,8 +218,8 @@ std::string lammps_input(const LammpsScript& s) {
       "&\n"
       "  vx vy vz omegax omegay omegaz\n"
       "dump_modify states append ${{grow}} format float %.17g\n"
-      "thermo_modify norm no lost error\n"
       "thermo_style custom step f_motion[1] f_motion[4] f_motion[5] f_motion[6] f_motion[7] pe\n"
+      "thermo_modify norm no lost error\n"
       "thermo ${{every}}\n"
       "restart ${{every}} ${{dir}}/rope.restart.a ${{dir}}/rope.restart.b\n"
       "run ${{steps}}\n"

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "scene/build.hpp"
-#include "scene/resolve.hpp"
 #include "scene/scene.hpp"
 #include "sim/simulation.hpp"
 

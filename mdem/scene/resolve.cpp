@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "model/error.hpp"
 #include "scene/build.hpp"
 
@@ -78,6 +80,40 @@ TwistDrive twist_of(const TwistProtocol& twist, const Topology& topology) {
 }
 
 }  // namespace
+
+Topology empty_topology(const Scene& scene) {
+  Topology t;
+  t.types.clear();
+  for (const ParameterSet& set : scene.sets)
+    t.types.push_back({scene.element_length, set.radius, set.element_mass(scene.element_length),
+                       set.element_inertia(scene.element_length), set.bond});
+  return t;
+}
+
+std::vector<LineContact> line_contacts(const Scene& scene) {
+  const std::size_t types = scene.sets.size();
+  std::vector<LineContact> pairs;
+  std::vector<int> nodes(types, 1);  // of each type: what its most demanding partner needs
+  for (std::size_t a = 0; a < types; ++a)
+    for (std::size_t b = 0; b < types; ++b) {
+      const ParameterSet &i = scene.sets[a], &j = scene.sets[b];
+      LineContact pair;
+      pair.density =
+          a == b ? i.line->density
+                 : i.line->universal.density(i.radius, i.line->surface_density, j.radius, j.line->surface_density);
+      const int needed =
+          line_nodes(scene.element_length, line_parallel_well(pair.density).distance, pair.density.contact);
+      nodes[a] = std::max(nodes[a], scene.contact.nodes > 0 ? scene.contact.nodes : needed);
+      pairs.push_back(pair);
+    }
+  for (std::size_t a = 0; a < types; ++a)
+    for (std::size_t b = 0; b < types; ++b) {
+      LineContact& pair = pairs[a * types + b];
+      pair = line_pair(pair.density, scene.element_length, scene.element_length, nodes[a], nodes[b]);
+      if (scene.contact.all_nodes) pair.sparse_i = 0;
+    }
+  return pairs;
+}
 
 Interaction interaction_of(const Scene& scene) {
   Interaction in;

@@ -7,6 +7,12 @@
 
 namespace ropewalk {
 
+// The scene's tube types, and no tubes yet.
+Topology empty_topology(const Scene& scene);
+
+// The `line` law between all pairs of the scene's tube types, i, j at i * types + j.
+std::vector<LineContact> line_contacts(const Scene& scene);
+
 // The reach of the contact viscosity must be set (build() does so).
 Interaction interaction_of(const Scene& scene);
 
