@@ -101,7 +101,8 @@ void write_lammps_files(const RunDirectory& run) {
   const Simulation s = simulation_at(run, scene, p, read_checkpoint(run));
   write_file_atomically(dir.start(), start_json(start_of(scene, s)));
   write_file_atomically(dir.tubes(), tubes_csv(p.topology));
-  write_file_atomically(dir.data(), lammps_data(scene.name, p.topology, s.state()));
+  write_file_atomically(dir.data(),
+                        lammps_data(scene.name, p.topology, s.state(), s.forces().force, s.forces().torque));
   write_file_atomically(dir.input(), lammps_input(script_of(scene, p, s)));
   write_file_atomically(dir.readme(), readme);
 }
@@ -167,11 +168,14 @@ class Import {
   void take_states(const std::string& path) {
     LammpsStates states(path);
     State state;
-    while (states.next(prepared_.topology, state)) {
+    Vec3Array force, torque;
+    while (states.next(prepared_.topology, state, force, torque)) {
       const auto row = rows_.find(state.step);
       if (state.step <= reached_ || row == rows_.end()) continue;
       state.time = row->second.time;
       add(state, row->second);
+      force_ = force;
+      torque_ = torque;
     }
   }
 
@@ -203,7 +207,7 @@ class Import {
   // The checkpoint last: until it is there the run stands where it stood.
   void write(std::int64_t from) {
     Simulation simulation = start(scene_, prepared_);
-    simulation.set_account(last_.work, last_.dissipated);
+    simulation.take_over(force_, torque_, last_.work, last_.dissipated);
     checkpoint_.log_bytes = log_.size();
     checkpoint_.frame_bytes = frames_.size();
     checkpoint_.simulation = simulation.serialise();
@@ -235,6 +239,7 @@ class Import {
   std::int64_t reached_ = 0;
   std::map<std::int64_t, LammpsRow> rows_;
   LammpsRow last_;
+  Vec3Array force_, torque_;
   std::string log_, frames_;
   long taken_ = 0;
 };

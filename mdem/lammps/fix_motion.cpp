@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "lammps/bond_vbond.hpp"
 #include "lammps/fix_damp.hpp"
@@ -40,6 +41,7 @@ FixMotion::FixMotion(LMP::LAMMPS* lmp, int count, char** words) : Fix(lmp, count
   size_vector = 9;
   global_freq = 1;
   extvector = 0;
+  carried_ = model_->start.step;
   if (comm->me == 0) {
     work_ = model_->start.work;
     dissipated_ = model_->start.dissipated;
@@ -52,6 +54,7 @@ void FixMotion::init() {
   check_atoms(lmp, style);
   check_styles(lmp, *model_);
   orientations(lmp);
+  carried(lmp);
   if (update->dt != model_->start.time_step)
     refuse(lmp, "the time step is not that of the export", "take it from in.rope, or export a scene with another");
   grip_ = find_fix<FixGrip>(lmp);
@@ -153,24 +156,44 @@ double FixMotion::compute_vector(int n) {
   return n == 0 ? now() : row_[static_cast<std::size_t>(n - 1)];
 }
 
+namespace {
+struct Account {
+  double work, dissipated;
+  LMP::bigint carried;
+};
+}  // namespace
+
 void FixMotion::write_restart(FILE* file) {
-  const std::array<double, 2> account = {sum_over_ranks(lmp, work_), sum_over_ranks(lmp, dissipated_)};
+  const Account account = {sum_over_ranks(lmp, work_), sum_over_ranks(lmp, dissipated_), carried_};
   if (comm->me > 0) return;
   const int bytes = sizeof account;
   std::fwrite(&bytes, sizeof bytes, 1, file);
-  std::fwrite(account.data(), sizeof account, 1, file);
+  std::fwrite(&account, sizeof account, 1, file);
 }
 
 void FixMotion::restart(char* bytes) {
-  std::array<double, 2> account{};
-  std::copy_n(bytes, sizeof account, reinterpret_cast<char*>(account.data()));
-  work_ = comm->me == 0 ? account[0] : 0.0;
-  dissipated_ = comm->me == 0 ? account[1] : 0.0;
+  Account account{};
+  std::memcpy(&account, bytes, sizeof account);
+  work_ = comm->me == 0 ? account.work : 0.0;
+  dissipated_ = comm->me == 0 ? account.dissipated : 0.0;
+  carried_ = account.carried;
 }
 
 // --- dynamics -----------------------------------------------------------------------------------------
 
 int FixNve::setmask() { return FixMotion::setmask() | INITIAL_INTEGRATE | FINAL_INTEGRATE; }
+
+// Damping acts on half-step velocities, so that the forces of a step's end do not follow from the state there.
+// Where the last step is at hand, here or in the data or restart file, its forces are taken: a run in parts is then
+// the same as a run in one.
+void FixNve::setup(int) {
+  if (carried_ != update->ntimestep) return;
+  double** last = carried(lmp);
+  for (int i = 0; i < atom->nlocal; ++i) {
+    store(atom->f[i], vector(last[i]));
+    store(atom->torque[i], vector(last[i] + 3));
+  }
+}
 
 // Of one kind of motion; returns what the local damping took out.
 double FixNve::push(double alpha, double TubeType::*inertia, double dt, double** velocity,
@@ -218,6 +241,12 @@ void FixNve::check() const {
 void FixNve::final_integrate() {
   check();
   if (damp_) dissipated_ -= update->dt * damp_->own_power();
+  double** last = carried(lmp);
+  for (int i = 0; i < atom->nlocal; ++i) {
+    store(last[i], vector(atom->f[i]));
+    store(last[i] + 3, vector(atom->torque[i]));
+  }
+  carried_ = update->ntimestep;
   kick(0.5 * update->dt, now());
 }
 

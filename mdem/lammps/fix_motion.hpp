@@ -35,6 +35,7 @@ class FixMotion : public LMP::Fix {
   FixGrip* grip_ = nullptr;
   FixDamp* damp_ = nullptr;
   double work_ = 0, dissipated_ = 0;  // eV, this rank's share
+  LMP::bigint carried_ = 0;           // the step whose forces the elements carry
 
  private:
   void check_elements();
@@ -51,6 +52,7 @@ class FixNve : public FixMotion {
  public:
   FixNve(LMP::LAMMPS* lmp, int count, char** words) : FixMotion(lmp, count, words) {}
   int setmask() override;
+  void setup(int vflag) override;
   void initial_integrate(int vflag) override;
   void final_integrate() override;
 

@@ -114,14 +114,22 @@ void check_styles(LMP::LAMMPS* lmp, const LammpsModel& model) {
     refuse(lmp, "the scene has loads, and there are none", "write: fix grips all mdem/grip");
 }
 
-double** orientations(LMP::LAMMPS* lmp) {
+namespace {
+
+double** property(LMP::LAMMPS* lmp, const char* name, int wanted) {
   int is_double = 0, columns = 0;
-  const int index = lmp->atom->find_custom("quat", is_double, columns);
-  if (index < 0 || !is_double || columns != 4)
-    refuse(lmp, "elements have no orientations",
-           "write: fix orientation all property/atom d2_quat 4 ghost yes, before read_data");
+  const int index = lmp->atom->find_custom(name, is_double, columns);
+  if (index < 0 || !is_double || columns != wanted)
+    refuse(lmp, "elements have no orientations, or do not carry their forces from run to run",
+           "write: fix elements all property/atom d2_quat 4 d2_carried 6 ghost yes, before read_data or after "
+           "read_restart");
   return lmp->atom->darray[index];
 }
+
+}  // namespace
+
+double** orientations(LMP::LAMMPS* lmp) { return property(lmp, "quat", 4); }
+double** carried(LMP::LAMMPS* lmp) { return property(lmp, "carried", 6); }
 
 double sum_over_ranks(LMP::LAMMPS* lmp, double value) {
   double sum = 0;

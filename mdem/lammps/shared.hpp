@@ -46,6 +46,8 @@ F* find_fix(LMP::LAMMPS* lmp) {
 
 // The orientations w, x, y, z of own and ghost elements. LAMMPS moves the array about: ask again in every call.
 double** orientations(LMP::LAMMPS* lmp);
+// Of own elements: total force and torque at the end of the last step.
+double** carried(LMP::LAMMPS* lmp);
 
 inline Vector3 vector(const double* v) { return {v[0], v[1], v[2]}; }
 inline Quaternion quaternion(const double* q) { return {q[0], q[1], q[2], q[3]}; }

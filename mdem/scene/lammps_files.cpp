@@ -50,6 +50,11 @@ void for_each_line(std::string_view text, F f) {
     f(number++, text.substr(0, end));
 }
 
+// Without what is nothing and takes another digit of the exponent.
+Vector3 readable(const Vector3& v) {
+  return v.unaryExpr([](double x) { return std::fabs(x) < 1e-99 ? 0.0 : x; });
+}
+
 struct Box {
   Vector3 low, high;
 };
@@ -114,7 +119,8 @@ void read_tubes(const LammpsDirectory& dir, Topology& topology) {
   if (topology.tubes() == 0) throw InputError({path, 0, ""}, "holds no tube", remedy);
 }
 
-std::string lammps_data(const std::string& name, const Topology& topology, const State& s) {
+std::string lammps_data(const std::string& name, const Topology& topology, const State& s, const Vec3Array& force,
+                        const Vec3Array& torque) {
   // The box is fitted to the elements by LAMMPS; here it only has to hold them.
   const Box box = box_of(s, 1.0);
   std::string text = fmt::format(
@@ -122,7 +128,7 @@ std::string lammps_data(const std::string& name, const Topology& topology, const
       "{} bond types\n\n{} {} xlo xhi\n{} {} ylo yhi\n{} {} zlo zhi\n\nAtoms # hybrid\n\n",
       name, topology.elements(), topology.bonds(), topology.types.size(), topology.types.size(), box.low.x(),
       box.high.x(), box.low.y(), box.high.y(), box.low.z(), box.high.z());
-  std::string velocities = "\nVelocities\n\n", bonds = "\nBonds\n\n", turns = "\nOrientations\n\n";
+  std::string velocities = "\nVelocities\n\n", bonds = "\nBonds\n\n", turns = "\nElements\n\n";
   int bond = 0;
   for (int t = 0; t < topology.tubes(); ++t) {
     const TubeType& type = topology.type_of(t);
@@ -136,7 +142,10 @@ std::string lammps_data(const std::string& name, const Topology& topology, const
       text += fmt::format("{} {} {} {} {} {} {} {}\n", e + 1, kind, x.x(), x.y(), x.z(), 2 * type.radius, density,
                           t + 1);
       velocities += fmt::format("{} {} {} {} {} {} {}\n", e + 1, v.x(), v.y(), v.z(), w.x(), w.y(), w.z());
-      turns += fmt::format("{} {} {} {} {}\n", e + 1, q.w(), q.x(), q.y(), q.z());
+      // Of a line LAMMPS reads no more than 255 characters; these have 247 at most.
+      const Vector3 f = readable(force[i]), m = readable(torque[i]);
+      turns += fmt::format("{} {} {} {} {} {} {} {} {} {} {}\n", e + 1, q.w(), q.x(), q.y(), q.z(), f.x(), f.y(),
+                           f.z(), m.x(), m.y(), m.z());
       if (e + 1 < topology.tube_begin[t + 1]) bonds += fmt::format("{} {} {} {}\n", ++bond, kind, e + 1, e + 2);
     }
   }
@@ -189,14 +198,14 @@ std::string lammps_input(const LammpsScript& s) {
   text += fmt::format(
       "{0}\n"
       "if \"${{restart}} == none\" then &\n"
-      "  \"fix orientation all property/atom d2_quat 4 ghost yes\" &\n"
-      "  \"read_data ${{dir}}/rope.data fix orientation NULL Orientations\" &\n"
+      "  \"fix elements all property/atom d2_quat 4 d2_carried 6 ghost yes\" &\n"
+      "  \"read_data ${{dir}}/rope.data fix elements NULL Elements\" &\n"
       "  \"reset_timestep {1}\" &\n"
       "  \"variable open index file\" &\n"
       "  \"variable grow index no\" &\n"
       "else &\n"
       "  \"read_restart ${{restart}}\" &\n"
-      "  \"fix orientation all property/atom d2_quat 4 ghost yes\" &\n"
+      "  \"fix elements all property/atom d2_quat 4 d2_carried 6 ghost yes\" &\n"
       "  \"variable open index append\" &\n"
       "  \"variable grow index yes\"\n"
       "{0}\n"
@@ -216,7 +225,7 @@ std::string lammps_input(const LammpsScript& s) {
       "fix rows all print ${{every}} \"{0}\" ${{open}} ${{dir}}/lammps-rows.csv screen no title \"{1}\"\n"
       "dump states all custom ${{every}} ${{dir}}/lammps.dump id x y z d2_quat[1] d2_quat[2] d2_quat[3] d2_quat[4] "
       "&\n"
-      "  vx vy vz omegax omegay omegaz\n"
+      "  vx vy vz omegax omegay omegaz fx fy fz tqx tqy tqz\n"
       "dump_modify states append ${{grow}} format float %.17g\n"
       "thermo_style custom step f_motion[1] f_motion[4] f_motion[5] f_motion[6] f_motion[7] pe\n"
       "thermo_modify norm no lost error\n"
@@ -224,7 +233,7 @@ std::string lammps_input(const LammpsScript& s) {
       "restart ${{every}} ${{dir}}/rope.restart.a ${{dir}}/rope.restart.b\n"
       "run ${{steps}}\n"
       "write_dump all custom ${{dir}}/lammps-last.dump id x y z d2_quat[1] d2_quat[2] d2_quat[3] d2_quat[4] &\n"
-      "  vx vy vz omegax omegay omegaz modify format float %.17g\n"
+      "  vx vy vz omegax omegay omegaz fx fy fz tqx tqy tqz modify format float %.17g\n"
       "print \"{0}\" append ${{dir}}/lammps-rows.csv screen no\n",
       "${step},${time},${stretch},${shear},${bend},${twist},${vdw},${kinetic},${work},${dissipated}", row_names);
   return text;
@@ -260,9 +269,9 @@ void LammpsStates::fail(const std::string& what) const {
 }
 
 namespace {
-constexpr std::array<const char*, 14> state_columns = {
-    "id",         "x",  "y",  "z",  "d2_quat[1]", "d2_quat[2]", "d2_quat[3]",
-    "d2_quat[4]", "vx", "vy", "vz", "omegax",     "omegay",     "omegaz"};
+constexpr std::array<const char*, 20> state_columns = {
+    "id", "x",      "y",      "z",      "d2_quat[1]", "d2_quat[2]", "d2_quat[3]", "d2_quat[4]", "vx",  "vy",
+    "vz", "omegax", "omegay", "omegaz", "fx",         "fy",         "fz",         "tqx",        "tqy", "tqz"};
 }
 
 // Of every column of the file, which of ours it is, or -1.
@@ -287,25 +296,21 @@ std::vector<int> LammpsStates::columns() {
   return out;
 }
 
-void LammpsStates::element(const std::vector<int>& columns, State& s, std::vector<bool>& seen) {
-  std::array<double, state_columns.size()> v{};
+// Returns the element, its numbers in `values`.
+std::size_t LammpsStates::element(const std::vector<int>& columns, std::array<double, 20>& values) const {
   std::string_view rest = text_;
   for (const int column : columns) {
     double value = 0;
     if (!take(rest, value)) fail("has fewer numbers than columns");
-    if (column >= 0) v[static_cast<std::size_t>(column)] = value;
+    if (column >= 0) values[static_cast<std::size_t>(column)] = value;
   }
-  const auto i = static_cast<std::size_t>(v[0]) - 1;
-  if (!(v[0] >= 1) || i >= s.size() || seen[i]) fail(fmt::format("has no place for element {}", v[0]));
-  seen[i] = true;
-  s.position.set(i, {v[1], v[2], v[3]});
-  s.orientation.set(i, {v[4], v[5], v[6], v[7]});
-  s.velocity.set(i, {v[8], v[9], v[10]});
-  s.angular_velocity.set(i, {v[11], v[12], v[13]});
+  if (!(values[0] >= 1)) fail("has no element's number");
+  return static_cast<std::size_t>(values[0]) - 1;
 }
 
-bool LammpsStates::next(const Topology& topology, State& state) {
-  state = State(static_cast<std::size_t>(topology.elements()));
+bool LammpsStates::next(const Topology& topology, State& s, Vec3Array& force, Vec3Array& torque) {
+  s = State(static_cast<std::size_t>(topology.elements()));
+  force = torque = Vec3Array(s.size());
   std::int64_t count = 0;
   const auto number = [&](const char* title, std::int64_t& value) {
     if (!line()) return false;
@@ -315,16 +320,25 @@ bool LammpsStates::next(const Topology& topology, State& state) {
     if (!take(rest, value)) fail("a number is needed here");
     return true;
   };
-  if (!number("TIMESTEP", state.step) || !number("NUMBER OF ATOMS", count)) return false;
+  if (!number("TIMESTEP", s.step) || !number("NUMBER OF ATOMS", count)) return false;
   if (count != topology.elements())
     fail(fmt::format("{} elements are here, {} in the scene", count, topology.elements()));
   for (int k = 0; k < 5; ++k)
     if (!line()) return false;  // four lines of the box, and the columns
   const std::vector<int> which = columns();
-  std::vector<bool> seen(state.size());
+  std::vector<bool> seen(s.size());
   for (std::int64_t k = 0; k < count; ++k) {
     if (!line()) return false;
-    element(which, state, seen);
+    std::array<double, 20> v{};
+    const std::size_t i = element(which, v);
+    if (i >= s.size() || seen[i]) fail(fmt::format("has no place for element {}", i + 1));
+    seen[i] = true;
+    s.position.set(i, {v[1], v[2], v[3]});
+    s.orientation.set(i, {v[4], v[5], v[6], v[7]});
+    s.velocity.set(i, {v[8], v[9], v[10]});
+    s.angular_velocity.set(i, {v[11], v[12], v[13]});
+    force.set(i, {v[14], v[15], v[16]});
+    torque.set(i, {v[17], v[18], v[19]});
   }
   return true;
 }

@@ -8,6 +8,7 @@
 //   lammps.dump, lammps-last.dump, lammps-rows.csv   what LAMMPS writes: states, the last one, energies
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <fstream>
 #include <string>
@@ -49,7 +50,10 @@ std::string tubes_csv(const Topology& topology);
 // Adds the tubes to a topology that has its types. Throws InputError.
 void read_tubes(const LammpsDirectory& dir, Topology& topology);
 
-std::string lammps_data(const std::string& name, const Topology& topology, const State& state);
+// The total forces of the last step go along: they hold the damping at half-step velocities, which a state does not
+// tell, and the first kick needs them.
+std::string lammps_data(const std::string& name, const Topology& topology, const State& state,
+                        const Vec3Array& force, const Vec3Array& torque);
 
 // What the input script needs to know.
 struct LammpsScript {
@@ -78,13 +82,14 @@ std::vector<LammpsRow> read_lammps_rows(const LammpsDirectory& dir);
 class LammpsStates {
  public:
   explicit LammpsStates(const std::string& path);
-  bool next(const Topology& topology, State& state);  // false at the end
+  // False at the end.
+  bool next(const Topology& topology, State& state, Vec3Array& force, Vec3Array& torque);
 
  private:
   bool line();
   [[noreturn]] void fail(const std::string& what) const;
   std::vector<int> columns();
-  void element(const std::vector<int>& columns, State& state, std::vector<bool>& seen);
+  std::size_t element(const std::vector<int>& columns, std::array<double, 20>& values) const;
 
   std::string path_, text_;
   std::ifstream file_;

@@ -57,11 +57,6 @@ class Simulation {
   const ForceEngine& engine() const { return engine_; }
   double time_step() const { return time_step_; }
   double work() const { return work_; }
-  // Goes on with the account of a run that another engine has carried on.
-  void set_account(double work, double dissipated) {
-    work_ = work;
-    dissipated_ = dissipated;
-  }
   double dissipated() const { return dissipated_; }
   double list_seconds() const { return list_seconds_; }
   double integration_seconds() const { return integration_seconds_; }
@@ -74,6 +69,13 @@ class Simulation {
   // bytes do not belong to this scene.
   std::string serialise() const;
   void restore(const std::string& bytes);
+  // Goes on with a run that another engine has carried on: its last total forces and its account of energy.
+  void take_over(const Vec3Array& force, const Vec3Array& torque, double work, double dissipated) {
+    forces_.force = force;
+    forces_.torque = torque;
+    work_ = work;
+    dissipated_ = dissipated;
+  }
 
  private:
   void kick(double dt);
