@@ -216,10 +216,10 @@ std::string lammps_input(const LammpsScript& s) {
       "neigh_modify every 1 delay 0 check yes\n"
       "timestep {4}\n",
       pair_line(s), s.step, s.law == ContactOptions::Law::none ? "" : "pair_coeff * *\n", s.skin, s.time_step);
-  if (!s.long_in_z) text += "balance 1.05 rcb\nfix even all balance 1000 1.05 rcb\n";
   if (s.damped) text += "fix damping all mdem/damp\n";
   if (s.driven) text += "fix grips all mdem/grip\n";
   text += fmt::format("fix motion all mdem/{}\n", s.relax ? "relax" : "nve");
+  if (!s.long_in_z) text += "balance 1.05 rcb\nfix even all balance 1000 1.05 rcb\n";
   text += row_variables();
   text += fmt::format(
       "fix rows all print ${{every}} \"{0}\" ${{open}} ${{dir}}/lammps-rows.csv screen no title \"{1}\"\n"
@@ -234,6 +234,7 @@ std::string lammps_input(const LammpsScript& s) {
       "run ${{steps}}\n"
       "write_dump all custom ${{dir}}/lammps-last.dump id x y z d2_quat[1] d2_quat[2] d2_quat[3] d2_quat[4] &\n"
       "  vx vy vz omegax omegay omegaz fx fy fz tqx tqy tqz modify format float %.17g\n"
+      "unfix rows\n"
       "print \"{0}\" append ${{dir}}/lammps-rows.csv screen no\n",
       "${step},${time},${stretch},${shear},${bend},${twist},${vdw},${kinetic},${work},${dissipated}", row_names);
   return text;
