@@ -66,6 +66,8 @@ std::int64_t steps_between(double interval, double duration, double parts, doubl
   return std::max<std::int64_t>(1, std::llround((interval > 0 ? interval : duration / parts) / dt));
 }
 
+constexpr std::int64_t relax_every = 1000;  // steps
+
 LammpsScript script_of(const Scene& scene, const Prepared& p, const Simulation& s) {
   const Interaction& in = p.interaction;
   LammpsScript script;
@@ -85,7 +87,7 @@ LammpsScript script_of(const Scene& scene, const Prepared& p, const Simulation& 
   script.step = s.state().step;
   const double dt = s.time_step(), span = p.duration > 0 ? p.duration : 1000 * dt;
   script.steps = script.relax ? scene.run.max_steps : std::llround(p.duration / dt) - s.state().step;
-  script.every = steps_between(scene.run.frames_every, span, 40, dt);
+  script.every = script.relax ? relax_every : steps_between(scene.run.frames_every, span, 40, dt);
   return script;
 }
 
@@ -151,6 +153,13 @@ class Import {
         reached_(simulation_at(dir_, scene_, prepared_, checkpoint_).state().step) {}
 
   int go() {
+    const LammpsStart began = read_start(files_);
+    if (began.time_step != prepared_.time_step)
+      throw InputError({files_.start(), 0, "time_step_ps"}, "is not that of the scene",
+                       "has scene.toml been changed? Export the run again");
+    if (!fs::exists(files_.rows()) || !fs::exists(files_.states()))
+      throw InputError({files_.path, 0, ""}, "holds nothing that LAMMPS has done",
+                       "run in.rope with lmp-ropewalk first, as README.txt says");
     for (const LammpsRow& row : read_lammps_rows(files_)) rows_[static_cast<std::int64_t>(row.step)] = row;
     log_ = read_file(dir_.log()).substr(0, checkpoint_.log_bytes);
     frames_ = read_file(dir_.frames()).substr(0, checkpoint_.frame_bytes);

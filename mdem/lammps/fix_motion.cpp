@@ -48,7 +48,7 @@ FixMotion::FixMotion(LMP::LAMMPS* lmp, int count, char** words) : Fix(lmp, count
   }
 }
 
-int FixMotion::setmask() { return PRE_FORCE | POST_NEIGHBOR; }
+int FixMotion::setmask() { return PRE_NEIGHBOR | POST_NEIGHBOR | PRE_FORCE; }
 
 void FixMotion::init() {
   check_atoms(lmp, style);
@@ -69,7 +69,7 @@ void FixMotion::check_elements() {
   refuse(lmp,
          "step " + std::to_string(update->ntimestep) + ": " + std::to_string(all) + " of " +
              std::to_string(model_->topology.elements()) + " elements are left",
-         "go on from the last restart file, with boundary s s s and a gentler load");
+         "go on from the last restart file, with boundary m m m and a gentler load");
 }
 
 void FixMotion::check_masses() {
@@ -81,8 +81,8 @@ void FixMotion::check_masses() {
   }
 }
 
-void FixMotion::setup_pre_force(int vflag) {
-  check_masses();
+// Before LAMMPS looks for the far ends of bonds among the ghosts.
+void FixMotion::setup_pre_neighbor() {
   const double reach = ghost_reach(model_->topology, model_->interaction, neighbor->skin);
   const double has = *std::min_element(comm->cutghost, comm->cutghost + 3);
   if (has < reach * (1 - 1e-12))
@@ -90,6 +90,10 @@ void FixMotion::setup_pre_force(int vflag) {
            "ghosts reach " + std::to_string(has) + " nm and must reach " + std::to_string(reach) +
                " nm for contacts and bonds across ranks",
            "write: comm_modify mode single vel yes cutoff " + std::to_string(reach + 1e-3));
+}
+
+void FixMotion::setup_pre_force(int vflag) {
+  check_masses();
   pre_force(vflag);
 }
 

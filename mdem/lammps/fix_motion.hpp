@@ -17,6 +17,7 @@ class FixMotion : public LMP::Fix {
   FixMotion(LMP::LAMMPS* lmp, int count, char** words);
   int setmask() override;
   void init() override;
+  void setup_pre_neighbor() override;
   void setup_post_neighbor() override { check_elements(); }
   void post_neighbor() override { check_elements(); }
   void setup_pre_force(int vflag) override;

@@ -45,9 +45,9 @@ void check_boundary(LMP::LAMMPS* lmp) {
   for (int axis = 0; axis < 3; ++axis)
     for (int side = 0; side < 2; ++side) {
       const int kind = lmp->domain->boundary[axis][side];
-      if (kind == 0) refuse(lmp, "the box is periodic, and ropes are free", "write: boundary s s s");
+      if (kind == 0) refuse(lmp, "the box is periodic, and ropes are free", "write: boundary m m m");
       if (kind == 1)
-        refuse(lmp, "the box is fixed, and elements that leave it would be lost", "write: boundary s s s");
+        refuse(lmp, "the box is fixed, and elements that leave it would be lost", "write: boundary m m m");
     }
 }
 

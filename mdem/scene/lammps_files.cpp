@@ -121,7 +121,7 @@ void read_tubes(const LammpsDirectory& dir, Topology& topology) {
 
 std::string lammps_data(const std::string& name, const Topology& topology, const State& s, const Vec3Array& force,
                         const Vec3Array& torque) {
-  // The box is fitted to the elements by LAMMPS; here it only has to hold them.
+  // LAMMPS lets the box grow with the elements, never below this one, which a single straight tube needs.
   const Box box = box_of(s, 1.0);
   std::string text = fmt::format(
       "{}: elements of nanotubes in nm, eV and ps, written by ropewalk\n\n{} atoms\n{} bonds\n{} atom types\n"
@@ -189,7 +189,7 @@ std::string lammps_input(const LammpsScript& s) {
       "variable every index {}\n"
       "units lj\n"
       "atom_style hybrid sphere bond\n"
-      "boundary s s s\n"
+      "boundary m m m\n"
       "newton on\n"
       "special_bonds lj/coul {} {} {}\n"
       "comm_modify mode single vel yes cutoff {}\n",
@@ -209,13 +209,13 @@ std::string lammps_input(const LammpsScript& s) {
       "  \"variable open index append\" &\n"
       "  \"variable grow index yes\"\n"
       "{0}\n"
-      "{2}"
+      "pair_coeff * *\n"
       "bond_style mdem/vbond ${{dir}}\n"
       "bond_coeff *\n"
-      "neighbor {3} bin\n"
+      "neighbor {2} bin\n"
       "neigh_modify every 1 delay 0 check yes\n"
-      "timestep {4}\n",
-      pair_line(s), s.step, s.law == ContactOptions::Law::none ? "" : "pair_coeff * *\n", s.skin, s.time_step);
+      "timestep {3}\n",
+      pair_line(s), s.step, s.skin, s.time_step);
   if (s.damped) text += "fix damping all mdem/damp\n";
   if (s.driven) text += "fix grips all mdem/grip\n";
   text += fmt::format("fix motion all mdem/{}\n", s.relax ? "relax" : "nve");
@@ -242,8 +242,10 @@ std::string lammps_input(const LammpsScript& s) {
 
 std::vector<LammpsRow> read_lammps_rows(const LammpsDirectory& dir) {
   std::vector<LammpsRow> rows;
+  std::string title;
   for_each_line(read_file(dir.rows()), [&](int number, std::string_view line) {
-    if (number == 1) return;  // the title
+    if (number == 1) title = line;
+    if (line == title) return;  // a restarted run writes it again
     LammpsRow r;
     for (double* value :
          {&r.step, &r.time, &r.stretch, &r.shear, &r.bend, &r.twist, &r.vdw, &r.kinetic, &r.work, &r.dissipated})
@@ -256,8 +258,7 @@ std::vector<LammpsRow> read_lammps_rows(const LammpsDirectory& dir) {
 }
 
 LammpsStates::LammpsStates(const std::string& path) : path_(path), file_(path) {
-  if (!file_)
-    throw InputError({path, 0, ""}, "cannot be opened", "run in.rope with lmp-ropewalk first, as README.txt says");
+  if (!file_) throw InputError({path, 0, ""}, "cannot be opened", "check the name");
 }
 
 bool LammpsStates::line() {

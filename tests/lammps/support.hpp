@@ -16,17 +16,19 @@ namespace ropewalk::test {
 
 class Lammps : public Cli {
  protected:
-  // lmp-ropewalk in a directory of an export. `program`: another one.
+  // lmp-ropewalk in a directory of an export; 0 ranks: without mpirun. `program`: another one.
   Outcome lmp(int ranks, const std::string& folder, const std::string& arguments = "-in in.rope",
               const std::string& program = ROPEWALK_LMP) const {
     // Many tests at once share few cores: ranks that wait must let others work, and none is bound to a core.
+    const std::string environment =
+        "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMP_NUM_THREADS=1 ASAN_OPTIONS=detect_leaks=0 ";
     const std::string mpirun =
-        "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMP_NUM_THREADS=1 ASAN_OPTIONS=detect_leaks=0 "
-        "mpirun --oversubscribe --bind-to none --mca mpi_yield_when_idle 1 --mca btl_base_warn_component_unused 0 "
+        "mpirun --oversubscribe --bind-to none --mca mpi_yield_when_idle 1 "
         "--mca btl_vader_single_copy_mechanism none -np " +
         std::to_string(ranks);
-    const std::string command = "cd '" + (dir / folder).string() + "' && " + mpirun + " '" + program + "' " +
-                                arguments + " > stdout.txt 2> stderr.txt < /dev/null";
+    const std::string command = "cd '" + (dir / folder).string() + "' && " + environment +
+                                (ranks > 0 ? mpirun : "") + " '" + program + "' " + arguments +
+                                " > stdout.txt 2> stderr.txt < /dev/null";
     const int status = std::system(command.c_str());
     Outcome o;
     o.code = WIFEXITED(status) ? WEXITSTATUS(status) : 1000;
