@@ -1,5 +1,6 @@
 #include "lammps/pair_mdem.hpp"
 
+#include "lammps/segments.hpp"
 #include "memory.h"
 
 namespace ropewalk::lammps {
@@ -62,11 +63,20 @@ double PairMdem::init_one(int, int) { return model_->interaction.cutoff(); }
 
 namespace {
 
-PairForce contact_force(const Topology& topology, const Interaction& in, int i, int j, const Vector3& separation,
-                        const Vector3& n_i, const Vector3& n_j) {
-  if (in.paper && in.legacy_torque) return in.paper->legacy_torque(separation, n_i, n_j);
-  return with_law(topology, in, i, j,
-                  [&](const auto& law) { return law.energy_and_gradient(separation, n_i, n_j); });
+bool reaches(const PaperContact&, const Vector3&, const Vector3&, const Vector3&) { return true; }
+bool reaches(const LineContact& law, const Vector3& separation, const Vector3& n_i, const Vector3& n_j) {
+  const double reach = law.density.cutoff();
+  return squared_segment_distance(separation, n_i, n_j, 0.5 * law.length_i, 0.5 * law.length_j) < reach * reach;
+}
+
+// False where the law is zero.
+bool contact_force(const Topology& topology, const Interaction& in, int i, int j, const Vector3& separation,
+                   const Vector3& n_i, const Vector3& n_j, PairForce& out) {
+  return with_law(topology, in, i, j, [&](const auto& law) {
+    if (!reaches(law, separation, n_i, n_j)) return false;
+    out = law.energy_and_gradient(separation, n_i, n_j);
+    return true;
+  });
 }
 
 }  // namespace
@@ -74,9 +84,15 @@ PairForce contact_force(const Topology& topology, const Interaction& in, int i, 
 void PairMdem::contact(int i, int j) {
   const Vector3 separation = vector(atom->x[j]) - vector(atom->x[i]);
   if (!(separation.squaredNorm() < cutsq[1][1])) return;
-  const PairForce f =
-      contact_force(model_->topology, model_->interaction, element_of(*atom, i), element_of(*atom, j), separation,
-                    axis_[static_cast<std::size_t>(i)], axis_[static_cast<std::size_t>(j)]);
+  const Vector3 &n_i = axis_[static_cast<std::size_t>(i)], &n_j = axis_[static_cast<std::size_t>(j)];
+  const Interaction& in = model_->interaction;
+  PairForce f;
+  if (in.paper && in.legacy_torque) {
+    f = in.paper->legacy_torque(separation, n_i, n_j);
+  } else if (!contact_force(model_->topology, in, element_of(*atom, i), element_of(*atom, j), separation, n_i, n_j,
+                            f)) {
+    return;
+  }
   energy_ += f.energy;
   add(atom->f[i], -f.force_j);
   add(atom->f[j], f.force_j);
