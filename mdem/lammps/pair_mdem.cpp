@@ -65,7 +65,7 @@ namespace {
 
 bool reaches(const PaperContact&, const Vector3&, const Vector3&, const Vector3&) { return true; }
 bool reaches(const LineContact& law, const Vector3& separation, const Vector3& n_i, const Vector3& n_j) {
-  const double reach = law.density.cutoff();
+  const double reach = law.density.cutoff() + 1e-6;  // nm, for the rounding of the distance
   return squared_segment_distance(separation, n_i, n_j, 0.5 * law.length_i, 0.5 * law.length_j) < reach * reach;
 }
 

@@ -25,7 +25,7 @@ TEST(Segments, DistanceIsTheSmallest) {
       for (int l = 0; l <= grid; ++l)
         smallest = std::fmin(
             smallest, (s + (2.0 * l / grid - 1) * half_j * n_j - (2.0 * k / grid - 1) * half_i * n_i).norm());
-    EXPECT_LE(found, smallest + 1e-9) << sample;
+    EXPECT_LE(found, smallest + 1e-8) << sample;
     EXPECT_GE(found, smallest - 0.02) << sample;
   }
 }
