@@ -184,7 +184,7 @@ std::string lammps_input(const LammpsScript& s) {
       "# {}. Run with lmp-ropewalk. Units are nm, ps and eV, in which LAMMPS's \"lj\" has all factors 1.\n"
       "# On the command line: -var steps N, -var restart FILE (to go on from a restart file).\n"
       "variable dir index .\n"
-      "variable restart index none\n"
+      "variable again equal is_defined(variable,restart)\n"
       "variable steps index {}\n"
       "variable every index {}\n"
       "units lj\n"
@@ -197,7 +197,7 @@ std::string lammps_input(const LammpsScript& s) {
   text += s.long_in_z ? "processors 1 1 *  # ropes lie along z: every cut is across them\n" : "comm_style tiled\n";
   text += fmt::format(
       "{0}\n"
-      "if \"${{restart}} == none\" then &\n"
+      "if \"${{again}} == 0\" then &\n"
       "  \"fix elements all property/atom d2_quat 4 d2_carried 6 ghost yes\" &\n"
       "  \"read_data ${{dir}}/rope.data fix elements NULL Elements\" &\n"
       "  \"reset_timestep {1}\" &\n"

@@ -105,10 +105,10 @@ TEST_F(LammpsRun, RestartFilesGoOnOnAnyNumberOfRanks) {
   const Left whole = left_by(dir / "out", topology);
   const LammpsRow row = read_lammps_rows(files).back();
   ASSERT_EQ(whole.state.step, 120);
-  fs::copy_file(dir / "out/rope.restart.a", dir / "out/middle");  // a is step 60, b is step 120
+  fs::copy_file(dir / "out/rope.restart.a", dir / "out/middle.restart");  // a is step 60, b is step 120
   for (const int ranks : {1, 2, 4}) {
     SCOPED_TRACE(ranks);
-    const Outcome o = lmp(ranks, "out", "-in in.rope -var steps 60 -var every 60 -var restart middle");
+    const Outcome o = lmp(ranks, "out", "-in in.rope -var steps 60 -var every 60 -var restart ./middle.restart");
     ASSERT_EQ(o.code, 0) << o.out << o.err;
     const Left left = left_by(dir / "out", topology);
     ASSERT_EQ(left.state.step, 120);
