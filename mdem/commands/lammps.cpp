@@ -123,6 +123,8 @@ int export_command(const ExportArguments& a) {
     const RunDirectory from{a.scene};
     refuse_what_lammps_lacks(read_run_scene(from));
     read_checkpoint(from);
+    if (fs::exists(to.path) && fs::equivalent(from.path, to.path))
+      throw InputError({to.path, 0, "--lammps"}, "is the run itself", "choose another directory");
     create_run_directory(to, a.force);
     copy_run(from, to);
   } else {

@@ -28,8 +28,9 @@ struct LammpsModel {
   bool driven() const {
     return !(drive.loads.empty() && drive.fixed.empty() && drive.turned.empty() && drive.twist.empty());
   }
+  // No time passes in a relaxation.
   double time_at(std::int64_t step) const {
-    return start.time + static_cast<double>(step - start.step) * start.time_step;
+    return relax ? start.time : start.time + static_cast<double>(step - start.step) * start.time_step;
   }
 };
 

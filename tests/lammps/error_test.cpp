@@ -126,6 +126,8 @@ TEST_F(LammpsErrors, ExportAndImportRefuse) {
   scene_with_everything();
   expect("export scene.toml --lammps out", "is not empty");
   expect("import out", "run in.rope with lmp-ropewalk first");
+  expect("export out --force --lammps ./out", "is the run itself");
+  EXPECT_TRUE(fs::exists(dir / "out/checkpoint.bin"));
   spit(dir / "out/lammps.json", "{");
   expect("import out", "lammps");
 }
