@@ -7,7 +7,11 @@
 namespace ropewalk::test {
 namespace {
 
-std::string rope(const std::string& tables, const std::string& run = "duration_ps = 100\n") {
+// In double precision, as LAMMPS has it.
+std::string rope(std::string tables, const std::string& run = "duration_ps = 100\n") {
+  const std::string title = "[contact]\n", precision = "precision = \"double\"\n";
+  const std::size_t at = tables.find(title);
+  tables = at == std::string::npos ? title + precision + tables : tables.insert(at + title.size(), precision);
   return "format = \"ropewalk-scene-1\"\nname = \"rope\"\nparameters = \"cnt-10-10-paper\"\n"
          "[rope]\ntubes = 7\nlength_nm = 16.3\nperturbation_nm = 0.01\n" +
          tables + "[run]\n" + run;

@@ -43,7 +43,8 @@ inline std::vector<Curve> unlike_tubes() {
 
 inline const std::vector<FiveStates>& five_states() {
   static const std::vector<FiveStates> states = {
-      {"parallel", "parameters = \"cnt-10-10-paper\"\n[contact]\nlaw = \"paper\"\n", parallel_tubes()},
+      {"parallel", "parameters = \"cnt-10-10-paper\"\n[contact]\nlaw = \"paper\"\nprecision = \"double\"\n",
+       parallel_tubes()},
       {"crossed",
        "parameters = \"cnt-10-10-tersoff\"\nelement_length_nm = 1.356\n[contact]\nlaw = \"line\"\nprecision = "
        "\"double\"\n",
@@ -57,7 +58,8 @@ inline const std::vector<FiveStates>& five_states() {
        "1]\nelement_length_nm = 1.356\n[contact]\nlaw = \"line\"\nprecision = \"double\"\n",
        unlike_tubes()},
       {"coil",
-       "parameters = \"cnt-10-10-paper\"\n[contact]\nlaw = \"paper\"\nexclude_along_tube_elements = 2\n",
+       "parameters = \"cnt-10-10-paper\"\n[contact]\nlaw = \"paper\"\nprecision = "
+       "\"double\"\nexclude_along_tube_elements = 2\n",
        {helix(4.0, 1.8, 60, a)}},
   };
   return states;
