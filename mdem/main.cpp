@@ -34,6 +34,8 @@ struct Verbs {
   EnergyArguments energy;
   BenchArguments bench;
   ReportArguments report;
+  ExportArguments to_lammps;
+  ImportArguments from_lammps;
   std::string check_scene;
   int code = 0;
 };
@@ -113,6 +115,23 @@ void add_energy(CLI::App& app, Verbs& v) {
   c->callback([&v] { v.code = energy_command(v.energy); });
 }
 
+void add_export(CLI::App& app, Verbs& v) {
+  CLI::App* c =
+      app.add_subcommand("export", "Write a scene, or a run that stands somewhere, for lmp-ropewalk (MPI)");
+  c->add_option("scene", v.to_lammps.scene, "Scene file (TOML), or the directory of a run")->required();
+  c->add_option("--lammps", v.to_lammps.lammps, "Directory to make: data, input and a README that says how to run")
+      ->required();
+  c->add_flag("--force", v.to_lammps.force, "Replace an earlier run or export in it");
+  c->callback([&v] { v.code = export_command(v.to_lammps); });
+}
+
+void add_import(CLI::App& app, Verbs& v) {
+  CLI::App* c =
+      app.add_subcommand("import", "Take what LAMMPS has done into the run, to observe, report or resume");
+  c->add_option("dir", v.from_lammps.dir, "Directory of the export, in which lmp-ropewalk has run")->required();
+  c->callback([&v] { v.code = import_command(v.from_lammps); });
+}
+
 void add_bench(CLI::App& app, Verbs& v) {
   CLI::App* c = app.add_subcommand("bench", "Time the steps of a scene");
   c->add_option("scene", v.bench.scene, "Scene file (TOML), or a name of --list");
@@ -143,6 +162,8 @@ int main(int argc, char** argv) {
   add_resume(app, verbs);
   add_observe(app, verbs);
   add_report(app, verbs);
+  add_export(app, verbs);
+  add_import(app, verbs);
   // Handed over before anything is parsed; named here for --help.
   app.add_subcommand("calibrate", "Derive a parameter set for any (n,m) from atomistic data");
   app.add_subcommand("validate", "Hold the model against theory, atoms and other codes");

@@ -16,6 +16,8 @@ struct RunArguments {
   bool quiet = false;
 };
 int run_command(const RunArguments& arguments);
+// Only makes the directory, with the state at time zero as its checkpoint.
+void begin_run(const RunArguments& arguments);
 
 struct ResumeArguments {
   std::string dir;
@@ -70,6 +72,18 @@ struct BenchArguments {
   bool json = false;
 };
 int bench_command(const BenchArguments& arguments);
+
+struct ExportArguments {
+  std::string scene;   // a file, or the directory of a run
+  std::string lammps;  // directory to make
+  bool force = false;
+};
+int export_command(const ExportArguments& arguments);
+
+struct ImportArguments {
+  std::string dir;  // that of the export, after LAMMPS has run in it
+};
+int import_command(const ImportArguments& arguments);
 
 void use_threads(int threads);
 

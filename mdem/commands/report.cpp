@@ -11,6 +11,7 @@
 #include "io/files.hpp"
 #include "io/frames.hpp"
 #include "model/error.hpp"
+#include "scene/resolve.hpp"
 
 namespace ropewalk {
 namespace {

@@ -113,6 +113,12 @@ class Run {
     open(c.log_bytes, c.frame_bytes);
   }
 
+  // For somebody else to go on with.
+  void leave() {
+    save();
+    write_manifest("interrupted", "not yet run");
+  }
+
   int go() {
     std::signal(SIGINT, on_signal);
     std::signal(SIGTERM, on_signal);
@@ -309,8 +315,9 @@ void use_threads(int threads) {
   if (threads > 0) omp_set_num_threads(threads);
 }
 
-int run_command(const RunArguments& a) {
-  use_threads(a.threads);
+namespace {
+
+Run new_run(const RunArguments& a) {
   const RunDirectory dir{a.out};
   Scene scene = read_scene(a.scene);
   Run run(dir, scene, a.quiet);  // everything that can be wrong is found before a file is touched
@@ -323,8 +330,17 @@ int run_command(const RunArguments& a) {
   for (const std::string& warning : warnings_of(scene)) fmt::print(stderr, "ropewalk: note: {}\n", warning);
   if (a.steps >= 0) run.stop_at(a.steps);
   run.begin();
-  return run.go();
+  return run;
 }
+
+}  // namespace
+
+int run_command(const RunArguments& a) {
+  use_threads(a.threads);
+  return new_run(a).go();
+}
+
+void begin_run(const RunArguments& a) { new_run(a).leave(); }
 
 int resume_command(const ResumeArguments& a) {
   use_threads(a.threads);

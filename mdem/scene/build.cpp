@@ -18,8 +18,6 @@ constexpr double graphite_gap = 0.335;   // nm, between the walls of tubes for w
 constexpr double viscosity_reach = 1.5;  // spacings
 constexpr double right_angle = 0.5 * units::pi;
 
-long hexagonal_number(long shells) { return 1 + 3 * shells * (shells + 1); }
-
 // Between two points that bracket a minimum.
 template <class F>
 double golden_section(F f, double a, double b, double tolerance) {
@@ -79,15 +77,6 @@ double spacing_of(const Scene& scene, double element_length) {
       break;
   }
   return graphite_spacing(scene);
-}
-
-Topology empty_topology(const Scene& scene) {
-  Topology t;
-  t.types.clear();
-  for (const ParameterSet& set : scene.sets)
-    t.types.push_back({scene.element_length, set.radius, set.element_mass(scene.element_length),
-                       set.element_inertia(scene.element_length), set.bond});
-  return t;
 }
 
 // Straight tubes along z, centred on the origin.
@@ -152,34 +141,6 @@ void check_state(const Scene& scene, const BuiltScene& built) {
 
 }  // namespace
 
-std::pair<int, int> nearest_hexagonal(int tubes) {
-  long shells = 0;
-  while (hexagonal_number(shells + 1) <= tubes) ++shells;
-  const long below = hexagonal_number(shells);
-  return {static_cast<int>(below), static_cast<int>(below == tubes ? below : hexagonal_number(shells + 1))};
-}
-
-std::vector<std::pair<double, double>> hexagonal_lattice(int tubes, double spacing) {
-  const double h = 0.5 * std::sqrt(3.0);
-  // Unit steps, at 0, 60, ..., 300 degrees.
-  const std::pair<double, double> step[6] = {{1, 0}, {0.5, h}, {-0.5, h}, {-1, 0}, {-0.5, -h}, {0.5, -h}};
-  std::vector<std::pair<double, double>> places = {{0.0, 0.0}};
-  for (int shell = 1; static_cast<int>(places.size()) < tubes; ++shell)
-    for (int side = 0; side < 6; ++side)
-      for (int k = 0; k < shell; ++k) {
-        // From the corner of this side towards the next.
-        const auto& corner = step[side];
-        const auto& along = step[(side + 2) % 6];
-        places.emplace_back(spacing * (shell * corner.first + k * along.first),
-                            spacing * (shell * corner.second + k * along.second));
-      }
-  return places;
-}
-
-int whole_elements(double length, double element_length) {
-  return static_cast<int>(std::lround(length / element_length));
-}
-
 double pair_spacing(const PaperContact& contact, double element_length) {
   return lowest(contact, "rope.spacing_nm",
                 [&](double spacing) { return paper_parallel_energy(contact, element_length, spacing); });
@@ -202,32 +163,6 @@ double crossed_spacing(const Scene& scene) {
       break;
   }
   return graphite_spacing(scene);
-}
-
-std::vector<LineContact> line_contacts(const Scene& scene) {
-  const std::size_t types = scene.sets.size();
-  std::vector<LineContact> pairs;
-  std::vector<int> nodes(types, 1);  // of each type: what its most demanding partner needs
-  for (std::size_t a = 0; a < types; ++a)
-    for (std::size_t b = 0; b < types; ++b) {
-      const ParameterSet &i = scene.sets[a], &j = scene.sets[b];
-      LineContact pair;
-      pair.density =
-          a == b ? i.line->density
-                 : i.line->universal.density(i.radius, i.line->surface_density, j.radius, j.line->surface_density);
-      const int needed =
-          line_nodes(scene.element_length, line_parallel_well(pair.density).distance, pair.density.contact);
-      nodes[a] = std::max(nodes[a], scene.contact.nodes > 0 ? scene.contact.nodes : needed);
-      pairs.push_back(pair);
-    }
-  const SparseNodes sparse =
-      scene.contact.all_nodes ? SparseNodes{} : sparse_nodes(*std::max_element(nodes.begin(), nodes.end()));
-  for (std::size_t a = 0; a < types; ++a)
-    for (std::size_t b = 0; b < types; ++b) {
-      LineContact& pair = pairs[a * types + b];
-      pair = {pair.density, scene.element_length, scene.element_length, nodes[a], nodes[b], sparse, {}, {}};
-    }
-  return pairs;
 }
 
 BuiltScene build(Scene& scene) {

@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "scene/resolve.hpp"
 #include "scene/scene.hpp"
 #include "sim/state.hpp"
 
@@ -21,9 +22,6 @@ BuiltScene build(Scene& scene);
 
 // The distance of two parallel rows (nm) at which their energy is lowest.
 double pair_spacing(const PaperContact& contact, double element_length);
-
-// The `line` law between all pairs of the scene's tube types, i, j at i * types + j.
-std::vector<LineContact> line_contacts(const Scene& scene);
 
 // The largest hexagonal number (1, 7, 19, ...) that is not above `tubes`, and the smallest that is not below.
 std::pair<int, int> nearest_hexagonal(int tubes);

@@ -9,75 +9,6 @@
 namespace ropewalk {
 namespace {
 
-std::vector<int> selected_tubes(const Scene& scene, const Selection& on, const Topology& topology) {
-  std::vector<int> tubes;
-  if (on.all_tubes) {
-    for (int t = 0; t < topology.tubes(); ++t) tubes.push_back(t);
-    return tubes;
-  }
-  for (int t : on.tubes) {
-    if (t < 0 || t >= topology.tubes())
-      throw InputError({scene.path, 0, "load.tubes"}, fmt::format("there is no tube {}", t),
-                       fmt::format("tubes are numbered from 0 to {}", topology.tubes() - 1));
-    tubes.push_back(t);
-  }
-  return tubes;
-}
-
-std::vector<int> selected_elements(const Scene& scene, const Selection& on, const Topology& topology) {
-  std::vector<int> elements;
-  for (int t : selected_tubes(scene, on, topology)) {
-    const int length = topology.length_of(t);
-    if (on.all_elements) {
-      for (int e = 0; e < length; ++e) elements.push_back(topology.tube_begin[t] + e);
-      continue;
-    }
-    for (int e : on.elements) {
-      const int at = e < 0 ? length + e : e;
-      if (at < 0 || at >= length)
-        throw InputError({scene.path, 0, "load.elements"}, fmt::format("tube {} has no element {}", t, e),
-                         fmt::format("its elements are 0 to {}, or -1 to -{} from the end", length - 1, length));
-      elements.push_back(topology.tube_begin[t] + at);
-    }
-  }
-  return elements;
-}
-
-struct AddLoad {
-  const std::vector<int>& elements;
-  Drive& drive;
-
-  void operator()(const FixLoad& f) const {
-    for (int e : elements) drive.fixed.push_back({e, f.x, f.y, f.z, f.rotation});
-  }
-  void operator()(const ForceLoad& f) const {
-    for (int e : elements) drive.loads.push_back({e, f.force, Vector3::Zero()});
-  }
-  void operator()(const TorqueLoad& f) const {
-    for (int e : elements) drive.loads.push_back({e, Vector3::Zero(), f.torque});
-  }
-  void operator()(const RotateLoad& f) const {
-    drive.turned.push_back({elements, f.rate, f.angle, f.centre, f.axial_free, f.spin_free});
-  }
-};
-
-TwistDrive twist_of(const TwistProtocol& twist, const Topology& topology) {
-  TwistDrive d;
-  for (int t = 0; t < topology.tubes(); ++t) {
-    d.lower.push_back(topology.tube_begin[t]);
-    d.upper.push_back(topology.tube_begin[t + 1] - 1);
-  }
-  d.moment = twist.moment;
-  d.rate = twist.rate;
-  d.per_tube = twist.reading == TwistProtocol::Reading::per_tube;
-  d.tangential = twist.application == TwistProtocol::Application::tangential;
-  d.lateral_free = twist.lateral_free;
-  d.axial_free = twist.axial_free;
-  d.geometric_only = twist.geometric_only;
-  d.increment = twist.increment;
-  return d;
-}
-
 constexpr double most_steps = 1e12;  // years, even of a single tube
 
 double chosen_step(const Scene& scene, const TimeStepLimit& limit) {
@@ -92,29 +23,6 @@ double chosen_step(const Scene& scene, const TimeStepLimit& limit) {
 }
 
 }  // namespace
-
-Interaction interaction_of(const Scene& scene) {
-  Interaction in;
-  if (scene.contact.law == ContactOptions::Law::paper) in.paper = scene.parameters().paper;
-  if (scene.contact.law == ContactOptions::Law::line) in.line = line_contacts(scene);
-  const bool relax = scene.run.mode == RunOptions::Mode::relax;
-  in.precision =
-      scene.contact.precision.value_or(relax ? Interaction::Precision::full : Interaction::Precision::mixed);
-  in.legacy_torque = scene.contact.legacy_torque;
-  in.exclude_along_tube = scene.contact.exclude_along_tube;
-  in.damping = scene.damping;
-  return in;
-}
-
-Drive drive_of(const Scene& scene, const Topology& topology) {
-  Drive drive;
-  for (const Load& load : scene.loads) {
-    const std::vector<int> elements = selected_elements(scene, load.on, topology);
-    std::visit(AddLoad{elements, drive}, load.kind);
-  }
-  if (scene.twist) drive.twist.push_back(twist_of(*scene.twist, topology));
-  return drive;
-}
 
 Prepared prepare(Scene& scene) {
   Prepared out;

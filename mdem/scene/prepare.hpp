@@ -21,9 +21,6 @@ struct Prepared {
 // Throws InputError for a typed time step above the limit and for loads on elements that do not exist.
 Prepared prepare(Scene& scene);
 
-Interaction interaction_of(const Scene& scene);
-Drive drive_of(const Scene& scene, const Topology& topology);
-
 // The simulation of a prepared scene, with the scene's list skin.
 Simulation start(const Scene& scene, const Prepared& prepared);
 

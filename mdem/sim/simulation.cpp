@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "model/error.hpp"
+#include "sim/fire.hpp"
 #include "sim/motion.hpp"
 
 namespace ropewalk {
@@ -231,43 +232,35 @@ double Simulation::largest_force() const {
   return largest;
 }
 
-// FIRE: E. Bitzek et al., Phys. Rev. Lett. 97, 170201 (2006), DOI 10.1103/PhysRevLett.97.170201, in the
-// semi-implicit form of J. Guenole et al., Comput. Mater. Sci. 175, 109584 (2020). Rotations take part with
-// their angular velocities scaled by sqrt(I/m), so that both kinds of motion mix in one power.
+// FIRE. Rotations take part with their angular velocities scaled by sqrt(I/m), so that both kinds of motion mix in
+// one power.
 bool Simulation::relax(double tolerance, long max_steps, const std::function<bool(long)>& progress) {
   // One ratio for all tube types: it only weighs turning against moving.
   const TubeType& lightest = *std::min_element(topology_.types.begin(), topology_.types.end(),
                                                [](const auto& a, const auto& b) { return a.mass < b.mass; });
   const double scale2 = lightest.inertia / lightest.mass;
-  const double dt_max = time_step_, dt_min = 1e-3 * time_step_;  // no step beyond the stability limit
-  double dt = 0.5 * time_step_, mix = 0.1;
-  int downhill = 0;
+  Fire fire(time_step_);
   const std::size_t n = state_.size();
   const auto stop = [&] {
     state_.velocity = Vec3Array(n);
     state_.angular_velocity = Vec3Array(n);
   };
   stop();
-  const double most_move = 0.05 * lightest.radius;
+  const double most_move = Fire::farthest(lightest.radius);
   for (long k = 0; k < max_steps; ++k) {
-    if (k % 10 == 0 && largest_force() < tolerance) return true;
+    if (k % Fire::check_every == 0 && largest_force() < tolerance) return true;
     if (!progress(k)) return false;
     double power = 0, v2 = 0, f2 = 0, fastest2 = 0;
     for (std::size_t i = 0; i < n; ++i)
       power += forces_.force[i].dot(state_.velocity[i]) + forces_.torque[i].dot(state_.angular_velocity[i]);
     if (power > 0) {
-      if (++downhill > 5) {
-        dt = std::min(1.1 * dt, dt_max);
-        mix *= 0.99;
-      }
+      fire.went_down();
     } else {
-      // Back by half a step, as the overshoot was.
-      if (k > 0) drift(-0.5 * dt);
+      if (k > 0) drift(-0.5 * fire.dt);
       stop();
-      downhill = 0;
-      dt = std::max(0.5 * dt, dt_min);
-      mix = 0.1;
+      fire.went_up();
     }
+    const double dt = fire.dt, mix = fire.mix;
     for (int t = 0; t < topology_.tubes(); ++t) {
       const TubeType& type = topology_.type_of(t);
       for (int e = topology_.tube_begin[t]; e < topology_.tube_begin[t + 1]; ++e) {

@@ -71,6 +71,13 @@ class Simulation {
   // bytes do not belong to this scene.
   std::string serialise() const;
   void restore(const std::string& bytes);
+  // Goes on with a run that another engine has carried on: its last total forces and its account of energy.
+  void take_over(const Vec3Array& force, const Vec3Array& torque, double work, double dissipated) {
+    forces_.force = force;
+    forces_.torque = torque;
+    work_ = work;
+    dissipated_ = dissipated;
+  }
 
  private:
   void kick(double dt);

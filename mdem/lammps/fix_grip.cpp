@@ -1,0 +1,172 @@
+#include "lammps/fix_grip.hpp"
+
+#include <algorithm>
+
+namespace ropewalk::lammps {
+namespace {
+
+// Calls f with every list of elements, or single element, of a drive.
+template <class D, class F>
+void visit_elements(D& drive, const F& f) {
+  for (auto& load : drive.loads) f(load.element);
+  for (auto& fixed : drive.fixed) f(fixed.element);
+  for (auto& turned : drive.turned)
+    for (auto& e : turned.elements) f(e);
+  for (auto& twist : drive.twist) {
+    for (auto& e : twist.upper) f(e);
+    for (auto& e : twist.lower) f(e);
+  }
+}
+
+std::vector<int> driven_elements(const Drive& drive) {
+  std::vector<int> out;
+  visit_elements(drive, [&](int e) { out.push_back(e); });
+  std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
+  return out;
+}
+
+// Whether a grip must be known as a whole: for its middle, its mean velocity or the number of its elements.
+bool needs_whole_grip(const Drive& drive) {
+  return std::any_of(drive.twist.begin(), drive.twist.end(), [](const TwistDrive& twist) {
+    return twist.tangential || !twist.per_tube || !twist.lateral_free;
+  });
+}
+
+// The part of a drive that acts on `elements` (sorted), renumbered by their places there.
+Drive part_of(const Drive& drive, const std::vector<int>& elements) {
+  const auto gone = [&](int e) { return !std::binary_search(elements.begin(), elements.end(), e); };
+  const auto keep = [&](std::vector<int>& list) {
+    list.erase(std::remove_if(list.begin(), list.end(), gone), list.end());
+  };
+  Drive out = drive;
+  const auto drop = [&](auto& list) {
+    list.erase(std::remove_if(list.begin(), list.end(), [&](const auto& l) { return gone(l.element); }),
+               list.end());
+  };
+  drop(out.loads);
+  drop(out.fixed);
+  for (Turned& turned : out.turned) keep(turned.elements);
+  for (TwistDrive& twist : out.twist) {
+    keep(twist.upper);
+    keep(twist.lower);
+  }
+  visit_elements(out, [&](int& e) {
+    e = static_cast<int>(std::lower_bound(elements.begin(), elements.end(), e) - elements.begin());
+  });
+  return out;
+}
+
+}  // namespace
+
+FixGrip::FixGrip(LMP::LAMMPS* lmp, int count, char** words) : Fix(lmp, count, words) {
+  if (count != 3 || igroup != 0)
+    refuse(lmp, "fix mdem/grip takes no words: the scene says what it drives", "write: fix grips all mdem/grip");
+  model_ = loaded(lmp, "fix mdem/grip");
+  driven_ = driven_elements(model_->drive);
+  whole_ = needs_whole_grip(model_->drive);
+  if (whole_) use(driven_);
+}
+
+void FixGrip::use(const std::vector<int>& elements) {
+  drive_ = part_of(model_->drive, elements);
+  topology_ = Topology();
+  topology_.types = model_->topology.types;
+  for (const int e : elements) topology_.add_tube(1, model_->topology.tube_type[model_->topology.tube_of(e)]);
+  state_ = State(elements.size());
+  forces_ = Forces(elements.size());
+}
+
+void FixGrip::post_neighbor() {
+  std::vector<std::pair<int, int>> own;  // element, atom
+  for (int i = 0; i < atom->nlocal; ++i) {
+    const int e = element_of(*atom, i);
+    if (std::binary_search(driven_.begin(), driven_.end(), e)) own.emplace_back(e, i);
+  }
+  std::sort(own.begin(), own.end());
+  if (whole_) {
+    atom_.assign(driven_.size(), -1);
+    for (const auto& [e, i] : own)
+      atom_[static_cast<std::size_t>(std::lower_bound(driven_.begin(), driven_.end(), e) - driven_.begin())] = i;
+    return;
+  }
+  std::vector<int> elements;
+  atom_.clear();
+  for (const auto& [e, i] : own) {
+    elements.push_back(e);
+    atom_.push_back(i);
+  }
+  use(elements);
+}
+
+// Every value has one owner and is zero elsewhere, so that the sum is exact.
+void FixGrip::share(std::vector<double>& values) const {
+  MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE, MPI_SUM, world);
+}
+
+void FixGrip::gather() {
+  double** q = orientations(lmp);
+  for (std::size_t k = 0; k < atom_.size(); ++k) {
+    const bool own = owned(k);
+    const auto get = [&](double** of) { return own ? vector(of[atom_[k]]) : Vector3::Zero().eval(); };
+    state_.position.set(k, get(atom->x));
+    state_.velocity.set(k, get(atom->v));
+    state_.angular_velocity.set(k, get(atom->omega));
+    forces_.force.set(k, get(atom->f));
+    forces_.torque.set(k, get(atom->torque));
+    state_.orientation.set(k, own ? quaternion(q[atom_[k]]) : Quaternion(0, 0, 0, 0));
+  }
+  if (!whole_) return;
+  for (Vec3Array* v :
+       {&state_.position, &state_.velocity, &state_.angular_velocity, &forces_.force, &forces_.torque}) {
+    share(v->x);
+    share(v->y);
+    share(v->z);
+  }
+  for (auto* v : {&state_.orientation.w, &state_.orientation.x, &state_.orientation.y, &state_.orientation.z})
+    share(*v);
+}
+
+void FixGrip::post_force(int) {
+  gather();
+  point_loads(drive_, state_, model_->time_at(update->ntimestep), loads_);
+  loads_.erase(std::remove_if(loads_.begin(), loads_.end(),
+                              [&](const PointLoad& l) { return !owned(static_cast<std::size_t>(l.element)); }),
+               loads_.end());
+  for (const PointLoad& load : loads_) {
+    const int i = atom_[static_cast<std::size_t>(load.element)];
+    add(atom->f[i], load.force);
+    add(atom->torque[i], load.torque);
+  }
+}
+
+double FixGrip::own_power() {
+  for (std::size_t k = 0; k < atom_.size(); ++k)
+    if (owned(k)) {
+      state_.velocity.set(k, vector(atom->v[atom_[k]]));
+      state_.angular_velocity.set(k, vector(atom->omega[atom_[k]]));
+    }
+  return load_power(loads_, state_);
+}
+
+double FixGrip::constrain(double time, double kick) {
+  gather();
+  const double work = ropewalk::constrain(topology_, drive_, time, forces_, kick, state_);
+  for (std::size_t k = 0; k < atom_.size(); ++k)
+    if (owned(k)) {
+      store(atom->v[atom_[k]], state_.velocity[k]);
+      store(atom->omega[atom_[k]], state_.angular_velocity[k]);
+    }
+  return whole_ && comm->me > 0 ? 0.0 : work;  // as a whole every rank has found all of it
+}
+
+void FixGrip::free_parts(double time, double** linear, double** angular) {
+  double **v = atom->v, **omega = atom->omega;
+  atom->v = linear;
+  atom->omega = angular;
+  constrain(time, 0.0);
+  atom->v = v;
+  atom->omega = omega;
+}
+
+}  // namespace ropewalk::lammps

@@ -1,0 +1,44 @@
+// fix ID all mdem/grip: all loads and constraints of the scene (twisting moments on the grips, fixed, loaded and
+// turned elements), with the functions of mdem/sim/drive.hpp. They take a State; this fix makes one of the driven
+// elements alone: of those of this rank, or of all of them where a load needs the grip as a whole.
+#pragma once
+
+#include "lammps/shared.hpp"
+
+namespace ropewalk::lammps {
+
+class FixGrip : public LMP::Fix {
+ public:
+  FixGrip(LMP::LAMMPS* lmp, int count, char** words);
+  int setmask() override { return LMP::FixConst::POST_FORCE | LMP::FixConst::POST_NEIGHBOR; }
+  void setup_post_neighbor() override { post_neighbor(); }
+  void post_neighbor() override;
+  void setup(int vflag) override { post_force(vflag); }
+  void post_force(int vflag) override;
+
+  // Work per time of the loads on this rank's elements, eV/ps.
+  double own_power();
+  // Sets constrained velocities after a kick by the present forces; returns this rank's share of the work, eV.
+  double constrain(double time, double kick);
+  // Takes what the constraints hold out of `linear` and `angular`, arrays like v and omega.
+  void free_parts(double time, double** linear, double** angular);
+
+ private:
+  void use(const std::vector<int>& elements);
+  void gather();
+  void share(std::vector<double>& values) const;
+  bool owned(std::size_t k) const { return atom_[k] >= 0; }
+
+  std::shared_ptr<const LammpsModel> model_;
+  std::vector<int> driven_;  // elements, sorted
+  bool whole_ = false;       // the state holds all driven elements on every rank
+  // The small scene: element k of it is atom atom_[k] of this rank, or -1.
+  std::vector<int> atom_;
+  Topology topology_;
+  Drive drive_;
+  State state_;
+  Forces forces_;
+  std::vector<PointLoad> loads_;  // of the last evaluation, on this rank's elements
+};
+
+}  // namespace ropewalk::lammps

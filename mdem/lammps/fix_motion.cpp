@@ -1,0 +1,367 @@
+#include "lammps/fix_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "lammps/bond_vbond.hpp"
+#include "lammps/fix_damp.hpp"
+#include "lammps/fix_grip.hpp"
+#include "lammps/pair_mdem.hpp"
+#include "neighbor.h"
+#include "sim/motion.hpp"
+#include "timer.h"
+
+namespace ropewalk::lammps {
+namespace {
+
+using namespace LMP::FixConst;
+
+// LAMMPS has renamed the call that sends a fix's values to ghosts.
+template <class Comm>
+auto send_to_ghosts(Comm& comm, LMP::Fix* fix, int) -> decltype(comm.forward_comm_fix(fix)) {
+  return comm.forward_comm_fix(fix);
+}
+template <class Comm>
+auto send_to_ghosts(Comm& comm, LMP::Fix* fix, long) -> decltype(comm.forward_comm(fix)) {
+  return comm.forward_comm(fix);
+}
+
+}  // namespace
+
+FixMotion::FixMotion(LMP::LAMMPS* lmp, int count, char** words) : Fix(lmp, count, words) {
+  if (count != 3 || igroup != 0)
+    refuse(lmp, std::string("fix ") + words[2] + " takes no words and moves all elements",
+           std::string("write: fix motion all ") + words[2]);
+  model_ = loaded(lmp, words[2]);
+  time_integrate = 1;
+  restart_global = 1;
+  comm_forward = 4;
+  vector_flag = 1;
+  size_vector = 9;
+  global_freq = 1;
+  extvector = 0;
+  carried_ = model_->start.step;
+  if (comm->me == 0) {
+    work_ = model_->start.work;
+    dissipated_ = model_->start.dissipated;
+  }
+}
+
+int FixMotion::setmask() { return PRE_NEIGHBOR | POST_NEIGHBOR | PRE_FORCE; }
+
+void FixMotion::init() {
+  check_atoms(lmp, style);
+  check_styles(lmp, *model_);
+  orientations(lmp);
+  carried(lmp);
+  if (update->dt != model_->start.time_step)
+    refuse(lmp, "the time step is not that of the export", "take it from in.rope, or export a scene with another");
+  grip_ = find_fix<FixGrip>(lmp);
+  damp_ = find_fix<FixDamp>(lmp);
+}
+
+// LAMMPS counts only when it prints, and may have been told to let elements go.
+void FixMotion::check_elements() {
+  LMP::bigint own = atom->nlocal, all = 0;
+  MPI_Allreduce(&own, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+  if (all == model_->topology.elements()) return;
+  refuse(lmp,
+         "step " + std::to_string(update->ntimestep) + ": " + std::to_string(all) + " of " +
+             std::to_string(model_->topology.elements()) + " elements are left",
+         "go on from the last restart file, with boundary m m m and a gentler load");
+}
+
+void FixMotion::check_masses() {
+  for (int i = 0; i < atom->nlocal; ++i) {
+    const double mass = type_of(*model_, *atom, i).mass;
+    if (!(std::fabs(atom->rmass[i] - mass) < 1e-9 * mass))
+      refuse_one(lmp, "the mass of element " + std::to_string(element_of(*atom, i)) + " is not that of the scene",
+                 "leave masses, diameters and types as the data file has them");
+  }
+}
+
+// Before LAMMPS looks for the far ends of bonds among the ghosts.
+void FixMotion::setup_pre_neighbor() {
+  const double reach = ghost_reach(model_->topology, model_->interaction, neighbor->skin);
+  const double has = *std::min_element(comm->cutghost, comm->cutghost + 3);
+  if (has < reach * (1 - 1e-12))
+    refuse(lmp,
+           "ghosts reach " + std::to_string(has) + " nm and must reach " + std::to_string(reach) +
+               " nm for contacts and bonds across ranks",
+           "write: comm_modify mode single vel yes cutoff " + std::to_string(reach + 1e-3));
+}
+
+void FixMotion::setup_pre_force(int vflag) {
+  check_masses();
+  pre_force(vflag);
+}
+
+// LAMMPS refreshes such properties of ghosts only when it builds lists.
+void FixMotion::pre_force(int) { send_to_ghosts(*comm, this, 0); }
+
+int FixMotion::pack_forward_comm(int count, int* list, double* buffer, int, int*) {
+  double** q = orientations(lmp);
+  for (int k = 0; k < count; ++k) std::copy_n(q[list[k]], 4, buffer + 4 * k);
+  return 4 * count;
+}
+
+void FixMotion::unpack_forward_comm(int count, int first, double* buffer) {
+  double** q = orientations(lmp);
+  for (int k = 0; k < count; ++k) std::copy_n(buffer + 4 * k, 4, q[first + k]);
+}
+
+void FixMotion::move(double dt) {
+  double** q = orientations(lmp);
+  const auto n = static_cast<std::size_t>(atom->nlocal);
+  if (moved_.size() != n) moved_ = State(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    moved_.position.set(i, vector(atom->x[i]));
+    moved_.velocity.set(i, vector(atom->v[i]));
+    moved_.angular_velocity.set(i, vector(atom->omega[i]));
+    moved_.orientation.set(i, quaternion(q[i]));
+  }
+  move_elements(moved_, dt, 0, static_cast<std::ptrdiff_t>(n));
+  for (std::size_t i = 0; i < n; ++i) {
+    store(atom->x[i], moved_.position[i]);
+    const Quaternion turned = moved_.orientation[i];
+    q[i][0] = turned.w();
+    q[i][1] = turned.x();
+    q[i][2] = turned.y();
+    q[i][3] = turned.z();
+  }
+}
+
+double FixMotion::own_kinetic_energy() const {
+  double sum = 0;
+  for (int i = 0; i < atom->nlocal; ++i) {
+    const TubeType& type = type_of(*model_, *atom, i);
+    sum += type.mass * vector(atom->v[i]).squaredNorm() + type.inertia * vector(atom->omega[i]).squaredNorm();
+  }
+  return 0.5 * sum;
+}
+
+std::array<double, 8> FixMotion::energies() const {
+  BondEnergy<double> bonds;
+  if (const auto* style = dynamic_cast<const BondVBond*>(force->bond)) bonds = style->own_energy();
+  const auto* pair = dynamic_cast<const PairMdem*>(force->pair);
+  std::array<double, 8> own = {
+      bonds.stretch,        bonds.shear, bonds.bend, bonds.twist, pair ? pair->own_energy() : 0.0,
+      own_kinetic_energy(), work_,       dissipated_};
+  std::array<double, 8> all{};
+  MPI_Allreduce(own.data(), all.data(), static_cast<int>(own.size()), MPI_DOUBLE, MPI_SUM, world);
+  return all;
+}
+
+// Outputs ask for one number after another, on all ranks.
+double FixMotion::compute_vector(int n) {
+  if (n == 0 || row_step_ != update->ntimestep) row_ = energies();
+  row_step_ = update->ntimestep;
+  return n == 0 ? now() : row_[static_cast<std::size_t>(n - 1)];
+}
+
+namespace {
+struct Account {
+  double work, dissipated;
+  LMP::bigint carried;
+};
+}  // namespace
+
+void FixMotion::write_restart(FILE* file) {
+  const Account account = {sum_over_ranks(lmp, work_), sum_over_ranks(lmp, dissipated_), carried_};
+  if (comm->me > 0) return;
+  const int bytes = sizeof account;
+  std::fwrite(&bytes, sizeof bytes, 1, file);
+  std::fwrite(&account, sizeof account, 1, file);
+}
+
+void FixMotion::restart(char* bytes) {
+  Account account{};
+  std::memcpy(&account, bytes, sizeof account);
+  work_ = comm->me == 0 ? account.work : 0.0;
+  dissipated_ = comm->me == 0 ? account.dissipated : 0.0;
+  carried_ = account.carried;
+}
+
+// --- dynamics -----------------------------------------------------------------------------------------
+
+int FixNve::setmask() { return FixMotion::setmask() | INITIAL_INTEGRATE | FINAL_INTEGRATE; }
+
+// Damping acts on half-step velocities, so that the forces of a step's end do not follow from the state there.
+// Where the last step is at hand, here or in the data or restart file, its forces are taken: a run in parts is then
+// the same as a run in one.
+void FixNve::setup(int) {
+  if (carried_ != update->ntimestep) return;
+  double** last = carried(lmp);
+  for (int i = 0; i < atom->nlocal; ++i) {
+    store(atom->f[i], vector(last[i]));
+    store(atom->torque[i], vector(last[i] + 3));
+  }
+}
+
+// Of one kind of motion; returns what the local damping took out.
+double FixNve::push(double alpha, double TubeType::*inertia, double dt, double** velocity,
+                    double** force_on) const {
+  double removed = 0;
+  for (int i = 0; i < atom->nlocal; ++i) {
+    const double per_force = dt / type_of(*model_, *atom, i).*inertia;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double force = force_on[i][axis], before = velocity[i][axis];
+      const double brake = alpha > 0 ? pfc_local(alpha, force, before) : 0.0;
+      velocity[i][axis] = before + per_force * (force + brake);
+      removed -= 0.5 * dt * brake * (before + velocity[i][axis]);
+    }
+  }
+  return removed;
+}
+
+void FixNve::kick(double dt, double time) {
+  if (grip_) work_ += 0.5 * dt * grip_->own_power();
+  const double alpha = damp_ ? damp_->local() : 0.0;
+  dissipated_ += push(alpha, &TubeType::mass, dt, atom->v, atom->f);
+  dissipated_ += push(alpha, &TubeType::inertia, dt, atom->omega, atom->torque);
+  if (!grip_) return;
+  work_ += grip_->constrain(time, dt);
+  work_ += 0.5 * dt * grip_->own_power();
+}
+
+void FixNve::initial_integrate(int) {
+  kick(0.5 * update->dt, model_->time_at(update->ntimestep - 1));
+  move(update->dt);
+}
+
+void FixNve::check() const {
+  const double dt = update->dt, fastest = 0.25 * model_->topology.largest_radius() / dt;
+  for (int i = 0; i < atom->nlocal; ++i)
+    if (!(vector(atom->v[i]).squaredNorm() < fastest * fastest) ||
+        !(vector(atom->omega[i]).squaredNorm() * dt * dt < 0.25))
+      refuse_one(lmp,
+                 "step " + std::to_string(update->ntimestep) + ", element " + std::to_string(element_of(*atom, i)) +
+                     ": the motion blew up (an element moves a quarter of its radius or turns half a radian in one "
+                     "step)",
+                 "use a smaller time step or a gentler start and load");
+}
+
+void FixNve::final_integrate() {
+  check();
+  if (damp_) dissipated_ -= update->dt * damp_->own_power();
+  double** last = carried(lmp);
+  for (int i = 0; i < atom->nlocal; ++i) {
+    store(last[i], vector(atom->f[i]));
+    store(last[i] + 3, vector(atom->torque[i]));
+  }
+  carried_ = update->ntimestep;
+  kick(0.5 * update->dt, now());
+}
+
+// --- relaxation: Simulation::relax, one force evaluation per step ---------------------------------------
+
+FixRelax::FixRelax(LMP::LAMMPS* lmp, int count, char** words)
+    : FixMotion(lmp, count, words), fire_(model_->start.time_step) {
+  const std::vector<TubeType>& types = model_->topology.types;
+  const TubeType& lightest =
+      *std::min_element(types.begin(), types.end(), [](const auto& a, const auto& b) { return a.mass < b.mass; });
+  radius_ = lightest.radius;
+  scale2_ = lightest.inertia / lightest.mass;
+  scalar_flag = 1;
+  extscalar = 0;
+  nevery = 1;
+}
+
+int FixRelax::setmask() { return FixMotion::setmask() | INITIAL_INTEGRATE | END_OF_STEP; }
+
+void FixRelax::setup(int) {
+  fire_ = Fire(model_->start.time_step);
+  steps_ = 0;
+  stop();
+}
+
+void FixRelax::stop() {
+  for (int i = 0; i < atom->nlocal; ++i) {
+    store(atom->v[i], Vector3::Zero());
+    store(atom->omega[i], Vector3::Zero());
+  }
+}
+
+FixRelax::Sums FixRelax::sums() const {
+  std::array<double, 3> own{};
+  for (int i = 0; i < atom->nlocal; ++i) {
+    const Vector3 v = vector(atom->v[i]), w = vector(atom->omega[i]);
+    const Vector3 f = vector(atom->f[i]), m = vector(atom->torque[i]);
+    own[0] += f.dot(v) + m.dot(w);
+    own[1] += v.squaredNorm() + scale2_ * w.squaredNorm();
+    own[2] += f.squaredNorm() + m.squaredNorm() / scale2_;
+  }
+  std::array<double, 3> all{};
+  MPI_Allreduce(own.data(), all.data(), 3, MPI_DOUBLE, MPI_SUM, world);
+  return {all[0], all[1], all[2]};
+}
+
+void FixRelax::kick() {
+  for (int i = 0; i < atom->nlocal; ++i) {
+    const TubeType& type = type_of(*model_, *atom, i);
+    add(atom->v[i], fire_.dt / type.mass * vector(atom->f[i]));
+    add(atom->omega[i], fire_.dt / type.inertia * vector(atom->torque[i]));
+  }
+}
+
+void FixRelax::turn_to_force(double mix, const Sums& s) {
+  const double turn = s.force2 > 0 ? mix * std::sqrt(s.velocity2 / s.force2) : 0.0;
+  for (int i = 0; i < atom->nlocal; ++i) {
+    store(atom->v[i], (1 - mix) * vector(atom->v[i]) + turn * vector(atom->f[i]));
+    store(atom->omega[i], (1 - mix) * vector(atom->omega[i]) + turn / scale2_ * vector(atom->torque[i]));
+  }
+}
+
+double FixRelax::fastest() const {
+  double own = 0, all = 0;
+  for (int i = 0; i < atom->nlocal; ++i)
+    own = std::max(own, vector(atom->v[i]).squaredNorm() + scale2_ * vector(atom->omega[i]).squaredNorm());
+  MPI_Allreduce(&own, &all, 1, MPI_DOUBLE, MPI_MAX, world);
+  return std::sqrt(all);
+}
+
+void FixRelax::initial_integrate(int) {
+  const double time = model_->time_at(update->ntimestep - 1);
+  if (sums().power > 0) {
+    fire_.went_down();
+  } else {
+    if (steps_ > 0) move(-0.5 * fire_.dt);
+    stop();
+    fire_.went_up();
+  }
+  kick();
+  if (grip_) grip_->constrain(time, 0.0);
+  turn_to_force(fire_.mix, sums());
+  if (grip_) grip_->constrain(time, 0.0);
+  const double speed = fastest();
+  if (!std::isfinite(speed))
+    refuse(lmp, "step " + std::to_string(update->ntimestep) + ": relaxation met a force that is not finite",
+           "start from a state without overlaps");
+  move(speed > 0 ? std::min(fire_.dt, Fire::farthest(radius_) / speed) : fire_.dt);
+  ++steps_;
+}
+
+double FixRelax::largest_force() {
+  const auto n = static_cast<std::size_t>(atom->nlocal);
+  std::vector<double> values(6 * n);
+  std::vector<double*> linear(n + 1), angular(n + 1);
+  for (std::size_t i = 0; i < n; ++i) {
+    linear[i] = &values[6 * i];
+    angular[i] = &values[6 * i + 3];
+    store(linear[i], vector(atom->f[i]));
+    store(angular[i], vector(atom->torque[i]));
+  }
+  if (grip_) grip_->free_parts(now(), linear.data(), angular.data());
+  double own = 0, all = 0;
+  for (std::size_t i = 0; i < n; ++i)
+    own = std::max({own, vector(linear[i]).norm(), vector(angular[i]).norm() / model_->topology.largest_radius()});
+  MPI_Allreduce(&own, &all, 1, MPI_DOUBLE, MPI_MAX, world);
+  return all;
+}
+
+void FixRelax::end_of_step() {
+  if (steps_ % Fire::check_every == 0 && largest_force() < model_->force_tolerance) timer->force_timeout();
+}
+
+}  // namespace ropewalk::lammps

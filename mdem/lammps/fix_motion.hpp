@@ -1,0 +1,91 @@
+// fix ID all mdem/nve: velocity Verlet of mdem/sim/simulation.hpp, turning included.
+// fix ID all mdem/relax: Simulation::relax, step by step; LAMMPS's minimisers leave orientations as they are.
+//
+// Both send orientations to ghosts before the forces are evaluated, check the set-up, and keep the account of
+// energy: f_ID[1..9] = time, stretch, shear, bend, twist, vdw, kinetic, work, dissipated (ps, eV).
+#pragma once
+
+#include <array>
+
+#include "lammps/shared.hpp"
+#include "sim/fire.hpp"
+
+namespace ropewalk::lammps {
+
+class FixMotion : public LMP::Fix {
+ public:
+  FixMotion(LMP::LAMMPS* lmp, int count, char** words);
+  int setmask() override;
+  void init() override;
+  void setup_pre_neighbor() override;
+  void setup_post_neighbor() override { check_elements(); }
+  void post_neighbor() override { check_elements(); }
+  void setup_pre_force(int vflag) override;
+  void pre_force(int vflag) override;
+  double compute_vector(int n) override;
+  void write_restart(FILE* file) override;
+  void restart(char* bytes) override;
+  int pack_forward_comm(int count, int* list, double* buffer, int, int*) override;
+  void unpack_forward_comm(int count, int first, double* buffer) override;
+
+ protected:
+  void move(double dt);  // x += v dt, q <- exp(w dt) q
+  double now() const { return model_->time_at(update->ntimestep); }
+
+  std::shared_ptr<const LammpsModel> model_;
+  FixGrip* grip_ = nullptr;
+  FixDamp* damp_ = nullptr;
+  double work_ = 0, dissipated_ = 0;  // eV, this rank's share
+  LMP::bigint carried_ = 0;           // the step whose forces the elements carry
+
+ private:
+  void check_elements();
+  void check_masses();
+  double own_kinetic_energy() const;
+  std::array<double, 8> energies() const;
+
+  State moved_;  // buffer of move()
+  std::array<double, 8> row_{};
+  LMP::bigint row_step_ = -1;
+};
+
+class FixNve : public FixMotion {
+ public:
+  FixNve(LMP::LAMMPS* lmp, int count, char** words) : FixMotion(lmp, count, words) {}
+  int setmask() override;
+  void setup(int vflag) override;
+  void initial_integrate(int vflag) override;
+  void final_integrate() override;
+
+ private:
+  void kick(double dt, double time);
+  double push(double alpha, double TubeType::*inertia, double dt, double** velocity, double** force) const;
+  void check() const;
+};
+
+class FixRelax : public FixMotion {
+ public:
+  FixRelax(LMP::LAMMPS* lmp, int count, char** words);
+  int setmask() override;
+  void setup(int vflag) override;
+  void initial_integrate(int vflag) override;
+  void end_of_step() override;
+  double compute_scalar() override { return largest_force(); }
+
+ private:
+  struct Sums {
+    double power = 0, velocity2 = 0, force2 = 0;
+  };
+  Sums sums() const;
+  void stop();
+  void kick();
+  void turn_to_force(double mix, const Sums& s);
+  double fastest() const;
+  double largest_force();
+
+  Fire fire_;
+  double radius_ = 0, scale2_ = 0;
+  long steps_ = 0;
+};
+
+}  // namespace ropewalk::lammps

@@ -1,0 +1,49 @@
+#include "lammps/model.hpp"
+
+#include <fmt/format.h>
+
+#include "model/error.hpp"
+#include "scene/build.hpp"
+#include "scene/resolve.hpp"
+#include "scene/scene_toml.hpp"
+
+namespace ropewalk {
+
+LammpsModel load_lammps_model(const std::string& directory) {
+  const LammpsDirectory dir{directory};
+  LammpsModel m;
+  m.directory = directory;
+  m.start = read_start(dir);
+  std::vector<std::string> sets;
+  for (const std::string& name : m.start.parameters) sets.push_back(directory + "/" + name);
+  Scene scene = read_scene(dir.scene(), sets);
+  scene.damping.contact.inner = m.start.viscosity_inner;
+  scene.damping.contact.outer = m.start.viscosity_outer;
+  m.topology = empty_topology(scene);
+  read_tubes(dir, m.topology);
+  m.interaction = interaction_of(scene);
+  m.drive = drive_of(scene, m.topology);
+  m.law = scene.contact.law;
+  m.relax = scene.run.mode == RunOptions::Mode::relax;
+  m.force_tolerance = scene.run.force_tolerance;
+  for (const TwistDrive& twist : m.drive.twist)
+    if (twist.geometric_only)
+      throw InputError({dir.scene(), 0, "twist.geometric_only"}, "is not for LAMMPS",
+                       "run this scene with `ropewalk run`");
+  return m;
+}
+
+double ghost_reach(const Topology& topology, const Interaction& in, double skin) {
+  constexpr double longest_bond = 1.5;  // element lengths: far beyond what the model holds for
+  return std::max(in.cutoff(), longest_bond * topology.longest_element()) + skin;
+}
+
+std::string version_complaint(int built_against, int found) {
+  if (built_against == found) return "";
+  return fmt::format(
+      "this program was built against LAMMPS {} and runs with LAMMPS {}; build it again with the headers of that "
+      "LAMMPS, or let the loader find the other library (LD_LIBRARY_PATH)",
+      built_against, found);
+}
+
+}  // namespace ropewalk

@@ -1,0 +1,46 @@
+// The model that all styles of one LAMMPS share, read from an export of `ropewalk export --lammps`. No header of
+// LAMMPS comes in here.
+#pragma once
+
+#include <string>
+
+#include "scene/lammps_files.hpp"
+#include "scene/scene.hpp"
+#include "sim/drive.hpp"
+#include "sim/interaction.hpp"
+#include "sim/state.hpp"
+
+namespace ropewalk {
+
+struct LammpsModel {
+  std::string directory;
+  LammpsStart start;
+  Topology topology;
+  Interaction interaction;
+  Drive drive;
+  ContactOptions::Law law = ContactOptions::Law::none;
+  bool relax = false;
+  double force_tolerance = 0;  // eV/nm
+
+  bool damped() const {
+    return interaction.damped_contact() || interaction.damping.bond.rate > 0 || interaction.damping.local > 0;
+  }
+  bool driven() const {
+    return !(drive.loads.empty() && drive.fixed.empty() && drive.turned.empty() && drive.twist.empty());
+  }
+  // No time passes in a relaxation.
+  double time_at(std::int64_t step) const {
+    return relax ? start.time : start.time + static_cast<double>(step - start.step) * start.time_step;
+  }
+};
+
+// Throws InputError.
+LammpsModel load_lammps_model(const std::string& directory);
+
+// How far the ghosts of a rank must reach for all forces: contacts within the list's skin, and both ends of a bond.
+double ghost_reach(const Topology& topology, const Interaction& interaction, double skin);
+
+// Says what is wrong with the LAMMPS at hand, or nothing. Versions are dates as numbers: 20210929.
+std::string version_complaint(int built_against, int found);
+
+}  // namespace ropewalk

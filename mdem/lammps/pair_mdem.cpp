@@ -1,0 +1,117 @@
+#include "lammps/pair_mdem.hpp"
+
+#include "lammps/segments.hpp"
+#include "memory.h"
+
+namespace ropewalk::lammps {
+
+PairMdem::PairMdem(LMP::LAMMPS* lmp, ContactOptions::Law law) : Pair(lmp), law_(law) {
+  single_enable = 0;  // the energy depends on more than a distance
+  restartinfo = 0;    // all of it is in the scene
+  one_coeff = 1;
+}
+
+PairMdem::~PairMdem() {
+  if (!allocated) return;
+  memory->destroy(setflag);
+  memory->destroy(cutsq);
+}
+
+void PairMdem::allocate() {
+  const int types = atom->ntypes;
+  memory->create(setflag, types + 1, types + 1, "pair:setflag");
+  memory->create(cutsq, types + 1, types + 1, "pair:cutsq");
+  for (int i = 1; i <= types; ++i)
+    for (int j = 1; j <= types; ++j) setflag[i][j] = 0;
+  allocated = 1;
+}
+
+void PairMdem::settings(int count, char** words) {
+  const std::string name = std::string("pair_style mdem/") + law_name(law_);
+  if (count != 1) refuse(lmp, name + " takes one word", "write: " + name + " DIR, DIR made by ropewalk export");
+  check_atoms(lmp, name.c_str());
+  model_ = load(lmp, words[0]);
+  if (model_->law != law_)
+    refuse(lmp,
+           std::string("the scene's contact is \"") + law_name(model_->law) + "\", not \"" + law_name(law_) + "\"",
+           std::string("write: pair_style mdem/") + law_name(model_->law) + " DIR, or export the scene anew");
+}
+
+void PairMdem::coeff(int count, char**) {
+  if (count != 2) refuse(lmp, "the scene has all coefficients of the contact", "write: pair_coeff * *");
+  if (!allocated) allocate();
+  for (int i = 1; i <= atom->ntypes; ++i)
+    for (int j = i; j <= atom->ntypes; ++j) setflag[i][j] = 1;
+}
+
+void PairMdem::init_style() {
+  check_atoms(lmp, "pair_style mdem");
+  check_styles(lmp, *model_);
+  // LAMMPS may leave neighbours of a chain out of the list, or not; then the model does.
+  for (int bonds = 1; bonds <= 3; ++bonds) {
+    const bool kept = force->special_lj[bonds] != 0;
+    if (!kept && bonds > model_->interaction.exclude_along_tube)
+      refuse(lmp, "special_bonds leaves out elements of a tube that touch in this scene",
+             "write: special_bonds lj/coul 1 1 1");
+    if (kept && force->special_lj[bonds] != 1)
+      refuse(lmp, "special_bonds weakens contact along a tube", "write only 0 or 1 behind special_bonds lj/coul");
+  }
+  Pair::init_style();
+}
+
+double PairMdem::init_one(int, int) { return model_->interaction.cutoff(); }
+
+namespace {
+
+bool reaches(const PaperContact&, const Vector3&, const Vector3&, const Vector3&) { return true; }
+bool reaches(const LineContact& law, const Vector3& separation, const Vector3& n_i, const Vector3& n_j) {
+  const double reach = law.density.cutoff() + 1e-6;  // nm, for the rounding of the distance
+  return squared_segment_distance(separation, n_i, n_j, 0.5 * law.length_i, 0.5 * law.length_j) < reach * reach;
+}
+
+// False where the law is zero.
+bool contact_force(const Topology& topology, const Interaction& in, int i, int j, const Vector3& separation,
+                   const Vector3& n_i, const Vector3& n_j, PairForce& out) {
+  return with_law(topology, in, i, j, [&](const auto& law) {
+    if (!reaches(law, separation, n_i, n_j)) return false;
+    out = law.energy_and_gradient(separation, n_i, n_j);
+    return true;
+  });
+}
+
+}  // namespace
+
+void PairMdem::contact(int i, int j) {
+  const Vector3 separation = vector(atom->x[j]) - vector(atom->x[i]);
+  if (!(separation.squaredNorm() < cutsq[1][1])) return;
+  const Vector3 &n_i = axis_[static_cast<std::size_t>(i)], &n_j = axis_[static_cast<std::size_t>(j)];
+  const Interaction& in = model_->interaction;
+  PairForce f;
+  if (in.paper && in.legacy_torque) {
+    f = in.paper->legacy_torque(separation, n_i, n_j);
+  } else if (!contact_force(model_->topology, in, element_of(*atom, i), element_of(*atom, j), separation, n_i, n_j,
+                            f)) {
+    return;
+  }
+  energy_ += f.energy;
+  add(atom->f[i], -f.force_j);
+  add(atom->f[j], f.force_j);
+  add(atom->torque[i], f.torque_i);
+  add(atom->torque[j], f.torque_j);
+  if (evflag)
+    ev_tally_xyz(i, j, atom->nlocal, 1, f.energy, 0.0, f.force_j.x(), f.force_j.y(), f.force_j.z(), separation.x(),
+                 separation.y(), separation.z());
+}
+
+void PairMdem::compute(int eflag, int vflag) {
+  ev_init(eflag, vflag);
+  energy_ = 0;
+  double** q = orientations(lmp);
+  const int all = atom->nlocal + atom->nghost;
+  axis_.resize(static_cast<std::size_t>(all));
+  for (int i = 0; i < all; ++i) axis_[static_cast<std::size_t>(i)] = axis_of(quaternion(q[i]));
+  for_contacts(lmp, *this, model_->interaction.exclude_along_tube, [&](int i, int j) { contact(i, j); });
+  if (vflag_fdotr) virial_fdotr_compute();
+}
+
+}  // namespace ropewalk::lammps

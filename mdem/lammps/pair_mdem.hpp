@@ -1,0 +1,49 @@
+// pair_style mdem/paper DIR, mdem/line DIR: the contact law of the scene in DIR, as mdem/model has it.
+#pragma once
+
+#include "lammps/shared.hpp"
+#include "neigh_list.h"
+#include "pair.h"
+
+namespace ropewalk::lammps {
+
+class PairMdem : public LMP::Pair {
+ public:
+  PairMdem(LMP::LAMMPS* lmp, ContactOptions::Law law);
+  ~PairMdem() override;
+  void settings(int count, char** words) override;
+  void coeff(int count, char** words) override;
+  void init_style() override;
+  double init_one(int i, int j) override;
+  void compute(int eflag, int vflag) override;
+
+  double own_energy() const { return energy_; }  // eV, of this rank's pairs in the last evaluation
+
+ private:
+  void allocate();
+  void contact(int i, int j);
+
+  ContactOptions::Law law_;
+  std::shared_ptr<const LammpsModel> model_;
+  std::vector<Vector3> axis_;  // of own and ghost elements
+  double energy_ = 0;
+};
+
+// Calls f(i, j) for every pair of the half list of `pair` that interacts, i being the lower element, and both as
+// indices of atoms.
+template <class F>
+void for_contacts(LMP::LAMMPS* lmp, const LMP::Pair& pair, int exclude_along_tube, F f) {
+  const LMP::Atom& atom = *lmp->atom;
+  const LMP::NeighList& list = *pair.list;
+  for (int k = 0; k < list.inum; ++k) {
+    const int a = list.ilist[k];
+    for (int n = 0; n < list.numneigh[a]; ++n) {
+      const int b = list.firstneigh[a][n] & NEIGHMASK;
+      const int i = atom.tag[a] < atom.tag[b] ? a : b, j = i == a ? b : a;
+      if (atom.molecule[i] == atom.molecule[j] && atom.tag[j] - atom.tag[i] <= exclude_along_tube) continue;
+      f(i, j);
+    }
+  }
+}
+
+}  // namespace ropewalk::lammps

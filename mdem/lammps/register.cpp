@@ -1,0 +1,40 @@
+#include "lammps/register.hpp"
+
+#include "force.h"
+#include "lammps/bond_vbond.hpp"
+#include "lammps/fix_damp.hpp"
+#include "lammps/fix_grip.hpp"
+#include "lammps/fix_motion.hpp"
+#include "lammps/pair_mdem.hpp"
+#include "modify.h"
+
+namespace ropewalk::lammps {
+namespace {
+
+template <ContactOptions::Law law>
+LMP::Pair* make_pair(LMP::LAMMPS* lmp) {
+  return new PairMdem(lmp, law);
+}
+LMP::Bond* make_bond(LMP::LAMMPS* lmp) { return new BondVBond(lmp); }
+template <class F>
+LMP::Fix* make_fix(LMP::LAMMPS* lmp, int count, char** words) {
+  return new F(lmp, count, words);
+}
+
+}  // namespace
+
+const PairEntry pair_entries[2] = {{"mdem/paper", make_pair<ContactOptions::Law::paper>},
+                                   {"mdem/line", make_pair<ContactOptions::Law::line>}};
+const BondEntry bond_entries[1] = {{"mdem/vbond", make_bond}};
+const FixEntry fix_entries[4] = {{"mdem/nve", make_fix<FixNve>},
+                                 {"mdem/relax", make_fix<FixRelax>},
+                                 {"mdem/damp", make_fix<FixDamp>},
+                                 {"mdem/grip", make_fix<FixGrip>}};
+
+void register_styles(LMP::LAMMPS* lmp) {
+  for (const PairEntry& e : pair_entries) (*lmp->force->pair_map)[e.name] = e.make;
+  for (const BondEntry& e : bond_entries) (*lmp->force->bond_map)[e.name] = e.make;
+  for (const FixEntry& e : fix_entries) (*lmp->modify->fix_map)[e.name] = e.make;
+}
+
+}  // namespace ropewalk::lammps

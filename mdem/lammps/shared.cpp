@@ -1,0 +1,140 @@
+#include "lammps/shared.hpp"
+
+#include <map>
+
+#include "bond.h"
+#include "domain.h"
+#include "lammps/bond_vbond.hpp"
+#include "lammps/fix_damp.hpp"
+#include "lammps/fix_grip.hpp"
+#include "lammps/fix_motion.hpp"
+#include "lammps/pair_mdem.hpp"
+#include "model/error.hpp"
+
+namespace ropewalk::lammps {
+namespace {
+
+std::map<LMP::LAMMPS*, std::weak_ptr<const LammpsModel>>& models() {
+  static std::map<LMP::LAMMPS*, std::weak_ptr<const LammpsModel>> all;
+  return all;
+}
+
+// Any rank may lack the files: all of them must hear of it, and one says so.
+std::shared_ptr<const LammpsModel> read_on_all_ranks(LMP::LAMMPS* lmp, const std::string& directory) {
+  std::shared_ptr<const LammpsModel> model;
+  std::string trouble;
+  try {
+    model = std::make_shared<LammpsModel>(load_lammps_model(directory));
+  } catch (const std::exception& e) {
+    trouble = e.what();
+  }
+  int rank = 0, ranks = 1;
+  MPI_Comm_rank(lmp->world, &rank);
+  MPI_Comm_size(lmp->world, &ranks);
+  int first = trouble.empty() ? ranks : rank, of_all = ranks;
+  MPI_Allreduce(&first, &of_all, 1, MPI_INT, MPI_MIN, lmp->world);
+  if (of_all == ranks) return model;
+  int length = static_cast<int>(trouble.size());
+  MPI_Bcast(&length, 1, MPI_INT, of_all, lmp->world);
+  trouble.resize(static_cast<std::size_t>(length));
+  MPI_Bcast(trouble.data(), length, MPI_CHAR, of_all, lmp->world);
+  lmp->error->all(FLERR, trouble + (of_all > 0 ? " (on rank " + std::to_string(of_all) + ")" : ""));
+}
+
+void check_boundary(LMP::LAMMPS* lmp) {
+  for (int axis = 0; axis < 3; ++axis)
+    for (int side = 0; side < 2; ++side) {
+      const int kind = lmp->domain->boundary[axis][side];
+      if (kind == 0) refuse(lmp, "the box is periodic, and ropes are free", "write: boundary m m m");
+      if (kind == 1)
+        refuse(lmp, "the box is fixed, and elements that leave it would be lost", "write: boundary m m m");
+    }
+}
+
+}  // namespace
+
+std::shared_ptr<const LammpsModel> load(LMP::LAMMPS* lmp, const std::string& directory) {
+  auto model = models()[lmp].lock();
+  if (!model || model->directory != directory) {
+    model = read_on_all_ranks(lmp, directory);
+    models()[lmp] = model;
+  }
+  return model;
+}
+
+std::shared_ptr<const LammpsModel> loaded(LMP::LAMMPS* lmp, const char* who) {
+  auto model = models()[lmp].lock();
+  if (!model)
+    refuse(lmp, std::string(who) + " does not know the scene yet",
+           "write pair_style mdem/... DIR or bond_style mdem/vbond DIR before it");
+  return model;
+}
+
+void refuse(LMP::LAMMPS* lmp, const std::string& what, const std::string& remedy) {
+  lmp->error->all(FLERR, what + "; " + remedy);
+}
+
+void refuse_one(LMP::LAMMPS* lmp, const std::string& what, const std::string& remedy) {
+  lmp->error->one(FLERR, what + "; " + remedy);
+}
+
+void check_atoms(LMP::LAMMPS* lmp, const char* who) {
+  const LMP::Atom& atom = *lmp->atom;
+  if (!atom.sphere_flag || !atom.omega_flag || !atom.torque_flag || !atom.rmass_flag || !atom.molecule_flag ||
+      atom.avec == nullptr || atom.molecular != LMP::Atom::MOLECULAR)
+    refuse(lmp, std::string(who) + " needs elements that turn and are bonded",
+           "write: atom_style hybrid sphere bond");
+  const LMP::Force& force = *lmp->force;
+  if (force.ftm2v != 1 || force.mvv2e != 1)
+    refuse(lmp, "units are not those of the model (nm, ps, eV, with factors 1)", "write: units lj");
+  if (!force.newton_pair || !force.newton_bond)
+    refuse(lmp, "forces on ghosts are not sent back to their owners", "write: newton on");
+  if (!lmp->comm->ghost_velocity)
+    refuse(lmp, "ghosts have no velocities, which damping needs", "write: comm_modify vel yes");
+  check_boundary(lmp);
+}
+
+void check_styles(LMP::LAMMPS* lmp, const LammpsModel& model) {
+  int motions = 0;
+  for (int k = 0; k < lmp->modify->nfix; ++k) motions += lmp->modify->fix[k]->time_integrate != 0;
+  if (!find_fix<FixMotion>(lmp))
+    refuse(lmp, "nothing moves and turns the elements, or sends their orientations to other ranks",
+           std::string("write: fix motion all mdem/") + (model.relax ? "relax" : "nve"));
+  if (motions > 1)
+    refuse(lmp, "more than one fix moves the elements", "leave only one of fix mdem/nve and fix mdem/relax");
+  if (!dynamic_cast<BondVBond*>(lmp->force->bond))
+    refuse(lmp, "elements of a tube are not bonded", "write: bond_style mdem/vbond DIR and bond_coeff *");
+  const bool contact = dynamic_cast<PairMdem*>(lmp->force->pair) != nullptr;
+  if (model.interaction.has_contact() && !contact)
+    refuse(lmp, "the scene has contact, and there is none",
+           std::string("write: pair_style mdem/") + law_name(model.law) + " DIR");
+  if (model.damped() && !find_fix<FixDamp>(lmp))
+    refuse(lmp, "the scene has damping, and there is none", "write: fix damping all mdem/damp");
+  if (model.driven() && !find_fix<FixGrip>(lmp))
+    refuse(lmp, "the scene has loads, and there are none", "write: fix grips all mdem/grip");
+}
+
+namespace {
+
+double** property(LMP::LAMMPS* lmp, const char* name, int wanted) {
+  int is_double = 0, columns = 0;
+  const int index = lmp->atom->find_custom(name, is_double, columns);
+  if (index < 0 || !is_double || columns != wanted)
+    refuse(lmp, "elements have no orientations, or do not carry their forces from run to run",
+           "write: fix elements all property/atom d2_quat 4 d2_carried 6 ghost yes, before read_data or after "
+           "read_restart");
+  return lmp->atom->darray[index];
+}
+
+}  // namespace
+
+double** orientations(LMP::LAMMPS* lmp) { return property(lmp, "quat", 4); }
+double** carried(LMP::LAMMPS* lmp) { return property(lmp, "carried", 6); }
+
+double sum_over_ranks(LMP::LAMMPS* lmp, double value) {
+  double sum = 0;
+  MPI_Allreduce(&value, &sum, 1, MPI_DOUBLE, MPI_SUM, lmp->world);
+  return sum;
+}
+
+}  // namespace ropewalk::lammps

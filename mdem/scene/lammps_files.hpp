@@ -1,0 +1,99 @@
+// What `ropewalk export --lammps` adds to a run directory and `ropewalk import` reads back. All numbers are
+// written with the digits that give the same bits again.
+//
+//   lammps.json   where the run stands: step, time, account of energy, and what the model took from its start
+//   tubes.csv     tubes of a kind after one another: how many, elements of each, type
+//   rope.data     LAMMPS data file: positions, velocities, spins, bonds, orientations
+//   in.rope       LAMMPS input
+//   lammps.dump, lammps-last.dump, lammps-rows.csv   what LAMMPS writes: states, the last one, energies
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "scene/scene.hpp"
+#include "sim/state.hpp"
+
+namespace ropewalk {
+
+struct LammpsStart {
+  std::int64_t step = 0;
+  double time = 0;       // ps
+  double time_step = 0;  // ps
+  double work = 0, dissipated = 0;
+  double viscosity_inner = 0, viscosity_outer = 0;  // nm
+  std::vector<std::string> parameters;              // files, of each tube type
+};
+
+struct LammpsDirectory {
+  std::string path;
+
+  std::string file(const char* name) const { return path + "/" + name; }
+  std::string scene() const { return file("scene.toml"); }
+  std::string start() const { return file("lammps.json"); }
+  std::string tubes() const { return file("tubes.csv"); }
+  std::string data() const { return file("rope.data"); }
+  std::string input() const { return file("in.rope"); }
+  std::string readme() const { return file("README.txt"); }
+  std::string states() const { return file("lammps.dump"); }
+  std::string last_state() const { return file("lammps-last.dump"); }
+  std::string rows() const { return file("lammps-rows.csv"); }
+};
+
+std::string start_json(const LammpsStart& start);
+LammpsStart read_start(const LammpsDirectory& dir);
+
+std::string tubes_csv(const Topology& topology);
+// Adds the tubes to a topology that has its types. Throws InputError.
+void read_tubes(const LammpsDirectory& dir, Topology& topology);
+
+// The total forces of the last step go along: they hold the damping at half-step velocities, which a state does not
+// tell, and the first kick needs them.
+std::string lammps_data(const std::string& name, const Topology& topology, const State& state,
+                        const Vec3Array& force, const Vec3Array& torque);
+
+// What the input script needs to know.
+struct LammpsScript {
+  std::string name;
+  ContactOptions::Law law = ContactOptions::Law::paper;
+  bool damped = false, driven = false, relax = false;
+  bool long_in_z = true;  // a rope or a chain: cut across it
+  double radius = 0, skin = 0, reach = 0, longest_element = 0;
+  int exclude_along_tube = 20;
+  double time_step = 0;
+  std::int64_t step = 0, steps = 0, every = 1;
+};
+std::string lammps_input(const LammpsScript& script);
+
+// The numbers of one row of LAMMPS's energies, in the order of the file.
+struct LammpsRow {
+  double step = 0, time = 0;
+  double stretch = 0, shear = 0, bend = 0, twist = 0, vdw = 0, kinetic = 0;
+  double work = 0, dissipated = 0;
+};
+inline constexpr int lammps_row_numbers = 9;  // without the step
+// A last line without its end, as after a kill, is left out.
+std::vector<LammpsRow> read_lammps_rows(const LammpsDirectory& dir);
+
+// Reads the states of a dump one after another; one that the end of the file cuts off is left out.
+class LammpsStates {
+ public:
+  explicit LammpsStates(const std::string& path);
+  // False at the end.
+  bool next(const Topology& topology, State& state, Vec3Array& force, Vec3Array& torque);
+
+ private:
+  bool line();
+  [[noreturn]] void fail(const std::string& what) const;
+  std::vector<int> columns();
+  std::size_t element(const std::vector<int>& columns, std::array<double, 20>& values) const;
+
+  std::string path_, text_;
+  std::ifstream file_;
+  long line_ = 0;
+};
+
+}  // namespace ropewalk

@@ -1,0 +1,22 @@
+// What acts in a scene, resolved to elements: all that another engine needs besides the state.
+#pragma once
+
+#include "scene/scene.hpp"
+#include "sim/drive.hpp"
+#include "sim/interaction.hpp"
+
+namespace ropewalk {
+
+// The scene's tube types, and no tubes yet.
+Topology empty_topology(const Scene& scene);
+
+// The `line` law between all pairs of the scene's tube types, i, j at i * types + j.
+std::vector<LineContact> line_contacts(const Scene& scene);
+
+// The reach of the contact viscosity must be set (build() does so).
+Interaction interaction_of(const Scene& scene);
+
+// Throws InputError for loads on elements that do not exist.
+Drive drive_of(const Scene& scene, const Topology& topology);
+
+}  // namespace ropewalk

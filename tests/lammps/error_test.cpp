@@ -1,0 +1,136 @@
+// What goes wrong is said in one line, with what to write instead.
+#include "lammps/support.hpp"
+
+namespace ropewalk::test {
+namespace {
+
+struct Mistake {
+  const char* name;
+  std::string what, by;  // in in.rope
+  std::string message, remedy;
+};
+
+class LammpsErrors : public Lammps {
+ protected:
+  void scene_with_everything() const {
+    exported(
+        "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-paper\"\n[rope]\ntubes = 7\nlength_nm = 13.56\n"
+        "perturbation_nm = 0.01\n[twist]\nmoment_nN_nm = 20\nrate_nN_nm_per_ps = 30\n",
+        "out");
+  }
+};
+
+TEST_F(LammpsErrors, NameTheRemedy) {
+  scene_with_everything();
+  const std::string script = slurp(dir / "out/in.rope");
+  const std::vector<Mistake> mistakes = {
+      {"no motion", "fix motion all mdem/nve\n", "", "nothing moves", "fix motion all mdem/nve"},
+      {"no damping", "fix damping all mdem/damp\n", "", "the scene has damping", "fix damping all mdem/damp"},
+      {"no grips", "fix grips all mdem/grip\n", "", "the scene has loads", "fix grips all mdem/grip"},
+      {"moved twice", "fix motion all mdem/nve\n", "fix motion all mdem/nve\nfix second all nve\n",
+       "more than one fix moves", "leave only one"},
+      {"atom style", "atom_style hybrid sphere bond", "atom_style bond", "needs elements that turn",
+       "atom_style hybrid sphere bond"},
+      {"atom style without bonds", "atom_style hybrid sphere bond", "atom_style sphere", "are bonded",
+       "atom_style hybrid sphere bond"},
+      {"units", "units lj", "units metal", "units are not those", "units lj"},
+      {"newton", "newton on", "newton off", "not sent back", "newton on"},
+      {"ghost velocities", "vel yes", "vel no", "ghosts have no velocities", "comm_modify vel yes"},
+      {"periodic", "boundary m m m", "boundary m m p", "periodic", "boundary m m m"},
+      {"fixed box", "boundary m m m", "boundary f f f", "would be lost", "boundary m m m"},
+      {"law", "pair_style mdem/paper", "pair_style mdem/line", "contact is \"paper\"", "pair_style mdem/paper DIR"},
+      {"no contact", "pair_style mdem/paper ${dir}\npair_coeff * *", "pair_style zero 6\npair_coeff * *",
+       "the scene has contact", "pair_style mdem/paper DIR"},
+      {"directory", "variable dir index .", "variable dir index nowhere", "cannot be opened", "check the name"},
+      {"orientations", "d2_quat 4 d2_carried 6 ghost yes\" &\n  \"read_data",
+       "d2_other 4 d2_carried 6 ghost yes\" &\n  \"read_data", "no orientations", "d2_quat 4 d2_carried 6"},
+      {"special bonds", "special_bonds lj/coul 0 0 0", "special_bonds lj/coul 0 0 0.5", "weakens contact",
+       "only 0 or 1"},
+      {"time step", "timestep 0.0", "timestep 0.00", "the time step is not that", "take it from in.rope"},
+      {"masses", "fix motion all", "set group all density 3\nfix motion all", "the mass of element",
+       "leave masses"},
+      {"lost elements", "fix motion all", "group gone id 5\ndelete_atoms group gone bond yes\nfix motion all",
+       "69 of 70 elements are left", "restart file"},
+  };
+  for (const Mistake& m : mistakes) {
+    SCOPED_TRACE(m.name);
+    spit(dir / "out/in.rope", script);
+    edit("out", m.what, m.by);
+    edit("out", "variable now equal", "run 0\nvariable now equal");  // before LAMMPS misses what outputs ask for
+    const Outcome o = lmp(0, "out", "-in in.rope -var steps 5");
+    EXPECT_NE(o.code, 0);
+    const std::size_t at = o.out.find("ERROR");
+    ASSERT_NE(at, std::string::npos) << o.out << o.err;
+    const std::string line = o.out.substr(at, o.out.find('\n', at) - at);
+    EXPECT_NE(line.find(m.message), std::string::npos) << line;
+    EXPECT_NE(line.find(m.remedy), std::string::npos) << line;
+  }
+}
+
+// LAMMPS itself would only warn, and then leave out forces.
+TEST_F(LammpsErrors, ShortGhostCutoffIsRefused) {
+  exported(
+      "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-paper\"\n[chain]\nelements = 20\n"
+      "[contact]\nlaw = \"none\"\n[run]\nduration_ps = 1\n",
+      "out");
+  std::string script = slurp(dir / "out/in.rope");
+  const auto replace_all = [&](const std::string& what, const std::string& by) {
+    std::size_t found = 0;
+    for (std::size_t at = 0; (at = script.find(what, at)) != std::string::npos; at += by.size(), ++found)
+      script.replace(at, what.size(), by);
+    ASSERT_GT(found, 0U) << what;
+  };
+  replace_all("pair_style zero 2.034", "pair_style zero 0.5");
+  replace_all("vel yes cutoff 2.184", "vel yes cutoff 0.6");
+  spit(dir / "out/in.rope", script);
+  for (const int ranks : {1, 2}) {
+    const Outcome o = lmp(ranks, "out", "-in in.rope -var steps 5");
+    EXPECT_NE(o.code, 0);
+    EXPECT_NE(o.out.find("nm and must reach"), std::string::npos) << o.out << o.err;
+    EXPECT_NE(o.out.find("comm_modify mode single vel yes cutoff"), std::string::npos) << o.out;
+  }
+}
+
+TEST_F(LammpsErrors, BlowUpAndSlipStopTheRun) {
+  exported(
+      "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-paper\"\n[rope]\ntubes = 7\nlength_nm = 13.56\n"
+      "[twist]\nmoment_nN_nm = 2000\nrate_nN_nm_per_ps = 2000\n[run]\nduration_ps = 5\n",
+      "out");
+  const Outcome o = lmp(2, "out");
+  EXPECT_NE(o.code, 0);
+  EXPECT_NE(o.out.find("about to slip and forget a turn; lower the twisting moment"), std::string::npos)
+      << o.out << o.err;
+}
+
+TEST_F(LammpsErrors, OtherVersionIsRefused) {
+  const Outcome o = lmp(2, ".", "-in none", ROPEWALK_LMP_OTHER_VERSION);
+  EXPECT_NE(o.code, 0);
+  EXPECT_NE(o.err.find("built against LAMMPS 20200101 and runs with LAMMPS 20"), std::string::npos) << o.err;
+  EXPECT_NE(o.err.find("build it again"), std::string::npos) << o.err;
+}
+
+TEST_F(LammpsErrors, ExportAndImportRefuse) {
+  const auto expect = [&](const std::string& arguments, const std::string& message) {
+    const Outcome o = run(arguments);
+    EXPECT_EQ(o.code, 2) << arguments;
+    EXPECT_NE(o.err.find(message), std::string::npos) << o.err;
+    EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << o.err;
+  };
+  expect("export nowhere.toml --lammps out", "cannot be opened");
+  expect("import nowhere", "was not made by `ropewalk export`");
+  spit(dir / "geometric.toml",
+       "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-paper\"\n[rope]\ntubes = 7\nlength_nm = 13.56\n"
+       "[twist]\nmoment_nN_nm = 20\nrate_nN_nm_per_ps = 30\ngeometric_only = true\n");
+  expect("export geometric.toml --lammps out", "twist.geometric_only: is not for LAMMPS");
+  EXPECT_FALSE(fs::exists(dir / "out"));
+  scene_with_everything();
+  expect("export scene.toml --lammps out", "is not empty");
+  expect("import out", "run in.rope with lmp-ropewalk first");
+  expect("export out --force --lammps ./out", "is the run itself");
+  EXPECT_TRUE(fs::exists(dir / "out/checkpoint.bin"));
+  spit(dir / "out/lammps.json", "{");
+  expect("import out", "lammps");
+}
+
+}  // namespace
+}  // namespace ropewalk::test

@@ -1,0 +1,227 @@
+// Grips, dampings and relaxation in LAMMPS against the simulator; restart files; plugin; `clear`.
+#include <nlohmann/json.hpp>
+
+#include "io/log.hpp"
+#include "lammps/support.hpp"
+
+namespace ropewalk::test {
+namespace {
+
+// In double precision, as LAMMPS has it.
+std::string rope(std::string tables, const std::string& run = "duration_ps = 100\n") {
+  const std::string title = "[contact]\n", precision = "precision = \"double\"\n";
+  const std::size_t at = tables.find(title);
+  tables = at == std::string::npos ? title + precision + tables : tables.insert(at + title.size(), precision);
+  return "format = \"ropewalk-scene-1\"\nname = \"rope\"\nparameters = \"cnt-10-10-paper\"\n"
+         "[rope]\ntubes = 7\nlength_nm = 16.3\nperturbation_nm = 0.01\n" +
+         tables + "[run]\n" + run;
+}
+
+struct Protocol {
+  const char* name;
+  std::string tables;
+  double tolerance = 1e-11;
+};
+
+std::ostream& operator<<(std::ostream& out, const Protocol& p) { return out << p.name; }
+
+class ProtocolTest : public Lammps, public ::testing::WithParamInterface<Protocol> {};
+
+TEST_P(ProtocolTest, HundredStepsAgree) {
+  constexpr int steps = 100;
+  exported(rope(GetParam().tables), "out");
+  Scene scene = read_scene((dir / "scene.toml").string());
+  Simulation native = start(scene, prepare(scene));
+  for (int k = 0; k < steps; ++k) native.step();
+  for (const int ranks : {1, 3}) {
+    SCOPED_TRACE(ranks);
+    const Outcome o = lmp(ranks, "out", "-in in.rope -var steps " + std::to_string(steps));
+    ASSERT_EQ(o.code, 0) << o.out << o.err;
+    const Left left = left_by(dir / "out", native.topology());
+    EXPECT_LT(relative_difference(native.state().position, left.state.position), 1e-11);
+    EXPECT_LT(relative_difference(native.state().velocity, left.state.velocity), GetParam().tolerance);
+    EXPECT_LT(relative_difference(native.state().angular_velocity, left.state.angular_velocity),
+              GetParam().tolerance);
+    const LammpsRow row = read_lammps_rows(LammpsDirectory{(dir / "out").string()}).back();
+    EXPECT_NEAR(row.work, native.work(), GetParam().tolerance * std::fmax(1, native.work()));
+    EXPECT_NEAR(row.dissipated, native.dissipated(), GetParam().tolerance * std::fmax(1, native.dissipated()));
+    if (!GetParam().tables.empty()) {
+      EXPECT_GT(std::fabs(native.work()) + std::fabs(native.dissipated()), 1e-3);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, ProtocolTest,
+    ::testing::Values(
+        Protocol{"PerTube", "[twist]\nmoment_nN_nm = 20\nrate_nN_nm_per_ps = 30\n"},
+        Protocol{"Total", "[twist]\nmoment_nN_nm = 60\nrate_nN_nm_per_ps = 100\nreading = \"total\"\n"},
+        Protocol{"Tangential",
+                 "[twist]\nmoment_nN_nm = 10\nrate_nN_nm_per_ps = 30\napplication = \"tangential\"\n"},
+        Protocol{"Held",
+                 "[twist]\nmoment_nN_nm = 20\nrate_nN_nm_per_ps = 30\nlateral = \"held\"\naxial = \"held\"\n"
+                 "[start]\ntemperature_K = 100\n"},
+        // It acts by the sign of a velocity, which rounding turns where the velocity is nothing.
+        Protocol{"LocalDamping",
+                 "[twist]\nmoment_nN_nm = 20\nrate_nN_nm_per_ps = 30\n[damping]\npfc_local = 0.3\n"
+                 "contact_viscosity_eV_ps_per_nm2 = 0\nbond_damping_per_ps = 0\n",
+                 1e-8},
+        Protocol{"LegacyTorque",
+                 "[start]\ntemperature_K = 100\n[contact]\nlaw = \"paper\"\nlegacy_torque = true\n"},
+        Protocol{"NoContact",
+                 "[start]\ntemperature_K = 100\n[contact]\nlaw = \"none\"\n"
+                 "[[load]]\nkind = \"fix\"\nelements = [0]\n"}),
+    [](const auto& info) { return std::string(info.param.name); });
+
+class LammpsRun : public Lammps {};
+
+TEST_F(LammpsRun, RelaxesToTheSameMinimum) {
+  exported(rope("[[load]]\nkind = \"torque\"\nelements = [-1]\ntorque_nN_nm = [0, 0, 2]\n"
+                "[[load]]\nkind = \"fix\"\nelements = [0]\n",
+                "mode = \"relax\"\nforce_tolerance_nN = 1e-3\n"),
+           "out");
+  Scene scene = read_scene((dir / "scene.toml").string());
+  Simulation native = start(scene, prepare(scene));
+  const double before = native.forces().energy.potential();
+  ASSERT_TRUE(native.relax(scene.run.force_tolerance, scene.run.max_steps, [](long) { return true; }));
+  ASSERT_LT(native.forces().energy.potential(), before - 0.1);
+  ASSERT_GT(native.forces().energy.twist, 0.1);  // orientations have moved
+  for (const int ranks : {1, 2}) {
+    SCOPED_TRACE(ranks);
+    const Outcome o = lmp(ranks, "out");
+    ASSERT_EQ(o.code, 0) << o.out << o.err;
+    const Left left = left_by(dir / "out", native.topology());
+    const LammpsRow row = read_lammps_rows(LammpsDirectory{(dir / "out").string()}).back();
+    EXPECT_NEAR(row.twist, native.forces().energy.twist, 1e-3);
+    EXPECT_NEAR(row.vdw, native.forces().energy.vdw, 1e-3);
+    EXPECT_NEAR(static_cast<double>(left.state.step), static_cast<double>(native.state().step), 100);
+  }
+}
+
+TEST_F(LammpsRun, RestartFilesGoOnOnAnyNumberOfRanks) {
+  exported(rope("[twist]\nmoment_nN_nm = 20\nrate_nN_nm_per_ps = 30\n[start]\ntemperature_K = 100\n"), "out");
+  const Topology topology = [&] {
+    Scene scene = read_scene((dir / "scene.toml").string());
+    return prepare(scene).topology;
+  }();
+  const LammpsDirectory files{(dir / "out").string()};
+  ASSERT_EQ(lmp(2, "out", "-in in.rope -var steps 120 -var every 60").code, 0);
+  const Left whole = left_by(dir / "out", topology);
+  const LammpsRow row = read_lammps_rows(files).back();
+  ASSERT_EQ(whole.state.step, 120);
+  fs::copy_file(dir / "out/rope.restart.a", dir / "out/middle.restart");  // a is step 60, b is step 120
+  for (const int ranks : {1, 2, 4}) {
+    SCOPED_TRACE(ranks);
+    const Outcome o = lmp(ranks, "out", "-in in.rope -var steps 60 -var every 60 -var restart ./middle.restart");
+    ASSERT_EQ(o.code, 0) << o.out << o.err;
+    const Left left = left_by(dir / "out", topology);
+    ASSERT_EQ(left.state.step, 120);
+    EXPECT_LT(relative_difference(whole.state.position, left.state.position), 1e-12);
+    EXPECT_LT(relative_difference(whole.state.velocity, left.state.velocity), 1e-12);
+    EXPECT_LT(relative_difference(whole.state.angular_velocity, left.state.angular_velocity), 1e-12);
+    EXPECT_LT(relative_difference(whole.force, left.force), 1e-10);  // bonds are stiff
+    const LammpsRow again = read_lammps_rows(files).back();
+    EXPECT_NEAR(again.work, row.work, 1e-12 * row.work);
+    EXPECT_NEAR(again.dissipated, row.dissipated, 1e-12 * row.dissipated);
+  }
+}
+
+TEST_F(LammpsRun, StylesAreThereAgainAfterClear) {
+  exported(rope(""), "out");
+  const std::string script = slurp(dir / "out/in.rope");
+  spit(dir / "out/in.twice", script + "\nclear\nclear\n" + script + "print \"both done\"\n");
+  const Outcome o = lmp(2, "out", "-in in.twice -var steps 5");
+  EXPECT_EQ(o.code, 0) << o.out << o.err;
+  EXPECT_NE(o.out.find("both done"), std::string::npos);
+}
+
+TEST_F(LammpsRun, PluginDoesTheSame) {
+  exported(rope("[twist]\nmoment_nN_nm = 20\nrate_nN_nm_per_ps = 30\n"), "out");
+  Scene scene = read_scene((dir / "scene.toml").string());
+  const Topology topology = prepare(scene).topology;
+  ASSERT_EQ(lmp(1, "out", "-in in.rope -var steps 50").code, 0);
+  const Left ours = left_by(dir / "out", topology);
+  fs::remove(dir / "out/lammps-last.dump");
+  const Outcome o = lmp(1, "out", "'" ROPEWALK_LMP_PLUGIN "' -in in.rope -var steps 50", ROPEWALK_LMP_HOST);
+  ASSERT_EQ(o.code, 0) << o.out << o.err;
+  for (const char* style : {"pair mdem/paper", "pair mdem/line", "bond mdem/vbond", "fix mdem/nve",
+                            "fix mdem/relax", "fix mdem/damp", "fix mdem/grip"})
+    EXPECT_NE(o.out.find(std::string("plugin: ") + style + " for LAMMPS"), std::string::npos) << o.out;
+  EXPECT_EQ(relative_difference(ours.state.position, left_by(dir / "out", topology).state.position), 0);
+}
+
+// --- there and back -----------------------------------------------------------------------------------
+
+TEST_F(LammpsRun, ThereAndBackIsOneRun) {
+  const std::string scene =
+      rope("[twist]\nmoment_nN_nm = 20\nrate_nN_nm_per_ps = 20\n[start]\ntemperature_K = 200\n",
+           "duration_ps = 6\nframes_every_ps = 1\nlog_every_ps = 1\n");
+  spit(dir / "scene.toml", scene);
+  ASSERT_EQ(run("run scene.toml --out whole --quiet").code, 0);
+  // Two ps here, two on LAMMPS, two here again.
+  ASSERT_EQ(run("run scene.toml --out half --steps 120 --quiet").code, 0);
+  Outcome o = run("export half --lammps there");
+  ASSERT_EQ(o.code, 0) << o.err;
+  const std::string readme = slurp(dir / "there/README.txt");
+  EXPECT_EQ(std::count(readme.begin(), readme.end(), '\n'), 3);
+  o = lmp(2, "there", "-in in.rope -var steps 120");
+  ASSERT_EQ(o.code, 0) << o.out << o.err;
+  o = run("import there");
+  ASSERT_EQ(o.code, 0) << o.err;
+  EXPECT_NE(o.out.find("step 240"), std::string::npos) << o.out;
+  o = run("import there");  // there is nothing more to take
+  EXPECT_EQ(o.code, 2);
+  EXPECT_NE(o.err.find("no whole state after step 240"), std::string::npos) << o.err;
+  o = run("resume there --quiet");
+  ASSERT_EQ(o.code, 0) << o.err;
+  ASSERT_EQ(run("report there").code, 0);
+  ASSERT_EQ(run("observe there").code, 0);
+
+  const std::vector<LogRow> whole = read_log((dir / "whole/log.csv").string());
+  const std::vector<LogRow> parts = read_log((dir / "there/log.csv").string());
+  EXPECT_EQ(parts.back().step, whole.back().step);
+  EXPECT_GE(parts.size(), whole.size());
+  for (const LogColumn& c : log_columns()) {
+    const double a = whole.back().*c.value, b = parts.back().*c.value;
+    EXPECT_NEAR(a, b, 1e-9 * std::fmax(1, std::fabs(a))) << c.name;
+  }
+  // The balance of energy goes on as if nothing had happened.
+  EXPECT_GT(whole.back().work, 1);
+  const auto manifest = nlohmann::json::parse(slurp(dir / "there/manifest.json"));
+  EXPECT_EQ(manifest["status"], "finished");
+  EXPECT_NE(slurp(dir / "there/report.html").find("rope"), std::string::npos);
+}
+
+TEST_F(LammpsRun, ExportLosesNoDigit) {
+  exported(rope("[start]\ntemperature_K = 300\n"), "out");
+  ASSERT_EQ(lmp(2, "out", "-in in.rope -var steps 0").code, 0);
+  Scene scene = read_scene((dir / "scene.toml").string());
+  const Simulation native = start(scene, prepare(scene));
+  const Left left = left_by(dir / "out", native.topology());
+  const State& s = native.state();
+  for (std::size_t i = 0; i < s.size(); ++i) {
+    EXPECT_EQ(s.position[i], left.state.position[i]);
+    EXPECT_EQ(s.orientation[i].coeffs(), left.state.orientation[i].coeffs());
+    EXPECT_EQ(s.velocity[i], left.state.velocity[i]);
+    EXPECT_EQ(s.angular_velocity[i], left.state.angular_velocity[i]);
+    EXPECT_EQ(native.forces().force[i], left.force[i]);
+    EXPECT_EQ(native.forces().torque[i], left.torque[i]);
+  }
+}
+
+// A run that was killed: what is whole is taken.
+TEST_F(LammpsRun, ImportLeavesOutWhatIsCutOff) {
+  exported(rope(""), "out");
+  ASSERT_EQ(lmp(1, "out", "-in in.rope -var steps 30 -var every 10").code, 0);
+  fs::remove(dir / "out/lammps-last.dump");
+  const fs::path dump = dir / "out/lammps.dump", rows = dir / "out/lammps-rows.csv";
+  fs::resize_file(dump, fs::file_size(dump) - 100);
+  fs::resize_file(rows, fs::file_size(rows) - 5);
+  const Outcome o = run("import out");
+  ASSERT_EQ(o.code, 0) << o.err;
+  EXPECT_NE(o.out.find("step 20"), std::string::npos) << o.out;
+  ASSERT_EQ(run("resume out --steps 25 --quiet").code, 0);
+}
+
+}  // namespace
+}  // namespace ropewalk::test
