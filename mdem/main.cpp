@@ -16,13 +16,14 @@ namespace {
 
 using namespace ropewalk;
 
-// By default the OpenMP runtime spins while it waits, and on a machine that does other work as well a step then
-// takes up to ten times as long. The runtime reads its settings before main: start once more with waiting
-// threads asleep, unless the user has chosen otherwise. (Under valgrind, set OMP_WAIT_POLICY=passive yourself, or
-// the second start runs outside it.)
-void wait_asleep(char** argv) {
+// By default the OpenMP runtime spins for milliseconds while it waits, and on a machine that does other work as well a
+// step then takes up to ten times as long. Asleep at once, small ropes lose what the second core gains: waking takes as
+// long as the gaps between the parallel parts of a step. So: spin for some ten microseconds, then sleep. The runtime
+// reads its settings before main: start once more with them, unless the user has chosen otherwise. (Under valgrind, set
+// OMP_WAIT_POLICY=passive yourself, or the second start runs outside it.)
+void wait_briefly(char** argv) {
   if (std::getenv("OMP_WAIT_POLICY") || std::getenv("GOMP_SPINCOUNT")) return;
-  setenv("OMP_WAIT_POLICY", "passive", 1);
+  setenv("GOMP_SPINCOUNT", "2000", 1);
   execv("/proc/self/exe", argv);  // on failure go on as we are: only speed is lost
 }
 
@@ -171,7 +172,7 @@ int main(int argc, char** argv) {
   add_bench(app, verbs);
   try {
     hand_over_to_sibling(argv);
-    wait_asleep(argv);
+    wait_briefly(argv);
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) return app.exit(e);

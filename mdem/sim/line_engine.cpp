@@ -134,7 +134,7 @@ void LineEngine::run(Buffers& b, const Topology& topology, const Interaction& in
         if (list_.layout(kind).has_row(t))
           place_row(list_.layout(kind), topology, length_[static_cast<std::size_t>(topology.tube_type[t])], t,
                     state, axis, b.nodes[static_cast<int>(kind)]);
-#pragma omp for schedule(static)
+#pragma omp for schedule(dynamic, 1)
     for (std::size_t k = 0; k < list_.chunks().size(); ++k) {
       const LineChunk& chunk = list_.chunks()[k];
       buffers_[k].clear(static_cast<std::size_t>(chunk.elements));

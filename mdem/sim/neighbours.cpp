@@ -187,7 +187,7 @@ double NeighbourList::coordinate_unit() const {
 void NeighbourList::cut_into_chunks(int n) {
   constexpr int fewest = 16;         // enough for as many threads
   constexpr double most_common = 3;  // buffers for each element
-  for (int count = chunk_count(n);; count = std::max(fewest, count / 2)) {
+  for (int count = chunk_count(n, whole_ranges);; count = std::max(fewest, count / 2)) {
     cut_into_chunks(n, count);
     if (!whole_ranges) return;
     double touched = 0;

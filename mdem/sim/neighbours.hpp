@@ -21,7 +21,9 @@ class NeighbourList {
   };
   // At most. As many as the elements can fill: their buffers overlap, and what overlaps costs time. Never by the
   // threads.
-  static int chunk_count(int elements) { return std::min(64, std::max(4, elements / 2048)); }
+  static int chunk_count(int elements, bool whole_ranges) {
+    return std::min(64, std::max(4, elements / (whole_ranges ? 2048 : 512)));
+  }
 
   double cutoff = 0;           // nm
   double skin = 0;             // nm

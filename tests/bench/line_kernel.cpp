@@ -43,8 +43,7 @@ void Rows(const MixedTable& table, const LineNodes<std::int32_t>& nodes, int len
   using D = Lanes<float>::D;
   const std::int32_t from[2][3] = {{0, 0, 0}, {0, 0, 1 << 20}};
   auto sums = no_sums<D, 2>(D());
-  for (int r = 0; r < 64; ++r)
-    row<false, 2>(table, nodes, out, r * shift, length, r * shift, from, 0.1F, sums);
+  for (int r = 0; r < 64; ++r) row<false, 2>(table, nodes, out, r * shift, length, r * shift, from, 0.1F, sums);
   const auto all = hn::Add(hn::Add(sums.x[0], sums.x[1]), hn::Add(sums.z[0], sums.energy));
   hn::StoreU(hn::Add(all, hn::Add(sums.y[0], hn::Add(sums.y[1], sums.z[1]))), D(), total);
 }
@@ -178,8 +177,8 @@ BENCHMARK(RadialDirect);
 
 void set_counters(benchmark::State& bench, const Rope& rope, const LineList& list) {
   const bool full = rope.in.precision == Precision::full;
-  const RadialCount count =
-      count_radial(rope.topology, rope.in, rope.state, list, 2 * rope.list.displacement(), rope.elements());
+  const RadialCount count = count_radial(rope.topology, rope.in, rope.state, list, 2 * rope.list.displacement(),
+                                         rope.topology.elements());
   const double n = rope.elements();
   set_ns(bench, "ns/element", n);
   set_ns(bench, "ns/evaluation", count.evaluations * n);
@@ -213,8 +212,7 @@ void LineKernel(benchmark::State& bench, const Choice& c) {
   Vec3Array force(rope.state.size()), torque(rope.state.size());
   for (auto _ : bench) {
     engine.compute(rope.topology, rope.in, rope.list, rope.state, rope.axis, c.energies);
-    for (int t = 0; t < rope.topology.tubes(); ++t)
-      engine.add_to_tube(rope.topology, rope.axis, t, force, torque);
+    for (int t = 0; t < rope.topology.tubes(); ++t) engine.add_to_tube(rope.topology, rope.axis, t, force, torque);
     benchmark::ClobberMemory();
   }
   set_counters(bench, rope, engine.list());
@@ -228,8 +226,7 @@ void LineNodeForces(benchmark::State& bench) {
   Vec3Array force(rope.state.size()), torque(rope.state.size());
   engine.compute(rope.topology, rope.in, rope.list, rope.state, rope.axis, false);
   for (auto _ : bench) {
-    for (int t = 0; t < rope.topology.tubes(); ++t)
-      engine.add_to_tube(rope.topology, rope.axis, t, force, torque);
+    for (int t = 0; t < rope.topology.tubes(); ++t) engine.add_to_tube(rope.topology, rope.axis, t, force, torque);
     benchmark::ClobberMemory();
   }
   set_ns(bench, "ns/element", rope.elements());

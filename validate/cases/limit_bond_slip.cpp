@@ -53,6 +53,7 @@ CaseResult run(const CaseContext& context) {
   figure.chart.lines.push_back(model_points("at rest under a couple", angle, moment, 1));
   figure.caption = "Beyond 90 degrees there is no rest: the bond slips.";
   result.figures.push_back(figure);
+  result.remarks.push_back("A run stops before a bond slips, and names the element.");
   result.sources.push_back(set_name);
   return result;
 }

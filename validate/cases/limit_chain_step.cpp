@@ -86,6 +86,10 @@ CaseResult run(const CaseContext& context) {
   damping.chart.lines.push_back(model_points("by bisection", rates, damped, 1));
   damping.caption = "Explicit damping takes from the step.";
   result.figures.push_back(damping);
+  result.remarks.push_back(
+      "`run` refuses a typed step above its own estimate of this limit and takes 0.6 of it otherwise. Above some "
+      "10/ps it is the damping that sets the step: all elements turning alike against their lever arms are damped "
+      "more strongly than opposite neighbours.");
   result.sources.push_back(set_name);
   return result;
 }

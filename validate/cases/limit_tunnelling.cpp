@@ -81,6 +81,9 @@ CaseResult run(const CaseContext& context) {
       "Two crossed elements come as close as their energy brings them up the wall, and through it where "
       "it is larger than that of full overlap.";
   result.figures.push_back(figure);
+  result.remarks.push_back(
+      "Such speeds lie ten times above those of sound: a run reaches them only when it has blown up already, and "
+      "is stopped.");
   result.sources.push_back(set_name);
   return result;
 }
@@ -96,7 +99,7 @@ Case limit_tunnelling_case() {
           "Two single elements at right angles, head on, at a step so small that it does not matter; the speed at "
           "which they come out on the other side, by bisection. Then faster, at the default step.",
           "m v^2/4 = U(0), the energy of the law at full overlap.",
-          "",
+          "A. N. Volkov, L. V. Zhigilei, J. Phys. Chem. C 114, 5513 (2010), DOI 10.1021/jp906142h",
           run};
 }
 
