@@ -92,12 +92,20 @@ HWY_INLINE Sums<D, K> no_sums(D d) {
   return s;
 }
 
+// Shares and energies of the nodes of a run, none where they are null.
+template <class T>
+struct NodeShares {
+  const T* weight = nullptr;
+  T* energy = nullptr;
+};
+
 // The nodes begin .. begin + count of a row against K nodes of one element; `at` is the place of node `begin` in
 // the buffers of forces.
-template <bool energies, int K, class Table, class C>
+template <bool energies, bool shared, int K, class Table, class C>
 HWY_INLINE void row(const Table& t, const LineNodes<C>& nodes, NodeForces<typename Table::Value>& out, int begin,
                     int count, int at, const C (*from)[3], typename Table::Value factor,
-                    Sums<typename Lanes<typename Table::Value>::D, K>& sums) {
+                    Sums<typename Lanes<typename Table::Value>::D, K>& sums,
+                    const NodeShares<typename Table::Value>& shares = {}) {
   using T = typename Table::Value;
   using L = Lanes<T>;
   const typename L::D d;
@@ -108,6 +116,8 @@ HWY_INLINE void row(const Table& t, const LineNodes<C>& nodes, NodeForces<typena
     T *ox = out.x.data() + (at + m), *oy = out.y.data() + (at + m), *oz = out.z.data() + (at + m);
     auto gx = hn::LoadU(d, ox), gy = hn::LoadU(d, oy), gz = hn::LoadU(d, oz);
     const auto wanted = hn::FirstN(d, static_cast<std::size_t>(count - m));
+    auto weight = kf, each = hn::Zero(d);
+    if constexpr (shared) weight = hn::Mul(kf, hn::LoadU(d, shares.weight + m));
     const auto x0 = L::difference(nodes.x.data() + (begin + m), from[0][0]);
     const auto y0 = L::difference(nodes.y.data() + (begin + m), from[0][1]);
     const auto z0 = L::difference(nodes.z.data() + (begin + m), from[0][2]);
@@ -119,8 +129,12 @@ HWY_INLINE void row(const Table& t, const LineNodes<C>& nodes, NodeForces<typena
       const auto dz = k == 0 ? z0 : hn::Sub(z0, apart(2));
       hn::Vec<typename L::D> u, slope;
       radial<energies>(d, t, hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz))), wanted, u, slope);
-      const auto f = hn::Mul(slope, kf);
-      if constexpr (energies) energy = hn::Add(energy, u);
+      const auto f = hn::Mul(slope, weight);
+      if constexpr (shared) {
+        each = hn::Add(each, u);
+      } else if constexpr (energies) {
+        energy = hn::Add(energy, u);
+      }
       gx = hn::MulAdd(f, dx, gx);
       gy = hn::MulAdd(f, dy, gy);
       gz = hn::MulAdd(f, dz, gz);
@@ -131,8 +145,10 @@ HWY_INLINE void row(const Table& t, const LineNodes<C>& nodes, NodeForces<typena
     hn::StoreU(gx, d, ox);
     hn::StoreU(gy, d, oy);
     hn::StoreU(gz, d, oz);
+    if constexpr (shared)
+      hn::StoreU(hn::MulAdd(each, hn::Set(d, factor), hn::LoadU(d, shares.energy + m)), d, shares.energy + m);
   }
-  if constexpr (energies) sums.energy = hn::MulAdd(energy, hn::Set(d, factor), sums.energy);
+  if constexpr (energies && !shared) sums.energy = hn::MulAdd(energy, hn::Set(d, factor), sums.energy);
 }
 
 // The first n entries at p, the others zero; p need not be aligned and nothing behind them is read.
@@ -219,6 +235,15 @@ struct Element {
     n[0] = axis.x[at], n[1] = axis.y[at], n[2] = axis.z[at];
     fx = fy = fz = mx = my = mz = energy = hn::Zero(D());
   }
+  // The couple g n_i x n_j on element j, and its opposite on this one.
+  HWY_INLINE void turn(int j, int shift, double g) {
+    const Vec3Array& axis = *in.axis;
+    const auto sj = static_cast<std::size_t>(j), at = static_cast<std::size_t>(j + shift);
+    const double tx = g * (n[1] * axis.z[sj] - n[2] * axis.y[sj]), ty = g * (n[2] * axis.x[sj] - n[0] * axis.z[sj]),
+                 tz = g * (n[0] * axis.y[sj] - n[1] * axis.x[sj]);
+    sum.tx -= tx, sum.ty -= ty, sum.tz -= tz;
+    out.tx[at] += tx, out.ty[at] += ty, out.tz[at] += tz;
+  }
   template <bool energies>
   HWY_INLINE void add_to(ContactBuffer& buffer, int at) {
     double f[3], m[3];
@@ -249,13 +274,15 @@ struct Nodes {
       for (int a = 0; a < 3; ++a) at[m][a] = e.in.nodes[0].coordinate(e.x[a] + s[m] * e.n[a]);
     }
   }
-  template <bool energies>
-  HWY_INLINE void meet(E& e, const LineRun& run, Rows kind, double weight) {
+  template <bool energies, bool shared = false>
+  HWY_INLINE void meet(E& e, const LineRun& run, Rows kind, double weight,
+                       const NodeShares<typename E::Real>& shares = {}) {
     const int which = static_cast<int>(kind);
     const TouchedTube::Row& of_tube = e.touched(run).row[which];
     const int begin = of_tube.origin + run.element_begin * of_tube.per_element + run.nodes[which].from;
-    row<energies, K>(e.table(run.type), e.in.nodes[which], e.work.forces[which], begin, run.nodes[which].count,
-                     begin + of_tube.shift, at, static_cast<typename E::Real>(weight), sums);
+    row<energies, shared, K>(e.table(run.type), e.in.nodes[which], e.work.forces[which], begin,
+                             run.nodes[which].count, begin + of_tube.shift, at,
+                             static_cast<typename E::Real>(weight), sums, shares);
   }
   HWY_INLINE void collect(E& e) const {
     for (int k = 0; k < K; ++k) {
@@ -299,6 +326,61 @@ HWY_NOINLINE void dense_run(E& e, const LineRun& run) {
     Nodes<E, 1> nodes(e, places + k);
     nodes.template meet<energies>(e, run, Rows::all, w);
     nodes.collect(e);
+  }
+}
+
+// Rows of both kinds, where some elements of a run are nearly parallel and others less.
+template <class E>
+HWY_NOINLINE void mixed_run(E& e, const LineRun& run) {
+  using Real = typename E::Real;
+  const LineContact& law = e.law(run.type);
+  const PairSum<Real>& sums = e.sums(run.type);
+  LineWork<Real>& w = e.work;
+  const Vec3Array& axis = *e.in.axis;
+  w.share.clear();
+  for (int j = run.element_begin; j < run.element_begin + run.elements; ++j) {
+    const auto sj = static_cast<std::size_t>(j);
+    w.share.push_back(law.sparse.weight(e.n[0] * axis.x[sj] + e.n[1] * axis.y[sj] + e.n[2] * axis.z[sj]));
+  }
+  const int per_element[row_kinds] = {law.nodes_j, law.sparse.j};
+  const auto element_of = [&](int kind, int l) {
+    return static_cast<std::size_t>((run.nodes[kind].from + l) / per_element[kind]);
+  };
+  for (const Rows rows : {Rows::sparse, Rows::all}) {
+    const int kind = static_cast<int>(rows), count = run.nodes[kind].count;
+    w.weight[kind].assign(static_cast<std::size_t>(count + NodeLayout::pad), Real{0});
+    w.energy[kind].assign(static_cast<std::size_t>(count + NodeLayout::pad), Real{0});
+    for (int l = 0; l < count; ++l) {
+      const double share = w.share[element_of(kind, l)].value;
+      w.weight[kind][static_cast<std::size_t>(l)] = static_cast<Real>(rows == Rows::sparse ? share : 1 - share);
+    }
+    w.forces[kind].use(e.touched(run), rows, run.touched);
+    const NodeShares<Real> shares{w.weight[kind].data(), w.energy[kind].data()};
+    const std::vector<double>& places = sums.places[kind];
+    std::size_t k = 0;
+    for (; k + 2 <= places.size(); k += 2) {
+      Nodes<E, 2> nodes(e, places.data() + k);
+      nodes.template meet<true, true>(e, run, rows, sums.weight[kind], shares);
+      nodes.collect(e);
+    }
+    for (; k < places.size(); ++k) {
+      Nodes<E, 1> nodes(e, places.data() + k);
+      nodes.template meet<true, true>(e, run, rows, sums.weight[kind], shares);
+      nodes.collect(e);
+    }
+  }
+  // The share depends on the angle: a couple on both.
+  const int shift = e.touched(run).element_shift;
+  int at[row_kinds] = {0, 0};
+  for (int m = 0; m < run.elements; ++m) {
+    const SparseWeight& share = w.share[static_cast<std::size_t>(m)];
+    double energy[row_kinds] = {0, 0};
+    for (int kind = 0; kind < row_kinds; ++kind)
+      for (; at[kind] < run.nodes[kind].count && element_of(kind, at[kind]) == static_cast<std::size_t>(m);
+           ++at[kind])
+        energy[kind] += static_cast<double>(w.energy[kind][static_cast<std::size_t>(at[kind])]);
+    e.sum.energy += share.value * energy[1] + (1 - share.value) * energy[0];
+    e.turn(run.element_begin + m, shift, (energy[1] - energy[0]) * share.derivative);
   }
 }
 
@@ -385,12 +467,7 @@ HWY_NOINLINE void pair_run(E& e, const LineRun& run) {
       const double dense = other.template meet<true>(e, table, sums.all, 1 - w.value);
       e.sum.energy += w.value * sparse + (1 - w.value) * dense;
       // The share depends on the angle: a couple on both.
-      const double g = (sparse - dense) * w.derivative;
-      const double tx = g * (e.n[1] * other.n[2] - e.n[2] * other.n[1]),
-                   ty = g * (e.n[2] * other.n[0] - e.n[0] * other.n[2]),
-                   tz = g * (e.n[0] * other.n[1] - e.n[1] * other.n[0]);
-      e.sum.tx -= tx, e.sum.ty -= ty, e.sum.tz -= tz;
-      e.out.tx[at] += tx, e.out.ty[at] += ty, e.out.tz[at] += tz;
+      e.turn(j, shift, (sparse - dense) * w.derivative);
     }
     other.add_to(e.out, at);
   }
@@ -442,6 +519,9 @@ HWY_INLINE void all_elements(const In& in, const LineChunk& chunk, LineWork<Real
           break;
         case RunSum::rows:
           dense_run<energies>(e, *run);
+          break;
+        case RunSum::mixed:
+          mixed_run(e, *run);
           break;
         case RunSum::pairs:
           pair_run<energies>(e, *run);

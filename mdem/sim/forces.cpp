@@ -139,8 +139,8 @@ void ForceEngine::compute_contact(const Topology& topology, const Interaction& i
                                   const NeighbourList& list, const State& state, bool energies) {
   if (!interaction.paper) return line_.compute(topology, interaction, list, state, frames_.t, energies);
   buffers_.resize(list.chunks().size());
-  // Always with energies: its loops are the compiler's, who orders their sums as it likes, and forces must be the same
-  // bits whoever reads energies.
+  // Always with energies: its loops are the compiler's, who orders their sums as it likes, and forces must be the
+  // same bits whoever reads energies.
   paper_.compute(interaction, list, state, frames_.t, buffers_.data());
 }
 

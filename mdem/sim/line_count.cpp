@@ -67,8 +67,8 @@ struct Counter {
       }
       const bool has_row = list.layout(Rows::all).has_row(topology.tube_of(run->element_begin));
       const RunSum sum = run_sum(law, ends, *run, has_row, smallest, largest);
-      if (sum == RunSum::even) add_row(law, i, *run, Rows::sparse, count);
-      if (sum == RunSum::rows) add_row(law, i, *run, Rows::all, count);
+      if (sum == RunSum::even || sum == RunSum::mixed) add_row(law, i, *run, Rows::sparse, count);
+      if (sum == RunSum::rows || sum == RunSum::mixed) add_row(law, i, *run, Rows::all, count);
       if (sum != RunSum::pairs) continue;
       for (int j = run->element_begin; j < run->element_begin + run->elements; ++j) {
         const double w = law.sparse.none() ? 0 : law.sparse.weight(axis(i).dot(axis(j))).value;

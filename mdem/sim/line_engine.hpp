@@ -50,6 +50,9 @@ template <class T>
 struct LineWork {
   NodeForces<T> forces[row_kinds];
   std::vector<const LineRun*> even;  // runs of one element that take the sparse sum throughout
+  // Of a run whose elements do not all take the same sum: shares of the elements, shares and energies of the nodes.
+  std::vector<SparseWeight> share;
+  std::vector<T> weight[row_kinds], energy[row_kinds];
 
   void start(const LineChunk& chunk) {
     for (int kind = 0; kind < row_kinds; ++kind) forces[kind].start(chunk.nodes[kind], chunk.touched.size());

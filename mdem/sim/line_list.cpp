@@ -96,13 +96,9 @@ struct Side {
       run.elements = static_cast<short>(to - from);
       for (int kind = 0; kind < row_kinds; ++kind)
         run.nodes[kind].from = static_cast<short>(run.nodes[kind].from - (from - first) * counts[kind]);
-      double largest = 0, smallest = 1;
-      for (int j = from; j < to; ++j) {
-        const double cosine2 = std::min(std::pow(axis(i).dot(axis(j)), 2), 1.0);
-        largest = std::max(largest, cosine2);
-        smallest = std::min(smallest, cosine2);
-      }
-      all_rows_wanted |= k.sparse.none() || largest <= k.sparse.from_cos2;
+      double smallest = 1;
+      for (int j = from; j < to; ++j) smallest = std::min(smallest, std::pow(axis(i).dot(axis(j)), 2));
+      all_rows_wanted |= k.sparse.none() || smallest < k.sparse.full_cos2;
       // Both elements may turn, by 1.01 times the change of an axis at most where that is small.
       if (!k.sparse.none())
         run.even = static_cast<float>(

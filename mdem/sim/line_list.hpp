@@ -109,16 +109,18 @@ class LineList {
 
 // How the kernel sums a run, by the smallest and the largest (n_i.n_j)^2 in it.
 enum class RunSum {
-  even,  // sparse nodes throughout
-  rows,  // all nodes throughout
-  pairs  // element by element
+  even,   // sparse nodes throughout
+  rows,   // all nodes throughout
+  mixed,  // rows of both, with a share for each element
+  pairs   // element by element
 };
 inline RunSum run_sum(const LineContact& law, const TubeEnds& ends_i, const LineRun& run, bool has_row,
                       double smallest, double largest) {
   const SparseNodes& sparse = law.sparse;
   if (!sparse.none() && smallest >= sparse.full_cos2 && !run.begins && !run.ends && !ends_i.any())
     return RunSum::even;
-  return has_row && (sparse.none() || largest <= sparse.from_cos2) ? RunSum::rows : RunSum::pairs;
+  if (has_row && (sparse.none() || largest <= sparse.from_cos2)) return RunSum::rows;
+  return has_row && !run.begins && !run.ends && !ends_i.any() ? RunSum::mixed : RunSum::pairs;
 }
 
 }  // namespace ropewalk

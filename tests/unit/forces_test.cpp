@@ -68,9 +68,10 @@ class ForcesTest : public ::testing::TestWithParam<Variant> {
   }
 
   // Double precision: rounding, and for the line law the tables (1e-11 of the steepest force). Mixed: places to
-  // 1e-7 nm or better, tables to 1e-5 of the force, and powers up to 10.5 of rounded gaps in the paper law.
+  // 1e-7 nm or better, tables to 1e-5 of the force, and powers up to 10.5 of rounded gaps in the paper law. Where
+  // tubes lie inside each other, the couple of the share is a difference of energies of 1e5 eV with seven digits.
   double tolerance() const {
-    if (in.precision == Interaction::Precision::mixed) return 2e-5;
+    if (in.precision == Interaction::Precision::mixed) return GetParam().disorder > 0.4 ? 5e-5 : 2e-5;
     return GetParam().kind == Kind::paper ? 1e-12 : 1e-10;
   }
 
