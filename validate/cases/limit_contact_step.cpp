@@ -58,7 +58,7 @@ Case limit_contact_step_case() {
       Case::Group::stability,
       Case::Tier::quick,
       "Largest time step of a rope",
-      "Contact between tubes is as stiff as the tubes: it takes its part of the step.",
+      "Tubes that are pressed together are stiff against one another, and may take their part of the step.",
       "Seven tubes of eight elements at rest under the line law, undamped, shaken by 1e-6 nm/ps; the step at which "
       "500 steps blow them up, by bisection.",
       "2/w, w^2 the largest eigenvalue of the stiffness of the whole rope over its masses, by differences of all "
