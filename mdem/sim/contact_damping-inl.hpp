@@ -13,16 +13,11 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace ropewalk::HWY_NAMESPACE {
-namespace damping {
-namespace hn = hwy::HWY_NAMESPACE;
-
-// Two vectors of a few lanes beat one that is half empty.
-using D = hn::CappedTag<double, 4>;
-using V = hn::Vec<D>;
 
 // The first n entries at p, the others zero; p need not be aligned and nothing behind them is read.
-HWY_INLINE V load_some(const double* p, std::size_t n) {
-  const D d;
+template <class D>
+HWY_INLINE hwy::HWY_NAMESPACE::Vec<D> load_first(D d, const double* p, std::size_t n) {
+  namespace hn = hwy::HWY_NAMESPACE;
 #if HWY_TARGET <= HWY_AVX2
   return hn::MaskedLoad(hn::FirstN(d, n), d, p);
 #else
@@ -33,22 +28,29 @@ HWY_INLINE V load_some(const double* p, std::size_t n) {
 #endif
 }
 
+namespace damping {
+namespace hn = hwy::HWY_NAMESPACE;
+
+// Two vectors of a few lanes beat one that is half empty.
+using D = hn::CappedTag<double, 4>;
+using V = hn::Vec<D>;
+
 struct Vec3 {
   V x, y, z;
 };
 
 HWY_INLINE Vec3 difference(const Vec3Array& a, int j, int i, std::size_t left) {
   const D d;
-  return {hn::Sub(load_some(a.x.data() + j, left), hn::Set(d, a.x[static_cast<std::size_t>(i)])),
-          hn::Sub(load_some(a.y.data() + j, left), hn::Set(d, a.y[static_cast<std::size_t>(i)])),
-          hn::Sub(load_some(a.z.data() + j, left), hn::Set(d, a.z[static_cast<std::size_t>(i)]))};
+  return {hn::Sub(load_first(D(), a.x.data() + j, left), hn::Set(d, a.x[static_cast<std::size_t>(i)])),
+          hn::Sub(load_first(D(), a.y.data() + j, left), hn::Set(d, a.y[static_cast<std::size_t>(i)])),
+          hn::Sub(load_first(D(), a.z.data() + j, left), hn::Set(d, a.z[static_cast<std::size_t>(i)]))};
 }
 
 HWY_INLINE Vec3 sum(const Vec3Array& a, int j, int i, std::size_t left) {
   const D d;
-  return {hn::Add(load_some(a.x.data() + j, left), hn::Set(d, a.x[static_cast<std::size_t>(i)])),
-          hn::Add(load_some(a.y.data() + j, left), hn::Set(d, a.y[static_cast<std::size_t>(i)])),
-          hn::Add(load_some(a.z.data() + j, left), hn::Set(d, a.z[static_cast<std::size_t>(i)]))};
+  return {hn::Add(load_first(D(), a.x.data() + j, left), hn::Set(d, a.x[static_cast<std::size_t>(i)])),
+          hn::Add(load_first(D(), a.y.data() + j, left), hn::Set(d, a.y[static_cast<std::size_t>(i)])),
+          hn::Add(load_first(D(), a.z.data() + j, left), hn::Set(d, a.z[static_cast<std::size_t>(i)]))};
 }
 
 // a x b

@@ -151,19 +151,6 @@ HWY_INLINE void row(const Table& t, const LineNodes<C>& nodes, NodeForces<typena
   if constexpr (energies && !shared) sums.energy = hn::MulAdd(energy, hn::Set(d, factor), sums.energy);
 }
 
-// The first n entries at p, the others zero; p need not be aligned and nothing behind them is read.
-template <class D>
-HWY_INLINE hn::Vec<D> load_first(D d, const double* p, std::size_t n) {
-#if HWY_TARGET <= HWY_AVX2
-  return hn::MaskedLoad(hn::FirstN(d, n), d, p);
-#else
-  if (n >= hn::Lanes(d)) return hn::LoadU(d, p);
-  alignas(64) double some[hn::MaxLanes(d)] = {};
-  for (std::size_t k = 0; k < n; ++k) some[k] = p[k];
-  return hn::Load(d, some);
-#endif
-}
-
 template <class D>
 HWY_INLINE double total(D d, hn::Vec<D> v) {
   return static_cast<double>(hn::GetLane(hn::SumOfLanes(d, v)));
@@ -309,24 +296,30 @@ HWY_INLINE void even_runs(E& e, int k, const std::vector<const LineRun*>& runs) 
   nodes.collect(e);
 }
 
-// All nodes against those of one run.
-template <bool energies, class E>
-HWY_NOINLINE void dense_run(E& e, const LineRun& run) {
+// All nodes of a kind against those of one run, with shares or without.
+template <bool energies, bool shared, class E>
+HWY_INLINE void row_sum(E& e, const LineRun& run, Rows kind, const NodeShares<typename E::Real>& shares = {}) {
+  const int which = static_cast<int>(kind);
   const PairSum<typename E::Real>& sums = e.sums(run.type);
-  const double w = sums.weight[0], *places = sums.places[0].data();
-  const int count = static_cast<int>(sums.places[0].size());
-  e.work.forces[0].use(e.touched(run), Rows::all, run.touched);
+  const double *places = sums.places[which].data(), weight = sums.weight[which];
+  const int count = static_cast<int>(sums.places[which].size());
+  e.work.forces[which].use(e.touched(run), kind, run.touched);
   int k = 0;
   for (; k + 2 <= count; k += 2) {
     Nodes<E, 2> nodes(e, places + k);
-    nodes.template meet<energies>(e, run, Rows::all, w);
+    nodes.template meet<energies, shared>(e, run, kind, weight, shares);
     nodes.collect(e);
   }
   for (; k < count; ++k) {
     Nodes<E, 1> nodes(e, places + k);
-    nodes.template meet<energies>(e, run, Rows::all, w);
+    nodes.template meet<energies, shared>(e, run, kind, weight, shares);
     nodes.collect(e);
   }
+}
+
+template <bool energies, class E>
+HWY_NOINLINE void dense_run(E& e, const LineRun& run) {
+  row_sum<energies, false>(e, run, Rows::all);
 }
 
 // Rows of both kinds, where some elements of a run are nearly parallel and others less.
@@ -334,7 +327,6 @@ template <class E>
 HWY_NOINLINE void mixed_run(E& e, const LineRun& run) {
   using Real = typename E::Real;
   const LineContact& law = e.law(run.type);
-  const PairSum<Real>& sums = e.sums(run.type);
   LineWork<Real>& w = e.work;
   const Vec3Array& axis = *e.in.axis;
   w.share.clear();
@@ -354,20 +346,7 @@ HWY_NOINLINE void mixed_run(E& e, const LineRun& run) {
       const double share = w.share[element_of(kind, l)].value;
       w.weight[kind][static_cast<std::size_t>(l)] = static_cast<Real>(rows == Rows::sparse ? share : 1 - share);
     }
-    w.forces[kind].use(e.touched(run), rows, run.touched);
-    const NodeShares<Real> shares{w.weight[kind].data(), w.energy[kind].data()};
-    const std::vector<double>& places = sums.places[kind];
-    std::size_t k = 0;
-    for (; k + 2 <= places.size(); k += 2) {
-      Nodes<E, 2> nodes(e, places.data() + k);
-      nodes.template meet<true, true>(e, run, rows, sums.weight[kind], shares);
-      nodes.collect(e);
-    }
-    for (; k < places.size(); ++k) {
-      Nodes<E, 1> nodes(e, places.data() + k);
-      nodes.template meet<true, true>(e, run, rows, sums.weight[kind], shares);
-      nodes.collect(e);
-    }
+    row_sum<true, true>(e, run, rows, {w.weight[kind].data(), w.energy[kind].data()});
   }
   // The share depends on the angle: a couple on both.
   const int shift = e.touched(run).element_shift;
