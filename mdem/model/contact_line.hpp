@@ -13,22 +13,23 @@
 // angle, u being the Abel inverse of the parallel-tube energy; so no angular factor is needed. The nodes of
 // consecutive elements form one uniform row, for which the midpoint rule converges exponentially (line_nodes).
 //
-// Nearly parallel elements need fewer nodes. The double sum is off by the Fourier coefficients of u at the wave
+// Elements at small angles need fewer nodes. The double sum is off by the Fourier coefficients of u at the wave
 // vectors that both rows share: for rows of M and N nodes per length, crossing at an angle, at
-//   K^2 = [(m M + n N)^2 + 2 |m n| M N (1 - cos)]/sin^2 (2 pi/L)^2,    m, n integers of opposite sign,
-// so for parallel rows at the common multiples of M and N alone. Rows of M and M + 1 nodes with M (M + 1) >= N
-// corrugate no more than two rows of N, and the wave (1, -1) stays as far out up to the angle
-//   sin^2 = 1/(N^2 - M (M + 1)).
-// For N = 6 that is 2 nodes against 3, a sixth of the evaluations, up to 10.5 degrees; crossing tubes corrugate so
-// much less than parallel ones that 1.7 times the square, 13.8 degrees, still keeps below 1e-3 of the well. From
-// there down to three quarters of the angle one sum goes over into the other, w a quintic smoothstep in
-// (n_i.n_j)^2:
-//   U = w U_near + (1 - w) U_NN.
-// Where a row ends, the other's single nodes would be felt: a ripple of 12 % in the force that pulls a tube out of
-// a bundle. Over the last element of a tube the sparse sum therefore fades out linearly from node to node, by the
-// ramp r; as its ripple has a whole number of periods in an element, the mean under the ramp is zero. What the ramp
-// leaves is summed with the *other* row dense, which has no ripple (both dense where both rows end):
-//   U_near = sum_(M, M+1) r_k r_l (...) + sum_(M or N, M+1 or N) (1 - r_k r_l) (...).
+//   K^2 = [(m M + n N)^2 + 2 |m n| M N (1 - cos)]/sin^2 (2 pi/L)^2,    m, n integers of opposite sign or one zero,
+// so for parallel rows at the common multiples of M and N alone.
+//   M and M + 1 nodes with M (M + 1) >= N corrugate no more than parallel rows of N; the wave (1, -1) stays as far
+//   out up to sin^2 = 1/(N^2 - M (M + 1)). For N = 6 that is 2 nodes against 3, a sixth of the evaluations, up to
+//   10.5 degrees. Crossing tubes corrugate less than parallel ones: at 1.2 times the square, 11.5 degrees, still
+//   below 1e-3 of the well, also 0.05 nm inside of it.
+//   M nodes against all N: K >= n N, so that only the wave (1, 0) comes near, at M/sin: as far out up to sin = M/N.
+//   Hence N/3 nodes against N up to 19.5 degrees, and N/2 against N up to 30.
+// Over the last 6 % of each of these angles one sum goes over into the next, w a quintic smoothstep in (n_i.n_j)^2:
+//   U = w U_t + (1 - w) U_(t + 1),    the last one with all nodes.
+// Where a row ends, single nodes of the other would be felt: a ripple of 12 % in the force that pulls a tube out of
+// a bundle. Over the last element of a tube a sum whose other row is sparse therefore fades out linearly from node
+// to node, by the ramp r; as the ripple has a whole number of periods in an element, the mean under the ramp is
+// zero. What the ramps leave is summed with the *other* row dense, which has no ripple (both where both rows end):
+//   U_t = sum_(a, b) r_k r_l (...) + sum_(a or N, b or N) (1 - r_k r_l) (...).
 //
 // Forces are central between nodes, so force, torque and momentum balance are exact by construction.
 // Units eV, nm. u in eV/nm^2. Symmetric under flipping either axis (with the ends of its tube) and, without sparse
@@ -83,24 +84,55 @@ struct LineDensity {
   double energy(double rho) const { return terms(rho).energy; }
 };
 
-// Share w of the sum of nearly parallel elements, and its derivative in n_i.n_j.
-struct SparseWeight {
-  double value = 0, derivative = 0;
+// The sum that stands for all nodes up to an angle.
+struct SparseSum {
+  int i = 0, j = 0;      // nodes of i, of j; 0: all of them
+  double from_cos2 = 1;  // its share w is 0 at larger angles
+  double full_cos2 = 1;  // and 1 at smaller ones, up to where the sum before it ends
 };
 
-// Sparse nodes towards nearly parallel elements, and at which angles.
-struct SparseNodes {
-  int i = 0, j = 0;      // nodes of i, of j; 0: none, always all nodes
-  double from_cos2 = 1;  // w = 0 at larger angles
-  double full_cos2 = 1;  // w = 1 at smaller ones
+// Share w of the sum `first`, and its derivative in n_i.n_j; the next one has the rest.
+struct SumShare {
+  int first = 0;
+  double value = 1, derivative = 0;
 
-  bool none() const { return i == 0; }
-  SparseWeight weight(double cosine) const {
-    const double per_width = 1 / (full_cos2 - from_cos2);
-    const double t = std::min(std::max((cosine * cosine - from_cos2) * per_width, 0.0), 1.0), r = 1 - t;
-    return {t * t * t * (10 - t * (15 - 6 * t)), 60 * t * t * r * r * cosine * per_width};
+  double of(int sum) const { return sum == first ? value : sum == first + 1 ? 1 - value : 0.0; }
+};
+
+// The sums by rising angle; behind the last of them, and where there is none, all nodes.
+struct SparseNodes {
+  static constexpr int most = 3;
+  std::array<SparseSum, most> sum{};
+  int count = 0;
+
+  int first_of(double cos2) const {  // with a share at this angle
+    int t = 0;
+    while (t < count && cos2 <= sum[static_cast<std::size_t>(t)].from_cos2) ++t;
+    return t;
+  }
+  int last_of(double cos2) const {
+    int t = 0;
+    while (t < count && cos2 < sum[static_cast<std::size_t>(t)].full_cos2) ++t;
+    return t;
+  }
+  // j is summed over nodes of its own rather than over all.
+  bool thins_j(int t) const { return t < count && sum[static_cast<std::size_t>(t)].j > 0; }
+  SumShare share(double cosine) const {
+    const double c2 = cosine * cosine;
+    const int t = first_of(c2);
+    if (t == last_of(c2)) return {t, 1, 0};
+    const SparseSum& at = sum[static_cast<std::size_t>(t)];
+    const double per_width = 1 / (at.full_cos2 - at.from_cos2);
+    const double x = std::min((c2 - at.from_cos2) * per_width, 1.0), r = 1 - x;
+    return {t, x * x * x * (10 - x * (15 - 6 * x)), 60 * x * x * r * r * cosine * per_width};
   }
 };
+
+// r: share of a sum whose other row is sparse in what acts on node l of `nodes`.
+inline double end_ramp(int l, int nodes, const TubeEnds& ends) {
+  const double along = (l + 0.5) / nodes;
+  return ends.begins && ends.ends ? 0.0 : ends.begins ? along : ends.ends ? 1 - along : 1.0;
+}
 
 // One pair of elements.
 struct LineContact {
@@ -110,9 +142,25 @@ struct LineContact {
   SparseNodes sparse;
   TubeEnds ends_i, ends_j;
 
-  // Nodes of what the ramps leave: a row is dense where the other one ends.
-  int near_end_nodes_i() const { return ends_j.any() ? nodes_i : sparse.i; }
-  int near_end_nodes_j() const { return ends_i.any() ? nodes_j : sparse.j; }
+  // Nodes of sum t, and of what its ramps leave: a row is dense where the other one ends.
+  int sum_nodes_i(int t) const {
+    const int own = t < sparse.count ? sparse.sum[static_cast<std::size_t>(t)].i : 0;
+    return own > 0 ? own : nodes_i;
+  }
+  int sum_nodes_j(int t) const {
+    const int own = t < sparse.count ? sparse.sum[static_cast<std::size_t>(t)].j : 0;
+    return own > 0 ? own : nodes_j;
+  }
+  int end_nodes_i(int t) const { return ends_j.any() ? nodes_i : sum_nodes_i(t); }
+  int end_nodes_j(int t) const { return ends_i.any() ? nodes_j : sum_nodes_j(t); }
+  // Whether sum t fades at these ends, and how much of it is left for nodes k of on_i and l of on_j.
+  bool fades(int t) const {
+    return (ends_i.any() && sum_nodes_j(t) < nodes_j) || (ends_j.any() && sum_nodes_i(t) < nodes_i);
+  }
+  double ramp(int t, int k, int on_i, int l, int on_j) const {
+    return (sum_nodes_j(t) < nodes_j ? end_ramp(k, on_i, ends_i) : 1.0) *
+           (sum_nodes_i(t) < nodes_i ? end_ramp(l, on_j, ends_j) : 1.0);
+  }
   // Of the element centres: beyond it no two nodes reach each other, however the elements are turned.
   double cutoff() const {
     return density.cutoff() + 0.5 * (length_i * (1 - 1.0 / nodes_i) + length_j * (1 - 1.0 / nodes_j));
@@ -125,6 +173,7 @@ struct LineContact {
   template <class Share>
   PairForce node_sum(int on_i, int on_j, const Share& share, const Vector3& separation, const Vector3& n_i,
                      const Vector3& n_j) const;
+  PairForce sum(int t, const Vector3& separation, const Vector3& n_i, const Vector3& n_j) const;
 };
 
 // Place of node k of `nodes` on an element, from its centre (nm).
@@ -141,25 +190,32 @@ inline int line_nodes(double length, double pair_spacing, double contact) {
 // For rows of `nodes` per element, the finest of a scene: one choice for all its tubes. At least two nodes: a
 // single one could not turn its element.
 inline SparseNodes sparse_nodes(int nodes) {
+  SparseNodes out;
+  double before = 0;  // rad: where the sum before ends
+  const auto add = [&](int i, int j, double sine2) {
+    const double from = std::asin(std::sqrt(sine2)), full = std::max(0.94 * from, before);
+    if (from < full + 0.01) return;  // rad
+    out.sum[static_cast<std::size_t>(out.count++)] = {i, j, 1 - sine2, std::pow(std::cos(full), 2)};
+    before = from;
+  };
   constexpr double widest = 0.09549150281253;  // sin^2 of 18 degrees
   int m = 2;
   while (m * (m + 1) < nodes) ++m;
-  if (m + 1 > nodes) return {};
-  const double from = std::min(widest, 1.7 / std::max(double(nodes) * nodes - m * (m + 1), 1.0));
-  const double full = std::sin(0.75 * std::asin(std::sqrt(from)));
-  return {m, m + 1, 1 - from, 1 - full * full};
+  if (m + 1 < nodes) add(m, m + 1, std::min(widest, 1.2 / (double(nodes) * nodes - m * (m + 1))));
+  int last = 0;
+  for (const int parts : {3, 2}) {
+    const int few = std::max(2, (nodes + parts - 1) / parts);
+    if (few >= nodes || few == last) continue;
+    add(few, 0, double(few) * few / (double(nodes) * nodes));
+    last = few;
+  }
+  return out;
 }
 
 // With sparse nodes, for tubes of one type.
 inline LineContact line_pair(const LineDensity& density, double length_i, double length_j, int nodes_i,
                              int nodes_j) {
   return {density, length_i, length_j, nodes_i, nodes_j, sparse_nodes(std::max(nodes_i, nodes_j)), {}, {}};
-}
-
-// r: share of the sparse sum in what acts on node l of `nodes`.
-inline double end_ramp(int l, int nodes, const TubeEnds& ends) {
-  const double along = (l + 0.5) / nodes;
-  return ends.begins && ends.ends ? 0.0 : ends.begins ? along : ends.ends ? 1 - along : 1.0;
 }
 
 // Energy per length (eV/nm) of two infinite parallel tubes and energy (eV) of two infinite tubes crossed at
@@ -227,26 +283,28 @@ PairForce LineContact::node_sum(int on_i, int on_j, const Share& share, const Ve
   return f;
 }
 
+inline PairForce LineContact::sum(int t, const Vector3& separation, const Vector3& n_i, const Vector3& n_j) const {
+  const int on_i = sum_nodes_i(t), on_j = sum_nodes_j(t);
+  const auto faded = [&](int k, int l) { return ramp(t, k, on_i, l, on_j); };
+  PairForce f = node_sum(on_i, on_j, faded, separation, n_i, n_j);
+  if (!fades(t)) return f;
+  const int left_i = end_nodes_i(t), left_j = end_nodes_j(t);
+  const auto left = [&](int k, int l) { return 1 - ramp(t, k, left_i, l, left_j); };
+  const PairForce rest = node_sum(left_i, left_j, left, separation, n_i, n_j);
+  f.energy += rest.energy;
+  f.force_j += rest.force_j;
+  f.torque_i += rest.torque_i;
+  f.torque_j += rest.torque_j;
+  return f;
+}
+
 inline PairForce LineContact::energy_and_gradient(const Vector3& separation, const Vector3& n_i,
                                                   const Vector3& n_j) const {
-  const auto all = [](int, int) { return 1.0; };
-  const SparseWeight w = sparse.none() ? SparseWeight{} : sparse.weight(n_i.dot(n_j));
-  if (w.value <= 0) return node_sum(nodes_i, nodes_j, all, separation, n_i, n_j);
-
-  const auto faded = [&](int k, int l) { return end_ramp(k, sparse.i, ends_i) * end_ramp(l, sparse.j, ends_j); };
-  PairForce near = node_sum(sparse.i, sparse.j, faded, separation, n_i, n_j);
-  if (ends_i.any() || ends_j.any()) {
-    const int on_i = near_end_nodes_i(), on_j = near_end_nodes_j();
-    const auto left = [&](int k, int l) { return 1 - end_ramp(k, on_i, ends_i) * end_ramp(l, on_j, ends_j); };
-    const PairForce rest = node_sum(on_i, on_j, left, separation, n_i, n_j);
-    near.energy += rest.energy;
-    near.force_j += rest.force_j;
-    near.torque_i += rest.torque_i;
-    near.torque_j += rest.torque_j;
-  }
+  const SumShare w = sparse.share(n_i.dot(n_j));
+  const PairForce near = sum(w.first, separation, n_i, n_j);
   if (w.value >= 1) return near;
 
-  PairForce f = node_sum(nodes_i, nodes_j, all, separation, n_i, n_j);
+  PairForce f = sum(w.first + 1, separation, n_i, n_j);
   const Vector3 turn = (near.energy - f.energy) * w.derivative * n_i.cross(n_j);
   f.energy += w.value * (near.energy - f.energy);
   f.force_j += w.value * (near.force_j - f.force_j);

@@ -92,20 +92,12 @@ HWY_INLINE Sums<D, K> no_sums(D d) {
   return s;
 }
 
-// Shares and energies of the nodes of a run, none where they are null.
-template <class T>
-struct NodeShares {
-  const T* weight = nullptr;
-  T* energy = nullptr;
-};
-
 // The nodes begin .. begin + count of a row against K nodes of one element; `at` is the place of node `begin` in
 // the buffers of forces.
-template <bool energies, bool shared, int K, class Table, class C>
+template <bool energies, int K, class Table, class C>
 HWY_INLINE void row(const Table& t, const LineNodes<C>& nodes, NodeForces<typename Table::Value>& out, int begin,
                     int count, int at, const C (*from)[3], typename Table::Value factor,
-                    Sums<typename Lanes<typename Table::Value>::D, K>& sums,
-                    const NodeShares<typename Table::Value>& shares = {}) {
+                    Sums<typename Lanes<typename Table::Value>::D, K>& sums) {
   using T = typename Table::Value;
   using L = Lanes<T>;
   const typename L::D d;
@@ -116,8 +108,6 @@ HWY_INLINE void row(const Table& t, const LineNodes<C>& nodes, NodeForces<typena
     T *ox = out.x.data() + (at + m), *oy = out.y.data() + (at + m), *oz = out.z.data() + (at + m);
     auto gx = hn::LoadU(d, ox), gy = hn::LoadU(d, oy), gz = hn::LoadU(d, oz);
     const auto wanted = hn::FirstN(d, static_cast<std::size_t>(count - m));
-    auto weight = kf, each = hn::Zero(d);
-    if constexpr (shared) weight = hn::Mul(kf, hn::LoadU(d, shares.weight + m));
     const auto x0 = L::difference(nodes.x.data() + (begin + m), from[0][0]);
     const auto y0 = L::difference(nodes.y.data() + (begin + m), from[0][1]);
     const auto z0 = L::difference(nodes.z.data() + (begin + m), from[0][2]);
@@ -129,12 +119,8 @@ HWY_INLINE void row(const Table& t, const LineNodes<C>& nodes, NodeForces<typena
       const auto dz = k == 0 ? z0 : hn::Sub(z0, apart(2));
       hn::Vec<typename L::D> u, slope;
       radial<energies>(d, t, hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz))), wanted, u, slope);
-      const auto f = hn::Mul(slope, weight);
-      if constexpr (shared) {
-        each = hn::Add(each, u);
-      } else if constexpr (energies) {
-        energy = hn::Add(energy, u);
-      }
+      const auto f = hn::Mul(slope, kf);
+      if constexpr (energies) energy = hn::Add(energy, u);
       gx = hn::MulAdd(f, dx, gx);
       gy = hn::MulAdd(f, dy, gy);
       gz = hn::MulAdd(f, dz, gz);
@@ -145,10 +131,8 @@ HWY_INLINE void row(const Table& t, const LineNodes<C>& nodes, NodeForces<typena
     hn::StoreU(gx, d, ox);
     hn::StoreU(gy, d, oy);
     hn::StoreU(gz, d, oz);
-    if constexpr (shared)
-      hn::StoreU(hn::MulAdd(each, hn::Set(d, factor), hn::LoadU(d, shares.energy + m)), d, shares.energy + m);
   }
-  if constexpr (energies && !shared) sums.energy = hn::MulAdd(energy, hn::Set(d, factor), sums.energy);
+  if constexpr (energies) sums.energy = hn::MulAdd(energy, hn::Set(d, factor), sums.energy);
 }
 
 template <class D>
@@ -247,7 +231,7 @@ struct Element {
   }
 };
 
-// The nodes k .. k + K of `on_i` on an element, and their sums.
+// K of the nodes of an element, and their sums.
 template <class E, int K>
 struct Nodes {
   using D = typename E::D;
@@ -261,15 +245,13 @@ struct Nodes {
       for (int a = 0; a < 3; ++a) at[m][a] = e.in.nodes[0].coordinate(e.x[a] + s[m] * e.n[a]);
     }
   }
-  template <bool energies, bool shared = false>
-  HWY_INLINE void meet(E& e, const LineRun& run, Rows kind, double weight,
-                       const NodeShares<typename E::Real>& shares = {}) {
+  template <bool energies>
+  HWY_INLINE void meet(E& e, const LineRun& run, Rows kind, double weight) {
     const int which = static_cast<int>(kind);
     const TouchedTube::Row& of_tube = e.touched(run).row[which];
     const int begin = of_tube.origin + run.element_begin * of_tube.per_element + run.nodes[which].from;
-    row<energies, shared, K>(e.table(run.type), e.in.nodes[which], e.work.forces[which], begin,
-                             run.nodes[which].count, begin + of_tube.shift, at,
-                             static_cast<typename E::Real>(weight), sums, shares);
+    row<energies, K>(e.table(run.type), e.in.nodes[which], e.work.forces[which], begin, run.nodes[which].count,
+                     begin + of_tube.shift, at, static_cast<typename E::Real>(weight), sums);
   }
   HWY_INLINE void collect(E& e) const {
     for (int k = 0; k < K; ++k) {
@@ -285,82 +267,27 @@ struct Nodes {
   }
 };
 
-// K of the sparse nodes of an element, with the runs of nearly parallel elements.
+// K nodes of sum t on an element, from node k, with all runs that take it.
 template <bool energies, int K, class E>
-HWY_INLINE void even_runs(E& e, int k, const std::vector<const LineRun*>& runs) {
-  Nodes<E, K> nodes(e, e.sums(runs[0]->type).places[1].data() + k);
+HWY_INLINE void meet_runs(E& e, int t, int k, const std::vector<const LineRun*>& runs) {
+  const Rows kind = e.sums(runs[0]->type).sums[t].rows;
+  Nodes<E, K> nodes(e, e.sums(runs[0]->type).sums[t].places.data() + k);
   for (const LineRun* run : runs) {
-    e.work.forces[1].use(e.touched(*run), Rows::sparse, run->touched);
-    nodes.template meet<energies>(e, *run, Rows::sparse, e.sums(run->type).weight[1]);
+    e.work.forces[static_cast<int>(kind)].use(e.touched(*run), kind, run->touched);
+    nodes.template meet<energies>(e, *run, kind, e.sums(run->type).sums[t].weight);
   }
   nodes.collect(e);
 }
 
-// All nodes of a kind against those of one run, with shares or without.
-template <bool energies, bool shared, class E>
-HWY_INLINE void row_sum(E& e, const LineRun& run, Rows kind, const NodeShares<typename E::Real>& shares = {}) {
-  const int which = static_cast<int>(kind);
-  const PairSum<typename E::Real>& sums = e.sums(run.type);
-  const double *places = sums.places[which].data(), weight = sums.weight[which];
-  const int count = static_cast<int>(sums.places[which].size());
-  e.work.forces[which].use(e.touched(run), kind, run.touched);
-  int k = 0;
-  for (; k + 2 <= count; k += 2) {
-    Nodes<E, 2> nodes(e, places + k);
-    nodes.template meet<energies, shared>(e, run, kind, weight, shares);
-    nodes.collect(e);
-  }
-  for (; k < count; ++k) {
-    Nodes<E, 1> nodes(e, places + k);
-    nodes.template meet<energies, shared>(e, run, kind, weight, shares);
-    nodes.collect(e);
-  }
-}
-
+// The runs that take sum t throughout.
 template <bool energies, class E>
-HWY_NOINLINE void dense_run(E& e, const LineRun& run) {
-  row_sum<energies, false>(e, run, Rows::all);
-}
-
-// Rows of both kinds, where some elements of a run are nearly parallel and others less.
-template <class E>
-HWY_NOINLINE void mixed_run(E& e, const LineRun& run) {
-  using Real = typename E::Real;
-  const LineContact& law = e.law(run.type);
-  LineWork<Real>& w = e.work;
-  const Vec3Array& axis = *e.in.axis;
-  w.share.clear();
-  for (int j = run.element_begin; j < run.element_begin + run.elements; ++j) {
-    const auto sj = static_cast<std::size_t>(j);
-    w.share.push_back(law.sparse.weight(e.n[0] * axis.x[sj] + e.n[1] * axis.y[sj] + e.n[2] * axis.z[sj]));
-  }
-  const int per_element[row_kinds] = {law.nodes_j, law.sparse.j};
-  const auto element_of = [&](int kind, int l) {
-    return static_cast<std::size_t>((run.nodes[kind].from + l) / per_element[kind]);
-  };
-  for (const Rows rows : {Rows::sparse, Rows::all}) {
-    const int kind = static_cast<int>(rows), count = run.nodes[kind].count;
-    w.weight[kind].assign(static_cast<std::size_t>(count + NodeLayout::pad), Real{0});
-    w.energy[kind].assign(static_cast<std::size_t>(count + NodeLayout::pad), Real{0});
-    for (int l = 0; l < count; ++l) {
-      const double share = w.share[element_of(kind, l)].value;
-      w.weight[kind][static_cast<std::size_t>(l)] = static_cast<Real>(rows == Rows::sparse ? share : 1 - share);
-    }
-    row_sum<true, true>(e, run, rows, {w.weight[kind].data(), w.energy[kind].data()});
-  }
-  // The share depends on the angle: a couple on both.
-  const int shift = e.touched(run).element_shift;
-  int at[row_kinds] = {0, 0};
-  for (int m = 0; m < run.elements; ++m) {
-    const SparseWeight& share = w.share[static_cast<std::size_t>(m)];
-    double energy[row_kinds] = {0, 0};
-    for (int kind = 0; kind < row_kinds; ++kind)
-      for (; at[kind] < run.nodes[kind].count && element_of(kind, at[kind]) == static_cast<std::size_t>(m);
-           ++at[kind])
-        energy[kind] += static_cast<double>(w.energy[kind][static_cast<std::size_t>(at[kind])]);
-    e.sum.energy += share.value * energy[1] + (1 - share.value) * energy[0];
-    e.turn(run.element_begin + m, shift, (energy[1] - energy[0]) * share.derivative);
-  }
+HWY_INLINE void sum_rows(E& e, int t) {
+  const std::vector<const LineRun*>& runs = e.work.runs[t];
+  if (runs.empty()) return;
+  const int on_i = static_cast<int>(e.sums(runs[0]->type).sums[t].places.size());
+  int k = 0;
+  for (; k + 2 <= on_i; k += 2) meet_runs<energies, 2>(e, t, k, runs);
+  for (; k < on_i; ++k) meet_runs<energies, 1>(e, t, k, runs);
 }
 
 // Another element, from the one that the loop stands at, and what acts on it.
@@ -384,6 +311,8 @@ struct Partner {
     }
     fx = fy = fz = mx = my = mz = hn::Zero(typename E::D());
   }
+
+  HWY_INLINE double cosine(const E& e) const { return e.n[0] * n[0] + e.n[1] * n[1] + e.n[2] * n[2]; }
 
   // The pairs of nodes in `lanes`, times `share`. Returns their energy, if wanted, without the share.
   template <bool energies>
@@ -426,45 +355,83 @@ struct Partner {
   }
 };
 
-// A run element by element: at the ends of tubes, and at angles where one sum goes over into the other.
+// Element j, with the shares w of its sums.
 template <bool energies, class E>
-HWY_NOINLINE void pair_run(E& e, const LineRun& run) {
-  const LineContact& law = e.law(run.type);
+HWY_INLINE void meet_element(E& e, const LineRun& run, int j, const SumShare& w, Partner<E>& other) {
   const auto& table = e.table(run.type);
   const PairSum<typename E::Real>& sums = e.sums(run.type);
-  const auto& near = sums.near[sums.index(e.ends)][sums.index(run.tube_ends())];
+  const TubeEnds ends = run.tube_ends();
   const int shift = e.touched(run).element_shift;
+  const auto& lanes = sums.pairs(w.first, e.ends, ends);
+  if (w.value >= 1) {
+    e.sum.energy += other.template meet<energies>(e, table, lanes, 1);
+  } else {
+    const double near = other.template meet<true>(e, table, lanes, w.value);
+    const double next = other.template meet<true>(e, table, sums.pairs(w.first + 1, e.ends, ends), 1 - w.value);
+    e.sum.energy += w.value * near + (1 - w.value) * next;
+    // The share depends on the angle: a couple on both.
+    e.turn(j, shift, (near - next) * w.derivative);
+  }
+  other.add_to(e.out, static_cast<std::size_t>(j + shift));
+}
+
+// A run element by element: at the ends of tubes.
+template <bool energies, class E>
+HWY_NOINLINE void pair_run(E& e, const LineRun& run) {
   for (int j = run.element_begin; j < run.element_begin + run.elements; ++j) {
     Partner<E> other(e, j);
-    const double c = e.n[0] * other.n[0] + e.n[1] * other.n[1] + e.n[2] * other.n[2];
-    const SparseWeight w = law.sparse.none() ? SparseWeight{} : law.sparse.weight(c);
-    const auto at = static_cast<std::size_t>(j + shift);
-    if (w.value <= 0 || w.value >= 1) {
-      e.sum.energy += other.template meet<energies>(e, table, w.value <= 0 ? sums.all : near, 1);
-    } else {
-      const double sparse = other.template meet<true>(e, table, near, w.value);
-      const double dense = other.template meet<true>(e, table, sums.all, 1 - w.value);
-      e.sum.energy += w.value * sparse + (1 - w.value) * dense;
-      // The share depends on the angle: a couple on both.
-      e.turn(j, shift, (sparse - dense) * w.derivative);
-    }
-    other.add_to(e.out, at);
+    meet_element<energies>(e, run, j, e.law(run.type).sparse.share(other.cosine(e)), other);
   }
 }
 
-// run_sum(); of most runs it is known since the list was built that all elements are nearly parallel, and of most
-// others one comparison tells.
+// The elements m .. end of a run, for rows.
+HWY_INLINE LineRun part_of(const LineRun& run, Rows kind, int each, int m, int end) {
+  LineRun part = run;
+  LineRun::Nodes& nodes = part.nodes[static_cast<int>(kind)];
+  const int to = std::min(nodes.from + nodes.count, end * each);
+  nodes.from = static_cast<short>(std::max<int>(nodes.from, m * each));
+  nodes.count = static_cast<short>(std::max(to - nodes.from, 0));
+  return part;
+}
+
+// A run whose angles are such that one sum goes over into the next: rows of those elements that take one sum, and
+// the others one by one.
+template <bool energies, class E>
+HWY_NOINLINE void split_run(E& e, const LineRun& run) {
+  const LineContact& law = e.law(run.type);
+  int began = 0, of = -1;  // the row that is being made, and its sum
+  const auto finish = [&](int end) {
+    if (of < 0) return;
+    const Rows kind = e.sums(run.type).sums[of].rows;
+    const LineRun part = part_of(run, kind, law.sum_nodes_j(of), began, end);
+    if (part.of(kind).count == 0) return;
+    e.work.parts.push_back(part);
+    e.work.runs[of].push_back(&e.work.parts.back());
+  };
+  for (int m = 0; m < run.elements; ++m) {
+    Partner<E> other(e, run.element_begin + m);
+    const SumShare w = law.sparse.share(other.cosine(e));
+    const int takes = w.value < 1 ? -1 : w.first;
+    if (takes != of) {
+      finish(m);
+      began = m, of = takes;
+    }
+    if (takes < 0) meet_element<energies>(e, run, run.element_begin + m, w, other);
+  }
+  finish(run.elements);
+}
+
+// run_sum(); of most runs it is known since the list was built that all elements are nearly parallel.
 template <class E>
-HWY_INLINE RunSum kind_of_sum(const E& e, const LineRun& run) {
+HWY_INLINE RunSum sum_of(const E& e, const LineRun& run) {
   const LineContact& law = e.law(run.type);
   const bool has_row = e.touched(run).row[0].per_element > 0;
   if (HWY_LIKELY(e.in.turned < static_cast<double>(run.even))) return run_sum(law, e.ends, run, has_row, 1, 1);
   const hn::CappedTag<double, 8> d;
   const Vec3Array& axis = *e.in.axis;
   const auto nx = hn::Set(d, e.n[0]), ny = hn::Set(d, e.n[1]), nz = hn::Set(d, e.n[2]);
-  const auto full = hn::Set(d, law.sparse.full_cos2);
-  auto largest = hn::Zero(d);
-  bool even = true;
+  const auto one = hn::Set(d, 1.0);
+  auto largest = hn::Zero(d), smallest = one;
   for (int m = 0; m < run.elements; m += static_cast<int>(hn::Lanes(d))) {
     const auto left = static_cast<std::size_t>(run.elements - m);
     const auto at = [&](const std::vector<double>& a) {
@@ -473,46 +440,48 @@ HWY_INLINE RunSum kind_of_sum(const E& e, const LineRun& run) {
     const auto c = hn::MulAdd(nx, at(axis.x), hn::MulAdd(ny, at(axis.y), hn::Mul(nz, at(axis.z))));
     const auto c2 = hn::Mul(c, c);  // of the lanes left over it is zero
     largest = hn::Max(largest, c2);
-    even &= hn::AllFalse(d, hn::And(hn::FirstN(d, left), hn::Lt(c2, full)));
+    smallest = hn::Min(smallest, hn::IfThenElse(hn::FirstN(d, left), c2, one));
   }
-  if (HWY_LIKELY(even)) return run_sum(law, e.ends, run, has_row, 1, 1);
-  return run_sum(law, e.ends, run, has_row, 0, hn::GetLane(hn::MaxOfLanes(d, largest)));
+  return run_sum(law, e.ends, run, has_row, hn::GetLane(hn::MinOfLanes(d, smallest)),
+                 hn::GetLane(hn::MaxOfLanes(d, largest)));
+}
+
+template <class In>
+std::size_t elements_of_runs(const In& in, int i) {
+  std::size_t sum = 0;
+  for (const LineRun* run = in.list->begin(i); run != in.list->end(i); ++run)
+    sum += static_cast<std::size_t>(run->elements);
+  return sum;
 }
 
 template <bool energies, class In, class Real>
 HWY_INLINE void all_elements(const In& in, const LineChunk& chunk, LineWork<Real>& work, ContactBuffer& out) {
   const Topology& topology = *in.topology;
-  std::vector<const LineRun*>& even = work.even;
   int tube = chunk.begin < chunk.end ? topology.tube_of(chunk.begin) : 0;
   const int shift = chunk.own_shift();
   for (int i = chunk.begin; i < chunk.end; ++i) {
     while (i >= topology.tube_begin[tube + 1]) ++tube;
     if (in.list->begin(i) == in.list->end(i)) continue;
     Element<In> e(in, chunk, work, out, i, tube);
-    even.clear();
+    for (auto& runs : work.runs) runs.clear();
+    work.parts.clear();
     for (const LineRun* run = in.list->begin(i); run != in.list->end(i); ++run) {
       if (static_cast<double>(run->beyond) > in.moved || run->elements == 0) continue;
-      switch (kind_of_sum(e, *run)) {
-        case RunSum::even:
-          even.push_back(run);
-          break;
+      const RunSum sum = sum_of(e, *run);
+      switch (sum.kind) {
         case RunSum::rows:
-          dense_run<energies>(e, *run);
+          work.runs[sum.first].push_back(run);
           break;
-        case RunSum::mixed:
-          mixed_run(e, *run);
+        case RunSum::split:
+          if (work.parts.empty()) work.parts.reserve(elements_of_runs(in, i));  // no part moves any more
+          split_run<energies>(e, *run);
           break;
         case RunSum::pairs:
           pair_run<energies>(e, *run);
           break;
       }
     }
-    if (!even.empty()) {
-      const int on_i = static_cast<int>(e.sums(even[0]->type).places[1].size());
-      int k = 0;
-      for (; k + 2 <= on_i; k += 2) even_runs<energies, 2>(e, k, even);
-      for (; k < on_i; ++k) even_runs<energies, 1>(e, k, even);
-    }
+    for (int t = 0; t < line_sums; ++t) sum_rows<energies>(e, t);
     e.template add_to<energies>(out, i + shift);
   }
 }

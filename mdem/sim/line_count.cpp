@@ -24,10 +24,9 @@ struct Counter {
     count.evaluations += vectors * lanes;
   }
 
-  void add_row(const LineContact& law, int i, const LineRun& run, Rows kind, RadialCount& count) const {
-    const LineRun::Nodes& nodes = run.of(kind);
-    const int on_i = kind == Rows::all ? law.nodes_i : law.sparse.i;
-    const int on_j = kind == Rows::all ? law.nodes_j : law.sparse.j;
+  void add_row(const LineContact& law, int i, const LineRun& run, int sum, RadialCount& count) const {
+    const LineRun::Nodes& nodes = run.of(law.sparse.thins_j(sum) ? Rows::sparse : Rows::all);
+    const int on_i = law.sum_nodes_i(sum), on_j = law.sum_nodes_j(sum);
     count.nodes += nodes.count;
     add_vectors(nodes.count, on_i, count);
     for (int m = nodes.from; m < nodes.from + nodes.count; ++m) {
@@ -67,15 +66,15 @@ struct Counter {
       }
       const bool has_row = list.layout(Rows::all).has_row(topology.tube_of(run->element_begin));
       const RunSum sum = run_sum(law, ends, *run, has_row, smallest, largest);
-      if (sum == RunSum::even || sum == RunSum::mixed) add_row(law, i, *run, Rows::sparse, count);
-      if (sum == RunSum::rows || sum == RunSum::mixed) add_row(law, i, *run, Rows::all, count);
-      if (sum != RunSum::pairs) continue;
+      if (sum.kind == RunSum::rows) {
+        add_row(law, i, *run, sum.first, count);
+        continue;
+      }
       for (int j = run->element_begin; j < run->element_begin + run->elements; ++j) {
-        const double w = law.sparse.none() ? 0 : law.sparse.weight(axis(i).dot(axis(j))).value;
-        const PairSum<double>& s = sums[pair];
+        const SumShare w = law.sparse.share(axis(i).dot(axis(j)));
         count.pairs += 1;
-        if (w > 0) add_pairs(law, i, s.near[s.index(ends)][s.index(run->tube_ends())], j, count);
-        if (w < 1) add_pairs(law, i, s.all, j, count);
+        for (int t = w.first; t <= w.first + (w.value < 1 ? 1 : 0); ++t)
+          add_pairs(law, i, sums[pair].pairs(t, ends, run->tube_ends()), j, count);
       }
     }
   }

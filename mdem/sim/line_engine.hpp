@@ -45,14 +45,15 @@ struct NodeForces {
   }
 };
 
+// The sparse ones, and that over all nodes.
+inline constexpr int line_sums = SparseNodes::most + 1;
+
 // Of a chunk.
 template <class T>
 struct LineWork {
   NodeForces<T> forces[row_kinds];
-  std::vector<const LineRun*> even;  // runs of one element that take the sparse sum throughout
-  // Of a run whose elements do not all take the same sum: shares of the elements, shares and energies of the nodes.
-  std::vector<SparseWeight> share;
-  std::vector<T> weight[row_kinds], energy[row_kinds];
+  std::vector<const LineRun*> runs[line_sums];  // of one element, that take this sum throughout
+  std::vector<LineRun> parts;                   // of runs whose elements do not all take the same sum
 
   void start(const LineChunk& chunk) {
     for (int kind = 0; kind < row_kinds; ++kind) forces[kind].start(chunk.nodes[kind], chunk.touched.size());
@@ -78,45 +79,42 @@ struct PairLanes {
   }
 };
 
-// What two elements sum over (LineContact), for the ends of tubes too.
+// What two elements sum over (LineContact).
 template <class T>
 struct PairSum {
-  PairLanes<T> all;         // at large angles
-  PairLanes<T> near[4][4];  // at small ones, by the ends of i and of j
-  // Rows: places of i's nodes (nm) and the weight of a pair (nm^2), of each kind.
-  std::vector<double> places[row_kinds];
-  double weight[row_kinds] = {0, 0};
+  // One of its sums: as a row, with the places of i's nodes (nm) and the weight of a pair (nm^2); pair by pair, by
+  // the ends of i and of j.
+  struct Sum {
+    Rows rows = Rows::all;
+    std::vector<double> places;
+    double weight = 0;
+    PairLanes<T> pairs[4][4];
+  };
+  Sum sums[line_sums];
 
   static int index(const TubeEnds& e) { return (e.begins ? 1 : 0) + (e.ends ? 2 : 0); }
-  explicit PairSum(LineContact law) {
-    all.add(law, law.nodes_i, law.nodes_j, [](int, int) { return 1.0; });
-    all.fill_up();
-    describe_rows(Rows::all, law, law.nodes_i, law.nodes_j);
-    if (law.sparse.none()) return;
-    describe_rows(Rows::sparse, law, law.sparse.i, law.sparse.j);
-    for (int a = 0; a < 4; ++a)
-      for (int b = 0; b < 4; ++b) {
-        law.ends_i = {(a & 1) != 0, (a & 2) != 0};
-        law.ends_j = {(b & 1) != 0, (b & 2) != 0};
-        const auto faded = [&](int on_i, int on_j) {
-          return [&law, on_i, on_j](int k, int l) {
-            return end_ramp(k, on_i, law.ends_i) * end_ramp(l, on_j, law.ends_j);
-          };
-        };
-        PairLanes<T>& lanes = near[a][b];
-        lanes.add(law, law.sparse.i, law.sparse.j, faded(law.sparse.i, law.sparse.j));
-        const int on_i = law.near_end_nodes_i(), on_j = law.near_end_nodes_j();
-        const auto ramp = faded(on_i, on_j);
-        if (a != 0 || b != 0) lanes.add(law, on_i, on_j, [&](int k, int l) { return 1 - ramp(k, l); });
-        lanes.fill_up();
-      }
+  const PairLanes<T>& pairs(int sum, const TubeEnds& ends_i, const TubeEnds& ends_j) const {
+    return sums[sum].pairs[index(ends_i)][index(ends_j)];
   }
-
- private:
-  void describe_rows(Rows kind, const LineContact& law, int on_i, int on_j) {
-    const int at = static_cast<int>(kind);
-    weight[at] = law.length_i / on_i * law.length_j / on_j;
-    for (int k = 0; k < on_i; ++k) places[at].push_back(line_node(k, on_i, law.length_i));
+  explicit PairSum(LineContact law) {
+    for (int t = 0; t <= law.sparse.count; ++t) {
+      const int on_i = law.sum_nodes_i(t), on_j = law.sum_nodes_j(t);
+      Sum& sum = sums[t];
+      sum.rows = law.sparse.thins_j(t) ? Rows::sparse : Rows::all;
+      sum.weight = law.length_i / on_i * law.length_j / on_j;
+      for (int k = 0; k < on_i; ++k) sum.places.push_back(line_node(k, on_i, law.length_i));
+      for (int a = 0; a < 4; ++a)
+        for (int b = 0; b < 4; ++b) {
+          law.ends_i = {(a & 1) != 0, (a & 2) != 0};
+          law.ends_j = {(b & 1) != 0, (b & 2) != 0};
+          PairLanes<T>& lanes = sum.pairs[a][b];
+          lanes.add(law, on_i, on_j, [&](int k, int l) { return law.ramp(t, k, on_i, l, on_j); });
+          const int left_i = law.end_nodes_i(t), left_j = law.end_nodes_j(t);
+          if (law.fades(t))
+            lanes.add(law, left_i, left_j, [&](int k, int l) { return 1 - law.ramp(t, k, left_i, l, left_j); });
+          lanes.fill_up();
+        }
+    }
   }
 };
 

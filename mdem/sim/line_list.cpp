@@ -21,7 +21,7 @@ void check_nodes(const Topology& topology, const Interaction& in) {
     for (std::size_t b = 0; b < types; ++b) {
       const LineContact &as_i = in.line[a * types + b], &as_j = in.line[b * types + a];
       if (as_i.nodes_i != in.line[a * types].nodes_i || as_j.nodes_j != in.line[a * types].nodes_i ||
-          as_i.sparse.j != in.line[0].sparse.j)
+          as_i.sparse.sum[0].j != in.line[0].sparse.sum[0].j)
         throw std::invalid_argument("a tube type has one number of nodes towards all others");
     }
 }
@@ -80,7 +80,7 @@ struct Side {
     run.element_begin = first;
     run.begins = first == topology.tube_begin[tube_j];
     run.ends = last + 1 == topology.tube_begin[tube_j + 1];
-    const int counts[row_kinds] = {k.nodes_j, k.sparse.j};
+    const int counts[row_kinds] = {k.nodes_j, k.sparse.sum[0].j};
     int from = last + 1, to = first;  // elements with nodes within reach
     for (int kind = 0; kind < row_kinds; ++kind) {
       const int count = counts[kind];
@@ -98,11 +98,11 @@ struct Side {
         run.nodes[kind].from = static_cast<short>(run.nodes[kind].from - (from - first) * counts[kind]);
       double smallest = 1;
       for (int j = from; j < to; ++j) smallest = std::min(smallest, std::pow(axis(i).dot(axis(j)), 2));
-      all_rows_wanted |= k.sparse.none() || smallest < k.sparse.full_cos2;
+      all_rows_wanted |= !k.sparse.thins_j(k.sparse.last_of(smallest));
       // Both elements may turn, by 1.01 times the change of an axis at most where that is small.
-      if (!k.sparse.none())
+      if (k.sparse.count > 0)
         run.even = static_cast<float>(
-            (std::acos(std::sqrt(k.sparse.full_cos2)) - std::acos(std::sqrt(smallest))) / 2.02 - 1e-6);
+            (std::acos(std::sqrt(k.sparse.sum[0].full_cos2)) - std::acos(std::sqrt(smallest))) / 2.02 - 1e-6);
     }
     find_damped(first, last, run);
     return run;
@@ -167,7 +167,7 @@ void LineList::lay_out_rows(const Topology& topology, const Interaction& in, con
     NodeLayout& layout = layout_[static_cast<int>(kind)];
     layout = {};
     for (std::size_t a = 0; a < types; ++a)
-      layout.per_element.push_back(kind == Rows::all ? in.line[a * types].nodes_i : in.line[0].sparse.j);
+      layout.per_element.push_back(kind == Rows::all ? in.line[a * types].nodes_i : in.line[0].sparse.sum[0].j);
     int at = 0;
     for (int t = 0; t < topology.tubes(); ++t) {
       layout.begin.push_back(at);

@@ -10,7 +10,7 @@
 
 namespace ropewalk {
 
-// Two kinds of rows: with all nodes of the elements, and with the sparse ones that stand for j.
+// Two kinds of rows: with all nodes of the elements, and with the few that stand for j at the smallest angles.
 enum class Rows { all = 0, sparse = 1 };
 inline constexpr int row_kinds = 2;
 
@@ -35,7 +35,7 @@ struct LineRun {
   int element_begin = 0;
   int touched = 0;     // which of the chunk's touched tubes
   float beyond = 0;    // nm: by so much the nearest node was out of reach at the build
-  float even = -1;     // rad: so long as no axis of the scene has turned by more, all elements are nearly parallel
+  float even = -1;     // rad: so long as no axis of the scene has turned by more, the first sum holds throughout
   short elements = 0;  // with nodes within reach
   short type = 0;      // tube type
   Nodes nodes[row_kinds];
@@ -107,20 +107,26 @@ class LineList {
   double unit_ = 1;
 };
 
-// How the kernel sums a run, by the smallest and the largest (n_i.n_j)^2 in it.
-enum class RunSum {
-  even,   // sparse nodes throughout
-  rows,   // all nodes throughout
-  mixed,  // rows of both, with a share for each element
-  pairs   // element by element
+// How the kernel sums a run, by the smallest and the largest (n_i.n_j)^2 in it: the sums first .. last have a
+// share.
+struct RunSum {
+  enum Kind {
+    rows,   // one sum throughout
+    split,  // rows of each, and those elements one by one where one sum goes over into the next
+    pairs   // all elements one by one
+  } kind = rows;
+  int first = 0, last = 0;
 };
 inline RunSum run_sum(const LineContact& law, const TubeEnds& ends_i, const LineRun& run, bool has_row,
                       double smallest, double largest) {
-  const SparseNodes& sparse = law.sparse;
-  if (!sparse.none() && smallest >= sparse.full_cos2 && !run.begins && !run.ends && !ends_i.any())
-    return RunSum::even;
-  if (has_row && (sparse.none() || largest <= sparse.from_cos2)) return RunSum::rows;
-  return has_row && !run.begins && !run.ends && !ends_i.any() ? RunSum::mixed : RunSum::pairs;
+  RunSum out;
+  out.first = law.sparse.first_of(largest);
+  out.last = law.sparse.last_of(smallest);
+  const bool all_thin = law.sparse.thins_j(out.last), some_thin = law.sparse.thins_j(out.first);
+  const bool sparse = out.first < law.sparse.count;
+  const bool fades = sparse && (run.begins || run.ends || (some_thin && ends_i.any()));
+  out.kind = fades || !(all_thin || has_row) ? RunSum::pairs : out.first == out.last ? RunSum::rows : RunSum::split;
+  return out;
 }
 
 }  // namespace ropewalk

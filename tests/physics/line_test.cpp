@@ -57,7 +57,8 @@ TEST_P(LineRows, ParallelRowsSlideWithoutFeelingTheirElements) {
 TEST_P(LineRows, CrossedRowsSlideToo) {
   const LineContact k = contact(GetParam().first, GetParam().second);
   // Sparse sums at small angles, all nodes at large ones, between them both.
-  for (const double angle : {3.0, 5.0, 7.0, 8.0, 9.0, 10.0, 11.0, 12.0, 13.0, 14.0, 18.0, 30.0, 60.0, 90.0}) {
+  for (const double angle : {3.0,  5.0,  7.0,  8.0,  9.0,  10.0, 11.0, 12.0, 13.0, 14.0, 16.0,
+                             18.0, 19.0, 20.0, 22.0, 25.0, 28.0, 30.0, 45.0, 60.0, 90.0}) {
     const LineWell well = line_crossed_well(k.density, angle * units::degree);
     Spread s;
     for (int n = 0; n < 9; ++n)

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include "model/contact_line.hpp"
 #include "unit/support.hpp"
 
@@ -263,15 +265,19 @@ Law sparse_law(TubeEnds ends_i, TubeEnds ends_j) {
   k.ends_i = ends_i;
   k.ends_j = ends_j;
   const auto seam = [k](const Pose& p) {
-    for (const int on_i : {k.nodes_i, k.sparse.i})
-      for (const int on_j : {k.nodes_j, k.sparse.j}) {
-        LineContact some = k;
-        some.nodes_i = on_i;
-        some.nodes_j = on_j;
-        if (near_a_seam(some, p)) return true;
-      }
     const double c2 = std::pow(p.ni.dot(p.nj), 2);
-    return std::fabs(c2 - k.sparse.from_cos2) < 3e-3 || std::fabs(c2 - k.sparse.full_cos2) < 3e-3;
+    for (int t = 0; t < k.sparse.count; ++t) {
+      const SparseSum& sum = k.sparse.sum[static_cast<std::size_t>(t)];
+      if (std::fabs(c2 - sum.from_cos2) < 1e-3 || std::fabs(c2 - sum.full_cos2) < 1e-3) return true;
+      for (const int on_i : {k.nodes_i, k.sum_nodes_i(t)})
+        for (const int on_j : {k.nodes_j, k.sum_nodes_j(t)}) {
+          LineContact some = k;
+          some.nodes_i = on_i;
+          some.nodes_j = on_j;
+          if (near_a_seam(some, p)) return true;
+        }
+    }
+    return false;
   };
   return law_of("Sparse", k, seam, 0.3, 1.3, 4.0);
 }
@@ -287,25 +293,26 @@ TEST(LineContact, SparseSumsAreGradientsToo) {
                               EndCase{last, inner}, EndCase{first, last}, EndCase{lone, inner}}) {
     const Law k = sparse_law(ends.i, ends.j);
     Random random(11);
-    int tested = 0, between = 0;
-    for (int n = 0; n < 20000 && tested < 1500; ++n) {
+    int tested = 0;
+    std::array<int, 3> between{};
+    for (int n = 0; n < 80000 && tested < 6000; ++n) {
       Pose p = random_pose(random, k.wall, k.far);
-      p.nj = test::turn(p.ni.cross(random.direction()).normalized(), random.uniform(0, 0.4)) * p.ni;
+      p.nj = test::turn(p.ni.cross(random.direction()).normalized(), random.uniform(0, 0.75)) * p.ni;
       if (k.near_a_seam(p)) continue;
       const PairForce f = k.energy_and_gradient(p.separation, p.ni, p.nj);
       if (std::fabs(f.energy) > 1.0) continue;
       ++tested;
-      const double share = sparse.weight(p.ni.dot(p.nj)).value;
-      between += share > 0 && share < 1;
+      const SumShare share = sparse.share(p.ni.dot(p.nj));
+      if (share.value < 1) ++between.at(static_cast<std::size_t>(share.first));
       const Differences d = differences(k, p);
       ASSERT_LT((f.force_j - d.force_j).norm(), 1e-6 * scale_of(f));
-      ASSERT_LT((f.torque_i - d.torque_i).norm(), 1e-6 * scale_of(f)) << share;
-      ASSERT_LT((f.torque_j - d.torque_j).norm(), 1e-6 * scale_of(f)) << share;
+      ASSERT_LT((f.torque_i - d.torque_i).norm(), 1e-6 * scale_of(f)) << share.first;
+      ASSERT_LT((f.torque_j - d.torque_j).norm(), 1e-6 * scale_of(f)) << share.first;
       const Vector3 net = f.torque_i + f.torque_j + p.separation.cross(f.force_j);
       ASSERT_LT(net.norm(), 1e-12 * (scale_of(f) + p.separation.norm() * f.force_j.norm()));
     }
-    EXPECT_GE(tested, 1500);
-    EXPECT_GE(between, 100);
+    EXPECT_GE(tested, 6000);
+    for (int t = 0; t < sparse.count; ++t) EXPECT_GE(between.at(static_cast<std::size_t>(t)), 100) << t;
   }
 }
 
