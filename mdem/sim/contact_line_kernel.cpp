@@ -425,8 +425,9 @@ HWY_NOINLINE void split_run(E& e, const LineRun& run) {
 template <class E>
 HWY_INLINE RunSum sum_of(const E& e, const LineRun& run) {
   const LineContact& law = e.law(run.type);
+  if (HWY_LIKELY(e.in.turned < static_cast<double>(run.even)))
+    return {fades(law.sparse, 0, e.ends, run) ? RunSum::pairs : RunSum::rows, 0, 0};
   const bool has_row = e.touched(run).row[0].per_element > 0;
-  if (HWY_LIKELY(e.in.turned < static_cast<double>(run.even))) return run_sum(law, e.ends, run, has_row, 1, 1);
   const hn::CappedTag<double, 8> d;
   const Vec3Array& axis = *e.in.axis;
   const auto nx = hn::Set(d, e.n[0]), ny = hn::Set(d, e.n[1]), nz = hn::Set(d, e.n[2]);

@@ -117,16 +117,16 @@ struct RunSum {
   } kind = rows;
   int first = 0, last = 0;
 };
+// Whether a sum that some of the run takes fades at the ends of tubes.
+inline bool fades(const SparseNodes& sparse, int first, const TubeEnds& ends_i, const LineRun& run) {
+  return first < sparse.count && (run.begins || run.ends || (sparse.thins_j(first) && ends_i.any()));
+}
 inline RunSum run_sum(const LineContact& law, const TubeEnds& ends_i, const LineRun& run, bool has_row,
                       double smallest, double largest) {
-  RunSum out;
-  out.first = law.sparse.first_of(largest);
-  out.last = law.sparse.last_of(smallest);
-  const bool all_thin = law.sparse.thins_j(out.last), some_thin = law.sparse.thins_j(out.first);
-  const bool sparse = out.first < law.sparse.count;
-  const bool fades = sparse && (run.begins || run.ends || (some_thin && ends_i.any()));
-  out.kind = fades || !(all_thin || has_row) ? RunSum::pairs : out.first == out.last ? RunSum::rows : RunSum::split;
-  return out;
+  const int first = law.sparse.first_of(largest), last = law.sparse.last_of(smallest);
+  if (fades(law.sparse, first, ends_i, run) || !(has_row || law.sparse.thins_j(last)))
+    return {RunSum::pairs, first, last};
+  return {first == last ? RunSum::rows : RunSum::split, first, last};
 }
 
 }  // namespace ropewalk

@@ -295,7 +295,7 @@ TEST(LineContact, SparseSumsAreGradientsToo) {
     Random random(11);
     int tested = 0;
     std::array<int, 3> between{};
-    for (int n = 0; n < 80000 && tested < 6000; ++n) {
+    for (int n = 0; n < 150000 && tested < 12000; ++n) {
       Pose p = random_pose(random, k.wall, k.far);
       p.nj = test::turn(p.ni.cross(random.direction()).normalized(), random.uniform(0, 0.75)) * p.ni;
       if (k.near_a_seam(p)) continue;
@@ -305,13 +305,13 @@ TEST(LineContact, SparseSumsAreGradientsToo) {
       const SumShare share = sparse.share(p.ni.dot(p.nj));
       if (share.value < 1) ++between.at(static_cast<std::size_t>(share.first));
       const Differences d = differences(k, p);
-      ASSERT_LT((f.force_j - d.force_j).norm(), 1e-6 * scale_of(f));
-      ASSERT_LT((f.torque_i - d.torque_i).norm(), 1e-6 * scale_of(f)) << share.first;
-      ASSERT_LT((f.torque_j - d.torque_j).norm(), 1e-6 * scale_of(f)) << share.first;
+      ASSERT_LT((f.force_j - d.force_j).norm(), 2e-6 * scale_of(f));
+      ASSERT_LT((f.torque_i - d.torque_i).norm(), 2e-6 * scale_of(f)) << share.first;
+      ASSERT_LT((f.torque_j - d.torque_j).norm(), 2e-6 * scale_of(f)) << share.first;
       const Vector3 net = f.torque_i + f.torque_j + p.separation.cross(f.force_j);
       ASSERT_LT(net.norm(), 1e-12 * (scale_of(f) + p.separation.norm() * f.force_j.norm()));
     }
-    EXPECT_GE(tested, 6000);
+    EXPECT_GE(tested, 12000);
     for (int t = 0; t < sparse.count; ++t) EXPECT_GE(between.at(static_cast<std::size_t>(t)), 100) << t;
   }
 }
