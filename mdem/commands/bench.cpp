@@ -2,13 +2,13 @@
 #include <fmt/format.h>
 #include <omp.h>
 #include <sys/resource.h>
-#include <time.h>
 
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "commands/bench_scenes.hpp"
 #include "commands/commands.hpp"
+#include "commands/processor_time.hpp"
 #include "model/error.hpp"
 #include "scene/prepare.hpp"
 #include "sim/line_count.hpp"
@@ -20,13 +20,6 @@ struct Timing {
   double wall = 0, processor = 0, frames = 0, contact = 0, bonds = 0, list = 0, integration = 0;
   long builds = 0;
 };
-
-// Of all threads. On a machine that does other work as well it says more than the wall time.
-double processor_seconds() {
-  timespec t{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 // The runs of the line law are part of the list.
 Timing timing(const Simulation& s, double wall, double processor) {

@@ -137,6 +137,28 @@ TEST_F(Cli, TwoLevelsResumeBitForBit) {
   EXPECT_EQ(Json::parse(bench.out).at("contact_every"), 3);
 }
 
+TEST_F(Cli, PlanRunAndCheck) {
+  const std::string chart = " --chart " ROPEWALK_SOURCE_DIR "/tests/unit/chart";
+  spit(dir / "s.toml",
+       "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[rope]\ntubes = 7\nlength_nm = 13.6\n"
+       "[twist]\nmoment_nN_nm = 6\nrate_nN_nm_per_ps = 1\nhold_ps = 4\n");
+  const Outcome plan = run("plan s.toml --error 4%" + chart);
+  ASSERT_EQ(plan.code, 0) << plan.err;
+  EXPECT_NE(plan.out.find("scene bundle of the chart stands for this one"), std::string::npos) << plan.out;
+  EXPECT_NE(plan.out.find("planned: "), std::string::npos) << plan.out;
+  EXPECT_EQ(run("plan s.toml --error 4%" + chart).code, 2) << "an existing file must stand";
+  EXPECT_EQ(run("plan s.toml --error 4 -o t.toml" + chart).code, 2);
+  EXPECT_EQ(run("plan s.toml -o t.toml --chart nowhere").code, 2);
+  EXPECT_EQ(run("plan").code, 2);
+  ASSERT_EQ(run("run s-planned.toml --out d --quiet").code, 0) << slurp(dir / "stderr.txt");
+  const Outcome check = run("plan --check d --stretch 1");
+  ASSERT_EQ(check.code, 0) << check.err;
+  std::smatch row;
+  ASSERT_TRUE(std::regex_search(check.out, row, std::regex("energy +([0-9.]+) +([0-9.]+) +([0-9.]+) % +3.70 %")))
+      << check.out;
+  EXPECT_NEAR(std::stod(row[1]) / std::stod(row[2]), 1, 0.037);
+}
+
 TEST_F(Cli, ExportRefusesWhatLammpsLacks) {
   small_rope("s.toml", "contact_every = 3\n");
   const Outcome every = run("export s.toml --lammps there");
