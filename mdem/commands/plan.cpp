@@ -82,7 +82,8 @@ void say(const Plan& plan, const PlanRequest& request) {
   }
   if (!plan.holds)
     fmt::print("no model of the chart holds {:g} %: this is the most accurate one for it\n", 100 * request.error);
-  fmt::print("chart: {:.2f} of the default model's time\n", plan.cost);
+  fmt::print("chart: {:.2f} of the default model's time, {:.0f} ns per element-step\n", plan.cost,
+             plan.ns_per_element_step);
 }
 
 std::string out_path(const PlanArguments& a) {

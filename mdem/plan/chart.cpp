@@ -98,6 +98,7 @@ ChartedModel model_of(Csv& csv, std::size_t row) {
   m.cpu_per_ns = csv.number(row, "cpu_s_per_ns");
   m.ns_per_element_step = csv.number(row, "cpu_ns_per_element_step");
   if (!(m.cpu_per_ns > 0)) csv.fail("cpu_s_per_ns", "is not positive");
+  if (!(m.ns_per_element_step > 0)) csv.fail("cpu_ns_per_element_step", "is not positive");
   return m;
 }
 

@@ -118,14 +118,29 @@ double scale_of(const ChartedValue& v) {
   return v.error > 0 && off > 0 ? off / v.error : std::fabs(v.reference);
 }
 
-bool applies(const std::string& knob, const ChartedModel& m, const ChartedModel& standard, const Scene& scene,
+// Elements of a tube of the scene.
+int elements_of(const Scene& scene) {
+  if (const auto* chain = std::get_if<ChainSource>(&scene.source)) return chain->elements;
+  const auto* rope = std::get_if<RopeSource>(&scene.source);
+  return whole_elements(rope ? rope->length : std::get<FilmSource>(scene.source).length, scene.element_length);
+}
+
+// With so few elements that ends and middle are one, the chart says nothing: at least as many as it had, or eight.
+bool long_enough(const ChartedScene& c, const ChartedModel& m, const Scene& scene) {
+  const double length = m.element_length / c.standard()->element_length * scene.parameters().element_length;
+  const double elements = elements_of(scene) * scene.element_length / length;
+  return elements > std::min(8.0, static_cast<double>(m.elements) / c.tubes) - 0.5;
+}
+
+bool applies(const std::string& knob, const ChartedScene& c, const ChartedModel& m, const Scene& scene,
              const SceneFeatures& f, const PlanRequest& request) {
+  const ChartedModel& standard = *c.standard();
   if (m.law != standard.law) return false;  // another law is another physics, not another accuracy
   if (knob == "nodes" || knob == "cutoff" || knob == "levels" || knob == "precision") {
     if (!f.contact) return false;
     if (knob == "levels" && scene.damping.local > 0) return false;
   }
-  if (knob == "length") return fixed_length(scene).empty();
+  if (knob == "length") return fixed_length(scene).empty() && long_enough(c, m, scene);
   if (knob == "mass") return request.end_state && scene.temperature == 0;
   if (knob == "mode") return request.end_state && needs_time(scene).empty();
   return true;
@@ -139,7 +154,7 @@ std::vector<Knob> knobs_of(const ChartedScene& c, const Scene& scene, const Scen
     const std::string knob = knob_of(m);
     const auto has = [&](const std::string& o) { return m.finest.count(o) > 0; };
     if (knob.empty() || !std::all_of(observables.begin(), observables.end(), has)) continue;
-    if (applies(knob, m, standard, scene, f, request)) models[knob].push_back(&m);
+    if (applies(knob, c, m, scene, f, request)) models[knob].push_back(&m);
   }
   std::vector<Knob> knobs;
   for (auto& [name, list] : models) {
@@ -324,8 +339,7 @@ class Writer {
     const double wanted = times * scene_.parameters().element_length, old = scene_.element_length;
     if (std::fabs(wanted / old - 1) < 1e-6) return;
     const int overhang = scene_.twist || !scene_.loads.empty() ? 1 : 0;
-    const int elements = elements_of_a_tube();
-    const double between = (elements - overhang) * old;
+    const double between = (elements_of(scene_) - overhang) * old;
     const long parts = std::max(2L, std::lround(between / wanted));
     const double length = between / static_cast<double>(parts);
     set("", "element_length_nm", fmt::format("{:.10g}", length), why);
@@ -336,12 +350,6 @@ class Writer {
     else
       set(std::holds_alternative<RopeSource>(scene_.source) ? "rope" : "film", "length_nm",
           fmt::format("{:.10g}", static_cast<double>(now) * length), stays);
-  }
-
-  int elements_of_a_tube() const {
-    if (const auto* chain = std::get_if<ChainSource>(&scene_.source)) return chain->elements;
-    const auto* rope = std::get_if<RopeSource>(&scene_.source);
-    return whole_elements(rope ? rope->length : std::get<FilmSource>(scene_.source).length, scene_.element_length);
   }
 
   void precision(const std::string& words, const std::string& why) {
@@ -429,6 +437,9 @@ Plan plan_scene(const Scene& scene, const std::vector<ChartedScene>& chart, cons
     plan.expected = choice.error;
     plan.holds = choice.largest() <= request.error;
     plan.cost = choice.cost;
+    plan.ns_per_element_step = c->standard()->ns_per_element_step;
+    for (const Option* o : choice.options)
+      plan.ns_per_element_step *= o->model->ns_per_element_step / c->standard()->ns_per_element_step;
     for (const std::string& o : observables) {
       const auto at = c->standard()->atoms.find(o);
       if (at != c->standard()->atoms.end()) plan.atoms[o] = at->second.error;

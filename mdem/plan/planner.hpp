@@ -26,6 +26,7 @@ struct Plan {
   bool holds = false;                      // whether the error is held, as the chart has it
   std::map<std::string, double> expected;  // error by observable
   std::map<std::string, double> atoms;     // that of the chart's default model against atoms, where it has it
+  double ns_per_element_step = 0;          // of CPU time, on the chart's machine
   double cost = 1;                         // CPU time per simulated time, in that of the default model
   std::vector<std::string> why;            // one line for each choice
   std::string text;                        // of the scene

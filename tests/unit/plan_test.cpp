@@ -89,6 +89,7 @@ TEST(Plan, TakesTheCheapestThatHoldsTheError) {
   EXPECT_NEAR(p.expected.at("energy"), 0.012, 1e-9);
   EXPECT_NEAR(p.expected.at("beta"), 0.005, 1e-9);
   EXPECT_NEAR(p.cost, 0.49, 1e-9);
+  EXPECT_EQ(p.ns_per_element_step, 500);
   EXPECT_NEAR(p.atoms.at("energy"), 5.5 / 95, 1e-6);
   const Scene s = scene_from(p.text);
   EXPECT_EQ(s.contact.nodes, 3);
@@ -120,6 +121,14 @@ TEST(Plan, GoesCoarserAndFinerWithTheError) {
   const Plan angle = planned(bundle, 0.02, false, {"beta"});
   EXPECT_EQ(angle.expected.size(), 1u);
   EXPECT_NEAR(angle.expected.at("beta"), 0.015, 1e-9);
+}
+
+TEST(Plan, KeepsEnoughElements) {
+  std::string brief = bundle;
+  brief.replace(brief.find("27.2"), 4, "13.6");
+  const Plan p = planned(brief, 0.04);
+  EXPECT_EQ(scene_from(p.text).element_length, scene_from(brief).element_length) << "five would be left";
+  EXPECT_NEAR(p.cost, 0.7 * 0.7 * 0.9, 1e-9);
 }
 
 TEST(Plan, SaysWhatItCannotHold) {
