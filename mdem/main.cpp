@@ -35,6 +35,7 @@ struct Verbs {
   EnergyArguments energy;
   BenchArguments bench;
   ReportArguments report;
+  PlanArguments plan;
   ExportArguments to_lammps;
   ImportArguments from_lammps;
   std::string check_scene;
@@ -116,6 +117,22 @@ void add_energy(CLI::App& app, Verbs& v) {
   c->callback([&v] { v.code = energy_command(v.energy); });
 }
 
+void add_plan(CLI::App& app, Verbs& v) {
+  CLI::App* c = app.add_subcommand("plan", "Choose the cheapest model that holds an error, by the shipped chart");
+  c->add_option("scene", v.plan.scene, "Scene file (TOML)");
+  c->add_option("--error", v.plan.error, "Largest error of each observable: 2% or 0.02")->capture_default_str();
+  c->add_option("--observables", v.plan.observables, "Which ones: energy,beta,... [default: all in the chart]")
+      ->delimiter(',');
+  c->add_flag("--end-state", v.plan.end_state, "Only the end is asked for, not the motion");
+  c->add_option("-o", v.plan.out, "File to write, never one that exists [default: SCENE-planned.toml]");
+  c->add_option("--chart", v.plan.chart, "Directory of another chart (points.csv, scenes.csv)");
+  c->add_option("--check", v.plan.check, "Directory of a run: compare its end with a finer model instead");
+  c->add_option("--stretch", v.plan.stretch, "With --check: ps that both models go on")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  c->callback([&v] { v.code = plan_command(v.plan); });
+}
+
 void add_export(CLI::App& app, Verbs& v) {
   CLI::App* c =
       app.add_subcommand("export", "Write a scene, or a run that stands somewhere, for lmp-ropewalk (MPI)");
@@ -163,6 +180,7 @@ int main(int argc, char** argv) {
   add_resume(app, verbs);
   add_observe(app, verbs);
   add_report(app, verbs);
+  add_plan(app, verbs);
   add_export(app, verbs);
   add_import(app, verbs);
   // Handed over before anything is parsed; named here for --help.

@@ -2,13 +2,13 @@
 #include <fmt/format.h>
 #include <omp.h>
 #include <sys/resource.h>
-#include <time.h>
 
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "commands/bench_scenes.hpp"
 #include "commands/commands.hpp"
+#include "commands/processor_time.hpp"
 #include "model/error.hpp"
 #include "scene/prepare.hpp"
 #include "sim/line_count.hpp"
@@ -20,13 +20,6 @@ struct Timing {
   double wall = 0, processor = 0, frames = 0, contact = 0, bonds = 0, list = 0, integration = 0;
   long builds = 0;
 };
-
-// Of all threads. On a machine that does other work as well it says more than the wall time.
-double processor_seconds() {
-  timespec t{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 // The runs of the line law are part of the list.
 Timing timing(const Simulation& s, double wall, double processor) {
@@ -113,7 +106,8 @@ nlohmann::ordered_json json_of(const Cost& c, const BenchArguments& a, const Pre
   out["elements"] = prepared.topology.elements();
   out["threads"] = c.threads;
   out["steps"] = a.steps;
-  out["time_step_fs"] = prepared.time_step / units::fs;
+  out["time_step_fs"] = prepared.time_step / units::fs;  // of contact
+  out["contact_every"] = prepared.stepping.contact_every;
   out["ns_per_element_step"] = c.each.wall;
   out["processor_ns_per_element_step"] = c.each.processor;
   out["pairs_per_element"] = c.pairs;
@@ -144,8 +138,9 @@ nlohmann::ordered_json json_of(const Cost& c, const BenchArguments& a, const Pre
 void print(const Cost& c, const BenchArguments& a, const Prepared& prepared) {
   const Timing& t = c.each;
   const double n = prepared.topology.elements();
-  fmt::print("{} elements, {} threads, {} steps of {:.3g} fs\n", n, c.threads, a.steps,
-             prepared.time_step / units::fs);
+  const int every = prepared.stepping.contact_every;
+  fmt::print("{} elements, {} threads, {} steps of {:.3g} fs{}\n", n, c.threads, a.steps,
+             prepared.time_step / units::fs, every > 1 ? fmt::format(", of {} bond steps each", every) : "");
   fmt::print("{:9.1f} ns per element-step, {:.1f} of processor time\n", t.wall, t.processor);
   fmt::print("{:9.1f} pairs per element (half list)\n", c.pairs);
   fmt::print("  contact {:.1f}  bonds {:.1f}  frames {:.1f}  list {:.1f}  integration {:.1f} ns; {} lists\n",

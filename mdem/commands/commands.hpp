@@ -73,6 +73,18 @@ struct BenchArguments {
 };
 int bench_command(const BenchArguments& arguments);
 
+struct PlanArguments {
+  std::string scene;
+  std::string error = "2%";
+  std::vector<std::string> observables;  // empty: all that the chart has
+  bool end_state = false;
+  std::string out;     // empty: SCENE-planned.toml
+  std::string chart;   // directory; empty: the shipped one
+  std::string check;   // directory of a run: hold it against a finer model instead
+  double stretch = 4;  // ps
+};
+int plan_command(const PlanArguments& arguments);
+
 struct ExportArguments {
   std::string scene;   // a file, or the directory of a run
   std::string lammps;  // directory to make

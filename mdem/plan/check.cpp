@@ -1,0 +1,167 @@
+#include "plan/check.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "model/error.hpp"
+#include "observe/observe.hpp"
+#include "plan/planner.hpp"
+
+namespace ropewalk {
+namespace {
+
+constexpr double step_part = 0.5;  // of the default step
+constexpr int samples = 20;
+
+// One model of the scene, at its start and at its end.
+struct Model {
+  Scene scene;
+  Topology topology;
+  Interaction interaction;
+  Drive drive;
+  State start, end;
+  double spacing = 0, time_step = 0;
+  Stepping stepping;
+
+  Simulation at(const State& state) const {
+    return Simulation(topology, interaction, drive, state, time_step, scene.contact.skin, stepping);
+  }
+};
+
+// Another element between every two, all of half the length: the ends stay where loads hold them.
+State halved(const Topology& topology, const State& s) {
+  State out(static_cast<std::size_t>(2 * topology.elements() - topology.tubes()));
+  out.time = s.time;
+  std::size_t k = 0;
+  for (int t = 0; t < topology.tubes(); ++t)
+    for (int e = topology.tube_begin[t]; e < topology.tube_begin[t + 1]; ++e) {
+      const auto i = static_cast<std::size_t>(e), j = i + 1;
+      out.position.set(k, s.position[i]);
+      out.orientation.set(k, s.orientation[i]);
+      out.velocity.set(k, s.velocity[i]);
+      out.angular_velocity.set(k++, s.angular_velocity[i]);
+      if (e + 1 == topology.tube_begin[t + 1]) continue;
+      out.position.set(k, 0.5 * (s.position[i] + s.position[j]));
+      out.orientation.set(k, s.orientation[i].slerp(0.5, s.orientation[j]));
+      out.velocity.set(k, 0.5 * (s.velocity[i] + s.velocity[j]));
+      out.angular_velocity.set(k++, 0.5 * (s.angular_velocity[i] + s.angular_velocity[j]));
+    }
+  return out;
+}
+
+void scale(double by, Vec3Array& v) {
+  for (auto* c : {&v.x, &v.y, &v.z})
+    for (double& x : *c) x *= by;
+}
+
+Model planned_model(const Scene& scene, const Prepared& p, const State& end) {
+  return {scene, p.topology, p.interaction, p.drive, p.state, end, p.spacing, p.time_step, p.stepping};
+}
+
+Model finer_model(const Model& planned, bool half) {
+  Model m = planned;
+  m.scene.contact.nodes = 0;
+  m.scene.contact.cutoff = 0;
+  m.scene.contact.precision = Interaction::Precision::full;
+  m.scene.run.stepping = m.stepping = Stepping{};
+  m.scene.run.mass_scale = 1;
+  // Slow masses move slowly: the kinetic energy stays.
+  scale(std::sqrt(planned.scene.run.mass_scale), m.end.velocity);
+  scale(std::sqrt(planned.scene.run.mass_scale), m.end.angular_velocity);
+  if (half) {
+    m.scene.element_length *= 0.5;
+    m.scene.damping.contact.eta *= 0.25;  // of a pair of elements: four take the place of one
+    m.start = halved(planned.topology, m.start);
+    m.end = halved(planned.topology, m.end);
+  }
+  m.topology = empty_topology(m.scene);
+  for (int t = 0; t < planned.topology.tubes(); ++t)
+    m.topology.add_tube(half ? 2 * planned.topology.length_of(t) - 1 : planned.topology.length_of(t),
+                        planned.topology.tube_type[t]);
+  m.interaction = interaction_of(m.scene);
+  m.drive = drive_of(m.scene, m.topology);
+  m.time_step = step_part * default_step_fraction * time_step_limit(m.topology, m.interaction, m.spacing).limit;
+  return m;
+}
+
+// Mean over the bonds, nN nm.
+double bending_moment(const Topology& topology, const State& s) {
+  double sum = 0;
+  for (int t = 0; t < topology.tubes(); ++t) {
+    const TubeType& type = topology.type_of(t);
+    for (int e = topology.tube_begin[t]; e + 1 < topology.tube_begin[t + 1]; ++e) {
+      const auto i = static_cast<std::size_t>(e);
+      const double chord = (axis_of(s.orientation[i]) - axis_of(s.orientation[i + 1])).norm();
+      sum += type.bond.bend / type.element_length * 2 * std::asin(std::min(0.5 * chord, 1.0));
+    }
+  }
+  return topology.bonds() > 0 ? sum / topology.bonds() * units::eV_in_nN_nm : 0.0;
+}
+
+class Observed {
+ public:
+  explicit Observed(const Model& m)
+      : m_(m), zero_(m.at(m.start).forces().energy.potential()), shells_(rope_shells(m.topology, m.start, 0)) {}
+
+  void add(const Simulation& s) {
+    ++count_;
+    sums_["energy"] += s.forces().energy.potential() - zero_;
+    sums_["bending_moment"] += bending_moment(m_.topology, s.state());
+    if (m_.topology.tubes() < 3) return;
+    std::vector<Validity> validity;
+    for (const ParameterSet& set : m_.scene.sets) validity.push_back(set.validity);
+    const RopeObservation o = observe(m_.topology, s.state(), shells_, validity, 0, m_.spacing);
+    sums_["beta"] += o.beta / units::degree;
+    sums_["Q"] += o.middle.charge;
+  }
+  std::map<std::string, double> means() const {
+    std::map<std::string, double> out;
+    for (const auto& [name, sum] : sums_) out[name] = sum / count_;
+    return out;
+  }
+
+ private:
+  const Model& m_;
+  double zero_ = 0;
+  RopeShells shells_;
+  std::map<std::string, double> sums_;
+  int count_ = 0;
+};
+
+std::map<std::string, double> seen(const Model& m, double stretch) {
+  Observed observed(m);
+  Simulation s = m.at(m.end);
+  if (m.scene.run.mode == RunOptions::Mode::relax) {
+    s.relax(m.scene.run.force_tolerance, m.scene.run.max_steps, [](long) { return true; });
+    observed.add(s);
+    return observed.means();
+  }
+  const long steps = std::max(2L, std::lround(stretch / m.time_step)), every = std::max(1L, steps / (2 * samples));
+  for (long k = 1; k <= steps; ++k) {
+    const bool read = 2 * k > steps && (steps - k) % every == 0;
+    s.step(read);
+    if (read) observed.add(s);
+  }
+  return observed.means();
+}
+
+}  // namespace
+
+double SpotCheck::Pair::error() const { return finer != 0 ? std::fabs(planned / finer - 1) : std::fabs(planned); }
+
+SpotCheck spot_check(const Scene& scene, const Prepared& prepared, const State& end, double stretch) {
+  const std::string kept = fixed_length(scene);
+  const Model planned = planned_model(scene, prepared, end), finer = finer_model(planned, kept.empty());
+  SpotCheck out;
+  out.how = scene.run.mode == RunOptions::Mode::relax ? "relaxed again" : fmt::format("{:.3g} ps more", stretch);
+  out.how +=
+      fmt::format("; finer: elements of {:.4g} nm{}, double precision, {:.3g} fs", finer.scene.element_length,
+                  kept.empty() ? "" : " (" + kept + ")", finer.time_step / units::fs);
+  const std::map<std::string, double> a = seen(planned, stretch), b = seen(finer, stretch);
+  for (const auto& [name, value] : a) out.observables[name] = {value, b.at(name)};
+  return out;
+}
+
+}  // namespace ropewalk

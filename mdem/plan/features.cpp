@@ -1,0 +1,127 @@
+#include "plan/features.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/neighbours.hpp"
+
+namespace ropewalk {
+namespace {
+
+// Bends and twists of the bonds at the start, per length.
+void look_at_bonds(const Topology& topology, const State& s, SceneFeatures& f) {
+  for (int t = 0; t < topology.tubes(); ++t) {
+    const double a = topology.type_of(t).element_length;
+    for (int e = topology.tube_begin[t]; e + 1 < topology.tube_begin[t + 1]; ++e) {
+      const auto i = static_cast<std::size_t>(e);
+      const Frame<double> fi = frame_of(s.orientation[i]), fj = frame_of(s.orientation[i + 1]);
+      f.curvature = std::max(f.curvature, 2 * std::asin(std::min(0.5 * (fi.t - fj.t).norm(), 1.0)) / a);
+      f.twist = std::max(f.twist, std::fabs(bond_twist_angle(fi, fj)) / a);
+    }
+  }
+  f.why.push_back(fmt::format("start: curvature {:.3g} 1/nm, twist {:.3g} rad/nm", f.curvature, f.twist));
+}
+
+void look_at_crossings(const Prepared& p, SceneFeatures& f) {
+  NeighbourList list(p.interaction, default_skin(p.interaction));
+  list.build(p.topology, p.state);
+  double least = 90, most = 0;
+  for (int i = 0; i < p.topology.elements(); ++i)
+    for (std::size_t k = list.begin(i); k < list.begin(i + 1); ++k) {
+      const double cosine =
+          std::fabs(axis_of(p.state.orientation[static_cast<std::size_t>(i)])
+                        .dot(axis_of(p.state.orientation[static_cast<std::size_t>(list.indices()[k])])));
+      const double angle = std::acos(std::min(cosine, 1.0)) / units::degree;
+      least = std::min(least, angle);
+      most = std::max(most, angle);
+    }
+  if (list.pairs() == 0) return;
+  f.crossing_from = least;
+  f.crossing_to = most;
+  f.why.push_back(fmt::format("start: tubes in reach cross at {:.3g} to {:.3g} deg", least, most));
+}
+
+// Distance of the farthest tube from the line through the mean of all, at the start.
+double rope_radius(const Prepared& p) {
+  Vector3 mean = Vector3::Zero();
+  for (std::size_t i = 0; i < p.state.size(); ++i)
+    mean += p.state.position[i] / static_cast<double>(p.state.size());
+  double largest = 0;
+  for (std::size_t i = 0; i < p.state.size(); ++i)
+    largest = std::max(largest, (Vector3(p.state.position[i]) - mean).head<2>().norm());
+  return largest;
+}
+
+double longest_tube(const Topology& t) {
+  double longest = 0;
+  for (int k = 0; k < t.tubes(); ++k) longest = std::max(longest, t.length_of(k) * t.type_of(k).element_length);
+  return longest;
+}
+
+// The rope as a whole turned by `twist` per length.
+void add_rope_twist(const Prepared& p, double twist, const char* what, SceneFeatures& f) {
+  const double radius = p.topology.tubes() > 1 ? rope_radius(p) : 0.0, slope = radius * twist;
+  const double bend = slope * twist / (1 + slope * slope);
+  f.twist += twist;
+  f.curvature += bend;
+  f.why.push_back(fmt::format("{}: twist up to {:.3g} rad/nm, curvature up to {:.3g} 1/nm", what, twist, bend));
+  if (!f.contact) return;
+  f.crossing_to += std::atan(p.spacing * twist) / units::degree;
+}
+
+struct AddLoad {
+  const Prepared& p;
+  SceneFeatures& f;
+  double* turned;  // largest angle of the rotations
+
+  void operator()(const FixLoad&) const {}
+  void operator()(const ForceLoad& load) const {
+    const double bend = load.force.norm() * longest_tube(p.topology) / p.topology.types[0].bond.bend;
+    f.curvature += bend;
+    f.why.push_back(fmt::format("force: curvature up to {:.3g} 1/nm", bend));
+  }
+  void operator()(const TorqueLoad& load) const {
+    const BondStiffness& k = p.topology.types[0].bond;
+    const double along = std::fabs(load.torque.z()) / k.twist, across = load.torque.head<2>().norm() / k.bend;
+    f.curvature += across;
+    if (along > 0) add_rope_twist(p, along, "torque", f);
+    f.why.push_back(fmt::format("torque: curvature up to {:.3g} 1/nm", across));
+  }
+  void operator()(const RotateLoad& load) const { *turned += std::fabs(load.angle); }
+};
+
+}  // namespace
+
+SceneFeatures features_of(const Scene& scene, const Prepared& p) {
+  SceneFeatures f;
+  f.tubes = p.topology.tubes();
+  f.contact = p.interaction.has_contact() && f.tubes > 1;
+  f.radius = p.topology.types[0].radius;
+  look_at_bonds(p.topology, p.state, f);
+  if (f.contact) look_at_crossings(p, f);
+  double turned = 0;
+  for (const Load& load : scene.loads) std::visit(AddLoad{p, f, &turned}, load.kind);
+  if (turned > 0) add_rope_twist(p, turned / longest_tube(p.topology), "rotation", f);
+  if (scene.twist) {
+    const TwistProtocol& w = *scene.twist;
+    const double each = w.reading == TwistProtocol::Reading::per_tube ? w.moment : w.moment / f.tubes;
+    add_rope_twist(p, each / p.topology.types[0].bond.twist, "[twist]", f);
+    if (w.geometric_only) f.beyond = "twist.geometric_only takes away what holds against the moment";
+  }
+  if (scene.temperature > 0) {
+    const TubeType& t = p.topology.types[0];
+    const double kt = units::boltzmann * scene.temperature;
+    const double bend = std::sqrt(kt / (t.bond.bend * t.element_length)),
+                 twist = std::sqrt(kt / (t.bond.twist * t.element_length));
+    f.curvature += bend;
+    f.twist += twist;
+    f.why.push_back(
+        fmt::format("{:g} K: curvature {:.2g} 1/nm, twist {:.2g} rad/nm on top", scene.temperature, bend, twist));
+  }
+  if (scene.sets.size() > 1) f.beyond = "tubes of several kinds";
+  return f;
+}
+
+}  // namespace ropewalk

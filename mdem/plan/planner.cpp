@@ -1,0 +1,463 @@
+#include "plan/planner.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <regex>
+
+#include "model/error.hpp"
+#include "plan/scene_edit.hpp"
+#include "scene/build.hpp"
+#include "scene/scene_toml.hpp"
+
+namespace ropewalk {
+namespace {
+
+using Law = ContactOptions::Law;
+
+// --- which scene of the chart ---
+
+constexpr double margin = 1.1;        // of what a charted scene covers
+constexpr double crossing_slack = 1;  // deg
+constexpr double radius_slack = 0.2;
+
+// Why a charted scene does not cover another one; empty: it does.
+std::string uncovered(const ChartedScene& c, const SceneFeatures& f) {
+  if (c.contact != f.contact) return c.contact ? "has contact" : "has no contact";
+  if (std::fabs(f.radius / c.radius - 1) > radius_slack) return fmt::format("tubes of radius {:.3g} nm", c.radius);
+  if (f.curvature > margin * c.curvature + 1e-4) return fmt::format("curvature up to {:.3g} 1/nm", c.curvature);
+  if (f.twist > margin * c.twist + 1e-4) return fmt::format("twist up to {:.3g} rad/nm", c.twist);
+  if (f.contact && (f.crossing_from < c.crossing_from - crossing_slack ||
+                    f.crossing_to > margin * c.crossing_to + crossing_slack))
+    return fmt::format("crossing angles of {:g} to {:g} deg", c.crossing_from, c.crossing_to);
+  return "";
+}
+
+double distance(const ChartedScene& c, const SceneFeatures& f) {
+  const auto apart = [](double a, double b, double floor) {
+    return std::fabs(std::log((a + floor) / (b + floor)));
+  };
+  return apart(c.curvature, f.curvature, 1e-3) + apart(c.twist, f.twist, 1e-3) + 0.5 * apart(c.tubes, f.tubes, 0);
+}
+
+const ChartedScene* nearest(const std::vector<ChartedScene>& chart, const SceneFeatures& f, Plan& plan) {
+  const ChartedScene* best = nullptr;
+  for (const ChartedScene& c : chart) {
+    if (!c.standard()) continue;
+    const std::string why = uncovered(c, f);
+    if (!why.empty()) {
+      plan.why.push_back(fmt::format("chart scene {} does not cover this one: {}", c.name, why));
+    } else if (!best || distance(c, f) < distance(*best, f)) {
+      best = &c;
+    }
+  }
+  return best;
+}
+
+// --- what a scene lets one change ---
+
+bool names_only_ends(const Selection& on) {
+  return on.all_elements ||
+         std::all_of(on.elements.begin(), on.elements.end(), [](int e) { return e == 0 || e == -1; });
+}
+
+// Why there is no relaxation in the place of the motion; empty: there can be.
+std::string needs_time(const Scene& scene) {
+  if (scene.twist) return "the moment of [twist] is ramped, and where a rope ends depends on the way";
+  for (const Load& load : scene.loads)
+    if (std::holds_alternative<RotateLoad>(load.kind)) return "a rotation needs time";
+  if (scene.temperature > 0) return "the scene is warm";
+  return "";
+}
+
+// --- the knobs ---
+
+struct Option {
+  const ChartedModel* model = nullptr;
+  std::map<std::string, double> change;  // of each observable, relative, from the knob's best value
+  double cost = 1;                       // in that of the default
+};
+
+struct Knob {
+  std::string name;
+  std::vector<Option> options;  // the default among them
+};
+
+std::string knob_of(const ChartedModel& m) {
+  static const std::map<std::string, std::string> names = {
+      {"nodes_per_element", "nodes"}, {"nodes", "nodes"},
+      {"cutoff", "cutoff"},           {"cutoff_nm", "cutoff"},
+      {"element_length", "length"},   {"element_length_nm", "length"},
+      {"integrator", "integrator"},   {"contact_every", "levels"},
+      {"time_step", "step"},          {"time_step_fs", "step"},
+      {"mass_scale", "mass"},         {"mode", "mode"},
+      {"precision", "precision"},     {"law", "nodes"}};
+  const auto at = names.find(m.kind);
+  return at == names.end() ? "" : at->second;
+}
+
+// Larger is better, whatever the number means.
+double quality(const std::string& knob, const ChartedModel& m) {
+  if (knob == "nodes") return m.nodes;
+  if (knob == "cutoff") return m.cutoff;
+  if (knob == "length") return -m.element_length;
+  if (knob == "levels") return -m.contact_every;
+  if (knob == "step") return -m.time_step;
+  if (knob == "mass") return -std::fabs(std::log(m.mass_scale));
+  if (knob == "mode") return m.mode == "dynamics";
+  if (knob == "precision") return (m.precision.rfind("double", 0) == 0) + 2 * (m.precision.size() > 6);
+  return m.integrator == "verlet";
+}
+
+// What one takes an error relative to: the reference, or what the chart took.
+double scale_of(const ChartedValue& v) {
+  const double off = std::fabs(v.value - v.reference);
+  return v.error > 0 && off > 0 ? off / v.error : std::fabs(v.reference);
+}
+
+// Elements of a tube of the scene.
+int elements_of(const Scene& scene) {
+  if (const auto* chain = std::get_if<ChainSource>(&scene.source)) return chain->elements;
+  const auto* rope = std::get_if<RopeSource>(&scene.source);
+  return whole_elements(rope ? rope->length : std::get<FilmSource>(scene.source).length, scene.element_length);
+}
+
+// With so few elements that ends and middle are one, the chart says nothing: at least as many as it had, or eight.
+bool long_enough(const ChartedScene& c, const ChartedModel& m, const Scene& scene) {
+  const double length = m.element_length / c.standard()->element_length * scene.parameters().element_length;
+  const double elements = elements_of(scene) * scene.element_length / length;
+  return elements > std::min(8.0, static_cast<double>(m.elements) / c.tubes) - 0.5;
+}
+
+bool applies(const std::string& knob, const ChartedScene& c, const ChartedModel& m, const Scene& scene,
+             const SceneFeatures& f, const PlanRequest& request) {
+  const ChartedModel& standard = *c.standard();
+  if (m.law != standard.law) return false;  // another law is another physics, not another accuracy
+  if (knob == "nodes" || knob == "cutoff" || knob == "levels" || knob == "precision") {
+    if (!f.contact) return false;
+    if (knob == "levels" && scene.damping.local > 0) return false;
+  }
+  if (knob == "length") return fixed_length(scene).empty() && long_enough(c, m, scene);
+  if (knob == "mass") return request.end_state && scene.temperature == 0;
+  if (knob == "mode") return request.end_state && needs_time(scene).empty();
+  return true;
+}
+
+std::vector<Knob> knobs_of(const ChartedScene& c, const Scene& scene, const SceneFeatures& f,
+                           const PlanRequest& request, const std::vector<std::string>& observables) {
+  const ChartedModel& standard = *c.standard();
+  std::map<std::string, std::vector<const ChartedModel*>> models;
+  for (const ChartedModel& m : c.models) {
+    const std::string knob = knob_of(m);
+    const auto has = [&](const std::string& o) { return m.finest.count(o) > 0; };
+    if (knob.empty() || !std::all_of(observables.begin(), observables.end(), has)) continue;
+    if (applies(knob, c, m, scene, f, request)) models[knob].push_back(&m);
+  }
+  std::vector<Knob> knobs;
+  for (auto& [name, list] : models) {
+    list.push_back(&standard);
+    const std::string knob = name;
+    const ChartedModel* best = *std::max_element(list.begin(), list.end(), [&](const auto* a, const auto* b) {
+      return quality(knob, *a) < quality(knob, *b);
+    });
+    Knob k{name, {}};
+    for (const ChartedModel* m : list) {
+      Option o{m, {}, m->cpu_per_ns / standard.cpu_per_ns};
+      for (const std::string& w : observables) {
+        const double from = best->finest.at(w).value, scale = scale_of(standard.finest.at(w));
+        o.change[w] = std::fabs(m->finest.at(w).value - from) / scale;
+      }
+      k.options.push_back(std::move(o));
+    }
+    std::sort(k.options.begin(), k.options.end(), [](const Option& a, const Option& b) { return a.cost < b.cost; });
+    knobs.push_back(std::move(k));
+  }
+  return knobs;
+}
+
+// Of the default's error, what its knobs do not explain.
+std::map<std::string, double> unexplained(const ChartedScene& c, const std::vector<Knob>& knobs,
+                                          const std::vector<std::string>& observables) {
+  std::map<std::string, double> left;
+  for (const std::string& w : observables) {
+    double rest = c.standard()->finest.at(w).error;
+    for (const Knob& k : knobs)
+      for (const Option& o : k.options)
+        if (o.model == c.standard()) rest -= o.change.at(w);
+    left[w] = std::max(0.0, rest);
+  }
+  return left;
+}
+
+// --- the choice ---
+
+struct Choice {
+  std::vector<const Option*> options;
+  std::map<std::string, double> error;
+  double cost = 1;
+  double largest() const {
+    double most = 0;
+    for (const auto& [name, e] : error) most = std::max(most, e);
+    return most;
+  }
+};
+
+// A relaxation has neither time nor masses.
+bool contradicts_itself(const std::vector<Knob>& knobs, const Choice& c, const ChartedModel& standard) {
+  bool relaxed = false, timed = false;
+  for (std::size_t k = 0; k < knobs.size(); ++k) {
+    const std::string& name = knobs[k].name;
+    const bool turned = c.options[k]->model != &standard;
+    relaxed |= name == "mode" && turned;
+    timed |= turned && (name == "levels" || name == "mass" || name == "integrator" || name == "step");
+  }
+  return relaxed && timed;
+}
+
+// The cheapest that holds the error; where none does, the most accurate.
+Choice choose(const std::vector<Knob>& knobs, const std::map<std::string, double>& rest, double limit,
+              const ChartedModel& standard) {
+  std::vector<double> least(knobs.size() + 1, 1.0);  // cost of the knobs from here on, at least
+  for (std::size_t k = knobs.size(); k-- > 0;) least[k] = least[k + 1] * knobs[k].options.front().cost;
+  Choice best, now;
+  now.error = rest;
+  bool any = false, best_holds = false;
+  const std::function<void(std::size_t)> look = [&](std::size_t k) {
+    if (best_holds && (now.largest() > limit || now.cost * least[k] >= best.cost)) return;
+    if (k == knobs.size()) {
+      if (contradicts_itself(knobs, now, standard)) return;
+      const bool holds = now.largest() <= limit;
+      const bool better = holds ? !best_holds || now.cost < best.cost : now.largest() < best.largest();
+      if (!any || better) best = now, best_holds = holds, any = true;
+      return;
+    }
+    for (const Option& o : knobs[k].options) {
+      const Choice before = now;
+      for (const auto& [name, change] : o.change) now.error[name] += change;
+      now.cost *= o.cost;
+      now.options.push_back(&o);
+      look(k + 1);
+      now = before;
+    }
+  };
+  look(0);
+  return best;
+}
+
+// --- the scene ---
+
+class Writer {
+ public:
+  Writer(const Scene& scene, const SceneFeatures& features)
+      : scene_(scene), features_(features), text_(scene.text) {}
+
+  void set(const char* table, const char* key, const std::string& value, const std::string& why) {
+    text_ = with_key(text_, table, key, value);
+    why_.push_back(fmt::format("{}{}{} = {}: {}", table, *table ? "." : "", key, value, why));
+  }
+  void take_away(const char* table, const char* key) { text_ = without_key(text_, table, key); }
+  void remark(std::string line) { why_.push_back(std::move(line)); }
+
+  void drop_what_is_not_there() {
+    if (scene_.contact.law == Law::none || features_.contact) return;
+    if (features_.curvature * longest() > units::pi) {
+      remark("contact stays: the lone tube may bend back to itself");
+      return;
+    }
+    set("contact", "law", "\"none\"", "one tube, which does not come back to itself");
+    for (const char* key : {"nodes_per_element", "cutoff_nm"}) take_away("contact", key);
+    take_away("run", "contact_every");
+  }
+
+  void turn(const Knob& knob, const Option& option, const ChartedModel& standard) {
+    const ChartedModel& m = *option.model;
+    const std::string why = fmt::format("chart model {}, {:.2f} of the default's time", m.name, option.cost);
+    if (&m == &standard) return leave(knob.name);
+    if (knob.name == "length") lengthen(m.element_length / standard.element_length, why);
+    if (knob.name == "nodes") nodes_per_nm_ = m.nodes / m.element_length, nodes_why_ = why;
+    if (knob.name == "cutoff") set("contact", "cutoff_nm", fmt::format("{:.6g}", m.cutoff), why);
+    if (knob.name == "levels") set("run", "contact_every", std::to_string(m.contact_every), why);
+    if (knob.name == "integrator") set("run", "integrator", m.integrator == "rk4" ? "\"rk4\"" : "\"verlet\"", why);
+    if (knob.name == "mass") set("run", "mass_scale", fmt::format("{:g}", m.mass_scale), why);
+    if (knob.name == "step") step_ = m.time_step / standard.time_step, step_why_ = why;
+    if (knob.name == "mode") relax(why);
+    if (knob.name == "precision") precision(m.precision, why);
+  }
+
+  // Nodes go with the length of the elements, the time step with everything.
+  void finish() {
+    if (nodes_per_nm_ > 0) {
+      const long nodes =
+          std::max(1L, std::lround(nodes_per_nm_ * scene_of_text(text_, scene_.path).element_length));
+      set("contact", "nodes_per_element", std::to_string(nodes), nodes_why_);
+    }
+    if (step_ > 0) {
+      text_ = with_key(text_, "run", "time_step_fs", "\"auto\"");
+      Scene so_far = scene_of_text(text_, scene_.path);
+      const double standard = prepare(so_far).time_step / so_far.run.stepping.contact_every / units::fs;
+      set("run", "time_step_fs", fmt::format("{:.4g}", step_ * standard), step_why_);
+    }
+  }
+
+  const std::string& text() const { return text_; }
+  const std::vector<std::string>& why() const { return why_; }
+
+ private:
+  double longest() const {
+    if (const auto* rope = std::get_if<RopeSource>(&scene_.source)) return rope->length;
+    if (const auto* chain = std::get_if<ChainSource>(&scene_.source))
+      return chain->elements * scene_.element_length;
+    if (const auto* film = std::get_if<FilmSource>(&scene_.source)) return film->length;
+    return std::numeric_limits<double>::infinity();
+  }
+
+  // The scene may have set what the chart's default leaves to the program.
+  void leave(const std::string& knob) {
+    if (knob == "nodes" && scene_.contact.nodes > 0) {
+      take_away("contact", "nodes_per_element");
+      remark("contact.nodes_per_element: left to the program, as the chart's default");
+    }
+    if (knob == "cutoff" && scene_.contact.cutoff > 0) {
+      take_away("contact", "cutoff_nm");
+      remark("contact.cutoff_nm: the set's, as the chart's default");
+    }
+    if (knob == "step" && scene_.run.time_step > 0)
+      set("run", "time_step_fs", "\"auto\"", "as the chart's default");
+    if (knob == "levels" && scene_.run.stepping.contact_every > 1)
+      set("run", "contact_every", "1", "as the chart's default");
+    if (knob == "precision" && (scene_.contact.precision || scene_.contact.all_nodes))
+      precision("mixed", "default");
+    if (knob == "length") lengthen(1, "as the chart's default");
+  }
+
+  // In elements of the set's length, which the chart's default has. As in the chart, what lies between the centres
+  // of the end elements stays as long as it is where loads act on them; else the whole tube does.
+  void lengthen(double times, const std::string& why) {
+    const double wanted = times * scene_.parameters().element_length, old = scene_.element_length;
+    if (std::fabs(wanted / old - 1) < 1e-6) return;
+    const int overhang = scene_.twist || !scene_.loads.empty() ? 1 : 0;
+    const double between = (elements_of(scene_) - overhang) * old;
+    const long parts = std::max(2L, std::lround(between / wanted));
+    const double length = between / static_cast<double>(parts);
+    set("", "element_length_nm", fmt::format("{:.10g}", length), why);
+    const std::string stays = overhang ? "the ends' centres stay as far apart" : "the tubes stay as long";
+    const long now = parts + overhang;
+    if (std::holds_alternative<ChainSource>(scene_.source))
+      set("chain", "elements", std::to_string(now), stays);
+    else
+      set(std::holds_alternative<RopeSource>(scene_.source) ? "rope" : "film", "length_nm",
+          fmt::format("{:.10g}", static_cast<double>(now) * length), stays);
+  }
+
+  void precision(const std::string& words, const std::string& why) {
+    const bool full = words.rfind("double", 0) == 0;
+    set("contact", "precision", full ? "\"double\"" : "\"mixed\"", why);
+    if (scene_.contact.law == Law::line)
+      set("contact", "all_nodes", words.find("all") == std::string::npos ? "false" : "true", why);
+  }
+
+  void relax(const std::string& why) {
+    set("run", "mode", "\"relax\"", why + "; only the end is asked for");
+    for (const char* key : {"duration_ps", "contact_every", "integrator", "mass_scale"}) take_away("run", key);
+  }
+
+  const Scene& scene_;
+  const SceneFeatures& features_;
+  std::string text_;
+  std::vector<std::string> why_;
+  double nodes_per_nm_ = 0, step_ = 0;
+  std::string nodes_why_, step_why_;
+};
+
+std::string header_of(const Plan& plan, const PlanRequest& request) {
+  std::string text = fmt::format("# Planned for an error of {:g} %.\n", 100 * request.error);
+  for (const auto& [name, error] : plan.expected) text += fmt::format("# plan: expect {} {:.6g}\n", name, error);
+  return text;
+}
+
+std::vector<std::string> observables_of(const ChartedScene& c, const PlanRequest& request) {
+  std::string known;
+  std::vector<std::string> all;
+  for (const auto& [name, value] : c.standard()->finest) {
+    all.push_back(name);
+    known += (known.empty() ? "" : ", ") + name;
+  }
+  for (const std::string& o : request.observables)
+    if (!std::count(all.begin(), all.end(), o))
+      throw InputError({"", 0, "--observables"},
+                       fmt::format("the chart has no \"{}\" for scenes like {}", o, c.name), "choose of " + known);
+  return request.observables.empty() ? all : request.observables;
+}
+
+// The keys that cost, as the program has them by default.
+void fall_back(const Scene& scene, Writer& w) {
+  if (scene.run.time_step > 0) w.set("run", "time_step_fs", "\"auto\"", "default model");
+  if (scene.run.stepping.contact_every > 1) w.set("run", "contact_every", "1", "default model");
+  if (scene.run.mass_scale != 1) w.set("run", "mass_scale", "1", "default model");
+  if (scene.run.stepping.runge_kutta) w.set("run", "integrator", "\"verlet\"", "default model");
+  for (const char* key : {"nodes_per_element", "cutoff_nm", "all_nodes", "precision"}) w.take_away("contact", key);
+}
+
+}  // namespace
+
+std::string fixed_length(const Scene& scene) {
+  if (std::holds_alternative<StateSource>(scene.source)) return "the elements come from a file";
+  if (scene.contact.law == Law::paper) return "law \"paper\" holds for its set's length alone";
+  for (const Load& load : scene.loads)
+    if (!names_only_ends(load.on)) return "a load names elements by number";
+  return "";
+}
+
+Plan plan_scene(const Scene& scene, const std::vector<ChartedScene>& chart, const PlanRequest& request) {
+  Plan plan;
+  Scene copy = scene;
+  const Prepared prepared = prepare(copy);
+  const SceneFeatures f = features_of(scene, prepared);
+  plan.why = f.why;
+  Writer w(scene, f);
+  w.drop_what_is_not_there();
+  const bool line_or_none = !f.contact || scene.contact.law == Law::line;
+  const ChartedScene* c = f.beyond.empty() && line_or_none ? nearest(chart, f, plan) : nullptr;
+  if (!c) {
+    if (!f.beyond.empty()) plan.why.push_back("the chart has nothing like it: " + f.beyond);
+    if (!line_or_none) plan.why.push_back("the chart varies law \"line\", and this scene has another");
+    plan.why.push_back("no point of the chart is near: the default model is taken, and no error is promised");
+    fall_back(scene, w);
+  } else {
+    plan.stands_for = c->name;
+    const std::vector<std::string> observables = observables_of(*c, request);
+    const std::vector<Knob> knobs = knobs_of(*c, scene, f, request, observables);
+    const Choice choice = choose(knobs, unexplained(*c, knobs, observables), request.error, *c->standard());
+    for (std::size_t k = 0; k < knobs.size(); ++k) w.turn(knobs[k], *choice.options[k], *c->standard());
+    if (!fixed_length(scene).empty()) w.remark("element length stays: " + fixed_length(scene));
+    if (request.end_state && !needs_time(scene).empty()) w.remark("no relaxation: " + needs_time(scene));
+    plan.expected = choice.error;
+    plan.holds = choice.largest() <= request.error;
+    plan.cost = choice.cost;
+    plan.ns_per_element_step = c->standard()->ns_per_element_step;
+    for (const Option* o : choice.options)
+      plan.ns_per_element_step *= o->model->ns_per_element_step / c->standard()->ns_per_element_step;
+    for (const std::string& o : observables) {
+      const auto at = c->standard()->atoms.find(o);
+      if (at != c->standard()->atoms.end()) plan.atoms[o] = at->second.error;
+    }
+  }
+  w.finish();
+  plan.why.insert(plan.why.end(), w.why().begin(), w.why().end());
+  plan.text = header_of(plan, request) + w.text();
+  scene_of_text(plan.text, scene.path);  // must be a scene
+  return plan;
+}
+
+std::map<std::string, double> expectations_of(const std::string& text) {
+  std::map<std::string, double> out;
+  const std::regex line("# plan: expect (\\S+) (\\S+)");
+  for (auto at = std::sregex_iterator(text.begin(), text.end(), line); at != std::sregex_iterator(); ++at)
+    out[(*at)[1]] = std::strtod((*at)[2].str().c_str(), nullptr);
+  return out;
+}
+
+}  // namespace ropewalk

@@ -1,0 +1,44 @@
+// Which model a scene needs: of those that the chart has measured, the cheapest that holds an error.
+//
+// Of the scenes of the chart that cover the scene, the nearest one stands for it. A knob turned from its best value
+// b to o changes an observable by |value(o) - value(b)| there; the changes of several knobs are added up with their
+// sizes, and so is what of the default's error against the finest model no knob explains. Costs are multiplied.
+// That changes add up is an assumption, on the safe side where they would cancel; `check_plan` looks.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "plan/chart.hpp"
+#include "plan/features.hpp"
+
+namespace ropewalk {
+
+struct PlanRequest {
+  double error = 0.02;                   // largest, of each observable
+  std::vector<std::string> observables;  // empty: all that the chart has of the scene
+  bool end_state = false;                // the motion itself does not matter
+};
+
+struct Plan {
+  std::string stands_for;                  // scene of the chart; empty: none is near, and the model is the default
+  bool holds = false;                      // whether the error is held, as the chart has it
+  std::map<std::string, double> expected;  // error by observable
+  std::map<std::string, double> atoms;     // that of the chart's default model against atoms, where it has it
+  double ns_per_element_step = 0;          // of CPU time, on the chart's machine
+  double cost = 1;                         // CPU time per simulated time, in that of the default model
+  std::vector<std::string> why;            // one line for each choice
+  std::string text;                        // of the scene
+};
+
+// `scene` with its text. Throws InputError for an observable that the chart does not have.
+Plan plan_scene(const Scene& scene, const std::vector<ChartedScene>& chart, const PlanRequest& request);
+
+// Why elements cannot be longer or shorter in this scene; empty: they can.
+std::string fixed_length(const Scene& scene);
+
+// What stands in a planned scene's text about itself; nothing in others.
+std::map<std::string, double> expectations_of(const std::string& text);
+
+}  // namespace ropewalk
