@@ -99,8 +99,6 @@ struct SparseSum {
 struct SumShare {
   int first = 0;
   double value = 1, derivative = 0;
-
-  double of(int sum) const { return sum == first ? value : sum == first + 1 ? 1 - value : 0.0; }
 };
 
 // The sums by rising angle; behind the last of them, and where there is none, all nodes.

@@ -14,104 +14,6 @@
 #include "sim/motion.hpp"
 
 namespace ropewalk {
-namespace {
-
-// Second derivative in the spacing of the energy of one element against a parallel row of elements, maximal
-// over their offsets; taken where a rope under load may be, at 97 % of its spacing.
-template <class Law>
-double row_stiffness(const Law& law, double element_length, double spacing) {
-  const Vector3 axis = Vector3::UnitZ();
-  double largest = 0;
-  for (double shift : {0.0, 0.25, 0.5}) {
-    const auto row = [&](double gap) {
-      double sum = 0;
-      const int reach = static_cast<int>(law.cutoff() / element_length) + 1;
-      for (int k = -reach; k <= reach; ++k) {
-        const Vector3 separation(gap, 0, (k + shift) * element_length);
-        if (separation.norm() < law.cutoff()) sum += law.energy(separation, axis, axis);
-      }
-      return sum;
-    };
-    const double at = 0.97 * spacing, h = 1e-3 * spacing;
-    largest = std::max(largest, (row(at + h) - 2 * row(at) + row(at - h)) / (h * h));
-  }
-  return largest;
-}
-
-// The stiffest contact of an element of this type: between tubes of one kind at the spacing of the rope; of
-// mixed kinds, each pair at its own well.
-double contact_stiffness(const Topology& topology, const Interaction& in, const TubeType& type, double spacing) {
-  if (in.paper) return row_stiffness(*in.paper, type.element_length, spacing);
-  const std::size_t types = topology.types.size();
-  const auto i = static_cast<std::size_t>(&type - topology.types.data());
-  double largest = 0;
-  for (std::size_t j = 0; j < types; ++j) {
-    const LineContact& law = in.line[i * types + j];
-    const double at = types == 1 ? spacing : line_parallel_well(law.density).distance;
-    largest = std::max(largest, row_stiffness(law, law.length_j, at));
-  }
-  return largest;
-}
-
-// Sum of the viscosity's weights over the row of a neighbouring tube.
-double row_viscosity(const ContactViscosity& viscosity, double element_length, double spacing) {
-  double sum = 0;
-  for (int k = -64; k <= 64; ++k) sum += viscosity.weight(std::hypot(spacing, k * element_length));
-  return viscosity.eta * sum;
-}
-
-//   w^2 dt^2 + 2 g dt = 4
-double damped_step_limit(double w2, double g) { return (std::sqrt(g * g + 4.0 * w2) - g) / w2; }
-
-}  // namespace
-
-TimeStepLimit time_step_limit(const Topology& topology, const Interaction& in, double spacing) {
-  TimeStepLimit out;
-  for (const TubeType& t : topology.types) {
-    out.chain_frequency =
-        std::max(out.chain_frequency, stiffest_chain_frequency(t.bond, t.element_length, t.mass, t.inertia));
-    out.sideways_frequency =
-        std::max(out.sideways_frequency, stiffest_sideways_frequency(t.bond, t.element_length, t.mass, t.inertia));
-  }
-  if (in.has_contact() && topology.tubes() > 1 && spacing > 0) {
-    for (const TubeType& t : topology.types) {
-      // A triangular lattice of springs k: largest w^2 = 6 k/m.
-      out.contact_frequency =
-          std::max(out.contact_frequency,
-                   std::sqrt(std::max(6.0 * contact_stiffness(topology, in, t, spacing) / t.mass, 0.0)));
-      if (!in.damped_contact()) continue;
-      const double row = row_viscosity(in.damping.contact, t.element_length, spacing);
-      const double arm = 0.5 * spacing;
-      // Six neighbours, opposite motions: 12 rows on a coordinate or, by the lever arm, on a spin.
-      out.contact_damping =
-          std::max(out.contact_damping, 12.0 * row * std::max(1.0 / t.mass, arm * arm / t.inertia));
-    }
-  }
-  double bonds = 0;
-  for (const TubeType& t : topology.types)
-    bonds = std::max(bonds, in.damping.bond.largest_rate(t.element_length, t.mass, t.inertia));
-  out.damping_rate = out.contact_damping + bonds;
-  const double w2 = out.chain_frequency * out.chain_frequency + out.contact_frequency * out.contact_frequency;
-  out.limit = damped_step_limit(w2, out.damping_rate);
-  return out;
-}
-
-double inner_step_limit(const TimeStepLimit& limit, int contact_every) {
-  if (contact_every <= 1) return limit.limit;
-  const double chain =
-      damped_step_limit(limit.chain_frequency * limit.chain_frequency, limit.damping_rate - limit.contact_damping);
-  const double w = limit.sideways_frequency, contact2 = limit.contact_frequency * limit.contact_frequency;
-  const auto stable = [&](double outer) {
-    const double half = 0.5 * w * outer;
-    return contact2 * outer * outer + 2 * limit.contact_damping * outer < 4 * half / std::tan(half);
-  };
-  double below = 0, above = units::pi / w;
-  for (int k = 0; k < 60; ++k) {
-    const double middle = 0.5 * (below + above);
-    (stable(middle) ? below : above) = middle;
-  }
-  return std::min(chain, below / contact_every);
-}
 
 Simulation::Simulation(Topology topology, Interaction interaction, Drive drive, State state, double time_step,
                        double skin, Stepping stepping)
@@ -260,6 +162,18 @@ void Simulation::one_level(bool energies) {
   list_seconds_ += t2 - t1;
 }
 
+// With the velocities in the middle of the contact's impulse, as the last one lets expect them: before it, those of
+// a loaded rope are off by what the bonds alone have done, and the viscosity would take out what is no sliding.
+void Simulation::compute_contact_in_impulse(bool energies) {
+  const Vec3Array velocity = state_.velocity, angular_velocity = state_.angular_velocity;
+  const double work = work_;
+  kick(contact_, 0.5 * time_step_);
+  compute_contact(energies);
+  state_.velocity = velocity;
+  state_.angular_velocity = angular_velocity;
+  work_ = work;
+}
+
 void Simulation::two_level(bool energies) {
   const double dt = time_step_, inner = inner_step();
   const auto in_engine = [&] {
@@ -281,7 +195,7 @@ void Simulation::two_level(bool energies) {
   const double t1 = omp_get_wtime();
   list_.update(topology_, state_);
   const double listed = omp_get_wtime() - t1;
-  compute_contact(energies);
+  compute_contact_in_impulse(energies);
   add_levels();
   check(energies);
   dissipated_ -= dt * contact_.damping_power;

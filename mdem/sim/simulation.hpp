@@ -23,32 +23,10 @@
 #include "sim/interaction.hpp"
 #include "sim/neighbours.hpp"
 #include "sim/state.hpp"
+#include "sim/step_limit.hpp"
 #include "sim/stepping.hpp"
 
 namespace ropewalk {
-
-// Stability limit of the time step (ps): the stiffest mode of a straight chain, the contact in a compressed
-// hexagonal rope and the strongest explicit damping together,
-//   w^2 dt^2 + 2 g dt = 4,   w^2 = w_chain^2 + w_contact^2.
-struct TimeStepLimit {
-  double limit = 0;               // ps
-  double chain_frequency = 0;     // rad/ps
-  double contact_frequency = 0;   // rad/ps
-  double damping_rate = 0;        // 1/ps
-  double sideways_frequency = 0;  // rad/ps: the stiffest mode of the chain in which elements move sideways
-  double contact_damping = 0;     // 1/ps: part of damping_rate
-};
-TimeStepLimit time_step_limit(const Topology& topology, const Interaction& interaction, double spacing);
-
-// Stability limit of the inner step (ps) with contact_every = n of them in an outer one, D. Within: the chain and
-// the damping of its bonds as above. Outside: an impulse of the contact W meets a mode w of the chain, which alone
-// would be stepped exactly, stably as long as
-//   W^2 D^2 + 2 g D < 4 (w D/2) cot(w D/2),
-// which for soft modes is the limit of the contact alone and for stiff ones ends before their half period, pi/w:
-// there the impulses resonate. Only modes that move elements sideways are taken; along a tube and about its axis a
-// smooth contact has next to no stiffness.
-// n = 1: TimeStepLimit::limit.
-double inner_step_limit(const TimeStepLimit& limit, int contact_every);
 
 // Part of the limit that is used when the step is not typed.
 inline constexpr double default_step_fraction = 0.6;
@@ -104,6 +82,7 @@ class Simulation {
   double inner_step() const { return time_step_ / stepping_.contact_every; }
   void one_level(bool energies);
   void two_level(bool energies);
+  void compute_contact_in_impulse(bool energies);
   void kick(const Forces& forces, double dt);
   void kick_with_loads(const Forces& forces, double dt);
   double kick_tube(const Forces& forces, int tube, double dt);
