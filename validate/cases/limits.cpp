@@ -47,6 +47,11 @@ double growth(const Topology& topology, const Interaction& interaction, const St
   return factor;
 }
 
+ParameterSet with_elements(ParameterSet set, double factor) {
+  set.element_length *= factor;
+  return set;
+}
+
 bool blows_up(const Topology& topology, const Interaction& interaction, const State& state, double time_step,
               long steps) {
   return !(growth(topology, interaction, state, time_step, steps) < enough_growth);

@@ -22,4 +22,7 @@ double growth(const Topology& topology, const Interaction& interaction, const St
 // stiffness by differences of the forces.
 double stiffest_frequency(const Topology& topology, const Interaction& interaction, const State& state);
 
+// The set with elements so many times as long.
+ParameterSet with_elements(ParameterSet set, double factor);
+
 }  // namespace ropewalk
