@@ -270,8 +270,7 @@ void check_coinciding_nodes(Pair& single, const ParameterSet& oracle, CaseResult
   result.checks.push_back(relative_check("line law, nodes that coincide: jump of the force", jump, theory, 0.05,
                                          "eV/nm", fmt::format("at an energy of {:.3g} eV", single.energy())));
   result.limits.push_back({"jump of the line law's force where nodes coincide", jump, theory, "eV/nm",
-                           Limit::Guard::refused,
-                           "elements that overlap at the start; a run stops long before"});
+                           Limit::Guard::refused, "elements that overlap at the start; a run stops long before"});
 }
 
 CaseFigure figure_of(Pair& line_rows, Pair& paper_rows, const ParameterSet& line, double line_at, double paper_at) {

@@ -16,7 +16,7 @@ const char* verdict_css = R"(
 .good{color:#197a3a}.bad{color:#c0271d}.dim{color:var(--soft)}
 @media(prefers-color-scheme:dark){.good{color:#5fc784}.bad{color:#ff7b6e}}
 .case{scroll-margin-top:1em}
-.limits .number,.limits td:nth-child(4){white-space:nowrap}
+.facts .number,.limits td:nth-child(4){white-space:nowrap}
 .map{width:180px;height:18px;display:block}
 .map .band{fill:var(--rule)}.map .axis{stroke:var(--soft)}.map .dot{fill:#197a3a}.map .off{fill:#c0271d}
 @media(prefers-color-scheme:dark){.map .dot{fill:#5fc784}.map .off{fill:#ff7b6e}}
