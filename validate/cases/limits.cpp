@@ -112,7 +112,8 @@ double stiffest_frequency(const Topology& topology, const Interaction& interacti
 double largest_damped_step(const Topology& topology, const Interaction& interaction, const State& state) {
   const Eigen::MatrixXd k = derivative(topology, interaction, state, By::place),
                         d = derivative(topology, interaction, state, By::velocity);
-  return limit_between([&](double dt) { return largest_eigenvalue(dt * dt * k + 2 * dt * d) > 4; }, 1e-5, 1, 1e-4);
+  return limit_between([&](double dt) { return largest_eigenvalue(dt * dt * k + 2 * dt * d) > 4; }, 1e-5, 0.5,
+                       1e-3);
 }
 
 }  // namespace ropewalk
