@@ -1,5 +1,6 @@
 // ropewalk: the front door. Reads the command line, calls the verb, turns errors into one line and an exit
-// code: 0 done, 2 wrong input, 3 numerical failure, 128 + signal when interrupted.
+// code: 0 done, 2 wrong input, 3 numerical failure, 4 a relaxation that did not come to rest, 128 + signal when
+// interrupted.
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -169,7 +170,9 @@ void add_bench(CLI::App& app, Verbs& v) {
 int main(int argc, char** argv) {
   CLI::App app(
       "ropewalk twists carbon-nanotube ropes by the mesoscopic distinct element method.\n"
-      "Units: nm, ps, eV; moments nN nm; every key of a scene carries its unit.");
+      "Units: nm, ps, eV; moments nN nm; every key of a scene carries its unit.\n"
+      "Exit code: 0 done, 2 wrong input, 3 stopped with the reason, 4 not relaxed within run.max_steps, 128 + "
+      "signal.");
   app.set_version_flag("--version", std::string("ropewalk ") + version + " (" + git_id + ")");
   app.require_subcommand(1);
   app.footer(scene_key_help());

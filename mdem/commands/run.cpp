@@ -162,7 +162,7 @@ class Run {
   bool relax_loop() {
     Progress progress(quiet_, 0, 0);
     const long most = last_step_ > 0 ? last_step_ : scene_.run.max_steps;
-    const bool converged = simulation_.relax(scene_.run.force_tolerance, most, [&](long k) {
+    at_rest_ = simulation_.relax(scene_.run.force_tolerance, most, [&](long k) {
       if (k % 100 == 0) write_row();
       if (progress.due()) progress.show(static_cast<double>(k), status_text());
       return caught_signal == 0;
@@ -171,9 +171,9 @@ class Run {
     write_row();
     write_frame();
     if (caught_signal) return false;
-    reason_ = converged ? fmt::format("relaxed: largest force below {:.3g} eV/nm", scene_.run.force_tolerance)
-                        : fmt::format("not relaxed after {} steps: largest force {:.3g} eV/nm; raise run.max_steps",
-                                      most, simulation_.largest_force());
+    reason_ = at_rest_ ? fmt::format("relaxed: largest force below {:.3g} eV/nm", scene_.run.force_tolerance)
+                       : fmt::format("not relaxed after {} steps: largest force {:.3g} eV/nm, {:.3g} asked for",
+                                     most, simulation_.largest_force(), scene_.run.force_tolerance);
     return true;
   }
 
@@ -272,11 +272,14 @@ class Run {
 
   int finish() {
     save();
-    write_manifest("finished", reason_);
+    write_manifest(at_rest_ ? "finished" : "not relaxed", reason_);
     write_report(dir_, scene_, prepared_);
     fmt::print("{}{} steps, {:.1f} ps, {:.0f} s. Report: {}\n", reason_.empty() ? "" : reason_ + "\n",
                simulation_.state().step, simulation_.state().time, wall(), dir_.report());
-    return 0;
+    if (at_rest_) return 0;
+    fmt::print(stderr, "ropewalk: {}; go on with `ropewalk resume {}`, or raise run.max_steps\n", reason_,
+               dir_.path);
+    return 4;
   }
 
   int interrupted() {
@@ -307,6 +310,7 @@ class Run {
   double first_energy_ = 0, earlier_seconds_ = 0, started_ = now();
   long log_every_ = 1, frames_every_ = 1, last_step_ = 0;
   bool quiet_ = false;
+  bool at_rest_ = true;  // false: a relaxation ran out of steps
 };
 
 }  // namespace

@@ -20,7 +20,7 @@ struct Manifest {
   double wall_seconds = 0;
   std::int64_t steps = 0;
   double time_step_fs = 0;
-  std::string status;  // running, finished, interrupted, failed
+  std::string status;  // running, finished, interrupted, failed, not relaxed
   std::string reason;  // in words; may be empty
   std::string scene;   // its name
 };

@@ -21,7 +21,7 @@ struct ReportSection {
 
 struct ReportInput {
   std::string name;
-  std::string status;  // as in the manifest: running, finished, interrupted, failed
+  std::string status;  // as in the manifest: running, finished, interrupted, failed, not relaxed
   std::string reason;  // in words; may be empty
   std::vector<std::string> warnings;
   std::vector<ReportFact> facts;  // scene, program, how long it took: in the order of the page

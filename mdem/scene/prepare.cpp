@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "model/error.hpp"
@@ -26,6 +27,85 @@ double chosen_step(const Scene& scene, const TimeStepLimit& limit) {
                    fmt::format("take at most {:.3g}, or \"auto\"", 0.9 * largest / units::fs));
 }
 
+// Of two segments about their centres, x_j - x_i = d; u, v their axes, a, b half their lengths.
+double segment_distance(const Vector3& d, const Vector3& u, double a, const Vector3& v, double b) {
+  const double c = u.dot(v), du = d.dot(u), dv = d.dot(v), across = 1 - c * c;
+  double s = across > 1e-12 ? std::clamp((du - c * dv) / across, -a, a) : 0, t = 0;
+  for (int k = 0; k < 4; ++k) {  // each in turn, the other kept: the distance is convex
+    t = std::clamp(c * s - dv, -b, b);
+    s = std::clamp(du + c * t, -a, a);
+  }
+  return (d + t * v - s * u).norm();
+}
+
+// What is inside of one another goes apart like an explosion, or through the core unseen.
+void refuse_overlaps(const Scene& scene, const Prepared& p) {
+  const auto* source = std::get_if<StateSource>(&scene.source);
+  if (!source || !p.interaction.has_contact() || scene.run.mode == RunOptions::Mode::relax) return;
+  NeighbourList list(p.interaction, default_skin(p.interaction));
+  list.build(p.topology, p.state);
+  for (int i = 0; i < p.topology.elements(); ++i)
+    for (std::size_t k = list.begin(i); k < list.begin(i + 1); ++k) {
+      const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(list.indices()[k]);
+      const TubeType &ti = p.topology.type_of_element(i), &tj = p.topology.type_of_element(list.indices()[k]);
+      const double apart =
+          segment_distance(p.state.position[b] - p.state.position[a], axis_of(p.state.orientation[a]),
+                           0.5 * ti.element_length, axis_of(p.state.orientation[b]), 0.5 * tj.element_length);
+      if (apart < ti.radius + tj.radius)
+        throw InputError(
+            {source->file, 0, ""},
+            fmt::format("elements {} and {} overlap: their axes are {:.3g} nm apart, and their radii are "
+                        "{:.3g} nm together",
+                        a, b, apart, ti.radius + tj.radius),
+            "move them apart, or relax the state first with mode = \"relax\"");
+    }
+}
+
+// A single tube bears the whole moment in every bond.
+void refuse_moment(const Scene& scene, const Prepared& p) {
+  if (!scene.twist || p.topology.tubes() != 1) return;
+  const TubeType& t = p.topology.type_of(0);
+  const double most = t.bond.twist / t.element_length;
+  if (scene.twist->moment > most)
+    throw InputError(
+        {scene.path, 0, "twist.moment_nN_nm"},
+        fmt::format("{:.4g} nN nm are more than a bond of {:.4g} nm bears before it slips, GJ/a = {:.4g}",
+                    scene.twist->moment / units::nN_nm, t.element_length, most / units::nN_nm),
+        "lower the moment or take shorter elements");
+}
+
+// What the simulator would stop in the first step, whatever comes afterwards.
+void refuse_first_step(const Scene& scene, const Simulation& s) {
+  const Topology& topology = s.topology();
+  if (s.forces().slipping_bond >= 0)
+    throw InputError({scene.path, 0, "state"},
+                     fmt::format("the bond after element {} is twisted by 90 degrees or more, where it slips",
+                                 s.forces().slipping_bond),
+                     "turn its elements nearer to each other about the tube");
+  if (scene.run.mode == RunOptions::Mode::relax) return;
+  const double dt = s.time_step(), farthest = 0.25 * topology.largest_radius();
+  State kicked = s.state();
+  for (int t = 0; t < topology.tubes(); ++t) {
+    const TubeType& type = topology.type_of(t);
+    for (int e = topology.tube_begin[t]; e < topology.tube_begin[t + 1]; ++e) {
+      const auto i = static_cast<std::size_t>(e);
+      kicked.velocity.add(i, 0.5 * dt / type.mass * s.forces().force[i]);
+      kicked.angular_velocity.add(i, 0.5 * dt / type.inertia * s.forces().torque[i]);
+    }
+  }
+  constrain(topology, s.drive(), kicked.time, s.forces(), 0.5 * dt, kicked);
+  for (std::size_t i = 0; i < kicked.size(); ++i) {
+    const double moved = dt * kicked.velocity[i].norm(), turned = dt * kicked.angular_velocity[i].norm();
+    if (moved >= farthest || turned >= 0.5)
+      throw InputError(
+          {scene.path, 0, ""},
+          fmt::format("the first step would move element {} by {:.3g} nm and turn it by {:.3g} rad, and "
+                      "a run ends at {:.3g} nm or 0.5 rad",
+                      i, moved, turned, farthest),
+          "take a gentler load, a slower start or a smaller time step");
+  }
+}
+
 }  // namespace
 
 Prepared prepare(Scene& scene) {
@@ -46,11 +126,15 @@ Prepared prepare(Scene& scene) {
                      fmt::format("{:.4g} ps in steps of {:.4g} fs are {:.1g} steps", out.duration,
                                  out.time_step / units::fs, out.duration / out.time_step),
                      fmt::format("at most {:.0g} can be counted; take a larger step or a shorter run", most_steps));
+  refuse_overlaps(scene, out);
+  refuse_moment(scene, out);
   return out;
 }
 
 Simulation start(const Scene& scene, const Prepared& p) {
-  return Simulation(p.topology, p.interaction, p.drive, p.state, p.time_step, scene.contact.skin, p.stepping);
+  Simulation simulation(p.topology, p.interaction, p.drive, p.state, p.time_step, scene.contact.skin, p.stepping);
+  refuse_first_step(scene, simulation);
+  return simulation;
 }
 
 }  // namespace ropewalk

@@ -19,10 +19,12 @@ struct Prepared {
   double duration = 0;  // ps
 };
 
-// Throws InputError for a typed time step above the limit and for loads on elements that do not exist.
+// Throws InputError for a typed time step above the limit, for loads on elements that do not exist, for tubes of a
+// state file inside one another (unless they are to be relaxed) and for a moment that a single tube cannot bear.
 Prepared prepare(Scene& scene);
 
-// The simulation of a prepared scene, with the scene's list skin.
+// The simulation of a prepared scene, with the scene's list skin. Throws InputError where its first step would end
+// the run, or a bond slips already.
 Simulation start(const Scene& scene, const Prepared& prepared);
 
 }  // namespace ropewalk

@@ -14,6 +14,27 @@
 #include "sim/motion.hpp"
 
 namespace ropewalk {
+namespace {
+
+bool finite(const Vector3& v) { return std::isfinite(v.squaredNorm()); }
+
+// The first element with a number that is not finite in these; -1: none.
+int not_finite(const Vec3Array& a, const Vec3Array& b) {
+  for (std::size_t i = 0; i < a.size(); ++i)
+    if (!finite(a[i]) || !finite(b[i])) return static_cast<int>(i);
+  return -1;
+}
+
+// Before any force spreads it to the neighbours.
+void refuse_not_finite(const State& s) {
+  int broken = std::max(not_finite(s.position, s.velocity), not_finite(s.angular_velocity, s.angular_velocity));
+  for (std::size_t i = 0; i < s.size() && broken < 0; ++i)
+    if (!std::isfinite(s.orientation[i].squaredNorm())) broken = static_cast<int>(i);
+  if (broken >= 0)
+    throw NumericalError(s.step, broken, "its place, turn or velocity is not finite", "start from another state");
+}
+
+}  // namespace
 
 Simulation::Simulation(Topology topology, Interaction interaction, Drive drive, State state, double time_step,
                        double skin, Stepping stepping)
@@ -27,6 +48,7 @@ Simulation::Simulation(Topology topology, Interaction interaction, Drive drive, 
       forces_(state_.size()),
       inner_(two_levels() ? state_.size() : 0),
       contact_(two_levels() ? state_.size() : 0) {
+  refuse_not_finite(state_);
   list_.build(topology_, state_);
   compute();
   constrain(topology_, drive_, state_.time, forces_, 0.0, state_);
@@ -250,8 +272,11 @@ double Simulation::largest_force() const {
   constrain(topology_, drive_, state_.time, forces_, 0.0, free);
   double largest = 0;
   const double radius = topology_.largest_radius();
-  for (std::size_t i = 0; i < free.size(); ++i)
-    largest = std::max({largest, free.velocity[i].norm(), free.angular_velocity[i].norm() / radius});
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    const double force = free.velocity[i].norm(), torque = free.angular_velocity[i].norm() / radius;
+    if (!std::isfinite(force + torque)) return std::numeric_limits<double>::quiet_NaN();
+    largest = std::max({largest, force, torque});
+  }
   return largest;
 }
 
@@ -297,6 +322,9 @@ bool Simulation::relax(double tolerance, long max_steps, const std::function<boo
       v2 += state_.velocity[i].squaredNorm() + scale2 * state_.angular_velocity[i].squaredNorm();
       f2 += forces_.force[i].squaredNorm() + forces_.torque[i].squaredNorm() / scale2;
     }
+    if (!std::isfinite(v2 + f2))
+      throw NumericalError(state_.step, not_finite(forces_.force, forces_.torque),
+                           "relaxation met a force that is not finite", "start from a state without overlaps");
     const double turn = f2 > 0 ? mix * std::sqrt(v2 / f2) : 0.0;
     for (std::size_t i = 0; i < n; ++i) {
       state_.velocity.set(i, (1 - mix) * state_.velocity[i] + turn * forces_.force[i]);
@@ -306,9 +334,6 @@ bool Simulation::relax(double tolerance, long max_steps, const std::function<boo
     for (std::size_t i = 0; i < n; ++i)
       fastest2 =
           std::max(fastest2, state_.velocity[i].squaredNorm() + scale2 * state_.angular_velocity[i].squaredNorm());
-    if (!std::isfinite(fastest2))
-      throw NumericalError(k, -1, "relaxation met a force that is not finite",
-                           "start from a state without overlaps");
     const double step = std::min(dt, fastest2 > 0 ? most_move / std::sqrt(fastest2) : dt);
     drift(step);
     ++state_.step;

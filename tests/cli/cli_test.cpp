@@ -254,15 +254,10 @@ TEST_F(Cli, SignalsWriteACheckpoint) {
 }
 
 TEST_F(Cli, BlowUpStopsWithAWrittenState) {
-  // Two tubes pushed into one another.
-  std::string csv = "tube,x_nm,y_nm,z_nm,qw,qx,qy,qz\n";
-  for (int t = 0; t < 2; ++t)
-    for (int e = 0; e < 5; ++e)
-      csv += std::to_string(t) + "," + std::to_string(0.4 * t) + ",0," + std::to_string(1.356 * e) + ",1,0,0,0\n";
-  spit(dir / "overlap.csv", csv);
+  // A moment that comes within a few steps.
   spit(dir / "s.toml",
-       "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-paper\"\n[state]\nfile = \"overlap.csv\"\n"
-       "[run]\nduration_ps = 10\n");
+       "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-paper\"\n[rope]\ntubes = 7\nlength_nm = 13.56\n"
+       "[twist]\nmoment_nN_nm = 4000\nrate_nN_nm_per_ps = 50000\nhold_ps = 2\n");
   const Outcome o = run("run s.toml --out d");
   EXPECT_EQ(o.code, 3);
   EXPECT_TRUE(std::regex_search(o.err, std::regex("step [0-9]+, element [0-9]+"))) << o.err;
@@ -337,6 +332,24 @@ TEST_F(Cli, RelaxationSaysHowItEnded) {
   const Outcome o = run("run s.toml --out d");
   EXPECT_EQ(o.code, 0) << o.err;
   EXPECT_NE(o.out.find("relaxed"), std::string::npos) << o.out;
+}
+
+TEST_F(Cli, RelaxationThatRunsOutOfStepsKeepsItsFilesAndCanGoOn) {
+  const std::string scene =
+      "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-paper\"\n[rope]\ntubes = 7\nlength_nm = 7\n"
+      "perturbation_nm = 0.02\n[run]\nmode = \"relax\"\nforce_tolerance_nN = 1e-5\nmax_steps = ";
+  spit(dir / "s.toml", scene + "30\n");
+  const Outcome o = run("run s.toml --out d --quiet");
+  EXPECT_EQ(o.code, 4) << o.err;
+  EXPECT_EQ(o.err.rfind("ropewalk: not relaxed after 30 steps: largest force ", 0), 0u) << o.err;
+  EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << o.err;
+  EXPECT_NE(o.err.find("ropewalk resume d"), std::string::npos) << o.err;
+  EXPECT_EQ(Json::parse(slurp(dir / "d/manifest.json")).at("status"), "not relaxed");
+  EXPECT_NE(slurp(dir / "d/report.html").find("did not come to rest"), std::string::npos);
+  EXPECT_EQ(run("observe d").code, 0);
+  const Outcome on = run("resume d --steps 20000 --quiet");
+  EXPECT_EQ(on.code, 0) << on.err;
+  EXPECT_EQ(Json::parse(slurp(dir / "d/manifest.json")).at("status"), "finished");
 }
 
 // Every wrong file of tests/cli/bad: exit code 2, one line, what it expects.

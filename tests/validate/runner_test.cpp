@@ -69,6 +69,7 @@ TEST(ValidationOutcome, ComesBackFromItsFile) {
   f.chart.lines = {{"model", {0, 1, 2}, {0, std::nan(""), 4}, 1}};
   f.chart.lines[0].points = true;
   o.result.figures = {f};
+  o.result.limits = {{"time step", 66, 65, "fs", Limit::Guard::refused, "above the estimate"}};
   const std::string path = (std::filesystem::temp_directory_path() / "ropewalk-outcome.json").string();
   write_file_atomically(path, outcome_json(o));
   const Outcome back = read_outcome(path);
@@ -89,6 +90,20 @@ TEST(ValidationPage, TellsTheVerdictFirstAndEscapes) {
   EXPECT_THAT(bad, HasSubstr("✗ misses"));
   EXPECT_LT(bad.find("✗ misses"), bad.find("<section"));
   EXPECT_THAT(bad, Not(HasSubstr("<script")));
+}
+
+TEST(ValidationPage, DrawsTheLimitsOnAMap) {
+  Outcome o = outcome_with({check(1, 1, 0.1)});
+  EXPECT_THAT(validation_page({o}, {}), Not(HasSubstr("The map")));
+  o.result.limits = {{"step <of> a tube", 102, 100, "fs", Limit::Guard::stopped, "in words"},
+                     {"another", 109, 100, "fs", Limit::Guard::none, "not needed"}};
+  const std::string page = validation_page({o}, {});
+  EXPECT_THAT(page, HasSubstr("The map"));
+  EXPECT_THAT(page, HasSubstr("step &lt;of&gt; a tube"));
+  EXPECT_THAT(page, HasSubstr("stopped with the reason"));
+  EXPECT_THAT(page,
+              HasSubstr("class=\"dot\" cx=\"108.0\""));  // 2 of the 10 % to one side of the strip's middle, 90
+  EXPECT_THAT(page, HasSubstr("class=\"off\" cx=\"171.0\""));
 }
 
 TEST(ValidationCases, AreDescribedInFull) {

@@ -67,6 +67,12 @@ inline void expect_green(const Case& c) {
   }
   for (const std::string& text : {c.name, c.title, c.why, c.setup, c.oracle, c.literature})
     EXPECT_FALSE(text.empty());
+  // A limit has its place on the map, and what was found agrees with theory.
+  EXPECT_EQ(c.group == Case::Group::stability, !result.limits.empty()) << c.name;
+  for (const Limit& l : result.limits) {
+    EXPECT_NEAR(l.found / l.theory, 1, 0.05) << c.name << ": " << l.method;
+    EXPECT_FALSE(l.how.empty()) << l.method;
+  }
   EXPECT_FALSE(result.remarks.empty());
   EXPECT_FALSE(result.sources.empty());
 }

@@ -39,6 +39,12 @@ const std::vector<Case>& all_cases() {
       limit_contact_step_case(),
       limit_tunnelling_case(),
       limit_bond_slip_case(),
+      limit_contact_stiffness_case(),
+      limit_element_length_case(),
+      limit_crossing_case(),
+      limit_list_skin_case(),
+      limit_fire_case(),
+      limit_nan_case(),
   };
   return cases;
 }

@@ -39,5 +39,11 @@ Case limit_chain_step_case();
 Case limit_contact_step_case();
 Case limit_tunnelling_case();
 Case limit_bond_slip_case();
+Case limit_contact_stiffness_case();
+Case limit_element_length_case();
+Case limit_crossing_case();
+Case limit_list_skin_case();
+Case limit_fire_case();
+Case limit_nan_case();
 
 }  // namespace ropewalk

@@ -41,6 +41,8 @@ CaseResult run(const CaseContext& context) {
                                                      theory * std::sin(10 * units::degree) / units::nN_nm,
                                                      theory * 10 * units::degree / units::nN_nm, 0, "nN nm",
                                                      "the bond's sine against a rod: 0.5 % less at 10 degrees")));
+  result.limits.push_back({"moment at which a bond slips", found / units::nN_nm, theory / units::nN_nm, "nN nm",
+                           Limit::Guard::stopped, "a bond twisted by 90 degrees, with its element"});
   CaseFigure figure;
   figure.chart = {"Torque of a bond", {"twist of the bond", "degrees"}, {"moment", "nN nm"}, {}, {}};
   std::vector<double> angle, moment;

@@ -30,6 +30,8 @@ CaseResult run(const CaseContext& context) {
   result.checks.push_back(information(relative_check(
       "what `auto` takes for it", estimate / units::fs, theory / units::fs, 0.05, "fs",
       "stiffest chain and stiffest contact of an endless rope together, pressed to 97 % of its spacing")));
+  result.limits.push_back({"time step, seven tubes at rest", found / units::fs, theory / units::fs, "fs",
+                           Limit::Guard::refused, "a typed step above the estimate for tubes pressed together"});
   CaseFigure figure;
   figure.chart = {
       "Growth of a disturbance by time step", {"time step", "fs"}, {"log10 of the energy's growth", ""}, {}, {}};

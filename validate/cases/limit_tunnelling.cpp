@@ -61,6 +61,8 @@ CaseResult run(const CaseContext& context) {
   }
   result.checks.push_back(absolute_check("stopped at the default step (1: yes)", stopped, 1, 0, "",
                                          "an element that moves a quarter of its radius in a step ends the run"));
+  result.limits.push_back({"speed that goes through a tube", found, theory, "km/s", Limit::Guard::stopped,
+                           "an element that moves a quarter of its radius in one step"});
   CaseFigure figure;
   figure.chart = {"Closest approach", {"distance of the axes", "nm"}, {"energy", "eV"}, {}, {}};
   const double mass = oracle.element_mass(oracle.element_length);

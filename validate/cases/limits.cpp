@@ -47,22 +47,34 @@ double growth(const Topology& topology, const Interaction& interaction, const St
   return factor;
 }
 
+ParameterSet with_elements(ParameterSet set, double factor) {
+  set.element_length *= factor;
+  return set;
+}
+
 bool blows_up(const Topology& topology, const Interaction& interaction, const State& state, double time_step,
               long steps) {
   return !(growth(topology, interaction, state, time_step, steps) < enough_growth);
 }
 
-double stiffest_frequency(const Topology& topology, const Interaction& interaction, const State& state) {
+namespace {
+
+// Minus the derivative of all forces and torques by places and turns, or by velocities, over the masses.
+enum class By { place, velocity };
+Eigen::MatrixXd derivative(const Topology& topology, const Interaction& interaction, const State& state, By by) {
   const auto n = static_cast<Eigen::Index>(6 * state.size());
-  constexpr double h = 1e-5;  // nm, rad
+  const double h = by == By::place ? 1e-5 : 1e-3;  // nm, rad; nm/ps, rad/ps
   NeighbourList list(interaction, 0.2);
   list.build(topology, state);
   ForceEngine engine;
-  const auto forces = [&](Eigen::Index freedom, double by) {
+  const auto forces = [&](Eigen::Index freedom, double change) {
     State moved = state;
     const auto i = static_cast<std::size_t>(freedom / 6);
-    const Vector3 along = by * Vector3::Unit(freedom % 3);
-    if (freedom % 6 < 3) {
+    const Vector3 along = change * Vector3::Unit(freedom % 3);
+    const bool moves = freedom % 6 < 3;
+    if (by == By::velocity) {
+      (moves ? moved.velocity : moved.angular_velocity).add(i, along);
+    } else if (moves) {
       moved.position.add(i, along);
     } else {
       moved.orientation.set(i, small_turn(along) * moved.orientation[i]);
@@ -81,12 +93,27 @@ double stiffest_frequency(const Topology& topology, const Interaction& interacti
     const TubeType& type = topology.type_of_element(static_cast<int>(k / 6));
     root[k] = std::sqrt(k % 6 < 3 ? type.mass : type.inertia);
   }
-  Eigen::MatrixXd stiffness(n, n);
-  for (Eigen::Index k = 0; k < n; ++k) stiffness.col(k) = (forces(k, -h) - forces(k, h)) / (2 * h);
-  stiffness = root.cwiseInverse().asDiagonal() * stiffness * root.cwiseInverse().asDiagonal();
-  const Eigen::MatrixXd symmetric = 0.5 * (stiffness + stiffness.transpose());
-  return std::sqrt(
-      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(symmetric, Eigen::EigenvaluesOnly).eigenvalues()[n - 1]);
+  Eigen::MatrixXd out(n, n);
+  for (Eigen::Index k = 0; k < n; ++k) out.col(k) = (forces(k, -h) - forces(k, h)) / (2 * h);
+  out = root.cwiseInverse().asDiagonal() * out * root.cwiseInverse().asDiagonal();
+  return 0.5 * (out + out.transpose());
+}
+
+double largest_eigenvalue(const Eigen::MatrixXd& m) {
+  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(m, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff();
+}
+
+}  // namespace
+
+double stiffest_frequency(const Topology& topology, const Interaction& interaction, const State& state) {
+  return std::sqrt(largest_eigenvalue(derivative(topology, interaction, state, By::place)));
+}
+
+double largest_damped_step(const Topology& topology, const Interaction& interaction, const State& state) {
+  const Eigen::MatrixXd k = derivative(topology, interaction, state, By::place),
+                        d = derivative(topology, interaction, state, By::velocity);
+  return limit_between([&](double dt) { return largest_eigenvalue(dt * dt * k + 2 * dt * d) > 4; }, 1e-5, 0.5,
+                       1e-3);
 }
 
 }  // namespace ropewalk

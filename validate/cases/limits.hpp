@@ -22,4 +22,11 @@ double growth(const Topology& topology, const Interaction& interaction, const St
 // stiffness by differences of the forces.
 double stiffest_frequency(const Topology& topology, const Interaction& interaction, const State& state);
 
+// The step at which dt^2 K + 2 dt D reaches the eigenvalue 4, K and D the stiffness and the damping over the masses
+// by differences of the forces: 2/w without damping.
+double largest_damped_step(const Topology& topology, const Interaction& interaction, const State& state);
+
+// The set with elements so many times as long.
+ParameterSet with_elements(ParameterSet set, double factor);
+
 }  // namespace ropewalk

@@ -33,8 +33,21 @@ struct CaseFigure {
   std::string caption;  // what to see in it
 };
 
+// A place where a method fails: for the map of `validate stability`.
+struct Limit {
+  // What `run` does about it: does not start, ends with the reason, says so, or nothing.
+  enum class Guard { refused, stopped, told, none };
+  std::string method;  // "time step of a single tube"
+  double found = 0;    // by bisection on the method itself
+  double theory = 0;
+  std::string unit;
+  Guard guard = Guard::none;
+  std::string how;  // the guard in words
+};
+
 struct CaseResult {
   std::vector<Check> checks;
+  std::vector<Limit> limits;  // of the group `stability`
   std::vector<CaseFigure> figures;
   std::vector<std::string> remarks;  // sentences: what a miss is due to, which assumption it shows
   std::vector<std::string> sources;  // reference files (with "stored" or "fresh"), parameter sets
@@ -50,6 +63,9 @@ struct Fault {
   double contact = 1;             // factor of the contact energy
   bool missing_torque = false;    // the `paper` law without the torque that the published code leaves out
 };
+
+// A set whose tubes bind so many times as strongly, at the same distance.
+void scale_contact(ParameterSet& set, double factor);
 
 // What a case may use.
 struct CaseContext {

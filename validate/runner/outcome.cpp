@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
 
@@ -57,6 +59,30 @@ Check check_of(const Json& j) {
   return c;
 }
 
+constexpr const char* guard_words[] = {"refused", "stopped", "told", "none"};  // in the order of Limit::Guard
+
+Json to_json(const Limit& l) {
+  return {{"method", l.method},
+          {"found", number(l.found)},
+          {"theory", number(l.theory)},
+          {"unit", l.unit},
+          {"guard", guard_words[static_cast<std::size_t>(l.guard)]},
+          {"how", l.how}};
+}
+
+Limit limit_of(const Json& j) {
+  Limit l;
+  l.method = j.at("method");
+  l.found = number(j.at("found"));
+  l.theory = number(j.at("theory"));
+  l.unit = j.at("unit");
+  const auto* word = std::find(std::begin(guard_words), std::end(guard_words), j.at("guard").get<std::string>());
+  if (word == std::end(guard_words)) throw std::runtime_error("another guard");
+  l.guard = static_cast<Limit::Guard>(word - std::begin(guard_words));
+  l.how = j.at("how");
+  return l;
+}
+
 Json to_json(const ChartAxis& a) { return {{"quantity", a.quantity}, {"unit", a.unit}, {"whole", a.whole}}; }
 ChartAxis axis_of(const Json& j) { return {j.at("quantity"), j.at("unit"), j.at("whole")}; }
 
@@ -106,10 +132,13 @@ Json body(const Outcome& o) {
   Json checks = Json::array(), figures = Json::array();
   for (const Check& c : o.result.checks) checks.push_back(to_json(c));
   for (const CaseFigure& f : o.result.figures) figures.push_back(to_json(f));
+  Json limits = Json::array();
+  for (const Limit& l : o.result.limits) limits.push_back(to_json(l));
   return {{"format", outcome_format},
           {"case", o.name},
           {"verdict", verdict_word(o.verdict())},
           {"checks", checks},
+          {"limits", limits},
           {"remarks", o.result.remarks},
           {"sources", o.result.sources},
           {"error", o.error},
@@ -147,6 +176,7 @@ Outcome read_outcome(const std::string& path) {
     o.error = j.at("error");
     o.key = j.at("key");
     for (const Json& c : j.at("checks")) o.result.checks.push_back(check_of(c));
+    for (const Json& l : j.value("limits", Json::array())) o.result.limits.push_back(limit_of(l));  // older: none
     for (const Json& f : j.at("figures")) o.result.figures.push_back(figure_of(f));
     o.result.remarks = j.at("remarks").get<std::vector<std::string>>();
     o.result.sources = j.at("sources").get<std::vector<std::string>>();

@@ -16,6 +16,10 @@ const char* verdict_css = R"(
 .good{color:#197a3a}.bad{color:#c0271d}.dim{color:var(--soft)}
 @media(prefers-color-scheme:dark){.good{color:#5fc784}.bad{color:#ff7b6e}}
 .case{scroll-margin-top:1em}
+.facts .number,.limits td:nth-child(4){white-space:nowrap}
+.map{width:180px;height:18px;display:block}
+.map .band{fill:var(--rule)}.map .axis{stroke:var(--soft)}.map .dot{fill:#197a3a}.map .off{fill:#c0271d}
+@media(prefers-color-scheme:dark){.map .dot{fill:#5fc784}.map .off{fill:#ff7b6e}}
 )";
 
 std::string verdict_html(const Outcome& o) {
@@ -126,6 +130,66 @@ std::string case_html(const Outcome& o, Figures& figures) {
   return html + paragraph(sources + "</span>") + "</section>\n";
 }
 
+// --- The map of all limits --------------------------------------------------------------------------------
+
+constexpr double agreement = 0.05;       // found against theory, as the cases ask for
+constexpr double drawn = 2 * agreement;  // to either side
+
+// Found over theory as a dot on a strip; the band is what is allowed.
+std::string strip(double ratio) {
+  constexpr double half = 90;
+  if (!std::isfinite(ratio)) return "";
+  const auto at = [&](double r) { return half * (1 + std::clamp((r - 1) / drawn, -0.97, 0.97)); };
+  return fmt::format(
+      "<svg class=\"map\" viewBox=\"0 0 180 18\" role=\"img\" aria-label=\"found over theory {0:.4f}\">"
+      "<rect class=\"band\" x=\"{1:.1f}\" y=\"2\" width=\"{2:.1f}\" height=\"14\"/>"
+      "<line class=\"axis\" x1=\"90\" x2=\"90\" y1=\"0\" y2=\"18\"/>"
+      "<circle class=\"{3}\" cx=\"{4:.1f}\" cy=\"9\" r=\"4\"/></svg>",
+      ratio, at(1 - agreement), at(1 + agreement) - at(1 - agreement),
+      std::fabs(ratio - 1) <= agreement ? "dot" : "off", at(ratio));
+}
+
+const char* guard_words(Limit::Guard guard) {
+  switch (guard) {
+    case Limit::Guard::refused:
+      return "refused before the start";
+    case Limit::Guard::stopped:
+      return "stopped with the reason";
+    case Limit::Guard::told:
+      return "told";
+    case Limit::Guard::none:
+      return "none";
+  }
+  return "";
+}
+
+std::string limit_row(const Limit& l, const std::string& name) {
+  return fmt::format(
+      "<tr><td><a href=\"#{}\">{}</a></td><td class=\"number\">{}</td><td "
+      "class=\"number\">{}</td><td>{}</td><td>{}</td>"
+      "<td><b>{}</b></td><td class=\"dim\">{}</td></tr>\n",
+      name, escape_markup(l.method), number_text(l.found), number_text(l.theory), escape_markup(l.unit),
+      strip(l.found / l.theory), guard_words(l.guard), escape_markup(l.how));
+}
+
+std::string limits_map(const std::vector<Outcome>& outcomes) {
+  std::string rows;
+  for (const Outcome& o : outcomes)
+    for (const Limit& l : o.result.limits) rows += limit_row(l, o.name);
+  if (rows.empty()) return "";
+  return heading("The map") +
+         paragraph(
+             "Where each method fails, found by bisection on the method itself, theory beside it, and what "
+             "<code>ropewalk run</code> does about it. The dot is found over theory, the band 5 %, the strip 10 "
+             "%.") +
+         "<div class=\"scroll\"><table class=\"facts limits\"><thead><tr><th>Limit</th><th "
+         "class=\"number\">Found</th>"
+         "<th class=\"number\">Theory</th><th>Unit</th><th>Found over theory</th><th>Guard of a "
+         "run</th><th></th></tr>"
+         "</thead><tbody>\n" +
+         rows + "</tbody></table></div>\n";
+}
+
 std::string lead(const std::vector<Outcome>& outcomes) {
   const auto count = [&](Outcome::Verdict v) {
     return std::count_if(outcomes.begin(), outcomes.end(), [&](const Outcome& o) { return o.verdict() == v; });
@@ -165,7 +229,7 @@ std::string validation_page(const std::vector<Outcome>& outcomes, const std::vec
                      "</p>\n<div class=\"scroll\"><table class=\"verdicts\"><thead><tr><th>Verdict</th>"
                      "<th>Case</th><th>Tightest check</th><th>Against</th></tr></thead><tbody>\n";
   for (const Outcome& o : outcomes) html += summary_row(o);
-  html += "</tbody></table></div>\n";
+  html += "</tbody></table></div>\n" + limits_map(outcomes);
   for (const Outcome& o : outcomes) html += case_html(o, figures);
   html += heading("How it was made");
   for (const std::string& f : facts) html += paragraph(escape_markup(f));
