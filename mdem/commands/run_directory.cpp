@@ -22,6 +22,7 @@ bool belongs_to_a_run(const std::string& name) {
   for (const char* known :
        {"log.csv",         "frames.lammpstrj", "checkpoint.bin",  "manifest.json",    "scene.toml",
         "parameters.toml", "state.csv",        "report.html",     "failed-state.csv", "paraview",
+        "limits.json",
         "lammps.json",     "tubes.csv",        "rope.data",       "in.rope",          "README.txt",
         "lammps.dump",     "lammps-last.dump", "lammps-rows.csv", "log.lammps",       "rope.restart.a",
         "rope.restart.b"})
