@@ -16,11 +16,11 @@ namespace {
 
 using namespace ropewalk;
 
-// By default the OpenMP runtime spins for milliseconds while it waits, and on a machine that does other work as well a
-// step then takes up to ten times as long. Asleep at once, small ropes lose what the second core gains: waking takes as
-// long as the gaps between the parallel parts of a step. So: spin for some ten microseconds, then sleep. The runtime
-// reads its settings before main: start once more with them, unless the user has chosen otherwise. (Under valgrind, set
-// OMP_WAIT_POLICY=passive yourself, or the second start runs outside it.)
+// By default the OpenMP runtime spins for milliseconds while it waits, and on a machine that does other work as
+// well a step then takes up to ten times as long. Asleep at once, small ropes lose what the second core gains:
+// waking takes as long as the gaps between the parallel parts of a step. So: spin for some ten microseconds, then
+// sleep. The runtime reads its settings before main: start once more with them, unless the user has chosen
+// otherwise. (Under valgrind, set OMP_WAIT_POLICY=passive yourself, or the second start runs outside it.)
 void wait_briefly(char** argv) {
   if (std::getenv("OMP_WAIT_POLICY") || std::getenv("GOMP_SPINCOUNT")) return;
   setenv("GOMP_SPINCOUNT", "2000", 1);

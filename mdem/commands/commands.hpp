@@ -10,8 +10,8 @@ namespace ropewalk {
 struct RunArguments {
   std::string scene;
   std::string out;
-  int threads = 0;     // 0: all cores
-  long steps = -1;     // stop after so many steps; -1: the scene's duration
+  int threads = 0;                // 0: all cores
+  long steps = -1;                // stop after so many steps; -1: the scene's duration
   std::string on_limit = "warn";  // "warn", "stop" or "refine"
   bool force = false;             // overwrite an earlier run
   bool quiet = false;

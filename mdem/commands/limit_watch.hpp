@@ -1,5 +1,5 @@
-// What a run does about its limits (observe/limits.hpp): it looks at every logged time and in between, says so in one
-// line where one is passed for the first time, and keeps the record for limits.json.
+// What a run does about its limits (observe/limits.hpp): it looks at every logged time and in between, says so in
+// one line where one is passed for the first time, and keeps the record for limits.json.
 #pragma once
 
 #include <string>

@@ -207,7 +207,8 @@ class Run {
   }
 
   Ending dynamics_loop() {
-    Progress progress(manner_.quiet, static_cast<double>(simulation_.state().step), static_cast<double>(last_step_));
+    Progress progress(manner_.quiet, static_cast<double>(simulation_.state().step),
+                      static_cast<double>(last_step_));
     double checkpoint_at = now() + scene_.run.checkpoint_every;
     const long look = std::min(log_every_, look_every);
     if (simulation_.state().step < last_step_ && std::isfinite(simulation_.total_energy()))
@@ -330,9 +331,7 @@ class Run {
     write_limits();
   }
 
-  void write_limits() const {
-    write_file_atomically(dir_.limits(), limits_json({watch_.records(), refinements_}));
-  }
+  void write_limits() const { write_file_atomically(dir_.limits(), limits_json({watch_.records(), refinements_})); }
 
   double wall() const { return earlier_seconds_ + now() - started_; }
 
@@ -390,7 +389,8 @@ class Run {
     refinements_ = next->refinements_;
     write_limits();
     const RefinementRecord& r = refinements_.back();
-    write_manifest("refined", fmt::format("every element was split at {:.3f} ps; it goes on in {}", r.time_ps, r.to));
+    write_manifest("refined",
+                   fmt::format("every element was split at {:.3f} ps; it goes on in {}", r.time_ps, r.to));
     write_report(dir_, scene_, prepared_);
     const auto jump = [](double before, double after) { return after - before; };
     const Energies &b = r.before.potential, &a = r.after.potential;

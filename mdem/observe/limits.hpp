@@ -2,17 +2,17 @@
 //
 // A chain of rigid elements is a rod as long as an element bends and twists little against its neighbour:
 //
-//   bend    angle between the axes of two bonded elements, curvature times element length. The energy EI/a (1 - cos)
-//           is 1 % below the rod's EI/2a angle^2 at 19.9 degrees.
-//   twist   angle of the bond about the axis. GJ/a (1 - cos) is 1 % below the rod's at the same 19.9 degrees; at 90 the
-//           torque peaks, the bond slips and the run stops.
+//   bend    angle between the axes of two bonded elements, curvature times element length. The energy
+//           EI/a (1 - cos) is 1 % below the rod's EI/2a angle^2 at 19.9 degrees.
+//   twist   angle of the bond about the axis. GJ/a (1 - cos) is 1 % below the rod's at the same 19.9 degrees; at
+//           90 the torque peaks, the bond slips and the run stops.
 //
 // Shorter elements cure these two. The others belong to the tube, which no finer chain changes:
 //
 //   kink_curvature, wall_twist (radius times twist per length), strain (of either sign)    the [validity] of the
 //           parameter set: there the tube kinks, collapses into a ribbon or buckles in its wall
-//   speed   of an element: a tenth of the speed of sound along the tube, sqrt(EA a/m). A tube that is stopped from the
-//           speed v is strained by v/c: by 10 % there, more than any of the shipped sets allows.
+//   speed   of an element: a tenth of the speed of sound along the tube, sqrt(EA a/m). A tube that is stopped
+//           from the speed v is strained by v/c: by 10 % there, more than any of the shipped sets allows.
 //
 // Units nm, ps, rad. A limit of zero is not watched.
 #pragma once

@@ -1,10 +1,10 @@
 #include "scene/finer.hpp"
 
 #include <fmt/format.h>
+#include <toml++/toml.h>
 
 #include <algorithm>
 #include <sstream>
-#include <toml++/toml.h>
 
 #include "sim/refine.hpp"
 

@@ -109,10 +109,10 @@ const std::vector<SceneKey>& scene_keys() {
       {"limits", "bend_deg", "deg", "19.9", "", "bend of one bond: its energy is then 1 % off the rod's"},
       {"limits", "twist_deg", "deg", "19.9", "", "twist of one bond: likewise; at 90 it slips"},
       {"limits", "kink_curvature_per_nm", "1/nm", "0.086", "the set's", "curvature of a tube"},
-      {"limits", "wall_twist", "", "0.043", "the set's twist_collapse", "radius of a tube times its twist per length"},
+      {"limits", "wall_twist", "", "0.043", "the set's twist_collapse",
+       "radius of a tube times its twist per length"},
       {"limits", "strain", "", "0.069", "the set's stretch", "of a bond, tension or compression"},
-      {"limits", "speed_nm_per_ps", "nm/ps", "2", "a tenth of the speed of sound along the tube",
-       "of an element"},
+      {"limits", "speed_nm_per_ps", "nm/ps", "2", "a tenth of the speed of sound along the tube", "of an element"},
   };
   return keys;
 }

@@ -54,9 +54,7 @@ class RodPiece {
     return {i_.place + arc(u) + cubic * shear_, turn_by(mean_.cross(lean)) * turn(u)};
   }
   Pose before(double u) const { return {i_.place + arc(u) + u * (1 - share_) * shear_, turn(u)}; }
-  Pose behind(double u) const {
-    return {j_.place + arc(u) - arc(1) + (u - 1) * (1 - share_) * shear_, turn(u)};
-  }
+  Pose behind(double u) const { return {j_.place + arc(u) - arc(1) + (u - 1) * (1 - share_) * shear_, turn(u)}; }
 
  private:
   Vector3 arc(double u) const {
@@ -110,8 +108,8 @@ double stencil_time(const Topology& coarse, const State& s) {
   for (int t = 0; t < coarse.tubes(); ++t)
     for (int i = coarse.tube_begin[t]; i < coarse.tube_begin[t + 1]; ++i) {
       const auto at = static_cast<std::size_t>(i);
-      rate = std::max({rate, s.velocity[at].norm() / coarse.type_of(t).element_length,
-                       s.angular_velocity[at].norm()});
+      rate =
+          std::max({rate, s.velocity[at].norm() / coarse.type_of(t).element_length, s.angular_velocity[at].norm()});
     }
   return rate > 0 ? little / rate : 0;
 }
