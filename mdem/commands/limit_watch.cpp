@@ -32,9 +32,9 @@ void LimitWatch::take_over(const std::vector<LimitRecord>& earlier, std::int64_t
     if (r.passed_at_step > step) r.passed = false;
 }
 
-std::vector<std::string> LimitWatch::look(const Topology& topology, const State& state) {
+std::vector<std::string> LimitWatch::look(const Topology& topology, const State& state, const NeighbourList& list) {
   std::vector<std::string> lines;
-  const Peaks now = peaks(topology, state, limits_);
+  const Peaks now = peaks(topology, state, list, watched_);
   records_.resize(limit_count);
   finer_would_help_ = false;
   for (std::size_t k = 0; k < limit_count; ++k) {

@@ -17,21 +17,21 @@ OnLimit on_limit_of(const std::string& word);
 
 class LimitWatch {
  public:
-  explicit LimitWatch(std::vector<Limits> limits) : limits_(std::move(limits)) {}
+  explicit LimitWatch(Watched watched) : watched_(std::move(watched)) {}
 
   // A run that goes on: from its own file, or from that of the run before its elements were split. What was passed
   // after `step` had not happened.
   void take_over(const std::vector<LimitRecord>& earlier, std::int64_t step);
 
   // One line for each limit that is passed for the first time.
-  std::vector<std::string> look(const Topology& topology, const State& state);
+  std::vector<std::string> look(const Topology& topology, const State& state, const NeighbourList& list);
 
   // At the last look: is a limit passed that shorter elements would cure.
   bool finer_would_help() const { return finer_would_help_; }
   const std::vector<LimitRecord>& records() const { return records_; }
 
  private:
-  std::vector<Limits> limits_;
+  Watched watched_;
   std::vector<LimitRecord> records_;
   bool finer_would_help_ = false;
 };

@@ -26,8 +26,8 @@
 #include "io/frames.hpp"
 #include "model/error.hpp"
 #include "scene/finer.hpp"
-#include "scene/resolve.hpp"
 #include "scene/scene_toml.hpp"
+#include "scene/watch.hpp"
 #include "sim/refine.hpp"
 #include "version.hpp"
 
@@ -107,7 +107,7 @@ class Run {
         prepared_(prepare(scene_)),
         observer_(make_observer(scene_, prepared_)),
         simulation_(start(scene_, prepared_)),
-        watch_(limits_of(scene_, prepared_.topology)),
+        watch_(watched_of(scene_, prepared_.topology)),
         manner_(manner) {
     const double dt = prepared_.time_step;
     const double span = prepared_.duration > 0 ? prepared_.duration : 1000 * dt;
@@ -195,7 +195,8 @@ class Run {
 
   // Says what is passed for the first time, and whether the run is to end here for it.
   std::optional<Ending> look_at_limits() {
-    const std::vector<std::string> passed = watch_.look(prepared_.topology, simulation_.state());
+    const std::vector<std::string> passed =
+        watch_.look(prepared_.topology, simulation_.state(), simulation_.list());
     for (const std::string& line : passed) say(line);
     if (!passed.empty()) write_limits();
     if (manner_.on_limit == OnLimit::stop && !passed.empty()) return Ending::limit;
@@ -453,6 +454,7 @@ class Run {
   }
 
   int failed(const NumericalError& e) {
+    write_limits();
     write_file_atomically(dir_.failed_state(), state_csv(prepared_.topology, simulation_.state()));
     write_manifest("failed", e.what());
     fmt::print(stderr, "\nropewalk: {}. State written to {}\n", e.what(), dir_.failed_state());

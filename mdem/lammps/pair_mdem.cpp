@@ -1,6 +1,6 @@
 #include "lammps/pair_mdem.hpp"
 
-#include "lammps/segments.hpp"
+#include "model/segments.hpp"
 #include "memory.h"
 
 namespace ropewalk::lammps {

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/segments.hpp"
+
 namespace ropewalk {
 namespace {
 
 constexpr double shock = 0.1;  // strain
 
-enum Kind : std::size_t { bend, twist, kink_curvature, wall_twist, strain, speed };
+enum Kind : std::size_t { bend, twist, kink_curvature, wall_twist, strain, press, speed };
 
 void raise(Peak& peak, double value, int element) {
   if (peak.element >= 0 && !(value > peak.value)) return;
@@ -40,6 +42,31 @@ Peaks peaks_of_tube(const Topology& topology, const State& state, int tube, cons
   return out;
 }
 
+// The pairs of each element that come nearer than they rest.
+void press_of_tube(const Topology& topology, const State& state, const NeighbourList& list, const Watched& watched,
+                   int tube, Peak& peak) {
+  const TubeType& type = topology.type_of(tube);
+  const auto types = topology.types.size(), row = static_cast<std::size_t>(topology.tube_type[tube]) * types;
+  const double reach = *std::max_element(watched.rest.begin(), watched.rest.end()) + topology.longest_element();
+  for (int i = topology.tube_begin[tube]; i < topology.tube_begin[tube + 1]; ++i) {
+    const Vector3 place = state.position[static_cast<std::size_t>(i)];
+    const Vector3 axis = axis_of(state.orientation[static_cast<std::size_t>(i)]);
+    double deepest = 0;
+    for (std::size_t k = list.begin(i); k < list.begin(i + 1); ++k) {
+      const auto j = static_cast<std::size_t>(list.indices()[k]);
+      const Vector3 separation = state.position[j] - place;
+      if (separation.squaredNorm() > reach * reach) continue;
+      const TubeType& other = topology.type_of_element(static_cast<int>(j));
+      const double rest = watched.rest[row + static_cast<std::size_t>(&other - topology.types.data())];
+      const double half_i = 0.5 * type.element_length, half_j = 0.5 * other.element_length;
+      const double distance2 =
+          squared_segment_distance(separation, axis, axis_of(state.orientation[j]), half_i, half_j);
+      if (distance2 < rest * rest) deepest = std::max(deepest, rest - std::sqrt(distance2));
+    }
+    raise(peak, deepest, i);
+  }
+}
+
 }  // namespace
 
 const std::array<LimitKind, limit_count>& limit_kinds() {
@@ -56,6 +83,8 @@ const std::array<LimitKind, limit_count>& limit_kinds() {
       {"strain", "", 1, &Limits::strain, "the bond to the next element is strained by",
        "the linear law of the bond ends there", "pull or press it less, or do not trust its force from now on",
        false},
+      {"press_nm", "nm", 1, &Limits::press, "the tube is pressed into another one by",
+       "the contact law is only continued there", "load it more gently, or start it without overlaps", false},
       {"speed_nm_per_ps", "nm/ps", 1, &Limits::speed, "the element moves with",
        "stopping it would strain the tube by 10 % or more", "load it more gently, or damp more", false},
   }};
@@ -71,12 +100,14 @@ Limits default_limits(const TubeType& type, const Validity& validity) {
   return limits;
 }
 
-Peaks peaks(const Topology& topology, const State& state, const std::vector<Limits>& limits) {
+Peaks peaks(const Topology& topology, const State& state, const NeighbourList& list, const Watched& watched) {
   std::vector<Peaks> tubes(static_cast<std::size_t>(topology.tubes()));
 #pragma omp parallel for schedule(static) if (state.size() > parallel_from)
-  for (int t = 0; t < topology.tubes(); ++t)
-    tubes[static_cast<std::size_t>(t)] =
-        peaks_of_tube(topology, state, t, limits[static_cast<std::size_t>(topology.tube_type[t])]);
+  for (int t = 0; t < topology.tubes(); ++t) {
+    Peaks& own = tubes[static_cast<std::size_t>(t)];
+    own = peaks_of_tube(topology, state, t, watched.limits[static_cast<std::size_t>(topology.tube_type[t])]);
+    if (list.pairs() > 0 && !watched.rest.empty()) press_of_tube(topology, state, list, watched, t, own[press]);
+  }
   Peaks out;
   for (const Peaks& tube : tubes)
     for (std::size_t k = 0; k < limit_count; ++k) {

@@ -11,6 +11,8 @@
 //
 //   kink_curvature, wall_twist (radius times twist per length), strain (of either sign)    the [validity] of the
 //           parameter set: there the tube kinks, collapses into a ribbon or buckles in its wall
+//   press   how much nearer (nm) the axes of two tubes come, at any angle, than two parallel ones rest: down to the
+//           core gap, below which the contact law is but its own Taylor polynomial, soft and without source
 //   speed   of an element: a tenth of the speed of sound along the tube, sqrt(EA a/m). A tube that is stopped
 //           from the speed v is strained by v/c: by 10 % there, more than any of the shipped sets allows.
 //
@@ -22,6 +24,7 @@
 #include <vector>
 
 #include "model/parameters.hpp"
+#include "sim/neighbours.hpp"
 #include "sim/state.hpp"
 
 namespace ropewalk {
@@ -32,9 +35,11 @@ struct Limits {
   double kink_curvature = 0;            // 1/nm
   double wall_twist = 0;
   double strain = 0;
+  double press = 0;  // nm
   double speed = 0;  // nm/ps
 };
 
+// But for press, which is that of the contact law.
 Limits default_limits(const TubeType& type, const Validity& validity);
 
 struct LimitKind {
@@ -47,7 +52,7 @@ struct LimitKind {
   const char* remedy;   // for one who meets it
   bool cured_by_finer;  // would shorter elements help
 };
-inline constexpr std::size_t limit_count = 6;
+inline constexpr std::size_t limit_count = 7;
 const std::array<LimitKind, limit_count>& limit_kinds();
 
 // The largest value, measured by its limit: where the limits of tube types differ it may not be the largest number.
@@ -61,7 +66,13 @@ struct Peak {
 };
 using Peaks = std::array<Peak, limit_count>;  // in the order of limit_kinds()
 
-// limits: by tube type. Of equal ones the first element.
-Peaks peaks(const Topology& topology, const State& state, const std::vector<Limits>& limits);
+// What is watched in one scene.
+struct Watched {
+  std::vector<Limits> limits;  // by tube type
+  std::vector<double> rest;  // nm: distance of parallel tubes of the types i, j at i * types + j; empty: no contact
+};
+
+// Of equal ones the first element. The list must be up to date; it may be empty.
+Peaks peaks(const Topology& topology, const State& state, const NeighbourList& list, const Watched& watched);
 
 }  // namespace ropewalk

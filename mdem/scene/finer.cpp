@@ -31,6 +31,21 @@ void set_contact(const Scene& scene, toml::table& top) {
   if (scene.contact.nodes > 0) contact.insert_or_assign("nodes_per_element", (scene.contact.nodes + 1) / 2);
 }
 
+// With most_damping as the reader has it.
+Damping finer_damping(Damping d) {
+  constexpr double most_damping = 1e4;
+  d.contact.eta *= 0.25;
+  d.bond.rate = std::min(4 * d.bond.rate, most_damping);
+  return d;
+}
+
+void set_damping(const Scene& scene, toml::table& top) {
+  const Damping finer = finer_damping(scene.damping);
+  toml::table& damping = table_of(top, "damping");
+  damping.insert_or_assign("contact_viscosity_eV_ps_per_nm2", finer.contact.eta);
+  damping.insert_or_assign("bond_damping_per_ps", finer.bond.rate);
+}
+
 toml::array both_halves(const Selection& on) {
   toml::array elements;
   for (const int e : on.elements) {
@@ -64,6 +79,7 @@ double finer_time_step(const Scene& scene, const Prepared& p) {
   Scene finer = scene;
   finer.element_length *= 0.5;
   finer.contact.nodes = (scene.contact.nodes + 1) / 2;
+  finer.damping = finer_damping(scene.damping);
   const double limit = time_step_limit(halved(p.topology), interaction_of(finer), p.spacing).limit;
   return scene.run.time_step / p.limit.limit * limit;
 }
@@ -87,6 +103,7 @@ std::string finer_scene_text(const Scene& scene, const Prepared& prepared, const
   top.insert_or_assign("name", scene.name);
   set_lengths(scene, prepared.topology, top);
   set_contact(scene, top);
+  set_damping(scene, top);
   set_loads(scene, top);
   if (scene.run.time_step > 0)
     table_of(top, "run").insert_or_assign("time_step_fs", finer_time_step(scene, prepared) / units::fs);

@@ -6,6 +6,10 @@
 // elements of the tubes as in any scene: the same ends, gripped half as long, a quarter of a length farther out.
 // Nodes of the line law keep their spacing, tubes their range of self-exclusion. A typed time step keeps its share
 // of the stability limit.
+//
+// Dissipation belongs to a length of tube as well. Two rows have four times as many pairs in reach of the contact
+// viscosity per length, so that eta becomes a quarter; the viscosity of a bonded chain goes as the rate times the
+// square of the element length, so that the rate becomes four times as large. PFC's local damping has no length.
 #pragma once
 
 #include <string>

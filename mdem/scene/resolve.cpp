@@ -129,17 +129,6 @@ Interaction interaction_of(const Scene& scene) {
   return in;
 }
 
-std::vector<Limits> limits_of(const Scene& scene, const Topology& topology) {
-  std::vector<Limits> all;
-  for (std::size_t type = 0; type < scene.sets.size(); ++type) {
-    Limits limits = default_limits(topology.types[type], scene.sets[type].validity);
-    for (std::size_t k = 0; k < limit_count; ++k)
-      if (scene.limits[k]) limits.*limit_kinds()[k].limit = *scene.limits[k];
-    all.push_back(limits);
-  }
-  return all;
-}
-
 Drive drive_of(const Scene& scene, const Topology& topology) {
   Drive drive;
   for (const Load& load : scene.loads) {

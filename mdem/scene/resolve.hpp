@@ -16,9 +16,6 @@ std::vector<LineContact> line_contacts(const Scene& scene);
 // The reach of the contact viscosity must be set (build() does so).
 Interaction interaction_of(const Scene& scene);
 
-// What to watch, by tube type: the defaults, and what the scene says.
-std::vector<Limits> limits_of(const Scene& scene, const Topology& topology);
-
 // Throws InputError for loads on elements that do not exist.
 Drive drive_of(const Scene& scene, const Topology& topology);
 

@@ -112,6 +112,8 @@ const std::vector<SceneKey>& scene_keys() {
       {"limits", "wall_twist", "", "0.043", "the set's twist_collapse",
        "radius of a tube times its twist per length"},
       {"limits", "strain", "", "0.069", "the set's stretch", "of a bond, tension or compression"},
+      {"limits", "press_nm", "nm", "0.11", "down to the core gap of the law",
+       "how much nearer than at rest tubes are pressed"},
       {"limits", "speed_nm_per_ps", "nm/ps", "2", "a tenth of the speed of sound along the tube", "of an element"},
   };
   return keys;

@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "scene/resolve.hpp"
 #include "scene/scene_toml.hpp"
+#include "scene/watch.hpp"
 #include "sim/refine.hpp"
 #include "unit/support.hpp"
 
@@ -140,7 +140,33 @@ TEST(FinerScene, NodesExclusionAndTypedStepGoWithTheLength) {
   EXPECT_EQ(p.fine.contact.exclude_along_tube, 10);
   EXPECT_NEAR(p.after.time_step / p.after.limit.limit, p.before.time_step / p.before.limit.limit, 1e-12);
   EXPECT_LT(p.after.time_step, 0.6 * p.before.time_step);
-  EXPECT_NEAR(limits_of(p.fine, p.after.topology).at(0).bend, 12 * units::degree, 1e-12);
+  EXPECT_NEAR(watched_of(p.fine, p.after.topology).limits.at(0).bend, 12 * units::degree, 1e-12);
+}
+
+// The power that the same sliding and the same stretching and twisting take, per length of tube.
+TEST(FinerScene, DissipationPerLengthStays) {
+  const Pair p("[chain]\nelements = 9\n" + short_run);
+  const auto sliding = [](const Prepared& prepared, double reach) {
+    ContactViscosity law = prepared.interaction.damping.contact;
+    law.inner = reach;
+    law.outer = 1.5 * reach;
+    const double a = prepared.topology.types[0].element_length;
+    double sum = 0;  // over one element against a row, mean over where it stands
+    for (int shift = 0; shift < 64; ++shift)
+      for (int k = -40; k <= 40; ++k) sum += law.weight(std::hypot(1.01 * reach, (k + shift / 64.0) * a)) / 64;
+    return law.eta * sum / a;
+  };
+  EXPECT_NEAR(sliding(p.after, 1.7) / sliding(p.before, 1.7), 1, 1e-4);
+  const auto straining = [](const Prepared& prepared) {
+    const TubeType& t = prepared.topology.types[0];
+    const double a = t.element_length;
+    const auto f =
+        prepared.interaction.damping.bond.force(t.mass, t.inertia, Vector3(0, 0, a), Vector3(0, 0, 0),
+                                                Vector3(0, 0, 0), Vector3(0, 0, 0.01 * a), Vector3(0, 0, 0.02 * a));
+    return f.power / a;
+  };
+  EXPECT_LT(straining(p.before), 0);
+  EXPECT_NEAR(straining(p.after) / straining(p.before), 1, 1e-12);
 }
 
 TEST(FinerScene, SaysWhyNot) {

@@ -51,13 +51,13 @@ TEST(Limits, PeaksNameTheElement) {
   topology.add_tube(5);
   State s = straight(topology);
   const Limits limits = default_limits(topology.types[0], {0.087, 0.05, 0.07});
-  for (const Peak& p : peaks(topology, s, {limits})) EXPECT_FALSE(p.passed());
+  for (const Peak& p : peaks(topology, s, {}, {{limits}, {}})) EXPECT_FALSE(p.passed());
 
   s.orientation.set(6, turn(Vector3::UnitX(), 0.1));      // bends the bonds of 5 and 6
   s.orientation.set(2, turn(Vector3::UnitZ(), 0.4));      // twists those of 1 and 2
   s.position.set(8, s.position[8] + Vector3(0, 0, 0.1));  // strains that of 7
   s.velocity.set(3, {0, 3, 0});
-  const Peaks p = peaks(topology, s, {limits});
+  const Peaks p = peaks(topology, s, {}, {{limits}, {}});
   EXPECT_NEAR(peak_of(p, "bend_deg").value, 0.1, 1e-9);
   EXPECT_EQ(peak_of(p, "bend_deg").element, 5);
   EXPECT_FALSE(peak_of(p, "bend_deg").passed());
@@ -93,11 +93,35 @@ TEST(Limits, AreThoseOfTheTubeType) {
   Limits wide, narrow;
   wide.bend = 0.6;
   narrow.bend = 0.25;
-  const Peaks p = peaks(topology, s, {wide, narrow});
+  const Peaks p = peaks(topology, s, {}, {{wide, narrow}, {}});
   EXPECT_EQ(peak_of(p, "bend_deg").element, 4);
   EXPECT_NEAR(peak_of(p, "bend_deg").ratio(), 0.8, 1e-9);
   narrow.bend = 0;  // not watched
-  EXPECT_EQ(peak_of(peaks(topology, s, {narrow, narrow}), "bend_deg").passed(), false);
+  EXPECT_EQ(peak_of(peaks(topology, s, {}, {{narrow, narrow}, {}}), "bend_deg").passed(), false);
+}
+
+// Two tubes cross 1.6 nm apart, and would rest at 1.7; a third one is out of reach.
+TEST(Limits, PressIsTheNearestDistanceOfTheAxes) {
+  Topology topology = published_topology();
+  for (int t = 0; t < 3; ++t) topology.add_tube(3);
+  State s = straight(topology);
+  for (int e = 0; e < 3; ++e) {
+    const auto i = static_cast<std::size_t>(3 + e);
+    s.position.set(i, {1.6, test::element_length * (e - 1.3), 0.4 * test::element_length});
+    s.orientation.set(i, turn(Vector3::UnitX(), -0.5 * units::pi));
+  }
+  NeighbourList list;
+  list.cutoff = 4;
+  list.skin = 0.2;
+  list.exclude_along_tube = 3;
+  list.build(topology, s);
+  Limits limits;
+  limits.press = 0.08;
+  const Peak p = peak_of(peaks(topology, s, list, {{limits}, {1.7}}), "press_nm");
+  EXPECT_NEAR(p.value, 0.1, 1e-12);
+  EXPECT_EQ(p.element, 0);
+  EXPECT_TRUE(p.passed());
+  EXPECT_FALSE(peak_of(peaks(topology, s, list, {{limits}, {1.5}}), "press_nm").passed());
 }
 
 TEST(LimitsFile, ReadsBackWhatWasWritten) {
