@@ -12,9 +12,10 @@ std::string with_space(const std::string& unit) { return unit.empty() ? "" : " "
 
 std::string line_of(const LimitKind& kind, const Topology& topology, const Peak& peak, double time) {
   const int tube = topology.tube_of(peak.element);
-  return fmt::format("limit passed at {:.4g} ps, tube {}, element {}: {} {:.4g}{}, limits.{} is {:.4g}: {}; {}",
-                     time, tube, peak.element - topology.tube_begin[tube], kind.what, peak.value / kind.unit_size,
-                     with_space(kind.unit), kind.key, peak.limit / kind.unit_size, kind.beyond, kind.remedy);
+  return fmt::format(
+      "limit passed at {:.4g} ps, tube {}, element {}: {} {:.4g}{}, beyond limits.{} = {:.4g}: {}; {}", time, tube,
+      peak.element - topology.tube_begin[tube], kind.what, peak.value / kind.unit_size, with_space(kind.unit),
+      kind.key, peak.limit / kind.unit_size, kind.beyond, kind.remedy);
 }
 
 }  // namespace

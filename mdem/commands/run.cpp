@@ -90,8 +90,8 @@ struct Manner {
 
 enum class Ending { complete, signal, limit, refine };
 
-// Steps between two looks at the limits, at most: a look costs about a tenth of a step.
-constexpr long look_every = 64;
+// Steps between two looks at the limits, at most: a look costs about as much as a step.
+constexpr long look_every = 128;
 constexpr int stopped_at_limit = 4;  // exit code
 
 // Above the progress line, where there is one.
@@ -212,19 +212,20 @@ class Run {
                       static_cast<double>(last_step_));
     double checkpoint_at = now() + scene_.run.checkpoint_every;
     const long look = std::min(log_every_, look_every);
+    std::optional<Ending> ending;  // it ends after a step with energies: this one, or the next
     if (simulation_.state().step < last_step_ && std::isfinite(simulation_.total_energy()))
-      if (const auto ending = look_at_limits()) return *ending;
+      ending = look_at_limits();
+    if (ending) return *ending;
     while (simulation_.state().step < last_step_) {
       const std::int64_t step = simulation_.state().step + 1;
-      const bool last = step == last_step_, logged = step % log_every_ == 0 || last;
-      const bool looked = logged || step % look == 0;
-      simulation_.step(looked);
-      std::optional<Ending> ending;
-      if (looked) ending = look_at_limits();
+      const bool last = step == last_step_, logged = step % log_every_ == 0 || last || ending;
+      simulation_.step(logged);
+      if (!ending && (logged || step % look == 0)) ending = look_at_limits();
       if (last && ending == Ending::refine) ending.reset();
-      if (logged || ending) write_row();
-      if (step % frames_every_ == 0 || last || ending) write_frame();
-      if (ending) return *ending;
+      const bool ends = logged && ending;
+      if (logged) write_row();
+      if (step % frames_every_ == 0 || last || ends) write_frame();
+      if (ends) return *ending;
       if (caught_signal) return Ending::signal;
       if (progress.due()) progress.show(static_cast<double>(step), status_text());
       if (step % 16 == 0 && now() > checkpoint_at) {
@@ -393,14 +394,12 @@ class Run {
     write_manifest("refined",
                    fmt::format("every element was split at {:.3f} ps; it goes on in {}", r.time_ps, r.to));
     write_report(dir_, scene_, prepared_);
-    const auto jump = [](double before, double after) { return after - before; };
     const Energies &b = r.before.potential, &a = r.after.potential;
     say(fmt::format(
         "refined at {:.4g} ps: {} elements of {:.4g} nm became {} of {:.4g} nm; energy {:.6g} -> {:.6g} eV (bonds "
         "{:+.3g}, contact {:+.3g}, kinetic {:+.3g}); it goes on in {}",
         r.time_ps, r.elements_before, r.length_before, r.elements_after, r.length_after, r.before.total(),
-        r.after.total(), jump(b.bonds(), a.bonds()), jump(b.vdw, a.vdw), jump(r.before.kinetic, r.after.kinetic),
-        to.path));
+        r.after.total(), a.bonds() - b.bonds(), a.vdw - b.vdw, r.after.kinetic - r.before.kinetic, to.path));
     return next;
   }
 

@@ -56,7 +56,7 @@ void press_of_tube(const Topology& topology, const State& state, const Neighbour
       const auto j = static_cast<std::size_t>(list.indices()[k]);
       const Vector3 separation = state.position[j] - place;
       if (separation.squaredNorm() > reach * reach) continue;
-      const TubeType& other = topology.type_of_element(static_cast<int>(j));
+      const TubeType& other = types == 1 ? type : topology.type_of_element(static_cast<int>(j));
       const double rest = watched.rest[row + static_cast<std::size_t>(&other - topology.types.data())];
       const double half_i = 0.5 * type.element_length, half_j = 0.5 * other.element_length;
       const double distance2 =

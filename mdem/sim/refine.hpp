@@ -19,7 +19,8 @@
 // Velocities are those of the same map under the motion of the coarse elements, so that rigid motions stay what
 // they are. Then each tube is given the rigid motion that makes its linear and angular momentum those of before: of
 // all changes that do so this is the one of least kinetic energy. Mass is kept as it is. Energy is not: the finer
-// chain is another model, and has more bonds; the caller reports the difference.
+// chain is another model, and has more bonds; the caller reports the difference. Of thermal motion the waves that
+// only the finer chain has start cold.
 //
 // Bends below 180 degrees, twists within (-180, 180] degrees per bond. Units nm, ps, eV.
 // Source: shape functions of the Timoshenko element, J. S. Przemieniecki, Theory of Matrix Structural Analysis

@@ -39,7 +39,7 @@ class Limits : public ropewalk::test::Cli {
 TEST_F(Limits, AreSaidOnceAndTheRunGoesOn) {
   const Outcome o = run("run s.toml --out d --quiet");
   EXPECT_EQ(o.code, 0) << o.err;
-  EXPECT_THAT(o.err, HasSubstr("limits.twist_deg is 19.9"));
+  EXPECT_THAT(o.err, HasSubstr("limits.twist_deg = 19.9"));
   EXPECT_THAT(o.err, HasSubstr("--on-limit refine"));
   EXPECT_EQ(o.err.find("twist_deg"), o.err.rfind("twist_deg")) << "once";
   EXPECT_THAT(o.out, HasSubstr("Limits passed: twist_deg"));
@@ -51,6 +51,13 @@ TEST_F(Limits, AreSaidOnceAndTheRunGoesOn) {
   EXPECT_GE(twist.at("largest_at_ps"), twist.at("passed_at_ps"));
   EXPECT_FALSE(json.at("limits").at(0).at("passed"));
   EXPECT_THAT(slurp(dir / "d/report.html"), HasSubstr("limits.twist_deg"));
+}
+
+TEST_F(Limits, AreNamedByCheck) {
+  const Outcome o = run("check s.toml");
+  EXPECT_EQ(o.code, 0) << o.err;
+  EXPECT_THAT(o.out, HasSubstr("watched: bend_deg 19.9, twist_deg 19.9, strain 0.0686, press_nm 0.11"));
+  EXPECT_THAT(o.out, Not(HasSubstr("wall_twist")));
 }
 
 TEST_F(Limits, AreSilentWhereNothingIsPassed) {

@@ -139,7 +139,7 @@ TEST(FinerScene, NodesExclusionAndTypedStepGoWithTheLength) {
   EXPECT_EQ(p.fine.contact.nodes, 3);
   EXPECT_EQ(p.fine.contact.exclude_along_tube, 10);
   EXPECT_NEAR(p.after.time_step / p.after.limit.limit, p.before.time_step / p.before.limit.limit, 1e-12);
-  EXPECT_LT(p.after.time_step, 0.6 * p.before.time_step);
+  EXPECT_LT(p.after.time_step, 0.8 * p.before.time_step);
   EXPECT_NEAR(watched_of(p.fine, p.after.topology).limits.at(0).bend, 12 * units::degree, 1e-12);
 }
 
