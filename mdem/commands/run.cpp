@@ -14,7 +14,6 @@
 #include <ctime>
 #include <filesystem>
 #include <memory>
-#include <optional>
 
 #include "commands/colours.hpp"
 #include "commands/commands.hpp"
@@ -88,7 +87,7 @@ struct Manner {
   bool force = false;
 };
 
-enum class Ending { complete, signal, limit, refine };
+enum class Ending { none, complete, signal, limit, refine };
 
 // Steps between two looks at the limits, at most: a look costs about as much as a step.
 constexpr long look_every = 128;
@@ -172,6 +171,7 @@ class Run {
         case Ending::refine:
           return {0, refined()};
         case Ending::signal:
+        case Ending::none:
           break;
       }
       return {interrupted(), nullptr};
@@ -194,17 +194,17 @@ class Run {
   }
 
   // Says what is passed for the first time, and whether the run is to end here for it.
-  std::optional<Ending> look_at_limits() {
+  Ending look_at_limits() {
     const std::vector<std::string> passed =
         watch_.look(prepared_.topology, simulation_.state(), simulation_.list());
     for (const std::string& line : passed) say(line);
     if (!passed.empty()) write_limits();
     if (manner_.on_limit == OnLimit::stop && !passed.empty()) return Ending::limit;
-    if (manner_.on_limit != OnLimit::refine || !watch_.finer_would_help()) return std::nullopt;
+    if (manner_.on_limit != OnLimit::refine || !watch_.finer_would_help()) return Ending::none;
     const std::string why = why_not_finer(scene_, prepared_.topology);
     if (why.empty()) return Ending::refine;
     if (!passed.empty()) say("not refined: " + why + "; the run goes on as it is");
-    return std::nullopt;
+    return Ending::none;
   }
 
   Ending dynamics_loop() {
@@ -212,20 +212,20 @@ class Run {
                       static_cast<double>(last_step_));
     double checkpoint_at = now() + scene_.run.checkpoint_every;
     const long look = std::min(log_every_, look_every);
-    std::optional<Ending> ending;  // it ends after a step with energies: this one, or the next
+    Ending ending = Ending::none;  // it ends after a step with energies: this one, or the next
     if (simulation_.state().step < last_step_ && std::isfinite(simulation_.total_energy()))
       ending = look_at_limits();
-    if (ending) return *ending;
+    if (ending != Ending::none) return ending;
     while (simulation_.state().step < last_step_) {
       const std::int64_t step = simulation_.state().step + 1;
-      const bool last = step == last_step_, logged = step % log_every_ == 0 || last || ending;
+      const bool last = step == last_step_, logged = step % log_every_ == 0 || last || ending != Ending::none;
       simulation_.step(logged);
-      if (!ending && (logged || step % look == 0)) ending = look_at_limits();
-      if (last && ending == Ending::refine) ending.reset();
-      const bool ends = logged && ending;
+      if (ending == Ending::none && (logged || step % look == 0)) ending = look_at_limits();
+      if (last && ending == Ending::refine) ending = Ending::none;
+      const bool ends = logged && ending != Ending::none;
       if (logged) write_row();
       if (step % frames_every_ == 0 || last || ends) write_frame();
-      if (ends) return *ending;
+      if (ends) return ending;
       if (caught_signal) return Ending::signal;
       if (progress.due()) progress.show(static_cast<double>(step), status_text());
       if (step % 16 == 0 && now() > checkpoint_at) {
@@ -239,7 +239,7 @@ class Run {
 
   Ending relax_loop() {
     Progress progress(manner_.quiet, 0, 0);
-    std::optional<Ending> ending;
+    Ending ending = Ending::none;
     const long most = last_step_ > 0 ? last_step_ : scene_.run.max_steps;
     const bool converged = simulation_.relax(scene_.run.force_tolerance, most, [&](long k) {
       if (k % 100 == 0) {
@@ -247,14 +247,14 @@ class Run {
         ending = look_at_limits();
       }
       if (progress.due()) progress.show(static_cast<double>(k), status_text());
-      return caught_signal == 0 && !ending;
+      return caught_signal == 0 && ending == Ending::none;
     });
     progress.done();
     write_row();
     write_frame();
     if (caught_signal) return Ending::signal;
-    if (!ending) ending = look_at_limits();
-    if (ending) return *ending;
+    if (ending == Ending::none) ending = look_at_limits();
+    if (ending != Ending::none) return ending;
     reason_ = converged ? fmt::format("relaxed: largest force below {:.3g} eV/nm", scene_.run.force_tolerance)
                         : fmt::format("not relaxed after {} steps: largest force {:.3g} eV/nm; raise run.max_steps",
                                       most, simulation_.largest_force());
