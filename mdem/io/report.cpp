@@ -466,12 +466,14 @@ std::string energy_words(const EnergyParts& before, const EnergyParts& after) {
 // Nothing where no element was ever split.
 std::string refinements_part(const std::vector<RefinementRecord>& refinements) {
   if (refinements.empty()) return "";
-  std::string html = heading("Elements split on the way") +
-                     paragraph(
-                         "A limit was passed that shorter elements cure: every element was split in two, and the "
-                         "run went on in a directory of its own. The jump of energy is the difference between "
-                         "the two models of the same state; the energy balance leaves it out.") +
-                     "<ul>\n";
+  std::string html =
+      heading("Elements split on the way") +
+      paragraph(
+          "A limit was passed that shorter elements cure: every element was split in two, and the "
+          "run went on in a directory of its own. The jump of energy is the difference between "
+          "the two models of the same state, most of it at the ends, where half an element more of each tube "
+          "may now bend, twist and stretch; the energy balance leaves it out.") +
+      "<ul>\n";
   for (const RefinementRecord& r : refinements)
     html += fmt::format(
         "<li>At {}: <b>{}</b>, {} elements of {} nm, goes on as <b>{}</b>, {} elements of {} nm. Energy "

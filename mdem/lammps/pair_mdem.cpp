@@ -1,7 +1,7 @@
 #include "lammps/pair_mdem.hpp"
 
-#include "model/segments.hpp"
 #include "memory.h"
+#include "model/segments.hpp"
 
 namespace ropewalk::lammps {
 

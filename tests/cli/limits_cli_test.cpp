@@ -124,7 +124,10 @@ TEST_F(Limits, RefineGoesOnBesideTheRun) {
   EXPECT_THAT(back.err, HasSubstr("ropewalk resume d.fine"));
   EXPECT_EQ(run("resume d.fine --quiet --until 7.5").code, 0);
   EXPECT_NEAR(log_of("d.fine").back().time, 7.5, 0.02);
-  // Nothing is overwritten by chance.
+  // Nothing is overwritten by chance, and both on demand.
+  EXPECT_EQ(run("run s.toml --out d --quiet --on-limit refine").code, 2);
+  EXPECT_EQ(run("run s.toml --out d/ --quiet --on-limit refine --force").code, 0) << slurp(dir / "stderr.txt");
+  EXPECT_EQ(log_of("d.fine").back().time, after.back().time);
   const Outcome again = run("run s.toml --out d2 --quiet --on-limit refine --steps 10");
   EXPECT_EQ(again.code, 0);
   fs::create_directories(dir / "d3.fine");
