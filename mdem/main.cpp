@@ -1,6 +1,6 @@
 // ropewalk: the front door. Reads the command line, calls the verb, turns errors into one line and an exit
-// code: 0 done, 2 wrong input, 3 numerical failure, 4 a relaxation that did not come to rest, 128 + signal when
-// interrupted.
+// code: 0 done, 2 wrong input, 3 numerical failure, 4 a relaxation that did not come to rest, 5 stopped at a limit,
+// 128 + signal when interrupted.
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -17,11 +17,11 @@ namespace {
 
 using namespace ropewalk;
 
-// By default the OpenMP runtime spins for milliseconds while it waits, and on a machine that does other work as well a
-// step then takes up to ten times as long. Asleep at once, small ropes lose what the second core gains: waking takes as
-// long as the gaps between the parallel parts of a step. So: spin for some ten microseconds, then sleep. The runtime
-// reads its settings before main: start once more with them, unless the user has chosen otherwise. (Under valgrind, set
-// OMP_WAIT_POLICY=passive yourself, or the second start runs outside it.)
+// By default the OpenMP runtime spins for milliseconds while it waits, and on a machine that does other work as
+// well a step then takes up to ten times as long. Asleep at once, small ropes lose what the second core gains:
+// waking takes as long as the gaps between the parallel parts of a step. So: spin for some ten microseconds, then
+// sleep. The runtime reads its settings before main: start once more with them, unless the user has chosen
+// otherwise. (Under valgrind, set OMP_WAIT_POLICY=passive yourself, or the second start runs outside it.)
 void wait_briefly(char** argv) {
   if (std::getenv("OMP_WAIT_POLICY") || std::getenv("GOMP_SPINCOUNT")) return;
   setenv("GOMP_SPINCOUNT", "2000", 1);
@@ -42,6 +42,14 @@ struct Verbs {
   std::string check_scene;
   int code = 0;
 };
+
+void add_on_limit(CLI::App* c, std::string& word) {
+  c->add_option("--on-limit", word,
+                "What to do where a limit of [limits] is passed: warn; stop (exit code 5); refine: go on in "
+                "DIR.fine with every element split in two")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"warn", "stop", "refine"}));
+}
 
 CLI::Range thread_range() { return CLI::Range(1, 1024); }
 
@@ -67,6 +75,7 @@ void add_run(CLI::App& app, Verbs& v) {
   c->add_option("--threads", v.run.threads, "Threads [default: all cores]; any number gives the same bits")
       ->check(thread_range());
   c->add_option("--steps", v.run.steps, "Stop after so many time steps")->check(CLI::NonNegativeNumber);
+  add_on_limit(c, v.run.on_limit);
   c->add_flag("--force", v.run.force, "Replace an earlier run in --out");
   c->add_flag("--quiet", v.run.quiet, "No progress line");
   c->callback([&v] { v.code = run_command(v.run); });
@@ -79,6 +88,7 @@ void add_resume(CLI::App& app, Verbs& v) {
   c->add_option("--steps", v.resume.steps, "Stop at this time step")->check(CLI::NonNegativeNumber);
   c->add_option("--until", v.resume.until_ps, "Stop at this time (ps) instead of the scene's")
       ->check(CLI::NonNegativeNumber);
+  add_on_limit(c, v.resume.on_limit);
   c->add_flag("--quiet", v.resume.quiet, "No progress line");
   c->callback([&v] { v.code = resume_command(v.resume); });
 }

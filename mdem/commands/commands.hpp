@@ -10,9 +10,10 @@ namespace ropewalk {
 struct RunArguments {
   std::string scene;
   std::string out;
-  int threads = 0;     // 0: all cores
-  long steps = -1;     // stop after so many steps; -1: the scene's duration
-  bool force = false;  // overwrite an earlier run
+  int threads = 0;                // 0: all cores
+  long steps = -1;                // stop after so many steps; -1: the scene's duration
+  std::string on_limit = "warn";  // "warn", "stop" or "refine"
+  bool force = false;             // overwrite an earlier run
   bool quiet = false;
 };
 int run_command(const RunArguments& arguments);
@@ -24,6 +25,7 @@ struct ResumeArguments {
   int threads = 0;
   long steps = -1;       // total steps at which to stop
   double until_ps = -1;  // time at which to stop
+  std::string on_limit = "warn";
   bool quiet = false;
 };
 int resume_command(const ResumeArguments& arguments);

@@ -41,6 +41,7 @@ void copy_run(const RunDirectory& from, const RunDirectory& to) {
   copy(from.scene(), to.scene(), all);
   for (std::size_t k = 0; k < scene.sets.size(); ++k) copy(from.parameters(k), to.parameters(k), all);
   if (fs::exists(from.state())) copy(from.state(), to.state(), all);
+  if (fs::exists(from.limits())) copy(from.limits(), to.limits(), all);
   copy(from.log(), to.log(), c.log_bytes);
   copy(from.frames(), to.frames(), c.frame_bytes);
   copy(from.manifest(), to.manifest(), all);

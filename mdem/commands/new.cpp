@@ -11,6 +11,7 @@
 #include "scene/prepare.hpp"
 #include "scene/scene_toml.hpp"
 #include "scene/templates.hpp"
+#include "scene/watch.hpp"
 
 namespace ropewalk {
 namespace {
@@ -54,6 +55,16 @@ void say_loads(const Scene& scene) {
       w.geometric_only ? "; spins relaxed (geometric twist only)" : "");
 }
 
+// Of the first tube type.
+void say_limits(const Scene& scene, const Topology& topology) {
+  const Limits limits = watched_of(scene, topology).limits.front();
+  std::string text;
+  for (const LimitKind& kind : limit_kinds())
+    if (limits.*kind.limit > 0)
+      text += fmt::format("{}{} {:.4g}", text.empty() ? "" : ", ", kind.key, limits.*kind.limit / kind.unit_size);
+  fmt::print("watched: {}\n", text.empty() ? "nothing" : text);
+}
+
 }  // namespace
 
 int new_command(const NewArguments& a) {
@@ -84,6 +95,7 @@ int check_command(const std::string& path) {
   if (every > 1)
     fmt::print("contact every {} steps, {:.4g} fs: a step of the log and of what is counted below\n", every,
                p.time_step / units::fs);
+  say_limits(scene, p.topology);
   fmt::print(
       "time step {:.4g} fs; stability limit {:.4g} fs (chain {:.3g}, contact {:.3g} rad/ps, damping {:.3g} 1/ps)\n",
       p.time_step / every / units::fs, inner_step_limit(p.limit, every) / units::fs, p.limit.chain_frequency,

@@ -98,6 +98,7 @@ ReportInput gather(const RunDirectory& dir, const Scene& scene, const Prepared& 
   in.tubes = p.topology.tubes();
   in.bonds = p.topology.bonds();
   in.validity = scene.parameters().validity;
+  if (std::filesystem::exists(dir.limits())) in.watched = read_limits(dir.limits());
   const Observer observer = make_observer(scene, p);
   in.shells = observer.shells;
   for (const DumpFrame& frame : read_frames(dir, p.topology)) {

@@ -17,12 +17,17 @@
 
 #include "commands/colours.hpp"
 #include "commands/commands.hpp"
+#include "commands/limit_watch.hpp"
 #include "commands/progress.hpp"
 #include "commands/run_directory.hpp"
+#include "commands/stages.hpp"
 #include "io/files.hpp"
 #include "io/frames.hpp"
 #include "model/error.hpp"
+#include "scene/finer.hpp"
 #include "scene/scene_toml.hpp"
+#include "scene/watch.hpp"
+#include "sim/refine.hpp"
 #include "version.hpp"
 
 namespace ropewalk {
@@ -75,15 +80,34 @@ long every(double interval, double duration, long parts, double dt) {
   return std::max(1L, std::lround(chosen / dt));
 }
 
+// How the caller wants it.
+struct Manner {
+  bool quiet = false;
+  OnLimit on_limit = OnLimit::warn;
+  bool force = false;
+};
+
+enum class Ending { none, complete, signal, limit, refine };
+
+// Steps between two looks at the limits, at most: a look costs about as much as a step.
+constexpr long look_every = 128;
+constexpr int stopped_at_limit = 5;  // exit code
+
+// Above the progress line, where there is one.
+void say(const std::string& line) {
+  fmt::print(stderr, "{}ropewalk: {}\n", isatty(STDERR_FILENO) ? "\r\033[K" : "", line);
+}
+
 class Run {
  public:
-  Run(RunDirectory dir, Scene scene, bool quiet)
+  Run(RunDirectory dir, Scene scene, Manner manner)
       : dir_(std::move(dir)),
         scene_(std::move(scene)),
         prepared_(prepare(scene_)),
         observer_(make_observer(scene_, prepared_)),
         simulation_(start(scene_, prepared_)),
-        quiet_(quiet) {
+        watch_(watched_of(scene_, prepared_.topology)),
+        manner_(manner) {
     const double dt = prepared_.time_step;
     const double span = prepared_.duration > 0 ? prepared_.duration : 1000 * dt;
     log_every_ = every(scene_.run.log_every, span, 400, dt);
@@ -94,12 +118,16 @@ class Run {
   void stop_at(long steps) { last_step_ = steps; }
   void stop_at_time(double ps) { last_step_ = std::lround(ps / prepared_.time_step); }
 
+  // Before anything is done: can it do what it is asked to.
+  void check_manner() const {
+    if (manner_.on_limit != OnLimit::refine) return;
+    const std::string why = why_not_finer(scene_, prepared_.topology);
+    if (!why.empty()) throw InputError({"", 0, "--on-limit"}, "refine: " + why, "take warn or stop");
+  }
+
   void begin() {
     first_energy_ = simulation_.total_energy();
-    open(0, 0);
-    log_->write(log_header());
-    write_row();
-    write_frame();
+    begin_files();
   }
 
   void restore(const RunCheckpoint& c) {
@@ -111,6 +139,10 @@ class Run {
     first_energy_ = c.first_energy;
     earlier_seconds_ = c.wall_seconds;
     open(c.log_bytes, c.frame_bytes);
+    if (!std::filesystem::exists(dir_.limits())) return;
+    const LimitsFile earlier = read_limits(dir_.limits());
+    watch_.take_over(earlier.limits, simulation_.state().step);
+    refinements_ = earlier.refinements;
   }
 
   // For somebody else to go on with.
@@ -119,17 +151,32 @@ class Run {
     write_manifest("interrupted", "not yet run");
   }
 
-  int go() {
+  // `next`: the run in which it goes on, elements split.
+  struct Result {
+    int code = 0;
+    std::unique_ptr<Run> next;
+  };
+  Result go() {
     std::signal(SIGINT, on_signal);
     std::signal(SIGTERM, on_signal);
     started_ = now();
     write_manifest("running", "");
     try {
       const bool relax = scene_.run.mode == RunOptions::Mode::relax;
-      const bool complete = relax ? relax_loop() : dynamics_loop();
-      return complete ? finish() : interrupted();
+      switch (relax ? relax_loop() : dynamics_loop()) {
+        case Ending::complete:
+          return {finish(), nullptr};
+        case Ending::limit:
+          return {stopped(), nullptr};
+        case Ending::refine:
+          return {0, refined()};
+        case Ending::signal:
+        case Ending::none:
+          break;
+      }
+      return {interrupted(), nullptr};
     } catch (const NumericalError& e) {
-      return failed(e);
+      return {failed(e), nullptr};
     }
   }
 
@@ -139,16 +186,47 @@ class Run {
     frames_ = std::make_unique<Stream>(dir_.frames(), frame_bytes);
   }
 
-  bool dynamics_loop() {
-    Progress progress(quiet_, static_cast<double>(simulation_.state().step), static_cast<double>(last_step_));
+  void begin_files() {
+    open(0, 0);
+    log_->write(log_header());
+    write_row();
+    write_frame();
+  }
+
+  // Says what is passed for the first time, and whether the run is to end here for it.
+  Ending look_at_limits() {
+    const std::vector<std::string> passed =
+        watch_.look(prepared_.topology, simulation_.state(), simulation_.list());
+    for (const std::string& line : passed) say(line);
+    if (!passed.empty()) write_limits();
+    if (manner_.on_limit == OnLimit::stop && !passed.empty()) return Ending::limit;
+    if (manner_.on_limit != OnLimit::refine || !watch_.finer_would_help()) return Ending::none;
+    const std::string why = why_not_finer(scene_, prepared_.topology);
+    if (why.empty()) return Ending::refine;
+    if (!passed.empty()) say("not refined: " + why + "; the run goes on as it is");
+    return Ending::none;
+  }
+
+  Ending dynamics_loop() {
+    Progress progress(manner_.quiet, static_cast<double>(simulation_.state().step),
+                      static_cast<double>(last_step_));
     double checkpoint_at = now() + scene_.run.checkpoint_every;
+    const long look = std::min(log_every_, look_every);
+    Ending ending = Ending::none;  // it ends after a step with energies: this one, or the next
+    if (simulation_.state().step < last_step_ && std::isfinite(simulation_.total_energy()))
+      ending = look_at_limits();
+    if (ending != Ending::none) return ending;
     while (simulation_.state().step < last_step_) {
       const std::int64_t step = simulation_.state().step + 1;
-      const bool last = step == last_step_, logged = step % log_every_ == 0 || last;
+      const bool last = step == last_step_, logged = step % log_every_ == 0 || last || ending != Ending::none;
       simulation_.step(logged);
+      if (ending == Ending::none && (logged || step % look == 0)) ending = look_at_limits();
+      if (last && ending == Ending::refine) ending = Ending::none;
+      const bool ends = logged && ending != Ending::none;
       if (logged) write_row();
-      if (step % frames_every_ == 0 || last) write_frame();
-      if (caught_signal) return false;
+      if (step % frames_every_ == 0 || last || ends) write_frame();
+      if (ends) return ending;
+      if (caught_signal) return Ending::signal;
       if (progress.due()) progress.show(static_cast<double>(step), status_text());
       if (step % 16 == 0 && now() > checkpoint_at) {
         save();
@@ -156,25 +234,31 @@ class Run {
       }
     }
     progress.done();
-    return true;
+    return Ending::complete;
   }
 
-  bool relax_loop() {
-    Progress progress(quiet_, 0, 0);
+  Ending relax_loop() {
+    Progress progress(manner_.quiet, 0, 0);
+    Ending ending = Ending::none;
     const long most = last_step_ > 0 ? last_step_ : scene_.run.max_steps;
     at_rest_ = simulation_.relax(scene_.run.force_tolerance, most, [&](long k) {
-      if (k % 100 == 0) write_row();
+      if (k % 100 == 0) {
+        write_row();
+        ending = look_at_limits();
+      }
       if (progress.due()) progress.show(static_cast<double>(k), status_text());
-      return caught_signal == 0;
+      return caught_signal == 0 && ending == Ending::none;
     });
     progress.done();
     write_row();
     write_frame();
-    if (caught_signal) return false;
+    if (caught_signal) return Ending::signal;
+    if (ending == Ending::none) ending = look_at_limits();
+    if (ending != Ending::none) return ending;
     reason_ = at_rest_ ? fmt::format("relaxed: largest force below {:.3g} eV/nm", scene_.run.force_tolerance)
                        : fmt::format("not relaxed after {} steps: largest force {:.3g} eV/nm, {:.3g} asked for",
                                      most, simulation_.largest_force(), scene_.run.force_tolerance);
-    return true;
+    return Ending::complete;
   }
 
   std::string status_text() const {
@@ -246,7 +330,10 @@ class Run {
     c.wall_seconds = wall();
     c.simulation = simulation_.serialise();
     write_checkpoint(dir_, c);
+    write_limits();
   }
+
+  void write_limits() const { write_file_atomically(dir_.limits(), limits_json({watch_.records(), refinements_})); }
 
   double wall() const { return earlier_seconds_ + now() - started_; }
 
@@ -274,12 +361,89 @@ class Run {
     save();
     write_manifest(at_rest_ ? "finished" : "not relaxed", reason_);
     write_report(dir_, scene_, prepared_);
+    const std::string passed = passed_words(watch_.records());
+    if (!passed.empty()) fmt::print("Limits passed: {}\n", passed);
     fmt::print("{}{} steps, {:.1f} ps, {:.0f} s. Report: {}\n", reason_.empty() ? "" : reason_ + "\n",
                simulation_.state().step, simulation_.state().time, wall(), dir_.report());
     if (at_rest_) return 0;
     fmt::print(stderr, "ropewalk: {}; go on with `ropewalk resume {}`, or raise run.max_steps\n", reason_,
                dir_.path);
     return 4;
+  }
+
+  int stopped() {
+    save();
+    const std::string reason = fmt::format("stopped at {:.3f} ps where a limit was passed: {}",
+                                           simulation_.state().time, passed_words(watch_.records()));
+    write_manifest("stopped", reason);
+    write_report(dir_, scene_, prepared_);
+    say(fmt::format("{}; go on all the same with: ropewalk resume {}", reason, dir_.path));
+    return stopped_at_limit;
+  }
+
+  EnergyParts energies() const {
+    return {simulation_.forces().energy, kinetic_energy(prepared_.topology, simulation_.state())};
+  }
+
+  // This run ends here, whole; the next one is made of it.
+  std::unique_ptr<Run> refined() {
+    save();
+    const RunDirectory to = write_finer_scene(dir_, scene_, prepared_, simulation_.state().time, manner_.force);
+    auto next = std::make_unique<Run>(to, read_run_scene(to), manner_);
+    next->take_over(*this);
+    refinements_ = next->refinements_;
+    write_limits();
+    const RefinementRecord& r = refinements_.back();
+    write_manifest("refined",
+                   fmt::format("every element was split at {:.3f} ps; it goes on in {}", r.time_ps, r.to));
+    write_report(dir_, scene_, prepared_);
+    const Energies &b = r.before.potential, &a = r.after.potential;
+    say(fmt::format(
+        "refined at {:.4g} ps: {} elements of {:.4g} nm became {} of {:.4g} nm; energy {:.6g} -> {:.6g} eV (bonds "
+        "{:+.3g}, contact {:+.3g}, kinetic {:+.3g}); it goes on in {}",
+        r.time_ps, r.elements_before, r.length_before, r.elements_after, r.length_after, r.before.total(),
+        r.after.total(), a.bonds() - b.bonds(), a.vdw - b.vdw, r.after.kinetic - r.before.kinetic, to.path));
+    return next;
+  }
+
+  // State, time, account and record of the run before the splitting. Steps are counted as if it had been this fine
+  // from the start; the balance of energy goes on from its value, since the jump is no error of integration.
+  void take_over(const Run& coarse) {
+    Prepared at = prepared_;
+    at.state = halved(coarse.prepared_.topology, coarse.simulation_.state());
+    if (scene_.run.mode == RunOptions::Mode::dynamics) {
+      at.state.step = std::llround(at.state.time / prepared_.time_step);
+      stop_at_time(static_cast<double>(coarse.last_step_) * coarse.prepared_.time_step);
+    }
+    simulation_ = start(scene_, at);
+    simulation_.take_over(simulation_.forces().force, simulation_.forces().torque, coarse.simulation_.work(),
+                          coarse.simulation_.dissipated());
+    record_refinement(coarse);
+    first_energy_ = coarse.first_energy_ + simulation_.total_energy() - coarse.simulation_.total_energy();
+    earlier_seconds_ = coarse.wall();
+    std::vector<LimitRecord> records = coarse.watch_.records();
+    for (std::size_t k = 0; k < records.size(); ++k)
+      if (limit_kinds()[k].cured_by_finer) records[k] = {};
+    watch_.take_over(records, at.state.step);
+    begin_files();
+    save();
+  }
+
+  void record_refinement(const Run& coarse) {
+    RefinementRecord r;
+    r.from = name_of(coarse.dir_);
+    r.to = name_of(dir_);
+    r.time_ps = simulation_.state().time;
+    r.step_before = coarse.simulation_.state().step;
+    r.step_after = simulation_.state().step;
+    r.length_before = coarse.scene_.element_length;
+    r.length_after = scene_.element_length;
+    r.elements_before = coarse.prepared_.topology.elements();
+    r.elements_after = prepared_.topology.elements();
+    r.before = coarse.energies();
+    r.after = energies();
+    refinements_ = coarse.refinements_;
+    refinements_.push_back(r);
   }
 
   int interrupted() {
@@ -292,6 +456,7 @@ class Run {
   }
 
   int failed(const NumericalError& e) {
+    write_limits();
     write_file_atomically(dir_.failed_state(), state_csv(prepared_.topology, simulation_.state()));
     write_manifest("failed", e.what());
     fmt::print(stderr, "\nropewalk: {}. State written to {}\n", e.what(), dir_.failed_state());
@@ -304,12 +469,14 @@ class Run {
   Observer observer_;
   Simulation simulation_;
   std::unique_ptr<Stream> log_, frames_;
+  LimitWatch watch_;
+  std::vector<RefinementRecord> refinements_;
   LogRow last_row_;
   std::string reason_;
   std::string started_at_ = iso_time();
   double first_energy_ = 0, earlier_seconds_ = 0, started_ = now();
   long log_every_ = 1, frames_every_ = 1, last_step_ = 0;
-  bool quiet_ = false;
+  Manner manner_;
   bool at_rest_ = true;  // false: a relaxation ran out of steps
 };
 
@@ -321,10 +488,22 @@ void use_threads(int threads) {
 
 namespace {
 
-Run new_run(const RunArguments& a) {
+// A run that may be refined must find the place for it free.
+void check_finer_directory(const RunDirectory& dir, const Manner& manner) {
+  const RunDirectory finer = finer_directory(dir);
+  if (manner.on_limit == OnLimit::refine && !manner.force && std::filesystem::exists(finer.path))
+    throw InputError({finer.path, 0, "--on-limit"}, "exists, and a refined run would go on there",
+                     "take it away or choose another name for the run");
+}
+
+std::unique_ptr<Run> new_run(const RunArguments& a) {
   const RunDirectory dir{a.out};
+  const Manner manner{a.quiet, on_limit_of(a.on_limit), a.force};
   Scene scene = read_scene(a.scene);
-  Run run(dir, scene, a.quiet);  // everything that can be wrong is found before a file is touched
+  // Everything that can be wrong is found before a file is touched.
+  auto run = std::make_unique<Run>(dir, scene, manner);
+  run->check_manner();
+  check_finer_directory(dir, manner);
   create_run_directory(dir, a.force);
   write_file_atomically(dir.scene(), scene.text);
   for (std::size_t k = 0; k < scene.sets.size(); ++k)
@@ -332,29 +511,52 @@ Run new_run(const RunArguments& a) {
   if (const auto* state = std::get_if<StateSource>(&scene.source))
     write_file_atomically(dir.state(), read_file(state->file));
   for (const std::string& warning : warnings_of(scene)) fmt::print(stderr, "ropewalk: note: {}\n", warning);
-  if (a.steps >= 0) run.stop_at(a.steps);
-  run.begin();
+  if (a.steps >= 0) run->stop_at(a.steps);
+  run->begin();
   return run;
+}
+
+int go_through(std::unique_ptr<Run> run) {
+  for (;;) {
+    Run::Result result = run->go();
+    if (!result.next) return result.code;
+    run = std::move(result.next);
+  }
+}
+
+// A run whose elements were split goes on elsewhere.
+void refuse_refined(const RunDirectory& dir) {
+  if (!std::filesystem::exists(dir.limits())) return;
+  const LimitsFile file = read_limits(dir.limits());
+  if (file.refinements.empty() || file.refinements.back().from != name_of(dir)) return;
+  const RunDirectory next = finer_directory(dir);
+  if (!std::filesystem::exists(next.checkpoint())) return;
+  throw InputError({dir.path, 0, ""},
+                   fmt::format("had its elements split at {:.4g} ps", file.refinements.back().time_ps),
+                   "go on with: ropewalk resume " + next.path);
 }
 
 }  // namespace
 
 int run_command(const RunArguments& a) {
   use_threads(a.threads);
-  return new_run(a).go();
+  return go_through(new_run(a));
 }
 
-void begin_run(const RunArguments& a) { new_run(a).leave(); }
+void begin_run(const RunArguments& a) { new_run(a)->leave(); }
 
 int resume_command(const ResumeArguments& a) {
   use_threads(a.threads);
   const RunDirectory dir{a.dir};
   const RunCheckpoint checkpoint = read_checkpoint(dir);
-  Run run(dir, read_run_scene(dir), a.quiet);
-  if (a.until_ps >= 0) run.stop_at_time(a.until_ps);
-  if (a.steps >= 0) run.stop_at(a.steps);
-  run.restore(checkpoint);
-  return run.go();
+  refuse_refined(dir);
+  const Manner manner{a.quiet, on_limit_of(a.on_limit), false};
+  check_finer_directory(dir, manner);
+  auto run = std::make_unique<Run>(dir, read_run_scene(dir), manner);
+  if (a.until_ps >= 0) run->stop_at_time(a.until_ps);
+  if (a.steps >= 0) run->stop_at(a.steps);
+  run->restore(checkpoint);
+  return go_through(std::move(run));
 }
 
 }  // namespace ropewalk

@@ -20,11 +20,11 @@ constexpr const char* checkpoint_title = "ROPEWALK-CHECKPOINT 1 ";
 // Only names that a run writes: --force must never take away anything else.
 bool belongs_to_a_run(const std::string& name) {
   for (const char* known :
-       {"log.csv",         "frames.lammpstrj", "checkpoint.bin",  "manifest.json",    "scene.toml",
-        "parameters.toml", "state.csv",        "report.html",     "failed-state.csv", "paraview",
-        "lammps.json",     "tubes.csv",        "rope.data",       "in.rope",          "README.txt",
-        "lammps.dump",     "lammps-last.dump", "lammps-rows.csv", "log.lammps",       "rope.restart.a",
-        "rope.restart.b"})
+       {"log.csv",         "frames.lammpstrj", "checkpoint.bin",   "manifest.json",    "scene.toml",
+        "parameters.toml", "state.csv",        "report.html",      "failed-state.csv", "paraview",
+        "limits.json",     "lammps.json",      "tubes.csv",        "rope.data",        "in.rope",
+        "README.txt",      "lammps.dump",      "lammps-last.dump", "lammps-rows.csv",  "log.lammps",
+        "rope.restart.a",  "rope.restart.b"})
     if (name == known) return true;
   return name.compare(0, 11, "parameters-") == 0;
 }

@@ -25,6 +25,7 @@ struct RunDirectory {
   }
   std::string state() const { return file("state.csv"); }
   std::string report() const { return file("report.html"); }
+  std::string limits() const { return file("limits.json"); }
   std::string failed_state() const { return file("failed-state.csv"); }
   std::string paraview() const { return file("paraview"); }
 };

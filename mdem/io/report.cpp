@@ -349,6 +349,8 @@ std::string ending(const ReportInput& in) {
     return (reason.empty() ? "The run finished as planned" : "The run finished" + reason) + ".";
   if (in.status == "interrupted") return "The run was interrupted" + reason + ". This page shows it up to there.";
   if (in.status == "not relaxed") return "The relaxation did not come to rest" + reason + ".";
+  if (in.status == "stopped") return "The run was " + in.reason + ". This page shows it up to there.";
+  if (in.status == "refined") return "The run ended here" + reason + ".";
   if (in.status == "failed") return "The run failed" + reason + ". This page shows it up to there.";
   if (in.status == "running") return "The run had not ended when this page was made" + reason + ".";
   return "How the run ended is not known" + reason + ".";
@@ -421,13 +423,18 @@ std::string limit_words(const ReportInput& in, const Limit& limit) {
   return html + ". " + limit.meaning + "</li>\n";
 }
 
+std::string passed_words(const LimitRecord& r) {
+  const std::string unit = r.unit.empty() ? "" : " " + escape_markup(r.unit);
+  return fmt::format("<li><b>limits.{}</b>, {}{}: passed at {}; largest {}{} at {}, tube {}, element {}.</li>\n",
+                     escape_markup(r.key), number_text(r.limit), unit, picoseconds(r.passed_at_ps),
+                     number_text(r.largest), unit, picoseconds(r.largest_at_ps), r.tube, r.element);
+}
+
 std::string limits_part(const ReportInput& in) {
   if (in.log.empty()) return paragraph("The log has no rows, so nothing is known.");
   std::string html = paragraph(
       "Elements are rigid and bonds are elastic without end; a tube is not. These bonds are beyond what the "
-      "parameter "
-      "set gives as the limits of the model. The run is not stopped by them, but what they do is not to be "
-      "trusted.");
+      "parameter set gives as the limits of the model; what they do is not to be trusted.");
   html += "<ul>\n";
   for (const Limit& limit : limits(in.validity)) html += limit_words(in, limit);
   double twist = 0;
@@ -437,6 +444,44 @@ std::string limits_part(const ReportInput& in) {
       "<li>Largest twist of one bond: {}. The torque of a bond peaks at 90°, and beyond it the bond "
       "would slip.</li>\n",
       degrees(twist));
+  for (const LimitRecord& r : in.watched.limits)
+    if (r.passed) html += passed_words(r);
+  return html + "</ul>\n";
+}
+
+std::string energy_words(const EnergyParts& before, const EnergyParts& after) {
+  std::string words;
+  const auto add = [&](const char* name, double from, double to) {
+    words += fmt::format("{}{} {} → {}", words.empty() ? "" : ", ", name, number_text(from, 5), number_text(to, 5));
+  };
+  const Energies &a = before.potential, &b = after.potential;
+  add("stretch", a.stretch, b.stretch);
+  add("shear", a.shear, b.shear);
+  add("bend", a.bend, b.bend);
+  add("twist", a.twist, b.twist);
+  add("van der Waals", a.vdw, b.vdw);
+  add("kinetic", before.kinetic, after.kinetic);
+  return words;
+}
+
+// Nothing where no element was ever split.
+std::string refinements_part(const std::vector<RefinementRecord>& refinements) {
+  if (refinements.empty()) return "";
+  std::string html =
+      heading("Elements split on the way") +
+      paragraph(
+          "A limit was passed that shorter elements cure: every element was split in two, and the "
+          "run went on in a directory of its own. The jump of energy is the difference between "
+          "the two models of the same state, most of it at the ends, where half an element more of each tube "
+          "may now bend, twist and stretch; the energy balance leaves it out.") +
+      "<ul>\n";
+  for (const RefinementRecord& r : refinements)
+    html += fmt::format(
+        "<li>At {}: <b>{}</b>, {} elements of {} nm, goes on as <b>{}</b>, {} elements of {} nm. Energy "
+        "{} → {} eV ({}).</li>\n",
+        picoseconds(r.time_ps), escape_markup(r.from), r.elements_before, number_text(r.length_before),
+        escape_markup(r.to), r.elements_after, number_text(r.length_after), number_text(r.before.total(), 6),
+        number_text(r.after.total(), 6), energy_words(r.before, r.after));
   return html + "</ul>\n";
 }
 
@@ -483,6 +528,7 @@ std::string report_html(const ReportInput& in) {
   html += heading("Cross-sections") + sections_part(in, sections, figures);
   html += log_part(in, sections, figures);
   html += heading("Beyond the limits of the model") + limits_part(in);
+  html += refinements_part(in.watched.refinements);
   html += heading("The run") + facts_part(in.facts);
   html += heading("Parameters") + parameters_part(in.parameter_name, in.parameter_reference, in.parameters);
   return html + "</main>\n</body>\n</html>\n";

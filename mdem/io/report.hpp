@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "io/limits_file.hpp"
 #include "io/log.hpp"
 #include "io/page.hpp"
 #include "io/svg.hpp"
@@ -34,6 +35,7 @@ struct ReportInput {
   int tubes = 0;
   int bonds = 0;
   Validity validity;
+  LimitsFile watched;  // empty where the run has no limits.json
 
   RopeShells shells;                    // of the untwisted rope
   std::vector<ReportSection> sections;  // in the order of time; of more than six, six are shown

@@ -3,6 +3,7 @@
 // writes.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -11,6 +12,7 @@
 
 #include "model/damping.hpp"
 #include "model/parameters.hpp"
+#include "observe/limits.hpp"
 #include "sim/interaction.hpp"
 #include "sim/stepping.hpp"
 
@@ -130,6 +132,9 @@ struct ObserveOptions {
   double neighbour_radius = 0;  // nm; 0: midway between first and second shell of the hexagonal packing
 };
 
+// [limits] what the run watches, in the order of limit_kinds(); those that are not typed are default_limits().
+using LimitOptions = std::array<std::optional<double>, limit_count>;
+
 struct Scene {
   std::string name;
   std::string path;
@@ -147,6 +152,7 @@ struct Scene {
   std::optional<TwistProtocol> twist;
   RunOptions run;
   ObserveOptions observe;
+  LimitOptions limits;
 
   const ParameterSet& parameters() const { return sets.front(); }
 };

@@ -18,6 +18,7 @@ const std::vector<SceneTable>& scene_tables() {
       {"load", "any number of these: what else acts on elements"},
       {"run", "what to do"},
       {"observe", "what to measure"},
+      {"limits", "the run says so at once where it passes one of these; 0: not watched"},
   };
   return tables;
 }
@@ -115,6 +116,16 @@ const std::vector<SceneKey>& scene_keys() {
 
       {"observe", "neighbour_radius_nm", "nm", "2.34", "between first and second shell",
        "tubes closer than this are neighbours"},
+
+      {"limits", "bend_deg", "deg", "19.9", "", "bend of one bond: its energy is then 1 % off the rod's"},
+      {"limits", "twist_deg", "deg", "19.9", "", "twist of one bond: likewise; at 90 it slips"},
+      {"limits", "kink_curvature_per_nm", "1/nm", "0.086", "the set's", "curvature of a tube"},
+      {"limits", "wall_twist", "", "0.043", "the set's twist_collapse",
+       "radius of a tube times its twist per length"},
+      {"limits", "strain", "", "0.069", "the set's stretch", "of a bond, tension or compression"},
+      {"limits", "press_nm", "nm", "0.11", "down to the core gap of the law",
+       "how much nearer than at rest tubes are pressed"},
+      {"limits", "speed_nm_per_ps", "nm/ps", "2", "a tenth of the speed of sound along the tube", "of an element"},
   };
   return keys;
 }

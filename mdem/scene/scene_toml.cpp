@@ -494,6 +494,17 @@ ObserveOptions read_observe(const TomlTable& t, const Scene& scene) {
   return o;
 }
 
+// Largest values of any sense: a bond slips at 90 degrees.
+LimitOptions read_limits(const TomlTable& t) {
+  LimitOptions limits;
+  for (std::size_t k = 0; k < limit_count; ++k) {
+    const LimitKind& kind = limit_kinds()[k];
+    const double most = kind.unit_size == units::degree ? 90 : 1e3;
+    if (t.has(kind.key)) limits[k] = t.number(kind.key, Bounds::non_negative(most)) * kind.unit_size;
+  }
+  return limits;
+}
+
 // --- all of it --------------------------------------------------------------------------------------
 
 void check_format(const TomlTable& top) {
@@ -529,6 +540,7 @@ void read_tables(const TomlTable& top, const std::string& folder, Scene& scene) 
   if (top.has("twist")) scene.twist = read_twist(top.table("twist"));
   scene.run = read_run(top.table("run"), scene);
   scene.observe = read_observe(top.table("observe"), scene);
+  scene.limits = read_limits(top.table("limits"));
 }
 
 }  // namespace

@@ -14,9 +14,11 @@
 #include "scene/build.hpp"
 #include "scene/maxwell.hpp"
 #include "scene/prepare.hpp"
+#include "scene/resolve.hpp"
 #include "scene/scene_toml.hpp"
 #include "scene/state_csv.hpp"
 #include "scene/templates.hpp"
+#include "scene/watch.hpp"
 #include "sim/forces.hpp"
 #include "unit/support.hpp"
 
@@ -484,6 +486,30 @@ TEST(SceneKeys, StatedDefaultsAreTheDefaults) {
                               keys_of("run", defaults, "mode duration_ps")));
   };
   EXPECT_EQ(relax(true), relax(false));
+}
+
+TEST(SceneKeys, StatedLimitsAreTheDefaults) {
+  const std::string start = "[chain]\nelements = 5\n[run]\nduration_ps = 1\n";
+  const auto limits = [&](const std::string& more) {
+    const Scene s = scene_from(start + more);
+    return watched_of(s, empty_topology(s)).limits.at(0);
+  };
+  const Limits silent = limits(""), stated = limits("[limits]\n" + keys_of("limits", true));
+  EXPECT_DOUBLE_EQ(silent.bend, stated.bend);
+  EXPECT_DOUBLE_EQ(silent.twist, stated.twist);
+  const Validity set = scene_from(start).parameters().validity;
+  EXPECT_EQ(silent.kink_curvature, set.kink_curvature);
+  EXPECT_EQ(silent.wall_twist, set.twist_collapse);
+  EXPECT_EQ(silent.strain, set.stretch);
+  EXPECT_NEAR(silent.press, 0.1, 0.03) << "1.713 nm less 2.4 radii";
+  const Limits typed = limits(
+      "[limits]\nbend_deg = 9\ntwist_deg = 0\nkink_curvature_per_nm = 1\nwall_twist = 2\nstrain = 3\n"
+      "speed_nm_per_ps = 4\npress_nm = 5\n");
+  EXPECT_DOUBLE_EQ(typed.bend, 9 * units::degree);
+  EXPECT_EQ(typed.twist, 0);
+  EXPECT_EQ(
+      typed.kink_curvature + 10 * typed.wall_twist + 100 * typed.strain + 1000 * typed.speed + 10000 * typed.press,
+      54321);
 }
 
 TEST(SceneKeys, StatedLoadDefaultsAreTheDefaults) {

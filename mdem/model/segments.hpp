@@ -1,5 +1,4 @@
-// Distance of two straight segments: pairs of elements that the neighbour list holds for the worst of poses mostly
-// lie farther apart than their law reaches.
+// Distance of two straight segments, such as the axes of two elements.
 #pragma once
 
 #include <algorithm>

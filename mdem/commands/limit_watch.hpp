@@ -1,0 +1,42 @@
+// What a run does about its limits (observe/limits.hpp): it looks at every logged time and in between, says so in
+// one line where one is passed for the first time, and keeps the record for limits.json.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "io/limits_file.hpp"
+#include "observe/limits.hpp"
+
+namespace ropewalk {
+
+enum class OnLimit { warn, stop, refine };
+
+// A word of the command line; throws InputError.
+OnLimit on_limit_of(const std::string& word);
+
+class LimitWatch {
+ public:
+  explicit LimitWatch(Watched watched) : watched_(std::move(watched)) {}
+
+  // A run that goes on: from its own file, or from that of the run before its elements were split. What was passed
+  // after `step` had not happened.
+  void take_over(const std::vector<LimitRecord>& earlier, std::int64_t step);
+
+  // One line for each limit that is passed for the first time.
+  std::vector<std::string> look(const Topology& topology, const State& state, const NeighbourList& list);
+
+  // At the last look: is a limit passed that shorter elements would cure.
+  bool finer_would_help() const { return finer_would_help_; }
+  const std::vector<LimitRecord>& records() const { return records_; }
+
+ private:
+  Watched watched_;
+  std::vector<LimitRecord> records_;
+  bool finer_would_help_ = false;
+};
+
+// "bend_deg 21.4 deg (limit 19.9)" of those that were passed, in one line; empty: none.
+std::string passed_words(const std::vector<LimitRecord>& records);
+
+}  // namespace ropewalk

@@ -1,0 +1,54 @@
+// limits.json of a run: what it watched and met, and, of a run whose elements were split on its way, where it came
+// from and where it goes on.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "sim/interaction.hpp"
+
+namespace ropewalk {
+
+struct LimitRecord {
+  std::string key;   // as in the scene's [limits]
+  std::string unit;  // may be empty
+  double limit = 0;  // in that unit; 0: not watched
+  double largest = 0;
+  double largest_at_ps = 0;
+  int tube = -1;     // of the largest; -1: there was none
+  int element = -1;  // counted in the tube, from 0; the first of a bond
+  bool passed = false;
+  double passed_at_ps = 0;
+  std::int64_t passed_at_step = 0;
+};
+
+// Energies of a state, by kind (eV).
+struct EnergyParts {
+  Energies potential;
+  double kinetic = 0;
+
+  double total() const { return potential.potential() + kinetic; }
+};
+
+// One splitting of all elements.
+struct RefinementRecord {
+  std::string from, to;  // names of the directories, which stand side by side
+  double time_ps = 0;
+  std::int64_t step_before = 0, step_after = 0;
+  double length_before = 0, length_after = 0;  // of an element, nm
+  int elements_before = 0, elements_after = 0;
+  EnergyParts before, after;
+};
+
+struct LimitsFile {
+  std::vector<LimitRecord> limits;
+  std::vector<RefinementRecord> refinements;  // this run's and those of the runs before it, first one first
+};
+
+std::string limits_json(const LimitsFile& file);
+
+// Throws InputError for a file that is missing, not JSON, or lacks a key.
+LimitsFile read_limits(const std::string& path);
+
+}  // namespace ropewalk

@@ -1,0 +1,121 @@
+#include "observe/limits.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "model/segments.hpp"
+
+namespace ropewalk {
+namespace {
+
+constexpr double shock = 0.1;  // strain
+
+enum Kind : std::size_t { bend, twist, kink_curvature, wall_twist, strain, press, speed };
+
+void raise(Peak& peak, double value, int element) {
+  if (peak.element >= 0 && !(value > peak.value)) return;
+  peak.value = value;
+  peak.element = element;
+}
+
+Peaks peaks_of_tube(const Topology& topology, const State& state, int tube, const Limits& limits) {
+  const TubeType& type = topology.type_of(tube);
+  const double a = type.element_length;
+  Peaks out;
+  for (std::size_t k = 0; k < limit_count; ++k) out[k].limit = limits.*limit_kinds()[k].limit;
+  const int from = topology.tube_begin[tube], to = topology.tube_begin[tube + 1];
+  Frame<double> frame = frame_of(state.orientation[static_cast<std::size_t>(from)]);
+  for (int e = from; e < to; ++e) {
+    const auto i = static_cast<std::size_t>(e);
+    raise(out[speed], state.velocity[i].norm(), e);
+    if (e + 1 == to) break;
+    const Frame<double> next = frame_of(state.orientation[i + 1]);
+    const double bent = std::atan2(frame.t.cross(next.t).norm(), frame.t.dot(next.t));
+    const double twisted = std::fabs(bond_twist_angle(frame, next));
+    raise(out[bend], bent, e);
+    raise(out[twist], twisted, e);
+    raise(out[kink_curvature], bent / a, e);
+    raise(out[wall_twist], type.radius * twisted / a, e);
+    raise(out[strain], std::fabs((state.position[i + 1] - state.position[i]).norm() / a - 1), e);
+    frame = next;
+  }
+  return out;
+}
+
+// The pairs of each element that come nearer than they rest.
+void press_of_tube(const Topology& topology, const State& state, const NeighbourList& list, const Watched& watched,
+                   int tube, Peak& peak) {
+  const TubeType& type = topology.type_of(tube);
+  const auto types = topology.types.size(), row = static_cast<std::size_t>(topology.tube_type[tube]) * types;
+  const double reach = *std::max_element(watched.rest.begin(), watched.rest.end()) + topology.longest_element();
+  for (int i = topology.tube_begin[tube]; i < topology.tube_begin[tube + 1]; ++i) {
+    const Vector3 place = state.position[static_cast<std::size_t>(i)];
+    const Vector3 axis = axis_of(state.orientation[static_cast<std::size_t>(i)]);
+    double deepest = 0;
+    for (std::size_t k = list.begin(i); k < list.begin(i + 1); ++k) {
+      const auto j = static_cast<std::size_t>(list.indices()[k]);
+      const Vector3 separation = state.position[j] - place;
+      if (separation.squaredNorm() > reach * reach) continue;
+      const TubeType& other = types == 1 ? type : topology.type_of_element(static_cast<int>(j));
+      const double rest = watched.rest[row + static_cast<std::size_t>(&other - topology.types.data())];
+      const double half_i = 0.5 * type.element_length, half_j = 0.5 * other.element_length;
+      const double distance2 =
+          squared_segment_distance(separation, axis, axis_of(state.orientation[j]), half_i, half_j);
+      if (distance2 < rest * rest) deepest = std::max(deepest, rest - std::sqrt(distance2));
+    }
+    raise(peak, deepest, i);
+  }
+}
+
+}  // namespace
+
+const std::array<LimitKind, limit_count>& limit_kinds() {
+  constexpr const char* finer = "take a shorter element_length_nm, or --on-limit refine";
+  static const std::array<LimitKind, limit_count> kinds = {{
+      {"bend_deg", "deg", units::degree, &Limits::bend, "the bond to the next element is bent by",
+       "the chain is no longer the rod", finer, true},
+      {"twist_deg", "deg", units::degree, &Limits::twist, "the bond to the next element is twisted by",
+       "the chain is no longer the rod, and at 90 deg the bond slips", finer, true},
+      {"kink_curvature_per_nm", "1/nm", 1, &Limits::kink_curvature, "the tube is curved by",
+       "a real tube kinks there", "bend it less, or do not trust what it does from now on", false},
+      {"wall_twist", "", 1, &Limits::wall_twist, "radius times twist per length is",
+       "the wall of a real tube collapses there", "twist it less, or do not trust its torsion from now on", false},
+      {"strain", "", 1, &Limits::strain, "the bond to the next element is strained by",
+       "the linear law of the bond ends there", "pull or press it less, or do not trust its force from now on",
+       false},
+      {"press_nm", "nm", 1, &Limits::press, "the tube is pressed into another one by",
+       "the contact law is only continued there", "load it more gently, or start it without overlaps", false},
+      {"speed_nm_per_ps", "nm/ps", 1, &Limits::speed, "the element moves with",
+       "stopping it would strain the tube by 10 % or more", "load it more gently, or damp more", false},
+  }};
+  return kinds;
+}
+
+Limits default_limits(const TubeType& type, const Validity& validity) {
+  Limits limits;
+  limits.kink_curvature = validity.kink_curvature;
+  limits.wall_twist = validity.twist_collapse;
+  limits.strain = validity.stretch;
+  limits.speed = shock * std::sqrt(type.bond.stretch * type.element_length / type.mass);
+  return limits;
+}
+
+Peaks peaks(const Topology& topology, const State& state, const NeighbourList& list, const Watched& watched) {
+  std::vector<Peaks> tubes(static_cast<std::size_t>(topology.tubes()));
+#pragma omp parallel for schedule(static) if (state.size() > parallel_from)
+  for (int t = 0; t < topology.tubes(); ++t) {
+    Peaks& own = tubes[static_cast<std::size_t>(t)];
+    own = peaks_of_tube(topology, state, t, watched.limits[static_cast<std::size_t>(topology.tube_type[t])]);
+    if (list.pairs() > 0 && !watched.rest.empty()) press_of_tube(topology, state, list, watched, t, own[press]);
+  }
+  Peaks out;
+  for (const Peaks& tube : tubes)
+    for (std::size_t k = 0; k < limit_count; ++k) {
+      const bool watched = tube[k].limit > 0 && out[k].limit > 0;
+      const bool more = watched ? tube[k].ratio() > out[k].ratio() : tube[k].value > out[k].value;
+      if (tube[k].element >= 0 && (out[k].element < 0 || more)) out[k] = tube[k];
+    }
+  return out;
+}
+
+}  // namespace ropewalk

@@ -1,0 +1,78 @@
+// What a run must stay below for its model to hold, and how near it is.
+//
+// A chain of rigid elements is a rod as long as an element bends and twists little against its neighbour:
+//
+//   bend    angle between the axes of two bonded elements, curvature times element length. The energy
+//           EI/a (1 - cos) is 1 % below the rod's EI/2a angle^2 at 19.9 degrees.
+//   twist   angle of the bond about the axis. GJ/a (1 - cos) is 1 % below the rod's at the same 19.9 degrees; at
+//           90 the torque peaks, the bond slips and the run stops.
+//
+// Shorter elements cure these two. The others belong to the tube, which no finer chain changes:
+//
+//   kink_curvature, wall_twist (radius times twist per length), strain (of either sign)    the [validity] of the
+//           parameter set: there the tube kinks, collapses into a ribbon or buckles in its wall
+//   press   how much nearer (nm) the axes of two tubes come, at any angle, than two parallel ones rest: down to the
+//           core gap, below which the contact law is but its own Taylor polynomial, soft and without source
+//   speed   of an element: a tenth of the speed of sound along the tube, sqrt(EA a/m). A tube that is stopped
+//           from the speed v is strained by v/c: by 10 % there, more than any of the shipped sets allows.
+//
+// Units nm, ps, rad. A limit of zero is not watched.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "model/parameters.hpp"
+#include "sim/neighbours.hpp"
+#include "sim/state.hpp"
+
+namespace ropewalk {
+
+struct Limits {
+  double bend = 19.9 * units::degree;   // rad per bond
+  double twist = 19.9 * units::degree;  // rad per bond
+  double kink_curvature = 0;            // 1/nm
+  double wall_twist = 0;
+  double strain = 0;
+  double press = 0;  // nm
+  double speed = 0;  // nm/ps
+};
+
+// But for press, which is that of the contact law.
+Limits default_limits(const TubeType& type, const Validity& validity);
+
+struct LimitKind {
+  const char* key;  // in the scene's [limits]
+  const char* unit;
+  double unit_size;  // in internal units
+  double Limits::*limit;
+  const char* what;     // "the bond to the next element is bent by"
+  const char* beyond;   // what is wrong there
+  const char* remedy;   // for one who meets it
+  bool cured_by_finer;  // would shorter elements help
+};
+inline constexpr std::size_t limit_count = 7;
+const std::array<LimitKind, limit_count>& limit_kinds();
+
+// The largest value, measured by its limit: where the limits of tube types differ it may not be the largest number.
+struct Peak {
+  double value = 0;
+  double limit = 0;
+  int element = -1;  // the first of the bond; -1: there is none
+
+  double ratio() const { return limit > 0 ? value / limit : 0; }
+  bool passed() const { return ratio() > 1; }
+};
+using Peaks = std::array<Peak, limit_count>;  // in the order of limit_kinds()
+
+// What is watched in one scene.
+struct Watched {
+  std::vector<Limits> limits;  // by tube type
+  std::vector<double> rest;  // nm: distance of parallel tubes of the types i, j at i * types + j; empty: no contact
+};
+
+// Of equal ones the first element. The list must be up to date; it may be empty.
+Peaks peaks(const Topology& topology, const State& state, const NeighbourList& list, const Watched& watched);
+
+}  // namespace ropewalk

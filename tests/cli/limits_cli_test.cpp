@@ -1,0 +1,194 @@
+// What the program does where a run outgrows its model.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "cli/support.hpp"
+#include "io/log.hpp"
+
+namespace {
+
+using ropewalk::LogRow;
+using ropewalk::test::Outcome;
+using ropewalk::test::slurp;
+using ropewalk::test::spit;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using Json = nlohmann::json;
+namespace fs = std::filesystem;
+
+class Limits : public ropewalk::test::Cli {
+ protected:
+  // Two tubes' worth of twist: 28 degrees a bond at the end, of the line law.
+  void SetUp() override {
+    ropewalk::test::Cli::SetUp();
+    spit(dir / "s.toml",
+         "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[rope]\ntubes = 7\nlength_nm = 12\n"
+         "[twist]\nmoment_nN_nm = 120\nrate_nN_nm_per_ps = 20\nhold_ps = 1\n[run]\nlog_every_ps = 0.5\n"
+         "frames_every_ps = 2\n[limits]\nwall_twist = 0\nspeed_nm_per_ps = 0\nkink_curvature_per_nm = 0\n");
+  }
+  std::vector<LogRow> log_of(const std::string& run) const {
+    return ropewalk::read_log((dir / run / "log.csv").string());
+  }
+  Json limits_of(const std::string& run) const { return Json::parse(slurp(dir / run / "limits.json")); }
+  static long lines(const std::string& text) { return std::count(text.begin(), text.end(), '\n'); }
+};
+
+TEST_F(Limits, AreSaidOnceAndTheRunGoesOn) {
+  const Outcome o = run("run s.toml --out d --quiet");
+  EXPECT_EQ(o.code, 0) << o.err;
+  EXPECT_THAT(o.err, HasSubstr("limits.twist_deg = 19.9"));
+  EXPECT_THAT(o.err, HasSubstr("--on-limit refine"));
+  EXPECT_EQ(o.err.find("twist_deg"), o.err.rfind("twist_deg")) << "once";
+  EXPECT_THAT(o.out, HasSubstr("Limits passed: twist_deg"));
+  const Json json = limits_of("d");
+  const Json& twist = json.at("limits").at(1);
+  EXPECT_EQ(twist.at("key"), "twist_deg");
+  EXPECT_TRUE(twist.at("passed"));
+  EXPECT_GT(twist.at("largest"), 19.9);
+  EXPECT_GE(twist.at("largest_at_ps"), twist.at("passed_at_ps"));
+  EXPECT_FALSE(json.at("limits").at(0).at("passed"));
+  EXPECT_THAT(slurp(dir / "d/report.html"), HasSubstr("limits.twist_deg"));
+}
+
+TEST_F(Limits, AreNamedByCheck) {
+  const Outcome o = run("check s.toml");
+  EXPECT_EQ(o.code, 0) << o.err;
+  EXPECT_THAT(o.out, HasSubstr("watched: bend_deg 19.9, twist_deg 19.9, strain 0.0686, press_nm 0.11"));
+  EXPECT_THAT(o.out, Not(HasSubstr("wall_twist")));
+}
+
+TEST_F(Limits, AreSilentWhereNothingIsPassed) {
+  const Outcome o = run("run s.toml --out d --quiet --steps 40");
+  EXPECT_EQ(o.code, 0);
+  EXPECT_EQ(o.err, "");
+  EXPECT_THAT(o.out, Not(HasSubstr("Limits passed")));
+}
+
+TEST_F(Limits, StopKeepsTheCheckpoint) {
+  const Outcome o = run("run s.toml --out d --quiet --on-limit stop");
+  EXPECT_EQ(o.code, 5);
+  EXPECT_THAT(o.err, HasSubstr("ropewalk resume d"));
+  EXPECT_EQ(Json::parse(slurp(dir / "d/manifest.json")).at("status"), "stopped");
+  EXPECT_THAT(slurp(dir / "d/report.html"), HasSubstr("stopped at"));
+  const double stopped = log_of("d").back().time;
+  EXPECT_LT(stopped, 7);
+  const Outcome on = run("resume d --quiet --on-limit stop");
+  EXPECT_EQ(on.code, 0) << on.err;
+  EXPECT_EQ(on.err, "") << "it was said";
+  ASSERT_EQ(run("run s.toml --out whole --quiet").code, 0);
+  EXPECT_EQ(log_of("d").back().twist, log_of("whole").back().twist) << "bit for bit";
+}
+
+TEST_F(Limits, RefineGoesOnBesideTheRun) {
+  const Outcome o = run("run s.toml --out d --quiet --on-limit refine");
+  ASSERT_EQ(o.code, 0) << o.err;
+  EXPECT_THAT(o.err, HasSubstr("63 elements of 1.378 nm became 126 of 0.6888 nm"));
+  EXPECT_EQ(lines(o.err), 2) << o.err;
+  EXPECT_THAT(o.out, HasSubstr("d.fine/report.html"));
+  const auto before = log_of("d"), after = log_of("d.fine");
+  EXPECT_EQ(before.back().time, after.front().time);
+  EXPECT_EQ(before.back().work, after.front().work);
+  EXPECT_EQ(before.back().dissipated, after.front().dissipated);
+  EXPECT_NEAR(before.back().balance, after.front().balance, 1e-9 * before.back().work);
+  EXPECT_NEAR(after.back().time, 7, 0.02);
+  EXPECT_LT(std::fabs(after.back().balance), 0.01 * after.back().work);
+  EXPECT_LT(after.back().largest_bond_twist, 19.9);
+
+  for (const char* name : {"d", "d.fine"}) {
+    const Json split = limits_of(name).at("refinements").at(0);
+    EXPECT_EQ(split.at("from"), "d");
+    EXPECT_EQ(split.at("to"), "d.fine");
+    EXPECT_EQ(split.at("elements_after"), 126);
+    EXPECT_NEAR(split.at("energy_before_eV").at("twist"), before.back().twist, 1e-9);
+    EXPECT_NEAR(split.at("energy_after_eV").at("contact"), after.front().vdw, 1e-9);
+    const std::string report = slurp(dir / name / "report.html");
+    EXPECT_THAT(report, HasSubstr("Elements split on the way"));
+    EXPECT_THAT(report, HasSubstr("<b>d.fine</b>"));
+  }
+  EXPECT_EQ(Json::parse(slurp(dir / "d/manifest.json")).at("status"), "refined");
+  EXPECT_THAT(slurp(dir / "d.fine/scene.toml"), HasSubstr("of the run d: every element split in two"));
+
+  // Both are runs like any other.
+  for (const char* name : {"d", "d.fine"}) {
+    const Outcome seen = run(std::string("observe --json ") + name);
+    ASSERT_EQ(seen.code, 0) << seen.err;
+    const Json frames = Json::parse(seen.out);
+    EXPECT_NEAR(frames.back().at("physical_twist_deg"), log_of(name).back().physical_twist, 0.1);
+    EXPECT_EQ(run(std::string("report ") + name).code, 0);
+  }
+  const Outcome back = run("resume d");
+  EXPECT_EQ(back.code, 2);
+  EXPECT_THAT(back.err, HasSubstr("ropewalk resume d.fine"));
+  EXPECT_EQ(run("resume d.fine --quiet --until 7.5").code, 0);
+  EXPECT_NEAR(log_of("d.fine").back().time, 7.5, 0.02);
+  // Nothing is overwritten by chance, and both on demand.
+  EXPECT_EQ(run("run s.toml --out d --quiet --on-limit refine").code, 2);
+  EXPECT_EQ(run("run s.toml --out d/ --quiet --on-limit refine --force").code, 0) << slurp(dir / "stderr.txt");
+  EXPECT_EQ(log_of("d.fine").back().time, after.back().time);
+  const Outcome again = run("run s.toml --out d2 --quiet --on-limit refine --steps 10");
+  EXPECT_EQ(again.code, 0);
+  fs::create_directories(dir / "d3.fine");
+  EXPECT_EQ(run("run s.toml --out d3 --quiet --on-limit refine").code, 2);
+  EXPECT_FALSE(fs::exists(dir / "d3"));
+}
+
+// Stopped after the splitting and gone on with, it is the run that was not stopped.
+TEST_F(Limits, ARefinedRunResumesBitForBit) {
+  ASSERT_EQ(run("run s.toml --out d --quiet --on-limit refine").code, 0);
+  const auto whole = log_of("d.fine");
+  const long steps = limits_of("d").at("refinements").at(0).at("step_before").get<long>() + 20;
+  ASSERT_EQ(run("run s.toml --out e --quiet --on-limit refine --steps " + std::to_string(steps)).code, 0);
+  ASSERT_TRUE(fs::exists(dir / "e.fine"));
+  EXPECT_LT(log_of("e.fine").back().time, whole.back().time - 0.5);
+  ASSERT_EQ(run("resume e.fine --quiet").code, 0) << slurp(dir / "stderr.txt");
+  EXPECT_EQ(log_of("e.fine").back().time, whole.back().time);
+  EXPECT_EQ(log_of("e.fine").back().twist, whole.back().twist);
+  EXPECT_EQ(log_of("e.fine").back().work, whole.back().work);
+}
+
+// A stopped run may be refined afterwards; one whose elements are as short as the model allows goes on with a word.
+TEST_F(Limits, AStoppedRunMayBeRefinedAndOnlyOnce) {
+  ASSERT_EQ(run("run s.toml --out d --quiet --on-limit stop").code, 5);
+  ASSERT_EQ(run("resume d --quiet --on-limit refine").code, 0) << slurp(dir / "stderr.txt");
+  EXPECT_TRUE(fs::exists(dir / "d.fine/checkpoint.bin"));
+  spit(dir / "t.toml", slurp(dir / "s.toml") + "twist_deg = 12\n");
+  const Outcome o = run("run t.toml --out e --quiet --on-limit refine");
+  EXPECT_EQ(o.code, 0) << o.err;
+  EXPECT_THAT(o.err, HasSubstr("not refined: elements of 0.3444 nm would be shorter than the radius"));
+  EXPECT_FALSE(fs::exists(dir / "e.fine2"));
+}
+
+TEST_F(Limits, WhatCannotBeRefinedIsRefusedBeforeItRuns) {
+  spit(dir / "p.toml",
+       "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-paper\"\n[rope]\ntubes = 7\nlength_nm = 14\n"
+       "[run]\nduration_ps = 1\n");
+  const Outcome o = run("run p.toml --out d --on-limit refine");
+  EXPECT_EQ(o.code, 2);
+  EXPECT_EQ(lines(o.err), 1);
+  EXPECT_THAT(o.err, HasSubstr("law \"paper\" holds for elements of 1.356 nm alone"));
+  EXPECT_FALSE(fs::exists(dir / "d"));
+  EXPECT_EQ(run("run p.toml --out d --on-limit explode").code, 2);
+}
+
+// A relaxation whose chain is bent too far goes on with the finer one.
+TEST_F(Limits, ARelaxationIsRefinedAsWell) {
+  spit(dir / "r.toml",
+       "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[chain]\nelements = 10\n[contact]\n"
+       "law = \"none\"\n[[load]]\nkind = \"torque\"\nelements = [0]\ntorque_nN_nm = [0, -110, 0]\n[[load]]\n"
+       "kind = \"torque\"\nelements = [-1]\ntorque_nN_nm = [0, 110, 0]\n[run]\nmode = \"relax\"\n"
+       "max_steps = 20000\n");
+  const Outcome o = run("run r.toml --out d --quiet --on-limit refine");
+  ASSERT_EQ(o.code, 0) << o.err;
+  EXPECT_THAT(o.out, HasSubstr("relaxed: largest force below"));
+  // Seventeen bonds carry the couple, EI/a sin(angle), and the two within the loaded elements half of it.
+  const double a = 0.5 * 1.3775870846515064, EI = 362.88383758902495, eV = 0.1602176634;
+  const auto energy = [&](double moment) { return EI / a / eV * (1 - std::cos(std::asin(moment * a / EI))); };
+  const double theory = 17 * energy(110) + 2 * energy(55);
+  EXPECT_NEAR(log_of("d.fine").back().bend, theory, 2e-3 * theory);
+  EXPECT_EQ(run("observe d.fine").code, 0);
+}
+
+}  // namespace

@@ -1,0 +1,161 @@
+// The limits of a run: what is measured, what the defaults mean, and what is kept of it.
+#include "observe/limits.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "io/files.hpp"
+#include "io/limits_file.hpp"
+#include "model/error.hpp"
+#include "unit/support.hpp"
+
+namespace ropewalk {
+namespace {
+
+using test::published_bond;
+using test::published_topology;
+using test::turn;
+
+State straight(const Topology& topology) {
+  State s(static_cast<std::size_t>(topology.elements()));
+  for (int t = 0; t < topology.tubes(); ++t)
+    for (int e = topology.tube_begin[t]; e < topology.tube_begin[t + 1]; ++e)
+      s.position.set(static_cast<std::size_t>(e),
+                     {5.0 * t, 0, test::element_length * (e - topology.tube_begin[t])});
+  return s;
+}
+
+const Peak& peak_of(const Peaks& all, const std::string& key) {
+  for (std::size_t k = 0; k < limit_count; ++k)
+    if (limit_kinds()[k].key == key) return all[k];
+  throw std::runtime_error(key);
+}
+
+TEST(Limits, BendAndTwistAreWhereTheBondIsOnePercentOffTheRod) {
+  const Limits limits;
+  const double a = test::element_length;
+  const auto off = [&](const Quaternion& q, double rod) {
+    const BondEnergy<double> e =
+        bond_energy(published_bond(), a, Vector3(0, 0, a), frame_of(Quaternion::Identity()), frame_of(q));
+    return 1 - (e.bend + e.twist) / rod;
+  };
+  const double bend = limits.bend, twist = limits.twist;
+  EXPECT_NEAR(off(turn(Vector3::UnitY(), bend), 0.5 * published_bond().bend / a * bend * bend), 0.01, 1e-4);
+  EXPECT_NEAR(off(turn(Vector3::UnitZ(), twist), 0.5 * published_bond().twist / a * twist * twist), 0.01, 1e-4);
+}
+
+TEST(Limits, PeaksNameTheElement) {
+  Topology topology = published_topology();
+  topology.add_tube(4);
+  topology.add_tube(5);
+  State s = straight(topology);
+  const Limits limits = default_limits(topology.types[0], {0.087, 0.05, 0.07});
+  for (const Peak& p : peaks(topology, s, {}, {{limits}, {}})) EXPECT_FALSE(p.passed());
+
+  s.orientation.set(6, turn(Vector3::UnitX(), 0.1));      // bends the bonds of 5 and 6
+  s.orientation.set(2, turn(Vector3::UnitZ(), 0.4));      // twists those of 1 and 2
+  s.position.set(8, s.position[8] + Vector3(0, 0, 0.1));  // strains that of 7
+  s.velocity.set(3, {0, 3, 0});
+  const Peaks p = peaks(topology, s, {}, {{limits}, {}});
+  EXPECT_NEAR(peak_of(p, "bend_deg").value, 0.1, 1e-9);
+  EXPECT_EQ(peak_of(p, "bend_deg").element, 5);
+  EXPECT_FALSE(peak_of(p, "bend_deg").passed());
+  EXPECT_NEAR(peak_of(p, "twist_deg").value, 0.4, 1e-9);
+  EXPECT_EQ(peak_of(p, "twist_deg").element, 1);
+  EXPECT_TRUE(peak_of(p, "twist_deg").passed());
+  EXPECT_NEAR(peak_of(p, "kink_curvature_per_nm").value, 0.1 / test::element_length, 1e-9);
+  EXPECT_FALSE(peak_of(p, "kink_curvature_per_nm").passed());
+  EXPECT_NEAR(peak_of(p, "wall_twist").value, 0.678 * 0.4 / test::element_length, 1e-9);
+  EXPECT_TRUE(peak_of(p, "wall_twist").passed());
+  EXPECT_NEAR(peak_of(p, "strain").value, 0.1 / test::element_length, 1e-9);
+  EXPECT_EQ(peak_of(p, "strain").element, 7);
+  EXPECT_TRUE(peak_of(p, "strain").passed());
+  EXPECT_EQ(peak_of(p, "speed_nm_per_ps").element, 3);
+  EXPECT_TRUE(peak_of(p, "speed_nm_per_ps").passed());
+}
+
+// A tenth of the speed of sound along graphene, 22 nm/ps.
+TEST(Limits, SpeedIsATenthOfThatOfSound) {
+  const Limits limits = default_limits(published_topology().types[0], {});
+  EXPECT_NEAR(limits.speed, 2.15, 0.05);
+}
+
+// Where tube types have limits of their own the one that is nearest to its own counts, not the largest number.
+TEST(Limits, AreThoseOfTheTubeType) {
+  Topology topology = published_topology();
+  topology.types.push_back(topology.types[0]);
+  topology.add_tube(3, 0);
+  topology.add_tube(3, 1);
+  State s = straight(topology);
+  s.orientation.set(2, turn(Vector3::UnitX(), 0.3));
+  s.orientation.set(5, turn(Vector3::UnitX(), 0.2));
+  Limits wide, narrow;
+  wide.bend = 0.6;
+  narrow.bend = 0.25;
+  const Peaks p = peaks(topology, s, {}, {{wide, narrow}, {}});
+  EXPECT_EQ(peak_of(p, "bend_deg").element, 4);
+  EXPECT_NEAR(peak_of(p, "bend_deg").ratio(), 0.8, 1e-9);
+  narrow.bend = 0;  // not watched
+  EXPECT_EQ(peak_of(peaks(topology, s, {}, {{narrow, narrow}, {}}), "bend_deg").passed(), false);
+}
+
+// Two tubes cross 1.6 nm apart, and would rest at 1.7; a third one is out of reach.
+TEST(Limits, PressIsTheNearestDistanceOfTheAxes) {
+  Topology topology = published_topology();
+  for (int t = 0; t < 3; ++t) topology.add_tube(3);
+  State s = straight(topology);
+  for (int e = 0; e < 3; ++e) {
+    const auto i = static_cast<std::size_t>(3 + e);
+    s.position.set(i, {1.6, test::element_length * (e - 1.3), 0.4 * test::element_length});
+    s.orientation.set(i, turn(Vector3::UnitX(), -0.5 * units::pi));
+  }
+  NeighbourList list;
+  list.cutoff = 4;
+  list.skin = 0.2;
+  list.exclude_along_tube = 3;
+  list.build(topology, s);
+  Limits limits;
+  limits.press = 0.08;
+  const Peak p = peak_of(peaks(topology, s, list, {{limits}, {1.7}}), "press_nm");
+  EXPECT_NEAR(p.value, 0.1, 1e-12);
+  EXPECT_EQ(p.element, 0);
+  EXPECT_TRUE(p.passed());
+  EXPECT_FALSE(peak_of(peaks(topology, s, list, {{limits}, {1.5}}), "press_nm").passed());
+}
+
+TEST(LimitsFile, ReadsBackWhatWasWritten) {
+  LimitsFile out;
+  out.limits = {{"bend_deg", "deg", 19.9, 23.4, 1.5, 2, 17, true, 1.25, 640}, {}};
+  RefinementRecord r;
+  r.from = "a";
+  r.to = "a.fine";
+  r.time_ps = 0.1 + 0.2;
+  r.step_before = 12;
+  r.step_after = 25;
+  r.length_before = 1.378;
+  r.length_after = 0.689;
+  r.elements_before = 10;
+  r.elements_after = 20;
+  r.before = {{1, 2, 3, 4, -5}, 6};
+  r.after = {{1.5, 2, 3.5, 4, -5.25}, 6.5};
+  out.refinements = {r};
+  const std::string path = (std::filesystem::temp_directory_path() /
+                            ("ropewalk-limits-" + std::to_string(std::random_device{}()) + ".json"))
+                               .string();
+  write_file_atomically(path, limits_json(out));
+  const LimitsFile in = read_limits(path);
+  EXPECT_EQ(limits_json(in), limits_json(out));
+  ASSERT_EQ(in.limits.size(), 2u);
+  EXPECT_EQ(in.limits[0].passed_at_step, 640);
+  EXPECT_EQ(in.refinements.at(0).time_ps, r.time_ps);
+  EXPECT_EQ(in.refinements.at(0).after.total(), r.after.total());
+  write_file_atomically(path, "{\"format\": \"ropewalk-limits-1\", \"limits\": [{}], \"refinements\": []}");
+  EXPECT_THROW(read_limits(path), InputError);
+  write_file_atomically(path, "{");
+  EXPECT_THROW(read_limits(path), InputError);
+  std::filesystem::remove(path);
+}
+
+}  // namespace
+}  // namespace ropewalk
