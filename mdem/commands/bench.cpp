@@ -113,7 +113,8 @@ nlohmann::ordered_json json_of(const Cost& c, const BenchArguments& a, const Pre
   out["elements"] = prepared.topology.elements();
   out["threads"] = c.threads;
   out["steps"] = a.steps;
-  out["time_step_fs"] = prepared.time_step / units::fs;
+  out["time_step_fs"] = prepared.time_step / units::fs;  // of contact
+  out["contact_every"] = prepared.stepping.contact_every;
   out["ns_per_element_step"] = c.each.wall;
   out["processor_ns_per_element_step"] = c.each.processor;
   out["pairs_per_element"] = c.pairs;
@@ -144,8 +145,9 @@ nlohmann::ordered_json json_of(const Cost& c, const BenchArguments& a, const Pre
 void print(const Cost& c, const BenchArguments& a, const Prepared& prepared) {
   const Timing& t = c.each;
   const double n = prepared.topology.elements();
-  fmt::print("{} elements, {} threads, {} steps of {:.3g} fs\n", n, c.threads, a.steps,
-             prepared.time_step / units::fs);
+  const int every = prepared.stepping.contact_every;
+  fmt::print("{} elements, {} threads, {} steps of {:.3g} fs{}\n", n, c.threads, a.steps,
+             prepared.time_step / units::fs, every > 1 ? fmt::format(", of {} bond steps each", every) : "");
   fmt::print("{:9.1f} ns per element-step, {:.1f} of processor time\n", t.wall, t.processor);
   fmt::print("{:9.1f} pairs per element (half list)\n", c.pairs);
   fmt::print("  contact {:.1f}  bonds {:.1f}  frames {:.1f}  list {:.1f}  integration {:.1f} ns; {} lists\n",

@@ -110,9 +110,12 @@ void write_lammps_files(const RunDirectory& run) {
 }
 
 void refuse_what_lammps_lacks(const Scene& scene) {
-  if (scene.twist && scene.twist->geometric_only)
-    throw InputError({scene.path, 0, "twist.geometric_only"}, "is not for LAMMPS",
-                     "run this scene with `ropewalk run`");
+  const char* lacking = scene.twist && scene.twist->geometric_only ? "twist.geometric_only"
+                        : scene.run.stepping.contact_every > 1     ? "run.contact_every"
+                        : scene.run.stepping.runge_kutta           ? "run.integrator"
+                                                                   : nullptr;
+  if (lacking)
+    throw InputError({scene.path, 0, lacking}, "is not for LAMMPS", "run this scene with `ropewalk run`");
 }
 
 }  // namespace

@@ -71,8 +71,10 @@ void add_run_facts(const Scene& scene, const Prepared& p, const Manifest& m, Rep
         fmt::format("ramp {:.4g} ps, hold {:.4g} ps{}", w.ramp_time(), w.hold,
                     w.geometric_only ? "; spins relaxed at each increment" : ""));
   }
-  add("time step", fmt::format("{:.4g} fs", p.time_step / units::fs),
-      fmt::format("stability limit {:.4g} fs", p.limit.limit / units::fs));
+  const int every = scene.run.stepping.contact_every;
+  add("time step", fmt::format("{:.4g} fs", p.time_step / every / units::fs),
+      fmt::format("stability limit {:.4g} fs{}", inner_step_limit(p.limit, every) / units::fs,
+                  every > 1 ? fmt::format("; contact every {} steps", every) : ""));
   add("seed", fmt::format("{}", m.seed));
   add("program", fmt::format("ropewalk {} ({})", m.version, m.git_id),
       fmt::format("{}, {}", m.compiler, m.build_type));
@@ -115,6 +117,10 @@ std::vector<std::string> warnings_of(const Scene& scene) {
   std::vector<std::string> warnings;
   if (scene.contact.legacy_torque)
     warnings.push_back("This run leaves out the torque that the published force code leaves out: it gains energy.");
+  if (scene.run.mass_scale != 1)
+    warnings.push_back(
+        fmt::format("Masses are {:.4g} times those of the tubes: times, velocities and waves are not theirs.",
+                    scene.run.mass_scale));
   if (scene.damping.local > 0)
     warnings.push_back("PFC local damping depends on the frame and does not conserve momentum.");
   if (scene.contact.law == ContactOptions::Law::line && scene.contact.nodes > 0) {

@@ -134,17 +134,22 @@ inline ChainMode chain_mode(const BondStiffness& k, double q, double a, double m
           12.0 * share * k.bend / (a * a) * std::sin(q) / std::sqrt(mass * inertia)};
 }
 
-// Largest angular frequency (rad/ps) of an infinite straight chain of such bonds: longitudinal and torsional
-// branches at the zone boundary, and the coupled deflection-rotation branch searched over the wave vector.
-// mass in eV ps^2/nm^2, isotropic inertia in eV ps^2.
-inline double stiffest_chain_frequency(const BondStiffness& k, double a, double mass, double inertia) {
-  double largest = std::fmax(4.0 * k.stretch / (a * mass), 4.0 * k.twist / (a * inertia));
+// Largest angular frequency (rad/ps) of an infinite straight chain of such bonds. mass in eV ps^2/nm^2, isotropic
+// inertia in eV ps^2. Sideways: the coupled deflection-rotation branch, searched over the wave vector.
+inline double stiffest_sideways_frequency(const BondStiffness& k, double a, double mass, double inertia) {
+  double largest = 0;
   for (int step = 0; step <= 256; ++step) {
     const ChainMode m = chain_mode(k, units::pi * step / 256.0, a, mass, inertia);
     largest =
         std::fmax(largest, 0.5 * (m.uu + m.pp) + std::sqrt(0.25 * (m.uu - m.pp) * (m.uu - m.pp) + m.up * m.up));
   }
   return std::sqrt(largest);
+}
+
+// Of all: also the longitudinal and torsional branches at the zone boundary.
+inline double stiffest_chain_frequency(const BondStiffness& k, double a, double mass, double inertia) {
+  const double along = std::sqrt(std::fmax(4.0 * k.stretch / (a * mass), 4.0 * k.twist / (a * inertia)));
+  return std::fmax(along, stiffest_sideways_frequency(k, a, mass, inertia));
 }
 
 }  // namespace ropewalk

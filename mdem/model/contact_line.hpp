@@ -83,6 +83,10 @@ struct LineDensity {
   double energy(double rho) const { return terms(rho).energy; }
 };
 
+// The law with another, nearer cutoff (nm, of rho). The taper begins at the same part of the way from the well to
+// the cutoff, so that it never reaches into the well.
+LineDensity with_cutoff(LineDensity density, double cutoff);
+
 // Share w of the sum of nearly parallel elements, and its derivative in n_i.n_j.
 struct SparseWeight {
   double value = 0, derivative = 0;
@@ -308,6 +312,14 @@ inline double line_crossed_energy(const LineDensity& density, double distance, d
     return 2 * span * x * rho * density.energy(rho);
   };
   return 2 * units::pi * detail::simpson(integrand, 0, 1, 400) / std::sin(angle);
+}
+
+inline LineDensity with_cutoff(LineDensity density, double cutoff) {
+  const double well = line_parallel_well(density).distance - density.contact;
+  const double begins = (density.switch_gap - well) / (density.cutoff_gap - well);
+  density.cutoff_gap = cutoff - density.contact;
+  density.switch_gap = well + begins * (density.cutoff_gap - well);
+  return density;
 }
 
 inline LineWell line_parallel_well(const LineDensity& d) {

@@ -129,6 +129,13 @@ struct PaperContact {
   PairForce legacy_torque(const Vector3& separation, const Vector3& n_i, const Vector3& n_j) const;
 };
 
+// The law with another, nearer cutoff (nm, of R); the switch keeps its part of it.
+inline PaperContact with_cutoff(PaperContact law, double cutoff) {
+  law.switch_start *= cutoff / law.cutoff();
+  law.cutoff_ratio = cutoff / law.radius;
+  return law;
+}
+
 // The law in parts, with its constants in the precision T: plain arithmetic and selections only, so that loops over
 // pairs vectorise.
 template <class T>

@@ -68,7 +68,7 @@ double spacing_of(const Scene& scene, double element_length) {
   double largest = 0;
   switch (scene.contact.law) {
     case ContactOptions::Law::paper:
-      return pair_spacing(*scene.parameters().paper, element_length);
+      return pair_spacing(paper_contact(scene), element_length);
     case ContactOptions::Law::line:
       for (const LineContact& pair : line_contacts(scene))
         largest = std::max(largest, line_parallel_well(pair.density).distance);
@@ -150,7 +150,7 @@ double crossed_spacing(const Scene& scene) {
   double largest = 0;
   switch (scene.contact.law) {
     case ContactOptions::Law::paper: {
-      const PaperContact& contact = *scene.parameters().paper;
+      const PaperContact contact = paper_contact(scene);
       return lowest(contact, "film.spacing_nm", [&](double spacing) {
         return paper_crossed_energy(contact, scene.element_length, spacing, right_angle);
       });

@@ -14,8 +14,9 @@ struct Prepared {
   Drive drive;
   double spacing = 0;  // nm, of the untwisted rope; 0 where there is none
   TimeStepLimit limit;
-  double time_step = 0;  // ps
-  double duration = 0;   // ps
+  double time_step = 0;  // ps, of contact: what a step of the simulation takes
+  Stepping stepping;
+  double duration = 0;  // ps
 };
 
 // Throws InputError for a typed time step above the limit and for loads on elements that do not exist.

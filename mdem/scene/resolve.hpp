@@ -13,6 +13,16 @@ Topology empty_topology(const Scene& scene);
 // The `line` law between all pairs of the scene's tube types, i, j at i * types + j.
 std::vector<LineContact> line_contacts(const Scene& scene);
 
+// The `paper` law of the scene.
+PaperContact paper_contact(const Scene& scene);
+
+// How far the scene's law reaches (nm), and what two parallel tubes bind with at most (eV/nm, positive); of each
+// pair of tube types.
+struct ContactRange {
+  double cutoff = 0, binding = 0;
+};
+std::vector<ContactRange> contact_ranges(const Scene& scene);
+
 // The reach of the contact viscosity must be set (build() does so).
 Interaction interaction_of(const Scene& scene);
 

@@ -12,6 +12,7 @@
 #include "model/damping.hpp"
 #include "model/parameters.hpp"
 #include "sim/interaction.hpp"
+#include "sim/stepping.hpp"
 
 namespace ropewalk {
 
@@ -50,6 +51,7 @@ struct ContactOptions {
   bool legacy_torque = false;
   int exclude_along_tube = 20;  // pairs of one tube up to this many elements apart do not interact
   double skin = 0;              // nm; 0: chosen by the program
+  double cutoff = 0;            // nm, of axes (`line`) or element centres (`paper`); 0: the set's
   int nodes = 0;                // `line`: per element; 0: as line_nodes chooses
   bool all_nodes = false;       // `line`: no sparse sums
   // Pairs in single precision or all in double; the former by default where nothing is relaxed to tight tolerances.
@@ -112,7 +114,9 @@ struct TwistProtocol {
 struct RunOptions {
   enum class Mode { dynamics, relax };
   Mode mode = Mode::dynamics;
-  double time_step = 0;           // ps; 0: chosen from the stiffest mode
+  double time_step = 0;  // ps, of bonds; 0: chosen from the stiffest mode
+  Stepping stepping;
+  double mass_scale = 1;          // of masses and inertias
   double duration = 0;            // ps; 0 with [twist]: ramp plus hold
   double frames_every = 0;        // ps; 0: 40 frames
   double log_every = 0;           // ps; 0: 400 rows

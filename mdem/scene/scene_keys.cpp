@@ -58,6 +58,8 @@ const std::vector<SceneKey>& scene_keys() {
        "\"mixed\" (pairs in single precision) or \"double\""},
       {"contact", "legacy_torque", "", "false", "",
        "leave out the torque that the published code leaves out; gains energy, for comparison only"},
+      {"contact", "cutoff_nm", "nm", "2.5", "the set's",
+       "line: of tube axes, paper: of element centres; shorter is faster and binds less"},
       {"contact", "exclude_along_tube_elements", "elements", "20", "",
        "elements of one tube up to this far apart do not touch"},
       {"contact", "skin_nm", "nm", "0.15", "chosen by the program", "margin of the neighbour list; speed only"},
@@ -94,6 +96,15 @@ const std::vector<SceneKey>& scene_keys() {
 
       {"run", "mode", "", "\"dynamics\"", "", "\"dynamics\", or \"relax\": to the nearest minimum of the energy"},
       {"run", "time_step_fs", "fs", "\"auto\"", "", "\"auto\": 0.6 of the stability limit"},
+      {"run", "contact_every", "", "1", "",
+       "contact acts every so many steps of the bonds (r-RESPA); pays where elements are short and bonds therefore "
+       "stiffer than contact; log and frames go by these longer steps"},
+      {"run", "integrator", "", "\"verlet\"", "",
+       "\"rk4\": rotations by 4th-order Runge-Kutta, as in PFC3D, for comparison"},
+      {"run", "mass_scale", "", "1", "",
+       "masses times this: steps grow and waves slow down by its root, kinetic energies at a given speed grow by "
+       "it and "
+       "at a given temperature stay; statics stay"},
       {"run", "duration_ps", "ps", "100", "ramp and hold of [twist]", "dynamics: simulated time"},
       {"run", "frames_every_ps", "ps", "1", "40 frames", "time between stored frames"},
       {"run", "log_every_ps", "ps", "0.1", "400 rows", "time between rows of the log"},

@@ -22,6 +22,7 @@ constexpr double longest_time = 1e7;   // ps
 constexpr double largest_force = 1e4;  // nN, nN nm
 constexpr double kilobytes_per_element = 1.0;
 constexpr long most_nodes = 64;
+constexpr long most_inner_steps = 1000;
 
 // --- what the tubes are ----------------------------------------------------------------------------
 
@@ -197,6 +198,30 @@ ContactOptions::Law default_law(const Scene& scene) {
   return ContactOptions::Law::line;
 }
 
+// Where the taper of the shortened law left less than half of what two parallel tubes bind with, it would be
+// another law; and beyond its cutoff the law was never fitted.
+double read_cutoff(const TomlTable& t, const ContactOptions& contact, const Scene& scene) {
+  if (contact.law == ContactOptions::Law::none)
+    throw t.error("cutoff_nm", "is of no use without contact", "take it away");
+  Scene changed = scene;
+  changed.contact = contact;
+  const std::vector<ContactRange> own = contact_ranges(changed);
+  changed.contact.cutoff = t.number("cutoff_nm", Bounds::positive(1e3));
+  const std::vector<ContactRange> now = contact_ranges(changed);
+  for (std::size_t k = 0; k < own.size(); ++k) {
+    if (changed.contact.cutoff > own[k].cutoff + 1e-9)
+      throw t.error("cutoff_nm", fmt::format("is {} nm", changed.contact.cutoff),
+                    fmt::format("the law ends at {:.4g} nm; leave the key out", own[k].cutoff));
+    const double left = now[k].binding / own[k].binding;
+    if (!(left >= 0.5))
+      throw t.error("cutoff_nm",
+                    fmt::format("is {} nm, which leaves {:.0f} % of the binding energy of two parallel tubes",
+                                changed.contact.cutoff, 100 * std::max(0.0, left)),
+                    fmt::format("take a longer one; the law's own is {:.4g} nm", own[k].cutoff));
+  }
+  return changed.contact.cutoff;
+}
+
 ContactOptions read_contact(const TomlTable& t, const Scene& scene) {
   using Law = ContactOptions::Law;
   static const Words<Law> laws = {{"line", Law::line}, {"paper", Law::paper}, {"none", Law::none}};
@@ -222,6 +247,7 @@ ContactOptions read_contact(const TomlTable& t, const Scene& scene) {
   c.legacy_torque = t.boolean_or("legacy_torque", c.legacy_torque);
   c.exclude_along_tube =
       static_cast<int>(t.integer_or("exclude_along_tube_elements", c.exclude_along_tube, 1, most_elements));
+  if (t.has("cutoff_nm")) c.cutoff = read_cutoff(t, c, scene);
   if (t.has("skin_nm")) c.skin = t.number("skin_nm", Bounds::positive(5));
   return c;
 }
@@ -404,13 +430,34 @@ void refuse_other_mode(const TomlTable& t, RunOptions::Mode mode) {
                     fmt::format("take it away, or change the mode, now \"{}\"", relax ? "relax" : "dynamics"));
 }
 
-RunOptions read_run(const TomlTable& t) {
+// Only in dynamics, where they have an effect.
+void read_stepping(const TomlTable& t, const Scene& scene, RunOptions& r) {
+  static const Words<bool> integrators = {{"verlet", false}, {"rk4", true}};
+  r.stepping.contact_every = static_cast<int>(t.integer_or("contact_every", 1, 1, most_inner_steps));
+  r.stepping.runge_kutta = t.word_or("integrator", r.stepping.runge_kutta, integrators);
+  r.mass_scale = t.number_or("mass_scale", r.mass_scale, Bounds::range(1e-3, 1e6));
+  const char* used = r.stepping.contact_every > 1 ? "contact_every"
+                     : r.stepping.runge_kutta     ? "integrator"
+                     : r.mass_scale != 1          ? "mass_scale"
+                                                  : nullptr;
+  if (r.mode == RunOptions::Mode::relax && used)
+    throw t.error(used, "belongs to mode = \"dynamics\"", "take it away: relaxation does not depend on it");
+  if (r.stepping.contact_every == 1) return;
+  if (scene.contact.law == ContactOptions::Law::none)
+    throw t.error("contact_every", "is of no use without contact", "take it away");
+  if (scene.damping.local > 0)
+    throw t.error("contact_every", "does not go with pfc_local, which damps the total force",
+                  "take one of them away");
+}
+
+RunOptions read_run(const TomlTable& t, const Scene& scene) {
   static const Words<RunOptions::Mode> modes = {{"dynamics", RunOptions::Mode::dynamics},
                                                 {"relax", RunOptions::Mode::relax}};
   RunOptions r;
   r.mode = t.word_or("mode", r.mode, modes);
   refuse_other_mode(t, r.mode);
   r.time_step = read_time_step(t);
+  read_stepping(t, scene, r);
   if (t.has("duration_ps")) r.duration = t.number("duration_ps", Bounds::positive(longest_time));
   if (t.has("frames_every_ps")) r.frames_every = t.number("frames_every_ps", Bounds::positive(longest_time));
   if (t.has("log_every_ps")) r.log_every = t.number("log_every_ps", Bounds::positive(longest_time));
@@ -480,7 +527,7 @@ void read_tables(const TomlTable& top, const std::string& folder, Scene& scene) 
   const Sizes sizes = sizes_of(scene);
   for (const TomlTable& t : top.tables("load")) scene.loads.push_back(read_load(t, sizes));
   if (top.has("twist")) scene.twist = read_twist(top.table("twist"));
-  scene.run = read_run(top.table("run"));
+  scene.run = read_run(top.table("run"), scene);
   scene.observe = read_observe(top.table("observe"), scene);
 }
 

@@ -163,12 +163,13 @@ void ForceEngine::add_buffers(const NeighbourList& list, int from, int to, Force
 }
 
 void ForceEngine::compute(const Topology& topology, const Interaction& interaction, const NeighbourList& list,
-                          const State& state, Forces& out, bool energies) {
+                          const State& state, Forces& out, bool energies, Parts parts) {
   const double t0 = omp_get_wtime();
   make_frames(state);
   const double t1 = omp_get_wtime();
 
-  const bool contact = interaction.has_contact();
+  const bool contact = interaction.has_contact() && parts != Parts::bonds;
+  const bool bonds = parts != Parts::contact;
   if (contact) compute_contact(topology, interaction, list, state, energies);
   const double t2 = omp_get_wtime();
 
@@ -184,6 +185,7 @@ void ForceEngine::compute(const Topology& topology, const Interaction& interacti
     clear(out.torque.x), clear(out.torque.y), clear(out.torque.z);
     if (contact && interaction.paper) add_buffers(list, from, to, out);
     if (contact && !interaction.paper) line_.add_to_tube(topology, frames_.t, t, out.force, out.torque);
+    if (!bonds) continue;
     sums[static_cast<std::size_t>(t)] = compute_bonds(topology, interaction, state, t);
     add_bonds(bonds_.force_j.x, -1, bonds_.force_j.x, from, to, out.force.x);
     add_bonds(bonds_.force_j.y, -1, bonds_.force_j.y, from, to, out.force.y);

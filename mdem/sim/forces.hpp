@@ -47,12 +47,15 @@ struct TubeSum {
   int slipping = -1;  // first element of a bond twisted by 90 degrees or more
 };
 
-// Contact and damping of all pairs, bonds and bond damping. The list must be up to date.
+// Contact and its viscosity, bonds and their damping, or one of them alone: their time scales differ.
+enum class Parts { all, bonds, contact };
+
+// The list must be up to date, but for the bonds alone.
 class ForceEngine {
  public:
   // Without `energies` that of the line law's contact may be left out; forces are the same bits.
   void compute(const Topology& topology, const Interaction& interaction, const NeighbourList& list,
-               const State& state, Forces& out, bool energies = true);
+               const State& state, Forces& out, bool energies = true, Parts parts = Parts::all);
 
   // Wall time spent so far in each part, s.
   struct Times {

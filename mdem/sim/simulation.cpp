@@ -60,13 +60,19 @@ double row_viscosity(const ContactViscosity& viscosity, double element_length, d
   return viscosity.eta * sum;
 }
 
+//   w^2 dt^2 + 2 g dt = 4
+double damped_step_limit(double w2, double g) { return (std::sqrt(g * g + 4.0 * w2) - g) / w2; }
+
 }  // namespace
 
 TimeStepLimit time_step_limit(const Topology& topology, const Interaction& in, double spacing) {
   TimeStepLimit out;
-  for (const TubeType& t : topology.types)
+  for (const TubeType& t : topology.types) {
     out.chain_frequency =
         std::max(out.chain_frequency, stiffest_chain_frequency(t.bond, t.element_length, t.mass, t.inertia));
+    out.sideways_frequency =
+        std::max(out.sideways_frequency, stiffest_sideways_frequency(t.bond, t.element_length, t.mass, t.inertia));
+  }
   if (in.has_contact() && topology.tubes() > 1 && spacing > 0) {
     for (const TubeType& t : topology.types) {
       // A triangular lattice of springs k: largest w^2 = 6 k/m.
@@ -77,28 +83,48 @@ TimeStepLimit time_step_limit(const Topology& topology, const Interaction& in, d
       const double row = row_viscosity(in.damping.contact, t.element_length, spacing);
       const double arm = 0.5 * spacing;
       // Six neighbours, opposite motions: 12 rows on a coordinate or, by the lever arm, on a spin.
-      out.damping_rate = std::max(out.damping_rate, 12.0 * row * std::max(1.0 / t.mass, arm * arm / t.inertia));
+      out.contact_damping =
+          std::max(out.contact_damping, 12.0 * row * std::max(1.0 / t.mass, arm * arm / t.inertia));
     }
   }
   double bonds = 0;
   for (const TubeType& t : topology.types)
     bonds = std::max(bonds, in.damping.bond.largest_rate(t.element_length, t.mass, t.inertia));
-  out.damping_rate += bonds;
+  out.damping_rate = out.contact_damping + bonds;
   const double w2 = out.chain_frequency * out.chain_frequency + out.contact_frequency * out.contact_frequency;
-  const double g = out.damping_rate;
-  out.limit = (std::sqrt(g * g + 4.0 * w2) - g) / w2;
+  out.limit = damped_step_limit(w2, out.damping_rate);
   return out;
 }
 
+double inner_step_limit(const TimeStepLimit& limit, int contact_every) {
+  if (contact_every <= 1) return limit.limit;
+  const double chain =
+      damped_step_limit(limit.chain_frequency * limit.chain_frequency, limit.damping_rate - limit.contact_damping);
+  const double w = limit.sideways_frequency, contact2 = limit.contact_frequency * limit.contact_frequency;
+  const auto stable = [&](double outer) {
+    const double half = 0.5 * w * outer;
+    return contact2 * outer * outer + 2 * limit.contact_damping * outer < 4 * half / std::tan(half);
+  };
+  double below = 0, above = units::pi / w;
+  for (int k = 0; k < 60; ++k) {
+    const double middle = 0.5 * (below + above);
+    (stable(middle) ? below : above) = middle;
+  }
+  return std::min(chain, below / contact_every);
+}
+
 Simulation::Simulation(Topology topology, Interaction interaction, Drive drive, State state, double time_step,
-                       double skin)
+                       double skin, Stepping stepping)
     : topology_(std::move(topology)),
       interaction_(std::move(interaction)),
       drive_(std::move(drive)),
       state_(std::move(state)),
       time_step_(time_step),
+      stepping_(stepping),
       list_(interaction_, skin > 0 ? skin : default_skin(interaction_)),
-      forces_(state_.size()) {
+      forces_(state_.size()),
+      inner_(two_levels() ? state_.size() : 0),
+      contact_(two_levels() ? state_.size() : 0) {
   list_.build(topology_, state_);
   compute();
   constrain(topology_, drive_, state_.time, forces_, 0.0, state_);
@@ -106,17 +132,55 @@ Simulation::Simulation(Topology topology, Interaction interaction, Drive drive, 
 
 // Model forces at the present positions and velocities, plus loads; `forces_` holds the sum.
 void Simulation::compute(bool energies) {
+  if (two_levels()) {
+    compute_bonds();
+    compute_contact(energies);
+    add_levels();
+    return;
+  }
   engine_.compute(topology_, interaction_, list_, state_, forces_, energies);
   if (!energies) forces_.energy.vdw = std::numeric_limits<double>::quiet_NaN();
+  add_loads(forces_);
+}
+
+void Simulation::compute_bonds() {
+  engine_.compute(topology_, interaction_, list_, state_, inner_, true, Parts::bonds);
+  add_loads(inner_);
+}
+
+void Simulation::compute_contact(bool energies) {
+  engine_.compute(topology_, interaction_, list_, state_, contact_, energies, Parts::contact);
+  if (!energies) contact_.energy.vdw = std::numeric_limits<double>::quiet_NaN();
+}
+
+void Simulation::add_loads(Forces& forces) {
   point_loads(drive_, state_, state_.time, point_loads_);
   for (const PointLoad& load : point_loads_) {
-    forces_.force.add(static_cast<std::size_t>(load.element), load.force);
-    forces_.torque.add(static_cast<std::size_t>(load.element), load.torque);
+    forces.force.add(static_cast<std::size_t>(load.element), load.force);
+    forces.torque.add(static_cast<std::size_t>(load.element), load.torque);
   }
 }
 
+void Simulation::add_levels() {
+  const auto n = static_cast<std::ptrdiff_t>(state_.size());
+  const auto add = [&](const Vec3Array& a, const Vec3Array& b, Vec3Array& sum) {
+#pragma omp parallel for schedule(static) if (state_.size() > parallel_from)
+    for (std::ptrdiff_t i = 0; i < n; ++i) {
+      sum.x[i] = a.x[i] + b.x[i];
+      sum.y[i] = a.y[i] + b.y[i];
+      sum.z[i] = a.z[i] + b.z[i];
+    }
+  };
+  add(inner_.force, contact_.force, forces_.force);
+  add(inner_.torque, contact_.torque, forces_.torque);
+  forces_.energy = inner_.energy;
+  forces_.energy.vdw = contact_.energy.vdw;
+  forces_.damping_power = inner_.damping_power + contact_.damping_power;
+  forces_.slipping_bond = inner_.slipping_bond;
+}
+
 // The elements of one tube; returns what the local damping takes out.
-double Simulation::kick_tube(int tube, double dt) {
+double Simulation::kick_tube(const Forces& forces, int tube, double dt) {
   const double alpha = interaction_.damping.local;
   const std::ptrdiff_t from = topology_.tube_begin[tube], to = topology_.tube_begin[tube + 1];
   const double per_mass = dt / topology_.type_of(tube).mass, per_inertia = dt / topology_.type_of(tube).inertia;
@@ -133,39 +197,53 @@ double Simulation::kick_tube(int tube, double dt) {
       velocity[i] = next;
     }
   };
-  push(forces_.force.x, per_mass, state_.velocity.x);
-  push(forces_.force.y, per_mass, state_.velocity.y);
-  push(forces_.force.z, per_mass, state_.velocity.z);
-  push(forces_.torque.x, per_inertia, state_.angular_velocity.x);
-  push(forces_.torque.y, per_inertia, state_.angular_velocity.y);
-  push(forces_.torque.z, per_inertia, state_.angular_velocity.z);
+  push(forces.force.x, per_mass, state_.velocity.x);
+  push(forces.force.y, per_mass, state_.velocity.y);
+  push(forces.force.z, per_mass, state_.velocity.z);
+  push(forces.torque.x, per_inertia, state_.angular_velocity.x);
+  push(forces.torque.y, per_inertia, state_.angular_velocity.y);
+  push(forces.torque.z, per_inertia, state_.angular_velocity.z);
   return removed;
 }
 
-void Simulation::kick(double dt) {
-  work_ += 0.5 * dt * load_power(point_loads_, state_);
+void Simulation::kick(const Forces& forces, double dt) {
   // Added up in the order of the tubes, whatever the threads.
   removed_.resize(static_cast<std::size_t>(topology_.tubes()));
 #pragma omp parallel for schedule(static) if (state_.size() > parallel_from)
-  for (int t = 0; t < topology_.tubes(); ++t) removed_[static_cast<std::size_t>(t)] = kick_tube(t, dt);
+  for (int t = 0; t < topology_.tubes(); ++t) removed_[static_cast<std::size_t>(t)] = kick_tube(forces, t, dt);
   for (double removed : removed_) dissipated_ += removed;
-  work_ += constrain(topology_, drive_, state_.time, forces_, dt, state_);
+  work_ += constrain(topology_, drive_, state_.time, forces, dt, state_);
+}
+
+// `forces` holds the loads as well.
+void Simulation::kick_with_loads(const Forces& forces, double dt) {
+  work_ += 0.5 * dt * load_power(point_loads_, state_);
+  kick(forces, dt);
   work_ += 0.5 * dt * load_power(point_loads_, state_);
 }
 
 void Simulation::drift(double dt) {
   const auto n = static_cast<std::ptrdiff_t>(state_.size());
   constexpr std::ptrdiff_t block = 512;
+  const auto move = stepping_.runge_kutta ? move_elements_runge_kutta : move_elements;
 #pragma omp parallel for schedule(static) if (state_.size() > parallel_from)
-  for (std::ptrdiff_t i = 0; i < n; i += block) move_elements(state_, dt, i, std::min(i + block, n));
+  for (std::ptrdiff_t i = 0; i < n; i += block) move(state_, dt, i, std::min(i + block, n));
 }
 
 void Simulation::step(bool energies) {
   energies = energies || std::any_of(drive_.twist.begin(), drive_.twist.end(),
                                      [](const TwistDrive& twist) { return twist.geometric_only; });
+  if (two_levels()) {
+    two_level(energies);
+  } else {
+    one_level(energies);
+  }
+}
+
+void Simulation::one_level(bool energies) {
   const double dt = time_step_;
   const double t0 = omp_get_wtime();
-  kick(0.5 * dt);
+  kick_with_loads(forces_, 0.5 * dt);
   drift(dt);
   ++state_.step;
   state_.time += dt;
@@ -176,10 +254,41 @@ void Simulation::step(bool energies) {
   const double t3 = omp_get_wtime();
   check(energies);
   dissipated_ -= dt * forces_.damping_power;
-  kick(0.5 * dt);
+  kick_with_loads(forces_, 0.5 * dt);
   relax_angles_if_due();
   integration_seconds_ += (t1 - t0) + (omp_get_wtime() - t3);
   list_seconds_ += t2 - t1;
+}
+
+void Simulation::two_level(bool energies) {
+  const double dt = time_step_, inner = inner_step();
+  const auto in_engine = [&] {
+    const auto& t = engine_.times();
+    return t.frames + t.contact + t.bonds;
+  };
+  const double t0 = omp_get_wtime(), before = in_engine();
+  kick(contact_, 0.5 * dt);
+  kick_with_loads(inner_, 0.5 * inner);
+  for (int k = 1; k <= stepping_.contact_every; ++k) {
+    drift(inner);
+    state_.time += inner;
+    compute_bonds();
+    dissipated_ -= inner * inner_.damping_power;
+    // The second half of one step and the first one of the next have the same forces.
+    kick_with_loads(inner_, k < stepping_.contact_every ? inner : 0.5 * inner);
+  }
+  ++state_.step;
+  const double t1 = omp_get_wtime();
+  list_.update(topology_, state_);
+  const double listed = omp_get_wtime() - t1;
+  compute_contact(energies);
+  add_levels();
+  check(energies);
+  dissipated_ -= dt * contact_.damping_power;
+  kick(contact_, 0.5 * dt);
+  relax_angles_if_due();
+  integration_seconds_ += omp_get_wtime() - t0 - listed - (in_engine() - before);
+  list_seconds_ += listed;
 }
 
 void Simulation::check(bool energies) const {
@@ -239,7 +348,7 @@ bool Simulation::relax(double tolerance, long max_steps, const std::function<boo
   const TubeType& lightest = *std::min_element(topology_.types.begin(), topology_.types.end(),
                                                [](const auto& a, const auto& b) { return a.mass < b.mass; });
   const double scale2 = lightest.inertia / lightest.mass;
-  Fire fire(time_step_);
+  Fire fire(inner_step());
   const std::size_t n = state_.size();
   const auto stop = [&] {
     state_.velocity = Vec3Array(n);
@@ -298,14 +407,14 @@ bool Simulation::relax(double tolerance, long max_steps, const std::function<boo
 
 std::size_t Simulation::bytes() const {
   const std::size_t n = state_.size();
-  const std::size_t state = (3 + 4 + 3 + 3) * n, forces = 6 * n;
+  const std::size_t state = (3 + 4 + 3 + 3) * n, forces = (two_levels() ? 18 : 6) * n;
   const std::size_t reference = 6 * n;  // of the list
   return (state + forces + reference) * sizeof(double) + engine_.bytes() + list_.bytes();
 }
 
 namespace {
 
-constexpr char magic[] = "MDEM2";
+constexpr char magic[] = "MDEM3";
 
 struct Writer {
   std::string bytes;
@@ -367,6 +476,11 @@ auto checkpoint_arrays(S& s, F& f, R& ref, R& ref_axis) {
                     &ref_axis.z};
 }
 
+template <class F>
+auto force_arrays(F& f) {
+  return std::array{&f.force.x, &f.force.y, &f.force.z, &f.torque.x, &f.torque.y, &f.torque.z};
+}
+
 }  // namespace
 
 std::string Simulation::serialise() const {
@@ -380,7 +494,11 @@ std::string Simulation::serialise() const {
   w.put(work_);
   w.put(dissipated_);
   w.put(list_.skin);
+  w.put(static_cast<std::int64_t>(stepping_.contact_every));
   for (const auto* v : checkpoint_arrays(state_, forces_, list_.reference(), list_.reference_axis())) w.put(*v);
+  if (two_levels())
+    for (const Forces* f : {&inner_, &contact_})
+      for (const auto* v : force_arrays(*f)) w.put(*v);
   w.put(forces_.energy);
   w.put(forces_.damping_power);
   return std::move(w.bytes);
@@ -404,8 +522,16 @@ void Simulation::restore(const std::string& bytes) {
   r.get(work_);
   r.get(dissipated_);
   r.get(list_.skin);
+  std::int64_t contact_every = 0;
+  r.get(contact_every);
+  if (contact_every != stepping_.contact_every)
+    throw std::runtime_error("the checkpoint is of contact_every = " + std::to_string(contact_every) +
+                             ", the scene of " + std::to_string(stepping_.contact_every));
   Vec3Array ref(state_.size()), ref_axis(state_.size());
   for (auto* v : checkpoint_arrays(state_, forces_, ref, ref_axis)) r.get(*v);
+  if (two_levels())
+    for (Forces* f : {&inner_, &contact_})
+      for (auto* v : force_arrays(*f)) r.get(*v);
   r.get(forces_.energy);
   r.get(forces_.damping_power);
   list_.build(topology_, std::move(ref), std::move(ref_axis));

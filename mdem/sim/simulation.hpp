@@ -6,6 +6,11 @@
 // symplectic kick-drift-kick splitting, time reversible and of second order. Damping forces use the half-step
 // velocities.
 //
+// On two levels (Stepping::contact_every = n > 1) the contact and its viscosity act as impulses at both ends of an
+// outer step, and n such steps of dt/n with bonds, loads and constraints alone lie between them. Still symplectic
+// where nothing is damped. Where one step of the simulation is meant below, it is an outer one.
+// M. Tuckerman, B. J. Berne, G. J. Martyna, J. Chem. Phys. 97, 1990 (1992), DOI 10.1063/1.463137.
+//
 // Account: total energy - work of loads + energy dissipated is constant up to integration error.
 #pragma once
 
@@ -18,6 +23,7 @@
 #include "sim/interaction.hpp"
 #include "sim/neighbours.hpp"
 #include "sim/state.hpp"
+#include "sim/stepping.hpp"
 
 namespace ropewalk {
 
@@ -25,12 +31,24 @@ namespace ropewalk {
 // hexagonal rope and the strongest explicit damping together,
 //   w^2 dt^2 + 2 g dt = 4,   w^2 = w_chain^2 + w_contact^2.
 struct TimeStepLimit {
-  double limit = 0;              // ps
-  double chain_frequency = 0;    // rad/ps
-  double contact_frequency = 0;  // rad/ps
-  double damping_rate = 0;       // 1/ps
+  double limit = 0;               // ps
+  double chain_frequency = 0;     // rad/ps
+  double contact_frequency = 0;   // rad/ps
+  double damping_rate = 0;        // 1/ps
+  double sideways_frequency = 0;  // rad/ps: the stiffest mode of the chain in which elements move sideways
+  double contact_damping = 0;     // 1/ps: part of damping_rate
 };
 TimeStepLimit time_step_limit(const Topology& topology, const Interaction& interaction, double spacing);
+
+// Stability limit of the inner step (ps) with contact_every = n of them in an outer one, D. Within: the chain and
+// the damping of its bonds as above. Outside: an impulse of the contact W meets a mode w of the chain, which alone
+// would be stepped exactly, stably as long as
+//   W^2 D^2 + 2 g D < 4 (w D/2) cot(w D/2),
+// which for soft modes is the limit of the contact alone and for stiff ones ends before their half period, pi/w:
+// there the impulses resonate. Only modes that move elements sideways are taken; along a tube and about its axis a
+// smooth contact has next to no stiffness.
+// n = 1: TimeStepLimit::limit.
+double inner_step_limit(const TimeStepLimit& limit, int contact_every);
 
 // Part of the limit that is used when the step is not typed.
 inline constexpr double default_step_fraction = 0.6;
@@ -40,8 +58,9 @@ inline double default_skin(const Interaction& in) { return in.line.empty() ? 0.1
 
 class Simulation {
  public:
+  // time_step: by how much a step takes time forward. skin = 0: the default.
   Simulation(Topology topology, Interaction interaction, Drive drive, State state, double time_step,
-             double skin = 0);  // 0: the default
+             double skin = 0, Stepping stepping = {});
 
   // Without `energies` the contact energy may be NaN afterwards, and with it the total one: they cost a tenth of a
   // step. The motion is the same bits.
@@ -58,6 +77,7 @@ class Simulation {
   const NeighbourList& list() const { return list_; }
   const ForceEngine& engine() const { return engine_; }
   double time_step() const { return time_step_; }
+  const Stepping& stepping() const { return stepping_; }
   double work() const { return work_; }
   double dissipated() const { return dissipated_; }
   double list_seconds() const { return list_seconds_; }
@@ -80,10 +100,19 @@ class Simulation {
   }
 
  private:
-  void kick(double dt);
-  double kick_tube(int tube, double dt);
+  bool two_levels() const { return stepping_.contact_every > 1; }
+  double inner_step() const { return time_step_ / stepping_.contact_every; }
+  void one_level(bool energies);
+  void two_level(bool energies);
+  void kick(const Forces& forces, double dt);
+  void kick_with_loads(const Forces& forces, double dt);
+  double kick_tube(const Forces& forces, int tube, double dt);
   void drift(double dt);
   void compute(bool energies = true);
+  void compute_bonds();
+  void compute_contact(bool energies);
+  void add_loads(Forces& forces);
+  void add_levels();
   void check(bool energies) const;
   void relax_angles_if_due();
 
@@ -92,9 +121,11 @@ class Simulation {
   Drive drive_;
   State state_;
   double time_step_ = 0;
+  Stepping stepping_;
   NeighbourList list_;
   ForceEngine engine_;
-  Forces forces_;
+  Forces forces_;           // of all
+  Forces inner_, contact_;  // its two parts, on two levels: bonds and loads; contact
   std::vector<PointLoad> point_loads_;
   std::vector<double> removed_;  // by the local damping, of each tube
   double work_ = 0, dissipated_ = 0;

@@ -112,6 +112,41 @@ TEST_F(Cli, MixedTubesRunAndResume) {
   EXPECT_NE(slurp(dir / "d/report.html").find("cnt-5-5-tersoff"), std::string::npos);
 }
 
+// All knobs of cost at once, halfway and back.
+TEST_F(Cli, TwoLevelsResumeBitForBit) {
+  small_rope("s.toml", "contact_every = 3\nmass_scale = 4\nintegrator = \"rk4\"\ntime_step_fs = 4\n");
+  const Outcome check = run("check s.toml");
+  ASSERT_EQ(check.code, 0) << check.err;
+  EXPECT_NE(check.out.find("contact every 3 steps"), std::string::npos) << check.out;
+  const Outcome whole = run("run s.toml --out whole --quiet");
+  ASSERT_EQ(whole.code, 0) << whole.err;
+  EXPECT_NE(whole.err.find("Masses are 4 times"), std::string::npos) << whole.err;
+  ASSERT_EQ(run("run s.toml --out half --quiet --steps 111").code, 0);
+  ASSERT_EQ(run("resume half --quiet --threads 1").code, 0) << slurp(dir / "stderr.txt");
+  const auto last = [&](const char* file, const char* begins) {
+    const std::string all = slurp(dir / file);
+    return all.substr(all.rfind(begins, all.size() - 2));
+  };
+  EXPECT_EQ(last("whole/log.csv", "\n"), last("half/log.csv", "\n"));
+  EXPECT_TRUE(last("whole/frames.lammpstrj", "ITEM: TIMESTEP") == last("half/frames.lammpstrj", "ITEM: TIMESTEP"));
+  const auto rows = ropewalk::read_log((dir / "whole/log.csv").string());
+  EXPECT_NEAR(rows.back().time, 5.0, 0.1);
+  EXPECT_LT(std::fabs(rows.back().balance), 2e-2 * rows.back().work);
+  const Outcome bench = run("bench s.toml --steps 5 --json");
+  ASSERT_EQ(bench.code, 0) << bench.err;
+  EXPECT_EQ(Json::parse(bench.out).at("contact_every"), 3);
+}
+
+TEST_F(Cli, ExportRefusesWhatLammpsLacks) {
+  small_rope("s.toml", "contact_every = 3\n");
+  const Outcome every = run("export s.toml --lammps there");
+  EXPECT_EQ(every.code, 2);
+  EXPECT_NE(every.err.find("run.contact_every: is not for LAMMPS"), std::string::npos) << every.err;
+  small_rope("r.toml", "integrator = \"rk4\"\n");
+  EXPECT_NE(run("export r.toml --lammps there").err.find("run.integrator: is not for LAMMPS"), std::string::npos);
+  EXPECT_FALSE(fs::exists(dir / "there"));
+}
+
 TEST_F(Cli, RunWritesEverythingAndProtectsIt) {
   small_rope("s.toml", "paraview = true\n");
   ASSERT_EQ(run("run s.toml --out d").code, 0);

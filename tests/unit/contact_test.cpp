@@ -75,16 +75,19 @@ Law law_of(std::string name, const Contact& k, std::function<bool(const Pose&)> 
   return {std::move(name), force, energy, force, std::move(seam), core, wall, far};
 }
 
-Law paper_law(bool general_powers) {
+Law paper_law(bool general_powers, double cutoff = 0) {
   PaperContact k = test::published_contact();
+  if (cutoff > 0) k = with_cutoff(k, cutoff);
   if (general_powers) {
     k.alpha = 9.2;
     k.beta = 3.9;
     k.delta = -7.1;
   }
   return law_of(
-      general_powers ? "PaperGeneral" : "Paper", k, [k](const Pose& p) { return near_a_seam(k, p); }, 0.3, 1.3,
-      5.6);
+      general_powers ? "PaperGeneral"
+      : cutoff > 0   ? "PaperCut"
+                     : "Paper",
+      k, [k](const Pose& p) { return near_a_seam(k, p); }, 0.3, 1.3, 5.6);
 }
 
 // Whether a pair of nodes is near a gap where the third derivative of the line density jumps.
@@ -100,11 +103,12 @@ bool near_a_seam(const LineContact& k, const Pose& p) {
   return false;
 }
 
-Law line_law(int nodes_i, int nodes_j, double length_j) {
-  const LineContact k{test::line_density(), test::element_length, length_j, nodes_i, nodes_j, {}, {}, {}};
+Law line_law(int nodes_i, int nodes_j, double length_j, double cutoff = 0) {
+  const LineDensity density = cutoff > 0 ? with_cutoff(test::line_density(), cutoff) : test::line_density();
+  const LineContact k{density, test::element_length, length_j, nodes_i, nodes_j, {}, {}, {}};
   const LineContact swapped{k.density, length_j, test::element_length, nodes_j, nodes_i, {}, {}, {}};
   Law law = law_of(
-      "Line" + std::to_string(nodes_i) + "x" + std::to_string(nodes_j), k,
+      "Line" + std::to_string(nodes_i) + "x" + std::to_string(nodes_j) + (cutoff > 0 ? "Cut" : ""), k,
       [k](const Pose& p) { return near_a_seam(k, p); }, 0.3, 1.3, 4.0);
   law.swapped = [swapped](const Pose& p) { return swapped.energy_and_gradient(p.separation, p.ni, p.nj); };
   return law;
@@ -252,10 +256,33 @@ TEST_P(ContactLawTest, EnergyAndForceAreContinuous) {
 
 INSTANTIATE_TEST_SUITE_P(Laws, ContactLawTest,
                          ::testing::Values(paper_law(false), paper_law(true), line_law(3, 3, test::element_length),
-                                           line_law(2, 4, 2.0), line_law(1, 1, test::element_length)),
+                                           line_law(2, 4, 2.0), line_law(1, 1, test::element_length),
+                                           line_law(3, 3, test::element_length, 2.3), paper_law(false, 3.6)),
                          [](const auto& info) { return info.param.name; });
 
 void PrintTo(const Law& law, std::ostream* out) { *out << law.name; }
+
+// Shorter laws are those of the set as far as the taper, and nothing beyond their cutoff.
+TEST(Cutoff, ChangesTheTailAlone) {
+  const LineDensity own = test::line_density(), cut = with_cutoff(own, 2.3);
+  EXPECT_NEAR(cut.cutoff(), 2.3, 1e-12);
+  EXPECT_GT(cut.contact + cut.switch_gap, line_parallel_well(own).distance);
+  for (double rho = 1.4; rho < std::min(own.switch_gap, cut.switch_gap) + own.contact; rho += 0.01)
+    EXPECT_EQ(cut.energy(rho), own.energy(rho)) << rho;
+  EXPECT_EQ(cut.energy(2.3), 0);
+  EXPECT_LT(std::fabs(cut.energy(2.2)), std::fabs(own.energy(2.2)));
+  const double whole = line_parallel_well(own).energy, left = line_parallel_well(cut).energy;
+  EXPECT_GT(left / whole, 0.5);
+  EXPECT_LT(left / whole, 1);
+  const LineDensity same = with_cutoff(own, own.cutoff());
+  EXPECT_NEAR(same.switch_gap, own.switch_gap, 1e-12);
+
+  const PaperContact paper = test::published_contact(), near = with_cutoff(paper, 3.6);
+  const Vector3 z = Vector3::UnitZ();
+  EXPECT_NEAR(near.cutoff(), 3.6, 1e-12);
+  EXPECT_EQ(near.energy({2.0, 0, 0}, z, z), paper.energy({2.0, 0, 0}, z, z));
+  EXPECT_EQ(near.energy({3.61, 0, 0}, z, z), 0);
+}
 
 // A law with sparse nodes, between inner elements or such at the ends of their tubes.
 Law sparse_law(TubeEnds ends_i, TubeEnds ends_j) {

@@ -19,6 +19,7 @@ struct Variant {
   double disorder;
   Interaction::Precision precision = Interaction::Precision::full;
   bool sparse = true;
+  double cutoff = 0;  // nm; 0: the law's
 };
 
 class ForcesTest : public ::testing::TestWithParam<Variant> {
@@ -30,10 +31,13 @@ class ForcesTest : public ::testing::TestWithParam<Variant> {
     if (v.kind == Kind::paper) {
       in.paper = test::published_contact();
       if (v.general_powers) in.paper->alpha = 9.3;
+      if (v.cutoff > 0) in.paper = with_cutoff(*in.paper, v.cutoff);
       in.legacy_torque = v.legacy;
     } else {
       in.line = {test::line_contact(0.6785, 5, 0.6785, 5)};
       if (v.kind == Kind::mixed) mix_tube_types();
+      if (v.cutoff > 0)
+        for (LineContact& pair : in.line) pair.density = with_cutoff(pair.density, v.cutoff);
       int finest = 0;
       for (const LineContact& pair : in.line) finest = std::max(finest, pair.nodes_i);
       for (LineContact& pair : in.line) pair.sparse = v.sparse ? sparse_nodes(finest) : SparseNodes{};
@@ -57,13 +61,13 @@ class ForcesTest : public ::testing::TestWithParam<Variant> {
                test::line_contact(0.34, 8, 0.6785, 5), test::line_contact(0.34, 8, 0.34, 8)};
   }
 
-  Forces fast(double skin, int threads) const {
+  Forces fast(double skin, int threads, Parts parts = Parts::all) const {
     omp_set_num_threads(threads);
     NeighbourList list(in, skin);
     list.build(topology, state);
     ForceEngine engine;
     Forces f(state.size());
-    engine.compute(topology, in, list, state, f);
+    engine.compute(topology, in, list, state, f, true, parts);
     return f;
   }
 
@@ -101,6 +105,22 @@ TEST_P(ForcesTest, FastEqualsReference) {
   EXPECT_GT(std::fabs(reference.energy.vdw), 50);  // the scene does have contacts
   expect_equal(fast(0.0, 1), reference, tolerance());
   expect_equal(fast(0.4, 2), reference, tolerance());
+}
+
+TEST_P(ForcesTest, BondsAndContactAddUpToAll) {
+  const Forces all = fast(0.2, 2), bonds = fast(0.2, 2, Parts::bonds), contact = fast(0.2, 2, Parts::contact);
+  EXPECT_EQ(bonds.energy.vdw, 0);
+  EXPECT_EQ(contact.energy.bonds(), 0);
+  EXPECT_EQ(bonds.energy.bonds(), all.energy.bonds());
+  EXPECT_EQ(contact.energy.vdw, all.energy.vdw);
+  Forces sum = contact;
+  for (std::size_t i = 0; i < sum.force.size(); ++i) {
+    sum.force.add(i, bonds.force[i]);
+    sum.torque.add(i, bonds.torque[i]);
+  }
+  sum.energy = all.energy;
+  sum.damping_power += bonds.damping_power;
+  expect_equal(sum, all, 1e-13);
 }
 
 TEST_P(ForcesTest, SameBitsOnAnyNumberOfThreads) {
@@ -164,10 +184,16 @@ Variant single(const char* name, double disorder, bool general = false, bool leg
   return {name, Kind::paper, general, legacy, eta, eta > 0 ? 1.0 : 0.0, disorder, Interaction::Precision::mixed};
 }
 
+Variant shortened(const char* name, Kind kind, double cutoff,
+                  Interaction::Precision precision = Interaction::Precision::full) {
+  return {name, kind, false, false, 0, 0, 0.05, precision, true, cutoff};
+}
+
 const std::vector<Variant> paper_variants = {Variant{"Ordered", Kind::paper, false, false, 0, 0, 1e-3},
                                              Variant{"Disordered", Kind::paper, false, false, 0, 0, 0.08},
                                              Variant{"Overlapping", Kind::paper, false, false, 0, 0, 0.3},
                                              Variant{"General", Kind::paper, true, false, 0, 0, 0.05},
+                                             shortened("Shortened", Kind::paper, 3.6),
                                              Variant{"Legacy", Kind::paper, false, true, 0, 0, 0.05},
                                              Variant{"GeneralLegacy", Kind::paper, true, true, 0, 0, 0.05},
                                              Variant{"Damped", Kind::paper, false, false, 20, 1, 0.05},
@@ -184,6 +210,8 @@ const std::vector<Variant> line_variants = {
     Variant{"LineDamped", Kind::line, false, false, 20, 1, 0.05},
     Variant{"LineOrdered", Kind::line, false, false, 0, 0, 1e-3},
     Variant{"LineDense", Kind::line, false, false, 0, 0, 0.05, Interaction::Precision::full, false},
+    shortened("LineShortened", Kind::line, 2.3),
+    shortened("LineSingleShortened", Kind::line, 2.3, Interaction::Precision::mixed),
     Variant{"LineTypes", Kind::mixed, false, false, 0, 0, 0.1},
     Variant{"LineSingle", Kind::line, false, false, 0, 0, 0.05, Interaction::Precision::mixed},
     Variant{"LineSingleOrdered", Kind::line, false, false, 0, 0, 1e-3, Interaction::Precision::mixed},

@@ -13,6 +13,7 @@
 #include "model/error.hpp"
 #include "scene/build.hpp"
 #include "scene/maxwell.hpp"
+#include "scene/prepare.hpp"
 #include "scene/scene_toml.hpp"
 #include "scene/state_csv.hpp"
 #include "scene/templates.hpp"
@@ -279,12 +280,13 @@ TEST(SceneFile, EveryKeyReachesTheScene) {
       "[rope]\ntubes = 19\nlength_nm = 13.56\nspacing_nm = 1.72\nperturbation_nm = 0.001\n"
       "[start]\ntemperature_K = 300\nseed = 7\n"
       "[contact]\nlaw = \"paper\"\nlegacy_torque = true\nexclude_along_tube_elements = 9\nskin_nm = 0.2\n"
+      "cutoff_nm = 4.7\n"
       "[damping]\ncontact_viscosity_eV_ps_per_nm2 = 3\nbond_damping_per_ps = 0.5\npfc_local = 0.7\n"
       "[twist]\nmoment_nN_nm = 64\nrate_nN_nm_per_ps = 0.5\nhold_ps = 4\nreading = \"total\"\n"
       "application = \"tangential\"\nlateral = \"held\"\naxial = \"held\"\ngeometric_only = true\nincrement_ps = "
       "2\n"
       "[run]\nmode = \"dynamics\"\ntime_step_fs = 15\nduration_ps = 30\nframes_every_ps = 2\nlog_every_ps = 0.5\n"
-      "checkpoint_every_s = 10\nparaview = true\n"
+      "checkpoint_every_s = 10\nparaview = true\nintegrator = \"rk4\"\nmass_scale = 25\n"
       "[observe]\nneighbour_radius_nm = 2.4\n");
   EXPECT_EQ(s.name, "all");
   EXPECT_FALSE(s.hash.empty());
@@ -299,6 +301,7 @@ TEST(SceneFile, EveryKeyReachesTheScene) {
   EXPECT_TRUE(s.contact.legacy_torque);
   EXPECT_EQ(s.contact.exclude_along_tube, 9);
   EXPECT_EQ(s.contact.skin, 0.2);
+  EXPECT_EQ(s.contact.cutoff, 4.7);
   EXPECT_EQ(s.damping.contact.eta, 3);
   EXPECT_EQ(s.damping.bond.rate, 0.5);
   EXPECT_EQ(s.damping.local, 0.7);
@@ -313,12 +316,32 @@ TEST(SceneFile, EveryKeyReachesTheScene) {
   EXPECT_TRUE(s.twist->geometric_only);
   EXPECT_EQ(s.twist->increment, 2);
   EXPECT_NEAR(s.run.time_step, 0.015, 1e-15);
+  EXPECT_TRUE(s.run.stepping.runge_kutta);
+  EXPECT_EQ(s.run.stepping.contact_every, 1);
+  EXPECT_EQ(s.run.mass_scale, 25);
   EXPECT_EQ(s.run.duration, 30);
   EXPECT_EQ(s.run.frames_every, 2);
   EXPECT_EQ(s.run.log_every, 0.5);
   EXPECT_EQ(s.run.checkpoint_every, 10);
   EXPECT_TRUE(s.run.paraview);
   EXPECT_EQ(s.observe.neighbour_radius, 2.4);
+}
+
+TEST(SceneFile, KnobsReachTheSimulation) {
+  Scene plain = scene_from("[rope]\ntubes = 7\nlength_nm = 6.78\n[run]\nduration_ps = 1\n");
+  Scene s = scene_from(
+      "[rope]\ntubes = 7\nlength_nm = 6.78\n[contact]\ncutoff_nm = 4.5\n"
+      "[run]\nduration_ps = 1\ncontact_every = 3\nmass_scale = 4\n");
+  const Prepared p = prepare(plain), q = prepare(s);
+  EXPECT_EQ(q.topology.types[0].mass, 4 * p.topology.types[0].mass);
+  EXPECT_EQ(q.topology.types[0].inertia, 4 * p.topology.types[0].inertia);
+  EXPECT_NEAR(q.interaction.cutoff(), 4.5, 1e-12);
+  EXPECT_LT(q.interaction.paper->switch_start * q.interaction.paper->radius, 4.5);
+  EXPECT_EQ(q.stepping.contact_every, 3);
+  EXPECT_NEAR(q.time_step, 3 * default_step_fraction * inner_step_limit(q.limit, 3), 1e-15);
+  const Simulation simulation = start(s, q);
+  EXPECT_EQ(simulation.stepping().contact_every, 3);
+  EXPECT_EQ(simulation.time_step(), q.time_step);
 }
 
 TEST(SceneFile, Loads) {
@@ -428,6 +451,8 @@ std::string choices(const Scene& s) {
     text += fmt::format("{:.10g} {:.10g} {:.10g} {} {} {} {} {} {:.10g} | ", s.twist->moment, s.twist->rate,
                         s.twist->hold, static_cast<int>(s.twist->reading), static_cast<int>(s.twist->application),
                         s.twist->lateral_free, s.twist->axial_free, s.twist->geometric_only, s.twist->increment);
+  text += fmt::format("{} {} {:.10g} {:.10g} | ", s.run.stepping.contact_every, s.run.stepping.runge_kutta,
+                      s.run.mass_scale, s.contact.cutoff);
   return text + fmt::format("{} {:.10g} {:.10g} {:.10g} {:.10g} {:.10g} {:.3g} {} {} | {:.10g}",
                             static_cast<int>(s.run.mode), s.run.time_step, s.run.duration, s.run.frames_every,
                             s.run.log_every, s.run.checkpoint_every, s.run.force_tolerance, s.run.max_steps,
