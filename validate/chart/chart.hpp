@@ -36,9 +36,12 @@ struct ChartModel {
   int nodes = 0;  // per element; 0: as line_nodes chooses
   bool all_nodes = false;
   Interaction::Precision precision = Interaction::Precision::mixed;
-  double length = 1;     // of an element, in those of the default
-  double time_step = 0;  // ps; 0: by the fraction
+  double cutoff = 0;     // nm; 0: the set's
+  double length = 1;     // of an element, in those of the default; rounded down to whole bonds
+  double time_step = 0;  // ps, of the bonds; 0: by the fraction
   double step_fraction = default_step_fraction;
+  Stepping stepping;
+  double mass_scale = 1;
   RunOptions::Mode mode = RunOptions::Mode::dynamics;
   double contact_viscosity = 20;  // eV ps/nm^2
   double bond_damping = 1;        // 1/ps
@@ -55,9 +58,9 @@ struct Specimen {
   Scene scene;  // knobs and parameter set, for interaction and time step
   Topology topology;
   Interaction interaction;
-  State state;  // before it is turned
-  double time_step = 0;
-  double spacing = 0;  // nm; 0: one tube
+  State state;           // before it is turned
+  double time_step = 0;  // ps, of the bonds
+  double spacing = 0;    // nm; 0: one tube
 
   // How far each element turns about the line z through the origin, in parts of the whole angle; with
   // `about_itself` it turns about its own axis instead and stays in its place.
@@ -74,6 +77,7 @@ struct Specimen {
   bool above_start = true;     // the energy counts from that of the untwisted state
 
   double duration() const { return ramp + hold; }
+  double outer_step() const { return time_step * scene.run.stepping.contact_every; }
   Drive held() const;
   Drive turned() const;
 };
@@ -114,7 +118,7 @@ struct ChartPoint {
   std::string scene, model, kind, law, integrator, mode, precision;
   int nodes = 0, contact_every = 1, elements = 0;
   double cutoff = 0, element_length = 0;  // nm
-  double time_step = 0;                   // ps
+  double time_step = 0;                   // ps, of the bonds
   double mass_scale = 1, contact_viscosity = 0, bond_damping = 0;
   double simulated = 0;  // ps
   double steps = 0;

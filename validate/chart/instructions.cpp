@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double wanted_element_steps = 40000;
-constexpr long least_steps = 15;
+constexpr long least_steps = 12, whole_steps = 12;  // a multiple of every contact_every
 
 // "==12== Collected : 123456"; none where callgrind did not come to its end.
 std::optional<double> collected(const std::string& path) {
@@ -59,7 +59,8 @@ std::optional<double> counted(const std::string& scene, const std::string& model
 std::optional<double> count_instructions(const ChartScene& scene, const ChartModel& model,
                                          const std::string& folder) {
   const double elements = scene.build(model).topology.elements();
-  const long steps = std::max(least_steps, static_cast<long>(wanted_element_steps / elements));
+  const long steps =
+      std::max(least_steps, whole_steps * static_cast<long>(wanted_element_steps / elements / whole_steps));
   const std::optional<double> few = counted(scene.name, model.name, steps, folder);
   if (!few) return {};
   const std::optional<double> more = counted(scene.name, model.name, 3 * steps, folder);

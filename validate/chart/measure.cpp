@@ -168,7 +168,7 @@ class Reader {
 
 // Returns the CPU time of the steps; reads where there is a reader.
 double run_dynamics(const Specimen& s, Reader* reader, Simulation& simulation) {
-  const long steps = std::lround(s.duration() / s.time_step);
+  const long steps = std::lround(s.duration() / s.outer_step());
   const auto sampled = static_cast<long>(static_cast<double>(steps) * (1 - sampled_part * s.hold / s.duration()));
   const long every = std::max(1L, (steps - sampled) / samples);
   double seconds = 0, began = processor_seconds();
@@ -186,7 +186,8 @@ double run_dynamics(const Specimen& s, Reader* reader, Simulation& simulation) {
 Simulation driven(const Specimen& s, State untwisted) {
   set_turning(s, untwisted);
   untwisted.step = 0;
-  return Simulation(s.topology, s.interaction, s.turned(), std::move(untwisted), s.time_step);
+  return Simulation(s.topology, s.interaction, s.turned(), std::move(untwisted), s.outer_step(), 0,
+                    s.scene.run.stepping);
 }
 
 struct Relaxation {
@@ -214,7 +215,9 @@ ChartPoint describe(const ChartScene& scene, const ChartModel& model, const Spec
   p.model = model.name;
   p.kind = model.kind;
   p.law = law_name(model.law);
-  p.integrator = "verlet";
+  p.integrator = model.stepping.runge_kutta ? "rk4" : "verlet";
+  p.contact_every = model.stepping.contact_every;
+  p.mass_scale = model.mass_scale;
   p.mode = model.mode == RunOptions::Mode::relax ? "relax" : "dynamics";
   p.precision = s.interaction.precision == Interaction::Precision::mixed ? "mixed" : "double";
   if (model.all_nodes) p.precision += "+all_nodes";
@@ -249,7 +252,7 @@ void measure(const Specimen& s, const ChartModel& model, ChartPoint& point) {
     } else {
       Simulation simulation = driven(s, untwisted);
       seconds = run_dynamics(s, k == 0 ? &reader : nullptr, simulation);
-      point.steps = static_cast<double>(simulation.state().step);
+      point.steps = static_cast<double>(simulation.state().step) * s.scene.run.stepping.contact_every;
     }
     point.cpu = std::min(point.cpu, seconds);
     total += seconds;
@@ -271,7 +274,7 @@ void step_for_counting(const std::string& scene_name, const std::string& model_n
     return;
   }
   Simulation simulation = driven(s, s.state);
-  for (long k = 0; k < steps; ++k) simulation.step(false);
+  for (long k = 0; k < steps; k += model.stepping.contact_every) simulation.step(false);
 }
 
 }  // namespace ropewalk

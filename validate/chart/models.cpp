@@ -30,7 +30,7 @@ void add_anchors(std::vector<ChartModel>& all) {
     m.length = 0.5;
     m.all_nodes = true;
     m.precision = Precision::full;
-    m.step_fraction = 0.3;
+    m.step_fraction = 0.5;
   }));
   all.push_back(varied("default", default_model, [](ChartModel&) {}));
   // Its programs calculate in double precision, and its papers type 20 fs.
@@ -46,9 +46,13 @@ void add_single_tube_knobs(std::vector<ChartModel>& all) {
   for (const double times : {0.5, 2.0, 4.0, 8.0})
     all.push_back(
         varied("element_length", fmt::format("length-{:g}", times), [times](ChartModel& m) { m.length = times; }));
-  for (const double part : {0.15, 0.3, 0.9})
+  for (const double part : {0.3, 0.9})
     all.push_back(
         varied("time_step", fmt::format("step-{:g}", part), [part](ChartModel& m) { m.step_fraction = part; }));
+  all.push_back(varied("integrator", "rk4", [](ChartModel& m) { m.stepping.runge_kutta = true; }));
+  for (const double scale : {4.0, 16.0})
+    all.push_back(
+        varied("mass_scale", fmt::format("mass-{:g}", scale), [scale](ChartModel& m) { m.mass_scale = scale; }));
   all.push_back(varied("mode", "relax", [](ChartModel& m) { m.mode = RunOptions::Mode::relax; }));
   for (const double rate : {0.0, 4.0})
     all.push_back(varied("bond_damping", fmt::format("bond-damping-{:g}", rate),
@@ -65,6 +69,12 @@ void add_contact_knobs(std::vector<ChartModel>& all) {
   for (const int nodes : {2, 3, 4, 5, 8, 12})
     all.push_back(
         varied("nodes_per_element", fmt::format("nodes-{}", nodes), [nodes](ChartModel& m) { m.nodes = nodes; }));
+  for (const double cutoff : {2.6, 2.4, 2.2})
+    all.push_back(
+        varied("cutoff", fmt::format("cutoff-{:g}", cutoff), [cutoff](ChartModel& m) { m.cutoff = cutoff; }));
+  for (const int every : {2, 3})
+    all.push_back(varied("contact_every", fmt::format("contact-every-{}", every),
+                         [every](ChartModel& m) { m.stepping.contact_every = every; }));
   for (const double eta : {0.0, 5.0, 80.0})
     all.push_back(varied("contact_viscosity", fmt::format("viscosity-{:g}", eta),
                          [eta](ChartModel& m) { m.contact_viscosity = eta; }));
@@ -77,29 +87,36 @@ void add_contact_knobs(std::vector<ChartModel>& all) {
 }
 
 void add_combinations(const ChartScene& scene, std::vector<ChartModel>& all) {
+  // Two levels are meant for short elements, whose bonds are stiffer than the contact.
+  if (scene.contact)
+    all.push_back(varied("combination", "length-0.5+contact-every-3", [](ChartModel& m) {
+      m.length = 0.5;
+      m.stepping.contact_every = 3;
+    }));
+  // In contact with four nodes in the default's length, in the place of six.
   for (const double times : {2.0, 4.0}) {
     const std::string name = fmt::format("length-{:g}", times);
-    all.push_back(varied("combination", name + "+step-0.9", [times](ChartModel& m) {
-      m.length = times;
-      m.step_fraction = 0.9;
-    }));
-    all.push_back(varied("combination", name + "+relax", [times](ChartModel& m) {
-      m.length = times;
-      m.mode = RunOptions::Mode::relax;
-    }));
-    if (!scene.contact) continue;
-    // Four nodes in the default's length, in the place of six.
-    all.push_back(varied("combination", name + "+nodes-fewer+step-0.9", [times](ChartModel& m) {
-      m.length = times;
-      m.step_fraction = 0.9;
-      m.nodes = static_cast<int>(std::lround(4 * times));
-    }));
+    const int fewer = scene.contact ? static_cast<int>(std::lround(4 * times)) : 0;
+    const auto combined = [&](const std::string& what, double mass, bool relax) {
+      all.push_back(varied("combination", name + what, [&](ChartModel& m) {
+        m.length = times;
+        m.nodes = fewer;
+        m.mass_scale = mass;
+        m.step_fraction = 0.9;
+        if (relax) m.mode = RunOptions::Mode::relax;
+      }));
+    };
+    combined("+step-0.9", 1, false);
+    combined("+step-0.9+mass-4", 4, false);
+    combined("+step-0.9+mass-16", 16, false);
+    combined("+relax", 1, true);
   }
 }
 
 // Without contact the knobs of the contact are without effect.
 void take_contact_away(ChartModel& m) {
   m.law = Law::none;
+  m.nodes = 0;
   m.all_nodes = false;
   m.contact_viscosity = 0;
 }
@@ -138,6 +155,9 @@ Scene knobs_of(const ChartModel& model, const std::string& default_set, double e
   scene.contact.nodes = model.nodes;
   scene.contact.all_nodes = model.all_nodes;
   scene.contact.precision = model.precision;
+  scene.contact.cutoff = model.cutoff;
+  scene.run.stepping = model.stepping;
+  scene.run.mass_scale = model.mass_scale;
   scene.damping.contact.eta = model.contact_viscosity;
   scene.damping.bond.rate = model.bond_damping;
   scene.run.mode = model.mode;
@@ -146,7 +166,7 @@ Scene knobs_of(const ChartModel& model, const std::string& default_set, double e
 
 double rest_spacing(const Scene& scene) {
   if (scene.contact.law == Law::none) return 0;
-  if (scene.contact.law == Law::paper) return pair_spacing(*scene.parameters().paper, scene.element_length);
+  if (scene.contact.law == Law::paper) return pair_spacing(paper_contact(scene), scene.element_length);
   return line_parallel_well(line_contacts(scene).front().density).distance;
 }
 

@@ -275,7 +275,7 @@ std::string lead() {
          "set "
          "against the ramp and hold that it replaces. Errors are against our finest model (half the element "
          "length, all "
-         "nodes, double precision, half the time step) and, where atoms were run, against atoms. Both axes are "
+         "nodes, double precision) and, where atoms were run, against atoms. Both axes are "
          "logarithmic; errors below 0.0001 % are drawn there. What lies on the front is beaten by no other in cost "
          "without losing accuracy; a front holds for its scene and observable.";
 }

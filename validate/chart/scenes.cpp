@@ -36,7 +36,8 @@ void settle(const ChartModel& model, Specimen& s) {
   s.scene.damping.contact.inner = s.spacing;
   s.scene.damping.contact.outer = viscosity_reach * s.spacing;
   s.interaction = interaction_of(s.scene);
-  const double limit = time_step_limit(s.topology, s.interaction, s.spacing).limit;
+  const double limit =
+      inner_step_limit(time_step_limit(s.topology, s.interaction, s.spacing), model.stepping.contact_every);
   s.time_step = model.time_step > 0 ? model.time_step : model.step_fraction * limit;
   if (s.time_step >= limit)
     throw InputError({"", 0, model.name},
@@ -45,8 +46,9 @@ void settle(const ChartModel& model, Specimen& s) {
                      "take a smaller step");
 }
 
+// None longer than asked for.
 int bonds_of(const ChartModel& model, double length) {
-  return std::max(1, static_cast<int>(std::lround(length / (element * model.length))));
+  return static_cast<int>(std::ceil(length / (element * model.length) - 1e-6));
 }
 
 // Parallel tubes along z, hexagonally packed, centred; `beyond` more elements on either side of the deforming
