@@ -26,7 +26,7 @@ constexpr double tube_twist_rate = 0.04127579842;  // rad/nm: a row of tube-twis
 constexpr double tube_length = 32 * element;       // nm
 constexpr double ring_length = 48 * element, ring_twist = 6;  // nm, rad: half of what makes it leave its plane
 constexpr double rope_length = 30 * element;                  // nm
-constexpr double rope_angle = 120 * units::degree;
+constexpr double rope_angle = 90 * units::degree;
 constexpr double crossed_length = 8 * element;        // nm
 constexpr double crossed_from = 90, crossed_to = 30;  // degrees
 constexpr std::size_t md_increment = 4;               // of rope-7-10-10: 18 degrees
@@ -124,9 +124,9 @@ Specimen rope_of_91(const ChartModel& model) {
   Specimen s = parallel_tubes(model, 91, rope_length, 0);
   s.angle = rope_angle;
   s.axial_free = true;
-  s.ramp = 20;
+  s.ramp = 40;
   s.hold = 20;
-  s.increments = 20;
+  s.increments = 15;
   return s;
 }
 
@@ -230,9 +230,8 @@ std::vector<ChartScene> all_scenes() {
        atoms_of_seven_tubes},
       {"rope91",
        "91 tubes of 41 nm",
-       "91 (10,10) tubes of 40.7 nm between grips that turn as rigid discs by 120 degrees in 20 ps and are held "
-       "for "
-       "20; each tube is free along the axis at its grip, so that tubes slide.",
+       "91 (10,10) tubes of 40.7 nm between grips that turn as rigid discs by 90 degrees in 40 ps and are held "
+       "for 20; each tube is free along the axis at its grip, so that tubes slide.",
        true,
        {"energy", "beta", "spacing", "end_moment", "bending_moment", "Q"},
        rope_of_91,
