@@ -73,7 +73,8 @@ struct Range {
 struct Scale {
   Range range;
   double step = 1;
-  int power = 0;  // ticks are in units of 10^power
+  int power = 0;         // ticks are in units of 10^power
+  bool decades = false;  // of logarithms
   std::vector<double> ticks;
   std::vector<std::string> labels;
 };
@@ -109,6 +110,7 @@ Scale scale_of(const Range& range, int parts, bool whole) {
 Scale decades_of(const Range& range) {
   Scale s;
   s.range = range;
+  s.decades = true;
   const std::vector<double> parts = range.span() < 2.5 ? std::vector<double>{1, 2, 5} : std::vector<double>{1};
   const int every = std::max(1, static_cast<int>(range.span() / 6));
   for (int k = static_cast<int>(std::floor(range.low)); k <= range.high; k += every)
@@ -348,7 +350,8 @@ std::string draw_axes(const LineChart& chart, const Plot& plot) {
     fmt::format_to(
         to,
         "<path class=\"{}\" d=\"M{:.1f} {:.1f}H{:.1f}\"/><text class=\"end\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n",
-        plot.y.ticks[k] == 0 ? "zero" : "grid", plot.left, y, plot.right, plot.left - 6, y + 4, plot.y.labels[k]);
+        plot.y.ticks[k] == 0 && !plot.y.decades ? "zero" : "grid", plot.left, y, plot.right, plot.left - 6, y + 4,
+        plot.y.labels[k]);
   }
   for (std::size_t k = 0; k < plot.x.ticks.size(); ++k) {
     const double x = plot.px(plot.x.ticks[k]);

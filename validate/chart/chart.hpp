@@ -43,6 +43,7 @@ struct ChartModel {
   Stepping stepping;
   double mass_scale = 1;
   RunOptions::Mode mode = RunOptions::Mode::dynamics;
+  bool at_once = false;           // relaxed after the whole turn, not after each increment
   double contact_viscosity = 20;  // eV ps/nm^2
   double bond_damping = 1;        // 1/ps
 };

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double wanted_element_steps = 40000;
+constexpr double wanted_element_steps = 6000;
 constexpr long least_steps = 12, whole_steps = 12;  // a multiple of every contact_every
 
 // "==12== Collected : 123456"; none where callgrind did not come to its end.

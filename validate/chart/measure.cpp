@@ -195,13 +195,13 @@ struct Relaxation {
   double seconds = 0;
 };
 
-Relaxation run_relaxation(const Specimen& s, State state) {
+Relaxation run_relaxation(const Specimen& s, int increments, State state) {
   const double began = processor_seconds();
   state.step = 0;
-  for (int k = 0; k < s.increments; ++k) {
-    turn(s, 1.0 / s.increments, state);
+  for (int k = 0; k < increments; ++k) {
+    turn(s, 1.0 / increments, state);
     Simulation simulation = relaxed(s, std::move(state), turned_tolerance);
-    if (k + 1 == s.increments) return {std::move(simulation), processor_seconds() - began};
+    if (k + 1 == increments) return {std::move(simulation), processor_seconds() - began};
     state = simulation.state();
   }
   throw std::logic_error("a relaxation without increments");
@@ -245,7 +245,7 @@ void measure(const Specimen& s, const ChartModel& model, ChartPoint& point) {
   for (int k = 0; k < most_runs && total < least_seconds; ++k) {
     double seconds = 0;
     if (model.mode == RunOptions::Mode::relax) {
-      const Relaxation r = run_relaxation(s, untwisted);
+      const Relaxation r = run_relaxation(s, model.at_once ? 1 : s.increments, untwisted);
       seconds = r.seconds;
       point.steps = static_cast<double>(r.simulation.state().step);
       if (k == 0) reader.add(r.simulation);

@@ -50,7 +50,7 @@ void add_single_tube_knobs(std::vector<ChartModel>& all) {
     all.push_back(
         varied("time_step", fmt::format("step-{:g}", part), [part](ChartModel& m) { m.step_fraction = part; }));
   all.push_back(varied("integrator", "rk4", [](ChartModel& m) { m.stepping.runge_kutta = true; }));
-  for (const double scale : {4.0, 16.0})
+  for (const double scale : {4.0, 16.0, 64.0})
     all.push_back(
         varied("mass_scale", fmt::format("mass-{:g}", scale), [scale](ChartModel& m) { m.mass_scale = scale; }));
   all.push_back(varied("mode", "relax", [](ChartModel& m) { m.mode = RunOptions::Mode::relax; }));
@@ -60,6 +60,11 @@ void add_single_tube_knobs(std::vector<ChartModel>& all) {
 }
 
 void add_contact_knobs(std::vector<ChartModel>& all) {
+  // A single tube would be turned at its grips alone, beyond what a bond can bear.
+  all.push_back(varied("mode", "relax-at-once", [](ChartModel& m) {
+    m.mode = RunOptions::Mode::relax;
+    m.at_once = true;
+  }));
   all.push_back(varied("law", "isotropic", [](ChartModel& m) { m.nodes = 1; }));
   all.push_back(varied("law", "paper", [](ChartModel& m) { m.law = Law::paper; }));
   all.push_back(varied("law", "published-mixed", [](ChartModel& m) {
@@ -97,19 +102,21 @@ void add_combinations(const ChartScene& scene, std::vector<ChartModel>& all) {
   for (const double times : {2.0, 4.0}) {
     const std::string name = fmt::format("length-{:g}", times);
     const int fewer = scene.contact ? static_cast<int>(std::lround(4 * times)) : 0;
-    const auto combined = [&](const std::string& what, double mass, bool relax) {
+    const auto combined = [&](const std::string& what, double mass, bool relax, bool once) {
       all.push_back(varied("combination", name + what, [&](ChartModel& m) {
         m.length = times;
         m.nodes = fewer;
         m.mass_scale = mass;
         m.step_fraction = 0.9;
         if (relax) m.mode = RunOptions::Mode::relax;
+        m.at_once = once;
       }));
     };
-    combined("+step-0.9", 1, false);
-    combined("+step-0.9+mass-4", 4, false);
-    combined("+step-0.9+mass-16", 16, false);
-    combined("+relax", 1, true);
+    combined("+step-0.9", 1, false, false);
+    for (const double mass : {4.0, 16.0, 64.0})
+      combined(fmt::format("+step-0.9+mass-{:g}", mass), mass, false, false);
+    combined("+relax", 1, true, false);
+    if (scene.contact) combined("+relax-at-once", 1, true, true);
   }
 }
 

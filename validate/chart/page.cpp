@@ -249,7 +249,12 @@ std::vector<Beaten> better_than_published(const ChartScene& scene, const std::ve
 }
 
 std::string published_part(const std::vector<ChartPoint>& points, const std::vector<ChartRow>& rows) {
-  std::string html = heading("Against the published model");
+  std::string html =
+      heading("Against the published model") +
+      paragraph(
+          "Errors against atoms are those of the model and of its discretisation together, and the two may "
+          "cancel: the finest model is itself some way from the atoms, and a coarse one may lie between. The "
+          "errors against the finest model, below, show how much of it is luck.");
   for (const ChartScene& scene : chart_scenes()) {
     const std::vector<Beaten> better = better_than_published(scene, points, rows);
     const bool there = std::any_of(rows.begin(), rows.end(), [&](const ChartRow& r) {
@@ -266,6 +271,49 @@ std::string published_part(const std::vector<ChartPoint>& points, const std::vec
     html += paragraph(text + (better.empty() ? "" : "."));
   }
   return html;
+}
+
+// --- Good enough ---
+
+constexpr double tolerances[] = {0.003, 0.01, 0.03, 0.1};
+
+// The cheapest model of which no observable is farther from the finest than this.
+const ChartPoint* cheapest_within(const ChartScene& scene, double tolerance, const std::vector<ChartPoint>& points,
+                                  const std::vector<ChartRow>& rows) {
+  const ChartPoint* cheapest = nullptr;
+  for (const ChartPoint& p : points) {
+    if (p.scene != scene.name || !p.error.empty()) continue;
+    const bool holds = std::all_of(rows.begin(), rows.end(), [&](const ChartRow& r) {
+      return r.point != &p || r.reference_kind != "finest" || r.error <= tolerance;
+    });
+    if (holds && (!cheapest || p.cpu_per_ns() < cheapest->cpu_per_ns())) cheapest = &p;
+  }
+  return cheapest;
+}
+
+std::string good_enough_part(const std::vector<ChartPoint>& points, const std::vector<ChartRow>& rows) {
+  std::string html = heading("Good enough") +
+                     paragraph(
+                         "The cheapest model of which <i>every</i> observable of the scene lies so near to the "
+                         "finest model, and how many times as cheap as the default it is.") +
+                     "<div class=\"scroll\"><table class=\"facts\"><thead><tr><th>Scene</th>";
+  for (const double t : tolerances) html += fmt::format("<th>within {:g} %</th>", 100 * t);
+  html += "</tr></thead><tbody>\n";
+  for (const ChartScene& scene : chart_scenes()) {
+    const auto ours = std::find_if(points.begin(), points.end(), [&](const ChartPoint& p) {
+      return p.scene == scene.name && p.model == default_model && p.error.empty();
+    });
+    if (ours == points.end()) continue;
+    html += "<tr><th>" + escape_markup(scene.title) + "</th>";
+    for (const double t : tolerances) {
+      const ChartPoint* p = cheapest_within(scene, t, points, rows);
+      html += p ? fmt::format("<td>{} ({})</td>", escape_markup(p->model),
+                              number_text(ours->cpu_per_ns() / p->cpu_per_ns(), 2))
+                : "<td></td>";
+    }
+    html += "</tr>\n";
+  }
+  return html + "</tbody></table></div>\n";
 }
 
 std::string lead() {
@@ -288,7 +336,7 @@ std::string chart_page(const std::vector<ChartPoint>& points, const std::vector<
   std::string html = page_head("Speed against accuracy") +
                      "<body>\n<main>\n<p class=\"kicker\">Ropewalk: which knob pays</p>\n<h1>Speed against "
                      "accuracy</h1>\n<p class=\"lead\">" +
-                     lead() + "</p>\n" + published_part(points, rows);
+                     lead() + "</p>\n" + published_part(points, rows) + good_enough_part(points, rows);
   for (const ChartScene& scene : chart_scenes()) {
     std::string part;
     for (const std::string& o : scene.observables)
