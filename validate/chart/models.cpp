@@ -98,6 +98,15 @@ void add_combinations(const ChartScene& scene, std::vector<ChartModel>& all) {
       m.length = 0.5;
       m.stepping.contact_every = 3;
     }));
+  // Elements of the default's length: in a strongly twisted rope longer ones need all of their nodes.
+  if (scene.contact)
+    for (const double mass : {1.0, 4.0})
+      all.push_back(
+          varied("combination", mass > 1 ? "nodes-3+step-0.9+mass-4" : "nodes-3+step-0.9", [mass](ChartModel& m) {
+            m.nodes = 3;
+            m.step_fraction = 0.9;
+            m.mass_scale = mass;
+          }));
   // In contact with four nodes in the default's length, in the place of six.
   for (const double times : {2.0, 4.0}) {
     const std::string name = fmt::format("length-{:g}", times);
