@@ -44,8 +44,8 @@ struct ChartModel {
   double mass_scale = 1;
   RunOptions::Mode mode = RunOptions::Mode::dynamics;
   bool at_once = false;           // relaxed after the whole turn, not after each increment
-  double contact_viscosity = 20;  // eV ps/nm^2
-  double bond_damping = 1;        // 1/ps
+  double contact_viscosity = 20;  // eV ps/nm^2, at the default's element length
+  double bond_damping = 1;        // 1/ps, likewise
 };
 
 inline constexpr const char* published_model = "published";

@@ -228,8 +228,8 @@ ChartPoint describe(const ChartScene& scene, const ChartModel& model, const Spec
   p.elements = s.topology.elements();
   p.element_length = s.scene.element_length;
   p.time_step = s.time_step;
-  p.contact_viscosity = model.contact_viscosity;
-  p.bond_damping = model.bond_damping;
+  p.contact_viscosity = s.scene.damping.contact.eta;
+  p.bond_damping = s.scene.damping.bond.rate;
   p.simulated = s.duration();
   p.steps = std::round(s.duration() / s.time_step);
   return p;

@@ -31,10 +31,30 @@ constexpr double crossed_length = 8 * element;        // nm
 constexpr double crossed_from = 90, crossed_to = 30;  // degrees
 constexpr std::size_t md_increment = 4;               // of rope-7-10-10: 18 degrees
 
+// Viscosity of one tube against a neighbour, per length.
+double viscosity_per_length(const ContactViscosity& viscosity, double spacing, double element_length) {
+  const int reach = static_cast<int>(viscosity.outer / element_length) + 1;
+  double sum = 0;
+  for (int k = -reach; k <= reach; ++k) sum += viscosity.weight(std::hypot(spacing, k * element_length));
+  return viscosity.eta * sum / element_length;
+}
+
+// A model's damping is that of elements of the default length. Constants of a pair and of a bond belong to a
+// length: others are needed for the same dissipation in the tubes and between them.
+void scale_damping(Specimen& s) {
+  Damping& damping = s.scene.damping;
+  damping.contact.inner = s.spacing;
+  damping.contact.outer = viscosity_reach * s.spacing;
+  const double a = s.scene.element_length;
+  if (damping.contact.eta > 0)
+    damping.contact.eta *= viscosity_per_length(damping.contact, s.spacing, element) /
+                           viscosity_per_length(damping.contact, s.spacing, a);
+  damping.bond.rate *= element * element / (a * a);
+}
+
 // What the knobs say, once topology and spacing are known.
 void settle(const ChartModel& model, Specimen& s) {
-  s.scene.damping.contact.inner = s.spacing;
-  s.scene.damping.contact.outer = viscosity_reach * s.spacing;
+  scale_damping(s);
   s.interaction = interaction_of(s.scene);
   const double limit =
       inner_step_limit(time_step_limit(s.topology, s.interaction, s.spacing), model.stepping.contact_every);
