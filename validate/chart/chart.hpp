@@ -5,11 +5,13 @@
 // the centre of another, at a length that does not depend on the element length, and the loads act at those
 // centres. Half an element stands out beyond each end; with long elements that overhang is longer, it is rigid, and
 // what it changes is mass at the ends and contact that hardly changes with the twist. Energies are taken above the
-// untwisted state.
+// untwisted state. Damping constants belong to a pair of elements and to a bond; they go with the element length,
+// so that the dissipation per length of tube is the same.
 //
 // Every scene is turned: the grips turn at a constant rate and are then held. The motion starts with the velocities
-// of a uniform turn, so that no wave runs from the grips; what the stop excites goes as (transit time/ramp
-// time)^2/12 of the energy. Observables are means over the end of the hold.
+// of a uniform turn, so that no wave runs from the grips. At the stop the kinetic energy of the turn becomes
+// vibration, which damping takes out in the hold; ramps are so long that it is small. Observables are means over
+// the second half of the hold.
 //
 // Cost. CPU time of this process in steps, one thread, per simulated ns. A relaxation has no time: what it takes
 // from start to end is set against the ramp and hold that it replaces.
