@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 
+#include "chart/chart.hpp"
 #include "model/error.hpp"
 #include "runner/runner.hpp"
 #include "version.hpp"
@@ -14,6 +15,11 @@ struct Verbs {
   ListArguments list;
   ValidateArguments run, stability;
   ReportArguments report;
+  ChartArguments chart;
+  struct {
+    std::string scene, model;
+    long steps = 0;
+  } counted;
   int code = 0;
 };
 
@@ -26,6 +32,27 @@ void add_run_options(CLI::App* verb, ValidateArguments& a) {
   verb->add_flag("--again", a.again, "Run cases again that are finished");
   verb->add_flag("--json", a.json, "JSON");
   verb->add_flag("--quiet", a.quiet, "No progress lines");
+}
+
+void add_chart(CLI::App& app, Verbs& v) {
+  CLI::App* chart =
+      app.add_subcommand("chart", "Speed against accuracy: what each knob costs and how far off it is");
+  chart->add_option("--scenes", v.chart.scenes, "Of them only these, with commas between [default: all]")
+      ->delimiter(',');
+  chart->add_option("--out", v.chart.out, "Directory of points and chart; finished points in it are kept")
+      ->capture_default_str();
+  chart->add_flag("--quick", v.chart.quick, "A few models of two scenes, or of those named");
+  chart->add_flag("--instructions", v.chart.instructions, "Also count instructions, by callgrind (valgrind)");
+  chart->add_flag("--again", v.chart.again, "Run points again that are finished");
+  chart->add_flag("--quiet", v.chart.quiet, "No progress lines");
+  chart->callback([&v] { v.code = chart_command(v.chart); });
+
+  // What callgrind counts: the program runs itself.
+  CLI::App* steps = app.add_subcommand("chart-steps")->group("");
+  steps->add_option("scene", v.counted.scene)->required();
+  steps->add_option("model", v.counted.model)->required();
+  steps->add_option("steps", v.counted.steps)->required()->check(CLI::PositiveNumber);
+  steps->callback([&v] { step_for_counting(v.counted.scene, v.counted.model, v.counted.steps); });
 }
 
 void add_verbs(CLI::App& app, Verbs& v) {
@@ -49,6 +76,8 @@ void add_verbs(CLI::App& app, Verbs& v) {
   CLI::App* report = app.add_subcommand("report", "Make report.html and report.json anew from the results");
   report->add_option("dir", v.report.dir, "Directory of the results")->required();
   report->callback([&v] { v.code = validation_report_command(v.report); });
+
+  add_chart(app, v);
 }
 
 }  // namespace

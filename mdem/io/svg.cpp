@@ -7,6 +7,8 @@
 #include <iterator>
 #include <limits>
 
+#include "io/scatter.hpp"
+
 namespace ropewalk {
 namespace {
 
@@ -71,7 +73,8 @@ struct Range {
 struct Scale {
   Range range;
   double step = 1;
-  int power = 0;  // ticks are in units of 10^power
+  int power = 0;         // ticks are in units of 10^power
+  bool decades = false;  // of logarithms
   std::vector<double> ticks;
   std::vector<std::string> labels;
 };
@@ -103,6 +106,23 @@ Scale scale_of(const Range& range, int parts, bool whole) {
   return s;
 }
 
+// Of logarithms: decades, and 2 and 5 between them where there are few.
+Scale decades_of(const Range& range) {
+  Scale s;
+  s.range = range;
+  s.decades = true;
+  const std::vector<double> parts = range.span() < 2.5 ? std::vector<double>{1, 2, 5} : std::vector<double>{1};
+  const int every = std::max(1, static_cast<int>(range.span() / 6));
+  for (int k = static_cast<int>(std::floor(range.low)); k <= range.high; k += every)
+    for (const double part : parts) {
+      const double at = k + std::log10(part);
+      if (at < range.low || at > range.high) continue;
+      s.ticks.push_back(at);
+      s.labels.push_back(number_text(part * std::pow(10.0, k), 1));
+    }
+  return s;
+}
+
 // A little air around the data; from zero where they nearly begin there.
 Range y_range(Range r, bool whole) {
   const double size = std::max(std::abs(r.low), std::abs(r.high));
@@ -114,6 +134,11 @@ Range y_range(Range r, bool whole) {
   const bool from_zero = r.low >= 0 && r.low < 0.35 * r.high;
   const bool to_zero = r.high <= 0 && r.high > 0.35 * r.low;
   return {from_zero ? 0 : r.low - air, to_zero ? 0 : r.high + air};
+}
+
+Range with_air(const Range& r) {
+  const double air = std::max(0.06 * r.span(), 0.1);
+  return {r.low - air, r.high + air};
 }
 
 std::string axis_text(const ChartAxis& axis, int power) {
@@ -158,6 +183,18 @@ Stretch thinned(const Stretch& points, std::size_t most) {
   }
   out.push_back(points.back());
   return out;
+}
+
+// The same chart in logarithms where an axis has decades.
+ScatterChart in_logarithms(ScatterChart scatter) {
+  const auto take = [](std::vector<double>& values) {
+    for (double& v : values) v = v > 0 ? std::log10(v) : std::numeric_limits<double>::quiet_NaN();
+  };
+  for (ChartLine& line : scatter.chart.lines) {
+    if (scatter.x_decades) take(line.x);
+    if (scatter.y_decades) take(line.y);
+  }
+  return scatter;
 }
 
 Range x_range(const LineChart& chart) {
@@ -237,6 +274,23 @@ std::string stroke_class(const ChartLine& line) {
                                    : "");
 }
 
+// The names of single points.
+std::string draw_point_labels(const ScatterChart& scatter, const Plot& plot) {
+  std::string text;
+  for (std::size_t l = 0; l < std::min(scatter.labels.size(), scatter.chart.lines.size()); ++l) {
+    const ChartLine& line = scatter.chart.lines[l];
+    const std::vector<std::string>& labels = scatter.labels[l];
+    for (std::size_t i = 0; i < std::min({labels.size(), line.x.size(), line.y.size()}); ++i) {
+      if (labels[i].empty() || !std::isfinite(line.x[i]) || !std::isfinite(line.y[i])) continue;
+      const double x = plot.px(line.x[i]), y = plot.py(line.y[i]);
+      const bool left = x + 8 + text_width(labels[i]) > plot.right;
+      text += fmt::format("<text class=\"soft{}\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", left ? " end" : "",
+                          left ? x - 6 : x + 6, y - 4, escape_markup(labels[i]));
+    }
+  }
+  return text;
+}
+
 std::string draw_labels(const LineChart& chart, const Plot& plot) {
   std::string text;
   for (const EndLabel& label : end_labels(chart, plot)) {
@@ -252,14 +306,15 @@ std::string draw_labels(const LineChart& chart, const Plot& plot) {
 
 // --- The parts of a chart ---------------------------------------------------------------------------------
 
-Plot layout(const LineChart& chart) {
+Plot layout(const ScatterChart& scatter) {
+  const LineChart& chart = scatter.chart;
   Plot plot;
   Range x = x_range(chart), y;
   for (const ChartLine& line : chart.lines)
     for (const Stretch& s : stretches(line))
       for (const Point& p : s) y.take(p.y);
-  plot.x = scale_of(x, 6, chart.x.whole);
-  plot.y = scale_of(y_range(y, chart.y.whole), 5, chart.y.whole);
+  plot.x = scatter.x_decades ? decades_of(with_air(x)) : scale_of(x, 6, chart.x.whole);
+  plot.y = scatter.y_decades ? decades_of(with_air(y)) : scale_of(y_range(y, chart.y.whole), 5, chart.y.whole);
   double ticks = 0, names = 0;
   for (const std::string& label : plot.y.labels) ticks = std::max(ticks, text_width(label));
   for (const ChartLine& line : chart.lines) names = std::max(names, text_width(line.name));
@@ -295,7 +350,8 @@ std::string draw_axes(const LineChart& chart, const Plot& plot) {
     fmt::format_to(
         to,
         "<path class=\"{}\" d=\"M{:.1f} {:.1f}H{:.1f}\"/><text class=\"end\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n",
-        plot.y.ticks[k] == 0 ? "zero" : "grid", plot.left, y, plot.right, plot.left - 6, y + 4, plot.y.labels[k]);
+        plot.y.ticks[k] == 0 && !plot.y.decades ? "zero" : "grid", plot.left, y, plot.right, plot.left - 6, y + 4,
+        plot.y.labels[k]);
   }
   for (std::size_t k = 0; k < plot.x.ticks.size(); ++k) {
     const double x = plot.px(plot.x.ticks[k]);
@@ -414,9 +470,13 @@ bool can_draw(const LineChart& chart) {
   return r.span() > 1e-9 * std::max(std::abs(r.low), std::abs(r.high));  // false where there are no points
 }
 
-std::string chart_svg(const LineChart& chart) {
+std::string chart_svg(const LineChart& chart) { return scatter_svg({chart, false, false, {}}); }
+
+std::string scatter_svg(const ScatterChart& drawn) {
+  const ScatterChart scatter = in_logarithms(drawn);
+  const LineChart& chart = scatter.chart;
   if (!can_draw(chart)) return "";
-  const Plot plot = layout(chart);
+  const Plot plot = layout(scatter);
   std::string text = fmt::format(
       "<svg class=\"chart\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\" role=\"img\" "
       "aria-label=\"{2}\">\n",
@@ -424,7 +484,7 @@ std::string chart_svg(const LineChart& chart) {
   text += draw_bands(chart, plot) + draw_axes(chart, plot);
   for (const ChartLine& line : chart.lines)
     text += fmt::format("<path class=\"{}\" d=\"{}\"/>\n", stroke_class(line), path_of(plot, line));
-  return text + draw_labels(chart, plot) + "</svg>\n";
+  return text + draw_point_labels(scatter, plot) + draw_labels(chart, plot) + "</svg>\n";
 }
 
 }  // namespace ropewalk

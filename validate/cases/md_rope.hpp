@@ -35,6 +35,9 @@ struct TwistedRope {
   std::vector<std::string> remarks;
 };
 
+// Seven (10,10) tubes of 8.1 nm.
+TwistedRope rope_7_10_10();
+
 double row_distance(const ParameterSet& set);
 double clamped_length(const TwistedRope& rope, const ParameterSet& set);
 

@@ -3,7 +3,7 @@
 
 namespace ropewalk {
 
-Case rope_7_10_10_case() {
+TwistedRope rope_7_10_10() {
   TwistedRope rope;
   rope.name = "rope-7-10-10";
   rope.parameters = "cnt-10-10-tersoff";
@@ -19,7 +19,9 @@ Case rope_7_10_10_case() {
       "there.",
       "From there on the excess grows with the angle as in the ropes of (5,5), by the anharmonic tubes.",
       "The vdW energy of atoms is 3 to 5 % deeper: wide tubes flatten where they touch, rigid cylinders do not."};
-  return twisted_rope_case(rope, "(10,10)", "8.1");
+  return rope;
 }
+
+Case rope_7_10_10_case() { return twisted_rope_case(rope_7_10_10(), "(10,10)", "8.1"); }
 
 }  // namespace ropewalk

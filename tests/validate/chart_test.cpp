@@ -1,0 +1,211 @@
+// The chart of speed against accuracy: errors and fronts of points made by hand, and a small chart end to end.
+#include "chart/chart.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "io/files.hpp"
+#include "model/error.hpp"
+
+namespace ropewalk {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+namespace fs = std::filesystem;
+
+constexpr const char* columns =
+    "scene,model,kind,law,nodes_per_element,cutoff_nm,element_length_nm,integrator,contact_every,time_step_fs,"
+    "mass_scale,mode,contact_viscosity,bond_damping,precision,elements,simulated_ps,element_steps_per_ns,cpu_s_per_"
+    "ns,"
+    "cpu_ns_per_element_step,instructions_per_element_step,observable,unit,value,reference,reference_kind,error";
+
+TEST(ParetoFront, KeepsWhatNothingBeatsInBoth) {
+  //                                        0    1    2    3    4     5
+  const std::vector<double> cost = {1, 2, 2, 3, 4, 0.5};
+  const std::vector<double> error = {0.1, 0.2, 0.05, 0.05, 0.01, std::nan("")};
+  EXPECT_THAT(pareto_front(cost, error), ElementsAre(0u, 2u, 4u))
+      << "1 is dearer and worse than 0, 3 dearer than 2 and no better, 5 has no error";
+  EXPECT_THAT(pareto_front({2, 1}, {0.1, 0.1}), ElementsAre(1u)) << "of equal errors the cheaper one";
+  EXPECT_TRUE(pareto_front({}, {}).empty());
+}
+
+TEST(ChartError, IsAFractionOfTheReferenceAndOfACharge) {
+  EXPECT_DOUBLE_EQ(error_of("energy", 99, 100), 0.01);
+  EXPECT_DOUBLE_EQ(error_of("energy", -2.2, -2), 0.1);
+  EXPECT_DOUBLE_EQ(error_of("Q", 3, 0), 0.5) << "against the charge of an ideal twisted rope";
+  EXPECT_DOUBLE_EQ(error_of("Q", 9, 12), 0.25);
+}
+
+ChartPoint made(const std::string& model, double energy, double cpu) {
+  ChartPoint p;
+  p.scene = "ring";
+  p.model = p.kind = model;
+  p.law = "none";
+  p.elements = 10;
+  p.steps = 1000;
+  p.simulated = 50;
+  p.cpu = cpu;
+  p.time_step = 0.05;
+  p.values = {{"energy", energy}, {"end_moment", 2 * energy}, {"bending_moment", 1}};
+  return p;
+}
+
+TEST(ChartRows, HoldEveryModelToTheFinest) {
+  const std::vector<ChartPoint> points = {made(finest_model, 10, 1), made(default_model, 11, 0.1)};
+  const std::vector<ChartRow> rows = chart_rows(points);
+  ASSERT_EQ(rows.size(), 6u) << "two models, three observables";
+  EXPECT_EQ(rows[3].point->model, default_model);
+  EXPECT_EQ(rows[3].observable, "energy");
+  EXPECT_EQ(rows[3].reference_kind, "finest");
+  EXPECT_DOUBLE_EQ(rows[3].error, 0.1);
+  EXPECT_DOUBLE_EQ(rows[5].error, 0);
+  EXPECT_TRUE(chart_rows({points[1]}).empty()) << "nothing to hold it to";
+  ChartPoint failed = points[1];
+  failed.error = "it blew up";
+  EXPECT_EQ(chart_rows({points[0], failed}).size(), 3u);
+}
+
+TEST(ChartRows, AreWrittenWithTheColumnsThatReadersExpect) {
+  const std::vector<ChartPoint> points = {made(finest_model, 10, 1), made(default_model, 11, 0.1)};
+  std::istringstream text(points_csv(chart_rows(points)));
+  std::string line;
+  std::getline(text, line);
+  EXPECT_EQ(line, columns);
+  const auto commas = std::count(line.begin(), line.end(), ',');
+  int rows = 0;
+  for (; std::getline(text, line); ++rows) EXPECT_EQ(std::count(line.begin(), line.end(), ','), commas) << line;
+  EXPECT_EQ(rows, 6);
+  // 10 elements, 1000 steps in 50 ps, 0.1 s.
+  EXPECT_THAT(line = points_csv(chart_rows(points)), HasSubstr(",50,200000,2,1e+04,,energy,eV,11,10,finest,0.1\n"));
+}
+
+TEST(ChartPoint, ComesBackFromItsFile) {
+  ChartPoint p = made(default_model, 11, 0.1);
+  p.key = "key";
+  p.instructions = 1234.5;
+  const std::string path = (fs::temp_directory_path() / ("ropewalk-point-" + std::to_string(getpid()))).string();
+  write_file_atomically(path, point_json(p));
+  EXPECT_EQ(point_json(read_point(path)), point_json(p));
+  for (const char* bad : {"{}", "", "[1]", "{\"format\": \"ropewalk-chart-1\", \"key\": 3}"}) {
+    write_file_atomically(path, bad);
+    EXPECT_THROW(read_point(path), InputError) << bad;
+  }
+  fs::remove(path);
+}
+
+double grip_distance(const Specimen& s) {
+  return (s.state.position[static_cast<std::size_t>(s.grips.front())] -
+          s.state.position[static_cast<std::size_t>(s.grips.back())])
+      .norm();
+}
+
+TEST(ChartScenes, AreTheSameSpecimenAtEveryElementLength) {
+  for (const char* name : {"tube-twist", "rope91", "crossed-tubes"}) {
+    const ChartScene& scene = find_chart_scene(name);
+    const std::vector<ChartModel> models = chart_models(scene, false);
+    const Specimen base = scene.build(find_chart_model(models, default_model));
+    for (const char* other : {finest_model, "length-2", "length-4", "length-8"}) {
+      const Specimen s = scene.build(find_chart_model(models, other));
+      EXPECT_EQ(s.topology.tubes(), base.topology.tubes());
+      EXPECT_NE(s.topology.elements(), base.topology.elements()) << name << " " << other;
+      EXPECT_NEAR(grip_distance(s), grip_distance(base), 1e-9) << name << " " << other;
+      EXPECT_EQ(s.angle, base.angle);
+      EXPECT_EQ(s.duration(), base.duration());
+    }
+  }
+}
+
+TEST(ChartModels, DifferFromOneAnother) {
+  for (const ChartScene& scene : chart_scenes()) {
+    std::vector<std::string> descriptions;
+    for (const ChartModel& model : chart_models(scene, false)) {
+      ChartPoint p = describe(scene, model, scene.build(model));
+      EXPECT_EQ(std::count_if(descriptions.begin(), descriptions.end(),
+                              [&](const std::string& d) { return d == model.name; }),
+                0)
+          << model.name << " twice";
+      descriptions.push_back(model.name);
+      EXPECT_GT(p.elements, 0);
+      EXPECT_GT(p.time_step, 0) << scene.name << " " << model.name;
+    }
+    EXPECT_NO_THROW(find_chart_model(chart_models(scene, true), published_model)) << scene.name;
+  }
+}
+
+class Chart : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    dir = fs::temp_directory_path() / ("ropewalk-chart-" + std::to_string(getpid()));
+    arguments.scenes = {"tube-twist"};
+    arguments.out = dir.string();
+    arguments.quick = arguments.quiet = true;
+  }
+  void TearDown() override { fs::remove_all(dir); }
+
+  void run() const {
+    testing::internal::CaptureStdout();
+    const int code = chart_command(arguments);
+    testing::internal::GetCapturedStdout();
+    EXPECT_EQ(code, 0);
+  }
+  std::string point(const std::string& model) const {
+    return (dir / "points" / ("tube-twist--" + model + ".json")).string();
+  }
+
+  fs::path dir;
+  ChartArguments arguments;
+};
+
+TEST_F(Chart, ComesOutWholeAndIsKept) {
+  run();
+  const ChartPoint ours = read_point(point(default_model)), published = read_point(point(published_model)),
+                   finest = read_point(point(finest_model)), coarse = read_point(point("length-2"));
+  ASSERT_EQ(ours.error, "");
+  EXPECT_GT(ours.cpu, 0);
+  EXPECT_GT(ours.steps, 1000);
+  EXPECT_EQ(published.element_length, 1.356);
+  EXPECT_DOUBLE_EQ(published.time_step, 0.02);
+  // GJ/2 (twist)^2 L of either set, and the moment GJ twist.
+  const double energy = finest.values.at("energy"), moment = finest.values.at("end_moment");
+  EXPECT_NEAR(energy, 0.5 * 330.11 / 0.1602177 * 1.791029 * 1.791029 / 43.392, 2e-3 * energy);
+  EXPECT_NEAR(moment, 330.11 * 1.791029 / 43.392, 2e-3 * moment);
+  EXPECT_NEAR(published.values.at("energy") / energy, 319.5 / 330.11, 2e-3);
+  EXPECT_GT(error_of("end_moment", coarse.values.at("end_moment"), moment),
+            error_of("end_moment", ours.values.at("end_moment"), moment));
+
+  const std::string csv = read_file((dir / "points.csv").string());
+  EXPECT_EQ(csv.substr(0, csv.find('\n')), columns);
+  EXPECT_THAT(csv, HasSubstr("tube-twist,published,published,none"));
+  EXPECT_THAT(csv, HasSubstr(",md,"));
+  const std::string page = read_file((dir / "chart.html").string());
+  EXPECT_THAT(page, HasSubstr("<svg"));
+  EXPECT_THAT(page, HasSubstr("Pareto front"));
+  EXPECT_THAT(page, HasSubstr("Against the published model"));
+  EXPECT_EQ(page.find("<script"), std::string::npos);
+
+  // A second run keeps what is there, but for the point that was made with something else.
+  const std::string kept = read_file(point(default_model));
+  nlohmann::ordered_json stale = nlohmann::ordered_json::parse(read_file(point("length-2")));
+  stale["key"] = "another version";
+  stale["values"]["energy"] = 1;
+  write_file_atomically(point("length-2"), stale.dump());
+  fs::remove(point("relax"));
+  run();
+  EXPECT_EQ(read_file(point(default_model)), kept) << "to the last digit of its CPU time";
+  EXPECT_EQ(read_point(point("length-2")).values, coarse.values);
+  EXPECT_TRUE(fs::exists(point("relax")));
+  arguments.again = true;
+  run();
+  EXPECT_NE(read_file(point(default_model)), kept);
+  EXPECT_EQ(read_point(point(default_model)).values, ours.values) << "only times differ";
+}
+
+}  // namespace
+}  // namespace ropewalk

@@ -1,0 +1,71 @@
+// Instructions of a step, counted by callgrind: a cost that the rest of the machine does not disturb.
+//
+// The program runs itself under callgrind for n and for 3 n steps, and the difference is that of 2 n steps.
+// Valgrind emulates a processor with AVX2 and without AVX-512, so that the kernels take their AVX2 versions: half
+// as wide, about twice the instructions of the wide ones. The steps are the first of the protocol: a rope that is
+// not yet twisted.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <sstream>
+
+#include "atomistic/child_process.hpp"
+#include "chart/chart.hpp"
+#include "io/files.hpp"
+
+namespace ropewalk {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double wanted_element_steps = 6000;
+constexpr long least_steps = 12, whole_steps = 12;  // a multiple of every contact_every
+
+// "==12== Collected : 123456"; none where callgrind did not come to its end.
+std::optional<double> collected(const std::string& path) {
+  if (!fs::exists(path)) return {};
+  std::istringstream text(read_file(path));
+  for (std::string line; std::getline(text, line);) {
+    const std::size_t at = line.find("Collected : ");
+    if (at != std::string::npos) return std::stod(line.substr(at + 12));
+  }
+  return {};
+}
+
+std::optional<double> counted(const std::string& scene, const std::string& model, long steps,
+                              const std::string& folder) {
+  ChildOptions options;
+  options.folder = folder;
+  options.output = (fs::absolute(folder) / "callgrind.txt").string();
+  options.quiet_seconds = options.most_seconds = 600;
+  const std::vector<std::string> arguments = {"valgrind",
+                                              "--tool=callgrind",
+                                              "--callgrind-out-file=/dev/null",
+                                              fs::read_symlink("/proc/self/exe").string(),
+                                              "chart-steps",
+                                              scene,
+                                              model,
+                                              std::to_string(steps)};
+  const ChildEnd end = run_child(arguments, options);
+  const std::optional<double> count =
+      end.kind == ChildEnd::Kind::exited && end.code == 0 ? collected(options.output) : std::nullopt;
+  fs::remove(options.output);
+  return count;
+}
+
+}  // namespace
+
+std::optional<double> count_instructions(const ChartScene& scene, const ChartModel& model,
+                                         const std::string& folder) {
+  const double elements = scene.build(model).topology.elements();
+  const long steps =
+      std::max(least_steps, whole_steps * static_cast<long>(wanted_element_steps / elements / whole_steps));
+  const std::optional<double> few = counted(scene.name, model.name, steps, folder);
+  if (!few) return {};
+  const std::optional<double> more = counted(scene.name, model.name, 3 * steps, folder);
+  if (!more) return {};
+  return (*more - *few) / (2.0 * static_cast<double>(steps) * elements);
+}
+
+}  // namespace ropewalk

@@ -1,0 +1,189 @@
+// The models of the chart and how they become a scene's knobs.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "chart/chart.hpp"
+#include "io/data_files.hpp"
+#include "io/parameters_toml.hpp"
+#include "io/toml_table.hpp"
+#include "scene/build.hpp"
+
+namespace ropewalk {
+namespace {
+
+using Law = ContactOptions::Law;
+using Precision = Interaction::Precision;
+
+template <class F>
+ChartModel varied(const std::string& kind, const std::string& name, F change) {
+  ChartModel m;
+  m.name = name;
+  m.kind = kind;
+  change(m);
+  return m;
+}
+
+void add_anchors(std::vector<ChartModel>& all) {
+  all.push_back(varied("finest", finest_model, [](ChartModel& m) {
+    m.length = 0.5;
+    m.all_nodes = true;
+    m.precision = Precision::full;
+    m.step_fraction = 0.5;
+  }));
+  all.push_back(varied("default", default_model, [](ChartModel&) {}));
+  // Its programs calculate in double precision, and its papers type 20 fs.
+  all.push_back(varied("published", published_model, [](ChartModel& m) {
+    m.set = "cnt-10-10-paper";
+    m.law = Law::paper;
+    m.precision = Precision::full;
+    m.time_step = 20 * units::fs;
+  }));
+}
+
+void add_single_tube_knobs(std::vector<ChartModel>& all) {
+  for (const double times : {0.5, 2.0, 4.0, 8.0})
+    all.push_back(
+        varied("element_length", fmt::format("length-{:g}", times), [times](ChartModel& m) { m.length = times; }));
+  for (const double part : {0.3, 0.9})
+    all.push_back(
+        varied("time_step", fmt::format("step-{:g}", part), [part](ChartModel& m) { m.step_fraction = part; }));
+  all.push_back(varied("integrator", "rk4", [](ChartModel& m) { m.stepping.runge_kutta = true; }));
+  for (const double scale : {4.0, 16.0, 64.0})
+    all.push_back(
+        varied("mass_scale", fmt::format("mass-{:g}", scale), [scale](ChartModel& m) { m.mass_scale = scale; }));
+  all.push_back(varied("mode", "relax", [](ChartModel& m) { m.mode = RunOptions::Mode::relax; }));
+  for (const double rate : {0.0, 4.0})
+    all.push_back(varied("bond_damping", fmt::format("bond-damping-{:g}", rate),
+                         [rate](ChartModel& m) { m.bond_damping = rate; }));
+}
+
+void add_contact_knobs(std::vector<ChartModel>& all) {
+  // A single tube would be turned at its grips alone, beyond what a bond can bear.
+  all.push_back(varied("mode", "relax-at-once", [](ChartModel& m) {
+    m.mode = RunOptions::Mode::relax;
+    m.at_once = true;
+  }));
+  all.push_back(varied("law", "isotropic", [](ChartModel& m) { m.nodes = 1; }));
+  all.push_back(varied("law", "paper", [](ChartModel& m) { m.law = Law::paper; }));
+  all.push_back(varied("law", "published-mixed", [](ChartModel& m) {
+    m.set = "cnt-10-10-paper";
+    m.law = Law::paper;
+  }));
+  for (const int nodes : {2, 3, 4, 5, 8, 12})
+    all.push_back(
+        varied("nodes_per_element", fmt::format("nodes-{}", nodes), [nodes](ChartModel& m) { m.nodes = nodes; }));
+  for (const double cutoff : {2.6, 2.4, 2.2})
+    all.push_back(
+        varied("cutoff", fmt::format("cutoff-{:g}", cutoff), [cutoff](ChartModel& m) { m.cutoff = cutoff; }));
+  for (const int every : {2, 3})
+    all.push_back(varied("contact_every", fmt::format("contact-every-{}", every),
+                         [every](ChartModel& m) { m.stepping.contact_every = every; }));
+  for (const double eta : {0.0, 5.0, 80.0})
+    all.push_back(varied("contact_viscosity", fmt::format("viscosity-{:g}", eta),
+                         [eta](ChartModel& m) { m.contact_viscosity = eta; }));
+  all.push_back(varied("precision", "double", [](ChartModel& m) { m.precision = Precision::full; }));
+  all.push_back(varied("precision", "all-nodes", [](ChartModel& m) { m.all_nodes = true; }));
+  all.push_back(varied("precision", "all-nodes-double", [](ChartModel& m) {
+    m.all_nodes = true;
+    m.precision = Precision::full;
+  }));
+}
+
+void add_combinations(const ChartScene& scene, std::vector<ChartModel>& all) {
+  // Two levels are meant for short elements, whose bonds are stiffer than the contact.
+  if (scene.contact)
+    all.push_back(varied("combination", "length-0.5+contact-every-3", [](ChartModel& m) {
+      m.length = 0.5;
+      m.stepping.contact_every = 3;
+    }));
+  // Elements of the default's length: in a strongly twisted rope longer ones need all of their nodes.
+  if (scene.contact)
+    for (const double mass : {1.0, 4.0})
+      all.push_back(
+          varied("combination", mass > 1 ? "nodes-3+step-0.9+mass-4" : "nodes-3+step-0.9", [mass](ChartModel& m) {
+            m.nodes = 3;
+            m.step_fraction = 0.9;
+            m.mass_scale = mass;
+          }));
+  // In contact with four nodes in the default's length, in the place of six.
+  for (const double times : {2.0, 4.0}) {
+    const std::string name = fmt::format("length-{:g}", times);
+    const int fewer = scene.contact ? static_cast<int>(std::lround(4 * times)) : 0;
+    const auto combined = [&](const std::string& what, double mass, bool relax, bool once) {
+      all.push_back(varied("combination", name + what, [&](ChartModel& m) {
+        m.length = times;
+        m.nodes = fewer;
+        m.mass_scale = mass;
+        m.step_fraction = 0.9;
+        if (relax) m.mode = RunOptions::Mode::relax;
+        m.at_once = once;
+      }));
+    };
+    combined("+step-0.9", 1, false, false);
+    for (const double mass : {4.0, 16.0, 64.0})
+      combined(fmt::format("+step-0.9+mass-{:g}", mass), mass, false, false);
+    combined("+relax", 1, true, false);
+    if (scene.contact) combined("+relax-at-once", 1, true, true);
+  }
+}
+
+// Without contact the knobs of the contact are without effect.
+void take_contact_away(ChartModel& m) {
+  m.law = Law::none;
+  m.nodes = 0;
+  m.all_nodes = false;
+  m.contact_viscosity = 0;
+}
+
+}  // namespace
+
+std::vector<ChartModel> chart_models(const ChartScene& scene, bool quick) {
+  std::vector<ChartModel> all;
+  add_anchors(all);
+  add_single_tube_knobs(all);
+  if (scene.contact) add_contact_knobs(all);
+  add_combinations(scene, all);
+  if (!scene.contact) std::for_each(all.begin(), all.end(), take_contact_away);
+  if (quick) {
+    static const std::vector<std::string> few = {finest_model, default_model, published_model,
+                                                 "length-2",   "isotropic",   "relax"};
+    all.erase(std::remove_if(all.begin(), all.end(),
+                             [](const ChartModel& m) { return !std::count(few.begin(), few.end(), m.name); }),
+              all.end());
+  }
+  return all;
+}
+
+const ChartModel& find_chart_model(const std::vector<ChartModel>& models, const std::string& name) {
+  for (const ChartModel& m : models)
+    if (m.name == name) return m;
+  throw InputError({"", 0, "model"}, fmt::format("there is no model \"{}\"", printable(name, 60)),
+                   "see points.csv for those that there are");
+}
+
+Scene knobs_of(const ChartModel& model, const std::string& default_set, double element_length) {
+  Scene scene;
+  scene.sets = {read_parameters(find_parameters(model.set.empty() ? default_set : model.set, ""))};
+  scene.element_length = element_length;
+  scene.contact.law = model.law;
+  scene.contact.nodes = model.nodes;
+  scene.contact.all_nodes = model.all_nodes;
+  scene.contact.precision = model.precision;
+  scene.contact.cutoff = model.cutoff;
+  scene.run.stepping = model.stepping;
+  scene.run.mass_scale = model.mass_scale;
+  scene.damping.contact.eta = model.contact_viscosity;
+  scene.damping.bond.rate = model.bond_damping;
+  scene.run.mode = model.mode;
+  return scene;
+}
+
+double rest_spacing(const Scene& scene) {
+  if (scene.contact.law == Law::none) return 0;
+  if (scene.contact.law == Law::paper) return pair_spacing(paper_contact(scene), scene.element_length);
+  return line_parallel_well(line_contacts(scene).front().density).distance;
+}
+
+}  // namespace ropewalk

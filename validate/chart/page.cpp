@@ -1,0 +1,356 @@
+// The page of the chart: for each scene and observable cost against error, with the Pareto front.
+
+#include "io/page.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "chart/chart.hpp"
+#include "io/scatter.hpp"
+
+namespace ropewalk {
+namespace {
+
+constexpr double least_error = 1e-6;  // what is nearer to its reference is drawn here
+constexpr double much = 10;           // times as cheap
+
+// Another program's cost for a step of this scene's rope, as measured; no accuracy is known.
+struct Peer {
+  const char* name;
+  const char* scene;
+  double seconds_per_element_step;
+  double time_step;  // ps
+  const char* remark;
+};
+constexpr Peer peers[] = {
+    {"waLBerla", "rope91", 22.5e-6, 20e-3,
+     "waLBerla MESA-PD CNT, the published law, one core, 91 x 50 elements of 1.356 nm: 22.5 us per element-step, "
+     "drawn "
+     "at steps of 20 fs"},
+    {"LAMMPS mesocnt", "rope91", 1 / (55.0 * 91 * 50), 20e-3,
+     "LAMMPS mesocnt, one rank, 91 x 50 elements: 55 steps per second, drawn at steps of 20 fs. It has no torsion, "
+     "so "
+     "that it could not run this scene"},
+};
+
+std::string observable_title(const std::string& o) {
+  static const std::map<std::string, std::string> titles = {
+      {"energy", "energy"},         {"beta", "twist angle beta"},         {"spacing", "spacing"},
+      {"end_moment", "end moment"}, {"bending_moment", "bending moment"}, {"Q", "packing charge Q"}};
+  return titles.at(o);
+}
+
+std::vector<const ChartRow*> rows_of(const std::vector<ChartRow>& rows, const std::string& scene,
+                                     const std::string& observable, const std::string& kind) {
+  std::vector<const ChartRow*> out;
+  for (const ChartRow& r : rows)
+    if (r.point->scene == scene && r.observable == observable && r.reference_kind == kind &&
+        !(kind == "finest" && r.point->model == finest_model))
+      out.push_back(&r);
+  return out;
+}
+
+struct Series {
+  std::vector<double> cost, error;
+};
+Series series_of(const std::vector<const ChartRow*>& rows) {
+  Series s;
+  for (const ChartRow* r : rows) {
+    s.cost.push_back(r->point->cpu_per_ns());
+    s.error.push_back(r->error);
+  }
+  return s;
+}
+
+// --- Figures ---
+
+double drawn(double error) { return 100 * std::max(error, least_error); }
+
+ChartLine front_line(const Series& s, const std::vector<std::size_t>& front) {
+  ChartLine line;
+  line.name = "Pareto front";
+  line.colour = 5;
+  line.steps = true;
+  for (const std::size_t k : front) {
+    line.x.push_back(s.cost[k]);
+    line.y.push_back(drawn(s.error[k]));
+  }
+  return line;
+}
+
+void add_kinds(const std::vector<const ChartRow*>& rows, const std::set<std::size_t>& named,
+               ScatterChart& scatter) {
+  std::vector<std::string> kinds;
+  for (const ChartRow* r : rows)
+    if (!std::count(kinds.begin(), kinds.end(), r->point->kind)) kinds.push_back(r->point->kind);
+  for (std::size_t c = 0; c < kinds.size(); ++c) {
+    ChartLine line;
+    line.name = kinds[c];
+    std::replace(line.name.begin(), line.name.end(), '_', ' ');
+    line.colour = static_cast<int>(c) % (categorical_colours + sequential_colours);
+    line.points = true;
+    std::vector<std::string> labels;
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      if (rows[k]->point->kind != kinds[c]) continue;
+      line.x.push_back(rows[k]->point->cpu_per_ns());
+      line.y.push_back(drawn(rows[k]->error));
+      const bool own_kind = rows[k]->point->model == kinds[c];
+      labels.push_back(named.count(k) && !own_kind ? rows[k]->point->model : "");
+    }
+    scatter.chart.lines.push_back(line);
+    scatter.labels.push_back(labels);
+  }
+}
+
+double peer_cost(const Peer& peer, const ChartPoint& published) {
+  return peer.seconds_per_element_step * published.elements * 1e3 / peer.time_step;
+}
+
+void add_peers(const std::vector<const ChartRow*>& rows, LineChart& chart) {
+  double low = 1e300, high = 0;
+  for (const ChartRow* r : rows) {
+    low = std::min(low, drawn(r->error));
+    high = std::max(high, drawn(r->error));
+  }
+  const ChartPoint* published = nullptr;
+  for (const ChartRow* r : rows)
+    if (r->point->model == published_model) published = r->point;
+  for (const Peer& peer : peers) {
+    if (!published || published->scene != peer.scene) continue;
+    ChartLine line;
+    line.name = peer.name;
+    line.colour = 5;
+    line.dashed = true;
+    line.x = {peer_cost(peer, *published), peer_cost(peer, *published)};
+    line.y = {low, high};
+    chart.lines.push_back(line);
+  }
+}
+
+std::string front_names(const std::vector<const ChartRow*>& rows, const std::vector<std::size_t>& front) {
+  std::string names;
+  for (const std::size_t k : front)
+    names += fmt::format("{}{} ({} %)", names.empty() ? "" : ", ", rows[k]->point->model,
+                         number_text(100 * rows[k]->error, 2));
+  return names;
+}
+
+std::string figure_html(const ChartScene& scene, const std::string& observable, const std::string& kind,
+                        const std::vector<ChartRow>& all, Figures& figures) {
+  const std::vector<const ChartRow*> rows = rows_of(all, scene.name, observable, kind);
+  const Series s = series_of(rows);
+  const std::vector<std::size_t> front = pareto_front(s.cost, s.error);
+  ScatterChart scatter;
+  scatter.x_decades = scatter.y_decades = true;
+  scatter.labels.resize(1);  // of the front none
+  LineChart& chart = scatter.chart;
+  const std::string against = kind == "md" ? "atoms" : "the finest model";
+  chart.title = fmt::format("{}: error of the {} against cost", scene.title, observable_title(observable));
+  chart.x = {"CPU time per simulated ns", "s"};
+  chart.y = {"error of the " + observable_title(observable), "%"};
+  chart.width = 640;
+  chart.height = 340;
+  chart.lines = {front_line(s, front)};
+  add_kinds(rows, {front.begin(), front.end()}, scatter);
+  add_peers(rows, chart);
+  const std::string svg = scatter_svg(scatter);
+  if (svg.empty()) return "";
+  return "<figure>" + svg +
+         figures.caption(fmt::format(
+             "<b>{}</b> against {}: {} {}. Front, from the cheapest: {}.",
+             escape_markup(observable_title(observable)), against, number_text(rows.front()->reference, 6),
+             escape_markup(observable_unit(observable)), escape_markup(front_names(rows, front)))) +
+         "</figure>\n";
+}
+
+// --- Tables ---
+
+// The model's error in an observable; empty where there is none.
+std::string error_cell(const std::vector<ChartRow>& rows, const ChartPoint& p, const std::string& observable,
+                       const std::string& kind) {
+  for (const ChartRow& r : rows)
+    if (r.point == &p && r.observable == observable && r.reference_kind == kind)
+      return number_text(100 * r.error, 2);
+  return "";
+}
+
+std::string points_table(const ChartScene& scene, const std::vector<ChartPoint>& points,
+                         const std::vector<ChartRow>& rows) {
+  std::string html =
+      "<details><summary>All models of this scene</summary>\n<div class=\"scroll\"><table "
+      "class=\"facts\"><thead><tr>"
+      "<th>Model</th><th>Knob</th><th class=\"number\">Elements</th><th class=\"number\">Step, fs</th>"
+      "<th class=\"number\">s per ns</th><th class=\"number\">ns per element-step</th>";
+  std::vector<std::pair<std::string, std::string>> columns;
+  const std::vector<ChartReference> atoms = scene.atoms ? scene.atoms() : std::vector<ChartReference>();
+  for (const std::string& o : scene.observables) {
+    columns.emplace_back(o, "finest");
+    for (const ChartReference& a : atoms)
+      if (a.observable == o) columns.emplace_back(o, "md");
+  }
+  for (const auto& [o, kind] : columns)
+    html += fmt::format("<th class=\"number\">{}, % of {}</th>", escape_markup(observable_title(o)),
+                        kind == "md" ? "atoms" : "finest");
+  html += "</tr></thead><tbody>\n";
+  for (const ChartPoint& p : points) {
+    if (p.scene != scene.name) continue;
+    html += fmt::format("<tr><td>{}</td><td>{}</td><td class=\"number\">{}</td><td class=\"number\">{}</td>",
+                        escape_markup(p.model), escape_markup(p.kind), p.elements,
+                        p.mode == "relax" ? "" : number_text(p.time_step / units::fs, 3));
+    if (!p.error.empty()) {
+      html += fmt::format("<td colspan=\"{}\">could not be run: {}</td></tr>\n", columns.size() + 2,
+                          escape_markup(p.error));
+      continue;
+    }
+    html += fmt::format("<td class=\"number\">{}</td><td class=\"number\">{}</td>", number_text(p.cpu_per_ns(), 3),
+                        number_text(1e9 * p.cpu_per_element_step(), 3));
+    for (const auto& [o, kind] : columns) html += "<td class=\"number\">" + error_cell(rows, p, o, kind) + "</td>";
+    html += "</tr>\n";
+  }
+  return html + "</tbody></table></div></details>\n";
+}
+
+// --- Against the published model ---
+
+struct Beaten {
+  const ChartPoint* point = nullptr;
+  double times_cheaper = 0;
+  double worst = 0;  // error against atoms, of all observables
+};
+
+// Models that are nowhere farther from the atoms than the published one, and cheaper.
+std::vector<Beaten> better_than_published(const ChartScene& scene, const std::vector<ChartPoint>& points,
+                                          const std::vector<ChartRow>& rows) {
+  std::map<std::string, double> bar;
+  const ChartPoint* published = nullptr;
+  for (const ChartRow& r : rows)
+    if (r.point->scene == scene.name && r.point->model == published_model && r.reference_kind == "md") {
+      bar[r.observable] = r.error;
+      published = r.point;
+    }
+  std::vector<Beaten> out;
+  for (const ChartPoint& p : points) {
+    if (!published || p.scene != scene.name || !p.error.empty() || &p == published) continue;
+    Beaten b{&p, published->cpu_per_ns() / p.cpu_per_ns(), 0};
+    bool holds = true;
+    for (const ChartRow& r : rows) {
+      if (r.point != &p || r.reference_kind != "md") continue;
+      holds = holds && r.error <= bar.at(r.observable);
+      b.worst = std::max(b.worst, r.error);
+    }
+    if (holds && b.times_cheaper > 1) out.push_back(b);
+  }
+  std::sort(out.begin(), out.end(),
+            [](const Beaten& a, const Beaten& b) { return a.times_cheaper > b.times_cheaper; });
+  return out;
+}
+
+std::string published_part(const std::vector<ChartPoint>& points, const std::vector<ChartRow>& rows) {
+  std::string html =
+      heading("Against the published model") +
+      paragraph(
+          "Errors against atoms are those of the model and of its discretisation together, and the two may "
+          "cancel: the finest model is itself some way from the atoms, and a coarse one may lie between. The "
+          "errors against the finest model, below, show how much of it is luck.");
+  for (const ChartScene& scene : chart_scenes()) {
+    const std::vector<Beaten> better = better_than_published(scene, points, rows);
+    const bool there = std::any_of(rows.begin(), rows.end(), [&](const ChartRow& r) {
+      return r.point->scene == scene.name && r.reference_kind == "md" && r.point->model == published_model;
+    });
+    if (!there) continue;
+    std::string text = fmt::format("<b>{}.</b> ", escape_markup(scene.title));
+    if (better.empty() || better.front().times_cheaper < much)
+      text += fmt::format("No model is {:g} times as cheap at no greater error against atoms. ", much);
+    for (std::size_t k = 0; k < std::min<std::size_t>(4, better.size()); ++k)
+      text += fmt::format("{}<i>{}</i>: {} times as cheap, at most {} % from the atoms", k > 0 ? "; " : "",
+                          escape_markup(better[k].point->model), number_text(better[k].times_cheaper, 3),
+                          number_text(100 * better[k].worst, 2));
+    html += paragraph(text + (better.empty() ? "" : "."));
+  }
+  return html;
+}
+
+// --- Good enough ---
+
+constexpr double tolerances[] = {0.003, 0.01, 0.03, 0.1};
+
+// The cheapest model of which no observable is farther from the finest than this.
+const ChartPoint* cheapest_within(const ChartScene& scene, double tolerance, const std::vector<ChartPoint>& points,
+                                  const std::vector<ChartRow>& rows) {
+  const ChartPoint* cheapest = nullptr;
+  for (const ChartPoint& p : points) {
+    if (p.scene != scene.name || !p.error.empty()) continue;
+    const bool holds = std::all_of(rows.begin(), rows.end(), [&](const ChartRow& r) {
+      return r.point != &p || r.reference_kind != "finest" || r.error <= tolerance;
+    });
+    if (holds && (!cheapest || p.cpu_per_ns() < cheapest->cpu_per_ns())) cheapest = &p;
+  }
+  return cheapest;
+}
+
+std::string good_enough_part(const std::vector<ChartPoint>& points, const std::vector<ChartRow>& rows) {
+  std::string html = heading("Good enough") +
+                     paragraph(
+                         "The cheapest model of which <i>every</i> observable of the scene lies so near to the "
+                         "finest model, and how many times as cheap as the default it is.") +
+                     "<div class=\"scroll\"><table class=\"facts\"><thead><tr><th>Scene</th>";
+  for (const double t : tolerances) html += fmt::format("<th>within {:g} %</th>", 100 * t);
+  html += "</tr></thead><tbody>\n";
+  for (const ChartScene& scene : chart_scenes()) {
+    const auto ours = std::find_if(points.begin(), points.end(), [&](const ChartPoint& p) {
+      return p.scene == scene.name && p.model == default_model && p.error.empty();
+    });
+    if (ours == points.end()) continue;
+    html += "<tr><th>" + escape_markup(scene.title) + "</th>";
+    for (const double t : tolerances) {
+      const ChartPoint* p = cheapest_within(scene, t, points, rows);
+      html += p ? fmt::format("<td>{} ({})</td>", escape_markup(p->model),
+                              number_text(ours->cpu_per_ns() / p->cpu_per_ns(), 2))
+                : "<td></td>";
+    }
+    html += "</tr>\n";
+  }
+  return html + "</tbody></table></div>\n";
+}
+
+std::string lead() {
+  return "What a model costs and how far off it is. Every dot is one model that differs from the default in one "
+         "knob, or "
+         "a combination of a few. Costs are CPU seconds of one thread per simulated nanosecond; a relaxation is "
+         "set "
+         "against the ramp and hold that it replaces. Errors are against our finest model (half the element "
+         "length, all "
+         "nodes, double precision) and, where atoms were run, against atoms. Both axes are "
+         "logarithmic; errors below 0.0001 % are drawn there. What lies on the front is beaten by no other in cost "
+         "without losing accuracy; a front holds for its scene and observable.";
+}
+
+}  // namespace
+
+std::string chart_page(const std::vector<ChartPoint>& points, const std::vector<std::string>& facts) {
+  const std::vector<ChartRow> rows = chart_rows(points);
+  Figures figures;
+  std::string html = page_head("Speed against accuracy") +
+                     "<body>\n<main>\n<p class=\"kicker\">Ropewalk: which knob pays</p>\n<h1>Speed against "
+                     "accuracy</h1>\n<p class=\"lead\">" +
+                     lead() + "</p>\n" + published_part(points, rows) + good_enough_part(points, rows);
+  for (const ChartScene& scene : chart_scenes()) {
+    std::string part;
+    for (const std::string& o : scene.observables)
+      for (const char* kind : {"md", "finest"})
+        if (!rows_of(rows, scene.name, o, kind).empty()) part += figure_html(scene, o, kind, rows, figures);
+    if (part.empty()) continue;
+    html += heading(scene.title) + paragraph(escape_markup(scene.setup)) + "<div class=\"pair\">\n" + part +
+            "</div>\n" + points_table(scene, points, rows);
+  }
+  html += heading("Other programs");
+  for (const Peer& peer : peers) html += paragraph(escape_markup(std::string(peer.remark) + "."));
+  html += heading("How it was made");
+  for (const std::string& f : facts) html += paragraph(escape_markup(f));
+  return html + "</main>\n</body>\n</html>\n";
+}
+
+}  // namespace ropewalk

@@ -1,0 +1,130 @@
+// `ropewalk validate chart`: the points one after another, each in a file of its own, and what is made of them.
+#include <fmt/format.h>
+
+#include <chrono>
+#include <filesystem>
+
+#include "chart/chart.hpp"
+#include "io/files.hpp"
+#include "model/error.hpp"
+#include "version.hpp"
+
+namespace ropewalk {
+namespace {
+
+namespace fs = std::filesystem;
+
+double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+struct Task {
+  const ChartScene* scene;
+  ChartModel model;
+  Specimen specimen;
+  ChartPoint point;  // as described
+  std::string path;
+  bool kept = false;
+};
+
+// For the time that is left: what a step costs differs by more than ten between models.
+double guessed_work(const Task& t) {
+  double each = 1;
+  if (t.model.law == ContactOptions::Law::paper) each = 2;
+  if (t.model.all_nodes) each = 3;
+  if (t.model.precision == Interaction::Precision::full) each *= 2;
+  if (!t.scene->contact) each = 0.3;
+  return each * t.point.elements * t.point.steps;
+}
+
+// Everything that the result depends on: program, scene and knobs.
+std::string key_of(const ChartPoint& described, const ChartArguments& a) {
+  return hash_hex(fmt::format("{} {} {}", git_id, point_json(described), a.instructions ? "counted" : ""));
+}
+
+void make_directory(const std::string& dir) {
+  std::error_code error;
+  if (fs::exists(dir, error) && !fs::is_directory(dir, error))
+    throw InputError({dir, 0, "--out"}, "exists and is not a directory", "choose another name");
+  fs::create_directories(fs::path(dir) / "points", error);
+  if (error)
+    throw InputError({dir, 0, "--out"}, fmt::format("cannot be made: {}", error.message()),
+                     "choose a place that you may write to");
+}
+
+std::vector<Task> tasks_of(const ChartArguments& a) {
+  std::vector<const ChartScene*> scenes;
+  for (const std::string& name : a.scenes) scenes.push_back(&find_chart_scene(name));
+  if (scenes.empty() && a.quick) scenes = {&find_chart_scene("tube-twist"), &find_chart_scene("crossed-tubes")};
+  if (scenes.empty())
+    for (const ChartScene& s : chart_scenes()) scenes.push_back(&s);
+  make_directory(a.out);
+  std::vector<Task> tasks;
+  for (const ChartScene* scene : scenes)
+    for (const ChartModel& model : chart_models(*scene, a.quick)) {
+      Task t{scene, model, scene->build(model), {}, {}, false};
+      t.point = describe(*scene, model, t.specimen);
+      t.point.key = key_of(t.point, a);
+      t.path = (fs::path(a.out) / "points" / fmt::format("{}--{}.json", scene->name, model.name)).string();
+      t.kept = !a.again && fs::exists(t.path) && read_point(t.path).key == t.point.key;
+      tasks.push_back(std::move(t));
+    }
+  return tasks;
+}
+
+void run_task(Task& t, const ChartArguments& a) {
+  try {
+    measure(t.specimen, t.model, t.point);
+    if (a.instructions) t.point.instructions = count_instructions(*t.scene, t.model, a.out);
+  } catch (const NumericalError& e) {
+    t.point.error = e.what();
+  }
+  write_file_atomically(t.path, point_json(t.point));
+}
+
+// All points that lie in the directory, in the order of scenes and models.
+std::vector<ChartPoint> points_in(const std::string& dir) {
+  std::vector<ChartPoint> points;
+  for (const ChartScene& scene : chart_scenes())
+    for (const ChartModel& model : chart_models(scene, false)) {
+      const fs::path path = fs::path(dir) / "points" / fmt::format("{}--{}.json", scene.name, model.name);
+      if (fs::exists(path)) points.push_back(read_point(path.string()));
+    }
+  return points;
+}
+
+void write_chart(const std::string& dir) {
+  const std::vector<ChartPoint> points = points_in(dir);
+  const std::vector<std::string> facts = {fmt::format("Ropewalk {} ({}), {}, {}; one thread, process CPU time.",
+                                                      version, git_id, compiler, build_type)};
+  write_file_atomically(dir + "/points.csv", points_csv(chart_rows(points)));
+  write_file_atomically(dir + "/chart.html", chart_page(points, facts));
+}
+
+}  // namespace
+
+int chart_command(const ChartArguments& a) {
+  std::vector<Task> tasks = tasks_of(a);
+  double left = 0, done = 0;
+  for (const Task& t : tasks)
+    if (!t.kept) left += guessed_work(t);
+  const double begin = now();
+  std::size_t number = 0;
+  for (Task& t : tasks) {
+    ++number;
+    if (!a.quiet) {
+      const double eta = done > 0 ? (now() - begin) / done * left : 0;
+      fmt::print(stderr, "{}/{} {} {}{}{}\n", number, tasks.size(), t.scene->name, t.model.name,
+                 t.kept ? ": kept" : "", eta > 5 ? fmt::format(", about {:.0f} s left", eta) : "");
+    }
+    if (t.kept) continue;
+    run_task(t, a);
+    if (!a.quiet && !t.point.error.empty()) fmt::print(stderr, "    {}\n", t.point.error);
+    done += guessed_work(t);
+    left -= guessed_work(t);
+    write_chart(a.out);
+  }
+  write_chart(a.out);
+  fmt::print("Chart: {0}/chart.html, numbers: {0}/points.csv\n", a.out);
+  return 0;
+}
+
+}  // namespace ropewalk

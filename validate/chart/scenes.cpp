@@ -1,0 +1,335 @@
+// The scenes of the chart: what is built, held and turned.
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "cases/chains.hpp"
+#include "cases/md_rope.hpp"
+#include "chart/chart.hpp"
+#include "core/reference.hpp"
+#include "io/data_files.hpp"
+#include "io/parameters_toml.hpp"
+#include "io/toml_table.hpp"
+#include "model/error.hpp"
+#include "scene/build.hpp"
+
+namespace ropewalk {
+namespace {
+
+constexpr const char* set_name = "cnt-10-10-tersoff";
+constexpr double element = 1.356;                  // nm, of the published model: the default in all scenes
+constexpr double viscosity_reach = 1.5;            // spacings, as a scene has it
+constexpr double tube_twist_rate = 0.04127579842;  // rad/nm: a row of tube-twist.csv, in the elastic window
+constexpr double tube_length = 32 * element;       // nm
+constexpr double ring_length = 48 * element, ring_twist = 6;  // nm, rad: half of what makes it leave its plane
+constexpr double rope_length = 30 * element;                  // nm
+constexpr double rope_angle = 90 * units::degree;
+constexpr double crossed_length = 8 * element;        // nm
+constexpr double crossed_from = 90, crossed_to = 30;  // degrees
+constexpr std::size_t md_increment = 4;               // of rope-7-10-10: 18 degrees
+
+// Viscosity of one tube against a neighbour, per length.
+double viscosity_per_length(const ContactViscosity& viscosity, double spacing, double element_length) {
+  const int reach = static_cast<int>(viscosity.outer / element_length) + 1;
+  double sum = 0;
+  for (int k = -reach; k <= reach; ++k) sum += viscosity.weight(std::hypot(spacing, k * element_length));
+  return viscosity.eta * sum / element_length;
+}
+
+// A model's damping is that of elements of the default length. Constants of a pair and of a bond belong to a
+// length: others are needed for the same dissipation in the tubes and between them.
+void scale_damping(Specimen& s) {
+  Damping& damping = s.scene.damping;
+  damping.contact.inner = s.spacing;
+  damping.contact.outer = viscosity_reach * s.spacing;
+  const double a = s.scene.element_length;
+  if (damping.contact.eta > 0)
+    damping.contact.eta *= viscosity_per_length(damping.contact, s.spacing, element) /
+                           viscosity_per_length(damping.contact, s.spacing, a);
+  damping.bond.rate *= element * element / (a * a);
+}
+
+// What the knobs say, once topology and spacing are known.
+void settle(const ChartModel& model, Specimen& s) {
+  scale_damping(s);
+  s.interaction = interaction_of(s.scene);
+  const double limit =
+      inner_step_limit(time_step_limit(s.topology, s.interaction, s.spacing), model.stepping.contact_every);
+  s.time_step = model.time_step > 0 ? model.time_step : model.step_fraction * limit;
+  if (s.time_step >= limit)
+    throw InputError({"", 0, model.name},
+                     fmt::format("{:.4g} fs is not below the stability limit of {:.4g} fs", s.time_step / units::fs,
+                                 limit / units::fs),
+                     "take a smaller step");
+}
+
+// None longer than asked for.
+int bonds_of(const ChartModel& model, double length) {
+  return static_cast<int>(std::ceil(length / (element * model.length) - 1e-6));
+}
+
+// Parallel tubes along z, hexagonally packed, centred; `beyond` more elements on either side of the deforming
+// length.
+Specimen parallel_tubes(const ChartModel& model, int tubes, double length, double band) {
+  Specimen s;
+  const int bonds = bonds_of(model, length);
+  const double a = length / bonds;
+  s.scene = knobs_of(model, set_name, a);
+  s.topology = empty_topology(s.scene);
+  s.spacing = tubes > 1 ? rest_spacing(s.scene) : 0;
+  const int beyond = std::max(0, static_cast<int>(std::lround(band / a - 0.5)));
+  const int elements = bonds + 1 + 2 * beyond;
+  s.state = State(static_cast<std::size_t>(tubes * elements));
+  for (const auto& [x, y] : hexagonal_lattice(tubes, s.spacing)) {
+    const int first = s.topology.elements();
+    s.topology.add_tube(elements);
+    for (int e = 0; e < elements; ++e) {
+      s.state.position.set(static_cast<std::size_t>(first + e), {x, y, (e - 0.5 * (elements - 1)) * a});
+      s.place.push_back(std::clamp((e - beyond) / double(bonds), 0.0, 1.0) - 0.5);
+      if (e <= beyond || e >= bonds + beyond) s.grips.push_back(first + e);
+    }
+  }
+  settle(model, s);
+  return s;
+}
+
+// --- tube-twist ---
+
+Specimen twisted_tube(const ChartModel& model) {
+  Specimen s = parallel_tubes(model, 1, tube_length, 0);
+  s.angle = tube_twist_rate * tube_length;
+  s.ramp = 200;
+  s.hold = 50;
+  s.interior_follows = false;
+  s.increments = 4;
+  return s;
+}
+
+std::vector<ChartReference> atoms_of_tube() {
+  const ReferenceTable t = read_reference(data_directory() + "/references/tube-twist.csv");
+  const std::vector<double> n = t.column("n"), twist = t.column("twist_rad_per_nm"),
+                            energy = t.column("energy_eV_per_nm");
+  for (std::size_t k = 0; k < n.size(); ++k)
+    if (n[k] == 10 && std::fabs(twist[k] - tube_twist_rate) < 1e-9) return {{"energy", energy[k] * tube_length}};
+  throw InputError({"tube-twist.csv", 0, ""}, fmt::format("has no row at {} rad/nm", tube_twist_rate),
+                   "restore the shipped file");
+}
+
+// --- rope7-md ---
+
+Specimen seven_tubes(const ChartModel& model) {
+  const TwistedRope rope = rope_7_10_10();
+  const ParameterSet set = read_parameters(find_parameters(rope.parameters, ""));
+  Specimen s = parallel_tubes(model, 7, clamped_length(rope, set), (rope.band_rows - 0.5) * row_distance(set));
+  s.angle = md_increment * rope.step;
+  s.ramp = 60;
+  s.hold = 30;
+  s.increments = md_increment;
+  return s;
+}
+
+std::vector<ChartReference> atoms_of_seven_tubes() {
+  const ReferenceTable t = read_reference(data_directory() + "/references/" + rope_7_10_10().name + ".csv");
+  const std::vector<TwistedState> states = states_of(t, false);
+  const TwistedState& at = states.at(md_increment);
+  return {{"energy", at.total - states[0].total}, {"end_moment", at.moment * units::eV_in_nN_nm}};
+}
+
+// --- rope91 ---
+
+Specimen rope_of_91(const ChartModel& model) {
+  Specimen s = parallel_tubes(model, 91, rope_length, 0);
+  s.angle = rope_angle;
+  s.axial_free = true;
+  s.ramp = 40;
+  s.hold = 20;
+  s.increments = 15;
+  return s;
+}
+
+// --- crossed-tubes ---
+
+// One tube along x, the other at an angle above it; the crossing on the axis z.
+Specimen crossed_tubes(const ChartModel& model) {
+  Specimen s;
+  const int bonds = bonds_of(model, crossed_length);
+  const double a = crossed_length / bonds;
+  s.scene = knobs_of(model, set_name, a);
+  s.topology = empty_topology(s.scene);
+  s.spacing = rest_spacing(s.scene);
+  s.state = State(static_cast<std::size_t>(2 * (bonds + 1)));
+  const ReferenceTable atoms = read_reference(data_directory() + "/references/crossed-tubes.csv");
+  const double distance = atoms.column("distance_nm")[2];  // where tubes at 90 degrees rest
+  for (const int tube : {0, 1}) {
+    const double angle = tube * crossed_from * units::degree;
+    const Vector3 along(std::cos(angle), std::sin(angle), 0);
+    const int first = s.topology.elements();
+    s.topology.add_tube(bonds + 1);
+    for (int e = 0; e <= bonds; ++e) {
+      const auto i = static_cast<std::size_t>(first + e);
+      s.state.position.set(i, (e - 0.5 * bonds) * a * along + Vector3(0, 0, tube * distance));
+      s.state.orientation.set(i, Quaternion::FromTwoVectors(Vector3::UnitZ(), along));
+      s.place.push_back(tube);
+    }
+    s.grips.push_back(first);
+    s.grips.push_back(first + bonds);
+  }
+  s.angle = (crossed_to - crossed_from) * units::degree;
+  s.ramp = 300;
+  s.hold = 100;
+  s.increments = 6;
+  s.moment_resists = false;
+  s.above_start = false;
+  settle(model, s);
+  return s;
+}
+
+std::vector<ChartReference> atoms_of_crossed_tubes() {
+  const ReferenceTable t = read_reference(data_directory() + "/references/crossed-tubes.csv");
+  const std::vector<double> angle = t.column("angle_deg"), energy = t.column("energy_eV"),
+                            torque = t.column("torque_eV_per_rad");
+  const auto first = std::find(angle.begin(), angle.end(), crossed_to) - angle.begin();
+  const auto at_rest = static_cast<std::size_t>(first) + 2;
+  return {{"energy", energy.at(at_rest)}, {"end_moment", torque.at(at_rest) * units::eV_in_nN_nm}};
+}
+
+// --- ring ---
+
+// Round the line y through (R, 0, 0), from the origin along z and back to it: both ends in one place.
+Specimen closed_ring(const ChartModel& model) {
+  Specimen s;
+  const int bonds = bonds_of(model, ring_length);
+  const double a = ring_length / bonds, step = 2 * units::pi / bonds;
+  s.scene = knobs_of(model, set_name, a);
+  s.topology = empty_topology(s.scene);
+  s.topology.add_tube(bonds + 1);
+  s.state = State(static_cast<std::size_t>(bonds + 1));
+  const double radius = 0.5 * a / std::sin(0.5 * step);
+  for (int e = 0; e <= bonds; ++e) {
+    const auto i = static_cast<std::size_t>(e);
+    s.state.position.set(i, {radius * (1 - std::cos(e * step)), 0, radius * std::sin(e * step)});
+    s.state.orientation.set(i, turn_about(Vector3::UnitY(), e * step));
+    s.place.push_back(e / double(bonds) - 0.5);
+  }
+  s.about_itself = true;
+  s.grips = {0, bonds};
+  s.angle = ring_twist;
+  s.ramp = 200;
+  s.hold = 50;
+  s.interior_follows = false;
+  s.increments = 6;
+  s.above_start = false;
+  settle(model, s);
+  return s;
+}
+
+std::vector<ChartScene> all_scenes() {
+  return {
+      {"tube-twist",
+       "One tube, twisted",
+       fmt::format(
+           "One (10,10) tube of {:.4g} nm between its grips, twisted by {:.4g} rad ({:.3g} rad/nm, inside of "
+           "the elastic window) in 200 ps and held for 50. Atoms: a uniformly twisted periodic cell of the "
+           "same twist, energy per length times this length.",
+           tube_length, tube_twist_rate * tube_length, tube_twist_rate),
+       false,
+       {"energy", "end_moment"},
+       twisted_tube,
+       atoms_of_tube},
+      {"rope7-md",
+       "Seven tubes against atoms",
+       "Seven (10,10) tubes of 8.11 nm between rigid grips that keep their distance, turned by 18 degrees in 60 ps "
+       "and held for 30. Atoms: the same rope in LAMMPS (case rope-7-10-10), Tersoff inside of tubes and "
+       "Lennard-Jones between them, minimised at each increment.",
+       true,
+       {"energy", "end_moment", "beta", "spacing", "bending_moment"},
+       seven_tubes,
+       atoms_of_seven_tubes},
+      {"rope91",
+       "91 tubes of 41 nm",
+       "91 (10,10) tubes of 40.7 nm between grips that turn as rigid discs by 90 degrees in 40 ps and are held "
+       "for 20; each tube is free along the axis at its grip, so that tubes slide.",
+       true,
+       {"energy", "beta", "spacing", "end_moment", "bending_moment", "Q"},
+       rope_of_91,
+       {}},
+      {"crossed-tubes",
+       "Two crossed tubes",
+       "Two (10,10) tubes of 10.8 nm between held ends, crossed at 90 degrees and the distance at which they rest "
+       "there; the ends of one are turned to 30 degrees in 300 ps and held for 100. Energy of contact and bonds; "
+       "the "
+       "end moment is that with which the tubes turn towards parallel. Atoms: frozen tubes at this distance and "
+       "angle, mean over registries (case crossed-tubes); bending between the held ends adds less than 1 %.",
+       true,
+       {"energy", "end_moment", "spacing"},
+       crossed_tubes,
+       atoms_of_crossed_tubes},
+      {"ring",
+       "A tube closed to a ring, twisted",
+       fmt::format("One (10,10) tube of {:.4g} nm bent into a circle, both ends held in one place; the ends are "
+                   "turned against each other by {:g} rad in 200 ps, half of the twist at which a ring leaves its "
+                   "plane, and held for 50. Energy above that of the straight tube.",
+                   ring_length, ring_twist),
+       false,
+       {"energy", "end_moment", "bending_moment"},
+       closed_ring,
+       {}},
+  };
+}
+
+}  // namespace
+
+Drive Specimen::held() const {
+  Drive drive;
+  for (const int e : grips) drive.fixed.push_back({e, true, true, !axial_free, true});
+  return drive;
+}
+
+Drive Specimen::turned() const {
+  Drive drive;
+  std::set<double> places;
+  for (const int e : grips) places.insert(place[static_cast<std::size_t>(e)]);
+  for (const double part : places) {
+    Turned load;
+    for (const int e : grips)
+      if (place[static_cast<std::size_t>(e)] == part) load.elements.push_back(e);
+    load.angle = part * angle;
+    load.rate = load.angle / ramp;
+    load.axial_free = axial_free;
+    if (part != 0)
+      drive.turned.push_back(load);
+    else
+      for (const int e : load.elements) drive.fixed.push_back({e, true, true, !axial_free, true});
+  }
+  return drive;
+}
+
+const std::vector<ChartScene>& chart_scenes() {
+  static const std::vector<ChartScene> scenes = all_scenes();
+  return scenes;
+}
+
+const ChartScene& find_chart_scene(const std::string& name) {
+  std::vector<std::string> names;
+  std::string all;
+  for (const ChartScene& s : chart_scenes()) {
+    if (s.name == name) return s;
+    names.push_back(s.name);
+    all += (all.empty() ? "" : ", ") + s.name;
+  }
+  const std::string near = nearest_word(name, names);
+  throw InputError({"", 0, "--scenes"}, fmt::format("there is no scene \"{}\"", printable(name, 60)),
+                   near.empty() ? "choose of " + all : fmt::format("did you mean \"{}\"?", near));
+}
+
+std::string observable_unit(const std::string& observable) {
+  static const std::map<std::string, std::string> units = {
+      {"energy", "eV"}, {"beta", "deg"}, {"spacing", "nm"}, {"end_moment", "nN nm"}, {"bending_moment", "nN nm"},
+      {"Q", "1"}};
+  return units.at(observable);
+}
+
+}  // namespace ropewalk
