@@ -104,9 +104,8 @@ int make_plan(const PlanArguments& a) {
   const Plan plan = plan_scene(scene, read_chart(a.chart.empty() ? data_directory() + "/chart" : a.chart), request);
   const Scene planned = scene_of_text(plan.text, path);
   say(plan, request);
-  const Timing before = time_of(scene), after = time_of(planned);
-  say_time("scene as it stands", before);
-  say_time("planned", after);
+  say_time("scene as it stands", time_of(scene));
+  say_time("planned", time_of(planned));
   write_file_atomically(path, plan.text);
   fmt::print("{0} written. Go on with: ropewalk run {0} --out RUN; ropewalk plan --check RUN\n", path);
   return 0;

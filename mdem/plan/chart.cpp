@@ -60,7 +60,7 @@ class Csv {
     const std::string& cell = text(row, column);
     double v = 0;
     const auto [end, code] = std::from_chars(cell.data(), cell.data() + cell.size(), v);
-    if (code != std::errc() || end != cell.data() + cell.size() || !std::isfinite(v))
+    if (code != std::errc() || end != cell.data() + cell.size())
       fail(column, fmt::format("\"{}\" is not a number", printable(cell, 40)));
     return v;
   }
@@ -97,10 +97,11 @@ ChartedModel model_of(Csv& csv, std::size_t row) {
   m.elements = csv.integer(row, "elements");
   m.cpu_per_ns = csv.number(row, "cpu_s_per_ns");
   m.ns_per_element_step = csv.number(row, "cpu_ns_per_element_step");
-  if (!(m.cpu_per_ns > 0)) csv.fail("cpu_s_per_ns", "is not positive");
-  if (!(m.ns_per_element_step > 0)) csv.fail("cpu_ns_per_element_step", "is not positive");
   return m;
 }
+
+// A relaxation that was at rest at once has no cost of a step, and a model that broke down no values.
+bool usable(double cost) { return std::isfinite(cost) && cost > 0; }
 
 void read_points(const std::string& path, std::vector<ChartedScene>& scenes) {
   Csv csv(path);
@@ -111,14 +112,17 @@ void read_points(const std::string& path, std::vector<ChartedScene>& scenes) {
     if (scene == scenes.end())
       csv.fail("scene", fmt::format("scenes.csv does not say what \"{}\" covers", printable(name, 40)));
     const ChartedModel read = model_of(csv, row);
+    if (!usable(read.cpu_per_ns) || !usable(read.ns_per_element_step)) continue;
     auto model = std::find_if(scene->models.begin(), scene->models.end(),
                               [&](const ChartedModel& m) { return m.name == read.name; });
     if (model == scene->models.end()) model = scene->models.insert(scene->models.end(), read);
     const std::string& kind = csv.text(row, "reference_kind");
     if (kind != "finest" && kind != "md") csv.fail("reference_kind", "is neither finest nor md");
     auto& values = kind == "md" ? model->atoms : model->finest;
-    values[csv.text(row, "observable")] = {csv.text(row, "unit"), csv.number(row, "value"),
-                                           csv.number(row, "reference"), csv.number(row, "error")};
+    const ChartedValue v{csv.text(row, "unit"), csv.number(row, "value"), csv.number(row, "reference"),
+                         csv.number(row, "error")};
+    if (std::isfinite(v.value) && std::isfinite(v.reference) && std::isfinite(v.error))
+      values[csv.text(row, "observable")] = v;
   }
 }
 

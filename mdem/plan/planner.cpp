@@ -373,7 +373,10 @@ class Writer {
 };
 
 std::string header_of(const Plan& plan, const PlanRequest& request) {
-  std::string text = fmt::format("# Planned for an error of {:g} %.\n", 100 * request.error);
+  if (plan.stands_for.empty()) return "# The default model: the chart has no scene like this one.\n";
+  std::string text =
+      fmt::format("# Planned for an error of {:g} %{}, by scene {} of the chart.\n", 100 * request.error,
+                  plan.holds ? "" : ", which it does not hold", plan.stands_for);
   for (const auto& [name, error] : plan.expected) text += fmt::format("# plan: expect {} {:.6g}\n", name, error);
   return text;
 }

@@ -69,6 +69,7 @@ TEST(Chart, FaultsAreNamed) {
     return text.replace(at, from.size(), to);
   };
   EXPECT_EQ(fault(points, scenes), "read");
+  EXPECT_EQ(fault(with(points, ",500,", ",inf,"), scenes), "read") << "no step was made: left out";
   EXPECT_THAT(fault(with(points, "cpu_s_per_ns", "cpu"), scenes),
               HasSubstr("cpu_s_per_ns: there is no such column"));
   EXPECT_THAT(fault(with(points, ",dynamics,20,", ",dynamics,"), scenes),
