@@ -124,6 +124,38 @@ TEST(Plan, GoesCoarserAndFinerWithTheError) {
   EXPECT_NEAR(angle.expected.at("beta"), 0.015, 1e-9);
 }
 
+TEST(Plan, StartsFromTheDefaultWhateverTheSceneHas) {
+  const std::string costly = bundle +
+                             "time_step_fs = 3\ncontact_every = 2\nmass_scale = 9\nintegrator = \"rk4\"\n"
+                             "[contact]\nnodes_per_element = 9\ncutoff_nm = 2.5\nprecision = \"double\"\n";
+  const Plan p = planned(costly, 0.0125), same = planned(bundle, 0.0125);
+  EXPECT_EQ(p.expected, same.expected);
+  const Scene s = scene_from(p.text), t = scene_from(same.text);
+  EXPECT_EQ(s.run.mass_scale, 1);
+  EXPECT_EQ(s.run.stepping.contact_every, 1);
+  EXPECT_FALSE(s.run.stepping.runge_kutta);
+  EXPECT_EQ(s.contact.nodes, t.contact.nodes);
+  EXPECT_EQ(s.contact.cutoff, 0);
+  EXPECT_FALSE(s.contact.precision);
+  EXPECT_EQ(s.run.time_step, t.run.time_step);
+}
+
+// Elements that must stay count as the next longer ones of the chart.
+TEST(Plan, LongElementsThatStayHaveTheirPrice) {
+  const auto of_length = [](double length) {
+    return fmt::format(
+        "{}element_length_nm = {}\n[rope]\ntubes = 7\nlength_nm = 40\n[[load]]\nkind = \"torque\"\nelements = [3]\n"
+        "torque_nN_nm = [0, 0, 1]\n[run]\nduration_ps = 10\n",
+        head, length);
+  };
+  const Plan p = planned(of_length(2.5), 0.0285);
+  EXPECT_NEAR(p.expected.at("energy"), 0.024 + 0.001 + 0.003, 1e-9);
+  EXPECT_EQ(scene_from(p.text).element_length, 2.5);
+  const Plan longer = planned(of_length(5), 0.03);
+  EXPECT_TRUE(longer.stands_for.empty());
+  EXPECT_THAT(fmt::format("{}", fmt::join(longer.why, "\n")), HasSubstr("longer than any in scene bundle"));
+}
+
 TEST(Plan, KeepsEnoughElements) {
   std::string brief = bundle;
   brief.replace(brief.find("27.2"), 4, "13.6");
