@@ -95,6 +95,7 @@ ChartedModel model_of(Csv& csv, std::size_t row) {
   m.mode = csv.text(row, "mode");
   m.precision = csv.text(row, "precision");
   m.elements = csv.integer(row, "elements");
+  m.simulated = csv.number(row, "simulated_ps");
   m.cpu_per_ns = csv.number(row, "cpu_s_per_ns");
   m.ns_per_element_step = csv.number(row, "cpu_ns_per_element_step");
   return m;

@@ -139,6 +139,12 @@ bool long_enough(const ChartedScene& c, const ChartedModel& m, const Scene& scen
   return elements > std::min(8.0, static_cast<double>(m.elements) / c.tubes) - 0.5;
 }
 
+// Heavy tubes follow a motion that gives their waves as much time as in the chart.
+bool slow_enough(const ChartedScene& c, const ChartedModel& m, const SceneFeatures& f) {
+  const double length = m.elements * m.element_length / c.tubes;
+  return f.duration / f.length > 0.9 * m.simulated / length;
+}
+
 bool applies(const std::string& knob, const ChartedScene& c, const ChartedModel& m, const Scene& scene,
              const SceneFeatures& f, const PlanRequest& request) {
   const ChartedModel& standard = *c.standard();
@@ -148,7 +154,7 @@ bool applies(const std::string& knob, const ChartedScene& c, const ChartedModel&
     if (knob == "levels" && scene.damping.local > 0) return false;
   }
   if (knob == "length") return !fixed_length(scene).empty() || long_enough(c, m, scene);
-  if (knob == "mass") return request.end_state && scene.temperature == 0;
+  if (knob == "mass") return request.end_state && scene.temperature == 0 && !f.sudden && slow_enough(c, m, f);
   if (knob == "mode") return request.end_state && needs_time(scene).empty();
   return true;
 }
@@ -459,6 +465,8 @@ Plan plan_scene(const Scene& scene, const std::vector<ChartedScene>& chart, cons
     for (std::size_t k = 0; k < knobs.size(); ++k) w.turn(knobs[k], *choice.options[k], *c->standard());
     if (!fixed_length(scene).empty()) w.remark("element length stays: " + fixed_length(scene));
     if (request.end_state && !needs_time(scene).empty()) w.remark("no relaxation: " + needs_time(scene));
+    if (request.end_state && f.sudden)
+      w.remark("masses stay: a load acts at once, and heavy tubes swing for longer");
     plan.expected = choice.error;
     plan.holds = choice.largest() <= request.error;
     plan.cost = choice.cost;

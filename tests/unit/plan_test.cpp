@@ -183,10 +183,16 @@ TEST(Plan, ForAnEndStateTimeIsFree) {
   EXPECT_EQ(scene_from(end.text).run.mode, RunOptions::Mode::relax);
   EXPECT_LT(end.cost, moving.cost);
   // A ramp needs its time, but not the tubes' own mass.
-  const Plan ramped = planned(bundle, 0.03, true);
+  std::string slow = bundle;
+  slow.replace(slow.find("[run]"), 5, "hold_ps = 20\n[run]");
+  const Plan ramped = planned(slow, 0.03, true);
   EXPECT_EQ(scene_from(ramped.text).run.mode, RunOptions::Mode::dynamics);
   EXPECT_EQ(scene_from(ramped.text).run.mass_scale, 100);
-  EXPECT_EQ(scene_from(planned(bundle, 0.03).text).run.mass_scale, 1);
+  EXPECT_EQ(scene_from(planned(slow, 0.03).text).run.mass_scale, 1);
+  EXPECT_EQ(scene_from(planned(bundle, 0.03, true).text).run.mass_scale, 1) << "too fast for heavy tubes";
+  std::string sudden = slow;
+  sudden.replace(sudden.find("per_ps = 1"), 10, "per_ps = 0");
+  EXPECT_EQ(scene_from(planned(sudden, 0.03, true).text).run.mass_scale, 1);
 }
 
 TEST(Plan, DropsTheContactOfALoneTube) {
