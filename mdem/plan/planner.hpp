@@ -3,7 +3,7 @@
 // Of the scenes of the chart that cover the scene, the nearest one stands for it. A knob turned from its best value
 // b to o changes an observable by |value(o) - value(b)| there; the changes of several knobs are added up with their
 // sizes, and so is what of the default's error against the finest model no knob explains. Costs are multiplied.
-// That changes add up is an assumption, on the safe side where they would cancel; `check_plan` looks.
+// That changes add up is an assumption, on the safe side where they would cancel; spot_check() looks.
 #pragma once
 
 #include <map>
