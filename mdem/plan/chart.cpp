@@ -148,6 +148,9 @@ std::vector<ChartedScene> read_chart(const std::string& directory) {
     s.twist = csv.number(row, "twist_rad_per_nm");
     s.crossing_from = csv.number(row, "crossing_from_deg");
     s.crossing_to = csv.number(row, "crossing_to_deg");
+    const std::string& from = csv.text(row, "energy_from");
+    if (from != "start" && from != "zero") csv.fail("energy_from", "is neither start nor zero");
+    s.energy_above_start = from == "start";
     scenes.push_back(std::move(s));
   }
   read_points(directory + "/points.csv", scenes);

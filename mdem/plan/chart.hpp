@@ -40,6 +40,7 @@ struct ChartedScene {
   double radius = 0;                          // nm
   double curvature = 0, twist = 0;            // 1/nm, rad/nm
   double crossing_from = 0, crossing_to = 0;  // deg
+  bool energy_above_start = true;             // or all of it
   std::vector<ChartedModel> models;
 
   // Of kind "default"; null where there is none.

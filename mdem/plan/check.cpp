@@ -123,6 +123,7 @@ class Observed {
   void add(const Simulation& s) {
     ++count_;
     sums_["energy"] += s.forces().energy.potential() - zero_;
+    sums_["total_energy"] += s.forces().energy.potential();
     sums_["bending_moment"] += bending_moment(m_.topology, s.state());
     if (const auto moment = end_moment(m_.drive, s)) sums_["end_moment"] += *moment;
     if (m_.topology.tubes() < 3) return;

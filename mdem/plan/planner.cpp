@@ -393,7 +393,9 @@ std::string header_of(const Plan& plan, const PlanRequest& request) {
   std::string text =
       fmt::format("# Planned for an error of {:g} %{}, by scene {} of the chart.\n", 100 * request.error,
                   plan.holds ? "" : ", which it does not hold", plan.stands_for);
-  for (const auto& [name, error] : plan.expected) text += fmt::format("# plan: expect {} {:.6g}\n", name, error);
+  for (const auto& [name, error] : plan.expected)
+    text += fmt::format("# plan: expect {} {:.6g}\n",
+                        name == "energy" && !plan.energy_above_start ? "total_energy" : name, error);
   return text;
 }
 
@@ -459,6 +461,7 @@ Plan plan_scene(const Scene& scene, const std::vector<ChartedScene>& chart, cons
     plan.why.push_back("no point of the chart is near: the default model is taken, and no error is promised");
   } else {
     plan.stands_for = c->name;
+    plan.energy_above_start = c->energy_above_start;
     const std::vector<std::string> observables = observables_of(*c, request);
     const std::vector<Knob> knobs = knobs_of(*c, scene, f, request, observables);
     const Choice choice = choose(knobs, unexplained(*c, knobs, observables), request.error, *c->standard());

@@ -25,6 +25,7 @@ struct Plan {
   std::string stands_for;                  // scene of the chart; empty: none is near, and the model is the default
   bool holds = false;                      // whether the error is held, as the chart has it
   std::map<std::string, double> expected;  // error by observable
+  bool energy_above_start = true;          // what "energy" is there
   std::map<std::string, double> atoms;     // that of the chart's default model against atoms, where it has it
   double ns_per_element_step = 0;          // of CPU time, on the chart's machine
   double cost = 1;                         // CPU time per simulated time, in that of the default model

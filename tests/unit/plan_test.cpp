@@ -77,6 +77,8 @@ TEST(Chart, FaultsAreNamed) {
   EXPECT_THAT(fault(with(points, "2.83", "x"), scenes),
               HasSubstr("points.csv:2: cutoff_nm: \"x\" is not a number"));
   EXPECT_THAT(fault(with(points, "finest,0", "oracle,0"), scenes), HasSubstr("neither finest nor md"));
+  EXPECT_THAT(fault(points, with(scenes, "5,start", "5,zero")), HasSubstr("read"));
+  EXPECT_THAT(fault(points, with(scenes, "5,start", "5,sea")), HasSubstr("energy_from: is neither start nor zero"));
   EXPECT_THAT(fault(points, with(scenes, "tube,0", "pipe,0")), HasSubstr("does not say what \"tube\" covers"));
   EXPECT_THAT(fault("", scenes), HasSubstr("is empty"));
   std::filesystem::remove_all(folder);
