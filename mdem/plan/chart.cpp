@@ -60,7 +60,7 @@ class Csv {
     const std::string& cell = text(row, column);
     double v = 0;
     const auto [end, code] = std::from_chars(cell.data(), cell.data() + cell.size(), v);
-    if (code != std::errc() || end != cell.data() + cell.size() || !std::isfinite(v))
+    if (code != std::errc() || end != cell.data() + cell.size())
       fail(column, fmt::format("\"{}\" is not a number", printable(cell, 40)));
     return v;
   }
@@ -95,12 +95,14 @@ ChartedModel model_of(Csv& csv, std::size_t row) {
   m.mode = csv.text(row, "mode");
   m.precision = csv.text(row, "precision");
   m.elements = csv.integer(row, "elements");
+  m.simulated = csv.number(row, "simulated_ps");
   m.cpu_per_ns = csv.number(row, "cpu_s_per_ns");
   m.ns_per_element_step = csv.number(row, "cpu_ns_per_element_step");
-  if (!(m.cpu_per_ns > 0)) csv.fail("cpu_s_per_ns", "is not positive");
-  if (!(m.ns_per_element_step > 0)) csv.fail("cpu_ns_per_element_step", "is not positive");
   return m;
 }
+
+// A relaxation that was at rest at once has no cost of a step, and a model that broke down no values.
+bool usable(double cost) { return std::isfinite(cost) && cost > 0; }
 
 void read_points(const std::string& path, std::vector<ChartedScene>& scenes) {
   Csv csv(path);
@@ -111,14 +113,17 @@ void read_points(const std::string& path, std::vector<ChartedScene>& scenes) {
     if (scene == scenes.end())
       csv.fail("scene", fmt::format("scenes.csv does not say what \"{}\" covers", printable(name, 40)));
     const ChartedModel read = model_of(csv, row);
+    if (!usable(read.cpu_per_ns) || !usable(read.ns_per_element_step)) continue;
     auto model = std::find_if(scene->models.begin(), scene->models.end(),
                               [&](const ChartedModel& m) { return m.name == read.name; });
     if (model == scene->models.end()) model = scene->models.insert(scene->models.end(), read);
     const std::string& kind = csv.text(row, "reference_kind");
     if (kind != "finest" && kind != "md") csv.fail("reference_kind", "is neither finest nor md");
     auto& values = kind == "md" ? model->atoms : model->finest;
-    values[csv.text(row, "observable")] = {csv.text(row, "unit"), csv.number(row, "value"),
-                                           csv.number(row, "reference"), csv.number(row, "error")};
+    const ChartedValue v{csv.text(row, "unit"), csv.number(row, "value"), csv.number(row, "reference"),
+                         csv.number(row, "error")};
+    if (std::isfinite(v.value) && std::isfinite(v.reference) && std::isfinite(v.error))
+      values[csv.text(row, "observable")] = v;
   }
 }
 
@@ -143,6 +148,9 @@ std::vector<ChartedScene> read_chart(const std::string& directory) {
     s.twist = csv.number(row, "twist_rad_per_nm");
     s.crossing_from = csv.number(row, "crossing_from_deg");
     s.crossing_to = csv.number(row, "crossing_to_deg");
+    const std::string& from = csv.text(row, "energy_from");
+    if (from != "start" && from != "zero") csv.fail("energy_from", "is neither start nor zero");
+    s.energy_above_start = from == "start";
     scenes.push_back(std::move(s));
   }
   read_points(directory + "/points.csv", scenes);

@@ -26,6 +26,7 @@ struct ChartedModel {
   double cutoff = 0, element_length = 0;  // nm
   double time_step = 0;                   // fs
   double mass_scale = 1;
+  double simulated = 0;                        // ps
   double cpu_per_ns = 0;                       // s
   double ns_per_element_step = 0;              // of CPU time
   std::map<std::string, ChartedValue> finest;  // by observable, against the finest model
@@ -39,6 +40,7 @@ struct ChartedScene {
   double radius = 0;                          // nm
   double curvature = 0, twist = 0;            // 1/nm, rad/nm
   double crossing_from = 0, crossing_to = 0;  // deg
+  bool energy_above_start = true;             // or all of it
   std::vector<ChartedModel> models;
 
   // Of kind "default"; null where there is none.

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
-#include "model/error.hpp"
 #include "observe/observe.hpp"
 #include "plan/planner.hpp"
 
@@ -100,6 +100,21 @@ double bending_moment(const Topology& topology, const State& s) {
   return topology.bonds() > 0 ? sum / topology.bonds() * units::eV_in_nN_nm : 0.0;
 }
 
+// What the element group that turns farthest resists with, about its axis, nN nm. None where nothing is turned.
+std::optional<double> end_moment(const Drive& drive, const Simulation& s) {
+  const auto last =
+      std::max_element(drive.turned.begin(), drive.turned.end(),
+                       [](const Turned& a, const Turned& b) { return std::fabs(a.angle) < std::fabs(b.angle); });
+  if (last == drive.turned.end()) return std::nullopt;
+  double sum = 0;
+  for (const int e : last->elements) {
+    const auto i = static_cast<std::size_t>(e);
+    const Vector3 arm = s.state().position[i] - last->centre, force = s.forces().force[i];
+    sum += s.forces().torque.z[i] + arm.x() * force.y() - arm.y() * force.x();
+  }
+  return -std::copysign(1.0, last->angle) * sum * units::eV_in_nN_nm;
+}
+
 class Observed {
  public:
   explicit Observed(const Model& m)
@@ -108,7 +123,9 @@ class Observed {
   void add(const Simulation& s) {
     ++count_;
     sums_["energy"] += s.forces().energy.potential() - zero_;
+    sums_["total_energy"] += s.forces().energy.potential();
     sums_["bending_moment"] += bending_moment(m_.topology, s.state());
+    if (const auto moment = end_moment(m_.drive, s)) sums_["end_moment"] += *moment;
     if (m_.topology.tubes() < 3) return;
     std::vector<Validity> validity;
     for (const ParameterSet& set : m_.scene.sets) validity.push_back(set.validity);

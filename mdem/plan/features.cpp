@@ -99,11 +99,14 @@ SceneFeatures features_of(const Scene& scene, const Prepared& p) {
   f.tubes = p.topology.tubes();
   f.contact = p.interaction.has_contact() && f.tubes > 1;
   f.radius = p.topology.types[0].radius;
+  f.length = longest_tube(p.topology);
+  f.duration = p.duration;
+  f.sudden = !p.drive.loads.empty() || (scene.twist && scene.twist->rate <= 0);
   look_at_bonds(p.topology, p.state, f);
   if (f.contact) look_at_crossings(p, f);
   double turned = 0;
   for (const Load& load : scene.loads) std::visit(AddLoad{p, f, &turned}, load.kind);
-  if (turned > 0) add_rope_twist(p, turned / longest_tube(p.topology), "rotation", f);
+  if (turned > 0) add_rope_twist(p, turned / f.length, "rotation", f);
   if (scene.twist) {
     const TwistProtocol& w = *scene.twist;
     const double each = w.reading == TwistProtocol::Reading::per_tube ? w.moment : w.moment / f.tubes;

@@ -15,6 +15,9 @@ struct SceneFeatures {
   double radius = 0;                          // nm, of the first tube type
   double curvature = 0, twist = 0;            // 1/nm, rad/nm, the largest expected
   double crossing_from = 0, crossing_to = 0;  // deg, of tubes in reach of one another
+  double length = 0;                          // nm, of the longest tube
+  double duration = 0;                        // ps
+  bool sudden = false;                        // a force or a moment acts at once
   std::vector<std::string> why;               // how the figures come about
   std::string beyond;                         // what cannot be estimated; empty: nothing
 };

@@ -83,7 +83,8 @@ struct Option {
 
 struct Knob {
   std::string name;
-  std::vector<Option> options;  // the default among them
+  std::vector<Option> options;
+  std::map<std::string, double> standard;  // change of the default's value
 };
 
 std::string knob_of(const ChartedModel& m) {
@@ -112,10 +113,16 @@ double quality(const std::string& knob, const ChartedModel& m) {
   return m.integrator == "verlet";
 }
 
-// What one takes an error relative to: the reference, or what the chart took.
-double scale_of(const ChartedValue& v) {
-  const double off = std::fabs(v.value - v.reference);
-  return v.error > 0 && off > 0 ? off / v.error : std::fabs(v.reference);
+// What the chart takes errors of an observable relative to: the reference, or what else it chose.
+double scale_of(const ChartedScene& c, const std::string& observable) {
+  for (const ChartedModel& m : c.models) {
+    const auto at = m.finest.find(observable);
+    if (at == m.finest.end()) continue;
+    const double off = std::fabs(at->second.value - at->second.reference);
+    if (at->second.error > 0 && off > 0) return off / at->second.error;
+  }
+  const double reference = std::fabs(c.standard()->finest.at(observable).reference);
+  return reference > 0 ? reference : 1.0;
 }
 
 // Elements of a tube of the scene.
@@ -132,6 +139,12 @@ bool long_enough(const ChartedScene& c, const ChartedModel& m, const Scene& scen
   return elements > std::min(8.0, static_cast<double>(m.elements) / c.tubes) - 0.5;
 }
 
+// Heavy tubes follow a motion that gives their waves as much time as in the chart.
+bool slow_enough(const ChartedScene& c, const ChartedModel& m, const SceneFeatures& f) {
+  const double length = m.elements * m.element_length / c.tubes;
+  return f.duration / f.length > 0.9 * m.simulated / length;
+}
+
 bool applies(const std::string& knob, const ChartedScene& c, const ChartedModel& m, const Scene& scene,
              const SceneFeatures& f, const PlanRequest& request) {
   const ChartedModel& standard = *c.standard();
@@ -140,10 +153,21 @@ bool applies(const std::string& knob, const ChartedScene& c, const ChartedModel&
     if (!f.contact) return false;
     if (knob == "levels" && scene.damping.local > 0) return false;
   }
-  if (knob == "length") return fixed_length(scene).empty() && long_enough(c, m, scene);
-  if (knob == "mass") return request.end_state && scene.temperature == 0;
+  if (knob == "length") return !fixed_length(scene).empty() || long_enough(c, m, scene);
+  if (knob == "mass") return request.end_state && scene.temperature == 0 && !f.sudden && slow_enough(c, m, f);
   if (knob == "mode") return request.end_state && needs_time(scene).empty();
   return true;
+}
+
+// Elements that stay as they are count as the shortest of the chart that are not shorter.
+void keep_length(const Scene& scene, const ChartedModel& standard, Knob& k) {
+  const double ratio = scene.element_length / scene.parameters().element_length;
+  std::vector<Option> kept;
+  for (const Option& o : k.options)
+    if (o.model->element_length / standard.element_length > ratio * (1 - 1e-3) &&
+        (kept.empty() || o.model->element_length < kept[0].model->element_length))
+      kept = {o};
+  k.options = std::move(kept);
 }
 
 std::vector<Knob> knobs_of(const ChartedScene& c, const Scene& scene, const SceneFeatures& f,
@@ -163,16 +187,18 @@ std::vector<Knob> knobs_of(const ChartedScene& c, const Scene& scene, const Scen
     const ChartedModel* best = *std::max_element(list.begin(), list.end(), [&](const auto* a, const auto* b) {
       return quality(knob, *a) < quality(knob, *b);
     });
-    Knob k{name, {}};
+    Knob k{name, {}, {}};
     for (const ChartedModel* m : list) {
       Option o{m, {}, m->cpu_per_ns / standard.cpu_per_ns};
       for (const std::string& w : observables) {
-        const double from = best->finest.at(w).value, scale = scale_of(standard.finest.at(w));
+        const double from = best->finest.at(w).value, scale = scale_of(c, w);
         o.change[w] = std::fabs(m->finest.at(w).value - from) / scale;
       }
+      if (m == &standard) k.standard = o.change;
       k.options.push_back(std::move(o));
     }
     std::sort(k.options.begin(), k.options.end(), [](const Option& a, const Option& b) { return a.cost < b.cost; });
+    if (name == "length" && !fixed_length(scene).empty()) keep_length(scene, standard, k);
     knobs.push_back(std::move(k));
   }
   return knobs;
@@ -184,12 +210,19 @@ std::map<std::string, double> unexplained(const ChartedScene& c, const std::vect
   std::map<std::string, double> left;
   for (const std::string& w : observables) {
     double rest = c.standard()->finest.at(w).error;
-    for (const Knob& k : knobs)
-      for (const Option& o : k.options)
-        if (o.model == c.standard()) rest -= o.change.at(w);
+    for (const Knob& k : knobs) rest -= k.standard.at(w);
     left[w] = std::max(0.0, rest);
   }
   return left;
+}
+
+bool longer_than_charted(const ChartedScene& c, const Scene& scene) {
+  if (fixed_length(scene).empty()) return false;
+  const double ratio = scene.element_length / scene.parameters().element_length;
+  return std::none_of(c.models.begin(), c.models.end(), [&](const ChartedModel& m) {
+    return (knob_of(m) == "length" || &m == c.standard()) &&
+           m.element_length / c.standard()->element_length > ratio * (1 - 1e-3);
+  });
 }
 
 // --- the choice ---
@@ -268,15 +301,17 @@ class Writer {
       return;
     }
     set("contact", "law", "\"none\"", "one tube, which does not come back to itself");
-    for (const char* key : {"nodes_per_element", "cutoff_nm"}) take_away("contact", key);
-    take_away("run", "contact_every");
   }
 
   void turn(const Knob& knob, const Option& option, const ChartedModel& standard) {
     const ChartedModel& m = *option.model;
     const std::string why = fmt::format("chart model {}, {:.2f} of the default's time", m.name, option.cost);
-    if (&m == &standard) return leave(knob.name);
-    if (knob.name == "length") lengthen(m.element_length / standard.element_length, why);
+    if (&m == &standard) {
+      if (knob.name == "length" && fixed_length(scene_).empty()) lengthen(1, "as the chart's default");
+      return;
+    }
+    if (knob.name == "length" && fixed_length(scene_).empty())
+      lengthen(m.element_length / standard.element_length, why);
     if (knob.name == "nodes") nodes_per_nm_ = m.nodes / m.element_length, nodes_why_ = why;
     if (knob.name == "cutoff") set("contact", "cutoff_nm", fmt::format("{:.6g}", m.cutoff), why);
     if (knob.name == "levels") set("run", "contact_every", std::to_string(m.contact_every), why);
@@ -312,25 +347,6 @@ class Writer {
       return chain->elements * scene_.element_length;
     if (const auto* film = std::get_if<FilmSource>(&scene_.source)) return film->length;
     return std::numeric_limits<double>::infinity();
-  }
-
-  // The scene may have set what the chart's default leaves to the program.
-  void leave(const std::string& knob) {
-    if (knob == "nodes" && scene_.contact.nodes > 0) {
-      take_away("contact", "nodes_per_element");
-      remark("contact.nodes_per_element: left to the program, as the chart's default");
-    }
-    if (knob == "cutoff" && scene_.contact.cutoff > 0) {
-      take_away("contact", "cutoff_nm");
-      remark("contact.cutoff_nm: the set's, as the chart's default");
-    }
-    if (knob == "step" && scene_.run.time_step > 0)
-      set("run", "time_step_fs", "\"auto\"", "as the chart's default");
-    if (knob == "levels" && scene_.run.stepping.contact_every > 1)
-      set("run", "contact_every", "1", "as the chart's default");
-    if (knob == "precision" && (scene_.contact.precision || scene_.contact.all_nodes))
-      precision("mixed", "default");
-    if (knob == "length") lengthen(1, "as the chart's default");
   }
 
   // In elements of the set's length, which the chart's default has. As in the chart, what lies between the centres
@@ -373,8 +389,13 @@ class Writer {
 };
 
 std::string header_of(const Plan& plan, const PlanRequest& request) {
-  std::string text = fmt::format("# Planned for an error of {:g} %.\n", 100 * request.error);
-  for (const auto& [name, error] : plan.expected) text += fmt::format("# plan: expect {} {:.6g}\n", name, error);
+  if (plan.stands_for.empty()) return "# The default model: the chart has no scene like this one.\n";
+  std::string text =
+      fmt::format("# Planned for an error of {:g} %{}, by scene {} of the chart.\n", 100 * request.error,
+                  plan.holds ? "" : ", which it does not hold", plan.stands_for);
+  for (const auto& [name, error] : plan.expected)
+    text += fmt::format("# plan: expect {} {:.6g}\n",
+                        name == "energy" && !plan.energy_above_start ? "total_energy" : name, error);
   return text;
 }
 
@@ -392,13 +413,20 @@ std::vector<std::string> observables_of(const ChartedScene& c, const PlanRequest
   return request.observables.empty() ? all : request.observables;
 }
 
-// The keys that cost, as the program has them by default.
-void fall_back(const Scene& scene, Writer& w) {
-  if (scene.run.time_step > 0) w.set("run", "time_step_fs", "\"auto\"", "default model");
-  if (scene.run.stepping.contact_every > 1) w.set("run", "contact_every", "1", "default model");
-  if (scene.run.mass_scale != 1) w.set("run", "mass_scale", "1", "default model");
-  if (scene.run.stepping.runge_kutta) w.set("run", "integrator", "\"verlet\"", "default model");
-  for (const char* key : {"nodes_per_element", "cutoff_nm", "all_nodes", "precision"}) w.take_away("contact", key);
+// The keys that cost, as the program has them by default and the chart's default model too.
+void start_from_default(const Scene& scene, Writer& w) {
+  const auto reset = [&](bool typed, const char* table, const char* key) {
+    if (typed) w.remark(fmt::format("{}.{}: left to the program first", table, key));
+    w.take_away(table, key);
+  };
+  reset(scene.run.time_step > 0, "run", "time_step_fs");
+  reset(scene.run.stepping.contact_every > 1, "run", "contact_every");
+  reset(scene.run.mass_scale != 1, "run", "mass_scale");
+  reset(scene.run.stepping.runge_kutta, "run", "integrator");
+  reset(scene.contact.nodes > 0, "contact", "nodes_per_element");
+  reset(scene.contact.cutoff > 0, "contact", "cutoff_nm");
+  reset(scene.contact.all_nodes, "contact", "all_nodes");
+  reset(scene.contact.precision.has_value(), "contact", "precision");
 }
 
 }  // namespace
@@ -418,22 +446,30 @@ Plan plan_scene(const Scene& scene, const std::vector<ChartedScene>& chart, cons
   const SceneFeatures f = features_of(scene, prepared);
   plan.why = f.why;
   Writer w(scene, f);
+  start_from_default(scene, w);
   w.drop_what_is_not_there();
   const bool line_or_none = !f.contact || scene.contact.law == Law::line;
   const ChartedScene* c = f.beyond.empty() && line_or_none ? nearest(chart, f, plan) : nullptr;
+  if (c && longer_than_charted(*c, scene)) {
+    plan.why.push_back(fmt::format("elements of {:.4g} nm, which stay since {}, are longer than any in scene {}",
+                                   scene.element_length, fixed_length(scene), c->name));
+    c = nullptr;
+  }
   if (!c) {
     if (!f.beyond.empty()) plan.why.push_back("the chart has nothing like it: " + f.beyond);
     if (!line_or_none) plan.why.push_back("the chart varies law \"line\", and this scene has another");
     plan.why.push_back("no point of the chart is near: the default model is taken, and no error is promised");
-    fall_back(scene, w);
   } else {
     plan.stands_for = c->name;
+    plan.energy_above_start = c->energy_above_start;
     const std::vector<std::string> observables = observables_of(*c, request);
     const std::vector<Knob> knobs = knobs_of(*c, scene, f, request, observables);
     const Choice choice = choose(knobs, unexplained(*c, knobs, observables), request.error, *c->standard());
     for (std::size_t k = 0; k < knobs.size(); ++k) w.turn(knobs[k], *choice.options[k], *c->standard());
     if (!fixed_length(scene).empty()) w.remark("element length stays: " + fixed_length(scene));
     if (request.end_state && !needs_time(scene).empty()) w.remark("no relaxation: " + needs_time(scene));
+    if (request.end_state && f.sudden)
+      w.remark("masses stay: a load acts at once, and heavy tubes swing for longer");
     plan.expected = choice.error;
     plan.holds = choice.largest() <= request.error;
     plan.cost = choice.cost;

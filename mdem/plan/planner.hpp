@@ -3,7 +3,7 @@
 // Of the scenes of the chart that cover the scene, the nearest one stands for it. A knob turned from its best value
 // b to o changes an observable by |value(o) - value(b)| there; the changes of several knobs are added up with their
 // sizes, and so is what of the default's error against the finest model no knob explains. Costs are multiplied.
-// That changes add up is an assumption, on the safe side where they would cancel; `check_plan` looks.
+// That changes add up is an assumption, on the safe side where they would cancel; spot_check() looks.
 #pragma once
 
 #include <map>
@@ -25,6 +25,7 @@ struct Plan {
   std::string stands_for;                  // scene of the chart; empty: none is near, and the model is the default
   bool holds = false;                      // whether the error is held, as the chart has it
   std::map<std::string, double> expected;  // error by observable
+  bool energy_above_start = true;          // what "energy" is there
   std::map<std::string, double> atoms;     // that of the chart's default model against atoms, where it has it
   double ns_per_element_step = 0;          // of CPU time, on the chart's machine
   double cost = 1;                         // CPU time per simulated time, in that of the default model

@@ -69,6 +69,7 @@ TEST(Chart, FaultsAreNamed) {
     return text.replace(at, from.size(), to);
   };
   EXPECT_EQ(fault(points, scenes), "read");
+  EXPECT_EQ(fault(with(points, ",500,", ",inf,"), scenes), "read") << "no step was made: left out";
   EXPECT_THAT(fault(with(points, "cpu_s_per_ns", "cpu"), scenes),
               HasSubstr("cpu_s_per_ns: there is no such column"));
   EXPECT_THAT(fault(with(points, ",dynamics,20,", ",dynamics,"), scenes),
@@ -76,6 +77,8 @@ TEST(Chart, FaultsAreNamed) {
   EXPECT_THAT(fault(with(points, "2.83", "x"), scenes),
               HasSubstr("points.csv:2: cutoff_nm: \"x\" is not a number"));
   EXPECT_THAT(fault(with(points, "finest,0", "oracle,0"), scenes), HasSubstr("neither finest nor md"));
+  EXPECT_THAT(fault(points, with(scenes, "5,start", "5,zero")), HasSubstr("read"));
+  EXPECT_THAT(fault(points, with(scenes, "5,start", "5,sea")), HasSubstr("energy_from: is neither start nor zero"));
   EXPECT_THAT(fault(points, with(scenes, "tube,0", "pipe,0")), HasSubstr("does not say what \"tube\" covers"));
   EXPECT_THAT(fault("", scenes), HasSubstr("is empty"));
   std::filesystem::remove_all(folder);
@@ -123,6 +126,38 @@ TEST(Plan, GoesCoarserAndFinerWithTheError) {
   EXPECT_NEAR(angle.expected.at("beta"), 0.015, 1e-9);
 }
 
+TEST(Plan, StartsFromTheDefaultWhateverTheSceneHas) {
+  const std::string costly = bundle +
+                             "time_step_fs = 3\ncontact_every = 2\nmass_scale = 9\nintegrator = \"rk4\"\n"
+                             "[contact]\nnodes_per_element = 9\ncutoff_nm = 2.5\nprecision = \"double\"\n";
+  const Plan p = planned(costly, 0.0125), same = planned(bundle, 0.0125);
+  EXPECT_EQ(p.expected, same.expected);
+  const Scene s = scene_from(p.text), t = scene_from(same.text);
+  EXPECT_EQ(s.run.mass_scale, 1);
+  EXPECT_EQ(s.run.stepping.contact_every, 1);
+  EXPECT_FALSE(s.run.stepping.runge_kutta);
+  EXPECT_EQ(s.contact.nodes, t.contact.nodes);
+  EXPECT_EQ(s.contact.cutoff, 0);
+  EXPECT_FALSE(s.contact.precision);
+  EXPECT_EQ(s.run.time_step, t.run.time_step);
+}
+
+// Elements that must stay count as the next longer ones of the chart.
+TEST(Plan, LongElementsThatStayHaveTheirPrice) {
+  const auto of_length = [](double length) {
+    return fmt::format(
+        "{}element_length_nm = {}\n[rope]\ntubes = 7\nlength_nm = 40\n[[load]]\nkind = \"torque\"\nelements = [3]\n"
+        "torque_nN_nm = [0, 0, 1]\n[run]\nduration_ps = 10\n",
+        head, length);
+  };
+  const Plan p = planned(of_length(2.5), 0.0285);
+  EXPECT_NEAR(p.expected.at("energy"), 0.024 + 0.001 + 0.003, 1e-9);
+  EXPECT_EQ(scene_from(p.text).element_length, 2.5);
+  const Plan longer = planned(of_length(5), 0.03);
+  EXPECT_TRUE(longer.stands_for.empty());
+  EXPECT_THAT(fmt::format("{}", fmt::join(longer.why, "\n")), HasSubstr("longer than any in scene bundle"));
+}
+
 TEST(Plan, KeepsEnoughElements) {
   std::string brief = bundle;
   brief.replace(brief.find("27.2"), 4, "13.6");
@@ -150,10 +185,16 @@ TEST(Plan, ForAnEndStateTimeIsFree) {
   EXPECT_EQ(scene_from(end.text).run.mode, RunOptions::Mode::relax);
   EXPECT_LT(end.cost, moving.cost);
   // A ramp needs its time, but not the tubes' own mass.
-  const Plan ramped = planned(bundle, 0.03, true);
+  std::string slow = bundle;
+  slow.replace(slow.find("[run]"), 5, "hold_ps = 20\n[run]");
+  const Plan ramped = planned(slow, 0.03, true);
   EXPECT_EQ(scene_from(ramped.text).run.mode, RunOptions::Mode::dynamics);
   EXPECT_EQ(scene_from(ramped.text).run.mass_scale, 100);
-  EXPECT_EQ(scene_from(planned(bundle, 0.03).text).run.mass_scale, 1);
+  EXPECT_EQ(scene_from(planned(slow, 0.03).text).run.mass_scale, 1);
+  EXPECT_EQ(scene_from(planned(bundle, 0.03, true).text).run.mass_scale, 1) << "too fast for heavy tubes";
+  std::string sudden = slow;
+  sudden.replace(sudden.find("per_ps = 1"), 10, "per_ps = 0");
+  EXPECT_EQ(scene_from(planned(sudden, 0.03, true).text).run.mass_scale, 1);
 }
 
 TEST(Plan, DropsTheContactOfALoneTube) {
