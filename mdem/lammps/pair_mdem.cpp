@@ -1,7 +1,7 @@
 #include "lammps/pair_mdem.hpp"
 
-#include "lammps/segments.hpp"
 #include "memory.h"
+#include "model/segments.hpp"
 
 namespace ropewalk::lammps {
 

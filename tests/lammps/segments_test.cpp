@@ -1,4 +1,4 @@
-#include "lammps/segments.hpp"
+#include "model/segments.hpp"
 
 #include <gtest/gtest.h>
 
