@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "model/error.hpp"
+#include "model/segments.hpp"
 
 namespace ropewalk {
 namespace {
@@ -27,17 +27,6 @@ double chosen_step(const Scene& scene, const TimeStepLimit& limit) {
                    fmt::format("take at most {:.3g}, or \"auto\"", 0.9 * largest / units::fs));
 }
 
-// Of two segments about their centres, x_j - x_i = d; u, v their axes, a, b half their lengths.
-double segment_distance(const Vector3& d, const Vector3& u, double a, const Vector3& v, double b) {
-  const double c = u.dot(v), du = d.dot(u), dv = d.dot(v), across = 1 - c * c;
-  double s = across > 1e-12 ? std::clamp((du - c * dv) / across, -a, a) : 0, t = 0;
-  for (int k = 0; k < 4; ++k) {  // each in turn, the other kept: the distance is convex
-    t = std::clamp(c * s - dv, -b, b);
-    s = std::clamp(du + c * t, -a, a);
-  }
-  return (d + t * v - s * u).norm();
-}
-
 // What is inside of one another goes apart like an explosion, or through the core unseen.
 void refuse_overlaps(const Scene& scene, const Prepared& p) {
   const auto* source = std::get_if<StateSource>(&scene.source);
@@ -48,9 +37,9 @@ void refuse_overlaps(const Scene& scene, const Prepared& p) {
     for (std::size_t k = list.begin(i); k < list.begin(i + 1); ++k) {
       const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(list.indices()[k]);
       const TubeType &ti = p.topology.type_of_element(i), &tj = p.topology.type_of_element(list.indices()[k]);
-      const double apart =
-          segment_distance(p.state.position[b] - p.state.position[a], axis_of(p.state.orientation[a]),
-                           0.5 * ti.element_length, axis_of(p.state.orientation[b]), 0.5 * tj.element_length);
+      const double apart = std::sqrt(squared_segment_distance(
+          p.state.position[b] - p.state.position[a], axis_of(p.state.orientation[a]),
+          axis_of(p.state.orientation[b]), 0.5 * ti.element_length, 0.5 * tj.element_length));
       if (apart < ti.radius + tj.radius)
         throw InputError(
             {source->file, 0, ""},
