@@ -159,6 +159,21 @@ bool applies(const std::string& knob, const ChartedScene& c, const ChartedModel&
   return true;
 }
 
+// Element-steps per ps with elements of this length: the stable step goes with damping and contact of the scene.
+double element_steps(Scene scene, const SceneFeatures& f, double length) {
+  if (auto* chain = std::get_if<ChainSource>(&scene.source))
+    chain->elements = std::max(2, static_cast<int>(std::lround(chain->elements * scene.element_length / length)));
+  scene.element_length = length;
+  scene.run.time_step = 0;
+  scene.run.stepping = Stepping{};
+  scene.run.mass_scale = 1;
+  scene.contact.nodes = 0;
+  scene.contact.cutoff = 0;
+  if (!f.contact) scene.contact.law = Law::none;
+  const Prepared p = prepare(scene);
+  return p.topology.elements() / p.time_step;
+}
+
 // Elements that stay as they are count as the shortest of the chart that are not shorter.
 void keep_length(const Scene& scene, const ChartedModel& standard, Knob& k) {
   const double ratio = scene.element_length / scene.parameters().element_length;
@@ -190,6 +205,12 @@ std::vector<Knob> knobs_of(const ChartedScene& c, const Scene& scene, const Scen
     Knob k{name, {}, {}};
     for (const ChartedModel* m : list) {
       Option o{m, {}, m->cpu_per_ns / standard.cpu_per_ns};
+      if (name == "length" && fixed_length(scene).empty()) {
+        const double own = scene.parameters().element_length;
+        o.cost = m->ns_per_element_step / standard.ns_per_element_step *
+                 element_steps(scene, f, own * m->element_length / standard.element_length) /
+                 element_steps(scene, f, own);
+      }
       for (const std::string& w : observables) {
         const double from = best->finest.at(w).value, scale = scale_of(c, w);
         o.change[w] = std::fabs(m->finest.at(w).value - from) / scale;

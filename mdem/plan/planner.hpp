@@ -2,7 +2,8 @@
 //
 // Of the scenes of the chart that cover the scene, the nearest one stands for it. A knob turned from its best value
 // b to o changes an observable by |value(o) - value(b)| there; the changes of several knobs are added up with their
-// sizes, and so is what of the default's error against the finest model no knob explains. Costs are multiplied.
+// sizes, and so is what of the default's error against the finest model no knob explains. Costs are multiplied;
+// what element lengths do to elements and stable steps is the scene's own.
 // That changes add up is an assumption, on the safe side where they would cancel; spot_check() looks.
 #pragma once
 
