@@ -37,7 +37,7 @@ TEST_F(Validate, WrongInputGetsOneLine) {
         std::pair{"validate run euler-buckling --parameters nowhere", "no parameter set"},
         std::pair{"validate report nowhere", "holds no results"},
         std::pair{"validate chart --scenes no-such-scene", "there is no scene"},
-        std::pair{"validate chart --scenes tube-twist,rope7", "did you mean \"rope7-md\"?"},
+        std::pair{"validate chart --scenes tube-twist,rope7-m", "did you mean \"rope7-md\"?"},
         std::pair{"validate chart --quick --out file", "not a directory"},
         std::pair{"validate chart --scene", "--scene"}, std::pair{"validate chart --scenes", "--scenes"}}) {
     const Outcome o = run(line);

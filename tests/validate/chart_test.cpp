@@ -8,6 +8,7 @@
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 
 #include "io/files.hpp"
@@ -38,7 +39,7 @@ TEST(ParetoFront, KeepsWhatNothingBeatsInBoth) {
 
 TEST(ChartError, IsAFractionOfTheReferenceAndOfACharge) {
   EXPECT_DOUBLE_EQ(error_of("energy", 99, 100), 0.01);
-  EXPECT_DOUBLE_EQ(error_of("energy", -2.2, -2), 0.1);
+  EXPECT_NEAR(error_of("energy", -2.2, -2), 0.1, 1e-12);
   EXPECT_DOUBLE_EQ(error_of("Q", 3, 0), 0.5) << "against the charge of an ideal twisted rope";
   EXPECT_DOUBLE_EQ(error_of("Q", 9, 12), 0.25);
 }
@@ -122,19 +123,11 @@ TEST(ChartScenes, AreTheSameSpecimenAtEveryElementLength) {
   }
 }
 
-TEST(ChartModels, DifferFromOneAnother) {
+TEST(ChartModels, HaveNamesOfTheirOwn) {
   for (const ChartScene& scene : chart_scenes()) {
-    std::vector<std::string> descriptions;
-    for (const ChartModel& model : chart_models(scene, false)) {
-      ChartPoint p = describe(scene, model, scene.build(model));
-      EXPECT_EQ(std::count_if(descriptions.begin(), descriptions.end(),
-                              [&](const std::string& d) { return d == model.name; }),
-                0)
-          << model.name << " twice";
-      descriptions.push_back(model.name);
-      EXPECT_GT(p.elements, 0);
-      EXPECT_GT(p.time_step, 0) << scene.name << " " << model.name;
-    }
+    std::set<std::string> names;
+    for (const ChartModel& model : chart_models(scene, false))
+      EXPECT_TRUE(names.insert(model.name).second) << scene.name << " " << model.name << " twice";
     EXPECT_NO_THROW(find_chart_model(chart_models(scene, true), published_model)) << scene.name;
   }
 }
