@@ -413,7 +413,9 @@ class Run {
     at.state = halved(coarse.prepared_.topology, coarse.simulation_.state());
     if (scene_.run.mode == RunOptions::Mode::dynamics) {
       at.state.step = std::llround(at.state.time / prepared_.time_step);
-      stop_at_time(static_cast<double>(coarse.last_step_) * coarse.prepared_.time_step);
+      const double dt = coarse.prepared_.time_step;  // the scene's own end, if it was not told another one
+      if (coarse.last_step_ != std::lround(coarse.prepared_.duration / dt))
+        stop_at_time(static_cast<double>(coarse.last_step_) * dt);
     }
     simulation_ = start(scene_, at);
     simulation_.take_over(simulation_.forces().force, simulation_.forces().torque, coarse.simulation_.work(),

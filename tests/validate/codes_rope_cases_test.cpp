@@ -75,7 +75,7 @@ TEST(CodesRopeCases, BeadsHaveTheMeanCohesion) {
 // A held rope at rest stays there, with either bonds.
 TEST(CodesRopeCases, LedRopeRests) {
   for (const auto bonds : {LedRope::Bonds::total_energy, LedRope::Bonds::incremental}) {
-    LedRope rope(shipped(), 4, bonds, 0.8, 1.5);
+    LedRope rope(shipped(), 4, bonds, 0.5, 1.5);
     rope.rest(10);
     const double energy = rope.energy();
     rope.rest(2);

@@ -15,8 +15,8 @@ constexpr int bonds = 12, rounds = 2;
 constexpr double angle = 48 * units::degree, shift = 2;  // nm
 constexpr double brake = 1.5;                            // 1/ps: near aperiodic for the slowest bending mode
 constexpr double leg = 8, settle = 15;                   // ps
-constexpr double step_fraction = 0.8;                    // of the stability limit
-constexpr double temperature = 300, warm = 20;           // K, ps
+constexpr double step_fraction = 0.5;           // of the limit of total-energy bonds; incremental ones bear less
+constexpr double temperature = 300, warm = 20;  // K, ps
 
 using Bonds = LedRope::Bonds;
 
