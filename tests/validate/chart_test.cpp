@@ -94,6 +94,13 @@ TEST(ChartPoint, ComesBackFromItsFile) {
   const std::string path = (fs::temp_directory_path() / ("ropewalk-point-" + std::to_string(getpid()))).string();
   write_file_atomically(path, point_json(p));
   EXPECT_EQ(point_json(read_point(path)), point_json(p));
+  ChartPoint failed = p;
+  failed.error = "the motion blew up";
+  failed.cpu = std::nan("");
+  failed.values.clear();
+  write_file_atomically(path, point_json(failed));
+  EXPECT_EQ(read_point(path).error, failed.error);
+  EXPECT_TRUE(std::isnan(read_point(path).cpu));
   for (const char* bad : {"{}", "", "[1]", "{\"format\": \"ropewalk-chart-1\", \"key\": 3}"}) {
     write_file_atomically(path, bad);
     EXPECT_THROW(read_point(path), InputError) << bad;
