@@ -153,6 +153,9 @@ bool applies(const std::string& knob, const ChartedScene& c, const ChartedModel&
     if (!f.contact) return false;
     if (knob == "levels" && scene.damping.local > 0) return false;
   }
+  // Where tubes feel nodes they settle in them, which scenes of the chart that are led from rest hardly show: seven
+  // free tubes with two nodes instead of six lost 11 % of the energy of twisting.
+  if (knob == "nodes") return m.nodes >= standard.nodes;
   if (knob == "length") return !fixed_length(scene).empty() || long_enough(c, m, scene);
   if (knob == "mass") return request.end_state && scene.temperature == 0 && !f.sudden && slow_enough(c, m, f);
   if (knob == "mode") return request.end_state && needs_time(scene).empty();
