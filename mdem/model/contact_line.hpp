@@ -267,12 +267,14 @@ template <class Share>
 PairForce LineContact::node_sum(int on_i, int on_j, const Share& share, const Vector3& separation,
                                 const Vector3& n_i, const Vector3& n_j) const {
   PairForce f;
+  const double reach2 = density.cutoff() * density.cutoff();
   for (int k = 0; k < on_i; ++k) {
     const double si = line_node(k, on_i, length_i);
     for (int l = 0; l < on_j; ++l) {
       const double weight = share(k, l) * length_i / on_i * length_j / on_j;
       const double sj = line_node(l, on_j, length_j);
       const Vector3 d = separation + sj * n_j - si * n_i;
+      if (d.squaredNorm() >= reach2) continue;
       const double rho = detail::safe_distance(d);
       const RadialTerms t = density.terms(rho);
       const Vector3 force = -weight * t.derivative / rho * d;
