@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "commands/colours.hpp"
 #include "commands/commands.hpp"
 #include "commands/processor_time.hpp"
 #include "commands/run_directory.hpp"
@@ -33,8 +34,9 @@ double error_of(const std::string& text) {
 
 struct Timing {
   double elements = 0, steps = 0;
-  double each = 0;  // processor time of a step, s
-  double total() const { return steps * each; }
+  double each = 0;               // processor time of a step, s
+  double frames = 0, frame = 0;  // how many, and the processor time of one
+  double total() const { return steps * each + frames * frame; }
 };
 
 // From some steps of the scene itself, by one thread: threads that wait for one another spend processor time as
@@ -57,6 +59,11 @@ Timing time_of(Scene scene) {
   t.elements = p.topology.elements();
   t.each = (processor_seconds() - began) / static_cast<double>(count);
   use_threads(threads);
+  constexpr double usual_frames = 40;
+  t.frames = scene.run.frames_every > 0 ? p.duration / scene.run.frames_every : usual_frames;
+  const double coloured = processor_seconds();
+  element_colours(p.topology, p.interaction, s.state());
+  t.frame = processor_seconds() - coloured;
   t.steps = scene.run.mode == RunOptions::Mode::relax ? 0.0 : p.duration / p.time_step;
   return t;
 }
@@ -65,7 +72,9 @@ void say_time(const char* what, const Timing& t) {
   const double ns = 1e9 * t.each / t.elements;
   if (t.steps > 0)
     fmt::print(
-        "{}: {:.0f} elements, {:.0f} steps, {:.3g} s of processor time ({:.0f} ns per element-step, timed here)\n",
+        "{}: {:.0f} elements, {:.0f} steps, {:.3g} s of processor time with its frames ({:.0f} ns per "
+        "element-step, "
+        "timed here)\n",
         what, t.elements, t.steps, t.total(), ns);
   else
     fmt::print("{}: {:.0f} elements, {:.3g} s of processor time in 1000 steps of relaxation, timed here\n", what,
