@@ -36,7 +36,8 @@ struct Timing {
   double elements = 0, steps = 0;
   double each = 0;               // processor time of a step, s
   double frames = 0, frame = 0;  // how many, and the processor time of one
-  double total() const { return steps * each + frames * frame; }
+  double rows = 0, row = 0;      // of the log, likewise
+  double total() const { return steps * each + frames * frame + rows * row; }
 };
 
 // From some steps of the scene itself, by one thread: threads that wait for one another spend processor time as
@@ -59,11 +60,15 @@ Timing time_of(Scene scene) {
   t.elements = p.topology.elements();
   t.each = (processor_seconds() - began) / static_cast<double>(count);
   use_threads(threads);
-  constexpr double usual_frames = 40;
+  constexpr double usual_frames = 40, usual_rows = 400;
   t.frames = scene.run.frames_every > 0 ? p.duration / scene.run.frames_every : usual_frames;
-  const double coloured = processor_seconds();
+  t.rows = scene.run.log_every > 0 ? p.duration / scene.run.log_every : usual_rows;
+  const double before_frame = processor_seconds();
   element_colours(p.topology, p.interaction, s.state());
-  t.frame = processor_seconds() - coloured;
+  const double before_row = processor_seconds();
+  t.frame = before_row - before_frame;
+  look(make_observer(scene, p), scene, p.topology, s.state());
+  t.row = processor_seconds() - before_row;
   t.steps = scene.run.mode == RunOptions::Mode::relax ? 0.0 : p.duration / p.time_step;
   return t;
 }
@@ -72,7 +77,7 @@ void say_time(const char* what, const Timing& t) {
   const double ns = 1e9 * t.each / t.elements;
   if (t.steps > 0)
     fmt::print(
-        "{}: {:.0f} elements, {:.0f} steps, {:.3g} s of processor time with its frames ({:.0f} ns per "
+        "{}: {:.0f} elements, {:.0f} steps, {:.3g} s of processor time with log and frames ({:.0f} ns per "
         "element-step, "
         "timed here)\n",
         what, t.elements, t.steps, t.total(), ns);
