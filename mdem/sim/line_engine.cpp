@@ -126,7 +126,9 @@ void LineEngine::run(Buffers& b, const Topology& topology, const Interaction& in
       b.tables.data(), b.pairs.data(),
       list.turn(),     2 * list.displacement(),
       energies};
-#pragma omp parallel if (state.size() > parallel_from)
+  const bool parallel = state.size() > parallel_from;
+  shares_.deal(static_cast<int>(list_.chunks().size()), parallel ? omp_get_max_threads() : 1);
+#pragma omp parallel if (parallel)
   {
 #pragma omp for schedule(static)
     for (int t = 0; t < topology.tubes(); ++t)
@@ -134,8 +136,8 @@ void LineEngine::run(Buffers& b, const Topology& topology, const Interaction& in
         if (list_.layout(kind).has_row(t))
           place_row(list_.layout(kind), topology, length_[static_cast<std::size_t>(topology.tube_type[t])], t,
                     state, axis, b.nodes[static_cast<int>(kind)]);
-#pragma omp for schedule(dynamic, 1)
-    for (std::size_t k = 0; k < list_.chunks().size(); ++k) {
+    for (int piece; (piece = shares_.take(omp_get_thread_num())) >= 0;) {
+      const auto k = static_cast<std::size_t>(piece);
       const LineChunk& chunk = list_.chunks()[k];
       buffers_[k].clear(static_cast<std::size_t>(chunk.elements));
       b.work[k].start(chunk);

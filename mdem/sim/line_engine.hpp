@@ -9,6 +9,7 @@
 #include "sim/contact_kernel.hpp"
 #include "sim/line_list.hpp"
 #include "sim/radial_table.hpp"
+#include "sim/work_shares.hpp"
 
 namespace ropewalk {
 
@@ -193,6 +194,7 @@ class LineEngine {
   bool full_ = false;
   std::vector<double> length_;          // of the elements of each type
   std::vector<ContactBuffer> buffers_;  // of each chunk
+  WorkShares shares_;
   MixedBuffers mixed_;
   FullBuffers full_buffers_;
 };

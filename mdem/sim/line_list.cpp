@@ -179,6 +179,39 @@ void LineList::lay_out_rows(const Topology& topology, const Interaction& in, con
   }
 }
 
+// What element i costs, in ns as measured once in a rope of 91 tubes: there chunks of equal sums took the same time
+// within 3 %.
+double LineList::cost(const Topology& topology, int i, int tube) const {
+  constexpr double element = 60, run_in_reach = 45, run_out_of_reach = 3, pair_at_an_end = 110;
+  const bool at_end = topology.ends_of(i, tube).any();
+  double sum = element;
+  for (const LineRun* run = begin(i); run != end(i); ++run) {
+    if (run->elements == 0 || run->beyond > 0)
+      sum += run_out_of_reach;
+    else
+      sum += at_end || run->begins || run->ends ? pair_at_an_end * run->elements : run_in_reach;
+  }
+  return sum;
+}
+
+// Of equal cost, whatever the threads: the cut belongs to the list.
+void LineList::cut_into_chunks(const Topology& topology, std::size_t count) {
+  std::vector<double> until{0};  // an element begins
+  until.reserve(static_cast<std::size_t>(topology.elements()) + 1);
+  for (int t = 0; t < topology.tubes(); ++t)
+    for (int i = topology.tube_begin[t]; i < topology.tube_begin[t + 1]; ++i)
+      until.push_back(until.back() + cost(topology, i, t));
+  const auto at = [&](std::size_t c) {
+    const double share = until.back() * static_cast<double>(c) / static_cast<double>(count);
+    return static_cast<int>(std::lower_bound(until.begin(), until.end(), share) - until.begin());
+  };
+  chunks_.assign(count, LineChunk{});
+  for (std::size_t c = 0; c < count; ++c) {
+    chunks_[c].begin = at(c);
+    chunks_[c].end = c + 1 == count ? topology.elements() : at(c + 1);
+  }
+}
+
 // The tubes that a chunk acts on, its own first, and their places in its buffers.
 void LineList::touch_tubes(const Topology& topology, LineChunk& chunk) {
   std::vector<int> index(static_cast<std::size_t>(topology.tubes()), -1);
@@ -256,13 +289,10 @@ void LineList::build(const Topology& topology, const Interaction& in, const Neig
   }
   lay_out_rows(topology, in, dense);
 
-  chunks_.assign(list.chunks().size(), LineChunk{});
+  cut_into_chunks(topology, list.chunks().size());
 #pragma omp parallel for schedule(dynamic, 1) if (parallel)
-  for (std::size_t c = 0; c < chunks_.size(); ++c) {
-    chunks_[c].begin = list.chunks()[c].begin;
-    chunks_[c].end = list.chunks()[c].end;
+  for (std::size_t c = 0; c < chunks_.size(); ++c)
     if (chunks_[c].begin < chunks_[c].end) touch_tubes(topology, chunks_[c]);
-  }
   list_touches(topology);
 }
 

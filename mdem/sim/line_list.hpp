@@ -95,6 +95,8 @@ class LineList {
  private:
   struct Part;
   void lay_out_rows(const Topology& topology, const Interaction& interaction, const std::vector<char>& dense);
+  double cost(const Topology& topology, int i, int tube) const;
+  void cut_into_chunks(const Topology& topology, std::size_t count);
   void touch_tubes(const Topology& topology, LineChunk& chunk);
   void list_touches(const Topology& topology);
 

@@ -22,7 +22,7 @@ class NeighbourList {
   // At most. As many as the elements can fill: their buffers overlap, and what overlaps costs time. Never by the
   // threads.
   static int chunk_count(int elements, bool whole_ranges) {
-    return std::min(64, std::max(4, elements / (whole_ranges ? 2048 : 512)));
+    return std::min(64, std::max(4, elements / (whole_ranges ? 2048 : 256)));
   }
 
   double cutoff = 0;           // nm

@@ -29,7 +29,7 @@
 namespace ropewalk {
 
 // Part of the limit that is used when the step is not typed.
-inline constexpr double default_step_fraction = 0.6;
+inline constexpr double default_step_fraction = 0.9;
 
 // nm. The runs of the line law skip what is out of reach, so that a wide margin costs little.
 inline double default_skin(const Interaction& in) { return in.line.empty() ? 0.15 : 0.25; }

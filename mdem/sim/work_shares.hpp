@@ -1,0 +1,68 @@
+// Pieces of work of uneven cost for a team of threads. Each thread begins with a share of consecutive pieces, the same
+// one in every step, so that what it wrote in the last step is still in its cache; who is done takes pieces from the
+// far end of the largest share that is left.
+#pragma once
+
+#include <omp.h>
+
+#include <atomic>
+#include <cstdint>
+#include <vector>
+
+namespace ropewalk {
+
+class WorkShares {
+ public:
+  // Before the team starts, with the number of its threads.
+  void deal(int pieces, int threads) {
+    if (static_cast<int>(shares_.size()) != threads) shares_ = std::vector<Share>(static_cast<std::size_t>(threads));
+    for (int t = 0; t < threads; ++t)
+      shares_[static_cast<std::size_t>(t)].left = pack(pieces * t / threads, pieces * (t + 1) / threads);
+  }
+  // The next piece for this thread; -1: none is left.
+  int take(int thread) {
+    const int own = take_first(shares_[static_cast<std::size_t>(thread)]);
+    if (own >= 0) return own;
+    for (;;) {
+      Share* largest = nullptr;
+      int most = 0;
+      for (Share& s : shares_) {
+        const std::uint64_t left = s.left.load(std::memory_order_relaxed);
+        if (end_of(left) - begin_of(left) > most) most = end_of(left) - begin_of(left), largest = &s;
+      }
+      if (!largest) return -1;
+      const int piece = take_last(*largest);
+      if (piece >= 0) return piece;
+    }
+  }
+
+ private:
+  // Begin and end in one word; each on a cache line of its own.
+  struct alignas(64) Share {
+    std::atomic<std::uint64_t> left{0};
+  };
+  static std::uint64_t pack(int begin, int end) {
+    return static_cast<std::uint64_t>(static_cast<std::uint32_t>(begin)) << 32 | static_cast<std::uint32_t>(end);
+  }
+  static int begin_of(std::uint64_t left) { return static_cast<int>(left >> 32); }
+  static int end_of(std::uint64_t left) { return static_cast<int>(left & 0xffffffffu); }
+
+  static int take_first(Share& s) {
+    std::uint64_t left = s.left.load(std::memory_order_relaxed);
+    while (begin_of(left) < end_of(left))
+      if (s.left.compare_exchange_weak(left, pack(begin_of(left) + 1, end_of(left)), std::memory_order_relaxed))
+        return begin_of(left);
+    return -1;
+  }
+  static int take_last(Share& s) {
+    std::uint64_t left = s.left.load(std::memory_order_relaxed);
+    while (begin_of(left) < end_of(left))
+      if (s.left.compare_exchange_weak(left, pack(begin_of(left), end_of(left) - 1), std::memory_order_relaxed))
+        return end_of(left) - 1;
+    return -1;
+  }
+
+  std::vector<Share> shares_;
+};
+
+}  // namespace ropewalk
