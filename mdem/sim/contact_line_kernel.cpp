@@ -8,7 +8,7 @@
 //
 #include <hwy/highway.h>
 //
-#include "sim/contact_damping-inl.hpp"
+#include "sim/some_lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace ropewalk::HWY_NAMESPACE {
@@ -434,14 +434,14 @@ HWY_INLINE RunSum sum_of(const E& e, const LineRun& run) {
   const auto one = hn::Set(d, 1.0);
   auto largest = hn::Zero(d), smallest = one;
   for (int m = 0; m < run.elements; m += static_cast<int>(hn::Lanes(d))) {
-    const auto left = static_cast<std::size_t>(run.elements - m);
+    const int left = std::min(run.elements - m, static_cast<int>(hn::Lanes(d)));
     const auto at = [&](const std::vector<double>& a) {
-      return load_first(d, a.data() + run.element_begin + m, left);
+      return load_some(d, a.data() + run.element_begin + m, 0, left);
     };
     const auto c = hn::MulAdd(nx, at(axis.x), hn::MulAdd(ny, at(axis.y), hn::Mul(nz, at(axis.z))));
     const auto c2 = hn::Mul(c, c);  // of the lanes left over it is zero
     largest = hn::Max(largest, c2);
-    smallest = hn::Min(smallest, hn::IfThenElse(hn::FirstN(d, left), c2, one));
+    smallest = hn::Min(smallest, hn::IfThenElse(some_lanes(d, 0, left), c2, one));
   }
   return run_sum(law, e.ends, run, has_row, hn::GetLane(hn::MinOfLanes(d, smallest)),
                  hn::GetLane(hn::MaxOfLanes(d, largest)));
@@ -487,18 +487,6 @@ HWY_INLINE void all_elements(const In& in, const LineChunk& chunk, LineWork<Real
   }
 }
 
-void Damping(const Interaction& in, const State& state, const LineList& list, const LineChunk& chunk,
-             ContactBuffer& out) {
-  const auto runs = [&](int i, const auto& f) HWY_ATTR {
-    for (const LineRun* run = list.begin(i); run != list.end(i); ++run) {
-      const int begin = run->element_begin + run->damped_from;
-      if (run->damped > 0)
-        f(begin, begin + run->damped, chunk.touched[static_cast<std::size_t>(run->touched)].element_shift);
-    }
-  };
-  damping::chunk_damping(in.damping.contact, state, chunk.begin, chunk.end, chunk.own_shift(), runs, out);
-}
-
 void Mixed(const LineKernelInput<MixedTable, std::int32_t>& in, const LineChunk& chunk, LineWork<float>& work,
            ContactBuffer& out) {
   in.energies ? all_elements<true>(in, chunk, work, out) : all_elements<false>(in, chunk, work, out);
@@ -517,12 +505,6 @@ namespace ropewalk {
 
 HWY_EXPORT(Mixed);
 HWY_EXPORT(Full);
-HWY_EXPORT(Damping);
-
-void line_damping(const Interaction& in, const State& state, const LineList& list, const LineChunk& chunk,
-                  ContactBuffer& out) {
-  HWY_DYNAMIC_DISPATCH(Damping)(in, state, list, chunk, out);
-}
 
 void line_contact(const LineKernelInput<MixedTable, std::int32_t>& in, const LineChunk& chunk,
                   LineWork<float>& work, ContactBuffer& out) {

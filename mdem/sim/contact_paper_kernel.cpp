@@ -15,8 +15,6 @@
 //
 #include <hwy/highway.h>
 
-#include "sim/contact_damping-inl.hpp"
-
 HWY_BEFORE_NAMESPACE();
 namespace ropewalk::HWY_NAMESPACE {
 namespace paper {
@@ -295,17 +293,6 @@ void PaperFull(const PaperKernelInput<double>& in, const NeighbourList::Chunk& c
   paper::any(in, chunk, out);
 }
 
-void PaperDamping(const ContactViscosity& viscosity, const State& state, const PairRuns& runs,
-                  const NeighbourList::Chunk& chunk, ContactBuffer& out) {
-  damping::chunk_damping(
-      viscosity, state, chunk.begin, chunk.end, -chunk.touched_begin,
-      [&](int i, const auto& f) HWY_ATTR {
-        for (const PairRun* run = runs.begin(i); run != runs.end(i); ++run)
-          f(run->begin, run->end, -chunk.touched_begin);
-      },
-      out);
-}
-
 }  // namespace ropewalk::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -314,7 +301,6 @@ namespace ropewalk {
 
 HWY_EXPORT(PaperMixed);
 HWY_EXPORT(PaperFull);
-HWY_EXPORT(PaperDamping);
 
 void paper_contact(const PaperKernelInput<float>& in, const NeighbourList::Chunk& chunk, ContactBuffer& out) {
   HWY_DYNAMIC_DISPATCH(PaperMixed)(in, chunk, out);
@@ -322,11 +308,6 @@ void paper_contact(const PaperKernelInput<float>& in, const NeighbourList::Chunk
 
 void paper_contact(const PaperKernelInput<double>& in, const NeighbourList::Chunk& chunk, ContactBuffer& out) {
   HWY_DYNAMIC_DISPATCH(PaperFull)(in, chunk, out);
-}
-
-void paper_damping(const ContactViscosity& viscosity, const State& state, const PairRuns& runs,
-                   const NeighbourList::Chunk& chunk, ContactBuffer& out) {
-  HWY_DYNAMIC_DISPATCH(PaperDamping)(viscosity, state, runs, chunk, out);
 }
 
 }  // namespace ropewalk

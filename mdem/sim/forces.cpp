@@ -141,7 +141,7 @@ void ForceEngine::compute_contact(const Topology& topology, const Interaction& i
   buffers_.resize(list.chunks().size());
   // Always with energies: its loops are the compiler's, who orders their sums as it likes, and forces must be the
   // same bits whoever reads energies.
-  paper_.compute(interaction, list, state, frames_.t, buffers_.data());
+  paper_.compute(topology, interaction, list, state, frames_.t, buffers_.data());
 }
 
 // Of all chunks in their fixed order, on the elements from .. to.

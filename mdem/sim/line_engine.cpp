@@ -142,7 +142,8 @@ void LineEngine::run(Buffers& b, const Topology& topology, const Interaction& in
       buffers_[k].clear(static_cast<std::size_t>(chunk.elements));
       b.work[k].start(chunk);
       line_contact(input, chunk, b.work[k], buffers_[k]);
-      if (in.damped_contact()) line_damping(in, state, list_, chunk, buffers_[k]);
+      if (in.damped_contact())
+        contact_damping(in.damping.contact, state, chunk.damped, chunk.own_shift(), buffers_[k]);
     }
   }
 }

@@ -161,10 +161,6 @@ void line_contact(const LineKernelInput<FullTable, double>& in, const LineChunk&
 std::vector<std::string> instruction_sets();
 bool use_instructions(const std::string& name);
 
-// Viscous damping of the pairs of elements in the runs.
-void line_damping(const Interaction& interaction, const State& state, const LineList& list, const LineChunk& chunk,
-                  ContactBuffer& out);
-
 class LineEngine {
  public:
   // The contact of all chunks; add_to_tube then collects it. Energies only if wanted: forces are the same bits.

@@ -250,6 +250,22 @@ void LineList::touch_tubes(const Topology& topology, LineChunk& chunk) {
   }
 }
 
+void LineList::list_damped(const Topology& topology, LineChunk& chunk) const {
+  DampedBlocks blocks;
+  int tube = topology.tube_of(chunk.begin);
+  for (int i = chunk.begin; i < chunk.end; ++i) {
+    while (i >= topology.tube_begin[tube + 1]) ++tube;
+    const int end = std::min(chunk.end, topology.tube_begin[tube + 1]);
+    for (const LineRun* run = begin(i); run != this->end(i); ++run) {
+      if (run->damped == 0) continue;
+      const int from = run->element_begin + run->damped_from;
+      blocks.add(i, end, from, from + run->damped,
+                 chunk.touched[static_cast<std::size_t>(run->touched)].elements());
+    }
+  }
+  chunk.damped = blocks.take();
+}
+
 void LineList::list_touches(const Topology& topology) {
   touch_begin_.assign(static_cast<std::size_t>(topology.tubes()) + 1, 0);
   for (const LineChunk& chunk : chunks_)
@@ -292,14 +308,17 @@ void LineList::build(const Topology& topology, const Interaction& in, const Neig
   cut_into_chunks(topology, list.chunks().size());
 #pragma omp parallel for schedule(dynamic, 1) if (parallel)
   for (std::size_t c = 0; c < chunks_.size(); ++c)
-    if (chunks_[c].begin < chunks_[c].end) touch_tubes(topology, chunks_[c]);
+    if (chunks_[c].begin < chunks_[c].end) {
+      touch_tubes(topology, chunks_[c]);
+      if (in.damped_contact()) list_damped(topology, chunks_[c]);
+    }
   list_touches(topology);
 }
 
 std::size_t LineList::bytes() const {
   std::size_t total = run_.capacity() * sizeof(LineRun) + begin_.capacity() * sizeof(std::size_t) +
                       touch_.capacity() * sizeof(Touch);
-  for (const LineChunk& chunk : chunks_) total += chunk.touched.capacity() * sizeof(TouchedTube);
+  for (const LineChunk& chunk : chunks_) total += chunk.touched.capacity() * sizeof(TouchedTube) + chunk.damped.capacity() * sizeof(DampedBlock);
   return total;
 }
 

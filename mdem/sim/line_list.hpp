@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "sim/contact_damping.hpp"
 #include "sim/interaction.hpp"
 #include "sim/neighbours.hpp"
 
@@ -50,6 +51,7 @@ struct LineRun {
 struct TouchedTube {
   int tube = 0, begin = 0, end = 0;
   int element_shift = 0;  // element j is entry j + element_shift
+  TouchedRange elements() const { return {begin, end, element_shift}; }
   struct Row {
     int origin = 0, per_element = 0;  // the first node of element j is node origin + j per_element
     int shift = 0;                    // node m is entry m + shift
@@ -60,6 +62,7 @@ struct TouchedTube {
 struct LineChunk {
   int begin = 0, end = 0;
   std::vector<TouchedTube> touched;
+  std::vector<DampedBlock> damped;
   int elements = 0, nodes[row_kinds] = {0, 0};  // sizes of the buffers
 
   // Of its own elements, whose tubes are the first touched ones, and in order.
@@ -98,6 +101,7 @@ class LineList {
   double cost(const Topology& topology, int i, int tube) const;
   void cut_into_chunks(const Topology& topology, std::size_t count);
   void touch_tubes(const Topology& topology, LineChunk& chunk);
+  void list_damped(const Topology& topology, LineChunk& chunk) const;
   void list_touches(const Topology& topology);
 
   NodeLayout layout_[row_kinds];

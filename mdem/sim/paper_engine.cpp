@@ -39,16 +39,39 @@ void PaperEngine::run(PaperElements<T>& elements, const Interaction& in, const N
     const NeighbourList::Chunk& chunk = list.chunks()[k];
     buffers[k].clear(static_cast<std::size_t>(chunk.touched_end - chunk.touched_begin));
     paper_contact(input, chunk, buffers[k]);
-    if (in.damped_contact()) paper_damping(in.damping.contact, state, damped_, chunk, buffers[k]);
+    if (in.damped_contact())
+      contact_damping(in.damping.contact, state, damped_[k], -chunk.touched_begin, buffers[k]);
   }
 }
 
-void PaperEngine::compute(const Interaction& in, const NeighbourList& list, const State& state,
+void PaperEngine::list_damped(const Topology& topology, const Interaction& in, const NeighbourList& list) {
+  PairRuns near;
+  near.build(list, in.damping.contact.outer);
+  damped_.clear();
+  for (const NeighbourList::Chunk& chunk : list.chunks()) {
+    DampedBlocks blocks;
+    for (int i = chunk.begin; i < chunk.end; ++i) {
+      const int end = std::min(chunk.end, topology.tube_begin[topology.tube_of(i) + 1]);
+      for (const PairRun* run = near.begin(i); run != near.end(i); ++run) {
+        for (int from = run->begin; from < run->end;) {  // a run may go on into the next tube
+          const int tube = topology.tube_of(from), to = std::min(run->end, topology.tube_begin[tube + 1]);
+          blocks.add(i, end, from, to,
+                     {std::max(topology.tube_begin[tube], chunk.touched_begin),
+                      std::min(topology.tube_begin[tube + 1], chunk.touched_end), -chunk.touched_begin});
+          from = to;
+        }
+      }
+    }
+    damped_.push_back(blocks.take());
+  }
+}
+
+void PaperEngine::compute(const Topology& topology, const Interaction& in, const NeighbourList& list, const State& state,
                           const Vec3Array& axis, ContactBuffer* buffers, bool energies) {
   if (stamp_ != list.stamp()) {
     const double began = omp_get_wtime();
     runs_.build(list, in.paper->cutoff());
-    if (in.damped_contact()) damped_.build(list, in.damping.contact.outer);
+    if (in.damped_contact()) list_damped(topology, in, list);
     mixed_.unit = list.coordinate_unit();
     stamp_ = list.stamp();
     list_seconds_ += omp_get_wtime() - began;
@@ -64,7 +87,9 @@ std::size_t PaperEngine::bytes() const {
   const auto of = [](const auto& e) {
     return 3 * (e.x.capacity() * sizeof(e.x[0]) + e.nx.capacity() * sizeof(e.nx[0]));
   };
-  return runs_.bytes() + damped_.bytes() + of(mixed_) + of(full_);
+  std::size_t damped = 0;
+  for (const auto& blocks : damped_) damped += blocks.capacity() * sizeof(DampedBlock);
+  return runs_.bytes() + damped + of(mixed_) + of(full_);
 }
 
 }  // namespace ropewalk

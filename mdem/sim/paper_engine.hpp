@@ -6,7 +6,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "sim/contact_kernel.hpp"
+#include "sim/contact_damping.hpp"
 #include "sim/pair_runs.hpp"
 
 namespace ropewalk {
@@ -42,14 +42,10 @@ struct PaperKernelInput {
 void paper_contact(const PaperKernelInput<float>& in, const NeighbourList::Chunk& chunk, ContactBuffer& out);
 void paper_contact(const PaperKernelInput<double>& in, const NeighbourList::Chunk& chunk, ContactBuffer& out);
 
-// Viscous damping of the pairs of elements in the runs.
-void paper_damping(const ContactViscosity& viscosity, const State& state, const PairRuns& runs,
-                   const NeighbourList::Chunk& chunk, ContactBuffer& out);
-
 class PaperEngine {
  public:
   // Fills buffers[chunk].
-  void compute(const Interaction& interaction, const NeighbourList& list, const State& state, const Vec3Array& axis,
+  void compute(const Topology& topology, const Interaction& interaction, const NeighbourList& list, const State& state, const Vec3Array& axis,
                ContactBuffer* buffers, bool energies = true);
   const PairRuns& runs() const { return runs_; }
   double list_seconds() const { return list_seconds_; }  // spent on the runs so far
@@ -60,7 +56,10 @@ class PaperEngine {
   void run(PaperElements<T>& elements, const Interaction& interaction, const NeighbourList& list,
            const State& state, const Vec3Array& axis, ContactBuffer* buffers, bool energies);
 
-  PairRuns runs_, damped_;  // the latter within reach of the contact viscosity
+  void list_damped(const Topology& topology, const Interaction& interaction, const NeighbourList& list);
+
+  PairRuns runs_;
+  std::vector<std::vector<DampedBlock>> damped_;  // of each chunk
   PaperElements<float> mixed_;
   PaperElements<double> full_;
   long stamp_ = 0;

@@ -1,0 +1,174 @@
+#include "sim/contact_damping.hpp"
+
+#include <algorithm>
+#include <tuple>
+#include <utility>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "sim/contact_damping.cpp"
+#include <hwy/foreach_target.h>
+//
+#include <hwy/highway.h>
+//
+#include "sim/some_lanes-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace ropewalk::HWY_NAMESPACE {
+namespace damping {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using D = hn::CappedTag<double, DampedBlock::most>;
+using V = hn::Vec<D>;
+using M = hn::Mask<D>;
+
+struct Vec3 {
+  V x, y, z;
+};
+
+HWY_INLINE Vec3 operator+(const Vec3& a, const Vec3& b) {
+  return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
+}
+HWY_INLINE Vec3 operator-(const Vec3& a, const Vec3& b) {
+  return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
+}
+HWY_INLINE Vec3 operator*(V a, const Vec3& b) { return {hn::Mul(a, b.x), hn::Mul(a, b.y), hn::Mul(a, b.z)}; }
+HWY_INLINE Vec3 cross(const Vec3& a, const Vec3& b) {
+  return {hn::MulSub(a.y, b.z, hn::Mul(a.z, b.y)), hn::MulSub(a.z, b.x, hn::Mul(a.x, b.z)),
+          hn::MulSub(a.x, b.y, hn::Mul(a.y, b.x))};
+}
+HWY_INLINE V dot(const Vec3& a, const Vec3& b) {
+  return hn::MulAdd(a.x, b.x, hn::MulAdd(a.y, b.y, hn::Mul(a.z, b.z)));
+}
+
+// Of the lanes' elements, zero in the others.
+struct Motion {
+  Vec3 place, velocity, spin;
+};
+
+HWY_INLINE Vec3 load(const Vec3Array& a, std::ptrdiff_t at, int first, int last) {
+  const D d;
+  return {load_some(d, a.x.data() + at, first, last), load_some(d, a.y.data() + at, first, last),
+          load_some(d, a.z.data() + at, first, last)};
+}
+
+HWY_INLINE Motion load(const State& s, std::ptrdiff_t at, int first, int last) {
+  return {load(s.position, at, first, last), load(s.velocity, at, first, last),
+          load(s.angular_velocity, at, first, last)};
+}
+
+// -eta w(R)
+HWY_INLINE V strength(const ContactViscosity& c, const Vec3& separation) {
+  const D d;
+  const V distance = hn::Sqrt(dot(separation, separation));
+  const V y = hn::Min(
+      hn::Max(hn::Mul(hn::Sub(distance, hn::Set(d, c.inner)), hn::Set(d, 1 / (c.outer - c.inner))), hn::Zero(d)),
+      hn::Set(d, 1.0));
+  const V weight =
+      hn::NegMulAdd(hn::Mul(y, y), hn::NegMulAdd(hn::Set(d, 2.0), y, hn::Set(d, 3.0)), hn::Set(d, 1.0));
+  return hn::Mul(hn::Set(d, -c.eta), weight);
+}
+
+// Whole vectors: the lanes left over are zero, and the buffers have room. A masked store would make the next load
+// wait until it is through.
+HWY_INLINE void add_to(const Vec3& v, std::ptrdiff_t at, std::vector<double>& x, std::vector<double>& y,
+                       std::vector<double>& z) {
+  const D d;
+  const auto add = [&](std::vector<double>& a, V what) HWY_ATTR {
+    hn::StoreU(hn::Add(hn::LoadU(d, a.data() + at), what), d, a.data() + at);
+  };
+  add(x, v.x), add(y, v.y), add(z, v.z);
+}
+
+HWY_INLINE V block_damping(const ContactViscosity& viscosity, const State& s, const DampedBlock& b, int lane,
+                           int own_shift, ContactBuffer& out) {
+  const D d;
+  const V half = hn::Set(d, 0.5), zero = hn::Zero(d);
+  const int lanes = std::min(static_cast<int>(hn::Lanes(d)), b.lanes - lane);
+  const Motion i = load(s, b.i + lane, 0, lanes);
+  Vec3 force{zero, zero, zero}, torque{zero, zero, zero};
+  V power = zero;
+  for (int c = 0; c < b.offsets; ++c) {
+    const int at = b.j + lane + c;
+    const int first = std::max(0, b.partners.begin - at), last = std::min(lanes, b.partners.end - at);
+    if (first >= last) continue;
+    const Motion j = load(s, at, first, last);
+    const Vec3 apart = j.place - i.place;
+    const Vec3 arm = half * apart;
+    const Vec3 relative = j.velocity - i.velocity - cross(i.spin + j.spin, arm);
+    const V k = hn::IfThenElseZero(some_lanes(d, first, last), strength(viscosity, apart));
+    const Vec3 f = k * relative, t = cross(f, arm);
+    power = hn::Add(power, dot(f, relative));
+    force = force - f;
+    torque = torque + t;
+    const std::ptrdiff_t entry = at + b.partners.shift;
+    add_to(f, entry, out.fx, out.fy, out.fz);
+    add_to(t, entry, out.tx, out.ty, out.tz);
+  }
+  const std::ptrdiff_t own = b.i + lane + own_shift;
+  add_to(force, own, out.fx, out.fy, out.fz);
+  add_to(torque, own, out.tx, out.ty, out.tz);
+  return power;
+}
+
+}  // namespace damping
+
+void Blocks(const ContactViscosity& viscosity, const State& state, const std::vector<DampedBlock>& blocks,
+            int own_shift, ContactBuffer& out) {
+  const damping::D d;
+  auto power = hn::Zero(d);
+  for (const DampedBlock& b : blocks)
+    for (int lane = 0; lane < b.lanes; lane += static_cast<int>(hn::Lanes(d)))
+      power = hn::Add(power, damping::block_damping(viscosity, state, b, lane, own_shift, out));
+  out.power += hn::GetLane(hn::SumOfLanes(d, power));
+}
+
+}  // namespace ropewalk::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace ropewalk {
+
+HWY_EXPORT(Blocks);
+
+void contact_damping(const ContactViscosity& viscosity, const State& state, const std::vector<DampedBlock>& blocks,
+                     int own_shift, ContactBuffer& out) {
+  HWY_DYNAMIC_DISPATCH(Blocks)(viscosity, state, blocks, own_shift, out);
+}
+
+void DampedBlocks::add(int i, int end, int from, int to, const TouchedRange& partners) {
+  if (i >= first_ + lanes_) {
+    finish_group();
+    first_ = i;
+    lanes_ = std::min(DampedBlock::most, end - i);
+  }
+  if (from < to) ranges_.push_back({from - i, to - i, partners});
+}
+
+void DampedBlocks::finish_group() {
+  constexpr int worth_a_block = 3;  // so many offsets without a pair cost what another block does
+  std::sort(ranges_.begin(), ranges_.end(), [](const Range& a, const Range& b) {
+    return std::tie(a.partners.begin, a.from) < std::tie(b.partners.begin, b.from);
+  });
+  const auto add = [&](const Range& r) {
+    blocks_.push_back({first_, first_ + r.from, static_cast<short>(lanes_), static_cast<short>(r.to - r.from),
+                       r.partners});
+  };
+  for (std::size_t k = 0; k < ranges_.size();) {
+    Range all = ranges_[k];
+    for (++k; k < ranges_.size() && ranges_[k].partners.begin == all.partners.begin &&
+              ranges_[k].from <= all.to + worth_a_block;
+         ++k)
+      all.to = std::max(all.to, ranges_[k].to);
+    add(all);
+  }
+  ranges_.clear();
+}
+
+std::vector<DampedBlock> DampedBlocks::take() {
+  finish_group();
+  lanes_ = 0;
+  return std::exchange(blocks_, {});
+}
+
+}  // namespace ropewalk
+#endif  // HWY_ONCE
