@@ -73,9 +73,8 @@ HWY_INLINE V strength(const ContactViscosity& c, const Vec3& separation) {
 HWY_INLINE void add_to(const Vec3& v, std::ptrdiff_t at, std::vector<double>& x, std::vector<double>& y,
                        std::vector<double>& z) {
   const D d;
-  const auto add = [&](std::vector<double>& a, V what) HWY_ATTR {
-    hn::StoreU(hn::Add(hn::LoadU(d, a.data() + at), what), d, a.data() + at);
-  };
+  const auto add = [&](std::vector<double>& a, V what)
+                       HWY_ATTR { hn::StoreU(hn::Add(hn::LoadU(d, a.data() + at), what), d, a.data() + at); };
   add(x, v.x), add(y, v.y), add(z, v.z);
 }
 
@@ -150,8 +149,8 @@ void DampedBlocks::finish_group() {
     return std::tie(a.partners.begin, a.from) < std::tie(b.partners.begin, b.from);
   });
   const auto add = [&](const Range& r) {
-    blocks_.push_back({first_, first_ + r.from, static_cast<short>(lanes_), static_cast<short>(r.to - r.from),
-                       r.partners});
+    blocks_.push_back(
+        {first_, first_ + r.from, static_cast<short>(lanes_), static_cast<short>(r.to - r.from), r.partners});
   };
   for (std::size_t k = 0; k < ranges_.size();) {
     Range all = ranges_[k];

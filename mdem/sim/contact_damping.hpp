@@ -1,6 +1,6 @@
-// Contact viscosity (model/damping.hpp) of all pairs of elements within its reach, in blocks: up to eight consecutive
-// elements of one tube meet those of another that are 0, 1, .. places further along. Loads and stores are of
-// consecutive elements, and no lanes are added up.
+// Contact viscosity (model/damping.hpp) of all pairs of elements within its reach, in blocks: up to eight
+// consecutive elements of one tube meet those of another that are 0, 1, .. places further along. Loads and stores
+// are of consecutive elements, and no lanes are added up.
 #pragma once
 
 #include <vector>

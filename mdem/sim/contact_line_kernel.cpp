@@ -140,30 +140,41 @@ HWY_INLINE double total(D d, hn::Vec<D> v) {
   return static_cast<double>(hn::GetLane(hn::SumOfLanes(d, v)));
 }
 
-// The sums of the lanes of three vectors.
+#if HWY_TARGET != HWY_SCALAR
+// x y z z in every block of four lanes, the blocks' sums those of the lanes: added while they are shuffled
+// together.
+template <class D, class V>
+HWY_INLINE V in_blocks(D d, V x, V y, V z) {
+  const hn::Repartition<std::uint64_t, D> pairs;
+  const auto xy = hn::Add(hn::InterleaveLower(d, x, y), hn::InterleaveUpper(d, x, y));  // x02 y02 x13 y13
+  const auto zz = hn::Add(hn::InterleaveLower(d, z, z), hn::InterleaveUpper(d, z, z));
+  const auto low = hn::InterleaveLower(pairs, hn::BitCast(pairs, xy), hn::BitCast(pairs, zz));
+  const auto high = hn::InterleaveUpper(pairs, hn::BitCast(pairs, xy), hn::BitCast(pairs, zz));
+  return hn::Add(hn::BitCast(d, low), hn::BitCast(d, high));
+}
+#endif
+
+// The sums of the lanes of six vectors, force and moment.
 template <class V>
-HWY_INLINE void totals(V x, V y, V z, double (&out)[3]) {
+HWY_INLINE void totals(V fx, V fy, V fz, V mx, V my, V mz, double (&f)[3], double (&m)[3]) {
   const hn::DFromV<V> d;
 #if HWY_TARGET != HWY_SCALAR
-  if constexpr (sizeof(hn::TFromD<decltype(d)>) == 4) {
-    // Added while they are shuffled into one block: half the work of three sums.
-    const hn::Repartition<std::uint64_t, decltype(d)> pairs;
-    const auto xy = hn::Add(hn::InterleaveLower(d, x, y), hn::InterleaveUpper(d, x, y));  // x02 y02 x13 y13
-    const auto zz = hn::Add(hn::InterleaveLower(d, z, z), hn::InterleaveUpper(d, z, z));
-    const auto low = hn::InterleaveLower(pairs, hn::BitCast(pairs, xy), hn::BitCast(pairs, zz));
-    const auto high = hn::InterleaveUpper(pairs, hn::BitCast(pairs, xy), hn::BitCast(pairs, zz));
-    const auto blocks = hn::Add(hn::BitCast(d, low), hn::BitCast(d, high));  // x y z z in every block
-    alignas(64) float all[hn::MaxLanes(d)];
-    hn::Store(blocks, d, all);
+  constexpr std::size_t lanes = hn::MaxLanes(d), half = lanes / 2;
+  if constexpr (sizeof(hn::TFromD<decltype(d)>) == 4 && lanes >= 8) {
+    const V force = in_blocks(d, fx, fy, fz), moment = in_blocks(d, mx, my, mz);
+    alignas(64) float all[lanes];
+    hn::Store(hn::Add(hn::ConcatLowerLower(d, moment, force), hn::ConcatUpperUpper(d, moment, force)), d, all);
     for (std::size_t a = 0; a < 3; ++a) {
-      float sum = all[a];
-      for (std::size_t m = 4; m < hn::MaxLanes(d); m += 4) sum += all[m + a];
-      out[a] = static_cast<double>(sum);
+      float on = all[a], about = all[half + a];
+      for (std::size_t k = 4; k < half; k += 4) on += all[k + a], about += all[half + k + a];
+      f[a] = static_cast<double>(on);
+      m[a] = static_cast<double>(about);
     }
     return;
   }
 #endif
-  out[0] = total(d, x), out[1] = total(d, y), out[2] = total(d, z);
+  f[0] = total(d, fx), f[1] = total(d, fy), f[2] = total(d, fz);
+  m[0] = total(d, mx), m[1] = total(d, my), m[2] = total(d, mz);
 }
 
 // The element that the loop stands at.
@@ -218,8 +229,7 @@ struct Element {
   template <bool energies>
   HWY_INLINE void add_to(ContactBuffer& buffer, int at) {
     double f[3], m[3];
-    totals(fx, fy, fz, f);
-    totals(mx, my, mz, m);
+    totals(fx, fy, fz, mx, my, mz, f, m);
     sum.fx += f[0];
     sum.fy += f[1];
     sum.fz += f[2];
@@ -320,7 +330,9 @@ struct Partner {
     const typename E::D tag;
     const auto all = hn::FirstN(tag, hn::Lanes(tag));
     const auto kf = hn::Set(tag, t.force * static_cast<typename E::Real>(share));
-    V energy = hn::Zero(tag);
+    const V none = hn::Zero(tag);
+    V gx = none, gy = none, gz = none, tx = none, ty = none, tz = none, ex = none, ey = none, ez = none,
+      energy = none;
     for (std::size_t m = 0; m < lanes.weight.size(); m += hn::Lanes(tag)) {
       const V si = hn::LoadU(tag, lanes.i.data() + m), sj = hn::LoadU(tag, lanes.j.data() + m);
       const V w = hn::LoadU(tag, lanes.weight.data() + m);
@@ -331,21 +343,23 @@ struct Partner {
       V u, slope;
       radial<energies>(tag, t, hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz))), all, u, slope);
       const V f = hn::Mul(hn::Mul(slope, kf), w);
-      const V gx = hn::Mul(f, dx), gy = hn::Mul(f, dy), gz = hn::Mul(f, dz);
-      fx = hn::Add(fx, gx), fy = hn::Add(fy, gy), fz = hn::Add(fz, gz);
-      mx = hn::MulAdd(sj, gx, mx), my = hn::MulAdd(sj, gy, my), mz = hn::MulAdd(sj, gz, mz);
-      e.fx = hn::Sub(e.fx, gx), e.fy = hn::Sub(e.fy, gy), e.fz = hn::Sub(e.fz, gz);
-      e.mx = hn::NegMulAdd(si, gx, e.mx), e.my = hn::NegMulAdd(si, gy, e.my), e.mz = hn::NegMulAdd(si, gz, e.mz);
+      const V hx = hn::Mul(f, dx), hy = hn::Mul(f, dy), hz = hn::Mul(f, dz);
+      gx = hn::Add(gx, hx), gy = hn::Add(gy, hy), gz = hn::Add(gz, hz);
+      tx = hn::MulAdd(sj, hx, tx), ty = hn::MulAdd(sj, hy, ty), tz = hn::MulAdd(sj, hz, tz);
+      ex = hn::MulAdd(si, hx, ex), ey = hn::MulAdd(si, hy, ey), ez = hn::MulAdd(si, hz, ez);
       if constexpr (energies) energy = hn::MulAdd(w, u, energy);
     }
+    fx = hn::Add(fx, gx), fy = hn::Add(fy, gy), fz = hn::Add(fz, gz);
+    mx = hn::Add(mx, tx), my = hn::Add(my, ty), mz = hn::Add(mz, tz);
+    e.fx = hn::Sub(e.fx, gx), e.fy = hn::Sub(e.fy, gy), e.fz = hn::Sub(e.fz, gz);
+    e.mx = hn::Sub(e.mx, ex), e.my = hn::Sub(e.my, ey), e.mz = hn::Sub(e.mz, ez);
     if constexpr (!energies) return 0;
     return total(tag, energy);
   }
 
   HWY_INLINE void add_to(ContactBuffer& out, std::size_t at) const {
     double f[3], m[3];
-    totals(fx, fy, fz, f);
-    totals(mx, my, mz, m);
+    totals(fx, fy, fz, mx, my, mz, f, m);
     out.fx[at] += f[0];
     out.fy[at] += f[1];
     out.fz[at] += f[2];

@@ -318,7 +318,8 @@ void LineList::build(const Topology& topology, const Interaction& in, const Neig
 std::size_t LineList::bytes() const {
   std::size_t total = run_.capacity() * sizeof(LineRun) + begin_.capacity() * sizeof(std::size_t) +
                       touch_.capacity() * sizeof(Touch);
-  for (const LineChunk& chunk : chunks_) total += chunk.touched.capacity() * sizeof(TouchedTube) + chunk.damped.capacity() * sizeof(DampedBlock);
+  for (const LineChunk& chunk : chunks_)
+    total += chunk.touched.capacity() * sizeof(TouchedTube) + chunk.damped.capacity() * sizeof(DampedBlock);
   return total;
 }
 

@@ -66,8 +66,8 @@ void PaperEngine::list_damped(const Topology& topology, const Interaction& in, c
   }
 }
 
-void PaperEngine::compute(const Topology& topology, const Interaction& in, const NeighbourList& list, const State& state,
-                          const Vec3Array& axis, ContactBuffer* buffers, bool energies) {
+void PaperEngine::compute(const Topology& topology, const Interaction& in, const NeighbourList& list,
+                          const State& state, const Vec3Array& axis, ContactBuffer* buffers, bool energies) {
   if (stamp_ != list.stamp()) {
     const double began = omp_get_wtime();
     runs_.build(list, in.paper->cutoff());

@@ -45,8 +45,8 @@ void paper_contact(const PaperKernelInput<double>& in, const NeighbourList::Chun
 class PaperEngine {
  public:
   // Fills buffers[chunk].
-  void compute(const Topology& topology, const Interaction& interaction, const NeighbourList& list, const State& state, const Vec3Array& axis,
-               ContactBuffer* buffers, bool energies = true);
+  void compute(const Topology& topology, const Interaction& interaction, const NeighbourList& list,
+               const State& state, const Vec3Array& axis, ContactBuffer* buffers, bool energies = true);
   const PairRuns& runs() const { return runs_; }
   double list_seconds() const { return list_seconds_; }  // spent on the runs so far
   std::size_t bytes() const;

@@ -1,5 +1,5 @@
-// Vectors of which some lanes alone are read, for the instruction set that the includer compiles. To be included after
-// hwy/highway.h, within its loop over targets.
+// Vectors of which some lanes alone are read, for the instruction set that the includer compiles. To be included
+// after hwy/highway.h, within its loop over targets.
 #if defined(ROPEWALK_SOME_LANES_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef ROPEWALK_SOME_LANES_INL
 #undef ROPEWALK_SOME_LANES_INL

@@ -1,6 +1,6 @@
-// Pieces of work of uneven cost for a team of threads. Each thread begins with a share of consecutive pieces, the same
-// one in every step, so that what it wrote in the last step is still in its cache; who is done takes pieces from the
-// far end of the largest share that is left.
+// Pieces of work of uneven cost for a team of threads. Each thread begins with a share of consecutive pieces, the
+// same one in every step, so that what it wrote in the last step is still in its cache; who is done takes pieces
+// from the far end of the largest share that is left.
 #pragma once
 
 #include <omp.h>
@@ -15,7 +15,8 @@ class WorkShares {
  public:
   // Before the team starts, with the number of its threads.
   void deal(int pieces, int threads) {
-    if (static_cast<int>(shares_.size()) != threads) shares_ = std::vector<Share>(static_cast<std::size_t>(threads));
+    if (static_cast<int>(shares_.size()) != threads)
+      shares_ = std::vector<Share>(static_cast<std::size_t>(threads));
     for (int t = 0; t < threads; ++t)
       shares_[static_cast<std::size_t>(t)].left = pack(pieces * t / threads, pieces * (t + 1) / threads);
   }
