@@ -107,7 +107,6 @@ void add_bonds(const std::vector<double>& on_i, double sign_i, const std::vector
 
 void ForceEngine::make_frames(const State& state) {
   const auto n = static_cast<std::ptrdiff_t>(state.size());
-  frames_.resize(state.size());
   constexpr std::ptrdiff_t block = 512;
 #pragma omp parallel for schedule(static) if (state.size() > parallel_from)
   for (std::ptrdiff_t i = 0; i < n; i += block) frames_of(state.orientation, i, std::min(i + block, n), frames_);
@@ -137,7 +136,12 @@ std::size_t ForceEngine::bytes() const {
 
 void ForceEngine::compute_contact(const Topology& topology, const Interaction& interaction,
                                   const NeighbourList& list, const State& state, bool energies) {
-  if (!interaction.paper) return line_.compute(topology, interaction, list, state, frames_.t, energies);
+  if (!interaction.paper) {
+    const auto place = [&](int tube) {
+      frames_of(state.orientation, topology.tube_begin[tube], topology.tube_begin[tube + 1], frames_);
+    };
+    return line_.compute(topology, interaction, list, state, frames_.t, energies, place);
+  }
   buffers_.resize(list.chunks().size());
   // Always with energies: its loops are the compiler's, who orders their sums as it likes, and forces must be the
   // same bits whoever reads energies.
@@ -165,10 +169,11 @@ void ForceEngine::add_buffers(const NeighbourList& list, int from, int to, Force
 void ForceEngine::compute(const Topology& topology, const Interaction& interaction, const NeighbourList& list,
                           const State& state, Forces& out, bool energies, Parts parts) {
   const double t0 = omp_get_wtime();
-  make_frames(state);
+  const bool contact = interaction.has_contact() && parts != Parts::bonds;
+  frames_.resize(state.size());
+  if (!contact || interaction.paper) make_frames(state);  // else with the nodes
   const double t1 = omp_get_wtime();
 
-  const bool contact = interaction.has_contact() && parts != Parts::bonds;
   const bool bonds = parts != Parts::contact;
   if (contact) compute_contact(topology, interaction, list, state, energies);
   const double t2 = omp_get_wtime();

@@ -58,6 +58,7 @@ class ForceEngine {
                const State& state, Forces& out, bool energies = true, Parts parts = Parts::all);
 
   // Wall time spent so far in each part, s.
+  // Frames are made within the contact where that is by the line law.
   struct Times {
     double frames = 0, contact = 0, bonds = 0;
   };

@@ -118,7 +118,8 @@ void LineEngine::describe(const Topology& topology, const Interaction& in, const
 
 template <class Buffers>
 void LineEngine::run(Buffers& b, const Topology& topology, const Interaction& in, const NeighbourList& list,
-                     const State& state, const Vec3Array& axis, bool energies) {
+                     const State& state, const Vec3Array& axis, bool energies,
+                     const std::function<void(int)>& place) {
   const LineKernelInput<typename Buffers::Table, typename Buffers::C> input{
       &topology,       &in,
       &state,          &axis,
@@ -131,11 +132,13 @@ void LineEngine::run(Buffers& b, const Topology& topology, const Interaction& in
 #pragma omp parallel if (parallel)
   {
 #pragma omp for schedule(static)
-    for (int t = 0; t < topology.tubes(); ++t)
+    for (int t = 0; t < topology.tubes(); ++t) {
+      place(t);
       for (const Rows kind : {Rows::all, Rows::sparse})
         if (list_.layout(kind).has_row(t))
           place_row(list_.layout(kind), topology, length_[static_cast<std::size_t>(topology.tube_type[t])], t,
                     state, axis, b.nodes[static_cast<int>(kind)]);
+    }
     for (int piece; (piece = shares_.take(omp_get_thread_num())) >= 0;) {
       const auto k = static_cast<std::size_t>(piece);
       const LineChunk& chunk = list_.chunks()[k];
@@ -149,16 +152,17 @@ void LineEngine::run(Buffers& b, const Topology& topology, const Interaction& in
 }
 
 void LineEngine::compute(const Topology& topology, const Interaction& in, const NeighbourList& list,
-                         const State& state, const Vec3Array& axis, bool energies) {
+                         const State& state, const Vec3Array& axis, bool energies,
+                         const std::function<void(int)>& place) {
   if (stamp_ != list.stamp()) {
     const double began = omp_get_wtime();
     describe(topology, in, list);
     list_seconds_ += omp_get_wtime() - began;
   }
   if (full_) {
-    run(full_buffers_, topology, in, list, state, axis, energies);
+    run(full_buffers_, topology, in, list, state, axis, energies, place);
   } else {
-    run(mixed_, topology, in, list, state, axis, energies);
+    run(mixed_, topology, in, list, state, axis, energies, place);
   }
 }
 

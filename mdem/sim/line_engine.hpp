@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "sim/contact_kernel.hpp"
@@ -164,8 +165,9 @@ bool use_instructions(const std::string& name);
 class LineEngine {
  public:
   // The contact of all chunks; add_to_tube then collects it. Energies only if wanted: forces are the same bits.
+  // place(tube) comes before: it makes the tube's axes, by the thread that places its nodes.
   void compute(const Topology& topology, const Interaction& interaction, const NeighbourList& list,
-               const State& state, const Vec3Array& axis, bool energies);
+               const State& state, const Vec3Array& axis, bool energies, const std::function<void(int)>& place);
   // Adds what acts on the elements of one tube.
   void add_to_tube(const Topology& topology, const Vec3Array& axis, int tube, Vec3Array& force,
                    Vec3Array& torque) const;
@@ -178,7 +180,7 @@ class LineEngine {
  private:
   template <class Buffers>
   void run(Buffers& b, const Topology& topology, const Interaction& interaction, const NeighbourList& list,
-           const State& state, const Vec3Array& axis, bool energies);
+           const State& state, const Vec3Array& axis, bool energies, const std::function<void(int)>& place);
   template <class Buffers>
   void add_nodes(const Buffers& b, const Topology& topology, const Vec3Array& axis, int tube, Vec3Array& force,
                  Vec3Array& torque) const;

@@ -2,6 +2,7 @@
 // how far it has brought them.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 
 #include "sim/state.hpp"
@@ -25,5 +26,8 @@ struct Change {
 };
 Change largest_change(const State& state, const Vec3Array& position, const Vec3Array& axis, double lever,
                       std::ptrdiff_t begin, std::ptrdiff_t end);
+inline Change farther(const Change& a, const Change& b) {
+  return {std::max(a.moved, b.moved), std::max(a.turned, b.turned), a.sum + b.sum};
+}
 
 }  // namespace ropewalk

@@ -80,33 +80,29 @@ CellGrid make_grid(const Vec3Array& p, double reach) {
 
 }  // namespace
 
-namespace {
-
-// Infinite where a place is not finite.
-Change largest_change(const State& state, const Vec3Array& position, const Vec3Array& axis, double lever) {
+bool NeighbourList::update(const Topology& topology, const State& state) {
+  Change all;
   const auto n = static_cast<std::ptrdiff_t>(state.size());
-  constexpr std::ptrdiff_t block = 1024;
-  double moved = 0, turned = 0;
-#pragma omp parallel for schedule(static) reduction(max : moved, turned) if (state.size() > parallel_from)
-  for (std::ptrdiff_t i = 0; i < n; i += block) {
-    const Change c = largest_change(state, position, axis, lever, i, std::min(i + block, n));
-    moved = std::isfinite(c.sum) ? std::max(moved, c.moved) : std::numeric_limits<double>::infinity();
-    turned = std::isfinite(c.sum) ? std::max(turned, c.turned) : std::numeric_limits<double>::infinity();
-  }
-  return {moved, turned, 0};
+  for (std::ptrdiff_t i = 0; i < n; i += block) all = farther(all, change(state, i, std::min(i + block, n)));
+  return update(topology, state, all);
 }
 
-}  // namespace
-
-bool NeighbourList::update(const Topology& topology, const State& state) {
+bool NeighbourList::update(const Topology& topology, const State& state, const Change& change) {
   if (reference_.size() == state.size()) {
-    const Change change = largest_change(state, reference_, reference_axis_, lever);
     displacement_ = change.moved;
     turn_ = change.turned;
     if (displacement_ <= 0.5 * skin) return false;
   }
   build(topology, state);
   return true;
+}
+
+Change NeighbourList::change(const State& state, std::ptrdiff_t begin, std::ptrdiff_t end) const {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  if (reference_.size() != state.size()) return {infinity, infinity, infinity};
+  Change c = largest_change(state, reference_, reference_axis_, lever, begin, end);
+  if (!std::isfinite(c.sum)) c.moved = c.turned = infinity;
+  return c;
 }
 
 void NeighbourList::build(const Topology& topology, const State& state) {

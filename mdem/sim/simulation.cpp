@@ -34,6 +34,23 @@ void refuse_not_finite(const State& s) {
     throw NumericalError(s.step, broken, "its place, turn or velocity is not finite", "start from another state");
 }
 
+// What an element may move and turn in a step; a velocity that is not finite is no little motion.
+struct LittleMotion {
+  double speed2, spin2;
+  LittleMotion(double radius, double step) : speed2(square(0.25 * radius / step)), spin2(square(0.5 / step)) {}
+  static double square(double x) { return x * x; }
+  bool holds(const State& s, std::size_t i) const {
+    return s.velocity[i].squaredNorm() < speed2 && s.angular_velocity[i].squaredNorm() < spin2;
+  }
+};
+
+NumericalError blown_up(long step, int element) {
+  return NumericalError(step, element,
+                        "the motion blew up (an element moves a quarter of its radius or "
+                        "turns half a radian in one step)",
+                        "use a smaller time step or a gentler start and load");
+}
+
 }  // namespace
 
 Simulation::Simulation(Topology topology, Interaction interaction, Drive drive, State state, double time_step,
@@ -148,10 +165,33 @@ void Simulation::kick_with_loads(const Forces& forces, double dt) {
 
 void Simulation::drift(double dt) {
   const auto n = static_cast<std::ptrdiff_t>(state_.size());
-  constexpr std::ptrdiff_t block = 512;
+  constexpr std::ptrdiff_t block = NeighbourList::block;
   const auto move = stepping_.runge_kutta ? move_elements_runge_kutta : move_elements;
-#pragma omp parallel for schedule(static) if (state_.size() > parallel_from)
-  for (std::ptrdiff_t i = 0; i < n; i += block) move(state_, dt, i, std::min(i + block, n));
+  const LittleMotion little(topology_.largest_radius(), time_step_);
+  double moved = 0, turned = 0;
+  bool bounded = true;
+#pragma omp parallel for schedule(static) reduction(max : moved, turned) reduction(&& : bounded) \
+    if (state_.size() > parallel_from)
+  for (std::ptrdiff_t i = 0; i < n; i += block) {
+    const std::ptrdiff_t end = std::min(i + block, n);
+    for (std::ptrdiff_t k = i; k < end; ++k) bounded = bounded & little.holds(state_, static_cast<std::size_t>(k));
+    move(state_, dt, i, end);
+    const Change change = list_.change(state_, i, end);
+    moved = std::max(moved, change.moved);
+    turned = std::max(turned, change.turned);
+  }
+  change_ = {moved, turned, 0};
+  bounded_ = bounded;
+}
+
+// The velocities of the last drift.
+void Simulation::check_motion() const {
+  if (bounded_) return;
+  const LittleMotion little(topology_.largest_radius(), time_step_);
+  int broken = -1;
+  for (int i = 0; i < topology_.elements() && broken < 0; ++i)
+    if (!little.holds(state_, static_cast<std::size_t>(i))) broken = i;
+  throw blown_up(state_.step, broken);
 }
 
 void Simulation::step(bool energies) {
@@ -171,12 +211,13 @@ void Simulation::one_level(bool energies) {
   drift(dt);
   ++state_.step;
   state_.time += dt;
+  check_motion();
   const double t1 = omp_get_wtime();
-  list_.update(topology_, state_);
+  list_.update(topology_, state_, change_);
   const double t2 = omp_get_wtime();
   compute(energies);
   const double t3 = omp_get_wtime();
-  check(energies);
+  check_forces(energies);
   dissipated_ -= dt * forces_.damping_power;
   kick_with_loads(forces_, 0.5 * dt);
   relax_angles_if_due();
@@ -214,12 +255,13 @@ void Simulation::two_level(bool energies) {
     kick_with_loads(inner_, k < stepping_.contact_every ? inner : 0.5 * inner);
   }
   ++state_.step;
+  check_motion();
   const double t1 = omp_get_wtime();
-  list_.update(topology_, state_);
+  list_.update(topology_, state_, change_);
   const double listed = omp_get_wtime() - t1;
   compute_contact_in_impulse(energies);
   add_levels();
-  check(energies);
+  check_forces(energies);
   dissipated_ -= dt * contact_.damping_power;
   kick(contact_, 0.5 * dt);
   relax_angles_if_due();
@@ -227,24 +269,9 @@ void Simulation::two_level(bool energies) {
   list_seconds_ += listed;
 }
 
-void Simulation::check(bool energies) const {
+void Simulation::check_forces(bool energies) const {
   const double energy = energies ? forces_.energy.potential() : forces_.energy.bonds();
-  const double fastest = 0.25 * topology_.largest_radius() / time_step_;
-  const int none = topology_.elements();
-  int broken = none;
-#pragma omp parallel for schedule(static) reduction(min : broken) if (state_.size() > parallel_from)
-  for (int i = 0; i < none; ++i) {
-    const auto at = static_cast<std::size_t>(i);
-    if (!(state_.velocity[at].squaredNorm() < fastest * fastest) ||
-        !(state_.angular_velocity[at].squaredNorm() * time_step_ * time_step_ < 0.25))
-      broken = std::min(broken, i);
-  }
-  if (broken == none) broken = -1;
-  if (broken >= 0 || !std::isfinite(energy))
-    throw NumericalError(state_.step, broken,
-                         "the motion blew up (an element moves a quarter of its radius or "
-                         "turns half a radian in one step)",
-                         "use a smaller time step or a gentler start and load");
+  if (!std::isfinite(energy)) throw blown_up(state_.step, -1);
   if (forces_.slipping_bond >= 0)
     throw NumericalError(state_.step, forces_.slipping_bond,
                          "the bond to the next element is twisted by 90 degrees, where its torque is largest: it "
@@ -337,9 +364,9 @@ bool Simulation::relax(double tolerance, long max_steps, const std::function<boo
     const double step = std::min(dt, fastest2 > 0 ? most_move / std::sqrt(fastest2) : dt);
     drift(step);
     ++state_.step;
-    list_.update(topology_, state_);
+    list_.update(topology_, state_, change_);
     compute();
-    if (forces_.slipping_bond >= 0) check(true);
+    if (forces_.slipping_bond >= 0) check_forces(true);
   }
   return largest_force() < tolerance;
 }

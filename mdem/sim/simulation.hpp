@@ -92,7 +92,8 @@ class Simulation {
   void compute_contact(bool energies);
   void add_loads(Forces& forces);
   void add_levels();
-  void check(bool energies) const;
+  void check_motion() const;
+  void check_forces(bool energies) const;
   void relax_angles_if_due();
 
   Topology topology_;
@@ -102,6 +103,8 @@ class Simulation {
   double time_step_ = 0;
   Stepping stepping_;
   NeighbourList list_;
+  Change change_;        // since the list was built, by the last drift
+  bool bounded_ = true;  // whether the steps of that drift were small
   ForceEngine engine_;
   Forces forces_;           // of all
   Forces inner_, contact_;  // its two parts, on two levels: bonds and loads; contact

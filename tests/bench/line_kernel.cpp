@@ -212,7 +212,7 @@ void LineKernel(benchmark::State& bench, const Choice& c) {
   LineEngine engine;
   Vec3Array force(rope.state.size()), torque(rope.state.size());
   for (auto _ : bench) {
-    engine.compute(rope.topology, rope.in, rope.list, rope.state, rope.axis, c.energies);
+    engine.compute(rope.topology, rope.in, rope.list, rope.state, rope.axis, c.energies, [](int) {});
     for (int t = 0; t < rope.topology.tubes(); ++t) engine.add_to_tube(rope.topology, rope.axis, t, force, torque);
     benchmark::ClobberMemory();
   }
@@ -225,7 +225,7 @@ void LineNodeForces(benchmark::State& bench) {
   const Rope rope(static_cast<int>(bench.range(0)), 49, Law::line);
   LineEngine engine;
   Vec3Array force(rope.state.size()), torque(rope.state.size());
-  engine.compute(rope.topology, rope.in, rope.list, rope.state, rope.axis, false);
+  engine.compute(rope.topology, rope.in, rope.list, rope.state, rope.axis, false, [](int) {});
   for (auto _ : bench) {
     for (int t = 0; t < rope.topology.tubes(); ++t) engine.add_to_tube(rope.topology, rope.axis, t, force, torque);
     benchmark::ClobberMemory();
