@@ -63,25 +63,33 @@ void move_elements_runge_kutta(State& s, double dt, std::ptrdiff_t begin, std::p
 
 ROPEWALK_VECTOR_CLONES
 Change largest_change(const State& state, const Vec3Array& position, const Vec3Array& axis, double lever,
-                      std::ptrdiff_t begin, std::ptrdiff_t end) {
+                      const TwistOfAll& twist, std::ptrdiff_t begin, std::ptrdiff_t end) {
   const double *x = state.position.x.data(), *y = state.position.y.data(), *z = state.position.z.data();
   const double *rx = position.x.data(), *ry = position.y.data(), *rz = position.z.data();
   const double *qw = state.orientation.w.data(), *qx = state.orientation.x.data(), *qy = state.orientation.y.data(),
                *qz = state.orientation.z.data();
   const double *nx = axis.x.data(), *ny = axis.y.data(), *nz = axis.z.data();
-  double moved = 0, turned = 0, sum = 0;
+  const TwistOfAll by = twist;
+  double moved = 0, turned = 0, sum = 0, spin = 0, spin_z = 0;
 #pragma GCC ivdep
   for (std::ptrdiff_t i = begin; i < end; ++i) {
-    const double dx = x[i] - rx[i], dy = y[i] - ry[i], dz = z[i] - rz[i];
-    const double ax = 2 * (qx[i] * qz[i] + qw[i] * qy[i]) - nx[i], ay = 2 * (qy[i] * qz[i] - qw[i] * qx[i]) - ny[i],
+    const double px = rx[i] - by.x, py = ry[i] - by.y, pz = rz[i] - by.middle;
+    const double s = std::max(-by.most, std::min(by.sine + by.slope * pz, by.most)), c = std::sqrt(1 - s * s);
+    const double vx = x[i] - by.x, vy = y[i] - by.y;
+    const double dx = vx - (c * px - s * py), dy = vy - (s * px + c * py), dz = z[i] - rz[i];
+    const double ax = 2 * (qx[i] * qz[i] + qw[i] * qy[i]) - (c * nx[i] - s * ny[i]),
+                 ay = 2 * (qy[i] * qz[i] - qw[i] * qx[i]) - (s * nx[i] + c * ny[i]),
                  az = 1 - 2 * (qx[i] * qx[i] + qy[i] * qy[i]) - nz[i];
     const double turn = std::sqrt(ax * ax + ay * ay + az * az);
     const double d = std::sqrt(dx * dx + dy * dy + dz * dz) + lever * turn;
+    const double product = px * vy - py * vx;
     moved = std::max(moved, d);
     turned = std::max(turned, turn);
     sum += d;
+    spin += product;
+    spin_z += pz * product;
   }
-  return {moved, turned, sum};
+  return {moved, turned, sum, spin, spin_z};
 }
 
 }  // namespace ropewalk

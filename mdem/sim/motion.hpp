@@ -19,15 +19,27 @@ void move_elements(State& state, double dt, std::ptrdiff_t begin, std::ptrdiff_t
 // 1303 (2008), DOI 10.1002/nme.2210.
 void move_elements_runge_kutta(State& state, double dt, std::ptrdiff_t begin, std::ptrdiff_t end);
 
-// How far (nm) any point of an element within `lever` of its centre has moved at most since `position` and `axis`,
-// how much any axis has changed, and the sum of the former, which alone tells where a place is not finite.
+// A motion that leaves the distances within a cross-section alone: about the line along z through (x, y), by the
+// angle whose sine is sine + slope (z - middle), held within `most`.
+struct TwistOfAll {
+  static constexpr double most = 0.14;
+  double x = 0, y = 0, middle = 0;  // nm
+  double sine = 0, slope = 0;       // slope in 1/nm
+};
+
+// How far (nm) any point of an element within `lever` of its centre is at most from where `twist` has brought it
+// from `position` and `axis`, how much any axis is off likewise, and the sum of the former, which alone tells where
+// a place is not finite. `spin` adds up the products of places before and now that give the twist its sine,
+// `spin_z` the same times z.
 struct Change {
   double moved = 0, turned = 0, sum = 0;
+  double spin = 0, spin_z = 0;  // nm^2, nm^3
 };
 Change largest_change(const State& state, const Vec3Array& position, const Vec3Array& axis, double lever,
-                      std::ptrdiff_t begin, std::ptrdiff_t end);
-inline Change farther(const Change& a, const Change& b) {
-  return {std::max(a.moved, b.moved), std::max(a.turned, b.turned), a.sum + b.sum};
+                      const TwistOfAll& twist, std::ptrdiff_t begin, std::ptrdiff_t end);
+inline Change both(const Change& a, const Change& b) {
+  return {std::max(a.moved, b.moved), std::max(a.turned, b.turned), a.sum + b.sum, a.spin + b.spin,
+          a.spin_z + b.spin_z};
 }
 
 }  // namespace ropewalk

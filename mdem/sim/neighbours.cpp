@@ -83,26 +83,63 @@ CellGrid make_grid(const Vec3Array& p, double reach) {
 bool NeighbourList::update(const Topology& topology, const State& state) {
   Change all;
   const auto n = static_cast<std::ptrdiff_t>(state.size());
-  for (std::ptrdiff_t i = 0; i < n; i += block) all = farther(all, change(state, i, std::min(i + block, n)));
+  for (std::ptrdiff_t i = 0; i < n; i += block) all = both(all, change(state, i, std::min(i + block, n)));
   return update(topology, state, all);
 }
 
+// The distance of two points that the twist alone moves changes by no more than what it turns one against the
+// other.
 bool NeighbourList::update(const Topology& topology, const State& state, const Change& change) {
   if (reference_.size() == state.size()) {
-    displacement_ = change.moved;
-    turn_ = change.turned;
+    const double against = 1.01 * std::fabs(twist_.slope) * (cutoff + skin + 2 * lever);
+    displacement_ = change.moved + 0.5 * against * (farthest_ + lever);
+    turn_ = change.turned + 0.5 * against;
+    follow(change);
     if (displacement_ <= 0.5 * skin) return false;
   }
   build(topology, state);
   return true;
 }
 
+// The twist that the next change is measured against: the best fit to this one.
+void NeighbourList::follow(const Change& change) {
+  const double determinant = arms2_[0] * arms2_[2] - arms2_[1] * arms2_[1];
+  constexpr double fewest = 0.01;  // nm^2, of an element: a single tube along z has no place to turn about
+  if (!(arms2_[0] > fewest * static_cast<double>(reference_.size())) ||
+      !(determinant > 1e-6 * arms2_[0] * arms2_[2]))
+    return;
+  twist_.sine = (change.spin * arms2_[2] - change.spin_z * arms2_[1]) / determinant;
+  twist_.slope = (change.spin_z * arms2_[0] - change.spin * arms2_[1]) / determinant;
+}
+
 Change NeighbourList::change(const State& state, std::ptrdiff_t begin, std::ptrdiff_t end) const {
   constexpr double infinity = std::numeric_limits<double>::infinity();
-  if (reference_.size() != state.size()) return {infinity, infinity, infinity};
-  Change c = largest_change(state, reference_, reference_axis_, lever, begin, end);
-  if (!std::isfinite(c.sum)) c.moved = c.turned = infinity;
+  Change c;
+  if (reference_.size() == state.size())
+    c = largest_change(state, reference_, reference_axis_, lever, twist_, begin, end);
+  if (reference_.size() != state.size() || !std::isfinite(c.sum)) c.moved = c.turned = infinity;
   return c;
+}
+
+// About the middle of all places, which has to be no point in particular.
+void NeighbourList::start_twist() {
+  const Vec3Array& p = reference_;
+  twist_ = {};
+  farthest_ = 0;
+  for (double& sum : arms2_) sum = 0;
+  const double n = static_cast<double>(p.size());
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    twist_.x += p.x[i] / n;
+    twist_.y += p.y[i] / n;
+    twist_.middle += p.z[i] / n;
+  }
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    const double x = p.x[i] - twist_.x, y = p.y[i] - twist_.y, z = p.z[i] - twist_.middle, arm2 = x * x + y * y;
+    farthest_ = std::max(farthest_, std::sqrt(arm2));
+    arms2_[0] += arm2;
+    arms2_[1] += z * arm2;
+    arms2_[2] += z * z * arm2;
+  }
 }
 
 void NeighbourList::build(const Topology& topology, const State& state) {
@@ -117,6 +154,7 @@ void NeighbourList::build(const Topology& topology, Vec3Array position, Vec3Arra
   displacement_ = turn_ = 0;
   reference_ = std::move(position);
   reference_axis_ = std::move(axis);
+  start_twist();
   const Vec3Array& p = reference_;
   const int n = static_cast<int>(p.size());
   const double reach = cutoff + skin;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <vector>
 
 #include "sim/interaction.hpp"
@@ -44,7 +45,7 @@ class NeighbourList {
   // Builds anew where an element has moved too far. Returns whether it did. A position that is not finite
   // counts as moved; the build then leaves that element without neighbours.
   bool update(const Topology& topology, const State& state);
-  // The same where the change since the last build is known: that of all elements, in parts of `block`.
+  // The same where the change since the last build is known: that of all elements, added up in parts of `block`.
   bool update(const Topology& topology, const State& state, const Change& change);
   static constexpr std::ptrdiff_t block = 128;
   // Of the elements begin .. end - 1; infinite where a place is not finite.
@@ -65,13 +66,20 @@ class NeighbourList {
   double coordinate_unit() const;
   // Another one for every build of any list.
   long stamp() const { return stamp_; }
-  // The farthest that a point of an element was from its place at the last build, when `update` was last called.
+  // By no more than twice this (nm) had the distance of any two points within reach changed since the last build,
+  // when `update` was last called; what turns all of a rope together does not count.
   double displacement() const { return displacement_; }
-  // The largest change of an axis until then.
+  // By no more than twice this had the angle between two axes within reach.
   double turn() const { return turn_; }
+  // The twist that the next change is measured against, in [0] its sine in the middle and in [1] its slope: with it
+  // a resumed run has the next build at the same step.
+  std::array<double, 2> twist() const { return {twist_.sine, twist_.slope}; }
+  void set_twist(const std::array<double, 2>& t) { twist_.sine = t[0], twist_.slope = t[1]; }
   std::size_t bytes() const { return index_.capacity() * sizeof(int) + begin_.capacity() * sizeof(std::size_t); }
 
  private:
+  void follow(const Change& change);
+  void start_twist();
   void cut_into_chunks(int elements);
   void cut_into_chunks(int elements, int count);
 
@@ -81,6 +89,9 @@ class NeighbourList {
   Vec3Array reference_, reference_axis_;
   long builds_ = 0, stamp_ = 0;
   double displacement_ = 0, turn_ = 0;
+  TwistOfAll twist_;
+  double farthest_ = 0;          // nm: of all places from its axis
+  double arms2_[3] = {0, 0, 0};  // sums of their squared distances from it, times z^0, z^1 and z^2
 };
 
 }  // namespace ropewalk

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 #include <utility>
 
@@ -168,19 +169,17 @@ void Simulation::drift(double dt) {
   constexpr std::ptrdiff_t block = NeighbourList::block;
   const auto move = stepping_.runge_kutta ? move_elements_runge_kutta : move_elements;
   const LittleMotion little(topology_.largest_radius(), time_step_);
-  double moved = 0, turned = 0;
+  changes_.resize(static_cast<std::size_t>((n + block - 1) / block));
   bool bounded = true;
-#pragma omp parallel for schedule(static) reduction(max : moved, turned) reduction(&& : bounded) \
-    if (state_.size() > parallel_from)
+#pragma omp parallel for schedule(static) reduction(&& : bounded) if (state_.size() > parallel_from)
   for (std::ptrdiff_t i = 0; i < n; i += block) {
     const std::ptrdiff_t end = std::min(i + block, n);
     for (std::ptrdiff_t k = i; k < end; ++k) bounded = bounded & little.holds(state_, static_cast<std::size_t>(k));
     move(state_, dt, i, end);
-    const Change change = list_.change(state_, i, end);
-    moved = std::max(moved, change.moved);
-    turned = std::max(turned, change.turned);
+    changes_[static_cast<std::size_t>(i / block)] = list_.change(state_, i, end);
   }
-  change_ = {moved, turned, 0};
+  // In their order, whatever the threads.
+  change_ = std::accumulate(changes_.begin(), changes_.end(), Change{}, both);
   bounded_ = bounded;
 }
 
@@ -380,7 +379,7 @@ std::size_t Simulation::bytes() const {
 
 namespace {
 
-constexpr char magic[] = "MDEM3";
+constexpr char magic[] = "MDEM4";
 
 struct Writer {
   std::string bytes;
@@ -460,6 +459,7 @@ std::string Simulation::serialise() const {
   w.put(work_);
   w.put(dissipated_);
   w.put(list_.skin);
+  w.put(list_.twist());
   w.put(static_cast<std::int64_t>(stepping_.contact_every));
   for (const auto* v : checkpoint_arrays(state_, forces_, list_.reference(), list_.reference_axis())) w.put(*v);
   if (two_levels())
@@ -488,6 +488,8 @@ void Simulation::restore(const std::string& bytes) {
   r.get(work_);
   r.get(dissipated_);
   r.get(list_.skin);
+  std::array<double, 2> twist{};
+  r.get(twist);
   std::int64_t contact_every = 0;
   r.get(contact_every);
   if (contact_every != stepping_.contact_every)
@@ -501,6 +503,7 @@ void Simulation::restore(const std::string& bytes) {
   r.get(forces_.energy);
   r.get(forces_.damping_power);
   list_.build(topology_, std::move(ref), std::move(ref_axis));
+  list_.set_twist(twist);
   point_loads(drive_, state_, state_.time, point_loads_);
 }
 

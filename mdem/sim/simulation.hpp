@@ -103,8 +103,9 @@ class Simulation {
   double time_step_ = 0;
   Stepping stepping_;
   NeighbourList list_;
-  Change change_;        // since the list was built, by the last drift
-  bool bounded_ = true;  // whether the steps of that drift were small
+  Change change_;                // since the list was built, by the last drift
+  std::vector<Change> changes_;  // of its blocks
+  bool bounded_ = true;          // whether the steps of that drift were small
   ForceEngine engine_;
   Forces forces_;           // of all
   Forces inner_, contact_;  // its two parts, on two levels: bonds and loads; contact
