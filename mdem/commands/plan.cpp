@@ -1,6 +1,7 @@
 // `plan`: a model that a scene needs, and no more; and whether a planned run kept its promise.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -108,6 +109,14 @@ int make_plan(const PlanArguments& a) {
   return 0;
 }
 
+void say_whether_held(const SpotCheck& check, const Expectations& plan) {
+  double largest = 0;
+  for (const auto& [name, error] : plan.errors)
+    if (check.observables.count(name)) largest = std::max(largest, check.observables.at(name).error());
+  fmt::print("{:g} % asked for, at most {:.2f} % seen: {}\n", 100 * plan.asked, 100 * largest,
+             largest <= plan.asked ? "held" : "not held");
+}
+
 int check_run(const PlanArguments& a) {
   const RunDirectory dir{a.check};
   Scene scene = read_run_scene(dir);
@@ -119,7 +128,8 @@ int check_run(const PlanArguments& a) {
   } catch (const std::runtime_error& e) {
     throw InputError({dir.checkpoint(), 0, ""}, e.what(), "start the run anew with `ropewalk run`");
   }
-  const std::map<std::string, double> expected = expectations_of(scene.text);
+  const Expectations plan = expectations_of(scene.text);
+  const std::map<std::string, double>& expected = plan.errors;
   const SpotCheck check = spot_check(scene, prepared, simulation.state(), a.stretch);
   fmt::print("{}\n{:16} {:>12} {:>12} {:>9} {:>9}\n", check.how, "", "as planned", "finer", "error", "expected");
   for (const auto& [name, pair] : check.observables) {
@@ -129,7 +139,10 @@ int check_run(const PlanArguments& a) {
   }
   for (const auto& [name, error] : expected)
     if (!check.observables.count(name)) fmt::print("{:16} is not part of this check\n", name);
-  if (expected.empty()) fmt::print("the scene was not planned: nothing was expected\n");
+  if (expected.empty())
+    fmt::print("the scene was not planned: nothing was expected\n");
+  else
+    say_whether_held(check, plan);
   return 0;
 }
 

@@ -441,8 +441,8 @@ class Writer {
   std::string nodes_why_, step_why_;
 };
 
-std::string expectations(const std::map<std::string, double>& expected, bool energy_above_start) {
-  std::string text;
+std::string expectations(const std::map<std::string, double>& expected, bool energy_above_start, double asked) {
+  std::string text = fmt::format("# plan: asked {:.6g}\n", asked);
   for (const auto& [name, error] : expected)
     text += fmt::format("# plan: expect {} {:.6g}\n",
                         name == "energy" && !energy_above_start ? "total_energy" : name, error);
@@ -454,13 +454,13 @@ std::string header_of(const Plan& plan, const PlanRequest& request) {
   const std::string caution = plan.led_otherwise.empty() ? "" : "# " + plan.led_otherwise + ".\n";
   return fmt::format("# Planned for an error of {:g} %{}, by scene {} of the chart.\n{}{}", 100 * request.error,
                      plan.holds ? "" : ", which it does not hold", plan.stands_for, caution,
-                     expectations(plan.expected, plan.energy_above_start));
+                     expectations(plan.expected, plan.energy_above_start, request.error));
 }
 
 std::string standard_header_of(const Plan& plan, const PlanRequest& request) {
   return fmt::format("# The default model, which holds an error of {:g} % by scene {} of the chart.\n{}",
                      100 * request.error, plan.stands_for,
-                     expectations(plan.standard_expected, plan.energy_above_start));
+                     expectations(plan.standard_expected, plan.energy_above_start, request.error));
 }
 
 std::vector<std::string> observables_of(const ChartedScene& c, const PlanRequest& request) {
@@ -593,11 +593,13 @@ bool default_serves(const Plan& plan, double planned_seconds, double standard_se
   return plan.standard_holds && standard_seconds <= planned_seconds;
 }
 
-std::map<std::string, double> expectations_of(const std::string& text) {
-  std::map<std::string, double> out;
-  const std::regex line("# plan: expect (\\S+) (\\S+)");
+Expectations expectations_of(const std::string& text) {
+  Expectations out;
+  const std::regex line("# plan: expect (\\S+) (\\S+)"), asked("# plan: asked (\\S+)");
   for (auto at = std::sregex_iterator(text.begin(), text.end(), line); at != std::sregex_iterator(); ++at)
-    out[(*at)[1]] = std::strtod((*at)[2].str().c_str(), nullptr);
+    out.errors[(*at)[1]] = std::strtod((*at)[2].str().c_str(), nullptr);
+  std::smatch found;
+  if (std::regex_search(text, found, asked)) out.asked = std::strtod(found[1].str().c_str(), nullptr);
   return out;
 }
 

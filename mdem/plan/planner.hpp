@@ -51,6 +51,10 @@ Plan plan_scene(const Scene& scene, const std::vector<ChartedScene>& chart, cons
 std::string fixed_length(const Scene& scene);
 
 // What stands in a planned scene's text about itself; nothing in others.
-std::map<std::string, double> expectations_of(const std::string& text);
+struct Expectations {
+  double asked = 0;                      // the error that was to be held
+  std::map<std::string, double> errors;  // that the chart lets one expect, by observable
+};
+Expectations expectations_of(const std::string& text);
 
 }  // namespace ropewalk

@@ -168,6 +168,10 @@ TEST_F(Cli, PlanRunAndCheck) {
       << check.out;
   EXPECT_NEAR(std::stod(row[1]) / std::stod(row[2]), 1, 1e-2 * std::stod(row[3]) + 1e-4);
   EXPECT_LT(std::stod(row[3]), std::stod(row[4]));
+  EXPECT_TRUE(std::regex_search(check.out, std::regex("\nspacing +[0-9.]+ +[0-9.]+ +[0-9.]+ %"))) << check.out;
+  ASSERT_TRUE(std::regex_search(check.out, row, std::regex("4 % asked for, at most ([0-9.]+) % seen: (\\w+)")))
+      << check.out;
+  EXPECT_EQ(row[2], std::stod(row[1]) <= 4 ? "held" : "not");
 }
 
 // A chart that calls small steps cheap, which take twice the time in the scene: the default stands.

@@ -144,7 +144,7 @@ TEST(Plan, HasTheDefaultModelBesides) {
   const Scene s = scene_from(p.standard_text);
   EXPECT_EQ(s.run.time_step, 0);
   EXPECT_EQ(s.contact.nodes, 0);
-  EXPECT_NEAR(expectations_of(p.standard_text).at("energy"), 0.005, 1e-9);
+  EXPECT_NEAR(expectations_of(p.standard_text).errors.at("energy"), 0.005, 1e-9);
   EXPECT_FALSE(planned(costly, 0.001).standard_holds);
   // It is taken where it holds the error and is no slower.
   EXPECT_TRUE(default_serves(p, 2, 1.9));
@@ -167,7 +167,7 @@ TEST(Plan, EndMomentsThatLoadsGiveAreNotPromised) {
   for (ChartedModel& m : chart[0].models) m.finest["end_moment"] = m.finest.at("energy");
   const Plan p = plan_scene(scene_from(bundle), chart, {0.0125, {}, false});
   EXPECT_EQ(p.expected.count("end_moment"), 0u);
-  EXPECT_EQ(expectations_of(p.text).count("end_moment"), 0u);
+  EXPECT_EQ(expectations_of(p.text).errors.count("end_moment"), 0u);
   EXPECT_THAT(fmt::format("{}", fmt::join(p.why, "\n")), HasSubstr("end_moment: loads give it here"));
 }
 
@@ -363,10 +363,11 @@ TEST(Plan, RefusesObservablesThatTheChartLacks) {
 
 TEST(Plan, IsRememberedInTheScene) {
   const Plan p = planned(bundle, 0.012);
-  const auto remembered = expectations_of(p.text);
+  EXPECT_EQ(expectations_of(p.text).asked, 0.012);
+  const auto remembered = expectations_of(p.text).errors;
   EXPECT_EQ(remembered.size(), p.expected.size());
   for (const auto& [name, error] : p.expected) EXPECT_NEAR(remembered.at(name), error, 1e-6 * error);
-  EXPECT_TRUE(expectations_of(bundle).empty());
+  EXPECT_TRUE(expectations_of(bundle).errors.empty());
 }
 
 TEST(SceneEdit, SetsKeysAndKeepsTheRest) {
