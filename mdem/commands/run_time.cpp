@@ -206,7 +206,7 @@ RunTime time_run(const std::string& text, const std::string& path) {
     time_relaxation(scene, p, t);
   } else {
     t.each = seconds_of_steps(scene, p);
-    t.steps = p.duration / p.time_step;
+    t.steps = std::max(1.0, p.duration / p.time_step);
   }
   time_outputs_of_a_run(text, path, scene, p, t);
   use_threads(threads);

@@ -1,11 +1,11 @@
 // Which model a scene needs: of those that the chart has measured, the cheapest that holds an error.
 //
-// Of the scenes of the chart that cover the scene, the nearest one that is led in the same way stands for it; where
-// there is none, the nearest one. A knob turned from its best value
-// b to o changes an observable by |value(o) - value(b)| there; the changes of several knobs are added up with their
-// sizes, and so is what of the default's error against the finest model no knob explains. Costs are multiplied;
-// what element lengths do to elements and stable steps is the scene's own.
-// That changes add up is an assumption, on the safe side where they would cancel; spot_check() looks.
+// Of the scenes of the chart that cover the scene, the nearest one stands for it: first of those that are led in
+// the same way, then of those that are not much shorter, then by curvature, twist and number of tubes. A knob
+// turned from its best value b to o changes an observable by |value(o) - value(b)| there; the changes of several
+// knobs are added up with their sizes, and so is what of the default's error against the finest model no knob
+// explains. Costs are multiplied; what element lengths do to elements and stable steps is the scene's own. That
+// changes add up is an assumption, on the safe side where they would cancel; spot_check() looks.
 #pragma once
 
 #include <map>

@@ -129,6 +129,15 @@ TEST(Plan, PrefersASceneThatIsLedInTheSameWay) {
   EXPECT_EQ(plan_of(bundle).stands_for, "bundle");
   EXPECT_EQ(plan_of(bundle).led_otherwise, "");
   EXPECT_EQ(plan_of(rotated).stands_for, "turned");
+  // Much shorter ropes come last of those.
+  chart.push_back(turned);
+  chart.back().name = "short";
+  for (ChartedModel& m : chart.back().models) m.elements /= 4;
+  chart[2].tubes = 19;
+  EXPECT_EQ(plan_of(rotated).stands_for, "turned");
+  for (ChartedModel& m : chart.back().models) m.elements *= 4;
+  EXPECT_EQ(plan_of(rotated).stands_for, "short") << "which it is no more";
+  chart.pop_back();
   chart.erase(chart.begin());
   const Plan p = plan_of(bundle);
   EXPECT_EQ(p.stands_for, "turned");
