@@ -63,7 +63,8 @@ std::string cheaper_text(const Plan& plan, const std::string& path) {
   // Of two relaxations one may not be known.
   const bool known = planned.steps > 0 && standard.steps > 0;
   if (!known || !default_serves(plan, planned.total(), standard.total())) return plan.text;
-  fmt::print("the default model is taken: it takes no longer in this scene, and holds the error:\n");
+  fmt::print(
+      "the default model is taken: the other does not gain a tenth in this scene, and this holds the error:\n");
   for (const auto& [name, error] : plan.standard_expected) fmt::print("  {:16} {:6.2f} %\n", name, 100 * error);
   return plan.standard_text;
 }

@@ -41,7 +41,7 @@ struct Plan {
 };
 
 // Whether the default model is to be taken in the place of the planned one: it holds the error, and takes no
-// longer.
+// longer, or by less than timings are worth (a tenth).
 bool default_serves(const Plan& plan, double planned_seconds, double standard_seconds);
 
 // `scene` with its text. Throws InputError for an observable that the chart does not have.

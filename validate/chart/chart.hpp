@@ -101,8 +101,8 @@ struct ChartScene {
   std::vector<std::string> observables;
   std::function<Specimen(const ChartModel&)> build;
   std::function<std::vector<ChartReference>()> atoms;  // may be empty
-  // Under a moment a rope turns as a whole against hardly any force on an element: it is at rest by the largest one
-  // long before it has turned, and ends with three quarters of its angle.
+  // Under couples on its tubes a rope turns because they rub on one another. A relaxation knows no friction, and
+  // ends elsewhere: with three quarters of the angle.
   bool relaxes = true;
 };
 
