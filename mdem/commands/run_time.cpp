@@ -74,11 +74,12 @@ double seconds_in_turned_rope(const Scene& scene, const Prepared& p, const Scene
 
 double seconds_of_steps(const Scene& scene, const Prepared& p) {
   const SceneFeatures f = features_of(scene, p);
-  if (std::holds_alternative<RopeSource>(scene.source) && f.contact && f.turn > 0) try {
-      return seconds_in_turned_rope(scene, p, f);
-    } catch (const NumericalError&) {
-      // The rope does not bear to be laid like that.
-    }
+  const bool turned = std::holds_alternative<RopeSource>(scene.source) && f.contact && f.turn > 0;
+  try {
+    if (turned) return seconds_in_turned_rope(scene, p, f);
+  } catch (const NumericalError&) {
+    // The rope does not bear to be laid like that.
+  }
   Simulation s = start(scene, p);
   return seconds_of_a_step(s);
 }
@@ -173,7 +174,7 @@ void time_outputs_of_a_run(const std::string& text, const std::string& path, con
                            RunTime& t) {
   const Outputs all = time_outputs(scene, p, t);
   const double affordable = std::max(enough / (t.each + all.row), static_cast<double>(least_steps));
-  const double steps = std::min(affordable, t.relaxes ? std::max(t.steps, 1.0) : all.rows);
+  const double steps = std::max(1.0, std::min(affordable, t.relaxes ? t.steps : all.rows));
   Outputs some;
   some.rows = t.relaxes ? steps / 100 + 1 : steps;
   const double apart = std::max(1.0, std::floor(steps / std::max(pictured, all.frames * steps / all.rows)));
