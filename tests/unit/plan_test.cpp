@@ -171,6 +171,16 @@ TEST(Plan, TakesNoLongStepOnTwoLevels) {
   EXPECT_EQ(s.run.time_step, 0) << "the default part of the limit";
 }
 
+// A chart whose default took a smaller part of the limit than the program does.
+TEST(Plan, StaysBelowTheStepLimit) {
+  std::vector<ChartedScene> chart = read_chart(chart_folder);
+  for (ChartedModel& m : chart[0].models)
+    if (m.name == "step-0.9") m.time_step = 100;
+  Scene s = scene_from(plan_scene(scene_from(bundle), chart, {0.0125, {}, false}).text);
+  const Prepared p = prepare(s);
+  EXPECT_NEAR(s.run.time_step, 0.9 * inner_step_limit(p.limit, 1), 1e-3 * s.run.time_step);
+}
+
 TEST(Plan, EndMomentsThatLoadsGiveAreNotPromised) {
   std::vector<ChartedScene> chart = read_chart(chart_folder);
   for (ChartedModel& m : chart[0].models) m.finest["end_moment"] = m.finest.at("energy");
