@@ -35,9 +35,8 @@ void say_time(const char* what, const RunTime& t) {
   const double ns = 1e9 * t.each / t.elements;
   if (t.steps > 0)
     fmt::print(
-        "{}: {:.0f} elements, {:.0f} steps, {:.3g} s of processor time ({:.3g} s in steps of {:.0f} ns per "
-        "element; "
-        "timed here)\n",
+        "{}: {:.0f} elements, {:.0f} steps, {:.3g} s of processor time "
+        "({:.3g} s in steps of {:.0f} ns per element; timed here)\n",
         what, t.elements, t.steps, t.total(), t.steps * t.each, ns);
   else
     fmt::print(
