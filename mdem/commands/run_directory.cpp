@@ -29,13 +29,6 @@ bool belongs_to_a_run(const std::string& name) {
   return name.compare(0, 11, "parameters-") == 0;
 }
 
-// By tube type.
-std::vector<Validity> validities(const Scene& scene) {
-  std::vector<Validity> all;
-  for (const ParameterSet& set : scene.sets) all.push_back(set.validity);
-  return all;
-}
-
 }  // namespace
 
 void create_run_directory(const RunDirectory& dir, bool force) {

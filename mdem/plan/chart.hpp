@@ -4,9 +4,8 @@
 //   it
 //                is off (a fraction) the finest model of the scene or atoms. Every model differs from that of kind
 //                "default" in one knob, its kind.
-//   scenes.csv   what each scene of the chart covers: the largest curvature and twist per length of its tubes and
-//   the
-//                angles at which they cross.
+//   scenes.csv   what each scene of the chart covers: the largest curvature and twist per length of its tubes, the
+//                angles at which they cross, and what leads it.
 #pragma once
 
 #include <map>
@@ -14,6 +13,10 @@
 #include <vector>
 
 namespace ropewalk {
+
+// What a scene is led by answers with the rest: moments with the end moment, loads with angles and bends.
+enum class LedBy { rotation, load, nothing };  // nothing: free, or held where it is
+const char* words_of(LedBy led);               // "rotation", ...
 
 struct ChartedValue {
   std::string unit;
@@ -40,7 +43,8 @@ struct ChartedScene {
   double radius = 0;                          // nm
   double curvature = 0, twist = 0;            // 1/nm, rad/nm
   double crossing_from = 0, crossing_to = 0;  // deg
-  bool energy_above_start = true;             // or all of it
+  LedBy led = LedBy::rotation;
+  bool energy_above_start = true;  // or all of it
   std::vector<ChartedModel> models;
 
   // Of kind "default"; null where there is none.

@@ -6,8 +6,11 @@
 #include <cmath>
 #include <optional>
 
-#include "observe/observe.hpp"
+#include "observe/bending.hpp"
+#include "observe/means.hpp"
+#include "observe/spacing.hpp"
 #include "plan/planner.hpp"
+#include "scene/dissipation.hpp"
 
 namespace ropewalk {
 namespace {
@@ -72,7 +75,7 @@ Model finer_model(const Model& planned, bool half) {
   scale(std::sqrt(planned.scene.run.mass_scale), m.end.angular_velocity);
   if (half) {
     m.scene.element_length *= 0.5;
-    m.scene.damping.contact.eta *= 0.25;  // of a pair of elements: four take the place of one
+    m.scene.damping = same_dissipation(m.scene.damping, planned.scene.element_length, m.scene.element_length);
     m.start = halved(planned.topology, m.start);
     m.end = halved(planned.topology, m.end);
   }
@@ -87,14 +90,14 @@ Model finer_model(const Model& planned, bool half) {
 }
 
 // Mean over the bonds, nN nm.
-double bending_moment(const Topology& topology, const State& s) {
+double mean_bending_moment(const Topology& topology, const State& s) {
   double sum = 0;
   for (int t = 0; t < topology.tubes(); ++t) {
     const TubeType& type = topology.type_of(t);
     for (int e = topology.tube_begin[t]; e + 1 < topology.tube_begin[t + 1]; ++e) {
       const auto i = static_cast<std::size_t>(e);
-      const double chord = (axis_of(s.orientation[i]) - axis_of(s.orientation[i + 1])).norm();
-      sum += type.bond.bend / type.element_length * 2 * std::asin(std::min(0.5 * chord, 1.0));
+      sum +=
+          bending_moment(type.bond, type.element_length, axis_of(s.orientation[i]), axis_of(s.orientation[i + 1]));
     }
   }
   return topology.bonds() > 0 ? sum / topology.bonds() * units::eV_in_nN_nm : 0.0;
@@ -121,30 +124,29 @@ class Observed {
       : m_(m), zero_(m.at(m.start).forces().energy.potential()), shells_(rope_shells(m.topology, m.start, 0)) {}
 
   void add(const Simulation& s) {
-    ++count_;
-    sums_["energy"] += s.forces().energy.potential() - zero_;
-    sums_["total_energy"] += s.forces().energy.potential();
-    sums_["bending_moment"] += bending_moment(m_.topology, s.state());
-    if (const auto moment = end_moment(m_.drive, s)) sums_["end_moment"] += *moment;
-    if (m_.topology.tubes() < 3) return;
-    std::vector<Validity> validity;
-    for (const ParameterSet& set : m_.scene.sets) validity.push_back(set.validity);
-    const RopeObservation o = observe(m_.topology, s.state(), shells_, validity, 0, m_.spacing);
-    sums_["beta"] += o.beta / units::degree;
-    sums_["Q"] += o.middle.charge;
+    const State& state = s.state();
+    std::map<std::string, double> now;
+    now["energy"] = s.forces().energy.potential() - zero_;
+    now["total_energy"] = s.forces().energy.potential();
+    now["bending_moment"] = mean_bending_moment(m_.topology, state);
+    if (const auto moment = end_moment(m_.drive, s)) now["end_moment"] = *moment;
+    if (m_.interaction.has_contact() && m_.topology.tubes() > 1)
+      now["spacing"] = tube_spacing(m_.topology, state, shells_);
+    if (m_.topology.tubes() > 2) {
+      const RopeObservation o = observe(m_.topology, state, shells_, validities(m_.scene), 0, m_.spacing);
+      now["beta"] = o.beta / units::degree;
+      now["end_angle"] = o.geometric_twist / units::degree;
+      now["Q"] = o.middle.charge;
+    }
+    means_.add(now);
   }
-  std::map<std::string, double> means() const {
-    std::map<std::string, double> out;
-    for (const auto& [name, sum] : sums_) out[name] = sum / count_;
-    return out;
-  }
+  std::map<std::string, double> means() const { return means_.values(); }
 
  private:
   const Model& m_;
   double zero_ = 0;
   RopeShells shells_;
-  std::map<std::string, double> sums_;
-  int count_ = 0;
+  Means means_;
 };
 
 std::map<std::string, double> seen(const Model& m, double stretch) {

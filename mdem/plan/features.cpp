@@ -65,6 +65,7 @@ void add_rope_twist(const Prepared& p, double twist, const char* what, SceneFeat
   const double radius = p.topology.tubes() > 1 ? rope_radius(p) : 0.0, slope = radius * twist;
   const double bend = slope * twist / (1 + slope * slope);
   f.twist += twist;
+  f.turn += twist;
   f.curvature += bend;
   f.why.push_back(fmt::format("{}: twist up to {:.3g} rad/nm, curvature up to {:.3g} 1/nm", what, twist, bend));
   if (!f.contact) return;
@@ -89,7 +90,10 @@ struct AddLoad {
     if (along > 0) add_rope_twist(p, along, "torque", f);
     f.why.push_back(fmt::format("torque: curvature up to {:.3g} 1/nm", across));
   }
-  void operator()(const RotateLoad& load) const { *turned += std::fabs(load.angle); }
+  void operator()(const RotateLoad& load) const {
+    *turned += std::fabs(load.angle);
+    if (load.rate != 0) f.ramp = std::max(f.ramp, load.angle / load.rate);
+  }
 };
 
 }  // namespace
@@ -113,6 +117,9 @@ SceneFeatures features_of(const Scene& scene, const Prepared& p) {
     add_rope_twist(p, each / p.topology.types[0].bond.twist, "[twist]", f);
     if (w.geometric_only) f.beyond = "twist.geometric_only takes away what holds against the moment";
   }
+  if (scene.twist) f.ramp = scene.twist->ramp_time();
+  if (turned > 0) f.led = LedBy::rotation;
+  if (scene.twist || !p.drive.loads.empty()) f.led = LedBy::load;
   if (scene.temperature > 0) {
     const TubeType& t = p.topology.types[0];
     const double kt = units::boltzmann * scene.temperature;

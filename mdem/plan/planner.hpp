@@ -1,10 +1,11 @@
 // Which model a scene needs: of those that the chart has measured, the cheapest that holds an error.
 //
-// Of the scenes of the chart that cover the scene, the nearest one stands for it. A knob turned from its best value
-// b to o changes an observable by |value(o) - value(b)| there; the changes of several knobs are added up with their
-// sizes, and so is what of the default's error against the finest model no knob explains. Costs are multiplied;
-// what element lengths do to elements and stable steps is the scene's own.
-// That changes add up is an assumption, on the safe side where they would cancel; spot_check() looks.
+// Of the scenes of the chart that cover the scene, the nearest one stands for it: first of those that are led in
+// the same way, then of those that are not much shorter, then by curvature, twist and number of tubes. A knob
+// turned from its best value b to o changes an observable by |value(o) - value(b)| there; the changes of several
+// knobs are added up with their sizes, and so is what of the default's error against the finest model no knob
+// explains. Costs are multiplied; what element lengths do to elements and stable steps is the scene's own. That
+// changes add up is an assumption, on the safe side where they would cancel; spot_check() looks.
 #pragma once
 
 #include <map>
@@ -24,6 +25,7 @@ struct PlanRequest {
 
 struct Plan {
   std::string stands_for;                  // scene of the chart; empty: none is near, and the model is the default
+  std::string led_otherwise;               // where that scene is led in another way, what this means
   bool holds = false;                      // whether the error is held, as the chart has it
   std::map<std::string, double> expected;  // error by observable
   bool energy_above_start = true;          // what "energy" is there
@@ -32,7 +34,15 @@ struct Plan {
   double cost = 1;                         // CPU time per simulated time, in that of the default model
   std::vector<std::string> why;            // one line for each choice
   std::string text;                        // of the scene
+  // The same with the default model, and whether that holds the error too.
+  std::string standard_text;
+  std::map<std::string, double> standard_expected;
+  bool standard_holds = false;
 };
+
+// Whether the default model is to be taken in the place of the planned one: it holds the error, and takes no
+// longer, or by less than timings are worth (a tenth).
+bool default_serves(const Plan& plan, double planned_seconds, double standard_seconds);
 
 // `scene` with its text. Throws InputError for an observable that the chart does not have.
 Plan plan_scene(const Scene& scene, const std::vector<ChartedScene>& chart, const PlanRequest& request);
@@ -41,6 +51,10 @@ Plan plan_scene(const Scene& scene, const std::vector<ChartedScene>& chart, cons
 std::string fixed_length(const Scene& scene);
 
 // What stands in a planned scene's text about itself; nothing in others.
-std::map<std::string, double> expectations_of(const std::string& text);
+struct Expectations {
+  double asked = 0;                      // the error that was to be held
+  std::map<std::string, double> errors;  // that the chart lets one expect, by observable
+};
+Expectations expectations_of(const std::string& text);
 
 }  // namespace ropewalk

@@ -93,6 +93,12 @@ std::vector<LineDensity> line_densities(const Scene& scene) {
 
 }  // namespace
 
+std::vector<Validity> validities(const Scene& scene) {
+  std::vector<Validity> all;
+  for (const ParameterSet& set : scene.sets) all.push_back(set.validity);
+  return all;
+}
+
 Topology empty_topology(const Scene& scene) {
   Topology t;
   t.types.clear();

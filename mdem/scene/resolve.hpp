@@ -7,6 +7,9 @@
 
 namespace ropewalk {
 
+// Limits of the parameter sets, by tube type.
+std::vector<Validity> validities(const Scene& scene);
+
 // The scene's tube types, and no tubes yet.
 Topology empty_topology(const Scene& scene);
 

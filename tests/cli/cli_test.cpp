@@ -145,7 +145,16 @@ TEST_F(Cli, PlanRunAndCheck) {
   const Outcome plan = run("plan s.toml --error 4%" + chart);
   ASSERT_EQ(plan.code, 0) << plan.err;
   EXPECT_NE(plan.out.find("scene bundle of the chart stands for this one"), std::string::npos) << plan.out;
-  EXPECT_NE(plan.out.find("planned: "), std::string::npos) << plan.out;
+  std::smatch promised;
+  for (const char* what : {"planned", "default model"}) {
+    const std::regex line(
+        std::string(what) +
+        R"(: [0-9]+ elements, ([0-9]+) steps, ([0-9.e-]+) s of processor time \(([0-9.e-]+) s in)");
+    ASSERT_TRUE(std::regex_search(plan.out, promised, line)) << plan.out;
+    EXPECT_GT(std::stod(promised[2]), std::stod(promised[3])) << "a run starts, writes and reports as well";
+  }
+  for (const auto& entry : fs::directory_iterator(dir))
+    EXPECT_EQ(entry.path().string().find("timing"), std::string::npos) << entry.path();
   EXPECT_EQ(run("plan s.toml --error 4%" + chart).code, 2) << "an existing file must stand";
   EXPECT_EQ(run("plan s.toml --error 4 -o t.toml" + chart).code, 2);
   EXPECT_EQ(run("plan s.toml -o t.toml --chart nowhere").code, 2);
@@ -159,6 +168,36 @@ TEST_F(Cli, PlanRunAndCheck) {
       << check.out;
   EXPECT_NEAR(std::stod(row[1]) / std::stod(row[2]), 1, 1e-2 * std::stod(row[3]) + 1e-4);
   EXPECT_LT(std::stod(row[3]), std::stod(row[4]));
+  EXPECT_TRUE(std::regex_search(check.out, std::regex("\nspacing +[0-9.]+ +[0-9.]+ +[0-9.]+ %"))) << check.out;
+  ASSERT_TRUE(std::regex_search(check.out, row, std::regex("4 % asked for, at most ([0-9.]+) % seen: (\\w+)")))
+      << check.out;
+  EXPECT_EQ(row[2], std::stod(row[1]) <= 4 ? "held" : "not");
+}
+
+// A chart that calls small steps cheap, which take twice the time in the scene: the default stands.
+TEST_F(Cli, PlanIsNeverDearerThanTheDefault) {
+  const std::string from = ROPEWALK_SOURCE_DIR "/tests/unit/chart/";
+  std::string points = slurp(from + "points.csv");
+  const std::string honest = "7000000,20,500,,", wrong = "7000000,0.1,500,,";
+  for (std::size_t at = 0; (at = points.find("bundle,step-0.3", at)) != std::string::npos; ++at) {
+    const std::size_t cost = points.find(honest, at);
+    ASSERT_NE(cost, std::string::npos);
+    points.replace(cost, honest.size(), wrong);
+  }
+  fs::create_directories(dir / "chart");
+  spit(dir / "chart/points.csv", points);
+  fs::copy_file(from + "scenes.csv", dir / "chart/scenes.csv");
+  spit(dir / "s.toml",
+       "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[rope]\ntubes = 7\nlength_nm = 13.6\n"
+       "[twist]\nmoment_nN_nm = 6\nrate_nN_nm_per_ps = 0.1\nhold_ps = 400\n[run]\nlog_every_ps = 100\n"
+       "frames_every_ps = 100\n");
+  const Outcome plan = run("plan s.toml --error 0.6% --chart chart");
+  ASSERT_EQ(plan.code, 0) << plan.err;
+  EXPECT_NE(plan.out.find("chart model step-0.3"), std::string::npos) << plan.out;
+  EXPECT_NE(plan.out.find("the default model is taken"), std::string::npos) << plan.out;
+  const std::string text = slurp(dir / "s-planned.toml");
+  EXPECT_EQ(text.find("time_step_fs"), std::string::npos) << text;
+  EXPECT_NE(text.find("# plan: expect energy 0.005"), std::string::npos) << text;
 }
 
 TEST_F(Cli, ExportRefusesWhatLammpsLacks) {

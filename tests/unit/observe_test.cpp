@@ -12,6 +12,8 @@
 #include "model/units.hpp"
 #include "observe/centre_line.hpp"
 #include "observe/delaunay.hpp"
+#include "observe/means.hpp"
+#include "observe/spacing.hpp"
 #include "observe/voids.hpp"
 
 namespace ropewalk {
@@ -682,6 +684,28 @@ TEST(ObservedNoRope, TinyAndFlatScenesAreSafe) {
   EXPECT_EQ(section.contacts, 5);
   EXPECT_EQ(section.charge_delaunay, 0);
   EXPECT_EQ(section.voids, 0);
+}
+
+TEST(TubeSpacing, IsThatOfInnerTubesAndTheirNeighbours) {
+  const Rope rope = straight_rope(hexagonal(2));
+  const RopeShells shells = rope_shells(rope.topology, rope.state, 0);
+  EXPECT_NEAR(tube_spacing(rope.topology, rope.state, shells), spacing, 1e-12);
+  // Slid along itself a tube is as far away as before.
+  Rope slid = rope;
+  for (int e = slid.topology.tube_begin[3]; e < slid.topology.tube_begin[4]; ++e)
+    slid.state.position.add(static_cast<std::size_t>(e), {0, 0, 0.4 * element_length});
+  EXPECT_NEAR(tube_spacing(slid.topology, slid.state, shells), spacing, 1e-12);
+  // Two tubes need no shells; one has no neighbour.
+  const Rope pair = straight_rope({{0, 0}, {2.1, 0}}), lone = straight_rope({{0, 0}});
+  EXPECT_NEAR(tube_spacing(pair.topology, pair.state, {}), 2.1, 1e-12);
+  EXPECT_EQ(tube_spacing(lone.topology, lone.state, {}), 0);
+}
+
+TEST(Means, AreThoseOfAllLooks) {
+  Means means;
+  for (const double x : {1.0, 2.0, 6.0}) means.add({{"x", x}, {"square", x * x}});
+  EXPECT_DOUBLE_EQ(means.values().at("x"), 3);
+  EXPECT_DOUBLE_EQ(means.values().at("square"), 41.0 / 3);
 }
 
 }  // namespace

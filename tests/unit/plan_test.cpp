@@ -8,9 +8,12 @@
 
 #include "io/files.hpp"
 #include "model/error.hpp"
+#include "observe/observe.hpp"
 #include "plan/check.hpp"
+#include "plan/expected_state.hpp"
 #include "plan/planner.hpp"
 #include "plan/scene_edit.hpp"
+#include "scene/dissipation.hpp"
 #include "scene/scene_toml.hpp"
 
 namespace ropewalk {
@@ -46,6 +49,8 @@ TEST(Chart, IsReadByTheNamesOfItsColumns) {
   EXPECT_EQ(m.finest.at("energy").error, 0.005);
   EXPECT_EQ(m.atoms.at("energy").reference, 95);
   EXPECT_EQ(m.atoms.count("beta"), 0u);
+  EXPECT_EQ(chart[0].led, LedBy::load);
+  EXPECT_EQ(chart[1].led, LedBy::rotation);
 }
 
 TEST(Chart, FaultsAreNamed) {
@@ -77,8 +82,11 @@ TEST(Chart, FaultsAreNamed) {
   EXPECT_THAT(fault(with(points, "2.83", "x"), scenes),
               HasSubstr("points.csv:2: cutoff_nm: \"x\" is not a number"));
   EXPECT_THAT(fault(with(points, "finest,0", "oracle,0"), scenes), HasSubstr("neither finest nor md"));
-  EXPECT_THAT(fault(points, with(scenes, "5,start", "5,zero")), HasSubstr("read"));
-  EXPECT_THAT(fault(points, with(scenes, "5,start", "5,sea")), HasSubstr("energy_from: is neither start nor zero"));
+  EXPECT_THAT(fault(points, with(scenes, "load,start", "load,zero")), HasSubstr("read"));
+  EXPECT_THAT(fault(points, with(scenes, "load,start", "load,sea")),
+              HasSubstr("energy_from: is neither start nor zero"));
+  EXPECT_THAT(fault(points, with(scenes, "load,start", "wind,start")),
+              HasSubstr("led_by: is neither rotation nor"));
   EXPECT_THAT(fault(points, with(scenes, "tube,0", "pipe,0")), HasSubstr("does not say what \"tube\" covers"));
   EXPECT_THAT(fault("", scenes), HasSubstr("is empty"));
   std::filesystem::remove_all(folder);
@@ -104,6 +112,131 @@ TEST(Plan, TakesTheCheapestThatHoldsTheError) {
   EXPECT_THAT(p.text, HasSubstr("length_nm = 27.2  # long\n"));
 }
 
+// A rope that a moment turns is not one whose ends are turned, however near it is in twist and size.
+TEST(Plan, PrefersASceneThatIsLedInTheSameWay) {
+  std::string rotated = bundle.substr(0, bundle.find("[twist]")) +
+                        "[[load]]\nkind = \"fix\"\nelements = [0]\n[[load]]\nkind = \"rotate\"\nelements = [-1]\n"
+                        "rate_deg_per_ps = 1\nangle_deg = 20\n[run]\nduration_ps = 30\n";
+  std::vector<ChartedScene> chart = read_chart(chart_folder);
+  ChartedScene turned = chart[0];  // in the middle between the two scenes
+  turned.name = "turned";
+  turned.led = LedBy::rotation;
+  chart[0].tubes = 91;
+  chart.push_back(turned);
+  const auto plan_of = [&](const std::string& text) {
+    return plan_scene(scene_from(text), chart, {0.0125, {}, false});
+  };
+  EXPECT_EQ(plan_of(bundle).stands_for, "bundle");
+  EXPECT_EQ(plan_of(bundle).led_otherwise, "");
+  EXPECT_EQ(plan_of(rotated).stands_for, "turned");
+  // Much shorter ropes come last of those.
+  chart.push_back(turned);
+  chart.back().name = "short";
+  for (ChartedModel& m : chart.back().models) m.elements /= 4;
+  chart[2].tubes = 19;
+  EXPECT_EQ(plan_of(rotated).stands_for, "turned");
+  for (ChartedModel& m : chart.back().models) m.elements *= 4;
+  EXPECT_EQ(plan_of(rotated).stands_for, "short") << "which it is no more";
+  chart.pop_back();
+  chart.erase(chart.begin());
+  const Plan p = plan_of(bundle);
+  EXPECT_EQ(p.stands_for, "turned");
+  EXPECT_THAT(p.led_otherwise, HasSubstr("scene turned is led by rotation, this one by load"));
+  EXPECT_THAT(p.text, HasSubstr("# " + p.led_otherwise));
+}
+
+TEST(Plan, HasTheDefaultModelBesides) {
+  const std::string costly = bundle + "time_step_fs = 3\n[contact]\nnodes_per_element = 9\n";
+  const Plan p = planned(costly, 0.0125);
+  EXPECT_TRUE(p.standard_holds);
+  EXPECT_NEAR(p.standard_expected.at("energy"), 0.005, 1e-9);
+  const Scene s = scene_from(p.standard_text);
+  EXPECT_EQ(s.run.time_step, 0);
+  EXPECT_EQ(s.contact.nodes, 0);
+  EXPECT_NEAR(expectations_of(p.standard_text).errors.at("energy"), 0.005, 1e-9);
+  EXPECT_FALSE(planned(costly, 0.001).standard_holds);
+  // It is taken where it holds the error and is no slower.
+  EXPECT_TRUE(default_serves(p, 2, 1.9));
+  EXPECT_TRUE(default_serves(p, 2, 2.1)) << "as good as equal";
+  EXPECT_FALSE(default_serves(p, 1.7, 2));
+  EXPECT_FALSE(default_serves(planned(costly, 0.001), 2, 1));
+}
+
+TEST(Plan, TakesNoLongStepOnTwoLevels) {
+  std::vector<ChartedScene> chart = read_chart(chart_folder);
+  for (ChartedModel& m : chart[0].models)
+    if (m.name == "every-2") m.cpu_per_ns = 5;  // cheaper than the long step
+  const Scene s = scene_from(plan_scene(scene_from(bundle), chart, {0.0125, {}, false}).text);
+  EXPECT_EQ(s.run.stepping.contact_every, 2);
+  EXPECT_EQ(s.run.time_step, 0) << "the default part of the limit";
+}
+
+// A chart whose default took a smaller part of the limit than the program does.
+TEST(Plan, StaysBelowTheStepLimit) {
+  std::vector<ChartedScene> chart = read_chart(chart_folder);
+  for (ChartedModel& m : chart[0].models)
+    if (m.name == "step-0.9") m.time_step = 100;
+  Scene s = scene_from(plan_scene(scene_from(bundle), chart, {0.0125, {}, false}).text);
+  const Prepared p = prepare(s);
+  EXPECT_NEAR(s.run.time_step, 0.9 * inner_step_limit(p.limit, 1), 1e-3 * s.run.time_step);
+}
+
+TEST(Plan, EndMomentsThatLoadsGiveAreNotPromised) {
+  std::vector<ChartedScene> chart = read_chart(chart_folder);
+  for (ChartedModel& m : chart[0].models) m.finest["end_moment"] = m.finest.at("energy");
+  const Plan p = plan_scene(scene_from(bundle), chart, {0.0125, {}, false});
+  EXPECT_EQ(p.expected.count("end_moment"), 0u);
+  EXPECT_EQ(expectations_of(p.text).errors.count("end_moment"), 0u);
+  EXPECT_THAT(fmt::format("{}", fmt::join(p.why, "\n")), HasSubstr("end_moment: loads give it here"));
+}
+
+// Helices of the same length, evenly twisted: no strain, no bond longer, the outer tubes at atan(R t).
+TEST(ExpectedState, IsARopeThatHasBeenTwisted) {
+  Scene scene = scene_from(bundle);
+  const Prepared p = prepare(scene);
+  const double turn = 0.04, rate = 0.002;
+  const State s = turned_rope(p, turn, rate);
+  const RopeObservation o =
+      observe(p.topology, s, rope_shells(p.topology, p.state, 0), validities(scene), 0, p.spacing);
+  EXPECT_NEAR(o.beta, std::atan(p.spacing * turn), 1e-3);
+  const double height = p.state.position[0].z() - p.state.position[p.topology.length_of(0) - 1].z();
+  EXPECT_NEAR(o.geometric_twist, std::fabs(turn * height), 0.02);
+  const auto energy = [&](const State& state) {
+    return Simulation(p.topology, p.interaction, {}, state, p.time_step).forces().energy;
+  };
+  const double length = p.topology.tubes() * std::fabs(height);
+  EXPECT_LT(energy(s).stretch, 1e-3 * energy(s).twist);
+  EXPECT_NEAR(energy(s).twist, 0.5 * p.topology.types[0].bond.twist * turn * turn * length, 0.02 * energy(s).twist);
+  // Velocities are those with which it goes on turning, without its growing shorter.
+  const State later = turned_rope(p, turn + 1e-4 * rate, rate);
+  for (std::size_t i = 0; i < s.size(); i += 17) {
+    const Vector3 moved = (Vector3(later.position[i]) - Vector3(s.position[i])) / 1e-4;
+    EXPECT_LT((moved - Vector3(s.velocity[i])).head<2>().norm(), 1e-2 * p.spacing * rate * std::fabs(height));
+  }
+}
+
+// Two rows side by side that slide along one another lose as much per length, whatever the elements; and so does a
+// chain that is sheared evenly, by bonds of the rate l a^2 each with its relative velocity over a.
+TEST(Dissipation, BelongsToALengthOfTube) {
+  const double spacing = 1.7;
+  Damping d;
+  d.contact = {20, spacing, 1.5 * spacing};
+  d.bond.rate = 3;
+  const auto power = [&](const Damping& of, double a) {
+    double sum = 0;
+    for (int k = -9; k <= 9; ++k)
+      sum +=
+          of.contact.force({spacing, 0, k * a}, Vector3::Zero(), Vector3::Zero(), Vector3::UnitZ(), Vector3::Zero())
+              .power;
+    return sum / a;
+  };
+  for (const double a : {0.4, 0.678, 2.7, 5.4}) {
+    const Damping other = same_dissipation(d, 1.356, a);
+    EXPECT_NEAR(power(other, a), power(d, 1.356), 1e-9 * std::fabs(power(d, 1.356)));
+    EXPECT_NEAR(other.bond.rate * a * a, 3 * 1.356 * 1.356, 1e-9);
+  }
+}
+
 TEST(Plan, GoesCoarserAndFinerWithTheError) {
   const Plan coarse = planned(bundle, 0.04);
   // Elements and steps are counted in the scene itself: half as many elements, and a longer stable step.
@@ -116,6 +249,11 @@ TEST(Plan, GoesCoarserAndFinerWithTheError) {
   EXPECT_NEAR(std::get<RopeSource>(s.source).length, 11 * s.element_length, 1e-7);
   EXPECT_EQ(s.contact.nodes, 0);
   EXPECT_EQ(s.contact.cutoff, 2.3);
+  // Long elements have fewer bonds and pairs: the same dissipation per length needs other constants.
+  const double times = s.element_length / scene_from(bundle).element_length;
+  EXPECT_NEAR(s.damping.bond.rate, 1 / (times * times), 1e-5);
+  EXPECT_GT(s.damping.contact.eta, 0.7 * 20 * times * times);
+  EXPECT_LT(s.damping.contact.eta, 1.3 * 20 * times * times);
 
   const Plan fine = planned(bundle, 0.0005);
   EXPECT_TRUE(fine.holds);
@@ -244,10 +382,11 @@ TEST(Plan, RefusesObservablesThatTheChartLacks) {
 
 TEST(Plan, IsRememberedInTheScene) {
   const Plan p = planned(bundle, 0.012);
-  const auto remembered = expectations_of(p.text);
+  EXPECT_EQ(expectations_of(p.text).asked, 0.012);
+  const auto remembered = expectations_of(p.text).errors;
   EXPECT_EQ(remembered.size(), p.expected.size());
   for (const auto& [name, error] : p.expected) EXPECT_NEAR(remembered.at(name), error, 1e-6 * error);
-  EXPECT_TRUE(expectations_of(bundle).empty());
+  EXPECT_TRUE(expectations_of(bundle).errors.empty());
 }
 
 TEST(SceneEdit, SetsKeysAndKeepsTheRest) {
@@ -268,7 +407,7 @@ TEST(SpotCheck, SeesWhatLongElementsCost) {
     Scene scene = scene_from(fmt::format(
         "{}element_length_nm = {}\n[chain]\nelements = {}\n[contact]\nlaw = \"none\"\n"
         "[[load]]\nkind = \"fix\"\nelements = [0]\n[[load]]\nkind = \"torque\"\nelements = [-1]\n"
-        "torque_nN_nm = [0, 8, 0]\n[run]\nmode = \"relax\"\nforce_tolerance_nN = 1e-6\nmax_steps = 400000\n",
+        "torque_nN_nm = [0, 8, 0]\n[run]\nmode = \"relax\"\nforce_tolerance_nN = 1e-8\nmax_steps = 400000\n",
         head, length, elements));
     const Prepared p = prepare(scene);
     Simulation s = start(scene, p);
@@ -287,6 +426,18 @@ TEST(SpotCheck, SeesWhatLongElementsCost) {
   EXPECT_NEAR(fine.observables.at("energy").error(), std::fabs(excess(2.5) - excess(1.25)), 2e-6);
   EXPECT_GT(coarse.observables.at("energy").error(), 1e-3);
   EXPECT_LT(coarse.observables.at("bending_moment").error(), 0.01);
+}
+
+// A rope at rest, and no knob turned: halves of elements see the same shape.
+TEST(SpotCheck, LooksAtSpacingAndEndAngleOfARope) {
+  Scene scene = scene_from(head + "[rope]\ntubes = 7\nlength_nm = 13.6\n[run]\nduration_ps = 1\n");
+  const Prepared p = prepare(scene);
+  const SpotCheck check = spot_check(scene, p, turned_rope(p, 0.02, 0), 0.2);
+  const SpotCheck::Pair spacing = check.observables.at("spacing"), angle = check.observables.at("end_angle");
+  EXPECT_NEAR(spacing.planned, p.spacing, 0.01 * p.spacing);
+  EXPECT_LT(spacing.error(), 2e-3);
+  EXPECT_NEAR(angle.planned, 0.02 * 13.6 / units::degree, 2);
+  EXPECT_LT(angle.error(), 0.05);
 }
 
 }  // namespace

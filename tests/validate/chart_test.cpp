@@ -115,7 +115,7 @@ double grip_distance(const Specimen& s) {
 }
 
 TEST(ChartScenes, AreTheSameSpecimenAtEveryElementLength) {
-  for (const char* name : {"tube-twist", "rope91", "crossed-tubes"}) {
+  for (const char* name : {"tube-twist", "rope91", "rope19-moment", "crossed-tubes"}) {
     const ChartScene& scene = find_chart_scene(name);
     const std::vector<ChartModel> models = chart_models(scene, false);
     const Specimen base = scene.build(find_chart_model(models, default_model));
@@ -125,9 +125,29 @@ TEST(ChartScenes, AreTheSameSpecimenAtEveryElementLength) {
       EXPECT_NE(s.topology.elements(), base.topology.elements()) << name << " " << other;
       EXPECT_NEAR(grip_distance(s), grip_distance(base), 1e-9) << name << " " << other;
       EXPECT_EQ(s.angle, base.angle);
+      EXPECT_EQ(s.moment, base.moment);
       EXPECT_EQ(s.duration(), base.duration());
     }
   }
+}
+
+// As [twist] does: a couple on each end element, ramped, and nothing held.
+TEST(ChartScenes, ARopeIsLedByAMoment) {
+  const ChartScene& scene = find_chart_scene("rope19-moment");
+  const std::vector<ChartModel> models = chart_models(scene, false);
+  const Specimen s = scene.build(find_chart_model(models, default_model));
+  EXPECT_TRUE(s.held().fixed.empty());
+  const Drive led = s.led();
+  EXPECT_TRUE(led.fixed.empty() && led.turned.empty());
+  ASSERT_EQ(led.twist.size(), 1u);
+  const TwistDrive& twist = led.twist[0];
+  EXPECT_EQ(twist.upper.size(), 19u);
+  EXPECT_EQ(twist.lower.size(), 19u);
+  EXPECT_EQ(twist.moment_at(0), 0);
+  EXPECT_NEAR(twist.moment_at(0.5 * s.ramp), 0.5 * s.moment, 1e-12);
+  EXPECT_EQ(twist.moment_at(s.duration()), s.moment);
+  for (const int e : twist.upper) EXPECT_GT(s.state.position[static_cast<std::size_t>(e)].z(), 0);
+  for (const ChartModel& m : models) EXPECT_EQ(m.mode, RunOptions::Mode::dynamics) << m.name;
 }
 
 TEST(ChartModels, HaveNamesOfTheirOwn) {

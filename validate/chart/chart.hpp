@@ -8,10 +8,14 @@
 // untwisted state. Damping constants belong to a pair of elements and to a bond; they go with the element length,
 // so that the dissipation per length of tube is the same.
 //
-// Every scene is turned: the grips turn at a constant rate and are then held. The motion starts with the velocities
-// of a uniform turn, so that no wave runs from the grips. At the stop the kinetic energy of the turn becomes
-// vibration, which damping takes out in the hold; ramps are so long that it is small. Observables are means over
-// the second half of the hold.
+// Most scenes are led by rotation: the grips turn at a constant rate and are then held. The motion starts with the
+// velocities of a uniform turn, so that no wave runs from the grips. At the stop the kinetic energy of the turn
+// becomes vibration, which damping takes out in the hold; ramps are so long that it is small. Observables are means
+// over the second half of the hold.
+//
+// A rope that is led by moments on its grips answers an error of its stiffness with its angle, not with its moment:
+// one scene ramps a couple on each grip element at a constant rate, from rest, as [twist] does. Its ends are free,
+// and nothing but damping takes out the slowest torsional vibration: half of the hold is one period of it.
 //
 // Cost. CPU time of this process in steps, one thread, per simulated ns. A relaxation has no time: what it takes
 // from start to end is set against the ramp and hold that it replaces.
@@ -72,6 +76,7 @@ struct Specimen {
   std::vector<int> grips;  // elements that are held and turned
   bool axial_free = false;
   double angle = 0;           // rad, the whole turn
+  double moment = 0;          // eV on each grip element instead, against one another at the two ends
   double ramp = 0, hold = 0;  // ps
   int increments = 1;         // of a relaxation
   // Before it is relaxed, all turns evenly; else the grips alone, where the even turn is the answer already.
@@ -81,8 +86,8 @@ struct Specimen {
 
   double duration() const { return ramp + hold; }
   double outer_step() const { return time_step * scene.run.stepping.contact_every; }
-  Drive held() const;
-  Drive turned() const;
+  Drive held() const;  // before the ramp; free where a moment leads
+  Drive led() const;
 };
 
 struct ChartReference {
@@ -96,6 +101,9 @@ struct ChartScene {
   std::vector<std::string> observables;
   std::function<Specimen(const ChartModel&)> build;
   std::function<std::vector<ChartReference>()> atoms;  // may be empty
+  // Under couples on its tubes a rope turns because they rub on one another. A relaxation knows no friction, and
+  // ends elsewhere: with three quarters of the angle.
+  bool relaxes = true;
 };
 
 // A model's scene without its elements: set, contact, damping; at this element length. The interaction and the
@@ -105,7 +113,7 @@ double rest_spacing(const Scene& scene);
 
 const std::vector<ChartScene>& chart_scenes();
 const ChartScene& find_chart_scene(const std::string& name);
-// Those that make a difference in the scene; `quick`: a few.
+// Those that make sense in the scene; `quick`: a few.
 std::vector<ChartModel> chart_models(const ChartScene& scene, bool quick);
 const ChartModel& find_chart_model(const std::vector<ChartModel>& models, const std::string& name);
 

@@ -11,6 +11,9 @@
 #include "chart/chart.hpp"
 #include "model/error.hpp"
 #include "observe/bending.hpp"
+#include "observe/means.hpp"
+#include "observe/spacing.hpp"
+#include "scene/resolve.hpp"
 
 namespace ropewalk {
 namespace {
@@ -92,41 +95,6 @@ double mean_bending_moment(const Specimen& s, const State& state) {
   return count > 0 ? sum / count : 0;
 }
 
-Vector3 middle_of(const Topology& topology, const State& state, int tube) {
-  const int n = topology.length_of(tube), first = topology.tube_begin[tube];
-  return 0.5 * (state.position[first + (n - 1) / 2] + state.position[first + n / 2]);
-}
-
-// From a point to the polyline through the elements of a tube.
-double distance_to(const Topology& topology, const State& state, int tube, const Vector3& point) {
-  double least = std::numeric_limits<double>::infinity();
-  for (int i = topology.tube_begin[tube]; i + 1 < topology.tube_begin[tube + 1]; ++i) {
-    const Vector3 from = state.position[i], along = Vector3(state.position[i + 1]) - from;
-    const double at = std::clamp(along.dot(point - from) / along.squaredNorm(), 0.0, 1.0);
-    least = std::min(least, (from + at * along - point).norm());
-  }
-  return least;
-}
-
-// Mean distance of an inner tube from its six nearest, at its middle; of two tubes, where they are closest.
-double spacing_of(const Topology& topology, const State& state, const RopeShells& shells) {
-  const bool rope = topology.tubes() > 2;
-  double sum = 0;
-  int count = 0;
-  for (int t = 0; t < topology.tubes(); ++t) {
-    if (rope && !shells.internal[static_cast<std::size_t>(t)]) continue;
-    const Vector3 middle = middle_of(topology, state, t);
-    std::vector<double> distances;
-    for (int other = 0; other < topology.tubes(); ++other)
-      if (other != t) distances.push_back(distance_to(topology, state, other, middle));
-    std::sort(distances.begin(), distances.end());
-    const std::size_t nearest = std::min<std::size_t>(6, distances.size());
-    for (std::size_t k = 0; k < nearest; ++k) sum += distances[k];
-    count += static_cast<int>(nearest);
-  }
-  return sum / count;
-}
-
 class Reader {
  public:
   Reader(const Specimen& s, const State& untwisted, double zero) : s_(s), zero_(s.above_start ? zero : 0) {
@@ -140,28 +108,23 @@ class Reader {
     now["energy"] = simulation.forces().energy.potential() - zero_;
     now["end_moment"] = moment_on_grips(s_, simulation) * units::eV_in_nN_nm;
     now["bending_moment"] = mean_bending_moment(s_, state) * units::eV_in_nN_nm;
-    if (topology.tubes() > 1) now["spacing"] = spacing_of(topology, state, shells_);
+    if (topology.tubes() > 1) now["spacing"] = tube_spacing(topology, state, shells_);
     if (topology.tubes() > 2) {
-      const RopeObservation o = observe(topology, state, shells_, {s_.scene.parameters().validity}, 0, s_.spacing);
+      const RopeObservation o = observe(topology, state, shells_, validities(s_.scene), 0, s_.spacing);
       now["beta"] = o.beta * units::rad_in_degree;
+      now["end_angle"] = o.geometric_twist * units::rad_in_degree;
       now["Q"] = o.middle.charge;
     }
-    for (const auto& [name, value] : now) sums_[name] += value;
-    ++count_;
+    means_.add(now);
   }
 
-  std::map<std::string, double> means() const {
-    std::map<std::string, double> out;
-    for (const auto& [name, sum] : sums_) out[name] = sum / count_;
-    return out;
-  }
+  std::map<std::string, double> means() const { return means_.values(); }
 
  private:
   const Specimen& s_;
   double zero_ = 0;
   RopeShells shells_;
-  std::map<std::string, double> sums_;
-  int count_ = 0;
+  Means means_;
 };
 
 // --- The two modes ---
@@ -186,7 +149,7 @@ double run_dynamics(const Specimen& s, Reader* reader, Simulation& simulation) {
 Simulation driven(const Specimen& s, State untwisted) {
   set_turning(s, untwisted);
   untwisted.step = 0;
-  return Simulation(s.topology, s.interaction, s.turned(), std::move(untwisted), s.outer_step(), 0,
+  return Simulation(s.topology, s.interaction, s.led(), std::move(untwisted), s.outer_step(), 0,
                     s.scene.run.stepping);
 }
 

@@ -146,6 +146,10 @@ std::vector<ChartModel> chart_models(const ChartScene& scene, bool quick) {
   if (scene.contact) add_contact_knobs(all);
   add_combinations(scene, all);
   if (!scene.contact) std::for_each(all.begin(), all.end(), take_contact_away);
+  if (!scene.relaxes)
+    all.erase(std::remove_if(all.begin(), all.end(),
+                             [](const ChartModel& m) { return m.mode == RunOptions::Mode::relax; }),
+              all.end());
   if (quick) {
     static const std::vector<std::string> few = {finest_model, default_model, published_model,
                                                  "length-2",   "isotropic",   "relax"};

@@ -39,7 +39,8 @@ constexpr Peer peers[] = {
 std::string observable_title(const std::string& o) {
   static const std::map<std::string, std::string> titles = {
       {"energy", "energy"},         {"beta", "twist angle beta"},         {"spacing", "spacing"},
-      {"end_moment", "end moment"}, {"bending_moment", "bending moment"}, {"Q", "packing charge Q"}};
+      {"end_moment", "end moment"}, {"bending_moment", "bending moment"}, {"Q", "packing charge Q"},
+      {"end_angle", "end angle"}};
   return titles.at(o);
 }
 

@@ -15,6 +15,7 @@
 #include "io/toml_table.hpp"
 #include "model/error.hpp"
 #include "scene/build.hpp"
+#include "scene/dissipation.hpp"
 
 namespace ropewalk {
 namespace {
@@ -27,29 +28,19 @@ constexpr double tube_length = 32 * element;       // nm
 constexpr double ring_length = 48 * element, ring_twist = 6;  // nm, rad: half of what makes it leave its plane
 constexpr double rope_length = 30 * element;                  // nm
 constexpr double rope_angle = 90 * units::degree;
+constexpr double led_length = 26 * element;           // nm
+constexpr double led_moment = 10;                     // nN nm per tube
+constexpr double led_ramp = 66, led_hold = 44;        // ps: three periods and two
 constexpr double crossed_length = 8 * element;        // nm
 constexpr double crossed_from = 90, crossed_to = 30;  // degrees
 constexpr std::size_t md_increment = 4;               // of rope-7-10-10: 18 degrees
 
-// Viscosity of one tube against a neighbour, per length.
-double viscosity_per_length(const ContactViscosity& viscosity, double spacing, double element_length) {
-  const int reach = static_cast<int>(viscosity.outer / element_length) + 1;
-  double sum = 0;
-  for (int k = -reach; k <= reach; ++k) sum += viscosity.weight(std::hypot(spacing, k * element_length));
-  return viscosity.eta * sum / element_length;
-}
-
-// A model's damping is that of elements of the default length. Constants of a pair and of a bond belong to a
-// length: others are needed for the same dissipation in the tubes and between them.
+// A model's damping is that of elements of the default length.
 void scale_damping(Specimen& s) {
   Damping& damping = s.scene.damping;
   damping.contact.inner = s.spacing;
   damping.contact.outer = viscosity_reach * s.spacing;
-  const double a = s.scene.element_length;
-  if (damping.contact.eta > 0)
-    damping.contact.eta *= viscosity_per_length(damping.contact, s.spacing, element) /
-                           viscosity_per_length(damping.contact, s.spacing, a);
-  damping.bond.rate *= element * element / (a * a);
+  damping = same_dissipation(damping, element, s.scene.element_length);
 }
 
 // What the knobs say, once topology and spacing are known.
@@ -147,6 +138,16 @@ Specimen rope_of_91(const ChartModel& model) {
   s.ramp = 40;
   s.hold = 20;
   s.increments = 15;
+  return s;
+}
+
+// --- rope19-moment ---
+
+Specimen rope_led_by_moment(const ChartModel& model) {
+  Specimen s = parallel_tubes(model, 19, led_length, 0);
+  s.moment = led_moment * units::nN_nm;
+  s.ramp = led_ramp;
+  s.hold = led_hold;
   return s;
 }
 
@@ -256,6 +257,18 @@ std::vector<ChartScene> all_scenes() {
        {"energy", "beta", "spacing", "end_moment", "bending_moment", "Q"},
        rope_of_91,
        {}},
+      {"rope19-moment",
+       "19 tubes led by a moment",
+       fmt::format(
+           "19 (10,10) tubes of {:.4g} nm, free but for a couple of {:g} nN nm on either end of each, ramped "
+           "in {:g} ps from rest and held for {:g}. Its twist is the answer, and vibrates: observables are "
+           "means over a period of that.",
+           led_length, led_moment, led_ramp, led_hold),
+       true,
+       {"energy", "beta", "end_angle", "spacing", "bending_moment"},
+       rope_led_by_moment,
+       {},
+       false},
       {"crossed-tubes",
        "Two crossed tubes",
        "Two (10,10) tubes of 10.8 nm between held ends, crossed at 90 degrees and the distance at which they rest "
@@ -280,16 +293,29 @@ std::vector<ChartScene> all_scenes() {
   };
 }
 
+TwistDrive ramped_moment(const Specimen& s) {
+  TwistDrive twist;
+  for (const int e : s.grips) (s.place[static_cast<std::size_t>(e)] > 0 ? twist.upper : twist.lower).push_back(e);
+  twist.moment = s.moment;
+  twist.rate = s.moment / s.ramp;
+  return twist;
+}
+
 }  // namespace
 
 Drive Specimen::held() const {
   Drive drive;
+  if (moment > 0) return drive;
   for (const int e : grips) drive.fixed.push_back({e, true, true, !axial_free, true});
   return drive;
 }
 
-Drive Specimen::turned() const {
+Drive Specimen::led() const {
   Drive drive;
+  if (moment > 0) {
+    drive.twist.push_back(ramped_moment(*this));
+    return drive;
+  }
   std::set<double> places;
   for (const int e : grips) places.insert(place[static_cast<std::size_t>(e)]);
   for (const double part : places) {
@@ -326,9 +352,13 @@ const ChartScene& find_chart_scene(const std::string& name) {
 }
 
 std::string observable_unit(const std::string& observable) {
-  static const std::map<std::string, std::string> units = {
-      {"energy", "eV"}, {"beta", "deg"}, {"spacing", "nm"}, {"end_moment", "nN nm"}, {"bending_moment", "nN nm"},
-      {"Q", "1"}};
+  static const std::map<std::string, std::string> units = {{"energy", "eV"},
+                                                           {"beta", "deg"},
+                                                           {"spacing", "nm"},
+                                                           {"end_moment", "nN nm"},
+                                                           {"bending_moment", "nN nm"},
+                                                           {"Q", "1"},
+                                                           {"end_angle", "deg"}};
   return units.at(observable);
 }
 

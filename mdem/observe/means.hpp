@@ -1,0 +1,27 @@
+// Means of named quantities over several looks at a motion.
+#pragma once
+
+#include <map>
+#include <string>
+
+namespace ropewalk {
+
+class Means {
+ public:
+  // The same names in every look.
+  void add(const std::map<std::string, double>& now) {
+    for (const auto& [name, value] : now) sums_[name] += value;
+    ++looks_;
+  }
+  std::map<std::string, double> values() const {
+    std::map<std::string, double> out;
+    for (const auto& [name, sum] : sums_) out[name] = sum / looks_;
+    return out;
+  }
+
+ private:
+  std::map<std::string, double> sums_;
+  int looks_ = 0;
+};
+
+}  // namespace ropewalk

@@ -1,0 +1,19 @@
+// Damping of elements of another length.
+//
+// The constants belong to a pair of elements and to a bond, what they dissipate belongs to a length of tube: others
+// are needed for the same dissipation in the tubes and between them. For two parallel tubes whose elements lie side
+// by side, at the distance `inner` of the contact viscosity,
+//
+//   eta sum_k w(hypot(inner, k a))/a   and   lambda a^2   stay the same.
+//
+// Where elements of two tubes lie at any offset the mean of the first is eta/a^2.
+#pragma once
+
+#include "model/damping.hpp"
+
+namespace ropewalk {
+
+// Lengths in nm. The reach of the viscosity must be set where there is one.
+Damping same_dissipation(Damping damping, double from, double to);
+
+}  // namespace ropewalk
