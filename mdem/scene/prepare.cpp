@@ -17,7 +17,7 @@ double chosen_step(const Scene& scene, const TimeStepLimit& limit) {
   const double typed = scene.run.time_step;
   const int every = scene.run.stepping.contact_every;
   const double largest = inner_step_limit(limit, every);
-  if (typed <= 0) return default_step_fraction * largest;
+  if (typed <= 0) return automatic_step_fraction(scene) * largest;
   if (typed < largest) return typed;
   const char* why = limit.damping_rate * largest * every > 1 ? "the strongest damping" : "the stiffest mode";
   const std::string levels = every > 1 ? fmt::format(" with contact_every = {}", every) : "";
@@ -96,6 +96,14 @@ void refuse_first_step(const Scene& scene, const Simulation& s) {
 }
 
 }  // namespace
+
+double automatic_step_fraction(const Scene& scene) {
+  const bool from_file = std::holds_alternative<StateSource>(scene.source);  // with velocities of its own
+  const bool cold = scene.temperature == 0 && !from_file;
+  return cold && scene.run.mode != RunOptions::Mode::relax && scene.run.stepping.contact_every == 1
+             ? cold_step_fraction
+             : default_step_fraction;
+}
 
 Prepared prepare(Scene& scene) {
   Prepared out;

@@ -22,6 +22,8 @@ struct Prepared {
 // Throws InputError for a typed time step above the limit, for loads on elements that do not exist, for tubes of a
 // state file inside one another (unless they are to be relaxed) and for a moment that a single tube cannot bear.
 Prepared prepare(Scene& scene);
+// Of the stability limit, where no time step is typed.
+double automatic_step_fraction(const Scene& scene);
 
 // The simulation of a prepared scene, with the scene's list skin. Throws InputError where its first step would end
 // the run, or a bond slips already.

@@ -47,13 +47,6 @@ double contact_stiffness(const Topology& topology, const Interaction& in, const 
   return largest;
 }
 
-// Sum of the viscosity's weights over the row of a neighbouring tube.
-double row_viscosity(const ContactViscosity& viscosity, double element_length, double spacing) {
-  double sum = 0;
-  for (int k = -64; k <= 64; ++k) sum += viscosity.weight(std::hypot(spacing, k * element_length));
-  return viscosity.eta * sum;
-}
-
 //   w^2 dt^2 + 2 g dt = 4
 double damped_step_limit(double w2, double g) { return (std::sqrt(g * g + 4.0 * w2) - g) / w2; }
 
@@ -75,7 +68,7 @@ struct Lattice {
   BondDamping bond;
   double spacing = 0;    // nm
   double stiffness = 0;  // eV/nm^2, of a neighbouring row
-  double viscosity = 0;  // eV ps/nm^2, of a neighbouring row
+  ContactViscosity viscosity;
 
   // A chain's matrix: `along` of deflections and of rotations about the axis, `sideways` of the rest.
   template <class Mode>
@@ -97,27 +90,48 @@ struct Lattice {
               chain_mode(type.bond, q, a, m, inertia), wave.stiffness);
     add_chain(bond.rate * c, bond.rate * c, bond.mode(q, a, m, inertia), wave.damping);
   }
-  // The neighbours in three of the six directions; the others are their mirror images.
-  void add_contact(const Vector3& k, Wave& wave) const {
-    Eigen::Matrix<double, 6, 1> root;
-    root << Vector3::Constant(1 / std::sqrt(type.mass)), Vector3::Constant(1 / std::sqrt(type.inertia));
+  // The neighbours in three of the six directions; the others are their mirror images. An element is pressed along
+  // its whole length: where neighbours are tilted against one another, their contact opens at one end and closes at
+  // the other, which takes the stiffness times a^2/12.
+  void add_contact(const Vector3& k, double q, Wave& wave) const {
+    using Row = Eigen::Matrix<std::complex<double>, 1, 6>;
+    const double a = type.element_length;
     for (int direction = 0; direction < 3; ++direction) {
       const double angle = direction * units::pi / 3;
-      const Vector3 to(std::cos(angle), std::sin(angle), 0), arm = 0.5 * spacing * to;
+      const Vector3 to(std::cos(angle), std::sin(angle), 0);
       const std::complex<double> phase = std::exp(std::complex<double>(0, spacing * k.dot(to)));
-      // Opening of the contact, and sliding at it: v_j - v_i - (w_i + w_j) x arm.
-      Eigen::Matrix<std::complex<double>, 1, 6> open = Eigen::Matrix<std::complex<double>, 1, 6>::Zero();
-      Eigen::Matrix<std::complex<double>, 3, 6> slide = Eigen::Matrix<std::complex<double>, 3, 6>::Zero();
-      for (int a = 0; a < 3; ++a) {
-        open(0, a) = (phase - 1.0) * to[a];
-        slide(a, a) = phase - 1.0;
-        slide.block<3, 1>(0, 3 + a) = -(phase + 1.0) * Vector3::Unit(a).cross(arm);
+      Row open = Row::Zero(), tilt = Row::Zero();
+      for (int axis = 0; axis < 3; ++axis) {
+        open(axis) = (phase - 1.0) * to[axis];
+        tilt(3 + axis) = (phase - 1.0) * Vector3::Unit(axis).cross(Vector3::UnitZ()).dot(to);
       }
-      open *= root.asDiagonal();
-      slide *= root.asDiagonal();
-      wave.stiffness += stiffness * open.adjoint() * open;
-      wave.damping += viscosity * slide.adjoint() * slide;
+      add(open, stiffness, wave.stiffness);
+      add(tilt, stiffness * a * a / 12, wave.stiffness);
+      for (int offset = -viscous_reach(); offset <= viscous_reach(); ++offset) {
+        const Vector3 apart = spacing * to + offset * a * Vector3::UnitZ();
+        slide(0.5 * apart, phase * std::exp(std::complex<double>(0, q * offset)),
+              viscosity.eta * viscosity.weight(apart.norm()), wave.damping);
+      }
     }
+  }
+  int viscous_reach() const {
+    return viscosity.eta > 0 ? static_cast<int>(viscosity.outer / type.element_length) : -1;
+  }
+  // Sliding at a contact: v_j - v_i - (w_i + w_j) x arm.
+  void slide(const Vector3& arm, std::complex<double> phase, double strength, Matrix6& to) const {
+    Eigen::Matrix<std::complex<double>, 3, 6> sliding = Eigen::Matrix<std::complex<double>, 3, 6>::Zero();
+    for (int axis = 0; axis < 3; ++axis) {
+      sliding(axis, axis) = phase - 1.0;
+      sliding.block<3, 1>(0, 3 + axis) = -(phase + 1.0) * Vector3::Unit(axis).cross(arm);
+    }
+    add(sliding, strength, to);
+  }
+  // A quadratic form of the motion, over the masses.
+  template <class Rows>
+  void add(Rows rows, double factor, Matrix6& to) const {
+    rows.template leftCols<3>() /= std::sqrt(type.mass);
+    rows.template rightCols<3>() /= std::sqrt(type.inertia);
+    to += factor * rows.adjoint() * rows;
   }
 
   // Calls f with every wave of a grid: half of the wave vectors along the tubes, and across them, where there are
@@ -125,16 +139,16 @@ struct Lattice {
   template <class F>
   void each_wave(const F& f) const {
     constexpr int along = 12, across = 12;
-    const int most = spacing > 0 && (stiffness > 0 || viscosity > 0) ? across : 1;
+    const int most = spacing > 0 && (stiffness > 0 || viscosity.eta > 0) ? across : 1;
     const double cell = spacing > 0 ? 2 * units::pi / spacing : 0;
     for (int x = 0; x < most; ++x)
       for (int y = 0; y < most; ++y) {
         const double b1 = cell * x / across, b2 = cell * y / across;
-        Wave contact;
-        if (most > 1) add_contact(Vector3(b1, (2 * b2 - b1) / std::sqrt(3.0), 0), contact);
         for (int n = 0; n <= along; ++n) {
-          Wave wave = contact;
-          add_bonds(units::pi * n / along, wave);
+          const double q = units::pi * n / along;
+          Wave wave;
+          if (most > 1) add_contact(Vector3(b1, (2 * b2 - b1) / std::sqrt(3.0), 0), q, wave);
+          add_bonds(q, wave);
           f(wave);
         }
       }
@@ -142,10 +156,10 @@ struct Lattice {
 };
 
 Lattice lattice_of(const Topology& topology, const Interaction& in, const TubeType& type, double spacing) {
-  Lattice out{type, in.damping.bond, spacing, 0, 0};
+  Lattice out{type, in.damping.bond, spacing, 0, {}};
   if (!in.has_contact() || topology.tubes() < 2 || spacing <= 0) return out;
   out.stiffness = std::max(contact_stiffness(topology, in, type, spacing), 0.0);
-  if (in.damped_contact()) out.viscosity = row_viscosity(in.damping.contact, type.element_length, spacing);
+  if (in.damped_contact()) out.viscosity = in.damping.contact;
   return out;
 }
 

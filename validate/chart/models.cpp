@@ -46,7 +46,7 @@ void add_single_tube_knobs(std::vector<ChartModel>& all) {
   for (const double times : {0.5, 2.0, 4.0, 8.0})
     all.push_back(
         varied("element_length", fmt::format("length-{:g}", times), [times](ChartModel& m) { m.length = times; }));
-  for (const double part : {0.3, 0.9})
+  for (const double part : {0.3, 0.6})
     all.push_back(
         varied("time_step", fmt::format("step-{:g}", part), [part](ChartModel& m) { m.step_fraction = part; }));
   all.push_back(varied("integrator", "rk4", [](ChartModel& m) { m.stepping.runge_kutta = true; }));

@@ -46,10 +46,13 @@ void scale_damping(Specimen& s) {
 // What the knobs say, once topology and spacing are known.
 void settle(const ChartModel& model, Specimen& s) {
   scale_damping(s);
+  s.scene.run.mode = model.mode;
+  s.scene.run.stepping = model.stepping;
   s.interaction = interaction_of(s.scene);
   const double limit =
       inner_step_limit(time_step_limit(s.topology, s.interaction, s.spacing), model.stepping.contact_every);
-  s.time_step = model.time_step > 0 ? model.time_step : model.step_fraction * limit;
+  const double part = model.step_fraction > 0 ? model.step_fraction : automatic_step_fraction(s.scene);
+  s.time_step = model.time_step > 0 ? model.time_step : part * limit;
   if (s.time_step >= limit)
     throw InputError({"", 0, model.name},
                      fmt::format("{:.4g} fs is not below the stability limit of {:.4g} fs", s.time_step / units::fs,
