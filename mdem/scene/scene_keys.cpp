@@ -97,8 +97,7 @@ const std::vector<SceneKey>& scene_keys() {
 
       {"run", "mode", "", "\"dynamics\"", "", "\"dynamics\", or \"relax\": to the nearest minimum of the energy"},
       {"run", "time_step_fs", "fs", "\"auto\"", "",
-       "\"auto\": 0.9 of the stability limit; 0.6 in warm scenes, from a state file, with contact_every or mode "
-       "relax"},
+       "\"auto\": 0.9 of the stability limit; 0.6 where warm, from a state file, with contact_every, or to relax"},
       {"run", "contact_every", "", "1", "",
        "contact acts every so many steps of the bonds (r-RESPA); pays where elements are short and bonds therefore "
        "stiffer than contact; log and frames go by these longer steps"},

@@ -359,6 +359,40 @@ TEST(NeighbourList, FindsExactlyThePairsWithinReach) {
   EXPECT_EQ(list.pairs(), expected);
 }
 
+// A rope that turns and twists as a whole, by several times the skin at its rim.
+TEST(NeighbourList, TurningTogetherNeedsNoBuild) {
+  Topology topology = test::published_topology();
+  const State start = test::disordered_bundle(topology, 7, 40, 1.72, 0.02, 5);
+  Interaction in;
+  in.line = {test::line_contact(0.6785, 6, 0.6785, 6)};
+  in.precision = Interaction::Precision::full;
+  in.damping.contact = {20, 1.713, 2.57};
+  NeighbourList list(in, 0.25);
+  list.build(topology, start);
+  ForceEngine engine;
+  double farthest = 0;
+  for (int step = 1; step <= 40; ++step) {
+    State s = start;
+    for (std::size_t i = 0; i < s.size(); ++i) {
+      const Quaternion by = test::turn(Vector3::UnitZ(), step * (0.003 + 2e-5 * s.position[i].z()));
+      s.position.set(i, by * start.position[i]);
+      s.orientation.set(i, by * start.orientation[i]);
+      farthest = std::max(farthest, (s.position[i] - start.position[i]).norm());
+    }
+    ASSERT_FALSE(list.update(topology, s)) << step;
+    if (step % 20 != 0) continue;
+    Forces fast(s.size()), reference(s.size());
+    engine.compute(topology, in, list, s, fast);
+    compute_reference(topology, in, s, reference);
+    expect_equal(fast, reference, 1e-10);
+  }
+  EXPECT_GT(farthest, 0.25);
+  // What moves one alone still counts.
+  State s = start;
+  s.position.add(20, {0.14, 0, 0});
+  EXPECT_TRUE(list.update(topology, s));
+}
+
 TEST(NeighbourList, SparseSceneNeedsNoHugeGrid) {
   Topology topology = test::published_topology();
   topology.add_tube(1);

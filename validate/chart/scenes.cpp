@@ -46,8 +46,6 @@ void scale_damping(Specimen& s) {
 // What the knobs say, once topology and spacing are known.
 void settle(const ChartModel& model, Specimen& s) {
   scale_damping(s);
-  s.scene.run.mode = model.mode;
-  s.scene.run.stepping = model.stepping;
   s.interaction = interaction_of(s.scene);
   const double limit =
       inner_step_limit(time_step_limit(s.topology, s.interaction, s.spacing), model.stepping.contact_every);
