@@ -13,6 +13,11 @@ namespace ropewalk {
 
 class WorkShares {
  public:
+  // Nothing in it outlives the work that it was dealt for.
+  WorkShares() = default;
+  WorkShares(const WorkShares&) {}
+  WorkShares& operator=(const WorkShares&) { return *this; }
+
   // Before the team starts, with the number of its threads.
   void deal(int pieces, int threads) {
     if (static_cast<int>(shares_.size()) != threads)

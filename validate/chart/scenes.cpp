@@ -16,6 +16,7 @@
 #include "model/error.hpp"
 #include "scene/build.hpp"
 #include "scene/dissipation.hpp"
+#include "scene/prepare.hpp"
 
 namespace ropewalk {
 namespace {
