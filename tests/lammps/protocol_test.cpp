@@ -65,7 +65,7 @@ INSTANTIATE_TEST_SUITE_P(
         Protocol{"LocalDamping",
                  "[twist]\nmoment_nN_nm = 20\nrate_nN_nm_per_ps = 30\n[damping]\npfc_local = 0.3\n"
                  "contact_viscosity_eV_ps_per_nm2 = 0\nbond_damping_per_ps = 0\n",
-                 1e-8},
+                 1e-6},
         Protocol{"LegacyTorque",
                  "[start]\ntemperature_K = 100\n[contact]\nlaw = \"paper\"\nlegacy_torque = true\n"},
         Protocol{"NoContact",
