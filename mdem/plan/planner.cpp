@@ -246,14 +246,14 @@ std::vector<Knob> knobs_of(const ChartedScene& c, const Scene& scene, const Scen
   return knobs;
 }
 
-// Of the default's error, what its knobs do not explain.
+// Of the default's error, what its knobs do not explain, and what another scene may add.
 std::map<std::string, double> unexplained(const ChartedScene& c, const std::vector<Knob>& knobs,
                                           const std::vector<std::string>& observables) {
   std::map<std::string, double> left;
   for (const std::string& w : observables) {
     double rest = c.standard()->finest.at(w).error;
     for (const Knob& k : knobs) rest -= k.standard.at(w);
-    left[w] = std::max(0.0, rest);
+    left[w] = std::max(0.0, rest) + (c.contact ? between_scenes : 0.0);
   }
   return left;
 }
