@@ -94,7 +94,9 @@ void add_resume(CLI::App& app, Verbs& v) {
 }
 
 void add_observe(CLI::App& app, Verbs& v) {
-  CLI::App* c = app.add_subcommand("observe", "Measure the stored frames of a run: twist, packing, shape");
+  CLI::App* c = app.add_subcommand(
+      "observe",
+      "Measure the stored frames of a run: twist, packing, shape; a planned run also against a finer model");
   c->add_option("dir", v.observe.dir, "Directory of the run")->required();
   c->add_option("--neighbour-radius", v.observe.neighbour_radius,
                 "Tubes closer than this are neighbours (nm) [default: the scene's]")

@@ -6,6 +6,7 @@
 #include "commands/commands.hpp"
 #include "commands/run_directory.hpp"
 #include "io/frames.hpp"
+#include "plan/planner.hpp"
 
 namespace ropewalk {
 namespace {
@@ -82,7 +83,11 @@ int observe_command(const ObserveArguments& a) {
     }
   }
   if (a.json) fmt::print("{}\n", all.dump(1));
-  return 0;
+  if (a.json || expectations_of(scene.text).errors.empty()) return 0;
+  fmt::print("\nThis run was planned; held against a finer model:\n");
+  PlanArguments check;
+  check.check = a.dir;
+  return plan_command(check);
 }
 
 }  // namespace ropewalk

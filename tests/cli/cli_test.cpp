@@ -172,6 +172,8 @@ TEST_F(Cli, PlanRunAndCheck) {
   ASSERT_TRUE(std::regex_search(check.out, row, std::regex("4 % asked for, at most ([0-9.]+) % seen: (\\w+)")))
       << check.out;
   EXPECT_EQ(row[2], std::stod(row[1]) <= 4 ? "held" : "not");
+  EXPECT_NE(run("observe d").out.find("% asked for"), std::string::npos);
+  EXPECT_EQ(run("observe d --json").out.find("asked for"), std::string::npos);
 }
 
 // A chart that calls small steps cheap, which take twice the time in the scene: the default stands.
@@ -191,13 +193,13 @@ TEST_F(Cli, PlanIsNeverDearerThanTheDefault) {
        "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[rope]\ntubes = 7\nlength_nm = 13.6\n"
        "[twist]\nmoment_nN_nm = 6\nrate_nN_nm_per_ps = 0.1\nhold_ps = 400\n[run]\nlog_every_ps = 100\n"
        "frames_every_ps = 100\n");
-  const Outcome plan = run("plan s.toml --error 0.6% --chart chart");
+  const Outcome plan = run("plan s.toml --error 1.1% --chart chart");
   ASSERT_EQ(plan.code, 0) << plan.err;
   EXPECT_NE(plan.out.find("chart model step-0.3"), std::string::npos) << plan.out;
   EXPECT_NE(plan.out.find("the default model is taken"), std::string::npos) << plan.out;
   const std::string text = slurp(dir / "s-planned.toml");
   EXPECT_EQ(text.find("time_step_fs"), std::string::npos) << text;
-  EXPECT_NE(text.find("# plan: expect energy 0.005"), std::string::npos) << text;
+  EXPECT_NE(text.find("# plan: expect energy 0.01"), std::string::npos) << text;
 }
 
 TEST_F(Cli, ExportRefusesWhatLammpsLacks) {
