@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <vector>
 
 namespace ropewalk {
 namespace {
@@ -52,13 +53,16 @@ double damped_step_limit(double w2, double g) { return (std::sqrt(g * g + 4.0 * 
 
 using Matrix6 = Eigen::Matrix<std::complex<double>, 6, 6>;
 
+double largest_eigenvalue(const Matrix6& m) {
+  return Eigen::SelfAdjointEigenSolver<Matrix6>(m, Eigen::EigenvaluesOnly).eigenvalues()[5];
+}
+
 // K and C of one wave over the masses; deflections x, y, z, then rotations.
 struct Wave {
-  Matrix6 stiffness = Matrix6::Zero(), damping = Matrix6::Zero();
+  Matrix6 stiffness = Matrix6::Zero(), bond_damping = Matrix6::Zero(), contact_damping = Matrix6::Zero();
 
   double largest(double step) const {
-    const Matrix6 both = step * step * stiffness + 2 * step * damping;
-    return Eigen::SelfAdjointEigenSolver<Matrix6>(both, Eigen::EigenvaluesOnly).eigenvalues()[5];
+    return largest_eigenvalue(step * step * stiffness + 2 * step * (bond_damping + contact_damping));
   }
 };
 
@@ -88,7 +92,7 @@ struct Lattice {
     const double a = type.element_length, m = type.mass, inertia = type.inertia, c = 1 - std::cos(q);
     add_chain(2 * type.bond.stretch / (a * m) * c, 2 * type.bond.twist / (a * inertia) * c,
               chain_mode(type.bond, q, a, m, inertia), wave.stiffness);
-    add_chain(bond.rate * c, bond.rate * c, bond.mode(q, a, m, inertia), wave.damping);
+    add_chain(bond.rate * c, bond.rate * c, bond.mode(q, a, m, inertia), wave.bond_damping);
   }
   // The neighbours in three of the six directions; the others are their mirror images. An element is pressed along
   // its whole length: where neighbours are tilted against one another, their contact opens at one end and closes at
@@ -110,7 +114,7 @@ struct Lattice {
       for (int offset = -viscous_reach(); offset <= viscous_reach(); ++offset) {
         const Vector3 apart = spacing * to + offset * a * Vector3::UnitZ();
         slide(0.5 * apart, phase * std::exp(std::complex<double>(0, q * offset)),
-              viscosity.eta * viscosity.weight(apart.norm()), wave.damping);
+              viscosity.eta * viscosity.weight(apart.norm()), wave.contact_damping);
       }
     }
   }
@@ -134,24 +138,25 @@ struct Lattice {
     to += factor * rows.adjoint() * rows;
   }
 
-  // Calls f with every wave of a grid: half of the wave vectors along the tubes, and across them, where there are
-  // neighbours, a rhombus that is one cell of the reciprocal lattice.
-  template <class F>
-  void each_wave(const F& f) const {
+  // A grid of them: half of the wave vectors along the tubes, and across them, where there are neighbours, half of
+  // a rhombus that is one cell of the reciprocal lattice. The other halves are mirror images.
+  std::vector<Wave> waves() const {
     constexpr int along = 12, across = 12;
-    const int most = spacing > 0 && (stiffness > 0 || viscosity.eta > 0) ? across : 1;
+    const bool alone = !(spacing > 0 && (stiffness > 0 || viscosity.eta > 0));
     const double cell = spacing > 0 ? 2 * units::pi / spacing : 0;
-    for (int x = 0; x < most; ++x)
-      for (int y = 0; y < most; ++y) {
+    std::vector<Wave> all;
+    for (int x = 0; x <= (alone ? 0 : across / 2); ++x)
+      for (int y = 0; y < (alone ? 1 : across); ++y) {
         const double b1 = cell * x / across, b2 = cell * y / across;
         for (int n = 0; n <= along; ++n) {
           const double q = units::pi * n / along;
           Wave wave;
-          if (most > 1) add_contact(Vector3(b1, (2 * b2 - b1) / std::sqrt(3.0), 0), q, wave);
+          if (!alone) add_contact(Vector3(b1, (2 * b2 - b1) / std::sqrt(3.0), 0), q, wave);
           add_bonds(q, wave);
-          f(wave);
+          all.push_back(wave);
         }
       }
+    return all;
   }
 };
 
@@ -164,46 +169,40 @@ Lattice lattice_of(const Topology& topology, const Interaction& in, const TubeTy
 }
 
 // Below which no wave grows; `before` is known to be no less.
-double stable_step(const Lattice& lattice, double before) {
+double stable_step(const std::vector<Wave>& waves, double before) {
   double limit = before;
-  lattice.each_wave([&](const Wave& wave) {
-    if (wave.largest(limit) <= 4) return;
+  for (const Wave& wave : waves) {
+    if (wave.largest(limit) <= 4) continue;
     double below = 0, above = limit;
     while (above - below > 1e-6 * above) {
       const double middle = 0.5 * (below + above);
       (wave.largest(middle) <= 4 ? below : above) = middle;
     }
     limit = below;
-  });
+  }
   return limit;
-}
-
-double fastest_damping(const Lattice& lattice) {
-  double largest2 = 0;
-  lattice.each_wave([&](const Wave& wave) {
-    largest2 = std::max(largest2, Wave{Matrix6::Zero(), wave.damping}.largest(0.5));
-  });
-  return largest2;
 }
 
 }  // namespace
 
 TimeStepLimit time_step_limit(const Topology& topology, const Interaction& in, double spacing) {
   TimeStepLimit out;
+  const auto raise = [](double& value, double to) { value = std::max(value, to); };
   for (const TubeType& t : topology.types) {
-    const auto raise = [](double& value, double to) { value = std::max(value, to); };
     raise(out.chain_frequency, stiffest_chain_frequency(t.bond, t.element_length, t.mass, t.inertia));
     raise(out.sideways_frequency, stiffest_sideways_frequency(t.bond, t.element_length, t.mass, t.inertia));
   }
   out.limit = 2 / out.chain_frequency;
   for (const TubeType& t : topology.types) {
-    Lattice lattice = lattice_of(topology, in, t, spacing);
+    const Lattice lattice = lattice_of(topology, in, t, spacing);
     // A triangular lattice of springs k: largest w^2 = 6 k/m.
-    out.contact_frequency = std::max(out.contact_frequency, std::sqrt(6 * lattice.stiffness / t.mass));
-    out.limit = stable_step(lattice, out.limit);
-    out.damping_rate = std::max(out.damping_rate, fastest_damping(lattice));
-    lattice.bond.rate = 0;
-    out.contact_damping = std::max(out.contact_damping, fastest_damping(lattice));
+    raise(out.contact_frequency, std::sqrt(6 * lattice.stiffness / t.mass));
+    const std::vector<Wave> waves = lattice.waves();
+    out.limit = stable_step(waves, out.limit);
+    for (const Wave& wave : waves) {
+      raise(out.damping_rate, largest_eigenvalue(wave.bond_damping + wave.contact_damping));
+      raise(out.contact_damping, largest_eigenvalue(wave.contact_damping));
+    }
   }
   return out;
 }
