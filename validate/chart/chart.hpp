@@ -42,9 +42,9 @@ struct ChartModel {
   int nodes = 0;  // per element; 0: as line_nodes chooses
   bool all_nodes = false;
   Interaction::Precision precision = Interaction::Precision::mixed;
-  double cutoff = 0;     // nm; 0: the set's
-  double length = 1;     // of an element, in those of the default; rounded down to whole bonds
-  double time_step = 0;  // ps, of the bonds; 0: by the fraction
+  double cutoff = 0;         // nm; 0: the set's
+  double length = 1;         // of an element, in those of the default; rounded down to whole bonds
+  double time_step = 0;      // ps, of the bonds; 0: by the fraction
   double step_fraction = 0;  // of the stability limit; 0: what a scene takes by itself
   Stepping stepping;
   double mass_scale = 1;
