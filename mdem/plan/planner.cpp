@@ -327,9 +327,6 @@ Choice choose(const std::vector<Knob>& knobs, const std::map<std::string, double
 
 // --- the scene ---
 
-constexpr double longest_part =
-    0.9;  // of the step limit, whatever part of it the chart's default and this one's are
-
 class Writer {
  public:
   Writer(const Scene& scene, const SceneFeatures& features)
@@ -386,7 +383,8 @@ class Writer {
       Scene so_far = scene_of_text(text_, scene_.path);
       const Prepared p = prepare(so_far);
       const int every = so_far.run.stepping.contact_every;
-      const double most = longest_part * inner_step_limit(p.limit, every),
+      // Whatever part of the limit the chart's default and this one's are.
+      const double most = cold_step_fraction * inner_step_limit(p.limit, every),
                    chosen = std::min(step_ * p.time_step / every, most);
       set("run", "time_step_fs", fmt::format("{:.4g}", chosen / units::fs), step_why_);
     }

@@ -19,7 +19,6 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 using D = hn::CappedTag<double, DampedBlock::most>;
 using V = hn::Vec<D>;
-using M = hn::Mask<D>;
 
 struct Vec3 {
   V x, y, z;

@@ -178,9 +178,12 @@ void Simulation::drift(double dt) {
     move(state_, dt, i, end);
     changes_[static_cast<std::size_t>(i / block)] = list_.change(state_, i, end);
   }
-  // In their order, whatever the threads.
-  change_ = std::accumulate(changes_.begin(), changes_.end(), Change{}, both);
   bounded_ = bounded;
+}
+
+// By the changes of the last drift, added up in their order, whatever the threads.
+void Simulation::update_list() {
+  list_.update(topology_, state_, std::accumulate(changes_.begin(), changes_.end(), Change{}, both));
 }
 
 // The velocities of the last drift.
@@ -212,7 +215,7 @@ void Simulation::one_level(bool energies) {
   state_.time += dt;
   check_motion();
   const double t1 = omp_get_wtime();
-  list_.update(topology_, state_, change_);
+  update_list();
   const double t2 = omp_get_wtime();
   compute(energies);
   const double t3 = omp_get_wtime();
@@ -256,7 +259,7 @@ void Simulation::two_level(bool energies) {
   ++state_.step;
   check_motion();
   const double t1 = omp_get_wtime();
-  list_.update(topology_, state_, change_);
+  update_list();
   const double listed = omp_get_wtime() - t1;
   compute_contact_in_impulse(energies);
   add_levels();
@@ -363,7 +366,7 @@ bool Simulation::relax(double tolerance, long max_steps, const std::function<boo
     const double step = std::min(dt, fastest2 > 0 ? most_move / std::sqrt(fastest2) : dt);
     drift(step);
     ++state_.step;
-    list_.update(topology_, state_, change_);
+    update_list();
     compute();
     if (forces_.slipping_bond >= 0) check_forces(true);
   }

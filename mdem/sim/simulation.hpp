@@ -91,6 +91,7 @@ class Simulation {
   void kick_with_loads(const Forces& forces, double dt);
   double kick_tube(const Forces& forces, int tube, double dt);
   void drift(double dt);
+  void update_list();
   void compute(bool energies = true);
   void compute_bonds();
   void compute_contact(bool energies);
@@ -107,8 +108,7 @@ class Simulation {
   double time_step_ = 0;
   Stepping stepping_;
   NeighbourList list_;
-  Change change_;                // since the list was built, by the last drift
-  std::vector<Change> changes_;  // of its blocks
+  std::vector<Change> changes_;  // since the list was built, of the blocks of the last drift
   bool bounded_ = true;          // whether the steps of that drift were small
   ForceEngine engine_;
   Forces forces_;           // of all
