@@ -27,7 +27,7 @@ Timing timing(const Simulation& s, double wall, double processor) {
   const double runs = s.engine().line().list_seconds() + s.engine().paper().list_seconds();
   return {wall,
           processor,
-          t.frames,
+          t.axes,
           t.contact - runs,
           t.bonds,
           s.list_seconds() + runs,

@@ -11,15 +11,16 @@ namespace ropewalk {
 
 namespace {
 
-// frame_of() over plain numbers, which the compiler vectorises.
+// frame_of() over plain numbers, which the compiler vectorises; element `begin` becomes frame 0.
 ROPEWALK_VECTOR_CLONES
 void frames_of(const QuaternionArray& q, std::ptrdiff_t begin, std::ptrdiff_t end, FrameArray& out) {
-  const double *qw = q.w.data(), *qx = q.x.data(), *qy = q.y.data(), *qz = q.z.data();
+  const double *qw = q.w.data() + begin, *qx = q.x.data() + begin, *qy = q.y.data() + begin,
+               *qz = q.z.data() + begin;
   double *ax = out.e1.x.data(), *ay = out.e1.y.data(), *az = out.e1.z.data(), *bx = out.e2.x.data(),
          *by = out.e2.y.data(), *bz = out.e2.z.data(), *tx = out.t.x.data(), *ty = out.t.y.data(),
          *tz = out.t.z.data();
 #pragma GCC ivdep
-  for (std::ptrdiff_t i = begin; i < end; ++i) {
+  for (std::ptrdiff_t i = 0; i < end - begin; ++i) {
     const double w = qw[i], x = qx[i], y = qy[i], z = qz[i];
     ax[i] = 1 - 2 * (y * y + z * z), ay[i] = 2 * (x * y + w * z), az[i] = 2 * (x * z - w * y);
     bx[i] = 2 * (x * y - w * z), by[i] = 1 - 2 * (x * x + z * z), bz[i] = 2 * (y * z + w * x);
@@ -27,14 +28,27 @@ void frames_of(const QuaternionArray& q, std::ptrdiff_t begin, std::ptrdiff_t en
   }
 }
 
-// The bonds begin .. end - 1 of one tube. Returns their energies; `slips` becomes negative where a bond does.
+// axis_of() likewise, each at its own place.
+ROPEWALK_VECTOR_CLONES
+void axes_of(const QuaternionArray& q, std::ptrdiff_t begin, std::ptrdiff_t end, Vec3Array& out) {
+  const double *qw = q.w.data(), *qx = q.x.data(), *qy = q.y.data(), *qz = q.z.data();
+  double *tx = out.x.data(), *ty = out.y.data(), *tz = out.z.data();
+#pragma GCC ivdep
+  for (std::ptrdiff_t i = begin; i < end; ++i) {
+    const double w = qw[i], x = qx[i], y = qy[i], z = qz[i];
+    tx[i] = 2 * (x * z + w * y), ty[i] = 2 * (y * z - w * x), tz[i] = 1 - 2 * (x * x + y * y);
+  }
+}
+
+// The bonds of the tube that begins with element `begin`. Returns their energies; `slips` becomes negative where a
+// bond does.
 ROPEWALK_VECTOR_CLONES __attribute__((flatten)) BondEnergy<double> bond_forces(
     const TubeType& type, const Vec3Array& position, const FrameArray& frames, std::ptrdiff_t begin,
-    std::ptrdiff_t end, BondArray& out, double& slips) {
-  const double *x = position.x.data(), *y = position.y.data(), *z = position.z.data();
+    std::ptrdiff_t bonds, BondArray& out, double& slips) {
+  const double *x = position.x.data() + begin, *y = position.y.data() + begin, *z = position.z.data() + begin;
   const Vec3Array &e1 = frames.e1, &e2 = frames.e2, &t = frames.t;
-  const double *ax = e1.x.data(), *ay = e1.y.data(), *az = e1.z.data(), *bx = e2.x.data(), *by = e2.y.data(),
-               *bz = e2.z.data(), *tx = t.x.data(), *ty = t.y.data(), *tz = t.z.data();
+  const double *ax = e1.x.data(), *ay = e1.y.data(), *az = e1.z.data(), *bx = e2.x.data(),
+               *by = e2.y.data(), *bz = e2.z.data(), *tx = t.x.data(), *ty = t.y.data(), *tz = t.z.data();
   double *fx = out.force_j.x.data(), *fy = out.force_j.y.data(), *fz = out.force_j.z.data();
   double *ix = out.torque_i.x.data(), *iy = out.torque_i.y.data(), *iz = out.torque_i.z.data();
   double *jx = out.torque_j.x.data(), *jy = out.torque_j.y.data(), *jz = out.torque_j.z.data();
@@ -43,7 +57,7 @@ ROPEWALK_VECTOR_CLONES __attribute__((flatten)) BondEnergy<double> bond_forces(
   double stretch = 0, shear = 0, bend = 0, twist = 0, smallest = 1;
   // Not `omp simd`, whose reductions GCC 12 does not vectorise here; -ffast-math lets it reorder the sums.
 #pragma GCC ivdep
-  for (std::ptrdiff_t i = begin; i < end; ++i) {
+  for (std::ptrdiff_t i = 0; i < bonds; ++i) {
     const std::ptrdiff_t j = i + 1;
     const Frame<double, PlainVector> fi{{ax[i], ay[i], az[i]}, {bx[i], by[i], bz[i]}, {tx[i], ty[i], tz[i]}};
     const Frame<double, PlainVector> fj{{ax[j], ay[j], az[j]}, {bx[j], by[j], bz[j]}, {tx[j], ty[j], tz[j]}};
@@ -65,11 +79,11 @@ ROPEWALK_VECTOR_CLONES __attribute__((flatten)) BondEnergy<double> bond_forces(
 // Adds the damping of these bonds; returns its power.
 ROPEWALK_VECTOR_CLONES
 double bond_damping(const TubeType& type, const BondDamping& damping, const State& s, std::ptrdiff_t begin,
-                    std::ptrdiff_t end, BondArray& out) {
-  const double *x = s.position.x.data(), *y = s.position.y.data(), *z = s.position.z.data();
-  const double *vx = s.velocity.x.data(), *vy = s.velocity.y.data(), *vz = s.velocity.z.data();
-  const double *wx = s.angular_velocity.x.data(), *wy = s.angular_velocity.y.data(),
-               *wz = s.angular_velocity.z.data();
+                    std::ptrdiff_t bonds, BondArray& out) {
+  const auto from = [&](const std::vector<double>& v) { return v.data() + begin; };
+  const double *x = from(s.position.x), *y = from(s.position.y), *z = from(s.position.z);
+  const double *vx = from(s.velocity.x), *vy = from(s.velocity.y), *vz = from(s.velocity.z);
+  const double *wx = from(s.angular_velocity.x), *wy = from(s.angular_velocity.y), *wz = from(s.angular_velocity.z);
   double *fx = out.force_j.x.data(), *fy = out.force_j.y.data(), *fz = out.force_j.z.data();
   double *ix = out.torque_i.x.data(), *iy = out.torque_i.y.data(), *iz = out.torque_i.z.data();
   double *jx = out.torque_j.x.data(), *jy = out.torque_j.y.data(), *jz = out.torque_j.z.data();
@@ -77,7 +91,7 @@ double bond_damping(const TubeType& type, const BondDamping& damping, const Stat
   const BondDamping law = damping;
   const double mass = type.mass, inertia = type.inertia;
 #pragma GCC ivdep
-  for (std::ptrdiff_t i = begin; i < end; ++i) {
+  for (std::ptrdiff_t i = 0; i < bonds; ++i) {
     const std::ptrdiff_t j = i + 1;
     const PairDamping<PlainVector> d = law.force<PlainVector>(
         mass, inertia, PlainVector{x[j] - x[i], y[j] - y[i], z[j] - z[i]}, PlainVector{vx[i], vy[i], vz[i]},
@@ -90,46 +104,66 @@ double bond_damping(const TubeType& type, const BondDamping& damping, const Stat
   return power;
 }
 
-// Bond i acts on the elements i and i + 1.
+// What acts on the elements of a tube by its bonds: bond i on the elements i and i + 1.
 ROPEWALK_VECTOR_CLONES
-void add_bonds(const std::vector<double>& on_i, double sign_i, const std::vector<double>& on_j,
-               std::ptrdiff_t begin, std::ptrdiff_t end, std::vector<double>& out) {
+void collect_bonds(const std::vector<double>& on_i, double sign_i, const std::vector<double>& on_j,
+                   std::ptrdiff_t elements, double* to) {
   const double *a = on_i.data(), *b = on_j.data();
-  double* to = out.data();
-  if (begin + 1 >= end) return;
-  to[begin] += sign_i * a[begin];
+  if (elements < 2) {
+    std::fill_n(to, elements, 0.0);
+    return;
+  }
+  to[0] = sign_i * a[0];
 #pragma omp simd
-  for (std::ptrdiff_t i = begin + 1; i < end - 1; ++i) to[i] += sign_i * a[i] + b[i - 1];
-  to[end - 1] += b[end - 2];
+  for (std::ptrdiff_t i = 1; i < elements - 1; ++i) to[i] = sign_i * a[i] + b[i - 1];
+  to[elements - 1] = b[elements - 2];
+}
+
+// Sets forces and torques of one tube to those of its bonds.
+TubeSum compute_bonds(const Topology& topology, const Interaction& interaction, const State& state, int tube,
+                      Forces& out) {
+  thread_local TubeBonds work;
+  const std::ptrdiff_t begin = topology.tube_begin[tube], end = topology.tube_begin[tube + 1],
+                       elements = end - begin;
+  const TubeType& type = topology.type_of(tube);
+  work.resize(static_cast<std::size_t>(elements));
+  frames_of(state.orientation, begin, end, work.frames);
+  TubeSum sum;
+  double slips = 1;
+  BondArray& bonds = work.bonds;
+  sum.energy = bond_forces(type, state.position, work.frames, begin, elements - 1, bonds, slips);
+  for (std::ptrdiff_t i = 0; !(slips > 0) && i + 1 < elements && sum.slipping < 0; ++i) {
+    const Frame<double> fi = work.frames[static_cast<std::size_t>(i)],
+                        fj = work.frames[static_cast<std::size_t>(i + 1)];
+    if (!(fi.e1.dot(fj.e1) + fi.e2.dot(fj.e2) > 0)) sum.slipping = static_cast<int>(begin + i);
+  }
+  if (interaction.damping.bond.rate > 0)
+    sum.power = bond_damping(type, interaction.damping.bond, state, begin, elements - 1, bonds);
+  collect_bonds(bonds.force_j.x, -1, bonds.force_j.x, elements, out.force.x.data() + begin);
+  collect_bonds(bonds.force_j.y, -1, bonds.force_j.y, elements, out.force.y.data() + begin);
+  collect_bonds(bonds.force_j.z, -1, bonds.force_j.z, elements, out.force.z.data() + begin);
+  collect_bonds(bonds.torque_i.x, 1, bonds.torque_j.x, elements, out.torque.x.data() + begin);
+  collect_bonds(bonds.torque_i.y, 1, bonds.torque_j.y, elements, out.torque.y.data() + begin);
+  collect_bonds(bonds.torque_i.z, 1, bonds.torque_j.z, elements, out.torque.z.data() + begin);
+  return sum;
+}
+
+void clear(Forces& out, std::ptrdiff_t begin, std::ptrdiff_t end) {
+  for (Vec3Array* v : {&out.force, &out.torque})
+    for (std::vector<double>* c : {&v->x, &v->y, &v->z}) std::fill(c->begin() + begin, c->begin() + end, 0.0);
 }
 
 }  // namespace
 
-void ForceEngine::make_frames(const State& state) {
+void ForceEngine::make_axes(const State& state) {
   const auto n = static_cast<std::ptrdiff_t>(state.size());
   constexpr std::ptrdiff_t block = 512;
 #pragma omp parallel for schedule(static) if (state.size() > parallel_from)
-  for (std::ptrdiff_t i = 0; i < n; i += block) frames_of(state.orientation, i, std::min(i + block, n), frames_);
-}
-
-TubeSum ForceEngine::compute_bonds(const Topology& topology, const Interaction& interaction, const State& state,
-                                   int tube) {
-  const std::ptrdiff_t begin = topology.tube_begin[tube], end = topology.tube_begin[tube + 1];
-  const TubeType& type = topology.type_of(tube);
-  TubeSum sum;
-  double slips = 1;
-  sum.energy = bond_forces(type, state.position, frames_, begin, end - 1, bonds_, slips);
-  for (std::ptrdiff_t i = begin; !(slips > 0) && i + 1 < end && sum.slipping < 0; ++i) {
-    const Frame<double> fi = frames_[static_cast<std::size_t>(i)], fj = frames_[static_cast<std::size_t>(i + 1)];
-    if (!(fi.e1.dot(fj.e1) + fi.e2.dot(fj.e2) > 0)) sum.slipping = static_cast<int>(i);
-  }
-  if (interaction.damping.bond.rate > 0)
-    sum.power = bond_damping(type, interaction.damping.bond, state, begin, end - 1, bonds_);
-  return sum;
+  for (std::ptrdiff_t i = 0; i < n; i += block) axes_of(state.orientation, i, std::min(i + block, n), axis_);
 }
 
 std::size_t ForceEngine::bytes() const {
-  std::size_t total = 18 * frames_.t.size() * sizeof(double);
+  std::size_t total = 3 * axis_.size() * sizeof(double);
   for (const ContactBuffer& b : buffers_) total += 6 * b.fx.capacity() * sizeof(double);
   return total + line_.bytes() + paper_.bytes();
 }
@@ -138,14 +172,14 @@ void ForceEngine::compute_contact(const Topology& topology, const Interaction& i
                                   const NeighbourList& list, const State& state, bool energies) {
   if (!interaction.paper) {
     const auto place = [&](int tube) {
-      frames_of(state.orientation, topology.tube_begin[tube], topology.tube_begin[tube + 1], frames_);
+      axes_of(state.orientation, topology.tube_begin[tube], topology.tube_begin[tube + 1], axis_);
     };
-    return line_.compute(topology, interaction, list, state, frames_.t, energies, place);
+    return line_.compute(topology, interaction, list, state, axis_, energies, place);
   }
   buffers_.resize(list.chunks().size());
   // Always with energies: its loops are the compiler's, who orders their sums as it likes, and forces must be the
   // same bits whoever reads energies.
-  paper_.compute(topology, interaction, list, state, frames_.t, buffers_.data());
+  paper_.compute(topology, interaction, list, state, axis_, buffers_.data());
 }
 
 // Of all chunks in their fixed order, on the elements from .. to.
@@ -170,34 +204,26 @@ void ForceEngine::compute(const Topology& topology, const Interaction& interacti
                           const State& state, Forces& out, bool energies, Parts parts) {
   const double t0 = omp_get_wtime();
   const bool contact = interaction.has_contact() && parts != Parts::bonds;
-  frames_.resize(state.size());
-  if (!contact || interaction.paper) make_frames(state);  // else with the nodes
+  if (contact) axis_.resize(state.size());
+  if (contact && interaction.paper) make_axes(state);  // else with the nodes
   const double t1 = omp_get_wtime();
 
   const bool bonds = parts != Parts::contact;
   if (contact) compute_contact(topology, interaction, list, state, energies);
   const double t2 = omp_get_wtime();
 
-  // Tube by tube: collect the contact buffers in their fixed order, then add the bonds of this tube.
+  // Tube by tube: its bonds, and what the contact buffers hold for it, in their fixed order.
   const int tubes = topology.tubes();
   std::vector<TubeSum> sums(static_cast<std::size_t>(tubes));
-  for (Vec3Array* v : {&bonds_.force_j, &bonds_.torque_i, &bonds_.torque_j}) v->resize(state.size());
 #pragma omp parallel for schedule(static) if (state.size() > parallel_from)
   for (int t = 0; t < tubes; ++t) {
     const int from = topology.tube_begin[t], to = topology.tube_begin[t + 1];
-    const auto clear = [&](std::vector<double>& v) { std::fill(v.begin() + from, v.begin() + to, 0.0); };
-    clear(out.force.x), clear(out.force.y), clear(out.force.z);
-    clear(out.torque.x), clear(out.torque.y), clear(out.torque.z);
+    if (bonds)
+      sums[static_cast<std::size_t>(t)] = compute_bonds(topology, interaction, state, t, out);
+    else
+      clear(out, from, to);
     if (contact && interaction.paper) add_buffers(list, from, to, out);
-    if (contact && !interaction.paper) line_.add_to_tube(topology, frames_.t, t, out.force, out.torque);
-    if (!bonds) continue;
-    sums[static_cast<std::size_t>(t)] = compute_bonds(topology, interaction, state, t);
-    add_bonds(bonds_.force_j.x, -1, bonds_.force_j.x, from, to, out.force.x);
-    add_bonds(bonds_.force_j.y, -1, bonds_.force_j.y, from, to, out.force.y);
-    add_bonds(bonds_.force_j.z, -1, bonds_.force_j.z, from, to, out.force.z);
-    add_bonds(bonds_.torque_i.x, 1, bonds_.torque_j.x, from, to, out.torque.x);
-    add_bonds(bonds_.torque_i.y, 1, bonds_.torque_j.y, from, to, out.torque.y);
-    add_bonds(bonds_.torque_i.z, 1, bonds_.torque_j.z, from, to, out.torque.z);
+    if (contact && !interaction.paper) line_.add_to_tube(topology, axis_, t, out.force, out.torque);
   }
 
   out.energy = Energies{};
@@ -221,7 +247,7 @@ void ForceEngine::compute(const Topology& topology, const Interaction& interacti
       out.damping_power += b.power;
     }
   const double t3 = omp_get_wtime();
-  times_.frames += t1 - t0;
+  times_.axes += t1 - t0;
   times_.contact += t2 - t1;
   times_.bonds += t3 - t2;
 }

@@ -23,7 +23,7 @@ struct Forces {
   explicit Forces(std::size_t n = 0) : force(n), torque(n) {}
 };
 
-// Body frames of all elements.
+// Body frames.
 struct FrameArray {
   Vec3Array e1, e2, t;
 
@@ -38,6 +38,24 @@ struct FrameArray {
 // Of the bond from element i to i + 1, at i.
 struct BondArray {
   Vec3Array force_j, torque_i, torque_j;
+
+  void resize(std::size_t n) {
+    force_j.resize(n);
+    torque_i.resize(n);
+    torque_j.resize(n);
+  }
+};
+
+// The frames and bonds of one tube, its first element at 0: they stay in the first cache from where they are made
+// to where they are used.
+struct TubeBonds {
+  FrameArray frames;
+  BondArray bonds;
+
+  void resize(std::size_t elements) {
+    frames.resize(elements);
+    bonds.resize(elements);
+  }
 };
 
 // What the bonds of one tube do, besides their forces.
@@ -58,9 +76,9 @@ class ForceEngine {
                const State& state, Forces& out, bool energies = true, Parts parts = Parts::all);
 
   // Wall time spent so far in each part, s.
-  // Frames are made within the contact where that is by the line law.
+  // Axes are made within the contact where that is by the line law.
   struct Times {
-    double frames = 0, contact = 0, bonds = 0;
+    double axes = 0, contact = 0, bonds = 0;
   };
   const Times& times() const { return times_; }
   const LineEngine& line() const { return line_; }
@@ -68,14 +86,12 @@ class ForceEngine {
   std::size_t bytes() const;
 
  private:
-  void make_frames(const State& state);
-  TubeSum compute_bonds(const Topology& topology, const Interaction& interaction, const State& state, int tube);
+  void make_axes(const State& state);
   void compute_contact(const Topology& topology, const Interaction& interaction, const NeighbourList& list,
                        const State& state, bool energies);
   void add_buffers(const NeighbourList& list, int from, int to, Forces& out) const;
 
-  FrameArray frames_;
-  BondArray bonds_;
+  Vec3Array axis_;  // of all elements
   std::vector<ContactBuffer> buffers_;  // of each chunk
   LineEngine line_;
   PaperEngine paper_;

@@ -243,7 +243,7 @@ void Simulation::two_level(bool energies) {
   const double dt = time_step_, inner = inner_step();
   const auto in_engine = [&] {
     const auto& t = engine_.times();
-    return t.frames + t.contact + t.bonds;
+    return t.axes + t.contact + t.bonds;
   };
   const double t0 = omp_get_wtime(), before = in_engine();
   kick(contact_, 0.5 * dt);

@@ -18,23 +18,21 @@ void Frames(benchmark::State& bench) {
 }
 BENCHMARK(Frames)->Arg(7)->Arg(91);
 
-// Bonds of all tubes, into arrays of their own, and then onto the elements.
+// Bonds of all tubes, with the frames of the first one: the tubes of a rope are alike.
 struct Bonds {
   const Rope rope;
-  FrameArray frames;
-  BondArray bonds;
-  Vec3Array force, torque;
+  TubeBonds work;
+  Forces out;
 
-  explicit Bonds(int tubes) : rope(tubes, 50, Law::line, Interaction::Precision::mixed, 20) {
-    frames.resize(rope.state.size());
-    frames_of(rope.state.orientation, 0, static_cast<std::ptrdiff_t>(rope.state.size()), frames);
-    for (Vec3Array* v : {&bonds.force_j, &bonds.torque_i, &bonds.torque_j, &force, &torque})
-      v->resize(rope.state.size());
+  explicit Bonds(int tubes)
+      : rope(tubes, 50, Law::line, Interaction::Precision::mixed, 20), out(rope.state.size()) {
+    work.resize(static_cast<std::size_t>(rope.topology.length_of(0)));
+    frames_of(rope.state.orientation, 0, rope.topology.length_of(0), work.frames);
   }
   template <class F>
   void each_tube(F f) const {
     const Topology& t = rope.topology;
-    for (int k = 0; k < t.tubes(); ++k) f(t.type_of(k), t.tube_begin[k], t.tube_begin[k + 1]);
+    for (int k = 0; k < t.tubes(); ++k) f(t.type_of(k), t.tube_begin[k], t.length_of(k) - 1);
   }
 };
 
@@ -42,8 +40,9 @@ void BondForces(benchmark::State& bench) {
   Bonds b(static_cast<int>(bench.range(0)));
   double slips = 1;
   for (auto _ : bench)
-    b.each_tube([&](const TubeType& type, std::ptrdiff_t begin, std::ptrdiff_t end) {
-      benchmark::DoNotOptimize(bond_forces(type, b.rope.state.position, b.frames, begin, end - 1, b.bonds, slips));
+    b.each_tube([&](const TubeType& type, std::ptrdiff_t begin, std::ptrdiff_t bonds) {
+      benchmark::DoNotOptimize(
+          bond_forces(type, b.rope.state.position, b.work.frames, begin, bonds, b.work.bonds, slips));
     });
   set_ns(bench, "ns/element", b.rope.elements());
 }
@@ -52,29 +51,25 @@ BENCHMARK(BondForces)->Arg(7)->Arg(91);
 void BondDampingForces(benchmark::State& bench) {
   Bonds b(static_cast<int>(bench.range(0)));
   for (auto _ : bench)
-    b.each_tube([&](const TubeType& type, std::ptrdiff_t begin, std::ptrdiff_t end) {
-      benchmark::DoNotOptimize(bond_damping(type, b.rope.in.damping.bond, b.rope.state, begin, end - 1, b.bonds));
+    b.each_tube([&](const TubeType& type, std::ptrdiff_t begin, std::ptrdiff_t bonds) {
+      benchmark::DoNotOptimize(
+          bond_damping(type, b.rope.in.damping.bond, b.rope.state, begin, bonds, b.work.bonds));
     });
   set_ns(bench, "ns/element", b.rope.elements());
 }
 BENCHMARK(BondDampingForces)->Arg(7)->Arg(91);
 
-void BondSums(benchmark::State& bench) {
+// All that bonds take: frames, forces, damping and sums.
+void AllOfBonds(benchmark::State& bench) {
   Bonds b(static_cast<int>(bench.range(0)));
   for (auto _ : bench) {
-    b.each_tube([&](const TubeType&, std::ptrdiff_t from, std::ptrdiff_t to) {
-      add_bonds(b.bonds.force_j.x, -1, b.bonds.force_j.x, from, to, b.force.x);
-      add_bonds(b.bonds.force_j.y, -1, b.bonds.force_j.y, from, to, b.force.y);
-      add_bonds(b.bonds.force_j.z, -1, b.bonds.force_j.z, from, to, b.force.z);
-      add_bonds(b.bonds.torque_i.x, 1, b.bonds.torque_j.x, from, to, b.torque.x);
-      add_bonds(b.bonds.torque_i.y, 1, b.bonds.torque_j.y, from, to, b.torque.y);
-      add_bonds(b.bonds.torque_i.z, 1, b.bonds.torque_j.z, from, to, b.torque.z);
-    });
+    for (int k = 0; k < b.rope.topology.tubes(); ++k)
+      benchmark::DoNotOptimize(compute_bonds(b.rope.topology, b.rope.in, b.rope.state, k, b.out));
     benchmark::ClobberMemory();
   }
   set_ns(bench, "ns/element", b.rope.elements());
 }
-BENCHMARK(BondSums)->Arg(7)->Arg(91);
+BENCHMARK(AllOfBonds)->Arg(7)->Arg(91);
 
 }  // namespace
 }  // namespace ropewalk::bench
