@@ -1,6 +1,8 @@
 // ropewalk: the front door. Reads the command line, calls the verb, turns errors into one line and an exit
 // code: 0 done, 2 wrong input, 3 numerical failure, 4 a relaxation that did not come to rest, 5 stopped at a limit,
 // 128 + signal when interrupted.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -11,6 +13,7 @@
 #include "commands/siblings.hpp"
 #include "model/error.hpp"
 #include "scene/scene_toml.hpp"
+#include "sim/line_engine.hpp"
 #include "version.hpp"
 
 namespace {
@@ -173,6 +176,10 @@ void add_bench(CLI::App& app, Verbs& v) {
   c->add_option("--threads", v.bench.threads, "Threads; 1,2: both, one after the other [default: 1]")
       ->delimiter(',')
       ->check(thread_range());
+  c->add_option("--instructions", v.bench.instructions,
+                fmt::format("Instruction set of the contact: {} [default: {}]", fmt::join(instruction_sets(), ", "),
+                            instruction_sets().front()))
+      ->check(CLI::IsMember(instruction_sets()));
   c->add_flag("--json", v.bench.json, "JSON");
   c->callback([&v] { v.code = bench_command(v.bench); });
 }

@@ -168,6 +168,7 @@ int bench_command(const BenchArguments& a) {
     throw InputError({"", 0, "scene"}, "is missing", "give a file, or see `ropewalk bench --list`");
   Scene scene = bench_scene(a.scene, a.law);
   const Prepared prepared = prepare(scene);
+  use_instructions(a.instructions);
   nlohmann::ordered_json all = nlohmann::ordered_json::array();
   for (const int threads : a.threads) {
     const Cost cost = measure(scene, prepared, a.steps, threads);

@@ -66,8 +66,9 @@ struct EnergyArguments {
 int energy_command(const EnergyArguments& arguments);
 
 struct BenchArguments {
-  std::string scene;  // a file, or a name of --list
-  std::string law;    // of a named scene; empty: line
+  std::string scene;         // a file, or a name of --list
+  std::string law;           // of a named scene; empty: line
+  std::string instructions;  // for the contact; empty: the machine's best
   long steps = 200;
   std::vector<int> threads = {1};  // measured one after another
   bool list = false;

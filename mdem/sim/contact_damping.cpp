@@ -77,34 +77,40 @@ HWY_INLINE void add_to(const Vec3& v, std::ptrdiff_t at, std::vector<double>& x,
   add(x, v.x), add(y, v.y), add(z, v.z);
 }
 
-HWY_INLINE V block_damping(const ContactViscosity& viscosity, const State& s, const DampedBlock& b, int lane,
-                           int own_shift, ContactBuffer& out) {
+// The blocks first .. last - 1, which are of the same elements i. Offset by offset over all of them: at the next
+// offset of one block the forces are added one place further on, and a load would wait for the last stores if no
+// other block came between.
+HWY_INLINE V group_damping(const ContactViscosity& viscosity, const State& s, const DampedBlock* first,
+                           const DampedBlock* last, int lane, int own_shift, ContactBuffer& out) {
   const D d;
   const V half = hn::Set(d, 0.5), zero = hn::Zero(d);
-  const int lanes = std::min(static_cast<int>(hn::Lanes(d)), b.lanes - lane);
-  const Motion i = load(s, b.i + lane, 0, lanes);
+  const int own = first->i + lane, lanes = std::min(static_cast<int>(hn::Lanes(d)), first->lanes - lane);
+  const Motion i = load(s, own, 0, lanes);
   Vec3 force{zero, zero, zero}, torque{zero, zero, zero};
   V power = zero;
-  for (int c = 0; c < b.offsets; ++c) {
-    const int at = b.j + lane + c;
-    const int first = std::max(0, b.partners.begin - at), last = std::min(lanes, b.partners.end - at);
-    if (first >= last) continue;
-    const Motion j = load(s, at, first, last);
-    const Vec3 apart = j.place - i.place;
-    const Vec3 arm = half * apart;
-    const Vec3 relative = j.velocity - i.velocity - cross(i.spin + j.spin, arm);
-    const V k = hn::IfThenElseZero(some_lanes(d, first, last), strength(viscosity, apart));
-    const Vec3 f = k * relative, t = cross(f, arm);
-    power = hn::Add(power, dot(f, relative));
-    force = force - f;
-    torque = torque + t;
-    const std::ptrdiff_t entry = at + b.partners.shift;
-    add_to(f, entry, out.fx, out.fy, out.fz);
-    add_to(t, entry, out.tx, out.ty, out.tz);
-  }
-  const std::ptrdiff_t own = b.i + lane + own_shift;
-  add_to(force, own, out.fx, out.fy, out.fz);
-  add_to(torque, own, out.tx, out.ty, out.tz);
+  int offsets = 0;
+  for (const DampedBlock* b = first; b != last; ++b) offsets = std::max<int>(offsets, b->offsets);
+  for (int c = 0; c < offsets; ++c)
+    for (const DampedBlock* b = first; b != last; ++b) {
+      if (c >= b->offsets) continue;
+      const int at = b->j + lane + c;
+      const int begin = std::max(0, b->partners.begin - at), end = std::min(lanes, b->partners.end - at);
+      if (begin >= end) continue;
+      const Motion j = load(s, at, begin, end);
+      const Vec3 apart = j.place - i.place;
+      const Vec3 arm = half * apart;
+      const Vec3 relative = j.velocity - i.velocity - cross(i.spin + j.spin, arm);
+      const V k = hn::IfThenElseZero(some_lanes(d, begin, end), strength(viscosity, apart));
+      const Vec3 f = k * relative, t = cross(f, arm);
+      power = hn::Add(power, dot(f, relative));
+      force = force - f;
+      torque = torque + t;
+      const std::ptrdiff_t entry = at + b->partners.shift;
+      add_to(f, entry, out.fx, out.fy, out.fz);
+      add_to(t, entry, out.tx, out.ty, out.tz);
+    }
+  add_to(force, own + own_shift, out.fx, out.fy, out.fz);
+  add_to(torque, own + own_shift, out.tx, out.ty, out.tz);
   return power;
 }
 
@@ -114,9 +120,12 @@ void Blocks(const ContactViscosity& viscosity, const State& state, const std::ve
             int own_shift, ContactBuffer& out) {
   const damping::D d;
   auto power = hn::Zero(d);
-  for (const DampedBlock& b : blocks)
-    for (int lane = 0; lane < b.lanes; lane += static_cast<int>(hn::Lanes(d)))
-      power = hn::Add(power, damping::block_damping(viscosity, state, b, lane, own_shift, out));
+  const DampedBlock* const all = blocks.data() + blocks.size();
+  for (const DampedBlock *first = blocks.data(), *last = first; first != all; first = last) {
+    while (last != all && last->i == first->i) ++last;
+    for (int lane = 0; lane < first->lanes; lane += static_cast<int>(hn::Lanes(d)))
+      power = hn::Add(power, damping::group_damping(viscosity, state, first, last, lane, own_shift, out));
+  }
   out.power += hn::GetLane(hn::SumOfLanes(d, power));
 }
 

@@ -38,8 +38,14 @@ struct Lanes<double> {
 template <class D, class I, class T, int segments>
 HWY_INLINE hn::Vec<D> look_up(D d, const T (&row)[segments], I index) {
 #if HWY_TARGET <= HWY_AVX3
-  if constexpr (sizeof(T) == 4 && segments == 32)
-    return hn::Vec<D>{_mm512_permutex2var_ps(hn::Load(d, row).raw, index.raw, hn::Load(d, row + 16).raw)};
+  if constexpr (sizeof(T) == 4 && segments == 16)
+    return hn::Vec<D>{_mm512_permutexvar_ps(index.raw, hn::Load(d, row).raw)};
+#elif HWY_TARGET == HWY_AVX2
+  if constexpr (sizeof(T) == 4 && segments == 16) {
+    const __m256 low = _mm256_permutevar8x32_ps(hn::Load(d, row).raw, index.raw),
+                 high = _mm256_permutevar8x32_ps(hn::Load(d, row + 8).raw, index.raw);
+    return hn::Vec<D>{_mm256_blendv_ps(low, high, _mm256_castsi256_ps(hn::ShiftLeft<28>(index).raw))};
+  }
 #endif
   const hn::RebindToSigned<D> di;
   return hn::GatherIndex(d, row, hn::And(index, hn::Set(di, segments - 1)));

@@ -47,8 +47,8 @@ ROPEWALK_VECTOR_CLONES __attribute__((flatten)) BondEnergy<double> bond_forces(
     std::ptrdiff_t bonds, BondArray& out, double& slips) {
   const double *x = position.x.data() + begin, *y = position.y.data() + begin, *z = position.z.data() + begin;
   const Vec3Array &e1 = frames.e1, &e2 = frames.e2, &t = frames.t;
-  const double *ax = e1.x.data(), *ay = e1.y.data(), *az = e1.z.data(), *bx = e2.x.data(),
-               *by = e2.y.data(), *bz = e2.z.data(), *tx = t.x.data(), *ty = t.y.data(), *tz = t.z.data();
+  const double *ax = e1.x.data(), *ay = e1.y.data(), *az = e1.z.data(), *bx = e2.x.data(), *by = e2.y.data(),
+               *bz = e2.z.data(), *tx = t.x.data(), *ty = t.y.data(), *tz = t.z.data();
   double *fx = out.force_j.x.data(), *fy = out.force_j.y.data(), *fz = out.force_j.z.data();
   double *ix = out.torque_i.x.data(), *iy = out.torque_i.y.data(), *iz = out.torque_i.z.data();
   double *jx = out.torque_j.x.data(), *jy = out.torque_j.y.data(), *jz = out.torque_j.z.data();

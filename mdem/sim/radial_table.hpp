@@ -37,7 +37,8 @@ struct RadialTable {
   using Value = T;
   static constexpr int segments = segments_, degree = degree_;
   static constexpr int octaves = 4, per_octave = segments / octaves;
-  static constexpr int mantissa_left = FloatBits<T>::mantissa - (per_octave == 8    ? 3
+  static constexpr int mantissa_left = FloatBits<T>::mantissa - (per_octave == 4    ? 2
+                                                                 : per_octave == 8  ? 3
                                                                  : per_octave == 16 ? 4
                                                                  : per_octave == 32 ? 5
                                                                                     : -1);
@@ -56,7 +57,7 @@ struct RadialTable {
 };
 
 // Pair displacements in single precision, and all in double.
-using MixedTable = RadialTable<float, 32, 5>;
+using MixedTable = RadialTable<float, 16, 7>;
 using FullTable = RadialTable<double, 128, 7>;
 
 // --- Definitions ------------------------------------------------------------------------------------
