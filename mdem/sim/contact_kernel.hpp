@@ -1,6 +1,7 @@
 // The hot loops over pairs of elements: one chunk of the neighbour list at a time, into a buffer of its own.
 #pragma once
 
+#include <cstring>
 #include <vector>
 
 #include "sim/interaction.hpp"
@@ -10,6 +11,13 @@
 
 namespace ropewalk {
 
+// As v.assign(n, 0), at the speed of the memory: for the library's loop any compiler settles for two at a time.
+template <class T>
+void set_zero(std::vector<T>& v, std::size_t n) {
+  v.resize(n);
+  std::memset(v.data(), 0, n * sizeof(T));
+}
+
 // Force (eV/nm) and torque (eV) on the elements touched_begin .. touched_end of a chunk.
 struct ContactBuffer {
   std::vector<double> fx, fy, fz, tx, ty, tz;
@@ -18,7 +26,7 @@ struct ContactBuffer {
   static constexpr std::size_t room = 8;  // behind the elements, for vectors that are not full
 
   void clear(std::size_t elements) {
-    for (auto* v : {&fx, &fy, &fz, &tx, &ty, &tz}) v->assign(elements + room, 0.0);
+    for (auto* v : {&fx, &fy, &fz, &tx, &ty, &tz}) set_zero(*v, elements + room);
     energy = power = 0;
   }
 };

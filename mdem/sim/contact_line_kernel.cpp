@@ -98,25 +98,24 @@ HWY_INLINE Sums<D, K> no_sums(D d) {
   return s;
 }
 
-// The nodes begin .. begin + count of a row against K nodes of one element; `at` is the place of node `begin` in
-// the buffers of forces.
+// The nodes of a row against K nodes of one element.
 template <bool energies, int K, class Table, class C>
-HWY_INLINE void row(const Table& t, const LineNodes<C>& nodes, NodeForces<typename Table::Value>& out, int begin,
-                    int count, int at, const C (*from)[3], typename Table::Value factor,
-                    Sums<typename Lanes<typename Table::Value>::D, K>& sums) {
+HWY_INLINE void meet_row(const Table& t, const LineNodes<C>& nodes, NodeForces<typename Table::Value>& out,
+                         const NodeRow& row, const C (*from)[3], typename Table::Value factor,
+                         Sums<typename Lanes<typename Table::Value>::D, K>& sums) {
   using T = typename Table::Value;
   using L = Lanes<T>;
   const typename L::D d;
   const int lanes = static_cast<int>(hn::Lanes(d));
   const auto kf = hn::Set(d, t.force * factor);
   auto energy = hn::Zero(d);
-  for (int m = 0; m < count; m += lanes) {
-    T *ox = out.x.data() + (at + m), *oy = out.y.data() + (at + m), *oz = out.z.data() + (at + m);
-    auto gx = hn::LoadU(d, ox), gy = hn::LoadU(d, oy), gz = hn::LoadU(d, oz);
-    const auto wanted = hn::FirstN(d, static_cast<std::size_t>(count - m));
-    const auto x0 = L::difference(nodes.x.data() + (begin + m), from[0][0]);
-    const auto y0 = L::difference(nodes.y.data() + (begin + m), from[0][1]);
-    const auto z0 = L::difference(nodes.z.data() + (begin + m), from[0][2]);
+  const C *x = nodes.x.data() + row.begin, *y = nodes.y.data() + row.begin, *z = nodes.z.data() + row.begin;
+  T *ox = out.x.data() + row.at, *oy = out.y.data() + row.at, *oz = out.z.data() + row.at;
+  for (int m = 0; m < row.count; m += lanes) {
+    auto gx = hn::LoadU(d, ox + m), gy = hn::LoadU(d, oy + m), gz = hn::LoadU(d, oz + m);
+    const auto wanted = hn::FirstN(d, static_cast<std::size_t>(row.count - m));
+    const auto x0 = L::difference(x + m, from[0][0]), y0 = L::difference(y + m, from[0][1]),
+               z0 = L::difference(z + m, from[0][2]);
     for (int k = 0; k < K; ++k) {
       // The nodes of one element are so close that their difference is exact in T.
       const auto apart = [&](int a) { return hn::Set(d, static_cast<T>(from[k][a] - from[0][a])); };
@@ -134,9 +133,9 @@ HWY_INLINE void row(const Table& t, const LineNodes<C>& nodes, NodeForces<typena
       sums.y[k] = hn::NegMulAdd(f, dy, sums.y[k]);
       sums.z[k] = hn::NegMulAdd(f, dz, sums.z[k]);
     }
-    hn::StoreU(gx, d, ox);
-    hn::StoreU(gy, d, oy);
-    hn::StoreU(gz, d, oz);
+    hn::StoreU(gx, d, ox + m);
+    hn::StoreU(gy, d, oy + m);
+    hn::StoreU(gz, d, oz + m);
   }
   if constexpr (energies) sums.energy = hn::MulAdd(energy, hn::Set(d, factor), sums.energy);
 }
@@ -207,6 +206,7 @@ struct Element {
   std::size_t pair(int type_j) const { return row_of_types + static_cast<std::size_t>(type_j); }
   const LineContact& law(int type_j) const { return in.interaction->line[pair(type_j)]; }
   const Table& table(int type_j) const { return in.tables[pair(type_j)]; }
+  Rows rows_of(int t) const { return in.rows[t]; }
   const TouchedTube& touched(const LineRun& run) const {
     return chunk.touched[static_cast<std::size_t>(run.touched)];
   }
@@ -261,14 +261,6 @@ struct Nodes {
       for (int a = 0; a < 3; ++a) at[m][a] = e.in.nodes[0].coordinate(e.x[a] + s[m] * e.n[a]);
     }
   }
-  template <bool energies>
-  HWY_INLINE void meet(E& e, const LineRun& run, Rows kind, double weight) {
-    const int which = static_cast<int>(kind);
-    const TouchedTube::Row& of_tube = e.touched(run).row[which];
-    const int begin = of_tube.origin + run.element_begin * of_tube.per_element + run.nodes[which].from;
-    row<energies, K>(e.table(run.type), e.in.nodes[which], e.work.forces[which], begin, run.nodes[which].count,
-                     begin + of_tube.shift, at, static_cast<typename E::Real>(weight), sums);
-  }
   HWY_INLINE void collect(E& e) const {
     for (int k = 0; k < K; ++k) {
       const auto arm = hn::Set(D(), static_cast<typename E::Real>(s[k]));
@@ -283,27 +275,30 @@ struct Nodes {
   }
 };
 
-// K nodes of sum t on an element, from node k, with all runs that take it.
+// K nodes of sum t on an element, from node k, with all rows that it meets.
 template <bool energies, int K, class E>
-HWY_INLINE void meet_runs(E& e, int t, int k, const std::vector<const LineRun*>& runs) {
-  const Rows kind = e.sums(runs[0]->type).sums[t].rows;
-  Nodes<E, K> nodes(e, e.sums(runs[0]->type).sums[t].places.data() + k);
-  for (const LineRun* run : runs) {
-    e.work.forces[static_cast<int>(kind)].use(e.touched(*run), kind, run->touched);
-    nodes.template meet<energies>(e, *run, kind, e.sums(run->type).sums[t].weight);
+HWY_INLINE void meet_rows(E& e, int t, int k) {
+  const MetRows& met = e.work.met[t];
+  const Rows kind = e.rows_of(t);
+  const auto& placed = e.in.nodes[static_cast<int>(kind)];
+  auto& forces = e.work.forces[static_cast<int>(kind)];
+  Nodes<E, K> nodes(e, e.sums(met.begin()->type).sums[t].places.data() + k);
+  for (const NodeRow& row : met) {
+    forces.use(e.chunk, kind, row.touched);
+    meet_row<energies, K>(e.table(row.type), placed, forces, row, nodes.at,
+                          static_cast<typename E::Real>(e.sums(row.type).sums[t].weight), nodes.sums);
   }
   nodes.collect(e);
 }
 
-// The runs that take sum t throughout. On its own: within the loop over the elements the compiler keeps more in
-// registers than there are.
+// The rows of sum t. On its own: within the loop over the elements the compiler keeps more in registers than there
+// are.
 template <bool energies, class E>
 HWY_NOINLINE void sum_rows(E& e, int t) {
-  const std::vector<const LineRun*>& runs = e.work.runs[t];
-  const int on_i = static_cast<int>(e.sums(runs[0]->type).sums[t].places.size());
+  const int on_i = static_cast<int>(e.sums(e.work.met[t].begin()->type).sums[t].places.size());
   int k = 0;
-  for (; k + 2 <= on_i; k += 2) meet_runs<energies, 2>(e, t, k, runs);
-  for (; k < on_i; ++k) meet_runs<energies, 1>(e, t, k, runs);
+  for (; k + 2 <= on_i; k += 2) meet_rows<energies, 2>(e, t, k);
+  for (; k < on_i; ++k) meet_rows<energies, 1>(e, t, k);
 }
 
 // Another element, from the one that the loop stands at, and what acts on it.
@@ -404,14 +399,12 @@ HWY_NOINLINE void pair_run(E& e, const LineRun& run) {
   }
 }
 
-// The elements m .. end of a run, for rows.
-HWY_INLINE LineRun part_of(const LineRun& run, Rows kind, int each, int m, int end) {
-  LineRun part = run;
-  LineRun::Nodes& nodes = part.nodes[static_cast<int>(kind)];
-  const int to = std::min(nodes.from + nodes.count, end * each);
-  nodes.from = static_cast<short>(std::max<int>(nodes.from, m * each));
-  nodes.count = static_cast<short>(std::max(to - nodes.from, 0));
-  return part;
+// The elements m .. end of a run, with `each` nodes, as a row.
+HWY_INLINE NodeRow row_of(const LineRun& run, Rows kind, int each, int m, int end) {
+  const LineRun::Nodes& nodes = run.of(kind);
+  const int from = std::max<int>(nodes.from, m * each), to = std::min(nodes.from + nodes.count, end * each),
+            first = from - nodes.from;
+  return {nodes.begin + first, nodes.at + first, static_cast<short>(std::max(to - from, 0)), run.type, run.touched};
 }
 
 // A run whose angles are such that one sum goes over into the next: rows of those elements that take one sum, and
@@ -422,11 +415,8 @@ HWY_NOINLINE void split_run(E& e, const LineRun& run) {
   int began = 0, of = -1;  // the row that is being made, and its sum
   const auto finish = [&](int end) {
     if (of < 0) return;
-    const Rows kind = e.sums(run.type).sums[of].rows;
-    const LineRun part = part_of(run, kind, law.sum_nodes_j(of), began, end);
-    if (part.of(kind).count == 0) return;
-    e.work.parts.push_back(part);
-    e.work.runs[of].push_back(&e.work.parts.back());
+    const NodeRow part = row_of(run, e.rows_of(of), law.sum_nodes_j(of), began, end);
+    if (part.count > 0) e.work.met[of].add(part);
   };
   for (int m = 0; m < run.elements; ++m) {
     Partner<E> other(e, run.element_begin + m);
@@ -444,9 +434,9 @@ HWY_NOINLINE void split_run(E& e, const LineRun& run) {
 // run_sum(); of most runs it is known since the list was built that all elements are nearly parallel.
 template <class E>
 HWY_INLINE RunSum sum_of(const E& e, const LineRun& run) {
-  const LineContact& law = e.law(run.type);
   if (HWY_LIKELY(e.in.turned < static_cast<double>(run.even)))
-    return {fades(law.sparse, 0, e.ends, run) ? RunSum::pairs : RunSum::rows, 0, 0};
+    return {run.fading ? RunSum::pairs : RunSum::rows, 0, 0};
+  const LineContact& law = e.law(run.type);
   const bool has_row = e.touched(run).row[0].per_element > 0;
   const hn::CappedTag<double, 8> d;
   const Vec3Array& axis = *e.in.axis;
@@ -467,14 +457,6 @@ HWY_INLINE RunSum sum_of(const E& e, const LineRun& run) {
                  hn::GetLane(hn::MaxOfLanes(d, largest)));
 }
 
-template <class In>
-std::size_t elements_of_runs(const In& in, int i) {
-  std::size_t sum = 0;
-  for (const LineRun* run = in.list->begin(i); run != in.list->end(i); ++run)
-    sum += static_cast<std::size_t>(run->elements);
-  return sum;
-}
-
 template <bool energies, class In, class Real>
 HWY_INLINE void all_elements(const In& in, const LineChunk& chunk, LineWork<Real>& work, ContactBuffer& out) {
   const Topology& topology = *in.topology;
@@ -484,17 +466,17 @@ HWY_INLINE void all_elements(const In& in, const LineChunk& chunk, LineWork<Real
     while (i >= topology.tube_begin[tube + 1]) ++tube;
     if (in.list->begin(i) == in.list->end(i)) continue;
     Element<In> e(in, chunk, work, out, i, tube);
-    for (auto& runs : work.runs) runs.clear();
-    work.parts.clear();
+    for (MetRows& met : work.met) met.count = 0;
     for (const LineRun* run = in.list->begin(i); run != in.list->end(i); ++run) {
       if (static_cast<double>(run->beyond) > in.moved || run->elements == 0) continue;
       const RunSum sum = sum_of(e, *run);
       switch (sum.kind) {
-        case RunSum::rows:
-          work.runs[sum.first].push_back(run);
+        case RunSum::rows: {
+          const LineRun::Nodes& nodes = run->of(e.rows_of(sum.first));
+          work.met[sum.first].add({nodes.begin, nodes.at, nodes.count, run->type, run->touched});
           break;
+        }
         case RunSum::split:
-          if (work.parts.empty()) work.parts.reserve(elements_of_runs(in, i));  // no part moves any more
           split_run<energies>(e, *run);
           break;
         case RunSum::pairs:
@@ -503,7 +485,7 @@ HWY_INLINE void all_elements(const In& in, const LineChunk& chunk, LineWork<Real
       }
     }
     for (int t = 0; t < line_sums; ++t)
-      if (!work.runs[t].empty()) sum_rows<energies>(e, t);
+      if (work.met[t].count > 0) sum_rows<energies>(e, t);
     e.template add_to<energies>(out, i + shift);
   }
 }

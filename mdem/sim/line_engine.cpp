@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "sim/vector_clones.hpp"
+
 namespace ropewalk {
 namespace {
 
@@ -54,39 +56,99 @@ void place_row(const NodeLayout& layout, const Topology& topology, double length
   fill(state.position.z, axis.z, nodes.z);
 }
 
-// Force and first moment along the axis of each element's nodes, whose forces are x, y and z.
-template <class T>
-void add_rows(const T* x, const T* y, const T* z, int begin, int end, int count, double length,
-              const Vec3Array& axis, Vec3Array& force, Vec3Array& torque) {
-  const double step = length / count, middle = 0.5 * (count - 1);
-  for (int i = begin; i < end; ++i, x += count, y += count, z += count) {
-    T f[3] = {0, 0, 0}, m[3] = {0, 0, 0};
-    for (int l = 0; l < count; ++l) {
-      const T s = static_cast<T>(l - middle), v[3] = {x[l], y[l], z[l]};
-      for (int a = 0; a < 3; ++a) {
-        f[a] += v[a];
-        m[a] += s * v[a];
-      }
+// The sum of each element's nodes and its first moment, in nodes, from the middle. `known` as above.
+template <int known, class T>
+inline void moments_of(const T* x, int elements, int count, T* sum, T* moment) {
+  const int nodes = known > 0 ? known : count;
+  const T middle = static_cast<T>(0.5) * static_cast<T>(nodes - 1);
+  for (int i = 0; i < elements; ++i, x += nodes) {
+    T f = 0, m = 0;
+    for (int l = 0; l < nodes; ++l) {
+      f += x[l];
+      m += (static_cast<T>(l) - middle) * x[l];
     }
-    const auto at = static_cast<std::size_t>(i);
-    force.x[at] += static_cast<double>(f[0]);
-    force.y[at] += static_cast<double>(f[1]);
-    force.z[at] += static_cast<double>(f[2]);
-    const double nx = step * axis.x[at], ny = step * axis.y[at], nz = step * axis.z[at];
-    const double mx = static_cast<double>(m[0]), my = static_cast<double>(m[1]), mz = static_cast<double>(m[2]);
-    torque.x[at] += ny * mz - nz * my;
-    torque.y[at] += nz * mx - nx * mz;
-    torque.z[at] += nx * my - ny * mx;
+    sum[i] = f;
+    moment[i] = m;
   }
 }
 
+template <class T>
+inline void moments_of(const T* x, int elements, int count, T* sum, T* moment) {
+  if (count == 3) return moments_of<3>(x, elements, count, sum, moment);
+  if (count == 6) return moments_of<6>(x, elements, count, sum, moment);
+  moments_of<0>(x, elements, count, sum, moment);
+}
+
+// One component of the force f and of the torque step (n1 m2 - n2 m1) of each element.
+template <class T>
+struct Component {
+  const T* f;
+  const double* n1;
+  const T* m2;
+  const double* n2;
+  const T* m1;
+};
+template <class T>
+inline void add_component(const Component<T>& c, double step, int elements, double* force, double* torque) {
+  for (int i = 0; i < elements; ++i) {
+    force[i] += static_cast<double>(c.f[i]);
+    torque[i] += step * (c.n1[i] * static_cast<double>(c.m2[i]) - c.n2[i] * static_cast<double>(c.m1[i]));
+  }
+}
+template <class T>
+inline void add_all(const T* from, int n, T* to) {
+  for (int i = 0; i < n; ++i) to[i] += from[i];
+}
+
+// The same for each vector unit; templates cannot be.
+ROPEWALK_VECTOR_CLONES __attribute__((flatten)) void moments(const float* x, int elements, int count, float* sum,
+                                                             float* moment) {
+  moments_of(x, elements, count, sum, moment);
+}
+ROPEWALK_VECTOR_CLONES __attribute__((flatten)) void moments(const double* x, int elements, int count, double* sum,
+                                                             double* moment) {
+  moments_of(x, elements, count, sum, moment);
+}
+ROPEWALK_VECTOR_CLONES __attribute__((flatten)) void add(const Component<float>& c, double step, int elements,
+                                                         double* force, double* torque) {
+  add_component(c, step, elements, force, torque);
+}
+ROPEWALK_VECTOR_CLONES __attribute__((flatten)) void add(const Component<double>& c, double step, int elements,
+                                                         double* force, double* torque) {
+  add_component(c, step, elements, force, torque);
+}
+ROPEWALK_VECTOR_CLONES __attribute__((flatten)) void add(const float* from, int n, float* to) {
+  add_all(from, n, to);
+}
+ROPEWALK_VECTOR_CLONES __attribute__((flatten)) void add(const double* from, int n, double* to) {
+  add_all(from, n, to);
+}
+
+// Force and torque on each of the elements, of which x, y and z are the forces on the nodes.
+template <class T>
+void add_rows(const T* x, const T* y, const T* z, int begin, int end, int count, double length,
+              const Vec3Array& axis, Vec3Array& force, Vec3Array& torque) {
+  thread_local std::vector<T> sums;
+  const int elements = end - begin;
+  sums.resize(static_cast<std::size_t>(6 * elements));
+  T *fx = sums.data(), *fy = fx + elements, *fz = fy + elements, *mx = fz + elements, *my = mx + elements,
+    *mz = my + elements;
+  moments(x, elements, count, fx, mx);
+  moments(y, elements, count, fy, my);
+  moments(z, elements, count, fz, mz);
+  const double step = length / count;
+  const double *nx = axis.x.data() + begin, *ny = axis.y.data() + begin, *nz = axis.z.data() + begin;
+  add({fx, ny, mz, nz, my}, step, elements, force.x.data() + begin, torque.x.data() + begin);
+  add({fy, nz, mx, nx, mz}, step, elements, force.y.data() + begin, torque.y.data() + begin);
+  add({fz, nx, my, ny, mx}, step, elements, force.z.data() + begin, torque.z.data() + begin);
+}
+
 void add_elements(const ContactBuffer& b, const TouchedTube& t, Vec3Array& force, Vec3Array& torque) {
-  const auto add = [&](const std::vector<double>& from, std::vector<double>& to) {
-    const double* source = from.data() + t.element_shift;
-    for (int i = t.begin; i < t.end; ++i) to[static_cast<std::size_t>(i)] += source[i];
+  const auto onto = [&](const std::vector<double>& from, std::vector<double>& to) {
+    add(from.data() + t.element_shift + t.begin, t.end - t.begin, to.data() + t.begin);
   };
-  add(b.fx, force.x), add(b.fy, force.y), add(b.fz, force.z);
-  add(b.tx, torque.x), add(b.ty, torque.y), add(b.tz, torque.z);
+  onto(b.fx, force.x), onto(b.fy, force.y), onto(b.fz, force.z);
+  onto(b.tx, torque.x), onto(b.ty, torque.y), onto(b.tz, torque.z);
 }
 
 }  // namespace
@@ -120,13 +182,19 @@ template <class Buffers>
 void LineEngine::run(Buffers& b, const Topology& topology, const Interaction& in, const NeighbourList& list,
                      const State& state, const Vec3Array& axis, bool energies,
                      const std::function<void(int)>& place) {
-  const LineKernelInput<typename Buffers::Table, typename Buffers::C> input{
-      &topology,       &in,
-      &state,          &axis,
-      &list_,          b.nodes,
-      b.tables.data(), b.pairs.data(),
-      list.turn(),     2 * list.displacement(),
-      energies};
+  LineKernelInput<typename Buffers::Table, typename Buffers::C> input{&topology,
+                                                                      &in,
+                                                                      &state,
+                                                                      &axis,
+                                                                      &list_,
+                                                                      b.nodes,
+                                                                      b.tables.data(),
+                                                                      b.pairs.data(),
+                                                                      {},
+                                                                      list.turn(),
+                                                                      2 * list.displacement(),
+                                                                      energies};
+  for (int t = 0; t < line_sums; ++t) input.rows[t] = in.line[0].sparse.thins_j(t) ? Rows::sparse : Rows::all;
   const bool parallel = state.size() > parallel_from;
   shares_.deal(static_cast<int>(list_.chunks().size()), parallel ? omp_get_max_threads() : 1);
 #pragma omp parallel if (parallel)
@@ -185,14 +253,12 @@ void LineEngine::add_nodes(const Buffers& b, const Topology& topology, const Vec
       count = row.per_element;
       const std::size_t nodes = static_cast<std::size_t>((end - begin) * count);
       if (!any)
-        for (auto& v : sum) v.assign(nodes, T{0});
+        for (auto& v : sum) set_zero(v, nodes);
       any = true;
       const int from = (t.begin - begin) * count, to = (t.end - begin) * count;
       const int shift = row.origin + begin * count + row.shift;
       const auto add_up = [&](const std::vector<T>& x, std::vector<T>& out) {
-        const T* source = x.data() + shift;
-        T* into = out.data();
-        for (int m = from; m < to; ++m) into[m] += source[m];
+        add(x.data() + shift + from, to - from, out.data() + from);
       };
       add_up(f.x, sum[0]);
       add_up(f.y, sum[1]);

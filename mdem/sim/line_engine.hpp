@@ -37,10 +37,15 @@ struct NodeForces {
     for (auto* v : {&x, &y, &z}) v->resize(static_cast<std::size_t>(nodes + NodeLayout::pad));
     used.assign(tubes, 0);
   }
-  void use(const TouchedTube& t, Rows kind, int index) {
+  void use(const LineChunk& chunk, Rows kind, int index) {
     char& done = used[static_cast<std::size_t>(index)];
     if (done) return;
     done = 1;
+    clear(chunk.touched[static_cast<std::size_t>(index)], kind);
+  }
+
+ private:
+  void clear(const TouchedTube& t, Rows kind) {
     const TouchedTube::Row& row = t.row[static_cast<int>(kind)];
     const auto from = row.origin + t.begin * row.per_element + row.shift;
     for (auto* v : {&x, &y, &z}) std::fill_n(v->begin() + from, (t.end - t.begin) * row.per_element, T{0});
@@ -50,15 +55,32 @@ struct NodeForces {
 // The sparse ones, and that over all nodes.
 inline constexpr int line_sums = SparseNodes::most + 1;
 
+// Consecutive nodes of another tube: from `begin` on in the rows of all tubes, from `at` on in the chunk's buffers.
+struct NodeRow {
+  int begin = 0, at = 0;
+  short count = 0, type = 0;  // tube type
+  int touched = 0;
+};
+
+// Those that one element meets with one sum.
+struct MetRows {
+  std::vector<NodeRow> row;  // as many as there can be
+  int count = 0;
+
+  void add(const NodeRow& r) { row[static_cast<std::size_t>(count++)] = r; }
+  const NodeRow* begin() const { return row.data(); }
+  const NodeRow* end() const { return row.data() + count; }
+};
+
 // Of a chunk.
 template <class T>
 struct LineWork {
   NodeForces<T> forces[row_kinds];
-  std::vector<const LineRun*> runs[line_sums];  // of one element, that take this sum throughout
-  std::vector<LineRun> parts;                   // of runs whose elements do not all take the same sum
+  MetRows met[line_sums];
 
   void start(const LineChunk& chunk) {
     for (int kind = 0; kind < row_kinds; ++kind) forces[kind].start(chunk.nodes[kind], chunk.touched.size());
+    for (MetRows& rows : met) rows.row.resize(static_cast<std::size_t>(chunk.most_rows));
   }
 };
 
@@ -84,10 +106,9 @@ struct PairLanes {
 // What two elements sum over (LineContact).
 template <class T>
 struct PairSum {
-  // One of its sums: as a row, with the places of i's nodes (nm) and the weight of a pair (nm^2); pair by pair, by
+  // One of its sums: by rows, with the places of i's nodes (nm) and the weight of a pair (nm^2); pair by pair, by
   // the ends of i and of j.
   struct Sum {
-    Rows rows = Rows::all;
     std::vector<double> places;
     double weight = 0;
     PairLanes<T> pairs[4][4];
@@ -102,7 +123,6 @@ struct PairSum {
     for (int t = 0; t <= law.sparse.count; ++t) {
       const int on_i = law.sum_nodes_i(t), on_j = law.sum_nodes_j(t);
       Sum& sum = sums[t];
-      sum.rows = law.sparse.thins_j(t) ? Rows::sparse : Rows::all;
       sum.weight = law.length_i / on_i * law.length_j / on_j;
       for (int k = 0; k < on_i; ++k) sum.places.push_back(line_node(k, on_i, law.length_i));
       for (int a = 0; a < 4; ++a)
@@ -132,9 +152,10 @@ struct LineKernelInput {
   const LineNodes<C>* nodes;  // of each kind of rows
   const Table* tables;        // of tube types i, j at i * types + j, as are the next
   const PairSum<typename Table::Value>* pairs;
-  double turned;  // no axis has changed by more
-  double moved;   // nm: no distance has become smaller by more than this since the list was built
-  bool energies;  // whether they are wanted
+  Rows rows[line_sums];  // that the sums take, whatever the types
+  double turned;         // no axis has changed by more
+  double moved;          // nm: no distance has become smaller by more than this since the list was built
+  bool energies;         // whether they are wanted
 };
 
 template <class Table_, class C_>

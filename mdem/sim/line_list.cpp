@@ -54,7 +54,7 @@ struct Side {
     int from = 0, to = elements * count;
     while (from < to && !near(from)) ++from;
     while (from < to && !near(to - 1)) --to;
-    return {static_cast<short>(from), static_cast<short>(to - from)};
+    return {static_cast<short>(from), static_cast<short>(to - from), 0, 0};
   }
 
   // How far out of reach the nearest node is; less than zero where one is within the cutoff.
@@ -96,6 +96,7 @@ struct Side {
       run.elements = static_cast<short>(to - from);
       for (int kind = 0; kind < row_kinds; ++kind)
         run.nodes[kind].from = static_cast<short>(run.nodes[kind].from - (from - first) * counts[kind]);
+      run.fading = fades(k.sparse, 0, topology.ends_of(i, tube_i), run);
       double smallest = 1;
       for (int j = from; j < to; ++j) smallest = std::min(smallest, std::pow(axis(i).dot(axis(j)), 2));
       all_rows_wanted |= !k.sparse.thins_j(k.sparse.last_of(smallest));
@@ -250,6 +251,24 @@ void LineList::touch_tubes(const Topology& topology, LineChunk& chunk) {
   }
 }
 
+// Of the nodes of a chunk's runs, whose tubes have been touched.
+void LineList::find_places(LineChunk& chunk) {
+  for (int i = chunk.begin; i < chunk.end; ++i) {
+    int rows = 0;
+    for (std::size_t k = begin_[static_cast<std::size_t>(i)]; k < begin_[static_cast<std::size_t>(i) + 1]; ++k) {
+      LineRun& run = run_[k];
+      rows += run.elements;
+      for (int kind = 0; kind < row_kinds; ++kind) {
+        const TouchedTube::Row& row = chunk.touched[static_cast<std::size_t>(run.touched)].row[kind];
+        LineRun::Nodes& nodes = run.nodes[kind];
+        nodes.begin = row.origin + run.element_begin * row.per_element + nodes.from;
+        nodes.at = nodes.begin + row.shift;
+      }
+    }
+    chunk.most_rows = std::max(chunk.most_rows, rows);
+  }
+}
+
 void LineList::list_damped(const Topology& topology, LineChunk& chunk) const {
   DampedBlocks blocks;
   int tube = topology.tube_of(chunk.begin);
@@ -310,6 +329,7 @@ void LineList::build(const Topology& topology, const Interaction& in, const Neig
   for (std::size_t c = 0; c < chunks_.size(); ++c)
     if (chunks_[c].begin < chunks_[c].end) {
       touch_tubes(topology, chunks_[c]);
+      find_places(chunks_[c]);
       if (in.damped_contact()) list_damped(topology, chunks_[c]);
     }
   list_touches(topology);

@@ -32,6 +32,7 @@ struct NodeLayout {
 struct LineRun {
   struct Nodes {
     short from = 0, count = 0;  // within reach; the first one counted from the first node of element_begin
+    int begin = 0, at = 0;      // the first one in the rows of all tubes, and in the buffers of the chunk
   };
   int element_begin = 0;
   int touched = 0;     // which of the chunk's touched tubes
@@ -42,10 +43,16 @@ struct LineRun {
   Nodes nodes[row_kinds];
   short damped_from = 0, damped = 0;  // elements within reach of the contact viscosity, from element_begin
   bool begins = false, ends = false;  // the element is the first, the last of its tube, and the only one here
+  bool fading = false;                // the first sum fades, here or at element i: its tube ends
 
   const Nodes& of(Rows kind) const { return nodes[static_cast<int>(kind)]; }
   TubeEnds tube_ends() const { return {begins, ends}; }
 };
+
+// Whether a sum that some of the run takes fades at the ends of tubes.
+inline bool fades(const SparseNodes& sparse, int first, const TubeEnds& ends_i, const LineRun& run) {
+  return first < sparse.count && (run.begins || run.ends || (sparse.thins_j(first) && ends_i.any()));
+}
 
 // The elements begin .. end of a tube that a chunk acts on, and where these are in the chunk's own buffers.
 struct TouchedTube {
@@ -64,6 +71,7 @@ struct LineChunk {
   std::vector<TouchedTube> touched;
   std::vector<DampedBlock> damped;
   int elements = 0, nodes[row_kinds] = {0, 0};  // sizes of the buffers
+  int most_rows = 0;                            // that an element can meet: one for each element of its runs
 
   // Of its own elements, whose tubes are the first touched ones, and in order.
   int own_shift() const { return -begin; }
@@ -101,6 +109,7 @@ class LineList {
   double cost(const Topology& topology, int i, int tube) const;
   void cut_into_chunks(const Topology& topology, std::size_t count);
   void touch_tubes(const Topology& topology, LineChunk& chunk);
+  void find_places(LineChunk& chunk);
   void list_damped(const Topology& topology, LineChunk& chunk) const;
   void list_touches(const Topology& topology);
 
@@ -123,10 +132,6 @@ struct RunSum {
   } kind = rows;
   int first = 0, last = 0;
 };
-// Whether a sum that some of the run takes fades at the ends of tubes.
-inline bool fades(const SparseNodes& sparse, int first, const TubeEnds& ends_i, const LineRun& run) {
-  return first < sparse.count && (run.begins || run.ends || (sparse.thins_j(first) && ends_i.any()));
-}
 inline RunSum run_sum(const LineContact& law, const TubeEnds& ends_i, const LineRun& run, bool has_row,
                       double smallest, double largest) {
   const int first = law.sparse.first_of(largest), last = law.sparse.last_of(smallest);

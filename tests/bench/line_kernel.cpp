@@ -44,7 +44,8 @@ void Rows(const MixedTable& table, const LineNodes<std::int32_t>& nodes, int len
   const std::int32_t from[2][3] = {{0, 0, 0}, {0, 0, 1 << 20}};
   auto sums = no_sums<D, 2>(D());
   for (int r = 0; r < 64; ++r)
-    row<false, false, 2>(table, nodes, out, r * shift, length, r * shift, from, 0.1F, sums);
+    meet_row<false, 2>(table, nodes, out, {r * shift, r * shift, static_cast<short>(length), 0, 0}, from, 0.1F,
+                       sums);
   const auto all = hn::Add(hn::Add(sums.x[0], sums.x[1]), hn::Add(sums.z[0], sums.energy));
   hn::StoreU(hn::Add(all, hn::Add(sums.y[0], hn::Add(sums.y[1], sums.z[1]))), D(), total);
 }
