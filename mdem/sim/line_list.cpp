@@ -33,6 +33,7 @@ struct Side {
   const Topology& topology;
   const Interaction& in;
   const NeighbourList& list;
+  double even_until;  // rad: to this angle of two elements the first sum holds
   int i, tube_i, tube_j;
   bool all_rows_wanted = false;  // by a run whose elements are not nearly parallel
 
@@ -57,56 +58,81 @@ struct Side {
     return {static_cast<short>(from), static_cast<short>(to - from), 0, 0};
   }
 
-  // How far out of reach the nearest node is; less than zero where one is within the cutoff.
-  float beyond(int first, const LineRun::Nodes& nodes) const {
+  // No node of element j is nearer than this. Exact but for the places of single nodes where the two are parallel.
+  double nearest(int j) const {
     const LineContact& k = law();
-    const double cutoff = k.density.cutoff();
-    double nearest2 = 1e300;
-    const int middle = nodes.from + nodes.count / 2;  // most often the nearest
-    for (int n = 0; n < nodes.count && nearest2 > cutoff * cutoff; ++n) {
-      const int m = nodes.from + (middle - nodes.from + n) % nodes.count;
-      nearest2 = std::min(nearest2, to_node2(first + m / k.nodes_j, m % k.nodes_j, k.nodes_j));
-    }
-    return static_cast<float>(std::sqrt(nearest2) - cutoff - 1e-6);
+    const Vector3 apart = place(j) - place(i), own = axis(i);
+    const double along = apart.dot(own), cosine = own.dot(axis(j)),
+                 half_i = 0.5 * k.length_i * (1 - 1.0 / k.nodes_i),
+                 half_j = 0.5 * k.length_j * (1 - 1.0 / k.nodes_j);
+    const auto at_least = [](double x) { return std::max(x, 0.0); };
+    const double beside = at_least(std::sqrt(at_least(apart.squaredNorm() - along * along)) -
+                                   half_j * std::sqrt(at_least(1 - cosine * cosine))),
+                 ahead = at_least(std::fabs(along) - half_i - half_j * std::fabs(cosine));
+    return std::sqrt(beside * beside + ahead * ahead);
+  }
+
+  // How far out of reach all nodes of first .. last are; less than zero where one may be within the cutoff.
+  float beyond(int first, int last) const {
+    double least = nearest((first + last) / 2);  // most often the nearest
+    for (int j = first; j <= last && least > law().density.cutoff(); ++j) least = std::min(least, nearest(j));
+    return static_cast<float>(least - law().density.cutoff() - 1e-6);
   }
 
   // What element i can reach of first .. last before the list is built again.
   LineRun trimmed(int first, int last) {
     const LineContact& k = law();
-    const double reach = k.density.cutoff() + list.skin, reach2 = reach * reach;
     LineRun run;
     run.type = static_cast<short>(topology.tube_type[tube_j]);
     run.touched = tube_j;  // for now
     run.element_begin = first;
     run.begins = first == topology.tube_begin[tube_j];
     run.ends = last + 1 == topology.tube_begin[tube_j + 1];
+    find_nodes(first, last, run);
+    if (run.elements > 0) {
+      run.beyond = beyond(run.element_begin, run.element_begin + run.elements - 1);
+      run.fading = fades(k.sparse, 0, topology.ends_of(i, tube_i), run);
+      find_angles(run);
+    }
+    find_damped(first, last, run);
+    return run;
+  }
+
+  void find_nodes(int first, int last, LineRun& run) const {
+    const LineContact& k = law();
+    const double reach = k.density.cutoff() + list.skin;
+    while (first <= last && nearest(first) > reach) ++first;
+    while (first <= last && nearest(last) > reach) --last;
     const int counts[row_kinds] = {k.nodes_j, k.sparse.sum[0].j};
     int from = last + 1, to = first;  // elements with nodes within reach
     for (int kind = 0; kind < row_kinds; ++kind) {
       const int count = counts[kind];
       if (count == 0) continue;
-      LineRun::Nodes& nodes = run.nodes[kind] = nodes_in_reach(first, last + 1 - first, count, reach2);
+      LineRun::Nodes& nodes = run.nodes[kind] = nodes_in_reach(first, last + 1 - first, count, reach * reach);
       if (nodes.count == 0) continue;
       from = std::min(from, first + nodes.from / count);
       to = std::max(to, first + (nodes.from + nodes.count - 1) / count + 1);
     }
-    if (from < to) {
-      run.beyond = beyond(first, run.nodes[0]);
-      run.element_begin = from;
-      run.elements = static_cast<short>(to - from);
-      for (int kind = 0; kind < row_kinds; ++kind)
-        run.nodes[kind].from = static_cast<short>(run.nodes[kind].from - (from - first) * counts[kind]);
-      run.fading = fades(k.sparse, 0, topology.ends_of(i, tube_i), run);
-      double smallest = 1;
-      for (int j = from; j < to; ++j) smallest = std::min(smallest, std::pow(axis(i).dot(axis(j)), 2));
-      all_rows_wanted |= !k.sparse.thins_j(k.sparse.last_of(smallest));
-      // Both elements may turn, by 1.01 times the change of an axis at most where that is small.
-      if (k.sparse.count > 0)
-        run.even = static_cast<float>(
-            (std::acos(std::sqrt(k.sparse.sum[0].full_cos2)) - std::acos(std::sqrt(smallest))) / 2.02 - 1e-6);
+    if (from >= to) return;
+    run.element_begin = from;
+    run.elements = static_cast<short>(to - from);
+    for (int kind = 0; kind < row_kinds; ++kind)
+      run.nodes[kind].from = static_cast<short>(run.nodes[kind].from - (from - first) * counts[kind]);
+  }
+
+  // Which sums the run takes, and until when it is sure to take the first alone: both elements may turn, by 1.01
+  // times the change of an axis at most where that is small.
+  void find_angles(LineRun& run) {
+    const SparseNodes& sparse = law().sparse;
+    const Vector3 own = axis(i);
+    double smallest = 1;
+    for (int j = run.element_begin; j < run.element_begin + run.elements; ++j) {
+      const double cosine = own.dot(axis(j));
+      smallest = std::min(smallest, cosine * cosine);
     }
-    find_damped(first, last, run);
-    return run;
+    all_rows_wanted |= !sparse.thins_j(sparse.last_of(smallest));
+    if (sparse.count > 0)
+      run.even = static_cast<float>((even_until - std::acos(std::sqrt(smallest))) / 2.02 - 1e-6);
   }
 
   void find_damped(int first, int last, LineRun& run) const {
@@ -143,6 +169,7 @@ struct LineList::Part {
 
   void find(const Topology& topology, const Interaction& in, const NeighbourList& list, int tube) {
     const int* index = list.indices();
+    const double even_until = std::acos(std::sqrt(in.line[0].sparse.sum[0].full_cos2));
     for (int i = topology.tube_begin[tube]; i < topology.tube_begin[tube + 1]; ++i) {
       const std::size_t before = runs.size();
       const std::size_t end = list.begin(i + 1);
@@ -153,7 +180,7 @@ struct LineList::Part {
         int last = first;
         for (++k; k < end && index[k] < topology.tube_begin[tube_j + 1] && index[k] == last + 1; ++k)
           last = index[k];
-        Side side{topology, in, list, i, tube, tube_j};
+        Side side{topology, in, list, even_until, i, tube, tube_j};
         side.add(first, last, runs);
         if (side.all_rows_wanted && (dense.empty() || dense.back() != tube_j)) dense.push_back(tube_j);
       }

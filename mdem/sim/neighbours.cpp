@@ -13,21 +13,24 @@
 namespace ropewalk {
 namespace {
 
-// Elements sorted by the cell that they lie in.
+// Elements sorted by the cell that they lie in. Cells are half as wide as the reach: of their neighbours up to two
+// away, six in ten elements fewer have to be looked at than of cells as wide.
 struct CellGrid {
+  static constexpr int away = 2;
   std::array<double, 3> origin{};
   std::array<int, 3> cells{1, 1, 1};
   double width = 1;
   std::vector<int> first;  // of each cell in `members`
   std::vector<int> members;
+  Vec3Array place;  // of the members
 
-  std::array<int, 3> cell_of(const Vec3Array& p, std::size_t i) const {
+  std::array<int, 3> cell_of(double x, double y, double z) const {
     const auto along = [&](double value, int axis) {
       const double c = (value - origin[static_cast<std::size_t>(axis)]) / width;
       const int most = cells[static_cast<std::size_t>(axis)] - 1;
       return c > 0 ? std::min(static_cast<int>(std::min(c, 1e9)), most) : 0;  // NaN goes to cell 0
     };
-    return {along(p.x[i], 0), along(p.y[i], 1), along(p.z[i], 2)};
+    return {along(x, 0), along(y, 1), along(z, 2)};
   }
   std::size_t flat(int x, int y, int z) const {
     return (static_cast<std::size_t>(x) * static_cast<std::size_t>(cells[1]) + static_cast<std::size_t>(y)) *
@@ -53,8 +56,8 @@ CellGrid make_grid(const Vec3Array& p, double reach) {
     grid.origin[a] = low;
     extent[a] = high - low;
   }
-  // Cells no narrower than the reach, and no more of them than a few per element however sparse the scene.
-  grid.width = reach;
+  // No more cells than a few per element however sparse the scene.
+  grid.width = reach / CellGrid::away;
   const double most = 4.0 * static_cast<double>(n) + 64.0;
   const auto count = [&](double width) {
     double product = 1;
@@ -67,15 +70,44 @@ CellGrid make_grid(const Vec3Array& p, double reach) {
   std::vector<std::size_t> cell(n);
   grid.first.assign(grid.flat(grid.cells[0] - 1, grid.cells[1] - 1, grid.cells[2] - 1) + 2, 0);
   for (std::size_t i = 0; i < n; ++i) {
-    const auto c = grid.cell_of(p, i);
+    const auto c = grid.cell_of(p.x[i], p.y[i], p.z[i]);
     cell[i] = grid.flat(c[0], c[1], c[2]);
     ++grid.first[cell[i] + 1];
   }
   for (std::size_t c = 1; c < grid.first.size(); ++c) grid.first[c] += grid.first[c - 1];
   std::vector<int> next(grid.first.begin(), grid.first.end() - 1);
   grid.members.resize(n);
-  for (std::size_t i = 0; i < n; ++i) grid.members[static_cast<std::size_t>(next[cell[i]]++)] = static_cast<int>(i);
+  grid.place.resize(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto at = static_cast<std::size_t>(next[cell[i]]++);
+    grid.members[at] = static_cast<int>(i);
+    grid.place.x[at] = p.x[i], grid.place.y[at] = p.y[i], grid.place.z[at] = p.z[i];
+  }
   return grid;
+}
+
+// Those after element `after` that are closer than the root of reach2 to a place, onto `found`. Without branches:
+// a guess whether one is near is wrong too often.
+void find_near(const CellGrid& grid, double x, double y, double z, int after, double reach2,
+               std::vector<int>& found) {
+  const auto middle = grid.cell_of(x, y, z);
+  const auto low = [&](std::size_t a) { return std::max(middle[a] - CellGrid::away, 0); };
+  const auto high = [&](std::size_t a) { return std::min(middle[a] + CellGrid::away, grid.cells[a] - 1); };
+  for (int cx = low(0); cx <= high(0); ++cx)
+    for (int cy = low(1); cy <= high(1); ++cy) {
+      // Cells along z are consecutive in memory: one run.
+      const auto begin = static_cast<std::size_t>(grid.first[grid.flat(cx, cy, low(2))]),
+                 end = static_cast<std::size_t>(grid.first[grid.flat(cx, cy, high(2)) + 1]);
+      std::size_t count = found.size();
+      found.resize(count + (end - begin));
+      for (std::size_t k = begin; k < end; ++k) {
+        const double dx = grid.place.x[k] - x, dy = grid.place.y[k] - y, dz = grid.place.z[k] - z;
+        const int j = grid.members[k];
+        found[count] = j;
+        count += static_cast<std::size_t>((j > after) & (dx * dx + dy * dy + dz * dz < reach2));
+      }
+      found.resize(count);
+    }
 }
 
 }  // namespace
@@ -164,9 +196,10 @@ void NeighbourList::build(const Topology& topology, Vec3Array position, Vec3Arra
   index_.clear();
   if (cutoff > 0) {
     const CellGrid grid = make_grid(p, reach);
-    std::vector<int> tube(static_cast<std::size_t>(n));
+    std::vector<int> last(static_cast<std::size_t>(n));  // element of its tube that is too near to count
     for (int t = 0; t < topology.tubes(); ++t)
-      std::fill(tube.begin() + topology.tube_begin[t], tube.begin() + topology.tube_begin[t + 1], t);
+      for (int i = topology.tube_begin[t]; i < topology.tube_begin[t + 1]; ++i)
+        last[static_cast<std::size_t>(i)] = std::min(i + exclude_along_tube, topology.tube_begin[t + 1] - 1);
 
     constexpr int parts = 64;
     std::vector<std::vector<int>> found(parts);
@@ -178,22 +211,7 @@ void NeighbourList::build(const Topology& topology, Vec3Array position, Vec3Arra
       for (int i = from; i < to; ++i) {
         const std::size_t before = list.size();
         const auto si = static_cast<std::size_t>(i);
-        const auto c = grid.cell_of(p, si);
-        for (int x = std::max(c[0] - 1, 0); x <= std::min(c[0] + 1, grid.cells[0] - 1); ++x)
-          for (int y = std::max(c[1] - 1, 0); y <= std::min(c[1] + 1, grid.cells[1] - 1); ++y) {
-            // Cells along z are consecutive in memory: one run.
-            const std::size_t low = grid.flat(x, y, std::max(c[2] - 1, 0));
-            const std::size_t high = grid.flat(x, y, std::min(c[2] + 1, grid.cells[2] - 1));
-            for (int k = grid.first[low]; k < grid.first[high + 1]; ++k) {
-              const int j = grid.members[static_cast<std::size_t>(k)];
-              if (j <= i) continue;
-              const auto sj = static_cast<std::size_t>(j);
-              const double dx = p.x[sj] - p.x[si], dy = p.y[sj] - p.y[si], dz = p.z[sj] - p.z[si];
-              if (!(dx * dx + dy * dy + dz * dz < reach2)) continue;
-              if (tube[si] == tube[sj] && j - i <= exclude_along_tube) continue;
-              list.push_back(j);
-            }
-          }
+        find_near(grid, p.x[si], p.y[si], p.z[si], last[si], reach2, list);
         std::sort(list.begin() + static_cast<std::ptrdiff_t>(before), list.end());
         begin_[si + 1] = list.size() - before;
       }
