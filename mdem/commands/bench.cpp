@@ -41,6 +41,7 @@ struct Cost {
   RadialCount radial;
   int threads = 1;
   double pairs = 0;
+  double skin = 0;                   // nm, of the last list
   double bytes = 0, list_bytes = 0;  // per element
   double peak_bytes = 0;             // of the program so far
 };
@@ -87,6 +88,7 @@ Cost measure(const Scene& scene, const Prepared& prepared, long steps, int threa
   c.each = per_element_step(before, timing(simulation, wall * scale, processor * scale), scale);
   c.threads = omp_get_max_threads();
   c.pairs = static_cast<double>(simulation.list().pairs()) / n;
+  c.skin = simulation.list().skin;
   c.list_bytes = static_cast<double>(simulation.list().bytes()) / n;
   c.bytes = static_cast<double>(simulation.bytes()) / n - c.list_bytes;
   c.peak_bytes = peak_bytes();
@@ -118,6 +120,7 @@ nlohmann::ordered_json json_of(const Cost& c, const BenchArguments& a, const Pre
                                       {"list", c.each.list},
                                       {"integration", c.each.integration}};
   out["list_builds"] = c.each.builds;
+  out["list_skin_nm"] = c.skin;
   out["list_share"] = per(c.each.list, c.each.wall);
   if (!prepared.interaction.line.empty()) {
     out["instructions"] = instruction_sets().front();
@@ -143,8 +146,11 @@ void print(const Cost& c, const BenchArguments& a, const Prepared& prepared) {
              prepared.time_step / units::fs, every > 1 ? fmt::format(", of {} bond steps each", every) : "");
   fmt::print("{:9.1f} ns per element-step, {:.1f} of processor time\n", t.wall, t.processor);
   fmt::print("{:9.1f} pairs per element (half list)\n", c.pairs);
-  fmt::print("  contact {:.1f}  bonds {:.1f}  frames {:.1f}  list {:.1f}  integration {:.1f} ns; {} lists\n",
-             t.contact, t.bonds, t.frames, t.list, t.integration, t.builds);
+  fmt::print(
+      "  contact {:.1f}  bonds {:.1f}  frames {:.1f}  list {:.1f}  integration {:.1f} ns; {} lists, the last with "
+      "a skin "
+      "of {:.3g} nm\n",
+      t.contact, t.bonds, t.frames, t.list, t.integration, t.builds, c.skin);
   if (c.radial.runs > 0)
     fmt::print(
         "{:9.1f} runs per element, {:.1f} nodes each; {:.0f} radial evaluations, {:.0f} % of them within the "

@@ -116,21 +116,20 @@ bool NeighbourList::update(const Topology& topology, const State& state) {
   Change all;
   const auto n = static_cast<std::ptrdiff_t>(state.size());
   for (std::ptrdiff_t i = 0; i < n; i += block) all = both(all, change(state, i, std::min(i + block, n)));
-  return update(topology, state, all);
+  if (!worn(all)) return false;
+  build(topology, state);
+  return true;
 }
 
 // The distance of two points that the twist alone moves changes by no more than what it turns one against the
 // other.
-bool NeighbourList::update(const Topology& topology, const State& state, const Change& change) {
-  if (reference_.size() == state.size()) {
-    const double against = 1.01 * std::fabs(twist_.slope) * (cutoff + skin + 2 * lever);
-    displacement_ = change.moved + 0.5 * against * (farthest_ + lever);
-    turn_ = change.turned + 0.5 * against;
-    follow(change);
-    if (displacement_ <= 0.5 * skin) return false;
-  }
-  build(topology, state);
-  return true;
+bool NeighbourList::worn(const Change& change) {
+  const double against = 1.01 * std::fabs(twist_.slope) * (cutoff + skin + 2 * lever);
+  displacement_ = change.moved + 0.5 * against * (farthest_ + lever);
+  turn_ = change.turned + 0.5 * against;
+  if (!std::isfinite(displacement_)) return true;
+  follow(change);
+  return displacement_ > 0.5 * skin;
 }
 
 // The twist that the next change is measured against: the best fit to this one.

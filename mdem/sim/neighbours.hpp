@@ -45,8 +45,9 @@ class NeighbourList {
   // Builds anew where an element has moved too far. Returns whether it did. A position that is not finite
   // counts as moved; the build then leaves that element without neighbours.
   bool update(const Topology& topology, const State& state);
-  // The same where the change since the last build is known: that of all elements, added up in parts of `block`.
-  bool update(const Topology& topology, const State& state, const Change& change);
+  // Whether it has to be built anew by the change since the last build: that of all elements, added up in parts of
+  // `block`.
+  bool worn(const Change& change);
   static constexpr std::ptrdiff_t block = 128;
   // Of the elements begin .. end - 1; infinite where a place is not finite.
   Change change(const State& state, std::ptrdiff_t begin, std::ptrdiff_t end) const;

@@ -62,6 +62,7 @@ Simulation::Simulation(Topology topology, Interaction interaction, Drive drive, 
       state_(std::move(state)),
       time_step_(time_step),
       stepping_(stepping),
+      tunes_skin_(!(skin > 0) && !interaction_.line.empty()),
       list_(interaction_, skin > 0 ? skin : default_skin(interaction_)),
       forces_(state_.size()),
       inner_(two_levels() ? state_.size() : 0),
@@ -183,7 +184,11 @@ void Simulation::drift(double dt) {
 
 // By the changes of the last drift, added up in their order, whatever the threads.
 void Simulation::update_list() {
-  list_.update(topology_, state_, std::accumulate(changes_.begin(), changes_.end(), Change{}, both));
+  ++list_age_;
+  if (!list_.worn(std::accumulate(changes_.begin(), changes_.end(), Change{}, both))) return;
+  if (tunes_skin_) list_.skin = engine_.line().list().best_skin(topology_, list_.skin, list_age_);
+  list_.build(topology_, state_);
+  list_age_ = 0;
 }
 
 // The velocities of the last drift.
@@ -382,7 +387,7 @@ std::size_t Simulation::bytes() const {
 
 namespace {
 
-constexpr char magic[] = "MDEM4";
+constexpr char magic[] = "MDEM5";
 
 struct Writer {
   std::string bytes;
@@ -462,6 +467,7 @@ std::string Simulation::serialise() const {
   w.put(work_);
   w.put(dissipated_);
   w.put(list_.skin);
+  w.put(list_age_);
   w.put(list_.twist());
   w.put(static_cast<std::int64_t>(stepping_.contact_every));
   for (const auto* v : checkpoint_arrays(state_, forces_, list_.reference(), list_.reference_axis())) w.put(*v);
@@ -491,6 +497,7 @@ void Simulation::restore(const std::string& bytes) {
   r.get(work_);
   r.get(dissipated_);
   r.get(list_.skin);
+  r.get(list_age_);
   std::array<double, 2> twist{};
   r.get(twist);
   std::int64_t contact_every = 0;
@@ -507,6 +514,9 @@ void Simulation::restore(const std::string& bytes) {
   r.get(forces_.damping_power);
   list_.build(topology_, std::move(ref), std::move(ref_axis));
   list_.set_twist(twist);
+  // The runs of this list, which the skin of the next one follows from.
+  Forces made(state_.size());
+  if (tunes_skin_) engine_.compute(topology_, interaction_, list_, state_, made, false, Parts::contact);
   point_loads(drive_, state_, state_.time, point_loads_);
 }
 

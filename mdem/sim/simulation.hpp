@@ -35,12 +35,13 @@ namespace ropewalk {
 inline constexpr double default_step_fraction = 0.6;
 inline constexpr double cold_step_fraction = 0.9;
 
-// nm. The runs of the line law skip what is out of reach, so that a wide margin costs little.
+// nm, of the first list; what costs least is found as the run goes where contact is by the line law. Its runs skip
+// what is out of reach, so that a wide margin costs little.
 inline double default_skin(const Interaction& in) { return in.line.empty() ? 0.15 : 0.25; }
 
 class Simulation {
  public:
-  // time_step: by how much a step takes time forward. skin = 0: the default.
+  // time_step: by how much a step takes time forward. skin: of all lists; 0: chosen here.
   Simulation(Topology topology, Interaction interaction, Drive drive, State state, double time_step,
              double skin = 0, Stepping stepping = {});
 
@@ -107,7 +108,9 @@ class Simulation {
   State state_;
   double time_step_ = 0;
   Stepping stepping_;
+  bool tunes_skin_ = false;
   NeighbourList list_;
+  std::int64_t list_age_ = 0;    // steps since the list was built
   std::vector<Change> changes_;  // since the list was built, of the blocks of the last drift
   bool bounded_ = true;          // whether the steps of that drift were small
   ForceEngine engine_;
