@@ -209,10 +209,10 @@ void LineList::lay_out_rows(const Topology& topology, const Interaction& in, con
 
 namespace {
 
-// ns as measured once in a rope of 91 tubes: there chunks of equal sums took the same time within 3 %.
-constexpr double element_cost = 60, run_out_of_reach = 3, build_of_an_element = 2000;
+// ns as measured once in a rope of 91 tubes (bench, `rope-91x50`).
+constexpr double element_cost = 60, run_out_of_reach = 2, build_of_an_element = 2500;
 double cost_in_reach(const LineRun& run, bool at_end) {
-  constexpr double of_a_row = 45, pair_at_an_end = 110;
+  constexpr double of_a_row = 22, pair_at_an_end = 60;
   return at_end || run.begins || run.ends ? pair_at_an_end * run.elements : of_a_row;
 }
 
@@ -252,7 +252,7 @@ double LineList::step_cost(const Topology& topology, double skin, double listed,
 }
 
 double LineList::best_skin(const Topology& topology, double skin, long steps) const {
-  constexpr double ratio = 1.25, least = 0.04, most = 0.6, worth = 0.98;
+  constexpr double ratio = 1.25, least = 0.04, most = 0.4, worth = 0.98;
   const double wear = skin / static_cast<double>(std::max(steps, 1L));
   double best = skin, lowest = worth * step_cost(topology, skin, skin, wear);
   for (double s = std::min(skin * ratio, most); s >= least; s /= ratio) {
