@@ -42,7 +42,8 @@ void add_chart(CLI::App& app, Verbs& v) {
   chart->add_option("--out", v.chart.out, "Directory of points and chart; finished points in it are kept")
       ->capture_default_str();
   chart->add_flag("--quick", v.chart.quick, "A few models of two scenes, or of those named");
-  chart->add_flag("--instructions", v.chart.instructions, "Also count instructions, by callgrind (valgrind)");
+  chart->add_flag("--instructions", v.chart.instructions,
+                  "Also count instructions, by callgrind (valgrind); points that are there get theirs");
   chart->add_flag("--again", v.chart.again, "Run points again that are finished");
   chart->add_flag("--quiet", v.chart.quiet, "No progress lines");
   chart->callback([&v] { v.code = chart_command(v.chart); });

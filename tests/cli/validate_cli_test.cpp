@@ -66,4 +66,24 @@ TEST_F(Validate, OneCaseIsRunKeptAndReported) {
   EXPECT_EQ(slurp(dir / "v/report.html"), page) << "the page is the same in every run";
 }
 
+// Counting leaves what was measured before.
+TEST_F(Validate, ChartCountsInstructions) {
+  const std::string chart = "validate chart --quick --quiet --scenes tube-twist --out c";
+  const auto point = [&](const std::string& model) {
+    return Json::parse(slurp(dir / "c" / "points" / ("tube-twist--" + model + ".json")));
+  };
+  ASSERT_EQ(run(chart).code, 0);
+  const Json before = point("default");
+  EXPECT_TRUE(before.at("instructions_per_element_step").is_null());
+  ASSERT_EQ(run(chart + " --instructions").code, 0);
+  const Json ours = point("default"), published = point("published");
+  EXPECT_EQ(ours.at("cpu_s"), before.at("cpu_s"));
+  const double count = ours.at("instructions_per_element_step");
+  EXPECT_GT(count, 50);
+  EXPECT_LT(count, 5000);
+  // Both are the same step of a lone tube.
+  EXPECT_NEAR(published.at("instructions_per_element_step").get<double>(), count, 0.3 * count);
+  EXPECT_NE(slurp(dir / "c" / "chart.html").find("instructions per ns"), std::string::npos);
+}
+
 }  // namespace

@@ -211,6 +211,67 @@ TEST(Checkpoint, GoesOnBitForBitOnAnyThreads) {
   EXPECT_GT(whole.list().builds(), 1) << "the list was never rebuilt: the test shows nothing";
 }
 
+// A rope whose ends turn, by the line law.
+struct TurnedRope {
+  Bundle b{19, 24, 0};
+  Drive drive;
+
+  explicit TurnedRope(double rate) {
+    b.in.paper.reset();
+    b.in.line = {test::line_contact(0.6785, 6, 0.6785, 6)};
+    b.in.precision = Interaction::Precision::mixed;
+    b.in.damping.contact = {20, spacing, 1.5 * spacing};
+    Turned upper, lower;
+    for (int t = 0; t < b.topology.tubes(); ++t) {
+      lower.elements.push_back(b.topology.tube_begin[t]);
+      upper.elements.push_back(b.topology.tube_begin[t + 1] - 1);
+    }
+    upper.rate = rate, upper.angle = 2;
+    drive.turned = {upper, lower};
+  }
+  Simulation make(double skin) const { return Simulation(b.topology, b.in, drive, b.state, 0.02, skin); }
+};
+
+// Lists that are worn soon get a wider skin than those that last; the motion is the same.
+TEST(ListSkin, FollowsTheMotion) {
+  const TurnedRope slow(0.004), fast(0.2);
+  Simulation s = slow.make(0), f = fast.make(0), fixed = fast.make(0.3);
+  for (int k = 0; k < 4000; ++k) s.step(false);
+  for (int k = 0; k < 400; ++k) {
+    f.step();
+    fixed.step();
+  }
+  EXPECT_GT(s.list().builds(), 4);
+  EXPECT_GT(f.list().builds(), 4);
+  EXPECT_LT(s.list().skin, 0.8 * default_skin(slow.b.in));
+  EXPECT_GT(f.list().skin, 1.2 * s.list().skin);
+  EXPECT_EQ(fixed.list().skin, 0.3);
+  EXPECT_GT(f.work(), 10);
+  EXPECT_NEAR(f.work(), fixed.work(), 1e-5 * f.work());
+  EXPECT_NEAR(f.total_energy(), fixed.total_energy(), 1e-5 * f.work());
+}
+
+TEST(Checkpoint, GoesOnWithTheSameLists) {
+  const TurnedRope rope(0.1);
+  Simulation whole = rope.make(0);
+  long builds = 0;
+  for (int save = 0; save < 3; ++save) {
+    // Not far behind a new list, then on to the next ones.
+    for (int k = 0; k < 150 + 37 * save; ++k) whole.step(false);
+    Simulation resumed = rope.make(0);
+    resumed.restore(whole.serialise());
+    EXPECT_EQ(resumed.serialise(), whole.serialise());
+    builds = whole.list().builds();
+    for (int k = 0; k < 200; ++k) {
+      whole.step(false);
+      resumed.step(false);
+    }
+    EXPECT_EQ(resumed.serialise(), whole.serialise());
+    EXPECT_GT(whole.list().builds(), builds);
+  }
+  EXPECT_NE(whole.list().skin, default_skin(rope.b.in));
+}
+
 TEST(Relaxation, FindsTheHexagonalBundle) {
   Bundle b(7, 10, 0);
   for (std::size_t i = 0; i < b.state.size(); ++i)

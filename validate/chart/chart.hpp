@@ -153,6 +153,9 @@ void measure(const Specimen& specimen, const ChartModel& model, ChartPoint& poin
 // Instructions per element-step by callgrind from the end of the protocol on; none where valgrind is missing.
 std::optional<double> count_instructions(const ChartScene& scene, const ChartModel& model,
                                          const std::string& folder);
+// Around the steps of step_for_counting; nothing where callgrind does not run.
+void count_from_here();
+void count_to_here();
 // What the counted program does: so many steps from the turned state. For `chart-steps` alone.
 void step_for_counting(const std::string& scene, const std::string& model, long steps);
 

@@ -233,11 +233,16 @@ void step_for_counting(const std::string& scene_name, const std::string& model_n
     State state = s.state;
     turn(s, 1.0 / s.increments, state);
     Simulation simulation(s.topology, s.interaction, s.held(), std::move(state), s.time_step);
+    count_from_here();
     simulation.relax(0, steps, [](long) { return true; });
+    count_to_here();
     return;
   }
   Simulation simulation = driven(s, s.state);
+  simulation.step(false);  // makes what is made once
+  count_from_here();
   for (long k = 0; k < steps; k += model.stepping.contact_every) simulation.step(false);
+  count_to_here();
 }
 
 }  // namespace ropewalk

@@ -22,7 +22,9 @@ struct Task {
   Specimen specimen;
   ChartPoint point;  // as described
   std::string path;
-  bool kept = false;
+  bool kept = false;     // measured before, by the same program
+  bool counted = false;  // as far as that is wanted
+  bool done() const { return kept && counted; }
 };
 
 // For the time that is left: what a step costs differs by more than ten between models.
@@ -36,8 +38,8 @@ double guessed_work(const Task& t) {
 }
 
 // Everything that the result depends on: program, scene and knobs.
-std::string key_of(const ChartPoint& described, const ChartArguments& a) {
-  return hash_hex(fmt::format("{} {} {}", git_id, point_json(described), a.instructions ? "counted" : ""));
+std::string key_of(const ChartPoint& described) {
+  return hash_hex(fmt::format("{} {}", git_id, point_json(described)));
 }
 
 void make_directory(const std::string& dir) {
@@ -60,11 +62,16 @@ std::vector<Task> tasks_of(const ChartArguments& a) {
   std::vector<Task> tasks;
   for (const ChartScene* scene : scenes)
     for (const ChartModel& model : chart_models(*scene, a.quick)) {
-      Task t{scene, model, scene->build(model), {}, {}, false};
+      Task t{scene, model, scene->build(model), {}, {}};
       t.point = describe(*scene, model, t.specimen);
-      t.point.key = key_of(t.point, a);
+      t.point.key = key_of(t.point);
       t.path = (fs::path(a.out) / "points" / fmt::format("{}--{}.json", scene->name, model.name)).string();
-      t.kept = !a.again && fs::exists(t.path) && read_point(t.path).key == t.point.key;
+      if (!a.again && fs::exists(t.path)) {
+        const ChartPoint before = read_point(t.path);
+        t.kept = before.key == t.point.key;
+        if (t.kept) t.point = before;
+      }
+      t.counted = !a.instructions || t.point.instructions || !t.point.error.empty();
       tasks.push_back(std::move(t));
     }
   return tasks;
@@ -72,7 +79,7 @@ std::vector<Task> tasks_of(const ChartArguments& a) {
 
 void run_task(Task& t, const ChartArguments& a) {
   try {
-    measure(t.specimen, t.model, t.point);
+    if (!t.kept) measure(t.specimen, t.model, t.point);
     if (a.instructions) t.point.instructions = count_instructions(*t.scene, t.model, a.out);
   } catch (const NumericalError& e) {
     t.point.error = e.what();
@@ -105,7 +112,7 @@ int chart_command(const ChartArguments& a) {
   std::vector<Task> tasks = tasks_of(a);
   double left = 0, done = 0;
   for (const Task& t : tasks)
-    if (!t.kept) left += guessed_work(t);
+    if (!t.done()) left += guessed_work(t);
   const double begin = now();
   std::size_t number = 0;
   for (Task& t : tasks) {
@@ -113,9 +120,12 @@ int chart_command(const ChartArguments& a) {
     if (!a.quiet) {
       const double eta = done > 0 ? (now() - begin) / done * left : 0;
       fmt::print(stderr, "{}/{} {} {}{}{}\n", number, tasks.size(), t.scene->name, t.model.name,
-                 t.kept ? ": kept" : "", eta > 5 ? fmt::format(", about {:.0f} s left", eta) : "");
+                 t.done() ? ": kept"
+                 : t.kept ? ": counting"
+                          : "",
+                 eta > 5 ? fmt::format(", about {:.0f} s left", eta) : "");
     }
-    if (t.kept) continue;
+    if (t.done()) continue;
     run_task(t, a);
     if (!a.quiet && !t.point.error.empty()) fmt::print(stderr, "    {}\n", t.point.error);
     done += guessed_work(t);
