@@ -213,7 +213,7 @@ TEST(Checkpoint, GoesOnBitForBitOnAnyThreads) {
 
 // A rope whose ends turn, by the line law.
 struct TurnedRope {
-  Bundle b{19, 24, 0};
+  Bundle b{7, 40, 0};
   Drive drive;
 
   explicit TurnedRope(double rate) {
@@ -241,7 +241,7 @@ TEST(ListSkin, FollowsTheMotion) {
     f.step();
     fixed.step();
   }
-  EXPECT_GT(s.list().builds(), 4);
+  EXPECT_GT(s.list().builds(), 1);
   EXPECT_GT(f.list().builds(), 4);
   EXPECT_LT(s.list().skin, 0.8 * default_skin(slow.b.in));
   EXPECT_GT(f.list().skin, 1.2 * s.list().skin);
