@@ -17,7 +17,7 @@ namespace ropewalk {
 namespace {
 
 struct Timing {
-  double wall = 0, processor = 0, frames = 0, contact = 0, bonds = 0, list = 0, integration = 0;
+  double wall = 0, processor = 0, axes = 0, contact = 0, bonds = 0, list = 0, integration = 0;
   long builds = 0;
 };
 
@@ -55,7 +55,7 @@ double peak_bytes() {
 Timing per_element_step(const Timing& a, const Timing& b, double scale) {
   return {b.wall,
           b.processor,
-          (b.frames - a.frames) * scale,
+          (b.axes - a.axes) * scale,
           (b.contact - a.contact) * scale,
           (b.bonds - a.bonds) * scale,
           (b.list - a.list) * scale,
@@ -116,7 +116,7 @@ nlohmann::ordered_json json_of(const Cost& c, const BenchArguments& a, const Pre
   out["ns_per_pair"] = per(c.each.contact, c.pairs);
   out["split_ns_per_element_step"] = {{"contact", c.each.contact},
                                       {"bonds", c.each.bonds},
-                                      {"frames", c.each.frames},
+                                      {"axes", c.each.axes},
                                       {"list", c.each.list},
                                       {"integration", c.each.integration}};
   out["list_builds"] = c.each.builds;
@@ -147,10 +147,10 @@ void print(const Cost& c, const BenchArguments& a, const Prepared& prepared) {
   fmt::print("{:9.1f} ns per element-step, {:.1f} of processor time\n", t.wall, t.processor);
   fmt::print("{:9.1f} pairs per element (half list)\n", c.pairs);
   fmt::print(
-      "  contact {:.1f}  bonds {:.1f}  frames {:.1f}  list {:.1f}  integration {:.1f} ns; {} lists, the last with "
+      "  contact {:.1f}  bonds {:.1f}  axes {:.1f}  list {:.1f}  integration {:.1f} ns; {} lists, the last with "
       "a skin "
       "of {:.3g} nm\n",
-      t.contact, t.bonds, t.frames, t.list, t.integration, t.builds, c.skin);
+      t.contact, t.bonds, t.axes, t.list, t.integration, t.builds, c.skin);
   if (c.radial.runs > 0)
     fmt::print(
         "{:9.1f} runs per element, {:.1f} nodes each; {:.0f} radial evaluations, {:.0f} % of them within the "

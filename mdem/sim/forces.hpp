@@ -91,7 +91,7 @@ class ForceEngine {
                        const State& state, bool energies);
   void add_buffers(const NeighbourList& list, int from, int to, Forces& out) const;
 
-  Vec3Array axis_;  // of all elements
+  Vec3Array axis_;                      // of all elements
   std::vector<ContactBuffer> buffers_;  // of each chunk
   LineEngine line_;
   PaperEngine paper_;
