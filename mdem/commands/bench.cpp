@@ -148,8 +148,7 @@ void print(const Cost& c, const BenchArguments& a, const Prepared& prepared) {
   fmt::print("{:9.1f} pairs per element (half list)\n", c.pairs);
   fmt::print(
       "  contact {:.1f}  bonds {:.1f}  axes {:.1f}  list {:.1f}  integration {:.1f} ns; {} lists, the last with "
-      "a skin "
-      "of {:.3g} nm\n",
+      "a skin of {:.3g} nm\n",
       t.contact, t.bonds, t.axes, t.list, t.integration, t.builds, c.skin);
   if (c.radial.runs > 0)
     fmt::print(

@@ -94,6 +94,7 @@ void RadialCount::add(const RadialCount& other, double share) {
 
 int radial_lanes(Interaction::Precision precision) {
   const std::string best = instruction_sets().front();
+  if (best == "SCALAR") return 1;
   const bool wide = best.rfind("AVX3", 0) == 0 || best.rfind("AVX10", 0) == 0;
   const int bytes = wide ? 64 : best == "AVX2" ? 32 : 16;
   return bytes / (precision == Interaction::Precision::mixed ? 4 : 8);
