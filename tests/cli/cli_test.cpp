@@ -344,14 +344,13 @@ TEST_F(Cli, BenchReportsItsKeys) {
 }
 
 TEST_F(Cli, BenchTakesAnInstructionSet) {
-  small_rope("s.toml");
-  const Json best = Json::parse(run("bench s.toml --steps 2 --json").out),
-             plain = Json::parse(run("bench s.toml --steps 2 --instructions SCALAR --json").out);
+  const Json best = Json::parse(run("bench film-1e3 --steps 2 --json").out),
+             plain = Json::parse(run("bench film-1e3 --steps 2 --instructions SCALAR --json").out);
   EXPECT_EQ(plain["instructions"], "SCALAR");
   EXPECT_EQ(plain["lanes"], 1);
   EXPECT_NE(best["instructions"], plain["instructions"]);
   EXPECT_EQ(plain["runs_per_element"], best["runs_per_element"]);
-  const Outcome unknown = run("bench s.toml --instructions ABACUS");
+  const Outcome unknown = run("bench film-1e3 --instructions ABACUS");
   EXPECT_EQ(unknown.code, 2);
   EXPECT_NE(unknown.err.find("--instructions"), std::string::npos) << unknown.err;
 }
