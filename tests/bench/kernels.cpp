@@ -40,7 +40,7 @@ void PaperKernel(benchmark::State& bench, const std::string& instructions, Inter
   PaperEngine engine;
   std::vector<ContactBuffer> buffers(rope.list.chunks().size());
   for (auto _ : bench) {
-    engine.compute(rope.in, rope.list, rope.state, rope.axis, buffers.data());
+    engine.compute(rope.topology, rope.in, rope.list, rope.state, rope.axis, buffers.data());
     benchmark::ClobberMemory();
   }
   set_ns(bench, "ns/element", rope.elements());
