@@ -227,37 +227,44 @@ double LineList::cost(const Topology& topology, int i, int tube) const {
   return sum;
 }
 
-// Of the runs that lists of `skin` would have, over the life of such a list, and of building it, for a step: `wear`
-// is by how much distances change in one. This list has those of `listed`; what lies farther out is taken to be as
-// much as in its outermost part.
-double LineList::step_cost(const Topology& topology, double skin, double listed, double wear) const {
-  const double farther = std::max(skin - listed, 0.0);
-  const auto over_a_life = [&](const LineRun& run, double beyond, bool at_end) {
-    if (beyond >= skin) return 0.0;
-    const double in_reach = std::min(1 - beyond / skin, 1.0);  // distances change at a steady pace, up to the skin
-    return run_out_of_reach + in_reach * cost_in_reach(run, at_end);
+double LineList::best_skin(const Topology& topology, double listed, long steps) const {
+  constexpr double ratio = 1.25, least = 0.04, most = 0.4, worth = 0.98;
+  struct AtTheRim {
+    double beyond, in_reach;
   };
-  double sum = build_of_an_element * topology.elements() * wear / skin;
+  std::vector<AtTheRim> rim;
+  double always = 0;  // cost of the runs that are within reach with any skin
   for (int t = 0; t < topology.tubes(); ++t)
-    for (int i = topology.tube_begin[t]; i < topology.tube_begin[t + 1]; ++i) {
-      const bool at_end = topology.ends_of(i, t).any();
+    for (int i = topology.tube_begin[t]; i < topology.tube_begin[t + 1]; ++i)
       for (const LineRun* run = begin(i); run != end(i); ++run) {
         if (run->elements == 0) continue;
-        const double beyond = static_cast<double>(run->beyond);
-        sum += over_a_life(*run, beyond, at_end);
-        if (beyond > listed - farther) sum += over_a_life(*run, beyond + farther, at_end);
+        const double beyond = static_cast<double>(run->beyond),
+                     cost = cost_in_reach(*run, topology.ends_of(i, t).any());
+        if (beyond > 0)
+          rim.push_back({beyond, cost});
+        else
+          always += run_out_of_reach + cost;
       }
+  const double wear = listed / static_cast<double>(std::max(steps, 1L));  // by how much distances change in a step
+  // For a step, over the life of a list, and of building it. What lies farther out than this list is taken to be as
+  // much as in its outermost part.
+  const auto step_cost = [&](double skin) {
+    const double farther = std::max(skin - listed, 0.0);
+    const auto over_a_life = [&](double beyond, double in_reach) {
+      // Distances change at a steady pace, up to the skin.
+      return beyond < skin ? run_out_of_reach + (1 - beyond / skin) * in_reach : 0.0;
+    };
+    double sum = always + build_of_an_element * topology.elements() * wear / skin;
+    for (const AtTheRim& run : rim) {
+      sum += over_a_life(run.beyond, run.in_reach);
+      if (run.beyond > listed - farther) sum += over_a_life(run.beyond + farther, run.in_reach);
     }
-  return sum;
-}
-
-double LineList::best_skin(const Topology& topology, double skin, long steps) const {
-  constexpr double ratio = 1.25, least = 0.04, most = 0.4, worth = 0.98;
-  const double wear = skin / static_cast<double>(std::max(steps, 1L));
-  double best = skin, lowest = worth * step_cost(topology, skin, skin, wear);
-  for (double s = std::min(skin * ratio, most); s >= least; s /= ratio) {
-    const double cost = step_cost(topology, s, skin, wear);
-    if (cost < lowest) best = s, lowest = cost;
+    return sum;
+  };
+  double best = listed, lowest = worth * step_cost(listed);
+  for (double skin = std::min(listed * ratio, most); skin >= least; skin /= ratio) {
+    const double cost = step_cost(skin);
+    if (cost < lowest) best = skin, lowest = cost;
   }
   return best;
 }

@@ -99,9 +99,9 @@ class LineList {
     return touch_.data() + touch_begin_[static_cast<std::size_t>(tube) + 1];
   }
   std::size_t runs() const { return run_.size(); }
-  // The skin (nm) whose lists would have cost least, building included, where this one of `skin` was worn after so
-  // many steps. It follows from what is in the list and not from a clock: the same run has the same lists.
-  double best_skin(const Topology& topology, double skin, long steps) const;
+  // The skin (nm) whose lists would have cost least, building included, where this one of `listed` was worn after
+  // so many steps. It follows from what is in the list and not from a clock: the same run has the same lists.
+  double best_skin(const Topology& topology, double listed, long steps) const;
   // A power of two (nm) that resolves every coordinate in 29 bits.
   double unit() const { return unit_; }
   std::size_t bytes() const;
@@ -110,7 +110,6 @@ class LineList {
   struct Part;
   void lay_out_rows(const Topology& topology, const Interaction& interaction, const std::vector<char>& dense);
   double cost(const Topology& topology, int i, int tube) const;
-  double step_cost(const Topology& topology, double skin, double listed, double wear) const;
   void cut_into_chunks(const Topology& topology, std::size_t count);
   void touch_tubes(const Topology& topology, LineChunk& chunk);
   void find_places(LineChunk& chunk);

@@ -150,7 +150,7 @@ ChartPoint read_point(const std::string& path);
 ChartPoint describe(const ChartScene& scene, const ChartModel& model, const Specimen& specimen);
 // Runs it. Throws NumericalError.
 void measure(const Specimen& specimen, const ChartModel& model, ChartPoint& point);
-// Instructions per element-step by callgrind from the end of the protocol on; none where valgrind is missing.
+// Instructions per element-step by callgrind, of the first steps of the protocol; none where valgrind is missing.
 std::optional<double> count_instructions(const ChartScene& scene, const ChartModel& model,
                                          const std::string& folder);
 // Around the steps of step_for_counting; nothing where callgrind does not run.
