@@ -51,38 +51,50 @@ HWY_INLINE hn::Vec<D> look_up(D d, const T (&row)[segments], I index) {
   return hn::GatherIndex(d, row, hn::And(index, hn::Set(di, segments - 1)));
 }
 
-// u, if wanted, and du/dy at squared distances X; zero beyond the cutoff and outside of `wanted`.
-template <bool energies, class D, class Table>
-HWY_INLINE void radial(D d, const Table& t, hn::Vec<D> X, hn::Mask<D> wanted, hn::Vec<D>& u, hn::Vec<D>& slope) {
+// Of K vectors of squared distances X, term by term for all of them: du/dy and, if wanted, u; zero beyond the cutoff
+// and outside of `wanted`.
+template <bool energies, int K, class D, class Table>
+HWY_INLINE void radial(D d, const Table& t, const hn::Vec<D> (&X)[K], hn::Mask<D> wanted, hn::Vec<D> (&u)[K],
+                       hn::Vec<D> (&slope)[K]) {
   using T = typename Table::Value;
   const hn::RebindToSigned<D> di;
-  const auto y = hn::MulAdd(X, hn::Set(d, t.scale), hn::Set(d, t.shift));
-  const auto index = hn::ShiftRight<Table::mantissa_left>(hn::BitCast(di, y));
-  const auto start = hn::BitCast(d, hn::ShiftLeft<Table::mantissa_left>(index));
-  const auto s = hn::Sub(y, start);
-  auto dp = look_up(d, t.d[Table::degree - 1], index);
-  for (int k = Table::degree - 2; k >= 0; --k) dp = hn::MulAdd(dp, s, look_up(d, t.d[k], index));
-  auto p = hn::Zero(d);
+  hn::Vec<decltype(di)> index[K];
+  hn::Vec<D> s[K];
+  auto in_core = hn::Lt(X[0], hn::Set(d, t.core2));
+  for (int k = 0; k < K; ++k) {
+    const auto y = hn::MulAdd(X[k], hn::Set(d, t.scale), hn::Set(d, t.shift));
+    index[k] = hn::ShiftRight<Table::mantissa_left>(hn::BitCast(di, y));
+    s[k] = hn::Sub(y, hn::BitCast(d, hn::ShiftLeft<Table::mantissa_left>(index[k])));
+    if (k > 0) in_core = hn::Or(in_core, hn::Lt(X[k], hn::Set(d, t.core2)));
+  }
+  for (int k = 0; k < K; ++k) slope[k] = look_up(d, t.d[Table::degree - 1], index[k]);
+  for (int m = Table::degree - 2; m >= 0; --m)
+    for (int k = 0; k < K; ++k) slope[k] = hn::MulAdd(slope[k], s[k], look_up(d, t.d[m], index[k]));
   if constexpr (energies) {
-    p = look_up(d, t.c[Table::degree], index);
-    for (int k = Table::degree - 1; k >= 0; --k) p = hn::MulAdd(p, s, look_up(d, t.c[k], index));
+    for (int k = 0; k < K; ++k) u[k] = look_up(d, t.c[Table::degree], index[k]);
+    for (int m = Table::degree - 1; m >= 0; --m)
+      for (int k = 0; k < K; ++k) u[k] = hn::MulAdd(u[k], s[k], look_up(d, t.c[m], index[k]));
   }
-  const auto core = hn::Lt(X, hn::Set(d, t.core2));
-  if (HWY_UNLIKELY(!hn::AllFalse(d, core))) {
-    const auto rho = hn::Sqrt(hn::Max(X, hn::Set(d, static_cast<T>(1e-12) / (t.unit * t.unit))));
-    const auto e = hn::Sub(hn::Mul(rho, hn::Set(d, t.unit)), hn::Set(d, t.contact + t.core));
-    const auto v1 = hn::Set(d, t.v1), v2 = hn::Set(d, t.v2);
-    const auto inner =
-        hn::MulAdd(e, hn::MulAdd(hn::Mul(e, hn::Set(d, static_cast<T>(0.5))), v2, v1), hn::Set(d, t.v0));
-    // du/dy = du/drho unit/(2 rho scale), rho in units.
-    const auto inner_slope =
-        hn::Div(hn::Mul(hn::MulAdd(e, v2, v1), hn::Set(d, t.unit)), hn::Mul(rho, hn::Set(d, 2 * t.scale)));
-    p = hn::IfThenElse(core, inner, p);
-    dp = hn::IfThenElse(core, inner_slope, dp);
+  if (HWY_UNLIKELY(!hn::AllFalse(d, hn::And(wanted, in_core))))
+    for (int k = 0; k < K; ++k) {
+      const auto core = hn::Lt(X[k], hn::Set(d, t.core2));
+      const auto rho = hn::Sqrt(hn::Max(X[k], hn::Set(d, static_cast<T>(1e-12) / (t.unit * t.unit))));
+      const auto e = hn::Sub(hn::Mul(rho, hn::Set(d, t.unit)), hn::Set(d, t.contact + t.core));
+      const auto v1 = hn::Set(d, t.v1), v2 = hn::Set(d, t.v2);
+      if constexpr (energies)
+        u[k] = hn::IfThenElse(
+            core,
+            hn::MulAdd(e, hn::MulAdd(hn::Mul(e, hn::Set(d, static_cast<T>(0.5))), v2, v1), hn::Set(d, t.v0)), u[k]);
+      // du/dy = du/drho unit/(2 rho scale), rho in units.
+      slope[k] = hn::IfThenElse(
+          core, hn::Div(hn::Mul(hn::MulAdd(e, v2, v1), hn::Set(d, t.unit)), hn::Mul(rho, hn::Set(d, 2 * t.scale))),
+          slope[k]);
+    }
+  for (int k = 0; k < K; ++k) {
+    const auto near = hn::And(wanted, hn::Lt(X[k], hn::Set(d, t.cutoff2)));
+    if constexpr (energies) u[k] = hn::IfThenElseZero(near, u[k]);
+    slope[k] = hn::IfThenElseZero(near, slope[k]);
   }
-  const auto near = hn::And(wanted, hn::Lt(X, hn::Set(d, t.cutoff2)));
-  if constexpr (energies) u = hn::IfThenElseZero(near, p);
-  slope = hn::IfThenElseZero(near, dp);
 }
 
 template <class D, int K>
@@ -105,6 +117,7 @@ HWY_INLINE void meet_row(const Table& t, const LineNodes<C>& nodes, NodeForces<t
                          Sums<typename Lanes<typename Table::Value>::D, K>& sums) {
   using T = typename Table::Value;
   using L = Lanes<T>;
+  using V = hn::Vec<typename L::D>;
   const typename L::D d;
   const int lanes = static_cast<int>(hn::Lanes(d));
   const auto kf = hn::Set(d, t.force * factor);
@@ -112,20 +125,25 @@ HWY_INLINE void meet_row(const Table& t, const LineNodes<C>& nodes, NodeForces<t
   const C *x = nodes.x.data() + row.begin, *y = nodes.y.data() + row.begin, *z = nodes.z.data() + row.begin;
   T *ox = out.x.data() + row.at, *oy = out.y.data() + row.at, *oz = out.z.data() + row.at;
   for (int m = 0; m < row.count; m += lanes) {
-    auto gx = hn::LoadU(d, ox + m), gy = hn::LoadU(d, oy + m), gz = hn::LoadU(d, oz + m);
     const auto wanted = hn::FirstN(d, static_cast<std::size_t>(row.count - m));
     const auto x0 = L::difference(x + m, from[0][0]), y0 = L::difference(y + m, from[0][1]),
                z0 = L::difference(z + m, from[0][2]);
+    // Places of the nodes from the first, whose distance has no more digits than those of the row. Twice made is
+    // cheaper than kept: there are not registers enough.
+    const auto from_node = [&](V first, int k, int a) {
+      return k == 0 ? first : hn::Sub(first, hn::Set(d, static_cast<T>(from[k][a] - from[0][a])));
+    };
+    V X[K], u[K], slope[K];
     for (int k = 0; k < K; ++k) {
-      // The nodes of one element are so close that their difference is exact in T.
-      const auto apart = [&](int a) { return hn::Set(d, static_cast<T>(from[k][a] - from[0][a])); };
-      const auto dx = k == 0 ? x0 : hn::Sub(x0, apart(0));
-      const auto dy = k == 0 ? y0 : hn::Sub(y0, apart(1));
-      const auto dz = k == 0 ? z0 : hn::Sub(z0, apart(2));
-      hn::Vec<typename L::D> u, slope;
-      radial<energies>(d, t, hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz))), wanted, u, slope);
-      const auto f = hn::Mul(slope, kf);
-      if constexpr (energies) energy = hn::Add(energy, u);
+      const V dx = from_node(x0, k, 0), dy = from_node(y0, k, 1), dz = from_node(z0, k, 2);
+      X[k] = hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz)));
+    }
+    radial<energies>(d, t, X, wanted, u, slope);
+    auto gx = hn::LoadU(d, ox + m), gy = hn::LoadU(d, oy + m), gz = hn::LoadU(d, oz + m);
+    for (int k = 0; k < K; ++k) {
+      const V dx = from_node(x0, k, 0), dy = from_node(y0, k, 1), dz = from_node(z0, k, 2);
+      const auto f = hn::Mul(slope[k], kf);
+      if constexpr (energies) energy = hn::Add(energy, u[k]);
       gx = hn::MulAdd(f, dx, gx);
       gy = hn::MulAdd(f, dy, gy);
       gz = hn::MulAdd(f, dz, gz);
@@ -195,12 +213,11 @@ struct Element {
   const LineChunk& chunk;
   LineWork<Real>& work;
   ContactBuffer& out;
+  int element;
   std::size_t row_of_types;  // of its type in the tables of pairs of types
   TubeEnds ends;
   double x[3], n[3];
-  // Forces on its nodes, and these times their places along it; lanes are added up at the end.
-  V fx, fy, fz, mx, my, mz, energy;
-  ElementSum sum;  // what does not come from nodes
+  ElementSum sum;
 
   const PairSum<Real>& sums(int type_j) const { return in.pairs[pair(type_j)]; }
   std::size_t pair(int type_j) const { return row_of_types + static_cast<std::size_t>(type_j); }
@@ -212,7 +229,7 @@ struct Element {
   }
 
   HWY_INLINE Element(const In& input, const LineChunk& c, LineWork<Real>& w, ContactBuffer& o, int i, int tube)
-      : in(input), chunk(c), work(w), out(o) {
+      : in(input), chunk(c), work(w), out(o), element(i) {
     const Topology& topology = *in.topology;
     row_of_types =
         static_cast<std::size_t>(topology.tube_type[static_cast<std::size_t>(tube)]) * topology.types.size();
@@ -221,19 +238,9 @@ struct Element {
     const Vec3Array &place = in.state->position, &axis = *in.axis;
     x[0] = place.x[at], x[1] = place.y[at], x[2] = place.z[at];
     n[0] = axis.x[at], n[1] = axis.y[at], n[2] = axis.z[at];
-    fx = fy = fz = mx = my = mz = energy = hn::Zero(D());
   }
-  // The couple g n_i x n_j on element j, and its opposite on this one.
-  HWY_INLINE void turn(int j, int shift, double g) {
-    const Vec3Array& axis = *in.axis;
-    const auto sj = static_cast<std::size_t>(j), at = static_cast<std::size_t>(j + shift);
-    const double tx = g * (n[1] * axis.z[sj] - n[2] * axis.y[sj]), ty = g * (n[2] * axis.x[sj] - n[0] * axis.z[sj]),
-                 tz = g * (n[0] * axis.y[sj] - n[1] * axis.x[sj]);
-    sum.tx -= tx, sum.ty -= ty, sum.tz -= tz;
-    out.tx[at] += tx, out.ty[at] += ty, out.tz[at] += tz;
-  }
-  template <bool energies>
-  HWY_INLINE void add_to(ContactBuffer& buffer, int at) {
+  // The sums of the lanes of the forces on its nodes, and of these times their places along it.
+  HWY_INLINE void add(V fx, V fy, V fz, V mx, V my, V mz) {
     double f[3], m[3];
     totals(fx, fy, fz, mx, my, mz, f, m);
     sum.fx += f[0];
@@ -242,191 +249,327 @@ struct Element {
     sum.tx += n[1] * m[2] - n[2] * m[1];
     sum.ty += n[2] * m[0] - n[0] * m[2];
     sum.tz += n[0] * m[1] - n[1] * m[0];
-    if constexpr (energies) sum.energy += total(D(), energy);
-    sum.add_to(buffer, at);
   }
 };
 
-// K of the nodes of an element, and their sums.
+// K of the nodes of one element, or of several, and their sums: node `first` and those after it, where each element
+// has as many as there are places.
 template <class E, int K>
 struct Nodes {
   using D = typename E::D;
   typename E::C at[K][3];
   double s[K];
+  E* of[K];
   Sums<D, K> sums;
 
-  HWY_INLINE Nodes(const E& e, const double* places) : sums(no_sums<D, K>(D())) {
+  HWY_INLINE Nodes(E* elements, const std::vector<double>& places, int first) : sums(no_sums<D, K>(D())) {
+    const int each = static_cast<int>(places.size());
     for (int m = 0; m < K; ++m) {
-      s[m] = places[m];
-      for (int a = 0; a < 3; ++a) at[m][a] = e.in.nodes[0].coordinate(e.x[a] + s[m] * e.n[a]);
+      of[m] = elements + (first + m) / each;
+      s[m] = places[static_cast<std::size_t>((first + m) % each)];
+      for (int a = 0; a < 3; ++a) at[m][a] = of[m]->in.nodes[0].coordinate(of[m]->x[a] + s[m] * of[m]->n[a]);
     }
   }
-  HWY_INLINE void collect(E& e) const {
-    for (int k = 0; k < K; ++k) {
-      const auto arm = hn::Set(D(), static_cast<typename E::Real>(s[k]));
-      e.fx = hn::Add(e.fx, sums.x[k]);
-      e.fy = hn::Add(e.fy, sums.y[k]);
-      e.fz = hn::Add(e.fz, sums.z[k]);
-      e.mx = hn::MulAdd(arm, sums.x[k], e.mx);
-      e.my = hn::MulAdd(arm, sums.y[k], e.my);
-      e.mz = hn::MulAdd(arm, sums.z[k], e.mz);
+  template <bool energies>
+  HWY_INLINE void collect() const {
+    using V = typename E::V;
+    for (int k = 0; k < K;) {
+      E& e = *of[k];
+      V fx = sums.x[k], fy = sums.y[k], fz = sums.z[k];
+      V arm = hn::Set(D(), static_cast<typename E::Real>(s[k]));
+      V mx = hn::Mul(arm, fx), my = hn::Mul(arm, fy), mz = hn::Mul(arm, fz);
+      for (++k; k < K && of[k] == &e; ++k) {
+        arm = hn::Set(D(), static_cast<typename E::Real>(s[k]));
+        fx = hn::Add(fx, sums.x[k]), fy = hn::Add(fy, sums.y[k]), fz = hn::Add(fz, sums.z[k]);
+        mx = hn::MulAdd(arm, sums.x[k], mx);
+        my = hn::MulAdd(arm, sums.y[k], my);
+        mz = hn::MulAdd(arm, sums.z[k], mz);
+      }
+      e.add(fx, fy, fz, mx, my, mz);
     }
-    e.energy = hn::Add(e.energy, sums.energy);
+    if constexpr (energies) of[0]->sum.energy += total(D(), sums.energy);
   }
 };
 
-// K nodes of sum t on an element, from node k, with all rows that it meets.
+// K nodes of sum t on one element, or on several, from node k, with all rows that they meet.
 template <bool energies, int K, class E>
-HWY_INLINE void meet_rows(E& e, int t, int k) {
-  const MetRows& met = e.work.met[t];
+HWY_INLINE void meet_rows(E* elements, const MetRows& met, int t, int k) {
+  E& e = *elements;
   const Rows kind = e.rows_of(t);
   const auto& placed = e.in.nodes[static_cast<int>(kind)];
   auto& forces = e.work.forces[static_cast<int>(kind)];
-  Nodes<E, K> nodes(e, e.sums(met.begin()->type).sums[t].places.data() + k);
+  Nodes<E, K> nodes(elements, e.sums(met.begin()->type).sums[t].places, k);
   for (const NodeRow& row : met) {
     forces.use(e.chunk, kind, row.touched);
     meet_row<energies, K>(e.table(row.type), placed, forces, row, nodes.at,
                           static_cast<typename E::Real>(e.sums(row.type).sums[t].weight), nodes.sums);
   }
-  nodes.collect(e);
+  nodes.template collect<energies>();
 }
+
+// So many chains of operations at a time that none waits for the last one, as far as there are registers.
+constexpr int nodes_at_once = HWY_TARGET <= HWY_AVX3 ? 4 : 2;
 
 // The rows of sum t. On its own: within the loop over the elements the compiler keeps more in registers than there
 // are.
 template <bool energies, class E>
-HWY_NOINLINE void sum_rows(E& e, int t) {
-  const int on_i = static_cast<int>(e.sums(e.work.met[t].begin()->type).sums[t].places.size());
+HWY_NOINLINE void sum_rows(E* elements, int count, const MetRows& met, int t) {
+  const int nodes = count * static_cast<int>(elements->sums(met.begin()->type).sums[t].places.size());
   int k = 0;
-  for (; k + 2 <= on_i; k += 2) meet_rows<energies, 2>(e, t, k);
-  for (; k < on_i; ++k) meet_rows<energies, 1>(e, t, k);
+  if constexpr (nodes_at_once > 2)
+    for (; k + nodes_at_once <= nodes; k += nodes_at_once) meet_rows<energies, nodes_at_once>(elements, met, t, k);
+  for (; k + 2 <= nodes; k += 2) meet_rows<energies, 2>(elements, met, t, k);
+  for (; k < nodes; ++k) meet_rows<energies, 1>(elements, met, t, k);
 }
 
-// Another element, from the one that the loop stands at, and what acts on it.
-template <class E>
-struct Partner {
-  using V = typename E::V;
-  double n[3];
-  typename E::Real d[3], nj[3], ni[3];  // separation and axes, in units of the list
-  V fx, fy, fz, mx, my, mz;
+// What acts on the elements of pairs, one pair in each lane: forces on j, and the first moments of those on the nodes
+// of i (of the opposite ones) and of j.
+template <class D>
+struct PairTotals {
+  using V = hn::Vec<D>;
+  V force[3], moment_i[3], moment_j[3], energy;
 
-  HWY_INLINE Partner(const E& e, int j) {
-    const auto sj = static_cast<std::size_t>(j);
-    const Vec3Array &x = e.in.state->position, &axis = *e.in.axis;
-    const double per_unit = e.in.nodes[0].per_unit;
-    const double place[3] = {x.x[sj], x.y[sj], x.z[sj]};
-    n[0] = axis.x[sj], n[1] = axis.y[sj], n[2] = axis.z[sj];
+  HWY_INLINE PairTotals() {
+    for (int a = 0; a < 3; ++a) force[a] = moment_i[a] = moment_j[a] = hn::Zero(D());
+    energy = hn::Zero(D());
+  }
+  HWY_INLINE void scale(V by) {
     for (int a = 0; a < 3; ++a) {
-      d[a] = static_cast<typename E::Real>((place[a] - e.x[a]) * per_unit);
-      nj[a] = static_cast<typename E::Real>(n[a] * per_unit);
-      ni[a] = static_cast<typename E::Real>(e.n[a] * per_unit);
+      force[a] = hn::Mul(force[a], by);
+      moment_i[a] = hn::Mul(moment_i[a], by);
+      moment_j[a] = hn::Mul(moment_j[a], by);
     }
-    fx = fy = fz = mx = my = mz = hn::Zero(typename E::D());
   }
-
-  HWY_INLINE double cosine(const E& e) const { return e.n[0] * n[0] + e.n[1] * n[1] + e.n[2] * n[2]; }
-
-  // The pairs of nodes in `lanes`, times `share`. Returns their energy, if wanted, without the share.
-  template <bool energies>
-  HWY_INLINE double meet(E& e, const typename E::Table& t, const PairLanes<typename E::Real>& lanes, double share) {
-    const typename E::D tag;
-    const auto all = hn::FirstN(tag, hn::Lanes(tag));
-    const auto kf = hn::Set(tag, t.force * static_cast<typename E::Real>(share));
-    const V none = hn::Zero(tag);
-    V gx = none, gy = none, gz = none, tx = none, ty = none, tz = none, ex = none, ey = none, ez = none,
-      energy = none;
-    for (std::size_t m = 0; m < lanes.weight.size(); m += hn::Lanes(tag)) {
-      const V si = hn::LoadU(tag, lanes.i.data() + m), sj = hn::LoadU(tag, lanes.j.data() + m);
-      const V w = hn::LoadU(tag, lanes.weight.data() + m);
-      const auto apart = [&](int a) {
-        return hn::NegMulAdd(si, hn::Set(tag, ni[a]), hn::MulAdd(sj, hn::Set(tag, nj[a]), hn::Set(tag, d[a])));
-      };
-      const V dx = apart(0), dy = apart(1), dz = apart(2);
-      V u, slope;
-      radial<energies>(tag, t, hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz))), all, u, slope);
-      const V f = hn::Mul(hn::Mul(slope, kf), w);
-      const V hx = hn::Mul(f, dx), hy = hn::Mul(f, dy), hz = hn::Mul(f, dz);
-      gx = hn::Add(gx, hx), gy = hn::Add(gy, hy), gz = hn::Add(gz, hz);
-      tx = hn::MulAdd(sj, hx, tx), ty = hn::MulAdd(sj, hy, ty), tz = hn::MulAdd(sj, hz, tz);
-      ex = hn::MulAdd(si, hx, ex), ey = hn::MulAdd(si, hy, ey), ez = hn::MulAdd(si, hz, ez);
-      if constexpr (energies) energy = hn::MulAdd(w, u, energy);
+  HWY_INLINE void add(const PairTotals& o) {
+    for (int a = 0; a < 3; ++a) {
+      force[a] = hn::Add(force[a], o.force[a]);
+      moment_i[a] = hn::Add(moment_i[a], o.moment_i[a]);
+      moment_j[a] = hn::Add(moment_j[a], o.moment_j[a]);
     }
-    fx = hn::Add(fx, gx), fy = hn::Add(fy, gy), fz = hn::Add(fz, gz);
-    mx = hn::Add(mx, tx), my = hn::Add(my, ty), mz = hn::Add(mz, tz);
-    e.fx = hn::Sub(e.fx, gx), e.fy = hn::Sub(e.fy, gy), e.fz = hn::Sub(e.fz, gz);
-    e.mx = hn::Sub(e.mx, ex), e.my = hn::Sub(e.my, ey), e.mz = hn::Sub(e.mz, ez);
-    if constexpr (!energies) return 0;
-    return total(tag, energy);
-  }
-
-  HWY_INLINE void add_to(ContactBuffer& out, std::size_t at) const {
-    double f[3], m[3];
-    totals(fx, fy, fz, mx, my, mz, f, m);
-    out.fx[at] += f[0];
-    out.fy[at] += f[1];
-    out.fz[at] += f[2];
-    out.tx[at] += n[1] * m[2] - n[2] * m[1];
-    out.ty[at] += n[2] * m[0] - n[0] * m[2];
-    out.tz[at] += n[0] * m[1] - n[1] * m[0];
   }
 };
 
-// Element j, with the shares w of its sums.
-template <bool energies, class E>
-HWY_INLINE void meet_element(E& e, const LineRun& run, int j, const SumShare& w, Partner<E>& other) {
-  const auto& table = e.table(run.type);
-  const PairSum<typename E::Real>& sums = e.sums(run.type);
-  const TubeEnds ends = run.tube_ends();
-  const int shift = e.touched(run).element_shift;
-  const auto& lanes = sums.pairs(w.first, e.ends, ends);
-  if (w.value >= 1) {
-    e.sum.energy += other.template meet<energies>(e, table, lanes, 1);
-  } else {
-    const double near = other.template meet<true>(e, table, lanes, w.value);
-    const double next = other.template meet<true>(e, table, sums.pairs(w.first + 1, e.ends, ends), 1 - w.value);
-    e.sum.energy += w.value * near + (1 - w.value) * next;
-    // The share depends on the angle: a couple on both.
-    e.turn(j, shift, (near - next) * w.derivative);
+// The lanes of a batch from m on.
+template <bool energies, class Table>
+struct PairLanes {
+  using T = typename Table::Value;
+  using D = typename Lanes<T>::D;
+  using V = hn::Vec<D>;
+  const Table& table;
+  V apart[3], axis_i[3], axis_j[3];
+  hn::Mask<D> wanted;
+
+  HWY_INLINE PairLanes(const Table& t, const PairBatch<T>& batch, int m) : table(t) {
+    const D d;
+    for (int a = 0; a < 3; ++a) {
+      apart[a] = hn::LoadU(d, batch.apart[a] + m);
+      axis_i[a] = hn::LoadU(d, batch.axis_i[a] + m);
+      axis_j[a] = hn::LoadU(d, batch.axis_j[a] + m);
+    }
+    wanted = hn::FirstN(d, static_cast<std::size_t>(batch.count - m));
   }
-  other.add_to(e.out, static_cast<std::size_t>(j + shift));
+
+  // K pairs of nodes, from the one at n.
+  template <int K>
+  HWY_INLINE void add(const NodePairs<T>& nodes, std::size_t n, PairTotals<D>& sum) const {
+    const D d;
+    V at[K][3], X[K], u[K], slope[K];
+    for (std::size_t k = 0; k < K; ++k) {
+      const V si = hn::Set(d, nodes.i[n + k]), sj = hn::Set(d, nodes.j[n + k]);
+      for (int a = 0; a < 3; ++a) at[k][a] = hn::NegMulAdd(si, axis_i[a], hn::MulAdd(sj, axis_j[a], apart[a]));
+      X[k] = hn::MulAdd(at[k][0], at[k][0], hn::MulAdd(at[k][1], at[k][1], hn::Mul(at[k][2], at[k][2])));
+    }
+    radial<energies>(d, table, X, wanted, u, slope);
+    for (std::size_t k = 0; k < K; ++k) {
+      const V si = hn::Set(d, nodes.i[n + k]), sj = hn::Set(d, nodes.j[n + k]);
+      const V f = hn::Mul(slope[k], hn::Set(d, table.force * nodes.weight[n + k]));
+      for (int a = 0; a < 3; ++a) {
+        const V force = hn::Mul(f, at[k][a]);
+        sum.force[a] = hn::Add(sum.force[a], force);
+        sum.moment_i[a] = hn::MulAdd(si, force, sum.moment_i[a]);
+        sum.moment_j[a] = hn::MulAdd(sj, force, sum.moment_j[a]);
+      }
+      if constexpr (energies) sum.energy = hn::MulAdd(hn::Set(d, nodes.weight[n + k]), u[k], sum.energy);
+    }
+  }
+  HWY_INLINE PairTotals<D> meet(const NodePairs<T>& nodes) const {
+    PairTotals<D> sum;
+    std::size_t n = 0;
+    for (; n + 2 <= nodes.weight.size(); n += 2) add<2>(nodes, n, sum);
+    for (; n < nodes.weight.size(); ++n) add<1>(nodes, n, sum);
+    return sum;
+  }
+};
+
+struct Triple {
+  double x, y, z;
+};
+HWY_INLINE Triple cross(const Triple& a, const Triple& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+HWY_INLINE void add_to(ContactBuffer& out, int at, double sign, const Triple& force, const Triple& torque) {
+  const auto k = static_cast<std::size_t>(at);
+  out.fx[k] += sign * force.x, out.fy[k] += sign * force.y, out.fz[k] += sign * force.z;
+  out.tx[k] += torque.x, out.ty[k] += torque.y, out.tz[k] += torque.z;
+}
+
+// The totals of the lanes from m on, onto the elements. `turn` is what a couple on both comes from, where the share
+// of a sum depends on their angle.
+template <class In, class T, class D>
+HWY_INLINE void give_out(const In& in, const PairBatch<T>& batch, int m, const PairTotals<D>& sum, hn::Vec<D> turn,
+                         ContactBuffer& out) {
+  constexpr int lanes = static_cast<int>(hn::MaxLanes(D()));
+  const D d;
+  alignas(64) T all[10][lanes];
+  for (int a = 0; a < 3; ++a) {
+    hn::Store(sum.force[a], d, all[a]);
+    hn::Store(sum.moment_i[a], d, all[3 + a]);
+    hn::Store(sum.moment_j[a], d, all[6 + a]);
+  }
+  hn::Store(turn, d, all[9]);
+  const auto of = [&](int first, int l) {
+    return Triple{static_cast<double>(all[first][l]), static_cast<double>(all[first + 1][l]),
+                  static_cast<double>(all[first + 2][l])};
+  };
+  const auto axis = [&](int element) {
+    const auto e = static_cast<std::size_t>(element);
+    return Triple{in.axis->x[e], in.axis->y[e], in.axis->z[e]};
+  };
+  for (int l = 0; l < std::min(lanes, batch.count - m); ++l) {
+    const Triple ni = axis(batch.i[m + l]), nj = axis(batch.j[m + l]), force = of(0, l);
+    Triple on_i = cross(of(3, l), ni), on_j = cross(nj, of(6, l));
+    if (batch.kind.shared) {
+      const double g = static_cast<double>(all[9][l]) * batch.derivative[m + l];
+      const Triple couple = cross(ni, nj);
+      on_i.x -= g * couple.x, on_i.y -= g * couple.y, on_i.z -= g * couple.z;
+      on_j.x += g * couple.x, on_j.y += g * couple.y, on_j.z += g * couple.z;
+    }
+    add_to(out, batch.at_i[m + l], -1, force, on_i);
+    add_to(out, batch.at_j[m + l], 1, force, on_j);
+  }
+}
+
+// All pairs of a batch, which is empty then.
+template <bool energies, class In, class T>
+HWY_NOINLINE void meet_pairs(const In& in, PairBatch<T>& batch, ContactBuffer& out) {
+  using D = typename Lanes<T>::D;
+  const D d;
+  const auto& table = in.tables[batch.kind.types];
+  const auto nodes = [&](int sum) -> const NodePairs<T>& {
+    return in.pairs[batch.kind.types].pairs(sum, batch.kind.ends_i, batch.kind.ends_j);
+  };
+  for (int m = 0; m < batch.count; m += static_cast<int>(hn::Lanes(d))) {
+    if (batch.kind.shared) {
+      const PairLanes<true, typename In::Table> lanes(table, batch, m);
+      PairTotals<D> near = lanes.meet(nodes(batch.kind.sum)), next = lanes.meet(nodes(batch.kind.sum + 1));
+      const auto share = hn::LoadU(d, batch.share + m), rest = hn::Sub(hn::Set(d, T{1}), share);
+      if constexpr (energies)
+        out.energy += total(d, hn::MulAdd(share, near.energy, hn::Mul(rest, next.energy)));
+      const auto turn = hn::Sub(near.energy, next.energy);
+      near.scale(share), next.scale(rest);
+      near.add(next);
+      give_out(in, batch, m, near, turn, out);
+    } else {
+      const PairTotals<D> sum = PairLanes<energies, typename In::Table>(table, batch, m).meet(nodes(batch.kind.sum));
+      if constexpr (energies) out.energy += total(d, sum.energy);
+      give_out(in, batch, m, sum, hn::Zero(d), out);
+    }
+  }
+  batch.count = 0;
+}
+
+template <class In, class T>
+HWY_INLINE void fill_lane(const In& in, int i, int j, int at_i, int at_j, PairBatch<T>& batch) {
+  const auto l = static_cast<std::size_t>(batch.count++), si = static_cast<std::size_t>(i),
+             sj = static_cast<std::size_t>(j);
+  const Vec3Array &x = in.state->position, &n = *in.axis;
+  const double per_unit = in.nodes[0].per_unit;
+  batch.apart[0][l] = static_cast<T>((x.x[sj] - x.x[si]) * per_unit);
+  batch.apart[1][l] = static_cast<T>((x.y[sj] - x.y[si]) * per_unit);
+  batch.apart[2][l] = static_cast<T>((x.z[sj] - x.z[si]) * per_unit);
+  batch.axis_i[0][l] = static_cast<T>(n.x[si] * per_unit);
+  batch.axis_i[1][l] = static_cast<T>(n.y[si] * per_unit);
+  batch.axis_i[2][l] = static_cast<T>(n.z[si] * per_unit);
+  batch.axis_j[0][l] = static_cast<T>(n.x[sj] * per_unit);
+  batch.axis_j[1][l] = static_cast<T>(n.y[sj] * per_unit);
+  batch.axis_j[2][l] = static_cast<T>(n.z[sj] * per_unit);
+  batch.i[l] = i, batch.j[l] = j, batch.at_i[l] = at_i, batch.at_j[l] = at_j;
+}
+
+// The pair of the element that the loop stands at and j, with the shares w of its sums, to the others of its kind.
+template <bool energies, class E>
+HWY_INLINE void add_pair(E& e, const LineRun& run, int j, const SumShare& w) {
+  using T = typename E::Real;
+  const PairKind kind{static_cast<int>(e.pair(run.type)), w.first, e.ends, run.tube_ends(), w.value < 1};
+  auto& batches = e.work.batches;
+  auto batch = std::find_if(batches.begin(), batches.end(), [&](const auto& b) { return b.kind == kind; });
+  if (batch == batches.end()) {
+    batches.push_back({});
+    batch = batches.end() - 1;
+    batch->kind = kind;
+  }
+  batch->share[batch->count] = static_cast<T>(w.value);
+  batch->derivative[batch->count] = w.derivative;
+  fill_lane(e.in, e.element, j, e.element + e.chunk.own_shift(), j + e.touched(run).element_shift, *batch);
+  if (batch->count == PairBatch<T>::most) meet_pairs<energies>(e.in, *batch, e.out);
+}
+
+// The pairs at the ends of tubes, which take the first sum alone.
+template <bool energies, class In, class T>
+HWY_NOINLINE void meet_end_pairs(const In& in, const EndPairs& of, PairBatch<T>& batch, ContactBuffer& out) {
+  batch.kind = of.kind;
+  batch.count = 0;
+  for (const EndPairs::Pair& p : of.pairs) {
+    if (static_cast<double>(p.beyond) > in.moved) break;
+    fill_lane(in, p.i, p.j, p.at_i, p.at_j, batch);
+    if (batch.count == PairBatch<T>::most) meet_pairs<energies>(in, batch, out);
+  }
+  if (batch.count > 0) meet_pairs<energies>(in, batch, out);
+}
+
+template <class E>
+HWY_INLINE double cosine(const E& e, int j) {
+  const auto sj = static_cast<std::size_t>(j);
+  const Vec3Array& axis = *e.in.axis;
+  return e.n[0] * axis.x[sj] + e.n[1] * axis.y[sj] + e.n[2] * axis.z[sj];
 }
 
 // A run element by element: at the ends of tubes.
 template <bool energies, class E>
 HWY_NOINLINE void pair_run(E& e, const LineRun& run) {
-  for (int j = run.element_begin; j < run.element_begin + run.elements; ++j) {
-    Partner<E> other(e, j);
-    meet_element<energies>(e, run, j, e.law(run.type).sparse.share(other.cosine(e)), other);
-  }
+  for (int j = run.element_begin; j < run.element_begin + run.elements; ++j)
+    add_pair<energies>(e, run, j, e.law(run.type).sparse.share(cosine(e, j)));
 }
 
 // The elements m .. end of a run, with `each` nodes, as a row.
-HWY_INLINE NodeRow row_of(const LineRun& run, Rows kind, int each, int m, int end) {
+HWY_INLINE NodeRow row_of(const LineRun& run, const TouchedTube& touched, Rows kind, int each, int m, int end) {
   const LineRun::Nodes& nodes = run.of(kind);
   const int from = std::max<int>(nodes.from, m * each), to = std::min(nodes.from + nodes.count, end * each),
             first = from - nodes.from;
-  return {nodes.begin + first, nodes.at + first, static_cast<short>(std::max(to - from, 0)), run.type, run.touched};
+  const int begin = nodes.begin + first;
+  return {begin, begin + touched.row[static_cast<int>(kind)].shift, static_cast<short>(std::max(to - from, 0)),
+          run.type, run.touched};
 }
 
 // A run whose angles are such that one sum goes over into the next: rows of those elements that take one sum, and
 // the others one by one.
 template <bool energies, class E>
-HWY_NOINLINE void split_run(E& e, const LineRun& run) {
+HWY_NOINLINE void split_run(E& e, const LineRun& run, MetRows* met) {
   const LineContact& law = e.law(run.type);
   int began = 0, of = -1;  // the row that is being made, and its sum
   const auto finish = [&](int end) {
     if (of < 0) return;
-    const NodeRow part = row_of(run, e.rows_of(of), law.sum_nodes_j(of), began, end);
-    if (part.count > 0) e.work.met[of].add(part);
+    const NodeRow part = row_of(run, e.touched(run), e.rows_of(of), law.sum_nodes_j(of), began, end);
+    if (part.count > 0) met[of].add(part);
   };
   for (int m = 0; m < run.elements; ++m) {
-    Partner<E> other(e, run.element_begin + m);
-    const SumShare w = law.sparse.share(other.cosine(e));
+    const SumShare w = law.sparse.share(cosine(e, run.element_begin + m));
     const int takes = w.value < 1 ? -1 : w.first;
     if (takes != of) {
       finish(m);
       began = m, of = takes;
     }
-    if (takes < 0) meet_element<energies>(e, run, run.element_begin + m, w, other);
+    if (takes < 0) add_pair<energies>(e, run, run.element_begin + m, w);
   }
   finish(run.elements);
 }
@@ -457,37 +600,84 @@ HWY_INLINE RunSum sum_of(const E& e, const LineRun& run) {
                  hn::GetLane(hn::MaxOfLanes(d, largest)));
 }
 
+// A run of one element: `met` takes what it meets by rows.
+template <bool energies, class E>
+HWY_INLINE void meet_run(E& e, const LineRun& run, MetRows* met) {
+  if (static_cast<double>(run.beyond) > e.in.moved) return;
+  const RunSum sum = sum_of(e, run);
+  switch (sum.kind) {
+    case RunSum::rows: {
+      const Rows kind = e.rows_of(sum.first);
+      const LineRun::Nodes& nodes = run.of(kind);
+      const int shift = e.touched(run).row[static_cast<int>(kind)].shift;
+      met[sum.first].add({nodes.begin, nodes.begin + shift, nodes.count, run.type, run.touched});
+      break;
+    }
+    case RunSum::split:
+      split_run<energies>(e, run, met);
+      break;
+    case RunSum::pairs:
+      pair_run<energies>(e, run);
+      break;
+  }
+}
+
+// The runs at the ends of tubes, whatever sums they take.
+template <bool energies, class In, class Real>
+HWY_NOINLINE void meet_end_runs(const In& in, const LineChunk& chunk, LineWork<Real>& work, ContactBuffer& out) {
+  for (const ElementRun& of : chunk.end_runs) {
+    const LineRun& run = in.list->run(of.run);
+    for (MetRows& rows : work.met[0]) rows.count = 0;
+    Element<In> e(in, chunk, work, out, of.element, in.topology->tube_of(of.element));
+    meet_run<energies>(e, run, work.met[0]);
+    for (int t = 0; t < line_sums; ++t)
+      if (work.met[0][t].count > 0) sum_rows<energies>(&e, 1, work.met[0][t], t);
+    e.sum.add_to(out, of.element + chunk.own_shift());
+  }
+}
+
 template <bool energies, class In, class Real>
 HWY_INLINE void all_elements(const In& in, const LineChunk& chunk, LineWork<Real>& work, ContactBuffer& out) {
   const Topology& topology = *in.topology;
   int tube = chunk.begin < chunk.end ? topology.tube_of(chunk.begin) : 0;
   const int shift = chunk.own_shift();
-  for (int i = chunk.begin; i < chunk.end; ++i) {
-    while (i >= topology.tube_begin[tube + 1]) ++tube;
-    if (in.list->begin(i) == in.list->end(i)) continue;
-    Element<In> e(in, chunk, work, out, i, tube);
-    for (MetRows& met : work.met) met.count = 0;
-    for (const LineRun* run = in.list->begin(i); run != in.list->end(i); ++run) {
-      if (static_cast<double>(run->beyond) > in.moved || run->elements == 0) continue;
-      const RunSum sum = sum_of(e, *run);
-      switch (sum.kind) {
-        case RunSum::rows: {
-          const LineRun::Nodes& nodes = run->of(e.rows_of(sum.first));
-          work.met[sum.first].add({nodes.begin, nodes.at, nodes.count, run->type, run->touched});
-          break;
-        }
-        case RunSum::split:
-          split_run<energies>(e, *run);
-          break;
-        case RunSum::pairs:
-          pair_run<energies>(e, *run);
-          break;
+  for (const LineBlock& block : chunk.blocks) {
+    while (block.first >= topology.tube_begin[tube + 1]) ++tube;
+    Element<In> e[2] = {{in, chunk, work, out, block.first, tube},
+                        {in, chunk, work, out, block.first + block.elements - 1, tube}};
+    work.shared.count = 0;
+    bool alone = false;  // whether an element has met rows by itself
+    const auto of_one = [&](int k) {
+      if (!alone)
+        for (auto& sums : work.met)
+          for (MetRows& rows : sums) rows.count = 0;
+      alone = true;
+      return work.met[k];
+    };
+    for (const BlockRun *run = chunk.runs.data() + block.begin, *end = chunk.runs.data() + block.end; run != end;
+         ++run) {
+      if (static_cast<double>(run->beyond) > in.moved) continue;
+      if (HWY_LIKELY(in.turned < static_cast<double>(run->even))) {
+        (run->of == BlockRun::both ? work.shared : of_one(run->of)[0]).add(run->row);
+        continue;
       }
+      for (int k = 0; k < block.elements; ++k)
+        if (run->run[k] != BlockRun::none) meet_run<energies>(e[k], in.list->run(run->run[k]), of_one(k));
     }
-    for (int t = 0; t < line_sums; ++t)
-      if (work.met[t].count > 0) sum_rows<energies>(e, t);
-    e.template add_to<energies>(out, i + shift);
+    if (work.shared.count > 0) sum_rows<energies>(e, block.elements, work.shared, 0);
+    for (int k = 0; k < block.elements; ++k) {
+      for (int t = 0; alone && t < line_sums; ++t)
+        if (work.met[k][t].count > 0) sum_rows<energies>(e + k, 1, work.met[k][t], t);
+      e[k].sum.add_to(out, block.first + k + shift);
+    }
   }
+  if (in.turned < static_cast<double>(chunk.even)) {
+    for (const EndPairs& of : chunk.end_pairs) meet_end_pairs<energies>(in, of, work.ends, out);
+  } else {
+    meet_end_runs<energies>(in, chunk, work, out);
+  }
+  for (auto& batch : work.batches)
+    if (batch.count > 0) meet_pairs<energies>(in, batch, out);
 }
 
 void Mixed(const LineKernelInput<MixedTable, std::int32_t>& in, const LineChunk& chunk, LineWork<float>& work,

@@ -37,11 +37,13 @@ struct Counter {
     }
   }
 
-  void add_pairs(const LineContact& law, int i, const PairLanes<double>& of, int j, RadialCount& count) const {
-    add_vectors(static_cast<int>(of.weight.size()), 1, count);
+  // In lanes that are all full, but for the last ones of a chunk.
+  void add_pairs(const LineContact& law, int i, const NodePairs<double>& of, int j, RadialCount& count) const {
+    count.vectors += static_cast<double>(of.weight.size()) / lanes;
+    count.evaluations += static_cast<double>(of.weight.size());
     for (std::size_t m = 0; m < of.weight.size(); ++m) {
       const Vector3 d = place(j) + of.j[m] * axis(j) - place(i) - of.i[m] * axis(i);
-      count.useful += of.weight[m] != 0 && d.norm() < law.density.cutoff();
+      count.useful += d.norm() < law.density.cutoff();
     }
   }
 

@@ -55,14 +55,7 @@ struct NodeForces {
 // The sparse ones, and that over all nodes.
 inline constexpr int line_sums = SparseNodes::most + 1;
 
-// Consecutive nodes of another tube: from `begin` on in the rows of all tubes, from `at` on in the chunk's buffers.
-struct NodeRow {
-  int begin = 0, at = 0;
-  short count = 0, type = 0;  // tube type
-  int touched = 0;
-};
-
-// Those that one element meets with one sum.
+// Those that are met with one sum.
 struct MetRows {
   std::vector<NodeRow> row;  // as many as there can be
   int count = 0;
@@ -72,34 +65,51 @@ struct MetRows {
   const NodeRow* end() const { return row.data() + count; }
 };
 
+// Pairs of elements that are summed one by one, a pair in each lane: all of the same types, ends and sums.
+template <class T>
+struct PairBatch {
+  static constexpr int most = 16;  // lanes of the widest vectors
+  PairKind kind;
+  int count = 0;
+  int i[most] = {}, j[most] = {}, at_i[most] = {}, at_j[most] = {};  // elements, and their entries in the buffer
+  double derivative[most] = {};                                      // of the share
+  alignas(64) T share[most] = {};
+  alignas(64) T apart[3][most] = {}, axis_i[3][most] = {}, axis_j[3][most] = {};  // in units of the list
+};
+
 // Of a chunk.
 template <class T>
 struct LineWork {
   NodeForces<T> forces[row_kinds];
-  MetRows met[line_sums];
+  MetRows shared;             // by both elements of a block, with the first sum
+  MetRows met[2][line_sums];  // by one of them
+  std::vector<PairBatch<T>> batches;
+  PairBatch<T> ends;
 
   void start(const LineChunk& chunk) {
     for (int kind = 0; kind < row_kinds; ++kind) forces[kind].start(chunk.nodes[kind], chunk.touched.size());
-    for (MetRows& rows : met) rows.row.resize(static_cast<std::size_t>(chunk.most_rows));
+    const auto most = static_cast<std::size_t>(chunk.most_rows);
+    shared.row.resize(2 * most);
+    for (auto& of_one : met)
+      for (MetRows& rows : of_one) rows.row.resize(most);
   }
 };
 
-// The pairs of nodes of two elements in lanes: places on i and on j (nm) and weight (nm^2).
+// The pairs of nodes of two elements: places on i and on j (nm) and weight (nm^2).
 template <class T>
-struct PairLanes {
-  std::vector<T> i, j, weight;  // up to a multiple of 16 with weight 0
+struct NodePairs {
+  std::vector<T> i, j, weight;
 
   template <class Share>
   void add(const LineContact& law, int on_i, int on_j, Share share) {
     for (int k = 0; k < on_i; ++k)
       for (int l = 0; l < on_j; ++l) {
+        const double part = share(k, l);
+        if (part == 0) continue;
         i.push_back(static_cast<T>(line_node(k, on_i, law.length_i)));
         j.push_back(static_cast<T>(line_node(l, on_j, law.length_j)));
-        weight.push_back(static_cast<T>(share(k, l) * law.length_i / on_i * law.length_j / on_j));
+        weight.push_back(static_cast<T>(part * law.length_i / on_i * law.length_j / on_j));
       }
-  }
-  void fill_up() {
-    for (auto* v : {&i, &j, &weight}) v->resize((v->size() + 15) / 16 * 16, T{0});
   }
 };
 
@@ -111,12 +121,12 @@ struct PairSum {
   struct Sum {
     std::vector<double> places;
     double weight = 0;
-    PairLanes<T> pairs[4][4];
+    NodePairs<T> pairs[4][4];
   };
   Sum sums[line_sums];
 
   static int index(const TubeEnds& e) { return (e.begins ? 1 : 0) + (e.ends ? 2 : 0); }
-  const PairLanes<T>& pairs(int sum, const TubeEnds& ends_i, const TubeEnds& ends_j) const {
+  const NodePairs<T>& pairs(int sum, const TubeEnds& ends_i, const TubeEnds& ends_j) const {
     return sums[sum].pairs[index(ends_i)][index(ends_j)];
   }
   explicit PairSum(LineContact law) {
@@ -129,12 +139,11 @@ struct PairSum {
         for (int b = 0; b < 4; ++b) {
           law.ends_i = {(a & 1) != 0, (a & 2) != 0};
           law.ends_j = {(b & 1) != 0, (b & 2) != 0};
-          PairLanes<T>& lanes = sum.pairs[a][b];
-          lanes.add(law, on_i, on_j, [&](int k, int l) { return law.ramp(t, k, on_i, l, on_j); });
+          NodePairs<T>& nodes = sum.pairs[a][b];
+          nodes.add(law, on_i, on_j, [&](int k, int l) { return law.ramp(t, k, on_i, l, on_j); });
           const int left_i = law.end_nodes_i(t), left_j = law.end_nodes_j(t);
           if (law.fades(t))
-            lanes.add(law, left_i, left_j, [&](int k, int l) { return 1 - law.ramp(t, k, left_i, l, left_j); });
-          lanes.fill_up();
+            nodes.add(law, left_i, left_j, [&](int k, int l) { return 1 - law.ramp(t, k, left_i, l, left_j); });
         }
     }
   }

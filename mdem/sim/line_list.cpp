@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <stdexcept>
 
 namespace ropewalk {
@@ -55,7 +56,7 @@ struct Side {
     int from = 0, to = elements * count;
     while (from < to && !near(from)) ++from;
     while (from < to && !near(to - 1)) --to;
-    return {static_cast<short>(from), static_cast<short>(to - from), 0, 0};
+    return {static_cast<short>(from), static_cast<short>(to - from), 0};
   }
 
   // No node of element j is nearer than this. Exact but for the places of single nodes where the two are parallel.
@@ -131,8 +132,8 @@ struct Side {
       smallest = std::min(smallest, cosine * cosine);
     }
     all_rows_wanted |= !sparse.thins_j(sparse.last_of(smallest));
-    if (sparse.count > 0)
-      run.even = static_cast<float>((even_until - std::acos(std::sqrt(smallest))) / 2.02 - 1e-6);
+    run.even = sparse.count > 0 ? static_cast<float>((even_until - std::acos(std::sqrt(smallest))) / 2.02 - 1e-6)
+                                : std::numeric_limits<float>::infinity();
   }
 
   void find_damped(int first, int last, LineRun& run) const {
@@ -336,11 +337,117 @@ void LineList::find_places(LineChunk& chunk) {
         const TouchedTube::Row& row = chunk.touched[static_cast<std::size_t>(run.touched)].row[kind];
         LineRun::Nodes& nodes = run.nodes[kind];
         nodes.begin = row.origin + run.element_begin * row.per_element + nodes.from;
-        nodes.at = nodes.begin + row.shift;
       }
     }
     chunk.most_rows = std::max(chunk.most_rows, rows);
   }
+}
+
+namespace {
+
+// Vectors of the widest kind.
+int vectors_of(const LineRun::Nodes& nodes) { return (nodes.count + NodeLayout::pad - 1) / NodeLayout::pad; }
+
+LineRun::Nodes both(const LineRun::Nodes& a, const LineRun::Nodes& b) {
+  LineRun::Nodes out = a.begin <= b.begin ? a : b;
+  out.count = static_cast<short>(std::max(a.begin + a.count, b.begin + b.count) - out.begin);
+  return out;
+}
+
+bool on_one_part(const LineRun& a, const LineRun& b) {
+  return b.elements > 0 && !b.fading && a.touched == b.touched && a.begins == b.begins && a.ends == b.ends;
+}
+
+}  // namespace
+
+// The runs of consecutive elements on the same tube become one row where that takes no more vectors than the longer
+// of them.
+void LineList::add_block(const LineBlock& of, int tube, Rows kind, LineChunk& chunk) const {
+  const int first = of.first, elements = of.elements;
+  LineBlock block{first, elements, static_cast<int>(chunk.runs.size()), 0};
+  const auto add = [&](const LineRun& run, const LineRun::Nodes& nodes) -> BlockRun& {
+    const int shift = chunk.touched[static_cast<std::size_t>(run.touched)].row[static_cast<int>(kind)].shift;
+    chunk.runs.push_back({{nodes.begin, nodes.begin + shift, nodes.count, run.type, run.touched},
+                          run.beyond,
+                          run.even,
+                          {BlockRun::none, BlockRun::none},
+                          BlockRun::both});
+    return chunk.runs.back();
+  };
+  const auto index = [&](const LineRun& run) { return static_cast<int>(&run - run_.data()); };
+  const auto own_tube = [&](const LineRun& run) {
+    return chunk.touched[static_cast<std::size_t>(run.touched)].tube == tube;
+  };
+  const auto runs_on = [&](const LineRun& part, int element) {
+    return std::count_if(begin(element), end(element), [&](const LineRun& run) { return on_one_part(part, run); });
+  };
+  const auto joined = [&](const LineRun& own) -> const LineRun* {
+    if (elements == 1 || own_tube(own) || runs_on(own, first) != 1 || runs_on(own, first + 1) != 1) return nullptr;
+    const LineRun* other = std::find_if(begin(first + 1), end(first + 1),
+                                        [&](const LineRun& run) { return on_one_part(own, run); });
+    const LineRun::Nodes &a = own.of(kind), &b = other->of(kind);
+    return vectors_of(both(a, b)) <= std::max(vectors_of(a), vectors_of(b)) ? other : nullptr;
+  };
+  std::vector<const LineRun*> taken;  // of the second element, by one of the first
+  for (int e = 0; e < elements; ++e)
+    for (const LineRun* run = begin(first + e); run != end(first + e); ++run) {
+      if (run->elements == 0 || run->fading || std::find(taken.begin(), taken.end(), run) != taken.end()) continue;
+      const LineRun* other = e == 0 ? joined(*run) : nullptr;
+      BlockRun& out = add(*run, other ? both(run->of(kind), other->of(kind)) : run->of(kind));
+      out.run[e] = index(*run);
+      if (!other) {
+        if (elements == 2 && (own_tube(*run) || runs_on(*run, first + 1 - e) > 0))
+          out.of = e;
+        continue;
+      }
+      taken.push_back(other);
+      out.run[1] = index(*other);
+      out.beyond = std::min(run->beyond, other->beyond);
+      out.even = std::min(run->even, other->even);
+    }
+  block.end = static_cast<int>(chunk.runs.size());
+  if (block.begin < block.end) chunk.blocks.push_back(block);
+}
+
+void LineList::add_end_run(const Topology& topology, int i, int tube, const LineRun& run, LineChunk& chunk) const {
+  chunk.end_runs.push_back({i, static_cast<int>(&run - run_.data())});
+  chunk.even = std::min(chunk.even, run.even);
+  const int types = static_cast<int>(topology.types.size());
+  const PairKind kind{topology.tube_type[tube] * types + run.type, 0, topology.ends_of(i, tube), run.tube_ends(), false};
+  auto same = std::find_if(chunk.end_pairs.begin(), chunk.end_pairs.end(),
+                           [&](const EndPairs& p) { return p.kind == kind; });
+  if (same == chunk.end_pairs.end()) {
+    chunk.end_pairs.push_back({kind, {}});
+    same = chunk.end_pairs.end() - 1;
+  }
+  const int shift = chunk.touched[static_cast<std::size_t>(run.touched)].element_shift;
+  for (int j = run.element_begin; j < run.element_begin + run.elements; ++j)
+    same->pairs.push_back({i, j, i + chunk.own_shift(), j + shift, run.beyond});
+}
+
+// Of the elements of a chunk, whose runs know their places. Not across a tube's own runs: which of its elements
+// meet depends on how far apart they are along it.
+void LineList::make_blocks(const Topology& topology, const Interaction& in, LineChunk& chunk) const {
+  const Rows kind = in.line[0].sparse.thins_j(0) ? Rows::sparse : Rows::all;
+  int tube = topology.tube_of(chunk.begin);
+  chunk.even = std::numeric_limits<float>::infinity();
+  for (int i = chunk.begin; i < chunk.end;) {
+    while (i >= topology.tube_begin[tube + 1]) ++tube;
+    const bool alone = topology.ends_of(i, tube).any() || i + 1 >= chunk.end || topology.ends_of(i + 1, tube).any();
+    const int elements = alone ? 1 : 2;
+    add_block({i, elements, 0, 0}, tube, kind, chunk);
+    for (int end = i + elements; i < end; ++i)
+      for (const LineRun* run = begin(i); run != this->end(i); ++run)
+        if (run->elements > 0 && run->fading) add_end_run(topology, i, tube, *run, chunk);
+  }
+  for (EndPairs& of : chunk.end_pairs) {
+    std::stable_sort(of.pairs.begin(), of.pairs.end(),
+                     [](const EndPairs::Pair& a, const EndPairs::Pair& b) { return a.beyond < b.beyond; });
+    of.pairs.shrink_to_fit();
+  }
+  chunk.blocks.shrink_to_fit();
+  chunk.runs.shrink_to_fit();
+  chunk.end_runs.shrink_to_fit();
 }
 
 void LineList::list_damped(const Topology& topology, LineChunk& chunk) const {
@@ -404,6 +511,7 @@ void LineList::build(const Topology& topology, const Interaction& in, const Neig
     if (chunks_[c].begin < chunks_[c].end) {
       touch_tubes(topology, chunks_[c]);
       find_places(chunks_[c]);
+      make_blocks(topology, in, chunks_[c]);
       if (in.damped_contact()) list_damped(topology, chunks_[c]);
     }
   list_touches(topology);
@@ -412,8 +520,11 @@ void LineList::build(const Topology& topology, const Interaction& in, const Neig
 std::size_t LineList::bytes() const {
   std::size_t total = run_.capacity() * sizeof(LineRun) + begin_.capacity() * sizeof(std::size_t) +
                       touch_.capacity() * sizeof(Touch);
-  for (const LineChunk& chunk : chunks_)
-    total += chunk.touched.capacity() * sizeof(TouchedTube) + chunk.damped.capacity() * sizeof(DampedBlock);
+  for (const LineChunk& chunk : chunks_) {
+    total += chunk.touched.capacity() * sizeof(TouchedTube) + chunk.blocks.capacity() * sizeof(LineBlock) +
+             chunk.runs.capacity() * sizeof(BlockRun) + chunk.end_runs.capacity() * sizeof(ElementRun) + chunk.damped.capacity() * sizeof(DampedBlock);
+    for (const EndPairs& of : chunk.end_pairs) total += of.pairs.capacity() * sizeof(EndPairs::Pair);
+  }
   return total;
 }
 

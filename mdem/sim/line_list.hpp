@@ -32,7 +32,7 @@ struct NodeLayout {
 struct LineRun {
   struct Nodes {
     short from = 0, count = 0;  // within reach; the first one counted from the first node of element_begin
-    int begin = 0, at = 0;      // the first one in the rows of all tubes, and in the buffers of the chunk
+    int begin = 0;              // the first one in the rows of all tubes
   };
   int element_begin = 0;
   int touched = 0;     // which of the chunk's touched tubes
@@ -47,6 +47,58 @@ struct LineRun {
 
   const Nodes& of(Rows kind) const { return nodes[static_cast<int>(kind)]; }
   TubeEnds tube_ends() const { return {begins, ends}; }
+};
+
+// Consecutive nodes of another tube: from `begin` on in the rows of all tubes, from `at` on in the chunk's buffers.
+struct NodeRow {
+  int begin = 0, at = 0;
+  short count = 0, type = 0;  // tube type
+  int touched = 0;
+};
+
+// What the elements of a block meet on one other tube: the run of one of them, or the runs of both in one row, whose
+// nodes out of an element's own reach do nothing to it.
+struct BlockRun {
+  static constexpr int none = -1;
+  static constexpr int both = 2;
+
+  NodeRow row;                // for the first sum
+  float beyond = 0;           // nm, as of the runs
+  float even = -1;            // rad, likewise; until then the row stands for the runs
+  int run[2] = {none, none};  // of the first element and of the second
+  int of = both;              // who may meet the row: the first element, the second, both
+};
+
+struct ElementRun {
+  int element = 0, run = 0;
+};
+
+// Pairs of elements that are alike: of the same types, ends and sums.
+struct PairKind {
+  int types = 0, sum = 0;  // of the pair: i * types + j; of nodes
+  TubeEnds ends_i, ends_j;
+  bool shared = false;  // with the next sum
+
+  bool operator==(const PairKind& o) const {
+    return types == o.types && sum == o.sum && shared == o.shared && ends_i.begins == o.ends_i.begins &&
+           ends_i.ends == o.ends_i.ends && ends_j.begins == o.ends_j.begins && ends_j.ends == o.ends_j.ends;
+  }
+};
+
+// Those at the ends of tubes, by rising `beyond`, so long as they take the first sum alone.
+struct EndPairs {
+  struct Pair {
+    int i = 0, j = 0, at_i = 0, at_j = 0;  // elements, and their entries in the buffers of the chunk
+    float beyond = 0;                      // nm, of their run
+  };
+  PairKind kind;
+  std::vector<Pair> pairs;
+};
+
+// An element, or two consecutive ones within a tube: neighbours of one are most often neighbours of the other.
+struct LineBlock {
+  int first = 0, elements = 1;
+  int begin = 0, end = 0;  // its runs in those of the chunk
 };
 
 // Whether a sum that some of the run takes fades at the ends of tubes.
@@ -69,6 +121,12 @@ struct TouchedTube {
 struct LineChunk {
   int begin = 0, end = 0;
   std::vector<TouchedTube> touched;
+  std::vector<LineBlock> blocks;
+  std::vector<BlockRun> runs;
+  // The runs at the ends of tubes, of the elements in their order, and their pairs; `even` of all of them.
+  std::vector<ElementRun> end_runs;
+  std::vector<EndPairs> end_pairs;
+  float even = 0;
   std::vector<DampedBlock> damped;
   int elements = 0, nodes[row_kinds] = {0, 0};  // sizes of the buffers
   int most_rows = 0;                            // that an element can meet: one for each element of its runs
@@ -87,6 +145,7 @@ class LineList {
   const NodeLayout& layout(Rows kind) const { return layout_[static_cast<int>(kind)]; }
   const LineRun* begin(int i) const { return run_.data() + begin_[static_cast<std::size_t>(i)]; }
   const LineRun* end(int i) const { return run_.data() + begin_[static_cast<std::size_t>(i) + 1]; }
+  const LineRun& run(int k) const { return run_[static_cast<std::size_t>(k)]; }
   const std::vector<LineChunk>& chunks() const { return chunks_; }
   // The touched tubes of all chunks that are this one: chunk and index, in the order of the chunks.
   struct Touch {
@@ -113,6 +172,9 @@ class LineList {
   void cut_into_chunks(const Topology& topology, std::size_t count);
   void touch_tubes(const Topology& topology, LineChunk& chunk);
   void find_places(LineChunk& chunk);
+  void make_blocks(const Topology& topology, const Interaction& interaction, LineChunk& chunk) const;
+  void add_end_run(const Topology& topology, int i, int tube, const LineRun& run, LineChunk& chunk) const;
+  void add_block(const LineBlock& of, int tube, Rows kind, LineChunk& chunk) const;
   void list_damped(const Topology& topology, LineChunk& chunk) const;
   void list_touches(const Topology& topology);
 
