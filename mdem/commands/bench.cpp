@@ -79,10 +79,9 @@ Cost measure(const Scene& scene, const Prepared& prepared, long steps, int threa
     for (long k = steps * part / samples; k < steps * (part + 1) / samples; ++k) simulation.step(false);
     wall += omp_get_wtime() - began;
     processor += processor_seconds() - used;
-    c.radial.add(
-        count_radial(simulation.topology(), simulation.interaction(), simulation.state(),
-                     simulation.engine().line().list(), 2 * simulation.list().displacement(), most_counted),
-        1.0 / static_cast<double>(samples));
+    c.radial.add(count_radial(simulation.topology(), simulation.interaction(), simulation.state(),
+                              simulation.list(), simulation.engine().line().list(), most_counted),
+                 1.0 / static_cast<double>(samples));
   }
   const double n = prepared.topology.elements(), scale = 1e9 / (n * static_cast<double>(steps));
   c.each = per_element_step(before, timing(simulation, wall * scale, processor * scale), scale);

@@ -51,8 +51,8 @@ HWY_INLINE hn::Vec<D> look_up(D d, const T (&row)[segments], I index) {
   return hn::GatherIndex(d, row, hn::And(index, hn::Set(di, segments - 1)));
 }
 
-// Of K vectors of squared distances X, term by term for all of them: du/dy and, if wanted, u; zero beyond the cutoff
-// and outside of `wanted`.
+// Of K vectors of squared distances X, term by term for all of them: du/dy and, if wanted, u; zero beyond the
+// cutoff and outside of `wanted`.
 template <bool energies, int K, class D, class Table>
 HWY_INLINE void radial(D d, const Table& t, const hn::Vec<D> (&X)[K], hn::Mask<D> wanted, hn::Vec<D> (&u)[K],
                        hn::Vec<D> (&slope)[K]) {
@@ -83,8 +83,8 @@ HWY_INLINE void radial(D d, const Table& t, const hn::Vec<D> (&X)[K], hn::Mask<D
       const auto v1 = hn::Set(d, t.v1), v2 = hn::Set(d, t.v2);
       if constexpr (energies)
         u[k] = hn::IfThenElse(
-            core,
-            hn::MulAdd(e, hn::MulAdd(hn::Mul(e, hn::Set(d, static_cast<T>(0.5))), v2, v1), hn::Set(d, t.v0)), u[k]);
+            core, hn::MulAdd(e, hn::MulAdd(hn::Mul(e, hn::Set(d, static_cast<T>(0.5))), v2, v1), hn::Set(d, t.v0)),
+            u[k]);
       // du/dy = du/drho unit/(2 rho scale), rho in units.
       slope[k] = hn::IfThenElse(
           core, hn::Div(hn::Mul(hn::MulAdd(e, v2, v1), hn::Set(d, t.unit)), hn::Mul(rho, hn::Set(d, 2 * t.scale))),
@@ -307,23 +307,18 @@ HWY_INLINE void meet_rows(E* elements, const MetRows& met, int t, int k) {
   nodes.template collect<energies>();
 }
 
-// So many chains of operations at a time that none waits for the last one, as far as there are registers.
-constexpr int nodes_at_once = HWY_TARGET <= HWY_AVX3 ? 4 : 2;
-
 // The rows of sum t. On its own: within the loop over the elements the compiler keeps more in registers than there
 // are.
 template <bool energies, class E>
 HWY_NOINLINE void sum_rows(E* elements, int count, const MetRows& met, int t) {
   const int nodes = count * static_cast<int>(elements->sums(met.begin()->type).sums[t].places.size());
   int k = 0;
-  if constexpr (nodes_at_once > 2)
-    for (; k + nodes_at_once <= nodes; k += nodes_at_once) meet_rows<energies, nodes_at_once>(elements, met, t, k);
   for (; k + 2 <= nodes; k += 2) meet_rows<energies, 2>(elements, met, t, k);
   for (; k < nodes; ++k) meet_rows<energies, 1>(elements, met, t, k);
 }
 
-// What acts on the elements of pairs, one pair in each lane: forces on j, and the first moments of those on the nodes
-// of i (of the opposite ones) and of j.
+// What acts on the elements of pairs, one pair in each lane: forces on j, and the first moments of those on the
+// nodes of i (of the opposite ones) and of j.
 template <class D>
 struct PairTotals {
   using V = hn::Vec<D>;
@@ -463,14 +458,14 @@ HWY_NOINLINE void meet_pairs(const In& in, PairBatch<T>& batch, ContactBuffer& o
       const PairLanes<true, typename In::Table> lanes(table, batch, m);
       PairTotals<D> near = lanes.meet(nodes(batch.kind.sum)), next = lanes.meet(nodes(batch.kind.sum + 1));
       const auto share = hn::LoadU(d, batch.share + m), rest = hn::Sub(hn::Set(d, T{1}), share);
-      if constexpr (energies)
-        out.energy += total(d, hn::MulAdd(share, near.energy, hn::Mul(rest, next.energy)));
+      if constexpr (energies) out.energy += total(d, hn::MulAdd(share, near.energy, hn::Mul(rest, next.energy)));
       const auto turn = hn::Sub(near.energy, next.energy);
       near.scale(share), next.scale(rest);
       near.add(next);
       give_out(in, batch, m, near, turn, out);
     } else {
-      const PairTotals<D> sum = PairLanes<energies, typename In::Table>(table, batch, m).meet(nodes(batch.kind.sum));
+      const PairTotals<D> sum =
+          PairLanes<energies, typename In::Table>(table, batch, m).meet(nodes(batch.kind.sum));
       if constexpr (energies) out.energy += total(d, sum.energy);
       give_out(in, batch, m, sum, hn::Zero(d), out);
     }

@@ -168,20 +168,6 @@ std::size_t ForceEngine::bytes() const {
   return total + line_.bytes() + paper_.bytes();
 }
 
-void ForceEngine::compute_contact(const Topology& topology, const Interaction& interaction,
-                                  const NeighbourList& list, const State& state, bool energies) {
-  if (!interaction.paper) {
-    const auto place = [&](int tube) {
-      axes_of(state.orientation, topology.tube_begin[tube], topology.tube_begin[tube + 1], axis_);
-    };
-    return line_.compute(topology, interaction, list, state, axis_, energies, place);
-  }
-  buffers_.resize(list.chunks().size());
-  // Always with energies: its loops are the compiler's, who orders their sums as it likes, and forces must be the
-  // same bits whoever reads energies.
-  paper_.compute(topology, interaction, list, state, axis_, buffers_.data());
-}
-
 // Of all chunks in their fixed order, on the elements from .. to.
 void ForceEngine::add_buffers(const NeighbourList& list, int from, int to, Forces& out) const {
   for (std::size_t k = 0; k < list.chunks().size(); ++k) {
@@ -202,28 +188,41 @@ void ForceEngine::add_buffers(const NeighbourList& list, int from, int to, Force
 
 void ForceEngine::compute(const Topology& topology, const Interaction& interaction, const NeighbourList& list,
                           const State& state, Forces& out, bool energies, Parts parts) {
-  const double t0 = omp_get_wtime();
-  const bool contact = interaction.has_contact() && parts != Parts::bonds;
+  const double t0 = omp_get_wtime(), finished_before = line_.finish_seconds();
+  const bool contact = interaction.has_contact() && parts != Parts::bonds, bonds = parts != Parts::contact;
+  const bool by_line = contact && !interaction.paper, by_paper = contact && !by_line;
   if (contact) axis_.resize(state.size());
-  if (contact && interaction.paper) make_axes(state);  // else with the nodes
+  if (by_paper) make_axes(state);  // else with the nodes
   const double t1 = omp_get_wtime();
-
-  const bool bonds = parts != Parts::contact;
-  if (contact) compute_contact(topology, interaction, list, state, energies);
-  const double t2 = omp_get_wtime();
 
   // Tube by tube: its bonds, and what the contact buffers hold for it, in their fixed order.
   const int tubes = topology.tubes();
   std::vector<TubeSum> sums(static_cast<std::size_t>(tubes));
-#pragma omp parallel for schedule(static) if (state.size() > parallel_from)
-  for (int t = 0; t < tubes; ++t) {
+  const auto finish = [&](int t) {
     const int from = topology.tube_begin[t], to = topology.tube_begin[t + 1];
     if (bonds)
       sums[static_cast<std::size_t>(t)] = compute_bonds(topology, interaction, state, t, out);
     else
       clear(out, from, to);
-    if (contact && interaction.paper) add_buffers(list, from, to, out);
-    if (contact && !interaction.paper) line_.add_to_tube(topology, axis_, t, out.force, out.torque);
+    if (by_paper) add_buffers(list, from, to, out);
+    if (by_line) line_.add_to_tube(topology, axis_, t, out.force, out.torque);
+  };
+  if (by_line) {
+    const auto place = [&](int t) {
+      axes_of(state.orientation, topology.tube_begin[t], topology.tube_begin[t + 1], axis_);
+    };
+    line_.compute(topology, interaction, list, state, axis_, energies, {place, finish});
+  }
+  if (by_paper) {
+    buffers_.resize(list.chunks().size());
+    // Always with energies: its loops are the compiler's, who orders their sums as it likes, and forces must be the
+    // same bits whoever reads energies.
+    paper_.compute(topology, interaction, list, state, axis_, buffers_.data());
+  }
+  const double t2 = omp_get_wtime();
+  if (!by_line) {
+#pragma omp parallel for schedule(static) if (state.size() > parallel_from)
+    for (int t = 0; t < tubes; ++t) finish(t);
   }
 
   out.energy = Energies{};
@@ -237,19 +236,19 @@ void ForceEngine::compute(const Topology& topology, const Interaction& interacti
     out.damping_power += sum.power;
     if (out.slipping_bond < 0) out.slipping_bond = sum.slipping;
   }
-  if (contact && !interaction.paper) {
+  if (by_line) {
     out.energy.vdw = line_.energy();
     out.damping_power += line_.damping_power();
   }
-  if (contact && interaction.paper)
+  if (by_paper)
     for (const ContactBuffer& b : buffers_) {
       out.energy.vdw += b.energy;
       out.damping_power += b.power;
     }
-  const double t3 = omp_get_wtime();
+  const double t3 = omp_get_wtime(), finished = line_.finish_seconds() - finished_before;
   times_.axes += t1 - t0;
-  times_.contact += t2 - t1;
-  times_.bonds += t3 - t2;
+  times_.contact += t2 - t1 - finished;
+  times_.bonds += t3 - t2 + finished;
 }
 
 double kinetic_energy(const Topology& topology, const State& state) {

@@ -76,7 +76,8 @@ class ForceEngine {
                const State& state, Forces& out, bool energies = true, Parts parts = Parts::all);
 
   // Wall time spent so far in each part, s.
-  // Axes are made within the contact where that is by the line law.
+  // Axes are made within the contact where that is by the line law, and tubes are finished within it: the first
+  // thread tells the times of the two apart.
   struct Times {
     double axes = 0, contact = 0, bonds = 0;
   };
@@ -87,8 +88,6 @@ class ForceEngine {
 
  private:
   void make_axes(const State& state);
-  void compute_contact(const Topology& topology, const Interaction& interaction, const NeighbourList& list,
-                       const State& state, bool energies);
   void add_buffers(const NeighbourList& list, int from, int to, Forces& out) const;
 
   Vec3Array axis_;                      // of all elements

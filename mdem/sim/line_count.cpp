@@ -12,7 +12,7 @@ struct Counter {
   const Interaction& in;
   const State& state;
   const LineList& list;
-  double moved;
+  double moved, turned;  // as in LineKernelInput
   int lanes;
   std::vector<PairSum<double>> sums;  // of each pair of types
 
@@ -24,14 +24,14 @@ struct Counter {
     count.evaluations += vectors * lanes;
   }
 
-  void add_row(const LineContact& law, int i, const LineRun& run, int sum, RadialCount& count) const {
-    const LineRun::Nodes& nodes = run.of(law.sparse.thins_j(sum) ? Rows::sparse : Rows::all);
+  // Nodes first .. first + nodes - 1 from those of element j on.
+  void add_row(const LineContact& law, int i, int j, int first, int nodes, int sum, RadialCount& count) const {
     const int on_i = law.sum_nodes_i(sum), on_j = law.sum_nodes_j(sum);
-    count.nodes += nodes.count;
-    add_vectors(nodes.count, on_i, count);
-    for (int m = nodes.from; m < nodes.from + nodes.count; ++m) {
-      const int j = run.element_begin + m / on_j;
-      const Vector3 d = place(j) + line_node(m % on_j, on_j, law.length_j) * axis(j) - place(i);
+    count.nodes += nodes;
+    add_vectors(nodes, on_i, count);
+    for (int m = first; m < first + nodes; ++m) {
+      const int at = j + m / on_j;
+      const Vector3 d = place(at) + line_node(m % on_j, on_j, law.length_j) * axis(at) - place(i);
       for (int k = 0; k < on_i; ++k)
         count.useful += (d - line_node(k, on_i, law.length_i) * axis(i)).norm() < law.density.cutoff();
     }
@@ -47,37 +47,67 @@ struct Counter {
     }
   }
 
+  std::size_t pair(int i, int type_j) const {
+    return static_cast<std::size_t>(topology.tube_type[topology.tube_of(i)]) * topology.types.size() +
+           static_cast<std::size_t>(type_j);
+  }
+
+  void add_run(int i, const LineRun& run, RadialCount& count) const {
+    const std::size_t of = pair(i, run.type);
+    const LineContact& law = in.line[of];
+    const TubeEnds ends = topology.ends_of(i, topology.tube_of(i));
+    double smallest = 1, largest = 0;
+    for (int j = run.element_begin; j < run.element_begin + run.elements; ++j) {
+      const double c = axis(i).dot(axis(j));
+      smallest = std::min(smallest, c * c);
+      largest = std::max(largest, c * c);
+    }
+    const bool has_row = list.layout(Rows::all).has_row(topology.tube_of(run.element_begin));
+    const RunSum sum = run_sum(law, ends, run, has_row, smallest, largest);
+    if (sum.kind == RunSum::rows) {
+      const LineRun::Nodes& nodes = run.of(law.sparse.thins_j(sum.first) ? Rows::sparse : Rows::all);
+      add_row(law, i, run.element_begin, nodes.from, nodes.count, sum.first, count);
+      return;
+    }
+    for (int j = run.element_begin; j < run.element_begin + run.elements; ++j) {
+      const SumShare w = law.sparse.share(axis(i).dot(axis(j)));
+      count.pairs += 1;
+      for (int t = w.first; t <= w.first + (w.value < 1 ? 1 : 0); ++t)
+        add_pairs(law, i, sums[of].pairs(t, ends, run.tube_ends()), j, count);
+    }
+  }
+
+  // A row that stands for the runs of a block, as element i meets it.
+  void add_block_run(int i, const LineChunk& chunk, const BlockRun& run, RadialCount& count) const {
+    const LineContact& law = in.line[pair(i, run.row.type)];
+    const TouchedTube& touched = chunk.touched[static_cast<std::size_t>(run.row.touched)];
+    const int origin = touched.row[static_cast<int>(law.sparse.thins_j(0) ? Rows::sparse : Rows::all)].origin,
+              j = topology.tube_begin[touched.tube];
+    add_row(law, i, j, run.row.begin - (origin + j * law.sum_nodes_j(0)), run.row.count, 0, count);
+  }
+
+  // Whether what is out of reach for now begins by `beyond`.
+  bool in_reach(float beyond, RadialCount& count) const {
+    const bool reached = static_cast<double>(beyond) <= moved;
+    (reached ? count.runs : count.skipped) += 1;
+    return reached;
+  }
+
   void add(int i, RadialCount& count) const {
-    const int tube = topology.tube_of(i);
-    const TubeEnds ends = topology.ends_of(i, tube);
-    for (const LineRun* run = list.begin(i); run != list.end(i); ++run) {
-      if (run->elements == 0) continue;
-      if (static_cast<double>(run->beyond) > moved) {
-        count.skipped += 1;
-        continue;
-      }
-      count.runs += 1;
-      const std::size_t pair = static_cast<std::size_t>(topology.tube_type[tube]) * topology.types.size() +
-                               static_cast<std::size_t>(run->type);
-      const LineContact& law = in.line[pair];
-      double smallest = 1, largest = 0;
-      for (int j = run->element_begin; j < run->element_begin + run->elements; ++j) {
-        const double c = axis(i).dot(axis(j));
-        smallest = std::min(smallest, c * c);
-        largest = std::max(largest, c * c);
-      }
-      const bool has_row = list.layout(Rows::all).has_row(topology.tube_of(run->element_begin));
-      const RunSum sum = run_sum(law, ends, *run, has_row, smallest, largest);
-      if (sum.kind == RunSum::rows) {
-        add_row(law, i, *run, sum.first, count);
-        continue;
-      }
-      for (int j = run->element_begin; j < run->element_begin + run->elements; ++j) {
-        const SumShare w = law.sparse.share(axis(i).dot(axis(j)));
-        count.pairs += 1;
-        for (int t = w.first; t <= w.first + (w.value < 1 ? 1 : 0); ++t)
-          add_pairs(law, i, sums[pair].pairs(t, ends, run->tube_ends()), j, count);
-      }
+    const auto& chunks = list.chunks();
+    const LineChunk& chunk = *std::find_if(chunks.begin(), chunks.end(), [&](const auto& c) { return i < c.end; });
+    for (const ElementRun& end : chunk.end_runs)
+      if (end.element == i && in_reach(list.run(end.run).beyond, count)) add_run(i, list.run(end.run), count);
+    const auto block = std::find_if(chunk.blocks.begin(), chunk.blocks.end(),
+                                    [&](const LineBlock& b) { return i >= b.first && i < b.first + b.elements; });
+    if (block == chunk.blocks.end()) return;
+    const int own = i - block->first;
+    for (int k = block->begin; k < block->end; ++k) {
+      const BlockRun& run = chunk.runs[static_cast<std::size_t>(k)];
+      const bool even = turned < static_cast<double>(run.even);
+      if (even ? run.of != BlockRun::both && run.of != own : run.run[own] == BlockRun::none) continue;
+      if (!in_reach(run.beyond, count)) continue;
+      even ? add_block_run(i, chunk, run, count) : add_run(i, list.run(run.run[own]), count);
     }
   }
 };
@@ -102,11 +132,12 @@ int radial_lanes(Interaction::Precision precision) {
   return bytes / (precision == Interaction::Precision::mixed ? 4 : 8);
 }
 
-RadialCount count_radial(const Topology& topology, const Interaction& in, const State& state, const LineList& list,
-                         double moved, int most) {
+RadialCount count_radial(const Topology& topology, const Interaction& in, const State& state,
+                         const NeighbourList& neighbours, const LineList& list, int most) {
   RadialCount sum, out;
   if (in.line.empty()) return out;
-  Counter counter{topology, in, state, list, moved, radial_lanes(in.precision), {}};
+  Counter counter{
+      topology, in, state, list, 2 * neighbours.displacement(), neighbours.turn(), radial_lanes(in.precision), {}};
   for (const LineContact& law : in.line) counter.sums.emplace_back(law);
   const int n = topology.elements(), step = std::max(1, n / most);
   int sampled = 0;

@@ -27,8 +27,8 @@ struct RadialCount {
 // Lanes of the kernel's vectors on this machine.
 int radial_lanes(Interaction::Precision precision);
 
-// Of the present state, from up to `most` of its elements; `moved` as the kernel has it (LineKernelInput).
+// Of the present state, from up to `most` of its elements.
 RadialCount count_radial(const Topology& topology, const Interaction& interaction, const State& state,
-                         const LineList& list, double moved, int most);
+                         const NeighbourList& neighbours, const LineList& list, int most);
 
 }  // namespace ropewalk

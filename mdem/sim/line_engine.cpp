@@ -180,8 +180,7 @@ void LineEngine::describe(const Topology& topology, const Interaction& in, const
 
 template <class Buffers>
 void LineEngine::run(Buffers& b, const Topology& topology, const Interaction& in, const NeighbourList& list,
-                     const State& state, const Vec3Array& axis, bool energies,
-                     const std::function<void(int)>& place) {
+                     const State& state, const Vec3Array& axis, bool energies, const TubeWork& tubes) {
   LineKernelInput<typename Buffers::Table, typename Buffers::C> input{&topology,
                                                                       &in,
                                                                       &state,
@@ -195,13 +194,21 @@ void LineEngine::run(Buffers& b, const Topology& topology, const Interaction& in
                                                                       2 * list.displacement(),
                                                                       energies};
   for (int t = 0; t < line_sums; ++t) input.rows[t] = in.line[0].sparse.thins_j(t) ? Rows::sparse : Rows::all;
-  const bool parallel = state.size() > parallel_from;
+  const bool parallel = state.size() > parallel_from, at_once = state.size() > finish_at_once_from;
+  const auto timed = [&](const auto& work) {
+    if (omp_get_thread_num() != 0) return work();
+    const double began = omp_get_wtime();
+    work();
+    finish_seconds_ += omp_get_wtime() - began;
+  };
+  left_.resize(static_cast<std::size_t>(topology.tubes()));
   shares_.deal(static_cast<int>(list_.chunks().size()), parallel ? omp_get_max_threads() : 1);
 #pragma omp parallel if (parallel)
   {
 #pragma omp for schedule(static)
     for (int t = 0; t < topology.tubes(); ++t) {
-      place(t);
+      tubes.place(t);
+      left_.set(t, static_cast<int>(list_.touches_end(t) - list_.touches_begin(t)));
       for (const Rows kind : {Rows::all, Rows::sparse})
         if (list_.layout(kind).has_row(t))
           place_row(list_.layout(kind), topology, length_[static_cast<std::size_t>(topology.tube_type[t])], t,
@@ -215,22 +222,33 @@ void LineEngine::run(Buffers& b, const Topology& topology, const Interaction& in
       line_contact(input, chunk, b.work[k], buffers_[k]);
       if (in.damped_contact())
         contact_damping(in.damping.contact, state, chunk.damped, chunk.own_shift(), buffers_[k]);
+      if (at_once)
+        timed([&] {
+          for (const TouchedTube& touched : chunk.touched)
+            if (left_.last(touched.tube)) tubes.finish(touched.tube);
+        });
+    }
+    if (!at_once) {
+#pragma omp barrier
+      timed([&] {
+#pragma omp for schedule(static)
+        for (int t = 0; t < topology.tubes(); ++t) tubes.finish(t);
+      });
     }
   }
 }
 
 void LineEngine::compute(const Topology& topology, const Interaction& in, const NeighbourList& list,
-                         const State& state, const Vec3Array& axis, bool energies,
-                         const std::function<void(int)>& place) {
+                         const State& state, const Vec3Array& axis, bool energies, const TubeWork& tubes) {
   if (stamp_ != list.stamp()) {
     const double began = omp_get_wtime();
     describe(topology, in, list);
     list_seconds_ += omp_get_wtime() - began;
   }
   if (full_) {
-    run(full_buffers_, topology, in, list, state, axis, energies, place);
+    run(full_buffers_, topology, in, list, state, axis, energies, tubes);
   } else {
-    run(mixed_, topology, in, list, state, axis, energies, place);
+    run(mixed_, topology, in, list, state, axis, energies, tubes);
   }
 }
 

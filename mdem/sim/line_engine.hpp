@@ -192,25 +192,36 @@ void line_contact(const LineKernelInput<FullTable, double>& in, const LineChunk&
 std::vector<std::string> instruction_sets();
 bool use_instructions(const std::string& name);
 
+// What a tube needs besides the contact: `place` its axes, before its nodes, and `finish` once nothing more will
+// act on it; in large scenes at once, when what acted on it is still in the cache of a thread. Each once for every
+// tube, by any thread.
+struct TubeWork {
+  std::function<void(int)> place, finish;
+};
+
 class LineEngine {
  public:
-  // The contact of all chunks; add_to_tube then collects it. Energies only if wanted: forces are the same bits.
-  // place(tube) comes before: it makes the tube's axes, by the thread that places its nodes.
+  // Elements from which on a tube is finished as soon as nothing more will act on it. What acts on fewer stays in
+  // the caches anyway, and the threads share the work more evenly if all of it comes at the end.
+  std::size_t finish_at_once_from = 20000;
+
+  // The contact of all chunks; `finish` then calls add_to_tube. Energies only if wanted: forces are the same bits.
   void compute(const Topology& topology, const Interaction& interaction, const NeighbourList& list,
-               const State& state, const Vec3Array& axis, bool energies, const std::function<void(int)>& place);
-  // Adds what acts on the elements of one tube.
+               const State& state, const Vec3Array& axis, bool energies, const TubeWork& tubes);
+  // Adds what acts on the elements of one tube, in the order of the chunks, whoever was done first.
   void add_to_tube(const Topology& topology, const Vec3Array& axis, int tube, Vec3Array& force,
                    Vec3Array& torque) const;
   double energy() const;         // eV
   double damping_power() const;  // eV/ps
   const LineList& list() const { return list_; }
-  double list_seconds() const { return list_seconds_; }  // spent on it so far
+  double list_seconds() const { return list_seconds_; }      // spent on it so far
+  double finish_seconds() const { return finish_seconds_; }  // by the first thread, in `finish`
   std::size_t bytes() const;
 
  private:
   template <class Buffers>
   void run(Buffers& b, const Topology& topology, const Interaction& interaction, const NeighbourList& list,
-           const State& state, const Vec3Array& axis, bool energies, const std::function<void(int)>& place);
+           const State& state, const Vec3Array& axis, bool energies, const TubeWork& tubes);
   template <class Buffers>
   void add_nodes(const Buffers& b, const Topology& topology, const Vec3Array& axis, int tube, Vec3Array& force,
                  Vec3Array& torque) const;
@@ -218,11 +229,12 @@ class LineEngine {
 
   LineList list_;
   long stamp_ = 0;
-  double list_seconds_ = 0;
+  double list_seconds_ = 0, finish_seconds_ = 0;
   bool full_ = false;
   std::vector<double> length_;          // of the elements of each type
   std::vector<ContactBuffer> buffers_;  // of each chunk
   WorkShares shares_;
+  TubeCounters left_;  // chunks that have yet to act on each tube
   MixedBuffers mixed_;
   FullBuffers full_buffers_;
 };

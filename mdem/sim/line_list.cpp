@@ -211,9 +211,9 @@ void LineList::lay_out_rows(const Topology& topology, const Interaction& in, con
 namespace {
 
 // ns as measured once in a rope of 91 tubes (bench, `rope-91x50`).
-constexpr double element_cost = 60, run_out_of_reach = 2, build_of_an_element = 2500;
+constexpr double element_cost = 50, run_out_of_reach = 1.5, build_of_an_element = 2500;
 double cost_in_reach(const LineRun& run, bool at_end) {
-  constexpr double of_a_row = 22, pair_at_an_end = 60;
+  constexpr double of_a_row = 22, pair_at_an_end = 31;
   return at_end || run.begins || run.ends ? pair_at_an_end * run.elements : of_a_row;
 }
 
@@ -383,8 +383,8 @@ void LineList::add_block(const LineBlock& of, int tube, Rows kind, LineChunk& ch
   };
   const auto joined = [&](const LineRun& own) -> const LineRun* {
     if (elements == 1 || own_tube(own) || runs_on(own, first) != 1 || runs_on(own, first + 1) != 1) return nullptr;
-    const LineRun* other = std::find_if(begin(first + 1), end(first + 1),
-                                        [&](const LineRun& run) { return on_one_part(own, run); });
+    const LineRun* other =
+        std::find_if(begin(first + 1), end(first + 1), [&](const LineRun& run) { return on_one_part(own, run); });
     const LineRun::Nodes &a = own.of(kind), &b = other->of(kind);
     return vectors_of(both(a, b)) <= std::max(vectors_of(a), vectors_of(b)) ? other : nullptr;
   };
@@ -396,8 +396,7 @@ void LineList::add_block(const LineBlock& of, int tube, Rows kind, LineChunk& ch
       BlockRun& out = add(*run, other ? both(run->of(kind), other->of(kind)) : run->of(kind));
       out.run[e] = index(*run);
       if (!other) {
-        if (elements == 2 && (own_tube(*run) || runs_on(*run, first + 1 - e) > 0))
-          out.of = e;
+        if (elements == 2 && (own_tube(*run) || runs_on(*run, first + 1 - e) > 0)) out.of = e;
         continue;
       }
       taken.push_back(other);
@@ -413,7 +412,8 @@ void LineList::add_end_run(const Topology& topology, int i, int tube, const Line
   chunk.end_runs.push_back({i, static_cast<int>(&run - run_.data())});
   chunk.even = std::min(chunk.even, run.even);
   const int types = static_cast<int>(topology.types.size());
-  const PairKind kind{topology.tube_type[tube] * types + run.type, 0, topology.ends_of(i, tube), run.tube_ends(), false};
+  const PairKind kind{topology.tube_type[tube] * types + run.type, 0, topology.ends_of(i, tube), run.tube_ends(),
+                      false};
   auto same = std::find_if(chunk.end_pairs.begin(), chunk.end_pairs.end(),
                            [&](const EndPairs& p) { return p.kind == kind; });
   if (same == chunk.end_pairs.end()) {
@@ -522,7 +522,8 @@ std::size_t LineList::bytes() const {
                       touch_.capacity() * sizeof(Touch);
   for (const LineChunk& chunk : chunks_) {
     total += chunk.touched.capacity() * sizeof(TouchedTube) + chunk.blocks.capacity() * sizeof(LineBlock) +
-             chunk.runs.capacity() * sizeof(BlockRun) + chunk.end_runs.capacity() * sizeof(ElementRun) + chunk.damped.capacity() * sizeof(DampedBlock);
+             chunk.runs.capacity() * sizeof(BlockRun) + chunk.end_runs.capacity() * sizeof(ElementRun) +
+             chunk.damped.capacity() * sizeof(DampedBlock);
     for (const EndPairs& of : chunk.end_pairs) total += of.pairs.capacity() * sizeof(EndPairs::Pair);
   }
   return total;

@@ -56,8 +56,8 @@ struct NodeRow {
   int touched = 0;
 };
 
-// What the elements of a block meet on one other tube: the run of one of them, or the runs of both in one row, whose
-// nodes out of an element's own reach do nothing to it.
+// What the elements of a block meet on one other tube: the run of one of them, or the runs of both in one row,
+// whose nodes out of an element's own reach do nothing to it.
 struct BlockRun {
   static constexpr int none = -1;
   static constexpr int both = 2;
@@ -70,7 +70,7 @@ struct BlockRun {
 };
 
 struct ElementRun {
-  int element = 0, run = 0;
+  int element = 0, run = 0;  // the run as LineList has it
 };
 
 // Pairs of elements that are alike: of the same types, ends and sums.

@@ -71,4 +71,23 @@ class WorkShares {
   std::vector<Share> shares_;
 };
 
+// How many pieces of work each of some things still waits for. What a thread has written before it counts down is
+// seen by the one that counts to nothing.
+class TubeCounters {
+ public:
+  // Nothing in it outlives the work either.
+  TubeCounters() = default;
+  TubeCounters(const TubeCounters&) {}
+  TubeCounters& operator=(const TubeCounters&) { return *this; }
+
+  void resize(std::size_t n) {
+    if (left_.size() != n) left_ = std::vector<std::atomic<int>>(n);
+  }
+  void set(int k, int left) { left_[static_cast<std::size_t>(k)].store(left, std::memory_order_relaxed); }
+  bool last(int k) { return left_[static_cast<std::size_t>(k)].fetch_sub(1, std::memory_order_acq_rel) == 1; }
+
+ private:
+  std::vector<std::atomic<int>> left_;
+};
+
 }  // namespace ropewalk

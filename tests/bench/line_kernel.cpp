@@ -21,10 +21,12 @@ HWY_INLINE void radial_row(const Table& table, const typename Table::Value* X, s
   auto us = hn::Zero(d), slopes = hn::Zero(d);
   const auto all = hn::FirstN(d, hn::Lanes(d));
   for (std::size_t i = 0; i < n; i += hn::Lanes(d)) {
-    hn::Vec<typename Lanes<typename Table::Value>::D> u, slope;
-    radial<true>(d, table, hn::Load(d, X + i), all, u, slope);
-    us = hn::Add(us, u);
-    slopes = hn::Add(slopes, slope);
+    using V = hn::Vec<typename Lanes<typename Table::Value>::D>;
+    const V at[1] = {hn::Load(d, X + i)};
+    V u[1], slope[1];
+    radial<true>(d, table, at, all, u, slope);
+    us = hn::Add(us, u[0]);
+    slopes = hn::Add(slopes, slope[0]);
   }
   hn::StoreU(us, d, out);
   hn::StoreU(slopes, d, out + hn::Lanes(d));
@@ -179,8 +181,8 @@ BENCHMARK(RadialDirect);
 
 void set_counters(benchmark::State& bench, const Rope& rope, const LineList& list) {
   const bool full = rope.in.precision == Precision::full;
-  const RadialCount count = count_radial(rope.topology, rope.in, rope.state, list, 2 * rope.list.displacement(),
-                                         rope.topology.elements());
+  const RadialCount count =
+      count_radial(rope.topology, rope.in, rope.state, rope.list, list, rope.topology.elements());
   const double n = rope.elements();
   set_ns(bench, "ns/element", n);
   set_ns(bench, "ns/evaluation", count.evaluations * n);
@@ -212,9 +214,10 @@ void LineKernel(benchmark::State& bench, const Choice& c) {
   const Rope rope(c.tubes, 49, c.law, c.precision, 0, c.worn);
   LineEngine engine;
   Vec3Array force(rope.state.size()), torque(rope.state.size());
+  const auto nothing = [](int) {};
+  const auto finish = [&](int t) { engine.add_to_tube(rope.topology, rope.axis, t, force, torque); };
   for (auto _ : bench) {
-    engine.compute(rope.topology, rope.in, rope.list, rope.state, rope.axis, c.energies, [](int) {});
-    for (int t = 0; t < rope.topology.tubes(); ++t) engine.add_to_tube(rope.topology, rope.axis, t, force, torque);
+    engine.compute(rope.topology, rope.in, rope.list, rope.state, rope.axis, c.energies, {nothing, finish});
     benchmark::ClobberMemory();
   }
   set_counters(bench, rope, engine.list());
@@ -226,7 +229,8 @@ void LineNodeForces(benchmark::State& bench) {
   const Rope rope(static_cast<int>(bench.range(0)), 49, Law::line);
   LineEngine engine;
   Vec3Array force(rope.state.size()), torque(rope.state.size());
-  engine.compute(rope.topology, rope.in, rope.list, rope.state, rope.axis, false, [](int) {});
+  const auto nothing = [](int) {};
+  engine.compute(rope.topology, rope.in, rope.list, rope.state, rope.axis, false, {nothing, nothing});
   for (auto _ : bench) {
     for (int t = 0; t < rope.topology.tubes(); ++t) engine.add_to_tube(rope.topology, rope.axis, t, force, torque);
     benchmark::ClobberMemory();

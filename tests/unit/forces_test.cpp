@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
+#include <atomic>
+
 #include "sim/simulation.hpp"
 #include "unit/support.hpp"
 
@@ -220,6 +222,46 @@ const std::vector<Variant> line_variants = {
 
 std::string name_of(const ::testing::TestParamInfo<Variant>& info) { return info.param.name; }
 
+// Whichever thread finishes a tube, and whether at once or after all chunks.
+class LineFinish : public ForcesTest {
+ protected:
+  Forces collected(std::size_t at_once_from, int threads) const {
+    omp_set_num_threads(threads);
+    NeighbourList list(in, 0.2);
+    list.build(topology, state);
+    Vec3Array axis(state.size());
+    LineEngine engine;
+    engine.finish_at_once_from = at_once_from;
+    Forces out(state.size());
+    std::vector<std::atomic<int>> times(static_cast<std::size_t>(topology.tubes()));
+    const auto place = [&](int t) {
+      for (int i = topology.tube_begin[t]; i < topology.tube_begin[t + 1]; ++i)
+        axis.set(static_cast<std::size_t>(i), axis_of(state.orientation[static_cast<std::size_t>(i)]));
+    };
+    const auto finish = [&](int t) {
+      ++times[static_cast<std::size_t>(t)];
+      engine.add_to_tube(topology, axis, t, out.force, out.torque);
+    };
+    engine.compute(topology, in, list, state, axis, true, {place, finish});
+    for (const auto& n : times) EXPECT_EQ(n, 1);
+    out.energy.vdw = engine.energy();
+    return out;
+  }
+};
+
+TEST_P(LineFinish, SameBitsAtOnceOrInTheEnd) {
+  const Forces end = collected(1000000, 1);
+  EXPECT_GT(std::fabs(end.energy.vdw), 50);
+  for (int threads : {1, 2, 5}) {
+    const Forces at_once = collected(0, threads);
+    EXPECT_EQ(end.force.x, at_once.force.x);
+    EXPECT_EQ(end.force.y, at_once.force.y);
+    EXPECT_EQ(end.torque.z, at_once.torque.z);
+    EXPECT_EQ(end.energy.vdw, at_once.energy.vdw);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Line, LineFinish, ::testing::ValuesIn(line_variants), name_of);
 INSTANTIATE_TEST_SUITE_P(Paper, ForcesTest, ::testing::ValuesIn(paper_variants), name_of);
 INSTANTIATE_TEST_SUITE_P(Line, ForcesTest, ::testing::ValuesIn(line_variants), name_of);
 
