@@ -88,6 +88,7 @@ struct LineWork {
 
   void start(const LineChunk& chunk) {
     for (int kind = 0; kind < row_kinds; ++kind) forces[kind].start(chunk.nodes[kind], chunk.touched.size());
+    batches.clear();  // their order belongs to the state alone: a resumed run has no older ones
     const auto most = static_cast<std::size_t>(chunk.most_rows);
     shared.row.resize(2 * most);
     for (auto& of_one : met)
