@@ -21,6 +21,7 @@ struct PairForce {
 struct TubeEnds {
   bool begins = false, ends = false;
   bool any() const { return begins || ends; }
+  bool operator==(const TubeEnds& o) const { return begins == o.begins && ends == o.ends; }
 };
 
 namespace detail {

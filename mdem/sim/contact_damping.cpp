@@ -81,10 +81,11 @@ HWY_INLINE void add_to(const Vec3& v, std::ptrdiff_t at, std::vector<double>& x,
 // offset of one block the forces are added one place further on, and a load would wait for the last stores if no
 // other block came between.
 HWY_INLINE V group_damping(const ContactViscosity& viscosity, const State& s, const DampedBlock* first,
-                           const DampedBlock* last, int lane, int own_shift, ContactBuffer& out) {
+                           const DampedBlock* last, int lane, ContactBuffer& out) {
   const D d;
   const V half = hn::Set(d, 0.5), zero = hn::Zero(d);
-  const int own = first->i + lane, lanes = std::min(static_cast<int>(hn::Lanes(d)), first->lanes - lane);
+  const int own = first->i + lane, own_entry = first->at_i + lane,
+            lanes = std::min(static_cast<int>(hn::Lanes(d)), first->lanes - lane);
   const Motion i = load(s, own, 0, lanes);
   Vec3 force{zero, zero, zero}, torque{zero, zero, zero};
   V power = zero;
@@ -109,22 +110,22 @@ HWY_INLINE V group_damping(const ContactViscosity& viscosity, const State& s, co
       add_to(f, entry, out.fx, out.fy, out.fz);
       add_to(t, entry, out.tx, out.ty, out.tz);
     }
-  add_to(force, own + own_shift, out.fx, out.fy, out.fz);
-  add_to(torque, own + own_shift, out.tx, out.ty, out.tz);
+  add_to(force, own_entry, out.fx, out.fy, out.fz);
+  add_to(torque, own_entry, out.tx, out.ty, out.tz);
   return power;
 }
 
 }  // namespace damping
 
 void Blocks(const ContactViscosity& viscosity, const State& state, const std::vector<DampedBlock>& blocks,
-            int own_shift, ContactBuffer& out) {
+            ContactBuffer& out) {
   const damping::D d;
   auto power = hn::Zero(d);
   const DampedBlock* const all = blocks.data() + blocks.size();
   for (const DampedBlock *first = blocks.data(), *last = first; first != all; first = last) {
     while (last != all && last->i == first->i) ++last;
     for (int lane = 0; lane < first->lanes; lane += static_cast<int>(hn::Lanes(d)))
-      power = hn::Add(power, damping::group_damping(viscosity, state, first, last, lane, own_shift, out));
+      power = hn::Add(power, damping::group_damping(viscosity, state, first, last, lane, out));
   }
   out.power += hn::GetLane(hn::SumOfLanes(d, power));
 }
@@ -138,15 +139,16 @@ namespace ropewalk {
 HWY_EXPORT(Blocks);
 
 void contact_damping(const ContactViscosity& viscosity, const State& state, const std::vector<DampedBlock>& blocks,
-                     int own_shift, ContactBuffer& out) {
-  HWY_DYNAMIC_DISPATCH(Blocks)(viscosity, state, blocks, own_shift, out);
+                     ContactBuffer& out) {
+  HWY_DYNAMIC_DISPATCH(Blocks)(viscosity, state, blocks, out);
 }
 
-void DampedBlocks::add(int i, int end, int from, int to, const TouchedRange& partners) {
+void DampedBlocks::add(int i, const TouchedRange& own, int from, int to, const TouchedRange& partners) {
   if (i >= first_ + lanes_) {
     finish_group();
     first_ = i;
-    lanes_ = std::min(DampedBlock::most, end - i);
+    lanes_ = std::min(DampedBlock::most, own.end - i);
+    at_ = i + own.shift;
   }
   if (from < to) ranges_.push_back({from - i, to - i, partners});
 }
@@ -158,7 +160,7 @@ void DampedBlocks::finish_group() {
   });
   const auto add = [&](const Range& r) {
     blocks_.push_back(
-        {first_, first_ + r.from, static_cast<short>(lanes_), static_cast<short>(r.to - r.from), r.partners});
+        {first_, first_ + r.from, at_, static_cast<short>(lanes_), static_cast<short>(r.to - r.from), r.partners});
   };
   for (std::size_t k = 0; k < ranges_.size();) {
     Range all = ranges_[k];

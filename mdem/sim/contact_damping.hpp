@@ -17,7 +17,7 @@ struct TouchedRange {
 // Element i + l meets element j + l + c for l < lanes and c < offsets, where that is one of `partners`.
 struct DampedBlock {
   static constexpr int most = 8;
-  int i = 0, j = 0;
+  int i = 0, j = 0, at_i = 0;  // elements; i's entry in the buffer
   short lanes = 0, offsets = 0;
   TouchedRange partners;
 };
@@ -26,8 +26,8 @@ struct DampedBlock {
 // and the last range of an element with another: those out of reach have no weight.
 class DampedBlocks {
  public:
-  // Elements from .. to - 1 are within reach of i; `end` of i's tube or of the chunk. Elements i in rising order.
-  void add(int i, int end, int from, int to, const TouchedRange& partners);
+  // Elements from .. to - 1 are within reach of i, which is one of `own`. Elements i in rising order.
+  void add(int i, const TouchedRange& own, int from, int to, const TouchedRange& partners);
   std::vector<DampedBlock> take();
 
  private:
@@ -37,13 +37,14 @@ class DampedBlocks {
   };
   void finish_group();
 
-  int first_ = 0, lanes_ = 0;  // elements of the group
+  int first_ = 0, lanes_ = 0, at_ = 0;  // elements of the group, and the first one's entry
   std::vector<Range> ranges_;
   std::vector<DampedBlock> blocks_;
 };
 
-// With the widest vectors that the machine has. Element i is entry i + own_shift of the buffer.
+// With the widest vectors that the machine has. In the buffer up to DampedBlock::most entries before the first
+// element and behind the last are read and written as they were.
 void contact_damping(const ContactViscosity& viscosity, const State& state, const std::vector<DampedBlock>& blocks,
-                     int own_shift, ContactBuffer& out);
+                     ContactBuffer& out);
 
 }  // namespace ropewalk

@@ -1,6 +1,7 @@
 // The line law over rows of nodes, for every instruction set that the compiler knows and in two precisions; the
 // machine's best is picked at run time. The arithmetic of the law is in the tables (radial_table.hpp).
 #include "sim/line_engine.hpp"
+#include "sim/plain_vector.hpp"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "sim/contact_line_kernel.cpp"
@@ -213,7 +214,7 @@ struct Element {
   const LineChunk& chunk;
   LineWork<Real>& work;
   ContactBuffer& out;
-  int element;
+  int element, at;           // and its entry in the buffers
   std::size_t row_of_types;  // of its type in the tables of pairs of types
   TubeEnds ends;
   double x[3], n[3];
@@ -224,20 +225,19 @@ struct Element {
   const LineContact& law(int type_j) const { return in.interaction->line[pair(type_j)]; }
   const Table& table(int type_j) const { return in.tables[pair(type_j)]; }
   Rows rows_of(int t) const { return in.rows[t]; }
-  const TouchedTube& touched(const LineRun& run) const {
-    return chunk.touched[static_cast<std::size_t>(run.touched)];
-  }
+  const TouchedPart& part(const LineRun& run) const { return chunk.parts[static_cast<std::size_t>(run.part)]; }
 
-  HWY_INLINE Element(const In& input, const LineChunk& c, LineWork<Real>& w, ContactBuffer& o, int i, int tube)
-      : in(input), chunk(c), work(w), out(o), element(i) {
+  HWY_INLINE Element(const In& input, const LineChunk& c, LineWork<Real>& w, ContactBuffer& o, int i, int entry,
+                     int tube)
+      : in(input), chunk(c), work(w), out(o), element(i), at(entry) {
     const Topology& topology = *in.topology;
     row_of_types =
         static_cast<std::size_t>(topology.tube_type[static_cast<std::size_t>(tube)]) * topology.types.size();
     ends = topology.ends_of(i, tube);
-    const auto at = static_cast<std::size_t>(i);
+    const auto k = static_cast<std::size_t>(i);
     const Vec3Array &place = in.state->position, &axis = *in.axis;
-    x[0] = place.x[at], x[1] = place.y[at], x[2] = place.z[at];
-    n[0] = axis.x[at], n[1] = axis.y[at], n[2] = axis.z[at];
+    x[0] = place.x[k], x[1] = place.y[k], x[2] = place.z[k];
+    n[0] = axis.x[k], n[1] = axis.y[k], n[2] = axis.z[k];
   }
   // The sums of the lanes of the forces on its nodes, and of these times their places along it.
   HWY_INLINE void add(V fx, V fy, V fz, V mx, V my, V mz) {
@@ -300,7 +300,7 @@ HWY_INLINE void meet_rows(E* elements, const MetRows& met, int t, int k) {
   auto& forces = e.work.forces[static_cast<int>(kind)];
   Nodes<E, K> nodes(elements, e.sums(met.begin()->type).sums[t].places, k);
   for (const NodeRow& row : met) {
-    forces.use(e.chunk, kind, row.touched);
+    forces.use(e.chunk, kind, row.part);
     meet_row<energies, K>(e.table(row.type), placed, forces, row, nodes.at,
                           static_cast<typename E::Real>(e.sums(row.type).sums[t].weight), nodes.sums);
   }
@@ -396,13 +396,8 @@ struct PairLanes {
   }
 };
 
-struct Triple {
-  double x, y, z;
-};
-HWY_INLINE Triple cross(const Triple& a, const Triple& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-HWY_INLINE void add_to(ContactBuffer& out, int at, double sign, const Triple& force, const Triple& torque) {
+HWY_INLINE void add_to(ContactBuffer& out, int at, double sign, const PlainVector& force,
+                       const PlainVector& torque) {
   const auto k = static_cast<std::size_t>(at);
   out.fx[k] += sign * force.x, out.fy[k] += sign * force.y, out.fz[k] += sign * force.z;
   out.tx[k] += torque.x, out.ty[k] += torque.y, out.tz[k] += torque.z;
@@ -423,21 +418,20 @@ HWY_INLINE void give_out(const In& in, const PairBatch<T>& batch, int m, const P
   }
   hn::Store(turn, d, all[9]);
   const auto of = [&](int first, int l) {
-    return Triple{static_cast<double>(all[first][l]), static_cast<double>(all[first + 1][l]),
-                  static_cast<double>(all[first + 2][l])};
+    return PlainVector{static_cast<double>(all[first][l]), static_cast<double>(all[first + 1][l]),
+                       static_cast<double>(all[first + 2][l])};
   };
   const auto axis = [&](int element) {
     const auto e = static_cast<std::size_t>(element);
-    return Triple{in.axis->x[e], in.axis->y[e], in.axis->z[e]};
+    return PlainVector{in.axis->x[e], in.axis->y[e], in.axis->z[e]};
   };
   for (int l = 0; l < std::min(lanes, batch.count - m); ++l) {
-    const Triple ni = axis(batch.i[m + l]), nj = axis(batch.j[m + l]), force = of(0, l);
-    Triple on_i = cross(of(3, l), ni), on_j = cross(nj, of(6, l));
+    const PlainVector ni = axis(batch.i[m + l]), nj = axis(batch.j[m + l]), force = of(0, l);
+    PlainVector on_i = of(3, l).cross(ni), on_j = nj.cross(of(6, l));
     if (batch.kind.shared) {
-      const double g = static_cast<double>(all[9][l]) * batch.derivative[m + l];
-      const Triple couple = cross(ni, nj);
-      on_i.x -= g * couple.x, on_i.y -= g * couple.y, on_i.z -= g * couple.z;
-      on_j.x += g * couple.x, on_j.y += g * couple.y, on_j.z += g * couple.z;
+      const PlainVector couple = static_cast<double>(all[9][l]) * batch.derivative[m + l] * ni.cross(nj);
+      on_i = on_i - couple;
+      on_j = on_j + couple;
     }
     add_to(out, batch.at_i[m + l], -1, force, on_i);
     add_to(out, batch.at_j[m + l], 1, force, on_j);
@@ -495,31 +489,23 @@ HWY_INLINE void fill_lane(const In& in, int i, int j, int at_i, int at_j, PairBa
 template <bool energies, class E>
 HWY_INLINE void add_pair(E& e, const LineRun& run, int j, const SumShare& w) {
   using T = typename E::Real;
-  const PairKind kind{static_cast<int>(e.pair(run.type)), w.first, e.ends, run.tube_ends(), w.value < 1};
-  auto& batches = e.work.batches;
-  auto batch = std::find_if(batches.begin(), batches.end(), [&](const auto& b) { return b.kind == kind; });
-  if (batch == batches.end()) {
-    batches.push_back({});
-    batch = batches.end() - 1;
-    batch->kind = kind;
-  }
-  batch->share[batch->count] = static_cast<T>(w.value);
-  batch->derivative[batch->count] = w.derivative;
-  fill_lane(e.in, e.element, j, e.element + e.chunk.own_shift(), j + e.touched(run).element_shift, *batch);
-  if (batch->count == PairBatch<T>::most) meet_pairs<energies>(e.in, *batch, e.out);
+  PairBatch<T>& batch =
+      e.work.batch({static_cast<int>(e.pair(run.type)), w.first, e.ends, run.tube_ends(), w.value < 1});
+  batch.share[batch.count] = static_cast<T>(w.value);
+  batch.derivative[batch.count] = w.derivative;
+  fill_lane(e.in, e.element, j, e.at, j + e.part(run).element_shift, batch);
+  if (batch.count == PairBatch<T>::most) meet_pairs<energies>(e.in, batch, e.out);
 }
 
 // The pairs at the ends of tubes, which take the first sum alone.
 template <bool energies, class In, class T>
-HWY_NOINLINE void meet_end_pairs(const In& in, const EndPairs& of, PairBatch<T>& batch, ContactBuffer& out) {
-  batch.kind = of.kind;
-  batch.count = 0;
+HWY_NOINLINE void meet_end_pairs(const In& in, const EndPairs& of, LineWork<T>& work, ContactBuffer& out) {
+  PairBatch<T>& batch = work.batch(of.kind);
   for (const EndPairs::Pair& p : of.pairs) {
     if (static_cast<double>(p.beyond) > in.moved) break;
     fill_lane(in, p.i, p.j, p.at_i, p.at_j, batch);
     if (batch.count == PairBatch<T>::most) meet_pairs<energies>(in, batch, out);
   }
-  if (batch.count > 0) meet_pairs<energies>(in, batch, out);
 }
 
 template <class E>
@@ -537,13 +523,13 @@ HWY_NOINLINE void pair_run(E& e, const LineRun& run) {
 }
 
 // The elements m .. end of a run, with `each` nodes, as a row.
-HWY_INLINE NodeRow row_of(const LineRun& run, const TouchedTube& touched, Rows kind, int each, int m, int end) {
+HWY_INLINE NodeRow row_of(const LineRun& run, const TouchedPart& part, Rows kind, int each, int m, int end) {
   const LineRun::Nodes& nodes = run.of(kind);
   const int from = std::max<int>(nodes.from, m * each), to = std::min(nodes.from + nodes.count, end * each),
             first = from - nodes.from;
   const int begin = nodes.begin + first;
-  return {begin, begin + touched.row[static_cast<int>(kind)].shift, static_cast<short>(std::max(to - from, 0)),
-          run.type, run.touched};
+  return {begin, begin + part.row[static_cast<int>(kind)].shift, static_cast<short>(std::max(to - from, 0)),
+          run.type, run.part};
 }
 
 // A run whose angles are such that one sum goes over into the next: rows of those elements that take one sum, and
@@ -554,7 +540,7 @@ HWY_NOINLINE void split_run(E& e, const LineRun& run, MetRows* met) {
   int began = 0, of = -1;  // the row that is being made, and its sum
   const auto finish = [&](int end) {
     if (of < 0) return;
-    const NodeRow part = row_of(run, e.touched(run), e.rows_of(of), law.sum_nodes_j(of), began, end);
+    const NodeRow part = row_of(run, e.part(run), e.rows_of(of), law.sum_nodes_j(of), began, end);
     if (part.count > 0) met[of].add(part);
   };
   for (int m = 0; m < run.elements; ++m) {
@@ -575,7 +561,7 @@ HWY_INLINE RunSum sum_of(const E& e, const LineRun& run) {
   if (HWY_LIKELY(e.in.turned < static_cast<double>(run.even)))
     return {run.fading ? RunSum::pairs : RunSum::rows, 0, 0};
   const LineContact& law = e.law(run.type);
-  const bool has_row = e.touched(run).row[0].per_element > 0;
+  const bool has_row = e.part(run).row[0].per_element > 0;
   const hn::CappedTag<double, 8> d;
   const Vec3Array& axis = *e.in.axis;
   const auto nx = hn::Set(d, e.n[0]), ny = hn::Set(d, e.n[1]), nz = hn::Set(d, e.n[2]);
@@ -604,8 +590,8 @@ HWY_INLINE void meet_run(E& e, const LineRun& run, MetRows* met) {
     case RunSum::rows: {
       const Rows kind = e.rows_of(sum.first);
       const LineRun::Nodes& nodes = run.of(kind);
-      const int shift = e.touched(run).row[static_cast<int>(kind)].shift;
-      met[sum.first].add({nodes.begin, nodes.begin + shift, nodes.count, run.type, run.touched});
+      const int shift = e.part(run).row[static_cast<int>(kind)].shift;
+      met[sum.first].add({nodes.begin, nodes.begin + shift, nodes.count, run.type, run.part});
       break;
     }
     case RunSum::split:
@@ -617,17 +603,27 @@ HWY_INLINE void meet_run(E& e, const LineRun& run, MetRows* met) {
   }
 }
 
+void forget(MetRows (&met)[line_sums]) {
+  for (MetRows& rows : met) rows.count = 0;
+}
+
+// All that one element has met by itself.
+template <bool energies, class E>
+HWY_INLINE void sum_met(E& e, const MetRows (&met)[line_sums]) {
+  for (int t = 0; t < line_sums; ++t)
+    if (met[t].count > 0) sum_rows<energies>(&e, 1, met[t], t);
+}
+
 // The runs at the ends of tubes, whatever sums they take.
 template <bool energies, class In, class Real>
 HWY_NOINLINE void meet_end_runs(const In& in, const LineChunk& chunk, LineWork<Real>& work, ContactBuffer& out) {
   for (const ElementRun& of : chunk.end_runs) {
     const LineRun& run = in.list->run(of.run);
-    for (MetRows& rows : work.met[0]) rows.count = 0;
-    Element<In> e(in, chunk, work, out, of.element, in.topology->tube_of(of.element));
+    forget(work.met[0]);
+    Element<In> e(in, chunk, work, out, of.element, of.at, in.topology->tube_of(of.element));
     meet_run<energies>(e, run, work.met[0]);
-    for (int t = 0; t < line_sums; ++t)
-      if (work.met[0][t].count > 0) sum_rows<energies>(&e, 1, work.met[0][t], t);
-    e.sum.add_to(out, of.element + chunk.own_shift());
+    sum_met<energies>(e, work.met[0]);
+    e.sum.add_to(out, of.at);
   }
 }
 
@@ -635,17 +631,16 @@ template <bool energies, class In, class Real>
 HWY_INLINE void all_elements(const In& in, const LineChunk& chunk, LineWork<Real>& work, ContactBuffer& out) {
   const Topology& topology = *in.topology;
   int tube = chunk.begin < chunk.end ? topology.tube_of(chunk.begin) : 0;
-  const int shift = chunk.own_shift();
   for (const LineBlock& block : chunk.blocks) {
     while (block.first >= topology.tube_begin[tube + 1]) ++tube;
-    Element<In> e[2] = {{in, chunk, work, out, block.first, tube},
-                        {in, chunk, work, out, block.first + block.elements - 1, tube}};
+    const int second = block.elements - 1;
+    Element<In> e[2] = {{in, chunk, work, out, block.first, block.at, tube},
+                        {in, chunk, work, out, block.first + second, block.at + second, tube}};
     work.shared.count = 0;
     bool alone = false;  // whether an element has met rows by itself
     const auto of_one = [&](int k) {
       if (!alone)
-        for (auto& sums : work.met)
-          for (MetRows& rows : sums) rows.count = 0;
+        for (auto& met : work.met) forget(met);
       alone = true;
       return work.met[k];
     };
@@ -661,13 +656,12 @@ HWY_INLINE void all_elements(const In& in, const LineChunk& chunk, LineWork<Real
     }
     if (work.shared.count > 0) sum_rows<energies>(e, block.elements, work.shared, 0);
     for (int k = 0; k < block.elements; ++k) {
-      for (int t = 0; alone && t < line_sums; ++t)
-        if (work.met[k][t].count > 0) sum_rows<energies>(e + k, 1, work.met[k][t], t);
-      e[k].sum.add_to(out, block.first + k + shift);
+      if (alone) sum_met<energies>(e[k], work.met[k]);
+      e[k].sum.add_to(out, e[k].at);
     }
   }
   if (in.turned < static_cast<double>(chunk.even)) {
-    for (const EndPairs& of : chunk.end_pairs) meet_end_pairs<energies>(in, of, work.ends, out);
+    for (const EndPairs& of : chunk.end_pairs) meet_end_pairs<energies>(in, of, work, out);
   } else {
     meet_end_runs<energies>(in, chunk, work, out);
   }

@@ -80,10 +80,9 @@ struct Counter {
   // A row that stands for the runs of a block, as element i meets it.
   void add_block_run(int i, const LineChunk& chunk, const BlockRun& run, RadialCount& count) const {
     const LineContact& law = in.line[pair(i, run.row.type)];
-    const TouchedTube& touched = chunk.touched[static_cast<std::size_t>(run.row.touched)];
-    const int origin = touched.row[static_cast<int>(law.sparse.thins_j(0) ? Rows::sparse : Rows::all)].origin,
-              j = topology.tube_begin[touched.tube];
-    add_row(law, i, j, run.row.begin - (origin + j * law.sum_nodes_j(0)), run.row.count, 0, count);
+    const TouchedPart& part = chunk.parts[static_cast<std::size_t>(run.row.part)];
+    const TouchedPart::Row& row = part.row[static_cast<int>(law.sparse.thins_j(0) ? Rows::sparse : Rows::all)];
+    add_row(law, i, part.begin, run.row.begin - row.first(part.begin), run.row.count, 0, count);
   }
 
   // Whether what is out of reach for now begins by `beyond`.

@@ -37,19 +37,17 @@ void place_nodes(const double* x, const double* n, int elements, int count, cons
   }
 }
 
+// The nodes of the elements begin .. end of a tube, `count` of each, from node `at` on.
 template <class C>
-void place_row(const NodeLayout& layout, const Topology& topology, double length, int tube, const State& state,
-               const Vec3Array& axis, LineNodes<C>& nodes) {
-  const int count = layout.per_element[static_cast<std::size_t>(topology.tube_type[tube])];
-  const auto at = static_cast<std::size_t>(layout.begin[static_cast<std::size_t>(tube)]);
-  const auto first = static_cast<std::size_t>(topology.tube_begin[tube]);
+void place_elements(int begin, int end, int count, double length, const State& state, const Vec3Array& axis, int at,
+                    LineNodes<C>& nodes) {
   const double unit = nodes.per_unit;
   thread_local std::vector<double> s;
   s.resize(static_cast<std::size_t>(count));
   for (int l = 0; l < count; ++l) s[static_cast<std::size_t>(l)] = line_node(l, count, length) * unit;
   const auto fill = [&](const std::vector<double>& x, const std::vector<double>& n, std::vector<C>& out) {
     const auto place = count == 3 ? place_nodes<3, C> : count == 6 ? place_nodes<6, C> : place_nodes<0, C>;
-    place(x.data() + first, n.data() + first, topology.length_of(tube), count, s.data(), unit, out.data() + at);
+    place(x.data() + begin, n.data() + begin, end - begin, count, s.data(), unit, out.data() + at);
   };
   fill(state.position.x, axis.x, nodes.x);
   fill(state.position.y, axis.y, nodes.y);
@@ -124,12 +122,24 @@ ROPEWALK_VECTOR_CLONES __attribute__((flatten)) void add(const double* from, int
   add_all(from, n, to);
 }
 
-// Force and torque on each of the elements, of which x, y and z are the forces on the nodes.
+// Of consecutive elements.
+struct ForcesOn {
+  double *fx, *fy, *fz, *tx, *ty, *tz;
+};
+ForcesOn from(int element, Vec3Array& force, Vec3Array& torque) {
+  return {force.x.data() + element,  force.y.data() + element,  force.z.data() + element,
+          torque.x.data() + element, torque.y.data() + element, torque.z.data() + element};
+}
+ForcesOn from(int entry, ContactBuffer& b) {
+  return {b.fx.data() + entry, b.fy.data() + entry, b.fz.data() + entry,
+          b.tx.data() + entry, b.ty.data() + entry, b.tz.data() + entry};
+}
+
+// Adds force and torque on the elements from `begin` on, of which x, y and z are the forces on the nodes.
 template <class T>
-void add_rows(const T* x, const T* y, const T* z, int begin, int end, int count, double length,
-              const Vec3Array& axis, Vec3Array& force, Vec3Array& torque) {
+void add_rows(const T* x, const T* y, const T* z, int begin, int elements, int count, double length,
+              const Vec3Array& axis, const ForcesOn& to) {
   thread_local std::vector<T> sums;
-  const int elements = end - begin;
   sums.resize(static_cast<std::size_t>(6 * elements));
   T *fx = sums.data(), *fy = fx + elements, *fz = fy + elements, *mx = fz + elements, *my = mx + elements,
     *mz = my + elements;
@@ -138,17 +148,17 @@ void add_rows(const T* x, const T* y, const T* z, int begin, int end, int count,
   moments(z, elements, count, fz, mz);
   const double step = length / count;
   const double *nx = axis.x.data() + begin, *ny = axis.y.data() + begin, *nz = axis.z.data() + begin;
-  add({fx, ny, mz, nz, my}, step, elements, force.x.data() + begin, torque.x.data() + begin);
-  add({fy, nz, mx, nx, mz}, step, elements, force.y.data() + begin, torque.y.data() + begin);
-  add({fz, nx, my, ny, mx}, step, elements, force.z.data() + begin, torque.z.data() + begin);
+  add({fx, ny, mz, nz, my}, step, elements, to.fx, to.tx);
+  add({fy, nz, mx, nx, mz}, step, elements, to.fy, to.ty);
+  add({fz, nx, my, ny, mx}, step, elements, to.fz, to.tz);
 }
 
-void add_elements(const ContactBuffer& b, const TouchedTube& t, Vec3Array& force, Vec3Array& torque) {
-  const auto onto = [&](const std::vector<double>& from, std::vector<double>& to) {
-    add(from.data() + t.element_shift + t.begin, t.end - t.begin, to.data() + t.begin);
+void add_elements(const ContactBuffer& b, const TouchedPart& p, const ForcesOn& to) {
+  const auto onto = [&](const std::vector<double>& on, double* out) {
+    add(on.data() + p.element_shift + p.begin, p.end - p.begin, out);
   };
-  onto(b.fx, force.x), onto(b.fy, force.y), onto(b.fz, force.z);
-  onto(b.tx, torque.x), onto(b.ty, torque.y), onto(b.tz, torque.z);
+  onto(b.fx, to.fx), onto(b.fy, to.fy), onto(b.fz, to.fz);
+  onto(b.tx, to.tx), onto(b.ty, to.ty), onto(b.tz, to.tz);
 }
 
 }  // namespace
@@ -160,72 +170,127 @@ void LineEngine::describe(const Topology& topology, const Interaction& in, const
   length_.clear();
   for (std::size_t a = 0; a < topology.types.size(); ++a)
     length_.push_back(in.line[a * topology.types.size()].length_i);
-  const auto prepare = [&](auto& b, double unit) {
-    make_tables(b, in, unit);
-    b.work.resize(list_.chunks().size());
-    for (const Rows kind : {Rows::all, Rows::sparse}) {
-      auto& nodes = b.nodes[static_cast<int>(kind)];
-      nodes.per_unit = 1 / unit;
-      for (auto* v : {&nodes.x, &nodes.y, &nodes.z})
-        v->resize(static_cast<std::size_t>(list_.layout(kind).total() + NodeLayout::pad));
-    }
-  };
   buffers_.resize(list_.chunks().size());
   if (full_) {
-    prepare(full_buffers_, 1);
+    make_tables(full_buffers_, in, 1);
   } else {
-    prepare(mixed_, list_.unit());
+    make_tables(mixed_, in, list_.unit());
   }
+}
+
+template <class Buffers>
+void LineEngine::make_room(Buffers& b, std::size_t threads) const {
+  const bool own = list_.own_rows();
+  b.nodes.resize(own ? threads : 1);
+  b.work.resize(own ? threads : list_.chunks().size());
+  for (std::size_t kind = 0; kind < row_kinds; ++kind) {
+    int nodes = own ? 0 : list_.layout(static_cast<Rows>(kind)).total();
+    for (const LineChunk& chunk : list_.chunks()) nodes = own ? std::max(nodes, chunk.nodes[kind]) : nodes;
+    for (auto& rows : b.nodes) {
+      rows[kind].per_unit = 1 / b.tables_unit;
+      for (auto* v : {&rows[kind].x, &rows[kind].y, &rows[kind].z})
+        v->resize(static_cast<std::size_t>(nodes + NodeLayout::pad));
+    }
+  }
+}
+
+double LineEngine::length_of(const Topology& topology, int tube) const {
+  return length_[static_cast<std::size_t>(topology.tube_type[tube])];
+}
+
+template <class NodeRows>
+void LineEngine::place_tube(const Topology& topology, const State& state, const Vec3Array& axis, int tube,
+                            NodeRows& rows) const {
+  for (const Rows kind : {Rows::all, Rows::sparse}) {
+    const NodeLayout& layout = list_.layout(kind);
+    if (layout.has_row(tube))
+      place_elements(topology.tube_begin[tube], topology.tube_begin[tube + 1],
+                     layout.per_element[static_cast<std::size_t>(topology.tube_type[tube])],
+                     length_of(topology, tube), state, axis, layout.begin[static_cast<std::size_t>(tube)],
+                     rows[static_cast<std::size_t>(kind)]);
+  }
+}
+
+// The contact of one chunk, by one thread.
+template <class Buffers>
+void LineEngine::meet(std::size_t k, std::size_t thread, Buffers& b, KernelInput<Buffers> in) {
+  const LineChunk& chunk = list_.chunks()[k];
+  const bool own = list_.own_rows();
+  auto& rows = b.nodes[own ? thread : 0];
+  auto& work = b.work[own ? thread : k];
+  in.nodes = rows.data();
+  const auto of_each_row = [&](const auto& what) {
+    for (const TouchedPart& part : chunk.parts)
+      for (int kind = 0; kind < row_kinds; ++kind)
+        if (part.row[kind].per_element > 0) what(part, kind, length_of(*in.topology, part.tube));
+  };
+  if (own)
+    of_each_row([&](const TouchedPart& part, int kind, double length) {
+      const TouchedPart::Row& row = part.row[kind];
+      place_elements(part.begin, part.end, row.per_element, length, *in.state, *in.axis, row.first(part.begin),
+                     rows[static_cast<std::size_t>(kind)]);
+    });
+  buffers_[k].clear(static_cast<std::size_t>(chunk.elements));
+  work.start(chunk);
+  line_contact(in, chunk, work, buffers_[k]);
+  if (own)
+    of_each_row([&](const TouchedPart& part, int kind, double length) {
+      const auto& forces = work.forces[kind];
+      if (!forces.used[static_cast<std::size_t>(&part - chunk.parts.data())]) return;
+      const TouchedPart::Row& row = part.row[kind];
+      const int at = row.first(part.begin) + row.shift;
+      add_rows(forces.x.data() + at, forces.y.data() + at, forces.z.data() + at, part.begin, part.end - part.begin,
+               row.per_element, length, *in.axis, from(part.begin + part.element_shift, buffers_[k]));
+    });
+  if (in.interaction->damped_contact())
+    contact_damping(in.interaction->damping.contact, *in.state, chunk.damped, buffers_[k]);
 }
 
 template <class Buffers>
 void LineEngine::run(Buffers& b, const Topology& topology, const Interaction& in, const NeighbourList& list,
                      const State& state, const Vec3Array& axis, bool energies, const TubeWork& tubes) {
-  LineKernelInput<typename Buffers::Table, typename Buffers::C> input{&topology,
-                                                                      &in,
-                                                                      &state,
-                                                                      &axis,
-                                                                      &list_,
-                                                                      b.nodes,
-                                                                      b.tables.data(),
-                                                                      b.pairs.data(),
-                                                                      {},
-                                                                      list.turn(),
-                                                                      2 * list.displacement(),
-                                                                      energies};
+  KernelInput<Buffers> input{&topology,
+                             &in,
+                             &state,
+                             &axis,
+                             &list_,
+                             nullptr,
+                             b.tables.data(),
+                             b.pairs.data(),
+                             {},
+                             list.turn(),
+                             2 * list.displacement(),
+                             energies};
   for (int t = 0; t < line_sums; ++t) input.rows[t] = in.line[0].sparse.thins_j(t) ? Rows::sparse : Rows::all;
   const bool parallel = state.size() > parallel_from, at_once = state.size() > finish_at_once_from;
+  const int threads = parallel ? omp_get_max_threads() : 1;
   const auto timed = [&](const auto& work) {
     if (omp_get_thread_num() != 0) return work();
     const double began = omp_get_wtime();
     work();
     finish_seconds_ += omp_get_wtime() - began;
   };
+  make_room(b, static_cast<std::size_t>(threads));
   left_.resize(static_cast<std::size_t>(topology.tubes()));
-  shares_.deal(static_cast<int>(list_.chunks().size()), parallel ? omp_get_max_threads() : 1);
-#pragma omp parallel if (parallel)
+  shares_.deal(static_cast<int>(list_.chunks().size()), threads);
+#pragma omp parallel num_threads(threads) if (parallel)
   {
 #pragma omp for schedule(static)
     for (int t = 0; t < topology.tubes(); ++t) {
       tubes.place(t);
-      left_.set(t, static_cast<int>(list_.touches_end(t) - list_.touches_begin(t)));
-      for (const Rows kind : {Rows::all, Rows::sparse})
-        if (list_.layout(kind).has_row(t))
-          place_row(list_.layout(kind), topology, length_[static_cast<std::size_t>(topology.tube_type[t])], t,
-                    state, axis, b.nodes[static_cast<int>(kind)]);
+      if (!list_.own_rows()) place_tube(topology, state, axis, t, b.nodes[0]);
+      const int parts = static_cast<int>(list_.touches_end(t) - list_.touches_begin(t));
+      left_.set(t, parts);
+      if (at_once && parts == 0) timed([&] { tubes.finish(t); });
     }
-    for (int piece; (piece = shares_.take(omp_get_thread_num())) >= 0;) {
+    const int thread = omp_get_thread_num();
+    for (int piece; (piece = shares_.take(thread)) >= 0;) {
       const auto k = static_cast<std::size_t>(piece);
-      const LineChunk& chunk = list_.chunks()[k];
-      buffers_[k].clear(static_cast<std::size_t>(chunk.elements));
-      b.work[k].start(chunk);
-      line_contact(input, chunk, b.work[k], buffers_[k]);
-      if (in.damped_contact())
-        contact_damping(in.damping.contact, state, chunk.damped, chunk.own_shift(), buffers_[k]);
+      meet(k, static_cast<std::size_t>(thread), b, input);
       if (at_once)
         timed([&] {
-          for (const TouchedTube& touched : chunk.touched)
-            if (left_.last(touched.tube)) tubes.finish(touched.tube);
+          for (const TouchedPart& part : list_.chunks()[k].parts)
+            if (left_.last(part.tube)) tubes.finish(part.tube);
         });
     }
     if (!at_once) {
@@ -256,43 +321,42 @@ template <class Buffers>
 void LineEngine::add_nodes(const Buffers& b, const Topology& topology, const Vec3Array& axis, int tube,
                            Vec3Array& force, Vec3Array& torque) const {
   using T = typename Buffers::T;
-  const int begin = topology.tube_begin[tube], end = topology.tube_begin[tube + 1];
-  const double length = length_[static_cast<std::size_t>(topology.tube_type[tube])];
+  const int begin = topology.tube_begin[tube], elements = topology.length_of(tube);
   thread_local std::vector<T> sum[3];
   for (int kind = 0; kind < row_kinds; ++kind) {
     bool any = false;
     int count = 0;
     for (const LineList::Touch* touch = list_.touches_begin(tube); touch != list_.touches_end(tube); ++touch) {
       const NodeForces<T>& f = b.work[static_cast<std::size_t>(touch->chunk)].forces[kind];
-      if (!f.used[static_cast<std::size_t>(touch->index)]) continue;
-      const TouchedTube& t =
-          list_.chunks()[static_cast<std::size_t>(touch->chunk)].touched[static_cast<std::size_t>(touch->index)];
-      const TouchedTube::Row& row = t.row[kind];
+      if (!f.used[static_cast<std::size_t>(touch->part)]) continue;
+      const TouchedPart& part = list_.part(*touch);
+      const TouchedPart::Row& row = part.row[kind];
       count = row.per_element;
-      const std::size_t nodes = static_cast<std::size_t>((end - begin) * count);
       if (!any)
-        for (auto& v : sum) set_zero(v, nodes);
+        for (auto& v : sum) set_zero(v, static_cast<std::size_t>(elements * count));
       any = true;
-      const int from = (t.begin - begin) * count, to = (t.end - begin) * count;
-      const int shift = row.origin + begin * count + row.shift;
+      const int first = (part.begin - begin) * count, nodes = (part.end - part.begin) * count,
+                at = row.first(part.begin) + row.shift;
       const auto add_up = [&](const std::vector<T>& x, std::vector<T>& out) {
-        add(x.data() + shift + from, to - from, out.data() + from);
+        add(x.data() + at, nodes, out.data() + first);
       };
       add_up(f.x, sum[0]);
       add_up(f.y, sum[1]);
       add_up(f.z, sum[2]);
     }
-    if (any) add_rows(sum[0].data(), sum[1].data(), sum[2].data(), begin, end, count, length, axis, force, torque);
+    if (any)
+      add_rows(sum[0].data(), sum[1].data(), sum[2].data(), begin, elements, count, length_of(topology, tube), axis,
+               from(begin, force, torque));
   }
 }
 
 void LineEngine::add_to_tube(const Topology& topology, const Vec3Array& axis, int tube, Vec3Array& force,
                              Vec3Array& torque) const {
   for (const LineList::Touch* touch = list_.touches_begin(tube); touch != list_.touches_end(tube); ++touch) {
-    const auto chunk = static_cast<std::size_t>(touch->chunk);
-    add_elements(buffers_[chunk], list_.chunks()[chunk].touched[static_cast<std::size_t>(touch->index)], force,
-                 torque);
+    const TouchedPart& part = list_.part(*touch);
+    add_elements(buffers_[static_cast<std::size_t>(touch->chunk)], part, from(part.begin, force, torque));
   }
+  if (list_.own_rows()) return;  // what acts on the nodes is in there
   if (full_) {
     add_nodes(full_buffers_, topology, axis, tube, force, torque);
   } else {
@@ -316,7 +380,8 @@ std::size_t LineEngine::bytes() const {
   std::size_t total = list_.bytes();
   for (const ContactBuffer& b : buffers_) total += 6 * b.fx.capacity() * sizeof(double);
   const auto count = [&](const auto& b) {
-    for (const auto& nodes : b.nodes) total += 3 * nodes.x.capacity() * sizeof(nodes.x[0]);
+    for (const auto& rows : b.nodes)
+      for (const auto& nodes : rows) total += 3 * nodes.x.capacity() * sizeof(nodes.x[0]);
     for (const auto& work : b.work)
       for (const auto& f : work.forces) total += 3 * f.x.capacity() * sizeof(f.x[0]);
   };

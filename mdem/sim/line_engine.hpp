@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -26,29 +27,29 @@ struct LineNodes {
   }
 };
 
-// Forces on the nodes that a chunk acts on, eV/nm: those of its touched tubes one after another.
+// Forces on the nodes that a chunk acts on, eV/nm: those of its parts one after another.
 template <class T>
 struct NodeForces {
   using Value = T;
   std::vector<T> x, y, z;
-  std::vector<char> used;  // of the touched tubes; the forces on the others are not even cleared
+  std::vector<char> used;  // of the parts; the forces on the others are not even cleared
 
-  void start(int nodes, std::size_t tubes) {
+  void start(int nodes, std::size_t parts) {
     for (auto* v : {&x, &y, &z}) v->resize(static_cast<std::size_t>(nodes + NodeLayout::pad));
-    used.assign(tubes, 0);
+    used.assign(parts, 0);
   }
   void use(const LineChunk& chunk, Rows kind, int index) {
     char& done = used[static_cast<std::size_t>(index)];
     if (done) return;
     done = 1;
-    clear(chunk.touched[static_cast<std::size_t>(index)], kind);
+    clear(chunk.parts[static_cast<std::size_t>(index)], kind);
   }
 
  private:
-  void clear(const TouchedTube& t, Rows kind) {
-    const TouchedTube::Row& row = t.row[static_cast<int>(kind)];
-    const auto from = row.origin + t.begin * row.per_element + row.shift;
-    for (auto* v : {&x, &y, &z}) std::fill_n(v->begin() + from, (t.end - t.begin) * row.per_element, T{0});
+  void clear(const TouchedPart& p, Rows kind) {
+    const TouchedPart::Row& row = p.row[static_cast<int>(kind)];
+    for (auto* v : {&x, &y, &z})
+      std::fill_n(v->begin() + row.first(p.begin) + row.shift, (p.end - p.begin) * row.per_element, T{0});
   }
 };
 
@@ -77,17 +78,24 @@ struct PairBatch {
   alignas(64) T apart[3][most] = {}, axis_i[3][most] = {}, axis_j[3][most] = {};  // in units of the list
 };
 
-// Of a chunk.
+// For a chunk.
 template <class T>
 struct LineWork {
   NodeForces<T> forces[row_kinds];
   MetRows shared;             // by both elements of a block, with the first sum
   MetRows met[2][line_sums];  // by one of them
   std::vector<PairBatch<T>> batches;
-  PairBatch<T> ends;
+
+  PairBatch<T>& batch(const PairKind& kind) {
+    for (auto& b : batches)
+      if (b.kind == kind) return b;
+    batches.emplace_back();
+    batches.back().kind = kind;
+    return batches.back();
+  }
 
   void start(const LineChunk& chunk) {
-    for (int kind = 0; kind < row_kinds; ++kind) forces[kind].start(chunk.nodes[kind], chunk.touched.size());
+    for (int kind = 0; kind < row_kinds; ++kind) forces[kind].start(chunk.nodes[kind], chunk.parts.size());
     batches.clear();  // their order belongs to the state alone: a resumed run has no older ones
     const auto most = static_cast<std::size_t>(chunk.most_rows);
     shared.row.resize(2 * most);
@@ -176,8 +184,9 @@ struct LineBuffers {
   std::vector<Table> tables;
   std::vector<PairSum<T>> pairs;
   double tables_unit = 0;
-  LineNodes<C> nodes[row_kinds];
-  std::vector<LineWork<T>> work;  // of each chunk
+  // Of all tubes and of each chunk; where chunks have rows of their own, both of what each thread is at.
+  std::vector<std::array<LineNodes<C>, row_kinds>> nodes;
+  std::vector<LineWork<T>> work;
 };
 using MixedBuffers = LineBuffers<MixedTable, std::int32_t>;
 using FullBuffers = LineBuffers<FullTable, double>;
@@ -205,6 +214,7 @@ class LineEngine {
   // Elements from which on a tube is finished as soon as nothing more will act on it. What acts on fewer stays in
   // the caches anyway, and the threads share the work more evenly if all of it comes at the end.
   std::size_t finish_at_once_from = 20000;
+  void own_rows_up_to(double elements) { list_.own_rows_up_to = elements; }  // as LineList has it
 
   // The contact of all chunks; `finish` then calls add_to_tube. Energies only if wanted: forces are the same bits.
   void compute(const Topology& topology, const Interaction& interaction, const NeighbourList& list,
@@ -224,8 +234,18 @@ class LineEngine {
   void run(Buffers& b, const Topology& topology, const Interaction& interaction, const NeighbourList& list,
            const State& state, const Vec3Array& axis, bool energies, const TubeWork& tubes);
   template <class Buffers>
+  using KernelInput = LineKernelInput<typename Buffers::Table, typename Buffers::C>;
+  template <class Buffers>
+  void make_room(Buffers& b, std::size_t threads) const;
+  template <class NodeRows>
+  void place_tube(const Topology& topology, const State& state, const Vec3Array& axis, int tube,
+                  NodeRows& rows) const;
+  template <class Buffers>
+  void meet(std::size_t chunk, std::size_t thread, Buffers& b, KernelInput<Buffers> in);
+  template <class Buffers>
   void add_nodes(const Buffers& b, const Topology& topology, const Vec3Array& axis, int tube, Vec3Array& force,
                  Vec3Array& torque) const;
+  double length_of(const Topology& topology, int tube) const;  // of its elements
   void describe(const Topology& topology, const Interaction& interaction, const NeighbourList& list);
 
   LineList list_;

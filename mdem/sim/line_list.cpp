@@ -85,7 +85,7 @@ struct Side {
     const LineContact& k = law();
     LineRun run;
     run.type = static_cast<short>(topology.tube_type[tube_j]);
-    run.touched = tube_j;  // for now
+    run.part = tube_j;  // for now
     run.element_begin = first;
     run.begins = first == topology.tube_begin[tube_j];
     run.ends = last + 1 == topology.tube_begin[tube_j + 1];
@@ -288,45 +288,103 @@ void LineList::cut_into_chunks(const Topology& topology, std::size_t count) {
   }
 }
 
-// The tubes that a chunk acts on, its own first, and their places in its buffers.
-void LineList::touch_tubes(const Topology& topology, LineChunk& chunk) {
-  std::vector<int> index(static_cast<std::size_t>(topology.tubes()), -1);
-  const auto touch = [&](int tube, int begin, int end) {
-    int& at = index[static_cast<std::size_t>(tube)];
-    if (at < 0) {
-      at = static_cast<int>(chunk.touched.size());
-      chunk.touched.push_back({tube, begin, end, 0, {}});
+namespace {
+
+struct Elements {
+  int begin = 0, end = 0;
+  void take(const Elements& o) {
+    begin = std::min(begin, o.begin);
+    end = std::max(end, o.end);
+  }
+};
+
+// Those within reach of the contact or of its viscosity.
+Elements reached(const LineRun& run) {
+  const int from = run.element_begin + run.damped_from;
+  Elements all{run.element_begin, run.element_begin + run.elements};
+  if (run.elements == 0) all = {from, from + run.damped};
+  if (run.damped > 0) all.take({from, from + run.damped});
+  return all;
+}
+
+}  // namespace
+
+// The parts of tubes that a chunk acts on: its own elements that have neighbours, and these. Its runs, which had
+// their tubes, get their parts.
+void LineList::find_parts(const Topology& topology, LineChunk& chunk) {
+  constexpr int gap = 4;  // elements in between that are cheaper to have in the buffers than to leave out
+  std::vector<Elements> hull(static_cast<std::size_t>(topology.tubes()), {topology.elements(), 0});
+  const auto each = [&](const auto& take) {  // all ranges of elements acted on
+    int tube = topology.tube_of(chunk.begin);
+    for (int i = chunk.begin; i < chunk.end; ++i) {
+      if (begin(i) == end(i)) continue;
+      while (i >= topology.tube_begin[tube + 1]) ++tube;
+      take(tube, Elements{i, i + 1});
+      for (const LineRun* run = begin(i); run != end(i); ++run) take(run->part, reached(*run));
     }
-    TouchedTube& t = chunk.touched[static_cast<std::size_t>(at)];
-    t.begin = std::min(t.begin, begin);
-    t.end = std::max(t.end, end);
-    return at;
   };
-  for (int t = topology.tube_of(chunk.begin); t < topology.tubes() && topology.tube_begin[t] < chunk.end; ++t)
-    touch(t, std::max(chunk.begin, topology.tube_begin[t]), std::min(chunk.end, topology.tube_begin[t + 1]));
+  std::vector<int> tubes;
+  each([&](int tube, const Elements& e) {
+    Elements& all = hull[static_cast<std::size_t>(tube)];
+    if (all.begin >= all.end) tubes.push_back(tube);
+    all.take(e);
+  });
+  std::sort(tubes.begin(), tubes.end());
+  // Of the elements of all hulls, one after another: whether they are acted on, later their parts.
+  std::vector<int> shift(static_cast<std::size_t>(topology.tubes()));
+  int total = 0;
+  for (int t : tubes) {
+    const Elements& all = hull[static_cast<std::size_t>(t)];
+    shift[static_cast<std::size_t>(t)] = total - all.begin;
+    total += all.end - all.begin;
+  }
+  constexpr int none = -1, some = 0;
+  std::vector<int> part(static_cast<std::size_t>(total), none);
+  each([&](int tube, const Elements& e) {
+    const auto from = part.begin() + shift[static_cast<std::size_t>(tube)];
+    std::fill(from + e.begin, from + e.end, some);
+  });
+  for (int t : tubes) {
+    const Elements& all = hull[static_cast<std::size_t>(t)];
+    const auto of = part.begin() + shift[static_cast<std::size_t>(t)];
+    for (int i = all.begin, last = all.begin - gap - 2; i < all.end; ++i) {
+      if (of[i] == none) continue;
+      if (i - last > gap + 1) chunk.parts.push_back({t, i, i, 0, {}});
+      last = i;
+      chunk.parts.back().end = i + 1;
+      of[i] = static_cast<int>(chunk.parts.size()) - 1;
+    }
+  }
   for (std::size_t k = begin_[static_cast<std::size_t>(chunk.begin)];
        k < begin_[static_cast<std::size_t>(chunk.end)]; ++k) {
     LineRun& run = run_[k];
-    const int tube = run.touched, damped = run.element_begin + run.damped_from;
-    if (run.elements > 0) run.touched = touch(tube, run.element_begin, run.element_begin + run.elements);
-    if (run.damped > 0) run.touched = touch(tube, damped, damped + run.damped);
+    run.part = part[static_cast<std::size_t>(shift[static_cast<std::size_t>(run.part)] + reached(run).begin)];
   }
-  for (TouchedTube& t : chunk.touched) {
-    t.element_shift = chunk.elements - t.begin;
-    chunk.elements += t.end - t.begin;
-    for (int kind = 0; kind < row_kinds; ++kind) {
-      if (!layout_[kind].has_row(t.tube)) continue;
-      TouchedTube::Row& row = t.row[kind];
-      row.per_element = layout_[kind].per_element[static_cast<std::size_t>(topology.tube_type[t.tube])];
-      row.origin =
-          layout_[kind].begin[static_cast<std::size_t>(t.tube)] - topology.tube_begin[t.tube] * row.per_element;
-      row.shift = chunk.nodes[kind] - (row.origin + t.begin * row.per_element);
-      chunk.nodes[kind] += (t.end - t.begin) * row.per_element;
-    }
+  chunk.elements = DampedBlock::most;  // room for vectors that begin before the first one
+  for (TouchedPart& p : chunk.parts) {
+    p.element_shift = chunk.elements - p.begin;
+    chunk.elements += p.end - p.begin;
   }
 }
 
-// Of the nodes of a chunk's runs, whose tubes have been touched.
+// In the rows and in the buffers of the nodes.
+void LineList::place_parts(const Topology& topology, LineChunk& chunk) const {
+  for (TouchedPart& p : chunk.parts)
+    for (int kind = 0; kind < row_kinds; ++kind) {
+      const NodeLayout& layout = layout_[kind];
+      if (!layout.has_row(p.tube)) continue;
+      TouchedPart::Row& row = p.row[kind];
+      row.per_element = layout.per_element[static_cast<std::size_t>(topology.tube_type[p.tube])];
+      const int entry = chunk.nodes[kind] - p.begin * row.per_element;  // of the first node of element 0
+      row.origin = own_rows_ ? entry
+                             : layout.begin[static_cast<std::size_t>(p.tube)] -
+                                   topology.tube_begin[p.tube] * row.per_element;
+      row.shift = entry - row.origin;
+      chunk.nodes[kind] += (p.end - p.begin) * row.per_element;
+    }
+}
+
+// Of the nodes of a chunk's runs, whose parts have been placed.
 void LineList::find_places(LineChunk& chunk) {
   for (int i = chunk.begin; i < chunk.end; ++i) {
     int rows = 0;
@@ -334,9 +392,9 @@ void LineList::find_places(LineChunk& chunk) {
       LineRun& run = run_[k];
       rows += run.elements;
       for (int kind = 0; kind < row_kinds; ++kind) {
-        const TouchedTube::Row& row = chunk.touched[static_cast<std::size_t>(run.touched)].row[kind];
         LineRun::Nodes& nodes = run.nodes[kind];
-        nodes.begin = row.origin + run.element_begin * row.per_element + nodes.from;
+        nodes.begin =
+            chunk.parts[static_cast<std::size_t>(run.part)].row[kind].first(run.element_begin) + nodes.from;
       }
     }
     chunk.most_rows = std::max(chunk.most_rows, rows);
@@ -355,7 +413,7 @@ LineRun::Nodes both(const LineRun::Nodes& a, const LineRun::Nodes& b) {
 }
 
 bool on_one_part(const LineRun& a, const LineRun& b) {
-  return b.elements > 0 && !b.fading && a.touched == b.touched && a.begins == b.begins && a.ends == b.ends;
+  return b.elements > 0 && !b.fading && a.part == b.part && a.begins == b.begins && a.ends == b.ends;
 }
 
 }  // namespace
@@ -364,10 +422,10 @@ bool on_one_part(const LineRun& a, const LineRun& b) {
 // of them.
 void LineList::add_block(const LineBlock& of, int tube, Rows kind, LineChunk& chunk) const {
   const int first = of.first, elements = of.elements;
-  LineBlock block{first, elements, static_cast<int>(chunk.runs.size()), 0};
+  LineBlock block{first, of.at, elements, static_cast<int>(chunk.runs.size()), 0};
   const auto add = [&](const LineRun& run, const LineRun::Nodes& nodes) -> BlockRun& {
-    const int shift = chunk.touched[static_cast<std::size_t>(run.touched)].row[static_cast<int>(kind)].shift;
-    chunk.runs.push_back({{nodes.begin, nodes.begin + shift, nodes.count, run.type, run.touched},
+    const int shift = chunk.parts[static_cast<std::size_t>(run.part)].row[static_cast<int>(kind)].shift;
+    chunk.runs.push_back({{nodes.begin, nodes.begin + shift, nodes.count, run.type, run.part},
                           run.beyond,
                           run.even,
                           {BlockRun::none, BlockRun::none},
@@ -376,7 +434,7 @@ void LineList::add_block(const LineBlock& of, int tube, Rows kind, LineChunk& ch
   };
   const auto index = [&](const LineRun& run) { return static_cast<int>(&run - run_.data()); };
   const auto own_tube = [&](const LineRun& run) {
-    return chunk.touched[static_cast<std::size_t>(run.touched)].tube == tube;
+    return chunk.parts[static_cast<std::size_t>(run.part)].tube == tube;
   };
   const auto runs_on = [&](const LineRun& part, int element) {
     return std::count_if(begin(element), end(element), [&](const LineRun& run) { return on_one_part(part, run); });
@@ -408,37 +466,46 @@ void LineList::add_block(const LineBlock& of, int tube, Rows kind, LineChunk& ch
   if (block.begin < block.end) chunk.blocks.push_back(block);
 }
 
-void LineList::add_end_run(const Topology& topology, int i, int tube, const LineRun& run, LineChunk& chunk) const {
-  chunk.end_runs.push_back({i, static_cast<int>(&run - run_.data())});
+void LineList::add_end_run(const Topology& topology, int i, const TouchedPart& own, const LineRun& run,
+                           LineChunk& chunk) const {
+  const int at = i + own.element_shift;
+  chunk.end_runs.push_back({i, at, static_cast<int>(&run - run_.data())});
   chunk.even = std::min(chunk.even, run.even);
   const int types = static_cast<int>(topology.types.size());
-  const PairKind kind{topology.tube_type[tube] * types + run.type, 0, topology.ends_of(i, tube), run.tube_ends(),
-                      false};
+  const PairKind kind{topology.tube_type[own.tube] * types + run.type, 0, topology.ends_of(i, own.tube),
+                      run.tube_ends(), false};
   auto same = std::find_if(chunk.end_pairs.begin(), chunk.end_pairs.end(),
                            [&](const EndPairs& p) { return p.kind == kind; });
   if (same == chunk.end_pairs.end()) {
     chunk.end_pairs.push_back({kind, {}});
     same = chunk.end_pairs.end() - 1;
   }
-  const int shift = chunk.touched[static_cast<std::size_t>(run.touched)].element_shift;
+  const int shift = chunk.parts[static_cast<std::size_t>(run.part)].element_shift;
   for (int j = run.element_begin; j < run.element_begin + run.elements; ++j)
-    same->pairs.push_back({i, j, i + chunk.own_shift(), j + shift, run.beyond});
+    same->pairs.push_back({i, j, at, j + shift, run.beyond});
 }
 
 // Of the elements of a chunk, whose runs know their places. Not across a tube's own runs: which of its elements
 // meet depends on how far apart they are along it.
 void LineList::make_blocks(const Topology& topology, const Interaction& in, LineChunk& chunk) const {
   const Rows kind = in.line[0].sparse.thins_j(0) ? Rows::sparse : Rows::all;
-  int tube = topology.tube_of(chunk.begin);
   chunk.even = std::numeric_limits<float>::infinity();
+  PartOf part_of(chunk);
+  const auto joins = [&](int i, int tube) {  // the element before it
+    return i < chunk.end && i < topology.tube_begin[tube + 1] && begin(i) != end(i) &&
+           !topology.ends_of(i, tube).any();
+  };
   for (int i = chunk.begin; i < chunk.end;) {
-    while (i >= topology.tube_begin[tube + 1]) ++tube;
-    const bool alone = topology.ends_of(i, tube).any() || i + 1 >= chunk.end || topology.ends_of(i + 1, tube).any();
-    const int elements = alone ? 1 : 2;
-    add_block({i, elements, 0, 0}, tube, kind, chunk);
-    for (int end = i + elements; i < end; ++i)
-      for (const LineRun* run = begin(i); run != this->end(i); ++run)
-        if (run->elements > 0 && run->fading) add_end_run(topology, i, tube, *run, chunk);
+    if (begin(i) == end(i)) {
+      ++i;
+      continue;
+    }
+    const TouchedPart& own = part_of(i);
+    const int elements = !topology.ends_of(i, own.tube).any() && joins(i + 1, own.tube) ? 2 : 1;
+    add_block({i, i + own.element_shift, elements, 0, 0}, own.tube, kind, chunk);
+    for (int last = i + elements; i < last; ++i)
+      for (const LineRun* run = begin(i); run != end(i); ++run)
+        if (run->elements > 0 && run->fading) add_end_run(topology, i, own, *run, chunk);
   }
   for (EndPairs& of : chunk.end_pairs) {
     std::stable_sort(of.pairs.begin(), of.pairs.end(),
@@ -450,32 +517,30 @@ void LineList::make_blocks(const Topology& topology, const Interaction& in, Line
   chunk.end_runs.shrink_to_fit();
 }
 
-void LineList::list_damped(const Topology& topology, LineChunk& chunk) const {
+void LineList::list_damped(LineChunk& chunk) const {
   DampedBlocks blocks;
-  int tube = topology.tube_of(chunk.begin);
-  for (int i = chunk.begin; i < chunk.end; ++i) {
-    while (i >= topology.tube_begin[tube + 1]) ++tube;
-    const int end = std::min(chunk.end, topology.tube_begin[tube + 1]);
-    for (const LineRun* run = begin(i); run != this->end(i); ++run) {
+  PartOf part_of(chunk);
+  for (int i = chunk.begin; i < chunk.end; ++i)
+    for (const LineRun* run = begin(i); run != end(i); ++run) {
       if (run->damped == 0) continue;
+      TouchedRange own = part_of(i).elements();
+      own.end = std::min(own.end, chunk.end);
       const int from = run->element_begin + run->damped_from;
-      blocks.add(i, end, from, from + run->damped,
-                 chunk.touched[static_cast<std::size_t>(run->touched)].elements());
+      blocks.add(i, own, from, from + run->damped, chunk.parts[static_cast<std::size_t>(run->part)].elements());
     }
-  }
   chunk.damped = blocks.take();
 }
 
 void LineList::list_touches(const Topology& topology) {
   touch_begin_.assign(static_cast<std::size_t>(topology.tubes()) + 1, 0);
   for (const LineChunk& chunk : chunks_)
-    for (const TouchedTube& t : chunk.touched) ++touch_begin_[static_cast<std::size_t>(t.tube) + 1];
+    for (const TouchedPart& p : chunk.parts) ++touch_begin_[static_cast<std::size_t>(p.tube) + 1];
   for (std::size_t t = 1; t < touch_begin_.size(); ++t) touch_begin_[t] += touch_begin_[t - 1];
   std::vector<int> next(touch_begin_.begin(), touch_begin_.end() - 1);
   touch_.resize(static_cast<std::size_t>(touch_begin_.back()));
   for (std::size_t c = 0; c < chunks_.size(); ++c)
-    for (std::size_t k = 0; k < chunks_[c].touched.size(); ++k)
-      touch_[static_cast<std::size_t>(next[static_cast<std::size_t>(chunks_[c].touched[k].tube)]++)] = {
+    for (std::size_t k = 0; k < chunks_[c].parts.size(); ++k)
+      touch_[static_cast<std::size_t>(next[static_cast<std::size_t>(chunks_[c].parts[k].tube)]++)] = {
           static_cast<int>(c), static_cast<int>(k)};
 }
 
@@ -506,14 +571,21 @@ void LineList::build(const Topology& topology, const Interaction& in, const Neig
   lay_out_rows(topology, in, dense);
 
   cut_into_chunks(topology, list.chunks().size());
+  const auto of_each_chunk = [&](const auto& work) {
 #pragma omp parallel for schedule(dynamic, 1) if (parallel)
-  for (std::size_t c = 0; c < chunks_.size(); ++c)
-    if (chunks_[c].begin < chunks_[c].end) {
-      touch_tubes(topology, chunks_[c]);
-      find_places(chunks_[c]);
-      make_blocks(topology, in, chunks_[c]);
-      if (in.damped_contact()) list_damped(topology, chunks_[c]);
-    }
+    for (std::size_t c = 0; c < chunks_.size(); ++c)
+      if (chunks_[c].begin < chunks_[c].end) work(chunks_[c]);
+  };
+  of_each_chunk([&](LineChunk& chunk) { find_parts(topology, chunk); });
+  double acted_on = 0;
+  for (const LineChunk& chunk : chunks_) acted_on += chunk.elements;
+  own_rows_ = acted_on <= own_rows_up_to * topology.elements();
+  of_each_chunk([&](LineChunk& chunk) {
+    place_parts(topology, chunk);
+    find_places(chunk);
+    make_blocks(topology, in, chunk);
+    if (in.damped_contact()) list_damped(chunk);
+  });
   list_touches(topology);
 }
 
@@ -521,7 +593,7 @@ std::size_t LineList::bytes() const {
   std::size_t total = run_.capacity() * sizeof(LineRun) + begin_.capacity() * sizeof(std::size_t) +
                       touch_.capacity() * sizeof(Touch);
   for (const LineChunk& chunk : chunks_) {
-    total += chunk.touched.capacity() * sizeof(TouchedTube) + chunk.blocks.capacity() * sizeof(LineBlock) +
+    total += chunk.parts.capacity() * sizeof(TouchedPart) + chunk.blocks.capacity() * sizeof(LineBlock) +
              chunk.runs.capacity() * sizeof(BlockRun) + chunk.end_runs.capacity() * sizeof(ElementRun) +
              chunk.damped.capacity() * sizeof(DampedBlock);
     for (const EndPairs& of : chunk.end_pairs) total += of.pairs.capacity() * sizeof(EndPairs::Pair);

@@ -35,7 +35,7 @@ struct LineRun {
     int begin = 0;              // the first one in the rows of all tubes
   };
   int element_begin = 0;
-  int touched = 0;     // which of the chunk's touched tubes
+  int part = 0;        // which of those that the chunk acts on
   float beyond = 0;    // nm: by so much the nearest node was out of reach at the build
   float even = -1;     // rad: so long as no axis of the scene has turned by more, the first sum holds throughout
   short elements = 0;  // with nodes within reach
@@ -53,7 +53,7 @@ struct LineRun {
 struct NodeRow {
   int begin = 0, at = 0;
   short count = 0, type = 0;  // tube type
-  int touched = 0;
+  int part = 0;               // as of the run
 };
 
 // What the elements of a block meet on one other tube: the run of one of them, or the runs of both in one row,
@@ -70,7 +70,7 @@ struct BlockRun {
 };
 
 struct ElementRun {
-  int element = 0, run = 0;  // the run as LineList has it
+  int element = 0, at = 0, run = 0;  // its entry in the chunk's buffers; the run as LineList has it
 };
 
 // Pairs of elements that are alike: of the same types, ends and sums.
@@ -80,8 +80,7 @@ struct PairKind {
   bool shared = false;  // with the next sum
 
   bool operator==(const PairKind& o) const {
-    return types == o.types && sum == o.sum && shared == o.shared && ends_i.begins == o.ends_i.begins &&
-           ends_i.ends == o.ends_i.ends && ends_j.begins == o.ends_j.begins && ends_j.ends == o.ends_j.ends;
+    return types == o.types && sum == o.sum && shared == o.shared && ends_i == o.ends_i && ends_j == o.ends_j;
   }
 };
 
@@ -97,8 +96,8 @@ struct EndPairs {
 
 // An element, or two consecutive ones within a tube: neighbours of one are most often neighbours of the other.
 struct LineBlock {
-  int first = 0, elements = 1;
-  int begin = 0, end = 0;  // its runs in those of the chunk
+  int first = 0, at = 0, elements = 1;  // the first one's entry in the chunk's buffers, the others' follow
+  int begin = 0, end = 0;               // its runs in those of the chunk
 };
 
 // Whether a sum that some of the run takes fades at the ends of tubes.
@@ -106,21 +105,22 @@ inline bool fades(const SparseNodes& sparse, int first, const TubeEnds& ends_i, 
   return first < sparse.count && (run.begins || run.ends || (sparse.thins_j(first) && ends_i.any()));
 }
 
-// The elements begin .. end of a tube that a chunk acts on, and where these are in the chunk's own buffers.
-struct TouchedTube {
+// Consecutive elements begin .. end of a tube that a chunk acts on, and where these are in the chunk's own buffers.
+struct TouchedPart {
   int tube = 0, begin = 0, end = 0;
   int element_shift = 0;  // element j is entry j + element_shift
   TouchedRange elements() const { return {begin, end, element_shift}; }
   struct Row {
     int origin = 0, per_element = 0;  // the first node of element j is node origin + j per_element
     int shift = 0;                    // node m is entry m + shift
+    int first(int element) const { return origin + element * per_element; }
   } row[row_kinds];
 };
 
 // The elements begin .. end and all that they act on.
 struct LineChunk {
   int begin = 0, end = 0;
-  std::vector<TouchedTube> touched;
+  std::vector<TouchedPart> parts;  // in the order of their elements
   std::vector<LineBlock> blocks;
   std::vector<BlockRun> runs;
   // The runs at the ends of tubes, of the elements in their order, and their pairs; `even` of all of them.
@@ -130,32 +130,51 @@ struct LineChunk {
   std::vector<DampedBlock> damped;
   int elements = 0, nodes[row_kinds] = {0, 0};  // sizes of the buffers
   int most_rows = 0;                            // that an element can meet: one for each element of its runs
+};
 
-  // Of its own elements, whose tubes are the first touched ones, and in order.
-  int own_shift() const { return -begin; }
+// Finds the parts that elements of a chunk are in, asked for in rising order.
+class PartOf {
+ public:
+  explicit PartOf(const LineChunk& chunk) : part_(chunk.parts.data()) {}
+  const TouchedPart& operator()(int element) {
+    while (part_->end <= element) ++part_;
+    return *part_;
+  }
+
+ private:
+  const TouchedPart* part_;
 };
 
 class LineList {
  public:
+  // Where the chunks act on no more than so many elements for each one there is, as in films, whose tubes meet in
+  // places, each chunk has the nodes of its own parts as rows: they stay in a cache while it is worked on. Else
+  // there are rows of all tubes, which are not made by several chunks over again.
+  double own_rows_up_to = 1.5;
+
   // From the pairs of the list and the places that it was built at. Throws std::invalid_argument where a tube
   // type has other numbers of nodes towards different partners.
   void build(const Topology& topology, const Interaction& interaction, const NeighbourList& list);
 
   // Rows of all nodes exist where the build found tubes that are not nearly parallel.
+  bool own_rows() const { return own_rows_; }
   const NodeLayout& layout(Rows kind) const { return layout_[static_cast<int>(kind)]; }
   const LineRun* begin(int i) const { return run_.data() + begin_[static_cast<std::size_t>(i)]; }
   const LineRun* end(int i) const { return run_.data() + begin_[static_cast<std::size_t>(i) + 1]; }
   const LineRun& run(int k) const { return run_[static_cast<std::size_t>(k)]; }
   const std::vector<LineChunk>& chunks() const { return chunks_; }
-  // The touched tubes of all chunks that are this one: chunk and index, in the order of the chunks.
+  // The parts of a tube that chunks act on, in the order of the chunks. Tubes that nothing acts on have none.
   struct Touch {
-    int chunk = 0, index = 0;
+    int chunk = 0, part = 0;
   };
   const Touch* touches_begin(int tube) const {
     return touch_.data() + touch_begin_[static_cast<std::size_t>(tube)];
   }
   const Touch* touches_end(int tube) const {
     return touch_.data() + touch_begin_[static_cast<std::size_t>(tube) + 1];
+  }
+  const TouchedPart& part(const Touch& of) const {
+    return chunks_[static_cast<std::size_t>(of.chunk)].parts[static_cast<std::size_t>(of.part)];
   }
   std::size_t runs() const { return run_.size(); }
   // The skin (nm) whose lists would have cost least, building included, where this one of `listed` was worn after
@@ -170,12 +189,14 @@ class LineList {
   void lay_out_rows(const Topology& topology, const Interaction& interaction, const std::vector<char>& dense);
   double cost(const Topology& topology, int i, int tube) const;
   void cut_into_chunks(const Topology& topology, std::size_t count);
-  void touch_tubes(const Topology& topology, LineChunk& chunk);
+  void find_parts(const Topology& topology, LineChunk& chunk);
+  void place_parts(const Topology& topology, LineChunk& chunk) const;
   void find_places(LineChunk& chunk);
   void make_blocks(const Topology& topology, const Interaction& interaction, LineChunk& chunk) const;
-  void add_end_run(const Topology& topology, int i, int tube, const LineRun& run, LineChunk& chunk) const;
+  void add_end_run(const Topology& topology, int i, const TouchedPart& own, const LineRun& run,
+                   LineChunk& chunk) const;
   void add_block(const LineBlock& of, int tube, Rows kind, LineChunk& chunk) const;
-  void list_damped(const Topology& topology, LineChunk& chunk) const;
+  void list_damped(LineChunk& chunk) const;
   void list_touches(const Topology& topology);
 
   NodeLayout layout_[row_kinds];
@@ -185,6 +206,7 @@ class LineList {
   std::vector<Touch> touch_;
   std::vector<int> touch_begin_;
   double unit_ = 1;
+  bool own_rows_ = false;
 };
 
 // How the kernel sums a run, by the smallest and the largest (n_i.n_j)^2 in it: the sums first .. last have a

@@ -39,8 +39,7 @@ void PaperEngine::run(PaperElements<T>& elements, const Interaction& in, const N
     const NeighbourList::Chunk& chunk = list.chunks()[k];
     buffers[k].clear(static_cast<std::size_t>(chunk.touched_end - chunk.touched_begin));
     paper_contact(input, chunk, buffers[k]);
-    if (in.damped_contact())
-      contact_damping(in.damping.contact, state, damped_[k], -chunk.touched_begin, buffers[k]);
+    if (in.damped_contact()) contact_damping(in.damping.contact, state, damped_[k], buffers[k]);
   }
 }
 
@@ -51,11 +50,12 @@ void PaperEngine::list_damped(const Topology& topology, const Interaction& in, c
   for (const NeighbourList::Chunk& chunk : list.chunks()) {
     DampedBlocks blocks;
     for (int i = chunk.begin; i < chunk.end; ++i) {
-      const int end = std::min(chunk.end, topology.tube_begin[topology.tube_of(i) + 1]);
+      const TouchedRange own{i, std::min(chunk.end, topology.tube_begin[topology.tube_of(i) + 1]),
+                             -chunk.touched_begin};
       for (const PairRun* run = near.begin(i); run != near.end(i); ++run) {
         for (int from = run->begin; from < run->end;) {  // a run may go on into the next tube
           const int tube = topology.tube_of(from), to = std::min(run->end, topology.tube_begin[tube + 1]);
-          blocks.add(i, end, from, to,
+          blocks.add(i, own, from, to,
                      {std::max(topology.tube_begin[tube], chunk.touched_begin),
                       std::min(topology.tube_begin[tube + 1], chunk.touched_end), -chunk.touched_begin});
           from = to;

@@ -258,8 +258,7 @@ void ViscousDamping(benchmark::State& bench) {
     buffers[k].clear(static_cast<std::size_t>(list.chunks()[k].elements));
   for (auto _ : bench) {
     for (std::size_t k = 0; k < buffers.size(); ++k)
-      contact_damping(rope.in.damping.contact, rope.state, list.chunks()[k].damped, list.chunks()[k].own_shift(),
-                      buffers[k]);
+      contact_damping(rope.in.damping.contact, rope.state, list.chunks()[k].damped, buffers[k]);
     benchmark::ClobberMemory();
   }
   set_ns(bench, "ns/element", rope.elements());

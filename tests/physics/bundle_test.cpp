@@ -272,6 +272,33 @@ TEST(Checkpoint, GoesOnWithTheSameLists) {
   EXPECT_NE(whole.list().skin, default_skin(rope.b.in));
 }
 
+// Helices whose neighbours are at angles where one sum goes over into the next, at random ones.
+TEST(Checkpoint, GoesOnWhereSumsAreShared) {
+  TurnedRope rope(0.1);
+  SparseNodes& sparse = rope.b.in.line[0].sparse;
+  sparse = sparse_nodes(6);
+  const double pitch = 1.1 * std::acos(std::sqrt(sparse.sum[0].full_cos2)) / spacing;  // rad/nm
+  test::Random random(8);
+  State& s = rope.b.state;
+  for (std::size_t i = 0; i < s.size(); ++i) {
+    const Vector3 p = s.position[i];
+    const Quaternion by = test::turn(Vector3::UnitZ(), pitch * p.z());
+    const Vector3 at = by * p, along = Vector3(-pitch * at.y(), pitch * at.x(), 1).normalized();
+    s.position.set(i, at);
+    s.orientation.set(i, test::turn(random.direction(), random.uniform(0, 0.1)) *
+                             Quaternion::FromTwoVectors(Vector3::UnitZ(), along) * by * s.orientation[i]);
+  }
+  Simulation whole = rope.make(0);
+  for (int k = 0; k < 400; ++k) whole.step(false);
+  Simulation resumed = rope.make(0);
+  resumed.restore(whole.serialise());
+  for (int k = 0; k < 50; ++k) {
+    whole.step(false);
+    resumed.step(false);
+  }
+  EXPECT_EQ(resumed.serialise(), whole.serialise());
+}
+
 TEST(Relaxation, FindsTheHexagonalBundle) {
   Bundle b(7, 10, 0);
   for (std::size_t i = 0; i < b.state.size(); ++i)

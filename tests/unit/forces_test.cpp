@@ -125,15 +125,21 @@ TEST_P(ForcesTest, BondsAndContactAddUpToAll) {
   expect_equal(sum, all, 1e-13);
 }
 
+void expect_same_bits(const Forces& a, const Forces& b) {
+  for (const auto& [of_a, of_b] : {std::pair(&a.force, &b.force), std::pair(&a.torque, &b.torque)}) {
+    EXPECT_EQ(of_a->x, of_b->x);
+    EXPECT_EQ(of_a->y, of_b->y);
+    EXPECT_EQ(of_a->z, of_b->z);
+  }
+  EXPECT_EQ(a.damping_power, b.damping_power);
+}
+
 TEST_P(ForcesTest, SameBitsOnAnyNumberOfThreads) {
   const Forces one = fast(0.2, 1);
   for (int threads : {2, 3, 5}) {
     const Forces many = fast(0.2, threads);
-    EXPECT_EQ(one.force.x, many.force.x);
-    EXPECT_EQ(one.force.y, many.force.y);
-    EXPECT_EQ(one.torque.z, many.torque.z);
+    expect_same_bits(one, many);
     EXPECT_EQ(one.energy.vdw, many.energy.vdw);
-    EXPECT_EQ(one.damping_power, many.damping_power);
   }
 }
 
@@ -144,12 +150,7 @@ TEST_P(ForcesTest, SameBitsWhoeverReadsEnergies) {
   ForceEngine engine;
   engine.compute(topology, in, list, state, with);
   engine.compute(topology, in, list, state, without, false);
-  for (const auto& [a, b] : {std::pair(&with.force, &without.force), std::pair(&with.torque, &without.torque)}) {
-    EXPECT_EQ(a->x, b->x);
-    EXPECT_EQ(a->y, b->y);
-    EXPECT_EQ(a->z, b->z);
-  }
-  EXPECT_EQ(with.damping_power, without.damping_power);
+  expect_same_bits(with, without);
 }
 
 TEST_P(ForcesTest, NetForceAndTorqueVanish) {
@@ -222,43 +223,59 @@ const std::vector<Variant> line_variants = {
 
 std::string name_of(const ::testing::TestParamInfo<Variant>& info) { return info.param.name; }
 
+// The contact by the line law, every tube finished once.
+Forces line_contact_of(const Topology& topology, const Interaction& in, const State& state,
+                       std::size_t at_once_from, int threads, double own_rows_up_to) {
+  omp_set_num_threads(threads);
+  NeighbourList list(in, 0.2);
+  list.build(topology, state);
+  Vec3Array axis(state.size());
+  LineEngine engine;
+  engine.finish_at_once_from = at_once_from;
+  engine.own_rows_up_to(own_rows_up_to);
+  Forces out(state.size());
+  std::vector<std::atomic<int>> times(static_cast<std::size_t>(topology.tubes()));
+  const auto place = [&](int t) {
+    for (int i = topology.tube_begin[t]; i < topology.tube_begin[t + 1]; ++i)
+      axis.set(static_cast<std::size_t>(i), axis_of(state.orientation[static_cast<std::size_t>(i)]));
+  };
+  const auto finish = [&](int t) {
+    ++times[static_cast<std::size_t>(t)];
+    engine.add_to_tube(topology, axis, t, out.force, out.torque);
+  };
+  engine.compute(topology, in, list, state, axis, true, {place, finish});
+  for (const auto& n : times) EXPECT_EQ(n, 1);
+  EXPECT_EQ(engine.list().own_rows(), own_rows_up_to > 0);
+  out.energy.vdw = engine.energy();
+  out.damping_power = engine.damping_power();
+  return out;
+}
+
+constexpr std::size_t at_once = 0, in_the_end = 1000000;
+constexpr double all_rows = 0, own_rows = 1000;
+
 // Whichever thread finishes a tube, and whether at once or after all chunks.
 class LineFinish : public ForcesTest {
  protected:
-  Forces collected(std::size_t at_once_from, int threads) const {
-    omp_set_num_threads(threads);
-    NeighbourList list(in, 0.2);
-    list.build(topology, state);
-    Vec3Array axis(state.size());
-    LineEngine engine;
-    engine.finish_at_once_from = at_once_from;
-    Forces out(state.size());
-    std::vector<std::atomic<int>> times(static_cast<std::size_t>(topology.tubes()));
-    const auto place = [&](int t) {
-      for (int i = topology.tube_begin[t]; i < topology.tube_begin[t + 1]; ++i)
-        axis.set(static_cast<std::size_t>(i), axis_of(state.orientation[static_cast<std::size_t>(i)]));
-    };
-    const auto finish = [&](int t) {
-      ++times[static_cast<std::size_t>(t)];
-      engine.add_to_tube(topology, axis, t, out.force, out.torque);
-    };
-    engine.compute(topology, in, list, state, axis, true, {place, finish});
-    for (const auto& n : times) EXPECT_EQ(n, 1);
-    out.energy.vdw = engine.energy();
-    return out;
+  Forces collected(std::size_t at_once_from, int threads, double rows) const {
+    return line_contact_of(topology, in, state, at_once_from, threads, rows);
   }
 };
 
 TEST_P(LineFinish, SameBitsAtOnceOrInTheEnd) {
-  const Forces end = collected(1000000, 1);
-  EXPECT_GT(std::fabs(end.energy.vdw), 50);
-  for (int threads : {1, 2, 5}) {
-    const Forces at_once = collected(0, threads);
-    EXPECT_EQ(end.force.x, at_once.force.x);
-    EXPECT_EQ(end.force.y, at_once.force.y);
-    EXPECT_EQ(end.torque.z, at_once.torque.z);
-    EXPECT_EQ(end.energy.vdw, at_once.energy.vdw);
+  for (const double rows : {all_rows, own_rows}) {
+    const Forces end = collected(in_the_end, 1, rows);
+    EXPECT_GT(std::fabs(end.energy.vdw), 50);
+    for (int threads : {1, 2, 5}) {
+      const Forces soon = collected(at_once, threads, rows);
+      expect_same_bits(end, soon);
+      EXPECT_EQ(end.energy.vdw, soon.energy.vdw);
+    }
   }
+}
+
+TEST_P(LineFinish, RowsOfChunksEqualThoseOfAllTubes) {
+  expect_equal(collected(in_the_end, 2, own_rows), collected(in_the_end, 2, all_rows), tolerance());
 }
 
 INSTANTIATE_TEST_SUITE_P(Line, LineFinish, ::testing::ValuesIn(line_variants), name_of);
@@ -267,10 +284,10 @@ INSTANTIATE_TEST_SUITE_P(Line, ForcesTest, ::testing::ValuesIn(line_variants), n
 
 void PrintTo(const Variant& v, std::ostream* out) { *out << v.name; }
 
-// Tubes at all angles, among them right ones, and one that comes back to itself: long runs, many short ones.
-TEST(PaperForces, CrossedAndClosedTubesEqualReference) {
-  Topology topology = test::published_topology();
-  for (int t = 0; t < 13; ++t) topology.add_tube(30);
+// Tubes at all angles, among them right ones, and one that comes back to itself: long runs, many short ones. The
+// last one has no neighbour.
+State crossed_and_closed(Topology& topology) {
+  for (int t = 0; t < 14; ++t) topology.add_tube(30);
   State state(static_cast<std::size_t>(topology.elements()));
   for (int t = 0; t < 12; ++t) {
     const double angle = t * units::degree * 15;
@@ -288,6 +305,17 @@ TEST(PaperForces, CrossedAndClosedTubesEqualReference) {
     state.position.set(i, Vector3(4.3 * std::cos(angle), 4.3 * std::sin(angle), 30 + 0.09 * e));
     state.orientation.set(i, Quaternion::FromTwoVectors(Vector3::UnitZ(), along));
   }
+  for (int e = 0; e < 30; ++e) {
+    const auto i = static_cast<std::size_t>(390 + e);
+    state.position.set(i, Vector3((e - 14.5) * test::element_length, 0, 24));
+    state.orientation.set(i, Quaternion::FromTwoVectors(Vector3::UnitZ(), Vector3::UnitX()));
+  }
+  return state;
+}
+
+TEST(PaperForces, CrossedAndClosedTubesEqualReference) {
+  Topology topology = test::published_topology();
+  const State state = crossed_and_closed(topology);
   Interaction in;
   in.paper = test::published_contact();
   in.exclude_along_tube = 7;
@@ -302,6 +330,32 @@ TEST(PaperForces, CrossedAndClosedTubesEqualReference) {
     Forces f(state.size());
     engine.compute(topology, in, list, state, f);
     expect_equal(f, reference, bound);
+  }
+}
+
+TEST(LineForces, CrossedAndClosedTubesEqualReference) {
+  Topology topology = test::published_topology();
+  for (TubeType& type : topology.types) type.bond = {};
+  State state = crossed_and_closed(topology);
+  test::set_velocities(topology, 300, state);
+  Interaction in;
+  in.line = {test::line_contact(0.6785, 6, 0.6785, 6)};
+  in.line[0].sparse = sparse_nodes(6);
+  in.damping.contact = {20, 1.713, 2.57};
+  in.exclude_along_tube = 7;
+  for (const auto& [precision, bound] :
+       {std::pair(Interaction::Precision::full, 1e-10),
+        std::pair(Interaction::Precision::mixed, 5e-5)}) {  // as far as tubes lie inside each other
+    in.precision = precision;
+    Forces reference(state.size());
+    compute_reference(topology, in, state, reference);
+    for (const double rows : {own_rows, all_rows})
+      for (const std::size_t from : {at_once, in_the_end})
+        for (const int threads : {1, 3}) {
+          SCOPED_TRACE(testing::Message()
+                       << "rows " << rows << ", at once from " << from << ", threads " << threads);
+          expect_equal(line_contact_of(topology, in, state, from, threads, rows), reference, bound);
+        }
   }
 }
 
