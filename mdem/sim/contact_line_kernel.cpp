@@ -123,7 +123,7 @@ HWY_INLINE void meet_row(const Table& t, const LineNodes<C>& nodes, NodeForces<t
   const int lanes = static_cast<int>(hn::Lanes(d));
   const auto kf = hn::Set(d, t.force * factor);
   auto energy = hn::Zero(d);
-  const C *x = nodes.x.data() + row.begin, *y = nodes.y.data() + row.begin, *z = nodes.z.data() + row.begin;
+  const C *x = nodes.x.data() + row.at, *y = nodes.y.data() + row.at, *z = nodes.z.data() + row.at;
   T *ox = out.x.data() + row.at, *oy = out.y.data() + row.at, *oz = out.z.data() + row.at;
   for (int m = 0; m < row.count; m += lanes) {
     const auto wanted = hn::FirstN(d, static_cast<std::size_t>(row.count - m));
@@ -523,13 +523,10 @@ HWY_NOINLINE void pair_run(E& e, const LineRun& run) {
 }
 
 // The elements m .. end of a run, with `each` nodes, as a row.
-HWY_INLINE NodeRow row_of(const LineRun& run, const TouchedPart& part, Rows kind, int each, int m, int end) {
+HWY_INLINE NodeRow row_of(const LineRun& run, Rows kind, int each, int m, int end) {
   const LineRun::Nodes& nodes = run.of(kind);
-  const int from = std::max<int>(nodes.from, m * each), to = std::min(nodes.from + nodes.count, end * each),
-            first = from - nodes.from;
-  const int begin = nodes.begin + first;
-  return {begin, begin + part.row[static_cast<int>(kind)].shift, static_cast<short>(std::max(to - from, 0)),
-          run.type, run.part};
+  const int from = std::max<int>(nodes.from, m * each), to = std::min(nodes.from + nodes.count, end * each);
+  return {nodes.at + from - nodes.from, static_cast<short>(std::max(to - from, 0)), run.type, run.part};
 }
 
 // A run whose angles are such that one sum goes over into the next: rows of those elements that take one sum, and
@@ -540,7 +537,7 @@ HWY_NOINLINE void split_run(E& e, const LineRun& run, MetRows* met) {
   int began = 0, of = -1;  // the row that is being made, and its sum
   const auto finish = [&](int end) {
     if (of < 0) return;
-    const NodeRow part = row_of(run, e.part(run), e.rows_of(of), law.sum_nodes_j(of), began, end);
+    const NodeRow part = row_of(run, e.rows_of(of), law.sum_nodes_j(of), began, end);
     if (part.count > 0) met[of].add(part);
   };
   for (int m = 0; m < run.elements; ++m) {
@@ -588,10 +585,8 @@ HWY_INLINE void meet_run(E& e, const LineRun& run, MetRows* met) {
   const RunSum sum = sum_of(e, run);
   switch (sum.kind) {
     case RunSum::rows: {
-      const Rows kind = e.rows_of(sum.first);
-      const LineRun::Nodes& nodes = run.of(kind);
-      const int shift = e.part(run).row[static_cast<int>(kind)].shift;
-      met[sum.first].add({nodes.begin, nodes.begin + shift, nodes.count, run.type, run.part});
+      const LineRun::Nodes& nodes = run.of(e.rows_of(sum.first));
+      met[sum.first].add({nodes.at, nodes.count, run.type, run.part});
       break;
     }
     case RunSum::split:
@@ -630,7 +625,7 @@ HWY_NOINLINE void meet_end_runs(const In& in, const LineChunk& chunk, LineWork<R
 template <bool energies, class In, class Real>
 HWY_INLINE void all_elements(const In& in, const LineChunk& chunk, LineWork<Real>& work, ContactBuffer& out) {
   const Topology& topology = *in.topology;
-  int tube = chunk.begin < chunk.end ? topology.tube_of(chunk.begin) : 0;
+  int tube = chunk.blocks.empty() ? 0 : topology.tube_of(chunk.blocks.front().first);
   for (const LineBlock& block : chunk.blocks) {
     while (block.first >= topology.tube_begin[tube + 1]) ++tube;
     const int second = block.elements - 1;

@@ -205,7 +205,7 @@ void ForceEngine::compute(const Topology& topology, const Interaction& interacti
     else
       clear(out, from, to);
     if (by_paper) add_buffers(list, from, to, out);
-    if (by_line) line_.add_to_tube(topology, axis_, t, out.force, out.torque);
+    if (by_line) line_.add_to_tube(t, out.force, out.torque);
   };
   if (by_line) {
     const auto place = [&](int t) {

@@ -62,7 +62,7 @@ struct Counter {
       smallest = std::min(smallest, c * c);
       largest = std::max(largest, c * c);
     }
-    const bool has_row = list.layout(Rows::all).has_row(topology.tube_of(run.element_begin));
+    const bool has_row = list.nodes(Rows::all, topology.tube_of(run.element_begin), run.type) > 0;
     const RunSum sum = run_sum(law, ends, run, has_row, smallest, largest);
     if (sum.kind == RunSum::rows) {
       const LineRun::Nodes& nodes = run.of(law.sparse.thins_j(sum.first) ? Rows::sparse : Rows::all);
@@ -82,7 +82,7 @@ struct Counter {
     const LineContact& law = in.line[pair(i, run.row.type)];
     const TouchedPart& part = chunk.parts[static_cast<std::size_t>(run.row.part)];
     const TouchedPart::Row& row = part.row[static_cast<int>(law.sparse.thins_j(0) ? Rows::sparse : Rows::all)];
-    add_row(law, i, part.begin, run.row.begin - row.first(part.begin), run.row.count, 0, count);
+    add_row(law, i, part.begin, run.row.at - row.first(part.begin), run.row.count, 0, count);
   }
 
   // Whether what is out of reach for now begins by `beyond`.
@@ -94,7 +94,9 @@ struct Counter {
 
   void add(int i, RadialCount& count) const {
     const auto& chunks = list.chunks();
-    const LineChunk& chunk = *std::find_if(chunks.begin(), chunks.end(), [&](const auto& c) { return i < c.end; });
+    const LineChunk& chunk = *std::find_if(chunks.begin(), chunks.end(), [&](const auto& c) {
+      return std::any_of(c.own.begin(), c.own.end(), [&](const Segment& s) { return i >= s.begin && i < s.end; });
+    });
     for (const ElementRun& end : chunk.end_runs)
       if (end.element == i && in_reach(list.run(end.run).beyond, count)) add_run(i, list.run(end.run), count);
     const auto block = std::find_if(chunk.blocks.begin(), chunk.blocks.end(),

@@ -93,11 +93,6 @@ inline void add_component(const Component<T>& c, double step, int elements, doub
     torque[i] += step * (c.n1[i] * static_cast<double>(c.m2[i]) - c.n2[i] * static_cast<double>(c.m1[i]));
   }
 }
-template <class T>
-inline void add_all(const T* from, int n, T* to) {
-  for (int i = 0; i < n; ++i) to[i] += from[i];
-}
-
 // The same for each vector unit; templates cannot be.
 ROPEWALK_VECTOR_CLONES __attribute__((flatten)) void moments(const float* x, int elements, int count, float* sum,
                                                              float* moment) {
@@ -115,30 +110,15 @@ ROPEWALK_VECTOR_CLONES __attribute__((flatten)) void add(const Component<double>
                                                          double* force, double* torque) {
   add_component(c, step, elements, force, torque);
 }
-ROPEWALK_VECTOR_CLONES __attribute__((flatten)) void add(const float* from, int n, float* to) {
-  add_all(from, n, to);
-}
-ROPEWALK_VECTOR_CLONES __attribute__((flatten)) void add(const double* from, int n, double* to) {
-  add_all(from, n, to);
+ROPEWALK_VECTOR_CLONES void add(const double* from, int n, double* to) {
+  for (int i = 0; i < n; ++i) to[i] += from[i];
 }
 
-// Of consecutive elements.
-struct ForcesOn {
-  double *fx, *fy, *fz, *tx, *ty, *tz;
-};
-ForcesOn from(int element, Vec3Array& force, Vec3Array& torque) {
-  return {force.x.data() + element,  force.y.data() + element,  force.z.data() + element,
-          torque.x.data() + element, torque.y.data() + element, torque.z.data() + element};
-}
-ForcesOn from(int entry, ContactBuffer& b) {
-  return {b.fx.data() + entry, b.fy.data() + entry, b.fz.data() + entry,
-          b.tx.data() + entry, b.ty.data() + entry, b.tz.data() + entry};
-}
-
-// Adds force and torque on the elements from `begin` on, of which x, y and z are the forces on the nodes.
+// Adds force and torque on the elements from `begin` on, of which x, y and z are the forces on the nodes, to the
+// entries from `at` on.
 template <class T>
 void add_rows(const T* x, const T* y, const T* z, int begin, int elements, int count, double length,
-              const Vec3Array& axis, const ForcesOn& to) {
+              const Vec3Array& axis, ContactBuffer& to, int at) {
   thread_local std::vector<T> sums;
   sums.resize(static_cast<std::size_t>(6 * elements));
   T *fx = sums.data(), *fy = fx + elements, *fz = fy + elements, *mx = fz + elements, *my = mx + elements,
@@ -148,17 +128,9 @@ void add_rows(const T* x, const T* y, const T* z, int begin, int elements, int c
   moments(z, elements, count, fz, mz);
   const double step = length / count;
   const double *nx = axis.x.data() + begin, *ny = axis.y.data() + begin, *nz = axis.z.data() + begin;
-  add({fx, ny, mz, nz, my}, step, elements, to.fx, to.tx);
-  add({fy, nz, mx, nx, mz}, step, elements, to.fy, to.ty);
-  add({fz, nx, my, ny, mx}, step, elements, to.fz, to.tz);
-}
-
-void add_elements(const ContactBuffer& b, const TouchedPart& p, const ForcesOn& to) {
-  const auto onto = [&](const std::vector<double>& on, double* out) {
-    add(on.data() + p.element_shift + p.begin, p.end - p.begin, out);
-  };
-  onto(b.fx, to.fx), onto(b.fy, to.fy), onto(b.fz, to.fz);
-  onto(b.tx, to.tx), onto(b.ty, to.ty), onto(b.tz, to.tz);
+  add({fx, ny, mz, nz, my}, step, elements, to.fx.data() + at, to.tx.data() + at);
+  add({fy, nz, mx, nx, mz}, step, elements, to.fy.data() + at, to.ty.data() + at);
+  add({fz, nx, my, ny, mx}, step, elements, to.fz.data() + at, to.tz.data() + at);
 }
 
 }  // namespace
@@ -180,16 +152,15 @@ void LineEngine::describe(const Topology& topology, const Interaction& in, const
 
 template <class Buffers>
 void LineEngine::make_room(Buffers& b, std::size_t threads) const {
-  const bool own = list_.own_rows();
-  b.nodes.resize(own ? threads : 1);
-  b.work.resize(own ? threads : list_.chunks().size());
+  b.nodes.resize(threads);
+  b.work.resize(threads);
   for (std::size_t kind = 0; kind < row_kinds; ++kind) {
-    int nodes = own ? 0 : list_.layout(static_cast<Rows>(kind)).total();
-    for (const LineChunk& chunk : list_.chunks()) nodes = own ? std::max(nodes, chunk.nodes[kind]) : nodes;
+    int most = 0;
+    for (const LineChunk& chunk : list_.chunks()) most = std::max(most, chunk.nodes[kind]);
     for (auto& rows : b.nodes) {
       rows[kind].per_unit = 1 / b.tables_unit;
       for (auto* v : {&rows[kind].x, &rows[kind].y, &rows[kind].z})
-        v->resize(static_cast<std::size_t>(nodes + NodeLayout::pad));
+        v->resize(static_cast<std::size_t>(most + NodeRow::pad));
     }
   }
 }
@@ -198,52 +169,38 @@ double LineEngine::length_of(const Topology& topology, int tube) const {
   return length_[static_cast<std::size_t>(topology.tube_type[tube])];
 }
 
-template <class NodeRows>
-void LineEngine::place_tube(const Topology& topology, const State& state, const Vec3Array& axis, int tube,
-                            NodeRows& rows) const {
-  for (const Rows kind : {Rows::all, Rows::sparse}) {
-    const NodeLayout& layout = list_.layout(kind);
-    if (layout.has_row(tube))
-      place_elements(topology.tube_begin[tube], topology.tube_begin[tube + 1],
-                     layout.per_element[static_cast<std::size_t>(topology.tube_type[tube])],
-                     length_of(topology, tube), state, axis, layout.begin[static_cast<std::size_t>(tube)],
-                     rows[static_cast<std::size_t>(kind)]);
-  }
-}
-
-// The contact of one chunk, by one thread.
+// The contact of one chunk, by one thread: its rows of nodes, what acts on them, and that on their elements.
 template <class Buffers>
 void LineEngine::meet(std::size_t k, std::size_t thread, Buffers& b, KernelInput<Buffers> in) {
   const LineChunk& chunk = list_.chunks()[k];
-  const bool own = list_.own_rows();
-  auto& rows = b.nodes[own ? thread : 0];
-  auto& work = b.work[own ? thread : k];
-  in.nodes = rows.data();
+  auto& rows = b.nodes[thread];
+  auto& work = b.work[thread];
+  ContactBuffer& out = buffers_[k];
   const auto of_each_row = [&](const auto& what) {
-    for (const TouchedPart& part : chunk.parts)
-      for (int kind = 0; kind < row_kinds; ++kind)
-        if (part.row[kind].per_element > 0) what(part, kind, length_of(*in.topology, part.tube));
+    for (std::size_t p = 0; p < chunk.parts.size(); ++p)
+      for (std::size_t kind = 0; kind < row_kinds; ++kind)
+        if (chunk.parts[p].row[kind].per_element > 0) what(p, kind, length_of(*in.topology, chunk.parts[p].tube));
   };
-  if (own)
-    of_each_row([&](const TouchedPart& part, int kind, double length) {
-      const TouchedPart::Row& row = part.row[kind];
-      place_elements(part.begin, part.end, row.per_element, length, *in.state, *in.axis, row.first(part.begin),
-                     rows[static_cast<std::size_t>(kind)]);
-    });
-  buffers_[k].clear(static_cast<std::size_t>(chunk.elements));
+  of_each_row([&](std::size_t p, std::size_t kind, double length) {
+    const TouchedPart& part = chunk.parts[p];
+    const TouchedPart::Row& row = part.row[kind];
+    place_elements(part.begin, part.end, row.per_element, length, *in.state, *in.axis, row.first(part.begin),
+                   rows[kind]);
+  });
+  in.nodes = rows.data();
+  out.clear(static_cast<std::size_t>(chunk.elements));
   work.start(chunk);
-  line_contact(in, chunk, work, buffers_[k]);
-  if (own)
-    of_each_row([&](const TouchedPart& part, int kind, double length) {
-      const auto& forces = work.forces[kind];
-      if (!forces.used[static_cast<std::size_t>(&part - chunk.parts.data())]) return;
-      const TouchedPart::Row& row = part.row[kind];
-      const int at = row.first(part.begin) + row.shift;
-      add_rows(forces.x.data() + at, forces.y.data() + at, forces.z.data() + at, part.begin, part.end - part.begin,
-               row.per_element, length, *in.axis, from(part.begin + part.element_shift, buffers_[k]));
-    });
+  line_contact(in, chunk, work, out);
+  of_each_row([&](std::size_t p, std::size_t kind, double length) {
+    const auto& f = work.forces[kind];
+    if (!f.used[p]) return;
+    const TouchedPart& part = chunk.parts[p];
+    const int count = part.row[kind].per_element, at = part.row[kind].first(part.begin);
+    add_rows(f.x.data() + at, f.y.data() + at, f.z.data() + at, part.begin, part.end - part.begin, count, length,
+             *in.axis, out, part.begin + part.element_shift);
+  });
   if (in.interaction->damped_contact())
-    contact_damping(in.interaction->damping.contact, *in.state, chunk.damped, buffers_[k]);
+    contact_damping(in.interaction->damping.contact, *in.state, chunk.damped, out);
 }
 
 template <class Buffers>
@@ -262,7 +219,8 @@ void LineEngine::run(Buffers& b, const Topology& topology, const Interaction& in
                              2 * list.displacement(),
                              energies};
   for (int t = 0; t < line_sums; ++t) input.rows[t] = in.line[0].sparse.thins_j(t) ? Rows::sparse : Rows::all;
-  const bool parallel = state.size() > parallel_from, at_once = state.size() > finish_at_once_from;
+  const bool parallel = state.size() > parallel_from,
+             at_once = state.size() > finish_at_once_from && list_.parts_of_a_tube() < few_parts;
   const int threads = parallel ? omp_get_max_threads() : 1;
   const auto timed = [&](const auto& work) {
     if (omp_get_thread_num() != 0) return work();
@@ -278,7 +236,6 @@ void LineEngine::run(Buffers& b, const Topology& topology, const Interaction& in
 #pragma omp for schedule(static)
     for (int t = 0; t < topology.tubes(); ++t) {
       tubes.place(t);
-      if (!list_.own_rows()) place_tube(topology, state, axis, t, b.nodes[0]);
       const int parts = static_cast<int>(list_.touches_end(t) - list_.touches_begin(t));
       left_.set(t, parts);
       if (at_once && parts == 0) timed([&] { tubes.finish(t); });
@@ -317,50 +274,15 @@ void LineEngine::compute(const Topology& topology, const Interaction& in, const 
   }
 }
 
-template <class Buffers>
-void LineEngine::add_nodes(const Buffers& b, const Topology& topology, const Vec3Array& axis, int tube,
-                           Vec3Array& force, Vec3Array& torque) const {
-  using T = typename Buffers::T;
-  const int begin = topology.tube_begin[tube], elements = topology.length_of(tube);
-  thread_local std::vector<T> sum[3];
-  for (int kind = 0; kind < row_kinds; ++kind) {
-    bool any = false;
-    int count = 0;
-    for (const LineList::Touch* touch = list_.touches_begin(tube); touch != list_.touches_end(tube); ++touch) {
-      const NodeForces<T>& f = b.work[static_cast<std::size_t>(touch->chunk)].forces[kind];
-      if (!f.used[static_cast<std::size_t>(touch->part)]) continue;
-      const TouchedPart& part = list_.part(*touch);
-      const TouchedPart::Row& row = part.row[kind];
-      count = row.per_element;
-      if (!any)
-        for (auto& v : sum) set_zero(v, static_cast<std::size_t>(elements * count));
-      any = true;
-      const int first = (part.begin - begin) * count, nodes = (part.end - part.begin) * count,
-                at = row.first(part.begin) + row.shift;
-      const auto add_up = [&](const std::vector<T>& x, std::vector<T>& out) {
-        add(x.data() + at, nodes, out.data() + first);
-      };
-      add_up(f.x, sum[0]);
-      add_up(f.y, sum[1]);
-      add_up(f.z, sum[2]);
-    }
-    if (any)
-      add_rows(sum[0].data(), sum[1].data(), sum[2].data(), begin, elements, count, length_of(topology, tube), axis,
-               from(begin, force, torque));
-  }
-}
-
-void LineEngine::add_to_tube(const Topology& topology, const Vec3Array& axis, int tube, Vec3Array& force,
-                             Vec3Array& torque) const {
+void LineEngine::add_to_tube(int tube, Vec3Array& force, Vec3Array& torque) const {
   for (const LineList::Touch* touch = list_.touches_begin(tube); touch != list_.touches_end(tube); ++touch) {
     const TouchedPart& part = list_.part(*touch);
-    add_elements(buffers_[static_cast<std::size_t>(touch->chunk)], part, from(part.begin, force, torque));
-  }
-  if (list_.own_rows()) return;  // what acts on the nodes is in there
-  if (full_) {
-    add_nodes(full_buffers_, topology, axis, tube, force, torque);
-  } else {
-    add_nodes(mixed_, topology, axis, tube, force, torque);
+    const ContactBuffer& b = buffers_[static_cast<std::size_t>(touch->chunk)];
+    const auto onto = [&](const std::vector<double>& from, std::vector<double>& to) {
+      add(from.data() + part.element_shift + part.begin, part.end - part.begin, to.data() + part.begin);
+    };
+    onto(b.fx, force.x), onto(b.fy, force.y), onto(b.fz, force.z);
+    onto(b.tx, torque.x), onto(b.ty, torque.y), onto(b.tz, torque.z);
   }
 }
 

@@ -15,7 +15,7 @@
 
 namespace ropewalk {
 
-// Where all nodes are: in units of the list as integers, or in nm.
+// Where nodes are: in units of the list as integers, or in nm.
 template <class C>
 struct LineNodes {
   std::vector<C> x, y, z;
@@ -35,7 +35,7 @@ struct NodeForces {
   std::vector<char> used;  // of the parts; the forces on the others are not even cleared
 
   void start(int nodes, std::size_t parts) {
-    for (auto* v : {&x, &y, &z}) v->resize(static_cast<std::size_t>(nodes + NodeLayout::pad));
+    for (auto* v : {&x, &y, &z}) v->resize(static_cast<std::size_t>(nodes + NodeRow::pad));
     used.assign(parts, 0);
   }
   void use(const LineChunk& chunk, Rows kind, int index) {
@@ -49,7 +49,7 @@ struct NodeForces {
   void clear(const TouchedPart& p, Rows kind) {
     const TouchedPart::Row& row = p.row[static_cast<int>(kind)];
     for (auto* v : {&x, &y, &z})
-      std::fill_n(v->begin() + row.first(p.begin) + row.shift, (p.end - p.begin) * row.per_element, T{0});
+      std::fill_n(v->begin() + row.first(p.begin), (p.end - p.begin) * row.per_element, T{0});
   }
 };
 
@@ -184,7 +184,7 @@ struct LineBuffers {
   std::vector<Table> tables;
   std::vector<PairSum<T>> pairs;
   double tables_unit = 0;
-  // Of all tubes and of each chunk; where chunks have rows of their own, both of what each thread is at.
+  // Rows, and forces on them, of the chunk that each thread is at.
   std::vector<std::array<LineNodes<C>, row_kinds>> nodes;
   std::vector<LineWork<T>> work;
 };
@@ -214,14 +214,14 @@ class LineEngine {
   // Elements from which on a tube is finished as soon as nothing more will act on it. What acts on fewer stays in
   // the caches anyway, and the threads share the work more evenly if all of it comes at the end.
   std::size_t finish_at_once_from = 20000;
-  void own_rows_up_to(double elements) { list_.own_rows_up_to = elements; }  // as LineList has it
+  static constexpr double few_parts =
+      8;  // that chunks act on: a tube in more of them is finished with the last ones
 
   // The contact of all chunks; `finish` then calls add_to_tube. Energies only if wanted: forces are the same bits.
   void compute(const Topology& topology, const Interaction& interaction, const NeighbourList& list,
                const State& state, const Vec3Array& axis, bool energies, const TubeWork& tubes);
   // Adds what acts on the elements of one tube, in the order of the chunks, whoever was done first.
-  void add_to_tube(const Topology& topology, const Vec3Array& axis, int tube, Vec3Array& force,
-                   Vec3Array& torque) const;
+  void add_to_tube(int tube, Vec3Array& force, Vec3Array& torque) const;
   double energy() const;         // eV
   double damping_power() const;  // eV/ps
   const LineList& list() const { return list_; }
@@ -237,14 +237,8 @@ class LineEngine {
   using KernelInput = LineKernelInput<typename Buffers::Table, typename Buffers::C>;
   template <class Buffers>
   void make_room(Buffers& b, std::size_t threads) const;
-  template <class NodeRows>
-  void place_tube(const Topology& topology, const State& state, const Vec3Array& axis, int tube,
-                  NodeRows& rows) const;
   template <class Buffers>
   void meet(std::size_t chunk, std::size_t thread, Buffers& b, KernelInput<Buffers> in);
-  template <class Buffers>
-  void add_nodes(const Buffers& b, const Topology& topology, const Vec3Array& axis, int tube, Vec3Array& force,
-                 Vec3Array& torque) const;
   double length_of(const Topology& topology, int tube) const;  // of its elements
   void describe(const Topology& topology, const Interaction& interaction, const NeighbourList& list);
 

@@ -190,24 +190,6 @@ struct LineList::Part {
   }
 };
 
-void LineList::lay_out_rows(const Topology& topology, const Interaction& in, const std::vector<char>& dense) {
-  const std::size_t types = topology.types.size();
-  for (const Rows kind : {Rows::all, Rows::sparse}) {
-    NodeLayout& layout = layout_[static_cast<int>(kind)];
-    layout = {};
-    for (std::size_t a = 0; a < types; ++a)
-      layout.per_element.push_back(kind == Rows::all ? in.line[a * types].nodes_i : in.line[0].sparse.sum[0].j);
-    int at = 0;
-    for (int t = 0; t < topology.tubes(); ++t) {
-      layout.begin.push_back(at);
-      const int count = layout.per_element[static_cast<std::size_t>(topology.tube_type[t])];
-      const bool wanted = kind == Rows::all ? dense[static_cast<std::size_t>(t)] != 0 : count > 0;
-      if (wanted) at += topology.length_of(t) * count + NodeLayout::pad;
-    }
-    layout.begin.push_back(at);
-  }
-}
-
 namespace {
 
 // ns as measured once in a rope of 91 tubes (bench, `rope-91x50`).
@@ -271,21 +253,14 @@ double LineList::best_skin(const Topology& topology, double listed, long steps) 
 }
 
 // Of equal cost, whatever the threads: the cut belongs to the list.
-void LineList::cut_into_chunks(const Topology& topology, std::size_t count) {
-  std::vector<double> until{0};  // an element begins
-  until.reserve(static_cast<std::size_t>(topology.elements()) + 1);
+void LineList::cut_into_chunks(const Topology& topology, const Vec3Array& position, std::size_t count) {
+  std::vector<double> costs;
+  costs.reserve(static_cast<std::size_t>(topology.elements()));
   for (int t = 0; t < topology.tubes(); ++t)
-    for (int i = topology.tube_begin[t]; i < topology.tube_begin[t + 1]; ++i)
-      until.push_back(until.back() + cost(topology, i, t));
-  const auto at = [&](std::size_t c) {
-    const double share = until.back() * static_cast<double>(c) / static_cast<double>(count);
-    return static_cast<int>(std::lower_bound(until.begin(), until.end(), share) - until.begin());
-  };
+    for (int i = topology.tube_begin[t]; i < topology.tube_begin[t + 1]; ++i) costs.push_back(cost(topology, i, t));
   chunks_.assign(count, LineChunk{});
-  for (std::size_t c = 0; c < count; ++c) {
-    chunks_[c].begin = at(c);
-    chunks_[c].end = c + 1 == count ? topology.elements() : at(c + 1);
-  }
+  auto tiles = cut_into_tiles(topology, position, costs, static_cast<int>(count));
+  for (std::size_t c = 0; c < count; ++c) chunks_[c].own = std::move(tiles[c]);
 }
 
 namespace {
@@ -309,19 +284,26 @@ Elements reached(const LineRun& run) {
 
 }  // namespace
 
+template <class Work>
+void LineList::for_runs_of(const LineChunk& chunk, const Work& work) {
+  for (const Segment& own : chunk.own)
+    for (std::size_t k = begin_[static_cast<std::size_t>(own.begin)]; k < begin_[static_cast<std::size_t>(own.end)];
+         ++k)
+      work(run_[k]);
+}
+
 // The parts of tubes that a chunk acts on: its own elements that have neighbours, and these. Its runs, which had
 // their tubes, get their parts.
 void LineList::find_parts(const Topology& topology, LineChunk& chunk) {
   constexpr int gap = 4;  // elements in between that are cheaper to have in the buffers than to leave out
   std::vector<Elements> hull(static_cast<std::size_t>(topology.tubes()), {topology.elements(), 0});
   const auto each = [&](const auto& take) {  // all ranges of elements acted on
-    int tube = topology.tube_of(chunk.begin);
-    for (int i = chunk.begin; i < chunk.end; ++i) {
-      if (begin(i) == end(i)) continue;
-      while (i >= topology.tube_begin[tube + 1]) ++tube;
-      take(tube, Elements{i, i + 1});
-      for (const LineRun* run = begin(i); run != end(i); ++run) take(run->part, reached(*run));
-    }
+    for (const Segment& own : chunk.own)
+      for (int i = own.begin; i < own.end; ++i) {
+        if (begin(i) == end(i)) continue;
+        take(own.tube, Elements{i, i + 1});
+        for (const LineRun* run = begin(i); run != end(i); ++run) take(run->part, reached(*run));
+      }
   };
   std::vector<int> tubes;
   each([&](int tube, const Elements& e) {
@@ -355,11 +337,9 @@ void LineList::find_parts(const Topology& topology, LineChunk& chunk) {
       of[i] = static_cast<int>(chunk.parts.size()) - 1;
     }
   }
-  for (std::size_t k = begin_[static_cast<std::size_t>(chunk.begin)];
-       k < begin_[static_cast<std::size_t>(chunk.end)]; ++k) {
-    LineRun& run = run_[k];
+  for_runs_of(chunk, [&](LineRun& run) {
     run.part = part[static_cast<std::size_t>(shift[static_cast<std::size_t>(run.part)] + reached(run).begin)];
-  }
+  });
   chunk.elements = DampedBlock::most;  // room for vectors that begin before the first one
   for (TouchedPart& p : chunk.parts) {
     p.element_shift = chunk.elements - p.begin;
@@ -367,48 +347,41 @@ void LineList::find_parts(const Topology& topology, LineChunk& chunk) {
   }
 }
 
-// In the rows and in the buffers of the nodes.
+// In the rows of nodes.
 void LineList::place_parts(const Topology& topology, LineChunk& chunk) const {
   for (TouchedPart& p : chunk.parts)
-    for (int kind = 0; kind < row_kinds; ++kind) {
-      const NodeLayout& layout = layout_[kind];
-      if (!layout.has_row(p.tube)) continue;
-      TouchedPart::Row& row = p.row[kind];
-      row.per_element = layout.per_element[static_cast<std::size_t>(topology.tube_type[p.tube])];
-      const int entry = chunk.nodes[kind] - p.begin * row.per_element;  // of the first node of element 0
-      row.origin = own_rows_ ? entry
-                             : layout.begin[static_cast<std::size_t>(p.tube)] -
-                                   topology.tube_begin[p.tube] * row.per_element;
-      row.shift = entry - row.origin;
-      chunk.nodes[kind] += (p.end - p.begin) * row.per_element;
+    for (const Rows kind : {Rows::all, Rows::sparse}) {
+      TouchedPart::Row& row = p.row[static_cast<int>(kind)];
+      int& placed = chunk.nodes[static_cast<int>(kind)];
+      row.per_element = nodes(kind, p.tube, topology.tube_type[p.tube]);
+      row.origin = placed - p.begin * row.per_element;
+      placed += (p.end - p.begin) * row.per_element;
     }
 }
 
 // Of the nodes of a chunk's runs, whose parts have been placed.
 void LineList::find_places(LineChunk& chunk) {
-  for (int i = chunk.begin; i < chunk.end; ++i) {
-    int rows = 0;
-    for (std::size_t k = begin_[static_cast<std::size_t>(i)]; k < begin_[static_cast<std::size_t>(i) + 1]; ++k) {
-      LineRun& run = run_[k];
-      rows += run.elements;
-      for (int kind = 0; kind < row_kinds; ++kind) {
-        LineRun::Nodes& nodes = run.nodes[kind];
-        nodes.begin =
-            chunk.parts[static_cast<std::size_t>(run.part)].row[kind].first(run.element_begin) + nodes.from;
-      }
+  for_runs_of(chunk, [&](LineRun& run) {
+    const TouchedPart& part = chunk.parts[static_cast<std::size_t>(run.part)];
+    for (int kind = 0; kind < row_kinds; ++kind)
+      run.nodes[kind].at = part.row[kind].first(run.element_begin) + run.nodes[kind].from;
+  });
+  for (const Segment& own : chunk.own)
+    for (int i = own.begin; i < own.end; ++i) {
+      int rows = 0;
+      for (const LineRun* run = begin(i); run != end(i); ++run) rows += run->elements;
+      chunk.most_rows = std::max(chunk.most_rows, rows);
     }
-    chunk.most_rows = std::max(chunk.most_rows, rows);
-  }
 }
 
 namespace {
 
 // Vectors of the widest kind.
-int vectors_of(const LineRun::Nodes& nodes) { return (nodes.count + NodeLayout::pad - 1) / NodeLayout::pad; }
+int vectors_of(const LineRun::Nodes& nodes) { return (nodes.count + NodeRow::pad - 1) / NodeRow::pad; }
 
 LineRun::Nodes both(const LineRun::Nodes& a, const LineRun::Nodes& b) {
-  LineRun::Nodes out = a.begin <= b.begin ? a : b;
-  out.count = static_cast<short>(std::max(a.begin + a.count, b.begin + b.count) - out.begin);
+  LineRun::Nodes out = a.at <= b.at ? a : b;
+  out.count = static_cast<short>(std::max(a.at + a.count, b.at + b.count) - out.at);
   return out;
 }
 
@@ -424,8 +397,7 @@ void LineList::add_block(const LineBlock& of, int tube, Rows kind, LineChunk& ch
   const int first = of.first, elements = of.elements;
   LineBlock block{first, of.at, elements, static_cast<int>(chunk.runs.size()), 0};
   const auto add = [&](const LineRun& run, const LineRun::Nodes& nodes) -> BlockRun& {
-    const int shift = chunk.parts[static_cast<std::size_t>(run.part)].row[static_cast<int>(kind)].shift;
-    chunk.runs.push_back({{nodes.begin, nodes.begin + shift, nodes.count, run.type, run.part},
+    chunk.runs.push_back({{nodes.at, nodes.count, run.type, run.part},
                           run.beyond,
                           run.even,
                           {BlockRun::none, BlockRun::none},
@@ -491,21 +463,21 @@ void LineList::make_blocks(const Topology& topology, const Interaction& in, Line
   const Rows kind = in.line[0].sparse.thins_j(0) ? Rows::sparse : Rows::all;
   chunk.even = std::numeric_limits<float>::infinity();
   PartOf part_of(chunk);
-  const auto joins = [&](int i, int tube) {  // the element before it
-    return i < chunk.end && i < topology.tube_begin[tube + 1] && begin(i) != end(i) &&
-           !topology.ends_of(i, tube).any();
-  };
-  for (int i = chunk.begin; i < chunk.end;) {
-    if (begin(i) == end(i)) {
-      ++i;
-      continue;
+  for (const Segment& own : chunk.own) {
+    const int tube = own.tube;
+    const auto joins = [&](int i) { return i < own.end && begin(i) != end(i) && !topology.ends_of(i, tube).any(); };
+    for (int i = own.begin; i < own.end;) {
+      if (begin(i) == end(i)) {
+        ++i;
+        continue;
+      }
+      const TouchedPart& part = part_of(i);
+      const int elements = joins(i) && joins(i + 1) ? 2 : 1;
+      add_block({i, i + part.element_shift, elements, 0, 0}, tube, kind, chunk);
+      for (int last = i + elements; i < last; ++i)
+        for (const LineRun* run = begin(i); run != end(i); ++run)
+          if (run->elements > 0 && run->fading) add_end_run(topology, i, part, *run, chunk);
     }
-    const TouchedPart& own = part_of(i);
-    const int elements = !topology.ends_of(i, own.tube).any() && joins(i + 1, own.tube) ? 2 : 1;
-    add_block({i, i + own.element_shift, elements, 0, 0}, own.tube, kind, chunk);
-    for (int last = i + elements; i < last; ++i)
-      for (const LineRun* run = begin(i); run != end(i); ++run)
-        if (run->elements > 0 && run->fading) add_end_run(topology, i, own, *run, chunk);
   }
   for (EndPairs& of : chunk.end_pairs) {
     std::stable_sort(of.pairs.begin(), of.pairs.end(),
@@ -520,14 +492,15 @@ void LineList::make_blocks(const Topology& topology, const Interaction& in, Line
 void LineList::list_damped(LineChunk& chunk) const {
   DampedBlocks blocks;
   PartOf part_of(chunk);
-  for (int i = chunk.begin; i < chunk.end; ++i)
-    for (const LineRun* run = begin(i); run != end(i); ++run) {
-      if (run->damped == 0) continue;
-      TouchedRange own = part_of(i).elements();
-      own.end = std::min(own.end, chunk.end);
-      const int from = run->element_begin + run->damped_from;
-      blocks.add(i, own, from, from + run->damped, chunk.parts[static_cast<std::size_t>(run->part)].elements());
-    }
+  for (const Segment& of : chunk.own)
+    for (int i = of.begin; i < of.end; ++i)
+      for (const LineRun* run = begin(i); run != end(i); ++run) {
+        if (run->damped == 0) continue;
+        TouchedRange own = part_of(i).elements();
+        own.end = std::min(own.end, of.end);
+        const int from = run->element_begin + run->damped_from;
+        blocks.add(i, own, from, from + run->damped, chunk.parts[static_cast<std::size_t>(run->part)].elements());
+      }
   chunk.damped = blocks.take();
 }
 
@@ -562,30 +535,28 @@ void LineList::build(const Topology& topology, const Interaction& in, const Neig
   run_.reserve(total);
   begin_.assign(1, 0);
   begin_.reserve(static_cast<std::size_t>(topology.elements()) + 1);
-  std::vector<char> dense(static_cast<std::size_t>(tubes), 0);
+  dense_.assign(static_cast<std::size_t>(tubes), 0);
   for (const Part& part : found) {
     run_.insert(run_.end(), part.runs.begin(), part.runs.end());
     for (std::size_t count : part.count) begin_.push_back(begin_.back() + count);
-    for (int t : part.dense) dense[static_cast<std::size_t>(t)] = 1;
+    for (int t : part.dense) dense_[static_cast<std::size_t>(t)] = 1;
   }
-  lay_out_rows(topology, in, dense);
+  for (auto& of_types : per_element_) of_types.clear();
+  for (std::size_t a = 0; a < topology.types.size(); ++a) {
+    per_element_[static_cast<int>(Rows::all)].push_back(in.line[a * topology.types.size()].nodes_i);
+    per_element_[static_cast<int>(Rows::sparse)].push_back(in.line[0].sparse.sum[0].j);
+  }
 
-  cut_into_chunks(topology, list.chunks().size());
-  const auto of_each_chunk = [&](const auto& work) {
+  cut_into_chunks(topology, list.reference(), list.chunks().size());
 #pragma omp parallel for schedule(dynamic, 1) if (parallel)
-    for (std::size_t c = 0; c < chunks_.size(); ++c)
-      if (chunks_[c].begin < chunks_[c].end) work(chunks_[c]);
-  };
-  of_each_chunk([&](LineChunk& chunk) { find_parts(topology, chunk); });
-  double acted_on = 0;
-  for (const LineChunk& chunk : chunks_) acted_on += chunk.elements;
-  own_rows_ = acted_on <= own_rows_up_to * topology.elements();
-  of_each_chunk([&](LineChunk& chunk) {
-    place_parts(topology, chunk);
-    find_places(chunk);
-    make_blocks(topology, in, chunk);
-    if (in.damped_contact()) list_damped(chunk);
-  });
+  for (std::size_t c = 0; c < chunks_.size(); ++c)
+    if (!chunks_[c].own.empty()) {
+      find_parts(topology, chunks_[c]);
+      place_parts(topology, chunks_[c]);
+      find_places(chunks_[c]);
+      make_blocks(topology, in, chunks_[c]);
+      if (in.damped_contact()) list_damped(chunks_[c]);
+    }
   list_touches(topology);
 }
 
@@ -593,9 +564,9 @@ std::size_t LineList::bytes() const {
   std::size_t total = run_.capacity() * sizeof(LineRun) + begin_.capacity() * sizeof(std::size_t) +
                       touch_.capacity() * sizeof(Touch);
   for (const LineChunk& chunk : chunks_) {
-    total += chunk.parts.capacity() * sizeof(TouchedPart) + chunk.blocks.capacity() * sizeof(LineBlock) +
-             chunk.runs.capacity() * sizeof(BlockRun) + chunk.end_runs.capacity() * sizeof(ElementRun) +
-             chunk.damped.capacity() * sizeof(DampedBlock);
+    total += chunk.own.capacity() * sizeof(Segment) + chunk.parts.capacity() * sizeof(TouchedPart) +
+             chunk.blocks.capacity() * sizeof(LineBlock) + chunk.runs.capacity() * sizeof(BlockRun) +
+             chunk.end_runs.capacity() * sizeof(ElementRun) + chunk.damped.capacity() * sizeof(DampedBlock);
     for (const EndPairs& of : chunk.end_pairs) total += of.pairs.capacity() * sizeof(EndPairs::Pair);
   }
   return total;

@@ -8,6 +8,7 @@
 #include "sim/contact_damping.hpp"
 #include "sim/interaction.hpp"
 #include "sim/neighbours.hpp"
+#include "sim/tiles.hpp"
 
 namespace ropewalk {
 
@@ -15,24 +16,11 @@ namespace ropewalk {
 enum class Rows { all = 0, sparse = 1 };
 inline constexpr int row_kinds = 2;
 
-// Nodes of all tubes one after another, each tube followed by `pad` nodes that are read with its last ones.
-struct NodeLayout {
-  static constexpr int pad = 16;
-
-  std::vector<int> per_element;  // of each tube type
-  std::vector<int> begin;        // first node of each tube; begin[tubes] is the number of nodes with padding
-
-  bool has_row(int tube) const {
-    return begin[static_cast<std::size_t>(tube) + 1] > begin[static_cast<std::size_t>(tube)];
-  }
-  int total() const { return begin.empty() ? 0 : begin.back(); }
-};
-
 // Neighbours of one element on one other tube, or on another part of its own.
 struct LineRun {
   struct Nodes {
     short from = 0, count = 0;  // within reach; the first one counted from the first node of element_begin
-    int begin = 0;              // the first one in the rows of all tubes
+    int at = 0;                 // the first one in the chunk's rows
   };
   int element_begin = 0;
   int part = 0;        // which of those that the chunk acts on
@@ -49,9 +37,12 @@ struct LineRun {
   TubeEnds tube_ends() const { return {begins, ends}; }
 };
 
-// Consecutive nodes of another tube: from `begin` on in the rows of all tubes, from `at` on in the chunk's buffers.
+// Consecutive nodes of another tube, from `at` on in the chunk's rows.
 struct NodeRow {
-  int begin = 0, at = 0;
+  // Nodes behind the last one of a chunk that are read with it.
+  static constexpr int pad = 16;
+
+  int at = 0;
   short count = 0, type = 0;  // tube type
   int part = 0;               // as of the run
 };
@@ -110,16 +101,16 @@ struct TouchedPart {
   int tube = 0, begin = 0, end = 0;
   int element_shift = 0;  // element j is entry j + element_shift
   TouchedRange elements() const { return {begin, end, element_shift}; }
+  // In the chunk's rows of nodes. None per element: no run meets them.
   struct Row {
     int origin = 0, per_element = 0;  // the first node of element j is node origin + j per_element
-    int shift = 0;                    // node m is entry m + shift
     int first(int element) const { return origin + element * per_element; }
   } row[row_kinds];
 };
 
-// The elements begin .. end and all that they act on.
+// Some elements and all that they act on.
 struct LineChunk {
-  int begin = 0, end = 0;
+  std::vector<Segment> own;        // in the order of their elements
   std::vector<TouchedPart> parts;  // in the order of their elements
   std::vector<LineBlock> blocks;
   std::vector<BlockRun> runs;
@@ -147,18 +138,16 @@ class PartOf {
 
 class LineList {
  public:
-  // Where the chunks act on no more than so many elements for each one there is, as in films, whose tubes meet in
-  // places, each chunk has the nodes of its own parts as rows: they stay in a cache while it is worked on. Else
-  // there are rows of all tubes, which are not made by several chunks over again.
-  double own_rows_up_to = 1.5;
-
   // From the pairs of the list and the places that it was built at. Throws std::invalid_argument where a tube
   // type has other numbers of nodes towards different partners.
   void build(const Topology& topology, const Interaction& interaction, const NeighbourList& list);
 
-  // Rows of all nodes exist where the build found tubes that are not nearly parallel.
-  bool own_rows() const { return own_rows_; }
-  const NodeLayout& layout(Rows kind) const { return layout_[static_cast<int>(kind)]; }
+  // Of an element of a tube in its rows; with all nodes these are there only where the build found tubes that are
+  // not nearly parallel.
+  int nodes(Rows kind, int tube, int type) const {
+    if (kind == Rows::all && !dense_[static_cast<std::size_t>(tube)]) return 0;
+    return per_element_[static_cast<int>(kind)][static_cast<std::size_t>(type)];
+  }
   const LineRun* begin(int i) const { return run_.data() + begin_[static_cast<std::size_t>(i)]; }
   const LineRun* end(int i) const { return run_.data() + begin_[static_cast<std::size_t>(i) + 1]; }
   const LineRun& run(int k) const { return run_[static_cast<std::size_t>(k)]; }
@@ -176,6 +165,10 @@ class LineList {
   const TouchedPart& part(const Touch& of) const {
     return chunks_[static_cast<std::size_t>(of.chunk)].parts[static_cast<std::size_t>(of.part)];
   }
+  // Of a tube, on average.
+  double parts_of_a_tube() const {
+    return static_cast<double>(touch_.size()) / static_cast<double>(touch_begin_.size());
+  }
   std::size_t runs() const { return run_.size(); }
   // The skin (nm) whose lists would have cost least, building included, where this one of `listed` was worn after
   // so many steps. It follows from what is in the list and not from a clock: the same run has the same lists.
@@ -186,9 +179,10 @@ class LineList {
 
  private:
   struct Part;
-  void lay_out_rows(const Topology& topology, const Interaction& interaction, const std::vector<char>& dense);
   double cost(const Topology& topology, int i, int tube) const;
-  void cut_into_chunks(const Topology& topology, std::size_t count);
+  void cut_into_chunks(const Topology& topology, const Vec3Array& position, std::size_t count);
+  template <class Work>
+  void for_runs_of(const LineChunk& chunk, const Work& work);
   void find_parts(const Topology& topology, LineChunk& chunk);
   void place_parts(const Topology& topology, LineChunk& chunk) const;
   void find_places(LineChunk& chunk);
@@ -199,14 +193,14 @@ class LineList {
   void list_damped(LineChunk& chunk) const;
   void list_touches(const Topology& topology);
 
-  NodeLayout layout_[row_kinds];
+  std::vector<int> per_element_[row_kinds];  // of each tube type
+  std::vector<char> dense_;                  // of each tube: whether it has rows of all nodes
   std::vector<LineRun> run_;
   std::vector<std::size_t> begin_;
   std::vector<LineChunk> chunks_;
   std::vector<Touch> touch_;
   std::vector<int> touch_begin_;
   double unit_ = 1;
-  bool own_rows_ = false;
 };
 
 // How the kernel sums a run, by the smallest and the largest (n_i.n_j)^2 in it: the sums first .. last have a

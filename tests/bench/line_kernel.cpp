@@ -46,8 +46,7 @@ void Rows(const MixedTable& table, const LineNodes<std::int32_t>& nodes, int len
   const std::int32_t from[2][3] = {{0, 0, 0}, {0, 0, 1 << 20}};
   auto sums = no_sums<D, 2>(D());
   for (int r = 0; r < 64; ++r)
-    meet_row<false, 2>(table, nodes, out, {r * shift, r * shift, static_cast<short>(length), 0, 0}, from, 0.1F,
-                       sums);
+    meet_row<false, 2>(table, nodes, out, {r * shift, static_cast<short>(length), 0, 0}, from, 0.1F, sums);
   const auto all = hn::Add(hn::Add(sums.x[0], sums.x[1]), hn::Add(sums.z[0], sums.energy));
   hn::StoreU(hn::Add(all, hn::Add(sums.y[0], hn::Add(sums.y[1], sums.z[1]))), D(), total);
 }
@@ -125,7 +124,7 @@ void RadialTableDouble(benchmark::State& bench, const std::string& instructions)
 // many as a run has, it meets fresh forces, 0 those just stored, 6 those of the last runs, shifted by an element.
 void LineRows(benchmark::State& bench) {
   const int length = static_cast<int>(bench.range(0)), shift = static_cast<int>(bench.range(1));
-  const int count = 64 * shift + length + NodeLayout::pad;
+  const int count = 64 * shift + length + NodeRow::pad;
   const double unit = std::exp2(-22);
   const MixedTable table(test::line_density(), unit);
   LineNodes<std::int32_t> nodes;
@@ -215,7 +214,7 @@ void LineKernel(benchmark::State& bench, const Choice& c) {
   LineEngine engine;
   Vec3Array force(rope.state.size()), torque(rope.state.size());
   const auto nothing = [](int) {};
-  const auto finish = [&](int t) { engine.add_to_tube(rope.topology, rope.axis, t, force, torque); };
+  const auto finish = [&](int t) { engine.add_to_tube(t, force, torque); };
   for (auto _ : bench) {
     engine.compute(rope.topology, rope.in, rope.list, rope.state, rope.axis, c.energies, {nothing, finish});
     benchmark::ClobberMemory();
@@ -224,20 +223,20 @@ void LineKernel(benchmark::State& bench, const Choice& c) {
   use_instructions("");
 }
 
-// The second half of the above alone.
-void LineNodeForces(benchmark::State& bench) {
+// What the tubes collect from the chunks, alone.
+void LineCollect(benchmark::State& bench) {
   const Rope rope(static_cast<int>(bench.range(0)), 49, Law::line);
   LineEngine engine;
   Vec3Array force(rope.state.size()), torque(rope.state.size());
   const auto nothing = [](int) {};
   engine.compute(rope.topology, rope.in, rope.list, rope.state, rope.axis, false, {nothing, nothing});
   for (auto _ : bench) {
-    for (int t = 0; t < rope.topology.tubes(); ++t) engine.add_to_tube(rope.topology, rope.axis, t, force, torque);
+    for (int t = 0; t < rope.topology.tubes(); ++t) engine.add_to_tube(t, force, torque);
     benchmark::ClobberMemory();
   }
   set_ns(bench, "ns/element", rope.elements());
 }
-BENCHMARK(LineNodeForces)->Arg(7)->Arg(91);
+BENCHMARK(LineCollect)->Arg(7)->Arg(91);
 
 void LineListBuild(benchmark::State& bench) {
   const Rope rope(static_cast<int>(bench.range(0)), 49, Law::line, Precision::mixed, 20);

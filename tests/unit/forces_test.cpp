@@ -225,14 +225,13 @@ std::string name_of(const ::testing::TestParamInfo<Variant>& info) { return info
 
 // The contact by the line law, every tube finished once.
 Forces line_contact_of(const Topology& topology, const Interaction& in, const State& state,
-                       std::size_t at_once_from, int threads, double own_rows_up_to) {
+                       std::size_t at_once_from, int threads) {
   omp_set_num_threads(threads);
   NeighbourList list(in, 0.2);
   list.build(topology, state);
   Vec3Array axis(state.size());
   LineEngine engine;
   engine.finish_at_once_from = at_once_from;
-  engine.own_rows_up_to(own_rows_up_to);
   Forces out(state.size());
   std::vector<std::atomic<int>> times(static_cast<std::size_t>(topology.tubes()));
   const auto place = [&](int t) {
@@ -241,41 +240,33 @@ Forces line_contact_of(const Topology& topology, const Interaction& in, const St
   };
   const auto finish = [&](int t) {
     ++times[static_cast<std::size_t>(t)];
-    engine.add_to_tube(topology, axis, t, out.force, out.torque);
+    engine.add_to_tube(t, out.force, out.torque);
   };
   engine.compute(topology, in, list, state, axis, true, {place, finish});
   for (const auto& n : times) EXPECT_EQ(n, 1);
-  EXPECT_EQ(engine.list().own_rows(), own_rows_up_to > 0);
   out.energy.vdw = engine.energy();
   out.damping_power = engine.damping_power();
   return out;
 }
 
 constexpr std::size_t at_once = 0, in_the_end = 1000000;
-constexpr double all_rows = 0, own_rows = 1000;
 
 // Whichever thread finishes a tube, and whether at once or after all chunks.
 class LineFinish : public ForcesTest {
  protected:
-  Forces collected(std::size_t at_once_from, int threads, double rows) const {
-    return line_contact_of(topology, in, state, at_once_from, threads, rows);
+  Forces collected(std::size_t at_once_from, int threads) const {
+    return line_contact_of(topology, in, state, at_once_from, threads);
   }
 };
 
 TEST_P(LineFinish, SameBitsAtOnceOrInTheEnd) {
-  for (const double rows : {all_rows, own_rows}) {
-    const Forces end = collected(in_the_end, 1, rows);
-    EXPECT_GT(std::fabs(end.energy.vdw), 50);
-    for (int threads : {1, 2, 5}) {
-      const Forces soon = collected(at_once, threads, rows);
-      expect_same_bits(end, soon);
-      EXPECT_EQ(end.energy.vdw, soon.energy.vdw);
-    }
+  const Forces end = collected(in_the_end, 1);
+  EXPECT_GT(std::fabs(end.energy.vdw), 50);
+  for (int threads : {1, 2, 5}) {
+    const Forces soon = collected(at_once, threads);
+    expect_same_bits(end, soon);
+    EXPECT_EQ(end.energy.vdw, soon.energy.vdw);
   }
-}
-
-TEST_P(LineFinish, RowsOfChunksEqualThoseOfAllTubes) {
-  expect_equal(collected(in_the_end, 2, own_rows), collected(in_the_end, 2, all_rows), tolerance());
 }
 
 INSTANTIATE_TEST_SUITE_P(Line, LineFinish, ::testing::ValuesIn(line_variants), name_of);
@@ -349,13 +340,11 @@ TEST(LineForces, CrossedAndClosedTubesEqualReference) {
     in.precision = precision;
     Forces reference(state.size());
     compute_reference(topology, in, state, reference);
-    for (const double rows : {own_rows, all_rows})
-      for (const std::size_t from : {at_once, in_the_end})
-        for (const int threads : {1, 3}) {
-          SCOPED_TRACE(testing::Message()
-                       << "rows " << rows << ", at once from " << from << ", threads " << threads);
-          expect_equal(line_contact_of(topology, in, state, from, threads, rows), reference, bound);
-        }
+    for (const std::size_t from : {at_once, in_the_end})
+      for (const int threads : {1, 3}) {
+        SCOPED_TRACE(testing::Message() << "at once from " << from << ", threads " << threads);
+        expect_equal(line_contact_of(topology, in, state, from, threads), reference, bound);
+      }
   }
 }
 

@@ -1,0 +1,86 @@
+#include "sim/tiles.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "unit/support.hpp"
+
+namespace ropewalk {
+namespace {
+
+struct Scene {
+  Topology topology = test::published_topology();
+  Vec3Array position;
+  std::vector<double> cost;
+
+  // Tubes along z at the places of a square.
+  Scene(int side, int elements) : position(static_cast<std::size_t>(side * side * elements)) {
+    test::Random random(4);
+    for (int t = 0; t < side * side; ++t) {
+      topology.add_tube(elements);
+      for (int e = 0; e < elements; ++e)
+        position.set(static_cast<std::size_t>(topology.tube_begin[t] + e),
+                     Vector3(1.7 * (t % side), 1.7 * (t / side), test::element_length * e));
+    }
+    for (int i = 0; i < topology.elements(); ++i) cost.push_back(random.uniform(1, 3));
+  }
+};
+
+TEST(Tiles, HoldEveryElementOnceAtEqualCost) {
+  const Scene scene(8, 200);
+  for (const int count : {1, 2, 7, 16}) {
+    const auto tiles = cut_into_tiles(scene.topology, scene.position, scene.cost, count);
+    ASSERT_EQ(tiles.size(), static_cast<std::size_t>(count));
+    std::vector<int> times(scene.cost.size(), 0);
+    double total = 0, most = 0;
+    for (const auto& tile : tiles) {
+      double of_tile = 0;
+      for (std::size_t k = 0; k < tile.size(); ++k) {
+        if (k > 0 && tile[k - 1].tube == tile[k].tube) {
+          EXPECT_LT(tile[k - 1].end, tile[k].begin);
+        }
+        EXPECT_GE(tile[k].begin, scene.topology.tube_begin[tile[k].tube]);
+        EXPECT_LE(tile[k].end, scene.topology.tube_begin[tile[k].tube + 1]);
+        for (int i = tile[k].begin; i < tile[k].end; ++i) {
+          ++times[static_cast<std::size_t>(i)];
+          of_tile += scene.cost[static_cast<std::size_t>(i)];
+        }
+      }
+      total += of_tile;
+      most = std::max(most, of_tile);
+    }
+    EXPECT_EQ(std::count(times.begin(), times.end(), 1), static_cast<std::ptrdiff_t>(times.size()));
+    EXPECT_LT(most, 1.2 * total / count);
+  }
+}
+
+// A tile of 12800 / 16 elements is as wide as it is long, as far as pieces and tubes allow.
+TEST(Tiles, AreCompact) {
+  const Scene scene(8, 200);
+  for (const auto& tile : cut_into_tiles(scene.topology, scene.position, scene.cost, 16)) {
+    Vector3 low = Vector3::Constant(1e9), high = -low;
+    for (const Segment& s : tile)
+      for (int i = s.begin; i < s.end; ++i) {
+        low = low.cwiseMin(scene.position[static_cast<std::size_t>(i)]);
+        high = high.cwiseMax(scene.position[static_cast<std::size_t>(i)]);
+      }
+    EXPECT_LT((high - low).maxCoeff(), 0.6 * 200 * test::element_length);
+  }
+}
+
+TEST(Tiles, TakeFewElementsAndLostOnes) {
+  Scene scene(1, 5);
+  EXPECT_EQ(cut_into_tiles(scene.topology, scene.position, scene.cost, 4).size(), 4u);
+  Scene lost(4, 100);
+  for (double& x : lost.position.x) x = std::numeric_limits<double>::quiet_NaN();
+  int elements = 0;
+  for (const auto& tile : cut_into_tiles(lost.topology, lost.position, lost.cost, 8))
+    for (const Segment& s : tile) elements += s.end - s.begin;
+  EXPECT_EQ(elements, lost.topology.elements());
+}
+
+}  // namespace
+}  // namespace ropewalk
