@@ -24,6 +24,7 @@ class NeighbourList {
   // At most. As many as the elements can fill: their buffers overlap, and what overlaps costs time. Never by the
   // threads.
   static int chunk_count(int elements, bool whole_ranges) {
+    if (elements <= static_cast<int>(parallel_from)) return 1;  // one thread's work
     return std::min(64, std::max(4, elements / (whole_ranges ? 2048 : 256)));
   }
 

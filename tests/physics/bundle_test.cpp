@@ -213,10 +213,10 @@ TEST(Checkpoint, GoesOnBitForBitOnAnyThreads) {
 
 // A rope whose ends turn, by the line law.
 struct TurnedRope {
-  Bundle b{7, 40, 0};
+  Bundle b;
   Drive drive;
 
-  explicit TurnedRope(double rate) {
+  explicit TurnedRope(double rate, int elements = 40) : b(7, elements, 0) {
     b.in.paper.reset();
     b.in.line = {test::line_contact(0.6785, 6, 0.6785, 6)};
     b.in.precision = Interaction::Precision::mixed;
@@ -274,7 +274,7 @@ TEST(Checkpoint, GoesOnWithTheSameLists) {
 
 // Helices whose neighbours are at angles where one sum goes over into the next, at random ones.
 TEST(Checkpoint, GoesOnWhereSumsAreShared) {
-  TurnedRope rope(0.1);
+  TurnedRope rope(0.1, 80);  // in several chunks
   SparseNodes& sparse = rope.b.in.line[0].sparse;
   sparse = sparse_nodes(6);
   const double pitch = 1.1 * std::acos(std::sqrt(sparse.sum[0].full_cos2)) / spacing;  // rad/nm
