@@ -214,8 +214,8 @@ class LineEngine {
   // Elements from which on a tube is finished as soon as nothing more will act on it. What acts on fewer stays in
   // the caches anyway, and the threads share the work more evenly if all of it comes at the end.
   std::size_t finish_at_once_from = 20000;
-  static constexpr double few_parts =
-      8;  // that chunks act on: a tube in more of them is finished with the last ones
+  // Nor are tubes of which chunks act on more parts, on average: they would all wait for the last chunks.
+  static constexpr double few_parts = 8;
 
   // The contact of all chunks; `finish` then calls add_to_tube. Energies only if wanted: forces are the same bits.
   void compute(const Topology& topology, const Interaction& interaction, const NeighbourList& list,
