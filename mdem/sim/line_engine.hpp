@@ -9,49 +9,11 @@
 #include <vector>
 
 #include "sim/contact_kernel.hpp"
-#include "sim/line_list.hpp"
+#include "sim/line_rows.hpp"
 #include "sim/radial_table.hpp"
 #include "sim/work_shares.hpp"
 
 namespace ropewalk {
-
-// Where nodes are: in units of the list as integers, or in nm.
-template <class C>
-struct LineNodes {
-  std::vector<C> x, y, z;
-  double per_unit = 1;
-
-  C coordinate(double v) const {
-    if constexpr (sizeof(C) == 4) return static_cast<C>(std::lrint(v * per_unit));
-    return static_cast<C>(v);
-  }
-};
-
-// Forces on the nodes that a chunk acts on, eV/nm: those of its parts one after another.
-template <class T>
-struct NodeForces {
-  using Value = T;
-  std::vector<T> x, y, z;
-  std::vector<char> used;  // of the parts; the forces on the others are not even cleared
-
-  void start(int nodes, std::size_t parts) {
-    for (auto* v : {&x, &y, &z}) v->resize(static_cast<std::size_t>(nodes + NodeRow::pad));
-    used.assign(parts, 0);
-  }
-  void use(const LineChunk& chunk, Rows kind, int index) {
-    char& done = used[static_cast<std::size_t>(index)];
-    if (done) return;
-    done = 1;
-    clear(chunk.parts[static_cast<std::size_t>(index)], kind);
-  }
-
- private:
-  void clear(const TouchedPart& p, Rows kind) {
-    const TouchedPart::Row& row = p.row[static_cast<int>(kind)];
-    for (auto* v : {&x, &y, &z})
-      std::fill_n(v->begin() + row.first(p.begin), (p.end - p.begin) * row.per_element, T{0});
-  }
-};
 
 // The sparse ones, and that over all nodes.
 inline constexpr int line_sums = SparseNodes::most + 1;
@@ -94,13 +56,17 @@ struct LineWork {
     return batches.back();
   }
 
-  void start(const LineChunk& chunk) {
-    for (int kind = 0; kind < row_kinds; ++kind) forces[kind].start(chunk.nodes[kind], chunk.parts.size());
-    batches.clear();  // their order belongs to the state alone: a resumed run has no older ones
-    const auto most = static_cast<std::size_t>(chunk.most_rows);
+  // For any chunk of the list.
+  void make_room(const LineList& list) {
+    for (int kind = 0; kind < row_kinds; ++kind) forces[kind].make_room(list.most_nodes(static_cast<Rows>(kind)));
+    const auto most = static_cast<std::size_t>(list.most_rows());
     shared.row.resize(2 * most);
     for (auto& of_one : met)
       for (MetRows& rows : of_one) rows.row.resize(most);
+  }
+  void start(const LineChunk& chunk) {
+    for (auto& f : forces) f.start(chunk.parts.size());
+    batches.clear();  // their order belongs to the state alone: a resumed run has no older ones
   }
 };
 
@@ -239,15 +205,14 @@ class LineEngine {
   void make_room(Buffers& b, std::size_t threads) const;
   template <class Buffers>
   void meet(std::size_t chunk, std::size_t thread, Buffers& b, KernelInput<Buffers> in);
-  double length_of(const Topology& topology, int tube) const;  // of its elements
   void describe(const Topology& topology, const Interaction& interaction, const NeighbourList& list);
 
   LineList list_;
   long stamp_ = 0;
   double list_seconds_ = 0, finish_seconds_ = 0;
   bool full_ = false;
-  std::vector<double> length_;          // of the elements of each type
-  std::vector<ContactBuffer> buffers_;  // of each chunk
+  std::vector<NodePlaces> places_[row_kinds];  // of each tube type
+  std::vector<ContactBuffer> buffers_;         // of each chunk
   WorkShares shares_;
   TubeCounters left_;  // chunks that have yet to act on each tube
   MixedBuffers mixed_;

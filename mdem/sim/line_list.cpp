@@ -558,6 +558,12 @@ void LineList::build(const Topology& topology, const Interaction& in, const Neig
       if (in.damped_contact()) list_damped(chunks_[c]);
     }
   list_touches(topology);
+  most_rows_ = 0;
+  for (int& most : most_nodes_) most = 0;
+  for (const LineChunk& chunk : chunks_) {
+    most_rows_ = std::max(most_rows_, chunk.most_rows);
+    for (int kind = 0; kind < row_kinds; ++kind) most_nodes_[kind] = std::max(most_nodes_[kind], chunk.nodes[kind]);
+  }
 }
 
 std::size_t LineList::bytes() const {

@@ -146,6 +146,9 @@ class LineList {
   // not nearly parallel.
   int nodes(Rows kind, int tube, int type) const {
     if (kind == Rows::all && !dense_[static_cast<std::size_t>(tube)]) return 0;
+    return per_element(kind, type);
+  }
+  int per_element(Rows kind, int type) const {
     return per_element_[static_cast<int>(kind)][static_cast<std::size_t>(type)];
   }
   const LineRun* begin(int i) const { return run_.data() + begin_[static_cast<std::size_t>(i)]; }
@@ -169,6 +172,9 @@ class LineList {
   double parts_of_a_tube() const {
     return static_cast<double>(touch_.size()) / static_cast<double>(touch_begin_.size());
   }
+  // Of any chunk, at most: nodes in its rows, rows that one of its elements can meet.
+  int most_nodes(Rows kind) const { return most_nodes_[static_cast<int>(kind)]; }
+  int most_rows() const { return most_rows_; }
   std::size_t runs() const { return run_.size(); }
   // The skin (nm) whose lists would have cost least, building included, where this one of `listed` was worn after
   // so many steps. It follows from what is in the list and not from a clock: the same run has the same lists.
@@ -200,6 +206,7 @@ class LineList {
   std::vector<LineChunk> chunks_;
   std::vector<Touch> touch_;
   std::vector<int> touch_begin_;
+  int most_nodes_[row_kinds] = {0, 0}, most_rows_ = 0;
   double unit_ = 1;
 };
 

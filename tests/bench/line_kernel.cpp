@@ -135,7 +135,8 @@ void LineRows(benchmark::State& bench) {
     nodes.z.push_back(nodes.coordinate(0.226 * (m % 10)));
   }
   NodeForces<float> forces;
-  forces.start(count, 1);
+  forces.make_room(count);
+  forces.start(1);
   float total[16];
   for (auto _ : bench) {
     HWY_DYNAMIC_DISPATCH(Rows)(table, nodes, length, shift, forces, total);
