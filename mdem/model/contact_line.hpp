@@ -170,8 +170,13 @@ struct LineContact {
   // separation = x_j - x_i; n_i, n_j unit axes.
   PairForce energy_and_gradient(const Vector3& separation, const Vector3& n_i, const Vector3& n_j) const;
   double energy(const Vector3& separation, const Vector3& n_i, const Vector3& n_j) const;
+  // The same with u by a function of the squared distance (nm^2), where one is at hand that costs less.
+  template <class U>
+  double energy_by(const U& u, const Vector3& separation, const Vector3& n_i, const Vector3& n_j) const;
 
  private:
+  template <class U>
+  double sum_by(const U& u, int t, const Vector3& separation, const Vector3& n_i, const Vector3& n_j) const;
   template <class Share>
   PairForce node_sum(int on_i, int on_j, const Share& share, const Vector3& separation, const Vector3& n_i,
                      const Vector3& n_j) const;
@@ -319,6 +324,31 @@ inline PairForce LineContact::energy_and_gradient(const Vector3& separation, con
 
 inline double LineContact::energy(const Vector3& separation, const Vector3& n_i, const Vector3& n_j) const {
   return energy_and_gradient(separation, n_i, n_j).energy;
+}
+
+template <class U>
+double LineContact::sum_by(const U& u, int t, const Vector3& separation, const Vector3& n_i,
+                           const Vector3& n_j) const {
+  const auto over = [&](int on_i, int on_j, const auto& share) {
+    double energy = 0;
+    for (int k = 0; k < on_i; ++k) {
+      const Vector3 from = separation - line_node(k, on_i, length_i) * n_i;
+      for (int l = 0; l < on_j; ++l)
+        energy += share(k, l) * u((from + line_node(l, on_j, length_j) * n_j).squaredNorm());
+    }
+    return energy * length_i / on_i * length_j / on_j;
+  };
+  const int on_i = sum_nodes_i(t), on_j = sum_nodes_j(t), left_i = end_nodes_i(t), left_j = end_nodes_j(t);
+  if (!fades(t)) return over(on_i, on_j, [](int, int) { return 1.0; });
+  return over(on_i, on_j, [&](int k, int l) { return ramp(t, k, on_i, l, on_j); }) +
+         over(left_i, left_j, [&](int k, int l) { return 1 - ramp(t, k, left_i, l, left_j); });
+}
+
+template <class U>
+double LineContact::energy_by(const U& u, const Vector3& separation, const Vector3& n_i, const Vector3& n_j) const {
+  const SumShare w = sparse.share(n_i.dot(n_j));
+  const double near = sum_by(u, w.first, separation, n_i, n_j);
+  return w.value >= 1 ? near : w.value * near + (1 - w.value) * sum_by(u, w.first + 1, separation, n_i, n_j);
 }
 
 namespace detail {

@@ -36,6 +36,11 @@ struct Interaction {
     return longest;
   }
   bool damped_contact() const { return damping.contact.eta > 0; }
+  // Of two tubes in `line`.
+  std::size_t line_index(const Topology& topology, int tube_i, int tube_j) const {
+    return static_cast<std::size_t>(topology.tube_type[tube_i]) * topology.types.size() +
+           static_cast<std::size_t>(topology.tube_type[tube_j]);
+  }
 };
 
 // The law between two elements, i < j, whichever it is.
@@ -43,8 +48,7 @@ template <class F>
 auto with_law(const Topology& topology, const Interaction& in, int i, int j, F f) {
   if (in.paper) return f(*in.paper);
   const int tube_i = topology.tube_of(i), tube_j = topology.tube_of(j);
-  LineContact law = in.line[static_cast<std::size_t>(topology.tube_type[tube_i]) * topology.types.size() +
-                            static_cast<std::size_t>(topology.tube_type[tube_j])];
+  LineContact law = in.line[in.line_index(topology, tube_i, tube_j)];
   law.ends_i = topology.ends_of(i, tube_i);
   law.ends_j = topology.ends_of(j, tube_j);
   return f(law);

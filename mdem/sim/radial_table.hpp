@@ -15,6 +15,8 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
+#include <type_traits>
 
 #include "model/contact_line.hpp"
 
@@ -54,6 +56,8 @@ struct RadialTable {
 
   RadialTable() = default;
   RadialTable(const LineDensity& law, double unit_nm);
+  // u at a squared distance in units of unit^2: one alone, as a check and for what no loop over many is worth.
+  T energy(T X) const;
 };
 
 // Pair displacements in single precision, and all in double.
@@ -130,6 +134,27 @@ RadialTable<T, segments_, degree_>::RadialTable(const LineDensity& law, double u
     }
     u_end = u;
   }
+}
+
+template <class T, int segments_, int degree_>
+T RadialTable<T, segments_, degree_>::energy(T X) const {
+  if (X >= cutoff2) return 0;
+  if (X < core2) {
+    const T e = std::sqrt(X) * unit - (contact + core);
+    return v0 + e * (v1 + e * v2 / 2);
+  }
+  using Bits = std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint64_t>;
+  const T y = scale * X + shift;
+  Bits bits;
+  std::memcpy(&bits, &y, sizeof bits);
+  const Bits start_bits = bits >> mantissa_left << mantissa_left;
+  T start;
+  std::memcpy(&start, &start_bits, sizeof start);
+  const auto k = static_cast<std::size_t>(bits >> mantissa_left) % segments;
+  const T s = y - start;
+  T u = c[degree][k];
+  for (int m = degree - 1; m >= 0; --m) u = u * s + c[m][k];
+  return u;
 }
 
 }  // namespace ropewalk
