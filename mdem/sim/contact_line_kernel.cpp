@@ -522,11 +522,11 @@ HWY_NOINLINE void pair_run(E& e, const LineRun& run) {
     add_pair<energies>(e, run, j, e.law(run.type).sparse.share(cosine(e, j)));
 }
 
-// The elements m .. end of a run, with `each` nodes, as a row.
-HWY_INLINE NodeRow row_of(const LineRun& run, Rows kind, int each, int m, int end) {
+// The elements m .. end of a run, with `each` nodes, as a row; none where all of these are out of reach.
+HWY_INLINE void add_row(const LineRun& run, Rows kind, int each, int m, int end, MetRows& met) {
   const LineRun::Nodes& nodes = run.of(kind);
   const int from = std::max<int>(nodes.from, m * each), to = std::min(nodes.from + nodes.count, end * each);
-  return {nodes.at + from - nodes.from, static_cast<short>(std::max(to - from, 0)), run.type, run.part};
+  if (from < to) met.add(run, nodes.at + from - nodes.from, to - from);
 }
 
 // A run whose angles are such that one sum goes over into the next: rows of those elements that take one sum, and
@@ -536,9 +536,7 @@ HWY_NOINLINE void split_run(E& e, const LineRun& run, MetRows* met) {
   const LineContact& law = e.law(run.type);
   int began = 0, of = -1;  // the row that is being made, and its sum
   const auto finish = [&](int end) {
-    if (of < 0) return;
-    const NodeRow part = row_of(run, e.rows_of(of), law.sum_nodes_j(of), began, end);
-    if (part.count > 0) met[of].add(part);
+    if (of >= 0) add_row(run, e.rows_of(of), law.sum_nodes_j(of), began, end, met[of]);
   };
   for (int m = 0; m < run.elements; ++m) {
     const SumShare w = law.sparse.share(cosine(e, run.element_begin + m));
@@ -586,7 +584,7 @@ HWY_INLINE void meet_run(E& e, const LineRun& run, MetRows* met) {
   switch (sum.kind) {
     case RunSum::rows: {
       const LineRun::Nodes& nodes = run.of(e.rows_of(sum.first));
-      met[sum.first].add({nodes.at, nodes.count, run.type, run.part});
+      met[sum.first].add(run, nodes.at, nodes.count);
       break;
     }
     case RunSum::split:

@@ -24,6 +24,14 @@ struct MetRows {
   int count = 0;
 
   void add(const NodeRow& r) { row[static_cast<std::size_t>(count++)] = r; }
+  // Nodes of a run. Field by field: put together and then copied, the copy waits for what was just stored.
+  void add(const LineRun& run, int at, int nodes) {
+    NodeRow& r = row[static_cast<std::size_t>(count++)];
+    r.at = at;
+    r.count = static_cast<short>(nodes);
+    r.type = run.type;
+    r.part = run.part;
+  }
   const NodeRow* begin() const { return row.data(); }
   const NodeRow* end() const { return row.data() + count; }
 };
