@@ -3,6 +3,7 @@
 #include <array>
 
 #include "model/contact_line.hpp"
+#include "sim/radial_table.hpp"
 #include "unit/support.hpp"
 
 namespace ropewalk {
@@ -313,11 +314,14 @@ struct EndCase {
   TubeEnds i, j;
 };
 
-TEST(LineContact, SparseSumsAreGradientsToo) {
+std::vector<EndCase> end_cases() {
   constexpr TubeEnds inner{}, first{true, false}, last{false, true}, lone{true, true};
+  return {{inner, inner}, {inner, first}, {inner, last}, {last, inner}, {first, last}, {lone, inner}};
+}
+
+TEST(LineContact, SparseSumsAreGradientsToo) {
   const SparseNodes sparse = sparse_nodes(5);
-  for (const EndCase& ends : {EndCase{inner, inner}, EndCase{inner, first}, EndCase{inner, last},
-                              EndCase{last, inner}, EndCase{first, last}, EndCase{lone, inner}}) {
+  for (const EndCase& ends : end_cases()) {
     const Law k = sparse_law(ends.i, ends.j);
     Random random(11);
     int tested = 0;
@@ -357,6 +361,29 @@ TEST(PaperContact, BoundaryOfTheCoreIsSmooth) {
   const auto slope = [&](double r) { return k.energy_and_gradient({r, 0, 0}, z, z).force_j.x(); };
   EXPECT_NEAR(slope(at - 1e-7), slope(at + 1e-7), 1e-2);
   EXPECT_GT(k.energy({0.01, 0, 0}, z, z), 1000) << "elements must not pass through one another";
+}
+
+TEST(LineContact, EnergyByAFunctionIsTheEnergy) {
+  const LineDensity u = test::line_density();
+  const auto exact = [&](double distance2) {
+    const double rho = std::sqrt(distance2);
+    return rho < u.cutoff() ? u.energy(rho) : 0.0;
+  };
+  const FullTable table(u, 1);
+  const auto by_table = [&](double distance2) { return table.energy(distance2); };
+  for (const EndCase& ends : end_cases()) {
+    LineContact k = line_pair(u, test::element_length, test::element_length, 5, 4);
+    k.ends_i = ends.i;
+    k.ends_j = ends.j;
+    Random random(7);
+    for (int n = 0; n < 2000; ++n) {
+      const Pose p = random_pose(random, 1.3, 4.0);
+      const Vector3 nj = test::turn(p.ni.cross(random.direction()).normalized(), random.uniform(0, 0.75)) * p.ni;
+      const double energy = k.energy(p.separation, p.ni, nj), size = 1 + std::fabs(energy);
+      ASSERT_NEAR(k.energy_by(exact, p.separation, p.ni, nj), energy, 1e-12 * size);
+      ASSERT_NEAR(k.energy_by(by_table, p.separation, p.ni, nj), energy, 1e-9 * size);
+    }
+  }
 }
 
 }  // namespace

@@ -45,6 +45,8 @@ void expect_close(double radius_i, double radius_j, double unit, double toleranc
     const RadialTerms t = law.terms(rho);
     const Read r = read<Table, Bits>(table, rho);
     ASSERT_NEAR(r.energy, t.energy, tolerance * (well + std::fabs(t.energy))) << rho;
+    const auto at = static_cast<typename Table::Value>(rho / unit);
+    ASSERT_EQ(static_cast<double>(table.energy(at * at)), r.energy) << rho;
     ASSERT_NEAR(r.force, -t.derivative, 10 * tolerance * (20 * well + std::fabs(t.derivative))) << rho;
   }
 }
