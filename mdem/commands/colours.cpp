@@ -10,7 +10,7 @@
 namespace ropewalk {
 namespace {
 
-// The line law by its tables, which no digit of a frame tells from the law: a tenth of the time.
+// The line law by its tables, without its exp and log: the same digits in a frame.
 struct PairEnergy {
   const Topology& topology;
   const Interaction& in;

@@ -39,8 +39,7 @@ struct Side {
   bool all_rows_wanted = false;  // by a run whose elements are not nearly parallel
 
   const LineContact& law() const {
-    return in.line[static_cast<std::size_t>(topology.tube_type[tube_i]) * topology.types.size() +
-                   static_cast<std::size_t>(topology.tube_type[tube_j])];
+    return in.line[in.line_index(topology, tube_i, tube_j)];
   }
   Vector3 place(int j) const { return list.reference()[static_cast<std::size_t>(j)]; }
   Vector3 axis(int j) const { return list.reference_axis()[static_cast<std::size_t>(j)]; }
