@@ -3,6 +3,7 @@
 #include <omp.h>
 #include <sys/resource.h>
 
+#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -65,9 +66,10 @@ Timing per_element_step(const Timing& a, const Timing& b, double scale) {
 
 constexpr int most_counted = 4000;  // elements
 
-Cost measure(const Scene& scene, const Prepared& prepared, long steps, int threads) {
+Cost measure(const Scene& scene, const Prepared& prepared, double after, long steps, int threads) {
   use_threads(threads);
   Simulation simulation = start(scene, prepared);
+  for (long k = std::lround(after / prepared.time_step); k > 0; --k) simulation.step(false);
   for (long k = 0; k < std::max(5L, steps / 10); ++k) simulation.step(false);  // warm caches
   Cost c;
   const Timing before = timing(simulation, 0, 0);
@@ -101,12 +103,13 @@ double operations_per_ns(const Cost& c, const Interaction& in) {
   return per(c.radial.evaluations * radial_operations(degree), c.each.contact);
 }
 
-nlohmann::ordered_json json_of(const Cost& c, const BenchArguments& a, const Prepared& prepared) {
+nlohmann::ordered_json json_of(const Cost& c, const BenchArguments& a, double after, const Prepared& prepared) {
   nlohmann::ordered_json out;
   out["scene"] = a.scene;
   out["elements"] = prepared.topology.elements();
   out["threads"] = c.threads;
   out["steps"] = a.steps;
+  out["after_ps"] = after;
   out["time_step_fs"] = prepared.time_step / units::fs;  // of contact
   out["contact_every"] = prepared.stepping.contact_every;
   out["ns_per_element_step"] = c.each.wall;
@@ -165,7 +168,7 @@ void print(const Cost& c, const BenchArguments& a, const Prepared& prepared) {
 
 int bench_command(const BenchArguments& a) {
   if (a.list) {
-    for (const BenchScene& s : bench_scenes()) fmt::print("{:14} {}\n", s.name, s.description);
+    for (const BenchScene& s : bench_scenes()) fmt::print("{:18} {}\n", s.name, s.description);
     return 0;
   }
   if (a.scene.empty())
@@ -173,11 +176,12 @@ int bench_command(const BenchArguments& a) {
   Scene scene = bench_scene(a.scene, a.law);
   const Prepared prepared = prepare(scene);
   use_instructions(a.instructions);
+  const double after = a.after < 0 ? bench_after(a.scene) : a.after;
   nlohmann::ordered_json all = nlohmann::ordered_json::array();
   for (const int threads : a.threads) {
-    const Cost cost = measure(scene, prepared, a.steps, threads);
+    const Cost cost = measure(scene, prepared, after, a.steps, threads);
     if (a.json) {
-      all.push_back(json_of(cost, a, prepared));
+      all.push_back(json_of(cost, a, after, prepared));
     } else {
       print(cost, a, prepared);
     }

@@ -70,6 +70,7 @@ struct BenchArguments {
   std::string law;           // of a named scene; empty: line
   std::string instructions;  // for the contact; empty: the machine's best
   long steps = 200;
+  double after = -1;               // ps that the scene runs before it is measured; less than zero: as --list has it
   std::vector<int> threads = {1};  // measured one after another
   bool list = false;
   bool json = false;

@@ -225,6 +225,8 @@ struct Element {
   const LineContact& law(int type_j) const { return in.interaction->line[pair(type_j)]; }
   const Table& table(int type_j) const { return in.tables[pair(type_j)]; }
   Rows rows_of(int t) const { return in.rows[t]; }
+  // Of its nodes in sum t, whatever the partner.
+  const std::vector<double>& places(int t) const { return sums(0).sums[t].places; }
   const TouchedPart& part(const LineRun& run) const { return chunk.parts[static_cast<std::size_t>(run.part)]; }
 
   HWY_INLINE Element(const In& input, const LineChunk& c, LineWork<Real>& w, ContactBuffer& o, int i, int entry,
@@ -291,30 +293,33 @@ struct Nodes {
   }
 };
 
-// K nodes of sum t on one element, or on several, from node k, with all rows that they meet.
+// K nodes of the sums first .. last - 1, which have the same ones on i, from node k: on one element, or on several,
+// with all rows that they meet. `met` is that of `first`, the others follow.
 template <bool energies, int K, class E>
-HWY_INLINE void meet_rows(E* elements, const MetRows& met, int t, int k) {
+HWY_INLINE void meet_rows(E* elements, const MetRows* met, int first, int last, int k) {
   E& e = *elements;
-  const Rows kind = e.rows_of(t);
-  const auto& placed = e.in.nodes[static_cast<int>(kind)];
-  auto& forces = e.work.forces[static_cast<int>(kind)];
-  Nodes<E, K> nodes(elements, e.sums(met.begin()->type).sums[t].places, k);
-  for (const NodeRow& row : met) {
-    forces.use(e.chunk, kind, row.part);
-    meet_row<energies, K>(e.table(row.type), placed, forces, row, nodes.at,
-                          static_cast<typename E::Real>(e.sums(row.type).sums[t].weight), nodes.sums);
+  Nodes<E, K> nodes(elements, e.places(first), k);
+  for (int t = first; t < last; ++t) {
+    const Rows kind = e.rows_of(t);
+    const auto& placed = e.in.nodes[static_cast<int>(kind)];
+    auto& forces = e.work.forces[static_cast<int>(kind)];
+    for (const NodeRow& row : met[t - first]) {
+      forces.use(e.chunk, kind, row.part);
+      meet_row<energies, K>(e.table(row.type), placed, forces, row, nodes.at,
+                            static_cast<typename E::Real>(e.sums(row.type).sums[t].weight), nodes.sums);
+    }
   }
   nodes.template collect<energies>();
 }
 
-// The rows of sum t. On its own: within the loop over the elements the compiler keeps more in registers than there
-// are.
+// The rows of these sums. On its own: within the loop over the elements the compiler keeps more in registers than
+// there are.
 template <bool energies, class E>
-HWY_NOINLINE void sum_rows(E* elements, int count, const MetRows& met, int t) {
-  const int nodes = count * static_cast<int>(elements->sums(met.begin()->type).sums[t].places.size());
+HWY_NOINLINE void sum_rows(E* elements, int count, const MetRows* met, int first, int last) {
+  const int nodes = count * static_cast<int>(elements->places(first).size());
   int k = 0;
-  for (; k + 2 <= nodes; k += 2) meet_rows<energies, 2>(elements, met, t, k);
-  for (; k < nodes; ++k) meet_rows<energies, 1>(elements, met, t, k);
+  for (; k + 2 <= nodes; k += 2) meet_rows<energies, 2>(elements, met, first, last, k);
+  for (; k < nodes; ++k) meet_rows<energies, 1>(elements, met, first, last, k);
 }
 
 // What acts on the elements of pairs, one pair in each lane: forces on j, and the first moments of those on the
@@ -529,70 +534,118 @@ HWY_INLINE void add_row(const LineRun& run, Rows kind, int each, int m, int end,
   if (from < to) met.add(run, nodes.at + from - nodes.from, to - from);
 }
 
-// A run whose angles are such that one sum goes over into the next: rows of those elements that take one sum, and
-// the others one by one.
-template <bool energies, class E>
-HWY_NOINLINE void split_run(E& e, const LineRun& run, MetRows* met) {
-  const LineContact& law = e.law(run.type);
-  int began = 0, of = -1;  // the row that is being made, and its sum
-  const auto finish = [&](int end) {
-    if (of >= 0) add_row(run, e.rows_of(of), law.sum_nodes_j(of), began, end, met[of]);
-  };
-  for (int m = 0; m < run.elements; ++m) {
-    const SumShare w = law.sparse.share(cosine(e, run.element_begin + m));
-    const int takes = w.value < 1 ? -1 : w.first;
-    if (takes != of) {
-      finish(m);
-      began = m, of = takes;
-    }
-    if (takes < 0) add_pair<energies>(e, run, run.element_begin + m, w);
-  }
-  finish(run.elements);
+template <class D>
+HWY_INLINE std::uint64_t bits_of(D d, hn::Mask<D> mask) {
+#if HWY_TARGET <= HWY_AVX3
+  (void)d;
+  return mask.raw;
+#else
+  std::uint8_t bits[(hn::MaxLanes(d) + 7) / 8 + 8];
+  hn::StoreMaskBits(d, mask, bits);
+  return bits[0];
+#endif
 }
 
-// run_sum(); of most runs it is known since the list was built that all elements are nearly parallel.
+// 64 where there is none.
+HWY_INLINE int first_bit(std::uint64_t bits) {
+  return bits == 0 ? 64 : static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero64(bits));
+}
+
+// Which sums the elements of a run take.
 template <class E>
-HWY_INLINE RunSum sum_of(const E& e, const LineRun& run) {
-  if (HWY_LIKELY(e.in.turned < static_cast<double>(run.even)))
-    return {run.fading ? RunSum::pairs : RunSum::rows, 0, 0};
-  const LineContact& law = e.law(run.type);
-  const bool has_row = e.part(run).row[0].per_element > 0;
+HWY_INLINE void find_sums(const E& e, SplitRun& of) {
   const hn::CappedTag<double, 8> d;
-  const Vec3Array& axis = *e.in.axis;
+  const LineRun& run = *of.run;
+  const SparseNodes& sparse = e.law(run.type).sparse;
+  const ElementReach& reach = e.sums(run.type).reach;
+  const int ended = run.begins || run.ends || e.ends.any() ? 1 : 0;
+  const Vec3Array &place = e.in.state->position, &axis = *e.in.axis;
   const auto nx = hn::Set(d, e.n[0]), ny = hn::Set(d, e.n[1]), nz = hn::Set(d, e.n[2]);
-  const auto one = hn::Set(d, 1.0);
-  auto largest = hn::Zero(d), smallest = one;
+  for (auto& bits : of.sum) bits = 0;
+  of.shared = 0;
   for (int m = 0; m < run.elements; m += static_cast<int>(hn::Lanes(d))) {
     const int left = std::min(run.elements - m, static_cast<int>(hn::Lanes(d)));
     const auto at = [&](const std::vector<double>& a) {
       return load_some(d, a.data() + run.element_begin + m, 0, left);
     };
-    const auto c = hn::MulAdd(nx, at(axis.x), hn::MulAdd(ny, at(axis.y), hn::Mul(nz, at(axis.z))));
-    const auto c2 = hn::Mul(c, c);  // of the lanes left over it is zero
-    largest = hn::Max(largest, c2);
-    smallest = hn::Min(smallest, hn::IfThenElse(some_lanes(d, 0, left), c2, one));
+    const auto mx = at(axis.x), my = at(axis.y), mz = at(axis.z);
+    const auto x = hn::Sub(at(place.x), hn::Set(d, e.x[0])), y = hn::Sub(at(place.y), hn::Set(d, e.x[1])),
+               z = hn::Sub(at(place.z), hn::Set(d, e.x[2]));
+    const auto c = hn::MulAdd(nx, mx, hn::MulAdd(ny, my, hn::Mul(nz, mz))), c2 = hn::Mul(c, c);
+    const auto along = hn::MulAdd(nx, x, hn::MulAdd(ny, y, hn::Mul(nz, z)));
+    const auto p2 = hn::NegMulAdd(along, along, hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z))));
+    const auto q = hn::NegMulAdd(along, c, hn::MulAdd(mx, x, hn::MulAdd(my, y, hn::Mul(mz, z))));
+    const auto near = [&](int t) {  // ElementReach::near
+      const auto from = hn::Max(hn::Sub(hn::Abs(along), hn::Set(d, reach.ahead[ended][t])), hn::Zero(d));
+      const auto least = hn::NegMulAdd(hn::Set(d, reach.beside[ended][t]), hn::Abs(q), hn::MulAdd(from, from, p2));
+      return bits_of(d, hn::Lt(least, hn::Set(d, reach.cutoff2)));
+    };
+    std::uint64_t rest = (std::uint64_t{1} << left) - 1, in_reach = near(0);
+    // There is always a second sum, and seldom more.
+    for (int t = 0; t < sparse.count && (t < 2 || HWY_UNLIKELY(rest != 0)); ++t) {
+      const SparseSum& sum = sparse.sum[static_cast<std::size_t>(t)];
+      const std::uint64_t takes = rest & bits_of(d, hn::Gt(c2, hn::Set(d, sum.from_cos2))),
+                          alone = takes & bits_of(d, hn::Ge(c2, hn::Set(d, sum.full_cos2))), next = near(t + 1);
+      of.sum[t] |= (alone & in_reach) << m;
+      of.shared |= (takes & ~alone & next) << m;
+      rest &= ~takes;
+      in_reach = next;
+    }
+    of.sum[sparse.count] |= (rest & in_reach) << m;
   }
-  return run_sum(law, e.ends, run, has_row, hn::GetLane(hn::MinOfLanes(d, smallest)),
-                 hn::GetLane(hn::MaxOfLanes(d, largest)));
 }
 
-// A run of one element: `met` takes what it meets by rows.
+// A run whose elements may take several sums: rows of those that take the same one, and others one by one.
 template <bool energies, class E>
-HWY_INLINE void meet_run(E& e, const LineRun& run, MetRows* met) {
-  if (static_cast<double>(run.beyond) > e.in.moved) return;
-  const RunSum sum = sum_of(e, run);
-  switch (sum.kind) {
-    case RunSum::rows: {
-      const LineRun::Nodes& nodes = run.of(e.rows_of(sum.first));
-      met[sum.first].add(run, nodes.at, nodes.count);
-      break;
+HWY_INLINE void meet_split(E& e, const SplitRun& of, MetRows* met) {
+  const LineRun& run = *of.run;
+  const LineContact& law = e.law(run.type);
+  const bool has_row = e.part(run).row[static_cast<int>(Rows::all)].per_element > 0;
+  std::uint64_t one_by_one = of.shared;
+  for (int t = 0; t <= law.sparse.count; ++t) {
+    std::uint64_t left = of.sum[t];
+    if (left == 0) continue;
+    if (fades(law.sparse, t, e.ends, run) || !(has_row || law.sparse.thins_j(t))) {
+      one_by_one |= left;
+      continue;
     }
-    case RunSum::split:
-      split_run<energies>(e, run, met);
-      break;
-    case RunSum::pairs:
-      pair_run<energies>(e, run);
-      break;
+    const int each = law.sum_nodes_j(t);
+    while (left != 0) {
+      const int from = first_bit(left), to = from + first_bit(~(left >> from));
+      add_row(run, e.rows_of(t), each, from, to, met[t]);
+      left &= to < 64 ? ~std::uint64_t{0} << to : 0;
+    }
+  }
+  for (; one_by_one != 0; one_by_one &= one_by_one - 1) {
+    const int j = run.element_begin + first_bit(one_by_one);
+    add_pair<energies>(e, run, j, law.sparse.share(cosine(e, j)));
+  }
+}
+
+// All that one element has put off. What each run takes is found for all of them before the first is met: the
+// processor would wait for it at the branches.
+template <bool energies, class E>
+HWY_NOINLINE void meet_splits(E& e, SplitRuns& runs, MetRows* met) {
+  for (int k = 0; k < runs.count; ++k) find_sums(e, runs.run[static_cast<std::size_t>(k)]);
+  for (int k = 0; k < runs.count; ++k) meet_split<energies>(e, runs.run[static_cast<std::size_t>(k)], met);
+  runs.count = 0;
+}
+
+// A run of one element: `met` takes what it meets by rows, `later` the run if it may take several sums. Of most
+// runs in straight ropes and in films it is known since the list was built that they take the first, or the last.
+template <bool energies, class E>
+HWY_INLINE void meet_run(E& e, const LineRun& run, MetRows* met, SplitRuns& later) {
+  if (static_cast<double>(run.beyond) > e.in.moved) return;
+  const auto add = [&](int sum) {
+    const LineRun::Nodes& nodes = run.of(e.rows_of(sum));
+    met[sum].add(run, nodes.at, nodes.count);
+  };
+  if (e.in.turned < static_cast<double>(run.even)) {
+    run.fading ? pair_run<energies>(e, run) : add(0);
+  } else if (e.in.turned < static_cast<double>(run.crossing)) {
+    add(e.law(run.type).sparse.count);
+  } else {
+    later.add(run);
   }
 }
 
@@ -603,8 +656,12 @@ void forget(MetRows (&met)[line_sums]) {
 // All that one element has met by itself.
 template <bool energies, class E>
 HWY_INLINE void sum_met(E& e, const MetRows (&met)[line_sums]) {
-  for (int t = 0; t < line_sums; ++t)
-    if (met[t].count > 0) sum_rows<energies>(&e, 1, met[t], t);
+  for (int t = 0, next; t < line_sums; t = next) {
+    bool any = false;
+    for (next = t; next < line_sums && e.places(next).size() == e.places(t).size(); ++next)
+      any |= met[next].count > 0;
+    if (any) sum_rows<energies>(&e, 1, met + t, t, next);
+  }
 }
 
 // The runs at the ends of tubes, whatever sums they take.
@@ -614,7 +671,8 @@ HWY_NOINLINE void meet_end_runs(const In& in, const LineChunk& chunk, LineWork<R
     const LineRun& run = in.list->run(of.run);
     forget(work.met[0]);
     Element<In> e(in, chunk, work, out, of.element, of.at, in.topology->tube_of(of.element));
-    meet_run<energies>(e, run, work.met[0]);
+    meet_run<energies>(e, run, work.met[0], work.split[0]);
+    meet_splits<energies>(e, work.split[0], work.met[0]);
     sum_met<energies>(e, work.met[0]);
     e.sum.add_to(out, of.at);
   }
@@ -645,11 +703,15 @@ HWY_INLINE void all_elements(const In& in, const LineChunk& chunk, LineWork<Real
         continue;
       }
       for (int k = 0; k < block.elements; ++k)
-        if (run->run[k] != BlockRun::none) meet_run<energies>(e[k], in.list->run(run->run[k]), of_one(k));
+        if (run->run[k] != BlockRun::none)
+          meet_run<energies>(e[k], in.list->run(run->run[k]), of_one(k), work.split[k]);
     }
-    if (work.shared.count > 0) sum_rows<energies>(e, block.elements, work.shared, 0);
+    if (work.shared.count > 0) sum_rows<energies>(e, block.elements, &work.shared, 0, 1);
     for (int k = 0; k < block.elements; ++k) {
-      if (alone) sum_met<energies>(e[k], work.met[k]);
+      if (alone) {
+        if (work.split[k].count > 0) meet_splits<energies>(e[k], work.split[k], work.met[k]);
+        sum_met<energies>(e[k], work.met[k]);
+      }
       e[k].sum.add_to(out, e[k].at);
     }
   }

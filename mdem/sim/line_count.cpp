@@ -7,6 +7,8 @@
 namespace ropewalk {
 namespace {
 
+constexpr int none = -1;
+
 struct Counter {
   const Topology& topology;
   const Interaction& in;
@@ -52,29 +54,46 @@ struct Counter {
            static_cast<std::size_t>(type_j);
   }
 
+  void add_pair(int i, int j, const LineRun& run, const SumShare& w, RadialCount& count) const {
+    const std::size_t of = pair(i, run.type);
+    count.pairs += 1;
+    for (int t = w.first; t <= w.first + (w.value < 1 ? 1 : 0); ++t)
+      add_pairs(in.line[of], i, sums[of].pairs(t, topology.ends_of(i, topology.tube_of(i)), run.tube_ends()), j,
+                count);
+  }
+
+  // As in the kernel: rows of consecutive elements that take the same sum, and the others one by one.
   void add_run(int i, const LineRun& run, RadialCount& count) const {
     const std::size_t of = pair(i, run.type);
     const LineContact& law = in.line[of];
     const TubeEnds ends = topology.ends_of(i, topology.tube_of(i));
-    double smallest = 1, largest = 0;
-    for (int j = run.element_begin; j < run.element_begin + run.elements; ++j) {
-      const double c = axis(i).dot(axis(j));
-      smallest = std::min(smallest, c * c);
-      largest = std::max(largest, c * c);
+    const bool even = turned<static_cast<double>(run.even),
+                             has_row = list.nodes(Rows::all, topology.tube_of(run.element_begin), run.type)> 0;
+    int began = 0, sum = none;  // the row that is being made
+    const auto finish = [&](int end) {
+      if (sum == none) return;
+      const LineRun::Nodes& nodes = run.of(law.sparse.thins_j(sum) ? Rows::sparse : Rows::all);
+      const int each = law.sum_nodes_j(sum), from = std::max<int>(nodes.from, began * each),
+                to = std::min(nodes.from + nodes.count, end * each);
+      if (from < to) add_row(law, i, run.element_begin, from, to - from, sum, count);
+    };
+    for (int m = 0; m < run.elements; ++m) {
+      const int j = run.element_begin + m;
+      const Vector3 apart = place(j) - place(i);
+      const double cosine = axis(i).dot(axis(j));
+      const SumShare w = law.sparse.share(cosine);
+      const bool ended = run.begins || run.ends || ends.any(),
+                 met = even || sums[of].reach.near(w.first + (w.value < 1 ? 1 : 0), ended, apart, axis(i), axis(j)),
+                 row = met && w.value >= 1 && !fades(law.sparse, w.first, ends, run) &&
+                       (has_row || law.sparse.thins_j(w.first));
+      if (met && !row) add_pair(i, j, run, w, count);
+      const int takes = row ? w.first : none;
+      if (takes != sum) {
+        finish(m);
+        began = m, sum = takes;
+      }
     }
-    const bool has_row = list.nodes(Rows::all, topology.tube_of(run.element_begin), run.type) > 0;
-    const RunSum sum = run_sum(law, ends, run, has_row, smallest, largest);
-    if (sum.kind == RunSum::rows) {
-      const LineRun::Nodes& nodes = run.of(law.sparse.thins_j(sum.first) ? Rows::sparse : Rows::all);
-      add_row(law, i, run.element_begin, nodes.from, nodes.count, sum.first, count);
-      return;
-    }
-    for (int j = run.element_begin; j < run.element_begin + run.elements; ++j) {
-      const SumShare w = law.sparse.share(axis(i).dot(axis(j)));
-      count.pairs += 1;
-      for (int t = w.first; t <= w.first + (w.value < 1 ? 1 : 0); ++t)
-        add_pairs(law, i, sums[of].pairs(t, ends, run.tube_ends()), j, count);
-    }
+    finish(run.elements);
   }
 
   // A row that stands for the runs of a block, as element i meets it.

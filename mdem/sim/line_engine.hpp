@@ -36,6 +36,19 @@ struct MetRows {
   const NodeRow* end() const { return row.data() + count; }
 };
 
+// A run whose elements may take several sums: those that may be within reach, as bits, by the sum that they take;
+// `shared`: one and the next.
+struct SplitRun {
+  const LineRun* run = nullptr;
+  std::uint64_t sum[line_sums] = {}, shared = 0;
+};
+struct SplitRuns {
+  std::vector<SplitRun> run;  // as many as there can be
+  int count = 0;
+
+  void add(const LineRun& r) { run[static_cast<std::size_t>(count++)].run = &r; }
+};
+
 // Pairs of elements that are summed one by one, a pair in each lane: all of the same types, ends and sums.
 template <class T>
 struct PairBatch {
@@ -54,6 +67,7 @@ struct LineWork {
   NodeForces<T> forces[row_kinds];
   MetRows shared;             // by both elements of a block, with the first sum
   MetRows met[2][line_sums];  // by one of them
+  SplitRuns split[2];         // likewise, to be met
   std::vector<PairBatch<T>> batches;
 
   PairBatch<T>& batch(const PairKind& kind) {
@@ -71,6 +85,7 @@ struct LineWork {
     shared.row.resize(2 * most);
     for (auto& of_one : met)
       for (MetRows& rows : of_one) rows.row.resize(most);
+    for (SplitRuns& runs : split) runs.run.resize(most);
   }
   void start(const LineChunk& chunk) {
     for (auto& f : forces) f.start(chunk.parts.size());
@@ -96,6 +111,36 @@ struct NodePairs {
   }
 };
 
+// Whether nodes of two elements may be within the cutoff. No two of them are nearer than
+//   r^2 = max(|d.n_i| - h_i - h_j, 0)^2 + p^2 - 2 h_j |q|,     p^2 = d^2 - (d.n_i)^2,  q = d.n_j -
+//   (d.n_i)(n_i.n_j),
+// h from the centre of an element to its last node: nodes ahead of i's, and beside its axis.
+struct ElementReach {
+  // h_i + h_j and 2 h_j (nm) for the nodes of each sum and of those before it; and where tubes end, for all nodes.
+  double ahead[2][line_sums] = {}, beside[2][line_sums] = {};
+  double cutoff2 = 0;  // nm^2
+
+  explicit ElementReach(const LineContact& k) {
+    const auto half = [](double length, int nodes) { return line_node(nodes - 1, nodes, length); };
+    double half_i = 0, half_j = 0;
+    for (int t = 0; t < line_sums; ++t) {
+      half_i = std::max(half_i, half(k.length_i, k.sum_nodes_i(t)));
+      half_j = std::max(half_j, half(k.length_j, k.sum_nodes_j(t)));
+      ahead[0][t] = half_i + half_j;
+      beside[0][t] = 2 * half_j;
+      ahead[1][t] = half(k.length_i, k.nodes_i) + half(k.length_j, k.nodes_j);
+      beside[1][t] = 2 * half(k.length_j, k.nodes_j);
+    }
+    cutoff2 = k.density.cutoff() * k.density.cutoff();
+  }
+  // For the nodes of sum t; `ended`: a tube begins or ends at one of the elements.
+  bool near(int t, bool ended, const Vector3& d, const Vector3& n_i, const Vector3& n_j) const {
+    const double along = d.dot(n_i), from = std::max(std::fabs(along) - ahead[ended ? 1 : 0][t], 0.0),
+                 q = d.dot(n_j) - along * n_i.dot(n_j);
+    return from * from + d.squaredNorm() - along * along - beside[ended ? 1 : 0][t] * std::fabs(q) < cutoff2;
+  }
+};
+
 // What two elements sum over (LineContact).
 template <class T>
 struct PairSum {
@@ -107,12 +152,13 @@ struct PairSum {
     NodePairs<T> pairs[4][4];
   };
   Sum sums[line_sums];
+  ElementReach reach;
 
   static int index(const TubeEnds& e) { return (e.begins ? 1 : 0) + (e.ends ? 2 : 0); }
   const NodePairs<T>& pairs(int sum, const TubeEnds& ends_i, const TubeEnds& ends_j) const {
     return sums[sum].pairs[index(ends_i)][index(ends_j)];
   }
-  explicit PairSum(LineContact law) {
+  explicit PairSum(LineContact law) : reach(law) {
     for (int t = 0; t <= law.sparse.count; ++t) {
       const int on_i = law.sum_nodes_i(t), on_j = law.sum_nodes_j(t);
       Sum& sum = sums[t];

@@ -27,20 +27,19 @@ void check_nodes(const Topology& topology, const Interaction& in) {
     }
 }
 
-constexpr short most_elements = 1000;  // of a run, whose counts are short
+constexpr int most_elements = 64;  // of a run: the kernel has a bit for each
 
 // Element i of one tube before elements of another one.
 struct Side {
   const Topology& topology;
   const Interaction& in;
   const NeighbourList& list;
-  double even_until;  // rad: to this angle of two elements the first sum holds
+  double even_until,
+      crossing_from;  // rad: angles of two elements to which the first sum holds, from which the last
   int i, tube_i, tube_j;
   bool all_rows_wanted = false;  // by a run whose elements are not nearly parallel
 
-  const LineContact& law() const {
-    return in.line[in.line_index(topology, tube_i, tube_j)];
-  }
+  const LineContact& law() const { return in.line[in.line_index(topology, tube_i, tube_j)]; }
   Vector3 place(int j) const { return list.reference()[static_cast<std::size_t>(j)]; }
   Vector3 axis(int j) const { return list.reference_axis()[static_cast<std::size_t>(j)]; }
   double to_node2(int j, int l, int count) const {
@@ -120,19 +119,26 @@ struct Side {
       run.nodes[kind].from = static_cast<short>(run.nodes[kind].from - (from - first) * counts[kind]);
   }
 
-  // Which sums the run takes, and until when it is sure to take the first alone: both elements may turn, by 1.01
-  // times the change of an axis at most where that is small.
+  // Which sums the run takes, and until when it is sure to take the first alone, or the last: both elements may
+  // turn, by 1.01 times the change of an axis at most where that is small.
   void find_angles(LineRun& run) {
     const SparseNodes& sparse = law().sparse;
     const Vector3 own = axis(i);
-    double smallest = 1;
+    double smallest = 1, largest = 0;
     for (int j = run.element_begin; j < run.element_begin + run.elements; ++j) {
       const double cosine = own.dot(axis(j));
       smallest = std::min(smallest, cosine * cosine);
+      largest = std::max(largest, cosine * cosine);
     }
     all_rows_wanted |= !sparse.thins_j(sparse.last_of(smallest));
-    run.even = sparse.count > 0 ? static_cast<float>((even_until - std::acos(std::sqrt(smallest))) / 2.02 - 1e-6)
-                                : std::numeric_limits<float>::infinity();
+    if (sparse.count == 0) {
+      run.even = std::numeric_limits<float>::infinity();
+      return;
+    }
+    const auto angle = [](double cos2) { return std::acos(std::sqrt(std::min(cos2, 1.0))); };
+    const auto room = [](double until) { return static_cast<float>(until / 2.02 - 1e-6); };
+    run.even = room(even_until - angle(smallest));
+    run.crossing = room(angle(largest) - crossing_from);
   }
 
   void find_damped(int first, int last, LineRun& run) const {
@@ -169,7 +175,10 @@ struct LineList::Part {
 
   void find(const Topology& topology, const Interaction& in, const NeighbourList& list, int tube) {
     const int* index = list.indices();
-    const double even_until = std::acos(std::sqrt(in.line[0].sparse.sum[0].full_cos2));
+    const SparseNodes& sparse = in.line[0].sparse;
+    const std::size_t last = static_cast<std::size_t>(std::max(sparse.count, 1)) - 1;
+    const double even_until = std::acos(std::sqrt(sparse.sum[0].full_cos2)),
+                 crossing_from = std::acos(std::sqrt(sparse.sum[last].from_cos2));
     for (int i = topology.tube_begin[tube]; i < topology.tube_begin[tube + 1]; ++i) {
       const std::size_t before = runs.size();
       const std::size_t end = list.begin(i + 1);
@@ -180,7 +189,7 @@ struct LineList::Part {
         int last = first;
         for (++k; k < end && index[k] < topology.tube_begin[tube_j + 1] && index[k] == last + 1; ++k)
           last = index[k];
-        Side side{topology, in, list, even_until, i, tube, tube_j};
+        Side side{topology, in, list, even_until, crossing_from, i, tube, tube_j};
         side.add(first, last, runs);
         if (side.all_rows_wanted && (dense.empty() || dense.back() != tube_j)) dense.push_back(tube_j);
       }

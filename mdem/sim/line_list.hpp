@@ -2,6 +2,8 @@
 // consecutive nodes of other tubes within its reach. No index per pair, no gather.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -23,11 +25,12 @@ struct LineRun {
     int at = 0;                 // the first one in the chunk's rows
   };
   int element_begin = 0;
-  int part = 0;        // which of those that the chunk acts on
-  float beyond = 0;    // nm: by so much the nearest node was out of reach at the build
-  float even = -1;     // rad: so long as no axis of the scene has turned by more, the first sum holds throughout
-  short elements = 0;  // with nodes within reach
-  short type = 0;      // tube type
+  int part = 0;         // which of those that the chunk acts on
+  float beyond = 0;     // nm: by so much the nearest node was out of reach at the build
+  float even = -1;      // rad: so long as no axis of the scene has turned by more, the first sum holds throughout
+  float crossing = -1;  // rad: likewise the last sum, over all nodes
+  short elements = 0;   // with nodes within reach
+  short type = 0;       // tube type
   Nodes nodes[row_kinds];
   short damped_from = 0, damped = 0;  // elements within reach of the contact viscosity, from element_begin
   bool begins = false, ends = false;  // the element is the first, the last of its tube, and the only one here
@@ -209,23 +212,5 @@ class LineList {
   int most_nodes_[row_kinds] = {0, 0}, most_rows_ = 0;
   double unit_ = 1;
 };
-
-// How the kernel sums a run, by the smallest and the largest (n_i.n_j)^2 in it: the sums first .. last have a
-// share.
-struct RunSum {
-  enum Kind {
-    rows,   // one sum throughout
-    split,  // rows of each, and those elements one by one where one sum goes over into the next
-    pairs   // all elements one by one
-  } kind = rows;
-  int first = 0, last = 0;
-};
-inline RunSum run_sum(const LineContact& law, const TubeEnds& ends_i, const LineRun& run, bool has_row,
-                      double smallest, double largest) {
-  const int first = law.sparse.first_of(largest), last = law.sparse.last_of(smallest);
-  if (fades(law.sparse, first, ends_i, run) || !(has_row || law.sparse.thins_j(last)))
-    return {RunSum::pairs, first, last};
-  return {first == last ? RunSum::rows : RunSum::split, first, last};
-}
 
 }  // namespace ropewalk

@@ -358,7 +358,7 @@ TEST_F(Cli, BenchTakesAnInstructionSet) {
 TEST_F(Cli, BenchKnowsScenesByName) {
   const Outcome list = run("bench --list");
   EXPECT_EQ(list.code, 0);
-  for (const char* name : {"chain", "rope-91x50", "rope-169x240", "film-1e5", "film-1e6"})
+  for (const char* name : {"chain", "rope-91x50", "rope-91x50-twisted", "rope-169x240", "film-1e5", "film-1e6"})
     EXPECT_NE(list.out.find(name), std::string::npos) << name;
   const Json both = Json::parse(run("bench film-1e3 --steps 5 --threads 1,2 --json").out);
   ASSERT_EQ(both.size(), 2u);
@@ -377,6 +377,7 @@ TEST_F(Cli, BenchKnowsScenesByName) {
   EXPECT_EQ(paper["elements"], 4550);
   EXPECT_FALSE(paper.contains("runs_per_element"));
   EXPECT_EQ(run("bench film-1e9").code, 2);
+  EXPECT_EQ(run("bench film-1e3 --after -1").code, 2);
   EXPECT_EQ(run("bench --law paper " ROPEWALK_SOURCE_DIR "/data/scenes/rope-67nm.toml").code, 2);
 }
 

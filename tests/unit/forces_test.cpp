@@ -4,6 +4,7 @@
 
 #include <atomic>
 
+#include "scene/build.hpp"
 #include "sim/simulation.hpp"
 #include "unit/support.hpp"
 
@@ -349,6 +350,120 @@ TEST(LineForces, CrossedAndClosedTubesEqualReference) {
 }
 
 // Elements far shorter than the reach: more pairs than a block of the kernel holds.
+// Tubes on helices about z, `twist` rad/nm of them: neighbours cross at angles that change along each.
+State twisted_rope(Topology& topology, double twist, double spacing) {
+  constexpr int elements = 16;
+  const auto places = hexagonal_lattice(37, spacing);
+  for (std::size_t t = 0; t < places.size(); ++t) topology.add_tube(elements);
+  State state(static_cast<std::size_t>(topology.elements()));
+  std::size_t i = 0;
+  for (const auto& [x, y] : places) {
+    const Vector3 along = Vector3(-twist * y, twist * x, 1).normalized();
+    for (int e = 0; e < elements; ++e, ++i) {
+      const double z = (e - 0.5 * (elements - 1)) * test::element_length * along.z();
+      const Quaternion by = test::turn(Vector3::UnitZ(), twist * z);
+      state.position.set(i, by * Vector3(x, y, 0) + Vector3(0, 0, z));
+      state.orientation.set(i, by * Quaternion::FromTwoVectors(Vector3::UnitZ(), along));
+    }
+  }
+  return state;
+}
+
+void shake(double amplitude, State& state) {
+  test::Random random(8);
+  for (std::size_t i = 0; i < state.size(); ++i) {
+    state.position.add(i, amplitude * random.direction());
+    state.orientation.set(i, test::turn(random.direction(), 0.2 * amplitude) * state.orientation[i]);
+  }
+}
+
+// Pairs of elements with nodes within the cutoff, by the first sum that they take; the last entry: those that take
+// the next one too.
+std::array<int, SparseNodes::most + 2> pairs_by_sum(const Topology& topology, const LineContact& law,
+                                                    const State& state) {
+  std::array<int, SparseNodes::most + 2> pairs{};
+  for (int i = 0; i < topology.elements(); ++i)
+    for (int j = i + 1; j < topology.elements(); ++j) {
+      const Vector3 apart = state.position[j] - state.position[i];
+      if (topology.tube_of(i) == topology.tube_of(j) || apart.norm() > law.cutoff()) continue;
+      const Vector3 n_i = axis_of(state.orientation[i]), n_j = axis_of(state.orientation[j]);
+      if (law.energy(apart, n_i, n_j) == 0) continue;
+      const SumShare w = law.sparse.share(n_i.dot(n_j));
+      ++pairs[static_cast<std::size_t>(w.first)];
+      pairs.back() += w.value < 1;
+    }
+  return pairs;
+}
+
+TEST(LineForces, TwistedRopesEqualReferenceAlsoWhereTheListIsWorn) {
+  Interaction in;
+  in.line = {test::line_contact(0.6785, 6, 0.6785, 6)};
+  in.line[0].sparse = sparse_nodes(6);
+  std::array<int, SparseNodes::most + 2> met{};
+  // 12, 29 and 60 degrees on the outside, with more room where tubes lie askew.
+  for (const auto& [twist, spacing] : {std::pair(0.04, 1.8), std::pair(0.1, 1.9), std::pair(0.25, 2.3)}) {
+    Topology topology = test::published_topology();
+    const State state = twisted_rope(topology, twist, spacing);
+    for (const auto& [precision, bound] :
+         {std::pair(Interaction::Precision::full, 1e-10), std::pair(Interaction::Precision::mixed, 2e-5)}) {
+      in.precision = precision;
+      NeighbourList list(in, 0.25);
+      list.build(topology, state);
+      State later = state;
+      shake(0.03, later);
+      ASSERT_FALSE(list.update(topology, later));
+      EXPECT_GT(list.turn(), 0.004);
+      Forces reference(state.size());
+      compute_reference(topology, in, later, reference);
+      const auto pairs = pairs_by_sum(topology, in.line[0], later);
+      for (std::size_t t = 0; t < pairs.size(); ++t) met[t] += pairs[t];
+      for (const std::string& name : instruction_sets()) {
+        SCOPED_TRACE(testing::Message() << name << ", " << twist << " rad/nm");
+        ASSERT_TRUE(use_instructions(name));
+        ForceEngine engine;
+        Forces fast(state.size());
+        engine.compute(topology, in, list, later, fast);
+        expect_equal(fast, reference, bound);
+      }
+      use_instructions("");
+    }
+  }
+  for (const int n : met) EXPECT_GT(n, 100);
+}
+
+// Nothing within the cutoff is left out, and nearly all that is beyond it is.
+TEST(LineForces, ReachOfElementsHoldsTheirNodes) {
+  const LineContact law = line_pair(test::line_density(0.6785, 0.6785), 1.4, 1.1, 6, 5);
+  const ElementReach reach(law);
+  test::Random random(2);
+  int near = 0, far = 0, far_but_near = 0;
+  for (int n = 0; n < 30000; ++n) {
+    const Vector3 n_i = random.direction(), n_j = (n_i + random.uniform(0, 1) * random.direction()).normalized(),
+                  apart = random.uniform(0.5, 4) * random.direction();
+    for (int t = 0; t <= law.sparse.count; ++t)
+      for (const bool ended : {false, true}) {
+        const int on_i = ended ? law.nodes_i : law.sum_nodes_i(t), on_j = ended ? law.nodes_j : law.sum_nodes_j(t);
+        double least = 10;
+        for (int k = 0; k < on_i; ++k)
+          for (int l = 0; l < on_j; ++l)
+            least = std::min(
+                least,
+                (apart + line_node(l, on_j, law.length_j) * n_j - line_node(k, on_i, law.length_i) * n_i).norm());
+        const bool found = reach.near(t, ended, apart, n_i, n_j);
+        if (least < law.density.cutoff()) {
+          ++near;
+          ASSERT_TRUE(found) << apart << "\n" << n_i << "\n" << n_j << "\nsum " << t;
+        } else {
+          ++far;
+          far_but_near += found;
+        }
+      }
+  }
+  EXPECT_GT(near, 10000);
+  EXPECT_GT(far, 10000);
+  EXPECT_LT(far_but_near, 0.15 * far);
+}
+
 TEST(PaperForces, ManyPairsEqualReference) {
   Topology topology = test::published_topology();
   topology.types[0].bond = {};
