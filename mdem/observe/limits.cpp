@@ -42,16 +42,25 @@ Peaks peaks_of_tube(const Topology& topology, const State& state, int tube, cons
   return out;
 }
 
-// The pairs of each element that come nearer than they rest.
-void press_of_tube(const Topology& topology, const State& state, const NeighbourList& list, const Watched& watched,
-                   int tube, Peak& peak) {
+// No two points of segments i and j are nearer than the root of this. Ahead along i's axis, and beside it:
+//   max(|d.n_i| - h_i - h_j, 0)^2 + |d - (d.n_i) n_i|^2 - 2 h_j |d.(n_j - (n_i.n_j) n_i)|
+double least_squared_distance(const Vector3& d, const Vector3& n_i, const Vector3& n_j, double half_i,
+                              double half_j) {
+  const double along = d.dot(n_i), ahead = std::max(std::fabs(along) - half_i - half_j, 0.0);
+  return ahead * ahead + d.squaredNorm() - along * along -
+         2 * half_j * std::fabs(d.dot(n_j) - along * n_i.dot(n_j));
+}
+
+// The pairs of each element that come nearer than they rest. Most are seen not to be the deepest by far.
+void press_of_tube(const Topology& topology, const State& state, const Vec3Array& axes, const NeighbourList& list,
+                   const Watched& watched, int tube, Peak& peak) {
   const TubeType& type = topology.type_of(tube);
   const auto types = topology.types.size(), row = static_cast<std::size_t>(topology.tube_type[tube]) * types;
   const double reach = *std::max_element(watched.rest.begin(), watched.rest.end()) + topology.longest_element();
   for (int i = topology.tube_begin[tube]; i < topology.tube_begin[tube + 1]; ++i) {
     const Vector3 place = state.position[static_cast<std::size_t>(i)];
-    const Vector3 axis = axis_of(state.orientation[static_cast<std::size_t>(i)]);
-    double deepest = 0;
+    const Vector3 axis = axes[static_cast<std::size_t>(i)];
+    double deepest = peak.element >= 0 ? peak.value : 0;
     for (std::size_t k = list.begin(i); k < list.begin(i + 1); ++k) {
       const auto j = static_cast<std::size_t>(list.indices()[k]);
       const Vector3 separation = state.position[j] - place;
@@ -59,8 +68,9 @@ void press_of_tube(const Topology& topology, const State& state, const Neighbour
       const TubeType& other = types == 1 ? type : topology.type_of_element(static_cast<int>(j));
       const double rest = watched.rest[row + static_cast<std::size_t>(&other - topology.types.data())];
       const double half_i = 0.5 * type.element_length, half_j = 0.5 * other.element_length;
-      const double distance2 =
-          squared_segment_distance(separation, axis, axis_of(state.orientation[j]), half_i, half_j);
+      const double wanted = rest - deepest;
+      if (least_squared_distance(separation, axis, axes[j], half_i, half_j) > wanted * wanted) continue;
+      const double distance2 = squared_segment_distance(separation, axis, axes[j], half_i, half_j);
       if (distance2 < rest * rest) deepest = std::max(deepest, rest - std::sqrt(distance2));
     }
     raise(peak, deepest, i);
@@ -102,11 +112,15 @@ Limits default_limits(const TubeType& type, const Validity& validity) {
 
 Peaks peaks(const Topology& topology, const State& state, const NeighbourList& list, const Watched& watched) {
   std::vector<Peaks> tubes(static_cast<std::size_t>(topology.tubes()));
+  const bool pressed = list.pairs() > 0 && !watched.rest.empty();
+  Vec3Array axes(pressed ? state.size() : 0);
+#pragma omp parallel for schedule(static) if (state.size() > parallel_from)
+  for (std::size_t i = 0; i < axes.size(); ++i) axes.set(i, axis_of(state.orientation[i]));
 #pragma omp parallel for schedule(static) if (state.size() > parallel_from)
   for (int t = 0; t < topology.tubes(); ++t) {
     Peaks& own = tubes[static_cast<std::size_t>(t)];
     own = peaks_of_tube(topology, state, t, watched.limits[static_cast<std::size_t>(topology.tube_type[t])]);
-    if (list.pairs() > 0 && !watched.rest.empty()) press_of_tube(topology, state, list, watched, t, own[press]);
+    if (pressed) press_of_tube(topology, state, axes, list, watched, t, own[press]);
   }
   Peaks out;
   for (const Peaks& tube : tubes)

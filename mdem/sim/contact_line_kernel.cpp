@@ -667,14 +667,18 @@ HWY_INLINE void sum_met(E& e, const MetRows (&met)[line_sums]) {
 // The runs at the ends of tubes, whatever sums they take.
 template <bool energies, class In, class Real>
 HWY_NOINLINE void meet_end_runs(const In& in, const LineChunk& chunk, LineWork<Real>& work, ContactBuffer& out) {
-  for (const ElementRun& of : chunk.end_runs) {
-    const LineRun& run = in.list->run(of.run);
+  if (chunk.end_runs.empty()) return;
+  const Topology& topology = *in.topology;
+  int tube = topology.tube_of(chunk.end_runs.front().element);
+  for (auto of = chunk.end_runs.begin(), end = chunk.end_runs.end(); of != end;) {
+    while (of->element >= topology.tube_begin[tube + 1]) ++tube;
     forget(work.met[0]);
-    Element<In> e(in, chunk, work, out, of.element, of.at, in.topology->tube_of(of.element));
-    meet_run<energies>(e, run, work.met[0], work.split[0]);
+    Element<In> e(in, chunk, work, out, of->element, of->at, tube);
+    for (; of != end && of->element == e.element; ++of)
+      meet_run<energies>(e, in.list->run(of->run), work.met[0], work.split[0]);
     meet_splits<energies>(e, work.split[0], work.met[0]);
     sum_met<energies>(e, work.met[0]);
-    e.sum.add_to(out, of.at);
+    e.sum.add_to(out, e.at);
   }
 }
 
