@@ -173,7 +173,8 @@ void add_bench(CLI::App& app, Verbs& v) {
   c->add_option("--law", v.bench.law, "Contact law of a named scene: line or paper [default: line]")
       ->check(CLI::IsMember({"line", "paper"}));
   c->add_option("--steps", v.bench.steps, "Time steps")->capture_default_str()->check(CLI::PositiveNumber);
-  c->add_option("--after", v.bench.after, "Time that the scene runs before it is measured, ps [default: 0]")
+  c->add_option("--after", v.bench.after,
+                "Time that the scene runs before it is measured, ps [default: as --list has it, or 0]")
       ->check(CLI::NonNegativeNumber);
   c->add_option("--threads", v.bench.threads, "Threads; 1,2: both, one after the other [default: 1]")
       ->delimiter(',')

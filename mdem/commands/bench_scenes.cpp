@@ -12,21 +12,13 @@ namespace {
 
 // Tubes of 50 elements. The larger films are alike but for their size: 100 nm^2 of the box for each tube.
 BenchScene film(const char* name, int tubes, int width, int depth) {
-  BenchScene s;
-  s.name = name;
-  s.description = fmt::format("film of {} tubes of 50 elements, {} nm x {} nm", tubes, width, depth);
-  s.source = fmt::format("[film]\ntubes = {}\nwidth_nm = {}\ndepth_nm = {}\n", tubes, width, depth);
-  s.elements = 50;
-  return s;
+  return {name, fmt::format("film of {} tubes of 50 elements, {} nm x {} nm", tubes, width, depth),
+          fmt::format("[film]\ntubes = {}\nwidth_nm = {}\ndepth_nm = {}\n", tubes, width, depth), 50};
 }
 
 BenchScene rope(const char* name, int tubes, int elements) {
-  BenchScene s;
-  s.name = name;
-  s.description = fmt::format("rope of {} tubes of {} elements", tubes, elements);
-  s.source = fmt::format("[rope]\ntubes = {}\nperturbation_nm = 0.0005\n", tubes);
-  s.elements = elements;
-  return s;
+  return {name, fmt::format("rope of {} tubes of {} elements", tubes, elements),
+          fmt::format("[rope]\ntubes = {}\nperturbation_nm = 0.0005\n", tubes), elements};
 }
 
 // From the cold, to 46 degrees on the outside, and a while held there: by then neighbours cross at 0 to 17 degrees.
@@ -36,14 +28,6 @@ BenchScene twisted(BenchScene rope) {
   rope.name += "-twisted";
   rope.motion = "[damping]\n[twist]\nmoment_nN_nm = 35\nrate_nN_nm_per_ps = 1\nhold_ps = 500\n[run]\n";
   return rope;
-}
-
-BenchScene chain() {
-  BenchScene s;
-  s.name = "chain";
-  s.description = "one straight tube of 10000 elements";
-  s.source = "[chain]\nelements = 10000\n";
-  return s;
 }
 
 const BenchScene* named(const std::string& name) {
@@ -67,7 +51,7 @@ std::string text_of(const BenchScene& s, bool paper) {
 
 const std::vector<BenchScene>& bench_scenes() {
   static const std::vector<BenchScene> scenes = {
-      chain(),
+      {"chain", "one straight tube of 10000 elements", "[chain]\nelements = 10000\n", 0},
       rope("rope-91x50", 91, 50),
       twisted(rope("rope-91x50", 91, 50)),
       rope("rope-169x240", 169, 240),

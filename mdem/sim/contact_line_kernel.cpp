@@ -540,7 +540,7 @@ HWY_INLINE std::uint64_t bits_of(D d, hn::Mask<D> mask) {
   (void)d;
   return mask.raw;
 #else
-  std::uint8_t bits[(hn::MaxLanes(d) + 7) / 8 + 8];
+  std::uint8_t bits[8];
   hn::StoreMaskBits(d, mask, bits);
   return bits[0];
 #endif

@@ -67,8 +67,9 @@ struct Counter {
     const std::size_t of = pair(i, run.type);
     const LineContact& law = in.line[of];
     const TubeEnds ends = topology.ends_of(i, topology.tube_of(i));
-    const bool even = turned<static_cast<double>(run.even),
-                             has_row = list.nodes(Rows::all, topology.tube_of(run.element_begin), run.type)> 0;
+    const double known_until = static_cast<double>(std::max(run.even, run.crossing));
+    const bool known = turned < known_until, ended = run.begins || run.ends || ends.any();
+    const bool has_row = list.nodes(Rows::all, topology.tube_of(run.element_begin), run.type) > 0;
     int began = 0, sum = none;  // the row that is being made
     const auto finish = [&](int end) {
       if (sum == none) return;
@@ -80,10 +81,9 @@ struct Counter {
     for (int m = 0; m < run.elements; ++m) {
       const int j = run.element_begin + m;
       const Vector3 apart = place(j) - place(i);
-      const double cosine = axis(i).dot(axis(j));
-      const SumShare w = law.sparse.share(cosine);
-      const bool ended = run.begins || run.ends || ends.any(),
-                 met = even || sums[of].reach.near(w.first + (w.value < 1 ? 1 : 0), ended, apart, axis(i), axis(j)),
+      const SumShare w = law.sparse.share(axis(i).dot(axis(j)));
+      const bool met =
+                     known || sums[of].reach.near(w.first + (w.value < 1 ? 1 : 0), ended, apart, axis(i), axis(j)),
                  row = met && w.value >= 1 && !fades(law.sparse, w.first, ends, run) &&
                        (has_row || law.sparse.thins_j(w.first));
       if (met && !row) add_pair(i, j, run, w, count);

@@ -111,10 +111,9 @@ struct NodePairs {
   }
 };
 
-// Whether nodes of two elements may be within the cutoff. No two of them are nearer than
-//   r^2 = max(|d.n_i| - h_i - h_j, 0)^2 + p^2 - 2 h_j |q|,     p^2 = d^2 - (d.n_i)^2,  q = d.n_j -
-//   (d.n_i)(n_i.n_j),
-// h from the centre of an element to its last node: nodes ahead of i's, and beside its axis.
+// Whether nodes of two elements may be within the cutoff. No two of them are nearer than r,
+//   r^2 = max(|d.n_i| - h_i - h_j, 0)^2 + d^2 - (d.n_i)^2 - 2 h_j |q|,     q = d.n_j - (d.n_i)(n_i.n_j),
+// h from the centre of an element to its last node: ahead of the nodes of i, and beside its axis.
 struct ElementReach {
   // h_i + h_j and 2 h_j (nm) for the nodes of each sum and of those before it; and where tubes end, for all nodes.
   double ahead[2][line_sums] = {}, beside[2][line_sums] = {};

@@ -2,8 +2,6 @@
 // consecutive nodes of other tubes within its reach. No index per pair, no gather.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <vector>
 
