@@ -138,7 +138,8 @@ struct Side {
     const auto angle = [](double cos2) { return std::acos(std::sqrt(std::min(cos2, 1.0))); };
     const auto room = [](double until) { return static_cast<float>(until / 2.02 - 1e-6); };
     run.even = room(even_until - angle(smallest));
-    run.crossing = room(angle(largest) - crossing_from);
+    if (largest < sparse.sum[static_cast<std::size_t>(sparse.count - 1)].from_cos2)
+      run.crossing = room(angle(largest) - crossing_from);
   }
 
   void find_damped(int first, int last, LineRun& run) const {

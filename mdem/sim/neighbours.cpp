@@ -86,10 +86,12 @@ CellGrid make_grid(const Vec3Array& p, double reach) {
   return grid;
 }
 
-// Those after element `after` that are closer than the root of reach2 to a place, onto `found`. Without branches:
-// a guess whether one is near is wrong too often.
-void find_near(const CellGrid& grid, double x, double y, double z, int after, double reach2,
-               std::vector<int>& found) {
+// Those after element `after` that are closer than the root of reach2 to a place: their number, and they are the
+// first ones of `found`, which grows where it has to. Without branches: a guess whether one is near is wrong too
+// often.
+std::size_t find_near(const CellGrid& grid, double x, double y, double z, int after, double reach2,
+                      std::vector<int>& found) {
+  std::size_t count = 0;
   const auto middle = grid.cell_of(x, y, z);
   const auto low = [&](std::size_t a) { return std::max(middle[a] - CellGrid::away, 0); };
   const auto high = [&](std::size_t a) { return std::min(middle[a] + CellGrid::away, grid.cells[a] - 1); };
@@ -98,16 +100,15 @@ void find_near(const CellGrid& grid, double x, double y, double z, int after, do
       // Cells along z are consecutive in memory: one run.
       const auto begin = static_cast<std::size_t>(grid.first[grid.flat(cx, cy, low(2))]),
                  end = static_cast<std::size_t>(grid.first[grid.flat(cx, cy, high(2)) + 1]);
-      std::size_t count = found.size();
-      found.resize(count + (end - begin));
+      if (found.size() < count + (end - begin)) found.resize(2 * (count + (end - begin)));
       for (std::size_t k = begin; k < end; ++k) {
         const double dx = grid.place.x[k] - x, dy = grid.place.y[k] - y, dz = grid.place.z[k] - z;
         const int j = grid.members[k];
         found[count] = j;
         count += static_cast<std::size_t>((j > after) & (dx * dx + dy * dy + dz * dz < reach2));
       }
-      found.resize(count);
     }
+  return count;
 }
 
 }  // namespace
@@ -207,12 +208,14 @@ void NeighbourList::build(const Topology& topology, Vec3Array position, Vec3Arra
       const int from = static_cast<int>(static_cast<std::int64_t>(n) * part / parts);
       const int to = static_cast<int>(static_cast<std::int64_t>(n) * (part + 1) / parts);
       auto& list = found[static_cast<std::size_t>(part)];
+      std::vector<int> near;
       for (int i = from; i < to; ++i) {
-        const std::size_t before = list.size();
         const auto si = static_cast<std::size_t>(i);
-        find_near(grid, p.x[si], p.y[si], p.z[si], last[si], reach2, list);
-        std::sort(list.begin() + static_cast<std::ptrdiff_t>(before), list.end());
-        begin_[si + 1] = list.size() - before;
+        const std::size_t count = find_near(grid, p.x[si], p.y[si], p.z[si], last[si], reach2, near);
+        const auto end = near.begin() + static_cast<std::ptrdiff_t>(count);
+        std::sort(near.begin(), end);
+        list.insert(list.end(), near.begin(), end);
+        begin_[si + 1] = count;
       }
     }
     std::size_t total = 0;
