@@ -381,6 +381,20 @@ TEST_F(Cli, BenchKnowsScenesByName) {
   EXPECT_EQ(run("bench --law paper " ROPEWALK_SOURCE_DIR "/data/scenes/rope-67nm.toml").code, 2);
 }
 
+TEST_F(Cli, BenchMeasuresASceneLaterThanAtItsStart) {
+  spit(dir / "s.toml",
+       "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[rope]\ntubes = 7\nlength_nm = 14\n"
+       "[damping]\n[twist]\nmoment_nN_nm = 10\nrate_nN_nm_per_ps = 5\nhold_ps = 10\n[run]\n");
+  const Json start = Json::parse(run("bench s.toml --steps 2 --json").out);
+  const Json later = Json::parse(run("bench s.toml --steps 2 --after 5 --json").out);
+  EXPECT_EQ(start["after_ps"], 0);
+  EXPECT_EQ(later["after_ps"], 5);
+  EXPECT_EQ(start["steps"], later["steps"]);
+  // By then sums of more nodes are needed: tubes are askew.
+  EXPECT_GT(later["radial_evaluations_per_element_step"].get<double>(),
+            1.2 * start["radial_evaluations_per_element_step"].get<double>());
+}
+
 TEST_F(Cli, RelaxationSaysHowItEnded) {
   spit(dir / "s.toml",
        "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-paper\"\n[rope]\ntubes = 7\nlength_nm = 7\n"
