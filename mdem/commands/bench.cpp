@@ -41,6 +41,7 @@ struct Cost {
   Timing each;
   RadialCount radial;
   int threads = 1;
+  double after = 0;  // ps: when it was measured
   double pairs = 0;
   double skin = 0;                   // nm, of the last list
   double bytes = 0, list_bytes = 0;  // per element
@@ -88,6 +89,7 @@ Cost measure(const Scene& scene, const Prepared& prepared, double after, long st
   const double n = prepared.topology.elements(), scale = 1e9 / (n * static_cast<double>(steps));
   c.each = per_element_step(before, timing(simulation, wall * scale, processor * scale), scale);
   c.threads = omp_get_max_threads();
+  c.after = after;
   c.pairs = static_cast<double>(simulation.list().pairs()) / n;
   c.skin = simulation.list().skin;
   c.list_bytes = static_cast<double>(simulation.list().bytes()) / n;
@@ -103,13 +105,13 @@ double operations_per_ns(const Cost& c, const Interaction& in) {
   return per(c.radial.evaluations * radial_operations(degree), c.each.contact);
 }
 
-nlohmann::ordered_json json_of(const Cost& c, const BenchArguments& a, double after, const Prepared& prepared) {
+nlohmann::ordered_json json_of(const Cost& c, const BenchArguments& a, const Prepared& prepared) {
   nlohmann::ordered_json out;
   out["scene"] = a.scene;
   out["elements"] = prepared.topology.elements();
   out["threads"] = c.threads;
   out["steps"] = a.steps;
-  out["after_ps"] = after;
+  out["after_ps"] = c.after;
   out["time_step_fs"] = prepared.time_step / units::fs;  // of contact
   out["contact_every"] = prepared.stepping.contact_every;
   out["ns_per_element_step"] = c.each.wall;
@@ -181,7 +183,7 @@ int bench_command(const BenchArguments& a) {
   for (const int threads : a.threads) {
     const Cost cost = measure(scene, prepared, after, a.steps, threads);
     if (a.json) {
-      all.push_back(json_of(cost, a, after, prepared));
+      all.push_back(json_of(cost, a, prepared));
     } else {
       print(cost, a, prepared);
     }

@@ -42,15 +42,6 @@ Peaks peaks_of_tube(const Topology& topology, const State& state, int tube, cons
   return out;
 }
 
-// No two points of segments i and j are nearer than the root of this. Ahead along i's axis, and beside it:
-//   max(|d.n_i| - h_i - h_j, 0)^2 + |d - (d.n_i) n_i|^2 - 2 h_j |d.(n_j - (n_i.n_j) n_i)|
-double least_squared_distance(const Vector3& d, const Vector3& n_i, const Vector3& n_j, double half_i,
-                              double half_j) {
-  const double along = d.dot(n_i), ahead = std::max(std::fabs(along) - half_i - half_j, 0.0);
-  return ahead * ahead + d.squaredNorm() - along * along -
-         2 * half_j * std::fabs(d.dot(n_j) - along * n_i.dot(n_j));
-}
-
 // The pairs of each element that come nearer than they rest. Most are seen not to be the deepest by far.
 void press_of_tube(const Topology& topology, const State& state, const Vec3Array& axes, const NeighbourList& list,
                    const Watched& watched, int tube, Peak& peak) {
@@ -69,7 +60,8 @@ void press_of_tube(const Topology& topology, const State& state, const Vec3Array
       const double rest = watched.rest[row + static_cast<std::size_t>(&other - topology.types.data())];
       const double half_i = 0.5 * type.element_length, half_j = 0.5 * other.element_length;
       const double wanted = rest - deepest;
-      if (least_squared_distance(separation, axis, axes[j], half_i, half_j) > wanted * wanted) continue;
+      if (least_squared_distance(separation, axis, axes[j], half_i + half_j, 2 * half_j) > wanted * wanted)
+        continue;
       const double distance2 = squared_segment_distance(separation, axis, axes[j], half_i, half_j);
       if (distance2 < rest * rest) deepest = std::max(deepest, rest - std::sqrt(distance2));
     }

@@ -54,14 +54,6 @@ struct Counter {
            static_cast<std::size_t>(type_j);
   }
 
-  void add_pair(int i, int j, const LineRun& run, const SumShare& w, RadialCount& count) const {
-    const std::size_t of = pair(i, run.type);
-    count.pairs += 1;
-    for (int t = w.first; t <= w.first + (w.value < 1 ? 1 : 0); ++t)
-      add_pairs(in.line[of], i, sums[of].pairs(t, topology.ends_of(i, topology.tube_of(i)), run.tube_ends()), j,
-                count);
-  }
-
   // As in the kernel: rows of consecutive elements that take the same sum, and the others one by one.
   void add_run(int i, const LineRun& run, RadialCount& count) const {
     const std::size_t of = pair(i, run.type);
@@ -82,11 +74,14 @@ struct Counter {
       const int j = run.element_begin + m;
       const Vector3 apart = place(j) - place(i);
       const SumShare w = law.sparse.share(axis(i).dot(axis(j)));
-      const bool met =
-                     known || sums[of].reach.near(w.first + (w.value < 1 ? 1 : 0), ended, apart, axis(i), axis(j)),
-                 row = met && w.value >= 1 && !fades(law.sparse, w.first, ends, run) &&
-                       (has_row || law.sparse.thins_j(w.first));
-      if (met && !row) add_pair(i, j, run, w, count);
+      const int last = w.first + (w.value < 1 ? 1 : 0);
+      const bool met = known || sums[of].reach.near(last, ended, apart, axis(i), axis(j));
+      const bool row =
+          met && last == w.first && !fades(law.sparse, last, ends, run) && (has_row || law.sparse.thins_j(last));
+      if (met && !row) {
+        count.pairs += 1;
+        for (int t = w.first; t <= last; ++t) add_pairs(law, i, sums[of].pairs(t, ends, run.tube_ends()), j, count);
+      }
       const int takes = row ? w.first : none;
       if (takes != sum) {
         finish(m);

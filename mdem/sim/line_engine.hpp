@@ -8,6 +8,7 @@
 #include <functional>
 #include <vector>
 
+#include "model/segments.hpp"
 #include "sim/contact_kernel.hpp"
 #include "sim/line_rows.hpp"
 #include "sim/radial_table.hpp"
@@ -111,11 +112,10 @@ struct NodePairs {
   }
 };
 
-// Whether nodes of two elements may be within the cutoff. No two of them are nearer than r,
-//   r^2 = max(|d.n_i| - h_i - h_j, 0)^2 + d^2 - (d.n_i)^2 - 2 h_j |q|,     q = d.n_j - (d.n_i)(n_i.n_j),
-// h from the centre of an element to its last node: ahead of the nodes of i, and beside its axis.
+// Whether nodes of two elements may be within the cutoff, by least_squared_distance of the segments between their
+// first and last nodes.
 struct ElementReach {
-  // h_i + h_j and 2 h_j (nm) for the nodes of each sum and of those before it; and where tubes end, for all nodes.
+  // As it takes them (nm), for the nodes of each sum and of those before it; and where tubes end, for all nodes.
   double ahead[2][line_sums] = {}, beside[2][line_sums] = {};
   double cutoff2 = 0;  // nm^2
 
@@ -134,9 +134,7 @@ struct ElementReach {
   }
   // For the nodes of sum t; `ended`: a tube begins or ends at one of the elements.
   bool near(int t, bool ended, const Vector3& d, const Vector3& n_i, const Vector3& n_j) const {
-    const double along = d.dot(n_i), from = std::max(std::fabs(along) - ahead[ended ? 1 : 0][t], 0.0),
-                 q = d.dot(n_j) - along * n_i.dot(n_j);
-    return from * from + d.squaredNorm() - along * along - beside[ended ? 1 : 0][t] * std::fabs(q) < cutoff2;
+    return least_squared_distance(d, n_i, n_j, ahead[ended ? 1 : 0][t], beside[ended ? 1 : 0][t]) < cutoff2;
   }
 };
 

@@ -27,6 +27,8 @@ void check_nodes(const Topology& topology, const Interaction& in) {
     }
 }
 
+double angle(double cos2) { return std::acos(std::sqrt(std::min(cos2, 1.0))); }
+
 constexpr int most_elements = 64;  // of a run: the kernel has a bit for each
 
 // Element i of one tube before elements of another one.
@@ -34,8 +36,7 @@ struct Side {
   const Topology& topology;
   const Interaction& in;
   const NeighbourList& list;
-  double even_until,
-      crossing_from;  // rad: angles of two elements to which the first sum holds, from which the last
+  double even_until, crossing_from;  // rad: to this angle the first sum holds, and from this one the last
   int i, tube_i, tube_j;
   bool all_rows_wanted = false;  // by a run whose elements are not nearly parallel
 
@@ -135,7 +136,6 @@ struct Side {
       run.even = std::numeric_limits<float>::infinity();
       return;
     }
-    const auto angle = [](double cos2) { return std::acos(std::sqrt(std::min(cos2, 1.0))); };
     const auto room = [](double until) { return static_cast<float>(until / 2.02 - 1e-6); };
     run.even = room(even_until - angle(smallest));
     if (largest < sparse.sum[static_cast<std::size_t>(sparse.count - 1)].from_cos2)
@@ -178,8 +178,7 @@ struct LineList::Part {
     const int* index = list.indices();
     const SparseNodes& sparse = in.line[0].sparse;
     const std::size_t last = static_cast<std::size_t>(std::max(sparse.count, 1)) - 1;
-    const double even_until = std::acos(std::sqrt(sparse.sum[0].full_cos2)),
-                 crossing_from = std::acos(std::sqrt(sparse.sum[last].from_cos2));
+    const double even_until = angle(sparse.sum[0].full_cos2), crossing_from = angle(sparse.sum[last].from_cos2);
     for (int i = topology.tube_begin[tube]; i < topology.tube_begin[tube + 1]; ++i) {
       const std::size_t before = runs.size();
       const std::size_t end = list.begin(i + 1);

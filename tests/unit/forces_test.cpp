@@ -349,7 +349,6 @@ TEST(LineForces, CrossedAndClosedTubesEqualReference) {
   }
 }
 
-// Elements far shorter than the reach: more pairs than a block of the kernel holds.
 // Tubes on helices about z, `twist` rad/nm of them: neighbours cross at angles that change along each.
 State twisted_rope(Topology& topology, double twist, double spacing) {
   constexpr int elements = 16;
@@ -464,6 +463,7 @@ TEST(LineForces, ReachOfElementsHoldsTheirNodes) {
   EXPECT_LT(far_but_near, 0.15 * far);
 }
 
+// Elements far shorter than the reach: more pairs than a block of the kernel holds.
 TEST(PaperForces, ManyPairsEqualReference) {
   Topology topology = test::published_topology();
   topology.types[0].bond = {};
