@@ -11,51 +11,61 @@ namespace ropewalk::HWY_NAMESPACE {
 namespace rows {
 namespace hn = hwy::HWY_NAMESPACE;
 
+constexpr int block = 32;  // elements whose places or sums stay in the first cache
+
+// Added to a number it leaves the nearest integer, of 32 bits, in front of the last 16 bits: 1.5 * 2^36, and a half as
+// they are cut off.
+constexpr int behind_point = 16;
+template <class C>
+constexpr double rounds = sizeof(C) == 4 ? 103079215104.5 : 0.0;
+
 template <class D>
 HWY_INLINE void store(D, hn::Vec<D> v, std::int32_t* to) {
-  const hn::Rebind<std::int32_t, D> di;
-  hn::StoreU(hn::DemoteTo(di, hn::Round(v)), di, to);
+  const hn::RebindToUnsigned<D> bits;
+  const hn::Rebind<std::uint32_t, D> low;
+  const hn::Rebind<std::int32_t, D> coordinate;
+  const auto number = hn::TruncateTo(low, hn::ShiftRight<behind_point>(hn::BitCast(bits, v)));
+  hn::StoreU(hn::BitCast(coordinate, number), coordinate, to);
 }
 template <class D>
 HWY_INLINE void store(D d, hn::Vec<D> v, double* to) {
   hn::StoreU(v, d, to);
 }
 
-// Consecutive elements of a tube and where their nodes go.
-template <class C>
-struct Row {
-  const double *x, *y, *z, *nx, *ny, *nz;
-  int elements, each;
-  const double* s;
-  double per_unit;
-  C *to_x, *to_y, *to_z;
+// One component of consecutive elements, in units of the nodes: of the centres and of the axes.
+struct Line {
+  double centre[block], along[block];
+
+  template <class C>
+  HWY_INLINE void take(const double* x, const double* n, double per_unit, int elements) {
+    for (int i = 0; i < elements; ++i) {
+      centre[i] = x[i] * per_unit + rounds<C>;
+      along[i] = n[i] * per_unit;
+    }
+  }
 };
 
 // The nodes of an element fill some vectors, but for lanes at the end of the last one: the next element's nodes are
 // stored over these. A count known to the compiler keeps the places in registers.
 template <int known, class D, class C>
-HWY_INLINE void place_row(D d, const Row<C>& r) {
+HWY_INLINE void place_row(D d, const Line (&lines)[3], int elements, int each, const double* s, C* const (&to)[3]) {
   constexpr int lanes = static_cast<int>(hn::MaxLanes(D()));
-  const int vectors = known > 0 ? known : (r.each + lanes - 1) / lanes;
-  const auto unit = hn::Set(d, r.per_unit);
-  const auto place = [&](double centre, double along, C* to) HWY_ATTR {
-    const auto c = hn::Mul(hn::Set(d, centre), unit), n = hn::Mul(hn::Set(d, along), unit);
-    for (int v = 0; v < vectors; ++v) store(d, hn::MulAdd(hn::LoadU(d, r.s + v * lanes), n, c), to + v * lanes);
-  };
-  for (int i = 0, at = 0; i < r.elements; ++i, at += r.each) {
-    place(r.x[i], r.nx[i], r.to_x + at);
-    place(r.y[i], r.ny[i], r.to_y + at);
-    place(r.z[i], r.nz[i], r.to_z + at);
-  }
+  const int vectors = known > 0 ? known : (each + lanes - 1) / lanes;
+  for (int i = 0, at = 0; i < elements; ++i, at += each)
+    for (int c = 0; c < 3; ++c) {
+      const auto centre = hn::Set(d, lines[c].centre[i]), along = hn::Set(d, lines[c].along[i]);
+      for (int v = 0; v < vectors; ++v)
+        store(d, hn::MulAdd(hn::LoadU(d, s + v * lanes), along, centre), to[c] + at + v * lanes);
+    }
 }
 
 template <class C>
-HWY_INLINE void place_row(const Row<C>& r) {
+HWY_INLINE void place_row(const Line (&lines)[3], int elements, int each, const double* s, C* const (&to)[3]) {
   const hn::CappedTag<double, 4> narrow;
   const hn::CappedTag<double, NodePlaces::room> wide;
-  if (r.each <= static_cast<int>(hn::MaxLanes(narrow))) return place_row<1>(narrow, r);
-  if (r.each <= static_cast<int>(hn::MaxLanes(wide))) return place_row<1>(wide, r);
-  place_row<0>(wide, r);
+  if (each <= static_cast<int>(hn::MaxLanes(narrow))) return place_row<1>(narrow, lines, elements, each, s, to);
+  if (each <= static_cast<int>(hn::MaxLanes(wide))) return place_row<1>(wide, lines, elements, each, s, to);
+  place_row<0>(wide, lines, elements, each, s, to);
 }
 
 // What a part has of one kind of rows.
@@ -79,17 +89,25 @@ HWY_INLINE void for_rows(const RowsOf& of, const What& what) {
 
 template <class C>
 HWY_INLINE void place(const RowsOf& of, LineNodes<C>* rows) {
-  for_rows(of, [&](std::size_t p, std::size_t kind, const PartRow& row) HWY_ATTR {
-    const int from = of.chunk.parts[p].begin;
-    LineNodes<C>& to = rows[kind];
-    place_row(Row<C>{of.position.x.data() + from, of.position.y.data() + from, of.position.z.data() + from,
-                     of.axis.x.data() + from, of.axis.y.data() + from, of.axis.z.data() + from, row.elements,
-                     row.each, row.places.s.data(), to.per_unit, to.x.data() + row.first, to.y.data() + row.first,
-                     to.z.data() + row.first});
-  });
+  Line lines[3];
+  const double *x[] = {of.position.x.data(), of.position.y.data(), of.position.z.data()},
+               *n[] = {of.axis.x.data(), of.axis.y.data(), of.axis.z.data()};
+  for (const TouchedPart& part : of.chunk.parts) {
+    const auto type = static_cast<std::size_t>(of.tube_type[static_cast<std::size_t>(part.tube)]);
+    for (int from = part.begin; from < part.end; from += block) {
+      const int elements = std::min(block, part.end - from);
+      for (int c = 0; c < 3; ++c) lines[c].take<C>(x[c] + from, n[c] + from, rows->per_unit, elements);
+      for (std::size_t kind = 0; kind < row_kinds; ++kind) {
+        const TouchedPart::Row& row = part.row[kind];
+        LineNodes<C>& to = rows[kind];
+        const int first = row.first(from);
+        if (row.per_element > 0)
+          place_row<C>(lines, elements, row.per_element, of.places[kind][type].s.data(),
+                       {to.x.data() + first, to.y.data() + first, to.z.data() + first});
+      }
+    }
+  }
 }
-
-constexpr int block = 32;  // elements whose sums stay in the first cache
 
 // The sum of each element's nodes and its first moment, in nodes, from the middle. `known` as above.
 template <int known, class T>

@@ -6,6 +6,30 @@
 #include "sim/vector_clones.hpp"
 
 namespace ropewalk {
+namespace {
+
+// sin(h)/h and cos(h) of the square of h, up to the last bit for h below 0.25 and to 1e-12 below 0.5.
+inline double sine_over(double h2) {
+  return 1 + h2 * (-1.0 / 6 + h2 * (1.0 / 120 + h2 * (-1.0 / 5040 + h2 * (1.0 / 362880 - h2 / 39916800))));
+}
+inline double cosine(double h2) {
+  return 1 + h2 * (-0.5 + h2 * (1.0 / 24 +
+                                h2 * (-1.0 / 720 + h2 * (1.0 / 40320 + h2 * (-1.0 / 3628800 + h2 / 479001600)))));
+}
+
+}  // namespace
+
+ROPEWALK_VECTOR_CLONES
+void kick_elements(const Vec3Array& force, double by, Vec3Array& velocity, std::ptrdiff_t begin, std::ptrdiff_t end) {
+  const double *fx = force.x.data(), *fy = force.y.data(), *fz = force.z.data();
+  double *vx = velocity.x.data(), *vy = velocity.y.data(), *vz = velocity.z.data();
+#pragma omp simd
+  for (std::ptrdiff_t i = begin; i < end; ++i) {
+    vx[i] += by * fx[i];
+    vy[i] += by * fy[i];
+    vz[i] += by * fz[i];
+  }
+}
 
 ROPEWALK_VECTOR_CLONES
 void move_elements(State& s, double dt, std::ptrdiff_t begin, std::ptrdiff_t end) {
@@ -21,12 +45,8 @@ void move_elements(State& s, double dt, std::ptrdiff_t begin, std::ptrdiff_t end
     y[i] += dt * vy[i];
     z[i] += dt * vz[i];
     // The turn by w dt as a quaternion (c, a).
-    const double speed2 = wx[i] * wx[i] + wy[i] * wy[i] + wz[i] * wz[i];
-    const double half = 0.5 * dt * std::sqrt(speed2), half2 = half * half;
-    // cos from sin, which alone the C library offers for vectors: half is below a quarter (Simulation::check).
-    const double sine = std::sin(half), c = std::sqrt(std::max(1.0 - sine * sine, 0.0));
-    const double sine_over = half2 > 1e-12 ? sine / half : 1.0 - half2 / 6.0;
-    const double scale = 0.5 * dt * sine_over;
+    const double h2 = 0.25 * dt * dt * (wx[i] * wx[i] + wy[i] * wy[i] + wz[i] * wz[i]);
+    const double scale = 0.5 * dt * sine_over(h2), c = cosine(h2);
     const double ax = scale * wx[i], ay = scale * wy[i], az = scale * wz[i];
     const double bw = qw[i], bx = qx[i], by = qy[i], bz = qz[i];
     const double rw = c * bw - ax * bx - ay * by - az * bz;
@@ -59,6 +79,23 @@ void move_elements_runge_kutta(State& s, double dt, std::ptrdiff_t begin, std::p
     const Eigen::Vector4d next = (q + dt / 6 * (k1 + 2 * k2 + 2 * k3 + k4)).normalized();
     s.orientation.set(i, Quaternion(next[0], next[1], next[2], next[3]));
   }
+}
+
+ROPEWALK_VECTOR_CLONES
+Fastest fastest(const State& s, std::ptrdiff_t begin, std::ptrdiff_t end) {
+  const double *vx = s.velocity.x.data(), *vy = s.velocity.y.data(), *vz = s.velocity.z.data();
+  const double *wx = s.angular_velocity.x.data(), *wy = s.angular_velocity.y.data(),
+               *wz = s.angular_velocity.z.data();
+  double speed2 = 0, spin2 = 0, sum = 0;
+#pragma GCC ivdep
+  for (std::ptrdiff_t i = begin; i < end; ++i) {
+    const double v2 = vx[i] * vx[i] + vy[i] * vy[i] + vz[i] * vz[i];
+    const double w2 = wx[i] * wx[i] + wy[i] * wy[i] + wz[i] * wz[i];
+    speed2 = std::max(speed2, v2);
+    spin2 = std::max(spin2, w2);
+    sum += v2 + w2;
+  }
+  return {speed2, spin2, sum};
 }
 
 ROPEWALK_VECTOR_CLONES

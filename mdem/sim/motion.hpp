@@ -1,5 +1,5 @@
-// Free motion of all elements over a step, the only part of the integrator with more than a line of arithmetic; and
-// how far it has brought them.
+// The loops of the integrator over the elements begin .. end - 1: kicks, free motion over a step, how fast all are and
+// how far they have come. A number that is not finite gives others that are not; nothing is looked for here.
 #pragma once
 
 #include <algorithm>
@@ -9,8 +9,10 @@
 
 namespace ropewalk {
 
-//   x += v dt,   q <- exp(w dt) q     for the elements begin .. end - 1
-// A velocity that is not finite gives places that are not; nothing is looked for here.
+//   v += by F
+void kick_elements(const Vec3Array& force, double by, Vec3Array& velocity, std::ptrdiff_t begin, std::ptrdiff_t end);
+
+//   x += v dt,   q <- exp(w dt) q     for turns w dt of up to half a radian
 void move_elements(State& state, double dt, std::ptrdiff_t begin, std::ptrdiff_t end);
 
 // The same with the turn by fourth-order Runge-Kutta of dq/dt = (w/2) q, its norm restored after the step, as PFC3D
@@ -18,6 +20,13 @@ void move_elements(State& state, double dt, std::ptrdiff_t begin, std::ptrdiff_t
 // is that of one place for a whole step. S. M. Johnson, J. R. Williams, B. K. Cook, Int. J. Numer. Meth. Eng. 74,
 // 1303 (2008), DOI 10.1002/nme.2210.
 void move_elements_runge_kutta(State& state, double dt, std::ptrdiff_t begin, std::ptrdiff_t end);
+
+// The largest squares of speed (nm^2/ps^2) and of angular speed (1/ps^2), and the sum of all, which alone tells where
+// one is not finite.
+struct Fastest {
+  double speed2 = 0, spin2 = 0, sum = 0;
+};
+Fastest fastest(const State& state, std::ptrdiff_t begin, std::ptrdiff_t end);
 
 // A motion that leaves the distances within a cross-section alone: about the line along z through (x, y), by the
 // angle whose sine is sine + slope (z - middle), held within `most`.

@@ -40,9 +40,7 @@ struct LittleMotion {
   double speed2, spin2;
   LittleMotion(double radius, double step) : speed2(square(0.25 * radius / step)), spin2(square(0.5 / step)) {}
   static double square(double x) { return x * x; }
-  bool holds(const State& s, std::size_t i) const {
-    return s.velocity[i].squaredNorm() < speed2 && s.angular_velocity[i].squaredNorm() < spin2;
-  }
+  bool holds(const Fastest& f) const { return f.speed2 < speed2 && f.spin2 < spin2 && std::isfinite(f.sum); }
 };
 
 NumericalError blown_up(long step, int element) {
@@ -127,12 +125,13 @@ double Simulation::kick_tube(const Forces& forces, int tube, double dt) {
   const double alpha = interaction_.damping.local;
   const std::ptrdiff_t from = topology_.tube_begin[tube], to = topology_.tube_begin[tube + 1];
   const double per_mass = dt / topology_.type_of(tube).mass, per_inertia = dt / topology_.type_of(tube).inertia;
+  if (alpha <= 0) {
+    kick_elements(forces.force, per_mass, state_.velocity, from, to);
+    kick_elements(forces.torque, per_inertia, state_.angular_velocity, from, to);
+    return 0;
+  }
   double removed = 0;
   const auto push = [&](const std::vector<double>& force, double inverse, std::vector<double>& velocity) {
-    if (alpha <= 0) {
-      for (std::ptrdiff_t i = from; i < to; ++i) velocity[i] += inverse * force[i];
-      return;
-    }
     for (std::ptrdiff_t i = from; i < to; ++i) {
       const double brake = pfc_local(alpha, force[i], velocity[i]);
       const double next = velocity[i] + inverse * (force[i] + brake);
@@ -175,7 +174,7 @@ void Simulation::drift(double dt) {
 #pragma omp parallel for schedule(static) reduction(&& : bounded) if (state_.size() > parallel_from)
   for (std::ptrdiff_t i = 0; i < n; i += block) {
     const std::ptrdiff_t end = std::min(i + block, n);
-    for (std::ptrdiff_t k = i; k < end; ++k) bounded = bounded & little.holds(state_, static_cast<std::size_t>(k));
+    bounded = bounded & little.holds(fastest(state_, i, end));
     move(state_, dt, i, end);
     changes_[static_cast<std::size_t>(i / block)] = list_.change(state_, i, end);
   }
@@ -195,9 +194,8 @@ void Simulation::update_list() {
 void Simulation::check_motion() const {
   if (bounded_) return;
   const LittleMotion little(topology_.largest_radius(), time_step_);
-  int broken = -1;
-  for (int i = 0; i < topology_.elements() && broken < 0; ++i)
-    if (!little.holds(state_, static_cast<std::size_t>(i))) broken = i;
+  int broken = 0;
+  while (broken + 1 < topology_.elements() && little.holds(fastest(state_, broken, broken + 1))) ++broken;
   throw blown_up(state_.step, broken);
 }
 
