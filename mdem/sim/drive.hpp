@@ -56,6 +56,9 @@ struct Drive {
   std::vector<TwistDrive> twist;  // none or one
 };
 
+// The elements that any of it acts on, in rising order.
+std::vector<int> driven_elements(const Drive& drive);
+
 // The loads at this time, element by element; an element may appear more than once.
 void point_loads(const Drive& drive, const State& state, double time, std::vector<PointLoad>& out);
 

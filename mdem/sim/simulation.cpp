@@ -43,6 +43,11 @@ struct LittleMotion {
   bool holds(const Fastest& f) const { return f.speed2 < speed2 && f.spin2 < spin2 && std::isfinite(f.sum); }
 };
 
+bool relaxes_spins(const Drive& drive) {
+  return std::any_of(drive.twist.begin(), drive.twist.end(),
+                     [](const TwistDrive& twist) { return twist.geometric_only; });
+}
+
 NumericalError blown_up(long step, int element) {
   return NumericalError(step, element,
                         "the motion blew up (an element moves a quarter of its radius or "
@@ -64,7 +69,10 @@ Simulation::Simulation(Topology topology, Interaction interaction, Drive drive, 
       list_(interaction_, skin > 0 ? skin : default_skin(interaction_)),
       forces_(state_.size()),
       inner_(two_levels() ? state_.size() : 0),
-      contact_(two_levels() ? state_.size() : 0) {
+      contact_(two_levels() ? state_.size() : 0),
+      driven_(driven_elements(drive_)),
+      driven_velocity_(driven_.size()),
+      driven_spin_(driven_.size()) {
   refuse_not_finite(state_);
   list_.build(topology_, state_);
   compute();
@@ -164,16 +172,52 @@ void Simulation::kick_with_loads(const Forces& forces, double dt) {
   work_ += 0.5 * dt * load_power(point_loads_, state_);
 }
 
-void Simulation::drift(double dt) {
+// A kick by all forces of the elements begin .. end - 1, whatever their tubes.
+void Simulation::kick_part(std::ptrdiff_t begin, std::ptrdiff_t end, double dt) {
+  for (int tube = topology_.tube_of(static_cast<int>(begin)); begin < end; ++tube) {
+    const std::ptrdiff_t to = std::min<std::ptrdiff_t>(end, topology_.tube_begin[tube + 1]);
+    const TubeType& type = topology_.type_of(tube);
+    kick_elements(forces_.force, dt / type.mass, state_.velocity, begin, to);
+    kick_elements(forces_.torque, dt / type.inertia, state_.angular_velocity, begin, to);
+    begin = to;
+  }
+}
+
+// As kick_with_loads does, but only the elements that loads and constraints act on.
+void Simulation::kick_driven(double dt) {
+  work_ += 0.5 * dt * load_power(point_loads_, state_);
+  for (int e : driven_) kick_part(e, e + 1, dt);
+  work_ += constrain(topology_, drive_, state_.time, forces_, dt, state_);
+  work_ += 0.5 * dt * load_power(point_loads_, state_);
+}
+
+void Simulation::give_back_driven(std::ptrdiff_t begin, std::ptrdiff_t end) {
+  auto driven = std::lower_bound(driven_.begin(), driven_.end(), static_cast<int>(begin));
+  for (; driven != driven_.end() && *driven < end; ++driven) {
+    const auto k = static_cast<std::size_t>(driven - driven_.begin());
+    state_.velocity.set(static_cast<std::size_t>(*driven), driven_velocity_[k]);
+    state_.angular_velocity.set(static_cast<std::size_t>(*driven), driven_spin_[k]);
+  }
+}
+
+// After so many kicks of half a step. What is driven is kicked before all others and gets its velocities back.
+void Simulation::drift(double dt, int kicks) {
   const auto n = static_cast<std::ptrdiff_t>(state_.size());
   constexpr std::ptrdiff_t block = NeighbourList::block;
   const auto move = stepping_.runge_kutta ? move_elements_runge_kutta : move_elements;
   const LittleMotion little(topology_.largest_radius(), time_step_);
   changes_.resize(static_cast<std::size_t>((n + block - 1) / block));
+  for (int k = 0; k < kicks; ++k) kick_driven(0.5 * dt);
+  for (std::size_t k = 0; kicks > 0 && k < driven_.size(); ++k) {
+    driven_velocity_.set(k, state_.velocity[static_cast<std::size_t>(driven_[k])]);
+    driven_spin_.set(k, state_.angular_velocity[static_cast<std::size_t>(driven_[k])]);
+  }
   bool bounded = true;
 #pragma omp parallel for schedule(static) reduction(&& : bounded) if (state_.size() > parallel_from)
   for (std::ptrdiff_t i = 0; i < n; i += block) {
     const std::ptrdiff_t end = std::min(i + block, n);
+    for (int k = 0; k < kicks; ++k) kick_part(i, end, 0.5 * dt);
+    if (kicks > 0) give_back_driven(i, end);
     bounded = bounded & little.holds(fastest(state_, i, end));
     move(state_, dt, i, end);
     changes_[static_cast<std::size_t>(i / block)] = list_.change(state_, i, end);
@@ -199,21 +243,30 @@ void Simulation::check_motion() const {
   throw blown_up(state_.step, broken);
 }
 
-void Simulation::step(bool energies) {
-  energies = energies || std::any_of(drive_.twist.begin(), drive_.twist.end(),
-                                     [](const TwistDrive& twist) { return twist.geometric_only; });
-  if (two_levels()) {
-    two_level(energies);
-  } else {
-    one_level(energies);
+// The local damping brakes by the velocities before each kick, and spins are relaxed between two steps.
+bool Simulation::kicks_while_moving() const {
+  return interaction_.damping.local <= 0 && !relaxes_spins(drive_);
+}
+
+void Simulation::steps(long count, bool energies) {
+  const bool always = relaxes_spins(drive_);
+  for (long k = 0; k < count; ++k) {
+    const bool first = k == 0, last = k + 1 == count;
+    if (two_levels()) {
+      two_level((energies && last) || always);
+    } else {
+      one_level(first, last, (energies && last) || always);
+    }
   }
 }
 
-void Simulation::one_level(bool energies) {
+// In the middle of several steps the velocities are those before the kick that ends the last one.
+void Simulation::one_level(bool first, bool last, bool energies) {
   const double dt = time_step_;
+  const bool at_once = kicks_while_moving();
   const double t0 = omp_get_wtime();
-  kick_with_loads(forces_, 0.5 * dt);
-  drift(dt);
+  if (!at_once) kick_with_loads(forces_, 0.5 * dt);
+  drift(dt, !at_once ? 0 : first ? 1 : 2);
   ++state_.step;
   state_.time += dt;
   check_motion();
@@ -224,7 +277,7 @@ void Simulation::one_level(bool energies) {
   const double t3 = omp_get_wtime();
   check_forces(energies);
   dissipated_ -= dt * forces_.damping_power;
-  kick_with_loads(forces_, 0.5 * dt);
+  if (last || !at_once) kick_with_loads(forces_, 0.5 * dt);
   relax_angles_if_due();
   integration_seconds_ += (t1 - t0) + (omp_get_wtime() - t3);
   list_seconds_ += t2 - t1;
