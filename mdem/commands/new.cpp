@@ -107,9 +107,9 @@ int check_command(const std::string& path) {
     fmt::print("relaxation to {:.3g} eV/nm, at most {} steps\n", scene.run.force_tolerance, scene.run.max_steps);
     return 0;
   }
-  constexpr int sample = 20;
+  constexpr long sample = 20;
   const auto began = std::chrono::steady_clock::now();
-  for (int k = 0; k < sample; ++k) simulation.step();
+  simulation.steps(sample);
   const double each = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count() / sample;
   const double steps = p.duration / p.time_step;
   fmt::print("{:.4g} ps = {:.0f} steps, about {:.0f} s on all cores\n", p.duration, steps, steps * each);

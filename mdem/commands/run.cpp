@@ -90,7 +90,7 @@ struct Manner {
 enum class Ending { none, complete, signal, limit, refine };
 
 // Steps between two looks at the limits, at most: a look costs about as much as a step.
-constexpr long look_every = 128;
+constexpr long look_every = 128, pause_every = 16;
 constexpr int stopped_at_limit = 5;  // exit code
 
 // Above the progress line, where there is one.
@@ -207,6 +207,16 @@ class Run {
     return Ending::none;
   }
 
+  // Until something is written or looked at, or somebody waits for an answer.
+  long steps_to_the_next_look(long look, double seconds_of_a_step) const {
+    constexpr double patience = 0.2;  // s
+    const long step = static_cast<long>(simulation_.state().step);
+    long count = last_step_ - step;
+    for (const long every : {look, log_every_, frames_every_, pause_every})
+      count = std::min(count, every - step % every);
+    return seconds_of_a_step * static_cast<double>(count) > patience ? 1 : count;
+  }
+
   Ending dynamics_loop() {
     Progress progress(manner_.quiet, static_cast<double>(simulation_.state().step),
                       static_cast<double>(last_step_));
@@ -216,10 +226,14 @@ class Run {
     if (simulation_.state().step < last_step_ && std::isfinite(simulation_.total_energy()))
       ending = look_at_limits();
     if (ending != Ending::none) return ending;
+    double seconds = 0;  // of a step
     while (simulation_.state().step < last_step_) {
-      const std::int64_t step = simulation_.state().step + 1;
+      const long count = ending == Ending::none ? steps_to_the_next_look(look, seconds) : 1;
+      const std::int64_t step = simulation_.state().step + count;
       const bool last = step == last_step_, logged = step % log_every_ == 0 || last || ending != Ending::none;
-      simulation_.step(logged);
+      const double began = now();
+      simulation_.steps(count, logged);
+      seconds = (now() - began) / static_cast<double>(count);
       if (ending == Ending::none && (logged || step % look == 0)) ending = look_at_limits();
       if (last && ending == Ending::refine) ending = Ending::none;
       const bool ends = logged && ending != Ending::none;
@@ -228,7 +242,7 @@ class Run {
       if (ends) return ending;
       if (caught_signal) return Ending::signal;
       if (progress.due()) progress.show(static_cast<double>(step), status_text());
-      if (step % 16 == 0 && now() > checkpoint_at) {
+      if (step % pause_every == 0 && now() > checkpoint_at) {
         save();
         checkpoint_at = now() + scene_.run.checkpoint_every;
       }

@@ -133,7 +133,7 @@ TEST(SpinningRope, DampingTakesNothing) {
   Simulation s = b.make(b.step());
   const Vector3 before = angular_momentum(s);
   const double kinetic = kinetic_energy(s.topology(), s.state());
-  for (int k = 0; k < 5000; ++k) s.step();
+  s.steps(5000);
   EXPECT_LT((angular_momentum(s) - before).norm(), 1e-9 * before.norm());
   EXPECT_NEAR(kinetic_energy(s.topology(), s.state()) / kinetic, 1, 2e-3);
 }
@@ -147,7 +147,7 @@ TEST(SpinningRope, LocalDampingDoesBrake) {
   }
   Simulation s = b.make(b.step());
   const double before = angular_momentum(s).z();
-  for (int k = 0; k < 5000; ++k) s.step();
+  s.steps(5000);
   EXPECT_LT(angular_momentum(s).z(), 0.99 * before);
 }
 
@@ -169,7 +169,7 @@ TEST(EnergyAccount, BalancesUnderLoadAndDamping) {
     drive.twist[0].tangential = tangential;
     Simulation s(b.topology, b.in, drive, b.state, 0.005);
     const double first = s.total_energy();
-    for (int k = 0; k < 4000; ++k) s.step();
+    s.steps(4000);
     const double balance = s.total_energy() - s.work() + s.dissipated() - first;
     EXPECT_GT(s.work(), 50);
     EXPECT_GT(s.dissipated(), 1);
@@ -189,7 +189,7 @@ TEST(EnergyAccount, PrescribedRotationDoesTheWork) {
   drive.turned = {upper, lower};
   Simulation s(b.topology, b.in, drive, b.state, 0.005);
   const double first = s.total_energy();
-  for (int k = 0; k < 5000; ++k) s.step();
+  s.steps(5000);
   const auto u = static_cast<std::size_t>(b.topology.tube_begin[2] - 1);
   const Vector3 at = s.state().position[u], was = b.state.position[u];
   EXPECT_NEAR(std::atan2(at.y(), at.x()) - std::atan2(was.y(), was.x()), 0.4, 1e-3);
@@ -201,12 +201,12 @@ TEST(Checkpoint, GoesOnBitForBitOnAnyThreads) {
   Bundle b(7, 40, 300);
   b.in.damping.contact = {20, spacing, 1.5 * spacing};
   Simulation whole = b.make(b.step());
-  for (int k = 0; k < 700; ++k) whole.step();
+  whole.steps(700);
   const std::string saved = whole.serialise();
-  for (int k = 0; k < 700; ++k) whole.step();
+  whole.steps(700);
   Simulation resumed = b.make(b.step());
   resumed.restore(saved);
-  for (int k = 0; k < 700; ++k) resumed.step();
+  resumed.steps(700);
   EXPECT_EQ(whole.serialise(), resumed.serialise());
   EXPECT_GT(whole.list().builds(), 1) << "the list was never rebuilt: the test shows nothing";
 }
@@ -249,6 +249,61 @@ TEST(ListSkin, FollowsTheMotion) {
   EXPECT_GT(f.work(), 10);
   EXPECT_NEAR(f.work(), fixed.work(), 1e-5 * f.work());
   EXPECT_NEAR(f.total_energy(), fixed.total_energy(), 1e-5 * f.work());
+}
+
+// With all that acts on some elements alone, and types of tubes that the blocks of the motion are not aligned with.
+Drive all_kinds(const Topology& topology) {
+  const auto end_of = [&](int tube) { return topology.tube_begin[tube + 1] - 1; };
+  Drive drive;
+  drive.loads = {{3, {0.1, 0, -0.2}, {0, 0.3, 0}}, {3, {0, 0.1, 0}, {0, 0, 0}}, {end_of(2), {0, 0, 1}, {0, 0, 0}}};
+  drive.fixed = {{0}, {topology.tube_begin[1], true, false, true, false}};
+  Turned turned;
+  turned.elements = {end_of(4), end_of(3)};
+  turned.rate = 0.05, turned.angle = 2, turned.spin_free = true;
+  drive.turned = {turned};
+  TwistDrive twist;
+  twist.lower = {topology.tube_begin[5], topology.tube_begin[6]};
+  twist.upper = {end_of(5), end_of(6)};
+  twist.moment = 3, twist.rate = 2, twist.tangential = true, twist.lateral_free = false, twist.axial_free = false;
+  drive.twist = {twist};
+  return drive;
+}
+
+TEST(Steps, ManyAtOnceAreTheSameBitsAsOneByOne) {
+  const auto expect_same = [](const char* what, Simulation at_once, Simulation one_by_one, double moved) {
+    SCOPED_TRACE(what);
+    const std::string start = at_once.serialise();
+    for (const long count : {1L, 2L, 150L, 37L}) {
+      at_once.steps(count);
+      for (long k = 0; k < count; ++k) one_by_one.step();
+      ASSERT_EQ(at_once.serialise(), one_by_one.serialise()) << count;
+    }
+    EXPECT_GT(at_once.list().builds(), 1) << "the list was never rebuilt: the test shows less";
+    EXPECT_GT(std::fabs(at_once.work()), moved);
+    EXPECT_EQ(at_once.state().step, 190);
+  };
+  Bundle b(7, 83, 300);
+  b.topology.types.push_back(b.topology.types[0]);
+  b.topology.types[1].mass *= 1.5;
+  b.topology.types[1].inertia *= 1.7;
+  for (int t = 0; t < 7; t += 3) b.topology.tube_type[static_cast<std::size_t>(t)] = 1;
+  b.in.paper.reset();
+  b.in.line.assign(4, test::line_contact(0.6785, 6, 0.6785, 6));
+  b.in.precision = Interaction::Precision::mixed;
+  b.in.damping.contact = {20, spacing, 1.5 * spacing};
+  const Drive drive = all_kinds(b.topology);
+  const auto make = [&](Stepping stepping = {}) {
+    return Simulation(b.topology, b.in, drive, b.state, 0.015, 0.1, stepping);
+  };
+  expect_same("driven", make(), make(), 0.1);
+  expect_same("two levels", make({3}), make({3}), 0.1);
+  b.in.damping.local = 0.3;
+  expect_same("local damping", make(), make(), 0.1);
+  b.in.damping.local = 0;
+  Drive spins = drive;
+  spins.twist[0].geometric_only = true, spins.twist[0].increment = 0.3;
+  const Simulation relaxed(b.topology, b.in, spins, b.state, 0.015, 0.1);
+  expect_same("relaxed spins", relaxed, relaxed, 0.1);
 }
 
 TEST(Checkpoint, GoesOnWithTheSameLists) {

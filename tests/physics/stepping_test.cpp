@@ -154,7 +154,7 @@ TEST(TwoLevels, PrescribedRotationDoesTheWork) {
   drive.turned = {upper, lower};
   Simulation s = b.make(0.005, 4, drive);
   const double first = s.total_energy();
-  for (int k = 0; k < 1250; ++k) s.step();
+  s.steps(1250);
   EXPECT_GT(s.work(), 1);
   EXPECT_LT(std::fabs(s.total_energy() - s.work() - first), 5e-3 * s.work());
 }

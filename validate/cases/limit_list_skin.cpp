@@ -70,7 +70,7 @@ double steps_per_build(const ParameterSet& model, double skin, double speed) {
   const Bundle b = nose_to_nose(model, skin + steps * speed * time_step, speed, 0);
   Simulation s(b.topology, b.interaction, {}, b.state, time_step, skin);
   const long before = s.list().builds();
-  for (long k = 0; k < steps; ++k) s.step();
+  s.steps(steps);
   return static_cast<double>(steps) / static_cast<double>(s.list().builds() - before);
 }
 

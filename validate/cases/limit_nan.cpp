@@ -24,7 +24,7 @@ struct End {
 End run_of(const Chain& c, long steps) {
   try {
     Simulation s = c.make();
-    for (long k = 0; k < steps; ++k) s.step(k + 1 == steps);
+    s.steps(steps);
   } catch (const NumericalError& e) {
     return {true, e.step(), e.element()};
   }

@@ -319,7 +319,7 @@ Measured warm_elements(const ParameterSet& set) {
     // Modes whose half period divides a constant interval would keep the energy that they began with.
     const long count = std::lround(random.uniform(0.5, 1.5) * draw_every / sample_every);
     for (long s = 0; s < count; ++s, time += sample_every) {
-      for (long k = 0; k < steps; ++k) run.step();
+      run.steps(steps);
       if (time >= equilibration) samples.push_back(sample_of(run, length));
     }
     state = run.state();
