@@ -10,6 +10,7 @@
 #include <cstdlib>
 
 #include "commands/commands.hpp"
+#include "commands/cores.hpp"
 #include "commands/siblings.hpp"
 #include "model/error.hpp"
 #include "scene/scene_toml.hpp"
@@ -28,6 +29,7 @@ using namespace ropewalk;
 void wait_briefly(char** argv) {
   if (std::getenv("OMP_WAIT_POLICY") || std::getenv("GOMP_SPINCOUNT")) return;
   setenv("GOMP_SPINCOUNT", "2000", 1);
+  give_back_cores();
   execv("/proc/self/exe", argv);  // on failure go on as we are: only speed is lost
 }
 

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <string>
 
+#include "commands/cores.hpp"
 #include "model/error.hpp"
 
 namespace ropewalk {
@@ -32,6 +33,7 @@ void hand_over_to_sibling(char** argv) {
   for (const char* verb : siblings) {
     if (verb != std::string(argv[1])) continue;
     const std::string program = find_sibling(verb);
+    give_back_cores();
     execvp(program.c_str(), argv + 1);
     throw InputError({"", 0, verb}, fmt::format("the program {} cannot be started", program),
                      "build all targets: cmake --build --preset release");

@@ -5,27 +5,6 @@
 namespace ropewalk::lammps {
 namespace {
 
-// Calls f with every list of elements, or single element, of a drive.
-template <class D, class F>
-void visit_elements(D& drive, const F& f) {
-  for (auto& load : drive.loads) f(load.element);
-  for (auto& fixed : drive.fixed) f(fixed.element);
-  for (auto& turned : drive.turned)
-    for (auto& e : turned.elements) f(e);
-  for (auto& twist : drive.twist) {
-    for (auto& e : twist.upper) f(e);
-    for (auto& e : twist.lower) f(e);
-  }
-}
-
-std::vector<int> driven_elements(const Drive& drive) {
-  std::vector<int> out;
-  visit_elements(drive, [&](int e) { out.push_back(e); });
-  std::sort(out.begin(), out.end());
-  out.erase(std::unique(out.begin(), out.end()), out.end());
-  return out;
-}
-
 // Whether a grip must be known as a whole: for its middle, its mean velocity or the number of its elements.
 bool needs_whole_grip(const Drive& drive) {
   return std::any_of(drive.twist.begin(), drive.twist.end(), [](const TwistDrive& twist) {

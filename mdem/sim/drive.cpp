@@ -71,11 +71,7 @@ void turn(const Turned& load, double time, std::size_t i, State& state) {
 
 std::vector<int> driven_elements(const Drive& drive) {
   std::vector<int> all;
-  const auto add = [&](const std::vector<int>& elements) { all.insert(all.end(), elements.begin(), elements.end()); };
-  for (const PointLoad& load : drive.loads) all.push_back(load.element);
-  for (const Fixed& fixed : drive.fixed) all.push_back(fixed.element);
-  for (const Turned& turned : drive.turned) add(turned.elements);
-  for (const TwistDrive& twist : drive.twist) add(twist.upper), add(twist.lower);
+  visit_elements(drive, [&](int e) { all.push_back(e); });
   std::sort(all.begin(), all.end());
   all.erase(std::unique(all.begin(), all.end()), all.end());
   return all;

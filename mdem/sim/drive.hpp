@@ -56,6 +56,19 @@ struct Drive {
   std::vector<TwistDrive> twist;  // none or one
 };
 
+// Every element that it names, some more than once; const or not, as the drive is.
+template <class D, class F>
+void visit_elements(D& drive, const F& f) {
+  for (auto& load : drive.loads) f(load.element);
+  for (auto& fixed : drive.fixed) f(fixed.element);
+  for (auto& turned : drive.turned)
+    for (auto& e : turned.elements) f(e);
+  for (auto& twist : drive.twist) {
+    for (auto& e : twist.upper) f(e);
+    for (auto& e : twist.lower) f(e);
+  }
+}
+
 // The elements that any of it acts on, in rising order.
 std::vector<int> driven_elements(const Drive& drive);
 

@@ -13,8 +13,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 constexpr int block = 32;  // elements whose places or sums stay in the first cache
 
-// Added to a number it leaves the nearest integer, of 32 bits, in front of the last 16 bits: 1.5 * 2^36, and a half as
-// they are cut off.
+// Added to a number it leaves the nearest integer, of 32 bits, in front of the last 16 bits: 1.5 * 2^36, and a half
+// as they are cut off.
 constexpr int behind_point = 16;
 template <class C>
 constexpr double rounds = sizeof(C) == 4 ? 103079215104.5 : 0.0;

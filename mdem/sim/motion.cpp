@@ -20,7 +20,8 @@ inline double cosine(double h2) {
 }  // namespace
 
 ROPEWALK_VECTOR_CLONES
-void kick_elements(const Vec3Array& force, double by, Vec3Array& velocity, std::ptrdiff_t begin, std::ptrdiff_t end) {
+void kick_elements(const Vec3Array& force, double by, Vec3Array& velocity, std::ptrdiff_t begin,
+                   std::ptrdiff_t end) {
   const double *fx = force.x.data(), *fy = force.y.data(), *fz = force.z.data();
   double *vx = velocity.x.data(), *vy = velocity.y.data(), *vz = velocity.z.data();
 #pragma omp simd

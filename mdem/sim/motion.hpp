@@ -1,5 +1,5 @@
-// The loops of the integrator over the elements begin .. end - 1: kicks, free motion over a step, how fast all are and
-// how far they have come. A number that is not finite gives others that are not; nothing is looked for here.
+// The loops of the integrator over the elements begin .. end - 1: kicks, free motion over a step, how fast all are
+// and how far they have come. A number that is not finite gives others that are not; nothing is looked for here.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,8 @@
 namespace ropewalk {
 
 //   v += by F
-void kick_elements(const Vec3Array& force, double by, Vec3Array& velocity, std::ptrdiff_t begin, std::ptrdiff_t end);
+void kick_elements(const Vec3Array& force, double by, Vec3Array& velocity, std::ptrdiff_t begin,
+                   std::ptrdiff_t end);
 
 //   x += v dt,   q <- exp(w dt) q     for turns w dt of up to half a radian
 void move_elements(State& state, double dt, std::ptrdiff_t begin, std::ptrdiff_t end);
@@ -21,8 +22,8 @@ void move_elements(State& state, double dt, std::ptrdiff_t begin, std::ptrdiff_t
 // 1303 (2008), DOI 10.1002/nme.2210.
 void move_elements_runge_kutta(State& state, double dt, std::ptrdiff_t begin, std::ptrdiff_t end);
 
-// The largest squares of speed (nm^2/ps^2) and of angular speed (1/ps^2), and the sum of all, which alone tells where
-// one is not finite.
+// The largest squares of speed (nm^2/ps^2) and of angular speed (1/ps^2), and the sum of all, which alone tells
+// where one is not finite.
 struct Fastest {
   double speed2 = 0, spin2 = 0, sum = 0;
 };

@@ -244,9 +244,7 @@ void Simulation::check_motion() const {
 }
 
 // The local damping brakes by the velocities before each kick, and spins are relaxed between two steps.
-bool Simulation::kicks_while_moving() const {
-  return interaction_.damping.local <= 0 && !relaxes_spins(drive_);
-}
+bool Simulation::kicks_while_moving() const { return interaction_.damping.local <= 0 && !relaxes_spins(drive_); }
 
 void Simulation::steps(long count, bool energies) {
   const bool always = relaxes_spins(drive_);

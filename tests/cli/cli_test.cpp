@@ -253,6 +253,20 @@ TEST_F(Cli, ResumeGoesOnBitForBitOnOtherThreads) {
   EXPECT_GT(observed.size(), 3u);
 }
 
+// Batch systems often set it; the program starts itself once more, and the second start is not to be left with the
+// one core that the first was bound to.
+TEST_F(Cli, RunHasAllCoresWhereThreadsAreBound) {
+  small_rope("s.toml");
+  const auto threads = [&](const std::string& out, const std::string& before) {
+    EXPECT_EQ(run("run s.toml --steps 3 --out " + out, before).code, 0) << slurp(dir / "stderr.txt");
+    return Json::parse(slurp(dir / out / "manifest.json"))["threads"].get<int>();
+  };
+  const int free = threads("free", "");
+  EXPECT_EQ(threads("bound", "OMP_PROC_BIND=true"), free);
+  EXPECT_EQ(threads("placed", "OMP_PLACES=cores"), free);
+  if (free == 1) GTEST_SKIP() << "this machine has one core";
+}
+
 TEST_F(Cli, ResumeCutsOffWhatWasWrittenAfterTheCheckpoint) {
   small_rope("s.toml");
   ASSERT_EQ(run("run s.toml --out whole").code, 0);
