@@ -8,110 +8,10 @@
 #include <limits>
 #include <utility>
 
+#include "sim/cell_grid.hpp"
 #include "sim/motion.hpp"
 
 namespace ropewalk {
-namespace {
-
-// Elements sorted by the cell that they lie in. Cells are half as wide as the reach: of their neighbours up to two
-// away, six in ten elements fewer have to be looked at than of cells as wide.
-struct CellGrid {
-  static constexpr int away = 2;
-  std::array<double, 3> origin{};
-  std::array<int, 3> cells{1, 1, 1};
-  double width = 1;
-  std::vector<int> first;  // of each cell in `members`
-  std::vector<int> members;
-  Vec3Array place;  // of the members
-
-  std::array<int, 3> cell_of(double x, double y, double z) const {
-    const auto along = [&](double value, int axis) {
-      const double c = (value - origin[static_cast<std::size_t>(axis)]) / width;
-      const int most = cells[static_cast<std::size_t>(axis)] - 1;
-      return c > 0 ? std::min(static_cast<int>(std::min(c, 1e9)), most) : 0;  // NaN goes to cell 0
-    };
-    return {along(x, 0), along(y, 1), along(z, 2)};
-  }
-  std::size_t flat(int x, int y, int z) const {
-    return (static_cast<std::size_t>(x) * static_cast<std::size_t>(cells[1]) + static_cast<std::size_t>(y)) *
-               static_cast<std::size_t>(cells[2]) +
-           static_cast<std::size_t>(z);
-  }
-};
-
-CellGrid make_grid(const Vec3Array& p, double reach) {
-  CellGrid grid;
-  const std::size_t n = p.size();
-  std::array<const std::vector<double>*, 3> components{&p.x, &p.y, &p.z};
-  std::array<double, 3> extent{};
-  for (std::size_t a = 0; a < 3; ++a) {
-    double low = 0, high = 0;
-    bool any = false;
-    for (double value : *components[a]) {
-      if (!std::isfinite(value)) continue;
-      low = any ? std::min(low, value) : value;
-      high = any ? std::max(high, value) : value;
-      any = true;
-    }
-    grid.origin[a] = low;
-    extent[a] = high - low;
-  }
-  // No more cells than a few per element however sparse the scene.
-  grid.width = reach / CellGrid::away;
-  const double most = 4.0 * static_cast<double>(n) + 64.0;
-  const auto count = [&](double width) {
-    double product = 1;
-    for (double e : extent) product *= std::floor(e / width) + 1;
-    return product;
-  };
-  while (count(grid.width) > most) grid.width *= 1.26;
-  for (std::size_t a = 0; a < 3; ++a) grid.cells[a] = static_cast<int>(extent[a] / grid.width) + 1;
-
-  std::vector<std::size_t> cell(n);
-  grid.first.assign(grid.flat(grid.cells[0] - 1, grid.cells[1] - 1, grid.cells[2] - 1) + 2, 0);
-  for (std::size_t i = 0; i < n; ++i) {
-    const auto c = grid.cell_of(p.x[i], p.y[i], p.z[i]);
-    cell[i] = grid.flat(c[0], c[1], c[2]);
-    ++grid.first[cell[i] + 1];
-  }
-  for (std::size_t c = 1; c < grid.first.size(); ++c) grid.first[c] += grid.first[c - 1];
-  std::vector<int> next(grid.first.begin(), grid.first.end() - 1);
-  grid.members.resize(n);
-  grid.place.resize(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    const auto at = static_cast<std::size_t>(next[cell[i]]++);
-    grid.members[at] = static_cast<int>(i);
-    grid.place.x[at] = p.x[i], grid.place.y[at] = p.y[i], grid.place.z[at] = p.z[i];
-  }
-  return grid;
-}
-
-// Those after element `after` that are closer than the root of reach2 to a place: their number, and they are the
-// first ones of `found`, which grows where it has to. Without branches: a guess whether one is near is wrong too
-// often.
-std::size_t find_near(const CellGrid& grid, double x, double y, double z, int after, double reach2,
-                      std::vector<int>& found) {
-  std::size_t count = 0;
-  const auto middle = grid.cell_of(x, y, z);
-  const auto low = [&](std::size_t a) { return std::max(middle[a] - CellGrid::away, 0); };
-  const auto high = [&](std::size_t a) { return std::min(middle[a] + CellGrid::away, grid.cells[a] - 1); };
-  for (int cx = low(0); cx <= high(0); ++cx)
-    for (int cy = low(1); cy <= high(1); ++cy) {
-      // Cells along z are consecutive in memory: one run.
-      const auto begin = static_cast<std::size_t>(grid.first[grid.flat(cx, cy, low(2))]),
-                 end = static_cast<std::size_t>(grid.first[grid.flat(cx, cy, high(2)) + 1]);
-      if (found.size() < count + (end - begin)) found.resize(2 * (count + (end - begin)));
-      for (std::size_t k = begin; k < end; ++k) {
-        const double dx = grid.place.x[k] - x, dy = grid.place.y[k] - y, dz = grid.place.z[k] - z;
-        const int j = grid.members[k];
-        found[count] = j;
-        count += static_cast<std::size_t>((j > after) & (dx * dx + dy * dy + dz * dz < reach2));
-      }
-    }
-  return count;
-}
-
-}  // namespace
 
 bool NeighbourList::update(const Topology& topology, const State& state) {
   Change all;
@@ -190,12 +90,11 @@ void NeighbourList::build(const Topology& topology, Vec3Array position, Vec3Arra
   const Vec3Array& p = reference_;
   const int n = static_cast<int>(p.size());
   const double reach = cutoff + skin;
-  const double reach2 = reach * reach;
   ++builds_;
   begin_.assign(static_cast<std::size_t>(n) + 1, 0);
   index_.clear();
   if (cutoff > 0) {
-    const CellGrid grid = make_grid(p, reach);
+    const CellGrid grid(p, reach);
     std::vector<int> last(static_cast<std::size_t>(n));  // element of its tube that is too near to count
     for (int t = 0; t < topology.tubes(); ++t)
       for (int i = topology.tube_begin[t]; i < topology.tube_begin[t + 1]; ++i)
@@ -211,7 +110,7 @@ void NeighbourList::build(const Topology& topology, Vec3Array position, Vec3Arra
       std::vector<int> near;
       for (int i = from; i < to; ++i) {
         const auto si = static_cast<std::size_t>(i);
-        const std::size_t count = find_near(grid, p.x[si], p.y[si], p.z[si], last[si], reach2, near);
+        const std::size_t count = grid.find(i, last[si], near);
         const auto end = near.begin() + static_cast<std::ptrdiff_t>(count);
         std::sort(near.begin(), end);
         list.insert(list.end(), near.begin(), end);
