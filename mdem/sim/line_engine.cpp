@@ -75,7 +75,7 @@ void LineEngine::meet(std::size_t k, std::size_t thread, Buffers& b, KernelInput
   LineNodes<typename Buffers::C>* const nodes = b.nodes[thread].data();
   auto& work = b.work[thread];
   ContactBuffer& out = buffers_[k];
-  const RowsOf rows{chunk, in.topology->tube_type, places_, in.state->position, *in.axis};
+  const RowsOf rows{chunk, in.topology->tube_type, places_, in.state->position, *in.axis, in.moved};
   place_nodes(rows, nodes);
   in.nodes = nodes;
   out.clear(static_cast<std::size_t>(chunk.elements));
@@ -101,6 +101,7 @@ void LineEngine::run(Buffers& b, const Topology& topology, const Interaction& in
                              list.turn(),
                              2 * list.displacement(),
                              energies};
+  moved_ = input.moved;
   for (int t = 0; t < line_sums; ++t) input.rows[t] = in.line[0].sparse.thins_j(t) ? Rows::sparse : Rows::all;
   const bool parallel = state.size() > parallel_from,
              at_once = state.size() > finish_at_once_from && list_.parts_of_a_tube() < few_parts;
@@ -159,7 +160,8 @@ void LineEngine::compute(const Topology& topology, const Interaction& in, const 
 
 void LineEngine::add_to_tube(int tube, Vec3Array& force, Vec3Array& torque) const {
   for (const LineList::Touch* touch = list_.touches_begin(tube); touch != list_.touches_end(tube); ++touch)
-    add_part(list_.part(*touch), buffers_[static_cast<std::size_t>(touch->chunk)], force, torque);
+    if (const TouchedPart& part = list_.part(*touch); static_cast<double>(part.beyond) <= moved_)
+      add_part(part, buffers_[static_cast<std::size_t>(touch->chunk)], force, torque);
 }
 
 double LineEngine::energy() const {

@@ -260,6 +260,7 @@ class LineEngine {
 
   LineList list_;
   long stamp_ = 0;
+  double moved_ = 0;  // nm, of the last forces, as in their input
   double list_seconds_ = 0, finish_seconds_ = 0;
   bool full_ = false;
   std::vector<NodePlaces> places_[row_kinds];  // of each tube type

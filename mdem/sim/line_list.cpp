@@ -339,15 +339,23 @@ void LineList::find_parts(const Topology& topology, LineChunk& chunk) {
     const auto of = part.begin() + shift[static_cast<std::size_t>(t)];
     for (int i = all.begin, last = all.begin - gap - 2; i < all.end; ++i) {
       if (of[i] == none) continue;
-      if (i - last > gap + 1) chunk.parts.push_back({t, i, i, 0, {}});
+      if (i - last > gap + 1) chunk.parts.push_back({t, i, i, 0, {}, std::numeric_limits<float>::infinity()});
       last = i;
       chunk.parts.back().end = i + 1;
       of[i] = static_cast<int>(chunk.parts.size()) - 1;
     }
   }
+  const auto part_of = [&](int tube, int element) {
+    return part[static_cast<std::size_t>(shift[static_cast<std::size_t>(tube)] + element)];
+  };
   for_runs_of(chunk, [&](LineRun& run) {
-    run.part = part[static_cast<std::size_t>(shift[static_cast<std::size_t>(run.part)] + reached(run).begin)];
+    run.part = part_of(run.part, reached(run).begin);
+    float& beyond = chunk.parts[static_cast<std::size_t>(run.part)].beyond;
+    beyond = run.damped > 0 ? 0 : std::min(beyond, run.beyond);
   });
+  for (const Segment& own : chunk.own)
+    for (int i = own.begin; i < own.end; ++i)
+      if (begin(i) != end(i)) chunk.parts[static_cast<std::size_t>(part_of(own.tube, i))].beyond = 0;
   chunk.elements = DampedBlock::most;  // room for vectors that begin before the first one
   for (TouchedPart& p : chunk.parts) {
     p.element_shift = chunk.elements - p.begin;

@@ -107,6 +107,8 @@ struct TouchedPart {
     int origin = 0, per_element = 0;  // the first node of element j is node origin + j per_element
     int first(int element) const { return origin + element * per_element; }
   } row[row_kinds];
+  // nm: until distances have become smaller by so much nothing acts on it.
+  float beyond = 0;
 };
 
 // Some elements and all that they act on.

@@ -68,9 +68,10 @@ struct RowsOf {
   const std::vector<NodePlaces> (&places)[row_kinds];  // of each tube type
   const Vec3Array& position;
   const Vec3Array& axis;
+  double moved = 0;  // nm: by no more have distances become smaller since the list was built
 };
 
-// With the widest vectors that the machine has.
+// But for parts that nothing can act on. With the widest vectors that the machine has.
 void place_nodes(const RowsOf& of, LineNodes<std::int32_t>* rows);
 void place_nodes(const RowsOf& of, LineNodes<double>* rows);
 // Adds what acts on the nodes to the buffer of the chunk.
