@@ -155,11 +155,15 @@ void clear(Forces& out, std::ptrdiff_t begin, std::ptrdiff_t end) {
 
 }  // namespace
 
-void ForceEngine::make_axes(const State& state) {
+void ForceEngine::make_axes(const State& state, std::ptrdiff_t begin, std::ptrdiff_t end) {
+  axes_of(state.orientation, begin, end, axis_);
+}
+
+void ForceEngine::make_all_axes(const State& state) {
   const auto n = static_cast<std::ptrdiff_t>(state.size());
   constexpr std::ptrdiff_t block = 512;
 #pragma omp parallel for schedule(static) if (state.size() > parallel_from)
-  for (std::ptrdiff_t i = 0; i < n; i += block) axes_of(state.orientation, i, std::min(i + block, n), axis_);
+  for (std::ptrdiff_t i = 0; i < n; i += block) make_axes(state, i, std::min(i + block, n));
 }
 
 std::size_t ForceEngine::bytes() const {
@@ -187,12 +191,12 @@ void ForceEngine::add_buffers(const NeighbourList& list, int from, int to, Force
 }
 
 void ForceEngine::compute(const Topology& topology, const Interaction& interaction, const NeighbourList& list,
-                          const State& state, Forces& out, bool energies, Parts parts) {
+                          const State& state, Forces& out, bool energies, Parts parts, bool axes_made) {
   const double t0 = omp_get_wtime(), finished_before = line_.finish_seconds();
   const bool contact = interaction.has_contact() && parts != Parts::bonds, bonds = parts != Parts::contact;
   const bool by_line = contact && !interaction.paper, by_paper = contact && !by_line;
   if (contact) axis_.resize(state.size());
-  if (by_paper) make_axes(state);  // else with the nodes
+  if (by_paper && !axes_made) make_all_axes(state);  // else with the nodes
   const double t1 = omp_get_wtime();
 
   // Tube by tube: its bonds, and what the contact buffers hold for it, in their fixed order.
@@ -209,7 +213,7 @@ void ForceEngine::compute(const Topology& topology, const Interaction& interacti
   };
   if (by_line) {
     const auto place = [&](int t) {
-      axes_of(state.orientation, topology.tube_begin[t], topology.tube_begin[t + 1], axis_);
+      if (!axes_made) make_axes(state, topology.tube_begin[t], topology.tube_begin[t + 1]);
     };
     line_.compute(topology, interaction, list, state, axis_, energies, {place, finish});
   }

@@ -71,9 +71,14 @@ enum class Parts { all, bonds, contact };
 // The list must be up to date, but for the bonds alone.
 class ForceEngine {
  public:
-  // Without `energies` that of the line law's contact may be left out; forces are the same bits.
+  // Without `energies` that of the line law's contact may be left out; forces are the same bits. With `axes_made`
+  // the axes of all elements are those that make_axes has made.
   void compute(const Topology& topology, const Interaction& interaction, const NeighbourList& list,
-               const State& state, Forces& out, bool energies = true, Parts parts = Parts::all);
+               const State& state, Forces& out, bool energies = true, Parts parts = Parts::all,
+               bool axes_made = false);
+  // Of elements begin .. end - 1, while their orientations are at hand; forces of as many elements have been
+  // computed.
+  void make_axes(const State& state, std::ptrdiff_t begin, std::ptrdiff_t end);
 
   // Wall time spent so far in each part, s.
   // Axes are made within the contact where that is by the line law, and tubes are finished within it: the first
@@ -87,7 +92,7 @@ class ForceEngine {
   std::size_t bytes() const;
 
  private:
-  void make_axes(const State& state);
+  void make_all_axes(const State& state);
   void add_buffers(const NeighbourList& list, int from, int to, Forces& out) const;
 
   Vec3Array axis_;                      // of all elements

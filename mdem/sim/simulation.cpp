@@ -80,14 +80,14 @@ Simulation::Simulation(Topology topology, Interaction interaction, Drive drive, 
 }
 
 // Model forces at the present positions and velocities, plus loads; `forces_` holds the sum.
-void Simulation::compute(bool energies) {
+void Simulation::compute(bool energies, bool axes_made) {
   if (two_levels()) {
     compute_bonds();
     compute_contact(energies);
     add_levels();
     return;
   }
-  engine_.compute(topology_, interaction_, list_, state_, forces_, energies);
+  engine_.compute(topology_, interaction_, list_, state_, forces_, energies, Parts::all, axes_made);
   if (!energies) forces_.energy.vdw = std::numeric_limits<double>::quiet_NaN();
   add_loads(forces_);
 }
@@ -201,7 +201,7 @@ void Simulation::give_back_driven(std::ptrdiff_t begin, std::ptrdiff_t end) {
 }
 
 // After so many kicks of half a step. What is driven is kicked before all others and gets its velocities back.
-void Simulation::drift(double dt, int kicks) {
+void Simulation::drift(double dt, int kicks, bool axes) {
   const auto n = static_cast<std::ptrdiff_t>(state_.size());
   constexpr std::ptrdiff_t block = NeighbourList::block;
   const auto move = stepping_.runge_kutta ? move_elements_runge_kutta : move_elements;
@@ -220,6 +220,7 @@ void Simulation::drift(double dt, int kicks) {
     if (kicks > 0) give_back_driven(i, end);
     bounded = bounded & little.holds(fastest(state_, i, end));
     move(state_, dt, i, end);
+    if (axes) engine_.make_axes(state_, i, end);
     changes_[static_cast<std::size_t>(i / block)] = list_.change(state_, i, end);
   }
   bounded_ = bounded;
@@ -264,14 +265,15 @@ void Simulation::one_level(bool first, bool last, bool energies) {
   const bool at_once = kicks_while_moving();
   const double t0 = omp_get_wtime();
   if (!at_once) kick_with_loads(forces_, 0.5 * dt);
-  drift(dt, !at_once ? 0 : first ? 1 : 2);
+  const bool axes = interaction_.has_contact();
+  drift(dt, !at_once ? 0 : first ? 1 : 2, axes);
   ++state_.step;
   state_.time += dt;
   check_motion();
   const double t1 = omp_get_wtime();
   update_list();
   const double t2 = omp_get_wtime();
-  compute(energies);
+  compute(energies, axes);
   const double t3 = omp_get_wtime();
   check_forces(energies);
   dissipated_ -= dt * forces_.damping_power;

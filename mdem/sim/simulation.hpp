@@ -98,9 +98,9 @@ class Simulation {
   void kick_driven(double dt);
   void give_back_driven(std::ptrdiff_t begin, std::ptrdiff_t end);
   void kick_part(std::ptrdiff_t begin, std::ptrdiff_t end, double dt);
-  void drift(double dt, int kicks = 0);
+  void drift(double dt, int kicks = 0, bool axes = false);
   void update_list();
-  void compute(bool energies = true);
+  void compute(bool energies = true, bool axes_made = false);
   void compute_bonds();
   void compute_contact(bool energies);
   void add_loads(Forces& forces);
