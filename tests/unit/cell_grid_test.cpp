@@ -71,7 +71,9 @@ TEST(CellGrid, NothingIsNearWhatIsNotFinite) {
   for (int i = 0; i < 300; ++i) {
     const std::size_t count = grid.find(i, -1, found);
     for (std::size_t k = 0; k < count; ++k) EXPECT_TRUE(found[k] != 17 && found[k] != 18) << i;
-    if (i != 17 && i != 18) EXPECT_GT(count, 0u) << i;  // itself, at least
+    if (i != 17 && i != 18) {
+      EXPECT_GT(count, 0u) << i;  // itself, at least
+    }
   }
 }
 
