@@ -91,6 +91,7 @@ enum class Ending { none, complete, signal, limit, refine };
 
 // Steps between two looks at the limits, at most: a look costs about as much as a step.
 constexpr long look_every = 128, pause_every = 16;
+constexpr double patience = 0.5;     // s, of who wants to stop a run
 constexpr int stopped_at_limit = 5;  // exit code
 
 // Above the progress line, where there is one.
@@ -209,12 +210,11 @@ class Run {
 
   // Until something is written or looked at, or somebody waits for an answer.
   long steps_to_the_next_look(long look, double seconds_of_a_step) const {
-    constexpr double patience = 0.2;  // s
     const long step = static_cast<long>(simulation_.state().step);
     long count = last_step_ - step;
     for (const long every : {look, log_every_, frames_every_, pause_every})
       count = std::min(count, every - step % every);
-    return seconds_of_a_step * static_cast<double>(count) > patience ? 1 : count;
+    return std::min(count, std::max(2L, static_cast<long>(patience / seconds_of_a_step)));
   }
 
   Ending dynamics_loop() {
@@ -226,14 +226,14 @@ class Run {
     if (simulation_.state().step < last_step_ && std::isfinite(simulation_.total_energy()))
       ending = look_at_limits();
     if (ending != Ending::none) return ending;
-    double seconds = 0;  // of a step
+    double seconds = patience;  // of a step
     while (simulation_.state().step < last_step_) {
       const long count = ending == Ending::none ? steps_to_the_next_look(look, seconds) : 1;
       const std::int64_t step = simulation_.state().step + count;
       const bool last = step == last_step_, logged = step % log_every_ == 0 || last || ending != Ending::none;
       const double began = now();
       simulation_.steps(count, logged);
-      seconds = (now() - began) / static_cast<double>(count);
+      seconds = std::max((now() - began) / static_cast<double>(count), 1e-9);
       if (ending == Ending::none && (logged || step % look == 0)) ending = look_at_limits();
       if (last && ending == Ending::refine) ending = Ending::none;
       const bool ends = logged && ending != Ending::none;
