@@ -33,7 +33,7 @@ namespace ropewalk::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 // Without branches on what is near: a guess would be wrong too often. A vector more than what is found is written.
-int FindNear(const CellSearch& s, const MemberRange* first, const MemberRange* last, int* found) {
+std::size_t FindNear(const CellSearch& s, const MemberRange* first, const MemberRange* last, int* found) {
   const hn::ScalableTag<float> d;
   const hn::RebindToSigned<decltype(d)> di;
   const int lanes = static_cast<int>(hn::Lanes(d));
@@ -50,7 +50,7 @@ int FindNear(const CellSearch& s, const MemberRange* first, const MemberRange* l
                                hn::FirstN(di, static_cast<std::size_t>(r->end - k)));
       count += hn::CompressStore(member, met, di, found + count);
     }
-  return static_cast<int>(count);
+  return count;
 }
 
 }  // namespace ropewalk::HWY_NAMESPACE

@@ -196,7 +196,7 @@ void ForceEngine::compute(const Topology& topology, const Interaction& interacti
   const bool contact = interaction.has_contact() && parts != Parts::bonds, bonds = parts != Parts::contact;
   const bool by_line = contact && !interaction.paper, by_paper = contact && !by_line;
   if (contact) axis_.resize(state.size());
-  if (by_paper && !axes_made) make_all_axes(state);  // else with the nodes
+  if (by_paper && !axes_made) make_all_axes(state);  // by the line law with the nodes
   const double t1 = omp_get_wtime();
 
   // Tube by tube: its bonds, and what the contact buffers hold for it, in their fixed order.

@@ -81,8 +81,8 @@ class ForceEngine {
   void make_axes(const State& state, std::ptrdiff_t begin, std::ptrdiff_t end);
 
   // Wall time spent so far in each part, s.
-  // Axes are made within the contact where that is by the line law, and tubes are finished within it: the first
-  // thread tells the times of the two apart.
+  // Axes that are not made yet are made within the contact where that is by the line law, and tubes are finished
+  // within it: the first thread tells the times of the two apart.
   struct Times {
     double axes = 0, contact = 0, bonds = 0;
   };

@@ -160,7 +160,7 @@ void LineEngine::compute(const Topology& topology, const Interaction& in, const 
 
 void LineEngine::add_to_tube(int tube, Vec3Array& force, Vec3Array& torque) const {
   for (const LineList::Touch* touch = list_.touches_begin(tube); touch != list_.touches_end(tube); ++touch)
-    if (const TouchedPart& part = list_.part(*touch); static_cast<double>(part.beyond) <= moved_)
+    if (const TouchedPart& part = list_.part(*touch); part.in_reach(moved_))
       add_part(part, buffers_[static_cast<std::size_t>(touch->chunk)], force, torque);
 }
 

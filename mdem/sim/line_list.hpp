@@ -109,6 +109,7 @@ struct TouchedPart {
   } row[row_kinds];
   // nm: until distances have become smaller by so much nothing acts on it.
   float beyond = 0;
+  bool in_reach(double moved) const { return static_cast<double>(beyond) <= moved; }
 };
 
 // Some elements and all that they act on.

@@ -93,7 +93,7 @@ HWY_INLINE void place(const RowsOf& of, LineNodes<C>* rows) {
   const double *x[] = {of.position.x.data(), of.position.y.data(), of.position.z.data()},
                *n[] = {of.axis.x.data(), of.axis.y.data(), of.axis.z.data()};
   for (const TouchedPart& part : of.chunk.parts) {
-    if (static_cast<double>(part.beyond) > of.moved) continue;
+    if (!part.in_reach(of.moved)) continue;
     const auto type = static_cast<std::size_t>(of.tube_type[static_cast<std::size_t>(part.tube)]);
     for (int from = part.begin; from < part.end; from += block) {
       const int elements = std::min(block, part.end - from);

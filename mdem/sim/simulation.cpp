@@ -132,12 +132,11 @@ void Simulation::add_levels() {
 double Simulation::kick_tube(const Forces& forces, int tube, double dt) {
   const double alpha = interaction_.damping.local;
   const std::ptrdiff_t from = topology_.tube_begin[tube], to = topology_.tube_begin[tube + 1];
-  const double per_mass = dt / topology_.type_of(tube).mass, per_inertia = dt / topology_.type_of(tube).inertia;
   if (alpha <= 0) {
-    kick_elements(forces.force, per_mass, state_.velocity, from, to);
-    kick_elements(forces.torque, per_inertia, state_.angular_velocity, from, to);
+    kick_part(forces, from, to, dt);
     return 0;
   }
+  const double per_mass = dt / topology_.type_of(tube).mass, per_inertia = dt / topology_.type_of(tube).inertia;
   double removed = 0;
   const auto push = [&](const std::vector<double>& force, double inverse, std::vector<double>& velocity) {
     for (std::ptrdiff_t i = from; i < to; ++i) {
@@ -172,23 +171,30 @@ void Simulation::kick_with_loads(const Forces& forces, double dt) {
   work_ += 0.5 * dt * load_power(point_loads_, state_);
 }
 
-// A kick by all forces of the elements begin .. end - 1, whatever their tubes.
-void Simulation::kick_part(std::ptrdiff_t begin, std::ptrdiff_t end, double dt) {
+// The elements begin .. end - 1, whatever their tubes, without local damping.
+void Simulation::kick_part(const Forces& forces, std::ptrdiff_t begin, std::ptrdiff_t end, double dt) {
   for (int tube = topology_.tube_of(static_cast<int>(begin)); begin < end; ++tube) {
     const std::ptrdiff_t to = std::min<std::ptrdiff_t>(end, topology_.tube_begin[tube + 1]);
     const TubeType& type = topology_.type_of(tube);
-    kick_elements(forces_.force, dt / type.mass, state_.velocity, begin, to);
-    kick_elements(forces_.torque, dt / type.inertia, state_.angular_velocity, begin, to);
+    kick_elements(forces.force, dt / type.mass, state_.velocity, begin, to);
+    kick_elements(forces.torque, dt / type.inertia, state_.angular_velocity, begin, to);
     begin = to;
   }
 }
 
-// As kick_with_loads does, but only the elements that loads and constraints act on.
-void Simulation::kick_driven(double dt) {
-  work_ += 0.5 * dt * load_power(point_loads_, state_);
-  for (int e : driven_) kick_part(e, e + 1, dt);
-  work_ += constrain(topology_, drive_, state_.time, forces_, dt, state_);
-  work_ += 0.5 * dt * load_power(point_loads_, state_);
+// As kick_with_loads does so many times, but only the elements that loads and constraints act on; and keeps what
+// give_back_driven gives them.
+void Simulation::kick_driven(int kicks, double dt) {
+  for (int k = 0; k < kicks; ++k) {
+    work_ += 0.5 * dt * load_power(point_loads_, state_);
+    for (int e : driven_) kick_part(forces_, e, e + 1, dt);
+    work_ += constrain(topology_, drive_, state_.time, forces_, dt, state_);
+    work_ += 0.5 * dt * load_power(point_loads_, state_);
+  }
+  for (std::size_t k = 0; k < driven_.size(); ++k) {
+    driven_velocity_.set(k, state_.velocity[static_cast<std::size_t>(driven_[k])]);
+    driven_spin_.set(k, state_.angular_velocity[static_cast<std::size_t>(driven_[k])]);
+  }
 }
 
 void Simulation::give_back_driven(std::ptrdiff_t begin, std::ptrdiff_t end) {
@@ -207,16 +213,12 @@ void Simulation::drift(double dt, int kicks, bool axes) {
   const auto move = stepping_.runge_kutta ? move_elements_runge_kutta : move_elements;
   const LittleMotion little(topology_.largest_radius(), time_step_);
   changes_.resize(static_cast<std::size_t>((n + block - 1) / block));
-  for (int k = 0; k < kicks; ++k) kick_driven(0.5 * dt);
-  for (std::size_t k = 0; kicks > 0 && k < driven_.size(); ++k) {
-    driven_velocity_.set(k, state_.velocity[static_cast<std::size_t>(driven_[k])]);
-    driven_spin_.set(k, state_.angular_velocity[static_cast<std::size_t>(driven_[k])]);
-  }
+  if (kicks > 0) kick_driven(kicks, 0.5 * dt);
   bool bounded = true;
 #pragma omp parallel for schedule(static) reduction(&& : bounded) if (state_.size() > parallel_from)
   for (std::ptrdiff_t i = 0; i < n; i += block) {
     const std::ptrdiff_t end = std::min(i + block, n);
-    for (int k = 0; k < kicks; ++k) kick_part(i, end, 0.5 * dt);
+    for (int k = 0; k < kicks; ++k) kick_part(forces_, i, end, 0.5 * dt);
     if (kicks > 0) give_back_driven(i, end);
     bounded = bounded & little.holds(fastest(state_, i, end));
     move(state_, dt, i, end);

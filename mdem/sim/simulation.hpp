@@ -95,9 +95,9 @@ class Simulation {
   void kick(const Forces& forces, double dt);
   void kick_with_loads(const Forces& forces, double dt);
   double kick_tube(const Forces& forces, int tube, double dt);
-  void kick_driven(double dt);
+  void kick_driven(int kicks, double dt);
   void give_back_driven(std::ptrdiff_t begin, std::ptrdiff_t end);
-  void kick_part(std::ptrdiff_t begin, std::ptrdiff_t end, double dt);
+  void kick_part(const Forces& forces, std::ptrdiff_t begin, std::ptrdiff_t end, double dt);
   void drift(double dt, int kicks = 0, bool axes = false);
   void update_list();
   void compute(bool energies = true, bool axes_made = false);

@@ -270,16 +270,15 @@ Drive all_kinds(const Topology& topology) {
 }
 
 TEST(Steps, ManyAtOnceAreTheSameBitsAsOneByOne) {
-  const auto expect_same = [](const char* what, Simulation at_once, Simulation one_by_one, double moved) {
+  const auto expect_same = [](const char* what, Simulation at_once, Simulation one_by_one) {
     SCOPED_TRACE(what);
-    const std::string start = at_once.serialise();
     for (const long count : {1L, 2L, 150L, 37L}) {
       at_once.steps(count);
       for (long k = 0; k < count; ++k) one_by_one.step();
       ASSERT_EQ(at_once.serialise(), one_by_one.serialise()) << count;
     }
     EXPECT_GT(at_once.list().builds(), 1) << "the list was never rebuilt: the test shows less";
-    EXPECT_GT(std::fabs(at_once.work()), moved);
+    EXPECT_GT(std::fabs(at_once.work()), 0.1);
     EXPECT_EQ(at_once.state().step, 190);
   };
   Bundle b(7, 83, 300);
@@ -295,15 +294,15 @@ TEST(Steps, ManyAtOnceAreTheSameBitsAsOneByOne) {
   const auto make = [&](Stepping stepping = {}) {
     return Simulation(b.topology, b.in, drive, b.state, 0.015, 0.1, stepping);
   };
-  expect_same("driven", make(), make(), 0.1);
-  expect_same("two levels", make({3}), make({3}), 0.1);
+  expect_same("driven", make(), make());
+  expect_same("two levels", make({3}), make({3}));
   b.in.damping.local = 0.3;
-  expect_same("local damping", make(), make(), 0.1);
+  expect_same("local damping", make(), make());
   b.in.damping.local = 0;
   Drive spins = drive;
   spins.twist[0].geometric_only = true, spins.twist[0].increment = 0.3;
   const Simulation relaxed(b.topology, b.in, spins, b.state, 0.015, 0.1);
-  expect_same("relaxed spins", relaxed, relaxed, 0.1);
+  expect_same("relaxed spins", relaxed, relaxed);
 }
 
 TEST(Checkpoint, GoesOnWithTheSameLists) {
