@@ -186,13 +186,13 @@ HWY_INLINE void totals(V fx, V fy, V fz, V mx, V my, V mz, double (&f)[3], doubl
   constexpr std::size_t lanes = hn::MaxLanes(d), half = lanes / 2;
   if constexpr (sizeof(hn::TFromD<decltype(d)>) == 4 && lanes >= 8) {
     const V force = in_blocks(d, fx, fy, fz), moment = in_blocks(d, mx, my, mz);
+    V sums = hn::Add(hn::ConcatLowerLower(d, moment, force), hn::ConcatUpperUpper(d, moment, force));
+    if constexpr (lanes == 16) sums = hn::Add(sums, hn::SwapAdjacentBlocks(sums));
     alignas(64) float all[lanes];
-    hn::Store(hn::Add(hn::ConcatLowerLower(d, moment, force), hn::ConcatUpperUpper(d, moment, force)), d, all);
+    hn::Store(sums, d, all);
     for (std::size_t a = 0; a < 3; ++a) {
-      float on = all[a], about = all[half + a];
-      for (std::size_t k = 4; k < half; k += 4) on += all[k + a], about += all[half + k + a];
-      f[a] = static_cast<double>(on);
-      m[a] = static_cast<double>(about);
+      f[a] = static_cast<double>(all[a]);
+      m[a] = static_cast<double>(all[half + a]);
     }
     return;
   }
@@ -254,72 +254,115 @@ struct Element {
   }
 };
 
-// K of the nodes of one element, or of several, and their sums: node `first` and those after it, where each element
-// has as many as there are places.
-template <class E, int K>
-struct Nodes {
-  using D = typename E::D;
-  typename E::C at[K][3];
-  double s[K];
-  E* of[K];
-  Sums<D, K> sums;
+// Forces on the nodes of one element, and these times their places along it, lane by lane.
+template <class E>
+struct OnElement {
+  using V = typename E::V;
+  V force[3], moment[3];
 
-  HWY_INLINE Nodes(E* elements, const std::vector<double>& places, int first) : sums(no_sums<D, K>(D())) {
-    const int each = static_cast<int>(places.size());
-    for (int m = 0; m < K; ++m) {
-      of[m] = elements + (first + m) / each;
-      s[m] = places[static_cast<std::size_t>((first + m) % each)];
-      for (int a = 0; a < 3; ++a) at[m][a] = of[m]->in.nodes[0].coordinate(of[m]->x[a] + s[m] * of[m]->n[a]);
+  HWY_INLINE OnElement() {
+    for (int a = 0; a < 3; ++a) force[a] = moment[a] = hn::Zero(typename E::D());
+  }
+  template <int K>
+  HWY_INLINE void add(const Sums<typename E::D, K>& sums, int k, double place) {
+    const V arm = hn::Set(typename E::D(), static_cast<typename E::Real>(place));
+    const V f[3] = {sums.x[k], sums.y[k], sums.z[k]};
+    for (int a = 0; a < 3; ++a) {
+      force[a] = hn::Add(force[a], f[a]);
+      moment[a] = hn::MulAdd(arm, f[a], moment[a]);
     }
   }
-  template <bool energies>
-  HWY_INLINE void collect() const {
-    using V = typename E::V;
-    for (int k = 0; k < K;) {
-      E& e = *of[k];
-      V fx = sums.x[k], fy = sums.y[k], fz = sums.z[k];
-      V arm = hn::Set(D(), static_cast<typename E::Real>(s[k]));
-      V mx = hn::Mul(arm, fx), my = hn::Mul(arm, fy), mz = hn::Mul(arm, fz);
-      for (++k; k < K && of[k] == &e; ++k) {
-        arm = hn::Set(D(), static_cast<typename E::Real>(s[k]));
-        fx = hn::Add(fx, sums.x[k]), fy = hn::Add(fy, sums.y[k]), fz = hn::Add(fz, sums.z[k]);
-        mx = hn::MulAdd(arm, sums.x[k], mx);
-        my = hn::MulAdd(arm, sums.y[k], my);
-        mz = hn::MulAdd(arm, sums.z[k], mz);
+  HWY_INLINE void give(E& e) const { e.add(force[0], force[1], force[2], moment[0], moment[1], moment[2]); }
+};
+
+// Nodes of one element, or of two with as many each, one after the other.
+template <class E>
+struct ElementNodes {
+  static constexpr int room = 8;
+  static constexpr int most = 2 * room;
+  double place[most + room];  // nm from the centre
+  typename E::C at[3][most + room];
+
+  // Those from node `first` on, of the one of some elements that it belongs to and of the next ones.
+  HWY_INLINE ElementNodes(const E* elements, const std::vector<double>& places, int first, int count) {
+    const hn::CappedTag<double, room> d;
+    constexpr int lanes = static_cast<int>(hn::MaxLanes(hn::CappedTag<double, room>()));
+    const int each = static_cast<int>(places.size());
+    for (int k = 0; k < count;) {
+      const E& e = elements[first + k >= each ? 1 : 0];
+      const int from = first + k - (first + k >= each ? each : 0), until = std::min(count, k + each - from);
+      for (int m = from; k < until; k += lanes, m += lanes) {
+        const auto s = load_some(d, places.data() + m, 0, std::min(each - m, lanes));
+        hn::StoreU(s, d, place + k);
+        for (int a = 0; a < 3; ++a)
+          store(d, hn::MulAdd(s, hn::Set(d, e.n[a]), hn::Set(d, e.x[a])), e.in.nodes[0].per_unit, at[a] + k);
       }
-      e.add(fx, fy, fz, mx, my, mz);
+      k = until;
     }
-    if constexpr (energies) of[0]->sum.energy += total(D(), sums.energy);
+  }
+
+ private:
+  // A number added that has no place left behind the point: the nearest integer is in the low bits.
+  template <class D, class V>
+  static HWY_INLINE void store(D d, V v, double per_unit, std::int32_t* to) {
+    const hn::RebindToUnsigned<D> bits;
+    const hn::Rebind<std::uint32_t, D> low;
+    const hn::Rebind<std::int32_t, D> coordinate;
+    constexpr double rounds = 6755399441055744;  // 1.5 * 2^52
+    const auto number = hn::BitCast(bits, hn::MulAdd(v, hn::Set(d, per_unit), hn::Set(d, rounds)));
+    hn::StoreU(hn::BitCast(coordinate, hn::TruncateTo(low, number)), coordinate, to);
+  }
+  template <class D, class V>
+  static HWY_INLINE void store(D d, V v, double, double* to) {
+    hn::StoreU(v, d, to);
   }
 };
 
-// K nodes of the sums first .. last - 1, which have the same ones on i, from node k: on one element, or on several,
-// with all rows that they meet. `met` is that of `first`, the others follow.
+// K nodes, from node k on, with all rows that they meet in the sums first .. last - 1. `met` is that of `first`,
+// the others follow; node k is node `number` of the elements that `on` belongs to, `each` of each.
 template <bool energies, int K, class E>
-HWY_INLINE void meet_rows(E* elements, const MetRows* met, int first, int last, int k) {
-  E& e = *elements;
-  Nodes<E, K> nodes(elements, e.places(first), k);
+HWY_INLINE void meet_rows(const E& e, const MetRows* met, int first, int last, const ElementNodes<E>& nodes, int k,
+                          int number, int each, OnElement<E>* on, typename E::V& energy) {
+  Sums<typename E::D, K> sums = no_sums<typename E::D, K>(typename E::D());
+  typename E::C at[K][3];
+  for (int m = 0; m < K; ++m)
+    for (int a = 0; a < 3; ++a) at[m][a] = nodes.at[a][k + m];
   for (int t = first; t < last; ++t) {
     const Rows kind = e.rows_of(t);
     const auto& placed = e.in.nodes[static_cast<int>(kind)];
     auto& forces = e.work.forces[static_cast<int>(kind)];
     for (const NodeRow& row : met[t - first]) {
       forces.use(e.chunk, kind, row.part);
-      meet_row<energies, K>(e.table(row.type), placed, forces, row, nodes.at,
-                            static_cast<typename E::Real>(e.sums(row.type).sums[t].weight), nodes.sums);
+      meet_row<energies, K>(e.table(row.type), placed, forces, row, at,
+                            static_cast<typename E::Real>(e.sums(row.type).sums[t].weight), sums);
     }
   }
-  nodes.template collect<energies>();
+  if (number + K <= each) {
+    for (int m = 0; m < K; ++m) on[0].add(sums, m, nodes.place[k + m]);
+  } else {
+    for (int m = 0; m < K; ++m) on[number + m >= each ? 1 : 0].add(sums, m, nodes.place[k + m]);
+  }
+  if constexpr (energies) energy = hn::Add(energy, sums.energy);
 }
 
-// The rows of these sums. On its own: within the loop over the elements the compiler keeps more in registers than
-// there are.
+// The rows of these sums, which have the same nodes on i. On its own: within the loop over the elements the
+// compiler keeps more in registers than there are.
 template <bool energies, class E>
 HWY_NOINLINE void sum_rows(E* elements, int count, const MetRows* met, int first, int last) {
-  const int nodes = count * static_cast<int>(elements->places(first).size());
-  int k = 0;
-  for (; k + 2 <= nodes; k += 2) meet_rows<energies, 2>(elements, met, first, last, k);
-  for (; k < nodes; ++k) meet_rows<energies, 1>(elements, met, first, last, k);
+  const std::vector<double>& places = elements->places(first);
+  const int each = static_cast<int>(places.size()), all = count * each;
+  OnElement<E> on[2];
+  auto energy = hn::Zero(typename E::D());
+  for (int from = 0; from < all; from += ElementNodes<E>::most) {
+    const int here = std::min(all - from, ElementNodes<E>::most);
+    const ElementNodes<E> nodes(elements, places, from, here);
+    int k = 0;
+    for (; k + 2 <= here; k += 2)
+      meet_rows<energies, 2>(*elements, met, first, last, nodes, k, from + k, each, on, energy);
+    if (k < here) meet_rows<energies, 1>(*elements, met, first, last, nodes, k, from + k, each, on, energy);
+  }
+  for (int k = 0; k < count; ++k) on[k].give(elements[k]);
+  if constexpr (energies) elements->sum.energy += total(typename E::D(), energy);
 }
 
 // What acts on the elements of pairs, one pair in each lane: forces on j, and the first moments of those on the
