@@ -40,11 +40,18 @@ void axes_of(const QuaternionArray& q, std::ptrdiff_t begin, std::ptrdiff_t end,
   }
 }
 
-// The bonds of the tube that begins with element `begin`. Returns their energies; `slips` becomes negative where a
-// bond does.
-ROPEWALK_VECTOR_CLONES __attribute__((flatten)) BondEnergy<double> bond_forces(
-    const TubeType& type, const Vec3Array& position, const FrameArray& frames, std::ptrdiff_t begin,
-    std::ptrdiff_t bonds, BondArray& out, double& slips) {
+// Consecutive bonds of a tube, counted from its element `begin`, which frame 0 is of.
+struct BondRange {
+  std::ptrdiff_t begin, from, to;
+};
+
+// Returns their energies; `slips` becomes negative where a bond does.
+ROPEWALK_VECTOR_CLONES __attribute__((flatten)) BondEnergy<double> bond_forces(const TubeType& type,
+                                                                               const Vec3Array& position,
+                                                                               const FrameArray& frames,
+                                                                               const BondRange& bonds,
+                                                                               BondArray& out, double& slips) {
+  const std::ptrdiff_t begin = bonds.begin, from = bonds.from, to = bonds.to;
   const double *x = position.x.data() + begin, *y = position.y.data() + begin, *z = position.z.data() + begin;
   const Vec3Array &e1 = frames.e1, &e2 = frames.e2, &t = frames.t;
   const double *ax = e1.x.data(), *ay = e1.y.data(), *az = e1.z.data(), *bx = e2.x.data(), *by = e2.y.data(),
@@ -57,7 +64,7 @@ ROPEWALK_VECTOR_CLONES __attribute__((flatten)) BondEnergy<double> bond_forces(
   double stretch = 0, shear = 0, bend = 0, twist = 0, smallest = 1;
   // Not `omp simd`, whose reductions GCC 12 does not vectorise here; -ffast-math lets it reorder the sums.
 #pragma GCC ivdep
-  for (std::ptrdiff_t i = 0; i < bonds; ++i) {
+  for (std::ptrdiff_t i = from; i < to; ++i) {
     const std::ptrdiff_t j = i + 1;
     const Frame<double, PlainVector> fi{{ax[i], ay[i], az[i]}, {bx[i], by[i], bz[i]}, {tx[i], ty[i], tz[i]}};
     const Frame<double, PlainVector> fj{{ax[j], ay[j], az[j]}, {bx[j], by[j], bz[j]}, {tx[j], ty[j], tz[j]}};
@@ -78,12 +85,13 @@ ROPEWALK_VECTOR_CLONES __attribute__((flatten)) BondEnergy<double> bond_forces(
 
 // Adds the damping of these bonds; returns its power.
 ROPEWALK_VECTOR_CLONES
-double bond_damping(const TubeType& type, const BondDamping& damping, const State& s, std::ptrdiff_t begin,
-                    std::ptrdiff_t bonds, BondArray& out) {
-  const auto from = [&](const std::vector<double>& v) { return v.data() + begin; };
-  const double *x = from(s.position.x), *y = from(s.position.y), *z = from(s.position.z);
-  const double *vx = from(s.velocity.x), *vy = from(s.velocity.y), *vz = from(s.velocity.z);
-  const double *wx = from(s.angular_velocity.x), *wy = from(s.angular_velocity.y), *wz = from(s.angular_velocity.z);
+double bond_damping(const TubeType& type, const BondDamping& damping, const State& s, const BondRange& bonds,
+                    BondArray& out) {
+  const std::ptrdiff_t from = bonds.from, to = bonds.to;
+  const auto at = [&](const std::vector<double>& v) { return v.data() + bonds.begin; };
+  const double *x = at(s.position.x), *y = at(s.position.y), *z = at(s.position.z);
+  const double *vx = at(s.velocity.x), *vy = at(s.velocity.y), *vz = at(s.velocity.z);
+  const double *wx = at(s.angular_velocity.x), *wy = at(s.angular_velocity.y), *wz = at(s.angular_velocity.z);
   double *fx = out.force_j.x.data(), *fy = out.force_j.y.data(), *fz = out.force_j.z.data();
   double *ix = out.torque_i.x.data(), *iy = out.torque_i.y.data(), *iz = out.torque_i.z.data();
   double *jx = out.torque_j.x.data(), *jy = out.torque_j.y.data(), *jz = out.torque_j.z.data();
@@ -91,7 +99,7 @@ double bond_damping(const TubeType& type, const BondDamping& damping, const Stat
   const BondDamping law = damping;
   const double mass = type.mass, inertia = type.inertia;
 #pragma GCC ivdep
-  for (std::ptrdiff_t i = 0; i < bonds; ++i) {
+  for (std::ptrdiff_t i = from; i < to; ++i) {
     const std::ptrdiff_t j = i + 1;
     const PairDamping<PlainVector> d = law.force<PlainVector>(
         mass, inertia, PlainVector{x[j] - x[i], y[j] - y[i], z[j] - z[i]}, PlainVector{vx[i], vy[i], vz[i]},
@@ -104,47 +112,55 @@ double bond_damping(const TubeType& type, const BondDamping& damping, const Stat
   return power;
 }
 
-// What acts on the elements of a tube by its bonds: bond i on the elements i and i + 1.
+// What the bonds of a tube, of which there are so many here, do to the elements from .. to - 1: bond i acts on the
+// elements i and i + 1.
 ROPEWALK_VECTOR_CLONES
 void collect_bonds(const std::vector<double>& on_i, double sign_i, const std::vector<double>& on_j,
-                   std::ptrdiff_t elements, double* to) {
+                   std::ptrdiff_t bonds, std::ptrdiff_t from, std::ptrdiff_t to, double* out) {
   const double *a = on_i.data(), *b = on_j.data();
-  if (elements < 2) {
-    std::fill_n(to, elements, 0.0);
-    return;
-  }
-  to[0] = sign_i * a[0];
+  if (from == 0) out[0] = bonds > 0 ? sign_i * a[0] : 0.0;
 #pragma omp simd
-  for (std::ptrdiff_t i = 1; i < elements - 1; ++i) to[i] = sign_i * a[i] + b[i - 1];
-  to[elements - 1] = b[elements - 2];
+  for (std::ptrdiff_t i = std::max<std::ptrdiff_t>(from, 1); i < std::min(to, bonds); ++i)
+    out[i] = sign_i * a[i] + b[i - 1];
+  if (bonds > 0 && to == bonds + 1) out[bonds] = b[bonds - 1];
 }
 
-// Sets forces and torques of one tube to those of its bonds.
-TubeSum compute_bonds(const Topology& topology, const Interaction& interaction, const State& state, int tube,
-                      Forces& out) {
+// Sets forces and torques of a part of a tube to those of its bonds, that to the element before it and that to the
+// one behind it with them. What is summed, that of the former leaves to the part before.
+BondSum compute_bonds(const Topology& topology, const Interaction& interaction, const State& state,
+                      const Segment& of, Forces& out) {
   thread_local TubeBonds work;
-  const std::ptrdiff_t begin = topology.tube_begin[tube], end = topology.tube_begin[tube + 1],
-                       elements = end - begin;
-  const TubeType& type = topology.type_of(tube);
+  const std::ptrdiff_t begin = std::max(of.begin - 1, topology.tube_begin[of.tube]),
+                       end = std::min(of.end + 1, topology.tube_begin[of.tube + 1]), elements = end - begin,
+                       bonds = elements - 1, from = of.begin - begin, to = of.end - begin;
+  const TubeType& type = topology.type_of(of.tube);
   work.resize(static_cast<std::size_t>(elements));
   frames_of(state.orientation, begin, end, work.frames);
-  TubeSum sum;
-  double slips = 1;
-  BondArray& bonds = work.bonds;
-  sum.energy = bond_forces(type, state.position, work.frames, begin, elements - 1, bonds, slips);
-  for (std::ptrdiff_t i = 0; !(slips > 0) && i + 1 < elements && sum.slipping < 0; ++i) {
+  BondArray& each = work.bonds;
+  const BondRange own{begin, from, std::min(to, bonds)}, before{begin, 0, from};
+  BondSum sum;
+  double slips = 1, other = 1;
+  sum.energy = bond_forces(type, state.position, work.frames, own, each, slips);
+  if (from > 0) bond_forces(type, state.position, work.frames, before, each, other);
+  for (std::ptrdiff_t i = own.from; !(slips > 0) && i < own.to && sum.slipping < 0; ++i) {
     const Frame<double> fi = work.frames[static_cast<std::size_t>(i)],
                         fj = work.frames[static_cast<std::size_t>(i + 1)];
     if (!(fi.e1.dot(fj.e1) + fi.e2.dot(fj.e2) > 0)) sum.slipping = static_cast<int>(begin + i);
   }
-  if (interaction.damping.bond.rate > 0)
-    sum.power = bond_damping(type, interaction.damping.bond, state, begin, elements - 1, bonds);
-  collect_bonds(bonds.force_j.x, -1, bonds.force_j.x, elements, out.force.x.data() + begin);
-  collect_bonds(bonds.force_j.y, -1, bonds.force_j.y, elements, out.force.y.data() + begin);
-  collect_bonds(bonds.force_j.z, -1, bonds.force_j.z, elements, out.force.z.data() + begin);
-  collect_bonds(bonds.torque_i.x, 1, bonds.torque_j.x, elements, out.torque.x.data() + begin);
-  collect_bonds(bonds.torque_i.y, 1, bonds.torque_j.y, elements, out.torque.y.data() + begin);
-  collect_bonds(bonds.torque_i.z, 1, bonds.torque_j.z, elements, out.torque.z.data() + begin);
+  if (interaction.damping.bond.rate > 0) {
+    sum.power = bond_damping(type, interaction.damping.bond, state, own, each);
+    if (from > 0) bond_damping(type, interaction.damping.bond, state, before, each);
+  }
+  const auto collect = [&](const std::vector<double>& on_i, double sign_i, const std::vector<double>& on_j,
+                           std::vector<double>& sums) {
+    collect_bonds(on_i, sign_i, on_j, bonds, from, to, sums.data() + begin);
+  };
+  collect(each.force_j.x, -1, each.force_j.x, out.force.x);
+  collect(each.force_j.y, -1, each.force_j.y, out.force.y);
+  collect(each.force_j.z, -1, each.force_j.z, out.force.z);
+  collect(each.torque_i.x, 1, each.torque_j.x, out.torque.x);
+  collect(each.torque_i.y, 1, each.torque_j.y, out.torque.y);
+  collect(each.torque_i.z, 1, each.torque_j.z, out.torque.z);
   return sum;
 }
 
@@ -199,23 +215,24 @@ void ForceEngine::compute(const Topology& topology, const Interaction& interacti
   if (by_paper && !axes_made) make_all_axes(state);  // by the line law with the nodes
   const double t1 = omp_get_wtime();
 
-  // Tube by tube: its bonds, and what the contact buffers hold for it, in their fixed order.
-  const int tubes = topology.tubes();
-  std::vector<TubeSum> sums(static_cast<std::size_t>(tubes));
-  const auto finish = [&](int t) {
-    const int from = topology.tube_begin[t], to = topology.tube_begin[t + 1];
+  // Part by part of the tubes: the bonds, and what the contact buffers hold, in their fixed order.
+  parts_.cut(topology);
+  const int tube_parts = parts_.count();
+  std::vector<BondSum> sums(static_cast<std::size_t>(tube_parts));
+  const auto finish = [&](int k) {
+    const Segment& part = parts_[k];
     if (bonds)
-      sums[static_cast<std::size_t>(t)] = compute_bonds(topology, interaction, state, t, out);
+      sums[static_cast<std::size_t>(k)] = compute_bonds(topology, interaction, state, part, out);
     else
-      clear(out, from, to);
-    if (by_paper) add_buffers(list, from, to, out);
-    if (by_line) line_.add_to_tube(t, out.force, out.torque);
+      clear(out, part.begin, part.end);
+    if (by_paper) add_buffers(list, part.begin, part.end, out);
+    if (by_line) line_.add_to(part, out.force, out.torque);
   };
   if (by_line) {
     const auto place = [&](int t) {
       if (!axes_made) make_axes(state, topology.tube_begin[t], topology.tube_begin[t + 1]);
     };
-    line_.compute(topology, interaction, list, state, axis_, energies, {place, finish});
+    line_.compute(topology, interaction, list, state, axis_, energies, {parts_, place, finish});
   }
   if (by_paper) {
     buffers_.resize(list.chunks().size());
@@ -226,13 +243,13 @@ void ForceEngine::compute(const Topology& topology, const Interaction& interacti
   const double t2 = omp_get_wtime();
   if (!by_line) {
 #pragma omp parallel for schedule(static) if (state.size() > parallel_from)
-    for (int t = 0; t < tubes; ++t) finish(t);
+    for (int k = 0; k < tube_parts; ++k) finish(k);
   }
 
   out.energy = Energies{};
   out.damping_power = 0;
   out.slipping_bond = -1;
-  for (const TubeSum& sum : sums) {
+  for (const BondSum& sum : sums) {
     out.energy.stretch += sum.energy.stretch;
     out.energy.shear += sum.energy.shear;
     out.energy.bend += sum.energy.bend;

@@ -10,6 +10,7 @@
 #include "sim/neighbours.hpp"
 #include "sim/paper_engine.hpp"
 #include "sim/state.hpp"
+#include "sim/tiles.hpp"
 
 namespace ropewalk {
 
@@ -46,8 +47,8 @@ struct BondArray {
   }
 };
 
-// The frames and bonds of one tube, its first element at 0: they stay in the first cache from where they are made
-// to where they are used.
+// The frames and bonds of a part of a tube, its first element at 0: they stay in the first cache from where they
+// are made to where they are used.
 struct TubeBonds {
   FrameArray frames;
   BondArray bonds;
@@ -58,8 +59,8 @@ struct TubeBonds {
   }
 };
 
-// What the bonds of one tube do, besides their forces.
-struct TubeSum {
+// What some bonds do, besides their forces.
+struct BondSum {
   BondEnergy<double> energy;
   double power = 0;   // of their damping
   int slipping = -1;  // first element of a bond twisted by 90 degrees or more
@@ -95,6 +96,7 @@ class ForceEngine {
   void make_all_axes(const State& state);
   void add_buffers(const NeighbourList& list, int from, int to, Forces& out) const;
 
+  TubeParts parts_;
   Vec3Array axis_;                      // of all elements
   std::vector<ContactBuffer> buffers_;  // of each chunk
   LineEngine line_;

@@ -21,16 +21,16 @@ void make_tables(Buffers& b, const Interaction& in, double unit) {
   b.tables_unit = unit;
 }
 
-// What a buffer holds for a part of a tube.
-ROPEWALK_VECTOR_CLONES void add_part(const TouchedPart& part, const ContactBuffer& b, Vec3Array& force,
-                                     Vec3Array& torque) {
+// What a buffer holds for elements of a tube, element j at j + shift.
+ROPEWALK_VECTOR_CLONES void add_range(const TouchedRange& of, const ContactBuffer& b, Vec3Array& force,
+                                      Vec3Array& torque) {
   const std::vector<double>* const from[6] = {&b.fx, &b.fy, &b.fz, &b.tx, &b.ty, &b.tz};
   std::vector<double>* const to[6] = {&force.x, &force.y, &force.z, &torque.x, &torque.y, &torque.z};
   for (int a = 0; a < 6; ++a) {
-    const double* const on = from[a]->data() + part.element_shift;
+    const double* const on = from[a]->data() + of.shift;
     double* const sum = to[a]->data();
 #pragma omp simd
-    for (int i = part.begin; i < part.end; ++i) sum[i] += on[i];
+    for (int i = of.begin; i < of.end; ++i) sum[i] += on[i];
   }
 }
 
@@ -106,6 +106,9 @@ void LineEngine::run(Buffers& b, const Topology& topology, const Interaction& in
   const bool parallel = state.size() > parallel_from,
              at_once = state.size() > finish_at_once_from && list_.parts_of_a_tube() < few_parts;
   const int threads = parallel ? omp_get_max_threads() : 1;
+  const auto finish = [&](int tube) {
+    for (int k = tubes.parts.begin(tube); k < tubes.parts.begin(tube + 1); ++k) tubes.finish(k);
+  };
   const auto timed = [&](const auto& work) {
     if (omp_get_thread_num() != 0) return work();
     const double began = omp_get_wtime();
@@ -122,7 +125,7 @@ void LineEngine::run(Buffers& b, const Topology& topology, const Interaction& in
       tubes.place(t);
       const int parts = static_cast<int>(list_.touches_end(t) - list_.touches_begin(t));
       left_.set(t, parts);
-      if (at_once && parts == 0) timed([&] { tubes.finish(t); });
+      if (at_once && parts == 0) timed([&] { finish(t); });
     }
     const int thread = omp_get_thread_num();
     for (int piece; (piece = shares_.take(thread)) >= 0;) {
@@ -131,14 +134,14 @@ void LineEngine::run(Buffers& b, const Topology& topology, const Interaction& in
       if (at_once)
         timed([&] {
           for (const TouchedPart& part : list_.chunks()[k].parts)
-            if (left_.last(part.tube)) tubes.finish(part.tube);
+            if (left_.last(part.tube)) finish(part.tube);
         });
     }
     if (!at_once) {
 #pragma omp barrier
       timed([&] {
 #pragma omp for schedule(static)
-        for (int t = 0; t < topology.tubes(); ++t) tubes.finish(t);
+        for (int k = 0; k < tubes.parts.count(); ++k) tubes.finish(k);
       });
     }
   }
@@ -158,10 +161,15 @@ void LineEngine::compute(const Topology& topology, const Interaction& in, const 
   }
 }
 
-void LineEngine::add_to_tube(int tube, Vec3Array& force, Vec3Array& torque) const {
-  for (const LineList::Touch* touch = list_.touches_begin(tube); touch != list_.touches_end(tube); ++touch)
-    if (const TouchedPart& part = list_.part(*touch); part.in_reach(moved_))
-      add_part(part, buffers_[static_cast<std::size_t>(touch->chunk)], force, torque);
+void LineEngine::add_to(const Segment& part, Vec3Array& force, Vec3Array& torque) const {
+  for (const LineList::Touch* touch = list_.touches_begin(part.tube); touch != list_.touches_end(part.tube);
+       ++touch) {
+    const TouchedPart& touched = list_.part(*touch);
+    const TouchedRange of{std::max(part.begin, touched.begin), std::min(part.end, touched.end),
+                          touched.element_shift};
+    if (of.begin < of.end && touched.in_reach(moved_))
+      add_range(of, buffers_[static_cast<std::size_t>(touch->chunk)], force, torque);
+  }
 }
 
 double LineEngine::energy() const {

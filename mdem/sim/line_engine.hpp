@@ -12,6 +12,7 @@
 #include "sim/contact_kernel.hpp"
 #include "sim/line_rows.hpp"
 #include "sim/radial_table.hpp"
+#include "sim/tiles.hpp"
 #include "sim/work_shares.hpp"
 
 namespace ropewalk {
@@ -219,10 +220,11 @@ void line_contact(const LineKernelInput<FullTable, double>& in, const LineChunk&
 std::vector<std::string> instruction_sets();
 bool use_instructions(const std::string& name);
 
-// What a tube needs besides the contact: `place` its axes, before its nodes, and `finish` once nothing more will
-// act on it; in large scenes at once, when what acted on it is still in the cache of a thread. Each once for every
-// tube, by any thread.
+// What tubes need besides the contact: `place` the axes of a tube, before its nodes, and `finish` a part of it once
+// nothing more will act on it; in large scenes at once, when what acted on it is still in the cache of a thread.
+// Each once for every tube and every part, by any thread.
 struct TubeWork {
+  const TubeParts& parts;
   std::function<void(int)> place, finish;
 };
 
@@ -234,11 +236,11 @@ class LineEngine {
   // Nor are tubes of which chunks act on more parts, on average: they would all wait for the last chunks.
   static constexpr double few_parts = 8;
 
-  // The contact of all chunks; `finish` then calls add_to_tube. Energies only if wanted: forces are the same bits.
+  // The contact of all chunks; `finish` then calls add_to. Energies only if wanted: forces are the same bits.
   void compute(const Topology& topology, const Interaction& interaction, const NeighbourList& list,
                const State& state, const Vec3Array& axis, bool energies, const TubeWork& tubes);
-  // Adds what acts on the elements of one tube, in the order of the chunks, whoever was done first.
-  void add_to_tube(int tube, Vec3Array& force, Vec3Array& torque) const;
+  // Adds what acts on a part of a tube, in the order of the chunks, whoever was done first.
+  void add_to(const Segment& part, Vec3Array& force, Vec3Array& torque) const;
   double energy() const;         // eV
   double damping_power() const;  // eV/ps
   const LineList& list() const { return list_; }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <tuple>
 
@@ -96,6 +97,20 @@ void bisect(By by, Pieces first, Pieces last, int count, std::vector<std::vector
 }
 
 }  // namespace
+
+void TubeParts::cut(const Topology& topology) {
+  parts_.clear();
+  begin_.clear();
+  for (int t = 0; t < topology.tubes(); ++t) {
+    begin_.push_back(count());
+    const int first = topology.tube_begin[t], elements = topology.length_of(t),
+              parts = (elements + most - 1) / most;
+    for (int k = 0; k < parts; ++k)
+      parts_.push_back({t, first + static_cast<int>(static_cast<std::int64_t>(elements) * k / parts),
+                        first + static_cast<int>(static_cast<std::int64_t>(elements) * (k + 1) / parts)});
+  }
+  begin_.push_back(count());
+}
 
 std::vector<std::vector<Segment>> cut_into_tiles(const Topology& topology, const Vec3Array& position,
                                                  const std::vector<double>& cost, int count) {

@@ -215,9 +215,10 @@ void LineKernel(benchmark::State& bench, const Choice& c) {
   LineEngine engine;
   Vec3Array force(rope.state.size()), torque(rope.state.size());
   const auto nothing = [](int) {};
-  const auto finish = [&](int t) { engine.add_to_tube(t, force, torque); };
+  const TubeParts parts(rope.topology);
+  const auto finish = [&](int k) { engine.add_to(parts[k], force, torque); };
   for (auto _ : bench) {
-    engine.compute(rope.topology, rope.in, rope.list, rope.state, rope.axis, c.energies, {nothing, finish});
+    engine.compute(rope.topology, rope.in, rope.list, rope.state, rope.axis, c.energies, {parts, nothing, finish});
     benchmark::ClobberMemory();
   }
   set_counters(bench, rope, engine.list());
@@ -229,10 +230,11 @@ void LineCollect(benchmark::State& bench) {
   const Rope rope(static_cast<int>(bench.range(0)), 49, Law::line);
   LineEngine engine;
   Vec3Array force(rope.state.size()), torque(rope.state.size());
+  const TubeParts parts(rope.topology);
   const auto nothing = [](int) {};
-  engine.compute(rope.topology, rope.in, rope.list, rope.state, rope.axis, false, {nothing, nothing});
+  engine.compute(rope.topology, rope.in, rope.list, rope.state, rope.axis, false, {parts, nothing, nothing});
   for (auto _ : bench) {
-    for (int t = 0; t < rope.topology.tubes(); ++t) engine.add_to_tube(t, force, torque);
+    for (int k = 0; k < parts.count(); ++k) engine.add_to(parts[k], force, torque);
     benchmark::ClobberMemory();
   }
   set_ns(bench, "ns/element", rope.elements());

@@ -32,7 +32,7 @@ struct Bonds {
   template <class F>
   void each_tube(F f) const {
     const Topology& t = rope.topology;
-    for (int k = 0; k < t.tubes(); ++k) f(t.type_of(k), t.tube_begin[k], t.length_of(k) - 1);
+    for (int k = 0; k < t.tubes(); ++k) f(t.type_of(k), BondRange{t.tube_begin[k], 0, t.length_of(k) - 1});
   }
 };
 
@@ -40,9 +40,8 @@ void BondForces(benchmark::State& bench) {
   Bonds b(static_cast<int>(bench.range(0)));
   double slips = 1;
   for (auto _ : bench)
-    b.each_tube([&](const TubeType& type, std::ptrdiff_t begin, std::ptrdiff_t bonds) {
-      benchmark::DoNotOptimize(
-          bond_forces(type, b.rope.state.position, b.work.frames, begin, bonds, b.work.bonds, slips));
+    b.each_tube([&](const TubeType& type, const BondRange& bonds) {
+      benchmark::DoNotOptimize(bond_forces(type, b.rope.state.position, b.work.frames, bonds, b.work.bonds, slips));
     });
   set_ns(bench, "ns/element", b.rope.elements());
 }
@@ -51,9 +50,8 @@ BENCHMARK(BondForces)->Arg(7)->Arg(91);
 void BondDampingForces(benchmark::State& bench) {
   Bonds b(static_cast<int>(bench.range(0)));
   for (auto _ : bench)
-    b.each_tube([&](const TubeType& type, std::ptrdiff_t begin, std::ptrdiff_t bonds) {
-      benchmark::DoNotOptimize(
-          bond_damping(type, b.rope.in.damping.bond, b.rope.state, begin, bonds, b.work.bonds));
+    b.each_tube([&](const TubeType& type, const BondRange& bonds) {
+      benchmark::DoNotOptimize(bond_damping(type, b.rope.in.damping.bond, b.rope.state, bonds, b.work.bonds));
     });
   set_ns(bench, "ns/element", b.rope.elements());
 }
@@ -62,9 +60,10 @@ BENCHMARK(BondDampingForces)->Arg(7)->Arg(91);
 // All that bonds take: frames, forces, damping and sums.
 void AllOfBonds(benchmark::State& bench) {
   Bonds b(static_cast<int>(bench.range(0)));
+  const TubeParts parts(b.rope.topology);
   for (auto _ : bench) {
-    for (int k = 0; k < b.rope.topology.tubes(); ++k)
-      benchmark::DoNotOptimize(compute_bonds(b.rope.topology, b.rope.in, b.rope.state, k, b.out));
+    for (int k = 0; k < parts.count(); ++k)
+      benchmark::DoNotOptimize(compute_bonds(b.rope.topology, b.rope.in, b.rope.state, parts[k], b.out));
     benchmark::ClobberMemory();
   }
   set_ns(bench, "ns/element", b.rope.elements());

@@ -224,7 +224,7 @@ const std::vector<Variant> line_variants = {
 
 std::string name_of(const ::testing::TestParamInfo<Variant>& info) { return info.param.name; }
 
-// The contact by the line law, every tube finished once.
+// The contact by the line law, every part of a tube finished once.
 Forces line_contact_of(const Topology& topology, const Interaction& in, const State& state,
                        std::size_t at_once_from, int threads) {
   omp_set_num_threads(threads);
@@ -234,16 +234,17 @@ Forces line_contact_of(const Topology& topology, const Interaction& in, const St
   LineEngine engine;
   engine.finish_at_once_from = at_once_from;
   Forces out(state.size());
-  std::vector<std::atomic<int>> times(static_cast<std::size_t>(topology.tubes()));
+  const TubeParts parts(topology);
+  std::vector<std::atomic<int>> times(static_cast<std::size_t>(parts.count()));
   const auto place = [&](int t) {
     for (int i = topology.tube_begin[t]; i < topology.tube_begin[t + 1]; ++i)
       axis.set(static_cast<std::size_t>(i), axis_of(state.orientation[static_cast<std::size_t>(i)]));
   };
-  const auto finish = [&](int t) {
-    ++times[static_cast<std::size_t>(t)];
-    engine.add_to_tube(t, out.force, out.torque);
+  const auto finish = [&](int k) {
+    ++times[static_cast<std::size_t>(k)];
+    engine.add_to(parts[k], out.force, out.torque);
   };
-  engine.compute(topology, in, list, state, axis, true, {place, finish});
+  engine.compute(topology, in, list, state, axis, true, {parts, place, finish});
   for (const auto& n : times) EXPECT_EQ(n, 1);
   out.energy.vdw = engine.energy();
   out.damping_power = engine.damping_power();
@@ -270,6 +271,43 @@ TEST_P(LineFinish, SameBitsAtOnceOrInTheEnd) {
   }
 }
 
+// Tubes that several threads work on: each part has the bonds to the parts beside it, and their energy is counted
+// once.
+class LongTubes : public ForcesTest {
+ protected:
+  void SetUp() override {
+    ForcesTest::SetUp();
+    topology = test::published_topology();
+    state = test::disordered_bundle(topology, 2, 1300, 1.75, 0.05, 22);
+    const TubeParts parts(topology);
+    ASSERT_EQ(parts.count(), 6);
+    cut_ = static_cast<std::size_t>(parts[0].end);
+  }
+  std::size_t cut_ = 0;
+};
+
+TEST_P(LongTubes, EqualReferenceWithTheSameBitsOnAnyNumberOfThreads) {
+  Forces reference(state.size());
+  compute_reference(topology, in, state, reference);
+  const Forces one = fast(0.3, 1);
+  expect_equal(one, reference, tolerance());
+  for (int threads : {2, 5}) expect_same_bits(one, fast(0.3, threads));
+}
+
+TEST_P(LongTubes, ASlippingBondIsFoundWhereTheyAreCut) {
+  for (const std::size_t first : {cut_ - 2, cut_ - 1, cut_}) {
+    const State straight = state;
+    for (std::size_t i = first + 1; i < 1300; ++i) {
+      const Vector3 axis = axis_of(state.orientation[first]);
+      state.orientation.set(i, Quaternion(Eigen::AngleAxisd(units::degree * 120, axis)) * state.orientation[i]);
+    }
+    EXPECT_EQ(fast(0.3, 2).slipping_bond, static_cast<int>(first));
+    state = straight;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Paper, LongTubes, ::testing::Values(paper_variants[1]), name_of);
+INSTANTIATE_TEST_SUITE_P(Line, LongTubes, ::testing::Values(line_variants[0], line_variants[2]), name_of);
 INSTANTIATE_TEST_SUITE_P(Line, LineFinish, ::testing::ValuesIn(line_variants), name_of);
 INSTANTIATE_TEST_SUITE_P(Paper, ForcesTest, ::testing::ValuesIn(paper_variants), name_of);
 INSTANTIATE_TEST_SUITE_P(Line, ForcesTest, ::testing::ValuesIn(line_variants), name_of);

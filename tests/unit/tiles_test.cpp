@@ -29,6 +29,25 @@ struct Scene {
   }
 };
 
+TEST(TubeParts, HoldEveryElementOnceInTheOrderOfTheTubes) {
+  Topology topology = test::published_topology();
+  for (const int elements : {1, TubeParts::most, TubeParts::most + 1, 3 * TubeParts::most - 1, 2})
+    topology.add_tube(elements);
+  TubeParts parts;
+  for (int times = 0; times < 2; ++times) parts.cut(topology);
+  ASSERT_EQ(parts.count(), 1 + 1 + 2 + 3 + 1);
+  int next = 0;
+  for (int t = 0; t < topology.tubes(); ++t)
+    for (int k = parts.begin(t); k < parts.begin(t + 1); ++k) {
+      EXPECT_EQ(parts[k].tube, t);
+      EXPECT_EQ(parts[k].begin, next);
+      EXPECT_GT(parts[k].end, next);
+      EXPECT_LE(parts[k].end - next, TubeParts::most);
+      next = parts[k].end;
+    }
+  EXPECT_EQ(next, topology.elements());
+}
+
 TEST(Tiles, HoldEveryElementOnceAtEqualCost) {
   const Scene scene(8, 200);
   for (const int count : {1, 2, 7, 16}) {
