@@ -23,6 +23,7 @@ struct Variant {
   Interaction::Precision precision = Interaction::Precision::full;
   bool sparse = true;
   double cutoff = 0;  // nm; 0: the law's
+  int nodes = 5;      // of an element, by the line law
 };
 
 class ForcesTest : public ::testing::TestWithParam<Variant> {
@@ -37,7 +38,7 @@ class ForcesTest : public ::testing::TestWithParam<Variant> {
       if (v.cutoff > 0) in.paper = with_cutoff(*in.paper, v.cutoff);
       in.legacy_torque = v.legacy;
     } else {
-      in.line = {test::line_contact(0.6785, 5, 0.6785, 5)};
+      in.line = {test::line_contact(0.6785, v.nodes, 0.6785, v.nodes)};
       if (v.kind == Kind::mixed) mix_tube_types();
       if (v.cutoff > 0)
         for (LineContact& pair : in.line) pair.density = with_cutoff(pair.density, v.cutoff);
@@ -188,6 +189,11 @@ Variant single(const char* name, double disorder, bool general = false, bool leg
   return {name, Kind::paper, general, legacy, eta, eta > 0 ? 1.0 : 0.0, disorder, Interaction::Precision::mixed};
 }
 
+// More nodes than the kernel holds of an element, or of two, at a time.
+Variant with_many_nodes(const char* name, Interaction::Precision precision) {
+  return {name, Kind::line, false, false, 0, 0, 0.05, precision, true, 0, 21};
+}
+
 Variant shortened(const char* name, Kind kind, double cutoff,
                   Interaction::Precision precision = Interaction::Precision::full) {
   return {name, kind, false, false, 0, 0, 0.05, precision, true, cutoff};
@@ -216,6 +222,8 @@ const std::vector<Variant> line_variants = {
     Variant{"LineDense", Kind::line, false, false, 0, 0, 0.05, Interaction::Precision::full, false},
     shortened("LineShortened", Kind::line, 2.3),
     shortened("LineSingleShortened", Kind::line, 2.3, Interaction::Precision::mixed),
+    with_many_nodes("LineManyNodes", Interaction::Precision::full),
+    with_many_nodes("LineSingleManyNodes", Interaction::Precision::mixed),
     Variant{"LineTypes", Kind::mixed, false, false, 0, 0, 0.1},
     Variant{"LineSingle", Kind::line, false, false, 0, 0, 0.05, Interaction::Precision::mixed},
     Variant{"LineSingleOrdered", Kind::line, false, false, 0, 0, 1e-3, Interaction::Precision::mixed},
