@@ -275,22 +275,23 @@ struct OnElement {
   HWY_INLINE void give(E& e) const { e.add(force[0], force[1], force[2], moment[0], moment[1], moment[2]); }
 };
 
-// Nodes of one element, or of two with as many each, one after the other.
+// Some of the nodes of one element, or of two with as many each, one after the other.
 template <class E>
 struct ElementNodes {
   static constexpr int room = 8;
   static constexpr int most = 2 * room;
+  int first, each;            // of all nodes of the elements; nodes of an element
   double place[most + room];  // nm from the centre
   typename E::C at[3][most + room];
 
-  // Those from node `first` on, of the one of some elements that it belongs to and of the next ones.
-  HWY_INLINE ElementNodes(const E* elements, const std::vector<double>& places, int first, int count) {
+  // `count` of those of the sums that have these places, from node `first_node` on.
+  HWY_INLINE ElementNodes(const E* elements, const std::vector<double>& places, int first_node, int count)
+      : first(first_node), each(static_cast<int>(places.size())) {
     const hn::CappedTag<double, room> d;
     constexpr int lanes = static_cast<int>(hn::MaxLanes(hn::CappedTag<double, room>()));
-    const int each = static_cast<int>(places.size());
     for (int k = 0; k < count;) {
-      const E& e = elements[first + k >= each ? 1 : 0];
-      const int from = first + k - (first + k >= each ? each : 0), until = std::min(count, k + each - from);
+      const E& e = elements[element(k)];
+      const int from = first + k - element(k) * each, until = std::min(count, k + each - from);
       for (int m = from; k < until; k += lanes, m += lanes) {
         const auto s = load_some(d, places.data() + m, 0, std::min(each - m, lanes));
         hn::StoreU(s, d, place + k);
@@ -300,6 +301,8 @@ struct ElementNodes {
       k = until;
     }
   }
+  // That node k is on.
+  HWY_INLINE int element(int k) const { return first + k >= each ? 1 : 0; }
 
  private:
   // A number added that has no place left behind the point: the nearest integer is in the low bits.
@@ -319,10 +322,10 @@ struct ElementNodes {
 };
 
 // K nodes, from node k on, with all rows that they meet in the sums first .. last - 1. `met` is that of `first`,
-// the others follow; node k is node `number` of the elements that `on` belongs to, `each` of each.
+// the others follow.
 template <bool energies, int K, class E>
 HWY_INLINE void meet_rows(const E& e, const MetRows* met, int first, int last, const ElementNodes<E>& nodes, int k,
-                          int number, int each, OnElement<E>* on, typename E::V& energy) {
+                          OnElement<E>* on, typename E::V& energy) {
   Sums<typename E::D, K> sums = no_sums<typename E::D, K>(typename E::D());
   typename E::C at[K][3];
   for (int m = 0; m < K; ++m)
@@ -337,10 +340,10 @@ HWY_INLINE void meet_rows(const E& e, const MetRows* met, int first, int last, c
                             static_cast<typename E::Real>(e.sums(row.type).sums[t].weight), sums);
     }
   }
-  if (number + K <= each) {
+  if (nodes.element(k + K - 1) == 0) {  // most often; the compiler then knows which one
     for (int m = 0; m < K; ++m) on[0].add(sums, m, nodes.place[k + m]);
   } else {
-    for (int m = 0; m < K; ++m) on[number + m >= each ? 1 : 0].add(sums, m, nodes.place[k + m]);
+    for (int m = 0; m < K; ++m) on[nodes.element(k + m)].add(sums, m, nodes.place[k + m]);
   }
   if constexpr (energies) energy = hn::Add(energy, sums.energy);
 }
@@ -350,16 +353,15 @@ HWY_INLINE void meet_rows(const E& e, const MetRows* met, int first, int last, c
 template <bool energies, class E>
 HWY_NOINLINE void sum_rows(E* elements, int count, const MetRows* met, int first, int last) {
   const std::vector<double>& places = elements->places(first);
-  const int each = static_cast<int>(places.size()), all = count * each;
+  const int all = count * static_cast<int>(places.size());
   OnElement<E> on[2];
   auto energy = hn::Zero(typename E::D());
   for (int from = 0; from < all; from += ElementNodes<E>::most) {
     const int here = std::min(all - from, ElementNodes<E>::most);
     const ElementNodes<E> nodes(elements, places, from, here);
     int k = 0;
-    for (; k + 2 <= here; k += 2)
-      meet_rows<energies, 2>(*elements, met, first, last, nodes, k, from + k, each, on, energy);
-    if (k < here) meet_rows<energies, 1>(*elements, met, first, last, nodes, k, from + k, each, on, energy);
+    for (; k + 2 <= here; k += 2) meet_rows<energies, 2>(*elements, met, first, last, nodes, k, on, energy);
+    if (k < here) meet_rows<energies, 1>(*elements, met, first, last, nodes, k, on, energy);
   }
   for (int k = 0; k < count; ++k) on[k].give(elements[k]);
   if constexpr (energies) elements->sum.energy += total(typename E::D(), energy);

@@ -125,8 +125,8 @@ void collect_bonds(const std::vector<double>& on_i, double sign_i, const std::ve
   if (bonds > 0 && to == bonds + 1) out[bonds] = b[bonds - 1];
 }
 
-// Sets forces and torques of a part of a tube to those of its bonds, that to the element before it and that to the
-// one behind it with them. What is summed, that of the former leaves to the part before.
+// Sets forces and torques of a part of a tube to those of its bonds, with those to the elements before and behind
+// it. The sums leave out the bond to the element before: it is in those of the part before.
 BondSum compute_bonds(const Topology& topology, const Interaction& interaction, const State& state,
                       const Segment& of, Forces& out) {
   thread_local TubeBonds work;

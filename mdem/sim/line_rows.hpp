@@ -4,7 +4,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -21,10 +20,6 @@ struct LineNodes {
 
   void make_room(int nodes) {
     for (auto* v : {&x, &y, &z}) v->resize(static_cast<std::size_t>(nodes + NodeRow::pad));
-  }
-  C coordinate(double v) const {
-    if constexpr (sizeof(C) == 4) return static_cast<C>(std::lrint(v * per_unit));
-    return static_cast<C>(v);
   }
 };
 

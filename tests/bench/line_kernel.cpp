@@ -128,11 +128,11 @@ void LineRows(benchmark::State& bench) {
   const double unit = std::exp2(-22);
   const MixedTable table(test::line_density(), unit);
   LineNodes<std::int32_t> nodes;
-  nodes.per_unit = 1 / unit;
+  const auto coordinate = [&](double nm) { return static_cast<std::int32_t>(std::lrint(nm / unit)); };
   for (int m = 0; m < count; ++m) {
-    nodes.x.push_back(nodes.coordinate(1.7));
-    nodes.y.push_back(nodes.coordinate(0.01 * (m % 7)));
-    nodes.z.push_back(nodes.coordinate(0.226 * (m % 10)));
+    nodes.x.push_back(coordinate(1.7));
+    nodes.y.push_back(coordinate(0.01 * (m % 7)));
+    nodes.z.push_back(coordinate(0.226 * (m % 10)));
   }
   NodeForces<float> forces;
   forces.make_room(count);
