@@ -565,11 +565,15 @@ HWY_INLINE double cosine(const E& e, int j) {
   return e.n[0] * axis.x[sj] + e.n[1] * axis.y[sj] + e.n[2] * axis.z[sj];
 }
 
+template <bool energies, class E>
+HWY_INLINE void meet_one(E& e, const LineRun& run, int j) {
+  add_pair<energies>(e, run, j, e.law(run.type).sparse.share(cosine(e, j)));
+}
+
 // A run element by element: at the ends of tubes.
 template <bool energies, class E>
 HWY_NOINLINE void pair_run(E& e, const LineRun& run) {
-  for (int j = run.element_begin; j < run.element_begin + run.elements; ++j)
-    add_pair<energies>(e, run, j, e.law(run.type).sparse.share(cosine(e, j)));
+  for (int j = run.element_begin; j < run.element_begin + run.elements; ++j) meet_one<energies>(e, run, j);
 }
 
 // The elements m .. end of a run, with `each` nodes, as a row; none where all of these are out of reach.
@@ -601,8 +605,9 @@ template <class E>
 HWY_INLINE void find_sums(const E& e, SplitRun& of) {
   const hn::CappedTag<double, 8> d;
   const LineRun& run = *of.run;
-  const SparseNodes& sparse = e.law(run.type).sparse;
+  const int sums = e.law(run.type).sparse.count;
   const ElementReach& reach = e.sums(run.type).reach;
+  const SumLimits& limits = e.sums(run.type).limits[e.in.plan == LinePlan::Use::none ? 0 : 1];
   const int ended = run.begins || run.ends || e.ends.any() ? 1 : 0;
   const Vec3Array &place = e.in.state->position, &axis = *e.in.axis;
   const auto nx = hn::Set(d, e.n[0]), ny = hn::Set(d, e.n[1]), nz = hn::Set(d, e.n[2]);
@@ -623,26 +628,26 @@ HWY_INLINE void find_sums(const E& e, SplitRun& of) {
     const auto near = [&](int t) {  // ElementReach::near
       const auto from = hn::Max(hn::Sub(hn::Abs(along), hn::Set(d, reach.ahead[ended][t])), hn::Zero(d));
       const auto least = hn::NegMulAdd(hn::Set(d, reach.beside[ended][t]), hn::Abs(q), hn::MulAdd(from, from, p2));
-      return bits_of(d, hn::Lt(least, hn::Set(d, reach.cutoff2)));
+      return bits_of(d, hn::Lt(least, hn::Set(d, limits.cutoff2)));
     };
     std::uint64_t rest = (std::uint64_t{1} << left) - 1, in_reach = near(0);
     // There is always a second sum, and seldom more.
-    for (int t = 0; t < sparse.count && (t < 2 || HWY_UNLIKELY(rest != 0)); ++t) {
-      const SparseSum& sum = sparse.sum[static_cast<std::size_t>(t)];
-      const std::uint64_t takes = rest & bits_of(d, hn::Gt(c2, hn::Set(d, sum.from_cos2))),
-                          alone = takes & bits_of(d, hn::Ge(c2, hn::Set(d, sum.full_cos2))), next = near(t + 1);
+    for (int t = 0; t < sums && (t < 2 || HWY_UNLIKELY(rest != 0)); ++t) {
+      const std::uint64_t takes = rest & bits_of(d, hn::Gt(c2, hn::Set(d, limits.from_cos2[t]))),
+                          alone = takes & bits_of(d, hn::Ge(c2, hn::Set(d, limits.full_cos2[t]))), next = near(t + 1);
       of.sum[t] |= (alone & in_reach) << m;
       of.shared |= (takes & ~alone & next) << m;
       rest &= ~takes;
       in_reach = next;
     }
-    of.sum[sparse.count] |= (rest & in_reach) << m;
+    of.sum[sums] |= (rest & in_reach) << m;
   }
 }
 
-// A run whose elements may take several sums: rows of those that take the same one, and others one by one.
-template <bool energies, class E>
-HWY_INLINE void meet_split(E& e, const SplitRun& of, MetRows* met) {
+// A run whose elements may take several sums: rows of those that take the same one. Returns the others, which are
+// met one by one.
+template <class E>
+HWY_INLINE std::uint64_t split(const E& e, const SplitRun& of, MetRows* met) {
   const LineRun& run = *of.run;
   const LineContact& law = e.law(run.type);
   const bool has_row = e.part(run).row[static_cast<int>(Rows::all)].per_element > 0;
@@ -661,18 +666,66 @@ HWY_INLINE void meet_split(E& e, const SplitRun& of, MetRows* met) {
       left &= to < 64 ? ~std::uint64_t{0} << to : 0;
     }
   }
-  for (; one_by_one != 0; one_by_one &= one_by_one - 1) {
-    const int j = run.element_begin + first_bit(one_by_one);
-    add_pair<energies>(e, run, j, law.sparse.share(cosine(e, j)));
-  }
+  return one_by_one;
 }
 
 // All that one element has put off. What each run takes is found for all of them before the first is met: the
 // processor would wait for it at the branches.
+template <bool energies, class E, class Pair>
+HWY_INLINE void split_all(E& e, SplitRuns& runs, MetRows* met, const Pair& pair) {
+  for (int k = 0; k < runs.count; ++k) find_sums(e, runs.run[static_cast<std::size_t>(k)]);
+  for (int k = 0; k < runs.count; ++k) {
+    const SplitRun& of = runs.run[static_cast<std::size_t>(k)];
+    for (std::uint64_t rest = split(e, of, met); rest != 0; rest &= rest - 1)
+      pair(*of.run, of.run->element_begin + first_bit(rest));
+  }
+}
+
+// The same, as the plan will have it.
+template <bool energies, class E>
+HWY_NOINLINE void record_splits(E& e, SplitRuns& runs, MetRows* met) {
+  ChunkPlan& plan = *e.work.plan;
+  ChunkPlan::Element element;
+  int before[line_sums];
+  for (int t = 0; t < line_sums; ++t) before[t] = met[t].count;
+  split_all<energies>(e, runs, met, [&](const LineRun& run, int j) {
+    plan.pairs.push_back({e.in.list->index(run), j});
+    ++element.pairs;
+    meet_one<energies>(e, run, j);
+  });
+  for (int t = 0; t < line_sums; ++t) {
+    element.rows[static_cast<std::size_t>(t)] = static_cast<short>(met[t].count - before[t]);
+    plan.rows.insert(plan.rows.end(), met[t].begin() + before[t], met[t].end());
+  }
+  plan.elements.push_back(element);
+}
+
+template <bool energies, class E>
+HWY_NOINLINE void replay_splits(E& e, MetRows* met) {
+  ChunkPlan& plan = *e.work.plan;
+  const ChunkPlan::Element& element = plan.elements[plan.element++];
+  for (int t = 0; t < line_sums; ++t)
+    for (int k = 0; k < element.rows[static_cast<std::size_t>(t)]; ++k) met[t].add(plan.rows[plan.row++]);
+  for (int k = 0; k < element.pairs; ++k) {
+    const ChunkPlan::Pair& pair = plan.pairs[plan.pair++];
+    meet_one<energies>(e, e.in.list->run(pair.run), pair.j);
+  }
+}
+
 template <bool energies, class E>
 HWY_NOINLINE void meet_splits(E& e, SplitRuns& runs, MetRows* met) {
-  for (int k = 0; k < runs.count; ++k) find_sums(e, runs.run[static_cast<std::size_t>(k)]);
-  for (int k = 0; k < runs.count; ++k) meet_split<energies>(e, runs.run[static_cast<std::size_t>(k)], met);
+  if (runs.count == 0) return;
+  switch (e.in.plan) {
+    case LinePlan::Use::none:
+      split_all<energies>(e, runs, met, [&](const LineRun& run, int j) { meet_one<energies>(e, run, j); });
+      break;
+    case LinePlan::Use::record:
+      record_splits<energies>(e, runs, met);
+      break;
+    case LinePlan::Use::replay:
+      replay_splits<energies>(e, met);
+      break;
+  }
   runs.count = 0;
 }
 
@@ -730,6 +783,8 @@ HWY_NOINLINE void meet_end_runs(const In& in, const LineChunk& chunk, LineWork<R
 template <bool energies, class In, class Real>
 HWY_INLINE void all_elements(const In& in, const LineChunk& chunk, LineWork<Real>& work, ContactBuffer& out) {
   const Topology& topology = *in.topology;
+  if (in.plan == LinePlan::Use::record) work.plan->clear();
+  if (in.plan == LinePlan::Use::replay) work.plan->rewind();
   int tube = chunk.blocks.empty() ? 0 : topology.tube_of(chunk.blocks.front().first);
   for (const LineBlock& block : chunk.blocks) {
     while (block.first >= topology.tube_begin[tube + 1]) ++tube;
@@ -758,7 +813,7 @@ HWY_INLINE void all_elements(const In& in, const LineChunk& chunk, LineWork<Real
     if (work.shared.count > 0) sum_rows<energies>(e, block.elements, &work.shared, 0, 1);
     for (int k = 0; k < block.elements; ++k) {
       if (alone) {
-        if (work.split[k].count > 0) meet_splits<energies>(e[k], work.split[k], work.met[k]);
+        meet_splits<energies>(e[k], work.split[k], work.met[k]);
         sum_met<energies>(e[k], work.met[k]);
       }
       e[k].sum.add_to(out, e[k].at);

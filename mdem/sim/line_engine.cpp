@@ -79,7 +79,7 @@ void LineEngine::meet(std::size_t k, std::size_t thread, Buffers& b, KernelInput
   place_nodes(rows, nodes);
   in.nodes = nodes;
   out.clear(static_cast<std::size_t>(chunk.elements));
-  work.start(chunk);
+  work.start(chunk, plan_.chunk(k));
   line_contact(in, chunk, work, out);
   add_node_forces(rows, work.forces, out);
   if (in.interaction->damped_contact())
@@ -98,10 +98,10 @@ void LineEngine::run(Buffers& b, const Topology& topology, const Interaction& in
                              b.tables.data(),
                              b.pairs.data(),
                              {},
-                             list.turn(),
-                             2 * list.displacement(),
+                             0,
+                             0,
+                             LinePlan::Use::none,
                              energies};
-  moved_ = input.moved;
   for (int t = 0; t < line_sums; ++t) input.rows[t] = in.line[0].sparse.thins_j(t) ? Rows::sparse : Rows::all;
   const bool parallel = state.size() > parallel_from,
              at_once = state.size() > finish_at_once_from && list_.parts_of_a_tube() < few_parts;
@@ -118,14 +118,23 @@ void LineEngine::run(Buffers& b, const Topology& topology, const Interaction& in
   make_room(b, static_cast<std::size_t>(threads));
   left_.resize(static_cast<std::size_t>(topology.tubes()));
   shares_.deal(static_cast<int>(list_.chunks().size()), threads);
+  plan_.start(topology, list, list_);
 #pragma omp parallel num_threads(threads) if (parallel)
   {
 #pragma omp for schedule(static)
     for (int t = 0; t < topology.tubes(); ++t) {
       tubes.place(t);
+      plan_.look(topology, state, t);
       const int parts = static_cast<int>(list_.touches_end(t) - list_.touches_begin(t));
       left_.set(t, parts);
       if (at_once && parts == 0) timed([&] { finish(t); });
+    }
+#pragma omp single
+    {
+      plan_.choose(state, axis);
+      input.turned = plan_.turned();
+      input.moved = moved_ = plan_.moved();
+      input.plan = plan_.use();
     }
     const int thread = omp_get_thread_num();
     for (int piece; (piece = shares_.take(thread)) >= 0;) {
@@ -161,6 +170,17 @@ void LineEngine::compute(const Topology& topology, const Interaction& in, const 
   }
 }
 
+void LineEngine::resume(const Topology& topology, const Interaction& in, const NeighbourList& list,
+                        LinePlan::Saved plan) {
+  State made(plan.position.size());
+  made.position = plan.position;
+  const Vec3Array axis = plan.axis;
+  plan_.resume(list, std::move(plan));
+  const TubeParts parts(topology);
+  const auto nothing = [](int) {};
+  compute(topology, in, list, made, axis, false, {parts, nothing, nothing});
+}
+
 void LineEngine::add_to(const Segment& part, Vec3Array& force, Vec3Array& torque) const {
   for (const LineList::Touch* touch = list_.touches_begin(part.tube); touch != list_.touches_end(part.tube);
        ++touch) {
@@ -185,7 +205,7 @@ double LineEngine::damping_power() const {
 }
 
 std::size_t LineEngine::bytes() const {
-  std::size_t total = list_.bytes();
+  std::size_t total = list_.bytes() + plan_.bytes();
   for (const ContactBuffer& b : buffers_) total += 6 * b.fx.capacity() * sizeof(double);
   const auto count = [&](const auto& b) {
     for (const auto& rows : b.nodes)

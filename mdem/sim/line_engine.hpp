@@ -10,15 +10,13 @@
 
 #include "model/segments.hpp"
 #include "sim/contact_kernel.hpp"
+#include "sim/line_plan.hpp"
 #include "sim/line_rows.hpp"
 #include "sim/radial_table.hpp"
 #include "sim/tiles.hpp"
 #include "sim/work_shares.hpp"
 
 namespace ropewalk {
-
-// The sparse ones, and that over all nodes.
-inline constexpr int line_sums = SparseNodes::most + 1;
 
 // Those that are met with one sum.
 struct MetRows {
@@ -70,6 +68,7 @@ struct LineWork {
   MetRows shared;             // by both elements of a block, with the first sum
   MetRows met[2][line_sums];  // by one of them
   SplitRuns split[2];         // likewise, to be met
+  ChunkPlan* plan = nullptr;  // of the chunk, where there is one
   std::vector<PairBatch<T>> batches;
 
   PairBatch<T>& batch(const PairKind& kind) {
@@ -89,9 +88,10 @@ struct LineWork {
       for (MetRows& rows : of_one) rows.row.resize(most);
     for (SplitRuns& runs : split) runs.run.resize(most);
   }
-  void start(const LineChunk& chunk) {
+  void start(const LineChunk& chunk, ChunkPlan* of) {
     for (auto& f : forces) f.start(chunk.parts.size());
     batches.clear();  // their order belongs to the state alone: a resumed run has no older ones
+    plan = of;
   }
 };
 
@@ -139,6 +139,28 @@ struct ElementReach {
   }
 };
 
+// Between which angles elements share two sums, as squared cosines, and how far they reach: with room for as many
+// rad and nm, within which an element that is not between them stays where it is.
+struct SumLimits {
+  double from_cos2[SparseNodes::most] = {}, full_cos2[SparseNodes::most] = {};
+  double cutoff2 = 0;  // nm^2
+
+  SumLimits(const LineContact& k, double turn_room, double motion_room) {
+    const auto turned = [](double cos2, double by) {
+      constexpr double right_angle = 1.57079632679489662;
+      const double angle = std::acos(std::sqrt(std::min(cos2, 1.0))) + by;
+      return angle < 0 ? 2 : angle > right_angle ? -1 : std::cos(angle) * std::cos(angle);
+    };
+    for (int t = 0; t < k.sparse.count; ++t) {
+      const SparseSum& sum = k.sparse.sum[static_cast<std::size_t>(t)];
+      from_cos2[t] = turn_room > 0 ? turned(sum.from_cos2, turn_room) : sum.from_cos2;
+      full_cos2[t] = turn_room > 0 ? turned(sum.full_cos2, -turn_room) : sum.full_cos2;
+    }
+    const double reach = k.density.cutoff() + motion_room;
+    cutoff2 = reach * reach;
+  }
+};
+
 // What two elements sum over (LineContact).
 template <class T>
 struct PairSum {
@@ -151,12 +173,14 @@ struct PairSum {
   };
   Sum sums[line_sums];
   ElementReach reach;
+  SumLimits limits[2];  // of this state alone, for as long as a plan holds
 
   static int index(const TubeEnds& e) { return (e.begins ? 1 : 0) + (e.ends ? 2 : 0); }
   const NodePairs<T>& pairs(int sum, const TubeEnds& ends_i, const TubeEnds& ends_j) const {
     return sums[sum].pairs[index(ends_i)][index(ends_j)];
   }
-  explicit PairSum(LineContact law) : reach(law) {
+  explicit PairSum(LineContact law)
+      : reach(law), limits{{law, 0, 0}, {law, LinePlan::turn_room, LinePlan::motion_room}} {
     for (int t = 0; t <= law.sparse.count; ++t) {
       const int on_i = law.sum_nodes_i(t), on_j = law.sum_nodes_j(t);
       Sum& sum = sums[t];
@@ -189,8 +213,10 @@ struct LineKernelInput {
   const Table* tables;        // of tube types i, j at i * types + j, as are the next
   const PairSum<typename Table::Value>* pairs;
   Rows rows[line_sums];  // that the sums take, whatever the types
-  double turned;         // no axis has changed by more
-  double moved;          // nm: no distance has become smaller by more than this since the list was built
+  // No axis has changed by more than `turned` since the list was built, and no distance (nm) has become smaller by
+  // more than `moved`: nor will they while the plan holds.
+  double turned, moved;
+  LinePlan::Use plan;
   bool energies;         // whether they are wanted
 };
 
@@ -241,6 +267,10 @@ class LineEngine {
                const State& state, const Vec3Array& axis, bool energies, const TubeWork& tubes);
   // Adds what acts on a part of a tube, in the order of the chunks, whoever was done first.
   void add_to(const Segment& part, Vec3Array& force, Vec3Array& torque) const;
+  const LinePlan& plan() const { return plan_; }
+  // Goes on with this plan.
+  void resume(const Topology& topology, const Interaction& interaction, const NeighbourList& list,
+              LinePlan::Saved plan);
   double energy() const;         // eV
   double damping_power() const;  // eV/ps
   const LineList& list() const { return list_; }
@@ -265,6 +295,7 @@ class LineEngine {
   double moved_ = 0;  // nm, of the last forces, as in their input
   double list_seconds_ = 0, finish_seconds_ = 0;
   bool full_ = false;
+  LinePlan plan_;
   std::vector<NodePlaces> places_[row_kinds];  // of each tube type
   std::vector<ContactBuffer> buffers_;         // of each chunk
   WorkShares shares_;

@@ -422,7 +422,6 @@ void LineList::add_block(const LineBlock& of, int tube, Rows kind, LineChunk& ch
                           BlockRun::both});
     return chunk.runs.back();
   };
-  const auto index = [&](const LineRun& run) { return static_cast<int>(&run - run_.data()); };
   const auto own_tube = [&](const LineRun& run) {
     return chunk.parts[static_cast<std::size_t>(run.part)].tube == tube;
   };
@@ -459,7 +458,7 @@ void LineList::add_block(const LineBlock& of, int tube, Rows kind, LineChunk& ch
 void LineList::add_end_run(const Topology& topology, int i, const TouchedPart& own, const LineRun& run,
                            LineChunk& chunk) const {
   const int at = i + own.element_shift;
-  chunk.end_runs.push_back({i, at, static_cast<int>(&run - run_.data())});
+  chunk.end_runs.push_back({i, at, index(run)});
   chunk.even = std::min(chunk.even, run.even);
   const int types = static_cast<int>(topology.types.size());
   const PairKind kind{topology.tube_type[own.tube] * types + run.type, 0, topology.ends_of(i, own.tube),
@@ -559,6 +558,9 @@ void LineList::build(const Topology& topology, const Interaction& in, const Neig
     for (std::size_t count : part.count) begin_.push_back(begin_.back() + count);
     for (int t : part.dense) dense_[static_cast<std::size_t>(t)] = 1;
   }
+  split_runs_ = static_cast<std::size_t>(std::count_if(run_.begin(), run_.end(), [](const LineRun& run) {
+    return run.elements > 0 && run.beyond <= 0 && run.even <= 0 && run.crossing <= 0;
+  }));
   for (auto& of_types : per_element_) of_types.clear();
   for (std::size_t a = 0; a < topology.types.size(); ++a) {
     per_element_[static_cast<int>(Rows::all)].push_back(in.line[a * topology.types.size()].nodes_i);

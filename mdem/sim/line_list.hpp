@@ -158,6 +158,7 @@ class LineList {
   const LineRun* begin(int i) const { return run_.data() + begin_[static_cast<std::size_t>(i)]; }
   const LineRun* end(int i) const { return run_.data() + begin_[static_cast<std::size_t>(i) + 1]; }
   const LineRun& run(int k) const { return run_[static_cast<std::size_t>(k)]; }
+  int index(const LineRun& run) const { return static_cast<int>(&run - run_.data()); }
   const std::vector<LineChunk>& chunks() const { return chunks_; }
   // The parts of a tube that chunks act on, in the order of the chunks. Tubes that nothing acts on have none.
   struct Touch {
@@ -180,6 +181,8 @@ class LineList {
   int most_nodes(Rows kind) const { return most_nodes_[static_cast<int>(kind)]; }
   int most_rows() const { return most_rows_; }
   std::size_t runs() const { return run_.size(); }
+  // Those whose elements may take several sums from the start.
+  std::size_t split_runs() const { return split_runs_; }
   // The skin (nm) whose lists would have cost least, building included, where this one of `listed` was worn after
   // so many steps. It follows from what is in the list and not from a clock: the same run has the same lists.
   double best_skin(const Topology& topology, double listed, long steps) const;
@@ -207,6 +210,7 @@ class LineList {
   std::vector<char> dense_;                  // of each tube: whether it has rows of all nodes
   std::vector<LineRun> run_;
   std::vector<std::size_t> begin_;
+  std::size_t split_runs_ = 0;
   std::vector<LineChunk> chunks_;
   std::vector<Touch> touch_;
   std::vector<int> touch_begin_;

@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "sim/cell_grid.hpp"
-#include "sim/motion.hpp"
 
 namespace ropewalk {
 
@@ -22,56 +21,15 @@ bool NeighbourList::update(const Topology& topology, const State& state) {
   return true;
 }
 
-// The distance of two points that the twist alone moves changes by no more than what it turns one against the
-// other.
 bool NeighbourList::worn(const Change& change) {
-  const double against = 1.01 * std::fabs(twist_.slope) * (cutoff + skin + 2 * lever);
-  displacement_ = change.moved + 0.5 * against * (farthest_ + lever);
-  turn_ = change.turned + 0.5 * against;
-  if (!std::isfinite(displacement_)) return true;
-  follow(change);
-  return displacement_ > 0.5 * skin;
-}
-
-// The twist that the next change is measured against: the best fit to this one.
-void NeighbourList::follow(const Change& change) {
-  const double determinant = arms2_[0] * arms2_[2] - arms2_[1] * arms2_[1];
-  constexpr double fewest = 0.01;  // nm^2, of an element: a single tube along z has no place to turn about
-  if (!(arms2_[0] > fewest * static_cast<double>(reference_.size())) ||
-      !(determinant > 1e-6 * arms2_[0] * arms2_[2]))
-    return;
-  twist_.sine = (change.spin * arms2_[2] - change.spin_z * arms2_[1]) / determinant;
-  twist_.slope = (change.spin_z * arms2_[0] - change.spin * arms2_[1]) / determinant;
+  const MotionSince::Bound bound = since_.bound(change, within(), lever);
+  displacement_ = bound.moved;
+  turn_ = bound.turned;
+  return !(displacement_ <= 0.5 * skin);
 }
 
 Change NeighbourList::change(const State& state, std::ptrdiff_t begin, std::ptrdiff_t end) const {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  Change c;
-  if (reference_.size() == state.size())
-    c = largest_change(state, reference_, reference_axis_, lever, twist_, begin, end);
-  if (reference_.size() != state.size() || !std::isfinite(c.sum)) c.moved = c.turned = infinity;
-  return c;
-}
-
-// About the middle of all places, which has to be no point in particular.
-void NeighbourList::start_twist() {
-  const Vec3Array& p = reference_;
-  twist_ = {};
-  farthest_ = 0;
-  for (double& sum : arms2_) sum = 0;
-  const double n = static_cast<double>(p.size());
-  for (std::size_t i = 0; i < p.size(); ++i) {
-    twist_.x += p.x[i] / n;
-    twist_.y += p.y[i] / n;
-    twist_.middle += p.z[i] / n;
-  }
-  for (std::size_t i = 0; i < p.size(); ++i) {
-    const double x = p.x[i] - twist_.x, y = p.y[i] - twist_.y, z = p.z[i] - twist_.middle, arm2 = x * x + y * y;
-    farthest_ = std::max(farthest_, std::sqrt(arm2));
-    arms2_[0] += arm2;
-    arms2_[1] += z * arm2;
-    arms2_[2] += z * z * arm2;
-  }
+  return since_.change(state, lever, begin, end);
 }
 
 void NeighbourList::build(const Topology& topology, const State& state) {
@@ -84,10 +42,8 @@ void NeighbourList::build(const Topology& topology, Vec3Array position, Vec3Arra
   static std::atomic<long> stamps{0};
   stamp_ = ++stamps;
   displacement_ = turn_ = 0;
-  reference_ = std::move(position);
-  reference_axis_ = std::move(axis);
-  start_twist();
-  const Vec3Array& p = reference_;
+  since_.start(std::move(position), std::move(axis));
+  const Vec3Array& p = reference();
   const int n = static_cast<int>(p.size());
   const double reach = cutoff + skin;
   ++builds_;
@@ -128,7 +84,7 @@ void NeighbourList::build(const Topology& topology, Vec3Array position, Vec3Arra
 
 double NeighbourList::coordinate_unit() const {
   double largest = 1;
-  for (const auto* v : {&reference_.x, &reference_.y, &reference_.z})
+  for (const auto* v : {&reference().x, &reference().y, &reference().z})
     for (double x : *v)
       if (std::isfinite(x)) largest = std::max(largest, std::fabs(x));
   return std::exp2(std::ceil(std::log2(largest + 64)) - 28);

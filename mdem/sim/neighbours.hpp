@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "sim/interaction.hpp"
-#include "sim/motion.hpp"
+#include "sim/motion_since.hpp"
 #include "sim/state.hpp"
 
 namespace ropewalk {
@@ -61,8 +61,8 @@ class NeighbourList {
   std::size_t pairs() const { return index_.size(); }
   const std::vector<Chunk>& chunks() const { return chunks_; }
   // Positions and axes at the last build: with them a resumed run has the same list, hence the same bits.
-  const Vec3Array& reference() const { return reference_; }
-  const Vec3Array& reference_axis() const { return reference_axis_; }
+  const Vec3Array& reference() const { return since_.position(); }
+  const Vec3Array& reference_axis() const { return since_.axis(); }
   long builds() const { return builds_; }
   // A power of two (nm) that resolves every coordinate in 29 bits, with room for what moves before the next build.
   double coordinate_unit() const;
@@ -73,27 +73,23 @@ class NeighbourList {
   double displacement() const { return displacement_; }
   // By no more than twice this had the angle between two axes within reach.
   double turn() const { return turn_; }
-  // The twist that the next change is measured against, in [0] its sine in the middle and in [1] its slope: with it
-  // a resumed run has the next build at the same step.
-  std::array<double, 2> twist() const { return {twist_.sine, twist_.slope}; }
-  void set_twist(const std::array<double, 2>& t) { twist_.sine = t[0], twist_.slope = t[1]; }
+  // Of the motion since the build: with it a resumed run has the next build at the same step.
+  std::array<double, 2> twist() const { return since_.twist(); }
+  void set_twist(const std::array<double, 2>& t) { since_.set_twist(t); }
+  // nm: centres of elements with points within reach are no more than this apart.
+  double within() const { return cutoff + skin + 2 * lever; }
   std::size_t bytes() const { return index_.capacity() * sizeof(int) + begin_.capacity() * sizeof(std::size_t); }
 
  private:
-  void follow(const Change& change);
-  void start_twist();
   void cut_into_chunks(int elements);
   void cut_into_chunks(int elements, int count);
 
   std::vector<std::size_t> begin_;
   std::vector<int> index_;
   std::vector<Chunk> chunks_;
-  Vec3Array reference_, reference_axis_;
+  MotionSince since_;
   long builds_ = 0, stamp_ = 0;
   double displacement_ = 0, turn_ = 0;
-  TwistOfAll twist_;
-  double farthest_ = 0;          // nm: of all places from its axis
-  double arms2_[3] = {0, 0, 0};  // sums of their squared distances from it, times z^0, z^1 and z^2
 };
 
 }  // namespace ropewalk
