@@ -122,10 +122,14 @@ struct SparseNodes {
   SumShare share(double cosine) const {
     const double c2 = cosine * cosine;
     const int t = first_of(c2);
-    if (t == last_of(c2)) return {t, 1, 0};
+    return t == last_of(c2) ? SumShare{t, 1, 0} : share(t, cosine);
+  }
+  // Of sum t, the rest being that of the next one: where no other has a share.
+  SumShare share(int t, double cosine) const {
+    const double c2 = cosine * cosine;
     const SparseSum& at = sum[static_cast<std::size_t>(t)];
     const double per_width = 1 / (at.full_cos2 - at.from_cos2);
-    const double x = std::min((c2 - at.from_cos2) * per_width, 1.0), r = 1 - x;
+    const double x = std::max(std::min((c2 - at.from_cos2) * per_width, 1.0), 0.0), r = 1 - x;
     return {t, x * x * x * (10 - x * (15 - 6 * x)), 60 * x * x * r * r * cosine * per_width};
   }
 };

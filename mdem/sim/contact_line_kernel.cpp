@@ -227,6 +227,9 @@ struct Element {
   Rows rows_of(int t) const { return in.rows[t]; }
   // Of its nodes in sum t, whatever the partner.
   const std::vector<double>& places(int t) const { return sums(0).sums[t].places; }
+  PairKind kind(const LineRun& run, int sum, bool shared) const {
+    return {static_cast<int>(pair(run.type)), sum, ends, run.tube_ends(), shared};
+  }
   const TouchedPart& part(const LineRun& run) const { return chunk.parts[static_cast<std::size_t>(run.part)]; }
 
   HWY_INLINE Element(const In& input, const LineChunk& c, LineWork<Real>& w, ContactBuffer& o, int i, int entry,
@@ -453,39 +456,60 @@ HWY_INLINE void add_to(ContactBuffer& out, int at, double sign, const PlainVecto
   out.tx[k] += torque.x, out.ty[k] += torque.y, out.tz[k] += torque.z;
 }
 
+template <class V>
+HWY_INLINE void cross(const V (&a)[3], const V (&b)[3], V (&out)[3]) {
+  for (int k = 0; k < 3; ++k) {
+    const int l = (k + 1) % 3, m = (k + 2) % 3;
+    out[k] = hn::MulSub(a[l], b[m], hn::Mul(a[m], b[l]));
+  }
+}
+
 // The totals of the lanes from m on, onto the elements. `turn` is what a couple on both comes from, where the share
 // of a sum depends on their angle.
 template <class In, class T, class D>
 HWY_INLINE void give_out(const In& in, const PairBatch<T>& batch, int m, const PairTotals<D>& sum, hn::Vec<D> turn,
                          ContactBuffer& out) {
+  using V = hn::Vec<D>;
   constexpr int lanes = static_cast<int>(hn::MaxLanes(D()));
   const D d;
-  alignas(64) T all[10][lanes];
+  const V unit = hn::Set(d, static_cast<T>(1 / in.nodes[0].per_unit));
+  V ni[3], nj[3], on_i[3], on_j[3];
+  for (int a = 0; a < 3; ++a) {
+    ni[a] = hn::Mul(hn::LoadU(d, batch.axis_i[a] + m), unit);
+    nj[a] = hn::Mul(hn::LoadU(d, batch.axis_j[a] + m), unit);
+  }
+  cross(sum.moment_i, ni, on_i);
+  cross(nj, sum.moment_j, on_j);
+  if (batch.kind.shared) {
+    V couple[3];
+    cross(ni, nj, couple);
+    const V by = hn::Mul(turn, hn::LoadU(d, batch.derivative + m));
+    for (int a = 0; a < 3; ++a) {
+      on_i[a] = hn::NegMulAdd(by, couple[a], on_i[a]);
+      on_j[a] = hn::MulAdd(by, couple[a], on_j[a]);
+    }
+  }
+  alignas(64) T all[9][lanes];
   for (int a = 0; a < 3; ++a) {
     hn::Store(sum.force[a], d, all[a]);
-    hn::Store(sum.moment_i[a], d, all[3 + a]);
-    hn::Store(sum.moment_j[a], d, all[6 + a]);
+    hn::Store(on_i[a], d, all[3 + a]);
+    hn::Store(on_j[a], d, all[6 + a]);
   }
-  hn::Store(turn, d, all[9]);
   const auto of = [&](int first, int l) {
     return PlainVector{static_cast<double>(all[first][l]), static_cast<double>(all[first + 1][l]),
                        static_cast<double>(all[first + 2][l])};
   };
-  const auto axis = [&](int element) {
-    const auto e = static_cast<std::size_t>(element);
-    return PlainVector{in.axis->x[e], in.axis->y[e], in.axis->z[e]};
-  };
   for (int l = 0; l < std::min(lanes, batch.count - m); ++l) {
-    const PlainVector ni = axis(batch.i[m + l]), nj = axis(batch.j[m + l]), force = of(0, l);
-    PlainVector on_i = of(3, l).cross(ni), on_j = nj.cross(of(6, l));
-    if (batch.kind.shared) {
-      const PlainVector couple = static_cast<double>(all[9][l]) * batch.derivative[m + l] * ni.cross(nj);
-      on_i = on_i - couple;
-      on_j = on_j + couple;
-    }
-    add_to(out, batch.at_i[m + l], -1, force, on_i);
-    add_to(out, batch.at_j[m + l], 1, force, on_j);
+    add_to(out, batch.at_i[m + l], -1, of(0, l), of(3, l));
+    add_to(out, batch.at_j[m + l], 1, of(0, l), of(6, l));
   }
+}
+
+template <class In>
+HWY_INLINE double cosine(const In& in, int i, int j) {
+  const auto si = static_cast<std::size_t>(i), sj = static_cast<std::size_t>(j);
+  const Vec3Array& axis = *in.axis;
+  return axis.x[si] * axis.x[sj] + axis.y[si] * axis.y[sj] + axis.z[si] * axis.z[sj];
 }
 
 // All pairs of a batch, which is empty then.
@@ -539,41 +563,35 @@ HWY_INLINE void fill_lane(const In& in, int i, int j, int at_i, int at_j, PairBa
 template <bool energies, class E>
 HWY_INLINE void add_pair(E& e, const LineRun& run, int j, const SumShare& w) {
   using T = typename E::Real;
-  PairBatch<T>& batch =
-      e.work.batch({static_cast<int>(e.pair(run.type)), w.first, e.ends, run.tube_ends(), w.value < 1});
+  PairBatch<T>& batch = e.work.batch(e.kind(run, w.first, w.value < 1));
   batch.share[batch.count] = static_cast<T>(w.value);
-  batch.derivative[batch.count] = w.derivative;
+  batch.derivative[batch.count] = static_cast<T>(w.derivative);
   fill_lane(e.in, e.element, j, e.at, j + e.part(run).element_shift, batch);
   if (batch.count == PairBatch<T>::most) meet_pairs<energies>(e.in, batch, e.out);
 }
 
-// The pairs at the ends of tubes, which take the first sum alone.
+// Pairs by rising `beyond`.
 template <bool energies, class In, class T>
-HWY_NOINLINE void meet_end_pairs(const In& in, const EndPairs& of, LineWork<T>& work, ContactBuffer& out) {
+HWY_NOINLINE void meet_alike(const In& in, const AlikePairs& of, LineWork<T>& work, ContactBuffer& out) {
   PairBatch<T>& batch = work.batch(of.kind);
-  for (const EndPairs::Pair& p : of.pairs) {
+  const SparseNodes& sparse = in.interaction->line[static_cast<std::size_t>(of.kind.types)].sparse;
+  for (const AlikePairs::Pair& p : of.pairs) {
     if (static_cast<double>(p.beyond) > in.moved) break;
+    if (of.kind.shared) {
+      const SumShare w = sparse.share(of.kind.sum, cosine(in, p.i, p.j));
+      batch.share[batch.count] = static_cast<T>(w.value);
+      batch.derivative[batch.count] = static_cast<T>(w.derivative);
+    }
     fill_lane(in, p.i, p.j, p.at_i, p.at_j, batch);
     if (batch.count == PairBatch<T>::most) meet_pairs<energies>(in, batch, out);
   }
 }
 
-template <class E>
-HWY_INLINE double cosine(const E& e, int j) {
-  const auto sj = static_cast<std::size_t>(j);
-  const Vec3Array& axis = *e.in.axis;
-  return e.n[0] * axis.x[sj] + e.n[1] * axis.y[sj] + e.n[2] * axis.z[sj];
-}
-
-template <bool energies, class E>
-HWY_INLINE void meet_one(E& e, const LineRun& run, int j) {
-  add_pair<energies>(e, run, j, e.law(run.type).sparse.share(cosine(e, j)));
-}
-
 // A run element by element: at the ends of tubes.
 template <bool energies, class E>
 HWY_NOINLINE void pair_run(E& e, const LineRun& run) {
-  for (int j = run.element_begin; j < run.element_begin + run.elements; ++j) meet_one<energies>(e, run, j);
+  for (int j = run.element_begin; j < run.element_begin + run.elements; ++j)
+    add_pair<energies>(e, run, j, e.law(run.type).sparse.share(cosine(e.in, e.element, j)));
 }
 
 // The elements m .. end of a run, with `each` nodes, as a row; none where all of these are out of reach.
@@ -612,7 +630,7 @@ HWY_INLINE void find_sums(const E& e, SplitRun& of) {
   const Vec3Array &place = e.in.state->position, &axis = *e.in.axis;
   const auto nx = hn::Set(d, e.n[0]), ny = hn::Set(d, e.n[1]), nz = hn::Set(d, e.n[2]);
   for (auto& bits : of.sum) bits = 0;
-  of.shared = 0;
+  for (auto& bits : of.shared) bits = 0;
   for (int m = 0; m < run.elements; m += static_cast<int>(hn::Lanes(d))) {
     const int left = std::min(run.elements - m, static_cast<int>(hn::Lanes(d)));
     const auto at = [&](const std::vector<double>& a) {
@@ -634,9 +652,10 @@ HWY_INLINE void find_sums(const E& e, SplitRun& of) {
     // There is always a second sum, and seldom more.
     for (int t = 0; t < sums && (t < 2 || HWY_UNLIKELY(rest != 0)); ++t) {
       const std::uint64_t takes = rest & bits_of(d, hn::Gt(c2, hn::Set(d, limits.from_cos2[t]))),
-                          alone = takes & bits_of(d, hn::Ge(c2, hn::Set(d, limits.full_cos2[t]))), next = near(t + 1);
+                          alone = takes & bits_of(d, hn::Ge(c2, hn::Set(d, limits.full_cos2[t]))),
+                          next = near(t + 1);
       of.sum[t] |= (alone & in_reach) << m;
-      of.shared |= (takes & ~alone & next) << m;
+      of.shared[t] |= (takes & ~alone & next) << m;
       rest &= ~takes;
       in_reach = next;
     }
@@ -644,19 +663,22 @@ HWY_INLINE void find_sums(const E& e, SplitRun& of) {
   }
 }
 
-// A run whose elements may take several sums: rows of those that take the same one. Returns the others, which are
-// met one by one.
-template <class E>
-HWY_INLINE std::uint64_t split(const E& e, const SplitRun& of, MetRows* met) {
+// A run whose elements may take several sums: rows of those that take the same one; `pair` takes the others, and
+// of which sum they have a share at the least.
+template <class E, class Pair>
+HWY_INLINE void split(const E& e, const SplitRun& of, MetRows* met, const Pair& pair) {
   const LineRun& run = *of.run;
   const LineContact& law = e.law(run.type);
   const bool has_row = e.part(run).row[static_cast<int>(Rows::all)].per_element > 0;
-  std::uint64_t one_by_one = of.shared;
+  const auto pairs = [&](std::uint64_t left, int t, bool shared) {
+    for (; left != 0; left &= left - 1) pair(run, run.element_begin + first_bit(left), t, shared);
+  };
   for (int t = 0; t <= law.sparse.count; ++t) {
+    if (t < law.sparse.count) pairs(of.shared[t], t, true);
     std::uint64_t left = of.sum[t];
     if (left == 0) continue;
     if (fades(law.sparse, t, e.ends, run) || !(has_row || law.sparse.thins_j(t))) {
-      one_by_one |= left;
+      pairs(left, t, false);
       continue;
     }
     const int each = law.sum_nodes_j(t);
@@ -666,66 +688,50 @@ HWY_INLINE std::uint64_t split(const E& e, const SplitRun& of, MetRows* met) {
       left &= to < 64 ? ~std::uint64_t{0} << to : 0;
     }
   }
-  return one_by_one;
 }
 
 // All that one element has put off. What each run takes is found for all of them before the first is met: the
 // processor would wait for it at the branches.
-template <bool energies, class E, class Pair>
-HWY_INLINE void split_all(E& e, SplitRuns& runs, MetRows* met, const Pair& pair) {
+template <class E, class Pair>
+HWY_INLINE void split_all(const E& e, SplitRuns& runs, MetRows* met, const Pair& pair) {
   for (int k = 0; k < runs.count; ++k) find_sums(e, runs.run[static_cast<std::size_t>(k)]);
-  for (int k = 0; k < runs.count; ++k) {
-    const SplitRun& of = runs.run[static_cast<std::size_t>(k)];
-    for (std::uint64_t rest = split(e, of, met); rest != 0; rest &= rest - 1)
-      pair(*of.run, of.run->element_begin + first_bit(rest));
-  }
+  for (int k = 0; k < runs.count; ++k) split(e, runs.run[static_cast<std::size_t>(k)], met, pair);
 }
 
-// The same, as the plan will have it.
-template <bool energies, class E>
-HWY_NOINLINE void record_splits(E& e, SplitRuns& runs, MetRows* met) {
-  ChunkPlan& plan = *e.work.plan;
-  ChunkPlan::Element element;
+// For the plan as well, which takes the pairs.
+template <class E>
+HWY_NOINLINE void record_splits(const E& e, SplitRuns& runs, MetRows* met, ChunkPlan& plan) {
   int before[line_sums];
   for (int t = 0; t < line_sums; ++t) before[t] = met[t].count;
-  split_all<energies>(e, runs, met, [&](const LineRun& run, int j) {
-    plan.pairs.push_back({e.in.list->index(run), j});
-    ++element.pairs;
-    meet_one<energies>(e, run, j);
+  split_all(e, runs, met, [&](const LineRun& run, int j, int sum, bool shared) {
+    of_kind(e.kind(run, sum, shared), plan.pairs)
+        .pairs.push_back({e.element, j, e.at, j + e.part(run).element_shift, 0});
   });
+  plan.elements.emplace_back();
   for (int t = 0; t < line_sums; ++t) {
-    element.rows[static_cast<std::size_t>(t)] = static_cast<short>(met[t].count - before[t]);
+    plan.elements.back()[static_cast<std::size_t>(t)] = static_cast<short>(met[t].count - before[t]);
     plan.rows.insert(plan.rows.end(), met[t].begin() + before[t], met[t].end());
   }
-  plan.elements.push_back(element);
 }
 
-template <bool energies, class E>
-HWY_NOINLINE void replay_splits(E& e, MetRows* met) {
-  ChunkPlan& plan = *e.work.plan;
-  const ChunkPlan::Element& element = plan.elements[plan.element++];
+HWY_INLINE void replay_splits(MetRows* met, ChunkPlan& plan) {
+  const ChunkPlan::Element& rows = plan.elements[plan.element++];
   for (int t = 0; t < line_sums; ++t)
-    for (int k = 0; k < element.rows[static_cast<std::size_t>(t)]; ++k) met[t].add(plan.rows[plan.row++]);
-  for (int k = 0; k < element.pairs; ++k) {
-    const ChunkPlan::Pair& pair = plan.pairs[plan.pair++];
-    meet_one<energies>(e, e.in.list->run(pair.run), pair.j);
-  }
+    for (int k = 0; k < rows[static_cast<std::size_t>(t)]; ++k) met[t].add(plan.rows[plan.row++]);
 }
 
 template <bool energies, class E>
 HWY_NOINLINE void meet_splits(E& e, SplitRuns& runs, MetRows* met) {
   if (runs.count == 0) return;
-  switch (e.in.plan) {
-    case LinePlan::Use::none:
-      split_all<energies>(e, runs, met, [&](const LineRun& run, int j) { meet_one<energies>(e, run, j); });
-      break;
-    case LinePlan::Use::record:
-      record_splits<energies>(e, runs, met);
-      break;
-    case LinePlan::Use::replay:
-      replay_splits<energies>(e, met);
-      break;
-  }
+  if (e.in.plan == LinePlan::Use::none)
+    split_all(e, runs, met, [&](const LineRun& run, int j, int sum, bool shared) {
+      const SumShare all{sum, 1, 0};
+      add_pair<energies>(e, run, j, shared ? e.law(run.type).sparse.share(sum, cosine(e.in, e.element, j)) : all);
+    });
+  else if (e.in.plan == LinePlan::Use::record)
+    record_splits(e, runs, met, *e.work.plan);
+  else
+    replay_splits(met, *e.work.plan);
   runs.count = 0;
 }
 
@@ -739,7 +745,12 @@ HWY_INLINE void meet_run(E& e, const LineRun& run, MetRows* met, SplitRuns& late
     met[sum].add(run, nodes.at, nodes.count);
   };
   if (e.in.turned < static_cast<double>(run.even)) {
-    run.fading ? pair_run<energies>(e, run) : add(0);
+    if (!run.fading)
+      add(0);
+    else if (e.in.plan == LinePlan::Use::none)
+      pair_run<energies>(e, run);
+    else
+      later.add(run);
   } else if (e.in.turned < static_cast<double>(run.crossing)) {
     add(e.law(run.type).sparse.count);
   } else {
@@ -820,10 +831,12 @@ HWY_INLINE void all_elements(const In& in, const LineChunk& chunk, LineWork<Real
     }
   }
   if (in.turned < static_cast<double>(chunk.even)) {
-    for (const EndPairs& of : chunk.end_pairs) meet_end_pairs<energies>(in, of, work, out);
+    for (const AlikePairs& of : chunk.end_pairs) meet_alike<energies>(in, of, work, out);
   } else {
     meet_end_runs<energies>(in, chunk, work, out);
   }
+  if (in.plan != LinePlan::Use::none)
+    for (const AlikePairs& of : work.plan->pairs) meet_alike<energies>(in, of, work, out);
   for (auto& batch : work.batches)
     if (batch.count > 0) meet_pairs<energies>(in, batch, out);
 }

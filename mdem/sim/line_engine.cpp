@@ -89,19 +89,9 @@ void LineEngine::meet(std::size_t k, std::size_t thread, Buffers& b, KernelInput
 template <class Buffers>
 void LineEngine::run(Buffers& b, const Topology& topology, const Interaction& in, const NeighbourList& list,
                      const State& state, const Vec3Array& axis, bool energies, const TubeWork& tubes) {
-  KernelInput<Buffers> input{&topology,
-                             &in,
-                             &state,
-                             &axis,
-                             &list_,
-                             nullptr,
-                             b.tables.data(),
-                             b.pairs.data(),
-                             {},
-                             0,
-                             0,
-                             LinePlan::Use::none,
-                             energies};
+  KernelInput<Buffers> input{
+      &topology,           &in,     &state, &axis, &list_, nullptr, b.tables.data(), b.pairs.data(), {}, 0, 0,
+      LinePlan::Use::none, energies};
   for (int t = 0; t < line_sums; ++t) input.rows[t] = in.line[0].sparse.thins_j(t) ? Rows::sparse : Rows::all;
   const bool parallel = state.size() > parallel_from,
              at_once = state.size() > finish_at_once_from && list_.parts_of_a_tube() < few_parts;

@@ -37,10 +37,10 @@ struct MetRows {
 };
 
 // A run whose elements may take several sums: those that may be within reach, as bits, by the sum that they take;
-// `shared`: one and the next.
+// `shared`: it and the next.
 struct SplitRun {
   const LineRun* run = nullptr;
-  std::uint64_t sum[line_sums] = {}, shared = 0;
+  std::uint64_t sum[line_sums] = {}, shared[SparseNodes::most] = {};
 };
 struct SplitRuns {
   std::vector<SplitRun> run;  // as many as there can be
@@ -56,8 +56,7 @@ struct PairBatch {
   PairKind kind;
   int count = 0;
   int i[most] = {}, j[most] = {}, at_i[most] = {}, at_j[most] = {};  // elements, and their entries in the buffer
-  double derivative[most] = {};                                      // of the share
-  alignas(64) T share[most] = {};
+  alignas(64) T share[most] = {}, derivative[most] = {};             // of the first sum; by the cosine of the angle
   alignas(64) T apart[3][most] = {}, axis_i[3][most] = {}, axis_j[3][most] = {};  // in units of the list
 };
 
@@ -217,7 +216,7 @@ struct LineKernelInput {
   // more than `moved`: nor will they while the plan holds.
   double turned, moved;
   LinePlan::Use plan;
-  bool energies;         // whether they are wanted
+  bool energies;  // whether they are wanted
 };
 
 template <class Table_, class C_>

@@ -204,7 +204,7 @@ namespace {
 // parallel, which take several sums, or that over all nodes: 80 to 200 do about as well for `rope-91x50-twisted`.
 constexpr double element_cost = 50, run_out_of_reach = 1.5, build_of_an_element = 2500;
 double cost_in_reach(const LineRun& run, bool at_end) {
-  constexpr double of_a_row = 22, of_other_sums = 80, pair_at_an_end = 31;
+  constexpr double of_a_row = 22, of_other_sums = 55, pair_at_an_end = 31;
   if (at_end || run.begins || run.ends) return pair_at_an_end * run.elements;
   return run.even > 0 ? of_a_row : of_other_sums;
 }
@@ -463,15 +463,10 @@ void LineList::add_end_run(const Topology& topology, int i, const TouchedPart& o
   const int types = static_cast<int>(topology.types.size());
   const PairKind kind{topology.tube_type[own.tube] * types + run.type, 0, topology.ends_of(i, own.tube),
                       run.tube_ends(), false};
-  auto same = std::find_if(chunk.end_pairs.begin(), chunk.end_pairs.end(),
-                           [&](const EndPairs& p) { return p.kind == kind; });
-  if (same == chunk.end_pairs.end()) {
-    chunk.end_pairs.push_back({kind, {}});
-    same = chunk.end_pairs.end() - 1;
-  }
+  AlikePairs& same = of_kind(kind, chunk.end_pairs);
   const int shift = chunk.parts[static_cast<std::size_t>(run.part)].element_shift;
   for (int j = run.element_begin; j < run.element_begin + run.elements; ++j)
-    same->pairs.push_back({i, j, at, j + shift, run.beyond});
+    same.pairs.push_back({i, j, at, j + shift, run.beyond});
 }
 
 // Of the elements of a chunk, whose runs know their places. Not across a tube's own runs: which of its elements
@@ -496,9 +491,9 @@ void LineList::make_blocks(const Topology& topology, const Interaction& in, Line
           if (run->elements > 0 && run->fading) add_end_run(topology, i, part, *run, chunk);
     }
   }
-  for (EndPairs& of : chunk.end_pairs) {
+  for (AlikePairs& of : chunk.end_pairs) {
     std::stable_sort(of.pairs.begin(), of.pairs.end(),
-                     [](const EndPairs::Pair& a, const EndPairs::Pair& b) { return a.beyond < b.beyond; });
+                     [](const AlikePairs::Pair& a, const AlikePairs::Pair& b) { return a.beyond < b.beyond; });
     of.pairs.shrink_to_fit();
   }
   chunk.blocks.shrink_to_fit();
@@ -593,7 +588,7 @@ std::size_t LineList::bytes() const {
     total += chunk.own.capacity() * sizeof(Segment) + chunk.parts.capacity() * sizeof(TouchedPart) +
              chunk.blocks.capacity() * sizeof(LineBlock) + chunk.runs.capacity() * sizeof(BlockRun) +
              chunk.end_runs.capacity() * sizeof(ElementRun) + chunk.damped.capacity() * sizeof(DampedBlock);
-    for (const EndPairs& of : chunk.end_pairs) total += of.pairs.capacity() * sizeof(EndPairs::Pair);
+    for (const AlikePairs& of : chunk.end_pairs) total += of.pairs.capacity() * sizeof(AlikePairs::Pair);
   }
   return total;
 }

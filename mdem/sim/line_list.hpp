@@ -76,8 +76,7 @@ struct PairKind {
   }
 };
 
-// Those at the ends of tubes, by rising `beyond`, so long as they take the first sum alone.
-struct EndPairs {
+struct AlikePairs {
   struct Pair {
     int i = 0, j = 0, at_i = 0, at_j = 0;  // elements, and their entries in the buffers of the chunk
     float beyond = 0;                      // nm, of their run
@@ -85,6 +84,14 @@ struct EndPairs {
   PairKind kind;
   std::vector<Pair> pairs;
 };
+
+// Those of a kind, perhaps none yet.
+inline AlikePairs& of_kind(const PairKind& kind, std::vector<AlikePairs>& all) {
+  for (AlikePairs& of : all)
+    if (of.kind == kind) return of;
+  all.push_back({kind, {}});
+  return all.back();
+}
 
 // An element, or two consecutive ones within a tube: neighbours of one are most often neighbours of the other.
 struct LineBlock {
@@ -118,9 +125,10 @@ struct LineChunk {
   std::vector<TouchedPart> parts;  // in the order of their elements
   std::vector<LineBlock> blocks;
   std::vector<BlockRun> runs;
-  // The runs at the ends of tubes, of the elements in their order, and their pairs; `even` of all of them.
+  // The runs at the ends of tubes, of the elements in their order, and their pairs, by rising `beyond`, so long as
+  // they take the first sum alone; `even` of all of them.
   std::vector<ElementRun> end_runs;
-  std::vector<EndPairs> end_pairs;
+  std::vector<AlikePairs> end_pairs;
   float even = 0;
   std::vector<DampedBlock> damped;
   int elements = 0, nodes[row_kinds] = {0, 0};  // sizes of the buffers

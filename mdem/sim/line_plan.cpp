@@ -58,9 +58,10 @@ void LinePlan::resume(const NeighbourList& list, Saved saved) {
 
 std::size_t LinePlan::bytes() const {
   std::size_t total = since_.bytes();
-  for (const ChunkPlan& c : chunks_)
-    total += c.rows.capacity() * sizeof(NodeRow) + c.pairs.capacity() * sizeof(ChunkPlan::Pair) +
-             c.elements.capacity() * sizeof(ChunkPlan::Element);
+  for (const ChunkPlan& c : chunks_) {
+    total += c.rows.capacity() * sizeof(NodeRow) + c.elements.capacity() * sizeof(ChunkPlan::Element);
+    for (const AlikePairs& of : c.pairs) total += of.pairs.capacity() * sizeof(AlikePairs::Pair);
+  }
   return total;
 }
 

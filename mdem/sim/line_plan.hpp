@@ -16,25 +16,20 @@ namespace ropewalk {
 // The sparse ones, and that over all nodes.
 inline constexpr int line_sums = SparseNodes::most + 1;
 
-// Of the elements of a chunk that have such runs, in the order in which the kernel comes to them.
+// Of a chunk, in the order in which the kernel comes to its elements.
 struct ChunkPlan {
-  struct Pair {
-    int run = 0, j = 0;  // as LineList has it; one of its elements
-  };
-  struct Element {
-    std::array<short, line_sums> rows{};  // of each sum
-    short pairs = 0;                      // summed one by one: their shares are found in every step
-  };
-  std::vector<NodeRow> rows;
-  std::vector<Pair> pairs;
-  std::vector<Element> elements;
-  std::size_t row = 0, pair = 0, element = 0;  // up to where the kernel has come
+  using Element = std::array<short, line_sums>;  // rows of each sum
 
-  void rewind() { row = pair = element = 0; }
+  std::vector<Element> elements;  // those with such runs
+  std::vector<NodeRow> rows;
+  std::vector<AlikePairs> pairs;     // summed one by one; shares of two sums are found in every step
+  std::size_t element = 0, row = 0;  // up to where the kernel has come
+
+  void rewind() { element = row = 0; }
   void clear() {
+    elements.clear();
     rows.clear();
     pairs.clear();
-    elements.clear();
     rewind();
   }
 };
@@ -44,7 +39,7 @@ class LinePlan {
   // A plan holds until an angle may have changed by twice `turn` (rad) or a distance by twice `motion` (nm). Until
   // then elements within `turn_room` of where a sum begins to be shared are summed one by one, and what is up to
   // `motion_room` beyond the cutoff is summed in vain.
-  static constexpr double turn = 0.001, motion = 0.02;
+  static constexpr double turn = 0.0015, motion = 0.02;
   static constexpr double turn_room = 2.02 * turn, motion_room = 2 * motion;
   // Runs for an element that take several sums from which on it pays to look for how far everything has come.
   static constexpr double worth = 0.25;
