@@ -476,6 +476,83 @@ TEST(LineForces, TwistedRopesEqualReferenceAlsoWhereTheListIsWorn) {
   for (const int n : met) EXPECT_GT(n, 100);
 }
 
+// What is chosen once holds for as many states as keep within its room: elements among them that have come to share
+// two sums meanwhile, or within reach.
+TEST(LineForces, TwistedRopesEqualReferenceWhileAPlanHolds) {
+  Interaction in;
+  in.line = {test::line_contact(0.6785, 6, 0.6785, 6)};
+  in.line[0].sparse = sparse_nodes(6);
+  const auto choices = [&](const Topology& topology, const State& state) {
+    std::vector<std::array<int, 2>> all;
+    for (int i = 0; i < topology.elements(); ++i)
+      for (int j = i + 1; j < std::min(i + 200, topology.elements()); ++j) {
+        const SumShare w =
+            in.line[0].sparse.share(axis_of(state.orientation[static_cast<std::size_t>(i)])
+                                        .dot(axis_of(state.orientation[static_cast<std::size_t>(j)])));
+        all.push_back({w.first, w.value < 1 ? 1 : 0});
+      }
+    return all;
+  };
+  for (const auto& [twist, spacing] : {std::pair(0.1, 1.9), std::pair(0.25, 2.3)}) {
+    Topology topology = test::published_topology();
+    const State start = twisted_rope(topology, twist, spacing);
+    const auto at_start = choices(topology, start);
+    State inside = start, outside = start;
+    shake(0.0065, inside);
+    shake(0.01, outside);
+    const auto now = choices(topology, inside);
+    int changed = 0;
+    for (std::size_t k = 0; k < now.size(); ++k) changed += now[k] != at_start[k];
+    EXPECT_GT(changed, 20);
+    for (const auto& [precision, bound] :
+         {std::pair(Interaction::Precision::full, 1e-10),
+          std::pair(Interaction::Precision::mixed, 5e-5)}) {  // as in LineSingleOverlapping
+      in.precision = precision;
+      Forces of_inside(start.size()), of_outside(start.size());
+      compute_reference(topology, in, inside, of_inside);
+      compute_reference(topology, in, outside, of_outside);
+      for (const std::string& name : instruction_sets()) {
+        SCOPED_TRACE(testing::Message() << name << ", " << twist << " rad/nm");
+        ASSERT_TRUE(use_instructions(name));
+        NeighbourList list(in, 0.25);
+        list.build(topology, start);
+        ForceEngine engine;
+        const auto expect = [&](const State& state, LinePlan::Use use, const Forces& reference) {
+          ASSERT_FALSE(list.update(topology, state));
+          Forces fast(state.size());
+          engine.compute(topology, in, list, state, fast);
+          ASSERT_EQ(engine.line().plan().use(), use);
+          expect_equal(fast, reference, bound);
+        };
+        Forces first(start.size());
+        engine.compute(topology, in, list, start, first);
+        ASSERT_EQ(engine.line().plan().use(), LinePlan::Use::record);
+        expect(inside, LinePlan::Use::replay, of_inside);
+        expect(outside, LinePlan::Use::record, of_outside);
+        expect(outside, LinePlan::Use::replay, of_outside);
+        list.build(topology, outside);
+        expect(outside, LinePlan::Use::record, of_outside);
+      }
+      use_instructions("");
+    }
+  }
+}
+
+// Straight ropes have nothing to choose.
+TEST(LineForces, StraightRopesHaveNoPlan) {
+  Topology topology = test::published_topology();
+  const State state = test::disordered_bundle(topology, 7, 40, 1.75, 0.02, 21);
+  Interaction in;
+  in.line = {test::line_contact(0.6785, 6, 0.6785, 6)};
+  in.line[0].sparse = sparse_nodes(6);
+  NeighbourList list(in, 0.25);
+  list.build(topology, state);
+  ForceEngine engine;
+  Forces out(state.size());
+  engine.compute(topology, in, list, state, out);
+  EXPECT_FALSE(engine.line().plan().any());
+}
+
 // Nothing within the cutoff is left out, and nearly all that is beyond it is.
 TEST(LineForces, ReachOfElementsHoldsTheirNodes) {
   const LineContact law = line_pair(test::line_density(0.6785, 0.6785), 1.4, 1.1, 6, 5);
