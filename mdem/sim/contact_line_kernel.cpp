@@ -835,6 +835,7 @@ HWY_INLINE void all_elements(const In& in, const LineChunk& chunk, LineWork<Real
   } else {
     meet_end_runs<energies>(in, chunk, work, out);
   }
+  if (in.plan == LinePlan::Use::record) work.plan->shrink();
   if (in.plan != LinePlan::Use::none)
     for (const AlikePairs& of : work.plan->pairs) meet_alike<energies>(in, of, work, out);
   for (auto& batch : work.batches)

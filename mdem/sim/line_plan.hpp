@@ -26,6 +26,12 @@ struct ChunkPlan {
   std::size_t element = 0, row = 0;  // up to where the kernel has come
 
   void rewind() { element = row = 0; }
+  // Once it has all of them, for as long as it holds.
+  void shrink() {
+    elements.shrink_to_fit();
+    rows.shrink_to_fit();
+    for (AlikePairs& of : pairs) of.pairs.shrink_to_fit();
+  }
   void clear() {
     elements.clear();
     rows.clear();
