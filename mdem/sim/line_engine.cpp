@@ -109,6 +109,13 @@ void LineEngine::run(Buffers& b, const Topology& topology, const Interaction& in
   left_.resize(static_cast<std::size_t>(topology.tubes()));
   shares_.deal(static_cast<int>(list_.chunks().size()), threads);
   plan_.start(topology, list, list_);
+  const auto choose = [&] {
+    plan_.choose(state, axis);
+    input.turned = plan_.turned();
+    input.moved = moved_ = plan_.moved();
+    input.plan = plan_.use();
+  };
+  if (!plan_.wanted()) choose();
 #pragma omp parallel num_threads(threads) if (parallel)
   {
 #pragma omp for schedule(static)
@@ -119,12 +126,9 @@ void LineEngine::run(Buffers& b, const Topology& topology, const Interaction& in
       left_.set(t, parts);
       if (at_once && parts == 0) timed([&] { finish(t); });
     }
+    if (plan_.wanted()) {
 #pragma omp single
-    {
-      plan_.choose(state, axis);
-      input.turned = plan_.turned();
-      input.moved = moved_ = plan_.moved();
-      input.plan = plan_.use();
+      choose();
     }
     const int thread = omp_get_thread_num();
     for (int piece; (piece = shares_.take(thread)) >= 0;) {

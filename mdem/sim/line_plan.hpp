@@ -54,6 +54,8 @@ class LinePlan {
 
   // Before the forces of a state: its list, and the runs of it.
   void start(const Topology& topology, const NeighbourList& list, const LineList& runs);
+  // Whether enough runs take several sums: if not, the axes need not be there to choose.
+  bool wanted() const { return wanted_; }
   // How far a tube has come since the plan was made: of each one, by any thread.
   void look(const Topology& topology, const State& state, int tube);
   // What to do with the forces of this state, whose axes these are: a new plan is made while they are computed.
