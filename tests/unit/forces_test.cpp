@@ -538,6 +538,17 @@ TEST(LineForces, TwistedRopesEqualReferenceWhileAPlanHolds) {
   }
 }
 
+// The room of a plan does not reach from where two sums are shared to where the next two are.
+TEST(LineForces, AnElementOfAPlanSharesNoMoreThanTwoSums) {
+  const auto angle = [](double cos2) { return std::acos(std::sqrt(cos2)); };
+  for (int nodes = 1; nodes <= 40; ++nodes) {
+    const SparseNodes sparse = sparse_nodes(nodes);
+    for (std::size_t t = 0; t + 1 < static_cast<std::size_t>(sparse.count); ++t)
+      EXPECT_GT(angle(sparse.sum[t + 1].full_cos2) - angle(sparse.sum[t].from_cos2), 2 * LinePlan::turn_room)
+          << nodes << " nodes, sum " << t;
+  }
+}
+
 // Straight ropes have nothing to choose.
 TEST(LineForces, StraightRopesHaveNoPlan) {
   Topology topology = test::published_topology();
