@@ -2,6 +2,7 @@
 // reference (every pair, one after another), which stays as the oracle. Both call the forms of mdem/model.
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "sim/contact_kernel.hpp"

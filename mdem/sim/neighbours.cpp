@@ -1,11 +1,9 @@
 #include "sim/neighbours.hpp"
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <utility>
 
 #include "sim/cell_grid.hpp"
