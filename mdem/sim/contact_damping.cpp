@@ -4,6 +4,8 @@
 #include <tuple>
 #include <utility>
 
+#include "sim/ask_for.hpp"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "sim/contact_damping.cpp"
 #include <hwy/foreach_target.h>
@@ -53,6 +55,16 @@ HWY_INLINE Vec3 load(const Vec3Array& a, std::ptrdiff_t at, int first, int last)
 HWY_INLINE Motion load(const State& s, std::ptrdiff_t at, int first, int last) {
   return {load(s.position, at, first, last), load(s.velocity, at, first, last),
           load(s.angular_velocity, at, first, last)};
+}
+
+// The first and the last elements of a block.
+HWY_INLINE void ask_for_motion(const State& s, const DampedBlock& b) {
+  const int begin = std::max(b.j, b.partners.begin), last = std::min(b.j + b.lanes + b.offsets, b.partners.end) - 1;
+  for (const Vec3Array* v : {&s.position, &s.velocity, &s.angular_velocity}) {
+    ask_for(*v, b.i);
+    ask_for(*v, begin);
+    ask_for(*v, last);
+  }
 }
 
 // -eta w(R)
@@ -121,9 +133,11 @@ void Blocks(const ContactViscosity& viscosity, const State& state, const std::ve
             ContactBuffer& out) {
   const damping::D d;
   auto power = hn::Zero(d);
+  constexpr int ahead = 4;  // blocks
   const DampedBlock* const all = blocks.data() + blocks.size();
   for (const DampedBlock *first = blocks.data(), *last = first; first != all; first = last) {
-    while (last != all && last->i == first->i) ++last;
+    for (; last != all && last->i == first->i; ++last)
+      if (all - last > ahead) damping::ask_for_motion(state, last[ahead]);
     for (int lane = 0; lane < first->lanes; lane += static_cast<int>(hn::Lanes(d)))
       power = hn::Add(power, damping::group_damping(viscosity, state, first, last, lane, out));
   }

@@ -1,5 +1,7 @@
 #include "sim/line_rows.hpp"
 
+#include "sim/ask_for.hpp"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "sim/line_rows.cpp"
 #include <hwy/foreach_target.h>
@@ -92,7 +94,12 @@ HWY_INLINE void place(const RowsOf& of, LineNodes<C>* rows) {
   Line lines[3];
   const double *x[] = {of.position.x.data(), of.position.y.data(), of.position.z.data()},
                *n[] = {of.axis.x.data(), of.axis.y.data(), of.axis.z.data()};
-  for (const TouchedPart& part : of.chunk.parts) {
+  constexpr int ahead = 4;  // parts
+  const TouchedPart* const last = of.chunk.parts.data() + of.chunk.parts.size();
+  for (const TouchedPart* next = of.chunk.parts.data(); next != last; ++next) {
+    if (last - next > ahead)
+      for (const Vec3Array* v : {&of.position, &of.axis}) ask_for(*v, next[ahead].begin, next[ahead].end);
+    const TouchedPart& part = *next;
     if (!part.in_reach(of.moved)) continue;
     const auto type = static_cast<std::size_t>(of.tube_type[static_cast<std::size_t>(part.tube)]);
     for (int from = part.begin; from < part.end; from += block) {
