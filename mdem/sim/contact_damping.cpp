@@ -1,6 +1,7 @@
 #include "sim/contact_damping.hpp"
 
 #include <algorithm>
+#include <cstring>
 #include <tuple>
 #include <utility>
 
@@ -19,129 +20,226 @@ namespace ropewalk::HWY_NAMESPACE {
 namespace damping {
 namespace hn = hwy::HWY_NAMESPACE;
 
-using D = hn::CappedTag<double, DampedBlock::most>;
-using V = hn::Vec<D>;
-
+template <class V>
 struct Vec3 {
   V x, y, z;
 };
 
-HWY_INLINE Vec3 operator+(const Vec3& a, const Vec3& b) {
+template <class V>
+HWY_INLINE Vec3<V> operator+(const Vec3<V>& a, const Vec3<V>& b) {
   return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
 }
-HWY_INLINE Vec3 operator-(const Vec3& a, const Vec3& b) {
+template <class V>
+HWY_INLINE Vec3<V> operator-(const Vec3<V>& a, const Vec3<V>& b) {
   return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
 }
-HWY_INLINE Vec3 operator*(V a, const Vec3& b) { return {hn::Mul(a, b.x), hn::Mul(a, b.y), hn::Mul(a, b.z)}; }
-HWY_INLINE Vec3 cross(const Vec3& a, const Vec3& b) {
+template <class V>
+HWY_INLINE Vec3<V> operator*(V a, const Vec3<V>& b) {
+  return {hn::Mul(a, b.x), hn::Mul(a, b.y), hn::Mul(a, b.z)};
+}
+template <class V>
+HWY_INLINE Vec3<V> cross(const Vec3<V>& a, const Vec3<V>& b) {
   return {hn::MulSub(a.y, b.z, hn::Mul(a.z, b.y)), hn::MulSub(a.z, b.x, hn::Mul(a.x, b.z)),
           hn::MulSub(a.x, b.y, hn::Mul(a.y, b.x))};
 }
-HWY_INLINE V dot(const Vec3& a, const Vec3& b) {
+template <class V>
+HWY_INLINE V dot(const Vec3<V>& a, const Vec3<V>& b) {
   return hn::MulAdd(a.x, b.x, hn::MulAdd(a.y, b.y, hn::Mul(a.z, b.z)));
 }
 
-// Of the lanes' elements, zero in the others.
+// Of the lanes' elements.
+template <class Place, class V>
 struct Motion {
-  Vec3 place, velocity, spin;
+  Vec3<Place> place;
+  Vec3<V> velocity, spin;
 };
 
-HWY_INLINE Vec3 load(const Vec3Array& a, std::ptrdiff_t at, int first, int last) {
-  const D d;
-  return {load_some(d, a.x.data() + at, first, last), load_some(d, a.y.data() + at, first, last),
-          load_some(d, a.z.data() + at, first, last)};
-}
-
-HWY_INLINE Motion load(const State& s, std::ptrdiff_t at, int first, int last) {
-  return {load(s.position, at, first, last), load(s.velocity, at, first, last),
-          load(s.angular_velocity, at, first, last)};
-}
-
-// The first and the last elements of a block.
-HWY_INLINE void ask_for_motion(const State& s, const DampedBlock& b) {
-  const int begin = std::max(b.j, b.partners.begin), last = std::min(b.j + b.lanes + b.offsets, b.partners.end) - 1;
-  for (const Vec3Array* v : {&s.position, &s.velocity, &s.angular_velocity}) {
-    ask_for(*v, b.i);
-    ask_for(*v, begin);
-    ask_for(*v, last);
-  }
-}
-
 // -eta w(R)
-HWY_INLINE V strength(const ContactViscosity& c, const Vec3& separation) {
-  const D d;
-  const V distance = hn::Sqrt(dot(separation, separation));
-  const V y = hn::Min(
-      hn::Max(hn::Mul(hn::Sub(distance, hn::Set(d, c.inner)), hn::Set(d, 1 / (c.outer - c.inner))), hn::Zero(d)),
-      hn::Set(d, 1.0));
-  const V weight =
-      hn::NegMulAdd(hn::Mul(y, y), hn::NegMulAdd(hn::Set(d, 2.0), y, hn::Set(d, 3.0)), hn::Set(d, 1.0));
-  return hn::Mul(hn::Set(d, -c.eta), weight);
+template <class D>
+HWY_INLINE hn::Vec<D> strength(D d, const ContactViscosity& c, const Vec3<hn::Vec<D>>& separation) {
+  using T = hn::TFromD<D>;
+  const auto set = [&](double x) HWY_ATTR { return hn::Set(d, static_cast<T>(x)); };
+  const auto distance = hn::Sqrt(dot(separation, separation));
+  const auto y =
+      hn::Min(hn::Max(hn::Mul(hn::Sub(distance, set(c.inner)), set(1 / (c.outer - c.inner))), hn::Zero(d)), set(1));
+  const auto weight = hn::NegMulAdd(hn::Mul(y, y), hn::NegMulAdd(set(2), y, set(3)), set(1));
+  return hn::Mul(set(-c.eta), weight);
 }
 
 // Whole vectors: the lanes left over are zero, and the buffers have room. A masked store would make the next load
 // wait until it is through.
-HWY_INLINE void add_to(const Vec3& v, std::ptrdiff_t at, std::vector<double>& x, std::vector<double>& y,
-                       std::vector<double>& z) {
-  const D d;
-  const auto add = [&](std::vector<double>& a, V what)
+template <class V, class T>
+HWY_INLINE void add_to(const Vec3<V>& v, std::ptrdiff_t at, std::vector<T>& x, std::vector<T>& y,
+                       std::vector<T>& z) {
+  const hn::DFromV<V> d;
+  const auto add = [&](std::vector<T>& a, V what)
                        HWY_ATTR { hn::StoreU(hn::Add(hn::LoadU(d, a.data() + at), what), d, a.data() + at); };
   add(x, v.x), add(y, v.y), add(z, v.z);
 }
 
+// As the state has them; zero in lanes that are not wanted, which may lie outside of it.
+struct Doubles {
+  using D = hn::CappedTag<double, DampedBlock::most>;
+  using V = hn::Vec<D>;
+  const State& state;
+  ContactBuffer& out;
+
+  static HWY_INLINE Vec3<V> some(const Vec3Array& a, std::ptrdiff_t at, int first, int last) {
+    const D d;
+    return {load_some(d, a.x.data() + at, first, last), load_some(d, a.y.data() + at, first, last),
+            load_some(d, a.z.data() + at, first, last)};
+  }
+  HWY_INLINE Motion<V, V> load(std::ptrdiff_t at, std::ptrdiff_t, int first, int last) const {
+    return {some(state.position, at, first, last), some(state.velocity, at, first, last),
+            some(state.angular_velocity, at, first, last)};
+  }
+  HWY_INLINE Vec3<V> apart(const Vec3<V>& j, const Vec3<V>& i) const { return j - i; }
+};
+
+// Lanes that are not wanted are of other elements, or of none: whatever number it is.
+struct Floats {
+  using D = hn::CappedTag<float, DampedBlock::most>;
+  using V = hn::Vec<D>;
+  using Place = hn::Vec<hn::RebindToSigned<D>>;
+  const DampedElements& elements;
+  float unit;
+  DampedElements& out;
+
+  template <class X>
+  static HWY_INLINE auto whole(const X& x, const X& y, const X& z, std::ptrdiff_t at) {
+    const hn::Rebind<typename X::value_type, D> d;
+    return Vec3<hn::Vec<decltype(d)>>{hn::LoadU(d, x.data() + at), hn::LoadU(d, y.data() + at),
+                                      hn::LoadU(d, z.data() + at)};
+  }
+  HWY_INLINE Motion<Place, V> load(std::ptrdiff_t, std::ptrdiff_t entry, int, int) const {
+    const DampedElements& e = elements;
+    return {whole(e.x, e.y, e.z, entry), whole(e.vx, e.vy, e.vz, entry), whole(e.wx, e.wy, e.wz, entry)};
+  }
+  HWY_INLINE Vec3<V> apart(const Vec3<Place>& j, const Vec3<Place>& i) const {
+    const D d;
+    const Vec3<Place> in_units = j - i;
+    return hn::Set(d, unit) *
+           Vec3<V>{hn::ConvertTo(d, in_units.x), hn::ConvertTo(d, in_units.y), hn::ConvertTo(d, in_units.z)};
+  }
+};
+
 // The blocks first .. last - 1, which are of the same elements i. Offset by offset over all of them: at the next
 // offset of one block the forces are added one place further on, and a load would wait for the last stores if no
-// other block came between.
-HWY_INLINE V group_damping(const ContactViscosity& viscosity, const State& s, const DampedBlock* first,
-                           const DampedBlock* last, int lane, ContactBuffer& out) {
-  const D d;
-  const V half = hn::Set(d, 0.5), zero = hn::Zero(d);
+// other block came between. Returns the power, lane by lane.
+template <class Of>
+HWY_INLINE typename Of::V group_damping(const ContactViscosity& viscosity, const Of& of, const DampedBlock* first,
+                                        const DampedBlock* last, int lane) {
+  using V = typename Of::V;
+  using T = hn::TFromD<typename Of::D>;
+  const typename Of::D d;
+  const V half = hn::Set(d, static_cast<T>(0.5)), zero = hn::Zero(d);
   const int own = first->i + lane, own_entry = first->at_i + lane,
             lanes = std::min(static_cast<int>(hn::Lanes(d)), first->lanes - lane);
-  const Motion i = load(s, own, 0, lanes);
-  Vec3 force{zero, zero, zero}, torque{zero, zero, zero};
+  const auto i = of.load(own, own_entry, 0, lanes);
+  Vec3<V> force{zero, zero, zero}, torque{zero, zero, zero};
   V power = zero;
   int offsets = 0;
   for (const DampedBlock* b = first; b != last; ++b) offsets = std::max<int>(offsets, b->offsets);
   for (int c = 0; c < offsets; ++c)
     for (const DampedBlock* b = first; b != last; ++b) {
       if (c >= b->offsets) continue;
-      const int at = b->j + lane + c;
+      const int at = b->j + lane + c, entry = at + b->partners.shift;
       const int begin = std::max(0, b->partners.begin - at), end = std::min(lanes, b->partners.end - at);
       if (begin >= end) continue;
-      const Motion j = load(s, at, begin, end);
-      const Vec3 apart = j.place - i.place;
-      const Vec3 arm = half * apart;
-      const Vec3 relative = j.velocity - i.velocity - cross(i.spin + j.spin, arm);
-      const V k = hn::IfThenElseZero(some_lanes(d, begin, end), strength(viscosity, apart));
-      const Vec3 f = k * relative, t = cross(f, arm);
+      const auto j = of.load(at, entry, begin, end);
+      const Vec3<V> apart = of.apart(j.place, i.place);
+      const Vec3<V> arm = half * apart;
+      const Vec3<V> relative = j.velocity - i.velocity - cross(i.spin + j.spin, arm);
+      const V k = hn::IfThenElseZero(some_lanes(d, begin, end), strength(d, viscosity, apart));
+      const Vec3<V> f = k * relative, t = cross(f, arm);
       power = hn::Add(power, dot(f, relative));
       force = force - f;
       torque = torque + t;
-      const std::ptrdiff_t entry = at + b->partners.shift;
-      add_to(f, entry, out.fx, out.fy, out.fz);
-      add_to(t, entry, out.tx, out.ty, out.tz);
+      add_to(f, entry, of.out.fx, of.out.fy, of.out.fz);
+      add_to(t, entry, of.out.tx, of.out.ty, of.out.tz);
     }
-  add_to(force, own_entry, out.fx, out.fy, out.fz);
-  add_to(torque, own_entry, out.tx, out.ty, out.tz);
+  add_to(force, own_entry, of.out.fx, of.out.fy, of.out.fz);
+  add_to(torque, own_entry, of.out.tx, of.out.ty, of.out.tz);
   return power;
+}
+
+// Returns the power of all blocks. Lanes add up few of them before they are turned into a number of double
+// precision.
+template <class Of>
+HWY_INLINE double all_groups(const ContactViscosity& viscosity, const Of& of,
+                             const std::vector<DampedBlock>& blocks) {
+  const typename Of::D d;
+  constexpr int few = 32;
+  double sum = 0;
+  auto power = hn::Zero(d);
+  int groups = 0;
+  const auto add_up = [&]() HWY_ATTR {
+    sum += static_cast<double>(hn::GetLane(hn::SumOfLanes(d, power)));
+    power = hn::Zero(d);
+  };
+  const DampedBlock* const all = blocks.data() + blocks.size();
+  for (const DampedBlock *first = blocks.data(), *last = first; first != all; first = last) {
+    while (last != all && last->i == first->i) ++last;
+    for (int lane = 0; lane < first->lanes; lane += static_cast<int>(hn::Lanes(d)))
+      power = hn::Add(power, group_damping(viscosity, of, first, last, lane));
+    if (++groups % few == 0) add_up();
+  }
+  add_up();
+  return sum;
+}
+
+// Of the elements of a part. Whole vectors, whose last lanes the next part's elements are stored over.
+HWY_INLINE void take(const State& s, const TouchedRange& of, double per_unit, DampedElements& e) {
+  const hn::CappedTag<double, 8> d;
+  const hn::Rebind<std::int32_t, decltype(d)> whole;
+  const hn::Rebind<float, decltype(d)> floats;
+  const auto units = hn::Set(d, per_unit);
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  for (int k = of.begin; k < of.end; k += lanes) {
+    const int left = std::min(of.end - k, lanes), entry = k + of.shift;
+    const auto some = [&](const std::vector<double>& v) HWY_ATTR { return load_some(d, v.data() + k, 0, left); };
+    const auto place = [&](const std::vector<double>& from, std::vector<std::int32_t>& to) HWY_ATTR {
+      hn::StoreU(hn::DemoteTo(whole, hn::Mul(some(from), units)), whole, to.data() + entry);
+    };
+    const auto motion = [&](const std::vector<double>& from, std::vector<float>& to)
+                            HWY_ATTR { hn::StoreU(hn::DemoteTo(floats, some(from)), floats, to.data() + entry); };
+    place(s.position.x, e.x), place(s.position.y, e.y), place(s.position.z, e.z);
+    motion(s.velocity.x, e.vx), motion(s.velocity.y, e.vy), motion(s.velocity.z, e.vz);
+    motion(s.angular_velocity.x, e.wx), motion(s.angular_velocity.y, e.wy), motion(s.angular_velocity.z, e.wz);
+  }
+}
+
+HWY_INLINE void give(const std::vector<float>& from, std::vector<double>& to) {
+  const float* const x = from.data();
+  double* const out = to.data();
+  const std::size_t n = to.size();
+  for (std::size_t k = 0; k < n; ++k) out[k] = static_cast<double>(x[k]);
 }
 
 }  // namespace damping
 
-void Blocks(const ContactViscosity& viscosity, const State& state, const std::vector<DampedBlock>& blocks,
-            ContactBuffer& out) {
-  const damping::D d;
-  auto power = hn::Zero(d);
-  constexpr int ahead = 4;  // blocks
-  const DampedBlock* const all = blocks.data() + blocks.size();
-  for (const DampedBlock *first = blocks.data(), *last = first; first != all; first = last) {
-    for (; last != all && last->i == first->i; ++last)
-      if (all - last > ahead) damping::ask_for_motion(state, last[ahead]);
-    for (int lane = 0; lane < first->lanes; lane += static_cast<int>(hn::Lanes(d)))
-      power = hn::Add(power, damping::group_damping(viscosity, state, first, last, lane, out));
+void BlocksOfState(const ContactViscosity& viscosity, const State& state, const std::vector<DampedBlock>& blocks,
+                   ContactBuffer& out) {
+  out.power += damping::all_groups(viscosity, damping::Doubles{state, out}, blocks);
+}
+
+void BlocksInFloats(const ContactViscosity& viscosity, const State& state, const DampedChunk& of,
+                    DampedElements& elements, ContactBuffer& out) {
+  constexpr std::size_t ahead = 4;  // parts
+  for (std::size_t k = 0; k < of.parts.size(); ++k) {
+    if (k + ahead < of.parts.size())
+      for (const Vec3Array* v : {&state.velocity, &state.angular_velocity})
+        ask_for(*v, of.parts[k + ahead].begin, of.parts[k + ahead].end);
+    damping::take(state, of.parts[k], 1 / of.unit, elements);
   }
-  out.power += hn::GetLane(hn::SumOfLanes(d, power));
+  const auto entries = static_cast<std::size_t>(of.elements) + ContactBuffer::room;
+  DampedElements& e = elements;
+  for (auto* f : {&e.fx, &e.fy, &e.fz, &e.tx, &e.ty, &e.tz}) std::memset(f->data(), 0, entries * sizeof(float));
+  out.resize(static_cast<std::size_t>(of.elements));
+  out.energy = 0;
+  out.power = damping::all_groups(viscosity, damping::Floats{e, static_cast<float>(of.unit), e}, of.blocks);
+  damping::give(e.fx, out.fx), damping::give(e.fy, out.fy), damping::give(e.fz, out.fz);
+  damping::give(e.tx, out.tx), damping::give(e.ty, out.ty), damping::give(e.tz, out.tz);
 }
 
 }  // namespace ropewalk::HWY_NAMESPACE
@@ -150,11 +248,17 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace ropewalk {
 
-HWY_EXPORT(Blocks);
+HWY_EXPORT(BlocksOfState);
+HWY_EXPORT(BlocksInFloats);
 
 void contact_damping(const ContactViscosity& viscosity, const State& state, const std::vector<DampedBlock>& blocks,
                      ContactBuffer& out) {
-  HWY_DYNAMIC_DISPATCH(Blocks)(viscosity, state, blocks, out);
+  HWY_DYNAMIC_DISPATCH(BlocksOfState)(viscosity, state, blocks, out);
+}
+
+void contact_damping(const ContactViscosity& viscosity, const State& state, const DampedChunk& of,
+                     DampedElements& elements, ContactBuffer& out) {
+  HWY_DYNAMIC_DISPATCH(BlocksInFloats)(viscosity, state, of, elements, out);
 }
 
 void DampedBlocks::add(int i, const TouchedRange& own, int from, int to, const TouchedRange& partners) {

@@ -1,8 +1,11 @@
-// Contact viscosity (model/damping.hpp) of all pairs of elements within its reach, in blocks: up to eight
+// Contact viscosity (model/damping.hpp) of all pairs of elements within its reach, in blocks: up to 16
 // consecutive elements of one tube meet those of another that are 0, 1, .. places further along. Loads and stores
-// are of consecutive elements, and no lanes are added up.
+// are of consecutive elements, and no lanes are added up. In two precisions: of the state as it is, and in floats
+// of what a chunk acts on, copied once for all pairs, the places as integers, so that differences are exact.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "sim/contact_kernel.hpp"
@@ -16,8 +19,8 @@ struct TouchedRange {
 
 // Element i + l meets element j + l + c for l < lanes and c < offsets, where that is one of `partners`.
 struct DampedBlock {
-  static constexpr int most = 8;
-  int i = 0, j = 0, at_i = 0;  // elements; i's entry in the buffer
+  static constexpr int most = 16;  // lanes of the widest vectors
+  int i = 0, j = 0, at_i = 0;      // elements; i's entry in the buffer
   short lanes = 0, offsets = 0;
   TouchedRange partners;
 };
@@ -42,9 +45,34 @@ class DampedBlocks {
   std::vector<DampedBlock> blocks_;
 };
 
+// Of the elements that a chunk acts on, by their entries in its buffer: places in units, motion in nm/ps and
+// rad/ps, and what acts on them, eV/nm and eV.
+struct DampedElements {
+  std::vector<std::int32_t> x, y, z;
+  std::vector<float> vx, vy, vz, wx, wy, wz, fx, fy, fz, tx, ty, tz;
+
+  void make_room(int elements) {
+    const auto entries = static_cast<std::size_t>(elements + DampedBlock::most);
+    for (auto* v : {&x, &y, &z}) v->resize(entries);
+    for (auto* v : {&vx, &vy, &vz, &wx, &wy, &wz, &fx, &fy, &fz, &tx, &ty, &tz}) v->resize(entries);
+  }
+  std::size_t bytes() const { return 3 * x.capacity() * sizeof(x[0]) + 12 * fx.capacity() * sizeof(fx[0]); }
+};
+
 // With the widest vectors that the machine has. In the buffer up to DampedBlock::most entries before the first
 // element and behind the last are read and written as they were.
 void contact_damping(const ContactViscosity& viscosity, const State& state, const std::vector<DampedBlock>& blocks,
                      ContactBuffer& out);
+
+// The blocks of a chunk, the parts that they are within, and so many entries; `unit` is that of the places (nm).
+struct DampedChunk {
+  const std::vector<DampedBlock>& blocks;
+  const std::vector<TouchedRange>& parts;
+  int elements;
+  double unit;
+};
+// The same in floats, and not added to what the buffer holds: it takes the place of ContactBuffer::clear.
+void contact_damping(const ContactViscosity& viscosity, const State& state, const DampedChunk& of,
+                     DampedElements& elements, ContactBuffer& out);
 
 }  // namespace ropewalk

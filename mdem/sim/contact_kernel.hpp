@@ -25,6 +25,9 @@ struct ContactBuffer {
 
   static constexpr std::size_t room = 8;  // behind the elements, for vectors that are not full
 
+  void resize(std::size_t elements) {
+    for (auto* v : {&fx, &fy, &fz, &tx, &ty, &tz}) v->resize(elements + room);
+  }
   void clear(std::size_t elements) {
     for (auto* v : {&fx, &fy, &fz, &tx, &ty, &tz}) set_zero(*v, elements + room);
     energy = power = 0;

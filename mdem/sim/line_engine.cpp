@@ -78,12 +78,17 @@ void LineEngine::meet(std::size_t k, std::size_t thread, Buffers& b, KernelInput
   const RowsOf rows{chunk, in.topology->tube_type, places_, in.state->position, *in.axis, in.moved};
   place_nodes(rows, nodes);
   in.nodes = nodes;
-  out.clear(static_cast<std::size_t>(chunk.elements));
+  const bool damped = in.interaction->damped_contact();
+  const ContactViscosity& viscosity = in.interaction->damping.contact;
+  if (damped && !full_)
+    contact_damping(viscosity, *in.state, {chunk.damped, chunk.damped_parts, chunk.elements, list_.unit()},
+                    work.damped, out);
+  else
+    out.clear(static_cast<std::size_t>(chunk.elements));
   work.start(chunk, plan_.chunk(k));
   line_contact(in, chunk, work, out);
   add_node_forces(rows, work.forces, out);
-  if (in.interaction->damped_contact())
-    contact_damping(in.interaction->damping.contact, *in.state, chunk.damped, out);
+  if (damped && full_) contact_damping(viscosity, *in.state, chunk.damped, out);
 }
 
 template <class Buffers>
@@ -204,8 +209,10 @@ std::size_t LineEngine::bytes() const {
   const auto count = [&](const auto& b) {
     for (const auto& rows : b.nodes)
       for (const auto& nodes : rows) total += 3 * nodes.x.capacity() * sizeof(nodes.x[0]);
-    for (const auto& work : b.work)
+    for (const auto& work : b.work) {
       for (const auto& f : work.forces) total += 3 * f.x.capacity() * sizeof(f.x[0]);
+      total += work.damped.bytes();
+    }
   };
   count(mixed_);
   count(full_buffers_);

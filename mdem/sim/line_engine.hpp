@@ -69,6 +69,7 @@ struct LineWork {
   SplitRuns split[2];         // likewise, to be met
   ChunkPlan* plan = nullptr;  // of the chunk, where there is one
   std::vector<PairBatch<T>> batches;
+  DampedElements damped;  // in floats alone
 
   PairBatch<T>& batch(const PairKind& kind) {
     for (auto& b : batches)
@@ -86,6 +87,7 @@ struct LineWork {
     for (auto& of_one : met)
       for (MetRows& rows : of_one) rows.row.resize(most);
     for (SplitRuns& runs : split) runs.run.resize(most);
+    if (sizeof(T) < sizeof(double)) damped.make_room(list.most_elements());
   }
   void start(const LineChunk& chunk, ChunkPlan* of) {
     for (auto& f : forces) f.start(chunk.parts.size());

@@ -504,6 +504,7 @@ void LineList::make_blocks(const Topology& topology, const Interaction& in, Line
 void LineList::list_damped(LineChunk& chunk) const {
   DampedBlocks blocks;
   PartOf part_of(chunk);
+  std::vector<char> damped(chunk.parts.size(), 0);
   for (const Segment& of : chunk.own)
     for (int i = of.begin; i < of.end; ++i)
       for (const LineRun* run = begin(i); run != end(i); ++run) {
@@ -512,8 +513,12 @@ void LineList::list_damped(LineChunk& chunk) const {
         own.end = std::min(own.end, of.end);
         const int from = run->element_begin + run->damped_from;
         blocks.add(i, own, from, from + run->damped, chunk.parts[static_cast<std::size_t>(run->part)].elements());
+        damped[static_cast<std::size_t>(run->part)] = 1;
+        damped[static_cast<std::size_t>(&part_of(i) - chunk.parts.data())] = 1;
       }
   chunk.damped = blocks.take();
+  for (std::size_t p = 0; p < damped.size(); ++p)
+    if (damped[p]) chunk.damped_parts.push_back(chunk.parts[p].elements());
 }
 
 void LineList::list_touches(const Topology& topology) {
@@ -573,10 +578,11 @@ void LineList::build(const Topology& topology, const Interaction& in, const Neig
       if (in.damped_contact()) list_damped(chunks_[c]);
     }
   list_touches(topology);
-  most_rows_ = 0;
+  most_rows_ = most_elements_ = 0;
   for (int& most : most_nodes_) most = 0;
   for (const LineChunk& chunk : chunks_) {
     most_rows_ = std::max(most_rows_, chunk.most_rows);
+    most_elements_ = std::max(most_elements_, chunk.elements);
     for (int kind = 0; kind < row_kinds; ++kind) most_nodes_[kind] = std::max(most_nodes_[kind], chunk.nodes[kind]);
   }
 }
@@ -587,7 +593,8 @@ std::size_t LineList::bytes() const {
   for (const LineChunk& chunk : chunks_) {
     total += chunk.own.capacity() * sizeof(Segment) + chunk.parts.capacity() * sizeof(TouchedPart) +
              chunk.blocks.capacity() * sizeof(LineBlock) + chunk.runs.capacity() * sizeof(BlockRun) +
-             chunk.end_runs.capacity() * sizeof(ElementRun) + chunk.damped.capacity() * sizeof(DampedBlock);
+             chunk.end_runs.capacity() * sizeof(ElementRun) + chunk.damped.capacity() * sizeof(DampedBlock) +
+             chunk.damped_parts.capacity() * sizeof(TouchedRange);
     for (const AlikePairs& of : chunk.end_pairs) total += of.pairs.capacity() * sizeof(AlikePairs::Pair);
   }
   return total;

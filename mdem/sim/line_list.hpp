@@ -131,6 +131,7 @@ struct LineChunk {
   std::vector<AlikePairs> end_pairs;
   float even = 0;
   std::vector<DampedBlock> damped;
+  std::vector<TouchedRange> damped_parts;       // those that have any
   int elements = 0, nodes[row_kinds] = {0, 0};  // sizes of the buffers
   int most_rows = 0;                            // that an element can meet: one for each element of its runs
 };
@@ -185,9 +186,10 @@ class LineList {
   double parts_of_a_tube() const {
     return static_cast<double>(touch_.size()) / static_cast<double>(touch_begin_.size());
   }
-  // Of any chunk, at most: nodes in its rows, rows that one of its elements can meet.
+  // Of any chunk, at most: nodes in its rows, rows that one of its elements can meet, entries of its buffers.
   int most_nodes(Rows kind) const { return most_nodes_[static_cast<int>(kind)]; }
   int most_rows() const { return most_rows_; }
+  int most_elements() const { return most_elements_; }
   std::size_t runs() const { return run_.size(); }
   // Those whose elements may take several sums from the start.
   std::size_t split_runs() const { return split_runs_; }
@@ -222,7 +224,7 @@ class LineList {
   std::vector<LineChunk> chunks_;
   std::vector<Touch> touch_;
   std::vector<int> touch_begin_;
-  int most_nodes_[row_kinds] = {0, 0}, most_rows_ = 0;
+  int most_nodes_[row_kinds] = {0, 0}, most_rows_ = 0, most_elements_ = 0;
   double unit_ = 1;
 };
 
