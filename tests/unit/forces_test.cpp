@@ -422,6 +422,35 @@ void shake(double amplitude, State& state) {
   }
 }
 
+// More tubes in one chunk than the viscosity adds up in single precision.
+TEST(LineForces, ViscosityOfManyTubesEqualsReference) {
+  constexpr int elements = 8;
+  Topology topology = test::published_topology();
+  State state(61 * elements);
+  std::size_t i = 0;
+  for (const auto& [x, y] : hexagonal_lattice(61, 1.7)) {
+    topology.add_tube(elements);
+    for (int e = 0; e < elements; ++e, ++i) state.position.set(i, {x, y, e * test::element_length});
+  }
+  shake(0.02, state);
+  test::set_velocities(topology, 300, state);
+  Interaction in;
+  in.line = {test::line_contact(0.6785, 6, 0.6785, 6)};
+  in.damping.contact = {20, 1.713, 2.57};
+  for (const auto& [precision, bound] :
+       {std::pair(Interaction::Precision::full, 1e-10), std::pair(Interaction::Precision::mixed, 1e-5)}) {
+    in.precision = precision;
+    Forces reference(state.size()), fast(state.size());
+    compute_reference(topology, in, state, reference);
+    NeighbourList list(in, 0.2);
+    list.build(topology, state);
+    ASSERT_EQ(list.chunks().size(), 1u);
+    ForceEngine engine;
+    engine.compute(topology, in, list, state, fast);
+    expect_equal(fast, reference, bound);
+  }
+}
+
 // Pairs of elements with nodes within the cutoff, by the first sum that they take; the last entry: those that take
 // the next one too.
 std::array<int, SparseNodes::most + 2> pairs_by_sum(const Topology& topology, const LineContact& law,
