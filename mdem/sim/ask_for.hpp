@@ -9,18 +9,11 @@
 
 namespace ropewalk {
 
-inline constexpr int line_of_memory = 8;  // numbers that come together
-
-HWY_INLINE void ask_for(const Vec3Array& v, int element) {
-  hwy::Prefetch(v.x.data() + element);
-  hwy::Prefetch(v.y.data() + element);
-  hwy::Prefetch(v.z.data() + element);
-}
-
 // The elements begin .. end - 1, of which there are some.
 HWY_INLINE void ask_for(const Vec3Array& v, int begin, int end) {
+  constexpr int line = 8;  // numbers that come together
   for (const std::vector<double>* c : {&v.x, &v.y, &v.z}) {
-    for (int at = begin; at < end; at += line_of_memory) hwy::Prefetch(c->data() + at);
+    for (int at = begin; at < end; at += line) hwy::Prefetch(c->data() + at);
     hwy::Prefetch(c->data() + end - 1);
   }
 }

@@ -101,9 +101,8 @@ struct Floats {
   using D = hn::CappedTag<float, DampedBlock::most>;
   using V = hn::Vec<D>;
   using Place = hn::Vec<hn::RebindToSigned<D>>;
-  const DampedElements& elements;
-  float unit;
   DampedElements& out;
+  float unit;
 
   template <class X>
   static HWY_INLINE auto whole(const X& x, const X& y, const X& z, std::ptrdiff_t at) {
@@ -112,7 +111,7 @@ struct Floats {
                                       hn::LoadU(d, z.data() + at)};
   }
   HWY_INLINE Motion<Place, V> load(std::ptrdiff_t, std::ptrdiff_t entry, int, int) const {
-    const DampedElements& e = elements;
+    const DampedElements& e = out;
     return {whole(e.x, e.y, e.z, entry), whole(e.vx, e.vy, e.vz, entry), whole(e.wx, e.wy, e.wz, entry)};
   }
   HWY_INLINE Vec3<V> apart(const Vec3<Place>& j, const Vec3<Place>& i) const {
@@ -223,21 +222,20 @@ void BlocksOfState(const ContactViscosity& viscosity, const State& state, const 
   out.power += damping::all_groups(viscosity, damping::Doubles{state, out}, blocks);
 }
 
-void BlocksInFloats(const ContactViscosity& viscosity, const State& state, const DampedChunk& of,
-                    DampedElements& elements, ContactBuffer& out) {
+void BlocksInFloats(const ContactViscosity& viscosity, const State& state, const DampedChunk& of, DampedElements& e,
+                    ContactBuffer& out) {
   constexpr std::size_t ahead = 4;  // parts
   for (std::size_t k = 0; k < of.parts.size(); ++k) {
     if (k + ahead < of.parts.size())
       for (const Vec3Array* v : {&state.velocity, &state.angular_velocity})
         ask_for(*v, of.parts[k + ahead].begin, of.parts[k + ahead].end);
-    damping::take(state, of.parts[k], 1 / of.unit, elements);
+    damping::take(state, of.parts[k], 1 / of.unit, e);
   }
   const auto entries = static_cast<std::size_t>(of.elements) + ContactBuffer::room;
-  DampedElements& e = elements;
   for (auto* f : {&e.fx, &e.fy, &e.fz, &e.tx, &e.ty, &e.tz}) std::memset(f->data(), 0, entries * sizeof(float));
   out.resize(static_cast<std::size_t>(of.elements));
   out.energy = 0;
-  out.power = damping::all_groups(viscosity, damping::Floats{e, static_cast<float>(of.unit), e}, of.blocks);
+  out.power = damping::all_groups(viscosity, damping::Floats{e, static_cast<float>(of.unit)}, of.blocks);
   damping::give(e.fx, out.fx), damping::give(e.fy, out.fy), damping::give(e.fz, out.fz);
   damping::give(e.tx, out.tx), damping::give(e.ty, out.ty), damping::give(e.tz, out.tz);
 }

@@ -80,15 +80,16 @@ void LineEngine::meet(std::size_t k, std::size_t thread, Buffers& b, KernelInput
   in.nodes = nodes;
   const bool damped = in.interaction->damped_contact();
   const ContactViscosity& viscosity = in.interaction->damping.contact;
-  if (damped && !full_)
+  if (damped && !full_) {
     contact_damping(viscosity, *in.state, {chunk.damped, chunk.damped_parts, chunk.elements, list_.unit()},
                     work.damped, out);
-  else
+  } else {
     out.clear(static_cast<std::size_t>(chunk.elements));
+    if (damped) contact_damping(viscosity, *in.state, chunk.damped, out);
+  }
   work.start(chunk, plan_.chunk(k));
   line_contact(in, chunk, work, out);
   add_node_forces(rows, work.forces, out);
-  if (damped && full_) contact_damping(viscosity, *in.state, chunk.damped, out);
 }
 
 template <class Buffers>
