@@ -1,7 +1,6 @@
 #include "sim/contact_damping.hpp"
 
 #include <algorithm>
-#include <cstring>
 #include <tuple>
 #include <utility>
 
@@ -82,7 +81,7 @@ struct Doubles {
   using D = hn::CappedTag<double, DampedBlock::most>;
   using V = hn::Vec<D>;
   const State& state;
-  ContactBuffer& out;
+  ContactBuffer<double>& out;
 
   static HWY_INLINE Vec3<V> some(const Vec3Array& a, std::ptrdiff_t at, int first, int last) {
     const D d;
@@ -101,7 +100,8 @@ struct Floats {
   using D = hn::CappedTag<float, DampedBlock::most>;
   using V = hn::Vec<D>;
   using Place = hn::Vec<hn::RebindToSigned<D>>;
-  DampedElements& out;
+  const DampedElements& elements;
+  ContactBuffer<float>& out;
   float unit;
 
   template <class X>
@@ -111,7 +111,7 @@ struct Floats {
                                       hn::LoadU(d, z.data() + at)};
   }
   HWY_INLINE Motion<Place, V> load(std::ptrdiff_t, std::ptrdiff_t entry, int, int) const {
-    const DampedElements& e = out;
+    const DampedElements& e = elements;
     return {whole(e.x, e.y, e.z, entry), whole(e.vx, e.vy, e.vz, entry), whole(e.wx, e.wy, e.wz, entry)};
   }
   HWY_INLINE Vec3<V> apart(const Vec3<Place>& j, const Vec3<Place>& i) const {
@@ -208,22 +208,15 @@ HWY_INLINE void take(const State& s, const TouchedRange& of, double per_unit, Da
   }
 }
 
-HWY_INLINE void give(const std::vector<float>& from, std::vector<double>& to) {
-  const float* const x = from.data();
-  double* const out = to.data();
-  const std::size_t n = to.size();
-  for (std::size_t k = 0; k < n; ++k) out[k] = static_cast<double>(x[k]);
-}
-
 }  // namespace damping
 
 void BlocksOfState(const ContactViscosity& viscosity, const State& state, const std::vector<DampedBlock>& blocks,
-                   ContactBuffer& out) {
+                   ContactBuffer<double>& out) {
   out.power += damping::all_groups(viscosity, damping::Doubles{state, out}, blocks);
 }
 
 void BlocksInFloats(const ContactViscosity& viscosity, const State& state, const DampedChunk& of, DampedElements& e,
-                    ContactBuffer& out) {
+                    ContactBuffer<float>& out) {
   constexpr std::size_t ahead = 4;  // parts
   for (std::size_t k = 0; k < of.parts.size(); ++k) {
     if (k + ahead < of.parts.size())
@@ -231,13 +224,7 @@ void BlocksInFloats(const ContactViscosity& viscosity, const State& state, const
         ask_for(*v, of.parts[k + ahead].begin, of.parts[k + ahead].end);
     damping::take(state, of.parts[k], 1 / of.unit, e);
   }
-  const auto entries = static_cast<std::size_t>(of.elements) + ContactBuffer::room;
-  for (auto* f : {&e.fx, &e.fy, &e.fz, &e.tx, &e.ty, &e.tz}) std::memset(f->data(), 0, entries * sizeof(float));
-  out.resize(static_cast<std::size_t>(of.elements));
-  out.energy = 0;
-  out.power = damping::all_groups(viscosity, damping::Floats{e, static_cast<float>(of.unit)}, of.blocks);
-  damping::give(e.fx, out.fx), damping::give(e.fy, out.fy), damping::give(e.fz, out.fz);
-  damping::give(e.tx, out.tx), damping::give(e.ty, out.ty), damping::give(e.tz, out.tz);
+  out.power += damping::all_groups(viscosity, damping::Floats{e, out, static_cast<float>(of.unit)}, of.blocks);
 }
 
 }  // namespace ropewalk::HWY_NAMESPACE
@@ -250,12 +237,12 @@ HWY_EXPORT(BlocksOfState);
 HWY_EXPORT(BlocksInFloats);
 
 void contact_damping(const ContactViscosity& viscosity, const State& state, const std::vector<DampedBlock>& blocks,
-                     ContactBuffer& out) {
+                     ContactBuffer<double>& out) {
   HWY_DYNAMIC_DISPATCH(BlocksOfState)(viscosity, state, blocks, out);
 }
 
 void contact_damping(const ContactViscosity& viscosity, const State& state, const DampedChunk& of,
-                     DampedElements& elements, ContactBuffer& out) {
+                     DampedElements& elements, ContactBuffer<float>& out) {
   HWY_DYNAMIC_DISPATCH(BlocksInFloats)(viscosity, state, of, elements, out);
 }
 

@@ -46,33 +46,32 @@ class DampedBlocks {
 };
 
 // Of the elements that a chunk acts on, by their entries in its buffer: places in units, motion in nm/ps and
-// rad/ps, and what acts on them, eV/nm and eV.
+// rad/ps.
 struct DampedElements {
   std::vector<std::int32_t> x, y, z;
-  std::vector<float> vx, vy, vz, wx, wy, wz, fx, fy, fz, tx, ty, tz;
+  std::vector<float> vx, vy, vz, wx, wy, wz;
 
   void make_room(int elements) {
     const auto entries = static_cast<std::size_t>(elements + DampedBlock::most);
     for (auto* v : {&x, &y, &z}) v->resize(entries);
-    for (auto* v : {&vx, &vy, &vz, &wx, &wy, &wz, &fx, &fy, &fz, &tx, &ty, &tz}) v->resize(entries);
+    for (auto* v : {&vx, &vy, &vz, &wx, &wy, &wz}) v->resize(entries);
   }
-  std::size_t bytes() const { return 3 * x.capacity() * sizeof(x[0]) + 12 * fx.capacity() * sizeof(fx[0]); }
+  std::size_t bytes() const { return 3 * x.capacity() * sizeof(x[0]) + 6 * vx.capacity() * sizeof(vx[0]); }
 };
 
-// With the widest vectors that the machine has. In the buffer up to DampedBlock::most entries before the first
-// element and behind the last are read and written as they were.
+// With the widest vectors that the machine has. Added to what the buffer holds, of which a vector behind the last
+// element is read and written as it was.
 void contact_damping(const ContactViscosity& viscosity, const State& state, const std::vector<DampedBlock>& blocks,
-                     ContactBuffer& out);
+                     ContactBuffer<double>& out);
 
-// The blocks of a chunk, the parts that they are within, and so many entries; `unit` is that of the places (nm).
+// The blocks of a chunk and the parts that they are within; `unit` is that of the places (nm).
 struct DampedChunk {
   const std::vector<DampedBlock>& blocks;
   const std::vector<TouchedRange>& parts;
-  int elements;
   double unit;
 };
-// The same in floats, and not added to what the buffer holds: it takes the place of ContactBuffer::clear.
+// The same in floats.
 void contact_damping(const ContactViscosity& viscosity, const State& state, const DampedChunk& of,
-                     DampedElements& elements, ContactBuffer& out);
+                     DampedElements& elements, ContactBuffer<float>& out);
 
 }  // namespace ropewalk

@@ -1,7 +1,6 @@
 // The line law over rows of nodes, for every instruction set that the compiler knows and in two precisions; the
 // machine's best is picked at run time. The arithmetic of the law is in the tables (radial_table.hpp).
 #include "sim/line_engine.hpp"
-#include "sim/plain_vector.hpp"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "sim/contact_line_kernel.cpp"
@@ -213,7 +212,7 @@ struct Element {
   const In& in;
   const LineChunk& chunk;
   LineWork<Real>& work;
-  ContactBuffer& out;
+  ContactBuffer<Real>& out;
   int element, at;           // and its entry in the buffers
   std::size_t row_of_types;  // of its type in the tables of pairs of types
   TubeEnds ends;
@@ -232,8 +231,8 @@ struct Element {
   }
   const TouchedPart& part(const LineRun& run) const { return chunk.parts[static_cast<std::size_t>(run.part)]; }
 
-  HWY_INLINE Element(const In& input, const LineChunk& c, LineWork<Real>& w, ContactBuffer& o, int i, int entry,
-                     int tube)
+  HWY_INLINE Element(const In& input, const LineChunk& c, LineWork<Real>& w, ContactBuffer<Real>& o, int i,
+                     int entry, int tube)
       : in(input), chunk(c), work(w), out(o), element(i), at(entry) {
     const Topology& topology = *in.topology;
     row_of_types =
@@ -449,11 +448,11 @@ struct PairLanes {
   }
 };
 
-HWY_INLINE void add_to(ContactBuffer& out, int at, double sign, const PlainVector& force,
-                       const PlainVector& torque) {
+template <class T>
+HWY_INLINE void add_to(ContactBuffer<T>& out, int at, T sign, const T (&force)[3], const T (&torque)[3]) {
   const auto k = static_cast<std::size_t>(at);
-  out.fx[k] += sign * force.x, out.fy[k] += sign * force.y, out.fz[k] += sign * force.z;
-  out.tx[k] += torque.x, out.ty[k] += torque.y, out.tz[k] += torque.z;
+  out.fx[k] += sign * force[0], out.fy[k] += sign * force[1], out.fz[k] += sign * force[2];
+  out.tx[k] += torque[0], out.ty[k] += torque[1], out.tz[k] += torque[2];
 }
 
 template <class V>
@@ -468,7 +467,7 @@ HWY_INLINE void cross(const V (&a)[3], const V (&b)[3], V (&out)[3]) {
 // of a sum depends on their angle.
 template <class In, class T, class D>
 HWY_INLINE void give_out(const In& in, const PairBatch<T>& batch, int m, const PairTotals<D>& sum, hn::Vec<D> turn,
-                         ContactBuffer& out) {
+                         ContactBuffer<T>& out) {
   using V = hn::Vec<D>;
   constexpr int lanes = static_cast<int>(hn::MaxLanes(D()));
   const D d;
@@ -495,13 +494,10 @@ HWY_INLINE void give_out(const In& in, const PairBatch<T>& batch, int m, const P
     hn::Store(on_i[a], d, all[3 + a]);
     hn::Store(on_j[a], d, all[6 + a]);
   }
-  const auto of = [&](int first, int l) {
-    return PlainVector{static_cast<double>(all[first][l]), static_cast<double>(all[first + 1][l]),
-                       static_cast<double>(all[first + 2][l])};
-  };
   for (int l = 0; l < std::min(lanes, batch.count - m); ++l) {
-    add_to(out, batch.at_i[m + l], -1, of(0, l), of(3, l));
-    add_to(out, batch.at_j[m + l], 1, of(0, l), of(6, l));
+    const T force[3] = {all[0][l], all[1][l], all[2][l]};
+    add_to(out, batch.at_i[m + l], T{-1}, force, {all[3][l], all[4][l], all[5][l]});
+    add_to(out, batch.at_j[m + l], T{1}, force, {all[6][l], all[7][l], all[8][l]});
   }
 }
 
@@ -514,7 +510,7 @@ HWY_INLINE double cosine(const In& in, int i, int j) {
 
 // All pairs of a batch, which is empty then.
 template <bool energies, class In, class T>
-HWY_NOINLINE void meet_pairs(const In& in, PairBatch<T>& batch, ContactBuffer& out) {
+HWY_NOINLINE void meet_pairs(const In& in, PairBatch<T>& batch, ContactBuffer<T>& out) {
   using D = typename Lanes<T>::D;
   const D d;
   const auto& table = in.tables[batch.kind.types];
@@ -572,7 +568,7 @@ HWY_INLINE void add_pair(E& e, const LineRun& run, int j, const SumShare& w) {
 
 // Pairs by rising `beyond`.
 template <bool energies, class In, class T>
-HWY_NOINLINE void meet_alike(const In& in, const AlikePairs& of, LineWork<T>& work, ContactBuffer& out) {
+HWY_NOINLINE void meet_alike(const In& in, const AlikePairs& of, LineWork<T>& work, ContactBuffer<T>& out) {
   PairBatch<T>& batch = work.batch(of.kind);
   const SparseNodes& sparse = in.interaction->line[static_cast<std::size_t>(of.kind.types)].sparse;
   for (const AlikePairs::Pair& p : of.pairs) {
@@ -775,7 +771,8 @@ HWY_INLINE void sum_met(E& e, const MetRows (&met)[line_sums]) {
 
 // The runs at the ends of tubes, whatever sums they take.
 template <bool energies, class In, class Real>
-HWY_NOINLINE void meet_end_runs(const In& in, const LineChunk& chunk, LineWork<Real>& work, ContactBuffer& out) {
+HWY_NOINLINE void meet_end_runs(const In& in, const LineChunk& chunk, LineWork<Real>& work,
+                                ContactBuffer<Real>& out) {
   if (chunk.end_runs.empty()) return;
   const Topology& topology = *in.topology;
   int tube = topology.tube_of(chunk.end_runs.front().element);
@@ -792,7 +789,7 @@ HWY_NOINLINE void meet_end_runs(const In& in, const LineChunk& chunk, LineWork<R
 }
 
 template <bool energies, class In, class Real>
-HWY_INLINE void all_elements(const In& in, const LineChunk& chunk, LineWork<Real>& work, ContactBuffer& out) {
+HWY_INLINE void all_elements(const In& in, const LineChunk& chunk, LineWork<Real>& work, ContactBuffer<Real>& out) {
   const Topology& topology = *in.topology;
   if (in.plan == LinePlan::Use::record) work.plan->clear();
   if (in.plan == LinePlan::Use::replay) work.plan->rewind();
@@ -843,12 +840,12 @@ HWY_INLINE void all_elements(const In& in, const LineChunk& chunk, LineWork<Real
 }
 
 void Mixed(const LineKernelInput<MixedTable, std::int32_t>& in, const LineChunk& chunk, LineWork<float>& work,
-           ContactBuffer& out) {
+           ContactBuffer<float>& out) {
   in.energies ? all_elements<true>(in, chunk, work, out) : all_elements<false>(in, chunk, work, out);
 }
 
 void Full(const LineKernelInput<FullTable, double>& in, const LineChunk& chunk, LineWork<double>& work,
-          ContactBuffer& out) {
+          ContactBuffer<double>& out) {
   in.energies ? all_elements<true>(in, chunk, work, out) : all_elements<false>(in, chunk, work, out);
 }
 
@@ -862,12 +859,12 @@ HWY_EXPORT(Mixed);
 HWY_EXPORT(Full);
 
 void line_contact(const LineKernelInput<MixedTable, std::int32_t>& in, const LineChunk& chunk,
-                  LineWork<float>& work, ContactBuffer& out) {
+                  LineWork<float>& work, ContactBuffer<float>& out) {
   HWY_DYNAMIC_DISPATCH(Mixed)(in, chunk, work, out);
 }
 
 void line_contact(const LineKernelInput<FullTable, double>& in, const LineChunk& chunk, LineWork<double>& work,
-                  ContactBuffer& out) {
+                  ContactBuffer<double>& out) {
   HWY_DYNAMIC_DISPATCH(Full)(in, chunk, work, out);
 }
 

@@ -233,7 +233,7 @@ HWY_INLINE void add_up(const T* from, std::vector<double>& to) {
 
 template <class Powers, bool legacy, bool energies, class T>
 HWY_NOINLINE void all_elements(const PaperKernelInput<T>& in, const NeighbourList::Chunk& chunk,
-                               ContactBuffer& out) {
+                               ContactBuffer<double>& out) {
   const PaperElements<T>& all = *in.elements;
   const PaperTerms<T> law(*in.law);
   OnElements<T> on(out.fx.size());
@@ -264,7 +264,8 @@ HWY_NOINLINE void all_elements(const PaperKernelInput<T>& in, const NeighbourLis
 }
 
 template <class Powers, class T>
-HWY_INLINE void variant(const PaperKernelInput<T>& in, const NeighbourList::Chunk& chunk, ContactBuffer& out) {
+HWY_INLINE void variant(const PaperKernelInput<T>& in, const NeighbourList::Chunk& chunk,
+                        ContactBuffer<double>& out) {
   if (in.legacy_torque) {
     all_elements<Powers, true, true>(in, chunk, out);
   } else if (in.energies) {
@@ -275,7 +276,7 @@ HWY_INLINE void variant(const PaperKernelInput<T>& in, const NeighbourList::Chun
 }
 
 template <class T>
-HWY_INLINE void any(const PaperKernelInput<T>& in, const NeighbourList::Chunk& chunk, ContactBuffer& out) {
+HWY_INLINE void any(const PaperKernelInput<T>& in, const NeighbourList::Chunk& chunk, ContactBuffer<double>& out) {
   if (in.law->has_published_powers()) {
     variant<PublishedPowers>(in, chunk, out);
   } else {
@@ -285,11 +286,11 @@ HWY_INLINE void any(const PaperKernelInput<T>& in, const NeighbourList::Chunk& c
 
 }  // namespace paper
 
-void PaperMixed(const PaperKernelInput<float>& in, const NeighbourList::Chunk& chunk, ContactBuffer& out) {
+void PaperMixed(const PaperKernelInput<float>& in, const NeighbourList::Chunk& chunk, ContactBuffer<double>& out) {
   paper::any(in, chunk, out);
 }
 
-void PaperFull(const PaperKernelInput<double>& in, const NeighbourList::Chunk& chunk, ContactBuffer& out) {
+void PaperFull(const PaperKernelInput<double>& in, const NeighbourList::Chunk& chunk, ContactBuffer<double>& out) {
   paper::any(in, chunk, out);
 }
 
@@ -302,11 +303,13 @@ namespace ropewalk {
 HWY_EXPORT(PaperMixed);
 HWY_EXPORT(PaperFull);
 
-void paper_contact(const PaperKernelInput<float>& in, const NeighbourList::Chunk& chunk, ContactBuffer& out) {
+void paper_contact(const PaperKernelInput<float>& in, const NeighbourList::Chunk& chunk,
+                   ContactBuffer<double>& out) {
   HWY_DYNAMIC_DISPATCH(PaperMixed)(in, chunk, out);
 }
 
-void paper_contact(const PaperKernelInput<double>& in, const NeighbourList::Chunk& chunk, ContactBuffer& out) {
+void paper_contact(const PaperKernelInput<double>& in, const NeighbourList::Chunk& chunk,
+                   ContactBuffer<double>& out) {
   HWY_DYNAMIC_DISPATCH(PaperFull)(in, chunk, out);
 }
 

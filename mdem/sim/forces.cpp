@@ -184,7 +184,7 @@ void ForceEngine::make_all_axes(const State& state) {
 
 std::size_t ForceEngine::bytes() const {
   std::size_t total = 3 * axis_.size() * sizeof(double);
-  for (const ContactBuffer& b : buffers_) total += 6 * b.fx.capacity() * sizeof(double);
+  for (const ContactBuffer<double>& b : buffers_) total += b.bytes();
   return total + line_.bytes() + paper_.bytes();
 }
 
@@ -192,7 +192,7 @@ std::size_t ForceEngine::bytes() const {
 void ForceEngine::add_buffers(const NeighbourList& list, int from, int to, Forces& out) const {
   for (std::size_t k = 0; k < list.chunks().size(); ++k) {
     const auto& chunk = list.chunks()[k];
-    const ContactBuffer& b = buffers_[k];
+    const ContactBuffer<double>& b = buffers_[k];
     const int low = std::max(from, chunk.touched_begin), high = std::min(to, chunk.touched_end);
     for (int i = low; i < high; ++i) {
       const auto at = static_cast<std::size_t>(i - chunk.touched_begin);
@@ -262,7 +262,7 @@ void ForceEngine::compute(const Topology& topology, const Interaction& interacti
     out.damping_power += line_.damping_power();
   }
   if (by_paper)
-    for (const ContactBuffer& b : buffers_) {
+    for (const ContactBuffer<double>& b : buffers_) {
       out.energy.vdw += b.energy;
       out.damping_power += b.power;
     }

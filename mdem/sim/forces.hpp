@@ -103,8 +103,8 @@ class ForceEngine {
   void add_buffers(const NeighbourList& list, int from, int to, Forces& out) const;
 
   TubeParts parts_;
-  Vec3Array axis_;                      // of all elements
-  std::vector<ContactBuffer> buffers_;  // of each chunk
+  Vec3Array axis_;                              // of all elements
+  std::vector<ContactBuffer<double>> buffers_;  // of each chunk
   LineEngine line_;
   PaperEngine paper_;
   Times times_;

@@ -22,16 +22,34 @@ void make_tables(Buffers& b, const Interaction& in, double unit) {
 }
 
 // What a buffer holds for elements of a tube, element j at j + shift.
-ROPEWALK_VECTOR_CLONES void add_range(const TouchedRange& of, const ContactBuffer& b, Vec3Array& force,
-                                      Vec3Array& torque) {
-  const std::vector<double>* const from[6] = {&b.fx, &b.fy, &b.fz, &b.tx, &b.ty, &b.tz};
+template <class T>
+__attribute__((always_inline)) inline void add_all(const TouchedRange& of, const ContactBuffer<T>& b,
+                                                   Vec3Array& force, Vec3Array& torque) {
+  const std::vector<T>* const from[6] = {&b.fx, &b.fy, &b.fz, &b.tx, &b.ty, &b.tz};
   std::vector<double>* const to[6] = {&force.x, &force.y, &force.z, &torque.x, &torque.y, &torque.z};
   for (int a = 0; a < 6; ++a) {
-    const double* const on = from[a]->data() + of.shift;
+    const T* const on = from[a]->data() + of.shift;
     double* const sum = to[a]->data();
 #pragma omp simd
-    for (int i = of.begin; i < of.end; ++i) sum[i] += on[i];
+    for (int i = of.begin; i < of.end; ++i) sum[i] += static_cast<double>(on[i]);
   }
+}
+ROPEWALK_VECTOR_CLONES void add_range(const TouchedRange& of, const ContactBuffer<float>& b, Vec3Array& force,
+                                      Vec3Array& torque) {
+  add_all(of, b, force, torque);
+}
+ROPEWALK_VECTOR_CLONES void add_range(const TouchedRange& of, const ContactBuffer<double>& b, Vec3Array& force,
+                                      Vec3Array& torque) {
+  add_all(of, b, force, torque);
+}
+
+void add_viscosity(const ContactViscosity& viscosity, const State& state, const LineChunk& chunk, double /*unit*/,
+                   LineWork<double>& /*work*/, ContactBuffer<double>& out) {
+  contact_damping(viscosity, state, chunk.damped, out);
+}
+void add_viscosity(const ContactViscosity& viscosity, const State& state, const LineChunk& chunk, double unit,
+                   LineWork<float>& work, ContactBuffer<float>& out) {
+  contact_damping(viscosity, state, {chunk.damped, chunk.damped_parts, unit}, work.damped, out);
 }
 
 }  // namespace
@@ -47,7 +65,6 @@ void LineEngine::describe(const Topology& topology, const Interaction& in, const
       places.push_back(
           node_places(list_.per_element(kind, static_cast<int>(a)), in.line[a * topology.types.size()].length_i));
   }
-  buffers_.resize(list_.chunks().size());
   if (full_) {
     make_tables(full_buffers_, in, 1);
   } else {
@@ -57,6 +74,7 @@ void LineEngine::describe(const Topology& topology, const Interaction& in, const
 
 template <class Buffers>
 void LineEngine::make_room(Buffers& b, std::size_t threads) const {
+  b.of_chunks.resize(list_.chunks().size());
   b.nodes.resize(threads);
   b.work.resize(threads);
   for (auto& rows : b.nodes)
@@ -74,19 +92,13 @@ void LineEngine::meet(std::size_t k, std::size_t thread, Buffers& b, KernelInput
   const LineChunk& chunk = list_.chunks()[k];
   LineNodes<typename Buffers::C>* const nodes = b.nodes[thread].data();
   auto& work = b.work[thread];
-  ContactBuffer& out = buffers_[k];
+  auto& out = b.of_chunks[k];
   const RowsOf rows{chunk, in.topology->tube_type, places_, in.state->position, *in.axis, in.moved};
   place_nodes(rows, nodes);
   in.nodes = nodes;
-  const bool damped = in.interaction->damped_contact();
-  const ContactViscosity& viscosity = in.interaction->damping.contact;
-  if (damped && !full_) {
-    contact_damping(viscosity, *in.state, {chunk.damped, chunk.damped_parts, chunk.elements, list_.unit()},
-                    work.damped, out);
-  } else {
-    out.clear(static_cast<std::size_t>(chunk.elements));
-    if (damped) contact_damping(viscosity, *in.state, chunk.damped, out);
-  }
+  out.clear(static_cast<std::size_t>(chunk.elements));
+  if (in.interaction->damped_contact())
+    add_viscosity(in.interaction->damping.contact, *in.state, chunk, list_.unit(), work, out);
   work.start(chunk, plan_.chunk(k));
   line_contact(in, chunk, work, out);
   add_node_forces(rows, work.forces, out);
@@ -188,26 +200,32 @@ void LineEngine::add_to(const Segment& part, Vec3Array& force, Vec3Array& torque
     const TouchedRange of{std::max(part.begin, touched.begin), std::min(part.end, touched.end),
                           touched.element_shift};
     if (of.begin < of.end && touched.in_reach(moved_))
-      add_range(of, buffers_[static_cast<std::size_t>(touch->chunk)], force, torque);
+      in_use([&](const auto& b) {
+        add_range(of, b.of_chunks[static_cast<std::size_t>(touch->chunk)], force, torque);
+      });
   }
 }
 
 double LineEngine::energy() const {
-  double sum = 0;
-  for (const ContactBuffer& b : buffers_) sum += b.energy;
-  return sum;
+  return in_use([](const auto& b) {
+    double sum = 0;
+    for (const auto& out : b.of_chunks) sum += out.energy;
+    return sum;
+  });
 }
 
 double LineEngine::damping_power() const {
-  double sum = 0;
-  for (const ContactBuffer& b : buffers_) sum += b.power;
-  return sum;
+  return in_use([](const auto& b) {
+    double sum = 0;
+    for (const auto& out : b.of_chunks) sum += out.power;
+    return sum;
+  });
 }
 
 std::size_t LineEngine::bytes() const {
   std::size_t total = list_.bytes() + plan_.bytes();
-  for (const ContactBuffer& b : buffers_) total += 6 * b.fx.capacity() * sizeof(double);
   const auto count = [&](const auto& b) {
+    for (const auto& out : b.of_chunks) total += out.bytes();
     for (const auto& rows : b.nodes)
       for (const auto& nodes : rows) total += 3 * nodes.x.capacity() * sizeof(nodes.x[0]);
     for (const auto& work : b.work) {

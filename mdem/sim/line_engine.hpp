@@ -232,6 +232,7 @@ struct LineBuffers {
   // Rows, and forces on them, of the chunk that each thread is at.
   std::vector<std::array<LineNodes<C>, row_kinds>> nodes;
   std::vector<LineWork<T>> work;
+  std::vector<ContactBuffer<T>> of_chunks;
 };
 using MixedBuffers = LineBuffers<MixedTable, std::int32_t>;
 using FullBuffers = LineBuffers<FullTable, double>;
@@ -239,9 +240,9 @@ using FullBuffers = LineBuffers<FullTable, double>;
 // The kernel: one chunk, with the widest vectors that the machine has. `out` takes energies and what acts on whole
 // elements, `work` what acts on the nodes of the neighbours.
 void line_contact(const LineKernelInput<MixedTable, std::int32_t>& in, const LineChunk& chunk,
-                  LineWork<float>& work, ContactBuffer& out);
+                  LineWork<float>& work, ContactBuffer<float>& out);
 void line_contact(const LineKernelInput<FullTable, double>& in, const LineChunk& chunk, LineWork<double>& work,
-                  ContactBuffer& out);
+                  ContactBuffer<double>& out);
 // Instruction sets of the kernel that this machine can run, best first; use_instructions limits the choice to one
 // of them ("" lifts the limit) and returns false where there is none of that name. For tests and `bench`.
 std::vector<std::string> instruction_sets();
@@ -290,6 +291,11 @@ class LineEngine {
   template <class Buffers>
   void meet(std::size_t chunk, std::size_t thread, Buffers& b, KernelInput<Buffers> in);
   void describe(const Topology& topology, const Interaction& interaction, const NeighbourList& list);
+  // What `of` makes of the buffers in use.
+  template <class Of>
+  auto in_use(const Of& of) const {
+    return full_ ? of(full_buffers_) : of(mixed_);
+  }
 
   LineList list_;
   long stamp_ = 0;
@@ -298,7 +304,6 @@ class LineEngine {
   bool full_ = false;
   LinePlan plan_;
   std::vector<NodePlaces> places_[row_kinds];  // of each tube type
-  std::vector<ContactBuffer> buffers_;         // of each chunk
   WorkShares shares_;
   TubeCounters left_;  // chunks that have yet to act on each tube
   MixedBuffers mixed_;

@@ -149,15 +149,16 @@ struct Component {
   const T* m1;
 };
 template <class T>
-HWY_INLINE void add_component(const Component<T>& c, double step, int elements, double* force, double* torque) {
+HWY_INLINE void add_component(const Component<T>& c, double step, int elements, T* force, T* torque) {
   for (int i = 0; i < elements; ++i) {
-    force[i] += static_cast<double>(c.f[i]);
-    torque[i] += step * (c.n1[i] * static_cast<double>(c.m2[i]) - c.n2[i] * static_cast<double>(c.m1[i]));
+    force[i] += c.f[i];
+    torque[i] +=
+        static_cast<T>(step * (c.n1[i] * static_cast<double>(c.m2[i]) - c.n2[i] * static_cast<double>(c.m1[i])));
   }
 }
 
 template <class T>
-HWY_INLINE void add_forces(const RowsOf& of, const NodeForces<T>* forces, ContactBuffer& out) {
+HWY_INLINE void add_forces(const RowsOf& of, const NodeForces<T>* forces, ContactBuffer<T>& out) {
   T fx[block], fy[block], fz[block], mx[block], my[block], mz[block];
   for_rows(of, [&](std::size_t p, std::size_t kind, const PartRow& row) HWY_ATTR {
     const NodeForces<T>& f = forces[kind];
@@ -170,7 +171,7 @@ HWY_INLINE void add_forces(const RowsOf& of, const NodeForces<T>* forces, Contac
       moments(f.z.data() + at, elements, row.each, fz, mz);
       const double step = row.places.step, *nx = of.axis.x.data() + from + k, *ny = of.axis.y.data() + from + k,
                    *nz = of.axis.z.data() + from + k;
-      const auto to = [&](std::vector<double>& v) { return v.data() + entry + k; };
+      const auto to = [&](std::vector<T>& v) { return v.data() + entry + k; };
       add_component<T>({fx, ny, mz, nz, my}, step, elements, to(out.fx), to(out.tx));
       add_component<T>({fy, nz, mx, nx, mz}, step, elements, to(out.fy), to(out.ty));
       add_component<T>({fz, nx, my, ny, mx}, step, elements, to(out.fz), to(out.tz));
@@ -182,10 +183,10 @@ HWY_INLINE void add_forces(const RowsOf& of, const NodeForces<T>* forces, Contac
 
 void PlaceUnits(const RowsOf& of, LineNodes<std::int32_t>* nodes) { rows::place(of, nodes); }
 void PlaceNm(const RowsOf& of, LineNodes<double>* nodes) { rows::place(of, nodes); }
-void AddFloats(const RowsOf& of, const NodeForces<float>* forces, ContactBuffer& out) {
+void AddFloats(const RowsOf& of, const NodeForces<float>* forces, ContactBuffer<float>& out) {
   rows::add_forces(of, forces, out);
 }
-void AddDoubles(const RowsOf& of, const NodeForces<double>* forces, ContactBuffer& out) {
+void AddDoubles(const RowsOf& of, const NodeForces<double>* forces, ContactBuffer<double>& out) {
   rows::add_forces(of, forces, out);
 }
 
@@ -202,10 +203,10 @@ HWY_EXPORT(AddDoubles);
 
 void place_nodes(const RowsOf& of, LineNodes<std::int32_t>* rows) { HWY_DYNAMIC_DISPATCH(PlaceUnits)(of, rows); }
 void place_nodes(const RowsOf& of, LineNodes<double>* rows) { HWY_DYNAMIC_DISPATCH(PlaceNm)(of, rows); }
-void add_node_forces(const RowsOf& of, const NodeForces<float>* forces, ContactBuffer& out) {
+void add_node_forces(const RowsOf& of, const NodeForces<float>* forces, ContactBuffer<float>& out) {
   HWY_DYNAMIC_DISPATCH(AddFloats)(of, forces, out);
 }
-void add_node_forces(const RowsOf& of, const NodeForces<double>* forces, ContactBuffer& out) {
+void add_node_forces(const RowsOf& of, const NodeForces<double>* forces, ContactBuffer<double>& out) {
   HWY_DYNAMIC_DISPATCH(AddDoubles)(of, forces, out);
 }
 

@@ -70,8 +70,8 @@ struct RowsOf {
 void place_nodes(const RowsOf& of, LineNodes<std::int32_t>* rows);
 void place_nodes(const RowsOf& of, LineNodes<double>* rows);
 // Adds what acts on the nodes to the buffer of the chunk.
-void add_node_forces(const RowsOf& of, const NodeForces<float>* forces, ContactBuffer& out);
-void add_node_forces(const RowsOf& of, const NodeForces<double>* forces, ContactBuffer& out);
+void add_node_forces(const RowsOf& of, const NodeForces<float>* forces, ContactBuffer<float>& out);
+void add_node_forces(const RowsOf& of, const NodeForces<double>* forces, ContactBuffer<double>& out);
 
 // The places of `count` nodes on elements of a length (nm).
 NodePlaces node_places(int count, double length);

@@ -25,7 +25,7 @@ void PaperElements<T>::place(const Vec3Array& position, const Vec3Array& axis, s
 
 template <class T>
 void PaperEngine::run(PaperElements<T>& elements, const Interaction& in, const NeighbourList& list,
-                      const State& state, const Vec3Array& axis, ContactBuffer* buffers, bool energies) {
+                      const State& state, const Vec3Array& axis, ContactBuffer<double>* buffers, bool energies) {
   const auto n = static_cast<std::ptrdiff_t>(state.size());
   constexpr std::ptrdiff_t block = 512;
   elements.resize(state.size());
@@ -67,7 +67,8 @@ void PaperEngine::list_damped(const Topology& topology, const Interaction& in, c
 }
 
 void PaperEngine::compute(const Topology& topology, const Interaction& in, const NeighbourList& list,
-                          const State& state, const Vec3Array& axis, ContactBuffer* buffers, bool energies) {
+                          const State& state, const Vec3Array& axis, ContactBuffer<double>* buffers,
+                          bool energies) {
   if (stamp_ != list.stamp()) {
     const double began = omp_get_wtime();
     runs_.build(list, in.paper->cutoff());

@@ -39,14 +39,16 @@ struct PaperKernelInput {
 };
 
 // One chunk with the widest vectors that the machine has.
-void paper_contact(const PaperKernelInput<float>& in, const NeighbourList::Chunk& chunk, ContactBuffer& out);
-void paper_contact(const PaperKernelInput<double>& in, const NeighbourList::Chunk& chunk, ContactBuffer& out);
+void paper_contact(const PaperKernelInput<float>& in, const NeighbourList::Chunk& chunk,
+                   ContactBuffer<double>& out);
+void paper_contact(const PaperKernelInput<double>& in, const NeighbourList::Chunk& chunk,
+                   ContactBuffer<double>& out);
 
 class PaperEngine {
  public:
   // Fills buffers[chunk].
   void compute(const Topology& topology, const Interaction& interaction, const NeighbourList& list,
-               const State& state, const Vec3Array& axis, ContactBuffer* buffers, bool energies = true);
+               const State& state, const Vec3Array& axis, ContactBuffer<double>* buffers, bool energies = true);
   const PairRuns& runs() const { return runs_; }
   double list_seconds() const { return list_seconds_; }  // spent on the runs so far
   std::size_t bytes() const;
@@ -54,7 +56,7 @@ class PaperEngine {
  private:
   template <class T>
   void run(PaperElements<T>& elements, const Interaction& interaction, const NeighbourList& list,
-           const State& state, const Vec3Array& axis, ContactBuffer* buffers, bool energies);
+           const State& state, const Vec3Array& axis, ContactBuffer<double>* buffers, bool energies);
 
   void list_damped(const Topology& topology, const Interaction& interaction, const NeighbourList& list);
 

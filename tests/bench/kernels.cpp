@@ -38,7 +38,7 @@ void PaperKernel(benchmark::State& bench, const std::string& instructions, Inter
   use_instructions(instructions);
   const Rope rope(static_cast<int>(bench.range(0)), 50, Law::paper, precision);
   PaperEngine engine;
-  std::vector<ContactBuffer> buffers(rope.list.chunks().size());
+  std::vector<ContactBuffer<double>> buffers(rope.list.chunks().size());
   for (auto _ : bench) {
     engine.compute(rope.topology, rope.in, rope.list, rope.state, rope.axis, buffers.data());
     benchmark::ClobberMemory();

@@ -251,31 +251,31 @@ void LineListBuild(benchmark::State& bench) {
 }
 BENCHMARK(LineListBuild)->Arg(7)->Arg(91);
 
-void ViscousDamping(benchmark::State& bench, Precision precision) {
-  const Rope rope(static_cast<int>(bench.range(0)), 49, Law::line, precision, 20);
+template <class T>
+void ViscousDamping(benchmark::State& bench) {
+  constexpr bool mixed = std::is_same_v<T, float>;
+  const Rope rope(static_cast<int>(bench.range(0)), 49, Law::line, mixed ? Precision::mixed : Precision::full, 20);
   LineList list;
   list.build(rope.topology, rope.in, rope.list);
   const ContactViscosity& viscosity = rope.in.damping.contact;
-  std::vector<ContactBuffer> buffers(list.chunks().size());
+  std::vector<ContactBuffer<T>> buffers(list.chunks().size());
   DampedElements floats;
   floats.make_room(list.most_elements());
   for (auto _ : bench) {
     for (std::size_t k = 0; k < buffers.size(); ++k) {
       const LineChunk& chunk = list.chunks()[k];
-      if (precision == Precision::mixed) {
-        contact_damping(viscosity, rope.state, {chunk.damped, chunk.damped_parts, chunk.elements, list.unit()},
-                        floats, buffers[k]);
-      } else {
-        buffers[k].clear(static_cast<std::size_t>(chunk.elements));
+      buffers[k].clear(static_cast<std::size_t>(chunk.elements));
+      if constexpr (mixed)
+        contact_damping(viscosity, rope.state, {chunk.damped, chunk.damped_parts, list.unit()}, floats, buffers[k]);
+      else
         contact_damping(viscosity, rope.state, chunk.damped, buffers[k]);
-      }
     }
     benchmark::ClobberMemory();
   }
   set_ns(bench, "ns/element", rope.elements());
 }
-BENCHMARK_CAPTURE(ViscousDamping, mixed, Precision::mixed)->Arg(7)->Arg(91);
-BENCHMARK_CAPTURE(ViscousDamping, full, Precision::full)->Arg(7)->Arg(91);
+BENCHMARK_TEMPLATE(ViscousDamping, float)->Arg(7)->Arg(91);
+BENCHMARK_TEMPLATE(ViscousDamping, double)->Arg(7)->Arg(91);
 
 void register_kernel(const Choice& c, const std::string& also = "") {
   const std::string name = "LineKernel/" + c.instructions + (c.precision == Precision::full ? "/full" : "/mixed") +
