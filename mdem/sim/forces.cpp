@@ -11,16 +11,17 @@ namespace ropewalk {
 
 namespace {
 
-// frame_of() over plain numbers, which the compiler vectorises; element `begin` becomes frame 0.
+// frame_of() over plain numbers, which the compiler vectorises; element `origin` becomes frame 0.
 ROPEWALK_VECTOR_CLONES
-void frames_of(const QuaternionArray& q, std::ptrdiff_t begin, std::ptrdiff_t end, FrameArray& out) {
-  const double *qw = q.w.data() + begin, *qx = q.x.data() + begin, *qy = q.y.data() + begin,
-               *qz = q.z.data() + begin;
+void frames_of(const QuaternionArray& q, std::ptrdiff_t origin, std::ptrdiff_t begin, std::ptrdiff_t end,
+               FrameArray& out) {
+  const double *qw = q.w.data() + origin, *qx = q.x.data() + origin, *qy = q.y.data() + origin,
+               *qz = q.z.data() + origin;
   double *ax = out.e1.x.data(), *ay = out.e1.y.data(), *az = out.e1.z.data(), *bx = out.e2.x.data(),
          *by = out.e2.y.data(), *bz = out.e2.z.data(), *tx = out.t.x.data(), *ty = out.t.y.data(),
          *tz = out.t.z.data();
 #pragma GCC ivdep
-  for (std::ptrdiff_t i = 0; i < end - begin; ++i) {
+  for (std::ptrdiff_t i = begin - origin; i < end - origin; ++i) {
     const double w = qw[i], x = qx[i], y = qy[i], z = qz[i];
     ax[i] = 1 - 2 * (y * y + z * z), ay[i] = 2 * (x * y + w * z), az[i] = 2 * (x * z - w * y);
     bx[i] = 2 * (x * y - w * z), by[i] = 1 - 2 * (x * x + z * z), bz[i] = 2 * (y * z + w * x);
@@ -112,8 +113,8 @@ double bond_damping(const TubeType& type, const BondDamping& damping, const Stat
   return power;
 }
 
-// What the bonds of a tube, of which there are so many here, do to the elements from .. to - 1: bond i acts on the
-// elements i and i + 1.
+// What the bonds of a tube, of which there are so many here, do to the elements from .. to - 1, the first one's at
+// 0: bond i acts on the elements i and i + 1.
 ROPEWALK_VECTOR_CLONES
 void collect_bonds(const std::vector<double>& on_i, double sign_i, const std::vector<double>& on_j,
                    std::ptrdiff_t bonds, std::ptrdiff_t from, std::ptrdiff_t to, double* out) {
@@ -121,39 +122,74 @@ void collect_bonds(const std::vector<double>& on_i, double sign_i, const std::ve
   if (from == 0) out[0] = bonds > 0 ? sign_i * a[0] : 0.0;
 #pragma omp simd
   for (std::ptrdiff_t i = std::max<std::ptrdiff_t>(from, 1); i < std::min(to, bonds); ++i)
-    out[i] = sign_i * a[i] + b[i - 1];
-  if (bonds > 0 && to == bonds + 1) out[bonds] = b[bonds - 1];
+    out[i - from] = sign_i * a[i] + b[i - 1];
+  if (bonds > 0 && to == bonds + 1) out[bonds - from] = b[bonds - 1];
 }
 
-// Sets forces and torques of a part of a tube to those of its bonds, with those to the elements before and behind
-// it. The sums leave out the bond to the element before: it is in those of the part before.
-BondSum compute_bonds(const Topology& topology, const Interaction& interaction, const State& state,
-                      const Segment& of, Forces& out) {
-  thread_local TubeBonds work;
-  const std::ptrdiff_t begin = std::max(of.begin - 1, topology.tube_begin[of.tube]),
-                       end = std::min(of.end + 1, topology.tube_begin[of.tube + 1]), elements = end - begin,
-                       bonds = elements - 1, from = of.begin - begin, to = of.end - begin;
-  const TubeType& type = topology.type_of(of.tube);
-  work.resize(static_cast<std::size_t>(elements));
-  frames_of(state.orientation, begin, end, work.frames);
-  BondArray& each = work.bonds;
-  const BondRange own{begin, from, std::min(to, bonds)}, before{begin, 0, from};
+// The bonds of the range, with their damping: into `each`, from frames that are in `work`.
+BondSum bonds_of(const Topology& topology, const Interaction& interaction, const State& state, int tube,
+                 const BondRange& range, TubeBonds& work) {
+  const TubeType& type = topology.type_of(tube);
   BondSum sum;
-  double slips = 1, other = 1;
-  sum.energy = bond_forces(type, state.position, work.frames, own, each, slips);
-  if (from > 0) bond_forces(type, state.position, work.frames, before, each, other);
-  for (std::ptrdiff_t i = own.from; !(slips > 0) && i < own.to && sum.slipping < 0; ++i) {
+  double slips = 1;
+  sum.energy = bond_forces(type, state.position, work.frames, range, work.bonds, slips);
+  for (std::ptrdiff_t i = range.from; !(slips > 0) && i < range.to && sum.slipping < 0; ++i) {
     const Frame<double> fi = work.frames[static_cast<std::size_t>(i)],
                         fj = work.frames[static_cast<std::size_t>(i + 1)];
-    if (!(fi.e1.dot(fj.e1) + fi.e2.dot(fj.e2) > 0)) sum.slipping = static_cast<int>(begin + i);
+    if (!(fi.e1.dot(fj.e1) + fi.e2.dot(fj.e2) > 0)) sum.slipping = static_cast<int>(range.begin + i);
   }
-  if (interaction.damping.bond.rate > 0) {
-    sum.power = bond_damping(type, interaction.damping.bond, state, own, each);
-    if (from > 0) bond_damping(type, interaction.damping.bond, state, before, each);
+  if (interaction.damping.bond.rate > 0)
+    sum.power = bond_damping(type, interaction.damping.bond, state, range, work.bonds);
+  return sum;
+}
+
+// The bond from element i to the next.
+Joint joint_behind(const Topology& topology, const Interaction& interaction, const State& state, int tube, int i) {
+  thread_local TubeBonds work;
+  work.resize(2);
+  frames_of(state.orientation, i, i, i + 2, work.frames);
+  Joint out;
+  out.sum = bonds_of(topology, interaction, state, tube, {i, 0, 1}, work);
+  out.force_j = work.bonds.force_j[0];
+  out.torque_i = work.bonds.torque_i[0];
+  out.torque_j = work.bonds.torque_j[0];
+  return out;
+}
+
+void put(const Joint& joint, std::size_t at, BondArray& bonds) {
+  bonds.force_j.set(at, joint.force_j);
+  bonds.torque_i.set(at, joint.torque_i);
+  bonds.torque_j.set(at, joint.torque_j);
+}
+
+void add(const BondSum& of, BondSum& sum) {
+  sum.energy.stretch += of.energy.stretch;
+  sum.energy.shear += of.energy.shear;
+  sum.energy.bend += of.energy.bend;
+  sum.energy.twist += of.energy.twist;
+  sum.power += of.power;
+  if (sum.slipping < 0) sum.slipping = of.slipping;
+}
+
+// Sets forces and torques of a part of a tube to those of its bonds, with those to the parts before and behind it
+// (null: none). The sums leave out the former, which is in those of the part before.
+BondSum compute_bonds(const Topology& topology, const Interaction& interaction, const State& state,
+                      const Segment& of, const Joint* before, const Joint* behind, const ForceRows& out) {
+  thread_local TubeBonds work;
+  const std::ptrdiff_t from = before ? 1 : 0, begin = of.begin - from, to = of.end - begin,
+                       bonds = to - 1 + (behind ? 1 : 0);
+  BondArray& each = work.bonds;
+  work.resize(static_cast<std::size_t>(to));
+  frames_of(state.orientation, begin, of.begin, of.end, work.frames);
+  BondSum sum = bonds_of(topology, interaction, state, of.tube, {begin, from, to - 1}, work);
+  if (before) put(*before, 0, each);
+  if (behind) {
+    put(*behind, static_cast<std::size_t>(to - 1), each);
+    add(behind->sum, sum);
   }
   const auto collect = [&](const std::vector<double>& on_i, double sign_i, const std::vector<double>& on_j,
                            std::vector<double>& sums) {
-    collect_bonds(on_i, sign_i, on_j, bonds, from, to, sums.data() + begin);
+    collect_bonds(on_i, sign_i, on_j, bonds, from, to, sums.data() + (of.begin - out.origin));
   };
   collect(each.force_j.x, -1, each.force_j.x, out.force.x);
   collect(each.force_j.y, -1, each.force_j.y, out.force.y);
@@ -164,9 +200,10 @@ BondSum compute_bonds(const Topology& topology, const Interaction& interaction, 
   return sum;
 }
 
-void clear(Forces& out, std::ptrdiff_t begin, std::ptrdiff_t end) {
+void clear(const Segment& of, const ForceRows& out) {
   for (Vec3Array* v : {&out.force, &out.torque})
-    for (std::vector<double>* c : {&v->x, &v->y, &v->z}) std::fill(c->begin() + begin, c->begin() + end, 0.0);
+    for (std::vector<double>* c : {&v->x, &v->y, &v->z})
+      std::fill(c->begin() + (of.begin - out.origin), c->begin() + (of.end - out.origin), 0.0);
 }
 
 }  // namespace
@@ -189,50 +226,77 @@ std::size_t ForceEngine::bytes() const {
 }
 
 // Of all chunks in their fixed order, on the elements from .. to.
-void ForceEngine::add_buffers(const NeighbourList& list, int from, int to, Forces& out) const {
+void ForceEngine::add_buffers(const NeighbourList& list, int from, int to, const ForceRows& out) const {
   for (std::size_t k = 0; k < list.chunks().size(); ++k) {
     const auto& chunk = list.chunks()[k];
     const ContactBuffer<double>& b = buffers_[k];
     const int low = std::max(from, chunk.touched_begin), high = std::min(to, chunk.touched_end);
     for (int i = low; i < high; ++i) {
-      const auto at = static_cast<std::size_t>(i - chunk.touched_begin);
-      out.force.x[i] += b.fx[at];
-      out.force.y[i] += b.fy[at];
-      out.force.z[i] += b.fz[at];
-      out.torque.x[i] += b.tx[at];
-      out.torque.y[i] += b.ty[at];
-      out.torque.z[i] += b.tz[at];
+      const auto at = static_cast<std::size_t>(i - chunk.touched_begin),
+                 to_row = static_cast<std::size_t>(i - out.origin);
+      out.force.x[to_row] += b.fx[at];
+      out.force.y[to_row] += b.fy[at];
+      out.force.z[to_row] += b.fz[at];
+      out.torque.x[to_row] += b.tx[at];
+      out.torque.y[to_row] += b.ty[at];
+      out.torque.z[to_row] += b.tz[at];
     }
   }
 }
 
 void ForceEngine::compute(const Topology& topology, const Interaction& interaction, const NeighbourList& list,
-                          const State& state, Forces& out, bool energies, Parts parts, bool axes_made) {
-  const double t0 = omp_get_wtime(), finished_before = line_.finish_seconds();
-  const bool contact = interaction.has_contact() && parts != Parts::bonds, bonds = parts != Parts::contact;
+                          const State& state, Forces& out, const ForceOptions& options) {
+  const double t0 = omp_get_wtime(), finished_before = line_.finish_seconds(), then_before = times_.then;
+  const bool contact = interaction.has_contact() && options.parts != Parts::bonds,
+             bonds = options.parts != Parts::contact;
   const bool by_line = contact && !interaction.paper, by_paper = contact && !by_line;
   if (contact) axis_.resize(state.size());
-  if (by_paper && !axes_made) make_all_axes(state);  // by the line law with the nodes
+  if (by_paper && !options.axes_made) make_all_axes(state);  // by the line law with the nodes
   const double t1 = omp_get_wtime();
 
   // Part by part of the tubes: the bonds, and what the contact buffers hold, in their fixed order.
   parts_.cut(topology);
   const int tube_parts = parts_.count();
+  joints_.resize(static_cast<std::size_t>(tube_parts));
   std::vector<BondSum> sums(static_cast<std::size_t>(tube_parts));
-  const auto finish = [&](int k) {
+  const auto joint_of = [&](int k, int element) -> Joint* {
+    const Segment& part = parts_[k];
+    return element > topology.tube_begin[part.tube] && element < topology.tube_begin[part.tube + 1]
+               ? &joints_[static_cast<std::size_t>(element == part.begin ? k - 1 : k)]
+               : nullptr;
+  };
+  const auto join = [&](int tube) {
+    for (int k = parts_.begin(tube); bonds && k + 1 < parts_.begin(tube + 1); ++k)
+      joints_[static_cast<std::size_t>(k)] = joint_behind(topology, interaction, state, tube, parts_[k].end - 1);
+  };
+  const auto finish = [&](int k, const ForceRows& on) {
     const Segment& part = parts_[k];
     if (bonds)
-      sums[static_cast<std::size_t>(k)] = compute_bonds(topology, interaction, state, part, out);
+      sums[static_cast<std::size_t>(k)] =
+          compute_bonds(topology, interaction, state, part, joint_of(k, part.begin), joint_of(k, part.end), on);
     else
-      clear(out, part.begin, part.end);
-    if (by_paper) add_buffers(list, part.begin, part.end, out);
-    if (by_line) line_.add_to(part, out.force, out.torque);
+      clear(part, on);
+    if (by_paper) add_buffers(list, part.begin, part.end, on);
+    if (by_line) line_.add_to(k, on);
+  };
+  const auto finish_block = [&](int block) {
+    const int first = parts_.block_begin(block), last = parts_.block_begin(block + 1);
+    thread_local Forces few;
+    if (options.then) few.resize(TubeParts::most);
+    const ForceRows on = options.then ? ForceRows{few.force, few.torque, parts_[first].begin} : rows_of(out);
+    for (int k = first; k < last; ++k) finish(k, on);
+    if (!options.then) return;
+    if (omp_get_thread_num() != 0) return options.then(block, on);
+    const double began = omp_get_wtime();
+    options.then(block, on);
+    times_.then += omp_get_wtime() - began;
   };
   if (by_line) {
     const auto place = [&](int t) {
-      if (!axes_made) make_axes(state, topology.tube_begin[t], topology.tube_begin[t + 1]);
+      if (!options.axes_made) make_axes(state, topology.tube_begin[t], topology.tube_begin[t + 1]);
+      join(t);
     };
-    line_.compute(topology, interaction, list, state, axis_, energies, {parts_, place, finish});
+    line_.compute(topology, interaction, list, state, axis_, options.energies, {parts_, place, finish_block});
   }
   if (by_paper) {
     buffers_.resize(list.chunks().size());
@@ -242,21 +306,25 @@ void ForceEngine::compute(const Topology& topology, const Interaction& interacti
   }
   const double t2 = omp_get_wtime();
   if (!by_line) {
-#pragma omp parallel for schedule(static) if (state.size() > parallel_from)
-    for (int k = 0; k < tube_parts; ++k) finish(k);
+#pragma omp parallel if (state.size() > parallel_from)
+    {
+#pragma omp for schedule(static)
+      for (int t = 0; t < topology.tubes(); ++t) join(t);
+#pragma omp for schedule(static)
+      for (int block = 0; block < parts_.blocks(); ++block) finish_block(block);
+    }
   }
 
   out.energy = Energies{};
   out.damping_power = 0;
-  out.slipping_bond = -1;
-  for (const BondSum& sum : sums) {
-    out.energy.stretch += sum.energy.stretch;
-    out.energy.shear += sum.energy.shear;
-    out.energy.bend += sum.energy.bend;
-    out.energy.twist += sum.energy.twist;
-    out.damping_power += sum.power;
-    if (out.slipping_bond < 0) out.slipping_bond = sum.slipping;
-  }
+  BondSum all;
+  for (const BondSum& sum : sums) add(sum, all);
+  out.energy.stretch = all.energy.stretch;
+  out.energy.shear = all.energy.shear;
+  out.energy.bend = all.energy.bend;
+  out.energy.twist = all.energy.twist;
+  out.damping_power = all.power;
+  out.slipping_bond = all.slipping;
   if (by_line) {
     out.energy.vdw = line_.energy();
     out.damping_power += line_.damping_power();
@@ -266,10 +334,11 @@ void ForceEngine::compute(const Topology& topology, const Interaction& interacti
       out.energy.vdw += b.energy;
       out.damping_power += b.power;
     }
-  const double t3 = omp_get_wtime(), finished = line_.finish_seconds() - finished_before;
+  const double t3 = omp_get_wtime(), finished = line_.finish_seconds() - finished_before,
+               then = times_.then - then_before;
   times_.axes += t1 - t0;
   times_.contact += t2 - t1 - finished;
-  times_.bonds += t3 - t2 + finished;
+  times_.bonds += t3 - t2 + finished - then;
 }
 
 double kinetic_energy(const Topology& topology, const State& state) {

@@ -2,6 +2,7 @@
 // reference (every pair, one after another), which stays as the oracle. Both call the forms of mdem/model.
 #pragma once
 
+#include <functional>
 #include <utility>
 #include <vector>
 
@@ -23,7 +24,9 @@ struct Forces {
   int slipping_bond = -1;    // first element of a bond twisted by 90 degrees or more, -1: none
 
   explicit Forces(std::size_t n = 0) : force(n), torque(n) {}
+  void resize(std::size_t n) { force.resize(n), torque.resize(n); }
 };
+inline ForceRows rows_of(Forces& forces) { return {forces.force, forces.torque, 0}; }
 
 // Body frames.
 struct FrameArray {
@@ -67,17 +70,29 @@ struct BondSum {
   int slipping = -1;  // first element of a bond twisted by 90 degrees or more
 };
 
+// The bond from the last element of a part of a tube to the next part, where there is one.
+struct Joint {
+  Vector3 force_j, torque_i, torque_j;
+  BondSum sum;
+};
+
 // Contact and its viscosity, bonds and their damping, or one of them alone: their time scales differ.
 enum class Parts { all, bonds, contact };
+
+struct ForceOptions {
+  bool energies = true;  // without them that of the line law's contact may be left out; forces are the same bits
+  Parts parts = Parts::all;
+  bool axes_made = false;  // the axes of all elements are those that make_axes has made
+  // Called for every block of TubeParts, by any thread, with its forces, which are kept nowhere else then: nothing
+  // needs its elements as they are any more, and they may move.
+  std::function<void(int, const ForceRows&)> then;
+};
 
 // The list must be up to date, but for the bonds alone.
 class ForceEngine {
  public:
-  // Without `energies` that of the line law's contact may be left out; forces are the same bits. With `axes_made`
-  // the axes of all elements are those that make_axes has made.
   void compute(const Topology& topology, const Interaction& interaction, const NeighbourList& list,
-               const State& state, Forces& out, bool energies = true, Parts parts = Parts::all,
-               bool axes_made = false);
+               const State& state, Forces& out, const ForceOptions& options = {});
   // Of elements begin .. end - 1, while their orientations are at hand; forces of as many elements have been
   // computed.
   void make_axes(const State& state, std::ptrdiff_t begin, std::ptrdiff_t end);
@@ -86,7 +101,7 @@ class ForceEngine {
   // Axes that are not made yet are made within the contact where that is by the line law, and tubes are finished
   // within it: the first thread tells the times of the two apart.
   struct Times {
-    double axes = 0, contact = 0, bonds = 0;
+    double axes = 0, contact = 0, bonds = 0, then = 0;
   };
   const Times& times() const { return times_; }
   const LineEngine& line() const { return line_; }
@@ -100,9 +115,10 @@ class ForceEngine {
 
  private:
   void make_all_axes(const State& state);
-  void add_buffers(const NeighbourList& list, int from, int to, Forces& out) const;
+  void add_buffers(const NeighbourList& list, int from, int to, const ForceRows& out) const;
 
   TubeParts parts_;
+  std::vector<Joint> joints_;                   // behind each part
   Vec3Array axis_;                              // of all elements
   std::vector<ContactBuffer<double>> buffers_;  // of each chunk
   LineEngine line_;

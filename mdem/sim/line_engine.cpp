@@ -24,23 +24,24 @@ void make_tables(Buffers& b, const Interaction& in, double unit) {
 // What a buffer holds for elements of a tube, element j at j + shift.
 template <class T>
 __attribute__((always_inline)) inline void add_all(const TouchedRange& of, const ContactBuffer<T>& b,
-                                                   Vec3Array& force, Vec3Array& torque) {
+                                                   const ForceRows& sums) {
   const std::vector<T>* const from[6] = {&b.fx, &b.fy, &b.fz, &b.tx, &b.ty, &b.tz};
+  Vec3Array &force = sums.force, &torque = sums.torque;
   std::vector<double>* const to[6] = {&force.x, &force.y, &force.z, &torque.x, &torque.y, &torque.z};
   for (int a = 0; a < 6; ++a) {
-    const T* const on = from[a]->data() + of.shift;
-    double* const sum = to[a]->data();
+    const T* const on = from[a]->data() + of.begin + of.shift;
+    double* const sum = to[a]->data() + of.begin - sums.origin;
 #pragma omp simd
-    for (int i = of.begin; i < of.end; ++i) sum[i] += static_cast<double>(on[i]);
+    for (int i = 0; i < of.end - of.begin; ++i) sum[i] += static_cast<double>(on[i]);
   }
 }
-ROPEWALK_VECTOR_CLONES void add_range(const TouchedRange& of, const ContactBuffer<float>& b, Vec3Array& force,
-                                      Vec3Array& torque) {
-  add_all(of, b, force, torque);
+ROPEWALK_VECTOR_CLONES void add_range(const TouchedRange& of, const ContactBuffer<float>& b,
+                                      const ForceRows& sums) {
+  add_all(of, b, sums);
 }
-ROPEWALK_VECTOR_CLONES void add_range(const TouchedRange& of, const ContactBuffer<double>& b, Vec3Array& force,
-                                      Vec3Array& torque) {
-  add_all(of, b, force, torque);
+ROPEWALK_VECTOR_CLONES void add_range(const TouchedRange& of, const ContactBuffer<double>& b,
+                                      const ForceRows& sums) {
+  add_all(of, b, sums);
 }
 
 void add_viscosity(const ContactViscosity& viscosity, const State& state, const LineChunk& chunk, double /*unit*/,
@@ -54,7 +55,8 @@ void add_viscosity(const ContactViscosity& viscosity, const State& state, const 
 
 }  // namespace
 
-void LineEngine::describe(const Topology& topology, const Interaction& in, const NeighbourList& list) {
+void LineEngine::describe(const Topology& topology, const Interaction& in, const NeighbourList& list,
+                          const TubeParts& parts) {
   list_.build(topology, in, list);
   stamp_ = list.stamp();
   full_ = in.precision == Interaction::Precision::full;
@@ -65,6 +67,7 @@ void LineEngine::describe(const Topology& topology, const Interaction& in, const
       places.push_back(
           node_places(list_.per_element(kind, static_cast<int>(a)), in.line[a * topology.types.size()].length_i));
   }
+  touches_.list(parts, list_.chunks());
   if (full_) {
     make_tables(full_buffers_, in, 1);
   } else {
@@ -111,20 +114,16 @@ void LineEngine::run(Buffers& b, const Topology& topology, const Interaction& in
       &topology,           &in,     &state, &axis, &list_, nullptr, b.tables.data(), b.pairs.data(), {}, 0, 0,
       LinePlan::Use::none, energies};
   for (int t = 0; t < line_sums; ++t) input.rows[t] = in.line[0].sparse.thins_j(t) ? Rows::sparse : Rows::all;
-  const bool parallel = state.size() > parallel_from,
-             at_once = state.size() > finish_at_once_from && list_.parts_of_a_tube() < few_parts;
+  const bool parallel = state.size() > parallel_from, at_once = state.size() > finish_at_once_from;
   const int threads = parallel ? omp_get_max_threads() : 1;
-  const auto finish = [&](int tube) {
-    for (int k = tubes.parts.begin(tube); k < tubes.parts.begin(tube + 1); ++k) tubes.finish(k);
-  };
-  const auto timed = [&](const auto& work) {
-    if (omp_get_thread_num() != 0) return work();
+  make_room(b, static_cast<std::size_t>(threads));
+  left_.start(touches_.chunks_on());
+  const auto finish = [&](int block) {
+    if (omp_get_thread_num() != 0) return tubes.finish(block);
     const double began = omp_get_wtime();
-    work();
+    tubes.finish(block);
     finish_seconds_ += omp_get_wtime() - began;
   };
-  make_room(b, static_cast<std::size_t>(threads));
-  left_.resize(static_cast<std::size_t>(topology.tubes()));
   shares_.deal(static_cast<int>(list_.chunks().size()), threads);
   plan_.start(topology, list, list_);
   const auto choose = [&] {
@@ -140,9 +139,6 @@ void LineEngine::run(Buffers& b, const Topology& topology, const Interaction& in
     for (int t = 0; t < topology.tubes(); ++t) {
       tubes.place(t);
       plan_.look(topology, state, t);
-      const int parts = static_cast<int>(list_.touches_end(t) - list_.touches_begin(t));
-      left_.set(t, parts);
-      if (at_once && parts == 0) timed([&] { finish(t); });
     }
     if (plan_.wanted()) {
 #pragma omp single
@@ -153,18 +149,13 @@ void LineEngine::run(Buffers& b, const Topology& topology, const Interaction& in
       const auto k = static_cast<std::size_t>(piece);
       meet(k, static_cast<std::size_t>(thread), b, input);
       if (at_once)
-        timed([&] {
-          for (const TouchedPart& part : list_.chunks()[k].parts)
-            if (left_.last(part.tube)) finish(part.tube);
-        });
+        for (int block : touches_.blocks(k))
+          if (left_.last(block)) finish(block);
     }
-    if (!at_once) {
 #pragma omp barrier
-      timed([&] {
 #pragma omp for schedule(static)
-        for (int k = 0; k < tubes.parts.count(); ++k) tubes.finish(k);
-      });
-    }
+    for (int block = 0; block < tubes.parts.blocks(); ++block)
+      if (!at_once || touches_.chunks_on()[static_cast<std::size_t>(block)] == 0) finish(block);
   }
 }
 
@@ -172,7 +163,7 @@ void LineEngine::compute(const Topology& topology, const Interaction& in, const 
                          const State& state, const Vec3Array& axis, bool energies, const TubeWork& tubes) {
   if (stamp_ != list.stamp()) {
     const double began = omp_get_wtime();
-    describe(topology, in, list);
+    describe(topology, in, list, tubes.parts);
     list_seconds_ += omp_get_wtime() - began;
   }
   if (full_) {
@@ -193,17 +184,11 @@ void LineEngine::resume(const Topology& topology, const Interaction& in, const N
   compute(topology, in, list, made, axis, false, {parts, nothing, nothing});
 }
 
-void LineEngine::add_to(const Segment& part, Vec3Array& force, Vec3Array& torque) const {
-  for (const LineList::Touch* touch = list_.touches_begin(part.tube); touch != list_.touches_end(part.tube);
-       ++touch) {
-    const TouchedPart& touched = list_.part(*touch);
-    const TouchedRange of{std::max(part.begin, touched.begin), std::min(part.end, touched.end),
-                          touched.element_shift};
-    if (of.begin < of.end && touched.in_reach(moved_))
-      in_use([&](const auto& b) {
-        add_range(of, b.of_chunks[static_cast<std::size_t>(touch->chunk)], force, torque);
-      });
-  }
+void LineEngine::add_to(int part, const ForceRows& sums) const {
+  for (const LineTouches::Touch* touch = touches_.begin(part); touch != touches_.end(part); ++touch)
+    if (touch->in_reach(moved_))
+      in_use(
+          [&](const auto& b) { add_range(touch->on, b.of_chunks[static_cast<std::size_t>(touch->chunk)], sums); });
 }
 
 double LineEngine::energy() const {
@@ -223,7 +208,7 @@ double LineEngine::damping_power() const {
 }
 
 std::size_t LineEngine::bytes() const {
-  std::size_t total = list_.bytes() + plan_.bytes();
+  std::size_t total = list_.bytes() + touches_.bytes() + plan_.bytes();
   const auto count = [&](const auto& b) {
     for (const auto& out : b.of_chunks) total += out.bytes();
     for (const auto& rows : b.nodes)

@@ -10,10 +10,11 @@
 
 #include "model/segments.hpp"
 #include "sim/contact_kernel.hpp"
+#include "sim/force_rows.hpp"
 #include "sim/line_plan.hpp"
 #include "sim/line_rows.hpp"
+#include "sim/line_touches.hpp"
 #include "sim/radial_table.hpp"
-#include "sim/tiles.hpp"
 #include "sim/work_shares.hpp"
 
 namespace ropewalk {
@@ -248,9 +249,9 @@ void line_contact(const LineKernelInput<FullTable, double>& in, const LineChunk&
 std::vector<std::string> instruction_sets();
 bool use_instructions(const std::string& name);
 
-// What tubes need besides the contact: `place` the axes of a tube, before its nodes, and `finish` a part of it once
-// nothing more will act on it; in large scenes at once, when what acted on it is still in the cache of a thread.
-// Each once for every tube and every part, by any thread.
+// What tubes need besides the contact: `place` the axes of each tube, before its nodes, and `finish` each block of
+// elements once nothing acts on it any more, nor needs to know where it is; in large scenes at once, when what
+// acted on it is still in the cache of a thread. Each once, by any thread.
 struct TubeWork {
   const TubeParts& parts;
   std::function<void(int)> place, finish;
@@ -258,17 +259,14 @@ struct TubeWork {
 
 class LineEngine {
  public:
-  // Elements from which on a tube is finished as soon as nothing more will act on it. What acts on fewer stays in
-  // the caches anyway, and the threads share the work more evenly if all of it comes at the end.
-  std::size_t finish_at_once_from = 20000;
-  // Nor are tubes of which chunks act on more parts, on average: they would all wait for the last chunks.
-  static constexpr double few_parts = 8;
+  // Elements from which on a block is finished as soon as it can be, not in the end.
+  std::size_t finish_at_once_from = large_scene;
 
   // The contact of all chunks; `finish` then calls add_to. Energies only if wanted: forces are the same bits.
   void compute(const Topology& topology, const Interaction& interaction, const NeighbourList& list,
                const State& state, const Vec3Array& axis, bool energies, const TubeWork& tubes);
   // Adds what acts on a part of a tube, in the order of the chunks, whoever was done first.
-  void add_to(const Segment& part, Vec3Array& force, Vec3Array& torque) const;
+  void add_to(int part, const ForceRows& sums) const;
   const LinePlan& plan() const { return plan_; }
   // Goes on with this plan.
   void resume(const Topology& topology, const Interaction& interaction, const NeighbourList& list,
@@ -290,7 +288,8 @@ class LineEngine {
   void make_room(Buffers& b, std::size_t threads) const;
   template <class Buffers>
   void meet(std::size_t chunk, std::size_t thread, Buffers& b, KernelInput<Buffers> in);
-  void describe(const Topology& topology, const Interaction& interaction, const NeighbourList& list);
+  void describe(const Topology& topology, const Interaction& interaction, const NeighbourList& list,
+                const TubeParts& parts);
   // What `of` makes of the buffers in use.
   template <class Of>
   auto in_use(const Of& of) const {
@@ -305,7 +304,8 @@ class LineEngine {
   LinePlan plan_;
   std::vector<NodePlaces> places_[row_kinds];  // of each tube type
   WorkShares shares_;
-  TubeCounters left_;  // chunks that have yet to act on each tube
+  LineTouches touches_;
+  Countdowns left_;  // chunks that have yet to act on each block
   MixedBuffers mixed_;
   FullBuffers full_buffers_;
 };

@@ -269,7 +269,8 @@ void LineList::cut_into_chunks(const Topology& topology, const Vec3Array& positi
   for (int t = 0; t < topology.tubes(); ++t)
     for (int i = topology.tube_begin[t]; i < topology.tube_begin[t + 1]; ++i) costs.push_back(cost(topology, i, t));
   chunks_.assign(count, LineChunk{});
-  auto tiles = cut_into_tiles(topology, position, costs, static_cast<int>(count));
+  const CutBy first = position.size() > large_scene ? CutBy::place : CutBy::index;
+  auto tiles = cut_into_tiles(topology, position, costs, static_cast<int>(count), first);
   for (std::size_t c = 0; c < count; ++c) chunks_[c].own = std::move(tiles[c]);
 }
 
@@ -521,19 +522,6 @@ void LineList::list_damped(LineChunk& chunk) const {
     if (damped[p]) chunk.damped_parts.push_back(chunk.parts[p].elements());
 }
 
-void LineList::list_touches(const Topology& topology) {
-  touch_begin_.assign(static_cast<std::size_t>(topology.tubes()) + 1, 0);
-  for (const LineChunk& chunk : chunks_)
-    for (const TouchedPart& p : chunk.parts) ++touch_begin_[static_cast<std::size_t>(p.tube) + 1];
-  for (std::size_t t = 1; t < touch_begin_.size(); ++t) touch_begin_[t] += touch_begin_[t - 1];
-  std::vector<int> next(touch_begin_.begin(), touch_begin_.end() - 1);
-  touch_.resize(static_cast<std::size_t>(touch_begin_.back()));
-  for (std::size_t c = 0; c < chunks_.size(); ++c)
-    for (std::size_t k = 0; k < chunks_[c].parts.size(); ++k)
-      touch_[static_cast<std::size_t>(next[static_cast<std::size_t>(chunks_[c].parts[k].tube)]++)] = {
-          static_cast<int>(c), static_cast<int>(k)};
-}
-
 void LineList::build(const Topology& topology, const Interaction& in, const NeighbourList& list) {
   check_nodes(topology, in);
   unit_ = list.coordinate_unit();
@@ -577,7 +565,6 @@ void LineList::build(const Topology& topology, const Interaction& in, const Neig
       make_blocks(topology, in, chunks_[c]);
       if (in.damped_contact()) list_damped(chunks_[c]);
     }
-  list_touches(topology);
   most_rows_ = most_elements_ = 0;
   for (int& most : most_nodes_) most = 0;
   for (const LineChunk& chunk : chunks_) {
@@ -588,8 +575,7 @@ void LineList::build(const Topology& topology, const Interaction& in, const Neig
 }
 
 std::size_t LineList::bytes() const {
-  std::size_t total = run_.capacity() * sizeof(LineRun) + begin_.capacity() * sizeof(std::size_t) +
-                      touch_.capacity() * sizeof(Touch);
+  std::size_t total = run_.capacity() * sizeof(LineRun) + begin_.capacity() * sizeof(std::size_t);
   for (const LineChunk& chunk : chunks_) {
     total += chunk.own.capacity() * sizeof(Segment) + chunk.parts.capacity() * sizeof(TouchedPart) +
              chunk.blocks.capacity() * sizeof(LineBlock) + chunk.runs.capacity() * sizeof(BlockRun) +

@@ -169,23 +169,6 @@ class LineList {
   const LineRun& run(int k) const { return run_[static_cast<std::size_t>(k)]; }
   int index(const LineRun& run) const { return static_cast<int>(&run - run_.data()); }
   const std::vector<LineChunk>& chunks() const { return chunks_; }
-  // The parts of a tube that chunks act on, in the order of the chunks. Tubes that nothing acts on have none.
-  struct Touch {
-    int chunk = 0, part = 0;
-  };
-  const Touch* touches_begin(int tube) const {
-    return touch_.data() + touch_begin_[static_cast<std::size_t>(tube)];
-  }
-  const Touch* touches_end(int tube) const {
-    return touch_.data() + touch_begin_[static_cast<std::size_t>(tube) + 1];
-  }
-  const TouchedPart& part(const Touch& of) const {
-    return chunks_[static_cast<std::size_t>(of.chunk)].parts[static_cast<std::size_t>(of.part)];
-  }
-  // Of a tube, on average.
-  double parts_of_a_tube() const {
-    return static_cast<double>(touch_.size()) / static_cast<double>(touch_begin_.size());
-  }
   // Of any chunk, at most: nodes in its rows, rows that one of its elements can meet, entries of its buffers.
   int most_nodes(Rows kind) const { return most_nodes_[static_cast<int>(kind)]; }
   int most_rows() const { return most_rows_; }
@@ -214,7 +197,6 @@ class LineList {
                    LineChunk& chunk) const;
   void add_block(const LineBlock& of, int tube, Rows kind, LineChunk& chunk) const;
   void list_damped(LineChunk& chunk) const;
-  void list_touches(const Topology& topology);
 
   std::vector<int> per_element_[row_kinds];  // of each tube type
   std::vector<char> dense_;                  // of each tube: whether it has rows of all nodes
@@ -222,8 +204,6 @@ class LineList {
   std::vector<std::size_t> begin_;
   std::size_t split_runs_ = 0;
   std::vector<LineChunk> chunks_;
-  std::vector<Touch> touch_;
-  std::vector<int> touch_begin_;
   int most_nodes_[row_kinds] = {0, 0}, most_rows_ = 0, most_elements_ = 0;
   double unit_ = 1;
 };

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <numeric>
 #include <stdexcept>
 #include <utility>
 
@@ -65,14 +64,13 @@ Simulation::Simulation(Topology topology, Interaction interaction, Drive drive, 
       state_(std::move(state)),
       time_step_(time_step),
       stepping_(stepping),
+      elements_(topology_, driven_elements(drive_)),
       tunes_skin_(!(skin > 0) && !interaction_.line.empty()),
       list_(interaction_, skin > 0 ? skin : default_skin(interaction_)),
+      moved_(static_cast<std::size_t>(elements_.blocks()) + 1),
       forces_(state_.size()),
       inner_(two_levels() ? state_.size() : 0),
-      contact_(two_levels() ? state_.size() : 0),
-      driven_(driven_elements(drive_)),
-      driven_velocity_(driven_.size()),
-      driven_spin_(driven_.size()) {
+      contact_(two_levels() ? state_.size() : 0) {
   refuse_not_finite(state_);
   list_.build(topology_, state_);
   compute();
@@ -80,25 +78,36 @@ Simulation::Simulation(Topology topology, Interaction interaction, Drive drive, 
 }
 
 // Model forces at the present positions and velocities, plus loads; `forces_` holds the sum.
-void Simulation::compute(bool energies, bool axes_made) {
+void Simulation::compute(bool energies, bool axes_made, const Drift* then) {
   if (two_levels()) {
     compute_bonds();
     compute_contact(energies);
     add_levels();
     return;
   }
-  engine_.compute(topology_, interaction_, list_, state_, forces_, energies, Parts::all, axes_made);
+  ForceOptions options{energies, Parts::all, axes_made, {}};
+  if (then)
+    options.then = [&](int block, const ForceRows& forces) {
+      for (const ElementRange* of = elements_.driven_begin(block); of != elements_.driven_end(block); ++of)
+        for (std::ptrdiff_t i = of->begin; i < of->end; ++i) {
+          const auto from = static_cast<std::size_t>(i - forces.origin), to = static_cast<std::size_t>(i);
+          forces_.force.set(to, forces.force[from]);
+          forces_.torque.set(to, forces.torque[from]);
+        }
+      drift_block(block, forces, *then);
+    };
+  engine_.compute(topology_, interaction_, list_, state_, forces_, options);
   if (!energies) forces_.energy.vdw = std::numeric_limits<double>::quiet_NaN();
   add_loads(forces_);
 }
 
 void Simulation::compute_bonds() {
-  engine_.compute(topology_, interaction_, list_, state_, inner_, true, Parts::bonds);
+  engine_.compute(topology_, interaction_, list_, state_, inner_, {true, Parts::bonds, false, {}});
   add_loads(inner_);
 }
 
 void Simulation::compute_contact(bool energies) {
-  engine_.compute(topology_, interaction_, list_, state_, contact_, energies, Parts::contact);
+  engine_.compute(topology_, interaction_, list_, state_, contact_, {energies, Parts::contact, false, {}});
   if (!energies) contact_.energy.vdw = std::numeric_limits<double>::quiet_NaN();
 }
 
@@ -129,11 +138,11 @@ void Simulation::add_levels() {
 }
 
 // The elements of one tube; returns what the local damping takes out.
-double Simulation::kick_tube(const Forces& forces, int tube, double dt) {
+double Simulation::kick_tube(Forces& forces, int tube, double dt) {
   const double alpha = interaction_.damping.local;
   const std::ptrdiff_t from = topology_.tube_begin[tube], to = topology_.tube_begin[tube + 1];
   if (alpha <= 0) {
-    kick_part(forces, from, to, dt);
+    kick_range(rows_of(forces), {from, to, topology_.tube_type[static_cast<std::size_t>(tube)]}, dt);
     return 0;
   }
   const double per_mass = dt / topology_.type_of(tube).mass, per_inertia = dt / topology_.type_of(tube).inertia;
@@ -155,7 +164,7 @@ double Simulation::kick_tube(const Forces& forces, int tube, double dt) {
   return removed;
 }
 
-void Simulation::kick(const Forces& forces, double dt) {
+void Simulation::kick(Forces& forces, double dt) {
   // Added up in the order of the tubes, whatever the threads.
   removed_.resize(static_cast<std::size_t>(topology_.tubes()));
 #pragma omp parallel for schedule(static) if (state_.size() > parallel_from)
@@ -165,73 +174,70 @@ void Simulation::kick(const Forces& forces, double dt) {
 }
 
 // `forces` holds the loads as well.
-void Simulation::kick_with_loads(const Forces& forces, double dt) {
+void Simulation::kick_with_loads(Forces& forces, double dt) {
   work_ += 0.5 * dt * load_power(point_loads_, state_);
   kick(forces, dt);
   work_ += 0.5 * dt * load_power(point_loads_, state_);
 }
 
-// The elements begin .. end - 1, whatever their tubes, without local damping.
-void Simulation::kick_part(const Forces& forces, std::ptrdiff_t begin, std::ptrdiff_t end, double dt) {
-  for (int tube = topology_.tube_of(static_cast<int>(begin)); begin < end; ++tube) {
-    const std::ptrdiff_t to = std::min<std::ptrdiff_t>(end, topology_.tube_begin[tube + 1]);
-    const TubeType& type = topology_.type_of(tube);
-    kick_elements(forces.force, dt / type.mass, state_.velocity, begin, to);
-    kick_elements(forces.torque, dt / type.inertia, state_.angular_velocity, begin, to);
-    begin = to;
-  }
+// Without local damping.
+void Simulation::kick_range(const ForceRows& forces, const ElementRange& of, double dt) {
+  const TubeType& type = topology_.types[static_cast<std::size_t>(of.type)];
+  kick_elements(forces.force, forces.origin, dt / type.mass, state_.velocity, of.begin, of.end);
+  kick_elements(forces.torque, forces.origin, dt / type.inertia, state_.angular_velocity, of.begin, of.end);
 }
 
-// As kick_with_loads does so many times, but only the elements that loads and constraints act on; and keeps what
-// give_back_driven gives them.
+// As kick_with_loads does so many times, but only the elements that loads and constraints act on.
 void Simulation::kick_driven(int kicks, double dt) {
   for (int k = 0; k < kicks; ++k) {
     work_ += 0.5 * dt * load_power(point_loads_, state_);
-    for (int e : driven_) kick_part(forces_, e, e + 1, dt);
+    for (const ElementRange& of : elements_.driven()) kick_range(rows_of(forces_), of, dt);
     work_ += constrain(topology_, drive_, state_.time, forces_, dt, state_);
     work_ += 0.5 * dt * load_power(point_loads_, state_);
   }
-  for (std::size_t k = 0; k < driven_.size(); ++k) {
-    driven_velocity_.set(k, state_.velocity[static_cast<std::size_t>(driven_[k])]);
-    driven_spin_.set(k, state_.angular_velocity[static_cast<std::size_t>(driven_[k])]);
-  }
 }
 
-void Simulation::give_back_driven(std::ptrdiff_t begin, std::ptrdiff_t end) {
-  auto driven = std::lower_bound(driven_.begin(), driven_.end(), static_cast<int>(begin));
-  for (; driven != driven_.end() && *driven < end; ++driven) {
-    const auto k = static_cast<std::size_t>(driven - driven_.begin());
-    state_.velocity.set(static_cast<std::size_t>(*driven), driven_velocity_[k]);
-    state_.angular_velocity.set(static_cast<std::size_t>(*driven), driven_spin_[k]);
-  }
-}
-
-// After so many kicks of half a step. What is driven is kicked before all others and gets its velocities back.
-void Simulation::drift(double dt, int kicks, bool axes) {
-  const auto n = static_cast<std::ptrdiff_t>(state_.size());
-  constexpr std::ptrdiff_t block = NeighbourList::block;
+void Simulation::drift_range(const ElementRange& of, const ForceRows& forces, const Drift& by, Moved& moved) {
+  constexpr std::ptrdiff_t most = 128;  // elements that stay in the first cache
   const auto move = stepping_.runge_kutta ? move_elements_runge_kutta : move_elements;
   const LittleMotion little(topology_.largest_radius(), time_step_);
-  changes_.resize(static_cast<std::size_t>((n + block - 1) / block));
-  if (kicks > 0) kick_driven(kicks, 0.5 * dt);
-  bool bounded = true;
-#pragma omp parallel for schedule(static) reduction(&& : bounded) if (state_.size() > parallel_from)
-  for (std::ptrdiff_t i = 0; i < n; i += block) {
-    const std::ptrdiff_t end = std::min(i + block, n);
-    for (int k = 0; k < kicks; ++k) kick_part(forces_, i, end, 0.5 * dt);
-    if (kicks > 0) give_back_driven(i, end);
-    bounded = bounded & little.holds(fastest(state_, i, end));
-    move(state_, dt, i, end);
-    if (axes) engine_.make_axes(state_, i, end);
-    changes_[static_cast<std::size_t>(i / block)] = list_.change(state_, i, end);
+  for (std::ptrdiff_t begin = of.begin; begin < of.end; begin += most) {
+    const std::ptrdiff_t end = std::min(begin + most, of.end);
+    for (int k = 0; k < by.kicks; ++k) kick_range(forces, {begin, end, of.type}, 0.5 * by.dt);
+    moved.little = moved.little && little.holds(fastest(state_, begin, end));
+    move(state_, by.dt, begin, end);
+    if (by.axes) engine_.make_axes(state_, begin, end);
+    moved.change = both(moved.change, list_.change(state_, begin, end));
   }
-  bounded_ = bounded;
+}
+
+// All that is free in it.
+void Simulation::drift_block(int block, const ForceRows& forces, const Drift& by) {
+  Moved moved;
+  for (const ElementRange* of = elements_.begin(block); of != elements_.end(block); ++of)
+    drift_range(*of, forces, by, moved);
+  moved_[static_cast<std::size_t>(block)] = moved;
+}
+
+void Simulation::drift_driven(const Drift& by) {
+  kick_driven(by.kicks, 0.5 * by.dt);
+  Moved moved;
+  for (const ElementRange& of : elements_.driven()) drift_range(of, rows_of(forces_), {by.dt, 0, by.axes}, moved);
+  moved_.back() = moved;
+}
+
+void Simulation::drift(const Drift& by) {
+#pragma omp parallel for schedule(static) if (state_.size() > parallel_from)
+  for (int block = 0; block < elements_.blocks(); ++block) drift_block(block, rows_of(forces_), by);
+  drift_driven(by);
 }
 
 // By the changes of the last drift, added up in their order, whatever the threads.
 void Simulation::update_list() {
   ++list_age_;
-  if (!list_.worn(std::accumulate(changes_.begin(), changes_.end(), Change{}, both))) return;
+  Change all;
+  for (const Moved& moved : moved_) all = both(all, moved.change);
+  if (!list_.worn(all)) return;
   if (tunes_skin_) list_.skin = engine_.line().list().best_skin(topology_, list_.skin, list_age_);
   list_.build(topology_, state_);
   list_age_ = 0;
@@ -239,7 +245,7 @@ void Simulation::update_list() {
 
 // The velocities of the last drift.
 void Simulation::check_motion() const {
-  if (bounded_) return;
+  if (std::all_of(moved_.begin(), moved_.end(), [](const Moved& m) { return m.little; })) return;
   const LittleMotion little(topology_.largest_radius(), time_step_);
   int broken = 0;
   while (broken + 1 < topology_.elements() && little.holds(fastest(state_, broken, broken + 1))) ++broken;
@@ -252,36 +258,38 @@ bool Simulation::kicks_while_moving() const { return interaction_.damping.local 
 void Simulation::steps(long count, bool energies) {
   const bool always = relaxes_spins(drive_);
   for (long k = 0; k < count; ++k) {
-    const bool first = k == 0, last = k + 1 == count;
+    const bool wanted = (energies && k + 1 == count) || always;
     if (two_levels()) {
-      two_level((energies && last) || always);
+      two_level(wanted);
     } else {
-      one_level(first, last, (energies && last) || always);
+      one_level(k, count, wanted);
     }
   }
 }
 
-// In the middle of several steps the velocities are those before the kick that ends the last one.
-void Simulation::one_level(bool first, bool last, bool energies) {
+// In the middle of several steps all that is free is kicked and goes on as soon as its forces are there, the rest
+// after it: the next step finds everything in its place, with the velocities of half a step later.
+void Simulation::one_level(long step, long count, bool energies) {
   const double dt = time_step_;
-  const bool at_once = kicks_while_moving();
-  const double t0 = omp_get_wtime();
+  const bool at_once = kicks_while_moving(), last = step + 1 == count, axes = interaction_.has_contact();
+  const Drift begin{dt, at_once ? 1 : 0, axes}, go_on{dt, 2, axes};
+  const double t0 = omp_get_wtime(), then_before = engine_.times().then;
   if (!at_once) kick_with_loads(forces_, 0.5 * dt);
-  const bool axes = interaction_.has_contact();
-  drift(dt, !at_once ? 0 : first ? 1 : 2, axes);
+  if (!at_once || step == 0) drift(begin);
   ++state_.step;
   state_.time += dt;
   check_motion();
   const double t1 = omp_get_wtime();
   update_list();
   const double t2 = omp_get_wtime();
-  compute(energies, axes);
+  compute(energies, axes, at_once && !last ? &go_on : nullptr);
   const double t3 = omp_get_wtime();
+  if (at_once && !last) drift_driven(go_on);
   check_forces(energies);
   dissipated_ -= dt * forces_.damping_power;
   if (last || !at_once) kick_with_loads(forces_, 0.5 * dt);
   relax_angles_if_due();
-  integration_seconds_ += (t1 - t0) + (omp_get_wtime() - t3);
+  integration_seconds_ += (t1 - t0) + (omp_get_wtime() - t3) + (engine_.times().then - then_before);
   list_seconds_ += t2 - t1;
 }
 
@@ -307,7 +315,7 @@ void Simulation::two_level(bool energies) {
   kick(contact_, 0.5 * dt);
   kick_with_loads(inner_, 0.5 * inner);
   for (int k = 1; k <= stepping_.contact_every; ++k) {
-    drift(inner);
+    drift({inner, 0, false});
     state_.time += inner;
     compute_bonds();
     dissipated_ -= inner * inner_.damping_power;
@@ -391,7 +399,7 @@ bool Simulation::relax(double tolerance, long max_steps, const std::function<boo
     if (power > 0) {
       fire.went_down();
     } else {
-      if (k > 0) drift(-0.5 * fire.dt);
+      if (k > 0) drift({-0.5 * fire.dt, 0, false});
       stop();
       fire.went_up();
     }
@@ -422,7 +430,7 @@ bool Simulation::relax(double tolerance, long max_steps, const std::function<boo
       fastest2 =
           std::max(fastest2, state_.velocity[i].squaredNorm() + scale2 * state_.angular_velocity[i].squaredNorm());
     const double step = std::min(dt, fastest2 > 0 ? most_move / std::sqrt(fastest2) : dt);
-    drift(step);
+    drift({step, 0, false});
     ++state_.step;
     update_list();
     compute();
@@ -595,7 +603,8 @@ void Simulation::restore(const std::string& bytes) {
   if (planned) engine_.resume(topology_, interaction_, list_, std::move(plan));
   // The runs of this list, which the skin of the next one follows from.
   Forces made(state_.size());
-  if (tunes_skin_ && !planned) engine_.compute(topology_, interaction_, list_, state_, made, false, Parts::contact);
+  if (tunes_skin_ && !planned)
+    engine_.compute(topology_, interaction_, list_, state_, made, {false, Parts::contact, false, {}});
   point_loads(drive_, state_, state_.time, point_loads_);
 }
 

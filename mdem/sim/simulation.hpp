@@ -20,6 +20,7 @@
 
 #include "sim/drive.hpp"
 #include "sim/forces.hpp"
+#include "sim/free_elements.hpp"
 #include "sim/interaction.hpp"
 #include "sim/neighbours.hpp"
 #include "sim/state.hpp"
@@ -88,19 +89,32 @@ class Simulation {
  private:
   bool two_levels() const { return stepping_.contact_every > 1; }
   double inner_step() const { return time_step_ / stepping_.contact_every; }
-  void one_level(bool first, bool last, bool energies);
+  void one_level(long step, long count, bool energies);
   void two_level(bool energies);
   bool kicks_while_moving() const;
   void compute_contact_in_impulse(bool energies);
-  void kick(const Forces& forces, double dt);
-  void kick_with_loads(const Forces& forces, double dt);
-  double kick_tube(const Forces& forces, int tube, double dt);
+  void kick(Forces& forces, double dt);
+  void kick_with_loads(Forces& forces, double dt);
+  double kick_tube(Forces& forces, int tube, double dt);
+  void kick_range(const ForceRows& forces, const ElementRange& of, double dt);
   void kick_driven(int kicks, double dt);
-  void give_back_driven(std::ptrdiff_t begin, std::ptrdiff_t end);
-  void kick_part(const Forces& forces, std::ptrdiff_t begin, std::ptrdiff_t end, double dt);
-  void drift(double dt, int kicks = 0, bool axes = false);
+  // How far elements have come since the list was built, and whether the last drift was a small one.
+  struct Moved {
+    Change change;
+    bool little = true;
+  };
+  // What a drift does to elements: after so many kicks of half a step, and whether it makes their axes.
+  struct Drift {
+    double dt;
+    int kicks;
+    bool axes;
+  };
+  void drift_range(const ElementRange& of, const ForceRows& forces, const Drift& by, Moved& moved);
+  void drift_block(int block, const ForceRows& forces, const Drift& by);
+  void drift_driven(const Drift& by);
+  void drift(const Drift& by);
   void update_list();
-  void compute(bool energies = true, bool axes_made = false);
+  void compute(bool energies = true, bool axes_made = false, const Drift* then = nullptr);
   void compute_bonds();
   void compute_contact(bool energies);
   void add_loads(Forces& forces);
@@ -115,18 +129,16 @@ class Simulation {
   State state_;
   double time_step_ = 0;
   Stepping stepping_;
+  FreeElements elements_;  // driven: by loads or constraints
   bool tunes_skin_ = false;
   NeighbourList list_;
-  std::int64_t list_age_ = 0;    // steps since the list was built
-  std::vector<Change> changes_;  // since the list was built, of the blocks of the last drift
-  bool bounded_ = true;          // whether the steps of that drift were small
+  std::int64_t list_age_ = 0;  // steps since the list was built
+  std::vector<Moved> moved_;   // of the blocks, and behind them of what is driven
   ForceEngine engine_;
   Forces forces_;           // of all
   Forces inner_, contact_;  // its two parts, on two levels: bonds and loads; contact
   std::vector<PointLoad> point_loads_;
   std::vector<double> removed_;  // by the local damping, of each tube
-  std::vector<int> driven_;      // elements with loads or constraints, in rising order
-  Vec3Array driven_velocity_, driven_spin_;
   double work_ = 0, dissipated_ = 0;
   double list_seconds_ = 0, integration_seconds_ = 0;
 };

@@ -82,18 +82,16 @@ Pieces cut_at(double share, Pieces first, Pieces last) {
   return cut;
 }
 
-enum class By { index, place };
-
-void bisect(By by, Pieces first, Pieces last, int count, std::vector<std::vector<Segment>>& tiles) {
+void bisect(CutBy by, Pieces first, Pieces last, int count, std::vector<std::vector<Segment>>& tiles) {
   if (count == 1) {
     tiles.push_back(joined(first, last));
     return;
   }
-  if (by == By::place) sort_across(longest_side(first, last), first, last);
+  if (by == CutBy::place) sort_across(longest_side(first, last), first, last);
   const int left = count / 2;
   const Pieces cut = cut_at(static_cast<double>(left) / count, first, last);
-  bisect(By::place, first, cut, left, tiles);
-  bisect(By::place, cut, last, count - left, tiles);
+  bisect(CutBy::place, first, cut, left, tiles);
+  bisect(CutBy::place, cut, last, count - left, tiles);
 }
 
 }  // namespace
@@ -101,6 +99,8 @@ void bisect(By by, Pieces first, Pieces last, int count, std::vector<std::vector
 void TubeParts::cut(const Topology& topology) {
   parts_.clear();
   begin_.clear();
+  block_begin_.clear();
+  block_of_.clear();
   for (int t = 0; t < topology.tubes(); ++t) {
     begin_.push_back(count());
     const int first = topology.tube_begin[t], elements = topology.length_of(t),
@@ -110,14 +110,28 @@ void TubeParts::cut(const Topology& topology) {
                         first + static_cast<int>(static_cast<std::int64_t>(elements) * (k + 1) / parts)});
   }
   begin_.push_back(count());
+  for (int k = 0, first = 0; k < count(); ++k) {
+    if (k == 0 || (*this)[k].end - first > most_of_block) {
+      block_begin_.push_back(k);
+      first = (*this)[k].begin;
+    }
+    block_of_.push_back(static_cast<int>(block_begin_.size()) - 1);
+  }
+  block_begin_.push_back(count());
+}
+
+int TubeParts::part_of(int element, int tube) const {
+  const auto part = std::upper_bound(parts_.begin() + begin(tube), parts_.begin() + begin(tube + 1), element,
+                                     [](int e, const Segment& s) { return e < s.end; });
+  return static_cast<int>(part - parts_.begin());
 }
 
 std::vector<std::vector<Segment>> cut_into_tiles(const Topology& topology, const Vec3Array& position,
-                                                 const std::vector<double>& cost, int count) {
+                                                 const std::vector<double>& cost, int count, CutBy first) {
   std::vector<Piece> pieces = pieces_of(topology, position, cost);
   std::vector<std::vector<Segment>> tiles;
   tiles.reserve(static_cast<std::size_t>(count));
-  bisect(By::index, pieces.begin(), pieces.end(), count, tiles);
+  bisect(first, pieces.begin(), pieces.end(), count, tiles);
   return tiles;
 }
 

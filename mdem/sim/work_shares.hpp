@@ -73,17 +73,18 @@ class WorkShares {
 
 // How many pieces of work each of some things still waits for. What a thread has written before it counts down is
 // seen by the one that counts to nothing.
-class TubeCounters {
+class Countdowns {
  public:
   // Nothing in it outlives the work either.
-  TubeCounters() = default;
-  TubeCounters(const TubeCounters&) {}
-  TubeCounters& operator=(const TubeCounters&) { return *this; }
+  Countdowns() = default;
+  Countdowns(const Countdowns&) {}
+  Countdowns& operator=(const Countdowns&) { return *this; }
 
-  void resize(std::size_t n) {
-    if (left_.size() != n) left_ = std::vector<std::atomic<int>>(n);
+  // Before the team starts.
+  void start(const std::vector<int>& pieces) {
+    if (left_.size() != pieces.size()) left_ = std::vector<std::atomic<int>>(pieces.size());
+    for (std::size_t k = 0; k < pieces.size(); ++k) left_[k].store(pieces[k], std::memory_order_relaxed);
   }
-  void set(int k, int left) { left_[static_cast<std::size_t>(k)].store(left, std::memory_order_relaxed); }
   bool last(int k) { return left_[static_cast<std::size_t>(k)].fetch_sub(1, std::memory_order_acq_rel) == 1; }
 
  private:

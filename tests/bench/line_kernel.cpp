@@ -216,7 +216,10 @@ void LineKernel(benchmark::State& bench, const Choice& c) {
   Vec3Array force(rope.state.size()), torque(rope.state.size());
   const auto nothing = [](int) {};
   const TubeParts parts(rope.topology);
-  const auto finish = [&](int k) { engine.add_to(parts[k], force, torque); };
+  const auto finish = [&](int block) {
+    for (int k = parts.block_begin(block); k < parts.block_begin(block + 1); ++k)
+      engine.add_to(k, {force, torque, 0});
+  };
   for (auto _ : bench) {
     engine.compute(rope.topology, rope.in, rope.list, rope.state, rope.axis, c.energies, {parts, nothing, finish});
     benchmark::ClobberMemory();
@@ -234,7 +237,7 @@ void LineCollect(benchmark::State& bench) {
   const auto nothing = [](int) {};
   engine.compute(rope.topology, rope.in, rope.list, rope.state, rope.axis, false, {parts, nothing, nothing});
   for (auto _ : bench) {
-    for (int k = 0; k < parts.count(); ++k) engine.add_to(parts[k], force, torque);
+    for (int k = 0; k < parts.count(); ++k) engine.add_to(k, {force, torque, 0});
     benchmark::ClobberMemory();
   }
   set_ns(bench, "ns/element", rope.elements());

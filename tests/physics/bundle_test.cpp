@@ -1,5 +1,6 @@
 // Bundles of tubes: conservation in undamped motion, what the damping may take and what not, restarts.
 #include <gtest/gtest.h>
+#include <omp.h>
 
 #include "sim/simulation.hpp"
 #include "unit/support.hpp"
@@ -267,6 +268,26 @@ Drive all_kinds(const Topology& topology) {
   twist.moment = 3, twist.rate = 2, twist.tangential = true, twist.lateral_free = false, twist.axial_free = false;
   drive.twist = {twist};
   return drive;
+}
+
+// So large that blocks of elements go on before the contact of others is there, and of tubes that are cut into
+// parts.
+TEST(Steps, OfALargeSceneAreTheSameBitsOnAnyThreads) {
+  Bundle b(7, 3000, 300);
+  ASSERT_GT(static_cast<std::size_t>(b.topology.elements()), large_scene);
+  b.in.paper.reset();
+  b.in.line = {test::line_contact(0.6785, 6, 0.6785, 6)};
+  b.in.precision = Interaction::Precision::mixed;
+  b.in.damping.contact = {20, spacing, 1.5 * spacing};
+  const auto run = [&](int threads, long at_once) {
+    omp_set_num_threads(threads);
+    Simulation s(b.topology, b.in, all_kinds(b.topology), b.state, 0.015, 0.02);
+    for (long k = 0; k < 24; k += at_once) s.steps(at_once);
+    EXPECT_GT(s.list().builds(), 2) << "the list was never rebuilt: the test shows less";
+    return s.serialise();
+  };
+  const std::string one_by_one = run(1, 1);
+  for (const int threads : {1, 2, 5}) EXPECT_EQ(run(threads, 12) == one_by_one, true) << threads << " threads";
 }
 
 TEST(Steps, ManyAtOnceAreTheSameBitsAsOneByOne) {

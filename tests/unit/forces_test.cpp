@@ -71,7 +71,7 @@ class ForcesTest : public ::testing::TestWithParam<Variant> {
     list.build(topology, state);
     ForceEngine engine;
     Forces f(state.size());
-    engine.compute(topology, in, list, state, f, true, parts);
+    engine.compute(topology, in, list, state, f, {true, parts, false, {}});
     return f;
   }
 
@@ -151,7 +151,7 @@ TEST_P(ForcesTest, SameBitsWhoeverReadsEnergies) {
   Forces with(state.size()), without(state.size());
   ForceEngine engine;
   engine.compute(topology, in, list, state, with);
-  engine.compute(topology, in, list, state, without, false);
+  engine.compute(topology, in, list, state, without, {false, Parts::all, false, {}});
   expect_same_bits(with, without);
 }
 
@@ -248,9 +248,11 @@ Forces line_contact_of(const Topology& topology, const Interaction& in, const St
     for (int i = topology.tube_begin[t]; i < topology.tube_begin[t + 1]; ++i)
       axis.set(static_cast<std::size_t>(i), axis_of(state.orientation[static_cast<std::size_t>(i)]));
   };
-  const auto finish = [&](int k) {
-    ++times[static_cast<std::size_t>(k)];
-    engine.add_to(parts[k], out.force, out.torque);
+  const auto finish = [&](int block) {
+    for (int k = parts.block_begin(block); k < parts.block_begin(block + 1); ++k) {
+      ++times[static_cast<std::size_t>(k)];
+      engine.add_to(k, rows_of(out));
+    }
   };
   engine.compute(topology, in, list, state, axis, true, {parts, place, finish});
   for (const auto& n : times) EXPECT_EQ(n, 1);
@@ -311,6 +313,37 @@ TEST_P(LongTubes, ASlippingBondIsFoundWhereTheyAreCut) {
     }
     EXPECT_EQ(fast(0.3, 2).slipping_bond, static_cast<int>(first));
     state = straight;
+  }
+}
+
+// Whoever takes them block by block gets the same forces, and may move what they act on at once.
+TEST_P(LongTubes, ForcesOfBlocksAreTheSameBitsThoughTheirElementsMove) {
+  const Forces wanted = fast(0.3, 1);
+  const FreeElements elements(topology, {});
+  NeighbourList list(in, 0.3);
+  list.build(topology, state);
+  for (int threads : {1, 2, 5}) {
+    omp_set_num_threads(threads);
+    State moving = state;
+    Forces found(state.size()), rest;
+    ForceEngine engine;
+    ForceOptions options;
+    options.then = [&](int block, const ForceRows& forces) {
+      for (const ElementRange* r = elements.begin(block); r != elements.end(block); ++r)
+        for (std::ptrdiff_t i = r->begin; i < r->end; ++i) {
+          const auto to = static_cast<std::size_t>(i), from = static_cast<std::size_t>(i - forces.origin);
+          found.force.set(to, forces.force[from]);
+          found.torque.set(to, forces.torque[from]);
+          moving.position.set(to, Vector3(1e9, 1e9, 1e9));
+          moving.orientation.set(to, Quaternion(0, 1, 0, 0));
+          moving.velocity.set(to, Vector3(1e9, 0, 0));
+        }
+    };
+    engine.compute(topology, in, list, moving, rest, options);
+    found.energy = rest.energy, found.damping_power = rest.damping_power;
+    expect_same_bits(wanted, found);
+    EXPECT_EQ(wanted.energy.potential(), found.energy.potential());
+    EXPECT_EQ(wanted.damping_power, found.damping_power);
   }
 }
 

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
+#include "sim/free_elements.hpp"
 #include "unit/support.hpp"
 
 namespace ropewalk {
@@ -48,10 +50,67 @@ TEST(TubeParts, HoldEveryElementOnceInTheOrderOfTheTubes) {
   EXPECT_EQ(next, topology.elements());
 }
 
+TEST(TubeParts, AreTakenTogetherInBlocksThatFollowEachOther) {
+  Topology topology = test::published_topology();
+  for (const int elements : {100, 100, 60, 3, TubeParts::most_of_block, 1, TubeParts::most, 2 * TubeParts::most, 5})
+    topology.add_tube(elements);
+  const TubeParts parts(topology);
+  ASSERT_EQ(parts.block_begin(0), 0);
+  ASSERT_EQ(parts.block_begin(parts.blocks()), parts.count());
+  EXPECT_EQ(parts.blocks(), 8);  // 200, 63, 256, 1, and four whose parts are too long for company, 5
+  for (int block = 0; block < parts.blocks(); ++block) {
+    const int first = parts.block_begin(block), last = parts.block_begin(block + 1);
+    ASSERT_LT(first, last);
+    if (last - first > 1) {
+      EXPECT_LE(parts[last - 1].end - parts[first].begin, TubeParts::most_of_block);
+    }
+    for (int k = first; k < last; ++k) {
+      EXPECT_EQ(parts.block_of(k), block);
+      EXPECT_EQ(parts.part_of(parts[k].begin, parts[k].tube), k);
+      EXPECT_EQ(parts.part_of(parts[k].end - 1, parts[k].tube), k);
+    }
+  }
+}
+
+TEST(FreeElements, AreAllThatIsNotDrivenInRangesOfOneTypeAndBlock) {
+  Topology topology = test::published_topology();
+  topology.types.push_back(topology.types[0]);
+  const std::vector<int> lengths = {7, 9, TubeParts::most + 40, 3, 200, 2};
+  for (std::size_t t = 0; t < lengths.size(); ++t) topology.add_tube(lengths[t], t == 1 ? 1 : 0);
+  const TubeParts parts(topology);
+  const std::vector<int> driven = {0, 6, 7, 15, 16, 17, parts[3].begin, topology.elements() - 1};
+  const FreeElements elements(topology, driven);
+  ASSERT_EQ(elements.blocks(), parts.blocks());
+  std::vector<int> found, free(static_cast<std::size_t>(topology.elements()));
+  for (int block = 0; block < elements.blocks(); ++block) {
+    const int begin = parts[parts.block_begin(block)].begin, end = parts[parts.block_begin(block + 1) - 1].end;
+    const auto expect_of_block = [&](const ElementRange& r) {
+      EXPECT_LE(begin, r.begin);
+      EXPECT_LT(r.begin, r.end);
+      EXPECT_LE(r.end, end);
+      for (std::ptrdiff_t i = r.begin; i < r.end; ++i)
+        EXPECT_EQ(r.type, topology.tube_type[static_cast<std::size_t>(topology.tube_of(static_cast<int>(i)))]);
+    };
+    for (const ElementRange* r = elements.begin(block); r != elements.end(block); ++r) {
+      expect_of_block(*r);
+      for (std::ptrdiff_t i = r->begin; i < r->end; ++i) ++free[static_cast<std::size_t>(i)];
+    }
+    for (const ElementRange* r = elements.driven_begin(block); r != elements.driven_end(block); ++r) {
+      expect_of_block(*r);
+      for (std::ptrdiff_t i = r->begin; i < r->end; ++i) found.push_back(static_cast<int>(i));
+    }
+  }
+  EXPECT_EQ(found, driven);
+  for (int i = 0; i < topology.elements(); ++i)
+    EXPECT_EQ(free[static_cast<std::size_t>(i)], std::count(driven.begin(), driven.end(), i) == 0 ? 1 : 0) << i;
+}
+
 TEST(Tiles, HoldEveryElementOnceAtEqualCost) {
   const Scene scene(8, 200);
-  for (const int count : {1, 2, 7, 16}) {
-    const auto tiles = cut_into_tiles(scene.topology, scene.position, scene.cost, count);
+  for (const auto& [count, first] :
+       {std::pair(1, CutBy::index), std::pair(2, CutBy::index), std::pair(7, CutBy::index),
+        std::pair(16, CutBy::index), std::pair(2, CutBy::place), std::pair(16, CutBy::place)}) {
+    const auto tiles = cut_into_tiles(scene.topology, scene.position, scene.cost, count, first);
     ASSERT_EQ(tiles.size(), static_cast<std::size_t>(count));
     std::vector<int> times(scene.cost.size(), 0);
     double total = 0, most = 0;
@@ -79,7 +138,7 @@ TEST(Tiles, HoldEveryElementOnceAtEqualCost) {
 // A tile of 12800 / 16 elements is as wide as it is long, as far as pieces and tubes allow.
 TEST(Tiles, AreCompact) {
   const Scene scene(8, 200);
-  for (const auto& tile : cut_into_tiles(scene.topology, scene.position, scene.cost, 16)) {
+  for (const auto& tile : cut_into_tiles(scene.topology, scene.position, scene.cost, 16, CutBy::index)) {
     Vector3 low = Vector3::Constant(1e9), high = -low;
     for (const Segment& s : tile)
       for (int i = s.begin; i < s.end; ++i) {
@@ -90,13 +149,26 @@ TEST(Tiles, AreCompact) {
   }
 }
 
+// The first cut: halves of the tubes, or of the length of all.
+TEST(Tiles, AreFirstCutAsAskedFor) {
+  const Scene scene(3, 200);
+  const auto longest = [&](CutBy first) {
+    int elements = 0;
+    for (const auto& tile : cut_into_tiles(scene.topology, scene.position, scene.cost, 2, first))
+      for (const Segment& s : tile) elements = std::max(elements, s.end - s.begin);
+    return elements;
+  };
+  EXPECT_EQ(longest(CutBy::index), 200);
+  EXPECT_LT(longest(CutBy::place), 150);
+}
+
 TEST(Tiles, TakeFewElementsAndLostOnes) {
   Scene scene(1, 5);
-  EXPECT_EQ(cut_into_tiles(scene.topology, scene.position, scene.cost, 4).size(), 4u);
+  EXPECT_EQ(cut_into_tiles(scene.topology, scene.position, scene.cost, 4, CutBy::index).size(), 4u);
   Scene lost(4, 100);
   for (double& x : lost.position.x) x = std::numeric_limits<double>::quiet_NaN();
   int elements = 0;
-  for (const auto& tile : cut_into_tiles(lost.topology, lost.position, lost.cost, 8))
+  for (const auto& tile : cut_into_tiles(lost.topology, lost.position, lost.cost, 8, CutBy::place))
     for (const Segment& s : tile) elements += s.end - s.begin;
   EXPECT_EQ(elements, lost.topology.elements());
 }
