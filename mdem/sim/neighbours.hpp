@@ -49,6 +49,9 @@ class NeighbourList {
   // Whether it has to be built anew by the change since the last build: that of all elements, added up in parts of
   // `block`.
   bool worn(const Change& change);
+  // Without looking where they are: no point of an element has moved by more than this (nm), and no axis turned,
+  // since that was last asked for. Whether the list still holds for certain.
+  bool holds_after(double moved, double turned);
   static constexpr std::ptrdiff_t block = 128;
   // Of the elements begin .. end - 1; infinite where a place is not finite.
   Change change(const State& state, std::ptrdiff_t begin, std::ptrdiff_t end) const;
@@ -69,13 +72,15 @@ class NeighbourList {
   // Another one for every build of any list.
   long stamp() const { return stamp_; }
   // By no more than twice this (nm) had the distance of any two points within reach changed since the last build,
-  // when `update` was last called; what turns all of a rope together does not count.
+  // when the list was last asked whether it holds; what turns all of a rope together does not count.
   double displacement() const { return displacement_; }
   // By no more than twice this had the angle between two axes within reach.
   double turn() const { return turn_; }
   // Of the motion since the build: with it a resumed run has the next build at the same step.
   std::array<double, 2> twist() const { return since_.twist(); }
   void set_twist(const std::array<double, 2>& t) { since_.set_twist(t); }
+  // The same for what may have moved unseen since then.
+  void set_bounds(double displacement, double turn) { displacement_ = displacement, turn_ = turn; }
   // nm: centres of elements with points within reach are no more than this apart.
   double within() const { return cutoff + skin + 2 * lever; }
   std::size_t bytes() const { return index_.capacity() * sizeof(int) + begin_.capacity() * sizeof(std::size_t); }

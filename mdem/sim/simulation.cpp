@@ -204,10 +204,13 @@ void Simulation::drift_range(const ElementRange& of, const ForceRows& forces, co
   for (std::ptrdiff_t begin = of.begin; begin < of.end; begin += most) {
     const std::ptrdiff_t end = std::min(begin + most, of.end);
     for (int k = 0; k < by.kicks; ++k) kick_range(forces, {begin, end, of.type}, 0.5 * by.dt);
-    moved.little = moved.little && little.holds(fastest(state_, begin, end));
+    const Fastest speeds = fastest(state_, begin, end);
+    moved.little = moved.little && little.holds(speeds);
+    moved.speed2 = std::max(moved.speed2, speeds.speed2);
+    moved.spin2 = std::max(moved.spin2, speeds.spin2);
     move(state_, by.dt, begin, end);
     if (by.axes) engine_.make_axes(state_, begin, end);
-    moved.change = both(moved.change, list_.change(state_, begin, end));
+    if (by.looks) moved.change = both(moved.change, list_.change(state_, begin, end));
   }
 }
 
@@ -222,7 +225,8 @@ void Simulation::drift_block(int block, const ForceRows& forces, const Drift& by
 void Simulation::drift_driven(const Drift& by) {
   kick_driven(by.kicks, 0.5 * by.dt);
   Moved moved;
-  for (const ElementRange& of : elements_.driven()) drift_range(of, rows_of(forces_), {by.dt, 0, by.axes}, moved);
+  for (const ElementRange& of : elements_.driven())
+    drift_range(of, rows_of(forces_), {by.dt, 0, by.axes, by.looks}, moved);
   moved_.back() = moved;
 }
 
@@ -232,12 +236,51 @@ void Simulation::drift(const Drift& by) {
   drift_driven(by);
 }
 
-// By the changes of the last drift, added up in their order, whatever the threads.
+// In the order of the blocks, whatever the threads.
+Simulation::Moved Simulation::all_moved() const {
+  Moved all;
+  for (const Moved& of : moved_) {
+    all.change = both(all.change, of.change);
+    all.speed2 = std::max(all.speed2, of.speed2);
+    all.spin2 = std::max(all.spin2, of.spin2);
+    all.little = all.little && of.little;
+  }
+  return all;
+}
+
+void Simulation::look() {
+  const auto change = [&](const ElementRange* first, const ElementRange* last, Moved& moved) {
+    moved.change = {};
+    for (; first != last; ++first)
+      moved.change = both(moved.change, list_.change(state_, first->begin, first->end));
+  };
+#pragma omp parallel for schedule(static) if (state_.size() > parallel_from)
+  for (int block = 0; block < elements_.blocks(); ++block)
+    change(elements_.begin(block), elements_.end(block), moved_[static_cast<std::size_t>(block)]);
+  change(elements_.driven().data(), elements_.driven().data() + elements_.driven().size(), moved_.back());
+}
+
+// After a drift. Where all are slow nobody looks how far each has come until, together, they may have come far
+// enough to matter: what is out of reach by less is met in vain, and a plan of the line law holds for five times
+// the angle.
 void Simulation::update_list() {
+  constexpr double far = 0.002, much = 0.0003, more = 1.001;  // nm; rad; for rounding
   ++list_age_;
-  Change all;
-  for (const Moved& moved : moved_) all = both(all, moved.change);
-  if (!list_.worn(all)) return;
+  Moved all = all_moved();
+  const double turned = more * time_step_ * std::sqrt(all.spin2),
+               moved = more * time_step_ * std::sqrt(all.speed2) + list_.lever * turned;
+  bool looked = looks_;
+  if (!looked) {
+    unseen_ = {unseen_.moved + moved, unseen_.turned + turned};
+    if (!list_.holds_after(moved, turned)) {
+      look();
+      all = all_moved();
+      looked = true;
+    }
+  }
+  if (looked) unseen_ = {};
+  looks_ = two_levels() || !(unseen_.moved + moved <= far && unseen_.turned + turned <= much);
+  if (!looked || !list_.worn(all.change)) return;
   if (tunes_skin_) list_.skin = engine_.line().list().best_skin(topology_, list_.skin, list_age_);
   list_.build(topology_, state_);
   list_age_ = 0;
@@ -245,7 +288,7 @@ void Simulation::update_list() {
 
 // The velocities of the last drift.
 void Simulation::check_motion() const {
-  if (std::all_of(moved_.begin(), moved_.end(), [](const Moved& m) { return m.little; })) return;
+  if (all_moved().little) return;
   const LittleMotion little(topology_.largest_radius(), time_step_);
   int broken = 0;
   while (broken + 1 < topology_.elements() && little.holds(fastest(state_, broken, broken + 1))) ++broken;
@@ -272,16 +315,16 @@ void Simulation::steps(long count, bool energies) {
 void Simulation::one_level(long step, long count, bool energies) {
   const double dt = time_step_;
   const bool at_once = kicks_while_moving(), last = step + 1 == count, axes = interaction_.has_contact();
-  const Drift begin{dt, at_once ? 1 : 0, axes}, go_on{dt, 2, axes};
   const double t0 = omp_get_wtime(), then_before = engine_.times().then;
   if (!at_once) kick_with_loads(forces_, 0.5 * dt);
-  if (!at_once || step == 0) drift(begin);
+  if (!at_once || step == 0) drift({dt, at_once ? 1 : 0, axes, looks_});
   ++state_.step;
   state_.time += dt;
   check_motion();
   const double t1 = omp_get_wtime();
   update_list();
   const double t2 = omp_get_wtime();
+  const Drift go_on{dt, 2, axes, looks_};
   compute(energies, axes, at_once && !last ? &go_on : nullptr);
   const double t3 = omp_get_wtime();
   if (at_once && !last) drift_driven(go_on);
@@ -315,7 +358,7 @@ void Simulation::two_level(bool energies) {
   kick(contact_, 0.5 * dt);
   kick_with_loads(inner_, 0.5 * inner);
   for (int k = 1; k <= stepping_.contact_every; ++k) {
-    drift({inner, 0, false});
+    drift({inner, 0, false, k == stepping_.contact_every});
     state_.time += inner;
     compute_bonds();
     dissipated_ -= inner * inner_.damping_power;
@@ -399,7 +442,7 @@ bool Simulation::relax(double tolerance, long max_steps, const std::function<boo
     if (power > 0) {
       fire.went_down();
     } else {
-      if (k > 0) drift({-0.5 * fire.dt, 0, false});
+      if (k > 0) drift({-0.5 * fire.dt, 0, false, true});
       stop();
       fire.went_up();
     }
@@ -430,7 +473,8 @@ bool Simulation::relax(double tolerance, long max_steps, const std::function<boo
       fastest2 =
           std::max(fastest2, state_.velocity[i].squaredNorm() + scale2 * state_.angular_velocity[i].squaredNorm());
     const double step = std::min(dt, fastest2 > 0 ? most_move / std::sqrt(fastest2) : dt);
-    drift({step, 0, false});
+    looks_ = true;
+    drift({step, 0, false, true});
     ++state_.step;
     update_list();
     compute();
@@ -448,7 +492,7 @@ std::size_t Simulation::bytes() const {
 
 namespace {
 
-constexpr char magic[] = "MDEM6";
+constexpr char magic[] = "MDEM7";
 
 struct Writer {
   std::string bytes;
@@ -548,6 +592,8 @@ std::string Simulation::serialise() const {
   w.put(list_.skin);
   w.put(list_age_);
   w.put(list_.twist());
+  for (const double x : {list_.displacement(), list_.turn(), unseen_.moved, unseen_.turned}) w.put(x);
+  w.put(looks_);
   w.put(static_cast<std::int64_t>(stepping_.contact_every));
   for (const auto* v : checkpoint_arrays(state_, forces_, list_.reference(), list_.reference_axis())) w.put(*v);
   if (two_levels())
@@ -582,6 +628,11 @@ void Simulation::restore(const std::string& bytes) {
   r.get(list_age_);
   std::array<double, 2> twist{};
   r.get(twist);
+  std::array<double, 2> bounds{};
+  r.get(bounds);
+  r.get(unseen_.moved);
+  r.get(unseen_.turned);
+  r.get(looks_);
   std::int64_t contact_every = 0;
   r.get(contact_every);
   if (contact_every != stepping_.contact_every)
@@ -600,6 +651,7 @@ void Simulation::restore(const std::string& bytes) {
   if (planned) get(plan, state_.size(), r);
   list_.build(topology_, std::move(ref), std::move(ref_axis));
   list_.set_twist(twist);
+  list_.set_bounds(bounds[0], bounds[1]);
   if (planned) engine_.resume(topology_, interaction_, list_, std::move(plan));
   // The runs of this list, which the skin of the next one follows from.
   Forces made(state_.size());

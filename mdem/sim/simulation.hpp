@@ -98,17 +98,26 @@ class Simulation {
   double kick_tube(Forces& forces, int tube, double dt);
   void kick_range(const ForceRows& forces, const ElementRange& of, double dt);
   void kick_driven(int kicks, double dt);
-  // How far elements have come since the list was built, and whether the last drift was a small one.
+  // How far elements have come since the list was built, if looked for, how fast they are, and whether the last
+  // drift was a small one.
   struct Moved {
     Change change;
+    double speed2 = 0, spin2 = 0;
     bool little = true;
   };
-  // What a drift does to elements: after so many kicks of half a step, and whether it makes their axes.
+  // What a drift does to elements: after so many kicks of half a step, and whether it makes their axes and looks
+  // how far they have come.
   struct Drift {
     double dt;
     int kicks;
-    bool axes;
+    bool axes, looks;
   };
+  // By no more than this have points of elements moved (nm) and axes turned.
+  struct Motion {
+    double moved = 0, turned = 0;
+  };
+  Moved all_moved() const;
+  void look();
   void drift_range(const ElementRange& of, const ForceRows& forces, const Drift& by, Moved& moved);
   void drift_block(int block, const ForceRows& forces, const Drift& by);
   void drift_driven(const Drift& by);
@@ -134,6 +143,8 @@ class Simulation {
   NeighbourList list_;
   std::int64_t list_age_ = 0;  // steps since the list was built
   std::vector<Moved> moved_;   // of the blocks, and behind them of what is driven
+  Motion unseen_;              // since the places were last looked at
+  bool looks_ = true;          // whether the next drift does
   ForceEngine engine_;
   Forces forces_;           // of all
   Forces inner_, contact_;  // its two parts, on two levels: bonds and loads; contact

@@ -252,6 +252,27 @@ TEST(ListSkin, FollowsTheMotion) {
   EXPECT_NEAR(f.total_energy(), fixed.total_energy(), 1e-5 * f.work());
 }
 
+// In slow motion nobody looks in most steps how far elements have come: what is known bounds it all the same.
+TEST(ListSkin, IsNeverUsedUpUnseen) {
+  Bundle b(7, 40, 1);
+  b.in.damping.contact = {20, spacing, 1.5 * spacing};
+  Simulation s = b.make(b.step());
+  const auto n = static_cast<std::ptrdiff_t>(b.topology.elements());
+  int looks = 0, closer = 0;
+  double before = 0;
+  for (int k = 0; k < 2000; ++k) {
+    s.step(false);
+    const double known = s.list().displacement(), moved = s.list().change(s.state(), 0, n).moved;
+    ASSERT_LE(moved, known + 1e-4) << k;  // by the twist that fits now, not that of the last look
+    if (known < before) ++looks;
+    if (known < moved + 0.006) ++closer;
+    before = known;
+  }
+  EXPECT_GT(looks, 10);
+  EXPECT_LT(looks, 1000);
+  EXPECT_EQ(closer, 2000);
+}
+
 // With all that acts on some elements alone, and types of tubes that the blocks of the motion are not aligned with.
 Drive all_kinds(const Topology& topology) {
   const auto end_of = [&](int tube) { return topology.tube_begin[tube + 1] - 1; };
