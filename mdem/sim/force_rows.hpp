@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include "sim/tiles.hpp"
+#include "sim/state.hpp"
 
 namespace ropewalk {
 
@@ -12,6 +12,16 @@ struct ForceRows {
   Vec3Array& force;
   Vec3Array& torque;
   std::ptrdiff_t origin = 0;
+};
+
+// The same to read.
+struct ForcesOn {
+  const Vec3Array& force;
+  const Vec3Array& torque;
+  std::ptrdiff_t origin = 0;
+
+  ForcesOn(const Vec3Array& f, const Vec3Array& t, std::ptrdiff_t first) : force(f), torque(t), origin(first) {}
+  ForcesOn(const ForceRows& rows) : ForcesOn(rows.force, rows.torque, rows.origin) {}
 };
 
 }  // namespace ropewalk

@@ -27,6 +27,7 @@ struct Forces {
   void resize(std::size_t n) { force.resize(n), torque.resize(n); }
 };
 inline ForceRows rows_of(Forces& forces) { return {forces.force, forces.torque, 0}; }
+inline ForcesOn rows_of(const Forces& forces) { return {forces.force, forces.torque, 0}; }
 
 // Body frames.
 struct FrameArray {
@@ -85,7 +86,7 @@ struct ForceOptions {
   bool axes_made = false;  // the axes of all elements are those that make_axes has made
   // Called for every block of TubeParts, by any thread, with its forces, which are kept nowhere else then: nothing
   // needs its elements as they are any more, and they may move.
-  std::function<void(int, const ForceRows&)> then;
+  std::function<void(int, const ForcesOn&)> then;
 };
 
 // The list must be up to date, but for the bonds alone.

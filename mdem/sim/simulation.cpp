@@ -87,7 +87,7 @@ void Simulation::compute(bool energies, bool axes_made, const Drift* then) {
   }
   ForceOptions options{energies, Parts::all, axes_made, {}};
   if (then)
-    options.then = [&](int block, const ForceRows& forces) {
+    options.then = [&](int block, const ForcesOn& forces) {
       for (const ElementRange* of = elements_.driven_begin(block); of != elements_.driven_end(block); ++of)
         for (std::ptrdiff_t i = of->begin; i < of->end; ++i) {
           const auto from = static_cast<std::size_t>(i - forces.origin), to = static_cast<std::size_t>(i);
@@ -138,7 +138,7 @@ void Simulation::add_levels() {
 }
 
 // The elements of one tube; returns what the local damping takes out.
-double Simulation::kick_tube(Forces& forces, int tube, double dt) {
+double Simulation::kick_tube(const Forces& forces, int tube, double dt) {
   const double alpha = interaction_.damping.local;
   const std::ptrdiff_t from = topology_.tube_begin[tube], to = topology_.tube_begin[tube + 1];
   if (alpha <= 0) {
@@ -164,7 +164,7 @@ double Simulation::kick_tube(Forces& forces, int tube, double dt) {
   return removed;
 }
 
-void Simulation::kick(Forces& forces, double dt) {
+void Simulation::kick(const Forces& forces, double dt) {
   // Added up in the order of the tubes, whatever the threads.
   removed_.resize(static_cast<std::size_t>(topology_.tubes()));
 #pragma omp parallel for schedule(static) if (state_.size() > parallel_from)
@@ -174,14 +174,14 @@ void Simulation::kick(Forces& forces, double dt) {
 }
 
 // `forces` holds the loads as well.
-void Simulation::kick_with_loads(Forces& forces, double dt) {
+void Simulation::kick_with_loads(const Forces& forces, double dt) {
   work_ += 0.5 * dt * load_power(point_loads_, state_);
   kick(forces, dt);
   work_ += 0.5 * dt * load_power(point_loads_, state_);
 }
 
 // Without local damping.
-void Simulation::kick_range(const ForceRows& forces, const ElementRange& of, double dt) {
+void Simulation::kick_range(const ForcesOn& forces, const ElementRange& of, double dt) {
   const TubeType& type = topology_.types[static_cast<std::size_t>(of.type)];
   kick_elements(forces.force, forces.origin, dt / type.mass, state_.velocity, of.begin, of.end);
   kick_elements(forces.torque, forces.origin, dt / type.inertia, state_.angular_velocity, of.begin, of.end);
@@ -197,7 +197,7 @@ void Simulation::kick_driven(int kicks, double dt) {
   }
 }
 
-void Simulation::drift_range(const ElementRange& of, const ForceRows& forces, const Drift& by, Moved& moved) {
+void Simulation::drift_range(const ElementRange& of, const ForcesOn& forces, const Drift& by, Moved& moved) {
   constexpr std::ptrdiff_t most = 128;  // elements that stay in the first cache
   const auto move = stepping_.runge_kutta ? move_elements_runge_kutta : move_elements;
   const LittleMotion little(topology_.largest_radius(), time_step_);
@@ -215,7 +215,7 @@ void Simulation::drift_range(const ElementRange& of, const ForceRows& forces, co
 }
 
 // All that is free in it.
-void Simulation::drift_block(int block, const ForceRows& forces, const Drift& by) {
+void Simulation::drift_block(int block, const ForcesOn& forces, const Drift& by) {
   Moved moved;
   for (const ElementRange* of = elements_.begin(block); of != elements_.end(block); ++of)
     drift_range(*of, forces, by, moved);

@@ -93,10 +93,10 @@ class Simulation {
   void two_level(bool energies);
   bool kicks_while_moving() const;
   void compute_contact_in_impulse(bool energies);
-  void kick(Forces& forces, double dt);
-  void kick_with_loads(Forces& forces, double dt);
-  double kick_tube(Forces& forces, int tube, double dt);
-  void kick_range(const ForceRows& forces, const ElementRange& of, double dt);
+  void kick(const Forces& forces, double dt);
+  void kick_with_loads(const Forces& forces, double dt);
+  double kick_tube(const Forces& forces, int tube, double dt);
+  void kick_range(const ForcesOn& forces, const ElementRange& of, double dt);
   void kick_driven(int kicks, double dt);
   // How far elements have come since the list was built, if looked for, how fast they are, and whether the last
   // drift was a small one.
@@ -118,8 +118,8 @@ class Simulation {
   };
   Moved all_moved() const;
   void look();
-  void drift_range(const ElementRange& of, const ForceRows& forces, const Drift& by, Moved& moved);
-  void drift_block(int block, const ForceRows& forces, const Drift& by);
+  void drift_range(const ElementRange& of, const ForcesOn& forces, const Drift& by, Moved& moved);
+  void drift_block(int block, const ForcesOn& forces, const Drift& by);
   void drift_driven(const Drift& by);
   void drift(const Drift& by);
   void update_list();

@@ -328,7 +328,7 @@ TEST_P(LongTubes, ForcesOfBlocksAreTheSameBitsThoughTheirElementsMove) {
     Forces found(state.size()), rest;
     ForceEngine engine;
     ForceOptions options;
-    options.then = [&](int block, const ForceRows& forces) {
+    options.then = [&](int block, const ForcesOn& forces) {
       for (const ElementRange* r = elements.begin(block); r != elements.end(block); ++r)
         for (std::ptrdiff_t i = r->begin; i < r->end; ++i) {
           const auto to = static_cast<std::size_t>(i), from = static_cast<std::size_t>(i - forces.origin);
