@@ -59,8 +59,8 @@ struct DampedElements {
   std::size_t bytes() const { return 3 * x.capacity() * sizeof(x[0]) + 6 * vx.capacity() * sizeof(vx[0]); }
 };
 
-// With the widest vectors that the machine has. Added to what the buffer holds, of which a vector behind the last
-// element is read and written as it was.
+// With the widest vectors that the machine has. Added to what the buffer holds, of which up to DampedBlock::most
+// entries before a part and behind the last one are read and written as they were.
 void contact_damping(const ContactViscosity& viscosity, const State& state, const std::vector<DampedBlock>& blocks,
                      ContactBuffer<double>& out);
 

@@ -126,7 +126,7 @@ void collect_bonds(const std::vector<double>& on_i, double sign_i, const std::ve
   if (bonds > 0 && to == bonds + 1) out[bonds - from] = b[bonds - 1];
 }
 
-// The bonds of the range, with their damping: into `each`, from frames that are in `work`.
+// The bonds of the range, with their damping: into `work`, from the frames in it.
 BondSum bonds_of(const Topology& topology, const Interaction& interaction, const State& state, int tube,
                  const BondRange& range, TubeBonds& work) {
   const TubeType& type = topology.type_of(tube);
@@ -259,11 +259,9 @@ void ForceEngine::compute(const Topology& topology, const Interaction& interacti
   const int tube_parts = parts_.count();
   joints_.resize(static_cast<std::size_t>(tube_parts));
   std::vector<BondSum> sums(static_cast<std::size_t>(tube_parts));
-  const auto joint_of = [&](int k, int element) -> Joint* {
-    const Segment& part = parts_[k];
-    return element > topology.tube_begin[part.tube] && element < topology.tube_begin[part.tube + 1]
-               ? &joints_[static_cast<std::size_t>(element == part.begin ? k - 1 : k)]
-               : nullptr;
+  // Behind part k, if the tube goes on there.
+  const auto joint = [&](int k, bool goes_on) -> const Joint* {
+    return goes_on ? &joints_[static_cast<std::size_t>(k)] : nullptr;
   };
   const auto join = [&](int tube) {
     for (int k = parts_.begin(tube); bonds && k + 1 < parts_.begin(tube + 1); ++k)
@@ -271,11 +269,13 @@ void ForceEngine::compute(const Topology& topology, const Interaction& interacti
   };
   const auto finish = [&](int k, const ForceRows& on) {
     const Segment& part = parts_[k];
-    if (bonds)
-      sums[static_cast<std::size_t>(k)] =
-          compute_bonds(topology, interaction, state, part, joint_of(k, part.begin), joint_of(k, part.end), on);
-    else
+    if (bonds) {
+      const Joint *before = joint(k - 1, part.begin > topology.tube_begin[part.tube]),
+                  *behind = joint(k, part.end < topology.tube_begin[part.tube + 1]);
+      sums[static_cast<std::size_t>(k)] = compute_bonds(topology, interaction, state, part, before, behind, on);
+    } else {
       clear(part, on);
+    }
     if (by_paper) add_buffers(list, part.begin, part.end, on);
     if (by_line) line_.add_to(k, on);
   };

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sim/contact_kernel.hpp"
+#include "sim/force_rows.hpp"
 #include "sim/interaction.hpp"
 #include "sim/line_engine.hpp"
 #include "sim/neighbours.hpp"
@@ -99,8 +100,9 @@ class ForceEngine {
   void make_axes(const State& state, std::ptrdiff_t begin, std::ptrdiff_t end);
 
   // Wall time spent so far in each part, s.
-  // Axes that are not made yet are made within the contact where that is by the line law, and tubes are finished
-  // within it: the first thread tells the times of the two apart.
+  // Axes that are not made yet are made within the contact where that is by the line law, and blocks are finished
+  // within it: the first thread tells the times of the two apart, and that in `then`, which is in none of the
+  // others.
   struct Times {
     double axes = 0, contact = 0, bonds = 0, then = 0;
   };

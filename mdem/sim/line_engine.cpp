@@ -2,8 +2,6 @@
 
 #include <omp.h>
 
-#include <algorithm>
-
 #include "sim/vector_clones.hpp"
 
 namespace ropewalk {

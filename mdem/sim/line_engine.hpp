@@ -15,6 +15,7 @@
 #include "sim/line_rows.hpp"
 #include "sim/line_touches.hpp"
 #include "sim/radial_table.hpp"
+#include "sim/tiles.hpp"
 #include "sim/work_shares.hpp"
 
 namespace ropewalk {
@@ -249,9 +250,10 @@ void line_contact(const LineKernelInput<FullTable, double>& in, const LineChunk&
 std::vector<std::string> instruction_sets();
 bool use_instructions(const std::string& name);
 
-// What tubes need besides the contact: `place` the axes of each tube, before its nodes, and `finish` each block of
-// elements once nothing acts on it any more, nor needs to know where it is; in large scenes at once, when what
-// acted on it is still in the cache of a thread. Each once, by any thread.
+// What tubes need besides the contact: `place` the axes of each tube and what else is needed of it as it is, before
+// any node or block (which `finish` may move), and `finish` each block of elements once nothing acts on it any
+// more, nor needs to know where it is; in large scenes at once, when what acted on it is still in the cache of a
+// thread. Each once, by any thread.
 struct TubeWork {
   const TubeParts& parts;
   std::function<void(int)> place, finish;

@@ -41,4 +41,10 @@ void LineTouches::list(const TubeParts& parts, const std::vector<LineChunk>& chu
     });
 }
 
+std::size_t LineTouches::bytes() const {
+  std::size_t total = touch_.capacity() * sizeof(Touch) + (begin_.capacity() + chunks_on_.capacity()) * sizeof(int);
+  for (const std::vector<int>& on : blocks_) total += sizeof on + on.capacity() * sizeof(int);
+  return total;
+}
+
 }  // namespace ropewalk

@@ -26,7 +26,7 @@ class LineTouches {
   // The blocks of parts that a chunk acts on, and how many chunks act on each.
   const std::vector<int>& blocks(std::size_t chunk) const { return blocks_[chunk]; }
   const std::vector<int>& chunks_on() const { return chunks_on_; }
-  std::size_t bytes() const { return touch_.capacity() * sizeof(Touch) + begin_.capacity() * sizeof(int); }
+  std::size_t bytes() const;
 
  private:
   std::vector<Touch> touch_;

@@ -11,6 +11,7 @@
 namespace ropewalk {
 
 bool NeighbourList::update(const Topology& topology, const State& state) {
+  constexpr std::ptrdiff_t block = 128;  // elements that stay in the first cache
   Change all;
   const auto n = static_cast<std::ptrdiff_t>(state.size());
   for (std::ptrdiff_t i = 0; i < n; i += block) all = both(all, change(state, i, std::min(i + block, n)));

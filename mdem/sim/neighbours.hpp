@@ -46,13 +46,11 @@ class NeighbourList {
   // Builds anew where an element has moved too far. Returns whether it did. A position that is not finite
   // counts as moved; the build then leaves that element without neighbours.
   bool update(const Topology& topology, const State& state);
-  // Whether it has to be built anew by the change since the last build: that of all elements, added up in parts of
-  // `block`.
+  // Whether it has to be built anew by the change since the last build: that of all elements.
   bool worn(const Change& change);
   // Without looking where they are: no point of an element has moved by more than this (nm), and no axis turned,
   // since that was last asked for. Whether the list still holds for certain.
   bool holds_after(double moved, double turned);
-  static constexpr std::ptrdiff_t block = 128;
   // Of the elements begin .. end - 1; infinite where a place is not finite.
   Change change(const State& state, std::ptrdiff_t begin, std::ptrdiff_t end) const;
   void build(const Topology& topology, const State& state);

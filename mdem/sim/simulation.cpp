@@ -208,10 +208,11 @@ void Simulation::drift_range(const ElementRange& of, const ForcesOn& forces, con
     moved.little = moved.little && little.holds(speeds);
     moved.speed2 = std::max(moved.speed2, speeds.speed2);
     moved.spin2 = std::max(moved.spin2, speeds.spin2);
-    move(state_, by.dt, begin, end);
+    if (std::isfinite(speeds.sum)) move(state_, by.dt, begin, end);
     if (by.axes) engine_.make_axes(state_, begin, end);
     if (by.looks) moved.change = both(moved.change, list_.change(state_, begin, end));
   }
+  moved.looked = by.looks;
 }
 
 // All that is free in it.
@@ -230,9 +231,13 @@ void Simulation::drift_driven(const Drift& by) {
   moved_.back() = moved;
 }
 
-void Simulation::drift(const Drift& by) {
+void Simulation::drift_free(const Drift& by) {
 #pragma omp parallel for schedule(static) if (state_.size() > parallel_from)
   for (int block = 0; block < elements_.blocks(); ++block) drift_block(block, rows_of(forces_), by);
+}
+
+void Simulation::drift(const Drift& by) {
+  drift_free(by);
   drift_driven(by);
 }
 
@@ -244,6 +249,7 @@ Simulation::Moved Simulation::all_moved() const {
     all.speed2 = std::max(all.speed2, of.speed2);
     all.spin2 = std::max(all.spin2, of.spin2);
     all.little = all.little && of.little;
+    all.looked = all.looked && of.looked;
   }
   return all;
 }
@@ -251,6 +257,7 @@ Simulation::Moved Simulation::all_moved() const {
 void Simulation::look() {
   const auto change = [&](const ElementRange* first, const ElementRange* last, Moved& moved) {
     moved.change = {};
+    moved.looked = true;
     for (; first != last; ++first)
       moved.change = both(moved.change, list_.change(state_, first->begin, first->end));
   };
@@ -263,32 +270,29 @@ void Simulation::look() {
 // After a drift. Where all are slow nobody looks how far each has come until, together, they may have come far
 // enough to matter: what is out of reach by less is met in vain, and a plan of the line law holds for five times
 // the angle.
-void Simulation::update_list() {
+void Simulation::update_list(Moved all) {
   constexpr double far = 0.002, much = 0.0003, more = 1.001;  // nm; rad; for rounding
   ++list_age_;
-  Moved all = all_moved();
   const double turned = more * time_step_ * std::sqrt(all.spin2),
                moved = more * time_step_ * std::sqrt(all.speed2) + list_.lever * turned;
-  bool looked = looks_;
-  if (!looked) {
+  if (!all.looked) {
     unseen_ = {unseen_.moved + moved, unseen_.turned + turned};
     if (!list_.holds_after(moved, turned)) {
       look();
       all = all_moved();
-      looked = true;
     }
   }
-  if (looked) unseen_ = {};
-  looks_ = two_levels() || !(unseen_.moved + moved <= far && unseen_.turned + turned <= much);
-  if (!looked || !list_.worn(all.change)) return;
+  if (all.looked) unseen_ = {};
+  looks_ = !(unseen_.moved + moved <= far && unseen_.turned + turned <= much);
+  if (!all.looked || !list_.worn(all.change)) return;
   if (tunes_skin_) list_.skin = engine_.line().list().best_skin(topology_, list_.skin, list_age_);
   list_.build(topology_, state_);
   list_age_ = 0;
 }
 
 // The velocities of the last drift.
-void Simulation::check_motion() const {
-  if (all_moved().little) return;
+void Simulation::check_motion(const Moved& all) const {
+  if (all.little) return;
   const LittleMotion little(topology_.largest_radius(), time_step_);
   int broken = 0;
   while (broken + 1 < topology_.elements() && little.holds(fastest(state_, broken, broken + 1))) ++broken;
@@ -320,15 +324,18 @@ void Simulation::one_level(long step, long count, bool energies) {
   if (!at_once || step == 0) drift({dt, at_once ? 1 : 0, axes, looks_});
   ++state_.step;
   state_.time += dt;
-  check_motion();
+  const Moved moved = all_moved();
+  check_motion(moved);
   const double t1 = omp_get_wtime();
-  update_list();
+  update_list(moved);
   const double t2 = omp_get_wtime();
   const Drift go_on{dt, 2, axes, looks_};
   compute(energies, axes, at_once && !last ? &go_on : nullptr);
   const double t3 = omp_get_wtime();
-  if (at_once && !last) drift_driven(go_on);
+  // A bond that slips is shown where it did.
+  if (at_once && !last && forces_.slipping_bond >= 0) drift_free({-dt, 0, false, false});
   check_forces(energies);
+  if (at_once && !last) drift_driven(go_on);
   dissipated_ -= dt * forces_.damping_power;
   if (last || !at_once) kick_with_loads(forces_, 0.5 * dt);
   relax_angles_if_due();
@@ -366,9 +373,10 @@ void Simulation::two_level(bool energies) {
     kick_with_loads(inner_, k < stepping_.contact_every ? inner : 0.5 * inner);
   }
   ++state_.step;
-  check_motion();
+  const Moved moved = all_moved();
+  check_motion(moved);
   const double t1 = omp_get_wtime();
-  update_list();
+  update_list(moved);
   const double listed = omp_get_wtime() - t1;
   compute_contact_in_impulse(energies);
   add_levels();
@@ -442,7 +450,7 @@ bool Simulation::relax(double tolerance, long max_steps, const std::function<boo
     if (power > 0) {
       fire.went_down();
     } else {
-      if (k > 0) drift({-0.5 * fire.dt, 0, false, true});
+      if (k > 0) drift({-0.5 * fire.dt, 0, false, false});
       stop();
       fire.went_up();
     }
@@ -473,10 +481,9 @@ bool Simulation::relax(double tolerance, long max_steps, const std::function<boo
       fastest2 =
           std::max(fastest2, state_.velocity[i].squaredNorm() + scale2 * state_.angular_velocity[i].squaredNorm());
     const double step = std::min(dt, fastest2 > 0 ? most_move / std::sqrt(fastest2) : dt);
-    looks_ = true;
     drift({step, 0, false, true});
     ++state_.step;
-    update_list();
+    update_list(all_moved());
     compute();
     if (forces_.slipping_bond >= 0) check_forces(true);
   }

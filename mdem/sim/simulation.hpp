@@ -103,7 +103,7 @@ class Simulation {
   struct Moved {
     Change change;
     double speed2 = 0, spin2 = 0;
-    bool little = true;
+    bool little = true, looked = true;
   };
   // What a drift does to elements: after so many kicks of half a step, and whether it makes their axes and looks
   // how far they have come.
@@ -112,23 +112,20 @@ class Simulation {
     int kicks;
     bool axes, looks;
   };
-  // By no more than this have points of elements moved (nm) and axes turned.
-  struct Motion {
-    double moved = 0, turned = 0;
-  };
   Moved all_moved() const;
   void look();
   void drift_range(const ElementRange& of, const ForcesOn& forces, const Drift& by, Moved& moved);
   void drift_block(int block, const ForcesOn& forces, const Drift& by);
   void drift_driven(const Drift& by);
+  void drift_free(const Drift& by);
   void drift(const Drift& by);
-  void update_list();
+  void update_list(Moved all);
   void compute(bool energies = true, bool axes_made = false, const Drift* then = nullptr);
   void compute_bonds();
   void compute_contact(bool energies);
   void add_loads(Forces& forces);
   void add_levels();
-  void check_motion() const;
+  void check_motion(const Moved& all) const;
   void check_forces(bool energies) const;
   void relax_angles_if_due();
 
@@ -143,7 +140,7 @@ class Simulation {
   NeighbourList list_;
   std::int64_t list_age_ = 0;  // steps since the list was built
   std::vector<Moved> moved_;   // of the blocks, and behind them of what is driven
-  Motion unseen_;              // since the places were last looked at
+  MotionSince::Bound unseen_;  // since the places were last looked at
   bool looks_ = true;          // whether the next drift does
   ForceEngine engine_;
   Forces forces_;           // of all

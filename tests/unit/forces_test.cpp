@@ -232,12 +232,13 @@ const std::vector<Variant> line_variants = {
 
 std::string name_of(const ::testing::TestParamInfo<Variant>& info) { return info.param.name; }
 
-// The contact by the line law, every part of a tube finished once.
-Forces line_contact_of(const Topology& topology, const Interaction& in, const State& state,
+// The contact by the line law, every part of a tube finished once, and its elements sent away then.
+Forces line_contact_of(const Topology& topology, const Interaction& in, const State& start,
                        std::size_t at_once_from, int threads) {
   omp_set_num_threads(threads);
   NeighbourList list(in, 0.2);
-  list.build(topology, state);
+  list.build(topology, start);
+  State state = start;
   Vec3Array axis(state.size());
   LineEngine engine;
   engine.finish_at_once_from = at_once_from;
@@ -248,10 +249,18 @@ Forces line_contact_of(const Topology& topology, const Interaction& in, const St
     for (int i = topology.tube_begin[t]; i < topology.tube_begin[t + 1]; ++i)
       axis.set(static_cast<std::size_t>(i), axis_of(state.orientation[static_cast<std::size_t>(i)]));
   };
+  const auto send_away = [&](std::size_t i) {
+    state.position.set(i, Vector3(1e4, 1e4, 1e4));
+    state.orientation.set(i, Quaternion(0, 1, 0, 0));
+    state.velocity.set(i, Vector3(1e4, 0, 0));
+    state.angular_velocity.set(i, Vector3(0, 1e4, 0));
+    axis.set(i, Vector3(1, 0, 0));
+  };
   const auto finish = [&](int block) {
     for (int k = parts.block_begin(block); k < parts.block_begin(block + 1); ++k) {
       ++times[static_cast<std::size_t>(k)];
       engine.add_to(k, rows_of(out));
+      for (int i = parts[k].begin; i < parts[k].end; ++i) send_away(static_cast<std::size_t>(i));
     }
   };
   engine.compute(topology, in, list, state, axis, true, {parts, place, finish});
@@ -263,7 +272,7 @@ Forces line_contact_of(const Topology& topology, const Interaction& in, const St
 
 constexpr std::size_t at_once = 0, in_the_end = 1000000;
 
-// Whichever thread finishes a tube, and whether at once or after all chunks.
+// Whichever thread finishes a block, and whether at once or after all chunks.
 class LineFinish : public ForcesTest {
  protected:
   Forces collected(std::size_t at_once_from, int threads) const {
