@@ -39,15 +39,20 @@ void colour_contacts(const Topology& topology, const Interaction& in, const Stat
   NeighbourList list(in, 0);
   list.build(topology, s);
   const PairEnergy energy(topology, in, s);
+  std::vector<std::size_t> first_pair{0};
+  for (int i = 0; i < topology.elements(); ++i) first_pair.push_back(first_pair.back() + list.pairs(i));
   std::vector<double> of_pair(list.pairs());
 #pragma omp parallel for schedule(dynamic, 64) if (s.size() > parallel_from)
+  for (int i = 0; i < topology.elements(); ++i) {
+    double* next = of_pair.data() + first_pair[static_cast<std::size_t>(i)];
+    list.for_neighbours(i, [&](int j) { *next++ = energy(i, j); });
+  }
+  const double* next = of_pair.data();
   for (int i = 0; i < topology.elements(); ++i)
-    for (std::size_t k = list.begin(i); k < list.begin(i + 1); ++k) of_pair[k] = energy(i, list.indices()[k]);
-  for (int i = 0; i < topology.elements(); ++i)
-    for (std::size_t k = list.begin(i); k < list.begin(i + 1); ++k) {
-      c.vdw_energy[static_cast<std::size_t>(i)] += 0.5 * of_pair[k];
-      c.vdw_energy[static_cast<std::size_t>(list.indices()[k])] += 0.5 * of_pair[k];
-    }
+    list.for_neighbours(i, [&](int j) {
+      c.vdw_energy[static_cast<std::size_t>(i)] += 0.5 * *next;
+      c.vdw_energy[static_cast<std::size_t>(j)] += 0.5 * *next++;
+    });
 }
 
 // An inner element has two bonds, an end element one: means are over the bonds that are there.

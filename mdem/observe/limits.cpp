@@ -52,19 +52,18 @@ void press_of_tube(const Topology& topology, const State& state, const Vec3Array
     const Vector3 place = state.position[static_cast<std::size_t>(i)];
     const Vector3 axis = axes[static_cast<std::size_t>(i)];
     double deepest = peak.element >= 0 ? peak.value : 0;
-    for (std::size_t k = list.begin(i); k < list.begin(i + 1); ++k) {
-      const auto j = static_cast<std::size_t>(list.indices()[k]);
+    list.for_neighbours(i, [&](int element) {
+      const auto j = static_cast<std::size_t>(element);
       const Vector3 separation = state.position[j] - place;
-      if (separation.squaredNorm() > reach * reach) continue;
-      const TubeType& other = types == 1 ? type : topology.type_of_element(static_cast<int>(j));
+      if (separation.squaredNorm() > reach * reach) return;
+      const TubeType& other = types == 1 ? type : topology.type_of_element(element);
       const double rest = watched.rest[row + static_cast<std::size_t>(&other - topology.types.data())];
       const double half_i = 0.5 * type.element_length, half_j = 0.5 * other.element_length;
       const double wanted = rest - deepest;
-      if (least_squared_distance(separation, axis, axes[j], half_i + half_j, 2 * half_j) > wanted * wanted)
-        continue;
+      if (least_squared_distance(separation, axis, axes[j], half_i + half_j, 2 * half_j) > wanted * wanted) return;
       const double distance2 = squared_segment_distance(separation, axis, axes[j], half_i, half_j);
       if (distance2 < rest * rest) deepest = std::max(deepest, rest - std::sqrt(distance2));
-    }
+    });
     raise(peak, deepest, i);
   }
 }

@@ -29,14 +29,13 @@ void look_at_crossings(const Prepared& p, SceneFeatures& f) {
   list.build(p.topology, p.state);
   double least = 90, most = 0;
   for (int i = 0; i < p.topology.elements(); ++i)
-    for (std::size_t k = list.begin(i); k < list.begin(i + 1); ++k) {
-      const double cosine =
-          std::fabs(axis_of(p.state.orientation[static_cast<std::size_t>(i)])
-                        .dot(axis_of(p.state.orientation[static_cast<std::size_t>(list.indices()[k])])));
+    list.for_neighbours(i, [&](int j) {
+      const double cosine = std::fabs(axis_of(p.state.orientation[static_cast<std::size_t>(i)])
+                                          .dot(axis_of(p.state.orientation[static_cast<std::size_t>(j)])));
       const double angle = std::acos(std::min(cosine, 1.0)) / units::degree;
       least = std::min(least, angle);
       most = std::max(most, angle);
-    }
+    });
   if (list.pairs() == 0) return;
   f.crossing_from = least;
   f.crossing_to = most;

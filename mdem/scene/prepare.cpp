@@ -34,9 +34,9 @@ void refuse_overlaps(const Scene& scene, const Prepared& p) {
   NeighbourList list(p.interaction, default_skin(p.interaction));
   list.build(p.topology, p.state);
   for (int i = 0; i < p.topology.elements(); ++i)
-    for (std::size_t k = list.begin(i); k < list.begin(i + 1); ++k) {
-      const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(list.indices()[k]);
-      const TubeType &ti = p.topology.type_of_element(i), &tj = p.topology.type_of_element(list.indices()[k]);
+    list.for_neighbours(i, [&](int j) {
+      const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(j);
+      const TubeType &ti = p.topology.type_of_element(i), &tj = p.topology.type_of_element(j);
       const double apart = std::sqrt(squared_segment_distance(
           p.state.position[b] - p.state.position[a], axis_of(p.state.orientation[a]),
           axis_of(p.state.orientation[b]), 0.5 * ti.element_length, 0.5 * tj.element_length));
@@ -47,7 +47,7 @@ void refuse_overlaps(const Scene& scene, const Prepared& p) {
                         "{:.3g} nm together",
                         a, b, apart, ti.radius + tj.radius),
             "move them apart, or relax the state first with mode = \"relax\"");
-    }
+    });
 }
 
 // A single tube bears the whole moment in every bond.

@@ -53,8 +53,8 @@ struct DampedElements {
 
   void make_room(int elements) {
     const auto entries = static_cast<std::size_t>(elements + DampedBlock::most);
-    for (auto* v : {&x, &y, &z}) v->resize(entries);
-    for (auto* v : {&vx, &vy, &vz, &wx, &wy, &wz}) v->resize(entries);
+    for (auto* v : {&x, &y, &z}) set_size(*v, entries);
+    for (auto* v : {&vx, &vy, &vz, &wx, &wy, &wz}) set_size(*v, entries);
   }
   std::size_t bytes() const { return 3 * x.capacity() * sizeof(x[0]) + 6 * vx.capacity() * sizeof(vx[0]); }
 };

@@ -6,6 +6,7 @@
 
 #include "sim/interaction.hpp"
 #include "sim/neighbours.hpp"
+#include "sim/scratch.hpp"
 #include "sim/state.hpp"
 #include "sim/vector_clones.hpp"
 
@@ -14,7 +15,7 @@ namespace ropewalk {
 // As v.assign(n, 0), at the speed of the memory: for the library's loop any compiler settles for two at a time.
 template <class T>
 void set_zero(std::vector<T>& v, std::size_t n) {
-  v.resize(n);
+  set_size(v, n);
   std::memset(v.data(), 0, n * sizeof(T));
 }
 

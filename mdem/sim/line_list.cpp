@@ -6,6 +6,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "sim/scratch.hpp"
+
 namespace ropewalk {
 namespace {
 
@@ -175,24 +177,20 @@ struct LineList::Part {
   std::vector<int> dense;          // tubes whose rows of all nodes are wanted
 
   void find(const Topology& topology, const Interaction& in, const NeighbourList& list, int tube) {
-    const int* index = list.indices();
     const SparseNodes& sparse = in.line[0].sparse;
     const std::size_t last = static_cast<std::size_t>(std::max(sparse.count, 1)) - 1;
     const double even_until = angle(sparse.sum[0].full_cos2), crossing_from = angle(sparse.sum[last].from_cos2);
     for (int i = topology.tube_begin[tube]; i < topology.tube_begin[tube + 1]; ++i) {
       const std::size_t before = runs.size();
-      const std::size_t end = list.begin(i + 1);
       int tube_j = tube;
-      for (std::size_t k = list.begin(i); k < end;) {
-        const int first = index[k];
-        if (first >= topology.tube_begin[tube_j + 1]) tube_j = topology.tube_of(first);
-        int last = first;
-        for (++k; k < end && index[k] < topology.tube_begin[tube_j + 1] && index[k] == last + 1; ++k)
-          last = index[k];
-        Side side{topology, in, list, even_until, crossing_from, i, tube, tube_j};
-        side.add(first, last, runs);
-        if (side.all_rows_wanted && (dense.empty() || dense.back() != tube_j)) dense.push_back(tube_j);
-      }
+      for (const PairRun& run : list.runs(i))
+        for (int first = run.begin, next; first < run.end; first = next) {
+          if (first >= topology.tube_begin[tube_j + 1]) tube_j = topology.tube_of(first);
+          next = std::min(run.end, topology.tube_begin[tube_j + 1]);
+          Side side{topology, in, list, even_until, crossing_from, i, tube, tube_j};
+          side.add(first, next - 1, runs);
+          if (side.all_rows_wanted && (dense.empty() || dense.back() != tube_j)) dense.push_back(tube_j);
+        }
       count.push_back(runs.size() - before);
     }
   }
@@ -536,8 +534,7 @@ void LineList::build(const Topology& topology, const Interaction& in, const Neig
 
   std::size_t total = 0;
   for (const Part& part : found) total += part.runs.size();
-  run_.clear();
-  run_.reserve(total);
+  make_room(run_, total);
   begin_.assign(1, 0);
   begin_.reserve(static_cast<std::size_t>(topology.elements()) + 1);
   dense_.assign(static_cast<std::size_t>(tubes), 0);

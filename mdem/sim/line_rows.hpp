@@ -9,6 +9,7 @@
 
 #include "sim/contact_kernel.hpp"
 #include "sim/line_list.hpp"
+#include "sim/scratch.hpp"
 
 namespace ropewalk {
 
@@ -19,7 +20,7 @@ struct LineNodes {
   double per_unit = 1;
 
   void make_room(int nodes) {
-    for (auto* v : {&x, &y, &z}) v->resize(static_cast<std::size_t>(nodes + NodeRow::pad));
+    for (auto* v : {&x, &y, &z}) set_size(*v, static_cast<std::size_t>(nodes + NodeRow::pad));
   }
 };
 
@@ -31,7 +32,7 @@ struct NodeForces {
   std::vector<char> used;  // of the parts; the forces on the others are not even cleared
 
   void make_room(int nodes) {
-    for (auto* v : {&x, &y, &z}) v->resize(static_cast<std::size_t>(nodes + NodeRow::pad));
+    for (auto* v : {&x, &y, &z}) set_size(*v, static_cast<std::size_t>(nodes + NodeRow::pad));
   }
   void start(std::size_t parts) { used.assign(parts, 0); }
   void use(const LineChunk& chunk, Rows kind, int index) {

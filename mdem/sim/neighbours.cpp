@@ -7,8 +7,22 @@
 #include <utility>
 
 #include "sim/cell_grid.hpp"
+#include "sim/scratch.hpp"
 
 namespace ropewalk {
+namespace {
+
+// Of numbers in rising order, behind those of other elements.
+void append_runs(const int* number, std::size_t count, std::vector<PairRun>& runs) {
+  for (std::size_t k = 0; k < count; ++k) {
+    if (k > 0 && number[k] == runs.back().end)
+      ++runs.back().end;
+    else
+      runs.push_back({number[k], number[k] + 1});
+  }
+}
+
+}  // namespace
 
 bool NeighbourList::update(const Topology& topology, const State& state) {
   constexpr std::ptrdiff_t block = 128;  // elements that stay in the first cache
@@ -53,7 +67,8 @@ void NeighbourList::build(const Topology& topology, Vec3Array position, Vec3Arra
   const double reach = cutoff + skin;
   ++builds_;
   begin_.assign(static_cast<std::size_t>(n) + 1, 0);
-  index_.clear();
+  run_.clear();
+  pairs_ = 0;
   if (cutoff > 0) {
     const CellGrid grid(p, reach);
     std::vector<int> last(static_cast<std::size_t>(n));  // element of its tube that is too near to count
@@ -62,7 +77,8 @@ void NeighbourList::build(const Topology& topology, Vec3Array position, Vec3Arra
         last[static_cast<std::size_t>(i)] = std::min(i + exclude_along_tube, topology.tube_begin[t + 1] - 1);
 
     constexpr int parts = 64;
-    std::vector<std::vector<int>> found(parts);
+    std::vector<std::vector<PairRun>> found(parts);
+    std::vector<std::size_t> pairs(parts);
 #pragma omp parallel for schedule(dynamic, 1) if (p.size() > parallel_from)
     for (int part = 0; part < parts; ++part) {
       const int from = static_cast<int>(static_cast<std::int64_t>(n) * part / parts);
@@ -74,14 +90,17 @@ void NeighbourList::build(const Topology& topology, Vec3Array position, Vec3Arra
         const std::size_t count = grid.find(i, last[si], near);
         const auto end = near.begin() + static_cast<std::ptrdiff_t>(count);
         std::sort(near.begin(), end);
-        list.insert(list.end(), near.begin(), end);
-        begin_[si + 1] = count;
+        const std::size_t before = list.size();
+        append_runs(near.data(), count, list);
+        begin_[si + 1] = list.size() - before;
+        pairs[static_cast<std::size_t>(part)] += count;
       }
     }
     std::size_t total = 0;
     for (const auto& list : found) total += list.size();
-    index_.reserve(total);
-    for (const auto& list : found) index_.insert(index_.end(), list.begin(), list.end());
+    make_room(run_, total);
+    for (const auto& list : found) run_.insert(run_.end(), list.begin(), list.end());
+    for (std::size_t of_part : pairs) pairs_ += of_part;
     for (std::size_t i = 1; i < begin_.size(); ++i) begin_[i] += begin_[i - 1];
   }
   cut_into_chunks(n);
@@ -114,6 +133,7 @@ void NeighbourList::cut_into_chunks(int n) {
 void NeighbourList::cut_into_chunks(int n, int count) {
   chunks_.assign(static_cast<std::size_t>(count), Chunk{});
   int from = 0;
+  std::size_t before = 0;  // pairs of the elements before `to`
   for (int k = 0; k < count; ++k) {
     Chunk& chunk = chunks_[static_cast<std::size_t>(k)];
     const std::size_t target = pairs() * static_cast<std::size_t>(k + 1) / static_cast<std::size_t>(count);
@@ -121,14 +141,14 @@ void NeighbourList::cut_into_chunks(int n, int count) {
     if (k + 1 == count) {
       to = n;
     } else {
-      while (to < n && begin(to) < target) ++to;
+      while (to < n && before < target) before += this->pairs(to++);
     }
     chunk.begin = from;
     chunk.end = to;
     chunk.touched_begin = from;
     chunk.touched_end = to;
-    for (std::size_t k2 = begin(from); k2 < begin(to); ++k2)
-      chunk.touched_end = std::max(chunk.touched_end, index_[k2] + 1);
+    for (int i = from; i < to; ++i)
+      for (const PairRun& run : runs(i)) chunk.touched_end = std::max(chunk.touched_end, run.end);
     from = to;
   }
 }

@@ -1,6 +1,7 @@
 // Verlet list: every pair of elements closer than cutoff + skin, found on a cell grid, valid until a point of an
 // element has moved half the skin. Half list (j > i), sorted by j, so that the order of summation depends on
-// the positions at the last build alone, never on the number of threads or on the grid.
+// the positions at the last build alone, never on the number of threads or on the grid. Along a tube the neighbours
+// of an element follow one another: they are kept as runs, without an index per pair.
 #pragma once
 
 #include <algorithm>
@@ -12,6 +13,11 @@
 #include "sim/state.hpp"
 
 namespace ropewalk {
+
+// Consecutive elements.
+struct PairRun {
+  int begin = 0, end = 0;
+};
 
 class NeighbourList {
  public:
@@ -56,10 +62,27 @@ class NeighbourList {
   void build(const Topology& topology, const State& state);
   void build(const Topology& topology, Vec3Array position, Vec3Array axis);
 
-  // First neighbour of i in `indices`; begin(elements) is the number of pairs.
-  std::size_t begin(int i) const { return begin_[static_cast<std::size_t>(i)]; }
-  const int* indices() const { return index_.data(); }
-  std::size_t pairs() const { return index_.size(); }
+  struct Runs {
+    const PairRun *first, *last;
+    const PairRun* begin() const { return first; }
+    const PairRun* end() const { return last; }
+  };
+  // The neighbours j > i of element i, none of which is in two runs. A run may go on from one tube to the next.
+  Runs runs(int i) const {
+    const auto si = static_cast<std::size_t>(i);
+    return {run_.data() + begin_[si], run_.data() + begin_[si + 1]};
+  }
+  template <class Work>
+  void for_neighbours(int i, const Work& work) const {
+    for (const PairRun& run : runs(i))
+      for (int j = run.begin; j < run.end; ++j) work(j);
+  }
+  std::size_t pairs() const { return pairs_; }
+  std::size_t pairs(int i) const {
+    std::size_t sum = 0;
+    for (const PairRun& run : runs(i)) sum += static_cast<std::size_t>(run.end - run.begin);
+    return sum;
+  }
   const std::vector<Chunk>& chunks() const { return chunks_; }
   // Positions and axes at the last build: with them a resumed run has the same list, hence the same bits.
   const Vec3Array& reference() const { return since_.position(); }
@@ -81,14 +104,15 @@ class NeighbourList {
   void set_bounds(double displacement, double turn) { displacement_ = displacement, turn_ = turn; }
   // nm: centres of elements with points within reach are no more than this apart.
   double within() const { return cutoff + skin + 2 * lever; }
-  std::size_t bytes() const { return index_.capacity() * sizeof(int) + begin_.capacity() * sizeof(std::size_t); }
+  std::size_t bytes() const { return run_.capacity() * sizeof(PairRun) + begin_.capacity() * sizeof(std::size_t); }
 
  private:
   void cut_into_chunks(int elements);
   void cut_into_chunks(int elements, int count);
 
-  std::vector<std::size_t> begin_;
-  std::vector<int> index_;
+  std::vector<std::size_t> begin_;  // first run of each element, and the end of the last one's
+  std::vector<PairRun> run_;
+  std::size_t pairs_ = 0;
   std::vector<Chunk> chunks_;
   MotionSince since_;
   long builds_ = 0, stamp_ = 0;

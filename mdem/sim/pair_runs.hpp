@@ -1,5 +1,5 @@
-// The pairs of a Verlet list as runs of consecutive elements: along a tube the neighbours of an element follow one
-// another, so that a loop over them needs no index per pair. Made anew at every build of the list.
+// Runs of a Verlet list as the paper law's kernel takes them: no longer than it has room for, and without what lies
+// beyond its own reach, where another one's is longer. Made anew at every build of the list.
 #pragma once
 
 #include <cstddef>
@@ -8,10 +8,6 @@
 #include "sim/neighbours.hpp"
 
 namespace ropewalk {
-
-struct PairRun {
-  int begin = 0, end = 0;
-};
 
 class PairRuns {
  public:

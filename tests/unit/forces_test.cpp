@@ -696,6 +696,12 @@ TEST(PaperForces, ManyPairsEqualReference) {
   }
 }
 
+std::vector<int> neighbours(const NeighbourList& list, int i) {
+  std::vector<int> all;
+  list.for_neighbours(i, [&](int j) { all.push_back(j); });
+  return all;
+}
+
 TEST(PairRuns, HoldThePairsOfTheListWithinReach) {
   Topology topology = test::published_topology();
   const State s = test::disordered_bundle(topology, 7, 40, 1.8, 0.2, 5);
@@ -713,7 +719,7 @@ TEST(PairRuns, HoldThePairsOfTheListWithinReach) {
       for (int j = r->begin; j < r->end; ++j) of_all.push_back(j);
     for (const PairRun* r = near.begin(i); r != near.end(i); ++r)
       for (int j = r->begin; j < r->end; ++j) of_near.push_back(j);
-    ASSERT_EQ(of_all, std::vector<int>(list.indices() + list.begin(i), list.indices() + list.begin(i + 1)));
+    ASSERT_EQ(of_all, neighbours(list, i));
     for (int j : of_all)
       if ((s.position[j] - s.position[i]).norm() < 2.2) truth.push_back(j);
     ASSERT_EQ(of_near, truth) << "element " << i;
@@ -751,14 +757,19 @@ TEST(NeighbourList, FindsExactlyThePairsWithinReach) {
   list.build(topology, s);
   std::size_t expected = 0;
   for (int i = 0; i < topology.elements(); ++i) {
-    std::vector<int> found(list.indices() + list.begin(i), list.indices() + list.begin(i + 1));
     std::vector<int> truth;
     for (int j = i + 1; j < topology.elements(); ++j) {
       const bool near = (s.position[j] - s.position[i]).norm() < 3.3;
       const bool excluded = topology.tube_of(i) == topology.tube_of(j) && j - i <= 2;
       if (near && !excluded) truth.push_back(j);
     }
-    ASSERT_EQ(found, truth) << "element " << i;
+    ASSERT_EQ(neighbours(list, i), truth) << "element " << i;
+    ASSERT_EQ(list.pairs(i), truth.size()) << "element " << i;
+    int end = -1;
+    for (const PairRun& run : list.runs(i)) {
+      ASSERT_GT(run.begin, end) << "two runs that could be one, element " << i;
+      end = run.end;
+    }
     expected += truth.size();
   }
   EXPECT_EQ(list.pairs(), expected);
