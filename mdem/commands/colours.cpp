@@ -50,8 +50,9 @@ void colour_contacts(const Topology& topology, const Interaction& in, const Stat
   const double* next = of_pair.data();
   for (int i = 0; i < topology.elements(); ++i)
     list.for_neighbours(i, [&](int j) {
-      c.vdw_energy[static_cast<std::size_t>(i)] += 0.5 * *next;
-      c.vdw_energy[static_cast<std::size_t>(j)] += 0.5 * *next++;
+      const double half = 0.5 * *next++;
+      c.vdw_energy[static_cast<std::size_t>(i)] += half;
+      c.vdw_energy[static_cast<std::size_t>(j)] += half;
     });
 }
 

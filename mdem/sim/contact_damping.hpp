@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sim/contact_kernel.hpp"
+#include "sim/scratch.hpp"
 
 namespace ropewalk {
 

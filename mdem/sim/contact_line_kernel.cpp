@@ -572,7 +572,7 @@ HWY_NOINLINE void meet_alike(const In& in, const AlikePairs& of, LineWork<T>& wo
   PairBatch<T>& batch = work.batch(of.kind);
   const SparseNodes& sparse = in.interaction->line[static_cast<std::size_t>(of.kind.types)].sparse;
   for (const AlikePairs::Pair& p : of.pairs) {
-    if (static_cast<double>(p.beyond) > in.moved) break;
+    if (!may_be_in_reach(p.beyond, in.moved)) break;
     if (of.kind.shared) {
       const SumShare w = sparse.share(of.kind.sum, cosine(in, p.i, p.j));
       batch.share[batch.count] = static_cast<T>(w.value);
@@ -590,11 +590,12 @@ HWY_NOINLINE void pair_run(E& e, const LineRun& run) {
     add_pair<energies>(e, run, j, e.law(run.type).sparse.share(cosine(e.in, e.element, j)));
 }
 
-// The elements m .. end of a run, with `each` nodes, as a row; none where all of these are out of reach.
-HWY_INLINE void add_row(const LineRun& run, Rows kind, int each, int m, int end, MetRows& met) {
+// The elements m .. end of a run, with `each` nodes, as a row; none where all of these are out of reach. `first` is
+// the run's first node.
+HWY_INLINE void add_row(const LineRun& run, Rows kind, int first, int each, int m, int end, MetRows& met) {
   const LineRun::Nodes& nodes = run.of(kind);
   const int from = std::max<int>(nodes.from, m * each), to = std::min(nodes.from + nodes.count, end * each);
-  if (from < to) met.add(run, nodes.at + from - nodes.from, to - from);
+  if (from < to) met.add(run, first + from - nodes.from, to - from);
 }
 
 template <class D>
@@ -677,10 +678,11 @@ HWY_INLINE void split(const E& e, const SplitRun& of, MetRows* met, const Pair& 
       pairs(left, t, false);
       continue;
     }
-    const int each = law.sum_nodes_j(t);
+    const Rows kind = e.rows_of(t);
+    const int first = e.part(run).first_node(run, kind), each = law.sum_nodes_j(t);
     while (left != 0) {
       const int from = first_bit(left), to = from + first_bit(~(left >> from));
-      add_row(run, e.rows_of(t), each, from, to, met[t]);
+      add_row(run, kind, first, each, from, to, met[t]);
       left &= to < 64 ? ~std::uint64_t{0} << to : 0;
     }
   }
@@ -735,10 +737,10 @@ HWY_NOINLINE void meet_splits(E& e, SplitRuns& runs, MetRows* met) {
 // runs in straight ropes and in films it is known since the list was built that they take the first, or the last.
 template <bool energies, class E>
 HWY_INLINE void meet_run(E& e, const LineRun& run, MetRows* met, SplitRuns& later) {
-  if (static_cast<double>(run.beyond) > e.in.moved) return;
+  if (!may_be_in_reach(run.beyond, e.in.moved)) return;
   const auto add = [&](int sum) {
-    const LineRun::Nodes& nodes = run.of(e.rows_of(sum));
-    met[sum].add(run, nodes.at, nodes.count);
+    const Rows kind = e.rows_of(sum);
+    met[sum].add(run, e.part(run).first_node(run, kind), run.of(kind).count);
   };
   if (e.in.turned < static_cast<double>(run.even)) {
     if (!run.fading)
@@ -809,7 +811,7 @@ HWY_INLINE void all_elements(const In& in, const LineChunk& chunk, LineWork<Real
     };
     for (const BlockRun *run = chunk.runs.data() + block.begin, *end = chunk.runs.data() + block.end; run != end;
          ++run) {
-      if (static_cast<double>(run->beyond) > in.moved) continue;
+      if (!may_be_in_reach(run->beyond, in.moved)) continue;
       if (HWY_LIKELY(in.turned < static_cast<double>(run->even))) {
         (run->of == BlockRun::both ? work.shared : of_one(run->of)[0]).add(run->row);
         continue;

@@ -242,9 +242,10 @@ HWY_NOINLINE void all_elements(const PaperKernelInput<T>& in, const NeighbourLis
   const double far = 2 * in.law->cutoff() / all.unit;
   const int first = chunk.touched_begin;
   for (int i = chunk.begin; i < chunk.end; ++i) {
-    const PairRun* const end = in.runs->end(i);
+    const Span<PairRun> runs = in.runs->runs(i);
+    const PairRun* const end = runs.end();
     const Centre<T> centre{{all.x[i], all.y[i], all.z[i]}, {all.nx[i], all.ny[i], all.nz[i]}};
-    for (const PairRun *begin = in.runs->begin(i), *run = begin; begin != end; begin = run) {
+    for (const PairRun *begin = runs.begin(), *run = begin; begin != end; begin = run) {
       std::size_t count = 0;
       for (; run != end && count + length_of(*run) <= Block<T>::most; ++run) {
         copy_run(all, *run, count, s);

@@ -126,30 +126,35 @@ void collect_bonds(const std::vector<double>& on_i, double sign_i, const std::ve
   if (bonds > 0 && to == bonds + 1) out[bonds - from] = b[bonds - 1];
 }
 
+// What bonds follow from.
+struct BondInput {
+  const Topology& topology;
+  const BondDamping& damping;
+  const State& state;
+};
+
 // The bonds of the range, with their damping: into `work`, from the frames in it.
-BondSum bonds_of(const Topology& topology, const Interaction& interaction, const State& state, int tube,
-                 const BondRange& range, TubeBonds& work) {
-  const TubeType& type = topology.type_of(tube);
+BondSum bonds_of(const BondInput& in, int tube, const BondRange& range, TubeBonds& work) {
+  const TubeType& type = in.topology.type_of(tube);
   BondSum sum;
   double slips = 1;
-  sum.energy = bond_forces(type, state.position, work.frames, range, work.bonds, slips);
+  sum.energy = bond_forces(type, in.state.position, work.frames, range, work.bonds, slips);
   for (std::ptrdiff_t i = range.from; !(slips > 0) && i < range.to && sum.slipping < 0; ++i) {
     const Frame<double> fi = work.frames[static_cast<std::size_t>(i)],
                         fj = work.frames[static_cast<std::size_t>(i + 1)];
     if (!(fi.e1.dot(fj.e1) + fi.e2.dot(fj.e2) > 0)) sum.slipping = static_cast<int>(range.begin + i);
   }
-  if (interaction.damping.bond.rate > 0)
-    sum.power = bond_damping(type, interaction.damping.bond, state, range, work.bonds);
+  if (in.damping.rate > 0) sum.power = bond_damping(type, in.damping, in.state, range, work.bonds);
   return sum;
 }
 
 // The bond from element i to the next.
-Joint joint_behind(const Topology& topology, const Interaction& interaction, const State& state, int tube, int i) {
+Joint joint_behind(const BondInput& in, int tube, int i) {
   thread_local TubeBonds work;
   work.resize(2);
-  frames_of(state.orientation, i, i, i + 2, work.frames);
+  frames_of(in.state.orientation, i, i, i + 2, work.frames);
   Joint out;
-  out.sum = bonds_of(topology, interaction, state, tube, {i, 0, 1}, work);
+  out.sum = bonds_of(in, tube, {i, 0, 1}, work);
   out.force_j = work.bonds.force_j[0];
   out.torque_i = work.bonds.torque_i[0];
   out.torque_j = work.bonds.torque_j[0];
@@ -173,15 +178,15 @@ void add(const BondSum& of, BondSum& sum) {
 
 // Sets forces and torques of a part of a tube to those of its bonds, with those to the parts before and behind it
 // (null: none). The sums leave out the former, which is in those of the part before.
-BondSum compute_bonds(const Topology& topology, const Interaction& interaction, const State& state,
-                      const Segment& of, const Joint* before, const Joint* behind, const ForceRows& out) {
+BondSum compute_bonds(const BondInput& in, const Segment& of, const Joint* before, const Joint* behind,
+                      const ForceRows& out) {
   thread_local TubeBonds work;
   const std::ptrdiff_t from = before ? 1 : 0, begin = of.begin - from, to = of.end - begin,
                        bonds = to - 1 + (behind ? 1 : 0);
   BondArray& each = work.bonds;
   work.resize(static_cast<std::size_t>(to));
-  frames_of(state.orientation, begin, of.begin, of.end, work.frames);
-  BondSum sum = bonds_of(topology, interaction, state, of.tube, {begin, from, to - 1}, work);
+  frames_of(in.state.orientation, begin, of.begin, of.end, work.frames);
+  BondSum sum = bonds_of(in, of.tube, {begin, from, to - 1}, work);
   if (before) put(*before, 0, each);
   if (behind) {
     put(*behind, static_cast<std::size_t>(to - 1), each);
@@ -259,20 +264,21 @@ void ForceEngine::compute(const Topology& topology, const Interaction& interacti
   const int tube_parts = parts_.count();
   joints_.resize(static_cast<std::size_t>(tube_parts));
   std::vector<BondSum> sums(static_cast<std::size_t>(tube_parts));
+  const BondInput bonded{topology, interaction.damping.bond, state};
   // Behind part k, if the tube goes on there.
   const auto joint = [&](int k, bool goes_on) -> const Joint* {
     return goes_on ? &joints_[static_cast<std::size_t>(k)] : nullptr;
   };
   const auto join = [&](int tube) {
     for (int k = parts_.begin(tube); bonds && k + 1 < parts_.begin(tube + 1); ++k)
-      joints_[static_cast<std::size_t>(k)] = joint_behind(topology, interaction, state, tube, parts_[k].end - 1);
+      joints_[static_cast<std::size_t>(k)] = joint_behind(bonded, tube, parts_[k].end - 1);
   };
   const auto finish = [&](int k, const ForceRows& on) {
     const Segment& part = parts_[k];
     if (bonds) {
       const Joint *before = joint(k - 1, part.begin > topology.tube_begin[part.tube]),
                   *behind = joint(k, part.end < topology.tube_begin[part.tube + 1]);
-      sums[static_cast<std::size_t>(k)] = compute_bonds(topology, interaction, state, part, before, behind, on);
+      sums[static_cast<std::size_t>(k)] = compute_bonds(bonded, part, before, behind, on);
     } else {
       clear(part, on);
     }

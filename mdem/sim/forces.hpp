@@ -82,12 +82,12 @@ struct Joint {
 enum class Parts { all, bonds, contact };
 
 struct ForceOptions {
-  bool energies = true;  // without them that of the line law's contact may be left out; forces are the same bits
   Parts parts = Parts::all;
+  bool energies = true;    // without them that of the line law's contact may be left out; forces are the same bits
   bool axes_made = false;  // the axes of all elements are those that make_axes has made
   // Called for every block of TubeParts, by any thread, with its forces, which are kept nowhere else then: nothing
   // needs its elements as they are any more, and they may move.
-  std::function<void(int, const ForcesOn&)> then;
+  std::function<void(int, const ForcesOn&)> then = {};
 };
 
 // The list must be up to date, but for the bonds alone.

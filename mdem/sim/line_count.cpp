@@ -101,7 +101,7 @@ struct Counter {
 
   // Whether what is out of reach for now begins by `beyond`.
   bool in_reach(float beyond, RadialCount& count) const {
-    const bool reached = static_cast<double>(beyond) <= moved;
+    const bool reached = may_be_in_reach(beyond, moved);
     (reached ? count.runs : count.skipped) += 1;
     return reached;
   }

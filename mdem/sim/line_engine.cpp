@@ -183,10 +183,9 @@ void LineEngine::resume(const Topology& topology, const Interaction& in, const N
 }
 
 void LineEngine::add_to(int part, const ForceRows& sums) const {
-  for (const LineTouches::Touch* touch = touches_.begin(part); touch != touches_.end(part); ++touch)
-    if (touch->in_reach(moved_))
-      in_use(
-          [&](const auto& b) { add_range(touch->on, b.of_chunks[static_cast<std::size_t>(touch->chunk)], sums); });
+  for (const LineTouches::Touch& touch : touches_.on(part))
+    if (may_be_in_reach(touch.beyond, moved_))
+      in_use([&](const auto& b) { add_range(touch.on, b.of_chunks[static_cast<std::size_t>(touch.chunk)], sums); });
 }
 
 double LineEngine::energy() const {

@@ -43,6 +43,7 @@ struct MetRows {
 struct SplitRun {
   const LineRun* run = nullptr;
   std::uint64_t sum[line_sums] = {}, shared[SparseNodes::most] = {};
+  static_assert(LineRun::longest <= 64);
 };
 struct SplitRuns {
   std::vector<SplitRun> run;  // as many as there can be

@@ -31,8 +31,6 @@ void check_nodes(const Topology& topology, const Interaction& in) {
 
 double angle(double cos2) { return std::acos(std::sqrt(std::min(cos2, 1.0))); }
 
-constexpr int most_elements = 64;  // of a run: the kernel has a bit for each
-
 // Element i of one tube before elements of another one.
 struct Side {
   const Topology& topology;
@@ -57,7 +55,7 @@ struct Side {
     int from = 0, to = elements * count;
     while (from < to && !near(from)) ++from;
     while (from < to && !near(to - 1)) --to;
-    return {static_cast<short>(from), static_cast<short>(to - from), 0};
+    return {static_cast<short>(from), static_cast<short>(to - from)};
   }
 
   // No node of element j is nearer than this. Exact but for the places of single nodes where the two are parallel.
@@ -117,7 +115,7 @@ struct Side {
     }
     if (from >= to) return;
     run.element_begin = from;
-    run.elements = static_cast<short>(to - from);
+    run.elements = static_cast<std::int8_t>(to - from);
     for (int kind = 0; kind < row_kinds; ++kind)
       run.nodes[kind].from = static_cast<short>(run.nodes[kind].from - (from - first) * counts[kind]);
   }
@@ -150,15 +148,15 @@ struct Side {
     const auto near = [&](int j) { return (place(j) - place(i)).squaredNorm() < reach * reach; };
     while (first <= last && !near(first)) ++first;
     while (first <= last && !near(last)) --last;
-    run.damped_from = static_cast<short>(first - run.element_begin);
-    run.damped = static_cast<short>(last + 1 - first);
+    run.damped_from = static_cast<std::int8_t>(first - run.element_begin);
+    run.damped = static_cast<std::int8_t>(last + 1 - first);
   }
 
   // Consecutive elements; the first and the last one of the tube are runs of their own.
   void add(int first, int last, std::vector<LineRun>& runs) {
     const int begin = topology.tube_begin[tube_j], end = topology.tube_begin[tube_j + 1];
     for (int from = first; from <= last;) {
-      int to = std::min(last, from + most_elements - 1);
+      int to = std::min(last, from + LineRun::longest - 1);
       if (from == begin) to = from;
       if (to == end - 1 && from < to) --to;
       const LineRun run = trimmed(from, to);
@@ -182,15 +180,12 @@ struct LineList::Part {
     const double even_until = angle(sparse.sum[0].full_cos2), crossing_from = angle(sparse.sum[last].from_cos2);
     for (int i = topology.tube_begin[tube]; i < topology.tube_begin[tube + 1]; ++i) {
       const std::size_t before = runs.size();
-      int tube_j = tube;
       for (const PairRun& run : list.runs(i))
-        for (int first = run.begin, next; first < run.end; first = next) {
-          if (first >= topology.tube_begin[tube_j + 1]) tube_j = topology.tube_of(first);
-          next = std::min(run.end, topology.tube_begin[tube_j + 1]);
+        for_tubes_of(topology, run, [&](int tube_j, int begin, int end) {
           Side side{topology, in, list, even_until, crossing_from, i, tube, tube_j};
-          side.add(first, next - 1, runs);
+          side.add(begin, end - 1, runs);
           if (side.all_rows_wanted && (dense.empty() || dense.back() != tube_j)) dense.push_back(tube_j);
-        }
+        });
       count.push_back(runs.size() - before);
     }
   }
@@ -376,13 +371,7 @@ void LineList::place_parts(const Topology& topology, LineChunk& chunk) const {
     }
 }
 
-// Of the nodes of a chunk's runs, whose parts have been placed.
-void LineList::find_places(LineChunk& chunk) {
-  for_runs_of(chunk, [&](LineRun& run) {
-    const TouchedPart& part = chunk.parts[static_cast<std::size_t>(run.part)];
-    for (int kind = 0; kind < row_kinds; ++kind)
-      run.nodes[kind].at = part.row[kind].first(run.element_begin) + run.nodes[kind].from;
-  });
+void LineList::count_rows(LineChunk& chunk) const {
   for (const Segment& own : chunk.own)
     for (int i = own.begin; i < own.end; ++i) {
       int rows = 0;
@@ -394,10 +383,10 @@ void LineList::find_places(LineChunk& chunk) {
 namespace {
 
 // Vectors of the widest kind.
-int vectors_of(const LineRun::Nodes& nodes) { return (nodes.count + NodeRow::pad - 1) / NodeRow::pad; }
+int vectors_of(const NodeRow& row) { return (row.count + NodeRow::pad - 1) / NodeRow::pad; }
 
-LineRun::Nodes both(const LineRun::Nodes& a, const LineRun::Nodes& b) {
-  LineRun::Nodes out = a.at <= b.at ? a : b;
+NodeRow both(const NodeRow& a, const NodeRow& b) {
+  NodeRow out = a.at <= b.at ? a : b;
   out.count = static_cast<short>(std::max(a.at + a.count, b.at + b.count) - out.at);
   return out;
 }
@@ -413,17 +402,17 @@ bool on_one_part(const LineRun& a, const LineRun& b) {
 void LineList::add_block(const LineBlock& of, int tube, Rows kind, LineChunk& chunk) const {
   const int first = of.first, elements = of.elements;
   LineBlock block{first, of.at, elements, static_cast<int>(chunk.runs.size()), 0};
-  const auto add = [&](const LineRun& run, const LineRun::Nodes& nodes) -> BlockRun& {
-    chunk.runs.push_back({{nodes.at, nodes.count, run.type, run.part},
-                          run.beyond,
-                          run.even,
-                          {BlockRun::none, BlockRun::none},
-                          BlockRun::both});
+  const auto part_of = [&](const LineRun& run) -> const TouchedPart& {
+    return chunk.parts[static_cast<std::size_t>(run.part)];
+  };
+  const auto row_of = [&](const LineRun& run) -> NodeRow {
+    return {part_of(run).first_node(run, kind), run.of(kind).count, run.type, run.part};
+  };
+  const auto add = [&](const LineRun& run, const NodeRow& row) -> BlockRun& {
+    chunk.runs.push_back({row, run.beyond, run.even, {BlockRun::none, BlockRun::none}, BlockRun::both});
     return chunk.runs.back();
   };
-  const auto own_tube = [&](const LineRun& run) {
-    return chunk.parts[static_cast<std::size_t>(run.part)].tube == tube;
-  };
+  const auto own_tube = [&](const LineRun& run) { return part_of(run).tube == tube; };
   const auto runs_on = [&](const LineRun& part, int element) {
     return std::count_if(begin(element), end(element), [&](const LineRun& run) { return on_one_part(part, run); });
   };
@@ -431,7 +420,7 @@ void LineList::add_block(const LineBlock& of, int tube, Rows kind, LineChunk& ch
     if (elements == 1 || own_tube(own) || runs_on(own, first) != 1 || runs_on(own, first + 1) != 1) return nullptr;
     const LineRun* other =
         std::find_if(begin(first + 1), end(first + 1), [&](const LineRun& run) { return on_one_part(own, run); });
-    const LineRun::Nodes &a = own.of(kind), &b = other->of(kind);
+    const NodeRow a = row_of(own), b = row_of(*other);
     return vectors_of(both(a, b)) <= std::max(vectors_of(a), vectors_of(b)) ? other : nullptr;
   };
   std::vector<const LineRun*> taken;  // of the second element, by one of the first
@@ -439,7 +428,7 @@ void LineList::add_block(const LineBlock& of, int tube, Rows kind, LineChunk& ch
     for (const LineRun* run = begin(first + e); run != end(first + e); ++run) {
       if (run->elements == 0 || run->fading || std::find(taken.begin(), taken.end(), run) != taken.end()) continue;
       const LineRun* other = e == 0 ? joined(*run) : nullptr;
-      BlockRun& out = add(*run, other ? both(run->of(kind), other->of(kind)) : run->of(kind));
+      BlockRun& out = add(*run, other ? both(row_of(*run), row_of(*other)) : row_of(*run));
       out.run[e] = index(*run);
       if (!other) {
         if (elements == 2 && (own_tube(*run) || runs_on(*run, first + 1 - e) > 0)) out.of = e;
@@ -468,7 +457,7 @@ void LineList::add_end_run(const Topology& topology, int i, const TouchedPart& o
     same.pairs.push_back({i, j, at, j + shift, run.beyond});
 }
 
-// Of the elements of a chunk, whose runs know their places. Not across a tube's own runs: which of its elements
+// Of the elements of a chunk, whose parts have been placed. Not across a tube's own runs: which of its elements
 // meet depends on how far apart they are along it.
 void LineList::make_blocks(const Topology& topology, const Interaction& in, LineChunk& chunk) const {
   const Rows kind = in.line[0].sparse.thins_j(0) ? Rows::sparse : Rows::all;
@@ -534,6 +523,7 @@ void LineList::build(const Topology& topology, const Interaction& in, const Neig
 
   std::size_t total = 0;
   for (const Part& part : found) total += part.runs.size();
+  run_.clear();
   make_room(run_, total);
   begin_.assign(1, 0);
   begin_.reserve(static_cast<std::size_t>(topology.elements()) + 1);
@@ -558,7 +548,7 @@ void LineList::build(const Topology& topology, const Interaction& in, const Neig
     if (!chunks_[c].own.empty()) {
       find_parts(topology, chunks_[c]);
       place_parts(topology, chunks_[c]);
-      find_places(chunks_[c]);
+      count_rows(chunks_[c]);
       make_blocks(topology, in, chunks_[c]);
       if (in.damped_contact()) list_damped(chunks_[c]);
     }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "sim/contact_damping.hpp"
@@ -16,27 +17,34 @@ namespace ropewalk {
 enum class Rows { all = 0, sparse = 1 };
 inline constexpr int row_kinds = 2;
 
-// Neighbours of one element on one other tube, or on another part of its own.
+// Whether what was out of reach by so much (nm) may have come within it, as no distance has become smaller by more
+// than `moved`.
+inline bool may_be_in_reach(float beyond, double moved) { return static_cast<double>(beyond) <= moved; }
+
+// Neighbours of one element on one other tube, or on another part of its own. Most of a list's memory, so kept to
+// 36 bytes.
 struct LineRun {
+  static constexpr int longest = 64;  // elements: the kernel has a bit for each
+
   struct Nodes {
     short from = 0, count = 0;  // within reach; the first one counted from the first node of element_begin
-    int at = 0;                 // the first one in the chunk's rows
   };
   int element_begin = 0;
   int part = 0;         // which of those that the chunk acts on
   float beyond = 0;     // nm: by so much the nearest node was out of reach at the build
   float even = -1;      // rad: so long as no axis of the scene has turned by more, the first sum holds throughout
   float crossing = -1;  // rad: likewise the last sum, over all nodes
-  short elements = 0;   // with nodes within reach
-  short type = 0;       // tube type
   Nodes nodes[row_kinds];
-  short damped_from = 0, damped = 0;  // elements within reach of the contact viscosity, from element_begin
-  bool begins = false, ends = false;  // the element is the first, the last of its tube, and the only one here
-  bool fading = false;                // the first sum fades, here or at element i: its tube ends
+  short type = 0;                           // tube type
+  std::int8_t elements = 0;                 // with nodes within reach
+  std::int8_t damped_from = 0, damped = 0;  // elements within reach of the contact viscosity, from element_begin
+  bool begins = false, ends = false;        // the element is the first, the last of its tube, and the only one here
+  bool fading = false;                      // the first sum fades, here or at element i: its tube ends
 
   const Nodes& of(Rows kind) const { return nodes[static_cast<int>(kind)]; }
   TubeEnds tube_ends() const { return {begins, ends}; }
 };
+static_assert(sizeof(LineRun) == 36 && LineRun::longest <= INT8_MAX);
 
 // Consecutive nodes of another tube, from `at` on in the chunk's rows.
 struct NodeRow {
@@ -116,7 +124,10 @@ struct TouchedPart {
   } row[row_kinds];
   // nm: until distances have become smaller by so much nothing acts on it.
   float beyond = 0;
-  bool in_reach(double moved) const { return static_cast<double>(beyond) <= moved; }
+  // The first node within reach of a run on it.
+  int first_node(const LineRun& run, Rows kind) const {
+    return row[static_cast<int>(kind)].first(run.element_begin) + run.of(kind).from;
+  }
 };
 
 // Some elements and all that they act on.
@@ -191,7 +202,7 @@ class LineList {
   void for_runs_of(const LineChunk& chunk, const Work& work);
   void find_parts(const Topology& topology, LineChunk& chunk);
   void place_parts(const Topology& topology, LineChunk& chunk) const;
-  void find_places(LineChunk& chunk);
+  void count_rows(LineChunk& chunk) const;
   void make_blocks(const Topology& topology, const Interaction& interaction, LineChunk& chunk) const;
   void add_end_run(const Topology& topology, int i, const TouchedPart& own, const LineRun& run,
                    LineChunk& chunk) const;

@@ -100,7 +100,7 @@ HWY_INLINE void place(const RowsOf& of, LineNodes<C>* rows) {
     if (last - next > ahead)
       for (const Vec3Array* v : {&of.position, &of.axis}) ask_for(*v, next[ahead].begin, next[ahead].end);
     const TouchedPart& part = *next;
-    if (!part.in_reach(of.moved)) continue;
+    if (!may_be_in_reach(part.beyond, of.moved)) continue;
     const auto type = static_cast<std::size_t>(of.tube_type[static_cast<std::size_t>(part.tube)]);
     for (int from = part.begin; from < part.end; from += block) {
       const int elements = std::min(block, part.end - from);

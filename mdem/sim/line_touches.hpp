@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "sim/line_list.hpp"
+#include "sim/span.hpp"
 #include "sim/tiles.hpp"
 
 namespace ropewalk {
@@ -15,14 +16,12 @@ class LineTouches {
     int chunk = 0;
     TouchedRange on;   // elements of the part, by their entries in the buffers of the chunk
     float beyond = 0;  // nm: of the TouchedPart
-    bool in_reach(double moved) const { return static_cast<double>(beyond) <= moved; }
   };
 
   void list(const TubeParts& parts, const std::vector<LineChunk>& chunks);
 
   // Of a part, in the order of the chunks.
-  const Touch* begin(int part) const { return touch_.data() + begin_[static_cast<std::size_t>(part)]; }
-  const Touch* end(int part) const { return touch_.data() + begin_[static_cast<std::size_t>(part) + 1]; }
+  Span<Touch> on(int part) const { return entries_of(part, begin_, touch_); }
   // The blocks of parts that a chunk acts on, and how many chunks act on each.
   const std::vector<int>& blocks(std::size_t chunk) const { return blocks_[chunk]; }
   const std::vector<int>& chunks_on() const { return chunks_on_; }

@@ -12,7 +12,7 @@
 namespace ropewalk {
 namespace {
 
-// Of numbers in rising order, behind those of other elements.
+// Of one element's neighbours in rising order; a run of an earlier element is never made longer.
 void append_runs(const int* number, std::size_t count, std::vector<PairRun>& runs) {
   for (std::size_t k = 0; k < count; ++k) {
     if (k > 0 && number[k] == runs.back().end)
@@ -25,7 +25,7 @@ void append_runs(const int* number, std::size_t count, std::vector<PairRun>& run
 }  // namespace
 
 bool NeighbourList::update(const Topology& topology, const State& state) {
-  constexpr std::ptrdiff_t block = 128;  // elements that stay in the first cache
+  constexpr std::ptrdiff_t block = cached_elements;
   Change all;
   const auto n = static_cast<std::ptrdiff_t>(state.size());
   for (std::ptrdiff_t i = 0; i < n; i += block) all = both(all, change(state, i, std::min(i + block, n)));
@@ -78,13 +78,14 @@ void NeighbourList::build(const Topology& topology, Vec3Array position, Vec3Arra
 
     constexpr int parts = 64;
     std::vector<std::vector<PairRun>> found(parts);
-    std::vector<std::size_t> pairs(parts);
+    std::vector<std::size_t> pairs_of_part(parts);
 #pragma omp parallel for schedule(dynamic, 1) if (p.size() > parallel_from)
     for (int part = 0; part < parts; ++part) {
       const int from = static_cast<int>(static_cast<std::int64_t>(n) * part / parts);
       const int to = static_cast<int>(static_cast<std::int64_t>(n) * (part + 1) / parts);
       auto& list = found[static_cast<std::size_t>(part)];
       std::vector<int> near;
+      std::size_t pairs = 0;
       for (int i = from; i < to; ++i) {
         const auto si = static_cast<std::size_t>(i);
         const std::size_t count = grid.find(i, last[si], near);
@@ -93,14 +94,15 @@ void NeighbourList::build(const Topology& topology, Vec3Array position, Vec3Arra
         const std::size_t before = list.size();
         append_runs(near.data(), count, list);
         begin_[si + 1] = list.size() - before;
-        pairs[static_cast<std::size_t>(part)] += count;
+        pairs += count;
       }
+      pairs_of_part[static_cast<std::size_t>(part)] = pairs;
     }
     std::size_t total = 0;
     for (const auto& list : found) total += list.size();
     make_room(run_, total);
     for (const auto& list : found) run_.insert(run_.end(), list.begin(), list.end());
-    for (std::size_t of_part : pairs) pairs_ += of_part;
+    for (std::size_t pairs : pairs_of_part) pairs_ += pairs;
     for (std::size_t i = 1; i < begin_.size(); ++i) begin_[i] += begin_[i - 1];
   }
   cut_into_chunks(n);
@@ -141,7 +143,7 @@ void NeighbourList::cut_into_chunks(int n, int count) {
     if (k + 1 == count) {
       to = n;
     } else {
-      while (to < n && before < target) before += this->pairs(to++);
+      while (to < n && before < target) before += pairs(to++);
     }
     chunk.begin = from;
     chunk.end = to;

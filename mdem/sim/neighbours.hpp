@@ -10,6 +10,7 @@
 
 #include "sim/interaction.hpp"
 #include "sim/motion_since.hpp"
+#include "sim/span.hpp"
 #include "sim/state.hpp"
 
 namespace ropewalk {
@@ -18,6 +19,16 @@ namespace ropewalk {
 struct PairRun {
   int begin = 0, end = 0;
 };
+
+// A run may go on from one tube to the next: work(tube, begin, end) for the part of it in each.
+template <class Work>
+void for_tubes_of(const Topology& topology, const PairRun& run, const Work& work) {
+  for (int from = run.begin, to; from < run.end; from = to) {
+    const int tube = topology.tube_of(from);
+    to = std::min(run.end, topology.tube_begin[static_cast<std::size_t>(tube) + 1]);
+    work(tube, from, to);
+  }
+}
 
 class NeighbourList {
  public:
@@ -62,16 +73,8 @@ class NeighbourList {
   void build(const Topology& topology, const State& state);
   void build(const Topology& topology, Vec3Array position, Vec3Array axis);
 
-  struct Runs {
-    const PairRun *first, *last;
-    const PairRun* begin() const { return first; }
-    const PairRun* end() const { return last; }
-  };
-  // The neighbours j > i of element i, none of which is in two runs. A run may go on from one tube to the next.
-  Runs runs(int i) const {
-    const auto si = static_cast<std::size_t>(i);
-    return {run_.data() + begin_[si], run_.data() + begin_[si + 1]};
-  }
+  // The neighbours j > i of element i, none of which is in two runs.
+  Span<PairRun> runs(int i) const { return entries_of(i, begin_, run_); }
   template <class Work>
   void for_neighbours(int i, const Work& work) const {
     for (const PairRun& run : runs(i))

@@ -52,15 +52,12 @@ void PaperEngine::list_damped(const Topology& topology, const Interaction& in, c
     for (int i = chunk.begin; i < chunk.end; ++i) {
       const TouchedRange own{i, std::min(chunk.end, topology.tube_begin[topology.tube_of(i) + 1]),
                              -chunk.touched_begin};
-      for (const PairRun* run = near.begin(i); run != near.end(i); ++run) {
-        for (int from = run->begin; from < run->end;) {  // a run may go on into the next tube
-          const int tube = topology.tube_of(from), to = std::min(run->end, topology.tube_begin[tube + 1]);
+      for (const PairRun& run : near.runs(i))
+        for_tubes_of(topology, run, [&](int tube, int from, int to) {
           blocks.add(i, own, from, to,
                      {std::max(topology.tube_begin[tube], chunk.touched_begin),
                       std::min(topology.tube_begin[tube + 1], chunk.touched_end), -chunk.touched_begin});
-          from = to;
-        }
-      }
+        });
     }
     damped_.push_back(blocks.take());
   }

@@ -85,15 +85,10 @@ void Simulation::compute(bool energies, bool axes_made, const Drift* then) {
     add_levels();
     return;
   }
-  ForceOptions options{energies, Parts::all, axes_made, {}};
+  ForceOptions options{Parts::all, energies, axes_made};
   if (then)
     options.then = [&](int block, const ForcesOn& forces) {
-      for (const ElementRange* of = elements_.driven_begin(block); of != elements_.driven_end(block); ++of)
-        for (std::ptrdiff_t i = of->begin; i < of->end; ++i) {
-          const auto from = static_cast<std::size_t>(i - forces.origin), to = static_cast<std::size_t>(i);
-          forces_.force.set(to, forces.force[from]);
-          forces_.torque.set(to, forces.torque[from]);
-        }
+      keep_on_driven(block, forces);
       drift_block(block, forces, *then);
     };
   engine_.compute(topology_, interaction_, list_, state_, forces_, options);
@@ -101,13 +96,23 @@ void Simulation::compute(bool energies, bool axes_made, const Drift* then) {
   add_loads(forces_);
 }
 
+// They are moved after the loads and constraints on them are known: until then their forces are kept.
+void Simulation::keep_on_driven(int block, const ForcesOn& forces) {
+  for (const ElementRange& of : elements_.driven(block))
+    for (std::ptrdiff_t i = of.begin; i < of.end; ++i) {
+      const auto from = static_cast<std::size_t>(i - forces.origin), to = static_cast<std::size_t>(i);
+      forces_.force.set(to, forces.force[from]);
+      forces_.torque.set(to, forces.torque[from]);
+    }
+}
+
 void Simulation::compute_bonds() {
-  engine_.compute(topology_, interaction_, list_, state_, inner_, {true, Parts::bonds, false, {}});
+  engine_.compute(topology_, interaction_, list_, state_, inner_, {Parts::bonds});
   add_loads(inner_);
 }
 
 void Simulation::compute_contact(bool energies) {
-  engine_.compute(topology_, interaction_, list_, state_, contact_, {energies, Parts::contact, false, {}});
+  engine_.compute(topology_, interaction_, list_, state_, contact_, {Parts::contact, energies});
   if (!energies) contact_.energy.vdw = std::numeric_limits<double>::quiet_NaN();
 }
 
@@ -198,11 +203,10 @@ void Simulation::kick_driven(int kicks, double dt) {
 }
 
 void Simulation::drift_range(const ElementRange& of, const ForcesOn& forces, const Drift& by, Moved& moved) {
-  constexpr std::ptrdiff_t most = 128;  // elements that stay in the first cache
   const auto move = stepping_.runge_kutta ? move_elements_runge_kutta : move_elements;
   const LittleMotion little(topology_.largest_radius(), time_step_);
-  for (std::ptrdiff_t begin = of.begin; begin < of.end; begin += most) {
-    const std::ptrdiff_t end = std::min(begin + most, of.end);
+  for (std::ptrdiff_t begin = of.begin, end; begin < of.end; begin = end) {
+    end = std::min(begin + cached_elements, of.end);
     for (int k = 0; k < by.kicks; ++k) kick_range(forces, {begin, end, of.type}, 0.5 * by.dt);
     const Fastest speeds = fastest(state_, begin, end);
     moved.little = moved.little && little.holds(speeds);
@@ -218,8 +222,7 @@ void Simulation::drift_range(const ElementRange& of, const ForcesOn& forces, con
 // All that is free in it.
 void Simulation::drift_block(int block, const ForcesOn& forces, const Drift& by) {
   Moved moved;
-  for (const ElementRange* of = elements_.begin(block); of != elements_.end(block); ++of)
-    drift_range(*of, forces, by, moved);
+  for (const ElementRange& of : elements_.free(block)) drift_range(of, forces, by, moved);
   moved_[static_cast<std::size_t>(block)] = moved;
 }
 
@@ -255,16 +258,15 @@ Simulation::Moved Simulation::all_moved() const {
 }
 
 void Simulation::look() {
-  const auto change = [&](const ElementRange* first, const ElementRange* last, Moved& moved) {
+  const auto change = [&](const Span<ElementRange>& ranges, Moved& moved) {
     moved.change = {};
     moved.looked = true;
-    for (; first != last; ++first)
-      moved.change = both(moved.change, list_.change(state_, first->begin, first->end));
+    for (const ElementRange& of : ranges) moved.change = both(moved.change, list_.change(state_, of.begin, of.end));
   };
 #pragma omp parallel for schedule(static) if (state_.size() > parallel_from)
   for (int block = 0; block < elements_.blocks(); ++block)
-    change(elements_.begin(block), elements_.end(block), moved_[static_cast<std::size_t>(block)]);
-  change(elements_.driven().data(), elements_.driven().data() + elements_.driven().size(), moved_.back());
+    change(elements_.free(block), moved_[static_cast<std::size_t>(block)]);
+  change(elements_.driven(), moved_.back());
 }
 
 // After a drift. Where all are slow nobody looks how far each has come until, together, they may have come far
@@ -318,7 +320,8 @@ void Simulation::steps(long count, bool energies) {
 // after it: the next step finds everything in its place, with the velocities of half a step later.
 void Simulation::one_level(long step, long count, bool energies) {
   const double dt = time_step_;
-  const bool at_once = kicks_while_moving(), last = step + 1 == count, axes = interaction_.has_contact();
+  const bool at_once = kicks_while_moving(), goes_on = at_once && step + 1 < count,
+             axes = interaction_.has_contact();
   const double t0 = omp_get_wtime(), then_before = engine_.times().then;
   if (!at_once) kick_with_loads(forces_, 0.5 * dt);
   if (!at_once || step == 0) drift({dt, at_once ? 1 : 0, axes, looks_});
@@ -329,15 +332,15 @@ void Simulation::one_level(long step, long count, bool energies) {
   const double t1 = omp_get_wtime();
   update_list(moved);
   const double t2 = omp_get_wtime();
-  const Drift go_on{dt, 2, axes, looks_};
-  compute(energies, axes, at_once && !last ? &go_on : nullptr);
+  const Drift onward{dt, 2, axes, looks_};
+  compute(energies, axes, goes_on ? &onward : nullptr);
   const double t3 = omp_get_wtime();
   // A bond that slips is shown where it did.
-  if (at_once && !last && forces_.slipping_bond >= 0) drift_free({-dt, 0, false, false});
+  if (goes_on && forces_.slipping_bond >= 0) drift_free({-dt, 0, false, false});
   check_forces(energies);
-  if (at_once && !last) drift_driven(go_on);
+  if (goes_on) drift_driven(onward);
   dissipated_ -= dt * forces_.damping_power;
-  if (last || !at_once) kick_with_loads(forces_, 0.5 * dt);
+  if (!goes_on) kick_with_loads(forces_, 0.5 * dt);
   relax_angles_if_due();
   integration_seconds_ += (t1 - t0) + (omp_get_wtime() - t3) + (engine_.times().then - then_before);
   list_seconds_ += t2 - t1;
@@ -663,7 +666,7 @@ void Simulation::restore(const std::string& bytes) {
   // The runs of this list, which the skin of the next one follows from.
   Forces made(state_.size());
   if (tunes_skin_ && !planned)
-    engine_.compute(topology_, interaction_, list_, state_, made, {false, Parts::contact, false, {}});
+    engine_.compute(topology_, interaction_, list_, state_, made, {Parts::contact, false});
   point_loads(drive_, state_, state_.time, point_loads_);
 }
 

@@ -20,7 +20,7 @@
 
 #include "sim/drive.hpp"
 #include "sim/forces.hpp"
-#include "sim/free_elements.hpp"
+#include "sim/free_and_driven.hpp"
 #include "sim/interaction.hpp"
 #include "sim/neighbours.hpp"
 #include "sim/state.hpp"
@@ -121,6 +121,7 @@ class Simulation {
   void drift(const Drift& by);
   void update_list(Moved all);
   void compute(bool energies = true, bool axes_made = false, const Drift* then = nullptr);
+  void keep_on_driven(int block, const ForcesOn& forces);
   void compute_bonds();
   void compute_contact(bool energies);
   void add_loads(Forces& forces);
@@ -135,7 +136,7 @@ class Simulation {
   State state_;
   double time_step_ = 0;
   Stepping stepping_;
-  FreeElements elements_;  // driven: by loads or constraints
+  FreeAndDriven elements_;  // driven: by loads or constraints
   bool tunes_skin_ = false;
   NeighbourList list_;
   std::int64_t list_age_ = 0;  // steps since the list was built

@@ -12,6 +12,9 @@ namespace ropewalk {
 
 using Quaternion = Eigen::Quaterniond;
 
+// The state of so many elements stays in the first cache.
+inline constexpr int cached_elements = 128;
+
 // Below so many elements a team of threads costs more than it saves.
 inline constexpr std::size_t parallel_from = 512;
 

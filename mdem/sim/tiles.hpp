@@ -21,7 +21,8 @@ struct Segment {
 // taken together in blocks, for what is done to many elements at once.
 class TubeParts {
  public:
-  static constexpr int most = 512, most_of_block = 128;  // elements; a longer part is a block of its own
+  static constexpr int most = 512;                       // elements of a part
+  static constexpr int most_of_block = cached_elements;  // a longer part is a block of its own
 
   TubeParts() = default;
   explicit TubeParts(const Topology& topology) { cut(topology); }

@@ -45,7 +45,7 @@ void PaperKernel(benchmark::State& bench, const std::string& instructions, Inter
   }
   set_ns(bench, "ns/element", rope.elements());
   set_ns(bench, "ns/pair", static_cast<double>(rope.list.pairs()));
-  bench.counters["runs"] = static_cast<double>(engine.runs().runs()) / rope.elements();
+  bench.counters["runs"] = static_cast<double>(engine.runs().count()) / rope.elements();
   use_instructions("");
 }
 

@@ -87,6 +87,23 @@ TEST_F(Cli, ShippedScenesAreTheTemplates) {
   }
 }
 
+// Over the atoms of a frame.
+double sum_of_column(const std::string& frame, const std::string& name) {
+  const std::string head = "ITEM: ATOMS ";
+  std::istringstream lines(frame.substr(frame.find(head) + head.size()));
+  std::string text, field;
+  std::getline(lines, text);
+  int column = 0;
+  for (std::istringstream in(text); in >> field && field != name;) ++column;
+  double sum = 0;
+  while (std::getline(lines, text)) {
+    std::istringstream in(text);
+    for (int k = 0; k <= column; ++k) in >> field;
+    sum += std::stod(field);
+  }
+  return sum;
+}
+
 // Thick and thin tubes in one rope: everything downstream knows which is which.
 TEST_F(Cli, MixedTubesRunAndResume) {
   spit(dir / "s.toml",
@@ -108,6 +125,11 @@ TEST_F(Cli, MixedTubesRunAndResume) {
   EXPECT_NE(frames.find("\n1 1 2 "), std::string::npos) << "the first tube is of the second type";
   EXPECT_NE(frames.find("\n11 2 1 "), std::string::npos);
   EXPECT_TRUE(fs::exists(dir / "d/parameters-1.toml"));
+  // What the frames colour by adds up to what the log has.
+  const double energy = ropewalk::read_log((dir / "d/log.csv").string()).front().vdw;
+  EXPECT_LT(energy, -10);
+  EXPECT_NEAR(sum_of_column(frames.substr(0, frames.find("ITEM: TIMESTEP", 1)), "vdw_energy_eV"), energy,
+              1e-4 * std::fabs(energy));
   EXPECT_EQ(run("observe d --json").code, 0);
   EXPECT_NE(slurp(dir / "d/report.html").find("cnt-5-5-tersoff"), std::string::npos);
 }

@@ -71,7 +71,7 @@ class ForcesTest : public ::testing::TestWithParam<Variant> {
     list.build(topology, state);
     ForceEngine engine;
     Forces f(state.size());
-    engine.compute(topology, in, list, state, f, {true, parts, false, {}});
+    engine.compute(topology, in, list, state, f, {parts});
     return f;
   }
 
@@ -151,7 +151,7 @@ TEST_P(ForcesTest, SameBitsWhoeverReadsEnergies) {
   Forces with(state.size()), without(state.size());
   ForceEngine engine;
   engine.compute(topology, in, list, state, with);
-  engine.compute(topology, in, list, state, without, {false, Parts::all, false, {}});
+  engine.compute(topology, in, list, state, without, {Parts::all, false});
   expect_same_bits(with, without);
 }
 
@@ -328,7 +328,7 @@ TEST_P(LongTubes, ASlippingBondIsFoundWhereTheyAreCut) {
 // Whoever takes them block by block gets the same forces, and may move what they act on at once.
 TEST_P(LongTubes, ForcesOfBlocksAreTheSameBitsThoughTheirElementsMove) {
   const Forces wanted = fast(0.3, 1);
-  const FreeElements elements(topology, {});
+  const FreeAndDriven elements(topology, {});
   NeighbourList list(in, 0.3);
   list.build(topology, state);
   for (int threads : {1, 2, 5}) {
@@ -338,8 +338,8 @@ TEST_P(LongTubes, ForcesOfBlocksAreTheSameBitsThoughTheirElementsMove) {
     ForceEngine engine;
     ForceOptions options;
     options.then = [&](int block, const ForcesOn& forces) {
-      for (const ElementRange* r = elements.begin(block); r != elements.end(block); ++r)
-        for (std::ptrdiff_t i = r->begin; i < r->end; ++i) {
+      for (const ElementRange& r : elements.free(block))
+        for (std::ptrdiff_t i = r.begin; i < r.end; ++i) {
           const auto to = static_cast<std::size_t>(i), from = static_cast<std::size_t>(i - forces.origin);
           found.force.set(to, forces.force[from]);
           found.torque.set(to, forces.torque[from]);
@@ -668,18 +668,48 @@ TEST(LineForces, ReachOfElementsHoldsTheirNodes) {
   EXPECT_LT(far_but_near, 0.15 * far);
 }
 
-// Elements far shorter than the reach: more pairs than a block of the kernel holds.
-TEST(PaperForces, ManyPairsEqualReference) {
-  Topology topology = test::published_topology();
-  topology.types[0].bond = {};
+// Two tubes of elements far shorter than the reach, side by side.
+State many_short_elements(Topology& topology) {
   State state(400);
   test::Random random(3);
   for (std::size_t i = 0; i < state.size(); ++i) {
     state.position.set(i, Vector3(i < 200 ? 0.0 : 1.7, 0, 0.03 * static_cast<double>(i % 200)));
     state.orientation.set(i, test::turn(random.direction(), 0.1));
+    state.velocity.set(i, 0.3 * random.direction());
   }
+  topology.types[0].bond = {};
   topology.add_tube(200);
   topology.add_tube(200);
+  return state;
+}
+
+// Runs are longer than the kernel has bits.
+TEST(LineForces, ManyPairsEqualReference) {
+  Topology topology = test::published_topology();
+  topology.types[0].element_length = 0.03;
+  const State state = many_short_elements(topology);
+  Interaction in;
+  in.line = {line_pair(test::line_density(), 0.03, 0.03, 1, 1)};
+  in.exclude_along_tube = 200;
+  in.damping.contact = {20, 1.713, 2.57};
+  Forces reference(state.size()), f(state.size());
+  compute_reference(topology, in, state, reference);
+  NeighbourList list(in, 0.3);
+  list.build(topology, state);
+  ASSERT_GT(list.pairs(100), 2u * LineRun::longest);
+  for (const auto& [precision, bound] :
+       {std::pair(Interaction::Precision::full, 1e-10), std::pair(Interaction::Precision::mixed, 2e-5)}) {
+    in.precision = precision;
+    ForceEngine engine;
+    engine.compute(topology, in, list, state, f);
+    expect_equal(f, reference, bound);
+  }
+}
+
+// More pairs than a block of the kernel holds.
+TEST(PaperForces, ManyPairsEqualReference) {
+  Topology topology = test::published_topology();
+  const State state = many_short_elements(topology);
   Interaction in;
   in.paper = test::published_contact();
   in.exclude_along_tube = 200;
@@ -693,6 +723,69 @@ TEST(PaperForces, ManyPairsEqualReference) {
     ForceEngine engine;
     engine.compute(topology, in, list, state, f);
     expect_equal(f, reference, bound);
+  }
+}
+
+// A tube beside others in a line, whose elements are numbered on from one to the next.
+TEST(Forces, OfRunsThatGoOnIntoTheNextTubeEqualReference) {
+  Topology topology = test::published_topology();
+  TubeType thin = topology.types[0];
+  thin.radius = 0.34;
+  topology.types.push_back(thin);
+  topology.add_tube(14);
+  topology.add_tube(3);
+  topology.add_tube(4, 1);
+  topology.add_tube(4);
+  State state(static_cast<std::size_t>(topology.elements()));
+  test::Random random(8);
+  const double length = topology.types[0].element_length;
+  for (std::size_t i = 0; i < state.size(); ++i) {
+    const auto along = static_cast<double>(i < 14 ? i : i - 14);
+    state.position.set(i, Vector3(i < 14 ? 0.0 : 1.6, 0, length * along) + 0.02 * random.direction());
+    state.orientation.set(i, test::turn(random.direction(), 0.05));
+    state.velocity.set(i, 0.3 * random.direction());
+    state.angular_velocity.set(i, 0.3 * random.direction());
+  }
+  Interaction paper, line;
+  paper.paper = test::published_contact();
+  line.line = {test::line_contact(0.6785, 5, 0.6785, 5), test::line_contact(0.6785, 5, 0.34, 8),
+               test::line_contact(0.34, 8, 0.6785, 5), test::line_contact(0.34, 8, 0.34, 8)};
+  for (LineContact& pair : line.line) pair.sparse = sparse_nodes(8);
+  for (Interaction in : {paper, line}) {
+    in.exclude_along_tube = 3;
+    in.damping.contact = {20, 1.713, 2.57};
+    in.precision = Interaction::Precision::full;
+    NeighbourList list(in, 0.2);
+    list.build(topology, state);
+    bool goes_on = false;
+    for (const PairRun& run : list.runs(3)) goes_on |= topology.tube_of(run.begin) != topology.tube_of(run.end - 1);
+    ASSERT_TRUE(goes_on);
+    Forces reference(state.size()), f(state.size());
+    compute_reference(topology, in, state, reference);
+    ForceEngine engine;
+    engine.compute(topology, in, list, state, f);
+    expect_equal(f, reference, 1e-10);
+  }
+}
+
+// Buffers are used again for more and for less.
+TEST(Forces, OfOneEngineForScenesOfOtherSizesAreTheSameBits) {
+  Interaction in;
+  in.line = {test::line_contact(0.6785, 6, 0.6785, 6)};
+  in.line[0].sparse = sparse_nodes(6);
+  in.damping.contact = {20, 1.713, 2.57};
+  in.precision = Interaction::Precision::mixed;
+  ForceEngine used;
+  for (const int elements : {200, 20, 150, 210}) {
+    Topology topology = test::published_topology();
+    const State state = test::disordered_bundle(topology, 7, elements, 1.75, 0.1, 21);
+    NeighbourList list(in, 0.25);
+    list.build(topology, state);
+    Forces wanted(state.size()), found(state.size());
+    ForceEngine fresh;
+    fresh.compute(topology, in, list, state, wanted);
+    used.compute(topology, in, list, state, found);
+    expect_same_bits(wanted, found);
   }
 }
 
@@ -715,10 +808,10 @@ TEST(PairRuns, HoldThePairsOfTheListWithinReach) {
   near.build(list, 2.0);
   for (int i = 0; i < topology.elements(); ++i) {
     std::vector<int> of_all, of_near, truth;
-    for (const PairRun* r = all.begin(i); r != all.end(i); ++r)
-      for (int j = r->begin; j < r->end; ++j) of_all.push_back(j);
-    for (const PairRun* r = near.begin(i); r != near.end(i); ++r)
-      for (int j = r->begin; j < r->end; ++j) of_near.push_back(j);
+    for (const PairRun& r : all.runs(i))
+      for (int j = r.begin; j < r.end; ++j) of_all.push_back(j);
+    for (const PairRun& r : near.runs(i))
+      for (int j = r.begin; j < r.end; ++j) of_near.push_back(j);
     ASSERT_EQ(of_all, neighbours(list, i));
     for (int j : of_all)
       if ((s.position[j] - s.position[i]).norm() < 2.2) truth.push_back(j);
@@ -739,10 +832,10 @@ TEST(PairRuns, AreCutAtTheirLongest) {
   PairRuns runs;
   runs.build(list, 5);
   int next = 1;
-  for (const PairRun* r = runs.begin(0); r != runs.end(0); ++r) {
-    EXPECT_EQ(r->begin, next);
-    EXPECT_LE(r->end - r->begin, PairRuns::longest);
-    next = r->end;
+  for (const PairRun& r : runs.runs(0)) {
+    EXPECT_EQ(r.begin, next);
+    EXPECT_LE(r.end - r.begin, PairRuns::longest);
+    next = r.end;
   }
   EXPECT_EQ(next, 201);
 }
@@ -773,6 +866,23 @@ TEST(NeighbourList, FindsExactlyThePairsWithinReach) {
     expected += truth.size();
   }
   EXPECT_EQ(list.pairs(), expected);
+}
+
+TEST(NeighbourList, ChunksHaveEqualNumbersOfPairs) {
+  Topology topology = test::published_topology();
+  const State s = test::disordered_bundle(topology, 7, 200, 1.8, 0.2, 5);
+  NeighbourList list;
+  list.cutoff = 3.1;
+  list.exclude_along_tube = 2;
+  list.build(topology, s);
+  ASSERT_GT(list.chunks().size(), 3u);
+  std::size_t most = 0;
+  for (int i = 0; i < topology.elements(); ++i) most = std::max(most, list.pairs(i));
+  for (const NeighbourList::Chunk& chunk : list.chunks()) {
+    std::size_t pairs = 0;
+    for (int i = chunk.begin; i < chunk.end; ++i) pairs += list.pairs(i);
+    EXPECT_LE(pairs, list.pairs() / list.chunks().size() + 1 + most);
+  }
 }
 
 // A rope that turns and twists as a whole, by several times the skin at its rim.

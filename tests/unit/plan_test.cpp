@@ -11,6 +11,7 @@
 #include "observe/observe.hpp"
 #include "plan/check.hpp"
 #include "plan/expected_state.hpp"
+#include "plan/features.hpp"
 #include "plan/planner.hpp"
 #include "plan/scene_edit.hpp"
 #include "scene/dissipation.hpp"
@@ -191,6 +192,28 @@ TEST(Plan, EndMomentsThatLoadsGiveAreNotPromised) {
   EXPECT_EQ(p.expected.count("end_moment"), 0u);
   EXPECT_EQ(expectations_of(p.text).errors.count("end_moment"), 0u);
   EXPECT_THAT(fmt::format("{}", fmt::join(p.why, "\n")), HasSubstr("end_moment: loads give it here"));
+}
+
+// Two layers of a film that cross at one angle, and a rope, whose tubes are parallel.
+TEST(SceneFeatures, HaveTheAnglesAtWhichTubesInReachCross) {
+  Scene rope = scene_from(head + "[rope]\ntubes = 7\nlength_nm = 27.2\n[run]\nduration_ps = 5\n");
+  EXPECT_NEAR(features_of(rope, prepare(rope)).crossing_to, 0, 1e-5);
+  Prepared p = prepare(rope);
+  const double angle = 0.6;
+  p.topology.tube_begin.resize(3);
+  p.topology.tube_type.resize(2);
+  const auto half = p.topology.tube_begin[1];
+  p.state = State(static_cast<std::size_t>(2 * half));
+  for (int i = 0; i < 2 * half; ++i) {
+    const double along = (i % half - 0.5 * half) * p.topology.types[0].element_length;
+    const Quaternion turn(Eigen::AngleAxisd(i < half ? 0 : angle, Vector3::UnitX()));
+    p.state.position.set(static_cast<std::size_t>(i),
+                         turn * Vector3(0, 0, along) + Vector3(i < half ? 0 : p.spacing, 0, 0));
+    p.state.orientation.set(static_cast<std::size_t>(i), turn);
+  }
+  const SceneFeatures f = features_of(rope, p);
+  EXPECT_NEAR(f.crossing_from, angle / units::degree, 1e-5);
+  EXPECT_NEAR(f.crossing_to, angle / units::degree, 1e-5);
 }
 
 // Helices of the same length, evenly twisted: no strain, no bond longer, the outer tubes at atan(R t).

@@ -7,7 +7,7 @@
 #include <limits>
 #include <utility>
 
-#include "sim/free_elements.hpp"
+#include "sim/free_and_driven.hpp"
 #include "unit/support.hpp"
 
 namespace ropewalk {
@@ -72,14 +72,14 @@ TEST(TubeParts, AreTakenTogetherInBlocksThatFollowEachOther) {
   }
 }
 
-TEST(FreeElements, AreAllThatIsNotDrivenInRangesOfOneTypeAndBlock) {
+TEST(FreeAndDriven, AreAllThatIsNotDrivenInRangesOfOneTypeAndBlock) {
   Topology topology = test::published_topology();
   topology.types.push_back(topology.types[0]);
   const std::vector<int> lengths = {7, 9, TubeParts::most + 40, 3, 200, 2};
   for (std::size_t t = 0; t < lengths.size(); ++t) topology.add_tube(lengths[t], t == 1 ? 1 : 0);
   const TubeParts parts(topology);
   const std::vector<int> driven = {0, 6, 7, 15, 16, 17, parts[3].begin, topology.elements() - 1};
-  const FreeElements elements(topology, driven);
+  const FreeAndDriven elements(topology, driven);
   ASSERT_EQ(elements.blocks(), parts.blocks());
   std::vector<int> found, free(static_cast<std::size_t>(topology.elements()));
   for (int block = 0; block < elements.blocks(); ++block) {
@@ -91,13 +91,13 @@ TEST(FreeElements, AreAllThatIsNotDrivenInRangesOfOneTypeAndBlock) {
       for (std::ptrdiff_t i = r.begin; i < r.end; ++i)
         EXPECT_EQ(r.type, topology.tube_type[static_cast<std::size_t>(topology.tube_of(static_cast<int>(i)))]);
     };
-    for (const ElementRange* r = elements.begin(block); r != elements.end(block); ++r) {
-      expect_of_block(*r);
-      for (std::ptrdiff_t i = r->begin; i < r->end; ++i) ++free[static_cast<std::size_t>(i)];
+    for (const ElementRange& r : elements.free(block)) {
+      expect_of_block(r);
+      for (std::ptrdiff_t i = r.begin; i < r.end; ++i) ++free[static_cast<std::size_t>(i)];
     }
-    for (const ElementRange* r = elements.driven_begin(block); r != elements.driven_end(block); ++r) {
-      expect_of_block(*r);
-      for (std::ptrdiff_t i = r->begin; i < r->end; ++i) found.push_back(static_cast<int>(i));
+    for (const ElementRange& r : elements.driven(block)) {
+      expect_of_block(r);
+      for (std::ptrdiff_t i = r.begin; i < r.end; ++i) found.push_back(static_cast<int>(i));
     }
   }
   EXPECT_EQ(found, driven);

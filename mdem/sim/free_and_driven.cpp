@@ -1,4 +1,4 @@
-#include "sim/free_elements.hpp"
+#include "sim/free_and_driven.hpp"
 
 namespace ropewalk {
 namespace {
@@ -13,11 +13,11 @@ void append(std::ptrdiff_t i, int type, std::size_t first, std::vector<ElementRa
 
 }  // namespace
 
-FreeElements::FreeElements(const Topology& topology, const std::vector<int>& driven) {
+FreeAndDriven::FreeAndDriven(const Topology& topology, const std::vector<int>& driven) {
   const TubeParts parts(topology);
   auto next = driven.begin();
   for (int block = 0; block < parts.blocks(); ++block) {
-    first_.push_back(free_.size());
+    first_free_.push_back(free_.size());
     first_driven_.push_back(driven_.size());
     for (int k = parts.block_begin(block); k < parts.block_begin(block + 1); ++k)
       for (int i = parts[k].begin; i < parts[k].end; ++i) {
@@ -26,11 +26,11 @@ FreeElements::FreeElements(const Topology& topology, const std::vector<int>& dri
           append(i, type, first_driven_.back(), driven_);
           ++next;
         } else {
-          append(i, type, first_.back(), free_);
+          append(i, type, first_free_.back(), free_);
         }
       }
   }
-  first_.push_back(free_.size());
+  first_free_.push_back(free_.size());
   first_driven_.push_back(driven_.size());
 }
 
