@@ -13,6 +13,8 @@
 #include "model/error.hpp"
 #include "scene/prepare.hpp"
 #include "sim/line_count.hpp"
+#include "sim/machine_peak.hpp"
+#include "sim/step_bytes.hpp"
 
 namespace ropewalk {
 namespace {
@@ -45,6 +47,7 @@ struct Cost {
   double pairs = 0;
   double skin = 0;                   // nm, of the last list
   double bytes = 0, list_bytes = 0;  // per element
+  double moved = 0;                  // bytes, at the least
   double peak_bytes = 0;             // of the program so far
 };
 
@@ -94,6 +97,7 @@ Cost measure(const Scene& scene, const Prepared& prepared, double after, long st
   c.skin = simulation.list().skin;
   c.list_bytes = static_cast<double>(simulation.list().bytes()) / n;
   c.bytes = static_cast<double>(simulation.bytes()) / n - c.list_bytes;
+  c.moved = step_bytes(simulation) / n;
   c.peak_bytes = peak_bytes();
   return c;
 }
@@ -105,7 +109,13 @@ double operations_per_ns(const Cost& c, const Interaction& in) {
   return per(c.radial.evaluations * radial_operations(degree), c.each.contact);
 }
 
-nlohmann::ordered_json json_of(const Cost& c, const BenchArguments& a, const Prepared& prepared) {
+// Of one thread or of several, each as fast as they can be together.
+MachinePeak peak_for(const Cost& c, const Interaction& in) {
+  return machine_peak(c.threads, in.precision == Interaction::Precision::full);
+}
+
+nlohmann::ordered_json json_of(const Cost& c, const MachinePeak& peak, const BenchArguments& a,
+                               const Prepared& prepared) {
   nlohmann::ordered_json out;
   out["scene"] = a.scene;
   out["elements"] = prepared.topology.elements();
@@ -135,14 +145,19 @@ nlohmann::ordered_json json_of(const Cost& c, const BenchArguments& a, const Pre
     out["radial_evaluations_useful"] = c.radial.useful;
     out["ns_per_radial_evaluation"] = per(c.each.contact, c.radial.evaluations);
     out["contact_GFLOP_per_s"] = operations_per_ns(c, prepared.interaction);
+    out["contact_share_of_peak"] = per(operations_per_ns(c, prepared.interaction), peak.arithmetic);
   }
+  out["moved_bytes_per_element_step"] = c.moved;
+  out["moved_GB_per_s"] = per(c.moved, c.each.wall);
+  out["moved_share_of_peak"] = per(per(c.moved, c.each.wall), peak.transfer);
+  out["machine"] = {{"peak_GFLOP_per_s", peak.arithmetic}, {"peak_GB_per_s", peak.transfer}};
   out["bytes_per_element"] = c.bytes;
   out["list_bytes_per_element"] = c.list_bytes;
   out["peak_resident_MB"] = c.peak_bytes * 1e-6;
   return out;
 }
 
-void print(const Cost& c, const BenchArguments& a, const Prepared& prepared) {
+void print(const Cost& c, const MachinePeak& peak, const BenchArguments& a, const Prepared& prepared) {
   const Timing& t = c.each;
   const double n = prepared.topology.elements();
   const int every = prepared.stepping.contact_every;
@@ -163,7 +178,13 @@ void print(const Cost& c, const BenchArguments& a, const Prepared& prepared) {
         operations_per_ns(c, prepared.interaction));
   fmt::print("{:9.0f} bytes per element, and {:.0f} for the list; {:.0f} MB resident at most\n", c.bytes,
              c.list_bytes, c.peak_bytes * 1e-6);
-  fmt::print("{:9.2f} s of wall time per simulated ns\n", t.wall * n * 1e-9 / prepared.time_step * 1e3);
+  const double moved = per(c.moved, t.wall), operations = operations_per_ns(c, prepared.interaction);
+  fmt::print("{:9.1f} GB/s moved at the least, {:.0f} % of the {:.1f} GB/s of this machine", moved,
+             100 * per(moved, peak.transfer), peak.transfer);
+  if (operations > 0)
+    fmt::print("; contact at {:.0f} % of its {:.0f} GFLOP/s", 100 * per(operations, peak.arithmetic),
+               peak.arithmetic);
+  fmt::print("\n{:9.2f} s of wall time per simulated ns\n", t.wall * n * 1e-9 / prepared.time_step * 1e3);
 }
 
 }  // namespace
@@ -179,13 +200,16 @@ int bench_command(const BenchArguments& a) {
   const Prepared prepared = prepare(scene);
   use_instructions(a.instructions);
   const double after = a.after < 0 ? bench_after(a.scene) : a.after;
+  std::vector<Cost> costs;
+  for (const int threads : a.threads) costs.push_back(measure(scene, prepared, after, a.steps, threads));
+  // The machine last: what is measured there takes more memory than most scenes.
   nlohmann::ordered_json all = nlohmann::ordered_json::array();
-  for (const int threads : a.threads) {
-    const Cost cost = measure(scene, prepared, after, a.steps, threads);
+  for (const Cost& cost : costs) {
+    const MachinePeak peak = peak_for(cost, prepared.interaction);
     if (a.json) {
-      all.push_back(json_of(cost, a, prepared));
+      all.push_back(json_of(cost, peak, a, prepared));
     } else {
-      print(cost, a, prepared);
+      print(cost, peak, a, prepared);
     }
   }
   if (a.json) fmt::print("{}\n", (all.size() == 1 ? all[0] : all).dump(1));

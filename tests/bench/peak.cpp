@@ -12,28 +12,8 @@ HWY_BEFORE_NAMESPACE();
 namespace ropewalk::bench::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Independent chains: more than latency times throughput of any unit here, and no more than 16 registers hold.
+// As in sim/machine_peak.cpp.
 constexpr int chains = 12;
-
-template <class T, int cap>
-HWY_INLINE std::size_t multiply_add(std::size_t rounds, T start, T* out) {
-  const hn::CappedTag<T, cap> d;
-  const auto factor = hn::Set(d, start), term = hn::Set(d, static_cast<T>(0.25));
-  hn::Vec<decltype(d)> a[chains];
-  for (int k = 0; k < chains; ++k) a[k] = hn::Set(d, static_cast<T>(k));
-  for (std::size_t r = 0; r < rounds; ++r)
-    for (int k = 0; k < chains; ++k) a[k] = hn::MulAdd(a[k], factor, term);
-  for (int k = 1; k < chains; ++k) a[0] = hn::Add(a[0], a[k]);
-  hn::StoreU(a[0], d, out);
-  return rounds * chains * 2 * hn::Lanes(d);
-}
-
-std::size_t Float(std::size_t rounds, float start, float* out) {
-  return multiply_add<float, 16>(rounds, start, out);
-}
-std::size_t Double(std::size_t rounds, double start, double* out) {
-  return multiply_add<double, 8>(rounds, start, out);
-}
 
 // Lookups in 32 floats in two registers; 0 where an instruction set has none.
 std::size_t LookUp([[maybe_unused]] std::size_t rounds, [[maybe_unused]] const float* table,
@@ -54,14 +34,6 @@ std::size_t LookUp([[maybe_unused]] std::size_t rounds, [[maybe_unused]] const f
 #endif
 }
 
-// a = b + 3 c
-void Triad(double* HWY_RESTRICT a, const double* HWY_RESTRICT b, const double* HWY_RESTRICT c, std::size_t n) {
-  const hn::CappedTag<double, 8> d;
-  const auto three = hn::Set(d, 3.0);
-  for (std::size_t i = 0; i < n; i += hn::Lanes(d))
-    hn::Store(hn::MulAdd(hn::Load(d, c + i), three, hn::Load(d, b + i)), d, a + i);
-}
-
 }  // namespace ropewalk::bench::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -69,13 +41,11 @@ HWY_AFTER_NAMESPACE();
 #include <hwy/aligned_allocator.h>
 
 #include "bench/support.hpp"
+#include "sim/machine_peak.hpp"
 
 namespace ropewalk::bench {
 
-HWY_EXPORT(Float);
-HWY_EXPORT(Double);
 HWY_EXPORT(LookUp);
-HWY_EXPORT(Triad);
 
 namespace {
 
@@ -85,7 +55,7 @@ void PeakFloat(benchmark::State& bench, const std::string& instructions) {
   std::size_t flop = 0;
   for (auto _ : bench) {
     benchmark::DoNotOptimize(start);
-    flop = HWY_DYNAMIC_DISPATCH(Float)(10000, start, out);
+    flop = multiply_adds(10000, start, out);
     benchmark::DoNotOptimize(out);
   }
   set_giga(bench, "GFLOP/s", static_cast<double>(flop));
@@ -98,7 +68,7 @@ void PeakDouble(benchmark::State& bench, const std::string& instructions) {
   std::size_t flop = 0;
   for (auto _ : bench) {
     benchmark::DoNotOptimize(start);
-    flop = HWY_DYNAMIC_DISPATCH(Double)(10000, start, out);
+    flop = multiply_adds(10000, start, out);
     benchmark::DoNotOptimize(out);
   }
   set_giga(bench, "GFLOP/s", static_cast<double>(flop));
@@ -128,7 +98,7 @@ void PeakTriad(benchmark::State& bench) {
   std::fill(b.get(), b.get() + n, 2.0);
   std::fill(c.get(), c.get() + n, 3.0);
   for (auto _ : bench) {
-    HWY_DYNAMIC_DISPATCH(Triad)(a.get(), b.get(), c.get(), n);
+    triad(a.get(), b.get(), c.get(), n);
     benchmark::ClobberMemory();
   }
   set_giga(bench, "GB/s", 24.0 * static_cast<double>(n));

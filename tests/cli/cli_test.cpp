@@ -406,7 +406,13 @@ TEST_F(Cli, BenchKnowsScenesByName) {
     EXPECT_GT(b["nodes_per_run"].get<double>(), 1);
     EXPECT_GT(b["radial_evaluations_useful"].get<double>(), 1);
     EXPECT_LT(b["radial_evaluations_useful"].get<double>(), b["radial_evaluations_per_element_step"].get<double>());
-    EXPECT_GT(b["contact_GFLOP_per_s"].get<double>(), 0);
+    for (const char* rate :
+         {"contact_GFLOP_per_s", "contact_share_of_peak", "moved_GB_per_s", "moved_share_of_peak"})
+      EXPECT_GT(b[rate].get<double>(), 0) << rate;
+    EXPECT_GT(b["machine"]["peak_GFLOP_per_s"].get<double>(), 0);
+    EXPECT_GT(b["machine"]["peak_GB_per_s"].get<double>(), 0);
+    EXPECT_EQ(b["moved_bytes_per_element_step"], both[0]["moved_bytes_per_element_step"]);
+    EXPECT_GT(b["moved_bytes_per_element_step"].get<double>(), 256);  // state and axes, read and written
     EXPECT_LT(b["list_share"].get<double>(), 1);
   }
   const Json paper = Json::parse(run("bench rope-91x50 --law paper --steps 2 --json").out);

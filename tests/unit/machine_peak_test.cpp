@@ -1,0 +1,59 @@
+#include "sim/machine_peak.hpp"
+
+#include <gtest/gtest.h>
+
+#include "sim/step_bytes.hpp"
+#include "unit/support.hpp"
+
+namespace ropewalk {
+namespace {
+
+// Each chain tends to 0.25 / (1 - 0.5), and the sum of all is left.
+template <class T>
+void expect_work() {
+  T out[64 / sizeof(T)] = {};
+  const std::size_t once = multiply_adds(100, T{0.5}, out);
+  EXPECT_EQ(out[0], T{6});
+  EXPECT_EQ(once % (100 * 12 * 2), 0u);
+  EXPECT_EQ(multiply_adds(200, T{0.5}, out), 2 * once);
+}
+
+TEST(MachinePeak, LoopsDoWhatTheyCount) {
+  expect_work<float>();
+  expect_work<double>();
+  alignas(64) double a[16], b[16], c[16];
+  for (int k = 0; k < 16; ++k) b[k] = k, c[k] = 2 * k;
+  triad(a, b, c, 16);
+  for (int k = 0; k < 16; ++k) EXPECT_EQ(a[k], 7 * k);
+}
+
+TEST(MachinePeak, IsFound) {
+  const MachinePeak peak = machine_peak(1, false);
+  EXPECT_GT(peak.arithmetic, 0);
+  EXPECT_GT(peak.transfer, 0);
+}
+
+// Without contact the state alone, read and written; with it the axes and what is listed besides.
+TEST(StepBytes, AreOfTheStateAndOfWhatIsListed) {
+  Topology topology = test::published_topology();
+  const State state = test::disordered_bundle(topology, 7, 40, 1.75, 0.02, 21);
+  const auto per_element = [&](const Interaction& in) {
+    return step_bytes(Simulation(topology, in, {}, state, 1e-3)) / topology.elements();
+  };
+  constexpr double alone = 2 * 13 * 8, axes = 2 * 3 * 8;
+  EXPECT_EQ(per_element({}), alone);
+  Interaction line, paper;
+  line.line = {test::line_contact(0.6785, 6, 0.6785, 6)};
+  line.line[0].sparse = sparse_nodes(6);
+  line.precision = Interaction::Precision::mixed;
+  paper.paper = test::published_contact();
+  // One chunk, whose buffers have each element once, and some room.
+  const double mixed = per_element(line);
+  EXPECT_GT(mixed, alone + axes + 2 * 6 * sizeof(float));
+  line.precision = Interaction::Precision::full;
+  EXPECT_NEAR(per_element(line) - mixed, 2 * 6 * sizeof(float), 4);
+  EXPECT_GT(per_element(paper), alone + axes + 2 * 6 * sizeof(double));
+}
+
+}  // namespace
+}  // namespace ropewalk
