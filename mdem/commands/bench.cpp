@@ -47,7 +47,7 @@ struct Cost {
   double pairs = 0;
   double skin = 0;                   // nm, of the last list
   double bytes = 0, list_bytes = 0;  // per element
-  double moved = 0;                  // bytes, at the least
+  double moved = 0;                  // bytes per element and step, about the least
   double peak_bytes = 0;             // of the program so far
 };
 
@@ -109,12 +109,23 @@ double operations_per_ns(const Cost& c, const Interaction& in) {
   return per(c.radial.evaluations * radial_operations(degree), c.each.contact);
 }
 
-// Of one thread or of several, each as fast as they can be together.
-MachinePeak peak_for(const Cost& c, const Interaction& in) {
-  return machine_peak(c.threads, in.precision == Interaction::Precision::full);
+// The rates of a scene and those of the machine: GFLOP/s in contact and GB/s.
+struct Rates {
+  double operations = 0, moved = 0;
+  MachinePeak peak;
+
+  double share_of_arithmetic() const { return per(operations, peak.arithmetic); }
+  double share_of_transfer() const { return per(moved, peak.transfer); }
+};
+
+// The machine with as many threads as work on a scene of this size.
+Rates rates_of(const Cost& c, const Prepared& prepared) {
+  const bool parallel = prepared.topology.elements() > static_cast<int>(parallel_from);
+  return {operations_per_ns(c, prepared.interaction), per(c.moved, c.each.wall),
+          machine_peak(parallel ? c.threads : 1, prepared.interaction.precision == Interaction::Precision::full)};
 }
 
-nlohmann::ordered_json json_of(const Cost& c, const MachinePeak& peak, const BenchArguments& a,
+nlohmann::ordered_json json_of(const Cost& c, const Rates& rates, const BenchArguments& a,
                                const Prepared& prepared) {
   nlohmann::ordered_json out;
   out["scene"] = a.scene;
@@ -144,20 +155,20 @@ nlohmann::ordered_json json_of(const Cost& c, const MachinePeak& peak, const Ben
     out["radial_evaluations_per_element_step"] = c.radial.evaluations;
     out["radial_evaluations_useful"] = c.radial.useful;
     out["ns_per_radial_evaluation"] = per(c.each.contact, c.radial.evaluations);
-    out["contact_GFLOP_per_s"] = operations_per_ns(c, prepared.interaction);
-    out["contact_share_of_peak"] = per(operations_per_ns(c, prepared.interaction), peak.arithmetic);
+    out["contact_GFLOP_per_s"] = rates.operations;
+    out["contact_share_of_peak"] = rates.share_of_arithmetic();
   }
   out["moved_bytes_per_element_step"] = c.moved;
-  out["moved_GB_per_s"] = per(c.moved, c.each.wall);
-  out["moved_share_of_peak"] = per(per(c.moved, c.each.wall), peak.transfer);
-  out["machine"] = {{"peak_GFLOP_per_s", peak.arithmetic}, {"peak_GB_per_s", peak.transfer}};
+  out["moved_GB_per_s"] = rates.moved;
+  out["moved_share_of_peak"] = rates.share_of_transfer();
+  out["machine"] = {{"peak_GFLOP_per_s", rates.peak.arithmetic}, {"peak_GB_per_s", rates.peak.transfer}};
   out["bytes_per_element"] = c.bytes;
   out["list_bytes_per_element"] = c.list_bytes;
   out["peak_resident_MB"] = c.peak_bytes * 1e-6;
   return out;
 }
 
-void print(const Cost& c, const MachinePeak& peak, const BenchArguments& a, const Prepared& prepared) {
+void print(const Cost& c, const BenchArguments& a, const Prepared& prepared) {
   const Timing& t = c.each;
   const double n = prepared.topology.elements();
   const int every = prepared.stepping.contact_every;
@@ -178,13 +189,15 @@ void print(const Cost& c, const MachinePeak& peak, const BenchArguments& a, cons
         operations_per_ns(c, prepared.interaction));
   fmt::print("{:9.0f} bytes per element, and {:.0f} for the list; {:.0f} MB resident at most\n", c.bytes,
              c.list_bytes, c.peak_bytes * 1e-6);
-  const double moved = per(c.moved, t.wall), operations = operations_per_ns(c, prepared.interaction);
-  fmt::print("{:9.1f} GB/s moved at the least, {:.0f} % of the {:.1f} GB/s of this machine", moved,
-             100 * per(moved, peak.transfer), peak.transfer);
-  if (operations > 0)
-    fmt::print("; contact at {:.0f} % of its {:.0f} GFLOP/s", 100 * per(operations, peak.arithmetic),
-               peak.arithmetic);
-  fmt::print("\n{:9.2f} s of wall time per simulated ns\n", t.wall * n * 1e-9 / prepared.time_step * 1e3);
+  fmt::print("{:9.2f} s of wall time per simulated ns\n", t.wall * n * 1e-9 / prepared.time_step * 1e3);
+}
+
+void print(const Rates& rates, int threads) {
+  fmt::print("{:9.1f} GB/s moved on {} threads, about, as much as {:.0f} % of what memory gives here ({:.1f})",
+             rates.moved, threads, 100 * rates.share_of_transfer(), rates.peak.transfer);
+  if (rates.operations > 0)
+    fmt::print("; contact at {:.0f} % of {:.0f} GFLOP/s", 100 * rates.share_of_arithmetic(), rates.peak.arithmetic);
+  fmt::print("\n");
 }
 
 }  // namespace
@@ -201,15 +214,18 @@ int bench_command(const BenchArguments& a) {
   use_instructions(a.instructions);
   const double after = a.after < 0 ? bench_after(a.scene) : a.after;
   std::vector<Cost> costs;
-  for (const int threads : a.threads) costs.push_back(measure(scene, prepared, after, a.steps, threads));
-  // The machine last: what is measured there takes more memory than most scenes.
+  for (const int threads : a.threads) {
+    costs.push_back(measure(scene, prepared, after, a.steps, threads));
+    if (!a.json) print(costs.back(), a, prepared);
+  }
+  // The machine last: what is measured there takes more memory than most scenes, and would be in their peaks.
   nlohmann::ordered_json all = nlohmann::ordered_json::array();
   for (const Cost& cost : costs) {
-    const MachinePeak peak = peak_for(cost, prepared.interaction);
+    const Rates rates = rates_of(cost, prepared);
     if (a.json) {
-      all.push_back(json_of(cost, peak, a, prepared));
+      all.push_back(json_of(cost, rates, a, prepared));
     } else {
-      print(cost, peak, a, prepared);
+      print(rates, cost.threads);
     }
   }
   if (a.json) fmt::print("{}\n", (all.size() == 1 ? all[0] : all).dump(1));

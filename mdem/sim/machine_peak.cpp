@@ -8,16 +8,15 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace ropewalk::HWY_NAMESPACE {
-namespace peak {
 namespace hn = hwy::HWY_NAMESPACE;
 
 // Independent chains: more than latency times throughput of any unit here, and no more than 16 registers hold.
 constexpr int chains = 12;
 
 template <class T, int cap>
-HWY_INLINE std::size_t multiply_adds(std::size_t rounds, T start, T* out) {
+HWY_INLINE std::size_t in_chains(std::size_t rounds, T by, T* out) {
   const hn::CappedTag<T, cap> d;
-  const auto factor = hn::Set(d, start), term = hn::Set(d, static_cast<T>(0.25));
+  const auto factor = hn::Set(d, by), term = hn::Set(d, static_cast<T>(0.25));
   hn::Vec<decltype(d)> a[chains];
   for (int k = 0; k < chains; ++k) a[k] = hn::Set(d, static_cast<T>(k));
   for (std::size_t r = 0; r < rounds; ++r)
@@ -27,17 +26,14 @@ HWY_INLINE std::size_t multiply_adds(std::size_t rounds, T start, T* out) {
   return rounds * chains * 2 * hn::Lanes(d);
 }
 
-}  // namespace peak
-
-std::size_t PeakOfFloats(std::size_t rounds, float start, float* out) {
-  return peak::multiply_adds<float, 16>(rounds, start, out);
+std::size_t PeakOfFloats(std::size_t rounds, float factor, float* out) {
+  return in_chains<float, 16>(rounds, factor, out);
 }
-std::size_t PeakOfDoubles(std::size_t rounds, double start, double* out) {
-  return peak::multiply_adds<double, 8>(rounds, start, out);
+std::size_t PeakOfDoubles(std::size_t rounds, double factor, double* out) {
+  return in_chains<double, 8>(rounds, factor, out);
 }
 
 void Triad(double* HWY_RESTRICT a, const double* HWY_RESTRICT b, const double* HWY_RESTRICT c, std::size_t n) {
-  namespace hn = hwy::HWY_NAMESPACE;
   const hn::CappedTag<double, 8> d;
   const auto three = hn::Set(d, 3.0);
   for (std::size_t i = 0; i < n; i += hn::Lanes(d))
@@ -52,6 +48,7 @@ HWY_AFTER_NAMESPACE();
 #include <omp.h>
 
 #include <algorithm>
+#include <new>
 
 namespace ropewalk {
 
@@ -59,11 +56,11 @@ HWY_EXPORT(PeakOfFloats);
 HWY_EXPORT(PeakOfDoubles);
 HWY_EXPORT(Triad);
 
-std::size_t multiply_adds(std::size_t rounds, float start, float* out) {
-  return HWY_DYNAMIC_DISPATCH(PeakOfFloats)(rounds, start, out);
+std::size_t multiply_adds(std::size_t rounds, float factor, float* out) {
+  return HWY_DYNAMIC_DISPATCH(PeakOfFloats)(rounds, factor, out);
 }
-std::size_t multiply_adds(std::size_t rounds, double start, double* out) {
-  return HWY_DYNAMIC_DISPATCH(PeakOfDoubles)(rounds, start, out);
+std::size_t multiply_adds(std::size_t rounds, double factor, double* out) {
+  return HWY_DYNAMIC_DISPATCH(PeakOfDoubles)(rounds, factor, out);
 }
 void triad(double* a, const double* b, const double* c, std::size_t n) { HWY_DYNAMIC_DISPATCH(Triad)(a, b, c, n); }
 
@@ -88,17 +85,20 @@ double arithmetic_peak(int threads) {
 #pragma omp parallel num_threads(threads) reduction(+ : operations)
     {
       T out[64 / sizeof(T)];
-      operations += static_cast<double>(multiply_adds(rounds, T{0.5}, out));
+      const auto done = static_cast<double>(multiply_adds(rounds, T{0.5}, out));
+      operations += out[0] > 0 ? done : 0.0;  // so that no compiler leaves them out
     }
     return operations;
   });
 }
 
 double transfer_peak(int threads) {
-  constexpr std::ptrdiff_t pieces = 64, piece = std::ptrdiff_t{1} << 17;  // entries: 64 MiB in each array
-  const auto array = [] { return hwy::AllocateAligned<double>(static_cast<std::size_t>(pieces * piece)); };
+  // 128 MiB in each array, more than caches hold, in pieces that go out even for as many threads.
+  const std::ptrdiff_t pieces = 64 * threads, piece = (std::ptrdiff_t{1} << 24) / pieces / 8 * 8;
+  const auto array = [&] { return hwy::AllocateAligned<double>(static_cast<std::size_t>(pieces * piece)); };
   const auto a = array(), b = array(), c = array();
-  // Where a thread writes first is its own memory.
+  if (!a || !b || !c) throw std::bad_alloc();
+    // Where a thread writes first is its own memory.
 #pragma omp parallel for schedule(static) num_threads(threads)
   for (std::ptrdiff_t i = 0; i < pieces * piece; ++i) a[i] = 1, b[i] = 2, c[i] = 3;
   return best_rate(4, [&] {

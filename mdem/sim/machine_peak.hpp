@@ -11,14 +11,14 @@ struct MachinePeak {
   double transfer = 0;    // GB/s to and from memory, of `triad`
 };
 
-// Of so many threads at once, in single precision or in double: the best of some short trials. Takes some 0.2 s and
-// 200 MB for a while.
+// Of so many threads at once, in single precision or in double: the best of some short trials. Takes some 0.3 s
+// and, for a while, 400 MB; throws std::bad_alloc without them.
 MachinePeak machine_peak(int threads, bool in_double);
 
-// Its loops. So many rounds in independent chains, which begin at `start`; `out` has room for 64 bytes. Returns the
-// operations.
-std::size_t multiply_adds(std::size_t rounds, float start, float* out);
-std::size_t multiply_adds(std::size_t rounds, double start, double* out);
+// Its loops. So many rounds a = a factor + 1/4 in independent chains, of which `out`, with room for 64 bytes, gets
+// the sum. Returns the operations.
+std::size_t multiply_adds(std::size_t rounds, float factor, float* out);
+std::size_t multiply_adds(std::size_t rounds, double factor, double* out);
 // a = b + 3 c, 24 bytes per entry as STREAM counts them (J. D. McCalpin, 1995). Arrays aligned to 64 bytes, n a
 // multiple of 8.
 void triad(double* a, const double* b, const double* c, std::size_t n);

@@ -5,9 +5,10 @@
 
 namespace ropewalk {
 
-// Bytes that a step in the middle of several reads and writes of what is there for all elements, each array once
-// for each: the least that goes to and from memory where nothing of it stays in a cache. Rows of nodes and whatever
-// else a thread works in are not in it.
+// Bytes of the arrays that every step goes through, each once where it is read and once where it is written: the
+// state, axes, what the kernel walks of the list, contact buffers, and forces where they are stored. About the
+// least that passes memory where nothing stays in a cache; not the rows of nodes and whatever else a thread works
+// in, nor single runs and plans of twisted ropes, nor the places at the last build.
 double step_bytes(const Simulation& simulation);
 
 }  // namespace ropewalk

@@ -12,13 +12,11 @@ HWY_BEFORE_NAMESPACE();
 namespace ropewalk::bench::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// As in sim/machine_peak.cpp.
-constexpr int chains = 12;
-
 // Lookups in 32 floats in two registers; 0 where an instruction set has none.
 std::size_t LookUp([[maybe_unused]] std::size_t rounds, [[maybe_unused]] const float* table,
                    [[maybe_unused]] float* out) {
 #if HWY_TARGET <= HWY_AVX3
+  constexpr int chains = 12;  // independent, as in sim/machine_peak.cpp
   const hn::CappedTag<float, 16> d;
   const auto low = hn::LoadU(d, table), high = hn::LoadU(d, table + 16);
   hn::Vec<decltype(d)> a[chains];
@@ -51,11 +49,11 @@ namespace {
 
 void PeakFloat(benchmark::State& bench, const std::string& instructions) {
   use_instructions(instructions);
-  float start = 0.5F, out[16];
+  float factor = 0.5F, out[16];
   std::size_t flop = 0;
   for (auto _ : bench) {
-    benchmark::DoNotOptimize(start);
-    flop = multiply_adds(10000, start, out);
+    benchmark::DoNotOptimize(factor);
+    flop = multiply_adds(10000, factor, out);
     benchmark::DoNotOptimize(out);
   }
   set_giga(bench, "GFLOP/s", static_cast<double>(flop));
@@ -64,11 +62,11 @@ void PeakFloat(benchmark::State& bench, const std::string& instructions) {
 
 void PeakDouble(benchmark::State& bench, const std::string& instructions) {
   use_instructions(instructions);
-  double start = 0.5, out[8];
+  double factor = 0.5, out[8];
   std::size_t flop = 0;
   for (auto _ : bench) {
-    benchmark::DoNotOptimize(start);
-    flop = multiply_adds(10000, start, out);
+    benchmark::DoNotOptimize(factor);
+    flop = multiply_adds(10000, factor, out);
     benchmark::DoNotOptimize(out);
   }
   set_giga(bench, "GFLOP/s", static_cast<double>(flop));

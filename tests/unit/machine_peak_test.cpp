@@ -52,7 +52,17 @@ TEST(StepBytes, AreOfTheStateAndOfWhatIsListed) {
   EXPECT_GT(mixed, alone + axes + 2 * 6 * sizeof(float));
   line.precision = Interaction::Precision::full;
   EXPECT_NEAR(per_element(line) - mixed, 2 * 6 * sizeof(float), 4);
-  EXPECT_GT(per_element(paper), alone + axes + 2 * 6 * sizeof(double));
+  EXPECT_GT(per_element(paper), alone + axes + 2 * 6 * sizeof(double) + 2 * 6 * sizeof(float));
+  // The local damping stores all forces; the list has runs of some kind or other.
+  Interaction braked;
+  braked.damping.local = 0.1;
+  EXPECT_EQ(per_element(braked), alone + 2 * 6 * 8);
+  EXPECT_EQ(step_bytes(Simulation(topology, {}, {}, state, 1e-3, 0, {3})) / topology.elements(),
+            3 * (alone + 2 * 6 * 8));
+  line.exclude_along_tube = 20;
+  Interaction apart = line;
+  for (LineContact& pair : apart.line) pair.density = with_cutoff(pair.density, 1.6);
+  EXPECT_GT(per_element(line), per_element(apart) + 0.5 * sizeof(BlockRun));
 }
 
 }  // namespace
