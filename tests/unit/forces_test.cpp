@@ -26,6 +26,12 @@ struct Variant {
   int nodes = 5;      // of an element, by the line law
 };
 
+// Between a thick tube type and a thin one.
+std::vector<LineContact> contacts_with_thin_ones() {
+  return {test::line_contact(0.6785, 5, 0.6785, 5), test::line_contact(0.6785, 5, 0.34, 8),
+          test::line_contact(0.34, 8, 0.6785, 5), test::line_contact(0.34, 8, 0.34, 8)};
+}
+
 class ForcesTest : public ::testing::TestWithParam<Variant> {
  protected:
   void SetUp() override {
@@ -61,8 +67,7 @@ class ForcesTest : public ::testing::TestWithParam<Variant> {
     thin.bond = {735 * units::nN_nm, 45 * units::nN_nm, 40 * units::nN_nm};
     topology.types.push_back(thin);
     for (int t = 1; t < topology.tubes(); t += 2) topology.tube_type[t] = 1;
-    in.line = {test::line_contact(0.6785, 5, 0.6785, 5), test::line_contact(0.6785, 5, 0.34, 8),
-               test::line_contact(0.34, 8, 0.6785, 5), test::line_contact(0.34, 8, 0.34, 8)};
+    in.line = contacts_with_thin_ones();
   }
 
   Forces fast(double skin, int threads, Parts parts = Parts::all) const {
@@ -683,6 +688,23 @@ State many_short_elements(Topology& topology) {
   return state;
 }
 
+// In both precisions; `exact` bounds what is left in double.
+void expect_many_pairs_equal_reference(const Topology& topology, const State& state, Interaction in, double exact) {
+  in.exclude_along_tube = 200;
+  Forces reference(state.size()), f(state.size());
+  compute_reference(topology, in, state, reference);
+  NeighbourList list(in, 0.3);
+  list.build(topology, state);
+  ASSERT_GT(list.pairs(100), 2u * LineRun::longest);
+  for (const auto& [precision, bound] :
+       {std::pair(Interaction::Precision::full, exact), std::pair(Interaction::Precision::mixed, 2e-5)}) {
+    in.precision = precision;
+    ForceEngine engine;
+    engine.compute(topology, in, list, state, f);
+    expect_equal(f, reference, bound);
+  }
+}
+
 // Runs are longer than the kernel has bits.
 TEST(LineForces, ManyPairsEqualReference) {
   Topology topology = test::published_topology();
@@ -690,20 +712,8 @@ TEST(LineForces, ManyPairsEqualReference) {
   const State state = many_short_elements(topology);
   Interaction in;
   in.line = {line_pair(test::line_density(), 0.03, 0.03, 1, 1)};
-  in.exclude_along_tube = 200;
   in.damping.contact = {20, 1.713, 2.57};
-  Forces reference(state.size()), f(state.size());
-  compute_reference(topology, in, state, reference);
-  NeighbourList list(in, 0.3);
-  list.build(topology, state);
-  ASSERT_GT(list.pairs(100), 2u * LineRun::longest);
-  for (const auto& [precision, bound] :
-       {std::pair(Interaction::Precision::full, 1e-10), std::pair(Interaction::Precision::mixed, 2e-5)}) {
-    in.precision = precision;
-    ForceEngine engine;
-    engine.compute(topology, in, list, state, f);
-    expect_equal(f, reference, bound);
-  }
+  expect_many_pairs_equal_reference(topology, state, in, 1e-10);
 }
 
 // More pairs than a block of the kernel holds.
@@ -712,18 +722,7 @@ TEST(PaperForces, ManyPairsEqualReference) {
   const State state = many_short_elements(topology);
   Interaction in;
   in.paper = test::published_contact();
-  in.exclude_along_tube = 200;
-  Forces reference(state.size()), f(state.size());
-  compute_reference(topology, in, state, reference);
-  NeighbourList list(in, 0.3);
-  list.build(topology, state);
-  for (const auto& [precision, bound] :
-       {std::pair(Interaction::Precision::full, 1e-12), std::pair(Interaction::Precision::mixed, 2e-5)}) {
-    in.precision = precision;
-    ForceEngine engine;
-    engine.compute(topology, in, list, state, f);
-    expect_equal(f, reference, bound);
-  }
+  expect_many_pairs_equal_reference(topology, state, in, 1e-12);
 }
 
 // A tube beside others in a line, whose elements are numbered on from one to the next.
@@ -748,8 +747,7 @@ TEST(Forces, OfRunsThatGoOnIntoTheNextTubeEqualReference) {
   }
   Interaction paper, line;
   paper.paper = test::published_contact();
-  line.line = {test::line_contact(0.6785, 5, 0.6785, 5), test::line_contact(0.6785, 5, 0.34, 8),
-               test::line_contact(0.34, 8, 0.6785, 5), test::line_contact(0.34, 8, 0.34, 8)};
+  line.line = contacts_with_thin_ones();
   for (LineContact& pair : line.line) pair.sparse = sparse_nodes(8);
   for (Interaction in : {paper, line}) {
     in.exclude_along_tube = 3;
