@@ -105,8 +105,7 @@ Cost measure(const Scene& scene, const Prepared& prepared, double after, long st
 double per(double sum, double count) { return count > 0 ? sum / count : 0.0; }
 
 double operations_per_ns(const Cost& c, const Interaction& in) {
-  const int degree = in.precision == Interaction::Precision::mixed ? MixedTable::degree : FullTable::degree;
-  return per(c.radial.evaluations * radial_operations(degree), c.each.contact);
+  return per(c.radial.evaluations * radial_operations(in.precision), c.each.contact);
 }
 
 // The rates of a scene and those of the machine: GFLOP/s in contact and GB/s.

@@ -41,60 +41,139 @@ HWY_INLINE hn::Vec<D> look_up(D d, const T (&row)[segments], I index) {
   if constexpr (sizeof(T) == 4 && segments == 16)
     return hn::Vec<D>{_mm512_permutexvar_ps(index.raw, hn::Load(d, row).raw)};
 #elif HWY_TARGET == HWY_AVX2
-  if constexpr (sizeof(T) == 4 && segments == 16) {
-    const __m256 low = _mm256_permutevar8x32_ps(hn::Load(d, row).raw, index.raw),
-                 high = _mm256_permutevar8x32_ps(hn::Load(d, row + 8).raw, index.raw);
-    return hn::Vec<D>{_mm256_blendv_ps(low, high, _mm256_castsi256_ps(hn::ShiftLeft<28>(index).raw))};
-  }
+  if constexpr (sizeof(T) == 4 && segments == 4)
+    return hn::Vec<D>{_mm256_permutevar_ps(hn::LoadDup128(d, row).raw, index.raw)};
+#elif HWY_TARGET != HWY_SCALAR
+  if constexpr (sizeof(T) == 4 && segments == 4)
+    return hn::TableLookupLanes(hn::Load(d, row),
+                                hn::IndicesFromVec(d, hn::And(index, hn::Set(hn::DFromV<I>(), 3))));
 #endif
   const hn::RebindToSigned<D> di;
   return hn::GatherIndex(d, row, hn::And(index, hn::Set(di, segments - 1)));
 }
 
-// Of K vectors of squared distances X, term by term for all of them: du/dy and, if wanted, u; zero beyond the
-// cutoff and outside of `wanted`.
+// A squared distance X in a polynomial of either form: which one holds there, the place in it, and what makes of
+// its slope the force per separation: `by`, and zero where not `near`. `sum_up` works on K of them, term by term.
+template <class D>
+struct InTable {
+  using V = hn::Vec<D>;
+  hn::Vec<hn::RebindToSigned<D>> index;
+  V s, by;
+  hn::Mask<D> near;
+
+  template <class Table>
+  static HWY_INLINE const auto& of(const Table& t) {
+    return t;
+  }
+  template <class T, int segments, int degree>
+  HWY_INLINE void find(D d, const RadialTable<T, segments, degree>& t, V X, hn::Mask<D> is_near, V factor) {
+    constexpr int left = RadialTable<T, segments, degree>::mantissa_left;
+    const auto y = hn::MulAdd(X, hn::Set(d, t.scale), hn::Set(d, t.shift));
+    index = hn::ShiftRight<left>(hn::BitCast(hn::RebindToSigned<D>(), y));
+    s = hn::Sub(y, hn::BitCast(d, hn::ShiftLeft<left>(index)));
+    by = factor;
+    near = is_near;
+  }
+  HWY_INLINE V force(V slope) const { return hn::Mul(hn::IfThenElseZero(near, slope), by); }
+
+  template <int K, std::size_t terms, class Row>
+  static HWY_INLINE void sum_up(D d, const Row (&row)[terms], const InTable (&at)[K], V (&sum)[K]) {
+    for (int k = 0; k < K; ++k) sum[k] = look_up(d, row[terms - 1], at[k].index);
+    for (std::size_t m = terms - 1; m-- > 0;)
+      for (int k = 0; k < K; ++k) sum[k] = hn::MulAdd(sum[k], at[k].s, look_up(d, row[m], at[k].index));
+  }
+};
+
+template <class D>
+struct InPieces {
+  using V = hn::Vec<D>;
+  hn::Vec<hn::RebindToSigned<D>> index;
+  V s, s2, by;
+
+  static HWY_INLINE const auto& of(const MixedTable& t) { return t.pieces; }
+  template <class T, int degree>
+  HWY_INLINE void find(D d, const RadialPieces<T, degree>& t, V X, hn::Mask<D> near, V factor) {
+    const auto w = hn::Div(hn::Set(d, t.width), hn::Sub(X, hn::Set(d, t.pole)));
+    const auto within = [&](int k) {  // -1 or 0
+      return hn::BitCast(hn::RebindToSigned<D>(), hn::VecFromMask(d, hn::Lt(X, hn::Set(d, t.edge[k]))));
+    };
+    index = hn::Add(within(0), hn::Add(within(1), within(2)));
+    s = hn::Sub(w, look_up(d, t.middle, index));
+    s2 = hn::Mul(s, s);
+    by = hn::IfThenElseZero(near, hn::Mul(factor, hn::Mul(w, w)));
+  }
+  HWY_INLINE V force(V slope) const { return hn::Mul(slope, by); }
+
+  // Two terms at a time: the steps that wait for each other take longer than all of them.
+  template <int K, std::size_t terms, class Row>
+  static HWY_INLINE void sum_up(D d, const Row (&row)[terms], const InPieces (&at)[K], V (&sum)[K]) {
+    constexpr std::size_t even = terms / 2 * 2;
+    const auto two = [&](std::size_t m, int k) {
+      return hn::MulAdd(look_up(d, row[m + 1], at[k].index), at[k].s, look_up(d, row[m], at[k].index));
+    };
+    for (int k = 0; k < K; ++k) {
+      sum[k] = two(even - 2, k);
+      if constexpr (terms > even) sum[k] = hn::MulAdd(look_up(d, row[even], at[k].index), at[k].s2, sum[k]);
+    }
+    for (std::size_t m = even - 2; m > 0; m -= 2)
+      for (int k = 0; k < K; ++k) sum[k] = hn::MulAdd(sum[k], at[k].s2, two(m - 2, k));
+  }
+};
+
+// The form that costs this instruction set less.
+template <class Table, class D>
+struct Form {
+  using At = InTable<D>;
+};
+#if HWY_TARGET > HWY_AVX3
+template <class D>
+struct Form<MixedTable, D> {
+  using At = InPieces<D>;
+};
+#endif
+
+// Of K vectors of squared distances X: du/dy times `by`, for the force per separation, and, if wanted, u; zero from
+// the cutoff on.
 template <bool energies, int K, class D, class Table>
-HWY_INLINE void radial(D d, const Table& t, const hn::Vec<D> (&X)[K], hn::Mask<D> wanted, hn::Vec<D> (&u)[K],
-                       hn::Vec<D> (&slope)[K]) {
+HWY_INLINE void radial(D d, const Table& t, const hn::Vec<D> (&X)[K], const hn::Vec<D> (&by)[K], hn::Vec<D> (&u)[K],
+                       hn::Vec<D> (&force)[K]) {
   using T = typename Table::Value;
-  const hn::RebindToSigned<D> di;
-  hn::Vec<decltype(di)> index[K];
-  hn::Vec<D> s[K];
+  using At = typename Form<Table, D>::At;
+  const auto& form = At::of(t);
+  At at[K];
   auto in_core = hn::Lt(X[0], hn::Set(d, t.core2));
   for (int k = 0; k < K; ++k) {
-    const auto y = hn::MulAdd(X[k], hn::Set(d, t.scale), hn::Set(d, t.shift));
-    index[k] = hn::ShiftRight<Table::mantissa_left>(hn::BitCast(di, y));
-    s[k] = hn::Sub(y, hn::BitCast(d, hn::ShiftLeft<Table::mantissa_left>(index[k])));
+    at[k].find(d, form, X[k], hn::Lt(X[k], hn::Set(d, t.cutoff2)), by[k]);
     if (k > 0) in_core = hn::Or(in_core, hn::Lt(X[k], hn::Set(d, t.core2)));
   }
-  for (int k = 0; k < K; ++k) slope[k] = look_up(d, t.d[Table::degree - 1], index[k]);
-  for (int m = Table::degree - 2; m >= 0; --m)
-    for (int k = 0; k < K; ++k) slope[k] = hn::MulAdd(slope[k], s[k], look_up(d, t.d[m], index[k]));
+  hn::Vec<D> slope[K];
+  At::sum_up(d, form.d, at, slope);
+  for (int k = 0; k < K; ++k) force[k] = at[k].force(slope[k]);
   if constexpr (energies) {
-    for (int k = 0; k < K; ++k) u[k] = look_up(d, t.c[Table::degree], index[k]);
-    for (int m = Table::degree - 1; m >= 0; --m)
-      for (int k = 0; k < K; ++k) u[k] = hn::MulAdd(u[k], s[k], look_up(d, t.c[m], index[k]));
+    At::sum_up(d, form.c, at, u);
+    for (int k = 0; k < K; ++k) u[k] = hn::IfThenElseZero(hn::Lt(X[k], hn::Set(d, t.cutoff2)), u[k]);
   }
-  if (HWY_UNLIKELY(!hn::AllFalse(d, hn::And(wanted, in_core))))
-    for (int k = 0; k < K; ++k) {
-      const auto core = hn::Lt(X[k], hn::Set(d, t.core2));
-      const auto rho = hn::Sqrt(hn::Max(X[k], hn::Set(d, static_cast<T>(1e-12) / (t.unit * t.unit))));
-      const auto e = hn::Sub(hn::Mul(rho, hn::Set(d, t.unit)), hn::Set(d, t.contact + t.core));
-      const auto v1 = hn::Set(d, t.v1), v2 = hn::Set(d, t.v2);
-      if constexpr (energies)
-        u[k] = hn::IfThenElse(
-            core, hn::MulAdd(e, hn::MulAdd(hn::Mul(e, hn::Set(d, static_cast<T>(0.5))), v2, v1), hn::Set(d, t.v0)),
-            u[k]);
-      // du/dy = du/drho unit/(2 rho scale), rho in units.
-      slope[k] = hn::IfThenElse(
-          core, hn::Div(hn::Mul(hn::MulAdd(e, v2, v1), hn::Set(d, t.unit)), hn::Mul(rho, hn::Set(d, 2 * t.scale))),
-          slope[k]);
-    }
+  if (HWY_LIKELY(hn::AllFalse(d, in_core))) return;
   for (int k = 0; k < K; ++k) {
-    const auto near = hn::And(wanted, hn::Lt(X[k], hn::Set(d, t.cutoff2)));
-    if constexpr (energies) u[k] = hn::IfThenElseZero(near, u[k]);
-    slope[k] = hn::IfThenElseZero(near, slope[k]);
+    const auto core = hn::Lt(X[k], hn::Set(d, t.core2));
+    const auto rho = hn::Sqrt(hn::Max(X[k], hn::Set(d, static_cast<T>(1e-12) / (t.unit * t.unit))));
+    const auto e = hn::Sub(hn::Mul(rho, hn::Set(d, t.unit)), hn::Set(d, t.contact + t.core));
+    const auto v1 = hn::Set(d, t.v1), v2 = hn::Set(d, t.v2);
+    if constexpr (energies)
+      u[k] = hn::IfThenElse(
+          core, hn::MulAdd(e, hn::MulAdd(hn::Mul(e, hn::Set(d, static_cast<T>(0.5))), v2, v1), hn::Set(d, t.v0)),
+          u[k]);
+    // du/dy = du/drho unit/(2 rho scale), rho in units.
+    const auto of_core =
+        hn::Div(hn::Mul(hn::MulAdd(e, v2, v1), hn::Set(d, t.unit)), hn::Mul(rho, hn::Set(d, 2 * t.scale)));
+    force[k] = hn::IfThenElse(core, hn::Mul(of_core, by[k]), force[k]);
   }
+}
+
+// Where a lane is not wanted, a distance out of reach.
+template <class D, class Table>
+HWY_INLINE hn::Vec<D> only(D d, hn::Mask<D> wanted, hn::Vec<D> X, const Table& t) {
+  return hn::IfThenElse(wanted, X, hn::Set(d, t.cutoff2));
 }
 
 template <class D, int K>
@@ -133,16 +212,17 @@ HWY_INLINE void meet_row(const Table& t, const LineNodes<C>& nodes, NodeForces<t
     const auto from_node = [&](V first, int k, int a) {
       return k == 0 ? first : hn::Sub(first, hn::Set(d, static_cast<T>(from[k][a] - from[0][a])));
     };
-    V X[K], u[K], slope[K];
+    V X[K], by[K], u[K], force[K];
     for (int k = 0; k < K; ++k) {
       const V dx = from_node(x0, k, 0), dy = from_node(y0, k, 1), dz = from_node(z0, k, 2);
-      X[k] = hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz)));
+      X[k] = only(d, wanted, hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz))), t);
+      by[k] = kf;
     }
-    radial<energies>(d, t, X, wanted, u, slope);
+    radial<energies>(d, t, X, by, u, force);
     auto gx = hn::LoadU(d, ox + m), gy = hn::LoadU(d, oy + m), gz = hn::LoadU(d, oz + m);
     for (int k = 0; k < K; ++k) {
       const V dx = from_node(x0, k, 0), dy = from_node(y0, k, 1), dz = from_node(z0, k, 2);
-      const auto f = hn::Mul(slope[k], kf);
+      const V f = force[k];
       if constexpr (energies) energy = hn::Add(energy, u[k]);
       gx = hn::MulAdd(f, dx, gx);
       gy = hn::MulAdd(f, dy, gy);
@@ -350,6 +430,10 @@ HWY_INLINE void meet_rows(const E& e, const MetRows* met, int first, int last, c
   if constexpr (energies) energy = hn::Add(energy, sums.energy);
 }
 
+// Nodes of i met at once. Where there are 16 registers the sums of two do not find room either, but rows are looked
+// at half as often with four, and more steps that do not wait for each other are in sight of the processor.
+constexpr int nodes_at_once = HWY_TARGET > HWY_AVX3 ? 4 : 2;
+
 // The rows of these sums, which have the same nodes on i. On its own: within the loop over the elements the
 // compiler keeps more in registers than there are.
 template <bool energies, class E>
@@ -362,7 +446,10 @@ HWY_NOINLINE void sum_rows(E* elements, int count, const MetRows* met, int first
     const int here = std::min(all - from, ElementNodes<E>::most);
     const ElementNodes<E> nodes(elements, places, from, here);
     int k = 0;
-    for (; k + 2 <= here; k += 2) meet_rows<energies, 2>(*elements, met, first, last, nodes, k, on, energy);
+    for (; k + nodes_at_once <= here; k += nodes_at_once)
+      meet_rows<energies, nodes_at_once>(*elements, met, first, last, nodes, k, on, energy);
+    if constexpr (nodes_at_once > 2)
+      for (; k + 2 <= here; k += 2) meet_rows<energies, 2>(*elements, met, first, last, nodes, k, on, energy);
     if (k < here) meet_rows<energies, 1>(*elements, met, first, last, nodes, k, on, energy);
   }
   for (int k = 0; k < count; ++k) on[k].give(elements[k]);
@@ -420,18 +507,19 @@ struct PairLanes {
   template <int K>
   HWY_INLINE void add(const NodePairs<T>& nodes, std::size_t n, PairTotals<D>& sum) const {
     const D d;
-    V at[K][3], X[K], u[K], slope[K];
+    V at[K][3], X[K], by[K], u[K], f[K];
     for (std::size_t k = 0; k < K; ++k) {
       const V si = hn::Set(d, nodes.i[n + k]), sj = hn::Set(d, nodes.j[n + k]);
       for (int a = 0; a < 3; ++a) at[k][a] = hn::NegMulAdd(si, axis_i[a], hn::MulAdd(sj, axis_j[a], apart[a]));
-      X[k] = hn::MulAdd(at[k][0], at[k][0], hn::MulAdd(at[k][1], at[k][1], hn::Mul(at[k][2], at[k][2])));
+      const V X2 = hn::MulAdd(at[k][0], at[k][0], hn::MulAdd(at[k][1], at[k][1], hn::Mul(at[k][2], at[k][2])));
+      X[k] = only(d, wanted, X2, table);
+      by[k] = hn::Set(d, table.force * nodes.weight[n + k]);
     }
-    radial<energies>(d, table, X, wanted, u, slope);
+    radial<energies>(d, table, X, by, u, f);
     for (std::size_t k = 0; k < K; ++k) {
       const V si = hn::Set(d, nodes.i[n + k]), sj = hn::Set(d, nodes.j[n + k]);
-      const V f = hn::Mul(slope[k], hn::Set(d, table.force * nodes.weight[n + k]));
       for (int a = 0; a < 3; ++a) {
-        const V force = hn::Mul(f, at[k][a]);
+        const V force = hn::Mul(f[k], at[k][a]);
         sum.force[a] = hn::Add(sum.force[a], force);
         sum.moment_i[a] = hn::MulAdd(si, force, sum.moment_i[a]);
         sum.moment_j[a] = hn::MulAdd(sj, force, sum.moment_j[a]);

@@ -9,6 +9,10 @@ namespace {
 
 constexpr int none = -1;
 
+bool wide(const std::string& instructions) {
+  return instructions.rfind("AVX3", 0) == 0 || instructions.rfind("AVX10", 0) == 0;
+}
+
 struct Counter {
   const Topology& topology;
   const Interaction& in;
@@ -142,9 +146,15 @@ void RadialCount::add(const RadialCount& other, double share) {
 int radial_lanes(Interaction::Precision precision) {
   const std::string best = instruction_sets().front();
   if (best == "SCALAR") return 1;
-  const bool wide = best.rfind("AVX3", 0) == 0 || best.rfind("AVX10", 0) == 0;
-  const int bytes = wide ? 64 : best == "AVX2" ? 32 : 16;
+  const int bytes = wide(best) ? 64 : best == "AVX2" ? 32 : 16;
   return bytes / (precision == Interaction::Precision::mixed ? 4 : 8);
+}
+
+int radial_operations(Interaction::Precision precision) {
+  const int polynomial = precision == Interaction::Precision::full ? FullTable::operations
+                         : wide(instruction_sets().front())        ? MixedTable::operations
+                                                                   : decltype(MixedTable::pieces)::operations;
+  return 3 + 5 + polynomial + 1 + 12;
 }
 
 RadialCount count_radial(const Topology& topology, const Interaction& in, const State& state,

@@ -5,12 +5,6 @@
 
 namespace ropewalk {
 
-// Floating-point operations (a fused multiply-add is two) of one radial evaluation, two nodes of two elements: 3
-// for the separation, 5 for its square, 3 + 2 (degree - 1) for the slope of the table's polynomial, 1 for the
-// force, 6 for each of the two sums of forces. Look-ups, comparisons and selections are not counted, nor energies,
-// which are only summed where they are reported.
-constexpr int radial_operations(int degree) { return 3 + 5 + 3 + 2 * (degree - 1) + 1 + 12; }
-
 // Numbers per element at one moment, or sums of them.
 struct RadialCount {
   double runs = 0;         // within reach
@@ -24,8 +18,14 @@ struct RadialCount {
   void add(const RadialCount& other, double share);
 };
 
-// Lanes of the kernel's vectors on this machine.
+// Lanes of the kernel's vectors with the instructions in use.
 int radial_lanes(Interaction::Precision precision);
+
+// Floating-point operations (a fused multiply-add is two) of one radial evaluation, two nodes of two elements: 3
+// for the separation, 5 for its square, those of the polynomial (radial_table.hpp), 1 for the force, 6 for each of
+// the two sums of forces. Look-ups, comparisons and selections are not counted, nor energies, which are only summed
+// where they are reported.
+int radial_operations(Interaction::Precision precision);
 
 // Of the present state, from up to `most` of its elements.
 RadialCount count_radial(const Topology& topology, const Interaction& interaction, const State& state,

@@ -19,12 +19,12 @@ HWY_INLINE void radial_row(const Table& table, const typename Table::Value* X, s
                            typename Table::Value* out) {
   const typename Lanes<typename Table::Value>::D d;
   auto us = hn::Zero(d), slopes = hn::Zero(d);
-  const auto all = hn::FirstN(d, hn::Lanes(d));
   for (std::size_t i = 0; i < n; i += hn::Lanes(d)) {
     using V = hn::Vec<typename Lanes<typename Table::Value>::D>;
     const V at[1] = {hn::Load(d, X + i)};
+    const V by[1] = {hn::Set(d, 1)};
     V u[1], slope[1];
-    radial<true>(d, table, at, all, u, slope);
+    radial<true>(d, table, at, by, u, slope);
     us = hn::Add(us, u[0]);
     slopes = hn::Add(slopes, slope[0]);
   }
@@ -39,18 +39,23 @@ void RadialFull(const FullTable& table, const double* X, std::size_t n, double* 
   radial_row(table, X, n, out);
 }
 
-// 64 runs of `length` nodes, each `shift` nodes after the one before, against two nodes of an element.
+// 64 runs of `length` nodes, each `shift` nodes after the one before, against as many nodes of an element as the
+// kernel takes together.
 void Rows(const MixedTable& table, const LineNodes<std::int32_t>& nodes, int length, int shift,
           NodeForces<float>& out, float* total) {
   using D = Lanes<float>::D;
-  const std::int32_t from[2][3] = {{0, 0, 0}, {0, 0, 1 << 20}};
-  auto sums = no_sums<D, 2>(D());
+  constexpr int K = nodes_at_once;
+  std::int32_t from[K][3] = {};
+  for (int k = 0; k < K; ++k) from[k][2] = k << 20;
+  auto sums = no_sums<D, K>(D());
   for (int r = 0; r < 64; ++r)
-    meet_row<false, 2>(table, nodes, out, {r * shift, static_cast<short>(length), 0, 0}, from, 0.1F, sums);
-  const auto all = hn::Add(hn::Add(sums.x[0], sums.x[1]), hn::Add(sums.z[0], sums.energy));
-  hn::StoreU(hn::Add(all, hn::Add(sums.y[0], hn::Add(sums.y[1], sums.z[1]))), D(), total);
+    meet_row<false, K>(table, nodes, out, {r * shift, static_cast<short>(length), 0, 0}, from, 0.1F, sums);
+  auto all = sums.energy;
+  for (int k = 0; k < K; ++k) all = hn::Add(all, hn::Add(sums.x[k], hn::Add(sums.y[k], sums.z[k])));
+  hn::StoreU(all, D(), total);
 }
 
+int NodesAtOnce() { return nodes_at_once; }
 std::size_t KernelLanes(bool full) { return full ? hn::Lanes(Lanes<double>::D()) : hn::Lanes(Lanes<float>::D()); }
 
 }  // namespace ropewalk::HWY_NAMESPACE
@@ -65,6 +70,7 @@ namespace ropewalk {
 HWY_EXPORT(RadialMixed);
 HWY_EXPORT(RadialFull);
 HWY_EXPORT(KernelLanes);
+HWY_EXPORT(NodesAtOnce);
 HWY_EXPORT(Rows);
 }  // namespace ropewalk
 
@@ -89,8 +95,10 @@ struct Distances {
   }
 };
 
-// Counted in `radial`: y 2, s 1, du/dy 2 (degree - 1) and u 2 degree by Horner's rule.
-constexpr double radial_flop(int degree) { return 3.0 + 4 * degree - 2; }
+// Without separation, square and sums of forces; two more for each term of u.
+double radial_flop(Precision precision, int degree) {
+  return radial_operations(precision) - (3 + 5 + 12) + 2 * degree;
+}
 
 void RadialTableFloat(benchmark::State& bench, const std::string& instructions) {
   use_instructions(instructions);
@@ -102,7 +110,7 @@ void RadialTableFloat(benchmark::State& bench, const std::string& instructions) 
     benchmark::ClobberMemory();
   }
   set_ns(bench, "ns/evaluation", distances);
-  set_giga(bench, "GFLOP/s", distances * radial_flop(MixedTable::degree));
+  set_giga(bench, "GFLOP/s", distances * radial_flop(Precision::mixed, MixedTable::degree));
   use_instructions("");
 }
 
@@ -116,12 +124,13 @@ void RadialTableDouble(benchmark::State& bench, const std::string& instructions)
     benchmark::ClobberMemory();
   }
   set_ns(bench, "ns/evaluation", distances);
-  set_giga(bench, "GFLOP/s", distances * radial_flop(FullTable::degree));
+  set_giga(bench, "GFLOP/s", distances * radial_flop(Precision::full, FullTable::degree));
   use_instructions("");
 }
 
-// Runs alone, two nodes of an element against each. Arguments: nodes in a run; nodes from one run to the next: as
-// many as a run has, it meets fresh forces, 0 those just stored, 6 those of the last runs, shifted by an element.
+// Runs alone, two or four nodes of an element against each. Arguments: nodes in a run; nodes from one run to the
+// next: as many as a run has, it meets fresh forces, 0 those just stored, 6 those of the last runs, shifted by an
+// element.
 void LineRows(benchmark::State& bench) {
   const int length = static_cast<int>(bench.range(0)), shift = static_cast<int>(bench.range(1));
   const int count = 64 * shift + length + NodeRow::pad;
@@ -143,10 +152,10 @@ void LineRows(benchmark::State& bench) {
     benchmark::ClobberMemory();
   }
   const auto lanes = static_cast<int>(HWY_DYNAMIC_DISPATCH(KernelLanes)(false));
-  const double vectors = 64.0 * 2 * ((length + lanes - 1) / lanes);
+  const double vectors = 64.0 * HWY_DYNAMIC_DISPATCH(NodesAtOnce)() * ((length + lanes - 1) / lanes);
   set_ns(bench, "ns/vector", vectors);
   set_ns(bench, "ns/run", 64);
-  set_giga(bench, "GFLOP/s", vectors * lanes * radial_operations(MixedTable::degree));
+  set_giga(bench, "GFLOP/s", vectors * lanes * radial_operations(Precision::mixed));
 }
 BENCHMARK(LineRows)->ArgsProduct({{16, 32}, {0, 6, 32}})->Args({24, 6})->Args({512, 512});
 
@@ -180,14 +189,12 @@ void RadialDirect(benchmark::State& bench) {
 BENCHMARK(RadialDirect);
 
 void set_counters(benchmark::State& bench, const Rope& rope, const LineList& list) {
-  const bool full = rope.in.precision == Precision::full;
   const RadialCount count =
       count_radial(rope.topology, rope.in, rope.state, rope.list, list, rope.topology.elements());
   const double n = rope.elements();
   set_ns(bench, "ns/element", n);
   set_ns(bench, "ns/evaluation", count.evaluations * n);
-  set_giga(bench, "GFLOP/s",
-           count.evaluations * n * radial_operations(full ? FullTable::degree : MixedTable::degree));
+  set_giga(bench, "GFLOP/s", count.evaluations * n * radial_operations(rope.in.precision));
   bench.counters["evaluations"] = count.evaluations;
   bench.counters["vectors"] = count.vectors;
   bench.counters["useful"] = count.useful / count.evaluations;
