@@ -52,8 +52,9 @@ HWY_INLINE hn::Vec<D> look_up(D d, const T (&row)[segments], I index) {
   return hn::GatherIndex(d, row, hn::And(index, hn::Set(di, segments - 1)));
 }
 
-// A squared distance X in a polynomial of either form: which one holds there, the place in it, and what makes of
-// its slope the force per separation: `by`, and zero where not `near`. `sum_up` works on K of them, term by term.
+// A squared distance X in a polynomial of either form (radial_table.hpp): which one holds there, the place in it,
+// and what makes of its slope the force per separation: `by`, and zero where not `near`. `sum_up` works on K of
+// them, term by term.
 template <class D>
 struct InTable {
   using V = hn::Vec<D>;

@@ -68,24 +68,26 @@ struct RadialTable {
   T energy(T X) const;
 };
 
-// A term of all pieces is in the low two bits of the number of edges within which X lies, counted downwards.
+// Pieces are counted from the cutoff: piece k lies within k edges.
 template <class T, int degree_>
 struct RadialPieces {
   using Value = T;
-  static constexpr int segments = 4, degree = degree_;
+  static constexpr int pieces = 4, degree = degree_;
   static constexpr int operations = 4 + 2 * (degree - 1) + 2;
 
-  alignas(64) T c[degree + 1][segments] = {};  // of u
-  alignas(64) T d[degree][segments] = {};      // of -du/dw dw/dy/w^2: times w^2 it is the RadialTable's du/dy
-  alignas(64) T middle[segments] = {};         // w
-  T edge[segments - 1] = {};                   // X, where pieces meet
-  T width = 0, pole = 0;                       // w = width/(X - pole)
+  // By `entry`.
+  alignas(64) T c[degree + 1][pieces] = {};  // of u
+  alignas(64) T d[degree][pieces] = {};      // of du/dw (dw/dy)/w^2, which times w^2 is du/dy of a RadialTable
+  alignas(64) T middle[pieces] = {};         // w
+  T edge[pieces - 1] = {};                   // X where pieces meet, falling
+  T width = 0, pole = 0;                     // w = width/(X - pole)
 
   RadialPieces() = default;
   // For the y of a table with this scale.
   RadialPieces(const LineDensity& law, double unit_nm, double scale);
 
-  static constexpr int entry(int edges_above) { return (segments - edges_above) % segments; }
+  // The low two bits of -k, which is what k masks of true lanes add up to.
+  static constexpr int entry(int k) { return (pieces - k) % pieces; }
 };
 
 // Pair displacements in single precision, and all in double.
@@ -211,8 +213,9 @@ template <class T, int degree_>
 RadialPieces<T, degree_>::RadialPieces(const LineDensity& law, double unit_nm, double scale) {
   const auto squared = [](double x) { return x * x; };
   const double core_at = squared(law.contact + law.core_gap), end_at = squared(law.cutoff());
-  const double switch_at = squared(law.contact + law.switch_gap), singular_at = squared(law.contact - law.c);
-  // So far from the core that both inner pieces are off by as much, for tubes of any width.
+  const double switch_at = squared(law.contact + law.switch_gap);
+  const double singular_at = squared(std::max(law.contact - law.c, 0.0));
+  // By trial, with tubes of (5,5) to (10,10).
   const double pole_at = core_at - 0.72 * (core_at - singular_at), across = core_at - pole_at;
   const double unit2 = squared(unit_nm);
   width = static_cast<T>(across / unit2);
@@ -224,12 +227,12 @@ RadialPieces<T, degree_>::RadialPieces(const LineDensity& law, double unit_nm, d
     return -law.terms(rho).derivative / (2 * rho) * across / squared(w);
   };
   const double outer = w_of(end_at), middle_edge = w_of(switch_at);
-  const double edges[segments + 1] = {outer, 0.5 * (outer + middle_edge), middle_edge, 0.5 * (middle_edge + 1), 1};
+  const double edges[pieces + 1] = {outer, 0.5 * (outer + middle_edge), middle_edge, 0.5 * (middle_edge + 1), 1};
   const double per_y = -unit2 / (across * scale);  // (dw/dy)/w^2
 
   const detail::Interpolation<degree> interpolation(0.5);
   double u = 0;  // at the piece's outer edge
-  for (int k = 0; k < segments; ++k) {
+  for (int k = 0; k < pieces; ++k) {
     const double from = edges[k], across_piece = edges[k + 1] - from;
     const auto at = static_cast<std::size_t>(entry(k));
     if (k > 0) edge[k - 1] = static_cast<T>(x_of(from) / unit2);
