@@ -53,13 +53,14 @@ HWY_INLINE hn::Vec<D> look_up(D d, const T (&row)[segments], I index) {
 }
 
 // A squared distance X in a polynomial of either form (radial_table.hpp): which one holds there, the place in it,
-// and what makes of its slope the force per separation: `by`, and zero where not `near`. `sum_up` works on K of
-// them, term by term.
+// and what makes of its slope the force per separation, zero where not `near`. `sum_up` works on K of them at once.
+// Beyond the cutoff the slope of a piece is some number, as w is between 0 and its outermost edge, and `near` may
+// be in the factor; that of a table's segment may be too large for one.
 template <class D>
 struct InTable {
   using V = hn::Vec<D>;
   hn::Vec<hn::RebindToSigned<D>> index;
-  V s, by;
+  V s, of_slope;
   hn::Mask<D> near;
 
   template <class Table>
@@ -72,10 +73,10 @@ struct InTable {
     const auto y = hn::MulAdd(X, hn::Set(d, t.scale), hn::Set(d, t.shift));
     index = hn::ShiftRight<left>(hn::BitCast(hn::RebindToSigned<D>(), y));
     s = hn::Sub(y, hn::BitCast(d, hn::ShiftLeft<left>(index)));
-    by = factor;
+    of_slope = factor;
     near = is_near;
   }
-  HWY_INLINE V force(V slope) const { return hn::Mul(hn::IfThenElseZero(near, slope), by); }
+  HWY_INLINE V force(V slope) const { return hn::Mul(hn::IfThenElseZero(near, slope), of_slope); }
 
   template <int K, std::size_t terms, class Row>
   static HWY_INLINE void sum_up(D d, const Row (&row)[terms], const InTable (&at)[K], V (&sum)[K]) {
@@ -89,7 +90,7 @@ template <class D>
 struct InPieces {
   using V = hn::Vec<D>;
   hn::Vec<hn::RebindToSigned<D>> index;
-  V s, s2, by;
+  V s, s2, of_slope;
 
   static HWY_INLINE const auto& of(const MixedTable& t) { return t.pieces; }
   template <class T, int degree>
@@ -101,9 +102,9 @@ struct InPieces {
     index = hn::Add(within(0), hn::Add(within(1), within(2)));
     s = hn::Sub(w, look_up(d, t.middle, index));
     s2 = hn::Mul(s, s);
-    by = hn::IfThenElseZero(near, hn::Mul(factor, hn::Mul(w, w)));
+    of_slope = hn::IfThenElseZero(near, hn::Mul(factor, hn::Mul(w, w)));
   }
-  HWY_INLINE V force(V slope) const { return hn::Mul(slope, by); }
+  HWY_INLINE V force(V slope) const { return hn::Mul(slope, of_slope); }
 
   // Two terms at a time: the steps that wait for each other take longer than all of them.
   template <int K, std::size_t terms, class Row>
@@ -433,7 +434,8 @@ HWY_INLINE void meet_rows(const E& e, const MetRows* met, int first, int last, c
 
 // Nodes of i met at once. Where there are 16 registers the sums of two do not find room either, but rows are looked
 // at half as often with four, and more steps that do not wait for each other are in sight of the processor.
-constexpr int nodes_at_once = HWY_TARGET > HWY_AVX3 ? 4 : 2;
+template <class Real>
+constexpr int nodes_at_once = HWY_TARGET > HWY_AVX3&& std::is_same_v<Real, float> ? 4 : 2;
 
 // The rows of these sums, which have the same nodes on i. On its own: within the loop over the elements the
 // compiler keeps more in registers than there are.
@@ -447,9 +449,10 @@ HWY_NOINLINE void sum_rows(E* elements, int count, const MetRows* met, int first
     const int here = std::min(all - from, ElementNodes<E>::most);
     const ElementNodes<E> nodes(elements, places, from, here);
     int k = 0;
-    for (; k + nodes_at_once <= here; k += nodes_at_once)
-      meet_rows<energies, nodes_at_once>(*elements, met, first, last, nodes, k, on, energy);
-    if constexpr (nodes_at_once > 2)
+    constexpr int most = nodes_at_once<typename E::Real>;
+    for (; k + most <= here; k += most)
+      meet_rows<energies, most>(*elements, met, first, last, nodes, k, on, energy);
+    if constexpr (most > 2)
       for (; k + 2 <= here; k += 2) meet_rows<energies, 2>(*elements, met, first, last, nodes, k, on, energy);
     if (k < here) meet_rows<energies, 1>(*elements, met, first, last, nodes, k, on, energy);
   }

@@ -73,7 +73,7 @@ template <class T, int degree_>
 struct RadialPieces {
   using Value = T;
   static constexpr int pieces = 4, degree = degree_;
-  static constexpr int operations = 4 + 2 * (degree - 1) + 2;
+  static constexpr int operations = 4 + 2 * (degree - 1) + 2;  // w, t and its square; du/dw; factor w^2
 
   // By `entry`.
   alignas(64) T c[degree + 1][pieces] = {};  // of u

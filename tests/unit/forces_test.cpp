@@ -153,11 +153,16 @@ TEST_P(ForcesTest, SameBitsOnAnyNumberOfThreads) {
 TEST_P(ForcesTest, SameBitsWhoeverReadsEnergies) {
   NeighbourList list(in, 0.2);
   list.build(topology, state);
-  Forces with(state.size()), without(state.size());
-  ForceEngine engine;
-  engine.compute(topology, in, list, state, with);
-  engine.compute(topology, in, list, state, without, {Parts::all, false});
-  expect_same_bits(with, without);
+  for (const std::string& name : instruction_sets()) {
+    SCOPED_TRACE(name);
+    ASSERT_TRUE(use_instructions(name));
+    Forces with(state.size()), without(state.size());
+    ForceEngine engine;
+    engine.compute(topology, in, list, state, with);
+    engine.compute(topology, in, list, state, without, {Parts::all, false});
+    expect_same_bits(with, without);
+  }
+  use_instructions("");
 }
 
 TEST_P(ForcesTest, NetForceAndTorqueVanish) {
