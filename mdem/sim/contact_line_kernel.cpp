@@ -37,6 +37,7 @@ struct Lanes<double> {
 // Entries of a table row by the low bits of the index.
 template <class D, class I, class T, int segments>
 HWY_INLINE hn::Vec<D> look_up(D d, const T (&row)[segments], I index) {
+  const auto entry = hn::And(index, hn::Set(hn::RebindToSigned<D>(), segments - 1));
 #if HWY_TARGET <= HWY_AVX3
   if constexpr (sizeof(T) == 4 && segments == 16)
     return hn::Vec<D>{_mm512_permutexvar_ps(index.raw, hn::Load(d, row).raw)};
@@ -45,11 +46,9 @@ HWY_INLINE hn::Vec<D> look_up(D d, const T (&row)[segments], I index) {
     return hn::Vec<D>{_mm256_permutevar_ps(hn::LoadDup128(d, row).raw, index.raw)};
 #elif HWY_TARGET != HWY_SCALAR
   if constexpr (sizeof(T) == 4 && segments == 4)
-    return hn::TableLookupLanes(hn::Load(d, row),
-                                hn::IndicesFromVec(d, hn::And(index, hn::Set(hn::DFromV<I>(), 3))));
+    return hn::TableLookupLanes(hn::Load(d, row), hn::IndicesFromVec(d, entry));
 #endif
-  const hn::RebindToSigned<D> di;
-  return hn::GatherIndex(d, row, hn::And(index, hn::Set(di, segments - 1)));
+  return hn::GatherIndex(d, row, entry);
 }
 
 // A squared distance X in a polynomial of either form (radial_table.hpp): which one holds there, the place in it,
@@ -122,17 +121,12 @@ struct InPieces {
   }
 };
 
-// The form that costs this instruction set less.
+// Whether this instruction set looks up few entries only, and has 16 registers at most.
+constexpr bool narrow = HWY_TARGET > HWY_AVX3;
+
+// The form that costs it less.
 template <class Table, class D>
-struct Form {
-  using At = InTable<D>;
-};
-#if HWY_TARGET > HWY_AVX3
-template <class D>
-struct Form<MixedTable, D> {
-  using At = InPieces<D>;
-};
-#endif
+using Form = std::conditional_t<narrow && std::is_same_v<Table, MixedTable>, InPieces<D>, InTable<D>>;
 
 // Of K vectors of squared distances X: du/dy times `by`, for the force per separation, and, if wanted, u; zero from
 // the cutoff on.
@@ -140,7 +134,7 @@ template <bool energies, int K, class D, class Table>
 HWY_INLINE void radial(D d, const Table& t, const hn::Vec<D> (&X)[K], const hn::Vec<D> (&by)[K], hn::Vec<D> (&u)[K],
                        hn::Vec<D> (&force)[K]) {
   using T = typename Table::Value;
-  using At = typename Form<Table, D>::At;
+  using At = Form<Table, D>;
   const auto& form = At::of(t);
   At at[K];
   auto in_core = hn::Lt(X[0], hn::Set(d, t.core2));
@@ -432,10 +426,10 @@ HWY_INLINE void meet_rows(const E& e, const MetRows* met, int first, int last, c
   if constexpr (energies) energy = hn::Add(energy, sums.energy);
 }
 
-// Nodes of i met at once. Where there are 16 registers the sums of two do not find room either, but rows are looked
-// at half as often with four, and more steps that do not wait for each other are in sight of the processor.
+// Nodes of i met at once. Where there are few registers the sums of two do not find room either, but rows are
+// looked at half as often with four, and more steps that do not wait for each other are in sight of the processor.
 template <class Real>
-constexpr int nodes_at_once = HWY_TARGET > HWY_AVX3&& std::is_same_v<Real, float> ? 4 : 2;
+constexpr int nodes_at_once = narrow&& std::is_same_v<Real, float> ? 4 : 2;
 
 // The rows of these sums, which have the same nodes on i. On its own: within the loop over the elements the
 // compiler keeps more in registers than there are.
