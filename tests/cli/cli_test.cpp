@@ -1,7 +1,9 @@
 // The program as a user meets it: command lines, exit codes, messages and files.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -368,6 +370,27 @@ TEST_F(Cli, EnergyGivesForcesThatSumToZeroAndEqualTheReference) {
   const Json legacy = Json::parse(run("energy two.csv --parameters cnt-10-10-paper --legacy-torque --json").out);
   EXPECT_GT(std::fabs(legacy["net_torque_eV"][1].get<double>()), 1e-3);
   EXPECT_EQ(run("energy two.csv --parameters cnt-10-10-paper").code, 0);
+}
+
+TEST_F(Cli, EnergyOverAllNodesShowsWhatSparseSumsLeaveOut) {
+  std::string tubes = "tube,x_nm,y_nm,z_nm,qw,qx,qy,qz\n";
+  const double angle = 0.05, length = 1.3776;  // the second tube's, about x
+  for (int k = 0; k < 12; ++k) tubes += fmt::format("0,0,0,{},1,0,0,0\n", (k - 6) * length);
+  for (int k = 0; k < 12; ++k) {
+    const double s = (k - 6.3) * length;
+    tubes += fmt::format("1,1.69,{},{},{},{},0,0\n", -s * std::sin(angle), s * std::cos(angle),
+                         std::cos(0.5 * angle), std::sin(0.5 * angle));
+  }
+  spit(dir / "two.csv", tubes);
+  const auto vdw = [&](const std::string& flags) {
+    const Outcome out = run("energy two.csv --parameters cnt-10-10-tersoff --json " + flags);
+    EXPECT_EQ(out.code, 0) << out.err;
+    return Json::parse(out.out)["energy_eV"]["vdw"].get<double>();
+  };
+  const double all = vdw("--all-nodes"), sparse = vdw("");
+  EXPECT_NEAR(vdw("--all-nodes --reference"), all, 1e-9 * std::fabs(all));
+  EXPECT_NEAR(sparse, all, 2e-3 * std::fabs(all));
+  EXPECT_GT(std::fabs(sparse - all), 1e-7 * std::fabs(all));
 }
 
 TEST_F(Cli, BenchReportsItsKeys) {
