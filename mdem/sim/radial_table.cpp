@@ -51,8 +51,7 @@ template <class T, int segments_, int degree_>
 RadialTable<T, segments_, degree_>::RadialTable(const LineDensity& law, double unit_nm) {
   const auto squared = [](double x) { return x * x; };
   const double core_at = squared(law.contact + law.core_gap), end_at = squared(law.cutoff());
-  const double delta =
-      radial_delta(core_at, squared(law.contact + law.switch_gap), end_at, octaves, per_octave);
+  const double delta = radial_delta(core_at, squared(law.contact + law.switch_gap), end_at, octaves, per_octave);
   const auto y_of = [&](double x) { return 1 + (x - core_at) / delta; };
   const auto slope = [&](double y) {  // du/dy
     const double rho = std::sqrt(core_at + (y - 1) * delta);
@@ -157,6 +156,7 @@ RadialPieces<T, degree_>::RadialPieces(const LineDensity& law, double unit_nm, d
   }
 }
 
+// MixedTable and FullTable; and the pieces in double, which show the error of the form without that of floats.
 template struct RadialTable<float, 16, 7>;
 template struct RadialTable<double, 128, 7>;
 template struct RadialPieces<float, 7>;
