@@ -68,7 +68,7 @@ Timing per_element_step(const Timing& a, const Timing& b, double scale) {
           b.builds - a.builds};
 }
 
-constexpr int most_counted = 4000;  // elements
+constexpr int most_counted = 16000;  // elements
 
 Cost measure(const Scene& scene, const Prepared& prepared, double after, long steps, int threads) {
   use_threads(threads);

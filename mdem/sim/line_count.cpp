@@ -1,6 +1,8 @@
 #include "sim/line_count.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 
 #include "sim/line_engine.hpp"
 
@@ -131,6 +133,14 @@ struct Counter {
   }
 };
 
+// A place among `count`, by the golden ratio now here, now there: samples at equal distances would all lie at the same
+// few places of their tubes, where these are a multiple of it long.
+std::int64_t within(std::int64_t k, std::int64_t count) {
+  constexpr double golden = 0.61803398874989485;
+  const double turns = static_cast<double>(k) * golden;
+  return static_cast<std::int64_t>((turns - std::floor(turns)) * static_cast<double>(count));
+}
+
 }  // namespace
 
 void RadialCount::add(const RadialCount& other, double share) {
@@ -164,10 +174,12 @@ RadialCount count_radial(const Topology& topology, const Interaction& in, const 
   Counter counter{
       topology, in, state, list, 2 * neighbours.displacement(), neighbours.turn(), radial_lanes(in.precision), {}};
   for (const LineContact& law : in.line) counter.sums.emplace_back(law);
-  const int n = topology.elements(), step = std::max(1, n / most);
-  int sampled = 0;
-  for (int i = 0; i < n; i += step, ++sampled) counter.add(i, sum);
-  out.add(sum, 1.0 / sampled);
+  const std::int64_t n = topology.elements(), samples = std::min<std::int64_t>(n, most);
+  for (std::int64_t k = 0; k < samples; ++k) {
+    const std::int64_t from = n * k / samples, until = n * (k + 1) / samples;
+    counter.add(static_cast<int>(from + within(k, until - from)), sum);
+  }
+  out.add(sum, 1.0 / static_cast<double>(samples));
   return out;
 }
 
