@@ -98,6 +98,13 @@ void add_combinations(const ChartScene& scene, std::vector<ChartModel>& all) {
       m.length = 0.5;
       m.stepping.contact_every = 3;
     }));
+  // As many pairs of nodes as 3 x 4 or 4 x 6, but of both elements alike.
+  if (scene.contact)
+    for (const int nodes : {4, 5})
+      all.push_back(varied("combination", fmt::format("nodes-{}+all-nodes", nodes), [nodes](ChartModel& m) {
+        m.nodes = nodes;
+        m.all_nodes = true;
+      }));
   // Elements of the default's length: in a strongly twisted rope longer ones need all of their nodes.
   if (scene.contact)
     for (const double mass : {1.0, 4.0})
