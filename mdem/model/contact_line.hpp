@@ -31,6 +31,17 @@
 // zero. What the ramps leave is summed with the *other* row dense, which has no ripple (both where both rows end):
 //   U_t = sum_(a, b) r_k r_l (...) + sum_(a or N, b or N) (1 - r_k r_l) (...).
 //
+// What a sum does to whole tubes is as good as the energy; what turns a single element is not. Along parallel tubes
+// R apart a row of M nodes per length presses with a ripple, which the N nodes s of an element of the other tube
+// feel as a couple that goes with the shift z of the tubes, for all elements of the tube alike:
+//   T = 2 f_M L^2 a sin(2 pi M z/L),   a = sum_s (s/L) sin(2 pi M s/L)/N,
+//   f_M = int R/rho u'(rho) cos(2 pi M t/L) dt
+// Two (10,10) tubes in the well, eV on the element with more nodes and on that with fewer: 1.5 and 0.25 with two
+// nodes against three, 0.18 and 0.01 with three against four, none where M = N. Bonds bear it by shear. More is
+// felt of i and j being unlike: which of two has fewer nodes goes by their numbers, so that a rope loses the
+// symmetry of its cross-section, and leaves a symmetric state that has become unstable sooner than a heated one.
+// With all nodes (SparseNodes{}) it keeps it.
+//
 // Forces are central between nodes, so force, torque and momentum balance are exact by construction.
 // Units eV, nm. u in eV/nm^2. Symmetric under flipping either axis (with the ends of its tube) and, without sparse
 // nodes, under exchange of i and j; with them i is the element of lower index.

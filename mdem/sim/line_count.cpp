@@ -133,8 +133,8 @@ struct Counter {
   }
 };
 
-// A place among `count`, by the golden ratio now here, now there: samples at equal distances would all lie at the same
-// few places of their tubes, where these are a multiple of it long.
+// A place among `count`, by the golden ratio now here, now there: samples at equal distances would all lie at the
+// same few places of their tubes, where these are a multiple of it long.
 std::int64_t within(std::int64_t k, std::int64_t count) {
   constexpr double golden = 0.61803398874989485;
   const double turns = static_cast<double>(k) * golden;

@@ -17,8 +17,7 @@ TEST(RadialCount, OfSomeElementsIsThatOfAll) {
   State state(static_cast<std::size_t>(topology.elements()));
   for (int t = 0, i = 0; t < tubes; ++t)
     for (int e = 0; e < elements; ++e, ++i)
-      state.position.set(static_cast<std::size_t>(i),
-                         Vector3(1.75 * t, 0, e * topology.types[0].element_length));
+      state.position.set(static_cast<std::size_t>(i), Vector3(1.75 * t, 0, e * topology.types[0].element_length));
   Interaction in;
   in.line = {test::line_contact(0.6785, 6, 0.6785, 6)};
   in.line[0].sparse = sparse_nodes(6);
