@@ -241,6 +241,7 @@ ContactOptions read_contact(const TomlTable& t, const Scene& scene) {
     c.nodes = static_cast<int>(t.integer("nodes_per_element", 1, most_nodes));
   }
   c.all_nodes = t.boolean_or("all_nodes", c.all_nodes);
+  if (c.all_nodes && c.law != Law::line) throw t.error("all_nodes", "belongs to law = \"line\"", "take it away");
   static const Words<Interaction::Precision> precisions = {{"mixed", Interaction::Precision::mixed},
                                                            {"double", Interaction::Precision::full}};
   if (t.has("precision")) c.precision = t.word_or("precision", Interaction::Precision::mixed, precisions);

@@ -1,5 +1,7 @@
 // The line law over rows of nodes, for every instruction set that the compiler knows and in two precisions; the
 // machine's best is picked at run time. The arithmetic of the law is in the tables (radial_table.hpp).
+#include <type_traits>
+
 #include "sim/line_engine.hpp"
 
 #undef HWY_TARGET_INCLUDE

@@ -391,6 +391,9 @@ TEST_F(Cli, EnergyOverAllNodesShowsWhatSparseSumsLeaveOut) {
   EXPECT_NEAR(vdw("--all-nodes --reference"), all, 1e-9 * std::fabs(all));
   EXPECT_NEAR(sparse, all, 2e-3 * std::fabs(all));
   EXPECT_GT(std::fabs(sparse - all), 1e-7 * std::fabs(all));
+  const Outcome none = run("energy two.csv --parameters cnt-10-10-tersoff --law none --all-nodes");
+  EXPECT_EQ(none.code, 2);
+  EXPECT_NE(none.err.find("--all-nodes: belongs to the line law"), std::string::npos) << none.err;
 }
 
 TEST_F(Cli, BenchReportsItsKeys) {
