@@ -55,8 +55,7 @@ const std::vector<SceneKey>& scene_keys() {
       {"contact", "nodes_per_element", "", "6", "for a corrugation below 1e-3", "line: nodes along an element"},
       {"contact", "all_nodes", "", "false", "",
        "line: all nodes towards nearly parallel elements too, which keeps the symmetry of a rope; two to three "
-       "times "
-       "the cost"},
+       "times the cost"},
       {"contact", "precision", "", "\"mixed\"", "mixed; double for mode = \"relax\"",
        "\"mixed\" (pairs in single precision) or \"double\""},
       {"contact", "legacy_torque", "", "false", "",

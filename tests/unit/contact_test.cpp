@@ -141,6 +141,7 @@ TEST_P(ContactLawTest, ForceAndTorquesAreTheGradient) {
     ASSERT_LT(error, 1e-7 * scale_of(f)) << "R " << p.separation.norm() << " U " << f.energy;
   }
   EXPECT_GE(tested, 4000);
+  RecordProperty("worst_relative_error", std::to_string(worst));
 }
 
 TEST_P(ContactLawTest, CoreIsTheGradientToo) {

@@ -98,7 +98,7 @@ void add_combinations(const ChartScene& scene, std::vector<ChartModel>& all) {
       m.length = 0.5;
       m.stepping.contact_every = 3;
     }));
-  // As many pairs of nodes as 3 x 4 or 4 x 6, but of both elements alike.
+  // Alike for both elements of a pair, as the sparse sums are not.
   if (scene.contact)
     for (const int nodes : {4, 5})
       all.push_back(varied("combination", fmt::format("nodes-{}+all-nodes", nodes), [nodes](ChartModel& m) {
