@@ -54,32 +54,36 @@ double seconds_from(const Scene& scene, const Prepared& p, State state) {
   return seconds_of_a_step(s);
 }
 
+// Turned so far, or as far as the rope bears to be laid: its cross-section stays as it is, and what twists it more
+// presses it apart.
+double seconds_turned_by(const Scene& scene, const Prepared& p, double turn, double rate, double time) {
+  constexpr double less = 0.7, least = 0.2;  // of the turn
+  for (double part = 1; part > least; part *= less) {
+    State state = turned_rope(p, part * turn, rate);
+    state.time = time;
+    try {
+      return seconds_from(scene, p, std::move(state));
+    } catch (const NumericalError&) {
+    }
+  }
+  Simulation s = start(scene, p);
+  return seconds_of_a_step(s);
+}
+
 // Mean over ramp and hold.
 double seconds_in_turned_rope(const Scene& scene, const Prepared& p, const SceneFeatures& f) {
   const double ramp = std::min(f.ramp, p.duration), share = p.duration > 0 ? ramp / p.duration : 0.0;
   const double turn = f.ramp > 0 ? f.turn * ramp / f.ramp : f.turn;
   double seconds = 0;
-  if (share > 0) {
-    State state = turned_rope(p, 0.5 * turn, turn / ramp);
-    state.time = 0.5 * ramp;
-    seconds += share * seconds_from(scene, p, std::move(state));
-  }
-  if (share < 1) {
-    State state = turned_rope(p, turn, 0);
-    state.time = ramp;
-    seconds += (1 - share) * seconds_from(scene, p, std::move(state));
-  }
+  if (share > 0) seconds += share * seconds_turned_by(scene, p, 0.5 * turn, turn / ramp, 0.5 * ramp);
+  if (share < 1) seconds += (1 - share) * seconds_turned_by(scene, p, turn, 0, ramp);
   return seconds;
 }
 
 double seconds_of_steps(const Scene& scene, const Prepared& p) {
   const SceneFeatures f = features_of(scene, p);
-  const bool turned = std::holds_alternative<RopeSource>(scene.source) && f.contact && f.turn > 0;
-  try {
-    if (turned) return seconds_in_turned_rope(scene, p, f);
-  } catch (const NumericalError&) {
-    // The rope does not bear to be laid like that.
-  }
+  if (std::holds_alternative<RopeSource>(scene.source) && f.contact && f.turn > 0)
+    return seconds_in_turned_rope(scene, p, f);
   Simulation s = start(scene, p);
   return seconds_of_a_step(s);
 }
