@@ -54,8 +54,13 @@ double seconds_from(const Scene& scene, const Prepared& p, State state) {
   return seconds_of_a_step(s);
 }
 
-// Turned so far, or as far as the rope bears to be laid: its cross-section stays as it is, and what twists it more
-// presses it apart.
+double seconds_from_the_start(const Scene& scene, const Prepared& p) {
+  Simulation s = start(scene, p);
+  return seconds_of_a_step(s);
+}
+
+// Turned so far, or as far as the rope bears to be laid: it keeps its cross-section, and turned too far its tubes
+// lie in one another.
 double seconds_turned_by(const Scene& scene, const Prepared& p, double turn, double rate, double time) {
   constexpr double less = 0.7, least = 0.2;  // of the turn
   for (double part = 1; part > least; part *= less) {
@@ -66,8 +71,7 @@ double seconds_turned_by(const Scene& scene, const Prepared& p, double turn, dou
     } catch (const NumericalError&) {
     }
   }
-  Simulation s = start(scene, p);
-  return seconds_of_a_step(s);
+  return seconds_from_the_start(scene, p);
 }
 
 // Mean over ramp and hold.
@@ -82,10 +86,8 @@ double seconds_in_turned_rope(const Scene& scene, const Prepared& p, const Scene
 
 double seconds_of_steps(const Scene& scene, const Prepared& p) {
   const SceneFeatures f = features_of(scene, p);
-  if (std::holds_alternative<RopeSource>(scene.source) && f.contact && f.turn > 0)
-    return seconds_in_turned_rope(scene, p, f);
-  Simulation s = start(scene, p);
-  return seconds_of_a_step(s);
+  const bool turned = std::holds_alternative<RopeSource>(scene.source) && f.contact && f.turn > 0;
+  return turned ? seconds_in_turned_rope(scene, p, f) : seconds_from_the_start(scene, p);
 }
 
 void time_relaxation(const Scene& scene, const Prepared& p, RunTime& t) {
