@@ -10,11 +10,11 @@
 #include <cstdlib>
 
 #include "commands/commands.hpp"
-#include "commands/cores.hpp"
 #include "commands/siblings.hpp"
 #include "model/error.hpp"
+#include "run/cores.hpp"
 #include "scene/scene_toml.hpp"
-#include "sim/line_engine.hpp"
+#include "sim/contact/line/engine.hpp"
 #include "version.hpp"
 
 namespace {

@@ -7,8 +7,8 @@
 
 #include "contact/van_der_waals.hpp"
 #include "fit/least_squares.hpp"
-#include "model/contact_line.hpp"
-#include "model/contact_paper.hpp"
+#include "model/contact/line.hpp"
+#include "model/contact/paper.hpp"
 
 namespace ropewalk {
 

@@ -6,7 +6,7 @@
 
 #include "contact/integral.hpp"
 #include "fit/least_squares.hpp"
-#include "model/contact_line.hpp"
+#include "model/contact/line.hpp"
 
 namespace ropewalk {
 

@@ -8,8 +8,8 @@
 
 #include "io/data_files.hpp"
 #include "io/files.hpp"
-#include "io/page.hpp"
 #include "io/parameters_toml.hpp"
+#include "report/page.hpp"
 #include "verbs/tables.hpp"
 #include "verbs/verbs.hpp"
 

@@ -7,14 +7,14 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "commands/bench_scenes.hpp"
+#include "bench/bench_scenes.hpp"
+#include "bench/line_count.hpp"
+#include "bench/machine_peak.hpp"
+#include "bench/step_bytes.hpp"
 #include "commands/commands.hpp"
-#include "commands/processor_time.hpp"
 #include "model/error.hpp"
+#include "run/processor_time.hpp"
 #include "scene/prepare.hpp"
-#include "sim/line_count.hpp"
-#include "sim/machine_peak.hpp"
-#include "sim/step_bytes.hpp"
 
 namespace ropewalk {
 namespace {

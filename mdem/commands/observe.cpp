@@ -4,9 +4,9 @@
 #include <nlohmann/json.hpp>
 
 #include "commands/commands.hpp"
-#include "commands/run_directory.hpp"
 #include "io/frames.hpp"
 #include "plan/planner.hpp"
+#include "run/run_directory.hpp"
 
 namespace ropewalk {
 namespace {

@@ -7,13 +7,13 @@
 #include <filesystem>
 
 #include "commands/commands.hpp"
-#include "commands/run_directory.hpp"
-#include "commands/run_time.hpp"
 #include "io/data_files.hpp"
 #include "io/files.hpp"
 #include "model/error.hpp"
 #include "plan/check.hpp"
 #include "plan/planner.hpp"
+#include "run/run_directory.hpp"
+#include "run/run_time.hpp"
 #include "scene/scene_toml.hpp"
 
 namespace ropewalk {

@@ -1,5 +1,5 @@
 // `report`: report.html from the files of a run.
-#include "io/report.hpp"
+#include "report/report.hpp"
 
 #include <fmt/format.h>
 
@@ -8,11 +8,11 @@
 #include <filesystem>
 
 #include "commands/commands.hpp"
-#include "commands/run_directory.hpp"
 #include "io/files.hpp"
 #include "io/frames.hpp"
 #include "model/error.hpp"
-#include "scene/resolve.hpp"
+#include "run/run_directory.hpp"
+#include "scene/scene_to_model.hpp"
 
 namespace ropewalk {
 namespace {

@@ -15,19 +15,19 @@
 #include <filesystem>
 #include <memory>
 
-#include "commands/colours.hpp"
 #include "commands/commands.hpp"
-#include "commands/limit_watch.hpp"
-#include "commands/progress.hpp"
-#include "commands/run_directory.hpp"
-#include "commands/stages.hpp"
 #include "io/files.hpp"
 #include "io/frames.hpp"
 #include "model/error.hpp"
+#include "run/colours.hpp"
+#include "run/limit_watch.hpp"
+#include "run/progress.hpp"
+#include "run/run_directory.hpp"
+#include "run/stages.hpp"
 #include "scene/finer.hpp"
 #include "scene/scene_toml.hpp"
 #include "scene/watch.hpp"
-#include "sim/refine.hpp"
+#include "sim/dynamics/refine.hpp"
 #include "version.hpp"
 
 namespace ropewalk {

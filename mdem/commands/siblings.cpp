@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <string>
 
-#include "commands/cores.hpp"
 #include "model/error.hpp"
+#include "run/cores.hpp"
 
 namespace ropewalk {
 namespace {

@@ -13,7 +13,7 @@
 #include <string_view>
 #include <system_error>
 
-#include "io/svg.hpp"
+#include "io/markup.hpp"
 #include "io/toml_table.hpp"
 #include "model/error.hpp"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/state.hpp"
+#include "sim/state/state.hpp"
 
 namespace ropewalk {
 

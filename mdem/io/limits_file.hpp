@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/interaction.hpp"
+#include "sim/state/interaction.hpp"
 
 namespace ropewalk {
 

@@ -9,7 +9,7 @@
 #include "lammps/fix_grip.hpp"
 #include "lammps/pair_mdem.hpp"
 #include "neighbor.h"
-#include "sim/motion.hpp"
+#include "sim/state/motion.hpp"
 #include "timer.h"
 
 namespace ropewalk::lammps {

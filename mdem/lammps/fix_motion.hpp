@@ -8,7 +8,7 @@
 #include <array>
 
 #include "lammps/shared.hpp"
-#include "sim/fire.hpp"
+#include "sim/dynamics/fire.hpp"
 
 namespace ropewalk::lammps {
 

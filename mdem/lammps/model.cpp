@@ -4,7 +4,7 @@
 
 #include "model/error.hpp"
 #include "scene/build.hpp"
-#include "scene/resolve.hpp"
+#include "scene/scene_to_model.hpp"
 #include "scene/scene_toml.hpp"
 
 namespace ropewalk {

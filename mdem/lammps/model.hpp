@@ -6,9 +6,9 @@
 
 #include "scene/lammps_files.hpp"
 #include "scene/scene.hpp"
-#include "sim/drive.hpp"
-#include "sim/interaction.hpp"
-#include "sim/state.hpp"
+#include "sim/dynamics/loads.hpp"
+#include "sim/state/interaction.hpp"
+#include "sim/state/state.hpp"
 
 namespace ropewalk {
 

@@ -52,7 +52,7 @@ inline double thin_tube_shear(const BondStiffness& k, double radius) {
 }
 
 // Body frame of an element: e1 and e2 span the cross-section, t is the tube axis (local z). V: the vectors, Eigen's
-// or plain ones (sim/plain_vector.hpp), whose loops the compiler vectorises.
+// or plain ones (sim/state/plain_vector.hpp), whose loops the compiler vectorises.
 template <class T, class V = Vec3<T>>
 struct Frame {
   using Vector = V;

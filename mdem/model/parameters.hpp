@@ -27,8 +27,8 @@
 #include <vector>
 
 #include "model/bond.hpp"
-#include "model/contact_line.hpp"
-#include "model/contact_paper.hpp"
+#include "model/contact/line.hpp"
+#include "model/contact/paper.hpp"
 #include "model/tube.hpp"
 
 namespace ropewalk {

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "sim/state.hpp"
+#include "sim/state/state.hpp"
 
 namespace ropewalk {
 

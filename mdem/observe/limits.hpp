@@ -24,8 +24,8 @@
 #include <vector>
 
 #include "model/parameters.hpp"
-#include "sim/neighbours.hpp"
-#include "sim/state.hpp"
+#include "sim/neighbours/neighbours.hpp"
+#include "sim/state/state.hpp"
 
 namespace ropewalk {
 

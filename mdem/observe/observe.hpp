@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "model/parameters.hpp"
-#include "sim/state.hpp"
+#include "sim/state/state.hpp"
 
 namespace ropewalk {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/neighbours.hpp"
+#include "sim/neighbours/neighbours.hpp"
 
 namespace ropewalk {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "model/error.hpp"
-#include "scene/film.hpp"
+#include "scene/kinds/film.hpp"
 #include "scene/maxwell.hpp"
 #include "scene/random.hpp"
 #include "scene/state_csv.hpp"

@@ -3,9 +3,9 @@
 
 #include <utility>
 
-#include "scene/resolve.hpp"
 #include "scene/scene.hpp"
-#include "sim/state.hpp"
+#include "scene/scene_to_model.hpp"
+#include "sim/state/state.hpp"
 
 namespace ropewalk {
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <sstream>
 
-#include "sim/refine.hpp"
+#include "sim/dynamics/refine.hpp"
 
 namespace ropewalk {
 namespace {

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "scene/scene.hpp"
-#include "sim/state.hpp"
+#include "sim/state/state.hpp"
 
 namespace ropewalk {
 

@@ -3,7 +3,7 @@
 #include <Eigen/LU>
 #include <cmath>
 
-#include "sim/forces.hpp"
+#include "sim/forces/forces.hpp"
 
 namespace ropewalk {
 namespace {

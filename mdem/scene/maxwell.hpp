@@ -2,7 +2,7 @@
 #pragma once
 
 #include "scene/random.hpp"
-#include "sim/state.hpp"
+#include "sim/state/state.hpp"
 
 namespace ropewalk {
 

@@ -3,7 +3,7 @@
 
 #include "scene/build.hpp"
 #include "scene/scene.hpp"
-#include "sim/simulation.hpp"
+#include "sim/dynamics/simulation.hpp"
 
 namespace ropewalk {
 

@@ -13,8 +13,8 @@
 #include "model/damping.hpp"
 #include "model/parameters.hpp"
 #include "observe/limits.hpp"
-#include "sim/interaction.hpp"
-#include "sim/stepping.hpp"
+#include "sim/dynamics/stepping.hpp"
+#include "sim/state/interaction.hpp"
 
 namespace ropewalk {
 

@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "sim/state.hpp"
+#include "sim/state/state.hpp"
 
 namespace ropewalk {
 

@@ -1,7 +1,7 @@
 #include "scene/watch.hpp"
 
 #include "scene/build.hpp"
-#include "scene/resolve.hpp"
+#include "scene/scene_to_model.hpp"
 
 namespace ropewalk {
 namespace {

@@ -1,6 +1,6 @@
 // The forms alone, the paper law, lists, motion, and whole force evaluations.
 #include "bench/support.hpp"
-#include "sim/motion.hpp"
+#include "sim/state/motion.hpp"
 
 namespace ropewalk::bench {
 namespace {

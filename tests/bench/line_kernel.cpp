@@ -5,7 +5,7 @@
 #define HWY_TARGET_INCLUDE "bench/line_kernel.cpp"
 #include <hwy/foreach_target.h>
 //
-#include "sim/contact_line_kernel.cpp"
+#include "sim/contact/line/kernel.cpp"
 // The source has named itself; the passes for the other instruction sets must come here.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "bench/line_kernel.cpp"
@@ -62,9 +62,9 @@ std::size_t KernelLanes(bool full) { return full ? hn::Lanes(Lanes<double>::D())
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
+#include "bench/line_count.hpp"
 #include "bench/support.hpp"
-#include "sim/line_count.hpp"
-#include "sim/vector_clones.hpp"
+#include "sim/threads/vector_clones.hpp"
 
 namespace ropewalk {
 HWY_EXPORT(RadialMixed);

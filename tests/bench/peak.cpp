@@ -16,7 +16,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 std::size_t LookUp([[maybe_unused]] std::size_t rounds, [[maybe_unused]] const float* table,
                    [[maybe_unused]] float* out) {
 #if HWY_TARGET <= HWY_AVX3
-  constexpr int chains = 12;  // independent, as in sim/machine_peak.cpp
+  constexpr int chains = 12;  // independent, as in bench/machine_peak.cpp
   const hn::CappedTag<float, 16> d;
   const auto low = hn::LoadU(d, table), high = hn::LoadU(d, table + 16);
   hn::Vec<decltype(d)> a[chains];
@@ -38,8 +38,8 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 #include <hwy/aligned_allocator.h>
 
+#include "bench/machine_peak.hpp"
 #include "bench/support.hpp"
-#include "sim/machine_peak.hpp"
 
 namespace ropewalk::bench {
 

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "sim/forces.hpp"
+#include "sim/forces/forces.hpp"
 #include "unit/support.hpp"
 
 namespace ropewalk::bench {

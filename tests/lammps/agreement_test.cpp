@@ -1,6 +1,6 @@
 // The same state in LAMMPS and here: forces, energies, virial, and a stretch of dynamics, on 1, 2 and 4 ranks.
 #include "lammps/states.hpp"
-#include "sim/drive.hpp"
+#include "sim/dynamics/loads.hpp"
 
 namespace ropewalk::test {
 namespace {

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
-#include "sim/simulation.hpp"
+#include "sim/dynamics/simulation.hpp"
 #include "unit/support.hpp"
 
 namespace ropewalk {

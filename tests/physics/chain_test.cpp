@@ -4,7 +4,7 @@
 #include <numeric>
 
 #include "model/error.hpp"
-#include "sim/simulation.hpp"
+#include "sim/dynamics/simulation.hpp"
 #include "unit/support.hpp"
 
 namespace ropewalk {

@@ -1,7 +1,7 @@
 // The line law in the simulator: what rows of elements make of it.
 #include <gtest/gtest.h>
 
-#include "sim/simulation.hpp"
+#include "sim/dynamics/simulation.hpp"
 #include "unit/support.hpp"
 
 namespace ropewalk {

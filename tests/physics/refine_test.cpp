@@ -1,5 +1,5 @@
 // A run that outgrows its elements, has them split and goes on, held to one that was as fine from the start.
-#include "sim/refine.hpp"
+#include "sim/dynamics/refine.hpp"
 
 #include <gtest/gtest.h>
 

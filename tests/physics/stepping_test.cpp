@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "model/error.hpp"
-#include "sim/motion.hpp"
-#include "sim/simulation.hpp"
+#include "sim/dynamics/simulation.hpp"
+#include "sim/state/motion.hpp"
 #include "unit/support.hpp"
 
 namespace ropewalk {

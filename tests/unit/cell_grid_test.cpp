@@ -1,5 +1,5 @@
 // What is near, against all pairs, for every instruction set.
-#include "sim/cell_grid.hpp"
+#include "sim/neighbours/cell_grid.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "sim/line_engine.hpp"
+#include "sim/contact/line/engine.hpp"
 #include "unit/support.hpp"
 
 namespace ropewalk {

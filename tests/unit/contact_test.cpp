@@ -2,8 +2,8 @@
 
 #include <array>
 
-#include "model/contact_line.hpp"
-#include "sim/radial_table.hpp"
+#include "model/contact/line.hpp"
+#include "sim/contact/line/radial_table.hpp"
 #include "unit/support.hpp"
 
 namespace ropewalk {

@@ -1,5 +1,5 @@
 // Films: how many tubes, where, and that none touches another.
-#include "scene/film.hpp"
+#include "scene/kinds/film.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

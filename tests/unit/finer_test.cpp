@@ -9,7 +9,7 @@
 
 #include "scene/scene_toml.hpp"
 #include "scene/watch.hpp"
-#include "sim/refine.hpp"
+#include "sim/dynamics/refine.hpp"
 #include "unit/support.hpp"
 
 namespace ropewalk {

@@ -5,7 +5,7 @@
 #include <atomic>
 
 #include "scene/build.hpp"
-#include "sim/simulation.hpp"
+#include "sim/dynamics/simulation.hpp"
 #include "unit/support.hpp"
 
 namespace ropewalk {

@@ -17,9 +17,9 @@
 #include "io/frames.hpp"
 #include "io/log.hpp"
 #include "io/manifest.hpp"
-#include "io/report.hpp"
-#include "io/svg.hpp"
 #include "model/error.hpp"
+#include "report/report.hpp"
+#include "report/svg.hpp"
 #include "support.hpp"
 
 namespace ropewalk {

@@ -1,8 +1,8 @@
-#include "sim/line_count.hpp"
+#include "bench/line_count.hpp"
 
 #include <gtest/gtest.h>
 
-#include "sim/simulation.hpp"
+#include "sim/dynamics/simulation.hpp"
 #include "unit/support.hpp"
 
 namespace ropewalk {

@@ -1,13 +1,12 @@
 // Nodes from elements, and forces on elements from those on nodes, for any number of nodes and every instruction
 // set.
-#include "sim/line_rows.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <type_traits>
 
-#include "sim/line_engine.hpp"
+#include "sim/contact/line/engine.hpp"
+#include "sim/contact/line/nodes.hpp"
 #include "unit/support.hpp"
 
 namespace ropewalk {

@@ -1,8 +1,8 @@
-#include "sim/machine_peak.hpp"
+#include "bench/machine_peak.hpp"
 
 #include <gtest/gtest.h>
 
-#include "sim/step_bytes.hpp"
+#include "bench/step_bytes.hpp"
 #include "unit/support.hpp"
 
 namespace ropewalk {

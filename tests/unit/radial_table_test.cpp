@@ -1,5 +1,5 @@
 // The kernel's polynomials against the law that they stand for.
-#include "sim/radial_table.hpp"
+#include "sim/contact/line/radial_table.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
 // Splitting every element in two: the map against chains whose rod is known, and what it must keep.
-#include "sim/refine.hpp"
+#include "sim/dynamics/refine.hpp"
 
 #include <gtest/gtest.h>
 
-#include "sim/forces.hpp"
+#include "sim/forces/forces.hpp"
 #include "unit/support.hpp"
 
 namespace ropewalk {

@@ -1,5 +1,5 @@
 // Charts with logarithmic axes.
-#include "io/scatter.hpp"
+#include "report/scatter.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -14,12 +14,12 @@
 #include "scene/build.hpp"
 #include "scene/maxwell.hpp"
 #include "scene/prepare.hpp"
-#include "scene/resolve.hpp"
+#include "scene/scene_to_model.hpp"
 #include "scene/scene_toml.hpp"
 #include "scene/state_csv.hpp"
 #include "scene/templates.hpp"
 #include "scene/watch.hpp"
-#include "sim/forces.hpp"
+#include "sim/forces/forces.hpp"
 #include "unit/support.hpp"
 
 namespace ropewalk {

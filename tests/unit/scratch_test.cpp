@@ -1,4 +1,4 @@
-#include "sim/scratch.hpp"
+#include "sim/threads/scratch.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,10 +6,10 @@
 #include <functional>
 #include <random>
 
-#include "model/contact_line.hpp"
-#include "model/contact_paper.hpp"
-#include "sim/interaction.hpp"
-#include "sim/state.hpp"
+#include "model/contact/line.hpp"
+#include "model/contact/paper.hpp"
+#include "sim/state/interaction.hpp"
+#include "sim/state/state.hpp"
 
 namespace ropewalk::test {
 

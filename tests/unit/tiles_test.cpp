@@ -1,4 +1,4 @@
-#include "sim/tiles.hpp"
+#include "sim/state/tiles.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <limits>
 #include <utility>
 
-#include "sim/free_and_driven.hpp"
+#include "sim/dynamics/free_and_driven.hpp"
 #include "unit/support.hpp"
 
 namespace ropewalk {

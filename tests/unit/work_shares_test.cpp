@@ -1,5 +1,5 @@
 // Every piece of work is done once, whoever does it.
-#include "sim/work_shares.hpp"
+#include "sim/threads/work_shares.hpp"
 
 #include <gtest/gtest.h>
 

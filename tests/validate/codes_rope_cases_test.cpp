@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "cases/rope_codes_beads.hpp"
-#include "cases/rope_codes_incremental.hpp"
+#include "cases/common/rope_codes_beads.hpp"
+#include "cases/common/rope_codes_incremental.hpp"
 #include "validate/support.hpp"
 
 namespace ropewalk {

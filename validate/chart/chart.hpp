@@ -29,7 +29,7 @@
 
 #include "observe/observe.hpp"
 #include "scene/scene.hpp"
-#include "sim/simulation.hpp"
+#include "sim/dynamics/simulation.hpp"
 
 namespace ropewalk {
 

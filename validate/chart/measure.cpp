@@ -13,7 +13,7 @@
 #include "observe/bending.hpp"
 #include "observe/means.hpp"
 #include "observe/spacing.hpp"
-#include "scene/resolve.hpp"
+#include "scene/scene_to_model.hpp"
 
 namespace ropewalk {
 namespace {

@@ -1,6 +1,6 @@
 // The page of the chart: for each scene and observable cost against error, with the Pareto front.
 
-#include "io/page.hpp"
+#include "report/page.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include <set>
 
 #include "chart/chart.hpp"
-#include "io/scatter.hpp"
+#include "report/scatter.hpp"
 
 namespace ropewalk {
 namespace {

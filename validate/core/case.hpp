@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "io/svg.hpp"
 #include "model/parameters.hpp"
+#include "report/svg.hpp"
 
 namespace ropewalk {
 

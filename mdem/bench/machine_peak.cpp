@@ -1,0 +1,119 @@
+#include "bench/machine_peak.hpp"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "bench/machine_peak.cpp"
+#include <hwy/foreach_target.h>
+//
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace ropewalk::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+// Independent chains: more than latency times throughput of any unit here, and no more than 16 registers hold.
+constexpr int chains = 12;
+
+template <class T, int cap>
+HWY_INLINE std::size_t in_chains(std::size_t rounds, T by, T* out) {
+  const hn::CappedTag<T, cap> d;
+  const auto factor = hn::Set(d, by), term = hn::Set(d, static_cast<T>(0.25));
+  hn::Vec<decltype(d)> a[chains];
+  for (int k = 0; k < chains; ++k) a[k] = hn::Set(d, static_cast<T>(k));
+  for (std::size_t r = 0; r < rounds; ++r)
+    for (int k = 0; k < chains; ++k) a[k] = hn::MulAdd(a[k], factor, term);
+  for (int k = 1; k < chains; ++k) a[0] = hn::Add(a[0], a[k]);
+  hn::StoreU(a[0], d, out);
+  return rounds * chains * 2 * hn::Lanes(d);
+}
+
+std::size_t PeakOfFloats(std::size_t rounds, float factor, float* out) {
+  return in_chains<float, 16>(rounds, factor, out);
+}
+std::size_t PeakOfDoubles(std::size_t rounds, double factor, double* out) {
+  return in_chains<double, 8>(rounds, factor, out);
+}
+
+void Triad(double* HWY_RESTRICT a, const double* HWY_RESTRICT b, const double* HWY_RESTRICT c, std::size_t n) {
+  const hn::CappedTag<double, 8> d;
+  const auto three = hn::Set(d, 3.0);
+  for (std::size_t i = 0; i < n; i += hn::Lanes(d))
+    hn::Store(hn::MulAdd(hn::Load(d, c + i), three, hn::Load(d, b + i)), d, a + i);
+}
+
+}  // namespace ropewalk::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+#include <hwy/aligned_allocator.h>
+#include <omp.h>
+
+#include <algorithm>
+#include <new>
+
+namespace ropewalk {
+
+HWY_EXPORT(PeakOfFloats);
+HWY_EXPORT(PeakOfDoubles);
+HWY_EXPORT(Triad);
+
+std::size_t multiply_adds(std::size_t rounds, float factor, float* out) {
+  return HWY_DYNAMIC_DISPATCH(PeakOfFloats)(rounds, factor, out);
+}
+std::size_t multiply_adds(std::size_t rounds, double factor, double* out) {
+  return HWY_DYNAMIC_DISPATCH(PeakOfDoubles)(rounds, factor, out);
+}
+void triad(double* a, const double* b, const double* c, std::size_t n) { HWY_DYNAMIC_DISPATCH(Triad)(a, b, c, n); }
+
+namespace {
+
+// The best rate of some trials, per ns; each does `work` and returns how much that was.
+template <class Work>
+double best_rate(int trials, const Work& work) {
+  double best = 0;
+  for (int k = 0; k < trials; ++k) {
+    const double began = omp_get_wtime(), done = work();
+    best = std::max(best, done / (omp_get_wtime() - began));
+  }
+  return 1e-9 * best;
+}
+
+template <class T>
+double arithmetic_peak(int threads) {
+  constexpr std::size_t rounds = 500000;  // some ms
+  return best_rate(6, [&] {
+    double operations = 0;
+#pragma omp parallel num_threads(threads) reduction(+ : operations)
+    {
+      T out[64 / sizeof(T)];
+      const auto done = static_cast<double>(multiply_adds(rounds, T{0.5}, out));
+      operations += out[0] > 0 ? done : 0.0;  // so that no compiler leaves them out
+    }
+    return operations;
+  });
+}
+
+double transfer_peak(int threads) {
+  // 128 MiB in each array, more than caches hold, in pieces that go out even for as many threads.
+  const std::ptrdiff_t pieces = 64 * threads, piece = (std::ptrdiff_t{1} << 24) / pieces / 8 * 8;
+  const auto array = [&] { return hwy::AllocateAligned<double>(static_cast<std::size_t>(pieces * piece)); };
+  const auto a = array(), b = array(), c = array();
+  if (!a || !b || !c) throw std::bad_alloc();
+    // Where a thread writes first is its own memory.
+#pragma omp parallel for schedule(static) num_threads(threads)
+  for (std::ptrdiff_t i = 0; i < pieces * piece; ++i) a[i] = 1, b[i] = 2, c[i] = 3;
+  return best_rate(4, [&] {
+#pragma omp parallel for schedule(static) num_threads(threads)
+    for (std::ptrdiff_t k = 0; k < pieces; ++k)
+      triad(a.get() + k * piece, b.get() + k * piece, c.get() + k * piece, static_cast<std::size_t>(piece));
+    return 24.0 * static_cast<double>(pieces * piece);
+  });
+}
+
+}  // namespace
+
+MachinePeak machine_peak(int threads, bool in_double) {
+  return {in_double ? arithmetic_peak<double>(threads) : arithmetic_peak<float>(threads), transfer_peak(threads)};
+}
+
+}  // namespace ropewalk
+#endif  // HWY_ONCE

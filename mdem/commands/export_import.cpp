@@ -1,0 +1,271 @@
+// `export` and `import`: a run goes to LAMMPS and comes back. An exported directory is a run directory like any
+// other, with the files of scene/lammps_files.hpp beside those of a run.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+
+#include "commands/commands.hpp"
+#include "io/files.hpp"
+#include "io/frames.hpp"
+#include "model/error.hpp"
+#include "run/colours.hpp"
+#include "run/run_directory.hpp"
+#include "scene/lammps_files.hpp"
+#include "scene/scene_toml.hpp"
+
+namespace ropewalk {
+namespace {
+
+namespace fs = std::filesystem;
+
+Simulation simulation_at(const RunDirectory& dir, const Scene& scene, const Prepared& p, const RunCheckpoint& c) {
+  Simulation s = start(scene, p);
+  try {
+    s.restore(c.simulation);
+  } catch (const std::runtime_error& e) {
+    throw InputError({dir.checkpoint(), 0, ""}, e.what(), "start the run anew with `ropewalk run`");
+  }
+  return s;
+}
+
+// Of a run that stands somewhere: its files up to the checkpoint.
+void copy_run(const RunDirectory& from, const RunDirectory& to) {
+  const RunCheckpoint c = read_checkpoint(from);
+  const Scene scene = read_run_scene(from);
+  const auto copy = [](const std::string& a, const std::string& b, std::uint64_t bytes) {
+    write_file_atomically(b, std::string_view(read_file(a)).substr(0, bytes));
+  };
+  const auto all = std::string::npos;
+  copy(from.scene(), to.scene(), all);
+  for (std::size_t k = 0; k < scene.sets.size(); ++k) copy(from.parameters(k), to.parameters(k), all);
+  if (fs::exists(from.state())) copy(from.state(), to.state(), all);
+  if (fs::exists(from.limits())) copy(from.limits(), to.limits(), all);
+  copy(from.log(), to.log(), c.log_bytes);
+  copy(from.frames(), to.frames(), c.frame_bytes);
+  copy(from.manifest(), to.manifest(), all);
+  copy(from.checkpoint(), to.checkpoint(), all);
+}
+
+LammpsStart start_of(const Scene& scene, const Simulation& s) {
+  LammpsStart start;
+  start.step = s.state().step;
+  start.time = s.state().time;
+  start.time_step = s.time_step();
+  start.work = s.work();
+  start.dissipated = s.dissipated();
+  start.viscosity_inner = scene.damping.contact.inner;
+  start.viscosity_outer = scene.damping.contact.outer;
+  const RunDirectory here{"."};
+  for (std::size_t k = 0; k < scene.sets.size(); ++k)
+    start.parameters.push_back(fs::path(here.parameters(k)).filename().string());
+  return start;
+}
+
+std::int64_t steps_between(double interval, double duration, double parts, double dt) {
+  return std::max<std::int64_t>(1, std::llround((interval > 0 ? interval : duration / parts) / dt));
+}
+
+constexpr std::int64_t relax_every = 1000;  // steps
+
+LammpsScript script_of(const Scene& scene, const Prepared& p, const Simulation& s) {
+  const Interaction& in = p.interaction;
+  LammpsScript script;
+  script.name = scene.name;
+  script.law = scene.contact.law;
+  script.relax = scene.run.mode == RunOptions::Mode::relax;
+  script.damped = in.damped_contact() || in.damping.bond.rate > 0 || in.damping.local > 0;
+  const Drive& d = p.drive;
+  script.driven = !(d.loads.empty() && d.fixed.empty() && d.turned.empty() && d.twist.empty());
+  script.long_in_z =
+      std::holds_alternative<RopeSource>(scene.source) || std::holds_alternative<ChainSource>(scene.source);
+  script.skin = default_skin(in);
+  // A bond's far end must be there as well.
+  script.reach = std::max(in.cutoff(), 1.5 * p.topology.longest_element());
+  script.exclude_along_tube = in.exclude_along_tube;
+  script.time_step = s.time_step();
+  script.step = s.state().step;
+  const double dt = s.time_step(), span = p.duration > 0 ? p.duration : 1000 * dt;
+  script.steps = script.relax ? scene.run.max_steps : std::llround(p.duration / dt) - s.state().step;
+  script.every = script.relax ? relax_every : steps_between(scene.run.frames_every, span, 40, dt);
+  return script;
+}
+
+constexpr const char* readme =
+    "Run:              lmp-ropewalk -in in.rope\n"
+    "Run on N ranks:   mpirun -np N lmp-ropewalk -in in.rope\n"
+    "Bring it back:    ropewalk import .      (then observe, report or resume this directory)\n";
+
+void write_lammps_files(const RunDirectory& run) {
+  const LammpsDirectory dir{run.path};
+  Scene scene = read_run_scene(run);
+  const Prepared p = prepare(scene);
+  const Simulation s = simulation_at(run, scene, p, read_checkpoint(run));
+  write_file_atomically(dir.start(), start_json(start_of(scene, s)));
+  write_file_atomically(dir.tubes(), tubes_csv(p.topology));
+  write_file_atomically(dir.data(),
+                        lammps_data(scene.name, p.topology, s.state(), s.forces().force, s.forces().torque));
+  write_file_atomically(dir.input(), lammps_input(script_of(scene, p, s)));
+  write_file_atomically(dir.readme(), readme);
+}
+
+void refuse_what_lammps_lacks(const Scene& scene) {
+  const char* lacking = scene.twist && scene.twist->geometric_only ? "twist.geometric_only"
+                        : scene.run.stepping.contact_every > 1     ? "run.contact_every"
+                        : scene.run.stepping.runge_kutta           ? "run.integrator"
+                                                                   : nullptr;
+  if (lacking)
+    throw InputError({scene.path, 0, lacking}, "is not for LAMMPS", "run this scene with `ropewalk run`");
+}
+
+}  // namespace
+
+int export_command(const ExportArguments& a) {
+  const RunDirectory to{a.lammps};
+  if (fs::is_directory(a.scene)) {
+    const RunDirectory from{a.scene};
+    refuse_what_lammps_lacks(read_run_scene(from));
+    read_checkpoint(from);
+    if (fs::exists(to.path) && fs::equivalent(from.path, to.path))
+      throw InputError({to.path, 0, "--lammps"}, "is the run itself", "choose another directory");
+    create_run_directory(to, a.force);
+    copy_run(from, to);
+  } else {
+    refuse_what_lammps_lacks(read_scene(a.scene));
+    RunArguments run;
+    run.scene = a.scene;
+    run.out = a.lammps;
+    run.force = a.force;
+    begin_run(run);
+  }
+  write_lammps_files(to);
+  fmt::print("{0} written. Go on with: cd {0} && mpirun -np 2 lmp-ropewalk -in in.rope\n", to.path);
+  return 0;
+}
+
+namespace {
+
+// What LAMMPS has left, added to the files of a run.
+class Import {
+ public:
+  explicit Import(const std::string& path)
+      : dir_{path},
+        files_{path},
+        scene_(read_run_scene(dir_)),
+        prepared_(prepare(scene_)),
+        observer_(make_observer(scene_, prepared_)),
+        checkpoint_(read_checkpoint(dir_)),
+        reached_(simulation_at(dir_, scene_, prepared_, checkpoint_).state().step) {}
+
+  int go() {
+    const LammpsStart began = read_start(files_);
+    if (began.time_step != prepared_.time_step)
+      throw InputError({files_.start(), 0, "time_step_ps"}, "is not that of the scene",
+                       "has scene.toml been changed? Export the run again");
+    if (!fs::exists(files_.rows()) || !fs::exists(files_.states()))
+      throw InputError({files_.path, 0, ""}, "holds nothing that LAMMPS has done",
+                       "run in.rope with lmp-ropewalk first, as README.txt says");
+    for (const LammpsRow& row : read_lammps_rows(files_)) rows_[static_cast<std::int64_t>(row.step)] = row;
+    log_ = read_file(dir_.log()).substr(0, checkpoint_.log_bytes);
+    frames_ = read_file(dir_.frames()).substr(0, checkpoint_.frame_bytes);
+    const std::int64_t from = reached_;
+    take_states(files_.states());
+    if (fs::exists(files_.last_state())) take_states(files_.last_state());
+    if (reached_ == from)
+      throw InputError({files_.states(), 0, ""}, fmt::format("holds no whole state after step {}", from),
+                       "let LAMMPS run further, or go on with `ropewalk resume`");
+    write(from);
+    return 0;
+  }
+
+ private:
+  void take_states(const std::string& path) {
+    LammpsStates states(path);
+    State state;
+    Vec3Array force, torque;
+    while (states.next(prepared_.topology, state, force, torque)) {
+      const auto row = rows_.find(state.step);
+      if (state.step <= reached_ || row == rows_.end()) continue;
+      state.time = row->second.time;
+      add(state, row->second);
+      force_ = force;
+      torque_ = torque;
+    }
+  }
+
+  void add(const State& state, const LammpsRow& from) {
+    LogRow r;
+    r.step = from.step;
+    r.time = from.time;
+    for (const TwistDrive& twist : prepared_.drive.twist) r.moment = twist.moment_at(r.time) / units::nN_nm;
+    r.stretch = from.stretch;
+    r.shear = from.shear;
+    r.bend = from.bend;
+    r.twist = from.twist;
+    r.vdw = from.vdw;
+    r.kinetic = from.kinetic;
+    r.work = from.work;
+    r.dissipated = from.dissipated;
+    r.balance = r.stretch + r.shear + r.bend + r.twist + r.vdw + r.kinetic - r.work + r.dissipated -
+                checkpoint_.first_energy;
+    fill_geometry(look(observer_, scene_, prepared_.topology, state), r);
+    log_ += log_line(r);
+    frames_ +=
+        dump_frame(prepared_.topology, state, element_colours(prepared_.topology, prepared_.interaction, state));
+    prepared_.state = state;
+    last_ = from;
+    reached_ = state.step;
+    ++taken_;
+  }
+
+  // The checkpoint last: until it is there the run stands where it stood.
+  void write(std::int64_t from) {
+    Simulation simulation = start(scene_, prepared_);
+    simulation.take_over(force_, torque_, last_.work, last_.dissipated);
+    checkpoint_.log_bytes = log_.size();
+    checkpoint_.frame_bytes = frames_.size();
+    checkpoint_.simulation = simulation.serialise();
+    write_file_atomically(dir_.log(), log_);
+    write_file_atomically(dir_.frames(), frames_);
+    write_checkpoint(dir_, checkpoint_);
+    Manifest m = read_manifest(dir_.manifest());
+    m.steps = reached_;
+    m.status = last_.time + 0.5 * prepared_.time_step >= prepared_.duration ? "finished" : "interrupted";
+    m.reason = fmt::format("steps {} to {} by LAMMPS", from, reached_);
+    write_file_atomically(dir_.manifest(), manifest_json(m));
+    write_report(dir_, scene_, prepared_for_report());
+    fmt::print("{} states taken over, up to step {}, {:.4g} ps. Report: {}\n", taken_, reached_, last_.time,
+               dir_.report());
+  }
+
+  // The report compares with the state at time zero.
+  Prepared prepared_for_report() {
+    Scene scene = scene_;
+    return prepare(scene);
+  }
+
+  RunDirectory dir_;
+  LammpsDirectory files_;
+  Scene scene_;
+  Prepared prepared_;
+  Observer observer_;
+  RunCheckpoint checkpoint_;
+  std::int64_t reached_ = 0;
+  std::map<std::int64_t, LammpsRow> rows_;
+  LammpsRow last_;
+  Vec3Array force_, torque_;
+  std::string log_, frames_;
+  long taken_ = 0;
+};
+
+}  // namespace
+
+int import_command(const ImportArguments& a) {
+  if (!fs::exists(LammpsDirectory{a.dir}.start()))
+    throw InputError({a.dir, 0, ""}, "was not made by `ropewalk export` (no lammps.json in it)",
+                     "name the directory behind --lammps");
+  return Import(a.dir).go();
+}
+
+}  // namespace ropewalk

@@ -1,0 +1,45 @@
+// Pieces of the program's HTML pages: one file each, without scripts or references to anything outside it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "model/parameters.hpp"
+#include "report/svg.hpp"
+
+namespace ropewalk {
+
+std::string paragraph(const std::string& html);
+std::string heading(const std::string& text);
+
+// The number of the next figure.
+class Figures {
+ public:
+  std::string caption(const std::string& html);
+
+ private:
+  int number_ = 0;
+};
+
+// At most `most` of n things, evenly, first and last among them.
+std::vector<std::size_t> evenly(std::size_t n, std::size_t most);
+
+struct TableColumn {
+  std::string title;
+  std::vector<double> values;
+};
+// Folded away under a figure; at most 60 rows. `source` says where all of them are.
+std::string data_table(const std::vector<TableColumn>& columns, const char* source);
+
+struct ReportFact {
+  std::string key, value, remark;  // the remark may be empty
+};
+std::string facts_part(const std::vector<ReportFact>& facts);
+std::string parameters_part(const std::string& name, const std::string& reference,
+                            const std::vector<Quantity>& parameters);
+std::string warnings_part(const std::vector<std::string>& warnings);
+
+// Everything before <body>.
+std::string page_head(const std::string& name);
+
+}  // namespace ropewalk

@@ -1,0 +1,537 @@
+#include "report/report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <iterator>
+
+#include "report/page.hpp"
+
+namespace ropewalk {
+namespace {
+
+constexpr std::size_t most_pictures = 6;
+
+template <class T>
+std::vector<T> some(const std::vector<T>& all) {
+  std::vector<T> chosen;
+  for (const std::size_t k : evenly(all.size(), most_pictures)) chosen.push_back(all[k]);
+  return chosen;
+}
+
+std::string degrees(double value) { return std::isfinite(value) ? fixed_text(value, 1) + "°" : "–"; }
+std::string picoseconds(double value) { return number_text(value) + " ps"; }
+
+// --- Charts of the log --------------------------------------------------------------------------------------
+
+using LogValue = std::function<double(const LogRow&)>;
+
+struct Trace {
+  std::string name;
+  LogValue value;
+  int colour = 0;
+  bool dashed = false;
+};
+
+struct Panel {
+  std::string title;
+  std::string caption;  // HTML
+  ChartAxis axis;
+  std::vector<Trace> traces;
+  bool steps = false;
+  bool since_start = false;  // the chart shows changes, the table the values themselves
+};
+
+double potential(const LogRow& r) { return r.stretch + r.shear + r.bend + r.twist + r.vdw; }
+double total(const LogRow& r) { return potential(r) + r.kinetic; }
+
+// A relaxation has steps, but no time.
+struct Clock {
+  ChartAxis axis;
+  double LogRow::*value;
+};
+
+Clock clock_of(const std::vector<LogRow>& log) {
+  double first = 0, last = 0;
+  if (!log.empty()) first = log.front().time, last = log.back().time;
+  if (log.size() > 1 && !(last > first) && log.back().step > log.front().step)
+    return {{"step", "", true}, &LogRow::step};
+  return {{"time", "ps", false}, &LogRow::time};
+}
+
+std::vector<double> values_of(const std::vector<LogRow>& log, const LogValue& value) {
+  std::vector<double> values;
+  for (const LogRow& row : log) values.push_back(value(row));
+  return values;
+}
+
+void take_first_off(std::vector<double>& values) {
+  const auto first = std::find_if(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+  const double origin = first == values.end() ? 0 : *first;
+  for (double& v : values) v -= origin;
+}
+
+std::vector<ChartBand> stages(const ReportInput& in) {
+  if (!(in.ramp_end_ps > 0) || in.log.size() < 2) return {};
+  std::vector<ChartBand> bands{{in.log.front().time, in.ramp_end_ps, "loading", false}};
+  if (in.log.back().time > in.ramp_end_ps) bands.push_back({in.ramp_end_ps, in.log.back().time, "holding", true});
+  return bands;
+}
+
+LineChart chart_of(const ReportInput& in, const Panel& panel, const Clock& clock) {
+  LineChart chart;
+  chart.title = panel.title;
+  chart.x = clock.axis;
+  chart.y = panel.axis;
+  if (clock.value == &LogRow::time) chart.bands = stages(in);
+  const std::vector<double> x = values_of(in.log, [&](const LogRow& r) { return r.*clock.value; });
+  for (const Trace& trace : panel.traces) {
+    ChartLine line{trace.name, x, values_of(in.log, trace.value), trace.colour, trace.dashed, panel.steps};
+    if (panel.since_start) take_first_off(line.y);
+    chart.lines.push_back(std::move(line));
+  }
+  return chart;
+}
+
+std::string with_unit(const std::string& name, const std::string& unit) {
+  return unit.empty() ? name : fmt::format("{} ({})", name, unit);
+}
+
+std::string not_drawn(const std::string& title) {
+  return fmt::format(
+      "<figure><h3>{}</h3>\n<p class=\"none\">Not drawn: there are fewer than two values.</p></figure>\n",
+      escape_markup(title));
+}
+
+std::string log_figure(const ReportInput& in, const Panel& panel, Figures& figures) {
+  const Clock clock = clock_of(in.log);
+  const LineChart chart = chart_of(in, panel, clock);
+  if (!can_draw(chart)) return not_drawn(panel.title);
+  std::vector<TableColumn> columns{{with_unit(clock.axis.quantity, clock.axis.unit), chart.lines[0].x}};
+  for (const Trace& trace : panel.traces)
+    columns.push_back({with_unit(trace.name, panel.axis.unit), values_of(in.log, trace.value)});
+  return fmt::format("<figure><h3>{}</h3>\n", escape_markup(panel.title)) + chart_svg(chart) +
+         figures.caption(panel.caption) + data_table(columns, "Every row and column is in log.csv.") +
+         "</figure>\n";
+}
+
+Panel bond_energies() {
+  return {"Energy of the bonds",
+          "Elastic energy of all bonds, by kind of deformation.",
+          {"energy", "eV", false},
+          {{"stretch", [](const LogRow& r) { return r.stretch; }, 2},
+           {"shear", [](const LogRow& r) { return r.shear; }, 4},
+           {"bend", [](const LogRow& r) { return r.bend; }, 0},
+           {"twist", [](const LogRow& r) { return r.twist; }, 1}}};
+}
+
+Panel other_energies(const std::vector<LogRow>& log) {
+  std::string caption =
+      "Change since the start of the van der Waals energy between the tubes, the kinetic energy and the total.";
+  if (!log.empty())
+    caption += fmt::format(" At the start: van der Waals {} eV, kinetic {} eV, total {} eV.",
+                           number_text(log.front().vdw, 6), number_text(log.front().kinetic, 5),
+                           number_text(total(log.front()), 6));
+  return {"Contact, kinetic and total energy",
+          caption,
+          {"change of energy", "eV", false},
+          {{"van der Waals", [](const LogRow& r) { return r.vdw; }, 3},
+           {"kinetic", [](const LogRow& r) { return r.kinetic; }, 2},
+           {"total", total, 5}},
+          false,
+          true};
+}
+
+Panel packing_charge() {
+  return {"Packing charge",
+          "Q = Σ (6 − neighbours) over the internal tubes of the middle section: the sum of five-fold (+1) and "
+          "seven-fold (−1) defects. Neighbours by distance (solid), and by Delaunay triangulation (dashed), "
+          "which takes distances in the plane of the section and misleads beyond β = 54°.",
+          {"Q", "", true},
+          {{"distance", [](const LogRow& r) { return r.charge; }, 1},
+           {"Delaunay", [](const LogRow& r) { return r.charge_delaunay; }, 0, true}},
+          true};
+}
+
+Panel twist_angle() {
+  return {"Twist angle",
+          "Mean angle β of the outermost tubes to the axis of the rope, over its middle third.",
+          {"β", "°", false},
+          {{"β", [](const LogRow& r) { return r.beta; }, 0}}};
+}
+
+Panel end_twists() {
+  return {"Twist, end to end",
+          "Physical: stored in the bonds along a tube, mean over the tubes. Geometric: rotation of the tubes about "
+          "the centre line of the rope. Positive is right-handed.",
+          {"twist", "°", false},
+          {{"physical", [](const LogRow& r) { return r.physical_twist; }, 1},
+           {"geometric", [](const LogRow& r) { return r.geometric_twist; }, 0}}};
+}
+
+Panel amplitude() {
+  return {
+      "Deflection of the rope",
+      "Largest distance of the centre line from its chord. Where it grows to the radius of the rope and beyond, "
+      "the rope as a whole has buckled.",
+      {"amplitude", "nm", false},
+      {{"amplitude", [](const LogRow& r) { return r.amplitude; }, 0}}};
+}
+
+Panel windings() {
+  return {"Windings of the centre line",
+          "Turns of the centre line about its chord, positive where right-handed: the helix of a buckled rope.",
+          {"windings", "", false},
+          {{"windings", [](const LogRow& r) { return r.windings; }, 1}}};
+}
+
+Panel work_and_heat() {
+  return {"Work and dissipation",
+          "Work done by the loads, and energy taken out by the damping, since the start.",
+          {"energy", "eV", false},
+          {{"work", [](const LogRow& r) { return r.work; }, 0},
+           {"dissipated", [](const LogRow& r) { return r.dissipated; }, 1}}};
+}
+
+std::string balance_words(const std::vector<LogRow>& log) {
+  double largest = 0, work = 0;
+  for (const LogRow& r : log) {
+    if (std::isfinite(r.balance)) largest = std::max(largest, std::abs(r.balance));
+    if (std::isfinite(r.work)) work = std::max(work, std::abs(r.work));
+  }
+  std::string text = fmt::format("The largest deviation is {} eV", number_text(largest, 3));
+  if (work > 0) text += fmt::format(", {} % of the work done", number_text(100 * largest / work, 2));
+  return text + ".";
+}
+
+Panel balance(const std::vector<LogRow>& log) {
+  return {"Energy balance",
+          "Total energy − work + dissipated energy, less its first value. It would stay at zero if time were "
+          "continuous; what is left is the error of the integration. " +
+              balance_words(log),
+          {"balance", "eV", false},
+          {{"balance", [](const LogRow& r) { return r.balance; }, 5}}};
+}
+
+// When the k-th of n pictures is from: a relaxation has no times, only a beginning and an end.
+std::string when(const ReportInput& in, std::size_t k, std::size_t n, double time) {
+  if (clock_of(in.log).value == &LogRow::time) return picoseconds(time);
+  return k == 0 ? "start" : k + 1 == n ? "end" : "between";
+}
+
+std::string tag(const ReportInput& in, const std::string& when, double beta) {
+  return "<div class=\"tag\">" + when + (in.tubes == 1 ? "" : " &#160; β = " + degrees(beta)) + "</div>\n";
+}
+
+// --- Radius along the rope ----------------------------------------------------------------------------------
+
+std::string radius_figure(const ReportInput& in, const std::vector<ReportSection>& sections, Figures& figures) {
+  const std::string title = "Radius along the rope";
+  LineChart chart;
+  chart.title = title;
+  chart.x = {"position along the rope", "nm", false};
+  chart.y = {"outer radius", "nm", false};
+  std::vector<TableColumn> columns;
+  for (std::size_t k = 0; k < sections.size(); ++k) {
+    ChartLine line;
+    line.name = when(in, k, sections.size(), sections[k].time_ps);
+    line.y = sections[k].radius_profile;
+    for (std::size_t i = 0; i < line.y.size(); ++i) line.x.push_back(static_cast<double>(i) * in.element_length);
+    line.colour = sequential_colour(k, sections.size());
+    if (line.y.empty() || (!columns.empty() && columns[0].values.size() != line.y.size())) continue;
+    if (columns.empty()) columns.push_back({"position (nm)", line.x});
+    columns.push_back({line.name + " (nm)", line.y});
+    chart.lines.push_back(std::move(line));
+  }
+  if (!can_draw(chart)) return not_drawn(title);
+  return fmt::format("<figure><h3>{}</h3>\n", title) + chart_svg(chart) +
+         figures.caption(
+             "Distance of the outermost tube from the centre line, plus the radius of a tube, at the "
+             "times of the cross-sections. The position is counted in elements from the lower end.") +
+         data_table(columns, "The frames are in frames.lammpstrj.") + "</figure>\n";
+}
+
+// --- Pictures -----------------------------------------------------------------------------------------------
+
+// Short ropes stand side by side, a little smaller where that makes them fit.
+RopeCamera camera_for_page(const std::vector<RopeView>& views, double tube_radius) {
+  constexpr double page = 1040, gap = 28;
+  RopeCamera camera = rope_camera(views, tube_radius, page);
+  for (const int columns : {2, 3, 4}) {
+    const double column = (page - (columns - 1) * gap) / columns, width = camera.width * camera.scale;
+    if (width > column && width < 1.25 * column) camera.scale = column / camera.width;
+  }
+  return camera;
+}
+
+std::string views_figure(const ReportInput& in, Figures& figures) {
+  const std::vector<RopeView> views = some(in.views);
+  if (views.empty()) return paragraph("There are no frames to draw the rope from.");
+  const RopeCamera camera = camera_for_page(views, in.tube_radius);
+  std::string html = "<figure class=\"strip\"><div class=\"views\">\n";
+  for (std::size_t k = 0; k < views.size(); ++k) {
+    const std::string name = fmt::format("v{}t", static_cast<char>('a' + k));
+    html += "<div class=\"view\">" + tag(in, when(in, k, views.size(), views[k].time_ps), views[k].beta_deg);
+    html += rope_picture(views[k], camera, in.tube_radius, name, k + 1 == views.size()) + "</div>\n";
+  }
+  std::string caption =
+      std::string(
+          "The rope from the side, at the same scale and from the same direction; the tubes are drawn "
+          "at their radius. ") +
+      fmt::format("The bar is {:g} nm long.", scale_bar_length(camera));
+  html += "</div>\n";
+  if (camera.moment_eV > 0) {
+    html += moment_bar(camera.moment_eV);
+    caption +=
+        " Colour: modulus of the bending moment of the tube; the scale ends where 99.5 % of the elements lie "
+        "below.";
+  }
+  return html + figures.caption(caption) + "</figure>\n";
+}
+
+std::string key_of(const char* name, const char* words) {
+  return fmt::format(
+      "<span class=\"key\"><svg class=\"section\" width=\"14\" height=\"14\" viewBox=\"0 0 14 14\">"
+      "<circle class=\"{}\" cx=\"7\" cy=\"7\" r=\"6\"/></svg> {}</span>\n",
+      name, words);
+}
+
+std::string section_words(const ReportSection& s) {
+  std::string html = fmt::format("<div><b>Q = {}</b> &#160; Delaunay {}</div>", fixed_text(s.section.charge, 0),
+                                 fixed_text(s.section.charge_delaunay, 0));
+  if (s.section.voids > 0)
+    html += fmt::format("<div class=\"soft\">{} {}, {} nm²</div>", s.section.voids,
+                        s.section.voids == 1 ? "void" : "voids", number_text(s.section.void_area, 3));
+  return html;
+}
+
+std::string sections_figure(const ReportInput& in, const std::vector<ReportSection>& sections, Figures& figures) {
+  double half = 0;
+  for (const ReportSection& s : sections) half = std::max(half, section_half_width(s.section, in.tube_radius));
+  const bool few = sections.size() <= 4;  // otherwise six side by side
+  std::string html = fmt::format("<figure><div class=\"row{}\">\n", few ? " few" : "");
+  for (std::size_t k = 0; k < sections.size(); ++k)
+    if (!sections[k].section.points.empty())
+      html += "<div class=\"cut\">" +
+              section_picture(sections[k].section, in.shells, in.tube_radius, half, few ? 220 : 150) +
+              tag(in, when(in, k, sections.size(), sections[k].time_ps), sections[k].beta_deg) +
+              section_words(sections[k]) + "</div>\n";
+  html += "</div><div class=\"keys\">" + key_of("n6", "internal, six neighbours") + key_of("n5", "five") +
+          key_of("n7", "seven") + key_of("nx", "another number") + key_of("outermost", "outermost") + "</div>\n";
+  return html +
+         figures.caption(
+             "The middle section, normal to the axis of the rope, to scale: circles have the radius "
+             "of a tube. A tube that leans by an angle is cut as a longer ellipse, which is not "
+             "drawn. Colour: number of neighbours by distance.") +
+         "</figure>\n";
+}
+
+bool any_internal(const RopeShells& shells) {
+  return std::any_of(shells.internal.begin(), shells.internal.end(), [](char c) { return c != 0; });
+}
+
+std::string sections_part(const ReportInput& in, const std::vector<ReportSection>& sections, Figures& figures) {
+  const bool any = std::any_of(sections.begin(), sections.end(),
+                               [](const ReportSection& s) { return s.section.points.size() > 1; });
+  if (!any)
+    return paragraph("There are no cross-sections: a single tube, or tubes of different lengths, have none.");
+  return sections_figure(in, sections, figures);
+}
+
+// --- Words --------------------------------------------------------------------------------------------------
+
+std::string ending(const ReportInput& in) {
+  std::string reason = in.reason.empty() ? "" : ": " + escape_markup(in.reason);
+  while (!reason.empty() && reason.back() == '.') reason.pop_back();
+  if (in.status == "finished")
+    return (reason.empty() ? "The run finished as planned" : "The run finished" + reason) + ".";
+  if (in.status == "interrupted") return "The run was interrupted" + reason + ". This page shows it up to there.";
+  if (in.status == "not relaxed") return "The relaxation did not come to rest" + reason + ".";
+  if (in.status == "stopped") return "The run was " + in.reason + ". This page shows it up to there.";
+  if (in.status == "refined") return "The run ended here" + reason + ".";
+  if (in.status == "failed") return "The run failed" + reason + ". This page shows it up to there.";
+  if (in.status == "running") return "The run had not ended when this page was made" + reason + ".";
+  return "How the run ended is not known" + reason + ".";
+}
+
+// Sentences that hold for what is there, and nothing of what is not.
+std::string summary(const ReportInput& in) {
+  if (in.log.empty()) return ending(in) + " Its log has no rows.";
+  const LogRow& r = in.log.back();
+  const Clock clock = clock_of(in.log);
+  std::string html = clock.value == &LogRow::step ? fmt::format("After {} steps", fixed_text(r.step, 0))
+                                                  : fmt::format("After {}", picoseconds(r.time));
+  if (std::isfinite(r.beta) && in.tubes != 1)
+    html +=
+        fmt::format(" the outermost tubes stand at <b>β = {}</b> to the axis of the rope, and", degrees(r.beta));
+  const double bonds = r.stretch + r.shear + r.bend + r.twist;
+  html += fmt::format(" the bonds hold <b>{} eV</b> (stretch {}, shear {}, bend {}, twist {})", number_text(bonds),
+                      number_text(r.stretch, 3), number_text(r.shear, 3), number_text(r.bend, 3),
+                      number_text(r.twist, 3));
+  html += fmt::format(", the van der Waals contacts <b>{} eV</b>. The kinetic energy is {} eV, the total {} eV.",
+                      number_text(r.vdw), number_text(r.kinetic, 3), number_text(total(r)));
+  if (any_internal(in.shells))
+    html += fmt::format(
+        " The packing charge of the middle section is <b>Q = {}</b> by distance, {} by Delaunay "
+        "triangulation.",
+        fixed_text(r.charge, 0), fixed_text(r.charge_delaunay, 0));
+  return html + " " + ending(in);
+}
+
+struct Limit {
+  const char* what;  // "kinked"
+  double LogRow::*count;
+  std::string beyond;  // HTML: which limit
+  const char* meaning;
+};
+
+std::vector<Limit> limits(const Validity& v) {
+  const auto limit = [](double value, const char* words, const char* unit) {
+    return value > 0 ? fmt::format("{} {}{}", words, number_text(value), unit)
+                     : std::string(words) + " the limit of the parameter set";
+  };
+  return {
+      {"Kinked", &LogRow::kinked, limit(v.kink_curvature, "curvature beyond", " nm⁻¹"),
+       "A real tube kinks there: its wall folds and it bends on at a fraction of the stiffness. The model bends "
+       "on elastically, and overestimates the bending energy."},
+      {"Overtwisted", &LogRow::overtwisted, limit(v.twist_collapse, "radius times twist per length beyond", ""),
+       "The wall of a real tube collapses into a ribbon there. The model stores more torsional energy than the "
+       "tube would."},
+      {"Overstretched", &LogRow::overstretched, limit(v.stretch, "strain beyond", ""),
+       "In compression the wall of a real tube buckles there; in tension the linear law overestimates the force."}};
+}
+
+std::string moment_words(const std::vector<LogRow>& log, const LogRow& row) {
+  return clock_of(log).value == &LogRow::step ? "at step " + fixed_text(row.step, 0)
+                                              : "at " + picoseconds(row.time);
+}
+
+std::string limit_words(const ReportInput& in, const Limit& limit) {
+  const double last = in.log.back().*limit.count;
+  const LogRow* worst = &in.log.front();
+  for (const LogRow& r : in.log)
+    if (r.*limit.count > worst->*limit.count) worst = &r;
+  const double most = worst->*limit.count;
+  const std::string of = in.bonds > 0 ? fmt::format(" of {} bonds", fixed_text(in.bonds, 0)) : " bonds";
+  std::string html = fmt::format("<li><b>{}</b> ({}): ", limit.what, limit.beyond);
+  if (!(most > 0)) return html + (in.bonds > 0 ? "none" + of : "no bond") + " at any logged time.</li>\n";
+  html += fixed_text(last, 0) + of + " at the end";
+  if (in.bonds > 0) html += fmt::format(" ({} %)", number_text(100 * last / in.bonds, 2));
+  if (most > last) html += fmt::format("; most {}: {}", moment_words(in.log, *worst), fixed_text(most, 0));
+  return html + ". " + limit.meaning + "</li>\n";
+}
+
+std::string passed_words(const LimitRecord& r) {
+  const std::string unit = r.unit.empty() ? "" : " " + escape_markup(r.unit);
+  return fmt::format("<li><b>limits.{}</b>, {}{}: passed at {}; largest {}{} at {}, tube {}, element {}.</li>\n",
+                     escape_markup(r.key), number_text(r.limit), unit, picoseconds(r.passed_at_ps),
+                     number_text(r.largest), unit, picoseconds(r.largest_at_ps), r.tube, r.element);
+}
+
+std::string limits_part(const ReportInput& in) {
+  if (in.log.empty()) return paragraph("The log has no rows, so nothing is known.");
+  std::string html = paragraph(
+      "Elements are rigid and bonds are elastic without end; a tube is not. These bonds are beyond what the "
+      "parameter set gives as the limits of the model; what they do is not to be trusted.");
+  html += "<ul>\n";
+  for (const Limit& limit : limits(in.validity)) html += limit_words(in, limit);
+  double twist = 0;
+  for (const LogRow& r : in.log)
+    if (std::isfinite(r.largest_bond_twist)) twist = std::max(twist, r.largest_bond_twist);
+  html += fmt::format(
+      "<li>Largest twist of one bond: {}. The torque of a bond peaks at 90°, and beyond it the bond "
+      "would slip.</li>\n",
+      degrees(twist));
+  for (const LimitRecord& r : in.watched.limits)
+    if (r.passed) html += passed_words(r);
+  return html + "</ul>\n";
+}
+
+std::string energy_words(const EnergyParts& before, const EnergyParts& after) {
+  std::string words;
+  const auto add = [&](const char* name, double from, double to) {
+    words += fmt::format("{}{} {} → {}", words.empty() ? "" : ", ", name, number_text(from, 5), number_text(to, 5));
+  };
+  const Energies &a = before.potential, &b = after.potential;
+  add("stretch", a.stretch, b.stretch);
+  add("shear", a.shear, b.shear);
+  add("bend", a.bend, b.bend);
+  add("twist", a.twist, b.twist);
+  add("van der Waals", a.vdw, b.vdw);
+  add("kinetic", before.kinetic, after.kinetic);
+  return words;
+}
+
+// Nothing where no element was ever split.
+std::string refinements_part(const std::vector<RefinementRecord>& refinements) {
+  if (refinements.empty()) return "";
+  std::string html =
+      heading("Elements split on the way") +
+      paragraph(
+          "A limit was passed that shorter elements cure: every element was split in two, and the "
+          "run went on in a directory of its own. The jump of energy is the difference between "
+          "the two models of the same state, most of it at the ends, where half an element more of each tube "
+          "may now bend, twist and stretch; the energy balance leaves it out.") +
+      "<ul>\n";
+  for (const RefinementRecord& r : refinements)
+    html += fmt::format(
+        "<li>At {}: <b>{}</b>, {} elements of {} nm, goes on as <b>{}</b>, {} elements of {} nm. Energy "
+        "{} → {} eV ({}).</li>\n",
+        picoseconds(r.time_ps), escape_markup(r.from), r.elements_before, number_text(r.length_before),
+        escape_markup(r.to), r.elements_after, number_text(r.length_after), number_text(r.before.total(), 6),
+        number_text(r.after.total(), 6), energy_words(r.before, r.after));
+  return html + "</ul>\n";
+}
+
+// --- The page -----------------------------------------------------------------------------------------------
+
+std::string log_part(const ReportInput& in, const std::vector<ReportSection>& sections, Figures& figures) {
+  if (in.log.size() < 2)
+    return heading("Course of the run") + paragraph(in.log.empty()
+                                                        ? "The log has no rows, so there are no charts."
+                                                        : "The log has one row, so there are no charts over time.");
+  const auto panel = [&](const Panel& p) { return log_figure(in, p, figures); };
+  const auto pair = [](const std::string& a, const std::string& b) {
+    return "<div class=\"pair\">\n" + a + b + "</div>\n";
+  };
+  // Named one by one: the order in which arguments are evaluated is not fixed, and figures are numbered.
+  std::string html = heading("Energies");
+  const std::string bonds = panel(bond_energies()), others = panel(other_energies(in.log));
+  html += pair(bonds, others) + heading("Packing and twist");
+  const bool packed = any_internal(in.shells), single = in.tubes == 1;
+  if (!packed)
+    html +=
+        paragraph("No packing charge: no tube is internal, that is, has six neighbours in the untwisted state.");
+  const std::string charge = packed ? panel(packing_charge()) : "", beta = single ? "" : panel(twist_angle());
+  html += pair(charge, beta);
+  const std::string twists = panel(end_twists());
+  const std::string radius = single ? "" : radius_figure(in, sections, figures);
+  html += pair(twists, radius) + heading("Buckling of the rope");
+  const std::string deflection = panel(amplitude()), turns = panel(windings());
+  html += pair(deflection, turns) + heading("Energy balance");
+  const std::string work = panel(work_and_heat()), error = panel(balance(in.log));
+  return html + pair(work, error);
+}
+
+}  // namespace
+
+std::string report_html(const ReportInput& in) {
+  Figures figures;
+  const std::vector<ReportSection> sections = some(in.sections);
+  std::string html = page_head(in.name) +
+                     "<body>\n<main>\n<p class=\"kicker\">Ropewalk: report on a run</p>\n<h1>" +
+                     escape_markup(in.name) + "</h1>\n<p class=\"lead\">" + summary(in) + "</p>\n";
+  html += warnings_part(in.warnings);
+  html += heading("The rope") + views_figure(in, figures);
+  html += heading("Cross-sections") + sections_part(in, sections, figures);
+  html += log_part(in, sections, figures);
+  html += heading("Beyond the limits of the model") + limits_part(in);
+  html += refinements_part(in.watched.refinements);
+  html += heading("The run") + facts_part(in.facts);
+  html += heading("Parameters") + parameters_part(in.parameter_name, in.parameter_reference, in.parameters);
+  return html + "</main>\n</body>\n</html>\n";
+}
+
+}  // namespace ropewalk

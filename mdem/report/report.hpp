@@ -1,0 +1,51 @@
+// The page about one run: one HTML file without scripts or references to anything outside it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "io/limits_file.hpp"
+#include "io/log.hpp"
+#include "model/parameters.hpp"
+#include "observe/observe.hpp"
+#include "report/page.hpp"
+#include "report/svg.hpp"
+
+namespace ropewalk {
+
+struct ReportSection {
+  double time_ps = 0;
+  double beta_deg = 0;
+  CrossSection section;
+  std::vector<double> radius_profile;  // nm, per element index; may be empty
+};
+
+struct ReportInput {
+  std::string name;
+  std::string status;  // as in the manifest: running, finished, interrupted, failed, not relaxed
+  std::string reason;  // in words; may be empty
+  std::vector<std::string> warnings;
+  std::vector<ReportFact> facts;  // scene, program, how long it took: in the order of the page
+
+  std::vector<LogRow> log;
+  double ramp_end_ps = 0;     // end of the loading stage; 0: no such stage
+  double tube_radius = 0;     // nm
+  double spacing = 0;         // nm
+  double element_length = 0;  // nm
+  int tubes = 0;
+  int bonds = 0;
+  Validity validity;
+  LimitsFile watched;  // empty where the run has no limits.json
+
+  RopeShells shells;                    // of the untwisted rope
+  std::vector<ReportSection> sections;  // in the order of time; of more than six, six are shown
+  std::vector<RopeView> views;          // likewise
+
+  std::string parameter_name;
+  std::string parameter_reference;
+  std::vector<Quantity> parameters;
+};
+
+std::string report_html(const ReportInput& input);
+
+}  // namespace ropewalk

@@ -1,0 +1,464 @@
+#include "report/svg.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+
+#include "report/scatter.hpp"
+
+namespace ropewalk {
+namespace {
+
+constexpr double font = 12;            // pixels
+constexpr double label_distance = 15;  // between baselines
+constexpr std::size_t most_points = 400;
+
+std::string superscript(int exponent) {
+  static const char* digits[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+  std::string text = exponent < 0 ? "⁻" : "";
+  for (const char c : std::to_string(std::abs(exponent))) text += digits[c - '0'];
+  return text;
+}
+
+std::string with_true_minus(const std::string& text) {
+  return !text.empty() && text[0] == '-' ? "−" + text.substr(1) : text;
+}
+
+// Thin spaces between groups of three before the decimal point, from five digits on.
+std::string grouped(std::string text) {
+  const std::size_t begin = !text.empty() && text[0] == '-' ? 1 : 0;
+  const std::size_t point = std::min(text.find('.'), text.size());
+  if (point - begin < 5) return text;
+  for (std::size_t at = point; at > begin + 3;) {
+    at -= 3;
+    text.insert(at, "\u2009");
+  }
+  return text;
+}
+
+int magnitude(double value) { return value == 0 ? 0 : static_cast<int>(std::floor(std::log10(std::abs(value)))); }
+
+// Width of a text in the page's sans serif, rather too wide than too narrow.
+double text_width(std::string_view text) {
+  double ems = 0;
+  for (const char c : text) {
+    const auto u = static_cast<unsigned char>(c);
+    if ((u & 0xc0) == 0x80) continue;  // the rest of a UTF-8 sequence
+    if (std::string_view(" .,:;'|!ijlftr()I").find(c) != std::string_view::npos)
+      ems += 0.36;
+    else if (std::string_view("mwMW%@").find(c) != std::string_view::npos)
+      ems += 0.92;
+    else
+      ems += u >= 'A' && u <= 'Z' ? 0.72 : 0.59;
+  }
+  return ems * font;
+}
+
+// --- Axes -----------------------------------------------------------------------------------------------
+
+struct Range {
+  double low = std::numeric_limits<double>::infinity();
+  double high = -std::numeric_limits<double>::infinity();
+
+  void take(double v) {
+    low = std::min(low, v);
+    high = std::max(high, v);
+  }
+  double span() const { return high - low; }
+};
+
+struct Scale {
+  Range range;
+  double step = 1;
+  int power = 0;         // ticks are in units of 10^power
+  bool decades = false;  // of logarithms
+  std::vector<double> ticks;
+  std::vector<std::string> labels;
+};
+
+double nice_step(double rough, bool whole) {
+  const double base = std::pow(10.0, std::floor(std::log10(rough)));
+  for (const double m : {1.0, 2.0, 5.0})
+    if (m * base >= rough * 0.999) return whole ? std::max(1.0, m * base) : m * base;
+  return whole ? std::max(1.0, 10 * base) : 10 * base;
+}
+
+int power_of(const Range& range) {
+  const double largest = std::max(std::abs(range.low), std::abs(range.high));
+  if (largest == 0 || (largest >= 0.01 && largest < 1e5)) return 0;
+  return 3 * static_cast<int>(std::floor(magnitude(largest) / 3.0));
+}
+
+Scale scale_of(const Range& range, int parts, bool whole) {
+  Scale s;
+  s.range = range;
+  s.step = nice_step(range.span() / parts, whole);
+  s.power = power_of(range);
+  const double unit = std::pow(10.0, s.power);
+  const int decimals = std::max(0, -magnitude(s.step / unit * 1.0001));
+  for (double k = std::ceil(range.low / s.step - 1e-6); k * s.step <= range.high + 1e-6 * s.step; k += 1) {
+    s.ticks.push_back(k * s.step);
+    s.labels.push_back(fixed_text(k * s.step / unit, decimals));
+  }
+  return s;
+}
+
+// Of logarithms: decades, and 2 and 5 between them where there are few.
+Scale decades_of(const Range& range) {
+  Scale s;
+  s.range = range;
+  s.decades = true;
+  const std::vector<double> parts = range.span() < 2.5 ? std::vector<double>{1, 2, 5} : std::vector<double>{1};
+  const int every = std::max(1, static_cast<int>(range.span() / 6));
+  for (int k = static_cast<int>(std::floor(range.low)); k <= range.high; k += every)
+    for (const double part : parts) {
+      const double at = k + std::log10(part);
+      if (at < range.low || at > range.high) continue;
+      s.ticks.push_back(at);
+      s.labels.push_back(number_text(part * std::pow(10.0, k), 1));
+    }
+  return s;
+}
+
+// A little air around the data; from zero where they nearly begin there.
+Range y_range(Range r, bool whole) {
+  const double size = std::max(std::abs(r.low), std::abs(r.high));
+  if (r.span() <= 1e-9 * size || size == 0) {
+    const double air = whole || size == 0 ? 1.0 : 0.05 * size;
+    return {r.low - air, r.high + air};
+  }
+  const double air = 0.06 * r.span();
+  const bool from_zero = r.low >= 0 && r.low < 0.35 * r.high;
+  const bool to_zero = r.high <= 0 && r.high > 0.35 * r.low;
+  return {from_zero ? 0 : r.low - air, to_zero ? 0 : r.high + air};
+}
+
+Range with_air(const Range& r) {
+  const double air = std::max(0.06 * r.span(), 0.1);
+  return {r.low - air, r.high + air};
+}
+
+std::string axis_text(const ChartAxis& axis, int power) {
+  const std::string factor = power == 0 ? "" : "10" + superscript(power);
+  if (axis.unit.empty() && factor.empty()) return axis.quantity;
+  const std::string space = axis.unit.empty() || factor.empty() ? "" : " ";
+  return fmt::format("{} ({}{}{})", axis.quantity, factor, space, axis.unit);
+}
+
+// --- Lines ----------------------------------------------------------------------------------------------
+
+struct Point {
+  double x, y;
+};
+using Stretch = std::vector<Point>;  // without a gap
+
+std::vector<Stretch> stretches(const ChartLine& line) {
+  std::vector<Stretch> all(1);
+  for (std::size_t i = 0; i < std::min(line.x.size(), line.y.size()); ++i) {
+    if (std::isfinite(line.x[i]) && std::isfinite(line.y[i]))
+      all.back().push_back({line.x[i], line.y[i]});
+    else if (!all.back().empty())
+      all.emplace_back();
+  }
+  if (all.back().empty()) all.pop_back();
+  return all;
+}
+
+// First and last, and of every bucket between them the lowest and the highest.
+Stretch thinned(const Stretch& points, std::size_t most) {
+  if (points.size() <= most || most < 4) return points;
+  const std::size_t buckets = (most - 2) / 2;
+  const std::size_t inner = points.size() - 2;
+  Stretch out{points.front()};
+  for (std::size_t b = 0; b < buckets; ++b) {
+    const auto begin = points.begin() + 1 + static_cast<std::ptrdiff_t>(b * inner / buckets);
+    const auto end = points.begin() + 1 + static_cast<std::ptrdiff_t>((b + 1) * inner / buckets);
+    const auto [low, high] =
+        std::minmax_element(begin, end, [](const Point& p, const Point& q) { return p.y < q.y; });
+    out.push_back(*std::min(low, high));
+    if (low != high) out.push_back(*std::max(low, high));
+  }
+  out.push_back(points.back());
+  return out;
+}
+
+// The same chart in logarithms where an axis has decades.
+ScatterChart in_logarithms(ScatterChart scatter) {
+  const auto take = [](std::vector<double>& values) {
+    for (double& v : values) v = v > 0 ? std::log10(v) : std::numeric_limits<double>::quiet_NaN();
+  };
+  for (ChartLine& line : scatter.chart.lines) {
+    if (scatter.x_decades) take(line.x);
+    if (scatter.y_decades) take(line.y);
+  }
+  return scatter;
+}
+
+Range x_range(const LineChart& chart) {
+  Range r;
+  for (const ChartLine& line : chart.lines)
+    for (const Stretch& s : stretches(line))
+      for (const Point& p : s) r.take(p.x);
+  return r;
+}
+
+struct Plot {
+  double left = 0, top = 0, right = 0, bottom = 0;
+  Scale x, y;
+
+  double px(double v) const { return left + (v - x.range.low) / x.range.span() * (right - left); }
+  double py(double v) const { return bottom - (v - y.range.low) / y.range.span() * (bottom - top); }
+};
+
+std::string path_of(const Plot& plot, const ChartLine& line) {
+  std::string d;
+  const auto to = std::back_inserter(d);
+  const std::vector<Stretch> all = stretches(line);
+  std::size_t total = 0;
+  for (const Stretch& s : all) total += s.size();
+  for (const Stretch& whole : all) {
+    const Stretch s =
+        thinned(whole, std::max<std::size_t>(4, most_points * whole.size() / std::max<std::size_t>(1, total)));
+    fmt::format_to(to, "M{:.1f} {:.1f}", plot.px(s[0].x), plot.py(s[0].y));
+    if (s.size() == 1) d += "h0";  // a dot, by the round cap
+    if (line.points && s.size() > 1) d += "h0";
+    for (std::size_t i = 1; i < s.size(); ++i) {
+      if (line.points)
+        fmt::format_to(to, "M{:.1f} {:.1f}h0", plot.px(s[i].x), plot.py(s[i].y));
+      else if (line.steps)
+        fmt::format_to(to, "H{:.1f}V{:.1f}", plot.px(s[i].x), plot.py(s[i].y));
+      else
+        fmt::format_to(to, "L{:.1f} {:.1f}", plot.px(s[i].x), plot.py(s[i].y));
+    }
+  }
+  return d;
+}
+
+// --- Labels at the right end ------------------------------------------------------------------------------
+
+struct EndLabel {
+  const ChartLine* line;
+  double end;  // where the line ends
+  double at;   // where its name stands
+};
+
+std::vector<EndLabel> end_labels(const LineChart& chart, const Plot& plot) {
+  std::vector<EndLabel> labels;
+  for (const ChartLine& line : chart.lines) {
+    const std::vector<Stretch> all = stretches(line);
+    if (all.empty()) continue;
+    const double y = plot.py(all.back().back().y);
+    labels.push_back({&line, y, y});
+  }
+  std::stable_sort(labels.begin(), labels.end(),
+                   [](const EndLabel& a, const EndLabel& b) { return a.end < b.end; });
+  // Pushed down, then up again from the bottom: never nearer than a line of text.
+  for (std::size_t i = 1; i < labels.size(); ++i)
+    labels[i].at = std::max(labels[i].at, labels[i - 1].at + label_distance);
+  double limit = plot.bottom;
+  for (auto label = labels.rbegin(); label != labels.rend(); ++label) {
+    label->at = std::min(label->at, limit);
+    limit = label->at - label_distance;
+  }
+  return labels;
+}
+
+std::string stroke_class(const ChartLine& line) {
+  const int colours = categorical_colours + sequential_colours;
+  return fmt::format("line c{}{}", ((line.colour % colours) + colours) % colours,
+                     line.points   ? " points"
+                     : line.dashed ? " dashed"
+                                   : "");
+}
+
+// The names of single points.
+std::string draw_point_labels(const ScatterChart& scatter, const Plot& plot) {
+  std::string text;
+  for (std::size_t l = 0; l < std::min(scatter.labels.size(), scatter.chart.lines.size()); ++l) {
+    const ChartLine& line = scatter.chart.lines[l];
+    const std::vector<std::string>& labels = scatter.labels[l];
+    for (std::size_t i = 0; i < std::min({labels.size(), line.x.size(), line.y.size()}); ++i) {
+      if (labels[i].empty() || !std::isfinite(line.x[i]) || !std::isfinite(line.y[i])) continue;
+      const double x = plot.px(line.x[i]), y = plot.py(line.y[i]);
+      const bool left = x + 8 + text_width(labels[i]) > plot.right;
+      text += fmt::format("<text class=\"soft{}\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", left ? " end" : "",
+                          left ? x - 6 : x + 6, y - 4, escape_markup(labels[i]));
+    }
+  }
+  return text;
+}
+
+std::string draw_labels(const LineChart& chart, const Plot& plot) {
+  std::string text;
+  for (const EndLabel& label : end_labels(chart, plot)) {
+    const std::string leader = label.line->points ? fmt::format("M{:.1f} {:.1f}h0", plot.right + 20, label.at)
+                                                  : fmt::format("M{:.1f} {:.1f}L{:.1f} {:.1f}h14", plot.right + 1,
+                                                                label.end, plot.right + 9, label.at);
+    text += fmt::format("<path class=\"{}\" d=\"{}\"/><text x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n",
+                        stroke_class(*label.line), leader, plot.right + 28, label.at + 4,
+                        escape_markup(label.line->name));
+  }
+  return text;
+}
+
+// --- The parts of a chart ---------------------------------------------------------------------------------
+
+Plot layout(const ScatterChart& scatter) {
+  const LineChart& chart = scatter.chart;
+  Plot plot;
+  Range x = x_range(chart), y;
+  for (const ChartLine& line : chart.lines)
+    for (const Stretch& s : stretches(line))
+      for (const Point& p : s) y.take(p.y);
+  plot.x = scatter.x_decades ? decades_of(with_air(x)) : scale_of(x, 6, chart.x.whole);
+  plot.y = scatter.y_decades ? decades_of(with_air(y)) : scale_of(y_range(y, chart.y.whole), 5, chart.y.whole);
+  double ticks = 0, names = 0;
+  for (const std::string& label : plot.y.labels) ticks = std::max(ticks, text_width(label));
+  for (const ChartLine& line : chart.lines) names = std::max(names, text_width(line.name));
+  plot.left = ticks + 32;
+  plot.right = chart.width - names - 34;
+  plot.top = chart.bands.empty() ? 10 : 24;
+  plot.bottom = chart.height - 42;
+  return plot;
+}
+
+std::string draw_bands(const LineChart& chart, const Plot& plot) {
+  std::string text;
+  for (const ChartBand& band : chart.bands) {
+    if (!std::isfinite(band.from) || !std::isfinite(band.to)) continue;
+    const double from = plot.px(std::max(band.from, plot.x.range.low));
+    const double to = plot.px(std::min(band.to, plot.x.range.high));
+    if (to <= from) continue;
+    text += fmt::format("<rect class=\"{}\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\"/>",
+                        band.dark ? "hold" : "load", from, plot.top, to - from, plot.bottom - plot.top);
+    if (text_width(band.label) < to - from)
+      text += fmt::format("<text class=\"soft mid\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>", 0.5 * (from + to),
+                          plot.top - 7, escape_markup(band.label));
+    text += "\n";
+  }
+  return text;
+}
+
+std::string draw_axes(const LineChart& chart, const Plot& plot) {
+  std::string text;
+  const auto to = std::back_inserter(text);
+  for (std::size_t k = 0; k < plot.y.ticks.size(); ++k) {
+    const double y = plot.py(plot.y.ticks[k]);
+    fmt::format_to(
+        to,
+        "<path class=\"{}\" d=\"M{:.1f} {:.1f}H{:.1f}\"/><text class=\"end\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n",
+        plot.y.ticks[k] == 0 && !plot.y.decades ? "zero" : "grid", plot.left, y, plot.right, plot.left - 6, y + 4,
+        plot.y.labels[k]);
+  }
+  for (std::size_t k = 0; k < plot.x.ticks.size(); ++k) {
+    const double x = plot.px(plot.x.ticks[k]);
+    fmt::format_to(
+        to,
+        "<path class=\"axis\" d=\"M{:.1f} {:.1f}v4\"/><text class=\"mid\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", x,
+        plot.bottom, x, plot.bottom + 18, plot.x.labels[k]);
+  }
+  fmt::format_to(to, "<path class=\"axis\" d=\"M{:.1f} {:.1f}H{:.1f}\"/>", plot.left, plot.bottom, plot.right);
+  fmt::format_to(to, "<text class=\"mid\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>", 0.5 * (plot.left + plot.right),
+                 plot.bottom + 36, escape_markup(axis_text(chart.x, plot.x.power)));
+  fmt::format_to(to, "<text class=\"mid\" transform=\"translate(13 {:.1f}) rotate(-90)\">{}</text>\n",
+                 0.5 * (plot.top + plot.bottom), escape_markup(axis_text(chart.y, plot.y.power)));
+  return text;
+}
+
+}  // namespace
+
+std::string fixed_text(double value, int decimals) {
+  if (std::isnan(value)) return "–";
+  if (std::isinf(value)) return value < 0 ? "−∞" : "∞";
+  std::string text = fmt::format("{:.{}f}", value, decimals);
+  if (text.find_first_not_of("-0.") == std::string::npos && text[0] == '-') text.erase(0, 1);  // no -0.0
+  return with_true_minus(grouped(text));
+}
+
+std::string number_text(double value, int digits) {
+  if (!std::isfinite(value) || value == 0) return fixed_text(value, 0);
+  const int power = magnitude(value);
+  if (power < -4 || power > 8) {
+    const double mantissa = value / std::pow(10.0, power);
+    return with_true_minus(fmt::format("{:.{}g}", mantissa, digits)) + "·10" + superscript(power);
+  }
+  std::string text = fmt::format("{:.{}f}", value, std::max(0, digits - 1 - power));
+  if (text.find('.') != std::string::npos) {
+    text.erase(text.find_last_not_of('0') + 1);
+    if (text.back() == '.') text.pop_back();
+  }
+  return with_true_minus(grouped(text));
+}
+
+std::string viridis(double at) {
+  static const double table[9][3] = {{68, 1, 84},    {71, 45, 123}, {59, 82, 139},  {44, 114, 142}, {33, 145, 140},
+                                     {40, 174, 128}, {94, 201, 98}, {173, 220, 48}, {253, 231, 37}};
+  const double s = 8 * std::min(1.0, std::max(0.0, std::isnan(at) ? 0.0 : at));
+  const int k = std::min(7, static_cast<int>(s));
+  std::string text = "#";
+  for (int c = 0; c < 3; ++c)
+    text += fmt::format("{:02x}",
+                        static_cast<int>(std::lround(table[k][c] + (s - k) * (table[k + 1][c] - table[k][c]))));
+  return text;
+}
+
+int sequential_colour(std::size_t k, std::size_t n) {
+  if (n < 2) return categorical_colours;
+  return categorical_colours + static_cast<int>(k * (sequential_colours - 1) / (n - 1));
+}
+
+std::string svg_css() {
+  std::string css =
+      R"(:root{--paper:#fff;--ink:#1c1e22;--soft:#5b616e;--rule:#d5d8de;--grid:#d9dce2;
+--load:#f2f3f5;--hold:#e2e5ea;
+--c0:#0072b2;--c1:#d55e00;--c2:#009e73;--c3:#b0479a;--c4:#9a7500;--c5:#3f4a5a;
+--c6:#440154;--c7:#414487;--c8:#2a788e;--c9:#22a884;--c10:#5fae3c;--c11:#b5a51a}
+@media screen and (prefers-color-scheme:dark){
+:root{--paper:#16181c;--ink:#e6e7ea;--soft:#a3a9b5;--rule:#3a3f49;--grid:#333842;
+--load:#1e2127;--hold:#282c34;
+--c0:#5ab4e6;--c1:#ff8f52;--c2:#3fcf9f;--c3:#e28ccb;--c4:#e3bb4a;--c5:#b9c0cc;
+--c6:#8a78d0;--c7:#6c8fd8;--c8:#3fa0b8;--c9:#35c59b;--c10:#86d957;--c11:#f2e03a}}
+.chart,.section,.bar{font:12px "Helvetica Neue",Helvetica,Arial,"Liberation Sans",sans-serif;
+font-variant-numeric:tabular-nums;max-width:100%;height:auto}
+.chart text,.section text,.bar text{fill:var(--ink)}
+.mid{text-anchor:middle}.end{text-anchor:end}.chart .soft{fill:var(--soft)}
+.axis{stroke:var(--soft);fill:none}.grid{stroke:var(--grid);stroke-width:.7}
+.zero{stroke:var(--soft);stroke-width:.9}
+.load{fill:var(--load)}.hold{fill:var(--hold)}
+.line{fill:none;stroke-width:1.7;stroke-linejoin:round;stroke-linecap:round}
+.points{stroke-width:5.5}
+.dashed{stroke-dasharray:5 3.5;stroke-linecap:butt}
+.n5{fill:#d7352f}.n7{fill:#2b6cc4}.nx{fill:#e0a010}.n6{fill:#6b7078}.outermost{fill:#d4d7dc}
+.section circle{stroke:#4a4e55;stroke-width:.5}
+)";
+  for (int k = 0; k < categorical_colours + sequential_colours; ++k)
+    css += fmt::format(".c{0}{{stroke:var(--c{0})}}", k);
+  return css + "\n";
+}
+
+bool can_draw(const LineChart& chart) {
+  const Range r = x_range(chart);
+  return r.span() > 1e-9 * std::max(std::abs(r.low), std::abs(r.high));  // false where there are no points
+}
+
+std::string chart_svg(const LineChart& chart) { return scatter_svg({chart, false, false, {}}); }
+
+std::string scatter_svg(const ScatterChart& drawn) {
+  const ScatterChart scatter = in_logarithms(drawn);
+  const LineChart& chart = scatter.chart;
+  if (!can_draw(chart)) return "";
+  const Plot plot = layout(scatter);
+  std::string text = fmt::format(
+      "<svg class=\"chart\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\" role=\"img\" "
+      "aria-label=\"{2}\">\n",
+      chart.width, chart.height, escape_markup(chart.title));
+  text += draw_bands(chart, plot) + draw_axes(chart, plot);
+  for (const ChartLine& line : chart.lines)
+    text += fmt::format("<path class=\"{}\" d=\"{}\"/>\n", stroke_class(line), path_of(plot, line));
+  return text + draw_point_labels(scatter, plot) + draw_labels(chart, plot) + "</svg>\n";
+}
+
+}  // namespace ropewalk

@@ -1,0 +1,107 @@
+// Pictures as SVG text: line charts, side views of a rope, cross-sections. No dates, no randomness: the same
+// data give the same bytes. Charts and sections take their colours from svg_css(), which a page includes once
+// and which follows the reader's light or dark setting; rope_svg() is a file that stands alone.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "io/markup.hpp"
+#include "observe/observe.hpp"
+
+namespace ropewalk {
+
+// --- Text ---
+
+// With so many digits, a true minus sign and 10 to a power where that is shorter; a dash for NaN.
+std::string number_text(double value, int digits = 4);
+// With so many decimals, for columns; groups of three from 10 000 on.
+std::string fixed_text(double value, int decimals);
+
+// Rules for everything below and the variables --paper, --ink, --soft, --rule that a page may use too.
+std::string svg_css();
+
+// "#rrggbb" of the viridis map; 0..1, else the nearer end.
+std::string viridis(double at);
+
+// --- Line charts ---
+
+inline constexpr int categorical_colours = 6;  // 0 .. 5, told apart by colour-blind readers
+inline constexpr int sequential_colours = 6;   // 6 .. 11, from early to late
+// The k-th of n lines that follow one another.
+int sequential_colour(std::size_t k, std::size_t n);
+
+struct ChartLine {
+  std::string name;
+  std::vector<double> x, y;  // a NaN interrupts the line
+  int colour = 0;
+  bool dashed = false;
+  bool steps = false;   // holds its value until the next point
+  bool points = false;  // dots, not joined
+};
+
+struct ChartBand {
+  double from = 0, to = 0;
+  std::string label;
+  bool dark = false;
+};
+
+struct ChartAxis {
+  std::string quantity, unit;  // the unit may be empty
+  bool whole = false;          // ticks at integers only
+};
+
+struct LineChart {
+  std::string title;  // read aloud, not shown
+  ChartAxis x, y;
+  std::vector<ChartLine> lines;
+  std::vector<ChartBand> bands;
+  double width = 540, height = 290;  // user units: pixels at full size
+};
+
+// False where no line has two finite points at different x.
+bool can_draw(const LineChart& chart);
+// An <svg> element; empty where it cannot be drawn. At most 400 points a line: of crowded points the lowest
+// and the highest stay.
+std::string chart_svg(const LineChart& chart);
+
+// --- Ropes from the side ---
+
+struct RopeView {
+  double time_ps = 0;
+  double beta_deg = 0;
+  std::vector<std::vector<Vector3>> tubes;                  // nm
+  std::vector<std::vector<double>> bending_moment_eV = {};  // per element; none: shaded by depth alone
+};
+
+// From where, and how large: one camera for several views makes them comparable.
+struct RopeCamera {
+  Vector3 right = Vector3::UnitZ(), up = Vector3::UnitX(), towards = Vector3::UnitY();
+  double left = 0, width = 1;  // nm along `right`
+  double scale = 1;            // pixels per nm
+  double moment_eV = 0;        // upper end of the colours; 0: no view has moments
+};
+// The rope lies across the page, and the plane of its largest deflection in the page.
+RopeCamera rope_camera(const std::vector<RopeView>& views, double tube_radius, double widest = 1040,
+                       double highest = 300);
+
+// An <svg> element of at most 60 kB. `name` makes its ids unique in the page.
+std::string rope_picture(const RopeView& view, const RopeCamera& camera, double tube_radius,
+                         const std::string& name, bool scale_bar);
+double scale_bar_length(const RopeCamera& camera);  // nm
+std::string moment_bar(double moment_eV);           // an <svg> element: the colours and their scale
+
+// A file of its own, on white, with scale bar and colours: for a README or a paper.
+std::string rope_svg(const RopeView& view, double tube_radius, double width = 1200);
+
+// --- Cross-sections ---
+
+// half_width: nm, the same for sections that are to be compared. Classes: n5, n7, nx (internal with another
+// number of neighbours than six), n6, outermost.
+std::string section_picture(const CrossSection& section, const RopeShells& shells, double tube_radius,
+                            double half_width, double pixels = 200);
+double section_half_width(const CrossSection& section, double tube_radius);
+
+}  // namespace ropewalk

@@ -1,0 +1,76 @@
+#include "run/limit_watch.hpp"
+
+#include <fmt/format.h>
+
+#include "model/error.hpp"
+
+namespace ropewalk {
+namespace {
+
+// "deg" with a space before it; nothing for numbers without a unit.
+std::string with_space(const std::string& unit) { return unit.empty() ? "" : " " + unit; }
+
+std::string line_of(const LimitKind& kind, const Topology& topology, const Peak& peak, double time) {
+  const int tube = topology.tube_of(peak.element);
+  return fmt::format(
+      "limit passed at {:.4g} ps, tube {}, element {}: {} {:.4g}{}, beyond limits.{} = {:.4g}: {}; {}", time, tube,
+      peak.element - topology.tube_begin[tube], kind.what, peak.value / kind.unit_size, with_space(kind.unit),
+      kind.key, peak.limit / kind.unit_size, kind.beyond, kind.remedy);
+}
+
+}  // namespace
+
+OnLimit on_limit_of(const std::string& word) {
+  if (word == "warn") return OnLimit::warn;
+  if (word == "stop") return OnLimit::stop;
+  if (word == "refine") return OnLimit::refine;
+  throw InputError({"", 0, "--on-limit"}, fmt::format("there is no '{}'", word), "take warn, stop or refine");
+}
+
+void LimitWatch::take_over(const std::vector<LimitRecord>& earlier, std::int64_t step) {
+  records_ = earlier;
+  for (LimitRecord& r : records_)
+    if (r.passed_at_step > step) r.passed = false;
+}
+
+std::vector<std::string> LimitWatch::look(const Topology& topology, const State& state, const NeighbourList& list) {
+  std::vector<std::string> lines;
+  const Peaks now = peaks(topology, state, list, watched_);
+  records_.resize(limit_count);
+  finer_would_help_ = false;
+  for (std::size_t k = 0; k < limit_count; ++k) {
+    const LimitKind& kind = limit_kinds()[k];
+    const Peak& peak = now[k];
+    LimitRecord& r = records_[k];
+    r.key = kind.key;
+    r.unit = kind.unit;
+    if (peak.element < 0) continue;
+    const double value = peak.value / kind.unit_size;
+    const bool first = peak.passed() && !r.passed;
+    if (r.element < 0 || value > r.largest) {
+      r.limit = peak.limit / kind.unit_size;
+      r.largest = value;
+      r.largest_at_ps = state.time;
+      r.tube = topology.tube_of(peak.element);
+      r.element = peak.element - topology.tube_begin[r.tube];
+    }
+    finer_would_help_ = finer_would_help_ || (peak.passed() && kind.cured_by_finer);
+    if (!first) continue;
+    r.passed = true;
+    r.passed_at_ps = state.time;
+    r.passed_at_step = state.step;
+    lines.push_back(line_of(kind, topology, peak, state.time));
+  }
+  return lines;
+}
+
+std::string passed_words(const std::vector<LimitRecord>& records) {
+  std::string words;
+  for (const LimitRecord& r : records)
+    if (r.passed)
+      words += fmt::format("{}{} up to {:.4g}{} (limit {:.4g})", words.empty() ? "" : ", ", r.key, r.largest,
+                           with_space(r.unit), r.limit);
+  return words;
+}
+
+}  // namespace ropewalk

@@ -1,0 +1,149 @@
+#include "run/run_directory.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+
+#include "io/files.hpp"
+#include "model/error.hpp"
+#include "scene/scene_toml.hpp"
+
+namespace ropewalk {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* checkpoint_title = "ROPEWALK-CHECKPOINT 1 ";
+
+// Only names that a run writes: --force must never take away anything else.
+bool belongs_to_a_run(const std::string& name) {
+  for (const char* known :
+       {"log.csv",         "frames.lammpstrj", "checkpoint.bin",   "manifest.json",    "scene.toml",
+        "parameters.toml", "state.csv",        "report.html",      "failed-state.csv", "paraview",
+        "limits.json",     "lammps.json",      "tubes.csv",        "rope.data",        "in.rope",
+        "README.txt",      "lammps.dump",      "lammps-last.dump", "lammps-rows.csv",  "log.lammps",
+        "rope.restart.a",  "rope.restart.b"})
+    if (name == known) return true;
+  return name.compare(0, 11, "parameters-") == 0;
+}
+
+}  // namespace
+
+void create_run_directory(const RunDirectory& dir, bool force) {
+  std::error_code error;
+  if (fs::exists(dir.path, error)) {
+    if (!fs::is_directory(dir.path, error))
+      throw InputError({dir.path, 0, "--out"}, "exists and is not a directory", "choose another name");
+    if (!fs::is_empty(dir.path, error)) {
+      if (!force)
+        throw InputError(
+            {dir.path, 0, "--out"}, "is not empty",
+            "choose another name, give --force to replace an earlier run, or go on with `ropewalk resume`");
+      for (const auto& entry : fs::directory_iterator(dir.path))
+        if (!belongs_to_a_run(entry.path().filename().string()))
+          throw InputError({dir.path, 0, "--force"},
+                           fmt::format("holds {}, which is not of a run", entry.path().filename().string()),
+                           "choose another directory");
+      for (const auto& entry : fs::directory_iterator(dir.path)) fs::remove_all(entry.path(), error);
+    }
+  }
+  fs::create_directories(dir.path, error);
+  if (error)
+    throw InputError({dir.path, 0, "--out"}, fmt::format("cannot be made: {}", error.message()),
+                     "choose a place that you may write to");
+}
+
+Scene read_run_scene(const RunDirectory& dir) {
+  if (!fs::exists(dir.scene()))
+    throw InputError({dir.path, 0, ""}, "is not the directory of a run (no scene.toml in it)",
+                     "name the directory that `ropewalk run --out` made");
+  std::vector<std::string> sets = {dir.parameters(0)};
+  while (fs::exists(dir.parameters(sets.size()))) sets.push_back(dir.parameters(sets.size()));
+  Scene scene = read_scene(dir.scene(), sets);
+  if (auto* state = std::get_if<StateSource>(&scene.source)) state->file = dir.state();
+  return scene;
+}
+
+void write_checkpoint(const RunDirectory& dir, const RunCheckpoint& c) {
+  std::string body;
+  const auto put = [&](const auto& value) { body.append(reinterpret_cast<const char*>(&value), sizeof value); };
+  put(c.log_bytes);
+  put(c.frame_bytes);
+  put(c.first_energy);
+  put(c.wall_seconds);
+  body += c.simulation;
+  write_file_atomically(dir.checkpoint(), checkpoint_title + hash_hex(body) + "\n" + body);
+}
+
+RunCheckpoint read_checkpoint(const RunDirectory& dir) {
+  const InputError::Place place{dir.checkpoint(), 0, ""};
+  if (!fs::exists(dir.checkpoint()))
+    throw InputError(place, "there is no checkpoint", "start the run with `ropewalk run`");
+  const std::string bytes = read_file(dir.checkpoint());
+  const std::size_t head = std::strlen(checkpoint_title) + 17;
+  const bool titled =
+      bytes.size() > head + 32 && bytes.compare(0, std::strlen(checkpoint_title), checkpoint_title) == 0;
+  if (!titled || bytes.substr(head - 17, 16) != hash_hex(std::string_view(bytes).substr(head)))
+    throw InputError(place, "is damaged or of another version", "start the run anew with `ropewalk run`");
+  RunCheckpoint c;
+  std::size_t at = head;
+  const auto get = [&](auto& value) {
+    std::memcpy(&value, bytes.data() + at, sizeof value);
+    at += sizeof value;
+  };
+  get(c.log_bytes);
+  get(c.frame_bytes);
+  get(c.first_energy);
+  get(c.wall_seconds);
+  c.simulation = bytes.substr(at);
+  return c;
+}
+
+Observer make_observer(const Scene& scene, const Prepared& prepared) {
+  Observer o;
+  o.spacing = prepared.spacing;
+  o.neighbour_radius = scene.observe.neighbour_radius > 0 ? scene.observe.neighbour_radius
+                                                          : 0.5 * (1.0 + std::sqrt(3.0)) * prepared.spacing;
+  o.shells = rope_shells(prepared.topology, prepared.state, o.neighbour_radius);
+  return o;
+}
+
+RopeObservation look(const Observer& o, const Scene& scene, const Topology& topology, const State& state) {
+  return observe(topology, state, o.shells, validities(scene), o.neighbour_radius, o.spacing);
+}
+
+void fill_geometry(const RopeObservation& o, LogRow& r) {
+  r.beta = o.beta / units::degree;
+  r.physical_twist = o.physical_twist / units::degree;
+  r.geometric_twist = o.geometric_twist / units::degree;
+  r.charge = o.middle.charge;
+  r.charge_delaunay = o.middle.charge_delaunay;
+  r.contacts = o.middle.contacts;
+  r.voids = o.middle.voids;
+  r.void_area = o.middle.void_area;
+  r.radius_mid = o.radius_mid;
+  r.radius_end = o.radius_end;
+  r.length = o.length;
+  r.amplitude = o.amplitude;
+  r.windings = o.windings;
+  r.kinked = o.kinked;
+  r.overtwisted = o.overtwisted;
+  r.overstretched = o.overstretched;
+  r.largest_bond_twist = o.largest_bond_twist / units::degree;
+}
+
+std::string state_csv(const Topology& topology, const State& s) {
+  std::string text = "tube,x_nm,y_nm,z_nm,qw,qx,qy,qz\n";
+  for (int t = 0; t < topology.tubes(); ++t)
+    for (int e = topology.tube_begin[t]; e < topology.tube_begin[t + 1]; ++e) {
+      const auto i = static_cast<std::size_t>(e);
+      const Vector3 x = s.position[i];
+      const Quaternion q = s.orientation[i];
+      text += fmt::format("{},{},{},{},{},{},{},{}\n", t, x.x(), x.y(), x.z(), q.w(), q.x(), q.y(), q.z());
+    }
+  return text;
+}
+
+}  // namespace ropewalk

@@ -1,0 +1,223 @@
+#include "run/run_time.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <omp.h>
+#include <spawn.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstring>
+#include <filesystem>
+#include <vector>
+
+#include "commands/commands.hpp"
+#include "io/files.hpp"
+#include "model/error.hpp"
+#include "plan/expected_state.hpp"
+#include "plan/features.hpp"
+#include "plan/scene_edit.hpp"
+#include "run/colours.hpp"
+#include "run/limit_watch.hpp"
+#include "run/processor_time.hpp"
+#include "run/run_directory.hpp"
+#include "scene/scene_toml.hpp"
+#include "scene/watch.hpp"
+
+namespace ropewalk {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double enough = 0.2;  // s, of each thing that is timed
+constexpr long least_steps = 12, most_steps = 2000;
+constexpr double usual_frames = 40, usual_rows = 400;
+constexpr double pictured = 6;  // frames in a report
+
+// --- Steps ---
+
+double seconds_of_a_step(Simulation& s) {
+  s.steps(5, false);
+  const double began = processor_seconds();
+  long count = 0;
+  while (count < least_steps || (count < most_steps && processor_seconds() - began < enough)) {
+    s.steps(least_steps, false);
+    count += least_steps;
+  }
+  return (processor_seconds() - began) / static_cast<double>(count);
+}
+
+double seconds_from(const Scene& scene, const Prepared& p, State state) {
+  Simulation s(p.topology, p.interaction, p.drive, std::move(state), p.time_step, scene.contact.skin, p.stepping);
+  return seconds_of_a_step(s);
+}
+
+double seconds_from_the_start(const Scene& scene, const Prepared& p) {
+  Simulation s = start(scene, p);
+  return seconds_of_a_step(s);
+}
+
+// Turned so far, or as far as the rope bears to be laid: it keeps its cross-section, and turned too far its tubes
+// lie in one another.
+double seconds_turned_by(const Scene& scene, const Prepared& p, double turn, double rate, double time) {
+  constexpr double less = 0.7, least = 0.2;  // of the turn
+  for (double part = 1; part > least; part *= less) {
+    State state = turned_rope(p, part * turn, rate);
+    state.time = time;
+    try {
+      return seconds_from(scene, p, std::move(state));
+    } catch (const NumericalError&) {
+    }
+  }
+  return seconds_from_the_start(scene, p);
+}
+
+// Mean over ramp and hold.
+double seconds_in_turned_rope(const Scene& scene, const Prepared& p, const SceneFeatures& f) {
+  const double ramp = std::min(f.ramp, p.duration), share = p.duration > 0 ? ramp / p.duration : 0.0;
+  const double turn = f.ramp > 0 ? f.turn * ramp / f.ramp : f.turn;
+  double seconds = 0;
+  if (share > 0) seconds += share * seconds_turned_by(scene, p, 0.5 * turn, turn / ramp, 0.5 * ramp);
+  if (share < 1) seconds += (1 - share) * seconds_turned_by(scene, p, turn, 0, ramp);
+  return seconds;
+}
+
+double seconds_of_steps(const Scene& scene, const Prepared& p) {
+  const SceneFeatures f = features_of(scene, p);
+  const bool turned = std::holds_alternative<RopeSource>(scene.source) && f.contact && f.turn > 0;
+  return turned ? seconds_in_turned_rope(scene, p, f) : seconds_from_the_start(scene, p);
+}
+
+void time_relaxation(const Scene& scene, const Prepared& p, RunTime& t) {
+  Simulation s = start(scene, p);
+  const double began = processor_seconds();
+  const bool at_rest = s.relax(scene.run.force_tolerance, scene.run.max_steps,
+                               [&](long) { return processor_seconds() - began < 2 * enough; });
+  const auto steps = static_cast<double>(std::max<std::int64_t>(s.state().step, 1));
+  t.each = (processor_seconds() - began) / steps;
+  t.steps = at_rest ? steps : 0;
+}
+
+// --- All else ---
+
+// How many rows and frames, and what one of them takes.
+struct Outputs {
+  double rows = 0, row = 0, frames = 0, frame = 0;
+};
+
+Outputs time_outputs(const Scene& scene, const Prepared& p, const RunTime& t) {
+  Outputs o;
+  const Simulation s = start(scene, p);
+  const Observer observer = make_observer(scene, p);
+  LimitWatch watch(watched_of(scene, p.topology));
+  const double began = processor_seconds();
+  LogRow row;
+  fill_geometry(look(observer, scene, p.topology, s.state()), row);
+  watch.look(p.topology, s.state(), s.list());
+  log_line(row);
+  o.row = processor_seconds() - began;
+  dump_frame(p.topology, s.state(), element_colours(p.topology, p.interaction, s.state()));
+  o.frame = processor_seconds() - began - o.row;
+  if (t.relaxes) {
+    o.rows = std::ceil(t.steps / 100) + 1;  // as a relaxation writes them
+    o.frames = 2;
+    return o;
+  }
+  o.rows = scene.run.log_every > 0 ? p.duration / scene.run.log_every : usual_rows;
+  o.frames = scene.run.frames_every > 0 ? p.duration / scene.run.frames_every : usual_frames;
+  o.rows = std::min(o.rows, t.steps);
+  o.frames = std::min(o.frames, t.steps);
+  return o;
+}
+
+// A file and a folder, gone afterwards.
+struct Scratch {
+  std::string scene, run;
+  ~Scratch() {
+    std::error_code error;
+    fs::remove(scene, error);
+    fs::remove_all(run, error);
+  }
+};
+
+// Without the setting that main() makes before it starts itself once more: the child is to do so as well.
+std::vector<char*> environment_of_a_user() {
+  std::vector<char*> all;
+  for (char** e = environ; *e; ++e)
+    if (std::strncmp(*e, "GOMP_SPINCOUNT=", 15) != 0) all.push_back(*e);
+  all.push_back(nullptr);
+  return all;
+}
+
+// Processor time of this program with other arguments, quietly. Throws where it fails.
+double seconds_of_a_process(std::vector<std::string> arguments) {
+  std::vector<char*> argv;
+  for (std::string& a : arguments) argv.push_back(a.data());
+  argv.push_back(nullptr);
+  posix_spawn_file_actions_t quiet;
+  posix_spawn_file_actions_init(&quiet);
+  for (const int stream : {STDOUT_FILENO, STDERR_FILENO})
+    posix_spawn_file_actions_addopen(&quiet, stream, "/dev/null", O_WRONLY, 0);
+  pid_t child = 0;
+  const int error =
+      posix_spawn(&child, "/proc/self/exe", &quiet, nullptr, argv.data(), environment_of_a_user().data());
+  posix_spawn_file_actions_destroy(&quiet);
+  int status = 0;
+  rusage used{};
+  constexpr int not_at_rest = 4;  // exit code of a relaxation that ran out of steps
+  if (error != 0 || wait4(child, &status, 0, &used) != child || !WIFEXITED(status) ||
+      (WEXITSTATUS(status) != 0 && WEXITSTATUS(status) != not_at_rest))
+    throw std::runtime_error("a short run of the scene, to see what it takes, failed: try it with `ropewalk run`");
+  const auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  };
+  return seconds(used.ru_utime) + seconds(used.ru_stime);
+}
+
+void time_outputs_of_a_run(const std::string& text, const std::string& path, const Scene& scene, const Prepared& p,
+                           RunTime& t) {
+  const Outputs all = time_outputs(scene, p, t);
+  const double affordable = std::max(enough / (t.each + all.row), static_cast<double>(least_steps));
+  const double steps = std::max(1.0, std::min(affordable, t.relaxes ? t.steps : all.rows));
+  Outputs some;
+  some.rows = t.relaxes ? steps / 100 + 1 : steps;
+  const double apart = std::max(1.0, std::floor(steps / std::max(pictured, all.frames * steps / all.rows)));
+  some.frames = t.relaxes ? 2 : steps / apart;
+  std::string brief = text;
+  if (!t.relaxes) {
+    brief = with_key(brief, "run", "log_every_ps", fmt::format("{:.17g}", p.time_step));
+    brief = with_key(brief, "run", "frames_every_ps", fmt::format("{:.17g}", apart * p.time_step));
+  }
+  const Scratch scratch{fmt::format("{}.timing-{}.toml", path, getpid()),
+                        (fs::temp_directory_path() / fmt::format("ropewalk-timing-{}", getpid())).string()};
+  write_file_atomically(scratch.scene, brief);
+  const double seconds = seconds_of_a_process({"ropewalk", "run", scratch.scene, "--out", scratch.run, "--quiet",
+                                               "--threads", "1", "--steps", fmt::format("{:.0f}", steps)});
+  t.outputs = std::max(0.0, seconds - std::floor(steps) * t.each) + (all.rows - some.rows) * all.row +
+              (all.frames - some.frames) * all.frame;
+}
+
+}  // namespace
+
+RunTime time_run(const std::string& text, const std::string& path) {
+  const int threads = omp_get_max_threads();
+  use_threads(1);
+  Scene scene = scene_of_text(text, path);
+  const Prepared p = prepare(scene);
+  RunTime t;
+  t.elements = p.topology.elements();
+  t.relaxes = scene.run.mode == RunOptions::Mode::relax;
+  if (t.relaxes) {
+    time_relaxation(scene, p, t);
+  } else {
+    t.each = seconds_of_steps(scene, p);
+    t.steps = std::max(1.0, p.duration / p.time_step);
+  }
+  time_outputs_of_a_run(text, path, scene, p, t);
+  use_threads(threads);
+  return t;
+}
+
+}  // namespace ropewalk

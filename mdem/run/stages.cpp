@@ -1,0 +1,54 @@
+#include "run/stages.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "io/files.hpp"
+#include "scene/finer.hpp"
+#include "sim/dynamics/refine.hpp"
+
+namespace ropewalk {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Without a slash at its end; "." by its name.
+fs::path plain(const std::string& path) {
+  fs::path p = fs::path(path).lexically_normal();
+  if (p.filename().empty()) p = p.parent_path();
+  if (p.filename() == "." || p.filename() == "..") p = fs::weakly_canonical(fs::absolute(p));
+  return p;
+}
+
+}  // namespace
+
+std::string name_of(const RunDirectory& dir) { return plain(dir.path).filename().string(); }
+
+RunDirectory finer_directory(const RunDirectory& dir) {
+  const std::string path = plain(dir.path).string(), mark = ".fine";
+  const std::size_t at = path.rfind(mark);
+  const std::string number = at == std::string::npos ? "x" : path.substr(at + mark.size());
+  if (number.size() > 3 || number.find_first_not_of("0123456789") != std::string::npos) return {path + mark};
+  const int stage = number.empty() ? 1 : std::atoi(number.c_str());
+  return {fmt::format("{}{}{}", path.substr(0, at), mark, stage + 1)};
+}
+
+RunDirectory write_finer_scene(const RunDirectory& from, const Scene& scene, const Prepared& prepared, double time,
+                               bool force) {
+  const RunDirectory to = finer_directory(from);
+  const std::string text = finer_scene_text(
+      scene, prepared,
+      fmt::format("Made by ropewalk at {:.6g} ps of the run {}: every element split in two.", time, name_of(from)));
+  create_run_directory(to, force);
+  write_file_atomically(to.scene(), text);
+  for (std::size_t k = 0; k < scene.sets.size(); ++k)
+    write_file_atomically(to.parameters(k), read_file(scene.sets[k].path));
+  if (std::holds_alternative<StateSource>(scene.source))
+    write_file_atomically(to.state(),
+                          state_csv(halved(prepared.topology), halved(prepared.topology, prepared.state)));
+  return to;
+}
+
+}  // namespace ropewalk

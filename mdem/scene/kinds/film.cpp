@@ -1,0 +1,198 @@
+#include "scene/kinds/film.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+namespace ropewalk {
+namespace {
+
+struct Point {
+  double x = 0, y = 0;
+};
+
+double squared(double x) { return x * x; }
+
+double from_segment2(const Point& p, const Point& a, const Point& b) {
+  const double dx = b.x - a.x, dy = b.y - a.y;
+  const double along = ((p.x - a.x) * dx + (p.y - a.y) * dy) / (dx * dx + dy * dy);
+  const double t = std::min(std::max(along, 0.0), 1.0);
+  return squared(p.x - a.x - t * dx) + squared(p.y - a.y - t * dy);
+}
+
+// Twice the area of a triangle, positive where it is counter-clockwise.
+double area(const Point& a, const Point& b, const Point& c) {
+  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}
+
+struct Segment {
+  Point from, to;
+
+  Segment(const FilmTube& t, double length) {
+    const double x = 0.5 * length * std::cos(t.angle), y = 0.5 * length * std::sin(t.angle);
+    from = {t.x - x, t.y - y};
+    to = {t.x + x, t.y + y};
+  }
+};
+
+double distance2(const Segment& a, const Segment& b) {
+  if (area(a.from, a.to, b.from) * area(a.from, a.to, b.to) < 0 &&
+      area(b.from, b.to, a.from) * area(b.from, b.to, a.to) < 0)
+    return 0;
+  return std::min({from_segment2(a.from, b.from, b.to), from_segment2(a.to, b.from, b.to),
+                   from_segment2(b.from, a.from, a.to), from_segment2(b.to, a.from, a.to)});
+}
+
+// Squares of the box with the tubes that pass through them. A tube is known by points along it, at most `step`
+// apart: tubes closer than the spacing have points within spacing + step, hence in squares of that width that
+// touch.
+class Floor {
+ public:
+  Floor(const FilmSource& film, double length, double spacing, double step)
+      : length_(length),
+        points_(static_cast<int>(std::ceil(length / step)) + 1),
+        width_(spacing + step),
+        left_(-0.5 * film.width),
+        front_(-0.5 * film.depth),
+        columns_(static_cast<int>(film.width / width_) + 3),
+        rows_(static_cast<int>(film.depth / width_) + 3),
+        tubes_in_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_)) {}
+
+  void add(int tube, const FilmTube& t) {
+    each_point(t, [&](int column, int row) {
+      std::vector<int>& here = tubes_in_[flat(column, row)];
+      if (here.empty() || here.back() != tube) here.push_back(tube);
+    });
+    seen_.push_back(-1);
+  }
+  // The tubes that may be closer than the spacing in projection, each once. `number` tells this call from others.
+  void near(const FilmTube& t, int number, std::vector<int>& out) {
+    out.clear();
+    int last_column = -1, last_row = -1;
+    each_point(t, [&](int column, int row) {
+      if (column == last_column && row == last_row) return;
+      last_column = column, last_row = row;
+      for (int c = column - 1; c <= column + 1; ++c)
+        for (int r = row - 1; r <= row + 1; ++r)
+          for (const int tube : tubes_in_[flat(c, r)]) {
+            int& seen = seen_[static_cast<std::size_t>(tube)];
+            if (seen != number) out.push_back(tube);
+            seen = number;
+          }
+    });
+  }
+
+ private:
+  // One square more than needed on each side, so that every square has neighbours.
+  template <class F>
+  void each_point(const FilmTube& t, F f) const {
+    const Segment s(t, length_);
+    for (int k = 0; k < points_; ++k) {
+      const double part = static_cast<double>(k) / (points_ - 1);
+      f(square(s.from.x + part * (s.to.x - s.from.x) - left_, columns_),
+        square(s.from.y + part * (s.to.y - s.from.y) - front_, rows_));
+    }
+  }
+  int square(double along, int count) const {
+    return std::min(std::max(static_cast<int>(std::floor(along / width_)) + 1, 1), count - 2);
+  }
+  std::size_t flat(int column, int row) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column);
+  }
+
+  double length_;
+  int points_;
+  double width_, left_, front_;
+  int columns_, rows_;
+  std::vector<std::vector<int>> tubes_in_;
+  std::vector<int> seen_;  // of each tube: the call that met it last
+};
+
+// Heights that another tube bars.
+struct Barred {
+  double from = 0, to = 0;
+};
+
+double lowest_free(std::vector<Barred>& barred) {
+  std::sort(barred.begin(), barred.end(), [](const Barred& a, const Barred& b) { return a.from < b.from; });
+  double height = 0;
+  for (const Barred& b : barred) {
+    if (b.from >= height) break;
+    height = std::max(height, b.to);
+  }
+  return height;
+}
+
+// Any angle is as likely as another, and so is any place at which both ends are in the box.
+FilmTube random_tube(const FilmSource& film, double length, Random& random) {
+  FilmTube t;
+  t.angle = random.uniform(0, units::pi);
+  const double x = 0.5 * (film.width - length * std::fabs(std::cos(t.angle)));
+  const double y = 0.5 * (film.depth - length * std::sin(t.angle));
+  t.x = random.uniform(-x, x);
+  t.y = random.uniform(-y, y);
+  return t;
+}
+
+// Number of a tube's square along the Z-order curve (G. M. Morton, 1966): squares with near numbers are near each
+// other, so that the neighbours of a tube are near it in memory, however large the film is.
+std::uint64_t along_curve(const FilmTube& t, const FilmSource& film, double square) {
+  const auto column = static_cast<std::uint64_t>((t.x + 0.5 * film.width) / square);
+  const auto row = static_cast<std::uint64_t>((t.y + 0.5 * film.depth) / square);
+  std::uint64_t number = 0;
+  for (int bit = 0; bit < 32; ++bit) number |= (column >> bit & 1) << (2 * bit) | (row >> bit & 1) << (2 * bit + 1);
+  return number;
+}
+
+}  // namespace
+
+double projected_distance2(const FilmTube& a, const FilmTube& b, double length) {
+  return distance2(Segment(a, length), Segment(b, length));
+}
+
+std::vector<FilmTube> lay_film(const FilmSource& film, int elements, double element_length, double spacing,
+                               Random& random) {
+  const double length = elements * element_length, spacing2 = spacing * spacing;
+  Floor floor(film, length, spacing, element_length);
+  std::vector<FilmTube> tubes;
+  std::vector<int> near;
+  std::vector<Barred> barred;
+  for (int t = 0; t < film.tubes; ++t) {
+    FilmTube tube = random_tube(film, length, random);
+    floor.near(tube, t, near);
+    barred.clear();
+    for (const int other : near) {
+      const FilmTube& o = tubes[static_cast<std::size_t>(other)];
+      const double apart2 = projected_distance2(tube, o, length);
+      if (apart2 >= spacing2) continue;
+      const double half = std::sqrt(spacing2 - apart2);
+      barred.push_back({o.z - half, o.z + half});
+    }
+    tube.z = lowest_free(barred);
+    floor.add(t, tube);
+    tubes.push_back(tube);
+  }
+  const double square = 0.5 * length;
+  std::stable_sort(tubes.begin(), tubes.end(), [&](const FilmTube& a, const FilmTube& b) {
+    return along_curve(a, film, square) < along_curve(b, film, square);
+  });
+  return tubes;
+}
+
+void add_film(const std::vector<FilmTube>& tubes, int elements, double element_length, Topology& topology,
+              State& state) {
+  for (std::size_t t = 0; t < tubes.size(); ++t) topology.add_tube(elements);
+  state = State(static_cast<std::size_t>(topology.elements()));
+  const double half = std::sqrt(0.5);
+  std::size_t i = 0;
+  for (const FilmTube& t : tubes) {
+    const double x = std::cos(t.angle), y = std::sin(t.angle);
+    for (int e = 0; e < elements; ++e, ++i) {
+      const double s = (e - 0.5 * (elements - 1)) * element_length;
+      state.position.set(i, {t.x + s * x, t.y + s * y, t.z});
+      state.orientation.set(i, Quaternion(half, -half * y, half * x, 0));  // from z to the tube's direction
+    }
+  }
+}
+
+}  // namespace ropewalk

@@ -1,0 +1,32 @@
+// A thin film: straight tubes at random in a box, flat and one upon another, none closer to another than a spacing.
+#pragma once
+
+#include <vector>
+
+#include "scene/random.hpp"
+#include "scene/scene.hpp"
+#include "sim/state/state.hpp"
+
+namespace ropewalk {
+
+// A straight tube parallel to the plane of the film.
+struct FilmTube {
+  double x = 0, y = 0, z = 0;  // nm, of its middle
+  double angle = 0;            // rad, from the x axis
+};
+
+// The squared distance (nm^2) of two tubes of one length in projection on the plane of the film: 0 where they
+// cross.
+double projected_distance2(const FilmTube& a, const FilmTube& b, double length);
+
+// Lays down the tubes of `film` one after another, `elements` of `element_length` each. The box is centred on the
+// origin in x and y, and the lowest tubes lie at z = 0. Tubes with near numbers
+// are near each other.
+std::vector<FilmTube> lay_film(const FilmSource& film, int elements, double element_length, double spacing,
+                               Random& random);
+
+// The same as elements; whatever `state` held is gone.
+void add_film(const std::vector<FilmTube>& tubes, int elements, double element_length, Topology& topology,
+              State& state);
+
+}  // namespace ropewalk

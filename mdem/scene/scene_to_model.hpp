@@ -1,0 +1,35 @@
+// What acts in a scene, resolved to elements: all that another engine needs besides the state.
+#pragma once
+
+#include "scene/scene.hpp"
+#include "sim/dynamics/loads.hpp"
+#include "sim/state/interaction.hpp"
+
+namespace ropewalk {
+
+// Limits of the parameter sets, by tube type.
+std::vector<Validity> validities(const Scene& scene);
+
+// The scene's tube types, and no tubes yet.
+Topology empty_topology(const Scene& scene);
+
+// The `line` law between all pairs of the scene's tube types, i, j at i * types + j.
+std::vector<LineContact> line_contacts(const Scene& scene);
+
+// The `paper` law of the scene.
+PaperContact paper_contact(const Scene& scene);
+
+// How far the scene's law reaches (nm), and what two parallel tubes bind with at most (eV/nm, positive); of each
+// pair of tube types.
+struct ContactRange {
+  double cutoff = 0, binding = 0;
+};
+std::vector<ContactRange> contact_ranges(const Scene& scene);
+
+// The reach of the contact viscosity must be set (build() does so).
+Interaction interaction_of(const Scene& scene);
+
+// Throws InputError for loads on elements that do not exist.
+Drive drive_of(const Scene& scene, const Topology& topology);
+
+}  // namespace ropewalk

@@ -1,0 +1,37 @@
+// Which chunks of the line law's list act on which parts of the tubes.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "sim/contact/line/list.hpp"
+#include "sim/state/tiles.hpp"
+#include "sim/threads/span.hpp"
+
+namespace ropewalk {
+
+class LineTouches {
+ public:
+  struct Touch {
+    int chunk = 0;
+    TouchedRange on;   // elements of the part, by their entries in the buffers of the chunk
+    float beyond = 0;  // nm: of the TouchedPart
+  };
+
+  void list(const TubeParts& parts, const std::vector<LineChunk>& chunks);
+
+  // Of a part, in the order of the chunks.
+  Span<Touch> on(int part) const { return entries_of(part, begin_, touch_); }
+  // The blocks of parts that a chunk acts on, and how many chunks act on each.
+  const std::vector<int>& blocks(std::size_t chunk) const { return blocks_[chunk]; }
+  const std::vector<int>& chunks_on() const { return chunks_on_; }
+  std::size_t bytes() const;
+
+ private:
+  std::vector<Touch> touch_;
+  std::vector<int> begin_;
+  std::vector<std::vector<int>> blocks_;
+  std::vector<int> chunks_on_;
+};
+
+}  // namespace ropewalk

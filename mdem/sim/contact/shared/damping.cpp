@@ -1,0 +1,286 @@
+#include "sim/contact/shared/damping.hpp"
+
+#include <algorithm>
+#include <tuple>
+#include <utility>
+
+#include "sim/state/prefetch.hpp"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "sim/contact/shared/damping.cpp"
+#include <hwy/foreach_target.h>
+//
+#include <hwy/highway.h>
+//
+#include "sim/threads/lanes-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace ropewalk::HWY_NAMESPACE {
+namespace damping {
+namespace hn = hwy::HWY_NAMESPACE;
+
+template <class V>
+struct Vec3 {
+  V x, y, z;
+};
+
+template <class V>
+HWY_INLINE Vec3<V> operator+(const Vec3<V>& a, const Vec3<V>& b) {
+  return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
+}
+template <class V>
+HWY_INLINE Vec3<V> operator-(const Vec3<V>& a, const Vec3<V>& b) {
+  return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
+}
+template <class V>
+HWY_INLINE Vec3<V> operator*(V a, const Vec3<V>& b) {
+  return {hn::Mul(a, b.x), hn::Mul(a, b.y), hn::Mul(a, b.z)};
+}
+template <class V>
+HWY_INLINE Vec3<V> cross(const Vec3<V>& a, const Vec3<V>& b) {
+  return {hn::MulSub(a.y, b.z, hn::Mul(a.z, b.y)), hn::MulSub(a.z, b.x, hn::Mul(a.x, b.z)),
+          hn::MulSub(a.x, b.y, hn::Mul(a.y, b.x))};
+}
+template <class V>
+HWY_INLINE V dot(const Vec3<V>& a, const Vec3<V>& b) {
+  return hn::MulAdd(a.x, b.x, hn::MulAdd(a.y, b.y, hn::Mul(a.z, b.z)));
+}
+
+// Of the lanes' elements.
+template <class Place, class V>
+struct Motion {
+  Vec3<Place> place;
+  Vec3<V> velocity, spin;
+};
+
+// -eta w(R)
+template <class D>
+HWY_INLINE hn::Vec<D> strength(D d, const ContactViscosity& c, const Vec3<hn::Vec<D>>& separation) {
+  using T = hn::TFromD<D>;
+  const auto set = [&](double x) HWY_ATTR { return hn::Set(d, static_cast<T>(x)); };
+  const auto distance = hn::Sqrt(dot(separation, separation));
+  const auto y =
+      hn::Min(hn::Max(hn::Mul(hn::Sub(distance, set(c.inner)), set(1 / (c.outer - c.inner))), hn::Zero(d)), set(1));
+  const auto weight = hn::NegMulAdd(hn::Mul(y, y), hn::NegMulAdd(set(2), y, set(3)), set(1));
+  return hn::Mul(set(-c.eta), weight);
+}
+
+// Whole vectors: the lanes left over are zero, and the buffers have room. A masked store would make the next load
+// wait until it is through.
+template <class V, class T>
+HWY_INLINE void add_to(const Vec3<V>& v, std::ptrdiff_t at, std::vector<T>& x, std::vector<T>& y,
+                       std::vector<T>& z) {
+  const hn::DFromV<V> d;
+  const auto add = [&](std::vector<T>& a, V what)
+                       HWY_ATTR { hn::StoreU(hn::Add(hn::LoadU(d, a.data() + at), what), d, a.data() + at); };
+  add(x, v.x), add(y, v.y), add(z, v.z);
+}
+
+// As the state has them; zero in lanes that are not wanted, which may lie outside of it.
+struct Doubles {
+  using D = hn::CappedTag<double, DampedBlock::most>;
+  using V = hn::Vec<D>;
+  const State& state;
+  ContactBuffer<double>& out;
+
+  static HWY_INLINE Vec3<V> some(const Vec3Array& a, std::ptrdiff_t at, int first, int last) {
+    const D d;
+    return {load_some(d, a.x.data() + at, first, last), load_some(d, a.y.data() + at, first, last),
+            load_some(d, a.z.data() + at, first, last)};
+  }
+  HWY_INLINE Motion<V, V> load(std::ptrdiff_t at, std::ptrdiff_t, int first, int last) const {
+    return {some(state.position, at, first, last), some(state.velocity, at, first, last),
+            some(state.angular_velocity, at, first, last)};
+  }
+  HWY_INLINE Vec3<V> apart(const Vec3<V>& j, const Vec3<V>& i) const { return j - i; }
+};
+
+// Lanes that are not wanted are of other elements, or of none: whatever number it is.
+struct Floats {
+  using D = hn::CappedTag<float, DampedBlock::most>;
+  using V = hn::Vec<D>;
+  using Place = hn::Vec<hn::RebindToSigned<D>>;
+  const DampedElements& elements;
+  ContactBuffer<float>& out;
+  float unit;
+
+  template <class X>
+  static HWY_INLINE auto whole(const X& x, const X& y, const X& z, std::ptrdiff_t at) {
+    const hn::Rebind<typename X::value_type, D> d;
+    return Vec3<hn::Vec<decltype(d)>>{hn::LoadU(d, x.data() + at), hn::LoadU(d, y.data() + at),
+                                      hn::LoadU(d, z.data() + at)};
+  }
+  HWY_INLINE Motion<Place, V> load(std::ptrdiff_t, std::ptrdiff_t entry, int, int) const {
+    const DampedElements& e = elements;
+    return {whole(e.x, e.y, e.z, entry), whole(e.vx, e.vy, e.vz, entry), whole(e.wx, e.wy, e.wz, entry)};
+  }
+  HWY_INLINE Vec3<V> apart(const Vec3<Place>& j, const Vec3<Place>& i) const {
+    const D d;
+    const Vec3<Place> in_units = j - i;
+    return hn::Set(d, unit) *
+           Vec3<V>{hn::ConvertTo(d, in_units.x), hn::ConvertTo(d, in_units.y), hn::ConvertTo(d, in_units.z)};
+  }
+};
+
+// The blocks first .. last - 1, which are of the same elements i. Offset by offset over all of them: at the next
+// offset of one block the forces are added one place further on, and a load would wait for the last stores if no
+// other block came between. Returns the power, lane by lane.
+template <class Of>
+HWY_INLINE typename Of::V group_damping(const ContactViscosity& viscosity, const Of& of, const DampedBlock* first,
+                                        const DampedBlock* last, int lane) {
+  using V = typename Of::V;
+  using T = hn::TFromD<typename Of::D>;
+  const typename Of::D d;
+  const V half = hn::Set(d, static_cast<T>(0.5)), zero = hn::Zero(d);
+  const int own = first->i + lane, own_entry = first->at_i + lane,
+            lanes = std::min(static_cast<int>(hn::Lanes(d)), first->lanes - lane);
+  const auto i = of.load(own, own_entry, 0, lanes);
+  Vec3<V> force{zero, zero, zero}, torque{zero, zero, zero};
+  V power = zero;
+  int offsets = 0;
+  for (const DampedBlock* b = first; b != last; ++b) offsets = std::max<int>(offsets, b->offsets);
+  for (int c = 0; c < offsets; ++c)
+    for (const DampedBlock* b = first; b != last; ++b) {
+      if (c >= b->offsets) continue;
+      const int at = b->j + lane + c, entry = at + b->partners.shift;
+      const int begin = std::max(0, b->partners.begin - at), end = std::min(lanes, b->partners.end - at);
+      if (begin >= end) continue;
+      const auto j = of.load(at, entry, begin, end);
+      const Vec3<V> apart = of.apart(j.place, i.place);
+      const Vec3<V> arm = half * apart;
+      const Vec3<V> relative = j.velocity - i.velocity - cross(i.spin + j.spin, arm);
+      const V k = hn::IfThenElseZero(some_lanes(d, begin, end), strength(d, viscosity, apart));
+      const Vec3<V> f = k * relative, t = cross(f, arm);
+      power = hn::Add(power, dot(f, relative));
+      force = force - f;
+      torque = torque + t;
+      add_to(f, entry, of.out.fx, of.out.fy, of.out.fz);
+      add_to(t, entry, of.out.tx, of.out.ty, of.out.tz);
+    }
+  add_to(force, own_entry, of.out.fx, of.out.fy, of.out.fz);
+  add_to(torque, own_entry, of.out.tx, of.out.ty, of.out.tz);
+  return power;
+}
+
+// Returns the power of all blocks. Lanes add up few of them before they are turned into a number of double
+// precision.
+template <class Of>
+HWY_INLINE double all_groups(const ContactViscosity& viscosity, const Of& of,
+                             const std::vector<DampedBlock>& blocks) {
+  const typename Of::D d;
+  constexpr int few = 32;
+  double sum = 0;
+  auto power = hn::Zero(d);
+  int groups = 0;
+  const auto add_up = [&]() HWY_ATTR {
+    sum += static_cast<double>(hn::GetLane(hn::SumOfLanes(d, power)));
+    power = hn::Zero(d);
+  };
+  const DampedBlock* const all = blocks.data() + blocks.size();
+  for (const DampedBlock *first = blocks.data(), *last = first; first != all; first = last) {
+    while (last != all && last->i == first->i) ++last;
+    for (int lane = 0; lane < first->lanes; lane += static_cast<int>(hn::Lanes(d)))
+      power = hn::Add(power, group_damping(viscosity, of, first, last, lane));
+    if (++groups % few == 0) add_up();
+  }
+  add_up();
+  return sum;
+}
+
+// Of the elements of a part. Whole vectors, whose last lanes the next part's elements are stored over.
+HWY_INLINE void take(const State& s, const TouchedRange& of, double per_unit, DampedElements& e) {
+  const hn::CappedTag<double, 8> d;
+  const hn::Rebind<std::int32_t, decltype(d)> whole;
+  const hn::Rebind<float, decltype(d)> floats;
+  const auto units = hn::Set(d, per_unit);
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  for (int k = of.begin; k < of.end; k += lanes) {
+    const int left = std::min(of.end - k, lanes), entry = k + of.shift;
+    const auto some = [&](const std::vector<double>& v) HWY_ATTR { return load_some(d, v.data() + k, 0, left); };
+    const auto place = [&](const std::vector<double>& from, std::vector<std::int32_t>& to) HWY_ATTR {
+      hn::StoreU(hn::DemoteTo(whole, hn::Mul(some(from), units)), whole, to.data() + entry);
+    };
+    const auto motion = [&](const std::vector<double>& from, std::vector<float>& to)
+                            HWY_ATTR { hn::StoreU(hn::DemoteTo(floats, some(from)), floats, to.data() + entry); };
+    place(s.position.x, e.x), place(s.position.y, e.y), place(s.position.z, e.z);
+    motion(s.velocity.x, e.vx), motion(s.velocity.y, e.vy), motion(s.velocity.z, e.vz);
+    motion(s.angular_velocity.x, e.wx), motion(s.angular_velocity.y, e.wy), motion(s.angular_velocity.z, e.wz);
+  }
+}
+
+}  // namespace damping
+
+void BlocksOfState(const ContactViscosity& viscosity, const State& state, const std::vector<DampedBlock>& blocks,
+                   ContactBuffer<double>& out) {
+  out.power += damping::all_groups(viscosity, damping::Doubles{state, out}, blocks);
+}
+
+void BlocksInFloats(const ContactViscosity& viscosity, const State& state, const DampedChunk& of, DampedElements& e,
+                    ContactBuffer<float>& out) {
+  constexpr std::size_t ahead = 4;  // parts
+  for (std::size_t k = 0; k < of.parts.size(); ++k) {
+    if (k + ahead < of.parts.size())
+      for (const Vec3Array* v : {&state.velocity, &state.angular_velocity})
+        ask_for(*v, of.parts[k + ahead].begin, of.parts[k + ahead].end);
+    damping::take(state, of.parts[k], 1 / of.unit, e);
+  }
+  out.power += damping::all_groups(viscosity, damping::Floats{e, out, static_cast<float>(of.unit)}, of.blocks);
+}
+
+}  // namespace ropewalk::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace ropewalk {
+
+HWY_EXPORT(BlocksOfState);
+HWY_EXPORT(BlocksInFloats);
+
+void contact_damping(const ContactViscosity& viscosity, const State& state, const std::vector<DampedBlock>& blocks,
+                     ContactBuffer<double>& out) {
+  HWY_DYNAMIC_DISPATCH(BlocksOfState)(viscosity, state, blocks, out);
+}
+
+void contact_damping(const ContactViscosity& viscosity, const State& state, const DampedChunk& of,
+                     DampedElements& elements, ContactBuffer<float>& out) {
+  HWY_DYNAMIC_DISPATCH(BlocksInFloats)(viscosity, state, of, elements, out);
+}
+
+void DampedBlocks::add(int i, const TouchedRange& own, int from, int to, const TouchedRange& partners) {
+  if (i >= first_ + lanes_) {
+    finish_group();
+    first_ = i;
+    lanes_ = std::min(DampedBlock::most, own.end - i);
+    at_ = i + own.shift;
+  }
+  if (from < to) ranges_.push_back({from - i, to - i, partners});
+}
+
+void DampedBlocks::finish_group() {
+  constexpr int worth_a_block = 3;  // so many offsets without a pair cost what another block does
+  std::sort(ranges_.begin(), ranges_.end(), [](const Range& a, const Range& b) {
+    return std::tie(a.partners.begin, a.from) < std::tie(b.partners.begin, b.from);
+  });
+  const auto add = [&](const Range& r) {
+    blocks_.push_back(
+        {first_, first_ + r.from, at_, static_cast<short>(lanes_), static_cast<short>(r.to - r.from), r.partners});
+  };
+  for (std::size_t k = 0; k < ranges_.size();) {
+    Range all = ranges_[k];
+    for (++k; k < ranges_.size() && ranges_[k].partners.begin == all.partners.begin &&
+              ranges_[k].from <= all.to + worth_a_block;
+         ++k)
+      all.to = std::max(all.to, ranges_[k].to);
+    add(all);
+  }
+  ranges_.clear();
+}
+
+std::vector<DampedBlock> DampedBlocks::take() {
+  finish_group();
+  lanes_ = 0;
+  return std::exchange(blocks_, {});
+}
+
+}  // namespace ropewalk
+#endif  // HWY_ONCE

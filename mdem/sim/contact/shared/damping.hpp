@@ -1,0 +1,78 @@
+// Contact viscosity (model/damping.hpp) of all pairs of elements within its reach, in blocks: up to 16
+// consecutive elements of one tube meet those of another that are 0, 1, .. places further along. Loads and stores
+// are of consecutive elements, and no lanes are added up. In two precisions: of the state as it is, and in floats
+// of what a chunk acts on, copied once for all pairs, the places as integers, so that differences are exact.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "sim/contact/shared/buffer.hpp"
+#include "sim/threads/scratch.hpp"
+
+namespace ropewalk {
+
+// Of a chunk: consecutive elements of one tube that it acts on; element j is entry j + shift of its buffer.
+struct TouchedRange {
+  int begin = 0, end = 0, shift = 0;
+};
+
+// Element i + l meets element j + l + c for l < lanes and c < offsets, where that is one of `partners`.
+struct DampedBlock {
+  static constexpr int most = 16;  // lanes of the widest vectors
+  int i = 0, j = 0, at_i = 0;      // elements; i's entry in the buffer
+  short lanes = 0, offsets = 0;
+  TouchedRange partners;
+};
+
+// The blocks of one chunk. Every pair may come once only, and all pairs of two tubes may that lie between the first
+// and the last range of an element with another: those out of reach have no weight.
+class DampedBlocks {
+ public:
+  // Elements from .. to - 1 are within reach of i, which is one of `own`. Elements i in rising order.
+  void add(int i, const TouchedRange& own, int from, int to, const TouchedRange& partners);
+  std::vector<DampedBlock> take();
+
+ private:
+  struct Range {
+    int from, to;  // j - i
+    TouchedRange partners;
+  };
+  void finish_group();
+
+  int first_ = 0, lanes_ = 0, at_ = 0;  // elements of the group, and the first one's entry
+  std::vector<Range> ranges_;
+  std::vector<DampedBlock> blocks_;
+};
+
+// Of the elements that a chunk acts on, by their entries in its buffer: places in units, motion in nm/ps and
+// rad/ps.
+struct DampedElements {
+  std::vector<std::int32_t> x, y, z;
+  std::vector<float> vx, vy, vz, wx, wy, wz;
+
+  void make_room(int elements) {
+    const auto entries = static_cast<std::size_t>(elements + DampedBlock::most);
+    for (auto* v : {&x, &y, &z}) set_size(*v, entries);
+    for (auto* v : {&vx, &vy, &vz, &wx, &wy, &wz}) set_size(*v, entries);
+  }
+  std::size_t bytes() const { return 3 * x.capacity() * sizeof(x[0]) + 6 * vx.capacity() * sizeof(vx[0]); }
+};
+
+// With the widest vectors that the machine has. Added to what the buffer holds, of which up to DampedBlock::most
+// entries before a part and behind the last one are read and written as they were.
+void contact_damping(const ContactViscosity& viscosity, const State& state, const std::vector<DampedBlock>& blocks,
+                     ContactBuffer<double>& out);
+
+// The blocks of a chunk and the parts that they are within; `unit` is that of the places (nm).
+struct DampedChunk {
+  const std::vector<DampedBlock>& blocks;
+  const std::vector<TouchedRange>& parts;
+  double unit;
+};
+// The same in floats.
+void contact_damping(const ContactViscosity& viscosity, const State& state, const DampedChunk& of,
+                     DampedElements& elements, ContactBuffer<float>& out);
+
+}  // namespace ropewalk

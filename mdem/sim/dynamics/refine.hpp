@@ -1,0 +1,40 @@
+// The same rope on a finer chain: every element is split into two of half the length, e into 2 e and 2 e + 1.
+//
+// An element stands for the tube from half a length before its centre to half a length behind it, so that its
+// halves have their centres a quarter of a length to either side: at the shares u = 1/4 and 3/4 of the bonds.
+// Between two neighbours i, j (r = x_j - x_i, m the mean of their axes, theta their angle) the rod is taken as what
+// the bond says that it is, a Timoshenko beam bent by end loads:
+//
+//   bend   t(u) = t_i turned by u theta towards t_j: a circular arc, x(u) = x_i + L u sinc(u theta/2) t(u/2)
+//   twist  u times that of the bond, about t(u)
+//   shear  sigma = r - (r.m) m, the part of r across the arc. Of it 1 - s is shear of the rod, the same all along;
+//          s (BondStiffness::shear_share) is due to a curvature that changes along the bond:
+//          x += sigma (u + s (3 u^2 - 2 u^3 - u)),   t turned by 6 s u (1 - u) sigma/L
+//
+// A straight, stretched, twisted or circular chain is carried over exactly, and so is the centre line where twist
+// is added; any other one with an error of higher order in the element length. Beyond the last centres the rod goes
+// on with the curvature, twist and strain of the last bond. In twist every bond counts: n - 1 bonds of angle phi
+// become 2 n - 1 of phi/2, since half a length more of the tube is now free to twist.
+//
+// Velocities are those of the same map under the motion of the coarse elements, so that rigid motions stay what
+// they are. Then each tube is given the rigid motion that makes its linear and angular momentum those of before: of
+// all changes that do so this is the one of least kinetic energy. Mass is kept as it is. Energy is not: the finer
+// chain is another model, and has more bonds; the caller reports the difference. Of thermal motion the waves that
+// only the finer chain has start cold.
+//
+// Bends below 180 degrees, twists within (-180, 180] degrees per bond. Units nm, ps, eV.
+// Source: shape functions of the Timoshenko element, J. S. Przemieniecki, Theory of Matrix Structural Analysis
+// (1968), section 5.6.
+#pragma once
+
+#include "sim/state/state.hpp"
+
+namespace ropewalk {
+
+// Lengths, masses and inertias halved, numbers of elements doubled.
+Topology halved(const Topology& coarse);
+
+// Time and step stay.
+State halved(const Topology& coarse, const State& state);
+
+}  // namespace ropewalk

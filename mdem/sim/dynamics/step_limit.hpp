@@ -1,0 +1,40 @@
+// How large a time step may be.
+#pragma once
+
+#include "sim/state/interaction.hpp"
+#include "sim/state/state.hpp"
+
+namespace ropewalk {
+
+// Stability limit of the time step (ps) of endless tubes in hexagonal packing: the step dt at which some plane
+// wave, of wave vector k across the tubes and q along them, has an eigenvalue of
+//   M^-1/2 (K dt^2 + 2 C dt) M^-1/2
+// that reaches 4. K: bonds and contact, C: damping of the bonds and viscosity of the contact, M: masses and
+// inertias, all of one element, 6 x 6. Exact for velocity Verlet without damping; with damping, which acts by the
+// velocities of half a step ago, a lower bound that is reached where a mode of K is one of C. The contact is as
+// stiff as where the tubes are pressed to 98.5 % of their spacing. For (10,10) that takes 1.7 GPa, where bundles of
+// such tubes collapse and rigid cross-sections end (J. A. Elliott et al., Phys. Rev. Lett. 92, 095501 (2004),
+// DOI 10.1103/PhysRevLett.92.095501); at rest the stiffness is 0.3 of it.
+struct TimeStepLimit {
+  double limit = 0;  // ps
+  // What it comes from, each on its own: the stiffest mode, the fastest damping.
+  double chain_frequency = 0;     // rad/ps
+  double contact_frequency = 0;   // rad/ps
+  double damping_rate = 0;        // 1/ps
+  double sideways_frequency = 0;  // rad/ps: the stiffest mode of the chain in which elements move sideways
+  double contact_damping = 0;     // 1/ps: part of damping_rate
+};
+// `spacing` of the tubes in nm; 0: a single tube.
+TimeStepLimit time_step_limit(const Topology& topology, const Interaction& interaction, double spacing);
+
+// Stability limit of the inner step (ps) with contact_every = n of them in an outer one, D. Within: the chain and
+// the damping of its bonds as above. Outside: an impulse of the contact W meets a mode w of the chain, which alone
+// would be stepped exactly, stably as long as
+//   W^2 D^2 + 2 g D < 4 (w D/2) cot(w D/2),
+// which for soft modes is the limit of the contact alone and for stiff ones ends before their half period, pi/w:
+// there the impulses resonate. Only modes that move elements sideways are taken; along a tube and about its axis a
+// smooth contact has next to no stiffness.
+// n = 1: TimeStepLimit::limit.
+double inner_step_limit(const TimeStepLimit& limit, int contact_every);
+
+}  // namespace ropewalk

@@ -1,0 +1,144 @@
+// Forces, torques and energies of a state: the fast path (Verlet list, OpenMP, vector kernels) and the plain
+// reference (every pair, one after another), which stays as the oracle. Both call the forms of mdem/model.
+#pragma once
+
+#include <functional>
+#include <utility>
+#include <vector>
+
+#include "sim/contact/line/engine.hpp"
+#include "sim/contact/paper/engine.hpp"
+#include "sim/contact/shared/buffer.hpp"
+#include "sim/neighbours/neighbours.hpp"
+#include "sim/state/force_rows.hpp"
+#include "sim/state/interaction.hpp"
+#include "sim/state/state.hpp"
+#include "sim/state/tiles.hpp"
+
+namespace ropewalk {
+
+struct Forces {
+  Vec3Array force;   // eV/nm
+  Vec3Array torque;  // eV, about the element centres, space frame
+  Energies energy;
+  double damping_power = 0;  // work per time of the damping forces, never positive, eV/ps
+  int slipping_bond = -1;    // first element of a bond twisted by 90 degrees or more, -1: none
+
+  explicit Forces(std::size_t n = 0) : force(n), torque(n) {}
+  void resize(std::size_t n) { force.resize(n), torque.resize(n); }
+};
+inline ForceRows rows_of(Forces& forces) { return {forces.force, forces.torque, 0}; }
+inline ForcesOn rows_of(const Forces& forces) { return {forces.force, forces.torque, 0}; }
+
+// Body frames.
+struct FrameArray {
+  Vec3Array e1, e2, t;
+
+  void resize(std::size_t n) {
+    e1.resize(n);
+    e2.resize(n);
+    t.resize(n);
+  }
+  Frame<double> operator[](std::size_t i) const { return {e1[i], e2[i], t[i]}; }
+};
+
+// Of the bond from element i to i + 1, at i.
+struct BondArray {
+  Vec3Array force_j, torque_i, torque_j;
+
+  void resize(std::size_t n) {
+    force_j.resize(n);
+    torque_i.resize(n);
+    torque_j.resize(n);
+  }
+};
+
+// The frames and bonds of a part of a tube, its first element at 0: they stay in the first cache from where they
+// are made to where they are used.
+struct TubeBonds {
+  FrameArray frames;
+  BondArray bonds;
+
+  void resize(std::size_t elements) {
+    frames.resize(elements);
+    bonds.resize(elements);
+  }
+};
+
+// What some bonds do, besides their forces.
+struct BondSum {
+  BondEnergy<double> energy;
+  double power = 0;   // of their damping
+  int slipping = -1;  // first element of a bond twisted by 90 degrees or more
+};
+
+// The bond from the last element of a part of a tube to the next part, where there is one.
+struct Joint {
+  Vector3 force_j, torque_i, torque_j;
+  BondSum sum;
+};
+
+// Contact and its viscosity, bonds and their damping, or one of them alone: their time scales differ.
+enum class Parts { all, bonds, contact };
+
+struct ForceOptions {
+  Parts parts = Parts::all;
+  bool energies = true;    // without them that of the line law's contact may be left out; forces are the same bits
+  bool axes_made = false;  // the axes of all elements are those that make_axes has made
+  // Called for every block of TubeParts, by any thread, with its forces, which are kept nowhere else then: nothing
+  // needs its elements as they are any more, and they may move.
+  std::function<void(int, const ForcesOn&)> then = {};
+};
+
+// The list must be up to date, but for the bonds alone.
+class ForceEngine {
+ public:
+  void compute(const Topology& topology, const Interaction& interaction, const NeighbourList& list,
+               const State& state, Forces& out, const ForceOptions& options = {});
+  // Of elements begin .. end - 1, while their orientations are at hand; forces of as many elements have been
+  // computed.
+  void make_axes(const State& state, std::ptrdiff_t begin, std::ptrdiff_t end);
+
+  // Wall time spent so far in each part, s.
+  // Axes that are not made yet are made within the contact where that is by the line law, and blocks are finished
+  // within it: the first thread tells the times of the two apart, and that in `then`, which is in none of the
+  // others.
+  struct Times {
+    double axes = 0, contact = 0, bonds = 0, then = 0;
+  };
+  const Times& times() const { return times_; }
+  const LineEngine& line() const { return line_; }
+  // Goes on with a plan of the line law's contact.
+  void resume(const Topology& topology, const Interaction& interaction, const NeighbourList& list,
+              LinePlan::Saved plan) {
+    line_.resume(topology, interaction, list, std::move(plan));
+  }
+  const PaperEngine& paper() const { return paper_; }
+  std::size_t bytes() const;
+
+ private:
+  void make_all_axes(const State& state);
+  void add_buffers(const NeighbourList& list, int from, int to, const ForceRows& out) const;
+
+  TubeParts parts_;
+  std::vector<Joint> joints_;                   // behind each part
+  Vec3Array axis_;                              // of all elements
+  std::vector<ContactBuffer<double>> buffers_;  // of each chunk
+  LineEngine line_;
+  PaperEngine paper_;
+  Times times_;
+};
+
+// The oracle: O(N^2), no list, no threads, no vectors.
+void compute_reference(const Topology& topology, const Interaction& interaction, const State& state, Forces& out);
+
+double kinetic_energy(const Topology& topology, const State& state);
+
+// Force and torque sums about the origin: both zero where nothing external acts.
+struct NetForce {
+  Vector3 force = Vector3::Zero();
+  Vector3 torque = Vector3::Zero();
+};
+NetForce net_force(const State& state, const Forces& forces);
+
+}  // namespace ropewalk

@@ -1,0 +1,75 @@
+#include "sim/forces/forces.hpp"
+
+namespace ropewalk {
+namespace {
+
+void apply(const DampingForce& d, std::size_t i, std::size_t j, Forces& out) {
+  out.force.add(i, -d.force_j);
+  out.force.add(j, d.force_j);
+  out.torque.add(i, d.torque_i);
+  out.torque.add(j, d.torque_j);
+  out.damping_power += d.power;
+}
+
+PairForce contact_force(const Topology& topology, const Interaction& in, int i, int j, const Vector3& separation,
+                        const Vector3& n_i, const Vector3& n_j) {
+  if (in.paper && in.legacy_torque) return in.paper->legacy_torque(separation, n_i, n_j);
+  return with_law(topology, in, i, j,
+                  [&](const auto& law) { return law.energy_and_gradient(separation, n_i, n_j); });
+}
+
+void contact_pair(const Topology& topology, const Interaction& in, const State& s, std::size_t i, std::size_t j,
+                  Forces& out) {
+  const Vector3 separation = s.position[j] - s.position[i];
+  if (!(separation.norm() < in.cutoff())) return;
+  const PairForce f = contact_force(topology, in, static_cast<int>(i), static_cast<int>(j), separation,
+                                    axis_of(s.orientation[i]), axis_of(s.orientation[j]));
+  out.energy.vdw += f.energy;
+  out.force.add(i, -f.force_j);
+  out.force.add(j, f.force_j);
+  out.torque.add(i, f.torque_i);
+  out.torque.add(j, f.torque_j);
+  if (in.damped_contact() && separation.norm() < in.damping.contact.outer)
+    apply(in.damping.contact.force(separation, s.velocity[i], s.angular_velocity[i], s.velocity[j],
+                                   s.angular_velocity[j]),
+          i, j, out);
+}
+
+void bond(const TubeType& type, const Interaction& in, const State& s, std::size_t i, Forces& out) {
+  const std::size_t j = i + 1;
+  const Vector3 separation = s.position[j] - s.position[i];
+  const Frame<double> fi = frame_of(s.orientation[i]), fj = frame_of(s.orientation[j]);
+  const BondForce<double> f = bond_energy_and_gradient(type.bond, type.element_length, separation, fi, fj);
+  out.energy.stretch += f.energy.stretch;
+  out.energy.shear += f.energy.shear;
+  out.energy.bend += f.energy.bend;
+  out.energy.twist += f.energy.twist;
+  out.force.add(i, -f.force_j);
+  out.force.add(j, f.force_j);
+  out.torque.add(i, f.torque_i);
+  out.torque.add(j, f.torque_j);
+  if (std::fabs(bond_twist_angle(fi, fj)) >= 0.5 * units::pi && out.slipping_bond < 0)
+    out.slipping_bond = static_cast<int>(i);
+  if (in.damping.bond.rate > 0)
+    apply(in.damping.bond.force(type.mass, type.inertia, separation, s.velocity[i], s.angular_velocity[i],
+                                s.velocity[j], s.angular_velocity[j]),
+          i, j, out);
+}
+
+}  // namespace
+
+void compute_reference(const Topology& topology, const Interaction& in, const State& s, Forces& out) {
+  out = Forces(s.size());
+  for (int t = 0; t < topology.tubes(); ++t)
+    for (int i = topology.tube_begin[t]; i + 1 < topology.tube_begin[t + 1]; ++i)
+      bond(topology.type_of(t), in, s, static_cast<std::size_t>(i), out);
+  if (!in.has_contact()) return;
+  for (int i = 0; i < topology.elements(); ++i)
+    for (int j = i + 1; j < topology.elements(); ++j) {
+      const int tube_i = topology.tube_of(i), tube_j = topology.tube_of(j);
+      if (tube_i == tube_j && j - i <= in.exclude_along_tube) continue;
+      contact_pair(topology, in, s, static_cast<std::size_t>(i), static_cast<std::size_t>(j), out);
+    }
+}
+
+}  // namespace ropewalk

@@ -1,0 +1,158 @@
+#include "sim/neighbours/neighbours.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+
+#include "sim/neighbours/cell_grid.hpp"
+#include "sim/threads/scratch.hpp"
+
+namespace ropewalk {
+namespace {
+
+// Of one element's neighbours in rising order; a run of an earlier element is never made longer.
+void append_runs(const int* number, std::size_t count, std::vector<PairRun>& runs) {
+  for (std::size_t k = 0; k < count; ++k) {
+    if (k > 0 && number[k] == runs.back().end)
+      ++runs.back().end;
+    else
+      runs.push_back({number[k], number[k] + 1});
+  }
+}
+
+}  // namespace
+
+bool NeighbourList::update(const Topology& topology, const State& state) {
+  constexpr std::ptrdiff_t block = cached_elements;
+  Change all;
+  const auto n = static_cast<std::ptrdiff_t>(state.size());
+  for (std::ptrdiff_t i = 0; i < n; i += block) all = both(all, change(state, i, std::min(i + block, n)));
+  if (!worn(all)) return false;
+  build(topology, state);
+  return true;
+}
+
+bool NeighbourList::worn(const Change& change) {
+  const MotionSince::Bound bound = since_.bound(change, within(), lever);
+  displacement_ = bound.moved;
+  turn_ = bound.turned;
+  return !(displacement_ <= 0.5 * skin);
+}
+
+bool NeighbourList::holds_after(double moved, double turned) {
+  displacement_ += moved;
+  turn_ += turned;
+  return displacement_ <= 0.5 * skin;
+}
+
+Change NeighbourList::change(const State& state, std::ptrdiff_t begin, std::ptrdiff_t end) const {
+  return since_.change(state, lever, begin, end);
+}
+
+void NeighbourList::build(const Topology& topology, const State& state) {
+  Vec3Array axis(state.size());
+  for (std::size_t i = 0; i < state.size(); ++i) axis.set(i, axis_of(state.orientation[i]));
+  build(topology, state.position, std::move(axis));
+}
+
+void NeighbourList::build(const Topology& topology, Vec3Array position, Vec3Array axis) {
+  static std::atomic<long> stamps{0};
+  stamp_ = ++stamps;
+  displacement_ = turn_ = 0;
+  since_.start(std::move(position), std::move(axis));
+  const Vec3Array& p = reference();
+  const int n = static_cast<int>(p.size());
+  const double reach = cutoff + skin;
+  ++builds_;
+  begin_.assign(static_cast<std::size_t>(n) + 1, 0);
+  run_.clear();
+  pairs_ = 0;
+  if (cutoff > 0) {
+    const CellGrid grid(p, reach);
+    std::vector<int> last(static_cast<std::size_t>(n));  // element of its tube that is too near to count
+    for (int t = 0; t < topology.tubes(); ++t)
+      for (int i = topology.tube_begin[t]; i < topology.tube_begin[t + 1]; ++i)
+        last[static_cast<std::size_t>(i)] = std::min(i + exclude_along_tube, topology.tube_begin[t + 1] - 1);
+
+    constexpr int parts = 64;
+    std::vector<std::vector<PairRun>> found(parts);
+    std::vector<std::size_t> pairs_of_part(parts);
+#pragma omp parallel for schedule(dynamic, 1) if (p.size() > parallel_from)
+    for (int part = 0; part < parts; ++part) {
+      const int from = static_cast<int>(static_cast<std::int64_t>(n) * part / parts);
+      const int to = static_cast<int>(static_cast<std::int64_t>(n) * (part + 1) / parts);
+      auto& list = found[static_cast<std::size_t>(part)];
+      std::vector<int> near;
+      std::size_t pairs = 0;
+      for (int i = from; i < to; ++i) {
+        const auto si = static_cast<std::size_t>(i);
+        const std::size_t count = grid.find(i, last[si], near);
+        const auto end = near.begin() + static_cast<std::ptrdiff_t>(count);
+        std::sort(near.begin(), end);
+        const std::size_t before = list.size();
+        append_runs(near.data(), count, list);
+        begin_[si + 1] = list.size() - before;
+        pairs += count;
+      }
+      pairs_of_part[static_cast<std::size_t>(part)] = pairs;
+    }
+    std::size_t total = 0;
+    for (const auto& list : found) total += list.size();
+    make_room(run_, total);
+    for (const auto& list : found) run_.insert(run_.end(), list.begin(), list.end());
+    for (std::size_t pairs : pairs_of_part) pairs_ += pairs;
+    for (std::size_t i = 1; i < begin_.size(); ++i) begin_[i] += begin_[i - 1];
+  }
+  cut_into_chunks(n);
+}
+
+double NeighbourList::coordinate_unit() const {
+  double largest = 1;
+  for (const auto* v : {&reference().x, &reference().y, &reference().z})
+    for (double x : *v)
+      if (std::isfinite(x)) largest = std::max(largest, std::fabs(x));
+  return std::exp2(std::ceil(std::log2(largest + 64)) - 28);
+}
+
+// Whatever the threads: the cut belongs to the list. Where the chunks would touch too much in common, as they do
+// where tubes with far numbers cross, fewer are made: clearing and adding up their buffers would cost as much as
+// the contact itself.
+void NeighbourList::cut_into_chunks(int n) {
+  constexpr int fewest = 16;         // enough for as many threads
+  constexpr double most_common = 3;  // buffers for each element
+  for (int count = chunk_count(n, whole_ranges);; count = std::max(fewest, count / 2)) {
+    cut_into_chunks(n, count);
+    if (!whole_ranges) return;
+    double touched = 0;
+    for (const Chunk& c : chunks_) touched += c.touched_end - c.touched_begin;
+    if (count <= fewest || touched <= most_common * n) return;
+  }
+}
+
+// Equal numbers of pairs.
+void NeighbourList::cut_into_chunks(int n, int count) {
+  chunks_.assign(static_cast<std::size_t>(count), Chunk{});
+  int from = 0;
+  std::size_t before = 0;  // pairs of the elements before `to`
+  for (int k = 0; k < count; ++k) {
+    Chunk& chunk = chunks_[static_cast<std::size_t>(k)];
+    const std::size_t target = pairs() * static_cast<std::size_t>(k + 1) / static_cast<std::size_t>(count);
+    int to = from;
+    if (k + 1 == count) {
+      to = n;
+    } else {
+      while (to < n && before < target) before += pairs(to++);
+    }
+    chunk.begin = from;
+    chunk.end = to;
+    chunk.touched_begin = from;
+    chunk.touched_end = to;
+    for (int i = from; i < to; ++i)
+      for (const PairRun& run : runs(i)) chunk.touched_end = std::max(chunk.touched_end, run.end);
+    from = to;
+  }
+}
+
+}  // namespace ropewalk

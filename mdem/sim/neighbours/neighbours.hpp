@@ -1,0 +1,125 @@
+// Verlet list: every pair of elements closer than cutoff + skin, found on a cell grid, valid until a point of an
+// element has moved half the skin. Half list (j > i), sorted by j, so that the order of summation depends on
+// the positions at the last build alone, never on the number of threads or on the grid. Along a tube the neighbours
+// of an element follow one another: they are kept as runs, without an index per pair.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "sim/neighbours/motion_since.hpp"
+#include "sim/state/interaction.hpp"
+#include "sim/state/state.hpp"
+#include "sim/threads/span.hpp"
+
+namespace ropewalk {
+
+// Consecutive elements.
+struct PairRun {
+  int begin = 0, end = 0;
+};
+
+// A run may go on from one tube to the next: work(tube, begin, end) for the part of it in each.
+template <class Work>
+void for_tubes_of(const Topology& topology, const PairRun& run, const Work& work) {
+  for (int from = run.begin, to; from < run.end; from = to) {
+    const int tube = topology.tube_of(from);
+    to = std::min(run.end, topology.tube_begin[static_cast<std::size_t>(tube) + 1]);
+    work(tube, from, to);
+  }
+}
+
+class NeighbourList {
+ public:
+  // A contiguous range of elements whose pairs are one unit of parallel work. The number of chunks is fixed,
+  // and each sums into a buffer of its own that covers [touched_begin, touched_end).
+  struct Chunk {
+    int begin = 0, end = 0;
+    int touched_begin = 0, touched_end = 0;
+  };
+  // At most. As many as the elements can fill: their buffers overlap, and what overlaps costs time. Never by the
+  // threads.
+  static int chunk_count(int elements, bool whole_ranges) {
+    if (elements <= static_cast<int>(parallel_from)) return 1;  // one thread's work
+    return std::min(64, std::max(4, elements / (whole_ranges ? 2048 : 256)));
+  }
+
+  double cutoff = 0;           // nm
+  double skin = 0;             // nm
+  double lever = 0;            // nm: turning moves the points of an element that are so far from its centre
+  bool whole_ranges = false;   // buffers of the chunks cover [touched_begin, touched_end), used or not
+  int exclude_along_tube = 0;  // pairs of one tube up to this many elements apart are left out
+
+  NeighbourList() = default;
+  // For all that acts between elements; to be built.
+  NeighbourList(const Interaction& in, double skin_nm)
+      : cutoff(in.cutoff()),
+        skin(skin_nm),
+        lever(in.lever()),
+        whole_ranges(in.paper.has_value()),
+        exclude_along_tube(in.exclude_along_tube) {}
+
+  // Builds anew where an element has moved too far. Returns whether it did. A position that is not finite
+  // counts as moved; the build then leaves that element without neighbours.
+  bool update(const Topology& topology, const State& state);
+  // Whether it has to be built anew by the change since the last build: that of all elements.
+  bool worn(const Change& change);
+  // Without looking where they are: no point of an element has moved by more than this (nm), and no axis turned,
+  // since that was last asked for. Whether the list still holds for certain.
+  bool holds_after(double moved, double turned);
+  // Of the elements begin .. end - 1; infinite where a place is not finite.
+  Change change(const State& state, std::ptrdiff_t begin, std::ptrdiff_t end) const;
+  void build(const Topology& topology, const State& state);
+  void build(const Topology& topology, Vec3Array position, Vec3Array axis);
+
+  // The neighbours j > i of element i, none of which is in two runs.
+  Span<PairRun> runs(int i) const { return entries_of(i, begin_, run_); }
+  template <class Work>
+  void for_neighbours(int i, const Work& work) const {
+    for (const PairRun& run : runs(i))
+      for (int j = run.begin; j < run.end; ++j) work(j);
+  }
+  std::size_t pairs() const { return pairs_; }
+  std::size_t pairs(int i) const {
+    std::size_t sum = 0;
+    for (const PairRun& run : runs(i)) sum += static_cast<std::size_t>(run.end - run.begin);
+    return sum;
+  }
+  const std::vector<Chunk>& chunks() const { return chunks_; }
+  // Positions and axes at the last build: with them a resumed run has the same list, hence the same bits.
+  const Vec3Array& reference() const { return since_.position(); }
+  const Vec3Array& reference_axis() const { return since_.axis(); }
+  long builds() const { return builds_; }
+  // A power of two (nm) that resolves every coordinate in 29 bits, with room for what moves before the next build.
+  double coordinate_unit() const;
+  // Another one for every build of any list.
+  long stamp() const { return stamp_; }
+  // By no more than twice this (nm) had the distance of any two points within reach changed since the last build,
+  // when the list was last asked whether it holds; what turns all of a rope together does not count.
+  double displacement() const { return displacement_; }
+  // By no more than twice this had the angle between two axes within reach.
+  double turn() const { return turn_; }
+  // Of the motion since the build: with it a resumed run has the next build at the same step.
+  std::array<double, 2> twist() const { return since_.twist(); }
+  void set_twist(const std::array<double, 2>& t) { since_.set_twist(t); }
+  // The same for what may have moved unseen since then.
+  void set_bounds(double displacement, double turn) { displacement_ = displacement, turn_ = turn; }
+  // nm: centres of elements with points within reach are no more than this apart.
+  double within() const { return cutoff + skin + 2 * lever; }
+  std::size_t bytes() const { return run_.capacity() * sizeof(PairRun) + begin_.capacity() * sizeof(std::size_t); }
+
+ private:
+  void cut_into_chunks(int elements);
+  void cut_into_chunks(int elements, int count);
+
+  std::vector<std::size_t> begin_;  // first run of each element, and the end of the last one's
+  std::vector<PairRun> run_;
+  std::size_t pairs_ = 0;
+  std::vector<Chunk> chunks_;
+  MotionSince since_;
+  long builds_ = 0, stamp_ = 0;
+  double displacement_ = 0, turn_ = 0;
+};
+
+}  // namespace ropewalk

@@ -1,0 +1,116 @@
+// Topology and state of a scene: structure of arrays, elements of a tube consecutive along it.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <vector>
+
+#include "model/bond.hpp"
+#include "model/contact/contact.hpp"
+
+namespace ropewalk {
+
+using Quaternion = Eigen::Quaterniond;
+
+// The state of so many elements stays in the first cache.
+inline constexpr int cached_elements = 128;
+
+// Below so many elements a team of threads costs more than it saves.
+inline constexpr std::size_t parallel_from = 512;
+
+// Three arrays of one component each.
+struct Vec3Array {
+  std::vector<double> x, y, z;
+
+  explicit Vec3Array(std::size_t n = 0) : x(n, 0.0), y(n, 0.0), z(n, 0.0) {}
+  std::size_t size() const { return x.size(); }
+  void resize(std::size_t n) {
+    x.resize(n, 0.0);
+    y.resize(n, 0.0);
+    z.resize(n, 0.0);
+  }
+  Vector3 operator[](std::size_t i) const { return {x[i], y[i], z[i]}; }
+  void set(std::size_t i, const Vector3& v) {
+    x[i] = v.x();
+    y[i] = v.y();
+    z[i] = v.z();
+  }
+  void add(std::size_t i, const Vector3& v) {
+    x[i] += v.x();
+    y[i] += v.y();
+    z[i] += v.z();
+  }
+};
+
+struct QuaternionArray {
+  std::vector<double> w, x, y, z;
+
+  explicit QuaternionArray(std::size_t n = 0) : w(n, 1.0), x(n, 0.0), y(n, 0.0), z(n, 0.0) {}
+  std::size_t size() const { return w.size(); }
+  Quaternion operator[](std::size_t i) const { return {w[i], x[i], y[i], z[i]}; }
+  void set(std::size_t i, const Quaternion& q) {
+    w[i] = q.w();
+    x[i] = q.x();
+    y[i] = q.y();
+    z[i] = q.z();
+  }
+};
+
+// What all tubes of one kind share.
+struct TubeType {
+  double element_length = 0;  // equilibrium length of a bond, nm
+  double radius = 0;          // nm
+  double mass = 0;            // of one element, eV ps^2/nm^2
+  double inertia = 0;         // isotropic, eV ps^2
+  BondStiffness bond;
+};
+
+// Which elements form which tube. Tube t owns the elements tube_begin[t] .. tube_begin[t+1] - 1; consecutive
+// ones are bonded.
+struct Topology {
+  std::vector<int> tube_begin{0};
+  std::vector<int> tube_type;  // of each tube, an index of `types`
+  std::vector<TubeType> types = std::vector<TubeType>(1);
+
+  int tubes() const { return static_cast<int>(tube_begin.size()) - 1; }
+  int elements() const { return tube_begin.back(); }
+  int bonds() const { return elements() - tubes(); }
+  int length_of(int tube) const { return tube_begin[tube + 1] - tube_begin[tube]; }
+  void add_tube(int elements, int type = 0) {
+    tube_begin.push_back(tube_begin.back() + elements);
+    tube_type.push_back(type);
+  }
+  const TubeType& type_of(int tube) const { return types[static_cast<std::size_t>(tube_type[tube])]; }
+  const TubeType& type_of_element(int element) const { return type_of(tube_of(element)); }
+  double largest_radius() const;
+  double longest_element() const;
+  int tube_of(int element) const;
+  TubeEnds ends_of(int element, int tube) const {
+    return {element == tube_begin[tube], element + 1 == tube_begin[tube + 1]};
+  }
+};
+
+struct State {
+  Vec3Array position;           // nm
+  QuaternionArray orientation;  // body to space; the tube axis is the body's z
+  Vec3Array velocity;           // nm/ps
+  Vec3Array angular_velocity;   // rad/ps, space frame
+  double time = 0;              // ps
+  std::int64_t step = 0;
+
+  explicit State(std::size_t n = 0) : position(n), orientation(n), velocity(n), angular_velocity(n) {}
+  std::size_t size() const { return position.size(); }
+};
+
+inline Frame<double> frame_of(const Quaternion& q) {
+  const Eigen::Matrix3d r = q.toRotationMatrix();
+  return {r.col(0), r.col(1), r.col(2)};
+}
+
+// The tube axis alone.
+inline Vector3 axis_of(const Quaternion& q) {
+  return {2.0 * (q.x() * q.z() + q.w() * q.y()), 2.0 * (q.y() * q.z() - q.w() * q.x()),
+          1.0 - 2.0 * (q.x() * q.x() + q.y() * q.y())};
+}
+
+}  // namespace ropewalk

@@ -1,0 +1,138 @@
+#include "sim/state/tiles.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <tuple>
+
+namespace ropewalk {
+namespace {
+
+// Elements that are never cut: a tube in fewer tiles is put together faster than tiles get smaller.
+constexpr int piece_length = 48;
+
+struct Piece {
+  Segment of;
+  double cost = 0;
+  std::array<double, 3> centre{};
+};
+using Pieces = std::vector<Piece>::iterator;
+
+// A tube's first element is alone, where its last one is too: pieces end where pairs of the others do.
+int end_of_piece(int begin, const Segment& tube) {
+  const int end = begin + piece_length + (begin == tube.begin ? 1 : 0);
+  return tube.end - end < piece_length / 2 ? tube.end : end;
+}
+
+std::vector<Piece> pieces_of(const Topology& topology, const Vec3Array& position, const std::vector<double>& cost) {
+  std::vector<Piece> pieces;
+  const auto finite = [](double x) { return std::isfinite(x) ? x : 0.0; };
+  for (int t = 0; t < topology.tubes(); ++t) {
+    const Segment tube{t, topology.tube_begin[t], topology.tube_begin[t + 1]};
+    for (int from = tube.begin; from < tube.end;) {
+      Piece piece;
+      piece.of = {t, from, end_of_piece(from, tube)};
+      for (int i = from; i < piece.of.end; ++i) piece.cost += cost[static_cast<std::size_t>(i)];
+      const auto middle = static_cast<std::size_t>((from + piece.of.end) / 2);
+      piece.centre = {finite(position.x[middle]), finite(position.y[middle]), finite(position.z[middle])};
+      pieces.push_back(piece);
+      from = piece.of.end;
+    }
+  }
+  return pieces;
+}
+
+std::size_t longest_side(Pieces first, Pieces last) {
+  std::size_t longest = 0;
+  double length = -1;
+  for (std::size_t a = 0; a < 3; ++a) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (Pieces p = first; p != last; ++p) low = std::min(low, p->centre[a]), high = std::max(high, p->centre[a]);
+    if (high - low > length) longest = a, length = high - low;
+  }
+  return longest;
+}
+
+std::vector<Segment> joined(Pieces first, Pieces last) {
+  std::sort(first, last, [](const Piece& a, const Piece& b) { return a.of.begin < b.of.begin; });
+  std::vector<Segment> out;
+  for (Pieces p = first; p != last; ++p) {
+    if (!out.empty() && out.back().tube == p->of.tube && out.back().end == p->of.begin)
+      out.back().end = p->of.end;
+    else
+      out.push_back(p->of);
+  }
+  return out;
+}
+
+void sort_across(std::size_t side, Pieces first, Pieces last) {
+  std::sort(first, last, [&](const Piece& a, const Piece& b) {
+    return std::tie(a.centre[side], a.of.begin) < std::tie(b.centre[side], b.of.begin);
+  });
+}
+
+// The pieces, sorted, before that which lies behind a share of their cost.
+Pieces cut_at(double share, Pieces first, Pieces last) {
+  double total = 0, sum = 0;
+  for (Pieces p = first; p != last; ++p) total += p->cost;
+  Pieces cut = first;
+  for (; cut != last && sum + 0.5 * cut->cost < share * total; ++cut) sum += cut->cost;
+  return cut;
+}
+
+void bisect(CutBy by, Pieces first, Pieces last, int count, std::vector<std::vector<Segment>>& tiles) {
+  if (count == 1) {
+    tiles.push_back(joined(first, last));
+    return;
+  }
+  if (by == CutBy::place) sort_across(longest_side(first, last), first, last);
+  const int left = count / 2;
+  const Pieces cut = cut_at(static_cast<double>(left) / count, first, last);
+  bisect(CutBy::place, first, cut, left, tiles);
+  bisect(CutBy::place, cut, last, count - left, tiles);
+}
+
+}  // namespace
+
+void TubeParts::cut(const Topology& topology) {
+  parts_.clear();
+  begin_.clear();
+  block_begin_.clear();
+  block_of_.clear();
+  for (int t = 0; t < topology.tubes(); ++t) {
+    begin_.push_back(count());
+    const int first = topology.tube_begin[t], elements = topology.length_of(t),
+              parts = (elements + most - 1) / most;
+    for (int k = 0; k < parts; ++k)
+      parts_.push_back({t, first + static_cast<int>(static_cast<std::int64_t>(elements) * k / parts),
+                        first + static_cast<int>(static_cast<std::int64_t>(elements) * (k + 1) / parts)});
+  }
+  begin_.push_back(count());
+  for (int k = 0, first = 0; k < count(); ++k) {
+    if (k == 0 || (*this)[k].end - first > most_of_block) {
+      block_begin_.push_back(k);
+      first = (*this)[k].begin;
+    }
+    block_of_.push_back(static_cast<int>(block_begin_.size()) - 1);
+  }
+  block_begin_.push_back(count());
+}
+
+int TubeParts::part_of(int element, int tube) const {
+  const auto part = std::upper_bound(parts_.begin() + begin(tube), parts_.begin() + begin(tube + 1), element,
+                                     [](int e, const Segment& s) { return e < s.end; });
+  return static_cast<int>(part - parts_.begin());
+}
+
+std::vector<std::vector<Segment>> cut_into_tiles(const Topology& topology, const Vec3Array& position,
+                                                 const std::vector<double>& cost, int count, CutBy first) {
+  std::vector<Piece> pieces = pieces_of(topology, position, cost);
+  std::vector<std::vector<Segment>> tiles;
+  tiles.reserve(static_cast<std::size_t>(count));
+  bisect(first, pieces.begin(), pieces.end(), count, tiles);
+  return tiles;
+}
+
+}  // namespace ropewalk

@@ -1,0 +1,130 @@
+// The incremental parallel bond against the total-energy bond.
+#include <cmath>
+
+#include "cases/common/chains.hpp"
+#include "cases/common/incremental_parallel_bond.hpp"
+
+namespace ropewalk {
+namespace {
+
+constexpr const char* set_name = "cnt-10-10-tersoff";
+constexpr int bonds = 20;
+
+double total_energy_deflection(const ParameterSet& set, double force) {
+  Chain c(set, bonds);
+  c.drive.fixed.push_back({0});
+  c.drive.loads.push_back({c.last, {force, 0, 0}, Vector3::Zero()});
+  return c.relaxed(1e-7).state().position[static_cast<std::size_t>(c.last)].x();
+}
+
+struct Loop {
+  double incremental = 0, total = 0;  // energy left at the end, eV
+};
+
+// The second element of a bond is bent and twisted once around a circle of that size in the plane of the two
+// angles, and is back where it was. In small steps, so that what is left is not an error of the steps.
+Loop closed_loop(const ParameterSet& set, double amplitude) {
+  constexpr int steps = 4000;
+  const double a = set.element_length;
+  const Vector3 separation(0, 0, a);
+  ParallelBond bond(set.bond, a);
+  Quaternion at = Quaternion::Identity();
+  for (int k = 1; k <= steps; ++k) {
+    const double phase = 2 * units::pi * k / steps;
+    const Quaternion next = small_turn({amplitude * (1 - std::cos(phase)), 0, amplitude * std::sin(phase)});
+    const Eigen::AngleAxisd turn(next * at.conjugate());
+    bond.advance(separation, separation, {}, {Vector3::Zero(), turn.angle() * turn.axis()});
+    at = next;
+  }
+  const Frame<double> still = frame_of(Quaternion::Identity());
+  return {bond.energy(separation), bond_energy<double>(set.bond, a, separation, still, frame_of(at)).total()};
+}
+
+CaseResult run(const CaseContext& context) {
+  const ParameterSet oracle = context.parameters(set_name);
+  ParameterSet model = context.model(set_name);
+  model.bond.shear = 0;  // as in the bond that it is compared with
+  const double length = bonds * model.element_length;
+  const auto beam = [&](double force) { return force * std::pow(length, 3) / (3 * oracle.bond.bend); };
+  // Two small rotations in turn differ from their sum by half of their product. Half of the spin is followed by the
+  // accumulated moment, so that a loop of area S leaves a bend of S/2; an element turned in its place bends and
+  // shears the bond, 4 EI/a together.
+  const auto left = [&](double amplitude) {
+    const double bend = 0.5 * units::pi * amplitude * amplitude;
+    return 2 * oracle.bond.bend / oracle.element_length * bend * bend;
+  };
+  CaseResult result;
+  const double small = 0.02;
+  result.checks.push_back(relative_check("total energy: deflection at small force",
+                                         total_energy_deflection(model, small), beam(small), 2e-3, "nm"));
+  result.checks.push_back(relative_check("incremental: deflection at small force",
+                                         parallel_bond_deflection(model, bonds, small), beam(small), 2e-3, "nm",
+                                         "the same beam while rotations are small"));
+  result.checks.push_back(absolute_check("total energy: left after a closed loop of 0.3 rad",
+                                         closed_loop(model, 0.3).total, 0, 1e-9, "eV", "a function of the state"));
+  result.checks.push_back(relative_check("incremental: left after a closed loop of 0.1 rad",
+                                         closed_loop(model, 0.1).incremental, left(0.1), 3e-2, "eV",
+                                         "order of the commutator of two rotations"));
+  result.checks.push_back(information(absolute_check("incremental: left after a closed loop of 0.3 rad",
+                                                     closed_loop(model, 0.3).incremental, 0, 1e-9, "eV",
+                                                     "does not fall with the step")));
+  std::vector<double> force, total, incremental, amplitude, energy, none;
+  for (const double f : {0.5, 1.0, 2.0, 3.0, 4.0}) {
+    force.push_back(f);
+    total.push_back(total_energy_deflection(model, f));
+    incremental.push_back(parallel_bond_deflection(model, bonds, f));
+  }
+  for (int k = 1; k <= 6; ++k) {
+    const Loop loop = closed_loop(model, 0.05 * k);
+    amplitude.push_back(0.05 * k);
+    energy.push_back(loop.incremental);
+    none.push_back(loop.total);
+  }
+  result.checks.push_back(
+      information(relative_check("incremental against total energy at 4 eV/nm", incremental.back(), total.back(),
+                                 1e-2, "nm", "one monotonic bend in a plane: no loop")));
+  CaseFigure bend, drift;
+  bend.chart = {"Deflection of a cantilever", {"force", "eV/nm"}, {"deflection", "nm"}, {}, {}};
+  bend.chart.lines.push_back(theory_curve("small deflections", beam, 0, 4));
+  bend.chart.lines.push_back(model_points("total-energy bond", force, total, 1));
+  bend.chart.lines.push_back(model_points("incremental bond", force, incremental, 2));
+  bend.caption = "Bent once in a plane both bonds are the same beam, also far from small deflections.";
+  drift.chart = {
+      "Energy left in a bond after a closed loop", {"radius of the loop", "rad"}, {"energy", "eV"}, {}, {}};
+  drift.chart.lines.push_back(theory_curve("commutator of the rotations", left, 0, 0.3));
+  drift.chart.lines.push_back(model_points("incremental bond", amplitude, energy, 2));
+  drift.chart.lines.push_back(model_points("total-energy bond", amplitude, none, 1));
+  drift.caption = "Bent and twisted once around a loop and back to rest.";
+  result.figures = {bend, drift};
+  result.remarks.push_back(
+      "The incremental bond sums angular velocities, which have no integral in three dimensions: "
+      "energy is left behind where bend and twist go around a loop, however small the steps.");
+  result.sources.push_back(set_name);
+  return result;
+}
+
+}  // namespace
+
+Case parallel_bond_case() {
+  Case c;
+  c.name = "parallel-bond";
+  c.group = Case::Group::codes;
+  c.title = "Incremental parallel bond against total-energy bond";
+  c.why =
+      "Tubes in a rope bend and twist together through large angles; a bond that depends on the path stores or "
+      "loses energy that no load has done.";
+  c.setup =
+      "A cantilever of 20 bonds of either kind, and one bond of which one end is bent and twisted around a "
+      "closed loop in 4000 steps.";
+  c.oracle =
+      "w = F L^3/3 EI at small force; energy after a loop of radius A: zero, and 2 EI/a (pi A^2/2)^2 for the "
+      "incremental bond.";
+  c.literature =
+      "D. O. Potyondy, P. A. Cundall, Int. J. Rock Mech. Min. Sci. 41, 1329 (2004), DOI "
+      "10.1016/j.ijrmms.2004.09.011; V. A. Kuzkin, I. E. Asonov, Phys. Rev. E 86, 051301 (2012), DOI "
+      "10.1103/PhysRevE.86.051301";
+  c.run = run;
+  return c;
+}
+
+}  // namespace ropewalk

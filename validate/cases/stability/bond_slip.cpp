@@ -1,0 +1,77 @@
+// The twisting moment at which a bond slips.
+#include <cmath>
+#include <limits>
+
+#include "cases/common/limits.hpp"
+#include "model/error.hpp"
+
+namespace ropewalk {
+namespace {
+
+constexpr const char* set_name = "cnt-10-10-tersoff";
+constexpr int increments = 24;
+
+// Two elements, the first one held, the other one turned by a couple that grows step by step. Returns the twist at
+// rest (rad), NaN where the bond slips.
+double twisted(const ParameterSet& set, double moment) {
+  Chain c(set, 1);
+  c.drive.fixed = {{0}};
+  for (int k = 1; k <= increments; ++k) {
+    c.drive.loads = {{1, Vector3::Zero(), Vector3(0, 0, moment * k / increments)}};
+    try {
+      c.state = c.relaxed(1e-6).state();
+    } catch (const NumericalError&) {
+      return std::numeric_limits<double>::quiet_NaN();
+    }
+    c.state.velocity = c.state.angular_velocity = Vec3Array(c.state.size());
+  }
+  return bond_twist_angle(frame_of(c.state.orientation[0]), frame_of(c.state.orientation[1]));
+}
+
+CaseResult run(const CaseContext& context) {
+  const ParameterSet model = context.model(set_name), oracle = context.parameters(set_name);
+  const double theory = oracle.bond.twist / oracle.element_length;
+  const double found =
+      limit_between([&](double m) { return std::isnan(twisted(model, m)); }, 0.5 * theory, 1.6 * theory, 3e-3);
+  CaseResult result;
+  result.checks.push_back(relative_check("moment at which a bond slips", found / units::nN_nm,
+                                         theory / units::nN_nm, 0.05, "nN nm",
+                                         "in 24 increments, each brought to rest"));
+  result.checks.push_back(information(absolute_check("moment on each tube that twists it by 10 degrees per element",
+                                                     theory * std::sin(10 * units::degree) / units::nN_nm,
+                                                     theory * 10 * units::degree / units::nN_nm, 0, "nN nm",
+                                                     "the bond's sine against a rod: 0.5 % less at 10 degrees")));
+  result.limits.push_back({"moment at which a bond slips", found / units::nN_nm, theory / units::nN_nm, "nN nm",
+                           Limit::Guard::stopped, "a bond twisted by 90 degrees, with its element"});
+  CaseFigure figure;
+  figure.chart = {"Torque of a bond", {"twist of the bond", "degrees"}, {"moment", "nN nm"}, {}, {}};
+  std::vector<double> angle, moment;
+  for (double part = 0.1; part < 1; part += 0.1) {
+    angle.push_back(twisted(model, part * theory) / units::degree);
+    moment.push_back(part * theory / units::nN_nm);
+  }
+  figure.chart.lines.push_back(theory_curve(
+      "GJ/a sin", [&](double x) { return theory * std::sin(x * units::degree) / units::nN_nm; }, 0, 180, 0));
+  figure.chart.lines.push_back(model_points("at rest under a couple", angle, moment, 1));
+  figure.caption = "Beyond 90 degrees there is no rest: the bond slips.";
+  result.figures.push_back(figure);
+  result.remarks.push_back("A run stops before a bond slips, and names the element.");
+  result.sources.push_back(set_name);
+  return result;
+}
+
+}  // namespace
+
+Case limit_bond_slip_case() {
+  return {"limit-bond-slip",
+          Case::Group::stability,
+          Case::Tier::quick,
+          "Moment at which a bond slips",
+          "The torque of a bond is a sine of its twist: beyond 90 degrees it would forget a turn, silently.",
+          "Two elements, one held, the other turned by a couple in small increments until the simulator stops.",
+          "M = GJ/a, the largest torque of the bond.",
+          "V. A. Kuzkin, I. E. Asonov, Phys. Rev. E 86, 051301 (2012), DOI 10.1103/PhysRevE.86.051301",
+          run};
+}
+
+}  // namespace ropewalk

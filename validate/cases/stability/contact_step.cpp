@@ -1,0 +1,73 @@
+// The largest stable time step of a rope whose tubes touch.
+#include <cmath>
+
+#include "cases/common/chains_contact.hpp"
+#include "cases/common/limits.hpp"
+
+namespace ropewalk {
+namespace {
+
+constexpr const char* set_name = "cnt-10-10-tersoff";
+
+// Seven short tubes at rest.
+Bundle bundle_at_rest(const ParameterSet& set) {
+  Bundle b = line_bundle(set, 7, 8);
+  b.state = at_rest(Simulation(b.topology, b.interaction, {}, b.state, b.time_step), 1e-5, 200000).state();
+  b.state.velocity = b.state.angular_velocity = Vec3Array(b.state.size());
+  return b;
+}
+
+CaseResult run(const CaseContext& context) {
+  const Bundle model = bundle_at_rest(context.model(set_name)),
+               oracle = bundle_at_rest(context.parameters(set_name));
+  const double theory = 2 / stiffest_frequency(oracle.topology, oracle.interaction, oracle.state);
+  const auto fails = [&](double dt) { return blows_up(model.topology, model.interaction, model.state, dt); };
+  const double found = limit_between(fails, 0.3 * theory, 3 * theory);
+  const double estimate = time_step_limit(oracle.topology, oracle.interaction, oracle.spacing).limit;
+  CaseResult result;
+  result.checks.push_back(relative_check("largest step", found / units::fs, theory / units::fs, 0.05, "fs",
+                                         "small motions about rest"));
+  result.checks.push_back(
+      relative_check("what `auto` takes for it", estimate / units::fs, theory / units::fs, 0.05, "fs",
+                     "plane waves of an endless rope, its contact pressed to 98.5 % of the spacing"));
+  result.limits.push_back({"time step, seven tubes at rest", found / units::fs, theory / units::fs, "fs",
+                           Limit::Guard::refused, "a typed step above the estimate for tubes pressed together"});
+  CaseFigure figure;
+  figure.chart = {
+      "Growth of a disturbance by time step", {"time step", "fs"}, {"log10 of the energy's growth", ""}, {}, {}};
+  std::vector<double> step, grown;
+  for (double part = 0.9; part < 1.1; part += 0.01) {
+    step.push_back(part * theory / units::fs);
+    grown.push_back(std::log10(growth(model.topology, model.interaction, model.state, part * theory, 200)));
+  }
+  figure.chart.lines.push_back(model_points("after 200 steps or at 10^6", step, grown, 1));
+  figure.chart.lines.push_back(
+      {"2/w of the stiffest mode", {theory / units::fs, theory / units::fs * 1.00001}, {0, 7}, 0, true});
+  figure.caption = "Below the limit a disturbance stays what it is, above it grows with every step.";
+  result.figures.push_back(figure);
+  result.remarks.push_back(
+      "The stiffest motion is that along the tubes, in which the contact has no part: sideways the chains are "
+      "softer, and the contact, even pressed to 98.5 % of its spacing, does not make up for it. So `auto` may take "
+      "the step of a single tube.");
+  result.sources.push_back(set_name);
+  return result;
+}
+
+}  // namespace
+
+Case limit_contact_step_case() {
+  return {
+      "limit-contact-step",
+      Case::Group::stability,
+      Case::Tier::quick,
+      "Largest time step of a rope",
+      "Tubes that are pressed together are stiff against one another, and may take their part of the step.",
+      "Seven tubes of eight elements at rest under the line law, undamped, shaken by 1e-6 nm/ps; the step at which "
+      "500 steps blow them up, by bisection.",
+      "2/w, w^2 the largest eigenvalue of the stiffness of the whole rope over its masses, by differences of all "
+      "forces.",
+      "L. Verlet, Phys. Rev. 159, 98 (1967), DOI 10.1103/PhysRev.159.98",
+      run};
+}
+
+}  // namespace ropewalk

@@ -1,0 +1,174 @@
+// The largest stable time step of a rope: by law, element length and stiffness of the contact.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "cases/common/chains_contact.hpp"
+#include "cases/common/limits.hpp"
+#include "scene/build.hpp"
+#include "scene/random.hpp"
+
+namespace ropewalk {
+namespace {
+
+constexpr int tubes = 7, elements = 4;
+
+struct Series {
+  const char* set;
+  bool paper;
+  double length;                // of an element, over the set's
+  std::vector<double> factors;  // of the contact's energy
+  std::string name;
+};
+
+const std::vector<Series>& all_series() {
+  static const std::vector<Series> series = {
+      {"cnt-10-10-tersoff", false, 1, {1, 4, 16, 64, 256}, "line law"},
+      {"cnt-10-10-tersoff", false, 2, {1, 4, 16, 64, 256}, "line law, elements twice as long"},
+      {"cnt-10-10-paper", true, 1, {1, 4, 16, 64}, "paper law"},
+  };
+  return series;
+}
+
+// Straight tubes in contact; not at rest yet.
+Bundle packed(const Series& s, ParameterSet set, double factor) {
+  set = with_elements(set, s.length);
+  scale_contact(set, factor);
+  if (!s.paper) return line_bundle(set, tubes, elements);
+  Bundle b;
+  b.topology = topology_of(set);
+  b.interaction.paper = set.paper;
+  b.spacing = pair_spacing(*set.paper, set.element_length);
+  b.state = State(tubes * elements);
+  std::size_t i = 0;
+  for (const auto& [x, y] : hexagonal_lattice(tubes, b.spacing)) {
+    b.topology.add_tube(elements);
+    for (int e = 0; e < elements; ++e) b.state.position.set(i++, {x, y, e * set.element_length});
+  }
+  b.time_step = default_step_fraction * time_step_limit(b.topology, b.interaction, b.spacing).limit;
+  return b;
+}
+
+// From a little disorder: strongly bound short tubes are not at rest side by side, and only a disturbance shows it.
+Bundle bundle_at_rest(const Series& s, const ParameterSet& set, double factor) {
+  Bundle b = packed(s, set, factor);
+  Random random(7);
+  for (std::size_t i = 0; i < b.state.size(); ++i)
+    b.state.position.add(i, 0.01 * Vector3(random.normal(), random.normal(), random.normal()));
+  b.state = at_rest(Simulation(b.topology, b.interaction, {}, b.state, b.time_step), 1e-5, 200000).state();
+  b.state.velocity = b.state.angular_velocity = Vec3Array(b.state.size());
+  return b;
+}
+
+// Viscosity at the contact, explicit as all damping, takes from the step too. Returns the smallest limit over
+// estimate.
+double check_viscosity(const CaseContext& context, CaseResult& result) {
+  const Series s = all_series().front();
+  Bundle oracle = bundle_at_rest(s, context.parameters(s.set), 1), model = packed(s, context.model(s.set), 1);
+  model.state = oracle.state;
+  double margin = 1e9;
+  CaseFigure figure;
+  figure.chart = {"Largest stable step by contact viscosity",
+                  {"viscosity, log10 of eV ps/nm^2", ""},
+                  {"largest step", "fs"},
+                  {},
+                  {}};
+  std::vector<double> at, limit, expected, estimates;
+  for (const double eta : {20.0, 200.0, 1000.0, 5000.0}) {
+    for (Bundle* b : {&model, &oracle}) b->interaction.damping.contact = {eta, b->spacing, 1.5 * b->spacing};
+    const double theory = largest_damped_step(oracle.topology, oracle.interaction, oracle.state);
+    const auto fails = [&](double dt) { return blows_up(model.topology, model.interaction, model.state, dt); };
+    const double found = limit_between(fails, 0.3 * theory, 3 * theory);
+    const double estimate = time_step_limit(oracle.topology, oracle.interaction, oracle.spacing).limit;
+    margin = std::min(margin, theory / estimate);
+    at.push_back(std::log10(eta));
+    limit.push_back(found / units::fs);
+    expected.push_back(theory / units::fs);
+    estimates.push_back(estimate / units::fs);
+    const std::string name = fmt::format("line law, viscosity {:.0f} eV ps/nm^2", eta);
+    result.checks.push_back(
+        relative_check(name, limit.back(), expected.back(), 0.05, "fs", "20 is what a scene has by default"));
+    result.limits.push_back({"time step, seven tubes, " + name, limit.back(), expected.back(), "fs",
+                             Limit::Guard::refused, "a typed step above the estimate, which counts the viscosity"});
+  }
+  figure.chart.lines.push_back({"dt^2 K + 2 dt D = 4", at, expected, 0});
+  figure.chart.lines.push_back(model_points("by bisection", at, limit, 1));
+  figure.chart.lines.push_back({"estimate of `run`", at, estimates, 2, true});
+  figure.caption = "The estimate expects a tube with six neighbours in an endless rope under load, and lies below.";
+  result.figures.push_back(figure);
+  return margin;
+}
+
+CaseResult run(const CaseContext& context) {
+  CaseResult result;
+  CaseFigure map;
+  map.chart = {"Largest stable step of a rope",
+               {"contact, log2 of its energy over the set's", ""},
+               {"largest step", "fs"},
+               {},
+               {}};
+  int colour = 0;
+  double least_margin = 1e9;
+  for (const Series& s : all_series()) {
+    std::vector<double> at, limit, expected;
+    for (const double factor : s.factors) {
+      const Bundle oracle = bundle_at_rest(s, context.parameters(s.set), factor);
+      Bundle model = packed(s, context.model(s.set), factor);
+      model.state = oracle.state;
+      const double theory = 2 / stiffest_frequency(oracle.topology, oracle.interaction, oracle.state);
+      const auto fails = [&](double dt) { return blows_up(model.topology, model.interaction, model.state, dt); };
+      const double found = limit_between(fails, 0.3 * theory, 3 * theory);
+      at.push_back(std::log2(factor));
+      limit.push_back(found / units::fs);
+      expected.push_back(theory / units::fs);
+      const double estimate = time_step_limit(oracle.topology, oracle.interaction, oracle.spacing).limit;
+      least_margin = std::min(least_margin, theory / estimate);
+      result.checks.push_back(relative_check(fmt::format("{}, contact x {:.0f}", s.name, factor), limit.back(),
+                                             expected.back(), 0.05, "fs", "seven tubes of four elements at rest"));
+    }
+    result.limits.push_back({fmt::format("time step, seven tubes, {}", s.name), limit.front(), expected.front(),
+                             "fs", Limit::Guard::refused, "a typed step above the estimate"});
+    ChartLine theory{"2/w, " + s.name, at, expected, colour};
+    map.chart.lines.push_back(theory);
+    map.chart.lines.push_back(model_points("by bisection", at, limit, colour));
+    ++colour;
+  }
+  map.caption =
+      "Points by bisection, lines joining what the eigenvalues give. Where a line begins to fall, the contact "
+      "takes "
+      "over from the chains.";
+  result.figures.push_back(map);
+  least_margin = std::min(least_margin, check_viscosity(context, result));
+  // The estimate that `run` goes by must never lie above what is stable.
+  result.checks.push_back(
+      absolute_check("estimates of `run` above the limit", least_margin < 1 ? 1 : 0, 0, 0, "", "0: none of these"));
+  result.checks.push_back(
+      information(absolute_check("smallest limit over estimate", least_margin, 1, 0, "",
+                                 "`auto` takes 0.9 of the estimate in cold scenes, 0.6 in others")));
+  result.remarks.push_back(
+      "A contact many times as strong as that of the sets stands for tubes that are pressed together: at rest none "
+      "of "
+      "the shipped ones takes from the step.");
+  result.sources = {"cnt-10-10-tersoff", "cnt-10-10-paper"};
+  return result;
+}
+
+}  // namespace
+
+Case limit_contact_stiffness_case() {
+  return {
+      "limit-contact-stiffness",
+      Case::Group::stability,
+      Case::Tier::quick,
+      "Largest time step by law, element length and stiffness",
+      "The step must be known for every law and element length before a run begins, and also where the contact is "
+      "stiffer than the tubes.",
+      "Seven tubes of four elements at rest, undamped, shaken by 1e-6 nm/ps; the step at which 500 steps blow them "
+      "up, by bisection; with the contact 1 to 256 times as strong.",
+      "2/w, w^2 the largest eigenvalue of the stiffness of the whole rope over its masses.",
+      "L. Verlet, Phys. Rev. 159, 98 (1967), DOI 10.1103/PhysRev.159.98",
+      run};
+}
+
+}  // namespace ropewalk

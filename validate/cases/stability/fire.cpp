@@ -1,0 +1,196 @@
+// Where a relaxation takes a saddle for rest, and where it does not come to rest.
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "cases/common/limits.hpp"
+
+namespace ropewalk {
+namespace {
+
+constexpr const char* set_name = "cnt-10-10-tersoff";
+constexpr int bonds = 12;
+constexpr double bent = 0.5;  // nm at the tip: no longer straight
+
+// A column held at its foot, its tip pressed down by `load` (eV/nm).
+struct Column {
+  Chain chain;
+  explicit Column(const ParameterSet& set, double load) : chain(set, bonds) {
+    chain.drive.fixed = {{0}};
+    chain.drive.loads = {{chain.last, Vector3(0, 0, -load), Vector3::Zero()}};
+    const double shortened = set.element_length * (1 - load / set.bond.stretch);
+    for (int i = 0; i <= bonds; ++i) chain.state.position.set(static_cast<std::size_t>(i), {0, 0, i * shortened});
+  }
+};
+
+struct Rest {
+  bool said = false;  // that it is at rest
+  double tip = 0;     // nm beside the axis
+  long steps = 0;
+};
+
+Rest relaxed(const Column& c, double tolerance, long most) {
+  Simulation s = c.chain.make();
+  Rest r;
+  r.said = s.relax(tolerance, most, [](long) { return true; });
+  r.tip = std::hypot(s.state().position.x[bonds], s.state().position.y[bonds]);
+  r.steps = static_cast<long>(s.state().step);
+  return r;
+}
+
+// pi^2 EI/4L^2, and what shear takes from it (Engesser).
+double buckling_load(const ParameterSet& set) {
+  const double length = bonds * set.element_length;
+  const double euler = units::pi * units::pi * set.bond.bend / (4 * length * length);
+  return set.bond.shear > 0 ? euler / (1 + euler / set.bond.shear) : euler;
+}
+
+// The softest motion of the compressed column: displacements along x and turns about y, and its stiffness.
+struct Mode {
+  double stiffness = 0;       // negative beyond the buckling load
+  Eigen::VectorXd amplitude;  // tip moves by 1 nm
+};
+
+Mode softest_mode(const ParameterSet& set, const State& state) {
+  std::vector<int> freedoms;
+  for (int i = 1; i <= bonds; ++i) {
+    freedoms.push_back(6 * i);
+    freedoms.push_back(6 * i + 4);
+  }
+  const Eigen::MatrixXd k = tangent_stiffness(set.bond, set.element_length, state, freedoms);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(0.5 * (k + k.transpose()));
+  Mode m;
+  m.stiffness = solver.eigenvalues()[0];
+  m.amplitude = solver.eigenvectors().col(0);
+  m.amplitude /= m.amplitude[2 * (bonds - 1)];
+  return m;
+}
+
+void displace(State& state, const Mode& mode, double by) {
+  for (int i = 1; i <= bonds; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    state.position.add(at, {by * mode.amplitude[2 * (i - 1)], 0, 0});
+    state.orientation.set(
+        at, turn_about(Vector3::UnitY(), by * mode.amplitude[2 * (i - 1) + 1]) * state.orientation[at]);
+  }
+}
+
+// The load at which a column that is a picometre beside its axis gives way.
+double load_found(const ParameterSet& model, const ParameterSet& oracle) {
+  const double about = buckling_load(oracle);
+  const auto fails = [&](double load) {
+    Column c(model, load);
+    displace(c.chain.state, softest_mode(model, c.chain.state), 1e-3);
+    return relaxed(c, 1e-7, 60000).tip > bent;
+  };
+  return limit_between(fails, 0.7 * about, 1.5 * about, 5e-3);
+}
+
+// The smallest bow (nm at the tip) that a relaxation to `tolerance` leaves the straight line from.
+double smallest_bow(const ParameterSet& model, double load, double tolerance) {
+  const Column straight(model, load);
+  const Mode mode = softest_mode(model, straight.chain.state);
+  const auto leaves = [&](double bow) {
+    Column c = straight;
+    displace(c.chain.state, mode, bow);
+    return relaxed(c, tolerance, 60000).tip > bent;
+  };
+  return limit_between(leaves, 1e-7, 0.1, 1e-3);
+}
+
+// The bow whose largest force, of the softest mode of the oracle's bonds, is the tolerance.
+double bow_in_theory(const ParameterSet& oracle, double load, double tolerance) {
+  const Mode mode = softest_mode(oracle, Column(oracle, load).chain.state);
+  double largest = 0;
+  for (Eigen::Index k = 0; k < mode.amplitude.size(); ++k)
+    largest = std::max(largest, std::fabs(mode.amplitude[k]) / (k % 2 ? oracle.radius : 1));
+  return tolerance / (std::fabs(mode.stiffness) * largest);
+}
+
+CaseResult run(const CaseContext& context) {
+  const ParameterSet model = context.model(set_name), oracle = context.parameters(set_name);
+  const double theory = buckling_load(oracle), found = load_found(model, oracle);
+  CaseResult result;
+  result.checks.push_back(relative_check("load at which a relaxed column gives way", found, theory, 0.05, "eV/nm",
+                                         "from a bow of 1 pm"));
+  result.limits.push_back({"load at which relaxation leaves a column", found, theory, "eV/nm", Limit::Guard::none,
+                           "not needed: it is the physics of the column"});
+
+  const double load = 1.2 * theory, tolerance = 1e-4;
+  const Rest straight = relaxed(Column(model, load), tolerance, 20000);
+  result.checks.push_back(absolute_check("straight, 20 % above that load: bow when it says that it rests",
+                                         straight.tip, 0, 1e-9, "nm",
+                                         straight.said ? "says that it is relaxed" : "says nothing"));
+  const double bow = smallest_bow(model, load, tolerance), bow_theory = bow_in_theory(oracle, load, tolerance);
+  result.checks.push_back(relative_check("smallest bow that leaves the saddle", 1e3 * bow, 1e3 * bow_theory, 0.05,
+                                         "pm", "20 % above the load, tolerance 1e-4 eV/nm"));
+  result.limits.push_back({"bow below which a saddle passes for rest", 1e3 * bow, 1e3 * bow_theory, "pm",
+                           Limit::Guard::told, "the largest force and the tolerance; start with perturbation_nm"});
+
+  // Near the load the softest motion becomes slow, and its forces small.
+  std::vector<double> part, steps, left, allowed;
+  for (const double p : {0.0, 0.3, 0.6, 0.8, 0.9, 0.95, 0.98}) {
+    Column c(model, p * theory);
+    displace(c.chain.state, softest_mode(model, c.chain.state), 0.1);
+    const Rest r = relaxed(c, 1e-6, 200000);
+    part.push_back(p);
+    steps.push_back(static_cast<double>(r.steps));
+    left.push_back(std::log10(1e3 * r.tip));
+    allowed.push_back(std::log10(1e3 * bow_in_theory(oracle, p * theory, 1e-6)));
+  }
+  Column slow(model, 0.98 * theory);
+  displace(slow.chain.state, softest_mode(model, slow.chain.state), 0.1);
+  const long few = std::lround(0.5 * steps.back());
+  const Rest cut = relaxed(slow, 1e-6, few);
+  result.checks.push_back(absolute_check("steps run out: says that it rests (1: yes)", cut.said ? 1 : 0, 0, 0, "",
+                                         "2 % below the load, half of the steps it needs"));
+  CaseFigure figure;
+  figure.chart = {
+      "Steps of a relaxation near the buckling load", {"load over that of buckling", ""}, {"steps", ""}, {}, {}};
+  figure.chart.lines.push_back(theory_curve(
+      "first point times (1 - P/Pc)^-1/2", [&](double x) { return steps.front() / std::sqrt(1 - x); }, 0, 0.98, 0));
+  figure.chart.lines.push_back(model_points("until 1e-6 eV/nm", part, steps, 1));
+  figure.caption =
+      "At first the steps grow with the period of the softest motion. Close to the load its forces are so small "
+      "that "
+      "they pass the tolerance before the column is straight, and the relaxation ends sooner than it should.";
+  CaseFigure bows;
+  bows.chart = {"Bow that is left when the relaxation ends",
+                {"load over that of buckling", ""},
+                {"log10 of the bow in pm", ""},
+                {},
+                {}};
+  bows.chart.lines.push_back({"tolerance over the softest stiffness", part, allowed, 0});
+  bows.chart.lines.push_back(model_points("at 1e-6 eV/nm", part, left, 1));
+  bows.caption =
+      "A tolerance of the force allows a bow that grows as 1/(1 - P/Pc): what stalls is not the motion, it is the "
+      "measure.";
+  result.figures.push_back(figure);
+  result.figures.push_back(bows);
+  result.remarks.push_back(
+      "Forces vanish on a saddle as they do at rest: a perfectly straight tube above its buckling load is called "
+      "relaxed, and no tolerance helps. Give such a scene a perturbation. A relaxation that runs out of steps says "
+      "so, "
+      "with its largest force, and ends with exit code 4.");
+  result.sources.push_back(set_name);
+  return result;
+}
+
+}  // namespace
+
+Case limit_fire_case() {
+  return {
+      "limit-fire",
+      Case::Group::stability,
+      Case::Tier::quick,
+      "Where a relaxation stalls",
+      "A relaxation that stands still is not always at rest in a minimum: what it says must not mislead.",
+      "A column of 13 elements held at its foot and pressed at its tip. The load at which FIRE leaves the straight "
+      "line, and the smallest bow from which it does so 20 % above that load, both by bisection.",
+      "pi^2 EI/4L^2 with Engesser's shear; the bow whose force along the softest mode, by the eigenvalue of the "
+      "chain's stiffness, is the tolerance.",
+      "E. Bitzek et al., Phys. Rev. Lett. 97, 170201 (2006), DOI 10.1103/PhysRevLett.97.170201",
+      run};
+}
+
+}  // namespace ropewalk

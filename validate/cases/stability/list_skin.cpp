@@ -1,0 +1,177 @@
+// The list of neighbours and fast motion.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "cases/common/chains_contact.hpp"
+#include "cases/common/limits.hpp"
+#include "model/error.hpp"
+#include "sim/forces/forces.hpp"
+
+namespace ropewalk {
+namespace {
+
+constexpr const char* set_name = "cnt-10-10-tersoff";
+constexpr double time_step = 0.02;  // ps
+
+// Two elements in one line, just out of reach of each other, that come towards each other or turn.
+Bundle nose_to_nose(const ParameterSet& set, double gap, double speed, double spin) {
+  Bundle b;
+  b.topology = topology_of(set);
+  b.interaction.line = {line_contact_of(set)};
+  b.topology.add_tube(1);
+  b.topology.add_tube(1);
+  b.state = State(2);
+  b.state.position.set(1, {0, 0, b.interaction.cutoff() + gap});
+  if (spin > 0) {  // beside one another: the second one's end sweeps over the first
+    b.state.position.set(1, {0, 0.3 * b.interaction.cutoff(), 0.8 * b.interaction.cutoff()});
+    b.state.orientation.set(0, turn_about(Vector3::UnitX(), 1.2));
+  }
+  b.state.velocity.set(0, {0, 0, 0.5 * speed});
+  b.state.velocity.set(1, {0, 0, -0.5 * speed});
+  b.state.angular_velocity.set(0, {spin, 0, 0});
+  b.state.angular_velocity.set(1, {-0.7 * spin, 0, 0});
+  return b;
+}
+
+// The same pair by pair, without a list.
+double energy_without_list(const Interaction& in, const Topology& topology, const State& state) {
+  Forces f(state.size());
+  compute_reference(topology, in, state, f);
+  return f.energy.vdw;
+}
+
+struct Approach {
+  double missed = 0;   // largest difference of the energy from that without a list, eV
+  double largest = 0;  // energy met: that there was something to miss
+};
+
+// Until the steps are done or the simulator stops.
+Approach approach(const Bundle& b, const Interaction& oracle, double skin, long steps) {
+  Simulation s(b.topology, b.interaction, {}, b.state, time_step, skin);
+  Approach out;
+  try {
+    for (long k = 0; k < steps; ++k) {
+      s.step();
+      const double expected = energy_without_list(oracle, b.topology, s.state());
+      out.missed = std::max(out.missed, std::fabs(s.forces().energy.vdw - expected));
+      out.largest = std::max(out.largest, std::fabs(expected));
+    }
+  } catch (const NumericalError&) {
+    return out;
+  }
+  return out;
+}
+
+// Steps per build while the two are out of reach and nothing changes their speed.
+double steps_per_build(const ParameterSet& model, double skin, double speed) {
+  constexpr long steps = 400;
+  const Bundle b = nose_to_nose(model, skin + steps * speed * time_step, speed, 0);
+  Simulation s(b.topology, b.interaction, {}, b.state, time_step, skin);
+  const long before = s.list().builds();
+  s.steps(steps);
+  return static_cast<double>(steps) / static_cast<double>(s.list().builds() - before);
+}
+
+// How far the two may come towards each other while a list that nobody looks after still has the pair where it is
+// needed.
+double stale_path(const ParameterSet& model, double skin) {
+  const Bundle b = nose_to_nose(model, 1.0001 * skin, 0, 0);
+  NeighbourList list(b.interaction, skin);
+  list.build(b.topology, b.state);
+  const auto misses = [&](double path) {
+    State moved = b.state;
+    moved.position.add(0, {0, 0, 0.5 * path});
+    moved.position.add(1, {0, 0, -0.5 * path});
+    ForceEngine engine;
+    Forces f(2), all(2);
+    engine.compute(b.topology, b.interaction, list, moved, f);
+    compute_reference(b.topology, b.interaction, moved, all);
+    return std::fabs(f.energy.vdw - all.energy.vdw) > 1e-12;
+  };
+  return limit_between(misses, 0, 3, 1e-4);
+}
+
+CaseResult run(const CaseContext& context) {
+  const ParameterSet model = context.model(set_name), oracle = context.parameters(set_name);
+  CaseResult result;
+  // At the fastest that a run goes on with, half of it for each of the two; and turning.
+  const double fastest = 2 * 0.24 * oracle.radius / time_step, spin = 0.45 / time_step;
+  Interaction reference;
+  reference.line = {line_contact_of(oracle)};
+  double missed = 0, weakest = 1e9;
+  for (const double skin : {0.02, 0.1, 0.25, 0.5})
+    for (const double part : {0.01, 0.1, 1.0}) {
+      const double speed = part * fastest;
+      const long steps = std::lround((1 + 0.5 * skin) / (speed * time_step)) + 1;
+      const Approach a = approach(nose_to_nose(model, 0.5 * skin, speed, 0), reference, skin, steps);
+      missed = std::max(missed, a.missed / a.largest);
+      weakest = std::min(weakest, a.largest);
+    }
+  for (const double skin : {0.02, 0.25}) {
+    const Approach a = approach(nose_to_nose(model, 0, 0.5, spin), reference, skin, 60);
+    missed = std::max(missed, a.missed / a.largest);
+    weakest = std::min(weakest, a.largest);
+  }
+  result.checks.push_back(absolute_check("energy missed by the list, over the largest met", missed, 0, 1e-9, "1",
+                                         "at up to 16 km/s or 0.45 rad in a step, skins of 0.02 to 0.5 nm"));
+  result.checks.push_back(information(absolute_check("least of the largest energies met", weakest, 0, 0, "eV",
+                                                     "that there was something to miss")));
+  // A list that is not looked after.
+  std::vector<double> skins = {0.1, 0.25, 0.5}, paths;
+  for (const double skin : skins) {
+    paths.push_back(stale_path(model, skin));
+    result.checks.push_back(relative_check(fmt::format("path after which an old list misses, skin {:.2f} nm", skin),
+                                           paths.back(), skin, 0.05, "nm", "both have moved half of it"));
+  }
+  result.limits.push_back({"path until an old list misses a contact, skin 0.25 nm", paths[1], skins[1], "nm",
+                           Limit::Guard::none, "not needed: looked after before every force, at any speed"});
+  // What speed costs.
+  const double speed = 1.0;
+  const double found = limit_between([&](double s) { return steps_per_build(model, s, speed) > 1.5; }, 1e-3, 0.2);
+  const double theory = speed * time_step;  // each of the two moves at half the speed, and may move half the skin
+  result.checks.push_back(relative_check("skin below which the list is built in every step", found, theory, 0.05,
+                                         "nm", "1 km/s, steps of 20 fs"));
+  result.limits.push_back({"skin below which every step builds the list, 1 km/s", found, theory, "nm",
+                           Limit::Guard::none, "not needed: slow, not wrong; the default is 0.25 nm"});
+  CaseFigure figure;
+  figure.chart = {"Steps between two builds of the list", {"speed of approach", "km/s"}, {"steps", ""}, {}, {}};
+  std::vector<double> v, every;
+  for (double at = 0.1; at < 2.05; at += 0.1) {
+    v.push_back(at);
+    every.push_back(steps_per_build(model, 0.25, at));
+  }
+  figure.chart.lines.push_back(theory_curve(
+      "skin/(v dt)", [&](double x) { return std::max(1.0, 0.25 / (x * time_step)); }, 0.1, 2, 0));
+  figure.chart.lines.push_back(model_points("counted, skin of 0.25 nm", v, every, 1));
+  figure.caption = "The list is built anew in the step in which an element has moved more than half the skin.";
+  result.figures.push_back(figure);
+  result.remarks.push_back(
+      "Fast motion costs builds and never a contact: no speed was found at which a pair is missed, up to that at "
+      "which "
+      "the run is stopped anyhow.");
+  result.sources.push_back(set_name);
+  return result;
+}
+
+}  // namespace
+
+Case limit_list_skin_case() {
+  return {
+      "limit-list-skin",
+      Case::Group::stability,
+      Case::Tier::quick,
+      "Fast motion and the list of neighbours",
+      "A pair that is not in the list has no force: tubes would go into one another unseen.",
+      "Two elements that approach nose to nose, or turn, at up to the speed at which a run is stopped, with four "
+      "skins; the contact energy of every step against a sum over all pairs. Then a list that is never built "
+      "anew, and the skin at which every step builds one, by bisection.",
+      "All pairs, without a list, by the law of the set; an old list holds for a path of one skin; a build in "
+      "every "
+      "step below v dt.",
+      "L. Verlet, Phys. Rev. 159, 98 (1967), DOI 10.1103/PhysRev.159.98",
+      run};
+}
+
+}  // namespace ropewalk

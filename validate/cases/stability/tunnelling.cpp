@@ -1,0 +1,108 @@
+// The speed at which one tube goes through another.
+#include <algorithm>
+#include <cmath>
+
+#include "cases/common/chains_contact.hpp"
+#include "cases/common/limits.hpp"
+#include "model/error.hpp"
+
+namespace ropewalk {
+namespace {
+
+constexpr const char* set_name = "cnt-10-10-tersoff";
+constexpr double start = 3.0;  // nm apart, out of reach
+
+// Two single elements that cross at right angles and meet head on.
+Bundle crossed(const ParameterSet& set, double speed) {
+  Bundle b;
+  b.topology = topology_of(set);
+  b.interaction.line = {line_contact_of(set)};
+  b.topology.add_tube(1);
+  b.topology.add_tube(1);
+  b.state = State(2);
+  b.state.position.set(0, {-0.5 * start, 0, 0});
+  b.state.position.set(1, {0.5 * start, 0, 0});
+  b.state.orientation.set(1, turn_about(Vector3::UnitX(), units::pi / 2));
+  b.state.velocity.set(0, {0.5 * speed, 0, 0});
+  b.state.velocity.set(1, {-0.5 * speed, 0, 0});
+  return b;
+}
+
+// The smallest distance of the two; less than zero where they have gone through each other.
+double closest(const ParameterSet& set, double speed, double time_step) {
+  const Bundle b = crossed(set, speed);
+  Simulation s(b.topology, b.interaction, {}, b.state, time_step);
+  double smallest = start;
+  for (double time = 0; time < 4 * start / speed && smallest > -0.5 * start; time += time_step) {
+    s.step();
+    smallest = std::min(smallest, s.state().position.x[1] - s.state().position.x[0]);
+  }
+  return smallest;
+}
+
+CaseResult run(const CaseContext& context) {
+  const ParameterSet model = context.model(set_name), oracle = context.parameters(set_name);
+  const LineContact law = line_contact_of(oracle);
+  const double barrier = law.energy(Vector3::Zero(), Vector3::UnitZ(), Vector3::UnitY());
+  const double theory = std::sqrt(4 * barrier / oracle.element_mass(oracle.element_length));
+  const auto fails = [&](double speed) { return closest(model, speed, 2e-3 / speed) < 0; };
+  const double found = limit_between(fails, 0.3 * theory, 3 * theory);
+  CaseResult result;
+  result.checks.push_back(relative_check("speed that goes through", found, theory, 0.05, "km/s",
+                                         "two elements, relative speed; a step of 2 pm"));
+  // At the default step the simulator must stop such a run instead of letting it pass.
+  const Bundle b = crossed(oracle, theory);
+  const double step = default_step_fraction * time_step_limit(b.topology, b.interaction, 1.7).limit;
+  double stopped = 0;
+  try {
+    closest(model, 1.2 * theory, step);
+  } catch (const NumericalError&) {
+    stopped = 1;
+  }
+  result.checks.push_back(absolute_check("stopped at the default step (1: yes)", stopped, 1, 0, "",
+                                         "an element that moves a quarter of its radius in a step ends the run"));
+  result.limits.push_back({"speed that goes through a tube", found, theory, "km/s", Limit::Guard::stopped,
+                           "an element that moves a quarter of its radius in one step"});
+  CaseFigure figure;
+  figure.chart = {"Closest approach", {"distance of the axes", "nm"}, {"energy", "eV"}, {}, {}};
+  const double mass = oracle.element_mass(oracle.element_length);
+  std::vector<double> distance, energy;
+  for (double part = 0.1; part < 1; part += 0.1) {
+    const double speed = part * theory;
+    distance.push_back(closest(model, speed, 2e-3 / speed));
+    energy.push_back(0.25 * mass * speed * speed);
+  }
+  figure.chart.lines.push_back(theory_curve(
+      "energy of the law",
+      [&](double x) {
+        return law.energy({x, 0, 0}, Vector3::UnitZ(), Vector3::UnitY());
+      },
+      0, 1.8, 0));
+  figure.chart.lines.push_back(model_points("kinetic energy, closest approach", distance, energy, 1));
+  figure.caption =
+      "Two crossed elements come as close as their energy brings them up the wall, and through it where "
+      "it is larger than that of full overlap.";
+  result.figures.push_back(figure);
+  result.remarks.push_back(
+      "Such speeds lie ten times above those of sound: a run reaches them only when it has blown up already, and "
+      "is stopped.");
+  result.sources.push_back(set_name);
+  return result;
+}
+
+}  // namespace
+
+Case limit_tunnelling_case() {
+  return {"limit-tunnelling",
+          Case::Group::stability,
+          Case::Tier::quick,
+          "Speed at which tubes go through one another",
+          "The wall of the contact is finite: whoever goes over it has tubes inside each other, without an error.",
+          "Two single elements at right angles, head on, at a step so small that it does not matter; the speed at "
+          "which they come out on the other side, by bisection. Then faster, at the default step.",
+          "m v^2/4 = U(0), the energy of the law at full overlap.",
+          "A. N. Volkov, L. V. Zhigilei, J. Phys. Chem. C 114, 5513 (2010), DOI 10.1021/jp906142h",
+          run};
+}
+
+}  // namespace ropewalk

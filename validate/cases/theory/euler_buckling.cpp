@@ -1,0 +1,73 @@
+// The compressed column.
+#include <cmath>
+
+#include "cases/common/chains.hpp"
+
+namespace ropewalk {
+namespace {
+
+constexpr const char* set_name = "cnt-10-10-tersoff";
+
+// Straight and shortened by the load; ends on the axis and free to turn. Motions in one plane are enough.
+double lowest_under_load(const ParameterSet& set, int bonds, double load) {
+  Chain c(set, bonds);
+  const double shortened = set.element_length * (1 - load / set.bond.stretch);
+  std::vector<int> freedoms;
+  for (int i = 0; i <= bonds; ++i) {
+    c.state.position.set(static_cast<std::size_t>(i), {0, 0, i * shortened});
+    if (i > 0 && i < bonds) freedoms.push_back(6 * i);
+    freedoms.push_back(6 * i + 4);
+  }
+  return lowest_eigenvalue(tangent_stiffness(set.bond, set.element_length, c.state, freedoms));
+}
+
+CaseResult run(const CaseContext& context) {
+  const ParameterSet model = context.model(set_name), oracle = context.parameters(set_name);
+  const auto euler = [&](double length) { return std::pow(units::pi / length, 2) * oracle.bond.bend; };
+  CaseResult result;
+  std::vector<double> lengths, loads;
+  for (const int bonds : {16, 20, 24, 30, 40, 60}) {
+    const double length = bonds * model.element_length, expected = euler(length);
+    const double load =
+        zero_between([&](double p) { return lowest_under_load(model, bonds, p); }, 0.5 * expected, 2.5 * expected);
+    lengths.push_back(length);
+    loads.push_back(load);
+    if (bonds == 20 || bonds == 60)
+      result.checks.push_back(relative_check("critical load of " + std::to_string(bonds) + " bonds", load, expected,
+                                             bonds == 20 ? 1e-2 : 3e-3, "eV/nm",
+                                             "shortening before buckling is P/EA, and the error of the elements "
+                                             "falls as their length squared"));
+  }
+  CaseFigure figure;
+  figure.chart = {
+      "Euler load against the length of the column", {"length", "nm"}, {"critical load", "eV/nm"}, {}, {}};
+  figure.chart.lines.push_back(theory_curve("pi^2 EI/L^2", euler, lengths.front(), lengths.back()));
+  figure.chart.lines.push_back(model_points("loss of stiffness of the chain", lengths, loads));
+  figure.caption = "Load at which the lowest eigenvalue of the chain's stiffness passes zero.";
+  result.figures.push_back(figure);
+  result.remarks.push_back(
+      "The threshold is where the straight chain loses stiffness, found by bisection of the "
+      "lowest eigenvalue: no perturbation and no time enter.");
+  result.sources.push_back(set_name);
+  return result;
+}
+
+}  // namespace
+
+Case euler_buckling_case() {
+  Case c;
+  c.name = "euler-buckling";
+  c.title = "Buckling of a compressed tube";
+  c.why = "Tubes inside of a twisted rope are compressed and leave the straight line by this instability.";
+  c.setup =
+      "Straight (10,10) tubes of 16 to 60 bonds, ends held on the axis and free to turn, under an axial load; "
+      "lowest eigenvalue of the tangent stiffness of the loaded chain.";
+  c.oracle = "P = pi^2 EI/L^2.";
+  c.literature =
+      "S. P. Timoshenko, J. M. Gere, Theory of Elastic Stability, 2nd ed. (McGraw-Hill, 1961); "
+      "B. Audoly, Y. Pomeau, Elasticity and Geometry (Oxford, 2010)";
+  c.run = run;
+  return c;
+}
+
+}  // namespace ropewalk

@@ -1,0 +1,73 @@
+// A tube bent into a circle.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "cases/common/chains.hpp"
+
+namespace ropewalk {
+namespace {
+
+constexpr const char* set_name = "cnt-10-10-tersoff";
+
+// Elements on a circle, at the length at which their bonds are not stretched.
+double ring_energy(const ParameterSet& set, int elements, double circumference) {
+  const double a = circumference / elements, step = 2 * units::pi / elements;
+  const double radius = 0.5 * a / std::sin(0.5 * step);
+  const auto frame = [&](int k) { return frame_of(turn_about(Vector3::UnitX(), -k * step)); };
+  const auto at = [&](int k) { return Vector3(0, radius * (1 - std::cos(k * step)), radius * std::sin(k * step)); };
+  return elements * bond_energy<double>(set.bond, a, at(1) - at(0), frame(0), frame(1)).total();
+}
+
+CaseResult run(const CaseContext& context) {
+  const ParameterSet model = context.model(set_name), oracle = context.parameters(set_name);
+  const double circumference = 50 * model.element_length;
+  const double turn = 2 * units::pi;
+  const double expected = oracle.bond.bend * turn * turn / (2 * circumference);
+  const auto error = [&](int n) { return ring_energy(model, n, circumference) / expected - 1; };
+  CaseResult result;
+  // Of a bond bent by delta: (1 - cos delta) + s (12 (1 - cos(delta/2)) - 3 (1 - cos delta)), to delta^4.
+  const auto leading = [&](double n) {
+    return (3 * oracle.bond.shear_share(circumference / n) / 16 - 1.0 / 12) * turn * turn / (n * n);
+  };
+  result.checks.push_back(relative_check("energy of 50 elements", ring_energy(model, 50, circumference), expected,
+                                         2e-3, "eV", "chords and cosines of 0.126 rad: -0.09 %"));
+  for (const int n : {50, 100})
+    result.checks.push_back(relative_check(fmt::format("error of {} elements", n), error(n), leading(n), 2e-2, "1",
+                                           "second order in the element length, but for the share of shear"));
+  std::vector<double> elements, errors;
+  for (const int n : {16, 20, 25, 32, 40, 50, 64, 80, 100}) {
+    elements.push_back(n);
+    errors.push_back(100 * error(n));
+  }
+  CaseFigure figure;
+  figure.chart = {"Error of the bending energy of a ring", {"elements", "", true}, {"error", "%"}, {}, {}};
+  figure.chart.lines.push_back(theory_curve(
+      "(3 s/16 - 1/12) (2 pi/N)^2", [&](double n) { return 100 * leading(n); }, 16, 100));
+  figure.chart.lines.push_back(model_points("ring of elements", elements, errors));
+  figure.caption =
+      "Bending energy of a circle of fixed circumference cut into N elements, against EI (2 pi)^2/2L. "
+      "The line is the leading term of the bond's own energy, s the share of shear in a bond of this length.";
+  result.figures.push_back(figure);
+  result.remarks.push_back(
+      "A bond bent by delta between chords has 1 + (3 s/16 - 1/12) delta^2 times the energy of the arc, s = 1/(1 + "
+      "12 EI/(kGA a^2)); 5/48 without shear. The error falls with the square of the element length and faster.");
+  result.sources.push_back(set_name);
+  return result;
+}
+
+}  // namespace
+
+Case ring_energy_case() {
+  Case c;
+  c.name = "ring-energy";
+  c.title = "Bending energy of a closed ring";
+  c.why = "Half of the elastic energy of a twisted rope is bending; curvature per element sets its error.";
+  c.setup = "A closed circle of the (10,10) tube of 68.9 nm, cut into 16 to 100 elements.";
+  c.oracle = "U = EI (2 pi)^2/(2 L).";
+  c.literature = "V. A. Kuzkin, I. E. Asonov, Phys. Rev. E 86, 051301 (2012), DOI 10.1103/PhysRevE.86.051301";
+  c.run = run;
+  return c;
+}
+
+}  // namespace ropewalk
