@@ -129,7 +129,6 @@ void add_energy(CLI::App& app, Verbs& v) {
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
   c->add_option("--threads", v.energy.threads, "Threads [default: all cores]")->check(thread_range());
-  c->add_flag("--all-nodes", v.energy.all_nodes, "Line law: sums over all nodes, however tubes cross");
   c->add_flag("--legacy-torque", v.energy.legacy_torque, "Leave out the torque that the published code leaves out");
   c->add_flag("--reference", v.energy.reference, "The plain O(N^2) path instead of the fast one");
   c->add_flag("--json", v.energy.json, "JSON");

@@ -57,7 +57,6 @@ struct EnergyArguments {
   std::string state;
   std::string parameters;
   std::string law;  // empty: the line law where the set has it
-  bool all_nodes = false;
   bool legacy_torque = false;
   bool reference = false;
   bool json = false;

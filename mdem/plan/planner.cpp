@@ -434,8 +434,6 @@ class Writer {
   void precision(const std::string& words, const std::string& why) {
     const bool full = words.rfind("double", 0) == 0;
     set("contact", "precision", full ? "\"double\"" : "\"mixed\"", why);
-    if (scene_.contact.law == Law::line)
-      set("contact", "all_nodes", words.find("all") == std::string::npos ? "false" : "true", why);
   }
 
   void relax(const std::string& why) {
@@ -499,7 +497,6 @@ void start_from_default(const Scene& scene, Writer& w) {
   reset(scene.run.stepping.runge_kutta, "run", "integrator");
   reset(scene.contact.nodes > 0, "contact", "nodes_per_element");
   reset(scene.contact.cutoff > 0, "contact", "cutoff_nm");
-  reset(scene.contact.all_nodes, "contact", "all_nodes");
   reset(scene.contact.precision.has_value(), "contact", "precision");
 }
 

@@ -52,10 +52,7 @@ const std::vector<SceneKey>& scene_keys() {
       {"start", "seed", "", "1", "", "of all random numbers: the same seed gives the same run"},
 
       {"contact", "law", "", "\"paper\"", "what the set has", "\"line\" (first choice), \"paper\" or \"none\""},
-      {"contact", "nodes_per_element", "", "6", "for a corrugation below 1e-3", "line: nodes along an element"},
-      {"contact", "all_nodes", "", "false", "",
-       "line: all nodes towards nearly parallel elements too, which keeps the symmetry of a rope; two to three "
-       "times the cost"},
+      {"contact", "nodes_per_element", "", "5", "for a corrugation below 2e-4", "line: nodes along an element"},
       {"contact", "precision", "", "\"mixed\"", "mixed; double for mode = \"relax\"",
        "\"mixed\" (pairs in single precision) or \"double\""},
       {"contact", "legacy_torque", "", "false", "",

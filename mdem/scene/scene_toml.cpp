@@ -236,15 +236,10 @@ ContactOptions read_contact(const TomlTable& t, const Scene& scene) {
   }
   if (c.law == Law::paper && scene.sets.size() > 1)
     throw t.error("law", "is \"paper\", which holds between tubes of one kind alone", "take law = \"line\"");
-  const auto check_line_law = [&](const char* key) {
-    if (c.law != Law::line) throw t.error(key, "belongs to law = \"line\"", "take it away");
-  };
   if (t.has("nodes_per_element")) {
-    check_line_law("nodes_per_element");
+    if (c.law != Law::line) throw t.error("nodes_per_element", "belongs to law = \"line\"", "take it away");
     c.nodes = static_cast<int>(t.integer("nodes_per_element", 1, most_nodes));
   }
-  c.all_nodes = t.boolean_or("all_nodes", c.all_nodes);
-  if (c.all_nodes) check_line_law("all_nodes");
   static const Words<Interaction::Precision> precisions = {{"mixed", Interaction::Precision::mixed},
                                                            {"double", Interaction::Precision::full}};
   if (t.has("precision")) c.precision = t.word_or("precision", Interaction::Precision::mixed, precisions);

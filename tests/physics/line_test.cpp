@@ -10,7 +10,7 @@ namespace {
 LineContact contact(double radius_i, double radius_j) {
   const LineDensity density = test::line_density(radius_i, radius_j);
   const int nodes = line_nodes(test::element_length, line_parallel_well(density).distance, density.contact);
-  return line_pair(density, test::element_length, test::element_length, nodes, nodes);
+  return {density, test::element_length, test::element_length, nodes, nodes};
 }
 
 // Energy per length of a long row beside one element, shifted along it.

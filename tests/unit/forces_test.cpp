@@ -647,7 +647,7 @@ TEST(LineForces, StraightRopesHaveNoPlan) {
 
 // Nothing within the cutoff is left out, and nearly all that is beyond it is.
 TEST(LineForces, ReachOfElementsHoldsTheirNodes) {
-  const LineContact law = line_pair(test::line_density(0.6785, 0.6785), 1.4, 1.1, 6, 5);
+  const LineContact law = LineContact{test::line_density(0.6785, 0.6785), 1.4, 1.1, 6, 5};
   const ElementReach reach(law);
   test::Random random(2);
   int near = 0, far = 0, far_but_near = 0;
@@ -716,7 +716,7 @@ TEST(LineForces, ManyPairsEqualReference) {
   topology.types[0].element_length = 0.03;
   const State state = many_short_elements(topology);
   Interaction in;
-  in.line = {line_pair(test::line_density(), 0.03, 0.03, 1, 1)};
+  in.line = {LineContact{test::line_density(), 0.03, 0.03, 1, 1}};
   in.damping.contact = {20, 1.713, 2.57};
   expect_many_pairs_equal_reference(topology, state, in, 1e-10);
 }

@@ -40,7 +40,6 @@ struct ChartModel {
   std::string set;         // parameter set; empty: the scene's
   ContactOptions::Law law = ContactOptions::Law::line;
   int nodes = 0;  // per element; 0: as line_nodes chooses
-  bool all_nodes = false;
   Interaction::Precision precision = Interaction::Precision::mixed;
   double cutoff = 0;         // nm; 0: the set's
   double length = 1;         // of an element, in those of the default; rounded down to whole bonds

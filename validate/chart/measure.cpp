@@ -183,7 +183,6 @@ ChartPoint describe(const ChartScene& scene, const ChartModel& model, const Spec
   p.mass_scale = model.mass_scale;
   p.mode = model.mode == RunOptions::Mode::relax ? "relax" : "dynamics";
   p.precision = s.interaction.precision == Interaction::Precision::mixed ? "mixed" : "double";
-  if (model.all_nodes) p.precision += "+all_nodes";
   p.nodes = s.interaction.paper ? 1 : s.interaction.line.empty() ? 0 : s.interaction.line.front().nodes_i;
   p.cutoff = s.interaction.paper          ? s.interaction.paper->cutoff()
              : s.interaction.line.empty() ? 0

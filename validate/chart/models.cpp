@@ -28,7 +28,6 @@ ChartModel varied(const std::string& kind, const std::string& name, F change) {
 void add_anchors(std::vector<ChartModel>& all) {
   all.push_back(varied("finest", finest_model, [](ChartModel& m) {
     m.length = 0.5;
-    m.all_nodes = true;
     m.precision = Precision::full;
     m.step_fraction = 0.5;
   }));
@@ -84,11 +83,6 @@ void add_contact_knobs(std::vector<ChartModel>& all) {
     all.push_back(varied("contact_viscosity", fmt::format("viscosity-{:g}", eta),
                          [eta](ChartModel& m) { m.contact_viscosity = eta; }));
   all.push_back(varied("precision", "double", [](ChartModel& m) { m.precision = Precision::full; }));
-  all.push_back(varied("precision", "all-nodes", [](ChartModel& m) { m.all_nodes = true; }));
-  all.push_back(varied("precision", "all-nodes-double", [](ChartModel& m) {
-    m.all_nodes = true;
-    m.precision = Precision::full;
-  }));
 }
 
 void add_combinations(const ChartScene& scene, std::vector<ChartModel>& all) {
@@ -98,13 +92,6 @@ void add_combinations(const ChartScene& scene, std::vector<ChartModel>& all) {
       m.length = 0.5;
       m.stepping.contact_every = 3;
     }));
-  // Alike for both elements of a pair, as the sparse sums are not.
-  if (scene.contact)
-    for (const int nodes : {4, 5})
-      all.push_back(varied("combination", fmt::format("nodes-{}+all-nodes", nodes), [nodes](ChartModel& m) {
-        m.nodes = nodes;
-        m.all_nodes = true;
-      }));
   // Elements of the default's length: in a strongly twisted rope longer ones need all of their nodes.
   if (scene.contact)
     for (const double mass : {1.0, 4.0})
@@ -140,7 +127,6 @@ void add_combinations(const ChartScene& scene, std::vector<ChartModel>& all) {
 void take_contact_away(ChartModel& m) {
   m.law = Law::none;
   m.nodes = 0;
-  m.all_nodes = false;
   m.contact_viscosity = 0;
 }
 
@@ -180,7 +166,6 @@ Scene knobs_of(const ChartModel& model, const std::string& default_set, double e
   scene.element_length = element_length;
   scene.contact.law = model.law;
   scene.contact.nodes = model.nodes;
-  scene.contact.all_nodes = model.all_nodes;
   scene.contact.precision = model.precision;
   scene.contact.cutoff = model.cutoff;
   scene.run.stepping = model.stepping;

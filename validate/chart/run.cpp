@@ -31,7 +31,6 @@ struct Task {
 double guessed_work(const Task& t) {
   double each = 1;
   if (t.model.law == ContactOptions::Law::paper) each = 2;
-  if (t.model.all_nodes) each = 3;
   if (t.model.precision == Interaction::Precision::full) each *= 2;
   if (!t.scene->contact) each = 0.3;
   return each * t.point.elements * t.point.steps;

@@ -502,7 +502,7 @@ std::size_t Simulation::bytes() const {
 
 namespace {
 
-constexpr char magic[] = "MDEM7";
+constexpr char magic[] = "MDEM8";
 
 struct Writer {
   std::string bytes;
@@ -569,24 +569,6 @@ auto force_arrays(F& f) {
   return std::array{&f.force.x, &f.force.y, &f.force.z, &f.torque.x, &f.torque.y, &f.torque.z};
 }
 
-void put(const LinePlan::Saved& plan, Writer& w) {
-  w.put(plan.turned);
-  w.put(plan.moved);
-  w.put(plan.twist);
-  for (const Vec3Array* v : {&plan.position, &plan.axis})
-    for (const std::vector<double>* c : {&v->x, &v->y, &v->z}) w.put(*c);
-}
-
-void get(LinePlan::Saved& plan, std::size_t elements, Reader& r) {
-  r.get(plan.turned);
-  r.get(plan.moved);
-  r.get(plan.twist);
-  for (Vec3Array* v : {&plan.position, &plan.axis}) {
-    v->resize(elements);
-    for (std::vector<double>* c : {&v->x, &v->y, &v->z}) r.get(*c);
-  }
-}
-
 }  // namespace
 
 std::string Simulation::serialise() const {
@@ -611,9 +593,6 @@ std::string Simulation::serialise() const {
       for (const auto* v : force_arrays(*f)) w.put(*v);
   w.put(forces_.energy);
   w.put(forces_.damping_power);
-  const LinePlan& plan = engine_.line().plan();
-  w.put(plan.any());
-  if (plan.any()) put(plan.saved(), w);
   return std::move(w.bytes);
 }
 
@@ -655,17 +634,12 @@ void Simulation::restore(const std::string& bytes) {
       for (auto* v : force_arrays(*f)) r.get(*v);
   r.get(forces_.energy);
   r.get(forces_.damping_power);
-  bool planned = false;
-  r.get(planned);
-  LinePlan::Saved plan;
-  if (planned) get(plan, state_.size(), r);
   list_.build(topology_, std::move(ref), std::move(ref_axis));
   list_.set_twist(twist);
   list_.set_bounds(bounds[0], bounds[1]);
-  if (planned) engine_.resume(topology_, interaction_, list_, std::move(plan));
-  // The runs of this list, which the skin of the next one follows from.
+  // The spans of this list, which the skin of the next one follows from.
   Forces made(state_.size());
-  if (tunes_skin_ && !planned)
+  if (tunes_skin_)
     engine_.compute(topology_, interaction_, list_, state_, made, {Parts::contact, false});
   point_loads(drive_, state_, state_.time, point_loads_);
 }

@@ -108,11 +108,6 @@ class ForceEngine {
   };
   const Times& times() const { return times_; }
   const LineEngine& line() const { return line_; }
-  // Goes on with a plan of the line law's contact.
-  void resume(const Topology& topology, const Interaction& interaction, const NeighbourList& list,
-              LinePlan::Saved plan) {
-    line_.resume(topology, interaction, list, std::move(plan));
-  }
   const PaperEngine& paper() const { return paper_; }
   std::size_t bytes() const;
 

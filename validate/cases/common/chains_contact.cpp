@@ -9,7 +9,7 @@ namespace ropewalk {
 LineContact line_contact_of(const ParameterSet& set) {
   const LineDensity& density = set.line->density;
   const int nodes = line_nodes(set.element_length, line_parallel_well(density).distance, density.contact);
-  return line_pair(density, set.element_length, set.element_length, nodes, nodes);
+  return {density, set.element_length, set.element_length, nodes, nodes};
 }
 
 PairIntegral surface_integral(const ParameterSet& set) {

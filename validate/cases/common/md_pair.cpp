@@ -76,11 +76,7 @@ PairForce row_contact(const LineContact& contact, const ElementRow& i, const Ele
       const Vector3 at_j = contact.length_j * (l - 0.5 * (j.elements - 1)) * j.axis;
       const Vector3 separation = j.centre + at_j - i.centre - at_i;
       if (separation.norm() > contact.cutoff()) continue;
-      LineContact pair = contact;
-      // A row of one element stands for an inner one.
-      if (i.elements > 1) pair.ends_i = {k == 0, k + 1 == i.elements};
-      pair.ends_j = {l == 0, l + 1 == j.elements};
-      const PairForce f = pair.energy_and_gradient(separation, i.axis, j.axis);
+      const PairForce f = contact.energy_and_gradient(separation, i.axis, j.axis);
       sum.energy += f.energy;
       sum.force_j += f.force_j;
       sum.torque_i += f.torque_i - at_i.cross(f.force_j);

@@ -47,7 +47,7 @@ class ClampedRope {
 
 LineContact contact_of(const ParameterSet& set, double element_length) {
   const int nodes = line_nodes(element_length, set.line->pair_spacing, set.line->density.contact);
-  return line_pair(set.line->density, element_length, element_length, nodes, nodes);
+  return {set.line->density, element_length, element_length, nodes, nodes};
 }
 
 ClampedRope::ClampedRope(const TwistedRope& rope, const ParameterSet& set)
