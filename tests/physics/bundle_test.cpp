@@ -382,12 +382,10 @@ TEST(Checkpoint, GoesOnWithTheSameLists) {
   EXPECT_NE(whole.list().skin, default_skin(rope.b.in));
 }
 
-// Helices whose neighbours are at angles where one sum goes over into the next, at random ones.
-TEST(Checkpoint, GoesOnWhereSumsAreShared) {
-  TurnedRope rope(0.1, 80);  // in several chunks
-  SparseNodes& sparse = rope.b.in.line[0].sparse;
-  sparse = sparse_nodes(6);
-  const double pitch = 1.1 * std::acos(std::sqrt(sparse.sum[0].full_cos2)) / spacing;  // rad/nm
+// Helices whose neighbours cross at random angles.
+TEST(Checkpoint, GoesOnInATwistedRope) {
+  TurnedRope rope(0.1, 80);       // in several chunks
+  constexpr double pitch = 0.12;  // rad/nm
   test::Random random(8);
   State& s = rope.b.state;
   for (std::size_t i = 0; i < s.size(); ++i) {
@@ -399,19 +397,14 @@ TEST(Checkpoint, GoesOnWhereSumsAreShared) {
                              Quaternion::FromTwoVectors(Vector3::UnitZ(), along) * by * s.orientation[i]);
   }
   Simulation whole = rope.make(0);
-  const auto use = [&] { return whole.engine().line().plan().use(); };
   for (int save = 0; save < 3; ++save) {
     for (int k = 0; k < 200; ++k) whole.step(false);
-    int more = 0;
-    for (; use() != LinePlan::Use::replay && more < 100; ++more) whole.step(false);
-    ASSERT_LT(more, 100) << "no plan has held for a step: the test shows less";
     Simulation resumed = rope.make(0);
     resumed.restore(whole.serialise());
     EXPECT_EQ(resumed.serialise(), whole.serialise());
     for (int k = 0; k < 50; ++k) {
       whole.step(false);
       resumed.step(false);
-      ASSERT_EQ(resumed.engine().line().plan().use(), use()) << k;
     }
     EXPECT_EQ(resumed.serialise(), whole.serialise());
   }
