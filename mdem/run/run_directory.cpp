@@ -114,24 +114,9 @@ RopeObservation look(const Observer& o, const Scene& scene, const Topology& topo
   return observe(topology, state, o.shells, validities(scene), o.neighbour_radius, o.spacing);
 }
 
-void fill_geometry(const RopeObservation& o, LogRow& r) {
-  r.beta = o.beta / units::degree;
-  r.physical_twist = o.physical_twist / units::degree;
-  r.geometric_twist = o.geometric_twist / units::degree;
-  r.charge = o.middle.charge;
-  r.charge_delaunay = o.middle.charge_delaunay;
-  r.contacts = o.middle.contacts;
-  r.voids = o.middle.voids;
-  r.void_area = o.middle.void_area;
-  r.radius_mid = o.radius_mid;
-  r.radius_end = o.radius_end;
-  r.length = o.length;
-  r.amplitude = o.amplitude;
-  r.windings = o.windings;
-  r.kinked = o.kinked;
-  r.overtwisted = o.overtwisted;
-  r.overstretched = o.overstretched;
-  r.largest_bond_twist = o.largest_bond_twist / units::degree;
+LogRow log_row(const Observer& o, const Scene& scene, const Topology& topology, const State& state,
+               const EnergyAccount& account) {
+  return LogRow({topology, state, look(o, scene, topology, state), account});
 }
 
 std::string state_csv(const Topology& topology, const State& s) {

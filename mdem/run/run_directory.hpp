@@ -57,8 +57,8 @@ struct Observer {
 Observer make_observer(const Scene& scene, const Prepared& prepared);
 
 RopeObservation look(const Observer& observer, const Scene& scene, const Topology& topology, const State& state);
-// The columns of a row that come from geometry alone.
-void fill_geometry(const RopeObservation& o, LogRow& row);
+LogRow log_row(const Observer& observer, const Scene& scene, const Topology& topology, const State& state,
+               const EnergyAccount& account);
 
 // CSV in the format that [state] reads.
 std::string state_csv(const Topology& topology, const State& state);
