@@ -14,6 +14,7 @@
 
 #include "cli/support.hpp"
 #include "io/log.hpp"
+#include "outputs_page.hpp"
 
 namespace fs = std::filesystem;
 
@@ -242,6 +243,9 @@ TEST_F(Cli, RunWritesEverythingAndProtectsIt) {
   for (const char* name : {"log.csv", "frames.lammpstrj", "manifest.json", "report.html", "checkpoint.bin",
                            "scene.toml", "parameters.toml", "paraview/rope.pvd"})
     EXPECT_TRUE(fs::exists(dir / "d" / name)) << name;
+  const auto listed = ropewalk::test::outputs_names("The directory of a run");
+  for (const auto& entry : fs::directory_iterator(dir / "d"))
+    EXPECT_TRUE(listed.count(entry.path().filename().string())) << entry.path();
   const Json manifest = Json::parse(slurp(dir / "d/manifest.json"));
   EXPECT_EQ(manifest.at("status"), "finished");
   const auto rows = ropewalk::read_log((dir / "d/log.csv").string());
@@ -300,6 +304,45 @@ TEST_F(Cli, ResumeCutsOffWhatWasWrittenAfterTheCheckpoint) {
   ASSERT_EQ(run("resume d").code, 0);
   EXPECT_EQ(ropewalk::read_log((dir / "d/log.csv").string()).back()["twist_eV"],
             ropewalk::read_log((dir / "whole/log.csv").string()).back()["twist_eV"]);
+}
+
+TEST_F(Cli, ObserveGivesWhatThePageOfOutputsLists) {
+  using ropewalk::test::keys_of;
+  EXPECT_EQ(run("observe --list").out, ropewalk::test::outputs_table("`log.csv`"));
+  small_rope("s.toml");
+  ASSERT_EQ(run("run s.toml --out d --quiet --steps 3").code, 0);
+  const Json frame = Json::parse(run("observe d --json").out).at(0);
+  std::set<std::string> keys = ropewalk::test::outputs_names("Keys beside the observables");
+  for (const auto& observable : ropewalk::observables())
+    if (in_frames(observable.group)) keys.insert(observable.name);
+  EXPECT_EQ(keys_of(frame), keys);
+  EXPECT_EQ(keys_of(frame.at("section").at(0)), ropewalk::test::outputs_names("An entry of `section`"));
+}
+
+// The words of a name stand one above the other, and its value in the last line.
+TEST_F(Cli, ObserveShowsAColumnForEveryObservableOfFrames) {
+  small_rope("s.toml");
+  ASSERT_EQ(run("run s.toml --out d --quiet --steps 3").code, 0);
+  const Outcome o = run("observe d");
+  ASSERT_EQ(o.code, 0) << o.err;
+  std::istringstream lines(o.out);
+  std::string first, last;
+  std::getline(lines, first);
+  for (std::string line; std::getline(lines, line);) last = line;
+  const auto count = [](const std::string& line) {
+    std::istringstream words(line);
+    std::size_t n = 0;
+    for (std::string word; words >> word;) ++n;
+    return n;
+  };
+  std::size_t shown = 0;
+  for (const auto& observable : ropewalk::observables()) {
+    if (!in_frames(observable.group)) continue;
+    ++shown;
+    EXPECT_NE(first.find(observable.name.substr(0, observable.name.find('_'))), std::string::npos) << first;
+  }
+  EXPECT_EQ(count(first), shown);
+  EXPECT_EQ(count(last), shown);
 }
 
 TEST_F(Cli, ResumeRefusesALogOfOtherColumns) {
