@@ -223,5 +223,18 @@ TEST_F(LammpsRun, ImportLeavesOutWhatIsCutOff) {
   ASSERT_EQ(run("resume out --steps 25 --quiet").code, 0);
 }
 
+TEST_F(LammpsRun, ImportRefusesALogOfOtherColumns) {
+  exported(rope(""), "out");
+  ASSERT_EQ(lmp(1, "out", "-in in.rope -var steps 10 -var every 10").code, 0);
+  std::string log = slurp(dir / "out/log.csv");
+  spit(dir / "out/log.csv", log.replace(log.find("beta_deg"), 8, "beta_rad"));
+  const Outcome o = run("import out");
+  EXPECT_EQ(o.code, 2);
+  EXPECT_NE(o.err.find("log.csv:1: column 13 of the header is \"beta_rad\", \"beta_deg\" is needed"),
+            std::string::npos)
+      << o.err;
+  EXPECT_EQ(slurp(dir / "out/log.csv"), log) << "nothing is written";
+}
+
 }  // namespace
 }  // namespace ropewalk::test
