@@ -102,7 +102,8 @@ void add_observe(CLI::App& app, Verbs& v) {
   CLI::App* c = app.add_subcommand(
       "observe",
       "Measure the stored frames of a run: twist, packing, shape; a planned run also against a finer model");
-  c->add_option("dir", v.observe.dir, "Directory of the run")->required();
+  c->add_option("dir", v.observe.dir, "Directory of the run");
+  c->add_flag("--list", v.observe.list, "List the observables: name, unit, meaning (Markdown)");
   c->add_option("--neighbour-radius", v.observe.neighbour_radius,
                 "Tubes closer than this are neighbours (nm) [default: the scene's]")
       ->check(CLI::PositiveNumber);

@@ -34,6 +34,7 @@ struct ObserveArguments {
   std::string dir;
   double neighbour_radius = -1;  // nm; -1: the scene's
   bool json = false;
+  bool list = false;  // only the table of observables
 };
 int observe_command(const ObserveArguments& arguments);
 

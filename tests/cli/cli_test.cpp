@@ -14,6 +14,7 @@
 
 #include "cli/support.hpp"
 #include "io/log.hpp"
+#include "outputs_page.hpp"
 
 namespace fs = std::filesystem;
 
@@ -50,8 +51,8 @@ TEST_F(Cli, HelpNamesEveryVerbAndUnits) {
 TEST_F(Cli, WrongCommandLinesAreOneLine) {
   for (const char* line :
        {"", "twist", "run", "run x.toml", "run nowhere.toml --out d", "bench nowhere.toml", "observe nowhere",
-        "resume nowhere", "report nowhere", "energy none.csv --parameters cnt-10-10-paper", "new", "bench",
-        "bench film-1e9", "new x --kind cable", "check nowhere.toml", "run x --out y --threads 0"}) {
+        "observe", "resume nowhere", "report nowhere", "energy none.csv --parameters cnt-10-10-paper", "new",
+        "bench", "bench film-1e9", "new x --kind cable", "check nowhere.toml", "run x --out y --threads 0"}) {
     const Outcome o = run(line);
     EXPECT_EQ(o.code, 2) << line;
     EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << line << "\n" << o.err;
@@ -128,7 +129,7 @@ TEST_F(Cli, MixedTubesRunAndResume) {
   EXPECT_NE(frames.find("\n11 2 1 "), std::string::npos);
   EXPECT_TRUE(fs::exists(dir / "d/parameters-1.toml"));
   // What the frames colour by adds up to what the log has.
-  const double energy = ropewalk::read_log((dir / "d/log.csv").string()).front().vdw;
+  const double energy = ropewalk::read_log((dir / "d/log.csv").string()).front()["vdw_eV"];
   EXPECT_LT(energy, -10);
   EXPECT_NEAR(sum_of_column(frames.substr(0, frames.find("ITEM: TIMESTEP", 1)), "vdw_energy_eV"), energy,
               1e-4 * std::fabs(energy));
@@ -154,8 +155,8 @@ TEST_F(Cli, TwoLevelsResumeBitForBit) {
   EXPECT_EQ(last("whole/log.csv", "\n"), last("half/log.csv", "\n"));
   EXPECT_TRUE(last("whole/frames.lammpstrj", "ITEM: TIMESTEP") == last("half/frames.lammpstrj", "ITEM: TIMESTEP"));
   const auto rows = ropewalk::read_log((dir / "whole/log.csv").string());
-  EXPECT_NEAR(rows.back().time, 5.0, 0.1);
-  EXPECT_LT(std::fabs(rows.back().balance), 2e-2 * rows.back().work);
+  EXPECT_NEAR(rows.back()["time_ps"], 5.0, 0.1);
+  EXPECT_LT(std::fabs(rows.back()["balance_eV"]), 2e-2 * rows.back()["work_eV"]);
   const Outcome bench = run("bench s.toml --steps 5 --json");
   ASSERT_EQ(bench.code, 0) << bench.err;
   EXPECT_EQ(Json::parse(bench.out).at("contact_every"), 3);
@@ -242,14 +243,17 @@ TEST_F(Cli, RunWritesEverythingAndProtectsIt) {
   for (const char* name : {"log.csv", "frames.lammpstrj", "manifest.json", "report.html", "checkpoint.bin",
                            "scene.toml", "parameters.toml", "paraview/rope.pvd"})
     EXPECT_TRUE(fs::exists(dir / "d" / name)) << name;
+  const auto listed = ropewalk::test::outputs_names("The directory of a run");
+  for (const auto& entry : fs::directory_iterator(dir / "d"))
+    EXPECT_TRUE(listed.count(entry.path().filename().string())) << entry.path();
   const Json manifest = Json::parse(slurp(dir / "d/manifest.json"));
   EXPECT_EQ(manifest.at("status"), "finished");
   const auto rows = ropewalk::read_log((dir / "d/log.csv").string());
   ASSERT_GE(rows.size(), 10u);
-  EXPECT_NEAR(rows.back().time, 5.0, 0.02);
-  EXPECT_NEAR(rows.back().moment, 30, 1e-9);
-  EXPECT_GT(rows.back().twist, 100);
-  EXPECT_LT(std::fabs(rows.back().balance), 1e-2 * rows.back().work);
+  EXPECT_NEAR(rows.back()["time_ps"], 5.0, 0.02);
+  EXPECT_NEAR(rows.back()["moment_nN_nm"], 30, 1e-9);
+  EXPECT_GT(rows.back()["twist_eV"], 100);
+  EXPECT_LT(std::fabs(rows.back()["balance_eV"]), 1e-2 * rows.back()["work_eV"]);
 
   const std::string log = slurp(dir / "d/log.csv");
   const Outcome again = run("run s.toml --out d");
@@ -271,8 +275,8 @@ TEST_F(Cli, ResumeGoesOnBitForBitOnOtherThreads) {
   ASSERT_EQ(run("resume parts --threads 2").code, 0);
   const auto whole = ropewalk::read_log((dir / "whole/log.csv").string());
   const auto parts = ropewalk::read_log((dir / "parts/log.csv").string());
-  for (const auto& column : ropewalk::log_columns())
-    EXPECT_EQ(whole.back().*column.value, parts.back().*column.value) << column.name;
+  for (const auto& column : ropewalk::observables())
+    EXPECT_EQ(whole.back()[column.name], parts.back()[column.name]) << column.name;
   const Json observed = Json::parse(run("observe parts --json").out);
   EXPECT_GT(observed.size(), 3u);
 }
@@ -298,8 +302,64 @@ TEST_F(Cli, ResumeCutsOffWhatWasWrittenAfterTheCheckpoint) {
   std::ofstream(dir / "d/log.csv", std::ios::app) << "half a li";
   std::ofstream(dir / "d/frames.lammpstrj", std::ios::app) << "ITEM: TIMESTEP\n1234";
   ASSERT_EQ(run("resume d").code, 0);
-  EXPECT_EQ(ropewalk::read_log((dir / "d/log.csv").string()).back().twist,
-            ropewalk::read_log((dir / "whole/log.csv").string()).back().twist);
+  EXPECT_EQ(ropewalk::read_log((dir / "d/log.csv").string()).back()["twist_eV"],
+            ropewalk::read_log((dir / "whole/log.csv").string()).back()["twist_eV"]);
+}
+
+TEST_F(Cli, ObserveGivesWhatThePageOfOutputsLists) {
+  using ropewalk::test::keys_of;
+  EXPECT_EQ(run("observe --list").out, ropewalk::test::outputs_table("`log.csv`"));
+  small_rope("s.toml");
+  ASSERT_EQ(run("run s.toml --out d --quiet --steps 3").code, 0);
+  const Json frame = Json::parse(run("observe d --json").out).at(0);
+  std::set<std::string> keys = ropewalk::test::outputs_names("Keys beside the observables");
+  for (const auto& observable : ropewalk::observables())
+    if (in_frames(observable.group)) keys.insert(observable.name);
+  EXPECT_EQ(keys_of(frame), keys);
+  EXPECT_EQ(keys_of(frame.at("section").at(0)), ropewalk::test::outputs_names("An entry of `section`"));
+}
+
+// The words of a name stand one above the other, and its value in the last line.
+TEST_F(Cli, ObserveShowsAColumnForEveryObservableOfFrames) {
+  small_rope("s.toml");
+  ASSERT_EQ(run("run s.toml --out d --quiet --steps 3").code, 0);
+  const Outcome o = run("observe d");
+  ASSERT_EQ(o.code, 0) << o.err;
+  std::istringstream lines(o.out);
+  std::string first, last;
+  std::getline(lines, first);
+  for (std::string line; std::getline(lines, line);) last = line;
+  const auto count = [](const std::string& line) {
+    std::istringstream words(line);
+    std::size_t n = 0;
+    for (std::string word; words >> word;) ++n;
+    return n;
+  };
+  std::size_t shown = 0;
+  for (const auto& observable : ropewalk::observables()) {
+    if (!in_frames(observable.group)) continue;
+    ++shown;
+    EXPECT_NE(first.find(observable.name.substr(0, observable.name.find('_'))), std::string::npos) << first;
+  }
+  EXPECT_EQ(count(first), shown);
+  EXPECT_EQ(count(last), shown);
+}
+
+TEST_F(Cli, ResumeRefusesALogOfOtherColumns) {
+  small_rope("s.toml");
+  ASSERT_EQ(run("run s.toml --out d --steps 20").code, 0);
+  std::string log = slurp(dir / "d/log.csv");
+  log.replace(log.find("beta_deg"), 8, "beta_rad");
+  spit(dir / "d/log.csv", log);
+  const std::string frames = slurp(dir / "d/frames.lammpstrj");
+  const Outcome o = run("resume d");
+  EXPECT_EQ(o.code, 2);
+  EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << o.err;
+  EXPECT_NE(o.err.find("log.csv:1: column 13 of the header is \"beta_rad\", \"beta_deg\" is needed"),
+            std::string::npos)
+      << o.err;
+  EXPECT_EQ(slurp(dir / "d/log.csv"), log) << "nothing is written";
+  EXPECT_EQ(slurp(dir / "d/frames.lammpstrj"), frames);
 }
 
 TEST_F(Cli, DamagedCheckpointIsRefused) {

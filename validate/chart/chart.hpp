@@ -27,6 +27,7 @@
 #include <string>
 #include <vector>
 
+#include "io/outputs.hpp"
 #include "observe/observe.hpp"
 #include "scene/scene.hpp"
 #include "sim/dynamics/simulation.hpp"
@@ -179,6 +180,7 @@ double error_of(const std::string& observable, double value, double reference);
 // Of cost and error, those that no other beats in one without losing in the other; cheapest first.
 std::vector<std::size_t> pareto_front(const std::vector<double>& cost, const std::vector<double>& error);
 
+std::vector<OutputColumn> points_columns();
 std::string points_csv(const std::vector<ChartRow>& rows);
 std::string chart_page(const std::vector<ChartPoint>& points, const std::vector<std::string>& facts);
 
