@@ -6,8 +6,8 @@
 #include <cmath>
 #include <set>
 
-#include "cases/common/chains.hpp"
-#include "cases/common/md_rope.hpp"
+#include "cases/common/chain.hpp"
+#include "cases/common/twisted_rope.hpp"
 #include "chart/chart.hpp"
 #include "core/reference.hpp"
 #include "io/data_files.hpp"

@@ -8,8 +8,8 @@
 #include <array>
 #include <cmath>
 
-#include "cases/common/md_curve.hpp"
-#include "cases/common/md_pair.hpp"
+#include "cases/common/tube_curve.hpp"
+#include "cases/common/tube_pair.hpp"
 
 namespace ropewalk {
 namespace {

@@ -9,8 +9,8 @@
 #include <cmath>
 #include <map>
 
-#include "cases/common/md_curve.hpp"
-#include "cases/common/md_pair.hpp"
+#include "cases/common/tube_curve.hpp"
+#include "cases/common/tube_pair.hpp"
 
 namespace ropewalk {
 namespace {

@@ -1,5 +1,5 @@
 // Seven (10,10) tubes: wider, flatter where they touch, twice as strongly bound.
-#include "cases/common/md_rope.hpp"
+#include "cases/common/twisted_rope.hpp"
 
 namespace ropewalk {
 

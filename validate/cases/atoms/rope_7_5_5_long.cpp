@@ -1,5 +1,5 @@
 // Seven (5,5) tubes of twice the length: clamps count for less, torsion for more.
-#include "cases/common/md_rope.hpp"
+#include "cases/common/twisted_rope.hpp"
 
 namespace ropewalk {
 

@@ -1,5 +1,5 @@
 // Seven (5,5) tubes, so short that the clamped bending counts for a sixth of the energy.
-#include "cases/common/md_rope.hpp"
+#include "cases/common/twisted_rope.hpp"
 
 namespace ropewalk {
 

@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "atomistic/finite_tube.hpp"
-#include "cases/common/md_curve.hpp"
+#include "cases/common/tube_curve.hpp"
 
 namespace ropewalk {
 namespace {

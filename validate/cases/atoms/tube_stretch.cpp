@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "cases/common/md_curve.hpp"
+#include "cases/common/tube_curve.hpp"
 
 namespace ropewalk {
 namespace {

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cases/common/md_curve.hpp"
+#include "cases/common/tube_curve.hpp"
 
 namespace ropewalk {
 namespace {

@@ -13,10 +13,10 @@
 #include <cmath>
 #include <sstream>
 
-#include "cases/common/chains_contact.hpp"
-#include "cases/common/md_pair.hpp"
-#include "cases/common/md_rope.hpp"
-#include "cases/common/md_session.hpp"
+#include "cases/common/bundle.hpp"
+#include "cases/common/tube_pair.hpp"
+#include "cases/common/twisted_rope.hpp"
+#include "cases/common/lammps_session.hpp"
 #include "io/files.hpp"
 #include "model/error.hpp"
 #include "scene/build.hpp"

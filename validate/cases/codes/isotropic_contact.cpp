@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cases/common/chains_contact.hpp"
-#include "cases/common/rope_codes_beads.hpp"
+#include "cases/common/bundle.hpp"
+#include "cases/common/bead_rope.hpp"
 #include "scene/build.hpp"
 
 namespace ropewalk {

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cases/common/chains.hpp"
+#include "cases/common/chain.hpp"
 #include "model/error.hpp"
 #include "scene/prepare.hpp"
 

@@ -1,8 +1,8 @@
 // The incremental parallel bond against the total-energy bond.
 #include <cmath>
 
-#include "cases/common/chains.hpp"
-#include "cases/common/incremental_parallel_bond.hpp"
+#include "cases/common/chain.hpp"
+#include "cases/common/parallel_bond.hpp"
 
 namespace ropewalk {
 namespace {

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cases/common/rope_codes_beads.hpp"
+#include "cases/common/bead_rope.hpp"
 #include "scene/build.hpp"
 
 namespace ropewalk {

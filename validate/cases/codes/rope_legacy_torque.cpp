@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "cases/common/rope_codes.hpp"
+#include "cases/common/gripped_rope.hpp"
 #include "model/error.hpp"
 #include "scene/build.hpp"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "cases/common/rope_codes_incremental.hpp"
+#include "cases/common/driven_rope.hpp"
 
 namespace ropewalk {
 namespace {

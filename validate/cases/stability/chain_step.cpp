@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cases/common/limits.hpp"
+#include "cases/common/stability_limit.hpp"
 
 namespace ropewalk {
 namespace {

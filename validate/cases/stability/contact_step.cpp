@@ -1,8 +1,8 @@
 // The largest stable time step of a rope whose tubes touch.
 #include <cmath>
 
-#include "cases/common/chains_contact.hpp"
-#include "cases/common/limits.hpp"
+#include "cases/common/bundle.hpp"
+#include "cases/common/stability_limit.hpp"
 
 namespace ropewalk {
 namespace {

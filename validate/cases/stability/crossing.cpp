@@ -6,8 +6,8 @@
 #include <functional>
 #include <utility>
 
-#include "cases/common/chains_contact.hpp"
-#include "cases/common/limits.hpp"
+#include "cases/common/bundle.hpp"
+#include "cases/common/stability_limit.hpp"
 #include "sim/forces/forces.hpp"
 
 namespace ropewalk {

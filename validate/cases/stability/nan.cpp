@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "cases/common/limits.hpp"
+#include "cases/common/stability_limit.hpp"
 #include "model/error.hpp"
 
 namespace ropewalk {

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cases/common/chains_contact.hpp"
-#include "cases/common/limits.hpp"
+#include "cases/common/bundle.hpp"
+#include "cases/common/stability_limit.hpp"
 #include "model/error.hpp"
 
 namespace ropewalk {

@@ -1,7 +1,7 @@
 // A long tube coiled upon itself: bending against adhesion.
 #include <cmath>
 
-#include "cases/common/chains_contact.hpp"
+#include "cases/common/bundle.hpp"
 
 namespace ropewalk {
 namespace {

@@ -1,7 +1,7 @@
 // Two straight tubes that cross: energy and torque against the angle.
 #include <cmath>
 
-#include "cases/common/chains_contact.hpp"
+#include "cases/common/bundle.hpp"
 
 namespace ropewalk {
 namespace {

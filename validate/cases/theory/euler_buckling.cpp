@@ -1,7 +1,7 @@
 // The compressed column.
 #include <cmath>
 
-#include "cases/common/chains.hpp"
+#include "cases/common/chain.hpp"
 
 namespace ropewalk {
 namespace {

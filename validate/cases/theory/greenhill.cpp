@@ -1,7 +1,7 @@
 // The twisted shaft.
 #include <cmath>
 
-#include "cases/common/chains.hpp"
+#include "cases/common/chain.hpp"
 
 namespace ropewalk {
 namespace {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <string>
 
-#include "cases/common/chains_contact.hpp"
+#include "cases/common/bundle.hpp"
 #include "scene/build.hpp"
 
 namespace ropewalk {

@@ -1,7 +1,7 @@
 // Cohesion of straight hexagonal ropes.
 #include <cmath>
 
-#include "cases/common/chains_contact.hpp"
+#include "cases/common/bundle.hpp"
 #include "scene/build.hpp"
 
 namespace ropewalk {

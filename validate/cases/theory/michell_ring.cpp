@@ -4,7 +4,7 @@
 #include <cmath>
 #include <complex>
 
-#include "cases/common/chains.hpp"
+#include "cases/common/chain.hpp"
 
 namespace ropewalk {
 namespace {

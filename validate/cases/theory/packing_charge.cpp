@@ -3,7 +3,7 @@
 #include <cmath>
 #include <string>
 
-#include "cases/common/chains_contact.hpp"
+#include "cases/common/bundle.hpp"
 
 namespace ropewalk {
 namespace {

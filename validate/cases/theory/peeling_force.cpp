@@ -1,7 +1,7 @@
 // Two adhering tubes that are pulled apart at one end.
 #include <cmath>
 
-#include "cases/common/chains_contact.hpp"
+#include "cases/common/bundle.hpp"
 
 namespace ropewalk {
 namespace {

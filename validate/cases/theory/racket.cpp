@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cases/common/chains_contact.hpp"
+#include "cases/common/bundle.hpp"
 
 namespace ropewalk {
 namespace {

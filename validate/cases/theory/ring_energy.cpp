@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "cases/common/chains.hpp"
+#include "cases/common/chain.hpp"
 
 namespace ropewalk {
 namespace {

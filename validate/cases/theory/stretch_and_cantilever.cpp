@@ -1,7 +1,7 @@
 // Static loads on one tube: elongation, deflection and rotation of its end.
 #include <cmath>
 
-#include "cases/common/chains.hpp"
+#include "cases/common/chain.hpp"
 
 namespace ropewalk {
 namespace {

@@ -1,7 +1,7 @@
 // Standing waves of one free tube.
 #include <cmath>
 
-#include "cases/common/chains.hpp"
+#include "cases/common/chain.hpp"
 
 namespace ropewalk {
 namespace {

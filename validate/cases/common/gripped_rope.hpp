@@ -7,7 +7,7 @@
 
 #include <vector>
 
-#include "cases/common/chains_contact.hpp"
+#include "cases/common/bundle.hpp"
 #include "scene/scene.hpp"
 
 namespace ropewalk {

@@ -1,4 +1,4 @@
-#include "cases/common/md_pair.hpp"
+#include "cases/common/tube_pair.hpp"
 
 #include <fmt/format.h>
 

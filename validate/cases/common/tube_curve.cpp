@@ -1,4 +1,4 @@
-#include "cases/common/md_curve.hpp"
+#include "cases/common/tube_curve.hpp"
 
 #include <fmt/format.h>
 

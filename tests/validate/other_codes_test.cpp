@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "cases/common/rope_codes_beads.hpp"
-#include "cases/common/rope_codes_incremental.hpp"
+#include "cases/common/bead_rope.hpp"
+#include "cases/common/driven_rope.hpp"
 #include "validate/support.hpp"
 
 namespace ropewalk {

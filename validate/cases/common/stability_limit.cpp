@@ -1,4 +1,4 @@
-#include "cases/common/limits.hpp"
+#include "cases/common/stability_limit.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <cmath>

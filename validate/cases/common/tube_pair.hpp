@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "cases/common/md_session.hpp"
+#include "cases/common/lammps_session.hpp"
 #include "model/contact/contact.hpp"
 #include "model/contact/line.hpp"
 

@@ -1,7 +1,7 @@
 // Long straight rows of elements in contact, for the cases of the van der Waals law.
 #pragma once
 
-#include "cases/common/chains.hpp"
+#include "cases/common/chain.hpp"
 #include "contact/integral.hpp"
 
 namespace ropewalk {

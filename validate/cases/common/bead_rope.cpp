@@ -1,4 +1,4 @@
-#include "cases/common/rope_codes_beads.hpp"
+#include "cases/common/bead_rope.hpp"
 
 #include <algorithm>
 

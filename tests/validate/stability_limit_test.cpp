@@ -1,7 +1,7 @@
 // Cases of stability: the limits agree with theory, and another tube has other limits.
 #include <gtest/gtest.h>
 
-#include "cases/common/limits.hpp"
+#include "cases/common/stability_limit.hpp"
 #include "validate/support.hpp"
 
 namespace ropewalk {

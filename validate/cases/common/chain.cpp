@@ -1,4 +1,4 @@
-#include "cases/common/chains.hpp"
+#include "cases/common/chain.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <cmath>

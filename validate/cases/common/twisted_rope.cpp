@@ -1,4 +1,4 @@
-#include "cases/common/md_rope.hpp"
+#include "cases/common/twisted_rope.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "cases/common/chains.hpp"
+#include "cases/common/chain.hpp"
 #include "model/error.hpp"
 
 namespace ropewalk {

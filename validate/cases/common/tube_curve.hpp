@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "cases/common/md_session.hpp"
+#include "cases/common/lammps_session.hpp"
 
 namespace ropewalk {
 

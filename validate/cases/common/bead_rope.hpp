@@ -8,7 +8,7 @@
 #include <cmath>
 #include <vector>
 
-#include "cases/common/rope_codes.hpp"
+#include "cases/common/gripped_rope.hpp"
 
 namespace ropewalk {
 

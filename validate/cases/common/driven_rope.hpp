@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "cases/common/incremental_parallel_bond.hpp"
-#include "cases/common/rope_codes.hpp"
+#include "cases/common/parallel_bond.hpp"
+#include "cases/common/gripped_rope.hpp"
 
 namespace ropewalk {
 

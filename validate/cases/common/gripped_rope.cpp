@@ -1,4 +1,4 @@
-#include "cases/common/rope_codes.hpp"
+#include "cases/common/gripped_rope.hpp"
 
 #include <algorithm>
 #include <cmath>

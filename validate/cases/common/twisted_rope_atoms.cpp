@@ -9,7 +9,7 @@
 #include "atomistic/lattice.hpp"
 #include "atomistic/potential.hpp"
 #include "atomistic/runs.hpp"
-#include "cases/common/md_rope.hpp"
+#include "cases/common/twisted_rope.hpp"
 #include "io/files.hpp"
 #include "scene/build.hpp"
 

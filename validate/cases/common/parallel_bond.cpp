@@ -1,8 +1,8 @@
-#include "cases/common/incremental_parallel_bond.hpp"
+#include "cases/common/parallel_bond.hpp"
 
 #include <vector>
 
-#include "cases/common/chains.hpp"
+#include "cases/common/chain.hpp"
 
 namespace ropewalk {
 

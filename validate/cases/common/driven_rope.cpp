@@ -1,4 +1,4 @@
-#include "cases/common/rope_codes_incremental.hpp"
+#include "cases/common/driven_rope.hpp"
 
 #include <utility>
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string>
 
-#include "cases/common/md_rope.hpp"
+#include "cases/common/twisted_rope.hpp"
 #include "validate/support.hpp"
 
 namespace ropewalk {

@@ -1,4 +1,4 @@
-#include "cases/common/md_session.hpp"
+#include "cases/common/lammps_session.hpp"
 
 #include <fmt/format.h>
 

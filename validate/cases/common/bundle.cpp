@@ -1,4 +1,4 @@
-#include "cases/common/chains_contact.hpp"
+#include "cases/common/bundle.hpp"
 
 #include <limits>
 

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cases/common/md_rope.hpp"
+#include "cases/common/twisted_rope.hpp"
 #include "model/error.hpp"
 #include "scene/build.hpp"
 #include "sim/dynamics/simulation.hpp"

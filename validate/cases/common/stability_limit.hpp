@@ -1,7 +1,7 @@
 // Where a method fails: the place is found by bisection on the method itself, and theory stands beside it.
 #pragma once
 
-#include "cases/common/chains.hpp"
+#include "cases/common/chain.hpp"
 
 namespace ropewalk {
 
