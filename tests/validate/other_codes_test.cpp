@@ -1,5 +1,4 @@
-// Ropes with the physics of other codes: green with the shipped sets, red under the faults that they are to see;
-// and the references themselves, which have to be what they stand for.
+// The ropes of other codes that cases compare with: each has the physics that it stands for.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -11,8 +10,6 @@
 namespace ropewalk {
 namespace {
 
-using test::expect_green;
-
 ParameterSet shipped() { return test::stored_context().parameters("cnt-10-10-tersoff"); }
 
 BeadLaw bead_law(const ParameterSet& set) {
@@ -20,29 +17,8 @@ BeadLaw bead_law(const ParameterSet& set) {
   return {pair.distance, pair.energy, set.element_length};
 }
 
-TEST(CodesRopeCases, BeadSpring) {
-  const Case c = rope_bead_spring_case();
-  expect_green(c);
-  for (const Fault& fault : {test::softer_twist(), test::twice_the_contact()})
-    EXPECT_FALSE(test::run(c, fault).holds());
-}
-
-TEST(CodesRopeCases, ParallelBond) {
-  const Case c = rope_parallel_bond_case();
-  expect_green(c);
-  EXPECT_FALSE(test::run(c, test::softer_twist()).holds());
-}
-
-TEST(CodesRopeCases, LegacyTorque) {
-  const Case c = rope_legacy_torque_case();
-  expect_green(c);
-  for (const Fault& fault : {test::softer_twist(), test::missing_torque()})
-    EXPECT_FALSE(test::run(c, fault).holds());
-}
-
-// The moment of the beads is the derivative of their energy at rest: their gradient is right, what they lack is
-// theirs.
-TEST(CodesRopeCases, BeadsAreConservative) {
+// At rest, the moment of the beads is the derivative of their energy.
+TEST(OtherCodes, BeadsAreConservative) {
   const ParameterSet set = shipped();
   BeadRope rope(GrippedRope(set, 8, ContactOptions::Law::line), bead_law(set));
   const double h = 1e-3;
@@ -57,8 +33,8 @@ TEST(CodesRopeCases, BeadsAreConservative) {
   EXPECT_NEAR(moment, (rope.total() - before) / (2 * h), 1e-4 * moment);
 }
 
-// Two long rows at rest have the spacing and the cohesion that the law was made for.
-TEST(CodesRopeCases, BeadsHaveTheMeanCohesion) {
+// Two long rows of beads at rest have the spacing and the cohesion of the tubes.
+TEST(OtherCodes, BeadsHaveTheMeanCohesion) {
   const ParameterSet set = shipped();
   const Well pair = surface_integral(set).parallel_well();
   const BeadLaw law = bead_law(set);
@@ -72,10 +48,10 @@ TEST(CodesRopeCases, BeadsHaveTheMeanCohesion) {
   EXPECT_GT(mean(pair.distance + 0.01), mean(pair.distance));
 }
 
-// A held rope at rest stays there, with either bonds.
-TEST(CodesRopeCases, LedRopeRests) {
-  for (const auto bonds : {LedRope::Bonds::total_energy, LedRope::Bonds::incremental}) {
-    LedRope rope(shipped(), 4, bonds, 0.5, 1.5);
+// A held rope at rest stays at rest, with bonds of either kind.
+TEST(OtherCodes, DrivenRopeRests) {
+  for (const auto bonds : {DrivenRope::Bonds::total_energy, DrivenRope::Bonds::incremental}) {
+    DrivenRope rope(shipped(), 4, bonds, 0.5, 1.5);
     rope.rest(10);
     const double energy = rope.energy();
     rope.rest(2);

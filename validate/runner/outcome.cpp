@@ -77,7 +77,7 @@ Limit limit_of(const Json& j) {
   l.theory = number(j.at("theory"));
   l.unit = j.at("unit");
   const auto* word = std::find(std::begin(guard_words), std::end(guard_words), j.at("guard").get<std::string>());
-  if (word == std::end(guard_words)) throw std::runtime_error("another guard");
+  if (word == std::end(guard_words)) throw std::runtime_error("unknown guard");
   l.guard = static_cast<Limit::Guard>(word - std::begin(guard_words));
   l.how = j.at("how");
   return l;

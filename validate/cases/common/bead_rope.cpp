@@ -60,7 +60,7 @@ void BeadRope::compute() {
   force_ = Vec3Array(n);
   stretch_ = bend_ = contact_ = 0;
   for (std::size_t first = 0; first < n; first += beads) bonds(first);
-  // Far beyond the well, where the forces are 1e-4 of the largest, so that nothing jumps.
+  // So far beyond the well that only forces of 1e-4 of the largest are cut off.
   const double reach2 = 16 * law_.sigma * law_.sigma;
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t j = (i / beads + 1) * beads; j < n; ++j) {

@@ -1,6 +1,5 @@
-// Bead-and-spring tubes as in stock molecular dynamics codes, as a reference to compare with: beads without
-// orientation, bonds that stretch, hinges that bend, a Lennard-Jones contact from bead to bead. No part of the
-// simulator.
+// Bead-and-spring tubes as in stock molecular dynamics codes, for comparison; the simulator does not use them.
+// Beads have no orientation; bonds stretch, hinges bend, and beads of two tubes interact by a Lennard-Jones law.
 //
 // Source: M. J. Buehler, J. Mater. Res. 21, 2855 (2006), DOI 10.1557/jmr.2006.0347.
 #pragma once
@@ -12,7 +11,7 @@
 
 namespace ropewalk {
 
-// 12-6 between beads, with the spacing and the mean energy per length of two long parallel rows.
+// 12-6 law between beads. Two long parallel rows have the given spacing (nm) and mean energy per length (eV/nm).
 struct BeadLaw {
   double epsilon = 0, sigma = 0;  // eV, nm
 
@@ -30,20 +29,20 @@ struct BeadLaw {
   double energy(const Vector3& separation, const Vector3&, const Vector3&) const {
     return energy(separation.squaredNorm());
   }
-  // -dU/dR over R.
+  // -dU/dR over R, eV/nm^2.
   double force_over_distance(double distance2) const {
     const double y = std::pow(sigma * sigma / distance2, 3);
     return 24 * epsilon * (2 * y * y - y) / distance2;
   }
 };
 
-// The rope of `gripped` with a bead in the place of every element.
+// The rope of `gripped` with a bead in place of every element.
 class BeadRope {
  public:
   BeadRope(const GrippedRope& gripped, const BeadLaw& law);
 
   void turn(double angle);
-  void relax();  // throws NumericalError where it does not come to rest
+  void relax();  // throws NumericalError where the rope does not come to rest
   double stretch() const { return stretch_; }
   double bend() const { return bend_; }
   double contact() const { return contact_; }

@@ -36,4 +36,14 @@ Bundle line_bundle(const ParameterSet& set, int tubes, int elements) {
   return b;
 }
 
+double resisting_moment(const std::vector<int>& elements, const Vec3Array& position, const Vec3Array& force,
+                        const Vec3Array& torque) {
+  double sum = 0;
+  for (const int e : elements) {
+    const auto i = static_cast<std::size_t>(e);
+    sum -= torque.z[i] + position.x[i] * force.y[i] - position.y[i] * force.x[i];
+  }
+  return sum;
+}
+
 }  // namespace ropewalk

@@ -6,7 +6,7 @@
 
 namespace ropewalk {
 
-LedRope::LedRope(const ParameterSet& set, int bonds, Bonds kind, double step_fraction, double brake)
+DrivenRope::DrivenRope(const ParameterSet& set, int bonds, Bonds kind, double step_fraction, double brake)
     : rope_(set, bonds, ContactOptions::Law::line),
       kind_(kind),
       time_step_(step_fraction * time_step_limit(rope_.topology, rope_.interaction, rope_.spacing).limit),
@@ -15,18 +15,18 @@ LedRope::LedRope(const ParameterSet& set, int bonds, Bonds kind, double step_fra
       bond_(rope_.state.size(), ParallelBond(set.bond, set.element_length)),
       start_(rope_.state.position),
       move_(rope_.state.size()) {
-  // The contact is the simulator's; without stiffness its bonds are silent.
+  // The contact is the simulator's; bonds without stiffness exert no force.
   if (kind_ == Bonds::incremental) rope_.topology.types[0].bond = {};
   list_ = NeighbourList(rope_.interaction, default_skin(rope_.interaction));
   list_.build(rope_.topology, rope_.state);
   forces();
 }
 
-void LedRope::rest(double duration) {
-  lead([this](double) { return place_; }, duration);
+void DrivenRope::rest(double duration) {
+  move([this](double) { return place_; }, duration);
 }
 
-void LedRope::shake(double temperature, std::uint64_t seed, double duration) {
+void DrivenRope::shake(double temperature, std::uint64_t seed, double duration) {
   Random random(seed);
   set_thermal_velocities(rope_.topology, 2 * temperature, random, rope_.state);
   const double brake = std::exchange(brake_, 0.0);
@@ -34,7 +34,7 @@ void LedRope::shake(double temperature, std::uint64_t seed, double duration) {
   brake_ = brake;
 }
 
-void LedRope::forces() {
+void DrivenRope::forces() {
   list_.update(rope_.topology, rope_.state);
   engine_.compute(rope_.topology, rope_.interaction, list_, rope_.state, forces_);
   bonds_ = forces_.energy.bonds();
@@ -46,7 +46,7 @@ void LedRope::forces() {
   moment_ = resisting_moment(rope_.upper, arm, forces_.force, forces_.torque);
 }
 
-void LedRope::add_incremental() {
+void DrivenRope::add_incremental() {
   const Topology& topology = rope_.topology;
   for (int t = 0; t < topology.tubes(); ++t)
     for (int e = topology.tube_begin[t]; e + 1 < topology.tube_begin[t + 1]; ++e) {
@@ -61,7 +61,7 @@ void LedRope::add_incremental() {
     }
 }
 
-void LedRope::step(const GripPlace& place) {
+void DrivenRope::step(const GripPlace& place) {
   State& s = rope_.state;
   const TubeType& type = rope_.topology.types[0];
   const Vec3Array before = s.position;

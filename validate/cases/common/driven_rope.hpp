@@ -1,37 +1,38 @@
-// The rope of seven tubes with incremental parallel bonds, or with our own, led through the same motion of a grip.
-// Bonds with a memory need every step of the path, so that both move by the same damped steps. No part of the
-// simulator.
+// A displacement-controlled rope of seven tubes, with incremental parallel bonds or with the simulator's: one grip
+// follows a path. Incremental bonds depend on every step of the path, so that both kinds move by the same damped
+// steps.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
-#include "cases/common/parallel_bond.hpp"
 #include "cases/common/gripped_rope.hpp"
+#include "cases/common/parallel_bond.hpp"
 
 namespace ropewalk {
 
-// Where the upper grip is: turned about the axis and shifted across it.
+// Position of the upper grip: turned about the axis and shifted across it.
 struct GripPlace {
   double angle = 0;                 // rad
   Vector3 shift = Vector3::Zero();  // nm
 };
 
-class LedRope {
+class DrivenRope {
  public:
   enum class Bonds { total_energy, incremental };
 
-  // The step is a part of the stability limit, the brake (1/ps) acts on all velocities.
-  LedRope(const ParameterSet& set, int bonds, Bonds kind, double step_fraction, double brake);
+  // The step is `step_fraction` of the stability limit; `brake` (1/ps) damps all velocities.
+  DrivenRope(const ParameterSet& set, int bonds, Bonds kind, double step_fraction, double brake);
 
-  // In `duration` ps along a path, given for parts 0 .. 1 of it.
+  // Moves the grip along path(0 .. 1) in `duration` ps.
   template <class Path>
-  void lead(const Path& path, double duration) {
+  void move(const Path& path, double duration) {
     const auto steps = static_cast<long>(duration / time_step_) + 1;
     for (long k = 1; k <= steps; ++k) step(path(static_cast<double>(k) / static_cast<double>(steps)));
   }
-  void rest(double duration);  // the grip stays where it is
-  // Without brake, from thermal velocities that settle to `temperature` (K) once half of them is stored.
+  void rest(double duration);  // with the grip held
+  // Undamped motion from thermal velocities. They have twice the kinetic energy of `temperature` (K), since half of
+  // it becomes potential energy.
   void shake(double temperature, std::uint64_t seed, double duration);
 
   double bond_energy() const { return bonds_; }        // eV

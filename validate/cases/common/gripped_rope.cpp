@@ -48,16 +48,6 @@ void GrippedRope::turn(double angle) {
   }
 }
 
-double resisting_moment(const std::vector<int>& grip, const Vec3Array& position, const Vec3Array& force,
-                        const Vec3Array& torque) {
-  double sum = 0;
-  for (const int e : grip) {
-    const auto i = static_cast<std::size_t>(e);
-    sum -= torque.z[i] + position.x[i] * force.y[i] - position.y[i] * force.x[i];
-  }
-  return sum;
-}
-
 double torsion_energy(const BondStiffness& bond, double spacing, double length, double angle) {
   const double slope = spacing * angle / length, cos2 = 1 / (1 + slope * slope);
   return 0.5 * bond.twist * angle * angle / length * (1 + (GrippedRope::tubes - 1) * cos2);

@@ -1,4 +1,4 @@
-// LAMMPS behind the cases of one and two tubes: relaxed tubes, runs and their results, and the origin of a table.
+// LAMMPS runs that make one reference table: relaxed tubes, runs with their results, and the table's origin.
 #pragma once
 
 #include <cstddef>
@@ -22,7 +22,7 @@ struct ValidatedTube {
 inline constexpr ValidatedTube tube_5_5{{5, 5}, "cnt-5-5-tersoff", "(5,5)"};
 inline constexpr ValidatedTube tube_10_10{{10, 10}, "cnt-10-10-tersoff", "(10,10)"};
 
-// All runs of one table, in one folder: they share the bonded potential, and what they were made from is hashed.
+// All runs of one table, in one folder. They share the bonded potential; the hash covers all their inputs.
 class MdSession {
  public:
   explicit MdSession(const CaseContext& context);
@@ -38,7 +38,7 @@ class MdSession {
   std::vector<std::vector<double>> run(const std::string& name, const std::string& input, std::size_t rows,
                                        std::size_t columns);
 
-  // An empty table with its origin: to be asked for after the runs. `contact`: the Lennard-Jones law was used.
+  // An empty table with its origin; call it after the runs. `contact`: the Lennard-Jones law was used.
   ReferenceTable table(const std::string& title, const std::string& case_name, bool contact,
                        std::vector<std::string> columns) const;
 

@@ -16,7 +16,7 @@ ParallelBond::ParallelBond(const BondStiffness& bond, double a)
 void ParallelBond::advance(const Vector3& before, const Vector3& after, const ElementMove& i,
                            const ElementMove& j) {
   const Vector3 n = after.normalized();
-  // What has been accumulated follows the bond's direction and the mean spin about it.
+  // The accumulated force and moment turn with the bond's direction and with the mean spin about it.
   const Quaternion follow =
       turn_about(n, 0.5 * (i.turn + j.turn).dot(n)) * Quaternion::FromTwoVectors(before, after);
   force_ = follow * force_;

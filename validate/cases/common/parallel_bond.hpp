@@ -1,5 +1,5 @@
-// The incremental parallel bond of particle codes, as a reference to compare with: forces and moments are sums of
-// what the relative motion of each step added, turned with the bond. No part of the simulator.
+// The incremental parallel bond of particle codes, for comparison; the simulator does not use it. Each step adds to
+// the force and moment of the bond by its relative motion, and turns both with the bond.
 //
 // Source: D. O. Potyondy, P. A. Cundall, Int. J. Rock Mech. Min. Sci. 41, 1329 (2004),
 // DOI 10.1016/j.ijrmms.2004.09.011.
@@ -30,7 +30,7 @@ class ParallelBond {
   Vector3 force_ = Vector3::Zero(), moment_ = Vector3::Zero();
 };
 
-// Deflection (nm) of the end of a cantilever of such bonds under a force across it, settled by damped motion.
+// Deflection (nm) of the end of a cantilever of such bonds under a force (eV/nm) across it, after damped motion.
 double parallel_bond_deflection(const ParameterSet& set, int bonds, double force);
 
 }  // namespace ropewalk

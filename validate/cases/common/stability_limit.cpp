@@ -59,7 +59,7 @@ bool blows_up(const Topology& topology, const Interaction& interaction, const St
 
 namespace {
 
-// Minus the derivative of all forces and torques by places and turns, or by velocities, over the masses.
+// Minus the derivative of all forces and torques by positions and rotations, or by velocities, over the masses.
 enum class By { place, velocity };
 Eigen::MatrixXd derivative(const Topology& topology, const Interaction& interaction, const State& state, By by) {
   const auto n = static_cast<Eigen::Index>(6 * state.size());

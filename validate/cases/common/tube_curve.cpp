@@ -11,7 +11,7 @@
 namespace ropewalk {
 namespace {
 
-constexpr int model_points = 160;
+constexpr int curve_points = 160;
 constexpr double give_way = 0.9;  // of the greatest slope so far
 
 double deviation(const TubeCurve& c, std::size_t k) { return c.model(c.amplitude[k]) / c.atoms[k] - 1; }
@@ -20,7 +20,7 @@ std::string at_amplitude(const TubeCurve& c, double amplitude) {
   return fmt::format("{} {:.3g}{}{}", c.amplitude_name, amplitude, c.unit.empty() ? "" : " ", c.unit);
 }
 
-// The point in the window where the model is worst.
+// The point in the window with the largest difference.
 Check window_check(const TubeCurve& c) {
   Check check;
   check.name = c.tube + ": energy in the elastic window";
@@ -34,8 +34,8 @@ Check window_check(const TubeCurve& c) {
     worst = std::abs(deviation(c, k));
     check.value = c.model(c.amplitude[k]);
     check.reference = c.atoms[k];
-    check.note =
-        fmt::format("the worst point up to {}, at {}", at_amplitude(c, c.window), at_amplitude(c, c.amplitude[k]));
+    check.note = fmt::format("the point of largest difference up to {}, at {}", at_amplitude(c, c.window),
+                             at_amplitude(c, c.amplitude[k]));
   }
   return check;
 }
@@ -67,7 +67,7 @@ void add_leaving(const TubeCurve& c, double sign, CaseResult& result) {
     check.reference = c.end;
     check.unit = c.unit.empty() ? c.amplitude_name : c.unit;
     check.informative = true;
-    check.note = "against the amplitude at which the set says that the tube gives way";
+    check.note = "against the amplitude at which the tube gives way by the set";
     result.checks.push_back(check);
   }
 }
@@ -81,8 +81,8 @@ CaseFigure energy_figure(const TubeCurve& c) {
   atoms.points = true;
   ChartLine model{"model", {}, {}, 1};
   const auto [least, most] = std::minmax_element(c.amplitude.begin(), c.amplitude.end());
-  for (int k = 0; k <= model_points; ++k) {
-    model.x.push_back(*least + (*most - *least) * k / model_points);
+  for (int k = 0; k <= curve_points; ++k) {
+    model.x.push_back(*least + (*most - *least) * k / curve_points);
     model.y.push_back(c.model(model.x.back()));
   }
   chart.lines = {model, atoms};
@@ -92,9 +92,9 @@ CaseFigure energy_figure(const TubeCurve& c) {
     chart.lines.push_back(more);
   }
   chart.bands = {{*least < 0 ? -c.window : 0, c.window, "elastic window", false}};
-  return {chart, fmt::format("{}: the model is a parabola; atoms soften, stiffen and at last buckle (the set says "
-                             "at {}).",
-                             c.tube, at_amplitude(c, c.end))};
+  return {chart,
+          fmt::format("{}: the model is a parabola; atoms soften or stiffen and at last buckle (by the set at {}).",
+                      c.tube, at_amplitude(c, c.end))};
 }
 
 CaseFigure residual_figure(const TubeCurve& c) {
@@ -111,8 +111,8 @@ CaseFigure residual_figure(const TubeCurve& c) {
   }
   chart.lines = {line};
   chart.bands = {{line.x.front() < 0 ? -c.window : 0, c.window, "elastic window", false}};
-  return {chart, fmt::format("{}: the difference of the energies; the tolerance is {:.0f} % in the window.", c.tube,
-                             100 * window_tolerance)};
+  return {chart, fmt::format("{}: relative difference of the energies. The tolerance in the window is {:.0f} %.",
+                             c.tube, 100 * window_tolerance)};
 }
 
 }  // namespace

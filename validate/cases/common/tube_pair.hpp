@@ -10,23 +10,24 @@
 
 namespace ropewalk {
 
-// Where the atoms of two tubes lie against each other, all in turns or parts of a period, 0 .. 1.
+// How the atoms of two tubes are turned and shifted, in parts of a symmetry turn or of a period, 0 .. 1.
 struct Registry {
   double turn_i = 0, turn_j = 0, shift_i = 0, shift_j = 0;
 };
-// The first of a sequence that fills the four evenly.
+// The first `count` of a sequence that fills the four dimensions evenly.
 std::vector<Registry> registries(int count);
 
-// Reads the atoms as groups `one` and `two` (types 1 and 2), between which alone Lennard-Jones acts.
+// LAMMPS commands that read the atoms as groups `one` and `two` (types 1 and 2). Lennard-Jones acts only between
+// these groups.
 std::string pair_commands(const AtomLaw& law, const std::string& boundary, const std::string& data);
 std::string pair_data(const std::vector<Vector3>& one, const std::vector<Vector3>& two, double half_width,
                       double z_low, double z_high);
 // Moves group `two` (nm).
 std::string move_two(const Vector3& by);
-// Appends what the immediate variables say to name.dat.
+// Appends the values, given as immediate variables, to name.dat.
 std::string print_values(const std::string& name, const std::string& values);
 
-// The contact of elements of one length, of like or unlike tubes, as a scene has it.
+// The line law of a scene with these tubes, alike or not, and elements of this length (nm).
 LineContact contact_of(const ParameterSet& i, const ParameterSet& j, double element_length);
 
 // A straight row of elements.
@@ -34,12 +35,12 @@ struct ElementRow {
   Vector3 centre = Vector3::Zero(), axis = Vector3::UnitZ();
   int elements = 1;
 };
-// Energy, force on row j and torques about the rows' centres.
+// Energy (eV), force on row j (eV/nm) and torques about the rows' centres (eV).
 PairForce row_contact(const LineContact& contact, const ElementRow& i, const ElementRow& j);
 // Energy per length (eV/nm) of two long parallel rows, element j displaced by `shift`.
 double parallel_rows(const LineContact& contact, double distance, double shift = 0);
 
-// The lowest point of a tabulated curve: a quartic through the points within `reach` of the lowest.
+// Minimum of a tabulated curve: that of a quartic fitted to the points within `reach` (nm) of the lowest.
 LineWell lowest_of(const std::vector<double>& distance, const std::vector<double>& energy, double reach);
 
 }  // namespace ropewalk

@@ -13,7 +13,7 @@
 namespace ropewalk {
 namespace {
 
-// Of the range of each column: what the minimiser leaves.
+// Of the range of each column: the error of the minimiser.
 constexpr double fresh_tolerance = 0.01;
 
 struct Series {
@@ -34,7 +34,7 @@ std::vector<double> degrees(const std::vector<TwistedState>& states) {
   return out;
 }
 
-// Difference against the atoms in percent; none where the atoms have next to nothing.
+// Difference from the atoms in percent; NaN in the first increment, where the atoms have almost none.
 std::vector<double> residuals(const Series& series, double TwistedState::*value) {
   std::vector<double> out;
   for (std::size_t k = 0; k < series.atoms.size(); ++k)
@@ -43,7 +43,7 @@ std::vector<double> residuals(const Series& series, double TwistedState::*value)
   return out;
 }
 
-// Energies change with the twist; the vdW energy itself is what binds the rope.
+// Energies of an increment above those of the first.
 TwistedState change(const std::vector<TwistedState>& states, std::size_t k) {
   TwistedState out = states[k];
   out.total -= states[0].total;
@@ -65,13 +65,13 @@ void add_checks(const TwistedRope& rope, const Series& series, CaseResult& resul
                                            "eV", "of the twisted rope, whole"));
     result.checks.push_back(absolute_check(
         "vdW part of the twisting energy" + at, elements.vdw / elements.total, atoms.vdw / atoms.total, 0.01, "1",
-        "the change of the vdW energy is smaller than its corrugation by registry (1 to 3 %), which "
-        "smooth tubes do not have: it is held to the twisting energy, not to itself"));
+        "relative to the twisting energy: the change of the vdW energy is smaller than its corrugation by registry "
+        "(1 to 3 %), which smooth tubes do not have"));
     result.checks.push_back(relative_check("end moment" + at, elements.moment, atoms.moment, 0.10, "eV"));
   }
 }
 
-// What the shear of the bonds is worth: the same rope of Euler-Bernoulli bonds, as in the published model.
+// The same rope with Euler-Bernoulli bonds, as in the published model, shows the effect of shear.
 void add_shear_information(const TwistedRope& rope, ParameterSet set, const Series& series, CaseResult& result) {
   set.bond.shear = 0;
   const Series rigid{series.grips, series.atoms, twist_elements(rope, set, series.grips == "free"), 0};
@@ -85,11 +85,11 @@ void add_shear_information(const TwistedRope& rope, ParameterSet set, const Seri
   }
 }
 
-// How the rope shortens is of second order in the angle and softer in the atoms.
+// Shortening is of second order in the angle, and softer in the atoms.
 void add_axial_information(const TwistedRope& rope, const Series& series, CaseResult& result) {
   const auto k = static_cast<std::size_t>(rope.elastic_increments);
   const char* note =
-      "not held: rises with the square of the angle; stretched tubes of atoms soften in tension and in torsion, "
+      "shown only: rises with the square of the angle. Stretched tubes of atoms soften in tension and torsion, "
       "harmonic bonds do not";
   const auto add = [&](const std::string& name, double TwistedState::*value, const char* unit) {
     result.checks.push_back(information(
@@ -98,7 +98,7 @@ void add_axial_information(const TwistedRope& rope, const Series& series, CaseRe
                        series.atoms[k].*value - series.atoms[0].*value, 0.3, unit, note)));
   };
   if (series.grips == "fixed")
-    add("tension that the twist adds, grips fixed", &TwistedState::force, "eV/nm");
+    add("tension due to the twist, grips fixed", &TwistedState::force, "eV/nm");
   else
     add("rise of the grip, grips free", &TwistedState::rise, "nm");
 }
@@ -141,42 +141,62 @@ CaseFigure residual_figure(const TwistedRope& rope, std::vector<Series> all) {
     figure.chart.lines.push_back(line(s, residuals(s, &TwistedState::total), "twisting energy"));
   }
   figure.caption = fmt::format(
-      "Residuals. The elastic range ends at {:.4g} degrees; the moment of atoms at small angles has a part that "
-      "comes from registry and does not grow with the angle.",
+      "Relative differences. The elastic range ends at {:.4g} degrees. At small angles the moment of atoms has a "
+      "part due to registry that does not grow with the angle.",
       rope.elastic_increments * rope.step * units::rad_in_degree);
   return figure;
 }
 
 void add_figures(const TwistedRope& rope, const std::vector<Series>& all, CaseResult& result) {
   result.figures.push_back(comparison(all, &TwistedState::total, true, "twisting energy", "eV",
-                                      "Total energy against that of the untwisted rope."));
+                                      "Total energy above that of the untwisted rope."));
   result.figures.push_back(residual_figure(rope, all));
   result.figures.push_back(
       comparison(all, &TwistedState::tubes, true, "energy inside of the tubes", "eV",
-                 "Stretch, bending and torsion of the tubes: nearly all of the twisting energy."));
-  result.figures.push_back(comparison(all, &TwistedState::vdw, true, "change of the vdW energy", "eV",
-                                      "Energy between tubes against that of the untwisted rope: a small part."));
+                 "Stretch, bending and torsion of the tubes make up nearly all of the twisting energy."));
   result.figures.push_back(
-      comparison(all, &TwistedState::moment, false, "end moment", "eV", "Moment that turns the upper grip."));
+      comparison(all, &TwistedState::vdw, true, "change of the vdW energy", "eV",
+                 "The energy between tubes, above that of the untwisted rope, is a small part."));
+  result.figures.push_back(
+      comparison(all, &TwistedState::moment, false, "end moment", "eV", "Moment on the upper grip."));
 }
 
 std::vector<std::string> remarks_of(const TwistedRope& rope) {
   std::vector<std::string> remarks = {
-      "No stiffness was fitted to a rope; the clamped length is counted in rows of atoms, not chosen.",
-      "What the elements have too much grows with the square of the angle and most where the grips are fixed and "
-      "the outer tubes are stretched: in atoms the torsional stiffness falls by about 2 % and the stretching "
-      "stiffness by about 4.5 % per percent of strain (periodic cells of the calibration), while bonds are "
-      "harmonic. So the tension that the twist adds is too high.",
+      "No stiffness was fitted to a rope. The clamped length follows from the rows of atoms; it was not adjusted.",
+      "The elements' energy is too high by a part that grows with the square of the angle. It is largest where the "
+      "grips are fixed and the outer tubes are stretched: in atoms the torsional stiffness falls by about 2 % and "
+      "the stretching stiffness by about 4.5 % per percent of strain (periodic cells of the calibration), while "
+      "bonds are harmonic. So the tension due to the twist is too high as well.",
       "A short clamped tube shears where it bends. The shear stiffness of the bonds is that of a thin tube with "
-      "the "
-      "calibrated EA and GJ; it was not fitted. Bonds without it are shown for comparison.",
-      "The vdW energies differ by registry: relaxed atoms choose, smooth tubes cannot. Its change on twisting is "
-      "below one percent of the twisting energy in both."};
+      "the calibrated EA and GJ; it was not fitted. Bonds without shear are shown for comparison.",
+      "The vdW energies differ by registry: relaxed atoms move into registry, smooth tubes have none. In both, the "
+      "change of the vdW energy is below one percent of the twisting energy."};
   remarks.insert(remarks.end(), rope.remarks.begin(), rope.remarks.end());
   return remarks;
 }
 
 }  // namespace
+
+TwistedRope rope_7_10_10() {
+  TwistedRope rope;
+  rope.name = "rope-7-10-10";
+  rope.parameters = "cnt-10-10-tersoff";
+  rope.free_rows = 64;
+  rope.band_rows = 8;
+  rope.bonds = 13;
+  rope.step = 4.5 * units::degree;
+  rope.increments = 6;
+  rope.elastic_increments = 6;
+  rope.remarks = {
+      "A tube of six diameters that is clamped at both ends shears where it bends. Euler-Bernoulli bonds are 5 % "
+      "too stiff from the smallest angle on; bonds with the shear stiffness of a thin tube agree within 0.3 % "
+      "there.",
+      "Beyond the smallest angle the excess grows with the angle as in the ropes of (5,5): the tubes are "
+      "anharmonic.",
+      "The vdW energy of atoms is 3 to 5 % deeper: wide tubes flatten where they touch, rigid cylinders do not."};
+  return rope;
+}
 
 std::vector<TwistedState> states_of(const ReferenceTable& table, bool axial_free) {
   const std::vector<double> which = table.column("axial_free"), angle = table.column("angle_rad"),
@@ -201,8 +221,8 @@ CaseResult run_twisted_rope(const TwistedRope& rope, const CaseContext& context)
     if (context.progress) context.progress("elements: grips " + grips + " along the axis");
     all.push_back({grips, states_of(table, axial_free), twist_elements(rope, model, axial_free), axial_free});
     if (all.back().atoms.size() != all.back().elements.size())
-      throw InputError({rope.name + ".csv", 0, ""}, "has another number of increments than the case",
-                       "make the reference anew with --fresh");
+      throw InputError({rope.name + ".csv", 0, ""}, "does not have the number of increments of the case",
+                       "make the reference again with --fresh");
     add_checks(rope, all.back(), result);
     add_axial_information(rope, all.back(), result);
     add_shear_information(rope, model, all.back(), result);
@@ -219,22 +239,20 @@ Case twisted_rope_case(const TwistedRope& rope, const std::string& tube, const s
   c.group = Case::Group::atoms;
   c.title = fmt::format("Twisted 7-tube rope of {}, {} nm", tube, length);
   c.why =
-      "It is what the program is for: torsion, bending, stretch and vdW contact at once, with stiffnesses that "
-      "were "
-      "measured on single tubes and no number fitted to a rope.";
+      "The program is made for this: torsion, bending, stretch and vdW contact at once. The stiffnesses were "
+      "measured on single tubes; no number was fitted to a rope.";
   c.setup = fmt::format(
-      "Seven {} tubes in hexagonal packing, {} nm between the clamps. Bands of 1 nm at both ends turn as one rigid "
-      "body by plus and minus half of the angle, at a fixed distance and, in a second series, free to approach "
-      "each "
-      "other. Increments of {:.4g} degrees, the interior minimised at each. The elastic range, in which the checks "
-      "lie, is that in which a single tube's torsional stiffness stays within 1 % (r tau = 0.04).",
+      "Seven {} tubes in hexagonal packing, {} nm between the clamps. Bands of 1 nm at both ends turn as rigid "
+      "bodies by plus and minus half of the angle, at a fixed distance and, in a second series, free to approach "
+      "each other. The angle grows in increments of {:.4g} degrees; the interior is relaxed after each. The checks "
+      "lie in the elastic range, in which the torsional stiffness of a single tube stays within 1 % (r tau = "
+      "0.04).",
       tube, length, rope.step * units::rad_in_degree);
   c.oracle =
-      "LAMMPS: tersoff inside of each tube, Lennard-Jones with the cutoff of the parameter set between tubes, "
-      "tubes "
-      "turned and shifted against each other so that all registries occur. The clamped length is that from the "
-      "last "
-      "held row of atoms to the first of the other band, the same in both.";
+      "LAMMPS: Tersoff potential within each tube, Lennard-Jones with the cutoff of the parameter set between "
+      "tubes. The tubes are turned and shifted against each other so that all registries occur. The clamped "
+      "length, the same for atoms and elements, reaches from the last held row of atoms of one band to the first "
+      "of the other.";
   c.literature =
       "L. Lindsay, D. A. Broido, Phys. Rev. B 81, 205441 (2010), DOI 10.1103/PhysRevB.81.205441 (potential); A. P. "
       "Thompson et al., Comput. Phys. Commun. 271, 108171 (2022), DOI 10.1016/j.cpc.2021.108171 (LAMMPS)";

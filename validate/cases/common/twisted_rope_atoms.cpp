@@ -1,3 +1,4 @@
+// The twisted rope of atoms: places of the atoms, LAMMPS input and results.
 #include <fmt/format.h>
 
 #include <chrono>
@@ -37,8 +38,8 @@ std::string release_text(bool axial_free) {
   return axial_free ? "unfix hold\nunfix ride\nunfix together\n" : "unfix hold\n";
 }
 
-// The interior follows the grips evenly before it is minimised. Held forces count for the moment, so the holding
-// fixes are taken off while they are read.
+// The interior is turned evenly with the grips before it is relaxed. The moment needs the forces on held atoms, so
+// that the fixes which hold them are removed while it is read.
 std::string increments_text(const TwistedRope& rope, double length, bool axial_free) {
   const double half = 0.5 * rope.step * units::rad_in_degree;
   const std::string minimise = hold_text(axial_free) + "minimize 0.0 5.0e-3 3000 6000\n";

@@ -1,10 +1,10 @@
+// The twisted rope of elements: grips, increments and what is measured.
 #include <algorithm>
 #include <cmath>
 
+#include "cases/common/bundle.hpp"
 #include "cases/common/twisted_rope.hpp"
-#include "model/error.hpp"
 #include "scene/build.hpp"
-#include "sim/dynamics/simulation.hpp"
 
 namespace ropewalk {
 namespace {
@@ -12,26 +12,25 @@ namespace {
 constexpr int tubes = 7;
 constexpr double force_tolerance = 5e-3;  // eV/nm
 constexpr double pull_tolerance = 0.2;    // eV/nm of the whole grip: worth less than 1e-5 eV
-constexpr long most_steps = 100000;
+constexpr long max_steps = 100000;
 constexpr double step_fraction = 0.9;  // of the stability limit: nothing has to be conserved
 
-// The chain from one clamp to the other and, outside of it, what the band of atoms holds.
+// Chains from one clamp to the other and, beyond the clamps, elements in place of the bands of atoms.
 class ClampedRope {
  public:
   ClampedRope(const TwistedRope& rope, const ParameterSet& set);
 
-  // Upper grip by +angle/2, lower grip by -angle/2; the interior follows evenly, is then relaxed.
+  // Turns the upper grip by +angle/2 and the lower grip by -angle/2, the interior evenly; then relaxes.
   void turn(double angle);
-  // Moves the upper grip along the axis to where nothing pulls at it.
+  // Moves the upper grip along the axis until no force acts on it.
   void release();
   TwistedState measure() const;
 
  private:
   void relax();
   void lift(double distance);
-  // Of the model on the upper grip.
+  // Along the axis, on the upper grip.
   double grip_force() const;
-  double grip_moment() const;
   // -1/2 at the lower clamp, 1/2 at the upper one.
   double place(int element) const;
 
@@ -45,17 +44,14 @@ class ClampedRope {
   std::vector<int> upper_;
 };
 
-LineContact contact_of(const ParameterSet& set, double element_length) {
-  const int nodes = line_nodes(element_length, set.line->pair_spacing, set.line->density.contact);
-  return line_pair(set.line->density, element_length, element_length, nodes, nodes);
-}
-
 ClampedRope::ClampedRope(const TwistedRope& rope, const ParameterSet& set)
     : length_(clamped_length(rope, set)), bonds_(rope.bonds) {
   const double a = length_ / bonds_;
+  ParameterSet divided = set;
+  divided.element_length = a;
   // The band ends half a row beyond its last row, a grip half an element beyond its last centre.
   beyond_ = std::max(1, static_cast<int>(std::lround((rope.band_rows - 0.5) * row_distance(set) / a - 0.5)));
-  topology_.types = {{a, set.radius, set.element_mass(a), set.element_inertia(a), set.bond}};
+  topology_ = topology_of(divided);
   const int elements = bonds_ + 1 + 2 * beyond_;
   state_ = State(static_cast<std::size_t>(tubes * elements));
   for (const auto& [x, y] : hexagonal_lattice(tubes, set.line->pair_spacing)) {
@@ -68,7 +64,7 @@ ClampedRope::ClampedRope(const TwistedRope& rope, const ParameterSet& set)
       if (above || e <= beyond_) drive_.fixed.push_back({first + e});
     }
   }
-  interaction_.line = {contact_of(set, a)};
+  interaction_.line = {line_contact_of(divided)};
   time_step_ = step_fraction * time_step_limit(topology_, interaction_, set.line->pair_spacing).limit;
   axial_stiffness_ = tubes * set.bond.stretch / length_;
   relax();
@@ -82,7 +78,7 @@ double ClampedRope::place(int element) const {
 void ClampedRope::turn(double angle) {
   for (int e = 0; e < topology_.elements(); ++e) {
     const auto i = static_cast<std::size_t>(e);
-    const Quaternion by(Eigen::AngleAxisd(angle * place(e), Vector3::UnitZ()));
+    const Quaternion by = turn_about(Vector3::UnitZ(), angle * place(e));
     state_.position.set(i, by * state_.position[i]);
     state_.orientation.set(i, (by * state_.orientation[i]).normalized());
   }
@@ -97,14 +93,13 @@ void ClampedRope::lift(double distance) {
 }
 
 void ClampedRope::release() {
-  // Newton steps with the stiffness of straight tubes, which a twisted rope's is close to and not above.
+  // Newton steps with the stiffness of straight tubes; that of a twisted rope is close to it and not larger.
   for (int k = 0; k < 8 && std::fabs(grip_force()) > pull_tolerance; ++k) lift(grip_force() / axial_stiffness_);
 }
 
 void ClampedRope::relax() {
-  Simulation simulation(topology_, interaction_, drive_, state_, time_step_);
-  if (!simulation.relax(force_tolerance, most_steps, [](long) { return true; }))
-    throw NumericalError(most_steps, -1, "the twisted rope did not come to rest", "take a smaller increment");
+  const Simulation simulation =
+      at_rest(Simulation(topology_, interaction_, drive_, state_, time_step_), force_tolerance, max_steps);
   state_ = simulation.state();
   forces_ = simulation.forces();
 }
@@ -115,23 +110,13 @@ double ClampedRope::grip_force() const {
   return sum;
 }
 
-double ClampedRope::grip_moment() const {
-  double sum = 0;
-  for (int e : upper_) {
-    const auto i = static_cast<std::size_t>(e);
-    sum +=
-        forces_.torque.z[i] + state_.position.x[i] * forces_.force.y[i] - state_.position.y[i] * forces_.force.x[i];
-  }
-  return sum;
-}
-
 TwistedState ClampedRope::measure() const {
   TwistedState now;
   now.total = forces_.energy.potential();
   now.tubes = forces_.energy.bonds();
   now.vdw = forces_.energy.vdw;
   now.bending = forces_.energy.bend + forces_.energy.shear;
-  now.moment = -grip_moment();
+  now.moment = resisting_moment(upper_, state_.position, forces_.force, forces_.torque);
   now.force = -grip_force();
   now.rise = rise_;
   return now;
