@@ -47,7 +47,7 @@ CaseResult run(const CaseContext& context) {
                         model_points("chain of elements", place, found)};
   figure.caption = "The force acts in the middle; the ends are held across the tube and turn freely.";
   result.figures = {figure};
-  result.remarks = {"Shear adds 6 EI/(kGA L^2) twice over to the deflection of the Euler-Bernoulli beam."};
+  result.remarks = {"Shear adds 12 EI/(kGA L^2) times the deflection of the Euler-Bernoulli beam."};
   result.sources = {set_name};
   return result;
 }
