@@ -320,7 +320,7 @@ std::string good_enough_part(const std::vector<ChartPoint>& points, const std::v
 std::string lead() {
   return "Cost and error of numerical models. Every dot is a model that differs from the default in one setting or "
          "in a few. Cost is CPU time of one thread per simulated nanosecond; for a relaxation, per nanosecond of "
-         "the ramp and hold that it replaces. Errors are against our finest model (half the element length, all "
+         "the ramp and hold that it replaces. Errors are against the finest model (half the element length, all "
          "nodes, double precision) and, where there are results of atoms, against atoms. Both axes are "
          "logarithmic; errors below 0.0001 % are drawn at 0.0001 %. Instructions, where counted, are those of the "
          "AVX2 kernels by callgrind, which do not depend on the load of the machine. No model is both cheaper and "

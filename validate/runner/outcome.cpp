@@ -203,7 +203,7 @@ std::string validation_json(const std::vector<Outcome>& outcomes) {
 
 std::string validation_table(const std::vector<Outcome>& outcomes) {
   std::string text =
-      fmt::format("     {:<52} {:>12} {:>12} {:<10} {:>10}\n", "", "model", "oracle", "unit", "off by");
+      fmt::format("     {:<52} {:>12} {:>12} {:<10} {:>10}\n", "", "model", "oracle", "unit", "difference");
   for (const Outcome& o : outcomes) {
     text += fmt::format("{:<8} {} ({:.1f} s)\n",
                         o.verdict() == Outcome::Verdict::holds    ? "holds"

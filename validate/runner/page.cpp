@@ -78,7 +78,7 @@ std::string checks_table(const CaseResult& r) {
   std::string html =
       "<div class=\"scroll\"><table class=\"facts\"><thead><tr><th></th><th>Quantity</th><th "
       "class=\"number\">Model</th>"
-      "<th class=\"number\">Oracle</th><th>Unit</th><th class=\"number\">Off by</th><th "
+      "<th class=\"number\">Oracle</th><th>Unit</th><th class=\"number\">Difference</th><th "
       "class=\"number\">Allowed</th>"
       "<th></th></tr></thead><tbody>\n";
   for (const Check& c : r.checks)

@@ -45,7 +45,7 @@ struct Grips {
   bool glued = false;
   double step = 0;  // rad
   int increments = 0;
-  int held = 0;  // of these are held to MD
+  int held = 0;  // of these, compared with the atoms
 };
 // Glued: the tubes farthest from the neutral plane are strained by x theta/L, up to 2 % in the increments that are
 // compared. The stiffness of a tube changes by 4.5 % per percent, with opposite signs on the two sides. Free: up to

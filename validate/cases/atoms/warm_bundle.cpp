@@ -449,7 +449,7 @@ const RegisteredCase registered([] {
       "whether their motion widens and weakens a bundle as the motion of atoms does.";
   c.setup = fmt::format(
       "Seven (5,5) tubes of 3.8 nm with free ends, hexagonally packed. Atoms: Langevin thermostat, steps of 1 fs, "
-      "{} ps after {} ps. Elements: velocities drawn anew from Maxwell's distribution about every {} ps, {} ps "
+      "{} ps after {} ps. Elements: velocities redrawn from Maxwell's distribution about every {} ps, {} ps "
       "after {} ps. Spacing of neighbours and van der Waals energy, at rest and at {} K, with standard errors from "
       "{} blocks.",
       md_sampling, md_equilibration, draw_every, sampling, equilibration, temperature, blocks);
@@ -461,7 +461,7 @@ const RegisteredCase registered([] {
   c.literature =
       "L. Lindsay, D. A. Broido, Phys. Rev. B 81, 205441 (2010), DOI 10.1103/PhysRevB.81.205441 (potential); A. P. "
       "Thompson et al., Comput. Phys. Commun. 271, 108171 (2022), DOI 10.1016/j.cpc.2021.108171 (LAMMPS); H. C. "
-      "Andersen, J. Chem. Phys. 72, 2384 (1980), DOI 10.1063/1.439486 (velocities drawn anew)";
+      "Andersen, J. Chem. Phys. 72, 2384 (1980), DOI 10.1063/1.439486 (redrawn velocities)";
   c.run = run;
   c.turns_red = {{wrong_contact(2), {"vdW energy per length, at rest", "vdW energy per length, 100 K"}}};
   c.known_misses = {"expansion of the spacing", "loss of cohesion per length"};
