@@ -131,16 +131,16 @@ TEST(ChartScenes, AreTheSameSpecimenAtEveryElementLength) {
   }
 }
 
-// As [twist] does: a couple on each end element, ramped, and nothing held.
-TEST(ChartScenes, ARopeIsLedByAMoment) {
+// As with [twist], a couple on each end element is ramped, and nothing is held.
+TEST(ChartScenes, ARopeIsTwistedByAMoment) {
   const ChartScene& scene = find_chart_scene("rope19-moment");
   const std::vector<ChartModel> models = chart_models(scene, false);
   const Specimen s = scene.build(find_chart_model(models, default_model));
   EXPECT_TRUE(s.held().fixed.empty());
-  const Drive led = s.led();
-  EXPECT_TRUE(led.fixed.empty() && led.turned.empty());
-  ASSERT_EQ(led.twist.size(), 1u);
-  const TwistDrive& twist = led.twist[0];
+  const Drive loads = s.loads();
+  EXPECT_TRUE(loads.fixed.empty() && loads.turned.empty());
+  ASSERT_EQ(loads.twist.size(), 1u);
+  const TwistDrive& twist = loads.twist[0];
   EXPECT_EQ(twist.upper.size(), 19u);
   EXPECT_EQ(twist.lower.size(), 19u);
   EXPECT_EQ(twist.moment_at(0), 0);

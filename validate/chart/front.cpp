@@ -175,7 +175,7 @@ ChartPoint read_point(const std::string& path) {
     p.bond_damping = in.at("bond_damping_per_ps");
     p.simulated = in.at("simulated_ps");
     p.steps = in.at("steps");
-    // Of a point that failed there is no cost, and JSON has no NaN.
+    // A point that failed has no cost; JSON has null for NaN.
     p.cpu = in.at("cpu_s").is_null() ? std::numeric_limits<double>::quiet_NaN() : in.at("cpu_s").get<double>();
     if (!in.at("instructions_per_element_step").is_null()) p.instructions = in.at("instructions_per_element_step");
     p.values = in.at("values").get<std::map<std::string, double>>();

@@ -1,4 +1,4 @@
-// The models of the chart and how they become a scene's knobs.
+// The models of the chart, and the settings of a scene that each stands for.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -32,7 +32,7 @@ void add_anchors(std::vector<ChartModel>& all) {
     m.step_fraction = 0.5;
   }));
   all.push_back(varied("default", default_model, [](ChartModel&) {}));
-  // Its programs calculate in double precision, and its papers type 20 fs.
+  // Its programs calculate in double precision; its papers give 20 fs.
   all.push_back(varied("published", published_model, [](ChartModel& m) {
     m.set = "cnt-10-10-paper";
     m.law = Law::paper;
@@ -59,7 +59,7 @@ void add_single_tube_knobs(std::vector<ChartModel>& all) {
 }
 
 void add_contact_knobs(std::vector<ChartModel>& all) {
-  // A single tube would be turned at its grips alone, beyond what a bond can bear.
+  // In a single tube only the grips would turn, by more than a bond bears.
   all.push_back(varied("mode", "relax-at-once", [](ChartModel& m) {
     m.mode = RunOptions::Mode::relax;
     m.at_once = true;
@@ -123,7 +123,7 @@ void add_combinations(const ChartScene& scene, std::vector<ChartModel>& all) {
   }
 }
 
-// Without contact the knobs of the contact are without effect.
+// Without contact, settings of the contact have no effect.
 void take_contact_away(ChartModel& m) {
   m.law = Law::none;
   m.nodes = 0;
