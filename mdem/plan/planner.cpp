@@ -84,9 +84,9 @@ bool names_only_ends(const Selection& on) {
 // Why there is no relaxation in the place of the motion; empty: there can be.
 std::string needs_time(const Scene& scene) {
   if (scene.twist) return "the moment of [twist] is ramped, and where a rope ends depends on the way";
-  for (const Load& load : scene.loads)
-    if (std::holds_alternative<RotateLoad>(load.kind)) return "a rotation needs time";
-  if (scene.temperature > 0) return "the scene is warm";
+  for (const SceneLoad& load : scene.loads)
+    if (!load.load->needs_time().empty()) return load.load->needs_time();
+  if (scene.start.temperature > 0) return "the scene is warm";
   return "";
 }
 
@@ -142,12 +142,8 @@ double scale_of(const ChartedScene& c, const std::string& observable) {
   return reference > 0 ? reference : 1.0;
 }
 
-// Elements of a tube of the scene.
-int elements_of(const Scene& scene) {
-  if (const auto* chain = std::get_if<ChainSource>(&scene.source)) return chain->elements;
-  const auto* rope = std::get_if<RopeSource>(&scene.source);
-  return whole_elements(rope ? rope->length : std::get<FilmSource>(scene.source).length, scene.element_length);
-}
+// Elements of a tube of the scene; 0: not known beforehand.
+int elements_of(const Scene& scene) { return scene.source->sizes(scene.element_length).elements; }
 
 // With so few elements that ends and middle are one, the chart says nothing: at least as many as it had, or eight.
 bool long_enough(const ChartedScene& c, const ChartedModel& m, const Scene& scene) {
@@ -173,7 +169,7 @@ bool applies(const std::string& knob, const ChartedScene& c, const ChartedModel&
   // free tubes with two nodes instead of six lost 11 % of the energy of twisting.
   if (knob == "nodes") return m.nodes >= standard.nodes;
   if (knob == "length") return !fixed_length(scene).empty() || long_enough(c, m, scene);
-  if (knob == "mass") return request.end_state && scene.temperature == 0 && !f.sudden && slow_enough(c, m, f);
+  if (knob == "mass") return request.end_state && scene.start.temperature == 0 && !f.sudden && slow_enough(c, m, f);
   if (knob == "mode") return request.end_state && needs_time(scene).empty();
   return true;
 }
@@ -181,8 +177,6 @@ bool applies(const std::string& knob, const ChartedScene& c, const ChartedModel&
 // Element-steps per ps with elements of this length: the stable step goes with damping and contact of the scene,
 // whose reach is set.
 double element_steps(Scene scene, const SceneFeatures& f, double length) {
-  if (auto* chain = std::get_if<ChainSource>(&scene.source))
-    chain->elements = std::max(2, static_cast<int>(std::lround(chain->elements * scene.element_length / length)));
   scene.damping = same_dissipation(scene.damping, scene.element_length, length);
   scene.element_length = length;
   scene.run.time_step = 0;
@@ -395,11 +389,8 @@ class Writer {
 
  private:
   double longest() const {
-    if (const auto* rope = std::get_if<RopeSource>(&scene_.source)) return rope->length;
-    if (const auto* chain = std::get_if<ChainSource>(&scene_.source))
-      return chain->elements * scene_.element_length;
-    if (const auto* film = std::get_if<FilmSource>(&scene_.source)) return film->length;
-    return std::numeric_limits<double>::infinity();
+    const int elements = elements_of(scene_);
+    return elements > 0 ? elements * scene_.element_length : std::numeric_limits<double>::infinity();
   }
 
   // In elements of the set's length, which the chart's default has. As in the chart, what lies between the centres
@@ -415,11 +406,11 @@ class Writer {
     keep_dissipation(length);
     const std::string stays = overhang ? "the ends' centres stay as far apart" : "the tubes stay as long";
     const long now = parts + overhang;
-    if (std::holds_alternative<ChainSource>(scene_.source))
-      set("chain", "elements", std::to_string(now), stays);
-    else
-      set(std::holds_alternative<RopeSource>(scene_.source) ? "rope" : "film", "length_nm",
-          fmt::format("{:.10g}", static_cast<double>(now) * length), stays);
+    const SceneKey size = tube_size_key(scene_);
+    set(size.table.c_str(), size.key.c_str(),
+        size.tube_size == SceneKey::TubeSize::elements ? std::to_string(now)
+                                                       : fmt::format("{:.10g}", static_cast<double>(now) * length),
+        stays);
   }
 
   void keep_dissipation(double length) {
@@ -506,9 +497,10 @@ void start_from_default(const Scene& scene, Writer& w) {
 }  // namespace
 
 std::string fixed_length(const Scene& scene) {
-  if (std::holds_alternative<StateSource>(scene.source)) return "the elements come from a file";
+  if (scene.from_file()) return "the elements come from a file";
+  if (tube_size_key(scene).tube_size == SceneKey::TubeSize::no) return "the tubes have no common length";
   if (scene.contact.law == Law::paper) return "law \"paper\" holds for its set's length alone";
-  for (const Load& load : scene.loads)
+  for (const SceneLoad& load : scene.loads)
     if (!names_only_ends(load.on)) return "a load names elements by number";
   return "";
 }
