@@ -9,7 +9,7 @@
 #include "observe/bending.hpp"
 #include "observe/means.hpp"
 #include "observe/spacing.hpp"
-#include "plan/planner.hpp"
+#include "plan/planned_scene.hpp"
 #include "scene/dissipation.hpp"
 #include "scene/loads/rotate.hpp"
 
