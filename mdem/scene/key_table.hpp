@@ -10,8 +10,6 @@
 // Readers throw InputError with file, line and key.
 #pragma once
 
-#include <fmt/format.h>
-
 #include <functional>
 #include <string>
 #include <type_traits>
@@ -49,6 +47,8 @@ inline Presence otherwise(std::string example, std::string words) { return {std:
 // The value of the struct; `value` is to be given where no rule makes TOML of it.
 inline Presence standard(std::string value = "") { return {std::move(value), ""}; }
 
+std::string as_toml(double value);  // to six digits
+
 template <class T>
 struct KeyOf {
   using Read = std::function<void(const TomlTable&, const Scene&, T&)>;
@@ -75,7 +75,7 @@ struct KeyOf {
     k.read = [=, needed = k.doc.required()](const TomlTable& t, const Scene& scene, T& out) {
       if (needed || t.has(key)) std::invoke(member, out) = t.number(key, bounds(scene)) * u.size;
     };
-    k.show = [=](const T& out) { return fmt::format("{:.6g}", std::invoke(member, out) / u.size); };
+    k.show = [=](const T& out) { return as_toml(std::invoke(member, out) / u.size); };
     return k;
   }
   template <class M>
@@ -88,7 +88,7 @@ struct KeyOf {
       using Integer = std::decay_t<decltype(std::invoke(member, out))>;
       if (needed || t.has(key)) std::invoke(member, out) = static_cast<Integer>(t.integer(key, least, most));
     };
-    k.show = [=](const T& out) { return fmt::format("{}", std::invoke(member, out)); };
+    k.show = [=](const T& out) { return std::to_string(std::invoke(member, out)); };
     return k;
   }
   template <class M>
@@ -109,7 +109,7 @@ struct KeyOf {
     };
     k.show = [=](const T& out) {
       for (const auto& w : words)
-        if (std::invoke(member, out) == w.second) return fmt::format("\"{}\"", w.first);
+        if (std::invoke(member, out) == w.second) return "\"" + std::string(w.first) + "\"";
       return std::string();
     };
     return k;

@@ -14,6 +14,8 @@ bool SceneTable::optional() const {
   return std::any_of(keys.begin(), keys.end(), [](const SceneKey& k) { return k.required(); });
 }
 
+std::string as_toml(double value) { return fmt::format("{:.6g}", value); }
+
 std::vector<SceneTable> scene_tables() {
   std::vector<SceneTable> tables = {top_table({}).doc()};
   for (const SceneKind& kind : scene_kinds()) tables.push_back(kind.table);

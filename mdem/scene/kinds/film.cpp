@@ -1,5 +1,7 @@
 #include "scene/kinds/film.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>

@@ -1,5 +1,7 @@
 #include "scene/kinds/rope.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "scene/build.hpp"

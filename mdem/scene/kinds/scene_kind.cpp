@@ -1,5 +1,7 @@
 #include "scene/kinds/scene_kind.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cassert>
 

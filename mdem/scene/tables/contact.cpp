@@ -1,4 +1,6 @@
 // [contact] which law acts between tubes, and how it is summed.
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "scene/build.hpp"

@@ -1,4 +1,6 @@
 // [run] what to do.
+#include <fmt/format.h>
+
 #include "scene/tables/tables.hpp"
 
 namespace ropewalk {

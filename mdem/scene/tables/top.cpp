@@ -1,4 +1,6 @@
 // The top of a scene: format, name, parameter sets and the length of the elements.
+#include <fmt/format.h>
+
 #include <filesystem>
 
 #include "io/data_files.hpp"

@@ -1,4 +1,5 @@
 // The example of docs/how-to/scene-kind.md: [crossed] is two tubes that cross at their middles.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
