@@ -64,11 +64,11 @@ void add_run_facts(const Scene& scene, const Prepared& p, const Manifest& m, Rep
   add("damping", fmt::format("contact viscosity {:.4g} eV ps/nm^2, bonds {:.4g} 1/ps, PFC local {:.4g}",
                              scene.damping.contact.eta, scene.damping.bond.rate, scene.damping.local));
   if (scene.twist) {
-    const TwistProtocol& w = *scene.twist;
+    const TwistLoad& w = *scene.twist;
     add("twist",
         fmt::format("{:.4g} nN nm {} as {}", w.moment / units::nN_nm,
-                    w.reading == TwistProtocol::Reading::per_tube ? "per tube" : "in total",
-                    w.application == TwistProtocol::Application::couple ? "couples" : "tangential forces"),
+                    w.reading == TwistLoad::Reading::per_tube ? "per tube" : "in total",
+                    w.application == TwistLoad::Application::couple ? "couples" : "tangential forces"),
         fmt::format("ramp {:.4g} ps, hold {:.4g} ps{}", w.ramp_time(), w.hold,
                     w.geometric_only ? "; spins relaxed at each increment" : ""));
   }

@@ -81,8 +81,8 @@ struct Specimen {
 
   double duration() const { return ramp + hold; }
   double outer_step() const { return time_step * scene.run.stepping.contact_every; }
-  Drive held() const;   // before the ramp; free in load control
-  Drive loads() const;  // of the ramp and the hold
+  LoadsAndConstraints held() const;   // before the ramp; free in load control
+  LoadsAndConstraints loads() const;  // of the ramp and the hold
 };
 
 struct ChartReference {

@@ -42,10 +42,7 @@ struct LittleMotion {
   bool holds(const Fastest& f) const { return f.speed2 < speed2 && f.spin2 < spin2 && std::isfinite(f.sum); }
 };
 
-bool relaxes_spins(const Drive& drive) {
-  return std::any_of(drive.twist.begin(), drive.twist.end(),
-                     [](const TwistDrive& twist) { return twist.geometric_only; });
-}
+bool relaxes_spins(const LoadsAndConstraints& loads) { return loads.spin_relaxation_interval() > 0; }
 
 NumericalError blown_up(long step, int element) {
   return NumericalError(step, element,
@@ -56,15 +53,15 @@ NumericalError blown_up(long step, int element) {
 
 }  // namespace
 
-Simulation::Simulation(Topology topology, Interaction interaction, Drive drive, State state, double time_step,
-                       double skin, Stepping stepping)
+Simulation::Simulation(Topology topology, Interaction interaction, LoadsAndConstraints loads, State state,
+                       double time_step, double skin, Stepping stepping)
     : topology_(std::move(topology)),
       interaction_(std::move(interaction)),
-      drive_(std::move(drive)),
+      loads_(std::move(loads)),
       state_(std::move(state)),
       time_step_(time_step),
       stepping_(stepping),
-      elements_(topology_, driven_elements(drive_)),
+      elements_(topology_, loaded_elements(loads_)),
       tunes_skin_(!(skin > 0) && !interaction_.line.empty()),
       list_(interaction_, skin > 0 ? skin : default_skin(interaction_)),
       moved_(static_cast<std::size_t>(elements_.blocks()) + 1),
@@ -74,7 +71,7 @@ Simulation::Simulation(Topology topology, Interaction interaction, Drive drive, 
   refuse_not_finite(state_);
   list_.build(topology_, state_);
   compute();
-  constrain(topology_, drive_, state_.time, forces_, 0.0, state_);
+  constrain(topology_, loads_, state_.time, forces_, 0.0, state_);
 }
 
 // Model forces at the present positions and velocities, plus loads; `forces_` holds the sum.
@@ -117,7 +114,7 @@ void Simulation::compute_contact(bool energies) {
 }
 
 void Simulation::add_loads(Forces& forces) {
-  point_loads(drive_, state_, state_.time, point_loads_);
+  point_loads(loads_, state_, state_.time, point_loads_);
   for (const PointLoad& load : point_loads_) {
     forces.force.add(static_cast<std::size_t>(load.element), load.force);
     forces.torque.add(static_cast<std::size_t>(load.element), load.torque);
@@ -175,7 +172,7 @@ void Simulation::kick(const Forces& forces, double dt) {
 #pragma omp parallel for schedule(static) if (state_.size() > parallel_from)
   for (int t = 0; t < topology_.tubes(); ++t) removed_[static_cast<std::size_t>(t)] = kick_tube(forces, t, dt);
   for (double removed : removed_) dissipated_ += removed;
-  work_ += constrain(topology_, drive_, state_.time, forces, dt, state_);
+  work_ += constrain(topology_, loads_, state_.time, forces, dt, state_);
 }
 
 // `forces` holds the loads as well.
@@ -197,7 +194,7 @@ void Simulation::kick_driven(int kicks, double dt) {
   for (int k = 0; k < kicks; ++k) {
     work_ += 0.5 * dt * load_power(point_loads_, state_);
     for (const ElementRange& of : elements_.driven()) kick_range(rows_of(forces_), of, dt);
-    work_ += constrain(topology_, drive_, state_.time, forces_, dt, state_);
+    work_ += constrain(topology_, loads_, state_.time, forces_, dt, state_);
     work_ += 0.5 * dt * load_power(point_loads_, state_);
   }
 }
@@ -302,10 +299,10 @@ void Simulation::check_motion(const Moved& all) const {
 }
 
 // The local damping brakes by the velocities before each kick, and spins are relaxed between two steps.
-bool Simulation::kicks_while_moving() const { return interaction_.damping.local <= 0 && !relaxes_spins(drive_); }
+bool Simulation::kicks_while_moving() const { return interaction_.damping.local <= 0 && !relaxes_spins(loads_); }
 
 void Simulation::steps(long count, bool energies) {
-  const bool always = relaxes_spins(drive_);
+  const bool always = relaxes_spins(loads_);
   for (long k = 0; k < count; ++k) {
     const bool wanted = (energies && k + 1 == count) || always;
     if (two_levels()) {
@@ -402,15 +399,14 @@ void Simulation::check_forces(bool energies) const {
 }
 
 void Simulation::relax_angles_if_due() {
-  for (const TwistDrive& twist : drive_.twist) {
-    if (!twist.geometric_only) continue;
-    const auto increments = [&](double time) { return std::floor(time / twist.increment + 1e-9); };
-    if (increments(state_.time) == increments(state_.time - time_step_)) continue;
-    const double had = total_energy();
-    relax_spins(topology_, state_);
-    compute();
-    dissipated_ += had - total_energy();
-  }
+  const double interval = loads_.spin_relaxation_interval();
+  if (interval <= 0) return;
+  const auto increments = [&](double time) { return std::floor(time / interval + 1e-9); };
+  if (increments(state_.time) == increments(state_.time - time_step_)) return;
+  const double had = total_energy();
+  relax_spins(topology_, state_);
+  compute();
+  dissipated_ += had - total_energy();
 }
 
 double Simulation::largest_force() const {
@@ -418,7 +414,7 @@ double Simulation::largest_force() const {
   State free = state_;
   free.velocity = forces_.force;
   free.angular_velocity = forces_.torque;
-  constrain(topology_, drive_, state_.time, forces_, 0.0, free);
+  constrain(topology_, loads_, state_.time, forces_, 0.0, free);
   double largest = 0;
   const double radius = topology_.largest_radius();
   for (std::size_t i = 0; i < free.size(); ++i) {
@@ -466,7 +462,7 @@ bool Simulation::relax(double tolerance, long max_steps, const std::function<boo
         state_.angular_velocity.add(i, dt / type.inertia * forces_.torque[i]);
       }
     }
-    constrain(topology_, drive_, state_.time, forces_, 0.0, state_);
+    constrain(topology_, loads_, state_.time, forces_, 0.0, state_);
     for (std::size_t i = 0; i < n; ++i) {
       v2 += state_.velocity[i].squaredNorm() + scale2 * state_.angular_velocity[i].squaredNorm();
       f2 += forces_.force[i].squaredNorm() + forces_.torque[i].squaredNorm() / scale2;
@@ -479,7 +475,7 @@ bool Simulation::relax(double tolerance, long max_steps, const std::function<boo
       state_.velocity.set(i, (1 - mix) * state_.velocity[i] + turn * forces_.force[i]);
       state_.angular_velocity.set(i, (1 - mix) * state_.angular_velocity[i] + turn / scale2 * forces_.torque[i]);
     }
-    constrain(topology_, drive_, state_.time, forces_, 0.0, state_);
+    constrain(topology_, loads_, state_.time, forces_, 0.0, state_);
     for (std::size_t i = 0; i < n; ++i)
       fastest2 =
           std::max(fastest2, state_.velocity[i].squaredNorm() + scale2 * state_.angular_velocity[i].squaredNorm());
@@ -639,9 +635,8 @@ void Simulation::restore(const std::string& bytes) {
   list_.set_bounds(bounds[0], bounds[1]);
   // The spans of this list, which the skin of the next one follows from.
   Forces made(state_.size());
-  if (tunes_skin_)
-    engine_.compute(topology_, interaction_, list_, state_, made, {Parts::contact, false});
-  point_loads(drive_, state_, state_.time, point_loads_);
+  if (tunes_skin_) engine_.compute(topology_, interaction_, list_, state_, made, {Parts::contact, false});
+  point_loads(loads_, state_, state_.time, point_loads_);
 }
 
 }  // namespace ropewalk

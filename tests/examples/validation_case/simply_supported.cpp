@@ -15,8 +15,9 @@ constexpr double force = 1e-2;  // eV/nm
 // Deflections (nm) of all elements at rest.
 std::vector<double> deflections(const ParameterSet& model) {
   Chain c(model, bonds);
-  c.drive.fixed = {{0, true, true, true, false}, {c.last, true, true, false, false}};
-  c.drive.loads = {{bonds / 2, Vector3(force, 0, 0), Vector3::Zero()}};
+  c.loads.add(FixLoad({0}, true, true, true, false));
+  c.loads.add(FixLoad({c.last}, true, true, false, false));
+  c.loads.add(ForceLoad({bonds / 2}, Vector3(force, 0, 0)));
   const Simulation rest = c.relaxed(1e-7);
   std::vector<double> out;
   for (std::size_t i = 0; i < rest.state().size(); ++i) out.push_back(rest.state().position.x[i]);

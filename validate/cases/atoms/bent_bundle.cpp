@@ -232,7 +232,7 @@ class BentChains {
   void relax();
 
   Bundle bundle_;
-  Drive drive_;
+  LoadsAndConstraints loads_;
   Vec3Array straight_;
   Energies energy_;
   bool glued_;
@@ -251,7 +251,7 @@ BentChains::BentChains(const Grips& grips, const ParameterSet& set)
   bundle_ = line_bundle(divided, tubes, per_tube_);
   for (int t = 0; t < (glued_ ? tubes : 1); ++t)
     for (int e = 0; e < per_tube_; ++e)
-      if (e <= beyond || e >= bonds + beyond) drive_.fixed.push_back({t * per_tube_ + e});
+      if (e <= beyond || e >= bonds + beyond) loads_.add(FixLoad({t * per_tube_ + e}));
   straight_ = bundle_.state.position;
   bundle_.time_step *= step_fraction / default_step_fraction;
   relax();
@@ -281,7 +281,7 @@ void BentChains::bend(double angle) {
 
 void BentChains::relax() {
   const Simulation simulation =
-      at_rest(Simulation(bundle_.topology, bundle_.interaction, drive_, bundle_.state, bundle_.time_step),
+      at_rest(Simulation(bundle_.topology, bundle_.interaction, loads_, bundle_.state, bundle_.time_step),
               force_tolerance, max_steps);
   bundle_.state = simulation.state();
   energy_ = simulation.forces().energy;

@@ -16,7 +16,7 @@ struct GrippedRope {
 
   Topology topology;
   Interaction interaction;
-  Drive drive;  // empty until hold_grips()
+  LoadsAndConstraints loads;  // empty until hold_grips()
   State state;
   std::vector<int> lower, upper;  // elements of the grips
   int bonds = 0;                  // between the grips, of each tube

@@ -5,6 +5,7 @@
 #include "cases/common/bundle.hpp"
 #include "cases/common/twisted_rope.hpp"
 #include "scene/build.hpp"
+#include "scene/loads/fix.hpp"
 
 namespace ropewalk {
 namespace {
@@ -36,7 +37,7 @@ class ClampedRope {
 
   Topology topology_;
   Interaction interaction_;
-  Drive drive_;
+  LoadsAndConstraints loads_;
   State state_;
   Forces forces_;
   double time_step_ = 0, length_ = 0, axial_stiffness_ = 0, rise_ = 0;
@@ -61,7 +62,7 @@ ClampedRope::ClampedRope(const TwistedRope& rope, const ParameterSet& set)
       state_.position.set(static_cast<std::size_t>(first + e), {x, y, (e - 0.5 * (elements - 1)) * a});
       const bool above = e >= bonds_ + beyond_;
       if (above) upper_.push_back(first + e);
-      if (above || e <= beyond_) drive_.fixed.push_back({first + e});
+      if (above || e <= beyond_) loads_.add(FixLoad({first + e}));
     }
   }
   interaction_.line = {line_contact_of(divided)};
@@ -99,7 +100,7 @@ void ClampedRope::release() {
 
 void ClampedRope::relax() {
   const Simulation simulation =
-      at_rest(Simulation(topology_, interaction_, drive_, state_, time_step_), force_tolerance, max_steps);
+      at_rest(Simulation(topology_, interaction_, loads_, state_, time_step_), force_tolerance, max_steps);
   state_ = simulation.state();
   forces_ = simulation.forces();
 }
