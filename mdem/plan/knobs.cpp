@@ -33,8 +33,6 @@ bool is_double(const Model& m) { return m.precision.rfind("double", 0) == 0; }
 
 void write_precision(PlannedScene& w, const Model& m, const Model&, const std::string& why) {
   w.set("contact", "precision", is_double(m) ? "\"double\"" : "\"mixed\"", why);
-  if (w.scene().contact.law == ContactOptions::Law::line)
-    w.set("contact", "all_nodes", m.precision.find("all") == std::string::npos ? "false" : "true", why);
 }
 
 void write_mode(PlannedScene& w, const Model&, const Model&, const std::string& why) {
@@ -117,8 +115,7 @@ std::vector<Knob> table() {
        [](const Model& m) -> double { return is_double(m) + 2 * (m.precision.size() > 6); },
        with_contact,
        write_precision,
-       {{"contact", "all_nodes", [](const Scene& s) { return s.contact.all_nodes; }},
-        {"contact", "precision", [](const Scene& s) { return s.contact.precision.has_value(); }}}},
+       {{"contact", "precision", [](const Scene& s) { return s.contact.precision.has_value(); }}}},
       {Id::step,
        {"time_step", "time_step_fs"},
        [](const Model& m) { return -m.time_step; },

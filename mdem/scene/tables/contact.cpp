@@ -60,11 +60,8 @@ void read_cutoff(const TomlTable& t, const Scene& scene, ContactOptions& contact
 
 // A key that would be without effect is refused, since it was meant to have one.
 void check(const TomlTable& t, const Scene&, ContactOptions& c) {
-  const auto of_line_law = [&](const char* key, bool used) {
-    if (used && c.law != Law::line) throw t.error(key, "belongs to law = \"line\"", "take it away");
-  };
-  of_line_law("nodes_per_element", c.nodes > 0);
-  of_line_law("all_nodes", c.all_nodes);
+  if (c.nodes > 0 && c.law != Law::line)
+    throw t.error("nodes_per_element", "belongs to law = \"line\"", "take it away");
 }
 
 }  // namespace
@@ -80,9 +77,6 @@ const KeyTable<ContactOptions>& contact_table() {
        Key::integer("nodes_per_element", 1, most_nodes, &C::nodes, otherwise("5", "for a corrugation below 2e-4"),
                     "line: nodes along an element")
            .goes_as_length(1),
-       Key::boolean("all_nodes", &C::all_nodes, standard(),
-                    "line: all nodes towards nearly parallel elements too, which keeps the symmetry of a rope; two "
-                    "to three times the cost"),
        Key::word("precision", Words<Precision>{{"mixed", Precision::mixed}, {"double", Precision::full}},
                  &C::precision, otherwise("\"mixed\"", "mixed; double for mode = \"relax\""),
                  "\"mixed\" (pairs in single precision) or \"double\""),
