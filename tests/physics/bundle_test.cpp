@@ -252,24 +252,22 @@ TEST(ListSkin, FollowsTheMotion) {
   EXPECT_NEAR(f.total_energy(), fixed.total_energy(), 1e-5 * f.work());
 }
 
-// In slow motion nobody looks in most steps how far elements have come: what is known bounds it all the same.
+// After every step the list knows how far elements have come.
 TEST(ListSkin, IsNeverUsedUpUnseen) {
   const TurnedRope rope(0.004);
   Simulation s = rope.make(0.3);
   const auto n = static_cast<std::ptrdiff_t>(rope.b.topology.elements());
-  int unseen = 0;
   for (int k = 0; k < 3000; ++k) {
     s.step(false);
+    // Against the twist that fits now; the list's bounds are against that of the step before.
     const Change now = s.list().change(s.state(), 0, n);
-    // By the twist that fits now, not that of the last look.
     ASSERT_LE(now.moved, s.list().displacement() + 1e-4) << k;
     ASSERT_LE(now.turned, s.list().turn() + 1e-5) << k;
-    if (s.list().turn() > now.turned + 5e-5) ++unseen;
+    ASSERT_LE(s.list().displacement(), 0.5 * s.list().skin) << k;
   }
-  EXPECT_GT(unseen, 500);
 }
 
-TEST(Checkpoint, GoesOnWhereNobodyLooks) {
+TEST(Checkpoint, GoesOnFromEveryStepOfASlowRope) {
   const TurnedRope rope(0.004);
   Simulation whole = rope.make(0);
   whole.steps(300);
@@ -382,12 +380,10 @@ TEST(Checkpoint, GoesOnWithTheSameLists) {
   EXPECT_NE(whole.list().skin, default_skin(rope.b.in));
 }
 
-// Helices whose neighbours are at angles where one sum goes over into the next, at random ones.
-TEST(Checkpoint, GoesOnWhereSumsAreShared) {
-  TurnedRope rope(0.1, 80);  // in several chunks
-  SparseNodes& sparse = rope.b.in.line[0].sparse;
-  sparse = sparse_nodes(6);
-  const double pitch = 1.1 * std::acos(std::sqrt(sparse.sum[0].full_cos2)) / spacing;  // rad/nm
+// Helices whose neighbours cross at random small angles.
+TEST(Checkpoint, GoesOnInATwistedRope) {
+  TurnedRope rope(0.1, 80);             // in several chunks
+  const double pitch = 0.15 / spacing;  // rad/nm
   test::Random random(8);
   State& s = rope.b.state;
   for (std::size_t i = 0; i < s.size(); ++i) {
@@ -399,19 +395,14 @@ TEST(Checkpoint, GoesOnWhereSumsAreShared) {
                              Quaternion::FromTwoVectors(Vector3::UnitZ(), along) * by * s.orientation[i]);
   }
   Simulation whole = rope.make(0);
-  const auto use = [&] { return whole.engine().line().plan().use(); };
   for (int save = 0; save < 3; ++save) {
     for (int k = 0; k < 200; ++k) whole.step(false);
-    int more = 0;
-    for (; use() != LinePlan::Use::replay && more < 100; ++more) whole.step(false);
-    ASSERT_LT(more, 100) << "no plan has held for a step: the test shows less";
     Simulation resumed = rope.make(0);
     resumed.restore(whole.serialise());
     EXPECT_EQ(resumed.serialise(), whole.serialise());
     for (int k = 0; k < 50; ++k) {
       whole.step(false);
       resumed.step(false);
-      ASSERT_EQ(resumed.engine().line().plan().use(), use()) << k;
     }
     EXPECT_EQ(resumed.serialise(), whole.serialise());
   }

@@ -213,15 +213,11 @@ void clear(const Segment& of, const ForceRows& out) {
 
 }  // namespace
 
-void ForceEngine::make_axes(const State& state, std::ptrdiff_t begin, std::ptrdiff_t end) {
-  axes_of(state.orientation, begin, end, axis_);
-}
-
 void ForceEngine::make_all_axes(const State& state) {
   const auto n = static_cast<std::ptrdiff_t>(state.size());
   constexpr std::ptrdiff_t block = 512;
 #pragma omp parallel for schedule(static) if (state.size() > parallel_from)
-  for (std::ptrdiff_t i = 0; i < n; i += block) make_axes(state, i, std::min(i + block, n));
+  for (std::ptrdiff_t i = 0; i < n; i += block) axes_of(state.orientation, i, std::min(i + block, n), axis_);
 }
 
 std::size_t ForceEngine::bytes() const {
@@ -251,12 +247,12 @@ void ForceEngine::add_buffers(const NeighbourList& list, int from, int to, const
 
 void ForceEngine::compute(const Topology& topology, const Interaction& interaction, const NeighbourList& list,
                           const State& state, Forces& out, const ForceOptions& options) {
-  const double t0 = omp_get_wtime(), finished_before = line_.finish_seconds(), then_before = times_.then;
+  const double t0 = omp_get_wtime(), finished_before = line_.finish_seconds();
   const bool contact = interaction.has_contact() && options.parts != Parts::bonds,
              bonds = options.parts != Parts::contact;
   const bool by_line = contact && !interaction.paper, by_paper = contact && !by_line;
   if (contact) axis_.resize(state.size());
-  if (by_paper && !options.axes_made) make_all_axes(state);  // by the line law with the nodes
+  if (by_paper) make_all_axes(state);  // by the line law with the nodes
   const double t1 = omp_get_wtime();
 
   // Part by part of the tubes: the bonds, and what the contact buffers hold, in their fixed order.
@@ -273,7 +269,8 @@ void ForceEngine::compute(const Topology& topology, const Interaction& interacti
     for (int k = parts_.begin(tube); bonds && k + 1 < parts_.begin(tube + 1); ++k)
       joints_[static_cast<std::size_t>(k)] = joint_behind(bonded, tube, parts_[k].end - 1);
   };
-  const auto finish = [&](int k, const ForceRows& on) {
+  const ForceRows on = rows_of(out);
+  const auto finish = [&](int k) {
     const Segment& part = parts_[k];
     if (bonds) {
       const Joint *before = joint(k - 1, part.begin > topology.tube_begin[part.tube]),
@@ -286,20 +283,11 @@ void ForceEngine::compute(const Topology& topology, const Interaction& interacti
     if (by_line) line_.add_to(k, on);
   };
   const auto finish_block = [&](int block) {
-    const int first = parts_.block_begin(block), last = parts_.block_begin(block + 1);
-    thread_local Forces few;
-    if (options.then) few.resize(TubeParts::most);
-    const ForceRows on = options.then ? ForceRows{few.force, few.torque, parts_[first].begin} : rows_of(out);
-    for (int k = first; k < last; ++k) finish(k, on);
-    if (!options.then) return;
-    if (omp_get_thread_num() != 0) return options.then(block, on);
-    const double began = omp_get_wtime();
-    options.then(block, on);
-    times_.then += omp_get_wtime() - began;
+    for (int k = parts_.block_begin(block); k < parts_.block_begin(block + 1); ++k) finish(k);
   };
   if (by_line) {
     const auto place = [&](int t) {
-      if (!options.axes_made) make_axes(state, topology.tube_begin[t], topology.tube_begin[t + 1]);
+      axes_of(state.orientation, topology.tube_begin[t], topology.tube_begin[t + 1], axis_);
       join(t);
     };
     line_.compute(topology, interaction, list, state, axis_, options.energies, {parts_, place, finish_block});
@@ -340,11 +328,10 @@ void ForceEngine::compute(const Topology& topology, const Interaction& interacti
       out.energy.vdw += b.energy;
       out.damping_power += b.power;
     }
-  const double t3 = omp_get_wtime(), finished = line_.finish_seconds() - finished_before,
-               then = times_.then - then_before;
+  const double t3 = omp_get_wtime(), finished = line_.finish_seconds() - finished_before;
   times_.axes += t1 - t0;
   times_.contact += t2 - t1 - finished;
-  times_.bonds += t3 - t2 + finished - then;
+  times_.bonds += t3 - t2 + finished;
 }
 
 double kinetic_energy(const Topology& topology, const State& state) {
