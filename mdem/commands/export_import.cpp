@@ -111,10 +111,11 @@ void write_lammps_files(const RunDirectory& run) {
 }
 
 void refuse_what_lammps_lacks(const Scene& scene) {
-  const char* lacking = scene.twist && scene.twist->geometric_only ? "twist.geometric_only"
-                        : scene.run.stepping.contact_every > 1     ? "run.contact_every"
-                        : scene.run.stepping.runge_kutta           ? "run.integrator"
-                                                                   : nullptr;
+  const char* lacking = scene.thermostat                             ? "thermostat"
+                        : scene.twist && scene.twist->geometric_only ? "twist.geometric_only"
+                        : scene.run.stepping.contact_every > 1       ? "run.contact_every"
+                        : scene.run.stepping.runge_kutta             ? "run.integrator"
+                                                                     : nullptr;
   if (lacking)
     throw InputError({scene.path, 0, lacking}, "is not for LAMMPS", "run this scene with `ropewalk run`");
 }

@@ -299,7 +299,8 @@ class Run {
     r.kinetic = kinetic_energy(prepared_.topology, s);
     r.work = simulation_.work();
     r.dissipated = simulation_.dissipated();
-    r.balance = e.potential() + r.kinetic - r.work + r.dissipated - first_energy_;
+    r.heat = simulation_.heat();
+    r.balance = e.potential() + r.kinetic - simulation_.account().supplied() - first_energy_;
     fill_geometry(look(observer_, scene_, prepared_.topology, s), r);
     return r;
   }

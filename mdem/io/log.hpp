@@ -15,6 +15,7 @@ struct LogRow {
   double stretch = 0, shear = 0, bend = 0, twist = 0, vdw = 0, kinetic = 0;
   double work = 0;
   double dissipated = 0;
+  double heat = 0;
   double balance = 0;
   double beta = 0, physical_twist = 0, geometric_twist = 0;
   double charge = 0, charge_delaunay = 0, contacts = 0;
@@ -46,7 +47,9 @@ inline const std::vector<LogColumn>& log_columns() {
       {"kinetic_eV", "kinetic energy, translation and rotation", &LogRow::kinetic, false},
       {"work_eV", "work done by the loads so far", &LogRow::work, false},
       {"dissipated_eV", "energy taken out by damping so far", &LogRow::dissipated, false},
-      {"balance_eV", "total energy - work + dissipated, less its first value: zero but for integration error",
+      {"thermostat_eV", "heat that the thermostat has brought in so far", &LogRow::heat, false},
+      {"balance_eV",
+       "total energy - work + dissipated - heat, less its first value: zero but for integration error",
        &LogRow::balance, false},
       {"beta_deg", "twist angle of the outermost tubes to the rope axis, middle third", &LogRow::beta, false},
       {"physical_twist_deg", "twist stored in the bonds of a tube, end to end, mean over tubes",

@@ -167,7 +167,7 @@ bool applies(const std::string& knob, const ChartedScene& c, const ChartedModel&
   if (m.law != standard.law) return false;  // another law is another physics, not another accuracy
   if (knob == "nodes" || knob == "cutoff" || knob == "levels" || knob == "precision") {
     if (!f.contact) return false;
-    if (knob == "levels" && scene.damping.local > 0) return false;
+    if (knob == "levels" && (scene.damping.local > 0 || scene.thermostat)) return false;
   }
   // Where tubes feel nodes they settle in them, which scenes of the chart that are led from rest hardly show: seven
   // free tubes with two nodes instead of six lost 11 % of the energy of twisting.

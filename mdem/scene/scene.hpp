@@ -14,6 +14,7 @@
 #include "model/parameters.hpp"
 #include "observe/limits.hpp"
 #include "sim/dynamics/stepping.hpp"
+#include "sim/dynamics/thermostat.hpp"
 #include "sim/state/interaction.hpp"
 
 namespace ropewalk {
@@ -150,6 +151,7 @@ struct Scene {
   Damping damping;
   std::vector<Load> loads;
   std::optional<TwistProtocol> twist;
+  std::optional<ThermostatOptions> thermostat;
   RunOptions run;
   ObserveOptions observe;
   LimitOptions limits;

@@ -14,6 +14,7 @@ const std::vector<SceneTable>& scene_tables() {
       {"start", "the state at time zero"},
       {"contact", "van der Waals contact between elements"},
       {"damping", "dissipation; 0 switches a term off"},
+      {"thermostat", "a bath that keeps the temperature; without this table there is none"},
       {"twist", "the grips (first and last element of every tube) are twisted about z, + at the upper end"},
       {"load", "any number of these: what else acts on elements"},
       {"run", "what to do"},
@@ -69,6 +70,12 @@ const std::vector<SceneKey>& scene_keys() {
       {"damping", "contact_viscosity_eV_ps_per_nm2", "eV ps/nm^2", "20", "", "against sliding at contact points"},
       {"damping", "bond_damping_per_ps", "1/ps", "1", "", "against relative motion of bonded elements"},
       {"damping", "pfc_local", "", "0", "", "PFC3D's local damping, 0 to 1; breaks momentum conservation"},
+
+      {"thermostat", "method", "", "\"langevin\"", "",
+       "\"langevin\": friction and noise on translation and rotation"},
+      {"thermostat", "temperature_K", "K", "300", "required", "temperature of the bath"},
+      {"thermostat", "coupling_per_ps", "1/ps", "0.1", "required", "friction: velocities decay at this rate"},
+      {"thermostat", "seed", "", "1", "that of [start]", "of its random numbers"},
 
       {"twist", "moment_nN_nm", "nN nm", "35", "required", "moment at the end of the ramp"},
       {"twist", "rate_nN_nm_per_ps", "nN nm/ps", "1", "required", "rate of the ramp; 0: the moment acts at once"},

@@ -454,6 +454,32 @@ void read_stepping(const TomlTable& t, const Scene& scene, RunOptions& r) {
                   "take one of them away");
 }
 
+ThermostatOptions read_thermostat(const TomlTable& t, const Scene& scene) {
+  Words<std::string> methods;
+  for (const ThermostatKind& kind : thermostat_kinds()) methods.emplace_back(kind.name, kind.name);
+  ThermostatOptions o;
+  o.method = t.word_or("method", o.method, methods);
+  o.temperature = t.number("temperature_K", Bounds::range(0, 3000));
+  o.coupling = t.number("coupling_per_ps", Bounds::positive(1e4));
+  o.seed = static_cast<std::uint64_t>(
+      t.integer_or("seed", static_cast<long>(scene.seed), 0, std::numeric_limits<long>::max()));
+  return o;
+}
+
+// What does not go with a thermostat.
+void check_thermostat(const TomlTable& top, const Scene& scene) {
+  if (!scene.thermostat) return;
+  const auto refuse = [&](const char* table, const char* key, const char* why) {
+    throw top.table(table).error(key, fmt::format("does not go with [thermostat]: {}", why),
+                                 "take one of the two away");
+  };
+  if (scene.run.mode == RunOptions::Mode::relax) refuse("run", "mode", "a relaxation has no temperature");
+  if (scene.run.stepping.contact_every > 1) refuse("run", "contact_every", "the bath acts on one level alone");
+  if (scene.damping.local > 0) refuse("damping", "pfc_local", "it brakes every velocity that the bath gives");
+  if (scene.twist && scene.twist->geometric_only)
+    refuse("twist", "geometric_only", "the bath turns the spins that it relaxes");
+}
+
 RunOptions read_run(const TomlTable& t, const Scene& scene) {
   static const Words<RunOptions::Mode> modes = {{"dynamics", RunOptions::Mode::dynamics},
                                                 {"relax", RunOptions::Mode::relax}};
@@ -541,6 +567,7 @@ void read_tables(const TomlTable& top, const std::string& folder, Scene& scene) 
   scene.damping = read_damping(top.table("damping"));
   const Sizes sizes = sizes_of(scene);
   for (const TomlTable& t : top.tables("load")) scene.loads.push_back(read_load(t, sizes));
+  if (top.has("thermostat")) scene.thermostat = read_thermostat(top.table("thermostat"), scene);
   if (top.has("twist")) scene.twist = read_twist(top.table("twist"));
   scene.run = read_run(top.table("run"), scene);
   scene.observe = read_observe(top.table("observe"), scene);
@@ -568,6 +595,7 @@ Scene scene_of_text(const std::string& text, const std::string& path, const std:
   read_tables(top, folder, scene);
   top.finish(belongs_to);
   check_run(top, scene);
+  check_thermostat(top, scene);
   return scene;
 }
 

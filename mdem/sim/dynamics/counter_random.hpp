@@ -2,7 +2,10 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
+
+#include "model/units.hpp"
 
 namespace ropewalk {
 
@@ -22,5 +25,11 @@ inline std::array<std::uint32_t, 4> philox(std::array<std::uint32_t, 4> c, std::
 
 // In (0, 1): the middles of 2^32 equal steps.
 inline double unit_interval(std::uint32_t bits) { return (bits + 0.5) * 0x1p-32; }
+
+// Two independent normal numbers of variance 1, by Box and Muller.
+inline std::array<double, 2> normal_pair(std::uint32_t a, std::uint32_t b) {
+  const double length = std::sqrt(-2 * std::log(unit_interval(a))), angle = 2 * units::pi * unit_interval(b);
+  return {length * std::cos(angle), length * std::sin(angle)};
+}
 
 }  // namespace ropewalk

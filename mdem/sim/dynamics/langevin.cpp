@@ -19,7 +19,7 @@ struct Normals {
   double of[components][group];
 };
 
-// By Box and Muller, from pairs of uniform numbers.
+// normal_pair() in loops that the compiler vectorises.
 ROPEWALK_VECTOR_CLONES
 void to_normals(const double (&radial)[3][group], const double (&angular)[3][group], Normals& out) {
   for (int pair = 0; pair < 3; ++pair)
