@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -143,7 +144,7 @@ struct LoadedBundle {
     topology.types[1].mass *= 1.5;
     topology.types[1].inertia *= 1.7;
     state = test::disordered_bundle(topology, 7, 83, spacing, 0, 1);
-    for (int t = 0; t < 7; t += 3) topology.tube_type[static_cast<std::size_t>(t)] = 1;
+    for (int t = 0; t < 6; t += 3) topology.tube_type[static_cast<std::size_t>(t)] = 1;
     test::set_velocities(topology, room, state);
     const auto end_of = [&](int tube) { return topology.tube_begin[tube + 1] - 1; };
     drive.loads = {{3, {0.1, 0, -0.2}, {0, 0.3, 0}}};
@@ -212,7 +213,7 @@ TEST(Langevin, HeatClosesTheAccountOfEnergy) {
     EXPECT_GT(std::fabs(s.work()), 0.1);
     return std::fabs(s.total_energy() - s.account().supplied() - first) / std::fabs(s.heat());
   };
-  EXPECT_LT(unaccounted(0.002), 5e-3);
+  EXPECT_LT(unaccounted(0.004), 1e-3);
 }
 
 // Different numbers for each seed, step, element and component, and the same for the same.

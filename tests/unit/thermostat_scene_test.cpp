@@ -3,16 +3,13 @@
 #include <gtest/gtest.h>
 
 #include "model/error.hpp"
-#include "run/run_directory.hpp"
 #include "scene/prepare.hpp"
 #include "scene/scene_toml.hpp"
 
 namespace ropewalk {
 namespace {
 
-using ::testing::Contains;
 using ::testing::HasSubstr;
-using ::testing::Not;
 
 const std::string bath = "[thermostat]\ntemperature_K = 250\ncoupling_per_ps = 0.5\n";
 
@@ -71,14 +68,6 @@ TEST(ThermostatTable, RefusesWhatDoesNotGoWithIt) {
   expect(run + "temperature_K = -1\ncoupling_per_ps = 1\n", "thermostat.temperature_K");
   expect(run + "temperature_K = 300\ncoupling_per_ps = 0\n", "thermostat.coupling_per_ps");
   expect(run + "temperature_K = 300\ncoupling_per_ps = 1\nmethod = \"berendsen\"\n", "thermostat.method");
-}
-
-TEST(ThermostatTable, SaysThatDampingCools) {
-  const std::string undamped = "[damping]\ncontact_viscosity_eV_ps_per_nm2 = 0\nbond_damping_per_ps = 0\n";
-  const auto cools = Contains(HasSubstr("the tubes stay colder than 250 K"));
-  EXPECT_THAT(warnings_of(scene_from("[run]\nduration_ps = 1\n" + bath)), cools);
-  EXPECT_THAT(warnings_of(scene_from(undamped + "[run]\nduration_ps = 1\n" + bath)), Not(cools));
-  EXPECT_THAT(warnings_of(scene_from("[run]\nduration_ps = 1\n")), Not(cools));
 }
 
 }  // namespace
