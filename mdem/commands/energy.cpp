@@ -6,6 +6,7 @@
 #include "commands/commands.hpp"
 #include "io/parameters_toml.hpp"
 #include "model/error.hpp"
+#include "scene/kinds/state.hpp"
 #include "scene/prepare.hpp"
 #include "scene/scene_toml.hpp"
 
@@ -85,7 +86,7 @@ int energy_command(const EnergyArguments& a) {
   scene.path = a.state;
   scene.sets = {read_parameters(find_parameters(a.parameters, ""))};
   scene.element_length = scene.parameters().element_length;
-  scene.source = StateSource{a.state};
+  scene.source = std::make_shared<StateSource>(a.state);
   scene.contact.law = law_named(a.law, scene.parameters());
   scene.contact.legacy_torque = a.legacy_torque;
   if (a.all_nodes && scene.contact.law != ContactOptions::Law::line)

@@ -76,10 +76,8 @@ LammpsScript script_of(const Scene& scene, const Prepared& p, const Simulation& 
   script.law = scene.contact.law;
   script.relax = scene.run.mode == RunOptions::Mode::relax;
   script.damped = in.damped_contact() || in.damping.bond.rate > 0 || in.damping.local > 0;
-  const Drive& d = p.drive;
-  script.driven = !(d.loads.empty() && d.fixed.empty() && d.turned.empty() && d.twist.empty());
-  script.long_in_z =
-      std::holds_alternative<RopeSource>(scene.source) || std::holds_alternative<ChainSource>(scene.source);
+  script.driven = !p.loads.empty();
+  script.long_in_z = scene.source->is_parallel();
   script.skin = default_skin(in);
   // A bond's far end must be there as well.
   script.reach = std::max(in.cutoff(), 1.5 * p.topology.longest_element());
@@ -199,7 +197,7 @@ class Import {
     LogRow r;
     r.step = from.step;
     r.time = from.time;
-    for (const TwistDrive& twist : prepared_.drive.twist) r.moment = twist.moment_at(r.time) / units::nN_nm;
+    if (scene_.twist) r.moment = scene_.twist->moment_at(r.time) / units::nN_nm;
     r.stretch = from.stretch;
     r.shear = from.shear;
     r.bend = from.bend;

@@ -1,7 +1,6 @@
 // `new` and `check`.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <chrono>
 #include <filesystem>
 
@@ -26,14 +25,8 @@ const SceneTemplate& find_template(const std::string& kind) {
 void say_source(const Scene& scene, const Prepared& p) {
   const Topology& t = p.topology;
   fmt::print("{} tubes, {} elements of {:.4g} nm", t.tubes(), t.elements(), t.longest_element());
-  if (std::holds_alternative<RopeSource>(scene.source))
-    fmt::print(": a rope of {:.4g} nm, spacing {:.4g} nm", t.length_of(0) * t.longest_element(), p.spacing);
-  if (std::holds_alternative<FilmSource>(scene.source)) {
-    const auto& z = p.state.position.z;
-    fmt::print(": a film of {:.4g} nm between its lowest and highest axis",
-               *std::max_element(z.begin(), z.end()) - *std::min_element(z.begin(), z.end()));
-  }
-  fmt::print("\n");
+  const std::string description = scene.source->description(t, p.state, p.spacing);
+  fmt::print("{}{}\n", description.empty() ? "" : ": ", description);
   for (const ParameterSet& set : scene.sets)
     fmt::print("parameters {} ({}), EA {:.5g} nN, EI {:.5g} nN nm^2, GJ {:.5g} nN nm^2\n", set.name, set.path,
                set.bond.stretch * units::eV_in_nN_nm, set.bond.bend * units::eV_in_nN_nm,
@@ -46,12 +39,12 @@ void say_source(const Scene& scene, const Prepared& p) {
 void say_loads(const Scene& scene) {
   if (!scene.loads.empty()) fmt::print("{} loads\n", scene.loads.size());
   if (!scene.twist) return;
-  const TwistProtocol& w = *scene.twist;
+  const TwistLoad& w = *scene.twist;
   fmt::print(
       "twist: {:.4g} nN nm {} by {} on the grips, ramped in {:.4g} ps, held for {:.4g} ps; grips {} along the "
       "axis, {} sideways{}\n",
-      w.moment / units::nN_nm, w.reading == TwistProtocol::Reading::per_tube ? "per tube" : "in total",
-      w.application == TwistProtocol::Application::couple ? "couples" : "tangential forces", w.ramp_time(), w.hold,
+      w.moment / units::nN_nm, w.reading == TwistLoad::Reading::per_tube ? "per tube" : "in total",
+      w.application == TwistLoad::Application::couple ? "couples" : "tangential forces", w.ramp_time(), w.hold,
       w.axial_free ? "free" : "held", w.lateral_free ? "free" : "held",
       w.geometric_only ? "; spins relaxed (geometric twist only)" : "");
 }

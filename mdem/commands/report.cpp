@@ -67,11 +67,11 @@ void add_run_facts(const Scene& scene, const Prepared& p, const Manifest& m, Rep
     add("thermostat", fmt::format("{}, {:.4g} K", scene.thermostat->method, scene.thermostat->temperature),
         fmt::format("coupling {:.4g} 1/ps, seed {}", scene.thermostat->coupling, scene.thermostat->seed));
   if (scene.twist) {
-    const TwistProtocol& w = *scene.twist;
+    const TwistLoad& w = *scene.twist;
     add("twist",
         fmt::format("{:.4g} nN nm {} as {}", w.moment / units::nN_nm,
-                    w.reading == TwistProtocol::Reading::per_tube ? "per tube" : "in total",
-                    w.application == TwistProtocol::Application::couple ? "couples" : "tangential forces"),
+                    w.reading == TwistLoad::Reading::per_tube ? "per tube" : "in total",
+                    w.application == TwistLoad::Application::couple ? "couples" : "tangential forces"),
         fmt::format("ramp {:.4g} ps, hold {:.4g} ps{}", w.ramp_time(), w.hold,
                     w.geometric_only ? "; spins relaxed at each increment" : ""));
   }

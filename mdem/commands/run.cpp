@@ -278,8 +278,7 @@ class Run {
   std::string status_text() const {
     const State& s = simulation_.state();
     std::string text = fmt::format("{:8.2f} ps", s.time);
-    for (const TwistDrive& twist : prepared_.drive.twist)
-      text += fmt::format("  moment {:5.1f} nN nm", twist.moment_at(s.time) / units::nN_nm);
+    if (scene_.twist) text += fmt::format("  moment {:5.1f} nN nm", scene_.twist->moment_at(s.time) / units::nN_nm);
     return text + fmt::format("  beta {:5.1f} deg  Q {}  twist {:.0f}  bend {:.0f}  vdW {:.0f} eV", last_row_.beta,
                               last_row_.charge, last_row_.twist, last_row_.bend, last_row_.vdw);
   }
@@ -290,7 +289,7 @@ class Run {
     LogRow r;
     r.step = static_cast<double>(s.step);
     r.time = s.time;
-    for (const TwistDrive& twist : prepared_.drive.twist) r.moment = twist.moment_at(s.time) / units::nN_nm;
+    if (scene_.twist) r.moment = scene_.twist->moment_at(s.time) / units::nN_nm;
     r.stretch = e.stretch;
     r.shear = e.shear;
     r.bend = e.bend;
@@ -359,7 +358,7 @@ class Run {
     m.compiler = compiler;
     m.build_type = build_type;
     m.threads = omp_get_max_threads();
-    m.seed = scene_.seed;
+    m.seed = scene_.start.seed;
     m.scene_hash = scene_.hash;
     m.parameter_hash = scene_.parameters().hash;
     m.started = started_at_;
@@ -524,8 +523,7 @@ std::unique_ptr<Run> new_run(const RunArguments& a) {
   write_file_atomically(dir.scene(), scene.text);
   for (std::size_t k = 0; k < scene.sets.size(); ++k)
     write_file_atomically(dir.parameters(k), read_file(scene.sets[k].path));
-  if (const auto* state = std::get_if<StateSource>(&scene.source))
-    write_file_atomically(dir.state(), read_file(state->file));
+  if (scene.from_file()) write_file_atomically(dir.state(), read_file(scene.source->file()));
   for (const std::string& warning : warnings_of(scene)) fmt::print(stderr, "ropewalk: note: {}\n", warning);
   if (a.steps >= 0) run->stop_at(a.steps);
   run->begin();

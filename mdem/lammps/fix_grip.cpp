@@ -5,34 +5,22 @@
 namespace ropewalk::lammps {
 namespace {
 
-// Whether a grip must be known as a whole: for its middle, its mean velocity or the number of its elements.
-bool needs_whole_grip(const Drive& drive) {
-  return std::any_of(drive.twist.begin(), drive.twist.end(), [](const TwistDrive& twist) {
-    return twist.tangential || !twist.per_tube || !twist.lateral_free;
-  });
+bool need_all_elements(const LoadsAndConstraints& loads) {
+  return std::any_of(loads.begin(), loads.end(), [](const auto& load) { return load->needs_all_elements(); });
 }
 
-// The part of a drive that acts on `elements` (sorted), renumbered by their places there.
-Drive part_of(const Drive& drive, const std::vector<int>& elements) {
-  const auto gone = [&](int e) { return !std::binary_search(elements.begin(), elements.end(), e); };
-  const auto keep = [&](std::vector<int>& list) {
-    list.erase(std::remove_if(list.begin(), list.end(), gone), list.end());
-  };
-  Drive out = drive;
-  const auto drop = [&](auto& list) {
-    list.erase(std::remove_if(list.begin(), list.end(), [&](const auto& l) { return gone(l.element); }),
-               list.end());
-  };
-  drop(out.loads);
-  drop(out.fixed);
-  for (Turned& turned : out.turned) keep(turned.elements);
-  for (TwistDrive& twist : out.twist) {
-    keep(twist.upper);
-    keep(twist.lower);
+// What acts on `elements` (sorted), renumbered by their places there.
+LoadsAndConstraints part_of(const LoadsAndConstraints& loads, const std::vector<int>& elements) {
+  LoadsAndConstraints out;
+  for (const auto& all : loads) {
+    const std::shared_ptr<Load> part = all->copy();
+    part->elements.clear();
+    for (const int e : all->elements) {
+      const auto at = std::lower_bound(elements.begin(), elements.end(), e);
+      if (at != elements.end() && *at == e) part->elements.push_back(static_cast<int>(at - elements.begin()));
+    }
+    out.add(std::shared_ptr<const Load>(part));
   }
-  visit_elements(out, [&](int& e) {
-    e = static_cast<int>(std::lower_bound(elements.begin(), elements.end(), e) - elements.begin());
-  });
   return out;
 }
 
@@ -42,13 +30,13 @@ FixGrip::FixGrip(LMP::LAMMPS* lmp, int count, char** words) : Fix(lmp, count, wo
   if (count != 3 || igroup != 0)
     refuse(lmp, "fix mdem/grip takes no words: the scene says what it drives", "write: fix grips all mdem/grip");
   model_ = loaded(lmp, "fix mdem/grip");
-  driven_ = driven_elements(model_->drive);
-  whole_ = needs_whole_grip(model_->drive);
+  driven_ = loaded_elements(model_->loads);
+  whole_ = need_all_elements(model_->loads);
   if (whole_) use(driven_);
 }
 
 void FixGrip::use(const std::vector<int>& elements) {
-  drive_ = part_of(model_->drive, elements);
+  acting_ = part_of(model_->loads, elements);
   topology_ = Topology();
   topology_.types = model_->topology.types;
   for (const int e : elements) topology_.add_tube(1, model_->topology.tube_type[model_->topology.tube_of(e)]);
@@ -108,7 +96,7 @@ void FixGrip::gather() {
 
 void FixGrip::post_force(int) {
   gather();
-  point_loads(drive_, state_, model_->time_at(update->ntimestep), loads_);
+  point_loads(acting_, state_, model_->time_at(update->ntimestep), loads_);
   loads_.erase(std::remove_if(loads_.begin(), loads_.end(),
                               [&](const PointLoad& l) { return !owned(static_cast<std::size_t>(l.element)); }),
                loads_.end());
@@ -130,7 +118,7 @@ double FixGrip::own_power() {
 
 double FixGrip::constrain(double time, double kick) {
   gather();
-  const double work = ropewalk::constrain(topology_, drive_, time, forces_, kick, state_);
+  const double work = ropewalk::constrain(topology_, acting_, time, forces_, kick, state_);
   for (std::size_t k = 0; k < atom_.size(); ++k)
     if (owned(k)) {
       store(atom->v[atom_[k]], state_.velocity[k]);

@@ -1,6 +1,6 @@
 // fix ID all mdem/grip: all loads and constraints of the scene (twisting moments on the grips, fixed, loaded and
-// turned elements), with the functions of mdem/sim/drive.hpp. They take a State; this fix makes one of the driven
-// elements alone: of those of this rank, or of all of them where a load needs the grip as a whole.
+// turned elements), with the functions of mdem/sim/dynamics/loads.hpp. They take a State; this fix makes one of the
+// driven elements alone: of those of this rank, or of all of them where a load needs the grip as a whole.
 #pragma once
 
 #include "lammps/shared.hpp"
@@ -35,7 +35,7 @@ class FixGrip : public LMP::Fix {
   // The small scene: element k of it is atom atom_[k] of this rank, or -1.
   std::vector<int> atom_;
   Topology topology_;
-  Drive drive_;
+  LoadsAndConstraints acting_;
   State state_;
   Forces forces_;
   std::vector<PointLoad> loads_;  // of the last evaluation, on this rank's elements

@@ -24,14 +24,13 @@ LammpsModel load_lammps_model(const std::string& directory) {
   m.topology = empty_topology(scene);
   read_tubes(dir, m.topology);
   m.interaction = interaction_of(scene);
-  m.drive = drive_of(scene, m.topology);
+  m.loads = loads_of(scene, m.topology);
   m.law = scene.contact.law;
   m.relax = scene.run.mode == RunOptions::Mode::relax;
   m.force_tolerance = scene.run.force_tolerance;
-  for (const TwistDrive& twist : m.drive.twist)
-    if (twist.geometric_only)
-      throw InputError({dir.scene(), 0, "twist.geometric_only"}, "is not for LAMMPS",
-                       "run this scene with `ropewalk run`");
+  if (m.loads.spin_relaxation_interval() > 0)
+    throw InputError({dir.scene(), 0, "twist.geometric_only"}, "is not for LAMMPS",
+                     "run this scene with `ropewalk run`");
   return m;
 }
 

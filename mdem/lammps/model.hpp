@@ -17,7 +17,7 @@ struct LammpsModel {
   LammpsStart start;
   Topology topology;
   Interaction interaction;
-  Drive drive;
+  LoadsAndConstraints loads;
   ContactOptions::Law law = ContactOptions::Law::none;
   bool relax = false;
   double force_tolerance = 0;  // eV/nm
@@ -25,9 +25,7 @@ struct LammpsModel {
   bool damped() const {
     return interaction.damped_contact() || interaction.damping.bond.rate > 0 || interaction.damping.local > 0;
   }
-  bool driven() const {
-    return !(drive.loads.empty() && drive.fixed.empty() && drive.turned.empty() && drive.twist.empty());
-  }
+  bool driven() const { return !loads.empty(); }
   // No time passes in a relaxation.
   double time_at(std::int64_t step) const {
     return relax ? start.time : start.time + static_cast<double>(step - start.step) * start.time_step;

@@ -9,8 +9,9 @@
 #include "observe/bending.hpp"
 #include "observe/means.hpp"
 #include "observe/spacing.hpp"
-#include "plan/planner.hpp"
+#include "plan/planned_scene.hpp"
 #include "scene/dissipation.hpp"
+#include "scene/loads/rotate.hpp"
 
 namespace ropewalk {
 namespace {
@@ -23,13 +24,13 @@ struct Model {
   Scene scene;
   Topology topology;
   Interaction interaction;
-  Drive drive;
+  LoadsAndConstraints loads;
   State start, end;
   double spacing = 0, time_step = 0;
   Stepping stepping;
 
   Simulation at(const State& state) const {
-    return Simulation(topology, interaction, drive, state, time_step, scene.contact.skin, stepping);
+    return Simulation(topology, interaction, loads, state, time_step, scene.contact.skin, stepping);
   }
 };
 
@@ -60,7 +61,7 @@ void scale(double by, Vec3Array& v) {
 }
 
 Model planned_model(const Scene& scene, const Prepared& p, const State& end) {
-  return {scene, p.topology, p.interaction, p.drive, p.state, end, p.spacing, p.time_step, p.stepping};
+  return {scene, p.topology, p.interaction, p.loads, p.state, end, p.spacing, p.time_step, p.stepping};
 }
 
 Model finer_model(const Model& planned, bool half) {
@@ -84,7 +85,7 @@ Model finer_model(const Model& planned, bool half) {
     m.topology.add_tube(half ? 2 * planned.topology.length_of(t) - 1 : planned.topology.length_of(t),
                         planned.topology.tube_type[t]);
   m.interaction = interaction_of(m.scene);
-  m.drive = drive_of(m.scene, m.topology);
+  m.loads = loads_of(m.scene, m.topology);
   m.time_step = step_part * default_step_fraction * time_step_limit(m.topology, m.interaction, m.spacing).limit;
   return m;
 }
@@ -104,11 +105,12 @@ double mean_bending_moment(const Topology& topology, const State& s) {
 }
 
 // What the element group that turns farthest resists with, about its axis, nN nm. None where nothing is turned.
-std::optional<double> end_moment(const Drive& drive, const Simulation& s) {
-  const auto last =
-      std::max_element(drive.turned.begin(), drive.turned.end(),
-                       [](const Turned& a, const Turned& b) { return std::fabs(a.angle) < std::fabs(b.angle); });
-  if (last == drive.turned.end()) return std::nullopt;
+std::optional<double> end_moment(const LoadsAndConstraints& loads, const Simulation& s) {
+  const std::vector<const PrescribedRotation*> rotations = loads.of<PrescribedRotation>();
+  if (rotations.empty()) return std::nullopt;
+  const PrescribedRotation* last =
+      *std::max_element(rotations.begin(), rotations.end(),
+                        [](const auto* a, const auto* b) { return std::fabs(a->angle) < std::fabs(b->angle); });
   double sum = 0;
   for (const int e : last->elements) {
     const auto i = static_cast<std::size_t>(e);
@@ -129,7 +131,7 @@ class Observed {
     now["energy"] = s.forces().energy.potential() - zero_;
     now["total_energy"] = s.forces().energy.potential();
     now["bending_moment"] = mean_bending_moment(m_.topology, state);
-    if (const auto moment = end_moment(m_.drive, s)) now["end_moment"] = *moment;
+    if (const auto moment = end_moment(m_.loads, s)) now["end_moment"] = *moment;
     if (m_.interaction.has_contact() && m_.topology.tubes() > 1)
       now["spacing"] = tube_spacing(m_.topology, state, shells_);
     if (m_.topology.tubes() > 2) {

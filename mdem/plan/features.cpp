@@ -71,29 +71,22 @@ void add_rope_twist(const Prepared& p, double twist, const char* what, SceneFeat
   f.crossing_to += std::atan(p.spacing * twist) / units::degree;
 }
 
-struct AddLoad {
-  const Prepared& p;
-  SceneFeatures& f;
-  double* turned;  // largest angle of the rotations
-
-  void operator()(const FixLoad&) const {}
-  void operator()(const ForceLoad& load) const {
-    const double bend = load.force.norm() * longest_tube(p.topology) / p.topology.types[0].bond.bend;
+void add_load(const LoadEffect& load, const Prepared& p, SceneFeatures& f) {
+  const BondStiffness& k = p.topology.types[0].bond;
+  if (load.force > 0) {
+    const double bend = load.force * longest_tube(p.topology) / k.bend;
     f.curvature += bend;
     f.why.push_back(fmt::format("force: curvature up to {:.3g} 1/nm", bend));
   }
-  void operator()(const TorqueLoad& load) const {
-    const BondStiffness& k = p.topology.types[0].bond;
+  if (load.torque != Vector3::Zero()) {
     const double along = std::fabs(load.torque.z()) / k.twist, across = load.torque.head<2>().norm() / k.bend;
     f.curvature += across;
     if (along > 0) add_rope_twist(p, along, "torque", f);
     f.why.push_back(fmt::format("torque: curvature up to {:.3g} 1/nm", across));
   }
-  void operator()(const RotateLoad& load) const {
-    *turned += std::fabs(load.angle);
-    if (load.rate != 0) f.ramp = std::max(f.ramp, load.angle / load.rate);
-  }
-};
+  f.sudden = f.sudden || load.force > 0 || load.torque != Vector3::Zero();
+  f.ramp = std::max(f.ramp, load.ramp);
+}
 
 }  // namespace
 
@@ -104,30 +97,38 @@ SceneFeatures features_of(const Scene& scene, const Prepared& p) {
   f.radius = p.topology.types[0].radius;
   f.length = longest_tube(p.topology);
   f.duration = p.duration;
-  f.sudden = !p.drive.loads.empty() || (scene.twist && scene.twist->rate <= 0);
   look_at_bonds(p.topology, p.state, f);
   if (f.contact) look_at_crossings(p, f);
   double turned = 0;
-  for (const Load& load : scene.loads) std::visit(AddLoad{p, f, &turned}, load.kind);
+  for (const SceneLoad& load : scene.loads) {
+    const std::optional<LoadEffect> effect = load.load->effect();
+    if (!effect) {
+      f.beyond = "a load whose effect cannot be said beforehand";
+      continue;
+    }
+    add_load(*effect, p, f);
+    turned += effect->angle;
+  }
   if (turned > 0) add_rope_twist(p, turned / f.length, "rotation", f);
+  if (turned > 0) f.led = LedBy::rotation;
+  if (scene.twist || f.sudden) f.led = LedBy::load;
   if (scene.twist) {
-    const TwistProtocol& w = *scene.twist;
-    const double each = w.reading == TwistProtocol::Reading::per_tube ? w.moment : w.moment / f.tubes;
+    const TwistLoad& w = *scene.twist;
+    const double each = w.reading == TwistLoad::Reading::per_tube ? w.moment : w.moment / f.tubes;
     add_rope_twist(p, each / p.topology.types[0].bond.twist, "[twist]", f);
     if (w.geometric_only) f.beyond = "twist.geometric_only takes away what holds against the moment";
+    f.sudden = f.sudden || w.rate <= 0;
+    f.ramp = w.ramp_time();
   }
-  if (scene.twist) f.ramp = scene.twist->ramp_time();
-  if (turned > 0) f.led = LedBy::rotation;
-  if (scene.twist || !p.drive.loads.empty()) f.led = LedBy::load;
-  if (scene.temperature > 0) {
+  if (scene.start.temperature > 0) {
     const TubeType& t = p.topology.types[0];
-    const double kt = units::boltzmann * scene.temperature;
+    const double kt = units::boltzmann * scene.start.temperature;
     const double bend = std::sqrt(kt / (t.bond.bend * t.element_length)),
                  twist = std::sqrt(kt / (t.bond.twist * t.element_length));
     f.curvature += bend;
     f.twist += twist;
-    f.why.push_back(
-        fmt::format("{:g} K: curvature {:.2g} 1/nm, twist {:.2g} rad/nm on top", scene.temperature, bend, twist));
+    f.why.push_back(fmt::format("{:g} K: curvature {:.2g} 1/nm, twist {:.2g} rad/nm on top",
+                                scene.start.temperature, bend, twist));
   }
   if (scene.thermostat) f.beyond = "a thermostat, whose noise hides the errors of a model";
   if (scene.sets.size() > 1) f.beyond = "tubes of several kinds";

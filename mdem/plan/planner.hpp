@@ -52,9 +52,6 @@ bool default_serves(const Plan& plan, double planned_seconds, double standard_se
 // `scene` with its text. Throws InputError for an observable that the chart does not have.
 Plan plan_scene(const Scene& scene, const std::vector<ChartedScene>& chart, const PlanRequest& request);
 
-// Why elements cannot be longer or shorter in this scene; empty: they can.
-std::string fixed_length(const Scene& scene);
-
 // What stands in a planned scene's text about itself; nothing in others.
 struct Expectations {
   double asked = 0;                      // the error that was to be held

@@ -8,6 +8,7 @@
 
 #include "io/files.hpp"
 #include "model/error.hpp"
+#include "scene/kinds/state.hpp"
 #include "scene/scene_toml.hpp"
 
 namespace ropewalk {
@@ -62,7 +63,7 @@ Scene read_run_scene(const RunDirectory& dir) {
   std::vector<std::string> sets = {dir.parameters(0)};
   while (fs::exists(dir.parameters(sets.size()))) sets.push_back(dir.parameters(sets.size()));
   Scene scene = read_scene(dir.scene(), sets);
-  if (auto* state = std::get_if<StateSource>(&scene.source)) state->file = dir.state();
+  if (scene.from_file()) scene.source = std::make_shared<StateSource>(dir.state());
   return scene;
 }
 

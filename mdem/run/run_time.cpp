@@ -50,7 +50,7 @@ double seconds_of_a_step(Simulation& s) {
 }
 
 double seconds_from(const Scene& scene, const Prepared& p, State state) {
-  Simulation s(p.topology, p.interaction, p.drive, std::move(state), p.time_step, scene.contact.skin, p.stepping);
+  Simulation s(p.topology, p.interaction, p.loads, std::move(state), p.time_step, scene.contact.skin, p.stepping);
   return seconds_of_a_step(s);
 }
 
@@ -86,7 +86,7 @@ double seconds_in_turned_rope(const Scene& scene, const Prepared& p, const Scene
 
 double seconds_of_steps(const Scene& scene, const Prepared& p) {
   const SceneFeatures f = features_of(scene, p);
-  const bool turned = std::holds_alternative<RopeSource>(scene.source) && f.contact && f.turn > 0;
+  const bool turned = scene.source->is_parallel() && f.contact && f.turn > 0;
   return turned ? seconds_in_turned_rope(scene, p, f) : seconds_from_the_start(scene, p);
 }
 

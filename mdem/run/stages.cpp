@@ -45,7 +45,7 @@ RunDirectory write_finer_scene(const RunDirectory& from, const Scene& scene, con
   write_file_atomically(to.scene(), text);
   for (std::size_t k = 0; k < scene.sets.size(); ++k)
     write_file_atomically(to.parameters(k), read_file(scene.sets[k].path));
-  if (std::holds_alternative<StateSource>(scene.source))
+  if (scene.from_file())
     write_file_atomically(to.state(),
                           state_csv(halved(prepared.topology), halved(prepared.topology, prepared.state)));
   return to;

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "scene/scene.hpp"
-#include "scene/scene_to_model.hpp"
 #include "sim/state/state.hpp"
 
 namespace ropewalk {
@@ -14,7 +13,7 @@ inline constexpr int most_elements = 10000000;  // in a scene: about 10 GB
 struct BuiltScene {
   Topology topology;
   State state;
-  double spacing = 0;  // nm: distance of neighbouring tubes, typed or that of pair_spacing or 2 r + 0.335
+  double spacing = 0;  // nm: distance of neighbouring parallel tubes, typed or parallel_spacing()
 };
 
 // Also sets the reach of the scene's contact viscosity, which goes with the spacing.
@@ -29,8 +28,9 @@ std::pair<int, int> nearest_hexagonal(int tubes);
 // Places on the hexagonal lattice: the centre, then shell by shell, each counter-clockwise from the x axis.
 std::vector<std::pair<double, double>> hexagonal_lattice(int tubes, double spacing);
 
-// The distance of two crossed tubes (nm) at which their energy is lowest; without a law, that of their walls in
-// graphite. Of several tube types, the largest.
+// The distances of two parallel and of two crossed tubes (nm) at which their energy is lowest; without a law, that
+// of their walls in graphite. Of several tube types, the largest.
+double parallel_spacing(const Scene& scene);
 double crossed_spacing(const Scene& scene);
 
 // Elements of a tube: its length in whole elements.

@@ -4,46 +4,55 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdlib>
 #include <sstream>
 
+#include "scene/scene_to_model.hpp"
+#include "scene/scene_toml.hpp"
 #include "sim/dynamics/refine.hpp"
 
 namespace ropewalk {
 namespace {
 
-toml::table& table_of(toml::table& top, const char* name) {
+toml::table& table_of(toml::table& top, const std::string& name) {
   if (!top.contains(name)) top.insert(name, toml::table{});
   return *top[name].as_table();
 }
 
-void set_lengths(const Scene& scene, const Topology& topology, toml::table& top) {
-  top.insert_or_assign("element_length_nm", 0.5 * scene.element_length);
-  const double length = topology.length_of(0) * scene.element_length;
-  if (auto* rope = top["rope"].as_table()) rope->insert_or_assign("length_nm", length);
-  if (auto* film = top["film"].as_table()) film->insert_or_assign("length_nm", length);
-  if (auto* chain = top["chain"].as_table()) chain->insert_or_assign("elements", 2 * topology.length_of(0));
+// The key where elements are half as long. Nothing is written for a key that has no effect on them, or that is left
+// to the program.
+void refine_key(const SceneKey& key, const Scene& scene, const Topology& topology, toml::table& table) {
+  const int elements = topology.length_of(0);
+  if (key.tube_size == SceneKey::TubeSize::length) table.insert_or_assign(key.key, elements * scene.element_length);
+  if (key.tube_size == SceneKey::TubeSize::elements) table.insert_or_assign(key.key, 2 * elements);
+  if (key.length_power == 0) return;
+  const double factor = std::pow(0.5, key.length_power);
+  if (const auto* vector = table[key.key].as_array()) {
+    toml::array refined;
+    for (const auto& component : *vector) refined.push_back(factor * component.value_or(0.0));
+    table.insert_or_assign(key.key, refined);
+    return;
+  }
+  const bool typed = table.contains(key.key);
+  if (!typed && !key.standard.empty()) return;
+  const double value = typed ? table[key.key].value_or(0.0) : std::strtod(key.value.c_str(), nullptr);
+  const double refined = std::min(factor * value, key.most);
+  if (key.whole)
+    table.insert_or_assign(key.key, static_cast<std::int64_t>(std::ceil(refined)));
+  else
+    table.insert_or_assign(key.key, refined);
 }
 
-void set_contact(const Scene& scene, toml::table& top) {
-  toml::table& contact = table_of(top, "contact");
-  contact.insert_or_assign("exclude_along_tube_elements",
-                           std::min(2 * scene.contact.exclude_along_tube, most_elements));
-  if (scene.contact.nodes > 0) contact.insert_or_assign("nodes_per_element", (scene.contact.nodes + 1) / 2);
-}
-
-// With most_damping as the reader has it.
-Damping finer_damping(Damping d) {
-  constexpr double most_damping = 1e4;
-  d.contact.eta *= 0.25;
-  d.bond.rate = std::min(4 * d.bond.rate, most_damping);
-  return d;
-}
-
-void set_damping(const Scene& scene, toml::table& top) {
-  const Damping finer = finer_damping(scene.damping);
-  toml::table& damping = table_of(top, "damping");
-  damping.insert_or_assign("contact_viscosity_eV_ps_per_nm2", finer.contact.eta);
-  damping.insert_or_assign("bond_damping_per_ps", finer.bond.rate);
+void refine_tables(const Scene& scene, const Topology& topology, toml::table& top) {
+  for (const SceneTable& table : scene_tables()) {
+    const bool matters = std::any_of(table.keys.begin(), table.keys.end(), [](const SceneKey& k) {
+      return k.length_power != 0 || k.tube_size != SceneKey::TubeSize::no;
+    });
+    if (table.name.empty() || table.name == "load" || !matters) continue;
+    if (!top.contains(table.name) && table.optional()) continue;
+    for (const SceneKey& key : table.keys) refine_key(key, scene, topology, table_of(top, table.name));
+  }
 }
 
 toml::array both_halves(const Selection& on) {
@@ -55,33 +64,31 @@ toml::array both_halves(const Selection& on) {
   return elements;
 }
 
-void halve_vector(toml::table& load, const char* key) {
-  auto* vector = load[key].as_array();
-  if (!vector) return;
-  toml::array half;
-  for (const auto& component : *vector) half.push_back(0.5 * component.value_or(0.0));
-  load.insert_or_assign(key, half);
-}
-
-void set_loads(const Scene& scene, toml::table& top) {
-  auto* loads = top["load"].as_array();
-  if (!loads) return;
+void refine_loads(const Scene& scene, const Topology& topology, toml::table& top) {
   for (std::size_t k = 0; k < scene.loads.size(); ++k) {
-    toml::table& load = *loads->get_as<toml::table>(k);
+    toml::table& load = *top["load"].as_array()->get_as<toml::table>(k);
     if (!scene.loads[k].on.all_elements) load.insert_or_assign("elements", both_halves(scene.loads[k].on));
-    halve_vector(load, "force_nN");
-    halve_vector(load, "torque_nN_nm");
+    for (const LoadKind& kind : load_kinds())
+      if (load["kind"].value_or(std::string()) == kind.name)
+        for (const SceneKey& key : kind.keys) refine_key(key, scene, topology, load);
   }
 }
 
-// The law and its reach come from the scene, so that the finer one is needed for the limit of its time step.
-double finer_time_step(const Scene& scene, const Prepared& p) {
-  Scene finer = scene;
-  finer.element_length *= 0.5;
-  finer.contact.nodes = (scene.contact.nodes + 1) / 2;
-  finer.damping = finer_damping(scene.damping);
+// The typed step's share of the stability limit stays.
+double finer_time_step(const Scene& scene, const Prepared& p, const std::string& text) {
+  std::vector<std::string> sets;
+  for (const ParameterSet& set : scene.sets) sets.push_back(set.path);
+  Scene finer = scene_of_text(text, scene.path, sets);
+  finer.damping.contact.inner = scene.damping.contact.inner;
+  finer.damping.contact.outer = scene.damping.contact.outer;
   const double limit = time_step_limit(halved(p.topology), interaction_of(finer), p.spacing).limit;
   return scene.run.time_step / p.limit.limit * limit;
+}
+
+std::string text_of(const toml::table& top, const std::string& comment) {
+  std::ostringstream text;
+  text << "# " << comment << "\n" << top << "\n";
+  return text.str();
 }
 
 }  // namespace
@@ -101,15 +108,13 @@ std::string why_not_finer(const Scene& scene, const Topology& topology) {
 std::string finer_scene_text(const Scene& scene, const Prepared& prepared, const std::string& comment) {
   toml::table top = toml::parse(scene.text);
   top.insert_or_assign("name", scene.name);
-  set_lengths(scene, prepared.topology, top);
-  set_contact(scene, top);
-  set_damping(scene, top);
-  set_loads(scene, top);
+  top.insert_or_assign("element_length_nm", 0.5 * scene.element_length);
+  refine_tables(scene, prepared.topology, top);
+  refine_loads(scene, prepared.topology, top);
   if (scene.run.time_step > 0)
-    table_of(top, "run").insert_or_assign("time_step_fs", finer_time_step(scene, prepared) / units::fs);
-  std::ostringstream text;
-  text << "# " << comment << "\n" << top << "\n";
-  return text.str();
+    table_of(top, "run")
+        .insert_or_assign("time_step_fs", finer_time_step(scene, prepared, text_of(top, comment)) / units::fs);
+  return text_of(top, comment);
 }
 
 }  // namespace ropewalk

@@ -1,15 +1,12 @@
 // A scene with elements of half the length: what a run goes on with when its elements have become too long.
 //
 // What belongs to a length of tube stays where it is on the tube. Lengths are those that the tubes have, in whole
-// elements; a [[load]] on an element acts on both its halves, each with half its force or couple, so that the total
-// and its place are the same; fixed and turned elements are so with both halves. The grips of [twist] are the end
-// elements of the tubes as in any scene: the same ends, gripped half as long, a quarter of a length farther out.
-// Nodes of the line law keep their spacing, tubes their range of self-exclusion. A typed time step keeps its share
-// of the stability limit.
-//
-// Dissipation belongs to a length of tube as well. Two rows have four times as many pairs in reach of the contact
-// viscosity per length, so that eta becomes a quarter; the viscosity of a bonded chain goes as the rate times the
-// square of the element length, so that the rate becomes four times as large. PFC's local damping has no length.
+// elements; a [[load]] on an element acts on both its halves; fixed and rotated elements are so with both halves.
+// The grips of [twist] are the end elements of the tubes as in any scene: the same ends, gripped half as long, a
+// quarter of a length farther out. How every other key goes with the length of an element stands with the key
+// (SceneKey::length_power): the halves share a force or couple, so that the total and its place are the same; nodes
+// of the line law keep their spacing, tubes their range of self-exclusion, and dissipation belongs to a length of
+// tube (scene/tables/damping.cpp). A typed time step keeps its share of the stability limit.
 #pragma once
 
 #include <string>

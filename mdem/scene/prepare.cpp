@@ -30,8 +30,7 @@ double chosen_step(const Scene& scene, const TimeStepLimit& limit) {
 
 // What is inside of one another goes apart like an explosion, or through the core unseen.
 void refuse_overlaps(const Scene& scene, const Prepared& p) {
-  const auto* source = std::get_if<StateSource>(&scene.source);
-  if (!source || !p.interaction.has_contact() || scene.run.mode == RunOptions::Mode::relax) return;
+  if (!scene.from_file() || !p.interaction.has_contact() || scene.run.mode == RunOptions::Mode::relax) return;
   NeighbourList list(p.interaction, default_skin(p.interaction));
   list.build(p.topology, p.state);
   for (int i = 0; i < p.topology.elements(); ++i)
@@ -43,7 +42,7 @@ void refuse_overlaps(const Scene& scene, const Prepared& p) {
           axis_of(p.state.orientation[b]), 0.5 * ti.element_length, 0.5 * tj.element_length));
       if (apart < ti.radius + tj.radius)
         throw InputError(
-            {source->file, 0, ""},
+            {scene.source->file(), 0, ""},
             fmt::format("elements {} and {} overlap: their axes are {:.3g} nm apart, and their radii are "
                         "{:.3g} nm together",
                         a, b, apart, ti.radius + tj.radius),
@@ -83,7 +82,7 @@ void refuse_first_step(const Scene& scene, const Simulation& s) {
       kicked.angular_velocity.add(i, 0.5 * dt / type.inertia * s.forces().torque[i]);
     }
   }
-  constrain(topology, s.drive(), kicked.time, s.forces(), 0.5 * dt, kicked);
+  constrain(topology, s.loads(), kicked.time, s.forces(), 0.5 * dt, kicked);
   for (std::size_t i = 0; i < kicked.size(); ++i) {
     const double moved = dt * kicked.velocity[i].norm(), turned = dt * kicked.angular_velocity[i].norm();
     if (moved >= farthest || turned >= MotionBound::turn)
@@ -99,8 +98,7 @@ void refuse_first_step(const Scene& scene, const Simulation& s) {
 }  // namespace
 
 double automatic_step_fraction(const Scene& scene) {
-  const bool from_file = std::holds_alternative<StateSource>(scene.source);  // with velocities of its own
-  const bool cold = scene.temperature == 0 && !scene.thermostat && !from_file;
+  const bool cold = scene.start.temperature == 0 && !scene.thermostat && !scene.from_file();
   return cold && scene.run.mode != RunOptions::Mode::relax && scene.run.stepping.contact_every == 1
              ? cold_step_fraction
              : default_step_fraction;
@@ -113,7 +111,7 @@ Prepared prepare(Scene& scene) {
   out.state = std::move(built.state);
   out.spacing = built.spacing;
   out.interaction = interaction_of(scene);
-  out.drive = drive_of(scene, out.topology);
+  out.loads = loads_of(scene, out.topology);
   out.limit = time_step_limit(out.topology, out.interaction, out.spacing);
   out.stepping = scene.run.stepping;
   if (scene.thermostat) out.stepping.thermostat = make_thermostat(*scene.thermostat);
@@ -131,7 +129,7 @@ Prepared prepare(Scene& scene) {
 }
 
 Simulation start(const Scene& scene, const Prepared& p) {
-  Simulation simulation(p.topology, p.interaction, p.drive, p.state, p.time_step, scene.contact.skin, p.stepping);
+  Simulation simulation(p.topology, p.interaction, p.loads, p.state, p.time_step, scene.contact.skin, p.stepping);
   refuse_first_step(scene, simulation);
   return simulation;
 }

@@ -1,8 +1,9 @@
-// From a scene to what the simulator takes: interaction, drive, state and time step.
+// From a scene to what the simulator takes: interaction, loads, state and time step.
 #pragma once
 
 #include "scene/build.hpp"
 #include "scene/scene.hpp"
+#include "scene/scene_to_model.hpp"
 #include "sim/dynamics/simulation.hpp"
 
 namespace ropewalk {
@@ -11,7 +12,7 @@ struct Prepared {
   Topology topology;
   State state;
   Interaction interaction;
-  Drive drive;
+  LoadsAndConstraints loads;
   double spacing = 0;  // nm, of the untwisted rope; 0 where there is none
   TimeStepLimit limit;
   double time_step = 0;  // ps, of contact: what a step of the simulation takes

@@ -1,32 +1,45 @@
-// Every key of a scene file: the one list behind the program's help, the templates and the remedies for keys
-// that stand in the wrong table. The reader is scene_toml.cpp; scene_test.cpp holds the two together.
+// Every key of a scene file, for the program's help, the templates, the refinement and the remedies for keys
+// that stand in the wrong table. Each table is typed once, with its reader: see scene/key_table.hpp.
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
 namespace ropewalk {
 
-struct SceneTable {
-  std::string name;  // empty: the top of the file
-  std::string meaning;
-
-  std::string header() const { return name == "load" ? "[[load]]" : "[" + name + "]"; }
-};
-
 struct SceneKey {
-  std::string table;
+  std::string table = {};
   std::string key;
   std::string unit;      // empty: none
   std::string value;     // the default as TOML, or an example of one
   std::string standard;  // what holds where the key is missing, in words; empty: `value`
   std::string meaning;
+  // For scenes with elements of another length: the value goes as this power of it, up to `most`.
+  int length_power = 0;
+  double most = std::numeric_limits<double>::infinity();
+  bool whole = false;  // an integer, rounded up
+  // Whether it is the size of every tube of the scene.
+  enum class TubeSize { no, length, elements };
+  TubeSize tube_size = TubeSize::no;
 
   bool required() const { return standard == "required"; }
 };
 
-const std::vector<SceneTable>& scene_tables();
-const std::vector<SceneKey>& scene_keys();
+struct SceneTable {
+  std::string name;  // empty: the top of the file
+  std::string meaning;
+  std::vector<SceneKey> keys;
+
+  std::string header() const { return name == "load" ? "[[load]]" : "[" + name + "]"; }
+  // Whether the table may be left out as a whole, with what it stands for.
+  bool optional() const;
+};
+
+// In the order of help and templates.
+std::vector<SceneTable> scene_tables();
+// Those of all tables.
+std::vector<SceneKey> scene_keys();
 
 // A table of all of them for the program's help.
 std::string scene_key_help();

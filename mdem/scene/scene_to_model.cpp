@@ -1,83 +1,9 @@
 #include "scene/scene_to_model.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-
-#include "model/error.hpp"
-#include "scene/build.hpp"
 
 namespace ropewalk {
 namespace {
-
-std::vector<int> selected_tubes(const Scene& scene, const Selection& on, const Topology& topology) {
-  std::vector<int> tubes;
-  if (on.all_tubes) {
-    for (int t = 0; t < topology.tubes(); ++t) tubes.push_back(t);
-    return tubes;
-  }
-  for (int t : on.tubes) {
-    if (t < 0 || t >= topology.tubes())
-      throw InputError({scene.path, 0, "load.tubes"}, fmt::format("there is no tube {}", t),
-                       fmt::format("tubes are numbered from 0 to {}", topology.tubes() - 1));
-    tubes.push_back(t);
-  }
-  return tubes;
-}
-
-std::vector<int> selected_elements(const Scene& scene, const Selection& on, const Topology& topology) {
-  std::vector<int> elements;
-  for (int t : selected_tubes(scene, on, topology)) {
-    const int length = topology.length_of(t);
-    if (on.all_elements) {
-      for (int e = 0; e < length; ++e) elements.push_back(topology.tube_begin[t] + e);
-      continue;
-    }
-    for (int e : on.elements) {
-      const int at = e < 0 ? length + e : e;
-      if (at < 0 || at >= length)
-        throw InputError({scene.path, 0, "load.elements"}, fmt::format("tube {} has no element {}", t, e),
-                         fmt::format("its elements are 0 to {}, or -1 to -{} from the end", length - 1, length));
-      elements.push_back(topology.tube_begin[t] + at);
-    }
-  }
-  return elements;
-}
-
-struct AddLoad {
-  const std::vector<int>& elements;
-  Drive& drive;
-
-  void operator()(const FixLoad& f) const {
-    for (int e : elements) drive.fixed.push_back({e, f.x, f.y, f.z, f.rotation});
-  }
-  void operator()(const ForceLoad& f) const {
-    for (int e : elements) drive.loads.push_back({e, f.force, Vector3::Zero()});
-  }
-  void operator()(const TorqueLoad& f) const {
-    for (int e : elements) drive.loads.push_back({e, Vector3::Zero(), f.torque});
-  }
-  void operator()(const RotateLoad& f) const {
-    drive.turned.push_back({elements, f.rate, f.angle, f.centre, f.axial_free, f.spin_free});
-  }
-};
-
-TwistDrive twist_of(const TwistProtocol& twist, const Topology& topology) {
-  TwistDrive d;
-  for (int t = 0; t < topology.tubes(); ++t) {
-    d.lower.push_back(topology.tube_begin[t]);
-    d.upper.push_back(topology.tube_begin[t + 1] - 1);
-  }
-  d.moment = twist.moment;
-  d.rate = twist.rate;
-  d.per_tube = twist.reading == TwistProtocol::Reading::per_tube;
-  d.tangential = twist.application == TwistProtocol::Application::tangential;
-  d.lateral_free = twist.lateral_free;
-  d.axial_free = twist.axial_free;
-  d.geometric_only = twist.geometric_only;
-  d.increment = twist.increment;
-  return d;
-}
 
 std::vector<LineDensity> line_densities(const Scene& scene) {
   std::vector<LineDensity> out;
@@ -167,14 +93,15 @@ Interaction interaction_of(const Scene& scene) {
   return in;
 }
 
-Drive drive_of(const Scene& scene, const Topology& topology) {
-  Drive drive;
-  for (const Load& load : scene.loads) {
-    const std::vector<int> elements = selected_elements(scene, load.on, topology);
-    std::visit(AddLoad{elements, drive}, load.kind);
+LoadsAndConstraints loads_of(const Scene& scene, const Topology& topology) {
+  LoadsAndConstraints loads;
+  for (const SceneLoad& typed : scene.loads) {
+    const std::shared_ptr<Load> load = typed.load->copy();
+    load->elements = selected_elements(scene, typed.on, topology);
+    loads.add(std::shared_ptr<const Load>(load));
   }
-  if (scene.twist) drive.twist.push_back(twist_of(*scene.twist, topology));
-  return drive;
+  if (scene.twist) add_twist(*scene.twist, topology, loads);
+  return loads;
 }
 
 }  // namespace ropewalk

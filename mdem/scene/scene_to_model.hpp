@@ -30,6 +30,6 @@ std::vector<ContactRange> contact_ranges(const Scene& scene);
 Interaction interaction_of(const Scene& scene);
 
 // Throws InputError for loads on elements that do not exist.
-Drive drive_of(const Scene& scene, const Topology& topology);
+LoadsAndConstraints loads_of(const Scene& scene, const Topology& topology);
 
 }  // namespace ropewalk

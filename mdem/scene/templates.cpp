@@ -78,10 +78,9 @@ std::string key_line(const SceneKey& k, const std::string* value) {
 }
 
 // All keys of a table; those that the block does not set stand as comments.
-std::string keys_text(const std::string& table, const std::map<std::string, std::string>& set) {
+std::string keys_text(const SceneTable& table, const std::map<std::string, std::string>& set) {
   std::string text;
-  for (const SceneKey& k : scene_keys()) {
-    if (k.table != table) continue;
+  for (const SceneKey& k : table.keys) {
     const auto at = set.find(k.key);
     text += key_line(k, at == set.end() ? nullptr : &at->second);
   }
@@ -93,15 +92,12 @@ std::string table_text(const SceneTable& table, const std::vector<Block>& blocks
   bool any = false;
   for (const Block& b : blocks) {
     if (b.table != table.name) continue;
-    text += (any ? "\n" : "") + table.header() + "\n" + keys_text(table.name, b.set);
+    text += (any ? "\n" : "") + table.header() + "\n" + keys_text(table, b.set);
     any = true;
   }
   if (any) return text;
   // Tables without required keys are always there, for their keys to be switched on by taking a # away.
-  const auto& keys = scene_keys();
-  const bool optional = std::any_of(keys.begin(), keys.end(),
-                                    [&](const SceneKey& k) { return k.table == table.name && k.required(); });
-  return text + (optional ? "# " : "") + table.header() + "\n" + keys_text(table.name, {});
+  return text + (table.optional() ? "# " : "") + table.header() + "\n" + keys_text(table, {});
 }
 
 std::string text_of(const Recipe& recipe) {
@@ -112,9 +108,8 @@ std::string text_of(const Recipe& recipe) {
   for (const Block& b : recipe.blocks)
     if (b.table.empty())
       for (const auto& [key, value] : b.set) top[key] = value;
-  text += keys_text("", top);
   for (const SceneTable& t : scene_tables())
-    if (!t.name.empty()) text += table_text(t, recipe.blocks);
+    text += t.name.empty() ? keys_text(t, top) : table_text(t, recipe.blocks);
   return text;
 }
 

@@ -30,7 +30,7 @@ Forces reference_forces(const Prepared& p, double time) {
   Forces f(p.state.size());
   compute_reference(p.topology, p.interaction, p.state, f);
   std::vector<PointLoad> loads;
-  point_loads(p.drive, p.state, time, loads);
+  point_loads(p.loads, p.state, time, loads);
   for (const PointLoad& load : loads) {
     f.force.add(static_cast<std::size_t>(load.element), load.force);
     f.torque.add(static_cast<std::size_t>(load.element), load.torque);

@@ -2,6 +2,11 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
+#include "scene/loads/fix.hpp"
+#include "scene/loads/force.hpp"
+#include "scene/loads/rotate.hpp"
+#include "scene/loads/torque.hpp"
+#include "scene/loads/twist.hpp"
 #include "sim/dynamics/simulation.hpp"
 #include "unit/support.hpp"
 
@@ -157,18 +162,14 @@ TEST(EnergyAccount, BalancesUnderLoadAndDamping) {
   Bundle b(7, 12, 0);
   b.in.damping.contact = {20, spacing, 1.5 * spacing};
   b.in.damping.bond.rate = 1;
-  Drive drive;
-  drive.twist.resize(1);
-  TwistDrive& twist = drive.twist[0];
-  for (int t = 0; t < 7; ++t) {
-    twist.lower.push_back(b.topology.tube_begin[t]);
-    twist.upper.push_back(b.topology.tube_begin[t + 1] - 1);
-  }
+  TwistLoad twist;
   twist.moment = 100;
   twist.rate = 10;
-  for (bool tangential : {false, true}) {
-    drive.twist[0].tangential = tangential;
-    Simulation s(b.topology, b.in, drive, b.state, 0.005);
+  for (const auto application : {TwistLoad::Application::couple, TwistLoad::Application::tangential}) {
+    twist.application = application;
+    LoadsAndConstraints loads;
+    add_twist(twist, b.topology, loads);
+    Simulation s(b.topology, b.in, loads, b.state, 0.005);
     const double first = s.total_energy();
     s.steps(4000);
     const double balance = s.total_energy() - s.work() + s.dissipated() - first;
@@ -180,15 +181,16 @@ TEST(EnergyAccount, BalancesUnderLoadAndDamping) {
 
 TEST(EnergyAccount, PrescribedRotationDoesTheWork) {
   Bundle b(7, 12, 0);
-  Drive drive;
-  Turned upper, lower;
+  LoadsAndConstraints loads;
+  PrescribedRotation upper, lower;
   for (int t = 0; t < 7; ++t) {
     lower.elements.push_back(b.topology.tube_begin[t]);
     upper.elements.push_back(b.topology.tube_begin[t + 1] - 1);
   }
   upper.rate = 0.02, upper.angle = 0.4;
-  drive.turned = {upper, lower};
-  Simulation s(b.topology, b.in, drive, b.state, 0.005);
+  loads.add(upper);
+  loads.add(lower);
+  Simulation s(b.topology, b.in, loads, b.state, 0.005);
   const double first = s.total_energy();
   s.steps(5000);
   const auto u = static_cast<std::size_t>(b.topology.tube_begin[2] - 1);
@@ -215,22 +217,23 @@ TEST(Checkpoint, GoesOnBitForBitOnAnyThreads) {
 // A rope whose ends turn, by the line law.
 struct TurnedRope {
   Bundle b;
-  Drive drive;
+  LoadsAndConstraints loads;
 
   explicit TurnedRope(double rate, int elements = 40) : b(7, elements, 0) {
     b.in.paper.reset();
     b.in.line = {test::line_contact(0.6785, 6, 0.6785, 6)};
     b.in.precision = Interaction::Precision::mixed;
     b.in.damping.contact = {20, spacing, 1.5 * spacing};
-    Turned upper, lower;
+    PrescribedRotation upper, lower;
     for (int t = 0; t < b.topology.tubes(); ++t) {
       lower.elements.push_back(b.topology.tube_begin[t]);
       upper.elements.push_back(b.topology.tube_begin[t + 1] - 1);
     }
     upper.rate = rate, upper.angle = 2;
-    drive.turned = {upper, lower};
+    loads.add(upper);
+    loads.add(lower);
   }
-  Simulation make(double skin) const { return Simulation(b.topology, b.in, drive, b.state, 0.02, skin); }
+  Simulation make(double skin) const { return Simulation(b.topology, b.in, loads, b.state, 0.02, skin); }
 };
 
 // Lists that are worn soon get a wider skin than those that last; the motion is the same.
@@ -286,21 +289,26 @@ TEST(Checkpoint, GoesOnFromEveryStepOfASlowRope) {
 }
 
 // With all that acts on some elements alone, and types of tubes that the blocks of the motion are not aligned with.
-Drive all_kinds(const Topology& topology) {
+LoadsAndConstraints all_kinds(const Topology& topology, bool geometric_only = false) {
   const auto end_of = [&](int tube) { return topology.tube_begin[tube + 1] - 1; };
-  Drive drive;
-  drive.loads = {{3, {0.1, 0, -0.2}, {0, 0.3, 0}}, {3, {0, 0.1, 0}, {0, 0, 0}}, {end_of(2), {0, 0, 1}, {0, 0, 0}}};
-  drive.fixed = {{0}, {topology.tube_begin[1], true, false, true, false}};
-  Turned turned;
+  LoadsAndConstraints loads;
+  loads.add(ForceLoad({3}, {0.1, 0, -0.2}));
+  loads.add(TorqueLoad({3}, {0, 0.3, 0}));
+  loads.add(ForceLoad({3}, {0, 0.1, 0}));
+  loads.add(ForceLoad({end_of(2)}, {0, 0, 1}));
+  loads.add(FixLoad({0}));
+  loads.add(FixLoad({topology.tube_begin[1]}, true, false, true, false));
+  PrescribedRotation turned;
   turned.elements = {end_of(4), end_of(3)};
   turned.rate = 0.05, turned.angle = 2, turned.spin_free = true;
-  drive.turned = {turned};
-  TwistDrive twist;
-  twist.lower = {topology.tube_begin[5], topology.tube_begin[6]};
-  twist.upper = {end_of(5), end_of(6)};
-  twist.moment = 3, twist.rate = 2, twist.tangential = true, twist.lateral_free = false, twist.axial_free = false;
-  drive.twist = {twist};
-  return drive;
+  loads.add(turned);
+  TwistLoad twist;
+  twist.moment = 3, twist.rate = 2, twist.application = TwistLoad::Application::tangential;
+  twist.lateral_free = false, twist.axial_free = false;
+  twist.geometric_only = geometric_only, twist.increment = 0.3;
+  loads.add(twist.on_grip({end_of(5), end_of(6)}, 1));
+  loads.add(twist.on_grip({topology.tube_begin[5], topology.tube_begin[6]}, -1));
+  return loads;
 }
 
 // So large that blocks of elements go on before the contact of others is there, and of tubes that are cut into
@@ -344,17 +352,16 @@ TEST(Steps, ManyAtOnceAreTheSameBitsAsOneByOne) {
   b.in.line.assign(4, test::line_contact(0.6785, 6, 0.6785, 6));
   b.in.precision = Interaction::Precision::mixed;
   b.in.damping.contact = {20, spacing, 1.5 * spacing};
-  const Drive drive = all_kinds(b.topology);
+  const LoadsAndConstraints loads = all_kinds(b.topology);
   const auto make = [&](Stepping stepping = {}) {
-    return Simulation(b.topology, b.in, drive, b.state, 0.015, 0.1, stepping);
+    return Simulation(b.topology, b.in, loads, b.state, 0.015, 0.1, stepping);
   };
   expect_same("driven", make(), make());
   expect_same("two levels", make({3}), make({3}));
   b.in.damping.local = 0.3;
   expect_same("local damping", make(), make());
   b.in.damping.local = 0;
-  Drive spins = drive;
-  spins.twist[0].geometric_only = true, spins.twist[0].increment = 0.3;
+  const LoadsAndConstraints spins = all_kinds(b.topology, true);
   const Simulation relaxed(b.topology, b.in, spins, b.state, 0.015, 0.1);
   expect_same("relaxed spins", relaxed, relaxed);
 }

@@ -4,6 +4,10 @@
 #include <numeric>
 
 #include "model/error.hpp"
+#include "scene/loads/fix.hpp"
+#include "scene/loads/force.hpp"
+#include "scene/loads/rotate.hpp"
+#include "scene/loads/torque.hpp"
 #include "sim/dynamics/simulation.hpp"
 #include "unit/support.hpp"
 
@@ -17,7 +21,7 @@ constexpr double never = 0;
 struct Chain {
   Topology topology = test::published_topology();
   Interaction in;
-  Drive drive;
+  LoadsAndConstraints loads;
   State state;
   int last = 0;
 
@@ -29,7 +33,7 @@ struct Chain {
   }
   double length() const { return last * element_length; }
   double step(double part = 0.6) const { return part * time_step_limit(topology, in, never).limit; }
-  Simulation make(double part = 0.6) const { return Simulation(topology, in, drive, state, step(part)); }
+  Simulation make(double part = 0.6) const { return Simulation(topology, in, loads, state, step(part)); }
   Simulation relaxed(double tolerance, long steps = 400000) const {
     Simulation s = make();
     EXPECT_TRUE(s.relax(tolerance, steps, [](long) { return true; })) << "largest force " << s.largest_force();
@@ -40,8 +44,8 @@ struct Chain {
 TEST(ChainStatics, Cantilever) {
   Chain c(31);
   const double force = 1e-2;  // eV/nm
-  c.drive.fixed.push_back({0});
-  c.drive.loads.push_back({c.last, {force, 0, 0}, Vector3::Zero()});
+  c.loads.add(FixLoad({0}));
+  c.loads.add(ForceLoad({c.last}, {force, 0, 0}));
   const Simulation s = c.relaxed(1e-6);
   const double expected = force * std::pow(c.length(), 3) / (3 * c.topology.types[0].bond.bend);
   EXPECT_NEAR(s.state().position[c.last].x() / expected, 1, 1e-3);
@@ -53,8 +57,8 @@ TEST(ChainStatics, CantileverThatShears) {
   BondStiffness& k = c.topology.types[0].bond;
   k.shear = thin_tube_shear(k, c.topology.types[0].radius);
   const double force = 1e-2;  // eV/nm
-  c.drive.fixed.push_back({0});
-  c.drive.loads.push_back({c.last, {force, 0, 0}, Vector3::Zero()});
+  c.loads.add(FixLoad({0}));
+  c.loads.add(ForceLoad({c.last}, {force, 0, 0}));
   const Simulation s = c.relaxed(1e-8);
   const double bending = force * std::pow(c.length(), 3) / (3 * k.bend), shear = force * c.length() / k.shear;
   EXPECT_GT(shear, 0.03 * bending);
@@ -63,8 +67,8 @@ TEST(ChainStatics, CantileverThatShears) {
 
 TEST(ChainStatics, Stretch) {
   Chain c(11);
-  c.drive.fixed.push_back({0});
-  c.drive.loads.push_back({c.last, {0, 0, 5.0}, Vector3::Zero()});
+  c.loads.add(FixLoad({0}));
+  c.loads.add(ForceLoad({c.last}, {0, 0, 5.0}));
   const Simulation s = c.relaxed(1e-8);
   const double strain = s.state().position[c.last].z() / c.length() - 1;
   EXPECT_NEAR(strain, 5.0 / c.topology.types[0].bond.stretch, 1e-9);
@@ -77,11 +81,11 @@ TEST(ChainBuckling, EulerColumn) {
   std::vector<double> load, stiffness;
   for (double part : {0.5, 0.7, 0.85}) {
     Chain column = c;
-    column.drive.fixed.push_back({0, true, true, true, false});
-    column.drive.fixed.push_back({c.last, true, true, false, false});
+    column.loads.add(FixLoad({0}, true, true, true, false));
+    column.loads.add(FixLoad({c.last}, true, true, false, false));
     const double lateral = 1e-3;
-    column.drive.loads.push_back({c.last, {0, 0, -part * euler}, Vector3::Zero()});
-    column.drive.loads.push_back({c.last / 2, {lateral, 0, 0}, Vector3::Zero()});
+    column.loads.add(ForceLoad({c.last}, {0, 0, -part * euler}));
+    column.loads.add(ForceLoad({c.last / 2}, {lateral, 0, 0}));
     const Simulation s = column.relaxed(1e-7);
     load.push_back(part * euler);
     stiffness.push_back(lateral / s.state().position[c.last / 2].x());
@@ -99,15 +103,15 @@ enum class Ends { pinned, clamped };
 double lateral_stiffness(double moment, Ends ends) {
   Chain c(31);
   const double lateral = 1e-3;
-  c.drive.loads.push_back({0, Vector3::Zero(), {0, 0, -moment}});
-  c.drive.loads.push_back({c.last, Vector3::Zero(), {0, 0, moment}});
-  c.drive.loads.push_back({c.last / 2, {lateral, 0, 0}, Vector3::Zero()});
+  c.loads.add(TorqueLoad({0}, {0, 0, -moment}));
+  c.loads.add(TorqueLoad({c.last}, {0, 0, moment}));
+  c.loads.add(ForceLoad({c.last / 2}, {lateral, 0, 0}));
   if (ends == Ends::pinned) {
-    c.drive.fixed.push_back({0, true, true, true, false});
-    c.drive.fixed.push_back({c.last, true, true, false, false});
+    c.loads.add(FixLoad({0}, true, true, true, false));
+    c.loads.add(FixLoad({c.last}, true, true, false, false));
   } else {
-    c.drive.turned.push_back({{0}, 0, 0, Vector3::Zero(), false, true});
-    c.drive.turned.push_back({{c.last}, 0, 0, Vector3::Zero(), true, true});
+    c.loads.add(PrescribedRotation({0}, 0, 0, false, true));
+    c.loads.add(PrescribedRotation({c.last}, 0, 0, true, true));
   }
   const double twist = std::asin(moment * element_length / c.topology.types[0].bond.twist);
   for (int i = 0; i <= c.last; ++i)
@@ -214,8 +218,8 @@ TEST(ChainDynamics, StabilityLimitIsWhereTheorySays) {
 TEST(ChainTwist, SlipIsRefused) {
   Chain c(11);
   const double peak = c.topology.types[0].bond.twist / element_length;
-  c.drive.fixed.push_back({0});
-  c.drive.loads.push_back({c.last, Vector3::Zero(), {0, 0, 1.05 * peak}});
+  c.loads.add(FixLoad({0}));
+  c.loads.add(TorqueLoad({c.last}, {0, 0, 1.05 * peak}));
   c.in.damping.bond.rate = 2;
   Simulation s = c.make();
   try {
@@ -230,8 +234,8 @@ TEST(ChainTwist, SlipIsRefused) {
 TEST(ChainTwist, TurnsAreCountedBelowTheLimit) {
   Chain c(41);
   const double moment = 0.3 * c.topology.types[0].bond.twist / element_length;
-  c.drive.fixed.push_back({0});
-  c.drive.loads.push_back({c.last, Vector3::Zero(), {0, 0, moment}});
+  c.loads.add(FixLoad({0}));
+  c.loads.add(TorqueLoad({c.last}, {0, 0, moment}));
   c.in.damping.bond.rate = 1;
   Simulation s = c.relaxed(1e-6);
   double total = 0;

@@ -1,4 +1,6 @@
 // The untwisted rope of the seed paper: packing, spacing, cohesion; and the time step limit of a whole rope.
+#include "scene/kinds/rope.hpp"
+
 #include <gtest/gtest.h>
 
 #include "io/parameters_toml.hpp"
@@ -17,7 +19,7 @@ Scene rope_scene(int tubes, double length, double perturbation = 0) {
   rope.tubes = tubes;
   rope.length = length;
   rope.perturbation = perturbation;
-  scene.source = rope;
+  scene.source = std::make_shared<RopeSource>(rope);
   scene.run.duration = 1;
   return scene;
 }

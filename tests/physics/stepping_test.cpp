@@ -2,6 +2,10 @@
 #include <gtest/gtest.h>
 
 #include "model/error.hpp"
+#include "scene/loads/fix.hpp"
+#include "scene/loads/force.hpp"
+#include "scene/loads/rotate.hpp"
+#include "scene/loads/twist.hpp"
 #include "sim/dynamics/simulation.hpp"
 #include "sim/state/motion.hpp"
 #include "unit/support.hpp"
@@ -37,8 +41,8 @@ struct Bundle {
     in.damping.bond.rate = bonds;
   }
   TimeStepLimit limit() const { return time_step_limit(topology, in, spacing); }
-  Simulation make(double inner, int contact_every, const Drive& drive = {}) const {
-    return Simulation(topology, in, drive, state, inner * contact_every, 0, {contact_every, false});
+  Simulation make(double inner, int contact_every, const LoadsAndConstraints& loads = {}) const {
+    return Simulation(topology, in, loads, state, inner * contact_every, 0, {contact_every, false});
   }
 };
 
@@ -121,16 +125,19 @@ TEST(TwoLevels, KeepMomentaAndEnergyOverOneNanosecond) {
 TEST(TwoLevels, AccountBalancesUnderLoadAndDamping) {
   Bundle b(0, 12);
   b.damp();
-  Drive drive;
-  drive.twist.resize(1);
+  std::vector<int> lower, upper;
   for (int t = 0; t < 7; ++t) {
-    drive.twist[0].lower.push_back(b.topology.tube_begin[t]);
-    drive.twist[0].upper.push_back(b.topology.tube_begin[t + 1] - 1);
+    lower.push_back(b.topology.tube_begin[t]);
+    upper.push_back(b.topology.tube_begin[t + 1] - 1);
   }
-  drive.twist[0].moment = 100;
-  drive.twist[0].rate = 10;
+  TwistLoad twist;
+  twist.moment = 100;
+  twist.rate = 10;
+  LoadsAndConstraints loads;
+  loads.add(twist.on_grip(upper, 1));
+  loads.add(twist.on_grip(lower, -1));
   const auto balance = [&](double inner) {
-    Simulation s = b.make(inner, 4, drive);
+    Simulation s = b.make(inner, 4, loads);
     const double first = s.total_energy();
     for (long k = 0; k < std::lround(20 / s.time_step()); ++k) s.step();
     EXPECT_GT(s.work(), 50);
@@ -144,15 +151,16 @@ TEST(TwoLevels, AccountBalancesUnderLoadAndDamping) {
 
 TEST(TwoLevels, PrescribedRotationDoesTheWork) {
   const Bundle b(0, 12);
-  Drive drive;
-  Turned upper, lower;
+  LoadsAndConstraints loads;
+  PrescribedRotation upper, lower;
   for (int t = 0; t < 7; ++t) {
     lower.elements.push_back(b.topology.tube_begin[t]);
     upper.elements.push_back(b.topology.tube_begin[t + 1] - 1);
   }
   upper.rate = 0.02, upper.angle = 0.4;
-  drive.turned = {upper, lower};
-  Simulation s = b.make(0.005, 4, drive);
+  loads.add(upper);
+  loads.add(lower);
+  Simulation s = b.make(0.005, 4, loads);
   const double first = s.total_energy();
   s.steps(1250);
   EXPECT_GT(s.work(), 1);
@@ -287,14 +295,14 @@ TEST(ScaledMass, LeavesTheEndStateAlone) {
   for (std::size_t e = 0; e < 6; ++e) start.position.z[e] = test::element_length * static_cast<double>(e);
   Interaction in;
   in.damping.bond.rate = 4;
-  Drive drive;
-  drive.fixed.push_back({0});
-  drive.loads.push_back({5, Vector3(5, 0, 0), Vector3::Zero()});
+  LoadsAndConstraints loads;
+  loads.add(FixLoad({0}));
+  loads.add(ForceLoad({5}, Vector3(5, 0, 0)));
   Topology heavy = topology;
   heavy.types[0].mass *= 9;
   heavy.types[0].inertia *= 9;
-  const State light = after(Simulation(topology, in, drive, start, 0.01), 8000),
-              slow = after(Simulation(heavy, in, drive, start, 0.03), 12000);
+  const State light = after(Simulation(topology, in, loads, start, 0.01), 8000),
+              slow = after(Simulation(heavy, in, loads, start, 0.03), 12000);
   EXPECT_GT(largest_distance(light, start), 0.1);
   EXPECT_LT(largest_distance(light, slow), 1e-6 * largest_distance(light, start));
 }

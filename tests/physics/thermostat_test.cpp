@@ -6,6 +6,11 @@
 #include <array>
 #include <cmath>
 
+#include "scene/loads/fix.hpp"
+#include "scene/loads/force.hpp"
+#include "scene/loads/rotate.hpp"
+#include "scene/loads/torque.hpp"
+#include "scene/loads/twist.hpp"
 #include "sim/dynamics/counter_random.hpp"
 #include "sim/dynamics/langevin.hpp"
 #include "sim/dynamics/simulation.hpp"
@@ -29,7 +34,7 @@ Stepping langevin(double temperature, double friction, std::uint64_t seed = 1) {
 struct Chain {
   Topology topology = test::published_topology();
   Interaction in;
-  Drive drive;
+  LoadsAndConstraints loads;
   State state;
 
   explicit Chain(int elements) {
@@ -41,7 +46,7 @@ struct Chain {
   }
   double limit() const { return time_step_limit(topology, in, 0).limit; }
   Simulation make(double step, const Stepping& stepping) const {
-    return Simulation(topology, in, drive, state, step, 0, stepping);
+    return Simulation(topology, in, loads, state, step, 0, stepping);
   }
 };
 
@@ -133,7 +138,7 @@ TEST(Langevin, IsPureFrictionAtZeroTemperature) {
 struct LoadedBundle {
   Topology topology = test::published_topology();
   Interaction in;
-  Drive drive;
+  LoadsAndConstraints loads;
   State state;
 
   LoadedBundle() {
@@ -147,20 +152,21 @@ struct LoadedBundle {
     for (int t = 0; t < 6; t += 3) topology.tube_type[static_cast<std::size_t>(t)] = 1;
     test::set_velocities(topology, room, state);
     const auto end_of = [&](int tube) { return topology.tube_begin[tube + 1] - 1; };
-    drive.loads = {{3, {0.1, 0, -0.2}, {0, 0.3, 0}}};
-    drive.fixed = {{0}, {topology.tube_begin[1], true, false, true, false}};
-    Turned turned;
-    turned.elements = {end_of(4), end_of(3)};
-    turned.rate = 0.05, turned.angle = 2, turned.spin_free = true;
-    drive.turned = {turned};
-    TwistDrive twist;
-    twist.lower = {topology.tube_begin[5], topology.tube_begin[6]};
-    twist.upper = {end_of(5), end_of(6)};
+    loads.add(ForceLoad({3}, {0.1, 0, -0.2}));
+    loads.add(TorqueLoad({3}, {0, 0.3, 0}));
+    loads.add(FixLoad({0}));
+    loads.add(FixLoad({topology.tube_begin[1]}, true, false, true, false));
+    PrescribedRotation rotation;
+    rotation.elements = {end_of(4), end_of(3)};
+    rotation.rate = 0.05, rotation.angle = 2, rotation.spin_free = true;
+    loads.add(rotation);
+    TwistLoad twist;
     twist.moment = 3, twist.rate = 2, twist.lateral_free = false, twist.axial_free = false;
-    drive.twist = {twist};
+    loads.add(twist.on_grip({end_of(5), end_of(6)}, 1));
+    loads.add(twist.on_grip({topology.tube_begin[5], topology.tube_begin[6]}, -1));
   }
   Simulation make(double step = 0.01) const {
-    return Simulation(topology, in, drive, state, step, 0.1, langevin(room, 2, 5));
+    return Simulation(topology, in, loads, state, step, 0.1, langevin(room, 2, 5));
   }
 };
 
@@ -196,7 +202,7 @@ TEST(Langevin, LeavesConstrainedComponentsAlone) {
   EXPECT_EQ(s.state().position[grip].x(), guided.x());
   EXPECT_EQ(s.state().position[grip].z(), guided.z());
   EXPECT_NE(s.state().position[grip].y(), guided.y());
-  const auto turned = static_cast<std::size_t>(b.drive.turned[0].elements[0]);
+  const auto turned = static_cast<std::size_t>(b.topology.tube_begin[5] - 1);
   const Vector3 v = s.state().velocity[turned], r = s.state().position[turned];
   EXPECT_NEAR(v.x(), -0.05 * r.y(), 1e-4);
   EXPECT_NEAR(v.y(), 0.05 * r.x(), 1e-4);

@@ -7,6 +7,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "scene/loads/fix.hpp"
+#include "scene/loads/rotate.hpp"
 #include "scene/scene_toml.hpp"
 #include "scene/watch.hpp"
 #include "sim/dynamics/refine.hpp"
@@ -88,7 +90,7 @@ TEST(FinerScene, TakesTheHalvedStateWhereThereIsOne) {
 void total_loads(const Prepared& p, Vector3& force, Vector3& torque, Vector3& moment) {
   force = torque = moment = Vector3::Zero();
   std::vector<PointLoad> loads;
-  point_loads(p.drive, p.state, 1e9, loads);
+  point_loads(p.loads, p.state, 1e9, loads);
   for (const PointLoad& l : loads) {
     force += l.force;
     torque += l.torque;
@@ -113,22 +115,28 @@ TEST(FinerScene, LoadsActOnBothHalvesWithTheSameTotal) {
   EXPECT_LT((fine_torque - torque).norm(), 1e-12 * torque.norm());
   EXPECT_LT((fine_moment - moment).norm(), 1e-12 * moment.norm()) << "at the same place of the tube";
   std::vector<int> fixed;
-  for (const Fixed& f : p.after.drive.fixed) fixed.push_back(f.element);
+  for (const FixLoad* f : p.after.loads.of<FixLoad>())
+    fixed.insert(fixed.end(), f->elements.begin(), f->elements.end());
   EXPECT_EQ(fixed, (std::vector<int>{0, 1, 10, 11}));
-  EXPECT_EQ(p.after.drive.turned.at(0).elements, (std::vector<int>{10, 11}));
+  EXPECT_EQ(p.after.loads.of<PrescribedRotation>().at(0)->elements, (std::vector<int>{10, 11}));
 }
 
 TEST(FinerScene, GripsAreTheEndElements) {
   const std::string twist = "[rope]\ntubes = 7\nlength_nm = 14\n[twist]\nmoment_nN_nm = 5\nrate_nN_nm_per_ps = 5\n";
   for (const char* reading : {"per-tube", "total"}) {
     const Pair p(twist + "reading = \"" + reading + "\"\n");
-    const TwistDrive &before = p.before.drive.twist.at(0), &after = p.after.drive.twist.at(0);
-    ASSERT_EQ(after.upper.size(), before.upper.size());
-    for (std::size_t t = 0; t < before.upper.size(); ++t) {
-      EXPECT_EQ(after.lower[t], 2 * before.lower[t]);
-      EXPECT_EQ(after.upper[t], 2 * before.upper[t] + 1);
+    const auto before = p.before.loads.of<TwistLoad>(), after = p.after.loads.of<TwistLoad>();
+    ASSERT_EQ(before.size(), 2u);
+    ASSERT_EQ(after.size(), 2u);
+    for (std::size_t grip = 0; grip < 2; ++grip) {
+      const int upper = before[grip]->sign > 0 ? 1 : 0;
+      ASSERT_EQ(after[grip]->elements.size(), before[grip]->elements.size());
+      for (std::size_t t = 0; t < 7; ++t)
+        EXPECT_EQ(after[grip]->elements.at(t), 2 * before[grip]->elements.at(t) + upper);
+      EXPECT_EQ(after[grip]->moment, before[grip]->moment);
+      EXPECT_EQ(after[grip]->sign, before[grip]->sign);
     }
-    EXPECT_EQ(after.moment, before.moment);
+    EXPECT_EQ(before[0]->sign + before[1]->sign, 0);
   }
 }
 

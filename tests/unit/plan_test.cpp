@@ -15,6 +15,7 @@
 #include "plan/planner.hpp"
 #include "plan/scene_edit.hpp"
 #include "scene/dissipation.hpp"
+#include "scene/kinds/rope.hpp"
 #include "scene/scene_toml.hpp"
 
 namespace ropewalk {
@@ -272,7 +273,7 @@ TEST(Plan, GoesCoarserAndFinerWithTheError) {
   const Scene s = scene_from(coarse.text);
   // 19 bonds of the default's length become 10 (not 9.5) between the same ends.
   EXPECT_NEAR(10 * s.element_length, 19 * scene_from(bundle).element_length, 1e-7);
-  EXPECT_NEAR(std::get<RopeSource>(s.source).length, 11 * s.element_length, 1e-7);
+  EXPECT_NEAR(dynamic_cast<const RopeSource&>(*s.source).length, 11 * s.element_length, 1e-7);
   EXPECT_EQ(s.contact.nodes, 0);
   EXPECT_EQ(s.contact.cutoff, 2.3);
   // Long elements have fewer bonds and pairs: the same dissipation per length needs other constants.
@@ -369,7 +370,7 @@ TEST(Plan, DropsTheContactOfALoneTube) {
   EXPECT_EQ(p.stands_for, "tube");
   const Scene s = scene_from(p.text);
   EXPECT_EQ(s.contact.law, ContactOptions::Law::none);
-  EXPECT_EQ(std::get<ChainSource>(s.source).elements, 10) << "four times as long, without loads";
+  EXPECT_EQ(s.source->sizes(s.element_length).elements, 10) << "four times as long, without loads";
   EXPECT_LT(p.cost, 0.3);
 }
 

@@ -12,6 +12,11 @@
 #include "io/toml_table.hpp"
 #include "model/error.hpp"
 #include "scene/build.hpp"
+#include "scene/kinds/rope.hpp"
+#include "scene/loads/fix.hpp"
+#include "scene/loads/force.hpp"
+#include "scene/loads/rotate.hpp"
+#include "scene/loads/torque.hpp"
 #include "scene/maxwell.hpp"
 #include "scene/prepare.hpp"
 #include "scene/scene_to_model.hpp"
@@ -293,13 +298,13 @@ TEST(SceneFile, EveryKeyReachesTheScene) {
   EXPECT_EQ(s.name, "all");
   EXPECT_FALSE(s.hash.empty());
   EXPECT_THAT(s.text, HasSubstr("tubes = 19"));
-  const auto& rope = std::get<RopeSource>(s.source);
+  const auto& rope = dynamic_cast<const RopeSource&>(*s.source);
   EXPECT_EQ(rope.tubes, 19);
   EXPECT_EQ(rope.length, 13.56);
   EXPECT_EQ(rope.spacing, 1.72);
   EXPECT_EQ(rope.perturbation, 0.001);
-  EXPECT_EQ(s.temperature, 300);
-  EXPECT_EQ(s.seed, 7u);
+  EXPECT_EQ(s.start.temperature, 300);
+  EXPECT_EQ(s.start.seed, 7u);
   EXPECT_TRUE(s.contact.legacy_torque);
   EXPECT_EQ(s.contact.exclude_along_tube, 9);
   EXPECT_EQ(s.contact.skin, 0.2);
@@ -311,8 +316,8 @@ TEST(SceneFile, EveryKeyReachesTheScene) {
   EXPECT_NEAR(s.twist->moment, 64 * units::nN_nm, 1e-12);
   EXPECT_NEAR(s.twist->ramp_time(), 128, 1e-12);
   EXPECT_EQ(s.twist->hold, 4);
-  EXPECT_EQ(s.twist->reading, TwistProtocol::Reading::total);
-  EXPECT_EQ(s.twist->application, TwistProtocol::Application::tangential);
+  EXPECT_EQ(s.twist->reading, TwistLoad::Reading::total);
+  EXPECT_EQ(s.twist->application, TwistLoad::Application::tangential);
   EXPECT_FALSE(s.twist->lateral_free);
   EXPECT_FALSE(s.twist->axial_free);
   EXPECT_TRUE(s.twist->geometric_only);
@@ -356,19 +361,21 @@ TEST(SceneFile, Loads) {
       "[[load]]\nkind = \"rotate\"\nelements = [2]\nrate_deg_per_ps = -2\nangle_deg = 90\ncentre_nm = [1, 2]\n"
       "axial_free = false\nspin_free = true\n");
   ASSERT_EQ(s.loads.size(), 5u);
-  const auto& fix = std::get<FixLoad>(s.loads[0].kind);
+  const auto& fix = dynamic_cast<const FixLoad&>(*s.loads[0].load);
   EXPECT_TRUE(fix.x && !fix.y && fix.z && !fix.rotation);
   EXPECT_EQ(s.loads[0].on.elements, (std::vector<int>{0, 1}));
   EXPECT_TRUE(s.loads[0].on.all_tubes);
-  const auto& spin = std::get<FixLoad>(s.loads[1].kind);
+  const auto& spin = dynamic_cast<const FixLoad&>(*s.loads[1].load);
   EXPECT_TRUE(!spin.x && !spin.y && !spin.z && spin.rotation);
   EXPECT_TRUE(s.loads[1].on.all_elements);
-  EXPECT_LT((std::get<ForceLoad>(s.loads[2].kind).force - units::nN_nm * Vector3(1, 0, -2.5)).norm(), 1e-14);
+  EXPECT_LT((dynamic_cast<const ForceLoad&>(*s.loads[2].load).force - units::nN_nm * Vector3(1, 0, -2.5)).norm(),
+            1e-14);
   EXPECT_FALSE(s.loads[2].on.all_tubes);
   EXPECT_EQ(s.loads[2].on.tubes, std::vector<int>{0});
   EXPECT_EQ(s.loads[2].on.elements, (std::vector<int>{0, -1}));
-  EXPECT_LT((std::get<TorqueLoad>(s.loads[3].kind).torque - units::nN_nm * Vector3(0, 0, 3)).norm(), 1e-14);
-  const auto& turn = std::get<RotateLoad>(s.loads[4].kind);
+  EXPECT_LT((dynamic_cast<const TorqueLoad&>(*s.loads[3].load).torque - units::nN_nm * Vector3(0, 0, 3)).norm(),
+            1e-14);
+  const auto& turn = dynamic_cast<const PrescribedRotation&>(*s.loads[4].load);
   EXPECT_NEAR(turn.rate, -2 * units::degree, 1e-15);
   EXPECT_NEAR(turn.angle, -90 * units::degree, 1e-15);  // with the sign of the rate
   EXPECT_EQ(turn.centre, Vector3(1, 2, 0));
@@ -427,7 +434,7 @@ TEST(Templates, AreTheScenesOfThePaper) {
   EXPECT_EQ(topology.tubes(), 91);
   EXPECT_EQ(topology.length_of(0), 50);
   EXPECT_NEAR(rope.twist->moment / units::nN_nm, 35, 1e-9);
-  EXPECT_EQ(rope.twist->reading, TwistProtocol::Reading::per_tube);
+  EXPECT_EQ(rope.twist->reading, TwistLoad::Reading::per_tube);
   EXPECT_EQ(rope.twist->hold, 100);
   EXPECT_EQ(read("bird-cage").second.length_of(0), 30);
   EXPECT_EQ(read("helix").second.length_of(0), 120);
@@ -435,7 +442,7 @@ TEST(Templates, AreTheScenesOfThePaper) {
   EXPECT_TRUE(read("geometric").first.twist->geometric_only);
   const auto [bundle, seven] = read("bundle");
   EXPECT_EQ(seven.elements(), 35);
-  EXPECT_EQ(bundle.temperature, 10);
+  EXPECT_EQ(bundle.start.temperature, 10);
   EXPECT_EQ(bundle.damping.contact.eta + bundle.damping.bond.rate + bundle.damping.local, 0);
   EXPECT_EQ(read("chain").first.loads.size(), 2u);
   EXPECT_EQ(read("relax").first.run.mode, RunOptions::Mode::relax);
@@ -443,11 +450,11 @@ TEST(Templates, AreTheScenesOfThePaper) {
 
 // Every choice of a scene as text, numbers to ten digits: defaults are stated rounded.
 std::string choices(const Scene& s) {
-  std::string text = fmt::format("{:.10g} {:.10g} {} | {} {} {} {:.10g} | {:.10g} {:.10g} {:.10g} | ",
-                                 s.element_length, s.temperature, s.seed, static_cast<int>(s.contact.law),
-                                 s.contact.legacy_torque, s.contact.exclude_along_tube, s.contact.skin,
-                                 s.damping.contact.eta, s.damping.bond.rate, s.damping.local);
-  if (const auto* r = std::get_if<RopeSource>(&s.source))
+  std::string text = fmt::format(
+      "{:.10g} {:.10g} {} | {} {} {} {:.10g} | {:.10g} {:.10g} {:.10g} | ", s.element_length, s.start.temperature,
+      s.start.seed, static_cast<int>(s.contact.law), s.contact.legacy_torque, s.contact.exclude_along_tube,
+      s.contact.skin, s.damping.contact.eta, s.damping.bond.rate, s.damping.local);
+  if (const auto* r = dynamic_cast<const RopeSource*>(s.source.get()))
     text += fmt::format("{} {:.10g} {:.10g} {:.10g} | ", r->tubes, r->length, r->spacing, r->perturbation);
   if (s.twist)
     text += fmt::format("{:.10g} {:.10g} {:.10g} {} {} {} {} {} {:.10g} | ", s.twist->moment, s.twist->rate,
@@ -520,13 +527,15 @@ TEST(SceneKeys, StatedLoadDefaultsAreTheDefaults) {
   const Scene fix = scene_from(start + "kind = \"fix\"\n");
   const Scene fix_written =
       scene_from(start + "kind = \"fix\"\ntubes = \"all\"\naxes = \"xyz\"\nrotation = true\n");
-  const FixLoad a = std::get<FixLoad>(fix.loads[0].kind), b = std::get<FixLoad>(fix_written.loads[0].kind);
+  const auto& a = dynamic_cast<const FixLoad&>(*fix.loads[0].load);
+  const auto& b = dynamic_cast<const FixLoad&>(*fix_written.loads[0].load);
   EXPECT_TRUE(a.x && a.y && a.z && a.rotation && b.x && b.y && b.z && b.rotation);
   EXPECT_TRUE(fix.loads[0].on.all_tubes && fix_written.loads[0].on.all_tubes);
   const std::string turn = start + "kind = \"rotate\"\nrate_deg_per_ps = 1\nangle_deg = 360\n";
-  const RotateLoad c = std::get<RotateLoad>(scene_from(turn).loads[0].kind);
-  const RotateLoad d = std::get<RotateLoad>(
-      scene_from(turn + "centre_nm = [0, 0]\naxial_free = true\nspin_free = false\n").loads[0].kind);
+  const Scene plain = scene_from(turn);
+  const Scene written = scene_from(turn + "centre_nm = [0, 0]\naxial_free = true\nspin_free = false\n");
+  const auto& c = dynamic_cast<const PrescribedRotation&>(*plain.loads[0].load);
+  const auto& d = dynamic_cast<const PrescribedRotation&>(*written.loads[0].load);
   EXPECT_EQ(c.centre, d.centre);
   EXPECT_EQ(c.axial_free, d.axial_free);
   EXPECT_EQ(c.spin_free, d.spin_free);

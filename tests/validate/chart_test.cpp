@@ -136,17 +136,22 @@ TEST(ChartScenes, ARopeIsLedByAMoment) {
   const ChartScene& scene = find_chart_scene("rope19-moment");
   const std::vector<ChartModel> models = chart_models(scene, false);
   const Specimen s = scene.build(find_chart_model(models, default_model));
-  EXPECT_TRUE(s.held().fixed.empty());
-  const Drive led = s.led();
-  EXPECT_TRUE(led.fixed.empty() && led.turned.empty());
-  ASSERT_EQ(led.twist.size(), 1u);
-  const TwistDrive& twist = led.twist[0];
-  EXPECT_EQ(twist.upper.size(), 19u);
-  EXPECT_EQ(twist.lower.size(), 19u);
+  EXPECT_TRUE(s.held().empty());
+  const LoadsAndConstraints led = s.led();
+  const std::vector<const TwistLoad*> grips = led.of<TwistLoad>();
+  ASSERT_EQ(grips.size(), 2u);
+  EXPECT_EQ(std::distance(led.begin(), led.end()), 2) << "and nothing else";
+  const TwistLoad& twist = *grips[0];
+  EXPECT_EQ(grips[0]->elements.size(), 19u);
+  EXPECT_EQ(grips[1]->elements.size(), 19u);
+  EXPECT_EQ(grips[0]->sign, 1);
+  EXPECT_EQ(grips[1]->sign, -1);
+  EXPECT_EQ(grips[1]->moment, twist.moment);
   EXPECT_EQ(twist.moment_at(0), 0);
   EXPECT_NEAR(twist.moment_at(0.5 * s.ramp), 0.5 * s.moment, 1e-12);
   EXPECT_EQ(twist.moment_at(s.duration()), s.moment);
-  for (const int e : twist.upper) EXPECT_GT(s.state.position[static_cast<std::size_t>(e)].z(), 0);
+  for (const TwistLoad* grip : grips)
+    for (const int e : grip->elements) EXPECT_GT(grip->sign * s.state.position[static_cast<std::size_t>(e)].z(), 0);
   for (const ChartModel& m : models) EXPECT_EQ(m.mode, RunOptions::Mode::dynamics) << m.name;
 }
 

@@ -86,8 +86,8 @@ struct Specimen {
 
   double duration() const { return ramp + hold; }
   double outer_step() const { return time_step * scene.run.stepping.contact_every; }
-  Drive held() const;  // before the ramp; free where a moment leads
-  Drive led() const;
+  LoadsAndConstraints held() const;  // before the ramp; free where a moment leads
+  LoadsAndConstraints led() const;
 };
 
 struct ChartReference {

@@ -9,6 +9,7 @@
 #include "io/parameters_toml.hpp"
 #include "io/toml_table.hpp"
 #include "scene/build.hpp"
+#include "scene/scene_to_model.hpp"
 
 namespace ropewalk {
 namespace {

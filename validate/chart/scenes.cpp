@@ -295,44 +295,45 @@ std::vector<ChartScene> all_scenes() {
   };
 }
 
-TwistDrive ramped_moment(const Specimen& s) {
-  TwistDrive twist;
-  for (const int e : s.grips) (s.place[static_cast<std::size_t>(e)] > 0 ? twist.upper : twist.lower).push_back(e);
+LoadsAndConstraints ramped_moment(const Specimen& s) {
+  std::vector<int> upper, lower;
+  for (const int e : s.grips) (s.place[static_cast<std::size_t>(e)] > 0 ? upper : lower).push_back(e);
+  TwistLoad twist;
   twist.moment = s.moment;
   twist.rate = s.moment / s.ramp;
-  return twist;
+  LoadsAndConstraints loads;
+  loads.add(twist.on_grip(upper, 1));
+  loads.add(twist.on_grip(lower, -1));
+  return loads;
 }
 
 }  // namespace
 
-Drive Specimen::held() const {
-  Drive drive;
-  if (moment > 0) return drive;
-  for (const int e : grips) drive.fixed.push_back({e, true, true, !axial_free, true});
-  return drive;
+LoadsAndConstraints Specimen::held() const {
+  LoadsAndConstraints loads;
+  if (moment > 0) return loads;
+  for (const int e : grips) loads.add(FixLoad({e}, true, true, !axial_free, true));
+  return loads;
 }
 
-Drive Specimen::led() const {
-  Drive drive;
-  if (moment > 0) {
-    drive.twist.push_back(ramped_moment(*this));
-    return drive;
-  }
+LoadsAndConstraints Specimen::led() const {
+  if (moment > 0) return ramped_moment(*this);
+  LoadsAndConstraints loads;
   std::set<double> places;
   for (const int e : grips) places.insert(place[static_cast<std::size_t>(e)]);
   for (const double part : places) {
-    Turned load;
+    PrescribedRotation load;
     for (const int e : grips)
       if (place[static_cast<std::size_t>(e)] == part) load.elements.push_back(e);
     load.angle = part * angle;
     load.rate = load.angle / ramp;
     load.axial_free = axial_free;
     if (part != 0)
-      drive.turned.push_back(load);
+      loads.add(load);
     else
-      for (const int e : load.elements) drive.fixed.push_back({e, true, true, !axial_free, true});
+      for (const int e : load.elements) loads.add(FixLoad({e}, true, true, !axial_free, true));
   }
-  return drive;
+  return loads;
 }
 
 const std::vector<ChartScene>& chart_scenes() {

@@ -1,11 +1,39 @@
 #include "scene/kinds/film.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 
+#include "scene/build.hpp"
+
 namespace ropewalk {
 namespace {
+
+using Key = KeyOf<FilmSource>;
+
+// Thicker films are no films, and laying them takes a time that grows with the square of the tubes.
+constexpr double most_covered = 50;  // areas of the box, by what the tubes cover one by one
+
+void check(const TomlTable& t, const Scene& scene, FilmSource& film) {
+  const double elements = std::round(film.length / scene.element_length);
+  const double length = elements * scene.element_length;
+  if (elements < 2)
+    throw t.error("length_nm", fmt::format("is {} nm, {} elements", film.length, elements),
+                  fmt::format("at least 2 elements, {:.4g} nm, are needed", 2 * scene.element_length));
+  check_size(t, "tubes", film.tubes, elements);
+  const char* shorter = film.width < film.depth ? "width_nm" : "depth_nm";
+  const double side = std::min(film.width, film.depth);
+  if (side < length)
+    throw t.error(shorter, fmt::format("is {} nm, and the tubes are {:.6g} nm long", side, length),
+                  "take a box that holds a tube at any angle, or shorter tubes");
+  const double diameter = 2 * largest_radius(scene);
+  const double covered = film.tubes * length * diameter / (film.width * film.depth);
+  if (covered > most_covered)
+    throw t.error("tubes", fmt::format("covers the box {:.3g} times", covered),
+                  fmt::format("at most {} times makes a film; take a larger box or fewer tubes", most_covered));
+}
 
 struct Point {
   double x = 0, y = 0;
@@ -25,17 +53,17 @@ double area(const Point& a, const Point& b, const Point& c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-struct Segment {
+struct Footprint {
   Point from, to;
 
-  Segment(const FilmTube& t, double length) {
+  Footprint(const FilmTube& t, double length) {
     const double x = 0.5 * length * std::cos(t.angle), y = 0.5 * length * std::sin(t.angle);
     from = {t.x - x, t.y - y};
     to = {t.x + x, t.y + y};
   }
 };
 
-double distance2(const Segment& a, const Segment& b) {
+double distance2(const Footprint& a, const Footprint& b) {
   if (area(a.from, a.to, b.from) * area(a.from, a.to, b.to) < 0 &&
       area(b.from, b.to, a.from) * area(b.from, b.to, a.to) < 0)
     return 0;
@@ -86,7 +114,7 @@ class Floor {
   // One square more than needed on each side, so that every square has neighbours.
   template <class F>
   void each_point(const FilmTube& t, F f) const {
-    const Segment s(t, length_);
+    const Footprint s(t, length_);
     for (int k = 0; k < points_; ++k) {
       const double part = static_cast<double>(k) / (points_ - 1);
       f(square(s.from.x + part * (s.to.x - s.from.x) - left_, columns_),
@@ -147,7 +175,7 @@ std::uint64_t along_curve(const FilmTube& t, const FilmSource& film, double squa
 }  // namespace
 
 double projected_distance2(const FilmTube& a, const FilmTube& b, double length) {
-  return distance2(Segment(a, length), Segment(b, length));
+  return distance2(Footprint(a, length), Footprint(b, length));
 }
 
 std::vector<FilmTube> lay_film(const FilmSource& film, int elements, double element_length, double spacing,
@@ -179,20 +207,50 @@ std::vector<FilmTube> lay_film(const FilmSource& film, int elements, double elem
   return tubes;
 }
 
-void add_film(const std::vector<FilmTube>& tubes, int elements, double element_length, Topology& topology,
-              State& state) {
-  for (std::size_t t = 0; t < tubes.size(); ++t) topology.add_tube(elements);
+SceneKind film_kind() {
+  return scene_kind<FilmSource>(
+      {"film",
+       "instead of [rope]: straight tubes at random in a box, flat in x and y, laid one upon another",
+       {Key::integer("tubes", 1, most_elements, &FilmSource::tubes, required("100"), "number of tubes"),
+        Key::number("length_nm", unit::nm, Bounds::positive(1e6), &FilmSource::length, required("68.9"),
+                    "length of the tubes, rounded to whole elements")
+            .is_tube_size(SceneKey::TubeSize::length),
+        Key::number("width_nm", unit::nm, Bounds::positive(1e6), &FilmSource::width, required("150"),
+                    "side of the box in x, not shorter than the tubes"),
+        Key::number("depth_nm", unit::nm, Bounds::positive(1e6), &FilmSource::depth, required("100"),
+                    "side of the box in y, not shorter than the tubes"),
+        Key::number("spacing_nm", unit::nm, spacing_bounds, &FilmSource::spacing,
+                    otherwise("1.7", "where two crossed tubes bind best"),
+                    "no two tube axes are closer at the start")},
+       check});
+}
+
+Source::Sizes FilmSource::sizes(double element_length) const {
+  return {tubes, whole_elements(length, element_length)};
+}
+
+void FilmSource::place(const Scene& scene, double, Random& random, Topology& topology, State& state) const {
+  const int elements = sizes(scene.element_length).elements;
+  const double a = scene.element_length, half = std::sqrt(0.5);
+  const std::vector<FilmTube> laid =
+      lay_film(*this, elements, a, spacing > 0 ? spacing : crossed_spacing(scene), random);
+  for (std::size_t t = 0; t < laid.size(); ++t) topology.add_tube(elements);
   state = State(static_cast<std::size_t>(topology.elements()));
-  const double half = std::sqrt(0.5);
   std::size_t i = 0;
-  for (const FilmTube& t : tubes) {
+  for (const FilmTube& t : laid) {
     const double x = std::cos(t.angle), y = std::sin(t.angle);
     for (int e = 0; e < elements; ++e, ++i) {
-      const double s = (e - 0.5 * (elements - 1)) * element_length;
+      const double s = (e - 0.5 * (elements - 1)) * a;
       state.position.set(i, {t.x + s * x, t.y + s * y, t.z});
       state.orientation.set(i, Quaternion(half, -half * y, half * x, 0));  // from z to the tube's direction
     }
   }
+}
+
+std::string FilmSource::description(const Topology&, const State& state, double) const {
+  const auto& z = state.position.z;
+  return fmt::format("a film of {:.4g} nm between its lowest and highest axis",
+                     *std::max_element(z.begin(), z.end()) - *std::min_element(z.begin(), z.end()));
 }
 
 }  // namespace ropewalk

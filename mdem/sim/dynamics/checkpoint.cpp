@@ -132,7 +132,7 @@ void Simulation::restore(const std::string& bytes) {
   // The line law's list, which the skin of the next one follows from.
   Forces made(state_.size());
   if (tunes_skin_) engine_.compute(topology_, interaction_, list_, state_, made, {Parts::contact, false});
-  point_loads(drive_, state_, state_.time, point_loads_);
+  point_loads(loads_, state_, state_.time, point_loads_);
 }
 
 }  // namespace ropewalk

@@ -1,7 +1,12 @@
 // Loads and constraints, resolved to elements. Forces and couples are added to the model's; constraints act
 // on the velocities after each kick, so that a constrained component never moves off its path.
+//
+// The simulator knows the interface `Load` alone. Each kind of load is one file of scene/loads/.
 #pragma once
 
+#include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "sim/forces/forces.hpp"
@@ -15,73 +20,86 @@ struct PointLoad {
   Vector3 torque = Vector3::Zero();  // eV
 };
 
-struct Fixed {
-  int element = 0;
-  bool x = true, y = true, z = true, rotation = true;
+// Upper bounds of what a load does, known before it is run.
+struct LoadEffect {
+  double force = 0;                  // eV/nm on one element
+  Vector3 torque = Vector3::Zero();  // eV on one element
+  double angle = 0;                  // rad, of a prescribed rotation
+  double ramp = 0;                   // ps, in which it is turned
 };
 
-// The elements turn as one body about a line along z through `centre`: angle(t) = rate t, up to `angle`.
-struct Turned {
-  std::vector<int> elements;
-  double rate = 0;   // rad/ps
-  double angle = 0;  // rad, where it stops; same sign as rate
-  Vector3 centre = Vector3::Zero();
-  bool axial_free = true;
-  bool spin_free = false;  // the spin about the tube's own axis is left free
+class Load {
+ public:
+  // Loads act in this order. Where two of them set one velocity, the later one decides.
+  enum class Order { force, grip, fix, prescribed_motion };
 
-  double speed(double time) const { return std::fabs(rate * time) < std::fabs(angle) ? rate : 0.0; }
+  std::vector<int> elements;  // that it acts on
+
+  virtual ~Load() = default;
+  virtual std::shared_ptr<Load> copy() const = 0;
+  virtual Order order() const { return Order::force; }
+
+  // Appends the forces and torques at this time.
+  virtual void add_forces(const State&, double /*time*/, std::vector<PointLoad>&) const {}
+  // Sets the constrained velocity components after a kick of duration `kick` by the forces `total`. Adds the work
+  // (eV) that the constraint did on the elements, which is zero where they are held at rest.
+  virtual void constrain(const Topology&, double /*time*/, const Forces& /*total*/, double /*kick*/, State&,
+                         double& /*work*/) const {}
+
+  // ps between relaxations of all spins (relax_spins); 0: never.
+  virtual double spin_relaxation_interval() const { return 0; }
+  // Whether a process that owns only some of the elements must know the state of all of them.
+  virtual bool needs_all_elements() const { return false; }
+  // Why the load has no meaning in a relaxation; empty: it has.
+  virtual std::string needs_time() const { return ""; }
+  // None where it cannot be said beforehand.
+  virtual std::optional<LoadEffect> effect() const { return std::nullopt; }
+
+ protected:
+  explicit Load(std::vector<int> on = {}) : elements(std::move(on)) {}
+  Load(const Load&) = default;
+  Load& operator=(const Load&) = default;
 };
 
-// Two-stage twisting: + moment on the upper grip, - on the lower, ramped and then held.
-struct TwistDrive {
-  std::vector<int> upper, lower;
-  double moment = 0;     // eV, in its reading
-  double rate = 0;       // eV/ps
-  bool per_tube = true;  // moment of each grip element, or of the whole grip
-  bool tangential = false;
-  bool lateral_free = true, axial_free = true;
-  bool geometric_only = false;
-  double increment = 1;  // ps
-
-  double moment_at(double time) const {
-    const double ramped = rate > 0 ? rate * time : moment;
-    return ramped < moment ? ramped : moment;
+// In the order in which they act. Copies share the loads, which never change.
+class LoadsAndConstraints {
+ public:
+  void add(std::shared_ptr<const Load> load);
+  template <class L>
+  void add(L load) {
+    add(std::shared_ptr<const Load>(std::make_shared<L>(std::move(load))));
   }
-};
 
-struct Drive {
-  std::vector<PointLoad> loads;
-  std::vector<Fixed> fixed;
-  std::vector<Turned> turned;
-  std::vector<TwistDrive> twist;  // none or one
-};
-
-// Every element that it names, some more than once; const or not, as the drive is.
-template <class D, class F>
-void visit_elements(D& drive, const F& f) {
-  for (auto& load : drive.loads) f(load.element);
-  for (auto& fixed : drive.fixed) f(fixed.element);
-  for (auto& turned : drive.turned)
-    for (auto& e : turned.elements) f(e);
-  for (auto& twist : drive.twist) {
-    for (auto& e : twist.upper) f(e);
-    for (auto& e : twist.lower) f(e);
+  bool empty() const { return all_.empty(); }
+  auto begin() const { return all_.begin(); }
+  auto end() const { return all_.end(); }
+  // Those of one class.
+  template <class L>
+  std::vector<const L*> of() const {
+    std::vector<const L*> found;
+    for (const auto& load : all_)
+      if (const auto* one = dynamic_cast<const L*>(load.get())) found.push_back(one);
+    return found;
   }
-}
+  // ps; 0: spins are never relaxed.
+  double spin_relaxation_interval() const;
 
-// The elements that any of it acts on, in rising order.
-std::vector<int> driven_elements(const Drive& drive);
+ private:
+  std::vector<std::shared_ptr<const Load>> all_;
+};
+
+// The elements that any of them acts on, in rising order.
+std::vector<int> loaded_elements(const LoadsAndConstraints& loads);
 
 // The loads at this time, element by element; an element may appear more than once.
-void point_loads(const Drive& drive, const State& state, double time, std::vector<PointLoad>& out);
+void point_loads(const LoadsAndConstraints& loads, const State& state, double time, std::vector<PointLoad>& out);
 
 // Work per time of these loads at the present velocities, eV/ps.
 double load_power(const std::vector<PointLoad>& loads, const State& state);
 
-// Sets the constrained velocity components after a kick of duration `kick` by the forces `total`. Returns the
-// work that the constraints did on the elements (eV): zero for fixed ones.
-double constrain(const Topology& topology, const Drive& drive, double time, const Forces& total, double kick,
-                 State& state);
+// Applies all constraints (Load::constrain). Returns their work, eV.
+double constrain(const Topology& topology, const LoadsAndConstraints& loads, double time, const Forces& total,
+                 double kick, State& state);
 
 // Turns every element about its own axis such that no bond is twisted, keeping the middle element of each
 // tube and all tube axes, and takes away the spin velocities: the exact minimum of the twist energy over the

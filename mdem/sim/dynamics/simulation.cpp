@@ -28,10 +28,7 @@ void refuse_not_finite(const State& s) {
                            "start from another state");
 }
 
-bool relaxes_spins(const Drive& drive) {
-  return std::any_of(drive.twist.begin(), drive.twist.end(),
-                     [](const TwistDrive& twist) { return twist.geometric_only; });
-}
+bool relaxes_spins(const LoadsAndConstraints& loads) { return loads.spin_relaxation_interval() > 0; }
 
 NumericalError blown_up(long step, int element) {
   return NumericalError(step, element,
@@ -52,11 +49,11 @@ std::size_t blocks_of(std::size_t elements) { return (elements + cached_elements
 
 }  // namespace
 
-Simulation::Simulation(Topology topology, Interaction interaction, Drive drive, State state, double time_step,
-                       double skin, Stepping stepping)
+Simulation::Simulation(Topology topology, Interaction interaction, LoadsAndConstraints loads, State state,
+                       double time_step, double skin, Stepping stepping)
     : topology_(std::move(topology)),
       interaction_(std::move(interaction)),
-      drive_(std::move(drive)),
+      loads_(std::move(loads)),
       state_(std::move(state)),
       time_step_(time_step),
       stepping_(std::move(stepping)),
@@ -71,7 +68,7 @@ Simulation::Simulation(Topology topology, Interaction interaction, Drive drive, 
   refuse_not_finite(state_);
   list_.build(topology_, state_);
   compute();
-  constrain(topology_, drive_, state_.time, forces_, 0.0, state_);
+  constrain(topology_, loads_, state_.time, forces_, 0.0, state_);
 }
 
 // --- what a step is made of ---------------------------------------------------------------------------
@@ -120,7 +117,7 @@ struct Simulation::TwoLevels {
 };
 
 void Simulation::steps(long count, bool energies) {
-  const bool always = relaxes_spins(drive_);
+  const bool always = relaxes_spins(loads_);
   for (long k = 0; k < count; ++k) {
     const double began = omp_get_wtime(), elsewhere = engine_seconds() + list_seconds_;
     step_once((energies && k + 1 == count) || always);
@@ -152,7 +149,7 @@ void Simulation::kick(const Forces& forces, double dt) {
       kick_elements(forces.torque, dt / type.inertia, state_.angular_velocity, of.begin, of.end);
     }
   }
-  account_.work += constrain(topology_, drive_, state_.time, forces, dt, state_);
+  account_.work += constrain(topology_, loads_, state_.time, forces, dt, state_);
 }
 
 // `forces` includes the loads. Their work is exact: the mean power before and after the kick, times dt.
@@ -185,7 +182,7 @@ void Simulation::drift(double dt) {
 void Simulation::exchange_heat(double dt) {
   const double before = kinetic_energy(topology_, state_);
   stepping_.thermostat->apply(topology_, dt, state_);
-  constrain(topology_, drive_, state_.time, forces_, 0.0, state_);
+  constrain(topology_, loads_, state_.time, forces_, 0.0, state_);
   account_.heat += kinetic_energy(topology_, state_) - before;
 }
 
@@ -232,7 +229,7 @@ void Simulation::compute_contact(bool energies) {
 }
 
 void Simulation::add_loads(Forces& forces) {
-  point_loads(drive_, state_, state_.time, point_loads_);
+  point_loads(loads_, state_, state_.time, point_loads_);
   for (const PointLoad& load : point_loads_) {
     forces.force.add(static_cast<std::size_t>(load.element), load.force);
     forces.torque.add(static_cast<std::size_t>(load.element), load.torque);
@@ -269,15 +266,14 @@ void Simulation::check_forces(bool energies) const {
 
 // Of [twist] with geometric_only.
 void Simulation::relax_spins_if_due() {
-  for (const TwistDrive& twist : drive_.twist) {
-    if (!twist.geometric_only) continue;
-    const auto increments = [&](double time) { return std::floor(time / twist.increment + 1e-9); };
-    if (increments(state_.time) == increments(state_.time - time_step_)) continue;
-    const double had = total_energy();
-    relax_spins(topology_, state_);
-    compute();
-    account_.dissipated += had - total_energy();
-  }
+  const double interval = loads_.spin_relaxation_interval();
+  if (interval <= 0) return;
+  const auto increments = [&](double time) { return std::floor(time / interval + 1e-9); };
+  if (increments(state_.time) == increments(state_.time - time_step_)) return;
+  const double had = total_energy();
+  relax_spins(topology_, state_);
+  compute();
+  account_.dissipated += had - total_energy();
 }
 
 double Simulation::largest_force() const {
@@ -285,7 +281,7 @@ double Simulation::largest_force() const {
   State free = state_;
   free.velocity = forces_.force;
   free.angular_velocity = forces_.torque;
-  constrain(topology_, drive_, state_.time, forces_, 0.0, free);
+  constrain(topology_, loads_, state_.time, forces_, 0.0, free);
   double largest = 0;
   const double radius = topology_.largest_radius();
   for (std::size_t i = 0; i < free.size(); ++i) {

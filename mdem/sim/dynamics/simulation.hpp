@@ -35,7 +35,7 @@ inline double default_skin(const Interaction& in) { return in.line.empty() ? 0.1
 class Simulation {
  public:
   // time_step: by how much a step takes time forward. skin: of all lists; 0: chosen here.
-  Simulation(Topology topology, Interaction interaction, Drive drive, State state, double time_step,
+  Simulation(Topology topology, Interaction interaction, LoadsAndConstraints loads, State state, double time_step,
              double skin = 0, Stepping stepping = {});
 
   // Without `energies` the contact energy may be NaN afterwards, and with it the total one: they cost a tenth of a
@@ -50,7 +50,7 @@ class Simulation {
 
   const Topology& topology() const { return topology_; }
   const Interaction& interaction() const { return interaction_; }
-  const Drive& drive() const { return drive_; }
+  const LoadsAndConstraints& loads() const { return loads_; }
   const State& state() const { return state_; }
   const Forces& forces() const { return forces_; }
   const NeighbourList& list() const { return list_; }
@@ -105,7 +105,7 @@ class Simulation {
 
   Topology topology_;
   Interaction interaction_;
-  Drive drive_;
+  LoadsAndConstraints loads_;
   State state_;
   double time_step_ = 0;
   Stepping stepping_;

@@ -234,7 +234,7 @@ class BentChains {
   void relax();
 
   Bundle bundle_;
-  Drive drive_;
+  LoadsAndConstraints loads_;
   Vec3Array straight_;
   Energies energy_;
   bool glued_;
@@ -253,7 +253,7 @@ BentChains::BentChains(const Grips& grips, const ParameterSet& set)
   bundle_ = line_bundle(divided, tubes, per_tube_);
   for (int t = 0; t < (glued_ ? tubes : 1); ++t)
     for (int e = 0; e < per_tube_; ++e)
-      if (e <= beyond || e >= bonds + beyond) drive_.fixed.push_back({t * per_tube_ + e});
+      if (e <= beyond || e >= bonds + beyond) loads_.add(FixLoad({t * per_tube_ + e}));
   straight_ = bundle_.state.position;
   bundle_.time_step *= step_fraction / default_step_fraction;
   relax();
@@ -282,7 +282,7 @@ void BentChains::bend(double angle) {
 }
 
 void BentChains::relax() {
-  Simulation simulation(bundle_.topology, bundle_.interaction, drive_, bundle_.state, bundle_.time_step);
+  Simulation simulation(bundle_.topology, bundle_.interaction, loads_, bundle_.state, bundle_.time_step);
   if (!simulation.relax(force_tolerance, most_steps, [](long) { return true; }))
     throw NumericalError(most_steps, -1, "the bent bundle did not come to rest", "take a smaller increment");
   bundle_.state = simulation.state();

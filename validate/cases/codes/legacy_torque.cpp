@@ -4,6 +4,7 @@
 
 #include "cases/common/chains.hpp"
 #include "model/error.hpp"
+#include "scene/kinds/rope.hpp"
 #include "scene/prepare.hpp"
 
 namespace ropewalk {
@@ -34,8 +35,8 @@ Record undamped_bundle(const ParameterSet& set, bool legacy) {
   RopeSource rope;
   rope.tubes = 7;
   rope.length = 5 * set.element_length;
-  scene.source = rope;
-  scene.temperature = 10;
+  scene.source = std::make_shared<RopeSource>(rope);
+  scene.start.temperature = 10;
   scene.contact.legacy_torque = legacy;
   scene.run.time_step = step;
   scene.run.duration = duration;

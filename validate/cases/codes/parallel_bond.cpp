@@ -12,8 +12,8 @@ constexpr int bonds = 20;
 
 double total_energy_deflection(const ParameterSet& set, double force) {
   Chain c(set, bonds);
-  c.drive.fixed.push_back({0});
-  c.drive.loads.push_back({c.last, {force, 0, 0}, Vector3::Zero()});
+  c.loads.add(FixLoad({0}));
+  c.loads.add(ForceLoad({c.last}, {force, 0, 0}));
   return c.relaxed(1e-7).state().position[static_cast<std::size_t>(c.last)].x();
 }
 

@@ -93,7 +93,7 @@ Twisted twist_elements(const ParameterSet& set) {
   for (int k = 0; k <= increments; ++k) {
     if (k > 0) rope.turn(angle_step);
     const Simulation s =
-        at_rest(Simulation(rope.topology, rope.interaction, rope.drive, rope.state, step), 1e-3, 100000);
+        at_rest(Simulation(rope.topology, rope.interaction, rope.loads, rope.state, step), 1e-3, 100000);
     rope.state = s.state();
     const Energies& now = s.forces().energy;
     if (k == 0) straight = now;

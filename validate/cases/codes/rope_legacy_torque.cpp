@@ -29,8 +29,8 @@ GrippedRope turning_rope(const ParameterSet& set, bool legacy, double damping) {
   rope.interaction.damping.contact = {damping * viscosity, rope.spacing, 1.5 * rope.spacing};
   rope.interaction.damping.bond.rate = damping * bond_damping;
   const double half = 0.5 * angle, rate = half / turning;
-  rope.drive.turned = {{rope.lower, -rate, -half, Vector3::Zero(), false},
-                       {rope.upper, rate, half, Vector3::Zero(), false}};
+  rope.loads.add(PrescribedRotation(rope.lower, -rate, -half, false));
+  rope.loads.add(PrescribedRotation(rope.upper, rate, half, false));
   return rope;
 }
 
@@ -38,7 +38,7 @@ GrippedRope turning_rope(const ParameterSet& set, bool legacy, double damping) {
 Record twist(const ParameterSet& set, bool legacy, double damping) {
   const GrippedRope rope = turning_rope(set, legacy, damping);
   const double step = default_step_fraction * time_step_limit(rope.topology, rope.interaction, rope.spacing).limit;
-  Simulation s(rope.topology, rope.interaction, rope.drive, rope.state, step);
+  Simulation s(rope.topology, rope.interaction, rope.loads, rope.state, step);
   const Energies first = s.forces().energy;
   // What the constraint gives the grips at the very start is not work of the turn.
   const double start = s.total_energy();
@@ -99,7 +99,7 @@ ContactMoment contact_moment(const ParameterSet& set, int tubes, double rate, bo
   interaction.paper = set.paper;
   interaction.legacy_torque = legacy;
   const auto forces = [&](const State& state) {
-    return Simulation(topology, interaction, Drive{}, state, units::fs).forces();
+    return Simulation(topology, interaction, LoadsAndConstraints{}, state, units::fs).forces();
   };
   const State less = even_helix(set, tubes, elements, rate - h), more = even_helix(set, tubes, elements, rate + h);
   const Forces here = forces(even_helix(set, tubes, elements, rate));

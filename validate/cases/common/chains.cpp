@@ -22,7 +22,7 @@ Chain::Chain(const ParameterSet& set, int bonds)
 }
 
 Simulation Chain::make(double step_fraction) const {
-  return Simulation(topology, interaction, drive, state,
+  return Simulation(topology, interaction, loads, state,
                     step_fraction * time_step_limit(topology, interaction, 0).limit);
 }
 

@@ -7,6 +7,10 @@
 #include <vector>
 
 #include "core/case.hpp"
+#include "scene/loads/fix.hpp"
+#include "scene/loads/force.hpp"
+#include "scene/loads/rotate.hpp"
+#include "scene/loads/torque.hpp"
 #include "sim/dynamics/simulation.hpp"
 
 namespace ropewalk {
@@ -18,7 +22,7 @@ Topology topology_of(const ParameterSet& set);
 struct Chain {
   Topology topology;
   Interaction interaction;
-  Drive drive;
+  LoadsAndConstraints loads;
   State state;
   int last = 0;
 

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "scene/build.hpp"
+#include "scene/scene_to_model.hpp"
 
 namespace ropewalk {
 

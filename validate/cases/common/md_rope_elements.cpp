@@ -4,6 +4,7 @@
 #include "cases/common/md_rope.hpp"
 #include "model/error.hpp"
 #include "scene/build.hpp"
+#include "scene/loads/fix.hpp"
 #include "sim/dynamics/simulation.hpp"
 
 namespace ropewalk {
@@ -37,7 +38,7 @@ class ClampedRope {
 
   Topology topology_;
   Interaction interaction_;
-  Drive drive_;
+  LoadsAndConstraints loads_;
   State state_;
   Forces forces_;
   double time_step_ = 0, length_ = 0, axial_stiffness_ = 0, rise_ = 0;
@@ -65,7 +66,7 @@ ClampedRope::ClampedRope(const TwistedRope& rope, const ParameterSet& set)
       state_.position.set(static_cast<std::size_t>(first + e), {x, y, (e - 0.5 * (elements - 1)) * a});
       const bool above = e >= bonds_ + beyond_;
       if (above) upper_.push_back(first + e);
-      if (above || e <= beyond_) drive_.fixed.push_back({first + e});
+      if (above || e <= beyond_) loads_.add(FixLoad({first + e}));
     }
   }
   interaction_.line = {contact_of(set, a)};
@@ -102,7 +103,7 @@ void ClampedRope::release() {
 }
 
 void ClampedRope::relax() {
-  Simulation simulation(topology_, interaction_, drive_, state_, time_step_);
+  Simulation simulation(topology_, interaction_, loads_, state_, time_step_);
   if (!simulation.relax(force_tolerance, most_steps, [](long) { return true; }))
     throw NumericalError(most_steps, -1, "the twisted rope did not come to rest", "take a smaller increment");
   state_ = simulation.state();

@@ -35,8 +35,8 @@ double GrippedRope::place(int element) const {
 }
 
 void GrippedRope::hold_grips() {
-  for (const int e : lower) drive.fixed.push_back({e});
-  for (const int e : upper) drive.fixed.push_back({e});
+  for (const int e : lower) loads.add(FixLoad({e}));
+  for (const int e : upper) loads.add(FixLoad({e}));
 }
 
 void GrippedRope::turn(double angle) {

@@ -17,7 +17,7 @@ struct GrippedRope {
 
   Topology topology;
   Interaction interaction;
-  Drive drive;  // nothing yet
+  LoadsAndConstraints loads;  // nothing yet
   State state;
   std::vector<int> lower, upper;  // elements of the grips
   int bonds = 0;                  // between the grips, of each tube

@@ -15,9 +15,10 @@ constexpr int increments = 24;
 // rest (rad), NaN where the bond slips.
 double twisted(const ParameterSet& set, double moment) {
   Chain c(set, 1);
-  c.drive.fixed = {{0}};
   for (int k = 1; k <= increments; ++k) {
-    c.drive.loads = {{1, Vector3::Zero(), Vector3(0, 0, moment * k / increments)}};
+    c.loads = {};
+    c.loads.add(FixLoad({0}));
+    c.loads.add(TorqueLoad({1}, Vector3(0, 0, moment * k / increments)));
     try {
       c.state = c.relaxed(1e-6).state();
     } catch (const NumericalError&) {

@@ -21,8 +21,8 @@ constexpr int bonds = 4;
 // Angle of a bond (rad) in a tube at rest under the moment m EI/a.
 double bend_of_bond(const ParameterSet& set, double m) {
   Chain c(set, bonds);
-  c.drive.fixed = {{0}};
-  c.drive.loads = {{c.last, Vector3::Zero(), Vector3(m * set.bond.bend / set.element_length, 0, 0)}};
+  c.loads.add(FixLoad({0}));
+  c.loads.add(TorqueLoad({c.last}, Vector3(m * set.bond.bend / set.element_length, 0, 0)));
   const State s = c.relaxed(1e-7).state();
   const Vector3 first = axis_of(s.orientation[0]), last = axis_of(s.orientation[static_cast<std::size_t>(bonds)]);
   return std::atan2(first.cross(last).norm(), first.dot(last)) / bonds;

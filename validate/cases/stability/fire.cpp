@@ -16,8 +16,8 @@ constexpr double bent = 0.5;  // nm at the tip: no longer straight
 struct Column {
   Chain chain;
   explicit Column(const ParameterSet& set, double load) : chain(set, bonds) {
-    chain.drive.fixed = {{0}};
-    chain.drive.loads = {{chain.last, Vector3(0, 0, -load), Vector3::Zero()}};
+    chain.loads.add(FixLoad({0}));
+    chain.loads.add(ForceLoad({chain.last}, Vector3(0, 0, -load)));
     const double shortened = set.element_length * (1 - load / set.bond.stretch);
     for (int i = 0; i <= bonds; ++i) chain.state.position.set(static_cast<std::size_t>(i), {0, 0, i * shortened});
   }

@@ -44,7 +44,7 @@ double found_at_once(const ParameterSet& set, const std::function<void(State&)>&
 // The same of a load, in dynamics and in a relaxation.
 double load_found_at_once(const ParameterSet& set, double force, bool relax) {
   Chain c(set, bonds);
-  c.drive.loads = {{static_cast<int>(hit), Vector3(0, force, 0), Vector3::Zero()}};
+  c.loads.add(ForceLoad({static_cast<int>(hit)}, Vector3(0, force, 0)));
   End e;
   if (relax) {
     try {
@@ -62,8 +62,8 @@ double load_found_at_once(const ParameterSet& set, double force, bool relax) {
 double sudden_couple(const ParameterSet& set, double about) {
   const auto fails = [&](double couple) {
     Chain c(set, 1);
-    c.drive.fixed = {{0}};
-    c.drive.loads = {{1, Vector3::Zero(), Vector3(0, 0, couple)}};
+    c.loads.add(FixLoad({0}));
+    c.loads.add(TorqueLoad({1}, Vector3(0, 0, couple)));
     return run_of(c, 400).stopped;
   };
   return limit_between(fails, 0.3 * about, 3 * about);
@@ -126,8 +126,8 @@ CaseResult run(const CaseContext& context) {
   std::vector<double> couple, largest;
   for (double part = 0.2; part < 0.99; part += 0.1) {
     Chain c(model, 1);
-    c.drive.fixed = {{0}};
-    c.drive.loads = {{1, Vector3::Zero(), Vector3(0, 0, part * torque_theory)}};
+    c.loads.add(FixLoad({0}));
+    c.loads.add(TorqueLoad({1}, Vector3(0, 0, part * torque_theory)));
     Simulation s = c.make(0.2);
     double twist = 0;
     for (int k = 0; k < 400; ++k) {

@@ -31,7 +31,7 @@ Peel peel(const ParameterSet& set, double opening, double crack) {
   Bundle b = line_bundle(set, 1, elements);
   b.topology.add_tube(elements);
   b.state = State(static_cast<std::size_t>(2 * elements));
-  Drive drive;
+  LoadsAndConstraints loads;
   for (int t = 0; t < 2; ++t) {
     const double side = t == 0 ? -1 : 1;
     const auto first = static_cast<std::size_t>(t * elements);
@@ -39,11 +39,11 @@ Peel peel(const ParameterSet& set, double opening, double crack) {
       b.state.position.set(first + static_cast<std::size_t>(e),
                            {0.5 * side * b.spacing, 0, e * set.element_length});
     open_arm(opening, crack, side, set, first, b.state);
-    drive.fixed.push_back({t * elements, true, true, false, false});
-    drive.fixed.push_back({(t + 1) * elements - 1, false, true, true, false});
+    loads.add(FixLoad({t * elements}, true, true, false, false));
+    loads.add(FixLoad({(t + 1) * elements - 1}, false, true, true, false));
   }
   const double step = default_step_fraction * time_step_limit(b.topology, b.interaction, b.spacing).limit;
-  const Simulation s = at_rest(Simulation(b.topology, b.interaction, drive, b.state, step), 1e-5, 400000);
+  const Simulation s = at_rest(Simulation(b.topology, b.interaction, loads, b.state, step), 1e-5, 400000);
   Peel out;
   out.opening = opening;
   for (const std::size_t end : {std::size_t{0}, static_cast<std::size_t>(elements)}) {

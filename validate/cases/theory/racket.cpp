@@ -103,9 +103,9 @@ Bundle folded(const ParameterSet& set, int elements, const Head& head) {
 
 // Tells apart what the chain does in its plane, where the oracle holds, from how it leaves it.
 State relaxed(const Bundle& b, const State& start, bool in_plane, Energies& energy) {
-  Drive drive;
-  for (int e = 0; in_plane && e < b.topology.elements(); ++e) drive.fixed.push_back({e, false, false, true, false});
-  const Simulation s = at_rest(Simulation(b.topology, b.interaction, drive, start, b.time_step), 1e-5, 150000);
+  LoadsAndConstraints loads;
+  for (int e = 0; in_plane && e < b.topology.elements(); ++e) loads.add(FixLoad({e}, false, false, true, false));
+  const Simulation s = at_rest(Simulation(b.topology, b.interaction, loads, start, b.time_step), 1e-5, 150000);
   energy = s.forces().energy;
   return s.state();
 }

@@ -16,8 +16,9 @@ struct EndMotion {
 
 EndMotion loaded_end(const ParameterSet& set, const Vector3& force, const Vector3& torque) {
   Chain c(set, bonds);
-  c.drive.fixed.push_back({0});
-  c.drive.loads.push_back({c.last, force, torque});
+  c.loads.add(FixLoad({0}));
+  c.loads.add(ForceLoad({c.last}, force));
+  c.loads.add(TorqueLoad({c.last}, torque));
   const auto end = static_cast<std::size_t>(c.last);
   const Simulation s = c.relaxed(1e-7);
   double rotation = 0;

@@ -1,0 +1,102 @@
+#include "plan/planned_scene.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "plan/scene_edit.hpp"
+#include "scene/dissipation.hpp"
+#include "scene/scene_toml.hpp"
+
+namespace ropewalk {
+namespace {
+
+bool names_only_ends(const Selection& on) {
+  return on.all_elements ||
+         std::all_of(on.elements.begin(), on.elements.end(), [](int e) { return e == 0 || e == -1; });
+}
+
+}  // namespace
+
+int elements_of(const Scene& scene) { return scene.source->sizes(scene.element_length).elements; }
+
+std::string fixed_length(const Scene& scene) {
+  if (scene.from_file()) return "the elements come from a file";
+  if (tube_size_key(scene).tube_size == SceneKey::TubeSize::no) return "the tubes have no common length";
+  if (scene.contact.law == ContactOptions::Law::paper) return "law \"paper\" holds for its set's length alone";
+  for (const SceneLoad& load : scene.loads)
+    if (!names_only_ends(load.on)) return "a load names elements by number";
+  return "";
+}
+
+void PlannedScene::set(const std::string& table, const std::string& key, const std::string& value,
+                       const std::string& why) {
+  text_ = with_key(text_, table, key, value);
+  why_.push_back(fmt::format("{}{}{} = {}: {}", table, table.empty() ? "" : ".", key, value, why));
+}
+
+void PlannedScene::take_away(const std::string& table, const std::string& key) {
+  text_ = without_key(text_, table, key);
+}
+
+double PlannedScene::longest() const {
+  const int elements = elements_of(scene_);
+  return elements > 0 ? elements * scene_.element_length : std::numeric_limits<double>::infinity();
+}
+
+void PlannedScene::drop_what_is_not_there() {
+  if (scene_.contact.law == ContactOptions::Law::none || features_.contact) return;
+  if (features_.curvature * longest() > units::pi) {
+    remark("contact stays: the lone tube may bend back to itself");
+    return;
+  }
+  set("contact", "law", "\"none\"", "one tube, which does not come back to itself");
+}
+
+void PlannedScene::lengthen(double times, const std::string& why) {
+  if (!fixed_length(scene_).empty()) return;
+  const double wanted = times * scene_.parameters().element_length, old = scene_.element_length;
+  if (std::fabs(wanted / old - 1) < 1e-6) return;
+  const int overhang = scene_.twist || !scene_.loads.empty() ? 1 : 0;
+  const double between = (elements_of(scene_) - overhang) * old;
+  const long parts = std::max(2L, std::lround(between / wanted));
+  const double length = between / static_cast<double>(parts);
+  set("", "element_length_nm", fmt::format("{:.10g}", length), why);
+  keep_dissipation(length);
+  const long now = parts + overhang;
+  const SceneKey size = tube_size_key(scene_);
+  set(size.table, size.key,
+      size.tube_size == SceneKey::TubeSize::elements ? std::to_string(now)
+                                                     : fmt::format("{:.10g}", static_cast<double>(now) * length),
+      overhang ? "the ends' centres stay as far apart" : "the tubes stay as long");
+}
+
+void PlannedScene::keep_dissipation(double length) {
+  const Damping &now = scene_.damping, kept = same_dissipation(now, scene_.element_length, length);
+  const auto write = [&](const char* key, double value) {
+    set("damping", key, fmt::format("{:.6g}", value), "as much per length of tube as before");
+  };
+  if (now.contact.eta > 0 && features_.contact) write("contact_viscosity_eV_ps_per_nm2", kept.contact.eta);
+  if (now.bond.rate > 0) write("bond_damping_per_ps", kept.bond.rate);
+}
+
+void PlannedScene::finish() {
+  if (nodes_per_nm_ > 0) {
+    const long nodes = std::max(1L, std::lround(nodes_per_nm_ * scene_of_text(text_, scene_.path).element_length));
+    set("contact", "nodes_per_element", std::to_string(nodes), nodes_why_);
+  }
+  if (step_ > 0) {
+    text_ = with_key(text_, "run", "time_step_fs", "\"auto\"");
+    Scene so_far = scene_of_text(text_, scene_.path);
+    const Prepared p = prepare(so_far);
+    const int every = so_far.run.stepping.contact_every;
+    // Whatever part of the limit the chart's default and this one's are.
+    const double most = cold_step_fraction * inner_step_limit(p.limit, every),
+                 chosen = std::min(step_ * p.time_step / every, most);
+    set("run", "time_step_fs", fmt::format("{:.4g}", chosen / units::fs), step_why_);
+  }
+}
+
+}  // namespace ropewalk

@@ -1,0 +1,55 @@
+// The text of a scene as the planner changes it, with a line of reason for each change.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "plan/features.hpp"
+
+namespace ropewalk {
+
+class PlannedScene {
+ public:
+  // `scene` with its text.
+  PlannedScene(const Scene& scene, const SceneFeatures& features)
+      : scene_(scene), features_(features), text_(scene.text) {}
+
+  void set(const std::string& table, const std::string& key, const std::string& value, const std::string& why);
+  void take_away(const std::string& table, const std::string& key);
+  void remark(std::string line) { why_.push_back(std::move(line)); }
+
+  // No contact for a lone tube that does not come back to itself.
+  void drop_what_is_not_there();
+  // Elements so many times as long as the set's, which the chart's default has. As in the chart, what lies between
+  // the centres of the end elements stays as long as it is where loads act on them; else the whole tube does.
+  // Nothing where elements keep their length.
+  void lengthen(double times, const std::string& why);
+  void default_length() { lengthen(1, "as the chart's default"); }
+  // Written at the end: nodes go with the length of the elements, the time step with everything.
+  void set_nodes(double per_nm, const std::string& why) { nodes_per_nm_ = per_nm, nodes_why_ = why; }
+  void set_step(double times_default, const std::string& why) { step_ = times_default, step_why_ = why; }
+  void finish();
+
+  const Scene& scene() const { return scene_; }
+  const std::string& text() const { return text_; }
+  const std::vector<std::string>& why() const { return why_; }
+
+ private:
+  double longest() const;  // nm, of the tubes
+  void keep_dissipation(double length);
+
+  const Scene& scene_;
+  const SceneFeatures& features_;
+  std::string text_;
+  std::vector<std::string> why_;
+  double nodes_per_nm_ = 0, step_ = 0;
+  std::string nodes_why_, step_why_;
+};
+
+// Elements of a tube of the scene; 0: not known beforehand.
+int elements_of(const Scene& scene);
+
+// Why elements cannot be longer or shorter in this scene; empty: they can.
+std::string fixed_length(const Scene& scene);
+
+}  // namespace ropewalk

@@ -1,0 +1,49 @@
+#include "scene/loads/fix.hpp"
+
+#include <fmt/format.h>
+
+#include "scene/loads/load_kind.hpp"
+
+namespace ropewalk {
+namespace {
+
+using Key = KeyOf<FixLoad>;
+
+void read_axes(const TomlTable& t, const Scene&, FixLoad& fix) {
+  if (!t.has("axes")) return;
+  // Empty is a text here: nothing but the orientation.
+  const std::string axes = t.text("axes");
+  fix.x = axes.find('x') != std::string::npos;
+  fix.y = axes.find('y') != std::string::npos;
+  fix.z = axes.find('z') != std::string::npos;
+  if (axes.size() != static_cast<std::size_t>(fix.x + fix.y + fix.z))
+    throw t.error("axes", fmt::format("is \"{}\"", printable(axes, 40)),
+                  "write x, y and z, each at most once: \"xy\"");
+}
+
+void check(const TomlTable& t, const Scene&, FixLoad& fix) {
+  if (!fix.x && !fix.y && !fix.z && !fix.rotation)
+    throw t.error("axes", "is empty and rotation is false: nothing is fixed", "take the load away");
+}
+
+}  // namespace
+
+LoadKind fix_kind() {
+  return load_kind<FixLoad>({"fix",
+                             "",
+                             {Key::custom("axes", "", standard("\"xyz\""), "coordinates that are held", read_axes),
+                              Key::boolean("rotation", &FixLoad::rotation, standard(), "orientation is held")},
+                             check});
+}
+
+void FixLoad::constrain(const Topology&, double, const Forces&, double, State& state, double&) const {
+  for (const int e : elements) {
+    const auto i = static_cast<std::size_t>(e);
+    if (x) state.velocity.x[i] = 0;
+    if (y) state.velocity.y[i] = 0;
+    if (z) state.velocity.z[i] = 0;
+    if (rotation) state.angular_velocity.set(i, Vector3::Zero());
+  }
+}
+
+}  // namespace ropewalk

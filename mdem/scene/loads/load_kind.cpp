@@ -1,0 +1,173 @@
+#include "scene/loads/load_kind.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+
+#include "scene/build.hpp"
+#include "scene/scene.hpp"
+
+namespace ropewalk {
+
+// One line for each shipped kind, and one below.
+LoadKind fix_kind();
+LoadKind force_kind();
+LoadKind torque_kind();
+LoadKind rotate_kind();
+
+namespace {
+
+std::vector<LoadKind>& all_kinds() {
+  static std::vector<LoadKind> kinds = {
+      fix_kind(),
+      force_kind(),
+      torque_kind(),
+      rotate_kind(),
+  };
+  return kinds;
+}
+
+// "a", "b" or "c".
+std::string kind_names() {
+  std::string text;
+  const std::size_t kinds = load_kinds().size();
+  for (std::size_t k = 0; k < kinds; ++k)
+    text += fmt::format("{}\"{}\"", k == 0 ? "" : k + 1 == kinds ? " or " : ", ", load_kinds()[k].name);
+  return text;
+}
+
+const LoadKind& read_kind(const TomlTable& t) {
+  Words<const LoadKind*> words;
+  for (const LoadKind& k : load_kinds()) words.emplace_back(k.name.c_str(), &k);
+  const LoadKind& kind = *t.word("kind", words);
+  const auto has = [](const LoadKind& k, const std::string& key) {
+    return std::any_of(k.keys.begin(), k.keys.end(), [&](const SceneKey& own) { return own.key == key; });
+  };
+  for (const std::string& key : t.keys())
+    for (const LoadKind& other : load_kinds())
+      if (has(other, key) && !has(kind, key))
+        throw t.error(key, fmt::format("belongs to kind = \"{}\", and this load is \"{}\"", other.name, kind.name),
+                      "take the key away, or write a [[load]] of its own");
+  return kind;
+}
+
+void check_index(const TomlTable& t, const char* key, const char* what, long index, int count) {
+  if (count == 0 || (index < count && index >= -count)) return;
+  const std::string from_end =
+      std::string(key) == "elements" ? fmt::format(", or -1 to -{} from the end", count) : "";
+  throw t.error(key, fmt::format("there is no {} {}", what, index),
+                fmt::format("they are 0 to {}{}", count - 1, from_end));
+}
+
+// Twice the same one would be loaded twice.
+void check_unique(const TomlTable& t, const char* key, std::vector<long> indices, int count) {
+  for (long& i : indices)
+    if (i < 0 && count > 0) i += count;
+  std::sort(indices.begin(), indices.end());
+  const auto twice = std::adjacent_find(indices.begin(), indices.end());
+  if (twice != indices.end()) throw t.error(key, fmt::format("names {} twice", *twice), "name each once");
+}
+
+// `count`: how many there are; 0: not known.
+std::vector<int> read_indices(const TomlTable& t, const char* key, const char* what, long least, int count) {
+  const std::vector<long> indices = t.integers(key, least, most_elements);
+  for (const long i : indices) check_index(t, key, what, i, count);
+  check_unique(t, key, indices, count);
+  return {indices.begin(), indices.end()};
+}
+
+void read_tubes(const TomlTable& t, const Scene& scene, Selection& on) {
+  on.all_tubes = !t.has("tubes") || (t.is_string("tubes") && t.word("tubes", Words<bool>{{"all", true}}));
+  const Source::Sizes sizes = scene.source->sizes(scene.element_length);
+  if (!on.all_tubes) on.tubes = read_indices(t, "tubes", "tube", 0, sizes.tubes);
+}
+
+void read_elements(const TomlTable& t, const Scene& scene, Selection& on) {
+  const Source::Sizes sizes = scene.source->sizes(scene.element_length);
+  if (!t.is_string("elements")) {
+    on.elements = read_indices(t, "elements", "element", -long{most_elements}, sizes.elements);
+    return;
+  }
+  on.all_elements = t.word("elements", Words<bool>{{"all", true}, {"ends", false}});
+  if (!on.all_elements) on.elements = {0, -1};
+}
+
+// What all loads have.
+KeyTable<Selection> selection_table() {
+  using Key = KeyOf<Selection>;
+  return {"load",
+          "any number of these: what else acts on elements",
+          {Key::custom("kind", "", required("\"fix\""), kind_names(),
+                       [](const TomlTable& t, const Scene&, Selection&) { read_kind(t); }),
+           Key::custom("tubes", "", standard("\"all\""), "\"all\" or numbers from 0: [0, 3]", read_tubes),
+           Key::custom("elements", "", required("\"ends\""),
+                       "\"all\", \"ends\" or numbers from 0, negative from the end", read_elements)},
+          {}};
+}
+
+std::vector<int> selected_tubes(const Scene& scene, const Selection& on, const Topology& topology) {
+  std::vector<int> tubes;
+  if (on.all_tubes) {
+    for (int t = 0; t < topology.tubes(); ++t) tubes.push_back(t);
+    return tubes;
+  }
+  for (int t : on.tubes) {
+    if (t < 0 || t >= topology.tubes())
+      throw InputError({scene.path, 0, "load.tubes"}, fmt::format("there is no tube {}", t),
+                       fmt::format("tubes are numbered from 0 to {}", topology.tubes() - 1));
+    tubes.push_back(t);
+  }
+  return tubes;
+}
+
+}  // namespace
+
+const std::vector<LoadKind>& load_kinds() { return all_kinds(); }
+
+bool add_load_kind(LoadKind kind) {
+  assert(std::none_of(all_kinds().begin(), all_kinds().end(),
+                      [&](const LoadKind& other) { return other.name == kind.name; }));
+  all_kinds().push_back(std::move(kind));
+  return true;
+}
+
+SceneTable load_table() {
+  SceneTable table = selection_table().doc();
+  for (const LoadKind& kind : load_kinds())
+    for (SceneKey key : kind.keys) {
+      if (key.required()) key.standard = "required by " + kind.name;
+      key.meaning = kind.name + ": " + key.meaning;
+      key.table = table.name;
+      table.keys.push_back(std::move(key));
+    }
+  return table;
+}
+
+SceneLoad read_load(const TomlTable& t, const Scene& scene) {
+  SceneLoad load;
+  load.on = selection_table().read(t, scene);
+  load.load = read_kind(t).read(t, scene);
+  return load;
+}
+
+std::vector<int> selected_elements(const Scene& scene, const Selection& on, const Topology& topology) {
+  std::vector<int> elements;
+  for (int t : selected_tubes(scene, on, topology)) {
+    const int length = topology.length_of(t);
+    if (on.all_elements) {
+      for (int e = 0; e < length; ++e) elements.push_back(topology.tube_begin[t] + e);
+      continue;
+    }
+    for (int e : on.elements) {
+      const int at = e < 0 ? length + e : e;
+      if (at < 0 || at >= length)
+        throw InputError({scene.path, 0, "load.elements"}, fmt::format("tube {} has no element {}", t, e),
+                         fmt::format("its elements are 0 to {}, or -1 to -{} from the end", length - 1, length));
+      elements.push_back(topology.tube_begin[t] + at);
+    }
+  }
+  return elements;
+}
+
+}  // namespace ropewalk

@@ -1,0 +1,72 @@
+// The register of [[load]] kinds. A kind is one file: its class (sim/dynamics/loads.hpp), its keys and its entry
+// here.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "scene/key_table.hpp"
+#include "sim/dynamics/loads.hpp"
+
+namespace ropewalk {
+
+struct LoadKind {
+  std::string name;                                                                 // kind = "name"
+  std::vector<SceneKey> keys;                                                       // of this kind alone
+  std::function<std::shared_ptr<const Load>(const TomlTable&, const Scene&)> read;  // acting on no element yet
+};
+
+// The table's name is that of the kind.
+template <class L>
+LoadKind load_kind(const KeyTable<L>& table) {
+  return {table.name, table.doc().keys, [table](const TomlTable& t, const Scene& scene) {
+            return std::make_shared<const L>(table.read(t, scene));
+          }};
+}
+
+// A required vector that is not zero and that the halves of a split element share.
+template <class L>
+KeyOf<L> vector_key(const std::string& key, Unit u, Vector3 L::*member, const std::string& example,
+                    const std::string& meaning) {
+  constexpr double largest = 1e4;
+  return KeyOf<L>::custom(key, u.name, required(example), meaning,
+                          [=](const TomlTable& t, const Scene&, L& out) {
+                            const std::vector<double> v = t.numbers(key, Bounds::range(-largest, largest), 3);
+                            out.*member = Vector3(v[0], v[1], v[2]);
+                            if (out.*member == Vector3::Zero()) throw t.error(key, "is zero", "take the load away");
+                            out.*member *= u.size;
+                          })
+      .goes_as_length(1);
+}
+
+// The shipped kinds, and those that were added.
+const std::vector<LoadKind>& load_kinds();
+// For kinds from elsewhere; returns true, so that a static variable can do it. The name must be new.
+bool add_load_kind(LoadKind kind);
+
+// The keys of [[load]]: those of all loads, then those of each kind.
+SceneTable load_table();
+
+// Elements that a load acts on: every combination of a tube and an element index; negative indices count
+// from the end of the tube.
+struct Selection {
+  bool all_tubes = true;
+  std::vector<int> tubes;
+  bool all_elements = false;
+  std::vector<int> elements;
+};
+
+// One [[load]] of a scene, and what it acts on.
+struct SceneLoad {
+  Selection on;
+  std::shared_ptr<const Load> load;
+};
+
+// One [[load]]. The source of the elements must have been read.
+SceneLoad read_load(const TomlTable& t, const Scene& scene);
+
+// Throws InputError for elements that do not exist.
+std::vector<int> selected_elements(const Scene& scene, const Selection& on, const Topology& topology);
+
+}  // namespace ropewalk

@@ -1,0 +1,71 @@
+#include "scene/loads/rotate.hpp"
+
+#include "scene/loads/load_kind.hpp"
+
+namespace ropewalk {
+namespace {
+
+using Key = KeyOf<PrescribedRotation>;
+
+void read_centre(const TomlTable& t, const Scene&, PrescribedRotation& load) {
+  if (!t.has("centre_nm")) return;
+  const std::vector<double> c = t.numbers("centre_nm", Bounds::range(-1e6, 1e6), 2);
+  load.centre = {c[0], c[1], 0};
+}
+
+void check(const TomlTable& t, const Scene&, PrescribedRotation& load) {
+  if (load.rate == 0)
+    throw t.error("rate_deg_per_ps", "is 0", "to hold elements where they are take kind = \"fix\"");
+  load.angle = std::copysign(load.angle, load.rate);
+}
+
+}  // namespace
+
+LoadKind rotate_kind() {
+  using R = PrescribedRotation;
+  return load_kind<R>(
+      {"rotate",
+       "",
+       {Key::number("rate_deg_per_ps", {"deg/ps", units::degree}, Bounds::range(-360, 360), &R::rate, required("1"),
+                    "speed of the prescribed rotation about z, negative: left-handed"),
+        Key::number("angle_deg", unit::degree, Bounds::positive(1e6), &R::angle, required("360"), "where it stops"),
+        Key::custom("centre_nm", "nm", standard("[0, 0]"), "x and y of the axis", read_centre),
+        Key::boolean("axial_free", &R::axial_free, standard(), "z is free"),
+        Key::boolean("spin_free", &R::spin_free, standard(), "elements may turn about their own axes")},
+       check});
+}
+
+std::optional<LoadEffect> PrescribedRotation::effect() const {
+  return LoadEffect{0, Vector3::Zero(), std::fabs(angle), rate != 0 ? angle / rate : 0.0};
+}
+
+void PrescribedRotation::set_velocities(double time, std::size_t i, State& state) const {
+  const Vector3 omega(0, 0, speed(time));
+  const Vector3 v = omega.cross(state.position[i] - centre);
+  state.velocity.x[i] = v.x();
+  state.velocity.y[i] = v.y();
+  if (!axial_free) state.velocity.z[i] = 0;
+  Vector3 w = omega;
+  if (spin_free) {
+    const Vector3 t = axis_of(state.orientation[i]);
+    w += (state.angular_velocity[i] - omega).dot(t) * t;
+  }
+  state.angular_velocity.set(i, w);
+}
+
+// The kinetic energy is prescribed: what the other forces did not give, the constraint gave.
+void PrescribedRotation::constrain(const Topology& topology, double time, const Forces& total, double kick,
+                                   State& state, double& work) const {
+  for (const int e : elements) {
+    const auto i = static_cast<std::size_t>(e);
+    const TubeType& type = topology.type_of_element(e);
+    const Vector3 dv = kick / type.mass * total.force[i], dw = kick / type.inertia * total.torque[i];
+    const Vector3 v0 = state.velocity[i] - dv, w0 = state.angular_velocity[i] - dw;
+    set_velocities(time, i, state);
+    const Vector3 v1 = state.velocity[i], w1 = state.angular_velocity[i];
+    // Free components satisfy v1 - v0 = dv and drop out.
+    work += 0.5 * type.mass * (v1 - v0 - dv).dot(v1 + v0) + 0.5 * type.inertia * (w1 - w0 - dw).dot(w1 + w0);
+  }
+}
+
+}  // namespace ropewalk

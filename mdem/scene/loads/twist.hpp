@@ -1,0 +1,46 @@
+// [twist] the two-stage protocol: the moment on the grip elements (first and last of every tube; + at the upper
+// end, - at the lower) is ramped at a rate and then held. One such load acts on one grip.
+#pragma once
+
+#include "sim/dynamics/loads.hpp"
+
+namespace ropewalk {
+
+class TwistLoad : public Load {
+ public:
+  enum class Reading { per_tube, total };         // the moment is that of each grip element, or of all of them
+  enum class Application { couple, tangential };  // a couple on each element, or tangential forces on the grip
+  double moment = 0;                              // eV, in its reading
+  double rate = 0;                                // eV/ps
+  double hold = 0;                                // ps after the ramp
+  Reading reading = Reading::per_tube;
+  Application application = Application::couple;
+  bool lateral_free = true;
+  bool axial_free = true;
+  bool geometric_only = false;  // relax every spin about the tube axis at each increment
+  double increment = 1.0;       // ps between such relaxations
+  double sign = 1;              // of the moment: + on the upper grip, - on the lower
+
+  double ramp_time() const { return rate > 0 ? moment / rate : 0.0; }
+  // eV, without the sign.
+  double moment_at(double time) const {
+    const double ramped = rate > 0 ? rate * time : moment;
+    return ramped < moment ? ramped : moment;
+  }
+  TwistLoad on_grip(std::vector<int> grip, double sign_there) const;
+
+  std::shared_ptr<Load> copy() const override { return std::make_shared<TwistLoad>(*this); }
+  Order order() const override { return Order::grip; }
+  void add_forces(const State&, double time, std::vector<PointLoad>& out) const override;
+  void constrain(const Topology&, double time, const Forces&, double kick, State&, double& work) const override;
+  double spin_relaxation_interval() const override { return geometric_only ? increment : 0.0; }
+  // For the middle of the grip, its mean velocity or the number of its elements.
+  bool needs_all_elements() const override {
+    return application == Application::tangential || reading == Reading::total || !lateral_free;
+  }
+};
+
+// The upper and the lower grip of a scene's [twist].
+void add_twist(const TwistLoad& twist, const Topology& topology, LoadsAndConstraints& loads);
+
+}  // namespace ropewalk

@@ -1,0 +1,103 @@
+// [contact] which law acts between tubes, and how it is summed.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "scene/build.hpp"
+#include "scene/scene_to_model.hpp"
+#include "scene/tables/tables.hpp"
+
+namespace ropewalk {
+namespace {
+
+using Key = KeyOf<ContactOptions>;
+using Law = ContactOptions::Law;
+
+constexpr long most_nodes = 64;
+
+// The line law where all sets have it.
+Law default_law(const Scene& scene) {
+  for (const ParameterSet& set : scene.sets)
+    if (!set.line) return Law::paper;
+  return Law::line;
+}
+
+void read_law(const TomlTable& t, const Scene& scene, ContactOptions& c) {
+  static const Words<Law> laws = {{"line", Law::line}, {"paper", Law::paper}, {"none", Law::none}};
+  c.law = t.word_or("law", default_law(scene), laws);
+  if (c.law == Law::none) return;
+  for (const ParameterSet& set : scene.sets)
+    if (c.law == Law::paper ? !set.paper.has_value() : !set.line.has_value())
+      throw t.error("law",
+                    fmt::format("is \"{0}\", and the set {1} has no [contact.{0}]", law_name(c.law), set.name),
+                    "take another set, or law = \"none\"");
+  if (c.law == Law::paper && scene.sets.size() > 1)
+    throw t.error("law", "is \"paper\", which holds between tubes of one kind alone", "take law = \"line\"");
+}
+
+// Where the taper of the shortened law left less than half of what two parallel tubes bind with, it would be
+// another law; and beyond its cutoff the law was never fitted.
+void read_cutoff(const TomlTable& t, const Scene& scene, ContactOptions& contact) {
+  if (!t.has("cutoff_nm")) return;
+  if (contact.law == Law::none) throw t.error("cutoff_nm", "is of no use without contact", "take it away");
+  Scene changed = scene;
+  changed.contact = contact;
+  const std::vector<ContactRange> own = contact_ranges(changed);
+  changed.contact.cutoff = contact.cutoff = t.number("cutoff_nm", Bounds::positive(1e3));
+  const std::vector<ContactRange> now = contact_ranges(changed);
+  for (std::size_t k = 0; k < own.size(); ++k) {
+    if (contact.cutoff > own[k].cutoff + 1e-9)
+      throw t.error("cutoff_nm", fmt::format("is {} nm", contact.cutoff),
+                    fmt::format("the law ends at {:.4g} nm; leave the key out", own[k].cutoff));
+    const double left = now[k].binding / own[k].binding;
+    if (!(left >= 0.5))
+      throw t.error("cutoff_nm",
+                    fmt::format("is {} nm, which leaves {:.0f} % of the binding energy of two parallel tubes",
+                                contact.cutoff, 100 * std::max(0.0, left)),
+                    fmt::format("take a longer one; the law's own is {:.4g} nm", own[k].cutoff));
+  }
+}
+
+// A key that would be without effect is refused, since it was meant to have one.
+void check(const TomlTable& t, const Scene&, ContactOptions& c) {
+  const auto of_line_law = [&](const char* key, bool used) {
+    if (used && c.law != Law::line) throw t.error(key, "belongs to law = \"line\"", "take it away");
+  };
+  of_line_law("nodes_per_element", c.nodes > 0);
+  of_line_law("all_nodes", c.all_nodes);
+}
+
+}  // namespace
+
+const KeyTable<ContactOptions>& contact_table() {
+  using C = ContactOptions;
+  using Precision = Interaction::Precision;
+  static const KeyTable<C> table = {
+      "contact",
+      "van der Waals contact between elements",
+      {Key::custom("law", "", otherwise("\"paper\"", "what the set has"),
+                   "\"line\" (first choice), \"paper\" or \"none\"", read_law),
+       Key::integer("nodes_per_element", 1, most_nodes, &C::nodes, otherwise("6", "for a corrugation below 1e-3"),
+                    "line: nodes along an element")
+           .goes_as_length(1),
+       Key::boolean("all_nodes", &C::all_nodes, standard(),
+                    "line: all nodes towards nearly parallel elements too, which keeps the symmetry of a rope; two "
+                    "to three times the cost"),
+       Key::word("precision", Words<Precision>{{"mixed", Precision::mixed}, {"double", Precision::full}},
+                 &C::precision, otherwise("\"mixed\"", "mixed; double for mode = \"relax\""),
+                 "\"mixed\" (pairs in single precision) or \"double\""),
+       Key::boolean("legacy_torque", &C::legacy_torque, standard(),
+                    "leave out the torque that the published code leaves out; gains energy, for comparison only"),
+       Key::custom("cutoff_nm", "nm", otherwise("2.5", "the set's"),
+                   "line: of tube axes, paper: of element centres; shorter is faster and binds less", read_cutoff),
+       Key::integer("exclude_along_tube_elements", 1, most_elements, &C::exclude_along_tube, standard(),
+                    "elements of one tube up to this far apart do not touch")
+           .in_unit("elements")
+           .goes_as_length(-1),
+       Key::number("skin_nm", unit::nm, Bounds::positive(5), &C::skin, otherwise("0.15", "chosen by the program"),
+                   "margin of the neighbour list; speed only")},
+      check};
+  return table;
+}
+
+}  // namespace ropewalk

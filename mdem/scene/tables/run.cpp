@@ -1,0 +1,89 @@
+// [run] what to do.
+#include <fmt/format.h>
+
+#include "scene/tables/tables.hpp"
+
+namespace ropewalk {
+namespace {
+
+using Key = KeyOf<RunOptions>;
+using Mode = RunOptions::Mode;
+
+constexpr long most_inner_steps = 1000;
+
+// A key that would be without effect is refused, since it was meant to have one.
+void read_mode(const TomlTable& t, const Scene&, RunOptions& r) {
+  r.mode = t.word_or("mode", r.mode, Words<Mode>{{"dynamics", Mode::dynamics}, {"relax", Mode::relax}});
+  const bool relax = r.mode == Mode::relax;
+  const std::vector<const char*> others =
+      relax ? std::vector<const char*>{"duration_ps"} : std::vector<const char*>{"force_tolerance_nN", "max_steps"};
+  for (const char* key : others)
+    if (t.has(key))
+      throw t.error(key, fmt::format("belongs to mode = \"{}\"", relax ? "dynamics" : "relax"),
+                    fmt::format("take it away, or change the mode, now \"{}\"", relax ? "relax" : "dynamics"));
+}
+
+void read_time_step(const TomlTable& t, const Scene&, RunOptions& r) {
+  r.time_step = t.is_string("time_step_fs") ? t.word("time_step_fs", Words<double>{{"auto", 0.0}})
+                                            : t.number_or("time_step_fs", 0, Bounds::positive(1000)) * units::fs;
+}
+
+void check(const TomlTable& t, const Scene& scene, RunOptions& r) {
+  const char* used = r.stepping.contact_every > 1 ? "contact_every"
+                     : r.stepping.runge_kutta     ? "integrator"
+                     : r.mass_scale != 1          ? "mass_scale"
+                                                  : nullptr;
+  if (r.mode == Mode::relax && used)
+    throw t.error(used, "belongs to mode = \"dynamics\"", "take it away: relaxation does not depend on it");
+  if (r.stepping.contact_every == 1) return;
+  if (scene.contact.law == ContactOptions::Law::none)
+    throw t.error("contact_every", "is of no use without contact", "take it away");
+  if (scene.damping.local > 0)
+    throw t.error("contact_every", "does not go with pfc_local, which damps the total force",
+                  "take one of them away");
+}
+
+}  // namespace
+
+const KeyTable<RunOptions>& run_table() {
+  using R = RunOptions;
+  const Bounds time = Bounds::positive(longest_time);
+  static const KeyTable<R> table = {
+      "run",
+      "what to do",
+      {Key::custom("mode", "", standard("\"dynamics\""),
+                   "\"dynamics\", or \"relax\": to the nearest minimum of the energy", read_mode),
+       Key::custom(
+           "time_step_fs", "fs", standard("\"auto\""),
+           "\"auto\": 0.9 of the stability limit; 0.6 where warm, from a state file, with contact_every, or "
+           "to relax",
+           read_time_step),
+       Key::integer(
+           "contact_every", 1, most_inner_steps, [](auto& r) -> auto& { return r.stepping.contact_every; },
+           standard(),
+           "contact acts every so many steps of the bonds (r-RESPA); pays where elements are short and bonds "
+           "therefore stiffer than contact; log and frames go by these longer steps"),
+       Key::word(
+           "integrator", Words<bool>{{"verlet", false}, {"rk4", true}},
+           [](auto& r) -> auto& { return r.stepping.runge_kutta; }, standard(),
+           "\"rk4\": rotations by 4th-order Runge-Kutta, as in PFC3D, for comparison"),
+       Key::number("mass_scale", unit::none, Bounds::range(1e-3, 1e6), &R::mass_scale, standard(),
+                   "masses times this: steps grow and waves slow down by its root, kinetic energies at a given "
+                   "speed grow by it and at a given temperature stay; statics stay"),
+       Key::number("duration_ps", unit::ps, time, &R::duration, otherwise("100", "ramp and hold of [twist]"),
+                   "dynamics: simulated time"),
+       Key::number("frames_every_ps", unit::ps, time, &R::frames_every, otherwise("1", "40 frames"),
+                   "time between stored frames"),
+       Key::number("log_every_ps", unit::ps, time, &R::log_every, otherwise("0.1", "400 rows"),
+                   "time between rows of the log"),
+       Key::number("checkpoint_every_s", unit::seconds, Bounds::range(1, 1e6), &R::checkpoint_every, standard(),
+                   "wall time between checkpoints"),
+       Key::number("force_tolerance_nN", unit::nN, Bounds::range(1e-15, 1), &R::force_tolerance,
+                   otherwise("1.6022e-5", "1e-4 eV/nm"), "relax: done when no force is larger"),
+       Key::integer("max_steps", 1, 1000000000, &R::max_steps, standard(), "relax: give up after so many steps"),
+       Key::boolean("paraview", &R::paraview, standard(), "also write frames for ParaView (VTP)")},
+      check};
+  return table;
+}
+
+}  // namespace ropewalk

@@ -1,0 +1,19 @@
+// [start] the state at time zero.
+#include "scene/tables/tables.hpp"
+
+namespace ropewalk {
+
+const KeyTable<StartOptions>& start_table() {
+  using Key = KeyOf<StartOptions>;
+  static const KeyTable<StartOptions> table = {
+      "start",
+      "the state at time zero",
+      {Key::number("temperature_K", unit::kelvin, Bounds::range(0, 3000), &StartOptions::temperature, standard(),
+                   "temperature of the random initial velocities"),
+       Key::integer("seed", 0, std::numeric_limits<long>::max(), &StartOptions::seed, standard(),
+                    "of all random numbers: the same seed gives the same run")},
+      {}};
+  return table;
+}
+
+}  // namespace ropewalk
