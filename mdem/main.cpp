@@ -102,7 +102,8 @@ void add_observe(CLI::App& app, Verbs& v) {
   CLI::App* c = app.add_subcommand(
       "observe",
       "Measure the stored frames of a run: twist, packing, shape; a planned run also against a finer model");
-  c->add_option("dir", v.observe.dir, "Directory of the run")->required();
+  c->add_option("dir", v.observe.dir, "Directory of the run");
+  c->add_flag("--list", v.observe.list, "List the observables: name, unit, meaning (Markdown)");
   c->add_option("--neighbour-radius", v.observe.neighbour_radius,
                 "Tubes closer than this are neighbours (nm) [default: the scene's]")
       ->check(CLI::PositiveNumber);
@@ -129,7 +130,6 @@ void add_energy(CLI::App& app, Verbs& v) {
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
   c->add_option("--threads", v.energy.threads, "Threads [default: all cores]")->check(thread_range());
-  c->add_flag("--all-nodes", v.energy.all_nodes, "Line law: sums over all nodes, however tubes cross");
   c->add_flag("--legacy-torque", v.energy.legacy_torque, "Leave out the torque that the published code leaves out");
   c->add_flag("--reference", v.energy.reference, "The plain O(N^2) path instead of the fast one");
   c->add_flag("--json", v.energy.json, "JSON");

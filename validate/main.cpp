@@ -1,4 +1,4 @@
-// ropewalk-validate, also reached as `ropewalk validate`: the model against references that it did not fit.
+// ropewalk-validate, also called as `ropewalk validate`: compares the model with references it was not fitted to.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 
@@ -24,31 +24,30 @@ struct Verbs {
 };
 
 void add_run_options(CLI::App* verb, ValidateArguments& a) {
-  verb->add_option("cases", a.cases, "Names, see list [default: all of them]");
-  verb->add_option("--parameters", a.parameters,
-                   "A set of your own: theory takes any tube, atoms only the tube that they are");
-  verb->add_option("--out", a.out, "Directory of results and report; finished cases in it are kept")
+  verb->add_option("cases", a.cases, "Names of cases, see list [default: all]");
+  verb->add_option(
+      "--parameters", a.parameters,
+      "Your own parameter set: theory cases take any tube, atoms cases only the tube of their reference");
+  verb->add_option("--out", a.out, "Directory of results and report; finished cases in it are not run again")
       ->capture_default_str();
-  verb->add_flag("--again", a.again, "Run cases again that are finished");
+  verb->add_flag("--again", a.again, "Run finished cases again");
   verb->add_flag("--json", a.json, "JSON");
   verb->add_flag("--quiet", a.quiet, "No progress lines");
 }
 
 void add_chart(CLI::App& app, Verbs& v) {
-  CLI::App* chart =
-      app.add_subcommand("chart", "Speed against accuracy: what each knob costs and how far off it is");
-  chart->add_option("--scenes", v.chart.scenes, "Of them only these, with commas between [default: all]")
-      ->delimiter(',');
-  chart->add_option("--out", v.chart.out, "Directory of points and chart; finished points in it are kept")
+  CLI::App* chart = app.add_subcommand("chart", "Speed against accuracy: cost and error of each numerical setting");
+  chart->add_option("--scenes", v.chart.scenes, "Scenes, separated by commas [default: all]")->delimiter(',');
+  chart->add_option("--out", v.chart.out, "Directory of points and chart; finished points in it are not run again")
       ->capture_default_str();
-  chart->add_flag("--quick", v.chart.quick, "A few models of two scenes, or of those named");
+  chart->add_flag("--quick", v.chart.quick, "A few models of two scenes, or of the named ones");
   chart->add_flag("--instructions", v.chart.instructions,
-                  "Also count instructions, by callgrind (valgrind); points that are there get theirs");
-  chart->add_flag("--again", v.chart.again, "Run points again that are finished");
+                  "Also count instructions with callgrind (valgrind), for finished points too");
+  chart->add_flag("--again", v.chart.again, "Run finished points again");
   chart->add_flag("--quiet", v.chart.quiet, "No progress lines");
   chart->callback([&v] { v.code = chart_command(v.chart); });
 
-  // What callgrind counts: the program runs itself.
+  // Hidden: the program runs itself with this verb under callgrind.
   CLI::App* steps = app.add_subcommand("chart-steps")->group("");
   steps->add_option("scene", v.counted.scene)->required();
   steps->add_option("model", v.counted.model)->required();
@@ -57,24 +56,23 @@ void add_chart(CLI::App& app, Verbs& v) {
 }
 
 void add_verbs(CLI::App& app, Verbs& v) {
-  CLI::App* list = app.add_subcommand("list", "The cases");
+  CLI::App* list = app.add_subcommand("list", "List the cases");
   list->add_flag("--json", v.list.json, "JSON, with set-up, oracle and literature");
   list->callback([&v] { v.code = list_command(v.list); });
 
   CLI::App* run = app.add_subcommand("run", "Run cases and write the report");
-  run->add_option("--tier", v.run.tier, "quick, or full (which has the quick ones too)")->capture_default_str();
-  run->add_flag("--fresh", v.run.fresh, "Make the references anew with LAMMPS and compare with the stored ones");
+  run->add_option("--tier", v.run.tier, "quick, or full (includes the quick ones)")->capture_default_str();
+  run->add_flag("--fresh", v.run.fresh, "Make the references with LAMMPS and compare them with the stored ones");
   add_run_options(run, v.run);
   run->callback([&v] { v.code = validate_command(v.run); });
 
   v.stability.stability = true;
   v.stability.out = "stability";
-  CLI::App* stability =
-      app.add_subcommand("stability", "Find the places where the methods fail, with theory beside them");
+  CLI::App* stability = app.add_subcommand("stability", "Find where the methods fail and compare with theory");
   add_run_options(stability, v.stability);
   stability->callback([&v] { v.code = validate_command(v.stability); });
 
-  CLI::App* report = app.add_subcommand("report", "Make report.html and report.json anew from the results");
+  CLI::App* report = app.add_subcommand("report", "Write report.html and report.json again from the results");
   report->add_option("dir", v.report.dir, "Directory of the results")->required();
   report->callback([&v] { v.code = validation_report_command(v.report); });
 
@@ -85,7 +83,7 @@ void add_verbs(CLI::App& app, Verbs& v) {
 
 int main(int argc, char** argv) {
   CLI::App app(
-      "ropewalk validate holds the model against exact theory, LAMMPS references and other codes.\n"
+      "ropewalk validate compares the model with exact theory, LAMMPS references and other codes.\n"
       "Exit code: 0 all hold, 1 some miss, 2 wrong input, 3 a case could not be run.",
       "ropewalk validate");
   app.set_version_flag("--version", std::string("ropewalk-validate ") + version + " (" + git_id + ")");

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <sstream>
@@ -11,9 +12,18 @@ namespace ropewalk {
 namespace {
 
 constexpr const char* format_line = "# ropewalk-atomistic-1";
-constexpr const char* columns =
-    "kind,length_nm,strain,twist_rad_per_nm,curvature_per_nm,atoms,energy_eV,residual_eV,radius_nm";
-constexpr std::size_t column_count = 9;
+constexpr std::array<OutputColumn, 9> table = {{
+    {"kind", "", "stretch-twist, bend-short, bend-long, or the name of an envelope run"},
+    {"length_nm", "nm", "length of the relaxed straight cell, or of the bent part"},
+    {"strain", "", "strain against the relaxed tube"},
+    {"twist_rad_per_nm", "rad/nm", "twist against the rolled sheet"},
+    {"curvature_per_nm", "1/nm", "curvature of the axis"},
+    {"atoms", "", "atoms of the cell"},
+    {"energy_eV", "eV", "energy of the cell above that of the relaxed straight tube"},
+    {"residual_eV", "eV", "residual of the fit"},
+    {"radius_nm", "nm", "mean distance of the atoms from the axis, in straight cells"},
+}};
+const std::string columns = column_names(table);
 
 std::vector<std::string> cells_of(const std::string& line) {
   std::vector<std::string> cells(1);
@@ -44,6 +54,8 @@ void read_origin_line(const std::string& line, AtomisticOrigin& origin) {
 }
 
 }  // namespace
+
+std::vector<OutputColumn> atomistic_columns() { return {table.begin(), table.end()}; }
 
 std::string atomistic_csv(const std::vector<AtomisticRow>& rows, const AtomisticOrigin& origin) {
   std::string text = fmt::format("{}\n# chirality: {},{}\n", format_line, origin.chirality.n, origin.chirality.m);
@@ -82,15 +94,15 @@ std::vector<AtomisticRow> read_atomistic_csv(const std::string& path, AtomisticO
       continue;
     }
     const std::vector<std::string> cells = cells_of(line);
-    if (cells.size() != column_count)
-      throw InputError({path, number, ""}, fmt::format("has {} columns, not {}", cells.size(), column_count),
+    if (cells.size() != table.size())
+      throw InputError({path, number, ""}, fmt::format("has {} columns, not {}", cells.size(), table.size()),
                        fmt::format("they are {}", columns));
     const auto number_in = [&](std::size_t k) {
       const std::string text = trimmed(cells[k]);
       char* end = nullptr;
       const double value = std::strtod(text.c_str(), &end);
       if (text.empty() || *end != '\0' || !std::isfinite(value))
-        throw InputError({path, number, cells_of(columns)[k]}, fmt::format("'{}' is not a number", text),
+        throw InputError({path, number, table[k].name}, fmt::format("'{}' is not a number", text),
                          "write a finite number");
       return value;
     };

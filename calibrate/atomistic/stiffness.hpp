@@ -22,6 +22,7 @@
 
 #include "atomistic/lammps.hpp"
 #include "atomistic/potential.hpp"
+#include "io/outputs.hpp"
 #include "model/tube.hpp"
 
 namespace ropewalk {
@@ -108,6 +109,7 @@ struct AtomisticOrigin {
   std::string potential, potential_hash, lammps;
   std::vector<std::string> notes;
 };
+std::vector<OutputColumn> atomistic_columns();
 std::string atomistic_csv(const std::vector<AtomisticRow>& rows, const AtomisticOrigin& origin);
 // Throws InputError with file and line.
 std::vector<AtomisticRow> read_atomistic_csv(const std::string& path, AtomisticOrigin* origin = nullptr);

@@ -12,6 +12,7 @@
 #include "io/files.hpp"
 #include "io/parameters_toml.hpp"
 #include "io/toml_table.hpp"
+#include "verbs/tables.hpp"
 #include "version.hpp"
 
 namespace ropewalk {
@@ -266,9 +267,9 @@ std::string contact_csv(const Calibration& c) {
   std::string text = fmt::format(
       "# Surface integral of two ({},{}) tubes, r = {} nm, {} atoms per nm^2, and the line law fitted to it.\n"
       "# Lennard-Jones {} eV, {} nm, cutoff {} nm. Units: density eV/nm^2, parallel eV/nm, crossed eV.\n"
-      "kind,distance_nm,angle_deg,energy,fit\n",
+      "{}\n",
       c.request.chirality.n, c.request.chirality.m, c.shell().radius, c.shell().density, c.request.law.epsilon,
-      c.request.law.sigma, c.request.law.cutoff);
+      c.request.law.sigma, c.request.law.cutoff, column_names(contact_columns()));
   const auto curve = [&](const char* kind, const std::vector<ContactPoint>& points) {
     for (const ContactPoint& p : points)
       text += fmt::format("{},{:.9g},{:.9g},{:.9g},{:.9g}\n", kind, p.distance, p.angle / units::degree, p.integral,

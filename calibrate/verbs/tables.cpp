@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -24,6 +25,15 @@ std::vector<std::string> cells_of(const std::string& line) {
   }
   return cells;
 }
+
+constexpr std::array<OutputColumn, 5> table = {{
+    {"kind", "", "density, parallel or crossed"},
+    {"distance_nm", "nm", "distance of the axes"},
+    {"angle_deg", "deg", "angle between the axes"},
+    {"energy", "eV/nm^2, eV/nm, eV",
+     "surface integral: line density, energy per length of parallel tubes, energy of crossed ones"},
+    {"fit", "as energy", "the line law fitted to it"},
+}};
 
 class ContactReader {
  public:
@@ -51,10 +61,9 @@ class ContactReader {
   }
 
   void read_header(const std::vector<std::string>& cells) {
-    static const char* names[] = {"kind", "distance_nm", "angle_deg", "energy", "fit"};
     columns_ = cells.size();
     bool right = columns_ == 4 || columns_ == 5;
-    for (std::size_t k = 0; right && k < columns_; ++k) right = cells[k] == names[k];
+    for (std::size_t k = 0; right && k < columns_; ++k) right = cells[k] == table[k].name;
     if (!right)
       fail("", "is not the header of a table of contact energies", "write kind,distance_nm,angle_deg,energy");
   }
@@ -91,6 +100,8 @@ class ContactReader {
 };
 
 }  // namespace
+
+std::vector<OutputColumn> contact_columns() { return {table.begin(), table.end()}; }
 
 std::vector<ContactRow> read_contact_csv(const std::string& path) { return ContactReader(path).read(); }
 

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "io/outputs.hpp"
+
 namespace ropewalk {
 
 struct ContactRow {
@@ -14,7 +16,9 @@ struct ContactRow {
   double fit = 0;  // NaN where the table has no such column
 };
 
-// Columns kind,distance_nm,angle_deg,energy and optionally fit; lines that start with # are skipped. Throws
+std::vector<OutputColumn> contact_columns();
+
+// Columns of contact_columns(), the last of them optional; lines that start with # are skipped. Throws
 // InputError with file and line.
 std::vector<ContactRow> read_contact_csv(const std::string& path);
 

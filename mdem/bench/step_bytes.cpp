@@ -12,12 +12,10 @@ double bytes_of(const std::vector<T>& v) {
 double buffer_bytes(double elements, std::size_t number) { return 2 * 6 * static_cast<double>(number) * elements; }
 
 double line_bytes(const LineList& list, std::size_t number) {
-  double sum = 0;
+  double sum = static_cast<double>(list.spans() * sizeof(NeighbourSpan));
   for (const LineChunk& chunk : list.chunks()) {
-    sum += bytes_of(chunk.parts) + bytes_of(chunk.blocks) + bytes_of(chunk.runs) + bytes_of(chunk.damped) +
-           bytes_of(chunk.damped_parts) + buffer_bytes(chunk.elements, number);
-    // Its `end_runs` are walked instead where some of these pairs may share two sums.
-    for (const AlikePairs& of : chunk.end_pairs) sum += bytes_of(of.pairs);
+    sum += bytes_of(chunk.ranges) + bytes_of(chunk.damped) + bytes_of(chunk.damped_ranges) +
+           buffer_bytes(chunk.elements, number);
   }
   return sum;
 }

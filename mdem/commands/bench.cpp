@@ -149,8 +149,8 @@ nlohmann::ordered_json json_of(const Cost& c, const Rates& rates, const BenchArg
   if (!prepared.interaction.line.empty()) {
     out["instructions"] = instruction_sets().front();
     out["lanes"] = radial_lanes(prepared.interaction.precision);
-    out["runs_per_element"] = c.radial.runs;
-    out["nodes_per_run"] = per(c.radial.nodes, c.radial.runs);
+    out["spans_per_element"] = c.radial.spans;
+    out["nodes_per_span"] = per(c.radial.nodes, c.radial.spans);
     out["radial_evaluations_per_element_step"] = c.radial.evaluations;
     out["radial_evaluations_useful"] = c.radial.useful;
     out["ns_per_radial_evaluation"] = per(c.each.contact, c.radial.evaluations);
@@ -179,11 +179,11 @@ void print(const Cost& c, const BenchArguments& a, const Prepared& prepared) {
       "  contact {:.1f}  bonds {:.1f}  axes {:.1f}  list {:.1f}  integration {:.1f} ns; {} lists, the last with "
       "a skin of {:.3g} nm\n",
       t.contact, t.bonds, t.axes, t.list, t.integration, t.builds, c.skin);
-  if (c.radial.runs > 0)
+  if (c.radial.spans > 0)
     fmt::print(
-        "{:9.1f} runs per element, {:.1f} nodes each; {:.0f} radial evaluations, {:.0f} % of them within the "
+        "{:9.1f} spans of neighbours per element, {:.1f} nodes each; {:.0f} radial evaluations, {:.0f} % of them within the "
         "cutoff, {:.3f} ns each; {:.1f} GFLOP/s in contact\n",
-        c.radial.runs, per(c.radial.nodes, c.radial.runs), c.radial.evaluations,
+        c.radial.spans, per(c.radial.nodes, c.radial.spans), c.radial.evaluations,
         100 * per(c.radial.useful, c.radial.evaluations), per(t.contact, c.radial.evaluations),
         operations_per_ns(c, prepared.interaction));
   fmt::print("{:9.0f} bytes per element, and {:.0f} for the list; {:.0f} MB resident at most\n", c.bytes,

@@ -34,6 +34,7 @@ struct ObserveArguments {
   std::string dir;
   double neighbour_radius = -1;  // nm; -1: the scene's
   bool json = false;
+  bool list = false;  // only the table of observables
 };
 int observe_command(const ObserveArguments& arguments);
 
@@ -57,7 +58,6 @@ struct EnergyArguments {
   std::string state;
   std::string parameters;
   std::string law;  // empty: the line law where the set has it
-  bool all_nodes = false;
   bool legacy_torque = false;
   bool reference = false;
   bool json = false;

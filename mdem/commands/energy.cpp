@@ -89,9 +89,6 @@ int energy_command(const EnergyArguments& a) {
   scene.source = std::make_shared<StateSource>(a.state);
   scene.contact.law = law_named(a.law, scene.parameters());
   scene.contact.legacy_torque = a.legacy_torque;
-  if (a.all_nodes && scene.contact.law != ContactOptions::Law::line)
-    throw InputError({"", 0, "--all-nodes"}, "belongs to the line law", "take it away, or --law line");
-  scene.contact.all_nodes = a.all_nodes;
   scene.contact.exclude_along_tube = a.exclude_along_tube;
   scene.contact.precision = Interaction::Precision::full;  // once, and compared with the reference
   const BuiltScene built = build(scene);

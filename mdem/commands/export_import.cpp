@@ -166,6 +166,7 @@ class Import {
       throw InputError({files_.path, 0, ""}, "holds nothing that LAMMPS has done",
                        "run in.rope with lmp-ropewalk first, as README.txt says");
     for (const LammpsRow& row : read_lammps_rows(files_)) rows_[static_cast<std::int64_t>(row.step)] = row;
+    check_log_header(dir_.log());
     log_ = read_file(dir_.log()).substr(0, checkpoint_.log_bytes);
     frames_ = read_file(dir_.frames()).substr(0, checkpoint_.frame_bytes);
     const std::int64_t from = reached_;
@@ -194,22 +195,14 @@ class Import {
   }
 
   void add(const State& state, const LammpsRow& from) {
-    LogRow r;
-    r.step = from.step;
-    r.time = from.time;
-    if (scene_.twist) r.moment = scene_.twist->moment_at(r.time) / units::nN_nm;
-    r.stretch = from.stretch;
-    r.shear = from.shear;
-    r.bend = from.bend;
-    r.twist = from.twist;
-    r.vdw = from.vdw;
-    r.kinetic = from.kinetic;
-    r.work = from.work;
-    r.dissipated = from.dissipated;
-    r.balance = r.stretch + r.shear + r.bend + r.twist + r.vdw + r.kinetic - r.work + r.dissipated -
-                checkpoint_.first_energy;
-    fill_geometry(look(observer_, scene_, prepared_.topology, state), r);
-    log_ += log_line(r);
+    EnergyAccount account;
+    if (scene_.twist) account.moment = scene_.twist->moment_at(from.time);
+    account.potential = {from.stretch, from.shear, from.bend, from.twist, from.vdw};
+    account.kinetic = from.kinetic;
+    account.work = from.work;
+    account.dissipated = from.dissipated;
+    account.first_energy = checkpoint_.first_energy;
+    log_ += log_line(log_row(observer_, scene_, prepared_.topology, state, account));
     frames_ +=
         dump_frame(prepared_.topology, state, element_colours(prepared_.topology, prepared_.interaction, state));
     prepared_.state = state;

@@ -1,10 +1,14 @@
 // `observe`: the geometry of the stored frames.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "commands/commands.hpp"
 #include "io/frames.hpp"
+#include "model/error.hpp"
+#include "observe/observables.hpp"
 #include "plan/planner.hpp"
 #include "run/run_directory.hpp"
 
@@ -13,27 +17,24 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json as_json(const State& s, const RopeObservation& o) {
+std::vector<Observable> observables_of_frames() {
+  std::vector<Observable> chosen;
+  for (const Observable& o : observables())
+    if (in_frames(o.group)) chosen.push_back(o);
+  return chosen;
+}
+
+Json as_json(const Measurement& m, const std::vector<Observable>& chosen) {
   Json out;
-  out["time_ps"] = s.time;
-  out["step"] = s.step;
-  out["beta_deg"] = o.beta / units::degree;
-  out["physical_twist_deg"] = o.physical_twist / units::degree;
-  out["geometric_twist_deg"] = o.geometric_twist / units::degree;
-  out["Q"] = o.middle.charge;
-  out["Q_delaunay"] = o.middle.charge_delaunay;
-  out["contacts"] = o.middle.contacts;
-  out["voids"] = o.middle.voids;
-  out["void_area_nm2"] = o.middle.void_area;
-  out["radius_mid_nm"] = o.radius_mid;
-  out["radius_end_nm"] = o.radius_end;
-  out["length_nm"] = o.length;
-  out["amplitude_nm"] = o.amplitude;
-  out["windings"] = o.windings;
-  out["kinked"] = o.kinked;
-  out["overtwisted"] = o.overtwisted;
-  out["overstretched"] = o.overstretched;
-  out["largest_bond_twist_deg"] = o.largest_bond_twist / units::degree;
+  for (const Observable& observable : chosen) {
+    const double value = observable.value(m);
+    if (observable.whole && std::isfinite(value)) {
+      out[observable.name] = static_cast<std::int64_t>(value);
+    } else {
+      out[observable.name] = value;
+    }
+  }
+  const RopeObservation& o = m.rope;
   out["radius_profile_nm"] = o.radius_profile;
   Json line = Json::array();
   for (const Vector3& c : o.centre_line) line.push_back({c.x(), c.y(), c.z()});
@@ -48,38 +49,85 @@ Json as_json(const State& s, const RopeObservation& o) {
   return out;
 }
 
-void print_row(const State& s, const RopeObservation& o) {
-  const double deg = units::degree;
-  fmt::print(
-      "{:9.2f} {:7.2f} {:9.1f} {:9.1f} {:4d} {:4d} {:8d} {:5d} {:8.2f} {:7.2f} {:7.2f} {:9.2f} {:8.2f} {:6d} "
-      "{:6d}\n",
-      s.time, o.beta / deg, o.physical_twist / deg, o.geometric_twist / deg, o.middle.charge,
-      o.middle.charge_delaunay, o.middle.contacts, o.middle.voids, o.middle.void_area, o.radius_mid, o.radius_end,
-      o.amplitude, o.windings, o.kinked, o.overtwisted);
-}
+// A table for the terminal. The words of a name stand one above the other, so that columns are narrow.
+class Console {
+ public:
+  explicit Console(std::vector<Observable> columns) : columns_(std::move(columns)) {
+    for (const Observable& o : columns_) {
+      words_.push_back(words_of(o.name));
+      std::size_t width = o.whole ? 4 : 9;
+      for (const std::string& word : words_.back()) width = std::max(width, word.size());
+      width_.push_back(width);
+    }
+  }
+
+  void print_heading() const {
+    std::size_t lines = 0;
+    for (const auto& words : words_) lines = std::max(lines, words.size());
+    for (std::size_t line = 0; line < lines; ++line)
+      print_line([&](std::size_t k) { return line < words_[k].size() ? words_[k][line] : std::string(); });
+  }
+
+  void print_row(const Measurement& m) const {
+    print_line([&](std::size_t k) {
+      const double value = columns_[k].value(m);
+      return columns_[k].whole ? fmt::format("{:.0f}", value) : fmt::format("{:.4g}", value);
+    });
+  }
+
+ private:
+  static std::vector<std::string> words_of(const std::string& name) {
+    std::vector<std::string> words(1);
+    for (const char c : name) {
+      if (c == '_') {
+        words.emplace_back();
+      } else {
+        words.back() += c;
+      }
+    }
+    return words;
+  }
+
+  template <class Cell>
+  void print_line(const Cell& cell) const {
+    std::string line;
+    for (std::size_t k = 0; k < columns_.size(); ++k)
+      line += fmt::format("{}{:>{}}", k == 0 ? "" : " ", cell(k), width_[k]);
+    fmt::print("{}\n", line);
+  }
+
+  std::vector<Observable> columns_;
+  std::vector<std::vector<std::string>> words_;
+  std::vector<std::size_t> width_;
+};
 
 }  // namespace
 
 int observe_command(const ObserveArguments& a) {
+  if (a.list) {
+    fmt::print("{}", observables_markdown());
+    return 0;
+  }
+  if (a.dir.empty())
+    throw InputError({"", 0, "dir"}, "is missing", "name the directory of a run, or see `ropewalk observe --list`");
   const RunDirectory dir{a.dir};
   Scene scene = read_run_scene(dir);
   if (a.neighbour_radius > 0) scene.observe.neighbour_radius = a.neighbour_radius;
   const Prepared prepared = prepare(scene);
   const Observer observer = make_observer(scene, prepared);
   DumpReader reader(dir.frames());
+  const std::vector<Observable> chosen = observables_of_frames();
+  const Console console(chosen);
+  if (!a.json) console.print_heading();
   Json all = Json::array();
-  if (!a.json)
-    fmt::print(
-        "  time_ps beta_deg  physical geometric    Q Qdel contacts voids void_nm2  mid_nm  end_nm amplitude "
-        "windings "
-        "kinked otwist\n");
   DumpFrame frame;
   while (reader.next(prepared.topology, frame)) {
-    const RopeObservation o = look(observer, scene, prepared.topology, frame.state);
+    const RopeObservation rope = look(observer, scene, prepared.topology, frame.state);
+    const Measurement measurement{prepared.topology, frame.state, rope, {}};
     if (a.json) {
-      all.push_back(as_json(frame.state, o));
+      all.push_back(as_json(measurement, chosen));
     } else {
-      print_row(frame.state, o);
+      console.print_row(measurement);
     }
   }
   if (a.json) fmt::print("{}\n", all.dump(1));

@@ -132,6 +132,7 @@ class Run {
   }
 
   void restore(const RunCheckpoint& c) {
+    check_log_header(dir_.log());
     try {
       simulation_.restore(c.simulation);
     } catch (const std::runtime_error& e) {
@@ -279,29 +280,22 @@ class Run {
     const State& s = simulation_.state();
     std::string text = fmt::format("{:8.2f} ps", s.time);
     if (scene_.twist) text += fmt::format("  moment {:5.1f} nN nm", scene_.twist->moment_at(s.time) / units::nN_nm);
-    return text + fmt::format("  beta {:5.1f} deg  Q {}  twist {:.0f}  bend {:.0f}  vdW {:.0f} eV", last_row_.beta,
-                              last_row_.charge, last_row_.twist, last_row_.bend, last_row_.vdw);
+    return text + fmt::format("  beta {:5.1f} deg  Q {}  twist {:.0f}  bend {:.0f}  vdW {:.0f} eV",
+                              last_row_["beta_deg"], last_row_["Q"], last_row_["twist_eV"], last_row_["bend_eV"],
+                              last_row_["vdw_eV"]);
   }
 
   LogRow row() {
-    const Energies& e = simulation_.forces().energy;
     const State& s = simulation_.state();
-    LogRow r;
-    r.step = static_cast<double>(s.step);
-    r.time = s.time;
-    if (scene_.twist) r.moment = scene_.twist->moment_at(s.time) / units::nN_nm;
-    r.stretch = e.stretch;
-    r.shear = e.shear;
-    r.bend = e.bend;
-    r.twist = e.twist;
-    r.vdw = e.vdw;
-    r.kinetic = kinetic_energy(prepared_.topology, s);
-    r.work = simulation_.work();
-    r.dissipated = simulation_.dissipated();
-    r.heat = simulation_.heat();
-    r.balance = e.potential() + r.kinetic - simulation_.account().supplied() - first_energy_;
-    fill_geometry(look(observer_, scene_, prepared_.topology, s), r);
-    return r;
+    EnergyAccount account;
+    if (scene_.twist) account.moment = scene_.twist->moment_at(s.time);
+    account.potential = simulation_.forces().energy;
+    account.kinetic = kinetic_energy(prepared_.topology, s);
+    account.work = simulation_.work();
+    account.dissipated = simulation_.dissipated();
+    account.heat = simulation_.heat();
+    account.first_energy = first_energy_;
+    return log_row(observer_, scene_, prepared_.topology, s, account);
   }
 
   void write_row() {

@@ -21,19 +21,33 @@ namespace ropewalk {
 namespace {
 
 struct ColourColumn {
-  const char* name;
+  OutputColumn column;
   std::vector<double> ElementColours::*values;
 };
 
-constexpr std::array<ColourColumn, 4> colour_columns = {{{"bond_energy_eV", &ElementColours::bond_energy},
-                                                         {"vdw_energy_eV", &ElementColours::vdw_energy},
-                                                         {"bending_moment_eV", &ElementColours::bending_moment},
-                                                         {"twist_angle_rad", &ElementColours::twist_angle}}};
+constexpr std::array<ColourColumn, 4> colour_columns = {{
+    {{"bond_energy_eV", "eV", "half of the energy of each bond of the element"}, &ElementColours::bond_energy},
+    {{"vdw_energy_eV", "eV", "half of the energy of each contact of the element"}, &ElementColours::vdw_energy},
+    {{"bending_moment_eV", "eV", "bending moment: EI times curvature"}, &ElementColours::bending_moment},
+    {{"twist_angle_rad", "rad", "twist angle, mean of the bonds of the element"}, &ElementColours::twist_angle},
+}};
 
-// Names of the columns that every frame has. OVITO maps these, and only these, by itself.
-constexpr std::array<const char*, 13> fixed_columns = {
-    "id",          "mol",         "type",        "x",          "y",          "z",         "c_orient[1]",
-    "c_orient[2]", "c_orient[3]", "c_orient[4]", "c_shape[1]", "c_shape[2]", "c_shape[3]"};
+// Columns of every frame. OVITO maps these, and only these, by itself.
+constexpr std::array<OutputColumn, 13> fixed_columns = {{
+    {"id", "", "element, from 1"},
+    {"mol", "", "tube, from 1"},
+    {"type", "", "type of the tube, from 1"},
+    {"x", "nm", "centre of the element"},
+    {"y", "nm", "centre of the element"},
+    {"z", "nm", "centre of the element"},
+    {"c_orient[1]", "", "orientation, a unit quaternion: x"},
+    {"c_orient[2]", "", "orientation: y"},
+    {"c_orient[3]", "", "orientation: z"},
+    {"c_orient[4]", "", "orientation: w"},
+    {"c_shape[1]", "nm", "radius of the tube"},
+    {"c_shape[2]", "nm", "radius of the tube"},
+    {"c_shape[3]", "nm", "length of the element"},
+}};
 enum Column { id, mol, type, x, y, z, qx, qy, qz, qw };
 
 // --- Dump, writing --------------------------------------------------------------------------------------
@@ -73,9 +87,9 @@ bool given(const ElementColours& colours, const ColourColumn& column, const Stat
 void append_columns(Buffer& out, const State& state, const ElementColours& colours) {
   const auto to = std::back_inserter(out);
   fmt::format_to(to, "ITEM: ATOMS");
-  for (const char* name : fixed_columns) fmt::format_to(to, " {}", name);
+  fmt::format_to(to, " {}", column_names(fixed_columns, " "));
   for (const ColourColumn& column : colour_columns)
-    if (given(colours, column, state)) fmt::format_to(to, " {}", column.name);
+    if (given(colours, column, state)) fmt::format_to(to, " {}", column.column.name);
   out.push_back('\n');
 }
 
@@ -185,10 +199,10 @@ struct DumpReader::Impl {
       return not_there;
     };
     for (std::size_t k = 0; k < l.fixed.size(); ++k) {
-      l.fixed[k] = place(fixed_columns[k]);
-      if (l.fixed[k] == not_there) throw garbled(fmt::format("column {} is missing", fixed_columns[k]));
+      l.fixed[k] = place(fixed_columns[k].name);
+      if (l.fixed[k] == not_there) throw garbled(fmt::format("column {} is missing", fixed_columns[k].name));
     }
-    for (std::size_t k = 0; k < l.colour.size(); ++k) l.colour[k] = place(colour_columns[k].name);
+    for (std::size_t k = 0; k < l.colour.size(); ++k) l.colour[k] = place(colour_columns[k].column.name);
     return l;
   }
 
@@ -341,6 +355,10 @@ std::string data_array(const char* name, int components, const std::vector<T>& v
       VtkType<T>::name, name, components, base64(bytes));
 }
 
+constexpr OutputColumn director{"director", "", "x axis of the element, normal to the tube: shows physical twist"};
+constexpr OutputColumn axis{"axis", "", "axis of the tube"};
+constexpr OutputColumn tube_number{"tube", "", "tube, from 1"};
+
 template <class Of>
 std::string vectors(const char* name, const State& state, const Of& of) {
   std::vector<float> values;
@@ -365,17 +383,18 @@ std::string cells(const char* kind, const Topology& topology, bool single) {
 }
 
 std::string point_data(const Topology& topology, const State& state, const ElementColours& colours) {
-  std::string text = vectors(
-      "director", state, [&](std::size_t i) -> Vector3 { return state.orientation[i].toRotationMatrix().col(0); });
-  text += vectors("axis", state, [&](std::size_t i) { return axis_of(state.orientation[i]); });
+  std::string text = vectors(director.name, state, [&](std::size_t i) -> Vector3 {
+    return state.orientation[i].toRotationMatrix().col(0);
+  });
+  text += vectors(axis.name, state, [&](std::size_t i) { return axis_of(state.orientation[i]); });
   for (const ColourColumn& column : colour_columns)
     if (given(colours, column, state)) {
       const std::vector<double>& values = colours.*column.values;
-      text += data_array(column.name, 1, std::vector<float>(values.begin(), values.end()));
+      text += data_array(column.column.name, 1, std::vector<float>(values.begin(), values.end()));
     }
   std::vector<std::int32_t> tube;
   for (int t = 0; t < topology.tubes(); ++t) tube.insert(tube.end(), topology.length_of(t), t + 1);
-  return text + data_array("tube", 1, tube);
+  return text + data_array(tube_number.name, 1, tube);
 }
 
 int cell_count(const Topology& topology, bool single) {
@@ -393,6 +412,19 @@ constexpr const char* byte_order =
 #endif
 
 }  // namespace
+
+std::vector<OutputColumn> frame_columns() {
+  std::vector<OutputColumn> columns(fixed_columns.begin(), fixed_columns.end());
+  for (const ColourColumn& c : colour_columns) columns.push_back(c.column);
+  return columns;
+}
+
+std::vector<OutputColumn> vtp_arrays() {
+  std::vector<OutputColumn> columns = {director, axis};
+  for (const ColourColumn& c : colour_columns) columns.push_back(c.column);
+  columns.push_back(tube_number);
+  return columns;
+}
 
 std::string vtp_frame(const Topology& topology, const State& state, const ElementColours& colours) {
   std::string text = fmt::format(

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "io/outputs.hpp"
 #include "sim/state/state.hpp"
 
 namespace ropewalk {
@@ -18,10 +19,9 @@ struct ElementColours {
   std::vector<double> twist_angle;     // rad: mean of the adjoining bonds
 };
 
-// One frame as text of the dump format: columns
-//   id mol type x y z c_orient[1..4] c_shape[1..3] then the colours that are given.
-// orientation x,y,z,w; shape radius, radius, length; nm; id and mol from 1; TIMESTEP is the step, ITEM: TIME the
-// time in ps. Not shapex, shapey, shapez, which OVITO takes for diameters.
+// One frame as text of the dump format: columns of frame_columns(), the colours where they are given; TIMESTEP is
+// the step, ITEM: TIME the time in ps. The shape is not called shapex, shapey, shapez, which OVITO takes for
+// diameters.
 std::string dump_frame(const Topology& topology, const State& state, const ElementColours& colours);
 
 struct DumpFrame {
@@ -44,7 +44,7 @@ class DumpReader {
   std::unique_ptr<Impl> impl_;
 };
 
-// One VTP file with a polyline per tube, point data `director` (body x axis), `axis` and the colours.
+// One VTP file with a polyline per tube and the point data of vtp_arrays(), the colours where they are given.
 std::string vtp_frame(const Topology& topology, const State& state, const ElementColours& colours);
 
 // The list of VTP files that ParaView opens as one animation.
@@ -53,5 +53,8 @@ struct PvdEntry {
   std::string file;  // relative to the .pvd
 };
 std::string pvd_text(const std::vector<PvdEntry>& entries);
+
+std::vector<OutputColumn> frame_columns();
+std::vector<OutputColumn> vtp_arrays();
 
 }  // namespace ropewalk

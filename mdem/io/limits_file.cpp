@@ -12,52 +12,78 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* format = "ropewalk-limits-1";
 
-// One list for writer and reader, in the order of the file.
+// One list for writer, reader and documentation, in the order of the file.
 template <class R, class Visit>
-void visit_limit(R& r, const Visit& v) {
-  v("key", r.key);
-  v("unit", r.unit);
-  v("limit", r.limit);
-  v("largest", r.largest);
-  v("largest_at_ps", r.largest_at_ps);
-  v("tube", r.tube);
-  v("element", r.element);
-  v("passed", r.passed);
-  v("passed_at_ps", r.passed_at_ps);
-  v("passed_at_step", r.passed_at_step);
+void visit_limit(R&& r, const Visit& v) {
+  v({"key", "", "key in the [limits] of a scene"}, r.key);
+  v({"unit", "", "unit of limit and largest"}, r.unit);
+  v({"limit", "`unit`", "the limit; 0: not watched"}, r.limit);
+  v({"largest", "`unit`", "largest value so far"}, r.largest);
+  v({"largest_at_ps", "ps", "time of the largest value"}, r.largest_at_ps);
+  v({"tube", "", "tube of the largest value, from 0; -1: none"}, r.tube);
+  v({"element", "", "element of the largest value, counted in the tube from 0; of a bond the first"}, r.element);
+  v({"passed", "", "whether the limit was passed"}, r.passed);
+  v({"passed_at_ps", "ps", "time when it was passed first"}, r.passed_at_ps);
+  v({"passed_at_step", "", "time step when it was passed first"}, r.passed_at_step);
 }
 
 template <class R, class Visit>
-void visit_refinement(R& r, const Visit& v) {
-  v("from", r.from);
-  v("to", r.to);
-  v("time_ps", r.time_ps);
-  v("step_before", r.step_before);
-  v("step_after", r.step_after);
-  v("element_length_before_nm", r.length_before);
-  v("element_length_after_nm", r.length_after);
-  v("elements_before", r.elements_before);
-  v("elements_after", r.elements_after);
+void visit_refinement(R&& r, const Visit& v) {
+  v({"from", "", "directory of the run that was refined"}, r.from);
+  v({"to", "", "directory of the run that goes on"}, r.to);
+  v({"time_ps", "ps", "time of the refinement"}, r.time_ps);
+  v({"step_before", "", "time step in the coarse run"}, r.step_before);
+  v({"step_after", "", "time step in the fine run"}, r.step_after);
+  v({"element_length_before_nm", "nm", "length of an element in the coarse run"}, r.length_before);
+  v({"element_length_after_nm", "nm", "length of an element in the fine run"}, r.length_after);
+  v({"elements_before", "", "elements of the coarse run"}, r.elements_before);
+  v({"elements_after", "", "elements of the fine run"}, r.elements_after);
 }
 
 template <class E, class Visit>
-void visit_energies(E& e, const Visit& v) {
-  v("stretch", e.potential.stretch);
-  v("shear", e.potential.shear);
-  v("bend", e.potential.bend);
-  v("twist", e.potential.twist);
-  v("contact", e.potential.vdw);
-  v("kinetic", e.kinetic);
+void visit_energies(E&& e, const Visit& v) {
+  v({"stretch", "eV", "stretch energy of the bonds"}, e.potential.stretch);
+  v({"shear", "eV", "shear energy of the bonds"}, e.potential.shear);
+  v({"bend", "eV", "bending energy of the bonds"}, e.potential.bend);
+  v({"twist", "eV", "torsional energy of the bonds"}, e.potential.twist);
+  v({"contact", "eV", "van der Waals energy of the contacts"}, e.potential.vdw);
+  v({"kinetic", "eV", "kinetic energy"}, e.kinetic);
 }
 
 auto into(Json& json) {
-  return [&json](const char* key, const auto& value) { json[key] = value; };
+  return [&json](const OutputColumn& key, const auto& value) { json[key.name] = value; };
 }
 auto out_of(const Json& json) {
-  return [&json](const char* key, auto& value) { value = json.at(key).get<std::decay_t<decltype(value)>>(); };
+  return [&json](const OutputColumn& key, auto& value) {
+    value = json.at(key.name).get<std::decay_t<decltype(value)>>();
+  };
+}
+
+auto listed_in(std::vector<OutputColumn>& keys) {
+  return [&keys](const OutputColumn& key, const auto&) { keys.push_back(key); };
 }
 
 }  // namespace
+
+std::vector<OutputColumn> limit_keys() {
+  std::vector<OutputColumn> keys;
+  visit_limit(LimitRecord(), listed_in(keys));
+  return keys;
+}
+
+std::vector<OutputColumn> refinement_keys() {
+  std::vector<OutputColumn> keys;
+  visit_refinement(RefinementRecord(), listed_in(keys));
+  keys.push_back({"energy_before_eV", "eV", "energies before the refinement, by kind"});
+  keys.push_back({"energy_after_eV", "eV", "energies after the refinement, by kind"});
+  return keys;
+}
+
+std::vector<OutputColumn> energy_keys() {
+  std::vector<OutputColumn> keys;
+  visit_energies(EnergyParts(), listed_in(keys));
+  return keys;
+}
 
 std::string limits_json(const LimitsFile& file) {
   Json json;

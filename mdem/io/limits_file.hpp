@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "io/outputs.hpp"
 #include "sim/state/interaction.hpp"
 
 namespace ropewalk {
@@ -45,6 +46,11 @@ struct LimitsFile {
   std::vector<LimitRecord> limits;
   std::vector<RefinementRecord> refinements;  // this run's and those of the runs before it, first one first
 };
+
+// Keys of an entry of "limits", of an entry of "refinements", and of the energies in the latter.
+std::vector<OutputColumn> limit_keys();
+std::vector<OutputColumn> refinement_keys();
+std::vector<OutputColumn> energy_keys();
 
 std::string limits_json(const LimitsFile& file);
 

@@ -16,7 +16,10 @@
 namespace ropewalk {
 namespace {
 
-constexpr const char* other_log = "is this a log.csv of this version of ropewalk?";
+constexpr const char* other_log =
+    "is this the log.csv of a run by this version of ropewalk? If not, use the version in its manifest.json, or "
+    "run "
+    "the scene again";
 constexpr const char* damaged_log = "the file was changed or damaged; restore it, or run the scene again";
 
 struct LineReader {
@@ -28,7 +31,7 @@ struct LineReader {
     return InputError({path, number, column}, what, remedy);
   }
 
-  double value(const LogColumn& column, std::string_view text) const {
+  double value(const Observable& column, std::string_view text) const {
     double v = 0;
     const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), v);
     if (code != std::errc() || end != text.data() + text.size())
@@ -41,14 +44,14 @@ struct LineReader {
 
   LogRow row() const {
     LogRow row;
-    const std::vector<LogColumn>& columns = log_columns();
+    const std::size_t columns = row.values().size();
     const auto commas = static_cast<std::size_t>(std::count(line.begin(), line.end(), ','));
-    if (commas + 1 != columns.size())
-      throw error("", fmt::format("{} columns, {} are needed", commas + 1, columns.size()), damaged_log);
+    if (commas + 1 != columns)
+      throw error("", fmt::format("{} columns, {} are needed", commas + 1, columns), damaged_log);
     std::string_view rest = line;
-    for (const LogColumn& column : columns) {
+    for (std::size_t k = 0; k < columns; ++k) {
       const std::size_t comma = rest.find(',');
-      row.*column.value = value(column, rest.substr(0, comma));
+      row.values()[k] = value(observables()[k], rest.substr(0, comma));
       rest.remove_prefix(comma == std::string_view::npos ? rest.size() : comma + 1);
     }
     return row;
@@ -65,37 +68,50 @@ bool take_line(std::string_view& text, std::string_view& line) {
   return true;
 }
 
-void check_header(const std::string& path, std::string_view line) {
-  const std::string expected = log_header();
-  if (line == std::string_view(expected).substr(0, expected.size() - 1)) return;
-  std::size_t column = 0;
-  for (const LogColumn& c : log_columns()) {
+void take_header(const std::string& path, std::string_view& text) {
+  std::string_view line;
+  if (!take_line(text, line)) throw InputError({path, 1, ""}, "there is no header", other_log);
+  std::size_t number = 0;
+  for (bool more = true; more; ++number) {
     const std::size_t comma = line.find(',');
-    const std::string_view name = line.substr(0, comma);
-    if (name != c.name)
+    const std::string name(line.substr(0, comma));
+    if (number == observables().size())
+      throw InputError(
+          {path, 1, ""},
+          fmt::format("the header has more than {} columns: \"{}\" is not known", number, printable(name, 40)),
+          other_log);
+    if (name != observables()[number].name)
       throw InputError({path, 1, ""},
-                       fmt::format("column {} of the header is \"{}\", \"{}\" is needed", column + 1,
-                                   printable(std::string(name), 40), c.name),
+                       fmt::format("column {} of the header is \"{}\", \"{}\" is needed", number + 1,
+                                   printable(name, 40), observables()[number].name),
                        other_log);
-    line.remove_prefix(comma == std::string_view::npos ? line.size() : comma + 1);
-    ++column;
+    more = comma != std::string_view::npos;
+    line.remove_prefix(more ? comma + 1 : line.size());
   }
-  throw InputError({path, 1, ""}, fmt::format("the header has more than {} columns", column), other_log);
+  if (number < observables().size())
+    throw InputError(
+        {path, 1, ""},
+        fmt::format("the header ends after column {}, \"{}\" is needed next", number, observables()[number].name),
+        other_log);
 }
 
 }  // namespace
 
+LogRow::LogRow(const Measurement& measurement) {
+  for (const Observable& observable : observables()) values_.push_back(observable.value(measurement));
+}
+
 std::string log_header() {
   std::string text;
-  for (const LogColumn& column : log_columns()) text += (text.empty() ? "" : ",") + std::string(column.name);
+  for (const Observable& column : observables()) text += (text.empty() ? "" : ",") + column.name;
   return text + "\n";
 }
 
 std::string log_line(const LogRow& row) {
   std::string text;
-  for (const LogColumn& column : log_columns()) {
+  for (const double value : row.values()) {
     if (!text.empty()) text += ',';
-    fmt::format_to(std::back_inserter(text), "{}", row.*column.value);  // shortest that reads back the same
+    fmt::format_to(std::back_inserter(text), "{}", value);  // shortest that reads back the same
   }
   return text + "\n";
 }
@@ -103,12 +119,17 @@ std::string log_line(const LogRow& row) {
 std::vector<LogRow> read_log(const std::string& path) {
   const std::string content = read_file(path);
   std::string_view rest = content;
-  std::string_view line;
-  if (!take_line(rest, line)) throw InputError({path, 1, ""}, "there is no header", other_log);
-  check_header(path, line);
+  take_header(path, rest);
   std::vector<LogRow> rows;
+  std::string_view line;
   for (int number = 2; take_line(rest, line); ++number) rows.push_back(LineReader{path, line, number}.row());
   return rows;
+}
+
+void check_log_header(const std::string& path) {
+  const std::string content = read_file(path);
+  std::string_view rest = content;
+  take_header(path, rest);
 }
 
 }  // namespace ropewalk

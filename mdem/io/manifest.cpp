@@ -16,24 +16,24 @@ using Json = nlohmann::ordered_json;
 constexpr const char* format = "ropewalk-manifest-1";
 constexpr const char* remedy = "is this the manifest.json of a run? Restore it, or run the scene again";
 
-// One list for writer and reader, in the order of the file.
+// One list for writer, reader and documentation, in the order of the file.
 template <class M, class Visit>
 void visit(M& m, const Visit& v) {
-  v("version", m.version);
-  v("git_id", m.git_id);
-  v("compiler", m.compiler);
-  v("build_type", m.build_type);
-  v("threads", m.threads);
-  v("seed", m.seed);
-  v("scene_hash", m.scene_hash);
-  v("parameter_hash", m.parameter_hash);
-  v("started", m.started);
-  v("wall_seconds", m.wall_seconds);
-  v("steps", m.steps);
-  v("time_step_fs", m.time_step_fs);
-  v("status", m.status);
-  v("reason", m.reason);
-  v("scene", m.scene);
+  v({"version", "", "version of the program"}, m.version);
+  v({"git_id", "", "commit of the program"}, m.git_id);
+  v({"compiler", "", "compiler of the program"}, m.compiler);
+  v({"build_type", "", "build type of the program"}, m.build_type);
+  v({"threads", "", "threads"}, m.threads);
+  v({"seed", "", "seed of the scene"}, m.seed);
+  v({"scene_hash", "", "xxh64 of scene.toml"}, m.scene_hash);
+  v({"parameter_hash", "", "xxh64 of parameters.toml"}, m.parameter_hash);
+  v({"started", "", "date and time of the start, UTC"}, m.started);
+  v({"wall_seconds", "s", "wall time"}, m.wall_seconds);
+  v({"steps", "", "time steps"}, m.steps);
+  v({"time_step_fs", "fs", "time step"}, m.time_step_fs);
+  v({"status", "", "running, finished, interrupted, stopped, refined, failed or not relaxed"}, m.status);
+  v({"reason", "", "why it ended, in words; may be empty"}, m.reason);
+  v({"scene", "", "name of the scene"}, m.scene);
 }
 
 int line_of_byte(const std::string& text, std::size_t byte) {
@@ -69,16 +69,24 @@ T value_of(const std::string& path, const Json& json, const char* key) {
 std::string manifest_json(const Manifest& manifest) {
   Json json;
   json["format"] = format;
-  visit(manifest, [&](const char* key, const auto& value) { json[key] = value; });
+  visit(manifest, [&](const OutputColumn& key, const auto& value) { json[key.name] = value; });
   // A message may quote a file that is not UTF-8.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::vector<OutputColumn> manifest_keys() {
+  std::vector<OutputColumn> keys = {{"format", "", format}};
+  const Manifest manifest;
+  visit(manifest, [&](const OutputColumn& key, const auto&) { keys.push_back(key); });
+  return keys;
 }
 
 Manifest read_manifest(const std::string& path) {
   const Json json = parse(path, read_file(path));
   Manifest manifest;
-  visit(manifest,
-        [&](const char* key, auto& value) { value = value_of<std::decay_t<decltype(value)>>(path, json, key); });
+  visit(manifest, [&](const OutputColumn& key, auto& value) {
+    value = value_of<std::decay_t<decltype(value)>>(path, json, key.name);
+  });
   return manifest;
 }
 

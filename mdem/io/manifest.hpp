@@ -4,6 +4,9 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
+
+#include "io/outputs.hpp"
 
 namespace ropewalk {
 
@@ -20,11 +23,12 @@ struct Manifest {
   double wall_seconds = 0;
   std::int64_t steps = 0;
   double time_step_fs = 0;
-  std::string status;  // running, finished, interrupted, failed, not relaxed
+  std::string status;  // running, finished, interrupted, stopped, refined, failed, not relaxed
   std::string reason;  // in words; may be empty
   std::string scene;   // its name
 };
 
+std::vector<OutputColumn> manifest_keys();
 std::string manifest_json(const Manifest& manifest);
 
 // Throws InputError for a file that is missing, not JSON, or lacks a key.

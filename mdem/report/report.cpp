@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <iterator>
+#include <limits>
 
 #include "report/page.hpp"
 
@@ -28,6 +29,10 @@ std::string picoseconds(double value) { return number_text(value) + " ps"; }
 
 using LogValue = std::function<double(const LogRow&)>;
 
+LogValue logged(const std::string& column) {
+  return [k = index_of_observable(column)](const LogRow& row) { return row.values()[k]; };
+}
+
 struct Trace {
   std::string name;
   LogValue value;
@@ -44,21 +49,25 @@ struct Panel {
   bool since_start = false;  // the chart shows changes, the table the values themselves
 };
 
-double potential(const LogRow& r) { return r.stretch + r.shear + r.bend + r.twist + r.vdw; }
-double total(const LogRow& r) { return potential(r) + r.kinetic; }
+double potential(const LogRow& r) {
+  return r["stretch_eV"] + r["shear_eV"] + r["bend_eV"] + r["twist_eV"] + r["vdw_eV"];
+}
+double total(const LogRow& r) { return potential(r) + r["kinetic_eV"]; }
 
 // A relaxation has steps, but no time.
 struct Clock {
   ChartAxis axis;
-  double LogRow::*value;
+  std::string column;  // of the log
+
+  bool counts_steps() const { return column == "step"; }
 };
 
 Clock clock_of(const std::vector<LogRow>& log) {
   double first = 0, last = 0;
-  if (!log.empty()) first = log.front().time, last = log.back().time;
-  if (log.size() > 1 && !(last > first) && log.back().step > log.front().step)
-    return {{"step", "", true}, &LogRow::step};
-  return {{"time", "ps", false}, &LogRow::time};
+  if (!log.empty()) first = log.front()["time_ps"], last = log.back()["time_ps"];
+  if (log.size() > 1 && !(last > first) && log.back()["step"] > log.front()["step"])
+    return {{"step", "", true}, "step"};
+  return {{"time", "ps", false}, "time_ps"};
 }
 
 std::vector<double> values_of(const std::vector<LogRow>& log, const LogValue& value) {
@@ -75,8 +84,9 @@ void take_first_off(std::vector<double>& values) {
 
 std::vector<ChartBand> stages(const ReportInput& in) {
   if (!(in.ramp_end_ps > 0) || in.log.size() < 2) return {};
-  std::vector<ChartBand> bands{{in.log.front().time, in.ramp_end_ps, "loading", false}};
-  if (in.log.back().time > in.ramp_end_ps) bands.push_back({in.ramp_end_ps, in.log.back().time, "holding", true});
+  std::vector<ChartBand> bands{{in.log.front()["time_ps"], in.ramp_end_ps, "loading", false}};
+  if (in.log.back()["time_ps"] > in.ramp_end_ps)
+    bands.push_back({in.ramp_end_ps, in.log.back()["time_ps"], "holding", true});
   return bands;
 }
 
@@ -85,8 +95,8 @@ LineChart chart_of(const ReportInput& in, const Panel& panel, const Clock& clock
   chart.title = panel.title;
   chart.x = clock.axis;
   chart.y = panel.axis;
-  if (clock.value == &LogRow::time) chart.bands = stages(in);
-  const std::vector<double> x = values_of(in.log, [&](const LogRow& r) { return r.*clock.value; });
+  if (!clock.counts_steps()) chart.bands = stages(in);
+  const std::vector<double> x = values_of(in.log, logged(clock.column));
   for (const Trace& trace : panel.traces) {
     ChartLine line{trace.name, x, values_of(in.log, trace.value), trace.colour, trace.dashed, panel.steps};
     if (panel.since_start) take_first_off(line.y);
@@ -121,10 +131,10 @@ Panel bond_energies() {
   return {"Energy of the bonds",
           "Elastic energy of all bonds, by kind of deformation.",
           {"energy", "eV", false},
-          {{"stretch", [](const LogRow& r) { return r.stretch; }, 2},
-           {"shear", [](const LogRow& r) { return r.shear; }, 4},
-           {"bend", [](const LogRow& r) { return r.bend; }, 0},
-           {"twist", [](const LogRow& r) { return r.twist; }, 1}}};
+          {{"stretch", logged("stretch_eV"), 2},
+           {"shear", logged("shear_eV"), 4},
+           {"bend", logged("bend_eV"), 0},
+           {"twist", logged("twist_eV"), 1}}};
 }
 
 Panel other_energies(const std::vector<LogRow>& log) {
@@ -132,14 +142,12 @@ Panel other_energies(const std::vector<LogRow>& log) {
       "Change since the start of the van der Waals energy between the tubes, the kinetic energy and the total.";
   if (!log.empty())
     caption += fmt::format(" At the start: van der Waals {} eV, kinetic {} eV, total {} eV.",
-                           number_text(log.front().vdw, 6), number_text(log.front().kinetic, 5),
+                           number_text(log.front()["vdw_eV"], 6), number_text(log.front()["kinetic_eV"], 5),
                            number_text(total(log.front()), 6));
   return {"Contact, kinetic and total energy",
           caption,
           {"change of energy", "eV", false},
-          {{"van der Waals", [](const LogRow& r) { return r.vdw; }, 3},
-           {"kinetic", [](const LogRow& r) { return r.kinetic; }, 2},
-           {"total", total, 5}},
+          {{"van der Waals", logged("vdw_eV"), 3}, {"kinetic", logged("kinetic_eV"), 2}, {"total", total, 5}},
           false,
           true};
 }
@@ -150,8 +158,7 @@ Panel packing_charge() {
           "seven-fold (−1) defects. Neighbours by distance (solid), and by Delaunay triangulation (dashed), "
           "which takes distances in the plane of the section and misleads beyond β = 54°.",
           {"Q", "", true},
-          {{"distance", [](const LogRow& r) { return r.charge; }, 1},
-           {"Delaunay", [](const LogRow& r) { return r.charge_delaunay; }, 0, true}},
+          {{"distance", logged("Q"), 1}, {"Delaunay", logged("Q_delaunay"), 0, true}},
           true};
 }
 
@@ -159,7 +166,7 @@ Panel twist_angle() {
   return {"Twist angle",
           "Mean angle β of the outermost tubes to the axis of the rope, over its middle third.",
           {"β", "°", false},
-          {{"β", [](const LogRow& r) { return r.beta; }, 0}}};
+          {{"β", logged("beta_deg"), 0}}};
 }
 
 Panel end_twists() {
@@ -167,8 +174,7 @@ Panel end_twists() {
           "Physical: stored in the bonds along a tube, mean over the tubes. Geometric: rotation of the tubes about "
           "the centre line of the rope. Positive is right-handed.",
           {"twist", "°", false},
-          {{"physical", [](const LogRow& r) { return r.physical_twist; }, 1},
-           {"geometric", [](const LogRow& r) { return r.geometric_twist; }, 0}}};
+          {{"physical", logged("physical_twist_deg"), 1}, {"geometric", logged("geometric_twist_deg"), 0}}};
 }
 
 Panel amplitude() {
@@ -177,29 +183,28 @@ Panel amplitude() {
       "Largest distance of the centre line from its chord. Where it grows to the radius of the rope and beyond, "
       "the rope as a whole has buckled.",
       {"amplitude", "nm", false},
-      {{"amplitude", [](const LogRow& r) { return r.amplitude; }, 0}}};
+      {{"amplitude", logged("amplitude_nm"), 0}}};
 }
 
 Panel windings() {
   return {"Windings of the centre line",
           "Turns of the centre line about its chord, positive where right-handed: the helix of a buckled rope.",
           {"windings", "", false},
-          {{"windings", [](const LogRow& r) { return r.windings; }, 1}}};
+          {{"windings", logged("windings"), 1}}};
 }
 
 Panel work_and_heat() {
   return {"Work and dissipation",
           "Work done by the loads, and energy taken out by the damping, since the start.",
           {"energy", "eV", false},
-          {{"work", [](const LogRow& r) { return r.work; }, 0},
-           {"dissipated", [](const LogRow& r) { return r.dissipated; }, 1}}};
+          {{"work", logged("work_eV"), 0}, {"dissipated", logged("dissipated_eV"), 1}}};
 }
 
 std::string balance_words(const std::vector<LogRow>& log) {
   double largest = 0, work = 0;
   for (const LogRow& r : log) {
-    if (std::isfinite(r.balance)) largest = std::max(largest, std::abs(r.balance));
-    if (std::isfinite(r.work)) work = std::max(work, std::abs(r.work));
+    if (std::isfinite(r["balance_eV"])) largest = std::max(largest, std::abs(r["balance_eV"]));
+    if (std::isfinite(r["work_eV"])) work = std::max(work, std::abs(r["work_eV"]));
   }
   std::string text = fmt::format("The largest deviation is {} eV", number_text(largest, 3));
   if (work > 0) text += fmt::format(", {} % of the work done", number_text(100 * largest / work, 2));
@@ -213,12 +218,12 @@ Panel balance(const std::vector<LogRow>& log) {
           "continuous; what is left is the error of the integration. " +
               balance_words(log),
           {"balance", "eV", false},
-          {{"balance", [](const LogRow& r) { return r.balance; }, 5}}};
+          {{"balance", logged("balance_eV"), 5}}};
 }
 
 // When the k-th of n pictures is from: a relaxation has no times, only a beginning and an end.
 std::string when(const ReportInput& in, std::size_t k, std::size_t n, double time) {
-  if (clock_of(in.log).value == &LogRow::time) return picoseconds(time);
+  if (!clock_of(in.log).counts_steps()) return picoseconds(time);
   return k == 0 ? "start" : k + 1 == n ? "end" : "between";
 }
 
@@ -362,28 +367,28 @@ std::string summary(const ReportInput& in) {
   if (in.log.empty()) return ending(in) + " Its log has no rows.";
   const LogRow& r = in.log.back();
   const Clock clock = clock_of(in.log);
-  std::string html = clock.value == &LogRow::step ? fmt::format("After {} steps", fixed_text(r.step, 0))
-                                                  : fmt::format("After {}", picoseconds(r.time));
-  if (std::isfinite(r.beta) && in.tubes != 1)
-    html +=
-        fmt::format(" the outermost tubes stand at <b>β = {}</b> to the axis of the rope, and", degrees(r.beta));
-  const double bonds = r.stretch + r.shear + r.bend + r.twist;
+  std::string html = clock.counts_steps() ? fmt::format("After {} steps", fixed_text(r["step"], 0))
+                                          : fmt::format("After {}", picoseconds(r["time_ps"]));
+  if (std::isfinite(r["beta_deg"]) && in.tubes != 1)
+    html += fmt::format(" the outermost tubes stand at <b>β = {}</b> to the axis of the rope, and",
+                        degrees(r["beta_deg"]));
+  const double bonds = r["stretch_eV"] + r["shear_eV"] + r["bend_eV"] + r["twist_eV"];
   html += fmt::format(" the bonds hold <b>{} eV</b> (stretch {}, shear {}, bend {}, twist {})", number_text(bonds),
-                      number_text(r.stretch, 3), number_text(r.shear, 3), number_text(r.bend, 3),
-                      number_text(r.twist, 3));
+                      number_text(r["stretch_eV"], 3), number_text(r["shear_eV"], 3), number_text(r["bend_eV"], 3),
+                      number_text(r["twist_eV"], 3));
   html += fmt::format(", the van der Waals contacts <b>{} eV</b>. The kinetic energy is {} eV, the total {} eV.",
-                      number_text(r.vdw), number_text(r.kinetic, 3), number_text(total(r)));
+                      number_text(r["vdw_eV"]), number_text(r["kinetic_eV"], 3), number_text(total(r)));
   if (any_internal(in.shells))
     html += fmt::format(
         " The packing charge of the middle section is <b>Q = {}</b> by distance, {} by Delaunay "
         "triangulation.",
-        fixed_text(r.charge, 0), fixed_text(r.charge_delaunay, 0));
+        fixed_text(r["Q"], 0), fixed_text(r["Q_delaunay"], 0));
   return html + " " + ending(in);
 }
 
 struct Limit {
   const char* what;  // "kinked"
-  double LogRow::*count;
+  const char* column;
   std::string beyond;  // HTML: which limit
   const char* meaning;
 };
@@ -394,27 +399,27 @@ std::vector<Limit> limits(const Validity& v) {
                      : std::string(words) + " the limit of the parameter set";
   };
   return {
-      {"Kinked", &LogRow::kinked, limit(v.kink_curvature, "curvature beyond", " nm⁻¹"),
+      {"Kinked", "kinked", limit(v.kink_curvature, "curvature beyond", " nm⁻¹"),
        "A real tube kinks there: its wall folds and it bends on at a fraction of the stiffness. The model bends "
        "on elastically, and overestimates the bending energy."},
-      {"Overtwisted", &LogRow::overtwisted, limit(v.twist_collapse, "radius times twist per length beyond", ""),
+      {"Overtwisted", "overtwisted", limit(v.twist_collapse, "radius times twist per length beyond", ""),
        "The wall of a real tube collapses into a ribbon there. The model stores more torsional energy than the "
        "tube would."},
-      {"Overstretched", &LogRow::overstretched, limit(v.stretch, "strain beyond", ""),
+      {"Overstretched", "overstretched", limit(v.stretch, "strain beyond", ""),
        "In compression the wall of a real tube buckles there; in tension the linear law overestimates the force."}};
 }
 
 std::string moment_words(const std::vector<LogRow>& log, const LogRow& row) {
-  return clock_of(log).value == &LogRow::step ? "at step " + fixed_text(row.step, 0)
-                                              : "at " + picoseconds(row.time);
+  return clock_of(log).counts_steps() ? "at step " + fixed_text(row["step"], 0)
+                                      : "at " + picoseconds(row["time_ps"]);
 }
 
 std::string limit_words(const ReportInput& in, const Limit& limit) {
-  const double last = in.log.back().*limit.count;
+  const double last = in.log.back()[limit.column];
   const LogRow* worst = &in.log.front();
   for (const LogRow& r : in.log)
-    if (r.*limit.count > worst->*limit.count) worst = &r;
-  const double most = worst->*limit.count;
+    if (r[limit.column] > (*worst)[limit.column]) worst = &r;
+  const double most = (*worst)[limit.column];
   const std::string of = in.bonds > 0 ? fmt::format(" of {} bonds", fixed_text(in.bonds, 0)) : " bonds";
   std::string html = fmt::format("<li><b>{}</b> ({}): ", limit.what, limit.beyond);
   if (!(most > 0)) return html + (in.bonds > 0 ? "none" + of : "no bond") + " at any logged time.</li>\n";
@@ -440,7 +445,7 @@ std::string limits_part(const ReportInput& in) {
   for (const Limit& limit : limits(in.validity)) html += limit_words(in, limit);
   double twist = 0;
   for (const LogRow& r : in.log)
-    if (std::isfinite(r.largest_bond_twist)) twist = std::max(twist, r.largest_bond_twist);
+    if (std::isfinite(r["largest_bond_twist_deg"])) twist = std::max(twist, r["largest_bond_twist_deg"]);
   html += fmt::format(
       "<li>Largest twist of one bond: {}. The torque of a bond peaks at 90°, and beyond it the bond "
       "would slip.</li>\n",
@@ -484,6 +489,30 @@ std::string refinements_part(const std::vector<RefinementRecord>& refinements) {
         escape_markup(r.to), r.elements_after, number_text(r.length_after), number_text(r.before.total(), 6),
         number_text(r.after.total(), 6), energy_words(r.before, r.after));
   return html + "</ul>\n";
+}
+
+// Every column of the log, also those that no chart shows.
+std::string observables_part(const std::vector<LogRow>& log) {
+  if (log.empty()) return paragraph("The log has no rows, so nothing is known.");
+  std::string html =
+      "<div class=\"scroll\"><table class=\"facts\"><thead><tr><th>Column of log.csv</th><th>Unit</th><th "
+      "class=\"number\">Start</th><th class=\"number\">End</th><th class=\"number\">Smallest</th><th "
+      "class=\"number\">Largest</th><th>Meaning</th></tr></thead><tbody>\n";
+  for (const Observable& o : observables()) {
+    std::vector<double> values = values_of(log, logged(o.name));
+    const double start = values.front(), end = values.back();
+    values.erase(std::remove_if(values.begin(), values.end(), [](double v) { return !std::isfinite(v); }),
+                 values.end());
+    const auto number = [&](double v) {
+      return "<td class=\"number\">" + (o.whole ? fixed_text(v, 0) : number_text(v)) + "</td>";
+    };
+    const double none = std::numeric_limits<double>::quiet_NaN();
+    const auto [low, high] = std::minmax_element(values.begin(), values.end());
+    html += "<tr><th>" + escape_markup(o.name) + "</th><td>" + escape_markup(o.unit) + "</td>" + number(start) +
+            number(end) + number(values.empty() ? none : *low) + number(values.empty() ? none : *high) +
+            "<td class=\"soft\">" + escape_markup(o.meaning) + "</td></tr>\n";
+  }
+  return html + "</tbody></table></div>\n";
 }
 
 // --- The page -----------------------------------------------------------------------------------------------
@@ -530,6 +559,7 @@ std::string report_html(const ReportInput& in) {
   html += log_part(in, sections, figures);
   html += heading("Beyond the limits of the model") + limits_part(in);
   html += refinements_part(in.watched.refinements);
+  html += heading("All observables") + observables_part(in.log);
   html += heading("The run") + facts_part(in.facts);
   html += heading("Parameters") + parameters_part(in.parameter_name, in.parameter_reference, in.parameters);
   return html + "</main>\n</body>\n</html>\n";

@@ -10,6 +10,7 @@
 #include "model/error.hpp"
 #include "scene/kinds/state.hpp"
 #include "scene/scene_toml.hpp"
+#include "scene/state_csv.hpp"
 
 namespace ropewalk {
 namespace {
@@ -18,19 +19,52 @@ namespace fs = std::filesystem;
 
 constexpr const char* checkpoint_title = "ROPEWALK-CHECKPOINT 1 ";
 
-// Only names that a run writes: --force must never take away anything else.
 bool belongs_to_a_run(const std::string& name) {
-  for (const char* known :
-       {"log.csv",         "frames.lammpstrj", "checkpoint.bin",   "manifest.json",    "scene.toml",
-        "parameters.toml", "state.csv",        "report.html",      "failed-state.csv", "paraview",
-        "limits.json",     "lammps.json",      "tubes.csv",        "rope.data",        "in.rope",
-        "README.txt",      "lammps.dump",      "lammps-last.dump", "lammps-rows.csv",  "log.lammps",
-        "rope.restart.a",  "rope.restart.b"})
-    if (name == known) return true;
-  return name.compare(0, 11, "parameters-") == 0;
+  for (const OutputFile& file : run_files()) {
+    const std::string pattern = file.name;
+    const std::size_t star = pattern.find('*');
+    if (name == pattern || (star != std::string::npos && name.compare(0, star, pattern, 0, star) == 0)) return true;
+  }
+  return false;
 }
 
 }  // namespace
+
+const std::vector<OutputFile>& run_files() {
+  static const std::vector<OutputFile> files = {
+      {"scene.toml", "run", "the scene"},
+      {"parameters.toml", "run", "the parameter set of the first type of tube"},
+      {"parameters-*.toml", "run", "the parameter sets of further types, from 1"},
+      {"state.csv", "run", "the start, of a scene that reads its state from a file"},
+      {"log.csv", "run", "observables against time"},
+      {"frames.lammpstrj", "run", "elements against time, for OVITO"},
+      {"paraview", "run",
+       "directory with rope.pvd and a frame-*.vtp per frame, with `paraview = true` in the scene"},
+      {"limits.json", "run", "limits that were watched and passed, and refinements"},
+      {"manifest.json", "run", "program, inputs and how the run ended"},
+      {"checkpoint.bin", "run", "binary: where `resume` goes on"},
+      {"report.html", "run, report", "page with charts, pictures and all observables"},
+      {"failed-state.csv", "run", "the state of a run that failed"},
+      {"README.txt", "export", "how to run LAMMPS here"},
+      {"in.rope", "export", "input of LAMMPS"},
+      {"rope.data", "export", "data of LAMMPS: elements, velocities, bonds"},
+      {"tubes.csv", "export", "tubes, by kind"},
+      {"lammps.json", "export", "where the run stands"},
+      {"lammps.dump", "lmp-ropewalk", "states against time"},
+      {"lammps-last.dump", "lmp-ropewalk", "the last state"},
+      {"lammps-rows.csv", "lmp-ropewalk", "energies against time"},
+      {"log.lammps", "lmp-ropewalk", "log of LAMMPS"},
+      {"rope.restart.a", "lmp-ropewalk", "binary: restart of LAMMPS"},
+      {"rope.restart.b", "lmp-ropewalk", "binary: restart of LAMMPS"},
+  };
+  return files;
+}
+
+std::string run_files_markdown() {
+  std::string text = "| name | left by | for |\n|---|---|---|\n";
+  for (const OutputFile& f : run_files()) text += fmt::format("| `{}` | {} | {} |\n", f.name, f.by, f.meaning);
+  return text;
+}
 
 void create_run_directory(const RunDirectory& dir, bool force) {
   std::error_code error;
@@ -115,28 +149,13 @@ RopeObservation look(const Observer& o, const Scene& scene, const Topology& topo
   return observe(topology, state, o.shells, validities(scene), o.neighbour_radius, o.spacing);
 }
 
-void fill_geometry(const RopeObservation& o, LogRow& r) {
-  r.beta = o.beta / units::degree;
-  r.physical_twist = o.physical_twist / units::degree;
-  r.geometric_twist = o.geometric_twist / units::degree;
-  r.charge = o.middle.charge;
-  r.charge_delaunay = o.middle.charge_delaunay;
-  r.contacts = o.middle.contacts;
-  r.voids = o.middle.voids;
-  r.void_area = o.middle.void_area;
-  r.radius_mid = o.radius_mid;
-  r.radius_end = o.radius_end;
-  r.length = o.length;
-  r.amplitude = o.amplitude;
-  r.windings = o.windings;
-  r.kinked = o.kinked;
-  r.overtwisted = o.overtwisted;
-  r.overstretched = o.overstretched;
-  r.largest_bond_twist = o.largest_bond_twist / units::degree;
+LogRow log_row(const Observer& o, const Scene& scene, const Topology& topology, const State& state,
+               const EnergyAccount& account) {
+  return LogRow({topology, state, look(o, scene, topology, state), account});
 }
 
 std::string state_csv(const Topology& topology, const State& s) {
-  std::string text = "tube,x_nm,y_nm,z_nm,qw,qx,qy,qz\n";
+  std::string text = column_names(state_columns()) + "\n";
   for (int t = 0; t < topology.tubes(); ++t)
     for (int e = topology.tube_begin[t]; e < topology.tube_begin[t + 1]; ++e) {
       const auto i = static_cast<std::size_t>(e);

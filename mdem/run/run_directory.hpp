@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "io/log.hpp"
 #include "io/manifest.hpp"
@@ -29,6 +30,15 @@ struct RunDirectory {
   std::string failed_state() const { return file("failed-state.csv"); }
   std::string paraview() const { return file("paraview"); }
 };
+
+// A file of a run directory; a * stands for a number. --force takes away these and nothing else.
+struct OutputFile {
+  const char* name;
+  const char* by;  // which verb leaves it
+  const char* meaning;
+};
+const std::vector<OutputFile>& run_files();
+std::string run_files_markdown();  // a table for people
 
 // Makes the directory. An earlier run in it is refused without `force`, and so is a directory with other
 // things in it even with `force`.
@@ -57,8 +67,8 @@ struct Observer {
 Observer make_observer(const Scene& scene, const Prepared& prepared);
 
 RopeObservation look(const Observer& observer, const Scene& scene, const Topology& topology, const State& state);
-// The columns of a row that come from geometry alone.
-void fill_geometry(const RopeObservation& o, LogRow& row);
+LogRow log_row(const Observer& observer, const Scene& scene, const Topology& topology, const State& state,
+               const EnergyAccount& account);
 
 // CSV in the format that [state] reads.
 std::string state_csv(const Topology& topology, const State& state);

@@ -113,8 +113,7 @@ Outputs time_outputs(const Scene& scene, const Prepared& p, const RunTime& t) {
   const Observer observer = make_observer(scene, p);
   LimitWatch watch(watched_of(scene, p.topology));
   const double began = processor_seconds();
-  LogRow row;
-  fill_geometry(look(observer, scene, p.topology, s.state()), row);
+  const LogRow row = log_row(observer, scene, p.topology, s.state(), {});
   watch.look(p.topology, s.state(), s.list());
   log_line(row);
   o.row = processor_seconds() - began;

@@ -17,19 +17,18 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* start_format = "ropewalk-lammps-1";
-constexpr const char* tubes_header = "tubes,elements,type";
 constexpr const char* remedy = "export the run again with `ropewalk export`";
 
 template <class S, class Visit>
-void visit_start(S& s, const Visit& v) {
-  v("step", s.step);
-  v("time_ps", s.time);
-  v("time_step_ps", s.time_step);
-  v("work_eV", s.work);
-  v("dissipated_eV", s.dissipated);
-  v("viscosity_inner_nm", s.viscosity_inner);
-  v("viscosity_outer_nm", s.viscosity_outer);
-  v("parameters", s.parameters);
+void visit_start(S&& s, const Visit& v) {
+  v({"step", "", "time step of the export"}, s.step);
+  v({"time_ps", "ps", "time of the export"}, s.time);
+  v({"time_step_ps", "ps", "time step"}, s.time_step);
+  v({"work_eV", "eV", "work done by the loads so far"}, s.work);
+  v({"dissipated_eV", "eV", "energy taken out by damping so far"}, s.dissipated);
+  v({"viscosity_inner_nm", "nm", "distance up to which contact viscosity acts in full"}, s.viscosity_inner);
+  v({"viscosity_outer_nm", "nm", "distance beyond which there is no contact viscosity"}, s.viscosity_outer);
+  v({"parameters", "", "files of the parameter sets, by type of the tube"}, s.parameters);
 }
 
 // Takes the next number off `text`, and what separates it from the next.
@@ -70,12 +69,69 @@ Box box_of(const State& s, double margin) {
   return box;
 }
 
+constexpr std::array<OutputColumn, 3> tube_columns = {{
+    {"tubes", "", "tubes of one kind that follow one another"},
+    {"elements", "", "elements of each of them"},
+    {"type", "", "type of the tube, from 0"},
+}};
+
+// The step, then the numbers of fix `motion`.
+constexpr std::array<OutputColumn, 1 + lammps_row_numbers> row_columns = {{
+    {"step", "", "time step"},
+    {"time_ps", "ps", "time"},
+    {"stretch_eV", "eV", "stretch energy of the bonds"},
+    {"shear_eV", "eV", "shear energy of the bonds"},
+    {"bend_eV", "eV", "bending energy of the bonds"},
+    {"twist_eV", "eV", "torsional energy of the bonds"},
+    {"vdw_eV", "eV", "van der Waals energy of the contacts"},
+    {"kinetic_eV", "eV", "kinetic energy of translation and rotation"},
+    {"work_eV", "eV", "work done by the loads since the start"},
+    {"dissipated_eV", "eV", "energy taken out by damping since the start"},
+}};
+
+constexpr std::array<OutputColumn, 20> state_columns = {{
+    {"id", "", "element, from 1"},
+    {"x", "nm", "centre of the element"},
+    {"y", "nm", "centre of the element"},
+    {"z", "nm", "centre of the element"},
+    {"d2_quat[1]", "", "orientation, a unit quaternion: w"},
+    {"d2_quat[2]", "", "orientation: x"},
+    {"d2_quat[3]", "", "orientation: y"},
+    {"d2_quat[4]", "", "orientation: z"},
+    {"vx", "nm/ps", "velocity"},
+    {"vy", "nm/ps", "velocity"},
+    {"vz", "nm/ps", "velocity"},
+    {"omegax", "rad/ps", "angular velocity"},
+    {"omegay", "rad/ps", "angular velocity"},
+    {"omegaz", "rad/ps", "angular velocity"},
+    {"fx", "eV/nm", "force, damping included"},
+    {"fy", "eV/nm", "force, damping included"},
+    {"fz", "eV/nm", "force, damping included"},
+    {"tqx", "eV", "torque, damping included"},
+    {"tqy", "eV", "torque, damping included"},
+    {"tqz", "eV", "torque, damping included"},
+}};
+
+template <class Columns>
+std::vector<OutputColumn> listed(const Columns& columns) {
+  return {columns.begin(), columns.end()};
+}
+
 }  // namespace
+
+std::vector<OutputColumn> lammps_start_keys() {
+  std::vector<OutputColumn> keys = {{"format", "", start_format}};
+  visit_start(LammpsStart(), [&](const OutputColumn& key, const auto&) { keys.push_back(key); });
+  return keys;
+}
+std::vector<OutputColumn> lammps_tube_columns() { return listed(tube_columns); }
+std::vector<OutputColumn> lammps_row_columns() { return listed(row_columns); }
+std::vector<OutputColumn> lammps_state_columns() { return listed(state_columns); }
 
 std::string start_json(const LammpsStart& start) {
   Json json;
   json["format"] = start_format;
-  visit_start(start, [&](const char* key, const auto& value) { json[key] = value; });
+  visit_start(start, [&](const OutputColumn& key, const auto& value) { json[key.name] = value; });
   return json.dump(1) + "\n";
 }
 
@@ -86,7 +142,7 @@ LammpsStart read_start(const LammpsDirectory& dir) {
     const Json json = Json::parse(read_file(path));
     if (json.at("format") != start_format)
       throw InputError({path, 0, "format"}, fmt::format("\"{}\" is needed", start_format), remedy);
-    visit_start(start, [&](const char* key, auto& value) { json.at(key).get_to(value); });
+    visit_start(start, [&](const OutputColumn& key, auto& value) { json.at(key.name).get_to(value); });
   } catch (const Json::exception&) {
     throw InputError({path, 0, ""}, "is damaged", remedy);
   }
@@ -94,7 +150,7 @@ LammpsStart read_start(const LammpsDirectory& dir) {
 }
 
 std::string tubes_csv(const Topology& topology) {
-  std::string text = std::string(tubes_header) + "\n";
+  std::string text = column_names(tube_columns) + "\n";
   for (int t = 0, next = 0; t < topology.tubes(); t = next) {
     const auto alike = [&](int u) {
       return topology.length_of(u) == topology.length_of(t) && topology.tube_type[u] == topology.tube_type[t];
@@ -108,12 +164,12 @@ std::string tubes_csv(const Topology& topology) {
 void read_tubes(const LammpsDirectory& dir, Topology& topology) {
   const std::string path = dir.tubes();
   for_each_line(read_file(path), [&](int number, std::string_view line) {
-    if (number == 1 && line == tubes_header) return;
+    if (number == 1 && line == column_names(tube_columns)) return;
     int tubes = 0, elements = 0, type = -1;
     const bool read = take(line, tubes) && take(line, elements) && take(line, type) && line.empty();
     if (number == 1 || !read || tubes < 1 || elements < 1 || type < 0 ||
         type >= static_cast<int>(topology.types.size()))
-      throw InputError({path, number, ""}, fmt::format("no line of {}", tubes_header), remedy);
+      throw InputError({path, number, ""}, fmt::format("no line of {}", column_names(tube_columns)), remedy);
     for (int t = 0; t < tubes; ++t) topology.add_tube(elements, type);
   });
   if (topology.tubes() == 0) throw InputError({path, 0, ""}, "holds no tube", remedy);
@@ -177,9 +233,6 @@ std::string pair_line(const LammpsScript& s) {
 std::string lammps_input(const LammpsScript& s) {
   // LAMMPS leaves out neighbours along a chain by 1, 2 and 3 bonds; the model says up to how many.
   const auto weight = [&](int bonds) { return bonds <= s.exclude_along_tube ? 0 : 1; };
-  const std::string row_names =
-      "step,time_ps,stretch_eV,shear_eV,bend_eV,twist_eV,vdw_eV,kinetic_eV,work_eV,"
-      "dissipated_eV";
   std::string text = fmt::format(
       "# {}. Run with lmp-ropewalk. Units are nm, ps and eV, in which LAMMPS's \"lj\" has all factors 1.\n"
       "# On the command line: -var steps N, -var restart FILE (to go on from a restart file).\n"
@@ -236,7 +289,8 @@ std::string lammps_input(const LammpsScript& s) {
       "  vx vy vz omegax omegay omegaz fx fy fz tqx tqy tqz modify format float %.17g\n"
       "unfix rows\n"
       "print \"{0}\" append ${{dir}}/lammps-rows.csv screen no\n",
-      "${step},${time},${stretch},${shear},${bend},${twist},${vdw},${kinetic},${work},${dissipated}", row_names);
+      "${step},${time},${stretch},${shear},${bend},${twist},${vdw},${kinetic},${work},${dissipated}",
+      column_names(row_columns));
   return text;
 }
 
@@ -270,12 +324,6 @@ void LammpsStates::fail(const std::string& what) const {
   throw InputError({path_, static_cast<int>(line_), ""}, what, "was it written by the in.rope of this export?");
 }
 
-namespace {
-constexpr std::array<const char*, 20> state_columns = {
-    "id", "x",      "y",      "z",      "d2_quat[1]", "d2_quat[2]", "d2_quat[3]", "d2_quat[4]", "vx",  "vy",
-    "vz", "omegax", "omegay", "omegaz", "fx",         "fy",         "fz",         "tqx",        "tqy", "tqz"};
-}
-
 // Of every column of the file, which of ours it is, or -1.
 std::vector<int> LammpsStates::columns() {
   constexpr std::string_view title = "ITEM: ATOMS";
@@ -290,7 +338,7 @@ std::vector<int> LammpsStates::columns() {
     rest.remove_prefix(name.size());
     int which = -1;
     for (std::size_t k = 0; k < state_columns.size(); ++k)
-      if (name == state_columns[k]) which = static_cast<int>(k);
+      if (name == state_columns[k].name) which = static_cast<int>(k);
     found += which >= 0;
     out.push_back(which);
   }

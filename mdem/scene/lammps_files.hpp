@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "io/outputs.hpp"
 #include "scene/scene.hpp"
 #include "sim/state/state.hpp"
 
@@ -42,6 +43,12 @@ struct LammpsDirectory {
   std::string last_state() const { return file("lammps-last.dump"); }
   std::string rows() const { return file("lammps-rows.csv"); }
 };
+
+// What the files hold: lammps.json, tubes.csv, lammps-rows.csv, and both dumps.
+std::vector<OutputColumn> lammps_start_keys();
+std::vector<OutputColumn> lammps_tube_columns();
+std::vector<OutputColumn> lammps_row_columns();
+std::vector<OutputColumn> lammps_state_columns();
 
 std::string start_json(const LammpsStart& start);
 LammpsStart read_start(const LammpsDirectory& dir);

@@ -36,7 +36,6 @@ struct ContactOptions {
   double skin = 0;              // nm; 0: chosen by the program
   double cutoff = 0;            // nm, of axes (`line`) or element centres (`paper`); 0: the set's
   int nodes = 0;                // `line`: per element; 0: as line_nodes chooses
-  bool all_nodes = false;       // `line`: no sparse sums
   // Pairs in single precision or all in double; the former by default where nothing is relaxed to tight tolerances.
   std::optional<Interaction::Precision> precision;
 };

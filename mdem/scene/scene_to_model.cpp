@@ -70,12 +70,10 @@ std::vector<LineContact> line_contacts(const Scene& scene) {
       nodes[a] = std::max(nodes[a], scene.contact.nodes > 0 ? scene.contact.nodes : needed);
       pairs.push_back(pair);
     }
-  const SparseNodes sparse =
-      scene.contact.all_nodes ? SparseNodes{} : sparse_nodes(*std::max_element(nodes.begin(), nodes.end()));
   for (std::size_t a = 0; a < types; ++a)
     for (std::size_t b = 0; b < types; ++b) {
       LineContact& pair = pairs[a * types + b];
-      pair = {pair.density, scene.element_length, scene.element_length, nodes[a], nodes[b], sparse, {}, {}};
+      pair = {pair.density, scene.element_length, scene.element_length, nodes[a], nodes[b]};
     }
   return pairs;
 }

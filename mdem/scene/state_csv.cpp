@@ -15,8 +15,17 @@
 namespace ropewalk {
 namespace {
 
-constexpr const char* header = "tube,x_nm,y_nm,z_nm,qw,qx,qy,qz";
-constexpr std::array<const char*, 8> columns = {"tube", "x_nm", "y_nm", "z_nm", "qw", "qx", "qy", "qz"};
+constexpr std::array<OutputColumn, 8> columns = {{
+    {"tube", "", "tube, from 0; its elements follow one another along it"},
+    {"x_nm", "nm", "centre of the element"},
+    {"y_nm", "nm", "centre of the element"},
+    {"z_nm", "nm", "centre of the element"},
+    {"qw", "", "orientation, a quaternion that turns z into the axis of the tube: w"},
+    {"qx", "", "orientation: x"},
+    {"qy", "", "orientation: y"},
+    {"qz", "", "orientation: z"},
+}};
+const std::string header = column_names(columns);
 constexpr double farthest = 1e7;                          // nm
 constexpr double norm_slack = 1e-3;                       // of a quaternion
 constexpr double shortest_bond = 0.1, longest_bond = 10;  // element lengths
@@ -82,7 +91,7 @@ class Reader {
     std::size_t count = 0;
     while (true) {
       const std::size_t comma = line.find(',');
-      if (count < value.size()) value[count] = number(trimmed(line.substr(0, comma)), columns[count]);
+      if (count < value.size()) value[count] = number(trimmed(line.substr(0, comma)), columns[count].name);
       ++count;
       if (comma == std::string_view::npos) break;
       line.remove_prefix(comma + 1);
@@ -152,6 +161,8 @@ class Reader {
 };
 
 }  // namespace
+
+std::vector<OutputColumn> state_columns() { return {columns.begin(), columns.end()}; }
 
 void read_state_csv(const std::string& path, Topology& topology, State& state) {
   topology.tube_begin = {0};

@@ -4,10 +4,14 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include "io/outputs.hpp"
 #include "sim/state/state.hpp"
 
 namespace ropewalk {
+
+std::vector<OutputColumn> state_columns();
 
 // Fills tubes and state; all elements have the length of the first of topology.types. Throws InputError with file,
 // line and column.

@@ -22,9 +22,8 @@ HWY_INLINE void radial_row(const Table& table, const typename Table::Value* X, s
   for (std::size_t i = 0; i < n; i += hn::Lanes(d)) {
     using V = hn::Vec<typename Lanes<typename Table::Value>::D>;
     const V at[1] = {hn::Load(d, X + i)};
-    const V by[1] = {hn::Set(d, 1)};
     V u[1], slope[1];
-    radial<true>(d, table, at, by, u, slope);
+    radial<true>(d, table, at, u, slope);
     us = hn::Add(us, u[0]);
     slopes = hn::Add(slopes, slope[0]);
   }
@@ -39,25 +38,6 @@ void RadialFull(const FullTable& table, const double* X, std::size_t n, double* 
   radial_row(table, X, n, out);
 }
 
-// 64 runs of `length` nodes, each `shift` nodes after the one before, against as many nodes of an element as the
-// kernel takes together.
-void Rows(const MixedTable& table, const LineNodes<std::int32_t>& nodes, int length, int shift,
-          NodeForces<float>& out, float* total) {
-  using D = Lanes<float>::D;
-  constexpr int K = nodes_at_once<float>;
-  std::int32_t from[K][3] = {};
-  for (int k = 0; k < K; ++k) from[k][2] = k << 20;
-  auto sums = no_sums<D, K>(D());
-  for (int r = 0; r < 64; ++r)
-    meet_row<false, K>(table, nodes, out, {r * shift, static_cast<short>(length), 0, 0}, from, 0.1F, sums);
-  auto all = sums.energy;
-  for (int k = 0; k < K; ++k) all = hn::Add(all, hn::Add(sums.x[k], hn::Add(sums.y[k], sums.z[k])));
-  hn::StoreU(all, D(), total);
-}
-
-int NodesAtOnce() { return nodes_at_once<float>; }
-std::size_t KernelLanes(bool full) { return full ? hn::Lanes(Lanes<double>::D()) : hn::Lanes(Lanes<float>::D()); }
-
 }  // namespace ropewalk::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -69,9 +49,6 @@ HWY_AFTER_NAMESPACE();
 namespace ropewalk {
 HWY_EXPORT(RadialMixed);
 HWY_EXPORT(RadialFull);
-HWY_EXPORT(KernelLanes);
-HWY_EXPORT(NodesAtOnce);
-HWY_EXPORT(Rows);
 }  // namespace ropewalk
 
 namespace ropewalk::bench {
@@ -95,10 +72,8 @@ struct Distances {
   }
 };
 
-// Without separation, square, force and sums of forces; two more for each term of u.
-double radial_flop(Precision precision, int degree) {
-  return radial_operations(precision) - (3 + 5 + 1 + 12) + 2 * degree;
-}
+// Without the squared distance and the sums of forces; two more for each term of u.
+double radial_flop(Precision precision, int degree) { return radial_operations(precision) - (3 + 3) + 2 * degree; }
 
 void RadialTableFloat(benchmark::State& bench, const std::string& instructions) {
   use_instructions(instructions);
@@ -127,37 +102,6 @@ void RadialTableDouble(benchmark::State& bench, const std::string& instructions)
   set_giga(bench, "GFLOP/s", distances * radial_flop(Precision::full, FullTable::degree));
   use_instructions("");
 }
-
-// Runs alone, two or four nodes of an element against each. Arguments: nodes in a run; nodes from one run to the
-// next: as many as a run has, it meets fresh forces, 0 those just stored, 6 those of the last runs, shifted by an
-// element.
-void LineRows(benchmark::State& bench) {
-  const int length = static_cast<int>(bench.range(0)), shift = static_cast<int>(bench.range(1));
-  const int count = 64 * shift + length + NodeRow::pad;
-  const double unit = std::exp2(-22);
-  const MixedTable table(test::line_density(), unit);
-  LineNodes<std::int32_t> nodes;
-  const auto coordinate = [&](double nm) { return static_cast<std::int32_t>(std::lrint(nm / unit)); };
-  for (int m = 0; m < count; ++m) {
-    nodes.x.push_back(coordinate(1.7));
-    nodes.y.push_back(coordinate(0.01 * (m % 7)));
-    nodes.z.push_back(coordinate(0.226 * (m % 10)));
-  }
-  NodeForces<float> forces;
-  forces.make_room(count);
-  forces.start(1);
-  float total[16];
-  for (auto _ : bench) {
-    HWY_DYNAMIC_DISPATCH(Rows)(table, nodes, length, shift, forces, total);
-    benchmark::ClobberMemory();
-  }
-  const auto lanes = static_cast<int>(HWY_DYNAMIC_DISPATCH(KernelLanes)(false));
-  const double vectors = 64.0 * HWY_DYNAMIC_DISPATCH(NodesAtOnce)() * ((length + lanes - 1) / lanes);
-  set_ns(bench, "ns/vector", vectors);
-  set_ns(bench, "ns/run", 64);
-  set_giga(bench, "GFLOP/s", vectors * lanes * radial_operations(Precision::mixed));
-}
-BENCHMARK(LineRows)->ArgsProduct({{16, 32}, {0, 6, 32}})->Args({24, 6})->Args({512, 512});
 
 // The law itself, as its formula says: what the tables replace.
 ROPEWALK_VECTOR_CLONES
@@ -196,11 +140,9 @@ void set_counters(benchmark::State& bench, const Rope& rope, const LineList& lis
   set_ns(bench, "ns/evaluation", count.evaluations * n);
   set_giga(bench, "GFLOP/s", count.evaluations * n * radial_operations(rope.in.precision));
   bench.counters["evaluations"] = count.evaluations;
-  bench.counters["vectors"] = count.vectors;
   bench.counters["useful"] = count.useful / count.evaluations;
-  bench.counters["runs"] = count.runs;
+  bench.counters["spans"] = count.spans;
   bench.counters["skipped"] = count.skipped;
-  bench.counters["end_pairs"] = count.pairs;
   bench.counters["pairs"] = static_cast<double>(rope.list.pairs()) / n;
 }
 
@@ -209,7 +151,6 @@ void set_counters(benchmark::State& bench, const Rope& rope, const LineList& lis
 struct Choice {
   std::string instructions;
   Precision precision;
-  Law law;
   int tubes;
   double worn;
   bool energies = false;
@@ -218,7 +159,7 @@ struct Choice {
 // Rows, kernel and what it puts on the neighbours: all of the contact, as a step has it.
 void LineKernel(benchmark::State& bench, const Choice& c) {
   use_instructions(c.instructions);
-  const Rope rope(c.tubes, 49, c.law, c.precision, 0, c.worn);
+  const Rope rope(c.tubes, 49, Law::line, c.precision, 0, c.worn);
   LineEngine engine;
   Vec3Array force(rope.state.size()), torque(rope.state.size());
   const auto nothing = [](int) {};
@@ -256,7 +197,7 @@ void LineListBuild(benchmark::State& bench) {
   LineList list;
   for (auto _ : bench) list.build(rope.topology, rope.in, rope.list);
   set_ns(bench, "ns/element", rope.elements());
-  bench.counters["runs"] = static_cast<double>(list.runs()) / rope.elements();
+  bench.counters["spans"] = static_cast<double>(list.spans()) / rope.elements();
   bench.counters["bytes"] = static_cast<double>(list.bytes()) / rope.elements();
 }
 BENCHMARK(LineListBuild)->Arg(7)->Arg(91);
@@ -270,13 +211,14 @@ void ViscousDamping(benchmark::State& bench) {
   const ContactViscosity& viscosity = rope.in.damping.contact;
   std::vector<ContactBuffer<T>> buffers(list.chunks().size());
   DampedElements floats;
-  floats.make_room(list.most_elements());
+  floats.make_room(list.largest().elements);
   for (auto _ : bench) {
     for (std::size_t k = 0; k < buffers.size(); ++k) {
       const LineChunk& chunk = list.chunks()[k];
       buffers[k].clear(static_cast<std::size_t>(chunk.elements));
       if constexpr (mixed)
-        contact_damping(viscosity, rope.state, {chunk.damped, chunk.damped_parts, list.unit()}, floats, buffers[k]);
+        contact_damping(viscosity, rope.state, {chunk.damped, chunk.damped_ranges, list.unit()}, floats,
+                        buffers[k]);
       else
         contact_damping(viscosity, rope.state, chunk.damped, buffers[k]);
     }
@@ -288,19 +230,17 @@ BENCHMARK_TEMPLATE(ViscousDamping, float)->Arg(7)->Arg(91);
 BENCHMARK_TEMPLATE(ViscousDamping, double)->Arg(7)->Arg(91);
 
 void register_kernel(const Choice& c, const std::string& also = "") {
-  const std::string name = "LineKernel/" + c.instructions + (c.precision == Precision::full ? "/full" : "/mixed") +
-                           (c.law == Law::line ? "/sparse/" : "/all_nodes/") + std::to_string(c.tubes) + also;
+  const std::string name = "LineKernel/" + c.instructions +
+                           (c.precision == Precision::full ? "/full/" : "/mixed/") + std::to_string(c.tubes) + also;
   benchmark::RegisterBenchmark(name.c_str(), LineKernel, c)->Unit(benchmark::kMicrosecond);
 }
 
 void register_kernels() {
   for (const std::string& instructions : instruction_sets())
     for (const Precision precision : {Precision::mixed, Precision::full})
-      for (const Law law : {Law::line, Law::line_all_nodes})
-        for (const int tubes : {7, 91}) register_kernel({instructions, precision, law, tubes, 0.5});
-  for (const Law law : {Law::line, Law::line_all_nodes})
-    register_kernel({instruction_sets()[0], Precision::mixed, law, 91, 0}, "/fresh_list");
-  register_kernel({instruction_sets()[0], Precision::mixed, Law::line, 91, 0.5, true}, "/energies");
+      for (const int tubes : {7, 91}) register_kernel({instructions, precision, tubes, 0.5});
+  register_kernel({instruction_sets()[0], Precision::mixed, 91, 0}, "/fresh_list");
+  register_kernel({instruction_sets()[0], Precision::mixed, 91, 0.5, true}, "/energies");
 }
 
 const bool registered = [] {

@@ -15,16 +15,14 @@
 
 namespace ropewalk::bench {
 
-enum class Law { paper, line, line_all_nodes };
+enum class Law { paper, line };
 
 // Of the line law between (10,10) tubes, with as many nodes as a scene would choose.
-inline LineContact line_law(bool sparse) {
+inline LineContact line_law() {
   const LineDensity density = test::line_density();
   const double length = test::element_length;
   const int nodes = line_nodes(length, line_parallel_well(density).distance, density.contact);
-  LineContact pair = line_pair(density, length, length, nodes, nodes);
-  if (!sparse) pair.sparse = {};
-  return pair;
+  return {density, length, length, nodes, nodes};
 }
 
 // Places of tubes one spacing apart, shell by shell.
@@ -56,7 +54,7 @@ struct Rope {
     if (law == Law::paper) {
       in.paper = test::published_contact();
     } else {
-      in.line = {line_law(law == Law::line)};
+      in.line = {line_law()};
     }
     in.precision = precision;
     const double spacing = in.paper ? 1.713 : line_parallel_well(in.line[0].density).distance;

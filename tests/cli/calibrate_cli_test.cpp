@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/support.hpp"
+#include "outputs_page.hpp"
 
 namespace {
 
@@ -84,6 +85,12 @@ TEST_F(Calibrate, AThinTubeFromChiralityToRun) {
   const std::string page = slurp(dir / "cnt-5-5-tersoff.html");
   EXPECT_NE(page.find("Energy against strain"), std::string::npos);
   EXPECT_NE(page.find("Tubes crossed at 90 degrees"), std::string::npos);
+  std::set<std::string> left;
+  for (const auto& entry : fs::directory_iterator(dir)) {
+    const std::string name = entry.path().filename().string();
+    if (name.rfind("cnt-5-5-tersoff", 0) == 0) left.insert("NAME" + name.substr(15));
+  }
+  EXPECT_EQ(left, ropewalk::test::outputs_names("`ropewalk calibrate`"));
   spit(dir / "s.toml",
        "format = \"ropewalk-scene-1\"\nparameters = \"cnt-5-5-tersoff.toml\"\n[rope]\ntubes = 7\nlength_nm = 7\n"
        "[run]\nduration_ps = 1\n");

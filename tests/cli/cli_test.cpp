@@ -14,6 +14,7 @@
 
 #include "cli/support.hpp"
 #include "io/log.hpp"
+#include "outputs_page.hpp"
 
 namespace fs = std::filesystem;
 
@@ -50,8 +51,8 @@ TEST_F(Cli, HelpNamesEveryVerbAndUnits) {
 TEST_F(Cli, WrongCommandLinesAreOneLine) {
   for (const char* line :
        {"", "twist", "run", "run x.toml", "run nowhere.toml --out d", "bench nowhere.toml", "observe nowhere",
-        "resume nowhere", "report nowhere", "energy none.csv --parameters cnt-10-10-paper", "new", "bench",
-        "bench film-1e9", "new x --kind cable", "check nowhere.toml", "run x --out y --threads 0"}) {
+        "observe", "resume nowhere", "report nowhere", "energy none.csv --parameters cnt-10-10-paper", "new",
+        "bench", "bench film-1e9", "new x --kind cable", "check nowhere.toml", "run x --out y --threads 0"}) {
     const Outcome o = run(line);
     EXPECT_EQ(o.code, 2) << line;
     EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << line << "\n" << o.err;
@@ -128,7 +129,7 @@ TEST_F(Cli, MixedTubesRunAndResume) {
   EXPECT_NE(frames.find("\n11 2 1 "), std::string::npos);
   EXPECT_TRUE(fs::exists(dir / "d/parameters-1.toml"));
   // What the frames colour by adds up to what the log has.
-  const double energy = ropewalk::read_log((dir / "d/log.csv").string()).front().vdw;
+  const double energy = ropewalk::read_log((dir / "d/log.csv").string()).front()["vdw_eV"];
   EXPECT_LT(energy, -10);
   EXPECT_NEAR(sum_of_column(frames.substr(0, frames.find("ITEM: TIMESTEP", 1)), "vdw_energy_eV"), energy,
               1e-4 * std::fabs(energy));
@@ -154,8 +155,8 @@ TEST_F(Cli, TwoLevelsResumeBitForBit) {
   EXPECT_EQ(last("whole/log.csv", "\n"), last("half/log.csv", "\n"));
   EXPECT_TRUE(last("whole/frames.lammpstrj", "ITEM: TIMESTEP") == last("half/frames.lammpstrj", "ITEM: TIMESTEP"));
   const auto rows = ropewalk::read_log((dir / "whole/log.csv").string());
-  EXPECT_NEAR(rows.back().time, 5.0, 0.1);
-  EXPECT_LT(std::fabs(rows.back().balance), 2e-2 * rows.back().work);
+  EXPECT_NEAR(rows.back()["time_ps"], 5.0, 0.1);
+  EXPECT_LT(std::fabs(rows.back()["balance_eV"]), 2e-2 * rows.back()["work_eV"]);
   const Outcome bench = run("bench s.toml --steps 5 --json");
   ASSERT_EQ(bench.code, 0) << bench.err;
   EXPECT_EQ(Json::parse(bench.out).at("contact_every"), 3);
@@ -260,7 +261,7 @@ TEST_F(Cli, ThermostatGoesOnAfterAResume) {
   ASSERT_EQ(run("resume parts --threads 2").code, 0);
   const ropewalk::LogRow a = ropewalk::read_log((dir / "whole/log.csv").string()).back(),
                          b = ropewalk::read_log((dir / "parts/log.csv").string()).back();
-  EXPECT_GT(std::fabs(a.heat), 1);
+  EXPECT_GT(std::fabs(a["thermostat_eV"]), 1);
   EXPECT_EQ(ropewalk::log_line(a), ropewalk::log_line(b));
 }
 
@@ -270,14 +271,17 @@ TEST_F(Cli, RunWritesEverythingAndProtectsIt) {
   for (const char* name : {"log.csv", "frames.lammpstrj", "manifest.json", "report.html", "checkpoint.bin",
                            "scene.toml", "parameters.toml", "paraview/rope.pvd"})
     EXPECT_TRUE(fs::exists(dir / "d" / name)) << name;
+  const auto listed = ropewalk::test::outputs_names("The directory of a run");
+  for (const auto& entry : fs::directory_iterator(dir / "d"))
+    EXPECT_TRUE(listed.count(entry.path().filename().string())) << entry.path();
   const Json manifest = Json::parse(slurp(dir / "d/manifest.json"));
   EXPECT_EQ(manifest.at("status"), "finished");
   const auto rows = ropewalk::read_log((dir / "d/log.csv").string());
   ASSERT_GE(rows.size(), 10u);
-  EXPECT_NEAR(rows.back().time, 5.0, 0.02);
-  EXPECT_NEAR(rows.back().moment, 30, 1e-9);
-  EXPECT_GT(rows.back().twist, 100);
-  EXPECT_LT(std::fabs(rows.back().balance), 1e-2 * rows.back().work);
+  EXPECT_NEAR(rows.back()["time_ps"], 5.0, 0.02);
+  EXPECT_NEAR(rows.back()["moment_nN_nm"], 30, 1e-9);
+  EXPECT_GT(rows.back()["twist_eV"], 100);
+  EXPECT_LT(std::fabs(rows.back()["balance_eV"]), 1e-2 * rows.back()["work_eV"]);
 
   const std::string log = slurp(dir / "d/log.csv");
   const Outcome again = run("run s.toml --out d");
@@ -299,8 +303,8 @@ TEST_F(Cli, ResumeGoesOnBitForBitOnOtherThreads) {
   ASSERT_EQ(run("resume parts --threads 2").code, 0);
   const auto whole = ropewalk::read_log((dir / "whole/log.csv").string());
   const auto parts = ropewalk::read_log((dir / "parts/log.csv").string());
-  for (const auto& column : ropewalk::log_columns())
-    EXPECT_EQ(whole.back().*column.value, parts.back().*column.value) << column.name;
+  for (const auto& column : ropewalk::observables())
+    EXPECT_EQ(whole.back()[column.name], parts.back()[column.name]) << column.name;
   const Json observed = Json::parse(run("observe parts --json").out);
   EXPECT_GT(observed.size(), 3u);
 }
@@ -326,8 +330,64 @@ TEST_F(Cli, ResumeCutsOffWhatWasWrittenAfterTheCheckpoint) {
   std::ofstream(dir / "d/log.csv", std::ios::app) << "half a li";
   std::ofstream(dir / "d/frames.lammpstrj", std::ios::app) << "ITEM: TIMESTEP\n1234";
   ASSERT_EQ(run("resume d").code, 0);
-  EXPECT_EQ(ropewalk::read_log((dir / "d/log.csv").string()).back().twist,
-            ropewalk::read_log((dir / "whole/log.csv").string()).back().twist);
+  EXPECT_EQ(ropewalk::read_log((dir / "d/log.csv").string()).back()["twist_eV"],
+            ropewalk::read_log((dir / "whole/log.csv").string()).back()["twist_eV"]);
+}
+
+TEST_F(Cli, ObserveGivesWhatThePageOfOutputsLists) {
+  using ropewalk::test::keys_of;
+  EXPECT_EQ(run("observe --list").out, ropewalk::test::outputs_table("`log.csv`"));
+  small_rope("s.toml");
+  ASSERT_EQ(run("run s.toml --out d --quiet --steps 3").code, 0);
+  const Json frame = Json::parse(run("observe d --json").out).at(0);
+  std::set<std::string> keys = ropewalk::test::outputs_names("Keys beside the observables");
+  for (const auto& observable : ropewalk::observables())
+    if (in_frames(observable.group)) keys.insert(observable.name);
+  EXPECT_EQ(keys_of(frame), keys);
+  EXPECT_EQ(keys_of(frame.at("section").at(0)), ropewalk::test::outputs_names("An entry of `section`"));
+}
+
+// The words of a name stand one above the other, and its value in the last line.
+TEST_F(Cli, ObserveShowsAColumnForEveryObservableOfFrames) {
+  small_rope("s.toml");
+  ASSERT_EQ(run("run s.toml --out d --quiet --steps 3").code, 0);
+  const Outcome o = run("observe d");
+  ASSERT_EQ(o.code, 0) << o.err;
+  std::istringstream lines(o.out);
+  std::string first, last;
+  std::getline(lines, first);
+  for (std::string line; std::getline(lines, line);) last = line;
+  const auto count = [](const std::string& line) {
+    std::istringstream words(line);
+    std::size_t n = 0;
+    for (std::string word; words >> word;) ++n;
+    return n;
+  };
+  std::size_t shown = 0;
+  for (const auto& observable : ropewalk::observables()) {
+    if (!in_frames(observable.group)) continue;
+    ++shown;
+    EXPECT_NE(first.find(observable.name.substr(0, observable.name.find('_'))), std::string::npos) << first;
+  }
+  EXPECT_EQ(count(first), shown);
+  EXPECT_EQ(count(last), shown);
+}
+
+TEST_F(Cli, ResumeRefusesALogOfOtherColumns) {
+  small_rope("s.toml");
+  ASSERT_EQ(run("run s.toml --out d --steps 20").code, 0);
+  std::string log = slurp(dir / "d/log.csv");
+  log.replace(log.find("beta_deg"), 8, "beta_rad");
+  spit(dir / "d/log.csv", log);
+  const std::string frames = slurp(dir / "d/frames.lammpstrj");
+  const Outcome o = run("resume d");
+  EXPECT_EQ(o.code, 2);
+  EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << o.err;
+  EXPECT_NE(o.err.find("log.csv:1: column 13 of the header is \"beta_rad\", \"beta_deg\" is needed"),
+            std::string::npos)
+      << o.err;
+  EXPECT_EQ(slurp(dir / "d/log.csv"), log) << "nothing is written";
+  EXPECT_EQ(slurp(dir / "d/frames.lammpstrj"), frames);
 }
 
 TEST_F(Cli, DamagedCheckpointIsRefused) {
@@ -400,7 +460,7 @@ TEST_F(Cli, EnergyGivesForcesThatSumToZeroAndEqualTheReference) {
   EXPECT_EQ(run("energy two.csv --parameters cnt-10-10-paper").code, 0);
 }
 
-TEST_F(Cli, EnergyOverAllNodesShowsWhatSparseSumsLeaveOut) {
+TEST_F(Cli, EnergyOfCrossingTubesIsThatOfTheReference) {
   std::string tubes = "tube,x_nm,y_nm,z_nm,qw,qx,qy,qz\n";
   const double angle = 0.05, length = 1.3776;  // the second tube's, about x
   for (int k = 0; k < 12; ++k) tubes += fmt::format("0,0,0,{},1,0,0,0\n", (k - 6) * length);
@@ -415,13 +475,9 @@ TEST_F(Cli, EnergyOverAllNodesShowsWhatSparseSumsLeaveOut) {
     EXPECT_EQ(out.code, 0) << out.err;
     return Json::parse(out.out)["energy_eV"]["vdw"].get<double>();
   };
-  const double all = vdw("--all-nodes"), sparse = vdw("");
-  EXPECT_NEAR(vdw("--all-nodes --reference"), all, 1e-9 * std::fabs(all));
-  EXPECT_NEAR(sparse, all, 2e-3 * std::fabs(all));
-  EXPECT_GT(std::fabs(sparse - all), 1e-7 * std::fabs(all));
-  const Outcome none = run("energy two.csv --parameters cnt-10-10-tersoff --law none --all-nodes");
-  EXPECT_EQ(none.code, 2);
-  EXPECT_NE(none.err.find("--all-nodes: belongs to the line law"), std::string::npos) << none.err;
+  const double energy = vdw("");
+  EXPECT_LT(energy, -5);
+  EXPECT_NEAR(vdw("--reference"), energy, 1e-9 * std::fabs(energy));
 }
 
 TEST_F(Cli, BenchReportsItsKeys) {
@@ -439,7 +495,7 @@ TEST_F(Cli, BenchTakesAnInstructionSet) {
   EXPECT_EQ(plain["instructions"], "SCALAR");
   EXPECT_EQ(plain["lanes"], 1);
   EXPECT_NE(best["instructions"], plain["instructions"]);
-  EXPECT_EQ(plain["runs_per_element"], best["runs_per_element"]);
+  EXPECT_EQ(plain["spans_per_element"], best["spans_per_element"]);
   const Outcome unknown = run("bench film-1e3 --instructions ABACUS");
   EXPECT_EQ(unknown.code, 2);
   EXPECT_NE(unknown.err.find("--instructions"), std::string::npos) << unknown.err;
@@ -456,8 +512,8 @@ TEST_F(Cli, BenchKnowsScenesByName) {
   EXPECT_EQ(both[1]["threads"], 2);
   for (const Json& b : both) {
     EXPECT_EQ(b["elements"], 1000);
-    EXPECT_GT(b["runs_per_element"].get<double>(), 0.1);
-    EXPECT_GT(b["nodes_per_run"].get<double>(), 1);
+    EXPECT_GT(b["spans_per_element"].get<double>(), 0.1);
+    EXPECT_GT(b["nodes_per_span"].get<double>(), 1);
     EXPECT_GT(b["radial_evaluations_useful"].get<double>(), 1);
     EXPECT_LT(b["radial_evaluations_useful"].get<double>(), b["radial_evaluations_per_element_step"].get<double>());
     for (const char* rate :
@@ -471,7 +527,7 @@ TEST_F(Cli, BenchKnowsScenesByName) {
   }
   const Json paper = Json::parse(run("bench rope-91x50 --law paper --steps 2 --json").out);
   EXPECT_EQ(paper["elements"], 4550);
-  EXPECT_FALSE(paper.contains("runs_per_element"));
+  EXPECT_FALSE(paper.contains("spans_per_element"));
   EXPECT_EQ(run("bench film-1e9").code, 2);
   EXPECT_EQ(run("bench film-1e3 --after -1").code, 2);
   EXPECT_EQ(run("bench --law paper " ROPEWALK_SOURCE_DIR "/data/scenes/rope-67nm.toml").code, 2);

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/support.hpp"
+#include "outputs_page.hpp"
 
 namespace {
 
@@ -57,6 +58,20 @@ TEST_F(Validate, OneCaseIsRunKeptAndReported) {
   EXPECT_EQ(page.find("<script"), std::string::npos);
   const Json report = Json::parse(slurp(dir / "v/report.json"));
   EXPECT_EQ(report.at("cases").at(0).at("verdict"), "holds");
+
+  using ropewalk::test::keys_of;
+  using ropewalk::test::outputs_names;
+  for (const auto& entry : fs::directory_iterator(dir / "v")) {
+    const std::string name = entry.path().filename().string();
+    EXPECT_TRUE(outputs_names("`ropewalk validate`").count(name == "euler-buckling.json" ? "CASE.json" : name))
+        << name;
+  }
+  const Json entry = report.at("cases").at(0);
+  std::set<std::string> keys = outputs_names("An entry of `cases`");
+  EXPECT_EQ(keys_of(entry), keys);
+  EXPECT_EQ(keys_of(entry.at("checks").at(0)), outputs_names("An entry of `checks`"));
+  keys.insert({"format", "figures"});
+  EXPECT_EQ(keys_of(Json::parse(slurp(dir / "v/euler-buckling.json"))), keys);
 
   const Outcome again = run("validate run euler-buckling --out v --json");
   ASSERT_EQ(again.code, 0);

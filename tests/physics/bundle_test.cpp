@@ -255,22 +255,24 @@ TEST(ListSkin, FollowsTheMotion) {
   EXPECT_NEAR(f.total_energy(), fixed.total_energy(), 1e-5 * f.work());
 }
 
-// After every step the list knows how far elements have come.
+// In slow motion nobody looks in most steps how far elements have come: what is known bounds it all the same.
 TEST(ListSkin, IsNeverUsedUpUnseen) {
   const TurnedRope rope(0.004);
   Simulation s = rope.make(0.3);
   const auto n = static_cast<std::ptrdiff_t>(rope.b.topology.elements());
+  int unseen = 0;
   for (int k = 0; k < 3000; ++k) {
     s.step(false);
-    // Against the twist that fits now; the list's bounds are against that of the step before.
     const Change now = s.list().change(s.state(), 0, n);
+    // By the twist that fits now, not that of the last look.
     ASSERT_LE(now.moved, s.list().displacement() + 1e-4) << k;
     ASSERT_LE(now.turned, s.list().turn() + 1e-5) << k;
-    ASSERT_LE(s.list().displacement(), 0.5 * s.list().skin) << k;
+    if (s.list().turn() > now.turned + 5e-5) ++unseen;
   }
+  EXPECT_GT(unseen, 500);
 }
 
-TEST(Checkpoint, GoesOnFromEveryStepOfASlowRope) {
+TEST(Checkpoint, GoesOnWhereNobodyLooks) {
   const TurnedRope rope(0.004);
   Simulation whole = rope.make(0);
   whole.steps(300);
@@ -387,10 +389,10 @@ TEST(Checkpoint, GoesOnWithTheSameLists) {
   EXPECT_NE(whole.list().skin, default_skin(rope.b.in));
 }
 
-// Helices whose neighbours cross at random small angles.
+// Helices whose neighbours cross at random angles.
 TEST(Checkpoint, GoesOnInATwistedRope) {
-  TurnedRope rope(0.1, 80);             // in several chunks
-  const double pitch = 0.15 / spacing;  // rad/nm
+  TurnedRope rope(0.1, 80);       // in several chunks
+  constexpr double pitch = 0.12;  // rad/nm
   test::Random random(8);
   State& s = rope.b.state;
   for (std::size_t i = 0; i < s.size(); ++i) {

@@ -31,7 +31,7 @@ struct Bundle {
     const LineDensity density = test::line_density();
     const LineWell well = line_parallel_well(density);
     const int nodes = line_nodes(length, well.distance, density.contact);
-    in.line = {line_pair(density, length, length, nodes, nodes)};
+    in.line = {LineContact{density, length, length, nodes, nodes}};
     spacing = well.distance;
     state = test::disordered_bundle(topology, 7, elements, spacing, 0, 1);
     test::set_velocities(topology, temperature, state);

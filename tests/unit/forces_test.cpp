@@ -21,7 +21,6 @@ struct Variant {
   double eta, rate;
   double disorder;
   Interaction::Precision precision = Interaction::Precision::full;
-  bool sparse = true;
   double cutoff = 0;  // nm; 0: the law's
   int nodes = 5;      // of an element, by the line law
 };
@@ -48,9 +47,6 @@ class ForcesTest : public ::testing::TestWithParam<Variant> {
       if (v.kind == Kind::mixed) mix_tube_types();
       if (v.cutoff > 0)
         for (LineContact& pair : in.line) pair.density = with_cutoff(pair.density, v.cutoff);
-      int finest = 0;
-      for (const LineContact& pair : in.line) finest = std::max(finest, pair.nodes_i);
-      for (LineContact& pair : in.line) pair.sparse = v.sparse ? sparse_nodes(finest) : SparseNodes{};
     }
     in.precision = v.precision;
     in.exclude_along_tube = 3;
@@ -199,14 +195,13 @@ Variant single(const char* name, double disorder, bool general = false, bool leg
   return {name, Kind::paper, general, legacy, eta, eta > 0 ? 1.0 : 0.0, disorder, Interaction::Precision::mixed};
 }
 
-// More nodes than the kernel holds of an element, or of two, at a time.
-Variant with_many_nodes(const char* name, Interaction::Precision precision) {
-  return {name, Kind::line, false, false, 0, 0, 0.05, precision, true, 0, 21};
+Variant with_nodes(const char* name, int nodes, Interaction::Precision precision) {
+  return {name, Kind::line, false, false, 0, 0, 0.05, precision, 0, nodes};
 }
 
 Variant shortened(const char* name, Kind kind, double cutoff,
                   Interaction::Precision precision = Interaction::Precision::full) {
-  return {name, kind, false, false, 0, 0, 0.05, precision, true, cutoff};
+  return {name, kind, false, false, 0, 0, 0.05, precision, cutoff};
 }
 
 const std::vector<Variant> paper_variants = {Variant{"Ordered", Kind::paper, false, false, 0, 0, 1e-3},
@@ -228,12 +223,15 @@ const std::vector<Variant> line_variants = {
     Variant{"Line", Kind::line, false, false, 0, 0, 0.05},
     Variant{"LineOverlapping", Kind::line, false, false, 0, 0, 0.5},
     Variant{"LineDamped", Kind::line, false, false, 20, 1, 0.05},
-    Variant{"LineOrdered", Kind::line, false, false, 0, 0, 1e-3},
-    Variant{"LineDense", Kind::line, false, false, 0, 0, 0.05, Interaction::Precision::full, false},
-    shortened("LineShortened", Kind::line, 2.3),
+    Variant{"LineOrdered", Kind::line, false, false, 0, 0, 1e-3}, shortened("LineShortened", Kind::line, 2.3),
     shortened("LineSingleShortened", Kind::line, 2.3, Interaction::Precision::mixed),
-    with_many_nodes("LineManyNodes", Interaction::Precision::full),
-    with_many_nodes("LineSingleManyNodes", Interaction::Precision::mixed),
+    // Numbers that the kernel's compiler knows, and such that it does not.
+    with_nodes("LineOneNode", 1, Interaction::Precision::full),
+    with_nodes("LineManyNodes", 21, Interaction::Precision::full),
+    with_nodes("LineSingleThreeNodes", 3, Interaction::Precision::mixed),
+    with_nodes("LineSingleFourNodes", 4, Interaction::Precision::mixed),
+    with_nodes("LineSingleSixNodes", 6, Interaction::Precision::mixed),
+    with_nodes("LineSingleManyNodes", 21, Interaction::Precision::mixed),
     Variant{"LineTypes", Kind::mixed, false, false, 0, 0, 0.1},
     Variant{"LineSingle", Kind::line, false, false, 0, 0, 0.05, Interaction::Precision::mixed},
     Variant{"LineSingleOrdered", Kind::line, false, false, 0, 0, 1e-3, Interaction::Precision::mixed},
@@ -399,7 +397,6 @@ TEST(LineForces, CrossedAndClosedTubesEqualReference) {
   test::set_velocities(topology, 300, state);
   Interaction in;
   in.line = {test::line_contact(0.6785, 6, 0.6785, 6)};
-  in.line[0].sparse = sparse_nodes(6);
   in.damping.contact = {20, 1.713, 2.57};
   in.exclude_along_tube = 7;
   for (const auto& [precision, bound] :
@@ -472,29 +469,9 @@ TEST(LineForces, ViscosityOfManyTubesEqualsReference) {
   }
 }
 
-// Pairs of elements with nodes within the cutoff, by the first sum that they take; the last entry: those that take
-// the next one too.
-std::array<int, SparseNodes::most + 2> pairs_by_sum(const Topology& topology, const LineContact& law,
-                                                    const State& state) {
-  std::array<int, SparseNodes::most + 2> pairs{};
-  for (int i = 0; i < topology.elements(); ++i)
-    for (int j = i + 1; j < topology.elements(); ++j) {
-      const Vector3 apart = state.position[j] - state.position[i];
-      if (topology.tube_of(i) == topology.tube_of(j) || apart.norm() > law.cutoff()) continue;
-      const Vector3 n_i = axis_of(state.orientation[i]), n_j = axis_of(state.orientation[j]);
-      if (law.energy(apart, n_i, n_j) == 0) continue;
-      const SumShare w = law.sparse.share(n_i.dot(n_j));
-      ++pairs[static_cast<std::size_t>(w.first)];
-      pairs.back() += w.value < 1;
-    }
-  return pairs;
-}
-
 TEST(LineForces, TwistedRopesEqualReferenceAlsoWhereTheListIsWorn) {
   Interaction in;
   in.line = {test::line_contact(0.6785, 6, 0.6785, 6)};
-  in.line[0].sparse = sparse_nodes(6);
-  std::array<int, SparseNodes::most + 2> met{};
   // 12, 29 and 60 degrees on the outside, with more room where tubes lie askew.
   for (const auto& [twist, spacing] : {std::pair(0.04, 1.8), std::pair(0.1, 1.9), std::pair(0.25, 2.3)}) {
     Topology topology = test::published_topology();
@@ -507,11 +484,8 @@ TEST(LineForces, TwistedRopesEqualReferenceAlsoWhereTheListIsWorn) {
       State later = state;
       shake(0.03, later);
       ASSERT_FALSE(list.update(topology, later));
-      EXPECT_GT(list.turn(), 0.004);
       Forces reference(state.size());
       compute_reference(topology, in, later, reference);
-      const auto pairs = pairs_by_sum(topology, in.line[0], later);
-      for (std::size_t t = 0; t < pairs.size(); ++t) met[t] += pairs[t];
       for (const std::string& name : instruction_sets()) {
         SCOPED_TRACE(testing::Message() << name << ", " << twist << " rad/nm");
         ASSERT_TRUE(use_instructions(name));
@@ -523,128 +497,6 @@ TEST(LineForces, TwistedRopesEqualReferenceAlsoWhereTheListIsWorn) {
       use_instructions("");
     }
   }
-  for (const int n : met) EXPECT_GT(n, 100);
-}
-
-// What is chosen once holds for as many states as keep within its room: elements among them that have come to share
-// two sums meanwhile, or within reach.
-TEST(LineForces, TwistedRopesEqualReferenceWhileAPlanHolds) {
-  Interaction in;
-  in.line = {test::line_contact(0.6785, 6, 0.6785, 6)};
-  in.line[0].sparse = sparse_nodes(6);
-  const auto choices = [&](const Topology& topology, const State& state) {
-    std::vector<std::array<int, 2>> all;
-    for (int i = 0; i < topology.elements(); ++i)
-      for (int j = i + 1; j < std::min(i + 200, topology.elements()); ++j) {
-        const SumShare w =
-            in.line[0].sparse.share(axis_of(state.orientation[static_cast<std::size_t>(i)])
-                                        .dot(axis_of(state.orientation[static_cast<std::size_t>(j)])));
-        all.push_back({w.first, w.value < 1 ? 1 : 0});
-      }
-    return all;
-  };
-  for (const auto& [twist, spacing] : {std::pair(0.1, 1.9), std::pair(0.25, 2.3)}) {
-    Topology topology = test::published_topology();
-    const State start = twisted_rope(topology, twist, spacing);
-    const auto at_start = choices(topology, start);
-    State inside = start, outside = start;
-    shake(0.0065, inside);
-    shake(0.01, outside);
-    const auto now = choices(topology, inside);
-    int changed = 0;
-    for (std::size_t k = 0; k < now.size(); ++k) changed += now[k] != at_start[k];
-    EXPECT_GT(changed, 20);
-    for (const auto& [precision, bound] :
-         {std::pair(Interaction::Precision::full, 1e-10),
-          std::pair(Interaction::Precision::mixed, 5e-5)}) {  // as in LineSingleOverlapping
-      in.precision = precision;
-      Forces of_inside(start.size()), of_outside(start.size());
-      compute_reference(topology, in, inside, of_inside);
-      compute_reference(topology, in, outside, of_outside);
-      for (const std::string& name : instruction_sets()) {
-        SCOPED_TRACE(testing::Message() << name << ", " << twist << " rad/nm");
-        ASSERT_TRUE(use_instructions(name));
-        NeighbourList list(in, 0.25);
-        list.build(topology, start);
-        ForceEngine engine;
-        const auto expect = [&](const State& state, LinePlan::Use use, const Forces& reference) {
-          ASSERT_FALSE(list.update(topology, state));
-          Forces fast(state.size());
-          engine.compute(topology, in, list, state, fast);
-          ASSERT_EQ(engine.line().plan().use(), use);
-          expect_equal(fast, reference, bound);
-        };
-        Forces first(start.size());
-        engine.compute(topology, in, list, start, first);
-        ASSERT_EQ(engine.line().plan().use(), LinePlan::Use::record);
-        expect(inside, LinePlan::Use::replay, of_inside);
-        expect(outside, LinePlan::Use::record, of_outside);
-        expect(outside, LinePlan::Use::replay, of_outside);
-        list.build(topology, outside);
-        expect(outside, LinePlan::Use::record, of_outside);
-      }
-      use_instructions("");
-    }
-  }
-}
-
-// The room of a plan does not reach from where two sums are shared to where the next two are.
-TEST(LineForces, AnElementOfAPlanSharesNoMoreThanTwoSums) {
-  const auto angle = [](double cos2) { return std::acos(std::sqrt(cos2)); };
-  for (int nodes = 1; nodes <= 40; ++nodes) {
-    const SparseNodes sparse = sparse_nodes(nodes);
-    for (std::size_t t = 0; t + 1 < static_cast<std::size_t>(sparse.count); ++t)
-      EXPECT_GT(angle(sparse.sum[t + 1].full_cos2) - angle(sparse.sum[t].from_cos2), 2 * LinePlan::turn_room)
-          << nodes << " nodes, sum " << t;
-  }
-}
-
-// Straight ropes have nothing to choose.
-TEST(LineForces, StraightRopesHaveNoPlan) {
-  Topology topology = test::published_topology();
-  const State state = test::disordered_bundle(topology, 7, 40, 1.75, 0.02, 21);
-  Interaction in;
-  in.line = {test::line_contact(0.6785, 6, 0.6785, 6)};
-  in.line[0].sparse = sparse_nodes(6);
-  NeighbourList list(in, 0.25);
-  list.build(topology, state);
-  ForceEngine engine;
-  Forces out(state.size());
-  engine.compute(topology, in, list, state, out);
-  EXPECT_FALSE(engine.line().plan().any());
-}
-
-// Nothing within the cutoff is left out, and nearly all that is beyond it is.
-TEST(LineForces, ReachOfElementsHoldsTheirNodes) {
-  const LineContact law = line_pair(test::line_density(0.6785, 0.6785), 1.4, 1.1, 6, 5);
-  const ElementReach reach(law);
-  test::Random random(2);
-  int near = 0, far = 0, far_but_near = 0;
-  for (int n = 0; n < 30000; ++n) {
-    const Vector3 n_i = random.direction(), n_j = (n_i + random.uniform(0, 1) * random.direction()).normalized(),
-                  apart = random.uniform(0.5, 4) * random.direction();
-    for (int t = 0; t <= law.sparse.count; ++t)
-      for (const bool ended : {false, true}) {
-        const int on_i = ended ? law.nodes_i : law.sum_nodes_i(t), on_j = ended ? law.nodes_j : law.sum_nodes_j(t);
-        double least = 10;
-        for (int k = 0; k < on_i; ++k)
-          for (int l = 0; l < on_j; ++l)
-            least = std::min(
-                least,
-                (apart + line_node(l, on_j, law.length_j) * n_j - line_node(k, on_i, law.length_i) * n_i).norm());
-        const bool found = reach.near(t, ended, apart, n_i, n_j);
-        if (least < law.density.cutoff()) {
-          ++near;
-          ASSERT_TRUE(found) << apart << "\n" << n_i << "\n" << n_j << "\nsum " << t;
-        } else {
-          ++far;
-          far_but_near += found;
-        }
-      }
-  }
-  EXPECT_GT(near, 10000);
-  EXPECT_GT(far, 10000);
-  EXPECT_LT(far_but_near, 0.15 * far);
 }
 
 // Two tubes of elements far shorter than the reach, side by side.
@@ -669,7 +521,7 @@ void expect_many_pairs_equal_reference(const Topology& topology, const State& st
   compute_reference(topology, in, state, reference);
   NeighbourList list(in, 0.3);
   list.build(topology, state);
-  ASSERT_GT(list.pairs(100), 2u * LineRun::longest);
+  ASSERT_GT(list.pairs(100), 2u * NeighbourSpan::longest);
   for (const auto& [precision, bound] :
        {std::pair(Interaction::Precision::full, exact), std::pair(Interaction::Precision::mixed, 2e-5)}) {
     in.precision = precision;
@@ -679,13 +531,13 @@ void expect_many_pairs_equal_reference(const Topology& topology, const State& st
   }
 }
 
-// Runs are longer than the kernel has bits.
+// Spans of neighbours longer than one NeighbourSpan.
 TEST(LineForces, ManyPairsEqualReference) {
   Topology topology = test::published_topology();
   topology.types[0].element_length = 0.03;
   const State state = many_short_elements(topology);
   Interaction in;
-  in.line = {line_pair(test::line_density(), 0.03, 0.03, 1, 1)};
+  in.line = {LineContact{test::line_density(), 0.03, 0.03, 1, 1}};
   in.damping.contact = {20, 1.713, 2.57};
   expect_many_pairs_equal_reference(topology, state, in, 1e-10);
 }
@@ -722,7 +574,6 @@ TEST(Forces, OfRunsThatGoOnIntoTheNextTubeEqualReference) {
   Interaction paper, line;
   paper.paper = test::published_contact();
   line.line = contacts_with_thin_ones();
-  for (LineContact& pair : line.line) pair.sparse = sparse_nodes(8);
   for (Interaction in : {paper, line}) {
     in.exclude_along_tube = 3;
     in.damping.contact = {20, 1.713, 2.57};
@@ -744,7 +595,6 @@ TEST(Forces, OfRunsThatGoOnIntoTheNextTubeEqualReference) {
 TEST(Forces, OfOneEngineForScenesOfOtherSizesAreTheSameBits) {
   Interaction in;
   in.line = {test::line_contact(0.6785, 6, 0.6785, 6)};
-  in.line[0].sparse = sparse_nodes(6);
   in.damping.contact = {20, 1.713, 2.57};
   in.precision = Interaction::Precision::mixed;
   ForceEngine used;

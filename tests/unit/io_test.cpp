@@ -171,41 +171,41 @@ TEST(Hash, IsXxh64) {
 LogRow full_row(unsigned seed) {
   test::Random random(seed);
   LogRow row;
-  for (const LogColumn& c : log_columns())
-    row.*c.value = c.whole ? std::floor(random.uniform(-1e6, 1e6))
-                           : random.uniform(-1, 1) * std::pow(10, random.uniform(-300, 300));
+  for (const Observable& c : observables())
+    row[c.name] = c.whole ? std::floor(random.uniform(-1e6, 1e6))
+                          : random.uniform(-1, 1) * std::pow(10, random.uniform(-300, 300));
   return row;
 }
 
 TEST_F(IoTest, LogIsReadBackBitForBit) {
   std::vector<LogRow> rows;
   for (unsigned k = 0; k < 50; ++k) rows.push_back(full_row(k));
-  rows[1].time = 0.1;
-  rows[2].work = -0.0;
-  rows[3].vdw = std::numeric_limits<double>::denorm_min();
-  rows[4].vdw = -std::numeric_limits<double>::infinity();
-  rows[5].step = 123456789012345.0;
+  rows[1]["time_ps"] = 0.1;
+  rows[2]["work_eV"] = -0.0;
+  rows[3]["vdw_eV"] = std::numeric_limits<double>::denorm_min();
+  rows[4]["vdw_eV"] = -std::numeric_limits<double>::infinity();
+  rows[5]["step"] = 123456789012345.0;
   std::string text = log_header();
   for (const LogRow& row : rows) text += log_line(row);
   const std::vector<LogRow> read = read_log(put("log.csv", text));
   ASSERT_EQ(read.size(), rows.size());
   for (std::size_t k = 0; k < rows.size(); ++k)
-    for (const LogColumn& c : log_columns()) EXPECT_EQ(bits(read[k].*c.value), bits(rows[k].*c.value)) << c.name;
+    for (const Observable& c : observables()) EXPECT_EQ(bits(read[k][c.name]), bits(rows[k][c.name])) << c.name;
 }
 
 TEST_F(IoTest, LogKeepsNan) {
   LogRow row;
-  row.beta = nan_value;
-  EXPECT_TRUE(std::isnan(read_log(put("log.csv", log_header() + log_line(row)))[0].beta));
+  row["beta_deg"] = nan_value;
+  EXPECT_TRUE(std::isnan(read_log(put("log.csv", log_header() + log_line(row)))[0]["beta_deg"]));
 }
 
 TEST_F(IoTest, LogIsShort) {
   LogRow row;
-  row.step = 12;
-  row.time = 0.1;
+  row["step"] = 12;
+  row["time_ps"] = 0.1;
   EXPECT_EQ(log_line(row).substr(0, 9), "12,0.1,0,");
   EXPECT_EQ(log_header().substr(0, 26), "step,time_ps,moment_nN_nm,");
-  EXPECT_EQ(count_of(log_line(row), ","), log_columns().size() - 1);
+  EXPECT_EQ(count_of(log_line(row), ","), observables().size() - 1);
 }
 
 TEST_F(IoTest, LogErrorsNameTheLine) {
@@ -214,13 +214,18 @@ TEST_F(IoTest, LogErrorsNameTheLine) {
   expect_error(reading(""), 1, "header");
   expect_error(reading(replaced(header, "time_ps", "time_fs") + good), 1, "\"time_fs\"");
   expect_error(reading(replaced(header, "\n", ",more\n") + good), 1, "more than");
+  expect_error(reading(replaced(header, ",largest_bond_twist_deg", "") + good), 1, "ends after column 28");
+  expect_error(reading(replaced(header, ",Q,", ",")), 1, "\"Q\" is needed");
   expect_error(reading(header + good + replaced(good, ",", "")), 3, "columns");
   expect_error(reading(header + good + "\n" + good), 3, "1 columns");
   expect_error(reading(header + good + good + replaced(good, ",", ",x")), 4, "time_ps");
   LogRow row;
-  row.charge = 1.5;
+  row["Q"] = 1.5;
   expect_error(reading(header + log_line(row)), 2, "not an integer");
   expect_error([&] { read_log(path("none.csv")); }, 0, "No such file");
+  expect_error([&] { check_log_header(put("log.csv", "step\n")); }, 1, "ends after column 1");
+  expect_error([&] { check_log_header(path("none.csv")); }, 0, "No such file");
+  EXPECT_NO_THROW(check_log_header(put("log.csv", header)));
 }
 
 TEST_F(IoTest, LogLeavesOutALineThatIsCutOff) {
@@ -708,12 +713,12 @@ ReportInput some_report(std::size_t rows) {
   in.warnings = {"beware of <b>"};
   for (std::size_t k = 0; k < rows; ++k) {
     LogRow r = full_row(static_cast<unsigned>(k));
-    for (const LogColumn& c : log_columns())
-      if (!c.whole) r.*c.value = std::sin(static_cast<double>(k) * 0.1);
-    r.time = static_cast<double>(k);
-    r.charge = -2;
-    r.kinked = k == 3 ? 5 : 2;
-    r.overtwisted = r.overstretched = 0;
+    for (const Observable& c : observables())
+      if (!c.whole) r[c.name] = std::sin(static_cast<double>(k) * 0.1);
+    r["time_ps"] = static_cast<double>(k);
+    r["Q"] = -2;
+    r["kinked"] = k == 3 ? 5 : 2;
+    r["overtwisted"] = r["overstretched"] = 0;
     in.log.push_back(r);
   }
   in.ramp_end_ps = 30;
@@ -782,6 +787,20 @@ TEST(Report, NumbersItsFiguresInTheOrderOfThePage) {
   }
 }
 
+TEST(Report, ListsEveryObservable) {
+  ReportInput in = some_report(50);
+  in.log[3]["radius_mid_nm"] = 7777;
+  in.log[4]["radius_mid_nm"] = nan_value;
+  const std::string html = report_html(in);
+  for (const Observable& o : observables()) EXPECT_THAT(html, HasSubstr("<tr><th>" + o.name + "</th>"));
+  const std::size_t row = html.find("<th>kinked</th>"), end = html.find("</tr>", row);
+  EXPECT_THAT(html.substr(row, end - row),
+              HasSubstr("<td class=\"number\">2</td><td class=\"number\">2</td><td class=\"number\">2</td><td "
+                        "class=\"number\">5</td>"))
+      << "start, end, smallest, largest";
+  EXPECT_THAT(html, HasSubstr("7777</td>"));
+}
+
 TEST(Report, IdsAreUnique) {
   const std::string html = report_html(some_report(50));
   std::vector<std::string> ids;
@@ -805,13 +824,13 @@ TEST(Report, EmptyAndShortLogs) {
 TEST(Report, ValuesThatAreNotNumbers) {
   ReportInput in = some_report(40);
   for (LogRow& r : in.log) {
-    r.beta = nan_value;
-    r.charge = r.charge_delaunay = nan_value;
-    r.amplitude = std::numeric_limits<double>::infinity();
+    r["beta_deg"] = nan_value;
+    r["Q"] = r["Q_delaunay"] = nan_value;
+    r["amplitude_nm"] = std::numeric_limits<double>::infinity();
   }
-  in.log[7].twist = nan_value;
-  in.log[0].vdw = nan_value;
-  in.log[39].kinked = nan_value;
+  in.log[7]["twist_eV"] = nan_value;
+  in.log[0]["vdw_eV"] = nan_value;
+  in.log[39]["kinked"] = nan_value;
   in.views[0].tubes[0][0].x() = nan_value;
   in.sections[1].section.points[2].x() = nan_value;
   in.sections[0].radius_profile[1] = nan_value;
@@ -837,8 +856,8 @@ TEST(Report, ASingleTubeHasNoPackingCharge) {
 TEST(Report, ARelaxationIsDrawnOverItsSteps) {
   ReportInput in = some_report(40);
   for (std::size_t k = 0; k < in.log.size(); ++k) {
-    in.log[k].time = 0;
-    in.log[k].step = 100.0 * static_cast<double>(k);
+    in.log[k]["time_ps"] = 0;
+    in.log[k]["step"] = 100.0 * static_cast<double>(k);
   }
   in.ramp_end_ps = 0;
   in.reason = "relaxed: largest force below 0.0001 eV/nm";

@@ -44,7 +44,6 @@ TEST(StepBytes, AreOfTheStateAndOfWhatIsListed) {
   EXPECT_EQ(per_element({}), alone);
   Interaction line, paper;
   line.line = {test::line_contact(0.6785, 6, 0.6785, 6)};
-  line.line[0].sparse = sparse_nodes(6);
   line.precision = Interaction::Precision::mixed;
   paper.paper = test::published_contact();
   // One chunk, whose buffers have each element once, and some room.
@@ -62,7 +61,7 @@ TEST(StepBytes, AreOfTheStateAndOfWhatIsListed) {
   line.exclude_along_tube = 20;
   Interaction apart = line;
   for (LineContact& pair : apart.line) pair.density = with_cutoff(pair.density, 1.6);
-  EXPECT_GT(per_element(line), per_element(apart) + 0.5 * sizeof(BlockRun));
+  EXPECT_GT(per_element(line), per_element(apart) + 0.5 * sizeof(NeighbourSpan));
 }
 
 }  // namespace

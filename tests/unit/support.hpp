@@ -43,7 +43,7 @@ inline LineDensity line_density(double radius_i = 0.6785, double radius_j = 0.67
 inline constexpr double element_length = 1.356;
 
 inline LineContact line_contact(double radius_i, int nodes_i, double radius_j, int nodes_j) {
-  return {line_density(radius_i, radius_j), element_length, element_length, nodes_i, nodes_j, {}, {}, {}};
+  return {line_density(radius_i, radius_j), element_length, element_length, nodes_i, nodes_j};
 }
 
 inline BondStiffness published_bond() {

@@ -131,13 +131,13 @@ TEST(ChartScenes, AreTheSameSpecimenAtEveryElementLength) {
   }
 }
 
-// As [twist] does: a couple on each end element, ramped, and nothing held.
-TEST(ChartScenes, ARopeIsLedByAMoment) {
+// As with [twist], a couple on each end element is ramped, and nothing is held.
+TEST(ChartScenes, ARopeIsTwistedByAMoment) {
   const ChartScene& scene = find_chart_scene("rope19-moment");
   const std::vector<ChartModel> models = chart_models(scene, false);
   const Specimen s = scene.build(find_chart_model(models, default_model));
   EXPECT_TRUE(s.held().empty());
-  const LoadsAndConstraints led = s.led();
+  const LoadsAndConstraints led = s.loads();
   const std::vector<const TwistLoad*> grips = led.of<TwistLoad>();
   ASSERT_EQ(grips.size(), 2u);
   EXPECT_EQ(std::distance(led.begin(), led.end()), 2) << "and nothing else";

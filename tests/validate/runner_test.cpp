@@ -6,7 +6,6 @@
 
 #include <cmath>
 #include <filesystem>
-#include <set>
 
 #include "core/reference.hpp"
 #include "io/files.hpp"
@@ -106,15 +105,54 @@ TEST(ValidationPage, DrawsTheLimitsOnAMap) {
   EXPECT_THAT(page, HasSubstr("class=\"off\" cx=\"171.0\""));
 }
 
-TEST(ValidationCases, AreDescribedInFull) {
-  std::set<std::string> names;
-  for (const Case& c : all_cases()) {
-    EXPECT_TRUE(names.insert(c.name).second) << c.name << " twice";
-    for (const std::string& text : {c.title, c.why, c.setup, c.oracle}) EXPECT_FALSE(text.empty()) << c.name;
-    EXPECT_TRUE(c.run) << c.name;
-    EXPECT_EQ(&find_case(c.name), &c);
-  }
+Case named(const char* name, Case::Group group, int order) {
+  Case c;
+  c.name = name;
+  c.group = group;
+  c.order = order;
+  return c;
+}
+
+TEST(ValidationCases, AreFoundByTheirNames) {
+  for (const Case& c : all_cases()) EXPECT_EQ(&find_case(c.name), &c);
   EXPECT_THROW(find_case("no-such-case"), InputError);
+}
+
+// A linker drops objects of a static library that nothing refers to.
+TEST(ValidationCases, AreRegisteredByEveryFile) {
+  std::size_t files = 0;
+  for (const char* group : {"theory", "atoms", "codes", "stability"})
+    for (const auto& file :
+         std::filesystem::directory_iterator(std::string(ROPEWALK_SOURCE_DIR "/validate/cases/") + group))
+      files += file.path().extension() == ".cpp";
+  EXPECT_EQ(all_cases().size(), files);
+}
+
+TEST(ValidationCases, AreSortedByGroupOrderAndName) {
+  const std::vector<Case> cases =
+      sorted_cases({named("d", Case::Group::stability, 0), named("c", Case::Group::theory, 2),
+                    named("b", Case::Group::theory, 1), named("a", Case::Group::theory, 2)});
+  std::string names;
+  for (const Case& c : cases) names += c.name;
+  EXPECT_EQ(names, "bacd");
+}
+
+TEST(ValidationCases, HaveNamesOfTheirOwn) {
+  try {
+    sorted_cases({named("ring", Case::Group::theory, 1), named("ring", Case::Group::codes, 2)});
+    FAIL() << "two cases with one name";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_THAT(error.what(), HasSubstr("\"ring\""));
+  }
+}
+
+TEST(ValidationFault, IsNamedByItsChanges) {
+  EXPECT_EQ(Fault{}.name(), "");
+  EXPECT_EQ(wrong_EA(1.1).name(), "EA_plus_10_percent");
+  EXPECT_EQ(wrong_GJ(0.9).name(), "GJ_minus_10_percent");
+  EXPECT_EQ(wrong_contact(2).name(), "contact_plus_100_percent");
+  EXPECT_EQ(without_torque().name(), "missing_torque");
+  EXPECT_EQ(wrong_stiffnesses(1.2).name(), "EA_plus_20_percent_EI_plus_20_percent_GJ_plus_20_percent");
 }
 
 TEST(Reference, ReadsWhatItWritesAndSaysWhatIsWrong) {

@@ -69,13 +69,41 @@ std::vector<std::size_t> pareto_front(const std::vector<double>& cost, const std
   return front;
 }
 
+std::vector<OutputColumn> points_columns() {
+  return {
+      {"scene", "", "scene of the chart"},
+      {"model", "", "name of the model"},
+      {"kind", "", "knob that the model turns, or finest, default, published"},
+      {"law", "", "contact law: line, paper or none"},
+      {"nodes_per_element", "", "nodes of the line law; 0: none"},
+      {"cutoff_nm", "nm", "cutoff of the contact; 0: none"},
+      {"element_length_nm", "nm", "length of an element"},
+      {"integrator", "", "integrator"},
+      {"contact_every", "", "steps of the bonds per step of the contact"},
+      {"time_step_fs", "fs", "time step"},
+      {"mass_scale", "", "masses, over those of the tubes"},
+      {"mode", "", "dynamics or relax"},
+      {"contact_viscosity", "eV ps/nm^2", "viscosity of the contact"},
+      {"bond_damping", "1/ps", "damping of the bonds"},
+      {"precision", "", "mixed or double"},
+      {"elements", "", "elements of the scene"},
+      {"simulated_ps", "ps", "simulated time"},
+      {"element_steps_per_ns", "1/ns", "element steps per simulated time"},
+      {"cpu_s_per_ns", "s/ns", "processor time per simulated time"},
+      {"cpu_ns_per_element_step", "ns", "processor time of a step of one element"},
+      {"instructions_per_element_step", "",
+       "instructions of a step of one element, counted by callgrind; empty: not counted"},
+      {"observable", "", "what is compared"},
+      {"unit", "", "unit of value and reference"},
+      {"value", "`unit`", "value of the model"},
+      {"reference", "`unit`", "value of the reference"},
+      {"reference_kind", "", "finest: the finest model; md: atoms"},
+      {"error", "", "difference of value and reference over the reference"},
+  };
+}
+
 std::string points_csv(const std::vector<ChartRow>& rows) {
-  std::string text =
-      "scene,model,kind,law,nodes_per_element,cutoff_nm,element_length_nm,integrator,contact_every,time_step_fs,"
-      "mass_scale,mode,contact_viscosity,bond_damping,precision,elements,simulated_ps,element_steps_per_ns,cpu_s_"
-      "per_"
-      "ns,cpu_ns_per_element_step,instructions_per_element_step,observable,unit,value,reference,reference_kind,"
-      "error\n";
+  std::string text = column_names(points_columns()) + "\n";
   for (const ChartRow& r : rows) {
     const ChartPoint& p = *r.point;
     text += fmt::format(
@@ -147,7 +175,7 @@ ChartPoint read_point(const std::string& path) {
     p.bond_damping = in.at("bond_damping_per_ps");
     p.simulated = in.at("simulated_ps");
     p.steps = in.at("steps");
-    // Of a point that failed there is no cost, and JSON has no NaN.
+    // A point that failed has no cost; JSON has null for NaN.
     p.cpu = in.at("cpu_s").is_null() ? std::numeric_limits<double>::quiet_NaN() : in.at("cpu_s").get<double>();
     if (!in.at("instructions_per_element_step").is_null()) p.instructions = in.at("instructions_per_element_step");
     p.values = in.at("values").get<std::map<std::string, double>>();

@@ -1,9 +1,8 @@
-// Instructions of a step, counted by callgrind: a cost that the rest of the machine does not disturb.
-//
-// The program runs itself under callgrind, which is told where the steps begin and end: the start runs unobserved
-// and so ten times as fast. Valgrind emulates a processor with AVX2 and without AVX-512, so that the kernels take
-// their AVX2 versions: half as wide, about twice the instructions of the wide ones. The steps are the first of the
-// protocol: a rope that is not yet twisted.
+// Instructions of a step, counted by callgrind: a cost that does not depend on the load of the machine.
+// The program runs itself under callgrind and marks where the steps begin and end; the start is not counted and
+// runs ten times as fast. Valgrind emulates a processor with AVX2 but without AVX-512, so that the kernels take
+// their AVX2 versions, with about twice the instructions of the AVX-512 ones. The steps are the first of the
+// protocol: the rope is not yet twisted.
 #include <fmt/format.h>
 #include <valgrind/callgrind.h>
 
@@ -23,7 +22,7 @@ namespace fs = std::filesystem;
 constexpr double wanted_element_steps = 6000;
 constexpr long least_steps = 12, whole_steps = 12;  // a multiple of every contact_every
 
-// "==12== Collected : 123456"; none where callgrind did not come to its end.
+// Reads "==12== Collected : 123456"; none where callgrind did not finish.
 std::optional<double> collected(const std::string& path) {
   if (!fs::exists(path)) return {};
   std::istringstream text(read_file(path));

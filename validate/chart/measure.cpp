@@ -1,4 +1,4 @@
-// One point: a model run through the protocol of a scene, its cost and its observables.
+// Measures one point: runs a model through the protocol of a scene and records cost and observables.
 #include <omp.h>
 #include <time.h>
 
@@ -21,7 +21,7 @@ namespace {
 constexpr double start_tolerance = 5e-3, turned_tolerance = 5e-3;  // eV/nm
 constexpr long most_steps = 20000;                                 // of one relaxation
 constexpr int samples = 40;                                        // of the observables
-constexpr double sampled_part = 0.5;                               // of the hold, its end
+constexpr double sampled_part = 0.5;                               // of the hold, at its end
 constexpr double least_seconds = 0.25;                             // short runs are repeated
 constexpr int most_runs = 8;
 
@@ -31,9 +31,9 @@ double processor_seconds() {
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
-// --- How it is moved ---
+// --- Motion of the grips ---
 
-// By a part of the whole turn.
+// Turns the specimen by a part of its whole angle.
 void turn(const Specimen& s, double part, State& state) {
   for (std::size_t i = 0; i < state.size(); ++i) {
     if (!s.interior_follows && !std::count(s.grips.begin(), s.grips.end(), static_cast<int>(i))) continue;
@@ -45,7 +45,7 @@ void turn(const Specimen& s, double part, State& state) {
   }
 }
 
-// The velocities of a uniform turn.
+// Sets the velocities of a uniform turn.
 void set_turning(const Specimen& s, State& state) {
   for (std::size_t i = 0; i < state.size(); ++i) {
     const Vector3 axis = s.about_itself ? axis_of(state.orientation[i]) : Vector3::UnitZ();
@@ -63,7 +63,7 @@ Simulation relaxed(const Specimen& s, State state, double tolerance) {
   return simulation;
 }
 
-// --- What is read off ---
+// --- Observables ---
 
 double moment_on_grips(const Specimen& s, const Simulation& simulation) {
   const State& state = simulation.state();
@@ -77,7 +77,7 @@ double moment_on_grips(const Specimen& s, const Simulation& simulation) {
   return std::copysign(1.0, s.angle) * (s.moment_resists ? -sum : sum);
 }
 
-// Mean over the bonds that deform: those within a grip do not.
+// Mean over the bonds that deform; bonds within a grip do not.
 double mean_bending_moment(const Specimen& s, const State& state) {
   const std::set<int> grips(s.grips.begin(), s.grips.end());
   double sum = 0;
@@ -129,7 +129,7 @@ class Reader {
 
 // --- The two modes ---
 
-// Returns the CPU time of the steps; reads where there is a reader.
+// Returns the CPU time of the steps; samples observables if there is a reader.
 double run_dynamics(const Specimen& s, Reader* reader, Simulation& simulation) {
   const long steps = std::lround(s.duration() / s.outer_step());
   const auto sampled = static_cast<long>(static_cast<double>(steps) * (1 - sampled_part * s.hold / s.duration()));
@@ -149,7 +149,7 @@ double run_dynamics(const Specimen& s, Reader* reader, Simulation& simulation) {
 Simulation driven(const Specimen& s, State untwisted) {
   set_turning(s, untwisted);
   untwisted.step = 0;
-  return Simulation(s.topology, s.interaction, s.led(), std::move(untwisted), s.outer_step(), 0,
+  return Simulation(s.topology, s.interaction, s.loads(), std::move(untwisted), s.outer_step(), 0,
                     s.scene.run.stepping);
 }
 
@@ -183,7 +183,6 @@ ChartPoint describe(const ChartScene& scene, const ChartModel& model, const Spec
   p.mass_scale = model.mass_scale;
   p.mode = model.mode == RunOptions::Mode::relax ? "relax" : "dynamics";
   p.precision = s.interaction.precision == Interaction::Precision::mixed ? "mixed" : "double";
-  if (model.all_nodes) p.precision += "+all_nodes";
   p.nodes = s.interaction.paper ? 1 : s.interaction.line.empty() ? 0 : s.interaction.line.front().nodes_i;
   p.cutoff = s.interaction.paper          ? s.interaction.paper->cutoff()
              : s.interaction.line.empty() ? 0
@@ -239,7 +238,7 @@ void step_for_counting(const std::string& scene_name, const std::string& model_n
     return;
   }
   Simulation simulation = driven(s, s.state);
-  simulation.step(false);  // makes what is made once
+  simulation.step(false);  // allocates and caches, before the cost is measured
   count_from_here();
   for (long k = 0; k < steps; k += model.stepping.contact_every) simulation.step(false);
   count_to_here();

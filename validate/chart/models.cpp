@@ -1,4 +1,4 @@
-// The models of the chart and how they become a scene's knobs.
+// The models of the chart, and the settings of a scene that each stands for.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -29,12 +29,11 @@ ChartModel varied(const std::string& kind, const std::string& name, F change) {
 void add_anchors(std::vector<ChartModel>& all) {
   all.push_back(varied("finest", finest_model, [](ChartModel& m) {
     m.length = 0.5;
-    m.all_nodes = true;
     m.precision = Precision::full;
     m.step_fraction = 0.5;
   }));
   all.push_back(varied("default", default_model, [](ChartModel&) {}));
-  // Its programs calculate in double precision, and its papers type 20 fs.
+  // Its programs calculate in double precision; its papers give 20 fs.
   all.push_back(varied("published", published_model, [](ChartModel& m) {
     m.set = "cnt-10-10-paper";
     m.law = Law::paper;
@@ -61,7 +60,7 @@ void add_single_tube_knobs(std::vector<ChartModel>& all) {
 }
 
 void add_contact_knobs(std::vector<ChartModel>& all) {
-  // A single tube would be turned at its grips alone, beyond what a bond can bear.
+  // In a single tube only the grips would turn, by more than a bond bears.
   all.push_back(varied("mode", "relax-at-once", [](ChartModel& m) {
     m.mode = RunOptions::Mode::relax;
     m.at_once = true;
@@ -85,11 +84,6 @@ void add_contact_knobs(std::vector<ChartModel>& all) {
     all.push_back(varied("contact_viscosity", fmt::format("viscosity-{:g}", eta),
                          [eta](ChartModel& m) { m.contact_viscosity = eta; }));
   all.push_back(varied("precision", "double", [](ChartModel& m) { m.precision = Precision::full; }));
-  all.push_back(varied("precision", "all-nodes", [](ChartModel& m) { m.all_nodes = true; }));
-  all.push_back(varied("precision", "all-nodes-double", [](ChartModel& m) {
-    m.all_nodes = true;
-    m.precision = Precision::full;
-  }));
 }
 
 void add_combinations(const ChartScene& scene, std::vector<ChartModel>& all) {
@@ -99,13 +93,6 @@ void add_combinations(const ChartScene& scene, std::vector<ChartModel>& all) {
       m.length = 0.5;
       m.stepping.contact_every = 3;
     }));
-  // Alike for both elements of a pair, as the sparse sums are not.
-  if (scene.contact)
-    for (const int nodes : {4, 5})
-      all.push_back(varied("combination", fmt::format("nodes-{}+all-nodes", nodes), [nodes](ChartModel& m) {
-        m.nodes = nodes;
-        m.all_nodes = true;
-      }));
   // Elements of the default's length: in a strongly twisted rope longer ones need all of their nodes.
   if (scene.contact)
     for (const double mass : {1.0, 4.0})
@@ -137,11 +124,10 @@ void add_combinations(const ChartScene& scene, std::vector<ChartModel>& all) {
   }
 }
 
-// Without contact the knobs of the contact are without effect.
+// Without contact, settings of the contact have no effect.
 void take_contact_away(ChartModel& m) {
   m.law = Law::none;
   m.nodes = 0;
-  m.all_nodes = false;
   m.contact_viscosity = 0;
 }
 
@@ -181,7 +167,6 @@ Scene knobs_of(const ChartModel& model, const std::string& default_set, double e
   scene.element_length = element_length;
   scene.contact.law = model.law;
   scene.contact.nodes = model.nodes;
-  scene.contact.all_nodes = model.all_nodes;
   scene.contact.precision = model.precision;
   scene.contact.cutoff = model.cutoff;
   scene.run.stepping = model.stepping;

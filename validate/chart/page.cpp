@@ -14,10 +14,10 @@
 namespace ropewalk {
 namespace {
 
-constexpr double least_error = 1e-6;  // what is nearer to its reference is drawn here
+constexpr double least_error = 1e-6;  // smaller errors are drawn here
 constexpr double much = 10;           // times as cheap
 
-// Another program's cost for a step of this scene's rope, as measured; no accuracy is known.
+// Measured cost of another program for a step of this scene's rope; its accuracy is not known.
 struct Peer {
   const char* name;
   const char* scene;
@@ -28,12 +28,10 @@ struct Peer {
 constexpr Peer peers[] = {
     {"waLBerla", "rope91", 22.5e-6, 20e-3,
      "waLBerla MESA-PD CNT, the published law, one core, 91 x 50 elements of 1.356 nm: 22.5 us per element-step, "
-     "drawn "
-     "at steps of 20 fs"},
+     "plotted for steps of 20 fs"},
     {"LAMMPS mesocnt", "rope91", 1 / (55.0 * 91 * 50), 20e-3,
-     "LAMMPS mesocnt, one rank, 91 x 50 elements: 55 steps per second, drawn at steps of 20 fs. It has no torsion, "
-     "so "
-     "that it could not run this scene"},
+     "LAMMPS mesocnt, one rank, 91 x 50 elements: 55 steps per second, plotted for steps of 20 fs. It has no "
+     "torsion and cannot run this scene"},
 };
 
 std::string observable_title(const std::string& o) {
@@ -146,7 +144,7 @@ std::string figure_html(const ChartScene& scene, const std::string& observable, 
   const std::vector<std::size_t> front = pareto_front(s.cost, s.error);
   ScatterChart scatter;
   scatter.x_decades = scatter.y_decades = true;
-  scatter.labels.resize(1);  // of the front none
+  scatter.labels.resize(1);  // the front has no labels
   LineChart& chart = scatter.chart;
   const std::string against = kind == "md" ? "atoms" : "the finest model";
   chart.title = fmt::format("{}: error of the {} against cost", scene.title, observable_title(observable));
@@ -183,7 +181,7 @@ std::string points_table(const ChartScene& scene, const std::vector<ChartPoint>&
   std::string html =
       "<details><summary>All models of this scene</summary>\n<div class=\"scroll\"><table "
       "class=\"facts\"><thead><tr>"
-      "<th>Model</th><th>Knob</th><th class=\"number\">Elements</th><th class=\"number\">Step, fs</th>"
+      "<th>Model</th><th>Setting</th><th class=\"number\">Elements</th><th class=\"number\">Step, fs</th>"
       "<th class=\"number\">s per ns</th><th class=\"number\">ns per element-step</th>"
       "<th class=\"number\">10<sup>9</sup> instructions per ns</th>";
   std::vector<std::pair<std::string, std::string>> columns;
@@ -224,7 +222,7 @@ struct Beaten {
   double worst = 0;  // error against atoms, of all observables
 };
 
-// Models that are nowhere farther from the atoms than the published one, and cheaper.
+// Models that are cheaper than the published one and not farther from the atoms in any observable.
 std::vector<Beaten> better_than_published(const ChartScene& scene, const std::vector<ChartPoint>& points,
                                           const std::vector<ChartRow>& rows) {
   std::map<std::string, double> bar;
@@ -255,9 +253,9 @@ std::string published_part(const std::vector<ChartPoint>& points, const std::vec
   std::string html =
       heading("Against the published model") +
       paragraph(
-          "Errors against atoms are those of the model and of its discretisation together, and the two may "
-          "cancel: the finest model is itself some way from the atoms, and a coarse one may lie between. The "
-          "errors against the finest model, below, show how much of it is luck.");
+          "An error against atoms is the sum of the errors of the model and of its discretisation, and these may "
+          "cancel. The finest model is not equal to the atoms; a coarse model may lie between the two by chance. "
+          "The errors against the finest model, below, are those of the discretisation alone.");
   for (const ChartScene& scene : chart_scenes()) {
     const std::vector<Beaten> better = better_than_published(scene, points, rows);
     const bool there = std::any_of(rows.begin(), rows.end(), [&](const ChartRow& r) {
@@ -266,9 +264,9 @@ std::string published_part(const std::vector<ChartPoint>& points, const std::vec
     if (!there) continue;
     std::string text = fmt::format("<b>{}.</b> ", escape_markup(scene.title));
     if (better.empty() || better.front().times_cheaper < much)
-      text += fmt::format("No model is {:g} times as cheap at no greater error against atoms. ", much);
+      text += fmt::format("No model is {:g} times cheaper without a larger error against atoms.  ", much);
     for (std::size_t k = 0; k < std::min<std::size_t>(4, better.size()); ++k)
-      text += fmt::format("{}<i>{}</i>: {} times as cheap, at most {} % from the atoms", k > 0 ? "; " : "",
+      text += fmt::format("{}<i>{}</i>: {} times cheaper, at most {} % from the atoms", k > 0 ? "; " : "",
                           escape_markup(better[k].point->model), number_text(better[k].times_cheaper, 3),
                           number_text(100 * better[k].worst, 2));
     html += paragraph(text + (better.empty() ? "" : "."));
@@ -280,7 +278,7 @@ std::string published_part(const std::vector<ChartPoint>& points, const std::vec
 
 constexpr double tolerances[] = {0.003, 0.01, 0.03, 0.1};
 
-// The cheapest model of which no observable is farther from the finest than this.
+// The cheapest model whose observables all lie within this tolerance of the finest.
 const ChartPoint* cheapest_within(const ChartScene& scene, double tolerance, const std::vector<ChartPoint>& points,
                                   const std::vector<ChartRow>& rows) {
   const ChartPoint* cheapest = nullptr;
@@ -297,8 +295,8 @@ const ChartPoint* cheapest_within(const ChartScene& scene, double tolerance, con
 std::string good_enough_part(const std::vector<ChartPoint>& points, const std::vector<ChartRow>& rows) {
   std::string html = heading("Good enough") +
                      paragraph(
-                         "The cheapest model of which <i>every</i> observable of the scene lies so near to the "
-                         "finest model, and how many times as cheap as the default it is.") +
+                         "The cheapest model whose observables <i>all</i> lie within the tolerance of the finest "
+                         "model. In brackets: cost of the default over its cost.") +
                      "<div class=\"scroll\"><table class=\"facts\"><thead><tr><th>Scene</th>";
   for (const double t : tolerances) html += fmt::format("<th>within {:g} %</th>", 100 * t);
   html += "</tr></thead><tbody>\n";
@@ -320,18 +318,13 @@ std::string good_enough_part(const std::vector<ChartPoint>& points, const std::v
 }
 
 std::string lead() {
-  return "What a model costs and how far off it is. Every dot is one model that differs from the default in one "
-         "knob, or "
-         "a combination of a few. Costs are CPU seconds of one thread per simulated nanosecond; a relaxation is "
-         "set "
-         "against the ramp and hold that it replaces. Errors are against our finest model (half the element "
-         "length, all "
-         "nodes, double precision) and, where atoms were run, against atoms. Both axes are "
-         "logarithmic; errors below 0.0001 % are drawn there. Instructions, where they were counted, are those of "
-         "the "
-         "AVX2 kernels by callgrind: a cost without the noise of the machine. What lies on the front is beaten by "
-         "no other in cost "
-         "without losing accuracy; a front holds for its scene and observable.";
+  return "Cost and error of numerical models. Every dot is a model that differs from the default in one setting or "
+         "in a few. Cost is CPU time of one thread per simulated nanosecond; for a relaxation, per nanosecond of "
+         "the ramp and hold that it replaces. Errors are against the finest model (half the element length, all "
+         "nodes, double precision) and, where there are results of atoms, against atoms. Both axes are "
+         "logarithmic; errors below 0.0001 % are drawn at 0.0001 %. Instructions, where counted, are those of the "
+         "AVX2 kernels by callgrind, which do not depend on the load of the machine. No model is both cheaper and "
+         "more accurate than one on the Pareto front. Each scene and observable has its own front.";
 }
 
 }  // namespace
@@ -340,7 +333,7 @@ std::string chart_page(const std::vector<ChartPoint>& points, const std::vector<
   const std::vector<ChartRow> rows = chart_rows(points);
   Figures figures;
   std::string html = page_head("Speed against accuracy") +
-                     "<body>\n<main>\n<p class=\"kicker\">Ropewalk: which knob pays</p>\n<h1>Speed against "
+                     "<body>\n<main>\n<p class=\"kicker\">Ropewalk: which settings pay</p>\n<h1>Speed against "
                      "accuracy</h1>\n<p class=\"lead\">" +
                      lead() + "</p>\n" + published_part(points, rows) + good_enough_part(points, rows);
   for (const ChartScene& scene : chart_scenes()) {
@@ -354,7 +347,7 @@ std::string chart_page(const std::vector<ChartPoint>& points, const std::vector<
   }
   html += heading("Other programs");
   for (const Peer& peer : peers) html += paragraph(escape_markup(std::string(peer.remark) + "."));
-  html += heading("How it was made");
+  html += heading("How this page was made");
   for (const std::string& f : facts) html += paragraph(escape_markup(f));
   return html + "</main>\n</body>\n</html>\n";
 }

@@ -1,4 +1,4 @@
-// `ropewalk validate chart`: the points one after another, each in a file of its own, and what is made of them.
+// `ropewalk validate chart`: measures the points, one file each, and writes the chart from them.
 #include <fmt/format.h>
 
 #include <chrono>
@@ -20,24 +20,23 @@ struct Task {
   const ChartScene* scene;
   ChartModel model;
   Specimen specimen;
-  ChartPoint point;  // as described
+  ChartPoint point;  // without its cost and values until it is measured
   std::string path;
   bool kept = false;     // measured before, by the same program
-  bool counted = false;  // as far as that is wanted
+  bool counted = false;  // has its instructions, or does not need them
   bool done() const { return kept && counted; }
 };
 
-// For the time that is left: what a step costs differs by more than ten between models.
+// For the estimate of the time left: the cost of a step differs by more than ten between models.
 double guessed_work(const Task& t) {
   double each = 1;
   if (t.model.law == ContactOptions::Law::paper) each = 2;
-  if (t.model.all_nodes) each = 3;
   if (t.model.precision == Interaction::Precision::full) each *= 2;
   if (!t.scene->contact) each = 0.3;
   return each * t.point.elements * t.point.steps;
 }
 
-// Everything that the result depends on: program, scene and knobs.
+// Hash of everything that the result depends on: program, scene and settings.
 std::string key_of(const ChartPoint& described) {
   return hash_hex(fmt::format("{} {}", git_id, point_json(described)));
 }
@@ -48,8 +47,8 @@ void make_directory(const std::string& dir) {
     throw InputError({dir, 0, "--out"}, "exists and is not a directory", "choose another name");
   fs::create_directories(fs::path(dir) / "points", error);
   if (error)
-    throw InputError({dir, 0, "--out"}, fmt::format("cannot be made: {}", error.message()),
-                     "choose a place that you may write to");
+    throw InputError({dir, 0, "--out"}, fmt::format("cannot be created: {}", error.message()),
+                     "choose a directory that you may write to");
 }
 
 std::vector<Task> tasks_of(const ChartArguments& a) {
@@ -87,7 +86,7 @@ void run_task(Task& t, const ChartArguments& a) {
   write_file_atomically(t.path, point_json(t.point));
 }
 
-// All points that lie in the directory, in the order of scenes and models.
+// All points in the directory, in the order of scenes and models.
 std::vector<ChartPoint> points_in(const std::string& dir) {
   std::vector<ChartPoint> points;
   for (const ChartScene& scene : chart_scenes())

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <set>
 
-#include "cases/common/chains.hpp"
-#include "cases/common/md_rope.hpp"
+#include "cases/common/chain.hpp"
+#include "cases/common/twisted_rope.hpp"
 #include "chart/chart.hpp"
 #include "core/reference.hpp"
 #include "io/data_files.hpp"
@@ -24,19 +24,20 @@ namespace {
 constexpr const char* set_name = "cnt-10-10-tersoff";
 constexpr double element = 1.356;                  // nm, of the published model: the default in all scenes
 constexpr double viscosity_reach = 1.5;            // spacings, as a scene has it
-constexpr double tube_twist_rate = 0.04127579842;  // rad/nm: a row of tube-twist.csv, in the elastic window
+constexpr double tube_twist_rate = 0.04127579842;  // rad/nm: a row of tube-twist.csv within the elastic window
 constexpr double tube_length = 32 * element;       // nm
-constexpr double ring_length = 48 * element, ring_twist = 6;  // nm, rad: half of what makes it leave its plane
-constexpr double rope_length = 30 * element;                  // nm
+constexpr double ring_length = 48 * element,
+                 ring_twist = 6;              // nm, rad: half of the twist at which the ring leaves its plane
+constexpr double rope_length = 30 * element;  // nm
 constexpr double rope_angle = 90 * units::degree;
-constexpr double led_length = 26 * element;           // nm
-constexpr double led_moment = 10;                     // nN nm per tube
-constexpr double led_ramp = 66, led_hold = 44;        // ps: three periods and two
+constexpr double moment_length = 26 * element;        // nm
+constexpr double end_moment = 10;                     // nN nm per tube
+constexpr double moment_ramp = 66, moment_hold = 44;  // ps: three periods and two
 constexpr double crossed_length = 8 * element;        // nm
 constexpr double crossed_from = 90, crossed_to = 30;  // degrees
 constexpr std::size_t md_increment = 4;               // of rope-7-10-10: 18 degrees
 
-// A model's damping is that of elements of the default length.
+// Damping constants of a model are given for elements of the default length.
 void scale_damping(Specimen& s) {
   Damping& damping = s.scene.damping;
   damping.contact.inner = s.spacing;
@@ -44,7 +45,7 @@ void scale_damping(Specimen& s) {
   damping = same_dissipation(damping, element, s.scene.element_length);
 }
 
-// What the knobs say, once topology and spacing are known.
+// Applies the model's settings to a specimen with topology and spacing.
 void settle(const ChartModel& model, Specimen& s) {
   scale_damping(s);
   s.interaction = interaction_of(s.scene);
@@ -59,7 +60,7 @@ void settle(const ChartModel& model, Specimen& s) {
                      "take a smaller step");
 }
 
-// None longer than asked for.
+// Number of bonds whose elements are not longer than this.
 int bonds_of(const ChartModel& model, double length) {
   return static_cast<int>(std::ceil(length / (element * model.length) - 1e-6));
 }
@@ -145,11 +146,11 @@ Specimen rope_of_91(const ChartModel& model) {
 
 // --- rope19-moment ---
 
-Specimen rope_led_by_moment(const ChartModel& model) {
-  Specimen s = parallel_tubes(model, 19, led_length, 0);
-  s.moment = led_moment * units::nN_nm;
-  s.ramp = led_ramp;
-  s.hold = led_hold;
+Specimen rope_under_moment(const ChartModel& model) {
+  Specimen s = parallel_tubes(model, 19, moment_length, 0);
+  s.moment = end_moment * units::nN_nm;
+  s.ramp = moment_ramp;
+  s.hold = moment_hold;
   return s;
 }
 
@@ -165,7 +166,7 @@ Specimen crossed_tubes(const ChartModel& model) {
   s.spacing = rest_spacing(s.scene);
   s.state = State(static_cast<std::size_t>(2 * (bonds + 1)));
   const ReferenceTable atoms = read_reference(data_directory() + "/references/crossed-tubes.csv");
-  const double distance = atoms.column("distance_nm")[2];  // where tubes at 90 degrees rest
+  const double distance = atoms.column("distance_nm")[2];  // of the energy minimum at 90 degrees
   for (const int tube : {0, 1}) {
     const double angle = tube * crossed_from * units::degree;
     const Vector3 along(std::cos(angle), std::sin(angle), 0);
@@ -233,60 +234,58 @@ std::vector<ChartScene> all_scenes() {
   return {
       {"tube-twist",
        "One tube, twisted",
-       fmt::format(
-           "One (10,10) tube of {:.4g} nm between its grips, twisted by {:.4g} rad ({:.3g} rad/nm, inside of "
-           "the elastic window) in 200 ps and held for 50. Atoms: a uniformly twisted periodic cell of the "
-           "same twist, energy per length times this length.",
-           tube_length, tube_twist_rate * tube_length, tube_twist_rate),
+       fmt::format("One (10,10) tube of {:.4g} nm between its grips, twisted by {:.4g} rad ({:.3g} rad/nm, within "
+                   "the elastic window) in 200 ps and held for 50. Atoms: a uniformly twisted periodic cell of the "
+                   "same twist, energy per length times this length.",
+                   tube_length, tube_twist_rate * tube_length, tube_twist_rate),
        false,
        {"energy", "end_moment"},
        twisted_tube,
        atoms_of_tube},
       {"rope7-md",
        "Seven tubes against atoms",
-       "Seven (10,10) tubes of 8.11 nm between rigid grips that keep their distance, turned by 18 degrees in 60 ps "
-       "and held for 30. Atoms: the same rope in LAMMPS (case rope-7-10-10), Tersoff inside of tubes and "
-       "Lennard-Jones between them, minimised at each increment.",
+       "Seven (10,10) tubes of 8.11 nm between rigid grips at a fixed distance, turned by 18 degrees in 60 ps and "
+       "held for 30. Atoms: the same rope in LAMMPS (case rope-7-10-10), with the Tersoff potential within tubes "
+       "and Lennard-Jones between them, relaxed at each increment.",
        true,
        {"energy", "end_moment", "beta", "spacing", "bending_moment"},
        seven_tubes,
        atoms_of_seven_tubes},
       {"rope91",
        "91 tubes of 41 nm",
-       "91 (10,10) tubes of 40.7 nm between grips that turn as rigid discs by 90 degrees in 40 ps and are held "
-       "for 20; each tube is free along the axis at its grip, so that tubes slide.",
+       "91 (10,10) tubes of 40.7 nm between grips that turn as rigid discs by 90 degrees in 40 ps and are held for "
+       "20. At its grip each tube is free along the axis, so that tubes slide.",
        true,
        {"energy", "beta", "spacing", "end_moment", "bending_moment", "Q"},
        rope_of_91,
        {}},
       {"rope19-moment",
-       "19 tubes led by a moment",
-       fmt::format(
-           "19 (10,10) tubes of {:.4g} nm, free but for a couple of {:g} nN nm on either end of each, ramped "
-           "in {:g} ps from rest and held for {:g}. Its twist is the answer, and vibrates: observables are "
-           "means over a period of that.",
-           led_length, led_moment, led_ramp, led_hold),
+       "19 tubes under a moment",
+       fmt::format("19 (10,10) tubes of {:.4g} nm with free ends. A couple of {:g} nN nm acts on either end of "
+                   "each tube, ramped in {:g} ps from rest and held for {:g}. The twist is the response and "
+                   "vibrates; observables are means over one period.",
+                   moment_length, end_moment, moment_ramp, moment_hold),
        true,
        {"energy", "beta", "end_angle", "spacing", "bending_moment"},
-       rope_led_by_moment,
+       rope_under_moment,
        {},
        false},
       {"crossed-tubes",
        "Two crossed tubes",
-       "Two (10,10) tubes of 10.8 nm between held ends, crossed at 90 degrees and the distance at which they rest "
-       "there; the ends of one are turned to 30 degrees in 300 ps and held for 100. Energy of contact and bonds; "
-       "the "
-       "end moment is that with which the tubes turn towards parallel. Atoms: frozen tubes at this distance and "
-       "angle, mean over registries (case crossed-tubes); bending between the held ends adds less than 1 %.",
+       "Two (10,10) tubes of 10.8 nm between held ends, crossed at 90 degrees at the distance of the energy "
+       "minimum. The ends of one tube are turned to 30 degrees in 300 ps and held for 100. The energy is that of "
+       "contact and bonds; the end moment is that which turns the tubes parallel. Atoms: frozen tubes at this "
+       "distance and angle, mean over registries (case crossed-tubes); bending between the held ends adds less "
+       "than 1 %.",
        true,
        {"energy", "end_moment", "spacing"},
        crossed_tubes,
        atoms_of_crossed_tubes},
       {"ring",
        "A tube closed to a ring, twisted",
-       fmt::format("One (10,10) tube of {:.4g} nm bent into a circle, both ends held in one place; the ends are "
-                   "turned against each other by {:g} rad in 200 ps, half of the twist at which a ring leaves its "
-                   "plane, and held for 50. Energy above that of the straight tube.",
+       fmt::format("One (10,10) tube of {:.4g} nm bent into a circle with both ends held in one place. The ends "
+                   "turn against each other by {:g} rad in 200 ps, half of the twist at which a ring leaves its "
+                   "plane, and are held for 50. Energies are above that of the straight tube.",
                    ring_length, ring_twist),
        false,
        {"energy", "end_moment", "bending_moment"},
@@ -316,7 +315,7 @@ LoadsAndConstraints Specimen::held() const {
   return loads;
 }
 
-LoadsAndConstraints Specimen::led() const {
+LoadsAndConstraints Specimen::loads() const {
   if (moment > 0) return ramped_moment(*this);
   LoadsAndConstraints loads;
   std::set<double> places;

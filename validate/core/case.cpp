@@ -1,9 +1,27 @@
 #include "core/case.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
+#include <tuple>
 
 namespace ropewalk {
+namespace {
+
+// A local static exists when the first registration needs it, whichever file's comes first.
+std::vector<Case (*)()>& registered_cases() {
+  static std::vector<Case (*)()> makers;
+  return makers;
+}
+
+std::string change_name(const char* quantity, double factor) {
+  if (factor == 1) return "";
+  return fmt::format("{}_{}_{:.0f}_percent_", quantity, factor > 1 ? "plus" : "minus", 100 * std::fabs(factor - 1));
+}
+
+}  // namespace
 
 double Check::difference() const {
   const double d = value - reference;
@@ -15,6 +33,20 @@ bool Check::holds() const { return std::isfinite(value) && std::fabs(difference(
 bool CaseResult::holds() const {
   return std::all_of(checks.begin(), checks.end(), [](const Check& c) { return c.informative || c.holds(); });
 }
+
+std::string Fault::name() const {
+  std::string text = change_name("EA", EA) + change_name("EI", EI) + change_name("GJ", GJ) +
+                     change_name("contact", contact) + (missing_torque ? "missing_torque_" : "");
+  if (!text.empty()) text.pop_back();
+  return text;
+}
+
+Fault wrong_EA(double factor) { return {factor, 1, 1, 1, false}; }
+Fault wrong_EI(double factor) { return {1, factor, 1, 1, false}; }
+Fault wrong_GJ(double factor) { return {1, 1, factor, 1, false}; }
+Fault wrong_stiffnesses(double factor) { return {factor, factor, factor, 1, false}; }
+Fault wrong_contact(double factor) { return {1, 1, 1, factor, false}; }
+Fault without_torque() { return {1, 1, 1, 1, true}; }
 
 void scale_contact(ParameterSet& set, double factor) {
   if (set.line) {
@@ -31,6 +63,28 @@ ParameterSet CaseContext::model(const std::string& name) const {
   set.bond.twist *= fault.GJ;
   scale_contact(set, fault.contact);
   return set;
+}
+
+RegisteredCase::RegisteredCase(Case (*make)()) { registered_cases().push_back(make); }
+
+const std::vector<Case>& all_cases() {
+  static const std::vector<Case> cases = [] {
+    std::vector<Case> made;
+    for (const auto make : registered_cases()) made.push_back(make());
+    return sorted_cases(std::move(made));
+  }();
+  return cases;
+}
+
+std::vector<Case> sorted_cases(std::vector<Case> cases) {
+  const auto key = [](const Case& c) { return std::tie(c.group, c.order, c.name); };
+  std::sort(cases.begin(), cases.end(), [&](const Case& a, const Case& b) { return key(a) < key(b); });
+  for (std::size_t i = 0; i < cases.size(); ++i)
+    for (std::size_t j = i + 1; j < cases.size(); ++j)
+      if (cases[i].name == cases[j].name)
+        throw std::invalid_argument(
+            fmt::format("two validation cases have the name \"{}\": give one another name", cases[i].name));
+  return cases;
 }
 
 }  // namespace ropewalk

@@ -1,10 +1,11 @@
-// A validation case: one physical question with a set-up, an oracle and tolerances that were fixed beforehand. A
-// case runs the model, holds its numbers to the oracle and returns checks and figures; it never prints and never
-// decides what to do about a miss. Every case is one file of validate/cases/.
+// A validation case asks one physical question. It has a set-up, an oracle and tolerances, all fixed before the
+// case is run. A case runs the model, compares its numbers with the oracle and returns checks and figures; it never
+// prints and never decides what a miss leads to. Every case is one file of validate/cases/ that registers itself.
 #pragma once
 
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "model/parameters.hpp"
@@ -12,17 +13,17 @@
 
 namespace ropewalk {
 
-// One number held to its oracle.
+// One number compared with its oracle.
 struct Check {
   std::string name;      // "EA of the chain"
   double value = 0;      // of the model
   double reference = 0;  // of the oracle
-  double tolerance = 0;  // allowed difference
-  bool relative = true;  // tolerance over |reference|, or in the unit
+  double tolerance = 0;  // largest difference allowed
+  bool relative = true;  // tolerance over |reference|; otherwise in the unit
   std::string unit;
-  // Not held to anything: shown for what it tells (another code's fault, a known limit).
+  // Shown for what it tells (another code's error, a known limit); decides nothing.
   bool informative = false;
-  std::string note;  // why this tolerance, or what a miss means
+  std::string note;  // the reason for this tolerance, or what a miss means
 
   double difference() const;  // relative or absolute, as the tolerance is
   bool holds() const;         // false for a value that is not finite
@@ -30,12 +31,12 @@ struct Check {
 
 struct CaseFigure {
   LineChart chart;
-  std::string caption;  // what to see in it
+  std::string caption;  // what the figure shows
 };
 
-// A place where a method fails: for the map of `validate stability`.
+// A place where a method fails, for the map of `validate stability`.
 struct Limit {
-  // What `run` does about it: does not start, ends with the reason, says so, or nothing.
+  // What `run` does there: it does not start, it ends with the reason, it warns, or it does nothing.
   enum class Guard { refused, stopped, told, none };
   std::string method;  // "time step of a single tube"
   double found = 0;    // by bisection on the method itself
@@ -47,55 +48,95 @@ struct Limit {
 
 struct CaseResult {
   std::vector<Check> checks;
-  std::vector<Limit> limits;  // of the group `stability`
+  std::vector<Limit> limits;  // only in cases of the group `stability`
   std::vector<CaseFigure> figures;
-  std::vector<std::string> remarks;  // sentences: what a miss is due to, which assumption it shows
+  std::vector<std::string> remarks;  // sentences: the cause of a miss, the assumption that a number tests
   std::vector<std::string> sources;  // reference files (with "stored" or "fresh"), parameter sets
   double seconds = 0;
 
-  bool holds() const;  // of all checks that are not informative
+  bool holds() const;  // every check that is not informative holds
 };
 
-// A deliberate fault of the model, never of the oracle: a case that stays green under every one of them tests
-// nothing.
+// A deliberately wrong parameter of the model, never of the oracle.
 struct Fault {
-  double EA = 1, EI = 1, GJ = 1;  // factors of the bond
+  double EA = 1, EI = 1, GJ = 1;  // factors of the bond's stiffnesses
   double contact = 1;             // factor of the contact energy
   bool missing_torque = false;    // the `paper` law without the torque that the published code leaves out
-};
 
-// A set whose tubes bind so many times as strongly, at the same distance.
+  std::string name() const;  // "EI_plus_10_percent", for names of tests; empty without a fault
+};
+Fault wrong_EA(double factor);
+Fault wrong_EI(double factor);
+Fault wrong_GJ(double factor);
+Fault wrong_stiffnesses(double factor);  // EA, EI and GJ together
+Fault wrong_contact(double factor);
+Fault without_torque();
+
+// Multiplies the contact energy of a set; the distance of its minimum stays.
 void scale_contact(ParameterSet& set, double factor);
 
 // What a case may use.
 struct CaseContext {
-  // The set of a name, for the oracle; the one given with --parameters where its chirality is the same.
+  // The set of this name, for the oracle. A set given with --parameters takes its place where the case allows that.
   std::function<ParameterSet(const std::string& name)> parameters;
   Fault fault;
-  // The same set as the model is to have it, that is with the fault.
+  // The same set for the model: with the fault.
   ParameterSet model(const std::string& name) const;
   std::string references;  // folder of stored reference data
   std::string work;        // an empty folder for this case (LAMMPS files, states)
-  bool fresh = false;      // make references anew with LAMMPS and compare with the stored ones
+  bool fresh = false;      // make references with LAMMPS and compare them with the stored ones
   std::function<void(const std::string& line)> progress;
 };
 
 struct Case {
-  // The last: where a method fails, with theory beside it; of `validate stability`, not of `run`.
+  // `validate run` takes all groups but `stability`, which `validate stability` takes: the limits of the methods.
   enum class Group { theory, atoms, codes, stability };
-  enum class Tier { quick, full };
-  std::string name;  // "euler-buckling": of the command line and the files
+  enum class Tier { quick, full };  // seconds; minutes to an hour, with stored references
+
+  // A fault under which the case must miss.
+  struct Red {
+    Fault fault;
+    // Parts of names: for each, a check that has this part in its name must miss. Without any, one check must miss.
+    std::vector<std::string> checks;
+
+    Red(const Fault& fault_ = {}, std::vector<std::string> checks_ = {})
+        : fault(fault_), checks(std::move(checks_)) {}
+  };
+
+  std::string name;  // "euler-buckling", on the command line and of files
   Group group = Group::theory;
-  Tier tier = Tier::quick;  // seconds, or minutes to an hour with stored references
+  int order = 0;  // place within the group in lists and reports; equal places go by name
+  Tier tier = Tier::quick;
   std::string title;
-  std::string why;         // why it matters for a rope
+  std::string why;         // what it matters for in a rope
   std::string setup;       // what is built and loaded
-  std::string oracle;      // what it is held to, with the equation
+  std::string oracle;      // what the model is compared with, with the equation
   std::string literature;  // citation with DOI
   std::function<CaseResult(const CaseContext&)> run;
+
+  // What the test of every case makes sure of, besides that the case holds. A case that holds under every wrong
+  // parameter tests nothing: each names at least one that it sees.
+  std::vector<Red> turns_red;
+  std::vector<Fault> stays_green;         // of quantities that the case does not depend on
+  std::vector<std::string> known_misses;  // checks that miss with the right parameters; the remarks say why
 };
 
-// All cases, in the order of the report. A case file defines `Case name_case()`, listed in cases/cases.cpp.
+// Registers a case before main() begins. Write one at the end of a case's file:
+//
+//   const RegisteredCase registered([] {
+//     Case c;
+//     c.name = "my-question";
+//     ...
+//     return c;
+//   });
+struct RegisteredCase {
+  explicit RegisteredCase(Case (*make)());
+};
+
+// All registered cases, in the order of the report: by group, order and name.
 const std::vector<Case>& all_cases();
+
+// Sorts the cases for the report. Throws std::invalid_argument where two have the same name.
+std::vector<Case> sorted_cases(std::vector<Case> cases);
 
 }  // namespace ropewalk

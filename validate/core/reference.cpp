@@ -40,7 +40,7 @@ std::vector<double> numbers_of(const std::vector<std::string>& cells, const std:
     const auto [end, error] = std::from_chars(c.data(), c.data() + c.size(), value);
     if (error != std::errc() || end != c.data() + c.size())
       throw InputError({path, line, ""}, fmt::format("\"{}\" is not a number", printable(c, 40)),
-                       "make the reference anew with --fresh");
+                       "make the reference again with --fresh");
     row.push_back(value);
   }
   return row;
@@ -55,7 +55,8 @@ double range_of(const std::vector<double>& values) {
 void compare(const ReferenceTable& stored, const ReferenceTable& fresh, const std::string& name, double tolerance,
              CaseResult& result) {
   if (stored.columns != fresh.columns || stored.rows.size() != fresh.rows.size()) {
-    result.remarks.push_back(fmt::format("The stored reference {} has another shape than the fresh one.", name));
+    result.remarks.push_back(
+        fmt::format("The stored reference {} does not have the rows and columns of the fresh one.", name));
     return;
   }
   for (const std::string& column : fresh.columns) {
@@ -106,10 +107,10 @@ ReferenceTable read_reference(const std::string& path) {
       if (t.rows.back().size() != t.columns.size())
         throw InputError({path, number, ""},
                          fmt::format("has {} columns, the header {}", t.rows.back().size(), t.columns.size()),
-                         "make the reference anew with --fresh");
+                         "make the reference again with --fresh");
     }
   }
-  if (t.rows.empty()) throw InputError({path, 0, ""}, "holds no data", "make the reference anew with --fresh");
+  if (t.rows.empty()) throw InputError({path, 0, ""}, "holds no data", "make the reference again with --fresh");
   return t;
 }
 
@@ -130,8 +131,7 @@ ReferenceTable reference(const CaseContext& context, const std::string& name, do
   const std::string stored = (fs::path(context.references) / (name + ".csv")).string();
   const bool exists = fs::exists(stored);
   if (!context.fresh) {
-    if (!exists)
-      throw InputError({stored, 0, ""}, "there is no such reference", fmt::format("make it with --fresh"));
+    if (!exists) throw InputError({stored, 0, ""}, "there is no such reference", "make it with --fresh");
     ReferenceTable table = read_reference(stored);
     result.sources.push_back(
         fmt::format("{} (stored; {}, LAMMPS {})", name + ".csv", table.value("potential"), table.value("lammps")));

@@ -33,11 +33,10 @@ struct ReferenceTable {
 ReferenceTable read_reference(const std::string& path);
 std::string reference_csv(const ReferenceTable& table);
 
-// The stored table, or a fresh one where the context asks for it: then the stored one, if there is any, is compared
-// with it and the largest difference of each column becomes a check ("stored against fresh"), within `tolerance` of
-// the column's range. The result's sources say which it was. A fresh table is also written to
-// context.work/NAME.csv; where none is stored and fresh is not asked for, InputError names the command that makes
-// it.
+// The stored table NAME.csv or, with context.fresh, a new one by make(). The result's sources say which. A new
+// table is written to context.work/NAME.csv and compared with the stored one, if there is one: the largest
+// difference of each column becomes a check ("stored against fresh"), within `tolerance` of the column's range.
+// Throws InputError with the remedy where no table is stored and context.fresh is not set.
 ReferenceTable reference(const CaseContext& context, const std::string& name, double tolerance,
                          const std::function<ReferenceTable()>& make, CaseResult& result);
 

@@ -77,7 +77,7 @@ Limit limit_of(const Json& j) {
   l.theory = number(j.at("theory"));
   l.unit = j.at("unit");
   const auto* word = std::find(std::begin(guard_words), std::end(guard_words), j.at("guard").get<std::string>());
-  if (word == std::end(guard_words)) throw std::runtime_error("another guard");
+  if (word == std::end(guard_words)) throw std::runtime_error("unknown guard");
   l.guard = static_cast<Limit::Guard>(word - std::begin(guard_words));
   l.how = j.at("how");
   return l;
@@ -203,7 +203,7 @@ std::string validation_json(const std::vector<Outcome>& outcomes) {
 
 std::string validation_table(const std::vector<Outcome>& outcomes) {
   std::string text =
-      fmt::format("     {:<52} {:>12} {:>12} {:<10} {:>10}\n", "", "model", "oracle", "unit", "off by");
+      fmt::format("     {:<52} {:>12} {:>12} {:<10} {:>10}\n", "", "model", "oracle", "unit", "difference");
   for (const Outcome& o : outcomes) {
     text += fmt::format("{:<8} {} ({:.1f} s)\n",
                         o.verdict() == Outcome::Verdict::holds    ? "holds"

@@ -34,7 +34,7 @@ std::string verdict_html(const Outcome& o) {
   return "";
 }
 
-// A bare number has none.
+// A space and the unit; nothing for a plain number.
 std::string unit_of(const Check& c) { return c.unit.empty() || c.unit == "1" ? "" : " " + c.unit; }
 
 std::string percent(const Check& c) {
@@ -48,7 +48,7 @@ std::string allowed(const Check& c) {
                     : number_text(c.tolerance, 3) + escape_markup(unit_of(c));
 }
 
-// The check that is nearest to its bound, or furthest beyond it.
+// The check that uses most of its tolerance.
 const Check* worst_check(const CaseResult& r) {
   const Check* worst = nullptr;
   double ratio = -1;
@@ -78,7 +78,7 @@ std::string checks_table(const CaseResult& r) {
   std::string html =
       "<div class=\"scroll\"><table class=\"facts\"><thead><tr><th></th><th>Quantity</th><th "
       "class=\"number\">Model</th>"
-      "<th class=\"number\">Oracle</th><th>Unit</th><th class=\"number\">Off by</th><th "
+      "<th class=\"number\">Oracle</th><th>Unit</th><th class=\"number\">Difference</th><th "
       "class=\"number\">Allowed</th>"
       "<th></th></tr></thead><tbody>\n";
   for (const Check& c : r.checks)
@@ -97,13 +97,13 @@ std::string figure_html(const CaseFigure& f, Figures& figures) {
   const std::string svg = chart_svg(f.chart);
   if (svg.empty()) return "";
   std::vector<TableColumn> columns;
-  // One table where the lines share their abscissa, else one for the first.
+  // The table has the lines that share the abscissa of the first.
   for (const ChartLine& line : f.chart.lines) {
     if (columns.empty()) columns.push_back({f.chart.x.quantity + " (" + f.chart.x.unit + ")", line.x});
     if (line.x == columns[0].values) columns.push_back({line.name, line.y});
   }
   return "<figure>" + svg + figures.caption(escape_markup(f.caption)) +
-         data_table(columns, "All of them are in the JSON file of the case.") + "</figure>\n";
+         data_table(columns, "The JSON file of the case has all lines.") + "</figure>\n";
 }
 
 std::string figures_html(const CaseResult& r, Figures& figures) {
@@ -124,7 +124,7 @@ std::string case_html(const Outcome& o, Figures& figures) {
   if (!o.error.empty()) html += paragraph("<span class=\"bad\">" + escape_markup(o.error) + "</span>");
   html += checks_table(o.result) + figures_html(o.result, figures);
   for (const std::string& r : o.result.remarks) html += paragraph(escape_markup(r));
-  std::string sources = "<span class=\"soft\">Made anew by <code>ropewalk validate run " + o.name + "</code>. ";
+  std::string sources = "<span class=\"soft\">Run it again: <code>ropewalk validate run " + o.name + "</code>. ";
   for (const std::string& s : o.result.sources) sources += "Reference: " + escape_markup(s) + ". ";
   if (!c.literature.empty()) sources += escape_markup(c.literature);
   return html + paragraph(sources + "</span>") + "</section>\n";
@@ -132,10 +132,10 @@ std::string case_html(const Outcome& o, Figures& figures) {
 
 // --- The map of all limits --------------------------------------------------------------------------------
 
-constexpr double agreement = 0.05;       // found against theory, as the cases ask for
-constexpr double drawn = 2 * agreement;  // to either side
+constexpr double agreement = 0.05;       // of found and theory, as the cases require
+constexpr double drawn = 2 * agreement;  // half the width of the strip
 
-// Found over theory as a dot on a strip; the band is what is allowed.
+// Found over theory, as a dot on a strip with a band of the allowed values.
 std::string strip(double ratio) {
   constexpr double half = 90;
   if (!std::isfinite(ratio)) return "";
@@ -156,7 +156,7 @@ const char* guard_words(Limit::Guard guard) {
     case Limit::Guard::stopped:
       return "stopped with the reason";
     case Limit::Guard::told:
-      return "told";
+      return "reported";
     case Limit::Guard::none:
       return "none";
   }
@@ -179,9 +179,11 @@ std::string limits_map(const std::vector<Outcome>& outcomes) {
   if (rows.empty()) return "";
   return heading("The map") +
          paragraph(
-             "Where each method fails, found by bisection on the method itself, theory beside it, and what "
-             "<code>ropewalk run</code> does about it. The dot is found over theory, the band 5 %, the strip 10 "
-             "%.") +
+             "The place where each method fails, found by bisection on the method itself, with theory beside it "
+             "and "
+             "with what <code>ropewalk run</code> does there. The dot is found over theory; the band is 5 % to "
+             "either "
+             "side, the strip 10 %.") +
          "<div class=\"scroll\"><table class=\"facts limits\"><thead><tr><th>Limit</th><th "
          "class=\"number\">Found</th>"
          "<th class=\"number\">Theory</th><th>Unit</th><th>Found over theory</th><th>Guard of a "
@@ -200,9 +202,8 @@ std::string lead(const std::vector<Outcome>& outcomes) {
   if (miss > 0) text += fmt::format(", <b class=\"bad\">{} {}</b>", miss, miss == 1 ? "misses" : "miss");
   if (failed > 0) text += fmt::format(", <b class=\"bad\">{} could not be run</b>", failed);
   return text +
-         ". A case holds when every number of the model lies within the tolerance that was fixed for it "
-         "beforehand; the "
-         "references were not fitted. What misses says which assumption it shows.";
+         ". A case holds if every number of the model lies within its tolerance. Tolerances were fixed before the "
+         "cases were run, and no reference was used in a fit. A case that misses names the assumption that fails.";
 }
 
 struct Heading {
@@ -213,7 +214,7 @@ Heading heading_of(const std::vector<Outcome>& outcomes) {
   const bool limits = !outcomes.empty() && std::all_of(outcomes.begin(), outcomes.end(), [](const Outcome& o) {
     return find_case(o.name).group == Case::Group::stability;
   });
-  if (limits) return {"where the methods fail, and where theory says that they should", "Stability"};
+  if (limits) return {"where the methods fail, by bisection and by theory", "Stability"};
   return {"the model against exact theory, atoms and other codes", "Validation"};
 }
 
@@ -231,7 +232,7 @@ std::string validation_page(const std::vector<Outcome>& outcomes, const std::vec
   for (const Outcome& o : outcomes) html += summary_row(o);
   html += "</tbody></table></div>\n" + limits_map(outcomes);
   for (const Outcome& o : outcomes) html += case_html(o, figures);
-  html += heading("How it was made");
+  html += heading("How this page was made");
   for (const std::string& f : facts) html += paragraph(escape_markup(f));
   return html + "</main>\n</body>\n</html>\n";
 }

@@ -36,7 +36,8 @@ std::vector<const Case*> chosen_cases(const ValidateArguments& a) {
   return chosen;
 }
 
-// Theory takes any tube; atoms only the one that they are.
+// Whether the given set may take the place of the named one: in theory for any tube, for atoms only for the same
+// tube.
 bool fits(const ParameterSet& given, const ParameterSet& named, Case::Group group) {
   if (!given.line || !named.line) return false;
   const bool same = given.chirality.n == named.chirality.n && given.chirality.m == named.chirality.m;
@@ -84,11 +85,11 @@ std::string result_path(const std::string& dir, const std::string& name) {
 }
 
 std::vector<std::string> facts() {
-  return {fmt::format("Ropewalk {} ({}), {}, {}. Everything but the times is the same in every run.", version,
+  return {fmt::format("Ropewalk {} ({}), {}, {}. Every run gives the same numbers, apart from the times.", version,
                       git_id, compiler, build_type)};
 }
 
-// All results that lie in the directory, in the order of all_cases().
+// All results in the directory, in the order of all_cases().
 std::vector<Outcome> outcomes_in(const std::string& dir) {
   std::vector<Outcome> outcomes;
   for (const Case& c : all_cases())
@@ -107,8 +108,8 @@ void make_directory(const std::string& dir) {
     throw InputError({dir, 0, "--out"}, "exists and is not a directory", "choose another name");
   fs::create_directories(dir, error);
   if (error)
-    throw InputError({dir, 0, "--out"}, fmt::format("cannot be made: {}", error.message()),
-                     "choose a place that you may write to");
+    throw InputError({dir, 0, "--out"}, fmt::format("cannot be created: {}", error.message()),
+                     "choose a directory that you may write to");
 }
 
 int exit_code(const std::vector<Outcome>& outcomes) {

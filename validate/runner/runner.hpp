@@ -15,12 +15,12 @@ int list_command(const ListArguments& arguments);
 
 struct ValidateArguments {
   std::vector<std::string> cases;  // empty: all of the tier
-  std::string tier = "quick";      // "full" has the quick ones too
-  bool stability = false;          // the cases that show where methods fail, instead of the others
-  std::string parameters;          // a set, in place of the shipped ones where it fits
+  std::string tier = "quick";      // "full" includes the quick ones
+  bool stability = false;          // the group `stability` instead of the others
+  std::string parameters;          // a set that takes the place of the shipped ones where the case allows it
   std::string out = "validation";
   bool fresh = false;
-  bool again = false;  // run cases anew whose results lie in the directory
+  bool again = false;  // run cases again whose results lie in the directory
   bool json = false;
   bool quiet = false;
 };
@@ -31,13 +31,13 @@ struct ReportArguments {
 };
 int validation_report_command(const ReportArguments& arguments);
 
-// --- What a run of cases leaves, and what is made of it ---
+// --- Results of cases, and the reports made from them ---
 
 struct Outcome {
   std::string name;
   CaseResult result;
-  std::string error;  // of a case that could not be run; empty otherwise
-  std::string key;    // what it was run with: another key makes it stale
+  std::string error;  // why the case could not be run; empty otherwise
+  std::string key;    // version, set and references it was run with; a result with another key is stale
 
   enum class Verdict { holds, misses, failed };
   Verdict verdict() const;
@@ -47,11 +47,12 @@ std::string outcome_json(const Outcome& outcome);
 // Throws InputError where the file is not such a result.
 Outcome read_outcome(const std::string& path);
 
-// The outcomes in the order of all_cases(); `facts` are lines for the end of the page.
+// Outcomes in the order of all_cases(); `facts` are lines for the end of the page.
 std::string validation_page(const std::vector<Outcome>& outcomes, const std::vector<std::string>& facts);
 std::string validation_json(const std::vector<Outcome>& outcomes);
 std::string validation_table(const std::vector<Outcome>& outcomes);
 
+// Throws InputError with the nearest name where there is no such case.
 const Case& find_case(const std::string& name);
 const char* group_name(Case::Group group);
 

@@ -17,13 +17,6 @@ struct PairForce {
   Vector3 torque_j = Vector3::Zero();
 };
 
-// Whether an element is the first, the last one of its tube.
-struct TubeEnds {
-  bool begins = false, ends = false;
-  bool any() const { return begins || ends; }
-  bool operator==(const TubeEnds& o) const { return begins == o.begins && ends == o.ends; }
-};
-
 namespace detail {
 
 inline double safe_distance(const Vector3& s) { return std::sqrt(std::max(s.squaredNorm(), 1e-12)); }

@@ -13,38 +13,14 @@
 // angle, u being the Abel inverse of the parallel-tube energy; so no angular factor is needed. The nodes of
 // consecutive elements form one uniform row, for which the midpoint rule converges exponentially (line_nodes).
 //
-// Elements at small angles need fewer nodes. The double sum is off by the Fourier coefficients of u at the wave
-// vectors that both rows share: for rows of M and N nodes per length, crossing at an angle, at
-//   K^2 = [(m M + n N)^2 + 2 |m n| M N (1 - cos)]/sin^2 (2 pi/L)^2,    m, n integers of opposite sign or one zero,
-// so for parallel rows at the common multiples of M and N alone.
-//   M and M + 1 nodes with M (M + 1) >= N corrugate no more than parallel rows of N; the wave (1, -1) stays as far
-//   out up to sin^2 = 1/(N^2 - M (M + 1)). For N = 6 that is 2 nodes against 3, a sixth of the evaluations, up to
-//   10.5 degrees. Crossing tubes corrugate less than parallel ones: at 1.2 times the square, 11.5 degrees, still
-//   below 1e-3 of the well, also 0.05 nm inside of it.
-//   M nodes against all N: K >= n N, so that only the wave (1, 0) comes near, at M/sin: as far out up to sin = M/N.
-//   Hence N/3 nodes against N up to 19.5 degrees, and N/2 against N up to 30.
-// Over the last 6 % of each of these angles one sum goes over into the next, w a quintic smoothstep in (n_i.n_j)^2:
-//   U = w U_t + (1 - w) U_(t + 1),    the last one with all nodes.
-// Where a row ends, single nodes of the other would be felt: a ripple of 12 % in the force that pulls a tube out of
-// a bundle. Over the last element of a tube a sum whose other row is sparse therefore fades out linearly from node
-// to node, by the ramp r; as the ripple has a whole number of periods in an element, the mean under the ramp is
-// zero. What the ramps leave is summed with the *other* row dense, which has no ripple (both where both rows end):
-//   U_t = sum_(a, b) r_k r_l (...) + sum_(a or N, b or N) (1 - r_k r_l) (...).
-//
-// What a sum does to whole tubes is as good as the energy; what turns a single element is not. Along parallel tubes
-// R apart a row of M nodes per length presses with a ripple, which the N nodes s of an element of the other tube
-// feel as a couple that goes with the shift z of the tubes, for all elements of the tube alike:
-//   T = 2 f_M L^2 a sin(2 pi M z/L),   a = sum_s (s/L) sin(2 pi M s/L)/N,
-//   f_M = int R/rho u'(rho) cos(2 pi M t/L) dt
-// Two (10,10) tubes in the well, eV on the element with more nodes and on that with fewer: 1.5 and 0.25 with two
-// nodes against three, 0.18 and 0.01 with three against four, none where M = N. Bonds bear it by shear. More is
-// felt of i and j being unlike: which of two has fewer nodes goes by their numbers, so that a rope loses the
-// symmetry of its cross-section, and leaves a symmetric state that has become unstable sooner than a heated one.
-// With all nodes (SparseNodes{}) it keeps it.
+// The double sum of two rows with node spacings D_i and D_j is off by the Fourier components of u at the wave vectors
+// that both rows share. For parallel rows of one spacing D these are the multiples of 2 pi/D, so that the energy of
+// two tubes ripples with their shift z along each other by the first of them,
+//   dE(z) = 2 cos(2 pi z/D) int u(sqrt(R^2 + t^2)) cos(2 pi t/D) dt   per length,
+// which falls exponentially with 1/D (line_nodes). Axial strain and crossing angles make the rows share fewer waves.
 //
 // Forces are central between nodes, so force, torque and momentum balance are exact by construction.
-// Units eV, nm. u in eV/nm^2. Symmetric under flipping either axis (with the ends of its tube) and, without sparse
-// nodes, under exchange of i and j; with them i is the element of lower index.
+// Units eV, nm. u in eV/nm^2. Symmetric under exchange of i and j and under flipping either axis.
 // Sources: A. N. Volkov, L. V. Zhigilei, J. Phys. Chem. C 114, 5513 (2010), DOI 10.1021/jp906142h (tubular
 // potential, which this replaces by an exact line integral); the Abel inverse is derived in
 // calibrate/contact/van_der_waals.hpp.
@@ -99,85 +75,12 @@ struct LineDensity {
 // the cutoff, so that it never reaches into the well.
 LineDensity with_cutoff(LineDensity density, double cutoff);
 
-// The sum that stands for all nodes up to an angle.
-struct SparseSum {
-  int i = 0, j = 0;      // nodes of i, of j; 0: all of them
-  double from_cos2 = 1;  // its share w is 0 at larger angles
-  double full_cos2 = 1;  // and 1 at smaller ones, up to where the sum before it ends
-};
-
-// Share w of the sum `first`, and its derivative in n_i.n_j; the next one has the rest.
-struct SumShare {
-  int first = 0;
-  double value = 1, derivative = 0;
-};
-
-// The sums by rising angle; behind the last of them, and where there is none, all nodes.
-struct SparseNodes {
-  static constexpr int most = 3;
-  std::array<SparseSum, most> sum{};
-  int count = 0;
-
-  int first_of(double cos2) const {  // with a share at this angle
-    int t = 0;
-    while (t < count && cos2 <= sum[static_cast<std::size_t>(t)].from_cos2) ++t;
-    return t;
-  }
-  int last_of(double cos2) const {
-    int t = 0;
-    while (t < count && cos2 < sum[static_cast<std::size_t>(t)].full_cos2) ++t;
-    return t;
-  }
-  // j is summed over nodes of its own rather than over all.
-  bool thins_j(int t) const { return t < count && sum[static_cast<std::size_t>(t)].j > 0; }
-  SumShare share(double cosine) const {
-    const double c2 = cosine * cosine;
-    const int t = first_of(c2);
-    return t == last_of(c2) ? SumShare{t, 1, 0} : share(t, cosine);
-  }
-  // Of sum t, the rest being that of the next one: where no other has a share.
-  SumShare share(int t, double cosine) const {
-    const double c2 = cosine * cosine;
-    const SparseSum& at = sum[static_cast<std::size_t>(t)];
-    const double per_width = 1 / (at.full_cos2 - at.from_cos2);
-    const double x = std::max(std::min((c2 - at.from_cos2) * per_width, 1.0), 0.0), r = 1 - x;
-    return {t, x * x * x * (10 - x * (15 - 6 * x)), 60 * x * x * r * r * cosine * per_width};
-  }
-};
-
-// r: share of a sum whose other row is sparse in what acts on node l of `nodes`.
-inline double end_ramp(int l, int nodes, const TubeEnds& ends) {
-  const double along = (l + 0.5) / nodes;
-  return ends.begins && ends.ends ? 0.0 : ends.begins ? along : ends.ends ? 1 - along : 1.0;
-}
-
 // One pair of elements.
 struct LineContact {
   LineDensity density;
   double length_i = 0, length_j = 0;  // nm
   int nodes_i = 1, nodes_j = 1;
-  SparseNodes sparse;
-  TubeEnds ends_i, ends_j;
 
-  // Nodes of sum t, and of what its ramps leave: a row is dense where the other one ends.
-  int sum_nodes_i(int t) const {
-    const int own = t < sparse.count ? sparse.sum[static_cast<std::size_t>(t)].i : 0;
-    return own > 0 ? own : nodes_i;
-  }
-  int sum_nodes_j(int t) const {
-    const int own = t < sparse.count ? sparse.sum[static_cast<std::size_t>(t)].j : 0;
-    return own > 0 ? own : nodes_j;
-  }
-  int end_nodes_i(int t) const { return ends_j.any() ? nodes_i : sum_nodes_i(t); }
-  int end_nodes_j(int t) const { return ends_i.any() ? nodes_j : sum_nodes_j(t); }
-  // Whether sum t fades at these ends, and how much of it is left for nodes k of on_i and l of on_j.
-  bool fades(int t) const {
-    return (ends_i.any() && sum_nodes_j(t) < nodes_j) || (ends_j.any() && sum_nodes_i(t) < nodes_i);
-  }
-  double ramp(int t, int k, int on_i, int l, int on_j) const {
-    return (sum_nodes_j(t) < nodes_j ? end_ramp(k, on_i, ends_i) : 1.0) *
-           (sum_nodes_i(t) < nodes_i ? end_ramp(l, on_j, ends_j) : 1.0);
-  }
   // Of the element centres: beyond it no two nodes reach each other, however the elements are turned.
   double cutoff() const {
     return density.cutoff() + 0.5 * (length_i * (1 - 1.0 / nodes_i) + length_j * (1 - 1.0 / nodes_j));
@@ -188,56 +91,17 @@ struct LineContact {
   // The same with u by a function of the squared distance (nm^2), where one is at hand that costs less.
   template <class U>
   double energy_by(const U& u, const Vector3& separation, const Vector3& n_i, const Vector3& n_j) const;
-
- private:
-  template <class U>
-  double sum_by(const U& u, int t, const Vector3& separation, const Vector3& n_i, const Vector3& n_j) const;
-  template <class Share>
-  PairForce node_sum(int on_i, int on_j, const Share& share, const Vector3& separation, const Vector3& n_i,
-                     const Vector3& n_j) const;
-  PairForce sum(int t, const Vector3& separation, const Vector3& n_i, const Vector3& n_j) const;
 };
 
 // Place of node k of `nodes` on an element, from its centre (nm).
 inline double line_node(int k, int nodes, double length) { return ((k + 0.5) / nodes - 0.5) * length; }
 
-// Nodes per element, spaced by at most 0.33 sqrt(R0 g0), R0 the distance and g0 the gap of two parallel tubes at
-// rest: along the axes u is as wide as sqrt(R0 g0). Keeps the corrugation below 1e-3 of the well 0.05 nm inside of
-// it, and below 1e-4 in it, for r = 0.2 .. 1.4 nm.
+// Nodes per element, spaced by at most 0.4 sqrt(R0 g0), R0 the distance and g0 the gap of two parallel tubes at rest:
+// along the axes u is as wide as sqrt(R0 g0). Keeps the corrugation below 2e-4 of the well at rest and below 4e-3 of it
+// where tubes are pressed 0.05 nm closer, for r = 0.2 .. 1.4 nm and any axial strain.
 inline int line_nodes(double length, double pair_spacing, double contact) {
-  const double spacing = 0.33 * std::sqrt(pair_spacing * (pair_spacing - contact));
+  const double spacing = 0.4 * std::sqrt(pair_spacing * (pair_spacing - contact));
   return std::max(1, static_cast<int>(std::ceil(length / spacing - 1e-9)));
-}
-
-// For rows of `nodes` per element, the finest of a scene: one choice for all its tubes. At least two nodes: a
-// single one could not turn its element.
-inline SparseNodes sparse_nodes(int nodes) {
-  SparseNodes out;
-  double before = 0;  // rad: where the sum before ends
-  const auto add = [&](int i, int j, double sine2) {
-    const double from = std::asin(std::sqrt(sine2)), full = std::max(0.94 * from, before);
-    if (from < full + 0.01) return;  // rad
-    out.sum[static_cast<std::size_t>(out.count++)] = {i, j, 1 - sine2, std::pow(std::cos(full), 2)};
-    before = from;
-  };
-  constexpr double widest = 0.09549150281253;  // sin^2 of 18 degrees
-  int m = 2;
-  while (m * (m + 1) < nodes) ++m;
-  if (m + 1 < nodes) add(m, m + 1, std::min(widest, 1.2 / (double(nodes) * nodes - m * (m + 1))));
-  int last = 0;
-  for (const int parts : {3, 2}) {
-    const int few = std::max(2, (nodes + parts - 1) / parts);
-    if (few >= nodes || few == last) continue;
-    add(few, 0, double(few) * few / (double(nodes) * nodes));
-    last = few;
-  }
-  return out;
-}
-
-// With sparse nodes, for tubes of one type.
-inline LineContact line_pair(const LineDensity& density, double length_i, double length_j, int nodes_i,
-                             int nodes_j) {
-  return {density, length_i, length_j, nodes_i, nodes_j, sparse_nodes(std::max(nodes_i, nodes_j)), {}, {}};
 }
 
 // Energy per length (eV/nm) of two infinite parallel tubes and energy (eV) of two infinite tubes crossed at
@@ -283,16 +147,15 @@ struct UniversalLine {
 
 // --- Definitions ------------------------------------------------------------------------------------
 
-template <class Share>
-PairForce LineContact::node_sum(int on_i, int on_j, const Share& share, const Vector3& separation,
-                                const Vector3& n_i, const Vector3& n_j) const {
+inline PairForce LineContact::energy_and_gradient(const Vector3& separation, const Vector3& n_i,
+                                                  const Vector3& n_j) const {
   PairForce f;
   const double reach2 = density.cutoff() * density.cutoff();
-  for (int k = 0; k < on_i; ++k) {
-    const double si = line_node(k, on_i, length_i);
-    for (int l = 0; l < on_j; ++l) {
-      const double weight = share(k, l) * length_i / on_i * length_j / on_j;
-      const double sj = line_node(l, on_j, length_j);
+  const double weight = length_i / nodes_i * length_j / nodes_j;
+  for (int k = 0; k < nodes_i; ++k) {
+    const double si = line_node(k, nodes_i, length_i);
+    for (int l = 0; l < nodes_j; ++l) {
+      const double sj = line_node(l, nodes_j, length_j);
       const Vector3 d = separation + sj * n_j - si * n_i;
       if (d.squaredNorm() >= reach2) continue;
       const double rho = detail::safe_distance(d);
@@ -307,63 +170,18 @@ PairForce LineContact::node_sum(int on_i, int on_j, const Share& share, const Ve
   return f;
 }
 
-inline PairForce LineContact::sum(int t, const Vector3& separation, const Vector3& n_i, const Vector3& n_j) const {
-  const int on_i = sum_nodes_i(t), on_j = sum_nodes_j(t);
-  const auto faded = [&](int k, int l) { return ramp(t, k, on_i, l, on_j); };
-  PairForce f = node_sum(on_i, on_j, faded, separation, n_i, n_j);
-  if (!fades(t)) return f;
-  const int left_i = end_nodes_i(t), left_j = end_nodes_j(t);
-  const auto left = [&](int k, int l) { return 1 - ramp(t, k, left_i, l, left_j); };
-  const PairForce rest = node_sum(left_i, left_j, left, separation, n_i, n_j);
-  f.energy += rest.energy;
-  f.force_j += rest.force_j;
-  f.torque_i += rest.torque_i;
-  f.torque_j += rest.torque_j;
-  return f;
-}
-
-inline PairForce LineContact::energy_and_gradient(const Vector3& separation, const Vector3& n_i,
-                                                  const Vector3& n_j) const {
-  const SumShare w = sparse.share(n_i.dot(n_j));
-  const PairForce near = sum(w.first, separation, n_i, n_j);
-  if (w.value >= 1) return near;
-
-  PairForce f = sum(w.first + 1, separation, n_i, n_j);
-  const Vector3 turn = (near.energy - f.energy) * w.derivative * n_i.cross(n_j);
-  f.energy += w.value * (near.energy - f.energy);
-  f.force_j += w.value * (near.force_j - f.force_j);
-  f.torque_i += w.value * (near.torque_i - f.torque_i) - turn;
-  f.torque_j += w.value * (near.torque_j - f.torque_j) + turn;
-  return f;
-}
-
 inline double LineContact::energy(const Vector3& separation, const Vector3& n_i, const Vector3& n_j) const {
   return energy_and_gradient(separation, n_i, n_j).energy;
 }
 
 template <class U>
-double LineContact::sum_by(const U& u, int t, const Vector3& separation, const Vector3& n_i,
-                           const Vector3& n_j) const {
-  const auto over = [&](int on_i, int on_j, const auto& share) {
-    double energy = 0;
-    for (int k = 0; k < on_i; ++k) {
-      const Vector3 from = separation - line_node(k, on_i, length_i) * n_i;
-      for (int l = 0; l < on_j; ++l)
-        energy += share(k, l) * u((from + line_node(l, on_j, length_j) * n_j).squaredNorm());
-    }
-    return energy * length_i / on_i * length_j / on_j;
-  };
-  const int on_i = sum_nodes_i(t), on_j = sum_nodes_j(t), left_i = end_nodes_i(t), left_j = end_nodes_j(t);
-  if (!fades(t)) return over(on_i, on_j, [](int, int) { return 1.0; });
-  return over(on_i, on_j, [&](int k, int l) { return ramp(t, k, on_i, l, on_j); }) +
-         over(left_i, left_j, [&](int k, int l) { return 1 - ramp(t, k, left_i, l, left_j); });
-}
-
-template <class U>
 double LineContact::energy_by(const U& u, const Vector3& separation, const Vector3& n_i, const Vector3& n_j) const {
-  const SumShare w = sparse.share(n_i.dot(n_j));
-  const double near = sum_by(u, w.first, separation, n_i, n_j);
-  return w.value >= 1 ? near : w.value * near + (1 - w.value) * sum_by(u, w.first + 1, separation, n_i, n_j);
+  double energy = 0;
+  for (int k = 0; k < nodes_i; ++k) {
+    const Vector3 from = separation - line_node(k, nodes_i, length_i) * n_i;
+    for (int l = 0; l < nodes_j; ++l) energy += u((from + line_node(l, nodes_j, length_j) * n_j).squaredNorm());
+  }
+  return energy * length_i / nodes_i * length_j / nodes_j;
 }
 
 namespace detail {

@@ -77,7 +77,7 @@ const KeyTable<ContactOptions>& contact_table() {
       "van der Waals contact between elements",
       {Key::custom("law", "", otherwise("\"paper\"", "what the set has"),
                    "\"line\" (first choice), \"paper\" or \"none\"", read_law),
-       Key::integer("nodes_per_element", 1, most_nodes, &C::nodes, otherwise("6", "for a corrugation below 1e-3"),
+       Key::integer("nodes_per_element", 1, most_nodes, &C::nodes, otherwise("5", "for a corrugation below 2e-4"),
                     "line: nodes along an element")
            .goes_as_length(1),
        Key::boolean("all_nodes", &C::all_nodes, standard(),

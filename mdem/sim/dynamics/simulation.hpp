@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/dynamics/energy_account.hpp"
+#include "sim/dynamics/energy_supply.hpp"
 #include "sim/dynamics/loads.hpp"
 #include "sim/dynamics/step_limit.hpp"
 #include "sim/dynamics/stepping.hpp"
@@ -57,7 +57,7 @@ class Simulation {
   const ForceEngine& engine() const { return engine_; }
   double time_step() const { return time_step_; }
   const Stepping& stepping() const { return stepping_; }
-  const EnergyAccount& account() const { return account_; }
+  const EnergySupply& account() const { return account_; }
   double work() const { return account_.work; }
   double dissipated() const { return account_.dissipated; }
   double heat() const { return account_.heat; }
@@ -73,7 +73,7 @@ class Simulation {
   std::string serialise() const;
   void restore(const std::string& bytes);
   // Goes on with a run that another engine has carried on: its last total forces and its account of energy.
-  void take_over(const Vec3Array& force, const Vec3Array& torque, const EnergyAccount& account) {
+  void take_over(const Vec3Array& force, const Vec3Array& torque, const EnergySupply& account) {
     forces_.force = force;
     forces_.torque = torque;
     account_ = account;
@@ -119,7 +119,7 @@ class Simulation {
   Forces forces_;           // of all
   Forces inner_, contact_;  // its two parts, on two levels: bonds and loads; contact
   std::vector<PointLoad> point_loads_;
-  EnergyAccount account_;
+  EnergySupply account_;
   double list_seconds_ = 0, integration_seconds_ = 0;
 };
 

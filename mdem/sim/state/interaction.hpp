@@ -48,10 +48,7 @@ template <class F>
 auto with_law(const Topology& topology, const Interaction& in, int i, int j, F f) {
   if (in.paper) return f(*in.paper);
   const int tube_i = topology.tube_of(i), tube_j = topology.tube_of(j);
-  LineContact law = in.line[in.line_index(topology, tube_i, tube_j)];
-  law.ends_i = topology.ends_of(i, tube_i);
-  law.ends_j = topology.ends_of(j, tube_j);
-  return f(law);
+  return f(in.line[in.line_index(topology, tube_i, tube_j)]);
 }
 
 struct Energies {

@@ -85,9 +85,6 @@ struct Topology {
   double largest_radius() const;
   double longest_element() const;
   int tube_of(int element) const;
-  TubeEnds ends_of(int element, int tube) const {
-    return {element == tube_begin[tube], element + 1 == tube_begin[tube + 1]};
-  }
 };
 
 struct State {

@@ -1,14 +1,12 @@
 // A bundle of seven parallel tubes bent by its ends, with atoms (LAMMPS) and with elements.
-//
-// Placement. The centre line between the clamps is bent to an arc of unchanged contour length, and beyond it the
-// ends go on straight: that is where the end planes of a beam in pure bending come to lie, so the grips need not be
-// free to approach. With the curvature k = theta/L, a point of the straight bundle at x from the axis and z along
-// it, of which zc lies between the clamps and zo beyond them, goes to
+// Placement. The centre line between the clamps becomes an arc of unchanged contour length; beyond the clamps the
+// ends stay straight. The end planes of a beam in pure bending lie there, so that the grips need not be free to
+// approach. With the curvature k = theta/L, a point of the straight bundle at x from the axis and z along it, of
+// which zc lies between the clamps and zo beyond them, moves to
 //   X = (1 - cos p)/k + x cos p + zo sin p,   Z = sin p/k - x sin p + zo cos p,   p = k zc.
-// Atoms and elements are placed alike. `glued`: the ends of all tubes are held there, so end planes stay planes.
-// `free`: only those of the middle tube are, and the six others follow by van der Waals forces alone. The
-// increments move what is free along, with p = k zc/(1 - k x0) for a tube at x0 where it can slide: its length
-// stays.
+// Atoms and elements are placed alike. `glued`: the ends of all tubes are held there, so that end planes stay
+// planes. `free`: only the ends of the middle tube are held; the six others follow by van der Waals forces. Each
+// increment also moves the free part; a sliding tube at x0 has p = k zc/(1 - k x0), which keeps its length.
 //
 // Relaxed structures follow the forces of lj/cut, which are those of the energy shifted to zero at the cutoff; the
 // energies reported are not shifted, as in the parameter sets.
@@ -19,10 +17,10 @@
 #include <cmath>
 #include <limits>
 
-#include "cases/common/chains_contact.hpp"
-#include "cases/common/md_pair.hpp"
-#include "cases/common/md_rope.hpp"
-#include "cases/common/md_session.hpp"
+#include "cases/common/bundle.hpp"
+#include "cases/common/lammps_session.hpp"
+#include "cases/common/tube_pair.hpp"
+#include "cases/common/twisted_rope.hpp"
 #include "model/error.hpp"
 #include "scene/build.hpp"
 
@@ -39,7 +37,7 @@ constexpr ValidatedTube tube = tube_5_5;
 constexpr int turns = 4, shifts = 24, periods = 5;  // of the pair that measures the corrugation
 
 constexpr double force_tolerance = 5e-3;  // eV/nm
-constexpr long most_steps = 200000;
+constexpr long max_steps = 200000;
 constexpr double step_fraction = 0.9;  // of the stability limit: nothing has to be conserved
 
 struct Grips {
@@ -47,11 +45,11 @@ struct Grips {
   bool glued = false;
   double step = 0;  // rad
   int increments = 0;
-  int held = 0;  // of these are held to MD
+  int held = 0;  // of these, compared with the atoms
 };
-// Glued: the tubes farthest from the neutral plane are strained by x theta/L, up to 2 % where it is held (stiffness
-// of a tube changes by 4.5 % per percent, with opposite signs on the two sides). Free: up to 24 degrees theta/L
-// stays in the range in which the bending stiffness of one tube is constant to 1 %.
+// Glued: the tubes farthest from the neutral plane are strained by x theta/L, up to 2 % in the increments that are
+// compared. The stiffness of a tube changes by 4.5 % per percent, with opposite signs on the two sides. Free: up to
+// 24 degrees theta/L stays in the range in which the bending stiffness of one tube is constant to 1 %.
 constexpr Grips glued{"glued", true, 1.5 * units::degree, 8, 6};
 constexpr Grips sliding{"free", false, 4 * units::degree, 6, 6};
 
@@ -83,7 +81,7 @@ BentState change(const std::vector<BentState>& states, std::size_t k) {
 
 constexpr int first_iterations = 2500, iterations = 1000;
 
-// Where the bent bundle has each atom, less where the increment before had it; x, z and angle of the tube's place.
+// Displacement of each atom from the increment before, along x and z.
 std::string placement_text(const Grips& grips, const ParameterSet& set, double length) {
   std::string text = "variable i equal 0\n";
   std::string offset;  // of each atom's tube from the axis
@@ -98,7 +96,7 @@ std::string placement_text(const Grips& grips, const ParameterSet& set, double l
       "variable over atom (f_ref[3]>v_half)*(f_ref[3]-v_half)+(f_ref[3]<-v_half)*(f_ref[3]+v_half)\n",
       offset, 0.5 * length / angstrom);
   for (const auto& [name, index] : {std::pair{"old", "(v_i-1)"}, std::pair{"new", "v_i"}}) {
-    // Never zero, so that the straight bundle is no exception.
+    // Never zero, so that the formulas hold for the straight bundle.
     text += fmt::format("variable k{} equal {}*{:.15f}+1.0e-12\n", name, index, grips.step / (length / angstrom));
     text += fmt::format("variable p{0} atom v_k{0}*(f_ref[3]-v_over){1}\n", name,
                         grips.glued ? "" : fmt::format("/(1-v_k{}*v_offset)", name));
@@ -111,7 +109,7 @@ std::string placement_text(const Grips& grips, const ParameterSet& set, double l
 
 std::string bending_input(const Grips& grips, const ParameterSet& set, const MdSession& session,
                           const std::vector<RopeTube>& atoms) {
-  // Free tubes slide to their registry over many iterations, for next to no energy: these are not waited for.
+  // Free tubes slide into registry over many iterations that hardly change the energy. The number is limited.
   const auto relax = [&](int most) {
     return fmt::format(
         "pair_modify pair lj/cut shift yes\n"
@@ -195,7 +193,7 @@ ReferenceTable slide_pairs(const CaseContext& context) {
   return t;
 }
 
-// Highest less lowest energy per length of a pair, mean over its turns.
+// Highest minus lowest energy per length of a pair, mean over its turns.
 double corrugation_of(const ReferenceTable& pairs) {
   const std::vector<double> energy = pairs.column("energy_eV_per_nm");
   const auto length = static_cast<std::ptrdiff_t>(shifts);
@@ -212,8 +210,8 @@ std::vector<BentState> states_of(const ReferenceTable& table, const Grips& grips
   for (const std::vector<double>& row : table.rows)
     if ((row[0] > 0.5) == grips.glued) states.push_back({row[1], row[2], row[3], row[4]});
   if (states.size() != static_cast<std::size_t>(grips.increments) + 1)
-    throw InputError({"bent-bundle.csv", 0, ""}, "has another number of increments than the case",
-                     "make the reference anew with --fresh");
+    throw InputError({"bent-bundle.csv", 0, ""}, "does not have the number of increments of the case",
+                     "make the reference again with --fresh");
   return states;
 }
 
@@ -244,7 +242,7 @@ class BentChains {
 
 BentChains::BentChains(const Grips& grips, const ParameterSet& set)
     : glued_(grips.glued), length_(clamped_length(bundle(), set)) {
-  // Grips of one and a half elements: the half row beyond the band's last one is counted, as between the clamps.
+  // A grip is one and a half elements long, which includes the half row beyond the last row of the band.
   constexpr int beyond = 1;
   const int bonds = bundle().bonds;
   per_tube_ = bonds + 1 + 2 * beyond;
@@ -282,9 +280,9 @@ void BentChains::bend(double angle) {
 }
 
 void BentChains::relax() {
-  Simulation simulation(bundle_.topology, bundle_.interaction, loads_, bundle_.state, bundle_.time_step);
-  if (!simulation.relax(force_tolerance, most_steps, [](long) { return true; }))
-    throw NumericalError(most_steps, -1, "the bent bundle did not come to rest", "take a smaller increment");
+  const Simulation simulation =
+      at_rest(Simulation(bundle_.topology, bundle_.interaction, loads_, bundle_.state, bundle_.time_step),
+              force_tolerance, max_steps);
   bundle_.state = simulation.state();
   energy_ = simulation.forces().energy;
 }
@@ -326,7 +324,7 @@ struct Series {
   double registry = 0;  // eV: what leaving its valleys may cost the bundle of atoms
 };
 
-// Relative to the atoms, plus the registry's part, which does not grow with the angle.
+// The tolerance is relative to the atoms, plus a part for registry that does not grow with the angle.
 Check energy_check(const std::string& name, double value, double reference, double tolerance, double registry) {
   if (registry == 0) return relative_check(name, value, reference, tolerance, "eV");
   return absolute_check(name, value, reference, tolerance * std::fabs(reference) + registry, "eV",
@@ -344,12 +342,13 @@ void add_checks(const Series& series, const Bounds& bounds, CaseResult& result) 
                                          part_tolerance, series.registry));
     result.checks.push_back(relative_check("vdW energy" + at, series.elements[k].vdw, series.atoms[k].vdw,
                                            part_tolerance, "eV", "of the bent bundle, whole"));
-    result.checks.push_back(absolute_check("vdW part of the bending energy" + at, elements.vdw, atoms.vdw,
-                                           vdw_share_tolerance * atoms.total + series.registry, "eV",
-                                           "held to the bending energy: it is a small part of it"));
+    result.checks.push_back(
+        absolute_check("vdW part of the bending energy" + at, elements.vdw, atoms.vdw,
+                       vdw_share_tolerance * atoms.total + series.registry, "eV",
+                       "tolerance relative to the bending energy, of which it is a small part"));
     result.checks.push_back(information(absolute_check("stiffness between sliding (0) and glued (1)" + at,
                                                        bounds.place(elements), bounds.place(atoms), 0.05, "1",
-                                                       "bounds of rod theory with the set's stiffnesses")));
+                                                       "limits of rod theory with the set's stiffnesses")));
   }
 }
 
@@ -382,9 +381,9 @@ CaseFigure energy_figure(const Series& series, const Bounds& bounds) {
                         curve("seven tubes bent alike, sliding", bounds.sliding, 2)};
   if (series.grips.glued) figure.chart.lines.push_back(curve("glued together", bounds.glued, 1));
   figure.caption = series.grips.glued
-                       ? "Held end planes make the tubes act as one beam: the glued bound."
-                       : "Tubes that are not held slide, and follow only within reach of their contacts: the "
-                         "bundle is softer than seven tubes bent alike.";
+                       ? "With their end planes held, the tubes act as one beam: the limit of glued tubes."
+                       : "Tubes that are not held slide; only van der Waals forces bend them. The bundle is softer "
+                         "than seven tubes bent alike.";
   return figure;
 }
 
@@ -399,7 +398,7 @@ CaseFigure vdw_figure(const std::vector<Series>& all) {
     figure.chart.lines.push_back(line_of("atoms, " + name, s.atoms, &BentState::vdw, colour, true));
     figure.chart.lines.push_back(line_of("elements, " + name, s.elements, &BentState::vdw, colour++, false));
   }
-  figure.caption = "Sliding tubes of atoms leave their registry; rows of elements have none.";
+  figure.caption = "Sliding tubes of atoms leave their registry. Rows of elements have no registry.";
   return figure;
 }
 
@@ -407,7 +406,7 @@ CaseFigure residual_figure(const std::vector<Series>& all) {
   CaseFigure figure;
   figure.chart.title = "Elements against atoms";
   figure.chart.x = {"angle between the ends", "deg"};
-  figure.chart.y = {"elements over atoms, bending energy", "%"};
+  figure.chart.y = {"bending energy, elements over atoms less 1", "%"};
   int colour = 0;
   for (const Series& s : all) {
     ChartLine line{s.grips.name, degrees(s.atoms), {std::numeric_limits<double>::quiet_NaN()}, colour++};
@@ -415,7 +414,7 @@ CaseFigure residual_figure(const std::vector<Series>& all) {
       line.y.push_back(100 * (change(s.elements, k).total / change(s.atoms, k).total - 1));
     figure.chart.lines.push_back(line);
   }
-  figure.caption = "Residuals of the bending energy.";
+  figure.caption = "Relative difference of the bending energy.";
   return figure;
 }
 
@@ -427,12 +426,12 @@ CaseResult run(const CaseContext& context) {
       context, "pair-sliding-5-5", pair_fresh_tolerance, [&] { return slide_pairs(context); }, result);
   const ParameterSet set = context.parameters(tube.set), model = context.model(tube.set);
   const Bounds bounds = bounds_of(set);
-  // Half of the corrugation from a valley to the mean, in every contact over its whole length.
+  // From a valley of the corrugation to its mean, in every contact over its whole length.
   const double registry = 0.5 * contacts * corrugation_of(pairs) * whole_length(set);
   std::vector<Series> all;
   for (const Grips& grips : {glued, sliding}) {
     if (context.progress) context.progress(fmt::format("elements: ends {}", grips.name));
-    // Where end planes stay planes, neighbours stay in register.
+    // Where end planes stay planes, neighbours stay in registry.
     all.push_back({grips, states_of(table, grips), bend_elements(grips, model), grips.glued ? 0 : registry});
     add_checks(all.back(), bounds, result);
     result.figures.push_back(energy_figure(all.back(), bounds));
@@ -440,48 +439,52 @@ CaseResult run(const CaseContext& context) {
   result.figures.push_back(residual_figure(all));
   result.figures.push_back(vdw_figure(all));
   result.remarks = {
-      "Glued, the bundle is one beam: 98 % of 7 EI + EA sum x^2 in atoms, 7/8 of it by stretching tubes.",
-      "Free, both lie below 7 EI, which is a lower bound only for tubes that are all bent alike. The couple "
-      "enters by the middle tube and passes to the six others over about 2 nm from each clamp, and these have "
-      "free ends: there the middle tube has 2.4 times the mean curvature, half of it in the middle of the bundle, "
-      "and the others 0.6. Elements of a bundle four times as long reach 0.87 of 7 EI.",
-      "Free, the elements are 4 to 6 % too stiff. The load that passes between the tubes bends them within a few "
-      "radii, where tubes shear: without shear in the bonds it is 11 to 12 %. The forces of lj/cut, whose well is "
-      "5 % shallower, are at most 1.5 % of it (a contact weaker by 6.5 %). What is left grows with the angle: at "
-      "24 "
-      "degrees the middle tube has twice the curvature at the clamps at which a tube has lost 1 % of its "
-      "stiffness. The length of the elements changes 0.2 %. The sliding tubes of atoms "
-      "are not waited for until they are entirely at rest: the last hundred iterations of an increment still lower "
-      "the energy by 2 to 16 meV."};
+      "Glued, the bundle is one beam: in atoms its stiffness is 98 % of 7 EI + EA sum x^2. Seven eighths of the "
+      "energy is stretch of the tubes.",
+      "Free, atoms and elements are both softer than 7 EI, which is a lower limit only for tubes that are all bent "
+      "alike. The couple acts on the middle tube and passes to the six others, whose ends are free, over about 2 "
+      "nm from each clamp. There the middle tube has 2.4 times the mean curvature; in the middle of the bundle it "
+      "has half of the mean and the others 0.6 of it. Elements of a bundle four times as long reach 0.87 of 7 EI.",
+      "Free, the elements are 4 to 6 % too stiff. The load between the tubes bends them within a few radii, where "
+      "tubes shear: without shear in the bonds the difference is 11 to 12 %. The forces of lj/cut, whose well is 5 "
+      "% shallower, explain at most 1.5 % (by a contact that is 6.5 % weaker). The rest grows with the angle: at "
+      "24 degrees the curvature of the middle tube at the clamps is twice that at which a tube has lost 1 % of its "
+      "stiffness. The length of the elements changes the result by 0.2 %. The sliding tubes of atoms are not "
+      "entirely at rest: the last hundred iterations of an increment still lower the energy by 2 to 16 meV."};
   result.sources.push_back(fmt::format("{} (hash {})", model.name, model.hash));
   return result;
 }
 
-}  // namespace
-
-Case bent_bundle_case() {
+const RegisteredCase registered([] {
   Case c;
   c.name = "bent-bundle";
   c.group = Case::Group::atoms;
+  c.order = 100;
   c.title = "Bent 7-tube bundle of (5,5), 8.1 nm: tubes that slide, and tubes that cannot";
   c.why =
-      "Whether its tubes slide decides how stiff a rope is in bending, by a factor of eight for seven tubes; the "
-      "model has only the van der Waals force to couple them.";
+      "A rope of seven tubes that slide is eight times softer in bending than one of tubes that cannot. In the "
+      "model only van der Waals forces couple the tubes.";
   c.setup =
-      "Seven (5,5) tubes in hexagonal packing, 8.1 nm between the clamps, ends of 1 nm. The ends are placed at "
-      "those of an arc of unchanged contour length, in atoms and in elements, and the rest is minimised. Glued: "
-      "the ends of all tubes are held, in steps of 1.5 degrees. Free: only those of the middle tube, in steps of "
-      "4 degrees; the six others slide and follow.";
+      "Seven (5,5) tubes in hexagonal packing, 8.1 nm between the clamps, with ends of 1 nm. The ends are placed "
+      "at those of an arc of unchanged contour length, in atoms and in elements, and the rest is relaxed. Glued: "
+      "the ends of all tubes are held, in steps of 1.5 degrees. Free: only the ends of the middle tube are held, "
+      "in steps of 4 degrees; the six others slide and follow.";
   c.oracle =
-      "LAMMPS: tersoff inside of each tube, Lennard-Jones with the cutoff of the parameter set between tubes. "
-      "Energy within 5 %; where tubes slide, plus what atoms may lose by leaving their registry: half of the "
-      "corrugation of a pair, measured on frozen pairs, in each of the 12 contacts. Shown beside: K theta^2/2L "
-      "with K = 7 EI (seven tubes bent alike) and K = 7 EI + EA sum x^2 (glued).";
+      "LAMMPS: Tersoff potential within each tube, Lennard-Jones with the cutoff of the parameter set between "
+      "tubes. Energy within 5 %. Where tubes slide, the tolerance adds what atoms may lose by leaving their "
+      "registry: half of the corrugation of a pair, measured on frozen pairs, in each of the 12 contacts. For "
+      "comparison: K theta^2/(2 L) with K = 7 EI (seven tubes bent alike) and K = 7 EI + EA sum x^2 (glued).";
   c.literature =
-      "L. Lindsay, D. A. Broido, Phys. Rev. B 81, 205441 (2010), DOI 10.1103/PhysRevB.81.205441 (potential); A. "
-      "P. Thompson et al., Comput. Phys. Commun. 271, 108171 (2022), DOI 10.1016/j.cpc.2021.108171 (LAMMPS)";
+      "L. Lindsay, D. A. Broido, Phys. Rev. B 81, 205441 (2010), DOI 10.1103/PhysRevB.81.205441 (potential); A. P. "
+      "Thompson et al., Comput. Phys. Commun. 271, 108171 (2022), DOI 10.1016/j.cpc.2021.108171 (LAMMPS)";
   c.run = run;
+  c.turns_red = {
+      {wrong_EA(1.1),
+       {"bending energy, glued, 4.5 deg", "bending energy, glued, 6 deg", "bending energy, glued, 9 deg"}},
+      {wrong_EI(1.3), {"bending energy, free, 24 deg"}},
+      {wrong_contact(2), {"vdW energy, glued, 9 deg"}}};
   return c;
-}
+});
 
+}  // namespace
 }  // namespace ropewalk

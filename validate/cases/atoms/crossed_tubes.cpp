@@ -1,6 +1,6 @@
 // Two crossed tubes: energy and torque against the angle and the distance of the axes.
 //
-// Atoms: frozen finite tubes, so long that no end is within reach of the crossing, averaged over registries; the
+// Atoms: frozen finite tubes, so long that no end is within reach of the crossing, averaged over 48 registries; the
 // torque is the sum of r x F of LAMMPS over one tube about the line through both centres. Model: two rows of
 // elements with the `line` law, whose energy is E90/sin(angle) without an angular factor of its own.
 #include <fmt/format.h>
@@ -9,8 +9,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cases/common/md_curve.hpp"
-#include "cases/common/md_pair.hpp"
+#include "cases/common/tube_curve.hpp"
+#include "cases/common/tube_pair.hpp"
 
 namespace ropewalk {
 namespace {
@@ -25,7 +25,7 @@ constexpr double fit_reach = 0.04;
 constexpr double angle_step = 2;  // degrees: torque by differences
 constexpr int sides = 3;
 
-// Tube two as it lies before it is moved away along x: turned from the axis z towards y.
+// Tube two before its displacement along x: turned from the axis z towards y.
 std::vector<Vector3> crossing_tube(const std::vector<Vector3>& atoms, double angle) {
   const Eigen::AngleAxisd rotation(-angle, Vector3::UnitX());
   std::vector<Vector3> turned;
@@ -33,7 +33,7 @@ std::vector<Vector3> crossing_tube(const std::vector<Vector3>& atoms, double ang
   return turned;
 }
 
-// Centred, with the middle shifted by part of a period so that the crossing meets another place of the lattice.
+// Centred, and shifted by a part of a period so that the crossing is at another place of the lattice.
 std::vector<Vector3> centred_tube(const TubeShape& shape, double turn, double shift) {
   const Chirality c = tube.chirality;
   const double period = period_of(c, shape);
@@ -108,7 +108,7 @@ ReferenceTable make_reference(const CaseContext& context) {
   return t;
 }
 
-// The model in the place of the atoms.
+// Rows of elements in the place of the atoms.
 struct CrossedRows {
   LineContact contact;
   int elements = 1;
@@ -148,9 +148,10 @@ void add_checks(const Crossing& c, const CrossedRows& rows, CaseResult& result) 
   const LineWell model = detail::lowest_point([&](double d) { return rows.at(angle, d).energy; },
                                               c.distance.front(), c.distance.front() + 0.15);
   const std::string name = fmt::format("{:.0f} degrees: ", c.angle);
-  result.checks.push_back({name + "least energy", model.energy, atoms.energy, energy_tolerance, true, "eV", false,
-                           fmt::format("over the distance; standard deviation of registries {:.1f} %",
-                                       100 * c.deviation[at_rest] / std::abs(atoms.energy))});
+  result.checks.push_back(
+      {name + "least energy", model.energy, atoms.energy, energy_tolerance, true, "eV", false,
+       fmt::format("minimum over the distance; the standard deviation over registries is {:.1f} %",
+                   100 * c.deviation[at_rest] / std::abs(atoms.energy))});
   result.checks.push_back(
       {name + "distance of rest", model.distance, atoms.distance, spacing_tolerance, true, "nm", false, ""});
   // At 90 degrees the torque vanishes by symmetry.
@@ -158,9 +159,9 @@ void add_checks(const Crossing& c, const CrossedRows& rows, CaseResult& result) 
   result.checks.push_back({name + "torque towards parallel", rows.at(angle, distance).torque_j.x(),
                            c.torque[at_rest], torque_tolerance, true, "eV/rad", false,
                            fmt::format("at {:.3f} nm", distance)});
-  result.checks.push_back({name + "torque of the atoms' forces over that of their energy",
+  result.checks.push_back({name + "torque by the atoms' forces over that by their energy",
                            c.torque_of_forces[at_rest] / c.torque[at_rest], 1, torque_tolerance, true, "1", true,
-                           "LAMMPS's forces leave out the step of the truncated law at its cutoff"});
+                           "the forces of LAMMPS leave out the step of the truncated law at its cutoff"});
 }
 
 CaseFigure angle_figure(const std::vector<Crossing>& list, const CrossedRows& rows, bool torque) {
@@ -183,7 +184,7 @@ CaseFigure angle_figure(const std::vector<Crossing>& list, const CrossedRows& ro
   }
   chart.lines = {model, atoms};
   return {chart, torque ? "The torque turns crossed tubes towards parallel."
-                        : fmt::format("At {:.3f} nm, where tubes crossed at 90 degrees rest.", distance)};
+                        : fmt::format("At {:.3f} nm, the distance of the energy minimum at 90 degrees.", distance)};
 }
 
 CaseFigure distance_figure(const std::vector<Crossing>& list, const CrossedRows& rows) {
@@ -203,14 +204,14 @@ CaseFigure distance_figure(const std::vector<Crossing>& list, const CrossedRows&
     chart.lines.push_back(model);
     chart.lines.push_back(atoms);
   }
-  return {chart, "The distance of rest does not depend on the angle."};
+  return {chart, "The distance of the minimum does not depend on the angle."};
 }
 
 CaseFigure residual_figure(const std::vector<Crossing>& list, const CrossedRows& rows) {
   LineChart chart;
   chart.title = "Residual of the energy of two crossed tubes";
   chart.x = {"distance of the axes", "nm"};
-  chart.y = {"model less atoms, of the well", "%"};
+  chart.y = {"model minus atoms, over the well", "%"};
   chart.height = 220;
   int colour = 0;
   for (const Crossing& c : list) {
@@ -222,7 +223,7 @@ CaseFigure residual_figure(const std::vector<Crossing>& list, const CrossedRows&
     }
     chart.lines.push_back(line);
   }
-  return {chart, "In per cent of the well of each angle."};
+  return {chart, "In percent of the lowest energy at each angle."};
 }
 
 CaseResult run(const CaseContext& context) {
@@ -242,39 +243,37 @@ CaseResult run(const CaseContext& context) {
   result.figures.push_back(residual_figure(list, rows));
   result.sources.push_back(fmt::format("{} (hash {})", set.name, set.hash));
   result.remarks.push_back(
-      "The law was made from two parallel tubes and no crossing was fitted: that energy and torque at every angle "
-      "follow is the theorem behind the line law, here put to atoms.");
+      "The law was made from two parallel tubes; no crossing was fitted. By the theorem behind the line law, "
+      "energy and torque at every angle follow. This case tests the theorem with atoms.");
   result.remarks.push_back(
-      "The forces of LAMMPS turn the tubes with 6 to 7 % less torque than its own energies say: the law is "
-      "truncated "
-      "and not shifted, so that its energy steps at the cutoff, and the forces leave that step out. The model "
-      "follows "
-      "the energies. Dynamics of atoms with such a law follow the forces, so that ropes of atoms cohere by so much "
-      "less "
-      "than their printed energies; a comparison of moving ropes has to allow for it.");
+      "The forces of LAMMPS give 6 to 7 % less torque than its energies. The law is truncated and not shifted: its "
+      "energy has a step at the cutoff, and the forces leave that step out. The model follows the energies. Atoms "
+      "in motion follow the forces, so that ropes of atoms cohere by 6 to 7 % less than their printed energies. A "
+      "comparison of moving ropes has to take this into account.");
   return result;
 }
 
-}  // namespace
-
-Case crossed_tubes_case() {
+const RegisteredCase registered([] {
   Case c;
   c.name = "crossed-tubes";
   c.group = Case::Group::atoms;
-  c.tier = Case::Tier::quick;
+  c.order = 60;
   c.title = "Two crossed tubes: energy and torque against angle";
   c.why =
-      "Neighbouring shells of a twisted rope cross at small angles, and tubes of a helix or a void at large ones.";
+      "Tubes of neighbouring shells of a twisted rope cross at small angles; tubes of a helix or beside a void "
+      "cross at large ones.";
   c.setup =
-      "Frozen relaxed (10,10) tubes of 12 nm crossed at 30 to 90 degrees, ten distances of the axes, 24 "
-      "registries; "
-      "rows of elements of the model in the same place.";
+      "Relaxed, frozen (10,10) tubes of 12 nm that cross at 30 to 90 degrees, at ten distances, averaged over "
+      "registries; rows of elements of the model in the same place.";
   c.oracle =
       "Lennard-Jones of LAMMPS, 2.84 meV, 0.34 nm, cut at 1.2 nm as in the set; for shells without atoms E = "
-      "E90/sin(angle). Energy within 3 % (registry), torque within 5 %, distance of rest within 0.5 %.";
+      "E90/sin(angle). Energy within 3 % (registry), torque within 5 %, distance of the minimum within 0.5 %.";
   c.literature = "A. N. Volkov, L. V. Zhigilei, J. Phys. Chem. C 114, 5513 (2010), DOI 10.1021/jp906142h";
   c.run = run;
+  c.turns_red = {wrong_contact(2)};
+  c.stays_green = {wrong_EI(1.1)};
   return c;
-}
+});
 
+}  // namespace
 }  // namespace ropewalk

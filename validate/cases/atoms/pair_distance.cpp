@@ -1,20 +1,19 @@
 // Energy of two parallel tubes against their distance.
 //
-// Atoms: frozen relaxed tubes in a periodic cell, Lennard-Jones between them, averaged over how the atoms of one
-// lie against those of the other. Model: two rows of elements with the `line` law. The `paper` law stands beside
-// it.
+// Atoms: frozen relaxed tubes in a periodic cell, Lennard-Jones between them, averaged over registries. Model: two
+// rows of elements with the `line` law; the `paper` law is shown for comparison.
 #include <fmt/format.h>
 
 #include <array>
 #include <cmath>
 
-#include "cases/common/md_curve.hpp"
-#include "cases/common/md_pair.hpp"
+#include "cases/common/tube_curve.hpp"
+#include "cases/common/tube_pair.hpp"
 
 namespace ropewalk {
 namespace {
 
-// Fixed beforehand: registry makes 1 to 3 % of the well, and a shell without atoms cannot know it.
+// Fixed beforehand: registry changes the well by 1 to 3 %, and a shell without atoms has none.
 constexpr double spacing_tolerance = 0.005, depth_tolerance = 0.03;
 constexpr int registry_count = 16;
 constexpr int periods = 5;          // of the cell: 1.25 nm
@@ -38,7 +37,8 @@ std::vector<double> gaps() {
 void add_rows(const TubePair& pair, const TubeShape& i, TubeShape j, MdSession& session,
               std::vector<std::vector<double>>& rows) {
   const Chirality ci = pair.i.chirality, cj = pair.j.chirality;
-  // Armchair tubes have one period; what the relaxed ones differ by, less than 0.1 %, is taken from the second.
+  // Armchair tubes have one period. That of the relaxed ones differs by less than 0.1 %; the second is strained to
+  // it.
   const double period = period_of(ci, i);
   j.length_per_hexagon = period / static_cast<double>(period_hexagons(cj));
   const std::string name = fmt::format("distance-{}-{}", ci.n, cj.n);
@@ -112,14 +112,15 @@ PairCurve curve_of(const TubePair& pair, const ReferenceTable& data, const CaseC
 void add_checks(const PairCurve& c, const LineWell& atoms, CaseResult& result) {
   const LineWell model = detail::lowest_point(c.model, c.distance.front(), c.distance.back());
   result.checks.push_back({c.name + ": spacing", model.distance, atoms.distance, spacing_tolerance, true, "nm",
-                           false, "the distance of least energy"});
+                           false, "the distance of lowest energy"});
   result.checks.push_back({c.name + ": cohesion at rest", model.energy, atoms.energy, depth_tolerance, true,
-                           "eV/nm", false, "registry makes 1 to 3 %"});
+                           "eV/nm", false, "registry changes it by 1 to 3 %"});
   double registry = 0;
   for (std::size_t k = 0; k < c.distance.size(); ++k)
     if (std::abs(c.distance[k] - atoms.distance) < 0.006) registry = c.deviation[k] / std::abs(atoms.energy);
-  result.checks.push_back({c.name + ": standard deviation over registries at rest, of the well", 0, registry, 0,
-                           false, "1", true, "of single placements of the atoms; the model has none"});
+  result.checks.push_back({c.name + ": standard deviation over registries at the minimum, over the well", 0,
+                           registry, 0, false, "1", true,
+                           "how far one placement of the atoms is from the mean; the model has no registry"});
 }
 
 CaseFigure energy_figure(const std::vector<PairCurve>& curves, const std::function<double(double)>& paper) {
@@ -136,7 +137,7 @@ CaseFigure energy_figure(const std::vector<PairCurve>& curves, const std::functi
       model.x.push_back(x);
       model.y.push_back(c.model(x));
     }
-    for (ChartLine* line : {&model, &atoms})  // the wall above zero would flatten the wells
+    for (ChartLine* line : {&model, &atoms})  // energies above zero would flatten the wells
       for (double& y : line->y)
         if (y > 0.6) y = std::nan("");
     chart.lines.push_back(model);
@@ -150,17 +151,16 @@ CaseFigure energy_figure(const std::vector<PairCurve>& curves, const std::functi
     line.y.push_back(y > 0.6 ? std::nan("") : y);
   }
   chart.lines.push_back(line);
-  return {
-      chart,
-      "Points: atoms, mean over registries; lines: rows of elements with the line law; dashed: the published law, "
-      "whose well is about twice as deep."};
+  return {chart,
+          "Points: atoms, mean over registries. Lines: rows of elements with the line law. Dashed: the published "
+          "law, whose well is about twice as deep."};
 }
 
 CaseFigure residual_figure(const std::vector<PairCurve>& curves, const std::vector<LineWell>& wells) {
   LineChart chart;
   chart.title = "Residual of the energy of two parallel tubes";
-  chart.x = {"distance against the atoms' spacing", "nm"};
-  chart.y = {"model less atoms, of the well", "%"};
+  chart.x = {"distance minus the atoms' spacing", "nm"};
+  chart.y = {"model minus atoms, over the well", "%"};
   chart.height = 220;
   for (std::size_t p = 0; p < curves.size(); ++p) {
     ChartLine line{curves[p].name, {}, {}, static_cast<int>(p)};
@@ -173,7 +173,9 @@ CaseFigure residual_figure(const std::vector<PairCurve>& curves, const std::vect
     }
     chart.lines.push_back(line);
   }
-  return {chart, "In per cent of the well: on the wall a small shift of the spacing shows as a large difference."};
+  return {chart,
+          "In percent of the well. On the repulsive wall a small difference of the spacing gives a large "
+          "difference of the energy."};
 }
 
 CaseResult run(const CaseContext& context) {
@@ -200,34 +202,32 @@ CaseResult run(const CaseContext& context) {
   for (const char* set : {tube_10_10.set, tube_5_5.set, "cnt-10-10-paper"})
     result.sources.push_back(fmt::format("{} (hash {})", set, context.parameters(set).hash));
   result.remarks.push_back(
-      "Unlike tubes use the law for all pairs of radii; the atoms of the second tube are strained by less than 0.1 "
-      "% "
-      "so that both fit into one periodic cell.");
+      "Tubes of two kinds use the law for all pairs of radii. The atoms of the second tube are strained by less "
+      "than 0.1 %, so that both tubes fit into one periodic cell.");
   return result;
 }
 
-}  // namespace
-
-Case pair_distance_case() {
+const RegisteredCase registered([] {
   Case c;
   c.name = "pair-distance";
   c.group = Case::Group::atoms;
-  c.tier = Case::Tier::quick;
+  c.order = 40;
   c.title = "Two parallel tubes: energy against distance";
-  c.why = "Cohesion per length and spacing decide how a rope packs, and what a void in it costs.";
+  c.why = "Cohesion per length and spacing decide how a rope packs and what a void in it costs.";
   c.setup =
-      "Frozen relaxed tubes (10,10)-(10,10), (5,5)-(5,5) and (10,10)-(5,5), periodic cell of 1.25 nm, 16 "
-      "registries; "
-      "rows of elements of the model in the same place.";
+      "Relaxed, frozen tubes (10,10)-(10,10), (5,5)-(5,5) and (10,10)-(5,5) in a periodic cell of 1.25 nm, "
+      "averaged over 16 registries; rows of elements of the model in the same place.";
   c.oracle =
       "Lennard-Jones of LAMMPS, 2.84 meV, 0.34 nm, cut at 1.2 nm as in the set. Spacing within 0.5 %, depth within "
-      "3 "
-      "% (registry).";
+      "3 % (registry).";
   c.literature =
       "L. A. Girifalco, M. Hodak, R. S. Lee, Phys. Rev. B 62, 13104 (2000), DOI 10.1103/PhysRevB.62.13104; A. N. "
       "Volkov, L. V. Zhigilei, J. Phys. Chem. C 114, 5513 (2010), DOI 10.1021/jp906142h";
   c.run = run;
+  c.turns_red = {wrong_contact(2)};
+  c.stays_green = {wrong_EA(1.1)};
   return c;
-}
+});
 
+}  // namespace
 }  // namespace ropewalk

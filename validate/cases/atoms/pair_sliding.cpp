@@ -1,4 +1,4 @@
-// Two parallel tubes at rest: one slid along the other, and one pulled out of the other's reach.
+// Two parallel tubes at the distance of their energy minimum: one slides along the other, or is pulled off it.
 //
 // Sliding, atoms: frozen tubes in a periodic cell, energy against the axial shift for several turns. Their energy
 // has the lattice's period; the model's rows should be smooth. Pull-out, atoms: finite tubes, energy against the
@@ -9,20 +9,20 @@
 #include <cmath>
 #include <map>
 
-#include "cases/common/md_curve.hpp"
-#include "cases/common/md_pair.hpp"
+#include "cases/common/tube_curve.hpp"
+#include "cases/common/tube_pair.hpp"
 
 namespace ropewalk {
 namespace {
 
 // Fixed beforehand.
 constexpr double energy_tolerance = 0.03;       // registry
-constexpr double smoothness_tolerance = 0.001;  // of the well: far below what atoms do
+constexpr double smoothness_tolerance = 0.001;  // of the well: far below the corrugation of atoms
 constexpr ValidatedTube tube = tube_10_10;
 constexpr int turns = 4, shifts = 24, periods = 5;
 constexpr int free_periods = 32, registry_count = 12;  // pull-out: tubes of 8 nm
 constexpr double first_overlap = 0.5, overlap_step = 0.5, most_overlap = 7.5;
-constexpr double fit_from = 2, fit_to = 6;  // nm: the ends of neither tube reach beyond
+constexpr double fit_from = 2, fit_to = 6;  // nm: without the influence of the ends
 
 double rest_distance(const MdSession& session, const TubeShape& shape) {
   const Shell shell{shape.radius, 2 / (2 * units::pi * shape.radius * shape.length_per_hexagon)};
@@ -82,7 +82,8 @@ ReferenceTable make_pull_out(const CaseContext& context) {
     input += pair_commands(session.atom_law(), "s s s", data) + move_two({distance, 0, 0});
     double last = length;
     for (const double overlap : overlaps()) {
-      // Whole steps of overlap fall on few shifts of the lattice: each registry adds its own.
+      // Whole steps of overlap meet only a few shifts of the lattice, so that each registry adds a shift of its
+      // own.
       const double now = overlap + (r.shift_j - 0.5) * period;
       input += move_two({0, 0, last - now}) + print_values("pull-out", "$(pe:%.15g)");
       last = now;
@@ -141,25 +142,25 @@ void add_sliding(const ReferenceTable& data, const LineContact& contact, CaseRes
     force = std::max(force, largest_force(slide, step));
     widths += width(slide) / static_cast<double>(slides.size());
   }
-  Slide rows;  // over one element, which is the period that the model could show
+  Slide rows;  // along one element, the only period that the model can have
   constexpr int points = 64;
   for (int k = 0; k <= points; ++k) rows.push_back(parallel_rows(contact, distance, contact.length_j * k / points));
   result.checks.push_back({"energy per length at rest", mean(rows), atoms_mean, energy_tolerance, true, "eV/nm",
                            false, "mean over turns and shifts"});
-  result.checks.push_back({"corrugation of the rows, of the well", width(rows) / std::abs(mean(rows)), 0,
+  result.checks.push_back({"corrugation of the rows over the well", width(rows) / std::abs(mean(rows)), 0,
                            smoothness_tolerance, false, "1", false,
-                           "highest less lowest energy of the model over one element"});
-  result.checks.push_back({"corrugation of the atoms, of the well: mean over turns", 0,
+                           "highest minus lowest energy of the model along one element"});
+  result.checks.push_back({"corrugation of the atoms over the well: mean over turns", 0,
                            widths / std::abs(atoms_mean), 0, false, "1", true, "the model has none"});
-  result.checks.push_back({"corrugation of the atoms, of the well: worst turn", 0,
+  result.checks.push_back({"corrugation of the atoms over the well: worst turn", 0,
                            width(rough) / std::abs(atoms_mean), 0, false, "1", true, "the model has none"});
   result.checks.push_back({"largest sliding force of the atoms per length", 0, 1000 * force * units::eV_in_nN_nm, 0,
                            false, "pN/nm", true,
-                           "at zero temperature, rigid and in registry over the whole length"});
+                           "at zero temperature, for rigid tubes in registry over the whole length"});
   LineChart chart;
   chart.title = "Energy of two parallel tubes against axial shift";
   chart.x = {"axial shift", "nm"};
-  chart.y = {"energy less its mean", "meV/nm"};
+  chart.y = {"energy minus its mean", "meV/nm"};
   const auto line_of = [&](const std::string& name, const Slide& slide, int colour) {
     ChartLine line{name, {}, {}, colour};
     for (std::size_t k = 0; k <= slide.size(); ++k) {
@@ -174,10 +175,9 @@ void add_sliding(const ReferenceTable& data, const LineContact& contact, CaseRes
     flat.y.push_back(1000 * (parallel_rows(contact, distance, step * k) - mean(rows)));
   }
   chart.lines = {line_of("atoms, roughest turn", rough, 0), line_of("atoms, smoothest turn", smooth, 1), flat};
-  result.figures.push_back(
-      {chart,
-       "One period of the lattice: atoms lock in weakly, by an amount that their turns decide; rows of elements "
-       "slide freely."});
+  result.figures.push_back({chart,
+                            "One period of the lattice. Atoms resist sliding weakly, and how much depends on how "
+                            "the tubes are turned; rows of elements slide freely."});
 }
 
 struct Straight {
@@ -211,13 +211,12 @@ void add_pull_out(const ReferenceTable& data, const ParameterSet& set, CaseResul
   }
   const Straight of_atoms = fit_straight(overlap, atoms), of_model = fit_straight(overlap, model);
   result.checks.push_back({"pull-out: energy per overlap", of_model.slope, of_atoms.slope, energy_tolerance, true,
-                           "eV/nm", false, "slope from 2 to 6 nm of overlap; it is the pulling force"});
+                           "eV/nm", false, "slope from 2 to 6 nm of overlap: the pulling force"});
   result.checks.push_back({"pull-out: force", -1000 * of_model.slope * units::eV_in_nN_nm,
                            -1000 * of_atoms.slope * units::eV_in_nN_nm, energy_tolerance, true, "pN", true,
                            "the same, in piconewton"});
-  result.checks.push_back({"pull-out: what both ends add", of_model.at_zero, of_atoms.at_zero, 0.01, false, "eV",
-                           true,
-                           "energy at zero overlap of the straight line; the shells' ends are not in the theory"});
+  result.checks.push_back({"pull-out: energy of both ends", of_model.at_zero, of_atoms.at_zero, 0.01, false, "eV",
+                           true, "the straight line at zero overlap; the theory of shells has no ends"});
   LineChart chart;
   chart.title = "Energy of two finite tubes against overlap";
   chart.x = {"overlap", "nm"};
@@ -226,14 +225,14 @@ void add_pull_out(const ReferenceTable& data, const ParameterSet& set, CaseResul
   points.points = true;
   chart.lines = {{"model", overlap, model, 1}, points};
   chart.bands = {{fit_from, fit_to, "slope", false}};
-  result.figures.push_back({chart, "Straight: the force of pulling one tube out does not depend on the overlap."});
+  result.figures.push_back(
+      {chart, "The line is straight: the force that pulls one tube out does not depend on the overlap."});
   LineChart rest = chart;
   rest.title = "Residual of the pull-out energy";
   rest.y = {"model against atoms", "%"};
   rest.height = 200;
   rest.lines = {{"model / atoms - 1", overlap, residual, 0}};
-  result.figures.push_back(
-      {rest, "Short overlaps feel the ends, where rows stop half a node beyond the last atom."});
+  result.figures.push_back({rest, "At short overlap the ends count; a row ends half a node beyond the last atom."});
 }
 
 CaseResult run(const CaseContext& context) {
@@ -247,41 +246,37 @@ CaseResult run(const CaseContext& context) {
   add_pull_out(pull_out, set, result);
   result.sources.push_back(fmt::format("{} (hash {})", set.name, set.hash));
   result.remarks.push_back(
-      "The model has no barrier against sliding. Two like armchair tubes, straight, frozen and in register over "
-      "their "
-      "whole length, are the worst case for that: their barrier grows with the length. Where neighbours are "
-      "twisted "
-      "or strained differently the register changes along the contact and most of the barrier should cancel; that "
-      "is "
-      "not tested here.");
+      "The model has no barrier against sliding. The worst case for this are two equal armchair tubes, straight, "
+      "frozen and in registry over their whole length: their barrier grows with the length. Where neighbours are "
+      "twisted or strained differently, the registry changes along the contact and most of the barrier should "
+      "cancel; this is not tested.");
   return result;
 }
 
-}  // namespace
-
-Case pair_sliding_case() {
+const RegisteredCase registered([] {
   Case c;
   c.name = "pair-sliding";
   c.group = Case::Group::atoms;
-  c.tier = Case::Tier::quick;
+  c.order = 50;
   c.title = "Two parallel tubes: sliding and pull-out";
   c.why =
-      "Tubes of a twisted rope slide along each other; a grid of elements must not hold them, and cohesion alone "
-      "must pull them back.";
+      "Tubes of a twisted rope slide along each other. The division into elements must not resist sliding; only "
+      "cohesion must pull tubes back.";
   c.setup =
-      "Frozen relaxed (10,10) tubes at their distance of rest: a periodic cell of 1.25 nm slid over one period for "
-      "16 "
-      "pairs of turns; tubes of 8 nm at overlaps from 0.5 to 7.5 nm, 12 registries.";
+      "Relaxed, frozen (10,10) tubes at the distance of the energy minimum. Sliding: a periodic cell of 1.25 nm "
+      "over one period, for 16 pairs of turns. Pull-out: tubes of 8 nm at overlaps from 0.5 to 7.5 nm, averaged "
+      "over 12 registries.";
   c.oracle =
       "Lennard-Jones of LAMMPS, 2.84 meV, 0.34 nm, cut at 1.2 nm as in the set. Mean energy and pull-out slope "
-      "within "
-      "3 % (registry), corrugation of the rows below 0.001 of the well.";
+      "within 3 % (registry), corrugation of the rows below 0.001 of the well.";
   c.literature =
       "A. N. Volkov, L. V. Zhigilei, ACS Nano 4, 6187 (2010), DOI 10.1021/nn1015902; L. A. Girifalco, M. Hodak, R. "
-      "S. "
-      "Lee, Phys. Rev. B 62, 13104 (2000), DOI 10.1103/PhysRevB.62.13104";
+      "S. Lee, Phys. Rev. B 62, 13104 (2000), DOI 10.1103/PhysRevB.62.13104";
   c.run = run;
+  c.turns_red = {wrong_contact(2)};
+  c.stays_green = {wrong_GJ(0.9)};
   return c;
-}
+});
 
+}  // namespace
 }  // namespace ropewalk

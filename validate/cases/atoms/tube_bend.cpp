@@ -1,23 +1,22 @@
 // Bending of one tube beyond its kink.
-//
-// Atoms: finite tubes between held bands, bent step by step with the arc length of the axis kept. The difference of
-// two lengths has no ends in it: that is the energy per length, up to the first kink. Model: a chain of elements,
+// Atoms: finite tubes between held bands, bent step by step at constant arc length of the axis. The difference of
+// two lengths has no ends in it and gives the energy per length, up to the first kink. Model: a chain of elements,
 // EI/2 curvature^2 per length.
 #include <fmt/format.h>
 
 #include <cmath>
 
 #include "atomistic/finite_tube.hpp"
-#include "cases/common/md_curve.hpp"
+#include "cases/common/tube_curve.hpp"
 
 namespace ropewalk {
 namespace {
 
-// Not the lengths that the stiffness was fitted to.
+// Other lengths than those that the stiffness was fitted to.
 constexpr double short_length = 8, long_length = 14;  // nm
 constexpr double step = 0.0025, most = 0.06;          // nm, of curvature times radius squared
 constexpr double end_band = 0.6;                      // nm, held beyond either end
-constexpr double most_turn = 5.6;  // rad, of the long specimen between its ends, which meet further on
+constexpr double most_turn = 5.6;  // rad, between the ends of the long specimen; they meet at a larger turn
 constexpr ValidatedTube tubes[] = {tube_5_5, tube_10_10};
 
 std::string bend_input(const FiniteTube& tube, const Potential& potential, const std::string& name,
@@ -107,40 +106,38 @@ CaseResult run(const CaseContext& context) {
     const TubeCurve curve = curve_of(tube, set, data);
     add_curve(curve, result);
     add_collapse(curve, curve.more_amplitude, curve.amplitude.size(),
-                 "the first of both specimens to kink, against what the set says", result);
+                 "the specimen that kinks first, against the kink curvature of the set", result);
     result.sources.push_back(fmt::format("{} (hash {})", set.name, set.hash));
   }
   result.remarks.push_back(
-      "Beyond the window the cross-section flattens and the atoms are softer than the model; past the kink the "
-      "model "
-      "goes on as a parabola and knows nothing of it, which is why a run counts the elements beyond it.");
+      "Beyond the window the cross-section flattens, and the atoms are softer than the model. The model has no "
+      "kink; its energy stays a parabola. This is why a run counts the elements beyond the kink curvature.");
   result.remarks.push_back(
-      "The table goes on until the long (5,5) specimen closes on itself, which its last rows show; nothing beyond "
-      "a "
-      "turn of 5.6 rad is drawn or compared.");
+      "In the last rows of the table the long (5,5) specimen closes on itself. Turns beyond 5.6 rad are neither "
+      "drawn nor compared.");
   return result;
 }
 
-}  // namespace
-
-Case tube_bend_case() {
+const RegisteredCase registered([] {
   Case c;
   c.name = "tube-bend";
   c.group = Case::Group::atoms;
-  c.tier = Case::Tier::quick;
+  c.order = 30;
   c.title = "One tube bent beyond its kink";
-  c.why = "EI sets when a rope buckles into a helix; the kink sets where the model of rigid elements ends.";
+  c.why = "EI decides when a rope buckles into a helix. At the kink the model of rigid elements ends.";
   c.setup =
-      "Finite tubes of (5,5) and (10,10), 8 and 14 nm between held bands, bent step by step to a curvature of 0.06 "
-      "nm/r^2 and minimised. The stiffness was fitted to lengths of 6 and 10 nm and small curvatures.";
+      "Finite tubes of (5,5) and (10,10), 8 and 14 nm between held bands, are bent step by step to a curvature of "
+      "0.06 nm/r^2 and relaxed. The stiffness was fitted to lengths of 6 and 10 nm and small curvatures.";
   c.oracle =
-      "Energies of LAMMPS with the Tersoff potential, (E_long - E_short)/(L_long - L_short); model U/L = EI/2 k^2 "
-      "of "
-      "a chain of elements. Within 3 % where the set claims moments within 1 %.";
+      "Energies of LAMMPS with the Tersoff potential, (E_long - E_short)/(L_long - L_short); for a chain of "
+      "elements U/L = EI k^2/2. Within 3 % where the set claims moments within 1 %.";
   c.literature =
       "S. Iijima, C. Brabec, A. Maiti, J. Bernholc, J. Chem. Phys. 104, 2089 (1996), DOI 10.1063/1.470966";
   c.run = run;
+  c.turns_red = {wrong_EI(1.1)};
+  c.stays_green = {wrong_EA(1.1), wrong_GJ(0.9), wrong_contact(2)};
   return c;
-}
+});
 
+}  // namespace
 }  // namespace ropewalk

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "cases/common/md_curve.hpp"
+#include "cases/common/tube_curve.hpp"
 
 namespace ropewalk {
 namespace {
@@ -75,8 +75,10 @@ void add_buckling(const TubeCurve& curve, CaseResult& result) {
     pressed.push_back(-curve.amplitude[k]);
     energy.push_back(curve.atoms[k]);
   }
-  add_collapse(curve, pressed, points_before_collapse(pressed, energy),
-               "in compression, in a periodic cell of 5 nm; the set's is that of a held tube of 12 nm", result);
+  add_collapse(
+      curve, pressed, points_before_collapse(pressed, energy),
+      "in compression, in a periodic cell of 5 nm; the set's value is that of a tube of 12 nm with held ends",
+      result);
 }
 
 CaseResult run(const CaseContext& context) {
@@ -98,33 +100,32 @@ CaseResult run(const CaseContext& context) {
     result.sources.push_back(fmt::format("{} (hash {})", set.name, set.hash));
   }
   result.remarks.push_back(
-      "Outside of the window the model has no cubic term: carbon bonds soften in tension and stiffen in "
-      "compression, so that the model is too stiff when stretched and too soft when pressed, until the wall "
-      "buckles.");
+      "Carbon bonds soften in tension and stiffen in compression; the model has no such cubic term. Outside the "
+      "window it is too stiff in tension, and too soft in compression until the wall buckles.");
   return result;
 }
 
-}  // namespace
-
-Case tube_stretch_case() {
+const RegisteredCase registered([] {
   Case c;
   c.name = "tube-stretch";
   c.group = Case::Group::atoms;
-  c.tier = Case::Tier::quick;
+  c.order = 10;
   c.title = "One tube stretched and compressed";
-  c.why = "EA carries the tubes of a twisted rope: outer tubes are stretched, inner ones compressed.";
+  c.why = "Twisting a rope stretches its outer tubes and compresses its inner ones: EA sets that energy.";
   c.setup =
-      "Periodic cells of 5 nm of (5,5) and (10,10), strained from -8 to 8 % step by step and minimised; the "
+      "Periodic cells of 5 nm of (5,5) and (10,10) are strained from -8 to 8 % step by step and relaxed. The "
       "stiffness was fitted to strains up to 1 %.";
   c.oracle =
-      "Energies of LAMMPS with the Tersoff potential; model U/L = EA/2 e^2 of a chain of elements. Within 3 % "
-      "where "
-      "the set claims forces within 1 %.";
+      "Energies of LAMMPS with the Tersoff potential; for a chain of elements U/L = EA e^2/2. Within 3 % where the "
+      "set claims forces within 1 %.";
   c.literature =
       "B. I. Yakobson, C. J. Brabec, J. Bernholc, Phys. Rev. Lett. 76, 2511 (1996), DOI "
       "10.1103/PhysRevLett.76.2511";
   c.run = run;
+  c.turns_red = {wrong_EA(1.1)};
+  c.stays_green = {wrong_GJ(0.9), wrong_EI(1.1), wrong_contact(2)};
   return c;
-}
+});
 
+}  // namespace
 }  // namespace ropewalk

@@ -1,14 +1,13 @@
 // Twist of one tube up to its torsional collapse.
-//
-// Atoms: supercells whose period is a lattice vector with a part around the circumference: exactly periodic,
-// uniformly twisted tubes without ends. Each is minimised with a little noise, so that it may collapse. Model: a
-// chain of elements, GJ/2 twist^2 per length.
+// Atoms: supercells whose period is a lattice vector with a component around the circumference, that is exactly
+// periodic, uniformly twisted tubes without ends. Each is minimised with a little noise, so that it may collapse.
+// Model: a chain of elements, GJ/2 twist^2 per length.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "cases/common/md_curve.hpp"
+#include "cases/common/tube_curve.hpp"
 
 namespace ropewalk {
 namespace {
@@ -32,7 +31,7 @@ TwistedCell cell_of(Chirality c, const TubeShape& shape, LatticeVector period) {
   return cell;
 }
 
-// Of the cells next to the wanted shear (within 2 %) the shortest, else the nearest.
+// The shortest cell within 2 % of the wanted shear; if there is none, the nearest.
 TwistedCell cell_near(Chirality c, const TubeShape& shape, const std::vector<LatticeVector>& periods,
                       double shear) {
   const auto cost = [&](const TwistedCell& cell) {
@@ -115,42 +114,41 @@ CaseResult run(const CaseContext& context) {
     curve.window = std::min(quantity(set, "validity.linear_twist"), curve.end);
     add_curve(curve, result);
     add_collapse(curve, curve.amplitude, points_before_collapse(curve.amplitude, curve.atoms),
-                 "periodic cells have no held ends; the set's is that of a held tube of 12 nm", result);
+                 "periodic cells have no held ends; the set's value is that of a tube of 12 nm with held ends",
+                 result);
     result.sources.push_back(fmt::format("{} (hash {})", set.name, set.hash));
   }
   result.remarks.push_back(
-      "The chain's twist energy goes as 1 - cos of the angle of a bond, which at these twists differs from the "
-      "parabola by less than 0.2 %.");
+      "The chain's twist energy goes as 1 - cos of a bond's angle. At these twists it differs from the parabola by "
+      "less than 0.2 %.");
   result.remarks.push_back(
-      "A periodic cell gives way earlier than the tube of 12 nm between held ends on which the set's collapse was "
-      "measured: the ends keep it round. The set's window therefore ends at three quarters of that collapse; at "
-      "0.95 "
-      "of it the atoms of (10,10) already store 5 % less.");
+      "A periodic cell collapses earlier than the tube of 12 nm on which the set's collapse was measured, because "
+      "held ends keep a tube round. So the set's window ends at three quarters of that collapse; at 0.95 of it the "
+      "atoms of (10,10) already store 5 % less.");
   return result;
 }
 
-}  // namespace
-
-Case tube_twist_case() {
+const RegisteredCase registered([] {
   Case c;
   c.name = "tube-twist";
   c.group = Case::Group::atoms;
-  c.tier = Case::Tier::quick;
+  c.order = 20;
   c.title = "One tube twisted until it collapses";
-  c.why = "GJ stores the twist that a rope trades for bending when it turns into a helix.";
+  c.why = "A rope that turns into a helix trades twist, stored by GJ, for bending.";
   c.setup =
-      "Uniformly twisted periodic cells of (5,5) and (10,10), 9 to 24 nm long, shear up to 0.045 nm/r, minimised; "
-      "the "
-      "stiffness was fitted to shears up to 1 %.";
+      "Uniformly twisted periodic cells of (5,5) and (10,10), 9 to 24 nm long, with shears up to 0.045 nm/r, "
+      "relaxed. The stiffness was fitted to shears up to 1 %.";
   c.oracle =
-      "Energies of LAMMPS with the Tersoff potential; model U/L = GJ/2 t^2 of a chain of elements. Within 3 % "
-      "where "
-      "the set claims torques within 1 %, and the tube has not collapsed.";
+      "Energies of LAMMPS with the Tersoff potential; for a chain of elements U/L = GJ t^2/2. Within 3 % where the "
+      "set claims torques within 1 % and the tube has not collapsed.";
   c.literature =
       "B. I. Yakobson, C. J. Brabec, J. Bernholc, Phys. Rev. Lett. 76, 2511 (1996), DOI "
       "10.1103/PhysRevLett.76.2511";
   c.run = run;
+  c.turns_red = {wrong_GJ(0.9)};
+  c.stays_green = {wrong_EA(1.1), wrong_EI(1.1), wrong_contact(2)};
   return c;
-}
+});
 
+}  // namespace
 }  // namespace ropewalk

@@ -1,9 +1,9 @@
 // Sliding of one row of elements along another: three contact laws.
-#include <algorithm>
 #include <cmath>
 
-#include "cases/common/chains_contact.hpp"
-#include "cases/common/rope_codes_beads.hpp"
+#include "cases/common/bead_rope.hpp"
+#include "cases/common/bundle.hpp"
+#include "cases/common/slide.hpp"
 #include "scene/build.hpp"
 
 namespace ropewalk {
@@ -11,26 +11,6 @@ namespace {
 
 constexpr const char* set_name = "cnt-10-10-tersoff";
 constexpr const char* paper_name = "cnt-10-10-paper";
-
-struct Slide {
-  std::vector<double> shift, energy;  // part of an element; per length, eV/nm
-
-  double mean() const {
-    double sum = 0;
-    for (std::size_t k = 0; k + 1 < energy.size(); ++k) sum += energy[k];
-    return sum / static_cast<double>(energy.size() - 1);
-  }
-  double corrugation() const {
-    const auto [low, high] = std::minmax_element(energy.begin(), energy.end());
-    return *high - *low;
-  }
-  // Per cent of the well, from the mean.
-  std::vector<double> relative(double well) const {
-    std::vector<double> out;
-    for (const double e : energy) out.push_back(100 * (e - mean()) / std::fabs(well));
-    return out;
-  }
-};
 
 template <class Law>
 Slide slide(const Law& law, double element_length, double distance) {
@@ -92,33 +72,34 @@ CaseResult run(const CaseContext& context) {
   figure.chart.lines.push_back(model_points("isotropic bead", by_bead.shift, by_bead.relative(pair.energy), 1));
   figure.chart.lines.push_back(model_points("paper law", by_paper.shift, by_paper.relative(paper_well), 2));
   figure.chart.lines.push_back(model_points("line law", by_line.shift, by_line.relative(pair.energy), 3));
-  figure.caption = "A tube is smooth along its axis; what a law shows beyond that is its own discretisation.";
+  figure.caption = "A tube is smooth along its axis. Any corrugation is an error of the law's discretisation.";
   result.figures.push_back(figure);
   result.remarks.push_back(
-      "The bead law has the spacing and the mean cohesion of the oracle, so that only its shape "
-      "differs; such a rope holds its tubes against sliding by an artefact, and its beads carry "
-      "no torsion at all.");
+      "The bead law has the spacing and the mean cohesion of the oracle; only its shape differs. A rope of beads "
+      "resists sliding by this artefact, and its beads carry no torsion.");
   result.sources = {set_name, paper_name};
   return result;
 }
 
-}  // namespace
-
-Case isotropic_contact_case() {
+const RegisteredCase registered([] {
   Case c;
   c.name = "isotropic-contact";
   c.group = Case::Group::codes;
+  c.order = 10;
   c.title = "Corrugation of one-point contacts";
   c.why = "Sliding between tubes decides the helix threshold of a rope; a corrugated contact glues them.";
   c.setup =
-      "Two parallel rows of (10,10) elements at rest and 0.05 nm inside of it, shifted along each other by one "
-      "element: a 12-6 bead in each element, the paper law with its own set, the line law.";
-  c.oracle = "Two smooth cylinders: no dependence on the shift; mean energy of the surface integral.";
+      "Two parallel rows of (10,10) elements, shifted along each other by one element. The distance is that of the "
+      "energy minimum, or 0.05 nm less. Three laws: a 12-6 bead in each element, the paper law with its own set, "
+      "the line law.";
+  c.oracle = "For two smooth cylinders the energy does not depend on the shift; its mean is the surface integral.";
   c.literature =
       "I. Ostanin, R. Ballarini, D. Potyondy, T. Dumitrica, J. Mech. Phys. Solids 61, 762 (2013), DOI "
       "10.1016/j.jmps.2012.10.016";
   c.run = run;
+  c.turns_red = {wrong_contact(2)};
   return c;
-}
+});
 
+}  // namespace
 }  // namespace ropewalk

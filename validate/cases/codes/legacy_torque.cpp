@@ -1,8 +1,8 @@
-// What a contact without the torque of its angle does to the energy of a bundle.
+// The energy of a bundle whose contact forces lack the torque of an angle.
 #include <algorithm>
 #include <cmath>
 
-#include "cases/common/chains.hpp"
+#include "cases/common/chain.hpp"
 #include "model/error.hpp"
 #include "scene/kinds/rope.hpp"
 #include "scene/prepare.hpp"
@@ -21,7 +21,7 @@ struct Record {
     for (std::size_t k = from; k < to; ++k) sum += gain[k];
     return sum / static_cast<double>(to - from);
   }
-  // Of the last quarter against the first: free of the oscillation of the integrator.
+  // Mean of the last quarter minus that of the first, which the oscillation of the integrator does not affect.
   double drift() const {
     const std::size_t n = gain.size();
     return n < 8 ? gain.back() : mean(n - n / 4, n) - mean(0, n / 4);
@@ -53,7 +53,7 @@ Record undamped_bundle(const ParameterSet& set, bool legacy) {
       record.gain.push_back(s.total_energy() - first);
     }
   } catch (const NumericalError&) {
-    // Blown up: what was gained before is the answer.
+    // After a blow-up the energy gained before counts.
   }
   return record;
 }
@@ -77,29 +77,31 @@ CaseResult run(const CaseContext& context) {
   figure.caption = "No load, no damping, 10 K at the start: every change of the energy is an error.";
   result.figures.push_back(figure);
   result.remarks.push_back(
-      "A contact energy that depends on an angle turns the bodies; without that torque forces and "
-      "energy do not belong together, and the bundle heats up at any time step.");
+      "A contact energy that depends on an angle exerts a torque. Without this torque the forces are not the "
+      "gradient of the energy, and the bundle heats up at any time step.");
   result.sources.push_back(set_name);
   return result;
 }
 
-}  // namespace
-
-Case legacy_torque_case() {
+const RegisteredCase registered([] {
   Case c;
   c.name = "legacy-torque";
   c.group = Case::Group::codes;
+  c.order = 20;
   c.title = "The torque that the published contact code leaves out";
-  c.why = "A rope that feeds on its own contact forces shows instabilities that are not there.";
+  c.why =
+      "A rope that gains energy from its own contact forces shows instabilities that a real rope does not have.";
   c.setup =
-      "Seven tubes of five elements with the paper law, undamped, 10 K at the start, 400 ps at 16 fs; with the "
-      "full gradient and without the torque of the angle of the centre line.";
+      "Seven tubes of five elements with the paper law, undamped, at 10 K at the start, run for 400 ps at 16 fs: "
+      "once with the full gradient, once without the torque that belongs to the angle of the line of centres.";
   c.oracle = "Conservation of energy.";
   c.literature =
       "I. Ostanin, R. Ballarini, D. Potyondy, T. Dumitrica, J. Mech. Phys. Solids 61, 762 (2013), DOI "
       "10.1016/j.jmps.2012.10.016; public code: waLBerla, module MESA-PD";
   c.run = run;
+  c.turns_red = {without_torque()};
   return c;
-}
+});
 
+}  // namespace
 }  // namespace ropewalk

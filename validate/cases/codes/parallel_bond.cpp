@@ -1,8 +1,9 @@
 // The incremental parallel bond against the total-energy bond.
+#include "cases/common/parallel_bond.hpp"
+
 #include <cmath>
 
-#include "cases/common/chains.hpp"
-#include "cases/common/incremental_parallel_bond.hpp"
+#include "cases/common/chain.hpp"
 
 namespace ropewalk {
 namespace {
@@ -21,8 +22,8 @@ struct Loop {
   double incremental = 0, total = 0;  // energy left at the end, eV
 };
 
-// The second element of a bond is bent and twisted once around a circle of that size in the plane of the two
-// angles, and is back where it was. In small steps, so that what is left is not an error of the steps.
+// Bends and twists the second element of a bond once around a circle of this radius (rad) in the plane of the two
+// angles, back to its start. The steps are so small that the energy left is not their error.
 Loop closed_loop(const ParameterSet& set, double amplitude) {
   constexpr int steps = 4000;
   const double a = set.element_length;
@@ -43,12 +44,12 @@ Loop closed_loop(const ParameterSet& set, double amplitude) {
 CaseResult run(const CaseContext& context) {
   const ParameterSet oracle = context.parameters(set_name);
   ParameterSet model = context.model(set_name);
-  model.bond.shear = 0;  // as in the bond that it is compared with
+  model.bond.shear = 0;  // as in the incremental bond
   const double length = bonds * model.element_length;
   const auto beam = [&](double force) { return force * std::pow(length, 3) / (3 * oracle.bond.bend); };
-  // Two small rotations in turn differ from their sum by half of their product. Half of the spin is followed by the
-  // accumulated moment, so that a loop of area S leaves a bend of S/2; an element turned in its place bends and
-  // shears the bond, 4 EI/a together.
+  // Two small rotations in turn differ from their sum by half of their product. The accumulated moment follows half
+  // of the spin, so that a loop of area S leaves a bend of S/2. Turning an element in its place bends and shears
+  // the bond, with a stiffness of 4 EI/a together.
   const auto left = [&](double amplitude) {
     const double bend = 0.5 * units::pi * amplitude * amplitude;
     return 2 * oracle.bond.bend / oracle.element_length * bend * bend;
@@ -60,12 +61,12 @@ CaseResult run(const CaseContext& context) {
   result.checks.push_back(relative_check("incremental: deflection at small force",
                                          parallel_bond_deflection(model, bonds, small), beam(small), 2e-3, "nm",
                                          "the same beam while rotations are small"));
-  result.checks.push_back(absolute_check("total energy: left after a closed loop of 0.3 rad",
+  result.checks.push_back(absolute_check("total energy: energy left after a closed loop of 0.3 rad",
                                          closed_loop(model, 0.3).total, 0, 1e-9, "eV", "a function of the state"));
-  result.checks.push_back(relative_check("incremental: left after a closed loop of 0.1 rad",
+  result.checks.push_back(relative_check("incremental: energy left after a closed loop of 0.1 rad",
                                          closed_loop(model, 0.1).incremental, left(0.1), 3e-2, "eV",
                                          "order of the commutator of two rotations"));
-  result.checks.push_back(information(absolute_check("incremental: left after a closed loop of 0.3 rad",
+  result.checks.push_back(information(absolute_check("incremental: energy left after a closed loop of 0.3 rad",
                                                      closed_loop(model, 0.3).incremental, 0, 1e-9, "eV",
                                                      "does not fall with the step")));
   std::vector<double> force, total, incremental, amplitude, energy, none;
@@ -88,7 +89,7 @@ CaseResult run(const CaseContext& context) {
   bend.chart.lines.push_back(theory_curve("small deflections", beam, 0, 4));
   bend.chart.lines.push_back(model_points("total-energy bond", force, total, 1));
   bend.chart.lines.push_back(model_points("incremental bond", force, incremental, 2));
-  bend.caption = "Bent once in a plane both bonds are the same beam, also far from small deflections.";
+  bend.caption = "Bent once in a plane, both bonds follow the same beam, also at large deflections.";
   drift.chart = {
       "Energy left in a bond after a closed loop", {"radius of the loop", "rad"}, {"energy", "eV"}, {}, {}};
   drift.chart.lines.push_back(theory_curve("commutator of the rotations", left, 0, 0.3));
@@ -97,34 +98,35 @@ CaseResult run(const CaseContext& context) {
   drift.caption = "Bent and twisted once around a loop and back to rest.";
   result.figures = {bend, drift};
   result.remarks.push_back(
-      "The incremental bond sums angular velocities, which have no integral in three dimensions: "
-      "energy is left behind where bend and twist go around a loop, however small the steps.");
+      "The incremental bond sums angular velocities, and these have no integral in three dimensions. After a "
+      "closed loop of bend and twist some energy stays in the bond, however small the steps.");
   result.sources.push_back(set_name);
   return result;
 }
 
-}  // namespace
-
-Case parallel_bond_case() {
+const RegisteredCase registered([] {
   Case c;
   c.name = "parallel-bond";
   c.group = Case::Group::codes;
+  c.order = 30;
   c.title = "Incremental parallel bond against total-energy bond";
   c.why =
-      "Tubes in a rope bend and twist together through large angles; a bond that depends on the path stores or "
-      "loses energy that no load has done.";
+      "Tubes in a rope bend and twist together through large angles. A bond that depends on the path stores or "
+      "loses energy without any work of the loads.";
   c.setup =
-      "A cantilever of 20 bonds of either kind, and one bond of which one end is bent and twisted around a "
-      "closed loop in 4000 steps.";
+      "A cantilever of 20 bonds of either kind; and one bond whose end is bent and twisted around a closed loop in "
+      "4000 steps.";
   c.oracle =
-      "w = F L^3/3 EI at small force; energy after a loop of radius A: zero, and 2 EI/a (pi A^2/2)^2 for the "
-      "incremental bond.";
+      "w = F L^3/(3 EI) at small force. Energy after a loop of radius A: zero; for the incremental bond 2 EI/a (pi "
+      "A^2/2)^2.";
   c.literature =
       "D. O. Potyondy, P. A. Cundall, Int. J. Rock Mech. Min. Sci. 41, 1329 (2004), DOI "
       "10.1016/j.ijrmms.2004.09.011; V. A. Kuzkin, I. E. Asonov, Phys. Rev. E 86, 051301 (2012), DOI "
       "10.1103/PhysRevE.86.051301";
   c.run = run;
+  c.turns_red = {wrong_EI(1.1)};
   return c;
-}
+});
 
+}  // namespace
 }  // namespace ropewalk

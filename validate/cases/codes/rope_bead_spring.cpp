@@ -2,7 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cases/common/rope_codes_beads.hpp"
+#include "cases/common/bead_rope.hpp"
+#include "cases/common/slide.hpp"
 #include "scene/build.hpp"
 
 namespace ropewalk {
@@ -29,33 +30,7 @@ double rows_energy(const Law& law, double element_length, double spacing, const 
   return sum / element_length;
 }
 
-struct Slide {
-  std::vector<double> shift, energy;  // of an element; eV/nm of the rope
-
-  double mean() const {
-    double sum = 0;
-    for (std::size_t k = 0; k + 1 < energy.size(); ++k) sum += energy[k];
-    return sum / static_cast<double>(energy.size() - 1);
-  }
-  double barrier() const {
-    const auto [low, high] = std::minmax_element(energy.begin(), energy.end());
-    return *high - *low;
-  }
-  // Largest force per length against which the centre tube slides, eV/nm^2.
-  double resistance(double element_length) const {
-    double largest = 0;
-    for (std::size_t k = 1; k < energy.size(); ++k)
-      largest = std::max(largest, (energy[k] - energy[k - 1]) / (element_length * (shift[k] - shift[k - 1])));
-    return largest;
-  }
-  std::vector<double> relative(double well) const {
-    std::vector<double> out;
-    for (const double e : energy) out.push_back(100 * (e - mean()) / std::fabs(well));
-    return out;
-  }
-};
-
-// The centre tube by one element along the other six.
+// The centre tube slides by one element along the other six.
 template <class Law>
 Slide slide_centre(const Law& law, double element_length, double spacing) {
   Slide s;
@@ -68,7 +43,8 @@ Slide slide_centre(const Law& law, double element_length, double spacing) {
   return s;
 }
 
-// Neighbours on a triangular lattice cannot all be half an element apart; with thirds all pairs are equal.
+// Energy per length with tubes shifted by thirds of an element, minus that without shifts. Neighbours on a
+// triangular lattice cannot all be half an element apart; with thirds all pairs are equal.
 template <class Law>
 double gained_by_staggering(const Law& law, double element_length, double spacing) {
   std::vector<double> shift(GrippedRope::tubes, 0.0);
@@ -139,44 +115,46 @@ void add_straight_checks(const Straight& s, CaseResult& result) {
   constexpr double GPa = 1e-9 * units::electron_charge_C * 1e27;  // one eV/nm^3
   const double depth = std::fabs(s.well), circumference = 2 * units::pi * s.radius;
   result.checks.push_back(absolute_check("elements: corrugation over the well, centre tube slides",
-                                         s.elements.barrier() / depth, 0, 1e-3, "1",
+                                         s.elements.corrugation() / depth, 0, 1e-3, "1",
                                          "registry of real tubes is 1e-2"));
-  result.checks.push_back(
-      information(absolute_check("beads: corrugation over the well, centre tube slides", s.beads.barrier() / depth,
-                                 0, 1e-3, "1", "beads fall into the gaps of the other tubes")));
-  // Half of the barrier is the amplitude c of a pair's cosine; thirds gain 3c/2.
-  result.checks.push_back(information(relative_check("beads: gained by staggering, of the cohesion",
-                                                     s.beads_gain / s.cohesion, 0.75 * s.beads.barrier() / depth,
-                                                     0.05, "1", "reference: 3/4 of the corrugation, a cosine")));
+  result.checks.push_back(information(absolute_check("beads: corrugation over the well, centre tube slides",
+                                                     s.beads.corrugation() / depth, 0, 1e-3, "1",
+                                                     "beads fall into the gaps of the other tubes")));
+  // The amplitude c of a pair's cosine is half of the corrugation; shifts by thirds gain 3c/2.
   result.checks.push_back(information(
-      absolute_check("beads: barrier of one bead of the centre tube", s.beads.barrier() * s.element_length, 0,
+      relative_check("beads: energy gained by staggering, over the cohesion", s.beads_gain / s.cohesion,
+                     0.75 * s.beads.corrugation() / depth, 0.05, "1",
+                     "reference: 3/4 of the corrugation, for an energy that is a cosine of the shift")));
+  result.checks.push_back(information(
+      absolute_check("beads: barrier of one bead of the centre tube", s.beads.corrugation() * s.element_length, 0,
                      units::boltzmann * 300, "eV", "against the thermal energy at 300 K")));
   const auto strength = [&](const Slide& slide) {
     return 1e3 * GPa * slide.resistance(s.element_length) / circumference;
   };
   result.checks.push_back(information(absolute_check(
       "beads: shear strength against sliding of the centre tube", strength(s.beads), strength(s.elements), 1, "MPa",
-      "reference: the elements; in step along the whole tube, over its circumference")));
+      "reference: the elements. All beads of the tube resist at once; force over the tube's surface")));
 }
 
 void add_twist_checks(const Twisted& elements, const Twisted& beads, double torsion, CaseResult& result) {
   const double angle = angle_step;
-  result.checks.push_back(relative_check("elements: torsion energy at 90 degrees", elements.twist, torsion, 5e-3,
-                                         "eV", "the clamped ends straighten the helix: below 1 - cos^2(beta)"));
+  result.checks.push_back(relative_check(
+      "elements: torsion energy at 90 degrees", elements.twist, torsion, 5e-3, "eV",
+      "the clamped ends straighten the helix; this changes the energy by less than 1 - cos^2(beta)"));
   result.checks.push_back(relative_check("elements: work of the grips up to 90 degrees",
                                          simpson_sum(elements.moment, angle), elements.energy.back(), 1e-3, "eV",
                                          "stored energy; Simpson's rule over six increments"));
-  result.checks.push_back(information(relative_check("beads: work of the grips up to 90 degrees",
-                                                     simpson_sum(beads.moment, angle), beads.energy.back(), 1e-3,
-                                                     "eV", "conservative: what is missing is not an error of it")));
+  result.checks.push_back(information(relative_check(
+      "beads: work of the grips up to 90 degrees", simpson_sum(beads.moment, angle), beads.energy.back(), 1e-3,
+      "eV", "shows that the beads are conservative: the energy that they lack is not a numerical error")));
   result.checks.push_back(information(relative_check("beads: twisting energy at 90 degrees", beads.energy.back(),
                                                      elements.energy.back(), 0.05, "eV")));
   result.checks.push_back(information(
       relative_check("beads: end moment at 90 degrees", beads.moment.back(), elements.moment.back(), 0.05, "eV")));
-  result.checks.push_back(information(absolute_check("elements: torsion, of the twisting energy",
+  result.checks.push_back(information(absolute_check("elements: torsion energy over the twisting energy",
                                                      elements.twist / elements.energy.back(), 1, 0.1, "1")));
   result.checks.push_back(information(relative_check("beads: bending energy", beads.bend, elements.bend, 0.1, "eV",
-                                                     "the clamped ends are the same but for the shear of a bond")));
+                                                     "the clamped ends differ only by the shear of a bond")));
   result.checks.push_back(information(
       relative_check("beads: stretching energy", beads.stretch, elements.stretch, 0.1, "eV", "the same helix")));
   result.checks.push_back(information(absolute_check("beads: change of the vdW energy", beads.vdw, elements.vdw,
@@ -194,18 +172,18 @@ CaseFigure slide_figure(const Straight& s) {
       "smooth tubes", [](double) { return 0.0; }, 0, 1));
   figure.chart.lines.push_back(model_points("beads", s.beads.shift, s.beads.relative(s.well), 2));
   figure.chart.lines.push_back(model_points("elements", s.elements.shift, s.elements.relative(s.well), 1));
-  figure.caption = "Six rows of beads hold the seventh in step with them; a tube is smooth along its axis.";
+  figure.caption = "Six rows of beads keep the seventh in step. A real tube is smooth along its axis.";
   return figure;
 }
 
-// How fine beads would have to be, at the same spacing and cohesion of the tubes.
+// How close beads would have to be, at the same spacing and cohesion of the tubes.
 CaseFigure spacing_figure(const Well& pair) {
   std::vector<double> length, corrugation;
   for (int k = 4; k <= 20; ++k) {
     length.push_back(0.1 * k);
     const BeadLaw law(pair.distance, pair.energy, length.back());
     const Slide s = slide_centre(law, length.back(), pair.distance);
-    corrugation.push_back(std::log10(std::max(s.barrier() / (6 * std::fabs(pair.energy)), 1e-12)));
+    corrugation.push_back(std::log10(std::max(s.corrugation() / (6 * std::fabs(pair.energy)), 1e-12)));
   }
   CaseFigure figure;
   figure.chart = {"Corrugation against the distance of beads",
@@ -217,8 +195,8 @@ CaseFigure spacing_figure(const Well& pair) {
       "registry of real tubes", [](double) { return -2.0; }, 0.4, 2));
   figure.chart.lines.push_back(model_points("beads", length, corrugation, 2));
   figure.caption =
-      "A bead law is as smooth as real tubes only where beads are closer than half the distance of the tubes; its "
-      "pairs grow with the square of that, its time step falls with it.";
+      "A bead law is as smooth as real tubes only if the beads are closer than half the distance of the tubes. The "
+      "number of pairs grows with the square of the beads per length, and the time step falls.";
   return figure;
 }
 
@@ -275,54 +253,52 @@ CaseResult run(const CaseContext& context) {
       slide_figure(straight), spacing_figure(pair),
       twist_figure("Energy of the twisted rope", "energy above the straight rope", elements, beads,
                    &Twisted::energy, energy,
-                   "What the beads lack is the torsion of the tubes, nearly all there is."),
+                   "The beads lack the torsion of the tubes, which is nearly all of the energy."),
       twist_figure("Moment on a grip of the twisted rope", "moment", elements, beads, &Twisted::moment, moment,
-                   "A rope of beads resists a twist by the helix of its outer tubes alone.")};
+                   "A rope of beads resists a twist only by bending and stretching its outer tubes.")};
   result.remarks.push_back(
-      "The bead law has the spacing and the mean cohesion of the oracle and the EA and EI of the set, so that what "
-      "differs is what beads cannot have: a direction. Their tubes turn about themselves for nothing, and the "
-      "grips twist against bent and stretched outer tubes only. A model fitted to the moment would have to put "
-      "torsion into one of these.");
+      "The beads have the spacing and the mean cohesion of the oracle and the EA and EI of the set. The only "
+      "difference is that a bead has no direction. A tube of beads turns about its own axis at no cost, and the "
+      "grips work only against bent and stretched outer tubes. A bead model fitted to the moment would have to "
+      "replace torsion by one of these.");
   result.remarks.push_back(
-      "The corrugation works the other way: it holds sliding tubes, and the whole tube in step, where the registry "
-      "of "
-      "real ones is 1 to 3 % of the well and not in step. The two errors do not cancel: one lets the rope twist "
-      "too "
-      "easily, the other keeps its tubes from sliding.");
+      "The corrugation has the opposite effect: it resists sliding, with all beads of a tube at once. In real "
+      "tubes the corrugation by registry is 1 to 3 % of the well and not in step along the tube. The two errors do "
+      "not cancel: one lets the rope twist too easily, the other keeps its tubes from sliding.");
   result.remarks.push_back(
-      "Three neighbours cannot all be half an element apart: with a cosine of amplitude c per pair the best is a "
-      "third "
-      "of an element, which gains 3c/2. Beads side by side, as in a rope that is cut straight, are the highest "
-      "state "
-      "of the straight rope; only the stretch of the tubes between two grips keeps them there.");
+      "Three neighbours cannot all be half an element apart. With a cosine of amplitude c per pair, shifts of a "
+      "third of an element are best and gain 3c/2. Beads side by side, as in a rope cut straight, are the state of "
+      "highest energy; only the stretch of the tubes between two grips keeps them there.");
   result.sources.push_back(set_name);
   return result;
 }
 
-}  // namespace
-
-Case rope_bead_spring_case() {
+const RegisteredCase registered([] {
   Case c;
   c.name = "rope-bead-spring";
   c.group = Case::Group::codes;
+  c.order = 40;
   c.title = "A twisted rope of beads and springs";
   c.why =
-      "Stock molecular dynamics codes make tubes of beads on springs; a twisted rope stores most of its energy in "
-      "what beads do not have.";
+      "Stock molecular dynamics codes build tubes from beads and springs. A twisted rope stores most of its energy "
+      "in torsion, which beads do not have.";
   c.setup =
-      "Seven (10,10) tubes of 30 bonds (41 nm) between two grips that keep their distance, turned against each "
-      "other by 90 degrees in increments of 15, at rest after each. Once with elements and the line law, once with "
-      "a bead in the place of each element: EA and EI the same, no torsion, 12-6 contact of the same spacing and "
-      "cohesion. And the straight rope, with its centre tube shifted by one element, and with tubes a third of an "
-      "element apart.";
+      "Seven (10,10) tubes of 30 bonds (41 nm) between two grips at a fixed distance. The grips turn against each "
+      "other by 90 degrees in increments of 15; the rope is relaxed after each. Once with elements and the line "
+      "law, once with a bead in the place of each element: the same EA and EI, no torsion, a 12-6 contact of the "
+      "same spacing and cohesion. Also the straight rope, with its centre tube shifted by up to one element, and "
+      "with its tubes shifted by thirds of an element.";
   c.oracle =
-      "Smooth cylinders: no dependence on the shift, cohesion of twelve pairs of the surface integral. Torsion "
-      "energy GJ phi^2 (1 + 6 cos^2 beta)/2L, tan beta = R0 phi/L; stored energy = integral of M dphi.";
+      "Smooth cylinders: the energy does not depend on the shift, and the cohesion is that of twelve pairs by the "
+      "surface integral. Torsion energy GJ phi^2 (1 + 6 cos^2 beta)/(2 L), tan beta = R0 phi/L. The stored energy "
+      "is the integral of M dphi.";
   c.literature =
       "M. J. Buehler, J. Mater. Res. 21, 2855 (2006), DOI 10.1557/jmr.2006.0347; A. E. H. Love, A Treatise on the "
       "Mathematical Theory of Elasticity, 4th ed. (1927)";
   c.run = run;
+  c.turns_red = {wrong_GJ(0.9), wrong_contact(2)};
   return c;
-}
+});
 
+}  // namespace
 }  // namespace ropewalk

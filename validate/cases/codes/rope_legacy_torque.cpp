@@ -1,10 +1,10 @@
-// A twisted rope with the published contact code, which leaves out the torque of an angle, as a user would run it.
+// A damped, twisted rope with the contact of the published code, which leaves out the torque of an angle.
 #include <fmt/format.h>
 
 #include <cmath>
 #include <limits>
 
-#include "cases/common/rope_codes.hpp"
+#include "cases/common/gripped_rope.hpp"
 #include "model/error.hpp"
 #include "scene/build.hpp"
 
@@ -40,7 +40,7 @@ Record twist(const ParameterSet& set, bool legacy, double damping) {
   const double step = default_step_fraction * time_step_limit(rope.topology, rope.interaction, rope.spacing).limit;
   Simulation s(rope.topology, rope.interaction, rope.loads, rope.state, step);
   const Energies first = s.forces().energy;
-  // What the constraint gives the grips at the very start is not work of the turn.
+  // The constraint accelerates the grips at the start; that work does not count.
   const double start = s.total_energy();
   Record r;
   try {
@@ -54,7 +54,7 @@ Record twist(const ParameterSet& set, bool legacy, double damping) {
     }
     r.ended = true;
   } catch (const NumericalError&) {
-    // Blown up: what was recorded before is the answer.
+    // After a blow-up the record before it counts.
   }
   const Energies& now = s.forces().energy;
   r.work = s.work();
@@ -68,7 +68,7 @@ Record twist(const ParameterSet& set, bool legacy, double damping) {
 
 // --- Moment of the contact by virtual work ---
 
-// Straight tubes carried around each other by `rate` per length. Only position and axis count for the contact.
+// Tubes wound around each other by `rate` (rad/nm). The contact depends only on position and axis.
 State even_helix(const ParameterSet& set, int tubes, int elements, double rate) {
   const double spacing = pair_spacing(*set.paper, set.element_length);
   State state(static_cast<std::size_t>(tubes * elements));
@@ -88,7 +88,8 @@ struct ContactMoment {
   double by_forces = 0, by_energy = 0;  // eV
 };
 
-// A twist by d(rate) more: forces and torques do the work -M L d(rate), the energy grows by M L d(rate).
+// Moment M by virtual work: when the rate grows by d(rate), forces and torques do the work -M L d(rate) and the
+// energy grows by M L d(rate).
 ContactMoment contact_moment(const ParameterSet& set, int tubes, double rate, bool legacy) {
   constexpr int elements = 40;
   constexpr double h = 1e-6;  // 1/nm
@@ -115,7 +116,7 @@ ContactMoment contact_moment(const ParameterSet& set, int tubes, double rate, bo
   return moment;
 }
 
-// What forces and torques are short of, of the moment that the torsion of the tubes resists with.
+// Moment that forces and torques lack, over the moment of the tubes' torsion.
 double missing_moment(const ParameterSet& set, int tubes, double rate, bool legacy) {
   const ContactMoment moment = contact_moment(set, tubes, rate, legacy);
   return (moment.by_forces - moment.by_energy) / (tubes * set.bond.twist * rate);
@@ -129,9 +130,9 @@ CaseFigure size_figure(const ParameterSet& set, double rate, bool fault) {
     legacy.push_back(100 * missing_moment(set, tubes, rate, true));
   }
   CaseFigure figure;
-  figure.chart = {"Moment that the contact is short of, against the size of the rope",
+  figure.chart = {"Moment that the contact forces lack, against the size of the rope",
                   {"tubes", "", true},
-                  {"of the torsion moment of the tubes", "%"},
+                  {"missing moment over the torsion moment of the tubes", "%"},
                   {},
                   {}};
   figure.chart.lines.push_back(theory_curve(
@@ -139,7 +140,7 @@ CaseFigure size_figure(const ParameterSet& set, double rate, bool fault) {
   figure.chart.lines.push_back(model_points("full gradient", size, full, 1));
   figure.chart.lines.push_back(model_points("without the torque", size, legacy, 2));
   figure.caption =
-      "Straight tubes wound evenly around each other by 0.01 rad/nm: no motion, no damping, no time step.";
+      "Tubes wound evenly around each other by 0.01 rad/nm, at rest: neither damping nor a time step enters.";
   return figure;
 }
 
@@ -148,13 +149,14 @@ double last(const std::vector<double>& values) {
 }
 
 void add_full_checks(const Record& full, double torsion, CaseResult& result) {
-  result.checks.push_back(absolute_check("full gradient: energy unaccounted for, of the work",
+  result.checks.push_back(absolute_check("full gradient: error of the energy balance over the work",
                                          last(full.unaccounted) / full.work, 0, 1e-3, "1",
-                                         "stored and moving - work + dissipated; error of the time step"));
-  result.checks.push_back(absolute_check("full gradient: energy in motion at the end, of the stored",
-                                         full.kinetic / full.stored, 0, 1e-4, "1", "has come to rest"));
-  result.checks.push_back(relative_check("full gradient: torsion energy at rest", full.twist, torsion, 5e-3, "eV",
-                                         "the clamped ends straighten the helix: below 1 - cos^2(beta)"));
+                                         "stored + kinetic + dissipated - work; the error of the time step"));
+  result.checks.push_back(absolute_check("full gradient: kinetic energy at the end over the stored energy",
+                                         full.kinetic / full.stored, 0, 1e-4, "1", "the rope has come to rest"));
+  result.checks.push_back(relative_check(
+      "full gradient: torsion energy at rest", full.twist, torsion, 5e-3, "eV",
+      "the clamped ends straighten the helix; this changes the energy by less than 1 - cos^2(beta)"));
 }
 
 void add_legacy_information(const std::string& name, const Record& legacy, const Record& full, CaseResult& result) {
@@ -163,8 +165,8 @@ void add_legacy_information(const std::string& name, const Record& legacy, const
         information(relative ? relative_check(name + ": " + what, value, reference, tolerance, "eV")
                              : absolute_check(name + ": " + what, value, reference, tolerance, "eV")));
   };
-  add("energy unaccounted for at the end", last(legacy.unaccounted), 0, 1e-3 * full.work, false);
-  add("energy in motion at the end", legacy.kinetic, full.kinetic, 1e-4 * full.stored, false);
+  add("error of the energy balance at the end", last(legacy.unaccounted), 0, 1e-3 * full.work, false);
+  add("kinetic energy at the end", legacy.kinetic, full.kinetic, 1e-4 * full.stored, false);
   add("dissipated", legacy.dissipated, full.dissipated, 0.05, true);
   add("work of the grips", legacy.work, full.work, 0.01, true);
   add("energy stored at the end", legacy.stored, full.stored, 0.01, true);
@@ -199,71 +201,68 @@ CaseResult run(const CaseContext& context) {
                                  bonds * oracle.element_length, angle),
                   result);
   result.checks.push_back(
-      absolute_check("full gradient, a tenth of the damping: energy unaccounted for, of the work",
+      absolute_check("full gradient, a tenth of the damping: error of the energy balance over the work",
                      last(full_weak.unaccounted) / full_weak.work, 0, 1e-3, "1"));
   add_legacy_information("without the torque", legacy, full, result);
   add_legacy_information("without the torque, a tenth of the damping", weak, full_weak, result);
-  result.figures = {record_figure("Energy that a twisted rope has from nowhere",
-                                  "stored and moving - work + dissipated", &Record::unaccounted, full, legacy, weak,
-                                  "Every change is an error: of the time step, or of forces without an energy."),
-                    record_figure("Moment on a grip of a rope that is twisted and held", "moment", &Record::moment,
-                                  full, legacy, weak, fmt::format("Turned within {:.0f} ps, then held.", turning))};
+  result.figures = {
+      record_figure("Error of the energy balance of a twisted rope", "stored + kinetic + dissipated - work",
+                    &Record::unaccounted, full, legacy, weak,
+                    "Every change is an error, either of the time step or of forces that are not the gradient of "
+                    "the energy."),
+      record_figure("Moment on a grip of a rope that is twisted and held", "moment", &Record::moment, full, legacy,
+                    weak, fmt::format("The grips turn for {:.0f} ps and are then held.", turning))};
   const double rate = 0.01;  // 1/nm: 5 degrees at the surface of 91 tubes
   const bool fault = context.fault.missing_torque;
   result.checks.push_back(absolute_check(
-      "full gradient: moment of the contact by virtual work against its energy, 91 tubes, of the torsion moment",
-      missing_moment(model, 91, rate, fault), 0, 1e-6, "1", "difference quotient and rounding"));
+      "full gradient: missing moment of the contact, 91 tubes, over the torsion moment",
+      missing_moment(model, 91, rate, fault), 0, 1e-6, "1",
+      "by virtual work of the forces against the derivative of the energy; difference quotient and rounding"));
   for (const int tubes : {7, 91})
     result.checks.push_back(information(absolute_check(
-        fmt::format("without the torque: moment that is missing, {} tubes, of the torsion moment", tubes),
+        fmt::format("without the torque: missing moment of the contact, {} tubes, over the torsion moment", tubes),
         missing_moment(model, tubes, rate, true), 0, 1e-2, "1", "evenly wound, 0.01 rad/nm")));
   result.figures.push_back(size_figure(model, rate, fault));
   result.remarks.push_back(
-      fmt::format("Without the torque the damped rope comes to rest as well, and at the same energy: nothing in "
-                  "its picture tells. "
-                  "But {:.3g} eV of what is stored and dissipated have been done by no one, and the grips hold it "
-                  "with a moment "
-                  "that is {:.2g} % short. Less damping does not change either: it hides the heating of an "
-                  "undamped bundle, not "
-                  "this.",
+      fmt::format("Without the torque the damped rope also comes to rest, at the same energy; its picture shows no "
+                  "difference. But {:.3g} eV of the stored and dissipated energy were not supplied by any work, "
+                  "and the moment on the grips is {:.2g} % too low. Weaker damping changes neither. Damping hides "
+                  "the heating of an undamped bundle, but not this error.",
                   last(legacy.unaccounted), 100 * (1 - last(legacy.moment) / last(full.moment))));
   result.remarks.push_back(
-      "What is left out are couples about the radial direction, all along tubes that are tilted against their "
-      "neighbours. Spread evenly they do not bend a tube; they end as tangential forces at the grips, times their "
-      "distance from the axis. The missing share of the moment therefore hardly depends on the angle, and grows "
-      "with "
-      "the size of the rope: seven tubes are the mildest there is.");
+      "The published code leaves out couples about the radial direction, all along tubes that are tilted against "
+      "their neighbours. Evenly spread couples do not bend a tube; they act as tangential forces at the grips, and "
+      "their moment grows with the distance from the axis. So the missing part of the moment hardly depends on the "
+      "angle and grows with the size of the rope. Seven tubes show the smallest error.");
   result.sources.push_back(set_name);
   return result;
 }
 
-}  // namespace
-
-Case rope_legacy_torque_case() {
+const RegisteredCase registered([] {
   Case c;
   c.name = "rope-legacy-torque";
   c.group = Case::Group::codes;
+  c.order = 60;
   c.title = "A twisted rope without the torque of the angle";
   c.why =
-      "Ropes have been twisted with a contact code whose torques are not those of its energy; what damping hides "
-      "of "
-      "that, and what it does not, decides what such results mean.";
+      "Ropes have been twisted with a contact code whose torques are not the gradient of its energy. What such "
+      "results mean depends on how much of that error damping hides.";
   c.setup = fmt::format(
-      "Seven (10,10) tubes of {} bonds (41 nm) with the paper law between two grips, turned against each other by "
-      "90 "
-      "degrees in {:.0f} ps and held until {:.0f} ps, damped as a scene is by default (viscosity of contacts "
-      "{:.0f} "
-      "eV ps/nm^2, of bonds {:.0f}/ps) and with a tenth of that; with the full gradient and without the torque.",
+      "Seven (10,10) tubes of {} bonds (41 nm) with the paper law between two grips. The grips turn against each "
+      "other by 90 degrees in {:.0f} ps and are held until {:.0f} ps. Damping as in a scene by default (viscosity "
+      "of contacts {:.0f} eV ps/nm^2, of bonds {:.0f}/ps), and a tenth of it; with the full gradient and without "
+      "the torque.",
       bonds, turning, duration, viscosity, bond_damping);
   c.oracle =
-      "Work = stored + kinetic + dissipated; rest under damping; torsion energy GJ phi^2 (1 + 6 cos^2 beta)/2L, "
-      "tan "
-      "beta = R0 phi/L.";
+      "Work = stored + kinetic + dissipated energy. The damped rope comes to rest. Torsion energy GJ phi^2 (1 + 6 "
+      "cos^2 beta)/(2 L), tan beta = R0 phi/L.";
   c.literature =
       "I. Ostanin, R. Ballarini, D. Potyondy, T. Dumitrica, J. Mech. Phys. Solids 61, 762 (2013), DOI "
       "10.1016/j.jmps.2012.10.016; public code: waLBerla, module MESA-PD";
   c.run = run;
+  c.turns_red = {wrong_GJ(0.9), without_torque()};
   return c;
-}
+});
 
+}  // namespace
 }  // namespace ropewalk

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <limits>
 
-#include "cases/common/limits.hpp"
+#include "cases/common/stability_limit.hpp"
 #include "model/error.hpp"
 
 namespace ropewalk {
@@ -11,8 +11,8 @@ namespace {
 constexpr const char* set_name = "cnt-10-10-tersoff";
 constexpr int increments = 24;
 
-// Two elements, the first one held, the other one turned by a couple that grows step by step. Returns the twist at
-// rest (rad), NaN where the bond slips.
+// Two elements: one is held, a couple turns the other in growing steps. Returns the twist at rest (rad); NaN where
+// the bond slips.
 double twisted(const ParameterSet& set, double moment) {
   Chain c(set, 1);
   for (int k = 1; k <= increments; ++k) {
@@ -38,12 +38,12 @@ CaseResult run(const CaseContext& context) {
   result.checks.push_back(relative_check("moment at which a bond slips", found / units::nN_nm,
                                          theory / units::nN_nm, 0.05, "nN nm",
                                          "in 24 increments, each brought to rest"));
-  result.checks.push_back(information(absolute_check("moment on each tube that twists it by 10 degrees per element",
-                                                     theory * std::sin(10 * units::degree) / units::nN_nm,
-                                                     theory * 10 * units::degree / units::nN_nm, 0, "nN nm",
-                                                     "the bond's sine against a rod: 0.5 % less at 10 degrees")));
+  result.checks.push_back(information(absolute_check(
+      "moment on a tube at a twist of 10 degrees per element", theory * std::sin(10 * units::degree) / units::nN_nm,
+      theory * 10 * units::degree / units::nN_nm, 0, "nN nm",
+      "the torque of a bond is a sine, 0.5 % below that of a rod at 10 degrees")));
   result.limits.push_back({"moment at which a bond slips", found / units::nN_nm, theory / units::nN_nm, "nN nm",
-                           Limit::Guard::stopped, "a bond twisted by 90 degrees, with its element"});
+                           Limit::Guard::stopped, "a bond twisted by 90 degrees; names its element"});
   CaseFigure figure;
   figure.chart = {"Torque of a bond", {"twist of the bond", "degrees"}, {"moment", "nN nm"}, {}, {}};
   std::vector<double> angle, moment;
@@ -54,25 +54,28 @@ CaseResult run(const CaseContext& context) {
   figure.chart.lines.push_back(theory_curve(
       "GJ/a sin", [&](double x) { return theory * std::sin(x * units::degree) / units::nN_nm; }, 0, 180, 0));
   figure.chart.lines.push_back(model_points("at rest under a couple", angle, moment, 1));
-  figure.caption = "Beyond 90 degrees there is no rest: the bond slips.";
+  figure.caption = "Beyond 90 degrees no angle is at rest: the bond slips.";
   result.figures.push_back(figure);
-  result.remarks.push_back("A run stops before a bond slips, and names the element.");
+  result.remarks.push_back("A run stops before a bond slips and names the element.");
   result.sources.push_back(set_name);
   return result;
 }
 
+const RegisteredCase registered([] {
+  Case c;
+  c.name = "limit-bond-slip";
+  c.group = Case::Group::stability;
+  c.order = 40;
+  c.title = "Moment at which a bond slips";
+  c.why =
+      "The torque of a bond is a sine of its twist. Beyond 90 degrees the bond would lose a turn without notice.";
+  c.setup = "Two elements. One is held; a couple turns the other in small increments until the simulator stops.";
+  c.oracle = "M = GJ/a, the largest torque of the bond.";
+  c.literature = "V. A. Kuzkin, I. E. Asonov, Phys. Rev. E 86, 051301 (2012), DOI 10.1103/PhysRevE.86.051301";
+  c.run = run;
+  c.turns_red = {wrong_GJ(0.9)};
+  return c;
+});
+
 }  // namespace
-
-Case limit_bond_slip_case() {
-  return {"limit-bond-slip",
-          Case::Group::stability,
-          Case::Tier::quick,
-          "Moment at which a bond slips",
-          "The torque of a bond is a sine of its twist: beyond 90 degrees it would forget a turn, silently.",
-          "Two elements, one held, the other turned by a couple in small increments until the simulator stops.",
-          "M = GJ/a, the largest torque of the bond.",
-          "V. A. Kuzkin, I. E. Asonov, Phys. Rev. E 86, 051301 (2012), DOI 10.1103/PhysRevE.86.051301",
-          run};
-}
-
 }  // namespace ropewalk

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cases/common/limits.hpp"
+#include "cases/common/stability_limit.hpp"
 
 namespace ropewalk {
 namespace {
@@ -12,8 +12,8 @@ namespace {
 constexpr const char* set_name = "cnt-10-10-tersoff";
 constexpr int bonds = 40;
 
-// Velocity Verlet with explicit damping leaves the stable range where dt^2 K + 2 dt D has the eigenvalue 4, K and D
-// the stiffness and the damping of the chain over its masses: here for every wave number, and lengthwise and in
+// Velocity Verlet with explicit damping becomes unstable where dt^2 K + 2 dt D has the eigenvalue 4, with K and D
+// the stiffness and the damping of the chain over its masses. Takes every wave number of bending, and stretch and
 // twist.
 double theory(const ParameterSet& set, double rate) {
   const double a = set.element_length, mass = set.element_mass(a), inertia = set.element_inertia(a);
@@ -52,21 +52,22 @@ CaseResult run(const CaseContext& context) {
     length.push_back(o.element_length);
     limit.push_back(found(m, 0));
     result.checks.push_back(relative_check(fmt::format("largest step, elements of {:.2f} nm", o.element_length),
-                                           limit.back(), theory(o, 0), 0.05, "fs", "a chain of 41, not endless"));
+                                           limit.back(), theory(o, 0), 0.05, "fs",
+                                           "a chain of 41 elements, not an endless one"));
     result.limits.push_back(
         {fmt::format("time step, single tube, elements of {:.2f} nm", o.element_length), limit.back(), theory(o, 0),
          "fs", Limit::Guard::refused,
-         "a typed step above the estimate; `auto` takes 0.9 of it in cold scenes, 0.6 in others"});
+         "a time step above the estimate; `auto` takes 0.9 of it in cold scenes, 0.6 in others"});
   }
   std::vector<double> rates = {5, 20, 60}, damped;
   for (const double rate : rates) {
     damped.push_back(found(model, rate));
     result.checks.push_back(relative_check(fmt::format("largest step, bonds damped by {:.0f}/ps", rate),
                                            damped.back(), theory(oracle, rate), 0.05, "fs",
-                                           "a chain of 41, not endless"));
+                                           "a chain of 41 elements, not an endless one"));
     result.limits.push_back({fmt::format("time step, bonds damped by {:.0f}/ps", rate), damped.back(),
                              theory(oracle, rate), "fs", Limit::Guard::refused,
-                             "a typed step above the estimate, which counts the damping"});
+                             "a time step above the estimate, which includes the damping"});
   }
   CaseFigure lengths;
   lengths.chart = {
@@ -77,8 +78,8 @@ CaseResult run(const CaseContext& context) {
       length.back(), 0));
   lengths.chart.lines.push_back(model_points("by bisection", length, limit, 1));
   lengths.caption =
-      "Above the line a run blows up. The step grows with the element length, so that elements twice as "
-      "long cost a quarter.";
+      "Above the line a run blows up. The step grows with the element length: elements twice as long cost a "
+      "quarter.";
   result.figures.push_back(lengths);
   CaseFigure damping;
   damping.chart = {
@@ -86,34 +87,36 @@ CaseResult run(const CaseContext& context) {
   damping.chart.lines.push_back(theory_curve(
       "dt^2 K + 2 dt D = 4", [&](double rate) { return theory(oracle, rate); }, 0, 80, 0));
   damping.chart.lines.push_back(model_points("by bisection", rates, damped, 1));
-  damping.caption = "Explicit damping takes from the step.";
+  damping.caption = "Explicit damping lowers the largest step.";
   result.figures.push_back(damping);
   result.remarks.push_back(
-      "`run` refuses a typed step above its own estimate of this limit; untyped it takes 0.9 of it in cold scenes "
-      "and 0.6 in others. Above some "
-      "10/ps it is the damping that sets the step: all elements turning alike against their lever arms are damped "
-      "more strongly than opposite neighbours.");
+      "`run` refuses a time step above its own estimate of this limit; by default it takes 0.9 of the estimate in "
+      "cold scenes and 0.6 in others. Above some 10/ps the damping sets the step: a turn of all elements alike, "
+      "with their lever arms, is damped more strongly than one of neighbours in opposite directions.");
   result.sources.push_back(set_name);
   return result;
 }
 
-}  // namespace
-
-Case limit_chain_step_case() {
-  return {
-      "limit-chain-step",
-      Case::Group::stability,
-      Case::Tier::quick,
-      "Largest time step of a single tube",
-      "A step that is too large blows a run up; one that is too small wastes it. The default is 0.9 of the limit "
-      "where a scene starts cold, 0.6 elsewhere.",
-      "A free straight tube of 41 elements, shaken by 1e-6 nm/ps; the step at which 500 steps blow it up, by "
-      "bisection to a thousandth.",
+const RegisteredCase registered([] {
+  Case c;
+  c.name = "limit-chain-step";
+  c.group = Case::Group::stability;
+  c.order = 10;
+  c.title = "Largest time step of a single tube";
+  c.why =
+      "Too large a step blows a run up; too small a step wastes time. The default is 0.9 of the limit where a "
+      "scene starts cold and 0.6 elsewhere.";
+  c.setup =
+      "A free straight tube of 41 elements with random velocities of 1e-6 nm/ps. Bisection finds, to a thousandth, "
+      "the step at which it blows up within 500 steps.";
+  c.oracle =
       "Velocity Verlet with explicit damping is stable while dt^2 K + 2 dt D stays below 4 for every wave number "
-      "of an "
-      "endless chain, K its stiffness and D its damping over the masses; undamped, dt < 2/w.",
-      "L. Verlet, Phys. Rev. 159, 98 (1967), DOI 10.1103/PhysRev.159.98",
-      run};
-}
+      "of an endless chain, with K its stiffness and D its damping over the masses. Undamped, dt < 2/w.";
+  c.literature = "L. Verlet, Phys. Rev. 159, 98 (1967), DOI 10.1103/PhysRev.159.98";
+  c.run = run;
+  c.turns_red = {wrong_stiffnesses(1.2)};
+  return c;
+});
 
+}  // namespace
 }  // namespace ropewalk

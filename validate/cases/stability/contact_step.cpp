@@ -1,8 +1,8 @@
 // The largest stable time step of a rope whose tubes touch.
 #include <cmath>
 
-#include "cases/common/chains_contact.hpp"
-#include "cases/common/limits.hpp"
+#include "cases/common/bundle.hpp"
+#include "cases/common/stability_limit.hpp"
 
 namespace ropewalk {
 namespace {
@@ -31,7 +31,7 @@ CaseResult run(const CaseContext& context) {
       relative_check("what `auto` takes for it", estimate / units::fs, theory / units::fs, 0.05, "fs",
                      "plane waves of an endless rope, its contact pressed to 98.5 % of the spacing"));
   result.limits.push_back({"time step, seven tubes at rest", found / units::fs, theory / units::fs, "fs",
-                           Limit::Guard::refused, "a typed step above the estimate for tubes pressed together"});
+                           Limit::Guard::refused, "a time step above the estimate for tubes pressed together"});
   CaseFigure figure;
   figure.chart = {
       "Growth of a disturbance by time step", {"time step", "fs"}, {"log10 of the energy's growth", ""}, {}, {}};
@@ -43,31 +43,34 @@ CaseResult run(const CaseContext& context) {
   figure.chart.lines.push_back(model_points("after 200 steps or at 10^6", step, grown, 1));
   figure.chart.lines.push_back(
       {"2/w of the stiffest mode", {theory / units::fs, theory / units::fs * 1.00001}, {0, 7}, 0, true});
-  figure.caption = "Below the limit a disturbance stays what it is, above it grows with every step.";
+  figure.caption = "Below the limit a disturbance keeps its size; above it the disturbance grows with every step.";
   result.figures.push_back(figure);
   result.remarks.push_back(
-      "The stiffest motion is that along the tubes, in which the contact has no part: sideways the chains are "
-      "softer, and the contact, even pressed to 98.5 % of its spacing, does not make up for it. So `auto` may take "
-      "the step of a single tube.");
+      "The stiffest motion is along the tubes, where the contact does not act. Sideways the chains are softer, and "
+      "even a contact pressed to 98.5 % of its spacing does not make up for that. So `auto` may take the step of a "
+      "single tube.");
   result.sources.push_back(set_name);
   return result;
 }
 
+const RegisteredCase registered([] {
+  Case c;
+  c.name = "limit-contact-step";
+  c.group = Case::Group::stability;
+  c.order = 20;
+  c.title = "Largest time step of a rope";
+  c.why = "Tubes that are pressed together are stiff against one another, which may lower the largest step.";
+  c.setup =
+      "Seven tubes of eight elements at rest with the line law, undamped, with random velocities of 1e-6 nm/ps. "
+      "Bisection finds the step at which they blow up within 500 steps.";
+  c.oracle =
+      "2/w, with w^2 the largest eigenvalue of the stiffness of the whole rope over its masses, from differences "
+      "of all forces.";
+  c.literature = "L. Verlet, Phys. Rev. 159, 98 (1967), DOI 10.1103/PhysRev.159.98";
+  c.run = run;
+  c.turns_red = {wrong_stiffnesses(1.2)};
+  return c;
+});
+
 }  // namespace
-
-Case limit_contact_step_case() {
-  return {
-      "limit-contact-step",
-      Case::Group::stability,
-      Case::Tier::quick,
-      "Largest time step of a rope",
-      "Tubes that are pressed together are stiff against one another, and may take their part of the step.",
-      "Seven tubes of eight elements at rest under the line law, undamped, shaken by 1e-6 nm/ps; the step at which "
-      "500 steps blow them up, by bisection.",
-      "2/w, w^2 the largest eigenvalue of the stiffness of the whole rope over its masses, by differences of all "
-      "forces.",
-      "L. Verlet, Phys. Rev. 159, 98 (1967), DOI 10.1103/PhysRev.159.98",
-      run};
-}
-
 }  // namespace ropewalk

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cases/common/chains_contact.hpp"
-#include "cases/common/limits.hpp"
+#include "cases/common/bundle.hpp"
+#include "cases/common/stability_limit.hpp"
 #include "scene/build.hpp"
 #include "scene/random.hpp"
 
@@ -50,7 +50,8 @@ Bundle packed(const Series& s, ParameterSet set, double factor) {
   return b;
 }
 
-// From a little disorder: strongly bound short tubes are not at rest side by side, and only a disturbance shows it.
+// Starts from a little disorder. Strongly bound short tubes side by side are not in a minimum, and only a
+// disturbance shows it.
 Bundle bundle_at_rest(const Series& s, const ParameterSet& set, double factor) {
   Bundle b = packed(s, set, factor);
   Random random(7);
@@ -61,7 +62,7 @@ Bundle bundle_at_rest(const Series& s, const ParameterSet& set, double factor) {
   return b;
 }
 
-// Viscosity at the contact, explicit as all damping, takes from the step too. Returns the smallest limit over
+// Viscosity at the contact is explicit, as all damping, and lowers the step too. Returns the smallest limit over
 // estimate.
 double check_viscosity(const CaseContext& context, CaseResult& result) {
   const Series s = all_series().front();
@@ -88,14 +89,15 @@ double check_viscosity(const CaseContext& context, CaseResult& result) {
     estimates.push_back(estimate / units::fs);
     const std::string name = fmt::format("line law, viscosity {:.0f} eV ps/nm^2", eta);
     result.checks.push_back(
-        relative_check(name, limit.back(), expected.back(), 0.05, "fs", "20 is what a scene has by default"));
+        relative_check(name, limit.back(), expected.back(), 0.05, "fs", "a scene has 20 by default"));
     result.limits.push_back({"time step, seven tubes, " + name, limit.back(), expected.back(), "fs",
-                             Limit::Guard::refused, "a typed step above the estimate, which counts the viscosity"});
+                             Limit::Guard::refused,
+                             "a time step above the estimate, which includes the viscosity"});
   }
   figure.chart.lines.push_back({"dt^2 K + 2 dt D = 4", at, expected, 0});
   figure.chart.lines.push_back(model_points("by bisection", at, limit, 1));
   figure.chart.lines.push_back({"estimate of `run`", at, estimates, 2, true});
-  figure.caption = "The estimate expects a tube with six neighbours in an endless rope under load, and lies below.";
+  figure.caption = "The estimate is lower: it is that of a tube with six neighbours in an endless rope under load.";
   result.figures.push_back(figure);
   return margin;
 }
@@ -128,47 +130,48 @@ CaseResult run(const CaseContext& context) {
                                              expected.back(), 0.05, "fs", "seven tubes of four elements at rest"));
     }
     result.limits.push_back({fmt::format("time step, seven tubes, {}", s.name), limit.front(), expected.front(),
-                             "fs", Limit::Guard::refused, "a typed step above the estimate"});
+                             "fs", Limit::Guard::refused, "a time step above the estimate"});
     ChartLine theory{"2/w, " + s.name, at, expected, colour};
     map.chart.lines.push_back(theory);
     map.chart.lines.push_back(model_points("by bisection", at, limit, colour));
     ++colour;
   }
   map.caption =
-      "Points by bisection, lines joining what the eigenvalues give. Where a line begins to fall, the contact "
-      "takes "
-      "over from the chains.";
+      "Points: by bisection. Lines: by the eigenvalues. Where a line begins to fall, the contact becomes stiffer "
+      "than the chains.";
   result.figures.push_back(map);
   least_margin = std::min(least_margin, check_viscosity(context, result));
-  // The estimate that `run` goes by must never lie above what is stable.
+  // The estimate of `run` must never lie above the stable step.
   result.checks.push_back(
       absolute_check("estimates of `run` above the limit", least_margin < 1 ? 1 : 0, 0, 0, "", "0: none of these"));
   result.checks.push_back(
       information(absolute_check("smallest limit over estimate", least_margin, 1, 0, "",
                                  "`auto` takes 0.9 of the estimate in cold scenes, 0.6 in others")));
   result.remarks.push_back(
-      "A contact many times as strong as that of the sets stands for tubes that are pressed together: at rest none "
-      "of "
-      "the shipped ones takes from the step.");
+      "A contact many times as strong as that of the sets stands for tubes that are pressed together. At rest, the "
+      "contact of no shipped set lowers the step.");
   result.sources = {"cnt-10-10-tersoff", "cnt-10-10-paper"};
   return result;
 }
 
+const RegisteredCase registered([] {
+  Case c;
+  c.name = "limit-contact-stiffness";
+  c.group = Case::Group::stability;
+  c.order = 50;
+  c.title = "Largest time step by law, element length and stiffness";
+  c.why =
+      "A run must know its largest step before it begins: for every law and element length, and also where the "
+      "contact is stiffer than the tubes.";
+  c.setup =
+      "Seven tubes of four elements at rest, undamped, with random velocities of 1e-6 nm/ps and a contact 1 to 256 "
+      "times as strong. Bisection finds the step at which they blow up within 500 steps.";
+  c.oracle = "2/w, with w^2 the largest eigenvalue of the stiffness of the whole rope over its masses.";
+  c.literature = "L. Verlet, Phys. Rev. 159, 98 (1967), DOI 10.1103/PhysRev.159.98";
+  c.run = run;
+  c.turns_red = {wrong_contact(2)};
+  return c;
+});
+
 }  // namespace
-
-Case limit_contact_stiffness_case() {
-  return {
-      "limit-contact-stiffness",
-      Case::Group::stability,
-      Case::Tier::quick,
-      "Largest time step by law, element length and stiffness",
-      "The step must be known for every law and element length before a run begins, and also where the contact is "
-      "stiffer than the tubes.",
-      "Seven tubes of four elements at rest, undamped, shaken by 1e-6 nm/ps; the step at which 500 steps blow them "
-      "up, by bisection; with the contact 1 to 256 times as strong.",
-      "2/w, w^2 the largest eigenvalue of the stiffness of the whole rope over its masses.",
-      "L. Verlet, Phys. Rev. 159, 98 (1967), DOI 10.1103/PhysRev.159.98",
-      run};
-}
-
 }  // namespace ropewalk

@@ -6,8 +6,8 @@
 #include <functional>
 #include <utility>
 
-#include "cases/common/chains_contact.hpp"
-#include "cases/common/limits.hpp"
+#include "cases/common/bundle.hpp"
+#include "cases/common/stability_limit.hpp"
 #include "sim/forces/forces.hpp"
 
 namespace ropewalk {
@@ -15,7 +15,7 @@ namespace {
 
 constexpr const char *line_set = "cnt-10-10-tersoff", *paper_set = "cnt-10-10-paper";
 
-// Energy (eV) at a place of a path, and its slope by force or torque.
+// Energy (eV) at a point of a path, and its slope by force or torque.
 struct Point {
   double energy = 0, slope = 0;
 };
@@ -30,8 +30,8 @@ class Pair {
     topology_.add_tube(elements);
   }
 
-  // The second tube's centre lies at `centre`, its axis at `angle` to that of the first, z, in the plane of y and
-  // z.
+  // The first tube lies along z. The second has its centre at `centre` and its axis at `angle` to z in the plane of
+  // y and z.
   void put(const Vector3& centre, double angle) {
     const double a = topology_.types[0].element_length;
     const Vector3 axis(0, -std::sin(angle), std::cos(angle));
@@ -97,7 +97,8 @@ struct Smoothness {
 
 constexpr double narrowest = 1e-9;  // rad, nm
 
-// Halves the interval, each time to the half in which the value changes more. `change` of two places.
+// Halves the interval repeatedly and keeps the half in which the value changes more; `change` is that between two
+// points.
 std::pair<double, double> largest_jump(const std::function<double(double)>& value, double a, double b) {
   double at_a = value(a), at_b = value(b);
   while (b - a > narrowest) {
@@ -124,7 +125,7 @@ Smoothness smoothness(const Path& path, double from, double to, int steps) {
     out.steepest = std::max(out.steepest, std::fabs(points.back().slope));
   }
   if (!out.finite) return out;
-  // The intervals in which energy or slope change most against what their neighbours say, some of each.
+  // Some of the intervals in which energy or slope change most, compared with their neighbours.
   std::vector<std::pair<double, int>> energy, slope;
   for (int k = 0; k < steps; ++k) {
     const Point &a = points[static_cast<std::size_t>(k)], &b = points[static_cast<std::size_t>(k + 1)];
@@ -151,7 +152,7 @@ Smoothness smoothness(const Path& path, double from, double to, int steps) {
   return out;
 }
 
-// --- The paper law as published, written down a second time ---
+// --- A second implementation of the paper law, as published ---
 
 // Centre line against the bisector of the axes, and the angle between these, both by arc cosines.
 double published_energy(const PaperContact& c, const Vector3& separation, const Vector3& ni, const Vector3& nj) {
@@ -189,7 +190,7 @@ struct Named {
   double from, to;
 };
 
-// Everything in the way of one law.
+// All paths for one law.
 void check_law(const std::string& law, const std::vector<Named>& paths, CaseResult& result) {
   bool finite = true;
   double gradient = 0, jump = 0, kink = 0, highest = 0;
@@ -212,7 +213,7 @@ void check_law(const std::string& law, const std::vector<Named>& paths, CaseResu
                                          "over the largest on the path"));
 }
 
-// `overlap`: how near to each other the centres of two elements in one line come.
+// `overlap`: the smallest distance of the centres of two elements in one line.
 std::vector<Named> paths_of(Pair& rows, Pair& single, double spacing, double overlap) {
   const double right = 0.5 * units::pi;
   const Vector3 x = Vector3::UnitX(), z = Vector3::UnitZ(), none = Vector3::Zero();
@@ -241,15 +242,15 @@ void check_published_jump(const ParameterSet& model, const ParameterSet& oracle,
   };
   const double theory = std::fabs(by_hand(right + 1e-9) - by_hand(right - 1e-9));
   result.checks.push_back(relative_check("published form: angle at which it jumps", at * units::rad_in_degree, 90,
-                                         1e-4, "degrees", "the bisector goes over to the other pair of sides"));
+                                         1e-4, "degrees", "the bisector changes to the other pair of angles"));
   result.checks.push_back(relative_check("published form: height of the jump", jump, theory, 0.05, "eV",
-                                         "one pair, against the form written down a second time"));
+                                         "one pair, against a second implementation of the published form"));
   result.limits.push_back({"angle at which the published law jumps", at * units::rad_in_degree, 90, "degrees",
                            Limit::Guard::none, "not needed: blended within 10 degrees, with exact forces"});
 }
 
-// Two elements in one line, shifted by one spacing of their nodes: all nodes but one lie on one another, and as
-// they pass, their forces turn round. u'(0), of the parabola that continues u below the core gap, by hand.
+// Two elements in one line, shifted by one spacing of their nodes: all nodes but one coincide, and their forces
+// change sign as they pass. Theory is u'(0) of the parabola that continues u below the core gap.
 void check_coinciding_nodes(Pair& single, const ParameterSet& oracle, CaseResult& result) {
   const LineContact law = line_contact_of(oracle);
   const LineDensity& u = law.density;
@@ -266,7 +267,7 @@ void check_coinciding_nodes(Pair& single, const ParameterSet& oracle, CaseResult
   single.put({0, 0, at}, 0);
   result.checks.push_back(
       relative_check("line law, tubes inside one another in one line: shift at which nodes coincide", at, spacing,
-                     1e-3, "nm", "found as the largest jump of the force"));
+                     1e-3, "nm", "place of the largest jump of the force"));
   result.checks.push_back(relative_check("line law, nodes that coincide: jump of the force", jump, theory, 0.05,
                                          "eV/nm", fmt::format("at an energy of {:.3g} eV", single.energy())));
   result.limits.push_back({"jump of the line law's force where nodes coincide", jump, theory, "eV/nm",
@@ -312,34 +313,36 @@ CaseResult run(const CaseContext& context) {
   check_published_jump(paper, paper_oracle, result);
   result.figures.push_back(figure_of(line_rows, paper_rows, line_oracle, line_at, paper_at));
   result.remarks.push_back(
-      "Both laws are finite everywhere and push as their energy says: tubes in one line, on one another and at a "
-      "right angle included. Where nodes of tubes that lie inside one another in one line coincide, the force of "
-      "the "
-      "line law turns round; no run gets there. The published form of the paper law jumps at a right angle "
-      "wherever "
-      "the line of centres is not normal to both axes, and has no value for tubes in one line once rounding takes "
-      "the argument of an arc cosine above one.");
+      "Both laws are finite everywhere, and their forces are the gradient of their energy, also for tubes in one "
+      "line, on one another and at a right angle. Where tubes lie inside one another in one line and their nodes "
+      "coincide, the force of the line law changes sign; no run gets there. The published form of the paper law "
+      "jumps at a right angle wherever the line of centres is not normal to both axes. For tubes in one line it "
+      "has no value once rounding takes the argument of an arc cosine above one.");
   result.sources = {line_set, paper_set};
   return result;
 }
 
-}  // namespace
-
-Case limit_crossing_case() {
-  return {
-      "limit-crossing",
-      Case::Group::stability,
-      Case::Tier::quick,
-      "Crossing angle and collinear tubes",
-      "A jump of the energy is work from nowhere, and a force that is not finite ends a run.",
-      "Two tubes of nine elements and of one, turned from -6 to 101 degrees and pushed along and through one "
-      "another; in the intervals with the largest change the interval is halved until 1e-9 is left, and what is "
-      "left of the change is a jump.",
-      "No jumps; forces and torques are the differences of the energy; E90 by quadrature of the line density; "
-      "the published law written down a second time, with its jump at 90 degrees.",
+const RegisteredCase registered([] {
+  Case c;
+  c.name = "limit-crossing";
+  c.group = Case::Group::stability;
+  c.order = 70;
+  c.title = "Crossing angle and collinear tubes";
+  c.why = "A jump of the energy adds energy without work, and a force that is not finite ends a run.";
+  c.setup =
+      "Two tubes of nine elements or of one are turned from -6 to 101 degrees and pushed along and through one "
+      "another. The intervals with the largest change are halved down to 1e-9; a change that is left there is a "
+      "jump.";
+  c.oracle =
+      "No jumps. Forces and torques equal differences of the energy. E90 by quadrature of the line density. A "
+      "second implementation of the published law, with its jump at 90 degrees.";
+  c.literature =
       "I. Ostanin, R. Ballarini, D. Potyondy, T. Dumitrica, J. Mech. Phys. Solids 61, 762 (2013), DOI "
-      "10.1016/j.jmps.2012.10.016",
-      run};
-}
+      "10.1016/j.jmps.2012.10.016";
+  c.run = run;
+  c.turns_red = {wrong_contact(2), without_torque()};
+  return c;
+});
 
+}  // namespace
 }  // namespace ropewalk

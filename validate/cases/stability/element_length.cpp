@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cases/common/chains_contact.hpp"
-#include "cases/common/limits.hpp"
+#include "cases/common/bundle.hpp"
+#include "cases/common/stability_limit.hpp"
 #include "scene/build.hpp"
 #include "sim/forces/forces.hpp"
 
@@ -28,8 +28,7 @@ double bend_of_bond(const ParameterSet& set, double m) {
   return std::atan2(first.cross(last).norm(), first.dot(last)) / bonds;
 }
 
-// The angle per bond at which the tube's stiffness against bending, moment over curvature, is off by `allowed` from
-// the rod's EI.
+// The angle per bond at which moment over curvature differs from the rod's EI by the fraction `allowed`.
 double bend_limit(const ParameterSet& model, const ParameterSet& oracle, double allowed) {
   const double over = model.bond.bend / oracle.bond.bend;
   const auto fails = [&](double m) { return std::fabs(m * over / bend_of_bond(model, m) - 1) > allowed; };
@@ -37,7 +36,8 @@ double bend_limit(const ParameterSet& model, const ParameterSet& oracle, double 
   return std::isnan(m) ? m : bend_of_bond(model, m);
 }
 
-// The same of a polygon whose chords lie at half the angle to both axes: dU/d(delta) of its bond over delta EI/a.
+// That difference for a polygon, whose chords lie at half the angle to both axes: dU/d(delta) of a bond over delta
+// EI/a, minus 1.
 double polygon_error(double shear_share, double delta) {
   const double shear = 24 * shear_share * std::pow(std::sin(delta / 4), 3) * std::cos(delta / 4);
   return (std::sin(delta) + shear) / delta - 1;
@@ -66,7 +66,7 @@ void check_bending(const CaseContext& context, CaseResult& result) {
       if (t.factor == 1 && allowed < 0.02)
         result.limits.push_back({fmt::format("curvature times element length, 1 % in EI, {}", t.set), found, theory,
                                  "rad", Limit::Guard::told,
-                                 "elements so long that it is passed before the tube kinks"});
+                                 "elements so long that they pass this before the tube kinks"});
     }
 }
 
@@ -90,9 +90,8 @@ CaseFigure bending_figure(const CaseContext& context) {
     ++colour;
   }
   figure.caption =
-      "Moment over curvature against EI. Without shear (paper) bonds stiffen, with it they soften; the leading "
-      "term is "
-      "drawn, the checks take all of it.";
+      "Moment over curvature against EI. Bonds without shear (paper) stiffen, bonds with shear soften. The curve "
+      "is the leading term; the checks use the whole expression.";
   return figure;
 }
 
@@ -120,7 +119,7 @@ class Slide {
     engine.compute(topology_, in_, list, s, f);
     return f.energy.vdw;
   }
-  // Highest less lowest energy per length (eV/nm) over a period.
+  // Highest minus lowest energy per length (eV/nm) over a period.
   double corrugation(double period) const {
     double low = 1e9, high = -1e9;
     for (int k = 0; k < 8; ++k) {
@@ -153,8 +152,8 @@ double paper_corrugation(const ParameterSet& set, double length, double distance
   return Slide(in, length, distance).corrugation(length);
 }
 
-// Poisson's sum: the energy of a row of period d is the transform of one pair's energy at the multiples of 2 pi/d;
-// the first of them sets the corrugation, highest less lowest 4 F(2 pi/d) per length.
+// Poisson's summation formula: the energy of a row of period d has the Fourier transform F of one pair's energy at
+// the multiples of 2 pi/d. The first of them sets the corrugation, 4 F(2 pi/d) per length.
 double transform(const std::function<double(double)>& pair, double reach, double wave) {
   return 2 * detail::simpson([&](double z) { return pair(z) * std::cos(wave * z); }, 0, reach, 4000);
 }
@@ -190,7 +189,7 @@ void check_nodes(const CaseContext& context, CaseResult& result) {
                                            theory / distance, 0.05, "", "line law, parallel rows"));
     result.limits.push_back({"node spacing over tube distance, corrugation 1e-3, " + where, found / distance,
                              theory / distance, "", Limit::Guard::told,
-                             "fewer nodes than keep it below 1e-3; the default has more"});
+                             "fewer nodes than 1e-3 takes; the default has more"});
     std::vector<double> at, log;
     for (double d = 0.4; d < 1.05; d += 0.1) {
       at.push_back(distance / d);
@@ -203,7 +202,8 @@ void check_nodes(const CaseContext& context, CaseResult& result) {
     ++colour;
   }
   figure.caption =
-      "Falls exponentially with the number of nodes per tube distance. The default spacing is a seventh of it.";
+      "The corrugation falls exponentially with the number of nodes per tube distance. The default spacing is a "
+      "seventh of that distance.";
   result.figures.push_back(figure);
   const int taken = line_nodes(oracle.element_length, well.distance, oracle.line->density.contact);
   result.checks.push_back(information(
@@ -232,7 +232,7 @@ void check_paper(const CaseContext& context, CaseResult& result) {
         fmt::format("{} element of the paper law, corrugation 1e-2", longer ? "longest" : "shortest");
     result.checks.push_back(relative_check(name, found, theory, 2e-3, "nm", "one point per element"));
     result.limits.push_back(
-        {name, found, theory, "nm", Limit::Guard::refused, "any element length but the set's, 1.356 nm"});
+        {name, found, theory, "nm", Limit::Guard::refused, "any element length other than the set's, 1.356 nm"});
   }
 }
 
@@ -243,33 +243,36 @@ CaseResult run(const CaseContext& context) {
   check_nodes(context, result);
   check_paper(context, result);
   const ParameterSet set = context.parameters(line_set);
-  result.remarks.push_back(
-      fmt::format("At the curvature at which the tube kinks, {:.3g}/nm, an element of its set is bent by {:.2f} "
-                  "rad only: the tube "
-                  "fails before its elements do. Longer elements are told of where that is not so.",
-                  set.validity.kink_curvature, set.validity.kink_curvature * set.element_length));
+  result.remarks.push_back(fmt::format(
+      "At the curvature at which the tube kinks, {:.3g}/nm, an element of its set is bent by only {:.2f} rad: the "
+      "tube fails before its elements do. A run warns of elements so long that this does not hold.",
+      set.validity.kink_curvature, set.validity.kink_curvature * set.element_length));
   result.sources = {line_set, paper_set};
   return result;
 }
 
+const RegisteredCase registered([] {
+  Case c;
+  c.name = "limit-element-length";
+  c.group = Case::Group::stability;
+  c.order = 60;
+  c.title = "Element length and node spacing";
+  c.why =
+      "Elements that are too long do not have the bending stiffness of the tube. Nodes too far apart make tubes "
+      "catch on one another as they slide.";
+  c.setup =
+      "A tube of five elements, held at one end and bent by a couple at the other, at rest: bisection finds the "
+      "bend per element at which moment over curvature is 1 % and 5 % off. An element that slides along a row: "
+      "bisection finds the node spacing at which the corrugation passes a threshold.";
+  c.oracle =
+      "A bond of a polygon has M = EI/a (sin d + 24 s sin^3(d/4) cos(d/4)), that is 1 + (3 s/8 - 1/6) d^2 times "
+      "the rod's moment to leading order. The corrugation follows from Poisson's summation formula, with the "
+      "Fourier transform of the energy of one pair.";
+  c.literature = "V. A. Kuzkin, I. E. Asonov, Phys. Rev. E 86, 051301 (2012), DOI 10.1103/PhysRevE.86.051301";
+  c.run = run;
+  c.turns_red = {wrong_EI(1.1), wrong_contact(2)};
+  return c;
+});
+
 }  // namespace
-
-Case limit_element_length_case() {
-  return {
-      "limit-element-length",
-      Case::Group::stability,
-      Case::Tier::quick,
-      "Element length and node spacing",
-      "Elements that are too long bend with another stiffness than the tube; nodes too far apart make tubes catch "
-      "on one another as they slide.",
-      "A tube of five elements, held at one end and bent by a couple at the other, at rest: the bend per element "
-      "at "
-      "which moment over curvature is 1 % and 5 % off. An element that slides along a row: the spacing at which "
-      "the corrugation passes a threshold. Both by bisection.",
-      "The bond of a polygon, M = EI/a (sin d + 24 s sin^3(d/4) cos(d/4)), 1 + (3 s/8 - 1/6) d^2 of the rod's; "
-      "Poisson's sum, by quadrature of the transform of the energy of one pair.",
-      "V. A. Kuzkin, I. E. Asonov, Phys. Rev. E 86, 051301 (2012), DOI 10.1103/PhysRevE.86.051301",
-      run};
-}
-
 }  // namespace ropewalk

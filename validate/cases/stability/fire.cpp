@@ -1,9 +1,9 @@
-// Where a relaxation takes a saddle for rest, and where it does not come to rest.
+// Where a relaxation takes a saddle for a minimum, and where it runs out of steps.
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
-#include "cases/common/limits.hpp"
+#include "cases/common/stability_limit.hpp"
 
 namespace ropewalk {
 namespace {
@@ -38,7 +38,7 @@ Rest relaxed(const Column& c, double tolerance, long most) {
   return r;
 }
 
-// pi^2 EI/4L^2, and what shear takes from it (Engesser).
+// pi^2 EI/(4 L^2), lowered by shear (Engesser).
 double buckling_load(const ParameterSet& set) {
   const double length = bonds * set.element_length;
   const double euler = units::pi * units::pi * set.bond.bend / (4 * length * length);
@@ -75,7 +75,7 @@ void displace(State& state, const Mode& mode, double by) {
   }
 }
 
-// The load at which a column that is a picometre beside its axis gives way.
+// The buckling load (eV/nm) of a column that starts a picometre off its axis.
 double load_found(const ParameterSet& model, const ParameterSet& oracle) {
   const double about = buckling_load(oracle);
   const auto fails = [&](double load) {
@@ -86,7 +86,7 @@ double load_found(const ParameterSet& model, const ParameterSet& oracle) {
   return limit_between(fails, 0.7 * about, 1.5 * about, 5e-3);
 }
 
-// The smallest bow (nm at the tip) that a relaxation to `tolerance` leaves the straight line from.
+// The smallest initial bow (nm at the tip) from which a relaxation to `tolerance` leaves the straight line.
 double smallest_bow(const ParameterSet& model, double load, double tolerance) {
   const Column straight(model, load);
   const Mode mode = softest_mode(model, straight.chain.state);
@@ -98,7 +98,7 @@ double smallest_bow(const ParameterSet& model, double load, double tolerance) {
   return limit_between(leaves, 1e-7, 0.1, 1e-3);
 }
 
-// The bow whose largest force, of the softest mode of the oracle's bonds, is the tolerance.
+// The bow whose largest force along the softest mode of the oracle's bonds equals the tolerance.
 double bow_in_theory(const ParameterSet& oracle, double load, double tolerance) {
   const Mode mode = softest_mode(oracle, Column(oracle, load).chain.state);
   double largest = 0;
@@ -114,17 +114,17 @@ CaseResult run(const CaseContext& context) {
   result.checks.push_back(relative_check("load at which a relaxed column gives way", found, theory, 0.05, "eV/nm",
                                          "from a bow of 1 pm"));
   result.limits.push_back({"load at which relaxation leaves a column", found, theory, "eV/nm", Limit::Guard::none,
-                           "not needed: it is the physics of the column"});
+                           "not needed: this is the physics of the column"});
 
   const double load = 1.2 * theory, tolerance = 1e-4;
   const Rest straight = relaxed(Column(model, load), tolerance, 20000);
-  result.checks.push_back(absolute_check("straight, 20 % above that load: bow when it says that it rests",
+  result.checks.push_back(absolute_check("straight, 20 % above that load: bow at which the relaxation ends",
                                          straight.tip, 0, 1e-9, "nm",
                                          straight.said ? "says that it is relaxed" : "says nothing"));
   const double bow = smallest_bow(model, load, tolerance), bow_theory = bow_in_theory(oracle, load, tolerance);
   result.checks.push_back(relative_check("smallest bow that leaves the saddle", 1e3 * bow, 1e3 * bow_theory, 0.05,
                                          "pm", "20 % above the load, tolerance 1e-4 eV/nm"));
-  result.limits.push_back({"bow below which a saddle passes for rest", 1e3 * bow, 1e3 * bow_theory, "pm",
+  result.limits.push_back({"bow below which a saddle is taken for rest", 1e3 * bow, 1e3 * bow_theory, "pm",
                            Limit::Guard::told, "the largest force and the tolerance; start with perturbation_nm"});
 
   // Near the load the softest motion becomes slow, and its forces small.
@@ -142,8 +142,8 @@ CaseResult run(const CaseContext& context) {
   displace(slow.chain.state, softest_mode(model, slow.chain.state), 0.1);
   const long few = std::lround(0.5 * steps.back());
   const Rest cut = relaxed(slow, 1e-6, few);
-  result.checks.push_back(absolute_check("steps run out: says that it rests (1: yes)", cut.said ? 1 : 0, 0, 0, "",
-                                         "2 % below the load, half of the steps it needs"));
+  result.checks.push_back(absolute_check("steps run out: reported as relaxed (1: yes)", cut.said ? 1 : 0, 0, 0, "",
+                                         "2 % below the load, with half of the steps that it needs"));
   CaseFigure figure;
   figure.chart = {
       "Steps of a relaxation near the buckling load", {"load over that of buckling", ""}, {"steps", ""}, {}, {}};
@@ -151,9 +151,9 @@ CaseResult run(const CaseContext& context) {
       "first point times (1 - P/Pc)^-1/2", [&](double x) { return steps.front() / std::sqrt(1 - x); }, 0, 0.98, 0));
   figure.chart.lines.push_back(model_points("until 1e-6 eV/nm", part, steps, 1));
   figure.caption =
-      "At first the steps grow with the period of the softest motion. Close to the load its forces are so small "
-      "that "
-      "they pass the tolerance before the column is straight, and the relaxation ends sooner than it should.";
+      "At first the number of steps grows with the period of the softest motion. Close to the load the forces of "
+      "this motion are so small that they fall below the tolerance before the column is straight: the relaxation "
+      "ends too early.";
   CaseFigure bows;
   bows.chart = {"Bow that is left when the relaxation ends",
                 {"load over that of buckling", ""},
@@ -163,34 +163,36 @@ CaseResult run(const CaseContext& context) {
   bows.chart.lines.push_back({"tolerance over the softest stiffness", part, allowed, 0});
   bows.chart.lines.push_back(model_points("at 1e-6 eV/nm", part, left, 1));
   bows.caption =
-      "A tolerance of the force allows a bow that grows as 1/(1 - P/Pc): what stalls is not the motion, it is the "
-      "measure.";
+      "A tolerance of the force allows a bow that grows as 1/(1 - P/Pc). The motion does not stall; the criterion "
+      "is met too early.";
   result.figures.push_back(figure);
   result.figures.push_back(bows);
   result.remarks.push_back(
-      "Forces vanish on a saddle as they do at rest: a perfectly straight tube above its buckling load is called "
-      "relaxed, and no tolerance helps. Give such a scene a perturbation. A relaxation that runs out of steps says "
-      "so, "
-      "with its largest force, and ends with exit code 4.");
+      "Forces vanish on a saddle as they do at rest. A perfectly straight tube above its buckling load counts as "
+      "relaxed at any tolerance; give such a scene a perturbation. A relaxation that runs out of steps reports its "
+      "largest force and ends with exit code 4.");
   result.sources.push_back(set_name);
   return result;
 }
 
+const RegisteredCase registered([] {
+  Case c;
+  c.name = "limit-fire";
+  c.group = Case::Group::stability;
+  c.order = 90;
+  c.title = "Where a relaxation stalls";
+  c.why = "A relaxation that stands still is not always in a minimum, and its report must not mislead.";
+  c.setup =
+      "A column of 13 elements, held at its foot and loaded at its tip. Bisection finds the load at which FIRE "
+      "leaves the straight line and, 20 % above that load, the smallest initial bow from which it does.";
+  c.oracle =
+      "Load: pi^2 EI/(4 L^2) with shear after Engesser. Bow: that whose force along the softest mode, by the "
+      "eigenvalue of the chain's stiffness, equals the tolerance.";
+  c.literature = "E. Bitzek et al., Phys. Rev. Lett. 97, 170201 (2006), DOI 10.1103/PhysRevLett.97.170201";
+  c.run = run;
+  c.turns_red = {wrong_EI(1.1)};
+  return c;
+});
+
 }  // namespace
-
-Case limit_fire_case() {
-  return {
-      "limit-fire",
-      Case::Group::stability,
-      Case::Tier::quick,
-      "Where a relaxation stalls",
-      "A relaxation that stands still is not always at rest in a minimum: what it says must not mislead.",
-      "A column of 13 elements held at its foot and pressed at its tip. The load at which FIRE leaves the straight "
-      "line, and the smallest bow from which it does so 20 % above that load, both by bisection.",
-      "pi^2 EI/4L^2 with Engesser's shear; the bow whose force along the softest mode, by the eigenvalue of the "
-      "chain's stiffness, is the tolerance.",
-      "E. Bitzek et al., Phys. Rev. Lett. 97, 170201 (2006), DOI 10.1103/PhysRevLett.97.170201",
-      run};
-}
-
 }  // namespace ropewalk

@@ -1,11 +1,11 @@
-// The list of neighbours and fast motion.
+// Whether fast motion makes the neighbour list miss a pair.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "cases/common/chains_contact.hpp"
-#include "cases/common/limits.hpp"
+#include "cases/common/bundle.hpp"
+#include "cases/common/stability_limit.hpp"
 #include "model/error.hpp"
 #include "sim/forces/forces.hpp"
 
@@ -15,7 +15,7 @@ namespace {
 constexpr const char* set_name = "cnt-10-10-tersoff";
 constexpr double time_step = 0.02;  // ps
 
-// Two elements in one line, just out of reach of each other, that come towards each other or turn.
+// Two elements in one line, just out of range of each other, that approach or turn.
 Bundle nose_to_nose(const ParameterSet& set, double gap, double speed, double spin) {
   Bundle b;
   b.topology = topology_of(set);
@@ -35,7 +35,7 @@ Bundle nose_to_nose(const ParameterSet& set, double gap, double speed, double sp
   return b;
 }
 
-// The same pair by pair, without a list.
+// The contact energy over all pairs, without a list.
 double energy_without_list(const Interaction& in, const Topology& topology, const State& state) {
   Forces f(state.size());
   compute_reference(topology, in, state, f);
@@ -74,8 +74,7 @@ double steps_per_build(const ParameterSet& model, double skin, double speed) {
   return static_cast<double>(steps) / static_cast<double>(s.list().builds() - before);
 }
 
-// How far the two may come towards each other while a list that nobody looks after still has the pair where it is
-// needed.
+// How far (nm) the two may approach before a list that is never rebuilt misses the pair.
 double stale_path(const ParameterSet& model, double skin) {
   const Bundle b = nose_to_nose(model, 1.0001 * skin, 0, 0);
   NeighbourList list(b.interaction, skin);
@@ -96,7 +95,7 @@ double stale_path(const ParameterSet& model, double skin) {
 CaseResult run(const CaseContext& context) {
   const ParameterSet model = context.model(set_name), oracle = context.parameters(set_name);
   CaseResult result;
-  // At the fastest that a run goes on with, half of it for each of the two; and turning.
+  // At the largest speed that does not stop a run, half of it for each element; and turning.
   const double fastest = 2 * 0.24 * oracle.radius / time_step, spin = 0.45 / time_step;
   Interaction reference;
   reference.line = {line_contact_of(oracle)};
@@ -114,11 +113,11 @@ CaseResult run(const CaseContext& context) {
     missed = std::max(missed, a.missed / a.largest);
     weakest = std::min(weakest, a.largest);
   }
-  result.checks.push_back(absolute_check("energy missed by the list, over the largest met", missed, 0, 1e-9, "1",
-                                         "at up to 16 km/s or 0.45 rad in a step, skins of 0.02 to 0.5 nm"));
-  result.checks.push_back(information(absolute_check("least of the largest energies met", weakest, 0, 0, "eV",
-                                                     "that there was something to miss")));
-  // A list that is not looked after.
+  result.checks.push_back(absolute_check("contact energy that the list misses, over the largest", missed, 0, 1e-9,
+                                         "1", "at up to 16 km/s or 0.45 rad in a step, skins of 0.02 to 0.5 nm"));
+  result.checks.push_back(information(absolute_check("smallest of the largest contact energies", weakest, 0, 0,
+                                                     "eV", "shows that there was a contact to miss")));
+  // A list that is never rebuilt.
   std::vector<double> skins = {0.1, 0.25, 0.5}, paths;
   for (const double skin : skins) {
     paths.push_back(stale_path(model, skin));
@@ -126,15 +125,16 @@ CaseResult run(const CaseContext& context) {
                                            paths.back(), skin, 0.05, "nm", "both have moved half of it"));
   }
   result.limits.push_back({"path until an old list misses a contact, skin 0.25 nm", paths[1], skins[1], "nm",
-                           Limit::Guard::none, "not needed: looked after before every force, at any speed"});
-  // What speed costs.
+                           Limit::Guard::none,
+                           "not needed: the list is checked before every force evaluation, at any speed"});
+  // The cost of speed.
   const double speed = 1.0;
   const double found = limit_between([&](double s) { return steps_per_build(model, s, speed) > 1.5; }, 1e-3, 0.2);
   const double theory = speed * time_step;  // each of the two moves at half the speed, and may move half the skin
   result.checks.push_back(relative_check("skin below which the list is built in every step", found, theory, 0.05,
                                          "nm", "1 km/s, steps of 20 fs"));
   result.limits.push_back({"skin below which every step builds the list, 1 km/s", found, theory, "nm",
-                           Limit::Guard::none, "not needed: slow, not wrong; the default is 0.25 nm"});
+                           Limit::Guard::none, "not needed: the run is slow, not wrong; the default is 0.25 nm"});
   CaseFigure figure;
   figure.chart = {"Steps between two builds of the list", {"speed of approach", "km/s"}, {"steps", ""}, {}, {}};
   std::vector<double> v, every;
@@ -145,33 +145,34 @@ CaseResult run(const CaseContext& context) {
   figure.chart.lines.push_back(theory_curve(
       "skin/(v dt)", [&](double x) { return std::max(1.0, 0.25 / (x * time_step)); }, 0.1, 2, 0));
   figure.chart.lines.push_back(model_points("counted, skin of 0.25 nm", v, every, 1));
-  figure.caption = "The list is built anew in the step in which an element has moved more than half the skin.";
+  figure.caption = "The list is rebuilt in the step in which an element has moved more than half the skin.";
   result.figures.push_back(figure);
   result.remarks.push_back(
-      "Fast motion costs builds and never a contact: no speed was found at which a pair is missed, up to that at "
-      "which "
-      "the run is stopped anyhow.");
+      "Fast motion costs rebuilds but loses no contact: up to the speed at which a run is stopped, no pair is "
+      "missed.");
   result.sources.push_back(set_name);
   return result;
 }
 
+const RegisteredCase registered([] {
+  Case c;
+  c.name = "limit-list-skin";
+  c.group = Case::Group::stability;
+  c.order = 80;
+  c.title = "Fast motion and the list of neighbours";
+  c.why = "A pair that is not in the list has no force, so that tubes could pass into one another.";
+  c.setup =
+      "Two elements approach end to end, or turn, at up to the speed at which a run is stopped, with four skins. "
+      "The contact energy of every step is compared with the sum over all pairs. Bisection then finds the path "
+      "after which a list that is never rebuilt misses a pair, and the skin at which every step rebuilds the list.";
+  c.oracle =
+      "The sum over all pairs without a list. A list holds for a path of one skin. Every step rebuilds it if the "
+      "skin is below v dt.";
+  c.literature = "L. Verlet, Phys. Rev. 159, 98 (1967), DOI 10.1103/PhysRev.159.98";
+  c.run = run;
+  c.turns_red = {wrong_contact(2)};
+  return c;
+});
+
 }  // namespace
-
-Case limit_list_skin_case() {
-  return {
-      "limit-list-skin",
-      Case::Group::stability,
-      Case::Tier::quick,
-      "Fast motion and the list of neighbours",
-      "A pair that is not in the list has no force: tubes would go into one another unseen.",
-      "Two elements that approach nose to nose, or turn, at up to the speed at which a run is stopped, with four "
-      "skins; the contact energy of every step against a sum over all pairs. Then a list that is never built "
-      "anew, and the skin at which every step builds one, by bisection.",
-      "All pairs, without a list, by the law of the set; an old list holds for a path of one skin; a build in "
-      "every "
-      "step below v dt.",
-      "L. Verlet, Phys. Rev. 159, 98 (1967), DOI 10.1103/PhysRev.159.98",
-      run};
-}
-
 }  // namespace ropewalk

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "cases/common/limits.hpp"
+#include "cases/common/stability_limit.hpp"
 #include "model/error.hpp"
 
 namespace ropewalk {
@@ -14,7 +14,7 @@ constexpr const char* set_name = "cnt-10-10-tersoff";
 constexpr int bonds = 10;
 constexpr std::size_t hit = 6;
 
-// What ends a run: its step and element; none where it goes on.
+// Step and element at which a run ends; none where it continues.
 struct End {
   bool stopped = false;
   long step = 0;
@@ -33,7 +33,7 @@ End run_of(const Chain& c, long steps) {
 
 double step_of(const ParameterSet& set) { return Chain(set, bonds).make().time_step(); }
 
-// Where an injected number that is not finite is found: 1 within the first step, with its element; else 0.
+// 1 if the run stops in its first step and names the element with the injected number; otherwise 0.
 double found_at_once(const ParameterSet& set, const std::function<void(State&)>& inject) {
   Chain c(set, bonds);
   inject(c.state);
@@ -41,7 +41,7 @@ double found_at_once(const ParameterSet& set, const std::function<void(State&)>&
   return e.stopped && e.step <= 1 && e.element == static_cast<int>(hit) ? 1 : 0;
 }
 
-// The same of a load, in dynamics and in a relaxation.
+// The same for a load that is not finite, in dynamics and in a relaxation.
 double load_found_at_once(const ParameterSet& set, double force, bool relax) {
   Chain c(set, bonds);
   c.loads.add(ForceLoad({static_cast<int>(hit)}, Vector3(0, force, 0)));
@@ -58,7 +58,7 @@ double load_found_at_once(const ParameterSet& set, double force, bool relax) {
   return e.stopped && e.step <= 1 && e.element == static_cast<int>(hit) ? 1 : 0;
 }
 
-// Couple (eV), put on at once, at which a held tube of two elements is stopped.
+// Sudden couple (eV) at which a run of two elements, one of them held, is stopped.
 double sudden_couple(const ParameterSet& set, double about) {
   const auto fails = [&](double couple) {
     Chain c(set, 1);
@@ -111,18 +111,20 @@ CaseResult run(const CaseContext& context) {
       relative_check("kick that ends a run", speed, speed_theory, 0.05, "km/s", "one element of a tube at rest"));
   result.checks.push_back(
       relative_check("spin that ends a run", spin, spin_theory, 0.05, "rad/ps", "one element of a tube at rest"));
-  result.checks.push_back(relative_check("couple put on at once at which a bond slips", torque / units::nN_nm,
+  result.checks.push_back(relative_check("sudden couple at which a bond slips", torque / units::nN_nm,
                                          torque_theory / units::nN_nm, 0.05, "nN nm",
-                                         "two elements, undamped: the twist overshoots"));
-  result.limits.push_back({"kick of an element", speed, speed_theory, "km/s", Limit::Guard::stopped,
-                           "more than a quarter of the radius in a step, or not finite; with the element"});
-  result.limits.push_back({"spin of an element", spin, spin_theory, "rad/ps", Limit::Guard::stopped,
-                           "more than half a radian in a step, or not finite; with the element"});
+                                         "two elements, undamped, so that the twist overshoots"));
+  result.limits.push_back(
+      {"kick of an element", speed, speed_theory, "km/s", Limit::Guard::stopped,
+       "a move of more than a quarter of the radius in a step, or one that is not finite; names the element"});
+  result.limits.push_back(
+      {"spin of an element", spin, spin_theory, "rad/ps", Limit::Guard::stopped,
+       "a turn of more than half a radian in a step, or one that is not finite; names the element"});
   result.limits.push_back({"couple put on at once", torque / units::nN_nm, torque_theory / units::nN_nm, "nN nm",
-                           Limit::Guard::stopped, "a bond twisted by 90 degrees, with its element"});
+                           Limit::Guard::stopped, "a bond twisted by 90 degrees; names its element"});
 
   CaseFigure figure;
-  figure.chart = {"Twist under a couple put on at once", {"couple", "nN nm"}, {"largest twist", "degrees"}, {}, {}};
+  figure.chart = {"Twist under a sudden couple", {"couple", "nN nm"}, {"largest twist", "degrees"}, {}, {}};
   std::vector<double> couple, largest;
   for (double part = 0.2; part < 0.99; part += 0.1) {
     Chain c(model, 1);
@@ -150,33 +152,36 @@ CaseResult run(const CaseContext& context) {
   figure.chart.lines.push_back(theory);
   figure.chart.lines.push_back(model_points("largest twist of the bond", couple, largest, 1));
   figure.caption =
-      "Put on at once, a couple twists a bond about twice as far as at rest, and 2/pi of the moment that it "
-      "bears makes it slip.";
+      "A sudden couple twists a bond about twice as far as it does at rest. A bond slips under 2/pi of the largest "
+      "moment that it bears at rest.";
   result.figures.push_back(figure);
   result.remarks.push_back(
-      "Nothing that is not finite gets past the step in which it arises, whichever number it is, and no state with "
-      "one "
-      "is started from.");
+      "A number that is not finite ends the run in the step in which it arises, whichever number it is. A run does "
+      "not start from a state that has one.");
   result.sources.push_back(set_name);
   return result;
 }
 
+const RegisteredCase registered([] {
+  Case c;
+  c.name = "limit-nan";
+  c.group = Case::Group::stability;
+  c.order = 100;
+  c.title = "Kicks, couples and numbers that are not finite";
+  c.why =
+      "One number that is not finite spreads over a rope within some hundred steps. A log full of NaN does not "
+      "tell where it began.";
+  c.setup =
+      "A tube of 11 elements at the default step. One element gets a number that is not finite, a kick or a spin; "
+      "bisection finds the size at which the run ends. Also two elements under a sudden couple.";
+  c.oracle =
+      "A quarter of the radius and half a radian in a step. For the couple M = 2 GJ/(pi a), from the energy of a "
+      "bond's sine up to 90 degrees.";
+  c.literature = "V. A. Kuzkin, I. E. Asonov, Phys. Rev. E 86, 051301 (2012), DOI 10.1103/PhysRevE.86.051301";
+  c.run = run;
+  c.turns_red = {wrong_GJ(0.9)};
+  return c;
+});
+
 }  // namespace
-
-Case limit_nan_case() {
-  return {
-      "limit-nan",
-      Case::Group::stability,
-      Case::Tier::quick,
-      "Kicks, couples and numbers that are not finite",
-      "One number that is not finite spreads over a rope within some hundred steps, and a log full of NaN says "
-      "nothing about where it began.",
-      "A tube of 11 elements at the default step into one of which a number that is not finite is put, or which is "
-      "kicked or spun; the size at which the run ends, by bisection. Two elements and a couple put on at once.",
-      "A quarter of the radius and half a radian in a step; M = 2 GJ/(pi a), the energy of the sine up to 90 "
-      "degrees.",
-      "V. A. Kuzkin, I. E. Asonov, Phys. Rev. E 86, 051301 (2012), DOI 10.1103/PhysRevE.86.051301",
-      run};
-}
-
 }  // namespace ropewalk

@@ -1,9 +1,9 @@
-// The speed at which one tube goes through another.
+// The speed at which one tube passes through another.
 #include <algorithm>
 #include <cmath>
 
-#include "cases/common/chains_contact.hpp"
-#include "cases/common/limits.hpp"
+#include "cases/common/bundle.hpp"
+#include "cases/common/stability_limit.hpp"
 #include "model/error.hpp"
 
 namespace ropewalk {
@@ -28,7 +28,7 @@ Bundle crossed(const ParameterSet& set, double speed) {
   return b;
 }
 
-// The smallest distance of the two; less than zero where they have gone through each other.
+// The smallest distance of the two; negative where they have passed through each other.
 double closest(const ParameterSet& set, double speed, double time_step) {
   const Bundle b = crossed(set, speed);
   Simulation s(b.topology, b.interaction, {}, b.state, time_step);
@@ -50,7 +50,7 @@ CaseResult run(const CaseContext& context) {
   CaseResult result;
   result.checks.push_back(relative_check("speed that goes through", found, theory, 0.05, "km/s",
                                          "two elements, relative speed; a step of 2 pm"));
-  // At the default step the simulator must stop such a run instead of letting it pass.
+  // At the default step the simulator must stop such a run.
   const Bundle b = crossed(oracle, theory);
   const double step = default_step_fraction * time_step_limit(b.topology, b.interaction, 1.7).limit;
   double stopped = 0;
@@ -60,9 +60,9 @@ CaseResult run(const CaseContext& context) {
     stopped = 1;
   }
   result.checks.push_back(absolute_check("stopped at the default step (1: yes)", stopped, 1, 0, "",
-                                         "an element that moves a quarter of its radius in a step ends the run"));
+                                         "a move of a quarter of the radius in a step ends the run"));
   result.limits.push_back({"speed that goes through a tube", found, theory, "km/s", Limit::Guard::stopped,
-                           "an element that moves a quarter of its radius in one step"});
+                           "a move of a quarter of the radius in one step"});
   CaseFigure figure;
   figure.chart = {"Closest approach", {"distance of the axes", "nm"}, {"energy", "eV"}, {}, {}};
   const double mass = oracle.element_mass(oracle.element_length);
@@ -80,29 +80,34 @@ CaseResult run(const CaseContext& context) {
       0, 1.8, 0));
   figure.chart.lines.push_back(model_points("kinetic energy, closest approach", distance, energy, 1));
   figure.caption =
-      "Two crossed elements come as close as their energy brings them up the wall, and through it where "
-      "it is larger than that of full overlap.";
+      "The kinetic energy of two crossed elements decides how close they come. They pass through one another where "
+      "it exceeds the energy of full overlap.";
   result.figures.push_back(figure);
   result.remarks.push_back(
-      "Such speeds lie ten times above those of sound: a run reaches them only when it has blown up already, and "
-      "is stopped.");
+      "Such speeds are ten times those of sound. A run reaches them only after it has blown up, and is stopped.");
   result.sources.push_back(set_name);
   return result;
 }
 
+const RegisteredCase registered([] {
+  Case c;
+  c.name = "limit-tunnelling";
+  c.group = Case::Group::stability;
+  c.order = 30;
+  c.title = "Speed at which tubes go through one another";
+  c.why =
+      "The repulsive wall of the contact is finite. Above its energy tubes end up inside each other, without an "
+      "error.";
+  c.setup =
+      "Two single elements at a right angle collide head on, at a step so small that it does not matter. Bisection "
+      "finds the speed at which they pass through one another. Then the same at a higher speed and the default "
+      "step.";
+  c.oracle = "m v^2/4 = U(0), the energy of the law at full overlap.";
+  c.literature = "A. N. Volkov, L. V. Zhigilei, J. Phys. Chem. C 114, 5513 (2010), DOI 10.1021/jp906142h";
+  c.run = run;
+  c.turns_red = {wrong_contact(2)};
+  return c;
+});
+
 }  // namespace
-
-Case limit_tunnelling_case() {
-  return {"limit-tunnelling",
-          Case::Group::stability,
-          Case::Tier::quick,
-          "Speed at which tubes go through one another",
-          "The wall of the contact is finite: whoever goes over it has tubes inside each other, without an error.",
-          "Two single elements at right angles, head on, at a step so small that it does not matter; the speed at "
-          "which they come out on the other side, by bisection. Then faster, at the default step.",
-          "m v^2/4 = U(0), the energy of the law at full overlap.",
-          "A. N. Volkov, L. V. Zhigilei, J. Phys. Chem. C 114, 5513 (2010), DOI 10.1021/jp906142h",
-          run};
-}
-
 }  // namespace ropewalk

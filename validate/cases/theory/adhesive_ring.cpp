@@ -1,7 +1,7 @@
 // A long tube coiled upon itself: bending against adhesion.
 #include <cmath>
 
-#include "cases/common/chains_contact.hpp"
+#include "cases/common/bundle.hpp"
 
 namespace ropewalk {
 namespace {
@@ -48,11 +48,12 @@ CaseResult run(const CaseContext& context) {
   const double radius = std::cbrt(bend * bent / (2 * units::pi * adhesion));
   CaseResult result;
   result.checks.push_back(relative_check("radius of the coil", best_radius(model, 0.7 * radius, 1.2 * radius),
-                                         radius, 1e-2, "nm", "ends and tilt of the turns: below 0.5 %"));
+                                         radius, 1e-2, "nm",
+                                         "ends and tilt of the turns change it by less than 0.5 %"));
   const double wide = 1.15 * radius, tight = 0.8 * radius;
   result.checks.push_back(relative_check(
       "energy from 1.15 to 0.8 of that radius", coil_energy(model, tight) - coil_energy(model, wide),
-      energy(tight) - energy(wide), 2e-2, "eV", "difference of bending and adhesion, each of them larger"));
+      energy(tight) - energy(wide), 2e-2, "eV", "a small difference of two large energies, bending and adhesion"));
   std::vector<double> radii, energies;
   for (double r = 0.75; r < 1.2; r += 0.05) {
     radii.push_back(r * radius);
@@ -62,30 +63,32 @@ CaseResult run(const CaseContext& context) {
   figure.chart = {"Energy of a coiled tube against its radius", {"radius", "nm"}, {"energy", "eV"}, {}, {}};
   figure.chart.lines.push_back(theory_curve("EI L/2R^2 - Gamma (L - 2 pi R)", energy, radii.front(), radii.back()));
   figure.chart.lines.push_back(model_points("coiled chain", radii, energies));
-  figure.caption = "A tube of 501 nm; less than two turns overlap.";
+  figure.caption = "A tube of 501 nm, whose coil has less than two turns of overlap.";
   result.figures.push_back(figure);
   result.remarks.push_back(
-      "The shape is prescribed, so that the case tests the balance of the two energies and not "
-      "how a tube finds the ring.");
+      "The shape is prescribed: this case tests the balance of the two energies, not how a tube finds the ring.");
   result.sources.push_back(set_name);
   return result;
 }
 
-}  // namespace
-
-Case adhesive_ring_case() {
+const RegisteredCase registered([] {
   Case c;
   c.name = "adhesive-ring";
+  c.group = Case::Group::theory;
+  c.order = 100;
   c.title = "A ring held closed by its own adhesion";
-  c.why = "Bending against adhesion sets the size of every fold, ring and racket of long tubes.";
+  c.why = "The balance of bending and adhesion sets the size of every fold, ring and racket of long tubes.";
   c.setup =
-      "A (10,10) tube of 364 elements (501 nm) coiled to a helix whose turns touch, of 0.75 to 1.2 times the "
-      "radius of theory; energy of bonds and contact.";
+      "A (10,10) tube of 364 elements (501 nm), coiled to a helix whose turns touch. Its radius is 0.75 to 1.2 "
+      "times that of theory; the energy is that of bonds and contact.";
   c.oracle =
-      "U = EI L/2R^2 - Gamma (L - 2 pi R), least at R = (EI L/2 pi Gamma)^(1/3), Gamma the surface integral.";
+      "U = EI L/(2 R^2) - Gamma (L - 2 pi R), lowest at R = (EI L/(2 pi Gamma))^(1/3), with Gamma the surface "
+      "integral at its minimum.";
   c.literature = "A. E. Cohen, L. Mahadevan, PNAS 100, 12141 (2003), DOI 10.1073/pnas.1534600100";
   c.run = run;
+  c.turns_red = {wrong_EI(1.1), wrong_contact(2)};
   return c;
-}
+});
 
+}  // namespace
 }  // namespace ropewalk

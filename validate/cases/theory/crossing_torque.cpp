@@ -1,7 +1,7 @@
 // Two straight tubes that cross: energy and torque against the angle.
 #include <cmath>
 
-#include "cases/common/chains_contact.hpp"
+#include "cases/common/bundle.hpp"
 
 namespace ropewalk {
 namespace {
@@ -13,7 +13,7 @@ struct Crossing {
   double torque = 0;  // eV, towards a larger angle
 };
 
-// Row i along z, row j a distance along x away and turned about x; both longer than the law reaches.
+// Row i lies along z. Row j is displaced along x and turned about x. Both are longer than the range of the law.
 Crossing crossing(const LineContact& law, double distance, double angle) {
   const Vector3 ni = Vector3::UnitZ(), nj(0, std::sin(angle), std::cos(angle));
   const double a = law.length_i;
@@ -37,7 +37,7 @@ CaseResult run(const CaseContext& context) {
   const auto energy = [&](double angle) { return well.energy / std::sin(angle); };
   const auto torque = [&](double angle) { return well.energy * std::cos(angle) / std::pow(std::sin(angle), 2); };
   CaseResult result;
-  const char* why = "closed form fitted to 1.4e-3 of the well, rows of elements to 1e-3";
+  const char* why = "the closed form was fitted to 1.4e-3 of the well; rows of elements add 1e-3";
   std::vector<double> angles, energies, torques;
   for (const int degrees : {15, 20, 30, 45, 60, 75, 90}) {
     const double angle = degrees * units::degree;
@@ -58,33 +58,37 @@ CaseResult run(const CaseContext& context) {
   e.chart.lines.push_back(theory_curve(
       "surface integral, E90/sin", [&](double x) { return energy(x * units::degree); }, 15, 90));
   e.chart.lines.push_back(model_points("line law", angles, energies));
-  e.caption = "At the distance of the right-angled minimum.";
+  e.caption = "The distance is that of the minimum at a right angle.";
   t.chart = {"Torque between two crossed tubes against the angle", {"angle", "degrees"}, {"torque", "eV"}, {}, {}};
   t.chart.lines.push_back(theory_curve(
       "-dE/dgamma", [&](double x) { return torque(x * units::degree); }, 15, 90));
   t.chart.lines.push_back(model_points("line law", angles, torques));
-  t.caption = "Negative: it turns the tubes parallel. Sum of torques and lever arms of all elements of one row.";
+  t.caption =
+      "A negative torque turns the tubes parallel. It is the sum of the torques and moments of the forces on all "
+      "elements of one row.";
   result.figures = {e, t};
   result.remarks.push_back(
-      "The law has no angular factor: energy and torque at every angle follow from one line "
-      "density.");
+      "The law has no angular factor. Energy and torque at every angle follow from one line density.");
   result.sources.push_back(set_name);
   return result;
 }
 
-}  // namespace
-
-Case crossing_torque_case() {
+const RegisteredCase registered([] {
   Case c;
   c.name = "crossing-torque";
+  c.group = Case::Group::theory;
+  c.order = 70;
   c.title = "Energy and torque of two crossed tubes";
-  c.why = "Tubes of neighbouring shells of a twisted rope cross; the torque decides whether they align.";
+  c.why = "Tubes of neighbouring shells of a twisted rope cross. The torque decides whether they align.";
   c.setup =
-      "Two straight rows of (10,10) elements at the distance of the right-angled minimum, at 15 to 90 degrees.";
+      "Two straight rows of (10,10) elements that cross at 15 to 90 degrees, at the distance of the minimum at a "
+      "right angle.";
   c.oracle = "Surface integral of the Lennard-Jones law over two cylinders: E = E90/sin gamma, M = -dE/dgamma.";
   c.literature = "A. N. Volkov, L. V. Zhigilei, J. Phys. Chem. C 114, 5513 (2010), DOI 10.1021/jp906142h";
   c.run = run;
+  c.turns_red = {wrong_contact(2)};
   return c;
-}
+});
 
+}  // namespace
 }  // namespace ropewalk

@@ -1,14 +1,15 @@
-// The compressed column.
+// The critical load of a compressed column.
 #include <cmath>
 
-#include "cases/common/chains.hpp"
+#include "cases/common/chain.hpp"
 
 namespace ropewalk {
 namespace {
 
 constexpr const char* set_name = "cnt-10-10-tersoff";
 
-// Straight and shortened by the load; ends on the axis and free to turn. Motions in one plane are enough.
+// Lowest eigenvalue of a straight chain, shortened by the load, whose ends stay on the axis and turn freely.
+// Motions in one plane suffice.
 double lowest_under_load(const ParameterSet& set, int bonds, double load) {
   Chain c(set, bonds);
   const double shortened = set.element_length * (1 - load / set.bond.stretch);
@@ -35,8 +36,8 @@ CaseResult run(const CaseContext& context) {
     if (bonds == 20 || bonds == 60)
       result.checks.push_back(relative_check("critical load of " + std::to_string(bonds) + " bonds", load, expected,
                                              bonds == 20 ? 1e-2 : 3e-3, "eV/nm",
-                                             "shortening before buckling is P/EA, and the error of the elements "
-                                             "falls as their length squared"));
+                                             "the column shortens by P/EA before it buckles; the elements' error "
+                                             "falls with the square of their length"));
   }
   CaseFigure figure;
   figure.chart = {
@@ -46,28 +47,30 @@ CaseResult run(const CaseContext& context) {
   figure.caption = "Load at which the lowest eigenvalue of the chain's stiffness passes zero.";
   result.figures.push_back(figure);
   result.remarks.push_back(
-      "The threshold is where the straight chain loses stiffness, found by bisection of the "
-      "lowest eigenvalue: no perturbation and no time enter.");
+      "The critical load is where the lowest eigenvalue of the straight chain passes zero, found by bisection. "
+      "Neither a perturbation nor time enters.");
   result.sources.push_back(set_name);
   return result;
 }
 
-}  // namespace
-
-Case euler_buckling_case() {
+const RegisteredCase registered([] {
   Case c;
   c.name = "euler-buckling";
+  c.group = Case::Group::theory;
+  c.order = 20;
   c.title = "Buckling of a compressed tube";
-  c.why = "Tubes inside of a twisted rope are compressed and leave the straight line by this instability.";
+  c.why = "Tubes inside a twisted rope are compressed, and buckle by this instability.";
   c.setup =
-      "Straight (10,10) tubes of 16 to 60 bonds, ends held on the axis and free to turn, under an axial load; "
-      "lowest eigenvalue of the tangent stiffness of the loaded chain.";
+      "Straight (10,10) tubes of 16 to 60 bonds under an axial load; the ends stay on the axis and turn freely. "
+      "The lowest eigenvalue of the tangent stiffness of the loaded chain is followed.";
   c.oracle = "P = pi^2 EI/L^2.";
   c.literature =
-      "S. P. Timoshenko, J. M. Gere, Theory of Elastic Stability, 2nd ed. (McGraw-Hill, 1961); "
-      "B. Audoly, Y. Pomeau, Elasticity and Geometry (Oxford, 2010)";
+      "S. P. Timoshenko, J. M. Gere, Theory of Elastic Stability, 2nd ed. (McGraw-Hill, 1961); B. Audoly, Y. "
+      "Pomeau, Elasticity and Geometry (Oxford, 2010)";
   c.run = run;
+  c.turns_red = {wrong_EI(1.1)};
   return c;
-}
+});
 
+}  // namespace
 }  // namespace ropewalk

@@ -1,7 +1,7 @@
-// The twisted shaft.
+// The critical moment of a twisted shaft.
 #include <cmath>
 
-#include "cases/common/chains.hpp"
+#include "cases/common/chain.hpp"
 
 namespace ropewalk {
 namespace {
@@ -47,7 +47,7 @@ CaseResult run(const CaseContext& context) {
     }
     result.checks.push_back(relative_check("critical moment, " + name + ", 40 bonds", moments.back(),
                                            greenhill(lengths.back()), 2e-2, "eV",
-                                           "twist of 0.15 to 0.3 rad in a bond: its cosine is 1 to 4 % off one"));
+                                           "a bond twists by 0.15 to 0.3 rad, whose cosine is 1 to 4 % below one"));
     figure.chart.lines.push_back(theory_curve(pinned ? "2 pi EI/L" : "8.987 EI/L", greenhill, lengths.front(),
                                               lengths.back(), pinned ? 0 : 2));
     figure.chart.lines.push_back(model_points(name + " chain", lengths, moments, pinned ? 1 : 3));
@@ -55,29 +55,30 @@ CaseResult run(const CaseContext& context) {
   figure.caption = "Moment at which the twisted straight chain loses its lateral stiffness.";
   result.figures.push_back(figure);
   result.remarks.push_back(
-      "A couple of fixed direction on a pinned end has no potential: the stiffness matrix is not symmetric, and "
-      "the "
-      "static criterion (an eigenvalue through zero) is what Greenhill's number means.");
+      "A couple of fixed direction on a pinned end has no potential, so that the stiffness matrix is not "
+      "symmetric. Greenhill's number stands for the static criterion, an eigenvalue that passes zero.");
   result.remarks.push_back(
-      "GJ enters only through the angle at which the moment is reached, so this case does not see a wrong GJ.");
+      "GJ sets only the angle at which the moment is reached: this case does not see a wrong GJ.");
   result.sources.push_back(set_name);
   return result;
 }
 
-}  // namespace
-
-Case greenhill_case() {
+const RegisteredCase registered([] {
   Case c;
   c.name = "greenhill";
+  c.group = Case::Group::theory;
+  c.order = 30;
   c.title = "Buckling of a tube under a twisting moment";
-  c.why = "It is the single-tube limit of the instability that turns a twisted rope into a helix.";
+  c.why = "A twisted rope turns into a helix by this instability; one tube is its simplest case.";
   c.setup =
-      "Straight (10,10) tubes of 16 to 40 bonds, uniformly twisted by end couples of fixed direction; ends on "
-      "the axis, free to tilt (pinned) or not (clamped), spins free.";
+      "Straight (10,10) tubes of 16 to 40 bonds, uniformly twisted by end couples of fixed direction. The ends "
+      "stay on the axis and may tilt (pinned) or not (clamped); all elements spin freely.";
   c.oracle = "M = 2 pi EI/L pinned; M = 2 x EI/L with tan x = x, that is 8.987 EI/L, clamped.";
   c.literature = "A. G. Greenhill, Proc. Inst. Mech. Eng. 34, 182 (1883)";
   c.run = run;
+  c.turns_red = {wrong_EI(1.1)};
   return c;
-}
+});
 
+}  // namespace
 }  // namespace ropewalk

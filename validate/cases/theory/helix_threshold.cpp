@@ -7,7 +7,7 @@
 #include <cmath>
 #include <string>
 
-#include "cases/common/chains_contact.hpp"
+#include "cases/common/bundle.hpp"
 #include "scene/build.hpp"
 
 namespace ropewalk {
@@ -22,7 +22,7 @@ using Entries = std::vector<Eigen::Triplet<double>>;
 double factor_of(Ends ends) { return ends == Ends::pinned ? 2 * units::pi : 2 * 4.493409457909064; }
 const char* name_of(Ends ends) { return ends == Ends::pinned ? "pinned" : "clamped"; }
 
-// The rope's stiffness to bending, eV nm: N EI, or that of one body with EA sum y^2 besides.
+// Bending stiffness of the rope (eV nm): N EI for sliding tubes, plus EA sum y^2 for glued ones.
 double sliding_bend(const ParameterSet& set) { return tubes * set.bond.bend; }
 double glued_bend(const ParameterSet& set, double spacing) {
   double sum = 0;
@@ -30,8 +30,8 @@ double glued_bend(const ParameterSet& set, double spacing) {
   return sliding_bend(set) + set.bond.stretch * sum;
 }
 
-// Bonds at rest carry the pull of the cohesion, which shortens a rope as its surface shortens a drop. Without it
-// the contact would act as a tension.
+// Element spacing (nm) at which the bonds balance the cohesion, which shortens a rope as surface tension shortens a
+// drop. Bonds at their free length would leave the contact acting as a tension.
 double compressed_length(const ParameterSet& set) {
   const auto places = hexagonal_lattice(tubes, line_parallel_well(set.line->density).distance);
   double cohesion = 0;
@@ -42,7 +42,7 @@ double compressed_length(const ParameterSet& set) {
   return set.element_length * (1 - cohesion / (tubes * set.bond.stretch));
 }
 
-// Of one tube that carries its share of the moment as twist.
+// Tangent stiffness of one tube that carries its part of the moment as twist.
 Eigen::MatrixXd tube_stiffness(const ParameterSet& set, int bonds, double moment, double spacing) {
   Chain c(set, bonds);
   const double twist = std::asin(moment / tubes * set.element_length / set.bond.twist);
@@ -55,7 +55,7 @@ Eigen::MatrixXd tube_stiffness(const ParameterSet& set, int bonds, double moment
   return tangent_stiffness(set.bond, set.element_length, c.state, freedoms);
 }
 
-// Ends on their places, free to tilt or not. The spin follows from the moment and is no freedom.
+// The ends stay in place and may tilt or not. The spin follows from the moment and is not a freedom.
 bool is_free(int element, int bonds, int k, Ends ends) {
   const bool end = element == 0 || element == bonds;
   if (k == 5) return false;
@@ -63,8 +63,8 @@ bool is_free(int element, int bonds, int k, Ends ends) {
   return !end || (k >= 3 && ends == Ends::pinned);
 }
 
-// Static criterion: the eigenvalue next to zero of the modes that are like a helix of one half wave. Started
-// there, the iteration does not leave for modes that the moment does not soften.
+// Static criterion: the eigenvalue next to zero of the modes that resemble a helix of one half wave. Iteration from
+// there does not move to modes that the moment does not soften.
 double next_to_zero(const Sparse& stiffness, Eigen::VectorXd v) {
   Eigen::SparseLU<Sparse> solver(stiffness);
   double value = 0;
@@ -81,8 +81,9 @@ int row(int tube, int element, int bonds, int k) { return 6 * (tube * (bonds + 1
 
 enum class Tubes { sliding, glued, touching };
 
-// From the freedoms of the rope to those of all elements. Sliding: sections with one place and one tilt for all
-// tubes. Glued: the tilt also carries the tubes along. Touching: every element has its own.
+// Maps the freedoms of the rope to those of all elements. Sliding: all tubes of a cross-section share one
+// displacement and one tilt. Glued: the tilt also moves the tubes lengthwise. Touching: every element has its own
+// freedoms.
 Sparse freedoms_of(Tubes kind, const ParameterSet& set, int bonds, Ends ends) {
   const auto places = hexagonal_lattice(tubes, line_parallel_well(set.line->density).distance);
   Entries entries;
@@ -119,7 +120,7 @@ Eigen::VectorXd helix(int bonds) {
   return v;
 }
 
-// Force and torque on both elements of a pair whose freedoms are moved by `by`.
+// Force and torque on both elements of a pair whose freedoms are displaced by `by`.
 Eigen::Matrix<double, 12, 1> pair_forces(const LineContact& law, const Vector3& separation, int freedom,
                                          double by) {
   Vector3 d = separation;
@@ -230,7 +231,7 @@ CaseFigure figure_of(Ends ends, double sliding, double glued, const Curve& free,
       model_points("chains that share their shape", free.lengths, free.moments, 3),
       model_points("chains that touch", rope.lengths, rope.moments, 1),
       model_points("chains in rigid sections", one.lengths, one.moments, 4)};
-  figure.caption = "Both limits go as 1/length; the rope of the model lies on the lower one.";
+  figure.caption = "Both limits fall with 1/length. The rope of the model lies on the lower one.";
   return figure;
 }
 
@@ -243,54 +244,52 @@ CaseResult run(const CaseContext& context) {
     const Curve free = thresholds(Tubes::sliding, model, {24, 32, 40}, ends, sliding);
     const Curve rope = thresholds(Tubes::touching, model, {24, 32, 40}, ends, sliding);
     const Curve one = thresholds(Tubes::glued, model, {120, 160}, ends, glued);
-    const std::string bond = "twist of 0.2 to 0.3 rad in a bond: its cosine is 2 to 4 % off one, half of it felt";
+    const std::string bond =
+        "a bond twists by 0.2 to 0.3 rad, whose cosine is 2 to 4 % below one; half of that counts";
     hold_to("tubes that share their shape", free, ends, sliding, bond, result);
     hold_to("rigid sections", one, ends, glued, bond, result);
     hold_to("tubes that touch, by sliding", rope, ends, sliding, "as above; corrugation of the contact: 0.1 %",
             result);
     const double limit = factor_of(ends) / rope.lengths.back();
-    result.checks.push_back(
-        absolute_check("place of tubes that touch between sliding (0) and glued (1), " + std::string(name_of(ends)),
-                       (rope.moments.back() - free.moments.back()) / (limit * (glued - sliding)), 0, 1e-2, "",
-                       "no friction in the model but the corrugation of its contact"));
+    result.checks.push_back(absolute_check(
+        "stiffness of tubes in contact between sliding (0) and glued (1), " + std::string(name_of(ends)),
+        (rope.moments.back() - free.moments.back()) / (limit * (glued - sliding)), 0, 1e-2, "",
+        "the model has no friction except the corrugation of its contact"));
     result.figures.push_back(figure_of(ends, sliding, glued, free, rope, one));
   }
   result.remarks = {
-      "The moment is carried as twist of the tubes themselves, so the threshold is that of a straight rope that "
-      "has "
-      "not yet turned as one: tubes that have become helices are another state.",
-      "Rigid cylinders slide without friction at rest: the rope of the model begins at the lower limit. What real "
-      "tubes have of corrugation and contacts lifts it towards the upper one, 6 times as high for seven tubes and "
-      "farther for more.",
-      "Cohesion pulls the tubes of a rope together lengthwise, 12 eV/nm here. Left out of balance it would act as "
-      "a "
-      "tension and lift the threshold by 11 % at 55 nm; at rest the bonds carry it.",
-      "The criterion is static, as Greenhill's: an eigenvalue of the tangent stiffness through zero."};
+      "Each tube carries its part of the moment as twist about its own axis. So the threshold is that of a "
+      "straight rope whose tubes do not yet wind around each other; a rope of wound tubes is another state.",
+      "Rigid cylinders at rest slide without friction, so that the rope of the model buckles at the lower limit. "
+      "In real tubes corrugation and contacts raise the threshold towards the upper limit, which is 6 times as "
+      "high for seven tubes and higher still for more.",
+      "Cohesion compresses the tubes lengthwise, with 12 eV/nm here. Unless the bonds are at rest under it, it "
+      "acts as a tension and raises the threshold by 11 % at 55 nm. In this case they are at rest.",
+      "The criterion is static, as Greenhill's: an eigenvalue of the tangent stiffness passes zero."};
   result.sources.push_back(set_name);
   return result;
 }
 
-}  // namespace
-
-Case helix_threshold_case() {
+const RegisteredCase registered([] {
   Case c;
   c.name = "helix-threshold";
+  c.group = Case::Group::theory;
+  c.order = 120;
   c.title = "Where a twisted rope turns into a helix: the two limits";
-  c.why =
-      "The straight rope under twist gives way to a helix; how far its tubes share the bending decides at which "
-      "moment.";
+  c.why = "A straight rope under twist buckles into a helix. The moment depends on how far its tubes bend as one.";
   c.setup =
-      "Ropes of seven (10,10) tubes of 33 to 55 nm, in contact by the line law, with a seventh of the moment in "
-      "every "
-      "tube; tangent stiffness of all elements, ends on their places, free to tilt (pinned) or not (clamped). The "
-      "same without contact for tubes of one common shape and, at 165 and 220 nm, for sections that move as rigid "
-      "bodies.";
+      "Ropes of seven (10,10) tubes of 33 to 55 nm with the line law between them; every tube carries a seventh of "
+      "the moment. The tangent stiffness of all elements; the ends stay in place and may tilt (pinned) or not "
+      "(clamped). Also without contact: tubes that share one shape and, at 165 and 220 nm, cross-sections that "
+      "move as rigid bodies.";
   c.oracle =
-      "M = 2 pi B/L pinned, 8.987 B/L clamped, with B = N EI for sliding tubes and B = N EI + EA sum y^2 for glued "
-      "ones, y the distances of the tubes from the plane of no strain.";
+      "M = 2 pi B/L pinned, 8.987 B/L clamped. B = N EI for sliding tubes, B = N EI + EA sum y^2 for glued ones, "
+      "with y the distances of the tubes from the neutral plane.";
   c.literature = "A. G. Greenhill, Proc. Inst. Mech. Eng. 34, 182 (1883)";
   c.run = run;
+  c.turns_red = {wrong_EI(1.1), wrong_EA(1.1)};
   return c;
-}
+});
 
+}  // namespace
 }  // namespace ropewalk

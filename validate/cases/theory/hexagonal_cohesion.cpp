@@ -1,7 +1,7 @@
 // Cohesion of straight hexagonal ropes.
 #include <cmath>
 
-#include "cases/common/chains_contact.hpp"
+#include "cases/common/bundle.hpp"
 #include "scene/build.hpp"
 
 namespace ropewalk {
@@ -14,14 +14,14 @@ double vdw_energy(const ParameterSet& set, int tubes, int elements) {
   return Simulation(b.topology, b.interaction, {}, b.state, b.time_step).forces().energy.vdw;
 }
 
-// Of two lengths, so that the ends drop out; eV/nm.
+// eV/nm, by the difference of two lengths, which has no ends in it.
 double energy_per_length(const ParameterSet& set, int tubes) {
   return (vdw_energy(set, tubes, 16) - vdw_energy(set, tubes, 8)) / (8 * set.element_length);
 }
 
 double contacts(double tubes) { return 3 * tubes - std::sqrt(12 * tubes - 3); }
 
-// All pairs of the lattice by the surface integral; beyond the contacts only where the atom-atom law reaches.
+// eV/nm, by the surface integral over pairs up to second neighbours.
 double integral_per_length(const PairIntegral& integral, int tubes, double spacing) {
   const auto places = hexagonal_lattice(tubes, spacing);
   double sum = 0;
@@ -58,33 +58,35 @@ CaseResult run(const CaseContext& context) {
   figure.chart.lines.push_back(theory_curve(
       "(3 N - sqrt(12 N - 3)) E(R0)", [&](double n) { return contacts(n) * pair.energy; }, 7, 91));
   figure.chart.lines.push_back(model_points("ropes", tubes, energies));
-  figure.caption = "From 12 contacts of 7 tubes to 240 of 91.";
+  figure.caption = "Seven tubes have 12 contacts, 91 have 240.";
   result.figures.push_back(figure);
   result.remarks.push_back(
-      "For (10,10) the atoms of second neighbours are farther apart than the cutoff of the atom-atom law, and the "
-      "sum "
-      "over contacts is the whole energy; thinner tubes reach their second neighbours, which the oracle includes.");
+      "For (10,10), the atoms of second neighbours are farther apart than the cutoff of the atom-atom law: the "
+      "contacts are the whole energy. Thinner tubes reach their second neighbours; the oracle includes these.");
   result.sources.push_back(set_name);
   return result;
 }
 
-}  // namespace
-
-Case hexagonal_cohesion_case() {
+const RegisteredCase registered([] {
   Case c;
   c.name = "hexagonal-cohesion";
+  c.group = Case::Group::theory;
+  c.order = 90;
   c.title = "Cohesion of straight ropes of 7 to 91 tubes";
-  c.why = "It is the energy that twisting has to work against when it opens voids and breaks contacts.";
+  c.why = "Twisting works against this energy when it opens voids and breaks contacts.";
   c.setup =
-      "Straight (10,10) tubes on a hexagonal lattice of the law's spacing; energies of two lengths differenced.";
+      "Straight (10,10) tubes on a hexagonal lattice of the law's spacing. The difference of two lengths has no "
+      "ends in it.";
   c.oracle =
-      "E/L = (3 N - sqrt(12 N - 3)) E(R0), E(R0) the surface integral at its minimum, plus second neighbours where "
-      "the atom-atom law reaches them.";
+      "E/L = (3 N - sqrt(12 N - 3)) E(R0), with E(R0) the surface integral at its minimum; second neighbours are "
+      "added where the atom-atom law reaches them.";
   c.literature =
-      "H. Harborth, Elem. Math. 29, 14 (1974); L. A. Girifalco, M. Hodak, R. S. Lee, Phys. Rev. B 62, "
-      "13104 (2000), DOI 10.1103/PhysRevB.62.13104";
+      "H. Harborth, Elem. Math. 29, 14 (1974); L. A. Girifalco, M. Hodak, R. S. Lee, Phys. Rev. B 62, 13104 "
+      "(2000), DOI 10.1103/PhysRevB.62.13104";
   c.run = run;
+  c.turns_red = {wrong_contact(2)};
   return c;
-}
+});
 
+}  // namespace
 }  // namespace ropewalk

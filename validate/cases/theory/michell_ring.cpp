@@ -1,10 +1,10 @@
-// The twisted ring: in-plane until the twist reaches Michell's number.
+// The twist at which a closed ring leaves its plane.
 #include <Eigen/Dense>
 #include <array>
 #include <cmath>
 #include <complex>
 
-#include "cases/common/chains.hpp"
+#include "cases/common/chain.hpp"
 
 namespace ropewalk {
 namespace {
@@ -13,8 +13,8 @@ constexpr const char* set_name = "cnt-10-10-tersoff";
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
-// A ring of equal elements is the same in the cylinder frame of each of them: one element and its two neighbours
-// tell everything, and a motion with m waves around the ring needs only a matrix of 6 x 6.
+// In cylindrical coordinates all elements of the ring are equal. So one element and its two neighbours suffice, and
+// a motion with m waves around the ring needs only a matrix of 6 x 6.
 class TwistedRing {
  public:
   TwistedRing(const ParameterSet& set, int elements, double twist)
@@ -71,8 +71,9 @@ class TwistedRing {
     return out;
   }
 
-  // The twisted ring carries a shear force along its axis, which tilts the elements a little. Newton's method on
-  // the motions that are the same everywhere; shifts along and turns about the ring's axis cost nothing.
+  // The twisted ring carries a shear force along its axis, which tilts the elements a little. Newton's method finds
+  // the rest state among motions that are equal for all elements; shifts along and turns about the ring's axis are
+  // free.
   void settle() {
     Moves none;
     none.fill(Vector6::Zero());
@@ -107,7 +108,7 @@ CaseResult run(const CaseContext& context) {
   for (const int waves : {2, 3, 4})
     result.checks.push_back(relative_check("critical twist, " + std::to_string(waves) + " waves, 240 elements",
                                            critical_twist(model, 240, waves, michell(waves)), michell(waves), 1e-2,
-                                           "rad", "twist of 0.05 to 0.11 rad in a bond"));
+                                           "rad", "a bond twists by 0.05 to 0.11 rad"));
   const ParameterSet paper_model = context.model("cnt-10-10-paper"), paper = context.parameters("cnt-10-10-paper");
   const double published = 2 * units::pi * std::sqrt(3.0) * paper.bond.bend / paper.bond.twist;
   result.checks.push_back(relative_check("critical twist, 2 waves, published constants",
@@ -129,27 +130,30 @@ CaseResult run(const CaseContext& context) {
   figure.chart.lines.push_back(model_points("ring of elements", elements, twists));
   figure.caption = "The error falls with the square of the twist in a bond.";
   result.figures.push_back(figure);
-  result.remarks.push_back("Coarse rings buckle later: twist energy goes as 1 - cos of the angle of a bond.");
+  result.remarks.push_back(
+      "Coarse rings buckle later, because the twist energy goes as 1 - cos of the bond's angle.");
   result.sources = {set_name, "cnt-10-10-paper"};
   return result;
 }
 
-}  // namespace
-
-Case michell_ring_case() {
+const RegisteredCase registered([] {
   Case c;
   c.name = "michell-ring";
+  c.group = Case::Group::theory;
+  c.order = 40;
   c.title = "A closed ring with twist leaves its plane";
-  c.why = "It is where twist turns into writhe without ends or loads: the exchange that makes helices of ropes.";
+  c.why = "Here twist turns into writhe without ends or loads, as in a rope that becomes a helix.";
   c.setup =
-      "Closed rings of 40 to 240 elements of the (10,10) tube with uniform twist; lowest eigenvalue of the "
+      "Closed, uniformly twisted rings of 40 to 240 elements of the (10,10) tube. The lowest eigenvalue of the "
       "tangent stiffness for 2, 3 and 4 waves around the ring.";
   c.oracle = "Phi = 2 pi sqrt(m^2 - 1) EI/GJ, first for m = 2.";
   c.literature =
       "J. H. Michell, Messenger of Math. 19, 181 (1890); A. Goriely, J. Elasticity 84, 281 (2006), DOI "
       "10.1007/s10659-006-9055-3";
   c.run = run;
+  c.turns_red = {wrong_EI(1.1), wrong_GJ(0.9)};
   return c;
-}
+});
 
+}  // namespace
 }  // namespace ropewalk

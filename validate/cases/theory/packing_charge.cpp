@@ -1,9 +1,9 @@
-// Twisted ropes pack like points on a curved surface.
+// The curvature of the surface on which the tubes of a twisted rope pack.
 #include <Eigen/Geometry>
 #include <cmath>
 #include <string>
 
-#include "cases/common/chains_contact.hpp"
+#include "cases/common/bundle.hpp"
 
 namespace ropewalk {
 namespace {
@@ -15,7 +15,7 @@ constexpr double ring_radius = 8;  // spacings
 // 2 pi/6.
 double ideal_charge(double beta) { return 6 * (1 - std::pow(std::cos(beta), 3)); }
 
-// A helix through a place of the plane z = 0, by the distance along itself.
+// A helix through a point of the plane z = 0, as a function of its arc length.
 struct Helix {
   Eigen::Vector2d place;
   double rate = 0;  // rad/nm of the axis
@@ -43,9 +43,9 @@ double ring_energy(const LineContact& law, double radius, double rate, double an
 }
 
 struct Ring {
-  double tubes = 0;   // that fit around it in contact, also a fraction of one
+  double tubes = 0;   // number that fits around the ring in contact, not rounded
   double energy = 0;  // of each contact, eV/nm
-  // In spacings, measured by chords as in a polygon: a plane ring has no curvature then.
+  // Circumference in spacings, by the chords of a polygon: an untwisted rope then has no curvature.
   double around() const { return units::pi / std::sin(units::pi / tubes); }
 };
 
@@ -56,7 +56,7 @@ Ring fitted_ring(const LineContact& law, double radius, double rate, double spac
   return {2 * units::pi / well.distance, well.energy};
 }
 
-// Gauss and Bonnet: 2 pi less what the circumference grows by, per radius, is the curvature inside.
+// By Gauss and Bonnet the curvature inside is 2 pi minus the growth of the circumference per radius.
 double charge_inside(const LineContact& law, double radius, double rate, double spacing) {
   const double h = 0.5 * spacing;
   const double outer = fitted_ring(law, radius + h, rate, spacing).around();
@@ -87,40 +87,47 @@ CaseResult run(const CaseContext& context) {
   charge.chart.lines = {theory_curve(
                             "6 (1 - cos^3 beta)", [](double d) { return ideal_charge(d * units::degree); }, 0, 55),
                         model_points("rings of tubes in contact", angles, charges)};
-  charge.caption = "The first five-fold place is due where the curve passes one half to one, at 14 to 20 degrees.";
+  charge.caption =
+      "The first five-fold site is expected where the curve passes one half to one, at 14 to 20 degrees.";
   count.chart = {"Tubes that fit around a ring", {"twist angle", "degrees"}, {"tubes", ""}, {}, {}};
   count.chart.lines = {
       theory_curve(
           "2 pi rho cos beta/spacing",
           [](double d) { return 2 * units::pi * ring_radius * std::cos(d * units::degree); }, 0, 55),
       model_points("by the contact law", angles, counts)};
-  count.caption = "A ring of 8 spacings: twisted tubes are wider in the section by 1/cos beta.";
+  count.caption =
+      "A ring with a radius of 8 spacings. In the cross-section, twisted tubes are wider by 1/cos beta.";
   result.figures = {charge, count};
   result.remarks = {
-      "The case tests the metric that packing follows, as the contact law of the model has it, and not a packing: "
-      "the charge of an actual rope is an integer and depends on where its tubes have come to rest.",
-      "Neighbours counted by distance give more: where a triangle of tubes opens to a square, one contact is lost "
-      "and the count rises by two without any disclination. A triangulation does not see that."};
+      "This case tests the metric that the contact law imposes on the packing, not a packing. The charge of an "
+      "actual rope is an integer that depends on where its tubes have come to rest.",
+      "Counting neighbours by distance gives more. Where a triangle of tubes opens to a square, one contact is "
+      "lost and the count rises by two without any disclination. A triangulation does not count it."};
   result.sources.push_back(set_name);
   return result;
 }
 
-}  // namespace
-
-Case packing_charge_case() {
+const RegisteredCase registered([] {
   Case c;
   c.name = "packing-charge";
-  c.title = "The curvature that a twisted rope has to be packed in";
-  c.why = "It is why twisting brings five-fold places and, when they do not suffice, voids into a hexagonal rope.";
+  c.group = Case::Group::theory;
+  c.order = 130;
+  c.title = "The curvature that a twisted rope is packed in";
+  c.why =
+      "This curvature brings five-fold sites into a twisted hexagonal rope and, where they do not suffice, voids.";
   c.setup =
-      "Helical (10,10) tubes on rings of 7.5, 8 and 8.5 spacings around one axis, twisted to 0 to 50 degrees; the "
-      "angle between neighbours at which their contact is deepest, hence how many fit around.";
+      "Helical (10,10) tubes on rings of 7.5, 8 and 8.5 spacings around one axis, at twist angles of 0 to 50 "
+      "degrees. The angle between neighbours at which their contact energy is lowest tells how many fit around a "
+      "ring.";
   c.oracle =
-      "d s^2 = d rho^2 + rho^2 cos^2 beta d phi^2 between helical tubes, whose integrated Gaussian curvature is a "
-      "charge Q = 6 (1 - cos^3 beta); the energy of each contact is the surface integral at its minimum.";
+      "The metric between helical tubes is ds^2 = d rho^2 + rho^2 cos^2 beta d phi^2; its integrated Gaussian "
+      "curvature is a charge Q = 6 (1 - cos^3 beta). The energy of each contact is the surface integral at its "
+      "minimum.";
   c.literature = "I. R. Bruss, G. M. Grason, PNAS 109, 10781 (2012), DOI 10.1073/pnas.1205606109";
   c.run = run;
+  c.turns_red = {wrong_contact(2)};
   return c;
-}
+});
 
+}  // namespace
 }  // namespace ropewalk

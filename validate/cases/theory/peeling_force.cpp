@@ -1,7 +1,7 @@
 // Two adhering tubes that are pulled apart at one end.
 #include <cmath>
 
-#include "cases/common/chains_contact.hpp"
+#include "cases/common/bundle.hpp"
 
 namespace ropewalk {
 namespace {
@@ -15,7 +15,7 @@ struct Peel {
   double release = 0;  // force times sine of the slope, both tubes, eV/nm
 };
 
-// The shape of a cantilever clamped at the crack tip, to start from.
+// Start: the shape of a cantilever clamped at the crack tip.
 void open_arm(double opening, double crack, double side, const ParameterSet& set, std::size_t first, State& state) {
   for (int e = 0; e < elements; ++e) {
     const double s = e * set.element_length / crack;
@@ -71,8 +71,9 @@ CaseResult run(const CaseContext& context) {
     result.checks.push_back(relative_check("2 F sin(slope)," + at, p.release, adhesion, 1e-2, "eV/nm",
                                            "exact for any shape; contact fitted to 1.4e-3"));
     if (w == 4.0)
-      result.checks.push_back(information(relative_check("force," + at, p.force, force(w), 0.1, "eV/nm",
-                                                         "beam clamped at the crack tip; contact gives a little")));
+      result.checks.push_back(
+          information(relative_check("force," + at, p.force, force(w), 0.1, "eV/nm",
+                                     "a beam clamped at the crack tip; the contact yields a little")));
   }
   CaseFigure energy, pull;
   energy.chart = {"Energy released by peeling, per length",
@@ -83,42 +84,43 @@ CaseResult run(const CaseContext& context) {
   energy.chart.lines.push_back(theory_curve(
       "adhesion of parallel tubes", [&](double) { return adhesion; }, 0.5, 4.5));
   energy.chart.lines.push_back(model_points("2 F sin(slope) of the chains", openings, releases));
-  energy.caption = "The work of the ends per length of contact lost, from force and slope at the ends alone.";
+  energy.caption = "The work of the end forces per length of contact lost, from force and slope at the ends.";
   pull.chart = {"Peeling force against opening", {"opening of each end", "nm"}, {"force", "eV/nm"}, {}, {}};
   pull.chart.lines.push_back(theory_curve("beams clamped at the crack tip", force, 0.5, 4.5));
   pull.chart.lines.push_back(model_points("chains", openings, forces));
   pull.caption = "The softness of the contact beyond the crack tip lowers the force of short cracks.";
   result.figures = {energy, pull};
   result.remarks.push_back(
-      "Force times slope is a path-independent integral along both rods: where the bonded part is at rest it "
-      "equals "
-      "the adhesion energy per length whatever the shape of the tip, so that no beam approximation enters the "
-      "check.");
+      "Force times slope is a path-independent integral along both rods. If the bonded part is at rest, it equals "
+      "the adhesion energy per length for any shape of the crack tip. No beam approximation enters the check.");
   result.remarks.push_back(
-      "The beam formula, in which the arms are clamped at a sharp crack tip, is shown for "
-      "comparison only.");
+      "The beam formula, in which the arms are clamped at a sharp crack tip, is shown for comparison only.");
   result.sources.push_back(set_name);
   return result;
 }
 
-}  // namespace
-
-Case peeling_force_case() {
+const RegisteredCase registered([] {
   Case c;
   c.name = "peeling-force";
+  c.group = Case::Group::theory;
+  c.order = 80;
   c.title = "Two tubes peeled apart";
-  c.why = "Adhesion against bending decides whether tubes of a rope stay together; it sets voids and bird cages.";
+  c.why =
+      "The balance of adhesion and bending decides whether tubes of a rope stay together, and where voids and bird "
+      "cages open.";
   c.setup =
-      "Two adhering (10,10) tubes of 50 elements; one end of each is held 1 to 4 nm away from its place and "
-      "free to turn and to move along; relaxed to 1e-5 eV/nm.";
+      "Two adhering (10,10) tubes of 50 elements. One end of each is held 1 to 4 nm off its place and is free to "
+      "turn and to move along the tube; relaxed to 1e-5 eV/nm.";
   c.oracle =
-      "F (sin a + sin b) = -E(R0), a and b the slopes at the ends and E(R0) the surface integral at its "
-      "minimum; beams: c^4 = 9 EI w^2/|E|, F = 3 EI w/c^3.";
+      "F (sin a + sin b) = -E(R0), with a and b the slopes at the ends and E(R0) the surface integral at its "
+      "minimum. For beams c^4 = 9 EI w^2/|E|, F = 3 EI w/c^3.";
   c.literature =
-      "K. Kendall, J. Phys. D 8, 1449 (1975), DOI 10.1088/0022-3727/8/13/005; J. R. Rice, J. Appl. Mech. "
-      "35, 379 (1968), DOI 10.1115/1.3601206";
+      "K. Kendall, J. Phys. D 8, 1449 (1975), DOI 10.1088/0022-3727/8/13/005; J. R. Rice, J. Appl. Mech. 35, 379 "
+      "(1968), DOI 10.1115/1.3601206";
   c.run = run;
+  c.turns_red = {wrong_contact(2)};
   return c;
-}
+});
 
+}  // namespace
 }  // namespace ropewalk

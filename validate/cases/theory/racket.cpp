@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cases/common/chains_contact.hpp"
+#include "cases/common/bundle.hpp"
 
 namespace ropewalk {
 namespace {
@@ -41,7 +41,7 @@ Head trace(double curvature, double force_over_bend, double gap) {
   return head;
 }
 
-// Where the arms part the curvature is sqrt(Gamma/EI): opening both by ds frees EI k^2 ds and costs Gamma ds.
+// Where the arms part, the curvature k is sqrt(Gamma/EI): parting both by ds frees EI k^2 ds and costs Gamma ds.
 Head elastica(double bend, double adhesion, double gap) {
   const double k = std::sqrt(adhesion / bend);
   double low = 0.55 * k * k, high = 1.5 * k * k;
@@ -59,7 +59,7 @@ double bending(const Head& head, double bend) {  // eV, both halves
   return sum;
 }
 
-// Of the opening arms, eV: the attraction does not end where they part.
+// Attraction of the arms (eV) beyond the point where they part.
 double attraction(const Head& head, const PairIntegral& contact) {
   double sum = 0;
   for (std::size_t k = 1; k < head.size() && head[k].slope > 0; ++k)
@@ -86,7 +86,7 @@ Point at(const Head& head, double s) {
   return head[k];
 }
 
-// A chain along one arm, around the head and back along the other, its tip in the middle.
+// A chain along one arm, around the head and back along the other. Its middle is the tip.
 Bundle folded(const ParameterSet& set, int elements, const Head& head) {
   Bundle b = line_bundle(set, 1, elements);
   for (int e = 0; e < elements; ++e) {
@@ -101,7 +101,7 @@ Bundle folded(const ParameterSet& set, int elements, const Head& head) {
   return b;
 }
 
-// Tells apart what the chain does in its plane, where the oracle holds, from how it leaves it.
+// At rest, either held in its plane, where the oracle holds, or free.
 State relaxed(const Bundle& b, const State& start, bool in_plane, Energies& energy) {
   LoadsAndConstraints loads;
   for (int e = 0; in_plane && e < b.topology.elements(); ++e) loads.add(FixLoad({e}, false, false, true, false));
@@ -128,7 +128,7 @@ double width(const State& state) {
   return most;
 }
 
-// One arm up and one down, for the way out of the plane.
+// One arm above the plane and one below, so that the chain can leave it.
 State tilted(State state) {
   for (std::size_t e = 0; e < state.size(); ++e) state.position.z[e] = 2 * e < state.size() ? -0.05 : 0.05;
   return state;
@@ -152,7 +152,7 @@ CaseFigure shape_figure(const Head& head, const State& chain) {
     y.push_back(chain.position.y[e]);
   }
   figure.chart.lines = {theory, model_points("relaxed chain, every third element", x, y)};
-  figure.caption = "The tips are laid on each other; the arms go on to the left.";
+  figure.caption = "The tips are drawn in one place; the arms continue to the left.";
   return figure;
 }
 
@@ -179,7 +179,8 @@ CaseFigure curvature_figure(const Head& head, const State& chain, double element
   }
   figure.chart.lines = {theory, model_points("relaxed chain", s, k)};
   figure.caption =
-      "The jump to sqrt(Gamma/EI) at the parting of the arms is spread over the range of the attraction.";
+      "Theory has a jump to sqrt(Gamma/EI) where the arms part; in the chain it spreads over the range of the "
+      "attraction.";
   return figure;
 }
 
@@ -198,62 +199,60 @@ CaseResult run(const CaseContext& context) {
 
   const double far = 2 * pair.distance;  // beyond the attraction
   const double before = contour(head) - around(head, far), length = (elements - 1) * model.element_length;
-  const std::string soft = "the arms part over the range of the attraction, not at once: 0.5 % of the energy";
+  const std::string soft = "the arms part over the range of the attraction, not in one point: 0.5 % of the energy";
   CaseResult result;
   result.checks = {
       relative_check("contour of the head", around(flat, model.element_length, far) + before, contour(head), 1e-2,
                      "nm", soft),
       relative_check("width of the head", width(flat), width(head), 1e-2, "nm", soft),
       relative_check("energy of the head", energy.bonds(), bending(head, bend), 1e-2, "eV", soft),
-      relative_check("length from which a racket is below the straight tube",
+      relative_check("length above which a racket has less energy than the straight tube",
                      length + 2 * energy.potential() / adhesion,
                      contour(head) + 2 * (bending(head, bend) + attraction(head, contact)) / adhesion, 1e-2, "nm",
                      "as above; ends of the arms: 1 nm"),
-      relative_check("of the oracle itself: 2 U/Gamma of a head with arms at no distance",
+      relative_check("oracle alone: 2 U/Gamma of a head whose arms have no distance",
                      2 * bending(closed, bend) / adhesion, contour(closed), 1e-3, "nm",
-                     "U goes as 1/contour, so that its least means U = Gamma contour/2"),
+                     "U goes as 1/contour; at the lowest total energy U = Gamma contour/2"),
       information(relative_check("contour of the head, free to leave its plane",
                                  around(lifted, model.element_length, far) + before, contour(head), 1e-2, "nm",
                                  "see the remarks")),
   };
   result.figures = {shape_figure(head, flat), curvature_figure(head, flat, model.element_length)};
   result.remarks = {
-      "The arms lie at the distance of the well, not on each other: the oracle has that gap, which makes its head "
-      "1.3 % shorter than 6.056 sqrt(EI/Gamma).",
-      "Contours are taken from where the arms are two spacings apart, beyond the attraction; the oracle's part "
-      "before it is added to both.",
-      fmt::format(
-          "The plane racket is no minimum in space: one arm climbs on the other, so that their projections "
-          "need no gap, and the energy falls from {:.1f} to {:.1f} eV. The elements are therefore held in the "
-          "plane.",
-          energy.potential(), lifted_energy.potential())};
+      "The arms lie at the distance of the energy minimum. The oracle has this gap too, which makes its head 1.3 % "
+      "shorter than 6.056 sqrt(EI/Gamma).",
+      "Contours are measured from where the arms are two spacings apart, beyond the attraction. The oracle's "
+      "contour up to that place is added to both.",
+      fmt::format("The plane racket is not a minimum in space: one arm climbs onto the other, the gap closes, and "
+                  "the energy falls from {:.1f} to {:.1f} eV. So the elements are held in the plane.",
+                  energy.potential(), lifted_energy.potential())};
   result.sources.push_back(set_name);
   return result;
 }
 
-}  // namespace
-
-Case racket_case() {
+const RegisteredCase registered([] {
   Case c;
   c.name = "racket";
+  c.group = Case::Group::theory;
+  c.order = 110;
   c.title = "A tube folded into a racket";
   c.why =
-      "Folded tubes, loops at the ends of ropes and buckled strands have this shape; its size is where bending and "
-      "adhesion meet without any prescribed form.";
+      "Folded tubes, loops at the ends of ropes and buckled strands have this shape. Bending and adhesion alone "
+      "set its size; no form is prescribed.";
   c.setup =
-      "A (10,10) tube of 245 elements (336 nm) in the shape of a racket of 0.85 times the bending stiffness, "
-      "relaxed "
-      "to 1e-5 eV/nm in its plane, then free.";
+      "A (10,10) tube of 245 elements (336 nm). It starts in the shape of a racket of 0.85 times the bending "
+      "stiffness and is relaxed to 1e-5 eV/nm, first in its plane, then free.";
   c.oracle =
-      "Elastica EI k' = -F cos(slope) from the parting of the arms, half a spacing off the line of symmetry and "
-      "with "
-      "k = sqrt(Gamma/EI), to a tip at right angles on it; integrated here. For arms at no distance the head is "
-      "6.056 "
-      "sqrt(EI/Gamma) long, and rackets longer than twice that are below the straight tube; in the energy the "
-      "attraction of the opening arms is added, the surface integral over the elastica.";
+      "The elastica EI k' = -F cos(slope), integrated numerically. It starts where the arms part, half a spacing "
+      "off the line of symmetry and with k = sqrt(Gamma/EI), and meets the line of symmetry at right angles. For "
+      "arms without a gap the head is 6.056 sqrt(EI/Gamma) long, and rackets longer than twice that have less "
+      "energy than the straight tube. The energy includes the attraction of the opening arms, the surface integral "
+      "along the elastica.";
   c.literature = "A. E. Cohen, L. Mahadevan, PNAS 100, 12141 (2003), DOI 10.1073/pnas.1534600100";
   c.run = run;
+  c.turns_red = {wrong_EI(1.1), wrong_contact(2)};
   return c;
-}
+});
 
+}  // namespace
 }  // namespace ropewalk

@@ -3,14 +3,14 @@
 
 #include <cmath>
 
-#include "cases/common/chains.hpp"
+#include "cases/common/chain.hpp"
 
 namespace ropewalk {
 namespace {
 
 constexpr const char* set_name = "cnt-10-10-tersoff";
 
-// Elements on a circle, at the length at which their bonds are not stretched.
+// Elements on a circle whose chords are as long as unstretched bonds.
 double ring_energy(const ParameterSet& set, int elements, double circumference) {
   const double a = circumference / elements, step = 2 * units::pi / elements;
   const double radius = 0.5 * a / std::sin(0.5 * step);
@@ -31,10 +31,10 @@ CaseResult run(const CaseContext& context) {
     return (3 * oracle.bond.shear_share(circumference / n) / 16 - 1.0 / 12) * turn * turn / (n * n);
   };
   result.checks.push_back(relative_check("energy of 50 elements", ring_energy(model, 50, circumference), expected,
-                                         2e-3, "eV", "chords and cosines of 0.126 rad: -0.09 %"));
+                                         2e-3, "eV", "chords and cosines of bends of 0.126 rad: -0.09 %"));
   for (const int n : {50, 100})
     result.checks.push_back(relative_check(fmt::format("error of {} elements", n), error(n), leading(n), 2e-2, "1",
-                                           "second order in the element length, but for the share of shear"));
+                                           "second order in the element length, apart from shear"));
   std::vector<double> elements, errors;
   for (const int n : {16, 20, 25, 32, 40, 50, 64, 80, 100}) {
     elements.push_back(n);
@@ -46,28 +46,32 @@ CaseResult run(const CaseContext& context) {
       "(3 s/16 - 1/12) (2 pi/N)^2", [&](double n) { return 100 * leading(n); }, 16, 100));
   figure.chart.lines.push_back(model_points("ring of elements", elements, errors));
   figure.caption =
-      "Bending energy of a circle of fixed circumference cut into N elements, against EI (2 pi)^2/2L. "
-      "The line is the leading term of the bond's own energy, s the share of shear in a bond of this length.";
+      "Bending energy of a circle of fixed circumference in N elements, against EI (2 pi)^2/(2 L). The line is the "
+      "leading term of the bond's energy; s depends on the shear stiffness of a bond of this length.";
   result.figures.push_back(figure);
   result.remarks.push_back(
-      "A bond bent by delta between chords has 1 + (3 s/16 - 1/12) delta^2 times the energy of the arc, s = 1/(1 + "
-      "12 EI/(kGA a^2)); 5/48 without shear. The error falls with the square of the element length and faster.");
+      "A bond bent by delta between chords has 1 + (3 s/16 - 1/12) delta^2 times the energy of the arc, with s = "
+      "1/(1 + 12 EI/(kGA a^2)); without shear the factor of delta^2 is 5/48. The error falls with the square of "
+      "the element length or faster.");
   result.sources.push_back(set_name);
   return result;
 }
 
-}  // namespace
-
-Case ring_energy_case() {
+const RegisteredCase registered([] {
   Case c;
   c.name = "ring-energy";
+  c.group = Case::Group::theory;
+  c.order = 50;
   c.title = "Bending energy of a closed ring";
-  c.why = "Half of the elastic energy of a twisted rope is bending; curvature per element sets its error.";
+  c.why =
+      "Half of the elastic energy of a twisted rope is bending. Its error depends on the curvature per element.";
   c.setup = "A closed circle of the (10,10) tube of 68.9 nm, cut into 16 to 100 elements.";
   c.oracle = "U = EI (2 pi)^2/(2 L).";
   c.literature = "V. A. Kuzkin, I. E. Asonov, Phys. Rev. E 86, 051301 (2012), DOI 10.1103/PhysRevE.86.051301";
   c.run = run;
+  c.turns_red = {wrong_EI(1.1)};
   return c;
-}
+});
 
+}  // namespace
 }  // namespace ropewalk

@@ -1,7 +1,7 @@
 // Static loads on one tube: elongation, deflection and rotation of its end.
 #include <cmath>
 
-#include "cases/common/chains.hpp"
+#include "cases/common/chain.hpp"
 
 namespace ropewalk {
 namespace {
@@ -45,7 +45,7 @@ CaseResult run(const CaseContext& context) {
                                          tip * std::pow(length, 3) / (3 * oracle.bond.bend), 2e-4, "nm"));
   const EndMotion turned = loaded_end(model, Vector3::Zero(), {0, 0, couple});
   result.checks.push_back(relative_check("torsional stiffness M L/phi", couple * length / turned.rotation,
-                                         oracle.bond.twist, 1e-4, "eV nm", "angle of 0.003 rad in each bond"));
+                                         oracle.bond.twist, 1e-4, "eV nm", "each bond twists by 0.003 rad"));
 
   std::vector<double> force, deflection;
   for (const double f : {0.0, 0.1, 0.2, 0.3, 0.4, 0.5}) {
@@ -62,28 +62,31 @@ CaseResult run(const CaseContext& context) {
       "F L^3/3 EI + F L/kGA", [&](double f) { return f * compliance; }, 0, 0.5));
   figure.chart.lines.push_back(model_points("chain of elements", force, deflection));
   figure.caption =
-      "The chain bends as the beam does; at the largest force the points fall below the line of small "
-      "deflections, as an elastica does.";
+      "The chain bends as the beam does. At the largest force the points fall below the line of small deflections, "
+      "as they do for an elastica.";
   result.figures.push_back(figure);
   result.remarks.push_back("The three stiffnesses are independent: each load measures one of them.");
   result.sources.push_back(set_name);
   return result;
 }
 
-}  // namespace
-
-Case stretch_and_cantilever_case() {
+const RegisteredCase registered([] {
   Case c;
   c.name = "stretch-and-cantilever";
+  c.group = Case::Group::theory;
+  c.order = 10;
   c.title = "One tube pulled, bent and twisted by its end";
-  c.why = "Every elastic energy of a rope is made of EA, EI and GJ: the elements must give back what is put in.";
+  c.why =
+      "EA, EI and GJ make up every elastic energy of a rope. The chain must show the stiffnesses that were put in.";
   c.setup =
-      "A straight (10,10) tube of 20 bonds, one end fixed; a force along it, a force across it, a couple about "
-      "it; relaxed to 1e-7 eV/nm.";
+      "A straight (10,10) tube of 20 bonds with one end fixed. The other end bears a force along the tube, a force "
+      "across it, or a couple about it; relaxed to 1e-7 eV/nm.";
   c.oracle = "u = F L/EA, w = F L^3/(3 EI) + F L/kGA (Timoshenko), phi = M L/GJ.";
   c.literature = "L. D. Landau, E. M. Lifshitz, Theory of Elasticity, 3rd ed. (1986), DOI 10.1016/C2009-0-25521-8";
   c.run = run;
+  c.turns_red = {wrong_EA(1.1), wrong_EI(1.1), wrong_GJ(0.9)};
   return c;
-}
+});
 
+}  // namespace
 }  // namespace ropewalk

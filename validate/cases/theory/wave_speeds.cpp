@@ -1,7 +1,7 @@
 // Standing waves of one free tube.
 #include <cmath>
 
-#include "cases/common/chains.hpp"
+#include "cases/common/chain.hpp"
 
 namespace ropewalk {
 namespace {
@@ -14,8 +14,8 @@ struct StandingWave {
   std::vector<double> time, amplitude;  // up to half a period
 };
 
-// The first mode of a free chain, started with velocities alone: the projection of the velocities on it passes
-// zero after a quarter of the period. Free ends lie half an element beyond the last centres.
+// The first mode of a free chain, started with velocities only. The projection of the velocities on the mode passes
+// zero after a quarter of the period. The free ends lie half an element beyond the last centres.
 StandingWave standing_wave(const ParameterSet& set, bool torsion) {
   Chain c(set, bonds);
   const auto mode = [&](int i) { return std::cos(units::pi * (i + 0.5) / (c.last + 1)); };
@@ -87,20 +87,24 @@ CaseResult run(const CaseContext& context) {
   return result;
 }
 
-}  // namespace
-
-Case wave_speeds_case() {
+const RegisteredCase registered([] {
   Case c;
   c.name = "wave-speeds";
+  c.group = Case::Group::theory;
+  c.order = 60;
   c.title = "Sound along a tube, axial and torsional";
-  c.why = "Loads reach the middle of a rope at these speeds: they say which twisting rate is slow.";
-  c.setup = "A free straight (10,10) tube of 61 elements, started in its first axial or torsional mode; undamped.";
-  c.oracle = "c = sqrt(EA/mu) axial, c = sqrt(GJ/(mu r^2)) torsional, mu the mass per length.";
+  c.why = "Loads travel along a rope at these speeds. A twisting rate is slow if it is slow against them.";
+  c.setup =
+      "A free straight (10,10) tube of 61 elements, undamped, with initial velocities of its first axial or "
+      "torsional mode.";
+  c.oracle = "c = sqrt(EA/mu) axial, c = sqrt(GJ/(mu r^2)) torsional, with mu the mass per length.";
   c.literature =
-      "K. F. Graff, Wave Motion in Elastic Solids (Dover, 1991); carbon nanotubes: T. Natsuki, T. Hayashi, "
-      "M. Endo, J. Appl. Phys. 97, 044307 (2005)";
+      "K. F. Graff, Wave Motion in Elastic Solids (Dover, 1991); carbon nanotubes: T. Natsuki, T. Hayashi, M. "
+      "Endo, J. Appl. Phys. 97, 044307 (2005)";
   c.run = run;
+  c.turns_red = {wrong_EA(1.1), wrong_GJ(0.9)};
   return c;
-}
+});
 
+}  // namespace
 }  // namespace ropewalk

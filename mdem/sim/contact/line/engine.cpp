@@ -9,14 +9,10 @@ namespace {
 
 template <class Buffers>
 void make_tables(Buffers& b, const Interaction& in, double unit) {
-  if (b.tables_unit == unit && b.tables.size() == in.line.size()) return;
-  b.tables.clear();
+  if (b.unit == unit && b.pairs.size() == in.line.size()) return;
   b.pairs.clear();
-  for (const LineContact& pair : in.line) {
-    b.tables.emplace_back(pair.density, unit);
-    b.pairs.emplace_back(pair);
-  }
-  b.tables_unit = unit;
+  for (const LineContact& law : in.line) b.pairs.emplace_back(law, unit);
+  b.unit = unit;
 }
 
 // What a buffer holds for elements of a tube, element j at j + shift.
@@ -48,74 +44,66 @@ void add_viscosity(const ContactViscosity& viscosity, const State& state, const 
 }
 void add_viscosity(const ContactViscosity& viscosity, const State& state, const LineChunk& chunk, double unit,
                    LineWork<float>& work, ContactBuffer<float>& out) {
-  contact_damping(viscosity, state, {chunk.damped, chunk.damped_parts, unit}, work.damped, out);
+  contact_damping(viscosity, state, {chunk.damped, chunk.damped_ranges, unit}, work.damped, out);
 }
 
 }  // namespace
 
-void LineEngine::describe(const Topology& topology, const Interaction& in, const NeighbourList& list,
-                          const TubeParts& parts) {
+void LineEngine::update_list(const Topology& topology, const Interaction& in, const NeighbourList& list,
+                             const TubeParts& parts) {
+  if (stamp_ == list.stamp()) return;
+  const double began = omp_get_wtime();
   list_.build(topology, in, list);
   stamp_ = list.stamp();
   full_ = in.precision == Interaction::Precision::full;
-  for (const Rows kind : {Rows::all, Rows::sparse}) {
-    auto& places = places_[static_cast<int>(kind)];
-    places.clear();
-    for (std::size_t a = 0; a < topology.types.size(); ++a)
-      places.push_back(
-          node_places(list_.per_element(kind, static_cast<int>(a)), in.line[a * topology.types.size()].length_i));
-  }
-  touches_.list(parts, list_.chunks());
+  offsets_.clear();
+  for (std::size_t a = 0; a < topology.types.size(); ++a)
+    offsets_.push_back(
+        node_offsets(list_.nodes_per_element(static_cast<int>(a)), in.line[a * topology.types.size()].length_i));
+  written_.list(parts, list_.chunks());
   if (full_) {
     make_tables(full_buffers_, in, 1);
   } else {
     make_tables(mixed_, in, list_.unit());
   }
+  list_seconds_ += omp_get_wtime() - began;
 }
 
+// By one thread: the positions of the nodes, what acts on them, and that on their elements.
 template <class Buffers>
-void LineEngine::make_room(Buffers& b, std::size_t threads) const {
-  b.of_chunks.resize(list_.chunks().size());
-  b.nodes.resize(threads);
-  b.work.resize(threads);
-  for (auto& rows : b.nodes)
-    for (const Rows kind : {Rows::all, Rows::sparse}) {
-      auto& nodes = rows[static_cast<std::size_t>(kind)];
-      nodes.per_unit = 1 / b.tables_unit;
-      nodes.make_room(list_.most_nodes(kind));
-    }
-  for (auto& work : b.work) work.make_room(list_);
-}
-
-// The contact of one chunk, by one thread: its rows of nodes, what acts on them, and that on their elements.
-template <class Buffers>
-void LineEngine::meet(std::size_t k, std::size_t thread, Buffers& b, KernelInput<Buffers> in) {
+void LineEngine::compute_chunk(std::size_t k, std::size_t thread, const Interaction& interaction, Buffers& b,
+                               KernelInput<Buffers> in) {
   const LineChunk& chunk = list_.chunks()[k];
-  LineNodes<typename Buffers::C>* const nodes = b.nodes[thread].data();
   auto& work = b.work[thread];
   auto& out = b.of_chunks[k];
-  const RowsOf rows{chunk, in.topology->tube_type, places_, in.state->position, *in.axis, in.moved};
-  place_nodes(rows, nodes);
-  in.nodes = nodes;
+  const NodeInput elements{chunk, in.topology->tube_type, offsets_, in.state->position, *in.axis};
+  position_nodes(elements, b.unit, b.nodes[thread]);
+  in.nodes = &b.nodes[thread];
   out.clear(static_cast<std::size_t>(chunk.elements));
-  if (in.interaction->damped_contact())
-    add_viscosity(in.interaction->damping.contact, *in.state, chunk, list_.unit(), work, out);
-  work.start(chunk, plan_.chunk(k));
+  if (interaction.damped_contact()) add_viscosity(interaction.damping.contact, *in.state, chunk, b.unit, work, out);
+  work.forces.clear(chunk.nodes);
   line_contact(in, chunk, work, out);
-  add_node_forces(rows, work.forces, out);
+  add_node_forces(elements, work.forces, out);
 }
 
 template <class Buffers>
-void LineEngine::run(Buffers& b, const Topology& topology, const Interaction& in, const NeighbourList& list,
-                     const State& state, const Vec3Array& axis, bool energies, const TubeWork& tubes) {
-  KernelInput<Buffers> input{
-      &topology,           &in,     &state, &axis, &list_, nullptr, b.tables.data(), b.pairs.data(), {}, 0, 0,
-      LinePlan::Use::none, energies};
-  for (int t = 0; t < line_sums; ++t) input.rows[t] = in.line[0].sparse.thins_j(t) ? Rows::sparse : Rows::all;
+void LineEngine::compute_all(Buffers& b, const Topology& topology, const Interaction& interaction,
+                             const NeighbourList& list, const State& state, const Vec3Array& axis, bool energies,
+                             const TubeWork& tubes) {
   const bool parallel = state.size() > parallel_from, at_once = state.size() > finish_at_once_from;
   const int threads = parallel ? omp_get_max_threads() : 1;
-  make_room(b, static_cast<std::size_t>(threads));
-  left_.start(touches_.chunks_on());
+  const KernelInput<Buffers> input{
+      &topology, &state, &axis, &list_, nullptr, b.pairs.data(), b.unit, 1 / b.unit, 2 * list.displacement(),
+      energies};
+  b.of_chunks.resize(list_.chunks().size());
+  b.nodes.resize(static_cast<std::size_t>(threads));
+  b.work.resize(static_cast<std::size_t>(threads));
+  for (auto& nodes : b.nodes) nodes.reserve(list_.largest().nodes);
+  for (auto& work : b.work) {
+    work.found.reserve(list_.largest().vectors);
+    if (!full_) work.damped.make_room(list_.largest().elements);
+  }
+  left_.start(written_.chunks_on());
   const auto finish = [&](int block) {
     if (omp_get_thread_num() != 0) return tubes.finish(block);
     const double began = omp_get_wtime();
@@ -123,69 +111,38 @@ void LineEngine::run(Buffers& b, const Topology& topology, const Interaction& in
     finish_seconds_ += omp_get_wtime() - began;
   };
   shares_.deal(static_cast<int>(list_.chunks().size()), threads);
-  plan_.start(topology, list, list_);
-  const auto choose = [&] {
-    plan_.choose(state, axis);
-    input.turned = plan_.turned();
-    input.moved = moved_ = plan_.moved();
-    input.plan = plan_.use();
-  };
-  if (!plan_.wanted()) choose();
 #pragma omp parallel num_threads(threads) if (parallel)
   {
 #pragma omp for schedule(static)
-    for (int t = 0; t < topology.tubes(); ++t) {
-      tubes.place(t);
-      plan_.look(topology, state, t);
-    }
-    if (plan_.wanted()) {
-#pragma omp single
-      choose();
-    }
+    for (int t = 0; t < topology.tubes(); ++t) tubes.place(t);
     const int thread = omp_get_thread_num();
     for (int piece; (piece = shares_.take(thread)) >= 0;) {
       const auto k = static_cast<std::size_t>(piece);
-      meet(k, static_cast<std::size_t>(thread), b, input);
+      compute_chunk(k, static_cast<std::size_t>(thread), interaction, b, input);
       if (at_once)
-        for (int block : touches_.blocks(k))
+        for (int block : written_.blocks(k))
           if (left_.last(block)) finish(block);
     }
 #pragma omp barrier
 #pragma omp for schedule(static)
     for (int block = 0; block < tubes.parts.blocks(); ++block)
-      if (!at_once || touches_.chunks_on()[static_cast<std::size_t>(block)] == 0) finish(block);
+      if (!at_once || written_.chunks_on()[static_cast<std::size_t>(block)] == 0) finish(block);
   }
 }
 
 void LineEngine::compute(const Topology& topology, const Interaction& in, const NeighbourList& list,
                          const State& state, const Vec3Array& axis, bool energies, const TubeWork& tubes) {
-  if (stamp_ != list.stamp()) {
-    const double began = omp_get_wtime();
-    describe(topology, in, list, tubes.parts);
-    list_seconds_ += omp_get_wtime() - began;
-  }
+  update_list(topology, in, list, tubes.parts);
   if (full_) {
-    run(full_buffers_, topology, in, list, state, axis, energies, tubes);
+    compute_all(full_buffers_, topology, in, list, state, axis, energies, tubes);
   } else {
-    run(mixed_, topology, in, list, state, axis, energies, tubes);
+    compute_all(mixed_, topology, in, list, state, axis, energies, tubes);
   }
-}
-
-void LineEngine::resume(const Topology& topology, const Interaction& in, const NeighbourList& list,
-                        LinePlan::Saved plan) {
-  State made(plan.position.size());
-  made.position = plan.position;
-  const Vec3Array axis = plan.axis;
-  plan_.resume(list, std::move(plan));
-  const TubeParts parts(topology);
-  const auto nothing = [](int) {};
-  compute(topology, in, list, made, axis, false, {parts, nothing, nothing});
 }
 
 void LineEngine::add_to(int part, const ForceRows& sums) const {
-  for (const LineTouches::Touch& touch : touches_.on(part))
-    if (may_be_in_reach(touch.beyond, moved_))
-      in_use([&](const auto& b) { add_range(touch.on, b.of_chunks[static_cast<std::size_t>(touch.chunk)], sums); });
+  for (const WrittenRanges::Written& w : written_.on(part))
+    in_use([&](const auto& b) { add_range(w.on, b.of_chunks[static_cast<std::size_t>(w.chunk)], sums); });
 }
 
 double LineEngine::energy() const {
@@ -205,15 +162,12 @@ double LineEngine::damping_power() const {
 }
 
 std::size_t LineEngine::bytes() const {
-  std::size_t total = list_.bytes() + touches_.bytes() + plan_.bytes();
+  std::size_t total = list_.bytes() + written_.bytes();
   const auto count = [&](const auto& b) {
     for (const auto& out : b.of_chunks) total += out.bytes();
-    for (const auto& rows : b.nodes)
-      for (const auto& nodes : rows) total += 3 * nodes.x.capacity() * sizeof(nodes.x[0]);
-    for (const auto& work : b.work) {
-      for (const auto& f : work.forces) total += 3 * f.x.capacity() * sizeof(f.x[0]);
-      total += work.damped.bytes();
-    }
+    for (const auto& nodes : b.nodes) total += 3 * nodes.x.capacity() * sizeof(nodes.x[0]);
+    for (const auto& work : b.work)
+      total += 3 * work.forces.x.capacity() * sizeof(work.forces.x[0]) + work.found.bytes() + work.damped.bytes();
   };
   count(mixed_);
   count(full_buffers_);

@@ -10,25 +10,24 @@
 
 namespace ropewalk {
 
-class LineTouches {
+class WrittenRanges {
  public:
-  struct Touch {
+  struct Written {
     int chunk = 0;
-    TouchedRange on;   // elements of the part, by their entries in the buffers of the chunk
-    float beyond = 0;  // nm: of the TouchedPart
+    TouchedRange on;  // elements of the part, by their entries in the buffers of the chunk
   };
 
   void list(const TubeParts& parts, const std::vector<LineChunk>& chunks);
 
   // Of a part, in the order of the chunks.
-  Span<Touch> on(int part) const { return entries_of(part, begin_, touch_); }
+  Span<Written> on(int part) const { return entries_of(part, begin_, written_); }
   // The blocks of parts that a chunk acts on, and how many chunks act on each.
   const std::vector<int>& blocks(std::size_t chunk) const { return blocks_[chunk]; }
   const std::vector<int>& chunks_on() const { return chunks_on_; }
   std::size_t bytes() const;
 
  private:
-  std::vector<Touch> touch_;
+  std::vector<Written> written_;
   std::vector<int> begin_;
   std::vector<std::vector<int>> blocks_;
   std::vector<int> chunks_on_;

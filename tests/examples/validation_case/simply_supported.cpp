@@ -1,0 +1,75 @@
+// A tube on two supports under a force in its middle, against the Timoshenko beam. This is the worked example of
+// docs/how-to/validation-case.md: in a folder of validate/cases/ it would be one more case of the program.
+#include <algorithm>
+#include <cmath>
+
+#include "cases/common/chain.hpp"
+
+namespace ropewalk {
+namespace {
+
+constexpr const char* set_name = "cnt-10-10-tersoff";
+constexpr int bonds = 20;
+constexpr double force = 1e-2;  // eV/nm
+
+// Deflections (nm) of all elements at rest.
+std::vector<double> deflections(const ParameterSet& model) {
+  Chain c(model, bonds);
+  c.loads.add(FixLoad({0}, true, true, true, false));
+  c.loads.add(FixLoad({c.last}, true, true, false, false));
+  c.loads.add(ForceLoad({bonds / 2}, Vector3(force, 0, 0)));
+  const Simulation rest = c.relaxed(1e-7);
+  std::vector<double> out;
+  for (std::size_t i = 0; i < rest.state().size(); ++i) out.push_back(rest.state().position.x[i]);
+  return out;
+}
+
+CaseResult run(const CaseContext& context) {
+  const ParameterSet model = context.model(set_name), oracle = context.parameters(set_name);
+  const double length = bonds * oracle.element_length;
+  const auto beam = [&](double z) {
+    const double x = std::min(z, length - z);  // from the nearer support
+    return force * x * (3 * length * length - 4 * x * x) / (48 * oracle.bond.bend) +
+           force * x / (2 * oracle.bond.shear);
+  };
+  const std::vector<double> found = deflections(model);
+
+  CaseResult result;
+  result.checks.push_back(relative_check("deflection in the middle", found[bonds / 2], beam(0.5 * length), 1e-3,
+                                         "nm", "the bond is the exact element of this beam"));
+  result.checks.push_back(
+      relative_check("deflection at a quarter", found[bonds / 4], beam(0.25 * length), 1e-3, "nm"));
+  std::vector<double> place;
+  for (std::size_t i = 0; i < found.size(); ++i) place.push_back(static_cast<double>(i) * oracle.element_length);
+  CaseFigure figure;
+  figure.chart = {
+      "Deflection of a tube on two supports", {"place along the tube", "nm"}, {"deflection", "nm"}, {}, {}};
+  figure.chart.lines = {theory_curve("Timoshenko beam", beam, 0, length),
+                        model_points("chain of elements", place, found)};
+  figure.caption = "The force acts in the middle; the ends are held across the tube and turn freely.";
+  result.figures = {figure};
+  result.remarks = {"Shear adds 12 EI/(kGA L^2) times the deflection of the Euler-Bernoulli beam."};
+  result.sources = {set_name};
+  return result;
+}
+
+const RegisteredCase registered([] {
+  Case c;
+  c.name = "simply-supported";
+  c.group = Case::Group::theory;
+  c.order = 15;  // after stretch-and-cantilever
+  c.title = "Deflection of a tube on two supports";
+  c.why = "A tube of a rope rests on its neighbours and bends where they leave a gap.";
+  c.setup =
+      "A straight (10,10) tube of 20 bonds. Both ends are held across the tube and turn freely; one of them slides "
+      "along it. A force acts across the middle; relaxed to 1e-7 eV/nm.";
+  c.oracle = "w = F L^3/(48 EI) + F L/(4 kGA) in the middle.";
+  c.literature = "S. P. Timoshenko, Phil. Mag. 41, 744 (1921), DOI 10.1080/14786442108636264";
+  c.run = run;
+  c.turns_red = {{wrong_EI(1.1), {"deflection in the middle", "deflection at a quarter"}}};
+  c.stays_green = {wrong_EA(1.1), wrong_GJ(0.9), wrong_contact(2)};
+  return c;
+});
+
+}  // namespace
+}  // namespace ropewalk

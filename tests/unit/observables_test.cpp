@@ -1,0 +1,99 @@
+// The table of observables, and the log that is made of it.
+#include "observe/observables.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+#include <stdexcept>
+
+#include "io/log.hpp"
+#include "model/units.hpp"
+#include "support.hpp"
+
+namespace ropewalk {
+namespace {
+
+double one(const Measurement&) { return 1; }
+
+Observable named(const char* name, const char* unit) { return {name, unit, "", ObservableGroup::shape, one}; }
+
+// Columns and bytes that programs of users rely on: a new column comes behind or between, none changes its name or
+// its digits.
+TEST(Observables, LogHasTheColumnsAndBytesThatItAlwaysHad) {
+  EXPECT_EQ(
+      log_header(),
+      "step,time_ps,moment_nN_nm,stretch_eV,shear_eV,bend_eV,twist_eV,vdw_eV,kinetic_eV,work_eV,dissipated_eV,"
+      "balance_eV,beta_deg,physical_twist_deg,geometric_twist_deg,Q,Q_delaunay,contacts,voids,void_area_nm2,"
+      "radius_mid_nm,radius_end_nm,length_nm,amplitude_nm,windings,kinked,overtwisted,overstretched,"
+      "largest_bond_twist_deg\n");
+  const Topology topology;
+  State state;
+  state.step = 123456789012345;
+  state.time = 0.1;
+  EnergyAccount a;
+  a.moment = 30 * units::nN_nm;
+  a.potential = {1, 2, 3, 4, -1e-300};
+  a.kinetic = 0.25;
+  a.work = 8;
+  a.dissipated = 0.5;
+  a.first_energy = 2.5;
+  RopeObservation o;
+  o.beta = 0.5;
+  o.physical_twist = 1.25;
+  o.geometric_twist = -2.5;
+  o.middle.charge = -1;
+  o.middle.charge_delaunay = 2;
+  o.middle.contacts = 210;
+  o.middle.voids = 3;
+  o.middle.void_area = 1.0 / 3;
+  o.radius_mid = 6.5;
+  o.radius_end = 6.25;
+  o.length = 66.1;
+  o.amplitude = 7e-7;
+  o.windings = -0.0;
+  o.kinked = 4;
+  o.overtwisted = 5;
+  o.overstretched = 6;
+  o.largest_bond_twist = 0.75;
+  EXPECT_EQ(log_line(LogRow({topology, state, o, a})),
+            "123456789012345,0.1,30,1,2,3,4,-1e-300,0.25,8,0.5,0.25,28.64788975654116,71.6197243913529,"
+            "-143.2394487827058,-1,2,210,3,0.3333333333333333,6.5,6.25,66.1,7e-07,-0,4,5,6,42.97183463481174\n");
+}
+
+TEST(Observables, NamesAreUniqueAndEndInTheirUnit) {
+  std::set<std::string> names;
+  for (const Observable& o : observables()) {
+    EXPECT_TRUE(names.insert(o.name).second) << o.name;
+    EXPECT_FALSE(o.meaning.empty()) << o.name;
+    EXPECT_NE(o.meaning.back(), '.') << o.name;
+    std::string ending = o.unit;
+    for (const auto& [from, to] : {std::pair{" ", "_"}, std::pair{"^", ""}})
+      for (std::size_t at; (at = ending.find(from)) != std::string::npos;) ending.replace(at, 1, to);
+    EXPECT_EQ(o.name.substr(o.name.size() - ending.size()), ending) << o.name;
+    EXPECT_EQ(observables()[index_of_observable(o.name)].name, o.name);
+  }
+}
+
+TEST(Observables, WrongEntriesAreRefused) {
+  const std::size_t before = observables().size();
+  EXPECT_THROW(add_observable(named("beta_deg", "deg")), std::invalid_argument) << "taken";
+  EXPECT_THROW(add_observable(named("", "")), std::invalid_argument);
+  EXPECT_THROW(add_observable(named("a,b", "")), std::invalid_argument);
+  EXPECT_THROW(add_observable(named("gap", "nm")), std::invalid_argument);
+  EXPECT_THROW(add_observable(named("_nm", "nm")), std::invalid_argument);
+  EXPECT_THROW(add_observable(named("area_nm", "nm^2")), std::invalid_argument);
+  EXPECT_THROW(add_observable(named("rate_ps", "1/ps")), std::invalid_argument);
+  EXPECT_THROW(add_observable({"gap_nm", "nm", "", ObservableGroup::shape, nullptr}), std::invalid_argument);
+  EXPECT_EQ(observables().size(), before);
+  EXPECT_THROW(index_of_observable("gap_nm"), std::invalid_argument);
+  EXPECT_THROW(LogRow()["gap_nm"], std::invalid_argument);
+}
+
+// Only the running simulation knows loads and energies.
+TEST(Observables, FramesGiveAllButLoadsAndEnergies) {
+  for (const Observable& o : observables())
+    EXPECT_EQ(in_frames(o.group), o.name.find("_eV") == std::string::npos && o.name != "moment_nN_nm") << o.name;
+}
+
+}  // namespace
+}  // namespace ropewalk

@@ -1,0 +1,37 @@
+// docs/outputs.md lists exactly what the tables in the code have.
+#include "io/outputs.hpp"
+
+#include <gtest/gtest.h>
+
+#include "io/frames.hpp"
+#include "io/limits_file.hpp"
+#include "io/manifest.hpp"
+#include "observe/observables.hpp"
+#include "outputs_page.hpp"
+#include "run/run_directory.hpp"
+#include "scene/lammps_files.hpp"
+#include "scene/state_csv.hpp"
+
+namespace ropewalk {
+namespace {
+
+using test::outputs_table;
+
+TEST(OutputsPage, HasTheTablesOfTheCode) {
+  EXPECT_EQ(outputs_table("The directory of a run"), run_files_markdown());
+  EXPECT_EQ(outputs_table("`log.csv`"), observables_markdown());
+  EXPECT_EQ(outputs_table("`frames.lammpstrj`"), columns_markdown(frame_columns()));
+  EXPECT_EQ(outputs_table("`paraview/frame-*.vtp`"), columns_markdown(vtp_arrays()));
+  EXPECT_EQ(outputs_table("`state.csv` and `failed-state.csv`"), columns_markdown(state_columns()));
+  EXPECT_EQ(outputs_table("`manifest.json`"), columns_markdown(manifest_keys()));
+  EXPECT_EQ(outputs_table("An entry of `limits`"), columns_markdown(limit_keys()));
+  EXPECT_EQ(outputs_table("An entry of `refinements`"), columns_markdown(refinement_keys()));
+  EXPECT_EQ(outputs_table("`energy_before_eV` and `energy_after_eV`"), columns_markdown(energy_keys()));
+  EXPECT_EQ(outputs_table("`lammps.json`"), columns_markdown(lammps_start_keys()));
+  EXPECT_EQ(outputs_table("`tubes.csv`"), columns_markdown(lammps_tube_columns()));
+  EXPECT_EQ(outputs_table("`lammps-rows.csv`"), columns_markdown(lammps_row_columns()));
+  EXPECT_EQ(outputs_table("`lammps.dump` and `lammps-last.dump`"), columns_markdown(lammps_state_columns()));
+}
+
+}  // namespace
+}  // namespace ropewalk

@@ -1,0 +1,136 @@
+// Every registered case holds, explains itself, misses under each fault that it names in `turns_red`, and does not
+// change under those of `stays_green`. The tests read the register: a new case is tested without a line here.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "validate/support.hpp"
+
+namespace ropewalk {
+namespace {
+
+struct Trial {
+  const Case* validation_case;
+  Case::Red red;  // the fault to put in, and the checks that must miss
+};
+
+// Part of the test's name: letters, digits and underscores.
+std::string name_of(const Trial& trial) {
+  const std::string fault = trial.red.fault.name();
+  std::string name = trial.validation_case->name + (fault.empty() ? "" : "_" + fault);
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+}
+
+void PrintTo(const Trial& trial, std::ostream* out) { *out << name_of(trial); }
+
+std::string test_name(const ::testing::TestParamInfo<Trial>& info) { return name_of(info.param); }
+
+std::vector<Trial> trials_without_fault() {
+  std::vector<Trial> trials;
+  for (const Case& c : all_cases()) trials.push_back({&c, {}});
+  return trials;
+}
+
+std::vector<Trial> trials_that_turn_red() {
+  std::vector<Trial> trials;
+  for (const Case& c : all_cases())
+    for (const Case::Red& red : c.turns_red) trials.push_back({&c, red});
+  return trials;
+}
+
+std::vector<Trial> trials_that_stay_green() {
+  std::vector<Trial> trials;
+  for (const Case& c : all_cases())
+    for (const Fault& fault : c.stays_green) trials.push_back({&c, {fault, {}}});
+  return trials;
+}
+
+// Misses that the case does not announce.
+std::set<std::string> new_misses(const Case& c, const CaseResult& result) {
+  std::set<std::string> names = test::misses(result);
+  for (const std::string& known : c.known_misses) names.erase(known);
+  return names;
+}
+
+void expect_texts(const Case& c) {
+  for (const std::string& text : {c.name, c.title, c.why, c.setup, c.oracle, c.literature})
+    EXPECT_FALSE(text.empty()) << c.name;
+  if (c.group == Case::Group::atoms) {
+    EXPECT_NE(c.literature.find("DOI"), std::string::npos) << c.name;
+  }
+  EXPECT_FALSE(c.turns_red.empty()) << c.name << ": a case that no fault turns red tests nothing";
+}
+
+void expect_figures_and_sources(const Case& c, const CaseResult& result) {
+  const std::size_t least = c.group == Case::Group::atoms ? 2 : 1;
+  EXPECT_GE(result.figures.size(), least);
+  EXPECT_GE(result.sources.size(), least);
+  EXPECT_FALSE(result.remarks.empty());
+  for (const CaseFigure& figure : result.figures) {
+    EXPECT_TRUE(can_draw(figure.chart)) << figure.chart.title;
+    EXPECT_FALSE(figure.caption.empty()) << figure.chart.title;
+  }
+}
+
+// A limit has its place on the map, and what was found agrees with theory.
+void expect_limits(const Case& c, const CaseResult& result) {
+  EXPECT_EQ(c.group == Case::Group::stability, !result.limits.empty());
+  for (const Limit& l : result.limits) {
+    EXPECT_NEAR(l.found / l.theory, 1, 0.05) << l.method;
+    EXPECT_FALSE(l.how.empty()) << l.method;
+  }
+}
+
+class ValidationCase : public ::testing::TestWithParam<Trial> {};
+
+TEST_P(ValidationCase, HoldsAndExplainsItself) {
+  const Case& c = *GetParam().validation_case;
+  expect_texts(c);
+  const CaseResult result = test::run(c);
+  ASSERT_FALSE(result.checks.empty());
+  for (const Check& check : result.checks) EXPECT_TRUE(std::isfinite(check.value)) << check.name;
+  for (const std::string& name : new_misses(c, result)) {
+    const Check& check = test::check_of(result, name);
+    ADD_FAILURE() << check.name << ": " << check.value << " against " << check.reference;
+  }
+  for (const std::string& known : c.known_misses)
+    EXPECT_TRUE(std::any_of(result.checks.begin(), result.checks.end(),
+                            [&](const Check& check) { return check.name == known; }))
+        << "there is no check \"" << known << "\"";
+  expect_figures_and_sources(c, result);
+  expect_limits(c, result);
+}
+
+class WrongParameter : public ::testing::TestWithParam<Trial> {};
+
+TEST_P(WrongParameter, TurnsTheCaseRed) {
+  const Trial& trial = GetParam();
+  ASSERT_FALSE(trial.red.fault.name().empty()) << "no parameter is wrong";
+  const std::set<std::string> missed =
+      new_misses(*trial.validation_case, test::run(*trial.validation_case, trial.red.fault));
+  EXPECT_FALSE(missed.empty());
+  for (const std::string& part : trial.red.checks)
+    EXPECT_TRUE(std::any_of(missed.begin(), missed.end(),
+                            [&](const std::string& name) { return name.find(part) != std::string::npos; }))
+        << part << " holds";
+}
+
+class UnrelatedParameter : public ::testing::TestWithParam<Trial> {};
+
+TEST_P(UnrelatedParameter, LeavesTheCaseGreen) {
+  const Trial& trial = GetParam();
+  ASSERT_FALSE(trial.red.fault.name().empty()) << "no parameter is wrong";
+  EXPECT_TRUE(new_misses(*trial.validation_case, test::run(*trial.validation_case, trial.red.fault)).empty());
+}
+
+INSTANTIATE_TEST_SUITE_P(Cases, ValidationCase, ::testing::ValuesIn(trials_without_fault()), test_name);
+INSTANTIATE_TEST_SUITE_P(Cases, WrongParameter, ::testing::ValuesIn(trials_that_turn_red()), test_name);
+INSTANTIATE_TEST_SUITE_P(Cases, UnrelatedParameter, ::testing::ValuesIn(trials_that_stay_green()), test_name);
+
+}  // namespace
+}  // namespace ropewalk

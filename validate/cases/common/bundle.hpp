@@ -1,0 +1,29 @@
+// Tubes in contact: the line law and the surface integral of a set, and straight hexagonal bundles.
+#pragma once
+
+#include "cases/common/chain.hpp"
+#include "contact/integral.hpp"
+
+namespace ropewalk {
+
+// The line law of a set between elements of its own length.
+LineContact line_contact_of(const ParameterSet& set);
+
+// The surface integral that the set's line law was fitted to: Lennard-Jones law, radius and surface density.
+PairIntegral surface_integral(const ParameterSet& set);
+
+// Straight tubes on a hexagonal lattice at the distance of the energy minimum, with the line law.
+struct Bundle {
+  Topology topology;
+  Interaction interaction;
+  State state;
+  double spacing = 0;    // nm
+  double time_step = 0;  // ps
+};
+Bundle line_bundle(const ParameterSet& set, int tubes, int elements);
+
+// Moment (eV) about the z axis with which these elements resist being turned.
+double resisting_moment(const std::vector<int>& elements, const Vec3Array& position, const Vec3Array& force,
+                        const Vec3Array& torque);
+
+}  // namespace ropewalk

@@ -1,0 +1,101 @@
+#include "cases/common/chain.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <utility>
+
+#include "model/error.hpp"
+
+namespace ropewalk {
+
+Topology topology_of(const ParameterSet& set) {
+  Topology topology;
+  const double a = set.element_length;
+  topology.types = {{a, set.radius, set.element_mass(a), set.element_inertia(a), set.bond}};
+  return topology;
+}
+
+Chain::Chain(const ParameterSet& set, int bonds)
+    : topology(topology_of(set)), state(static_cast<std::size_t>(bonds + 1)), last(bonds) {
+  topology.add_tube(bonds + 1);
+  for (int i = 0; i <= bonds; ++i) state.position.set(static_cast<std::size_t>(i), {0, 0, i * set.element_length});
+}
+
+Simulation Chain::make(double step_fraction) const {
+  return Simulation(topology, interaction, loads, state,
+                    step_fraction * time_step_limit(topology, interaction, 0).limit);
+}
+
+Simulation Chain::relaxed(double tolerance) const { return at_rest(make(), tolerance, 400000); }
+
+Simulation at_rest(Simulation simulation, double tolerance, long max_steps) {
+  if (!simulation.relax(tolerance, max_steps, [](long) { return true; }))
+    throw NumericalError(simulation.state().step, -1, "the relaxation did not come to rest",
+                         "allow more steps or a larger force");
+  return simulation;
+}
+
+Quaternion turn_about(const Vector3& axis, double angle) { return Quaternion(Eigen::AngleAxisd(angle, axis)); }
+
+Quaternion small_turn(const Vector3& angles) {
+  const double angle = angles.norm();
+  return angle > 0 ? turn_about(angles / angle, angle) : Quaternion::Identity();
+}
+
+Eigen::VectorXd chain_forces(const BondStiffness& bond, double element_length, const State& state) {
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(6 * state.size()));
+  for (std::size_t i = 0; i + 1 < state.size(); ++i) {
+    const BondForce<double> f =
+        bond_energy_and_gradient<double>(bond, element_length, state.position[i + 1] - state.position[i],
+                                         frame_of(state.orientation[i]), frame_of(state.orientation[i + 1]));
+    const auto at = static_cast<Eigen::Index>(6 * i);
+    out.segment<3>(at) -= f.force_j;
+    out.segment<3>(at + 3) += f.torque_i;
+    out.segment<3>(at + 6) += f.force_j;
+    out.segment<3>(at + 9) += f.torque_j;
+  }
+  return out;
+}
+
+namespace {
+
+void displace(State& state, int freedom, double by) {
+  const auto element = static_cast<std::size_t>(freedom / 6);
+  const Vector3 along = Vector3::Unit(freedom % 3);
+  if (freedom % 6 < 3)
+    state.position.add(element, by * along);
+  else
+    state.orientation.set(element, turn_about(along, by) * state.orientation[element]);
+}
+
+}  // namespace
+
+Eigen::MatrixXd tangent_stiffness(const BondStiffness& bond, double element_length, const State& state,
+                                  const std::vector<int>& freedoms) {
+  constexpr double h = 1e-5;
+  const auto n = static_cast<Eigen::Index>(freedoms.size());
+  Eigen::MatrixXd stiffness(n, n);
+  for (Eigen::Index j = 0; j < n; ++j) {
+    const int freedom = freedoms[static_cast<std::size_t>(j)];
+    State plus = state, minus = state;
+    displace(plus, freedom, h);
+    displace(minus, freedom, -h);
+    const Eigen::VectorXd d = chain_forces(bond, element_length, minus) - chain_forces(bond, element_length, plus);
+    for (Eigen::Index i = 0; i < n; ++i) stiffness(i, j) = d(freedoms[static_cast<std::size_t>(i)]) / (2 * h);
+  }
+  return stiffness;
+}
+
+double lowest_eigenvalue(const Eigen::MatrixXd& stiffness) {
+  return Eigen::EigenSolver<Eigen::MatrixXd>(stiffness, false).eigenvalues().real().minCoeff();
+}
+
+double zero_between(const std::function<double(double)>& falling, double low, double high) {
+  for (int k = 0; k < 14; ++k) {
+    const double middle = 0.5 * (low + high);
+    (falling(middle) > 0 ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+}  // namespace ropewalk

@@ -1,0 +1,169 @@
+#include "cases/common/tube_curve.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "sim/state/state.hpp"
+
+namespace ropewalk {
+namespace {
+
+constexpr int curve_points = 160;
+constexpr double give_way = 0.9;  // of the greatest slope so far
+
+double deviation(const TubeCurve& c, std::size_t k) { return c.model(c.amplitude[k]) / c.atoms[k] - 1; }
+
+std::string at_amplitude(const TubeCurve& c, double amplitude) {
+  return fmt::format("{} {:.3g}{}{}", c.amplitude_name, amplitude, c.unit.empty() ? "" : " ", c.unit);
+}
+
+// The point in the window with the largest difference.
+Check window_check(const TubeCurve& c) {
+  Check check;
+  check.name = c.tube + ": energy in the elastic window";
+  check.unit = "eV/nm";
+  check.tolerance = window_tolerance;
+  check.value = check.reference = std::nan("");
+  double worst = -1;
+  for (std::size_t k = 0; k < c.amplitude.size(); ++k) {
+    if (c.amplitude[k] == 0 || std::abs(c.amplitude[k]) > c.window) continue;
+    if (std::abs(deviation(c, k)) <= worst) continue;
+    worst = std::abs(deviation(c, k));
+    check.value = c.model(c.amplitude[k]);
+    check.reference = c.atoms[k];
+    check.note = fmt::format("the point of largest difference up to {}, at {}", at_amplitude(c, c.window),
+                             at_amplitude(c, c.amplitude[k]));
+  }
+  return check;
+}
+
+// The least amplitude of this sign at which the deviation reaches `limit`; NaN where it does not.
+double leaving(const TubeCurve& c, double sign, double limit) {
+  std::vector<std::pair<double, double>> points;
+  for (std::size_t k = 0; k < c.amplitude.size(); ++k)
+    if (c.amplitude[k] * sign > 0) points.emplace_back(std::abs(c.amplitude[k]), std::abs(deviation(c, k)));
+  std::sort(points.begin(), points.end());
+  double x0 = 0, d0 = 0;
+  for (const auto& [x, d] : points) {
+    if (d >= limit) return x0 + (x - x0) * (limit - d0) / (d - d0);
+    x0 = x;
+    d0 = d;
+  }
+  return std::nan("");
+}
+
+void add_leaving(const TubeCurve& c, double sign, CaseResult& result) {
+  const auto [least, most] = std::minmax_element(c.amplitude.begin(), c.amplitude.end());
+  if (sign > 0 ? *most <= 0 : *least >= 0) return;
+  const std::string side = *least < 0 ? (sign > 0 ? " (tension)" : " (compression)") : "";
+  for (const double limit : {0.05, 0.1}) {
+    Check check;
+    check.name = fmt::format("{}: energy leaves the atoms by {:.0f} % at{}", c.tube, 100 * limit, side);
+    check.value = leaving(c, sign, limit);
+    if (!std::isfinite(check.value)) continue;
+    check.reference = c.end;
+    check.unit = c.unit.empty() ? c.amplitude_name : c.unit;
+    check.informative = true;
+    check.note = "against the amplitude at which the tube gives way by the set";
+    result.checks.push_back(check);
+  }
+}
+
+CaseFigure energy_figure(const TubeCurve& c) {
+  LineChart chart;
+  chart.title = fmt::format("Energy of {} against {}", c.tube, c.amplitude_name);
+  chart.x = {c.amplitude_name, c.unit};
+  chart.y = {"energy per length", "eV/nm"};
+  ChartLine atoms{"atoms (LAMMPS)", c.amplitude, c.atoms, 0};
+  atoms.points = true;
+  ChartLine model{"model", {}, {}, 1};
+  const auto [least, most] = std::minmax_element(c.amplitude.begin(), c.amplitude.end());
+  for (int k = 0; k <= curve_points; ++k) {
+    model.x.push_back(*least + (*most - *least) * k / curve_points);
+    model.y.push_back(c.model(model.x.back()));
+  }
+  chart.lines = {model, atoms};
+  if (!c.more_amplitude.empty()) {
+    ChartLine more{c.more_name, c.more_amplitude, c.more_atoms, 2};
+    more.dashed = true;
+    chart.lines.push_back(more);
+  }
+  chart.bands = {{*least < 0 ? -c.window : 0, c.window, "elastic window", false}};
+  return {chart,
+          fmt::format("{}: the model is a parabola; atoms soften or stiffen and at last buckle (by the set at {}).",
+                      c.tube, at_amplitude(c, c.end))};
+}
+
+CaseFigure residual_figure(const TubeCurve& c) {
+  LineChart chart;
+  chart.title = fmt::format("Residual of {} against {}", c.tube, c.amplitude_name);
+  chart.x = {c.amplitude_name, c.unit};
+  chart.y = {"model against atoms", "%"};
+  chart.height = 200;
+  ChartLine line{"model / atoms - 1", {}, {}, 0};
+  for (std::size_t k = 0; k < c.amplitude.size(); ++k) {
+    if (c.amplitude[k] == 0) continue;
+    line.x.push_back(c.amplitude[k]);
+    line.y.push_back(100 * deviation(c, k));
+  }
+  chart.lines = {line};
+  chart.bands = {{line.x.front() < 0 ? -c.window : 0, c.window, "elastic window", false}};
+  return {chart, fmt::format("{}: relative difference of the energies. The tolerance in the window is {:.0f} %.",
+                             c.tube, 100 * window_tolerance)};
+}
+
+}  // namespace
+
+void add_curve(const TubeCurve& curve, CaseResult& result) {
+  result.checks.push_back(window_check(curve));
+  add_leaving(curve, 1, result);
+  add_leaving(curve, -1, result);
+  result.figures.push_back(energy_figure(curve));
+  result.figures.push_back(residual_figure(curve));
+}
+
+std::size_t points_before_collapse(const std::vector<double>& amplitude, const std::vector<double>& energy) {
+  double greatest = 0;
+  for (std::size_t k = 1; k < energy.size(); ++k) {
+    const double slope = (energy[k] - energy[k - 1]) / (amplitude[k] - amplitude[k - 1]);
+    if (slope < give_way * greatest) return k;
+    greatest = std::max(greatest, slope);
+  }
+  return energy.size();
+}
+
+void add_collapse(const TubeCurve& curve, const std::vector<double>& amplitude, std::size_t points,
+                  const std::string& note, CaseResult& result) {
+  if (points >= amplitude.size()) return;
+  Check check;
+  check.name = curve.tube + ": the atoms give way at";
+  check.value = 0.5 * (amplitude[points - 1] + amplitude[points]);
+  check.reference = curve.end;
+  check.unit = curve.unit.empty() ? curve.amplitude_name : curve.unit;
+  check.informative = true;
+  check.note = note;
+  result.checks.push_back(check);
+}
+
+double chain_energy(const BondStiffness& bond, double element, double strain, double twist, double curvature) {
+  const Frame<double> i = frame_of(Quaternion::Identity());
+  const double turn = curvature * element;
+  const Quaternion bent(Eigen::AngleAxisd(turn, Vector3::UnitY()));
+  const Frame<double> j = frame_of(bent * Quaternion(Eigen::AngleAxisd(twist * element, Vector3::UnitZ())));
+  const Vector3 chord(std::sin(0.5 * turn), 0, std::cos(0.5 * turn));
+  return bond_energy<double>(bond, element, element * (1 + strain) * chord, i, j).total() / element;
+}
+
+std::vector<double> column_where(const ReferenceTable& table, const std::string& column, const std::string& key,
+                                 double value) {
+  const std::vector<double> keys = table.column(key), all = table.column(column);
+  std::vector<double> some;
+  for (std::size_t k = 0; k < all.size(); ++k)
+    if (keys[k] == value) some.push_back(all[k]);
+  return some;
+}
+
+}  // namespace ropewalk

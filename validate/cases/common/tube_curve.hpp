@@ -1,0 +1,46 @@
+// Energy per length of one tube against strain, twist or curvature: atoms and model, from the elastic window to the
+// collapse.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "cases/common/lammps_session.hpp"
+
+namespace ropewalk {
+
+// Fixed beforehand. In the window the set claims forces within 1 %, so energies within less. The rest allows for
+// the minimiser and for the ends of the specimen.
+inline constexpr double window_tolerance = 0.03;
+
+struct TubeCurve {
+  std::string tube;                      // "(10,10)"
+  std::string amplitude_name, unit;      // "strain", ""
+  std::vector<double> amplitude, atoms;  // eV/nm, above the relaxed tube
+  std::function<double(double)> model;   // eV/nm at an amplitude
+  double window = 0;  // largest amplitude of either sign at which the set claims forces within 1 %
+  double end = 0;     // amplitude at which the tube gives way, by the set
+  // Shown, not compared: after its collapse a tube is not a uniform rod.
+  std::vector<double> more_amplitude, more_atoms;
+  std::string more_name;
+};
+
+// Adds the check in the window, the amplitudes at which the difference reaches 5 and 10 %, and figures of the
+// energies and of their differences.
+void add_curve(const TubeCurve& curve, CaseResult& result);
+
+// Number of points, from rest outwards, before the slope of the energy (force, torque or moment) falls by a tenth.
+std::size_t points_before_collapse(const std::vector<double>& amplitude, const std::vector<double>& energy);
+// Adds the amplitude of that collapse, for information.
+void add_collapse(const TubeCurve& curve, const std::vector<double>& amplitude, std::size_t points,
+                  const std::string& note, CaseResult& result);
+
+// Energy per length (eV/nm) of a chain of equal bonds; `element` is their length.
+double chain_energy(const BondStiffness& bond, double element, double strain, double twist, double curvature);
+
+// The numbers of `column` in the rows that have `value` in the column `key`.
+std::vector<double> column_where(const ReferenceTable& table, const std::string& column, const std::string& key,
+                                 double value);
+
+}  // namespace ropewalk

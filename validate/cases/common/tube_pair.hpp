@@ -1,0 +1,46 @@
+// Two tubes of frozen relaxed atoms with Lennard-Jones between them, and rows of elements in the same place.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cases/common/lammps_session.hpp"
+#include "model/contact/contact.hpp"
+#include "model/contact/line.hpp"
+
+namespace ropewalk {
+
+// How the atoms of two tubes are turned and shifted, in parts of a symmetry turn or of a period, 0 .. 1.
+struct Registry {
+  double turn_i = 0, turn_j = 0, shift_i = 0, shift_j = 0;
+};
+// The first `count` of a sequence that fills the four dimensions evenly.
+std::vector<Registry> registries(int count);
+
+// LAMMPS commands that read the atoms as groups `one` and `two` (types 1 and 2). Lennard-Jones acts only between
+// these groups.
+std::string pair_commands(const AtomLaw& law, const std::string& boundary, const std::string& data);
+std::string pair_data(const std::vector<Vector3>& one, const std::vector<Vector3>& two, double half_width,
+                      double z_low, double z_high);
+// Moves group `two` (nm).
+std::string move_two(const Vector3& by);
+// Appends the values, given as immediate variables, to name.dat.
+std::string print_values(const std::string& name, const std::string& values);
+
+// The line law of a scene with these tubes, alike or not, and elements of this length (nm).
+LineContact contact_of(const ParameterSet& i, const ParameterSet& j, double element_length);
+
+// A straight row of elements.
+struct ElementRow {
+  Vector3 centre = Vector3::Zero(), axis = Vector3::UnitZ();
+  int elements = 1;
+};
+// Energy (eV), force on row j (eV/nm) and torques about the rows' centres (eV).
+PairForce row_contact(const LineContact& contact, const ElementRow& i, const ElementRow& j);
+// Energy per length (eV/nm) of two long parallel rows, element j displaced by `shift`.
+double parallel_rows(const LineContact& contact, double distance, double shift = 0);
+
+// Minimum of a tabulated curve: that of a quartic fitted to the points within `reach` (nm) of the lowest.
+LineWell lowest_of(const std::vector<double>& distance, const std::vector<double>& energy, double reach);
+
+}  // namespace ropewalk
