@@ -109,10 +109,11 @@ void write_lammps_files(const RunDirectory& run) {
 }
 
 void refuse_what_lammps_lacks(const Scene& scene) {
-  const char* lacking = scene.twist && scene.twist->geometric_only ? "twist.geometric_only"
-                        : scene.run.stepping.contact_every > 1     ? "run.contact_every"
-                        : scene.run.stepping.runge_kutta           ? "run.integrator"
-                                                                   : nullptr;
+  const char* lacking = scene.thermostat                             ? "thermostat"
+                        : scene.twist && scene.twist->geometric_only ? "twist.geometric_only"
+                        : scene.run.stepping.contact_every > 1       ? "run.contact_every"
+                        : scene.run.stepping.runge_kutta             ? "run.integrator"
+                                                                     : nullptr;
   if (lacking)
     throw InputError({scene.path, 0, lacking}, "is not for LAMMPS", "run this scene with `ropewalk run`");
 }
@@ -213,7 +214,7 @@ class Import {
   // The checkpoint last: until it is there the run stands where it stood.
   void write(std::int64_t from) {
     Simulation simulation = start(scene_, prepared_);
-    simulation.take_over(force_, torque_, last_.work, last_.dissipated);
+    simulation.take_over(force_, torque_, {last_.work, last_.dissipated});
     checkpoint_.log_bytes = log_.size();
     checkpoint_.frame_bytes = frames_.size();
     checkpoint_.simulation = simulation.serialise();

@@ -7,6 +7,7 @@
 #include "commands/commands.hpp"
 #include "io/files.hpp"
 #include "model/error.hpp"
+#include "run/run_directory.hpp"
 #include "scene/prepare.hpp"
 #include "scene/scene_toml.hpp"
 #include "scene/templates.hpp"
@@ -84,6 +85,7 @@ int check_command(const std::string& path) {
   Simulation simulation = start(scene, p);
   say_source(scene, p);
   say_loads(scene);
+  for (const std::string& warning : warnings_of(scene)) fmt::print("note: {}\n", warning);
   const int every = scene.run.stepping.contact_every;
   if (every > 1)
     fmt::print("contact every {} steps, {:.4g} fs: a step of the log and of what is counted below\n", every,

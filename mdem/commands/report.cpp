@@ -63,6 +63,9 @@ void add_run_facts(const Scene& scene, const Prepared& p, const Manifest& m, Rep
       scene.contact.legacy_torque ? "legacy torque: not a gradient, energy is not conserved" : "full gradient");
   add("damping", fmt::format("contact viscosity {:.4g} eV ps/nm^2, bonds {:.4g} 1/ps, PFC local {:.4g}",
                              scene.damping.contact.eta, scene.damping.bond.rate, scene.damping.local));
+  if (scene.thermostat)
+    add("thermostat", fmt::format("{}, {:.4g} K", scene.thermostat->method, scene.thermostat->temperature),
+        fmt::format("coupling {:.4g} 1/ps, seed {}", scene.thermostat->coupling, scene.thermostat->seed));
   if (scene.twist) {
     const TwistLoad& w = *scene.twist;
     add("twist",
@@ -134,6 +137,11 @@ std::vector<std::string> warnings_of(const Scene& scene) {
     warnings.push_back(
         fmt::format("Masses are {:.4g} times those of the tubes: times, velocities and waves are not theirs.",
                     scene.run.mass_scale));
+  if (scene.thermostat && (scene.damping.contact.eta > 0 || scene.damping.bond.rate > 0))
+    warnings.push_back(
+        fmt::format("Damping takes out heat beside the thermostat: the tubes stay colder than {:.4g} K. Set "
+                    "damping.contact_viscosity_eV_ps_per_nm2 and damping.bond_damping_per_ps to 0 to hold it.",
+                    scene.thermostat->temperature));
   if (scene.damping.local > 0)
     warnings.push_back("PFC local damping depends on the frame and does not conserve momentum.");
   if (scene.contact.law == ContactOptions::Law::line && scene.contact.nodes > 0) {

@@ -293,6 +293,7 @@ class Run {
     account.kinetic = kinetic_energy(prepared_.topology, s);
     account.work = simulation_.work();
     account.dissipated = simulation_.dissipated();
+    account.heat = simulation_.heat();
     account.first_energy = first_energy_;
     return log_row(observer_, scene_, prepared_.topology, s, account);
   }
@@ -425,8 +426,7 @@ class Run {
         stop_at_time(static_cast<double>(coarse.last_step_) * dt);
     }
     simulation_ = start(scene_, at);
-    simulation_.take_over(simulation_.forces().force, simulation_.forces().torque, coarse.simulation_.work(),
-                          coarse.simulation_.dissipated());
+    simulation_.take_over(simulation_.forces().force, simulation_.forces().torque, coarse.simulation_.account());
     record_refinement(coarse);
     first_energy_ = coarse.first_energy_ + simulation_.total_energy() - coarse.simulation_.total_energy();
     earlier_seconds_ = coarse.wall();

@@ -9,6 +9,7 @@
 #include "lammps/fix_grip.hpp"
 #include "lammps/pair_mdem.hpp"
 #include "neighbor.h"
+#include "sim/dynamics/blow_up.hpp"
 #include "sim/state/motion.hpp"
 #include "timer.h"
 
@@ -231,10 +232,9 @@ void FixNve::initial_integrate(int) {
 }
 
 void FixNve::check() const {
-  const double dt = update->dt, fastest = 0.25 * model_->topology.largest_radius() / dt;
+  const MotionBound bound(model_->topology.largest_radius(), update->dt);
   for (int i = 0; i < atom->nlocal; ++i)
-    if (!(vector(atom->v[i]).squaredNorm() < fastest * fastest) ||
-        !(vector(atom->omega[i]).squaredNorm() * dt * dt < 0.25))
+    if (!(vector(atom->v[i]).squaredNorm() < bound.speed2) || !(vector(atom->omega[i]).squaredNorm() < bound.spin2))
       refuse_one(lmp,
                  "step " + std::to_string(update->ntimestep) + ", element " + std::to_string(element_of(*atom, i)) +
                      ": the motion blew up (an element moves a quarter of its radius or turns half a radian in one "

@@ -19,6 +19,8 @@ LammpsModel load_lammps_model(const std::string& directory) {
   Scene scene = read_scene(dir.scene(), sets);
   scene.damping.contact.inner = m.start.viscosity_inner;
   scene.damping.contact.outer = m.start.viscosity_outer;
+  if (scene.thermostat)
+    throw InputError({dir.scene(), 0, "thermostat"}, "is not for LAMMPS", "run this scene with `ropewalk run`");
   m.topology = empty_topology(scene);
   read_tubes(dir, m.topology);
   m.interaction = interaction_of(scene);

@@ -15,7 +15,7 @@ using units::degree;
 
 double balance(const M& m) {
   const EnergyAccount& a = m.account;
-  return a.potential.potential() + a.kinetic - a.work + a.dissipated - a.first_energy;
+  return a.potential.potential() + a.kinetic - a.work + a.dissipated - a.heat - a.first_energy;
 }
 
 std::vector<Observable>& table() {
@@ -43,9 +43,11 @@ std::vector<Observable>& table() {
        [](const M& m) { return m.account.work; }},
       {"dissipated_eV", "eV", "energy taken out by damping since the start", Group::energy,
        [](const M& m) { return m.account.dissipated; }},
+      {"thermostat_eV", "eV", "heat that the thermostat has brought in since the start", Group::energy,
+       [](const M& m) { return m.account.heat; }},
       {"balance_eV", "eV",
-       "total energy - work + dissipated energy, less its first value: the error of integration", Group::energy,
-       balance},
+       "total energy - work + dissipated energy - heat, less its first value: the error of integration",
+       Group::energy, balance},
 
       {"beta_deg", "deg", "mean angle of the outermost tubes to the rope axis, over the middle third", Group::twist,
        [](const M& m) { return m.rope.beta / degree; }},

@@ -19,6 +19,7 @@ struct EnergyAccount {
   double kinetic = 0;       // eV
   double work = 0;          // eV, done by the loads since the start
   double dissipated = 0;    // eV, taken out by damping since the start
+  double heat = 0;          // eV, brought in by the thermostat since the start
   double first_energy = 0;  // eV, total at the start
 };
 

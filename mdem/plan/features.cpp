@@ -130,6 +130,7 @@ SceneFeatures features_of(const Scene& scene, const Prepared& p) {
     f.why.push_back(fmt::format("{:g} K: curvature {:.2g} 1/nm, twist {:.2g} rad/nm on top",
                                 scene.start.temperature, bend, twist));
   }
+  if (scene.thermostat) f.beyond = "a thermostat, whose noise hides the errors of a model";
   if (scene.sets.size() > 1) f.beyond = "tubes of several kinds";
   return f;
 }

@@ -75,7 +75,9 @@ std::vector<Knob> table() {
       {Id::levels,
        {"contact_every"},
        [](const Model& m) -> double { return -m.contact_every; },
-       [](const KnobUse& u, const Model&) { return u.features.contact && u.scene.damping.local <= 0; },
+       [](const KnobUse& u, const Model&) {
+         return u.features.contact && u.scene.damping.local <= 0 && !u.scene.thermostat;
+       },
        [](PlannedScene& w, const Model& m, const Model&, const std::string& why) {
          w.set("run", "contact_every", std::to_string(m.contact_every), why);
        },

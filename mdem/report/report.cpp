@@ -213,7 +213,8 @@ std::string balance_words(const std::vector<LogRow>& log) {
 
 Panel balance(const std::vector<LogRow>& log) {
   return {"Energy balance",
-          "Total energy − work + dissipated energy, less its first value. It would stay at zero if time were "
+          "Total energy − work + dissipated energy − heat of the thermostat, less its first value. It would stay "
+          "at zero if time were "
           "continuous; what is left is the error of the integration. " +
               balance_words(log),
           {"balance", "eV", false},

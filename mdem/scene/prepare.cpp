@@ -6,6 +6,7 @@
 
 #include "model/error.hpp"
 #include "model/segments.hpp"
+#include "sim/dynamics/blow_up.hpp"
 
 namespace ropewalk {
 namespace {
@@ -71,7 +72,7 @@ void refuse_first_step(const Scene& scene, const Simulation& s) {
                                  s.forces().slipping_bond),
                      "turn its elements nearer to each other about the tube");
   if (scene.run.mode == RunOptions::Mode::relax) return;
-  const double dt = s.time_step(), farthest = 0.25 * topology.largest_radius();
+  const double dt = s.time_step(), farthest = MotionBound::radii * topology.largest_radius();
   State kicked = s.state();
   for (int t = 0; t < topology.tubes(); ++t) {
     const TubeType& type = topology.type_of(t);
@@ -84,12 +85,12 @@ void refuse_first_step(const Scene& scene, const Simulation& s) {
   constrain(topology, s.loads(), kicked.time, s.forces(), 0.5 * dt, kicked);
   for (std::size_t i = 0; i < kicked.size(); ++i) {
     const double moved = dt * kicked.velocity[i].norm(), turned = dt * kicked.angular_velocity[i].norm();
-    if (moved >= farthest || turned >= 0.5)
+    if (moved >= farthest || turned >= MotionBound::turn)
       throw InputError(
           {scene.path, 0, ""},
           fmt::format("the first step would move element {} by {:.3g} nm and turn it by {:.3g} rad, and "
-                      "a run ends at {:.3g} nm or 0.5 rad",
-                      i, moved, turned, farthest),
+                      "a run ends at {:.3g} nm or {:.3g} rad",
+                      i, moved, turned, farthest, MotionBound::turn),
           "take a gentler load, a slower start or a smaller time step");
   }
 }
@@ -97,7 +98,7 @@ void refuse_first_step(const Scene& scene, const Simulation& s) {
 }  // namespace
 
 double automatic_step_fraction(const Scene& scene) {
-  const bool cold = scene.start.temperature == 0 && !scene.from_file();
+  const bool cold = scene.start.temperature == 0 && !scene.thermostat && !scene.from_file();
   return cold && scene.run.mode != RunOptions::Mode::relax && scene.run.stepping.contact_every == 1
              ? cold_step_fraction
              : default_step_fraction;
@@ -113,6 +114,7 @@ Prepared prepare(Scene& scene) {
   out.loads = loads_of(scene, out.topology);
   out.limit = time_step_limit(out.topology, out.interaction, out.spacing);
   out.stepping = scene.run.stepping;
+  if (scene.thermostat) out.stepping.thermostat = make_thermostat(*scene.thermostat);
   out.time_step = chosen_step(scene, out.limit) * out.stepping.contact_every;
   out.duration = scene.run.duration;
   if (out.duration <= 0 && scene.twist) out.duration = scene.twist->ramp_time() + scene.twist->hold;

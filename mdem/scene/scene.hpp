@@ -16,6 +16,7 @@
 #include "scene/loads/load_kind.hpp"
 #include "scene/loads/twist.hpp"
 #include "sim/dynamics/stepping.hpp"
+#include "sim/dynamics/thermostat.hpp"
 #include "sim/state/interaction.hpp"
 
 namespace ropewalk {
@@ -80,6 +81,7 @@ struct Scene {
   Damping damping;
   std::vector<SceneLoad> loads;
   std::optional<TwistLoad> twist;
+  std::optional<ThermostatOptions> thermostat;
   RunOptions run;
   ObserveOptions observe;
   LimitOptions limits;

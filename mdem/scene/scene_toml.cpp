@@ -52,6 +52,20 @@ void check_run(const TomlTable& top, const Scene& scene) {
                                              : "a run without [twist] needs it: duration_ps = 100");
 }
 
+// What does not go with a thermostat.
+void check_thermostat(const TomlTable& top, const Scene& scene) {
+  if (!scene.thermostat) return;
+  const auto refuse = [&](const char* table, const char* key, const char* why) {
+    throw top.table(table).error(key, fmt::format("does not go with [thermostat]: {}", why),
+                                 "take one of the two away");
+  };
+  if (scene.run.mode == RunOptions::Mode::relax) refuse("run", "mode", "a relaxation has no temperature");
+  if (scene.run.stepping.contact_every > 1) refuse("run", "contact_every", "the bath acts on one level alone");
+  if (scene.damping.local > 0) refuse("damping", "pfc_local", "it brakes every velocity that the bath gives");
+  if (scene.twist && scene.twist->geometric_only)
+    refuse("twist", "geometric_only", "the bath turns the spins that it relaxes");
+}
+
 // A key or table that is right elsewhere.
 std::string belongs_to(const std::string& key) {
   for (const SceneTable& t : scene_tables()) {
@@ -73,6 +87,7 @@ void read_tables(const TomlTable& top, Scene& scene) {
   check_mixture(top, scene);
   scene.damping = damping_table().read(top.table("damping"), scene);
   for (const TomlTable& t : top.tables("load")) scene.loads.push_back(read_load(t, scene));
+  if (top.has("thermostat")) scene.thermostat = thermostat_table().read(top.table("thermostat"), scene);
   if (top.has("twist")) scene.twist = twist_table().read(top.table("twist"), scene);
   scene.run = run_table().read(top.table("run"), scene);
   scene.observe = observe_table().read(top.table("observe"), scene);
@@ -97,6 +112,7 @@ Scene scene_of_text(const std::string& text, const std::string& path, const std:
   read_tables(top, scene);
   top.finish(belongs_to);
   check_run(top, scene);
+  check_thermostat(top, scene);
   return scene;
 }
 

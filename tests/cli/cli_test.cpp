@@ -234,7 +234,35 @@ TEST_F(Cli, ExportRefusesWhatLammpsLacks) {
   EXPECT_NE(every.err.find("run.contact_every: is not for LAMMPS"), std::string::npos) << every.err;
   small_rope("r.toml", "integrator = \"rk4\"\n");
   EXPECT_NE(run("export r.toml --lammps there").err.find("run.integrator: is not for LAMMPS"), std::string::npos);
+  small_rope("t.toml", "[thermostat]\ntemperature_K = 300\ncoupling_per_ps = 1\n");
+  EXPECT_NE(run("export t.toml --lammps there").err.find("thermostat: is not for LAMMPS"), std::string::npos);
   EXPECT_FALSE(fs::exists(dir / "there"));
+}
+
+TEST_F(Cli, CheckSaysThatDampingCoolsBesideAThermostat) {
+  const std::string bath = "[thermostat]\ntemperature_K = 250\ncoupling_per_ps = 1\n",
+                    undamped = "[damping]\ncontact_viscosity_eV_ps_per_nm2 = 0\nbond_damping_per_ps = 0\n";
+  const auto cools = [&](const std::string& more) {
+    small_rope("s.toml", more);
+    const Outcome o = run("check s.toml");
+    EXPECT_EQ(o.code, 0) << o.err;
+    return o.out.find("the tubes stay colder than 250 K") != std::string::npos;
+  };
+  EXPECT_TRUE(cools(bath));
+  EXPECT_FALSE(cools(bath + undamped));
+  EXPECT_FALSE(cools(""));
+}
+
+// The heat is a column of the log, and a resumed run has the noise of one that was never stopped.
+TEST_F(Cli, ThermostatGoesOnAfterAResume) {
+  small_rope("s.toml", "[thermostat]\ntemperature_K = 300\ncoupling_per_ps = 2\n");
+  ASSERT_EQ(run("run s.toml --out whole --threads 1").code, 0);
+  ASSERT_EQ(run("run s.toml --out parts --threads 2 --steps 60").code, 0);
+  ASSERT_EQ(run("resume parts --threads 2").code, 0);
+  const ropewalk::LogRow a = ropewalk::read_log((dir / "whole/log.csv").string()).back(),
+                         b = ropewalk::read_log((dir / "parts/log.csv").string()).back();
+  EXPECT_GT(std::fabs(a["thermostat_eV"]), 1);
+  EXPECT_EQ(ropewalk::log_line(a), ropewalk::log_line(b));
 }
 
 TEST_F(Cli, RunWritesEverythingAndProtectsIt) {

@@ -333,37 +333,6 @@ TEST_P(LongTubes, ASlippingBondIsFoundWhereTheyAreCut) {
   }
 }
 
-// Whoever takes them block by block gets the same forces, and may move what they act on at once.
-TEST_P(LongTubes, ForcesOfBlocksAreTheSameBitsThoughTheirElementsMove) {
-  const Forces wanted = fast(0.3, 1);
-  const FreeAndDriven elements(topology, {});
-  NeighbourList list(in, 0.3);
-  list.build(topology, state);
-  for (int threads : {1, 2, 5}) {
-    omp_set_num_threads(threads);
-    State moving = state;
-    Forces found(state.size()), rest;
-    ForceEngine engine;
-    ForceOptions options;
-    options.then = [&](int block, const ForcesOn& forces) {
-      for (const ElementRange& r : elements.free(block))
-        for (std::ptrdiff_t i = r.begin; i < r.end; ++i) {
-          const auto to = static_cast<std::size_t>(i), from = static_cast<std::size_t>(i - forces.origin);
-          found.force.set(to, forces.force[from]);
-          found.torque.set(to, forces.torque[from]);
-          moving.position.set(to, Vector3(1e9, 1e9, 1e9));
-          moving.orientation.set(to, Quaternion(0, 1, 0, 0));
-          moving.velocity.set(to, Vector3(1e9, 0, 0));
-        }
-    };
-    engine.compute(topology, in, list, moving, rest, options);
-    found.energy = rest.energy, found.damping_power = rest.damping_power;
-    expect_same_bits(wanted, found);
-    EXPECT_EQ(wanted.energy.potential(), found.energy.potential());
-    EXPECT_EQ(wanted.damping_power, found.damping_power);
-  }
-}
-
 INSTANTIATE_TEST_SUITE_P(Paper, LongTubes, ::testing::Values(paper_variants[1]), name_of);
 INSTANTIATE_TEST_SUITE_P(Line, LongTubes, ::testing::Values(line_variants[0], line_variants[2]), name_of);
 INSTANTIATE_TEST_SUITE_P(Line, LineFinish, ::testing::ValuesIn(line_variants), name_of);

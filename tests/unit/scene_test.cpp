@@ -460,6 +460,9 @@ std::string choices(const Scene& s) {
     text += fmt::format("{:.10g} {:.10g} {:.10g} {} {} {} {} {} {:.10g} | ", s.twist->moment, s.twist->rate,
                         s.twist->hold, static_cast<int>(s.twist->reading), static_cast<int>(s.twist->application),
                         s.twist->lateral_free, s.twist->axial_free, s.twist->geometric_only, s.twist->increment);
+  if (s.thermostat)
+    text += fmt::format("{} {:.10g} {:.10g} {} | ", s.thermostat->method, s.thermostat->temperature,
+                        s.thermostat->coupling, s.thermostat->seed);
   text += fmt::format("{} {} {:.10g} {:.10g} | ", s.run.stepping.contact_every, s.run.stepping.runge_kutta,
                       s.run.mass_scale, s.contact.cutoff);
   return text + fmt::format("{} {:.10g} {:.10g} {:.10g} {:.10g} {:.10g} {:.3g} {} {} | {:.10g}",
@@ -483,7 +486,7 @@ std::string keys_of(const std::string& table, bool defaults, const std::string& 
 TEST(SceneKeys, StatedDefaultsAreTheDefaults) {
   const auto dynamics = [](bool defaults) {
     std::string text;
-    for (const char* table : {"rope", "twist", "start", "contact", "damping", "observe"})
+    for (const char* table : {"rope", "twist", "start", "thermostat", "contact", "damping", "observe"})
       text += fmt::format("[{}]\n{}", table, keys_of(table, defaults));
     return choices(scene_from(text + "[run]\n" + keys_of("run", defaults, "force_tolerance_nN max_steps")));
   };

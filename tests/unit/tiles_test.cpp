@@ -7,7 +7,6 @@
 #include <limits>
 #include <utility>
 
-#include "sim/dynamics/free_and_driven.hpp"
 #include "unit/support.hpp"
 
 namespace ropewalk {
@@ -70,39 +69,6 @@ TEST(TubeParts, AreTakenTogetherInBlocksThatFollowEachOther) {
       EXPECT_EQ(parts.part_of(parts[k].end - 1, parts[k].tube), k);
     }
   }
-}
-
-TEST(FreeAndDriven, AreAllThatIsNotDrivenInRangesOfOneTypeAndBlock) {
-  Topology topology = test::published_topology();
-  topology.types.push_back(topology.types[0]);
-  const std::vector<int> lengths = {7, 9, TubeParts::most + 40, 3, 200, 2};
-  for (std::size_t t = 0; t < lengths.size(); ++t) topology.add_tube(lengths[t], t == 1 ? 1 : 0);
-  const TubeParts parts(topology);
-  const std::vector<int> driven = {0, 6, 7, 15, 16, 17, parts[3].begin, topology.elements() - 1};
-  const FreeAndDriven elements(topology, driven);
-  ASSERT_EQ(elements.blocks(), parts.blocks());
-  std::vector<int> found, free(static_cast<std::size_t>(topology.elements()));
-  for (int block = 0; block < elements.blocks(); ++block) {
-    const int begin = parts[parts.block_begin(block)].begin, end = parts[parts.block_begin(block + 1) - 1].end;
-    const auto expect_of_block = [&](const ElementRange& r) {
-      EXPECT_LE(begin, r.begin);
-      EXPECT_LT(r.begin, r.end);
-      EXPECT_LE(r.end, end);
-      for (std::ptrdiff_t i = r.begin; i < r.end; ++i)
-        EXPECT_EQ(r.type, topology.tube_type[static_cast<std::size_t>(topology.tube_of(static_cast<int>(i)))]);
-    };
-    for (const ElementRange& r : elements.free(block)) {
-      expect_of_block(r);
-      for (std::ptrdiff_t i = r.begin; i < r.end; ++i) ++free[static_cast<std::size_t>(i)];
-    }
-    for (const ElementRange& r : elements.driven(block)) {
-      expect_of_block(r);
-      for (std::ptrdiff_t i = r.begin; i < r.end; ++i) found.push_back(static_cast<int>(i));
-    }
-  }
-  EXPECT_EQ(found, driven);
-  for (int i = 0; i < topology.elements(); ++i)
-    EXPECT_EQ(free[static_cast<std::size_t>(i)], std::count(driven.begin(), driven.end(), i) == 0 ? 1 : 0) << i;
 }
 
 TEST(Tiles, HoldEveryElementOnceAtEqualCost) {

@@ -17,6 +17,7 @@ KeyTable<Scene> top_table(const std::vector<std::string>& copies);
 const KeyTable<StartOptions>& start_table();
 const KeyTable<ContactOptions>& contact_table();
 const KeyTable<Damping>& damping_table();
+const KeyTable<ThermostatOptions>& thermostat_table();
 const KeyTable<TwistLoad>& twist_table();  // scene/loads/twist.cpp
 const KeyTable<RunOptions>& run_table();
 const KeyTable<ObserveOptions>& observe_table();

@@ -1,24 +1,15 @@
-// Dynamics of a scene: velocity Verlet for positions and orientations, with an energy account.
+// Dynamics of a scene: steps of velocity Verlet (sim/dynamics/verlet.hpp), or on two levels
+// (sim/dynamics/two_levels.hpp), with an account of the energy that comes in and goes out; relaxation; checkpoints.
+// A step of the simulation is an outer one where there are two levels.
 //
-//   v += F dt/2m,  w += M dt/2I;   x += v dt,  q <- exp(w dt) q;   forces;   v += F dt/2m,  w += M dt/2I
-//
-// With isotropic inertia w is constant between kicks and the rotation is exact, so the scheme is the
-// symplectic kick-drift-kick splitting, time reversible and of second order. Damping forces use the half-step
-// velocities.
-//
-// On two levels (Stepping::contact_every = n > 1) the contact and its viscosity act as impulses at both ends of an
-// outer step, and n such steps of dt/n with bonds, loads and constraints alone lie between them. Still symplectic
-// where nothing is damped. Where one step of the simulation is meant below, it is an outer one.
-// M. Tuckerman, B. J. Berne, G. J. Martyna, J. Chem. Phys. 97, 1990 (1992), DOI 10.1063/1.463137.
-//
-// Account: total energy - work of loads + energy dissipated is constant up to integration error.
+// total energy - account().supplied() is constant up to the error of the integration.
 #pragma once
 
 #include <functional>
 #include <string>
 #include <vector>
 
-#include "sim/dynamics/free_and_driven.hpp"
+#include "sim/dynamics/energy_supply.hpp"
 #include "sim/dynamics/loads.hpp"
 #include "sim/dynamics/step_limit.hpp"
 #include "sim/dynamics/stepping.hpp"
@@ -26,6 +17,7 @@
 #include "sim/neighbours/neighbours.hpp"
 #include "sim/state/interaction.hpp"
 #include "sim/state/state.hpp"
+#include "sim/state/tiles.hpp"
 
 namespace ropewalk {
 
@@ -49,11 +41,11 @@ class Simulation {
   // Without `energies` the contact energy may be NaN afterwards, and with it the total one: they cost a tenth of a
   // step. The motion is the same bits.
   void step(bool energies = true) { steps(1, energies); }
-  // So many steps, with energies in the last one: the same bits as one by one, and faster, as the kick that ends a
-  // step and that which begins the next are made while its elements are moved.
+  // So many steps, with energies in the last one: the same bits as one by one.
   void steps(long count, bool energies = true);
-  // Relaxes orientations and positions to a nearby minimum (FIRE). Returns whether the largest force
-  // (eV/nm) and torque over radius fell below the tolerance within the given steps.
+  // Relaxes orientations and positions to a nearby minimum of the energy (FIRE). Returns whether the largest force
+  // (eV/nm) and torque over radius fell below the tolerance within the given steps. `progress` is called in every
+  // step; false ends the relaxation.
   bool relax(double force_tolerance, long max_steps, const std::function<bool(long)>& progress);
 
   const Topology& topology() const { return topology_; }
@@ -65,8 +57,10 @@ class Simulation {
   const ForceEngine& engine() const { return engine_; }
   double time_step() const { return time_step_; }
   const Stepping& stepping() const { return stepping_; }
-  double work() const { return work_; }
-  double dissipated() const { return dissipated_; }
+  const EnergySupply& account() const { return account_; }
+  double work() const { return account_.work; }
+  double dissipated() const { return account_.dissipated; }
+  double heat() const { return account_.heat; }
   double list_seconds() const { return list_seconds_; }
   double integration_seconds() const { return integration_seconds_; }
   double total_energy() const { return forces_.energy.potential() + kinetic_energy(topology_, state_); }
@@ -79,56 +73,35 @@ class Simulation {
   std::string serialise() const;
   void restore(const std::string& bytes);
   // Goes on with a run that another engine has carried on: its last total forces and its account of energy.
-  void take_over(const Vec3Array& force, const Vec3Array& torque, double work, double dissipated) {
+  void take_over(const Vec3Array& force, const Vec3Array& torque, const EnergySupply& account) {
     forces_.force = force;
     forces_.torque = torque;
-    work_ = work;
-    dissipated_ = dissipated;
+    account_ = account;
   }
 
  private:
+  struct OneLevel;   // what verlet_step acts on
+  struct TwoLevels;  // what two_level_step acts on
+
   bool two_levels() const { return stepping_.contact_every > 1; }
   double inner_step() const { return time_step_ / stepping_.contact_every; }
-  void one_level(long step, long count, bool energies);
-  void two_level(bool energies);
-  bool kicks_while_moving() const;
-  void compute_contact_in_impulse(bool energies);
+  void step_once(bool energies);
   void kick(const Forces& forces, double dt);
   void kick_with_loads(const Forces& forces, double dt);
-  double kick_tube(const Forces& forces, int tube, double dt);
-  void kick_range(const ForcesOn& forces, const ElementRange& of, double dt);
-  void kick_driven(int kicks, double dt);
-  // How far elements have come since the list was built, if looked for, how fast they are, and whether the last
-  // drift was a small one.
-  struct Moved {
-    Change change;
-    double speed2 = 0, spin2 = 0;
-    bool little = true, looked = true;
-  };
-  // What a drift does to elements: after so many kicks of half a step, and whether it makes their axes and looks
-  // how far they have come.
-  struct Drift {
-    double dt;
-    int kicks;
-    bool axes, looks;
-  };
-  Moved all_moved() const;
-  void look();
-  void drift_range(const ElementRange& of, const ForcesOn& forces, const Drift& by, Moved& moved);
-  void drift_block(int block, const ForcesOn& forces, const Drift& by);
-  void drift_driven(const Drift& by);
-  void drift_free(const Drift& by);
-  void drift(const Drift& by);
-  void update_list(Moved all);
-  void compute(bool energies = true, bool axes_made = false, const Drift* then = nullptr);
-  void keep_on_driven(int block, const ForcesOn& forces);
+  void drift(double dt);
+  void move(double dt);
+  void exchange_heat(double dt);
+  void update_list();
+  void compute(bool energies = true);
   void compute_bonds();
   void compute_contact(bool energies);
   void add_loads(Forces& forces);
   void add_levels();
-  void check_motion(const Moved& all) const;
   void check_forces(bool energies) const;
-  void relax_angles_if_due();
+  void relax_spins_if_due();
+  double engine_seconds() const;
+  template <class Archive, class Self, class ListOrigin>
+  static void visit_checkpoint(Archive& archive, Self& self, ListOrigin& list);
 
   Topology topology_;
   Interaction interaction_;
@@ -136,19 +109,17 @@ class Simulation {
   State state_;
   double time_step_ = 0;
   Stepping stepping_;
-  FreeAndDriven elements_;  // driven: by loads or constraints
+  TubeParts parts_;
   bool tunes_skin_ = false;
   NeighbourList list_;
-  std::int64_t list_age_ = 0;  // steps since the list was built
-  std::vector<Moved> moved_;   // of the blocks, and behind them of what is driven
-  MotionSince::Bound unseen_;  // since the places were last looked at
-  bool looks_ = true;          // whether the next drift does
+  std::int64_t list_age_ = 0;     // steps since the list was built
+  std::vector<Change> changes_;   // since then, of cached_elements each
+  std::vector<Fastest> fastest_;  // in the last drift, likewise
   ForceEngine engine_;
   Forces forces_;           // of all
   Forces inner_, contact_;  // its two parts, on two levels: bonds and loads; contact
   std::vector<PointLoad> point_loads_;
-  std::vector<double> removed_;  // by the local damping, of each tube
-  double work_ = 0, dissipated_ = 0;
+  EnergySupply account_;
   double list_seconds_ = 0, integration_seconds_ = 0;
 };
 

@@ -2,8 +2,6 @@
 // reference (every pair, one after another), which stays as the oracle. Both call the forms of mdem/model.
 #pragma once
 
-#include <functional>
-#include <utility>
 #include <vector>
 
 #include "sim/contact/line/engine.hpp"
@@ -28,7 +26,6 @@ struct Forces {
   void resize(std::size_t n) { force.resize(n), torque.resize(n); }
 };
 inline ForceRows rows_of(Forces& forces) { return {forces.force, forces.torque, 0}; }
-inline ForcesOn rows_of(const Forces& forces) { return {forces.force, forces.torque, 0}; }
 
 // Body frames.
 struct FrameArray {
@@ -83,11 +80,7 @@ enum class Parts { all, bonds, contact };
 
 struct ForceOptions {
   Parts parts = Parts::all;
-  bool energies = true;    // without them that of the line law's contact may be left out; forces are the same bits
-  bool axes_made = false;  // the axes of all elements are those that make_axes has made
-  // Called for every block of TubeParts, by any thread, with its forces, which are kept nowhere else then: nothing
-  // needs its elements as they are any more, and they may move.
-  std::function<void(int, const ForcesOn&)> then = {};
+  bool energies = true;  // without them that of the line law's contact may be left out; forces are the same bits
 };
 
 // The list must be up to date, but for the bonds alone.
@@ -95,16 +88,11 @@ class ForceEngine {
  public:
   void compute(const Topology& topology, const Interaction& interaction, const NeighbourList& list,
                const State& state, Forces& out, const ForceOptions& options = {});
-  // Of elements begin .. end - 1, while their orientations are at hand; forces of as many elements have been
-  // computed.
-  void make_axes(const State& state, std::ptrdiff_t begin, std::ptrdiff_t end);
 
-  // Wall time spent so far in each part, s.
-  // Axes that are not made yet are made within the contact where that is by the line law, and blocks are finished
-  // within it: the first thread tells the times of the two apart, and that in `then`, which is in none of the
-  // others.
+  // Wall time spent so far in each part, s. By the line law the axes are made, and the bonds may be computed,
+  // within the contact: the first thread tells the times of bonds and contact apart.
   struct Times {
-    double axes = 0, contact = 0, bonds = 0, then = 0;
+    double axes = 0, contact = 0, bonds = 0;
   };
   const Times& times() const { return times_; }
   const LineEngine& line() const { return line_; }

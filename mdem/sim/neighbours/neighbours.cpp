@@ -41,12 +41,6 @@ bool NeighbourList::worn(const Change& change) {
   return !(displacement_ <= 0.5 * skin);
 }
 
-bool NeighbourList::holds_after(double moved, double turned) {
-  displacement_ += moved;
-  turn_ += turned;
-  return displacement_ <= 0.5 * skin;
-}
-
 Change NeighbourList::change(const State& state, std::ptrdiff_t begin, std::ptrdiff_t end) const {
   return since_.change(state, lever, begin, end);
 }

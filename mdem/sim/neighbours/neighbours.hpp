@@ -65,9 +65,6 @@ class NeighbourList {
   bool update(const Topology& topology, const State& state);
   // Whether it has to be built anew by the change since the last build: that of all elements.
   bool worn(const Change& change);
-  // Without looking where they are: no point of an element has moved by more than this (nm), and no axis turned,
-  // since that was last asked for. Whether the list still holds for certain.
-  bool holds_after(double moved, double turned);
   // Of the elements begin .. end - 1; infinite where a place is not finite.
   Change change(const State& state, std::ptrdiff_t begin, std::ptrdiff_t end) const;
   void build(const Topology& topology, const State& state);
@@ -103,8 +100,6 @@ class NeighbourList {
   // Of the motion since the build: with it a resumed run has the next build at the same step.
   std::array<double, 2> twist() const { return since_.twist(); }
   void set_twist(const std::array<double, 2>& t) { since_.set_twist(t); }
-  // The same for what may have moved unseen since then.
-  void set_bounds(double displacement, double turn) { displacement_ = displacement, turn_ = turn; }
   // nm: centres of elements with points within reach are no more than this apart.
   double within() const { return cutoff + skin + 2 * lever; }
   std::size_t bytes() const { return run_.capacity() * sizeof(PairRun) + begin_.capacity() * sizeof(std::size_t); }

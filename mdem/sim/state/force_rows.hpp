@@ -14,14 +14,4 @@ struct ForceRows {
   std::ptrdiff_t origin = 0;
 };
 
-// The same to read.
-struct ForcesOn {
-  const Vec3Array& force;
-  const Vec3Array& torque;
-  std::ptrdiff_t origin = 0;
-
-  ForcesOn(const Vec3Array& f, const Vec3Array& t, std::ptrdiff_t first) : force(f), torque(t), origin(first) {}
-  ForcesOn(const ForceRows& rows) : ForcesOn(rows.force, rows.torque, rows.origin) {}
-};
-
 }  // namespace ropewalk

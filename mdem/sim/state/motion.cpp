@@ -20,13 +20,12 @@ inline double cosine(double h2) {
 }  // namespace
 
 ROPEWALK_VECTOR_CLONES
-void kick_elements(const Vec3Array& force, std::ptrdiff_t origin, double by, Vec3Array& velocity,
-                   std::ptrdiff_t begin, std::ptrdiff_t end) {
-  const std::ptrdiff_t first = begin - origin, n = end - begin;
-  const double *fx = force.x.data() + first, *fy = force.y.data() + first, *fz = force.z.data() + first;
-  double *vx = velocity.x.data() + begin, *vy = velocity.y.data() + begin, *vz = velocity.z.data() + begin;
+void kick_elements(const Vec3Array& force, double by, Vec3Array& velocity, std::ptrdiff_t begin,
+                   std::ptrdiff_t end) {
+  const double *fx = force.x.data(), *fy = force.y.data(), *fz = force.z.data();
+  double *vx = velocity.x.data(), *vy = velocity.y.data(), *vz = velocity.z.data();
 #pragma omp simd
-  for (std::ptrdiff_t i = 0; i < n; ++i) {
+  for (std::ptrdiff_t i = begin; i < end; ++i) {
     vx[i] += by * fx[i];
     vy[i] += by * fy[i];
     vz[i] += by * fz[i];

@@ -9,9 +9,9 @@
 
 namespace ropewalk {
 
-//   v += by F      where F of element i is force[i - origin]
-void kick_elements(const Vec3Array& force, std::ptrdiff_t origin, double by, Vec3Array& velocity,
-                   std::ptrdiff_t begin, std::ptrdiff_t end);
+//   v += by F
+void kick_elements(const Vec3Array& force, double by, Vec3Array& velocity, std::ptrdiff_t begin,
+                   std::ptrdiff_t end);
 
 //   x += v dt,   q <- exp(w dt) q     for turns w dt of up to half a radian
 void move_elements(State& state, double dt, std::ptrdiff_t begin, std::ptrdiff_t end);

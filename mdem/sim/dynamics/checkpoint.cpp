@@ -1,0 +1,138 @@
+// Everything that the future of a simulation depends on, as bytes. Layout: `CheckpointHead`, then the values in the
+// order of visit_checkpoint, which serves both ways. Numbers are as this machine holds them.
+#include <array>
+#include <cstring>
+#include <stdexcept>
+#include <type_traits>
+#include <utility>
+
+#include "sim/dynamics/simulation.hpp"
+
+namespace ropewalk {
+namespace {
+
+constexpr char magic[8] = "MDEM8";
+
+struct CheckpointHead {
+  char format[sizeof magic];
+  std::int64_t elements = 0, tubes = 0, contact_every = 0;
+};
+
+// What the neighbour list is made of again, and what the next list depends on.
+struct ListOrigin {
+  double skin = 0;
+  std::array<double, 2> twist{};
+  Vec3Array position, axis;
+};
+
+struct Writer {
+  std::string bytes;
+
+  template <class T>
+  void operator()(const T& value) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+  }
+  void operator()(const std::vector<double>& v) {
+    bytes.append(reinterpret_cast<const char*>(v.data()), v.size() * sizeof(double));
+  }
+};
+
+// Arrays must have their size.
+struct Reader {
+  const std::string& bytes;
+  std::size_t at = 0;
+
+  template <class T>
+  void operator()(T& value) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    take(&value, sizeof value);
+  }
+  void operator()(std::vector<double>& v) { take(v.data(), v.size() * sizeof(double)); }
+
+ private:
+  void take(void* to, std::size_t count) {
+    if (bytes.size() - at < count) throw std::runtime_error("the checkpoint ends too early");
+    std::memcpy(to, bytes.data() + at, count);
+    at += count;
+  }
+};
+
+// V: a Vec3Array or a QuaternionArray, const or not.
+template <class Archive, class V>
+void visit_xyz(Archive& archive, V& v) {
+  archive(v.x);
+  archive(v.y);
+  archive(v.z);
+}
+
+template <class Archive, class F>
+void visit_forces(Archive& archive, F& f) {
+  visit_xyz(archive, f.force);
+  visit_xyz(archive, f.torque);
+}
+
+}  // namespace
+
+template <class Archive, class Self, class List>
+void Simulation::visit_checkpoint(Archive& archive, Self& self, List& list) {
+  auto& s = self.state_;
+  archive(self.time_step_);
+  archive(s.time);
+  archive(s.step);
+  archive(self.account_);
+  archive(self.list_age_);
+  archive(list.skin);
+  archive(list.twist);
+  visit_xyz(archive, list.position);
+  visit_xyz(archive, list.axis);
+  visit_xyz(archive, s.position);
+  archive(s.orientation.w);
+  visit_xyz(archive, s.orientation);
+  visit_xyz(archive, s.velocity);
+  visit_xyz(archive, s.angular_velocity);
+  visit_forces(archive, self.forces_);
+  archive(self.forces_.energy);
+  archive(self.forces_.damping_power);
+  if (!self.two_levels()) return;
+  visit_forces(archive, self.inner_);
+  visit_forces(archive, self.contact_);
+}
+
+std::string Simulation::serialise() const {
+  Writer write;
+  CheckpointHead head{{}, topology_.elements(), topology_.tubes(), stepping_.contact_every};
+  std::memcpy(head.format, magic, sizeof magic);
+  write(head);
+  const ListOrigin list{list_.skin, list_.twist(), list_.reference(), list_.reference_axis()};
+  visit_checkpoint(write, *this, list);
+  return std::move(write.bytes);
+}
+
+void Simulation::restore(const std::string& bytes) {
+  Reader read{bytes};
+  CheckpointHead head;
+  read(head);
+  if (std::memcmp(head.format, magic, sizeof magic) != 0)
+    throw std::runtime_error("not a checkpoint of this version");
+  if (head.elements != topology_.elements() || head.tubes != topology_.tubes())
+    throw std::runtime_error("the checkpoint holds " + std::to_string(head.tubes) + " tubes of " +
+                             std::to_string(head.elements) + " elements, the scene " +
+                             std::to_string(topology_.tubes()) + " of " + std::to_string(topology_.elements()));
+  if (head.contact_every != stepping_.contact_every)
+    throw std::runtime_error("the checkpoint is of contact_every = " + std::to_string(head.contact_every) +
+                             ", the scene of " + std::to_string(stepping_.contact_every));
+  ListOrigin list;
+  list.position.resize(state_.size());
+  list.axis.resize(state_.size());
+  visit_checkpoint(read, *this, list);
+  list_.skin = list.skin;
+  list_.build(topology_, std::move(list.position), std::move(list.axis));
+  list_.set_twist(list.twist);
+  // The line law's list, which the skin of the next one follows from.
+  Forces made(state_.size());
+  if (tunes_skin_) engine_.compute(topology_, interaction_, list_, state_, made, {Parts::contact, false});
+  point_loads(loads_, state_, state_.time, point_loads_);
+}
+
+}  // namespace ropewalk

@@ -1,0 +1,74 @@
+#include "sim/dynamics/langevin.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "model/units.hpp"
+#include "sim/dynamics/counter_random.hpp"
+#include "sim/threads/vector_clones.hpp"
+
+namespace ropewalk {
+namespace {
+
+constexpr int components = 6;  // of velocity and angular velocity
+// Elements whose numbers are made together, always in full: a vector function and its scalar twin for what is left
+// over differ in the last bits.
+constexpr int group = 16;
+
+struct Normals {
+  double of[components][group];
+};
+
+// normal_pair() in loops that the compiler vectorises.
+ROPEWALK_VECTOR_CLONES
+void to_normals(const double (&radial)[3][group], const double (&angular)[3][group], Normals& out) {
+  for (int pair = 0; pair < 3; ++pair)
+#pragma omp simd
+    for (int k = 0; k < group; ++k) {
+      const double length = std::sqrt(-2 * std::log(radial[pair][k])), angle = 2 * units::pi * angular[pair][k];
+      out.of[2 * pair][k] = length * std::cos(angle);
+      out.of[2 * pair + 1][k] = length * std::sin(angle);
+    }
+}
+
+// Of the elements first .. first + group - 1.
+void draw(std::uint64_t seed, std::int64_t step, std::ptrdiff_t first, Normals& out) {
+  double radial[3][group], angular[3][group];
+  const auto low = static_cast<std::uint32_t>(step), high = static_cast<std::uint32_t>(step >> 32);
+  for (int k = 0; k < group; ++k) {
+    const auto element = static_cast<std::uint32_t>(first + k);
+    const auto a = philox({low, high, element, 0}, seed), b = philox({low, high, element, 1}, seed);
+    const std::uint32_t bits[3][2] = {{a[0], a[1]}, {a[2], a[3]}, {b[0], b[1]}};
+    for (int pair = 0; pair < 3; ++pair) {
+      radial[pair][k] = unit_interval(bits[pair][0]);
+      angular[pair][k] = unit_interval(bits[pair][1]);
+    }
+  }
+  to_normals(radial, angular, out);
+}
+
+}  // namespace
+
+void LangevinThermostat::apply(const Topology& topology, double dt, State& state) const {
+  const double keep = std::exp(-friction_ * dt);
+  const double energy = -std::expm1(-2 * friction_ * dt) * units::boltzmann * temperature_;  // (1 - c^2) kT
+  const auto n = static_cast<int>(state.size());
+#pragma omp parallel for schedule(static) if (state.size() > parallel_from)
+  for (int first = 0; first < n; first += group) {
+    Normals normal;
+    draw(seed_, state.step, first, normal);
+    int tube = topology.tube_of(first);
+    for (int k = 0; k < std::min(group, n - first); ++k) {
+      while (first + k >= topology.tube_begin[tube + 1]) ++tube;
+      const auto i = static_cast<std::size_t>(first + k);
+      const TubeType& type = topology.type_of(tube);
+      const auto& of = normal.of;
+      state.velocity.set(
+          i, keep * state.velocity[i] + std::sqrt(energy / type.mass) * Vector3(of[0][k], of[1][k], of[2][k]));
+      state.angular_velocity.set(i, keep * state.angular_velocity[i] +
+                                        std::sqrt(energy / type.inertia) * Vector3(of[3][k], of[4][k], of[5][k]));
+    }
+  }
+}
+
+}  // namespace ropewalk

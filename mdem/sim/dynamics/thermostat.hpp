@@ -1,0 +1,39 @@
+// The interface of thermostats and their register. To add one: a file with the class, and a line in thermostat.cpp.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "sim/state/state.hpp"
+
+namespace ropewalk {
+
+struct ThermostatOptions {
+  std::string method = "langevin";
+  double temperature = 0;  // K
+  double coupling = 0;     // 1/ps
+  std::uint64_t seed = 1;
+};
+
+class Thermostat {
+ public:
+  virtual ~Thermostat() = default;
+  // Changes velocities and angular velocities by a contact of the duration dt (ps) with the bath. The simulation
+  // calls it once in each step, restores the constrained components afterwards and books the change of the kinetic
+  // energy as heat. The result must depend on the arguments alone, state.step included, and not on the number of
+  // threads: a resumed run then goes on with the same bits.
+  virtual void apply(const Topology& topology, double dt, State& state) const = 0;
+};
+
+struct ThermostatKind {
+  const char* name;
+  std::shared_ptr<const Thermostat> (*make)(const ThermostatOptions&);
+};
+const std::vector<ThermostatKind>& thermostat_kinds();
+
+// By options.method, which is one of thermostat_kinds().
+std::shared_ptr<const Thermostat> make_thermostat(const ThermostatOptions& options);
+
+}  // namespace ropewalk

@@ -1,0 +1,74 @@
+// The table [thermostat] of a scene: what is read, what is refused, what it changes.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "model/error.hpp"
+#include "scene/prepare.hpp"
+#include "scene/scene_toml.hpp"
+
+namespace ropewalk {
+namespace {
+
+using ::testing::HasSubstr;
+
+const std::string bath = "[thermostat]\ntemperature_K = 250\ncoupling_per_ps = 0.5\n";
+
+Scene scene_from(const std::string& body) {
+  return scene_of_text(
+      "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[rope]\ntubes = 7\nlength_nm = 6.9\n" +
+          body,
+      ROPEWALK_SOURCE_DIR "/data/scenes/test.toml", {});
+}
+
+std::string refusal(const std::string& body) {
+  try {
+    scene_from(body);
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  return "";
+}
+
+TEST(ThermostatTable, IsRead) {
+  const Scene s = scene_from("[start]\nseed = 4\n[run]\nduration_ps = 1\n" + bath);
+  ASSERT_TRUE(s.thermostat);
+  EXPECT_EQ(s.thermostat->method, "langevin");
+  EXPECT_EQ(s.thermostat->temperature, 250);
+  EXPECT_EQ(s.thermostat->coupling, 0.5);
+  EXPECT_EQ(s.thermostat->seed, 4u) << "that of [start]";
+  EXPECT_EQ(scene_from("[run]\nduration_ps = 1\n" + bath + "seed = 9\n").thermostat->seed, 9u);
+  EXPECT_FALSE(scene_from("[run]\nduration_ps = 1\n").thermostat);
+}
+
+TEST(ThermostatTable, ReachesTheSimulation) {
+  Scene cold = scene_from("[run]\nduration_ps = 1\n"), warm = scene_from("[run]\nduration_ps = 1\n" + bath);
+  const Prepared without = prepare(cold), with = prepare(warm);
+  EXPECT_FALSE(without.stepping.thermostat);
+  ASSERT_TRUE(with.stepping.thermostat);
+  EXPECT_NEAR(with.time_step / without.time_step, default_step_fraction / cold_step_fraction, 1e-12)
+      << "the automatic step of a warm scene";
+  Simulation s = start(warm, with);
+  s.steps(20);
+  EXPECT_GT(s.heat(), 0);
+}
+
+TEST(ThermostatTable, RefusesWhatDoesNotGoWithIt) {
+  const auto expect = [](const std::string& body, const char* words) {
+    EXPECT_THAT(refusal(body), HasSubstr(words));
+  };
+  expect("[run]\nmode = \"relax\"\n" + bath, "run.mode: does not go with [thermostat]");
+  expect("[run]\nduration_ps = 1\ncontact_every = 2\n" + bath, "run.contact_every: does not go with [thermostat]");
+  expect("[damping]\npfc_local = 0.1\n[run]\nduration_ps = 1\n" + bath,
+         "damping.pfc_local: does not go with [thermostat]");
+  expect("[twist]\nmoment_nN_nm = 5\nrate_nN_nm_per_ps = 1\ngeometric_only = true\n" + bath,
+         "twist.geometric_only: does not go with [thermostat]");
+  const std::string run = "[run]\nduration_ps = 1\n[thermostat]\n";
+  expect(run + "temperature_K = 300\n", "thermostat.coupling_per_ps: is missing");
+  expect(run + "coupling_per_ps = 1\n", "thermostat.temperature_K: is missing");
+  expect(run + "temperature_K = -1\ncoupling_per_ps = 1\n", "thermostat.temperature_K");
+  expect(run + "temperature_K = 300\ncoupling_per_ps = 0\n", "thermostat.coupling_per_ps");
+  expect(run + "temperature_K = 300\ncoupling_per_ps = 1\nmethod = \"berendsen\"\n", "thermostat.method");
+}
+
+}  // namespace
+}  // namespace ropewalk
