@@ -142,7 +142,7 @@ constexpr int nodes = 4;  // on each element: their spacing follows from its len
 double line_corrugation(const ParameterSet& set, double spacing, double distance) {
   Interaction in;
   const double a = nodes * spacing;
-  in.line = {{set.line->density, a, a, nodes, nodes, {}, {}, {}}};
+  in.line = {{set.line->density, a, a, nodes, nodes}};
   return Slide(in, a, distance).corrugation(spacing);
 }
 
@@ -206,9 +206,9 @@ void check_nodes(const CaseContext& context, CaseResult& result) {
       "seventh of that distance.";
   result.figures.push_back(figure);
   const int taken = line_nodes(oracle.element_length, well.distance, oracle.line->density.contact);
-  result.checks.push_back(information(
-      absolute_check("node spacing over distance that `auto` takes", oracle.element_length / taken / well.distance,
-                     0, 0, "", "the sparse sums of nearly parallel elements corrugate no more")));
+  result.checks.push_back(information(absolute_check("node spacing over distance that `auto` takes",
+                                                     oracle.element_length / taken / well.distance, 0, 0, "",
+                                                     "every row of a scene has this spacing or less")));
 }
 
 void check_paper(const CaseContext& context, CaseResult& result) {

@@ -294,7 +294,7 @@ struct ElementContact {
       if constexpr (energies) sums.u = hn::Add(sums.u, u[k]);
     }
   }
-  HWY_INLINE void add_all_nodes(const PairTables<Table>& pair, V square, V twice_along, NodeSums& sums) {
+  HWY_INLINE void add_nodes_of_element(const PairTables<Table>& pair, V square, V twice_along, NodeSums& sums) {
     const T* s = pair.s.data();
     const int nodes = N > 0 ? N : static_cast<int>(pair.s.size());
     int k = 0;
@@ -335,7 +335,7 @@ struct ElementContact {
     for (int v = 0; v < found.count; ++v) {
       const T* const nodes = found.at(v, lanes);
       NodeSums sums{{zero, zero}, {zero, zero}, zero};
-      add_all_nodes(pair, hn::Load(d, nodes + 3 * lanes), hn::Load(d, nodes + 4 * lanes), sums);
+      add_nodes_of_element(pair, hn::Load(d, nodes + 3 * lanes), hn::Load(d, nodes + 4 * lanes), sums);
       const V A = hn::Mul(hn::Add(sums.A[0], sums.A[1]), weight),
               B = hn::Mul(hn::Add(sums.B[0], sums.B[1]), weight);
       if constexpr (energies) energy = hn::MulAdd(sums.u, hn::Set(d, pair.energy_weight), energy);
