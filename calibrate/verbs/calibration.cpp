@@ -359,7 +359,7 @@ std::string universal_file(const UniversalFit& fit, const std::string& command) 
   u.standard_errors = {fit.se_log_K, fit.se_s, fit.se_c, fit.se_p, fit.se_q};
   std::string text = fmt::format(
       "# The line law of any two tubes of radius 0.3 .. 1.4 nm, for one Lennard-Jones law: see UniversalLine in\n"
-      "# mdem/model/contact_line.hpp. Largest error {:.2e} of the well. Made by\n#   {}\n"
+      "# mdem/model/contact/line.hpp. Largest error {:.2e} of the well. Made by\n#   {}\n"
       "format = \"{}\"\nsigma_nm = {}\nlj_cutoff_nm = {}\ncore_gap_nm = {}\nswitch_gap_nm = {}\ncutoff_gap_nm = "
       "{}\n"
       "error = {:.4e}\n\n[rows]\n{}\n# Errors over the well: of a fit of its own, and of this law; then its errors "

@@ -1,4 +1,4 @@
-// fix ID all mdem/nve: velocity Verlet of mdem/sim/simulation.hpp, turning included.
+// fix ID all mdem/nve: velocity Verlet of mdem/sim/dynamics/verlet.hpp, turning included.
 // fix ID all mdem/relax: Simulation::relax, step by step; LAMMPS's minimisers leave orientations as they are.
 //
 // Both send orientations to ghosts before the forces are evaluated, check the set-up, and keep the account of

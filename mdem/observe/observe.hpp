@@ -55,8 +55,7 @@ struct RopeObservation {
 // section; their spacing is the median over the tubes of the distance to the nearest one.
 RopeShells rope_shells(const Topology& topology, const State& reference, double neighbour_radius);
 
-// section: element index; distances between tubes are the smallest between elements section-1 .. section+1,
-// as in the seed paper's note 29.
+// section: element index; distances between tubes are the smallest between elements section-1 .. section+1.
 CrossSection cross_section(const Topology& topology, const State& state, const RopeShells& shells, int section,
                            double neighbour_radius, double spacing);
 

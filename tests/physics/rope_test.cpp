@@ -1,4 +1,4 @@
-// The untwisted rope of the seed paper: packing, spacing, cohesion; and the time step limit of a whole rope.
+// The untwisted rope of the published scenes: packing, spacing, cohesion; and the time step limit of a whole rope.
 #include "scene/kinds/rope.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Contact by the paper law: runs of neighbours and buffers around the kernel (contact_paper_kernel.cpp).
+// Contact by the paper law: runs of neighbours and buffers around the kernel (kernel.cpp).
 #pragma once
 
 #include <cstddef>

@@ -1,6 +1,6 @@
 // The paper law over runs of neighbours, for every instruction set that the compiler knows and in two precisions;
 // the machine's best is picked at run time. The runs of an element are copied one after another, so that the law
-// (contact_paper.hpp, vectorised by the compiler) meets full vectors however short they are. It is evaluated in
+// (model/contact/paper.hpp, vectorised by the compiler) meets full vectors however short they are. It is evaluated in
 // four loops: one alone is a chain of dependent operations so long that the processor cannot look ahead to the next
 // vector.
 #include <algorithm>
@@ -20,7 +20,7 @@ namespace ropewalk::HWY_NAMESPACE {
 namespace paper {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// What is kept of a pair between the loops: its invariants (contact_paper.hpp), D and its derivatives, U's
+// What is kept of a pair between the loops: its invariants (model/contact/paper.hpp), D and its derivatives, U's
 // derivative by D and what comes from the factors before V; then force (eV/nm) and torque (eV) on the neighbour.
 enum Row { ux, uy, uz, inv, r, p, q, c, d, d_r, d_p, d_q, d_c, u_d, u_r, u_c, fx, fy, fz, tx, ty, tz, rows };
 
