@@ -152,7 +152,7 @@ std::vector<std::string> warnings_of(const Scene& scene) {
       warnings.push_back(
           fmt::format("With contact.nodes_per_element = {} tubes feel one another's elements: {} would keep the "
                       "corrugation below "
-                      "1e-3 of the binding energy.",
+                      "2e-4 of the binding energy.",
                       scene.contact.nodes, needed));
   }
   for (const ParameterSet& set : scene.sets) warn_of_long_elements(set, scene.element_length, warnings);

@@ -123,7 +123,7 @@ const std::vector<Hostile> scenes = {
     {"TooManyElements", "[chain]\nelements = 2000000000\n" + std::string(brief), 2, "chain.elements"},
     {"EightTubes", "[rope]\ntubes = 8\nlength_nm = 13.6\n" + std::string(brief), 2, "the nearest are 7 and 19"},
     {"OneNode", std::string(rope) + "[contact]\nnodes_per_element = 1\n" + brief, 0,
-     "6 would keep the corrugation"},
+     "5 would keep the corrugation"},
     {"TooManyNodes", std::string(rope) + "[contact]\nnodes_per_element = 100000\n" + brief, 2,
      "contact.nodes_per_element"},
     {"SkinNegative", std::string(rope) + "[contact]\nskin_nm = -1\n" + brief, 2, "contact.skin_nm"},

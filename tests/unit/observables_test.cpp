@@ -23,7 +23,7 @@ TEST(Observables, LogHasTheColumnsAndBytesThatItAlwaysHad) {
   EXPECT_EQ(
       log_header(),
       "step,time_ps,moment_nN_nm,stretch_eV,shear_eV,bend_eV,twist_eV,vdw_eV,kinetic_eV,work_eV,dissipated_eV,"
-      "balance_eV,beta_deg,physical_twist_deg,geometric_twist_deg,Q,Q_delaunay,contacts,voids,void_area_nm2,"
+      "thermostat_eV,balance_eV,beta_deg,physical_twist_deg,geometric_twist_deg,Q,Q_delaunay,contacts,voids,void_area_nm2,"
       "radius_mid_nm,radius_end_nm,length_nm,amplitude_nm,windings,kinked,overtwisted,overstretched,"
       "largest_bond_twist_deg\n");
   const Topology topology;
@@ -36,7 +36,8 @@ TEST(Observables, LogHasTheColumnsAndBytesThatItAlwaysHad) {
   a.kinetic = 0.25;
   a.work = 8;
   a.dissipated = 0.5;
-  a.first_energy = 2.5;
+  a.heat = 0.125;
+  a.first_energy = 2.375;
   RopeObservation o;
   o.beta = 0.5;
   o.physical_twist = 1.25;
@@ -56,7 +57,7 @@ TEST(Observables, LogHasTheColumnsAndBytesThatItAlwaysHad) {
   o.overstretched = 6;
   o.largest_bond_twist = 0.75;
   EXPECT_EQ(log_line(LogRow({topology, state, o, a})),
-            "123456789012345,0.1,30,1,2,3,4,-1e-300,0.25,8,0.5,0.25,28.64788975654116,71.6197243913529,"
+            "123456789012345,0.1,30,1,2,3,4,-1e-300,0.25,8,0.5,0.125,0.25,28.64788975654116,71.6197243913529,"
             "-143.2394487827058,-1,2,210,3,0.3333333333333333,6.5,6.25,66.1,7e-07,-0,4,5,6,42.97183463481174\n");
 }
 
