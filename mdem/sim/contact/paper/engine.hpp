@@ -6,7 +6,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "sim/contact/paper/neighbour_spans.hpp"
+#include "sim/contact/shared/neighbour_spans.hpp"
 #include "sim/contact/shared/damping.hpp"
 
 namespace ropewalk {
