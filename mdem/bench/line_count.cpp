@@ -40,9 +40,9 @@ struct Counter {
   }
 
   void add(int i, RadialCount& count) const {
-    const int type = topology.tube_type[topology.tube_of(i)], types = static_cast<int>(topology.types.size());
+    const int type = topology.tube_type[topology.tube_of(i)];
     for (const NeighbourSpan& span : list.spans(i)) {
-      const LineContact& law = in.line[static_cast<std::size_t>(type * types + span.type)];
+      const LineContact& law = line_law_of(in).of({type, span.type});
       const bool reached = span.may_be_in_reach(moved);
       (reached ? count.spans : count.skipped) += 1;
       const int nodes = reached ? add_span(i, law, span, count) : 0;
@@ -87,7 +87,6 @@ int radial_operations(Interaction::Precision precision) {
 RadialCount count_radial(const Topology& topology, const Interaction& in, const State& state,
                          const NeighbourList& neighbours, const LineList& list, int most) {
   RadialCount sum, out;
-  if (in.line.empty()) return out;
   const Counter counter{topology, in, state, list, 2 * neighbours.displacement(), radial_lanes(in.precision)};
   const std::int64_t n = topology.elements(), samples = std::min<std::int64_t>(n, most);
   for (std::int64_t k = 0; k < samples; ++k) {

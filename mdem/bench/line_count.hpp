@@ -19,13 +19,13 @@ struct RadialCount {
 // Lanes of the kernel's vectors with the instructions in use.
 int radial_lanes(Interaction::Precision precision);
 
-// Floating-point operations (a fused multiply-add is two) of one evaluation, that is of two nodes of two elements: 3
-// for the squared distance, those of the polynomial (radial_table.hpp) and 3 for the two sums of forces. Not counted:
-// look-ups, comparisons, selections, what is done once for a node of a neighbour, and energies, which are only summed
-// where they are reported.
+// Floating-point operations (a fused multiply-add is two) of one evaluation, that is of two nodes of two elements:
+// 3 for the squared distance, those of the polynomial (radial_table.hpp) and 3 for the two sums of forces. Not
+// counted: look-ups, comparisons, selections, what is done once for a node of a neighbour, and energies, which are
+// only summed where they are reported.
 int radial_operations(Interaction::Precision precision);
 
-// Of the present state, from up to `most` of its elements.
+// Of the present state by the line law, from up to `most` of its elements.
 RadialCount count_radial(const Topology& topology, const Interaction& interaction, const State& state,
                          const NeighbourList& neighbours, const LineList& list, int most);
 

@@ -15,22 +15,23 @@
 #include "model/error.hpp"
 #include "run/processor_time.hpp"
 #include "scene/prepare.hpp"
+#include "sim/contact/line/engine.hpp"
+#include "sim/contact/line/law.hpp"
 
 namespace ropewalk {
 namespace {
 
 struct Timing {
-  double wall = 0, processor = 0, axes = 0, contact = 0, bonds = 0, list = 0, integration = 0;
+  double wall = 0, processor = 0, contact = 0, bonds = 0, list = 0, integration = 0;
   long builds = 0;
 };
 
-// The runs of the line law are part of the list.
+// The lists of the contact engine are part of the list.
 Timing timing(const Simulation& s, double wall, double processor) {
   const auto& t = s.engine().times();
-  const double runs = s.engine().line().list_seconds() + s.engine().paper().list_seconds();
+  const double runs = s.engine().contact() ? s.engine().contact()->list_seconds() : 0;
   return {wall,
           processor,
-          t.axes,
           t.contact - runs,
           t.bonds,
           s.list_seconds() + runs,
@@ -60,7 +61,6 @@ double peak_bytes() {
 Timing per_element_step(const Timing& a, const Timing& b, double scale) {
   return {b.wall,
           b.processor,
-          (b.axes - a.axes) * scale,
           (b.contact - a.contact) * scale,
           (b.bonds - a.bonds) * scale,
           (b.list - a.list) * scale,
@@ -85,9 +85,10 @@ Cost measure(const Scene& scene, const Prepared& prepared, double after, long st
     simulation.steps(steps * (part + 1) / samples - steps * part / samples, false);
     wall += omp_get_wtime() - began;
     processor += processor_seconds() - used;
-    c.radial.add(count_radial(simulation.topology(), simulation.interaction(), simulation.state(),
-                              simulation.list(), simulation.engine().line().list(), most_counted),
-                 1.0 / static_cast<double>(samples));
+    if (const auto* line = dynamic_cast<const LineEngine*>(simulation.engine().contact()))
+      c.radial.add(count_radial(simulation.topology(), simulation.interaction(), simulation.state(),
+                                simulation.list(), line->list(), most_counted),
+                   1.0 / static_cast<double>(samples));
   }
   const double n = prepared.topology.elements(), scale = 1e9 / (n * static_cast<double>(steps));
   c.each = per_element_step(before, timing(simulation, wall * scale, processor * scale), scale);
@@ -140,13 +141,12 @@ nlohmann::ordered_json json_of(const Cost& c, const Rates& rates, const BenchArg
   out["ns_per_pair"] = per(c.each.contact, c.pairs);
   out["split_ns_per_element_step"] = {{"contact", c.each.contact},
                                       {"bonds", c.each.bonds},
-                                      {"axes", c.each.axes},
                                       {"list", c.each.list},
                                       {"integration", c.each.integration}};
   out["list_builds"] = c.each.builds;
   out["list_skin_nm"] = c.skin;
   out["list_share"] = per(c.each.list, c.each.wall);
-  if (!prepared.interaction.line.empty()) {
+  if (dynamic_cast<const LineLaw*>(prepared.interaction.law.get())) {
     out["instructions"] = instruction_sets().front();
     out["lanes"] = radial_lanes(prepared.interaction.precision);
     out["spans_per_element"] = c.radial.spans;
@@ -176,12 +176,13 @@ void print(const Cost& c, const BenchArguments& a, const Prepared& prepared) {
   fmt::print("{:9.1f} ns per element-step, {:.1f} of processor time\n", t.wall, t.processor);
   fmt::print("{:9.1f} pairs per element (half list)\n", c.pairs);
   fmt::print(
-      "  contact {:.1f}  bonds {:.1f}  axes {:.1f}  list {:.1f}  integration {:.1f} ns; {} lists, the last with "
+      "  contact {:.1f}  bonds {:.1f}  list {:.1f}  integration {:.1f} ns; {} lists, the last with "
       "a skin of {:.3g} nm\n",
-      t.contact, t.bonds, t.axes, t.list, t.integration, t.builds, c.skin);
+      t.contact, t.bonds, t.list, t.integration, t.builds, c.skin);
   if (c.radial.spans > 0)
     fmt::print(
-        "{:9.1f} spans of neighbours per element, {:.1f} nodes each; {:.0f} radial evaluations, {:.0f} % of them within the "
+        "{:9.1f} spans of neighbours per element, {:.1f} nodes each; {:.0f} radial evaluations, {:.0f} % of them "
+        "within the "
         "cutoff, {:.3f} ns each; {:.1f} GFLOP/s in contact\n",
         c.radial.spans, per(c.radial.nodes, c.radial.spans), c.radial.evaluations,
         100 * per(c.radial.useful, c.radial.evaluations), per(t.contact, c.radial.evaluations),

@@ -7,6 +7,7 @@
 #include "io/parameters_toml.hpp"
 #include "model/error.hpp"
 #include "scene/kinds/state.hpp"
+#include "scene/laws/contact_law_kind.hpp"
 #include "scene/prepare.hpp"
 #include "scene/scene_toml.hpp"
 
@@ -17,18 +18,21 @@ using Json = nlohmann::ordered_json;
 
 Json vector_json(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
 
-// Empty: the line law where the set has it, as in a scene.
-ContactOptions::Law law_named(const std::string& name, const ParameterSet& set) {
-  using Law = ContactOptions::Law;
-  const std::string law = !name.empty() ? name : set.line ? "line" : "paper";
-  if (law == "none") return Law::none;
-  if (law != "paper" && law != "line")
+// Empty: the default of a scene.
+std::string law_named(const std::string& name, const ParameterSet& set) {
+  const std::string law = !name.empty() ? name : default_contact_law({set});
+  if (law == "none") return law;
+  const ContactLawKind* kind = contact_law_kind(law);
+  if (!kind) {
+    std::string names;
+    for (const ContactLawKind& k : contact_law_kinds()) names += (names.empty() ? "" : ", ") + k.name;
     throw InputError({"", 0, "--law"}, fmt::format("there is no contact law '{}'", law),
-                     "choose line, paper or none");
-  if (law == "paper" ? !set.paper.has_value() : !set.line.has_value())
+                     fmt::format("choose {} or none", names));
+  }
+  if (kind->in_set && !kind->in_set(set))
     throw InputError({set.path, 0, "contact." + law}, fmt::format("the set has no `{}` law", law),
                      "use --law none");
-  return law == "paper" ? Law::paper : Law::line;
+  return law;
 }
 
 Forces evaluate(const EnergyArguments& a, const BuiltScene& built, const Interaction& in) {

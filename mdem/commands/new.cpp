@@ -12,6 +12,7 @@
 #include "scene/scene_toml.hpp"
 #include "scene/templates.hpp"
 #include "scene/watch.hpp"
+#include "sim/contact/line/law.hpp"
 
 namespace ropewalk {
 namespace {
@@ -31,8 +32,9 @@ void say_source(const Scene& scene, const Prepared& p) {
     fmt::print("parameters {} ({}), EA {:.5g} nN, EI {:.5g} nN nm^2, GJ {:.5g} nN nm^2\n", set.name, set.path,
                set.bond.stretch * units::eV_in_nN_nm, set.bond.bend * units::eV_in_nN_nm,
                set.bond.twist * units::eV_in_nN_nm);
-  fmt::print("contact law {}", law_name(scene.contact.law));
-  if (!p.interaction.line.empty()) fmt::print(", {} nodes on an element", p.interaction.line.front().nodes_i);
+  fmt::print("contact law {}", scene.contact.law);
+  if (const auto* line = dynamic_cast<const LineLaw*>(p.interaction.law.get()))
+    fmt::print(", {} nodes on an element", line->nodes());
   fmt::print("\n");
 }
 

@@ -59,7 +59,7 @@ void add_run_facts(const Scene& scene, const Prepared& p, const Manifest& m, Rep
     add(k == 0 ? "parameters" : "parameters, type " + std::to_string(k), scene.sets[k].name,
         (scene.sets.size() > 1 ? fmt::format("{} tubes, ", tubes) : "") + "hash " + scene.sets[k].hash);
   }
-  add("contact law", law_name(scene.contact.law),
+  add("contact law", scene.contact.law,
       scene.contact.legacy_torque ? "legacy torque: not a gradient, energy is not conserved" : "full gradient");
   add("damping", fmt::format("contact viscosity {:.4g} eV ps/nm^2, bonds {:.4g} 1/ps, PFC local {:.4g}",
                              scene.damping.contact.eta, scene.damping.bond.rate, scene.damping.local));
@@ -144,7 +144,7 @@ std::vector<std::string> warnings_of(const Scene& scene) {
                     scene.thermostat->temperature));
   if (scene.damping.local > 0)
     warnings.push_back("PFC local damping depends on the frame and does not conserve momentum.");
-  if (scene.contact.law == ContactOptions::Law::line && scene.contact.nodes > 0) {
+  if (scene.contact.law == "line" && scene.contact.nodes > 0) {
     Scene free = scene;
     free.contact.nodes = 0;
     const int needed = line_contacts(free).front().nodes_i;

@@ -18,7 +18,7 @@ struct LammpsModel {
   Topology topology;
   Interaction interaction;
   LoadsAndConstraints loads;
-  ContactOptions::Law law = ContactOptions::Law::none;
+  std::string law = "none";
   bool relax = false;
   double force_tolerance = 0;  // eV/nm
 

@@ -1,11 +1,13 @@
 #include "lammps/pair_mdem.hpp"
 
+#include <utility>
+
 #include "memory.h"
-#include "model/segments.hpp"
+#include "sim/contact/contact_law.hpp"
 
 namespace ropewalk::lammps {
 
-PairMdem::PairMdem(LMP::LAMMPS* lmp, ContactOptions::Law law) : Pair(lmp), law_(law) {
+PairMdem::PairMdem(LMP::LAMMPS* lmp, std::string law) : Pair(lmp), law_(std::move(law)) {
   single_enable = 0;  // the energy depends on more than a distance
   restartinfo = 0;    // all of it is in the scene
   one_coeff = 1;
@@ -27,14 +29,13 @@ void PairMdem::allocate() {
 }
 
 void PairMdem::settings(int count, char** words) {
-  const std::string name = std::string("pair_style mdem/") + law_name(law_);
+  const std::string name = "pair_style mdem/" + law_;
   if (count != 1) refuse(lmp, name + " takes one word", "write: " + name + " DIR, DIR made by ropewalk export");
   check_atoms(lmp, name.c_str());
   model_ = load(lmp, words[0]);
   if (model_->law != law_)
-    refuse(lmp,
-           std::string("the scene's contact is \"") + law_name(model_->law) + "\", not \"" + law_name(law_) + "\"",
-           std::string("write: pair_style mdem/") + law_name(model_->law) + " DIR, or export the scene anew");
+    refuse(lmp, "the scene's contact is \"" + model_->law + "\", not \"" + law_ + "\"",
+           "write: pair_style mdem/" + model_->law + " DIR, or export the scene anew");
 }
 
 void PairMdem::coeff(int count, char**) {
@@ -61,38 +62,17 @@ void PairMdem::init_style() {
 
 double PairMdem::init_one(int, int) { return model_->interaction.cutoff(); }
 
-namespace {
-
-bool reaches(const PaperContact&, const Vector3&, const Vector3&, const Vector3&) { return true; }
-bool reaches(const LineContact& law, const Vector3& separation, const Vector3& n_i, const Vector3& n_j) {
-  const double reach = law.density.cutoff() + 1e-6;  // nm, for the rounding of the distance
-  return squared_segment_distance(separation, n_i, n_j, 0.5 * law.length_i, 0.5 * law.length_j) < reach * reach;
-}
-
-// False where the law is zero.
-bool contact_force(const Topology& topology, const Interaction& in, int i, int j, const Vector3& separation,
-                   const Vector3& n_i, const Vector3& n_j, PairForce& out) {
-  return with_law(topology, in, i, j, [&](const auto& law) {
-    if (!reaches(law, separation, n_i, n_j)) return false;
-    out = law.energy_and_gradient(separation, n_i, n_j);
-    return true;
-  });
-}
-
-}  // namespace
-
 void PairMdem::contact(int i, int j) {
   const Vector3 separation = vector(atom->x[j]) - vector(atom->x[i]);
   if (!(separation.squaredNorm() < cutsq[1][1])) return;
   const Vector3 &n_i = axis_[static_cast<std::size_t>(i)], &n_j = axis_[static_cast<std::size_t>(j)];
   const Interaction& in = model_->interaction;
-  PairForce f;
-  if (in.paper && in.legacy_torque) {
-    f = in.paper->legacy_torque(separation, n_i, n_j);
-  } else if (!contact_force(model_->topology, in, element_of(*atom, i), element_of(*atom, j), separation, n_i, n_j,
-                            f)) {
-    return;
-  }
+  const auto type = [&](int k) {
+    return model_->topology.tube_type[model_->topology.tube_of(element_of(*atom, k))];
+  };
+  const TypePair types{type(i), type(j)};
+  if (!in.law->reaches(types, separation, n_i, n_j)) return;
+  const PairForce f = in.law->force(types, separation, n_i, n_j);
   energy_ += f.energy;
   add(atom->f[i], -f.force_j);
   add(atom->f[j], f.force_j);

@@ -9,7 +9,7 @@ namespace ropewalk::lammps {
 
 class PairMdem : public LMP::Pair {
  public:
-  PairMdem(LMP::LAMMPS* lmp, ContactOptions::Law law);
+  PairMdem(LMP::LAMMPS* lmp, std::string law);
   ~PairMdem() override;
   void settings(int count, char** words) override;
   void coeff(int count, char** words) override;
@@ -23,7 +23,7 @@ class PairMdem : public LMP::Pair {
   void allocate();
   void contact(int i, int j);
 
-  ContactOptions::Law law_;
+  std::string law_;
   std::shared_ptr<const LammpsModel> model_;
   std::vector<Vector3> axis_;  // of own and ghost elements
   double energy_ = 0;

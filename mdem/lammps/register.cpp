@@ -11,10 +11,8 @@
 namespace ropewalk::lammps {
 namespace {
 
-template <ContactOptions::Law law>
-LMP::Pair* make_pair(LMP::LAMMPS* lmp) {
-  return new PairMdem(lmp, law);
-}
+LMP::Pair* make_paper(LMP::LAMMPS* lmp) { return new PairMdem(lmp, "paper"); }
+LMP::Pair* make_line(LMP::LAMMPS* lmp) { return new PairMdem(lmp, "line"); }
 LMP::Bond* make_bond(LMP::LAMMPS* lmp) { return new BondVBond(lmp); }
 template <class F>
 LMP::Fix* make_fix(LMP::LAMMPS* lmp, int count, char** words) {
@@ -23,8 +21,7 @@ LMP::Fix* make_fix(LMP::LAMMPS* lmp, int count, char** words) {
 
 }  // namespace
 
-const PairEntry pair_entries[2] = {{"mdem/paper", make_pair<ContactOptions::Law::paper>},
-                                   {"mdem/line", make_pair<ContactOptions::Law::line>}};
+const PairEntry pair_entries[2] = {{"mdem/paper", make_paper}, {"mdem/line", make_line}};
 const BondEntry bond_entries[1] = {{"mdem/vbond", make_bond}};
 const FixEntry fix_entries[4] = {{"mdem/nve", make_fix<FixNve>},
                                  {"mdem/relax", make_fix<FixRelax>},

@@ -107,7 +107,7 @@ void check_styles(LMP::LAMMPS* lmp, const LammpsModel& model) {
   const bool contact = dynamic_cast<PairMdem*>(lmp->force->pair) != nullptr;
   if (model.interaction.has_contact() && !contact)
     refuse(lmp, "the scene has contact, and there is none",
-           std::string("write: pair_style mdem/") + law_name(model.law) + " DIR");
+           std::string("write: pair_style mdem/") + model.law + " DIR");
   if (model.damped() && !find_fix<FixDamp>(lmp))
     refuse(lmp, "the scene has damping, and there is none", "write: fix damping all mdem/damp");
   if (model.driven() && !find_fix<FixGrip>(lmp))

@@ -8,6 +8,7 @@
 
 #include "plan/scene_edit.hpp"
 #include "scene/dissipation.hpp"
+#include "scene/laws/contact_law_kind.hpp"
 #include "scene/scene_toml.hpp"
 
 namespace ropewalk {
@@ -25,7 +26,8 @@ int elements_of(const Scene& scene) { return scene.source->sizes(scene.element_l
 std::string fixed_length(const Scene& scene) {
   if (scene.from_file()) return "the elements come from a file";
   if (tube_size_key(scene).tube_size == SceneKey::TubeSize::no) return "the tubes have no common length";
-  if (scene.contact.law == ContactOptions::Law::paper) return "law \"paper\" holds for its set's length alone";
+  const ContactLawKind* law = contact_law_kind(scene.contact.law);
+  if (law && !law->any_element_length) return fmt::format("law \"{}\" holds for its set's length alone", law->name);
   for (const SceneLoad& load : scene.loads)
     if (!names_only_ends(load.on)) return "a load names elements by number";
   return "";
@@ -47,7 +49,7 @@ double PlannedScene::longest() const {
 }
 
 void PlannedScene::drop_what_is_not_there() {
-  if (scene_.contact.law == ContactOptions::Law::none || features_.contact) return;
+  if (scene_.contact.law == "none" || features_.contact) return;
   if (features_.curvature * longest() > units::pi) {
     remark("contact stays: the lone tube may bend back to itself");
     return;

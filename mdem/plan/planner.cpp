@@ -16,8 +16,6 @@
 namespace ropewalk {
 namespace {
 
-using Law = ContactOptions::Law;
-
 // --- which scene of the chart ---
 
 constexpr double margin = 1.1;        // of what a charted scene covers
@@ -110,7 +108,7 @@ double element_steps(Scene scene, const SceneFeatures& f, double length) {
   scene.run.mass_scale = 1;
   scene.contact.nodes = 0;
   scene.contact.cutoff = 0;
-  if (!f.contact) scene.contact.law = Law::none;
+  if (!f.contact) scene.contact.law = "none";
   const Prepared p = prepare(scene);
   return p.topology.elements() / p.time_step;
 }
@@ -359,7 +357,7 @@ Plan plan_scene(const Scene& scene, const std::vector<ChartedScene>& chart, cons
   w.drop_what_is_not_there();
   PlannedScene standard = w;
   standard.default_length();
-  const bool line_or_none = !f.contact || scene.contact.law == Law::line;
+  const bool line_or_none = !f.contact || scene.contact.law == "line";
   const ChartedScene* c = f.beyond.empty() && line_or_none ? nearest(chart, f, plan) : nullptr;
   if (c && longer_than_charted(*c, scene)) {
     plan.why.push_back(fmt::format("elements of {:.4g} nm, which stay since {}, are longer than any in scene {}",

@@ -1,44 +1,23 @@
 #include "run/colours.hpp"
 
-#include <type_traits>
 #include <vector>
 
 #include "observe/bending.hpp"
-#include "sim/contact/line/radial_table.hpp"
+#include "sim/contact/contact_engine.hpp"
 #include "sim/neighbours/neighbours.hpp"
 
 namespace ropewalk {
 namespace {
 
-// The line law by its tables, without its exp and log: the same digits in a frame.
-struct PairEnergy {
-  const Topology& topology;
-  const Interaction& in;
-  const State& s;
-  std::vector<FullTable> tables;  // of in.line
-
-  PairEnergy(const Topology& t, const Interaction& i, const State& state) : topology(t), in(i), s(state) {
-    for (const LineContact& pair : in.line) tables.emplace_back(pair.density, 1);
-  }
-  double operator()(int i, int j) const {
-    const auto si = static_cast<std::size_t>(i), sj = static_cast<std::size_t>(j);
-    const Vector3 apart = s.position[sj] - s.position[si];
-    const Vector3 n_i = axis_of(s.orientation[si]), n_j = axis_of(s.orientation[sj]);
-    return with_law(topology, in, i, j, [&](const auto& law) {
-      if constexpr (std::is_same_v<decltype(law), const LineContact&>) {
-        const FullTable& table = tables[in.line_index(topology, topology.tube_of(i), topology.tube_of(j))];
-        return law.energy_by([&](double distance2) { return table.energy(distance2); }, apart, n_i, n_j);
-      } else {
-        return law.energy(apart, n_i, n_j);
-      }
-    });
-  }
-};
-
 void colour_contacts(const Topology& topology, const Interaction& in, const State& s, ElementColours& c) {
   NeighbourList list(in, 0);
   list.build(topology, s);
-  const PairEnergy energy(topology, in, s);
+  const PairEnergy law = make_contact_engine(*in.law)->pair_energy(*in.law);
+  const auto energy = [&](int i, int j) {
+    const auto si = static_cast<std::size_t>(i), sj = static_cast<std::size_t>(j);
+    return law({topology.tube_type[topology.tube_of(i)], topology.tube_type[topology.tube_of(j)]},
+               s.position[sj] - s.position[si], axis_of(s.orientation[si]), axis_of(s.orientation[sj]));
+  };
   std::vector<std::size_t> first_pair{0};
   for (int i = 0; i < topology.elements(); ++i) first_pair.push_back(first_pair.back() + list.pairs(i));
   std::vector<double> of_pair(list.pairs());

@@ -19,9 +19,6 @@ struct BuiltScene {
 // Also sets the reach of the scene's contact viscosity, which goes with the spacing.
 BuiltScene build(Scene& scene);
 
-// The distance of two parallel rows (nm) at which their energy is lowest.
-double pair_spacing(const PaperContact& contact, double element_length);
-
 // The largest hexagonal number (1, 7, 19, ...) that is not above `tubes`, and the smallest that is not below.
 std::pair<int, int> nearest_hexagonal(int tubes);
 

@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <sstream>
 
+#include "scene/laws/contact_law_kind.hpp"
 #include "scene/scene_to_model.hpp"
 #include "scene/scene_toml.hpp"
 #include "sim/dynamics/refine.hpp"
@@ -94,8 +95,10 @@ std::string text_of(const toml::table& top, const std::string& comment) {
 }  // namespace
 
 std::string why_not_finer(const Scene& scene, const Topology& topology) {
-  if (scene.contact.law == ContactOptions::Law::paper)
-    return fmt::format("law \"paper\" holds for elements of {:.4g} nm alone", scene.parameters().element_length);
+  const ContactLawKind* law = contact_law_kind(scene.contact.law);
+  if (law && !law->any_element_length)
+    return fmt::format("law \"{}\" holds for elements of {:.4g} nm alone", law->name,
+                       scene.parameters().element_length);
   const double half = 0.5 * scene.element_length, radius = topology.largest_radius();
   if (half < 0.99 * radius)
     return fmt::format("elements of {:.4g} nm would be shorter than the radius of the tube, {:.4g} nm", half,

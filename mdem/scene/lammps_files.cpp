@@ -223,9 +223,8 @@ std::string row_variables() {
 }
 
 std::string pair_line(const LammpsScript& s) {
-  using Law = ContactOptions::Law;
-  if (s.law == Law::none) return fmt::format("pair_style zero {} nocoeff", s.reach);
-  return fmt::format("pair_style mdem/{} ${{dir}}", s.law == Law::paper ? "paper" : "line");
+  if (s.law == "none") return fmt::format("pair_style zero {} nocoeff", s.reach);
+  return fmt::format("pair_style mdem/{} ${{dir}}", s.law);
 }
 
 }  // namespace

@@ -65,7 +65,7 @@ std::string lammps_data(const std::string& name, const Topology& topology, const
 // What the input script needs to know.
 struct LammpsScript {
   std::string name;
-  ContactOptions::Law law = ContactOptions::Law::paper;
+  std::string law = "paper";
   bool damped = false, driven = false, relax = false;
   bool long_in_z = true;  // a rope or a chain: cut across it
   double radius = 0, skin = 0, reach = 0, longest_element = 0;

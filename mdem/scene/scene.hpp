@@ -29,8 +29,7 @@ struct StartOptions {
 };
 
 struct ContactOptions {
-  enum class Law { none, paper, line };
-  Law law = Law::paper;
+  std::string law = "paper";  // of scene/laws/contact_law_kind.hpp, or "none"
   bool legacy_torque = false;
   int exclude_along_tube = 20;  // pairs of one tube up to this many elements apart do not interact
   double skin = 0;              // nm; 0: chosen by the program
@@ -39,10 +38,6 @@ struct ContactOptions {
   // Pairs in single precision or all in double; the former by default where nothing is relaxed to tight tolerances.
   std::optional<Interaction::Precision> precision;
 };
-
-inline const char* law_name(ContactOptions::Law law) {
-  return law == ContactOptions::Law::line ? "line" : law == ContactOptions::Law::paper ? "paper" : "none";
-}
 
 struct RunOptions {
   enum class Mode { dynamics, relax };

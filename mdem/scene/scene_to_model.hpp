@@ -2,6 +2,9 @@
 #pragma once
 
 #include "scene/scene.hpp"
+#include "sim/contact/contact_law.hpp"
+#include "sim/contact/line/law.hpp"
+#include "sim/contact/paper/law.hpp"
 #include "sim/dynamics/loads.hpp"
 #include "sim/state/interaction.hpp"
 
@@ -25,6 +28,9 @@ struct ContactRange {
   double cutoff = 0, binding = 0;
 };
 std::vector<ContactRange> contact_ranges(const Scene& scene);
+
+// The contact law of the scene; null: none.
+std::shared_ptr<const ContactLaw> contact_law(const Scene& scene);
 
 // The reach of the contact viscosity must be set (build() does so).
 Interaction interaction_of(const Scene& scene);

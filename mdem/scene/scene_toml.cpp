@@ -6,32 +6,22 @@
 
 #include "io/files.hpp"
 #include "io/toml_table.hpp"
+#include "scene/laws/contact_law_kind.hpp"
 #include "scene/tables/tables.hpp"
 
 namespace ropewalk {
 namespace {
 
-// Contact between tubes of two kinds comes from the universal law, which must be one and the same.
-void check_mixture(const TomlTable& top, const Scene& scene) {
-  if (scene.contact.law != ContactOptions::Law::line) return;
-  const LineParameters& first = *scene.sets[0].line;
-  for (const ParameterSet& set : scene.sets) {
-    if (scene.sets.size() > 1 && !set.line->has_universal)
-      throw top.error("parameters", fmt::format("{} has no [contact.line.universal]", set.name),
-                      "tubes of different kinds need it; make the set with `ropewalk calibrate`");
-    if (!(set.line->universal == first.universal))
-      throw top.error("parameters",
-                      fmt::format("{} and {} have different van der Waals laws", scene.sets[0].name, set.name),
-                      "calibrate both with the same --lj and --lj-cutoff");
-  }
-}
-
-// The law's energy is that of a pair of elements, not of a length.
-void check_element_length(const TomlTable& top, const Scene& scene) {
+// What the contact law asks of the parameter sets and the elements.
+void check_contact_law(const TomlTable& top, const Scene& scene) {
+  const ContactLawKind* kind = contact_law_kind(scene.contact.law);
+  if (!kind) return;
   const double set = scene.parameters().element_length;
-  if (scene.contact.law != ContactOptions::Law::paper || std::fabs(scene.element_length - set) <= 1e-6) return;
-  throw top.error("element_length_nm", fmt::format("is {} nm", scene.element_length),
-                  fmt::format("law \"paper\" holds for the {} nm of the set alone; leave the key out", set));
+  if (!kind->any_element_length && std::fabs(scene.element_length - set) > 1e-6)
+    throw top.error(
+        "element_length_nm", fmt::format("is {} nm", scene.element_length),
+        fmt::format("law \"{}\" holds for the {} nm of the set alone; leave the key out", kind->name, set));
+  if (kind->check) kind->check(top, scene);
 }
 
 void check_run(const TomlTable& top, const Scene& scene) {
@@ -83,8 +73,7 @@ void read_tables(const TomlTable& top, Scene& scene) {
   read_source(top, scene);
   scene.start = start_table().read(top.table("start"), scene);
   scene.contact = contact_table().read(top.table("contact"), scene);
-  check_element_length(top, scene);
-  check_mixture(top, scene);
+  check_contact_law(top, scene);
   scene.damping = damping_table().read(top.table("damping"), scene);
   for (const TomlTable& t : top.tables("load")) scene.loads.push_back(read_load(t, scene));
   if (top.has("thermostat")) scene.thermostat = thermostat_table().read(top.table("thermostat"), scene);

@@ -1,10 +1,6 @@
 // Distances at which tubes bind best.
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <cmath>
 
-#include "model/error.hpp"
 #include "scene/build.hpp"
 #include "scene/scene_to_model.hpp"
 
@@ -12,87 +8,22 @@ namespace ropewalk {
 namespace {
 
 constexpr double graphite_gap = 0.335;  // nm, between the walls of tubes for which there is no law
-constexpr double right_angle = 0.5 * units::pi;
 
-// Between two points that bracket a minimum.
-template <class F>
-double golden_section(F f, double a, double b, double tolerance) {
-  const double part = 0.5 * (std::sqrt(5.0) - 1);
-  double x1 = b - part * (b - a), x2 = a + part * (b - a);
-  double f1 = f(x1), f2 = f(x2);
-  while (b - a > tolerance) {
-    if (f1 < f2) {
-      b = x2;
-      x2 = x1;
-      f2 = f1;
-      x1 = b - part * (b - a);
-      f1 = f(x1);
-    } else {
-      a = x1;
-      x1 = x2;
-      f1 = f2;
-      x2 = a + part * (b - a);
-      f2 = f(x2);
-    }
-  }
-  return 0.5 * (a + b);
+// The largest of all pairs of tube types, by this function of the law.
+double largest_distance(const Scene& scene, double (ContactLaw::*distance)(TypePair, double) const) {
+  const auto law = contact_law(scene);
+  if (!law) return 2 * largest_radius(scene) + graphite_gap;
+  double largest = 0;
+  for (int i = 0; i < static_cast<int>(scene.sets.size()); ++i)
+    for (int j = 0; j < static_cast<int>(scene.sets.size()); ++j)
+      largest = std::max(largest, ((*law).*distance)({i, j}, scene.element_length));
+  return largest;
 }
-
-// The distance at which two tubes bind best, their energy given. `key` is what to type where they do not bind.
-template <class F>
-double lowest(const PaperContact& contact, const char* key, F energy) {
-  // The well is found on a grid first: beyond it the energy is not convex.
-  constexpr int grid = 400;
-  const double from = 2 * contact.radius, step = (contact.cutoff() - from) / grid;
-  std::vector<double> at;
-  for (int k = 0; k <= grid; ++k) at.push_back(energy(from + k * step));
-  const auto well = static_cast<int>(std::min_element(at.begin(), at.end()) - at.begin());
-  if (well == 0 || well == grid || at[static_cast<std::size_t>(well)] >= 0)
-    throw InputError({"", 0, "contact.paper"}, "does not bind two tubes", fmt::format("type {}", key));
-  return golden_section(energy, from + (well - 1) * step, from + (well + 1) * step, 1e-9);
-}
-
-double graphite_spacing(const Scene& scene) { return 2 * largest_radius(scene) + graphite_gap; }
 
 }  // namespace
 
-double parallel_spacing(const Scene& scene) {
-  double largest = 0;
-  switch (scene.contact.law) {
-    case ContactOptions::Law::paper:
-      return pair_spacing(paper_contact(scene), scene.element_length);
-    case ContactOptions::Law::line:
-      for (const LineContact& pair : line_contacts(scene))
-        largest = std::max(largest, line_parallel_well(pair.density).distance);
-      return largest;
-    case ContactOptions::Law::none:
-      break;
-  }
-  return graphite_spacing(scene);
-}
+double parallel_spacing(const Scene& scene) { return largest_distance(scene, &ContactLaw::parallel_distance); }
 
-double pair_spacing(const PaperContact& contact, double element_length) {
-  return lowest(contact, "rope.spacing_nm",
-                [&](double spacing) { return paper_parallel_energy(contact, element_length, spacing); });
-}
-
-double crossed_spacing(const Scene& scene) {
-  double largest = 0;
-  switch (scene.contact.law) {
-    case ContactOptions::Law::paper: {
-      const PaperContact contact = paper_contact(scene);
-      return lowest(contact, "film.spacing_nm", [&](double spacing) {
-        return paper_crossed_energy(contact, scene.element_length, spacing, right_angle);
-      });
-    }
-    case ContactOptions::Law::line:
-      for (const LineContact& pair : line_contacts(scene))
-        largest = std::max(largest, line_crossed_well(pair.density, right_angle).distance);
-      return largest;
-    case ContactOptions::Law::none:
-      break;
-  }
-  return graphite_spacing(scene);
-}
+double crossed_spacing(const Scene& scene) { return largest_distance(scene, &ContactLaw::crossed_distance); }
 
 }  // namespace ropewalk

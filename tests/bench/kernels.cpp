@@ -1,5 +1,6 @@
 // The forms alone, the paper law, lists, motion, and whole force evaluations.
 #include "bench/support.hpp"
+#include "sim/contact/paper/engine.hpp"
 #include "sim/state/motion.hpp"
 
 namespace ropewalk::bench {
@@ -38,9 +39,10 @@ void PaperKernel(benchmark::State& bench, const std::string& instructions, Inter
   use_instructions(instructions);
   const Rope rope(static_cast<int>(bench.range(0)), 50, Law::paper, precision);
   PaperEngine engine;
-  std::vector<ContactBuffer<double>> buffers(rope.list.chunks().size());
+  const TubeParts parts(rope.topology);
+  const auto nothing = [](int) {};
   for (auto _ : bench) {
-    engine.compute(rope.topology, rope.in, rope.list, rope.state, rope.axis, buffers.data());
+    engine.compute(rope.topology, rope.in, rope.list, rope.state, rope.axis, true, {parts, nothing, nothing});
     benchmark::ClobberMemory();
   }
   set_ns(bench, "ns/element", rope.elements());

@@ -44,6 +44,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 #include "bench/line_count.hpp"
 #include "bench/support.hpp"
+#include "sim/contact/line/engine.hpp"
 #include "sim/threads/vector_clones.hpp"
 
 namespace ropewalk {

@@ -10,6 +10,9 @@
 #include <utility>
 #include <vector>
 
+#include "sim/contact/contact_law.hpp"
+#include "sim/contact/line/law.hpp"
+#include "sim/contact/paper/law.hpp"
 #include "sim/forces/forces.hpp"
 #include "unit/support.hpp"
 
@@ -18,7 +21,7 @@ namespace ropewalk::bench {
 enum class Law { paper, line };
 
 // Of the line law between (10,10) tubes, with as many nodes as a scene would choose.
-inline LineContact line_law() {
+inline LineContact graphite_contact() {
   const LineDensity density = test::line_density();
   const double length = test::element_length;
   const int nodes = line_nodes(length, line_parallel_well(density).distance, density.contact);
@@ -52,16 +55,16 @@ struct Rope {
       : state(static_cast<std::size_t>(tubes * elements)) {
     omp_set_num_threads(1);
     if (law == Law::paper) {
-      in.paper = test::published_contact();
+      in.law = paper_law(test::published_contact());
     } else {
-      in.line = {line_law()};
+      in.law = line_law({graphite_contact()});
     }
     in.precision = precision;
-    const double spacing = in.paper ? 1.713 : line_parallel_well(in.line[0].density).distance;
+    const double spacing = law == Law::paper ? 1.713 : line_parallel_well(graphite_contact().density).distance;
     in.damping.contact = {viscosity, spacing, 1.5 * spacing};
     in.damping.bond.rate = viscosity > 0 ? 1 : 0;
     place(tubes, elements, spacing);
-    list = NeighbourList(in, in.paper ? 0.15 : 0.25);
+    list = NeighbourList(in, in.law->default_skin());
     list.build(topology, state);
     for (double& z : state.position.z) z += worn * 0.5 * list.skin;
     list.update(topology, state);

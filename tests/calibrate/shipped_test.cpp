@@ -18,7 +18,7 @@ ParameterSet shipped(const std::string& name) { return read_parameters(find_para
 Scene scene_of(const std::vector<std::string>& names) {
   Scene s;
   for (const std::string& n : names) s.sets.push_back(shipped(n));
-  s.contact.law = ContactOptions::Law::line;
+  s.contact.law = "line";
   s.element_length = s.sets[0].element_length;
   return s;
 }

@@ -1,5 +1,6 @@
 // The same state in LAMMPS and here: forces, energies, virial, and a stretch of dynamics, on 1, 2 and 4 ranks.
 #include "lammps/states.hpp"
+#include "sim/contact/contact_law.hpp"
 #include "sim/dynamics/loads.hpp"
 
 namespace ropewalk::test {
@@ -58,9 +59,8 @@ std::array<double, 6> reference_virial(const Prepared& p) {
         add(s, bond_energy_and_gradient(type.bond, type.element_length, s, frame_of(q_i), frame_of(q_j)).force_j);
       }
       if ((same && j - i <= p.interaction.exclude_along_tube) || s.norm() >= p.interaction.cutoff()) continue;
-      add(s, with_law(t, p.interaction, i, j, [&](const auto& law) {
-            return law.energy_and_gradient(s, axis_of(q_i), axis_of(q_j)).force_j;
-          }));
+      const TypePair types{t.tube_type[t.tube_of(i)], t.tube_type[t.tube_of(j)]};
+      add(s, p.interaction.law->force(types, s, axis_of(q_i), axis_of(q_j)).force_j);
     }
   return w;
 }

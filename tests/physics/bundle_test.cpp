@@ -7,6 +7,8 @@
 #include "scene/loads/rotate.hpp"
 #include "scene/loads/torque.hpp"
 #include "scene/loads/twist.hpp"
+#include "sim/contact/line/law.hpp"
+#include "sim/contact/paper/law.hpp"
 #include "sim/dynamics/simulation.hpp"
 #include "unit/support.hpp"
 
@@ -22,7 +24,7 @@ struct Bundle {
 
   Bundle(int tubes, int elements, double temperature) {
     state = test::disordered_bundle(topology, tubes, elements, spacing, 0, 1);
-    in.paper = test::published_contact();
+    in.law = paper_law(test::published_contact());
     test::set_velocities(topology, temperature, state);
   }
   double step(double part = default_step_fraction) const {
@@ -105,7 +107,7 @@ TEST(UndampedBundle, EnergyErrorFallsWithTheSquareOfTheStep) {
 // The test of the test: what the published code leaves out shows at once.
 TEST(UndampedBundle, LegacyTorqueFeedsEnergyIn) {
   Bundle b(7, 5, 10);
-  b.in.legacy_torque = true;
+  b.in.law = paper_law(test::published_contact(), true);
   Simulation s = b.make(0.02);
   const double first = s.total_energy();
   double gained = 0;
@@ -220,8 +222,7 @@ struct TurnedRope {
   LoadsAndConstraints loads;
 
   explicit TurnedRope(double rate, int elements = 40) : b(7, elements, 0) {
-    b.in.paper.reset();
-    b.in.line = {test::line_contact(0.6785, 6, 0.6785, 6)};
+    b.in.law = line_law({test::line_contact(0.6785, 6, 0.6785, 6)});
     b.in.precision = Interaction::Precision::mixed;
     b.in.damping.contact = {20, spacing, 1.5 * spacing};
     PrescribedRotation upper, lower;
@@ -318,8 +319,7 @@ LoadsAndConstraints all_kinds(const Topology& topology, bool geometric_only = fa
 TEST(Steps, OfALargeSceneAreTheSameBitsOnAnyThreads) {
   Bundle b(7, 3000, 300);
   ASSERT_GT(static_cast<std::size_t>(b.topology.elements()), large_scene);
-  b.in.paper.reset();
-  b.in.line = {test::line_contact(0.6785, 6, 0.6785, 6)};
+  b.in.law = line_law({test::line_contact(0.6785, 6, 0.6785, 6)});
   b.in.precision = Interaction::Precision::mixed;
   b.in.damping.contact = {20, spacing, 1.5 * spacing};
   const auto run = [&](int threads, long at_once) {
@@ -350,8 +350,7 @@ TEST(Steps, ManyAtOnceAreTheSameBitsAsOneByOne) {
   b.topology.types[1].mass *= 1.5;
   b.topology.types[1].inertia *= 1.7;
   for (int t = 0; t < 7; t += 3) b.topology.tube_type[static_cast<std::size_t>(t)] = 1;
-  b.in.paper.reset();
-  b.in.line.assign(4, test::line_contact(0.6785, 6, 0.6785, 6));
+  b.in.law = line_law(std::vector<LineContact>(4, test::line_contact(0.6785, 6, 0.6785, 6)));
   b.in.precision = Interaction::Precision::mixed;
   b.in.damping.contact = {20, spacing, 1.5 * spacing};
   const LoadsAndConstraints loads = all_kinds(b.topology);

@@ -1,6 +1,7 @@
 // The line law in the simulator: what rows of elements make of it.
 #include <gtest/gtest.h>
 
+#include "sim/contact/line/law.hpp"
 #include "sim/dynamics/simulation.hpp"
 #include "unit/support.hpp"
 
@@ -109,8 +110,8 @@ struct LineBundle {
   explicit LineBundle(double temperature, int elements = 5,
                       Interaction::Precision precision = Interaction::Precision::full) {
     in.precision = precision;
-    in.line = {contact(0.6785, 0.6785)};
-    spacing = line_parallel_well(in.line[0].density).distance;
+    in.law = line_law({contact(0.6785, 0.6785)});
+    spacing = line_parallel_well(contact(0.6785, 0.6785).density).distance;
     state = test::disordered_bundle(topology, 7, elements, spacing, 0, 1);
     test::set_velocities(topology, temperature, state);
   }

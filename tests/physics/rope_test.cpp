@@ -7,6 +7,7 @@
 #include "model/error.hpp"
 #include "observe/observe.hpp"
 #include "scene/prepare.hpp"
+#include "sim/contact/paper/law.hpp"
 
 namespace ropewalk {
 namespace {

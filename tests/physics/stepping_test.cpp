@@ -6,6 +6,7 @@
 #include "scene/loads/force.hpp"
 #include "scene/loads/rotate.hpp"
 #include "scene/loads/twist.hpp"
+#include "sim/contact/line/law.hpp"
 #include "sim/dynamics/simulation.hpp"
 #include "sim/state/motion.hpp"
 #include "unit/support.hpp"
@@ -31,7 +32,7 @@ struct Bundle {
     const LineDensity density = test::line_density();
     const LineWell well = line_parallel_well(density);
     const int nodes = line_nodes(length, well.distance, density.contact);
-    in.line = {LineContact{density, length, length, nodes, nodes}};
+    in.law = line_law({LineContact{density, length, length, nodes, nodes}});
     spacing = well.distance;
     state = test::disordered_bundle(topology, 7, elements, spacing, 0, 1);
     test::set_velocities(topology, temperature, state);

@@ -11,6 +11,7 @@
 #include "scene/loads/rotate.hpp"
 #include "scene/loads/torque.hpp"
 #include "scene/loads/twist.hpp"
+#include "sim/contact/line/law.hpp"
 #include "sim/dynamics/counter_random.hpp"
 #include "sim/dynamics/langevin.hpp"
 #include "sim/dynamics/simulation.hpp"
@@ -143,7 +144,7 @@ struct LoadedBundle {
 
   LoadedBundle() {
     const double spacing = line_parallel_well(test::line_density()).distance;
-    in.line.assign(4, test::line_contact(0.6785, 6, 0.6785, 6));
+    in.law = line_law(std::vector<LineContact>(4, test::line_contact(0.6785, 6, 0.6785, 6)));
     in.precision = Interaction::Precision::mixed;
     topology.types.push_back(topology.types[0]);
     topology.types[1].mass *= 1.5;

@@ -5,6 +5,10 @@
 #include <atomic>
 
 #include "scene/build.hpp"
+#include "sim/contact/line/engine.hpp"
+#include "sim/contact/line/law.hpp"
+#include "sim/contact/paper/law.hpp"
+#include "sim/contact/shared/neighbour_spans.hpp"
 #include "sim/dynamics/simulation.hpp"
 #include "unit/support.hpp"
 
@@ -38,15 +42,16 @@ class ForcesTest : public ::testing::TestWithParam<Variant> {
     topology = test::published_topology();
     state = test::disordered_bundle(topology, 7, 80, 1.75, v.disorder, 21);
     if (v.kind == Kind::paper) {
-      in.paper = test::published_contact();
-      if (v.general_powers) in.paper->alpha = 9.3;
-      if (v.cutoff > 0) in.paper = with_cutoff(*in.paper, v.cutoff);
-      in.legacy_torque = v.legacy;
+      PaperContact contact = test::published_contact();
+      if (v.general_powers) contact.alpha = 9.3;
+      if (v.cutoff > 0) contact = with_cutoff(contact, v.cutoff);
+      in.law = paper_law(contact, v.legacy);
     } else {
-      in.line = {test::line_contact(0.6785, v.nodes, 0.6785, v.nodes)};
-      if (v.kind == Kind::mixed) mix_tube_types();
+      std::vector<LineContact> pairs = {test::line_contact(0.6785, v.nodes, 0.6785, v.nodes)};
+      if (v.kind == Kind::mixed) pairs = mix_tube_types();
       if (v.cutoff > 0)
-        for (LineContact& pair : in.line) pair.density = with_cutoff(pair.density, v.cutoff);
+        for (LineContact& pair : pairs) pair.density = with_cutoff(pair.density, v.cutoff);
+      in.law = line_law(pairs);
     }
     in.precision = v.precision;
     in.exclude_along_tube = 3;
@@ -55,7 +60,7 @@ class ForcesTest : public ::testing::TestWithParam<Variant> {
   }
 
   // Every second tube is a thin one, with other masses and bonds.
-  void mix_tube_types() {
+  std::vector<LineContact> mix_tube_types() {
     TubeType thin = topology.types[0];
     thin.radius = 0.34;
     thin.mass *= 0.5;
@@ -63,7 +68,7 @@ class ForcesTest : public ::testing::TestWithParam<Variant> {
     thin.bond = {735 * units::nN_nm, 45 * units::nN_nm, 40 * units::nN_nm};
     topology.types.push_back(thin);
     for (int t = 1; t < topology.tubes(); t += 2) topology.tube_type[t] = 1;
-    in.line = contacts_with_thin_ones();
+    return contacts_with_thin_ones();
   }
 
   Forces fast(double skin, int threads, Parts parts = Parts::all) const {
@@ -374,7 +379,7 @@ TEST(PaperForces, CrossedAndClosedTubesEqualReference) {
   Topology topology = test::published_topology();
   const State state = crossed_and_closed(topology);
   Interaction in;
-  in.paper = test::published_contact();
+  in.law = paper_law(test::published_contact());
   in.exclude_along_tube = 7;
   Forces reference(state.size());
   compute_reference(topology, in, state, reference);
@@ -396,7 +401,7 @@ TEST(LineForces, CrossedAndClosedTubesEqualReference) {
   State state = crossed_and_closed(topology);
   test::set_velocities(topology, 300, state);
   Interaction in;
-  in.line = {test::line_contact(0.6785, 6, 0.6785, 6)};
+  in.law = line_law({test::line_contact(0.6785, 6, 0.6785, 6)});
   in.damping.contact = {20, 1.713, 2.57};
   in.exclude_along_tube = 7;
   for (const auto& [precision, bound] :
@@ -453,7 +458,7 @@ TEST(LineForces, ViscosityOfManyTubesEqualsReference) {
   shake(0.02, state);
   test::set_velocities(topology, 300, state);
   Interaction in;
-  in.line = {test::line_contact(0.6785, 6, 0.6785, 6)};
+  in.law = line_law({test::line_contact(0.6785, 6, 0.6785, 6)});
   in.damping.contact = {20, 1.713, 2.57};
   for (const auto& [precision, bound] :
        {std::pair(Interaction::Precision::full, 1e-10), std::pair(Interaction::Precision::mixed, 1e-5)}) {
@@ -471,7 +476,7 @@ TEST(LineForces, ViscosityOfManyTubesEqualsReference) {
 
 TEST(LineForces, TwistedRopesEqualReferenceAlsoWhereTheListIsWorn) {
   Interaction in;
-  in.line = {test::line_contact(0.6785, 6, 0.6785, 6)};
+  in.law = line_law({test::line_contact(0.6785, 6, 0.6785, 6)});
   // 12, 29 and 60 degrees on the outside, with more room where tubes lie askew.
   for (const auto& [twist, spacing] : {std::pair(0.04, 1.8), std::pair(0.1, 1.9), std::pair(0.25, 2.3)}) {
     Topology topology = test::published_topology();
@@ -537,7 +542,7 @@ TEST(LineForces, ManyPairsEqualReference) {
   topology.types[0].element_length = 0.03;
   const State state = many_short_elements(topology);
   Interaction in;
-  in.line = {LineContact{test::line_density(), 0.03, 0.03, 1, 1}};
+  in.law = line_law({LineContact{test::line_density(), 0.03, 0.03, 1, 1}});
   in.damping.contact = {20, 1.713, 2.57};
   expect_many_pairs_equal_reference(topology, state, in, 1e-10);
 }
@@ -547,7 +552,7 @@ TEST(PaperForces, ManyPairsEqualReference) {
   Topology topology = test::published_topology();
   const State state = many_short_elements(topology);
   Interaction in;
-  in.paper = test::published_contact();
+  in.law = paper_law(test::published_contact());
   expect_many_pairs_equal_reference(topology, state, in, 1e-12);
 }
 
@@ -572,8 +577,8 @@ TEST(Forces, OfRunsThatGoOnIntoTheNextTubeEqualReference) {
     state.angular_velocity.set(i, 0.3 * random.direction());
   }
   Interaction paper, line;
-  paper.paper = test::published_contact();
-  line.line = contacts_with_thin_ones();
+  paper.law = paper_law(test::published_contact());
+  line.law = line_law(contacts_with_thin_ones());
   for (Interaction in : {paper, line}) {
     in.exclude_along_tube = 3;
     in.damping.contact = {20, 1.713, 2.57};
@@ -594,7 +599,7 @@ TEST(Forces, OfRunsThatGoOnIntoTheNextTubeEqualReference) {
 // Buffers are used again for more and for less.
 TEST(Forces, OfOneEngineForScenesOfOtherSizesAreTheSameBits) {
   Interaction in;
-  in.line = {test::line_contact(0.6785, 6, 0.6785, 6)};
+  in.law = line_law({test::line_contact(0.6785, 6, 0.6785, 6)});
   in.damping.contact = {20, 1.713, 2.57};
   in.precision = Interaction::Precision::mixed;
   ForceEngine used;
@@ -712,7 +717,7 @@ TEST(NeighbourList, TurningTogetherNeedsNoBuild) {
   Topology topology = test::published_topology();
   const State start = test::disordered_bundle(topology, 7, 40, 1.72, 0.02, 5);
   Interaction in;
-  in.line = {test::line_contact(0.6785, 6, 0.6785, 6)};
+  in.law = line_law({test::line_contact(0.6785, 6, 0.6785, 6)});
   in.precision = Interaction::Precision::full;
   in.damping.contact = {20, 1.713, 2.57};
   NeighbourList list(in, 0.25);

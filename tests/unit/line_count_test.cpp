@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "sim/contact/line/engine.hpp"
+#include "sim/contact/line/law.hpp"
 #include "sim/dynamics/simulation.hpp"
 #include "unit/support.hpp"
 
@@ -19,12 +21,12 @@ TEST(RadialCount, OfSomeElementsIsThatOfAll) {
     for (int e = 0; e < elements; ++e, ++i)
       state.position.set(static_cast<std::size_t>(i), Vector3(1.75 * t, 0, e * topology.types[0].element_length));
   Interaction in;
-  in.line = {test::line_contact(0.6785, 6, 0.6785, 6)};
+  in.law = line_law({test::line_contact(0.6785, 6, 0.6785, 6)});
   in.exclude_along_tube = 3;
   const Simulation rope(topology, in, {}, state, 1e-3);
   const auto count = [&](int most) {
-    return count_radial(rope.topology(), rope.interaction(), rope.state(), rope.list(), rope.engine().line().list(),
-                        most);
+    return count_radial(rope.topology(), rope.interaction(), rope.state(), rope.list(),
+                        dynamic_cast<const LineEngine&>(*rope.engine().contact()).list(), most);
   };
   const RadialCount all = count(topology.elements()), some = count(topology.elements() / 20);
   EXPECT_NEAR(some.evaluations, all.evaluations, 0.05 * all.evaluations);

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "bench/step_bytes.hpp"
+#include "sim/contact/line/list.hpp"
+#include "sim/contact/paper/law.hpp"
 #include "unit/support.hpp"
 
 namespace ropewalk {
@@ -43,9 +45,9 @@ TEST(StepBytes, AreOfTheStateAndOfWhatIsListed) {
   constexpr double alone = 2 * 13 * 8, axes = 2 * 3 * 8;
   EXPECT_EQ(per_element({}), alone);
   Interaction line, paper;
-  line.line = {test::line_contact(0.6785, 6, 0.6785, 6)};
+  line.law = line_law({test::line_contact(0.6785, 6, 0.6785, 6)});
   line.precision = Interaction::Precision::mixed;
-  paper.paper = test::published_contact();
+  paper.law = paper_law(test::published_contact());
   // One chunk, whose buffers have each element once, and some room.
   const double mixed = per_element(line);
   EXPECT_GT(mixed, alone + axes + 2 * 6 * sizeof(float));
@@ -60,7 +62,9 @@ TEST(StepBytes, AreOfTheStateAndOfWhatIsListed) {
             3 * (alone + 2 * 6 * 8));
   line.exclude_along_tube = 20;
   Interaction apart = line;
-  for (LineContact& pair : apart.line) pair.density = with_cutoff(pair.density, 1.6);
+  LineContact shorter = test::line_contact(0.6785, 6, 0.6785, 6);
+  shorter.density = with_cutoff(shorter.density, 1.6);
+  apart.law = line_law({shorter});
   EXPECT_GT(per_element(line), per_element(apart) + 0.5 * sizeof(NeighbourSpan));
 }
 

@@ -24,6 +24,7 @@
 #include "scene/state_csv.hpp"
 #include "scene/templates.hpp"
 #include "scene/watch.hpp"
+#include "sim/contact/paper/law.hpp"
 #include "sim/forces/forces.hpp"
 #include "unit/support.hpp"
 
@@ -343,7 +344,8 @@ TEST(SceneFile, KnobsReachTheSimulation) {
   EXPECT_EQ(q.topology.types[0].mass, 4 * p.topology.types[0].mass);
   EXPECT_EQ(q.topology.types[0].inertia, 4 * p.topology.types[0].inertia);
   EXPECT_NEAR(q.interaction.cutoff(), 4.5, 1e-12);
-  EXPECT_LT(q.interaction.paper->switch_start * q.interaction.paper->radius, 4.5);
+  const PaperContact& contact = dynamic_cast<const PaperLaw&>(*q.interaction.law).contact;
+  EXPECT_LT(contact.switch_start * contact.radius, 4.5);
   EXPECT_EQ(q.stepping.contact_every, 3);
   EXPECT_NEAR(q.time_step, 3 * default_step_fraction * inner_step_limit(q.limit, 3), 1e-15);
   const Simulation simulation = start(s, q);
@@ -450,10 +452,10 @@ TEST(Templates, AreTheScenesOfThePaper) {
 
 // Every choice of a scene as text, numbers to ten digits: defaults are stated rounded.
 std::string choices(const Scene& s) {
-  std::string text = fmt::format(
-      "{:.10g} {:.10g} {} | {} {} {} {:.10g} | {:.10g} {:.10g} {:.10g} | ", s.element_length, s.start.temperature,
-      s.start.seed, static_cast<int>(s.contact.law), s.contact.legacy_torque, s.contact.exclude_along_tube,
-      s.contact.skin, s.damping.contact.eta, s.damping.bond.rate, s.damping.local);
+  std::string text = fmt::format("{:.10g} {:.10g} {} | {} {} {} {:.10g} | {:.10g} {:.10g} {:.10g} | ",
+                                 s.element_length, s.start.temperature, s.start.seed, s.contact.law,
+                                 s.contact.legacy_torque, s.contact.exclude_along_tube, s.contact.skin,
+                                 s.damping.contact.eta, s.damping.bond.rate, s.damping.local);
   if (const auto* r = dynamic_cast<const RopeSource*>(s.source.get()))
     text += fmt::format("{} {:.10g} {:.10g} {:.10g} | ", r->tubes, r->length, r->spacing, r->perturbation);
   if (s.twist)

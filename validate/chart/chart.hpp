@@ -33,7 +33,7 @@ namespace ropewalk {
 struct ChartModel {
   std::string name, kind;  // kind: the setting that is varied
   std::string set;         // parameter set; empty: the scene's
-  ContactOptions::Law law = ContactOptions::Law::line;
+  std::string law = "line";
   int nodes = 0;  // per element; 0: as line_nodes chooses
   Interaction::Precision precision = Interaction::Precision::mixed;
   double cutoff = 0;         // nm; 0: the set's

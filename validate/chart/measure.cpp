@@ -14,6 +14,7 @@
 #include "observe/means.hpp"
 #include "observe/spacing.hpp"
 #include "scene/scene_to_model.hpp"
+#include "sim/contact/contact_law.hpp"
 
 namespace ropewalk {
 namespace {
@@ -177,16 +178,14 @@ ChartPoint describe(const ChartScene& scene, const ChartModel& model, const Spec
   p.scene = scene.name;
   p.model = model.name;
   p.kind = model.kind;
-  p.law = law_name(model.law);
+  p.law = model.law;
   p.integrator = model.stepping.runge_kutta ? "rk4" : "verlet";
   p.contact_every = model.stepping.contact_every;
   p.mass_scale = model.mass_scale;
   p.mode = model.mode == RunOptions::Mode::relax ? "relax" : "dynamics";
   p.precision = s.interaction.precision == Interaction::Precision::mixed ? "mixed" : "double";
-  p.nodes = s.interaction.paper ? 1 : s.interaction.line.empty() ? 0 : s.interaction.line.front().nodes_i;
-  p.cutoff = s.interaction.paper          ? s.interaction.paper->cutoff()
-             : s.interaction.line.empty() ? 0
-                                          : s.interaction.line.front().density.cutoff();
+  p.nodes = s.interaction.law ? s.interaction.law->nodes() : 0;
+  p.cutoff = s.interaction.law ? s.interaction.law->range({}) : 0;
   p.elements = s.topology.elements();
   p.element_length = s.scene.element_length;
   p.time_step = s.time_step;

@@ -10,11 +10,11 @@
 #include "io/toml_table.hpp"
 #include "scene/build.hpp"
 #include "scene/scene_to_model.hpp"
+#include "sim/contact/paper/law.hpp"
 
 namespace ropewalk {
 namespace {
 
-using Law = ContactOptions::Law;
 using Precision = Interaction::Precision;
 
 template <class F>
@@ -36,7 +36,7 @@ void add_anchors(std::vector<ChartModel>& all) {
   // Its programs calculate in double precision; its papers give 20 fs.
   all.push_back(varied("published", published_model, [](ChartModel& m) {
     m.set = "cnt-10-10-paper";
-    m.law = Law::paper;
+    m.law = "paper";
     m.precision = Precision::full;
     m.time_step = 20 * units::fs;
   }));
@@ -66,10 +66,10 @@ void add_contact_knobs(std::vector<ChartModel>& all) {
     m.at_once = true;
   }));
   all.push_back(varied("law", "isotropic", [](ChartModel& m) { m.nodes = 1; }));
-  all.push_back(varied("law", "paper", [](ChartModel& m) { m.law = Law::paper; }));
+  all.push_back(varied("law", "paper", [](ChartModel& m) { m.law = "paper"; }));
   all.push_back(varied("law", "published-mixed", [](ChartModel& m) {
     m.set = "cnt-10-10-paper";
-    m.law = Law::paper;
+    m.law = "paper";
   }));
   for (const int nodes : {2, 3, 4, 5, 8, 12})
     all.push_back(
@@ -126,7 +126,7 @@ void add_combinations(const ChartScene& scene, std::vector<ChartModel>& all) {
 
 // Without contact, settings of the contact have no effect.
 void take_contact_away(ChartModel& m) {
-  m.law = Law::none;
+  m.law = "none";
   m.nodes = 0;
   m.contact_viscosity = 0;
 }
@@ -178,8 +178,8 @@ Scene knobs_of(const ChartModel& model, const std::string& default_set, double e
 }
 
 double rest_spacing(const Scene& scene) {
-  if (scene.contact.law == Law::none) return 0;
-  if (scene.contact.law == Law::paper) return pair_spacing(paper_contact(scene), scene.element_length);
+  if (scene.contact.law == "none") return 0;
+  if (scene.contact.law == "paper") return pair_spacing(paper_contact(scene), scene.element_length);
   return line_parallel_well(line_contacts(scene).front().density).distance;
 }
 

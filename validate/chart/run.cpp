@@ -30,7 +30,7 @@ struct Task {
 // For the estimate of the time left: the cost of a step differs by more than ten between models.
 double guessed_work(const Task& t) {
   double each = 1;
-  if (t.model.law == ContactOptions::Law::paper) each = 2;
+  if (t.model.law == "paper") each = 2;
   if (t.model.precision == Interaction::Precision::full) each *= 2;
   if (!t.scene->contact) each = 0.3;
   return each * t.point.elements * t.point.steps;

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "scene/build.hpp"
+#include "scene/laws/contact_law_kind.hpp"
 #include "scene/scene_to_model.hpp"
 #include "scene/tables/tables.hpp"
 
@@ -11,35 +12,38 @@ namespace ropewalk {
 namespace {
 
 using Key = KeyOf<ContactOptions>;
-using Law = ContactOptions::Law;
 
 constexpr long most_nodes = 64;
 
-// The line law where all sets have it.
-Law default_law(const Scene& scene) {
-  for (const ParameterSet& set : scene.sets)
-    if (!set.line) return Law::paper;
-  return Law::line;
+// "a" (first choice), "b" or "none".
+std::string law_names() {
+  std::string text;
+  for (const ContactLawKind& kind : contact_law_kinds())
+    text += text.empty() ? fmt::format("\"{}\" (first choice)", kind.name) : fmt::format(", \"{}\"", kind.name);
+  return text + " or \"none\"";
 }
 
 void read_law(const TomlTable& t, const Scene& scene, ContactOptions& c) {
-  static const Words<Law> laws = {{"line", Law::line}, {"paper", Law::paper}, {"none", Law::none}};
-  c.law = t.word_or("law", default_law(scene), laws);
-  if (c.law == Law::none) return;
+  Words<std::string> laws;
+  for (const ContactLawKind& kind : contact_law_kinds()) laws.emplace_back(kind.name.c_str(), kind.name);
+  laws.emplace_back("none", "none");
+  c.law = t.word_or("law", default_contact_law(scene.sets), laws);
+  const ContactLawKind* kind = contact_law_kind(c.law);
+  if (!kind) return;
   for (const ParameterSet& set : scene.sets)
-    if (c.law == Law::paper ? !set.paper.has_value() : !set.line.has_value())
-      throw t.error("law",
-                    fmt::format("is \"{0}\", and the set {1} has no [contact.{0}]", law_name(c.law), set.name),
+    if (kind->in_set && !kind->in_set(set))
+      throw t.error("law", fmt::format("is \"{0}\", and the set {1} has no [contact.{0}]", c.law, set.name),
                     "take another set, or law = \"none\"");
-  if (c.law == Law::paper && scene.sets.size() > 1)
-    throw t.error("law", "is \"paper\", which holds between tubes of one kind alone", "take law = \"line\"");
+  if (!kind->mixes_types && scene.sets.size() > 1)
+    throw t.error("law", fmt::format("is \"{}\", which holds between tubes of one kind alone", c.law),
+                  "take law = \"line\"");
 }
 
 // Where the taper of the shortened law left less than half of what two parallel tubes bind with, it would be
 // another law; and beyond its cutoff the law was never fitted.
 void read_cutoff(const TomlTable& t, const Scene& scene, ContactOptions& contact) {
   if (!t.has("cutoff_nm")) return;
-  if (contact.law == Law::none) throw t.error("cutoff_nm", "is of no use without contact", "take it away");
+  if (contact.law == "none") throw t.error("cutoff_nm", "is of no use without contact", "take it away");
   Scene changed = scene;
   changed.contact = contact;
   const std::vector<ContactRange> own = contact_ranges(changed);
@@ -60,7 +64,7 @@ void read_cutoff(const TomlTable& t, const Scene& scene, ContactOptions& contact
 
 // A key that would be without effect is refused, since it was meant to have one.
 void check(const TomlTable& t, const Scene&, ContactOptions& c) {
-  if (c.nodes > 0 && c.law != Law::line)
+  if (c.nodes > 0 && c.law != "line")
     throw t.error("nodes_per_element", "belongs to law = \"line\"", "take it away");
 }
 
@@ -72,8 +76,7 @@ const KeyTable<ContactOptions>& contact_table() {
   static const KeyTable<C> table = {
       "contact",
       "van der Waals contact between elements",
-      {Key::custom("law", "", otherwise("\"paper\"", "what the set has"),
-                   "\"line\" (first choice), \"paper\" or \"none\"", read_law),
+      {Key::custom("law", "", otherwise("\"paper\"", "what the set has"), law_names(), read_law),
        Key::integer("nodes_per_element", 1, most_nodes, &C::nodes, otherwise("5", "for a corrugation below 2e-4"),
                     "line: nodes along an element")
            .goes_as_length(1),

@@ -36,8 +36,7 @@ void check(const TomlTable& t, const Scene& scene, RunOptions& r) {
   if (r.mode == Mode::relax && used)
     throw t.error(used, "belongs to mode = \"dynamics\"", "take it away: relaxation does not depend on it");
   if (r.stepping.contact_every == 1) return;
-  if (scene.contact.law == ContactOptions::Law::none)
-    throw t.error("contact_every", "is of no use without contact", "take it away");
+  if (scene.contact.law == "none") throw t.error("contact_every", "is of no use without contact", "take it away");
   if (scene.damping.local > 0)
     throw t.error("contact_every", "does not go with pfc_local, which damps the total force",
                   "take one of them away");

@@ -58,7 +58,7 @@ Simulation::Simulation(Topology topology, Interaction interaction, LoadsAndConst
       time_step_(time_step),
       stepping_(std::move(stepping)),
       parts_(topology_),
-      tunes_skin_(!(skin > 0) && !interaction_.line.empty()),
+      tunes_skin_(!(skin > 0)),
       list_(interaction_, skin > 0 ? skin : default_skin(interaction_)),
       changes_(blocks_of(state_.size())),
       fastest_(blocks_of(state_.size())),
@@ -196,7 +196,7 @@ void Simulation::update_list() {
   Change all;  // in the order of the blocks, whatever the threads
   for (const Change& c : changes_) all = both(all, c);
   if (list_.worn(all)) {
-    if (tunes_skin_) list_.skin = engine_.line().list().best_skin(topology_, list_.skin, list_age_);
+    if (tunes_skin_) list_.skin = engine_.contact()->best_skin(topology_, list_.skin, list_age_);
     list_.build(topology_, state_);
     list_age_ = 0;
   }
@@ -294,7 +294,7 @@ double Simulation::largest_force() const {
 
 double Simulation::engine_seconds() const {
   const ForceEngine::Times& t = engine_.times();
-  return t.axes + t.contact + t.bonds;
+  return t.contact + t.bonds;
 }
 
 std::size_t Simulation::bytes() const {

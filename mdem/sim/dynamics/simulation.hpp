@@ -28,9 +28,8 @@ namespace ropewalk {
 inline constexpr double default_step_fraction = 0.6;
 inline constexpr double cold_step_fraction = 0.9;
 
-// nm, of the first list; what costs least is found as the run goes where contact is by the line law. Its runs skip
-// what is out of reach, so that a wide margin costs little.
-inline double default_skin(const Interaction& in) { return in.line.empty() ? 0.15 : 0.25; }
+// nm, of the first list; the engine of a law may find a better one as the run goes.
+inline double default_skin(const Interaction& in) { return in.law ? in.law->default_skin() : 0.15; }
 
 class Simulation {
  public:

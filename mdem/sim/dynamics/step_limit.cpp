@@ -6,6 +6,8 @@
 #include <complex>
 #include <vector>
 
+#include "sim/contact/contact_law.hpp"
+
 namespace ropewalk {
 namespace {
 
@@ -13,8 +15,7 @@ constexpr double pressed = 0.985;  // of the spacing
 
 // Second derivative in the spacing of the energy of one element against a parallel row of elements, maximal
 // over their offsets; taken where a rope under load may be.
-template <class Law>
-double row_stiffness(const Law& law, double element_length, double spacing) {
+double row_stiffness(const ContactLaw& law, TypePair types, double element_length, double spacing) {
   const Vector3 axis = Vector3::UnitZ();
   double largest = 0;
   for (double shift : {0.0, 0.25, 0.5}) {
@@ -23,7 +24,7 @@ double row_stiffness(const Law& law, double element_length, double spacing) {
       const int reach = static_cast<int>(law.cutoff() / element_length) + 1;
       for (int k = -reach; k <= reach; ++k) {
         const Vector3 separation(gap, 0, (k + shift) * element_length);
-        if (separation.norm() < law.cutoff()) sum += law.energy(separation, axis, axis);
+        if (separation.norm() < law.cutoff()) sum += law.energy(types, separation, axis, axis);
       }
       return sum;
     };
@@ -36,14 +37,12 @@ double row_stiffness(const Law& law, double element_length, double spacing) {
 // The stiffest contact of an element of this type: between tubes of one kind at the spacing of the rope; of
 // mixed kinds, each pair at its own well.
 double contact_stiffness(const Topology& topology, const Interaction& in, const TubeType& type, double spacing) {
-  if (in.paper) return row_stiffness(*in.paper, type.element_length, spacing);
-  const std::size_t types = topology.types.size();
-  const auto i = static_cast<std::size_t>(&type - topology.types.data());
+  const auto types = static_cast<int>(topology.types.size()), i = static_cast<int>(&type - topology.types.data());
   double largest = 0;
-  for (std::size_t j = 0; j < types; ++j) {
-    const LineContact& law = in.line[i * types + j];
-    const double at = types == 1 ? spacing : line_parallel_well(law.density).distance;
-    largest = std::max(largest, row_stiffness(law, law.length_j, at));
+  for (int j = 0; j < types; ++j) {
+    const double length = topology.types[static_cast<std::size_t>(j)].element_length;
+    const double at = types == 1 ? spacing : in.law->parallel_distance({i, j}, length);
+    largest = std::max(largest, row_stiffness(*in.law, {i, j}, length, at));
   }
   return largest;
 }

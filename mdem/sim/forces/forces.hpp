@@ -2,11 +2,11 @@
 // reference (every pair, one after another), which stays as the oracle. Both call the forms of mdem/model.
 #pragma once
 
+#include <memory>
+#include <utility>
 #include <vector>
 
-#include "sim/contact/line/engine.hpp"
-#include "sim/contact/paper/engine.hpp"
-#include "sim/contact/shared/buffer.hpp"
+#include "sim/contact/contact_engine.hpp"
 #include "sim/neighbours/neighbours.hpp"
 #include "sim/state/force_rows.hpp"
 #include "sim/state/interaction.hpp"
@@ -83,32 +83,43 @@ struct ForceOptions {
   bool energies = true;  // without them that of the line law's contact may be left out; forces are the same bits
 };
 
+// Copies the engine with itself.
+struct ContactEnginePointer : std::unique_ptr<ContactEngine> {
+  using std::unique_ptr<ContactEngine>::unique_ptr;
+  ContactEnginePointer(std::unique_ptr<ContactEngine> engine) : unique_ptr(std::move(engine)) {}
+  ContactEnginePointer(const ContactEnginePointer& other) : unique_ptr(other ? other->copy() : nullptr) {}
+  ContactEnginePointer(ContactEnginePointer&&) = default;
+  ContactEnginePointer& operator=(ContactEnginePointer other) noexcept {
+    swap(other);
+    return *this;
+  }
+};
+
 // The list must be up to date, but for the bonds alone.
 class ForceEngine {
  public:
   void compute(const Topology& topology, const Interaction& interaction, const NeighbourList& list,
                const State& state, Forces& out, const ForceOptions& options = {});
 
-  // Wall time spent so far in each part, s. By the line law the axes are made, and the bonds may be computed,
-  // within the contact: the first thread tells the times of bonds and contact apart.
+  // Wall time spent so far in each part, s. The axes belong to the contact. Bonds may be computed within the
+  // contact: the first thread tells the times of both apart.
   struct Times {
-    double axes = 0, contact = 0, bonds = 0;
+    double contact = 0, bonds = 0;
   };
   const Times& times() const { return times_; }
-  const LineEngine& line() const { return line_; }
-  const PaperEngine& paper() const { return paper_; }
+  // Null before the first contact.
+  const ContactEngine* contact() const { return contact_.get(); }
   std::size_t bytes() const;
 
  private:
-  void make_all_axes(const State& state);
-  void add_buffers(const NeighbourList& list, int from, int to, const ForceRows& out) const;
+  ContactEngine* engine_of(const std::shared_ptr<const ContactLaw>& law);
 
   TubeParts parts_;
-  std::vector<Joint> joints_;                   // behind each part
-  Vec3Array axis_;                              // of all elements
-  std::vector<ContactBuffer<double>> buffers_;  // of each chunk
-  LineEngine line_;
-  PaperEngine paper_;
+  std::vector<Joint> joints_;  // behind each part
+  std::vector<BondSum> sums_;  // of each part
+  Vec3Array axis_;             // of all elements
+  std::shared_ptr<const ContactLaw> law_;
+  ContactEnginePointer contact_;  // of this law
   Times times_;
 };
 

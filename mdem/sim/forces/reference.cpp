@@ -11,19 +11,11 @@ void apply(const DampingForce& d, std::size_t i, std::size_t j, Forces& out) {
   out.damping_power += d.power;
 }
 
-PairForce contact_force(const Topology& topology, const Interaction& in, int i, int j, const Vector3& separation,
-                        const Vector3& n_i, const Vector3& n_j) {
-  if (in.paper && in.legacy_torque) return in.paper->legacy_torque(separation, n_i, n_j);
-  return with_law(topology, in, i, j,
-                  [&](const auto& law) { return law.energy_and_gradient(separation, n_i, n_j); });
-}
-
-void contact_pair(const Topology& topology, const Interaction& in, const State& s, std::size_t i, std::size_t j,
+void contact_pair(TypePair types, const Interaction& in, const State& s, std::size_t i, std::size_t j,
                   Forces& out) {
   const Vector3 separation = s.position[j] - s.position[i];
   if (!(separation.norm() < in.cutoff())) return;
-  const PairForce f = contact_force(topology, in, static_cast<int>(i), static_cast<int>(j), separation,
-                                    axis_of(s.orientation[i]), axis_of(s.orientation[j]));
+  const PairForce f = in.law->force(types, separation, axis_of(s.orientation[i]), axis_of(s.orientation[j]));
   out.energy.vdw += f.energy;
   out.force.add(i, -f.force_j);
   out.force.add(j, f.force_j);
@@ -68,7 +60,8 @@ void compute_reference(const Topology& topology, const Interaction& in, const St
     for (int j = i + 1; j < topology.elements(); ++j) {
       const int tube_i = topology.tube_of(i), tube_j = topology.tube_of(j);
       if (tube_i == tube_j && j - i <= in.exclude_along_tube) continue;
-      contact_pair(topology, in, s, static_cast<std::size_t>(i), static_cast<std::size_t>(j), out);
+      contact_pair({topology.tube_type[tube_i], topology.tube_type[tube_j]}, in, s, static_cast<std::size_t>(i),
+                   static_cast<std::size_t>(j), out);
     }
 }
 

@@ -57,7 +57,7 @@ class NeighbourList {
       : cutoff(in.cutoff()),
         skin(skin_nm),
         lever(in.lever()),
-        whole_ranges(in.paper.has_value()),
+        whole_ranges(in.whole_ranges()),
         exclude_along_tube(in.exclude_along_tube) {}
 
   // Builds anew where an element has moved too far. Returns whether it did. A position that is not finite

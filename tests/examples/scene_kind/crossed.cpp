@@ -11,6 +11,7 @@
 #include "scene/prepare.hpp"
 #include "scene/scene_toml.hpp"
 #include "scene/templates.hpp"
+#include "sim/contact/line/law.hpp"
 #include "sim/dynamics/refine.hpp"
 
 namespace ropewalk {
@@ -86,7 +87,8 @@ TEST(CrossedKind, BindsAsTheLawSays) {
                 std::cos(angle * units::degree), 1e-12);
     const Energies e = start(scene, p).forces().energy;
     EXPECT_NEAR(e.bonds(), 0, 1e-12);
-    const double law = line_crossed_energy(p.interaction.line.front().density, 1.7, angle * units::degree);
+    const double law = line_crossed_energy(dynamic_cast<const LineLaw&>(*p.interaction.law).pairs.front().density,
+                                           1.7, angle * units::degree);
     EXPECT_LT(law, -1);
     EXPECT_NEAR(e.vdw / law, 1, 0.01);
   }

@@ -5,6 +5,7 @@
 #include "cases/common/bundle.hpp"
 #include "cases/common/slide.hpp"
 #include "scene/build.hpp"
+#include "sim/contact/paper/law.hpp"
 
 namespace ropewalk {
 namespace {

@@ -61,7 +61,7 @@ struct Twisted {
 };
 
 Twisted twist_elements(const ParameterSet& set) {
-  GrippedRope rope(set, bonds, ContactOptions::Law::line);
+  GrippedRope rope(set, bonds, "line");
   rope.hold_grips();
   const double step = 0.9 * time_step_limit(rope.topology, rope.interaction, rope.spacing).limit;
   Twisted out;
@@ -85,7 +85,7 @@ Twisted twist_elements(const ParameterSet& set) {
 }
 
 Twisted twist_beads(const ParameterSet& set, const BeadLaw& law) {
-  BeadRope rope(GrippedRope(set, bonds, ContactOptions::Law::line), law);
+  BeadRope rope(GrippedRope(set, bonds, "line"), law);
   rope.relax();
   const double stretch = rope.stretch(), bend = rope.bend(), vdw = rope.contact();
   Twisted out;

@@ -7,6 +7,7 @@
 #include "cases/common/gripped_rope.hpp"
 #include "model/error.hpp"
 #include "scene/build.hpp"
+#include "sim/contact/paper/law.hpp"
 
 namespace ropewalk {
 namespace {
@@ -24,8 +25,8 @@ struct Record {
 };
 
 GrippedRope turning_rope(const ParameterSet& set, bool legacy, double damping) {
-  GrippedRope rope(set, bonds, ContactOptions::Law::paper);
-  rope.interaction.legacy_torque = legacy;
+  GrippedRope rope(set, bonds, "paper");
+  rope.interaction.law = paper_law(*set.paper, legacy);
   rope.interaction.damping.contact = {damping * viscosity, rope.spacing, 1.5 * rope.spacing};
   rope.interaction.damping.bond.rate = damping * bond_damping;
   const double half = 0.5 * angle, rate = half / turning;
@@ -97,8 +98,7 @@ ContactMoment contact_moment(const ParameterSet& set, int tubes, double rate, bo
   topology.types[0].bond = {};
   for (int t = 0; t < tubes; ++t) topology.add_tube(elements);
   Interaction interaction;
-  interaction.paper = set.paper;
-  interaction.legacy_torque = legacy;
+  interaction.law = paper_law(*set.paper, legacy);
   const auto forces = [&](const State& state) {
     return Simulation(topology, interaction, LoadsAndConstraints{}, state, units::fs).forces();
   };

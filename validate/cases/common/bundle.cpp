@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "scene/build.hpp"
+#include "sim/contact/line/law.hpp"
 
 namespace ropewalk {
 
@@ -23,7 +24,7 @@ PairIntegral surface_integral(const ParameterSet& set) {
 Bundle line_bundle(const ParameterSet& set, int tubes, int elements) {
   Bundle b;
   b.topology = topology_of(set);
-  b.interaction.line = {line_contact_of(set)};
+  b.interaction.law = line_law({line_contact_of(set)});
   b.spacing = line_parallel_well(set.line->density).distance;
   b.state = State(static_cast<std::size_t>(tubes * elements));
   std::size_t i = 0;

@@ -7,7 +7,7 @@
 namespace ropewalk {
 
 DrivenRope::DrivenRope(const ParameterSet& set, int bonds, Bonds kind, double step_fraction, double brake)
-    : rope_(set, bonds, ContactOptions::Law::line),
+    : rope_(set, bonds, "line"),
       kind_(kind),
       time_step_(step_fraction * time_step_limit(rope_.topology, rope_.interaction, rope_.spacing).limit),
       brake_(brake),

@@ -4,16 +4,18 @@
 #include <cmath>
 
 #include "scene/build.hpp"
+#include "sim/contact/line/law.hpp"
+#include "sim/contact/paper/law.hpp"
 
 namespace ropewalk {
 
-GrippedRope::GrippedRope(const ParameterSet& set, int bonds_, ContactOptions::Law law)
+GrippedRope::GrippedRope(const ParameterSet& set, int bonds_, const std::string& law)
     : topology(topology_of(set)), bonds(bonds_) {
-  if (law == ContactOptions::Law::paper) {
-    interaction.paper = set.paper;
+  if (law == "paper") {
+    interaction.law = paper_law(*set.paper);
     spacing = pair_spacing(*set.paper, set.element_length);
   } else {
-    interaction.line = {line_contact_of(set)};
+    interaction.law = line_law({line_contact_of(set)});
     spacing = line_parallel_well(set.line->density).distance;
   }
   const int elements = elements_of_tube();

@@ -22,7 +22,7 @@ struct GrippedRope {
   int bonds = 0;                  // between the grips, of each tube
   double spacing = 0;             // nm, of two long parallel rows at rest
 
-  GrippedRope(const ParameterSet& set, int bonds, ContactOptions::Law law);
+  GrippedRope(const ParameterSet& set, int bonds, const std::string& law);
   double length() const { return bonds * topology.types[0].element_length; }
   int elements_of_tube() const { return bonds + 2 * held - 1; }
   // Part of the way from the lower grip (0) to the upper one (1).

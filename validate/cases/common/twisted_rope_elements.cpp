@@ -6,6 +6,7 @@
 #include "cases/common/twisted_rope.hpp"
 #include "scene/build.hpp"
 #include "scene/loads/fix.hpp"
+#include "sim/contact/line/law.hpp"
 
 namespace ropewalk {
 namespace {
@@ -65,7 +66,7 @@ ClampedRope::ClampedRope(const TwistedRope& rope, const ParameterSet& set)
       if (above || e <= beyond_) loads_.add(FixLoad({first + e}));
     }
   }
-  interaction_.line = {line_contact_of(divided)};
+  interaction_.law = line_law({line_contact_of(divided)});
   time_step_ = step_fraction * time_step_limit(topology_, interaction_, set.line->pair_spacing).limit;
   axial_stiffness_ = tubes * set.bond.stretch / length_;
   relax();

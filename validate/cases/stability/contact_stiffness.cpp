@@ -8,6 +8,7 @@
 #include "cases/common/stability_limit.hpp"
 #include "scene/build.hpp"
 #include "scene/random.hpp"
+#include "sim/contact/paper/law.hpp"
 
 namespace ropewalk {
 namespace {
@@ -38,7 +39,7 @@ Bundle packed(const Series& s, ParameterSet set, double factor) {
   if (!s.paper) return line_bundle(set, tubes, elements);
   Bundle b;
   b.topology = topology_of(set);
-  b.interaction.paper = set.paper;
+  b.interaction.law = paper_law(*set.paper);
   b.spacing = pair_spacing(*set.paper, set.element_length);
   b.state = State(tubes * elements);
   std::size_t i = 0;

@@ -8,6 +8,8 @@
 
 #include "cases/common/bundle.hpp"
 #include "cases/common/stability_limit.hpp"
+#include "sim/contact/line/law.hpp"
+#include "sim/contact/paper/law.hpp"
 #include "sim/forces/forces.hpp"
 
 namespace ropewalk {
@@ -173,14 +175,13 @@ double published_energy(const PaperContact& c, const Vector3& separation, const 
 
 Interaction line_interaction(const ParameterSet& set) {
   Interaction in;
-  in.line = {line_contact_of(set)};
+  in.law = line_law({line_contact_of(set)});
   return in;
 }
 
 Interaction paper_interaction(const ParameterSet& set, bool legacy) {
   Interaction in;
-  in.paper = set.paper;
-  in.legacy_torque = legacy;
+  in.law = paper_law(*set.paper, legacy);
   return in;
 }
 

@@ -7,6 +7,8 @@
 #include "cases/common/bundle.hpp"
 #include "cases/common/stability_limit.hpp"
 #include "scene/build.hpp"
+#include "sim/contact/line/law.hpp"
+#include "sim/contact/paper/law.hpp"
 #include "sim/forces/forces.hpp"
 
 namespace ropewalk {
@@ -142,13 +144,13 @@ constexpr int nodes = 4;  // on each element: their spacing follows from its len
 double line_corrugation(const ParameterSet& set, double spacing, double distance) {
   Interaction in;
   const double a = nodes * spacing;
-  in.line = {{set.line->density, a, a, nodes, nodes}};
+  in.law = line_law({{set.line->density, a, a, nodes, nodes}});
   return Slide(in, a, distance).corrugation(spacing);
 }
 
 double paper_corrugation(const ParameterSet& set, double length, double distance) {
   Interaction in;
-  in.paper = set.paper;
+  in.law = paper_law(*set.paper);
   return Slide(in, length, distance).corrugation(length);
 }
 

@@ -7,6 +7,7 @@
 #include "cases/common/bundle.hpp"
 #include "cases/common/stability_limit.hpp"
 #include "model/error.hpp"
+#include "sim/contact/line/law.hpp"
 #include "sim/forces/forces.hpp"
 
 namespace ropewalk {
@@ -19,7 +20,7 @@ constexpr double time_step = 0.02;  // ps
 Bundle nose_to_nose(const ParameterSet& set, double gap, double speed, double spin) {
   Bundle b;
   b.topology = topology_of(set);
-  b.interaction.line = {line_contact_of(set)};
+  b.interaction.law = line_law({line_contact_of(set)});
   b.topology.add_tube(1);
   b.topology.add_tube(1);
   b.state = State(2);
@@ -98,7 +99,7 @@ CaseResult run(const CaseContext& context) {
   // At the largest speed that does not stop a run, half of it for each element; and turning.
   const double fastest = 2 * 0.24 * oracle.radius / time_step, spin = 0.45 / time_step;
   Interaction reference;
-  reference.line = {line_contact_of(oracle)};
+  reference.law = line_law({line_contact_of(oracle)});
   double missed = 0, weakest = 1e9;
   for (const double skin : {0.02, 0.1, 0.25, 0.5})
     for (const double part : {0.01, 0.1, 1.0}) {

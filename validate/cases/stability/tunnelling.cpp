@@ -5,6 +5,7 @@
 #include "cases/common/bundle.hpp"
 #include "cases/common/stability_limit.hpp"
 #include "model/error.hpp"
+#include "sim/contact/line/law.hpp"
 
 namespace ropewalk {
 namespace {
@@ -16,7 +17,7 @@ constexpr double start = 3.0;  // nm apart, out of reach
 Bundle crossed(const ParameterSet& set, double speed) {
   Bundle b;
   b.topology = topology_of(set);
-  b.interaction.line = {line_contact_of(set)};
+  b.interaction.law = line_law({line_contact_of(set)});
   b.topology.add_tube(1);
   b.topology.add_tube(1);
   b.state = State(2);

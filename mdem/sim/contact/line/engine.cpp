@@ -8,10 +8,10 @@ namespace ropewalk {
 namespace {
 
 template <class Buffers>
-void make_tables(Buffers& b, const Interaction& in, double unit) {
-  if (b.unit == unit && b.pairs.size() == in.line.size()) return;
+void make_tables(Buffers& b, const LineLaw& law, double unit) {
+  if (b.unit == unit && !b.pairs.empty()) return;
   b.pairs.clear();
-  for (const LineContact& law : in.line) b.pairs.emplace_back(law, unit);
+  for (const LineContact& pair : law.pairs) b.pairs.emplace_back(pair, unit);
   b.unit = unit;
 }
 
@@ -57,14 +57,14 @@ void LineEngine::update_list(const Topology& topology, const Interaction& in, co
   stamp_ = list.stamp();
   full_ = in.precision == Interaction::Precision::full;
   offsets_.clear();
-  for (std::size_t a = 0; a < topology.types.size(); ++a)
-    offsets_.push_back(
-        node_offsets(list_.nodes_per_element(static_cast<int>(a)), in.line[a * topology.types.size()].length_i));
+  const LineLaw& law = line_law_of(in);
+  for (int a = 0; a < static_cast<int>(topology.types.size()); ++a)
+    offsets_.push_back(node_offsets(list_.nodes_per_element(a), law.of({a, 0}).length_i));
   written_.list(parts, list_.chunks());
   if (full_) {
-    make_tables(full_buffers_, in, 1);
+    make_tables(full_buffers_, law, 1);
   } else {
-    make_tables(mixed_, in, list_.unit());
+    make_tables(mixed_, law, list_.unit());
   }
   list_seconds_ += omp_get_wtime() - began;
 }
@@ -159,6 +159,26 @@ double LineEngine::damping_power() const {
     for (const auto& out : b.of_chunks) sum += out.power;
     return sum;
   });
+}
+
+// Without the law's exp and log: the same digits in a frame.
+PairEnergy LineEngine::pair_energy(const ContactLaw& law) const {
+  const auto& line = static_cast<const LineLaw&>(law);
+  std::vector<FullTable> tables;
+  for (const LineContact& pair : line.pairs) tables.emplace_back(pair.density, 1);
+  return [&line, tables](TypePair types, const Vector3& separation, const Vector3& n_i, const Vector3& n_j) {
+    const LineContact& pair = line.of(types);
+    const FullTable& table = tables[static_cast<std::size_t>(&pair - line.pairs.data())];
+    return pair.energy_by([&](double distance2) { return table.energy(distance2); }, separation, n_i, n_j);
+  };
+}
+
+double LineEngine::step_bytes(const NeighbourList&, std::size_t number) const {
+  const auto of = [](const auto& v) { return static_cast<double>(v.size() * sizeof(v[0])); };
+  double sum = static_cast<double>(list_.spans() * sizeof(NeighbourSpan));
+  for (const LineChunk& chunk : list_.chunks())
+    sum += of(chunk.ranges) + of(chunk.damped) + of(chunk.damped_ranges) + buffer_bytes(chunk.elements, number);
+  return sum;
 }
 
 std::size_t LineEngine::bytes() const {

@@ -2,17 +2,15 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <string>
 #include <vector>
 
+#include "sim/contact/contact_engine.hpp"
 #include "sim/contact/line/list.hpp"
 #include "sim/contact/line/nodes.hpp"
 #include "sim/contact/line/radial_table.hpp"
 #include "sim/contact/line/written_ranges.hpp"
 #include "sim/contact/shared/buffer.hpp"
-#include "sim/state/force_rows.hpp"
-#include "sim/state/tiles.hpp"
 #include "sim/threads/work_shares.hpp"
 
 namespace ropewalk {
@@ -113,30 +111,25 @@ void line_contact(const LineKernelInput<FullTable, double>& in, const LineChunk&
 std::vector<std::string> instruction_sets();
 bool use_instructions(const std::string& name);
 
-// What tubes need besides the contact: `place` prepares a tube, before any element moves, and `finish` ends a block
-// of elements once nothing acts on it any more and nobody needs its positions; in large scenes at once, while the
-// forces on it are in the cache of a thread. Each once, by any thread.
-struct TubeWork {
-  const TubeParts& parts;
-  std::function<void(int)> place, finish;
-};
-
-class LineEngine {
+class LineEngine : public ContactEngine {
  public:
-  // Elements from which on a block is finished as soon as it can be, not in the end.
+  std::unique_ptr<ContactEngine> copy() const override { return std::make_unique<LineEngine>(*this); }
+  // Elements from which on a block is finished as soon as it can be, while the forces on it are in the cache of a
+  // thread, and not in the end.
   std::size_t finish_at_once_from = large_scene;
 
-  // The contact of all chunks; `finish` then calls add_to. Energies only if wanted: forces are the same bits.
   void compute(const Topology& topology, const Interaction& interaction, const NeighbourList& list,
-               const State& state, const Vec3Array& axis, bool energies, const TubeWork& tubes);
-  // Adds what acts on a part of a tube, in the order of the chunks, whoever was done first.
-  void add_to(int part, const ForceRows& sums) const;
-  double energy() const;         // eV
-  double damping_power() const;  // eV/ps
+               const State& state, const Vec3Array& axis, bool energies, const TubeWork& tubes) override;
+  void add_to(int part, const ForceRows& sums) const override;
+  double energy() const override;
+  double damping_power() const override;
+  double best_skin(const Topology& topology, double listed, long steps) const override {
+    return list_.best_skin(topology, listed, steps);
+  }
+  PairEnergy pair_energy(const ContactLaw& law) const override;
   const LineList& list() const { return list_; }
-  double list_seconds() const { return list_seconds_; }      // spent on it so far
-  double finish_seconds() const { return finish_seconds_; }  // by the first thread, in `finish`
-  std::size_t bytes() const;
+  std::size_t bytes() const override;
+  double step_bytes(const NeighbourList& list, std::size_t number) const override;
 
  private:
   template <class Buffers>
@@ -157,7 +150,6 @@ class LineEngine {
 
   LineList list_;
   long stamp_ = 0;
-  double list_seconds_ = 0, finish_seconds_ = 0;
   bool full_ = false;
   std::vector<NodeOffsets> offsets_;  // of each tube type
   WorkShares shares_;

@@ -19,11 +19,11 @@ double distance2(const Vector3& from_centre, const Vector3& axis, double half) {
 double at_least_zero(double x) { return std::max(x, 0.0); }
 
 void check_nodes(const Topology& topology, const Interaction& in) {
-  const std::size_t types = topology.types.size();
-  for (std::size_t a = 0; a < types; ++a)
-    for (std::size_t b = 0; b < types; ++b)
-      if (in.line[a * types + b].nodes_i != in.line[a * types].nodes_i ||
-          in.line[b * types + a].nodes_j != in.line[a * types].nodes_i)
+  const LineLaw& law = line_law_of(in);
+  const auto types = static_cast<int>(topology.types.size());
+  for (int a = 0; a < types; ++a)
+    for (int b = 0; b < types; ++b)
+      if (law.of({a, b}).nodes_i != law.of({a, 0}).nodes_i || law.of({b, a}).nodes_j != law.of({a, 0}).nodes_i)
         throw std::invalid_argument("a tube type has one number of nodes towards all others");
 }
 
@@ -47,7 +47,7 @@ struct SpanFinder {
         i(element),
         tube_i(own_tube),
         tube_j(other_tube),
-        law(in.line[in.line_index(t, own_tube, other_tube)]),
+        law(line_law_of(interaction).of({t.tube_type[own_tube], t.tube_type[other_tube]})),
         half_i(half_of_nodes(law.length_i, law.nodes_i)),
         half_j(half_of_nodes(law.length_j, law.nodes_j)) {}
 
@@ -331,8 +331,8 @@ void LineList::build(const Topology& topology, const Interaction& in, const Neig
     for (std::size_t count : part.count) begin_.push_back(begin_.back() + count);
   }
   nodes_per_element_.clear();
-  for (std::size_t a = 0; a < topology.types.size(); ++a)
-    nodes_per_element_.push_back(in.line[a * topology.types.size()].nodes_i);
+  for (int a = 0; a < static_cast<int>(topology.types.size()); ++a)
+    nodes_per_element_.push_back(line_law_of(in).of({a, 0}).nodes_i);
 
   cut_into_chunks(topology, list.reference(), list.chunks().size());
 #pragma omp parallel for schedule(dynamic, 1) if (parallel)

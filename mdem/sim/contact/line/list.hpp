@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "sim/contact/line/law.hpp"
 #include "sim/contact/shared/damping.hpp"
 #include "sim/neighbours/neighbours.hpp"
 #include "sim/state/interaction.hpp"
@@ -64,6 +65,9 @@ class RangeOf {
  private:
   const WrittenRange* range_;
 };
+
+// Of an interaction by the line law.
+inline const LineLaw& line_law_of(const Interaction& in) { return static_cast<const LineLaw&>(*in.law); }
 
 class LineList {
  public:

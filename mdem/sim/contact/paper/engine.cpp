@@ -1,11 +1,10 @@
 #include "sim/contact/paper/engine.hpp"
 
-#include <omp.h>
-
 #include <algorithm>
 #include <cmath>
 
 namespace ropewalk {
+
 template <class T>
 void PaperElements<T>::place(const Vec3Array& position, const Vec3Array& axis, std::size_t begin, std::size_t end) {
   const double per_unit = 1 / unit;
@@ -23,61 +22,47 @@ void PaperElements<T>::place(const Vec3Array& position, const Vec3Array& axis, s
   }
 }
 
+namespace {
+
+const PaperLaw& law_of(const ContactInput& in) { return static_cast<const PaperLaw&>(*in.interaction.law); }
+bool full(const ContactInput& in) { return in.interaction.precision == Interaction::Precision::full; }
+
 template <class T>
-void PaperEngine::run(PaperElements<T>& elements, const Interaction& in, const NeighbourList& list,
-                      const State& state, const Vec3Array& axis, ContactBuffer<double>* buffers, bool energies) {
-  const auto n = static_cast<std::ptrdiff_t>(state.size());
+void place_all(const ContactInput& in, PaperElements<T>& elements) {
+  const auto n = static_cast<std::ptrdiff_t>(in.state.size());
   constexpr std::ptrdiff_t block = 512;
-  elements.resize(state.size());
-#pragma omp parallel for schedule(static) if (state.size() > parallel_from)
+  elements.resize(in.state.size());
+#pragma omp parallel for schedule(static) if (in.state.size() > parallel_from)
   for (std::ptrdiff_t i = 0; i < n; i += block)
-    elements.place(state.position, axis, static_cast<std::size_t>(i),
+    elements.place(in.state.position, in.axis, static_cast<std::size_t>(i),
                    static_cast<std::size_t>(std::min(i + block, n)));
-  const PaperKernelInput<T> input{&*in.paper, &elements, &axis, &runs_, in.legacy_torque, energies};
-#pragma omp parallel for schedule(dynamic, 1) if (state.size() > parallel_from)
-  for (std::size_t k = 0; k < list.chunks().size(); ++k) {
-    const NeighbourList::Chunk& chunk = list.chunks()[k];
-    buffers[k].clear(static_cast<std::size_t>(chunk.touched_end - chunk.touched_begin));
-    paper_contact(input, chunk, buffers[k]);
-    if (in.damped_contact()) contact_damping(in.damping.contact, state, damped_[k], buffers[k]);
-  }
 }
 
-void PaperEngine::list_damped(const Topology& topology, const Interaction& in, const NeighbourList& list) {
-  PairRuns near;
-  near.build(list, in.damping.contact.outer);
-  damped_.clear();
-  for (const NeighbourList::Chunk& chunk : list.chunks()) {
-    DampedBlocks blocks;
-    for (int i = chunk.begin; i < chunk.end; ++i) {
-      const TouchedRange own{i, std::min(chunk.end, topology.tube_begin[topology.tube_of(i) + 1]),
-                             -chunk.touched_begin};
-      for (const PairRun& run : near.runs(i))
-        for_tubes_of(topology, run, [&](int tube, int from, int to) {
-          blocks.add(i, own, from, to,
-                     {std::max(topology.tube_begin[tube], chunk.touched_begin),
-                      std::min(topology.tube_begin[tube + 1], chunk.touched_end), -chunk.touched_begin});
-        });
-    }
-    damped_.push_back(blocks.take());
-  }
+}  // namespace
+
+void PaperEngine::update_list(const ContactInput& in) {
+  runs_.build(in.list, law_of(in).cutoff());
+  mixed_.unit = in.list.coordinate_unit();
 }
 
-void PaperEngine::compute(const Topology& topology, const Interaction& in, const NeighbourList& list,
-                          const State& state, const Vec3Array& axis, ContactBuffer<double>* buffers,
-                          bool energies) {
-  if (stamp_ != list.stamp()) {
-    const double began = omp_get_wtime();
-    runs_.build(list, in.paper->cutoff());
-    if (in.damped_contact()) list_damped(topology, in, list);
-    mixed_.unit = list.coordinate_unit();
-    stamp_ = list.stamp();
-    list_seconds_ += omp_get_wtime() - began;
-  }
-  if (in.precision == Interaction::Precision::full) {
-    run(full_, in, list, state, axis, buffers, energies);
+void PaperEngine::prepare(const ContactInput& in) {
+  if (full(in)) {
+    place_all(in, full_);
   } else {
-    run(mixed_, in, list, state, axis, buffers, energies);
+    place_all(in, mixed_);
+  }
+}
+
+// Always with energies: the compiler orders the sums of these loops as it likes, and forces must be the same bits
+// whether energies are wanted or not.
+void PaperEngine::add_chunk(const ContactInput& in, const NeighbourList::Chunk& chunk, ContactBuffer<double>& out) {
+  const PaperLaw& law = law_of(in);
+  if (full(in)) {
+    paper_contact(PaperKernelInput<double>{&law.contact, &full_, &in.axis, &runs_, law.legacy_torque, true}, chunk,
+                  out);
+  } else {
+    paper_contact(PaperKernelInput<float>{&law.contact, &mixed_, &in.axis, &runs_, law.legacy_torque, true}, chunk,
+                  out);
   }
 }
 
@@ -85,9 +70,14 @@ std::size_t PaperEngine::bytes() const {
   const auto of = [](const auto& e) {
     return 3 * (e.x.capacity() * sizeof(e.x[0]) + e.nx.capacity() * sizeof(e.nx[0]));
   };
-  std::size_t damped = 0;
-  for (const auto& blocks : damped_) damped += blocks.capacity() * sizeof(DampedBlock);
-  return runs_.bytes() + damped + of(mixed_) + of(full_);
+  return BufferedEngine::bytes() + runs_.bytes() + of(mixed_) + of(full_);
+}
+
+// The kernel has positions and axes of its own.
+double PaperEngine::step_bytes(const NeighbourList& list, std::size_t number) const {
+  const auto elements = static_cast<double>(list.reference().size());
+  return BufferedEngine::step_bytes(list, number) + buffer_bytes(elements, number) +
+         static_cast<double>(runs_.bytes());
 }
 
 }  // namespace ropewalk

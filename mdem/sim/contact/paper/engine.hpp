@@ -1,4 +1,4 @@
-// Contact by the paper law: runs of neighbours and buffers around the kernel (kernel.cpp).
+// Contact by the paper law: spans of neighbours, positions and axes around the kernel (kernel.cpp).
 #pragma once
 
 #include <cstddef>
@@ -6,8 +6,9 @@
 #include <type_traits>
 #include <vector>
 
-#include "sim/contact/paper/neighbour_spans.hpp"
-#include "sim/contact/shared/damping.hpp"
+#include "sim/contact/paper/law.hpp"
+#include "sim/contact/shared/buffered_engine.hpp"
+#include "sim/contact/shared/neighbour_spans.hpp"
 
 namespace ropewalk {
 
@@ -44,28 +45,22 @@ void paper_contact(const PaperKernelInput<float>& in, const NeighbourList::Chunk
 void paper_contact(const PaperKernelInput<double>& in, const NeighbourList::Chunk& chunk,
                    ContactBuffer<double>& out);
 
-class PaperEngine {
+class PaperEngine : public BufferedEngine {
  public:
-  // Fills buffers[chunk].
-  void compute(const Topology& topology, const Interaction& interaction, const NeighbourList& list,
-               const State& state, const Vec3Array& axis, ContactBuffer<double>* buffers, bool energies = true);
+  std::unique_ptr<ContactEngine> copy() const override { return std::make_unique<PaperEngine>(*this); }
   const PairRuns& runs() const { return runs_; }
-  double list_seconds() const { return list_seconds_; }  // spent on the runs so far
-  std::size_t bytes() const;
+  std::size_t bytes() const override;
+  double step_bytes(const NeighbourList& list, std::size_t number) const override;
+
+ protected:
+  void update_list(const ContactInput& in) override;
+  void prepare(const ContactInput& in) override;
+  void add_chunk(const ContactInput& in, const NeighbourList::Chunk& chunk, ContactBuffer<double>& out) override;
 
  private:
-  template <class T>
-  void run(PaperElements<T>& elements, const Interaction& interaction, const NeighbourList& list,
-           const State& state, const Vec3Array& axis, ContactBuffer<double>* buffers, bool energies);
-
-  void list_damped(const Topology& topology, const Interaction& interaction, const NeighbourList& list);
-
   PairRuns runs_;
-  std::vector<std::vector<DampedBlock>> damped_;  // of each chunk
   PaperElements<float> mixed_;
   PaperElements<double> full_;
-  long stamp_ = 0;
-  double list_seconds_ = 0;
 };
 
 }  // namespace ropewalk

@@ -1,4 +1,4 @@
-#include "sim/contact/paper/neighbour_spans.hpp"
+#include "sim/contact/shared/neighbour_spans.hpp"
 
 namespace ropewalk {
 

@@ -1,0 +1,49 @@
+#include "scene/laws/contact_law_kind.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <utility>
+
+namespace ropewalk {
+
+// One line for each shipped law, and one below.
+ContactLawKind line_kind();
+ContactLawKind paper_kind();
+
+namespace {
+
+std::vector<ContactLawKind>& all_kinds() {
+  static std::vector<ContactLawKind> kinds = {
+      line_kind(),
+      paper_kind(),
+  };
+  return kinds;
+}
+
+}  // namespace
+
+const std::vector<ContactLawKind>& contact_law_kinds() { return all_kinds(); }
+
+bool add_contact_law(ContactLawKind kind) {
+  assert(!contact_law_kind(kind.name) && kind.name != "none");
+  all_kinds().push_back(std::move(kind));
+  return true;
+}
+
+const ContactLawKind* contact_law_kind(const std::string& name) {
+  for (const ContactLawKind& kind : all_kinds())
+    if (kind.name == name) return &kind;
+  return nullptr;
+}
+
+std::string default_contact_law(const std::vector<ParameterSet>& sets) {
+  std::string last;
+  for (const ContactLawKind& kind : all_kinds()) {
+    if (!kind.in_set) continue;
+    if (std::all_of(sets.begin(), sets.end(), kind.in_set)) return kind.name;
+    last = kind.name;
+  }
+  return last;
+}
+
+}  // namespace ropewalk

@@ -1,0 +1,22 @@
+// law = "paper": the published law, from the set's [contact.paper].
+#include "scene/laws/contact_law_kind.hpp"
+#include "scene/scene_to_model.hpp"
+
+namespace ropewalk {
+
+PaperContact paper_contact(const Scene& scene) {
+  PaperContact law = *scene.parameters().paper;
+  return scene.contact.cutoff > 0 ? with_cutoff(law, scene.contact.cutoff) : law;
+}
+
+ContactLawKind paper_kind() {
+  ContactLawKind kind;
+  kind.name = "paper";
+  kind.make = [](const Scene& scene) { return paper_law(paper_contact(scene), scene.contact.legacy_torque); };
+  kind.in_set = [](const ParameterSet& set) { return set.paper.has_value(); };
+  kind.mixes_types = false;
+  kind.any_element_length = false;  // its energy is that of a pair of elements, not of a length
+  return kind;
+}
+
+}  // namespace ropewalk
