@@ -20,7 +20,7 @@ struct Verbs {
   int code = 0;
 };
 
-// As it could be typed again.
+// The command as it can be typed in a shell.
 std::string command_line(int argc, char** argv) {
   std::string text = "ropewalk calibrate";
   for (int k = 1; k < argc; ++k) {

@@ -64,7 +64,7 @@ std::string atomistic_csv(const std::vector<AtomisticRow>& rows, const Atomistic
   if (!origin.lammps.empty()) text += fmt::format("# LAMMPS: {}\n", origin.lammps);
   for (const std::string& note : origin.notes) text += fmt::format("# note: {}\n", note);
   text += fmt::format("{}\n", columns);
-  // Energies are small differences: twelve digits keep what the fit needs.
+  // The fit uses small differences of energies: they need twelve digits.
   for (const AtomisticRow& row : rows)
     text += fmt::format("{},{:.12g},{:.12g},{:.12g},{:.12g},{},{:.12g},{:.4g},{:.10g}\n", row.kind, row.length,
                         row.strain, row.twist, row.curvature, row.atoms, row.energy, row.residual, row.radius);

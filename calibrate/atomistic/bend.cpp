@@ -16,7 +16,7 @@
 namespace ropewalk {
 namespace {
 
-constexpr double curvature_steps[] = {0.4, 0.6, 0.8, 1.0};  // of the largest
+constexpr double curvature_steps[] = {0.4, 0.6, 0.8, 1.0};  // fractions of the largest curvature
 
 // Relaxed displacements grow in proportion to the curvature, so the next start is the next affine bend with the
 // last displacements scaled: half of the steps of the minimiser are saved.
@@ -28,9 +28,9 @@ std::string bend_commands(double curvature, double last, const std::string& resu
   return text + results;
 }
 
-// How much longer the long tube is. The energy of an end depends on its azimuth phi to the bending plane: as
-// k^2 cos 2 phi for a tube without a threefold or higher axis, and, where the end is cut along one spiral step,
-// even as k cos phi. Then the ends of both tubes must lie alike, or their difference stays (1 % of EI for (8,2)).
+// Additional hexagons of the long tube. The energy of an end depends on its azimuth phi to the bending plane: as
+// k^2 cos 2 phi for a tube without a threefold or higher axis, and as k cos phi if the end is cut along one spiral
+// step. The ends of both tubes must then have the same azimuth, or an error remains (1 % of EI for (8,2)).
 long extra_hexagons(Chirality c, const TubeShape& shape, double length) {
   const long step = std::gcd(c.n, c.m), middle = hexagons_in(c, shape, length);
   if (step > 2) return middle;

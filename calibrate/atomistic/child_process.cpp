@@ -23,8 +23,8 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-// The group that a signal to this process must take with it. One child at a time is the rule here; a second one
-// would still be ended by its parent-death signal.
+// The process group of the child, which a signal to this process also ends. There is one child at a time; a second
+// child would still be ended by its parent-death signal.
 std::atomic<pid_t> group_to_end{0};
 static_assert(std::atomic<pid_t>::is_always_lock_free, "the signal handler reads it");
 
@@ -35,7 +35,7 @@ void end_group(int signal_number) {
   ::raise(signal_number);
 }
 
-// Takes SIGINT, SIGTERM and SIGHUP over only where nobody else has.
+// Handles SIGINT, SIGTERM and SIGHUP unless they already have a handler.
 class SignalGuard {
  public:
   explicit SignalGuard(pid_t group) {
@@ -73,7 +73,7 @@ long long bytes_written(const ChildOptions& options) {
   return bytes;
 }
 
-// In the child, between fork and exec: only async-signal-safe calls.
+// Runs in the child between fork and exec: only async-signal-safe calls are allowed.
 [[noreturn]] void become(char* const* arguments, char* const* environment, const char* folder, int output,
                          int report, pid_t parent) {
   const auto give_up = [&] {
@@ -83,7 +83,7 @@ long long bytes_written(const ChildOptions& options) {
   };
   ::setpgid(0, 0);
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (::getppid() != parent) ::_exit(127);  // it died before the line above
+  if (::getppid() != parent) ::_exit(127);  // the parent died before the line above
   sigset_t none;
   ::sigemptyset(&none);
   ::sigprocmask(SIG_SETMASK, &none, nullptr);
@@ -109,7 +109,7 @@ std::vector<std::string> one_thread_environment() {
     if (text.rfind("OMP_NUM_THREADS=", 0) != 0) variables.push_back(text);
   }
   variables.push_back("OMP_NUM_THREADS=1");
-  // One process needs no network; Open MPI starts in half the time when it does not look for one.
+  // A single process needs no network; Open MPI starts in half the time without the search for one.
   for (const char* setting : {"OMPI_MCA_btl=self", "OMPI_MCA_pml=ob1"}) {
     const std::string name = std::string(setting).substr(0, std::string(setting).find('=') + 1);
     const auto same = [&](const std::string& text) { return text.rfind(name, 0) == 0; };
@@ -150,7 +150,7 @@ ChildEnd run_child(const std::vector<std::string>& arguments, const ChildOptions
     ::close(report[0]);
     return failed(fork_code);
   }
-  ::setpgid(child, child);  // in both, so that neither can come too late
+  ::setpgid(child, child);  // called in parent and child, so that neither call can come too late
   const SignalGuard guard(child);
 
   int code = 0;

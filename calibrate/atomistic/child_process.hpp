@@ -1,4 +1,5 @@
-// A program run to its end, watched: it ends with this process, when it falls silent, and when its time is up.
+// Runs a program under watch. It is ended when this process ends, when it writes nothing for too long, and when its
+// time is up.
 #pragma once
 
 #include <functional>
@@ -22,8 +23,8 @@ struct ChildEnd {
   double seconds = 0;
 };
 
-// Runs arguments[0], looked for in PATH, with one OpenMP thread. The child has a process group of its own, all of
-// which is ended; SIGINT and SIGTERM end it first and then act on this process as they would have.
+// Runs arguments[0], searched for in PATH, with one OpenMP thread. The child has its own process group, which is
+// ended as a whole. SIGINT and SIGTERM end the child first and then have their usual effect on this process.
 ChildEnd run_child(const std::vector<std::string>& arguments, const ChildOptions& options);
 
 }  // namespace ropewalk

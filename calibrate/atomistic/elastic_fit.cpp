@@ -1,8 +1,8 @@
 // The elastic constants from a table of energies.
 //
 // The energy per length is a polynomial in scaled strain u and twist v. Its coefficients follow from linear least
-// squares, its minimum from Newton steps; the Taylor series about the minimum gives the constants. That is the
-// start of the bounded fit in the physical parameters, which adds the standard errors and the verdict.
+// squares, its minimum from Newton steps; the Taylor series about the minimum gives the constants. They are the
+// start of the bounded fit in the physical parameters, which gives the standard errors and the verdict.
 #include <fmt/format.h>
 
 #include <Eigen/Dense>
@@ -242,7 +242,8 @@ void fit_stretch_twist(std::vector<AtomisticRow>& table, Stiffness& out) {
   };
   if (!(w.strain > 0 && w.twist > 0 && w.energy > 0)) throw not_enough();
 
-  // `part` of the window, of both strain and twist. A little more, so that its own edge is in.
+  // The points within `part` of the window in strain and twist, with a margin so that points on its edge are
+  // included.
   const auto points_within = [&](double part) {
     std::vector<Point> points;
     for (const AtomisticRow* row : rows) {
@@ -335,7 +336,7 @@ void fit_stretch_twist(std::vector<AtomisticRow>& table, Stiffness& out) {
     return Measured{};
   };
   const Measured c20 = term(2, 0), c11 = term(1, 1), c02 = term(0, 2);
-  // Between two sides any value is as good as another: the standard deviation of an even distribution.
+  // Any value between the two is equally likely: the standard deviation of a uniform distribution.
   out.EA = {2 * c20.value, both(both(2 * c20.standard_error, EA.half()), sides.half() / std::sqrt(3.0))};
   out.GJ = {2 * c02.value, both(2 * c02.standard_error, GJ.half())};
   out.coupling = {c11.value, both(c11.standard_error, coupling.half())};
@@ -401,7 +402,7 @@ void fit_bend(std::vector<AtomisticRow>& table, Stiffness& out) {
   if (pairs.size() < 3) throw not_enough();
   const double largest = pairs.back().k;
 
-  // A straight line in (k / largest)^2 by hand, over pairs first .. last: the start, and the smaller windows.
+  // A straight line in (k / largest)^2 over pairs first .. last, for the start values and the smaller windows.
   const auto line = [&](std::size_t first, std::size_t last) {
     double n = 0, x = 0, y = 0, xx = 0, xy = 0;
     for (std::size_t i = first; i <= last; ++i) {

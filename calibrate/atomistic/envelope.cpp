@@ -1,4 +1,4 @@
-// Where the tube ceases to be a uniform rod: scaling rules, and incremental runs that look for it.
+// Limits beyond which the tube is no longer a uniform rod, from scaling rules or from incremental runs.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -25,11 +25,12 @@ constexpr double linear_shear_rule = 0.04;
 constexpr double linear_strain_rule = 0.004;
 constexpr double rule_error = 0.2;  // relative, between tubes and potentials
 
-constexpr double seed_error = 0.03;  // relative: other noise or steps move an instability by so much
+constexpr double seed_error = 0.03;  // relative: scatter of an instability with other noise or steps
 
 constexpr double specimen_length = 12;                // nm
 constexpr double first_step = 0.4, step_size = 0.04;  // of the rule
-constexpr double give_way = 0.9;  // of the greatest work of a step so far: moment, torque or force are falling
+constexpr double give_way =
+    0.9;  // of the largest work of a step so far: below it moment, torque or force are falling
 
 // The smallest positive x with |a x + b x^2| = limit.
 double first_crossing(double a, double b, double limit) {
@@ -51,11 +52,11 @@ double first_crossing(double a, double b, double limit) {
   return best;
 }
 
-// One kind of loading, step by step.
+// A kind of loading in increments.
 struct Loading {
   std::string name;             // of the run and the rows
-  double rule;                  // magnitude where the scaling rule expects the end
-  double last_step;             // of the rule, where the search is given up
+  double rule;                  // magnitude at the limit of the scaling rule
+  double last_step;             // relative to the rule; the search ends there
   std::string variables, move;  // LAMMPS: move goes from v_q0 to v_q
 };
 
@@ -63,7 +64,7 @@ const char* clamped_height =
     "variable zc atom v_half*((f_ref[3]>v_half)-(f_ref[3]<-v_half))+f_ref[3]*(abs(f_ref[3])<=v_half)\n";
 
 std::vector<Loading> loadings(const Envelope& rules, double radius) {
-  // Bands are turned and moved as wholes, by the angle and shift of their edge.
+  // Bands are rotated and moved as rigid bodies, by the angle and shift of their edge.
   const std::string twist = std::string(clamped_height) +
                             "variable turn atom (v_q-v_q0)*v_zc\n"
                             "variable new_x atom f_now[1]*cos(v_turn)-f_now[2]*sin(v_turn)\n"
@@ -78,8 +79,8 @@ std::vector<Loading> loadings(const Envelope& rules, double radius) {
       {"compression", rules.compression.value, 2, press, "set group all z v_new_z\n"}};
 }
 
-// The anharmonic terms are those of the round tube, which flattens before it collapses: at 0.75 of the collapse the
-// energy of (10,10) is 1 % off, at 0.95 it is 5 %.
+// The anharmonic terms describe the round tube, which flattens before it collapses: the energy of (10,10) is 1 %
+// off at 0.75 of the collapse and 5 % off at 0.95.
 void cap_below_collapse(Envelope& envelope) {
   constexpr double still_round = 0.75;
   const double most = still_round * envelope.twist_collapse.value;
@@ -118,8 +119,8 @@ void limits_from_terms(const Stiffness& s, Envelope& envelope) {
   }
   cap_below_collapse(envelope);
   if (s.EI.value > 0 && s.bend_quartic.value != 0) {
-    // The held ends of a wide tube keep it round, and the quartic term of short specimens small: (20,20) shows half
-    // of it at 6 and 10 nm. So the term can only lower the limit of the rule.
+    // The held ends keep a wide tube round, so that short specimens have too small a quartic term: (20,20) at 6 and
+    // 10 nm has half of it. The term may therefore only lower the limit of the rule.
     const double curvature = std::sqrt(one_percent * s.EI.value / std::abs(4 * s.bend_quartic.value));
     if (curvature < envelope.linear_curvature.value)
       envelope.linear_curvature = {curvature, curvature * 0.5 * relative_error(s.bend_quartic)};
@@ -154,11 +155,11 @@ Envelope measured_envelope(RunContext& run, const RelaxedTube& tube, const Stiff
       input += fmt::format(
           "variable q0 delete\nvariable q0 equal {:.12g}\nvariable q delete\nvariable q equal {:.12g}\n", last,
           now);
-      // The first step is long, from the straight tube: no displacements to carry over yet.
+      // The first step is long and starts from the straight tube, without earlier displacements to scale.
       input += i == 0 && loading.name == "kink" ? "set group all x v_bent_x z v_bent_z\n" : loading.move;
       input += fmt::format("displace_atoms free random 0.002 0.002 0.002 {} units box\n", 1001 + i);
       input += "minimize 0.0 3e-3 1500 20000\n" + report;
-      // The first step is longer than the others: its work is not compared.
+      // The work of the first step is not compared, since this step is longer.
       input += "variable work equal $(pe-v_e:%.15g)\n";
       if (i >= 1)
         input += fmt::format(
@@ -185,7 +186,7 @@ Envelope measured_envelope(RunContext& run, const RelaxedTube& tube, const Stiff
       rows.push_back(row);
     }
     const double scale = unit * (loading.name == "collapse" ? radius : 1);
-    // It gave way after the step that took most work.
+    // The limit is after the step with the largest work.
     std::size_t peak = 2;
     for (std::size_t i = 2; i < table.size(); ++i)
       if (table[i][1] - table[i - 1][1] > table[peak][1] - table[peak - 1][1]) peak = i;
@@ -201,7 +202,7 @@ Envelope measured_envelope(RunContext& run, const RelaxedTube& tube, const Stiff
     *results[k] = {middle, std::hypot(0.5 * (after - before) * scale, seed_error * middle)};
   }
   envelope.measured = true;
-  limits_from_terms(stiffness, envelope);  // the collapse is known better now
+  limits_from_terms(stiffness, envelope);  // again, with the measured collapse
   return envelope;
 }
 

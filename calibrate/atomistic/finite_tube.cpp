@@ -42,7 +42,7 @@ std::string FiniteTube::data() const {
 }
 
 std::string FiniteTube::commands(const Potential& potential, const std::string& data) const {
-  // Few bends move an atom further than this against its neighbours.
+  // A bend rarely moves an atom farther than this against its neighbours.
   std::string text = header_commands("s s s", 0.05) + fmt::format("read_data {}\n", data);
   for (const std::string& command : potential.commands) text += command + "\n";
   text += fmt::format(

@@ -1,4 +1,4 @@
-// A finite tube between two bands of atoms that are held: the specimen of bending and of the envelope runs.
+// A finite tube between two bands of fixed atoms: the specimen of bending and of the envelope runs.
 #pragma once
 
 #include <string>
@@ -9,10 +9,11 @@
 
 namespace ropewalk {
 
-// So wide that no free atom feels the bare end: the forces of bond-order potentials reach over two cutoffs.
+// Width of a band (nm) at which no free atom interacts with the bare end: forces of bond-order potentials reach
+// over two cutoffs.
 double held_band(const Potential& potential);
 
-// The multiple of gcd(n,m) hexagons next to a length.
+// The number of hexagons, a multiple of gcd(n,m), that is nearest to a length.
 long hexagons_in(Chirality c, const TubeShape& shape, double length);
 
 class FiniteTube {

@@ -25,7 +25,7 @@ constexpr const char* install_line = "apt-get install lammps lammps-data";
 std::string program_of(const LammpsOptions& options) {
   const char* chosen = std::getenv("ROPEWALK_LMP");
   const std::string program = chosen && *chosen ? chosen : options.program;
-  // A path is meant from here, but the child starts in another folder.
+  // A relative path refers to the current folder, but the child starts in another one.
   return program.find('/') == std::string::npos ? program : fs::absolute(program).string();
 }
 
@@ -35,7 +35,7 @@ InputError not_startable(const std::string& program, int code) {
                     fmt::format("install it ({}) or name it with ROPEWALK_LMP", install_line));
 }
 
-// The file may be missing or cut off; both are told elsewhere.
+// The file may be missing or incomplete; the caller reports both.
 std::string read_if_there(const std::string& path) {
   std::error_code ignored;
   return fs::is_regular_file(path, ignored) ? read_file(path) : std::string();
@@ -59,7 +59,7 @@ LammpsComplaint complaint_in(const std::string& output) {
   for (std::string line; std::getline(lines, line);) {
     if (found.error.empty() && line.rfind("ERROR", 0) == 0) found.error = trimmed(line);
     if (line.rfind("Last command:", 0) == 0) found.last_command = trimmed(line.substr(13));
-    // Of what runs it (MPI, the loader), where LAMMPS itself says nothing.
+    // A message of MPI or of the loader, if LAMMPS itself printed none.
     if (other.empty() && (line.find("ERROR") != std::string::npos || line.find("error") != std::string::npos))
       other = trimmed(line);
   }
@@ -89,7 +89,7 @@ std::string remedy_for(const std::string& error) {
   return "its input and log are in that folder";
 }
 
-// Space left for an ordinary user, in bytes; a large number where the system does not say.
+// Free disk space for an ordinary user in bytes; a large number if it is unknown.
 double free_bytes(const std::string& folder) {
   struct statvfs status {};
   if (::statvfs(folder.c_str(), &status) != 0) return 1e18;
@@ -218,7 +218,7 @@ void run_lammps(const std::string& folder, const std::string& name, const std::s
       break;
   }
   if (end.code != 0) fail(fmt::format("stopped with status {}", end.code), "");
-  // It does not look at the result of its own writes, so a full disk shows only by what is missing.
+  // LAMMPS does not check its own writes: a full disk shows only by incomplete files.
   if (read_if_there(base + ".log").find("Total wall time") == std::string::npos) {
     const bool full = free_bytes(place) < 1e5;
     fail(full ? "could not write its log: the disk is full" : "left an incomplete log",

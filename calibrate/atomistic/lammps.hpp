@@ -1,5 +1,5 @@
-// LAMMPS as a child process. Debian's liblammps ends the calling process on an error, so `lmp` runs on its own, in
-// a folder of its own, where its input, log and screen output stay.
+// LAMMPS as a child process, since Debian's liblammps ends the calling process on an error. Each run has a folder
+// with its input, log and screen output.
 #pragma once
 
 #include <functional>
@@ -25,13 +25,13 @@ struct LammpsOptions {
   std::function<bool()> interrupted;  // asked often; ends the child where it says true. May be empty
 };
 
-// What went wrong in the child: its own ERROR line, the last command, the folder, and a remedy. Exit code 3.
+// Failure of the child: its ERROR line, its last command, the folder, and a remedy. Exit code 3.
 class LammpsError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-// Version, packages and pair styles of the program. Throws InputError with the apt line where there is none.
+// Version, packages and pair styles of the program. Throws InputError with the apt line if there is no LAMMPS.
 LammpsVersion lammps_version(const LammpsOptions& options);
 
 // Writes `input` to folder/name.in and runs it on one core with the folder as working directory; output in

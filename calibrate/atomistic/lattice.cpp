@@ -80,7 +80,7 @@ std::vector<Site> strip_sites(Chirality c, long hexagons) {
     const long offset = second ? c.n - c.m : 0;
     const long first = ceil_div(-offset, 3 * g), last = ceil_div(3 * hexagons - offset, 3 * g);
     for (long k = first; k < last; ++k) {
-      // All (i, j) of height k g differ by multiples of C/g; g of them make one turn.
+      // All (i, j) of height k g differ by multiples of C/g, so that there are g of them around the tube.
       for (long turn = 0; turn < g; ++turn) {
         long i = -y * k + turn * (c.n / g), j = x * k + turn * (c.m / g);
         const long turns = floor_div(arc(c, i, j), full_arc(c));  // bring it next to the seam

@@ -4,15 +4,15 @@
 // hexagon at 0 and (a1 + a2)/3. The chiral vector C = n a1 + m a2 rolls up to the circumference, in the sense in
 // which the azimuth phi grows. (n,m) and (m,n) are mirror images.
 //
-// Of a lattice vector V = p a1 + q a2 two integers matter,
+// A lattice vector V = p a1 + q a2 is described by two integers,
 //   height  C x V = (n q - m p)              in units of  a^2 sqrt(3)/2 : along the axis
 //   arc     C . V = (2 n p + 2 m q + n q + m p)  in units of  a^2/2     : around it
 //
 // Any V that is not parallel to C may serve as the period. Its axial part is the length of the cell; its
 // circumferential part V.C/|C| is nonzero for all but the multiples of the translational vector, and then the cell
 // is periodic along z only when the tube is uniformly twisted by
-//   rate = -(V.C/|C|) / (r V.T)     (rad per length, T the unit vector of the axis),
-// which the atoms returned here are. So a twisted tube is an exactly periodic cell with |n q - m p| hexagons.
+//   rate = -(V.C/|C|) / (r V.T)     (rad per length, T the unit vector of the axis).
+// The returned atoms have this twist. So a twisted tube is an exactly periodic cell with |n q - m p| hexagons.
 // Source: Saito, Dresselhaus, Dresselhaus, Physical Properties of Carbon Nanotubes (1998), DOI 10.1142/p080.
 #pragma once
 
@@ -54,8 +54,8 @@ std::vector<Site> strip_sites(Chirality c, long hexagons);
 // Height of an atom, exactly, in thirds of that of one hexagon.
 long height_in_thirds(Chirality c, const Site& site);
 
-// How the sheet is put on a cylinder. The shifts are those of the second sublattice against the first, which a
-// relaxed chiral tube has.
+// The cylinder on which the sheet is rolled. The shifts move the second sublattice against the first; a relaxed
+// chiral tube has such shifts.
 struct TubeShape {
   double radius = 0;              // nm
   double length_per_hexagon = 0;  // nm, of the axis
@@ -76,7 +76,7 @@ struct TubeCell {
   double twist = 0;            // rad/nm, uniform, with respect to the rolled sheet; right-handed positive
 };
 
-// The cell of period V, of a sheet of lattice constant a. Throws std::invalid_argument where V is parallel to C.
+// The cell of period V, of a sheet of lattice constant a. Throws std::invalid_argument if V is parallel to C.
 TubeCell tube_cell(Chirality c, LatticeVector period, double a = graphene_lattice_constant);
 
 // Lattice vectors whose cell is at least min_length and at most max_length long, sorted by twist, with |twist|

@@ -50,8 +50,8 @@ std::vector<std::string> split(const std::string& text, char separator) {
   return parts;
 }
 
-// LAMMPS_POTENTIALS, where it is set; else where distributions put the files. Not both: a file that is missing
-// where the user looks must not be replaced by another.
+// Folders of potential files: LAMMPS_POTENTIALS if it is set, else the usual folders of distributions. Not both: if
+// a file is missing in the user's folder, another one must not replace it.
 std::vector<std::string> potential_folders() {
   if (const char* chosen = std::getenv("LAMMPS_POTENTIALS"); chosen && *chosen) return split(chosen, ':');
   return {"/usr/share/lammps/potentials", "/usr/local/share/lammps/potentials"};
@@ -121,7 +121,7 @@ Potential user_potential(const std::string& path) {
   potential.file = fs::absolute(path).lexically_normal().string();
   potential.file_hash = hash_hex(content);
   potential.reference = fmt::format("pair_style and pair_coeff lines of {}", fs::path(path).filename().string());
-  potential.cutoff = 1.2;  // not known: that of the common Lennard-Jones tails
+  potential.cutoff = 1.2;  // unknown: the cutoff of common Lennard-Jones tails is taken
 
   const std::string folder = fs::path(potential.file).parent_path().string();
   int number = 0;
@@ -135,14 +135,14 @@ Potential user_potential(const std::string& path) {
     std::istringstream stream(line);
     for (std::string word; stream >> word;) words.push_back(word);
     if (words.empty()) continue;
-    // Anything else could change the units, the box or the atoms behind our back.
+    // Other commands could change the units, the box or the atoms.
     if (words[0] != "pair_style" && words[0] != "pair_coeff" && words[0] != "pair_modify")
       throw InputError({path, number, words[0]}, "only pair_style, pair_coeff and pair_modify lines may stand here",
                        "remove this line");
     if (words.size() < 2) throw InputError({path, number, words[0]}, "has no arguments", "write the whole command");
     if (words[0] == "pair_style" && potential.pair_style.empty()) potential.pair_style = words[1];
     has_coefficients = has_coefficients || words[0] == "pair_coeff";
-    // File names are meant from the user's folder; LAMMPS starts in another one.
+    // File names are relative to the user's folder; LAMMPS starts in another one.
     for (std::size_t i = 1; i < words.size(); ++i) {
       std::error_code ignored;
       const fs::path beside = fs::path(folder) / words[i];

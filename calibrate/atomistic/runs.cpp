@@ -37,7 +37,7 @@ std::string data_file(const std::vector<Vector3>& atoms, double half_width, doub
 
 void write_data(const RunContext& run, const std::string& name, const std::string& content) {
   std::error_code code;
-  std::filesystem::create_directories(run.folder, code);  // write_file_atomically tells what went wrong
+  std::filesystem::create_directories(run.folder, code);  // write_file_atomically() reports an error
   write_file_atomically(run.folder + "/" + name, content);
 }
 
@@ -75,7 +75,8 @@ std::vector<std::vector<double>> read_results(const RunContext& run, const std::
 }
 
 void check_convergence(RunContext& run, const std::string& what, double force, double energy) {
-  // f^2/2K is what a mode of stiffness K can still give; 100 eV/nm^2 is softer than all but a long tube's bending.
+  // A residual force f leaves an energy f^2/2K in a mode of stiffness K. Only the bending of a long tube is softer
+  // than 100 eV/nm^2.
   const double left = 0.5 * force * force / 100;
   if (left > 1e-3 * energy)
     run.warnings.push_back(

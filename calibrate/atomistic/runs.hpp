@@ -11,7 +11,7 @@ namespace ropewalk {
 
 inline constexpr double angstrom = 0.1;  // nm: LAMMPS's metal units
 
-// The tube that strains, twists and energies are counted from.
+// The reference tube for strains, twists and energies.
 struct RelaxedTube {
   TubeShape shape;                // at its natural twist
   double energy_per_hexagon = 0;  // eV
@@ -40,20 +40,20 @@ struct CellResult {
 // Radius, length and inner shift of the untwisted tube at zero axial force.
 RelaxedTube relax_tube(RunContext& run);
 
-// The periods of the cells of stretch and twist: untwisted, and two twists of either sign.
+// Periods of the cells for stretch and twist: untwisted, and two twists of either sign.
 std::vector<LatticeVector> stretch_twist_periods(Chirality c, const Potential& potential,
                                                  const StiffnessOptions& options);
 
 // Cells over the windows of the options, strains and twists of both signs.
 std::vector<CellResult> stretch_twist_cells(RunContext& run, const RelaxedTube& start);
 
-// The same cells counted from a tube.
+// The same cells relative to a reference tube.
 std::vector<AtomisticRow> stretch_twist_rows(const std::vector<CellResult>& cells, const RelaxedTube& tube);
 
 // Short and long finite tubes bent to several curvatures.
 std::vector<AtomisticRow> bend_rows(RunContext& run, const RelaxedTube& tube, double largest_curvature);
 
-// Incremental runs, minutes. Appends their rows.
+// Incremental runs, which take minutes. Appends their rows.
 Envelope measured_envelope(RunContext& run, const RelaxedTube& tube, const Stiffness& stiffness,
                            std::vector<AtomisticRow>& rows);
 
@@ -61,11 +61,11 @@ Envelope measured_envelope(RunContext& run, const RelaxedTube& tube, const Stiff
 std::string header_commands(const std::string& boundary, double skin);
 std::string data_file(const std::vector<Vector3>& atoms, double half_width, double z_low, double z_high);
 void write_data(const RunContext& run, const std::string& name, const std::string& content);
-// Numbers that a run printed to folder/name.dat, `columns` to a line. Throws LammpsError where there are fewer
-// than `least` lines, or more than `most`.
+// Numbers that a run printed to folder/name.dat, `columns` per line. Throws LammpsError for fewer than `least`
+// lines or more than `most`.
 std::vector<std::vector<double>> read_results(const RunContext& run, const std::string& name, std::size_t least,
                                               std::size_t most, std::size_t columns);
-// Warns where the forces left by the minimiser (eV/nm) could hide more than a thousandth of the energy (eV).
+// Adds a warning if the residual forces of the minimiser (eV/nm) may stand for more than 1e-3 of the energy (eV).
 void check_convergence(RunContext& run, const std::string& what, double force, double energy);
 void run_stage(RunContext& run, const std::string& name, const std::string& input);
 

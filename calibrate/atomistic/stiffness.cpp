@@ -15,9 +15,10 @@ namespace {
 
 constexpr double faceting_diameter = 2.0;  // nm: wider tubes press each other flat
 constexpr double slender_diameter =
-    0.5;  // nm: narrower ones have bonds far from those the potentials were made for
+    0.5;  // nm: bonds of narrower tubes are far from those to which the potentials were fitted
 
-// The bend window: half of the curvature at which the moment is 1 % off, which leaves the quartic term visible.
+// The bend window: half of the curvature at which the moment is 1 % off, large enough for the quartic term to be
+// fitted.
 double default_bend_strain(double radius) { return std::min(0.02, 0.007 / radius); }
 
 InputError bad_option(const char* key, const std::string& what, const std::string& remedy) {
@@ -51,7 +52,7 @@ void check_options(const StiffnessOptions& o) {
                      "the defaults are 6 and 10 nm");
 }
 
-// Said before the first LAMMPS starts, not after minutes.
+// Checks of the options before the first LAMMPS run, since an error after minutes would cost time.
 void check_size(Chirality c, const Potential& potential, const StiffnessOptions& options) {
   double atoms = (options.long_length + 2 * held_band(potential)) * atoms_per_length(c);
   // A rough bound first: the lattice vectors of a huge tube are many.
@@ -86,7 +87,7 @@ void timed(double& seconds, const Work& work) {
   seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-// Counts from the tube that the fit says is free of force and torque.
+// Makes the tube that is free of force and torque according to the fit the new reference.
 void move_reference(RelaxedTube& tube, const Stiffness& fitted, double energy_per_length) {
   const double hexagon = 2 / fitted.atoms_per_length.value;
   tube.energy_per_hexagon += energy_per_length * tube.shape.length_per_hexagon;
@@ -122,7 +123,7 @@ Stiffness measure_stiffness(Chirality c, const Potential& potential, const std::
   tell("stretching and twisting periodic cells");
   const std::vector<CellResult> cells = stretch_twist_cells(run, tube);
   timed(out.fit_seconds, [&] {
-    // Again and again: a fit finds the tube that the next one counts from.
+    // Repeated, since each fit gives the reference tube of the next.
     for (int round = 0; round < 3; ++round) {
       const std::vector<std::string> warnings = out.warnings;
       out.rows = stretch_twist_rows(cells, tube);

@@ -11,9 +11,9 @@
 // and two lengths are differenced, which takes the ends out. Energies are fitted with fit_least_squares. Units eV,
 // nm, rad.
 //
-// Standard errors add in squares that of the fit and half of the spread between fits over smaller windows and of
-// lower order. For potentials with an angular spline (AIREBO, REBO) the spread is the larger part by far: the
-// spline has a knot at 120 degrees, the angle of the unstrained sheet.
+// The square of a standard error is the sum of two squares: the error of the fit, and half of the spread between
+// fits over smaller windows and of lower order. For potentials with an angular spline (AIREBO, REBO) the spread
+// dominates, since the spline has a knot at 120 degrees, the angle of the unstrained sheet.
 #pragma once
 
 #include <functional>
@@ -32,11 +32,11 @@ struct Measured {
   double standard_error = 0;
 };
 
-// Chiralities that the calibration refuses, before LAMMPS starts.
+// The calibration refuses chiralities beyond these limits before LAMMPS starts.
 inline constexpr double smallest_diameter = 0.3;  // nm: below it atoms across the tube are within reach of bonds
 inline constexpr int most_atoms = 20000;          // of a cell: a minute each
 
-// One relaxed configuration. The table of all of them is calibration.csv, which a person can read and re-fit.
+// One relaxed configuration, a row of the table NAME-stiffness.csv.
 struct AtomisticRow {
   std::string kind;      // "stretch-twist", "bend-short", "bend-long", or an envelope run
   double length = 0;     // nm: of the cell at zero strain of the relaxed tube, or of the bent free part
@@ -60,7 +60,7 @@ struct StiffnessOptions {
   std::function<void(const std::string&)> progress;  // one line per stage
 };
 
-// Beyond these the rigid-element model is no longer the tube.
+// Limits beyond which the model no longer describes the tube.
 struct Envelope {
   Measured kink_curvature;    // 1/nm
   Measured twist_collapse;    // radius times twist
@@ -96,14 +96,14 @@ struct Stiffness {
   double lammps_seconds = 0, fit_seconds = 0;
 };
 
-// The whole atomistic half of a calibration; files stay in `folder`. Throws InputError, LammpsError.
+// The atomistic part of a calibration. Files stay in `folder`. Throws InputError, LammpsError.
 Stiffness measure_stiffness(Chirality c, const Potential& potential, const std::string& folder,
                             const StiffnessOptions& options);
 
 // Scaling rules for the envelope, from incremental LAMMPS runs on (10,10) and their checks on other tubes.
 Envelope scaled_envelope(double radius);
 
-// What the head of a table says, one "# key: value" line each.
+// The head of a table, one "# key: value" line each.
 struct AtomisticOrigin {
   Chirality chirality;
   std::string potential, potential_hash, lammps;
@@ -114,12 +114,12 @@ std::string atomistic_csv(const std::vector<AtomisticRow>& rows, const Atomistic
 // Throws InputError with file and line.
 std::vector<AtomisticRow> read_atomistic_csv(const std::string& path, AtomisticOrigin* origin = nullptr);
 
-// The two fits on their own, so that a table can be fitted again. They fill the residuals of their rows, and
-// throw InputError where the rows do not suffice.
+// The two fits alone, so that a table can be fitted again. They fill the residuals of their rows and throw
+// InputError if there are too few rows.
 void fit_stretch_twist(std::vector<AtomisticRow>& rows, Stiffness& out);
 void fit_bend(std::vector<AtomisticRow>& rows, Stiffness& out);
 
-// Replaces the 1 % limits of the envelope by those that follow from the anharmonic terms, where these are known.
+// Replaces the 1 % limits of the envelope by limits from the anharmonic terms, if these are known.
 void limits_from_terms(const Stiffness& stiffness, Envelope& envelope);
 
 }  // namespace ropewalk

@@ -15,7 +15,7 @@ constexpr double pi = units::pi;
 constexpr double skin = 0.04;  // nm; nothing moves far in these cells
 constexpr int strain_points = 7;
 
-// All atoms of a uniform cell are equivalent, so the minimiser works on three numbers in truth (radius and inner
+// All atoms of a uniform cell are equivalent: the minimiser effectively varies three numbers (radius and inner
 // shift) and converges to rounding in some tens of steps.
 constexpr const char* minimiser =
     "min_style cg\n"
@@ -46,9 +46,9 @@ std::vector<Vector3> atoms_of(Chirality c, long hexagons, const TubeShape& shape
   return atoms;
 }
 
-// The shortest cell whose shear is near enough to the wanted one; the nearest where none is.
+// The shortest cell whose shear is close to the wanted one; otherwise the closest cell.
 LatticeVector cell_near(Chirality c, double shear, double tolerance, double min_length) {
-  // A step around the circumference is at least so fine that one of these lengths does it.
+  // Shears on the lattice are fine enough that one of these lengths is close.
   const double step = graphene_lattice_constant;
   const double longest = std::max(1.3 * min_length, 2.5 * step / std::max(std::abs(shear), tolerance));
   const double radius = tube_radius(c);
@@ -73,7 +73,7 @@ LatticeVector untwisted_cell(Chirality c, double min_length) {
   const LatticeVector t = translation_vector(c);
   const double length = translational_period(c);
   const int copies = std::max(1, static_cast<int>(std::ceil(min_length / length - 1e-9)));
-  // A tube with a long period is served by a cell with next to no twist instead.
+  // A tube with a long period gets a cell with a very small twist instead.
   if (length > std::max(8.0, 2 * min_length)) return cell_near(c, 0, 2e-4, min_length);
   return {copies * t.p, copies * t.q};
 }
@@ -114,7 +114,7 @@ void find_inner_shift(Chirality c, const std::vector<Site>& sites, const std::ve
   shape.height_shift = (height[1] - height[0]) * per_atom;
 }
 
-// The rolled sheet is within 10 % of every relaxed tube; a potential without that minimum gives anything.
+// The rolled sheet is within 10 % of every relaxed tube. A potential without this minimum may give any result.
 void check_still_a_tube(const RunContext& run, double radius_ratio, double length_ratio) {
   if (std::abs(radius_ratio - 1) < 0.25 && std::abs(length_ratio - 1) < 0.15) return;
   throw LammpsError(

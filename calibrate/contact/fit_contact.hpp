@@ -12,7 +12,7 @@
 
 namespace ropewalk {
 
-// A curve of the integral beside the fit, for tables and plots.
+// A point of the integral with the fit, for tables and plots.
 struct ContactPoint {
   double distance = 0;  // nm: rho, R
   double angle = 0;     // rad; crossing angle, 0: parallel
@@ -33,7 +33,7 @@ struct LineFit {
 };
 LineFit fit_line(const AtomLaw& law, const Shell& i, const Shell& j, const FitOptions& options = {});
 
-// All radii of the range, equal and unequal.
+// The universal law, fitted to all pairs of radii of the range, equal and unequal.
 struct UniversalFit {
   UniversalLine law;
   FitResult fit;  // the rows one after the other

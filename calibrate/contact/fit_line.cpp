@@ -38,7 +38,7 @@ void add_curves(const PairIntegral& integral, const LineTargets& targets, LineFi
 
 FitResult fit_density(const LineTargets& targets, const AtomLaw& law, double unit, const FitOptions& options,
                       LineDensity& density) {
-  // The core begins at 0.59 sigma: h + c stays above 0.1 sigma. p and q apart, or K diverges.
+  // The core begins at 0.59 sigma, so that h + c stays above 0.1 sigma. p and q must differ, or K diverges.
   const double sigma = law.sigma;
   const std::vector<FitParameter> box = {{"K", 6 * unit, 0.5 * unit, 60 * unit},
                                          {"s", 0.8 * sigma, 0.3 * sigma, 3 * sigma},

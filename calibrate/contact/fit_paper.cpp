@@ -1,5 +1,5 @@
-// The published one-point form against the integral. Its 11 parameters are not independent of one another for any
-// one of the targets, so all are fitted at once, to three kinds of energies, each over its own well:
+// Fit of the published one-point form to the integral. No single kind of energy determines its 11 parameters. So
+// all are fitted together, to three kinds of energies, each over its own well:
 //   rows      two parallel rows of elements, at several shifts along each other: they should slide
 //   crossings two rows at 30, 60 and 90 degrees, the mean over the place of the crossing on the elements
 //   pairs     two parallel elements alone, at several shifts: these fix Theta
@@ -20,7 +20,7 @@ constexpr double inside = 0.05;      // nm inside of the minimum
 constexpr double pair_weight = 0.3;  // of a pair alone: rows and crossings are what a rope consists of
 constexpr double least_theta = 0.1;  // the reader of parameter sets asks for 0.05
 
-// One pair of elements, as the law sees it.
+// Separation and axes of one pair of elements.
 struct Pose {
   double r, p, q, c, weight;
 };
@@ -57,8 +57,8 @@ std::vector<Pose> row_poses(double distance, double shift, double length, double
   return poses;
 }
 
-// Two rows crossing, the mean over the place of the crossing along each: three places on an element each way, of
-// which those turned by half a turn about the normal are alike.
+// Two crossing rows, averaged over the position of the crossing: three positions on an element in each direction.
+// Positions that differ by half a turn about the normal are equivalent.
 std::vector<Pose> crossing_poses(double distance, double angle, double length, double reach) {
   std::vector<Pose> poses;
   const Vector3 ni(1, 0, 0), nj(std::cos(angle), std::sin(angle), 0);
@@ -136,7 +136,8 @@ class PaperTargets {
 
 // --- Parameters -------------------------------------------------------------------------------------------
 
-// What is kept of the published form, with the two numbers that depend on the gap carried over to this radius.
+// The constants of the published form that are not fitted. The two that depend on the gap are converted to this
+// radius.
 PaperContact frame(double radius, double spacing) {
   PaperContact law;
   const double gap = spacing / radius - 2;             // D of the well
@@ -148,9 +149,9 @@ PaperContact frame(double radius, double spacing) {
   return law;
 }
 
-// A, B and C_gamma change by powers of ten along with the exponents. The search therefore runs in what they mean:
-// place and depth of the well of V, and the strength of the crossing term there; a second fit, in the parameters
-// themselves, starts from its end and gives the standard errors.
+// A, B and C_gamma change by powers of ten along with the exponents. The search therefore varies three other
+// quantities: position and depth of the well of V, and the strength of the crossing term there. A second fit in the
+// parameters themselves starts from its result and gives the standard errors.
 class Meaning {
  public:
   Meaning(double radius, const Well& well, double length)
@@ -195,7 +196,7 @@ void set_form(const std::vector<double>& p, PaperContact& law) {
   law.delta = p[10];
 }
 
-// Around the end of the search; the exponents and angular terms keep their box.
+// Bounds around the result of the search; exponents and angular terms keep their bounds.
 std::vector<FitParameter> box_around(const std::vector<double>& p, std::vector<FitParameter> box) {
   const char* const names[] = {"A", "B", "alpha", "beta", "C1", "C2", "C3", "C4", "C5", "C_gamma", "delta"};
   for (std::size_t k = 0; k < box.size(); ++k) {
@@ -214,7 +215,7 @@ double theta_factor(const PaperContact& law, double theta) {
   return sum;
 }
 
-// What a parameter set must keep, as residuals that rise from 0 where it is broken.
+// Penalties: residuals that are 0 while a condition on parameter sets holds and rise when it is violated.
 constexpr std::size_t limits = 3;
 void add_limits(const PaperContact& law, double* out) {
   double least = 1;
@@ -275,7 +276,7 @@ PaperFit fit_paper(const AtomLaw& law, const Shell& shell, double element_length
   const auto by_meaning = [&](const std::vector<double>& p, std::vector<double>& r) {
     residuals(meaning.parameters(p, out.law.epsilon), r);
   };
-  // Every start tried ended at the same place: two are enough, and the search takes seconds.
+  // All starts that were tried gave the same result: two are enough, and the search takes seconds.
   FitOptions few = options;
   few.starts = std::min(options.starts, 2);
   few.max_evaluations = std::min(options.max_evaluations, 5000);

@@ -29,7 +29,7 @@ void set_rows(const std::vector<double>& p, UniversalLine& law) {
     for (double& a : *row) a = *value++;
 }
 
-// Around the values of a tube of middle radius; x lies between 0.2 and 1.2, y below 0.3.
+// Bounds around the values of a tube of medium radius; x lies between 0.2 and 1.2, y below 0.3.
 std::vector<FitParameter> box() {
   struct Range {
     const char* name;
@@ -56,7 +56,7 @@ LineDensity density_of(const UniversalLine& law, const Pair& pair) {
   return law.density(pair.i.radius, pair.i.density, pair.j.radius, pair.j.density);
 }
 
-// h + c must stay positive at the core and p above q: elsewhere there is no law.
+// The law is defined only if h + c is positive at the core and p is above q.
 bool sound(const LineDensity& d) { return d.core_gap + d.c > 0.05 * d.s && d.s > 0 && d.p > d.q + 0.2 && d.q > 1; }
 
 FitResult fit_rows(const std::vector<Pair>& pairs, UniversalLine& law) {

@@ -18,7 +18,7 @@ namespace {
 constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr std::size_t order = 96;  // of the Chebyshev series
 
-// Places above `from` where E' has a kink, and its end: those of circles touching at the cutoff.
+// Distances R above `from` at which E' has a kink or ends: the two circles then touch at the cutoff.
 std::vector<double> parts(const AtomLaw& law, const Shell& i, const Shell& j, double from) {
   std::vector<double> edges = {from};
   const double sum = i.radius + j.radius, difference = std::fabs(i.radius - j.radius);
@@ -33,8 +33,8 @@ std::vector<double> parts(const AtomLaw& law, const Shell& i, const Shell& j, do
   return edges;
 }
 
-// int_from^inf f(R, sqrt(R^2 - from^2)) dR, in parts; `from` is the first edge. R = from / cos(angle) takes away
-// the root at `from`.
+// int_from^inf f(R, sqrt(R^2 - from^2)) dR, in parts; `from` is the first edge. The substitution R = from /
+// cos(angle) removes the root at `from`.
 template <class F>
 double integrate_outwards(const std::vector<double>& edges, F f) {
   double sum = 0;
@@ -49,7 +49,8 @@ double integrate_outwards(const std::vector<double>& edges, F f) {
   return sum;
 }
 
-// Place in a part (0 to 1) to distance and back. A part is crowded at both ends; one without end is stretched.
+// Maps a coordinate in a part (0 to 1) to a distance and back. Points are dense at both ends of a part; an infinite
+// part is stretched.
 struct Part {
   double from, to, contact;
   double distance(double x) const {
@@ -84,7 +85,7 @@ PairIntegral::PairIntegral(const AtomLaw& law, const Shell& i, const Shell& j, d
     const PairIntegral& self;
     Part part;
   };
-  // The energies may throw, through the loop below.
+  // The integrand may throw through gsl_cheb_init(), so that the series needs an owner.
   const std::unique_ptr<gsl_cheb_series, void (*)(gsl_cheb_series*)> series(gsl_cheb_alloc(order), gsl_cheb_free);
   for (std::size_t k = 0; k + 1 < edges_.size(); ++k) {
     Task task{*this, {edges_[k], edges_[k + 1], contact_}};
@@ -141,7 +142,7 @@ Well PairIntegral::crossed_well() const {
   return {at, crossed(at)};
 }
 
-// The nearest place where a slope turns from negative to positive.
+// The smallest distance at which the slope changes from negative to positive.
 double PairIntegral::zero(const std::function<double(double)>& slope) const {
   constexpr double step = 0.02;
   double a = nearest(), b = a + step;

@@ -1,4 +1,4 @@
-// The surface integrals of one pair of tubes, tabulated once so that a fit can ask for many points.
+// The surface integrals of one pair of tubes, tabulated once so that a fit can evaluate many points.
 //
 // Only the slope E'(R) of the parallel energy is computed; the rest are integrals of it,
 //   E(R) = -int_R^inf E'(S) dS,    X(R) = E(R, gamma) sin(gamma) = int E(sqrt(R^2 + t^2)) dt,
@@ -16,7 +16,7 @@ namespace ropewalk {
 
 class PairIntegral {
  public:
-  // From the gap `nearest` outwards; 0: 0.4 sigma.
+  // Tabulates from the gap `nearest` (nm) outwards; 0 means 0.4 sigma.
   PairIntegral(const AtomLaw& law, const Shell& i, const Shell& j, double nearest = 0);
 
   double nearest() const { return edges_.front(); }  // of R, nm

@@ -8,8 +8,8 @@
 namespace ropewalk {
 namespace {
 
-constexpr double inside = 0.05;   // nm inside of the minimum, up to which a fit is judged
-constexpr double deepest = 0.1;   // and up to which it is made
+constexpr double inside = 0.05;   // nm inside of the minimum: the error is evaluated from here outwards
+constexpr double deepest = 0.1;   // nm inside of the minimum: the fit uses distances from here outwards
 constexpr std::size_t order = 5;  // nodes between two distances of the grid
 
 // Nodes of Gauss and Legendre on [0, 1], and the polynomials that are 1 at one of them and 0 at the others.
@@ -29,7 +29,7 @@ struct Panel {
   }
 };
 
-// Full weight where the energy is negative; less where a small shift of the wall makes a large difference.
+// Weight 1 where the energy is negative, less at the repulsive wall, where a small shift makes a large difference.
 double weight(double energy, double well) { return 1 / (std::fabs(well) + 2 * std::max(energy, 0.0)); }
 
 }  // namespace
@@ -55,7 +55,7 @@ double unit_of_K(const AtomLaw& law, const Shell& i, const Shell& j) {
 
 LineTargets::LineTargets(const PairIntegral& integral, double contact, const LineGaps& gaps)
     : parallel_well(integral.parallel_well()), crossed_well(integral.crossed_well()) {
-  // A grid on which the place lies up to which a fit is judged: there the error is steepest.
+  // The grid contains the smallest distance at which the error is evaluated, since the error is steepest there.
   const double end = contact + gaps.cutoff, judged = parallel_well.distance - inside;
   const double outer = std::ceil((end - judged) / 0.02), step = (end - judged) / outer;
   const double inner = std::ceil((judged - crossed_well.distance + deepest) / step);
@@ -88,7 +88,7 @@ void LineTargets::add_nodes(double end) {
     const double R = distance_[row];
     for (std::size_t k = row; k < panels; ++k)
       for (std::size_t n = 0; n < order; ++n)
-        // t = sqrt(rho^2 - R^2) takes the root away.
+        // The substitution t = sqrt(rho^2 - R^2) removes the root.
         node_parallel_[row * node_.size() + k * order + n] =
             2 *
             integrate_both_ends([&](double t) { return panel.basis(n, (std::hypot(R, t) - distance_[k]) / step); },

@@ -1,4 +1,4 @@
-// Quadrature by GSL: adaptive, and with nodes fixed for integrands that are smooth but at the ends.
+// Quadrature by GSL: adaptive, and with fixed nodes for integrands that are smooth except at the ends.
 #pragma once
 
 #include <gsl/gsl_errno.h>
@@ -16,8 +16,8 @@ namespace ropewalk {
 
 inline double square(double x) { return x * x; }
 
-// Gauss-Legendre nodes on [0, 1], crowded like squares towards both ends: roots and logarithms at the cutoff,
-// which lie there, are then integrated to many digits.
+// Gauss-Legendre nodes on [0, 1], quadratically dense towards both ends, so that roots and logarithms at the ends
+// are integrated to many digits.
 class Nodes {
  public:
   static const Nodes& get() {
@@ -73,7 +73,7 @@ class Quadrature {
     gsl_error_handler_t* handler = gsl_set_error_handler_off();
     const int status = gsl_integration_qags(&g, a, b, absolute, 1e-9, limit, work_.get(), &result, &error);
     gsl_set_error_handler(handler);
-    // Rounding may keep it from the last digits; more than that is a failure.
+    // Rounding may prevent the last digits; a larger error is a failure.
     if (status != GSL_SUCCESS && error > 1e3 * absolute + 1e-6 * std::fabs(result))
       throw std::runtime_error(std::string("van der Waals integral: quadrature failed (") + gsl_strerror(status) +
                                ")");

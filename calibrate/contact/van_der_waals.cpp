@@ -49,7 +49,7 @@ struct AtomAndLine {
     const double x2 = square(law.sigma / d), x6 = x2 * x2 * x2;
     const double inside = -4 * law.epsilon * x6 * (12 * x6 * c.of[6] - 6 * c.of[3]);
     if (law.cutoff == infinite) return inside;
-    // The ends of the line come nearer, and the law does not vanish there.
+    // The integrand does not vanish at the ends of the line, which move with d.
     return inside - 2 * law.energy(std::nextafter(law.cutoff, 0.0)) * d / std::sqrt(square(law.cutoff) - d * d);
   }
 };
@@ -102,7 +102,8 @@ void check(const AtomLaw& law, const Shell& i, const Shell& j, double distance) 
                                 std::to_string(i.radius + j.radius) + " nm");
 }
 
-// Energies per length below this are rounding; without a cutoff it falls with the distance as the energy does.
+// Energies per length below this value are rounding errors. Without a cutoff the value falls with the distance as
+// the energy does.
 double negligible(const AtomLaw& law, const Shell& i, const Shell& j, double distance) {
   const double gap = distance - i.radius - j.radius;
   const double x = law.cutoff < infinite ? 1 : law.sigma / std::max(law.sigma, gap);
@@ -182,7 +183,8 @@ double crossed_energy(const AtomLaw& law, const Shell& i, const Shell& j, double
     const double height = distance - i.radius * std::cos(phi), offset = i.radius * std::sin(phi) * cosine;
     if (height >= reach) return 0.0;
     const auto at = [&](double s) { return potential.energy(std::hypot(s * sine + offset, height)); };
-    // Where D is that of a kink, or of the end: places along the axis, about the nearest point of the two lines.
+    // Positions along the axis, relative to the nearest point of the two lines, at which D is that of a kink or the
+    // end.
     const double middle = -offset / sine;
     std::vector<double> edges = {middle};
     for (const double D : {law.cutoff - j.radius, reach})

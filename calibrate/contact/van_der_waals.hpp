@@ -60,8 +60,8 @@ struct AtomColumn {
 double parallel_energy_of_atoms(const AtomLaw& law, const AtomColumn& i, const AtomColumn& j, double distance,
                                 double turn, double shift);
 
-// Over registries: both tubes turned, and j shifted by part of its period, by a sequence that fills the three
-// evenly whatever the tubes' symmetry. eV/nm.
+// Mean and spread over registries (eV/nm): both tubes are turned and j is shifted by a part of its period, by a
+// low-discrepancy sequence in three dimensions, which suits any symmetry of the tubes.
 struct RegistrySpread {
   double mean = 0, deviation = 0, least = 0, largest = 0;
 };

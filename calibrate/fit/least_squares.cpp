@@ -20,7 +20,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
-constexpr double on_bound = 1e-9;    // of the box: this close counts as at the bound
+constexpr double on_bound = 1e-9;    // of the box: a parameter so close to a bound is at the bound
 constexpr double rank_limit = 1e-8;  // of the largest singular value of J, columns of unit length
 constexpr double bad_point = 1e12;   // objective where a residual is not finite; elsewhere it is about 1
 
@@ -36,7 +36,8 @@ std::string joined(const std::vector<std::string>& names) {
   return all;
 }
 
-// The problem in box coordinates: every free parameter from 0 (lower) to 1 (upper). Counts, guards and remembers.
+// The problem in box coordinates: every free parameter runs from 0 (lower) to 1 (upper). Counts evaluations, checks
+// for numbers that are not finite, and keeps the best point.
 class Problem {
  public:
   Problem(const std::vector<FitParameter>& parameters, std::size_t residuals, const Residuals& function,
@@ -68,8 +69,8 @@ class Problem {
     return p_;
   }
 
-  // Residuals at x, moved into the box. False where one is not finite, or their squares overflow. Ends the run by
-  // nlopt::forced_stop at a limit, and when the caller's function throws.
+  // Residuals at x, moved into the box. Returns false if one is not finite or their squares overflow. Throws
+  // nlopt::forced_stop at a limit and if the caller's function throws.
   bool evaluate(const Vector& x, Vector& r) {
     if (evaluations >= most_evaluations_ || seconds() >= most_seconds_) throw nlopt::forced_stop();
     ++evaluations;
@@ -94,19 +95,20 @@ class Problem {
     return true;
   }
 
-  // By central differences, from r = residuals(x); the steps suit a parameter far smaller than its box too.
+  // The Jacobian by central differences about r = residuals(x). The steps also suit a parameter far smaller than
+  // its box.
   Matrix jacobian(const Vector& x, const Vector& r) {
     Matrix j(residuals(), size());
     for (Eigen::Index k = 0; k < size(); ++k) j.col(k) = column(x, r, k);
     return j;
   }
 
-  // From now on at most this share of the evaluations and of the time.
+  // Limits the following evaluations and time to this share of the total.
   void set_share(double share) {
     most_evaluations_ = static_cast<int>(share * options_.max_evaluations);
     most_seconds_ = share * options_.max_seconds;
   }
-  // For the few evaluations that describe the result.
+  // Lifts the limits for the few evaluations that describe the result.
   void lift_limits() {
     most_evaluations_ = std::numeric_limits<int>::max();
     most_seconds_ = infinite;
@@ -166,7 +168,7 @@ struct Svd {
     u.topRows(n) = svd.matrixU();
     ut = (qr.householderQ() * u).transpose();
   }
-  // Directions that the data hardly see are stretched by a finite factor.
+  // Directions that the data hardly determine are stretched by a finite factor.
   Vector floored() const { return s.cwiseMax(1e-7 * s[0]); }
 };
 
@@ -228,7 +230,7 @@ class Round {
     } catch (const nlopt::forced_stop&) {
       throw;
     } catch (const std::exception&) {
-      // Rounding, or no way down: what was found so far is in problem_.best.
+      // Limited by rounding, or no descent: the best point is in problem_.best.
     }
   }
 
@@ -254,8 +256,8 @@ bool Round::by_gradient() {
   return true;
 }
 
-// BOBYQA knows bounds on single coordinates only. So parameters that stand at a bound keep their own axis, the
-// others are combined: x_F follows x_A along the valley, and leaves the box only against a penalty.
+// BOBYQA has bounds on single coordinates only. So parameters at a bound (A) keep their own coordinate, and the
+// others (F) are combined: x_F follows x_A along the valley, and a penalty keeps it in the box.
 bool Round::by_values() {
   if (!usable_) return false;
   std::vector<Eigen::Index> inner, edge;
@@ -300,8 +302,8 @@ bool Round::by_values() {
 
 using Step = bool (Round::*)();
 
-// Rounds of one algorithm, each with coordinates made anew where the last one ended, until chi2 and x rest.
-// Returns the lowest chi2 of these rounds (the best point of the whole fit is kept by the problem).
+// Rounds of one algorithm until chi2 and x no longer change. Each round has new coordinates about the result of the
+// last one. Returns the lowest chi2 of these rounds; the problem keeps the best point of the whole fit.
 struct Descent {
   double chi2 = infinite;
   Vector x;
@@ -313,7 +315,7 @@ Descent descend(Problem& problem, const Vector& from, Step step, double toleranc
   const Vector best_x = problem.best, best_r = problem.best_r;
   Descent d;
   d.x = from;
-  // This descent's own best; the best of all is put back at its end.
+  // The best point of this descent; the best of all descents is restored at its end.
   problem.best_chi2 = infinite;
   const auto restore = [&] {
     if (problem.best_chi2 < d.chi2) d.chi2 = problem.best_chi2, d.x = problem.best;
@@ -343,7 +345,7 @@ class Starts {
  public:
   Starts(Problem& problem, std::uint64_t seed) : problem_(problem), random_(seed) {}
 
-  // The given start first; then, and where it is not finite, points of the box. False when none is finite.
+  // The start points: the given one first, then points of the box. Returns false if no residuals are finite.
   bool next(Vector& x, bool first) {
     x = problem_.start();
     Vector r;
@@ -362,7 +364,7 @@ class Starts {
   std::mt19937_64 random_;
 };
 
-// Gradient descents from every start, then the second algorithm as a witness.
+// Gradient descents from every start, then the second algorithm as a check.
 class Fit {
  public:
   Fit(Problem& problem, const FitOptions& options)
@@ -372,7 +374,7 @@ class Fit {
     const bool all = within(0.6, [&] { descend_from_starts(); });
     if (problem_.failure || problem_.best_chi2 == infinite) return;
     const bool heard = within(1.0, [&] { ask_second_algorithm(); });
-    // What a limit cut short counts only if it was needed.
+    // An algorithm that a limit stopped matters only if its result was needed.
     stopped_ = ends_.empty() || !lowest().rests || problem_.best_chi2 < lowest().chi2 - slack(lowest().chi2) ||
                (!heard && !agree_);
     cut_short_ = !all;
@@ -423,13 +425,13 @@ class Fit {
     agree_ = std::fabs(second_.chi2 - lowest().chi2) <= slack(lowest().chi2);
   }
 
-  // A tenth of the box away, towards its middle.
+  // The second algorithm starts a tenth of the box away, towards its middle.
   static Vector beside(Vector x) {
     for (double& value : x) value += value < 0.5 ? 0.1 : -0.1;
     return x;
   }
 
-  // chi2 below which residuals are rounding, beside those that a whole box brings about.
+  // chi2 below which residuals are rounding errors, relative to the change of residuals over the box.
   void set_floor() {
     Vector r;
     const Vector x = problem_.best;

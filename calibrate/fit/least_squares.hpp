@@ -1,12 +1,12 @@
-// Bounded nonlinear least squares by NLopt, hardened:
+// Bounded nonlinear least squares by NLopt, with checks:
 //
 //   minimise  chi2(p) = sum_k residual_k(p)^2   over the free parameters, lower <= p <= upper.
 //
-// Several starts (the given one first, the others drawn in the box from a fixed seed) and two algorithms that
-// must agree. A residual that is not finite makes that point bad; it never reaches the optimiser as NaN. Every
-// run ends: evaluations and wall time are limited. The standard errors are those of the linearised model at the
-// minimum, s^2 (J^T J)^-1 with s^2 = chi2 / (residuals - free parameters).
-// Source: S. G. Johnson, The NLopt nonlinear-optimization package.
+// There are several starts (the given one first, the others drawn in the box from a fixed seed) and two algorithms,
+// which must agree. If a residual is not finite, the optimiser gets a large value instead. Evaluations and wall
+// time are limited, so that every run ends. The standard errors are those of the linearised model at the minimum,
+// s^2 (J^T J)^-1 with s^2 = chi2 / (residuals - free parameters). Source: S. G. Johnson, The NLopt
+// nonlinear-optimization package.
 #pragma once
 
 #include <cstdint>
@@ -40,7 +40,7 @@ struct FitResult {
   Verdict verdict = Verdict::nothing_finite;
   std::string message;                 // one line for a person: the verdict and what to do
   std::vector<double> value;           // of all parameters, in their order
-  std::vector<double> standard_error;  // 0 for one that was not free, NaN for one that the data do not determine
+  std::vector<double> standard_error;  // 0 for a fixed parameter, NaN for one that the data do not determine
   std::vector<std::string> at_bound;   // names
   std::vector<std::string> undetermined;
   double chi2 = 0;
@@ -51,8 +51,8 @@ struct FitResult {
   bool usable() const { return verdict == Verdict::converged || verdict == Verdict::at_bound; }
 };
 
-// Throws std::invalid_argument for an empty or inverted box, a start outside of it, or fewer residuals than
-// free parameters. Everything else is told by the verdict.
+// Throws std::invalid_argument for an empty or inverted box, a start outside of it, or fewer residuals than free
+// parameters. The verdict reports all other failures.
 FitResult fit_least_squares(const std::vector<FitParameter>& parameters, std::size_t residuals,
                             const Residuals& function, const FitOptions& options = {});
 

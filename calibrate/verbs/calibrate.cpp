@@ -198,7 +198,7 @@ int calibrate_command(const CalibrateArguments& a) {
   try {
     c = calibrate(request);
   } catch (const LammpsError&) {
-    if (interrupted_by() == 0) folder.stay();  // its message names the files
+    if (interrupted_by() == 0) folder.stay();  // the error message names files in the folder
     throw;
   }
   const ParameterSet set =

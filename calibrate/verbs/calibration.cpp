@@ -162,7 +162,8 @@ void add_validity(const Calibration& c, Quantities& q) {
 
 // --- The universal law ----------------------------------------------------------------------------------
 
-// One of its error over the wells: that of the direct fit, and what the universal form adds.
+// Standard error of the universal law, relative to the wells: the error of the direct fit plus that of the
+// universal form.
 double error_against(const LineFit& direct, const LineDensity& density) {
   double worst = 0;
   const auto curve = [&](const std::vector<ContactPoint>& points, double well, double nearest, bool crossed) {
@@ -178,7 +179,8 @@ double error_against(const LineFit& direct, const LineDensity& density) {
   return worst;
 }
 
-// Of the rolled sheet, drawn to the relaxed radius: a real pair of tubes feels this much of its atoms.
+// The atoms of the rolled sheet at the relaxed radius. They show how much the energy of a real pair varies with the
+// registry.
 std::optional<RegistrySpread> registry_of(const Calibration& c) {
   if (!std::isfinite(c.request.law.cutoff)) return std::nullopt;
   const Chirality tube = c.request.chirality;
@@ -241,8 +243,8 @@ Calibration calibrate(const CalibrationRequest& request) {
 ContactSummary contact_summary(const Calibration& c) {
   const LineFit& f = c.line;
   const Stiffness& s = c.stiffness;
-  // Misfit of the closed form, and what the relaxed geometry leaves open: the spacing goes with 2 r, energies with
-  // the square of the atoms per area.
+  // Errors of the closed form and of the relaxed geometry: the spacing is proportional to 2 r, energies to the
+  // square of the atoms per area.
   const double misfit = std::fabs(f.line_parallel.distance - f.parallel.distance);
   const double area = 2 * std::hypot(s.radius.standard_error / s.radius.value,
                                      s.atoms_per_length.standard_error / s.atoms_per_length.value);

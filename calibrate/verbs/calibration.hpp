@@ -1,4 +1,4 @@
-// One calibration from chirality to parameter set: what `ropewalk calibrate` does, without its command line.
+// One calibration from chirality to parameter set: the work of `ropewalk calibrate` without its command line.
 #pragma once
 
 #include <functional>
@@ -27,10 +27,10 @@ struct Calibration {
   Stiffness stiffness;
   LineFit line;
   PaperFit paper;
-  std::optional<UniversalLine> universal;  // none: there is none for this sigma and cutoff
+  std::optional<UniversalLine> universal;  // empty: no universal law for this sigma and cutoff
   double universal_error = 0;              // of the universal law for this tube, as LineFit::error
-  // Atom by atom, two tubes side by side at the well, over all turns and shifts; over the surface integral. None
-  // without a cutoff.
+  // Energies from sums over atoms of two parallel tubes at the well, over all turns and shifts, relative to the
+  // surface integral. Empty without a cutoff.
   std::optional<RegistrySpread> registry;
   std::vector<std::string> warnings;
   double seconds = 0, paper_seconds = 0;
@@ -42,7 +42,7 @@ struct Calibration {
 // Throws InputError, LammpsError.
 Calibration calibrate(const CalibrationRequest& request);
 
-// The tables that the set came from: files beside it, so that anybody can read and fit them again.
+// The tables from which the set was made. They are files beside the set, so that anybody can fit them again.
 std::string contact_csv(const Calibration& calibration);
 std::string stiffness_csv(const Calibration& calibration);
 
@@ -51,7 +51,7 @@ ParameterSet parameter_set(const Calibration& calibration, const std::string& st
                            const std::string& contact_file);
 std::string parameter_file_comment(const Calibration& calibration);
 
-// The six numbers of the contact that a user asks for first.
+// The main numbers of the contact.
 struct ContactSummary {
   Measured pair_spacing, pair_energy, cross90_energy;  // nm, eV/nm, eV
 };
@@ -60,7 +60,7 @@ ContactSummary contact_summary(const Calibration& calibration);
 // data/contact/universal-line.toml: one law for all tubes, made by `ropewalk calibrate universal`.
 inline constexpr const char* universal_format = "ropewalk-universal-line-1";
 std::string universal_path();
-// For this atom-atom law: epsilon enters as a factor; sigma and cutoff must be those that it was fitted for.
+// The universal law for this atom-atom law. epsilon is a factor; sigma and cutoff must be those of the fit.
 std::optional<UniversalLine> universal_law(const AtomLaw& law);
 std::string universal_file(const UniversalFit& fit, const std::string& command);
 

@@ -1,4 +1,4 @@
-// `ropewalk calibrate check-shipped`: a shipped set made anew and held to the file.
+// `ropewalk calibrate check-shipped`: makes a shipped set again and compares it with the file.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -40,7 +40,7 @@ Calibration remake(const ParameterSet& set) {
   return calibrate(request);
 }
 
-// The numbers that a scene feels. Of K, s, c, p and q no single one is held: they may trade against each other.
+// The numbers that are compared. K, s, c, p and q are not compared one by one, since they are strongly correlated.
 constexpr const char* compared[] = {"tube.radius",
                                     "tube.atoms_per_length",
                                     "bond.EA",

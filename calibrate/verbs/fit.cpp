@@ -30,7 +30,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* fit_format = "ropewalk-fit-1";
 
-// A parameter that the user may free, under its name and in its unit of the parameter file.
+// A parameter that the user may fit, with its name and unit of the parameter file.
 struct Named {
   std::string name, key, unit;  // "EA", "bond.EA", "nN"
   double narrowest = 0;         // half width of the box of a parameter that starts near zero
@@ -42,13 +42,13 @@ struct FitModel {
   std::vector<FitParameter> nuisance;
   std::size_t residuals = 0;
   std::function<void(const std::vector<double>&, std::vector<double>&)> function;
-  std::string weighting;  // what a residual of 1 is
+  std::string weighting;  // meaning of a residual of 1
 };
 
 // --- Stiffness ------------------------------------------------------------------------------------------
 
 // E/L = e0 + EA/2 e^2 + C e t + GJ/2 t^2 + third-order terms + e^4 and t^4; bent: E = (EI/2 k^2 + k4 k^4) L + the
-// same two powers for the ends, which are alike in both lengths.
+// same two powers for the ends, which are equal at both lengths.
 FitModel stiffness_model(const std::string& path) {
   auto rows = std::make_shared<std::vector<AtomisticRow>>(read_atomistic_csv(path));
   double largest = 0, strain = 0, twist = 0, curvature = 0, bend = 0;
@@ -68,7 +68,7 @@ FitModel stiffness_model(const std::string& path) {
                      "name the kind of each row");
   FitModel m;
   const bool straight = largest > 0, bent = bend > 0;
-  // In units of the window's largest energy, so that all boxes are alike.
+  // In units of the largest energy of the window, so that all bounds are of the same size.
   const auto free_term = [&](const char* name, bool used) { m.nuisance.push_back({name, 0, -5, 5, used}); };
   if (straight) {
     m.named.insert(m.named.end(), {{"EA", "bond.EA", "nN", 0},
@@ -111,7 +111,7 @@ FitModel stiffness_model(const std::string& path) {
 
 // --- Contact --------------------------------------------------------------------------------------------
 
-// Each kind over the depth of its well; repulsion above it counts less the higher it is.
+// Energies of each kind are relative to the depth of its well. Higher repulsive energies have smaller weights.
 std::vector<double> weights_of(const std::vector<ContactRow>& rows) {
   std::vector<double> weights;
   for (const ContactRow& r : rows) {
@@ -259,7 +259,7 @@ void check_free(const TomlTable& top, const Settings& s, const FitModel& m) {
 
 // --- Result ---------------------------------------------------------------------------------------------
 
-// What follows from the line law, after the law has changed.
+// Quantities that follow from the line law, computed again after the law has changed.
 void renew_wells(const Settings& s, const FitResult& fit, ParameterSet& set) {
   LineDensity d = s.base->line->density;
   set_line_form(fit.value, d);
@@ -273,7 +273,7 @@ void renew_wells(const Settings& s, const FitResult& fit, ParameterSet& set) {
         q = {key, value, q.unit, fit.rms * std::fabs(value), "derived", "", "of the law; error by rms"};
 }
 
-// The base with the fitted numbers in place, from `command`.
+// The base set with the fitted numbers; `command` is recorded as their origin.
 std::string new_set(const Settings& s, const FitModel& m, const FitResult& fit, const FitArguments& a) {
   ParameterSet set = *s.base;
   for (std::size_t k = 0; k < m.named.size(); ++k)
@@ -332,7 +332,7 @@ int fit_command(const FitArguments& a) {
                                             : paper_model(a.data, *s.base);
   check_free(top, s, m);
   std::vector<FitParameter> parameters;
-  // Taken once: a table remembers which of its keys were asked for.
+  // One object only, since a table records which of its keys were read.
   const TomlTable start = top.table("start"), bounds = top.table("bounds");
   for (const Named& n : m.named) parameters.push_back(parameter_of(start, bounds, s, n));
   parameters.insert(parameters.end(), m.nuisance.begin(), m.nuisance.end());

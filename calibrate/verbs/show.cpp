@@ -28,8 +28,8 @@ const std::string* provenance(const ParameterSet& set, const std::string& key) {
   return nullptr;
 }
 
-// The table that a set names, where it lies beside it; empty where there is none. Throws InputError where it is
-// not the one that the set was made from.
+// The table that a set names, if it lies beside the set; else empty. Throws InputError if the set was made from
+// another table.
 std::string companion(const ParameterSet& set, const std::string& kind) {
   const std::string* name = provenance(set, kind + "_table");
   const std::string* hash = provenance(set, kind + "_hash");
@@ -99,7 +99,7 @@ std::string figure(Figures& figures, const LineChart& chart, const std::string& 
          "</figure>\n";
 }
 
-// The curve with its fit, and the residual below the same abscissa.
+// The curve with its fit, and the residual with the same abscissa below.
 std::string pair_of_figures(Figures& figures, const std::string& title, const ChartAxis& x, const ChartAxis& y,
                             const Points& p, const std::string& words) {
   LineChart curve;
@@ -132,11 +132,11 @@ std::string elastic_part(const ParameterSet& set, Figures& figures) {
     if (!(r.length > 0)) continue;
     const double e = r.energy / r.length, fit = (r.energy - r.residual) / r.length;
     if (r.kind == "stretch-twist") {
-      // One coordinate at a time: rows near the natural twist, and rows near no strain.
+      // One curve for each coordinate: rows near the natural twist, and rows near zero strain.
       if (std::fabs(r.twist - natural) * set.radius < 5e-4) stretch.add(100 * r.strain, e, fit);
       if (std::fabs(r.strain) < 5e-4) twist.add(r.twist - natural, e, fit);
     }
-    // What is fitted is the difference of two lengths, in which the ends are not.
+    // The fit uses the difference of two lengths, which does not contain the ends.
     if (r.kind == "bend-long")
       for (const AtomisticRow& other : rows)
         if (other.kind == "bend-short" && std::fabs(other.curvature - r.curvature) < 1e-9) {
@@ -177,7 +177,7 @@ std::string contact_part(const ParameterSet& set, Figures& figures) {
     double lowest = 0;
     for (const ContactRow& r : rows)
       if (r.kind == c.kind) lowest = std::min(lowest, r.energy);
-    // Of the wall only what is as high as the well is deep.
+    // The repulsive wall is shown up to the height that equals the depth of the well.
     for (const ContactRow& r : rows)
       if (r.kind == c.kind && r.energy < -lowest) p.add(r.distance, r.energy, r.fit);
     p.sort();
@@ -279,7 +279,7 @@ int show_command(const ShowArguments& a) {
   print_set(set);
   if (a.table_only) return 0;
   const std::string page = a.page.empty() ? set.name + ".html" : a.page;
-  // A page of this command may be made anew; nothing else is replaced.
+  // Only a page of this command may be replaced.
   if (fs::exists(page) && read_file(page).find(page_mark) == std::string::npos)
     throw InputError({page, 0, "--page"}, "exists and is not such a page", "choose another name");
   write_file_atomically(page, calibration_page(set));

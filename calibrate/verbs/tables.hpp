@@ -1,4 +1,4 @@
-// Tables of contact energies: what calibrate writes beside a set and what a user may bring to `calibrate fit`.
+// Tables of contact energies, which `calibrate` writes beside a set and `calibrate fit` reads.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@ struct ContactRow {
   double distance = 0;  // nm
   double angle = 0;     // rad
   double energy = 0;
-  double fit = 0;  // NaN where the table has no such column
+  double fit = 0;  // NaN if the table has no such column
 };
 
 std::vector<OutputColumn> contact_columns();

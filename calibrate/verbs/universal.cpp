@@ -9,7 +9,7 @@
 namespace ropewalk {
 namespace {
 
-// Equal and unequal pairs over the range in which the law is to hold.
+// Pairs of equal and unequal radii over the range of the law.
 std::vector<std::pair<double, double>> radii_to_fit() {
   const std::vector<double> radii = {0.3, 0.35, 0.42, 0.5, 0.6, 0.7, 0.85, 1.0, 1.2, 1.4};
   std::vector<std::pair<double, double>> pairs;

@@ -15,7 +15,7 @@ struct CalibrateArguments {
   double lj_cutoff = 1.2;  // nm; 0: none
   bool envelope = false;
   std::string out;   // empty: NAME.toml in the current directory
-  std::string keep;  // empty: LAMMPS's files are taken away at the end
+  std::string keep;  // empty: LAMMPS's files are removed at the end
   bool json = false;
   bool force = false;
   bool quiet = false;
@@ -57,16 +57,17 @@ int check_shipped_command(const CheckShippedArguments& arguments);
 
 // --- Shared by the verbs ---
 
-// Ctrl-C and TERM end the LAMMPS child first; temporary files go. The signal, or 0.
+// On Ctrl-C and TERM the LAMMPS child is ended first and temporary files are removed. interrupted_by() is the
+// signal, or 0.
 void catch_interrupts();
 int interrupted_by();
 
-// "12,6". Throws InputError for what is not the chirality of a tube that can be calibrated.
+// From "12,6". Throws InputError if the text is not a chirality, or if the tube cannot be calibrated.
 Chirality parse_chirality(const std::string& text);
 AtomLaw parse_atom_law(const std::string& lj, double cutoff);
 
-// A folder for LAMMPS's files: `keep`, which must be new or empty, or a temporary one that goes with this object
-// unless it is told to stay.
+// A folder for LAMMPS's files: `keep`, which must be new or empty, or a temporary folder. The destructor removes a
+// temporary folder, unless stay() was called.
 class WorkFolder {
  public:
   explicit WorkFolder(const std::string& keep);
@@ -81,7 +82,7 @@ class WorkFolder {
   bool temporary_ = false;
 };
 
-// Null where the set has no such number.
+// Null if the set has no such number.
 const Quantity* find_quantity(const ParameterSet& set, const std::string& key);
 
 // Refuses an existing file unless forced. Throws InputError.

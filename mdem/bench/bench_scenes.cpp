@@ -10,7 +10,7 @@
 namespace ropewalk {
 namespace {
 
-// Tubes of 50 elements. The larger films are alike but for their size: 100 nm^2 of the box for each tube.
+// Tubes of 50 elements. The larger films differ only in size: the box has 100 nm^2 for each tube.
 BenchScene film(const char* name, int tubes, int width, int depth) {
   return {name, fmt::format("film of {} tubes of 50 elements, {} nm x {} nm", tubes, width, depth),
           fmt::format("[film]\ntubes = {}\nwidth_nm = {}\ndepth_nm = {}\n", tubes, width, depth), 50};
@@ -21,7 +21,8 @@ BenchScene rope(const char* name, int tubes, int elements) {
           fmt::format("[rope]\ntubes = {}\nperturbation_nm = 0.0005\n", tubes), elements};
 }
 
-// From the cold, to 46 degrees on the outside, and a while held there: by then neighbours cross at 0 to 17 degrees.
+// Twisted from rest at 0 K to 46 degrees at the outermost tubes and held for a while. Neighbours then cross at 0 to
+// 17 degrees.
 BenchScene twisted(BenchScene rope) {
   rope.after = 135;
   rope.description += fmt::format(", twisted for {} ps before it is measured", rope.after);
@@ -37,7 +38,7 @@ const BenchScene* named(const std::string& name) {
 }
 
 std::string text_of(const BenchScene& s, bool paper) {
-  // A little less than half an element more or less is rounded away.
+  // The element lengths of the shipped sets; a deviation of less than half an element is rounded away.
   const double element_length = paper ? 1.356 : 1.3776;
   std::string text = fmt::format("format = \"{}\"\nname = \"{}\"\nparameters = \"{}\"\n", scene_format, s.name,
                                  paper ? "cnt-10-10-paper" : "cnt-10-10-tersoff");

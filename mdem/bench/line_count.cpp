@@ -24,7 +24,7 @@ struct Counter {
   Vector3 axis(int i) const { return axis_of(state.orientation[static_cast<std::size_t>(i)]); }
   Vector3 position(int i) const { return state.position[static_cast<std::size_t>(i)]; }
 
-  // Returns the nodes of a span within reach of element i.
+  // Returns the number of nodes of a span within reach of element i.
   int add_span(int i, const LineContact& law, const NeighbourSpan& span, RadialCount& count) const {
     const double half = line_node(law.nodes_i - 1, law.nodes_i, law.length_i), cutoff = law.density.cutoff();
     int nodes = 0;
@@ -52,8 +52,8 @@ struct Counter {
   }
 };
 
-// A place among `count`, by the golden ratio now here, now there: samples at equal distances would all lie at the
-// same few places of their tubes, where these are a multiple of it long.
+// The k-th number of a low-discrepancy sequence (golden ratio) in 0 .. count - 1. Equidistant samples would hit the
+// same few positions along every tube if the tube length were a multiple of the distance.
 std::int64_t within(std::int64_t k, std::int64_t count) {
   constexpr double golden = 0.61803398874989485;
   const double turns = static_cast<double>(k) * golden;

@@ -1,14 +1,14 @@
-// How much the kernel of the line law has to do, counted outside of it, for `bench` and the micro-benchmarks.
+// Counts of the work of the line law's kernel, made outside of the kernel, for `bench` and the micro-benchmarks.
 #pragma once
 
 #include "sim/contact/line/list.hpp"
 
 namespace ropewalk {
 
-// Numbers per element at one moment, or sums of them.
+// Numbers per element at one time, or sums of them.
 struct RadialCount {
   double spans = 0;        // within reach
-  double skipped = 0;      // out of it for now
+  double skipped = 0;      // out of reach at present
   double nodes = 0;        // of the neighbours, within reach of the element
   double evaluations = 0;  // of u, in all lanes of the vectors
   double useful = 0;       // those of nodes closer than the cutoff
@@ -16,7 +16,7 @@ struct RadialCount {
   void add(const RadialCount& other, double share);
 };
 
-// Lanes of the kernel's vectors with the instructions in use.
+// Number of lanes of the kernel's vectors with the instructions in use.
 int radial_lanes(Interaction::Precision precision);
 
 // Floating-point operations (a fused multiply-add is two) of one evaluation, that is of two nodes of two elements:

@@ -10,7 +10,8 @@ HWY_BEFORE_NAMESPACE();
 namespace ropewalk::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Independent chains: more than latency times throughput of any unit here, and no more than 16 registers hold.
+// Number of independent chains: more than latency times throughput of any unit in use, and few enough for 16
+// registers.
 constexpr int chains = 12;
 
 template <class T, int cap>
@@ -66,7 +67,7 @@ void triad(double* a, const double* b, const double* c, std::size_t n) { HWY_DYN
 
 namespace {
 
-// The best rate of some trials, per ns; each does `work` and returns how much that was.
+// The best rate (per ns) of some trials. `work` returns the number of its operations or bytes.
 template <class Work>
 double best_rate(int trials, const Work& work) {
   double best = 0;
@@ -79,26 +80,26 @@ double best_rate(int trials, const Work& work) {
 
 template <class T>
 double arithmetic_peak(int threads) {
-  constexpr std::size_t rounds = 500000;  // some ms
+  constexpr std::size_t rounds = 500000;  // takes some ms
   return best_rate(6, [&] {
     double operations = 0;
 #pragma omp parallel num_threads(threads) reduction(+ : operations)
     {
       T out[64 / sizeof(T)];
       const auto done = static_cast<double>(multiply_adds(rounds, T{0.5}, out));
-      operations += out[0] > 0 ? done : 0.0;  // so that no compiler leaves them out
+      operations += out[0] > 0 ? done : 0.0;  // uses the result, so that the compiler keeps the operations
     }
     return operations;
   });
 }
 
 double transfer_peak(int threads) {
-  // 128 MiB in each array, more than caches hold, in pieces that go out even for as many threads.
+  // 128 MiB in each array, more than the caches hold, in as many pieces for each thread.
   const std::ptrdiff_t pieces = 64 * threads, piece = (std::ptrdiff_t{1} << 24) / pieces / 8 * 8;
   const auto array = [&] { return hwy::AllocateAligned<double>(static_cast<std::size_t>(pieces * piece)); };
   const auto a = array(), b = array(), c = array();
   if (!a || !b || !c) throw std::bad_alloc();
-    // Where a thread writes first is its own memory.
+    // Memory is placed near the thread that writes to it first.
 #pragma omp parallel for schedule(static) num_threads(threads)
   for (std::ptrdiff_t i = 0; i < pieces * piece; ++i) a[i] = 1, b[i] = 2, c[i] = 3;
   return best_rate(4, [&] {

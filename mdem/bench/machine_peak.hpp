@@ -1,5 +1,5 @@
-// What the machine can do at most, with the vectors that the kernels take (use_instructions): the roofline that a
-// step is held to.
+// Peak performance of the machine with the vectors that the kernels use (use_instructions): the roofline for a
+// step.
 #pragma once
 
 #include <cstddef>
@@ -11,12 +11,12 @@ struct MachinePeak {
   double transfer = 0;    // GB/s to and from memory, of `triad`
 };
 
-// Of so many threads at once, in single precision or in double: the best of some short trials. Takes some 0.3 s
-// and, for a while, 400 MB; throws std::bad_alloc without them.
+// The peak of so many threads together, in single or double precision: the best of some short trials. Takes about
+// 0.3 s and 400 MB for a short time; throws std::bad_alloc without this memory.
 MachinePeak machine_peak(int threads, bool in_double);
 
-// Its loops. So many rounds a = a factor + 1/4 in independent chains, of which `out`, with room for 64 bytes, gets
-// the sum. Returns the operations.
+// The loops that are timed. multiply_adds() makes so many rounds of  a = a factor + 1/4  in independent chains and
+// writes their sum to `out` (64 bytes). It returns the number of operations.
 std::size_t multiply_adds(std::size_t rounds, float factor, float* out);
 std::size_t multiply_adds(std::size_t rounds, double factor, double* out);
 // a = b + 3 c, 24 bytes per entry as STREAM counts them (J. D. McCalpin, 1995). Arrays aligned to 64 bytes, n a

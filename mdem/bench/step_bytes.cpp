@@ -6,8 +6,8 @@ double step_bytes(const Simulation& simulation) {
   constexpr int state = 3 + 4 + 3 + 3, axis = 3, force = 3 + 3;  // numbers of an element
   const Interaction& in = simulation.interaction();
   const auto elements = static_cast<double>(simulation.state().size());
-  // On two levels each of the bonds' steps. There, and where the local damping waits for all forces, these are
-  // stored.
+  // Two levels of time steps make one pass per step of the bonds. Forces are stored with two levels, and with local
+  // damping, which needs the total force.
   const int passes = simulation.stepping().contact_every;
   const bool stored = passes > 1 || in.damping.local > 0;
   double sum = 2.0 * passes * (state + (stored ? force : 0)) * sizeof(double) * elements;

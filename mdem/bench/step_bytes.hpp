@@ -1,14 +1,13 @@
-// What a step moves.
+// Memory traffic of a step.
 #pragma once
 
 #include "sim/dynamics/simulation.hpp"
 
 namespace ropewalk {
 
-// Bytes of the arrays that every step goes through, each once where it is read and once where it is written: the
-// state, axes, what the kernel walks of the list, contact buffers, and forces where they are stored. About the
-// least that passes memory where nothing stays in a cache; not the rows of nodes and whatever else a thread works
-// in, nor single runs and plans of twisted ropes, nor the places at the last build.
+// Bytes of the arrays that every step reads or writes, counted once for reading and once for writing: the state,
+// axes, neighbour spans, contact buffers, and forces if they are stored. This is about the least traffic if nothing
+// stays in a cache. Not counted: scratch memory of the threads, and the positions at the last build of the list.
 double step_bytes(const Simulation& simulation);
 
 }  // namespace ropewalk

@@ -7,11 +7,11 @@
 
 namespace ropewalk {
 
-// Where the shipped sets and scenes lie: the environment variable ROPEWALK_DATA, or the source tree's data/.
+// The folder of the shipped sets and scenes: the environment variable ROPEWALK_DATA, or the source tree's data/.
 std::string data_directory();
 
 // The file of a parameter set: `name` as a file in `folder` (empty: the current one), then as the name of a
-// shipped set. Throws InputError at `place` where there is neither.
+// shipped set. Throws InputError at `place` if there is neither.
 std::string find_parameters(const std::string& name, const std::string& folder,
                             const InputError::Place& place = {"", 0, "--parameters"},
                             const std::string& data = data_directory());

@@ -48,7 +48,7 @@ InputError failure(const std::string& path, const char* what, int code) {
   return InputError({path, 0, ""}, fmt::format("{}: {}", what, std::strerror(code)), remedy_for(code));
 }
 
-// Closes on every way out; close() itself is called where its result matters.
+// Closes the file in the destructor. Call close() if its result matters.
 class Descriptor {
  public:
   explicit Descriptor(int fd) : fd_(fd) {}
@@ -68,7 +68,7 @@ class Descriptor {
   int fd_;
 };
 
-// A name in the same directory, since rename() does not cross file systems. O_EXCL makes it ours alone.
+// A new file in the same directory, since rename() does not cross file systems. O_EXCL: no other process has it.
 class TemporaryFile {
  public:
   explicit TemporaryFile(const std::string& path) : fd_(-1) {
@@ -106,8 +106,8 @@ bool write_all(int fd, std::string_view content) {
   return true;
 }
 
-// The rename itself must reach the disk as well. Some file systems cannot do this for a directory, and the
-// file is whole either way: not an error.
+// The rename must reach the disk as well. Some file systems cannot flush a directory; this is not an error, since
+// the file is whole either way.
 void flush_directory_of(const std::string& path) {
   const std::size_t slash = path.rfind('/');
   const std::string directory = slash == std::string::npos ? "." : slash == 0 ? "/" : path.substr(0, slash);

@@ -32,7 +32,7 @@ constexpr std::array<ColourColumn, 4> colour_columns = {{
     {{"twist_angle_rad", "rad", "twist angle, mean of the bonds of the element"}, &ElementColours::twist_angle},
 }};
 
-// Columns of every frame. OVITO maps these, and only these, by itself.
+// Columns of every frame. OVITO maps exactly these names to particle properties without the user's help.
 constexpr std::array<OutputColumn, 13> fixed_columns = {{
     {"id", "", "element, from 1"},
     {"mol", "", "tube, from 1"},
@@ -72,7 +72,8 @@ Box box_of(const Topology& topology, const State& state) {
 
 void append_head(Buffer& out, const Topology& topology, const State& state) {
   const auto to = std::back_inserter(out);
-  // TIMESTEP first, although LAMMPS puts TIME before it: readers that know no TIME look for TIMESTEP there.
+  // TIMESTEP comes first, although LAMMPS writes TIME before it: readers that do not know TIME expect TIMESTEP
+  // here.
   fmt::format_to(to, "ITEM: TIMESTEP\n{}\nITEM: TIME\n{}\nITEM: NUMBER OF ATOMS\n{}\n", state.step, state.time,
                  state.size());
   const Box box = box_of(topology, state);
@@ -105,7 +106,7 @@ void append_element(Buffer& out, const Topology& topology, const State& state, i
 
 // --- Dump, reading --------------------------------------------------------------------------------------
 
-// Thrown and caught in here: the file ends within a frame.
+// Thrown and caught in this file: the dump ends within a frame.
 struct CutOff {};
 
 std::string_view next_word(std::string_view& text) {
@@ -125,7 +126,7 @@ bool parse(std::string_view word, T& value) {
 
 constexpr int not_there = -1;
 
-// Where the values of a frame stand in its lines.
+// Columns of the values in the lines of a frame.
 struct Layout {
   std::vector<std::string> names;
   std::array<int, 10> fixed;
@@ -147,7 +148,7 @@ struct DumpReader::Impl {
     return error("", what, "the file was changed or damaged; restore it, or run the scene again");
   }
 
-  // A line without its newline is cut off.
+  // A last line without a newline was cut off and is not read.
   bool read_line() {
     std::getline(file, line);
     if (file.bad()) throw error("", "cannot be read", "check the disk");
@@ -159,7 +160,7 @@ struct DumpReader::Impl {
     if (!read_line()) throw CutOff();
   }
 
-  // The rest of a line that must begin so.
+  // Reads a line that must begin with this text; returns the rest.
   std::string_view item(const char* name) {
     need_line();
     return check_item(name);
@@ -220,7 +221,7 @@ struct DumpReader::Impl {
     if (!next_word(rest).empty()) throw garbled(fmt::format("more than {} columns", values.size()));
   }
 
-  // The element that a line is about; every one must come once and in its tube.
+  // The element of a line. Every element must come once and with its own tube.
   std::size_t element(const Topology& topology, const Layout& l, const std::vector<double>& values,
                       std::vector<char>& seen) const {
     const double number = values[l.fixed[id]];

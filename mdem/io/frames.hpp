@@ -19,18 +19,18 @@ struct ElementColours {
   std::vector<double> twist_angle;     // rad: mean of the adjoining bonds
 };
 
-// One frame as text of the dump format: columns of frame_columns(), the colours where they are given; TIMESTEP is
-// the step, ITEM: TIME the time in ps. The shape is not called shapex, shapey, shapez, which OVITO takes for
-// diameters.
+// One frame as text of the dump format, with the columns of frame_columns(); columns of colours that are not given
+// are left out. TIMESTEP is the step, ITEM: TIME the time in ps. The shape is not called shapex, shapey, shapez,
+// since OVITO takes these for diameters.
 std::string dump_frame(const Topology& topology, const State& state, const ElementColours& colours);
 
 struct DumpFrame {
   State state;             // velocities are not in the file: zero
-  ElementColours colours;  // those that are in the file
+  ElementColours colours;  // empty where the file has no such column
 };
 
-// Reads the frames back one after another. Throws InputError with the line of what is wrong; a frame that the
-// end of the file cuts off, as after a kill, is left out.
+// Reads the frames one after another. Throws InputError with the number of the wrong line. A last frame that is
+// incomplete, as after a kill, is left out.
 class DumpReader {
  public:
   explicit DumpReader(const std::string& path);
@@ -44,7 +44,7 @@ class DumpReader {
   std::unique_ptr<Impl> impl_;
 };
 
-// One VTP file with a polyline per tube and the point data of vtp_arrays(), the colours where they are given.
+// One VTP file with a polyline per tube and the point data of vtp_arrays(), without colours that are not given.
 std::string vtp_frame(const Topology& topology, const State& state, const ElementColours& colours);
 
 // The list of VTP files that ParaView opens as one animation.

@@ -1,5 +1,5 @@
-// limits.json of a run: what it watched and met, and, of a run whose elements were split on its way, where it came
-// from and where it goes on.
+// limits.json of a run: its limits, the largest value of each, and the refinements: the runs that it came from or
+// goes on in if elements were split.
 #pragma once
 
 #include <cstdint>
@@ -17,8 +17,8 @@ struct LimitRecord {
   double limit = 0;  // in that unit; 0: not watched
   double largest = 0;
   double largest_at_ps = 0;
-  int tube = -1;     // of the largest; -1: there was none
-  int element = -1;  // counted in the tube, from 0; the first of a bond
+  int tube = -1;     // of the largest value; -1: no value
+  int element = -1;  // of the largest value, counted in the tube from 0; for a bond its first element
   bool passed = false;
   double passed_at_ps = 0;
   std::int64_t passed_at_step = 0;
@@ -44,7 +44,7 @@ struct RefinementRecord {
 
 struct LimitsFile {
   std::vector<LimitRecord> limits;
-  std::vector<RefinementRecord> refinements;  // this run's and those of the runs before it, first one first
+  std::vector<RefinementRecord> refinements;  // of this run and the runs before it, in order of time
 };
 
 // Keys of an entry of "limits", of an entry of "refinements", and of the energies in the latter.

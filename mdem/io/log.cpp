@@ -58,7 +58,7 @@ struct LineReader {
   }
 };
 
-// The line up to its newline; false where there is none any more. Takes Windows line ends as well.
+// Reads a line up to its newline; returns false if there is none left. Windows line ends are accepted.
 bool take_line(std::string_view& text, std::string_view& line) {
   const std::size_t newline = text.find('\n');
   if (newline == std::string_view::npos) return false;

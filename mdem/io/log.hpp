@@ -30,11 +30,11 @@ class LogRow {
 std::string log_header();
 std::string log_line(const LogRow& row);  // full precision: reading it back gives the same bits
 
-// Throws InputError naming line and column. A last line without its newline, as after a kill, is left out: its
-// last number may have lost digits.
+// Throws InputError with line and column. A last line without a newline, as after a kill, is left out, since its
+// last number may lack digits.
 std::vector<LogRow> read_log(const std::string& path);
 
-// Throws InputError where the file has other columns than this program writes.
+// Throws InputError if the file has other columns than this program writes.
 void check_log_header(const std::string& path);
 
 }  // namespace ropewalk

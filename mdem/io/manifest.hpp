@@ -1,5 +1,5 @@
-// manifest.json: which program made a run from which inputs, and how it went. Nothing about the machine but
-// the number of threads.
+// manifest.json: the program and the inputs of a run, and how it ended. About the machine it says only the number
+// of threads.
 #pragma once
 
 #include <cstdint>

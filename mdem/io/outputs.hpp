@@ -1,5 +1,5 @@
-// What files hold, described where it is written: the writer takes names from these tables, docs/outputs.md all of
-// it.
+// Tables of columns and keys, beside the code that writes them. The writers take the names from these tables;
+// docs/outputs.md is made from them.
 #pragma once
 
 #include <string>
@@ -20,7 +20,7 @@ std::string column_names(const Columns& columns, const char* separator = ",") {
   return text;
 }
 
-// A table for people.
+// The table in Markdown.
 template <class Columns>
 std::string columns_markdown(const Columns& columns) {
   std::string text = "| name | unit | meaning |\n|---|---|---|\n";

@@ -110,7 +110,7 @@ class Reader {
     if (!set_.doi.empty()) check_doi(t, set_.doi);
   }
 
-  // A slip of unit or of chirality shows as a factor; relaxation changes the rolled sheet by 2 %.
+  // A wrong unit or chirality changes the value by a factor; relaxation changes the rolled sheet by only 2 %.
   void check_geometry(const TomlTable& t, const char* key, double value, double rolled, const char* unit) const {
     if (std::fabs(value / rolled - 1.0) < 0.1) return;
     throw t.error(
@@ -162,7 +162,7 @@ class Reader {
     if (k.cutoff_ratio <= k.switch_start)
       throw t.error("cutoff", fmt::format("is {} r, not above switch_start = {} r", k.cutoff_ratio, k.switch_start),
                     "the switch needs room to fall to zero");
-    // V is lowest where D^(alpha - beta) = alpha A / (beta B): between the core and the switch.
+    // The minimum of V, at D^(alpha - beta) = alpha A / (beta B), must lie between the core and the switch.
     const double lowest = std::pow(k.alpha * k.repulsion / (k.beta * k.attraction), 1 / (k.alpha - k.beta));
     if (lowest + 2 >= k.switch_start)
       throw t.error("A", fmt::format("makes the contact strongest at {:.4g} r", lowest + 2),
@@ -219,7 +219,7 @@ class Reader {
     if (d.core_gap + d.c <= 0)
       throw t.error("core_gap", fmt::format("is {} nm, where the law has its pole at {:.4g} nm", d.core_gap, -d.c),
                     "the core must begin outside of it");
-    // u is lowest where (s/(h + c))^(p - q) = q/p.
+    // The minimum of u is at (s/(h + c))^(p - q) = q/p.
     const double lowest = d.s * std::pow(d.p / d.q, 1 / (d.p - d.q)) - d.c;
     if (lowest <= d.core_gap)
       throw t.error("core_gap", fmt::format("is {} nm", d.core_gap),

@@ -12,12 +12,12 @@ namespace ropewalk {
 ParameterSet read_parameters(const std::string& path);
 
 class TomlTable;
-// The five rows of the universal law, in a table of their own and as text.
+// The five rows of the universal law, as text and read from their table.
 void read_universal_rows(const TomlTable& table, UniversalLine& law);
 std::string universal_rows_text(const UniversalLine& law);
 
-// The text of a parameter file from its meta data, quantities, universal law and provenance; `comment` heads it.
-// Values are read back bit for bit, standard errors with three digits.
+// The text of a parameter file from its meta data, quantities, universal law and provenance, below `comment`.
+// Values have enough digits to be read back bit for bit, standard errors three.
 std::string parameters_text(const ParameterSet& set, const std::string& comment);
 
 }  // namespace ropewalk

@@ -15,7 +15,7 @@ namespace {
 
 std::string quoted(const std::string& text) { return "\"" + printable(text, 40) + "\""; }
 
-// What stands in the file, for "is ..., ... is needed".
+// The value in the file, for messages "is ..., ... is needed".
 std::string describe(const toml::node& node) {
   if (const auto* v = node.as_string()) return "the string " + quoted(v->get());
   if (const auto* v = node.as_integer()) return fmt::format("the integer {}", v->get());
@@ -39,7 +39,7 @@ std::string lower(std::string text) {
   return text;
 }
 
-// Insertions, deletions, replacements and swaps of neighbours.
+// Edit distance: insertions, deletions, replacements, and swaps of adjacent letters.
 std::size_t edit_distance(const std::string& a, const std::string& b) {
   std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
   for (std::size_t i = 0; i <= a.size(); ++i) d[i][0] = i;
@@ -54,7 +54,7 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
   return d[a.size()][b.size()];
 }
 
-// `length` or `length_A` for `length_nm`: the unit left out or another one.
+// Whether two keys differ only in the unit: `length` or `length_A` for `length_nm`.
 bool same_but_for_unit(const std::string& a, const std::string& b) {
   const auto starts = [](const std::string& text, const std::string& stem) {
     return !stem.empty() && text.compare(0, stem.size() + 1, stem + "_") == 0;
@@ -145,7 +145,7 @@ struct TomlTable::Node {
     return *found;
   }
 
-  // A misspelt key shows as one that is missing and one that nobody asked for yet.
+  // A misspelt key may be among the keys that have not been read yet.
   InputError missing(const TomlTable& self, const std::string& key) const {
     const std::string near = nearest_word(key, strays());
     if (!near.empty())

@@ -1,5 +1,5 @@
-// A strict reader of TOML. A table remembers which keys were asked for, and finish() refuses the rest; every
-// error is an InputError with file, line and key, in one line, and says what to do.
+// A strict reader of TOML. A table records which keys were read, and finish() refuses the others. Every error is an
+// InputError of one line with file, line, key and remedy.
 #pragma once
 
 #include <functional>
@@ -13,7 +13,7 @@
 
 namespace ropewalk {
 
-// What a number may be. Infinities and NaN never pass.
+// The allowed range of a number. Infinities and NaN are never allowed.
 struct Bounds {
   double least = -std::numeric_limits<double>::infinity();
   double most = std::numeric_limits<double>::infinity();
@@ -28,7 +28,7 @@ struct Bounds {
   std::string words() const;  // "must be positive"
 };
 
-// The words that a key may have, and what they stand for.
+// The words that a key may have, with their values.
 template <class E>
 using Words = std::vector<std::pair<const char*, E>>;
 
@@ -66,14 +66,14 @@ class TomlTable {
     return has(key) ? word(key, words) : fallback;
   }
 
-  // A table of this table; an empty one where it is missing. `form` is how to write it where that is not
-  // [key] and lines below.
+  // A table of this table; an empty table if it is missing. `form` says how to write it, unless it is [key] with
+  // lines below.
   TomlTable table(const std::string& key, const std::string& form = "") const;
-  // [[key]]; none where it is missing.
+  // [[key]]; empty if it is missing.
   std::vector<TomlTable> tables(const std::string& key) const;
 
-  // Refuses the first key, here and in the tables taken from here, that nobody asked for. `elsewhere` may
-  // know where such a key belongs: it is given the key and returns a remedy, or nothing.
+  // Refuses the first key that was not read, in this table and in the tables taken from it. `elsewhere` gets this
+  // key and returns a remedy if it knows where the key belongs, otherwise an empty text.
   using Elsewhere = std::function<std::string(const std::string& key)>;
   void finish(const Elsewhere& elsewhere = {}) const;
 
@@ -92,10 +92,10 @@ class TomlTable {
   std::shared_ptr<Node> node_;
 };
 
-// Control characters as escapes, and no longer than a line of a message can bear.
+// The text with control characters as escapes, cut to fit into a line of a message.
 std::string printable(const std::string& text, std::size_t longest = 200);
 
-// The one of `known` that `word` was probably meant to be; empty where none is near.
+// The word of `known` that `word` was probably meant to be; empty if none is similar.
 std::string nearest_word(const std::string& word, const std::vector<std::string>& known);
 
 }  // namespace ropewalk

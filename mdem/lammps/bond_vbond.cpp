@@ -49,7 +49,7 @@ double BondVBond::single(int, double, int i, int j, double& fforce) {
   return f.energy.total();
 }
 
-// The force is not along the bond, so that LAMMPS's own tally does not serve.
+// The virial of a bond. LAMMPS's own tally assumes a force along the bond, which this force is not.
 void BondVBond::tally(int i, int j, const BondForce<double>& f, const Vector3& separation) {
   const Vector3 &s = separation, &p = f.force_j;
   const double v[6] = {s.x() * p.x(), s.y() * p.y(), s.z() * p.z(), s.x() * p.y(), s.x() * p.z(), s.y() * p.z()};

@@ -15,7 +15,7 @@ class BondVBond : public LMP::Bond {
   void init_style() override;
   void compute(int eflag, int vflag) override;
   double equilibrium_distance(int type) override;
-  // All of it is in the scene.
+  // Restart files need no coefficients: the scene has them.
   void write_restart(FILE*) override {}
   void read_restart(FILE*) override {}
   double single(int type, double rsq, int i, int j, double& fforce) override;
@@ -28,7 +28,7 @@ class BondVBond : public LMP::Bond {
   void tally(int i, int j, const BondForce<double>& f, const Vector3& separation);
 
   std::shared_ptr<const LammpsModel> model_;
-  double** orientations_ = nullptr;  // during a call
+  double** orientations_ = nullptr;  // valid during a call only
   BondEnergy<double> sum_;
 };
 

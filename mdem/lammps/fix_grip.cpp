@@ -9,7 +9,7 @@ bool need_all_elements(const LoadsAndConstraints& loads) {
   return std::any_of(loads.begin(), loads.end(), [](const auto& load) { return load->needs_all_elements(); });
 }
 
-// What acts on `elements` (sorted), renumbered by their places there.
+// The loads and constraints on `elements` (sorted), with element numbers replaced by indices into `elements`.
 LoadsAndConstraints part_of(const LoadsAndConstraints& loads, const std::vector<int>& elements) {
   LoadsAndConstraints out;
   for (const auto& all : loads) {
@@ -66,7 +66,7 @@ void FixGrip::post_neighbor() {
   use(elements);
 }
 
-// Every value has one owner and is zero elsewhere, so that the sum is exact.
+// Every value is nonzero on its owner only, so that the sum over the ranks is exact.
 void FixGrip::share(std::vector<double>& values) const {
   MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE, MPI_SUM, world);
 }
@@ -124,7 +124,7 @@ double FixGrip::constrain(double time, double kick) {
       store(atom->v[atom_[k]], state_.velocity[k]);
       store(atom->omega[atom_[k]], state_.angular_velocity[k]);
     }
-  return whole_ && comm->me > 0 ? 0.0 : work;  // as a whole every rank has found all of it
+  return whole_ && comm->me > 0 ? 0.0 : work;  // if whole_, every rank has computed the total
 }
 
 void FixGrip::free_parts(double time, double** linear, double** angular) {

@@ -1,6 +1,6 @@
-// fix ID all mdem/grip: all loads and constraints of the scene (twisting moments on the grips, fixed, loaded and
-// turned elements), with the functions of mdem/sim/dynamics/loads.hpp. They take a State; this fix makes one of the
-// driven elements alone: of those of this rank, or of all of them where a load needs the grip as a whole.
+// fix ID all mdem/grip: all loads and constraints of the scene (twisting moments on the grips, fixed and loaded
+// elements, prescribed rotations), with the functions of mdem/sim/dynamics/loads.hpp. These take a State; this fix
+// makes one of the driven elements: those of this rank, or all of them if a load needs the whole grip.
 #pragma once
 
 #include "lammps/shared.hpp"
@@ -20,7 +20,7 @@ class FixGrip : public LMP::Fix {
   double own_power();
   // Sets constrained velocities after a kick by the present forces; returns this rank's share of the work, eV.
   double constrain(double time, double kick);
-  // Takes what the constraints hold out of `linear` and `angular`, arrays like v and omega.
+  // Sets the constrained components of `linear` and `angular` to zero; both are arrays like v and omega.
   void free_parts(double time, double** linear, double** angular);
 
  private:
@@ -32,7 +32,7 @@ class FixGrip : public LMP::Fix {
   std::shared_ptr<const LammpsModel> model_;
   std::vector<int> driven_;  // elements, sorted
   bool whole_ = false;       // the state holds all driven elements on every rank
-  // The small scene: element k of it is atom atom_[k] of this rank, or -1.
+  // The scene of the driven elements: its element k is atom atom_[k] of this rank; -1: an atom of another rank.
   std::vector<int> atom_;
   Topology topology_;
   LoadsAndConstraints acting_;

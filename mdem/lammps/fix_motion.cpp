@@ -18,7 +18,7 @@ namespace {
 
 using namespace LMP::FixConst;
 
-// LAMMPS has renamed the call that sends a fix's values to ghosts.
+// Versions of LAMMPS have different names for the call that sends the values of a fix to ghosts.
 template <class Comm>
 auto send_to_ghosts(Comm& comm, LMP::Fix* fix, int) -> decltype(comm.forward_comm_fix(fix)) {
   return comm.forward_comm_fix(fix);
@@ -62,7 +62,7 @@ void FixMotion::init() {
   damp_ = find_fix<FixDamp>(lmp);
 }
 
-// LAMMPS counts only when it prints, and may have been told to let elements go.
+// Checks that no element is lost. LAMMPS counts atoms only when it prints, and may be set to ignore losses.
 void FixMotion::check_elements() {
   LMP::bigint own = atom->nlocal, all = 0;
   MPI_Allreduce(&own, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
@@ -82,7 +82,7 @@ void FixMotion::check_masses() {
   }
 }
 
-// Before LAMMPS looks for the far ends of bonds among the ghosts.
+// Checks the ghost cutoff before LAMMPS searches the ghosts for the other ends of bonds.
 void FixMotion::setup_pre_neighbor() {
   const double reach = ghost_reach(model_->topology, model_->interaction, neighbor->skin);
   const double has = *std::min_element(comm->cutghost, comm->cutghost + 3);
@@ -98,7 +98,7 @@ void FixMotion::setup_pre_force(int vflag) {
   pre_force(vflag);
 }
 
-// LAMMPS refreshes such properties of ghosts only when it builds lists.
+// Sends the orientations to ghosts. LAMMPS itself does so only when it builds lists.
 void FixMotion::pre_force(int) { send_to_ghosts(*comm, this, 0); }
 
 int FixMotion::pack_forward_comm(int count, int* list, double* buffer, int, int*) {
@@ -154,7 +154,7 @@ std::array<double, 8> FixMotion::energies() const {
   return all;
 }
 
-// Outputs ask for one number after another, on all ranks.
+// Outputs request one number after another, on all ranks.
 double FixMotion::compute_vector(int n) {
   if (n == 0 || row_step_ != update->ntimestep) row_ = energies();
   row_step_ = update->ntimestep;
@@ -188,9 +188,9 @@ void FixMotion::restart(char* bytes) {
 
 int FixNve::setmask() { return FixMotion::setmask() | INITIAL_INTEGRATE | FINAL_INTEGRATE; }
 
-// Damping acts on half-step velocities, so that the forces of a step's end do not follow from the state there.
-// Where the last step is at hand, here or in the data or restart file, its forces are taken: a run in parts is then
-// the same as a run in one.
+// Damping acts on half-step velocities, so that the forces at the end of a step do not follow from the state alone.
+// If the forces of the last step are known, from memory or from the data or restart file, they are used. A run in
+// parts then equals an uninterrupted run.
 void FixNve::setup(int) {
   if (carried_ != update->ntimestep) return;
   double** last = carried(lmp);
@@ -200,7 +200,7 @@ void FixNve::setup(int) {
   }
 }
 
-// Of one kind of motion; returns what the local damping took out.
+// The kick of translation or rotation. Returns the energy that the local damping has dissipated.
 double FixNve::push(double alpha, double TubeType::*inertia, double dt, double** velocity,
                     double** force_on) const {
   double removed = 0;

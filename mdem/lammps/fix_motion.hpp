@@ -1,4 +1,4 @@
-// fix ID all mdem/nve: velocity Verlet of mdem/sim/dynamics/verlet.hpp, turning included.
+// fix ID all mdem/nve: velocity Verlet of mdem/sim/dynamics/verlet.hpp, for translation and rotation.
 // fix ID all mdem/relax: Simulation::relax, step by step; LAMMPS's minimisers leave orientations as they are.
 //
 // Both send orientations to ghosts before the forces are evaluated, check the set-up, and keep the account of
@@ -36,7 +36,7 @@ class FixMotion : public LMP::Fix {
   FixGrip* grip_ = nullptr;
   FixDamp* damp_ = nullptr;
   double work_ = 0, dissipated_ = 0;  // eV, this rank's share
-  LMP::bigint carried_ = 0;           // the step whose forces the elements carry
+  LMP::bigint carried_ = 0;           // the step whose forces are stored with the elements
 
  private:
   void check_elements();

@@ -27,10 +27,10 @@ bool hooked = false;
 
 }  // namespace
 
-// Styles live in objects that the command `clear` throws away and makes anew; the last thing that LAMMPS then does
-// is this call. Standing in the program it goes before the library's own, which does the rest.
+// LAMMPS keeps its styles in objects that the command `clear` deletes and makes again; its last call then is this
+// function. The definition in the program takes precedence over the library's, which it calls for the rest.
 void LAMMPS_NS::LAMMPS::post_create() {
-  // Before anything of ours looks into the object: with another library its inside is another.
+  // Check the version before any access to the object, whose layout differs between versions.
   const std::string complaint = ropewalk::version_complaint(ROPEWALK_LAMMPS_VERSION, lammps_version(this));
   if (!complaint.empty()) complain(complaint);
   using Call = void (*)(LAMMPS*);
@@ -49,6 +49,6 @@ int main(int argc, char** argv) {
         "made without -Bsymbolic");
   static_cast<LAMMPS_NS::LAMMPS*>(lmp)->input->file();
   lammps_close(lmp);
-  MPI_Finalize();  // after LAMMPS is gone, whose end still sends messages
+  MPI_Finalize();  // after LAMMPS is closed, since closing sends messages
   return 0;
 }

@@ -35,7 +35,7 @@ LammpsModel load_lammps_model(const std::string& directory) {
 }
 
 double ghost_reach(const Topology& topology, const Interaction& in, double skin) {
-  constexpr double longest_bond = 1.5;  // element lengths: far beyond what the model holds for
+  constexpr double longest_bond = 1.5;  // element lengths, far above any strain for which the model holds
   return std::max(in.cutoff(), longest_bond * topology.longest_element()) + skin;
 }
 

@@ -1,5 +1,5 @@
-// The model that all styles of one LAMMPS share, read from an export of `ropewalk export --lammps`. No header of
-// LAMMPS comes in here.
+// The model that all styles of one LAMMPS instance share, read from an export of `ropewalk export --lammps`. This
+// file includes no header of LAMMPS.
 #pragma once
 
 #include <string>
@@ -35,10 +35,10 @@ struct LammpsModel {
 // Throws InputError.
 LammpsModel load_lammps_model(const std::string& directory);
 
-// How far the ghosts of a rank must reach for all forces: contacts within the list's skin, and both ends of a bond.
+// The ghost cutoff (nm) that all forces need: contacts with the skin of the list, and both ends of a bond.
 double ghost_reach(const Topology& topology, const Interaction& interaction, double skin);
 
-// Says what is wrong with the LAMMPS at hand, or nothing. Versions are dates as numbers: 20210929.
+// The error message if the version of LAMMPS is wrong, else empty. Versions are dates as numbers: 20210929.
 std::string version_complaint(int built_against, int found);
 
 }  // namespace ropewalk

@@ -48,7 +48,7 @@ void PairMdem::coeff(int count, char**) {
 void PairMdem::init_style() {
   check_atoms(lmp, "pair_style mdem");
   check_styles(lmp, *model_);
-  // LAMMPS may leave neighbours of a chain out of the list, or not; then the model does.
+  // special_bonds leaves neighbours along a tube out of the list or keeps them; the model leaves them out itself.
   for (int bonds = 1; bonds <= 3; ++bonds) {
     const bool kept = force->special_lj[bonds] != 0;
     if (!kept && bonds > model_->interaction.exclude_along_tube)

@@ -1,5 +1,5 @@
-// ropewalk-lammps-plugin.so: our styles for a LAMMPS that has the PLUGIN package: `plugin load` makes them known.
-// The interface is that of LAMMPS's documentation; its header is used where it is there.
+// ropewalk-lammps-plugin.so: the styles for a LAMMPS with the PLUGIN package; `plugin load` registers them. The
+// interface is that of LAMMPS's documentation. LAMMPS's own header is used if it is installed.
 #include "lammps.h"
 #include "lammps/model.hpp"
 #include "lammps/register.hpp"
@@ -26,7 +26,7 @@ namespace {
 
 namespace ours = ropewalk::lammps;
 
-// The interface wants functions of untyped pointers, one for each style.
+// The interface takes untyped pointers to functions, one for each style.
 template <int k>
 void* make_pair(void* lmp) {
   return ours::pair_entries[k].make(static_cast<LAMMPS_NS::LAMMPS*>(lmp));

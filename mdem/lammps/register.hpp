@@ -1,4 +1,4 @@
-// The names of our styles, once for lmp-ropewalk and for the plugin.
+// The names of the styles, for lmp-ropewalk and for the plugin.
 #pragma once
 
 #include "bond.h"
@@ -25,7 +25,7 @@ extern const PairEntry pair_entries[2];
 extern const BondEntry bond_entries[1];
 extern const FixEntry fix_entries[4];
 
-// Adds them to the styles that the instance knows.
+// Registers the styles with a LAMMPS instance.
 void register_styles(LAMMPS_NS::LAMMPS* lmp);
 
 }  // namespace ropewalk::lammps

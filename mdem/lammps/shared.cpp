@@ -19,7 +19,7 @@ std::map<LMP::LAMMPS*, std::weak_ptr<const LammpsModel>>& models() {
   return all;
 }
 
-// Any rank may lack the files: all of them must hear of it, and one says so.
+// Stops all ranks if any rank has trouble, such as missing files. One rank reports it.
 std::shared_ptr<const LammpsModel> read_on_all_ranks(LMP::LAMMPS* lmp, const std::string& directory) {
   std::shared_ptr<const LammpsModel> model;
   std::string trouble;

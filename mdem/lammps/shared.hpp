@@ -1,4 +1,5 @@
-// What the styles of one LAMMPS instance know of one another, and what they need of LAMMPS in one place.
+// Functions that the styles share: access to one another within a LAMMPS instance, and all checks of LAMMPS's
+// settings.
 #pragma once
 
 #include <memory>
@@ -23,18 +24,18 @@ class FixGrip;
 class FixDamp;
 class FixMotion;
 
-// The model that a pair or bond style has loaded; it lives as long as one of them.
+// The model that a pair or bond style has loaded. It exists as long as one of them.
 std::shared_ptr<const LammpsModel> load(LMP::LAMMPS* lmp, const std::string& directory);
 std::shared_ptr<const LammpsModel> loaded(LMP::LAMMPS* lmp, const char* who);
 
-// Stops all ranks with one line, where all of them come here.
+// Stops all ranks with one line. All ranks must call it.
 [[noreturn]] void refuse(LMP::LAMMPS* lmp, const std::string& what, const std::string& remedy);
-// Stops all ranks from one.
+// Stops all ranks. A single rank may call it.
 [[noreturn]] void refuse_one(LMP::LAMMPS* lmp, const std::string& what, const std::string& remedy);
 
-// Atom style, units, box and Newton's third law as the styles need them.
+// Checks atom style, units, box and the `newton` setting.
 void check_atoms(LMP::LAMMPS* lmp, const char* who);
-// That all fixes and styles of the model are there, once.
+// Checks that every fix and style of the model is present once.
 void check_styles(LMP::LAMMPS* lmp, const LammpsModel& model);
 
 template <class F>
@@ -44,9 +45,9 @@ F* find_fix(LMP::LAMMPS* lmp) {
   return nullptr;
 }
 
-// The orientations w, x, y, z of own and ghost elements. LAMMPS moves the array about: ask again in every call.
+// The orientations w, x, y, z of own and ghost elements. LAMMPS may move the array: call it again every time.
 double** orientations(LMP::LAMMPS* lmp);
-// Of own elements: total force and torque at the end of the last step.
+// Total force and torque on own elements at the end of the last step.
 double** carried(LMP::LAMMPS* lmp);
 
 inline Vector3 vector(const double* v) { return {v[0], v[1], v[2]}; }
@@ -62,7 +63,7 @@ inline void store(double* to, const Vector3& v) {
   to[2] = v.z();
 }
 
-// Element of the scene, from 0, of a local or ghost atom.
+// The element of the scene, counted from 0, that a local or ghost atom stands for.
 inline int element_of(const LMP::Atom& atom, int i) { return static_cast<int>(atom.tag[i]) - 1; }
 inline const TubeType& type_of(const LammpsModel& model, const LMP::Atom& atom, int i) {
   return model.topology.types[static_cast<std::size_t>(atom.type[i] - 1)];

@@ -9,7 +9,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double straight_fraction = 0.02;  // of the amplitude: nearer to the chord than that the line is straight
+constexpr double straight_fraction = 0.02;  // of the amplitude: points nearer to the chord count as straight
 
 Vector3 unit_or_z(const Vector3& v) {
   const double norm = v.norm();
@@ -43,7 +43,7 @@ double largest_norm(const std::vector<Vector2d>& v) {
   return largest;
 }
 
-// Less their least-squares line over the index.
+// Subtracts the least-squares line over the index.
 std::vector<Vector2d> detrended(std::vector<Vector2d> v) {
   const double n = static_cast<double>(v.size());
   const double middle = 0.5 * (n - 1.0);
@@ -57,8 +57,8 @@ std::vector<Vector2d> detrended(std::vector<Vector2d> v) {
   return v;
 }
 
-// Mean azimuth per step, weighted with the square of the distance from the axis. The cross product stands for
-// size times angle: it has no jumps where a line passes its axis.
+// Mean azimuth per step, weighted with the square of the distance from the axis. The cross product is the squared
+// distance times the sine of the azimuth step: it has no jump where the line passes its axis.
 double azimuth_rate(const std::vector<Vector2d>& v) {
   double swept = 0.0, weight = 0.0;
   for (std::size_t k = 0; k + 1 < v.size(); ++k) {

@@ -13,8 +13,8 @@
 namespace ropewalk {
 namespace {
 
-// Midway between the first and the second shell of the hexagonal packing, in spacings. The seed's own radius,
-// sqrt 3 times 1.76 nm, would count second neighbours at the spacing of its contact.
+// Midway between the first and the second shell of the hexagonal packing, in spacings. The published radius, sqrt 3
+// times 1.76 nm, would count second neighbours at the spacing of the published contact.
 const double between_shells = 0.5 * (1.0 + std::sqrt(3.0));
 
 double limit_of(double neighbour_radius, double spacing) {
@@ -34,7 +34,7 @@ double tube_distance(const Topology& topology, const State& state, int a, int b,
   return std::sqrt(smallest);
 }
 
-// Of every pair a < b, row by row.
+// Distances of all pairs a < b of tubes, row by row.
 std::vector<double> tube_distances(const Topology& topology, const State& state, int section) {
   std::vector<double> distances;
   for (int a = 0; a < topology.tubes(); ++a)
@@ -55,7 +55,8 @@ std::vector<int> neighbours_within(int tubes, const std::vector<double>& distanc
   return count;
 }
 
-// Median over the tubes of the distance to the nearest: the spacing of a rope, also a slightly perturbed one.
+// Median over the tubes of the distance to the nearest tube. It is the spacing of a rope, also of a slightly
+// perturbed one.
 double median_spacing(int tubes, const std::vector<double>& distances) {
   if (tubes < 2) return 0.0;
   std::vector<double> nearest(tubes, std::numeric_limits<double>::infinity());
@@ -77,8 +78,8 @@ int packing_charge(const RopeShells& shells, const std::vector<int>& neighbours)
   return charge;
 }
 
-// The plane normal to the local rope axis. x and y do not turn with the state: x is the space x axis seen
-// along the rope (y where that is the rope's direction), so that sections of successive frames compare.
+// The plane normal to the local rope axis. x is the projection of the space x axis (of y, if the rope lies along
+// x), so that sections of successive frames have the same orientation.
 struct Plane {
   Vector3 origin, x, y, normal;
 
@@ -91,7 +92,7 @@ struct Plane {
   Vector3 local(const Vector3& v) const { return {v.dot(x), v.dot(y), v.dot(normal)}; }
 };
 
-// Where the bond k, k+1 of a tube passes through the plane.
+// The point at which the bond k, k+1 of a tube passes through the plane.
 std::optional<Vector3> piercing_of_bond(const Plane& plane, const State& state, int k) {
   const Vector3 p = state.position[k], q = state.position[k + 1];
   const double hp = plane.height(p), hq = plane.height(q);
@@ -99,9 +100,9 @@ std::optional<Vector3> piercing_of_bond(const Plane& plane, const State& state, 
   return Vector3(p + (q - p) * (hp / (hp - hq)));
 }
 
-// Where a tube pierces the plane, nearest to the section along the tube. The search goes as far as a tube
-// inclined by 60 degrees could need; a tube that does not pierce there (it ends, or lies in the plane) is
-// projected instead.
+// The point at which a tube passes through the plane, nearest to the section along the tube. The search is long
+// enough for a tube inclined by 60 degrees. A tube that does not pass through the plane there (it ends, or lies in
+// the plane) is projected onto it.
 Vector3 piercing(const Plane& plane, const Topology& topology, const State& state, int tube, int section) {
   const int first = topology.tube_begin[tube], n = topology.length_of(tube);
   const Vector3 at = state.position[first + section];

@@ -18,7 +18,7 @@ using Eigen::Vector2d;
 
 double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-// Qhull talks to a FILE of its caller, and takes stderr where it gets none.
+// Qhull prints to a FILE of its caller, or to stderr if it is given none.
 struct Sink {
   std::FILE* file = std::fopen("/dev/null", "w");
   Sink() = default;
@@ -29,8 +29,8 @@ struct Sink {
   }
 };
 
-// One call of Qhull: its memory is released whatever came of it. Qhull leaves an error by longjmp to within
-// qh_new_qhull, which returns the exit code.
+// One call of Qhull. The destructor releases its memory, also after an error: Qhull then returns by longjmp into
+// qh_new_qhull, which gives the exit code.
 class QhullCall {
  public:
   explicit QhullCall(std::FILE* sink) : qh_(std::make_unique<qhT>()) { qh_zero(qh_.get(), sink); }
@@ -70,7 +70,7 @@ class QhullCall {
   std::unique_ptr<qhT> qh_;
 };
 
-// Counter-clockwise; false: no area to speak of.
+// Makes the triangle counter-clockwise; returns false if it has no area.
 bool orient(const std::vector<Vector2d>& points, Triangle& t) {
   const Vector2d u = points[t[1]] - points[t[0]], v = points[t[2]] - points[t[0]];
   const double twice_area = cross(u, v);
@@ -97,8 +97,8 @@ std::vector<Triangle> delaunay(const std::vector<Vector2d>& points) {
   if (points.size() < 4) return triangles;
   for (const Vector2d& p : points)
     if (!p.allFinite()) return triangles;
-  // Qt: triangles also where more than three points share a circle. Points that all share one circle leave
-  // the lifted hull flat; Qz adds a point at infinity for them.
+  // Qt makes triangles also if more than three points share a circle. If all points share one circle, the lifted
+  // hull is flat; Qz then adds a point at infinity.
   if (!triangulate(points, "qhull d Qt Qbb Qc", triangles) &&
       !triangulate(points, "qhull d Qt Qbb Qc Qz", triangles))
     return {};

@@ -10,12 +10,12 @@ namespace ropewalk {
 
 using Triangle = std::array<int, 3>;  // indices of points, counter-clockwise
 
-// Empty for fewer than four points, for points on one line and for coordinates that are not finite: nothing
-// there is worth a triangle, and a run must not end because a rope has come to lie in a plane. Triangles
-// without area (three neighbours on a straight hull) are left out.
+// The result is empty for fewer than four points, for points on one line and for coordinates that are not finite:
+// none of these is an error, since a rope may come to lie in a plane during a run. Triangles without area (three
+// neighbours on a straight hull) are left out.
 std::vector<Triangle> delaunay(const std::vector<Eigen::Vector2d>& points);
 
-// How many points each point shares an edge with.
+// The number of points with which each point shares an edge.
 std::vector<int> edge_counts(const std::vector<Triangle>& triangles, int points);
 
 }  // namespace ropewalk

@@ -1,4 +1,4 @@
-// What a run must stay below for its model to hold, and how near it is.
+// Limits of the model, and the largest values of a state against them.
 //
 // A chain of rigid elements is a rod as long as an element bends and twists little against its neighbour:
 //
@@ -11,8 +11,9 @@
 //
 //   kink_curvature, wall_twist (radius times twist per length), strain (of either sign)    the [validity] of the
 //           parameter set: there the tube kinks, collapses into a ribbon or buckles in its wall
-//   press   how much nearer (nm) the axes of two tubes come, at any angle, than two parallel ones rest: down to the
-//           core gap, below which the contact law is but its own Taylor polynomial, soft and without source
+//   overlap (key press_nm): how much nearer (nm) the axes of two tubes come, at any angle, than two parallel tubes
+//           rest. The default is the core gap, below which the contact law is continued by its Taylor polynomial,
+//           soft and without a source
 //   speed   of an element: a tenth of the speed of sound along the tube, sqrt(EA a/m). A tube that is stopped
 //           from the speed v is strained by v/c: by 10 % there, more than any of the shipped sets allows.
 //
@@ -39,7 +40,7 @@ struct Limits {
   double speed = 0;  // nm/ps
 };
 
-// But for press, which is that of the contact law.
+// All but the overlap, which follows from the contact law.
 Limits default_limits(const TubeType& type, const Validity& validity);
 
 struct LimitKind {
@@ -55,24 +56,24 @@ struct LimitKind {
 inline constexpr std::size_t limit_count = 7;
 const std::array<LimitKind, limit_count>& limit_kinds();
 
-// The largest value, measured by its limit: where the limits of tube types differ it may not be the largest number.
+// The value with the largest ratio to its limit. If the limits of tube types differ, another value may be larger.
 struct Peak {
   double value = 0;
   double limit = 0;
-  int element = -1;  // the first of the bond; -1: there is none
+  int element = -1;  // for a bond its first element; -1: no value
 
   double ratio() const { return limit > 0 ? value / limit : 0; }
   bool passed() const { return ratio() > 1; }
 };
 using Peaks = std::array<Peak, limit_count>;  // in the order of limit_kinds()
 
-// What is watched in one scene.
+// The limits of one scene.
 struct Watched {
   std::vector<Limits> limits;  // by tube type
   std::vector<double> rest;  // nm: distance of parallel tubes of the types i, j at i * types + j; empty: no contact
 };
 
-// Of equal ones the first element. The list must be up to date; it may be empty.
+// The peaks of a state; of equal values the first element's. The list must be up to date; it may be empty.
 Peaks peaks(const Topology& topology, const State& state, const NeighbourList& list, const Watched& watched);
 
 }  // namespace ropewalk

@@ -1,4 +1,4 @@
-// Means of named quantities over several looks at a motion.
+// Means of named quantities over several samples of a motion.
 #pragma once
 
 #include <map>
@@ -8,7 +8,7 @@ namespace ropewalk {
 
 class Means {
  public:
-  // The same names in every look.
+  // Every sample must have the same names.
   void add(const std::map<std::string, double>& now) {
     for (const auto& [name, value] : now) sums_[name] += value;
     ++looks_;

@@ -98,7 +98,7 @@ bool is_word(const std::string& name) {
          std::all_of(name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) || c == '_'; });
 }
 
-// As names spell a unit: "nN nm" is _nN_nm, "nm^2" is _nm2, "1/ps" is _per_ps.
+// The ending of a name that stands for a unit: "nN nm" gives _nN_nm, "nm^2" gives _nm2, "1/ps" gives _per_ps.
 std::string suffix_of(const std::string& unit) {
   std::string suffix;
   for (const char c : unit) suffix += c == '^' ? "" : c == ' ' ? "_" : c == '/' ? "_per_" : std::string(1, c);

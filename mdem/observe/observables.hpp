@@ -12,7 +12,7 @@
 
 namespace ropewalk {
 
-// Moment and energies at one time, as a run keeps them. Frames do not store them.
+// Moment and energies at one time. Only the run itself knows them; frames do not store them.
 struct EnergyAccount {
   double moment = 0;  // eV, of the twist protocol
   Energies potential;
@@ -23,7 +23,7 @@ struct EnergyAccount {
   double first_energy = 0;  // eV, total at the start
 };
 
-// What an observable is computed from.
+// The input of an observable.
 struct Measurement {
   const Topology& topology;
   const State& state;
@@ -33,7 +33,7 @@ struct Measurement {
 
 enum class ObservableGroup { time, load, energy, twist, packing, shape, limits };
 const char* group_title(ObservableGroup group);
-// Can the group be measured of a stored frame? Loads and energies are known only to the run itself.
+// Whether the group can be computed from a stored frame. Loads and energies are known only to the run itself.
 bool in_frames(ObservableGroup group);
 
 struct Observable {
@@ -48,14 +48,14 @@ struct Observable {
 // In the order of the columns.
 const std::vector<Observable>& observables();
 
-// Adds a column behind the others; call it before anything is logged or read. Throws std::invalid_argument where
-// the name is taken, has other characters than letters, digits and _, or does not end in the unit.
+// Adds a column behind the others; call it before anything is logged or read. Throws std::invalid_argument if the
+// name is taken, has characters other than letters, digits and _, or does not end in the unit.
 void add_observable(const Observable& observable);
 
-// Place in observables(). Throws std::invalid_argument where there is none of this name.
+// Index in observables(). Throws std::invalid_argument if no observable has this name.
 std::size_t index_of_observable(std::string_view name);
 
-// The table for people, in Markdown: as docs/outputs.md has it.
+// The table in Markdown, as in docs/outputs.md.
 std::string observables_markdown();
 
 }  // namespace ropewalk

@@ -9,7 +9,7 @@
 namespace ropewalk {
 namespace {
 
-constexpr double on_axis = 0.25;  // of the spacing: nearer to the centre line a tube has no azimuth worth taking
+constexpr double on_axis = 0.25;  // of the spacing: the azimuth of a tube nearer to the centre line is not used
 
 double angle_between(const Vector3& a, const Vector3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
@@ -33,7 +33,7 @@ void count_bond(const TubeType& type, const State& state, const Validity& validi
   out.overstretched += beyond(std::abs(strain), validity.stretch);
 }
 
-// All that needs no common section.
+// The quantities of single tubes.
 void observe_bonds(const Topology& topology, const State& state, const std::vector<Validity>& validity,
                    RopeObservation& out) {
   double sum = 0.0;
@@ -47,7 +47,7 @@ void observe_bonds(const Topology& topology, const State& state, const std::vect
   if (topology.tubes() > 0) out.physical_twist = sum / topology.tubes();
 }
 
-// Mean over the outermost tubes in the middle third.
+// Mean angle of the outermost tubes to the local axis in the middle third.
 double twist_angle(const Topology& topology, const State& state, const RopeShells& shells, const CentreLine& line) {
   const int n = static_cast<int>(line.points.size());
   const int tubes = std::min(topology.tubes(), static_cast<int>(shells.outermost.size()));
@@ -61,9 +61,8 @@ double twist_angle(const Topology& topology, const State& state, const RopeShell
   return count > 0 ? sum / count : 0.0;
 }
 
-// The rotations that carry a direction along the centre line without turning it about the line (a discrete
-// Bishop frame): what a tube turns against it is twist, whatever shape the line has; the line's writhe does
-// not enter.
+// The rotations that carry a direction along the centre line without turning it about the line (a discrete Bishop
+// frame). The rotation of a tube against this frame is twist; the writhe of the line does not enter.
 std::vector<Quaternion> transports(const CentreLine& line) {
   std::vector<Quaternion> steps;
   for (std::size_t k = 0; k + 1 < line.tangents.size(); ++k)

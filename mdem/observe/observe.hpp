@@ -1,5 +1,5 @@
-// What a physicist reads off a state: geometry of a twisted rope. Everything is computed from Topology and
-// State alone, so that `observe` on stored frames gives the numbers that the run logged.
+// Geometry of a twisted rope. Everything is computed from Topology and State alone, so that `observe` on stored
+// frames gives the numbers that the run logged.
 //
 // Centre line C(s): mean position of the elements of equal index s over all tubes (tubes of equal length;
 // otherwise only the quantities of single tubes are given: physical twist and the counts of bonds). Its tangent
@@ -22,7 +22,7 @@ struct RopeShells {
 
 struct CrossSection {
   std::vector<Eigen::Vector2d> points;  // tube positions in the plane normal to the local rope axis, nm
-  std::vector<int> neighbours;          // by distance, seed's definition
+  std::vector<int> neighbours;          // by distance
   std::vector<int> delaunay;            // by Delaunay triangulation of `points`
   int charge = 0;                       // Q = sum over internal tubes of 6 - neighbours
   int charge_delaunay = 0;              // by `delaunay`; in-plane distances mislead it beyond beta = 54 degrees
@@ -51,8 +51,8 @@ struct RopeObservation {
   double largest_bond_twist = 0;  // rad, absolute
 };
 
-// spacing: of the untwisted rope, nm; neighbour_radius 0: spacing (1 + sqrt 3)/2. Shells are taken in the middle
-// section; their spacing is the median over the tubes of the distance to the nearest one.
+// spacing: of the untwisted rope, nm. neighbour_radius: nm; 0 means spacing (1 + sqrt 3)/2. Shells are determined
+// in the middle section, with the median distance of a tube to its nearest neighbour as the spacing.
 RopeShells rope_shells(const Topology& topology, const State& reference, double neighbour_radius);
 
 // section: element index; distances between tubes are the smallest between elements section-1 .. section+1.

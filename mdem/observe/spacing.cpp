@@ -11,7 +11,7 @@ Vector3 middle_of(const Topology& topology, const State& state, int tube) {
   return 0.5 * (state.position[first + (n - 1) / 2] + state.position[first + n / 2]);
 }
 
-// From a point to the polyline through the elements of a tube.
+// Distance of a point from the polyline through the elements of a tube.
 double distance_to(const Topology& topology, const State& state, int tube, const Vector3& point) {
   double least = std::numeric_limits<double>::infinity();
   for (int i = topology.tube_begin[tube]; i + 1 < topology.tube_begin[tube + 1]; ++i) {

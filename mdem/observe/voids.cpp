@@ -35,7 +35,7 @@ double separation(int i, int j, const std::vector<Vector3>& points, const std::v
   return normal_part(points[j] - points[i], (tangents[i] + tangents[j]).normalized()).norm();
 }
 
-// Disjoint sets.
+// Disjoint sets (union-find).
 struct Groups {
   std::vector<int> parent;
 

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t most_rows = 60;  // of a table under a chart
 
-// Five digits of the largest, the same decimals in all rows.
+// Decimals of a column: five digits of the largest value, and the same decimals in all rows.
 int decimals_of(const TableColumn& column) {
   double largest = 0;
   bool whole = true;

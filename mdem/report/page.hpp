@@ -1,4 +1,4 @@
-// Pieces of the program's HTML pages: one file each, without scripts or references to anything outside it.
+// Parts of the program's HTML pages. A page is one file, without scripts or references to other files.
 #pragma once
 
 #include <string>
@@ -21,14 +21,14 @@ class Figures {
   int number_ = 0;
 };
 
-// At most `most` of n things, evenly, first and last among them.
+// Indices of at most `most` of n things, evenly spaced, with the first and the last.
 std::vector<std::size_t> evenly(std::size_t n, std::size_t most);
 
 struct TableColumn {
   std::string title;
   std::vector<double> values;
 };
-// Folded away under a figure; at most 60 rows. `source` says where all of them are.
+// A folded table under a figure, of at most 60 rows. `source` says where to find all rows.
 std::string data_table(const std::vector<TableColumn>& columns, const char* source);
 
 struct ReportFact {

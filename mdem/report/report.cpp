@@ -221,7 +221,7 @@ Panel balance(const std::vector<LogRow>& log) {
           {{"balance", logged("balance_eV"), 5}}};
 }
 
-// When the k-th of n pictures is from: a relaxation has no times, only a beginning and an end.
+// The time of the k-th of n pictures, in words. A relaxation has no times, only a beginning and an end.
 std::string when(const ReportInput& in, std::size_t k, std::size_t n, double time) {
   if (!clock_of(in.log).counts_steps()) return picoseconds(time);
   return k == 0 ? "start" : k + 1 == n ? "end" : "between";
@@ -362,7 +362,7 @@ std::string ending(const ReportInput& in) {
   return "How the run ended is not known" + reason + ".";
 }
 
-// Sentences that hold for what is there, and nothing of what is not.
+// A summary in sentences. Quantities that the scene does not have are left out.
 std::string summary(const ReportInput& in) {
   if (in.log.empty()) return ending(in) + " Its log has no rows.";
   const LogRow& r = in.log.back();
@@ -470,7 +470,7 @@ std::string energy_words(const EnergyParts& before, const EnergyParts& after) {
   return words;
 }
 
-// Nothing where no element was ever split.
+// Empty if elements were never split.
 std::string refinements_part(const std::vector<RefinementRecord>& refinements) {
   if (refinements.empty()) return "";
   std::string html =
@@ -526,7 +526,8 @@ std::string log_part(const ReportInput& in, const std::vector<ReportSection>& se
   const auto pair = [](const std::string& a, const std::string& b) {
     return "<div class=\"pair\">\n" + a + b + "</div>\n";
   };
-  // Named one by one: the order in which arguments are evaluated is not fixed, and figures are numbered.
+  // In statements of their own, since figures are numbered and C++ does not fix the order of evaluation of
+  // arguments.
   std::string html = heading("Energies");
   const std::string bonds = panel(bond_energies()), others = panel(other_energies(in.log));
   html += pair(bonds, others) + heading("Packing and twist");

@@ -1,4 +1,4 @@
-// The page about one run: one HTML file without scripts or references to anything outside it.
+// The report on one run: one HTML file without scripts or references to other files.
 #pragma once
 
 #include <string>
@@ -35,7 +35,7 @@ struct ReportInput {
   int tubes = 0;
   int bonds = 0;
   Validity validity;
-  LimitsFile watched;  // empty where the run has no limits.json
+  LimitsFile watched;  // empty if the run has no limits.json
 
   RopeShells shells;                    // of the untwisted rope
   std::vector<ReportSection> sections;  // in the order of time; of more than six, six are shown

@@ -1,9 +1,9 @@
 // Side views of ropes: tubes as strokes, painted from the back to the front.
 //
-// A tube is cut into pieces of equal depth layer and colour. A layer is so thin that tubes in contact which
-// overlap on the page fall into different layers, so the order within a layer does not matter and all its
-// pieces of one colour are one path. What a coarse depth buffer shows to be hidden is left out; that, integer
-// coordinates and relative moves keep a rope of 91 tubes below 60 kB.
+// A tube is cut into pieces of one depth layer and one colour each. Layers are so thin that tubes in contact which
+// overlap on the page lie in different layers. So the order within a layer does not matter, and all its pieces of
+// one colour form one path. Three things keep a rope of 91 tubes below 60 kB: a coarse depth buffer removes hidden
+// pieces, coordinates are integers, and moves are relative.
 #include <fmt/format.h>
 
 #include <Eigen/Eigenvalues>
@@ -59,9 +59,9 @@ double mean_moment(const std::vector<double>& moments, std::size_t begin, std::s
   return n > 0 ? sum / static_cast<double>(n) : 0;
 }
 
-// How much is left out to keep a picture small.
+// How coarsely a picture is drawn to keep it small.
 struct Detail {
-  std::size_t stride;  // every so many-th point
+  std::size_t stride;  // points from one drawn point to the next
   std::size_t block;   // segments that share one colour
 };
 constexpr Detail details[] = {{1, 1}, {1, 2}, {1, 3}, {1, 4},  {1, 6},  {2, 4}, {3, 4},
@@ -118,7 +118,7 @@ class DepthBuffer {
   }
 
  private:
-  // The surface of the segment, a round cylinder, over every cell that it covers.
+  // Enters the surface of the segment, a round cylinder, into every cell that it covers.
   template <class F>
   void each_cell(const Segment& s, const F& f) {
     const double dx = s.b.x - s.a.x, dy = s.b.y - s.a.y, length2 = std::max(1e-12, dx * dx + dy * dy);
@@ -163,7 +163,7 @@ double distance_from_chord(const Spot& p, const Spot& a, const Spot& b) {
   return length > 0 ? std::abs(px * dy - py * dx) / length : std::hypot(px, py);
 }
 
-// Douglas and Peucker: points within the tolerance of the line through the others go.
+// The algorithm of Douglas and Peucker: removes points within the tolerance of the line through the others.
 void simplify(const std::vector<Spot>& in, std::size_t first, std::size_t last, double tolerance,
               std::vector<Spot>& out) {
   double farthest = tolerance;
@@ -220,7 +220,7 @@ struct Painter {
     return {std::lround((x - camera.left) * per_nm), std::lround((top - y) * per_nm)};
   }
 
-  // A little beyond its ends, and from its far end to its near one: see paint_layer.
+  // Extends a piece a little beyond its ends and draws it from its far end to its near end; see paint_layer.
   void append(const SeenTube& tube, std::size_t begin, std::size_t end, Paths& paths) const {
     const auto beyond = [&](const Seen& p, const Seen& from) {
       const double length = std::hypot(p.x - from.x, p.y - from.y);
@@ -235,7 +235,7 @@ struct Painter {
   }
 
   void append(const SeenTube& tube, Paths& paths) const {
-    // One more on either side of what is seen.
+    // One more segment on either side of the visible ones.
     const auto drawn = [&](std::size_t i) {
       return tube[i].visible || (i > 0 && tube[i - 1].visible) || (i + 1 < tube.size() && tube[i + 1].visible);
     };
@@ -281,7 +281,7 @@ std::string body_colour(bool coloured, int colour, double depth) {  // depth 0: 
   return coloured ? viridis((colour + 0.5) / moment_colours) : hex(mix({84, 106, 130}, {168, 194, 218}, depth));
 }
 
-// The pieces of one layer, each colour under its own name and all under one.
+// The pieces of one layer: one path for each colour, all in one group.
 std::string define_layer(const Paths& paths, int layer, const std::string& id) {
   std::string text = fmt::format("<g id=\"{}\">", id);
   for (auto p = paths.lower_bound({layer, 0}); p != paths.end() && p->first.layer == layer; ++p)
@@ -289,8 +289,8 @@ std::string define_layer(const Paths& paths, int layer, const std::string& id) {
   return text + "</g>";
 }
 
-// Outline, body, highlight. The outline leaves out the beginning of every piece, or its end would show as a
-// seam on the piece behind. The opacity is that of the whole highlight, so pieces that overlap do not show.
+// Outline, body and highlight. The outline leaves out the beginning of every piece, where it would show as a seam
+// on the piece behind. The opacity belongs to the group of highlights, so that overlaps of pieces do not show.
 std::string paint_layer(const Paths& paths, int layer, const std::string& id, double radius, bool coloured,
                         double depth) {
   const auto width = [&](double radii) { return std::lround(radii * radius * per_nm); };
@@ -333,7 +333,7 @@ std::string rope_body(const RopeView& view, const RopeCamera& camera, double rad
   const bool coloured = camera.moment_eV > 0 && has_moments(view);
   RopeCamera used = camera;
   if (!coloured) used.moment_eV = 0;
-  // Coarser and coarser until it is small enough.
+  // Draws ever more coarsely until the text is small enough.
   for (const Detail& detail : details) {
     if (detail.stride != stride) {
       stride = detail.stride;
@@ -382,7 +382,7 @@ Vector3 chord_of(const RopeView& view) {
   return chord.norm() > 1e-9 ? chord.normalized() : Vector3::UnitZ();
 }
 
-// The direction across `right` in which the rope has left its chord most.
+// The direction normal to `right` in which the rope deviates most from its chord.
 Vector3 deflection(const RopeView& view, const Vector3& right, double radius) {
   const std::vector<Vector3> line = mean_line(view);
   Vector3 mean = Vector3::Zero();
@@ -401,7 +401,7 @@ Vector3 deflection(const RopeView& view, const Vector3& right, double radius) {
   return up.x() + 1e-3 * up.y() < 0 ? Vector3(-up) : up;  // the sign of an eigenvector is arbitrary
 }
 
-// To a number that is easy to read off.
+// Rounds to a number that is easy to read.
 double rounded_up(double v) {
   if (!(v > 0)) return 0;
   const double base = std::pow(10.0, std::floor(std::log10(v)));
@@ -417,7 +417,7 @@ double moment_scale(const std::vector<RopeView>& views) {
       for (const double m : moments)
         if (std::isfinite(m)) all.push_back(std::abs(m));
   if (all.empty()) return 0;
-  // One kinked bond must not make all others look alike.
+  // The scale leaves out the largest values, or one kinked bond would make all others look alike.
   const auto at = all.begin() + static_cast<std::ptrdiff_t>(0.995 * static_cast<double>(all.size() - 1));
   std::nth_element(all.begin(), at, all.end());
   return rounded_up(*at);
@@ -556,7 +556,7 @@ std::string section_picture(const CrossSection& section, const RopeShells& shell
     const std::string circle =
         fmt::format("<circle class=\"{}\" cx=\"{:.2f}\" cy=\"{:.2f}\" r=\"{:.2f}\"", name,
                     0.5 * pixels + scale * p.x(), 0.5 * pixels - scale * p.y(), scale * radius);
-    // The number of neighbours is told where it is not the usual one.
+    // The number of neighbours is printed if it is not six.
     text += name == "n6" || name == "outermost" ? circle + "/>"
                                                 : fmt::format("{}><title>tube {}: {} neighbours</title></circle>",
                                                               circle, t + 1, section.neighbours[t]);

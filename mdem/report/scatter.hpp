@@ -7,12 +7,12 @@ namespace ropewalk {
 
 struct ScatterChart {
   LineChart chart;
-  bool x_decades = false, y_decades = false;  // logarithmic: what is not positive is left out
-  // Of the points of each line, beside them; may be shorter, may hold empty ones.
+  bool x_decades = false, y_decades = false;  // logarithmic axes; points that are not positive are left out
+  // Names beside the points of each line. Lists may be shorter than the lines, and names may be empty.
   std::vector<std::vector<std::string>> labels;
 };
 
-// An <svg> element; empty where no line has two points at different x.
+// An <svg> element; empty if no line has two points at different x.
 std::string scatter_svg(const ScatterChart& scatter);
 
 }  // namespace ropewalk

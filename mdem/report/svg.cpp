@@ -41,7 +41,7 @@ std::string grouped(std::string text) {
 
 int magnitude(double value) { return value == 0 ? 0 : static_cast<int>(std::floor(std::log10(std::abs(value)))); }
 
-// Width of a text in the page's sans serif, rather too wide than too narrow.
+// Upper estimate of the width of a text in the page's sans-serif font.
 double text_width(std::string_view text) {
   double ems = 0;
   for (const char c : text) {
@@ -167,7 +167,7 @@ std::vector<Stretch> stretches(const ChartLine& line) {
   return all;
 }
 
-// First and last, and of every bucket between them the lowest and the highest.
+// Keeps the first and the last point, and the lowest and the highest of every bucket between them.
 Stretch thinned(const Stretch& points, std::size_t most) {
   if (points.size() <= most || most < 4) return points;
   const std::size_t buckets = (most - 2) / 2;
@@ -185,7 +185,7 @@ Stretch thinned(const Stretch& points, std::size_t most) {
   return out;
 }
 
-// The same chart in logarithms where an axis has decades.
+// The chart with logarithms of the data on logarithmic axes.
 ScatterChart in_logarithms(ScatterChart scatter) {
   const auto take = [](std::vector<double>& values) {
     for (double& v : values) v = v > 0 ? std::log10(v) : std::numeric_limits<double>::quiet_NaN();
@@ -255,7 +255,7 @@ std::vector<EndLabel> end_labels(const LineChart& chart, const Plot& plot) {
   }
   std::stable_sort(labels.begin(), labels.end(),
                    [](const EndLabel& a, const EndLabel& b) { return a.end < b.end; });
-  // Pushed down, then up again from the bottom: never nearer than a line of text.
+  // Labels are moved down, then up again from the bottom, until they are a line of text apart.
   for (std::size_t i = 1; i < labels.size(); ++i)
     labels[i].at = std::max(labels[i].at, labels[i - 1].at + label_distance);
   double limit = plot.bottom;

@@ -1,6 +1,6 @@
-// Pictures as SVG text: line charts, side views of a rope, cross-sections. No dates, no randomness: the same
-// data give the same bytes. Charts and sections take their colours from svg_css(), which a page includes once
-// and which follows the reader's light or dark setting; rope_svg() is a file that stands alone.
+// Pictures as SVG text: line charts, side views of a rope, cross-sections. The same data give the same bytes.
+// Charts and sections take their colours from svg_css(), which a page includes once and which follows the reader's
+// light or dark setting. rope_svg() is a complete file.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,15 +15,15 @@ namespace ropewalk {
 
 // --- Text ---
 
-// With so many digits, a true minus sign and 10 to a power where that is shorter; a dash for NaN.
+// A number with so many digits, with a true minus sign, and as a power of 10 if that is shorter; a dash for NaN.
 std::string number_text(double value, int digits = 4);
-// With so many decimals, for columns; groups of three from 10 000 on.
+// A number with so many decimals, for columns; digits are in groups of three from 10 000 on.
 std::string fixed_text(double value, int decimals);
 
-// Rules for everything below and the variables --paper, --ink, --soft, --rule that a page may use too.
+// CSS rules for all pictures below, and the variables --paper, --ink, --soft and --rule, which a page may use too.
 std::string svg_css();
 
-// "#rrggbb" of the viridis map; 0..1, else the nearer end.
+// "#rrggbb" of the viridis map at 0 .. 1; values outside are clamped.
 std::string viridis(double at);
 
 // --- Line charts ---
@@ -61,10 +61,10 @@ struct LineChart {
   double width = 540, height = 290;  // user units: pixels at full size
 };
 
-// False where no line has two finite points at different x.
+// False if no line has two finite points at different x.
 bool can_draw(const LineChart& chart);
-// An <svg> element; empty where it cannot be drawn. At most 400 points a line: of crowded points the lowest
-// and the highest stay.
+// An <svg> element; empty if the chart cannot be drawn. A line has at most 400 points: of crowded points the lowest
+// and the highest are kept.
 std::string chart_svg(const LineChart& chart);
 
 // --- Ropes from the side ---
@@ -76,7 +76,7 @@ struct RopeView {
   std::vector<std::vector<double>> bending_moment_eV = {};  // per element; none: shaded by depth alone
 };
 
-// From where, and how large: one camera for several views makes them comparable.
+// Direction and scale of a view. Several views with one camera are comparable.
 struct RopeCamera {
   Vector3 right = Vector3::UnitZ(), up = Vector3::UnitX(), towards = Vector3::UnitY();
   double left = 0, width = 1;  // nm along `right`

@@ -35,7 +35,7 @@ void colour_contacts(const Topology& topology, const Interaction& in, const Stat
     });
 }
 
-// An inner element has two bonds, an end element one: means are over the bonds that are there.
+// Means over the bonds of an element: an inner element has two, an end element one.
 void colour_bonds(const Topology& topology, const State& s, ElementColours& c) {
   for (int t = 0; t < topology.tubes(); ++t) {
     const int from = topology.tube_begin[t], to = topology.tube_begin[t + 1];

@@ -1,10 +1,10 @@
-// Where threads are to be bound to cores (OMP_PROC_BIND, OMP_PLACES), the OpenMP runtime binds the first one before
-// main, and a program started from there would have that one core alone.
+// If threads are bound to cores (OMP_PROC_BIND, OMP_PLACES), the OpenMP runtime binds the first thread before
+// main(). A program started from there would inherit that single core.
 #pragma once
 
 namespace ropewalk {
 
-// To be called before another program takes this one's place. Where it cannot be done only speed is lost.
+// Makes all cores available again. Call it before exec. A failure costs only speed.
 void give_back_cores();
 
 }  // namespace ropewalk

@@ -1,5 +1,5 @@
-// What a run does about its limits (observe/limits.hpp): it looks at every logged time and in between, says so in
-// one line where one is passed for the first time, and keeps the record for limits.json.
+// The watch over the limits of a run (observe/limits.hpp): checks them at every logged time and in between, reports
+// in one line when a limit is passed for the first time, and keeps the records for limits.json.
 #pragma once
 
 #include <string>
@@ -12,7 +12,7 @@ namespace ropewalk {
 
 enum class OnLimit { warn, stop, refine };
 
-// A word of the command line; throws InputError.
+// From the word of the command line. Throws InputError.
 OnLimit on_limit_of(const std::string& word);
 
 class LimitWatch {
@@ -26,7 +26,7 @@ class LimitWatch {
   // One line for each limit that is passed for the first time.
   std::vector<std::string> look(const Topology& topology, const State& state, const NeighbourList& list);
 
-  // At the last look: is a limit passed that shorter elements would cure.
+  // Whether at the last check a limit was passed that shorter elements would cure.
   bool finer_would_help() const { return finer_would_help_; }
   const std::vector<LimitRecord>& records() const { return records_; }
 
@@ -36,7 +36,7 @@ class LimitWatch {
   bool finer_would_help_ = false;
 };
 
-// "bend_deg 21.4 deg (limit 19.9)" of those that were passed, in one line; empty: none.
+// "bend_deg up to 21.4 deg (limit 19.9)" for every limit that was passed, in one line; empty if there is none.
 std::string passed_words(const std::vector<LimitRecord>& records);
 
 }  // namespace ropewalk

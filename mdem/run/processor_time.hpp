@@ -5,7 +5,7 @@
 
 namespace ropewalk {
 
-// Of all threads. On a machine that does other work as well it says more than the wall time.
+// Sum over all threads, s. Other work on the machine disturbs it less than the wall time.
 inline double processor_seconds() {
   timespec t{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);

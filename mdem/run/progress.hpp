@@ -1,5 +1,5 @@
-// One line on the terminal that says how far a run is and when it will end; plain lines now and then where
-// the output is not a terminal.
+// One line on the terminal with the progress of a run and its remaining time. If the output is not a terminal:
+// plain lines at long intervals.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@ namespace ropewalk {
 
 class Progress {
  public:
-  // total 0: the end is not known (relaxation).
+  // total: 0 if the end is not known (relaxation).
   Progress(bool quiet, double done, double total);
   bool due();
   void show(double done, const std::string& status);

@@ -31,23 +31,23 @@ struct RunDirectory {
   std::string paraview() const { return file("paraview"); }
 };
 
-// A file of a run directory; a * stands for a number. --force takes away these and nothing else.
+// A file of a run directory; a * stands for a number. --force removes these files and nothing else.
 struct OutputFile {
   const char* name;
-  const char* by;  // which verb leaves it
+  const char* by;  // the verb that writes it
   const char* meaning;
 };
 const std::vector<OutputFile>& run_files();
-std::string run_files_markdown();  // a table for people
+std::string run_files_markdown();  // the table in Markdown
 
-// Makes the directory. An earlier run in it is refused without `force`, and so is a directory with other
-// things in it even with `force`.
+// Makes the directory. Throws InputError if it holds an earlier run, unless `force` is set, and if it holds other
+// files, even with `force`.
 void create_run_directory(const RunDirectory& dir, bool force);
 
 // The scene as the run had it: scene.toml, parameters.toml and state.csv of the directory.
 Scene read_run_scene(const RunDirectory& dir);
 
-// What a resumed run needs beyond the simulation itself.
+// The state of a run for `resume`: that of the simulation, and of the files and counters around it.
 struct RunCheckpoint {
   std::uint64_t log_bytes = 0;  // the files are cut back to these lengths
   std::uint64_t frame_bytes = 0;
@@ -58,7 +58,8 @@ struct RunCheckpoint {
 void write_checkpoint(const RunDirectory& dir, const RunCheckpoint& checkpoint);
 RunCheckpoint read_checkpoint(const RunDirectory& dir);
 
-// What a run looks at: shells of the untwisted rope and the scene's neighbour radius.
+// The reference data of all observations in a run: shells and spacing (nm) of the untwisted rope, and the scene's
+// neighbour radius (nm).
 struct Observer {
   RopeShells shells;
   double neighbour_radius = 0;
@@ -73,7 +74,7 @@ LogRow log_row(const Observer& observer, const Scene& scene, const Topology& top
 // CSV in the format that [state] reads.
 std::string state_csv(const Topology& topology, const State& state);
 
-// What a reader of the results must know: one sentence each.
+// Warnings about the scene for readers of the results, one sentence each.
 std::vector<std::string> warnings_of(const Scene& scene);
 
 // Makes report.html from the files of the directory.

@@ -1,4 +1,4 @@
-// The processor time that a run will take, from short stretches of it.
+// An estimate of the processor time of a run, from short parts of it.
 #pragma once
 
 #include <string>
@@ -7,21 +7,22 @@ namespace ropewalk {
 
 struct RunTime {
   double elements = 0;
-  double steps = 0;    // of a relaxation that was not at rest soon: 0
-  double each = 0;     // s, of a step; mean over the run
+  double steps = 0;    // 0 for a relaxation that did not come to rest during the timing
+  double each = 0;     // s per step, mean over the run
   double outputs = 0;  // s: start-up, log, frames, checkpoint, report
   bool relaxes = false;
   double total() const { return steps * each + outputs; }
 };
 
-// By one thread: threads that wait for one another spend processor time as well.
+// Timings use one thread, since threads that wait for one another spend processor time as well.
 //
-// Steps are timed in the scene itself. A rope that is to be twisted is laid twisted first, half-way and moving for
-// the ramp, all of the way for the hold: tubes that cross have more nodes in reach, and what moves needs new lists.
-// All else is timed in a short run in a process of its own with as many rows and frames as time allows; of those
-// that it leaves out one is timed. A relaxation is begun; its steps are known if it comes to rest.
+// Steps are timed in the scene itself. A rope under [twist] or rotation is first put into twisted states, since
+// crossing tubes have more nodes in reach and motion needs new lists: half the twist and in motion for the ramp,
+// the full twist for the hold. Start-up and outputs are timed in a short run in another process. It writes as many
+// rows and frames as time allows; the time of the others is that of a single one. A relaxation is begun; its number
+// of steps is known if it comes to rest.
 //
-// `text`: of a scene, as a file at `path` would have it; a temporary file stands there for a moment.
+// `text` is a scene as in a file at `path`. A temporary file is written beside `path`.
 RunTime time_run(const std::string& text, const std::string& path);
 
 }  // namespace ropewalk

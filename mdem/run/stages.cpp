@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Without a slash at its end; "." by its name.
+// The path without a slash at its end, and with the name of the directory for ".".
 fs::path plain(const std::string& path) {
   fs::path p = fs::path(path).lexically_normal();
   if (p.filename().empty()) p = p.parent_path();

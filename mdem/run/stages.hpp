@@ -1,5 +1,5 @@
-// A run whose elements are split on its way goes on in a directory of its own beside the first: RUN, RUN.fine,
-// RUN.fine2, ... Each is a run like any other, to be observed, reported and resumed; limits.json names the others.
+// A run whose elements are split goes on in another directory beside the first: RUN, RUN.fine, RUN.fine2, ... Each
+// is a complete run, to be observed, reported and resumed; limits.json names the others.
 #pragma once
 
 #include <string>
@@ -8,14 +8,14 @@
 
 namespace ropewalk {
 
-// Of the next stage.
+// The directory of the next stage.
 RunDirectory finer_directory(const RunDirectory& dir);
 
-// Name of a directory without the path to it.
+// Name of a directory without its path.
 std::string name_of(const RunDirectory& dir);
 
-// Makes it, with the finer scene, parameter sets and, for [state], the halved state of time zero; with `force`
-// in the place of an earlier run. `time`: of the splitting, ps.
+// Makes the directory of the next stage with the finer scene, the parameter sets and, for [state], the halved state
+// of time zero. `force` replaces an earlier run there. `time` is the time of the splitting, ps.
 RunDirectory write_finer_scene(const RunDirectory& from, const Scene& scene, const Prepared& prepared, double time,
                                bool force);
 

@@ -1,4 +1,4 @@
-// Places sorted by cells, to find those near a place.
+// Elements sorted by cells, to find the neighbours of an element.
 #pragma once
 
 #include <array>
@@ -8,14 +8,14 @@
 
 namespace ropewalk {
 
-// Cells are half as wide as the reach: of their neighbours up to two away, six in ten elements fewer have to be
-// looked at than of cells as wide. Along the longest side of the scene cells are consecutive in memory.
+// Cells are half as wide as the reach, and neighbours lie up to two cells away: 60 % fewer distances are computed
+// than with cells as wide as the reach. Cells are consecutive in memory along the longest side of the scene.
 class CellGrid {
  public:
-  // Both nm. `position` has to outlive this and may hold what is not finite: nothing is near it.
+  // Both in nm. `position` must outlive the grid. An element whose position is not finite has no neighbours.
   CellGrid(const Vec3Array& position, double reach);
-  // The elements after number `after` that are closer than the reach to element i: how many; they are the first
-  // ones of `found`, which grows where it has to, in no order.
+  // Finds the elements with numbers above `after` that are closer than the reach to element i. Returns how many;
+  // they are the first entries of `found`, unsorted. `found` grows if it is too short.
   std::size_t find(int i, int after, std::vector<int>& found) const;
 
  private:
@@ -35,12 +35,12 @@ class CellGrid {
   std::array<const double*, 3> place_;  // components, the last one along the longest side
   std::size_t count_;
   double reach_, width_ = 1;
-  float search2_ = 0;  // nm^2: within this of each other in single precision is whatever is within reach
+  float search2_ = 0;  // nm^2: squared reach with a margin for single precision, so that no neighbour is missed
   std::array<double, 3> origin_{}, extent_{};
   std::array<int, 3> cells_{1, 1, 1};
-  std::vector<int> first_;        // of each cell in the members
+  std::vector<int> first_;        // first member of each cell
   std::vector<int> member_;       // elements
-  std::vector<float> x_, y_, z_;  // their places, from the origin
+  std::vector<float> x_, y_, z_;  // positions of the members, relative to the origin
 };
 
 }  // namespace ropewalk

@@ -7,7 +7,7 @@
 
 namespace ropewalk {
 
-// The twist is about the middle of all places, which has to be no point in particular.
+// The axis of the twist passes through the mean position. The bounds hold for any other axis too.
 void MotionSince::start(Vec3Array position, Vec3Array axis) {
   position_ = std::move(position);
   axis_ = std::move(axis);
@@ -38,8 +38,8 @@ Change MotionSince::change(const State& state, double lever, std::ptrdiff_t begi
   return c;
 }
 
-// The distance of two points that the twist alone moves changes by no more than what it turns one against the
-// other.
+// A common twist changes the distance of two points by no more than their relative rotation times their distance
+// from the axis.
 MotionSince::Bound MotionSince::bound(const Change& all, double within, double lever) {
   const double against = 1.01 * std::fabs(twist_.slope) * within;
   const Bound found{all.moved + 0.5 * against * (farthest_ + lever), all.turned + 0.5 * against};
@@ -49,7 +49,7 @@ MotionSince::Bound MotionSince::bound(const Change& all, double within, double l
 
 void MotionSince::follow(const Change& change) {
   const double determinant = arms2_[0] * arms2_[2] - arms2_[1] * arms2_[1];
-  constexpr double fewest = 0.01;  // nm^2, of an element: a single tube along z has no place to turn about
+  constexpr double fewest = 0.01;  // nm^2, mean squared distance from the axis: less in a single tube along z
   if (!(arms2_[0] > fewest * static_cast<double>(position_.size())) ||
       !(determinant > 1e-6 * arms2_[0] * arms2_[2]))
     return;

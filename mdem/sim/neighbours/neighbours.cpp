@@ -65,7 +65,7 @@ void NeighbourList::build(const Topology& topology, Vec3Array position, Vec3Arra
   pairs_ = 0;
   if (cutoff > 0) {
     const CellGrid grid(p, reach);
-    std::vector<int> last(static_cast<std::size_t>(n));  // element of its tube that is too near to count
+    std::vector<int> last(static_cast<std::size_t>(n));  // last element of the same tube that is excluded
     for (int t = 0; t < topology.tubes(); ++t)
       for (int i = topology.tube_begin[t]; i < topology.tube_begin[t + 1]; ++i)
         last[static_cast<std::size_t>(i)] = std::min(i + exclude_along_tube, topology.tube_begin[t + 1] - 1);
@@ -110,9 +110,8 @@ double NeighbourList::coordinate_unit() const {
   return std::exp2(std::ceil(std::log2(largest + 64)) - 28);
 }
 
-// Whatever the threads: the cut belongs to the list. Where the chunks would touch too much in common, as they do
-// where tubes with far numbers cross, fewer are made: clearing and adding up their buffers would cost as much as
-// the contact itself.
+// The cut does not depend on the number of threads. If tubes with distant numbers cross, the buffers of the chunks
+// overlap widely, and clearing and adding them up would cost as much as the contact: then there are fewer chunks.
 void NeighbourList::cut_into_chunks(int n) {
   constexpr int fewest = 16;         // enough for as many threads
   constexpr double most_common = 3;  // buffers for each element
@@ -125,7 +124,7 @@ void NeighbourList::cut_into_chunks(int n) {
   }
 }
 
-// Equal numbers of pairs.
+// Chunks of equal numbers of pairs.
 void NeighbourList::cut_into_chunks(int n, int count) {
   chunks_.assign(static_cast<std::size_t>(count), Chunk{});
   int from = 0;

@@ -38,10 +38,10 @@ class NeighbourList {
     int begin = 0, end = 0;
     int touched_begin = 0, touched_end = 0;
   };
-  // At most. As many as the elements can fill: their buffers overlap, and what overlaps costs time. Never by the
-  // threads.
+  // Largest number of chunks. It depends on the number of elements, not of threads. Buffers of chunks overlap,
+  // which costs time, so that few elements get few chunks.
   static int chunk_count(int elements, bool whole_ranges) {
-    if (elements <= static_cast<int>(parallel_from)) return 1;  // one thread's work
+    if (elements <= static_cast<int>(parallel_from)) return 1;  // a single thread does the work
     return std::min(64, std::max(4, elements / (whole_ranges ? 2048 : 256)));
   }
 
@@ -52,7 +52,7 @@ class NeighbourList {
   int exclude_along_tube = 0;  // pairs of one tube up to this many elements apart are left out
 
   NeighbourList() = default;
-  // For all that acts between elements; to be built.
+  // A list with the reach of all interactions; not yet built.
   NeighbourList(const Interaction& in, double skin_nm)
       : cutoff(in.cutoff()),
         skin(skin_nm),
@@ -60,8 +60,8 @@ class NeighbourList {
         whole_ranges(in.whole_ranges()),
         exclude_along_tube(in.exclude_along_tube) {}
 
-  // Builds anew where an element has moved too far. Returns whether it did. A position that is not finite
-  // counts as moved; the build then leaves that element without neighbours.
+  // Rebuilds the list if an element has moved too far; returns whether it did. A position that is not finite counts
+  // as moved; the rebuilt list has no neighbours of that element.
   bool update(const Topology& topology, const State& state);
   // Whether it has to be built anew by the change since the last build: that of all elements.
   bool worn(const Change& change);
@@ -84,23 +84,25 @@ class NeighbourList {
     return sum;
   }
   const std::vector<Chunk>& chunks() const { return chunks_; }
-  // Positions and axes at the last build: with them a resumed run has the same list, hence the same bits.
+  // Positions and axes at the last build. A checkpoint stores them, so that a resumed run rebuilds the same list
+  // and gives the same bits.
   const Vec3Array& reference() const { return since_.position(); }
   const Vec3Array& reference_axis() const { return since_.axis(); }
   long builds() const { return builds_; }
-  // A power of two (nm) that resolves every coordinate in 29 bits, with room for what moves before the next build.
+  // A unit of length (nm, a power of two) in which every coordinate fits into 29 bits until the next build.
   double coordinate_unit() const;
-  // Another one for every build of any list.
+  // Differs for every build of every list.
   long stamp() const { return stamp_; }
-  // By no more than twice this (nm) had the distance of any two points within reach changed since the last build,
-  // when the list was last asked whether it holds; what turns all of a rope together does not count.
+  // Half of the largest possible change (nm) of the distance of two points within reach, from the last build to the
+  // last call of update() or stale(). A common twist of the rope does not count.
   double displacement() const { return displacement_; }
-  // By no more than twice this had the angle between two axes within reach.
+  // The same for the angle (rad) between two axes within reach.
   double turn() const { return turn_; }
-  // Of the motion since the build: with it a resumed run has the next build at the same step.
+  // The common twist since the build. A checkpoint stores it, so that a resumed run has the next build at the same
+  // step.
   std::array<double, 2> twist() const { return since_.twist(); }
   void set_twist(const std::array<double, 2>& t) { since_.set_twist(t); }
-  // nm: centres of elements with points within reach are no more than this apart.
+  // nm: largest distance of the centres of two elements that have points within reach of one another.
   double within() const { return cutoff + skin + 2 * lever; }
   std::size_t bytes() const { return run_.capacity() * sizeof(PairRun) + begin_.capacity() * sizeof(std::size_t); }
 

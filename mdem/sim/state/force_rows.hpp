@@ -1,4 +1,4 @@
-// What acts on some elements, one after another, wherever it is kept.
+// Forces and torques on consecutive elements.
 #pragma once
 
 #include <cstddef>
@@ -7,7 +7,7 @@
 
 namespace ropewalk {
 
-// Of element i at i - origin: eV/nm, and eV about its centre.
+// Element i has entry i - origin: force in eV/nm, torque about its centre in eV.
 struct ForceRows {
   Vec3Array& force;
   Vec3Array& torque;

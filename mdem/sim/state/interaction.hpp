@@ -1,4 +1,4 @@
-// What acts between the elements of a scene, resolved from scene and parameter set.
+// Interactions between the elements of a scene, made from the scene and its parameter sets.
 #pragma once
 
 #include <memory>

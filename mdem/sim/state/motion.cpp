@@ -45,7 +45,7 @@ void move_elements(State& s, double dt, std::ptrdiff_t begin, std::ptrdiff_t end
     x[i] += dt * vx[i];
     y[i] += dt * vy[i];
     z[i] += dt * vz[i];
-    // The turn by w dt as a quaternion (c, a).
+    // The rotation by w dt as a quaternion (c, a).
     const double h2 = 0.25 * dt * dt * (wx[i] * wx[i] + wy[i] * wy[i] + wz[i] * wz[i]);
     const double scale = 0.5 * dt * sine_over(h2), c = cosine(h2);
     const double ax = scale * wx[i], ay = scale * wy[i], az = scale * wz[i];

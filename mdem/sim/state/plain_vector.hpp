@@ -1,5 +1,5 @@
-// Three numbers with the operations of the bond's form, for hot loops: Eigen's expressions keep GCC 12 from
-// vectorising a loop over elements.
+// A vector of three numbers with the operations of the bond energy, for loops over elements that GCC 12 does not
+// vectorise with Eigen's expressions.
 #pragma once
 
 namespace ropewalk {

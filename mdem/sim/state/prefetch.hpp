@@ -1,5 +1,5 @@
-// Asks the memory early for what will be read: where elements of many tubes meet, these lie all over it, and no
-// processor guesses where the next ones are.
+// Prefetches elements that will be read soon. The neighbours of an element lie on many tubes, far apart in memory,
+// so that the processor cannot predict the addresses.
 #pragma once
 
 #include <hwy/base.h>

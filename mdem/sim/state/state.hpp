@@ -12,10 +12,10 @@ namespace ropewalk {
 
 using Quaternion = Eigen::Quaterniond;
 
-// The state of so many elements stays in the first cache.
+// Number of elements whose state stays in the first-level cache.
 inline constexpr int cached_elements = 128;
 
-// Below so many elements a team of threads costs more than it saves.
+// Smallest number of elements for which a team of threads saves time.
 inline constexpr std::size_t parallel_from = 512;
 
 // Three arrays of one component each.
@@ -56,7 +56,7 @@ struct QuaternionArray {
   }
 };
 
-// What all tubes of one kind share.
+// Properties of all tubes of one type.
 struct TubeType {
   double element_length = 0;  // equilibrium length of a bond, nm
   double radius = 0;          // nm

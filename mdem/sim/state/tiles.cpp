@@ -10,7 +10,8 @@
 namespace ropewalk {
 namespace {
 
-// Elements that are never cut: a tube in fewer tiles is put together faster than tiles get smaller.
+// Elements of a piece, which is never cut. Shorter pieces would make tiles more compact, but would spread a tube
+// over more tiles, which costs more than it gains.
 constexpr int piece_length = 48;
 
 struct Piece {
@@ -20,7 +21,8 @@ struct Piece {
 };
 using Pieces = std::vector<Piece>::iterator;
 
-// A tube's first element is alone, where its last one is too: pieces end where pairs of the others do.
+// The first piece of a tube has one more element: the first element stands alone, the others are in pairs, which no
+// cut divides.
 int end_of_piece(int begin, const Segment& tube) {
   const int end = begin + piece_length + (begin == tube.begin ? 1 : 0);
   return tube.end - end < piece_length / 2 ? tube.end : end;
@@ -73,7 +75,7 @@ void sort_across(std::size_t side, Pieces first, Pieces last) {
   });
 }
 
-// The pieces, sorted, before that which lies behind a share of their cost.
+// The cut in the sorted pieces that leaves a fraction `share` of the cost before it.
 Pieces cut_at(double share, Pieces first, Pieces last) {
   double total = 0, sum = 0;
   for (Pieces p = first; p != last; ++p) total += p->cost;

@@ -1,4 +1,4 @@
-// Compact parts of a scene, for chunks of work that have little in common with each other.
+// Compact parts of a scene, so that chunks of work write to few common elements.
 #pragma once
 
 #include <vector>
@@ -7,8 +7,8 @@
 
 namespace ropewalk {
 
-// Elements from which on threads go from tile to tile and do all that a tile needs at once, while it is in their
-// caches. Fewer stay there anyway, and pass by pass the threads share the work more evenly.
+// Number of elements from which threads do all the work of a tile at once, while the tile is in their caches.
+// Smaller scenes stay in the caches anyway, and pass by pass the threads share the work more evenly.
 inline constexpr std::size_t large_scene = 20000;
 
 // Consecutive elements begin .. end of a tube.
@@ -16,9 +16,8 @@ struct Segment {
   int tube = 0, begin = 0, end = 0;
 };
 
-// All tubes in parts of nearly the same length, for passes over all elements: one of a few hundred, or several
-// where a tube is longer, so that there is work for some threads in a single tube. Parts that follow each other are
-// taken together in blocks, for what is done to many elements at once.
+// All tubes cut into parts of nearly equal length, for passes over all elements. A long tube has several parts, so
+// that several threads can work on it. Consecutive short parts form blocks, which are one unit of such a pass.
 class TubeParts {
  public:
   static constexpr int most = 512;                       // elements of a part
@@ -26,13 +25,13 @@ class TubeParts {
 
   TubeParts() = default;
   explicit TubeParts(const Topology& topology) { cut(topology); }
-  void cut(const Topology& topology);  // anew, without new memory
+  void cut(const Topology& topology);  // again, in the same memory
   int count() const { return static_cast<int>(parts_.size()); }
   const Segment& operator[](int k) const { return parts_[static_cast<std::size_t>(k)]; }
-  // The first one of a tube; those of the last tube end at begin(tubes).
+  // First part of a tube; begin(tubes) is the number of parts.
   int begin(int tube) const { return begin_[static_cast<std::size_t>(tube)]; }
   int blocks() const { return static_cast<int>(block_begin_.size()) - 1; }
-  // The first one of a block; those of the last block end at block_begin(blocks).
+  // First part of a block; block_begin(blocks) is the number of parts.
   int block_begin(int block) const { return block_begin_[static_cast<std::size_t>(block)]; }
   int part_of(int element, int tube) const;
   int block_of(int part) const { return block_of_[static_cast<std::size_t>(part)]; }
@@ -46,11 +45,10 @@ class TubeParts {
 // or across where what is to be cut is longest, so that tiles have least in common.
 enum class CutBy { index, place };
 
-// Every element once, in `count` tiles of nearly equal cost (which is given for each element), some perhaps empty;
-// the segments of each in the order of their elements. By recursive bisection, the first as asked for and the
-// others by places (recursive coordinate bisection: Berger and Bokhari 1987, doi:10.1109/TC.1987.1676942). Tiles
-// that follow each other lie near each other. They depend on the arguments alone. Places that are not finite are
-// taken for zero.
+// Cuts all elements into `count` tiles of nearly equal cost; `cost` has one entry per element. The segments of a
+// tile are in the order of their elements; a tile may be empty. The method is recursive coordinate bisection
+// (Berger and Bokhari 1987, doi:10.1109/TC.1987.1676942), except for the first cut. Consecutive tiles lie near each
+// other. The tiles depend on the arguments only. Positions that are not finite count as zero.
 std::vector<std::vector<Segment>> cut_into_tiles(const Topology& topology, const Vec3Array& position,
                                                  const std::vector<double>& cost, int count, CutBy first);
 

@@ -1,5 +1,5 @@
-// Vectors of which some lanes alone are read, for the instruction set that the includer compiles. To be included
-// after hwy/highway.h, within its loop over targets.
+// Loads of some lanes of a vector, for the instruction set that is being compiled. Include this file after
+// hwy/highway.h, inside its loop over targets.
 #if defined(ROPEWALK_SOME_LANES_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef ROPEWALK_SOME_LANES_INL
 #undef ROPEWALK_SOME_LANES_INL
@@ -19,7 +19,7 @@ HWY_INLINE hn::Mask<D> some_lanes(D d, int first, int last) {
   return hn::AndNot(hn::FirstN(d, static_cast<std::size_t>(first)), hn::FirstN(d, static_cast<std::size_t>(last)));
 }
 
-// These entries at p, the others zero; p need not be aligned and no others are read.
+// Loads entries first .. last - 1 from p; the other lanes are zero and are not read. p need not be aligned.
 template <class D>
 HWY_INLINE hn::Vec<D> load_some(D d, const double* p, int first, int last) {
 #if HWY_TARGET <= HWY_AVX2

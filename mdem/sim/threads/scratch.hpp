@@ -1,4 +1,4 @@
-// Room in vectors that are used over and over while their sizes change a little, without what they held.
+// Sizes of scratch vectors, which are reused while their sizes change a little. Their contents may be lost.
 #pragma once
 
 #include <cstddef>
@@ -6,8 +6,8 @@
 
 namespace ropewalk {
 
-// Room for n entries and no more than an eighth to spare: a vector that is a little short would grow to twice its
-// size, and keep that. What it holds may be lost.
+// Reserves n entries and at most an eighth more. std::vector would double its size when it is a little short, and
+// keep it.
 template <class T>
 void make_room(std::vector<T>& v, std::size_t n) {
   constexpr std::size_t few = 64;
@@ -16,7 +16,7 @@ void make_room(std::vector<T>& v, std::size_t n) {
   v.reserve(n);
 }
 
-// n entries, whatever they are.
+// n entries of any value.
 template <class T>
 void set_size(std::vector<T>& v, std::size_t n) {
   make_room(v, n);

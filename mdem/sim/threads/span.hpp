@@ -1,4 +1,4 @@
-// Consecutive entries of an array that belongs to someone else.
+// Consecutive entries of an array. A span does not own them.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,8 @@ struct Span {
   const T* end() const { return last; }
 };
 
-// Those of number k, where `begin` has the first one of each number and, in the end, how many there are in all.
+// Row k of a compressed array: `begin[k]` is the first entry of row k, and the last entry of `begin` is the total
+// number of entries.
 template <class T, class Index>
 Span<T> entries_of(int k, const std::vector<Index>& begin, const std::vector<T>& all) {
   const auto at = static_cast<std::size_t>(k);

@@ -1,5 +1,5 @@
-// One binary for every x86-64: of a function marked so the loader picks the version for the widest vector unit that
-// the machine has.
+// Marks a function that is compiled for several vector units. The loader picks the version for the widest unit of
+// the machine, so that one binary runs on every x86-64.
 #pragma once
 
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)

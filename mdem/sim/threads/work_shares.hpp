@@ -1,6 +1,6 @@
-// Pieces of work of uneven cost for a team of threads. Each thread begins with a share of consecutive pieces, the
-// same one in every step, so that what it wrote in the last step is still in its cache; who is done takes pieces
-// from the far end of the largest share that is left.
+// Work stealing: pieces of work of uneven cost for a team of threads. Each thread begins with a share of
+// consecutive pieces, the same ones in every step, so that data of the last step are still in its cache. A thread
+// whose share is done takes pieces from the end of the largest remaining share.
 #pragma once
 
 #include <omp.h>
@@ -13,19 +13,19 @@ namespace ropewalk {
 
 class WorkShares {
  public:
-  // Nothing in it outlives the work that it was dealt for.
+  // A copy is empty: shares are valid only for the work that they were dealt for.
   WorkShares() = default;
   WorkShares(const WorkShares&) {}
   WorkShares& operator=(const WorkShares&) { return *this; }
 
-  // Before the team starts, with the number of its threads.
+  // Call it before the team starts.
   void deal(int pieces, int threads) {
     if (static_cast<int>(shares_.size()) != threads)
       shares_ = std::vector<Share>(static_cast<std::size_t>(threads));
     for (int t = 0; t < threads; ++t)
       shares_[static_cast<std::size_t>(t)].left = pack(pieces * t / threads, pieces * (t + 1) / threads);
   }
-  // The next piece for this thread; -1: none is left.
+  // The next piece for this thread; -1 if none is left.
   int take(int thread) {
     const int own = take_first(shares_[static_cast<std::size_t>(thread)]);
     if (own >= 0) return own;
@@ -43,7 +43,7 @@ class WorkShares {
   }
 
  private:
-  // Begin and end in one word; each on a cache line of its own.
+  // Begin and end of a share in one word, so that both change at once. Each share has its own cache line.
   struct alignas(64) Share {
     std::atomic<std::uint64_t> left{0};
   };
@@ -71,20 +71,21 @@ class WorkShares {
   std::vector<Share> shares_;
 };
 
-// How many pieces of work each of some things still waits for. What a thread has written before it counts down is
-// seen by the one that counts to nothing.
+// Per block, the number of pieces of work that still contribute. The thread that counts a block down to zero sees
+// everything that other threads wrote before they counted.
 class Countdowns {
  public:
-  // Nothing in it outlives the work either.
+  // A copy is empty, as above.
   Countdowns() = default;
   Countdowns(const Countdowns&) {}
   Countdowns& operator=(const Countdowns&) { return *this; }
 
-  // Before the team starts.
+  // Call it before the team starts, with the number of pieces of each block.
   void start(const std::vector<int>& pieces) {
     if (left_.size() != pieces.size()) left_ = std::vector<std::atomic<int>>(pieces.size());
     for (std::size_t k = 0; k < pieces.size(); ++k) left_[k].store(pieces[k], std::memory_order_relaxed);
   }
+  // Counts block k down. Returns whether this was its last piece.
   bool last(int k) { return left_[static_cast<std::size_t>(k)].fetch_sub(1, std::memory_order_acq_rel) == 1; }
 
  private:

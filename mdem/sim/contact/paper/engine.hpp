@@ -12,8 +12,9 @@
 
 namespace ropewalk {
 
-// Places and axes of all elements as the kernel reads them: in nm, or in 32-bit integers, so that differences in
-// single precision are exact. Runs are read in whole vectors, hence the room behind.
+// Positions and axes of all elements as the kernel reads them. In single precision positions are 32-bit integers in
+// `unit`, so that their differences are exact; in double precision they are in nm. The kernel loads whole vectors,
+// hence the padding.
 template <class T>
 struct PaperElements {
   using Coordinate = std::conditional_t<sizeof(T) == 4, std::int32_t, double>;
@@ -36,10 +37,10 @@ struct PaperKernelInput {
   const Vec3Array* axis;
   const PairRuns* runs;
   bool legacy_torque;
-  bool energies;  // whether they are summed
+  bool energies;  // sum the energies
 };
 
-// One chunk with the widest vectors that the machine has.
+// Computes one chunk with the widest vectors of the machine.
 void paper_contact(const PaperKernelInput<float>& in, const NeighbourList::Chunk& chunk,
                    ContactBuffer<double>& out);
 void paper_contact(const PaperKernelInput<double>& in, const NeighbourList::Chunk& chunk,

@@ -20,11 +20,12 @@ namespace ropewalk::HWY_NAMESPACE {
 namespace paper {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// What is kept of a pair between the loops: its invariants (model/contact/paper.hpp), D and its derivatives, U's
-// derivative by D and what comes from the factors before V; then force (eV/nm) and torque (eV) on the neighbour.
+// Values of a pair that the loops hand on: the invariants (model/contact/paper.hpp), D and its derivatives, the
+// derivatives of U by D, r and c, and the force (eV/nm) and torque (eV) on the neighbour.
 enum Row { ux, uy, uz, inv, r, p, q, c, d, d_r, d_p, d_q, d_c, u_d, u_r, u_c, fx, fy, fz, tx, ty, tz, rows };
 
-// Pairs of one element, one after another. Rows of a constant length need one address among them.
+// Pairs of one element, one after another. The rows have a constant length, so that all of them are addressed from
+// one register.
 template <class T>
 struct alignas(64) Block {
   using C = typename PaperElements<T>::Coordinate;
@@ -38,7 +39,7 @@ struct alignas(64) Block {
   T pair[rows][length];
 };
 
-// Forces and torques on all elements that a chunk touches.
+// Forces and torques on all elements that a chunk writes to.
 template <class T>
 struct OnElements {
   std::vector<T> all;
@@ -48,7 +49,7 @@ struct OnElements {
       : all(6 * (elements + Block<T>::lanes)), stride(elements + Block<T>::lanes) {}
 };
 
-// The place and the axis of the element that the loop stands at.
+// Position and axis of the element whose neighbours are evaluated.
 template <class T>
 struct Centre {
   typename Block<T>::C x[3];
@@ -90,7 +91,7 @@ HWY_INLINE void add_run(const Block<T>& s, std::size_t at, std::size_t count, st
   }
 }
 
-// Pairs far away, where the law is zero, up to whole vectors.
+// Pads the pairs to whole vectors with pairs so far apart that the law is zero.
 template <class T>
 HWY_INLINE std::size_t fill_up(Block<T>& s, std::size_t count, const Centre<T>& centre, double far) {
   using C = typename Block<T>::C;
@@ -105,7 +106,7 @@ HWY_INLINE std::size_t fill_up(Block<T>& s, std::size_t count, const Centre<T>& 
   return end;
 }
 
-// Invariants. Returns the least |c|.
+// Computes the invariants. Returns the smallest |c|.
 template <class T>
 HWY_INLINE T invariants(Block<T>& s, std::size_t count, const Centre<T>& centre, T unit) {
   const auto *x = s.x[0], *y = s.x[1], *z = s.x[2];
@@ -135,7 +136,7 @@ HWY_INLINE T invariants(Block<T>& s, std::size_t count, const Centre<T>& centre,
   return least;
 }
 
-// D and its derivatives. Returns the least D.
+// Computes D and its derivatives. Returns the smallest D.
 template <bool blended, class T>
 HWY_INLINE T gaps(const PaperTerms<T>& law, Block<T>& s, std::size_t count) {
   const T *ir = s.pair[r], *ip = s.pair[p], *iq = s.pair[q], *ic = s.pair[c];
@@ -154,7 +155,7 @@ HWY_INLINE T gaps(const PaperTerms<T>& law, Block<T>& s, std::size_t count) {
   return least;
 }
 
-// V and the factors before it. Returns the energy.
+// Computes the derivatives of U = factor * V. Returns the energy.
 template <class Powers, bool core, bool energies, class T>
 HWY_INLINE T wells(const PaperTerms<T>& law, Block<T>& s, std::size_t count) {
   const T *id = s.pair[d], *ir = s.pair[r], *ic = s.pair[c];
@@ -172,7 +173,7 @@ HWY_INLINE T wells(const PaperTerms<T>& law, Block<T>& s, std::size_t count) {
   return energy;
 }
 
-// Forces and torques on the neighbours. Returns those on the element.
+// Computes force and torque on every neighbour. Returns the sums on the element.
 template <bool legacy, class T>
 HWY_INLINE ElementSum forces(Block<T>& s, std::size_t count, const Centre<T>& centre) {
   const T *nx = s.n[0], *ny = s.n[1], *nz = s.n[2];

@@ -1,4 +1,5 @@
-// The hot loops over pairs of elements: one chunk of the neighbour list at a time, into a buffer of its own.
+// Forces and torques of one chunk of the neighbour list. Every chunk has a buffer of its own, so that threads do
+// not write to the same memory.
 #pragma once
 
 #include <cstring>
@@ -12,21 +13,22 @@
 
 namespace ropewalk {
 
-// As v.assign(n, 0), at the speed of the memory: for the library's loop any compiler settles for two at a time.
+// As v.assign(n, 0), but at the speed of the memory: compilers turn assign() into a loop of two numbers at a time.
 template <class T>
 void set_zero(std::vector<T>& v, std::size_t n) {
   set_size(v, n);
   std::memset(v.data(), 0, n * sizeof(T));
 }
 
-// Force (eV/nm) and torque (eV) on the elements that a chunk acts on. In floats where they have been added up in
-// floats: few of these sums come together on an element.
+// Force (eV/nm) and torque (eV) on the elements that a chunk writes to. T is float where the law sums in single
+// precision; the total over the few buffers that share an element is in double.
 template <class T>
 struct ContactBuffer {
   std::vector<T> fx, fy, fz, tx, ty, tz;
   double energy = 0, power = 0;
 
-  static constexpr std::size_t room = 64 / sizeof(T);  // behind the elements, for vectors that are not full
+  static constexpr std::size_t room =
+      64 / sizeof(T);  // entries behind the elements, so that whole vectors can be stored
 
   void clear(std::size_t elements) {
     for (auto* v : {&fx, &fy, &fz, &tx, &ty, &tz}) set_zero(*v, elements + room);
@@ -35,7 +37,7 @@ struct ContactBuffer {
   std::size_t bytes() const { return 6 * fx.capacity() * sizeof(T); }
 };
 
-// What an element has collected over its neighbours.
+// Force, torque and energy of one element, summed over its neighbours.
 struct ElementSum {
   double fx = 0, fy = 0, fz = 0, tx = 0, ty = 0, tz = 0, energy = 0;
 

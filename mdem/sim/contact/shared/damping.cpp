@@ -46,7 +46,7 @@ HWY_INLINE V dot(const Vec3<V>& a, const Vec3<V>& b) {
   return hn::MulAdd(a.x, b.x, hn::MulAdd(a.y, b.y, hn::Mul(a.z, b.z)));
 }
 
-// Of the lanes' elements.
+// Position, velocity and angular velocity of the elements in the lanes.
 template <class Place, class V>
 struct Motion {
   Vec3<Place> place;
@@ -65,8 +65,8 @@ HWY_INLINE hn::Vec<D> strength(D d, const ContactViscosity& c, const Vec3<hn::Ve
   return hn::Mul(set(-c.eta), weight);
 }
 
-// Whole vectors: the lanes left over are zero, and the buffers have room. A masked store would make the next load
-// wait until it is through.
+// Adds whole vectors: unused lanes are zero, and the buffers have room behind the elements. After a masked store
+// the next load from the same memory would have to wait.
 template <class V, class T>
 HWY_INLINE void add_to(const Vec3<V>& v, std::ptrdiff_t at, std::vector<T>& x, std::vector<T>& y,
                        std::vector<T>& z) {
@@ -76,7 +76,7 @@ HWY_INLINE void add_to(const Vec3<V>& v, std::ptrdiff_t at, std::vector<T>& x, s
   add(x, v.x), add(y, v.y), add(z, v.z);
 }
 
-// As the state has them; zero in lanes that are not wanted, which may lie outside of it.
+// Reads the state in double precision. Unused lanes are zero; they may lie outside of the state's arrays.
 struct Doubles {
   using D = hn::CappedTag<double, DampedBlock::most>;
   using V = hn::Vec<D>;
@@ -95,7 +95,7 @@ struct Doubles {
   HWY_INLINE Vec3<V> apart(const Vec3<V>& j, const Vec3<V>& i) const { return j - i; }
 };
 
-// Lanes that are not wanted are of other elements, or of none: whatever number it is.
+// Reads the copies in single precision. Unused lanes hold other elements or arbitrary numbers.
 struct Floats {
   using D = hn::CappedTag<float, DampedBlock::most>;
   using V = hn::Vec<D>;
@@ -122,9 +122,9 @@ struct Floats {
   }
 };
 
-// The blocks first .. last - 1, which are of the same elements i. Offset by offset over all of them: at the next
-// offset of one block the forces are added one place further on, and a load would wait for the last stores if no
-// other block came between. Returns the power, lane by lane.
+// Evaluates the blocks first .. last - 1, which have the same elements i. The outer loop is over offsets:
+// consecutive offsets of one block write to overlapping memory, and a load would wait for the preceding store if no
+// other block came between. Returns the power in each lane.
 template <class Of>
 HWY_INLINE typename Of::V group_damping(const ContactViscosity& viscosity, const Of& of, const DampedBlock* first,
                                         const DampedBlock* last, int lane) {
@@ -162,8 +162,7 @@ HWY_INLINE typename Of::V group_damping(const ContactViscosity& viscosity, const
   return power;
 }
 
-// Returns the power of all blocks. Lanes add up few of them before they are turned into a number of double
-// precision.
+// Returns the power of all blocks. Every 32 groups the sums in the lanes are added to a total in double precision.
 template <class Of>
 HWY_INLINE double all_groups(const ContactViscosity& viscosity, const Of& of,
                              const std::vector<DampedBlock>& blocks) {

@@ -1,7 +1,8 @@
-// Contact viscosity (model/damping.hpp) of all pairs of elements within its reach, in blocks: up to 16
-// consecutive elements of one tube meet those of another that are 0, 1, .. places further along. Loads and stores
-// are of consecutive elements, and no lanes are added up. In two precisions: of the state as it is, and in floats
-// of what a chunk acts on, copied once for all pairs, the places as integers, so that differences are exact.
+// Contact viscosity (model/damping.hpp) of all pairs of elements within its reach. Pairs are evaluated in blocks:
+// up to 16 consecutive elements of one tube against as many of another tube, once for every offset along it. So all
+// loads and stores are of consecutive elements, and no sum over lanes is needed. There are two precisions: double,
+// straight from the state; and single, from copies of the elements of a chunk with integer positions, whose
+// differences are exact.
 #pragma once
 
 #include <cstddef>
@@ -18,7 +19,7 @@ struct TouchedRange {
   int begin = 0, end = 0, shift = 0;
 };
 
-// Element i + l meets element j + l + c for l < lanes and c < offsets, where that is one of `partners`.
+// The pairs (i + l, j + l + c) for l < lanes and c < offsets, if j + l + c is one of `partners`.
 struct DampedBlock {
   static constexpr int most = 16;  // lanes of the widest vectors
   int i = 0, j = 0, at_i = 0;      // elements; i's entry in the buffer
@@ -26,8 +27,8 @@ struct DampedBlock {
   TouchedRange partners;
 };
 
-// The blocks of one chunk. Every pair may come once only, and all pairs of two tubes may that lie between the first
-// and the last range of an element with another: those out of reach have no weight.
+// Collects the blocks of one chunk. A pair may be added once only. Blocks may include further pairs of the same two
+// tubes, which lie between ranges that were added; out of reach the viscosity is zero.
 class DampedBlocks {
  public:
   // Elements from .. to - 1 are within reach of i, which is one of `own`. Elements i in rising order.
@@ -46,8 +47,8 @@ class DampedBlocks {
   std::vector<DampedBlock> blocks_;
 };
 
-// Of the elements that a chunk acts on, by their entries in its buffer: places in units, motion in nm/ps and
-// rad/ps.
+// Copies of the elements of a chunk, by their entries in its buffer: positions in integer units, velocities in
+// nm/ps and rad/ps.
 struct DampedElements {
   std::vector<std::int32_t> x, y, z;
   std::vector<float> vx, vy, vz, wx, wy, wz;
@@ -65,13 +66,13 @@ struct DampedElements {
 void contact_damping(const ContactViscosity& viscosity, const State& state, const std::vector<DampedBlock>& blocks,
                      ContactBuffer<double>& out);
 
-// The blocks of a chunk and the parts that they are within; `unit` is that of the places (nm).
+// The blocks of a chunk, the ranges of their elements, and the unit of the integer positions (nm).
 struct DampedChunk {
   const std::vector<DampedBlock>& blocks;
   const std::vector<TouchedRange>& parts;
   double unit;
 };
-// The same in floats.
+// The same in single precision.
 void contact_damping(const ContactViscosity& viscosity, const State& state, const DampedChunk& of,
                      DampedElements& elements, ContactBuffer<float>& out);
 

@@ -1,5 +1,6 @@
-// Runs of a Verlet list as the paper law's kernel takes them: no longer than it has room for, and without what lies
-// beyond its reach, as the list may reach farther than this law does. Made anew at every build of the list.
+// Neighbour spans for the kernel of the published law. They are cut to the kernel's capacity and leave out pairs
+// beyond the cutoff of this law, since the Verlet list may reach farther. They are built after every build of the
+// list.
 #pragma once
 
 #include <cstddef>
@@ -11,8 +12,8 @@ namespace ropewalk {
 
 class PairRuns {
  public:
-  static constexpr int longest = 64;  // longer ones are cut
-  // The pairs of the list that can come closer than `reach` (nm) before it is built again.
+  static constexpr int longest = 64;  // elements; longer spans are cut
+  // Takes the pairs of the list that can come closer than `reach` (nm) before the next build of the list.
   void build(const NeighbourList& list, double reach);
 
   Span<PairRun> runs(int i) const { return entries_of(i, begin_, run_); }
