@@ -1,8 +1,8 @@
 // The paper law over runs of neighbours, for every instruction set that the compiler knows and in two precisions;
 // the machine's best is picked at run time. The runs of an element are copied one after another, so that the law
-// (model/contact/paper.hpp, vectorised by the compiler) meets full vectors however short they are. It is evaluated in
-// four loops: one alone is a chain of dependent operations so long that the processor cannot look ahead to the next
-// vector.
+// (model/contact/paper.hpp, vectorised by the compiler) meets full vectors however short they are. It is evaluated
+// in four loops: one alone is a chain of dependent operations so long that the processor cannot look ahead to the
+// next vector.
 #include <algorithm>
 #include <cmath>
 #include <vector>
