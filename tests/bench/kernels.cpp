@@ -1,5 +1,6 @@
 // The forms alone, the paper law, lists, motion, and whole force evaluations.
 #include "bench/support.hpp"
+#include "sim/contact/line/engine.hpp"
 #include "sim/contact/paper/engine.hpp"
 #include "sim/state/motion.hpp"
 

@@ -1,7 +1,7 @@
-// What a force evaluation consists of besides contact. It contains forces.cpp, whose loops no header shows: what is
+// What a force evaluation consists of besides contact. It contains bonds.cpp, whose loops no header shows: what is
 // measured is what is shipped.
 #include "bench/support.hpp"
-#include "sim/forces/forces.cpp"
+#include "sim/forces/bonds.cpp"
 
 namespace ropewalk::bench {
 namespace {

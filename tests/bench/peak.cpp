@@ -40,6 +40,7 @@ HWY_AFTER_NAMESPACE();
 
 #include "bench/machine_peak.hpp"
 #include "bench/support.hpp"
+#include "sim/contact/line/engine.hpp"
 
 namespace ropewalk::bench {
 
