@@ -13,7 +13,7 @@ string(REGEX MATCH "-.*" without "${FILTER}")
 set(entries "")
 function(add_entry name pattern)
   string(APPEND entries "add_test([==[${name}]==] [==[${PROGRAM}]==] [==[--gtest_filter=${pattern}${without}]==])\n"
-    "set_tests_properties([==[${name}]==] PROPERTIES LABELS ${LABEL} COST ${COST} ENVIRONMENT \"${ENVIRONMENT}\")\n")
+    "set_tests_properties([==[${name}]==] PROPERTIES LABELS ${LABEL} COST ${COST} TIMEOUT 3600 ENVIRONMENT \"${ENVIRONMENT}\")\n")
   set(entries "${entries}" PARENT_SCOPE)
 endfunction()
 
