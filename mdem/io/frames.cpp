@@ -126,7 +126,7 @@ bool parse(std::string_view word, T& value) {
 
 constexpr int not_there = -1;
 
-// Columns of the values in the lines of a frame.
+// Where the columns of a frame stand: indices of the values in its lines.
 struct Layout {
   std::vector<std::string> names;
   std::array<int, 10> fixed;

@@ -11,7 +11,7 @@ using Mode = RunOptions::Mode;
 
 constexpr long most_inner_steps = 1000;
 
-// A key that would be without effect is refused, since it was meant to have one.
+// Refuses keys that have no effect in the chosen mode: whoever wrote them expects one.
 void read_mode(const TomlTable& t, const Scene&, RunOptions& r) {
   r.mode = t.word_or("mode", r.mode, Words<Mode>{{"dynamics", Mode::dynamics}, {"relax", Mode::relax}});
   const bool relax = r.mode == Mode::relax;

@@ -20,8 +20,8 @@ struct ThermostatOptions {
 class Thermostat {
  public:
   virtual ~Thermostat() = default;
-  // Changes velocities and angular velocities by a contact of the duration dt (ps) with the bath. The simulation
-  // calls it once in each step, restores the constrained components afterwards and books the change of the kinetic
+  // Changes velocities and angular velocities as the bath does during dt (ps). The simulation calls this function
+  // once in each step, restores the constrained components afterwards and books the change of the kinetic
   // energy as heat. The result must depend on the arguments alone, state.step included, and not on the number of
   // threads: a resumed run then goes on with the same bits.
   virtual void apply(const Topology& topology, double dt, State& state) const = 0;

@@ -1,5 +1,5 @@
-// What engines share that go through the chunks of the neighbour list, each into a buffer of its own: the viscosity
-// of the contact, the parallel work, and the collection of the buffers in the order of the chunks.
+// The common part of engines that work through the chunks of the neighbour list and give each chunk a buffer of its
+// own: contact viscosity, parallel work, and the sum of the buffers in the order of the chunks.
 #pragma once
 
 #include <vector>
