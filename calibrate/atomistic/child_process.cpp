@@ -181,7 +181,7 @@ ChildEnd run_child(const std::vector<std::string>& arguments, const ChildOptions
     }
     end.seconds = seconds_since(start);
     const bool asked = options.interrupted && options.interrupted();
-    const bool too_long = end.seconds > options.most_seconds;
+    const bool too_long = end.seconds > options.max_seconds;
     if (asked || too_long || seconds_since(last_growth) > options.quiet_seconds) {
       ::kill(-child, SIGKILL);
       ::kill(child, SIGKILL);

@@ -12,7 +12,7 @@ struct ChildOptions {
   std::string folder;                // working directory
   std::string output;                // file for stdout and stderr, absolute or in the folder
   std::vector<std::string> watched;  // files whose growth is a sign of life, beside the output
-  double quiet_seconds = 120, most_seconds = 3600;
+  double quiet_seconds = 120, max_seconds = 3600;
   std::function<bool()> interrupted;  // may be empty
 };
 

@@ -41,7 +41,7 @@ double binomial(int n, int k) {
   return result;
 }
 
-struct Point {
+struct EnergyPoint {
   double u, v, y;
 };
 
@@ -69,9 +69,9 @@ struct Polynomial {
 };
 
 // Different values among the points: n of them carry powers up to n - 1.
-int different(const std::vector<Point>& points, double Point::*coordinate) {
+int different(const std::vector<EnergyPoint>& points, double EnergyPoint::*coordinate) {
   std::vector<double> values;
-  for (const Point& p : points) {
+  for (const EnergyPoint& p : points) {
     const auto same = [&](double x) { return std::abs(x - p.*coordinate) < 0.02; };
     if (std::none_of(values.begin(), values.end(), same)) values.push_back(p.*coordinate);
   }
@@ -80,13 +80,13 @@ int different(const std::vector<Point>& points, double Point::*coordinate) {
 
 // False where the points do not determine the polynomial. Powers for which there are too few different values
 // keep the coefficients of `base`, where that is given.
-bool fit_polynomial(const std::vector<Point>& points, int degree, Polynomial& fit,
+bool fit_polynomial(const std::vector<EnergyPoint>& points, int degree, Polynomial& fit,
                     const Polynomial* base = nullptr) {
-  const int most_u = different(points, &Point::u) - 1, most_v = different(points, &Point::v) - 1;
+  const int max_u = different(points, &EnergyPoint::u) - 1, max_v = different(points, &EnergyPoint::v) - 1;
   fit.powers.clear();
   Polynomial kept;
   for (const Power& p : powers_up_to(degree)) {
-    if (base && (p.u > most_u || p.v > most_v))
+    if (base && (p.u > max_u || p.v > max_v))
       kept.powers.push_back(p);
     else
       fit.powers.push_back(p);
@@ -103,7 +103,7 @@ bool fit_polynomial(const std::vector<Point>& points, int degree, Polynomial& fi
   Matrix a(rows, columns);
   Vector b(rows);
   for (Eigen::Index i = 0; i < rows; ++i) {
-    const Point& p = points[static_cast<std::size_t>(i)];
+    const EnergyPoint& p = points[static_cast<std::size_t>(i)];
     b[i] = p.y - kept(p.u, p.v);
     for (Eigen::Index k = 0; k < columns; ++k) {
       const Power power = fit.powers[static_cast<std::size_t>(k)];
@@ -142,7 +142,7 @@ Minimum minimum_of(const Polynomial& p) {
   return m;
 }
 
-struct Range {
+struct Interval {
   double low = 1e300, high = -1e300;
   void add(double x) {
     low = std::min(low, x);
@@ -159,14 +159,14 @@ struct StretchTwistWindow {
   double energy = 0;             // eV/nm, the scale of y
 };
 
-constexpr int most_degree = 4;
+constexpr int max_degree = 4;
 
 struct Harmonic {
   double EA, GJ, coupling, twist, strain;
   bool found = false;
 };
 
-Harmonic harmonic_of(const std::vector<Point>& points, int degree, const StretchTwistWindow& w,
+Harmonic harmonic_of(const std::vector<EnergyPoint>& points, int degree, const StretchTwistWindow& w,
                      const Polynomial& base) {
   Harmonic h{};
   Polynomial p;
@@ -214,7 +214,7 @@ void fit_radius(const std::vector<AtomisticRow*>& rows, double strain0, double t
   out.poisson = {-x[1] / strain_scale, std::sqrt(covariance(1, 1)) / strain_scale};
 }
 
-void warn_of_spread(const char* what, const Range& range, Stiffness& out) {
+void warn_of_spread(const char* what, const Interval& range, Stiffness& out) {
   const double middle = 0.5 * (range.low + range.high);
   if (range.half() > 0.005 * std::abs(middle))
     out.warnings.push_back(fmt::format(
@@ -245,16 +245,16 @@ void fit_stretch_twist(std::vector<AtomisticRow>& table, Stiffness& out) {
   // The points within `part` of the window in strain and twist, with a margin so that points on its edge are
   // included.
   const auto points_within = [&](double part) {
-    std::vector<Point> points;
+    std::vector<EnergyPoint> points;
     for (const AtomisticRow* row : rows) {
-      const Point p{row->strain / w.strain, row->twist / w.twist, row->energy / row->length / w.energy};
+      const EnergyPoint p{row->strain / w.strain, row->twist / w.twist, row->energy / row->length / w.energy};
       if (std::abs(p.u) <= part + 0.02 && std::abs(p.v) <= part + 0.02) points.push_back(p);
     }
     return points;
   };
-  const std::vector<Point> all = points_within(1);
+  const std::vector<EnergyPoint> all = points_within(1);
   Polynomial polynomial;
-  int degree = most_degree;
+  int degree = max_degree;
   while (degree >= 2 && !fit_polynomial(all, degree, polynomial)) --degree;
   if (degree < 2) throw not_enough();
   const Minimum minimum = minimum_of(polynomial);
@@ -296,9 +296,9 @@ void fit_stretch_twist(std::vector<AtomisticRow>& table, Stiffness& out) {
   for (std::size_t i = 0; i < rows.size(); ++i) rows[i]->residual = -left[i] * w.energy * rows[i]->length;
 
   // The same constants from fits of lower order and from the inner part of the window.
-  Range EA, GJ, coupling, twist, strain;
+  Interval EA, GJ, coupling, twist, strain;
   std::string windows;
-  const auto look = [&](double part, int order) {
+  const auto fit_window = [&](double part, int order) {
     const Harmonic h = harmonic_of(points_within(part), order, w, polynomial);
     if (!h.found) return;
     EA.add(h.EA);
@@ -311,15 +311,15 @@ void fit_stretch_twist(std::vector<AtomisticRow>& table, Stiffness& out) {
         "{:.5g} rad/nm\n",
         100 * part, order, h.EA, h.GJ, h.coupling, h.twist);
   };
-  look(1, degree);
-  if (degree > 3) look(1, 3);
-  look(2.0 / 3.0, std::min(degree, 3));
+  fit_window(1, degree);
+  if (degree > 3) fit_window(1, 3);
+  fit_window(2.0 / 3.0, std::min(degree, 3));
 
   // Tension and compression apart, each extrapolated to zero strain: a potential with a knot there has two EA.
-  Range sides;
+  Interval sides;
   for (const double side : {1.0, -1.0}) {
-    std::vector<Point> half;
-    for (const Point& p : all)
+    std::vector<EnergyPoint> half;
+    for (const EnergyPoint& p : all)
       if (side * (p.u - minimum.u) >= -0.02) half.push_back(p);
     const Harmonic h = harmonic_of(half, std::min(degree, 3), w, polynomial);
     if (!h.found) continue;
@@ -370,7 +370,7 @@ void fit_stretch_twist(std::vector<AtomisticRow>& table, Stiffness& out) {
 }
 
 void fit_bend(std::vector<AtomisticRow>& table, Stiffness& out) {
-  struct Pair {
+  struct BendPair {
     double k, y;  // y = 2 (E_long - E_short)/(L_long - L_short)/k^2, which is EI + 2 k4 k^2
     AtomisticRow* row;
     double unit;  // energy of the longer tube per y
@@ -386,7 +386,7 @@ void fit_bend(std::vector<AtomisticRow>& table, Stiffness& out) {
     return 0.0;
   };
   const double short_zero = straight(short_rows), long_zero = straight(long_rows);
-  std::vector<Pair> pairs;
+  std::vector<BendPair> pairs;
   for (AtomisticRow* l : long_rows)
     for (const AtomisticRow* s : short_rows) {
       const double k = l->curvature, length = l->length - s->length;
@@ -394,7 +394,7 @@ void fit_bend(std::vector<AtomisticRow>& table, Stiffness& out) {
       const double unit = 0.5 * length * k * k;
       pairs.push_back({std::abs(k), ((l->energy - long_zero) - (s->energy - short_zero)) / unit, l, unit});
     }
-  std::sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) { return a.k < b.k; });
+  std::sort(pairs.begin(), pairs.end(), [](const BendPair& a, const BendPair& b) { return a.k < b.k; });
   const auto not_enough = [&] {
     return InputError({"", 0, "bend"}, fmt::format("{} pairs of bent tubes do not determine EI", pairs.size()),
                       "give bend-short and bend-long rows at three or more equal curvatures");
@@ -437,18 +437,18 @@ void fit_bend(std::vector<AtomisticRow>& table, Stiffness& out) {
   residuals(fit.value, left);
   for (std::size_t i = 0; i < pairs.size(); ++i) pairs[i].row->residual = -left[i] * scale * pairs[i].unit;
 
-  Range EI;
+  Interval EI;
   std::string windows;
-  const auto look = [&](std::size_t first, std::size_t to) {
+  const auto fit_range = [&](std::size_t first, std::size_t to) {
     const double value = line(first, to).first;
     EI.add(value);
     windows +=
         fmt::format("  curvature {:.4g} to {:.4g} /nm: EI {:.6g} eV nm\n", pairs[first].k, pairs[to].k, value);
   };
-  look(0, last);
+  fit_range(0, last);
   if (pairs.size() > 3) {
-    look(0, last - 1);
-    look(1, last);
+    fit_range(0, last - 1);
+    fit_range(1, last);
   }
   const double k4_unit = 0.5 * scale / (largest * largest);
   out.EI = {fit.value[0] * scale, both(fit.standard_error[0] * scale, EI.half())};

@@ -132,7 +132,7 @@ LammpsVersion lammps_version(const LammpsOptions& options) {
   child.folder = pattern;
   child.output = pattern + "/help.out";
   child.quiet_seconds = std::min(options.quiet_seconds, 30.0);
-  child.most_seconds = 60;
+  child.max_seconds = 60;
   child.interrupted = options.interrupted;
   const ChildEnd end = run_child({program, "-h"}, child);
   if (end.kind == ChildEnd::Kind::not_started) throw not_startable(program, end.code);
@@ -184,7 +184,7 @@ void run_lammps(const std::string& folder, const std::string& name, const std::s
   child.output = base + ".out";
   child.watched = {base + ".log", base + ".dat"};
   child.quiet_seconds = options.quiet_seconds;
-  child.most_seconds = options.most_seconds;
+  child.max_seconds = options.max_seconds;
   child.interrupted = options.interrupted;
   for (const std::string& old : {base + ".log", base + ".dat", base + ".out"}) fs::remove(old, code);
   const ChildEnd end = run_child({program, "-in", name + ".in", "-log", name + ".log", "-nocite"}, child);
@@ -208,7 +208,7 @@ void run_lammps(const std::string& folder, const std::string& name, const std::s
            "the machine may be overloaded: run it again, or look into its log");
       break;
     case ChildEnd::Kind::too_long:
-      fail(fmt::format("took longer than {:g} s and was ended", options.most_seconds),
+      fail(fmt::format("took longer than {:g} s and was ended", options.max_seconds),
            "the tube may be too large: choose a smaller one or shorter cells");
       break;
     case ChildEnd::Kind::interrupted:

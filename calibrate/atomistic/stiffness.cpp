@@ -56,13 +56,13 @@ void check_options(const StiffnessOptions& o) {
 void check_size(Chirality c, const Potential& potential, const StiffnessOptions& options) {
   double atoms = (options.long_length + 2 * held_band(potential)) * atoms_per_length(c);
   // A rough bound first: the lattice vectors of a huge tube are many.
-  if (atoms <= most_atoms)
+  if (atoms <= max_atoms)
     for (const LatticeVector& period : stretch_twist_periods(c, potential, options))
       atoms = std::max(atoms, 2.0 * static_cast<double>(cell_hexagons(c, period)));
-  if (atoms > most_atoms)
+  if (atoms > max_atoms)
     throw bad_option("chirality",
                      fmt::format("({},{}) is {:.2f} nm wide and needs cells of {:.0f} atoms; the limit is {}", c.n,
-                                 c.m, 2 * tube_radius(c), atoms, most_atoms),
+                                 c.m, 2 * tube_radius(c), atoms, max_atoms),
                      "choose a narrower tube, or shorter bend lengths and a wider shear window");
 }
 

@@ -39,10 +39,10 @@ struct UniversalFit {
   FitResult fit;  // the rows one after the other
   UniversalLine::Row se_log_K{}, se_s{}, se_c{}, se_p{}, se_q{};
   double error = 0;  // largest over all pairs, as LineFit::error
-  struct Pair {
+  struct PairCheck {
     double r_i = 0, r_j = 0, direct_error = 0, error = 0, spacing_error = 0, depth_error = 0;
   };
-  std::vector<Pair> pairs;
+  std::vector<PairCheck> pairs;
 };
 UniversalFit fit_universal(const AtomLaw& law, const std::vector<std::pair<double, double>>& radii);
 

@@ -18,7 +18,7 @@ namespace {
 
 constexpr double inside = 0.05;      // nm inside of the minimum
 constexpr double pair_weight = 0.3;  // of a pair alone: rows and crossings are what a rope consists of
-constexpr double least_theta = 0.1;  // the reader of parameter sets asks for 0.05
+constexpr double min_theta = 0.1;  // the reader of parameter sets asks for 0.05
 
 // Separation and axes of one pair of elements.
 struct Pose {
@@ -223,7 +223,7 @@ void add_limits(const PaperContact& law, double* out) {
     least = std::min(least, theta_factor(law, degree * units::degree));
   const double lowest =
       std::pow(law.alpha * law.repulsion / (law.beta * law.attraction), 1 / (law.alpha - law.beta));
-  out[0] = 10 * std::max(0.0, least_theta - least);
+  out[0] = 10 * std::max(0.0, min_theta - least);
   out[1] = 10 * std::max(0.0, 1.03 * law.core_gap / lowest - 1);
   out[2] = std::max(0.0, lowest + 2 - 0.95 * law.switch_start);
 }

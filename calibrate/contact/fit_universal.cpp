@@ -12,7 +12,7 @@ namespace {
 
 constexpr double unit_density = 38;  // atoms per nm^2; the law is in units of it
 
-struct Pair {
+struct TubePair {
   Shell i, j;
   LineTargets targets;
 };
@@ -31,18 +31,18 @@ void set_rows(const std::vector<double>& p, UniversalLine& law) {
 
 // Bounds around the values of a tube of medium radius; x lies between 0.2 and 1.2, y below 0.3.
 std::vector<FitParameter> box() {
-  struct Range {
+  struct Bounds {
     const char* name;
     double start, below, above, slope;
   };
-  const Range ranges[] = {{"ln K", 2, 0, 4, 10},
+  const Bounds ranges[] = {{"ln K", 2, 0, 4, 10},
                           {"s", 0.75, 0.3, 2, 3},
                           {"c", -0.07, -0.4, 1, 3},
                           {"p", 9, 5.6, 20, 60},
                           {"q", 4.2, 2, 5.4, 10}};
   static const char* const powers[] = {" 1", " x", " x^2", " x^3", " y", " x y"};
   std::vector<FitParameter> out;
-  for (const Range& r : ranges)
+  for (const Bounds& r : ranges)
     for (int k = 0; k < UniversalLine::terms; ++k) {
       if (k == 0)
         out.push_back({std::string(r.name) + powers[k], r.start, r.below, r.above});
@@ -52,20 +52,20 @@ std::vector<FitParameter> box() {
   return out;
 }
 
-LineDensity density_of(const UniversalLine& law, const Pair& pair) {
+LineDensity density_of(const UniversalLine& law, const TubePair& pair) {
   return law.density(pair.i.radius, pair.i.density, pair.j.radius, pair.j.density);
 }
 
 // The law is defined only if h + c is positive at the core and p is above q.
 bool sound(const LineDensity& d) { return d.core_gap + d.c > 0.05 * d.s && d.s > 0 && d.p > d.q + 0.2 && d.q > 1; }
 
-FitResult fit_rows(const std::vector<Pair>& pairs, UniversalLine& law) {
+FitResult fit_rows(const std::vector<TubePair>& pairs, UniversalLine& law) {
   std::size_t size = 0;
-  for (const Pair& pair : pairs) size += pair.targets.size();
+  for (const TubePair& pair : pairs) size += pair.targets.size();
   const auto residuals = [&](const std::vector<double>& p, std::vector<double>& r) {
     set_rows(p, law);
     double* out = r.data();
-    for (const Pair& pair : pairs) {
+    for (const TubePair& pair : pairs) {
       const LineDensity d = density_of(law, pair);
       if (sound(d))
         pair.targets.residuals(d, out);
@@ -83,7 +83,7 @@ FitResult fit_rows(const std::vector<Pair>& pairs, UniversalLine& law) {
   return fit;
 }
 
-UniversalFit::Pair compare(const Pair& pair, const AtomLaw& law, const UniversalLine& universal) {
+UniversalFit::PairCheck compare(const TubePair& pair, const AtomLaw& law, const UniversalLine& universal) {
   LineDensity direct = with_gaps(line_gaps(law), pair.i.radius + pair.j.radius);
   FitOptions options;
   options.starts = 1;
@@ -103,7 +103,7 @@ UniversalFit::Pair compare(const Pair& pair, const AtomLaw& law, const Universal
 UniversalFit fit_universal(const AtomLaw& law, const std::vector<std::pair<double, double>>& radii) {
   if (radii.empty()) throw std::invalid_argument("universal contact: give at least one pair of radii");
   const LineGaps gaps = line_gaps(law);
-  std::vector<Pair> pairs;
+  std::vector<TubePair> pairs;
   for (const auto& [ri, rj] : radii) {
     const Shell i{ri, unit_density}, j{rj, unit_density};
     pairs.push_back({i, j, LineTargets(PairIntegral(law, i, j), ri + rj, gaps)});
@@ -119,7 +119,7 @@ UniversalFit fit_universal(const AtomLaw& law, const std::vector<std::pair<doubl
   auto error = out.fit.standard_error.begin();
   for (UniversalLine::Row* row : {&out.se_log_K, &out.se_s, &out.se_c, &out.se_p, &out.se_q})
     for (double& a : *row) a = *error++;
-  for (const Pair& pair : pairs) {
+  for (const TubePair& pair : pairs) {
     out.pairs.push_back(compare(pair, law, out.law));
     out.error = std::max(out.error, out.pairs.back().error);
   }

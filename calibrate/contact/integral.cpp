@@ -57,7 +57,7 @@ struct Part {
     if (to == infinite) return contact + (from - contact) / std::max(x, 1e-3);
     return from + (to - from) * x * x * (3 - 2 * x);
   }
-  double place(double R) const {
+  double coordinate(double R) const {
     if (to == infinite) return (from - contact) / (R - contact);
     const double y = std::clamp((R - from) / (to - from), 0.0, 1.0);
     return 0.5 - std::sin(std::asin(1 - 2 * y) / 3);
@@ -105,7 +105,7 @@ double PairIntegral::slope(double distance) const {
   if (distance >= edges_.back()) return 0;
   std::size_t k = 0;
   while (k + 2 < edges_.size() && distance >= edges_[k + 1]) ++k;
-  const double x = 2 * Part{edges_[k], edges_[k + 1], contact_}.place(distance) - 1;
+  const double x = 2 * Part{edges_[k], edges_[k + 1], contact_}.coordinate(distance) - 1;
   const std::vector<double>& c = series_[k];
   double b1 = 0, b2 = 0;  // Clenshaw's sum
   for (std::size_t n = order; n > 0; --n) {

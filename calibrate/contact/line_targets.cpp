@@ -14,17 +14,17 @@ constexpr std::size_t order = 5;  // nodes between two distances of the grid
 
 // Nodes of Gauss and Legendre on [0, 1], and the polynomials that are 1 at one of them and 0 at the others.
 struct Panel {
-  double place[order], weight[order];
+  double abscissa[order], weight[order];
 
   Panel() {
     gsl_integration_glfixed_table* table = gsl_integration_glfixed_table_alloc(order);
-    for (std::size_t k = 0; k < order; ++k) gsl_integration_glfixed_point(0, 1, k, &place[k], &weight[k], table);
+    for (std::size_t k = 0; k < order; ++k) gsl_integration_glfixed_point(0, 1, k, &abscissa[k], &weight[k], table);
     gsl_integration_glfixed_table_free(table);
   }
   double basis(std::size_t k, double x) const {
     double product = 1;
     for (std::size_t l = 0; l < order; ++l)
-      if (l != k) product *= (x - place[l]) / (place[k] - place[l]);
+      if (l != k) product *= (x - abscissa[l]) / (abscissa[k] - abscissa[l]);
     return product;
   }
 };
@@ -80,7 +80,7 @@ void LineTargets::add_nodes(double end) {
   const double step = (end - distance_.front()) / static_cast<double>(panels);
   for (std::size_t k = 0; k < panels; ++k)
     for (std::size_t n = 0; n < order; ++n) {
-      node_.push_back(distance_[k] + step * panel.place[n]);
+      node_.push_back(distance_[k] + step * panel.abscissa[n]);
       node_crossed_.push_back(2 * units::pi * node_.back() * step * panel.weight[n]);
     }
   node_parallel_.assign(panels * node_.size(), 0.0);

@@ -25,8 +25,8 @@ class Nodes {
     return nodes;
   }
   static constexpr std::size_t count = 64;
-  double place[count], weight[count];  // towards 1 only
-  double both_place[count], both_weight[count];
+  double abscissa[count], weight[count];  // towards 1 only
+  double both_abscissa[count], both_weight[count];
 
  private:
   Nodes() {
@@ -34,9 +34,9 @@ class Nodes {
     for (std::size_t k = 0; k < count; ++k) {
       double t = 0, w = 0;
       gsl_integration_glfixed_point(0, 1, k, &t, &w, table);
-      place[k] = std::sin(0.5 * units::pi * t);
+      abscissa[k] = std::sin(0.5 * units::pi * t);
       weight[k] = w * 0.5 * units::pi * std::cos(0.5 * units::pi * t);
-      both_place[k] = t * t * (3 - 2 * t);
+      both_abscissa[k] = t * t * (3 - 2 * t);
       both_weight[k] = w * 6 * t * (1 - t);
     }
     gsl_integration_glfixed_table_free(table);
@@ -47,7 +47,7 @@ template <class F>
 double integrate_to_end(F f, double a, double b) {
   const Nodes& n = Nodes::get();
   double sum = 0;
-  for (std::size_t k = 0; k < Nodes::count; ++k) sum += n.weight[k] * f(a + (b - a) * n.place[k]);
+  for (std::size_t k = 0; k < Nodes::count; ++k) sum += n.weight[k] * f(a + (b - a) * n.abscissa[k]);
   return (b - a) * sum;
 }
 
@@ -55,7 +55,7 @@ template <class F>
 double integrate_both_ends(F f, double a, double b) {
   const Nodes& n = Nodes::get();
   double sum = 0;
-  for (std::size_t k = 0; k < Nodes::count; ++k) sum += n.both_weight[k] * f(a + (b - a) * n.both_place[k]);
+  for (std::size_t k = 0; k < Nodes::count; ++k) sum += n.both_weight[k] * f(a + (b - a) * n.both_abscissa[k]);
   return (b - a) * sum;
 }
 

@@ -72,7 +72,7 @@ class Problem {
   // Residuals at x, moved into the box. Returns false if one is not finite or their squares overflow. Throws
   // nlopt::forced_stop at a limit and if the caller's function throws.
   bool evaluate(const Vector& x, Vector& r) {
-    if (evaluations >= most_evaluations_ || seconds() >= most_seconds_) throw nlopt::forced_stop();
+    if (evaluations >= max_evaluations_ || seconds() >= max_seconds_) throw nlopt::forced_stop();
     ++evaluations;
     std::fill(r_.begin(), r_.end(), 0.0);
     try {
@@ -105,13 +105,13 @@ class Problem {
 
   // Limits the following evaluations and time to this share of the total.
   void set_share(double share) {
-    most_evaluations_ = static_cast<int>(share * options_.max_evaluations);
-    most_seconds_ = share * options_.max_seconds;
+    max_evaluations_ = static_cast<int>(share * options_.max_evaluations);
+    max_seconds_ = share * options_.max_seconds;
   }
   // Lifts the limits for the few evaluations that describe the result.
   void lift_limits() {
-    most_evaluations_ = std::numeric_limits<int>::max();
-    most_seconds_ = infinite;
+    max_evaluations_ = std::numeric_limits<int>::max();
+    max_seconds_ = infinite;
   }
 
   double seconds() const { return std::chrono::duration<double>(Clock::now() - begin_).count(); }
@@ -146,8 +146,8 @@ class Problem {
   std::vector<std::size_t> free_;
   std::vector<double> p_, r_;
   Clock::time_point begin_;
-  int most_evaluations_ = 0;
-  double most_seconds_ = 0;
+  int max_evaluations_ = 0;
+  double max_seconds_ = 0;
 };
 
 // J = U S V^T of a tall matrix, by way of QR.

@@ -368,7 +368,7 @@ std::string universal_file(const UniversalFit& fit, const std::string& command) 
       "of spacing and depth.\n",
       fit.error, command, universal_format, u.sigma, u.lj_cutoff, u.core_gap, u.switch_gap, u.cutoff_gap, fit.error,
       universal_rows_text(u));
-  for (const UniversalFit::Pair& p : fit.pairs)
+  for (const UniversalFit::PairCheck& p : fit.pairs)
     text +=
         fmt::format("# r {:.3f} {:.3f} nm   direct {:.1e}   universal {:.1e}   spacing {:+.1e}   depth {:+.1e}\n",
                     p.r_i, p.r_j, p.direct_error, p.error, p.spacing_error, p.depth_error);

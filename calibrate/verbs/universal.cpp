@@ -29,7 +29,7 @@ int universal_command(const UniversalArguments& a) {
   const UniversalFit fit = fit_universal(law, radii_to_fit());
   fmt::print("{:>8} {:>8}  {:>12} {:>12} {:>12} {:>12}\n", "r_i nm", "r_j nm", "own fit", "universal", "spacing",
              "depth");
-  for (const UniversalFit::Pair& p : fit.pairs)
+  for (const UniversalFit::PairCheck& p : fit.pairs)
     fmt::print("{:8.3f} {:8.3f}  {:12.2e} {:12.2e} {:+12.2e} {:+12.2e}\n", p.r_i, p.r_j, p.direct_error, p.error,
                p.spacing_error, p.depth_error);
   write_file_atomically(out, universal_file(fit, a.command));

@@ -68,7 +68,7 @@ Timing per_element_step(const Timing& a, const Timing& b, double scale) {
           b.builds - a.builds};
 }
 
-constexpr int most_counted = 16000;  // elements
+constexpr int max_counted = 16000;  // elements
 
 Cost measure(const Scene& scene, const Prepared& prepared, double after, long steps, int threads) {
   use_threads(threads);
@@ -87,7 +87,7 @@ Cost measure(const Scene& scene, const Prepared& prepared, double after, long st
     processor += processor_seconds() - used;
     if (const auto* line = dynamic_cast<const LineEngine*>(simulation.engine().contact()))
       c.radial.add(count_radial(simulation.topology(), simulation.interaction(), simulation.state(),
-                                simulation.list(), line->list(), most_counted),
+                                simulation.list(), line->list(), max_counted),
                    1.0 / static_cast<double>(samples));
   }
   const double n = prepared.topology.elements(), scale = 1e9 / (n * static_cast<double>(steps));

@@ -214,7 +214,7 @@ class Import {
   // The checkpoint last: until it is there the run stands where it stood.
   void write(std::int64_t from) {
     Simulation simulation = start(scene_, prepared_);
-    simulation.take_over(force_, torque_, {last_.work, last_.dissipated});
+    simulation.inherit_from(force_, torque_, {last_.work, last_.dissipated});
     checkpoint_.log_bytes = log_.size();
     checkpoint_.frame_bytes = frames_.size();
     checkpoint_.simulation = simulation.serialise();

@@ -122,7 +122,7 @@ int observe_command(const ObserveArguments& a) {
   Json all = Json::array();
   DumpFrame frame;
   while (reader.next(prepared.topology, frame)) {
-    const RopeObservation rope = look(observer, scene, prepared.topology, frame.state);
+    const RopeObservation rope = observe(observer, scene, prepared.topology, frame.state);
     const Measurement measurement{prepared.topology, frame.state, rope, {}};
     if (a.json) {
       all.push_back(as_json(measurement, chosen));

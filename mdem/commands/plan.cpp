@@ -71,7 +71,7 @@ std::string cheaper_text(const Plan& plan, const std::string& path) {
 void say(const Plan& plan, const PlanRequest& request) {
   for (const std::string& line : plan.why) fmt::print("  {}\n", line);
   if (plan.stands_for.empty()) return;
-  if (!plan.led_otherwise.empty()) fmt::print("{}\n", plan.led_otherwise);
+  if (!plan.driven_otherwise.empty()) fmt::print("{}\n", plan.driven_otherwise);
   fmt::print("scene {} of the chart stands for this one; {} expected:\n", plan.stands_for,
              request.observables.empty() ? "errors" : "errors asked for,");
   for (const auto& [name, error] : plan.expected) {

@@ -105,7 +105,7 @@ ReportInput gather(const RunDirectory& dir, const Scene& scene, const Prepared& 
   const Observer observer = make_observer(scene, p);
   in.shells = observer.shells;
   for (const DumpFrame& frame : read_frames(dir, p.topology)) {
-    const RopeObservation o = look(observer, scene, p.topology, frame.state);
+    const RopeObservation o = observe(observer, scene, p.topology, frame.state);
     const double beta = o.beta / units::degree;
     in.sections.push_back({frame.state.time, beta, o.middle, o.radius_profile});
     in.views.push_back(view_of(p.topology, frame, beta));
@@ -175,7 +175,7 @@ int report_command(const ReportArguments& a) {
   const std::vector<DumpFrame> frames = read_frames(dir, prepared.topology);
   if (frames.empty())
     throw InputError({dir.frames(), 0, ""}, "holds no frame", "run the scene further with `ropewalk resume`");
-  const double beta = look(make_observer(scene, prepared), scene, prepared.topology, frames.back().state).beta;
+  const double beta = observe(make_observer(scene, prepared), scene, prepared.topology, frames.back().state).beta;
   write_file_atomically(a.picture, rope_svg(view_of(prepared.topology, frames.back(), beta / units::degree),
                                             prepared.topology.largest_radius()));
   fmt::print("{} written\n", a.picture);

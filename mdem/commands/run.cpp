@@ -80,17 +80,17 @@ long every(double interval, double duration, long parts, double dt) {
   return std::max(1L, std::lround(chosen / dt));
 }
 
-// How the caller wants it.
-struct Manner {
+// What the command line asks for.
+struct RunPolicy {
   bool quiet = false;
   OnLimit on_limit = OnLimit::warn;
   bool force = false;
 };
 
-enum class Ending { none, complete, signal, limit, refine };
+enum class StopReason { none, complete, signal, limit, refine };
 
-// Steps between two looks at the limits, at most: a look costs about as much as a step.
-constexpr long look_every = 128, pause_every = 16;
+// Steps between two checks of the limits, at most: a check costs about as much as a step.
+constexpr long check_every = 128, pause_every = 16;
 constexpr double patience = 0.5;     // s, of who wants to stop a run
 constexpr int stopped_at_limit = 5;  // exit code
 
@@ -101,14 +101,14 @@ void say(const std::string& line) {
 
 class Run {
  public:
-  Run(RunDirectory dir, Scene scene, Manner manner)
+  Run(RunDirectory dir, Scene scene, RunPolicy policy)
       : dir_(std::move(dir)),
         scene_(std::move(scene)),
         prepared_(prepare(scene_)),
         observer_(make_observer(scene_, prepared_)),
         simulation_(start(scene_, prepared_)),
         watch_(watched_of(scene_, prepared_.topology)),
-        manner_(manner) {
+        policy_(policy) {
     const double dt = prepared_.time_step;
     const double span = prepared_.duration > 0 ? prepared_.duration : 1000 * dt;
     log_every_ = every(scene_.run.log_every, span, 400, dt);
@@ -121,7 +121,7 @@ class Run {
 
   // Before anything is done: can it do what it is asked to.
   void check_manner() const {
-    if (manner_.on_limit != OnLimit::refine) return;
+    if (policy_.on_limit != OnLimit::refine) return;
     const std::string why = why_not_finer(scene_, prepared_.topology);
     if (!why.empty()) throw InputError({"", 0, "--on-limit"}, "refine: " + why, "take warn or stop");
   }
@@ -143,7 +143,7 @@ class Run {
     open(c.log_bytes, c.frame_bytes);
     if (!std::filesystem::exists(dir_.limits())) return;
     const LimitsFile earlier = read_limits(dir_.limits());
-    watch_.take_over(earlier.limits, simulation_.state().step);
+    watch_.inherit_from(earlier.limits, simulation_.state().step);
     refinements_ = earlier.refinements;
   }
 
@@ -166,14 +166,14 @@ class Run {
     try {
       const bool relax = scene_.run.mode == RunOptions::Mode::relax;
       switch (relax ? relax_loop() : dynamics_loop()) {
-        case Ending::complete:
+        case StopReason::complete:
           return {finish(), nullptr};
-        case Ending::limit:
+        case StopReason::limit:
           return {stopped(), nullptr};
-        case Ending::refine:
+        case StopReason::refine:
           return {0, refined()};
-        case Ending::signal:
-        case Ending::none:
+        case StopReason::signal:
+        case StopReason::none:
           break;
       }
       return {interrupted(), nullptr};
@@ -196,52 +196,52 @@ class Run {
   }
 
   // Says what is passed for the first time, and whether the run is to end here for it.
-  Ending look_at_limits() {
+  StopReason check_limits() {
     const std::vector<std::string> passed =
-        watch_.look(prepared_.topology, simulation_.state(), simulation_.list());
+        watch_.check(prepared_.topology, simulation_.state(), simulation_.list());
     for (const std::string& line : passed) say(line);
     if (!passed.empty()) write_limits();
-    if (manner_.on_limit == OnLimit::stop && !passed.empty()) return Ending::limit;
-    if (manner_.on_limit != OnLimit::refine || !watch_.finer_would_help()) return Ending::none;
+    if (policy_.on_limit == OnLimit::stop && !passed.empty()) return StopReason::limit;
+    if (policy_.on_limit != OnLimit::refine || !watch_.finer_would_help()) return StopReason::none;
     const std::string why = why_not_finer(scene_, prepared_.topology);
-    if (why.empty()) return Ending::refine;
+    if (why.empty()) return StopReason::refine;
     if (!passed.empty()) say("not refined: " + why + "; the run goes on as it is");
-    return Ending::none;
+    return StopReason::none;
   }
 
-  // Until something is written or looked at, or somebody waits for an answer.
-  long steps_to_the_next_look(long look, double seconds_of_a_step) const {
+  // Until something is written or checked, or somebody waits for an answer.
+  long steps_to_next_check(long checked_every, double seconds_of_a_step) const {
     const long step = static_cast<long>(simulation_.state().step);
     long count = last_step_ - step;
-    for (const long every : {look, log_every_, frames_every_, pause_every})
+    for (const long every : {checked_every, log_every_, frames_every_, pause_every})
       count = std::min(count, every - step % every);
     return std::min(count, std::max(2L, static_cast<long>(patience / seconds_of_a_step)));
   }
 
-  Ending dynamics_loop() {
-    Progress progress(manner_.quiet, static_cast<double>(simulation_.state().step),
+  StopReason dynamics_loop() {
+    Progress progress(policy_.quiet, static_cast<double>(simulation_.state().step),
                       static_cast<double>(last_step_));
     double checkpoint_at = now() + scene_.run.checkpoint_every;
-    const long look = std::min(log_every_, look_every);
-    Ending ending = Ending::none;  // it ends after a step with energies: this one, or the next
+    const long checked_every = std::min(log_every_, check_every);
+    StopReason stop = StopReason::none;  // it ends after a step with energies: this one, or the next
     if (simulation_.state().step < last_step_ && std::isfinite(simulation_.total_energy()))
-      ending = look_at_limits();
-    if (ending != Ending::none) return ending;
+      stop = check_limits();
+    if (stop != StopReason::none) return stop;
     double seconds = patience;  // of a step
     while (simulation_.state().step < last_step_) {
-      const long count = ending == Ending::none ? steps_to_the_next_look(look, seconds) : 1;
+      const long count = stop == StopReason::none ? steps_to_next_check(checked_every, seconds) : 1;
       const std::int64_t step = simulation_.state().step + count;
-      const bool last = step == last_step_, logged = step % log_every_ == 0 || last || ending != Ending::none;
+      const bool last = step == last_step_, logged = step % log_every_ == 0 || last || stop != StopReason::none;
       const double began = now();
       simulation_.steps(count, logged);
       seconds = std::max((now() - began) / static_cast<double>(count), 1e-9);
-      if (ending == Ending::none && (logged || step % look == 0)) ending = look_at_limits();
-      if (last && ending == Ending::refine) ending = Ending::none;
-      const bool ends = logged && ending != Ending::none;
+      if (stop == StopReason::none && (logged || step % checked_every == 0)) stop = check_limits();
+      if (last && stop == StopReason::refine) stop = StopReason::none;
+      const bool ends = logged && stop != StopReason::none;
       if (logged) write_row();
       if (step % frames_every_ == 0 || last || ends) write_frame();
-      if (ends) return ending;
-      if (caught_signal) return Ending::signal;
+      if (ends) return stop;
+      if (caught_signal) return StopReason::signal;
       if (progress.due()) progress.show(static_cast<double>(step), status_text());
       if (step % pause_every == 0 && now() > checkpoint_at) {
         save();
@@ -249,31 +249,31 @@ class Run {
       }
     }
     progress.done();
-    return Ending::complete;
+    return StopReason::complete;
   }
 
-  Ending relax_loop() {
-    Progress progress(manner_.quiet, 0, 0);
-    Ending ending = Ending::none;
-    const long most = last_step_ > 0 ? last_step_ : scene_.run.max_steps;
-    at_rest_ = simulation_.relax(scene_.run.force_tolerance, most, [&](long k) {
+  StopReason relax_loop() {
+    Progress progress(policy_.quiet, 0, 0);
+    StopReason stop = StopReason::none;
+    const long max_steps = last_step_ > 0 ? last_step_ : scene_.run.max_steps;
+    at_rest_ = simulation_.relax(scene_.run.force_tolerance, max_steps, [&](long k) {
       if (k % 100 == 0) {
         write_row();
-        ending = look_at_limits();
+        stop = check_limits();
       }
       if (progress.due()) progress.show(static_cast<double>(k), status_text());
-      return caught_signal == 0 && ending == Ending::none;
+      return caught_signal == 0 && stop == StopReason::none;
     });
     progress.done();
     write_row();
     write_frame();
-    if (caught_signal) return Ending::signal;
-    if (ending == Ending::none) ending = look_at_limits();
-    if (ending != Ending::none) return ending;
+    if (caught_signal) return StopReason::signal;
+    if (stop == StopReason::none) stop = check_limits();
+    if (stop != StopReason::none) return stop;
     reason_ = at_rest_ ? fmt::format("relaxed: largest force below {:.3g} eV/nm", scene_.run.force_tolerance)
                        : fmt::format("not relaxed after {} steps: largest force {:.3g} eV/nm, {:.3g} asked for",
-                                     most, simulation_.largest_force(), scene_.run.force_tolerance);
-    return Ending::complete;
+                                     max_steps, simulation_.largest_force(), scene_.run.force_tolerance);
+    return StopReason::complete;
   }
 
   std::string status_text() const {
@@ -396,9 +396,9 @@ class Run {
   // This run ends here, whole; the next one is made of it.
   std::unique_ptr<Run> refined() {
     save();
-    const RunDirectory to = write_finer_scene(dir_, scene_, prepared_, simulation_.state().time, manner_.force);
-    auto next = std::make_unique<Run>(to, read_run_scene(to), manner_);
-    next->take_over(*this);
+    const RunDirectory to = write_finer_scene(dir_, scene_, prepared_, simulation_.state().time, policy_.force);
+    auto next = std::make_unique<Run>(to, read_run_scene(to), policy_);
+    next->inherit_from(*this);
     refinements_ = next->refinements_;
     write_limits();
     const RefinementRecord& r = refinements_.back();
@@ -416,7 +416,7 @@ class Run {
 
   // State, time, account and record of the run before the splitting. Steps are counted as if it had been this fine
   // from the start; the balance of energy goes on from its value, since the jump is no error of integration.
-  void take_over(const Run& coarse) {
+  void inherit_from(const Run& coarse) {
     Prepared at = prepared_;
     at.state = halved(coarse.prepared_.topology, coarse.simulation_.state());
     if (scene_.run.mode == RunOptions::Mode::dynamics) {
@@ -426,14 +426,14 @@ class Run {
         stop_at_time(static_cast<double>(coarse.last_step_) * dt);
     }
     simulation_ = start(scene_, at);
-    simulation_.take_over(simulation_.forces().force, simulation_.forces().torque, coarse.simulation_.account());
+    simulation_.inherit_from(simulation_.forces().force, simulation_.forces().torque, coarse.simulation_.account());
     record_refinement(coarse);
     first_energy_ = coarse.first_energy_ + simulation_.total_energy() - coarse.simulation_.total_energy();
     earlier_seconds_ = coarse.wall();
     std::vector<LimitRecord> records = coarse.watch_.records();
     for (std::size_t k = 0; k < records.size(); ++k)
       if (limit_kinds()[k].cured_by_finer) records[k] = {};
-    watch_.take_over(records, at.state.step);
+    watch_.inherit_from(records, at.state.step);
     begin_files();
     save();
   }
@@ -485,7 +485,7 @@ class Run {
   std::string started_at_ = iso_time();
   double first_energy_ = 0, earlier_seconds_ = 0, started_ = now();
   long log_every_ = 1, frames_every_ = 1, last_step_ = 0;
-  Manner manner_;
+  RunPolicy policy_;
   bool at_rest_ = true;  // false: a relaxation ran out of steps
 };
 
@@ -498,21 +498,21 @@ void use_threads(int threads) {
 namespace {
 
 // A run that may be refined must find the place for it free.
-void check_finer_directory(const RunDirectory& dir, const Manner& manner) {
+void check_finer_directory(const RunDirectory& dir, const RunPolicy& policy) {
   const RunDirectory finer = finer_directory(dir);
-  if (manner.on_limit == OnLimit::refine && !manner.force && std::filesystem::exists(finer.path))
+  if (policy.on_limit == OnLimit::refine && !policy.force && std::filesystem::exists(finer.path))
     throw InputError({finer.path, 0, "--on-limit"}, "exists, and a refined run would go on there",
                      "take it away or choose another name for the run");
 }
 
 std::unique_ptr<Run> new_run(const RunArguments& a) {
   const RunDirectory dir{a.out};
-  const Manner manner{a.quiet, on_limit_of(a.on_limit), a.force};
+  const RunPolicy policy{a.quiet, on_limit_of(a.on_limit), a.force};
   Scene scene = read_scene(a.scene);
   // Everything that can be wrong is found before a file is touched.
-  auto run = std::make_unique<Run>(dir, scene, manner);
+  auto run = std::make_unique<Run>(dir, scene, policy);
   run->check_manner();
-  check_finer_directory(dir, manner);
+  check_finer_directory(dir, policy);
   create_run_directory(dir, a.force);
   write_file_atomically(dir.scene(), scene.text);
   for (std::size_t k = 0; k < scene.sets.size(); ++k)
@@ -558,9 +558,9 @@ int resume_command(const ResumeArguments& a) {
   const RunDirectory dir{a.dir};
   const RunCheckpoint checkpoint = read_checkpoint(dir);
   refuse_refined(dir);
-  const Manner manner{a.quiet, on_limit_of(a.on_limit), false};
-  check_finer_directory(dir, manner);
-  auto run = std::make_unique<Run>(dir, read_run_scene(dir), manner);
+  const RunPolicy policy{a.quiet, on_limit_of(a.on_limit), false};
+  check_finer_directory(dir, policy);
+  auto run = std::make_unique<Run>(dir, read_run_scene(dir), policy);
   if (a.until_ps >= 0) run->stop_at_time(a.until_ps);
   if (a.steps >= 0) run->stop_at(a.steps);
   run->restore(checkpoint);

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double shock = 0.1;  // strain
 
-enum Kind : std::size_t { bend, twist, kink_curvature, wall_twist, strain, press, speed };
+enum Kind : std::size_t { bend, twist, kink_curvature, wall_twist, strain, overlap, speed };
 
 void raise(Peak& peak, double value, int element) {
   if (peak.element >= 0 && !(value > peak.value)) return;
@@ -43,24 +43,24 @@ Peaks peaks_of_tube(const Topology& topology, const State& state, int tube, cons
 }
 
 // The pairs of each element that come nearer than they rest. Most are seen not to be the deepest by far.
-void press_of_tube(const Topology& topology, const State& state, const Vec3Array& axes, const NeighbourList& list,
+void overlap_of_tube(const Topology& topology, const State& state, const Vec3Array& axes, const NeighbourList& list,
                    const Watched& watched, int tube, Peak& peak) {
   const TubeType& type = topology.type_of(tube);
   const auto types = topology.types.size(), row = static_cast<std::size_t>(topology.tube_type[tube]) * types;
   const double reach = *std::max_element(watched.rest.begin(), watched.rest.end()) + topology.longest_element();
   for (int i = topology.tube_begin[tube]; i < topology.tube_begin[tube + 1]; ++i) {
-    const Vector3 place = state.position[static_cast<std::size_t>(i)];
+    const Vector3 centre = state.position[static_cast<std::size_t>(i)];
     const Vector3 axis = axes[static_cast<std::size_t>(i)];
     double deepest = peak.element >= 0 ? peak.value : 0;
     list.for_neighbours(i, [&](int element) {
       const auto j = static_cast<std::size_t>(element);
-      const Vector3 separation = state.position[j] - place;
+      const Vector3 separation = state.position[j] - centre;
       if (separation.squaredNorm() > reach * reach) return;
       const TubeType& other = types == 1 ? type : topology.type_of_element(element);
       const double rest = watched.rest[row + static_cast<std::size_t>(&other - topology.types.data())];
       const double half_i = 0.5 * type.element_length, half_j = 0.5 * other.element_length;
       const double wanted = rest - deepest;
-      if (least_squared_distance(separation, axis, axes[j], half_i + half_j, 2 * half_j) > wanted * wanted) return;
+      if (min_squared_distance(separation, axis, axes[j], half_i + half_j, 2 * half_j) > wanted * wanted) return;
       const double distance2 = squared_segment_distance(separation, axis, axes[j], half_i, half_j);
       if (distance2 < rest * rest) deepest = std::max(deepest, rest - std::sqrt(distance2));
     });
@@ -82,9 +82,9 @@ const std::array<LimitKind, limit_count>& limit_kinds() {
       {"wall_twist", "", 1, &Limits::wall_twist, "radius times twist per length is",
        "the wall of a real tube collapses there", "twist it less, or do not trust its torsion from now on", false},
       {"strain", "", 1, &Limits::strain, "the bond to the next element is strained by",
-       "the linear law of the bond ends there", "pull or press it less, or do not trust its force from now on",
+       "the linear law of the bond ends there", "pull or overlap it less, or do not trust its force from now on",
        false},
-      {"press_nm", "nm", 1, &Limits::press, "the tube is pressed into another one by",
+      {"press_nm", "nm", 1, &Limits::overlap, "the tube is watch_overlap into another one by",
        "the contact law is only continued there", "load it more gently, or start it without overlaps", false},
       {"speed_nm_per_ps", "nm/ps", 1, &Limits::speed, "the element moves with",
        "stopping it would strain the tube by 10 % or more", "load it more gently, or damp more", false},
@@ -103,15 +103,15 @@ Limits default_limits(const TubeType& type, const Validity& validity) {
 
 Peaks peaks(const Topology& topology, const State& state, const NeighbourList& list, const Watched& watched) {
   std::vector<Peaks> tubes(static_cast<std::size_t>(topology.tubes()));
-  const bool pressed = list.pairs() > 0 && !watched.rest.empty();
-  Vec3Array axes(pressed ? state.size() : 0);
+  const bool watch_overlap = list.pairs() > 0 && !watched.rest.empty();
+  Vec3Array axes(watch_overlap ? state.size() : 0);
 #pragma omp parallel for schedule(static) if (state.size() > parallel_from)
   for (std::size_t i = 0; i < axes.size(); ++i) axes.set(i, axis_of(state.orientation[i]));
 #pragma omp parallel for schedule(static) if (state.size() > parallel_from)
   for (int t = 0; t < topology.tubes(); ++t) {
     Peaks& own = tubes[static_cast<std::size_t>(t)];
     own = peaks_of_tube(topology, state, t, watched.limits[static_cast<std::size_t>(topology.tube_type[t])]);
-    if (pressed) press_of_tube(topology, state, axes, list, watched, t, own[press]);
+    if (watch_overlap) overlap_of_tube(topology, state, axes, list, watched, t, own[overlap]);
   }
   Peaks out;
   for (const Peaks& tube : tubes)

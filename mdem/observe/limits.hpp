@@ -36,7 +36,7 @@ struct Limits {
   double kink_curvature = 0;            // 1/nm
   double wall_twist = 0;
   double strain = 0;
-  double press = 0;  // nm
+  double overlap = 0;  // nm
   double speed = 0;  // nm/ps
 };
 
@@ -49,7 +49,7 @@ struct LimitKind {
   double unit_size;  // in internal units
   double Limits::*limit;
   const char* what;     // "the bond to the next element is bent by"
-  const char* beyond;   // what is wrong there
+  const char* consequence;   // what is wrong there
   const char* remedy;   // for one who meets it
   bool cured_by_finer;  // would shorter elements help
 };

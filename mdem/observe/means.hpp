@@ -11,17 +11,17 @@ class Means {
   // Every sample must have the same names.
   void add(const std::map<std::string, double>& now) {
     for (const auto& [name, value] : now) sums_[name] += value;
-    ++looks_;
+    ++count_;
   }
   std::map<std::string, double> values() const {
     std::map<std::string, double> out;
-    for (const auto& [name, sum] : sums_) out[name] = sum / looks_;
+    for (const auto& [name, sum] : sums_) out[name] = sum / count_;
     return out;
   }
 
  private:
   std::map<std::string, double> sums_;
-  int looks_ = 0;
+  int count_ = 0;
 };
 
 }  // namespace ropewalk

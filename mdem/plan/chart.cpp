@@ -101,11 +101,11 @@ ChartedModel model_of(Csv& csv, std::size_t row) {
   return m;
 }
 
-LedBy led_by(Csv& csv, std::size_t row) {
-  const std::string& word = csv.text(row, "led_by");
-  for (const LedBy led : {LedBy::rotation, LedBy::load, LedBy::nothing})
-    if (word == words_of(led)) return led;
-  csv.fail("led_by", "is neither rotation nor load nor nothing");
+DrivenBy driven_by_of(Csv& csv, std::size_t row) {
+  const std::string& word = csv.text(row, "driven_by");
+  for (const DrivenBy by : {DrivenBy::rotation, DrivenBy::load, DrivenBy::nothing})
+    if (word == words_of(by)) return by;
+  csv.fail("driven_by", "is neither rotation nor load nor nothing");
 }
 
 // A relaxation that was at rest at once has no cost of a step, and a model that broke down no values.
@@ -136,8 +136,8 @@ void read_points(const std::string& path, std::vector<ChartedScene>& scenes) {
 
 }  // namespace
 
-const char* words_of(LedBy led) {
-  return led == LedBy::rotation ? "rotation" : led == LedBy::load ? "load" : "nothing";
+const char* words_of(DrivenBy by) {
+  return by == DrivenBy::rotation ? "rotation" : by == DrivenBy::load ? "load" : "nothing";
 }
 
 const ChartedModel* ChartedScene::standard() const {
@@ -159,7 +159,7 @@ std::vector<ChartedScene> read_chart(const std::string& directory) {
     s.twist = csv.number(row, "twist_rad_per_nm");
     s.crossing_from = csv.number(row, "crossing_from_deg");
     s.crossing_to = csv.number(row, "crossing_to_deg");
-    s.led = led_by(csv, row);
+    s.driven_by = driven_by_of(csv, row);
     const std::string& from = csv.text(row, "energy_from");
     if (from != "start" && from != "zero") csv.fail("energy_from", "is neither start nor zero");
     s.energy_above_start = from == "start";

@@ -14,9 +14,9 @@
 
 namespace ropewalk {
 
-// What a scene is led by answers with the rest: moments with the end moment, loads with angles and bends.
-enum class LedBy { rotation, load, nothing };  // nothing: free, or held where it is
-const char* words_of(LedBy led);               // "rotation", ...
+// What a scene is driven by answers with the rest: moments with the end moment, loads with angles and bends.
+enum class DrivenBy { rotation, load, nothing };  // nothing: free, or held where it is
+const char* words_of(DrivenBy by);               // "rotation", ...
 
 struct ChartedValue {
   std::string unit;
@@ -43,7 +43,7 @@ struct ChartedScene {
   double radius = 0;                          // nm
   double curvature = 0, twist = 0;            // 1/nm, rad/nm
   double crossing_from = 0, crossing_to = 0;  // deg
-  LedBy led = LedBy::rotation;
+  DrivenBy driven_by = DrivenBy::rotation;
   bool energy_above_start = true;  // or all of it
   std::vector<ChartedModel> models;
 

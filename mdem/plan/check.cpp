@@ -170,7 +170,7 @@ std::map<std::string, double> seen(const Model& m, double stretch) {
 
 }  // namespace
 
-double SpotCheck::Pair::error() const { return finer != 0 ? std::fabs(planned / finer - 1) : std::fabs(planned); }
+double SpotCheck::Comparison::error() const { return finer != 0 ? std::fabs(planned / finer - 1) : std::fabs(planned); }
 
 SpotCheck spot_check(const Scene& scene, const Prepared& prepared, const State& end, double stretch) {
   const std::string kept = fixed_length(scene);

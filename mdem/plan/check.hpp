@@ -12,11 +12,11 @@ namespace ropewalk {
 
 struct SpotCheck {
   std::string how;
-  struct Pair {
+  struct Comparison {
     double planned = 0, finer = 0;
     double error() const;  // relative to the finer one
   };
-  std::map<std::string, Pair> observables;
+  std::map<std::string, Comparison> observables;
 };
 
 // The finer model has elements of half the length where loads allow (with another one between every two, so that

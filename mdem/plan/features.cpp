@@ -11,7 +11,7 @@ namespace ropewalk {
 namespace {
 
 // Bends and twists of the bonds at the start, per length.
-void look_at_bonds(const Topology& topology, const State& s, SceneFeatures& f) {
+void bond_features(const Topology& topology, const State& s, SceneFeatures& f) {
   for (int t = 0; t < topology.tubes(); ++t) {
     const double a = topology.type_of(t).element_length;
     for (int e = topology.tube_begin[t]; e + 1 < topology.tube_begin[t + 1]; ++e) {
@@ -24,7 +24,7 @@ void look_at_bonds(const Topology& topology, const State& s, SceneFeatures& f) {
   f.why.push_back(fmt::format("start: curvature {:.3g} 1/nm, twist {:.3g} rad/nm", f.curvature, f.twist));
 }
 
-void look_at_crossings(const Prepared& p, SceneFeatures& f) {
+void crossing_features(const Prepared& p, SceneFeatures& f) {
   NeighbourList list(p.interaction, default_skin(p.interaction));
   list.build(p.topology, p.state);
   double least = 90, most = 0;
@@ -97,26 +97,26 @@ SceneFeatures features_of(const Scene& scene, const Prepared& p) {
   f.radius = p.topology.types[0].radius;
   f.length = longest_tube(p.topology);
   f.duration = p.duration;
-  look_at_bonds(p.topology, p.state, f);
-  if (f.contact) look_at_crossings(p, f);
+  bond_features(p.topology, p.state, f);
+  if (f.contact) crossing_features(p, f);
   double turned = 0;
   for (const SceneLoad& load : scene.loads) {
     const std::optional<LoadEffect> effect = load.load->effect();
     if (!effect) {
-      f.beyond = "a load whose effect cannot be said beforehand";
+      f.not_estimable = "a load whose effect cannot be said beforehand";
       continue;
     }
     add_load(*effect, p, f);
     turned += effect->angle;
   }
   if (turned > 0) add_rope_twist(p, turned / f.length, "rotation", f);
-  if (turned > 0) f.led = LedBy::rotation;
-  if (scene.twist || f.sudden) f.led = LedBy::load;
+  if (turned > 0) f.driven_by = DrivenBy::rotation;
+  if (scene.twist || f.sudden) f.driven_by = DrivenBy::load;
   if (scene.twist) {
     const TwistLoad& w = *scene.twist;
     const double each = w.reading == TwistLoad::Reading::per_tube ? w.moment : w.moment / f.tubes;
     add_rope_twist(p, each / p.topology.types[0].bond.twist, "[twist]", f);
-    if (w.geometric_only) f.beyond = "twist.geometric_only takes away what holds against the moment";
+    if (w.geometric_only) f.not_estimable = "twist.geometric_only takes away what holds against the moment";
     f.sudden = f.sudden || w.rate <= 0;
     f.ramp = w.ramp_time();
   }
@@ -130,8 +130,8 @@ SceneFeatures features_of(const Scene& scene, const Prepared& p) {
     f.why.push_back(fmt::format("{:g} K: curvature {:.2g} 1/nm, twist {:.2g} rad/nm on top",
                                 scene.start.temperature, bend, twist));
   }
-  if (scene.thermostat) f.beyond = "a thermostat, whose noise hides the errors of a model";
-  if (scene.sets.size() > 1) f.beyond = "tubes of several kinds";
+  if (scene.thermostat) f.not_estimable = "a thermostat, whose noise hides the errors of a model";
+  if (scene.sets.size() > 1) f.not_estimable = "tubes of several kinds";
   return f;
 }
 

@@ -19,11 +19,11 @@ struct SceneFeatures {
   double length = 0;                          // nm, of the longest tube
   double duration = 0;                        // ps
   bool sudden = false;                        // a force or a moment acts at once
-  LedBy led = LedBy::nothing;                 // by loads, where there are rotations as well
+  DrivenBy driven_by = DrivenBy::nothing;                 // by loads, where there are rotations as well
   double turn = 0;                            // rad/nm, of a rope as a whole at the end; part of `twist`
   double ramp = 0;                            // ps, in which it is turned
   std::vector<std::string> why;               // how the figures come about
-  std::string beyond;                         // what cannot be estimated; empty: nothing
+  std::string not_estimable;                         // what cannot be estimated; empty: nothing
 };
 
 // Upper estimates: a twisting moment twists each tube as if no other held it, M/GJ; a force bends a tube that is

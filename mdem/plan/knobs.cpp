@@ -100,7 +100,7 @@ std::vector<Knob> table() {
        [](const Model& m) -> double { return m.mode == "dynamics"; },
        [](const KnobUse& u, const Model&) { return u.end_state && needs_time(u.scene).empty(); },
        write_mode},
-      // Where tubes feel nodes they settle in them, which scenes of the chart that are led from rest hardly show:
+      // Where tubes feel nodes they settle in them, which scenes of the chart that are driven from rest hardly show:
       // seven free tubes with two nodes instead of six lost 11 % of the energy of twisting.
       {Id::nodes,
        {"nodes_per_element", "nodes", "law"},

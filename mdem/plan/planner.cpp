@@ -48,7 +48,7 @@ double length_of(const ChartedScene& c) { return c.standard()->elements * c.stan
 bool is_short(const ChartedScene& c, const SceneFeatures& f) { return length_of(c) < 0.5 * f.length; }
 
 bool nearer(const ChartedScene& a, const ChartedScene& b, const SceneFeatures& f) {
-  if ((a.led == f.led) != (b.led == f.led)) return a.led == f.led;
+  if ((a.driven_by == f.driven_by) != (b.driven_by == f.driven_by)) return a.driven_by == f.driven_by;
   if (is_short(a, f) != is_short(b, f)) return is_short(b, f);
   return distance(a, f) < distance(b, f);
 }
@@ -64,10 +64,10 @@ const ChartedScene* nearest(const std::vector<ChartedScene>& chart, const SceneF
       best = &c;
     }
   }
-  if (best && best->led != f.led)
-    plan.led_otherwise =
-        fmt::format("scene {} is led by {}, this one by {}: what answers to that may be farther off than expected",
-                    best->name, words_of(best->led), words_of(f.led));
+  if (best && best->driven_by != f.driven_by)
+    plan.driven_otherwise =
+        fmt::format("scene {} is driven by {}, this one by {}: what answers to that may be farther off than expected",
+                    best->name, words_of(best->driven_by), words_of(f.driven_by));
   return best;
 }
 
@@ -230,7 +230,7 @@ Choice choose(const std::vector<KnobOptions>& knobs, const std::map<std::string,
   Choice best, now;
   now.error = rest;
   bool any = false, best_holds = false;
-  const std::function<void(std::size_t)> look = [&](std::size_t k) {
+  const std::function<void(std::size_t)> choose_from = [&](std::size_t k) {
     if (best_holds && (now.largest() > limit || now.cost * least[k] >= best.cost)) return;
     if (k == knobs.size()) {
       if (contradicts_itself(knobs, now, standard)) return;
@@ -244,11 +244,11 @@ Choice choose(const std::vector<KnobOptions>& knobs, const std::map<std::string,
       for (const auto& [name, change] : o.change) now.error[name] += change;
       now.cost *= o.cost;
       now.options.push_back(&o);
-      look(k + 1);
+      choose_from(k + 1);
       now = before;
     }
   };
-  look(0);
+  choose_from(0);
   return best;
 }
 
@@ -264,7 +264,7 @@ std::string expectations(const std::map<std::string, double>& expected, bool ene
 
 std::string header_of(const Plan& plan, const PlanRequest& request) {
   if (plan.stands_for.empty()) return "# The default model: the chart has no scene like this one.\n";
-  const std::string caution = plan.led_otherwise.empty() ? "" : "# " + plan.led_otherwise + ".\n";
+  const std::string caution = plan.driven_otherwise.empty() ? "" : "# " + plan.driven_otherwise + ".\n";
   return fmt::format("# Planned for an error of {:g} %{}, by scene {} of the chart.\n{}{}", 100 * request.error,
                      plan.holds ? "" : ", which it does not hold", plan.stands_for, caution,
                      expectations(plan.expected, plan.energy_above_start, request.error));
@@ -312,7 +312,7 @@ std::vector<std::string> observables_of(const ChartedScene& c, const PlanRequest
 // tubes give way, but cannot be looked at.
 void leave_out_given_moment(const SceneFeatures& f, Plan& plan) {
   const auto moment = plan.expected.find("end_moment");
-  if (f.led == LedBy::rotation || moment == plan.expected.end()) return;
+  if (f.driven_by == DrivenBy::rotation || moment == plan.expected.end()) return;
   plan.why.push_back(
       fmt::format("end_moment: loads give it here; its error in the chart, {:.2f} %, stands for how far "
                   "tubes give way",
@@ -358,15 +358,15 @@ Plan plan_scene(const Scene& scene, const std::vector<ChartedScene>& chart, cons
   PlannedScene standard = w;
   standard.default_length();
   const bool line_or_none = !f.contact || scene.contact.law == "line";
-  const ChartedScene* c = f.beyond.empty() && line_or_none ? nearest(chart, f, plan) : nullptr;
+  const ChartedScene* c = f.not_estimable.empty() && line_or_none ? nearest(chart, f, plan) : nullptr;
   if (c && longer_than_charted(*c, scene)) {
     plan.why.push_back(fmt::format("elements of {:.4g} nm, which stay since {}, are longer than any in scene {}",
                                    scene.element_length, fixed_length(scene), c->name));
     c = nullptr;
   }
   if (!c) {
-    plan.led_otherwise.clear();
-    if (!f.beyond.empty()) plan.why.push_back("the chart has nothing like it: " + f.beyond);
+    plan.driven_otherwise.clear();
+    if (!f.not_estimable.empty()) plan.why.push_back("the chart has nothing like it: " + f.not_estimable);
     if (!line_or_none) plan.why.push_back("the chart varies law \"line\", and this scene has another");
     plan.why.push_back("no point of the chart is near: the default model is taken, and no error is promised");
   } else {

@@ -1,6 +1,6 @@
 // Which model a scene needs: of those that the chart has measured, the cheapest that holds an error.
 //
-// Of the scenes of the chart that cover the scene, the nearest one stands for it: first of those that are led in
+// Of the scenes of the chart that cover the scene, the nearest one stands for it: first of those that are driven in
 // the same way, then of those that are not much shorter, then by curvature, twist and number of tubes. A knob
 // turned from its best value b to o changes an observable by |value(o) - value(b)| there; the changes of several
 // knobs are added up with their sizes, and so is what of the default's error against the finest model no knob
@@ -30,7 +30,7 @@ struct PlanRequest {
 
 struct Plan {
   std::string stands_for;                  // scene of the chart; empty: none is near, and the model is the default
-  std::string led_otherwise;               // where that scene is led in another way, what this means
+  std::string driven_otherwise;               // where that scene is led in another way, what this means
   bool holds = false;                      // whether the error is held, as the chart has it
   std::map<std::string, double> expected;  // error by observable
   bool energy_above_start = true;          // what "energy" is there

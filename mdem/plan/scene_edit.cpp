@@ -28,12 +28,12 @@ bool is_header(const std::string& line) {
 }
 
 // The lines of a table after its header, [from, to); none: from = npos.
-struct Range {
+struct LineRange {
   std::size_t from = std::string::npos, to = 0;
 };
 
-Range range_of(const std::vector<std::string>& lines, const std::string& table) {
-  Range r;
+LineRange range_of(const std::vector<std::string>& lines, const std::string& table) {
+  LineRange r;
   if (table.empty()) r.from = 0;
   const std::regex header("\\s*\\[\\s*" + table + "\\s*\\]\\s*(#.*)?");
   for (r.to = 0; r.to < lines.size(); ++r.to) {
@@ -44,7 +44,7 @@ Range range_of(const std::vector<std::string>& lines, const std::string& table) 
   return r;
 }
 
-std::size_t find_key(const std::vector<std::string>& lines, const Range& r, const std::string& key, bool comment) {
+std::size_t find_key(const std::vector<std::string>& lines, const LineRange& r, const std::string& key, bool comment) {
   const std::regex sets(std::string(comment ? "\\s*#\\s*" : "\\s*") + key + "\\s*=.*");
   for (std::size_t k = r.from; k < r.to; ++k)
     if (std::regex_match(lines[k], sets)) return k;
@@ -57,7 +57,7 @@ std::string with_key(const std::string& text, const std::string& table, const st
                      const std::string& value) {
   std::vector<std::string> lines = lines_of(text);
   const std::string line = key + " = " + value + "  # planned";
-  Range r = range_of(lines, table);
+  LineRange r = range_of(lines, table);
   if (r.from == std::string::npos) {
     lines.push_back("");
     lines.push_back("[" + table + "]");
@@ -76,7 +76,7 @@ std::string with_key(const std::string& text, const std::string& table, const st
 
 std::string without_key(const std::string& text, const std::string& table, const std::string& key) {
   std::vector<std::string> lines = lines_of(text);
-  const Range r = range_of(lines, table);
+  const LineRange r = range_of(lines, table);
   if (r.from == std::string::npos) return text;
   const std::size_t at = find_key(lines, r, key, false);
   if (at == std::string::npos) return text;

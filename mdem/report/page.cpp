@@ -8,7 +8,7 @@
 namespace ropewalk {
 namespace {
 
-constexpr std::size_t most_rows = 60;  // of a table under a chart
+constexpr std::size_t max_rows = 60;  // of a table under a chart
 
 // Decimals of a column: five digits of the largest value, and the same decimals in all rows.
 int decimals_of(const TableColumn& column) {
@@ -100,7 +100,7 @@ std::vector<std::size_t> evenly(std::size_t n, std::size_t most) {
 
 std::string data_table(const std::vector<TableColumn>& columns, const char* source) {
   const std::size_t n = columns.empty() ? 0 : columns[0].values.size();
-  const std::vector<std::size_t> rows = evenly(n, most_rows);
+  const std::vector<std::size_t> rows = evenly(n, max_rows);
   std::string html = "<details><summary>Numbers</summary>\n";
   html += paragraph(rows.size() < n ? fmt::format("{} of {} rows. {}", rows.size(), n, source)
                                     : fmt::format("All {} rows. {}", n, source));

@@ -13,12 +13,12 @@
 namespace ropewalk {
 namespace {
 
-constexpr std::size_t most_pictures = 6;
+constexpr std::size_t max_pictures = 6;
 
 template <class T>
 std::vector<T> some(const std::vector<T>& all) {
   std::vector<T> chosen;
-  for (const std::size_t k : evenly(all.size(), most_pictures)) chosen.push_back(all[k]);
+  for (const std::size_t k : evenly(all.size(), max_pictures)) chosen.push_back(all[k]);
   return chosen;
 }
 
@@ -389,7 +389,7 @@ std::string summary(const ReportInput& in) {
 struct Limit {
   const char* what;  // "kinked"
   const char* column;
-  std::string beyond;  // HTML: which limit
+  std::string consequence;  // HTML: which limit
   const char* meaning;
 };
 
@@ -421,7 +421,7 @@ std::string limit_words(const ReportInput& in, const Limit& limit) {
     if (r[limit.column] > (*worst)[limit.column]) worst = &r;
   const double most = (*worst)[limit.column];
   const std::string of = in.bonds > 0 ? fmt::format(" of {} bonds", fixed_text(in.bonds, 0)) : " bonds";
-  std::string html = fmt::format("<li><b>{}</b> ({}): ", limit.what, limit.beyond);
+  std::string html = fmt::format("<li><b>{}</b> ({}): ", limit.what, limit.consequence);
   if (!(most > 0)) return html + (in.bonds > 0 ? "none" + of : "no bond") + " at any logged time.</li>\n";
   html += fixed_text(last, 0) + of + " at the end";
   if (in.bonds > 0) html += fmt::format(" ({} %)", number_text(100 * last / in.bonds, 2));

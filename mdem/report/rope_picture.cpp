@@ -18,7 +18,7 @@
 namespace ropewalk {
 namespace {
 
-constexpr std::size_t most_bytes_in_page = 60000, most_bytes_of_file = 250000;
+constexpr std::size_t max_bytes_in_page = 60000, max_bytes_of_file = 250000;
 constexpr int moment_colours = 12;
 constexpr double reach = 1.28;           // half the stroke behind a tube, radii: closes the gap to its neighbour
 constexpr double layer_thickness = 1.2;  // radii
@@ -326,7 +326,7 @@ bool has_moments(const RopeView& view) {
 }
 
 std::string rope_body(const RopeView& view, const RopeCamera& camera, double radius, double top,
-                      const std::string& name, std::size_t most_bytes) {
+                      const std::string& name, std::size_t max_bytes) {
   std::string text;
   std::vector<SeenTube> tubes;
   std::size_t stride = 0;
@@ -345,7 +345,7 @@ std::string rope_body(const RopeView& view, const RopeCamera& camera, double rad
     Paths paths;
     for (const SeenTube& tube : tubes) painter.append(tube, paths);
     text = paint(paths, name, radius, coloured);
-    if (text.size() < most_bytes - 1000) break;
+    if (text.size() < max_bytes - 1000) break;
   }
   return text;
 }
@@ -465,7 +465,7 @@ std::string rope_picture(const RopeView& view, const RopeCamera& camera, double 
       "aria-label=\"Side view at {2} ps\">\n<g fill=\"none\" stroke-linejoin=\"round\" "
       "transform=\"scale({3:.5f})\">",
       width, height + bar, number_text(view.time_ps), camera.scale / per_nm);
-  text += rope_body(view, camera, radius, y.high, name, most_bytes_in_page) + "</g>\n";
+  text += rope_body(view, camera, radius, y.high, name, max_bytes_in_page) + "</g>\n";
   if (scale_bar) text += scale_bar_at(camera, 1.5 * radius * camera.scale, height + 14, "var(--ink)");
   return text + "</svg>\n";
 }
@@ -508,7 +508,7 @@ std::string rope_svg(const RopeView& view, double radius, double width) {
       "fill=\"#fff\"/>\n<g fill=\"none\" stroke-linejoin=\"round\" transform=\"translate({2:.1f} 10) "
       "scale({3:.5f})\">",
       width, height, left, camera.scale / per_nm);
-  text += rope_body(view, camera, radius, y.high, "t", most_bytes_of_file) + "</g>\n";
+  text += rope_body(view, camera, radius, y.high, "t", max_bytes_of_file) + "</g>\n";
   text += scale_bar_at(camera, left + 1.5 * radius * camera.scale, rope + 27, "#1c1e22");
   if (coloured) text += bar_at(camera.moment_eV, width - 400, rope + 22, "#1c1e22");
   return text + "</svg>\n";

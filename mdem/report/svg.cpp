@@ -14,7 +14,7 @@ namespace {
 
 constexpr double font = 12;            // pixels
 constexpr double label_distance = 15;  // between baselines
-constexpr std::size_t most_points = 400;
+constexpr std::size_t max_points = 400;
 
 std::string superscript(int exponent) {
   static const char* digits[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
@@ -59,7 +59,7 @@ double text_width(std::string_view text) {
 
 // --- Axes -----------------------------------------------------------------------------------------------
 
-struct Range {
+struct AxisRange {
   double low = std::numeric_limits<double>::infinity();
   double high = -std::numeric_limits<double>::infinity();
 
@@ -71,7 +71,7 @@ struct Range {
 };
 
 struct Scale {
-  Range range;
+  AxisRange range;
   double step = 1;
   int power = 0;         // ticks are in units of 10^power
   bool decades = false;  // of logarithms
@@ -86,13 +86,13 @@ double nice_step(double rough, bool whole) {
   return whole ? std::max(1.0, 10 * base) : 10 * base;
 }
 
-int power_of(const Range& range) {
+int power_of(const AxisRange& range) {
   const double largest = std::max(std::abs(range.low), std::abs(range.high));
   if (largest == 0 || (largest >= 0.01 && largest < 1e5)) return 0;
   return 3 * static_cast<int>(std::floor(magnitude(largest) / 3.0));
 }
 
-Scale scale_of(const Range& range, int parts, bool whole) {
+Scale scale_of(const AxisRange& range, int parts, bool whole) {
   Scale s;
   s.range = range;
   s.step = nice_step(range.span() / parts, whole);
@@ -107,7 +107,7 @@ Scale scale_of(const Range& range, int parts, bool whole) {
 }
 
 // Of logarithms: decades, and 2 and 5 between them where there are few.
-Scale decades_of(const Range& range) {
+Scale decades_of(const AxisRange& range) {
   Scale s;
   s.range = range;
   s.decades = true;
@@ -124,7 +124,7 @@ Scale decades_of(const Range& range) {
 }
 
 // A little air around the data; from zero where they nearly begin there.
-Range y_range(Range r, bool whole) {
+AxisRange y_range(AxisRange r, bool whole) {
   const double size = std::max(std::abs(r.low), std::abs(r.high));
   if (r.span() <= 1e-9 * size || size == 0) {
     const double air = whole || size == 0 ? 1.0 : 0.05 * size;
@@ -136,7 +136,7 @@ Range y_range(Range r, bool whole) {
   return {from_zero ? 0 : r.low - air, to_zero ? 0 : r.high + air};
 }
 
-Range with_air(const Range& r) {
+AxisRange with_air(const AxisRange& r) {
   const double air = std::max(0.06 * r.span(), 0.1);
   return {r.low - air, r.high + air};
 }
@@ -150,10 +150,10 @@ std::string axis_text(const ChartAxis& axis, int power) {
 
 // --- Lines ----------------------------------------------------------------------------------------------
 
-struct Point {
+struct PagePoint {
   double x, y;
 };
-using Stretch = std::vector<Point>;  // without a gap
+using Stretch = std::vector<PagePoint>;  // without a gap
 
 std::vector<Stretch> stretches(const ChartLine& line) {
   std::vector<Stretch> all(1);
@@ -177,7 +177,7 @@ Stretch thinned(const Stretch& points, std::size_t most) {
     const auto begin = points.begin() + 1 + static_cast<std::ptrdiff_t>(b * inner / buckets);
     const auto end = points.begin() + 1 + static_cast<std::ptrdiff_t>((b + 1) * inner / buckets);
     const auto [low, high] =
-        std::minmax_element(begin, end, [](const Point& p, const Point& q) { return p.y < q.y; });
+        std::minmax_element(begin, end, [](const PagePoint& p, const PagePoint& q) { return p.y < q.y; });
     out.push_back(*std::min(low, high));
     if (low != high) out.push_back(*std::max(low, high));
   }
@@ -197,11 +197,11 @@ ScatterChart in_logarithms(ScatterChart scatter) {
   return scatter;
 }
 
-Range x_range(const LineChart& chart) {
-  Range r;
+AxisRange x_range(const LineChart& chart) {
+  AxisRange r;
   for (const ChartLine& line : chart.lines)
     for (const Stretch& s : stretches(line))
-      for (const Point& p : s) r.take(p.x);
+      for (const PagePoint& p : s) r.take(p.x);
   return r;
 }
 
@@ -221,7 +221,7 @@ std::string path_of(const Plot& plot, const ChartLine& line) {
   for (const Stretch& s : all) total += s.size();
   for (const Stretch& whole : all) {
     const Stretch s =
-        thinned(whole, std::max<std::size_t>(4, most_points * whole.size() / std::max<std::size_t>(1, total)));
+        thinned(whole, std::max<std::size_t>(4, max_points * whole.size() / std::max<std::size_t>(1, total)));
     fmt::format_to(to, "M{:.1f} {:.1f}", plot.px(s[0].x), plot.py(s[0].y));
     if (s.size() == 1) d += "h0";  // a dot, by the round cap
     if (line.points && s.size() > 1) d += "h0";
@@ -309,10 +309,10 @@ std::string draw_labels(const LineChart& chart, const Plot& plot) {
 Plot layout(const ScatterChart& scatter) {
   const LineChart& chart = scatter.chart;
   Plot plot;
-  Range x = x_range(chart), y;
+  AxisRange x = x_range(chart), y;
   for (const ChartLine& line : chart.lines)
     for (const Stretch& s : stretches(line))
-      for (const Point& p : s) y.take(p.y);
+      for (const PagePoint& p : s) y.take(p.y);
   plot.x = scatter.x_decades ? decades_of(with_air(x)) : scale_of(x, 6, chart.x.whole);
   plot.y = scatter.y_decades ? decades_of(with_air(y)) : scale_of(y_range(y, chart.y.whole), 5, chart.y.whole);
   double ticks = 0, names = 0;
@@ -440,7 +440,7 @@ font-variant-numeric:tabular-nums;max-width:100%;height:auto}
 }
 
 bool can_draw(const LineChart& chart) {
-  const Range r = x_range(chart);
+  const AxisRange r = x_range(chart);
   return r.span() > 1e-9 * std::max(std::abs(r.low), std::abs(r.high));  // false where there are no points
 }
 

@@ -15,7 +15,7 @@ std::string line_of(const LimitKind& kind, const Topology& topology, const Peak&
   return fmt::format(
       "limit passed at {:.4g} ps, tube {}, element {}: {} {:.4g}{}, beyond limits.{} = {:.4g}: {}; {}", time, tube,
       peak.element - topology.tube_begin[tube], kind.what, peak.value / kind.unit_size, with_space(kind.unit),
-      kind.key, peak.limit / kind.unit_size, kind.beyond, kind.remedy);
+      kind.key, peak.limit / kind.unit_size, kind.consequence, kind.remedy);
 }
 
 }  // namespace
@@ -27,13 +27,13 @@ OnLimit on_limit_of(const std::string& word) {
   throw InputError({"", 0, "--on-limit"}, fmt::format("there is no '{}'", word), "take warn, stop or refine");
 }
 
-void LimitWatch::take_over(const std::vector<LimitRecord>& earlier, std::int64_t step) {
+void LimitWatch::inherit_from(const std::vector<LimitRecord>& earlier, std::int64_t step) {
   records_ = earlier;
   for (LimitRecord& r : records_)
     if (r.passed_at_step > step) r.passed = false;
 }
 
-std::vector<std::string> LimitWatch::look(const Topology& topology, const State& state, const NeighbourList& list) {
+std::vector<std::string> LimitWatch::check(const Topology& topology, const State& state, const NeighbourList& list) {
   std::vector<std::string> lines;
   const Peaks now = peaks(topology, state, list, watched_);
   records_.resize(limit_count);

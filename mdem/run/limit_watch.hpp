@@ -21,10 +21,10 @@ class LimitWatch {
 
   // A run that goes on: from its own file, or from that of the run before its elements were split. What was passed
   // after `step` had not happened.
-  void take_over(const std::vector<LimitRecord>& earlier, std::int64_t step);
+  void inherit_from(const std::vector<LimitRecord>& earlier, std::int64_t step);
 
   // One line for each limit that is passed for the first time.
-  std::vector<std::string> look(const Topology& topology, const State& state, const NeighbourList& list);
+  std::vector<std::string> check(const Topology& topology, const State& state, const NeighbourList& list);
 
   // Whether at the last check a limit was passed that shorter elements would cure.
   bool finer_would_help() const { return finer_would_help_; }

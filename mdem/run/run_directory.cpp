@@ -145,13 +145,13 @@ Observer make_observer(const Scene& scene, const Prepared& prepared) {
   return o;
 }
 
-RopeObservation look(const Observer& o, const Scene& scene, const Topology& topology, const State& state) {
+RopeObservation observe(const Observer& o, const Scene& scene, const Topology& topology, const State& state) {
   return observe(topology, state, o.shells, validities(scene), o.neighbour_radius, o.spacing);
 }
 
 LogRow log_row(const Observer& o, const Scene& scene, const Topology& topology, const State& state,
                const EnergyAccount& account) {
-  return LogRow({topology, state, look(o, scene, topology, state), account});
+  return LogRow({topology, state, observe(o, scene, topology, state), account});
 }
 
 std::string state_csv(const Topology& topology, const State& s) {

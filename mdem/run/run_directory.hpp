@@ -67,7 +67,7 @@ struct Observer {
 };
 Observer make_observer(const Scene& scene, const Prepared& prepared);
 
-RopeObservation look(const Observer& observer, const Scene& scene, const Topology& topology, const State& state);
+RopeObservation observe(const Observer& observer, const Scene& scene, const Topology& topology, const State& state);
 LogRow log_row(const Observer& observer, const Scene& scene, const Topology& topology, const State& state,
                const EnergyAccount& account);
 

@@ -32,7 +32,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double enough = 0.2;  // s, of each thing that is timed
-constexpr long least_steps = 12, most_steps = 2000;
+constexpr long min_steps = 12, max_steps = 2000;
 constexpr double usual_frames = 40, usual_rows = 400;
 constexpr double pictured = 6;  // frames in a report
 
@@ -42,9 +42,9 @@ double seconds_of_a_step(Simulation& s) {
   s.steps(5, false);
   const double began = processor_seconds();
   long count = 0;
-  while (count < least_steps || (count < most_steps && processor_seconds() - began < enough)) {
-    s.steps(least_steps, false);
-    count += least_steps;
+  while (count < min_steps || (count < max_steps && processor_seconds() - began < enough)) {
+    s.steps(min_steps, false);
+    count += min_steps;
   }
   return (processor_seconds() - began) / static_cast<double>(count);
 }
@@ -114,7 +114,7 @@ Outputs time_outputs(const Scene& scene, const Prepared& p, const RunTime& t) {
   LimitWatch watch(watched_of(scene, p.topology));
   const double began = processor_seconds();
   const LogRow row = log_row(observer, scene, p.topology, s.state(), {});
-  watch.look(p.topology, s.state(), s.list());
+  watch.check(p.topology, s.state(), s.list());
   log_line(row);
   o.row = processor_seconds() - began;
   dump_frame(p.topology, s.state(), element_colours(p.topology, p.interaction, s.state()));
@@ -178,7 +178,7 @@ double seconds_of_a_process(std::vector<std::string> arguments) {
 void time_outputs_of_a_run(const std::string& text, const std::string& path, const Scene& scene, const Prepared& p,
                            RunTime& t) {
   const Outputs all = time_outputs(scene, p, t);
-  const double affordable = std::max(enough / (t.each + all.row), static_cast<double>(least_steps));
+  const double affordable = std::max(enough / (t.each + all.row), static_cast<double>(min_steps));
   const double steps = std::max(1.0, std::min(affordable, t.relaxes ? t.steps : all.rows));
   Outputs some;
   some.rows = t.relaxes ? steps / 100 + 1 : steps;

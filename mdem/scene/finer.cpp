@@ -103,8 +103,8 @@ std::string why_not_finer(const Scene& scene, const Topology& topology) {
   if (half < 0.99 * radius)
     return fmt::format("elements of {:.4g} nm would be shorter than the radius of the tube, {:.4g} nm", half,
                        radius);
-  if (2.0 * topology.elements() > most_elements)
-    return fmt::format("twice {} elements are more than the {} allowed", topology.elements(), most_elements);
+  if (2.0 * topology.elements() > max_elements)
+    return fmt::format("twice {} elements are more than the {} allowed", topology.elements(), max_elements);
   return "";
 }
 

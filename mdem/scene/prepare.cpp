@@ -11,7 +11,7 @@
 namespace ropewalk {
 namespace {
 
-constexpr double most_steps = 1e12;  // years, even of a single tube
+constexpr double max_steps = 1e12;  // years, even of a single tube
 
 // Of the bonds.
 double chosen_step(const Scene& scene, const TimeStepLimit& limit) {
@@ -118,11 +118,11 @@ Prepared prepare(Scene& scene) {
   out.time_step = chosen_step(scene, out.limit) * out.stepping.contact_every;
   out.duration = scene.run.duration;
   if (out.duration <= 0 && scene.twist) out.duration = scene.twist->ramp_time() + scene.twist->hold;
-  if (out.duration / out.time_step > most_steps)
+  if (out.duration / out.time_step > max_steps)
     throw InputError({scene.path, 0, "run"},
                      fmt::format("{:.4g} ps in steps of {:.4g} fs are {:.1g} steps", out.duration,
                                  out.time_step / units::fs, out.duration / out.time_step),
-                     fmt::format("at most {:.0g} can be counted; take a larger step or a shorter run", most_steps));
+                     fmt::format("at most {:.0g} can be counted; take a larger step or a shorter run", max_steps));
   refuse_overlaps(scene, out);
   refuse_moment(scene, out);
   return out;

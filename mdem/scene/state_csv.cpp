@@ -69,8 +69,8 @@ class Reader {
   void read_line(std::string_view line) {
     if (line.empty() || line[0] == '#') return;
     if (!seen_header_) return check_header(line);
-    if (rows_.size() == static_cast<std::size_t>(most_elements))
-      fail("", fmt::format("has more than {} elements", most_elements), "take fewer");
+    if (rows_.size() == static_cast<std::size_t>(max_elements))
+      fail("", fmt::format("has more than {} elements", max_elements), "take fewer");
     const Row row = parsed(line);
     append_to_tubes(row);
     rows_.push_back(row);

@@ -14,7 +14,7 @@ Watched watched_of(const Scene& scene, const Topology& topology) {
   for (std::size_t type = 0; type < scene.sets.size(); ++type) {
     Limits limits = default_limits(topology.types[type], scene.sets[type].validity);
     const auto own = static_cast<int>(type);
-    limits.press = law ? out.rest[type * scene.sets.size() + type] - law->core_distance({own, own}) : 0;
+    limits.overlap = law ? out.rest[type * scene.sets.size() + type] - law->core_distance({own, own}) : 0;
     for (std::size_t k = 0; k < limit_count; ++k)
       if (scene.limits[k]) limits.*limit_kinds()[k].limit = *scene.limits[k];
     out.limits.push_back(limits);

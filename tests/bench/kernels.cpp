@@ -48,7 +48,7 @@ void PaperKernel(benchmark::State& bench, const std::string& instructions, Inter
   }
   set_ns(bench, "ns/element", rope.elements());
   set_ns(bench, "ns/pair", static_cast<double>(rope.list.pairs()));
-  bench.counters["runs"] = static_cast<double>(engine.runs().count()) / rope.elements();
+  bench.counters["spans"] = static_cast<double>(engine.spans().count()) / rope.elements();
   use_instructions("");
 }
 
@@ -65,13 +65,13 @@ const bool registered = [] {
   return true;
 }();
 
-void PaperRunsBuild(benchmark::State& bench) {
+void PaperSpansBuild(benchmark::State& bench) {
   const Rope rope(static_cast<int>(bench.range(0)), 50, Law::paper);
-  PairRuns runs;
-  for (auto _ : bench) runs.build(rope.list, rope.in.cutoff());
+  ElementSpans spans;
+  for (auto _ : bench) spans.build(rope.list, rope.in.cutoff());
   set_ns(bench, "ns/element", rope.elements());
 }
-BENCHMARK(PaperRunsBuild)->Arg(7)->Arg(91);
+BENCHMARK(PaperSpansBuild)->Arg(7)->Arg(91);
 
 void NeighbourListBuild(benchmark::State& bench) {
   const Rope rope(static_cast<int>(bench.range(0)), 50, Law::line);

@@ -212,7 +212,7 @@ void ViscousDamping(benchmark::State& bench) {
   const ContactViscosity& viscosity = rope.in.damping.contact;
   std::vector<ContactBuffer<T>> buffers(list.chunks().size());
   DampedElements floats;
-  floats.make_room(list.largest().elements);
+  floats.resize(list.largest().elements);
   for (auto _ : bench) {
     for (std::size_t k = 0; k < buffers.size(); ++k) {
       const LineChunk& chunk = list.chunks()[k];

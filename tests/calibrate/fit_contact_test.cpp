@@ -140,7 +140,7 @@ TEST(UniversalFit, HoldsBetweenItsRadii) {
   EXPECT_TRUE(u.fit.usable()) << u.fit.message;
   EXPECT_LT(u.error, 3.5e-3);
   ASSERT_EQ(u.pairs.size(), 9u);
-  for (const UniversalFit::Pair& p : u.pairs) {
+  for (const UniversalFit::PairCheck& p : u.pairs) {
     EXPECT_LT(p.direct_error, 2.5e-3) << p.r_i << " " << p.r_j;
     EXPECT_LT(std::fabs(p.spacing_error), 1e-3) << p.r_i << " " << p.r_j;
     EXPECT_LT(std::fabs(p.depth_error), 5e-3) << p.r_i << " " << p.r_j;

@@ -176,7 +176,7 @@ TEST_F(Lammps, ChildThatWritesButNeverEndsIsEnded) {
   LammpsOptions options;
   options.program = script("while true; do echo alive; sleep 0.05; done");
   options.quiet_seconds = 0.5;
-  options.most_seconds = 1.2;
+  options.max_seconds = 1.2;
   EXPECT_THAT(message<LammpsError>("units metal\n", options), HasSubstr("longer than 1.2 s"));
 }
 

@@ -23,12 +23,12 @@ Scene scene_of(const std::vector<std::string>& names) {
   return s;
 }
 
-struct Pair {
+struct TubePair {
   const char *i, *j;
 };
-void PrintTo(const Pair& p, std::ostream* out) { *out << p.i << " beside " << p.j; }
+void PrintTo(const TubePair& p, std::ostream* out) { *out << p.i << " beside " << p.j; }
 
-class ShippedPair : public ::testing::TestWithParam<Pair> {
+class ShippedPair : public ::testing::TestWithParam<TubePair> {
  protected:
   void SetUp() override {
     const Scene s = scene_of({GetParam().i, GetParam().j});
@@ -85,12 +85,12 @@ TEST_P(ShippedPair, CrossedRowsHaveItsEnergyAtEveryAngle) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Sets, ShippedPair,
-                         ::testing::Values(Pair{"cnt-5-5-tersoff", "cnt-5-5-tersoff"},
-                                           Pair{"cnt-9-0-tersoff", "cnt-9-0-tersoff"},
-                                           Pair{"cnt-12-6-tersoff", "cnt-12-6-tersoff"},
-                                           Pair{"cnt-10-10-tersoff", "cnt-10-10-tersoff"},
-                                           Pair{"cnt-20-20-tersoff", "cnt-20-20-tersoff"},
-                                           Pair{"cnt-10-10-tersoff", "cnt-5-5-tersoff"}));
+                         ::testing::Values(TubePair{"cnt-5-5-tersoff", "cnt-5-5-tersoff"},
+                                           TubePair{"cnt-9-0-tersoff", "cnt-9-0-tersoff"},
+                                           TubePair{"cnt-12-6-tersoff", "cnt-12-6-tersoff"},
+                                           TubePair{"cnt-10-10-tersoff", "cnt-10-10-tersoff"},
+                                           TubePair{"cnt-20-20-tersoff", "cnt-20-20-tersoff"},
+                                           TubePair{"cnt-10-10-tersoff", "cnt-5-5-tersoff"}));
 
 TEST(ShippedSets, AreAllThereAndReadable) {
   for (const char* tube :

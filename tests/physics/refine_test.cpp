@@ -30,7 +30,7 @@ struct Twofold {
     Prepared at = fine;
     at.state = halved(coarse.topology, from.state());
     Simulation s = start(fine_scene, at);
-    s.take_over(s.forces().force, s.forces().torque, from.account());
+    s.inherit_from(s.forces().force, s.forces().torque, from.account());
     return s;
   }
 };

@@ -21,12 +21,12 @@ using ::testing::HasSubstr;
 
 const std::string place = ROPEWALK_SOURCE_DIR "/data/scenes/test.toml";
 
-struct Pair {
+struct CoarseAndFine {
   Scene coarse, fine;
   Prepared before, after;
   std::string text;
 
-  explicit Pair(const std::string& body, const std::string& top = "parameters = \"cnt-10-10-tersoff\"\n",
+  explicit CoarseAndFine(const std::string& body, const std::string& top = "parameters = \"cnt-10-10-tersoff\"\n",
                 const std::string& path = place)
       : coarse(scene_of_text("format = \"ropewalk-scene-1\"\n" + top + body, path)) {
     before = prepare(coarse);
@@ -36,7 +36,7 @@ struct Pair {
   }
 };
 
-void expect_halved(const Pair& p) {
+void expect_halved(const CoarseAndFine& p) {
   const Topology expected = halved(p.before.topology), &found = p.after.topology;
   EXPECT_EQ(found.tube_begin, expected.tube_begin);
   EXPECT_EQ(found.tube_type, expected.tube_type);
@@ -55,12 +55,12 @@ const std::string short_run = "[run]\nduration_ps = 1\n";
 
 // 67 nm are 48.6 elements: 49, and of half the length 97.3, which must become 98.
 TEST(FinerScene, KeepsTheTubesWhateverTheTypedLength) {
-  const Pair rope("[rope]\ntubes = 7\nlength_nm = 67\n" + short_run);
+  const CoarseAndFine rope("[rope]\ntubes = 7\nlength_nm = 67\n" + short_run);
   ASSERT_EQ(rope.before.topology.length_of(0), 49);
   expect_halved(rope);
-  expect_halved(Pair("[film]\ntubes = 5\nlength_nm = 30\nwidth_nm = 40\ndepth_nm = 35\n" + short_run));
-  expect_halved(Pair("[chain]\nelements = 9\n" + short_run));
-  expect_halved(Pair("tube_types = [1, 0, 0, 0, 0, 0, 1]\n[rope]\ntubes = 7\nlength_nm = 14\n" + short_run,
+  expect_halved(CoarseAndFine("[film]\ntubes = 5\nlength_nm = 30\nwidth_nm = 40\ndepth_nm = 35\n" + short_run));
+  expect_halved(CoarseAndFine("[chain]\nelements = 9\n" + short_run));
+  expect_halved(CoarseAndFine("tube_types = [1, 0, 0, 0, 0, 0, 1]\n[rope]\ntubes = 7\nlength_nm = 14\n" + short_run,
                      "parameters = [\"cnt-10-10-tersoff\", \"cnt-5-5-tersoff\"]\n"));
 }
 
@@ -99,7 +99,7 @@ void total_loads(const Prepared& p, Vector3& force, Vector3& torque, Vector3& mo
 }
 
 TEST(FinerScene, LoadsActOnBothHalvesWithTheSameTotal) {
-  const Pair p(
+  const CoarseAndFine p(
       "[chain]\nelements = 7\n"
       "[[load]]\nkind = \"force\"\nelements = [-1, 2]\nforce_nN = [1, 2, 0.5]\n"
       "[[load]]\nkind = \"torque\"\nelements = \"ends\"\ntorque_nN_nm = [0, 0, 3]\n"
@@ -124,7 +124,7 @@ TEST(FinerScene, LoadsActOnBothHalvesWithTheSameTotal) {
 TEST(FinerScene, GripsAreTheEndElements) {
   const std::string twist = "[rope]\ntubes = 7\nlength_nm = 14\n[twist]\nmoment_nN_nm = 5\nrate_nN_nm_per_ps = 5\n";
   for (const char* reading : {"per-tube", "total"}) {
-    const Pair p(twist + "reading = \"" + reading + "\"\n");
+    const CoarseAndFine p(twist + "reading = \"" + reading + "\"\n");
     const auto before = p.before.loads.of<TwistLoad>(), after = p.after.loads.of<TwistLoad>();
     ASSERT_EQ(before.size(), 2u);
     ASSERT_EQ(after.size(), 2u);
@@ -141,7 +141,7 @@ TEST(FinerScene, GripsAreTheEndElements) {
 }
 
 TEST(FinerScene, NodesExclusionAndTypedStepGoWithTheLength) {
-  const Pair p(
+  const CoarseAndFine p(
       "[rope]\ntubes = 7\nlength_nm = 14\n[contact]\nnodes_per_element = 6\nexclude_along_tube_elements = 5\n"
       "[run]\nduration_ps = 1\ntime_step_fs = 7\n[limits]\nbend_deg = 12\n");
   EXPECT_EQ(p.fine.contact.nodes, 3);
@@ -153,7 +153,7 @@ TEST(FinerScene, NodesExclusionAndTypedStepGoWithTheLength) {
 
 // The power that the same sliding and the same stretching and twisting take, per length of tube.
 TEST(FinerScene, DissipationPerLengthStays) {
-  const Pair p("[chain]\nelements = 9\n" + short_run);
+  const CoarseAndFine p("[chain]\nelements = 9\n" + short_run);
   const auto sliding = [](const Prepared& prepared, double reach) {
     ContactViscosity law = prepared.interaction.damping.contact;
     law.inner = reach;
@@ -178,7 +178,7 @@ TEST(FinerScene, DissipationPerLengthStays) {
 }
 
 TEST(FinerScene, SaysWhyNot) {
-  const Pair p("[chain]\nelements = 9\n" + short_run);
+  const CoarseAndFine p("[chain]\nelements = 9\n" + short_run);
   EXPECT_EQ(why_not_finer(p.coarse, p.before.topology), "");
   EXPECT_THAT(why_not_finer(p.fine, p.after.topology), HasSubstr("shorter than the radius"));
   Scene paper = scene_of_text(

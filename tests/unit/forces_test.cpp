@@ -586,7 +586,7 @@ TEST(Forces, OfRunsThatGoOnIntoTheNextTubeEqualReference) {
     NeighbourList list(in, 0.2);
     list.build(topology, state);
     bool goes_on = false;
-    for (const PairRun& run : list.runs(3)) goes_on |= topology.tube_of(run.begin) != topology.tube_of(run.end - 1);
+    for (const ElementSpan& span : list.spans(3)) goes_on |= topology.tube_of(span.begin) != topology.tube_of(span.end - 1);
     ASSERT_TRUE(goes_on);
     Forces reference(state.size()), f(state.size());
     compute_reference(topology, in, state, reference);
@@ -622,7 +622,7 @@ std::vector<int> neighbours(const NeighbourList& list, int i) {
   return all;
 }
 
-TEST(PairRuns, HoldThePairsOfTheListWithinReach) {
+TEST(ElementSpans, HoldThePairsOfTheListWithinReach) {
   Topology topology = test::published_topology();
   const State s = test::disordered_bundle(topology, 7, 40, 1.8, 0.2, 5);
   NeighbourList list;
@@ -630,14 +630,14 @@ TEST(PairRuns, HoldThePairsOfTheListWithinReach) {
   list.skin = 0.2;
   list.exclude_along_tube = 2;
   list.build(topology, s);
-  PairRuns all, near;
+  ElementSpans all, near;
   all.build(list, list.cutoff);
   near.build(list, 2.0);
   for (int i = 0; i < topology.elements(); ++i) {
     std::vector<int> of_all, of_near, truth;
-    for (const PairRun& r : all.runs(i))
+    for (const ElementSpan& r : all.spans(i))
       for (int j = r.begin; j < r.end; ++j) of_all.push_back(j);
-    for (const PairRun& r : near.runs(i))
+    for (const ElementSpan& r : near.spans(i))
       for (int j = r.begin; j < r.end; ++j) of_near.push_back(j);
     ASSERT_EQ(of_all, neighbours(list, i));
     for (int j : of_all)
@@ -646,7 +646,7 @@ TEST(PairRuns, HoldThePairsOfTheListWithinReach) {
   }
 }
 
-TEST(PairRuns, AreCutAtTheirLongest) {
+TEST(ElementSpans, AreCutAtTheirLongest) {
   Topology topology = test::published_topology();
   topology.add_tube(1);
   topology.add_tube(200);
@@ -656,12 +656,12 @@ TEST(PairRuns, AreCutAtTheirLongest) {
   list.cutoff = 5;
   list.exclude_along_tube = 200;
   list.build(topology, p, axis);
-  PairRuns runs;
-  runs.build(list, 5);
+  ElementSpans spans;
+  spans.build(list, 5);
   int next = 1;
-  for (const PairRun& r : runs.runs(0)) {
+  for (const ElementSpan& r : spans.spans(0)) {
     EXPECT_EQ(r.begin, next);
-    EXPECT_LE(r.end - r.begin, PairRuns::longest);
+    EXPECT_LE(r.end - r.begin, ElementSpans::longest);
     next = r.end;
   }
   EXPECT_EQ(next, 201);
@@ -686,9 +686,9 @@ TEST(NeighbourList, FindsExactlyThePairsWithinReach) {
     ASSERT_EQ(neighbours(list, i), truth) << "element " << i;
     ASSERT_EQ(list.pairs(i), truth.size()) << "element " << i;
     int end = -1;
-    for (const PairRun& run : list.runs(i)) {
-      ASSERT_GT(run.begin, end) << "two runs that could be one, element " << i;
-      end = run.end;
+    for (const ElementSpan& span : list.spans(i)) {
+      ASSERT_GT(span.begin, end) << "two runs that could be one, element " << i;
+      end = span.end;
     }
     expected += truth.size();
   }

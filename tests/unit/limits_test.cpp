@@ -116,7 +116,7 @@ TEST(Limits, PressIsTheNearestDistanceOfTheAxes) {
   list.exclude_along_tube = 3;
   list.build(topology, s);
   Limits limits;
-  limits.press = 0.08;
+  limits.overlap = 0.08;
   const Peak p = peak_of(peaks(topology, s, list, {{limits}, {1.7}}), "press_nm");
   EXPECT_NEAR(p.value, 0.1, 1e-12);
   EXPECT_EQ(p.element, 0);

@@ -53,8 +53,8 @@ TEST(Chart, IsReadByTheNamesOfItsColumns) {
   EXPECT_EQ(m.finest.at("energy").error, 0.005);
   EXPECT_EQ(m.atoms.at("energy").reference, 95);
   EXPECT_EQ(m.atoms.count("beta"), 0u);
-  EXPECT_EQ(chart[0].led, LedBy::load);
-  EXPECT_EQ(chart[1].led, LedBy::rotation);
+  EXPECT_EQ(chart[0].driven_by, DrivenBy::load);
+  EXPECT_EQ(chart[1].driven_by, DrivenBy::rotation);
 }
 
 TEST(Chart, FaultsAreNamed) {
@@ -90,7 +90,7 @@ TEST(Chart, FaultsAreNamed) {
   EXPECT_THAT(fault(points, with(scenes, "load,start", "load,sea")),
               HasSubstr("energy_from: is neither start nor zero"));
   EXPECT_THAT(fault(points, with(scenes, "load,start", "wind,start")),
-              HasSubstr("led_by: is neither rotation nor"));
+              HasSubstr("driven_by: is neither rotation nor"));
   EXPECT_THAT(fault(points, with(scenes, "tube,0", "pipe,0")), HasSubstr("does not say what \"tube\" covers"));
   EXPECT_THAT(fault("", scenes), HasSubstr("is empty"));
   std::filesystem::remove_all(folder);
@@ -125,14 +125,14 @@ TEST(Plan, PrefersASceneThatIsLedInTheSameWay) {
   std::vector<ChartedScene> chart = read_chart(chart_folder);
   ChartedScene turned = chart[0];  // in the middle between the two scenes
   turned.name = "turned";
-  turned.led = LedBy::rotation;
+  turned.driven_by = DrivenBy::rotation;
   chart[0].tubes = 91;
   chart.push_back(turned);
   const auto plan_of = [&](const std::string& text) {
     return plan_scene(scene_from(text), chart, {0.0125 + between_scenes, {}, false});
   };
   EXPECT_EQ(plan_of(bundle).stands_for, "bundle");
-  EXPECT_EQ(plan_of(bundle).led_otherwise, "");
+  EXPECT_EQ(plan_of(bundle).driven_otherwise, "");
   EXPECT_EQ(plan_of(rotated).stands_for, "turned");
   // Much shorter ropes come last of those.
   chart.push_back(turned);
@@ -146,8 +146,8 @@ TEST(Plan, PrefersASceneThatIsLedInTheSameWay) {
   chart.erase(chart.begin());
   const Plan p = plan_of(bundle);
   EXPECT_EQ(p.stands_for, "turned");
-  EXPECT_THAT(p.led_otherwise, HasSubstr("scene turned is led by rotation, this one by load"));
-  EXPECT_THAT(p.text, HasSubstr("# " + p.led_otherwise));
+  EXPECT_THAT(p.driven_otherwise, HasSubstr("scene turned is driven by rotation, this one by load"));
+  EXPECT_THAT(p.text, HasSubstr("# " + p.driven_otherwise));
 }
 
 TEST(Plan, HasTheDefaultModelBesides) {
@@ -460,7 +460,7 @@ TEST(SpotCheck, LooksAtSpacingAndEndAngleOfARope) {
   Scene scene = scene_from(head + "[rope]\ntubes = 7\nlength_nm = 13.6\n[run]\nduration_ps = 1\n");
   const Prepared p = prepare(scene);
   const SpotCheck check = spot_check(scene, p, turned_rope(p, 0.02, 0), 0.2);
-  const SpotCheck::Pair spacing = check.observables.at("spacing"), angle = check.observables.at("end_angle");
+  const SpotCheck::Comparison spacing = check.observables.at("spacing"), angle = check.observables.at("end_angle");
   EXPECT_NEAR(spacing.planned, p.spacing, 0.01 * p.spacing);
   EXPECT_LT(spacing.error(), 2e-3);
   EXPECT_NEAR(angle.planned, 0.02 * 13.6 / units::degree, 2);

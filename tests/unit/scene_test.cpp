@@ -513,14 +513,14 @@ TEST(SceneKeys, StatedLimitsAreTheDefaults) {
   EXPECT_EQ(silent.kink_curvature, set.kink_curvature);
   EXPECT_EQ(silent.wall_twist, set.twist_collapse);
   EXPECT_EQ(silent.strain, set.stretch);
-  EXPECT_NEAR(silent.press, 0.1, 0.03) << "1.713 nm less 2.4 radii";
+  EXPECT_NEAR(silent.overlap, 0.1, 0.03) << "1.713 nm less 2.4 radii";
   const Limits typed = limits(
       "[limits]\nbend_deg = 9\ntwist_deg = 0\nkink_curvature_per_nm = 1\nwall_twist = 2\nstrain = 3\n"
       "speed_nm_per_ps = 4\npress_nm = 5\n");
   EXPECT_DOUBLE_EQ(typed.bend, 9 * units::degree);
   EXPECT_EQ(typed.twist, 0);
   EXPECT_EQ(
-      typed.kink_curvature + 10 * typed.wall_twist + 100 * typed.strain + 1000 * typed.speed + 10000 * typed.press,
+      typed.kink_curvature + 10 * typed.wall_twist + 100 * typed.strain + 1000 * typed.speed + 10000 * typed.overlap,
       54321);
 }
 

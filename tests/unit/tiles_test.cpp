@@ -51,7 +51,7 @@ TEST(TubeParts, HoldEveryElementOnceInTheOrderOfTheTubes) {
 
 TEST(TubeParts, AreTakenTogetherInBlocksThatFollowEachOther) {
   Topology topology = test::published_topology();
-  for (const int elements : {100, 100, 60, 3, TubeParts::most_of_block, 1, TubeParts::most, 2 * TubeParts::most, 5})
+  for (const int elements : {100, 100, 60, 3, TubeParts::max_block, 1, TubeParts::most, 2 * TubeParts::most, 5})
     topology.add_tube(elements);
   const TubeParts parts(topology);
   ASSERT_EQ(parts.block_begin(0), 0);
@@ -61,7 +61,7 @@ TEST(TubeParts, AreTakenTogetherInBlocksThatFollowEachOther) {
     const int first = parts.block_begin(block), last = parts.block_begin(block + 1);
     ASSERT_LT(first, last);
     if (last - first > 1) {
-      EXPECT_LE(parts[last - 1].end - parts[first].begin, TubeParts::most_of_block);
+      EXPECT_LE(parts[last - 1].end - parts[first].begin, TubeParts::max_block);
     }
     for (int k = first; k < last; ++k) {
       EXPECT_EQ(parts.block_of(k), block);
@@ -75,7 +75,7 @@ TEST(Tiles, HoldEveryElementOnceAtEqualCost) {
   const Scene scene(8, 200);
   for (const auto& [count, first] :
        {std::pair(1, CutBy::index), std::pair(2, CutBy::index), std::pair(7, CutBy::index),
-        std::pair(16, CutBy::index), std::pair(2, CutBy::place), std::pair(16, CutBy::place)}) {
+        std::pair(16, CutBy::index), std::pair(2, CutBy::position), std::pair(16, CutBy::position)}) {
     const auto tiles = cut_into_tiles(scene.topology, scene.position, scene.cost, count, first);
     ASSERT_EQ(tiles.size(), static_cast<std::size_t>(count));
     std::vector<int> times(scene.cost.size(), 0);
@@ -125,7 +125,7 @@ TEST(Tiles, AreFirstCutAsAskedFor) {
     return elements;
   };
   EXPECT_EQ(longest(CutBy::index), 200);
-  EXPECT_LT(longest(CutBy::place), 150);
+  EXPECT_LT(longest(CutBy::position), 150);
 }
 
 TEST(Tiles, TakeFewElementsAndLostOnes) {
@@ -134,7 +134,7 @@ TEST(Tiles, TakeFewElementsAndLostOnes) {
   Scene lost(4, 100);
   for (double& x : lost.position.x) x = std::numeric_limits<double>::quiet_NaN();
   int elements = 0;
-  for (const auto& tile : cut_into_tiles(lost.topology, lost.position, lost.cost, 8, CutBy::place))
+  for (const auto& tile : cut_into_tiles(lost.topology, lost.position, lost.cost, 8, CutBy::position))
     for (const Segment& s : tile) elements += s.end - s.begin;
   EXPECT_EQ(elements, lost.topology.elements());
 }

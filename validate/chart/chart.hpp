@@ -65,7 +65,7 @@ struct Specimen {
 
   // Angle of each element about the z axis, in parts of the whole angle. With `about_itself` each element turns
   // about its own axis and stays in place.
-  std::vector<double> place;
+  std::vector<double> twist_share;
   bool about_itself = false;
   std::vector<int> grips;  // elements that are held and turned
   bool axial_free = false;

@@ -17,7 +17,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* point_format = "ropewalk-chart-1";
-constexpr double least_charge = 6;  // that of an ideally packed twisted rope
+constexpr double min_charge = 6;  // that of an ideally packed twisted rope
 
 const ChartPoint* finest_of(const std::vector<ChartPoint>& points, const std::string& scene) {
   for (const ChartPoint& p : points)
@@ -33,7 +33,7 @@ ChartRow row_of(const ChartPoint& p, const std::string& observable, double refer
 }  // namespace
 
 double error_of(const std::string& observable, double value, double reference) {
-  const double size = observable == "Q" ? std::max(std::fabs(reference), least_charge) : std::fabs(reference);
+  const double size = observable == "Q" ? std::max(std::fabs(reference), min_charge) : std::fabs(reference);
   return std::fabs(value - reference) / size;
 }
 

@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double wanted_element_steps = 6000;
-constexpr long least_steps = 12, whole_steps = 12;  // a multiple of every contact_every
+constexpr long min_steps = 12, whole_steps = 12;  // a multiple of every contact_every
 
 // Reads "==12== Collected : 123456"; none where callgrind did not finish.
 std::optional<double> collected(const std::string& path) {
@@ -38,7 +38,7 @@ std::optional<double> counted(const std::string& scene, const std::string& model
   ChildOptions options;
   options.folder = folder;
   options.output = (fs::absolute(folder) / "callgrind.txt").string();
-  options.quiet_seconds = options.most_seconds = 600;
+  options.quiet_seconds = options.max_seconds = 600;
   const std::vector<std::string> arguments = {"valgrind",
                                               "--tool=callgrind",
                                               "--instr-atstart=no",
@@ -67,7 +67,7 @@ std::optional<double> count_instructions(const ChartScene& scene, const ChartMod
                                          const std::string& folder) {
   const double elements = scene.build(model).topology.elements();
   const long steps =
-      std::max(least_steps, whole_steps * static_cast<long>(wanted_element_steps / elements / whole_steps));
+      std::max(min_steps, whole_steps * static_cast<long>(wanted_element_steps / elements / whole_steps));
   const std::optional<double> count = counted(scene.name, model.name, steps, folder);
   if (!count) return {};
   return *count / (static_cast<double>(steps) * elements);

@@ -20,11 +20,11 @@ namespace ropewalk {
 namespace {
 
 constexpr double start_tolerance = 5e-3, turned_tolerance = 5e-3;  // eV/nm
-constexpr long most_steps = 20000;                                 // of one relaxation
+constexpr long max_steps = 20000;                                 // of one relaxation
 constexpr int samples = 40;                                        // of the observables
 constexpr double sampled_part = 0.5;                               // of the hold, at its end
-constexpr double least_seconds = 0.25;                             // short runs are repeated
-constexpr int most_runs = 8;
+constexpr double min_seconds = 0.25;                             // short runs are repeated
+constexpr int max_spans = 8;
 
 double processor_seconds() {
   timespec t{};
@@ -38,7 +38,7 @@ double processor_seconds() {
 void turn(const Specimen& s, double part, State& state) {
   for (std::size_t i = 0; i < state.size(); ++i) {
     if (!s.interior_follows && !std::count(s.grips.begin(), s.grips.end(), static_cast<int>(i))) continue;
-    const double angle = part * s.angle * s.place[i];
+    const double angle = part * s.angle * s.twist_share[i];
     const Vector3 axis = s.about_itself ? axis_of(state.orientation[i]) : Vector3::UnitZ();
     const Quaternion by(Eigen::AngleAxisd(angle, axis));
     if (!s.about_itself) state.position.set(i, by * state.position[i]);
@@ -50,7 +50,7 @@ void turn(const Specimen& s, double part, State& state) {
 void set_turning(const Specimen& s, State& state) {
   for (std::size_t i = 0; i < state.size(); ++i) {
     const Vector3 axis = s.about_itself ? axis_of(state.orientation[i]) : Vector3::UnitZ();
-    const Vector3 w = s.angle / s.ramp * s.place[i] * axis;
+    const Vector3 w = s.angle / s.ramp * s.twist_share[i] * axis;
     state.angular_velocity.set(i, w);
     state.velocity.set(i, s.about_itself ? Vector3::Zero() : Vector3(w.cross(state.position[i])));
   }
@@ -58,7 +58,7 @@ void set_turning(const Specimen& s, State& state) {
 
 Simulation relaxed(const Specimen& s, State state, double tolerance) {
   Simulation simulation(s.topology, s.interaction, s.held(), std::move(state), s.time_step);
-  if (!simulation.relax(tolerance, most_steps, [](long) { return true; }))
+  if (!simulation.relax(tolerance, max_steps, [](long) { return true; }))
     throw NumericalError(simulation.state().step, -1, "the relaxation did not come to rest",
                          "this model has no smooth minimum here");
   return simulation;
@@ -72,7 +72,7 @@ double moment_on_grips(const Specimen& s, const Simulation& simulation) {
   double sum = 0;
   for (const int e : s.grips) {
     const auto i = static_cast<std::size_t>(e);
-    if (s.place[i] <= 0) continue;
+    if (s.twist_share[i] <= 0) continue;
     sum += f.torque.z[i] + state.position.x[i] * f.force.y[i] - state.position.y[i] * f.force.x[i];
   }
   return std::copysign(1.0, s.angle) * (s.moment_resists ? -sum : sum);
@@ -87,7 +87,7 @@ double mean_bending_moment(const Specimen& s, const State& state) {
     const TubeType& type = s.topology.type_of(t);
     for (int i = s.topology.tube_begin[t]; i + 1 < s.topology.tube_begin[t + 1]; ++i) {
       const auto at = static_cast<std::size_t>(i);
-      if (grips.count(i) && grips.count(i + 1) && s.place[at] == s.place[at + 1]) continue;
+      if (grips.count(i) && grips.count(i + 1) && s.twist_share[at] == s.twist_share[at + 1]) continue;
       sum += bending_moment(type.bond, type.element_length, axis_of(state.orientation[at]),
                             axis_of(state.orientation[at + 1]));
       ++count;
@@ -203,7 +203,7 @@ void measure(const Specimen& s, const ChartModel& model, ChartPoint& point) {
   Reader reader(s, untwisted, start.forces().energy.potential());
   double total = 0;
   point.cpu = std::numeric_limits<double>::infinity();
-  for (int k = 0; k < most_runs && total < least_seconds; ++k) {
+  for (int k = 0; k < max_spans && total < min_seconds; ++k) {
     double seconds = 0;
     if (model.mode == RunOptions::Mode::relax) {
       const Relaxation r = run_relaxation(s, model.at_once ? 1 : s.increments, untwisted);

@@ -14,7 +14,7 @@
 namespace ropewalk {
 namespace {
 
-constexpr double least_error = 1e-6;  // smaller errors are drawn here
+constexpr double smallest_error = 1e-6;  // smaller errors are drawn here
 constexpr double much = 10;           // times as cheap
 
 // Measured cost of another program for a step of this scene's rope; its accuracy is not known.
@@ -66,7 +66,7 @@ Series series_of(const std::vector<const ChartRow*>& rows) {
 
 // --- Figures ---
 
-double drawn(double error) { return 100 * std::max(error, least_error); }
+double drawn(double error) { return 100 * std::max(error, smallest_error); }
 
 ChartLine front_line(const Series& s, const std::vector<std::size_t>& front) {
   ChartLine line;

@@ -82,7 +82,7 @@ Specimen parallel_tubes(const ChartModel& model, int tubes, double length, doubl
     s.topology.add_tube(elements);
     for (int e = 0; e < elements; ++e) {
       s.state.position.set(static_cast<std::size_t>(first + e), {x, y, (e - 0.5 * (elements - 1)) * a});
-      s.place.push_back(std::clamp((e - beyond) / double(bonds), 0.0, 1.0) - 0.5);
+      s.twist_share.push_back(std::clamp((e - beyond) / double(bonds), 0.0, 1.0) - 0.5);
       if (e <= beyond || e >= bonds + beyond) s.grips.push_back(first + e);
     }
   }
@@ -176,7 +176,7 @@ Specimen crossed_tubes(const ChartModel& model) {
       const auto i = static_cast<std::size_t>(first + e);
       s.state.position.set(i, (e - 0.5 * bonds) * a * along + Vector3(0, 0, tube * distance));
       s.state.orientation.set(i, Quaternion::FromTwoVectors(Vector3::UnitZ(), along));
-      s.place.push_back(tube);
+      s.twist_share.push_back(tube);
     }
     s.grips.push_back(first);
     s.grips.push_back(first + bonds);
@@ -216,7 +216,7 @@ Specimen closed_ring(const ChartModel& model) {
     const auto i = static_cast<std::size_t>(e);
     s.state.position.set(i, {radius * (1 - std::cos(e * step)), 0, radius * std::sin(e * step)});
     s.state.orientation.set(i, turn_about(Vector3::UnitY(), e * step));
-    s.place.push_back(e / double(bonds) - 0.5);
+    s.twist_share.push_back(e / double(bonds) - 0.5);
   }
   s.about_itself = true;
   s.grips = {0, bonds};
@@ -296,7 +296,7 @@ std::vector<ChartScene> all_scenes() {
 
 LoadsAndConstraints ramped_moment(const Specimen& s) {
   std::vector<int> upper, lower;
-  for (const int e : s.grips) (s.place[static_cast<std::size_t>(e)] > 0 ? upper : lower).push_back(e);
+  for (const int e : s.grips) (s.twist_share[static_cast<std::size_t>(e)] > 0 ? upper : lower).push_back(e);
   TwistLoad twist;
   twist.moment = s.moment;
   twist.rate = s.moment / s.ramp;
@@ -318,12 +318,12 @@ LoadsAndConstraints Specimen::held() const {
 LoadsAndConstraints Specimen::loads() const {
   if (moment > 0) return ramped_moment(*this);
   LoadsAndConstraints loads;
-  std::set<double> places;
-  for (const int e : grips) places.insert(place[static_cast<std::size_t>(e)]);
-  for (const double part : places) {
+  std::set<double> shares;
+  for (const int e : grips) shares.insert(twist_share[static_cast<std::size_t>(e)]);
+  for (const double part : shares) {
     PrescribedRotation load;
     for (const int e : grips)
-      if (place[static_cast<std::size_t>(e)] == part) load.elements.push_back(e);
+      if (twist_share[static_cast<std::size_t>(e)] == part) load.elements.push_back(e);
     load.angle = part * angle;
     load.rate = load.angle / ramp;
     load.axial_free = axial_free;

@@ -14,7 +14,7 @@ namespace {
 using Key = KeyOf<FilmSource>;
 
 // Thicker films are no films, and laying them takes a time that grows with the square of the tubes.
-constexpr double most_covered = 50;  // areas of the box, by what the tubes cover one by one
+constexpr double max_coverage = 50;  // areas of the box, by what the tubes cover one by one
 
 void check(const TomlTable& t, const Scene& scene, FilmSource& film) {
   const double elements = std::round(film.length / scene.element_length);
@@ -30,18 +30,18 @@ void check(const TomlTable& t, const Scene& scene, FilmSource& film) {
                   "take a box that holds a tube at any angle, or shorter tubes");
   const double diameter = 2 * largest_radius(scene);
   const double covered = film.tubes * length * diameter / (film.width * film.depth);
-  if (covered > most_covered)
+  if (covered > max_coverage)
     throw t.error("tubes", fmt::format("covers the box {:.3g} times", covered),
-                  fmt::format("at most {} times makes a film; take a larger box or fewer tubes", most_covered));
+                  fmt::format("at most {} times makes a film; take a larger box or fewer tubes", max_coverage));
 }
 
-struct Point {
+struct Corner {
   double x = 0, y = 0;
 };
 
 double squared(double x) { return x * x; }
 
-double from_segment2(const Point& p, const Point& a, const Point& b) {
+double from_segment2(const Corner& p, const Corner& a, const Corner& b) {
   const double dx = b.x - a.x, dy = b.y - a.y;
   const double along = ((p.x - a.x) * dx + (p.y - a.y) * dy) / (dx * dx + dy * dy);
   const double t = std::min(std::max(along, 0.0), 1.0);
@@ -49,12 +49,12 @@ double from_segment2(const Point& p, const Point& a, const Point& b) {
 }
 
 // Twice the area of a triangle, positive where it is counter-clockwise.
-double area(const Point& a, const Point& b, const Point& c) {
+double area(const Corner& a, const Corner& b, const Corner& c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
 struct Footprint {
-  Point from, to;
+  Corner from, to;
 
   Footprint(const FilmTube& t, double length) {
     const double x = 0.5 * length * std::cos(t.angle), y = 0.5 * length * std::sin(t.angle);
@@ -211,7 +211,7 @@ SceneKind film_kind() {
   return scene_kind<FilmSource>(
       {"film",
        "instead of [rope]: straight tubes at random in a box, flat in x and y, laid one upon another",
-       {Key::integer("tubes", 1, most_elements, &FilmSource::tubes, required("100"), "number of tubes"),
+       {Key::integer("tubes", 1, max_elements, &FilmSource::tubes, required("100"), "number of tubes"),
         Key::number("length_nm", unit::nm, Bounds::positive(1e6), &FilmSource::length, required("68.9"),
                     "length of the tubes, rounded to whole elements")
             .is_tube_size(SceneKey::TubeSize::length),

@@ -37,7 +37,7 @@ SceneKind rope_kind() {
   return scene_kind<RopeSource>(
       {"rope",
        "parallel tubes along z in hexagonal packing, centred on the origin",
-       {Key::integer("tubes", 1, most_elements, &RopeSource::tubes, required("91"),
+       {Key::integer("tubes", 1, max_elements, &RopeSource::tubes, required("91"),
                      "a hexagonal number: 1, 7, 19, 37, 61, 91, 127, 169, 217, ..."),
         Key::number("length_nm", unit::nm, Bounds::positive(1e9), &RopeSource::length, required("67.8"),
                     "length of the tubes, rounded to whole elements")

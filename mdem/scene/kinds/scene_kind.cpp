@@ -87,9 +87,9 @@ double largest_radius(const Scene& scene) {
 
 void check_size(const TomlTable& t, const std::string& key, double tubes, double elements) {
   const double total = tubes * elements;
-  if (total <= most_elements) return;
+  if (total <= max_elements) return;
   throw t.error(key, fmt::format("asks for {:.0f} x {:.0f} = {:.3g} elements", tubes, elements, total),
-                fmt::format("at most {:.0e} are allowed; these would take about {:.3g} GB", double{most_elements},
+                fmt::format("at most {:.0e} are allowed; these would take about {:.3g} GB", double{max_elements},
                             total * kilobytes_per_element * 1e-6));
 }
 

@@ -71,7 +71,7 @@ void check_unique(const TomlTable& t, const char* key, std::vector<long> indices
 
 // `count`: how many there are; 0: not known.
 std::vector<int> read_indices(const TomlTable& t, const char* key, const char* what, long least, int count) {
-  const std::vector<long> indices = t.integers(key, least, most_elements);
+  const std::vector<long> indices = t.integers(key, least, max_elements);
   for (const long i : indices) check_index(t, key, what, i, count);
   check_unique(t, key, indices, count);
   return {indices.begin(), indices.end()};
@@ -86,7 +86,7 @@ void read_tubes(const TomlTable& t, const Scene& scene, Selection& on) {
 void read_elements(const TomlTable& t, const Scene& scene, Selection& on) {
   const Source::Sizes sizes = scene.source->sizes(scene.element_length);
   if (!t.is_string("elements")) {
-    on.elements = read_indices(t, "elements", "element", -long{most_elements}, sizes.elements);
+    on.elements = read_indices(t, "elements", "element", -long{max_elements}, sizes.elements);
     return;
   }
   on.all_elements = t.word("elements", Words<bool>{{"all", true}, {"ends", false}});

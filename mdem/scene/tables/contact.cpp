@@ -13,7 +13,7 @@ namespace {
 
 using Key = KeyOf<ContactOptions>;
 
-constexpr long most_nodes = 64;
+constexpr long max_nodes = 64;
 
 // "a" (first choice), "b" or "none".
 std::string law_names() {
@@ -77,7 +77,7 @@ const KeyTable<ContactOptions>& contact_table() {
       "contact",
       "van der Waals contact between elements",
       {Key::custom("law", "", otherwise("\"paper\"", "what the set has"), law_names(), read_law),
-       Key::integer("nodes_per_element", 1, most_nodes, &C::nodes, otherwise("5", "for a corrugation below 2e-4"),
+       Key::integer("nodes_per_element", 1, max_nodes, &C::nodes, otherwise("5", "for a corrugation below 2e-4"),
                     "line: nodes along an element")
            .goes_as_length(1),
        Key::word("precision", Words<Precision>{{"mixed", Precision::mixed}, {"double", Precision::full}},
@@ -87,7 +87,7 @@ const KeyTable<ContactOptions>& contact_table() {
                     "leave out the torque that the published code leaves out; gains energy, for comparison only"),
        Key::custom("cutoff_nm", "nm", otherwise("2.5", "the set's"),
                    "line: of tube axes, paper: of element centres; shorter is faster and binds less", read_cutoff),
-       Key::integer("exclude_along_tube_elements", 1, most_elements, &C::exclude_along_tube, standard(),
+       Key::integer("exclude_along_tube_elements", 1, max_elements, &C::exclude_along_tube, standard(),
                     "elements of one tube up to this far apart do not touch")
            .in_unit("elements")
            .goes_as_length(-1),

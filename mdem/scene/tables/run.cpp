@@ -9,7 +9,7 @@ namespace {
 using Key = KeyOf<RunOptions>;
 using Mode = RunOptions::Mode;
 
-constexpr long most_inner_steps = 1000;
+constexpr long max_inner_steps = 1000;
 
 // Refuses keys that have no effect in the chosen mode: whoever wrote them expects one.
 void read_mode(const TomlTable& t, const Scene&, RunOptions& r) {
@@ -58,7 +58,7 @@ const KeyTable<RunOptions>& run_table() {
            "to relax",
            read_time_step),
        Key::integer(
-           "contact_every", 1, most_inner_steps, [](auto& r) -> auto& { return r.stepping.contact_every; },
+           "contact_every", 1, max_inner_steps, [](auto& r) -> auto& { return r.stepping.contact_every; },
            standard(),
            "contact acts every so many steps of the bonds (r-RESPA); pays where elements are short and bonds "
            "therefore stiffer than contact; log and frames go by these longer steps"),

@@ -12,7 +12,7 @@ namespace ropewalk {
 namespace {
 
 struct Pose {
-  Vector3 place = Vector3::Zero();
+  Vector3 position = Vector3::Zero();
   Quaternion turn = Quaternion::Identity();
 };
 
@@ -42,7 +42,7 @@ class RodPiece {
     roll_ = 2 * std::atan2(rest.z(), rest.w());
     if (roll_ > units::pi) roll_ -= 2 * units::pi;
     if (roll_ <= -units::pi) roll_ += 2 * units::pi;
-    const Vector3 r = j.place - i.place;
+    const Vector3 r = j.position - i.position;
     mean_ = (t_i + t_j).normalized();
     length_ = r.dot(mean_) / sinc(0.5 * angle);
     shear_ = r - r.dot(mean_) * mean_;
@@ -51,10 +51,10 @@ class RodPiece {
   Pose inside(double u) const {
     const double cubic = u + share_ * (3 * u * u - 2 * u * u * u - u);
     const Vector3 lean = 6 * share_ * u * (1 - u) / length_ * shear_;
-    return {i_.place + arc(u) + cubic * shear_, turn_by(mean_.cross(lean)) * turn(u)};
+    return {i_.position + arc(u) + cubic * shear_, turn_by(mean_.cross(lean)) * turn(u)};
   }
-  Pose before(double u) const { return {i_.place + arc(u) + u * (1 - share_) * shear_, turn(u)}; }
-  Pose behind(double u) const { return {j_.place + arc(u) - arc(1) + (u - 1) * (1 - share_) * shear_, turn(u)}; }
+  Pose before(double u) const { return {i_.position + arc(u) + u * (1 - share_) * shear_, turn(u)}; }
+  Pose behind(double u) const { return {j_.position + arc(u) - arc(1) + (u - 1) * (1 - share_) * shear_, turn(u)}; }
 
  private:
   Vector3 arc(double u) const {
@@ -70,7 +70,7 @@ class RodPiece {
 
 void set_pose(const Pose& p, int i, State& out) {
   const auto at = static_cast<std::size_t>(i);
-  out.position.set(at, p.place);
+  out.position.set(at, p.position);
   out.orientation.set(at, p.turn.normalized());
 }
 
@@ -81,8 +81,8 @@ void place_tube(const Topology& coarse, int tube, const State& s, State& out) {
   if (to - from == 1) {
     const Pose p = pose_of(s, from);
     const Vector3 quarter = 0.25 * type.element_length * axis_of(p.turn);
-    set_pose({p.place - quarter, p.turn}, 2 * from, out);
-    set_pose({p.place + quarter, p.turn}, 2 * from + 1, out);
+    set_pose({p.position - quarter, p.turn}, 2 * from, out);
+    set_pose({p.position + quarter, p.turn}, 2 * from + 1, out);
     return;
   }
   for (int i = from; i + 1 < to; ++i) {

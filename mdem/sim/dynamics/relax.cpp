@@ -31,7 +31,7 @@ bool Simulation::relax(double tolerance, long max_steps, const std::function<boo
     state_.angular_velocity = Vec3Array(n);
   };
   stop();
-  const double most_move = Fire::farthest(lightest.radius);
+  const double max_move = Fire::farthest(lightest.radius);
   for (long k = 0; k < max_steps; ++k) {
     if (k % Fire::check_every == 0 && largest_force() < tolerance) return true;
     if (!progress(k)) return false;
@@ -71,7 +71,7 @@ bool Simulation::relax(double tolerance, long max_steps, const std::function<boo
     for (std::size_t i = 0; i < n; ++i)
       fastest2 =
           std::max(fastest2, state_.velocity[i].squaredNorm() + scale2 * state_.angular_velocity[i].squaredNorm());
-    const double step = std::min(dt, fastest2 > 0 ? most_move / std::sqrt(fastest2) : dt);
+    const double step = std::min(dt, fastest2 > 0 ? max_move / std::sqrt(fastest2) : dt);
     move(step);
     ++state_.step;
     update_list();

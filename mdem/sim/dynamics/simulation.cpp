@@ -195,7 +195,7 @@ void Simulation::update_list() {
   });
   Change all;  // in the order of the blocks, whatever the threads
   for (const Change& c : changes_) all = both(all, c);
-  if (list_.worn(all)) {
+  if (list_.stale(all)) {
     if (tunes_skin_) list_.skin = engine_.contact()->best_skin(topology_, list_.skin, list_age_);
     list_.build(topology_, state_);
     list_age_ = 0;

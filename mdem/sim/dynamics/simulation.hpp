@@ -72,7 +72,7 @@ class Simulation {
   std::string serialise() const;
   void restore(const std::string& bytes);
   // Goes on with a run that another engine has carried on: its last total forces and its account of energy.
-  void take_over(const Vec3Array& force, const Vec3Array& torque, const EnergySupply& account) {
+  void inherit_from(const Vec3Array& force, const Vec3Array& torque, const EnergySupply& account) {
     forces_.force = force;
     forces_.torque = torque;
     account_ = account;

@@ -12,13 +12,13 @@
 namespace ropewalk {
 namespace {
 
-// Of one element's neighbours in rising order; a run of an earlier element is never made longer.
-void append_runs(const int* number, std::size_t count, std::vector<PairRun>& runs) {
+// Of one element's neighbours in rising order; a span of an earlier element is never made longer.
+void append_spans(const int* number, std::size_t count, std::vector<ElementSpan>& spans) {
   for (std::size_t k = 0; k < count; ++k) {
-    if (k > 0 && number[k] == runs.back().end)
-      ++runs.back().end;
+    if (k > 0 && number[k] == spans.back().end)
+      ++spans.back().end;
     else
-      runs.push_back({number[k], number[k] + 1});
+      spans.push_back({number[k], number[k] + 1});
   }
 }
 
@@ -29,12 +29,12 @@ bool NeighbourList::update(const Topology& topology, const State& state) {
   Change all;
   const auto n = static_cast<std::ptrdiff_t>(state.size());
   for (std::ptrdiff_t i = 0; i < n; i += block) all = both(all, change(state, i, std::min(i + block, n)));
-  if (!worn(all)) return false;
+  if (!stale(all)) return false;
   build(topology, state);
   return true;
 }
 
-bool NeighbourList::worn(const Change& change) {
+bool NeighbourList::stale(const Change& change) {
   const MotionSince::Bound bound = since_.bound(change, within(), lever);
   displacement_ = bound.moved;
   turn_ = bound.turned;
@@ -61,7 +61,7 @@ void NeighbourList::build(const Topology& topology, Vec3Array position, Vec3Arra
   const double reach = cutoff + skin;
   ++builds_;
   begin_.assign(static_cast<std::size_t>(n) + 1, 0);
-  run_.clear();
+  spans_.clear();
   pairs_ = 0;
   if (cutoff > 0) {
     const CellGrid grid(p, reach);
@@ -71,7 +71,7 @@ void NeighbourList::build(const Topology& topology, Vec3Array position, Vec3Arra
         last[static_cast<std::size_t>(i)] = std::min(i + exclude_along_tube, topology.tube_begin[t + 1] - 1);
 
     constexpr int parts = 64;
-    std::vector<std::vector<PairRun>> found(parts);
+    std::vector<std::vector<ElementSpan>> found(parts);
     std::vector<std::size_t> pairs_of_part(parts);
 #pragma omp parallel for schedule(dynamic, 1) if (p.size() > parallel_from)
     for (int part = 0; part < parts; ++part) {
@@ -86,7 +86,7 @@ void NeighbourList::build(const Topology& topology, Vec3Array position, Vec3Arra
         const auto end = near.begin() + static_cast<std::ptrdiff_t>(count);
         std::sort(near.begin(), end);
         const std::size_t before = list.size();
-        append_runs(near.data(), count, list);
+        append_spans(near.data(), count, list);
         begin_[si + 1] = list.size() - before;
         pairs += count;
       }
@@ -94,8 +94,8 @@ void NeighbourList::build(const Topology& topology, Vec3Array position, Vec3Arra
     }
     std::size_t total = 0;
     for (const auto& list : found) total += list.size();
-    make_room(run_, total);
-    for (const auto& list : found) run_.insert(run_.end(), list.begin(), list.end());
+    reserve_tightly(spans_, total);
+    for (const auto& list : found) spans_.insert(spans_.end(), list.begin(), list.end());
     for (std::size_t pairs : pairs_of_part) pairs_ += pairs;
     for (std::size_t i = 1; i < begin_.size(); ++i) begin_[i] += begin_[i - 1];
   }
@@ -114,13 +114,13 @@ double NeighbourList::coordinate_unit() const {
 // overlap widely, and clearing and adding them up would cost as much as the contact: then there are fewer chunks.
 void NeighbourList::cut_into_chunks(int n) {
   constexpr int fewest = 16;         // enough for as many threads
-  constexpr double most_common = 3;  // buffers for each element
+  constexpr double max_overlap = 3;  // buffers for each element
   for (int count = chunk_count(n, whole_ranges);; count = std::max(fewest, count / 2)) {
     cut_into_chunks(n, count);
     if (!whole_ranges) return;
-    double touched = 0;
-    for (const Chunk& c : chunks_) touched += c.touched_end - c.touched_begin;
-    if (count <= fewest || touched <= most_common * n) return;
+    double written = 0;
+    for (const Chunk& c : chunks_) written += c.written_end - c.written_begin;
+    if (count <= fewest || written <= max_overlap * n) return;
   }
 }
 
@@ -140,10 +140,10 @@ void NeighbourList::cut_into_chunks(int n, int count) {
     }
     chunk.begin = from;
     chunk.end = to;
-    chunk.touched_begin = from;
-    chunk.touched_end = to;
+    chunk.written_begin = from;
+    chunk.written_end = to;
     for (int i = from; i < to; ++i)
-      for (const PairRun& run : runs(i)) chunk.touched_end = std::max(chunk.touched_end, run.end);
+      for (const ElementSpan& span : spans(i)) chunk.written_end = std::max(chunk.written_end, span.end);
     from = to;
   }
 }

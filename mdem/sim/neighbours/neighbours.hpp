@@ -1,7 +1,7 @@
 // Verlet list: every pair of elements closer than cutoff + skin, found on a cell grid, valid until a point of an
 // element has moved half the skin. Half list (j > i), sorted by j, so that the order of summation depends on
 // the positions at the last build alone, never on the number of threads or on the grid. Along a tube the neighbours
-// of an element follow one another: they are kept as runs, without an index per pair.
+// of an element follow one another: they are kept as spans, without an index per pair.
 #pragma once
 
 #include <algorithm>
@@ -16,16 +16,16 @@
 namespace ropewalk {
 
 // Consecutive elements.
-struct PairRun {
+struct ElementSpan {
   int begin = 0, end = 0;
 };
 
-// A run may go on from one tube to the next: work(tube, begin, end) for the part of it in each.
+// A span may go on from one tube to the next: work(tube, begin, end) for the part of it in each.
 template <class Work>
-void for_tubes_of(const Topology& topology, const PairRun& run, const Work& work) {
-  for (int from = run.begin, to; from < run.end; from = to) {
+void for_tubes_of(const Topology& topology, const ElementSpan& span, const Work& work) {
+  for (int from = span.begin, to; from < span.end; from = to) {
     const int tube = topology.tube_of(from);
-    to = std::min(run.end, topology.tube_begin[static_cast<std::size_t>(tube) + 1]);
+    to = std::min(span.end, topology.tube_begin[static_cast<std::size_t>(tube) + 1]);
     work(tube, from, to);
   }
 }
@@ -33,10 +33,10 @@ void for_tubes_of(const Topology& topology, const PairRun& run, const Work& work
 class NeighbourList {
  public:
   // A contiguous range of elements whose pairs are one unit of parallel work. The number of chunks is fixed,
-  // and each sums into a buffer of its own that covers [touched_begin, touched_end).
+  // and each sums into a buffer of its own that covers [written_begin, written_end).
   struct Chunk {
     int begin = 0, end = 0;
-    int touched_begin = 0, touched_end = 0;
+    int written_begin = 0, written_end = 0;
   };
   // Largest number of chunks. It depends on the number of elements, not of threads. Buffers of chunks overlap,
   // which costs time, so that few elements get few chunks.
@@ -48,7 +48,7 @@ class NeighbourList {
   double cutoff = 0;           // nm
   double skin = 0;             // nm
   double lever = 0;            // nm: turning moves the points of an element that are so far from its centre
-  bool whole_ranges = false;   // buffers of the chunks cover [touched_begin, touched_end), used or not
+  bool whole_ranges = false;   // buffers of the chunks cover [written_begin, written_end), used or not
   int exclude_along_tube = 0;  // pairs of one tube up to this many elements apart are left out
 
   NeighbourList() = default;
@@ -64,23 +64,23 @@ class NeighbourList {
   // as moved; the rebuilt list has no neighbours of that element.
   bool update(const Topology& topology, const State& state);
   // Whether it has to be built anew by the change since the last build: that of all elements.
-  bool worn(const Change& change);
+  bool stale(const Change& change);
   // Of the elements begin .. end - 1; infinite where a place is not finite.
   Change change(const State& state, std::ptrdiff_t begin, std::ptrdiff_t end) const;
   void build(const Topology& topology, const State& state);
   void build(const Topology& topology, Vec3Array position, Vec3Array axis);
 
-  // The neighbours j > i of element i, none of which is in two runs.
-  Span<PairRun> runs(int i) const { return entries_of(i, begin_, run_); }
+  // The neighbours j > i of element i, none of which is in two spans.
+  Span<ElementSpan> spans(int i) const { return entries_of(i, begin_, spans_); }
   template <class Work>
   void for_neighbours(int i, const Work& work) const {
-    for (const PairRun& run : runs(i))
-      for (int j = run.begin; j < run.end; ++j) work(j);
+    for (const ElementSpan& span : spans(i))
+      for (int j = span.begin; j < span.end; ++j) work(j);
   }
   std::size_t pairs() const { return pairs_; }
   std::size_t pairs(int i) const {
     std::size_t sum = 0;
-    for (const PairRun& run : runs(i)) sum += static_cast<std::size_t>(run.end - run.begin);
+    for (const ElementSpan& span : spans(i)) sum += static_cast<std::size_t>(span.end - span.begin);
     return sum;
   }
   const std::vector<Chunk>& chunks() const { return chunks_; }
@@ -104,14 +104,14 @@ class NeighbourList {
   void set_twist(const std::array<double, 2>& t) { since_.set_twist(t); }
   // nm: largest distance of the centres of two elements that have points within reach of one another.
   double within() const { return cutoff + skin + 2 * lever; }
-  std::size_t bytes() const { return run_.capacity() * sizeof(PairRun) + begin_.capacity() * sizeof(std::size_t); }
+  std::size_t bytes() const { return spans_.capacity() * sizeof(ElementSpan) + begin_.capacity() * sizeof(std::size_t); }
 
  private:
   void cut_into_chunks(int elements);
   void cut_into_chunks(int elements, int count);
 
-  std::vector<std::size_t> begin_;  // first run of each element, and the end of the last one's
-  std::vector<PairRun> run_;
+  std::vector<std::size_t> begin_;  // first span of each element, and the end of the last one's
+  std::vector<ElementSpan> spans_;
   std::size_t pairs_ = 0;
   std::vector<Chunk> chunks_;
   MotionSince since_;

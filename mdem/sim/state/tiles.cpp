@@ -89,11 +89,11 @@ void bisect(CutBy by, Pieces first, Pieces last, int count, std::vector<std::vec
     tiles.push_back(joined(first, last));
     return;
   }
-  if (by == CutBy::place) sort_across(longest_side(first, last), first, last);
+  if (by == CutBy::position) sort_across(longest_side(first, last), first, last);
   const int left = count / 2;
   const Pieces cut = cut_at(static_cast<double>(left) / count, first, last);
-  bisect(CutBy::place, first, cut, left, tiles);
-  bisect(CutBy::place, cut, last, count - left, tiles);
+  bisect(CutBy::position, first, cut, left, tiles);
+  bisect(CutBy::position, cut, last, count - left, tiles);
 }
 
 }  // namespace
@@ -113,7 +113,7 @@ void TubeParts::cut(const Topology& topology) {
   }
   begin_.push_back(count());
   for (int k = 0, first = 0; k < count(); ++k) {
-    if (k == 0 || (*this)[k].end - first > most_of_block) {
+    if (k == 0 || (*this)[k].end - first > max_block) {
       block_begin_.push_back(k);
       first = (*this)[k].begin;
     }

@@ -21,7 +21,7 @@ struct Segment {
 class TubeParts {
  public:
   static constexpr int most = 512;                       // elements of a part
-  static constexpr int most_of_block = cached_elements;  // a longer part is a block of its own
+  static constexpr int max_block = cached_elements;  // a longer part is a block of its own
 
   TubeParts() = default;
   explicit TubeParts(const Topology& topology) { cut(topology); }
@@ -43,7 +43,7 @@ class TubeParts {
 
 // Into the tubes with low and with high numbers, which two threads have to themselves in every pass over the tubes;
 // or across where what is to be cut is longest, so that tiles have least in common.
-enum class CutBy { index, place };
+enum class CutBy { index, position };
 
 // Cuts all elements into `count` tiles of nearly equal cost; `cost` has one entry per element. The segments of a
 // tile are in the order of their elements; a tile may be empty. The method is recursive coordinate bisection

@@ -9,7 +9,7 @@ namespace ropewalk {
 // Reserves n entries and at most an eighth more. std::vector would double its size when it is a little short, and
 // keep it.
 template <class T>
-void make_room(std::vector<T>& v, std::size_t n) {
+void reserve_tightly(std::vector<T>& v, std::size_t n) {
   constexpr std::size_t few = 64;
   if (n <= v.capacity() && v.capacity() <= n + n / 8 + few) return;
   std::vector<T>().swap(v);  // frees it first
@@ -19,7 +19,7 @@ void make_room(std::vector<T>& v, std::size_t n) {
 // n entries of any value.
 template <class T>
 void set_size(std::vector<T>& v, std::size_t n) {
-  make_room(v, n);
+  reserve_tightly(v, n);
   v.resize(n);
 }
 

@@ -224,11 +224,11 @@ class BentChains {
   BentState measure() const;
 
  private:
-  struct Place {
+  struct TiltedElement {
     Vector3 position;
     double tilt;  // about y
   };
-  Place place(std::size_t element, double angle) const;
+  TiltedElement element_at(std::size_t element, double angle) const;
   void relax();
 
   Bundle bundle_;
@@ -257,7 +257,7 @@ BentChains::BentChains(const Grips& grips, const ParameterSet& set)
   relax();
 }
 
-BentChains::Place BentChains::place(std::size_t element, double angle) const {
+BentChains::TiltedElement BentChains::element_at(std::size_t element, double angle) const {
   const Vector3 at = straight_[element];
   const double within = std::clamp(at.z(), -0.5 * length_, 0.5 * length_), over = at.z() - within;
   const double k = std::max(angle, 1e-9) / length_;
@@ -271,7 +271,7 @@ BentChains::Place BentChains::place(std::size_t element, double angle) const {
 void BentChains::bend(double angle) {
   State& state = bundle_.state;
   for (std::size_t i = 0; i < state.size(); ++i) {
-    const Place from = place(i, angle_), to = place(i, angle);
+    const TiltedElement from = element_at(i, angle_), to = element_at(i, angle);
     state.position.add(i, to.position - from.position);
     state.orientation.set(i, turn_about(Vector3::UnitY(), to.tilt - from.tilt) * state.orientation[i]);
   }
@@ -306,7 +306,7 @@ struct Bounds {
   double sliding = 0, glued = 0, length = 0;
   double energy(double stiffness, double angle) const { return 0.5 * stiffness * angle * angle / length; }
   // 0: sliding, 1: glued.
-  double place(const BentState& state) const {
+  double gluing(const BentState& state) const {
     return (state.total / energy(1, state.angle) - sliding) / (glued - sliding);
   }
 };
@@ -347,7 +347,7 @@ void add_checks(const Series& series, const Bounds& bounds, CaseResult& result) 
                        vdw_share_tolerance * atoms.total + series.registry, "eV",
                        "tolerance relative to the bending energy, of which it is a small part"));
     result.checks.push_back(information(absolute_check("stiffness between sliding (0) and glued (1)" + at,
-                                                       bounds.place(elements), bounds.place(atoms), 0.05, "1",
+                                                       bounds.gluing(elements), bounds.gluing(atoms), 0.05, "1",
                                                        "limits of rod theory with the set's stiffnesses")));
   }
 }

@@ -21,7 +21,7 @@ constexpr double smoothness_tolerance = 0.001;  // of the well: far below the co
 constexpr ValidatedTube tube = tube_10_10;
 constexpr int turns = 4, shifts = 24, periods = 5;
 constexpr int free_periods = 32, registry_count = 12;  // pull-out: tubes of 8 nm
-constexpr double first_overlap = 0.5, overlap_step = 0.5, most_overlap = 7.5;
+constexpr double first_overlap = 0.5, overlap_step = 0.5, max_overlap = 7.5;
 constexpr double fit_from = 2, fit_to = 6;  // nm: without the influence of the ends
 
 double rest_distance(const MdSession& session, const TubeShape& shape) {
@@ -62,7 +62,7 @@ ReferenceTable make_sliding(const CaseContext& context) {
 
 std::vector<double> overlaps() {
   std::vector<double> list;
-  for (double x = first_overlap; x < most_overlap + 0.1 * overlap_step; x += overlap_step) list.push_back(x);
+  for (double x = first_overlap; x < max_overlap + 0.1 * overlap_step; x += overlap_step) list.push_back(x);
   return list;
 }
 

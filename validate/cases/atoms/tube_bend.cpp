@@ -16,7 +16,7 @@ namespace {
 constexpr double short_length = 8, long_length = 14;  // nm
 constexpr double step = 0.0025, most = 0.06;          // nm, of curvature times radius squared
 constexpr double end_band = 0.6;                      // nm, held beyond either end
-constexpr double most_turn = 5.6;  // rad, between the ends of the long specimen; they meet at a larger turn
+constexpr double max_turn = 5.6;  // rad, between the ends of the long specimen; they meet at a larger turn
 constexpr ValidatedTube tubes[] = {tube_5_5, tube_10_10};
 
 std::string bend_input(const FiniteTube& tube, const Potential& potential, const std::string& name,
@@ -86,7 +86,7 @@ TubeCurve curve_of(const ValidatedTube& tube, const ParameterSet& set, const Ref
       curve.amplitude.push_back(curvature[k]);
       curve.atoms.push_back((high[k] - low[k]) / (long_nm - short_nm));
     }
-    if (curvature[k] * (long_nm + 2 * end_band) > most_turn) continue;
+    if (curvature[k] * (long_nm + 2 * end_band) > max_turn) continue;
     curve.more_amplitude.push_back(curvature[k]);
     curve.more_atoms.push_back(high[k] / long_nm);
   }

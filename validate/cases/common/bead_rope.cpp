@@ -8,7 +8,7 @@ namespace ropewalk {
 namespace {
 
 constexpr double force_tolerance = 1e-4;  // eV/nm
-constexpr long most_steps = 200000;
+constexpr long max_steps = 200000;
 
 }  // namespace
 
@@ -77,7 +77,7 @@ void BeadRope::compute() {
 double BeadRope::largest_force() const {
   double largest = 0;
   for (std::size_t i = 0; i < position_.size(); ++i) {
-    const double at = rope_.place(static_cast<int>(i));
+    const double at = rope_.fraction_at(static_cast<int>(i));
     if (at > 0 && at < 1) largest = std::max(largest, force_[i].norm());
   }
   return largest;
@@ -93,11 +93,11 @@ void BeadRope::relax() {
   int downhill = 0;
   const std::size_t n = position_.size();
   velocity_ = Vec3Array(n);
-  for (long step = 0; step < most_steps; ++step) {
+  for (long step = 0; step < max_steps; ++step) {
     if (step % 10 == 0 && largest_force() < force_tolerance) return;
     double power = 0, v2 = 0, f2 = 0;
     for (std::size_t i = 0; i < n; ++i) {
-      const double at = rope_.place(static_cast<int>(i));
+      const double at = rope_.fraction_at(static_cast<int>(i));
       if (at <= 0 || at >= 1) force_.set(i, Vector3::Zero());
       power += force_[i].dot(velocity_[i]);
     }
@@ -118,7 +118,7 @@ void BeadRope::relax() {
     }
     compute();
   }
-  throw NumericalError(most_steps, -1, "the rope of beads did not come to rest", "turn it in smaller increments");
+  throw NumericalError(max_steps, -1, "the rope of beads did not come to rest", "turn it in smaller increments");
 }
 
 double BeadRope::moment() const {

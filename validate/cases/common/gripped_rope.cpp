@@ -32,7 +32,7 @@ GrippedRope::GrippedRope(const ParameterSet& set, int bonds_, const std::string&
   }
 }
 
-double GrippedRope::place(int element) const {
+double GrippedRope::fraction_at(int element) const {
   return std::clamp(static_cast<double>(element % elements_of_tube() - held + 1) / bonds, 0.0, 1.0);
 }
 

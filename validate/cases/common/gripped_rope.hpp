@@ -26,8 +26,8 @@ struct GrippedRope {
   double length() const { return bonds * topology.types[0].element_length; }
   int elements_of_tube() const { return bonds + 2 * held - 1; }
   // Part of the way from the lower grip (0) to the upper one (1).
-  double place(int element) const;
-  double turn_of(int element, double angle) const { return (place(element) - 0.5) * angle; }
+  double fraction_at(int element) const;
+  double turn_of(int element, double angle) const { return (fraction_at(element) - 0.5) * angle; }
   void hold_grips();
   // Turns the upper grip by +angle/2, the lower one by -angle/2, and the elements between them evenly.
   void turn(double angle);

@@ -60,10 +60,10 @@ bool blows_up(const Topology& topology, const Interaction& interaction, const St
 namespace {
 
 // Minus the derivative of all forces and torques by positions and rotations, or by velocities, over the masses.
-enum class By { place, velocity };
+enum class By { position, velocity };
 Eigen::MatrixXd derivative(const Topology& topology, const Interaction& interaction, const State& state, By by) {
   const auto n = static_cast<Eigen::Index>(6 * state.size());
-  const double h = by == By::place ? 1e-5 : 1e-3;  // nm, rad; nm/ps, rad/ps
+  const double h = by == By::position ? 1e-5 : 1e-3;  // nm, rad; nm/ps, rad/ps
   NeighbourList list(interaction, 0.2);
   list.build(topology, state);
   ForceEngine engine;
@@ -106,11 +106,11 @@ double largest_eigenvalue(const Eigen::MatrixXd& m) {
 }  // namespace
 
 double stiffest_frequency(const Topology& topology, const Interaction& interaction, const State& state) {
-  return std::sqrt(largest_eigenvalue(derivative(topology, interaction, state, By::place)));
+  return std::sqrt(largest_eigenvalue(derivative(topology, interaction, state, By::position)));
 }
 
 double largest_damped_step(const Topology& topology, const Interaction& interaction, const State& state) {
-  const Eigen::MatrixXd k = derivative(topology, interaction, state, By::place),
+  const Eigen::MatrixXd k = derivative(topology, interaction, state, By::position),
                         d = derivative(topology, interaction, state, By::velocity);
   return limit_between([&](double dt) { return largest_eigenvalue(dt * dt * k + 2 * dt * d) > 4; }, 1e-5, 0.5,
                        1e-3);

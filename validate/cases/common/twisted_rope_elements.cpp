@@ -34,7 +34,7 @@ class ClampedRope {
   // Along the axis, on the upper grip.
   double grip_force() const;
   // -1/2 at the lower clamp, 1/2 at the upper one.
-  double place(int element) const;
+  double fraction_at(int element) const;
 
   Topology topology_;
   Interaction interaction_;
@@ -72,7 +72,7 @@ ClampedRope::ClampedRope(const TwistedRope& rope, const ParameterSet& set)
   relax();
 }
 
-double ClampedRope::place(int element) const {
+double ClampedRope::fraction_at(int element) const {
   const int along = element % (bonds_ + 1 + 2 * beyond_) - beyond_;
   return std::clamp(static_cast<double>(along) / bonds_, 0.0, 1.0) - 0.5;
 }
@@ -80,7 +80,7 @@ double ClampedRope::place(int element) const {
 void ClampedRope::turn(double angle) {
   for (int e = 0; e < topology_.elements(); ++e) {
     const auto i = static_cast<std::size_t>(e);
-    const Quaternion by = turn_about(Vector3::UnitZ(), angle * place(e));
+    const Quaternion by = turn_about(Vector3::UnitZ(), angle * fraction_at(e));
     state_.position.set(i, by * state_.position[i]);
     state_.orientation.set(i, (by * state_.orientation[i]).normalized());
   }
@@ -89,7 +89,7 @@ void ClampedRope::turn(double angle) {
 
 void ClampedRope::lift(double distance) {
   for (int e = 0; e < topology_.elements(); ++e)
-    state_.position.z[static_cast<std::size_t>(e)] += distance * (place(e) + 0.5);
+    state_.position.z[static_cast<std::size_t>(e)] += distance * (fraction_at(e) + 0.5);
   rise_ += distance;
   relax();
 }

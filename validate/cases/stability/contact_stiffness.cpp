@@ -112,7 +112,7 @@ CaseResult run(const CaseContext& context) {
                {},
                {}};
   int colour = 0;
-  double least_margin = 1e9;
+  double min_margin = 1e9;
   for (const Series& s : all_series()) {
     std::vector<double> at, limit, expected;
     for (const double factor : s.factors) {
@@ -126,7 +126,7 @@ CaseResult run(const CaseContext& context) {
       limit.push_back(found / units::fs);
       expected.push_back(theory / units::fs);
       const double estimate = time_step_limit(oracle.topology, oracle.interaction, oracle.spacing).limit;
-      least_margin = std::min(least_margin, theory / estimate);
+      min_margin = std::min(min_margin, theory / estimate);
       result.checks.push_back(relative_check(fmt::format("{}, contact x {:.0f}", s.name, factor), limit.back(),
                                              expected.back(), 0.05, "fs", "seven tubes of four elements at rest"));
     }
@@ -141,12 +141,12 @@ CaseResult run(const CaseContext& context) {
       "Points: by bisection. Lines: by the eigenvalues. Where a line begins to fall, the contact becomes stiffer "
       "than the chains.";
   result.figures.push_back(map);
-  least_margin = std::min(least_margin, check_viscosity(context, result));
+  min_margin = std::min(min_margin, check_viscosity(context, result));
   // The estimate of `run` must never lie above the stable step.
   result.checks.push_back(
-      absolute_check("estimates of `run` above the limit", least_margin < 1 ? 1 : 0, 0, 0, "", "0: none of these"));
+      absolute_check("estimates of `run` above the limit", min_margin < 1 ? 1 : 0, 0, 0, "", "0: none of these"));
   result.checks.push_back(
-      information(absolute_check("smallest limit over estimate", least_margin, 1, 0, "",
+      information(absolute_check("smallest limit over estimate", min_margin, 1, 0, "",
                                  "`auto` takes 0.9 of the estimate in cold scenes, 0.6 in others")));
   result.remarks.push_back(
       "A contact many times as strong as that of the sets stands for tubes that are pressed together. At rest, the "

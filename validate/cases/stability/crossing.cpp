@@ -18,15 +18,15 @@ namespace {
 constexpr const char *line_set = "cnt-10-10-tersoff", *paper_set = "cnt-10-10-paper";
 
 // Energy (eV) at a point of a path, and its slope by force or torque.
-struct Point {
+struct EnergyAndSlope {
   double energy = 0, slope = 0;
 };
-using Path = std::function<Point(double)>;
+using Path = std::function<EnergyAndSlope(double)>;
 
 // Two rigid straight tubes, evaluated by the simulator's forces.
-class Pair {
+class RigidTubes {
  public:
-  Pair(const ParameterSet& set, Interaction interaction, int elements)
+  RigidTubes(const ParameterSet& set, Interaction interaction, int elements)
       : in_(std::move(interaction)), topology_(topology_of(set)), elements_(elements) {
     topology_.add_tube(elements);
     topology_.add_tube(elements);
@@ -74,17 +74,17 @@ class Pair {
   int elements_ = 0;
 };
 
-Path turning(Pair& pair, const Vector3& centre) {
+Path turning(RigidTubes& pair, const Vector3& centre) {
   return [&pair, centre](double angle) {
     pair.put(centre, angle);
-    return Point{pair.energy(), -pair.torque(centre).x()};
+    return EnergyAndSlope{pair.energy(), -pair.torque(centre).x()};
   };
 }
 
-Path shifting(Pair& pair, const Vector3& from, const Vector3& direction, double angle) {
+Path shifting(RigidTubes& pair, const Vector3& from, const Vector3& direction, double angle) {
   return [&pair, from, direction, angle](double by) {
     pair.put(from + by * direction, angle);
-    return Point{pair.energy(), -pair.force().dot(direction)};
+    return EnergyAndSlope{pair.energy(), -pair.force().dot(direction)};
   };
 }
 
@@ -119,7 +119,7 @@ std::pair<double, double> largest_jump(const std::function<double(double)>& valu
 Smoothness smoothness(const Path& path, double from, double to, int steps) {
   Smoothness out;
   const double h = (to - from) / steps;
-  std::vector<Point> points;
+  std::vector<EnergyAndSlope> points;
   for (int k = 0; k <= steps; ++k) {
     points.push_back(path(from + k * h));
     out.finite = out.finite && std::isfinite(points.back().energy) && std::isfinite(points.back().slope);
@@ -130,7 +130,7 @@ Smoothness smoothness(const Path& path, double from, double to, int steps) {
   // Some of the intervals in which energy or slope change most, compared with their neighbours.
   std::vector<std::pair<double, int>> energy, slope;
   for (int k = 0; k < steps; ++k) {
-    const Point &a = points[static_cast<std::size_t>(k)], &b = points[static_cast<std::size_t>(k + 1)];
+    const EnergyAndSlope &a = points[static_cast<std::size_t>(k)], &b = points[static_cast<std::size_t>(k + 1)];
     energy.push_back({-std::fabs(b.energy - a.energy - 0.5 * h * (a.slope + b.slope)), k});
     slope.push_back({-std::fabs(b.slope - a.slope), k});
   }
@@ -215,7 +215,7 @@ void check_law(const std::string& law, const std::vector<Named>& paths, CaseResu
 }
 
 // `overlap`: the smallest distance of the centres of two elements in one line.
-std::vector<Named> paths_of(Pair& rows, Pair& single, double spacing, double overlap) {
+std::vector<Named> paths_of(RigidTubes& rows, RigidTubes& single, double spacing, double overlap) {
   const double right = 0.5 * units::pi;
   const Vector3 x = Vector3::UnitX(), z = Vector3::UnitZ(), none = Vector3::Zero();
   return {{"rows turned in the well (rad)", turning(rows, {spacing, 0.1, 0.3}), -0.1, right + 0.2},
@@ -234,7 +234,7 @@ void check_published_jump(const ParameterSet& model, const ParameterSet& oracle,
   published.bisector_blend = 1e-12;
   ParameterSet sharp = model;
   sharp.paper = published;
-  Pair pair(sharp, paper_interaction(sharp, false), 1);
+  RigidTubes pair(sharp, paper_interaction(sharp, false), 1);
   const Vector3 centre(1.9, 0.4, 0.9);
   const Path path = turning(pair, centre);
   const double right = 0.5 * units::pi;
@@ -253,7 +253,7 @@ void check_published_jump(const ParameterSet& model, const ParameterSet& oracle,
 
 // Two elements in one line, shifted by one spacing of their nodes: all nodes but one coincide, and their forces
 // change sign as they pass. Theory is u'(0) of the parabola that continues u below the core gap.
-void check_coinciding_nodes(Pair& single, const ParameterSet& oracle, CaseResult& result) {
+void check_coinciding_nodes(RigidTubes& single, const ParameterSet& oracle, CaseResult& result) {
   const LineContact law = line_contact_of(oracle);
   const LineDensity& u = law.density;
   const double spacing = law.length_i / law.nodes_i, x = u.core_gap + u.c;
@@ -276,7 +276,7 @@ void check_coinciding_nodes(Pair& single, const ParameterSet& oracle, CaseResult
                            Limit::Guard::refused, "elements that overlap at the start; a run stops long before"});
 }
 
-CaseFigure figure_of(Pair& line_rows, Pair& paper_rows, const ParameterSet& line, double line_at, double paper_at) {
+CaseFigure figure_of(RigidTubes& line_rows, RigidTubes& paper_rows, const ParameterSet& line, double line_at, double paper_at) {
   CaseFigure figure;
   figure.chart = {"Energy of two crossing tubes", {"crossing angle", "degrees"}, {"energy", "eV"}, {}, {}};
   std::vector<double> angle, by_line, by_paper;
@@ -300,9 +300,9 @@ CaseResult run(const CaseContext& context) {
   const ParameterSet line = context.model(line_set), paper = context.model(paper_set);
   const ParameterSet line_oracle = context.parameters(line_set), paper_oracle = context.parameters(paper_set);
   const double line_at = line_parallel_well(line_oracle.line->density).distance, paper_at = 1.713;
-  Pair line_rows(line, line_interaction(line), 9), line_single(line, line_interaction(line), 1);
+  RigidTubes line_rows(line, line_interaction(line), 9), line_single(line, line_interaction(line), 1);
   const Interaction published = paper_interaction(paper, context.fault.missing_torque);
-  Pair paper_rows(paper, published, 9), paper_single(paper, published, 1);
+  RigidTubes paper_rows(paper, published, 9), paper_single(paper, published, 1);
   CaseResult result;
   check_law("line law", paths_of(line_rows, line_single, line_at, 0.9 * line_oracle.element_length), result);
   check_law("paper law", paths_of(paper_rows, paper_single, paper_at, 1e-3), result);

@@ -17,12 +17,12 @@ double ideal_charge(double beta) { return 6 * (1 - std::pow(std::cos(beta), 3));
 
 // A helix through a point of the plane z = 0, as a function of its arc length.
 struct Helix {
-  Eigen::Vector2d place;
+  Eigen::Vector2d position;
   double rate = 0;  // rad/nm of the axis
-  double cosine() const { return 1 / std::hypot(1.0, rate * place.norm()); }
+  double cosine() const { return 1 / std::hypot(1.0, rate * position.norm()); }
   Vector3 point(double s) const {
     const double z = s * cosine();
-    const Eigen::Vector2d p = Eigen::Rotation2Dd(rate * z) * place;
+    const Eigen::Vector2d p = Eigen::Rotation2Dd(rate * z) * position;
     return {p.x(), p.y(), z};
   }
   Vector3 tangent(double s) const {
@@ -33,7 +33,7 @@ struct Helix {
 
 // Contact energy per length (eV/nm) of two tubes on a ring, `angle` apart in the section.
 double ring_energy(const LineContact& law, double radius, double rate, double angle) {
-  const Helix one{{radius, 0}, rate}, two{Eigen::Rotation2Dd(angle) * one.place, rate};
+  const Helix one{{radius, 0}, rate}, two{Eigen::Rotation2Dd(angle) * one.position, rate};
   double sum = 0;
   for (int k = -8; k <= 8; ++k) {
     const double s = k * law.length_i;

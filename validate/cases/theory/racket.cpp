@@ -13,13 +13,13 @@ constexpr const char* set_name = "cnt-10-10-tersoff";
 constexpr int arm_elements = 20;  // 27 nm of each arm; the contact opens within 5 nm
 
 // The upper half of a head, from where the arms part (s = 0) to the tip on the line of symmetry.
-struct Point {
+struct ArmPoint {
   double s = 0, x = 0, y = 0;  // nm
   double slope = 0;            // rad
   double curvature = 0;        // 1/nm
 };
 
-using Head = std::vector<Point>;
+using Head = std::vector<ArmPoint>;
 
 double contour(const Head& head) { return 2 * head.back().s; }
 
@@ -27,7 +27,7 @@ double contour(const Head& head) { return 2 * head.back().s; }
 Head trace(double curvature, double force_over_bend, double gap) {
   const double ds = 2e-4 / curvature;
   Head head;
-  Point p{0, 0, 0.5 * gap, 0, curvature};
+  ArmPoint p{0, 0, 0.5 * gap, 0, curvature};
   while (p.slope > -0.5 * units::pi && p.s * curvature < 6) {
     head.push_back(p);
     const double middle = p.slope + 0.5 * ds * p.curvature;
@@ -69,17 +69,17 @@ double attraction(const Head& head, const PairIntegral& contact) {
 
 double width(const Head& head) {
   double most = 0;
-  for (const Point& p : head) most = std::max(most, 2 * p.y);
+  for (const ArmPoint& p : head) most = std::max(most, 2 * p.y);
   return most;
 }
 
 // Contour around the tip between the places where the arms are this far apart.
 double around(const Head& head, double distance) {
-  const auto apart = std::find_if(head.begin(), head.end(), [&](const Point& p) { return 2 * p.y > distance; });
+  const auto apart = std::find_if(head.begin(), head.end(), [&](const ArmPoint& p) { return 2 * p.y > distance; });
   return 2 * (head.back().s - apart->s);
 }
 
-Point at(const Head& head, double s) {
+ArmPoint at(const Head& head, double s) {
   if (s <= 0) return {s, s, head.front().y, 0, 0};
   const double step = head[1].s;
   const auto k = std::min(static_cast<std::size_t>(s / step), head.size() - 1);
@@ -91,7 +91,7 @@ Bundle folded(const ParameterSet& set, int elements, const Head& head) {
   Bundle b = line_bundle(set, 1, elements);
   for (int e = 0; e < elements; ++e) {
     const double from_tip = (e - 0.5 * (elements - 1)) * set.element_length, side = from_tip < 0 ? -1 : 1;
-    const Point p = at(head, head.back().s - std::fabs(from_tip));
+    const ArmPoint p = at(head, head.back().s - std::fabs(from_tip));
     const double heading = from_tip < 0 ? -p.slope : units::pi + p.slope;
     const auto i = static_cast<std::size_t>(e);
     b.state.position.set(i, {p.x, side * p.y, 0});
@@ -141,7 +141,7 @@ CaseFigure shape_figure(const Head& head, const State& chain) {
   theory.name = "elastica";
   for (int side : {1, -1})
     for (std::size_t k = 0; k < head.size(); k += 100) {
-      const Point& p = side > 0 ? head[k] : head[head.size() - 1 - k];
+      const ArmPoint& p = side > 0 ? head[k] : head[head.size() - 1 - k];
       theory.x.push_back(p.x);
       theory.y.push_back(side * p.y);
     }

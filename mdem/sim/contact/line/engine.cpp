@@ -17,7 +17,7 @@ void make_tables(Buffers& b, const LineLaw& law, double unit) {
 
 // What a buffer holds for elements of a tube, element j at j + shift.
 template <class T>
-__attribute__((always_inline)) inline void add_all(const TouchedRange& of, const ContactBuffer<T>& b,
+__attribute__((always_inline)) inline void add_all(const BufferRange& of, const ContactBuffer<T>& b,
                                                    const ForceRows& sums) {
   const std::vector<T>* const from[6] = {&b.fx, &b.fy, &b.fz, &b.tx, &b.ty, &b.tz};
   Vec3Array &force = sums.force, &torque = sums.torque;
@@ -29,11 +29,11 @@ __attribute__((always_inline)) inline void add_all(const TouchedRange& of, const
     for (int i = 0; i < of.end - of.begin; ++i) sum[i] += static_cast<double>(on[i]);
   }
 }
-ROPEWALK_VECTOR_CLONES void add_range(const TouchedRange& of, const ContactBuffer<float>& b,
+ROPEWALK_VECTOR_CLONES void add_range(const BufferRange& of, const ContactBuffer<float>& b,
                                       const ForceRows& sums) {
   add_all(of, b, sums);
 }
-ROPEWALK_VECTOR_CLONES void add_range(const TouchedRange& of, const ContactBuffer<double>& b,
+ROPEWALK_VECTOR_CLONES void add_range(const BufferRange& of, const ContactBuffer<double>& b,
                                       const ForceRows& sums) {
   add_all(of, b, sums);
 }
@@ -101,7 +101,7 @@ void LineEngine::compute_all(Buffers& b, const Topology& topology, const Interac
   for (auto& nodes : b.nodes) nodes.reserve(list_.largest().nodes);
   for (auto& work : b.work) {
     work.found.reserve(list_.largest().vectors);
-    if (!full_) work.damped.make_room(list_.largest().elements);
+    if (!full_) work.damped.resize(list_.largest().elements);
   }
   left_.start(written_.chunks_on());
   const auto finish = [&](int block) {

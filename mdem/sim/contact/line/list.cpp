@@ -127,8 +127,8 @@ struct LineList::Found {
   void find(const Topology& topology, const Interaction& in, const NeighbourList& list, int tube) {
     for (int i = topology.tube_begin[tube]; i < topology.tube_begin[tube + 1]; ++i) {
       const std::size_t before = spans.size();
-      for (const PairRun& run : list.runs(i))
-        for_tubes_of(topology, run, [&](int tube_j, int begin, int end) {
+      for (const ElementSpan& span : list.spans(i))
+        for_tubes_of(topology, span, [&](int tube_j, int begin, int end) {
           SpanFinder(topology, in, list, i, tube, tube_j).add(begin, end - 1, spans);
         });
       count.push_back(spans.size() - before);
@@ -196,7 +196,7 @@ void LineList::cut_into_chunks(const Topology& topology, const Vec3Array& positi
   costs.reserve(static_cast<std::size_t>(topology.elements()));
   for (int i = 0; i < topology.elements(); ++i) costs.push_back(cost(i));
   chunks_.assign(count, LineChunk{});
-  const CutBy first = position.size() > large_scene ? CutBy::place : CutBy::index;
+  const CutBy first = position.size() > large_scene ? CutBy::position : CutBy::index;
   auto tiles = cut_into_tiles(topology, position, costs, static_cast<int>(count), first);
   for (std::size_t c = 0; c < count; ++c) chunks_[c].own = std::move(tiles[c]);
 }
@@ -279,7 +279,7 @@ void LineList::find_ranges(const Topology& topology, LineChunk& chunk) {
       }
       chunk.vectors = std::max(chunk.vectors, vectors);
     }
-  chunk.elements = DampedBlock::most;  // room for vectors that begin before the first one
+  chunk.elements = DampedBlock::max_lanes;  // room for vectors that begin before the first one
   for (WrittenRange& r : chunk.ranges) {
     r.element_shift = chunk.elements - r.begin;
     r.node_origin = chunk.nodes - r.begin * r.nodes_per_element;
@@ -296,7 +296,7 @@ void LineList::list_damped(LineChunk& chunk) const {
     for (int i = of.begin; i < of.end; ++i)
       for (const NeighbourSpan& span : spans(i)) {
         if (span.damped == 0) continue;
-        TouchedRange own = range_of(i).elements();
+        BufferRange own = range_of(i).elements();
         own.end = std::min(own.end, of.end);
         const int from = span.first + span.damped_from;
         blocks.add(i, own, from, from + span.damped, chunk.ranges[static_cast<std::size_t>(span.range)].elements());
@@ -323,7 +323,7 @@ void LineList::build(const Topology& topology, const Interaction& in, const Neig
   std::size_t total = 0;
   for (const Found& part : found) total += part.spans.size();
   spans_.clear();
-  make_room(spans_, total);
+  reserve_tightly(spans_, total);
   begin_.assign(1, 0);
   begin_.reserve(static_cast<std::size_t>(topology.elements()) + 1);
   for (const Found& part : found) {
@@ -351,7 +351,7 @@ std::size_t LineList::bytes() const {
   std::size_t total = spans_.capacity() * sizeof(NeighbourSpan) + begin_.capacity() * sizeof(std::size_t);
   for (const LineChunk& chunk : chunks_)
     total += chunk.own.capacity() * sizeof(Segment) + chunk.ranges.capacity() * sizeof(WrittenRange) +
-             chunk.damped.capacity() * sizeof(DampedBlock) + chunk.damped_ranges.capacity() * sizeof(TouchedRange);
+             chunk.damped.capacity() * sizeof(DampedBlock) + chunk.damped_ranges.capacity() * sizeof(BufferRange);
   return total;
 }
 

@@ -39,7 +39,7 @@ struct WrittenRange {
   int element_shift = 0;                       // element j is entry j + element_shift
   int node_origin = 0, nodes_per_element = 0;  // element j's first node is node node_origin + j nodes_per_element
 
-  TouchedRange elements() const { return {begin, end, element_shift}; }
+  BufferRange elements() const { return {begin, end, element_shift}; }
   int first_node(int element) const { return node_origin + element * nodes_per_element; }
 };
 
@@ -48,7 +48,7 @@ struct LineChunk {
   std::vector<Segment> own;          // in the order of their elements
   std::vector<WrittenRange> ranges;  // in the order of their elements
   std::vector<DampedBlock> damped;
-  std::vector<TouchedRange> damped_ranges;  // those that have any
+  std::vector<BufferRange> damped_ranges;  // those that have any
   int elements = 0, nodes = 0;              // sizes of its buffers
   int vectors = 0;                          // of 16 nodes, that one of its elements may meet
 };

@@ -11,7 +11,7 @@ void for_written(const TubeParts& parts, const LineChunk& chunk, const What& wha
   for (const WrittenRange& range : chunk.ranges)
     for (int k = parts.part_of(range.begin, range.tube);
          k < parts.begin(range.tube + 1) && parts[k].begin < range.end; ++k)
-      what(k, TouchedRange{std::max(parts[k].begin, range.begin), std::min(parts[k].end, range.end),
+      what(k, BufferRange{std::max(parts[k].begin, range.begin), std::min(parts[k].end, range.end),
                            range.element_shift});
 }
 
@@ -23,7 +23,7 @@ void WrittenRanges::list(const TubeParts& parts, const std::vector<LineChunk>& c
   chunks_on_.assign(static_cast<std::size_t>(parts.blocks()), 0);
   for (std::size_t c = 0; c < chunks.size(); ++c) {
     std::vector<int>& blocks = blocks_[c];
-    for_written(parts, chunks[c], [&](int k, const TouchedRange&) {
+    for_written(parts, chunks[c], [&](int k, const BufferRange&) {
       ++begin_[static_cast<std::size_t>(k) + 1];
       const int block = parts.block_of(k);
       if (blocks.empty() || blocks.back() < block) blocks.push_back(block);
@@ -34,7 +34,7 @@ void WrittenRanges::list(const TubeParts& parts, const std::vector<LineChunk>& c
   std::vector<int> next(begin_.begin(), begin_.end() - 1);
   written_.resize(static_cast<std::size_t>(begin_.back()));
   for (std::size_t c = 0; c < chunks.size(); ++c)
-    for_written(parts, chunks[c], [&](int k, const TouchedRange& on) {
+    for_written(parts, chunks[c], [&](int k, const BufferRange& on) {
       written_[static_cast<std::size_t>(next[static_cast<std::size_t>(k)]++)] = {static_cast<int>(c), on};
     });
 }

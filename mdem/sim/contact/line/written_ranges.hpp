@@ -14,7 +14,7 @@ class WrittenRanges {
  public:
   struct Written {
     int chunk = 0;
-    TouchedRange on;  // elements of the part, by their entries in the buffers of the chunk
+    BufferRange on;  // elements of the part, by their entries in the buffers of the chunk
   };
 
   void list(const TubeParts& parts, const std::vector<LineChunk>& chunks);

@@ -41,7 +41,7 @@ void place_all(const ContactInput& in, PaperElements<T>& elements) {
 }  // namespace
 
 void PaperEngine::update_list(const ContactInput& in) {
-  runs_.build(in.list, law_of(in).cutoff());
+  spans_.build(in.list, law_of(in).cutoff());
   mixed_.unit = in.list.coordinate_unit();
 }
 
@@ -58,10 +58,10 @@ void PaperEngine::prepare(const ContactInput& in) {
 void PaperEngine::add_chunk(const ContactInput& in, const NeighbourList::Chunk& chunk, ContactBuffer<double>& out) {
   const PaperLaw& law = law_of(in);
   if (full(in)) {
-    paper_contact(PaperKernelInput<double>{&law.contact, &full_, &in.axis, &runs_, law.legacy_torque, true}, chunk,
+    paper_contact(PaperKernelInput<double>{&law.contact, &full_, &in.axis, &spans_, law.legacy_torque, true}, chunk,
                   out);
   } else {
-    paper_contact(PaperKernelInput<float>{&law.contact, &mixed_, &in.axis, &runs_, law.legacy_torque, true}, chunk,
+    paper_contact(PaperKernelInput<float>{&law.contact, &mixed_, &in.axis, &spans_, law.legacy_torque, true}, chunk,
                   out);
   }
 }
@@ -70,14 +70,14 @@ std::size_t PaperEngine::bytes() const {
   const auto of = [](const auto& e) {
     return 3 * (e.x.capacity() * sizeof(e.x[0]) + e.nx.capacity() * sizeof(e.nx[0]));
   };
-  return BufferedEngine::bytes() + runs_.bytes() + of(mixed_) + of(full_);
+  return BufferedEngine::bytes() + spans_.bytes() + of(mixed_) + of(full_);
 }
 
 // The kernel has positions and axes of its own.
 double PaperEngine::step_bytes(const NeighbourList& list, std::size_t number) const {
   const auto elements = static_cast<double>(list.reference().size());
   return BufferedEngine::step_bytes(list, number) + buffer_bytes(elements, number) +
-         static_cast<double>(runs_.bytes());
+         static_cast<double>(spans_.bytes());
 }
 
 }  // namespace ropewalk

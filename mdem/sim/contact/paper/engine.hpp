@@ -35,7 +35,7 @@ struct PaperKernelInput {
   const PaperContact* law;
   const PaperElements<T>* elements;
   const Vec3Array* axis;
-  const PairRuns* runs;
+  const ElementSpans* spans;
   bool legacy_torque;
   bool energies;  // sum the energies
 };
@@ -49,7 +49,7 @@ void paper_contact(const PaperKernelInput<double>& in, const NeighbourList::Chun
 class PaperEngine : public BufferedEngine {
  public:
   std::unique_ptr<ContactEngine> copy() const override { return std::make_unique<PaperEngine>(*this); }
-  const PairRuns& runs() const { return runs_; }
+  const ElementSpans& spans() const { return spans_; }
   std::size_t bytes() const override;
   double step_bytes(const NeighbourList& list, std::size_t number) const override;
 
@@ -59,7 +59,7 @@ class PaperEngine : public BufferedEngine {
   void add_chunk(const ContactInput& in, const NeighbourList::Chunk& chunk, ContactBuffer<double>& out) override;
 
  private:
-  PairRuns runs_;
+  ElementSpans spans_;
   PaperElements<float> mixed_;
   PaperElements<double> full_;
 };

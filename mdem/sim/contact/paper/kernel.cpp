@@ -1,5 +1,5 @@
-// The paper law over runs of neighbours, for every instruction set that the compiler knows and in two precisions;
-// the machine's best is picked at run time. The runs of an element are copied one after another, so that the law
+// The paper law over spans of neighbours, for every instruction set that the compiler knows and in two precisions;
+// the machine's best is picked at run time. The spans of an element are copied one after another, so that the law
 // (model/contact/paper.hpp, vectorised by the compiler) meets full vectors however short they are. It is evaluated
 // in four loops: one alone is a chain of dependent operations so long that the processor cannot look ahead to the
 // next vector.
@@ -30,9 +30,9 @@ template <class T>
 struct alignas(64) Block {
   using C = typename PaperElements<T>::Coordinate;
   static constexpr std::size_t lanes = 16;  // pairs are filled up to a multiple of it
-  static constexpr std::size_t most = 192;
-  static constexpr std::size_t length = most + lanes;  // runs are copied in whole vectors, hence the room behind
-  static_assert(PairRuns::longest <= most);
+  static constexpr std::size_t capacity = 192;
+  static constexpr std::size_t length = capacity + lanes;  // spans are copied in whole vectors, hence the room behind
+  static_assert(ElementSpans::longest <= capacity);
 
   C x[3][length];  // places and axes of the neighbours
   T n[3][length];
@@ -56,16 +56,16 @@ struct Centre {
   T n[3];
 };
 
-HWY_INLINE std::size_t length_of(const PairRun& run) { return static_cast<std::size_t>(run.end - run.begin); }
+HWY_INLINE std::size_t length_of(const ElementSpan& span) { return static_cast<std::size_t>(span.end - span.begin); }
 
 template <class T>
-HWY_INLINE void copy_run(const PaperElements<T>& from, const PairRun& run, std::size_t at, Block<T>& to) {
+HWY_INLINE void copy_span(const PaperElements<T>& from, const ElementSpan& span, std::size_t at, Block<T>& to) {
   const hn::CappedTag<typename Block<T>::C, 8> dc;
   const hn::CappedTag<T, 8> dt;
-  const std::size_t lanes = hn::Lanes(dt), end = static_cast<std::size_t>(run.end);
+  const std::size_t lanes = hn::Lanes(dt), end = static_cast<std::size_t>(span.end);
   const auto *x = from.x.data(), *y = from.y.data(), *z = from.z.data();
   const auto *nx = from.nx.data(), *ny = from.ny.data(), *nz = from.nz.data();
-  for (auto j = static_cast<std::size_t>(run.begin); j < end; j += lanes, at += lanes) {
+  for (auto j = static_cast<std::size_t>(span.begin); j < end; j += lanes, at += lanes) {
     hn::StoreU(hn::LoadU(dc, x + j), dc, to.x[0] + at);
     hn::StoreU(hn::LoadU(dc, y + j), dc, to.x[1] + at);
     hn::StoreU(hn::LoadU(dc, z + j), dc, to.x[2] + at);
@@ -77,7 +77,7 @@ HWY_INLINE void copy_run(const PaperElements<T>& from, const PairRun& run, std::
 
 // The forces on the elements of a run, the first of them at `first` in the chunk.
 template <class T>
-HWY_INLINE void add_run(const Block<T>& s, std::size_t at, std::size_t count, std::size_t first, T* to,
+HWY_INLINE void add_span(const Block<T>& s, std::size_t at, std::size_t count, std::size_t first, T* to,
                         std::size_t stride) {
   const hn::CappedTag<T, 8> d;
   const std::size_t lanes = hn::Lanes(d);
@@ -241,22 +241,22 @@ HWY_NOINLINE void all_elements(const PaperKernelInput<T>& in, const NeighbourLis
   Block<T> s;
   const T unit = static_cast<T>(all.unit);
   const double far = 2 * in.law->cutoff() / all.unit;
-  const int first = chunk.touched_begin;
+  const int first = chunk.written_begin;
   for (int i = chunk.begin; i < chunk.end; ++i) {
-    const Span<PairRun> runs = in.runs->runs(i);
-    const PairRun* const end = runs.end();
+    const Span<ElementSpan> spans = in.spans->spans(i);
+    const ElementSpan* const end = spans.end();
     const Centre<T> centre{{all.x[i], all.y[i], all.z[i]}, {all.nx[i], all.ny[i], all.nz[i]}};
-    for (const PairRun *begin = runs.begin(), *run = begin; begin != end; begin = run) {
+    for (const ElementSpan *begin = spans.begin(), *span = begin; begin != end; begin = span) {
       std::size_t count = 0;
-      for (; run != end && count + length_of(*run) <= Block<T>::most; ++run) {
-        copy_run(all, *run, count, s);
-        count += length_of(*run);
+      for (; span != end && count + length_of(*span) <= Block<T>::capacity; ++span) {
+        copy_span(all, *span, count, s);
+        count += length_of(*span);
       }
       count = fill_up(s, count, centre, far);
       evaluate<Powers, legacy, energies>(law, s, count, centre, unit).add_to(out, i - first);
       std::size_t at = 0;
-      for (const PairRun* r = begin; r != run; ++r) {
-        add_run(s, at, length_of(*r), static_cast<std::size_t>(r->begin - first), on.all.data(), on.stride);
+      for (const ElementSpan* r = begin; r != span; ++r) {
+        add_span(s, at, length_of(*r), static_cast<std::size_t>(r->begin - first), on.all.data(), on.stride);
         at += length_of(*r);
       }
     }

@@ -10,19 +10,19 @@ namespace ropewalk {
 
 void BufferedEngine::list_damped(const ContactInput& in) {
   const Topology& topology = in.topology;
-  PairRuns near;
+  ElementSpans near;
   near.build(in.list, in.interaction.damping.contact.outer);
   damped_.clear();
   for (const NeighbourList::Chunk& chunk : in.list.chunks()) {
     DampedBlocks blocks;
     for (int i = chunk.begin; i < chunk.end; ++i) {
-      const TouchedRange own{i, std::min(chunk.end, topology.tube_begin[topology.tube_of(i) + 1]),
-                             -chunk.touched_begin};
-      for (const PairRun& run : near.runs(i))
-        for_tubes_of(topology, run, [&](int tube, int from, int to) {
+      const BufferRange own{i, std::min(chunk.end, topology.tube_begin[topology.tube_of(i) + 1]),
+                             -chunk.written_begin};
+      for (const ElementSpan& span : near.spans(i))
+        for_tubes_of(topology, span, [&](int tube, int from, int to) {
           blocks.add(i, own, from, to,
-                     {std::max(topology.tube_begin[tube], chunk.touched_begin),
-                      std::min(topology.tube_begin[tube + 1], chunk.touched_end), -chunk.touched_begin});
+                     {std::max(topology.tube_begin[tube], chunk.written_begin),
+                      std::min(topology.tube_begin[tube + 1], chunk.written_end), -chunk.written_begin});
         });
     }
     damped_.push_back(blocks.take());
@@ -49,7 +49,7 @@ void BufferedEngine::compute(const Topology& topology, const Interaction& intera
 #pragma omp parallel for schedule(dynamic, 1) if (parallel)
   for (std::size_t k = 0; k < list.chunks().size(); ++k) {
     const NeighbourList::Chunk& chunk = list.chunks()[k];
-    buffers_[k].clear(static_cast<std::size_t>(chunk.touched_end - chunk.touched_begin));
+    buffers_[k].clear(static_cast<std::size_t>(chunk.written_end - chunk.written_begin));
     add_chunk(in, chunk, buffers_[k]);
     if (interaction.damped_contact()) contact_damping(interaction.damping.contact, state, damped_[k], buffers_[k]);
   }
@@ -64,9 +64,9 @@ void BufferedEngine::add_to(int part, const ForceRows& out) const {
   for (std::size_t k = 0; k < list_->chunks().size(); ++k) {
     const auto& chunk = list_->chunks()[k];
     const ContactBuffer<double>& b = buffers_[k];
-    const int low = std::max(of.begin, chunk.touched_begin), high = std::min(of.end, chunk.touched_end);
+    const int low = std::max(of.begin, chunk.written_begin), high = std::min(of.end, chunk.written_end);
     for (int i = low; i < high; ++i) {
-      const auto at = static_cast<std::size_t>(i - chunk.touched_begin),
+      const auto at = static_cast<std::size_t>(i - chunk.written_begin),
                  to_row = static_cast<std::size_t>(i - out.origin);
       out.force.x[to_row] += b.fx[at];
       out.force.y[to_row] += b.fy[at];
@@ -100,7 +100,7 @@ std::size_t BufferedEngine::bytes() const {
 double BufferedEngine::step_bytes(const NeighbourList& list, std::size_t) const {
   double sum = 0;
   for (const NeighbourList::Chunk& chunk : list.chunks())
-    sum += buffer_bytes(chunk.touched_end - chunk.touched_begin, sizeof(double));
+    sum += buffer_bytes(chunk.written_end - chunk.written_begin, sizeof(double));
   return sum;
 }
 

@@ -32,7 +32,7 @@ class BufferedEngine : public ContactEngine {
   // After every build of the list, and before every sum; by one thread.
   virtual void update_list(const ContactInput&) {}
   virtual void prepare(const ContactInput&) {}
-  // Adds the pairs of a chunk to its buffer, whose first element is chunk.touched_begin; always with their
+  // Adds the pairs of a chunk to its buffer, whose first element is chunk.written_begin; always with their
   // energies.
   virtual void add_chunk(const ContactInput& in, const NeighbourList::Chunk& chunk, ContactBuffer<double>& out) = 0;
 

@@ -47,9 +47,9 @@ HWY_INLINE V dot(const Vec3<V>& a, const Vec3<V>& b) {
 }
 
 // Position, velocity and angular velocity of the elements in the lanes.
-template <class Place, class V>
+template <class Position, class V>
 struct Motion {
-  Vec3<Place> place;
+  Vec3<Position> position;
   Vec3<V> velocity, spin;
 };
 
@@ -78,7 +78,7 @@ HWY_INLINE void add_to(const Vec3<V>& v, std::ptrdiff_t at, std::vector<T>& x, s
 
 // Reads the state in double precision. Unused lanes are zero; they may lie outside of the state's arrays.
 struct Doubles {
-  using D = hn::CappedTag<double, DampedBlock::most>;
+  using D = hn::CappedTag<double, DampedBlock::max_lanes>;
   using V = hn::Vec<D>;
   const State& state;
   ContactBuffer<double>& out;
@@ -97,9 +97,9 @@ struct Doubles {
 
 // Reads the copies in single precision. Unused lanes hold other elements or arbitrary numbers.
 struct Floats {
-  using D = hn::CappedTag<float, DampedBlock::most>;
+  using D = hn::CappedTag<float, DampedBlock::max_lanes>;
   using V = hn::Vec<D>;
-  using Place = hn::Vec<hn::RebindToSigned<D>>;
+  using Position = hn::Vec<hn::RebindToSigned<D>>;
   const DampedElements& elements;
   ContactBuffer<float>& out;
   float unit;
@@ -110,13 +110,13 @@ struct Floats {
     return Vec3<hn::Vec<decltype(d)>>{hn::LoadU(d, x.data() + at), hn::LoadU(d, y.data() + at),
                                       hn::LoadU(d, z.data() + at)};
   }
-  HWY_INLINE Motion<Place, V> load(std::ptrdiff_t, std::ptrdiff_t entry, int, int) const {
+  HWY_INLINE Motion<Position, V> load(std::ptrdiff_t, std::ptrdiff_t entry, int, int) const {
     const DampedElements& e = elements;
     return {whole(e.x, e.y, e.z, entry), whole(e.vx, e.vy, e.vz, entry), whole(e.wx, e.wy, e.wz, entry)};
   }
-  HWY_INLINE Vec3<V> apart(const Vec3<Place>& j, const Vec3<Place>& i) const {
+  HWY_INLINE Vec3<V> apart(const Vec3<Position>& j, const Vec3<Position>& i) const {
     const D d;
-    const Vec3<Place> in_units = j - i;
+    const Vec3<Position> in_units = j - i;
     return hn::Set(d, unit) *
            Vec3<V>{hn::ConvertTo(d, in_units.x), hn::ConvertTo(d, in_units.y), hn::ConvertTo(d, in_units.z)};
   }
@@ -146,7 +146,7 @@ HWY_INLINE typename Of::V group_damping(const ContactViscosity& viscosity, const
       const int begin = std::max(0, b->partners.begin - at), end = std::min(lanes, b->partners.end - at);
       if (begin >= end) continue;
       const auto j = of.load(at, entry, begin, end);
-      const Vec3<V> apart = of.apart(j.place, i.place);
+      const Vec3<V> apart = of.apart(j.position, i.position);
       const Vec3<V> arm = half * apart;
       const Vec3<V> relative = j.velocity - i.velocity - cross(i.spin + j.spin, arm);
       const V k = hn::IfThenElseZero(some_lanes(d, begin, end), strength(d, viscosity, apart));
@@ -187,7 +187,7 @@ HWY_INLINE double all_groups(const ContactViscosity& viscosity, const Of& of,
 }
 
 // Of the elements of a part. Whole vectors, whose last lanes the next part's elements are stored over.
-HWY_INLINE void take(const State& s, const TouchedRange& of, double per_unit, DampedElements& e) {
+HWY_INLINE void take(const State& s, const BufferRange& of, double per_unit, DampedElements& e) {
   const hn::CappedTag<double, 8> d;
   const hn::Rebind<std::int32_t, decltype(d)> whole;
   const hn::Rebind<float, decltype(d)> floats;
@@ -196,12 +196,12 @@ HWY_INLINE void take(const State& s, const TouchedRange& of, double per_unit, Da
   for (int k = of.begin; k < of.end; k += lanes) {
     const int left = std::min(of.end - k, lanes), entry = k + of.shift;
     const auto some = [&](const std::vector<double>& v) HWY_ATTR { return load_some(d, v.data() + k, 0, left); };
-    const auto place = [&](const std::vector<double>& from, std::vector<std::int32_t>& to) HWY_ATTR {
+    const auto position = [&](const std::vector<double>& from, std::vector<std::int32_t>& to) HWY_ATTR {
       hn::StoreU(hn::DemoteTo(whole, hn::Mul(some(from), units)), whole, to.data() + entry);
     };
     const auto motion = [&](const std::vector<double>& from, std::vector<float>& to)
                             HWY_ATTR { hn::StoreU(hn::DemoteTo(floats, some(from)), floats, to.data() + entry); };
-    place(s.position.x, e.x), place(s.position.y, e.y), place(s.position.z, e.z);
+    position(s.position.x, e.x), position(s.position.y, e.y), position(s.position.z, e.z);
     motion(s.velocity.x, e.vx), motion(s.velocity.y, e.vy), motion(s.velocity.z, e.vz);
     motion(s.angular_velocity.x, e.wx), motion(s.angular_velocity.y, e.wy), motion(s.angular_velocity.z, e.wz);
   }
@@ -220,7 +220,7 @@ void BlocksInFloats(const ContactViscosity& viscosity, const State& state, const
   for (std::size_t k = 0; k < of.parts.size(); ++k) {
     if (k + ahead < of.parts.size())
       for (const Vec3Array* v : {&state.velocity, &state.angular_velocity})
-        ask_for(*v, of.parts[k + ahead].begin, of.parts[k + ahead].end);
+        prefetch(*v, of.parts[k + ahead].begin, of.parts[k + ahead].end);
     damping::take(state, of.parts[k], 1 / of.unit, e);
   }
   out.power += damping::all_groups(viscosity, damping::Floats{e, out, static_cast<float>(of.unit)}, of.blocks);
@@ -245,11 +245,11 @@ void contact_damping(const ContactViscosity& viscosity, const State& state, cons
   HWY_DYNAMIC_DISPATCH(BlocksInFloats)(viscosity, state, of, elements, out);
 }
 
-void DampedBlocks::add(int i, const TouchedRange& own, int from, int to, const TouchedRange& partners) {
+void DampedBlocks::add(int i, const BufferRange& own, int from, int to, const BufferRange& partners) {
   if (i >= first_ + lanes_) {
     finish_group();
     first_ = i;
-    lanes_ = std::min(DampedBlock::most, own.end - i);
+    lanes_ = std::min(DampedBlock::max_lanes, own.end - i);
     at_ = i + own.shift;
   }
   if (from < to) ranges_.push_back({from - i, to - i, partners});
@@ -257,15 +257,15 @@ void DampedBlocks::add(int i, const TouchedRange& own, int from, int to, const T
 
 void DampedBlocks::finish_group() {
   constexpr int worth_a_block = 3;  // so many offsets without a pair cost what another block does
-  std::sort(ranges_.begin(), ranges_.end(), [](const Range& a, const Range& b) {
+  std::sort(ranges_.begin(), ranges_.end(), [](const Offsets& a, const Offsets& b) {
     return std::tie(a.partners.begin, a.from) < std::tie(b.partners.begin, b.from);
   });
-  const auto add = [&](const Range& r) {
+  const auto add = [&](const Offsets& r) {
     blocks_.push_back(
         {first_, first_ + r.from, at_, static_cast<short>(lanes_), static_cast<short>(r.to - r.from), r.partners});
   };
   for (std::size_t k = 0; k < ranges_.size();) {
-    Range all = ranges_[k];
+    Offsets all = ranges_[k];
     for (++k; k < ranges_.size() && ranges_[k].partners.begin == all.partners.begin &&
               ranges_[k].from <= all.to + worth_a_block;
          ++k)

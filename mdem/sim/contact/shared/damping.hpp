@@ -15,16 +15,16 @@
 namespace ropewalk {
 
 // Of a chunk: consecutive elements of one tube that it acts on; element j is entry j + shift of its buffer.
-struct TouchedRange {
+struct BufferRange {
   int begin = 0, end = 0, shift = 0;
 };
 
 // The pairs (i + l, j + l + c) for l < lanes and c < offsets, if j + l + c is one of `partners`.
 struct DampedBlock {
-  static constexpr int most = 16;  // lanes of the widest vectors
+  static constexpr int max_lanes = 16;  // lanes of the widest vectors
   int i = 0, j = 0, at_i = 0;      // elements; i's entry in the buffer
   short lanes = 0, offsets = 0;
-  TouchedRange partners;
+  BufferRange partners;
 };
 
 // Collects the blocks of one chunk. A pair may be added once only. Blocks may include further pairs of the same two
@@ -32,18 +32,18 @@ struct DampedBlock {
 class DampedBlocks {
  public:
   // Elements from .. to - 1 are within reach of i, which is one of `own`. Elements i in rising order.
-  void add(int i, const TouchedRange& own, int from, int to, const TouchedRange& partners);
+  void add(int i, const BufferRange& own, int from, int to, const BufferRange& partners);
   std::vector<DampedBlock> take();
 
  private:
-  struct Range {
+  struct Offsets {
     int from, to;  // j - i
-    TouchedRange partners;
+    BufferRange partners;
   };
   void finish_group();
 
   int first_ = 0, lanes_ = 0, at_ = 0;  // elements of the group, and the first one's entry
-  std::vector<Range> ranges_;
+  std::vector<Offsets> ranges_;
   std::vector<DampedBlock> blocks_;
 };
 
@@ -53,15 +53,15 @@ struct DampedElements {
   std::vector<std::int32_t> x, y, z;
   std::vector<float> vx, vy, vz, wx, wy, wz;
 
-  void make_room(int elements) {
-    const auto entries = static_cast<std::size_t>(elements + DampedBlock::most);
+  void resize(int elements) {
+    const auto entries = static_cast<std::size_t>(elements + DampedBlock::max_lanes);
     for (auto* v : {&x, &y, &z}) set_size(*v, entries);
     for (auto* v : {&vx, &vy, &vz, &wx, &wy, &wz}) set_size(*v, entries);
   }
   std::size_t bytes() const { return 3 * x.capacity() * sizeof(x[0]) + 6 * vx.capacity() * sizeof(vx[0]); }
 };
 
-// With the widest vectors that the machine has. Added to what the buffer holds, of which up to DampedBlock::most
+// With the widest vectors that the machine has. Added to what the buffer holds, of which up to DampedBlock::max_lanes
 // entries before a part and behind the last one are read and written as they were.
 void contact_damping(const ContactViscosity& viscosity, const State& state, const std::vector<DampedBlock>& blocks,
                      ContactBuffer<double>& out);
@@ -69,7 +69,7 @@ void contact_damping(const ContactViscosity& viscosity, const State& state, cons
 // The blocks of a chunk, the ranges of their elements, and the unit of the integer positions (nm).
 struct DampedChunk {
   const std::vector<DampedBlock>& blocks;
-  const std::vector<TouchedRange>& parts;
+  const std::vector<BufferRange>& parts;
   double unit;
 };
 // The same in single precision.

@@ -2,24 +2,24 @@
 
 namespace ropewalk {
 
-void PairRuns::build(const NeighbourList& list, double reach) {
+void ElementSpans::build(const NeighbourList& list, double reach) {
   const Vec3Array& x = list.reference();
   const auto n = static_cast<int>(x.size());
   const double far = reach + list.skin, far2 = far * far;
   begin_.assign(x.size() + 1, 0);
-  run_.clear();
+  spans_.clear();
   for (int i = 0; i < n; ++i) {
     const Vector3 x_i = x[static_cast<std::size_t>(i)];
     list.for_neighbours(i, [&](int j) {
       if (!((x[static_cast<std::size_t>(j)] - x_i).squaredNorm() < far2)) return;
-      const bool any = run_.size() > begin_[static_cast<std::size_t>(i)];
-      if (any && run_.back().end == j && j - run_.back().begin < longest) {
-        ++run_.back().end;
+      const bool any = spans_.size() > begin_[static_cast<std::size_t>(i)];
+      if (any && spans_.back().end == j && j - spans_.back().begin < longest) {
+        ++spans_.back().end;
       } else {
-        run_.push_back({j, j + 1});
+        spans_.push_back({j, j + 1});
       }
     });
-    begin_[static_cast<std::size_t>(i) + 1] = run_.size();
+    begin_[static_cast<std::size_t>(i) + 1] = spans_.size();
   }
 }
 

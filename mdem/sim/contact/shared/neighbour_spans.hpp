@@ -10,19 +10,19 @@
 
 namespace ropewalk {
 
-class PairRuns {
+class ElementSpans {
  public:
   static constexpr int longest = 64;  // elements; longer spans are cut
   // Takes the pairs of the list that can come closer than `reach` (nm) before the next build of the list.
   void build(const NeighbourList& list, double reach);
 
-  Span<PairRun> runs(int i) const { return entries_of(i, begin_, run_); }
-  std::size_t count() const { return run_.size(); }
-  std::size_t bytes() const { return run_.capacity() * sizeof(PairRun) + begin_.capacity() * sizeof(std::size_t); }
+  Span<ElementSpan> spans(int i) const { return entries_of(i, begin_, spans_); }
+  std::size_t count() const { return spans_.size(); }
+  std::size_t bytes() const { return spans_.capacity() * sizeof(ElementSpan) + begin_.capacity() * sizeof(std::size_t); }
 
  private:
   std::vector<std::size_t> begin_;
-  std::vector<PairRun> run_;
+  std::vector<ElementSpan> spans_;
 };
 
 }  // namespace ropewalk
