@@ -16,8 +16,6 @@
 namespace ropewalk {
 namespace {
 
-constexpr double curvature_steps[] = {0.4, 0.6, 0.8, 1.0};  // fractions of the largest curvature
-
 // Relaxed displacements grow in proportion to the curvature, so the next start is the next affine bend with the
 // last displacements scaled: half of the steps of the minimiser are saved.
 std::string bend_commands(double curvature, double last, const std::string& results) {
@@ -53,16 +51,17 @@ long extra_hexagons(Chirality c, const TubeShape& shape, double length) {
 
 }  // namespace
 
-std::vector<AtomisticRow> bend_rows(RunContext& run, const RelaxedTube& tube, double largest_curvature) {
-  const long short_part = hexagons_in(run.c, tube.shape, run.options.short_length);
-  const long extra = extra_hexagons(run.c, tube.shape, run.options.long_length - run.options.short_length);
+std::vector<AtomisticRow> bend_rows(RunContext& run, const RelaxedTube& tube, const BendSeries& series) {
+  const long short_part = hexagons_in(run.c, tube.shape, series.short_length);
+  const long extra = extra_hexagons(run.c, tube.shape, series.long_length - series.short_length);
   std::string input = "# finite tubes, two lengths, bent step by step\n";
   std::vector<AtomisticRow> rows;
   for (const bool is_long : {false, true}) {
-    const std::string kind = is_long ? "bend-long" : "bend-short";
+    const std::string kind = series.name + (is_long ? "-long" : "-short");
     const FiniteTube finite(run.c, tube.shape, is_long ? short_part + extra : short_part, held_band(run.potential));
     write_data(run, kind + ".data", finite.data());
-    const std::string results = "print \"$(pe:%.15g) $(fnorm:%.6g)\" append bend.dat screen no\n";
+    const std::string results =
+        fmt::format("print \"$(pe:%.15g) $(fnorm:%.6g)\" append {}.dat screen no\n", series.name);
     input +=
         finite.commands(run.potential, kind + ".data") + "variable ftol equal 1e-3\n" + affine_bend_variables();
     input += "minimize 0.0 ${ftol} 2000 20000\n" + results;
@@ -73,15 +72,15 @@ std::vector<AtomisticRow> bend_rows(RunContext& run, const RelaxedTube& tube, do
     row.atoms = static_cast<int>(finite.atoms().size());
     rows.push_back(row);
     double last = 0;
-    for (const double step : curvature_steps) {
-      row.curvature = step * largest_curvature;
+    for (const double curvature : series.curvatures) {
+      row.curvature = curvature;
       input += bend_commands(row.curvature, last, results);
       last = row.curvature;
       rows.push_back(row);
     }
   }
-  run_stage(run, "bend", input);
-  const auto results = read_results(run, "bend", rows.size(), rows.size(), 2);
+  run_stage(run, series.name, input);
+  const auto results = read_results(run, series.name, rows.size(), rows.size(), 2);
   double straight = 0;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     if (rows[i].curvature == 0) straight = results[i][0];

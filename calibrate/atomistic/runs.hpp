@@ -40,18 +40,38 @@ struct CellResult {
 // Radius, length and inner shift of the untwisted tube at zero axial force.
 RelaxedTube relax_tube(RunContext& run);
 
-// Periods of the cells for stretch and twist: untwisted, and two twists of either sign.
-std::vector<LatticeVector> stretch_twist_periods(Chirality c, const Potential& potential,
-                                                 const StiffnessOptions& options);
+// Cells at all pairs of these strains and shears.
+struct CellGrid {
+  std::string name;                   // of the LAMMPS run and of the rows
+  std::vector<double> strains;        // in rising order
+  double largest_shear = 0;           // radius times twist
+  std::vector<double> parts_of_shear;  // the nearest twists that the lattice has
+};
+// The window of the harmonic constants: both signs of strain and of twist.
+CellGrid elastic_grid(const StiffnessOptions& options);
+// Up to the limits of the tube; both signs of twist for chiral tubes alone.
+CellGrid wide_grid(Chirality c, const Envelope& limits);
 
-// Cells over the windows of the options, strains and twists of both signs.
-std::vector<CellResult> stretch_twist_cells(RunContext& run, const RelaxedTube& start);
+// Periods of the cells of a grid.
+std::vector<LatticeVector> stretch_twist_periods(Chirality c, const Potential& potential,
+                                                 const StiffnessOptions& options, const CellGrid& grid);
+std::vector<CellResult> stretch_twist_cells(RunContext& run, const RelaxedTube& start, const CellGrid& grid);
 
 // The same cells relative to a reference tube.
-std::vector<AtomisticRow> stretch_twist_rows(const std::vector<CellResult>& cells, const RelaxedTube& tube);
+std::vector<AtomisticRow> stretch_twist_rows(const std::vector<CellResult>& cells, const RelaxedTube& tube,
+                                             const CellGrid& grid);
 
-// Short and long finite tubes bent to several curvatures.
-std::vector<AtomisticRow> bend_rows(RunContext& run, const RelaxedTube& tube, double largest_curvature);
+// Longer cells (nm) of one twist each, minimised with a little noise, so that the wall may collapse; rows
+// "collapse-twist". `shears`: radius times twist.
+std::vector<AtomisticRow> collapse_rows(RunContext& run, const RelaxedTube& tube, const std::vector<double>& shears);
+
+// Finite tubes of two lengths (nm) bent to these curvatures (1/nm); rows NAME-short and NAME-long.
+struct BendSeries {
+  std::string name;
+  double short_length = 0, long_length = 0;
+  std::vector<double> curvatures;
+};
+std::vector<AtomisticRow> bend_rows(RunContext& run, const RelaxedTube& tube, const BendSeries& series);
 
 // Incremental runs, which take minutes. Appends their rows.
 Envelope measured_envelope(RunContext& run, const RelaxedTube& tube, const Stiffness& stiffness,

@@ -57,7 +57,7 @@ void check_size(Chirality c, const Potential& potential, const StiffnessOptions&
   double atoms = (options.long_length + 2 * held_band(potential)) * atoms_per_length(c);
   // A rough bound first: the lattice vectors of a huge tube are many.
   if (atoms <= max_atoms)
-    for (const LatticeVector& period : stretch_twist_periods(c, potential, options))
+    for (const LatticeVector& period : stretch_twist_periods(c, potential, options, elastic_grid(options)))
       atoms = std::max(atoms, 2.0 * static_cast<double>(cell_hexagons(c, period)));
   if (atoms > max_atoms)
     throw bad_option("chirality",
@@ -85,6 +85,18 @@ void timed(double& seconds, const Work& work) {
   const auto start = std::chrono::steady_clock::now();
   work();
   seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+BendSeries elastic_bends(const StiffnessOptions& options, double curvature) {
+  return {"bend",
+          options.short_length,
+          options.long_length,
+          {0.4 * curvature, 0.6 * curvature, 0.8 * curvature, curvature}};
+}
+
+// Held ends keep a wide tube round, so that wide tubes need long specimens.
+BendSeries wide_bends(double radius, double kink) {
+  return {"wide-bend", std::max(6.0, 12 * radius), std::max(10.0, 20 * radius), {0.3 * kink, 0.5 * kink, 0.65 * kink, 0.75 * kink, 0.85 * kink}};
 }
 
 // Makes the tube that is free of force and torque according to the fit the new reference.
@@ -121,12 +133,13 @@ Stiffness measure_stiffness(Chirality c, const Potential& potential, const std::
   tell(fmt::format("relaxing ({},{}) with {}", c.n, c.m, potential.name));
   RelaxedTube tube = relax_tube(run);
   tell("stretching and twisting periodic cells");
-  const std::vector<CellResult> cells = stretch_twist_cells(run, tube);
+  const CellGrid grid = elastic_grid(options);
+  const std::vector<CellResult> cells = stretch_twist_cells(run, tube, grid);
   timed(out.fit_seconds, [&] {
     // Repeated, since each fit gives the reference tube of the next.
     for (int round = 0; round < 3; ++round) {
       const std::vector<std::string> warnings = out.warnings;
-      out.rows = stretch_twist_rows(cells, tube);
+      out.rows = stretch_twist_rows(cells, tube, grid);
       out.fit_report.clear();
       fit_stretch_twist(out.rows, out);
       if (round == 2) break;
@@ -141,8 +154,10 @@ Stiffness measure_stiffness(Chirality c, const Potential& potential, const std::
   tell("bending finite tubes");
   const double bend_strain =
       options.largest_bend_strain > 0 ? options.largest_bend_strain : default_bend_strain(tube.shape.radius);
-  const std::vector<AtomisticRow> bent = bend_rows(run, tube, bend_strain / tube.shape.radius);
-  out.rows.insert(out.rows.end(), bent.begin(), bent.end());
+  const auto add_rows = [&](const std::vector<AtomisticRow>& rows) {
+    out.rows.insert(out.rows.end(), rows.begin(), rows.end());
+  };
+  add_rows(bend_rows(run, tube, elastic_bends(options, bend_strain / tube.shape.radius)));
   timed(out.fit_seconds, [&] { fit_bend(out.rows, out); });
 
   out.energy_per_atom = 0.5 * tube.energy_per_hexagon;
@@ -155,6 +170,21 @@ Stiffness measure_stiffness(Chirality c, const Potential& potential, const std::
   if (options.envelope) {
     tell("looking for kink, collapse and buckling (minutes)");
     out.envelope = measured_envelope(run, tube, out, out.rows);
+  }
+  if (options.anharmonic) {
+    tell("stretching, twisting and bending up to the limits");
+    const CellGrid wide = wide_grid(c, out.envelope);
+    add_rows(stretch_twist_rows(stretch_twist_cells(run, tube, wide), tube, wide));
+    add_rows(bend_rows(run, tube, wide_bends(tube.shape.radius, kink)));
+    timed(out.fit_seconds, [&] { fit_anharmonic(out.rows, c, out); });
+    if (options.envelope) {
+      tell("twisting beyond the collapse (minutes)");
+      std::vector<double> shears;
+      for (const double part : {0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.2, 1.35, 1.5, 1.7, 1.9, 2.1})
+        shears.push_back(part * scaled_envelope(tube.shape.radius).twist_collapse.value);
+      add_rows(collapse_rows(run, tube, shears));
+      timed(out.fit_seconds, [&] { fit_collapse(out.rows, out); });
+    }
   }
   out.warnings.insert(out.warnings.end(), run.warnings.begin(), run.warnings.end());
   out.lammps_seconds = run.lammps_seconds;

@@ -3,6 +3,9 @@
 //   stretch and twist   E/L0 = EA/2 e^2 + C e s + GJ/2 s^2 + third and fourth order in (e, s)
 //   bend                (E_long - E_short)/(L_long - L_short) = EI/2 k^2 + k4 k^4
 //
+// These windows are narrow, for the constants of Hooke's law. The terms beyond it (mdem/model/anharmonic.hpp) come
+// from the same kinds of cells over a window that reaches to the limits of the tube, with these constants held.
+//
 // with the strain e and the twist s = t - natural twist, both per length L0 of the relaxed tube (t is the angle
 // between the ends of a cell over its relaxed length, whatever the strain), and the curvature k of the axis.
 //
@@ -23,6 +26,7 @@
 #include "atomistic/lammps.hpp"
 #include "atomistic/potential.hpp"
 #include "io/outputs.hpp"
+#include "model/anharmonic.hpp"
 #include "model/tube.hpp"
 
 namespace ropewalk {
@@ -55,6 +59,7 @@ struct StiffnessOptions {
   double largest_shear = 0.01;                // radius times twist
   double largest_bend_strain = 0;             // radius times curvature; 0: chosen
   double short_length = 6, long_length = 10;  // nm, bend
+  bool anharmonic = true;                     // also the wide windows of the terms beyond Hooke's law
   bool envelope = false;                      // incremental runs to the kink, the collapse and 1 % nonlinearity
   LammpsOptions lammps;
   std::function<void(const std::string&)> progress;  // one line per stage
@@ -69,6 +74,16 @@ struct Envelope {
   Measured linear_shear;      // radius times twist: torque 1 % off GJ s
   Measured linear_strain;     // tension or compression: force 1 % off EA e
   bool measured = false;      // false: from scaling rules
+};
+
+// Terms beyond Hooke's law, in the order of anharmonic_terms(), with the window of their fit.
+struct AnharmonicFit {
+  std::vector<Measured> terms;  // eV/nm; empty: not measured
+  double min_strain = 0, max_strain = 0, max_shear = 0, max_bend = 0;
+  double stretch_twist_error = 0, bend_error = 0;  // largest relative error of the energies in the window
+  double collapse_shear = 0, collapse_error = 0;   // largest shear beyond the collapse, and error there; 0: unknown
+
+  Anharmonic law(double radius, double coupling) const;
 };
 
 struct Stiffness {
@@ -87,6 +102,7 @@ struct Stiffness {
   Measured twist_cubic;            // eV nm^2, of s^3; zero but for chiral tubes
   Measured twist_quartic;          // eV nm^3, of s^4
   Measured bend_quartic;           // eV nm^3, of k^4
+  AnharmonicFit anharmonic;
   double surface_density() const;  // atoms per nm^2 of the relaxed shell
   Envelope envelope;
   std::vector<AtomisticRow> rows;
@@ -118,6 +134,13 @@ std::vector<AtomisticRow> read_atomistic_csv(const std::string& path, AtomisticO
 // InputError if there are too few rows.
 void fit_stretch_twist(std::vector<AtomisticRow>& rows, Stiffness& out);
 void fit_bend(std::vector<AtomisticRow>& rows, Stiffness& out);
+
+// The terms beyond Hooke's law, from the rows of the wide windows; EA, GJ, EI, the coupling and the natural twist in
+// `out` are held. It fills the residuals of its rows.
+void fit_anharmonic(std::vector<AtomisticRow>& rows, Chirality c, Stiffness& out);
+
+// The shear at which the torque stops rising, from rows "collapse-twist", which becomes the edge of the window.
+void fit_collapse(std::vector<AtomisticRow>& rows, Stiffness& out);
 
 // Replaces the 1 % limits of the envelope by limits from the anharmonic terms, if these are known.
 void limits_from_terms(const Stiffness& stiffness, Envelope& envelope);

@@ -13,7 +13,6 @@ namespace {
 
 constexpr double pi = units::pi;
 constexpr double skin = 0.04;  // nm; nothing moves far in these cells
-constexpr int strain_points = 7;
 
 // All atoms of a uniform cell are equivalent: the minimiser effectively varies three numbers (radius and inner
 // shift) and converges to rounding in some tens of steps.
@@ -125,6 +124,9 @@ void check_still_a_tube(const RunContext& run, double radius_ratio, double lengt
 
 constexpr double shortest_cell = 1.0;  // nm; three times any bonded cutoff, so that no atom meets its own image
 
+// A flattened, twisted ribbon needs a long cell to form.
+constexpr double collapse_cell = 9, longest_collapse_cell = 24;  // nm
+
 }  // namespace
 
 RelaxedTube relax_tube(RunContext& run) {
@@ -165,21 +167,34 @@ RelaxedTube relax_tube(RunContext& run) {
   return tube;
 }
 
+CellGrid elastic_grid(const StiffnessOptions& options) {
+  CellGrid grid{"stretch-twist", {}, options.largest_shear, {-1, -0.5, 0, 0.5, 1}};
+  for (int k = -3; k <= 3; ++k) grid.strains.push_back(options.largest_strain * k / 3);
+  return grid;
+}
+
+CellGrid wide_grid(Chirality c, const Envelope& limits) {
+  const double strain = limits.compression.value;
+  CellGrid grid{"wide-stretch-twist", {}, limits.twist_collapse.value, {0, 0.4, 0.7, 1}};
+  if (c.m > 0 && c.m < c.n) grid.parts_of_shear = {-1, -0.7, -0.4, 0, 0.4, 0.7, 1};
+  for (int k = -4; k <= 4; ++k) grid.strains.push_back(strain * k / 4);
+  return grid;
+}
+
 std::vector<LatticeVector> stretch_twist_periods(Chirality c, const Potential& potential,
-                                                 const StiffnessOptions& options) {
+                                                 const StiffnessOptions& options, const CellGrid& grid) {
   const double min_length = std::max({shortest_cell, 2 * potential.cutoff, options.cell_length});
   std::vector<LatticeVector> periods;
-  for (const double part : {-1.0, -0.5, 0.0, 0.5, 1.0})
+  for (const double part : grid.parts_of_shear)
     periods.push_back(part == 0
                           ? untwisted_cell(c, min_length)
-                          : cell_near(c, part * options.largest_shear, 0.1 * options.largest_shear, min_length));
+                          : cell_near(c, part * grid.largest_shear, 0.1 * grid.largest_shear, min_length));
   return periods;
 }
 
-std::vector<CellResult> stretch_twist_cells(RunContext& run, const RelaxedTube& start) {
+std::vector<CellResult> stretch_twist_cells(RunContext& run, const RelaxedTube& start, const CellGrid& grid) {
   const Chirality c = run.c;
-  const StiffnessOptions& options = run.options;
-  const std::vector<LatticeVector> periods = stretch_twist_periods(c, run.potential, options);
+  const std::vector<LatticeVector> periods = stretch_twist_periods(c, run.potential, run.options, grid);
 
   std::string input = "# relaxed cells: every twist (one cell each) at several strains\n";
   std::vector<CellResult> cells;
@@ -187,14 +202,13 @@ std::vector<CellResult> stretch_twist_cells(RunContext& run, const RelaxedTube& 
     const long hexagons = cell_hexagons(c, periods[k]);
     const double angle = -2 * pi * period_turns(c, periods[k]);
     const double free_length = static_cast<double>(hexagons) * start.shape.length_per_hexagon;
-    const std::string data = fmt::format("cell-{}.data", k);
-    for (int s = 0; s < strain_points; ++s) {
-      const double strain = options.largest_strain * (2.0 * s / (strain_points - 1) - 1.0);
+    const std::string data = fmt::format("{}-{}.data", grid.name, k);
+    for (const double strain : grid.strains) {
       CellResult cell;
       cell.hexagons = hexagons;
       cell.angle = angle;
       cell.length = free_length * (1 + strain);
-      if (s == 0) {
+      if (strain == grid.strains.front()) {
         TubeShape shape = start.shape;
         shape.length_per_hexagon *= 1 + strain;
         shape.radius *= 1 - start.contraction * strain;
@@ -210,12 +224,12 @@ std::vector<CellResult> stretch_twist_cells(RunContext& run, const RelaxedTube& 
             cell.length / angstrom, 1 - start.contraction * step);
       }
       input += "minimize 0.0 1e-5 300 3000\n";
-      input += report("stretch-twist", "$(pe:%.15g) $(fnorm:%.6g) $(lz:%.15g) $(c_rho:%.15g)");
+      input += report(grid.name, "$(pe:%.15g) $(fnorm:%.6g) $(lz:%.15g) $(c_rho:%.15g)");
       cells.push_back(cell);
     }
   }
-  run_stage(run, "stretch-twist", input);
-  const auto results = read_results(run, "stretch-twist", cells.size(), cells.size(), 4);
+  run_stage(run, grid.name, input);
+  const auto results = read_results(run, grid.name, cells.size(), cells.size(), 4);
   for (std::size_t i = 0; i < cells.size(); ++i) {
     cells[i].energy = results[i][0];
     cells[i].force = results[i][1] / angstrom;
@@ -225,11 +239,12 @@ std::vector<CellResult> stretch_twist_cells(RunContext& run, const RelaxedTube& 
   return cells;
 }
 
-std::vector<AtomisticRow> stretch_twist_rows(const std::vector<CellResult>& cells, const RelaxedTube& tube) {
+std::vector<AtomisticRow> stretch_twist_rows(const std::vector<CellResult>& cells, const RelaxedTube& tube,
+                                             const CellGrid& grid) {
   std::vector<AtomisticRow> rows;
   for (const CellResult& cell : cells) {
     AtomisticRow row;
-    row.kind = "stretch-twist";
+    row.kind = grid.name;
     row.length = static_cast<double>(cell.hexagons) * tube.shape.length_per_hexagon;
     row.strain = cell.length / row.length - 1;
     row.twist = cell.angle / row.length;
@@ -238,6 +253,52 @@ std::vector<AtomisticRow> stretch_twist_rows(const std::vector<CellResult>& cell
     row.radius = cell.radius;
     rows.push_back(row);
   }
+  return rows;
+}
+
+std::vector<AtomisticRow> collapse_rows(RunContext& run, const RelaxedTube& tube, const std::vector<double>& shears) {
+  const Chirality c = run.c;
+  const double radius = tube.shape.radius;
+  const std::vector<LatticeVector> periods =
+      twisted_periods(c, collapse_cell, longest_collapse_cell, 1.05 * shears.back() / radius);
+  const auto length_of = [&](const LatticeVector& v) {
+    return static_cast<double>(cell_hexagons(c, v)) * tube.shape.length_per_hexagon;
+  };
+  const auto twist_of = [&](const LatticeVector& v) { return -2 * pi * period_turns(c, v) / length_of(v); };
+  std::string input = "# twisted cells with a little noise, which may collapse\n";
+  std::vector<AtomisticRow> rows;
+  for (const double shear : shears) {
+    const auto cost = [&](const LatticeVector& v) {
+      const double off = std::abs(twist_of(v) * radius / shear - 1);
+      return off < 0.02 ? length_of(v) : 1e6 * off;
+    };
+    LatticeVector period = periods.front();
+    for (const LatticeVector& v : periods)
+      if (cost(v) < cost(period)) period = v;
+    AtomisticRow row;
+    row.kind = "collapse-twist";
+    row.length = length_of(period);
+    row.twist = twist_of(period);
+    row.atoms = static_cast<int>(2 * cell_hexagons(c, period));
+    if (!rows.empty() && row.twist == rows.back().twist) continue;  // no cell is twisted further
+    TubeShape shape = tube.shape;
+    shape.twist = row.twist;
+    const std::string data = fmt::format("collapse-{}.data", rows.size());
+    write_data(run, data, data_file(atoms_of(c, cell_hexagons(c, period), shape), radius + 1, 0, row.length));
+    input += header_commands("s s p", 0.05) + "read_data " + data + "\n";
+    for (const std::string& command : run.potential.commands) input += command + "\n";
+    input += fmt::format(
+        "min_style cg\nmin_modify dmax 0.05 line quadratic\nthermo 200\n"
+        "thermo_modify flush yes lost error norm no\n"
+        "displace_atoms all random 0.02 0.02 0.02 {} units box\nminimize 0.0 2e-4 6000 60000\n",
+        3001 + rows.size());
+    input += report("collapse", "$(pe:%.15g) $(fnorm:%.6g)");
+    rows.push_back(row);
+  }
+  run_stage(run, "collapse", input);
+  const auto results = read_results(run, "collapse", rows.size(), rows.size(), 2);
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    rows[i].energy = results[i][0] - 0.5 * rows[i].atoms * tube.energy_per_hexagon;
   return rows;
 }
 

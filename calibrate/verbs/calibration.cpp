@@ -79,6 +79,23 @@ void add_bond(const Calibration& c, Quantities& q) {
             "thin tube: GA = GJ/r^2, k by Cowper, J. Appl. Mech. 33, 335 (1966)");
 }
 
+void add_anharmonic(const Calibration& c, Quantities& q) {
+  const AnharmonicFit& fit = c.stiffness.anharmonic;
+  if (fit.terms.empty()) return;
+  q.section("bond.anharmonic");
+  for (std::size_t k = 0; k < fit.terms.size(); ++k)
+    q.calibrated(anharmonic_terms[k].key, scaled(fit.terms[k], units::eV_in_nN_nm), "nN", anharmonic_terms[k].meaning);
+  q.chosen("min_strain", fit.min_strain, "1", fmt::format("fit error {:.1e} of an energy", fit.stretch_twist_error));
+  q.chosen("max_strain", fit.max_strain, "1");
+  q.chosen("max_shear", fit.max_shear, "1",
+           fit.collapse_shear > 0
+               ? fmt::format("radius times twist; beyond it the torque is constant, within {:.1f} % up to {:.3g}",
+                             100 * fit.collapse_error, fit.collapse_shear)
+               : "radius times twist");
+  q.chosen("max_bend", fit.max_bend, "1",
+           fmt::format("radius times curvature, the kink; fit error {:.1e} of an energy", fit.bend_error));
+}
+
 void add_line(const Calibration& c, Quantities& q) {
   const LineDensity& d = c.line.density;
   const std::vector<double>& se = c.line.fit.standard_error;
@@ -293,6 +310,7 @@ ParameterSet parameter_set(const Calibration& c, const std::string& stiffness_fi
   Quantities q(set);
   add_tube(c, q);
   add_bond(c, q);
+  add_anharmonic(c, q);
   add_line(c, q);
   if (c.paper.fit.usable()) add_paper(c, q);
   add_atomistic(c, q);

@@ -133,6 +133,34 @@ class Reader {
     set_.bond.bend = quantity(t, "EI", "nN nm^2", stiffness) * units::nN_nm;
     set_.bond.twist = quantity(t, "GJ", "nN nm^2", stiffness) * units::nN_nm;
     if (t.has("kGA")) set_.bond.shear = quantity(t, "kGA", "nN", stiffness) * units::nN_nm;
+    if (t.has("anharmonic")) set_.anharmonic = read_anharmonic(t.table("anharmonic"));
+  }
+
+  Anharmonic read_anharmonic(const TomlTable& t) {
+    Anharmonic h;
+    h.used = true;
+    h.radius = set_.radius;
+    for (const AnharmonicTerm& term : anharmonic_terms)
+      h.*term.value = quantity(t, term.key, "nN", Bounds::range(-1e9, 1e9)) * units::nN_nm;
+    h.min_strain = quantity(t, "min_strain", "1", Bounds::range(-1, 0));
+    h.max_strain = quantity(t, "max_strain", "1", Bounds::range(0, 1));
+    h.max_shear = quantity(t, "max_shear", "1", Bounds::range(0, 1));
+    h.max_bend = quantity(t, "max_bend", "1", Bounds::range(0, 1));
+    check_anharmonic(t, h);
+    return h;
+  }
+
+  // A bond whose stiffness vanishes within the window would let its tube fall into pieces of two strains.
+  void check_anharmonic(const TomlTable& t, const Anharmonic& h) const {
+    const BondStiffness& k = set_.bond;
+    const auto stretch = [&](double e) { return k.stretch + 6 * h.e3 * e + 12 * h.e4 * e * e; };
+    const double r2 = h.radius * h.radius, s = h.max_shear, b = h.max_bend;
+    if (std::min(stretch(h.min_strain), stretch(h.max_strain)) <= 0)
+      throw t.error("e3", "and e4 leave no stiffness at the end of the window", "narrow min_strain and max_strain");
+    if (k.twist / r2 - 6 * std::fabs(h.s3) * s + 12 * h.s4 * s * s <= 0)
+      throw t.error("s4", "and s3 leave no stiffness at the end of the window", "narrow max_shear");
+    if (k.bend / r2 + 4 * h.b4 * b * b <= 0)
+      throw t.error("b4", "leaves no moment at the end of the window", "narrow max_bend");
   }
 
   PaperContact read_paper(const TomlTable& t) {
@@ -233,10 +261,15 @@ class Reader {
   }
 
   void read_atomistic() {
-    if (!top_.has("atomistic")) return;
+    if (!top_.has("atomistic")) {
+      if (set_.anharmonic)
+        throw top_.error("atomistic", "is missing", "[bond.anharmonic] needs the coupling that stands there");
+      return;
+    }
     const TomlTable t = top_.table("atomistic");
     quantity(t, "natural_twist", "rad/nm", Bounds::range(-10, 10));
-    quantity(t, "coupling", "nN nm", Bounds::range(-1e6, 1e6));
+    const double coupling = quantity(t, "coupling", "nN nm", Bounds::range(-1e6, 1e6)) * units::nN_nm;
+    if (set_.anharmonic) set_.anharmonic->coupling = coupling;
     quantity(t, "poisson", "1", Bounds::range(-1, 1));
     quantity(t, "energy_per_atom", "eV", Bounds::range(-100, 0));
   }

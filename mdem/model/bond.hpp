@@ -19,6 +19,15 @@
 // Limits: the torque of twist peaks at phi = 90 degrees and is zero at 180; beyond the peak a bond slips, and the
 // simulator stops before it does.
 //
+// The anharmonic bond has the energy per length of anharmonic.hpp, times a, and shear that a bond which is part of a
+// circle does not feel:
+//
+//   stretch, twist, bend   of the strain of the arc  e = D/a (1 + (1 - c)/12) - 1,
+//                          of the twist  tau = phi/a  and of the curvature  kappa = delta/a
+//   shear                  12 s EI/a (1 - cos psi),  cos psi = (t_i + t_j).d/|t_i + t_j|
+//
+// with the angles phi and delta themselves, so that its energy does not depend on the length of the elements.
+//
 // Units eV, nm. Net force and net torque vanish identically.
 // Source: V. A. Kuzkin, I. E. Asonov, Phys. Rev. E 86, 051301 (2012), DOI 10.1103/PhysRevE.86.051301.
 #pragma once
@@ -26,6 +35,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "model/anharmonic.hpp"
 #include "model/units.hpp"
 
 namespace ropewalk {
@@ -39,6 +49,7 @@ struct BondStiffness {
   double bend = 0;     // EI, eV nm
   double twist = 0;    // GJ, eV nm
   double shear = 0;    // kGA, eV/nm; 0: rigid in shear, as in the published model
+  Anharmonic anharmonic = {};
 
   // s of a bond of length a.
   double shear_share(double a) const { return shear > 0 ? 1 / (1 + 12 * bend / (shear * a * a)) : 1.0; }
@@ -72,8 +83,9 @@ struct BondForce {
   V torque_i, torque_j;  // about the element centres
 };
 
+// The bond of BondStiffness without its anharmonic part.
 template <class T, class V>
-BondEnergy<T> bond_energy(const BondStiffness& k, double a, const typename Frame<T, V>::Vector& separation,
+BondEnergy<T> harmonic_energy(const BondStiffness& k, double a, const typename Frame<T, V>::Vector& separation,
                           const Frame<T, V>& i, const Frame<T, V>& j) {
   using std::sqrt;
   const T length = sqrt(separation.dot(separation));
@@ -92,7 +104,7 @@ BondEnergy<T> bond_energy(const BondStiffness& k, double a, const typename Frame
 }
 
 template <class T, class V>
-BondForce<T, V> bond_energy_and_gradient(const BondStiffness& k, double a,
+BondForce<T, V> harmonic_force(const BondStiffness& k, double a,
                                          const typename Frame<T, V>::Vector& separation, const Frame<T, V>& i,
                                          const Frame<T, V>& j) {
   using std::sqrt;
@@ -104,7 +116,7 @@ BondForce<T, V> bond_energy_and_gradient(const BondStiffness& k, double a,
   const double b4 = k.twist / a;
 
   BondForce<T, V> out;
-  out.energy = bond_energy(k, a, separation, i, j);
+  out.energy = harmonic_energy(k, a, separation, i, j);
   const V s = i.t + j.t;
   out.force_j = -(k.stretch / a) * (length - a) * d + (0.5 * b2 / length) * (s - s.dot(d) * d);
   // For a body vector u with g = dU/du the torque is g x u.
@@ -116,10 +128,90 @@ BondForce<T, V> bond_energy_and_gradient(const BondStiffness& k, double a,
 
 // Twist angle of a bond in (-pi, pi], positive when frame j is turned against frame i by the right-hand rule
 // about the common axis; a bend of the axis does not enter.
-template <class T>
-T bond_twist_angle(const Frame<T>& i, const Frame<T>& j) {
+template <class T, class V>
+T bond_twist_angle(const Frame<T, V>& i, const Frame<T, V>& j) {
   using std::atan2;
   return atan2(i.e2.dot(j.e1) - i.e1.dot(j.e2), i.e1.dot(j.e1) + i.e2.dot(j.e2));
+}
+
+// delta^2 of cos delta = 1 - u, and its derivative: the series of arccos(1 - u)^2, within 3e-3 at 90 degrees and 1e-6
+// at 40.
+template <class T>
+T squared_angle(T u) {
+  return 2.0 * u * (1.0 + u * (1.0 / 6 + u * (2.0 / 45 + u * (1.0 / 70 + u * (8.0 / 1575)))));
+}
+template <class T>
+T squared_angle_slope(T u) {
+  return 2.0 * (1.0 + u * (2.0 / 6 + u * (6.0 / 45 + u * (4.0 / 70 + u * (40.0 / 1575)))));
+}
+
+template <class T, class V>
+BondForce<T, V> anharmonic_force(const BondStiffness& k, double a, const typename Frame<T, V>::Vector& separation,
+                                 const Frame<T, V>& i, const Frame<T, V>& j) {
+  using std::sqrt;
+  const T length = sqrt(separation.dot(separation));
+  const V d = separation / length;
+  const T u = (i.t - j.t).squaredNorm() * 0.5;
+  const T arc = 1.0 + u * (1.0 / 12);
+  const T strain = length * arc / a - 1.0, twist = bond_twist_angle(i, j) / a;
+  const T curvature2 = squared_angle(u) / (a * a);
+  const TwistEnergy<T> of_twist = twist_energy(k.anharmonic, k.twist, twist);
+  const StrainEnergy<T> of_strain = strain_energy(k.anharmonic, strain, twist);
+  const BendEnergy<T> of_bend = bend_energy(k.anharmonic, k.bend, curvature2);
+  const V sum = i.t + j.t;
+  const T sum_norm = sqrt(sum.dot(sum));
+  const V along = sum / sum_norm;
+  const T cos_psi = along.dot(d);
+  const double shear = 12.0 * k.shear_share(a) * k.bend / a;
+
+  // Of the energy: by the strain over the length, by the angle of twist, and by u.
+  const T pull = k.stretch * strain + of_strain.by_strain, moment = of_twist.by_twist + of_strain.by_twist;
+  const T by_u = of_bend.by_curvature2 * squared_angle_slope(u) / a + pull * length * (1.0 / 12);
+
+  BondForce<T, V> out;
+  out.energy.stretch = a * (0.5 * k.stretch * strain * strain + of_strain.energy);
+  out.energy.twist = a * of_twist.energy;
+  out.energy.bend = a * of_bend.energy;
+  out.energy.shear = 0.5 * shear * (along - d).squaredNorm();
+  out.force_j = (shear / length) * (along - cos_psi * d) - pull * arc * d;
+  const V bending = by_u * i.t.cross(j.t) + (moment / (2.0 - u)) * sum;
+  const V lean = (shear / sum_norm) * (d - cos_psi * along);
+  out.torque_i = bending - lean.cross(i.t);
+  out.torque_j = -bending - lean.cross(j.t);
+  return out;
+}
+
+template <class T, class V>
+BondForce<T, V> bond_energy_and_gradient(const BondStiffness& k, double a,
+                                         const typename Frame<T, V>::Vector& separation, const Frame<T, V>& i,
+                                         const Frame<T, V>& j) {
+  return k.anharmonic.used ? anharmonic_force(k, a, separation, i, j) : harmonic_force(k, a, separation, i, j);
+}
+
+template <class T, class V>
+BondEnergy<T> bond_energy(const BondStiffness& k, double a, const typename Frame<T, V>::Vector& separation,
+                          const Frame<T, V>& i, const Frame<T, V>& j) {
+  return k.anharmonic.used ? anharmonic_force(k, a, separation, i, j).energy
+                           : harmonic_energy(k, a, separation, i, j);
+}
+
+// The harmonic bond that is as stiff as an anharmonic one anywhere on the edges of its window, where it is stiffest:
+// each of its stiffnesses is a polynomial of second degree.
+inline BondStiffness stiffest_in_window(const BondStiffness& k) {
+  const Anharmonic& h = k.anharmonic;
+  BondStiffness out = k;
+  out.anharmonic = {};
+  if (!h.used) return out;
+  const double r2 = h.radius * h.radius;
+  for (const double e : {h.min_strain, h.max_strain})
+    for (const double s : {-h.max_shear, 0.0, h.max_shear}) {
+      out.stretch = std::fmax(out.stretch, k.stretch + 6 * h.e3 * e + 12 * h.e4 * e * e + 2 * s * h.e2s +
+                                               6 * e * s * h.e3s + 2 * s * s * h.e2s2);
+      out.twist = std::fmax(out.twist, k.twist + r2 * (2 * e * h.es2 + 2 * e * e * h.e2s2 + 6 * s * h.s3 +
+                                                       6 * e * s * h.es3 + 12 * s * s * h.s4));
+    }
+  out.bend = std::fmax(k.bend, k.bend + 12 * h.b4 * r2 * h.max_bend * h.max_bend);
+  return out;
 }
 
 // Entries, over the masses, of the stiffness matrix of an infinite straight chain for deflections u and rotations

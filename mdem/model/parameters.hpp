@@ -3,7 +3,9 @@
 //
 //   [meta]      format, name, chirality = [n, m], reference, doi
 //   [tube]      radius (nm), atoms_per_length (1/nm), element_length (nm, default discretisation)
-//   [bond]      EA (nN), EI (nN nm^2), GJ (nN nm^2)
+//   [bond]      EA (nN), EI (nN nm^2), GJ (nN nm^2); optional: kGA (nN)
+//   [bond.anharmonic]  optional: e3, e2s, es2, s3, e4, e3s, e2s2, es3, s4, b4 (nN), the terms of anharmonic.hpp, and
+//               min_strain, max_strain, max_shear, max_bend, the window in which they hold; needs [atomistic]
 //   [contact.paper]   present: the set has the `paper` law; epsilon (eV), A, B, alpha, beta, C1 .. C5,
 //               C_gamma, delta, freeze, switch_start, cutoff (all in units of the radius), core_gap
 //   [contact.line]    present: the set has the `line` law; epsilon (eV), sigma (nm), lj_cutoff (nm, 0: none) and
@@ -72,7 +74,8 @@ struct ParameterSet {
   double radius = 0;            // nm
   double atoms_per_length = 0;  // 1/nm
   double element_length = 0;    // nm
-  BondStiffness bond;           // eV/nm, eV nm
+  BondStiffness bond;           // eV/nm, eV nm; harmonic
+  std::optional<Anharmonic> anharmonic;
   std::optional<PaperContact> paper;
   std::optional<LineParameters> line;
   Validity validity;
@@ -82,6 +85,11 @@ struct ParameterSet {
   std::string hash;  // xxh64 of the file, hex
 
   double element_mass(double length) const { return atoms_per_length * length * units::carbon_mass; }
+  BondStiffness anharmonic_bond() const {
+    BondStiffness k = bond;
+    if (anharmonic) k.anharmonic = *anharmonic;
+    return k;
+  }
   // Isotropic inertia m r^2: exact about the tube axis; the transverse value of a thin tube,
   // m (r^2/2 + length^2/12), is 0.83 of it at length = 2 r. Published choice; no gyroscopic term.
   double element_inertia(double length) const { return element_mass(length) * radius * radius; }

@@ -28,6 +28,10 @@ struct StartOptions {
   std::uint64_t seed = 1;
 };
 
+struct BondOptions {
+  bool anharmonic = false;  // by the [bond.anharmonic] of the sets
+};
+
 struct ContactOptions {
   std::string law = "paper";  // of scene/laws/contact_law_kind.hpp, or "none"
   bool legacy_torque = false;
@@ -72,6 +76,7 @@ struct Scene {
   std::string kind;                // the table of its source: "rope"; empty where it was not read from a file
   std::shared_ptr<const Source> source;
   StartOptions start;
+  BondOptions bond;
   ContactOptions contact;
   Damping damping;
   std::vector<SceneLoad> loads;

@@ -15,7 +15,8 @@ Topology empty_topology(const Scene& scene) {
   for (const ParameterSet& set : scene.sets)
     t.types.push_back({scene.element_length, set.radius,
                        scene.run.mass_scale * set.element_mass(scene.element_length),
-                       scene.run.mass_scale * set.element_inertia(scene.element_length), set.bond});
+                       scene.run.mass_scale * set.element_inertia(scene.element_length),
+                       scene.bond.anharmonic ? set.anharmonic_bond() : set.bond});
   return t;
 }
 

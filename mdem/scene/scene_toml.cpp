@@ -72,6 +72,7 @@ std::string belongs_to(const std::string& key) {
 void read_tables(const TomlTable& top, Scene& scene) {
   read_source(top, scene);
   scene.start = start_table().read(top.table("start"), scene);
+  scene.bond = bond_table().read(top.table("bond"), scene);
   scene.contact = contact_table().read(top.table("contact"), scene);
   check_contact_law(top, scene);
   scene.damping = damping_table().read(top.table("damping"), scene);

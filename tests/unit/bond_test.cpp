@@ -36,11 +36,17 @@ BondForce<double> force(const BondPose& p, const BondStiffness& k = test::publis
   return bond_energy_and_gradient(k, test::element_length, p.separation, frame_of(p.qi), frame_of(p.qj));
 }
 
-class BondGradient : public ::testing::TestWithParam<bool> {};
-INSTANTIATE_TEST_SUITE_P(Shear, BondGradient, ::testing::Bool());
+enum class Form { published, shearing, anharmonic };
+BondStiffness bond_of(Form form) {
+  if (form == Form::anharmonic) return test::anharmonic_bond();
+  return form == Form::shearing ? shearing_bond() : test::published_bond();
+}
 
-TEST_P(BondGradient, IsForceAndTorques) {
-  const BondStiffness k = GetParam() ? shearing_bond() : test::published_bond();
+class BondForms : public ::testing::TestWithParam<Form> {};
+INSTANTIATE_TEST_SUITE_P(All, BondForms, ::testing::Values(Form::published, Form::shearing, Form::anharmonic));
+
+TEST_P(BondForms, ForceAndTorquesAreTheGradient) {
+  const BondStiffness k = bond_of(GetParam());
   const auto energy = [&](const BondPose& p) {
     return bond_energy(k, test::element_length, p.separation, frame_of(p.qi), frame_of(p.qj)).total();
   };
@@ -48,10 +54,11 @@ TEST_P(BondGradient, IsForceAndTorques) {
   for (int n = 0; n < 3000; ++n) {
     const BondPose p = random_pose(random, n % 2 ? 0.2 : 2.0);
     const BondForce<double> f = force(p, k);
-    const double tight = 1e-7 * std::max({f.force_j.norm(), f.torque_i.norm(), 1.0});
+    // The stiffness of the anharmonic bond jumps at the edges of its window.
+    const bool kinks = GetParam() == Form::anharmonic;
+    const double h = kinks ? 1e-6 : 1e-3, tight = (kinks ? 1e-5 : 1e-7) * std::max({f.force_j.norm(), f.torque_i.norm(), 1.0});
     for (int a = 0; a < 3; ++a) {
       const Vector3 e = Vector3::Unit(a);
-      const double h = 1e-3;
       const double fj = -derivative([&](double s) { return energy({p.separation + s * e, p.qi, p.qj}); }, h);
       const double ti = -derivative(
           [&](double s) {
@@ -70,17 +77,20 @@ TEST_P(BondGradient, IsForceAndTorques) {
   }
 }
 
-TEST(Bond, NetTorqueVanishes) {
+TEST_P(BondForms, NetTorqueVanishes) {
+  const BondStiffness k = bond_of(GetParam());
   Random random(4);
   for (int n = 0; n < 1000; ++n) {
     const BondPose p = random_pose(random, 1.5);
-    const BondForce<double> f = force(p);
+    const BondForce<double> f = force(p, k);
     ASSERT_LT((f.torque_i + f.torque_j + p.separation.cross(f.force_j)).norm(),
               1e-12 * (f.torque_i.norm() + f.torque_j.norm() + 10 * f.force_j.norm() + 1e4));
   }
 }
 
-TEST(Bond, FrameRotationAndSwap) {
+TEST_P(BondForms, FrameRotationAndSwap) {
+  const BondStiffness k = bond_of(GetParam());
+  const auto energy = [&](const BondPose& p) { return ropewalk::energy(p, k); };
   Random random(5);
   for (int n = 0; n < 500; ++n) {
     const BondPose p = random_pose(random, 1.0);
@@ -90,6 +100,56 @@ TEST(Bond, FrameRotationAndSwap) {
     const Quaternion back(0, 1, 0, 0);
     EXPECT_NEAR(energy({-p.separation, p.qj * back, p.qi * back}), energy(p), 1e-9 * (1 + energy(p)));
   }
+}
+
+// Strain, twist and curvature at once: a piece of a uniform rod has the energy of the header's W, whatever the
+// elements' length; and where all are small, Hooke's.
+TEST(AnharmonicBond, EnergyPerLengthIsThatOfTheRod) {
+  const BondStiffness k = test::anharmonic_bond();
+  const Anharmonic& h = k.anharmonic;
+  const auto per_length = [&](double a, double e, double t, double kappa) {
+    const double turn = kappa * a, chord = turn > 0 ? 2 / kappa * std::sin(0.5 * turn) : a;
+    const Quaternion half = test::turn(Vector3::UnitY(), 0.5 * turn);
+    const Quaternion i = half.conjugate(), j = half * test::turn(Vector3::UnitZ(), t * a);
+    return bond_energy<double>(k, a, Vector3(0, 0, (1 + e) * chord), frame_of(i), frame_of(j)).total() / a;
+  };
+  const auto rod = [&](double e, double t, double kappa) {
+    const double s = h.radius * t, b = h.radius * kappa;
+    return 0.5 * k.stretch * e * e + h.coupling * e * t + 0.5 * k.twist * t * t + 0.5 * k.bend * kappa * kappa +
+           h.s3 * s * s * s + h.s4 * std::pow(s, 4) + h.e3 * e * e * e + h.e2s * e * e * s + h.es2 * e * s * s + h.e4 * std::pow(e, 4) +
+           h.e3s * e * e * e * s + h.e2s2 * e * e * s * s + h.es3 * e * s * s * s + h.b4 * std::pow(b, 4);
+  };
+  for (const auto& [e, t, kappa] : {std::array{0.05, 0.0, 0.0}, std::array{-0.05, 0.0, 0.0},
+                                    std::array{0.0, 0.03, 0.0}, std::array{0.0, 0.06, 0.0}, std::array{0.0, -0.06, 0.0},
+
+                                    std::array{0.0, 0.0, 0.08}, std::array{0.03, 0.05, 0.06},
+                                    std::array{-0.04, -0.05, 0.05}})
+    for (const double a : {0.7, 1.36, 2.7})
+      EXPECT_NEAR(per_length(a, e, t, kappa) / rod(e, t, kappa), 1, 1e-4) << a << " " << e << " " << t << " " << kappa;
+}
+
+// Beyond the window the energy still rises, with continuous forces.
+TEST(AnharmonicBond, GoesOnBeyondItsWindow) {
+  const BondStiffness k = test::anharmonic_bond();
+  const Frame<double> rest = frame_of(Quaternion::Identity());
+  const double a = 1.36;
+  const auto stretched = [&](double e) {
+    return bond_energy_and_gradient<double>(k, a, Vector3(0, 0, a * (1 + e)), rest, rest);
+  };
+  const auto bent = [&](double b) {
+    const Quaternion half = test::turn(Vector3::UnitY(), 0.5 * a * b / k.anharmonic.radius);
+    return bond_energy_and_gradient<double>(k, a, Vector3(0, 0, a), frame_of(half.conjugate()), frame_of(half));
+  };
+  double last_pull = 0, last_moment = 0;
+  for (double x = 0.005; x < 0.6; x += 0.005) {
+    const double pull = -stretched(x).force_j.z(), moment = -bent(x).torque_j.y();
+    EXPECT_GT(pull, last_pull) << x;
+    EXPECT_GT(moment, last_moment) << x;
+    EXPECT_GT(stretched(-x).force_j.z(), 0);
+    last_pull = pull, last_moment = moment;
+  }
+  for (const double edge : {k.anharmonic.min_strain, k.anharmonic.max_strain})
+    EXPECT_NEAR(stretched(edge - 1e-9).force_j.z(), stretched(edge + 1e-9).force_j.z(), 1e-3);
 }
 
 // The parts and the published combination B1 .. B4 are one energy.

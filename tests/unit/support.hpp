@@ -50,6 +50,19 @@ inline BondStiffness published_bond() {
   return {1470.0 * units::nN_nm, 358.4 * units::nN_nm, 319.5 * units::nN_nm};
 }
 
+// Every term is there, as for a chiral tube; the window is narrow enough to be left by single bonds.
+inline BondStiffness anharmonic_bond() {
+  BondStiffness k{9480, 2260, 2060, 1715};
+  Anharmonic& h = k.anharmonic;
+  h.used = true;
+  h.radius = 0.69;
+  h.coupling = 40;
+  h.e3 = -7000, h.e2s = 500, h.es2 = 3000, h.s3 = 400;
+  h.e4 = -6000, h.e3s = 900, h.e2s2 = -8000, h.es3 = 700, h.s4 = -4000, h.b4 = -80000;
+  h.min_strain = -0.06, h.max_strain = 0.08, h.max_shear = 0.05, h.max_bend = 0.06;
+  return k;
+}
+
 inline Topology published_topology() {
   Topology t;
   const double mass = 220 * units::carbon_mass, radius = 0.678;

@@ -15,6 +15,7 @@ inline constexpr double longest_time = 1e7;  // ps, that a key may name
 // `copies`: files to be read in the place of the sets that the scene names, where there are any.
 KeyTable<Scene> top_table(const std::vector<std::string>& copies);
 const KeyTable<StartOptions>& start_table();
+const KeyTable<BondOptions>& bond_table();
 const KeyTable<ContactOptions>& contact_table();
 const KeyTable<Damping>& damping_table();
 const KeyTable<ThermostatOptions>& thermostat_table();

@@ -184,7 +184,9 @@ double stable_step(const std::vector<Wave>& waves, double before) {
 
 }  // namespace
 
-TimeStepLimit time_step_limit(const Topology& topology, const Interaction& in, double spacing) {
+TimeStepLimit time_step_limit(const Topology& given, const Interaction& in, double spacing) {
+  Topology topology = given;
+  for (TubeType& t : topology.types) t.bond = stiffest_in_window(t.bond);
   TimeStepLimit out;
   const auto raise = [](double& value, double to) { value = std::max(value, to); };
   for (const TubeType& t : topology.types) {

@@ -32,11 +32,12 @@ struct BondRange {
 };
 
 // Returns their energies; `slips` becomes negative where a bond does.
-ROPEWALK_VECTOR_CLONES __attribute__((flatten)) BondEnergy<double> bond_forces(const TubeType& type,
-                                                                               const Vec3Array& position,
-                                                                               const FrameArray& frames,
-                                                                               const BondRange& bonds,
-                                                                               BondArray& out, double& slips) {
+template <bool anharmonic>
+__attribute__((always_inline)) inline BondEnergy<double> bond_forces(const TubeType& type,
+                                                                     const Vec3Array& position,
+                                                                     const FrameArray& frames,
+                                                                     const BondRange& bonds, BondArray& out,
+                                                                     double& slips) {
   const std::ptrdiff_t begin = bonds.begin, from = bonds.from, to = bonds.to;
   const double *x = position.x.data() + begin, *y = position.y.data() + begin, *z = position.z.data() + begin;
   const Vec3Array &e1 = frames.e1, &e2 = frames.e2, &t = frames.t;
@@ -54,8 +55,9 @@ ROPEWALK_VECTOR_CLONES __attribute__((flatten)) BondEnergy<double> bond_forces(c
     const std::ptrdiff_t j = i + 1;
     const Frame<double, PlainVector> fi{{ax[i], ay[i], az[i]}, {bx[i], by[i], bz[i]}, {tx[i], ty[i], tz[i]}};
     const Frame<double, PlainVector> fj{{ax[j], ay[j], az[j]}, {bx[j], by[j], bz[j]}, {tx[j], ty[j], tz[j]}};
+    const PlainVector separation{x[j] - x[i], y[j] - y[i], z[j] - z[i]};
     const BondForce<double, PlainVector> f =
-        bond_energy_and_gradient(k, a, {x[j] - x[i], y[j] - y[i], z[j] - z[i]}, fi, fj);
+        anharmonic ? anharmonic_force(k, a, separation, fi, fj) : harmonic_force(k, a, separation, fi, fj);
     fx[i] = f.force_j.x, fy[i] = f.force_j.y, fz[i] = f.force_j.z;
     ix[i] = f.torque_i.x, iy[i] = f.torque_i.y, iz[i] = f.torque_i.z;
     jx[i] = f.torque_j.x, jy[i] = f.torque_j.y, jz[i] = f.torque_j.z;
@@ -67,6 +69,18 @@ ROPEWALK_VECTOR_CLONES __attribute__((flatten)) BondEnergy<double> bond_forces(c
   }
   slips = smallest;
   return {stretch, shear, bend, twist};
+}
+
+ROPEWALK_VECTOR_CLONES __attribute__((flatten)) BondEnergy<double> harmonic_forces(
+    const TubeType& type, const Vec3Array& position, const FrameArray& frames, const BondRange& bonds,
+    BondArray& out, double& slips) {
+  return bond_forces<false>(type, position, frames, bonds, out, slips);
+}
+
+ROPEWALK_VECTOR_CLONES __attribute__((flatten)) BondEnergy<double> anharmonic_forces(
+    const TubeType& type, const Vec3Array& position, const FrameArray& frames, const BondRange& bonds,
+    BondArray& out, double& slips) {
+  return bond_forces<true>(type, position, frames, bonds, out, slips);
 }
 
 // Adds the damping of these bonds; returns its power.
@@ -116,7 +130,8 @@ BondSum bonds_of(const BondInput& in, int tube, const BondRange& range, TubeBond
   const TubeType& type = in.topology.type_of(tube);
   BondSum sum;
   double slips = 1;
-  sum.energy = bond_forces(type, in.state.position, work.frames, range, work.bonds, slips);
+  const auto forces = type.bond.anharmonic.used ? anharmonic_forces : harmonic_forces;
+  sum.energy = forces(type, in.state.position, work.frames, range, work.bonds, slips);
   for (std::ptrdiff_t i = range.from; !(slips > 0) && i < range.to && sum.slipping < 0; ++i) {
     const Frame<double> fi = work.frames[static_cast<std::size_t>(i)],
                         fj = work.frames[static_cast<std::size_t>(i + 1)];

@@ -41,14 +41,14 @@ void MdSession::write(const std::string& name, const std::string& content) {
 }
 
 std::vector<std::vector<double>> MdSession::run(const std::string& name, const std::string& input, std::size_t rows,
-                                                std::size_t columns) {
+                                                std::size_t columns, std::size_t min_rows) {
   progress("LAMMPS: " + name);
   fs::remove(fs::path(folder_) / (name + ".dat"));  // it is appended to
   RunContext context = context_of({}, folder_);
   run_stage(context, name, input);
   inputs_ += input;
   seconds_ += context.lammps_seconds;
-  return read_results(context, name, rows, rows, columns);
+  return read_results(context, name, min_rows > 0 ? min_rows : rows, rows, columns);
 }
 
 ReferenceTable MdSession::table(const std::string& title, const std::string& case_name, bool contact,

@@ -34,9 +34,10 @@ class MdSession {
   RelaxedTube relaxed(Chirality c);
 
   void write(const std::string& name, const std::string& content);
-  // Runs an input that appends `rows` lines of `columns` numbers to name.dat.
+  // Runs an input that appends `rows` lines of `columns` numbers to name.dat, or at least `min_rows` of them if that
+  // is given.
   std::vector<std::vector<double>> run(const std::string& name, const std::string& input, std::size_t rows,
-                                       std::size_t columns);
+                                       std::size_t columns, std::size_t min_rows = 0);
 
   // An empty table with its origin; call it after the runs. `contact`: the Lennard-Jones law was used.
   ReferenceTable table(const std::string& title, const std::string& case_name, bool contact,

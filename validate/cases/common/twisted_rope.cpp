@@ -74,6 +74,7 @@ void add_checks(const TwistedRope& rope, const Series& series, CaseResult& resul
 // The same rope with Euler-Bernoulli bonds, as in the published model, shows the effect of shear.
 void add_shear_information(const TwistedRope& rope, ParameterSet set, const Series& series, CaseResult& result) {
   set.bond.shear = 0;
+  set.anharmonic.reset();
   const Series rigid{series.grips, series.atoms, twist_elements(rope, set, series.grips == "free"), 0};
   const auto last = static_cast<std::size_t>(rope.elastic_increments);
   for (const std::size_t k : std::array{last / 3, 2 * last / 3, last}) {
