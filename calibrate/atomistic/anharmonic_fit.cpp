@@ -160,7 +160,7 @@ void fit_collapse(std::vector<AtomisticRow>& table, Stiffness& out) {
   options.starts = 2;
   const FitResult found = fit_least_squares({{"edge", 0.8, 0.2, 2, true}}, rows.size(), residuals, options);
   if (!found.usable()) {
-    out.warnings.push_back("the collapse: " + found.message + "; the torque is constant beyond the window of the fit");
+    out.warnings.push_back("the collapse: " + found.message + "; the rule for endless tubes stays");
     return;
   }
   std::vector<double> left(rows.size());
@@ -169,12 +169,12 @@ void fit_collapse(std::vector<AtomisticRow>& table, Stiffness& out) {
     fit.collapse_error = std::max(fit.collapse_error, std::abs(left[i]));
     rows[i]->residual = -left[i] * rows[i]->energy;
   }
-  fit.max_shear = law.max_shear;
   fit.collapse_shear = largest;
+  out.envelope.endless_collapse = {law.max_shear, found.standard_error[0] * fit.max_shear};
   out.fit_report +=
       fmt::format("collapse: torque constant beyond a shear of {:.4g}; {} cells up to {:.3g}: largest error {:.2g} of "
                   "an energy; {}\n",
-                  fit.max_shear, rows.size(), largest, fit.collapse_error, found.message);
+                  law.max_shear, rows.size(), largest, fit.collapse_error, found.message);
 }
 
 }  // namespace ropewalk

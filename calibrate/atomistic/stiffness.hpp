@@ -68,7 +68,8 @@ struct StiffnessOptions {
 // Limits beyond which the model no longer describes the tube.
 struct Envelope {
   Measured kink_curvature;    // 1/nm
-  Measured twist_collapse;    // radius times twist
+  Measured twist_collapse;    // radius times twist, of 12 nm between held ends
+  Measured endless_collapse;  // the same of an endless tube
   Measured compression;       // strain
   Measured linear_curvature;  // 1/nm: bending moment 1 % off EI k
   Measured linear_shear;      // radius times twist: torque 1 % off GJ s
@@ -139,7 +140,7 @@ void fit_bend(std::vector<AtomisticRow>& rows, Stiffness& out);
 // `out` are held. It fills the residuals of its rows.
 void fit_anharmonic(std::vector<AtomisticRow>& rows, Chirality c, Stiffness& out);
 
-// The shear at which the torque stops rising, from rows "collapse-twist", which becomes the edge of the window.
+// The shear at which the torque stops rising, from rows "collapse-twist", as that of an endless tube into the envelope.
 void fit_collapse(std::vector<AtomisticRow>& rows, Stiffness& out);
 
 // Replaces the 1 % limits of the envelope by limits from the anharmonic terms, if these are known.

@@ -87,11 +87,7 @@ void add_anharmonic(const Calibration& c, Quantities& q) {
     q.calibrated(anharmonic_terms[k].key, scaled(fit.terms[k], units::eV_in_nN_nm), "nN", anharmonic_terms[k].meaning);
   q.chosen("min_strain", fit.min_strain, "1", fmt::format("fit error {:.1e} of an energy", fit.stretch_twist_error));
   q.chosen("max_strain", fit.max_strain, "1");
-  q.chosen("max_shear", fit.max_shear, "1",
-           fit.collapse_shear > 0
-               ? fmt::format("radius times twist; beyond it the torque is constant, within {:.1f} % up to {:.3g}",
-                             100 * fit.collapse_error, fit.collapse_shear)
-               : "radius times twist");
+  q.chosen("max_shear", fit.max_shear, "1", "radius times twist");
   q.chosen("max_bend", fit.max_bend, "1",
            fmt::format("radius times curvature, the kink; fit error {:.1e} of an energy", fit.bend_error));
 }
@@ -168,6 +164,14 @@ void add_validity(const Calibration& c, Quantities& q) {
   add("kink_curvature", e.kink_curvature, "1/nm");
   add("twist_collapse", e.twist_collapse, "1");
   add("stretch", e.compression, "1");
+  const AnharmonicFit& fit = c.stiffness.anharmonic;
+  if (fit.collapse_shear > 0)
+    q.calibrated("endless_collapse", e.endless_collapse, "1",
+                 fmt::format("of an endless tube, whose torque is constant beyond it, within {:.1f} % of the energy up to "
+                             "{:.3g}",
+                             100 * fit.collapse_error, fit.collapse_shear));
+  else
+    q.derived("endless_collapse", e.endless_collapse, "1", "scaling rule; --envelope measures it");
   const std::string terms = "from the anharmonic terms of the fit";
   const auto limit = [&](const char* key, const Measured& m, const char* unit) {
     if (m.value > 0) q.derived(key, m, unit, e.measured ? note : terms);

@@ -100,7 +100,7 @@ ReportInput gather(const RunDirectory& dir, const Scene& scene, const Prepared& 
   in.element_length = p.topology.longest_element();
   in.tubes = p.topology.tubes();
   in.bonds = p.topology.bonds();
-  in.validity = scene.parameters().validity;
+  in.validity = validities(scene, p.topology).front();
   if (std::filesystem::exists(dir.limits())) in.watched = read_limits(dir.limits());
   const Observer observer = make_observer(scene, p);
   in.shells = observer.shells;

@@ -278,6 +278,8 @@ class Reader {
     set_.validity.kink_curvature = quantity(t, "kink_curvature", "1/nm", Bounds::positive(1e3));
     set_.validity.twist_collapse = quantity(t, "twist_collapse", "1", Bounds::positive(10));
     set_.validity.stretch = quantity(t, "stretch", "1", Bounds::positive(1));
+    if (t.has("endless_collapse"))
+      set_.validity.endless_collapse = quantity(t, "endless_collapse", "1", Bounds::positive(10));
     if (t.has("linear_curvature")) quantity(t, "linear_curvature", "1/nm", Bounds::positive(1e3));
     if (t.has("linear_twist")) quantity(t, "linear_twist", "1", Bounds::positive(10));
     if (t.has("linear_stretch")) quantity(t, "linear_stretch", "1", Bounds::positive(1));

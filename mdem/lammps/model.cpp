@@ -23,6 +23,7 @@ LammpsModel load_lammps_model(const std::string& directory) {
     throw InputError({dir.scene(), 0, "thermostat"}, "is not for LAMMPS", "run this scene with `ropewalk run`");
   m.topology = empty_topology(scene);
   read_tubes(dir, m.topology);
+  set_collapse(scene, m.topology);
   m.interaction = interaction_of(scene);
   m.loads = loads_of(scene, m.topology);
   m.law = scene.contact.law;

@@ -16,13 +16,15 @@
 //               { values = [6 numbers], standard_errors = [6 numbers] }, and error
 //   [atomistic] optional: natural_twist (rad/nm), coupling (nN nm), poisson, energy_per_atom (eV)
 //   [validity]  kink_curvature (1/nm), twist_collapse (r tau), stretch (strain): limits of the model; optional:
-//               linear_curvature, linear_twist, linear_stretch: where a stiffness is 1 % off
+//               endless_collapse (r tau), linear_curvature, linear_twist, linear_stretch: where a stiffness is 1 % off
 //   [provenance] optional strings: what the set was made from and by
 //
 // Every number is an inline table { value, unit, standard_error, origin, doi, note }. The unit must be the one
 // above; standard_error is a number or "not published"; doi may be left out where origin is not "published".
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
 #include <string>
 #include <utility>
@@ -51,8 +53,18 @@ struct Quantity {
 // Beyond these the rigid-element model is no longer the tube.
 struct Validity {
   double kink_curvature = 0;  // 1/nm
-  double twist_collapse = 0;  // radius times twist per length
+  double twist_collapse = 0;  // radius times twist per length: of a tube of 12 nm between held ends
   double stretch = 0;         // strain, tension or compression
+  double endless_collapse = 0;  // twist_collapse of an endless tube; 0: not known
+
+  // twist_collapse of a tube of radius r and length L between held ends, which keep it round:
+  //   c (1 + 3 (r/L)^(3/4)),   c = endless_collapse, at most that of 12 nm.
+  // Fitted to (5,5), (10,10) and (15,15) of 12 to 94 nm (Tersoff); within 6 %.
+  double collapse_at(double radius, double length) const {
+    if (!(endless_collapse > 0)) return twist_collapse;
+    const double held = length > 0 ? 3 * std::pow(radius / length, 0.75) : 0;
+    return std::min(twist_collapse, endless_collapse * (1 + held));
+  }
 };
 
 // The `line` law of a set, with what it was integrated from.
@@ -85,9 +97,13 @@ struct ParameterSet {
   std::string hash;  // xxh64 of the file, hex
 
   double element_mass(double length) const { return atoms_per_length * length * units::carbon_mass; }
-  BondStiffness anharmonic_bond() const {
+  // The anharmonic bond where the set has one, of tubes of this length (nm; 0: endless), which collapse at
+  // validity.collapse_at.
+  BondStiffness anharmonic_bond(double tube_length) const {
     BondStiffness k = bond;
-    if (anharmonic) k.anharmonic = *anharmonic;
+    if (!anharmonic) return k;
+    k.anharmonic = *anharmonic;
+    k.anharmonic.max_shear = std::min(anharmonic->max_shear, validity.collapse_at(radius, tube_length));
     return k;
   }
   // Isotropic inertia m r^2: exact about the tube axis; the transverse value of a thin tube,

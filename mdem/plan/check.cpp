@@ -84,6 +84,7 @@ Model finer_model(const Model& planned, bool half) {
   for (int t = 0; t < planned.topology.tubes(); ++t)
     m.topology.add_tube(half ? 2 * planned.topology.length_of(t) - 1 : planned.topology.length_of(t),
                         planned.topology.tube_type[t]);
+  set_collapse(m.scene, m.topology);
   m.interaction = interaction_of(m.scene);
   m.loads = loads_of(m.scene, m.topology);
   m.time_step = step_part * default_step_fraction * time_step_limit(m.topology, m.interaction, m.spacing).limit;
@@ -135,7 +136,7 @@ class Observed {
     if (m_.interaction.has_contact() && m_.topology.tubes() > 1)
       now["spacing"] = tube_spacing(m_.topology, state, shells_);
     if (m_.topology.tubes() > 2) {
-      const RopeObservation o = observe(m_.topology, state, shells_, validities(m_.scene), 0, m_.spacing);
+      const RopeObservation o = observe(m_.topology, state, shells_, validities(m_.scene, m_.topology), 0, m_.spacing);
       now["beta"] = o.beta / units::degree;
       now["end_angle"] = o.geometric_twist / units::degree;
       now["Q"] = o.middle.charge;

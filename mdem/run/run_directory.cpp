@@ -146,7 +146,7 @@ Observer make_observer(const Scene& scene, const Prepared& prepared) {
 }
 
 RopeObservation observe(const Observer& o, const Scene& scene, const Topology& topology, const State& state) {
-  return observe(topology, state, o.shells, validities(scene), o.neighbour_radius, o.spacing);
+  return observe(topology, state, o.shells, validities(scene, topology), o.neighbour_radius, o.spacing);
 }
 
 LogRow log_row(const Observer& o, const Scene& scene, const Topology& topology, const State& state,

@@ -47,6 +47,7 @@ BuiltScene build(Scene& scene) {
   Random random(scene.start.seed);
   scene.source->place(scene, out.spacing, random, out.topology, out.state);
   set_tube_types(scene, out.topology);
+  set_collapse(scene, out.topology);
   check_state(scene, out);
   if (scene.start.temperature > 0) set_thermal_velocities(out.topology, scene.start.temperature, random, out.state);
   return out;

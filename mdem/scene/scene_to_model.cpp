@@ -1,13 +1,10 @@
 #include "scene/scene_to_model.hpp"
 
+#include <algorithm>
+
 #include "scene/laws/contact_law_kind.hpp"
 
 namespace ropewalk {
-std::vector<Validity> validities(const Scene& scene) {
-  std::vector<Validity> all;
-  for (const ParameterSet& set : scene.sets) all.push_back(set.validity);
-  return all;
-}
 
 Topology empty_topology(const Scene& scene) {
   Topology t;
@@ -16,8 +13,36 @@ Topology empty_topology(const Scene& scene) {
     t.types.push_back({scene.element_length, set.radius,
                        scene.run.mass_scale * set.element_mass(scene.element_length),
                        scene.run.mass_scale * set.element_inertia(scene.element_length),
-                       scene.bond.anharmonic ? set.anharmonic_bond() : set.bond});
+                       scene.bond.anharmonic ? set.anharmonic_bond(0) : set.bond});
   return t;
+}
+
+namespace {
+
+// nm, of the longest tube of a type, which collapses first.
+double longest_tube(const Topology& topology, std::size_t type) {
+  int most = 0;
+  for (int t = 0; t < topology.tubes(); ++t)
+    if (topology.tube_type[static_cast<std::size_t>(t)] == static_cast<int>(type))
+      most = std::max(most, topology.length_of(t));
+  return most * topology.types[type].element_length;
+}
+
+}  // namespace
+
+void set_collapse(const Scene& scene, Topology& topology) {
+  for (std::size_t type = 0; scene.bond.anharmonic && type < topology.types.size(); ++type)
+    topology.types[type].bond = scene.sets[type].anharmonic_bond(longest_tube(topology, type));
+}
+
+std::vector<Validity> validities(const Scene& scene, const Topology& topology) {
+  std::vector<Validity> all;
+  for (std::size_t type = 0; type < scene.sets.size(); ++type) {
+    const ParameterSet& set = scene.sets[type];
+    all.push_back(set.validity);
+    all.back().twist_collapse = set.validity.collapse_at(set.radius, longest_tube(topology, type));
+  }
+  return all;
 }
 
 std::vector<ContactRange> contact_ranges(const Scene& scene) {

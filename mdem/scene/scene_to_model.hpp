@@ -10,11 +10,13 @@
 
 namespace ropewalk {
 
-// Limits of the parameter sets, by tube type.
-std::vector<Validity> validities(const Scene& scene);
+// Of each tube type, for its longest tube.
+std::vector<Validity> validities(const Scene& scene, const Topology& topology);
 
 // The scene's tube types, and no tubes yet.
 Topology empty_topology(const Scene& scene);
+// The bonds of tubes as long as those that the topology holds: long ones collapse earlier.
+void set_collapse(const Scene& scene, Topology& topology);
 
 // The `line` law between all pairs of the scene's tube types, i, j at i * types + j.
 std::vector<LineContact> line_contacts(const Scene& scene);

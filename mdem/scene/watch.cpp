@@ -11,8 +11,9 @@ Watched watched_of(const Scene& scene, const Topology& topology) {
   const auto types = static_cast<int>(scene.sets.size());
   for (int i = 0; law && i < types; ++i)
     for (int j = 0; j < types; ++j) out.rest.push_back(law->parallel_distance({i, j}, scene.element_length));
+  const std::vector<Validity> validity = validities(scene, topology);
   for (std::size_t type = 0; type < scene.sets.size(); ++type) {
-    Limits limits = default_limits(topology.types[type], scene.sets[type].validity);
+    Limits limits = default_limits(topology.types[type], validity[type]);
     const auto own = static_cast<int>(type);
     limits.overlap = law ? out.rest[type * scene.sets.size() + type] - law->core_distance({own, own}) : 0;
     for (std::size_t k = 0; k < limit_count; ++k)

@@ -224,7 +224,7 @@ TEST(ExpectedState, IsARopeThatHasBeenTwisted) {
   const double turn = 0.04, rate = 0.002;
   const State s = turned_rope(p, turn, rate);
   const RopeObservation o =
-      observe(p.topology, s, rope_shells(p.topology, p.state, 0), validities(scene), 0, p.spacing);
+      observe(p.topology, s, rope_shells(p.topology, p.state, 0), validities(scene, p.topology), 0, p.spacing);
   EXPECT_NEAR(o.beta, std::atan(p.spacing * turn), 1e-3);
   const double height = p.state.position[0].z() - p.state.position[p.topology.length_of(0) - 1].z();
   EXPECT_NEAR(o.geometric_twist, std::fabs(turn * height), 0.02);

@@ -111,7 +111,7 @@ class Reader {
     now["bending_moment"] = mean_bending_moment(s_, state) * units::eV_in_nN_nm;
     if (topology.tubes() > 1) now["spacing"] = tube_spacing(topology, state, shells_);
     if (topology.tubes() > 2) {
-      const RopeObservation o = observe(topology, state, shells_, validities(s_.scene), 0, s_.spacing);
+      const RopeObservation o = observe(topology, state, shells_, validities(s_.scene, topology), 0, s_.spacing);
       now["beta"] = o.beta * units::rad_in_degree;
       now["end_angle"] = o.geometric_twist * units::rad_in_degree;
       now["Q"] = o.middle.charge;

@@ -14,7 +14,7 @@ const std::array<Text, limit_count>& texts() {
       {standard("19.9"), "bend of one bond: its energy is then 1 % off the rod's"},
       {standard("19.9"), "twist of one bond: likewise; at 90 it slips"},
       {otherwise("0.086", "the set's"), "curvature of a tube"},
-      {otherwise("0.043", "the set's twist_collapse"), "radius of a tube times its twist per length"},
+      {otherwise("0.043", "the set's, for tubes of this length"), "radius of a tube times its twist per length"},
       {otherwise("0.069", "the set's stretch"), "of a bond, tension or compression"},
       {otherwise("0.11", "down to the core gap of the law"), "how much nearer than at rest tubes are pressed"},
       {otherwise("2", "a tenth of the speed of sound along the tube"), "of an element"},

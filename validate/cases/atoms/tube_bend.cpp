@@ -91,7 +91,7 @@ TubeCurve curve_of(const ValidatedTube& tube, const ParameterSet& set, const Ref
     curve.more_atoms.push_back(high[k] / long_nm);
   }
   curve.more_name = "long specimen, kink and ends included";
-  curve.model = [set](double k) { return chain_energy(set.anharmonic_bond(), set.element_length, 0, 0, k); };
+  curve.model = [set](double k) { return chain_energy(set.anharmonic_bond(0), set.element_length, 0, 0, k); };
   curve.window = quantity(set, "validity.linear_curvature");
   curve.end = set.validity.kink_curvature;
   return curve;

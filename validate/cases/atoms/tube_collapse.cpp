@@ -17,11 +17,11 @@ constexpr ValidatedTube tube_15_15{{15, 15}, "cnt-15-15-tersoff", "(15,15)"};
 constexpr ValidatedTube tubes[] = {tube_5_5, tube_10_10, tube_15_15};
 constexpr double lengths[] = {12, 24, 47, 94};  // nm
 // Shears times radius (nm). The torque is compared from one step to the next over the fine steps.
-constexpr double rule = 0.03, first_part = 0.5, fine_from = 0.76, fine_step = 0.02, last_part = 1.16;
+constexpr double rule = 0.03, first_part = 0.4, fine_from = 0.58, fine_step = 0.02, last_part = 1.16;
 constexpr double tolerance = 0.06;  // of the limit: an instability scatters by 3 %, and a step is 2 %
 
 std::vector<double> steps_of(double radius) {
-  std::vector<double> parts = {first_part, 0.6, 0.68};
+  std::vector<double> parts = {first_part, 0.5};
   for (double part = fine_from; part < last_part + 1e-9; part += fine_step) parts.push_back(part);
   for (double& part : parts) part *= rule / (radius * radius);
   return parts;

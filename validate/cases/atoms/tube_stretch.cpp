@@ -92,7 +92,7 @@ CaseResult run(const CaseContext& context) {
     curve.amplitude_name = "strain";
     curve.amplitude = column_where(data, "strain", "n", tube.chirality.n);
     curve.atoms = column_where(data, "energy_eV_per_nm", "n", tube.chirality.n);
-    curve.model = [set](double strain) { return chain_energy(set.anharmonic_bond(), set.element_length, strain, 0, 0); };
+    curve.model = [set](double strain) { return chain_energy(set.anharmonic_bond(0), set.element_length, strain, 0, 0); };
     curve.window = quantity(set, "validity.linear_stretch");
     curve.end = set.validity.stretch;
     add_curve(curve, result);

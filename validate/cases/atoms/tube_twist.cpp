@@ -108,7 +108,7 @@ CaseResult run(const CaseContext& context) {
       curve.amplitude.push_back(radius * twist);
     curve.atoms = column_where(data, "energy_eV_per_nm", "n", tube.chirality.n);
     curve.model = [set, radius](double shear) {
-      return chain_energy(set.anharmonic_bond(), set.element_length, 0, shear / radius, 0);
+      return chain_energy(set.anharmonic_bond(0), set.element_length, 0, shear / radius, 0);
     };
     curve.end = set.validity.twist_collapse;
     curve.window = std::min(quantity(set, "validity.linear_twist"), curve.end);

@@ -54,7 +54,7 @@ ClampedRope::ClampedRope(const TwistedRope& rope, const ParameterSet& set)
   // The band ends half a row beyond its last row, a grip half an element beyond its last centre.
   beyond_ = std::max(1, static_cast<int>(std::lround((rope.band_rows - 0.5) * row_distance(set) / a - 0.5)));
   topology_ = topology_of(divided);
-  topology_.types.front().bond = set.anharmonic_bond();
+  topology_.types.front().bond = set.anharmonic_bond(length_);
   const int elements = bonds_ + 1 + 2 * beyond_;
   state_ = State(static_cast<std::size_t>(tubes * elements));
   for (const auto& [x, y] : hexagonal_lattice(tubes, set.line->pair_spacing)) {
