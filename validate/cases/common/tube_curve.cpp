@@ -23,7 +23,7 @@ std::string at_amplitude(const TubeCurve& c, double amplitude) {
 // The point in the window with the largest difference.
 Check window_check(const TubeCurve& c) {
   Check check;
-  check.name = c.tube + ": energy in the elastic window";
+  check.name = c.tube + ": energy up to the limit";
   check.unit = "eV/nm";
   check.tolerance = window_tolerance;
   check.value = check.reference = std::nan("");
@@ -91,10 +91,8 @@ CaseFigure energy_figure(const TubeCurve& c) {
     more.dashed = true;
     chart.lines.push_back(more);
   }
-  chart.bands = {{*least < 0 ? -c.window : 0, c.window, "elastic window", false}};
-  return {chart,
-          fmt::format("{}: the model is a parabola; atoms soften or stiffen and at last buckle (by the set at {}).",
-                      c.tube, at_amplitude(c, c.end))};
+  chart.bands = {{*least < 0 ? -c.window : 0, c.window, "compared", false}};
+  return {chart, fmt::format("{}: the tube gives way, by the set, at {}.", c.tube, at_amplitude(c, c.end))};
 }
 
 CaseFigure residual_figure(const TubeCurve& c) {
@@ -110,12 +108,35 @@ CaseFigure residual_figure(const TubeCurve& c) {
     line.y.push_back(100 * deviation(c, k));
   }
   chart.lines = {line};
-  chart.bands = {{line.x.front() < 0 ? -c.window : 0, c.window, "elastic window", false}};
+  chart.bands = {{line.x.front() < 0 ? -c.window : 0, c.window, "compared", false}};
   return {chart, fmt::format("{}: relative difference of the energies. The tolerance in the window is {:.0f} %.",
                              c.tube, 100 * window_tolerance)};
 }
 
 }  // namespace
+
+void end_at_collapse(TubeCurve& c) {
+  double reach[2] = {0, 0};
+  for (const int side : {0, 1}) {
+    const double sign = side == 0 ? -1 : 1;
+    std::vector<std::pair<double, double>> points;
+    for (std::size_t k = 0; k < c.amplitude.size(); ++k)
+      if (c.amplitude[k] * sign >= 0) points.emplace_back(std::abs(c.amplitude[k]), c.atoms[k]);
+    std::sort(points.begin(), points.end());
+    std::vector<double> amplitude, energy;
+    for (const auto& [x, y] : points) amplitude.push_back(x), energy.push_back(y);
+    reach[side] = amplitude[points_before_collapse(amplitude, energy) - 1];
+  }
+  c.more_name = "after the collapse";
+  std::vector<double> amplitude, atoms;
+  for (std::size_t k = 0; k < c.amplitude.size(); ++k) {
+    const bool before = std::abs(c.amplitude[k]) <= reach[c.amplitude[k] < 0 ? 0 : 1];
+    (before ? amplitude : c.more_amplitude).push_back(c.amplitude[k]);
+    (before ? atoms : c.more_atoms).push_back(c.atoms[k]);
+  }
+  c.amplitude = amplitude;
+  c.atoms = atoms;
+}
 
 void add_curve(const TubeCurve& curve, CaseResult& result) {
   result.checks.push_back(window_check(curve));

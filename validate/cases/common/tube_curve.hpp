@@ -10,22 +10,23 @@
 
 namespace ropewalk {
 
-// Fixed beforehand. In the window the set claims forces within 1 %, so energies within less. The rest allows for
-// the minimiser and for the ends of the specimen.
-inline constexpr double window_tolerance = 0.03;
+// Fixed beforehand: the anharmonic bond claims energies within 1 % up to the limits of the set.
+inline constexpr double window_tolerance = 0.01;
 
 struct TubeCurve {
   std::string tube;                      // "(10,10)"
   std::string amplitude_name, unit;      // "strain", ""
   std::vector<double> amplitude, atoms;  // eV/nm, above the relaxed tube
   std::function<double(double)> model;   // eV/nm at an amplitude
-  double window = 0;  // largest amplitude of either sign at which the set claims forces within 1 %
-  double end = 0;     // amplitude at which the tube gives way, by the set
+  double window = 0;                     // largest amplitude of either sign that is compared
+  double end = 0;                        // amplitude at which the tube gives way, by the set
   // Shown, not compared: after its collapse a tube is not a uniform rod.
   std::vector<double> more_amplitude, more_atoms;
   std::string more_name;
 };
 
+// Takes the points beyond the collapse out of the comparison, of either sign.
+void end_at_collapse(TubeCurve& curve);
 // Adds the check in the window, the amplitudes at which the difference reaches 5 and 10 %, and figures of the
 // energies and of their differences.
 void add_curve(const TubeCurve& curve, CaseResult& result);

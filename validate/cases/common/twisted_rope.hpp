@@ -32,11 +32,15 @@ struct TwistedRope {
   double step = 0;         // rad, between increments
   int increments = 0;
   int elastic_increments = 0;  // of these, within the elastic range: they are compared with the atoms
+  std::vector<int> collapsed;  // increments beyond the collapse of the walls, compared within 10 %
+  std::vector<bool> axial_free = {false, true};  // the series: grips fixed, and free along the axis
   std::vector<std::string> remarks;
 };
 
 // Seven (10,10) tubes of 8.1 nm: of a case, and of the chart of speed against accuracy.
 TwistedRope rope_7_10_10();
+// The same, twisted until the walls have collapsed, with fixed grips.
+TwistedRope collapsed_rope_7_10_10();
 
 double row_distance(const ParameterSet& set);
 double clamped_length(const TwistedRope& rope, const ParameterSet& set);

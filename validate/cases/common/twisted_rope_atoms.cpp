@@ -200,7 +200,7 @@ ReferenceTable twist_atoms(const TwistedRope& rope, const CaseContext& context) 
   write_file_atomically(context.work + "/rope.data", data);
   std::string inputs = data;
   const auto start = std::chrono::steady_clock::now();
-  for (const bool axial_free : {false, true}) {
+  for (const bool axial_free : rope.axial_free) {
     const std::string name = axial_free ? "free" : "fixed";
     if (context.progress) context.progress(fmt::format("LAMMPS: grips {} along the axis", name));
     const std::string results = context.work + "/" + name + ".dat";
