@@ -160,7 +160,7 @@ void fit_collapse(std::vector<AtomisticRow>& table, Stiffness& out) {
   options.starts = 2;
   const FitResult found = fit_least_squares({{"edge", 0.8, 0.2, 2, true}}, rows.size(), residuals, options);
   if (!found.usable()) {
-    out.warnings.push_back("the collapse: " + found.message + "; the rule for endless tubes stays");
+    out.warnings.push_back("the collapse: " + found.message + "; the set says nothing about endless tubes");
     return;
   }
   std::vector<double> left(rows.size());

@@ -19,7 +19,6 @@ constexpr double one_percent = 0.01;
 // The 1 % limits are those of the anharmonic terms of the same tubes. Collapse also falls with length, slowly.
 constexpr double kink_rule = 0.04;                // nm, times 1/r^2
 constexpr double collapse_rule = 0.03;            // nm, times 1/r: shear
-constexpr double endless_collapse_rule = 0.018;   // nm^1.5, times 1/r^1.5: a thin shell in torsion
 constexpr double compression_rule = 0.07;         // strain
 constexpr double linear_curvature_rule = 0.0078;  // nm, times 1/r^2
 constexpr double linear_shear_rule = 0.04;
@@ -97,7 +96,6 @@ Envelope scaled_envelope(double radius) {
   envelope.kink_curvature = rule(kink_rule / (radius * radius));
   envelope.linear_curvature = rule(linear_curvature_rule / (radius * radius));
   envelope.twist_collapse = rule(collapse_rule / radius);
-  envelope.endless_collapse = rule(endless_collapse_rule / std::pow(radius, 1.5));
   envelope.compression = rule(compression_rule);
   envelope.linear_shear = rule(linear_shear_rule);
   envelope.linear_strain = rule(linear_strain_rule);

@@ -69,7 +69,7 @@ struct StiffnessOptions {
 struct Envelope {
   Measured kink_curvature;    // 1/nm
   Measured twist_collapse;    // radius times twist, of 12 nm between held ends
-  Measured endless_collapse;  // the same of an endless tube
+  Measured endless_collapse;  // the same of an endless tube; 0: not measured
   Measured compression;       // strain
   Measured linear_curvature;  // 1/nm: bending moment 1 % off EI k
   Measured linear_shear;      // radius times twist: torque 1 % off GJ s

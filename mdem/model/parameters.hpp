@@ -4,7 +4,8 @@
 //   [meta]      format, name, chirality = [n, m], reference, doi
 //   [tube]      radius (nm), atoms_per_length (1/nm), element_length (nm, default discretisation)
 //   [bond]      EA (nN), EI (nN nm^2), GJ (nN nm^2); optional: kGA (nN)
-//   [bond.anharmonic]  optional: e3, e2s, es2, s3, e4, e3s, e2s2, es3, s4, b4 (nN), the terms of anharmonic.hpp, and
+//   [bond.anharmonic]  optional: e3, e2s, es2, s3, e4, e3s, e2s2, es3, s4, b4 (nN), the terms of anharmonic.hpp,
+//   and
 //               min_strain, max_strain, max_shear, max_bend, the window in which they hold; needs [atomistic]
 //   [contact.paper]   present: the set has the `paper` law; epsilon (eV), A, B, alpha, beta, C1 .. C5,
 //               C_gamma, delta, freeze, switch_start, cutoff (all in units of the radius), core_gap
@@ -16,7 +17,8 @@
 //               { values = [6 numbers], standard_errors = [6 numbers] }, and error
 //   [atomistic] optional: natural_twist (rad/nm), coupling (nN nm), poisson, energy_per_atom (eV)
 //   [validity]  kink_curvature (1/nm), twist_collapse (r tau), stretch (strain): limits of the model; optional:
-//               endless_collapse (r tau), linear_curvature, linear_twist, linear_stretch: where a stiffness is 1 % off
+//               endless_collapse (r tau), linear_curvature, linear_twist, linear_stretch: where a stiffness is 1 %
+//               off
 //   [provenance] optional strings: what the set was made from and by
 //
 // Every number is an inline table { value, unit, standard_error, origin, doi, note }. The unit must be the one
@@ -52,18 +54,18 @@ struct Quantity {
 
 // Beyond these the rigid-element model is no longer the tube.
 struct Validity {
-  double kink_curvature = 0;  // 1/nm
-  double twist_collapse = 0;  // radius times twist per length: of a tube of 12 nm between held ends
-  double stretch = 0;         // strain, tension or compression
+  double kink_curvature = 0;    // 1/nm
+  double twist_collapse = 0;    // radius times twist per length: of a tube of 12 nm between held ends
+  double stretch = 0;           // strain, tension or compression
   double endless_collapse = 0;  // twist_collapse of an endless tube; 0: not known
 
   // twist_collapse of a tube of radius r and length L between held ends, which keep it round:
-  //   c (1 + 3 (r/L)^(3/4)),   c = endless_collapse, at most that of 12 nm.
-  // Fitted to (5,5), (10,10) and (15,15) of 12 to 94 nm (Tersoff); within 6 %.
+  //   c (1 + 3 (r/L)^(3/4)), at most that of 12 nm,   c = endless_collapse, or such that it fits 12 nm.
+  // Fitted to (5,5), (10,10) and (15,15) of 12 to 94 nm (Tersoff), within 10 %. L = 0: endless.
   double collapse_at(double radius, double length) const {
-    if (!(endless_collapse > 0)) return twist_collapse;
-    const double held = length > 0 ? 3 * std::pow(radius / length, 0.75) : 0;
-    return std::min(twist_collapse, endless_collapse * (1 + held));
+    const auto held = [&](double at) { return 1 + 3 * std::pow(radius / at, 0.75); };
+    const double endless = endless_collapse > 0 ? endless_collapse : twist_collapse / held(12);
+    return std::min(twist_collapse, length > 0 ? endless * held(length) : endless);
   }
 };
 

@@ -1,6 +1,6 @@
 // The twist at which a tube collapses, against its length.
-// Atoms: finite tubes between held bands, twisted step by step with a little noise until the torque falls. Model: the
-// limit of the set, which is that of a tube of its length.
+// Atoms: finite tubes between held bands, twisted step by step with a little noise until the torque falls. Model:
+// the limit of the set, which is that of a tube of its length.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,7 +8,6 @@
 
 #include "atomistic/finite_tube.hpp"
 #include "cases/common/tube_curve.hpp"
-#include "observe/limits.hpp"
 
 namespace ropewalk {
 namespace {
@@ -18,7 +17,8 @@ constexpr ValidatedTube tubes[] = {tube_5_5, tube_10_10, tube_15_15};
 constexpr double lengths[] = {12, 24, 47, 94};  // nm
 // Shears times radius (nm). The torque is compared from one step to the next over the fine steps.
 constexpr double rule = 0.03, first_part = 0.4, fine_from = 0.58, fine_step = 0.02, last_part = 1.16;
-constexpr double tolerance = 0.06;  // of the limit: an instability scatters by 3 %, and a step is 2 %
+constexpr double energy_tolerance = 0.03;
+constexpr double tolerance = 0.10;  // of the limit: an instability scatters by 5 %, and a step is 2 %
 
 std::vector<double> steps_of(double radius) {
   std::vector<double> parts = {first_part, 0.5};
@@ -31,24 +31,25 @@ std::vector<double> steps_of(double radius) {
 std::string input_of(const FiniteTube& tube, const Potential& potential, const std::string& name,
                      const std::vector<double>& twists) {
   const std::string report = fmt::format("print \"$(v_q:%.12g) $(pe:%.15g)\" append {}.dat screen no\n", name);
-  std::string input = "# twisted step by step, with a little noise, until the torque falls\n" +
-                      tube.commands(potential, name + ".data") +
-                      fmt::format("variable half equal {:.12g}\n", 0.5 * tube.free_length() / angstrom) +
-                      "variable q equal 0.0\nvariable q0 equal 0.0\n"
-                      "variable zc atom v_half*((f_ref[3]>v_half)-(f_ref[3]<-v_half))+f_ref[3]*(abs(f_ref[3])<=v_half)\n"
-                      "variable turn atom (v_q-v_q0)*v_zc\n"
-                      "variable new_x atom f_now[1]*cos(v_turn)-f_now[2]*sin(v_turn)\n"
-                      "variable new_y atom f_now[1]*sin(v_turn)+f_now[2]*cos(v_turn)\n"
-                      "minimize 0.0 1e-3 1000 20000\n" +
-                      report +
-                      "variable e equal $(pe:%.15g)\nvariable most equal 0.0\n";
+  std::string input =
+      "# twisted step by step, with a little noise, until the torque falls\n" +
+      tube.commands(potential, name + ".data") +
+      fmt::format("variable half equal {:.12g}\n", 0.5 * tube.free_length() / angstrom) +
+      "variable q equal 0.0\nvariable q0 equal 0.0\n"
+      "variable zc atom v_half*((f_ref[3]>v_half)-(f_ref[3]<-v_half))+f_ref[3]*(abs(f_ref[3])<=v_half)\n"
+      "variable turn atom (v_q-v_q0)*v_zc\n"
+      "variable new_x atom f_now[1]*cos(v_turn)-f_now[2]*sin(v_turn)\n"
+      "variable new_y atom f_now[1]*sin(v_turn)+f_now[2]*cos(v_turn)\n"
+      "minimize 0.0 1e-3 1000 20000\n" +
+      report + "variable e equal $(pe:%.15g)\nvariable most equal 0.0\n";
   double last = 0;
   const double fine = twists.back() - twists[twists.size() - 2];
   int seed = 7001;
   for (const double twist : twists) {
     const double step = twist - last;
-    input += fmt::format("variable q0 delete\nvariable q0 equal {:.12g}\nvariable q delete\nvariable q equal {:.12g}\n",
-                         last * angstrom, twist * angstrom);
+    input +=
+        fmt::format("variable q0 delete\nvariable q0 equal {:.12g}\nvariable q delete\nvariable q equal {:.12g}\n",
+                    last * angstrom, twist * angstrom);
     input += "fix now all store/state 0 x y z\nset group all x v_new_x y v_new_y\nunfix now\n";
     input += fmt::format("displace_atoms free random 0.002 0.002 0.002 {} units box\n", seed++);
     input += "minimize 0.0 3e-3 1500 20000\n" + report;
@@ -79,52 +80,95 @@ ReferenceTable make_reference(const CaseContext& context) {
       const auto results =
           session.run(name, input_of(finite, session.potential(), name, twists), twists.size() + 1, 2, 4);
       for (const auto& row : results)
-        rows.push_back({double(c.n), finite.free_length(), row[0] / angstrom, row[1] - results.front()[1],
-                        shape.radius});
+        rows.push_back(
+            {double(c.n), finite.free_length(), row[0] / angstrom, row[1] - results.front()[1], shape.radius});
     }
-  ReferenceTable t = session.table("Energy of finite tubes (n,n) against twist, held end bands, up to the collapse",
-                                   "tube-collapse", false,
-                                   {"n", "length_nm", "twist_rad_per_nm", "energy_eV", "radius_nm"});
+  ReferenceTable t =
+      session.table("Energy of finite tubes (n,n) against twist, held end bands, up to the collapse",
+                    "tube-collapse", false, {"n", "length_nm", "twist_rad_per_nm", "energy_eV", "radius_nm"});
   t.rows = rows;
   return t;
 }
 
-struct Collapse {
-  double length = 0, shear = 0;
-};
+// The energy (eV) of the last step before the torque falls.
+Check energy_check(const ValidatedTube& tube, const ParameterSet& set, double length,
+                   const std::vector<double>& twist, const std::vector<double>& energy) {
+  const std::size_t last = points_before_collapse(twist, energy) - 1;
+  Check check;
+  check.name = fmt::format("{} of {:.0f} nm: energy before the collapse", tube.name, length);
+  check.value = length * chain_energy(set.anharmonic_bond(length), set.element_length, 0, twist[last], 0);
+  check.reference = energy[last];
+  check.tolerance = energy_tolerance;
+  check.unit = "eV";
+  check.note =
+      "where the limit of the set is lower than the collapse of these atoms, the torque is already constant";
+  return check;
+}
 
-// Between the step of the largest torque and the next.
-Collapse collapse_of(const std::vector<double>& twist, const std::vector<double>& energy, double length,
-                     double radius) {
-  std::size_t peak = 1;
-  double largest = 0;
-  for (std::size_t k = 1; k < twist.size(); ++k) {
-    const double torque = (energy[k] - energy[k - 1]) / (twist[k] - twist[k - 1]);
-    if (torque > largest) peak = k, largest = torque;
-  }
-  const std::size_t next = std::min(peak + 1, twist.size() - 1);
-  return {length, 0.5 * radius * (twist[peak] + twist[next])};
+// Shear between the step of the largest torque and the next; NaN for a tube that holds to the end.
+double collapse_of(const std::vector<double>& twist, const std::vector<double>& energy, double radius) {
+  const std::size_t steps = points_before_collapse(twist, energy);
+  return steps < twist.size() ? 0.5 * radius * (twist[steps - 1] + twist[steps]) : std::nan("");
+}
+
+CaseFigure figure_of(const std::vector<ChartLine>& lines) {
+  LineChart chart;
+  chart.title = "Collapse against length";
+  chart.x = {"length between held ends", "nm"};
+  chart.y = {"radius times twist", "1"};
+  chart.lines = lines;
+  return {chart, "Points: atoms. Lines: the limit of the sets."};
 }
 
 CaseResult run(const CaseContext& context) {
   CaseResult result;
   const ReferenceTable data = reference(
       context, "tube-collapse", 0.05, [&] { return make_reference(context); }, result);
-  const std::vector<double> n = data.column("n"), length = data.column("length_nm"),
-                            twist = data.column("twist_rad_per_nm"), energy = data.column("energy_eV"),
-                            radius = data.column("radius_nm");
-  for (std::size_t from = 0, to = 0; from < n.size(); from = to) {
-    while (to < n.size() && n[to] == n[from] && length[to] == length[from]) ++to;
-    const auto part = [&](const std::vector<double>& all) {
-      return std::vector<double>(all.begin() + static_cast<long>(from), all.begin() + static_cast<long>(to));
-    };
-    const Collapse c = collapse_of(part(twist), part(energy), length[from], radius[from]);
-    Check check;
-    check.name = fmt::format("({0},{0}) of {1:.0f} nm", n[from], c.length);
-    check.value = check.reference = c.shear;
-    check.tolerance = tolerance;
-    result.checks.push_back(check);
+  const std::vector<double> n = data.column("n"), all_lengths = data.column("length_nm");
+  std::vector<ChartLine> lines;
+  int colour = 0;
+  for (const ValidatedTube& tube : tubes) {
+    const ParameterSet set = context.model(tube.set);
+    ChartLine atoms{fmt::format("atoms, {}", tube.name), {}, {}, colour}, model{tube.name, {}, {}, colour};
+    atoms.points = true;
+    ++colour;
+    std::vector<double> different;
+    for (std::size_t k = 0; k < n.size(); ++k)
+      if (n[k] == tube.chirality.n && (different.empty() || different.back() != all_lengths[k]))
+        different.push_back(all_lengths[k]);
+    for (const double length : different) {
+      std::vector<double> twist, energy;
+      for (std::size_t k = 0; k < n.size(); ++k) {
+        if (n[k] != tube.chirality.n || all_lengths[k] != length) continue;
+        twist.push_back(data.column("twist_rad_per_nm")[k]);
+        energy.push_back(data.column("energy_eV")[k]);
+      }
+      result.checks.push_back(energy_check(tube, set, length, twist, energy));
+      Check check;
+      check.name = fmt::format("{} of {:.0f} nm collapses at", tube.name, length);
+      check.value = set.validity.collapse_at(set.radius, length);
+      check.reference = collapse_of(twist, energy, set.radius);
+      check.tolerance = tolerance;
+      check.unit = "radius times twist";
+      if (!std::isfinite(check.reference)) {
+        result.remarks.push_back(
+            fmt::format("{} of {:.0f} nm holds up to the last step, {:.4f}; the set says {:.4f}.", tube.name,
+                        length, set.radius * twist.back(), check.value));
+        continue;
+      }
+      result.checks.push_back(check);
+      atoms.x.push_back(length), atoms.y.push_back(check.reference);
+    }
+    for (double length = 10; length <= 100; length += 2)
+      model.x.push_back(length), model.y.push_back(set.validity.collapse_at(set.radius, length));
+    lines.push_back(model);
+    lines.push_back(atoms);
+    result.sources.push_back(fmt::format("{} (hash {})", set.name, set.hash));
   }
+  result.figures.push_back(figure_of(lines));
+  result.remarks.push_back(
+      "The collapse is an instability: other noise and other steps move it by 3 to 5 %, and longer tubes find it "
+      "earlier. Held ends keep a tube round over some diameters.");
   return result;
 }
 
@@ -133,7 +177,23 @@ const RegisteredCase registered([] {
   c.name = "tube-collapse";
   c.group = Case::Group::atoms;
   c.order = 25;
+  c.title = "Twisted tubes collapse, long ones earlier";
+  c.why =
+      "Ropes are 40 to 160 nm long. The twist at which a wall collapses into a ribbon limits the energy that they "
+      "store as round tubes.";
+  c.setup =
+      "Tubes of (5,5), (10,10) and (15,15), 12, 24, 47 and 94 nm between held bands, are twisted step by step with "
+      "a "
+      "little noise and relaxed until the torque falls.";
+  c.oracle =
+      "LAMMPS with the Tersoff potential: the twist at which the torque falls. The set's limit, c (1 + 3 "
+      "(r/L)^(3/4)) "
+      "and at most that of 12 nm, within 10 %.";
+  c.literature =
+      "B. I. Yakobson, C. J. Brabec, J. Bernholc, Phys. Rev. Lett. 76, 2511 (1996), DOI "
+      "10.1103/PhysRevLett.76.2511";
   c.run = run;
+  c.turns_red = {wrong_GJ(0.9)};
   return c;
 });
 
