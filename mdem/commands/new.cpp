@@ -87,7 +87,7 @@ int check_command(const std::string& path) {
   Simulation simulation = start(scene, p);
   say_source(scene, p);
   say_loads(scene);
-  for (const std::string& warning : warnings_of(scene)) fmt::print("note: {}\n", warning);
+  for (const std::string& warning : warnings_of(scene, p.topology)) fmt::print("note: {}\n", warning);
   const int every = scene.run.stepping.contact_every;
   if (every > 1)
     fmt::print("contact every {} steps, {:.4g} fs: a step of the log and of what is counted below\n", every,

@@ -349,13 +349,17 @@ double FixRelax::largest_force() {
   for (std::size_t i = 0; i < n; ++i) {
     linear[i] = &values[6 * i];
     angular[i] = &values[6 * i + 3];
-    store(linear[i], vector(atom->f[i]));
-    store(angular[i], vector(atom->torque[i]));
+    const TubeType& type = type_of(*model_, *atom, static_cast<int>(i));
+    store(linear[i], vector(atom->f[i]) / type.mass);
+    store(angular[i], vector(atom->torque[i]) / type.inertia);
   }
   if (grip_) grip_->free_parts(now(), linear.data(), angular.data());
   double own = 0, all = 0;
-  for (std::size_t i = 0; i < n; ++i)
-    own = std::max({own, vector(linear[i]).norm(), vector(angular[i]).norm() / model_->topology.largest_radius()});
+  for (std::size_t i = 0; i < n; ++i) {
+    const TubeType& type = type_of(*model_, *atom, static_cast<int>(i));
+    own = std::max(
+        {own, type.mass * vector(linear[i]).norm(), type.inertia * vector(angular[i]).norm() / type.radius});
+  }
   MPI_Allreduce(&own, &all, 1, MPI_DOUBLE, MPI_MAX, world);
   return all;
 }

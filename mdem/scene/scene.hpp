@@ -35,10 +35,10 @@ struct BondOptions {
 struct ContactOptions {
   std::string law = "paper";  // of scene/laws/contact_law_kind.hpp, or "none"
   bool legacy_torque = false;
-  int exclude_along_tube = 20;  // pairs of one tube up to this many elements apart do not interact
-  double skin = 0;              // nm; 0: chosen by the program
-  double cutoff = 0;            // nm, of axes (`line`) or element centres (`paper`); 0: the set's
-  int nodes = 0;                // `line`: per element; 0: as line_nodes chooses
+  double exclude_along_tube = 0;  // nm; 0: least_exclusion()
+  double skin = 0;                // nm; 0: chosen by the program
+  double cutoff = 0;              // nm, of axes (`line`) or element centres (`paper`); 0: the set's
+  int nodes = 0;                  // `line`: per element; 0: as line_nodes chooses
   // Pairs in single precision or all in double; the former by default where nothing is relaxed to tight tolerances.
   std::optional<Interaction::Precision> precision;
 };

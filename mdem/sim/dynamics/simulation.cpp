@@ -277,18 +277,25 @@ void Simulation::relax_spins_if_due() {
 }
 
 double Simulation::largest_force() const {
-  // What the constraints let through of velocities is what they let through of forces.
+  // What the constraints let through of velocities is what they let through of accelerations.
   State free = state_;
-  free.velocity = forces_.force;
-  free.angular_velocity = forces_.torque;
+  const auto each = [&](const auto& work) {
+    for (int t = 0; t < topology_.tubes(); ++t)
+      for (int e = topology_.tube_begin[t]; e < topology_.tube_begin[t + 1]; ++e)
+        work(topology_.type_of(t), static_cast<std::size_t>(e));
+  };
+  each([&](const TubeType& type, std::size_t i) {
+    free.velocity.set(i, forces_.force[i] / type.mass);
+    free.angular_velocity.set(i, forces_.torque[i] / type.inertia);
+  });
   constrain(topology_, loads_, state_.time, forces_, 0.0, free);
   double largest = 0;
-  const double radius = topology_.largest_radius();
-  for (std::size_t i = 0; i < free.size(); ++i) {
-    const double force = free.velocity[i].norm(), torque = free.angular_velocity[i].norm() / radius;
-    if (!std::isfinite(force + torque)) return std::numeric_limits<double>::quiet_NaN();
-    largest = std::max({largest, force, torque});
-  }
+  each([&](const TubeType& type, std::size_t i) {
+    const double force = type.mass * free.velocity[i].norm(),
+                 torque = type.inertia * free.angular_velocity[i].norm() / type.radius;
+    largest = std::isfinite(force + torque) ? std::max({largest, force, torque})
+                                            : std::numeric_limits<double>::quiet_NaN();
+  });
   return largest;
 }
 

@@ -115,9 +115,9 @@ class Simulation {
   std::vector<Change> changes_;   // since then, of cached_elements each
   std::vector<Fastest> fastest_;  // in the last drift, likewise
   ForceEngine engine_;
-  Forces forces_;           // of all
-  Forces inner_, contact_;  // its two parts, on two levels: bonds and loads; contact
-  std::vector<PointLoad> point_loads_;
+  Forces forces_;                       // of all
+  Forces inner_, contact_;              // its two parts, on two levels: bonds and loads; contact
+  std::vector<PointLoad> point_loads_;  // those in the last forces: of the velocities in the middle of the step
   EnergySupply account_;
   double list_seconds_ = 0, integration_seconds_ = 0;
 };
