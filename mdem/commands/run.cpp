@@ -114,7 +114,7 @@ class Run {
     const double span = prepared_.duration > 0 ? prepared_.duration : 1000 * dt;
     log_every_ = every(scene_.run.log_every, span, 400, dt);
     frames_every_ = every(scene_.run.frames_every, span, 40, dt);
-    last_step_ = std::lround(prepared_.duration / dt);
+    last_step_ = scene_.run.mode == RunOptions::Mode::relax ? -1 : std::lround(prepared_.duration / dt);
   }
 
   // What is less than zero is not asked for.
@@ -265,8 +265,10 @@ class Run {
   StopReason relax_loop() {
     Progress progress(policy_.quiet, 0, 0);
     StopReason stop = StopReason::none;
-    const long max_steps = last_step_ > 0 ? last_step_ : scene_.run.max_steps;
-    at_rest_ = simulation_.relax(scene_.run.force_tolerance, max_steps, [&](long k) {
+    const RelaxGoal& goal = scene_.run.goal;
+    const long max_steps = last_step_ >= 0 ? std::max(0L, last_step_ - static_cast<long>(simulation_.state().step))
+                                           : scene_.run.max_steps;
+    const Relaxed end = simulation_.relax(goal, max_steps, [&](long k) {
       if (k % 100 == 0) {
         write_row();
         stop = check_limits();
@@ -280,9 +282,22 @@ class Run {
     if (caught_signal) return StopReason::signal;
     if (stop == StopReason::none) stop = check_limits();
     if (stop != StopReason::none) return stop;
-    reason_ = at_rest_ ? fmt::format("relaxed: largest force below {:.3g} eV/nm", scene_.run.force_tolerance)
-                       : fmt::format("not relaxed after {} steps: largest force {:.3g} eV/nm, {:.3g} asked for",
-                                     max_steps, simulation_.largest_force(), scene_.run.force_tolerance);
+    at_rest_ = end.at_rest;
+    const std::string left = fmt::format(
+        "{:.2g} eV above the minimum, that of the bonds within {:.2g} of its value", end.above, end.error);
+    if (at_rest_ && std::isinf(end.above))
+      reason_ = fmt::format(
+          "relaxed: largest force {:.3g} eV/nm; on a saddle, or along some soft motion the energy may still fall",
+          end.force);
+    else if (at_rest_)
+      reason_ = fmt::format("relaxed: largest force below {:.3g} eV/nm; energy {}, by estimate", goal.force, left);
+    else
+      reason_ = fmt::format("not relaxed after {} steps: largest force {:.3g} eV/nm, {:.3g} asked for", max_steps,
+                            end.force, goal.force);
+    if (!at_rest_ && std::isinf(end.above))
+      reason_ += "; the energy may still fall along some motion: no minimum is near";
+    else if (!at_rest_ && std::isfinite(end.above))
+      reason_ += fmt::format("; energy {}, {:.2g} asked for", left, goal.energy);
     return StopReason::complete;
   }
 

@@ -273,6 +273,7 @@ int FixRelax::setmask() { return FixMotion::setmask() | INITIAL_INTEGRATE | END_
 void FixRelax::setup(int) {
   fire_ = Fire(model_->start.time_step);
   steps_ = 0;
+  last_ = 0;
   stop();
 }
 
@@ -326,7 +327,7 @@ void FixRelax::initial_integrate(int) {
   if (sums().power > 0) {
     fire_.went_down();
   } else {
-    if (steps_ > 0) move(-0.5 * fire_.dt);
+    move(-0.5 * last_);
     stop();
     fire_.went_up();
   }
@@ -338,7 +339,8 @@ void FixRelax::initial_integrate(int) {
   if (!std::isfinite(speed))
     refuse(lmp, "step " + std::to_string(update->ntimestep) + ": relaxation met a force that is not finite",
            "start from a state without overlaps");
-  move(speed > 0 ? std::min(fire_.dt, Fire::farthest(radius_) / speed) : fire_.dt);
+  last_ = speed > 0 ? std::min(fire_.dt, Fire::farthest(radius_) / speed) : fire_.dt;
+  move(last_);
   ++steps_;
 }
 

@@ -469,7 +469,7 @@ std::string choices(const Scene& s) {
                       s.run.mass_scale, s.contact.cutoff);
   return text + fmt::format("{} {:.10g} {:.10g} {:.10g} {:.10g} {:.10g} {:.3g} {} {} | {:.10g}",
                             static_cast<int>(s.run.mode), s.run.time_step, s.run.duration, s.run.frames_every,
-                            s.run.log_every, s.run.checkpoint_every, s.run.force_tolerance, s.run.max_steps,
+                            s.run.log_every, s.run.checkpoint_every, s.run.goal.force, s.run.max_steps,
                             s.run.paraview, s.observe.neighbour_radius);
 }
 
@@ -490,7 +490,8 @@ TEST(SceneKeys, StatedDefaultsAreTheDefaults) {
     std::string text;
     for (const char* table : {"rope", "twist", "start", "thermostat", "contact", "damping", "observe"})
       text += fmt::format("[{}]\n{}", table, keys_of(table, defaults));
-    return choices(scene_from(text + "[run]\n" + keys_of("run", defaults, "force_tolerance_nN max_steps")));
+    return choices(
+        scene_from(text + "[run]\n" + keys_of("run", defaults, "force_tolerance_nN energy_tolerance max_steps")));
   };
   EXPECT_EQ(dynamics(true), dynamics(false));
   const auto relax = [](bool defaults) {

@@ -276,29 +276,6 @@ void Simulation::relax_spins_if_due() {
   account_.dissipated += had - total_energy();
 }
 
-double Simulation::largest_force() const {
-  // What the constraints let through of velocities is what they let through of accelerations.
-  State free = state_;
-  const auto each = [&](const auto& work) {
-    for (int t = 0; t < topology_.tubes(); ++t)
-      for (int e = topology_.tube_begin[t]; e < topology_.tube_begin[t + 1]; ++e)
-        work(topology_.type_of(t), static_cast<std::size_t>(e));
-  };
-  each([&](const TubeType& type, std::size_t i) {
-    free.velocity.set(i, forces_.force[i] / type.mass);
-    free.angular_velocity.set(i, forces_.torque[i] / type.inertia);
-  });
-  constrain(topology_, loads_, state_.time, forces_, 0.0, free);
-  double largest = 0;
-  each([&](const TubeType& type, std::size_t i) {
-    const double force = type.mass * free.velocity[i].norm(),
-                 torque = type.inertia * free.angular_velocity[i].norm() / type.radius;
-    largest = std::isfinite(force + torque) ? std::max({largest, force, torque})
-                                            : std::numeric_limits<double>::quiet_NaN();
-  });
-  return largest;
-}
-
 double Simulation::engine_seconds() const {
   const ForceEngine::Times& t = engine_.times();
   return t.contact + t.bonds;
