@@ -56,6 +56,13 @@ void add_on_limit(CLI::App* c, std::string& word) {
       ->check(CLI::IsMember({"warn", "stop", "refine"}));
 }
 
+void add_end(CLI::App* c, long& steps, double& until_ps) {
+  CLI::Option* count = c->add_option("--steps", steps, "Stop at this time step")->check(CLI::NonNegativeNumber);
+  c->add_option("--until", until_ps, "Stop at this time (ps) instead of the scene's")
+      ->check(CLI::NonNegativeNumber)
+      ->excludes(count);
+}
+
 CLI::Range thread_range() { return CLI::Range(1, 1024); }
 
 void add_new(CLI::App& app, Verbs& v) {
@@ -79,7 +86,7 @@ void add_run(CLI::App& app, Verbs& v) {
   c->add_option("--out", v.run.out, "Directory of the run; made, never overwritten")->required();
   c->add_option("--threads", v.run.threads, "Threads [default: all cores]; any number gives the same bits")
       ->check(thread_range());
-  c->add_option("--steps", v.run.steps, "Stop after so many time steps")->check(CLI::NonNegativeNumber);
+  add_end(c, v.run.steps, v.run.until_ps);
   add_on_limit(c, v.run.on_limit);
   c->add_flag("--force", v.run.force, "Replace an earlier run in --out");
   c->add_flag("--quiet", v.run.quiet, "No progress line");
@@ -90,9 +97,7 @@ void add_resume(CLI::App& app, Verbs& v) {
   CLI::App* c = app.add_subcommand("resume", "Go on with a run from its last checkpoint, bit for bit");
   c->add_option("dir", v.resume.dir, "Directory of the run")->required();
   c->add_option("--threads", v.resume.threads, "Threads [default: all cores]")->check(thread_range());
-  c->add_option("--steps", v.resume.steps, "Stop at this time step")->check(CLI::NonNegativeNumber);
-  c->add_option("--until", v.resume.until_ps, "Stop at this time (ps) instead of the scene's")
-      ->check(CLI::NonNegativeNumber);
+  add_end(c, v.resume.steps, v.resume.until_ps);
   add_on_limit(c, v.resume.on_limit);
   c->add_flag("--quiet", v.resume.quiet, "No progress line");
   c->callback([&v] { v.code = resume_command(v.resume); });
@@ -125,10 +130,9 @@ void add_energy(CLI::App& app, Verbs& v) {
   c->add_option("--parameters", v.energy.parameters, "Parameter set: a file, or the name of a shipped one")
       ->required();
   c->add_option("--law", v.energy.law, "Contact law: line, paper or none [default: line where the set has it]");
-  c->add_option("--exclude-along-tube", v.energy.exclude_along_tube,
-                "Elements of one tube up to this many apart do not touch")
-      ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
+  c->add_option("--exclude-along-tube-nm", v.energy.exclude_along_tube,
+                "Parts of one tube up to this far apart along it do not attract [default: as a scene has it]")
+      ->check(CLI::PositiveNumber);
   c->add_option("--threads", v.energy.threads, "Threads [default: all cores]")->check(thread_range());
   c->add_flag("--legacy-torque", v.energy.legacy_torque, "Leave out the torque that the published code leaves out");
   c->add_flag("--reference", v.energy.reference, "The plain O(N^2) path instead of the fast one");
@@ -196,7 +200,8 @@ int main(int argc, char** argv) {
   CLI::App app(
       "ropewalk twists carbon-nanotube ropes by the mesoscopic distinct element method.\n"
       "Units: nm, ps, eV; moments nN nm; every key of a scene carries its unit.\n"
-      "Exit code: 0 done, 2 wrong input, 3 stopped with the reason, 4 not relaxed within run.max_steps, 5 stopped at a "
+      "Exit code: 0 done, 2 wrong input, 3 stopped with the reason, 4 not relaxed within run.max_steps, 5 stopped "
+      "at a "
       "limit, 128 + signal.");
   app.set_version_flag("--version", std::string("ropewalk ") + version + " (" + git_id + ")");
   app.require_subcommand(1);

@@ -11,7 +11,8 @@ struct RunArguments {
   std::string scene;
   std::string out;
   int threads = 0;                // 0: all cores
-  long steps = -1;                // stop after so many steps; -1: the scene's duration
+  long steps = -1;                // time step at which to stop; -1: the scene's end
+  double until_ps = -1;           // time at which to stop; -1: the scene's end
   std::string on_limit = "warn";  // "warn", "stop" or "refine"
   bool force = false;             // overwrite an earlier run
   bool quiet = false;
@@ -23,8 +24,8 @@ void begin_run(const RunArguments& arguments);
 struct ResumeArguments {
   std::string dir;
   int threads = 0;
-  long steps = -1;       // total steps at which to stop
-  double until_ps = -1;  // time at which to stop
+  long steps = -1;       // as of RunArguments
+  double until_ps = -1;  // likewise
   std::string on_limit = "warn";
   bool quiet = false;
 };
@@ -61,7 +62,7 @@ struct EnergyArguments {
   bool legacy_torque = false;
   bool reference = false;
   bool json = false;
-  int exclude_along_tube = 20;
+  double exclude_along_tube = 0;  // nm; 0: the set's
   int threads = 0;
 };
 int energy_command(const EnergyArguments& arguments);

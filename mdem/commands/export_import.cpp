@@ -14,6 +14,7 @@
 #include "run/run_directory.hpp"
 #include "scene/lammps_files.hpp"
 #include "scene/scene_toml.hpp"
+#include "scene/state_csv.hpp"
 
 namespace ropewalk {
 namespace {
@@ -81,7 +82,7 @@ LammpsScript script_of(const Scene& scene, const Prepared& p, const Simulation& 
   script.skin = default_skin(in);
   // A bond's far end must be there as well.
   script.reach = std::max(in.cutoff(), 1.5 * p.topology.longest_element());
-  script.exclude_along_tube = in.exclude_along_tube;
+  script.excluded_elements = p.topology.fewest_within(in.excluded_arc());
   script.time_step = s.time_step();
   script.step = s.state().step;
   const double dt = s.time_step(), span = p.duration > 0 ? p.duration : 1000 * dt;
@@ -221,6 +222,7 @@ class Import {
     write_file_atomically(dir_.log(), log_);
     write_file_atomically(dir_.frames(), frames_);
     write_checkpoint(dir_, checkpoint_);
+    write_file_atomically(dir_.final_state(), state_csv(prepared_.topology, prepared_.state));
     Manifest m = read_manifest(dir_.manifest());
     m.steps = reached_;
     m.status = last_.time + 0.5 * prepared_.time_step >= prepared_.duration ? "finished" : "interrupted";

@@ -87,7 +87,7 @@ int check_command(const std::string& path) {
   Simulation simulation = start(scene, p);
   say_source(scene, p);
   say_loads(scene);
-  for (const std::string& warning : warnings_of(scene)) fmt::print("note: {}\n", warning);
+  for (const std::string& warning : warnings_of(scene, p.topology)) fmt::print("note: {}\n", warning);
   const int every = scene.run.stepping.contact_every;
   if (every > 1)
     fmt::print("contact every {} steps, {:.4g} fs: a step of the log and of what is counted below\n", every,
@@ -101,7 +101,9 @@ int check_command(const std::string& path) {
   fmt::print("start: {:.6g} eV in bonds, {:.6g} eV van der Waals, largest force {:.3g} eV/nm\n", e.bonds(), e.vdw,
              simulation.largest_force());
   if (scene.run.mode == RunOptions::Mode::relax) {
-    fmt::print("relaxation to {:.3g} eV/nm, at most {} steps\n", scene.run.force_tolerance, scene.run.max_steps);
+    fmt::print(
+        "relaxation to {:.3g} eV/nm and an energy of the bonds within {:.2g} of the minimum's, at most {} steps\n",
+        scene.run.goal.force, scene.run.goal.energy, scene.run.max_steps);
     return 0;
   }
   constexpr long sample = 20;

@@ -11,6 +11,7 @@
 #include "io/files.hpp"
 #include "io/frames.hpp"
 #include "model/error.hpp"
+#include "model/self_contact.hpp"
 #include "run/run_directory.hpp"
 #include "scene/scene_to_model.hpp"
 
@@ -92,7 +93,7 @@ ReportInput gather(const RunDirectory& dir, const Scene& scene, const Prepared& 
   in.status = m.status;
   in.reason = m.reason;
   add_run_facts(scene, p, m, in);
-  in.warnings = warnings_of(scene);
+  in.warnings = warnings_of(scene, p.topology);
   in.log = read_log(dir.log());
   if (scene.twist) in.ramp_end_ps = scene.twist->ramp_time();
   in.tube_radius = p.topology.largest_radius();
@@ -127,9 +128,30 @@ void warn_of_long_elements(const ParameterSet& set, double length, std::vector<s
         length, set.name, bend, 100 * error));
 }
 
+// Where a tube is long enough to come back to itself without a kink, and the contact is left out there.
+void warn_of_long_exclusion(const Scene& scene, const Topology& topology, std::vector<std::string>& warnings) {
+  const double excluded = scene.contact.exclude_along_tube;
+  const auto law = contact_law(scene);
+  std::vector<bool> told(scene.sets.size());
+  for (int t = 0; law && t < topology.tubes(); ++t) {
+    const int type = topology.tube_type[t];
+    const auto set = static_cast<std::size_t>(type);
+    const double loop = smallest_loop(scene.sets[set].validity.kink_curvature, law->range({type, type}));
+    const double length = topology.length_of(t) * topology.type_of(t).element_length;
+    if (told[set] || length <= loop || excluded <= loop) continue;
+    told[set] = true;
+    warnings.push_back(fmt::format(
+        "contact.exclude_along_tube_nm = {:.4g}: a tube of {:.4g} nm of {} can touch itself in loops of {:.3g} nm "
+        "without a kink, and {}.",
+        excluded, length, scene.sets[set].name, loop,
+        length <= excluded ? "nothing of it attracts itself"
+                           : "parts nearer than the key along it do not attract"));
+  }
+}
+
 }  // namespace
 
-std::vector<std::string> warnings_of(const Scene& scene) {
+std::vector<std::string> warnings_of(const Scene& scene, const Topology& topology) {
   std::vector<std::string> warnings;
   if (scene.contact.legacy_torque)
     warnings.push_back("This run leaves out the torque that the published force code leaves out: it gains energy.");
@@ -155,6 +177,7 @@ std::vector<std::string> warnings_of(const Scene& scene) {
                       "2e-4 of the binding energy.",
                       scene.contact.nodes, needed));
   }
+  warn_of_long_exclusion(scene, topology, warnings);
   for (const ParameterSet& set : scene.sets) warn_of_long_elements(set, scene.element_length, warnings);
   return warnings;
 }

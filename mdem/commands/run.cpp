@@ -26,6 +26,7 @@
 #include "run/stages.hpp"
 #include "scene/finer.hpp"
 #include "scene/scene_toml.hpp"
+#include "scene/state_csv.hpp"
 #include "scene/watch.hpp"
 #include "sim/dynamics/refine.hpp"
 #include "version.hpp"
@@ -113,11 +114,20 @@ class Run {
     const double span = prepared_.duration > 0 ? prepared_.duration : 1000 * dt;
     log_every_ = every(scene_.run.log_every, span, 400, dt);
     frames_every_ = every(scene_.run.frames_every, span, 40, dt);
-    last_step_ = std::lround(prepared_.duration / dt);
+    last_step_ = scene_.run.mode == RunOptions::Mode::relax ? -1 : std::lround(prepared_.duration / dt);
   }
 
-  void stop_at(long steps) { last_step_ = steps; }
-  void stop_at_time(double ps) { last_step_ = std::lround(ps / prepared_.time_step); }
+  // What is less than zero is not asked for.
+  void stop_at(long steps, double ps) {
+    if (ps >= 0 && scene_.run.mode == RunOptions::Mode::relax)
+      throw InputError({"", 0, "--until"}, "a relaxation has no time", "take --steps");
+    if (ps >= 0) last_step_ = std::lround(ps / prepared_.time_step);
+    if (steps >= 0) last_step_ = steps;
+  }
+
+  void say_warnings() const {
+    for (const std::string& warning : warnings_of(scene_, prepared_.topology)) say("note: " + warning);
+  }
 
   // Before anything is done: can it do what it is asked to.
   void check_manner() const {
@@ -162,6 +172,7 @@ class Run {
     std::signal(SIGINT, on_signal);
     std::signal(SIGTERM, on_signal);
     started_ = now();
+    std::filesystem::remove(dir_.final_state());  // of an earlier end
     write_manifest("running", "");
     try {
       const bool relax = scene_.run.mode == RunOptions::Mode::relax;
@@ -224,8 +235,7 @@ class Run {
     double checkpoint_at = now() + scene_.run.checkpoint_every;
     const long checked_every = std::min(log_every_, check_every);
     StopReason stop = StopReason::none;  // it ends after a step with energies: this one, or the next
-    if (simulation_.state().step < last_step_ && std::isfinite(simulation_.total_energy()))
-      stop = check_limits();
+    if (simulation_.state().step < last_step_ && std::isfinite(simulation_.total_energy())) stop = check_limits();
     if (stop != StopReason::none) return stop;
     double seconds = patience;  // of a step
     while (simulation_.state().step < last_step_) {
@@ -255,8 +265,10 @@ class Run {
   StopReason relax_loop() {
     Progress progress(policy_.quiet, 0, 0);
     StopReason stop = StopReason::none;
-    const long max_steps = last_step_ > 0 ? last_step_ : scene_.run.max_steps;
-    at_rest_ = simulation_.relax(scene_.run.force_tolerance, max_steps, [&](long k) {
+    const RelaxGoal& goal = scene_.run.goal;
+    const long max_steps = last_step_ >= 0 ? std::max(0L, last_step_ - static_cast<long>(simulation_.state().step))
+                                           : scene_.run.max_steps;
+    const Relaxed end = simulation_.relax(goal, max_steps, [&](long k) {
       if (k % 100 == 0) {
         write_row();
         stop = check_limits();
@@ -270,9 +282,22 @@ class Run {
     if (caught_signal) return StopReason::signal;
     if (stop == StopReason::none) stop = check_limits();
     if (stop != StopReason::none) return stop;
-    reason_ = at_rest_ ? fmt::format("relaxed: largest force below {:.3g} eV/nm", scene_.run.force_tolerance)
-                       : fmt::format("not relaxed after {} steps: largest force {:.3g} eV/nm, {:.3g} asked for",
-                                     max_steps, simulation_.largest_force(), scene_.run.force_tolerance);
+    at_rest_ = end.at_rest;
+    const std::string left = fmt::format(
+        "{:.2g} eV above the minimum, that of the bonds within {:.2g} of its value", end.above, end.error);
+    if (at_rest_ && std::isinf(end.above))
+      reason_ = fmt::format(
+          "relaxed: largest force {:.3g} eV/nm; on a saddle, or along some soft motion the energy may still fall",
+          end.force);
+    else if (at_rest_)
+      reason_ = fmt::format("relaxed: largest force below {:.3g} eV/nm; energy {}, by estimate", goal.force, left);
+    else
+      reason_ = fmt::format("not relaxed after {} steps: largest force {:.3g} eV/nm, {:.3g} asked for", max_steps,
+                            end.force, goal.force);
+    if (!at_rest_ && std::isinf(end.above))
+      reason_ += "; the energy may still fall along some motion: no minimum is near";
+    else if (!at_rest_ && std::isfinite(end.above))
+      reason_ += fmt::format("; energy {}, {:.2g} asked for", left, goal.energy);
     return StopReason::complete;
   }
 
@@ -341,6 +366,11 @@ class Run {
     write_limits();
   }
 
+  void save_end() {
+    save();
+    write_file_atomically(dir_.final_state(), state_csv(prepared_.topology, simulation_.state()));
+  }
+
   void write_limits() const { write_file_atomically(dir_.limits(), limits_json({watch_.records(), refinements_})); }
 
   double wall() const { return earlier_seconds_ + now() - started_; }
@@ -366,7 +396,7 @@ class Run {
   }
 
   int finish() {
-    save();
+    save_end();
     write_manifest(at_rest_ ? "finished" : "not relaxed", reason_);
     write_report(dir_, scene_, prepared_);
     const std::string passed = passed_words(watch_.records());
@@ -380,7 +410,7 @@ class Run {
   }
 
   int stopped() {
-    save();
+    save_end();
     const std::string reason = fmt::format("stopped at {:.3f} ps where a limit was passed: {}",
                                            simulation_.state().time, passed_words(watch_.records()));
     write_manifest("stopped", reason);
@@ -395,7 +425,7 @@ class Run {
 
   // This run ends here, whole; the next one is made of it.
   std::unique_ptr<Run> refined() {
-    save();
+    save_end();
     const RunDirectory to = write_finer_scene(dir_, scene_, prepared_, simulation_.state().time, policy_.force);
     auto next = std::make_unique<Run>(to, read_run_scene(to), policy_);
     next->inherit_from(*this);
@@ -423,7 +453,7 @@ class Run {
       at.state.step = std::llround(at.state.time / prepared_.time_step);
       const double dt = coarse.prepared_.time_step;  // the scene's own end, if it was not told another one
       if (coarse.last_step_ != std::lround(coarse.prepared_.duration / dt))
-        stop_at_time(static_cast<double>(coarse.last_step_) * dt);
+        stop_at(-1, static_cast<double>(coarse.last_step_) * dt);
     }
     simulation_ = start(scene_, at);
     simulation_.inherit_from(simulation_.forces().force, simulation_.forces().torque, coarse.simulation_.account());
@@ -456,7 +486,7 @@ class Run {
   }
 
   int interrupted() {
-    save();
+    save_end();
     const std::string reason =
         fmt::format("stopped by signal {} at {:.3f} ps", static_cast<int>(caught_signal), simulation_.state().time);
     write_manifest("interrupted", reason);
@@ -512,14 +542,14 @@ std::unique_ptr<Run> new_run(const RunArguments& a) {
   // Everything that can be wrong is found before a file is touched.
   auto run = std::make_unique<Run>(dir, scene, policy);
   run->check_manner();
+  run->stop_at(a.steps, a.until_ps);
   check_finer_directory(dir, policy);
   create_run_directory(dir, a.force);
   write_file_atomically(dir.scene(), scene.text);
   for (std::size_t k = 0; k < scene.sets.size(); ++k)
     write_file_atomically(dir.parameters(k), read_file(scene.sets[k].path));
   if (scene.from_file()) write_file_atomically(dir.state(), read_file(scene.source->file()));
-  for (const std::string& warning : warnings_of(scene)) fmt::print(stderr, "ropewalk: note: {}\n", warning);
-  if (a.steps >= 0) run->stop_at(a.steps);
+  run->say_warnings();
   run->begin();
   return run;
 }
@@ -561,8 +591,7 @@ int resume_command(const ResumeArguments& a) {
   const RunPolicy policy{a.quiet, on_limit_of(a.on_limit), false};
   check_finer_directory(dir, policy);
   auto run = std::make_unique<Run>(dir, read_run_scene(dir), policy);
-  if (a.until_ps >= 0) run->stop_at_time(a.until_ps);
-  if (a.steps >= 0) run->stop_at(a.steps);
+  run->stop_at(a.steps, a.until_ps);
   run->restore(checkpoint);
   return go_through(std::move(run));
 }

@@ -23,7 +23,7 @@ void FixDamp::apply(const DampingForce& d, int i, int j) {
 void FixDamp::contacts() {
   const ContactViscosity& viscosity = model_->interaction.damping.contact;
   const double reach = std::min(viscosity.outer, model_->interaction.cutoff());
-  for_contacts(lmp, *force->pair, model_->interaction.exclude_along_tube, [&](int i, int j) {
+  for_contacts(lmp, *force->pair, *model_, [&](int i, int j) {
     const Vector3 separation = vector(atom->x[j]) - vector(atom->x[i]);
     if (separation.squaredNorm() < reach * reach)
       apply(viscosity.force(separation, vector(atom->v[i]), vector(atom->omega[i]), vector(atom->v[j]),

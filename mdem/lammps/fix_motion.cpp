@@ -273,6 +273,7 @@ int FixRelax::setmask() { return FixMotion::setmask() | INITIAL_INTEGRATE | END_
 void FixRelax::setup(int) {
   fire_ = Fire(model_->start.time_step);
   steps_ = 0;
+  last_ = 0;
   stop();
 }
 
@@ -326,7 +327,7 @@ void FixRelax::initial_integrate(int) {
   if (sums().power > 0) {
     fire_.went_down();
   } else {
-    if (steps_ > 0) move(-0.5 * fire_.dt);
+    move(-0.5 * last_);
     stop();
     fire_.went_up();
   }
@@ -338,7 +339,8 @@ void FixRelax::initial_integrate(int) {
   if (!std::isfinite(speed))
     refuse(lmp, "step " + std::to_string(update->ntimestep) + ": relaxation met a force that is not finite",
            "start from a state without overlaps");
-  move(speed > 0 ? std::min(fire_.dt, Fire::farthest(radius_) / speed) : fire_.dt);
+  last_ = speed > 0 ? std::min(fire_.dt, Fire::farthest(radius_) / speed) : fire_.dt;
+  move(last_);
   ++steps_;
 }
 
@@ -349,13 +351,17 @@ double FixRelax::largest_force() {
   for (std::size_t i = 0; i < n; ++i) {
     linear[i] = &values[6 * i];
     angular[i] = &values[6 * i + 3];
-    store(linear[i], vector(atom->f[i]));
-    store(angular[i], vector(atom->torque[i]));
+    const TubeType& type = type_of(*model_, *atom, static_cast<int>(i));
+    store(linear[i], vector(atom->f[i]) / type.mass);
+    store(angular[i], vector(atom->torque[i]) / type.inertia);
   }
   if (grip_) grip_->free_parts(now(), linear.data(), angular.data());
   double own = 0, all = 0;
-  for (std::size_t i = 0; i < n; ++i)
-    own = std::max({own, vector(linear[i]).norm(), vector(angular[i]).norm() / model_->topology.largest_radius()});
+  for (std::size_t i = 0; i < n; ++i) {
+    const TubeType& type = type_of(*model_, *atom, static_cast<int>(i));
+    own = std::max(
+        {own, type.mass * vector(linear[i]).norm(), type.inertia * vector(angular[i]).norm() / type.radius});
+  }
   MPI_Allreduce(&own, &all, 1, MPI_DOUBLE, MPI_MAX, world);
   return all;
 }

@@ -86,6 +86,7 @@ class FixRelax : public FixMotion {
   Fire fire_;
   double radius_ = 0, scale2_ = 0;
   long steps_ = 0;
+  double last_ = 0;  // ps, of the last step
 };
 
 }  // namespace ropewalk::lammps

@@ -28,7 +28,7 @@ LammpsModel load_lammps_model(const std::string& directory) {
   m.loads = loads_of(scene, m.topology);
   m.law = scene.contact.law;
   m.relax = scene.run.mode == RunOptions::Mode::relax;
-  m.force_tolerance = scene.run.force_tolerance;
+  m.force_tolerance = scene.run.goal.force;
   if (m.loads.spin_relaxation_interval() > 0)
     throw InputError({dir.scene(), 0, "twist.geometric_only"}, "is not for LAMMPS",
                      "run this scene with `ropewalk run`");

@@ -51,7 +51,7 @@ void PairMdem::init_style() {
   // special_bonds leaves neighbours along a tube out of the list or keeps them; the model leaves them out itself.
   for (int bonds = 1; bonds <= 3; ++bonds) {
     const bool kept = force->special_lj[bonds] != 0;
-    if (!kept && bonds > model_->interaction.exclude_along_tube)
+    if (!kept && bonds > model_->topology.fewest_within(model_->interaction.excluded_arc()))
       refuse(lmp, "special_bonds leaves out elements of a tube that touch in this scene",
              "write: special_bonds lj/coul 1 1 1");
     if (kept && force->special_lj[bonds] != 1)
@@ -90,7 +90,7 @@ void PairMdem::compute(int eflag, int vflag) {
   const int all = atom->nlocal + atom->nghost;
   axis_.resize(static_cast<std::size_t>(all));
   for (int i = 0; i < all; ++i) axis_[static_cast<std::size_t>(i)] = axis_of(quaternion(q[i]));
-  for_contacts(lmp, *this, model_->interaction.exclude_along_tube, [&](int i, int j) { contact(i, j); });
+  for_contacts(lmp, *this, *model_, [&](int i, int j) { contact(i, j); });
   if (vflag_fdotr) virial_fdotr_compute();
 }
 

@@ -32,7 +32,7 @@ class PairMdem : public LMP::Pair {
 // Calls f(i, j) for every pair of the half list of `pair` that interacts, i being the lower element, and both as
 // indices of atoms.
 template <class F>
-void for_contacts(LMP::LAMMPS* lmp, const LMP::Pair& pair, int exclude_along_tube, F f) {
+void for_contacts(LMP::LAMMPS* lmp, const LMP::Pair& pair, const LammpsModel& model, F f) {
   const LMP::Atom& atom = *lmp->atom;
   const LMP::NeighList& list = *pair.list;
   for (int k = 0; k < list.inum; ++k) {
@@ -40,7 +40,9 @@ void for_contacts(LMP::LAMMPS* lmp, const LMP::Pair& pair, int exclude_along_tub
     for (int n = 0; n < list.numneigh[a]; ++n) {
       const int b = list.firstneigh[a][n] & NEIGHMASK;
       const int i = atom.tag[a] < atom.tag[b] ? a : b, j = i == a ? b : a;
-      if (atom.molecule[i] == atom.molecule[j] && atom.tag[j] - atom.tag[i] <= exclude_along_tube) continue;
+      if (atom.molecule[i] == atom.molecule[j] &&
+          atom.tag[j] - atom.tag[i] <= type_of(model, atom, i).elements_within(model.interaction.excluded_arc()))
+        continue;
       f(i, j);
     }
   }

@@ -156,7 +156,7 @@ std::map<std::string, double> seen(const Model& m, double stretch) {
   Observed observed(m);
   Simulation s = m.at(m.end);
   if (m.scene.run.mode == RunOptions::Mode::relax) {
-    s.relax(m.scene.run.force_tolerance, m.scene.run.max_steps, [](long) { return true; });
+    s.relax(m.scene.run.goal, m.scene.run.max_steps, [](long) { return true; });
     observed.add(s);
     return observed.means();
   }
@@ -171,7 +171,9 @@ std::map<std::string, double> seen(const Model& m, double stretch) {
 
 }  // namespace
 
-double SpotCheck::Comparison::error() const { return finer != 0 ? std::fabs(planned / finer - 1) : std::fabs(planned); }
+double SpotCheck::Comparison::error() const {
+  return finer != 0 ? std::fabs(planned / finer - 1) : std::fabs(planned);
+}
 
 SpotCheck spot_check(const Scene& scene, const Prepared& prepared, const State& end, double stretch) {
   const std::string kept = fixed_length(scene);

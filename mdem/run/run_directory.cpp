@@ -10,7 +10,6 @@
 #include "model/error.hpp"
 #include "scene/kinds/state.hpp"
 #include "scene/scene_toml.hpp"
-#include "scene/state_csv.hpp"
 
 namespace ropewalk {
 namespace {
@@ -44,6 +43,8 @@ const std::vector<OutputFile>& run_files() {
       {"manifest.json", "run", "program, inputs and how the run ended"},
       {"checkpoint.bin", "run", "binary: where `resume` goes on"},
       {"report.html", "run, report", "page with charts, pictures and all observables"},
+      {"final.csv", "run, import",
+       "the state at the end, interrupted or not: the start of another scene by [state]"},
       {"failed-state.csv", "run", "the state of a run that failed"},
       {"README.txt", "export", "how to run LAMMPS here"},
       {"in.rope", "export", "input of LAMMPS"},
@@ -152,18 +153,6 @@ RopeObservation observe(const Observer& o, const Scene& scene, const Topology& t
 LogRow log_row(const Observer& o, const Scene& scene, const Topology& topology, const State& state,
                const EnergyAccount& account) {
   return LogRow({topology, state, observe(o, scene, topology, state), account});
-}
-
-std::string state_csv(const Topology& topology, const State& s) {
-  std::string text = column_names(state_columns()) + "\n";
-  for (int t = 0; t < topology.tubes(); ++t)
-    for (int e = topology.tube_begin[t]; e < topology.tube_begin[t + 1]; ++e) {
-      const auto i = static_cast<std::size_t>(e);
-      const Vector3 x = s.position[i];
-      const Quaternion q = s.orientation[i];
-      text += fmt::format("{},{},{},{},{},{},{},{}\n", t, x.x(), x.y(), x.z(), q.w(), q.x(), q.y(), q.z());
-    }
-  return text;
 }
 
 }  // namespace ropewalk

@@ -27,6 +27,7 @@ struct RunDirectory {
   std::string state() const { return file("state.csv"); }
   std::string report() const { return file("report.html"); }
   std::string limits() const { return file("limits.json"); }
+  std::string final_state() const { return file("final.csv"); }
   std::string failed_state() const { return file("failed-state.csv"); }
   std::string paraview() const { return file("paraview"); }
 };
@@ -71,11 +72,8 @@ RopeObservation observe(const Observer& observer, const Scene& scene, const Topo
 LogRow log_row(const Observer& observer, const Scene& scene, const Topology& topology, const State& state,
                const EnergyAccount& account);
 
-// CSV in the format that [state] reads.
-std::string state_csv(const Topology& topology, const State& state);
-
 // Warnings about the scene for readers of the results, one sentence each.
-std::vector<std::string> warnings_of(const Scene& scene);
+std::vector<std::string> warnings_of(const Scene& scene, const Topology& topology);
 
 // Makes report.html from the files of the directory.
 void write_report(const RunDirectory& dir, const Scene& scene, const Prepared& prepared);

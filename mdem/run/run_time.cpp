@@ -93,8 +93,9 @@ double seconds_of_steps(const Scene& scene, const Prepared& p) {
 void time_relaxation(const Scene& scene, const Prepared& p, RunTime& t) {
   Simulation s = start(scene, p);
   const double began = processor_seconds();
-  const bool at_rest = s.relax(scene.run.force_tolerance, scene.run.max_steps,
-                               [&](long) { return processor_seconds() - began < 2 * enough; });
+  const bool at_rest = s.relax(scene.run.goal, scene.run.max_steps, [&](long) {
+                          return processor_seconds() - began < 2 * enough;
+                        }).at_rest;
   const auto steps = static_cast<double>(std::max<std::int64_t>(s.state().step, 1));
   t.each = (processor_seconds() - began) / steps;
   t.steps = at_rest ? steps : 0;

@@ -7,6 +7,7 @@
 
 #include "io/files.hpp"
 #include "scene/finer.hpp"
+#include "scene/state_csv.hpp"
 #include "sim/dynamics/refine.hpp"
 
 namespace ropewalk {

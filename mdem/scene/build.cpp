@@ -26,6 +26,12 @@ void check_state(const Scene& scene, const BuiltScene& built) {
   if (scene.start.temperature > 0 && built.state.size() < 2)
     throw InputError({scene.path, 0, "start.temperature_K"},
                      "one element alone has no thermal motion about its centre", "take 0");
+  const auto moves = [](const Vec3Array& v, std::size_t i) { return !v[i].isZero(0); };
+  for (std::size_t i = 0; scene.start.temperature > 0 && i < built.state.size(); ++i)
+    if (moves(built.state.velocity, i) || moves(built.state.angular_velocity, i))
+      throw InputError({scene.path, 0, "start.temperature_K"},
+                       fmt::format("would replace the velocities of {}", scene.source->file()),
+                       "take it away, or the last six columns of the file");
   if (!scene.twist) return;
   if (scene.twist->application == TwistLoad::Application::tangential && built.topology.tubes() == 1)
     throw InputError({scene.path, 0, "twist.application"},

@@ -131,10 +131,6 @@ struct KeyOf {
     doc.tube_size = size;
     return std::move(*this);
   }
-  KeyOf in_unit(const char* name) && {
-    doc.unit = name;
-    return std::move(*this);
-  }
 
  private:
   static KeyOf made(const std::string& key, const std::string& unit_name, const Presence& p,

@@ -231,7 +231,7 @@ std::string pair_line(const LammpsScript& s) {
 
 std::string lammps_input(const LammpsScript& s) {
   // LAMMPS leaves out neighbours along a chain by 1, 2 and 3 bonds; the model says up to how many.
-  const auto weight = [&](int bonds) { return bonds <= s.exclude_along_tube ? 0 : 1; };
+  const auto weight = [&](int bonds) { return bonds <= s.excluded_elements ? 0 : 1; };
   std::string text = fmt::format(
       "# {}. Run with lmp-ropewalk. Units are nm, ps and eV, in which LAMMPS's \"lj\" has all factors 1.\n"
       "# On the command line: -var steps N, -var restart FILE (to go on from a restart file).\n"

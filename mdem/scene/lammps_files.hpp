@@ -69,7 +69,7 @@ struct LammpsScript {
   bool damped = false, driven = false, relax = false;
   bool long_in_z = true;  // a rope or a chain: cut across it
   double radius = 0, skin = 0, reach = 0, longest_element = 0;
-  int exclude_along_tube = 20;
+  int excluded_elements = 3;  // along any tube: contact skips at least so many
   double time_step = 0;
   std::int64_t step = 0, steps = 0, every = 1;
 };

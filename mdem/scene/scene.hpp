@@ -15,6 +15,7 @@
 #include "scene/kinds/scene_kind.hpp"
 #include "scene/loads/load_kind.hpp"
 #include "scene/loads/twist.hpp"
+#include "sim/dynamics/relax_goal.hpp"
 #include "sim/dynamics/stepping.hpp"
 #include "sim/dynamics/thermostat.hpp"
 #include "sim/state/interaction.hpp"
@@ -35,10 +36,10 @@ struct BondOptions {
 struct ContactOptions {
   std::string law = "paper";  // of scene/laws/contact_law_kind.hpp, or "none"
   bool legacy_torque = false;
-  int exclude_along_tube = 20;  // pairs of one tube up to this many elements apart do not interact
-  double skin = 0;              // nm; 0: chosen by the program
-  double cutoff = 0;            // nm, of axes (`line`) or element centres (`paper`); 0: the set's
-  int nodes = 0;                // `line`: per element; 0: as line_nodes chooses
+  double exclude_along_tube = 0;  // nm; 0: least_exclusion()
+  double skin = 0;                // nm; 0: chosen by the program
+  double cutoff = 0;              // nm, of axes (`line`) or element centres (`paper`); 0: the set's
+  int nodes = 0;                  // `line`: per element; 0: as line_nodes chooses
   // Pairs in single precision or all in double; the former by default where nothing is relaxed to tight tolerances.
   std::optional<Interaction::Precision> precision;
 };
@@ -48,14 +49,14 @@ struct RunOptions {
   Mode mode = Mode::dynamics;
   double time_step = 0;  // ps, of bonds; 0: chosen from the stiffest mode
   Stepping stepping;
-  double mass_scale = 1;          // of masses and inertias
-  double duration = 0;            // ps; 0 with [twist]: ramp plus hold
-  double frames_every = 0;        // ps; 0: 40 frames
-  double log_every = 0;           // ps; 0: 400 rows
-  double checkpoint_every = 60;   // s of wall time
-  double force_tolerance = 1e-4;  // eV/nm, relax mode
-  long max_steps = 200000;        // relax mode
-  bool paraview = false;          // also write VTP/PVD
+  double mass_scale = 1;         // of masses and inertias
+  double duration = 0;           // ps; 0 with [twist]: ramp plus hold
+  double frames_every = 0;       // ps; 0: 40 frames
+  double log_every = 0;          // ps; 0: 400 rows
+  double checkpoint_every = 60;  // s of wall time
+  RelaxGoal goal;                // relax mode
+  long max_steps = 200000;       // relax mode
+  bool paraview = false;         // also write VTP/PVD
 };
 
 struct ObserveOptions {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "model/self_contact.hpp"
 #include "scene/laws/contact_law_kind.hpp"
 
 namespace ropewalk {
@@ -54,6 +55,15 @@ std::vector<ContactRange> contact_ranges(const Scene& scene) {
   return out;
 }
 
+double least_exclusion(const Scene& scene) {
+  double length = 0;
+  const auto law = contact_law(scene);
+  for (int t = 0; law && t < static_cast<int>(scene.sets.size()); ++t)
+    length = std::max(
+        length, nearest_arc(scene.sets[static_cast<std::size_t>(t)].validity.kink_curvature, law->range({t, t})));
+  return length;
+}
+
 std::shared_ptr<const ContactLaw> contact_law(const Scene& scene) {
   const ContactLawKind* kind = contact_law_kind(scene.contact.law);
   return kind ? kind->make(scene) : nullptr;
@@ -65,7 +75,8 @@ Interaction interaction_of(const Scene& scene) {
   const bool relax = scene.run.mode == RunOptions::Mode::relax;
   in.precision =
       scene.contact.precision.value_or(relax ? Interaction::Precision::full : Interaction::Precision::mixed);
-  in.exclude_along_tube = scene.contact.exclude_along_tube;
+  in.exclude_along_tube =
+      scene.contact.exclude_along_tube > 0 ? scene.contact.exclude_along_tube : least_exclusion(scene);
   in.damping = scene.damping;
   return in;
 }

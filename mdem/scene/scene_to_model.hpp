@@ -31,6 +31,10 @@ struct ContactRange {
 };
 std::vector<ContactRange> contact_ranges(const Scene& scene);
 
+// nm, along a tube: so far the contact reaches on one nearly straight piece of it (nearest_arc), at the kink
+// curvature of the set; the largest of all tube types. 0 without contact.
+double least_exclusion(const Scene& scene);
+
 // The contact law of the scene; null: none.
 std::shared_ptr<const ContactLaw> contact_law(const Scene& scene);
 

@@ -15,7 +15,7 @@
 namespace ropewalk {
 namespace {
 
-constexpr std::array<OutputColumn, 8> columns = {{
+constexpr std::array<OutputColumn, 14> columns = {{
     {"tube", "", "tube, from 0; its elements follow one another along it"},
     {"x_nm", "nm", "centre of the element"},
     {"y_nm", "nm", "centre of the element"},
@@ -24,8 +24,16 @@ constexpr std::array<OutputColumn, 8> columns = {{
     {"qx", "", "orientation: x"},
     {"qy", "", "orientation: y"},
     {"qz", "", "orientation: z"},
+    {"vx_nm_per_ps", "nm/ps", "velocity; a file may leave out these last six columns, all is then at rest"},
+    {"vy_nm_per_ps", "nm/ps", "velocity"},
+    {"vz_nm_per_ps", "nm/ps", "velocity"},
+    {"wx_rad_per_ps", "rad/ps", "angular velocity, about the axes of space"},
+    {"wy_rad_per_ps", "rad/ps", "angular velocity"},
+    {"wz_rad_per_ps", "rad/ps", "angular velocity"},
 }};
-const std::string header = column_names(columns);
+constexpr std::size_t columns_at_rest = 8;
+const std::string whole_header = column_names(columns);
+const std::string header = whole_header.substr(0, whole_header.find(",vx"));
 constexpr double farthest = 1e7;                          // nm
 constexpr double norm_slack = 1e-3;                       // of a quaternion
 constexpr double shortest_bond = 0.1, longest_bond = 10;  // element lengths
@@ -40,6 +48,7 @@ struct Row {
   int tube = 0;
   Vector3 position;
   Quaternion orientation;
+  Vector3 velocity, spin;
 };
 
 class Reader {
@@ -80,28 +89,34 @@ class Reader {
     std::string squeezed;
     for (const char c : line)
       if (c != ' ' && c != '\t') squeezed += c;
-    if (squeezed != header)
+    if (squeezed != header && squeezed != whole_header)
       fail("", fmt::format("the header is \"{}\"", printable(std::string(line), 60)),
-           fmt::format("it must be {}", header));
+           fmt::format("it must be {0}, or {1}", header, whole_header));
+    columns_here_ = squeezed == header ? columns_at_rest : columns.size();
     seen_header_ = true;
   }
 
   Row parsed(std::string_view line) const {
-    std::array<double, 8> value{};
+    std::array<double, columns.size()> value{};
     std::size_t count = 0;
     while (true) {
       const std::size_t comma = line.find(',');
-      if (count < value.size()) value[count] = number(trimmed(line.substr(0, comma)), columns[count].name);
+      if (count < columns_here_) value[count] = number(trimmed(line.substr(0, comma)), columns[count].name);
       ++count;
       if (comma == std::string_view::npos) break;
       line.remove_prefix(comma + 1);
     }
-    if (count != value.size())
-      fail("", fmt::format("has {} columns", count), fmt::format("8 are needed: {}", header));
+    if (count != columns_here_)
+      fail("", fmt::format("has {} columns", count),
+           fmt::format("{} are needed, as the header has", columns_here_));
     const Quaternion q(value[4], value[5], value[6], value[7]);
     if (!(std::fabs(q.norm() - 1) <= norm_slack))
       fail("qw", fmt::format("the quaternion has length {:.6g}", q.norm()), "it must be 1 within 0.001");
-    return {tube_number(value[0]), {value[1], value[2], value[3]}, q.normalized()};
+    return {tube_number(value[0]),
+            {value[1], value[2], value[3]},
+            q.normalized(),
+            {value[8], value[9], value[10]},
+            {value[11], value[12], value[13]}};
   }
 
   double number(std::string_view text, const char* column) const {
@@ -148,6 +163,8 @@ class Reader {
     for (std::size_t i = 0; i < rows_.size(); ++i) {
       s.position.set(i, rows_[i].position);
       s.orientation.set(i, rows_[i].orientation);
+      s.velocity.set(i, rows_[i].velocity);
+      s.angular_velocity.set(i, rows_[i].spin);
     }
     return s;
   }
@@ -157,6 +174,7 @@ class Reader {
   double element_length_ = topology_.types.front().element_length;
   std::vector<Row> rows_;
   int line_ = 0;
+  std::size_t columns_here_ = 0;
   bool seen_header_ = false;
 };
 
@@ -168,6 +186,19 @@ void read_state_csv(const std::string& path, Topology& topology, State& state) {
   topology.tube_begin = {0};
   topology.tube_type.clear();
   state = Reader(path, topology).read();
+}
+
+std::string state_csv(const Topology& topology, const State& s) {
+  std::string text = whole_header + "\n";
+  for (int t = 0; t < topology.tubes(); ++t)
+    for (int e = topology.tube_begin[t]; e < topology.tube_begin[t + 1]; ++e) {
+      const auto i = static_cast<std::size_t>(e);
+      const Vector3 x = s.position[i], v = s.velocity[i], w = s.angular_velocity[i];
+      const Quaternion q = s.orientation[i];
+      text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", t, x.x(), x.y(), x.z(), q.w(), q.x(),
+                          q.y(), q.z(), v.x(), v.y(), v.z(), w.x(), w.y(), w.z());
+    }
+  return text;
 }
 
 }  // namespace ropewalk

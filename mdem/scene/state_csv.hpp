@@ -1,6 +1,6 @@
-// Elements from a CSV file: tube,x_nm,y_nm,z_nm,qw,qx,qy,qz, one element a line, those of a tube one after
-// another along it, tubes numbered 0, 1, 2, ... in order. Empty lines and lines that start with # are skipped.
-// The quaternion turns the element's own z into its tube axis.
+// Elements from a CSV file: tube,x_nm,y_nm,z_nm,qw,qx,qy,qz and, where they move, velocities and spins; one element
+// a line, those of a tube one after another along it, tubes numbered 0, 1, 2, ... in order. Empty lines and lines
+// that start with # are skipped. The quaternion turns the element's own z into its tube axis.
 #pragma once
 
 #include <string>
@@ -16,5 +16,8 @@ std::vector<OutputColumn> state_columns();
 // Fills tubes and state; all elements have the length of the first of topology.types. Throws InputError with file,
 // line and column.
 void read_state_csv(const std::string& path, Topology& topology, State& state);
+
+// The file, with velocities, in all digits.
+std::string state_csv(const Topology& topology, const State& state);
 
 }  // namespace ropewalk

@@ -269,7 +269,7 @@ TEST_F(Cli, RunWritesEverythingAndProtectsIt) {
   small_rope("s.toml", "paraview = true\n");
   ASSERT_EQ(run("run s.toml --out d").code, 0);
   for (const char* name : {"log.csv", "frames.lammpstrj", "manifest.json", "report.html", "checkpoint.bin",
-                           "scene.toml", "parameters.toml", "paraview/rope.pvd"})
+                           "scene.toml", "parameters.toml", "paraview/rope.pvd", "final.csv"})
     EXPECT_TRUE(fs::exists(dir / "d" / name)) << name;
   const auto listed = ropewalk::test::outputs_names("The directory of a run");
   for (const auto& entry : fs::directory_iterator(dir / "d"))
@@ -294,6 +294,54 @@ TEST_F(Cli, RunWritesEverythingAndProtectsIt) {
   spit(dir / "d/thesis.tex", "years of work");
   EXPECT_EQ(run("run s.toml --out d --force --steps 3").code, 2);
   EXPECT_TRUE(fs::exists(dir / "d/thesis.tex"));
+}
+
+// The end of a run as the start of another one.
+TEST_F(Cli, FinalStateIsTheStartOfAnotherScene) {
+  small_rope("s.toml", "", "[contact]\nprecision = \"double\"\n");
+  ASSERT_EQ(run("run s.toml --out d --quiet --until 2").code, 0);
+  const ropewalk::LogRow last = ropewalk::read_log((dir / "d/log.csv").string()).back();
+  EXPECT_NEAR(last["time_ps"], 2, 0.02);
+  spit(dir / "next.toml",
+       "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-paper\"\n[state]\nfile = \"d/final.csv\"\n"
+       "[contact]\nprecision = \"double\"\n[run]\nduration_ps = 0.05\n");
+  ASSERT_EQ(run("run next.toml --out e --quiet").code, 0);
+  const ropewalk::LogRow first = ropewalk::read_log((dir / "e/log.csv").string()).front();
+  for (const char* energy : {"stretch_eV", "bend_eV", "twist_eV", "vdw_eV", "kinetic_eV"})
+    EXPECT_NEAR(first[energy] / last[energy], 1, 1e-10) << energy;
+  EXPECT_GT(last["kinetic_eV"], 1);
+  const std::string before = slurp(dir / "d/final.csv");
+  ASSERT_EQ(run("resume d --quiet --until 2.5").code, 0);
+  EXPECT_NE(slurp(dir / "d/final.csv"), before);
+}
+
+TEST_F(Cli, RunStopsAtATime) {
+  small_rope("s.toml");
+  ASSERT_EQ(run("run s.toml --out d --quiet --until 1").code, 0);
+  EXPECT_NEAR(ropewalk::read_log((dir / "d/log.csv").string()).back()["time_ps"], 1, 0.02);
+  EXPECT_EQ(run("run s.toml --out e --until 1 --steps 5").code, 2);
+  spit(dir / "r.toml",
+       "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-paper\"\n[chain]\nelements = 5\n[run]\nmode = "
+       "\"relax\"\n");
+  const Outcome o = run("run r.toml --out f --until 1");
+  EXPECT_EQ(o.code, 2);
+  EXPECT_EQ(o.err, "ropewalk: --until: a relaxation has no time; take --steps\n");
+  EXPECT_FALSE(fs::exists(dir / "f"));
+}
+
+TEST_F(Cli, CheckSaysWhereTubesCannotTouchThemselves) {
+  const auto checked = [&](double length) {
+    spit(dir / "s.toml",
+         fmt::format("format = \"ropewalk-scene-1\"\nparameters = \"cnt-5-5-tersoff\"\n[chain]\n"
+                     "elements = {}\n[contact]\nexclude_along_tube_nm = 20\n[run]\nduration_ps = 1\n",
+                     length));
+    return run("check s.toml");
+  };
+  EXPECT_EQ(checked(20).out.find("exclude_along_tube_nm"), std::string::npos);  // too short for a loop
+  EXPECT_NE(checked(25).out.find("can touch itself in loops of 16.4 nm without a kink, and nothing of it attracts"),
+            std::string::npos)
+      << checked(25).out;
+  EXPECT_NE(checked(100).out.find("and parts nearer than the key along it do not attract"), std::string::npos);
 }
 
 TEST_F(Cli, ResumeGoesOnBitForBitOnOtherThreads) {
@@ -415,6 +463,7 @@ TEST_F(Cli, SignalsWriteACheckpoint) {
     EXPECT_EQ(WEXITSTATUS(status), 128 + number);
     const Json manifest = Json::parse(slurp(dir / out / "manifest.json"));
     EXPECT_EQ(manifest.at("status"), "interrupted");
+    EXPECT_TRUE(fs::exists(dir / out / "final.csv"));
     const auto before = ropewalk::read_log((dir / out / "log.csv").string());
     const long steps = manifest.at("steps").get<long>();
     EXPECT_EQ(run("resume " + out + " --steps " + std::to_string(steps + 40)).code, 0);

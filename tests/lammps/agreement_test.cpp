@@ -58,7 +58,9 @@ std::array<double, 6> reference_virial(const Prepared& p) {
         const TubeType& type = t.type_of_element(i);
         add(s, bond_energy_and_gradient(type.bond, type.element_length, s, frame_of(q_i), frame_of(q_j)).force_j);
       }
-      if ((same && j - i <= p.interaction.exclude_along_tube) || s.norm() >= p.interaction.cutoff()) continue;
+      if ((same && j - i <= t.type_of_element(i).elements_within(p.interaction.excluded_arc())) ||
+          s.norm() >= p.interaction.cutoff())
+        continue;
       const TypePair types{t.tube_type[t.tube_of(i)], t.tube_type[t.tube_of(j)]};
       add(s, p.interaction.law->force(types, s, axis_of(q_i), axis_of(q_j)).force_j);
     }

@@ -83,7 +83,7 @@ TEST_F(LammpsRun, RelaxesToTheSameMinimum) {
   Scene scene = read_scene((dir / "scene.toml").string());
   Simulation native = start(scene, prepare(scene));
   const double before = native.forces().energy.potential();
-  ASSERT_TRUE(native.relax(scene.run.force_tolerance, scene.run.max_steps, [](long) { return true; }));
+  ASSERT_TRUE(native.relax(scene.run.goal.force, scene.run.max_steps, [](long) { return true; }));
   ASSERT_LT(native.forces().energy.potential(), before - 0.1);
   ASSERT_GT(native.forces().energy.twist, 0.1);  // orientations have moved
   for (const int ranks : {1, 2}) {

@@ -59,7 +59,7 @@ inline const std::vector<FiveStates>& five_states() {
        unlike_tubes()},
       {"coil",
        "parameters = \"cnt-10-10-paper\"\n[contact]\nlaw = \"paper\"\nprecision = "
-       "\"double\"\nexclude_along_tube_elements = 2\n",
+       "\"double\"\nexclude_along_tube_nm = 5.6\n",
        {helix(4.0, 1.8, 60, a)}},
   };
   return states;

@@ -267,8 +267,7 @@ TEST(ListSkin, IsNeverUsedUpUnseen) {
     const Change now = s.list().change(s.state(), 0, n);
     // By the twist that fits now, not that of the last look.
     ASSERT_LE(now.moved, s.list().displacement() + 1e-4) << k;
-    ASSERT_LE(now.turned, s.list().turn() + 1e-5) << k;
-    if (s.list().turn() > now.turned + 5e-5) ++unseen;
+    if (s.list().displacement() > now.moved + 1.5e-4) ++unseen;
   }
   EXPECT_GT(unseen, 500);
 }
@@ -389,6 +388,73 @@ TEST(Checkpoint, GoesOnWithTheSameLists) {
 }
 
 // Helices whose neighbours cross at random angles.
+// A drag on some elements: its force is that of the velocities in the middle of a step, which no state has.
+class Drag : public Load {
+ public:
+  explicit Drag(std::vector<int> on) : Load(std::move(on)) {}
+  std::shared_ptr<Load> copy() const override { return std::make_shared<Drag>(*this); }
+  void add_forces(const State& state, double, std::vector<PointLoad>& out) const override {
+    for (const int e : elements) {
+      const auto i = static_cast<std::size_t>(e);
+      out.push_back({e, -5 * state.velocity[i], -2 * state.angular_velocity[i]});
+    }
+  }
+};
+
+TEST(Checkpoint, GoesOnUnderALoadThatDependsOnVelocities) {
+  const Bundle b(3, 10, 300);
+  LoadsAndConstraints loads;
+  loads.add(Drag({3, 4, 17}));
+  for (const Stepping& stepping : {Stepping{}, Stepping{3}}) {
+    const auto make = [&] { return Simulation(b.topology, b.in, loads, b.state, 0.01, 0, stepping); };
+    Simulation whole = make(), resumed = make();
+    whole.steps(50);
+    resumed.restore(whole.serialise());
+    EXPECT_EQ(resumed.serialise(), whole.serialise());
+    whole.steps(50);
+    resumed.steps(50);
+    EXPECT_LT(whole.work(), -0.01);
+    EXPECT_EQ(resumed.work(), whole.work());
+    EXPECT_EQ(resumed.serialise(), whole.serialise());
+  }
+}
+
+// Ends of a rope of thick and thin tubes that are held by their centre of mass: no work is left out of the account.
+TEST(TwistLoad, HeldGripOfUnlikeTubesKeepsTheAccountClosed) {
+  Bundle b(7, 10, 0);
+  b.topology.types.push_back(b.topology.types[0]);
+  b.topology.types[1].mass *= 0.2;
+  b.topology.types[1].inertia *= 0.2;
+  for (int t = 0; t < 4; ++t) b.topology.tube_type[static_cast<std::size_t>(t)] = 1;
+  TwistLoad twist;
+  twist.moment = 100, twist.rate = 20, twist.lateral_free = false;
+  LoadsAndConstraints loads;
+  add_twist(twist, b.topology, loads);
+  loads.add(ForceLoad({5}, {3, 0, 0}));
+  Simulation s(b.topology, b.in, loads, b.state, 0.004);
+  const double first = s.total_energy();
+  s.steps(2000);
+  EXPECT_GT(s.work(), 10);
+  EXPECT_NEAR(s.total_energy() - first, s.work(), 2e-3 * s.work());
+  double mass = 0;
+  Vector3 moved = Vector3::Zero();
+  for (int t = 0; t < b.topology.tubes(); ++t) {
+    const auto i = static_cast<std::size_t>(b.topology.tube_begin[t]);
+    moved += b.topology.type_of(t).mass * (s.state().position[i] - b.state.position[i]);
+    mass += b.topology.type_of(t).mass;
+  }
+  EXPECT_LT((moved / mass).head<2>().norm(), 1e-9);
+  // What the grip bears is no force that is left over.
+  LoadsAndConstraints grip;
+  TwistLoad at_rest = twist;
+  at_rest.moment = 1e-9, at_rest.rate = 0;
+  add_twist(at_rest, b.topology, grip);
+  for (int t = 0; t < b.topology.tubes(); ++t)
+    grip.add(ForceLoad({b.topology.tube_begin[t]}, b.topology.type_of(t).mass * Vector3(50, 0, 0)));
+  Interaction none;
+  EXPECT_LT(Simulation(b.topology, none, grip, b.state, 0.004).largest_force(), 1e-6);
+}
+
 TEST(Checkpoint, GoesOnInATwistedRope) {
   TurnedRope rope(0.1, 80);       // in several chunks
   constexpr double pitch = 0.12;  // rad/nm

@@ -74,6 +74,30 @@ TEST(ChainStatics, Stretch) {
   EXPECT_NEAR(strain, 5.0 / c.topology.types[0].bond.stretch, 1e-9);
 }
 
+// Long before it has bent, no force on it is larger than a hundredth of the load's.
+TEST(Relaxation, OfASlenderCantileverGoesOnToItsEnergy) {
+  Chain c(61);
+  c.loads.add(FixLoad({0}));
+  c.loads.add(ForceLoad({60}, {0.06, 0, 0}));
+  Simulation exact = c.make();
+  ASSERT_TRUE(exact.relax(1e-8, 400000, [](long) { return true; }));
+  const double bonds = exact.forces().energy.bonds();
+  Simulation by_force = c.make(), s = c.make();
+  ASSERT_TRUE(by_force.relax(0.02, 400000, [](long) { return true; }));
+  EXPECT_LT(by_force.forces().energy.bonds(), 0.01 * bonds);
+  for (const double tolerance : {1e-1, 1e-2, 1e-3}) {
+    s = c.make();
+    const double first = s.total_energy();
+    const Relaxed end = s.relax(RelaxGoal{0.02, tolerance}, 400000, [](long) { return true; });
+    EXPECT_TRUE(end.at_rest);
+    EXPECT_LT(end.error, tolerance);
+    EXPECT_NEAR(s.forces().energy.bonds() / bonds, 1, 1.5 * tolerance);
+    EXPECT_NEAR(s.total_energy() - s.account().supplied(), first, 1e-9);
+    EXPECT_NEAR(s.work() / (2 * bonds), 1, 2 * tolerance);  // of a constant force
+  }
+  EXPECT_FALSE(c.make().relax(RelaxGoal{0.02, 1e-3}, 500, [](long) { return true; }).at_rest);
+}
+
 // Deflection under a small lateral load grows as 1/(1 - P/P_cr): three loads below extrapolate to P_cr.
 TEST(ChainBuckling, EulerColumn) {
   Chain c(31);

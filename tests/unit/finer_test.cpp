@@ -27,7 +27,7 @@ struct CoarseAndFine {
   std::string text;
 
   explicit CoarseAndFine(const std::string& body, const std::string& top = "parameters = \"cnt-10-10-tersoff\"\n",
-                const std::string& path = place)
+                         const std::string& path = place)
       : coarse(scene_of_text("format = \"ropewalk-scene-1\"\n" + top + body, path)) {
     before = prepare(coarse);
     text = finer_scene_text(coarse, before, "why");
@@ -61,7 +61,7 @@ TEST(FinerScene, KeepsTheTubesWhateverTheTypedLength) {
   expect_halved(CoarseAndFine("[film]\ntubes = 5\nlength_nm = 30\nwidth_nm = 40\ndepth_nm = 35\n" + short_run));
   expect_halved(CoarseAndFine("[chain]\nelements = 9\n" + short_run));
   expect_halved(CoarseAndFine("tube_types = [1, 0, 0, 0, 0, 0, 1]\n[rope]\ntubes = 7\nlength_nm = 14\n" + short_run,
-                     "parameters = [\"cnt-10-10-tersoff\", \"cnt-5-5-tersoff\"]\n"));
+                              "parameters = [\"cnt-10-10-tersoff\", \"cnt-5-5-tersoff\"]\n"));
 }
 
 TEST(FinerScene, TakesTheHalvedStateWhereThereIsOne) {
@@ -140,12 +140,12 @@ TEST(FinerScene, GripsAreTheEndElements) {
   }
 }
 
-TEST(FinerScene, NodesExclusionAndTypedStepGoWithTheLength) {
+TEST(FinerScene, NodesAndTypedStepGoWithTheLengthAndTheExclusionStays) {
   const CoarseAndFine p(
-      "[rope]\ntubes = 7\nlength_nm = 14\n[contact]\nnodes_per_element = 6\nexclude_along_tube_elements = 5\n"
+      "[rope]\ntubes = 7\nlength_nm = 14\n[contact]\nnodes_per_element = 6\nexclude_along_tube_nm = 7\n"
       "[run]\nduration_ps = 1\ntime_step_fs = 7\n[limits]\nbend_deg = 12\n");
   EXPECT_EQ(p.fine.contact.nodes, 3);
-  EXPECT_EQ(p.fine.contact.exclude_along_tube, 10);
+  EXPECT_EQ(p.fine.contact.exclude_along_tube, 7);
   EXPECT_NEAR(p.after.time_step / p.after.limit.limit, p.before.time_step / p.before.limit.limit, 1e-12);
   EXPECT_LT(p.after.time_step, 0.8 * p.before.time_step);
   EXPECT_NEAR(watched_of(p.fine, p.after.topology).limits.at(0).bend, 12 * units::degree, 1e-12);

@@ -54,7 +54,7 @@ class ForcesTest : public ::testing::TestWithParam<Variant> {
       in.law = line_law(pairs);
     }
     in.precision = v.precision;
-    in.exclude_along_tube = 3;
+    in.exclude_along_tube = 3 * test::element_length;
     in.damping.contact = {v.eta, 1.713, 2.57};
     in.damping.bond.rate = v.rate;
   }
@@ -380,7 +380,7 @@ TEST(PaperForces, CrossedAndClosedTubesEqualReference) {
   const State state = crossed_and_closed(topology);
   Interaction in;
   in.law = paper_law(test::published_contact());
-  in.exclude_along_tube = 7;
+  in.exclude_along_tube = 7 * test::element_length;
   Forces reference(state.size());
   compute_reference(topology, in, state, reference);
   NeighbourList list(in, 0.3);
@@ -403,7 +403,7 @@ TEST(LineForces, CrossedAndClosedTubesEqualReference) {
   Interaction in;
   in.law = line_law({test::line_contact(0.6785, 6, 0.6785, 6)});
   in.damping.contact = {20, 1.713, 2.57};
-  in.exclude_along_tube = 7;
+  in.exclude_along_tube = 7 * test::element_length;
   for (const auto& [precision, bound] :
        {std::pair(Interaction::Precision::full, 1e-10),
         std::pair(Interaction::Precision::mixed, 5e-5)}) {  // as far as tubes lie inside each other
@@ -521,7 +521,7 @@ State many_short_elements(Topology& topology) {
 
 // In both precisions; `exact` bounds what is left in double.
 void expect_many_pairs_equal_reference(const Topology& topology, const State& state, Interaction in, double exact) {
-  in.exclude_along_tube = 200;
+  in.exclude_along_tube = 200 * test::element_length;
   Forces reference(state.size()), f(state.size());
   compute_reference(topology, in, state, reference);
   NeighbourList list(in, 0.3);
@@ -580,13 +580,14 @@ TEST(Forces, OfRunsThatGoOnIntoTheNextTubeEqualReference) {
   paper.law = paper_law(test::published_contact());
   line.law = line_law(contacts_with_thin_ones());
   for (Interaction in : {paper, line}) {
-    in.exclude_along_tube = 3;
+    in.exclude_along_tube = 3 * test::element_length;
     in.damping.contact = {20, 1.713, 2.57};
     in.precision = Interaction::Precision::full;
     NeighbourList list(in, 0.2);
     list.build(topology, state);
     bool goes_on = false;
-    for (const ElementSpan& span : list.spans(3)) goes_on |= topology.tube_of(span.begin) != topology.tube_of(span.end - 1);
+    for (const ElementSpan& span : list.spans(3))
+      goes_on |= topology.tube_of(span.begin) != topology.tube_of(span.end - 1);
     ASSERT_TRUE(goes_on);
     Forces reference(state.size()), f(state.size());
     compute_reference(topology, in, state, reference);
@@ -628,7 +629,7 @@ TEST(ElementSpans, HoldThePairsOfTheListWithinReach) {
   NeighbourList list;
   list.cutoff = 3.1;
   list.skin = 0.2;
-  list.exclude_along_tube = 2;
+  list.excluded_arc = 2 * test::element_length;
   list.build(topology, s);
   ElementSpans all, near;
   all.build(list, list.cutoff);
@@ -654,7 +655,7 @@ TEST(ElementSpans, AreCutAtTheirLongest) {
   for (std::size_t i = 1; i < p.size(); ++i) p.set(i, {1.0, 0, 0.01 * static_cast<double>(i)});
   NeighbourList list;
   list.cutoff = 5;
-  list.exclude_along_tube = 200;
+  list.excluded_arc = 200 * test::element_length;
   list.build(topology, p, axis);
   ElementSpans spans;
   spans.build(list, 5);
@@ -673,7 +674,7 @@ TEST(NeighbourList, FindsExactlyThePairsWithinReach) {
   NeighbourList list;
   list.cutoff = 3.1;
   list.skin = 0.2;
-  list.exclude_along_tube = 2;
+  list.excluded_arc = 2 * test::element_length;
   list.build(topology, s);
   std::size_t expected = 0;
   for (int i = 0; i < topology.elements(); ++i) {
@@ -700,7 +701,7 @@ TEST(NeighbourList, ChunksHaveEqualNumbersOfPairs) {
   const State s = test::disordered_bundle(topology, 7, 200, 1.8, 0.2, 5);
   NeighbourList list;
   list.cutoff = 3.1;
-  list.exclude_along_tube = 2;
+  list.excluded_arc = 2 * test::element_length;
   list.build(topology, s);
   ASSERT_GT(list.chunks().size(), 3u);
   std::size_t most = 0;

@@ -113,7 +113,7 @@ TEST(Limits, PressIsTheNearestDistanceOfTheAxes) {
   NeighbourList list;
   list.cutoff = 4;
   list.skin = 0.2;
-  list.exclude_along_tube = 3;
+  list.excluded_arc = 3 * test::element_length;
   list.build(topology, s);
   Limits limits;
   limits.overlap = 0.08;

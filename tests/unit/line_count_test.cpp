@@ -22,7 +22,7 @@ TEST(RadialCount, OfSomeElementsIsThatOfAll) {
       state.position.set(static_cast<std::size_t>(i), Vector3(1.75 * t, 0, e * topology.types[0].element_length));
   Interaction in;
   in.law = line_law({test::line_contact(0.6785, 6, 0.6785, 6)});
-  in.exclude_along_tube = 3;
+  in.exclude_along_tube = 3 * test::element_length;
   const Simulation rope(topology, in, {}, state, 1e-3);
   const auto count = [&](int most) {
     return count_radial(rope.topology(), rope.interaction(), rope.state(), rope.list(),

@@ -23,7 +23,8 @@ TEST(Observables, LogHasTheColumnsAndBytesThatItAlwaysHad) {
   EXPECT_EQ(
       log_header(),
       "step,time_ps,moment_nN_nm,stretch_eV,shear_eV,bend_eV,twist_eV,vdw_eV,kinetic_eV,work_eV,dissipated_eV,"
-      "thermostat_eV,balance_eV,beta_deg,physical_twist_deg,geometric_twist_deg,Q,Q_delaunay,contacts,voids,void_area_nm2,"
+      "thermostat_eV,balance_eV,beta_deg,physical_twist_deg,geometric_twist_deg,Q,Q_delaunay,contacts,voids,void_"
+      "area_nm2,"
       "radius_mid_nm,radius_end_nm,length_nm,amplitude_nm,windings,kinked,overtwisted,overstretched,"
       "largest_bond_twist_deg\n");
   const Topology topology;

@@ -22,7 +22,7 @@ TEST(OutputsPage, HasTheTablesOfTheCode) {
   EXPECT_EQ(outputs_table("`log.csv`"), observables_markdown());
   EXPECT_EQ(outputs_table("`frames.lammpstrj`"), columns_markdown(frame_columns()));
   EXPECT_EQ(outputs_table("`paraview/frame-*.vtp`"), columns_markdown(vtp_arrays()));
-  EXPECT_EQ(outputs_table("`state.csv` and `failed-state.csv`"), columns_markdown(state_columns()));
+  EXPECT_EQ(outputs_table("`state.csv`, `final.csv` and `failed-state.csv`"), columns_markdown(state_columns()));
   EXPECT_EQ(outputs_table("`manifest.json`"), columns_markdown(manifest_keys()));
   EXPECT_EQ(outputs_table("An entry of `limits`"), columns_markdown(limit_keys()));
   EXPECT_EQ(outputs_table("An entry of `refinements`"), columns_markdown(refinement_keys()));

@@ -438,7 +438,7 @@ TEST(SpotCheck, SeesWhatLongElementsCost) {
         head, length, elements));
     const Prepared p = prepare(scene);
     Simulation s = start(scene, p);
-    EXPECT_TRUE(s.relax(scene.run.force_tolerance, scene.run.max_steps, [](long) { return true; }));
+    EXPECT_TRUE(s.relax(scene.run.goal.force, scene.run.max_steps, [](long) { return true; }));
     return spot_check(scene, p, s.state(), 1);
   };
   const SpotCheck coarse = checked(5, 9), fine = checked(2.5, 17);

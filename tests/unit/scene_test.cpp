@@ -287,7 +287,7 @@ TEST(SceneFile, EveryKeyReachesTheScene) {
       "name = \"all\"\nelement_length_nm = 1.356\n"
       "[rope]\ntubes = 19\nlength_nm = 13.56\nspacing_nm = 1.72\nperturbation_nm = 0.001\n"
       "[start]\ntemperature_K = 300\nseed = 7\n"
-      "[contact]\nlaw = \"paper\"\nlegacy_torque = true\nexclude_along_tube_elements = 9\nskin_nm = 0.2\n"
+      "[contact]\nlaw = \"paper\"\nlegacy_torque = true\nexclude_along_tube_nm = 9\nskin_nm = 0.2\n"
       "cutoff_nm = 4.7\n"
       "[damping]\ncontact_viscosity_eV_ps_per_nm2 = 3\nbond_damping_per_ps = 0.5\npfc_local = 0.7\n"
       "[twist]\nmoment_nN_nm = 64\nrate_nN_nm_per_ps = 0.5\nhold_ps = 4\nreading = \"total\"\n"
@@ -469,7 +469,7 @@ std::string choices(const Scene& s) {
                       s.run.mass_scale, s.contact.cutoff);
   return text + fmt::format("{} {:.10g} {:.10g} {:.10g} {:.10g} {:.10g} {:.3g} {} {} | {:.10g}",
                             static_cast<int>(s.run.mode), s.run.time_step, s.run.duration, s.run.frames_every,
-                            s.run.log_every, s.run.checkpoint_every, s.run.force_tolerance, s.run.max_steps,
+                            s.run.log_every, s.run.checkpoint_every, s.run.goal.force, s.run.max_steps,
                             s.run.paraview, s.observe.neighbour_radius);
 }
 
@@ -490,7 +490,8 @@ TEST(SceneKeys, StatedDefaultsAreTheDefaults) {
     std::string text;
     for (const char* table : {"rope", "twist", "start", "thermostat", "contact", "damping", "observe"})
       text += fmt::format("[{}]\n{}", table, keys_of(table, defaults));
-    return choices(scene_from(text + "[run]\n" + keys_of("run", defaults, "force_tolerance_nN max_steps")));
+    return choices(
+        scene_from(text + "[run]\n" + keys_of("run", defaults, "force_tolerance_nN energy_tolerance max_steps")));
   };
   EXPECT_EQ(dynamics(true), dynamics(false));
   const auto relax = [](bool defaults) {
@@ -519,9 +520,9 @@ TEST(SceneKeys, StatedLimitsAreTheDefaults) {
       "speed_nm_per_ps = 4\npress_nm = 5\n");
   EXPECT_DOUBLE_EQ(typed.bend, 9 * units::degree);
   EXPECT_EQ(typed.twist, 0);
-  EXPECT_EQ(
-      typed.kink_curvature + 10 * typed.wall_twist + 100 * typed.strain + 1000 * typed.speed + 10000 * typed.overlap,
-      54321);
+  EXPECT_EQ(typed.kink_curvature + 10 * typed.wall_twist + 100 * typed.strain + 1000 * typed.speed +
+                10000 * typed.overlap,
+            54321);
 }
 
 TEST(SceneKeys, StatedLoadDefaultsAreTheDefaults) {
@@ -777,6 +778,30 @@ TEST(StateFile, GivesBackWhatWasWritten) {
   EXPECT_EQ(b.state.position.z, s.position.z);
   for (int i = 0; i < 12; ++i)
     EXPECT_LT((b.state.orientation[i].coeffs() - s.orientation[i].coeffs()).norm(), 1e-15);
+}
+
+TEST(StateFile, KeepsVelocitiesAndSpins) {
+  Topology t = test::published_topology();
+  const State s = test::disordered_bundle(t, 3, 4, 1.7, 0.1, 9);
+  const BuiltScene b = built_state(state_csv(t, s));
+  EXPECT_EQ(b.topology.tube_begin, t.tube_begin);
+  EXPECT_EQ(b.state.position.y, s.position.y);
+  EXPECT_EQ(b.state.velocity.x, s.velocity.x);
+  EXPECT_EQ(b.state.angular_velocity.z, s.angular_velocity.z);
+  const auto message = [](const std::string& csv, const std::string& more = run) -> std::string {
+    try {
+      built_state(csv, more);
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return "";
+  };
+  EXPECT_THAT(message(state_csv(t, s), "[start]\ntemperature_K = 300\n" + run),
+              HasSubstr("start.temperature_K: would replace the velocities of "));
+  const std::string moving = state_csv(t, s).substr(0, state_csv(t, s).find('\n') + 1);
+  EXPECT_THAT(message(moving + "0,0,0,0,1,0,0,0\n"), HasSubstr("has 8 columns; 14 are needed, as the header has"));
+  EXPECT_THAT(message(moving + "0,0,0,0,1,0,0,0,0,nan,0,0,0,0\n"), HasSubstr("vy_nm_per_ps"));
+  EXPECT_THAT(message("tube,x_nm\n0,0\n"), HasSubstr("wz_rad_per_ps"));
 }
 
 TEST(StateFile, OneElementHasNoTemperature) {

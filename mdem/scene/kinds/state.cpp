@@ -14,7 +14,8 @@ SceneKind state_kind() {
   };
   return scene_kind<StateSource>(
       {"state",
-       "instead of [rope]: elements from a CSV file tube,x_nm,y_nm,z_nm,qw,qx,qy,qz",
+       "instead of [rope]: elements from a CSV file tube,x_nm,y_nm,z_nm,qw,qx,qy,qz, such as the final.csv of a "
+       "run",
        {Key::custom("file", "", required("\"state.csv\""), "looked for beside the scene", read_file)},
        {}});
 }

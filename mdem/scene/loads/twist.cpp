@@ -59,7 +59,7 @@ const KeyTable<TwistLoad>& twist_table() {
            &T::application, standard(),
            "a couple on each grip element, or \"tangential\" forces about the rope's axis"),
        Key::word("lateral", grips, &T::lateral_free, standard(),
-                 "\"held\": the middle of a grip stays on the axis"),
+                 "\"held\": the centre of mass of a grip stays on the axis"),
        Key::word("axial", grips, &T::axial_free, standard(), "\"held\": grip elements keep their z"),
        Key::boolean("geometric_only", &T::geometric_only, standard(),
                     "relax the tubes' own twist at each increment"),
@@ -86,9 +86,18 @@ void TwistLoad::add_forces(const State& state, double time, std::vector<PointLoa
   for (const int e : elements) out.push_back({e, Vector3::Zero(), Vector3(0, 0, each)});
 }
 
-void TwistLoad::constrain(const Topology&, double, const Forces&, double, State& state, double&) const {
+// Taking the velocity of the centre of mass from every element does no work on the others; a mean of another weight
+// would.
+void TwistLoad::constrain(const Topology& topology, double, const Forces&, double, State& state, double&) const {
   if (lateral_free && axial_free) return;
-  const Vector3 mean = mean_of(state.velocity, elements);
+  Vector3 mean = Vector3::Zero();
+  double mass = 0;
+  for (const int e : elements) {
+    const double m = topology.type_of_element(e).mass;
+    mean += m * state.velocity[static_cast<std::size_t>(e)];
+    mass += m;
+  }
+  mean /= mass;
   for (const int e : elements) {
     const auto i = static_cast<std::size_t>(e);
     // Held sideways means that the rope's end stays on its axis while the tubes in it may turn about it.

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "scene/build.hpp"
 #include "scene/laws/contact_law_kind.hpp"
@@ -62,6 +63,29 @@ void read_cutoff(const TomlTable& t, const Scene& scene, ContactOptions& contact
   }
 }
 
+constexpr const char* exclusion_key = "exclude_along_tube_nm";
+
+// Shorter, and a straight tube would attract itself, which its bonds already contain.
+void read_exclusion(const TomlTable& t, const Scene& scene, ContactOptions& contact) {
+  if (t.has("exclude_along_tube_elements"))
+    throw t.error("exclude_along_tube_elements", "is a length now, so that it does not change with the elements",
+                  fmt::format("write {} = {:.4g}, or leave it out", exclusion_key,
+                              scene.element_length *
+                                  static_cast<double>(t.integer("exclude_along_tube_elements", 1, max_elements))));
+  if (!t.has(exclusion_key)) return;
+  if (contact.law == "none") throw t.error(exclusion_key, "is of no use without contact", "take it away");
+  Scene changed = scene;
+  changed.contact = contact;
+  const double least = least_exclusion(changed);
+  contact.exclude_along_tube = t.number(exclusion_key, Bounds::positive(1e7));
+  if (contact.exclude_along_tube < least - 1e-9)
+    throw t.error(
+        exclusion_key,
+        fmt::format("is {} nm, and a straight tube would attract itself", contact.exclude_along_tube),
+        fmt::format("take at least {:.4g}, the reach of the contact along a bent tube, or leave the key out",
+                    std::ceil(1e3 * least) / 1e3));
+}
+
 // A key that would be without effect is refused, since it was meant to have one.
 void check(const TomlTable& t, const Scene&, ContactOptions& c) {
   if (c.nodes > 0 && c.law != "line")
@@ -87,10 +111,8 @@ const KeyTable<ContactOptions>& contact_table() {
                     "leave out the torque that the published code leaves out; gains energy, for comparison only"),
        Key::custom("cutoff_nm", "nm", otherwise("2.5", "the set's"),
                    "line: of tube axes, paper: of element centres; shorter is faster and binds less", read_cutoff),
-       Key::integer("exclude_along_tube_elements", 1, max_elements, &C::exclude_along_tube, standard(),
-                    "elements of one tube up to this far apart do not touch")
-           .in_unit("elements")
-           .goes_as_length(-1),
+       Key::custom(exclusion_key, "nm", otherwise("6", "the reach of the contact along a bent tube"),
+                   "parts of one tube up to this far apart along it do not attract", read_exclusion),
        Key::number("skin_nm", unit::nm, Bounds::positive(5), &C::skin, otherwise("0.15", "chosen by the program"),
                    "margin of the neighbour list; speed only")},
       check};

@@ -16,7 +16,8 @@ void read_mode(const TomlTable& t, const Scene&, RunOptions& r) {
   r.mode = t.word_or("mode", r.mode, Words<Mode>{{"dynamics", Mode::dynamics}, {"relax", Mode::relax}});
   const bool relax = r.mode == Mode::relax;
   const std::vector<const char*> others =
-      relax ? std::vector<const char*>{"duration_ps"} : std::vector<const char*>{"force_tolerance_nN", "max_steps"};
+      relax ? std::vector<const char*>{"duration_ps"}
+            : std::vector<const char*>{"force_tolerance_nN", "energy_tolerance", "max_steps"};
   for (const char* key : others)
     if (t.has(key))
       throw t.error(key, fmt::format("belongs to mode = \"{}\"", relax ? "dynamics" : "relax"),
@@ -77,8 +78,13 @@ const KeyTable<RunOptions>& run_table() {
                    "time between rows of the log"),
        Key::number("checkpoint_every_s", unit::seconds, Bounds::range(1, 1e6), &R::checkpoint_every, standard(),
                    "wall time between checkpoints"),
-       Key::number("force_tolerance_nN", unit::nN, Bounds::range(1e-15, 1), &R::force_tolerance,
-                   otherwise("1.6022e-5", "1e-4 eV/nm"), "relax: done when no force is larger"),
+       Key::number(
+           "force_tolerance_nN", unit::nN, Bounds::range(1e-15, 1), [](auto& r) -> auto& { return r.goal.force; },
+           otherwise("1.6022e-5", "1e-4 eV/nm"),
+           "relax: done when no force, and no torque over the radius of its tube, is larger"),
+       Key::number(
+           "energy_tolerance", unit::none, Bounds::range(1e-9, 1), [](auto& r) -> auto& { return r.goal.energy; },
+           standard(), "relax: and the bonds' energy is within this part of the minimum's, by estimate"),
        Key::integer("max_steps", 1, 1000000000, &R::max_steps, standard(), "relax: give up after so many steps"),
        Key::boolean("paraview", &R::paraview, standard(), "also write frames for ParaView (VTP)")},
       check};

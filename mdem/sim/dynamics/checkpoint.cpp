@@ -11,7 +11,7 @@
 namespace ropewalk {
 namespace {
 
-constexpr char magic[8] = "MDEM8";
+constexpr char magic[8] = "MDEM9";
 
 struct CheckpointHead {
   char format[sizeof magic];
@@ -36,6 +36,14 @@ struct Writer {
   void operator()(const std::vector<double>& v) {
     bytes.append(reinterpret_cast<const char*>(v.data()), v.size() * sizeof(double));
   }
+  void operator()(const std::vector<PointLoad>& loads) {
+    (*this)(static_cast<std::int64_t>(loads.size()));
+    for (const PointLoad& load : loads) {
+      (*this)(load.element);
+      for (const Vector3* v : {&load.force, &load.torque})
+        for (int k = 0; k < 3; ++k) (*this)((*v)[k]);
+    }
+  }
 };
 
 // Arrays must have their size.
@@ -49,6 +57,18 @@ struct Reader {
     take(&value, sizeof value);
   }
   void operator()(std::vector<double>& v) { take(v.data(), v.size() * sizeof(double)); }
+  void operator()(std::vector<PointLoad>& loads) {
+    std::int64_t count = 0;
+    (*this)(count);
+    loads.clear();
+    for (; count > 0; --count) {
+      PointLoad load;
+      (*this)(load.element);
+      for (Vector3* v : {&load.force, &load.torque})
+        for (int k = 0; k < 3; ++k) (*this)((*v)[k]);
+      loads.push_back(load);
+    }
+  }
 
  private:
   void take(void* to, std::size_t count) {
@@ -94,6 +114,7 @@ void Simulation::visit_checkpoint(Archive& archive, Self& self, List& list) {
   visit_forces(archive, self.forces_);
   archive(self.forces_.energy);
   archive(self.forces_.damping_power);
+  archive(self.point_loads_);
   if (!self.two_levels()) return;
   visit_forces(archive, self.inner_);
   visit_forces(archive, self.contact_);
@@ -132,7 +153,6 @@ void Simulation::restore(const std::string& bytes) {
   // The line law's list, which the skin of the next one follows from.
   Forces made(state_.size());
   if (tunes_skin_) engine_.compute(topology_, interaction_, list_, state_, made, {Parts::contact, false});
-  point_loads(loads_, state_, state_.time, point_loads_);
 }
 
 }  // namespace ropewalk

@@ -2,10 +2,14 @@
 // angular velocities scaled by sqrt(I/m), so that both kinds of motion mix in one power.
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
 
 #include "model/error.hpp"
 #include "sim/dynamics/fire.hpp"
 #include "sim/dynamics/simulation.hpp"
+#include "sim/state/motion.hpp"
 
 namespace ropewalk {
 namespace {
@@ -17,7 +21,150 @@ int not_finite(const Forces& f) {
   return -1;
 }
 
+// Calls work(type, i) for every element.
+template <class Work>
+void for_elements(const Topology& topology, const Work& work) {
+  for (int t = 0; t < topology.tubes(); ++t)
+    for (int e = topology.tube_begin[t]; e < topology.tube_begin[t + 1]; ++e)
+      work(topology.type_of(t), static_cast<std::size_t>(e));
+}
+
 }  // namespace
+
+// Of all elements: displacements and turns, velocities and spins, or forces and torques.
+struct Simulation::Motion {
+  Vec3Array linear, angular;
+
+  double dot(const Motion& other) const {
+    double sum = 0;
+    for (std::size_t i = 0; i < linear.size(); ++i)
+      sum += linear[i].dot(other.linear[i]) + angular[i].dot(other.angular[i]);
+    return sum;
+  }
+  void add(double by, const Motion& other) {
+    for (std::size_t i = 0; i < linear.size(); ++i) {
+      linear.add(i, by * other.linear[i]);
+      angular.add(i, by * other.angular[i]);
+    }
+  }
+};
+
+// What the constraints let through.
+Simulation::Motion Simulation::free_accelerations(const Motion& forces) const {
+  State free = state_;
+  for_elements(topology_, [&](const TubeType& type, std::size_t i) {
+    free.velocity.set(i, forces.linear[i] / type.mass);
+    free.angular_velocity.set(i, forces.angular[i] / type.inertia);
+  });
+  constrain(topology_, loads_, state_.time, forces_, 0.0, free);
+  return {free.velocity, free.angular_velocity};
+}
+
+double Simulation::largest_force() const {
+  const Motion free = free_accelerations({forces_.force, forces_.torque});
+  double largest = 0;
+  for_elements(topology_, [&](const TubeType& type, std::size_t i) {
+    const double force = type.mass * free.linear[i].norm(),
+                 torque = type.inertia * free.angular[i].norm() / type.radius;
+    largest = std::isfinite(force + torque) ? std::max({largest, force, torque})
+                                            : std::numeric_limits<double>::quiet_NaN();
+  });
+  return largest;
+}
+
+// F.K^-1.F/2 by conjugate gradients, with masses as the preconditioner and K times a motion from the difference of
+// two forces, in double. It grows with the iterations: one that is more than `enough` (eV) is returned as it is. M.
+// R. Hestenes, E. Stiefel, J. Res. Natl. Bur. Stand. 49, 409 (1952), DOI 10.6028/jres.049.044: what the last
+// iterations have added is what is still missing. Infinite where K is not positive or `most` iterations are too
+// few.
+double Simulation::above_minimum(double enough, long most) const {
+  constexpr double unknown = std::numeric_limits<double>::infinity();
+  constexpr double step = 1e-4;  // nm: less, and rounding hides the soft motions
+  Interaction in = interaction_;
+  in.precision = Interaction::Precision::full;
+  ForceEngine engine;
+  const auto n = static_cast<std::ptrdiff_t>(state_.size());
+  std::vector<PointLoad> loads;
+  const auto forces_after = [&](const Motion& motion, double time) {
+    State s = state_;
+    s.velocity = motion.linear;
+    s.angular_velocity = motion.angular;
+    move_elements(s, time, 0, n);
+    s.velocity = s.angular_velocity = Vec3Array(state_.size());
+    Forces f(state_.size());
+    engine.compute(topology_, in, list_, s, f, {Parts::all, false});
+    point_loads(loads_, s, s.time, loads);
+    Motion forces{f.force, f.torque};
+    for (const PointLoad& load : loads) {
+      forces.linear.add(static_cast<std::size_t>(load.element), load.force);
+      forces.angular.add(static_cast<std::size_t>(load.element), load.torque);
+    }
+    return forces;
+  };
+  const Motion at_rest = forces_after({Vec3Array(state_.size()), Vec3Array(state_.size())}, 0);
+  Motion left = at_rest, free = free_accelerations(left), along = free;
+  double power = left.dot(free), above = 0;
+  const double first = power;
+  std::vector<double> sums{0};
+  long fewest = 30;  // an iteration reaches the next element of a tube
+  for (int t = 0; t < topology_.tubes(); ++t) fewest = std::max(fewest, 3L * topology_.length_of(t));
+  for (long k = 1; k <= most + fewest && power > 0; ++k) {
+    double farthest = 0;
+    for (std::size_t i = 0; i < state_.size(); ++i)
+      farthest = std::max({farthest, along.linear[i].norm(), topology_.largest_radius() * along.angular[i].norm()});
+    Motion resistance = forces_after(along, step / farthest);  // the forces fall by K times the motion
+    resistance.add(-1, at_rest);
+    const double stiffness = -along.dot(resistance) * farthest / step;
+    if (!(stiffness > 0)) return unknown;
+    const double by = power / stiffness;
+    above += 0.5 * by * power;
+    sums.push_back(above);
+    const auto before = static_cast<std::size_t>(std::min(k, std::max(15L, k / 2)));
+    const double lately = above - sums[sums.size() - 1 - before];
+    if (above > enough) return above;
+    if (k >= fewest && lately < 0.05 * above) return above + lately;
+    left.add(by * farthest / step, resistance);
+    free = free_accelerations(left);
+    const double next = left.dot(free);
+    Motion turned = free;
+    turned.add(next / power, along);
+    along = turned;
+    if (next < 1e-20 * first) return above;
+    power = next;
+  }
+  return power > 0 ? unknown : above;
+}
+
+// Where the forces are small and the energy is not, they have to be smaller.
+Relaxed Simulation::relax(const RelaxGoal& goal, long max_steps, const std::function<bool(long)>& progress) {
+  constexpr double least_part = 1e-3;  // of the contact's energy, which stands for that of bonds that hardly bear
+  constexpr double no_force = 1e-2;    // of the goal: what rests here without a minimum rests on a saddle
+  constexpr long least_iterations = 300;
+  const std::int64_t began = state_.step;
+  const auto done = [&] { return static_cast<long>(state_.step - began); };
+  const auto energy = [&] { return forces_.energy.potential() - account_.work; };
+  const double first = energy();
+  Relaxed out;
+  for (double force = goal.force;;) {
+    const bool small =
+        relax(force, max_steps - done(), [&, before = done()](long k) { return progress(before + k); });
+    out.force = largest_force();
+    const double bonds = std::max({forces_.energy.bonds(), least_part * std::fabs(forces_.energy.vdw), 1e-6});
+    const double enough = 0.25 * goal.energy * goal.energy * bonds;
+    if (!small && done() < max_steps) return out;  // interrupted
+    if (out.force < goal.force) out.above = above_minimum(small ? enough : bonds, least_iterations + done());
+    out.error = 2 * std::sqrt(out.above / bonds);
+    const bool saddle = std::isinf(out.above) && out.force < no_force * goal.force;
+    out.at_rest = small && (out.above <= enough || saddle);
+    if (out.at_rest || !small) break;
+    force = out.force * (std::isfinite(out.above) ? std::max(0.01, 0.5 * std::sqrt(enough / out.above)) : 0.1);
+  }
+  const double risen = energy() - first;
+  if (risen > 1e-6 * (1 + std::fabs(first)))
+    throw NumericalError(state_.step, -1, "the relaxation went up in energy, by " + std::to_string(risen) + " eV",
+                         "start from a state without overlaps");
+  return out;
+}
 
 bool Simulation::relax(double tolerance, long max_steps, const std::function<bool(long)>& progress) {
   // One ratio for all tube types: it only weighs turning against moving.
@@ -26,22 +173,30 @@ bool Simulation::relax(double tolerance, long max_steps, const std::function<boo
   const double scale2 = lightest.inertia / lightest.mass;
   Fire fire(inner_step());
   const std::size_t n = state_.size();
+  const double constant = total_energy() - account_.supplied();
+  const auto balance = [&] { account_.dissipated += constant - total_energy() + account_.supplied(); };
   const auto stop = [&] {
     state_.velocity = Vec3Array(n);
     state_.angular_velocity = Vec3Array(n);
+    balance();
   };
   stop();
+  double last = 0;  // ps, of the last step
   const double max_move = Fire::farthest(lightest.radius);
   for (long k = 0; k < max_steps; ++k) {
-    if (k % Fire::check_every == 0 && largest_force() < tolerance) return true;
-    if (!progress(k)) return false;
+    if (k % Fire::check_every == 0 && largest_force() < tolerance) break;
+    if (!progress(k)) {
+      stop();
+      return false;
+    }
     double power = 0, v2 = 0, f2 = 0, fastest2 = 0;
     for (std::size_t i = 0; i < n; ++i)
       power += forces_.force[i].dot(state_.velocity[i]) + forces_.torque[i].dot(state_.angular_velocity[i]);
     if (power > 0) {
       fire.went_down();
     } else {
-      if (k > 0) move(-0.5 * fire.dt);
+      account_.work -= 0.5 * last * load_power(point_loads_, state_);
+      move(-0.5 * last);
       stop();
       fire.went_up();
     }
@@ -72,12 +227,17 @@ bool Simulation::relax(double tolerance, long max_steps, const std::function<boo
       fastest2 =
           std::max(fastest2, state_.velocity[i].squaredNorm() + scale2 * state_.angular_velocity[i].squaredNorm());
     const double step = std::min(dt, fastest2 > 0 ? max_move / std::sqrt(fastest2) : dt);
+    account_.work += 0.5 * step * load_power(point_loads_, state_);
     move(step);
+    last = step;
     ++state_.step;
     update_list();
     compute();
+    account_.work += 0.5 * step * load_power(point_loads_, state_);
+    balance();
     if (forces_.slipping_bond >= 0) check_forces(true);
   }
+  stop();
   return largest_force() < tolerance;
 }
 

@@ -276,22 +276,6 @@ void Simulation::relax_spins_if_due() {
   account_.dissipated += had - total_energy();
 }
 
-double Simulation::largest_force() const {
-  // What the constraints let through of velocities is what they let through of forces.
-  State free = state_;
-  free.velocity = forces_.force;
-  free.angular_velocity = forces_.torque;
-  constrain(topology_, loads_, state_.time, forces_, 0.0, free);
-  double largest = 0;
-  const double radius = topology_.largest_radius();
-  for (std::size_t i = 0; i < free.size(); ++i) {
-    const double force = free.velocity[i].norm(), torque = free.angular_velocity[i].norm() / radius;
-    if (!std::isfinite(force + torque)) return std::numeric_limits<double>::quiet_NaN();
-    largest = std::max({largest, force, torque});
-  }
-  return largest;
-}
-
 double Simulation::engine_seconds() const {
   const ForceEngine::Times& t = engine_.times();
   return t.contact + t.bonds;

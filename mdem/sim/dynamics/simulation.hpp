@@ -11,6 +11,7 @@
 
 #include "sim/dynamics/energy_supply.hpp"
 #include "sim/dynamics/loads.hpp"
+#include "sim/dynamics/relax_goal.hpp"
 #include "sim/dynamics/step_limit.hpp"
 #include "sim/dynamics/stepping.hpp"
 #include "sim/forces/forces.hpp"
@@ -42,10 +43,12 @@ class Simulation {
   void step(bool energies = true) { steps(1, energies); }
   // So many steps, with energies in the last one: the same bits as one by one.
   void steps(long count, bool energies = true);
-  // Relaxes orientations and positions to a nearby minimum of the energy (FIRE). Returns whether the largest force
-  // (eV/nm) and torque over radius fell below the tolerance within the given steps. `progress` is called in every
-  // step; false ends the relaxation.
+  // Relaxes orientations and positions to a nearby minimum of the energy (FIRE). Returns whether largest_force()
+  // fell below the tolerance (eV/nm) within the given steps. `progress` is called in every step; false ends the
+  // relaxation. The account has the work of the loads, and as dissipated what the relaxation takes out.
   bool relax(double force_tolerance, long max_steps, const std::function<bool(long)>& progress);
+  // Goes on until the energy is near that of the minimum as well.
+  Relaxed relax(const RelaxGoal& goal, long max_steps, const std::function<bool(long)>& progress);
 
   const Topology& topology() const { return topology_; }
   const Interaction& interaction() const { return interaction_; }
@@ -99,6 +102,9 @@ class Simulation {
   void check_forces(bool energies) const;
   void relax_spins_if_due();
   double engine_seconds() const;
+  struct Motion;
+  Motion free_accelerations(const Motion& forces) const;
+  double above_minimum(double enough, long most) const;
   template <class Archive, class Self, class ListOrigin>
   static void visit_checkpoint(Archive& archive, Self& self, ListOrigin& list);
 
@@ -115,9 +121,9 @@ class Simulation {
   std::vector<Change> changes_;   // since then, of cached_elements each
   std::vector<Fastest> fastest_;  // in the last drift, likewise
   ForceEngine engine_;
-  Forces forces_;           // of all
-  Forces inner_, contact_;  // its two parts, on two levels: bonds and loads; contact
-  std::vector<PointLoad> point_loads_;
+  Forces forces_;                       // of all
+  Forces inner_, contact_;              // its two parts, on two levels: bonds and loads; contact
+  std::vector<PointLoad> point_loads_;  // those in the last forces: of the velocities in the middle of the step
   EnergySupply account_;
   double list_seconds_ = 0, integration_seconds_ = 0;
 };

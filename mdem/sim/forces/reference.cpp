@@ -59,7 +59,7 @@ void compute_reference(const Topology& topology, const Interaction& in, const St
   for (int i = 0; i < topology.elements(); ++i)
     for (int j = i + 1; j < topology.elements(); ++j) {
       const int tube_i = topology.tube_of(i), tube_j = topology.tube_of(j);
-      if (tube_i == tube_j && j - i <= in.exclude_along_tube) continue;
+      if (tube_i == tube_j && j - i <= topology.type_of(tube_i).elements_within(in.excluded_arc())) continue;
       contact_pair({topology.tube_type[tube_i], topology.tube_type[tube_j]}, in, s, static_cast<std::size_t>(i),
                    static_cast<std::size_t>(j), out);
     }

@@ -34,17 +34,17 @@ Change MotionSince::change(const State& state, double lever, std::ptrdiff_t begi
   constexpr double infinity = std::numeric_limits<double>::infinity();
   Change c;
   if (position_.size() == state.size()) c = largest_change(state, position_, axis_, lever, twist_, begin, end);
-  if (position_.size() != state.size() || !std::isfinite(c.sum)) c.moved = c.turned = infinity;
+  if (position_.size() != state.size() || !std::isfinite(c.sum)) c.moved = infinity;
   return c;
 }
 
 // A common twist changes the distance of two points by no more than their relative rotation times their distance
 // from the axis.
-MotionSince::Bound MotionSince::bound(const Change& all, double within, double lever) {
+double MotionSince::bound(const Change& all, double within, double lever) {
   const double against = 1.01 * std::fabs(twist_.slope) * within;
-  const Bound found{all.moved + 0.5 * against * (farthest_ + lever), all.turned + 0.5 * against};
-  if (std::isfinite(found.moved)) follow(all);
-  return found;
+  const double moved = all.moved + 0.5 * against * (farthest_ + lever);
+  if (std::isfinite(moved)) follow(all);
+  return moved;
 }
 
 void MotionSince::follow(const Change& change) {

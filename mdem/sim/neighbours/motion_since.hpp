@@ -18,14 +18,10 @@ class MotionSince {
   // It is infinite if a position is not finite, or if the reference has another number of elements.
   Change change(const State& state, double lever, std::ptrdiff_t begin, std::ptrdiff_t end) const;
 
-  // Half of the largest possible change of the distance of two points (nm) and of the angle between two axes (rad),
-  // for elements whose centres were no more than `within` (nm) apart.
-  struct Bound {
-    double moved = 0, turned = 0;
-  };
-  // The bound for the change of all elements. It also fits the common twist, against which the next change is
-  // measured; the change must therefore be summed in a fixed order.
-  Bound bound(const Change& all, double within, double lever);
+  // Half of the largest possible change (nm) of the distance of two points of elements whose centres were no more
+  // than `within` (nm) apart, for the change of all elements. It also fits the common twist, against which the next
+  // change is measured; the change must therefore be summed in a fixed order.
+  double bound(const Change& all, double within, double lever);
 
   const Vec3Array& position() const { return position_; }
   const Vec3Array& axis() const { return axis_; }

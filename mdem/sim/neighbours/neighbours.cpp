@@ -35,9 +35,7 @@ bool NeighbourList::update(const Topology& topology, const State& state) {
 }
 
 bool NeighbourList::stale(const Change& change) {
-  const MotionSince::Bound bound = since_.bound(change, within(), lever);
-  displacement_ = bound.moved;
-  turn_ = bound.turned;
+  displacement_ = since_.bound(change, within(), lever);
   return !(displacement_ <= 0.5 * skin);
 }
 
@@ -54,7 +52,7 @@ void NeighbourList::build(const Topology& topology, const State& state) {
 void NeighbourList::build(const Topology& topology, Vec3Array position, Vec3Array axis) {
   static std::atomic<long> stamps{0};
   stamp_ = ++stamps;
-  displacement_ = turn_ = 0;
+  displacement_ = 0;
   since_.start(std::move(position), std::move(axis));
   const Vec3Array& p = reference();
   const int n = static_cast<int>(p.size());
@@ -66,9 +64,11 @@ void NeighbourList::build(const Topology& topology, Vec3Array position, Vec3Arra
   if (cutoff > 0) {
     const CellGrid grid(p, reach);
     std::vector<int> last(static_cast<std::size_t>(n));  // last element of the same tube that is excluded
-    for (int t = 0; t < topology.tubes(); ++t)
+    for (int t = 0; t < topology.tubes(); ++t) {
+      const int excluded = topology.type_of(t).elements_within(excluded_arc);
       for (int i = topology.tube_begin[t]; i < topology.tube_begin[t + 1]; ++i)
-        last[static_cast<std::size_t>(i)] = std::min(i + exclude_along_tube, topology.tube_begin[t + 1] - 1);
+        last[static_cast<std::size_t>(i)] = std::min(i + excluded, topology.tube_begin[t + 1] - 1);
+    }
 
     constexpr int parts = 64;
     std::vector<std::vector<ElementSpan>> found(parts);

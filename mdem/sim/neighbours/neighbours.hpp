@@ -45,11 +45,11 @@ class NeighbourList {
     return std::min(64, std::max(4, elements / (whole_ranges ? 2048 : 256)));
   }
 
-  double cutoff = 0;           // nm
-  double skin = 0;             // nm
-  double lever = 0;            // nm: turning moves the points of an element that are so far from its centre
-  bool whole_ranges = false;   // buffers of the chunks cover [written_begin, written_end), used or not
-  int exclude_along_tube = 0;  // pairs of one tube up to this many elements apart are left out
+  double cutoff = 0;          // nm
+  double skin = 0;            // nm
+  double lever = 0;           // nm: turning moves the points of an element that are so far from its centre
+  bool whole_ranges = false;  // buffers of the chunks cover [written_begin, written_end), used or not
+  double excluded_arc = 0;    // nm: that of the interaction
 
   NeighbourList() = default;
   // A list with the reach of all interactions; not yet built.
@@ -58,7 +58,7 @@ class NeighbourList {
         skin(skin_nm),
         lever(in.lever()),
         whole_ranges(in.whole_ranges()),
-        exclude_along_tube(in.exclude_along_tube) {}
+        excluded_arc(in.excluded_arc()) {}
 
   // Rebuilds the list if an element has moved too far; returns whether it did. A position that is not finite counts
   // as moved; the rebuilt list has no neighbours of that element.
@@ -96,15 +96,15 @@ class NeighbourList {
   // Half of the largest possible change (nm) of the distance of two points within reach, from the last build to the
   // last call of update() or stale(). A common twist of the rope does not count.
   double displacement() const { return displacement_; }
-  // The same for the angle (rad) between two axes within reach.
-  double turn() const { return turn_; }
   // The common twist since the build. A checkpoint stores it, so that a resumed run has the next build at the same
   // step.
   std::array<double, 2> twist() const { return since_.twist(); }
   void set_twist(const std::array<double, 2>& t) { since_.set_twist(t); }
   // nm: largest distance of the centres of two elements that have points within reach of one another.
   double within() const { return cutoff + skin + 2 * lever; }
-  std::size_t bytes() const { return spans_.capacity() * sizeof(ElementSpan) + begin_.capacity() * sizeof(std::size_t); }
+  std::size_t bytes() const {
+    return spans_.capacity() * sizeof(ElementSpan) + begin_.capacity() * sizeof(std::size_t);
+  }
 
  private:
   void cut_into_chunks(int elements);
@@ -116,7 +116,7 @@ class NeighbourList {
   std::vector<Chunk> chunks_;
   MotionSince since_;
   long builds_ = 0, stamp_ = 0;
-  double displacement_ = 0, turn_ = 0;
+  double displacement_ = 0;
 };
 
 }  // namespace ropewalk

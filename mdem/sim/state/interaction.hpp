@@ -16,7 +16,7 @@ struct Interaction {
   // in double.
   enum class Precision { mixed, full };
   Precision precision = Precision::full;
-  int exclude_along_tube = 20;  // pairs of one tube up to this many elements apart do not interact
+  double exclude_along_tube = 0;  // nm; 0: the cutoff of the law
   Damping damping;
 
   bool has_contact() const { return law != nullptr; }
@@ -24,6 +24,8 @@ struct Interaction {
   // Those of the law; without one, zero.
   double cutoff() const;  // nm, of element centres
   double lever() const;   // nm
+  // nm: elements of one tube with points nearer than this along it do not interact.
+  double excluded_arc() const { return exclude_along_tube > 0 ? exclude_along_tube : cutoff(); }
   bool whole_ranges() const;
 };
 

@@ -108,7 +108,7 @@ Change largest_change(const State& state, const Vec3Array& position, const Vec3A
                *qz = state.orientation.z.data();
   const double *nx = axis.x.data(), *ny = axis.y.data(), *nz = axis.z.data();
   const TwistOfAll by = twist;
-  double moved = 0, turned = 0, sum = 0, spin = 0, spin_z = 0;
+  double moved = 0, sum = 0, spin = 0, spin_z = 0;
 #pragma GCC ivdep
   for (std::ptrdiff_t i = begin; i < end; ++i) {
     const double px = rx[i] - by.x, py = ry[i] - by.y, pz = rz[i] - by.middle;
@@ -122,12 +122,11 @@ Change largest_change(const State& state, const Vec3Array& position, const Vec3A
     const double d = std::sqrt(dx * dx + dy * dy + dz * dz) + lever * turn;
     const double product = px * vy - py * vx;
     moved = std::max(moved, d);
-    turned = std::max(turned, turn);
     sum += d;
     spin += product;
     spin_z += pz * product;
   }
-  return {moved, turned, sum, spin, spin_z};
+  return {moved, sum, spin, spin_z};
 }
 
 }  // namespace ropewalk

@@ -38,18 +38,16 @@ struct TwistOfAll {
 
 // Motion of elements beyond a common twist, from a reference position and axis:
 //   moved   upper bound (nm) of the displacement of any point within `lever` of the centre of its element
-//   turned  largest change of an axis, as the length of the difference of unit vectors
 //   sum     sum of the displacements over the elements; only the sum is sure to show a position that is not finite
 //   spin, spin_z   sums from which the sine and the slope of the next common twist are fitted
 struct Change {
-  double moved = 0, turned = 0, sum = 0;
+  double moved = 0, sum = 0;
   double spin = 0, spin_z = 0;  // nm^2, nm^3
 };
 Change largest_change(const State& state, const Vec3Array& position, const Vec3Array& axis, double lever,
                       const TwistOfAll& twist, std::ptrdiff_t begin, std::ptrdiff_t end);
 inline Change both(const Change& a, const Change& b) {
-  return {std::max(a.moved, b.moved), std::max(a.turned, b.turned), a.sum + b.sum, a.spin + b.spin,
-          a.spin_z + b.spin_z};
+  return {std::max(a.moved, b.moved), a.sum + b.sum, a.spin + b.spin, a.spin_z + b.spin_z};
 }
 
 }  // namespace ropewalk

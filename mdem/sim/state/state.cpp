@@ -21,4 +21,10 @@ double Topology::longest_element() const {
   return longest;
 }
 
+int Topology::fewest_within(double arc) const {
+  int fewest = types.front().elements_within(arc);
+  for (const TubeType& t : types) fewest = std::min(fewest, t.elements_within(arc));
+  return fewest;
+}
+
 }  // namespace ropewalk

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -63,6 +64,9 @@ struct TubeType {
   double mass = 0;            // of one element, eV ps^2/nm^2
   double inertia = 0;         // isotropic, eV ps^2
   BondStiffness bond;
+
+  // Elements of one tube up to so many apart have points within `arc` (nm) of each other along it.
+  int elements_within(double arc) const { return static_cast<int>(std::ceil(arc / element_length - 1e-9)); }
 };
 
 // Which elements form which tube. Tube t owns the elements tube_begin[t] .. tube_begin[t+1] - 1; consecutive
@@ -85,6 +89,8 @@ struct Topology {
   double largest_radius() const;
   double longest_element() const;
   int tube_of(int element) const;
+  // The least elements_within() of all types.
+  int fewest_within(double arc) const;
 };
 
 struct State {

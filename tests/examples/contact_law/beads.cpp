@@ -74,7 +74,7 @@ struct BeadBundle {
     topology.types.push_back(topology.types[0]);
     for (int t = 1; t < topology.tubes(); t += 2) topology.tube_type[t] = 1;
     in.law = std::make_shared<const BeadLaw>(std::vector<double>{0.678, 0.5}, 0.5, 4.5);
-    in.exclude_along_tube = 3;
+    in.exclude_along_tube = 3 * test::element_length;
     in.damping.contact = {20, 1.713, 2.57};
   }
   Forces fast(int threads) const {

@@ -65,7 +65,7 @@ TEST(SpringLoad, BalancesACantilever) {
   Scene scene = spring_scene(clamp + pull, "[run]\nmode = \"relax\"\nforce_tolerance_nN = 1e-8\n");
   const Prepared p = prepare(scene);
   Simulation s = start(scene, p);
-  ASSERT_TRUE(s.relax(scene.run.force_tolerance, scene.run.max_steps, [](long) { return true; }));
+  ASSERT_TRUE(s.relax(scene.run.goal.force, scene.run.max_steps, [](long) { return true; }));
   const TubeType& tube = p.topology.types[0];
   const double length = 20 * tube.element_length, k = 0.02 * units::nN_nm;
   double compliance = std::pow(length, 3) / (3 * tube.bond.bend);
