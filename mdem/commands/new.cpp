@@ -32,6 +32,7 @@ void say_source(const Scene& scene, const Prepared& p) {
     fmt::print("parameters {} ({}), EA {:.5g} nN, EI {:.5g} nN nm^2, GJ {:.5g} nN nm^2\n", set.name, set.path,
                set.bond.stretch * units::eV_in_nN_nm, set.bond.bend * units::eV_in_nN_nm,
                set.bond.twist * units::eV_in_nN_nm);
+  for (const std::string& grade : grades_of(scene)) fmt::print("grade of {}\n", grade);
   fmt::print("contact law {}", scene.contact.law);
   if (const auto* line = dynamic_cast<const LineLaw*>(p.interaction.law.get()))
     fmt::print(", {} nodes on an element", line->nodes());
@@ -84,10 +85,12 @@ int new_command(const NewArguments& a) {
 int check_command(const std::string& path) {
   Scene scene = read_scene(path);
   const Prepared p = prepare(scene);
+  refuse_cooling(scene, p);
   Simulation simulation = start(scene, p);
   say_source(scene, p);
   say_loads(scene);
   for (const std::string& warning : warnings_of(scene)) fmt::print("note: {}\n", warning);
+  for (const std::string& warning : warmth_of(scene, p)) fmt::print("note: {}\n", warning);
   const int every = scene.run.stepping.contact_every;
   if (every > 1)
     fmt::print("contact every {} steps, {:.4g} fs: a step of the log and of what is counted below\n", every,
