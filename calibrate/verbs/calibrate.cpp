@@ -117,6 +117,17 @@ OutputFiles output_files(const CalibrateArguments& a, const std::string& name) {
   return f;
 }
 
+// Of the thinnest tubes, whose windows are too wide for the polynomial: the harmonic bond serves them.
+void leave_out_unusable_bond(Calibration& c, const std::string& text, const std::string& path) {
+  try {
+    parameters_of_text(text, path);
+  } catch (const InputError& e) {
+    if (e.place().key.rfind("bond.anharmonic", 0) != 0) return;
+    c.stiffness.anharmonic.terms.clear();
+    c.warnings.push_back(std::string("the bond beyond Hooke's law is left out: ") + e.what());
+  }
+}
+
 // Of the set as every other command will read it. A set that they would refuse, or whose contact is another one, is
 // not written.
 Grade usable_grade(const std::string& text, const std::string& path, Chirality tube) {
@@ -222,9 +233,13 @@ int calibrate_command(const CalibrateArguments& a) {
     if (interrupted_by() == 0) folder.stay();  // the error message names files in the folder
     throw;
   }
-  const ParameterSet set =
-      parameter_set(c, fs::path(files.stiffness).filename().string(), fs::path(files.contact).filename().string());
-  const std::string text = parameters_text(set, parameter_file_comment(c));
+  const auto set_text = [&] {
+    const ParameterSet set = parameter_set(c, fs::path(files.stiffness).filename().string(),
+                                           fs::path(files.contact).filename().string());
+    return parameters_text(set, parameter_file_comment(c));
+  };
+  leave_out_unusable_bond(c, set_text(), files.set);
+  const std::string text = set_text();
   const Grade grade = usable_grade(text, files.set, request.chirality);
   write_file_atomically(files.stiffness, stiffness_csv(c));
   write_file_atomically(files.contact, contact_csv(c));

@@ -52,14 +52,17 @@ void say_loads(const Scene& scene) {
       w.geometric_only ? "; spins relaxed (geometric twist only)" : "");
 }
 
-// Of the first tube type.
 void say_limits(const Scene& scene, const Topology& topology) {
-  const Limits limits = watched_of(scene, topology).limits.front();
-  std::string text;
-  for (const LimitKind& kind : limit_kinds())
-    if (limits.*kind.limit > 0)
-      text += fmt::format("{}{} {:.4g}", text.empty() ? "" : ", ", kind.key, limits.*kind.limit / kind.unit_size);
-  fmt::print("watched: {}\n", text.empty() ? "nothing" : text);
+  const std::vector<Limits> all = watched_of(scene, topology).limits;
+  for (std::size_t type = 0; type < all.size(); ++type) {
+    std::string text;
+    for (const LimitKind& kind : limit_kinds())
+      if (all[type].*kind.limit > 0)
+        text +=
+            fmt::format("{}{} {:.4g}", text.empty() ? "" : ", ", kind.key, all[type].*kind.limit / kind.unit_size);
+    fmt::print("watched{}: {}\n", all.size() > 1 ? " in " + scene.sets[type].name : "",
+               text.empty() ? "nothing" : text);
+  }
 }
 
 }  // namespace

@@ -107,7 +107,8 @@ ReportInput gather(const RunDirectory& dir, const Scene& scene, const Prepared& 
   in.element_length = p.topology.longest_element();
   in.tubes = p.topology.tubes();
   in.bonds = p.topology.bonds();
-  in.validity = validities(scene, p.topology).front();
+  if (scene.sets.size() == 1)
+    in.validity = validities(scene, p.topology).front();  // of more than one, no number holds for all
   if (std::filesystem::exists(dir.limits())) in.watched = read_limits(dir.limits());
   const Observer observer = make_observer(scene, p);
   in.shells = observer.shells;

@@ -56,17 +56,26 @@ void grade_width(const ParameterSet& set, Grade& grade) {
             diameter, faceting_diameter));
 }
 
+// Two numbers of the set that say the same.
+void agree(double one, double other, const char* what, const char* and_is, Grade& grade) {
+  const double off = std::fabs(one / other - 1);
+  if (off <= known_well) return;
+  add(grade, off > unusable_contact ? Level::unfit : Level::limited,
+      fmt::format("{} {:.4g} {} {:.4g}: one of them is wrong", what, one, and_is, other));
+}
+
 void grade_contact(const ParameterSet& set, Grade& grade) {
   if (!set.line) {
     add(grade, Level::limited, "its contact was not compared with the surface integral between two tubes");
     return;
   }
-  const LineWell well = line_parallel_well(set.line->density);
-  const double mistaken = std::fabs(well.energy / set.line->pair_energy - 1);
-  if (mistaken > known_well)
-    add(grade, mistaken > unusable_contact ? Level::unfit : Level::limited,
-        fmt::format("K, s, c, p and q bind two tubes with {:.4g} eV/nm, and pair_energy is {:.4g}: one is wrong",
-                    well.energy, set.line->pair_energy));
+  const LineParameters& line = *set.line;
+  agree(line_parallel_well(line.density).energy, line.pair_energy, "K, s, c, p and q give two parallel tubes",
+        "eV/nm, and pair_energy is", grade);
+  agree(line_crossed_well(line.density, 0.5 * units::pi).energy, line.cross90_energy,
+        "K, s, c, p and q give two crossed tubes", "eV, and cross90_energy is", grade);
+  agree(set.atoms_per_length / (2 * units::pi * set.radius), line.surface_density,
+        "atoms_per_length and radius give", "atoms per nm^2, and surface_density is", grade);
   const double own = line_fit_error(set), mixed = universal_error(set);
   if (own > known_well)
     add(grade, own > unusable_contact ? Level::unfit : Level::limited,

@@ -117,6 +117,11 @@ TEST_F(Cli, MixedTubesRunAndResume) {
   const Outcome check = run("check s.toml");
   ASSERT_EQ(check.code, 0) << check.err;
   EXPECT_NE(check.out.find("contact law line"), std::string::npos);
+  // Each kind has limits of its own.
+  for (const char* watched :
+       {"watched in cnt-10-10-tersoff: bend_deg 19.9, twist_deg 19.9, kink_curvature_per_nm 0.086",
+        "watched in cnt-5-5-tersoff: bend_deg 19.9, twist_deg 19.9, kink_curvature_per_nm 0.3386"})
+    EXPECT_NE(check.out.find(watched), std::string::npos) << check.out;
   ASSERT_EQ(run("run s.toml --out d --quiet").code, 0) << slurp(dir / "stderr.txt");
   ASSERT_EQ(run("run s.toml --out half --quiet --steps 40").code, 0);
   ASSERT_EQ(run("resume half --quiet").code, 0) << slurp(dir / "stderr.txt");

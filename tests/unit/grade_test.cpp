@@ -87,8 +87,13 @@ TEST(Grade, EveryShippedSetSaysHowMuchRegistryCounts) {
 TEST(Grade, FindsNumbersThatContradictEachOther) {
   ParameterSet law = shipped("cnt-10-10-tersoff");
   law.line->density.K *= 1.05;
-  EXPECT_NE(grade_of(law).words().find("and pair_energy is -1.011: one is wrong"), std::string::npos)
+  EXPECT_NE(grade_of(law).words().find("eV/nm, and pair_energy is -1.011: one of them is wrong"), std::string::npos)
       << grade_of(law).words();
+  ParameterSet density = shipped("cnt-10-10-tersoff");
+  density.line->surface_density *= 2;
+  EXPECT_NE(grade_of(density).words().find("unfit: atoms_per_length and radius give 37.04 atoms per nm^2"),
+            std::string::npos)
+      << grade_of(density).words();
   ParameterSet bond = shipped("cnt-10-10-tersoff");
   bond.bond.bend *= 1.6;
   EXPECT_NE(grade_of(bond).words().find("% off that of a thin shell"), std::string::npos) << grade_of(bond).words();
