@@ -9,13 +9,10 @@
 
 #include "atomistic/finite_tube.hpp"
 #include "atomistic/runs.hpp"
+#include "io/grade.hpp"
 
 namespace ropewalk {
 namespace {
-
-constexpr double faceting_diameter = 2.0;  // nm: wider tubes press each other flat
-constexpr double slender_diameter =
-    0.5;  // nm: bonds of narrower tubes are far from those to which the potentials were fitted
 
 // The bend window: half of the curvature at which the moment is 1 % off, large enough for the quartic term to be
 // fitted.

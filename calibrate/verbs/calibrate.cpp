@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "io/files.hpp"
+#include "io/grade.hpp"
 #include "io/parameters_toml.hpp"
 #include "io/toml_table.hpp"
 #include "verbs/verbs.hpp"
@@ -32,7 +33,7 @@ bool two_numbers(const std::string& text, T& a, T& b) {
   return number(p, p + comma, a) && number(p + comma + 1, p + text.size(), b);
 }
 
-void print_result(const Calibration& c, const std::string& out) {
+void print_result(const Calibration& c, const Grade& grade, const std::string& out) {
   const Stiffness& s = c.stiffness;
   const ContactSummary sum = contact_summary(c);
   const auto row = [](const char* what, const Measured& m, const char* unit, double factor = 1) {
@@ -64,10 +65,10 @@ void print_result(const Calibration& c, const std::string& out) {
              s.lammps_seconds, c.line.seconds_integral, s.fit_seconds + c.line.seconds_fit + c.paper_seconds,
              c.seconds - s.lammps_seconds - c.line.seconds_integral - s.fit_seconds - c.line.seconds_fit -
                  c.paper_seconds);
-  fmt::print("Set: {}\n", out);
+  fmt::print("Grade: {}\nSet: {}\n", grade.words(), out);
 }
 
-nlohmann::ordered_json result_json(const Calibration& c, const std::string& out) {
+nlohmann::ordered_json result_json(const Calibration& c, const Grade& grade, const std::string& out) {
   const Stiffness& s = c.stiffness;
   const ContactSummary sum = contact_summary(c);
   nlohmann::ordered_json j;
@@ -92,6 +93,7 @@ nlohmann::ordered_json result_json(const Calibration& c, const std::string& out)
   j["paper_error"] = c.paper.error;
   if (c.universal) j["universal_error"] = c.universal_error;
   if (c.registry) j["registry"] = {{"mean", c.registry->mean}, {"standard_deviation", c.registry->deviation}};
+  j["grade"] = grade.words();
   j["warnings"] = c.warnings;
   j["seconds"] = {
       {"total", c.seconds}, {"lammps", s.lammps_seconds}, {"contact_integral", c.line.seconds_integral}};
@@ -113,6 +115,36 @@ OutputFiles output_files(const CalibrateArguments& a, const std::string& name) {
   f.contact = stem + "-contact.csv";
   for (const std::string& path : {f.set, f.stiffness, f.contact}) check_output(path, "--out", a.force);
   return f;
+}
+
+// Of the thinnest tubes, whose windows are too wide for the polynomial: the harmonic bond serves them.
+void leave_out_unusable_bond(Calibration& c, const std::string& text, const std::string& path) {
+  try {
+    parameters_of_text(text, path);
+  } catch (const InputError& e) {
+    if (e.place().key.rfind("bond.anharmonic", 0) != 0) return;
+    c.stiffness.anharmonic.terms.clear();
+    c.warnings.push_back(std::string("the bond beyond Hooke's law is left out: ") + e.what());
+  }
+}
+
+// Of the set as every other command will read it. A set that they would refuse, or whose contact is another one, is
+// not written.
+Grade usable_grade(const std::string& text, const std::string& path, Chirality tube) {
+  const auto refuse = [&](const std::string& why) {
+    throw InputError({"", 0, "--chirality"},
+                     fmt::format("({},{}) cannot be made a set of rigid circular tubes: {}", tube.n, tube.m, why),
+                     "take a wider tube, or a usual --lj and --lj-cutoff; nothing was written");
+  };
+  ParameterSet set;
+  try {
+    set = parameters_of_text(text, path);
+  } catch (const InputError& e) {
+    refuse(e.what());
+  }
+  const Grade grade = grade_of(set);
+  if (line_fit_error(set) > unusable_contact) refuse(grade.words());
+  return grade;
 }
 
 }  // namespace
@@ -201,16 +233,21 @@ int calibrate_command(const CalibrateArguments& a) {
     if (interrupted_by() == 0) folder.stay();  // the error message names files in the folder
     throw;
   }
-  const ParameterSet set =
-      parameter_set(c, fs::path(files.stiffness).filename().string(), fs::path(files.contact).filename().string());
-  const std::string text = parameters_text(set, parameter_file_comment(c));
+  const auto set_text = [&] {
+    const ParameterSet set = parameter_set(c, fs::path(files.stiffness).filename().string(),
+                                           fs::path(files.contact).filename().string());
+    return parameters_text(set, parameter_file_comment(c));
+  };
+  leave_out_unusable_bond(c, set_text(), files.set);
+  const std::string text = set_text();
+  const Grade grade = usable_grade(text, files.set, request.chirality);
   write_file_atomically(files.stiffness, stiffness_csv(c));
   write_file_atomically(files.contact, contact_csv(c));
   write_file_atomically(files.set, text);
   if (a.json) {
-    fmt::print("{}\n", result_json(c, files.set).dump(1));
+    fmt::print("{}\n", result_json(c, grade, files.set).dump(1));
   } else {
-    print_result(c, files.set);
+    print_result(c, grade, files.set);
   }
   return 0;
 }

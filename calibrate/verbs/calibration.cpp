@@ -10,6 +10,7 @@
 #include "atomistic/lattice.hpp"
 #include "io/data_files.hpp"
 #include "io/files.hpp"
+#include "io/grade.hpp"
 #include "io/parameters_toml.hpp"
 #include "io/toml_table.hpp"
 #include "verbs/tables.hpp"
@@ -120,6 +121,9 @@ void add_line(const Calibration& c, Quantities& q) {
             fmt::format("of the law; surface integral {:.5f}", c.line.parallel.energy));
   q.derived("cross90_energy", sum.cross90_energy, "eV",
             fmt::format("of the law; surface integral {:.5f}", c.line.crossed.energy));
+  if (c.registry)
+    q.derived("registry", {c.registry->deviation, 0}, "1",
+              "standard deviation of the pair energy over all registries of the atoms, over the well");
   if (!c.universal) return;
   q.section("contact.line.universal");
   q.derived("error", {c.universal_error, 0}, "1",
@@ -221,7 +225,12 @@ void warn(Calibration& c) {
   c.warnings = c.stiffness.warnings;
   if (!c.line.fit.usable()) c.warnings.push_back("line law: " + c.line.fit.message);
   if (!c.paper.fit.usable()) c.warnings.push_back("paper law: " + c.paper.fit.message);
-  if (!c.universal)
+  if (c.universal_error > unusable_contact)
+    c.warnings.push_back(
+        fmt::format("the universal law is off by {:.2g} % of the well for this tube and left out: the set serves "
+                    "scenes of one kind of tube",
+                    100 * c.universal_error));
+  else if (!c.universal)
     c.warnings.push_back(
         "no universal law for this sigma and cutoff: the set serves scenes of one kind of tube; "
         "`ropewalk calibrate universal` makes one");
@@ -255,6 +264,7 @@ Calibration calibrate(const CalibrationRequest& request) {
   if (c.universal)
     c.universal_error =
         error_against(c.line, c.universal->density(shell.radius, shell.density, shell.radius, shell.density));
+  if (c.universal_error > unusable_contact) c.universal.reset();
   c.registry = registry_of(c);
   warn(c);
   c.seconds = now() - begin;

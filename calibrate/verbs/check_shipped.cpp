@@ -50,7 +50,8 @@ constexpr const char* compared[] = {"tube.radius",
                                     "contact.line.surface_density",
                                     "contact.line.pair_spacing",
                                     "contact.line.pair_energy",
-                                    "contact.line.cross90_energy"};
+                                    "contact.line.cross90_energy",
+                                    "contact.line.registry"};
 
 bool check_one(const std::string& name, double tolerance) {
   const ParameterSet shipped = read_parameters(find_parameters(name, "", {"", 0, "set"}));

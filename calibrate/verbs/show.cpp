@@ -8,6 +8,7 @@
 
 #include "io/data_files.hpp"
 #include "io/files.hpp"
+#include "io/grade.hpp"
 #include "io/parameters_toml.hpp"
 #include "report/page.hpp"
 #include "verbs/tables.hpp"
@@ -216,12 +217,6 @@ std::string provenance_part(const ParameterSet& set) {
 
 }  // namespace
 
-const Quantity* find_quantity(const ParameterSet& set, const std::string& key) {
-  for (const Quantity& q : set.quantities)
-    if (q.key == key) return &q;
-  return nullptr;
-}
-
 Section effective_section(const ParameterSet& set) {
   Section s{};
   const double T = set.element_length;
@@ -238,7 +233,8 @@ Section effective_section(const ParameterSet& set) {
 }
 
 void print_set(const ParameterSet& set) {
-  fmt::print("{} ({},{})  {}\n", set.name, set.chirality.n, set.chirality.m, set.reference);
+  fmt::print("{} ({},{})  {}\n{}\n", set.name, set.chirality.n, set.chirality.m, set.reference,
+             grade_of(set).words());
   std::string section;
   for (const Quantity& q : set.quantities) {
     const std::size_t dot = q.key.rfind('.');
@@ -266,6 +262,7 @@ std::string calibration_page(const ParameterSet& set) {
       paragraph(fmt::format("The ({},{}) tube: EA {:.5g} nN, EI {:.5g} nN nm², GJ {:.5g} nN nm², radius {:.5g} nm.",
                             set.chirality.n, set.chirality.m, set.bond.stretch * units::eV_in_nN_nm,
                             set.bond.bend * units::eV_in_nN_nm, set.bond.twist * units::eV_in_nN_nm, set.radius));
+  html += paragraph("<b>" + escape_markup(grade_of(set).words()) + "</b>");
   html += heading("Stretch, twist and bend") + elastic_part(set, figures);
   html += heading("Contact") + contact_part(set, figures);
   html += heading("As bonds of rigid elements") + section_part(set);

@@ -82,9 +82,6 @@ class WorkFolder {
   bool temporary_ = false;
 };
 
-// Null if the set has no such number.
-const Quantity* find_quantity(const ParameterSet& set, const std::string& key);
-
 // Refuses an existing file unless forced. Throws InputError.
 void check_output(const std::string& path, const std::string& option, bool force);
 

@@ -32,6 +32,7 @@ void say_source(const Scene& scene, const Prepared& p) {
     fmt::print("parameters {} ({}), EA {:.5g} nN, EI {:.5g} nN nm^2, GJ {:.5g} nN nm^2\n", set.name, set.path,
                set.bond.stretch * units::eV_in_nN_nm, set.bond.bend * units::eV_in_nN_nm,
                set.bond.twist * units::eV_in_nN_nm);
+  for (const std::string& grade : grades_of(scene)) fmt::print("grade of {}\n", grade);
   fmt::print("contact law {}", scene.contact.law);
   if (const auto* line = dynamic_cast<const LineLaw*>(p.interaction.law.get()))
     fmt::print(", {} nodes on an element", line->nodes());
@@ -51,14 +52,17 @@ void say_loads(const Scene& scene) {
       w.geometric_only ? "; spins relaxed (geometric twist only)" : "");
 }
 
-// Of the first tube type.
 void say_limits(const Scene& scene, const Topology& topology) {
-  const Limits limits = watched_of(scene, topology).limits.front();
-  std::string text;
-  for (const LimitKind& kind : limit_kinds())
-    if (limits.*kind.limit > 0)
-      text += fmt::format("{}{} {:.4g}", text.empty() ? "" : ", ", kind.key, limits.*kind.limit / kind.unit_size);
-  fmt::print("watched: {}\n", text.empty() ? "nothing" : text);
+  const std::vector<Limits> all = watched_of(scene, topology).limits;
+  for (std::size_t type = 0; type < all.size(); ++type) {
+    std::string text;
+    for (const LimitKind& kind : limit_kinds())
+      if (all[type].*kind.limit > 0)
+        text +=
+            fmt::format("{}{} {:.4g}", text.empty() ? "" : ", ", kind.key, all[type].*kind.limit / kind.unit_size);
+    fmt::print("watched{}: {}\n", all.size() > 1 ? " in " + scene.sets[type].name : "",
+               text.empty() ? "nothing" : text);
+  }
 }
 
 }  // namespace
@@ -84,10 +88,12 @@ int new_command(const NewArguments& a) {
 int check_command(const std::string& path) {
   Scene scene = read_scene(path);
   const Prepared p = prepare(scene);
+  refuse_cooling(scene, p);
   Simulation simulation = start(scene, p);
   say_source(scene, p);
   say_loads(scene);
   for (const std::string& warning : warnings_of(scene, p.topology)) fmt::print("note: {}\n", warning);
+  for (const std::string& warning : warmth_of(scene, p)) fmt::print("note: {}\n", warning);
   const int every = scene.run.stepping.contact_every;
   if (every > 1)
     fmt::print("contact every {} steps, {:.4g} fs: a step of the log and of what is counted below\n", every,

@@ -101,7 +101,9 @@ int make_plan(const PlanArguments& a) {
   request.end_state = a.end_state;
   const std::string path = out_path(a);
   if (fs::exists(path)) throw InputError({path, 0, "-o"}, "exists", "choose another name with -o");
-  const Scene scene = read_scene(a.scene);
+  Scene scene = read_scene(a.scene);
+  refuse_cooling(scene, prepare(scene));
+  for (const std::string& grade : grades_of(scene)) fmt::print("parameters {}\n", grade);
   const Plan plan = plan_scene(scene, read_chart(a.chart.empty() ? data_directory() + "/chart" : a.chart), request);
   say(plan, request);
   write_file_atomically(path, cheaper_text(plan, path));

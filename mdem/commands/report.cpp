@@ -10,8 +10,8 @@
 #include "commands/commands.hpp"
 #include "io/files.hpp"
 #include "io/frames.hpp"
+#include "io/grade.hpp"
 #include "model/error.hpp"
-#include "model/self_contact.hpp"
 #include "run/run_directory.hpp"
 #include "scene/scene_to_model.hpp"
 
@@ -59,6 +59,7 @@ void add_run_facts(const Scene& scene, const Prepared& p, const Manifest& m, Rep
     const auto tubes = std::count(t.tube_type.begin(), t.tube_type.end(), static_cast<int>(k));
     add(k == 0 ? "parameters" : "parameters, type " + std::to_string(k), scene.sets[k].name,
         (scene.sets.size() > 1 ? fmt::format("{} tubes, ", tubes) : "") + "hash " + scene.sets[k].hash);
+    add("grade", grade_of(scene.sets[k]).words(), "how far the set stands for its tube");
   }
   add("contact law", scene.contact.law,
       scene.contact.legacy_torque ? "legacy torque: not a gradient, energy is not conserved" : "full gradient");
@@ -80,6 +81,7 @@ void add_run_facts(const Scene& scene, const Prepared& p, const Manifest& m, Rep
   add("time step", fmt::format("{:.4g} fs", p.time_step / every / units::fs),
       fmt::format("stability limit {:.4g} fs{}", inner_step_limit(p.limit, every) / units::fs,
                   every > 1 ? fmt::format("; contact every {} steps", every) : ""));
+  for (const std::string& words : warmth_of(scene, p)) add("temperature", words);
   add("seed", fmt::format("{}", m.seed));
   add("program", fmt::format("ropewalk {} ({})", m.version, m.git_id),
       fmt::format("{}, {}", m.compiler, m.build_type));
@@ -94,14 +96,19 @@ ReportInput gather(const RunDirectory& dir, const Scene& scene, const Prepared& 
   in.reason = m.reason;
   add_run_facts(scene, p, m, in);
   in.warnings = warnings_of(scene, p.topology);
+  for (const ParameterSet& set : scene.sets)
+    if (const Grade grade = grade_of(set); grade.level != Grade::Level::good)
+      in.warnings.push_back("Parameters " + set.name + " are " + grade.words() + ".");
   in.log = read_log(dir.log());
+  in.error_bars = error_bars_of(scene, p.topology, in.log);
   if (scene.twist) in.ramp_end_ps = scene.twist->ramp_time();
   in.tube_radius = p.topology.largest_radius();
   in.spacing = p.spacing;
   in.element_length = p.topology.longest_element();
   in.tubes = p.topology.tubes();
   in.bonds = p.topology.bonds();
-  in.validity = validities(scene, p.topology).front();
+  if (scene.sets.size() == 1)
+    in.validity = validities(scene, p.topology).front();  // of more than one, no number holds for all
   if (std::filesystem::exists(dir.limits())) in.watched = read_limits(dir.limits());
   const Observer observer = make_observer(scene, p);
   in.shells = observer.shells;
@@ -117,70 +124,7 @@ ReportInput gather(const RunDirectory& dir, const Scene& scene, const Prepared& 
   return in;
 }
 
-// Moment over curvature of a chain of bonds bent by d each is 1 + (3 s/8 - 1/6) d^2 of the rod's.
-void warn_of_long_elements(const ParameterSet& set, double length, std::vector<std::string>& warnings) {
-  const double bend = set.validity.kink_curvature * length;
-  const double error = std::fabs(0.375 * set.bond.shear_share(length) - 1.0 / 6) * bend * bend;
-  if (error > 0.01)
-    warnings.push_back(fmt::format(
-        "Elements of {:.3g} nm of {} are bent by {:.2f} rad each where the tube kinks, and its stiffness is "
-        "{:.0f} % off there: take shorter ones where tubes bend strongly.",
-        length, set.name, bend, 100 * error));
-}
-
-// Where a tube is long enough to come back to itself without a kink, and the contact is left out there.
-void warn_of_long_exclusion(const Scene& scene, const Topology& topology, std::vector<std::string>& warnings) {
-  const double excluded = scene.contact.exclude_along_tube;
-  const auto law = contact_law(scene);
-  std::vector<bool> told(scene.sets.size());
-  for (int t = 0; law && t < topology.tubes(); ++t) {
-    const int type = topology.tube_type[t];
-    const auto set = static_cast<std::size_t>(type);
-    const double loop = smallest_loop(scene.sets[set].validity.kink_curvature, law->range({type, type}));
-    const double length = topology.length_of(t) * topology.type_of(t).element_length;
-    if (told[set] || length <= loop || excluded <= loop) continue;
-    told[set] = true;
-    warnings.push_back(fmt::format(
-        "contact.exclude_along_tube_nm = {:.4g}: a tube of {:.4g} nm of {} can touch itself in loops of {:.3g} nm "
-        "without a kink, and {}.",
-        excluded, length, scene.sets[set].name, loop,
-        length <= excluded ? "nothing of it attracts itself"
-                           : "parts nearer than the key along it do not attract"));
-  }
-}
-
 }  // namespace
-
-std::vector<std::string> warnings_of(const Scene& scene, const Topology& topology) {
-  std::vector<std::string> warnings;
-  if (scene.contact.legacy_torque)
-    warnings.push_back("This run leaves out the torque that the published force code leaves out: it gains energy.");
-  if (scene.run.mass_scale != 1)
-    warnings.push_back(
-        fmt::format("Masses are {:.4g} times those of the tubes: times, velocities and waves are not theirs.",
-                    scene.run.mass_scale));
-  if (scene.thermostat && (scene.damping.contact.eta > 0 || scene.damping.bond.rate > 0))
-    warnings.push_back(
-        fmt::format("Damping takes out heat beside the thermostat: the tubes stay colder than {:.4g} K. Set "
-                    "damping.contact_viscosity_eV_ps_per_nm2 and damping.bond_damping_per_ps to 0 to hold it.",
-                    scene.thermostat->temperature));
-  if (scene.damping.local > 0)
-    warnings.push_back("PFC local damping depends on the frame and does not conserve momentum.");
-  if (scene.contact.law == "line" && scene.contact.nodes > 0) {
-    Scene free = scene;
-    free.contact.nodes = 0;
-    const int needed = line_contacts(free).front().nodes_i;
-    if (scene.contact.nodes < needed)
-      warnings.push_back(
-          fmt::format("With contact.nodes_per_element = {} tubes feel one another's elements: {} would keep the "
-                      "corrugation below "
-                      "2e-4 of the binding energy.",
-                      scene.contact.nodes, needed));
-  }
-  warn_of_long_exclusion(scene, topology, warnings);
-  for (const ParameterSet& set : scene.sets) warn_of_long_elements(set, scene.element_length, warnings);
-  return warnings;
-}
 
 void write_report(const RunDirectory& dir, const Scene& scene, const Prepared& prepared) {
   write_file_atomically(dir.report(), report_html(gather(dir, scene, prepared)));

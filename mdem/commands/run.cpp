@@ -1,5 +1,6 @@
 // `run` and `resume`: the loop around the simulation, its files and its signals.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <omp.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -125,15 +126,20 @@ class Run {
     if (steps >= 0) last_step_ = steps;
   }
 
-  void say_warnings() const {
-    for (const std::string& warning : warnings_of(scene_, prepared_.topology)) say("note: " + warning);
-  }
-
   // Before anything is done: can it do what it is asked to.
   void check_manner() const {
+    refuse_cooling(scene_, prepared_);
     if (policy_.on_limit != OnLimit::refine) return;
     const std::string why = why_not_finer(scene_, prepared_.topology);
     if (!why.empty()) throw InputError({"", 0, "--on-limit"}, "refine: " + why, "take warn or stop");
+  }
+
+  void say_notes() const {
+    if (!policy_.quiet)
+      for (const std::string& grade : grades_of(scene_)) fmt::print(stderr, "ropewalk: parameters {}\n", grade);
+    for (const std::string& note : warnings_of(scene_, prepared_.topology))
+      fmt::print(stderr, "ropewalk: note: {}\n", note);
+    for (const std::string& note : warmth_of(scene_, prepared_)) fmt::print(stderr, "ropewalk: note: {}\n", note);
   }
 
   void begin() {
@@ -385,6 +391,7 @@ class Run {
     m.seed = scene_.start.seed;
     m.scene_hash = scene_.hash;
     m.parameter_hash = scene_.parameters().hash;
+    m.grade = fmt::format("{}", fmt::join(grades_of(scene_), "; "));
     m.started = started_at_;
     m.wall_seconds = wall();
     m.steps = simulation_.state().step;
@@ -549,7 +556,7 @@ std::unique_ptr<Run> new_run(const RunArguments& a) {
   for (std::size_t k = 0; k < scene.sets.size(); ++k)
     write_file_atomically(dir.parameters(k), read_file(scene.sets[k].path));
   if (scene.from_file()) write_file_atomically(dir.state(), read_file(scene.source->file()));
-  run->say_warnings();
+  run->say_notes();
   run->begin();
   return run;
 }

@@ -27,6 +27,7 @@ void visit(M& m, const Visit& v) {
   v({"seed", "", "seed of the scene"}, m.seed);
   v({"scene_hash", "", "xxh64 of scene.toml"}, m.scene_hash);
   v({"parameter_hash", "", "xxh64 of parameters.toml"}, m.parameter_hash);
+  v({"grade", "", "how far each parameter set holds: good, limited or unfit, with the reasons"}, m.grade);
   v({"started", "", "date and time of the start, UTC"}, m.started);
   v({"wall_seconds", "s", "wall time"}, m.wall_seconds);
   v({"steps", "", "time steps"}, m.steps);
@@ -85,6 +86,7 @@ Manifest read_manifest(const std::string& path) {
   const Json json = parse(path, read_file(path));
   Manifest manifest;
   visit(manifest, [&](const OutputColumn& key, auto& value) {
+    if (std::string("grade") == key.name && !json.contains(key.name)) return;  // not written before 0.2.0
     value = value_of<std::decay_t<decltype(value)>>(path, json, key.name);
   });
   return manifest;

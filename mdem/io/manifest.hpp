@@ -19,6 +19,7 @@ struct Manifest {
   std::uint64_t seed = 0;
   std::string scene_hash;      // xxh64, hex
   std::string parameter_hash;  // xxh64, hex
+  std::string grade;           // of each set, as grades_of() words it
   std::string started;         // ISO 8601, UTC
   double wall_seconds = 0;
   std::int64_t steps = 0;

@@ -46,8 +46,8 @@ void read_row(const TomlTable& section, const char* key, UniversalLine::Row& out
 
 class Reader {
  public:
-  explicit Reader(const std::string& path)
-      : path_(path), text_(read_file(path)), top_(TomlTable::parse(text_, path)) {}
+  Reader(const std::string& text, const std::string& path)
+      : path_(path), text_(text), top_(TomlTable::parse(text_, path)) {}
 
   ParameterSet read() {
     set_.path = path_;
@@ -212,7 +212,7 @@ class Reader {
   void read_universal(const TomlTable& t, LineParameters& line) {
     line.has_universal = true;
     read_universal_rows(t, line.universal);
-    quantity(t, "error", "1", Bounds::non_negative(1));
+    quantity(t, "error", "1", Bounds::non_negative(1e6));
   }
 
   LineParameters read_line(const TomlTable& t) {
@@ -235,6 +235,7 @@ class Reader {
     line.pair_spacing = quantity(t, "pair_spacing", "nm", Bounds::positive(1e3));
     line.pair_energy = quantity(t, "pair_energy", "eV/nm", Bounds::range(-1e6, 0));
     line.cross90_energy = quantity(t, "cross90_energy", "eV", Bounds::range(-1e6, 0));
+    if (t.has("registry")) quantity(t, "registry", "1", Bounds::range(0, 1));
     check_line(t, d);
     if (t.has("universal")) read_universal(t.table("universal"), line);
     return line;
@@ -293,7 +294,17 @@ class Reader {
 
 }  // namespace
 
-ParameterSet read_parameters(const std::string& path) { return Reader(path).read(); }
+ParameterSet read_parameters(const std::string& path) { return parameters_of_text(read_file(path), path); }
+
+ParameterSet parameters_of_text(const std::string& text, const std::string& path) {
+  return Reader(text, path).read();
+}
+
+const Quantity* find_quantity(const ParameterSet& set, const std::string& key) {
+  for (const Quantity& q : set.quantities)
+    if (q.key == key) return &q;
+  return nullptr;
+}
 
 namespace {
 

@@ -10,6 +10,11 @@ namespace ropewalk {
 // Throws InputError for a file that is missing, not of this format, incomplete, without units or origins, or
 // physically impossible.
 ParameterSet read_parameters(const std::string& path);
+// The same from the text of such a file; errors name `path`.
+ParameterSet parameters_of_text(const std::string& text, const std::string& path);
+
+// Null if the set has no such number.
+const Quantity* find_quantity(const ParameterSet& set, const std::string& key);
 
 class TomlTable;
 // The five rows of the universal law, as text and read from their table.

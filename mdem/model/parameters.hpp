@@ -12,7 +12,8 @@
 //   [contact.line]    present: the set has the `line` law; epsilon (eV), sigma (nm), lj_cutoff (nm, 0: none) and
 //               surface_density (1/nm^2) that it was integrated from; K (eV/nm^2), s (nm), c (nm), p, q, core_gap,
 //               switch_gap, cutoff_gap (nm) of contact/line.hpp; pair_spacing (nm), pair_energy (eV/nm) and
-//               cross90_energy (eV) of that law
+//               cross90_energy (eV) of that law; optional: registry, the standard deviation of pair_energy over the
+//               registries of two real tubes, over its mean
 //   [contact.line.universal]  the same law for any pair of radii: log_K, s, c, p, q, each
 //               { values = [6 numbers], standard_errors = [6 numbers] }, and error
 //   [atomistic] optional: natural_twist (rad/nm), coupling (nN nm), poisson, energy_per_atom (eV)

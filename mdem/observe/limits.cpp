@@ -44,7 +44,7 @@ Peaks peaks_of_tube(const Topology& topology, const State& state, int tube, cons
 
 // The pairs of each element that come nearer than they rest. Most are seen not to be the deepest by far.
 void overlap_of_tube(const Topology& topology, const State& state, const Vec3Array& axes, const NeighbourList& list,
-                   const Watched& watched, int tube, Peak& peak) {
+                     const Watched& watched, int tube, Peak& peak) {
   const TubeType& type = topology.type_of(tube);
   const auto types = topology.types.size(), row = static_cast<std::size_t>(topology.tube_type[tube]) * types;
   const double reach = *std::max_element(watched.rest.begin(), watched.rest.end()) + topology.longest_element();
@@ -82,9 +82,9 @@ const std::array<LimitKind, limit_count>& limit_kinds() {
       {"wall_twist", "", 1, &Limits::wall_twist, "radius times twist per length is",
        "the wall of a real tube collapses there", "twist it less, or do not trust its torsion from now on", false},
       {"strain", "", 1, &Limits::strain, "the bond to the next element is strained by",
-       "the linear law of the bond ends there", "pull or overlap it less, or do not trust its force from now on",
+       "the linear law of the bond ends there", "pull or press it less, or do not trust its force from now on",
        false},
-      {"press_nm", "nm", 1, &Limits::overlap, "the tube is watch_overlap into another one by",
+      {"press_nm", "nm", 1, &Limits::overlap, "the tube is pressed into another one by",
        "the contact law is only continued there", "load it more gently, or start it without overlaps", false},
       {"speed_nm_per_ps", "nm/ps", 1, &Limits::speed, "the element moves with",
        "stopping it would strain the tube by 10 % or more", "load it more gently, or damp more", false},

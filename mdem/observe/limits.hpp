@@ -37,7 +37,7 @@ struct Limits {
   double wall_twist = 0;
   double strain = 0;
   double overlap = 0;  // nm
-  double speed = 0;  // nm/ps
+  double speed = 0;    // nm/ps
 };
 
 // All but the overlap, which follows from the contact law.
@@ -48,10 +48,10 @@ struct LimitKind {
   const char* unit;
   double unit_size;  // in internal units
   double Limits::*limit;
-  const char* what;     // "the bond to the next element is bent by"
-  const char* consequence;   // what is wrong there
-  const char* remedy;   // for one who meets it
-  bool cured_by_finer;  // would shorter elements help
+  const char* what;         // "the bond to the next element is bent by"
+  const char* consequence;  // what is wrong there
+  const char* remedy;       // for one who meets it
+  bool cured_by_finer;      // would shorter elements help
 };
 inline constexpr std::size_t limit_count = 7;
 const std::array<LimitKind, limit_count>& limit_kinds();

@@ -94,8 +94,10 @@ void PlannedScene::finish() {
     Scene so_far = scene_of_text(text_, scene_.path);
     const Prepared p = prepare(so_far);
     const int every = so_far.run.stepping.contact_every;
-    // Whatever part of the limit the chart's default and this one's are.
-    const double most = cold_step_fraction * inner_step_limit(p.limit, every),
+    // Whatever part of the limit the chart's default and this one's are. The chart's scenes are cold: a warm one's
+    // step is not lengthened.
+    const double most =
+                     is_warm(so_far) ? p.time_step / every : cold_step_fraction * inner_step_limit(p.limit, every),
                  chosen = std::min(step_ * p.time_step / every, most);
     set("run", "time_step_fs", fmt::format("{:.4g}", chosen / units::fs), step_why_);
   }

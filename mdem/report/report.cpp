@@ -560,6 +560,8 @@ std::string report_html(const ReportInput& in) {
   html += log_part(in, sections, figures);
   html += heading("Beyond the limits of the model") + limits_part(in);
   html += refinements_part(in.watched.refinements);
+  if (!in.error_bars.empty()) html += heading("Error bars");
+  for (const std::string& words : in.error_bars) html += paragraph(escape_markup(words));
   html += heading("All observables") + observables_part(in.log);
   html += heading("The run") + facts_part(in.facts);
   html += heading("Parameters") + parameters_part(in.parameter_name, in.parameter_reference, in.parameters);

@@ -25,7 +25,8 @@ struct ReportInput {
   std::string status;  // as in the manifest: running, finished, interrupted, failed, not relaxed
   std::string reason;  // in words; may be empty
   std::vector<std::string> warnings;
-  std::vector<ReportFact> facts;  // scene, program, how long it took: in the order of the page
+  std::vector<std::string> error_bars;  // a paragraph each
+  std::vector<ReportFact> facts;        // scene, program, how long it took: in the order of the page
 
   std::vector<LogRow> log;
   double ramp_end_ps = 0;     // end of the loading stage; 0: no such stage

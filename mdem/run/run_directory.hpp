@@ -74,6 +74,11 @@ LogRow log_row(const Observer& observer, const Scene& scene, const Topology& top
 
 // Warnings about the scene for readers of the results, one sentence each.
 std::vector<std::string> warnings_of(const Scene& scene, const Topology& topology);
+// "NAME: good" of each parameter set, see io/grade.hpp.
+std::vector<std::string> grades_of(const Scene& scene);
+// What registry, which the model leaves out, may add to the energies at the end of a run; a paragraph each.
+std::vector<std::string> error_bars_of(const Scene& scene, const Topology& topology,
+                                       const std::vector<LogRow>& log);
 
 // Makes report.html from the files of the directory.
 void write_report(const RunDirectory& dir, const Scene& scene, const Prepared& prepared);

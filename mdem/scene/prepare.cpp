@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "model/error.hpp"
 #include "model/segments.hpp"
@@ -18,7 +20,10 @@ double chosen_step(const Scene& scene, const TimeStepLimit& limit) {
   const double typed = scene.run.time_step;
   const int every = scene.run.stepping.contact_every;
   const double largest = inner_step_limit(limit, every);
-  if (typed <= 0) return automatic_step_fraction(scene) * largest;
+  if (typed <= 0) {
+    const double step = automatic_step_fraction(scene) * largest;
+    return is_warm(scene) ? std::min(step, step_of_excess(limit, warm_excess, every)) : step;
+  }
   if (typed < largest) return typed;
   const char* why = limit.damping_rate * largest * every > 1 ? "the strongest damping" : "the stiffest mode";
   const std::string levels = every > 1 ? fmt::format(" with contact_every = {}", every) : "";
@@ -28,26 +33,39 @@ double chosen_step(const Scene& scene, const TimeStepLimit& limit) {
                    fmt::format("take at most {:.3g}, or \"auto\"", 0.9 * largest / units::fs));
 }
 
-// What is inside of one another goes apart like an explosion, or through the core unseen.
+// What is inside of one another goes apart like an explosion, or through the core unseen. A relaxation may part
+// tubes, but not those that lie side by side on one axis: walls of a multi-walled tube.
 void refuse_overlaps(const Scene& scene, const Prepared& p) {
-  if (!scene.from_file() || !p.interaction.has_contact() || scene.run.mode == RunOptions::Mode::relax) return;
+  if (!scene.from_file() || !p.interaction.has_contact()) return;
+  const InputError::Place place{scene.source->file(), 0, ""};
+  std::string overlap;  // the first
   NeighbourList list(p.interaction, default_skin(p.interaction));
   list.build(p.topology, p.state);
   for (int i = 0; i < p.topology.elements(); ++i)
     list.for_neighbours(i, [&](int j) {
       const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(j);
       const TubeType &ti = p.topology.type_of_element(i), &tj = p.topology.type_of_element(j);
-      const double apart = std::sqrt(squared_segment_distance(
-          p.state.position[b] - p.state.position[a], axis_of(p.state.orientation[a]),
-          axis_of(p.state.orientation[b]), 0.5 * ti.element_length, 0.5 * tj.element_length));
-      if (apart < ti.radius + tj.radius)
+      const Vector3 d = p.state.position[b] - p.state.position[a], n_i = axis_of(p.state.orientation[a]),
+                    n_j = axis_of(p.state.orientation[b]);
+      const double half_i = 0.5 * ti.element_length, half_j = 0.5 * tj.element_length;
+      const double apart = std::sqrt(squared_segment_distance(d, n_i, n_j, half_i, half_j));
+      const int tube_i = p.topology.tube_of(i), tube_j = p.topology.tube_of(j);
+      const bool beside = std::fabs(d.dot(n_i)) < 0.6 * (half_i + half_j) && std::fabs(n_i.dot(n_j)) > 0.9;
+      if (tube_i != tube_j && beside && apart < 0.5 * std::max(ti.radius, tj.radius))
         throw InputError(
-            {scene.source->file(), 0, ""},
-            fmt::format("elements {} and {} overlap: their axes are {:.3g} nm apart, and their radii are "
-                        "{:.3g} nm together",
-                        a, b, apart, ti.radius + tj.radius),
-            "move them apart, or relax the state first with mode = \"relax\"");
+            place,
+            fmt::format("tubes {} and {} lie inside of one another: at elements {} and {} their axes are {:.3g} nm "
+                        "apart",
+                        tube_i, tube_j, a, b, apart),
+            "walls of multi-walled tubes are not supported, since contact is that between the outsides of tubes; "
+            "keep one of the walls");
+      if (overlap.empty() && apart < ti.radius + tj.radius)
+        overlap = fmt::format(
+            "elements {} and {} overlap: their axes are {:.3g} nm apart, and their radii are {:.3g} nm together", a,
+            b, apart, ti.radius + tj.radius);
     });
+  if (!overlap.empty() && scene.run.mode != RunOptions::Mode::relax)
+    throw InputError(place, overlap, "move them apart, or relax the state first with mode = \"relax\"");
 }
 
 // A single tube bears the whole moment in every bond.
@@ -95,6 +113,24 @@ void refuse_first_step(const Scene& scene, const Simulation& s) {
   }
 }
 
+// PFC's local damping takes a part of the heat in every swing of every mode.
+double start_heat_left(const Scene& scene, const Prepared& p, double time) {
+  return scene.damping.local > 0 ? 0.0 : heat_left(p.limit, time);
+}
+
+// ps, of the heat under damping; infinite without.
+double half_life(const Scene& scene, const Prepared& p) {
+  if (scene.damping.local > 0) return 0;
+  if (p.limit.damping_rate <= 0) return std::numeric_limits<double>::infinity();
+  double below = 0, above = 1 / p.limit.damping_rate;
+  while (heat_left(p.limit, above) > 0.5 && above < 1e9) above *= 2;
+  for (int k = 0; k < 40; ++k) {
+    const double middle = 0.5 * (below + above);
+    (heat_left(p.limit, middle) > 0.5 ? below : above) = middle;
+  }
+  return above;
+}
+
 }  // namespace
 
 double automatic_step_fraction(const Scene& scene) {
@@ -102,6 +138,45 @@ double automatic_step_fraction(const Scene& scene) {
   return cold && scene.run.mode != RunOptions::Mode::relax && scene.run.stepping.contact_every == 1
              ? cold_step_fraction
              : default_step_fraction;
+}
+
+bool is_warm(const Scene& scene) {
+  if (scene.run.mode == RunOptions::Mode::relax) return false;
+  if (scene.thermostat) return scene.thermostat->temperature > 0;
+  return scene.start.temperature > 0 && !scene.start.may_cool;
+}
+
+void refuse_cooling(const Scene& scene, const Prepared& p) {
+  if (!is_warm(scene) || scene.thermostat) return;
+  const double left = start_heat_left(scene, p, p.duration);
+  if (left > 0.5) return;
+  throw InputError(
+      {scene.path, 0, "start.temperature_K"},
+      fmt::format(
+          "is {:.4g} K, and damping leaves {:.2g} % of that heat at the end of the run, {:.4g} ps (half of it "
+          "after {:.2g} ps)",
+          scene.start.temperature, 100 * left, p.duration, half_life(scene, p)),
+      "hold it with [thermostat], set the keys of [damping] to 0, or write may_cool = true into [start] if it is a "
+      "first push alone");
+}
+
+std::vector<std::string> warmth_of(const Scene& scene, const Prepared& p) {
+  std::vector<std::string> out;
+  const int every = scene.run.stepping.contact_every;
+  if (is_warm(scene))
+    out.push_back(
+        fmt::format("The time step makes positions, and so the energies of the bonds, up to {:.2g} % hotter "
+                    "than velocities.",
+                    100 * excess_of_positions(p.limit, p.time_step / every, every)));
+  if (scene.run.mode == RunOptions::Mode::relax || scene.start.temperature <= 0 || scene.thermostat) return out;
+  std::string text =
+      fmt::format("The {:.4g} K at the start are in the velocities alone; bonds at rest take half of that heat.",
+                  scene.start.temperature);
+  if (const double half = half_life(scene, p); std::isfinite(half))
+    text += fmt::format(" Damping takes half of it in {:.2g} ps and leaves {:.2g} % after {:.4g} ps.", half,
+                        100 * start_heat_left(scene, p, p.duration), p.duration);
+  out.push_back(text);
+  return out;
 }
 
 Prepared prepare(Scene& scene) {

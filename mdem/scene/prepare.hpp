@@ -1,6 +1,9 @@
 // From a scene to what the simulator takes: interaction, loads, state and time step.
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "scene/build.hpp"
 #include "scene/scene.hpp"
 #include "scene/scene_to_model.hpp"
@@ -23,8 +26,19 @@ struct Prepared {
 // Throws InputError for a typed time step above the limit, for loads on elements that do not exist, for tubes of a
 // state file inside one another (unless they are to be relaxed) and for a moment that a single tube cannot bear.
 Prepared prepare(Scene& scene);
-// Of the stability limit, where no time step is typed.
+// Of the stability limit, where no time step is typed; in a warm scene at most this.
 double automatic_step_fraction(const Scene& scene);
+
+// It has a thermostat, or a temperature at the start that is not to be lost. Its automatic step keeps
+// excess_of_positions() to this.
+bool is_warm(const Scene& scene);
+inline constexpr double warm_excess = 0.02;
+
+// Throws InputError where damping would take most of the heat that the scene starts with before the run ends. Not
+// part of prepare(), so that runs that are there already can be read.
+void refuse_cooling(const Scene& scene, const Prepared& prepared);
+// What the time step and damping do to the temperature of a scene that has one; a sentence each.
+std::vector<std::string> warmth_of(const Scene& scene, const Prepared& prepared);
 
 // The simulation of a prepared scene, with the scene's list skin. Throws InputError where its first step would end
 // the run, or a bond slips already.

@@ -26,6 +26,7 @@ inline constexpr const char* scene_format = "ropewalk-scene-1";
 
 struct StartOptions {
   double temperature = 0;  // K, of the initial velocities
+  bool may_cool = false;   // damping may take that heat away
   std::uint64_t seed = 1;
 };
 

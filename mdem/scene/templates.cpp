@@ -53,6 +53,8 @@ std::vector<Recipe> recipes() {
        {{"", {{"parameters", "\"cnt-10-10-tersoff\""}}},
         {"film", {{"tubes", "100"}, {"length_nm", "68.9"}, {"width_nm", "150"}, {"depth_nm", "100"}}},
         {"start", {{"temperature_K", "300"}}},
+        {"thermostat", {{"temperature_K", "300"}, {"coupling_per_ps", "1"}}},
+        {"damping", {{"contact_viscosity_eV_ps_per_nm2", "0"}, {"bond_damping_per_ps", "0"}}},
         {"run", {{"duration_ps", "50"}}}}},
       {"chain",
        "a cantilever: one tube, one end fixed, a force on the other",

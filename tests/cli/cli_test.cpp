@@ -111,11 +111,17 @@ double sum_of_column(const std::string& frame, const std::string& name) {
 TEST_F(Cli, MixedTubesRunAndResume) {
   spit(dir / "s.toml",
        "format = \"ropewalk-scene-1\"\nparameters = [\"cnt-10-10-tersoff\", \"cnt-5-5-tersoff\"]\n"
-       "tube_types = [1, 0, 0, 0, 0, 0, 1]\n[rope]\ntubes = 7\nlength_nm = 14\n[start]\ntemperature_K = 50\n"
+       "tube_types = [1, 0, 0, 0, 0, 0, 1]\n[rope]\ntubes = 7\nlength_nm = 14\n[start]\ntemperature_K = "
+       "50\nmay_cool = true\n"
        "[run]\nduration_ps = 2\nframes_every_ps = 1\nlog_every_ps = 0.5\nparaview = true\n");
   const Outcome check = run("check s.toml");
   ASSERT_EQ(check.code, 0) << check.err;
   EXPECT_NE(check.out.find("contact law line"), std::string::npos);
+  // Each kind has limits of its own.
+  for (const char* watched :
+       {"watched in cnt-10-10-tersoff: bend_deg 19.9, twist_deg 19.9, kink_curvature_per_nm 0.086",
+        "watched in cnt-5-5-tersoff: bend_deg 19.9, twist_deg 19.9, kink_curvature_per_nm 0.3386"})
+    EXPECT_NE(check.out.find(watched), std::string::npos) << check.out;
   ASSERT_EQ(run("run s.toml --out d --quiet").code, 0) << slurp(dir / "stderr.txt");
   ASSERT_EQ(run("run s.toml --out half --quiet --steps 40").code, 0);
   ASSERT_EQ(run("resume half --quiet").code, 0) << slurp(dir / "stderr.txt");
@@ -251,6 +257,50 @@ TEST_F(Cli, CheckSaysThatDampingCoolsBesideAThermostat) {
   EXPECT_TRUE(cools(bath));
   EXPECT_FALSE(cools(bath + undamped));
   EXPECT_FALSE(cools(""));
+}
+
+// The grade of a set stands in every place where a user would look.
+TEST_F(Cli, TheGradeOfASetIsSaidEverywhere) {
+  spit(dir / "s.toml",
+       "format = \"ropewalk-scene-1\"\nparameters = \"cnt-20-20-tersoff\"\n[rope]\ntubes = 7\nlength_nm = 14\n"
+       "[run]\nduration_ps = 1\n");
+  const std::string grade = "cnt-20-20-tersoff: limited: 2.75 nm wide: tubes wider than 2 nm facet";
+  EXPECT_NE(run("check s.toml").out.find("grade of " + grade), std::string::npos);
+  const Outcome o = run("run s.toml --out d");
+  ASSERT_EQ(o.code, 0) << o.err;
+  EXPECT_EQ(o.err.find("ropewalk: parameters " + grade), 0u) << o.err;
+  EXPECT_NE(slurp(dir / "d/manifest.json").find("\"grade\": \"" + grade), std::string::npos);
+  const std::string report = slurp(dir / "d/report.html");
+  EXPECT_NE(report.find("Parameters cnt-20-20-tersoff are limited: 2.75 nm wide"), std::string::npos);
+  EXPECT_NE(report.find("has a standard deviation of 0.73 % of the well"), std::string::npos);
+  EXPECT_NE(report.find("if the 12 pairs of a close-packed rope of as many tubes lie at random"),
+            std::string::npos);
+  const Outcome plan = run("plan s.toml --error 5% --chart " ROPEWALK_SOURCE_DIR "/data/chart");
+  EXPECT_NE(plan.out.find("parameters " + grade), std::string::npos) << plan.out << plan.err;
+  // Runs of before have no grade in their manifest.
+  std::string manifest = slurp(dir / "d/manifest.json");
+  const std::size_t at = manifest.find("  \"grade\"");
+  manifest.erase(at, manifest.find('\n', at) + 1 - at);
+  spit(dir / "d/manifest.json", manifest);
+  EXPECT_EQ(run("report d").code, 0);
+}
+
+TEST_F(Cli, WarmScenesSayWhatStepAndDampingDo) {
+  small_rope("s.toml", "[start]\ntemperature_K = 300\nmay_cool = true\n");
+  Outcome o = run("check s.toml");
+  EXPECT_NE(
+      o.out.find("note: The 300 K at the start are in the velocities alone; bonds at rest take half of that heat. "
+                 "Damping takes half of it in"),
+      std::string::npos)
+      << o.out << o.err;
+  small_rope("s.toml",
+             "time_step_fs = 32\n[start]\ntemperature_K = 300\n"
+             "[damping]\ncontact_viscosity_eV_ps_per_nm2 = 0\nbond_damping_per_ps = 0\n");
+  o = run("run s.toml --out d --steps 2");
+  EXPECT_EQ(o.code, 0) << o.err;
+  EXPECT_TRUE(std::regex_search(o.err, std::regex("note: The time step makes positions, and so the energies of the "
+                                                  "bonds, up to [1-9][0-9] % hotter than velocities.")))
+      << o.err;
 }
 
 // The heat is a column of the log, and a resumed run has the noise of one that was never stopped.

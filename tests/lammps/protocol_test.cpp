@@ -60,16 +60,17 @@ INSTANTIATE_TEST_SUITE_P(
                  "[twist]\nmoment_nN_nm = 10\nrate_nN_nm_per_ps = 30\napplication = \"tangential\"\n"},
         Protocol{"Held",
                  "[twist]\nmoment_nN_nm = 20\nrate_nN_nm_per_ps = 30\nlateral = \"held\"\naxial = \"held\"\n"
-                 "[start]\ntemperature_K = 100\n"},
+                 "[start]\ntemperature_K = 100\nmay_cool = true\n"},
         // It acts by the sign of a velocity, which rounding turns where the velocity is nothing.
         Protocol{"LocalDamping",
                  "[twist]\nmoment_nN_nm = 20\nrate_nN_nm_per_ps = 30\n[damping]\npfc_local = 0.3\n"
                  "contact_viscosity_eV_ps_per_nm2 = 0\nbond_damping_per_ps = 0\n",
                  1e-6},
-        Protocol{"LegacyTorque",
-                 "[start]\ntemperature_K = 100\n[contact]\nlaw = \"paper\"\nlegacy_torque = true\n"},
+        Protocol{
+            "LegacyTorque",
+            "[start]\ntemperature_K = 100\nmay_cool = true\n[contact]\nlaw = \"paper\"\nlegacy_torque = true\n"},
         Protocol{"NoContact",
-                 "[start]\ntemperature_K = 100\n[contact]\nlaw = \"none\"\n"
+                 "[start]\ntemperature_K = 100\nmay_cool = true\n[contact]\nlaw = \"none\"\n"
                  "[[load]]\nkind = \"fix\"\nelements = [0]\n"}),
     [](const auto& info) { return std::string(info.param.name); });
 
@@ -99,7 +100,9 @@ TEST_F(LammpsRun, RelaxesToTheSameMinimum) {
 }
 
 TEST_F(LammpsRun, RestartFilesGoOnOnAnyNumberOfRanks) {
-  exported(rope("[twist]\nmoment_nN_nm = 20\nrate_nN_nm_per_ps = 30\n[start]\ntemperature_K = 100\n"), "out");
+  exported(
+      rope("[twist]\nmoment_nN_nm = 20\nrate_nN_nm_per_ps = 30\n[start]\ntemperature_K = 100\nmay_cool = true\n"),
+      "out");
   const Topology topology = [&] {
     Scene scene = read_scene((dir / "scene.toml").string());
     return prepare(scene).topology;
@@ -154,7 +157,7 @@ TEST_F(LammpsRun, PluginDoesTheSame) {
 
 TEST_F(LammpsRun, ThereAndBackIsOneRun) {
   const std::string scene =
-      rope("[twist]\nmoment_nN_nm = 20\nrate_nN_nm_per_ps = 20\n[start]\ntemperature_K = 200\n",
+      rope("[twist]\nmoment_nN_nm = 20\nrate_nN_nm_per_ps = 20\n[start]\ntemperature_K = 200\nmay_cool = true\n",
            "duration_ps = 6\nframes_every_ps = 1\nlog_every_ps = 1\n");
   spit(dir / "scene.toml", scene);
   ASSERT_EQ(run("run scene.toml --out whole --quiet").code, 0);
@@ -193,7 +196,7 @@ TEST_F(LammpsRun, ThereAndBackIsOneRun) {
 }
 
 TEST_F(LammpsRun, ExportLosesNoDigit) {
-  exported(rope("[start]\ntemperature_K = 300\n"), "out");
+  exported(rope("[start]\ntemperature_K = 300\nmay_cool = true\n"), "out");
   ASSERT_EQ(lmp(2, "out", "-in in.rope -var steps 0").code, 0);
   Scene scene = read_scene((dir / "scene.toml").string());
   const Simulation native = start(scene, prepare(scene));

@@ -68,7 +68,7 @@ inline const std::vector<FiveStates>& five_states() {
 // Loads and constraints of every kind.
 inline std::string driven_scene(const FiveStates& s) {
   return std::string("format = \"ropewalk-scene-1\"\nname = \"") + s.name + "\"\n" + s.head +
-         "[state]\nfile = \"tubes.csv\"\n[start]\ntemperature_K = 200\n"
+         "[state]\nfile = \"tubes.csv\"\n[start]\ntemperature_K = 200\nmay_cool = true\n"
          "[damping]\ncontact_viscosity_eV_ps_per_nm2 = 5\nbond_damping_per_ps = 0.5\n"
          "[[load]]\nkind = \"force\"\ntubes = [0]\nelements = [0]\nforce_nN = [0.02, -0.03, 0.01]\n"
          "[[load]]\nkind = \"torque\"\ntubes = [0]\nelements = [-1]\ntorque_nN_nm = [1, 2, 3]\n"

@@ -59,13 +59,13 @@ class ForcesTest : public ::testing::TestWithParam<Variant> {
     in.damping.bond.rate = v.rate;
   }
 
-  // Every second tube is a thin one, with other masses and bonds.
+  // Every second tube is a thin one, with other masses and with anharmonic bonds.
   std::vector<LineContact> mix_tube_types() {
     TubeType thin = topology.types[0];
     thin.radius = 0.34;
     thin.mass *= 0.5;
     thin.inertia *= 0.125;
-    thin.bond = {735 * units::nN_nm, 45 * units::nN_nm, 40 * units::nN_nm};
+    thin.bond = test::anharmonic_bond();
     topology.types.push_back(thin);
     for (int t = 1; t < topology.tubes(); t += 2) topology.tube_type[t] = 1;
     return contacts_with_thin_ones();

@@ -157,5 +157,13 @@ TEST(LimitsFile, ReadsBackWhatWasWritten) {
   std::filesystem::remove(path);
 }
 
+// Sentences for users, without names of the code.
+TEST(LimitKinds, AreToldInPlainWords) {
+  for (const LimitKind& kind : limit_kinds())
+    for (const std::string words : {kind.what, kind.consequence})
+      EXPECT_EQ(words.find('_'), std::string::npos) << words;
+  EXPECT_STREQ(limit_kinds()[5].what, "the tube is pressed into another one by");
+}
+
 }  // namespace
 }  // namespace ropewalk

@@ -184,6 +184,9 @@ TEST(Plan, StaysBelowTheStepLimit) {
   Scene s = scene_from(plan_scene(scene_from(bundle), chart, {0.0125 + between_scenes, {}, false}).text);
   const Prepared p = prepare(s);
   EXPECT_NEAR(s.run.time_step, 0.9 * inner_step_limit(p.limit, 1), 1e-3 * s.run.time_step);
+  const std::string hot = bundle + "[start]\ntemperature_K = 50\n";
+  Scene warm = scene_from(plan_scene(scene_from(hot), chart, {0.0125 + between_scenes, {}, false}).text);
+  EXPECT_NEAR(warm.run.time_step, step_of_excess(prepare(warm).limit, warm_excess, 1), 1e-3 * warm.run.time_step);
 }
 
 TEST(Plan, EndMomentsThatLoadsGiveAreNotPromised) {

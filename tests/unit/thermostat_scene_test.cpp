@@ -45,8 +45,8 @@ TEST(ThermostatTable, ReachesTheSimulation) {
   const Prepared without = prepare(cold), with = prepare(warm);
   EXPECT_FALSE(without.stepping.thermostat);
   ASSERT_TRUE(with.stepping.thermostat);
-  EXPECT_NEAR(with.time_step / without.time_step, default_step_fraction / cold_step_fraction, 1e-12)
-      << "the automatic step of a warm scene";
+  EXPECT_NEAR(with.time_step, step_of_excess(with.limit, warm_excess, 1), 1e-12) << "the step of a warm scene";
+  EXPECT_NEAR(without.time_step, cold_step_fraction * without.limit.limit, 1e-12);
   Simulation s = start(warm, with);
   s.steps(20);
   EXPECT_GT(s.heat(), 0);

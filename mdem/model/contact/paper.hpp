@@ -313,16 +313,16 @@ inline double paper_parallel_energy(const PaperContact& contact, double element_
   return sum / element_length;
 }
 
-// Energy (eV) of two long rows that cross at `angle`, each at a quarter of an element.
+// Energy (eV) of two long rows that cross at `angle`, each at a part of an element from the centre of one.
 inline double paper_crossed_energy(const PaperContact& contact, double element_length, double distance,
-                                   double angle) {
+                                   double angle, double part_i = 0.25, double part_j = 0.25) {
   const Vector3 n_i = Vector3::UnitZ(), n_j(0, std::sin(angle), std::cos(angle));
   const int reach = static_cast<int>(contact.cutoff() / (element_length * std::sin(angle))) + 1;
   double sum = 0;
   for (int k = -reach; k <= reach; ++k)
     for (int l = -reach; l <= reach; ++l)
       sum += contact.energy(
-          Vector3(distance, 0, 0) + (l + 0.25) * element_length * n_j - (k + 0.25) * element_length * n_i, n_i,
+          Vector3(distance, 0, 0) + (l + part_j) * element_length * n_j - (k + part_i) * element_length * n_i, n_i,
           n_j);
   return sum;
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "io/grade.hpp"
 #include "scene/laws/contact_law_kind.hpp"
 #include "scene/scene_to_model.hpp"
 
@@ -28,6 +29,13 @@ void check_mixture(const TomlTable& top, const Scene& scene) {
     if (scene.sets.size() > 1 && !set.line->has_universal)
       throw top.error("parameters", fmt::format("{} has no [contact.line.universal]", set.name),
                       "tubes of different kinds need it; make the set with `ropewalk calibrate`");
+    if (const double error = universal_error(set); scene.sets.size() > 1 && error > unusable_contact)
+      throw top.error(
+          "parameters",
+          fmt::format("{} is not to be mixed: the contact law between tubes of different kinds is off by "
+                      "{:.2g} % of the well for it",
+                      set.name, 100 * error),
+          "take it alone, or another tube");
     if (!(set.line->universal == first.universal))
       throw top.error("parameters",
                       fmt::format("{} and {} have different van der Waals laws", scene.sets[0].name, set.name),

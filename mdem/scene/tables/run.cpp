@@ -55,8 +55,8 @@ const KeyTable<RunOptions>& run_table() {
                    "\"dynamics\", or \"relax\": to the nearest minimum of the energy", read_mode),
        Key::custom(
            "time_step_fs", "fs", standard("\"auto\""),
-           "\"auto\": 0.9 of the stability limit; 0.6 where warm, from a state file, with contact_every, or "
-           "to relax",
+           "\"auto\": 0.9 of the stability limit; 0.6 from a state file, with contact_every, where heat may_cool, "
+           "or to relax; where warm, positions are at most 2 % hotter than velocities",
            read_time_step),
        Key::integer(
            "contact_every", 1, max_inner_steps, [](auto& r) -> auto& { return r.stepping.contact_every; },

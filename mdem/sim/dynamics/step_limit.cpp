@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <limits>
 #include <vector>
 
 #include "sim/contact/contact_law.hpp"
@@ -52,9 +53,12 @@ double damped_step_limit(double w2, double g) { return (std::sqrt(g * g + 4.0 * 
 
 using Matrix6 = Eigen::Matrix<std::complex<double>, 6, 6>;
 
-double largest_eigenvalue(const Matrix6& m) {
-  return Eigen::SelfAdjointEigenSolver<Matrix6>(m, Eigen::EigenvaluesOnly).eigenvalues()[5];
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+
+Vector6 eigenvalues(const Matrix6& m) {
+  return Eigen::SelfAdjointEigenSolver<Matrix6>(m, Eigen::EigenvaluesOnly).eigenvalues();
 }
+double largest_eigenvalue(const Matrix6& m) { return eigenvalues(m)[5]; }
 
 // K and C of one wave over the masses; deflections x, y, z, then rotations.
 struct Wave {
@@ -200,8 +204,12 @@ TimeStepLimit time_step_limit(const Topology& given, const Interaction& in, doub
     raise(out.contact_frequency, std::sqrt(6 * lattice.stiffness / t.mass));
     const std::vector<Wave> waves = lattice.waves();
     out.limit = stable_step(waves, out.limit);
+    out.stiffest.emplace_back();
     for (const Wave& wave : waves) {
-      raise(out.damping_rate, largest_eigenvalue(wave.bond_damping + wave.contact_damping));
+      out.stiffest.back().push_back(largest_eigenvalue(wave.stiffness));
+      const Vector6 rates = eigenvalues(wave.bond_damping + wave.contact_damping);
+      out.damping_rates.insert(out.damping_rates.end(), rates.begin(), rates.end());
+      raise(out.damping_rate, rates[5]);
       raise(out.contact_damping, largest_eigenvalue(wave.contact_damping));
     }
   }
@@ -223,6 +231,36 @@ double inner_step_limit(const TimeStepLimit& limit, int contact_every) {
     (stable(middle) ? below : above) = middle;
   }
   return std::min(chain, below / contact_every);
+}
+
+double excess_of_positions(const TimeStepLimit& limit, double step, int contact_every) {
+  const auto of_mode = [](double w2, double h) {
+    const double left = 1 - 0.25 * w2 * h * h;
+    return left > 0 ? 1 / left - 1 : std::numeric_limits<double>::infinity();
+  };
+  const double contact = limit.contact_frequency * limit.contact_frequency;
+  double largest = contact_every > 1 ? of_mode(contact, contact_every * step) : 0;
+  for (const std::vector<double>& waves : limit.stiffest) {
+    double sum = 0;
+    for (const double w2 : waves) sum += of_mode(w2, step);
+    largest = std::max(largest, sum / static_cast<double>(waves.size()));
+  }
+  return largest;
+}
+
+double step_of_excess(const TimeStepLimit& limit, double excess, int contact_every) {
+  double below = 0, above = 2 / limit.chain_frequency;
+  for (int k = 0; k < 60; ++k) {
+    const double middle = 0.5 * (below + above);
+    (excess_of_positions(limit, middle, contact_every) < excess ? below : above) = middle;
+  }
+  return below;
+}
+
+double heat_left(const TimeStepLimit& limit, double time) {
+  double sum = 0;
+  for (const double rate : limit.damping_rates) sum += std::exp(-rate * time);
+  return sum / static_cast<double>(limit.damping_rates.size());
 }
 
 }  // namespace ropewalk

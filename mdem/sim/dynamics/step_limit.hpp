@@ -1,6 +1,8 @@
 // How large a time step may be.
 #pragma once
 
+#include <vector>
+
 #include "sim/state/interaction.hpp"
 #include "sim/state/state.hpp"
 
@@ -23,6 +25,9 @@ struct TimeStepLimit {
   double damping_rate = 0;        // 1/ps
   double sideways_frequency = 0;  // rad/ps: the stiffest mode of the chain in which elements move sideways
   double contact_damping = 0;     // 1/ps: part of damping_rate
+  // Of each plane wave: w^2 (rad^2/ps^2) of its stiffest mode, by tube type, and the six rates of damping (1/ps).
+  std::vector<std::vector<double>> stiffest;
+  std::vector<double> damping_rates;
 };
 // `spacing` of the tubes in nm; 0: a single tube.
 TimeStepLimit time_step_limit(const Topology& topology, const Interaction& interaction, double spacing);
@@ -36,5 +41,18 @@ TimeStepLimit time_step_limit(const Topology& topology, const Interaction& inter
 // smooth contact has next to no stiffness.
 // n = 1: TimeStepLimit::limit.
 double inner_step_limit(const TimeStepLimit& limit, int contact_every);
+
+// By how much positions are hotter than velocities, relative, in a scene with heat. A harmonic mode w in velocity
+// Verlet with the step h keeps v^2/2 + w^2 x^2/2 (1 - (w h)^2/4), and BAOAB keeps the same ratio, so that
+//   w^2 <x^2>/<v^2> = 1/(1 - (w h)^2/4).
+// The mean over all waves, of the stiffest mode of each and of the tube type with the largest: stretch, shear, bend
+// and twist are no hotter. With contact_every = n not less than that of the stiffest contact in the step n h.
+double excess_of_positions(const TimeStepLimit& limit, double step, int contact_every);
+// The step (ps, of bonds) at which that is `excess`.
+double step_of_excess(const TimeStepLimit& limit, double excess, int contact_every);
+
+// Part of the kinetic energy of an even distribution over all waves that damping has not taken after `time` (ps):
+// mean of exp(-c t) over the rates c of damping. An estimate, since it leaves out what damping makes of the modes.
+double heat_left(const TimeStepLimit& limit, double time);
 
 }  // namespace ropewalk

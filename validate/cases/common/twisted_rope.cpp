@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "cases/common/chain.hpp"
+#include "io/grade.hpp"
 #include "model/error.hpp"
 
 namespace ropewalk {
@@ -94,6 +95,26 @@ void add_shear_information(const TwistedRope& rope, ParameterSet set, const Seri
         relative_check(fmt::format("twisting energy with bonds rigid in shear, grips {}, {:.4g} deg", series.grips,
                                    atoms.angle * units::rad_in_degree),
                        elements.total, atoms.total, 0.05, "eV", "the published kind of bond, for comparison")));
+  }
+}
+
+// What the registry of real tubes, which the model leaves out, may move the twisting energy by: that of twelve
+// pairs of neighbours at random.
+void add_registry_information(const TwistedRope& rope, const ParameterSet& set, const Series& series,
+                              CaseResult& result) {
+  const double deviation = registry_deviation(set);
+  if (deviation < 0) return;
+  const auto last = static_cast<std::size_t>(rope.elastic_increments);
+  for (const std::size_t k : std::array{last / 3, 2 * last / 3, last}) {
+    const TwistedState atoms = change(series.atoms, k);
+    result.checks.push_back(information(absolute_check(
+        fmt::format("registry over twisting energy, grips {}, {:.4g} deg", series.grips,
+                    atoms.angle * units::rad_in_degree),
+        0, deviation * std::fabs(series.atoms[k].vdw) / std::sqrt(12.0) / atoms.total, 0, "1",
+        fmt::format(
+            "error bar of the twisting energy: {:.2g} % of the vdW energy a pair, of 12 pairs at random; the model "
+            "has no registry",
+            100 * deviation))));
   }
 }
 
@@ -248,6 +269,7 @@ CaseResult run_twisted_rope(const TwistedRope& rope, const CaseContext& context)
                        "make the reference again with --fresh");
     add_checks(rope, all.back(), result);
     add_collapsed_checks(rope, all.back(), result);
+    add_registry_information(rope, model, all.back(), result);
     add_axial_information(rope, all.back(), result);
     add_shear_information(rope, model, all.back(), result);
   }

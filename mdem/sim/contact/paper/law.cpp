@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "model/error.hpp"
@@ -52,6 +53,28 @@ double lowest(const PaperContact& contact, const char* key, F energy) {
 double pair_spacing(const PaperContact& contact, double element_length) {
   return lowest(contact, "rope.spacing_nm",
                 [&](double spacing) { return paper_parallel_energy(contact, element_length, spacing); });
+}
+
+PaperWells paper_wells(const PaperContact& contact, double element_length) {
+  PaperWells out;
+  out.spacing = pair_spacing(contact, element_length);
+  out.parallel = paper_parallel_energy(contact, element_length, out.spacing);
+  out.crossed_deepest = std::numeric_limits<double>::infinity();
+  out.crossed_shallowest = -out.crossed_deepest;
+  constexpr int parts = 4;  // of half an element; the other half mirrors it
+  for (int i = 0; i <= parts; ++i)
+    for (int j = 0; j <= i; ++j) {
+      const auto energy = [&](double distance) {
+        return paper_crossed_energy(contact, element_length, distance, 0.5 * units::pi, 0.5 * i / parts,
+                                    0.5 * j / parts);
+      };
+      double well = std::numeric_limits<double>::infinity();
+      for (double d = 2 * contact.radius; d < 1.5 * out.spacing; d += 0.01 * contact.radius)
+        well = std::min(well, energy(d));
+      out.crossed_deepest = std::min(out.crossed_deepest, well);
+      out.crossed_shallowest = std::max(out.crossed_shallowest, well);
+    }
+  return out;
 }
 
 double PaperLaw::parallel_distance(TypePair, double length) const { return pair_spacing(contact, length); }

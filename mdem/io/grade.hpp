@@ -1,0 +1,41 @@
+// How far a parameter set stands for its tube, as a chain of rigid circular cylinders with the contact law of the
+// set. It follows from numbers that stand in every set: radius, standard errors of the stiffnesses, errors of the
+// contact.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "model/parameters.hpp"
+
+namespace ropewalk {
+
+struct Grade {
+  enum class Level { good, limited, unfit };
+  Level level = Level::good;
+  std::vector<std::string> reasons;  // of what is not good, each with its figure
+
+  std::string words() const;  // "good", or "limited: " and the reasons
+};
+
+// good: stiffnesses known to 1 %, the line law within 1 % of the well of the surface integral, 0.5 to 2 nm wide.
+// unfit: the line law off by more than a tenth of the well, or wider than 4.2 nm, where tubes may collapse by
+// themselves (J. A. Elliott et al., Phys. Rev. Lett. 92, 095501 (2004), DOI 10.1103/PhysRevLett.92.095501).
+Grade grade_of(const ParameterSet& set);
+
+// Largest error of the set's own line law against the surface integral, over the well, as the set states it.
+// Negative: it states none.
+double line_fit_error(const ParameterSet& set);
+// Of the universal law, which acts between tubes of different kinds. Negative: the set has none.
+double universal_error(const ParameterSet& set);
+// A contact law that is further off than this is of no use.
+inline constexpr double unusable_contact = 0.1;  // of the well
+
+// Standard deviation, over all registries, of the energy of two real tubes side by side, over the well. Negative:
+// the set does not say.
+double registry_deviation(const ParameterSet& set);
+
+inline constexpr double faceting_diameter = 2.0;  // nm: wider tubes press each other flat
+inline constexpr double slender_diameter = 0.5;   // nm: the wall of narrower tubes is no thin shell
+
+}  // namespace ropewalk

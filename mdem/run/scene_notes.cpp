@@ -1,0 +1,174 @@
+// What a scene says of itself before and after a run: grades, warnings, error bars.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "io/grade.hpp"
+#include "model/self_contact.hpp"
+#include "run/run_directory.hpp"
+#include "scene/scene_to_model.hpp"
+
+namespace ropewalk {
+namespace {
+
+// Moment over curvature of a chain of bonds bent by d each is 1 + (3 s/8 - 1/6) d^2 of the rod's.
+void warn_of_long_elements(const ParameterSet& set, double length, std::vector<std::string>& warnings) {
+  const double bend = set.validity.kink_curvature * length;
+  const double error = std::fabs(0.375 * set.bond.shear_share(length) - 1.0 / 6) * bend * bend;
+  if (error > 0.01)
+    warnings.push_back(fmt::format(
+        "Elements of {:.3g} nm of {} are bent by {:.2f} rad each where the tube kinks, and its stiffness is "
+        "{:.0f} % off there: take shorter ones where tubes bend strongly.",
+        length, set.name, bend, 100 * error));
+}
+
+// The `paper` law has one point on an element, so that crossed tubes feel where along their elements they cross.
+void warn_of_paper(const Scene& scene, std::vector<std::string>& warnings) {
+  const ParameterSet& set = scene.parameters();
+  if (scene.contact.law != "paper" || !set.line) return;
+  const PaperWells w = paper_wells(paper_contact(scene), scene.element_length);
+  const LineParameters& integral = *set.line;
+  const double off = std::max({std::fabs(w.parallel / integral.pair_energy - 1),
+                               std::fabs(w.crossed_deepest / integral.cross90_energy - 1),
+                               std::fabs(w.crossed_shallowest / integral.cross90_energy - 1)});
+  if (off < 0.01) return;
+  warnings.push_back(fmt::format(
+      "law = \"paper\" is up to {:.2g} % off for {}: tubes crossed at 90 degrees bind with {:.2f} to {:.2f} eV by "
+      "where "
+      "along their elements they cross, and the surface integral gives {:.2f} eV; parallel ones with {:.3f} eV/nm "
+      "at "
+      "{:.3f} nm, and the integral gives {:.3f} eV/nm at {:.3f} nm. law = \"line\" agrees with the integral.",
+      100 * off, set.name, w.crossed_shallowest, w.crossed_deepest, integral.cross90_energy, w.parallel, w.spacing,
+      integral.pair_energy, integral.pair_spacing));
+}
+
+// A shorter cutoff makes another, weaker law.
+void warn_of_cutoff(const Scene& scene, std::vector<std::string>& warnings) {
+  if (scene.contact.cutoff <= 0) return;
+  Scene whole = scene;
+  whole.contact.cutoff = 0;
+  const std::vector<ContactRange> now = contact_ranges(scene), own = contact_ranges(whole);
+  double left = 1;
+  for (std::size_t k = 0; k < own.size(); ++k) left = std::min(left, now[k].binding / own[k].binding);
+  if (left < 0.99)
+    warnings.push_back(
+        fmt::format("With contact.cutoff_nm = {:.4g} two parallel tubes bind with {:.0f} % of what the "
+                    "law of the set gives.",
+                    scene.contact.cutoff, 100 * left));
+}
+
+// Neighbours are counted within one distance of the axes, which suits one kind of tube.
+void warn_of_unlike_tubes(const Scene& scene, std::vector<std::string>& warnings) {
+  const auto [least, most] =
+      std::minmax_element(scene.sets.begin(), scene.sets.end(),
+                          [](const ParameterSet& a, const ParameterSet& b) { return a.radius < b.radius; });
+  if (most->radius < 1.05 * least->radius) return;
+  warnings.push_back(
+      fmt::format("Tubes of {:.3g} and {:.3g} nm radius: the packing charge Q counts neighbours within one "
+                  "distance of the axes, "
+                  "that of the widest tubes, and means nothing between narrow ones; Q_delaunay needs no distance.",
+                  least->radius, most->radius));
+}
+
+// Where a tube is long enough to come back to itself without a kink, and the contact is left out there.
+void warn_of_long_exclusion(const Scene& scene, const Topology& topology, std::vector<std::string>& warnings) {
+  const double excluded = scene.contact.exclude_along_tube;
+  const auto law = contact_law(scene);
+  std::vector<bool> told(scene.sets.size());
+  for (int t = 0; law && t < topology.tubes(); ++t) {
+    const int type = topology.tube_type[t];
+    const auto set = static_cast<std::size_t>(type);
+    const double loop = smallest_loop(scene.sets[set].validity.kink_curvature, law->range({type, type}));
+    const double length = topology.length_of(t) * topology.type_of(t).element_length;
+    if (told[set] || length <= loop || excluded <= loop) continue;
+    told[set] = true;
+    warnings.push_back(fmt::format(
+        "contact.exclude_along_tube_nm = {:.4g}: a tube of {:.4g} nm of {} can touch itself in loops of {:.3g} nm "
+        "without a kink, and {}.",
+        excluded, length, scene.sets[set].name, loop,
+        length <= excluded ? "nothing of it attracts itself"
+                           : "parts nearer than the key along it do not attract"));
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> grades_of(const Scene& scene) {
+  std::vector<std::string> out;
+  for (const ParameterSet& set : scene.sets) out.push_back(set.name + ": " + grade_of(set).words());
+  return out;
+}
+
+std::vector<std::string> warnings_of(const Scene& scene, const Topology& topology) {
+  std::vector<std::string> warnings;
+  if (scene.contact.legacy_torque)
+    warnings.push_back("This run leaves out the torque that the published force code leaves out: it gains energy.");
+  if (scene.run.mass_scale != 1)
+    warnings.push_back(
+        fmt::format("Masses are {:.4g} times those of the tubes: times, velocities and waves are not theirs.",
+                    scene.run.mass_scale));
+  if (scene.thermostat && (scene.damping.contact.eta > 0 || scene.damping.bond.rate > 0))
+    warnings.push_back(
+        fmt::format("Damping takes out heat beside the thermostat: the tubes stay colder than {:.4g} K. Set "
+                    "damping.contact_viscosity_eV_ps_per_nm2 and damping.bond_damping_per_ps to 0 to hold it.",
+                    scene.thermostat->temperature));
+  if (scene.damping.local > 0)
+    warnings.push_back("PFC local damping depends on the frame and does not conserve momentum.");
+  if (scene.contact.law == "line" && scene.contact.nodes > 0) {
+    Scene free = scene;
+    free.contact.nodes = 0;
+    const int needed = line_contacts(free).front().nodes_i;
+    if (scene.contact.nodes < needed)
+      warnings.push_back(
+          fmt::format("With contact.nodes_per_element = {} tubes feel one another's elements: {} would keep the "
+                      "corrugation below "
+                      "2e-4 of the binding energy.",
+                      scene.contact.nodes, needed));
+  }
+  warn_of_long_exclusion(scene, topology, warnings);
+  warn_of_cutoff(scene, warnings);
+  warn_of_unlike_tubes(scene, warnings);
+  warn_of_paper(scene, warnings);
+  for (const ParameterSet& set : scene.sets) warn_of_long_elements(set, scene.element_length, warnings);
+  return warnings;
+}
+
+// What registry, which the model leaves out, may add to the energies at the end of the run.
+std::vector<std::string> error_bars_of(const Scene& scene, const Topology& topology,
+                                       const std::vector<LogRow>& log) {
+  if (scene.contact.law == "none") return {};
+  double deviation = -1;
+  for (const ParameterSet& set : scene.sets) deviation = std::max(deviation, registry_deviation(set));
+  const std::string what =
+      "Registry, how the lattices of two neighbouring tubes lie on one another, is left out: tubes are smooth. ";
+  if (deviation < 0)
+    return {
+        what +
+        "How much it counts for these tubes stands in no number of their parameter sets; of other tubes the "
+        "binding "
+        "energy has a standard deviation of 0.2 to 3 % over all registries, and twisting energies of small ropes "
+        "move by some per cent at small angles."};
+  std::vector<std::string> out = {
+      what +
+      fmt::format("Over all registries the binding energy of two real tubes has a standard deviation of {:.2g} % "
+                  "of the well. Every energy, force and moment of the contact bears this error.",
+                  100 * deviation)};
+  if (log.empty()) return out;
+  const LogRow& last = log.back();
+  const double bonds = last["stretch_eV"] + last["shear_eV"] + last["bend_eV"] + last["twist_eV"];
+  const double alike = deviation * std::fabs(last["vdw_eV"]), n = topology.tubes();
+  // No more circles than this touch one another in a plane.
+  const double pairs = std::max(1.0, std::floor(3 * n - std::sqrt(12 * n - 3)));
+  out.push_back(
+      fmt::format("At the end that is ± {:.3g} eV of {:.5g} eV van der Waals energy if every pair of neighbours "
+                  "lies alike, and "
+                  "± {:.3g} eV if the {:.0f} pairs of a close-packed rope of as many tubes lie at random{}.",
+                  alike, last["vdw_eV"], alike / std::sqrt(pairs), pairs,
+                  bonds > 0 ? fmt::format(": {:.2g} and {:.2g} % of what the bonds hold", 100 * alike / bonds,
+                                          100 * alike / std::sqrt(pairs) / bonds)
+                            : ""));
+  return out;
+}
+
+}  // namespace ropewalk

@@ -1,0 +1,132 @@
+// How a parameter set is graded, and what a scene says of it.
+#include "io/grade.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "io/data_files.hpp"
+#include "io/parameters_toml.hpp"
+#include "run/run_directory.hpp"
+#include "scene/scene_toml.hpp"
+
+namespace ropewalk {
+namespace {
+
+ParameterSet shipped(const std::string& name) {
+  return read_parameters(data_directory() + "/parameters/" + name + ".toml");
+}
+
+// With other values of some numbers.
+ParameterSet changed(const std::string& name, const std::string& key, double value) {
+  ParameterSet set = shipped(name);
+  for (Quantity& q : set.quantities)
+    if (q.key == key) q.value = value;
+  return set;
+}
+
+TEST(Grade, OfAMiddlingTubeIsGood) {
+  for (const char* name : {"cnt-5-5-tersoff", "cnt-10-10-tersoff", "cnt-12-6-tersoff", "cnt-10-10-lcbop"})
+    EXPECT_EQ(grade_of(shipped(name)).words(), "good") << name;
+}
+
+TEST(Grade, NamesFacetsOfWideTubes) {
+  const Grade wide = grade_of(shipped("cnt-20-20-tersoff"));
+  EXPECT_EQ(wide.level, Grade::Level::limited);
+  EXPECT_NE(wide.words().find("2.75 nm wide: tubes wider than 2 nm facet"), std::string::npos) << wide.words();
+  ParameterSet huge = shipped("cnt-20-20-tersoff");
+  huge.radius = 2.2;
+  EXPECT_EQ(grade_of(huge).level, Grade::Level::unfit);
+}
+
+TEST(Grade, NamesWhatIsKnownBadly) {
+  const Grade airebo = grade_of(shipped("cnt-10-10-airebo"));
+  EXPECT_EQ(airebo.level, Grade::Level::limited);
+  EXPECT_NE(airebo.words().find("EA is known to 1.4 %"), std::string::npos) << airebo.words();
+}
+
+TEST(Grade, NamesThinWallsByTheirShellRelation) {
+  ParameterSet thin = shipped("cnt-5-5-tersoff");
+  thin.radius = 0.2;
+  thin.bond.bend = 1.1 * 0.5 * thin.bond.stretch * 0.04;
+  EXPECT_NE(grade_of(thin).words().find("0.40 nm wide: below 0.5 nm the wall is no thin shell (EI is +10 % off"),
+            std::string::npos)
+      << grade_of(thin).words();
+}
+
+TEST(Grade, OfTheContactFollowsItsErrors) {
+  const ParameterSet set = shipped("cnt-10-10-tersoff");
+  EXPECT_NEAR(line_fit_error(set), 1.4e-3, 1e-9);
+  EXPECT_NEAR(universal_error(set), 1.374e-3, 1e-6);
+  EXPECT_NE(grade_of(changed("cnt-10-10-tersoff", "contact.line.universal.error", 0.05))
+                .words()
+                .find("the contact with other tubes is off by up to 5 % of the well"),
+            std::string::npos);
+  EXPECT_NE(grade_of(changed("cnt-10-10-tersoff", "contact.line.universal.error", 0.44))
+                .words()
+                .find("not to be mixed with other tubes"),
+            std::string::npos);
+  ParameterSet bad = set;
+  for (Quantity& q : bad.quantities)
+    if (q.key == "contact.line.K") q.note = "fit error 3.0e-01 of the well";
+  EXPECT_EQ(grade_of(bad).level, Grade::Level::unfit);
+  EXPECT_EQ(grade_of(shipped("cnt-10-10-paper")).level, Grade::Level::limited);
+}
+
+TEST(Grade, EveryShippedSetSaysHowMuchRegistryCounts) {
+  for (const auto& entry : std::filesystem::directory_iterator(data_directory() + "/parameters")) {
+    if (entry.path().extension() != ".toml" || entry.path().stem() == "cnt-10-10-paper") continue;
+    const double deviation = registry_deviation(read_parameters(entry.path().string()));
+    EXPECT_GT(deviation, 0) << entry.path();
+    EXPECT_LT(deviation, 0.04) << entry.path();
+  }
+  EXPECT_NEAR(registry_deviation(shipped("cnt-10-10-tersoff")), 0.010, 0.001);
+  EXPECT_NEAR(registry_deviation(shipped("cnt-5-5-tersoff")), 0.029, 0.002);
+}
+
+TEST(Grade, FindsNumbersThatContradictEachOther) {
+  ParameterSet law = shipped("cnt-10-10-tersoff");
+  law.line->density.K *= 1.05;
+  EXPECT_NE(grade_of(law).words().find("eV/nm, and pair_energy is -1.011: one of them is wrong"), std::string::npos)
+      << grade_of(law).words();
+  ParameterSet density = shipped("cnt-10-10-tersoff");
+  density.line->surface_density *= 2;
+  EXPECT_NE(grade_of(density).words().find("unfit: atoms_per_length and radius give 37.04 atoms per nm^2"),
+            std::string::npos)
+      << grade_of(density).words();
+  ParameterSet bond = shipped("cnt-10-10-tersoff");
+  bond.bond.bend *= 1.6;
+  EXPECT_NE(grade_of(bond).words().find("% off that of a thin shell"), std::string::npos) << grade_of(bond).words();
+}
+
+Scene scene_with(const std::string& set, const std::string& law) {
+  return scene_of_text("format = \"ropewalk-scene-1\"\nparameters = \"" + set +
+                           "\"\n[rope]\ntubes = 7\nlength_nm = 14\n[contact]\nlaw = \"" + law +
+                           "\"\n[run]\nduration_ps = 1\n",
+                       "t.toml");
+}
+
+// The bad error of the published form between crossed tubes is computed from law and set.
+TEST(Grade, TheScenesWarningGivesTheErrorOfThePublishedForm) {
+  EXPECT_TRUE(warnings_of(scene_with("cnt-10-10-tersoff", "line")).empty());
+  const std::vector<std::string> warnings = warnings_of(scene_with("cnt-10-10-tersoff", "paper"));
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].find("and the surface integral gives -1.45 eV"), std::string::npos) << warnings[0];
+  EXPECT_TRUE(warnings_of(scene_with("cnt-10-10-paper", "paper")).empty());
+}
+
+TEST(Grade, TheScenesWarningsNameALossByCutoffAndUnlikeTubes) {
+  Scene scene = scene_with("cnt-10-10-tersoff", "line");
+  scene.contact.cutoff = 2.2;
+  ASSERT_EQ(warnings_of(scene).size(), 1u);
+  EXPECT_NE(warnings_of(scene)[0].find("two parallel tubes bind with"), std::string::npos);
+  scene.contact.cutoff = 2.8;
+  EXPECT_TRUE(warnings_of(scene).empty());
+  scene.sets.push_back(shipped("cnt-5-5-tersoff"));
+  scene.contact.cutoff = 0;
+  ASSERT_EQ(warnings_of(scene).size(), 1u);
+  EXPECT_NE(warnings_of(scene)[0].find("Q_delaunay needs no distance"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace ropewalk
