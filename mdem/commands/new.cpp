@@ -29,9 +29,9 @@ void say_source(const Scene& scene, const Prepared& p) {
   const std::string description = scene.source->description(t, p.state, p.spacing);
   fmt::print("{}{}\n", description.empty() ? "" : ": ", description);
   for (const ParameterSet& set : scene.sets)
-    fmt::print("parameters {} ({}), EA {:.5g} nN, EI {:.5g} nN nm^2, GJ {:.5g} nN nm^2\n", set.name, set.path,
-               set.bond.stretch * units::eV_in_nN_nm, set.bond.bend * units::eV_in_nN_nm,
-               set.bond.twist * units::eV_in_nN_nm);
+    fmt::print("parameters {} ({}), EA {:.5g} nN, EI {:.5g} nN nm^2, GJ {:.5g} nN nm^2, {} bonds\n", set.name,
+               set.path, set.bond.stretch * units::eV_in_nN_nm, set.bond.bend * units::eV_in_nN_nm,
+               set.bond.twist * units::eV_in_nN_nm, scene.bond.anharmonic ? "anharmonic" : "harmonic");
   for (const std::string& grade : grades_of(scene)) fmt::print("grade of {}\n", grade);
   fmt::print("contact law {}", scene.contact.law);
   if (const auto* line = dynamic_cast<const LineLaw*>(p.interaction.law.get()))

@@ -6,6 +6,7 @@
 
 #include "io/grade.hpp"
 #include "model/self_contact.hpp"
+#include "observe/bending.hpp"
 #include "run/run_directory.hpp"
 #include "scene/scene_to_model.hpp"
 
@@ -92,6 +93,18 @@ void warn_of_long_exclusion(const Scene& scene, const Topology& topology, std::v
   }
 }
 
+// Collapsed tubes twist on without end where nothing else holds the moment.
+void warn_of_collapsing_moment(const Scene& scene, const Topology& topology, std::vector<std::string>& warnings) {
+  if (!scene.twist || !scene.bond.anharmonic) return;
+  const TubeType& type = topology.types.front();
+  const double most = largest_torque(type.bond, type.element_length);
+  if (scene.twist->moment > most)
+    warnings.push_back(fmt::format(
+        "A moment of {:.4g} nN nm per tube is more than {} bears before its wall collapses, {:.4g}: beyond "
+        "that only what the rope stores otherwise holds it, and its tubes are flat ribbons.",
+        scene.twist->moment / units::nN_nm, scene.parameters().name, most / units::nN_nm));
+}
+
 }  // namespace
 
 std::vector<std::string> grades_of(const Scene& scene) {
@@ -126,6 +139,7 @@ std::vector<std::string> warnings_of(const Scene& scene, const Topology& topolog
                       "2e-4 of the binding energy.",
                       scene.contact.nodes, needed));
   }
+  warn_of_collapsing_moment(scene, topology, warnings);
   warn_of_long_exclusion(scene, topology, warnings);
   warn_of_cutoff(scene, warnings);
   warn_of_unlike_tubes(scene, warnings);

@@ -8,6 +8,7 @@
 
 #include "model/error.hpp"
 #include "model/segments.hpp"
+#include "observe/bending.hpp"
 #include "sim/dynamics/blow_up.hpp"
 
 namespace ropewalk {
@@ -72,13 +73,18 @@ void refuse_overlaps(const Scene& scene, const Prepared& p) {
 void refuse_moment(const Scene& scene, const Prepared& p) {
   if (!scene.twist || p.topology.tubes() != 1) return;
   const TubeType& t = p.topology.type_of(0);
-  const double most = t.bond.twist / t.element_length;
+  const double slip = t.bond.twist / t.element_length, most = largest_torque(t.bond, t.element_length);
+  const auto refuse = [&](const std::string& what, const char* remedy) {
+    throw InputError({scene.path, 0, "twist.moment_nN_nm"},
+                     fmt::format("{:.4g} nN nm are more than {}", scene.twist->moment / units::nN_nm, what),
+                     remedy);
+  };
+  if (scene.twist->moment > slip)
+    refuse(fmt::format("a bond of {:.4g} nm bears before it slips, GJ/a = {:.4g}", t.element_length,
+                       slip / units::nN_nm),
+           "lower the moment or take shorter elements");
   if (scene.twist->moment > most)
-    throw InputError(
-        {scene.path, 0, "twist.moment_nN_nm"},
-        fmt::format("{:.4g} nN nm are more than a bond of {:.4g} nm bears before it slips, GJ/a = {:.4g}",
-                    scene.twist->moment / units::nN_nm, t.element_length, most / units::nN_nm),
-        "lower the moment or take shorter elements");
+    refuse(fmt::format("the tube bears, {:.4g}: its wall collapses", most / units::nN_nm), "lower the moment");
 }
 
 // What the simulator would stop in the first step, whatever comes afterwards.

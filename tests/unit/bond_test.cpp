@@ -56,7 +56,8 @@ TEST_P(BondForms, ForceAndTorquesAreTheGradient) {
     const BondForce<double> f = force(p, k);
     // The stiffness of the anharmonic bond jumps at the edges of its window.
     const bool kinks = GetParam() == Form::anharmonic;
-    const double h = kinks ? 1e-6 : 1e-3, tight = (kinks ? 1e-5 : 1e-7) * std::max({f.force_j.norm(), f.torque_i.norm(), 1.0});
+    const double h = kinks ? 1e-6 : 1e-3,
+                 tight = (kinks ? 1e-5 : 1e-7) * std::max({f.force_j.norm(), f.torque_i.norm(), 1.0});
     for (int a = 0; a < 3; ++a) {
       const Vector3 e = Vector3::Unit(a);
       const double fj = -derivative([&](double s) { return energy({p.separation + s * e, p.qi, p.qj}); }, h);
@@ -116,16 +117,18 @@ TEST(AnharmonicBond, EnergyPerLengthIsThatOfTheRod) {
   const auto rod = [&](double e, double t, double kappa) {
     const double s = h.radius * t, b = h.radius * kappa;
     return 0.5 * k.stretch * e * e + h.coupling * e * t + 0.5 * k.twist * t * t + 0.5 * k.bend * kappa * kappa +
-           h.s3 * s * s * s + h.s4 * std::pow(s, 4) + h.e3 * e * e * e + h.e2s * e * e * s + h.es2 * e * s * s + h.e4 * std::pow(e, 4) +
-           h.e3s * e * e * e * s + h.e2s2 * e * e * s * s + h.es3 * e * s * s * s + h.b4 * std::pow(b, 4);
+           h.s3 * s * s * s + h.s4 * std::pow(s, 4) + h.e3 * e * e * e + h.e2s * e * e * s + h.es2 * e * s * s +
+           h.e4 * std::pow(e, 4) + h.e3s * e * e * e * s + h.e2s2 * e * e * s * s + h.es3 * e * s * s * s +
+           h.b4 * std::pow(b, 4);
   };
-  for (const auto& [e, t, kappa] : {std::array{0.05, 0.0, 0.0}, std::array{-0.05, 0.0, 0.0},
-                                    std::array{0.0, 0.03, 0.0}, std::array{0.0, 0.06, 0.0}, std::array{0.0, -0.06, 0.0},
+  for (const auto& [e, t, kappa] :
+       {std::array{0.05, 0.0, 0.0}, std::array{-0.05, 0.0, 0.0}, std::array{0.0, 0.03, 0.0},
+        std::array{0.0, 0.06, 0.0}, std::array{0.0, -0.06, 0.0},
 
-                                    std::array{0.0, 0.0, 0.08}, std::array{0.03, 0.05, 0.06},
-                                    std::array{-0.04, -0.05, 0.05}})
+        std::array{0.0, 0.0, 0.08}, std::array{0.03, 0.05, 0.06}, std::array{-0.04, -0.05, 0.05}})
     for (const double a : {0.7, 1.36, 2.7})
-      EXPECT_NEAR(per_length(a, e, t, kappa) / rod(e, t, kappa), 1, 1e-4) << a << " " << e << " " << t << " " << kappa;
+      EXPECT_NEAR(per_length(a, e, t, kappa) / rod(e, t, kappa), 1, 1e-4)
+          << a << " " << e << " " << t << " " << kappa;
 }
 
 // Beyond the window the energy still rises, with continuous forces.

@@ -8,6 +8,7 @@
 #include "io/data_files.hpp"
 #include "io/parameters_toml.hpp"
 #include "run/run_directory.hpp"
+#include "scene/scene_to_model.hpp"
 #include "scene/scene_toml.hpp"
 
 namespace ropewalk {
@@ -106,26 +107,28 @@ Scene scene_with(const std::string& set, const std::string& law) {
                        "t.toml");
 }
 
+std::vector<std::string> warnings(const Scene& scene) { return warnings_of(scene, empty_topology(scene)); }
+
 // The bad error of the published form between crossed tubes is computed from law and set.
 TEST(Grade, TheScenesWarningGivesTheErrorOfThePublishedForm) {
-  EXPECT_TRUE(warnings_of(scene_with("cnt-10-10-tersoff", "line")).empty());
-  const std::vector<std::string> warnings = warnings_of(scene_with("cnt-10-10-tersoff", "paper"));
-  ASSERT_EQ(warnings.size(), 1u);
-  EXPECT_NE(warnings[0].find("and the surface integral gives -1.45 eV"), std::string::npos) << warnings[0];
-  EXPECT_TRUE(warnings_of(scene_with("cnt-10-10-paper", "paper")).empty());
+  EXPECT_TRUE(warnings(scene_with("cnt-10-10-tersoff", "line")).empty());
+  const std::vector<std::string> said = warnings(scene_with("cnt-10-10-tersoff", "paper"));
+  ASSERT_EQ(said.size(), 1u);
+  EXPECT_NE(said[0].find("and the surface integral gives -1.45 eV"), std::string::npos) << said[0];
+  EXPECT_TRUE(warnings(scene_with("cnt-10-10-paper", "paper")).empty());
 }
 
 TEST(Grade, TheScenesWarningsNameALossByCutoffAndUnlikeTubes) {
   Scene scene = scene_with("cnt-10-10-tersoff", "line");
   scene.contact.cutoff = 2.2;
-  ASSERT_EQ(warnings_of(scene).size(), 1u);
-  EXPECT_NE(warnings_of(scene)[0].find("two parallel tubes bind with"), std::string::npos);
+  ASSERT_EQ(warnings(scene).size(), 1u);
+  EXPECT_NE(warnings(scene)[0].find("two parallel tubes bind with"), std::string::npos);
   scene.contact.cutoff = 2.8;
-  EXPECT_TRUE(warnings_of(scene).empty());
+  EXPECT_TRUE(warnings(scene).empty());
   scene.sets.push_back(shipped("cnt-5-5-tersoff"));
   scene.contact.cutoff = 0;
-  ASSERT_EQ(warnings_of(scene).size(), 1u);
-  EXPECT_NE(warnings_of(scene)[0].find("Q_delaunay needs no distance"), std::string::npos);
+  ASSERT_EQ(warnings(scene).size(), 1u);
+  EXPECT_NE(warnings(scene)[0].find("Q_delaunay needs no distance"), std::string::npos);
 }
 
 }  // namespace
