@@ -21,6 +21,22 @@ int not_finite(const Forces& f) {
   return -1;
 }
 
+// The bond that is longest against its element; its first element.
+struct LongestBond {
+  double length = 0;  // of the element's
+  int element = -1;
+};
+LongestBond longest_bond(const Topology& topology, const Vec3Array& position) {
+  LongestBond longest;
+  for (int t = 0; t < topology.tubes(); ++t)
+    for (int e = topology.tube_begin[t]; e + 1 < topology.tube_begin[t + 1]; ++e) {
+      const auto i = static_cast<std::size_t>(e);
+      const double length = (position[i + 1] - position[i]).norm() / topology.type_of(t).element_length;
+      if (length > longest.length) longest = {length, e};
+    }
+  return longest;
+}
+
 // Calls work(type, i) for every element.
 template <class Work>
 void for_elements(const Topology& topology, const Work& work) {
@@ -182,9 +198,17 @@ bool Simulation::relax(double tolerance, long max_steps, const std::function<boo
   };
   stop();
   double last = 0;  // ps, of the last step
+  const double torn = std::max(2.0, 1.01 * longest_bond(topology_, state_.position).length);
   const double max_move = Fire::farthest(lightest.radius);
   for (long k = 0; k < max_steps; ++k) {
-    if (k % Fire::check_every == 0 && largest_force() < tolerance) break;
+    if (k % Fire::check_every == 0) {
+      const LongestBond longest = longest_bond(topology_, state_.position);
+      if (longest.length > torn)
+        throw NumericalError(state_.step, longest.element,
+                             "the relaxation blew up: it tore the bond to the next element",
+                             "start from a state without overlaps, or with smaller loads");
+      if (largest_force() < tolerance) break;
+    }
     if (!progress(k)) {
       stop();
       return false;
