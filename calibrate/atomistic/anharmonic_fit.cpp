@@ -89,7 +89,8 @@ void fit_anharmonic(std::vector<AtomisticRow>& table, Chirality c, Stiffness& ou
   Samples straight;
   for (AtomisticRow& row : table) {
     if (row.kind != "wide-stretch-twist") continue;
-    const double e = row.strain, t = row.twist - out.natural_twist.value, s = r * t, energy = row.energy / row.length;
+    const double e = row.strain, t = row.twist - out.natural_twist.value, s = r * t,
+                 energy = row.energy / row.length;
     straight.rows.push_back(&row);
     straight.energy.push_back(energy);
     straight.left.push_back(energy - 0.5 * out.EA.value * e * e - 0.5 * out.GJ.value * t * t -
@@ -103,7 +104,8 @@ void fit_anharmonic(std::vector<AtomisticRow>& table, Chirality c, Stiffness& ou
   }
   const Solution stretch = solve(straight, "wide-stretch-twist");
   for (std::size_t k = 0; k < used.size(); ++k)
-    fit.terms[used[k]] = {stretch.terms[static_cast<Eigen::Index>(k)], stretch.errors[static_cast<Eigen::Index>(k)]};
+    fit.terms[used[k]] = {stretch.terms[static_cast<Eigen::Index>(k)],
+                          stretch.errors[static_cast<Eigen::Index>(k)]};
   fit.stretch_twist_error = stretch.largest;
 
   Samples bent;
@@ -125,17 +127,21 @@ void fit_anharmonic(std::vector<AtomisticRow>& table, Chirality c, Stiffness& ou
   fit.bend_error = bend.largest;
 
   out.fit_report += fmt::format(
-      "beyond Hooke's law: {} cells, strain {:.3g} to {:.3g}, shear <= {:.3g}: largest error {:.2g} of an energy; {} "
+      "beyond Hooke's law: {} cells, strain {:.3g} to {:.3g}, shear <= {:.3g}: largest error {:.2g} of an energy; "
+      "{} "
       "bends, radius times curvature <= {:.3g}: {:.2g}\n",
-      straight.rows.size(), fit.min_strain, fit.max_strain, fit.max_shear, fit.stretch_twist_error, bent.rows.size(),
-      fit.max_bend, fit.bend_error);
+      straight.rows.size(), fit.min_strain, fit.max_strain, fit.max_shear, fit.stretch_twist_error,
+      bent.rows.size(), fit.max_bend, fit.bend_error);
   // The tube holds up to the kink, and the quartic term with it.
   fit.max_bend = std::max(fit.max_bend, r * out.envelope.kink_curvature.value);
   constexpr double tolerable = 0.02;
-  if (std::max(fit.stretch_twist_error, fit.bend_error) > tolerable)
-    out.warnings.push_back(fmt::format(
-        "the terms beyond Hooke's law miss energies by up to {:.1f} % (stretch and twist) and {:.1f} % (bending)",
-        100 * fit.stretch_twist_error, 100 * fit.bend_error));
+  if (std::max(fit.stretch_twist_error, fit.bend_error) < tolerable) return;
+  out.warnings.push_back(
+      fmt::format("the terms beyond Hooke's law miss energies by up to {:.1f} % (stretch and twist) and {:.1f} % "
+                  "(bending), as where "
+                  "the potential has a knot or the tube kinks early: the set has harmonic bonds alone",
+                  100 * fit.stretch_twist_error, 100 * fit.bend_error));
+  fit = {};
 }
 
 void fit_collapse(std::vector<AtomisticRow>& table, Stiffness& out) {
@@ -171,10 +177,10 @@ void fit_collapse(std::vector<AtomisticRow>& table, Stiffness& out) {
   }
   fit.collapse_shear = largest;
   out.envelope.endless_collapse = {law.max_shear, found.standard_error[0] * fit.max_shear};
-  out.fit_report +=
-      fmt::format("collapse: torque constant beyond a shear of {:.4g}; {} cells up to {:.3g}: largest error {:.2g} of "
-                  "an energy; {}\n",
-                  law.max_shear, rows.size(), largest, fit.collapse_error, found.message);
+  out.fit_report += fmt::format(
+      "collapse: torque constant beyond a shear of {:.4g}; {} cells up to {:.3g}: largest error {:.2g} of "
+      "an energy; {}\n",
+      law.max_shear, rows.size(), largest, fit.collapse_error, found.message);
 }
 
 }  // namespace ropewalk

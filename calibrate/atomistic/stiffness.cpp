@@ -174,7 +174,7 @@ Stiffness measure_stiffness(Chirality c, const Potential& potential, const std::
     add_rows(stretch_twist_rows(stretch_twist_cells(run, tube, wide), tube, wide));
     add_rows(bend_rows(run, tube, wide_bends(tube.shape.radius, kink)));
     timed(out.fit_seconds, [&] { fit_anharmonic(out.rows, c, out); });
-    if (options.envelope) {
+    if (options.envelope && !out.anharmonic.terms.empty()) {
       tell("twisting beyond the collapse (minutes)");
       std::vector<double> shears;
       for (const double part : {0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.2, 1.35, 1.5, 1.7, 1.9, 2.1})

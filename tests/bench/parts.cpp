@@ -41,7 +41,7 @@ void BondForces(benchmark::State& bench) {
   double slips = 1;
   for (auto _ : bench)
     b.each_tube([&](const TubeType& type, const BondRange& bonds) {
-      benchmark::DoNotOptimize(bond_forces(type, b.rope.state.position, b.work.frames, bonds, b.work.bonds, slips));
+      benchmark::DoNotOptimize(harmonic_forces(type, b.rope.state.position, b.work.frames, bonds, b.work.bonds, slips));
     });
   set_ns(bench, "ns/element", b.rope.elements());
 }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "atomistic/lattice.hpp"
+#include "atomistic/stiffness.hpp"
 #include "contact/integral.hpp"
 #include "io/parameters_toml.hpp"
 #include "scene/build.hpp"
@@ -104,6 +105,49 @@ TEST(ShippedSets, AreAllThereAndReadable) {
     EXPECT_NEAR(set.bond.shear / thin_tube_shear(set.bond, set.radius), 1, 1e-9) << tube;
   }
   for (const char* potential : {"airebo", "rebo", "lcbop"}) shipped("cnt-10-10-" + std::string(potential));
+}
+
+// The energies of the atoms from which the sets were made, by chains of short, middle and long elements: stretched
+// and twisted at once up to the limits, and bent. Small energies are compared with a twentieth of the largest.
+TEST(ShippedSets, AnharmonicBondsHaveTheEnergiesOfTheAtoms) {
+  for (const char* tube : {"5-5", "10-10", "17-0", "12-6", "8-2", "6-4", "6-6", "8-8"}) {
+    const ParameterSet set = shipped("cnt-" + std::string(tube) + "-tersoff");
+    ASSERT_TRUE(set.anharmonic) << tube;
+    const BondStiffness bond = set.anharmonic_bond(0);
+    const double natural = find_quantity(set, "atomistic.natural_twist")->value;
+    const auto chain = [&](double a, double strain, double twist, double curvature) {
+      const double turn = curvature * a, chord = turn > 0 ? 2 / curvature * std::sin(0.5 * turn) : a;
+      const Quaternion half(Eigen::AngleAxisd(0.5 * turn, Vector3::UnitY()));
+      const Quaternion j = half * Quaternion(Eigen::AngleAxisd(twist * a, Vector3::UnitZ()));
+      return bond_energy<double>(bond, a, Vector3(0, 0, (1 + strain) * chord), frame_of(half.conjugate()),
+                                 frame_of(j))
+                 .total() /
+             a;
+    };
+    const std::vector<AtomisticRow> rows =
+        read_atomistic_csv(set.path.substr(0, set.path.size() - 5) + "-stiffness.csv");
+    double largest = 0;
+    int compared = 0;
+    for (const AtomisticRow& row : rows)
+      if (row.kind == "wide-stretch-twist") largest = std::max(largest, row.energy / row.length);
+    const auto compare = [&](double atoms, double strain, double twist, double curvature) {
+      const double middle = chain(1.36, strain, twist, curvature);
+      EXPECT_NEAR(middle, atoms, 0.01 * std::max(atoms, 0.05 * largest))
+          << tube << ": strain " << strain << ", twist " << twist << ", curvature " << curvature;
+      for (const double a : {0.7, 2.7}) EXPECT_NEAR(chain(a, strain, twist, curvature), middle, 0.005 * middle);
+      ++compared;
+    };
+    for (const AtomisticRow& row : rows) {
+      const double twist = row.twist - natural;
+      if (row.kind == "wide-stretch-twist" && set.radius * std::fabs(twist) < bond.anharmonic.max_shear)
+        compare(row.energy / row.length, row.strain, twist, 0);
+      for (const AtomisticRow& other : rows)
+        if (row.kind == "wide-bend-long" && other.kind == "wide-bend-short" && row.curvature > 0 &&
+            row.curvature == other.curvature)
+          compare((row.energy - other.energy) / (row.length - other.length), 0, 0, row.curvature);
+    }
+    EXPECT_GT(compared, 20) << tube;
+  }
 }
 
 TEST(ShippedSets, TheTenTenTubeIsTheReference) {
