@@ -152,8 +152,10 @@ const std::vector<Hostile> scenes = {
     {"NoOrientation", state("no-turn") + brief, 2, "the quaternion has length 0"},
     {"FarAway", state("far") + brief, 2, "x_nm"},
     {"RelaxedFromWithin", state("overlapping") + "[run]\nmode = \"relax\"\nmax_steps = 50\n", 4, "not relaxed"},
-    {"TornByARelaxation", state("coincident") + "[run]\nmode = \"relax\"\nmax_steps = 2000\n", 3,
-     "the relaxation blew up"},
+    {"TornByARelaxation",
+     std::string(chain) + "[[load]]\nkind = \"fix\"\nelements = [0]\n[[load]]\nkind = \"force\"\nelements = [-1]\n"
+                          "force_nN = [0, 0, 5000]\n[run]\nmode = \"relax\"\n",
+     3, "the relaxation blew up"},
     {"RelaxedUnderAPull",
      std::string(chain) + "[[load]]\nkind = \"force\"\nelements = [0]\nforce_nN = [0.1, 0, 0]\n"
                           "[run]\nmode = \"relax\"\nmax_steps = 500\n",
