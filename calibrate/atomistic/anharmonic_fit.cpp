@@ -175,6 +175,15 @@ void fit_collapse(std::vector<AtomisticRow>& table, Stiffness& out) {
     fit.collapse_error = std::max(fit.collapse_error, std::abs(left[i]));
     rows[i]->residual = -left[i] * rows[i]->energy;
   }
+  constexpr double tolerable = 0.05;
+  if (fit.collapse_error > tolerable) {
+    out.warnings.push_back(
+        fmt::format("a torque that is constant beyond the collapse misses energies by up to {:.0f} %, as of wide "
+                    "tubes, which stay "
+                    "round for a while where a ribbon has less energy: the set says nothing about endless tubes",
+                    100 * fit.collapse_error));
+    return;
+  }
   fit.collapse_shear = largest;
   out.envelope.endless_collapse = {law.max_shear, found.standard_error[0] * fit.max_shear};
   out.fit_report += fmt::format(

@@ -85,8 +85,10 @@ void add_anharmonic(const Calibration& c, Quantities& q) {
   if (fit.terms.empty()) return;
   q.section("bond.anharmonic");
   for (std::size_t k = 0; k < fit.terms.size(); ++k)
-    q.calibrated(anharmonic_terms[k].key, scaled(fit.terms[k], units::eV_in_nN_nm), "nN", anharmonic_terms[k].meaning);
-  q.chosen("min_strain", fit.min_strain, "1", fmt::format("fit error {:.1e} of an energy", fit.stretch_twist_error));
+    q.calibrated(anharmonic_terms[k].key, scaled(fit.terms[k], units::eV_in_nN_nm), "nN",
+                 anharmonic_terms[k].meaning);
+  q.chosen("min_strain", fit.min_strain, "1",
+           fmt::format("fit error {:.1e} of an energy", fit.stretch_twist_error));
   q.chosen("max_strain", fit.max_strain, "1");
   q.chosen("max_shear", fit.max_shear, "1", "radius times twist");
   q.chosen("max_bend", fit.max_bend, "1",
@@ -170,12 +172,11 @@ void add_validity(const Calibration& c, Quantities& q) {
   add("stretch", e.compression, "1");
   const AnharmonicFit& fit = c.stiffness.anharmonic;
   if (fit.collapse_shear > 0)
-    q.calibrated("endless_collapse", e.endless_collapse, "1",
-                 fmt::format("of an endless tube, whose torque is constant beyond it, within {:.1f} % of the energy up to "
-                             "{:.3g}",
-                             100 * fit.collapse_error, fit.collapse_shear));
-  else
-    q.derived("endless_collapse", e.endless_collapse, "1", "scaling rule; --envelope measures it");
+    q.calibrated(
+        "endless_collapse", e.endless_collapse, "1",
+        fmt::format("of an endless tube, whose torque is constant beyond it, within {:.1f} % of the energy up to "
+                    "{:.3g}",
+                    100 * fit.collapse_error, fit.collapse_shear));
   const std::string terms = "from the anharmonic terms of the fit";
   const auto limit = [&](const char* key, const Measured& m, const char* unit) {
     if (m.value > 0) q.derived(key, m, unit, e.measured ? note : terms);

@@ -92,13 +92,16 @@ const std::vector<Hostile> scenes = {
     {"TwistedBeyondWhatABondBears", std::string(chain) + "[twist]\nmoment_nN_nm = 5000\nrate_nN_nm_per_ps = 100\n",
      2, "before it slips, GJ/a = 239.6"},
     // At rest it would bear them, GJ/a being 239.6; at once 2/pi of that make it slip.
+    {"TwistedBeyondTheCollapse", std::string(chain) + "[twist]\nmoment_nN_nm = 25\nhold_ps = 5\n", 2,
+     "more than the tube bears, 19.94: its wall collapses"},
     {"TwistedUntilABondSlips",
-     std::string(chain) +
-         "[twist]\nmoment_nN_nm = 200\nrate_nN_nm_per_ps = 0\nhold_ps = 5\n[run]\ntime_step_fs = 36.7\n",
+     std::string(chain) + "[bond]\nlaw = \"harmonic\"\n[twist]\nmoment_nN_nm = 200\nrate_nN_nm_per_ps = 0\nhold_ps "
+                          "= 5\n[run]\ntime_step_fs = 36.7\n",
      3, "about to slip"},
     {"TwistedAtOnce",
      std::string(rope) +
-         "[twist]\nmoment_nN_nm = 2000\nrate_nN_nm_per_ps = 0\nhold_ps = 2\n[run]\ntime_step_fs = 30\n",
+         "[bond]\nlaw = \"harmonic\"\n[twist]\nmoment_nN_nm = 2000\nrate_nN_nm_per_ps = 0\nhold_ps = 2\n[run]\n"
+         "time_step_fs = 30\n",
      3, "step 2, element 0: the motion blew up"},
     {"TwistedBeyondTheFirstStep",
      std::string(rope) + "[twist]\nmoment_nN_nm = 9000\nrate_nN_nm_per_ps = 0\nhold_ps = 2\n", 2,

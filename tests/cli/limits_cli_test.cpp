@@ -26,6 +26,7 @@ class Limits : public ropewalk::test::Cli {
     ropewalk::test::Cli::SetUp();
     spit(dir / "s.toml",
          "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[rope]\ntubes = 7\nlength_nm = 12\n"
+         "[bond]\nlaw = \"harmonic\"\n"
          "[twist]\nmoment_nN_nm = 120\nrate_nN_nm_per_ps = 20\nhold_ps = 1\n[run]\nlog_every_ps = 0.5\n"
          "frames_every_ps = 2\n[limits]\nwall_twist = 0\nspeed_nm_per_ps = 0\nkink_curvature_per_nm = 0\n");
   }

@@ -13,7 +13,7 @@ namespace {
 const std::string path = ROPEWALK_SOURCE_DIR "/data/scenes/test.toml";  // data is looked for beside it
 
 std::string scene_text(const std::string& body) {
-  return "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n" + body;
+  return "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[bond]\nlaw = \"harmonic\"\n" + body;
 }
 
 // The simulation of a scene, and of the one with half the element length.

@@ -431,12 +431,13 @@ TEST(SceneEdit, SetsKeysAndKeepsTheRest) {
   EXPECT_EQ(without_key(text, "two", "c"), text);
 }
 
-// A bent cantilever at rest: the finer model must find what beam theory says of the coarse one.
+// A bent cantilever of harmonic bonds at rest: the finer model must find what beam theory says of the coarse one.
 TEST(SpotCheck, SeesWhatLongElementsCost) {
   const auto checked = [](double length, int elements) {
     Scene scene = scene_from(fmt::format(
         "{}element_length_nm = {}\n[chain]\nelements = {}\n[contact]\nlaw = \"none\"\n"
-        "[[load]]\nkind = \"fix\"\nelements = [0]\n[[load]]\nkind = \"torque\"\nelements = [-1]\n"
+        "[bond]\nlaw = \"harmonic\"\n[[load]]\nkind = \"fix\"\nelements = [0]\n[[load]]\nkind = "
+        "\"torque\"\nelements = [-1]\n"
         "torque_nN_nm = [0, 8, 0]\n[run]\nmode = \"relax\"\nforce_tolerance_nN = 1e-8\nmax_steps = 400000\n",
         head, length, elements));
     const Prepared p = prepare(scene);

@@ -510,9 +510,10 @@ TEST(SceneKeys, StatedLimitsAreTheDefaults) {
   const Limits silent = limits(""), stated = limits("[limits]\n" + keys_of("limits", true));
   EXPECT_DOUBLE_EQ(silent.bend, stated.bend);
   EXPECT_DOUBLE_EQ(silent.twist, stated.twist);
-  const Validity set = scene_from(start).parameters().validity;
+  const ParameterSet parameters = scene_from(start).parameters();
+  const Validity set = parameters.validity;
   EXPECT_EQ(silent.kink_curvature, set.kink_curvature);
-  EXPECT_EQ(silent.wall_twist, set.twist_collapse);
+  EXPECT_EQ(silent.wall_twist, set.collapse_at(parameters.radius, 0));
   EXPECT_EQ(silent.strain, set.stretch);
   EXPECT_NEAR(silent.overlap, 0.1, 0.03) << "1.713 nm less 2.4 radii";
   const Limits typed = limits(
