@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Makes the calibrated sets of this folder anew, with the program given or the one of the release build. All
-# envelopes are measured, which takes most of the time: about half an hour on one core.
+# envelopes are measured, which takes most of the time: about an hour on one core.
 set -euo pipefail
 cd "$(dirname "$0")"
 ropewalk=${1:-../../build/release/mdem/ropewalk}

@@ -177,7 +177,7 @@ TEST_F(Limits, WhatCannotBeRefinedIsRefusedBeforeItRuns) {
 // A relaxation whose chain is bent too far goes on with the finer one.
 TEST_F(Limits, ARelaxationIsRefinedAsWell) {
   spit(dir / "r.toml",
-       "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[chain]\nelements = 10\n[contact]\n"
+       "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[bond]\nlaw = \"harmonic\"\n[chain]\nelements = 10\n[contact]\n"
        "law = \"none\"\n[[load]]\nkind = \"torque\"\nelements = [0]\ntorque_nN_nm = [0, -110, 0]\n[[load]]\n"
        "kind = \"torque\"\nelements = [-1]\ntorque_nN_nm = [0, 110, 0]\n[run]\nmode = \"relax\"\n"
        "max_steps = 20000\n");

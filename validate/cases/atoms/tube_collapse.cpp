@@ -18,6 +18,8 @@ constexpr double lengths[] = {12, 24, 47, 94};  // nm
 // Shears times radius (nm). The torque is compared from one step to the next over the fine steps.
 constexpr double rule = 0.03, first_part = 0.4, fine_from = 0.58, fine_step = 0.02, last_part = 1.16;
 constexpr double energy_tolerance = 0.03;
+// Wide tubes: their limit follows from that of 12 nm, and long ones collapse earlier than the law says.
+constexpr double wide_tolerance = 0.20;
 constexpr double tolerance = 0.10;  // of the limit: an instability scatters by 5 %, and a step is 2 %
 
 std::vector<double> steps_of(double radius) {
@@ -111,7 +113,7 @@ double collapse_of(const std::vector<double>& twist, const std::vector<double>& 
   return steps < twist.size() ? 0.5 * radius * (twist[steps - 1] + twist[steps]) : std::nan("");
 }
 
-CaseFigure figure_of(const std::vector<ChartLine>& lines) {
+CaseFigure limits_figure(const std::vector<ChartLine>& lines) {
   LineChart chart;
   chart.title = "Collapse against length";
   chart.x = {"length between held ends", "nm"};
@@ -120,12 +122,34 @@ CaseFigure figure_of(const std::vector<ChartLine>& lines) {
   return {chart, "Points: atoms. Lines: the limit of the sets."};
 }
 
+// Torque between two steps, at their middle.
+ChartLine torque_line(const std::string& name, int colour, double radius, const std::vector<double>& twist,
+                      const std::vector<double>& energy) {
+  ChartLine line{name, {}, {}, colour};
+  for (std::size_t k = 1; k < twist.size(); ++k) {
+    line.x.push_back(0.5 * radius * (twist[k] + twist[k - 1]));
+    line.y.push_back((energy[k] - energy[k - 1]) / (twist[k] - twist[k - 1]));
+  }
+  return line;
+}
+
+CaseFigure torque_figure(std::vector<ChartLine> lines) {
+  LineChart chart;
+  chart.title = "Torque of (10,10) up to its collapse";
+  chart.x = {"radius times twist", "1"};
+  chart.y = {"energy of a step over its twist per length", "eV nm"};
+  chart.lines = std::move(lines);
+  return {chart,
+          "The last point of each line is the step over which the wall collapses. The energy is that of the whole "
+          "tube, so that the torque of long ones is drawn higher."};
+}
+
 CaseResult run(const CaseContext& context) {
   CaseResult result;
   const ReferenceTable data = reference(
       context, "tube-collapse", 0.05, [&] { return make_reference(context); }, result);
   const std::vector<double> n = data.column("n"), all_lengths = data.column("length_nm");
-  std::vector<ChartLine> lines;
+  std::vector<ChartLine> lines, torques;
   int colour = 0;
   for (const ValidatedTube& tube : tubes) {
     const ParameterSet set = context.model(tube.set);
@@ -143,12 +167,15 @@ CaseResult run(const CaseContext& context) {
         twist.push_back(data.column("twist_rad_per_nm")[k]);
         energy.push_back(data.column("energy_eV")[k]);
       }
+      if (tube.chirality.n == 10)
+        torques.push_back(torque_line(fmt::format("{:.0f} nm", length), static_cast<int>(torques.size()),
+                                      set.radius, twist, energy));
       result.checks.push_back(energy_check(tube, set, length, twist, energy));
       Check check;
       check.name = fmt::format("{} of {:.0f} nm collapses at", tube.name, length);
       check.value = set.validity.collapse_at(set.radius, length);
       check.reference = collapse_of(twist, energy, set.radius);
-      check.tolerance = tolerance;
+      check.tolerance = set.validity.endless_collapse > 0 ? tolerance : wide_tolerance;
       check.unit = "radius times twist";
       if (!std::isfinite(check.reference)) {
         result.remarks.push_back(
@@ -165,7 +192,8 @@ CaseResult run(const CaseContext& context) {
     lines.push_back(atoms);
     result.sources.push_back(fmt::format("{} (hash {})", set.name, set.hash));
   }
-  result.figures.push_back(figure_of(lines));
+  result.figures.push_back(limits_figure(lines));
+  result.figures.push_back(torque_figure(torques));
   result.remarks.push_back(
       "The collapse is an instability: other noise and other steps move it by 3 to 5 %, and longer tubes find it "
       "earlier. Held ends keep a tube round over some diameters.");
