@@ -110,7 +110,8 @@ TEST(ShippedSets, AreAllThereAndReadable) {
 // The energies of the atoms from which the sets were made, by chains of short, middle and long elements: stretched
 // and twisted at once up to the limits, and bent. Small energies are compared with a twentieth of the largest.
 TEST(ShippedSets, AnharmonicBondsHaveTheEnergiesOfTheAtoms) {
-  for (const char* tube : {"5-5", "10-10", "17-0", "12-6", "8-2", "6-4", "6-6", "8-8", "9-0", "12-12", "16-4", "15-15"}) {
+  for (const char* tube :
+       {"5-5", "10-10", "17-0", "12-6", "8-2", "6-4", "6-6", "8-8", "9-0", "12-12", "16-4", "15-15", "20-20"}) {
     const ParameterSet set = shipped("cnt-" + std::string(tube) + "-tersoff");
     ASSERT_TRUE(set.anharmonic) << tube;
     const BondStiffness bond = set.anharmonic_bond(0);
