@@ -1,11 +1,12 @@
 // Which model a scene needs: of those that the chart has measured, the cheapest that holds an error.
 //
-// Of the scenes of the chart that cover the scene, the nearest one stands for it: first of those that are driven in
-// the same way, then of those that are not much shorter, then by curvature, twist and number of tubes. A knob
-// turned from its best value b to o changes an observable by |value(o) - value(b)| there; the changes of several
-// knobs are added up with their sizes, and so is what of the default's error against the finest model no knob
-// explains. Costs are multiplied; what element lengths do to elements and stable steps is the scene's own. That
-// changes add up is an assumption, on the safe side where they would cancel; spot_check() looks.
+// The nearest scene of the chart stands for the scene to be planned. Nearest means, in this order: driven in the
+// same way, not much shorter, then alike in curvature, twist and number of tubes. There, a knob that is set to o
+// instead of its best value b changes an observable by |value(o) - value(b)|. The planner adds the sizes of these
+// changes over all knobs, and the part of the default's error against the finest model that no knob explains. It
+// multiplies the costs. How the element length changes the number of elements and the stable step follows from the
+// scene itself. That changes add up is an assumption; where they cancel, the sum is too large. spot_check() tests
+// it on a run.
 #pragma once
 
 #include <map>
@@ -17,9 +18,9 @@
 
 namespace ropewalk {
 
-// By so much a rope may be farther off than the chart's that stands for it, on top of what the knobs add up to: in
-// five ropes that are not in the chart it was 0.44 % at most (data/chart/README.md), in the energy of ropes that
-// start unrelaxed. Tubes that touch nothing stayed within the sums.
+// Added to the error of a rope, since it is not the rope of the chart. In five ropes outside of the chart the error
+// exceeded the sum over the knobs by at most 0.44 %, in the energy of ropes that start unrelaxed
+// (data/chart/README.md). Tubes that touch nothing stayed within the sums.
 inline constexpr double between_scenes = 0.005;
 
 struct PlanRequest {
@@ -30,7 +31,7 @@ struct PlanRequest {
 
 struct Plan {
   std::string stands_for;                  // scene of the chart; empty: none is near, and the model is the default
-  std::string driven_otherwise;               // where that scene is led in another way, what this means
+  std::string driven_otherwise;            // what it means that the scene of the chart is driven in another way
   bool holds = false;                      // whether the error is held, as the chart has it
   std::map<std::string, double> expected;  // error by observable
   bool energy_above_start = true;          // what "energy" is there
