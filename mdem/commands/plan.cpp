@@ -52,7 +52,7 @@ std::string cheaper_text(const Plan& plan, const std::string& path) {
     planned = time_run(plan.text, path);
   } catch (const NumericalError& e) {  // knobs were tried one by one in the chart, not together
     if (!plan.standard_holds) throw;
-    fmt::print("planned: {}\nthe default model is taken, which holds the error\n", e.what());
+    fmt::print("planned: {}\nthe default model is taken: it meets the tolerance\n", e.what());
     return plan.standard_text;
   }
   say_time("planned", planned);
@@ -63,7 +63,8 @@ std::string cheaper_text(const Plan& plan, const std::string& path) {
   const bool known = planned.steps > 0 && standard.steps > 0;
   if (!known || !default_serves(plan, planned.total(), standard.total())) return plan.text;
   fmt::print(
-      "the default model is taken: the other does not gain a tenth in this scene, and this holds the error:\n");
+      "the default model is taken: it meets the tolerance, and the planned one would save less than a tenth here. "
+      "Errors expected:\n");
   for (const auto& [name, error] : plan.standard_expected) fmt::print("  {:16} {:6.2f} %\n", name, 100 * error);
   return plan.standard_text;
 }
@@ -82,7 +83,7 @@ void say(const Plan& plan, const PlanRequest& request) {
                    : fmt::format("   (the default model against atoms: {:.2f} %)", 100 * atoms->second));
   }
   if (!plan.holds)
-    fmt::print("no model of the chart holds {:g} %: this is the most accurate one for it\n", 100 * request.error);
+    fmt::print("no model of the chart meets {:g} %: this is the most accurate one\n", 100 * request.error);
   fmt::print("chart: {:.2f} of the default model's time, {:.0f} ns per element-step\n", plan.cost,
              plan.ns_per_element_step);
 }

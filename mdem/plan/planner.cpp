@@ -66,7 +66,7 @@ const ChartedScene* nearest(const std::vector<ChartedScene>& chart, const SceneF
   }
   if (best && best->driven_by != f.driven_by)
     plan.driven_otherwise =
-        fmt::format("scene {} is driven by {}, this one by {}: what answers to that may be farther off than expected",
+        fmt::format("scene {} is driven by {}, this one by {}: angles and moments may be farther off than expected",
                     best->name, words_of(best->driven_by), words_of(f.driven_by));
   return best;
 }
@@ -266,12 +266,12 @@ std::string header_of(const Plan& plan, const PlanRequest& request) {
   if (plan.stands_for.empty()) return "# The default model: the chart has no scene like this one.\n";
   const std::string caution = plan.driven_otherwise.empty() ? "" : "# " + plan.driven_otherwise + ".\n";
   return fmt::format("# Planned for an error of {:g} %{}, by scene {} of the chart.\n{}{}", 100 * request.error,
-                     plan.holds ? "" : ", which it does not hold", plan.stands_for, caution,
+                     plan.holds ? "" : ", which no model of the chart meets", plan.stands_for, caution,
                      expectations(plan.expected, plan.energy_above_start, request.error));
 }
 
 std::string standard_header_of(const Plan& plan, const PlanRequest& request) {
-  return fmt::format("# The default model, which holds an error of {:g} % by scene {} of the chart.\n{}",
+  return fmt::format("# The default model: it meets an error of {:g} %, by scene {} of the chart.\n{}",
                      100 * request.error, plan.stands_for,
                      expectations(plan.standard_expected, plan.energy_above_start, request.error));
 }
@@ -308,14 +308,14 @@ std::vector<std::string> observables_of(const ChartedScene& c, const PlanRequest
   return request.observables.empty() ? all : request.observables;
 }
 
-// Where nothing is turned the end moment is given by the loads, or is zero: what the chart has of it bounds how far
-// tubes give way, but cannot be looked at.
+// Where no rotation is prescribed, the loads give the end moment, or it is zero. Its error in the chart then bounds
+// that of the twist, and no run can check it.
 void leave_out_given_moment(const SceneFeatures& f, Plan& plan) {
   const auto moment = plan.expected.find("end_moment");
   if (f.driven_by == DrivenBy::rotation || moment == plan.expected.end()) return;
   plan.why.push_back(
-      fmt::format("end_moment: loads give it here; its error in the chart, {:.2f} %, stands for how far "
-                  "tubes give way",
+      fmt::format("end_moment: loads give it here; its error in the chart, {:.2f} %, is to be expected of the "
+                  "twist instead",
                   100 * moment->second));
   plan.expected.erase(moment);
   plan.standard_expected.erase("end_moment");

@@ -398,15 +398,17 @@ std::vector<Limit> limits(const Validity& v) {
     return value > 0 ? fmt::format("{} {}{}", words, number_text(value), unit)
                      : std::string(words) + " the limit of the parameter set";
   };
-  return {
-      {"Kinked", "kinked", limit(v.kink_curvature, "curvature beyond", " nm⁻¹"),
-       "A real tube kinks there: its wall folds and it bends on at a fraction of the stiffness. The model bends "
-       "on elastically, and overestimates the bending energy."},
-      {"Overtwisted", "overtwisted", limit(v.twist_collapse, "radius times twist per length beyond", ""),
-       "The wall of a real tube collapses into a ribbon there. The model stores more torsional energy than the "
-       "tube would."},
-      {"Overstretched", "overstretched", limit(v.stretch, "strain beyond", ""),
-       "In compression the wall of a real tube buckles there; in tension the linear law overestimates the force."}};
+  return {{"Kinked", "kinked", limit(v.kink_curvature, "curvature beyond", " nm⁻¹"),
+           "A real tube kinks there: its wall folds and it bends on at a fraction of the stiffness. Harmonic bonds "
+           "bend on elastically and overestimate the bending energy; the moment of anharmonic ones stays constant, "
+           "that of "
+           "a tube falls by a third."},
+          {"Overtwisted", "overtwisted", limit(v.twist_collapse, "radius times twist per length beyond", ""),
+           "The wall of a real tube collapses into a ribbon there. Harmonic bonds store more torsional "
+           "energy than the tube would; the torque of anharmonic ones stays constant, as that of a tube does."},
+          {"Overstretched", "overstretched", limit(v.stretch, "strain beyond", ""),
+           "In compression the wall of a real tube buckles there; in tension harmonic bonds overestimate the "
+           "force."}};
 }
 
 std::string moment_words(const std::vector<LogRow>& log, const LogRow& row) {
