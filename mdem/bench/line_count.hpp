@@ -16,7 +16,7 @@ struct RadialCount {
   void add(const RadialCount& other, double share);
 };
 
-// Number of lanes of the kernel's vectors with the instructions in use.
+// The number of values that one vector of the line law's kernel holds on this machine.
 int radial_lanes(Interaction::Precision precision);
 
 // Floating-point operations (a fused multiply-add is two) of one evaluation, that is of two nodes of two elements:

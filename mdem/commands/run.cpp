@@ -118,7 +118,7 @@ class Run {
     last_step_ = scene_.run.mode == RunOptions::Mode::relax ? -1 : std::lround(prepared_.duration / dt);
   }
 
-  // What is less than zero is not asked for.
+  // A negative value means that the option was not given.
   void stop_at(long steps, double ps) {
     if (ps >= 0 && scene_.run.mode == RunOptions::Mode::relax)
       throw InputError({"", 0, "--until"}, "a relaxation has no time", "take --steps");
@@ -126,8 +126,8 @@ class Run {
     if (steps >= 0) last_step_ = steps;
   }
 
-  // Before anything is done: can it do what it is asked to.
-  void check_manner() const {
+  // Refuses what the run could not carry out, before any file is written.
+  void check_before_start() const {
     refuse_cooling(scene_, prepared_);
     if (policy_.on_limit != OnLimit::refine) return;
     const std::string why = why_not_finer(scene_, prepared_.topology);
@@ -548,7 +548,7 @@ std::unique_ptr<Run> new_run(const RunArguments& a) {
   Scene scene = read_scene(a.scene);
   // Everything that can be wrong is found before a file is touched.
   auto run = std::make_unique<Run>(dir, scene, policy);
-  run->check_manner();
+  run->check_before_start();
   run->stop_at(a.steps, a.until_ps);
   check_finer_directory(dir, policy);
   create_run_directory(dir, a.force);

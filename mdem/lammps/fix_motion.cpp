@@ -62,7 +62,8 @@ void FixMotion::init() {
   damp_ = find_fix<FixDamp>(lmp);
 }
 
-// Checks that no element is lost. LAMMPS counts atoms only when it prints, and may be set to ignore losses.
+// Stops the run if an element has been lost. LAMMPS itself counts atoms only when it prints, and a script may tell
+// LAMMPS to ignore lost ones.
 void FixMotion::check_elements() {
   LMP::bigint own = atom->nlocal, all = 0;
   MPI_Allreduce(&own, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);

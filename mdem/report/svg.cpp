@@ -255,7 +255,8 @@ std::vector<EndLabel> end_labels(const LineChart& chart, const Plot& plot) {
   }
   std::stable_sort(labels.begin(), labels.end(),
                    [](const EndLabel& a, const EndLabel& b) { return a.end < b.end; });
-  // Labels are moved down, then up again from the bottom, until they are a line of text apart.
+  // Labels that overlap are moved down. Labels below the chart are then moved up. Neighbours end a line of text
+  // apart.
   for (std::size_t i = 1; i < labels.size(); ++i)
     labels[i].at = std::max(labels[i].at, labels[i - 1].at + label_distance);
   double limit = plot.bottom;

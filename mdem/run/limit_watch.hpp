@@ -36,7 +36,8 @@ class LimitWatch {
   bool finer_would_help_ = false;
 };
 
-// "bend_deg up to 21.4 deg (limit 19.9)" for every limit that was passed, in one line; empty if there is none.
+// One line that names every limit passed and its largest value, as "bend_deg up to 21.4 deg (limit 19.9)". The line
+// is empty if no limit was passed.
 std::string passed_words(const std::vector<LimitRecord>& records);
 
 }  // namespace ropewalk

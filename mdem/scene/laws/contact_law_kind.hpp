@@ -1,5 +1,5 @@
-// The register of contact laws: [contact] law = "name". A law is one class (sim/contact/contact_law.hpp) and its
-// entry here.
+// The register of contact laws, from which [contact] law = "name" chooses. A contact law consists of a class
+// (sim/contact/contact_law.hpp) and an entry in this register.
 #pragma once
 
 #include <functional>

@@ -110,8 +110,8 @@ double NeighbourList::coordinate_unit() const {
   return std::exp2(std::ceil(std::log2(largest + 64)) - 28);
 }
 
-// The cut does not depend on the number of threads. If tubes with distant numbers cross, the buffers of the chunks
-// overlap widely, and clearing and adding them up would cost as much as the contact: then there are fewer chunks.
+// The chunks do not depend on the number of threads. Where tubes with distant numbers cross, the buffers of the chunks
+// overlap widely. Clearing and adding many such buffers would cost as much as the contact, so that fewer are made.
 void NeighbourList::cut_into_chunks(int n) {
   constexpr int fewest = 16;         // enough for as many threads
   constexpr double max_overlap = 3;  // buffers for each element

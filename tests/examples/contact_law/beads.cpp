@@ -1,4 +1,5 @@
-// The example of docs/how-to/contact-law.md: [contact] law = "beads", a Lennard-Jones law between element centres.
+// docs/how-to/contact-law.md builds this example: a Lennard-Jones law between the centres of elements, which a scene
+// chooses by [contact] law = "beads".
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <omp.h>

@@ -5,7 +5,6 @@
 #include <Eigen/Geometry>
 #include <chrono>
 #include <filesystem>
-#include <limits>
 
 #include "io/files.hpp"
 
@@ -79,12 +78,6 @@ std::vector<Vector3> tube_atoms(Chirality c, const TubeShape& shape, long hexago
   std::vector<Vector3> atoms;
   for (const Site& site : strip_sites(c, hexagons)) atoms.push_back(rotation * place(c, site, shape));
   return atoms;
-}
-
-double quantity(const ParameterSet& set, const std::string& key) {
-  for (const Quantity& q : set.quantities)
-    if (q.key == key) return q.value;
-  return std::numeric_limits<double>::quiet_NaN();
 }
 
 }  // namespace ropewalk

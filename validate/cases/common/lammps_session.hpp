@@ -34,8 +34,8 @@ class MdSession {
   RelaxedTube relaxed(Chirality c);
 
   void write(const std::string& name, const std::string& content);
-  // Runs an input that appends `rows` lines of `columns` numbers to name.dat, or at least `min_rows` of them if that
-  // is given.
+  // Runs an input that appends `rows` lines of `columns` numbers to name.dat, or at least `min_rows` of them if
+  // that is given.
   std::vector<std::vector<double>> run(const std::string& name, const std::string& input, std::size_t rows,
                                        std::size_t columns, std::size_t min_rows = 0);
 
@@ -61,8 +61,5 @@ double period_of(Chirality c, const TubeShape& shape);
 
 // The atoms of a relaxed tube: so many hexagons, from z = 0 upwards, turned about its axis (nm, rad).
 std::vector<Vector3> tube_atoms(Chirality c, const TubeShape& shape, long hexagons, double turn = 0);
-
-// A number of the set's file by its key ("validity.linear_twist"); NaN where the file lacks it.
-double quantity(const ParameterSet& set, const std::string& key);
 
 }  // namespace ropewalk

@@ -9,7 +9,7 @@ namespace ropewalk {
 class PaperLaw : public ContactLaw {
  public:
   const PaperContact contact;
-  const bool legacy_torque;  // with the torque of the published code, which is no gradient
+  const bool legacy_torque;  // The published code's torque acts, which is not the gradient of the energy.
 
   explicit PaperLaw(const PaperContact& c, bool legacy = false) : contact(c), legacy_torque(legacy) {}
 
