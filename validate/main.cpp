@@ -27,9 +27,10 @@ void add_run_options(CLI::App* verb, ValidateArguments& a) {
   verb->add_option("cases", a.cases, "Names of cases, see list [default: all]");
   verb->add_option(
       "--parameters", a.parameters,
-      "Your own parameter set: theory cases take any tube, atoms cases only the tube of their reference");
+      "Run the cases with this set. Those that have nothing to compare it with are listed with the reason");
   verb->add_option("--out", a.out, "Directory of results and report; finished cases in it are not run again")
       ->capture_default_str();
+  verb->add_option("-j,--jobs", a.jobs, "Cases at a time [default: one for each core]")->check(CLI::PositiveNumber);
   verb->add_flag("--again", a.again, "Run finished cases again");
   verb->add_flag("--json", a.json, "JSON");
   verb->add_flag("--quiet", a.quiet, "No progress lines");
@@ -61,8 +62,13 @@ void add_verbs(CLI::App& app, Verbs& v) {
   list->callback([&v] { v.code = list_command(v.list); });
 
   CLI::App* run = app.add_subcommand("run", "Run cases and write the report");
-  run->add_option("--tier", v.run.tier, "quick, or full (includes the quick ones)")->capture_default_str();
+  run->add_option("--tier", v.run.tier, "full, or quick: without ropes and bundles")->capture_default_str();
   run->add_flag("--fresh", v.run.fresh, "Make the references with LAMMPS and compare them with the stored ones");
+  run->add_flag(
+      "--atoms", v.run.atoms,
+      "Make the references of the set's tube with LAMMPS and the set's potential, beside the set (minutes)");
+  run->add_option("--budget", v.run.budget, "Minutes that these may take [default: any]")
+      ->check(CLI::PositiveNumber);
   add_run_options(run, v.run);
   run->callback([&v] { v.code = validate_command(v.run); });
 

@@ -26,10 +26,8 @@ std::string bend_commands(double curvature, double last, const std::string& resu
   return text + results;
 }
 
-// Additional hexagons of the long tube. The energy of an end depends on its azimuth phi to the bending plane: as
-// k^2 cos 2 phi for a tube without a threefold or higher axis, and as k cos phi if the end is cut along one spiral
-// step. For such tubes the ends of the short and the long tube must have the same azimuth; otherwise the difference of
-// the energies contains the ends (1 % of EI for (8,2)).
+}  // namespace
+
 long extra_hexagons(Chirality c, const TubeShape& shape, double length) {
   const long step = std::gcd(c.n, c.m), middle = hexagons_in(c, shape, length);
   if (step > 2) return middle;
@@ -49,8 +47,6 @@ long extra_hexagons(Chirality c, const TubeShape& shape, double length) {
   }
   return best;
 }
-
-}  // namespace
 
 std::vector<AtomisticRow> bend_rows(RunContext& run, const RelaxedTube& tube, const BendSeries& series) {
   const long short_part = hexagons_in(run.c, tube.shape, series.short_length);

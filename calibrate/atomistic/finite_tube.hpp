@@ -16,6 +16,12 @@ double held_band(const Potential& potential);
 // The number of hexagons, a multiple of gcd(n,m), that is nearest to a length.
 long hexagons_in(Chirality c, const TubeShape& shape, double length);
 
+// Additional hexagons, of about `length`, of the longer one of two bent tubes. The energy of an end depends on its
+// azimuth phi to the bending plane: as k^2 cos 2 phi for a tube without a threefold or higher axis, and as k cos
+// phi if the end is cut along one spiral step. For such tubes the ends of both must have the same azimuth;
+// otherwise the difference of the energies contains the ends (1 % of EI for (8,2)).
+long extra_hexagons(Chirality c, const TubeShape& shape, double length);
+
 class FiniteTube {
  public:
   // Tubes of one shape and band have equal ends up to a rotation about the axis where their free hexagons differ by

@@ -21,7 +21,7 @@ struct LammpsVersion {
 struct LammpsOptions {
   std::string program = "lmp";        // ROPEWALK_LMP overrides
   double quiet_seconds = 120;         // killed when it has written nothing for so long
-  double max_seconds = 3600;         // killed after so long
+  double max_seconds = 3600;          // killed after so long
   std::function<bool()> interrupted;  // asked often; ends the child where it says true. May be empty
 };
 

@@ -42,9 +42,9 @@ RelaxedTube relax_tube(RunContext& run);
 
 // Cells at all pairs of these strains and shears.
 struct CellGrid {
-  std::string name;                   // of the LAMMPS run and of the rows
-  std::vector<double> strains;        // in rising order
-  double largest_shear = 0;           // radius times twist
+  std::string name;                    // of the LAMMPS run and of the rows
+  std::vector<double> strains;         // in rising order
+  double largest_shear = 0;            // radius times twist
   std::vector<double> parts_of_shear;  // the nearest twists that the lattice has
 };
 // The window of the harmonic constants: both signs of strain and of twist.
@@ -63,7 +63,8 @@ std::vector<AtomisticRow> stretch_twist_rows(const std::vector<CellResult>& cell
 
 // Longer cells (nm) of one twist each, minimised with a little noise, so that the wall may collapse; rows
 // "collapse-twist". `shears`: radius times twist.
-std::vector<AtomisticRow> collapse_rows(RunContext& run, const RelaxedTube& tube, const std::vector<double>& shears);
+std::vector<AtomisticRow> collapse_rows(RunContext& run, const RelaxedTube& tube,
+                                        const std::vector<double>& shears);
 
 // Finite tubes of two lengths (nm) bent to these curvatures (1/nm); rows NAME-short and NAME-long.
 struct BendSeries {

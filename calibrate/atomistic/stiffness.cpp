@@ -93,7 +93,10 @@ BendSeries elastic_bends(const StiffnessOptions& options, double curvature) {
 
 // Held ends keep a wide tube round, so that wide tubes need long specimens.
 BendSeries wide_bends(double radius, double kink) {
-  return {"wide-bend", std::max(6.0, 12 * radius), std::max(10.0, 20 * radius), {0.3 * kink, 0.5 * kink, 0.65 * kink, 0.75 * kink, 0.85 * kink}};
+  return {"wide-bend",
+          std::max(6.0, 12 * radius),
+          std::max(10.0, 20 * radius),
+          {0.3 * kink, 0.5 * kink, 0.65 * kink, 0.75 * kink, 0.85 * kink}};
 }
 
 // Makes the tube that is free of force and torque according to the fit the new reference.

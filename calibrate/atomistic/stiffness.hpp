@@ -38,7 +38,7 @@ struct Measured {
 
 // The calibration refuses chiralities beyond these limits before LAMMPS starts.
 inline constexpr double smallest_diameter = 0.3;  // nm: below it atoms across the tube are within reach of bonds
-inline constexpr int max_atoms = 20000;          // of a cell: a minute each
+inline constexpr int max_atoms = 20000;           // of a cell: a minute each
 
 // One relaxed configuration, a row of the table NAME-stiffness.csv.
 struct AtomisticRow {
@@ -99,10 +99,10 @@ struct Stiffness {
   double energy_per_atom = 0;  // eV, relaxed; 0 where it is not known (a table fitted again)
   double energy_offset = 0;    // eV/nm, of the minimum of the fit; near 0 in a finished table
   // Leading anharmonic terms of the energy per length: they set the 1 % limits.
-  Measured stretch_cubic;          // eV/nm, of e^3
-  Measured twist_cubic;            // eV nm^2, of s^3; zero but for chiral tubes
-  Measured twist_quartic;          // eV nm^3, of s^4
-  Measured bend_quartic;           // eV nm^3, of k^4
+  Measured stretch_cubic;  // eV/nm, of e^3
+  Measured twist_cubic;    // eV nm^2, of s^3; zero but for chiral tubes
+  Measured twist_quartic;  // eV nm^3, of s^4
+  Measured bend_quartic;   // eV nm^3, of k^4
   AnharmonicFit anharmonic;
   double surface_density() const;  // atoms per nm^2 of the relaxed shell
   Envelope envelope;
@@ -136,11 +136,12 @@ std::vector<AtomisticRow> read_atomistic_csv(const std::string& path, AtomisticO
 void fit_stretch_twist(std::vector<AtomisticRow>& rows, Stiffness& out);
 void fit_bend(std::vector<AtomisticRow>& rows, Stiffness& out);
 
-// The terms beyond Hooke's law, from the rows of the wide windows; EA, GJ, EI, the coupling and the natural twist in
-// `out` are held. It fills the residuals of its rows.
+// The terms beyond Hooke's law, from the rows of the wide windows; EA, GJ, EI, the coupling and the natural twist
+// in `out` are held. It fills the residuals of its rows.
 void fit_anharmonic(std::vector<AtomisticRow>& rows, Chirality c, Stiffness& out);
 
-// The shear at which the torque stops rising, from rows "collapse-twist", as that of an endless tube into the envelope.
+// The shear at which the torque stops rising, from rows "collapse-twist", as that of an endless tube into the
+// envelope.
 void fit_collapse(std::vector<AtomisticRow>& rows, Stiffness& out);
 
 // Replaces the 1 % limits of the envelope by limits from the anharmonic terms, if these are known.

@@ -186,9 +186,8 @@ std::vector<LatticeVector> stretch_twist_periods(Chirality c, const Potential& p
   const double min_length = std::max({shortest_cell, 2 * potential.cutoff, options.cell_length});
   std::vector<LatticeVector> periods;
   for (const double part : grid.parts_of_shear)
-    periods.push_back(part == 0
-                          ? untwisted_cell(c, min_length)
-                          : cell_near(c, part * grid.largest_shear, 0.1 * grid.largest_shear, min_length));
+    periods.push_back(part == 0 ? untwisted_cell(c, min_length)
+                                : cell_near(c, part * grid.largest_shear, 0.1 * grid.largest_shear, min_length));
   return periods;
 }
 
@@ -256,7 +255,8 @@ std::vector<AtomisticRow> stretch_twist_rows(const std::vector<CellResult>& cell
   return rows;
 }
 
-std::vector<AtomisticRow> collapse_rows(RunContext& run, const RelaxedTube& tube, const std::vector<double>& shears) {
+std::vector<AtomisticRow> collapse_rows(RunContext& run, const RelaxedTube& tube,
+                                        const std::vector<double>& shears) {
   const Chirality c = run.c;
   const double radius = tube.shape.radius;
   const std::vector<LatticeVector> periods =

@@ -300,6 +300,16 @@ ParameterSet parameters_of_text(const std::string& text, const std::string& path
   return Reader(text, path).read();
 }
 
+std::string provenance_value(const ParameterSet& set, const std::string& key) {
+  for (const auto& [name, value] : set.provenance)
+    if (name == key) return value;
+  return "";
+}
+
+std::string tube_name(const ParameterSet& set) {
+  return fmt::format("({},{})", set.chirality.n, set.chirality.m);
+}
+
 const Quantity* find_quantity(const ParameterSet& set, const std::string& key) {
   for (const Quantity& q : set.quantities)
     if (q.key == key) return &q;

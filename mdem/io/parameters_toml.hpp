@@ -15,6 +15,10 @@ ParameterSet parameters_of_text(const std::string& text, const std::string& path
 
 // Null if the set has no such number.
 const Quantity* find_quantity(const ParameterSet& set, const std::string& key);
+// An entry of [provenance]; empty if the set has none.
+std::string provenance_value(const ParameterSet& set, const std::string& key);
+// "(10,10)"
+std::string tube_name(const ParameterSet& set);
 
 class TomlTable;
 // The five rows of the universal law, as text and read from their table.

@@ -3,7 +3,6 @@
 
 #include <string>
 
-#include "model/error.hpp"
 #include "runner/runner.hpp"
 #include "validate/support.hpp"
 
@@ -19,14 +18,15 @@ TEST(PaperLaw, BindsAboutTwiceAsStronglyAsTheAtoms) {
   EXPECT_NEAR(ratio.value, 2.1, 0.15);
 }
 
-TEST(MissingReference, IsReportedWithTheRemedy) {
+TEST(MissingReference, IsNotApplicableAndSaysWhatToDo) {
   CaseContext context = test::stored_context();
   context.references = "/nowhere";
+  context.sets = {test::shipped("cnt-5-5-tersoff")};
   try {
     find_case("tube-bend").run(context);
     FAIL() << "no reference, no error";
-  } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("--fresh"), std::string::npos) << error.what();
+  } catch (const NotApplicable& reason) {
+    EXPECT_NE(std::string(reason.what()).find("--atoms"), std::string::npos) << reason.what();
   }
 }
 

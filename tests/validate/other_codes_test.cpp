@@ -10,7 +10,7 @@
 namespace ropewalk {
 namespace {
 
-ParameterSet shipped() { return test::stored_context().parameters("cnt-10-10-tersoff"); }
+ParameterSet shipped() { return test::shipped("cnt-10-10-tersoff"); }
 
 BeadLaw bead_law(const ParameterSet& set) {
   const Well pair = surface_integral(set).parallel_well();

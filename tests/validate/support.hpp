@@ -12,18 +12,21 @@
 
 namespace ropewalk::test {
 
+inline ParameterSet shipped(const std::string& name) { return read_parameters(find_parameters(name, "")); }
+
 inline CaseContext stored_context() {
   CaseContext context;
-  context.parameters = [](const std::string& name) { return read_parameters(find_parameters(name, "")); };
   context.references = ROPEWALK_SOURCE_DIR "/data/references";
+  context.no_atoms = "make them with --atoms";
   context.progress = [](const std::string&) {};
   return context;
 }
 
 inline CaseResult run(const Case& c, const Fault& fault = {}) {
   CaseContext context = stored_context();
+  for (const std::string& name : c.sets) context.sets.push_back(shipped(name));
   context.fault = fault;
-  return c.run(context);
+  return run_case(c, context);
 }
 
 // Names of the checks that decide and do not hold.

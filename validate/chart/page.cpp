@@ -15,7 +15,7 @@ namespace ropewalk {
 namespace {
 
 constexpr double smallest_error = 1e-6;  // smaller errors are drawn here
-constexpr double much = 10;           // times as cheap
+constexpr double much = 10;              // times as cheap
 
 // Measured cost of another program for a step of this scene's rope; its accuracy is not known.
 struct Peer {

@@ -35,7 +35,8 @@ constexpr double end_moment = 10;                     // nN nm per tube
 constexpr double moment_ramp = 66, moment_hold = 44;  // ps: three periods and two
 constexpr double crossed_length = 8 * element;        // nm
 constexpr double crossed_from = 90, crossed_to = 30;  // degrees
-constexpr std::size_t md_increment = 4;               // of rope-7-10-10: 18 degrees
+constexpr std::size_t md_increment = 4;               // of rope-7-short
+constexpr double md_angle = 18 * units::degree;       // there
 
 // Damping constants of a model are given for elements of the default length.
 void scale_damping(Specimen& s) {
@@ -102,12 +103,15 @@ Specimen twisted_tube(const ChartModel& model) {
   return s;
 }
 
+ReferenceTable atoms_table(const std::string& name) {
+  return read_reference(fmt::format("{}/references/{}/{}.csv", data_directory(), set_name, name));
+}
+
 std::vector<ChartReference> atoms_of_tube() {
-  const ReferenceTable t = read_reference(data_directory() + "/references/tube-twist.csv");
-  const std::vector<double> n = t.column("n"), twist = t.column("twist_rad_per_nm"),
-                            energy = t.column("energy_eV_per_nm");
-  for (std::size_t k = 0; k < n.size(); ++k)
-    if (n[k] == 10 && std::fabs(twist[k] - tube_twist_rate) < 1e-9) return {{"energy", energy[k] * tube_length}};
+  const ReferenceTable t = atoms_table("tube-twist");
+  const std::vector<double> twist = t.column("twist_rad_per_nm"), energy = t.column("energy_eV_per_nm");
+  for (std::size_t k = 0; k < twist.size(); ++k)
+    if (std::fabs(twist[k] - tube_twist_rate) < 1e-9) return {{"energy", energy[k] * tube_length}};
   throw InputError({"tube-twist.csv", 0, ""}, fmt::format("has no row at {} rad/nm", tube_twist_rate),
                    "restore the shipped file");
 }
@@ -115,10 +119,10 @@ std::vector<ChartReference> atoms_of_tube() {
 // --- rope7-md ---
 
 Specimen seven_tubes(const ChartModel& model) {
-  const TwistedRope rope = rope_7_10_10();
-  const ParameterSet set = read_parameters(find_parameters(rope.parameters, ""));
+  const ParameterSet set = read_parameters(find_parameters(set_name, ""));
+  const TwistedRope rope = rope_of_length("rope-7-short", 8, set);
   Specimen s = parallel_tubes(model, 7, clamped_length(rope, set), (rope.band_rows - 0.5) * row_distance(set));
-  s.angle = md_increment * rope.step;
+  s.angle = md_angle;
   s.ramp = 60;
   s.hold = 30;
   s.increments = md_increment;
@@ -126,7 +130,7 @@ Specimen seven_tubes(const ChartModel& model) {
 }
 
 std::vector<ChartReference> atoms_of_seven_tubes() {
-  const ReferenceTable t = read_reference(data_directory() + "/references/" + rope_7_10_10().name + ".csv");
+  const ReferenceTable t = atoms_table("rope-7-short");
   const std::vector<TwistedState> states = states_of(t, false);
   const TwistedState& at = states.at(md_increment);
   return {{"energy", at.total - states[0].total}, {"end_moment", at.moment * units::eV_in_nN_nm}};
@@ -165,7 +169,7 @@ Specimen crossed_tubes(const ChartModel& model) {
   s.topology = empty_topology(s.scene);
   s.spacing = rest_spacing(s.scene);
   s.state = State(static_cast<std::size_t>(2 * (bonds + 1)));
-  const ReferenceTable atoms = read_reference(data_directory() + "/references/crossed-tubes.csv");
+  const ReferenceTable atoms = atoms_table("crossed-tubes");
   const double distance = atoms.column("distance_nm")[2];  // of the energy minimum at 90 degrees
   for (const int tube : {0, 1}) {
     const double angle = tube * crossed_from * units::degree;
@@ -192,7 +196,7 @@ Specimen crossed_tubes(const ChartModel& model) {
 }
 
 std::vector<ChartReference> atoms_of_crossed_tubes() {
-  const ReferenceTable t = read_reference(data_directory() + "/references/crossed-tubes.csv");
+  const ReferenceTable t = atoms_table("crossed-tubes");
   const std::vector<double> angle = t.column("angle_deg"), energy = t.column("energy_eV"),
                             torque = t.column("torque_eV_per_rad");
   const auto first = std::find(angle.begin(), angle.end(), crossed_to) - angle.begin();
@@ -245,7 +249,7 @@ std::vector<ChartScene> all_scenes() {
       {"rope7-md",
        "Seven tubes against atoms",
        "Seven (10,10) tubes of 8.11 nm between rigid grips at a fixed distance, turned by 18 degrees in 60 ps and "
-       "held for 30. Atoms: the same rope in LAMMPS (case rope-7-10-10), with the Tersoff potential within tubes "
+       "held for 30. Atoms: the same rope in LAMMPS (case rope-7-short), with the Tersoff potential within tubes "
        "and Lennard-Jones between them, relaxed at each increment.",
        true,
        {"energy", "end_moment", "beta", "spacing", "bending_moment"},

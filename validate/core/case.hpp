@@ -4,6 +4,8 @@
 #pragma once
 
 #include <functional>
+#include <optional>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -24,6 +26,11 @@ struct Check {
   // Shown for what it tells (another code's error, a known limit); decides nothing.
   bool informative = false;
   std::string note;  // the reason for this tolerance, or what a miss means
+  // A miss that the case declares: it holds while the difference stays within `spread` of `expected`.
+  struct Known {
+    double expected = 0, spread = 0;  // as difference()
+  };
+  std::optional<Known> known = {};
 
   double difference() const;  // relative or absolute, as the tolerance is
   bool holds() const;         // false for a value that is not finite
@@ -75,23 +82,44 @@ Fault without_torque();
 // Multiplies the contact energy of a set; the distance of its minimum stays.
 void scale_contact(ParameterSet& set, double factor);
 
+// The case cannot run with this set, or nothing is there to compare it with; what() says why.
+struct NotApplicable : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+// One tube of a case.
+struct CaseTube {
+  ParameterSet set;    // of the oracle
+  ParameterSet model;  // the same with the fault
+  std::string name;    // "(10,10)"
+  std::string source;  // "cnt-10-10-tersoff (hash ...)", for CaseResult::sources
+};
+
 // What a case may use.
 struct CaseContext {
-  // The set of this name, for the oracle. A set given with --parameters takes its place where the case allows that.
-  std::function<ParameterSet(const std::string& name)> parameters;
+  // The sets that the case runs with: Case::sets or, in the place of all of them, the one given with --parameters.
+  std::vector<ParameterSet> sets;
+  bool given = false;  // with --parameters
   Fault fault;
-  // The same set for the model: with the fault.
-  ParameterSet model(const std::string& name) const;
-  std::string references;  // folder of stored reference data
-  std::string work;        // an empty folder for this case (LAMMPS files, states)
-  bool fresh = false;      // make references with LAMMPS and compare them with the stored ones
+  const ParameterSet& set(std::size_t k = 0) const { return sets.at(k); }  // for the oracle
+  ParameterSet model(std::size_t k = 0) const;                             // the same with the fault
+  CaseTube tube(std::size_t k = 0) const;
+  std::vector<CaseTube> tubes() const;
+
+  std::string references;   // folder of the stored reference data of shipped sets
+  std::string work;         // an empty folder for this case (LAMMPS files, states)
+  bool fresh = false;       // make references with LAMMPS and compare them with the stored ones
+  bool make_atoms = false;  // make references that are missing and store them beside the set
+  std::string no_atoms;     // why they are not made
   std::function<void(const std::string& line)> progress;
 };
 
 struct Case {
   // `validate run` takes all groups but `stability`, which `validate stability` takes: the limits of the methods.
   enum class Group { theory, atoms, codes, stability };
-  enum class Tier { quick, full };  // seconds; minutes to an hour, with stored references
+  // quick: single tubes, pairs and theory. full: also ropes and bundles, whose atoms take LAMMPS minutes to an
+  // hour.
+  enum class Tier { quick, full };
 
   // A fault under which the case must miss.
   struct Red {
@@ -103,22 +131,42 @@ struct Case {
         : fault(fault_), checks(std::move(checks_)) {}
   };
 
+  // The contact law that the case uses: sets without it cannot run it.
+  enum class Law { none, line, paper };
+
   std::string name;  // "euler-buckling", on the command line and of files
   Group group = Group::theory;
   int order = 0;  // place within the group in lists and reports; equal places go by name
   Tier tier = Tier::quick;
+  Law law = Law::line;
+  // Shipped sets that it runs with where none is given.
+  std::vector<std::string> sets = {"cnt-10-10-tersoff"};
+  // The case is about these sets. A given one takes the place of none of them, unless it is of the same tube and
+  // the same interatomic potential. The text says why.
+  std::string only_these;
+  // Texts may contain {tube}, which stands for the names of the tubes: "(5,5) and (10,10)".
   std::string title;
   std::string why;         // what it matters for in a rope
   std::string setup;       // what is built and loaded
   std::string oracle;      // what the model is compared with, with the equation
   std::string literature;  // citation with DOI
   std::function<CaseResult(const CaseContext&)> run;
+  // Cases against atoms: their tables of references (see reference.hpp), and about how long LAMMPS takes for those
+  // of one tube, s of one core.
+  std::vector<std::string> tables;
+  std::function<double(const ParameterSet&)> lammps_seconds;
 
   // What the test of every case makes sure of, besides that the case holds. A case that holds under every wrong
   // parameter tests nothing: each names at least one that it sees.
   std::vector<Red> turns_red;
-  std::vector<Fault> stays_green;         // of quantities that the case does not depend on
-  std::vector<std::string> known_misses;  // checks that miss with the right parameters; the remarks say why
+  std::vector<Fault> stays_green;  // of quantities that the case does not depend on
+  // Checks of shipped sets that miss with the right parameters, and by how much; the remarks say why. A miss that
+  // changes is a miss.
+  struct KnownMiss {
+    std::string check;
+    Check::Known size;
+  };
+  std::vector<KnownMiss> known_misses;
 };
 
 // Registers a case before main() begins. Write one at the end of a case's file:
@@ -135,6 +183,15 @@ struct RegisteredCase {
 
 // All registered cases, in the order of the report: by group, order and name.
 const std::vector<Case>& all_cases();
+
+// "(5,5) and (10,10)", the tubes of these sets; laws apart, each once.
+std::string tube_names(const std::vector<ParameterSet>& sets);
+// Of the same tube and the same interatomic potential.
+bool like(const ParameterSet& i, const ParameterSet& j);
+// Runs the case and marks its known misses.
+CaseResult run_case(const Case& c, const CaseContext& context);
+// Whether the case can run with a set that the user gives: throws NotApplicable where it cannot.
+void check_applicable(const Case& c, const ParameterSet& given, const std::vector<ParameterSet>& shipped);
 
 // Sorts the cases for the report. Throws std::invalid_argument where two have the same name.
 std::vector<Case> sorted_cases(std::vector<Case> cases);

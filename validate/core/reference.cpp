@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "io/files.hpp"
+#include "io/parameters_toml.hpp"
 #include "io/toml_table.hpp"
 #include "model/error.hpp"
 
@@ -126,21 +127,60 @@ std::string reference_csv(const ReferenceTable& table) {
   return text;
 }
 
-ReferenceTable reference(const CaseContext& context, const std::string& name, double tolerance,
-                         const std::function<ReferenceTable()>& make, CaseResult& result) {
-  const std::string stored = (fs::path(context.references) / (name + ".csv")).string();
-  const bool exists = fs::exists(stored);
-  if (!context.fresh) {
-    if (!exists) throw InputError({stored, 0, ""}, "there is no such reference", "make it with --fresh");
+std::string atoms_folder(const ParameterSet& set) {
+  return (fs::path(set.path).parent_path() / (set.name + "-atoms")).string();
+}
+
+std::string find_reference(const CaseContext& context, const ParameterSet& set, const std::string& name) {
+  const std::string like =
+      fmt::format("cnt-{}-{}-{}", set.chirality.n, set.chirality.m, provenance_value(set, "potential"));
+  for (const fs::path& folder : {fs::path(atoms_folder(set)), fs::path(context.references) / like})
+    if (fs::exists(folder / (name + ".csv"))) return (folder / (name + ".csv")).string();
+  return "";
+}
+
+std::string between_tubes(const ParameterSet& set) {
+  const UniversalLine& law = set.line.value().universal;
+  return fmt::format("Lennard-Jones, {} eV, {} nm, cut at {} nm, not shifted", law.epsilon, law.sigma,
+                     law.lj_cutoff);
+}
+
+void check_origin(const ReferenceTable& table, const std::string& path, const ParameterSet& set) {
+  const std::string hash = provenance_value(set, "potential_hash"), law = table.value("between_tubes");
+  if (table.value("potential").find("hash " + hash) == std::string::npos)
+    throw NotApplicable(
+        fmt::format("{} was made with another interatomic potential, {}", path, table.value("potential")));
+  if (!law.empty() && (!set.line || law != between_tubes(set)))
+    throw NotApplicable(fmt::format("in {} tubes attract by another law: {}", path, law));
+}
+
+ReferenceTable reference(const CaseContext& context, const ParameterSet& set, const std::string& name,
+                         double tolerance, const std::function<ReferenceTable()>& make, CaseResult& result) {
+  if (provenance_value(set, "potential_hash").empty())
+    throw NotApplicable("the set names no interatomic potential, so that there are no atoms to compare it with");
+  if (!provenance_value(set, "fit_command").empty())
+    throw NotApplicable("the set was fitted to data of yours, whose atoms are not known");
+  const std::string stored = find_reference(context, set, name), label = fmt::format("{}/{}.csv", set.name, name);
+  if (!context.fresh && !stored.empty()) {
     ReferenceTable table = read_reference(stored);
+    check_origin(table, stored, set);
     result.sources.push_back(
-        fmt::format("{} (stored; {}, LAMMPS {})", name + ".csv", table.value("potential"), table.value("lammps")));
+        fmt::format("{} (stored; {}, LAMMPS {})", label, table.value("potential"), table.value("lammps")));
     return table;
   }
+  if (!context.fresh && !context.make_atoms)
+    throw NotApplicable(
+        fmt::format("there are no atoms of {} to compare with; {}", tube_name(set), context.no_atoms));
   ReferenceTable table = make();
-  if (exists) compare(read_reference(stored), table, name, tolerance, result);
-  write_file_atomically((fs::path(context.work) / (name + ".csv")).string(), reference_csv(table));
-  result.sources.push_back(fmt::format("{} (fresh, {} s of LAMMPS)", name + ".csv", table.value("wall_seconds")));
+  if (context.fresh) {
+    if (!stored.empty()) compare(read_reference(stored), table, label, tolerance, result);
+    fs::create_directories(fs::path(context.work) / set.name);
+    write_file_atomically((fs::path(context.work) / label).string(), reference_csv(table));
+  } else {
+    fs::create_directories(atoms_folder(set));
+    write_file_atomically((fs::path(atoms_folder(set)) / (name + ".csv")).string(), reference_csv(table));
+  }
+  result.sources.push_back(fmt::format("{} (fresh, {} s of LAMMPS)", label, table.value("wall_seconds")));
   return table;
 }
 

@@ -1,4 +1,6 @@
-// Reference data of LAMMPS: a table with its origin, kept in data/references/NAME.csv.
+// Reference data of LAMMPS: a table of one tube with its origin. It belongs to a parameter set, whose interatomic
+// potential and law between tubes it was made with. data/references/SET/NAME.csv has those of shipped sets; those
+// of a user's set lie beside it, in SET-atoms/NAME.csv.
 //
 //   # title: ...
 //   # potential: tersoff (BNC.tersoff, hash ...)     any number of "# key: value" lines
@@ -33,11 +35,22 @@ struct ReferenceTable {
 ReferenceTable read_reference(const std::string& path);
 std::string reference_csv(const ReferenceTable& table);
 
-// The stored table NAME.csv or, with context.fresh, a new one by make(). The result's sources say which. A new
-// table is written to context.work/NAME.csv and compared with the stored one, if there is one: the largest
-// difference of each column becomes a check ("stored against fresh"), within `tolerance` of the column's range.
-// Throws InputError with the remedy where no table is stored and context.fresh is not set.
-ReferenceTable reference(const CaseContext& context, const std::string& name, double tolerance,
-                         const std::function<ReferenceTable()>& make, CaseResult& result);
+// Where references of this set are made.
+std::string atoms_folder(const ParameterSet& set);
+// The stored table of a set: beside it or, for the same tube and potential, among the shipped ones. Empty: none.
+std::string find_reference(const CaseContext& context, const ParameterSet& set, const std::string& name);
+
+// What a table must say of its origin to be of this set. Throws NotApplicable where it says something else, or
+// where the set names no potential that is known.
+std::string between_tubes(const ParameterSet& set);
+void check_origin(const ReferenceTable& table, const std::string& path, const ParameterSet& set);
+
+// The stored table NAME of a set or, with context.fresh, a new one by make(). The result's sources say which. A
+// fresh table is written to context.work/SET/NAME.csv and compared with the stored one, if there is one: the
+// largest difference of each column becomes a check ("stored against fresh"), within `tolerance` of the column's
+// range. Where no table is stored: with context.make_atoms it is made and stored in atoms_folder; otherwise throws
+// NotApplicable.
+ReferenceTable reference(const CaseContext& context, const ParameterSet& set, const std::string& name,
+                         double tolerance, const std::function<ReferenceTable()>& make, CaseResult& result);
 
 }  // namespace ropewalk

@@ -43,6 +43,7 @@ Json to_json(const Check& c) {
           {"informative", c.informative},
           {"difference", number(c.difference())},
           {"holds", c.holds()},
+          {"known_miss", c.known ? Json{{"difference", c.known->expected}, {"within", c.known->spread}} : Json()},
           {"note", c.note}};
 }
 
@@ -56,6 +57,8 @@ Check check_of(const Json& j) {
   c.unit = j.at("unit");
   c.informative = j.at("informative");
   c.note = j.at("note");
+  if (const Json known = j.value("known_miss", Json()); known.is_object())
+    c.known = Check::Known{known.at("difference"), known.at("within")};
   return c;
 }
 
@@ -125,18 +128,27 @@ CaseFigure figure_of(const Json& j) {
 }
 
 const char* verdict_word(Outcome::Verdict v) {
-  return v == Outcome::Verdict::holds ? "holds" : v == Outcome::Verdict::misses ? "misses" : "failed";
+  return v == Outcome::Verdict::holds            ? "holds"
+         : v == Outcome::Verdict::misses         ? "misses"
+         : v == Outcome::Verdict::not_applicable ? "not applicable"
+                                                 : "failed";
 }
 
 Json body(const Outcome& o) {
   Json checks = Json::array(), figures = Json::array();
   for (const Check& c : o.result.checks) checks.push_back(to_json(c));
   for (const CaseFigure& f : o.result.figures) figures.push_back(to_json(f));
-  Json limits = Json::array();
+  Json limits = Json::array(), sets = Json::array();
   for (const Limit& l : o.result.limits) limits.push_back(to_json(l));
+  for (const UsedSet& s : o.sets)
+    sets.push_back(
+        {{"name", s.name}, {"hash", s.hash}, {"tube", s.tube}, {"grade", s.grade}, {"registry", s.registry}});
   return {{"format", outcome_format},
           {"case", o.name},
           {"verdict", verdict_word(o.verdict())},
+          {"tubes", o.tubes},
+          {"sets", sets},
+          {"not_applicable", o.not_applicable},
           {"checks", checks},
           {"limits", limits},
           {"remarks", o.result.remarks},
@@ -148,8 +160,9 @@ Json body(const Outcome& o) {
 }
 
 std::string check_line(const Check& c) {
-  const std::string mark = c.informative ? "  " : c.holds() ? "ok" : "NO";
+  const std::string mark = c.informative ? "  " : !c.holds() ? "NO" : c.known ? "kn" : "ok";
   const std::string allowed = c.informative ? "shown only"
+                              : c.known     ? "known miss"
                               : c.relative  ? fmt::format("within {:.3g} %", 100 * c.tolerance)
                                             : fmt::format("within {:.3g} {}", c.tolerance, c.unit);
   const std::string off =
@@ -162,7 +175,14 @@ std::string check_line(const Check& c) {
 
 Outcome::Verdict Outcome::verdict() const {
   if (!error.empty()) return Verdict::failed;
+  if (!not_applicable.empty()) return Verdict::not_applicable;
   return result.holds() ? Verdict::holds : Verdict::misses;
+}
+
+std::string Outcome::with_tubes(std::string text) const {
+  const std::string place = "{tube}";
+  for (std::size_t at = 0; (at = text.find(place)) != std::string::npos;) text.replace(at, place.size(), tubes);
+  return text;
 }
 
 std::string outcome_json(const Outcome& outcome) { return body(outcome).dump(1) + "\n"; }
@@ -173,6 +193,10 @@ Outcome read_outcome(const std::string& path) {
     if (j.at("format") != outcome_format) throw std::runtime_error("another format");
     Outcome o;
     o.name = j.at("case");
+    o.tubes = j.at("tubes");
+    for (const Json& s : j.at("sets"))
+      o.sets.push_back({s.at("name"), s.at("hash"), s.at("tube"), s.at("grade"), s.at("registry")});
+    o.not_applicable = j.at("not_applicable");
     o.error = j.at("error");
     o.key = j.at("key");
     for (const Json& c : j.at("checks")) o.result.checks.push_back(check_of(c));
@@ -205,14 +229,18 @@ std::string validation_table(const std::vector<Outcome>& outcomes) {
   std::string text =
       fmt::format("     {:<52} {:>12} {:>12} {:<10} {:>10}\n", "", "model", "oracle", "unit", "difference");
   for (const Outcome& o : outcomes) {
-    text += fmt::format("{:<8} {} ({:.1f} s)\n",
+    if (o.verdict() == Outcome::Verdict::not_applicable) continue;
+    text += fmt::format("{:<8} {} {} ({:.1f} s)\n",
                         o.verdict() == Outcome::Verdict::holds    ? "holds"
                         : o.verdict() == Outcome::Verdict::misses ? "MISSES"
                                                                   : "FAILED",
-                        o.name, o.result.seconds);
+                        o.name, o.tubes, o.result.seconds);
     if (!o.error.empty()) text += "  " + o.error + "\n";
     for (const Check& c : o.result.checks) text += check_line(c);
   }
+  for (const Outcome& o : outcomes)
+    if (o.verdict() == Outcome::Verdict::not_applicable)
+      text += fmt::format("not applicable  {}: {}\n", o.name, o.not_applicable);
   return text;
 }
 

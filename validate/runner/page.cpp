@@ -28,6 +28,8 @@ std::string verdict_html(const Outcome& o) {
       return "<span class=\"verdict good\">✓ holds</span>";
     case Outcome::Verdict::misses:
       return "<span class=\"verdict bad\">✗ misses</span>";
+    case Outcome::Verdict::not_applicable:
+      return "<span class=\"verdict dim\">not applicable</span>";
     case Outcome::Verdict::failed:
       return "<span class=\"verdict bad\">✗ could not be run</span>";
   }
@@ -44,6 +46,12 @@ std::string percent(const Check& c) {
 
 std::string allowed(const Check& c) {
   if (c.informative) return "<span class=\"dim\">shown only</span>";
+  if (c.known) {
+    const double scale = c.relative ? 100 : 1;
+    return fmt::format("known miss: {} to {}{}", number_text(scale * (c.known->expected - c.known->spread), 3),
+                       number_text(scale * (c.known->expected + c.known->spread), 3),
+                       c.relative ? " %" : escape_markup(unit_of(c)));
+  }
   return c.relative ? number_text(100 * c.tolerance, 3) + " %"
                     : number_text(c.tolerance, 3) + escape_markup(unit_of(c));
 }
@@ -53,7 +61,7 @@ const Check* worst_check(const CaseResult& r) {
   const Check* worst = nullptr;
   double ratio = -1;
   for (const Check& c : r.checks) {
-    if (c.informative) continue;
+    if (c.informative || c.known) continue;
     const double used = std::isfinite(c.value) ? std::fabs(c.difference()) / c.tolerance : 1e300;
     if (used > ratio) {
       ratio = used;
@@ -69,8 +77,11 @@ std::string summary_row(const Outcome& o) {
   if (const Check* w = worst_check(o.result))
     tight = fmt::format("<td>{}: {} of {} allowed</td>", escape_markup(w->name), percent(*w), allowed(*w));
   if (!o.error.empty()) tight = "<td>" + escape_markup(o.error) + "</td>";
-  return fmt::format("<tr><td>{}</td><td><a href=\"#{}\">{}</a></td>{}<td class=\"dim\">{}</td></tr>\n",
-                     verdict_html(o), o.name, escape_markup(c.title), tight, group_name(c.group));
+  if (!o.not_applicable.empty()) tight = "<td class=\"dim\">" + escape_markup(o.not_applicable) + "</td>";
+  const std::string title = escape_markup(o.with_tubes(c.title));
+  const std::string name = o.not_applicable.empty() ? fmt::format("<a href=\"#{}\">{}</a>", o.name, title) : title;
+  return fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td>{}<td class=\"dim\">{}</td></tr>\n", verdict_html(o),
+                     name, o.not_applicable.empty() ? escape_markup(o.tubes) : "", tight, group_name(c.group));
 }
 
 std::string checks_table(const CaseResult& r) {
@@ -85,9 +96,10 @@ std::string checks_table(const CaseResult& r) {
     html += fmt::format(
         "<tr><td>{}</td><td>{}</td><td class=\"number\">{}</td><td class=\"number\">{}</td><td>{}</td>"
         "<td class=\"number\">{}</td><td class=\"number\">{}</td><td class=\"dim\">{}</td></tr>\n",
-        c.informative ? ""
-        : c.holds()   ? "<span class=\"good\">✓</span>"
-                      : "<span class=\"bad\">✗</span>",
+        c.informative          ? ""
+        : c.holds() && c.known ? "<span class=\"dim\">✗</span>"
+        : c.holds()            ? "<span class=\"good\">✓</span>"
+                               : "<span class=\"bad\">✗</span>",
         escape_markup(c.name), number_text(c.value, 6), number_text(c.reference, 6), escape_markup(c.unit),
         percent(c), allowed(c), escape_markup(c.note));
   return html + "</tbody></table></div>\n";
@@ -118,9 +130,10 @@ std::string figures_html(const CaseResult& r, Figures& figures) {
 
 std::string case_html(const Outcome& o, Figures& figures) {
   const Case& c = find_case(o.name);
-  std::string html = fmt::format("<section class=\"case\" id=\"{}\">\n{}", o.name, heading(c.title));
+  std::string html = fmt::format("<section class=\"case\" id=\"{}\">\n{}", o.name, heading(o.with_tubes(c.title)));
   html += paragraph(verdict_html(o) + ". " + escape_markup(c.why));
-  html += paragraph("<b>Set-up.</b> " + escape_markup(c.setup) + " <b>Oracle.</b> " + escape_markup(c.oracle));
+  html += paragraph("<b>Set-up.</b> " + escape_markup(o.with_tubes(c.setup)) + " <b>Oracle.</b> " +
+                    escape_markup(o.with_tubes(c.oracle)));
   if (!o.error.empty()) html += paragraph("<span class=\"bad\">" + escape_markup(o.error) + "</span>");
   html += checks_table(o.result) + figures_html(o.result, figures);
   for (const std::string& r : o.result.remarks) html += paragraph(escape_markup(r));
@@ -197,10 +210,11 @@ std::string lead(const std::vector<Outcome>& outcomes) {
     return std::count_if(outcomes.begin(), outcomes.end(), [&](const Outcome& o) { return o.verdict() == v; });
   };
   const auto good = count(Outcome::Verdict::holds), miss = count(Outcome::Verdict::misses),
-             failed = count(Outcome::Verdict::failed);
-  std::string text = fmt::format("{} of {} cases hold", good, outcomes.size());
+             failed = count(Outcome::Verdict::failed), apart = count(Outcome::Verdict::not_applicable);
+  std::string text = fmt::format("{} of {} cases hold", good, static_cast<long>(outcomes.size()) - apart);
   if (miss > 0) text += fmt::format(", <b class=\"bad\">{} {}</b>", miss, miss == 1 ? "misses" : "miss");
   if (failed > 0) text += fmt::format(", <b class=\"bad\">{} could not be run</b>", failed);
+  if (apart > 0) text += fmt::format("; {} are not applicable to this set, for the reasons given", apart);
   return text +
          ". A case holds if every number of the model lies within its tolerance. Tolerances were fixed before the "
          "cases were run, and no reference was used in a fit. A case that misses names the assumption that fails.";
@@ -228,10 +242,11 @@ std::string validation_page(const std::vector<Outcome>& outcomes, const std::vec
   std::string html = head + "<body>\n<main>\n<p class=\"kicker\">Ropewalk: " + top.kicker + "</p>\n<h1>" +
                      top.title + "</h1>\n<p class=\"lead\">" + lead(outcomes) +
                      "</p>\n<div class=\"scroll\"><table class=\"verdicts\"><thead><tr><th>Verdict</th>"
-                     "<th>Case</th><th>Tightest check</th><th>Against</th></tr></thead><tbody>\n";
+                     "<th>Case</th><th>Tube</th><th>Tightest check</th><th>Against</th></tr></thead><tbody>\n";
   for (const Outcome& o : outcomes) html += summary_row(o);
   html += "</tbody></table></div>\n" + limits_map(outcomes);
-  for (const Outcome& o : outcomes) html += case_html(o, figures);
+  for (const Outcome& o : outcomes)
+    if (o.not_applicable.empty()) html += case_html(o, figures);
   html += heading("How this page was made");
   for (const std::string& f : facts) html += paragraph(escape_markup(f));
   return html + "</main>\n</body>\n</html>\n";

@@ -1,18 +1,25 @@
 // `ropewalk validate list | run | report`.
 #include <fmt/format.h>
+#include <omp.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <cmath>
+#include <csignal>
+#include <cstring>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
-#include <numeric>
 #include <optional>
 
 #include "core/reference.hpp"
 #include "io/data_files.hpp"
 #include "io/files.hpp"
+#include "io/grade.hpp"
 #include "io/parameters_toml.hpp"
 #include "io/toml_table.hpp"
 #include "runner/runner.hpp"
@@ -39,47 +46,122 @@ std::vector<const Case*> chosen_cases(const ValidateArguments& a) {
   return chosen;
 }
 
-// Whether the given set may take the place of the named one: in theory for any tube, for atoms only for the same
-// tube.
-bool fits(const ParameterSet& given, const ParameterSet& named, Case::Group group) {
-  if (!given.line || !named.line) return false;
-  const bool same = given.chirality.n == named.chirality.n && given.chirality.m == named.chirality.m;
-  return same || group != Case::Group::atoms;
+ParameterSet shipped_set(const std::string& name) { return read_parameters(find_parameters(name, "")); }
+
+// All that the cases of one command share.
+struct Run {
+  ValidateArguments arguments;
+  std::optional<ParameterSet> given;
+  std::string key;
+  int jobs = 1;
+};
+
+// A case that is to be run: with which sets, and what it may do.
+struct Task {
+  const Case* of = nullptr;
+  std::vector<ParameterSet> sets;
+  std::string not_applicable;
+  bool make_atoms = false;
+  double seconds = 0;  // estimated, of LAMMPS
+  std::string no_atoms = "make them with --atoms";
+};
+
+// Where only the shipped sets make sense, the given one takes the place of that of its tube.
+Task task_of(const Case& c, const Run& run) {
+  Task t;
+  t.of = &c;
+  for (const std::string& name : c.sets) t.sets.push_back(shipped_set(name));
+  if (!run.given) return t;
+  try {
+    check_applicable(c, *run.given, t.sets);
+    const bool compares_sets = !c.only_these.empty() && c.group != Case::Group::atoms;
+    if (!compares_sets) t.sets = {*run.given};
+    for (ParameterSet& set : t.sets)
+      if (like(set, *run.given)) set = *run.given;
+  } catch (const NotApplicable& reason) {
+    t.not_applicable = reason.what();
+    t.sets = {*run.given};
+  }
+  return t;
 }
 
-CaseContext context_of(const Case& c, const std::optional<ParameterSet>& given, const ValidateArguments& a,
-                       const std::string& work) {
+CaseContext context_of(const Task& task, const Run& run, const std::string& work) {
   CaseContext context;
-  context.parameters = [given, group = c.group](const std::string& name) {
-    ParameterSet named = read_parameters(find_parameters(name, ""));
-    return given && fits(*given, named, group) ? *given : named;
-  };
+  context.sets = task.sets;
+  context.given = run.given.has_value();
   context.references = data_directory() + "/references";
   context.work = work;
-  context.fresh = a.fresh;
-  context.progress = [quiet = a.quiet](const std::string& line) {
-    if (!quiet) fmt::print(stderr, "    {}\n", line);
+  context.fresh = run.arguments.fresh;
+  context.make_atoms = task.make_atoms;
+  context.no_atoms = task.no_atoms;
+  context.progress = [quiet = run.arguments.quiet, name = task.of->name](const std::string& line) {
+    if (!quiet) fmt::print(stderr, "    {}: {}\n", name, line);
   };
   return context;
 }
 
-Outcome run_case(const Case& c, const std::optional<ParameterSet>& given, const ValidateArguments& a,
-                 const std::string& key) {
+// The estimated time of the LAMMPS runs that a case needs; 0 where its references exist.
+double seconds_of_missing(const Case& c, const ParameterSet& set, const CaseContext& context) {
+  const auto missing = [&](const std::string& table) { return find_reference(context, set, table).empty(); };
+  return c.lammps_seconds && std::any_of(c.tables.begin(), c.tables.end(), missing) ? c.lammps_seconds(set) : 0;
+}
+
+// Decides which references of the given set are made: in the order of the cases, as long as the budget lasts.
+void allow_atoms(std::vector<Task>& tasks, const Run& run) {
+  double sum = 0;
+  for (Task& t : tasks) {
+    if (!t.not_applicable.empty()) continue;
+    t.seconds = seconds_of_missing(*t.of, *run.given, context_of(t, run, ""));
+    const double minutes = (sum + t.seconds) / run.jobs / 60;
+    if (run.arguments.budget > 0 && minutes > run.arguments.budget) {
+      t.no_atoms = fmt::format("they take about {:.2g} min of one core, more than --budget {} leaves",
+                               t.seconds / 60, run.arguments.budget);
+      t.seconds = 0;
+      continue;
+    }
+    t.make_atoms = true;
+    sum += t.seconds;
+  }
+  if (sum > 0 && !run.arguments.quiet)
+    fmt::print(stderr, "LAMMPS makes the atoms of {}: about {:.2g} min on {} cores\n", tube_name(*run.given),
+               sum / run.jobs / 60, run.jobs);
+}
+
+std::vector<UsedSet> used_sets(const Task& task) {
+  std::vector<UsedSet> sets;
+  for (const ParameterSet& set : task.sets)
+    sets.push_back({set.name, set.hash, tube_name(set), grade_of(set).words(), registry_deviation(set)});
+  return sets;
+}
+
+void fill_tubes(Outcome& o) {
+  for (std::string& text : o.result.remarks) text = o.with_tubes(text);
+  for (CaseFigure& figure : o.result.figures) figure.caption = o.with_tubes(figure.caption);
+}
+
+Outcome outcome_of(const Task& task, const Run& run) {
   Outcome o;
-  o.name = c.name;
-  o.key = key;
-  const std::string work = (fs::path(a.out) / ("work-" + c.name)).string();
+  o.name = task.of->name;
+  o.key = run.key;
+  o.tubes = tube_names(task.sets);
+  o.sets = used_sets(task);
+  o.not_applicable = task.not_applicable;
+  if (!o.not_applicable.empty()) return o;
+  const std::string work = (fs::path(run.arguments.out) / ("work-" + o.name)).string();
   fs::remove_all(work);
   fs::create_directories(work);
   const double begin = now();
   try {
-    o.result = c.run(context_of(c, given, a, work));
+    o.result = run_case(*task.of, context_of(task, run, work));
+    fill_tubes(o);
+  } catch (const NotApplicable& reason) {
+    o.not_applicable = reason.what();
   } catch (const std::exception& e) {
     o.error = e.what();
   }
   o.result.seconds = now() - begin;
   std::error_code ignored;
-  if (!a.fresh && o.error.empty()) fs::remove_all(work, ignored);
+  if (!run.arguments.fresh && o.error.empty()) fs::remove_all(work, ignored);
   return o;
 }
 
@@ -87,39 +169,70 @@ std::string result_path(const std::string& dir, const std::string& name) {
   return (fs::path(dir) / (name + ".json")).string();
 }
 
-// Of the stored energies of two tubes of atoms that slide along each other, for several turns.
-std::string registry_words() {
-  std::string text;
-  for (const auto& [tube, name] : {std::pair{"(5,5)", "pair-sliding-5-5"}, std::pair{"(10,10)", "pair-sliding"}}) {
-    const std::string path = fmt::format("{}/references/{}.csv", data_directory(), name);
-    if (!fs::exists(path)) continue;
-    const std::vector<double> energy = read_reference(path).column("energy_eV_per_nm");
-    const double n = static_cast<double>(energy.size()),
-                 mean = std::accumulate(energy.begin(), energy.end(), 0.0) / n;
-    double squares = 0;
-    for (const double e : energy) squares += (e - mean) * (e - mean) / n;
-    text += fmt::format("{}{:.2g} % of the well for {}", text.empty() ? "" : " and ",
-                        100 * std::sqrt(squares) / std::fabs(mean), tube);
-  }
-  if (text.empty()) return text;
-  return "Error bar of every result that contact makes: the model leaves out registry, how the lattices of two "
-         "tubes lie "
-         "on one another. Over turns and shifts of atoms the energy of two tubes side by side has a standard "
-         "deviation "
-         "of " +
-         text +
-         " (pair-sliding.csv, pair-sliding-5-5.csv). Twisting energies of ropes of seven tubes move by it as the "
-         "rows "
-         "\"registry over twisting energy\" of their cases say, most at small angles.";
+void store(const Outcome& o, const Run& run) {
+  write_file_atomically(result_path(run.arguments.out, o.name), outcome_json(o));
 }
 
-std::vector<std::string> facts() {
-  std::vector<std::string> out = {
-      registry_words(),
+// Runs the task in a process of its own, which leaves the result in its file: cases share nothing, and one that
+// dies takes no other with it.
+pid_t start(const Task& task, const Run& run) {
+  std::fflush(nullptr);
+  const pid_t parent = getpid(), child = fork();
+  if (child < 0) throw std::runtime_error(fmt::format("no process can be started: {}", std::strerror(errno)));
+  if (child > 0) return child;
+  prctl(PR_SET_PDEATHSIG, SIGTERM);
+  if (getppid() != parent) _exit(3);
+  omp_set_num_threads(std::max(1, omp_get_num_procs() / run.jobs));
+  int code = 0;
+  try {
+    store(outcome_of(task, run), run);
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "ropewalk validate: {}: {}\n", task.of->name, e.what());
+    code = 3;
+  }
+  std::fflush(nullptr);
+  _exit(code);
+}
+
+// A result with the run's key that is not one of a failure.
+bool finished(const Task& task, const Run& run) {
+  const std::string path = result_path(run.arguments.out, task.of->name);
+  if (run.arguments.again || !fs::exists(path)) return false;
+  const Outcome o = read_outcome(path);
+  // What was not applicable may have become so.
+  return o.key == run.key && o.error.empty() && o.not_applicable.empty();
+}
+
+void report_of_death(const Task& task, const Run& run, int status) {
+  Outcome o;
+  o.name = task.of->name;
+  o.key = run.key;
+  o.tubes = tube_names(task.sets);
+  o.sets = used_sets(task);
+  o.error = WIFSIGNALED(status) ? fmt::format("its process was ended by signal {}", WTERMSIG(status))
+                                : "its result could not be written";
+  store(o, run);
+}
+
+// What the sets of these results are worth.
+std::vector<std::string> facts(const std::vector<Outcome>& outcomes) {
+  std::map<std::string, UsedSet> sets;
+  for (const Outcome& o : outcomes)
+    for (const UsedSet& set : o.sets) sets[set.hash] = set;
+  std::string of_sets;
+  for (const auto& [hash, set] : sets)
+    of_sets += fmt::format(
+        "{}{}, {} (hash {}): {}{}", of_sets.empty() ? "Sets: " : "; ", set.name, set.tube, hash, set.grade,
+        set.registry >= 0 ? fmt::format("; registry {:.2g} % of the well", 100 * set.registry) : "");
+  return {
+      of_sets + ".",
+      "Registry is how the lattices of two tubes lie on one another. The model leaves it out. It is an error bar "
+      "of "
+      "every result that contact makes: over turns and shifts of the atoms, the energy of two tubes side by side "
+      "has the standard deviation that stands with its set. Twisting energies of ropes of seven tubes move by it "
+      "as the rows \"registry over twisting energy\" of their cases say, most at small angles.",
       fmt::format("Ropewalk {} ({}), {}, {}. Every run gives the same numbers, apart from the times.", version,
                   git_id, compiler, build_type)};
-  if (out.front().empty()) out.erase(out.begin());
-  return out;
 }
 
 // All results in the directory, in the order of all_cases().
@@ -131,7 +244,7 @@ std::vector<Outcome> outcomes_in(const std::string& dir) {
 }
 
 void write_reports(const std::string& dir, const std::vector<Outcome>& outcomes) {
-  write_file_atomically(dir + "/report.html", validation_page(outcomes, facts()));
+  write_file_atomically(dir + "/report.html", validation_page(outcomes, facts(outcomes)));
   write_file_atomically(dir + "/report.json", validation_json(outcomes));
 }
 
@@ -143,6 +256,41 @@ void make_directory(const std::string& dir) {
   if (error)
     throw InputError({dir, 0, "--out"}, fmt::format("cannot be created: {}", error.message()),
                      "choose a directory that you may write to");
+}
+
+void run_all(const std::vector<Task>& tasks, const Run& run) {
+  const bool quiet = run.arguments.quiet;
+  std::map<pid_t, const Task*> at_work;
+  std::size_t done = 0;
+  const auto wait_for_one = [&] {
+    int status = 0;
+    const pid_t child = waitpid(-1, &status, 0);
+    const auto at = at_work.find(child);
+    if (at == at_work.end()) return;
+    if (status != 0) report_of_death(*at->second, run, status);
+    at_work.erase(at);
+    ++done;
+    write_reports(run.arguments.out, outcomes_in(run.arguments.out));
+  };
+  for (const Task& task : tasks) {
+    const bool kept = finished(task, run);
+    while (at_work.size() >= static_cast<std::size_t>(run.jobs)) wait_for_one();
+    if (!quiet)
+      fmt::print(stderr, "{}/{} {}{}\n", done + at_work.size() + 1, tasks.size(), task.of->name,
+                 kept                           ? ": kept"
+                 : !task.not_applicable.empty() ? ": not applicable"
+                 : task.make_atoms && task.seconds > 0
+                     ? fmt::format(": about {:.2g} min of LAMMPS", task.seconds / 60)
+                     : "");
+    if (kept || !task.not_applicable.empty()) {
+      if (!kept) store(outcome_of(task, run), run);
+      ++done;
+      continue;
+    }
+    at_work.emplace(start(task, run), &task);
+  }
+  while (!at_work.empty()) wait_for_one();
+  write_reports(run.arguments.out, outcomes_in(run.arguments.out));
 }
 
 int exit_code(const std::vector<Outcome>& outcomes) {
@@ -201,38 +349,38 @@ int list_command(const ListArguments& a) {
   return 0;
 }
 
-int validate_command(const ValidateArguments& a) {
+std::vector<Outcome> run_cases(const ValidateArguments& a) {
+  Run run;
+  run.arguments = a;
+  if (!a.parameters.empty()) run.given = read_parameters(find_parameters(a.parameters, ""));
+  if (a.atoms && !run.given)
+    throw InputError({"", 0, "--atoms"}, "makes atoms of the set of --parameters, and none is given",
+                     "add --parameters SET, or make references of shipped sets anew with --fresh");
+  if (a.budget > 0 && !a.atoms)
+    throw InputError({"", 0, "--budget"}, "limits what --atoms makes, which is not there", "add --atoms");
   const std::vector<const Case*> cases = chosen_cases(a);
-  std::optional<ParameterSet> given;
-  if (!a.parameters.empty()) given = read_parameters(find_parameters(a.parameters, ""));
   make_directory(a.out);
-  const std::string key =
-      fmt::format("{} {} {}", git_id, given ? given->hash : "shipped", a.fresh ? "fresh" : "stored");
-  std::vector<Outcome> run;
-  const double begin = now();
-  std::size_t done = 0;
-  for (const Case* c : cases) {
-    const std::string path = result_path(a.out, c->name);
-    const bool kept =
-        !a.again && fs::exists(path) && read_outcome(path).key == key && read_outcome(path).error.empty();
-    if (!a.quiet) {
-      const double left =
-          done > 0 ? (now() - begin) / static_cast<double>(done) * static_cast<double>(cases.size() - done) : 0;
-      fmt::print(stderr, "{}/{} {}{}{}\n", run.size() + 1, cases.size(), c->name, kept ? ": kept" : "",
-                 left > 5 ? fmt::format(", about {:.0f} s left", left) : "");
-    }
-    Outcome o = kept ? read_outcome(path) : run_case(*c, given, a, key);
-    if (!kept) write_file_atomically(path, outcome_json(o));
-    run.push_back(std::move(o));
-    ++done;
-    write_reports(a.out, outcomes_in(a.out));
-  }
+  run.key = fmt::format("{} {} {}", git_id, run.given ? run.given->hash : "shipped", a.fresh ? "fresh" : "stored");
+  run.jobs = a.jobs > 0 ? a.jobs : omp_get_num_procs();
+  std::vector<Task> tasks;
+  for (const Case* c : cases) tasks.push_back(task_of(*c, run));
+  if (a.atoms) allow_atoms(tasks, run);
+  // The longest first, so that none is left over at the end.
+  std::stable_sort(tasks.begin(), tasks.end(), [](const Task& x, const Task& y) { return x.seconds > y.seconds; });
+  run_all(tasks, run);
+  std::vector<Outcome> outcomes;
+  for (const Case* c : cases) outcomes.push_back(read_outcome(result_path(a.out, c->name)));
+  return outcomes;
+}
+
+int validate_command(const ValidateArguments& a) {
+  const std::vector<Outcome> outcomes = run_cases(a);
   if (a.json) {
-    fmt::print("{}", validation_json(run));
+    fmt::print("{}", validation_json(outcomes));
   } else {
-    fmt::print("{}Report: {}/report.html\n", validation_table(run), a.out);
+    fmt::print("{}Report: {}/report.html\n", validation_table(outcomes), a.out);
   }
-  return exit_code(run);
+  return exit_code(outcomes);
 }
 
 int validation_report_command(const ReportArguments& a) {

@@ -8,6 +8,8 @@
 
 namespace ropewalk {
 
+struct Outcome;
+
 struct ListArguments {
   bool json = false;
 };
@@ -15,15 +17,21 @@ int list_command(const ListArguments& arguments);
 
 struct ValidateArguments {
   std::vector<std::string> cases;  // empty: all of the tier
-  std::string tier = "quick";      // "full" includes the quick ones
+  std::string tier = "full";       // "quick": without ropes and bundles
   bool stability = false;          // the group `stability` instead of the others
-  std::string parameters;          // a set that takes the place of the shipped ones where the case allows it
+  std::string parameters;          // a set that takes the place of the shipped ones
+  bool atoms = false;              // make references of the given set that are missing, with LAMMPS
+  double budget = 0;               // minutes that these may take; 0: any
+  int jobs = 0;                    // cases at a time; 0: one for each core
   std::string out = "validation";
   bool fresh = false;
   bool again = false;  // run cases again whose results lie in the directory
   bool json = false;
   bool quiet = false;
 };
+// What `validate run` does without its output: runs the cases that have no result in a.out yet and writes results
+// and reports. Throws InputError.
+std::vector<Outcome> run_cases(const ValidateArguments& arguments);
 int validate_command(const ValidateArguments& arguments);
 
 struct ReportArguments {
@@ -33,14 +41,26 @@ int validation_report_command(const ReportArguments& arguments);
 
 // --- Results of cases, and the reports made from them ---
 
+// A parameter set that a case was run with.
+struct UsedSet {
+  std::string name, hash, tube;
+  std::string grade;  // how far it stands for its tube, in words
+  double registry =
+      -1;  // standard deviation of the energy of two real tubes over all registries; negative: not known
+};
+
 struct Outcome {
   std::string name;
+  std::vector<UsedSet> sets;
+  std::string tubes;  // "(5,5) and (10,10)"
   CaseResult result;
-  std::string error;  // why the case could not be run; empty otherwise
-  std::string key;    // version, set and references it was run with; a result with another key is stale
+  std::string error;           // why the case could not be run; empty otherwise
+  std::string not_applicable;  // why the case is none of this set; empty otherwise
+  std::string key;             // version, set and references it was run with; a result with another key is stale
 
-  enum class Verdict { holds, misses, failed };
+  enum class Verdict { holds, misses, failed, not_applicable };
   Verdict verdict() const;
+  std::string with_tubes(std::string text) const;  // {tube} replaced
 };
 
 std::string outcome_json(const Outcome& outcome);

@@ -1,5 +1,5 @@
-// docs/how-to/contact-law.md builds this example: a Lennard-Jones law between the centres of elements, which a scene
-// chooses by [contact] law = "beads".
+// docs/how-to/contact-law.md builds this example: a Lennard-Jones law between the centres of elements, which a
+// scene chooses by [contact] law = "beads".
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <omp.h>

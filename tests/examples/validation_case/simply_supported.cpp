@@ -8,7 +8,6 @@
 namespace ropewalk {
 namespace {
 
-constexpr const char* set_name = "cnt-10-10-tersoff";
 constexpr int bonds = 20;
 constexpr double force = 1e-2;  // eV/nm
 
@@ -25,7 +24,7 @@ std::vector<double> deflections(const ParameterSet& model) {
 }
 
 CaseResult run(const CaseContext& context) {
-  const ParameterSet model = context.model(set_name), oracle = context.parameters(set_name);
+  const ParameterSet model = context.model(), oracle = context.set();
   const double length = bonds * oracle.element_length;
   const auto beam = [&](double z) {
     const double x = std::min(z, length - z);  // from the nearer support
@@ -49,7 +48,7 @@ CaseResult run(const CaseContext& context) {
   figure.caption = "The force acts in the middle; the ends are held across the tube and turn freely.";
   result.figures = {figure};
   result.remarks = {"Shear adds 12 EI/(kGA L^2) times the deflection of the Euler-Bernoulli beam."};
-  result.sources = {set_name};
+  result.sources = {context.tube().source};
   return result;
 }
 
@@ -58,6 +57,7 @@ const RegisteredCase registered([] {
   c.name = "simply-supported";
   c.group = Case::Group::theory;
   c.order = 15;  // after stretch-and-cantilever
+  c.law = Case::Law::none;
   c.title = "Deflection of a tube on two supports";
   c.why = "A tube of a rope rests on its neighbours and bends where they leave a gap.";
   c.setup =

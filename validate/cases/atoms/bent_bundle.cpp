@@ -33,7 +33,6 @@ constexpr double fresh_tolerance = 0.01;  // of the range of each column: what t
 constexpr double pair_fresh_tolerance = 0.001;
 
 constexpr int tubes = 7, contacts = 12;
-constexpr ValidatedTube tube = tube_5_5;
 constexpr int turns = 4, shifts = 24, periods = 5;  // of the pair that measures the corrugation
 
 constexpr double force_tolerance = 5e-3;  // eV/nm
@@ -56,7 +55,6 @@ constexpr Grips sliding{"free", false, 4 * units::degree, 6, 6};
 TwistedRope bundle() {
   TwistedRope b;
   b.name = "bent-bundle";
-  b.parameters = tube.set;
   b.free_rows = 64;
   b.band_rows = 8;
   b.bonds = 13;
@@ -144,10 +142,9 @@ std::string bending_input(const Grips& grips, const ParameterSet& set, const MdS
          relax(iterations) + "next count\njump SELF next_increment\n";
 }
 
-ReferenceTable bend_atoms(const CaseContext& context) {
-  const ParameterSet set = context.parameters(tube.set);
+ReferenceTable bend_atoms(const CaseContext& context, const ParameterSet& set) {
   const std::vector<RopeTube> atoms = rope_atoms(bundle(), set);
-  MdSession session(context);
+  MdSession session(context, set);
   session.write("bundle.data", rope_data(atoms));
   std::vector<std::vector<double>> rows;
   for (const Grips& grips : {glued, sliding}) {
@@ -164,10 +161,9 @@ ReferenceTable bend_atoms(const CaseContext& context) {
 }
 
 // Frozen pairs in a periodic cell, slid over one period, for several turns.
-ReferenceTable slide_pairs(const CaseContext& context) {
-  const ParameterSet set = context.parameters(tube.set);
-  const Chirality c = tube.chirality;
-  MdSession session(context);
+ReferenceTable slide_pairs(const CaseContext& context, const ParameterSet& set) {
+  const Chirality c = set.chirality;
+  MdSession session(context, set);
   const TubeShape shape{set.radius, row_distance(set) / c.n, 0, 0, 0};
   const double period = period_of(c, shape), turn = 2 * units::pi / c.n;
   std::string input = "# frozen tubes slid along each other, for several turns\n";
@@ -420,11 +416,11 @@ CaseFigure residual_figure(const std::vector<Series>& all) {
 
 CaseResult run(const CaseContext& context) {
   CaseResult result;
+  const ParameterSet set = context.set(), model = context.model();
   const ReferenceTable table = reference(
-      context, "bent-bundle", fresh_tolerance, [&] { return bend_atoms(context); }, result);
+      context, set, "bent-bundle", fresh_tolerance, [&] { return bend_atoms(context, set); }, result);
   const ReferenceTable pairs = reference(
-      context, "pair-sliding-5-5", pair_fresh_tolerance, [&] { return slide_pairs(context); }, result);
-  const ParameterSet set = context.parameters(tube.set), model = context.model(tube.set);
+      context, set, "pair-slide", pair_fresh_tolerance, [&] { return slide_pairs(context, set); }, result);
   const Bounds bounds = bounds_of(set);
   // From a valley of the corrugation to its mean, in every contact over its whole length.
   const double registry = 0.5 * contacts * corrugation_of(pairs) * whole_length(set);
@@ -451,7 +447,7 @@ CaseResult run(const CaseContext& context) {
       "24 degrees the curvature of the middle tube at the clamps is twice that at which a tube has lost 1 % of its "
       "stiffness. The length of the elements changes the result by 0.2 %. The sliding tubes of atoms are not "
       "entirely at rest: the last hundred iterations of an increment still lower the energy by 2 to 16 meV."};
-  result.sources.push_back(fmt::format("{} (hash {})", model.name, model.hash));
+  result.sources.push_back(context.tube().source);
   return result;
 }
 
@@ -460,6 +456,9 @@ const RegisteredCase registered([] {
   c.name = "bent-bundle";
   c.group = Case::Group::atoms;
   c.order = 100;
+  c.tier = Case::Tier::full;
+  c.sets = {"cnt-5-5-tersoff"};
+  c.only_these = "it compares with stored atoms of (5,5), twenty minutes of LAMMPS";
   c.title = "Bent 7-tube bundle of (5,5), 8.1 nm: tubes that slide, and tubes that cannot";
   c.why =
       "A rope of seven tubes that slide is eight times softer in bending than one of tubes that cannot. In the "

@@ -17,8 +17,8 @@ namespace {
 
 // Fixed beforehand.
 constexpr double energy_tolerance = 0.03, torque_tolerance = 0.05, spacing_tolerance = 0.005;
-constexpr ValidatedTube tube = tube_10_10;
-constexpr int periods = 48, registry_count = 48;                                         // tubes of 12 nm
+constexpr double tube_length = 12;  // nm
+constexpr int registry_count = 48;
 constexpr double angles[] = {30, 45, 60, 75, 90};                                        // degrees
 constexpr double offsets[] = {-0.04, -0.02, 0, 0.02, 0.04, 0.07, 0.12, 0.2, 0.35, 0.6};  // nm from the rest at 90
 constexpr double fit_reach = 0.04;
@@ -33,12 +33,12 @@ std::vector<Vector3> crossing_tube(const std::vector<Vector3>& atoms, double ang
   return turned;
 }
 
-// Centred, and shifted by a part of a period so that the crossing is at another place of the lattice.
-std::vector<Vector3> centred_tube(const TubeShape& shape, double turn, double shift) {
-  const Chirality c = tube.chirality;
-  const double period = period_of(c, shape);
-  std::vector<Vector3> atoms = tube_atoms(c, shape, periods * period_hexagons(c), 2 * units::pi * turn / c.n);
-  for (Vector3& atom : atoms) atom.z() += (shift - 0.5 * periods) * period;
+// Centred, and shifted by a part of a row so that the crossing is at another place of the lattice.
+std::vector<Vector3> centred_tube(Chirality c, const TubeShape& shape, long hexagons, double turn, double shift) {
+  std::vector<Vector3> atoms =
+      tube_atoms(c, shape, hexagons, 2 * units::pi * turn / static_cast<double>(row_hexagons(c)));
+  const double up = shift * row_height(c, shape) - 0.5 * static_cast<double>(hexagons) * shape.length_per_hexagon;
+  for (Vector3& atom : atoms) atom.z() += up;
   return atoms;
 }
 
@@ -64,11 +64,12 @@ std::string crossing_input(const AtomLaw& law, const std::string& data, double r
   return input;
 }
 
-ReferenceTable make_reference(const CaseContext& context) {
-  MdSession session(context);
-  const Chirality c = tube.chirality;
-  const TubeShape shape = session.relaxed(c).shape;
-  const double length = periods * period_of(c, shape);
+ReferenceTable make_reference(const CaseContext& context, const ParameterSet& set) {
+  MdSession session(context, set);
+  const Chirality c = set.chirality;
+  const TubeShape shape = session.rest_shape();
+  const long hexagons = hexagons_in(c, shape, tube_length);
+  const double length = static_cast<double>(hexagons) * shape.length_per_hexagon;
   const Shell shell{shape.radius, 2 / (2 * units::pi * shape.radius * shape.length_per_hexagon)};
   const double rest = crossed_well(session.atom_law(), shell, shell, units::pi / 2).distance;
   std::string input = "# frozen crossed tubes at several angles and distances, for several registries\n";
@@ -76,15 +77,16 @@ ReferenceTable make_reference(const CaseContext& context) {
   for (const double angle : angles)
     for (const Registry& r : registries(registry_count)) {
       const std::string data = fmt::format("crossed-{}.data", number++);
-      const std::vector<Vector3> two =
-          crossing_tube(centred_tube(shape, r.turn_j, r.shift_j), (angle - angle_step) * units::degree);
-      session.write(data, pair_data(centred_tube(shape, r.turn_i, r.shift_i), two, 0.5 * length + 2,
+      const std::vector<Vector3> two = crossing_tube(centred_tube(c, shape, hexagons, r.turn_j, r.shift_j),
+                                                     (angle - angle_step) * units::degree);
+      session.write(data, pair_data(centred_tube(c, shape, hexagons, r.turn_i, r.shift_i), two, 0.5 * length + 2,
                                     -0.5 * length - 1, 0.5 * length + 1));
       input += crossing_input(session.atom_law(), data, rest);
     }
   const std::size_t count = std::size(offsets), all = std::size(angles);
   const auto results = session.run("crossed", input, all * registry_count * sides * count, 2);
-  ReferenceTable t = session.table("Energy and torque of two frozen crossed (10,10) tubes", "crossed-tubes", true,
+  ReferenceTable t = session.table(fmt::format("Energy and torque of two frozen crossed {} tubes", tube_name(set)),
+                                   "crossed-tubes", true,
                                    {"angle_deg", "distance_nm", "energy_eV", "registry_deviation_eV",
                                     "torque_eV_per_rad", "torque_of_forces_eV_per_rad", "length_nm"});
   t.add("registries", fmt::format("{}, averaged at each angle and distance", registry_count));
@@ -228,9 +230,10 @@ CaseFigure residual_figure(const std::vector<Crossing>& list, const CrossedRows&
 
 CaseResult run(const CaseContext& context) {
   CaseResult result;
+  const CaseTube tube = context.tube();
   const ReferenceTable data = reference(
-      context, "crossed-tubes", 0.001, [&] { return make_reference(context); }, result);
-  const ParameterSet set = context.model(tube.set);
+      context, tube.set, "crossed-tubes", 0.001, [&] { return make_reference(context, tube.set); }, result);
+  const ParameterSet& set = tube.model;
   const double length = data.column("length_nm").front();
   CrossedRows rows;
   rows.elements = static_cast<int>(std::lround(length / set.element_length));
@@ -241,7 +244,7 @@ CaseResult run(const CaseContext& context) {
   result.figures.push_back(angle_figure(list, rows, true));
   result.figures.push_back(distance_figure(list, rows));
   result.figures.push_back(residual_figure(list, rows));
-  result.sources.push_back(fmt::format("{} (hash {})", set.name, set.hash));
+  result.sources.push_back(tube.source);
   result.remarks.push_back(
       "The law was made from two parallel tubes; no crossing was fitted. By the theorem behind the line law, "
       "energy and torque at every angle follow. This case tests the theorem with atoms.");
@@ -258,15 +261,19 @@ const RegisteredCase registered([] {
   c.name = "crossed-tubes";
   c.group = Case::Group::atoms;
   c.order = 60;
+  c.tier = Case::Tier::full;
+  c.tables = {"crossed-tubes"};
+  c.lammps_seconds = [](const ParameterSet& set) { return 0.6 * set.atoms_per_length; };
   c.title = "Two crossed tubes: energy and torque against angle";
   c.why =
       "Tubes of neighbouring shells of a twisted rope cross at small angles; tubes of a helix or beside a void "
       "cross at large ones.";
   c.setup =
-      "Relaxed, frozen (10,10) tubes of 12 nm that cross at 30 to 90 degrees, at ten distances, averaged over "
+      "Relaxed, frozen {tube} tubes of 12 nm that cross at 30 to 90 degrees, at ten distances, averaged over "
       "registries; rows of elements of the model in the same place.";
   c.oracle =
-      "Lennard-Jones of LAMMPS, 2.84 meV, 0.34 nm, cut at 1.2 nm as in the set; for shells without atoms E = "
+      "Lennard-Jones of LAMMPS, as in the set (2.84 meV, 0.34 nm, cut at 1.2 nm in the shipped ones); for shells "
+      "without atoms E = "
       "E90/sin(angle). Energy within 3 % (registry), torque within 5 %, distance of the minimum within 0.5 %.";
   c.literature = "A. N. Volkov, L. V. Zhigilei, J. Phys. Chem. C 114, 5513 (2010), DOI 10.1021/jp906142h";
   c.run = run;

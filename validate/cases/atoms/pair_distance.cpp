@@ -4,8 +4,8 @@
 // rows of elements with the `line` law; the `paper` law is shown for comparison.
 #include <fmt/format.h>
 
-#include <array>
 #include <cmath>
+#include <numeric>
 
 #include "cases/common/tube_curve.hpp"
 #include "cases/common/tube_pair.hpp"
@@ -16,14 +16,8 @@ namespace {
 // Fixed beforehand: registry changes the well by 1 to 3 %, and a shell without atoms has none.
 constexpr double spacing_tolerance = 0.005, depth_tolerance = 0.03;
 constexpr int registry_count = 16;
-constexpr int periods = 5;          // of the cell: 1.25 nm
+constexpr double piece = 1.2;       // nm, least length of the piece of one tube beside the other
 constexpr double fit_reach = 0.03;  // nm about the minimum
-
-struct TubePair {
-  ValidatedTube i, j;
-  std::string name() const { return std::string(i.name) + "-" + j.name; }
-};
-constexpr std::array<TubePair, 3> pairs{{{tube_10_10, tube_10_10}, {tube_5_5, tube_5_5}, {tube_10_10, tube_5_5}}};
 
 std::vector<double> gaps() {
   std::vector<double> list;
@@ -33,58 +27,54 @@ std::vector<double> gaps() {
   return list;
 }
 
-// Rows of one pair: n_i, n_j, distance, mean over the registries, standard deviation over them.
-void add_rows(const TubePair& pair, const TubeShape& i, TubeShape j, MdSession& session,
-              std::vector<std::vector<double>>& rows) {
-  const Chirality ci = pair.i.chirality, cj = pair.j.chirality;
-  // Armchair tubes have one period. That of the relaxed ones differs by less than 0.1 %; the second is strained to
-  // it.
-  const double period = period_of(ci, i);
-  j.length_per_hexagon = period / static_cast<double>(period_hexagons(cj));
-  const std::string name = fmt::format("distance-{}-{}", ci.n, cj.n);
+// The atoms of so many rows, turned and shifted by parts of the symmetry, with their middle at z = 0.
+std::vector<Vector3> centred_tube(Chirality c, const TubeShape& shape, long hexagons, double turn, double shift) {
+  std::vector<Vector3> atoms = tube_atoms(c, shape, hexagons, 2 * units::pi * turn / std::gcd(c.n, c.m));
+  const double up = shift * row_height(c, shape) - 0.5 * static_cast<double>(hexagons) * shape.length_per_hexagon;
+  for (Vector3& atom : atoms) atom.z() += up;
+  return atoms;
+}
+
+// A piece of i, of whole periods, beside a j that reaches beyond it by more than the cutoff: tubes of different
+// periods need no common one.
+ReferenceTable make_reference(const CaseContext& context, const ParameterSet& i, const ParameterSet& j,
+                              const std::string& command) {
+  MdSession session(context, i), session_j(context, j);
+  const Chirality ci = i.chirality, cj = j.chirality;
+  const TubeShape one = session.rest_shape(), two = session_j.rest_shape();
+  const long hexagons = period_hexagons(ci) * static_cast<long>(std::ceil(piece / period_of(ci, one)));
+  const double length = static_cast<double>(hexagons) * one.length_per_hexagon;
+  const double reach = length + 2 * (session.atom_law().cutoff + 0.5);
   const std::vector<double> list = gaps();
   std::string input = "# frozen tubes at many distances, for several registries\n";
   int number = 0;
   for (const Registry& r : registries(registry_count)) {
-    std::vector<Vector3> two = tube_atoms(cj, j, periods * period_hexagons(cj), 2 * units::pi * r.turn_j / cj.n);
-    for (Vector3& atom : two) atom.z() = std::fmod(atom.z() + r.shift_j * period, periods * period);
-    const std::string data = fmt::format("{}-{}.data", name, number++);
-    session.write(data, pair_data(tube_atoms(ci, i, periods * period_hexagons(ci), 2 * units::pi * r.turn_i / ci.n),
-                                  two, 4, 0, periods * period));
-    input += pair_commands(session.atom_law(), "s s p", data);
+    const std::string data = fmt::format("distance-{}.data", number++);
+    session.write(
+        data, pair_data(centred_tube(ci, one, hexagons, r.turn_i, r.shift_i),
+                        centred_tube(cj, two, hexagons_in(cj, two, reach), r.turn_j, r.shift_j), 4, -reach, reach));
+    input += pair_commands(session.atom_law(), "s s s", data);
     double last = 0;
     for (const double gap : list) {
-      const double distance = i.radius + j.radius + gap;
-      input += move_two({distance - last, 0, 0}) + print_values(name, "$(pe:%.15g)");
+      const double distance = one.radius + two.radius + gap;
+      input += move_two({distance - last, 0, 0}) + print_values("distance", "$(pe:%.15g)");
       last = distance;
     }
   }
-  const auto results = session.run(name, input, list.size() * registry_count, 1);
+  const auto results = session.run("distance", input, list.size() * registry_count, 1);
+  ReferenceTable t = session.table(
+      fmt::format("Energy of two frozen parallel tubes {} and {} against distance", tube_name(i), tube_name(j)),
+      command, true, {"distance_nm", "energy_eV_per_nm", "registry_deviation_eV_per_nm"});
+  t.add("registries", fmt::format("{}, averaged at each distance", registry_count));
   for (std::size_t k = 0; k < list.size(); ++k) {
     double sum = 0, squares = 0;
     for (std::size_t r = 0; r < registry_count; ++r) {
-      const double energy = results[r * list.size() + k][0] / (periods * period);
+      const double energy = results[r * list.size() + k][0] / length;
       sum += energy / registry_count;
       squares += energy * energy / registry_count;
     }
-    rows.push_back({double(ci.n), double(cj.n), i.radius + j.radius + list[k], sum,
-                    std::sqrt(std::max(0.0, squares - sum * sum))});
+    t.rows.push_back({one.radius + two.radius + list[k], sum, std::sqrt(std::max(0.0, squares - sum * sum))});
   }
-}
-
-ReferenceTable make_reference(const CaseContext& context) {
-  MdSession session(context);
-  const TubeShape wide = session.relaxed(tube_10_10.chirality).shape;
-  const TubeShape narrow = session.relaxed(tube_5_5.chirality).shape;
-  std::vector<std::vector<double>> rows;
-  for (const TubePair& pair : pairs)
-    add_rows(pair, pair.i.chirality.n == 10 ? wide : narrow, pair.j.chirality.n == 10 ? wide : narrow, session,
-             rows);
-  ReferenceTable t =
-      session.table("Energy of two frozen parallel tubes (n,n) against distance", "pair-distance", true,
-                    {"n_i", "n_j", "distance_nm", "energy_eV_per_nm", "registry_deviation_eV_per_nm"});
-  t.add("registries", fmt::format("{}, averaged at each distance", registry_count));
-  t.rows = rows;
   return t;
 }
 
@@ -94,18 +84,18 @@ struct PairCurve {
   std::function<double(double)> model;
 };
 
-PairCurve curve_of(const TubePair& pair, const ReferenceTable& data, const CaseContext& context) {
+PairCurve curve_of(const CaseTube& i, const CaseTube& j, const CaseContext& context, CaseResult& result) {
+  const std::string name = "pair-distance" + (i.set.name == j.set.name ? "" : "-with-" + j.set.name);
+  const ReferenceTable data = reference(
+      context, i.set, name, 0.001, [&] { return make_reference(context, i.set, j.set, "pair-distance"); }, result);
   PairCurve c;
-  c.name = pair.name();
-  for (const std::vector<double>& row : data.rows) {
-    if (row[0] != pair.i.chirality.n || row[1] != pair.j.chirality.n) continue;
-    c.distance.push_back(row[2]);
-    c.atoms.push_back(row[3]);
-    c.deviation.push_back(row[4]);
-  }
-  const ParameterSet i = context.model(pair.i.set), j = context.model(pair.j.set);
-  const LineContact contact = contact_of(i, j, i.element_length);
-  c.model = [contact](double distance) { return parallel_rows(contact, distance); };
+  c.name = i.name + "-" + j.name;
+  c.distance = data.column("distance_nm");
+  c.atoms = data.column("energy_eV_per_nm");
+  c.deviation = data.column("registry_deviation_eV_per_nm");
+  c.model = [contact = contact_of(i.model, j.model, i.set.element_length)](double distance) {
+    return parallel_rows(contact, distance);
+  };
   return c;
 }
 
@@ -123,7 +113,7 @@ void add_checks(const PairCurve& c, const LineWell& atoms, CaseResult& result) {
                            "how far one placement of the atoms is from the mean; the model has no registry"});
 }
 
-CaseFigure energy_figure(const std::vector<PairCurve>& curves, const std::function<double(double)>& paper) {
+CaseFigure energy_figure(const std::vector<PairCurve>& curves) {
   LineChart chart;
   chart.title = "Energy of two parallel tubes against distance";
   chart.x = {"distance of the axes", "nm"};
@@ -143,7 +133,18 @@ CaseFigure energy_figure(const std::vector<PairCurve>& curves, const std::functi
     chart.lines.push_back(model);
     chart.lines.push_back(atoms);
   }
-  ChartLine line{"(10,10)-(10,10) paper law", {}, {}, colour};
+  return {chart, "Points: atoms, mean over registries. Lines: rows of elements with the line law."};
+}
+
+// The published law beside the atoms of its tube: binds about twice as strongly.
+void add_published(const ParameterSet& published, const LineWell& atoms, LineChart& chart, CaseResult& result) {
+  const auto paper = [&](double distance) {
+    return paper_parallel_energy(*published.paper, published.element_length, distance);
+  };
+  const LineWell well = detail::lowest_point(paper, 1.6, 2.6);
+  result.checks.push_back({"(10,10) paper law: cohesion over that of the atoms", well.energy / atoms.energy, 1,
+                           depth_tolerance, true, "1", true, "the published law binds about twice as strongly"});
+  ChartLine line{"(10,10)-(10,10) paper law", {}, {}, static_cast<int>(chart.lines.size() / 2)};
   line.dashed = true;
   for (double x = 1.6; x < 2.6; x += 0.004) {
     const double y = paper(x);
@@ -151,9 +152,6 @@ CaseFigure energy_figure(const std::vector<PairCurve>& curves, const std::functi
     line.y.push_back(y > 0.6 ? std::nan("") : y);
   }
   chart.lines.push_back(line);
-  return {chart,
-          "Points: atoms, mean over registries. Lines: rows of elements with the line law. Dashed: the published "
-          "law, whose well is about twice as deep."};
 }
 
 CaseFigure residual_figure(const std::vector<PairCurve>& curves, const std::vector<LineWell>& wells) {
@@ -180,30 +178,23 @@ CaseFigure residual_figure(const std::vector<PairCurve>& curves, const std::vect
 
 CaseResult run(const CaseContext& context) {
   CaseResult result;
-  const ReferenceTable data = reference(
-      context, "pair-distance", 0.001, [&] { return make_reference(context); }, result);
+  std::vector<CaseTube> tubes = context.tubes();
+  if (!context.given) tubes.pop_back();  // the published set
   std::vector<PairCurve> curves;
   std::vector<LineWell> wells;
-  for (const TubePair& pair : pairs) {
-    curves.push_back(curve_of(pair, data, context));
-    wells.push_back(lowest_of(curves.back().distance, curves.back().atoms, fit_reach));
-    add_checks(curves.back(), wells.back(), result);
-  }
-  const ParameterSet published = context.model("cnt-10-10-paper");
-  const auto paper = [&](double distance) {
-    return paper_parallel_energy(*published.paper, published.element_length, distance);
-  };
-  const LineWell paper_well = detail::lowest_point(paper, 1.6, 2.6);
-  result.checks.push_back({"(10,10) paper law: cohesion over that of the atoms",
-                           paper_well.energy / wells[0].energy, 1, depth_tolerance, true, "1", true,
-                           "the published law binds about twice as strongly"});
-  result.figures.push_back(energy_figure(curves, paper));
+  for (std::size_t i = 0; i < tubes.size(); ++i)
+    for (std::size_t j = i; j < tubes.size(); ++j) {
+      curves.push_back(curve_of(tubes[i], tubes[j], context, result));
+      wells.push_back(lowest_of(curves.back().distance, curves.back().atoms, fit_reach));
+      add_checks(curves.back(), wells.back(), result);
+    }
+  result.figures.push_back(energy_figure(curves));
+  if (!context.given)
+    add_published(context.model(context.sets.size() - 1), wells[0], result.figures.back().chart, result);
   result.figures.push_back(residual_figure(curves, wells));
-  for (const char* set : {tube_10_10.set, tube_5_5.set, "cnt-10-10-paper"})
-    result.sources.push_back(fmt::format("{} (hash {})", set, context.parameters(set).hash));
-  result.remarks.push_back(
-      "Tubes of two kinds use the law for all pairs of radii. The atoms of the second tube are strained by less "
-      "than 0.1 %, so that both tubes fit into one periodic cell.");
+  for (const CaseTube& tube : context.tubes()) result.sources.push_back(tube.source);
+  if (tubes.size() > 1) result.remarks.push_back("Tubes of two kinds use the law for all pairs of radii.");
+  result.remarks.push_back("Registry, how the lattices of two tubes lie on one another, is left out of the model.");
   return result;
 }
 
@@ -212,13 +203,17 @@ const RegisteredCase registered([] {
   c.name = "pair-distance";
   c.group = Case::Group::atoms;
   c.order = 40;
+  c.sets = {"cnt-10-10-tersoff", "cnt-5-5-tersoff", "cnt-10-10-paper"};
+  c.tables = {"pair-distance"};
+  c.lammps_seconds = [](const ParameterSet& set) { return 0.02 * set.atoms_per_length; };
   c.title = "Two parallel tubes: energy against distance";
   c.why = "Cohesion per length and spacing decide how a rope packs and what a void in it costs.";
   c.setup =
-      "Relaxed, frozen tubes (10,10)-(10,10), (5,5)-(5,5) and (10,10)-(5,5) in a periodic cell of 1.25 nm, "
-      "averaged over 16 registries; rows of elements of the model in the same place.";
+      "Relaxed, frozen tubes {tube}, each beside its like and beside every other: a piece of whole periods along a "
+      "longer tube, averaged over 16 registries; rows of elements of the model in the same place.";
   c.oracle =
-      "Lennard-Jones of LAMMPS, 2.84 meV, 0.34 nm, cut at 1.2 nm as in the set. Spacing within 0.5 %, depth within "
+      "Lennard-Jones of LAMMPS, as in the set (2.84 meV, 0.34 nm, cut at 1.2 nm in the shipped ones). Spacing "
+      "within 0.5 %, depth within "
       "3 % (registry).";
   c.literature =
       "L. A. Girifalco, M. Hodak, R. S. Lee, Phys. Rev. B 62, 13104 (2000), DOI 10.1103/PhysRevB.62.13104; A. N. "

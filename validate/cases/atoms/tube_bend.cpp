@@ -17,7 +17,6 @@ constexpr double short_length = 8, long_length = 14;  // nm
 constexpr double step = 0.0025, most = 0.06;          // nm, of curvature times radius squared
 constexpr double end_band = 0.6;                      // nm, held beyond either end
 constexpr double max_turn = 5.6;  // rad, between the ends of the long specimen; they meet at a larger turn
-constexpr ValidatedTube tubes[] = {tube_5_5, tube_10_10};
 
 std::string bend_input(const FiniteTube& tube, const Potential& potential, const std::string& name,
                        const std::vector<double>& curvatures) {
@@ -39,42 +38,37 @@ std::string bend_input(const FiniteTube& tube, const Potential& potential, const
   return input;
 }
 
-void add_rows(const ValidatedTube& tube, MdSession& session, std::vector<std::vector<double>>& rows) {
-  const Chirality c = tube.chirality;
-  const TubeShape shape = session.relaxed(c).shape;
+ReferenceTable make_reference(const CaseContext& context, const ParameterSet& set) {
+  MdSession session(context, set);
+  const Chirality c = set.chirality;
+  const TubeShape shape = session.rest_shape();
   std::vector<double> curvatures;
   for (double x = step; x < most + 0.5 * step; x += step) curvatures.push_back(x / (shape.radius * shape.radius));
+  const long short_part = hexagons_in(c, shape, short_length);
+  const long extra = extra_hexagons(c, shape, long_length - short_length);
   std::vector<std::vector<std::vector<double>>> results;
   std::vector<double> lengths;
-  for (const double length : {short_length, long_length}) {
-    const FiniteTube finite(c, shape, hexagons_in(c, shape, length), held_band(session.potential()));
-    const std::string name = fmt::format("bend-{}-{}-{:.0f}nm", c.n, c.m, length);
+  for (const long hexagons : {short_part, short_part + extra}) {
+    const FiniteTube finite(c, shape, hexagons, held_band(session.potential()));
+    const std::string name = hexagons == short_part ? "bend-short" : "bend-long";
     session.write(name + ".data", finite.data());
     results.push_back(
         session.run(name, bend_input(finite, session.potential(), name, curvatures), curvatures.size() + 1, 1));
     lengths.push_back(finite.free_length());
   }
+  ReferenceTable t = session.table(
+      fmt::format("Energy of a short and a long finite {} tube against curvature, held end bands", tube_name(set)),
+      "tube-bend", false, {"curvature_per_nm", "short_eV", "long_eV", "short_nm", "long_nm"});
   for (std::size_t k = 0; k <= curvatures.size(); ++k)
-    rows.push_back({double(c.n), k == 0 ? 0 : curvatures[k - 1], results[0][k][0] - results[0][0][0],
-                    results[1][k][0] - results[1][0][0], lengths[0], lengths[1]});
-}
-
-ReferenceTable make_reference(const CaseContext& context) {
-  MdSession session(context);
-  std::vector<std::vector<double>> rows;
-  for (const ValidatedTube& tube : tubes) add_rows(tube, session, rows);
-  ReferenceTable t =
-      session.table("Energy of a short and a long finite tube (n,n) against curvature, held end bands", "tube-bend",
-                    false, {"n", "curvature_per_nm", "short_eV", "long_eV", "short_nm", "long_nm"});
-  t.rows = rows;
+    t.rows.push_back({k == 0 ? 0 : curvatures[k - 1], results[0][k][0] - results[0][0][0],
+                      results[1][k][0] - results[1][0][0], lengths[0], lengths[1]});
   return t;
 }
 
-TubeCurve curve_of(const ValidatedTube& tube, const ParameterSet& set, const ReferenceTable& data) {
-  const auto column = [&](const std::string& name) { return column_where(data, name, "n", tube.chirality.n); };
-  const std::vector<double> curvature = column("curvature_per_nm"), low = column("short_eV"),
-                            high = column("long_eV");
-  const double short_nm = column("short_nm").front(), long_nm = column("long_nm").front();
+TubeCurve curve_of(const CaseTube& tube, const ReferenceTable& data) {
+  const std::vector<double> curvature = data.column("curvature_per_nm"), low = data.column("short_eV"),
+                            high = data.column("long_eV");
+  const double short_nm = data.column("short_nm").front(), long_nm = data.column("long_nm").front();
   const std::size_t whole =
       std::min(points_before_collapse(curvature, low), points_before_collapse(curvature, high));
   TubeCurve curve;
@@ -91,30 +85,30 @@ TubeCurve curve_of(const ValidatedTube& tube, const ParameterSet& set, const Ref
     curve.more_atoms.push_back(high[k] / long_nm);
   }
   curve.more_name = "long specimen, kink and ends included";
-  curve.model = [set](double k) { return chain_energy(set.anharmonic_bond(0), set.element_length, 0, 0, k); };
-  curve.window = curve.end = set.validity.kink_curvature;
+  curve.model = [set = tube.model](double k) {
+    return chain_energy(set.anharmonic_bond(0), set.element_length, 0, 0, k);
+  };
+  curve.window = curve.end = tube.set.validity.kink_curvature;
   return curve;
 }
 
 CaseResult run(const CaseContext& context) {
   CaseResult result;
-  const ReferenceTable data = reference(
-      context, "tube-bend", 0.02, [&] { return make_reference(context); }, result);
-  for (const ValidatedTube& tube : tubes) {
-    const ParameterSet set = context.model(tube.set);
-    const TubeCurve curve = curve_of(tube, set, data);
+  for (const CaseTube& tube : context.tubes()) {
+    const ReferenceTable data = reference(
+        context, tube.set, "tube-bend", 0.02, [&] { return make_reference(context, tube.set); }, result);
+    const TubeCurve curve = curve_of(tube, data);
     add_curve(curve, result);
     add_collapse(curve, curve.more_amplitude, curve.amplitude.size(),
                  "the specimen that kinks first, against the kink curvature of the set", result);
-    result.sources.push_back(fmt::format("{} (hash {})", set.name, set.hash));
+    result.sources.push_back(tube.source);
   }
   result.remarks.push_back(
       "The cross-section flattens, which the quartic term of the bond describes; without it the bond is 12 to 20 % "
       "too stiff at the kink. Beyond the kink the moment of the bond is constant, and that of the atoms falls by a "
       "third.");
   result.remarks.push_back(
-      "In the last rows of the table the long (5,5) specimen closes on itself. Turns beyond 5.6 rad are neither "
-      "drawn nor compared.");
+      "A thin specimen that is bent far closes on itself. Turns beyond 5.6 rad are neither drawn nor compared.");
   return result;
 }
 
@@ -123,13 +117,20 @@ const RegisteredCase registered([] {
   c.name = "tube-bend";
   c.group = Case::Group::atoms;
   c.order = 30;
+  c.sets = {"cnt-5-5-tersoff", "cnt-10-10-tersoff"};
+  c.law = Case::Law::none;
+  c.tables = {"tube-bend"};
+  c.lammps_seconds = [](const ParameterSet& set) {
+    return lammps_seconds(set, short_length + long_length, most / step);
+  };
   c.title = "One tube bent beyond its kink";
   c.why = "EI decides when a rope buckles into a helix. At the kink the model of rigid elements ends.";
   c.setup =
-      "Finite tubes of (5,5) and (10,10), 8 and 14 nm between held bands, are bent step by step to a curvature of "
+      "Finite tubes of {tube}, 8 and 14 nm between held bands, are bent step by step to a curvature of "
       "0.06 nm/r^2 and relaxed. The bond was fitted to other lengths.";
   c.oracle =
-      "Energies of LAMMPS with the Tersoff potential, (E_long - E_short)/(L_long - L_short); for a chain of "
+      "Energies of LAMMPS with the interatomic potential of the set, (E_long - E_short)/(L_long - L_short); for a "
+      "chain of "
       "elements U/L = EI k^2/2 + c4 (r k)^4. Within 1 % up to the kink.";
   c.literature =
       "S. Iijima, C. Brabec, A. Maiti, J. Bernholc, J. Chem. Phys. 104, 2089 (1996), DOI 10.1063/1.470966";

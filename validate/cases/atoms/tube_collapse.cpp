@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "atomistic/finite_tube.hpp"
 #include "cases/common/tube_curve.hpp"
@@ -12,8 +13,6 @@
 namespace ropewalk {
 namespace {
 
-constexpr ValidatedTube tube_15_15{{15, 15}, "cnt-15-15-tersoff", "(15,15)"};
-constexpr ValidatedTube tubes[] = {tube_5_5, tube_10_10, tube_15_15};
 constexpr double lengths[] = {12, 24, 47, 94};  // nm
 // Shears times radius (nm). The torque is compared from one step to the next over the fine steps.
 constexpr double rule = 0.03, first_part = 0.4, fine_from = 0.58, fine_step = 0.02, last_part = 1.16;
@@ -68,33 +67,31 @@ std::string input_of(const FiniteTube& tube, const Potential& potential, const s
   return input + "label gave_way\n";
 }
 
-ReferenceTable make_reference(const CaseContext& context) {
-  MdSession session(context);
+ReferenceTable make_reference(const CaseContext& context, const ParameterSet& set) {
+  MdSession session(context, set);
+  const TubeShape shape = session.rest_shape();
   std::vector<std::vector<double>> rows;
-  for (const ValidatedTube& tube : tubes)
-    for (const double length : lengths) {
-      const Chirality c = tube.chirality;
-      const TubeShape shape = session.relaxed(c).shape;
-      const FiniteTube finite(c, shape, hexagons_in(c, shape, length), held_band(session.potential()));
-      const std::string name = fmt::format("collapse-{}-{}-{:.0f}nm", c.n, c.m, length);
-      session.write(name + ".data", finite.data());
-      const std::vector<double> twists = steps_of(shape.radius);
-      const auto results =
-          session.run(name, input_of(finite, session.potential(), name, twists), twists.size() + 1, 2, 4);
-      for (const auto& row : results)
-        rows.push_back(
-            {double(c.n), finite.free_length(), row[0] / angstrom, row[1] - results.front()[1], shape.radius});
-    }
-  ReferenceTable t =
-      session.table("Energy of finite tubes (n,n) against twist, held end bands, up to the collapse",
-                    "tube-collapse", false, {"n", "length_nm", "twist_rad_per_nm", "energy_eV", "radius_nm"});
-  t.rows = rows;
+  for (const double length : lengths) {
+    const FiniteTube finite(set.chirality, shape, hexagons_in(set.chirality, shape, length),
+                            held_band(session.potential()));
+    const std::string name = fmt::format("collapse-{:.0f}nm", length);
+    session.write(name + ".data", finite.data());
+    const std::vector<double> twists = steps_of(shape.radius);
+    const auto results =
+        session.run(name, input_of(finite, session.potential(), name, twists), twists.size() + 1, 2, 4);
+    for (const auto& row : results)
+      rows.push_back({finite.free_length(), row[0] / angstrom, row[1] - results.front()[1], shape.radius});
+  }
+  ReferenceTable t = session.table(
+      fmt::format("Energy of finite {} tubes against twist, held end bands, up to the collapse", tube_name(set)),
+      "tube-collapse", false, {"length_nm", "twist_rad_per_nm", "energy_eV", "radius_nm"});
+  t.rows = std::move(rows);
   return t;
 }
 
 // The energy (eV) of the last step before the torque falls.
-Check energy_check(const ValidatedTube& tube, const ParameterSet& set, double length,
-                   const std::vector<double>& twist, const std::vector<double>& energy) {
+Check energy_check(const CaseTube& tube, const ParameterSet& set, double length, const std::vector<double>& twist,
+                   const std::vector<double>& energy) {
   const std::size_t last = points_before_collapse(twist, energy) - 1;
   Check check;
   check.name = fmt::format("{} of {:.0f} nm: energy before the collapse", tube.name, length);
@@ -135,7 +132,7 @@ ChartLine torque_line(const std::string& name, int colour, double radius, const 
 
 CaseFigure torque_figure(std::vector<ChartLine> lines) {
   LineChart chart;
-  chart.title = "Torque of (10,10) up to its collapse";
+  chart.title = "Torque up to the collapse";
   chart.x = {"radius times twist", "1"};
   chart.y = {"energy of a step over its twist per length", "eV nm"};
   chart.lines = std::move(lines);
@@ -146,30 +143,25 @@ CaseFigure torque_figure(std::vector<ChartLine> lines) {
 
 CaseResult run(const CaseContext& context) {
   CaseResult result;
-  const ReferenceTable data = reference(
-      context, "tube-collapse", 0.05, [&] { return make_reference(context); }, result);
-  const std::vector<double> n = data.column("n"), all_lengths = data.column("length_nm");
   std::vector<ChartLine> lines, torques;
   int colour = 0;
-  for (const ValidatedTube& tube : tubes) {
-    const ParameterSet set = context.model(tube.set);
+  for (const CaseTube& tube : context.tubes()) {
+    const ReferenceTable data = reference(
+        context, tube.set, "tube-collapse", 0.05, [&] { return make_reference(context, tube.set); }, result);
+    const ParameterSet& set = tube.model;
     ChartLine atoms{fmt::format("atoms, {}", tube.name), {}, {}, colour}, model{tube.name, {}, {}, colour};
     atoms.points = true;
     ++colour;
-    std::vector<double> different;
-    for (std::size_t k = 0; k < n.size(); ++k)
-      if (n[k] == tube.chirality.n && (different.empty() || different.back() != all_lengths[k]))
-        different.push_back(all_lengths[k]);
-    for (const double length : different) {
-      std::vector<double> twist, energy;
-      for (std::size_t k = 0; k < n.size(); ++k) {
-        if (n[k] != tube.chirality.n || all_lengths[k] != length) continue;
-        twist.push_back(data.column("twist_rad_per_nm")[k]);
-        energy.push_back(data.column("energy_eV")[k]);
-      }
-      if (tube.chirality.n == 10)
-        torques.push_back(torque_line(fmt::format("{:.0f} nm", length), static_cast<int>(torques.size()),
-                                      set.radius, twist, energy));
+    std::map<double, std::pair<std::vector<double>, std::vector<double>>> specimens;  // twists, energies by length
+    for (const std::vector<double>& row : data.rows) {
+      specimens[row[0]].first.push_back(row[1]);
+      specimens[row[0]].second.push_back(row[2]);
+    }
+    for (const auto& [length, curve] : specimens) {
+      const auto& [twist, energy] = curve;
+      if (torques.size() < specimens.size())
+        torques.push_back(torque_line(fmt::format("{} of {:.0f} nm", tube.name, length),
+                                      static_cast<int>(torques.size()), set.radius, twist, energy));
       result.checks.push_back(energy_check(tube, set, length, twist, energy));
       Check check;
       check.name = fmt::format("{} of {:.0f} nm collapses at", tube.name, length);
@@ -190,7 +182,7 @@ CaseResult run(const CaseContext& context) {
       model.x.push_back(length), model.y.push_back(set.validity.collapse_at(set.radius, length));
     lines.push_back(model);
     lines.push_back(atoms);
-    result.sources.push_back(fmt::format("{} (hash {})", set.name, set.hash));
+    result.sources.push_back(tube.source);
   }
   result.figures.push_back(limits_figure(lines));
   result.figures.push_back(torque_figure(torques));
@@ -205,12 +197,16 @@ const RegisteredCase registered([] {
   c.name = "tube-collapse";
   c.group = Case::Group::atoms;
   c.order = 25;
+  c.tier = Case::Tier::full;
+  c.law = Case::Law::none;
+  c.sets = {"cnt-10-10-tersoff", "cnt-5-5-tersoff", "cnt-15-15-tersoff"};
+  c.only_these = "it compares with stored atoms of (5,5), (10,10) and (15,15), half an hour of LAMMPS";
   c.title = "Twisted tubes collapse, long ones earlier";
   c.why =
       "Ropes are 40 to 160 nm long. The twist at which a wall collapses into a ribbon limits the energy that they "
       "store as round tubes.";
   c.setup =
-      "Tubes of (5,5), (10,10) and (15,15), 12, 24, 47 and 94 nm between held bands, are twisted step by step with "
+      "Tubes of {tube}, 12, 24, 47 and 94 nm between held bands, are twisted step by step with "
       "a "
       "little noise and relaxed until the torque falls.";
   c.oracle =

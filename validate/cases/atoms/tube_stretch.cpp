@@ -13,7 +13,6 @@ namespace {
 
 constexpr double cell_length = 5;  // nm: room for a buckle, which is about as long as the tube is wide
 constexpr double magnitudes[] = {0.002, 0.004, 0.01, 0.02, 0.03, 0.04, 0.05, 0.06, 0.07, 0.08};
-constexpr ValidatedTube tubes[] = {tube_5_5, tube_10_10};
 
 std::string cell_commands(const Potential& potential, const std::string& data) {
   std::string text = header_commands("s s p", 0.05) + "read_data " + data + "\n";
@@ -40,31 +39,24 @@ std::string strain_input(const Potential& potential, const std::string& name, do
   return input;
 }
 
-void add_rows(const ValidatedTube& tube, MdSession& session, std::vector<std::vector<double>>& rows) {
-  const Chirality c = tube.chirality;
-  const RelaxedTube relaxed = session.relaxed(c);
-  const long hexagons = period_hexagons(c) * std::lround(cell_length / period_of(c, relaxed.shape));
-  const double length = static_cast<double>(hexagons) * relaxed.shape.length_per_hexagon;
-  const std::string name = fmt::format("stretch-{}-{}", c.n, c.m);
-  session.write(name + ".data",
-                data_file(tube_atoms(c, relaxed.shape, hexagons), relaxed.shape.radius + 1, 0, length));
+ReferenceTable make_reference(const CaseContext& context, const ParameterSet& set) {
+  MdSession session(context, set);
+  const Chirality c = set.chirality;
+  const TubeShape shape = session.relaxed().shape;
+  const long hexagons = period_hexagons(c) * std::max(1L, std::lround(cell_length / period_of(c, shape)));
+  const double length = static_cast<double>(hexagons) * shape.length_per_hexagon;
+  session.write("stretch.data", data_file(tube_atoms(c, shape, hexagons), shape.radius + 1, 0, length));
   const std::size_t steps = std::size(magnitudes) + 1;
-  const auto results = session.run(name, strain_input(session.potential(), name, length), 2 * steps, 1);
+  const auto results = session.run("stretch", strain_input(session.potential(), "stretch", length), 2 * steps, 1);
+  ReferenceTable t = session.table(
+      fmt::format("Energy of one {} tube against strain, periodic cell of {:.2f} nm", tube_name(set), length),
+      "tube-stretch", false, {"strain", "energy_eV_per_nm"});
   const auto add = [&](double strain, std::size_t at, std::size_t zero) {
-    rows.push_back({double(c.n), strain, (results[at][0] - results[zero][0]) / length});
+    t.rows.push_back({strain, (results[at][0] - results[zero][0]) / length});
   };
   for (std::size_t k = steps - 1; k >= 1; --k) add(-magnitudes[k - 1], k, 0);
   add(0, 0, 0);
   for (std::size_t k = 1; k < steps; ++k) add(magnitudes[k - 1], steps + k, steps);
-}
-
-ReferenceTable make_reference(const CaseContext& context) {
-  MdSession session(context);
-  std::vector<std::vector<double>> rows;
-  for (const ValidatedTube& tube : tubes) add_rows(tube, session, rows);
-  ReferenceTable t = session.table("Energy of one tube (n,n) against strain, periodic cell of 5 nm", "tube-stretch",
-                                   false, {"n", "strain", "energy_eV_per_nm"});
-  t.rows = rows;
   return t;
 }
 
@@ -81,25 +73,37 @@ void add_buckling(const TubeCurve& curve, CaseResult& result) {
       result);
 }
 
+// The cell is not twisted: a chiral tube in it lacks its natural twist. It comes to rest at another length, from
+// which its strain is measured.
+double stretch_of_untwisted(const ParameterSet& set, double twist, double strain) {
+  const auto energy = [&](double e) {
+    return chain_energy(set.anharmonic_bond(0), set.element_length, e, twist, 0);
+  };
+  constexpr double h = 1e-4;
+  const double slope = (energy(h) - energy(-h)) / (2 * h),
+               bend = (energy(h) - 2 * energy(0) + energy(-h)) / (h * h);
+  const double rest = -slope / bend;
+  return (energy(rest + (1 + rest) * strain) - energy(rest)) / (1 + rest);
+}
+
 CaseResult run(const CaseContext& context) {
   CaseResult result;
-  const ReferenceTable data = reference(
-      context, "tube-stretch", 0.01, [&] { return make_reference(context); }, result);
-  for (const ValidatedTube& tube : tubes) {
-    const ParameterSet set = context.model(tube.set);
+  for (const CaseTube& tube : context.tubes()) {
+    const ReferenceTable data = reference(
+        context, tube.set, "tube-stretch", 0.01, [&] { return make_reference(context, tube.set); }, result);
     TubeCurve curve;
     curve.tube = tube.name;
     curve.amplitude_name = "strain";
-    curve.amplitude = column_where(data, "strain", "n", tube.chirality.n);
-    curve.atoms = column_where(data, "energy_eV_per_nm", "n", tube.chirality.n);
-    curve.model = [set](double strain) {
-      return chain_energy(set.anharmonic_bond(0), set.element_length, strain, 0, 0);
+    curve.amplitude = data.column("strain");
+    curve.atoms = data.column("energy_eV_per_nm");
+    curve.model = [set = tube.model, twist = -natural_twist(tube.set)](double strain) {
+      return stretch_of_untwisted(set, twist, strain);
     };
-    curve.window = curve.end = set.validity.stretch;
+    curve.window = curve.end = tube.set.validity.stretch;
     add_buckling(curve, result);
     end_at_collapse(curve);
     add_curve(curve, result);
-    result.sources.push_back(fmt::format("{} (hash {})", set.name, set.hash));
+    result.sources.push_back(tube.source);
   }
   result.remarks.push_back(
       "Carbon bonds soften in tension and stiffen in compression. The anharmonic bond has the terms of third and "
@@ -112,10 +116,16 @@ const RegisteredCase registered([] {
   c.name = "tube-stretch";
   c.group = Case::Group::atoms;
   c.order = 10;
+  c.sets = {"cnt-5-5-tersoff", "cnt-10-10-tersoff"};
+  c.law = Case::Law::none;
+  c.tables = {"tube-stretch"};
+  c.lammps_seconds = [](const ParameterSet& set) {
+    return lammps_seconds(set, cell_length, 2 * std::size(magnitudes));
+  };
   c.title = "One tube stretched and compressed";
   c.why = "Twisting a rope stretches its outer tubes and compresses its inner ones: EA sets that energy.";
   c.setup =
-      "Periodic cells of 5 nm of (5,5) and (10,10) are strained from -8 to 8 % step by step and relaxed. The "
+      "Periodic cells of 5 nm of {tube} are strained from -8 to 8 % step by step and relaxed. The "
       "bond was fitted to other cells.";
   c.oracle =
       "Energies of LAMMPS with the Tersoff potential; for a chain of elements U/L = EA e^2/2 + c3 e^3 + c4 e^4. "

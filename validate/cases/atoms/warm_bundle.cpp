@@ -33,7 +33,6 @@ constexpr double fresh_tolerance = 0.15;     // of a column's range: another mac
 
 constexpr double temperature = 100;  // K
 constexpr int tubes = 7, slices = 6, rows_per_slice = 5;
-constexpr ValidatedTube tube = tube_5_5;
 constexpr int blocks = 10;
 
 // Atoms.
@@ -49,7 +48,6 @@ constexpr std::uint64_t seed = 1;
 
 TwistedRope bundle() {
   TwistedRope b;
-  b.parameters = tube.set;
   b.free_rows = slices * rows_per_slice;
   return b;
 }
@@ -216,10 +214,9 @@ std::vector<Sample> warm_samples(const std::string& folder, double length) {
   return samples;
 }
 
-ReferenceTable warm_atoms(const CaseContext& context) {
-  const ParameterSet set = context.parameters(tube.set);
+ReferenceTable warm_atoms(const CaseContext& context, const ParameterSet& set) {
   const std::vector<RopeTube> atoms = sorted_atoms(set);
-  MdSession session(context);
+  MdSession session(context, set);
   session.write("bundle.data", rope_data(atoms));
   const std::vector<double> cold =
       session.run("warm", warm_input(set, session, atoms[0].free.size() / slices), 1, 4)[0];
@@ -261,10 +258,9 @@ std::string wall_input(const MdSession& session) {
              every, steps / every, steps);
 }
 
-ReferenceTable wall_atoms(const CaseContext& context) {
-  const ParameterSet set = context.parameters(tube.set);
-  const Chirality c = tube.chirality;
-  MdSession session(context);
+ReferenceTable wall_atoms(const CaseContext& context, const ParameterSet& set) {
+  const Chirality c = set.chirality;
+  MdSession session(context, set);
   const TubeShape shape{set.radius, row_distance(set) / c.n, 0, 0, 0};
   const long rows = slices * rows_per_slice;
   session.write("tube.data",
@@ -404,11 +400,11 @@ CaseFigure temperature_figure(const std::string& quantity, const std::string& un
 
 CaseResult run(const CaseContext& context) {
   CaseResult result;
+  const ParameterSet set = context.set(), model_set = context.model();
   const ReferenceTable table = reference(
-      context, "warm-bundle", fresh_tolerance, [&] { return warm_atoms(context); }, result);
+      context, set, "warm-bundle", fresh_tolerance, [&] { return warm_atoms(context, set); }, result);
   const ReferenceTable walls = reference(
-      context, "warm-tube", fresh_tolerance, [&] { return wall_atoms(context); }, result);
-  const ParameterSet model_set = context.model(tube.set);
+      context, set, "warm-tube", fresh_tolerance, [&] { return wall_atoms(context, set); }, result);
   const Measured atoms = measured_of(table);
   if (context.progress) context.progress("elements");
   const Measured model = warm_elements(model_set);
@@ -434,7 +430,7 @@ CaseResult run(const CaseContext& context) {
       "At rest the tubes of atoms are 2.2 pm farther apart. The forces of lj/cut leave out the step of the "
       "truncated energy; this explains 0.3 pm, by which it moves the minimum of smooth shells. The rest should be "
       "registry, as is the 1.4 % of energy; it is not resolved."};
-  result.sources.push_back(fmt::format("{} (hash {})", model_set.name, model_set.hash));
+  result.sources.push_back(context.tube().source);
   return result;
 }
 
@@ -443,6 +439,9 @@ const RegisteredCase registered([] {
   c.name = "warm-bundle";
   c.group = Case::Group::atoms;
   c.order = 110;
+  c.tier = Case::Tier::full;
+  c.sets = {"cnt-5-5-tersoff"};
+  c.only_these = "it compares with stored atoms of (5,5) at 100 K";
   c.title = "A 7-tube bundle of (5,5) at 100 K";
   c.why =
       "Ropes are simulated at a temperature. Elements move as rigid pieces of tube. A case at rest cannot tell "
@@ -464,7 +463,8 @@ const RegisteredCase registered([] {
       "Andersen, J. Chem. Phys. 72, 2384 (1980), DOI 10.1063/1.439486 (redrawn velocities)";
   c.run = run;
   c.turns_red = {{wrong_contact(2), {"vdW energy per length, at rest", "vdW energy per length, 100 K"}}};
-  c.known_misses = {"expansion of the spacing", "loss of cohesion per length"};
+  // What rigid walls lack. The samples scatter by a tenth of it.
+  c.known_misses = {{"loss of cohesion per length", {-0.0654, 0.015}}};
   return c;
 });
 

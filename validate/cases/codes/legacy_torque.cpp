@@ -10,7 +10,6 @@
 namespace ropewalk {
 namespace {
 
-constexpr const char* set_name = "cnt-10-10-paper";
 constexpr double duration = 400, step = 0.016, enough = 150;  // ps, ps, eV
 
 struct Record {
@@ -59,7 +58,7 @@ Record undamped_bundle(const ParameterSet& set, bool legacy) {
 }
 
 CaseResult run(const CaseContext& context) {
-  const ParameterSet model = context.model(set_name);
+  const ParameterSet model = context.model();
   const Record full = undamped_bundle(model, context.fault.missing_torque);
   const Record legacy = undamped_bundle(model, true);
   CaseResult result;
@@ -79,7 +78,7 @@ CaseResult run(const CaseContext& context) {
   result.remarks.push_back(
       "A contact energy that depends on an angle exerts a torque. Without this torque the forces are not the "
       "gradient of the energy, and the bundle heats up at any time step.");
-  result.sources.push_back(set_name);
+  result.sources.push_back(context.tube().source);
   return result;
 }
 
@@ -88,6 +87,9 @@ const RegisteredCase registered([] {
   c.name = "legacy-torque";
   c.group = Case::Group::codes;
   c.order = 20;
+  c.law = Case::Law::paper;
+  c.sets = {"cnt-10-10-paper"};
+  c.only_these = "it shows what the published code does with the published set";
   c.title = "The torque that the published contact code leaves out";
   c.why =
       "A rope that gains energy from its own contact forces shows instabilities that a real rope does not have.";

@@ -8,7 +8,6 @@
 namespace ropewalk {
 namespace {
 
-constexpr const char* set_name = "cnt-10-10-tersoff";
 constexpr int bonds = 20;
 
 double total_energy_deflection(const ParameterSet& set, double force) {
@@ -42,8 +41,8 @@ Loop closed_loop(const ParameterSet& set, double amplitude) {
 }
 
 CaseResult run(const CaseContext& context) {
-  const ParameterSet oracle = context.parameters(set_name);
-  ParameterSet model = context.model(set_name);
+  const ParameterSet oracle = context.set();
+  ParameterSet model = context.model();
   model.bond.shear = 0;  // as in the incremental bond
   const double length = bonds * model.element_length;
   const auto beam = [&](double force) { return force * std::pow(length, 3) / (3 * oracle.bond.bend); };
@@ -100,7 +99,7 @@ CaseResult run(const CaseContext& context) {
   result.remarks.push_back(
       "The incremental bond sums angular velocities, and these have no integral in three dimensions. After a "
       "closed loop of bend and twist some energy stays in the bond, however small the steps.");
-  result.sources.push_back(set_name);
+  result.sources.push_back(context.tube().source);
   return result;
 }
 
@@ -109,6 +108,7 @@ const RegisteredCase registered([] {
   c.name = "parallel-bond";
   c.group = Case::Group::codes;
   c.order = 30;
+  c.law = Case::Law::none;
   c.title = "Incremental parallel bond against total-energy bond";
   c.why =
       "Tubes in a rope bend and twist together through large angles. A bond that depends on the path stores or "

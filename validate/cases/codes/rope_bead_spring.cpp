@@ -9,7 +9,6 @@
 namespace ropewalk {
 namespace {
 
-constexpr const char* set_name = "cnt-10-10-tersoff";
 constexpr int bonds = 30, increments = 6;  // an even number, for Simpson's rule
 constexpr double last_angle = 0.5 * units::pi;
 constexpr double angle_step = last_angle / increments;
@@ -227,7 +226,7 @@ Straight straight_rope(const ParameterSet& model, const Well& pair, const BeadLa
 }
 
 CaseResult run(const CaseContext& context) {
-  const ParameterSet model = context.model(set_name), oracle = context.parameters(set_name);
+  const ParameterSet model = context.model(), oracle = context.set();
   const Well pair = surface_integral(oracle).parallel_well();
   const BeadLaw bead(pair.distance, pair.energy, oracle.element_length);
   const double length = bonds * oracle.element_length;
@@ -269,7 +268,7 @@ CaseResult run(const CaseContext& context) {
       "Three neighbours cannot all be half an element apart. With a cosine of amplitude c per pair, shifts of a "
       "third of an element are best and gain 3c/2. Beads side by side, as in a rope cut straight, are the state of "
       "highest energy; only the stretch of the tubes between two grips keeps them there.");
-  result.sources.push_back(set_name);
+  result.sources.push_back(context.tube().source);
   return result;
 }
 
@@ -278,12 +277,13 @@ const RegisteredCase registered([] {
   c.name = "rope-bead-spring";
   c.group = Case::Group::codes;
   c.order = 40;
+  c.tier = Case::Tier::full;
   c.title = "A twisted rope of beads and springs";
   c.why =
       "Stock molecular dynamics codes build tubes from beads and springs. A twisted rope stores most of its energy "
       "in torsion, which beads do not have.";
   c.setup =
-      "Seven (10,10) tubes of 30 bonds (41 nm) between two grips at a fixed distance. The grips turn against each "
+      "Seven {tube} tubes of 30 bonds between two grips at a fixed distance. The grips turn against each "
       "other by 90 degrees in increments of 15; the rope is relaxed after each. Once with elements and the line "
       "law, once with a bead in the place of each element: the same EA and EI, no torsion, a 12-6 contact of the "
       "same spacing and cohesion. Also the straight rope, with its centre tube shifted by up to one element, and "

@@ -12,7 +12,6 @@
 namespace ropewalk {
 namespace {
 
-constexpr const char* set_name = "cnt-10-10-paper";
 constexpr int bonds = 30, records = 100;
 constexpr double angle = 0.5 * units::pi;
 constexpr double turning = 40, duration = 160;      // ps
@@ -191,7 +190,7 @@ CaseFigure record_figure(const std::string& title, const std::string& quantity,
 }
 
 CaseResult run(const CaseContext& context) {
-  const ParameterSet model = context.model(set_name), oracle = context.parameters(set_name);
+  const ParameterSet model = context.model(), oracle = context.set();
   const Record full = twist(model, context.fault.missing_torque, 1);
   const Record legacy = twist(model, true, 1), weak = twist(model, true, 0.1);
   const Record full_weak = twist(model, context.fault.missing_torque, 0.1);
@@ -234,7 +233,7 @@ CaseResult run(const CaseContext& context) {
       "their neighbours. Evenly spread couples do not bend a tube; they act as tangential forces at the grips, and "
       "their moment grows with the distance from the axis. So the missing part of the moment hardly depends on the "
       "angle and grows with the size of the rope. Seven tubes show the smallest error.");
-  result.sources.push_back(set_name);
+  result.sources.push_back(context.tube().source);
   return result;
 }
 
@@ -243,12 +242,16 @@ const RegisteredCase registered([] {
   c.name = "rope-legacy-torque";
   c.group = Case::Group::codes;
   c.order = 60;
+  c.tier = Case::Tier::full;
+  c.law = Case::Law::paper;
+  c.sets = {"cnt-10-10-paper"};
+  c.only_these = "it shows what the published code does with the published set";
   c.title = "A twisted rope without the torque of the angle";
   c.why =
       "Ropes have been twisted with a contact code whose torques are not the gradient of its energy. What such "
       "results mean depends on how much of that error damping hides.";
   c.setup = fmt::format(
-      "Seven (10,10) tubes of {} bonds (41 nm) with the paper law between two grips. The grips turn against each "
+      "Seven {{tube}} tubes of {} bonds (41 nm) with the paper law between two grips. The grips turn against each "
       "other by 90 degrees in {:.0f} ps and are held until {:.0f} ps. Damping as in a scene by default (viscosity "
       "of contacts {:.0f} eV ps/nm^2, of bonds {:.0f}/ps), and a tenth of it; with the full gradient and without "
       "the torque.",

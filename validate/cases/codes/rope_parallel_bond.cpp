@@ -10,7 +10,6 @@
 namespace ropewalk {
 namespace {
 
-constexpr const char* set_name = "cnt-10-10-tersoff";
 constexpr int bonds = 12, rounds = 2;
 constexpr double angle = 48 * units::degree, shift = 2;  // nm
 constexpr double brake = 1.5;                            // 1/ps: nearly aperiodic for the slowest bending mode
@@ -196,11 +195,11 @@ void add_heat_checks(const Ropes& ropes, CaseResult& result) {
 }
 
 CaseResult run(const CaseContext& context) {
-  const ParameterSet model = context.model(set_name);
+  const ParameterSet model = context.model();
   const Ropes ropes{settled(model, Bonds::total_energy), settled(model, Bonds::incremental),
                     settled(model, Bonds::incremental, 0.5 * step_fraction)};
   CaseResult result;
-  add_twist_checks(ropes, context.parameters(set_name), result);
+  add_twist_checks(ropes, context.set(), result);
   context.progress("moving the grip around closed loops");
   add_loop_checks(ropes, result);
   context.progress("heating and cooling");
@@ -216,7 +215,7 @@ CaseResult run(const CaseContext& context) {
       "second order in its rotations. The rest angles of the bonds drift, and the rope stores energy that no load "
       "has put there. Smaller steps leave less, but not nothing. Total-energy bonds accumulate nothing at any "
       "step.");
-  result.sources.push_back(set_name);
+  result.sources.push_back(context.tube().source);
   return result;
 }
 
@@ -225,12 +224,13 @@ const RegisteredCase registered([] {
   c.name = "rope-parallel-bond";
   c.group = Case::Group::codes;
   c.order = 50;
+  c.tier = Case::Tier::full;
   c.title = "A rope with incremental parallel bonds";
   c.why =
       "A rope that is loaded and unloaded must come back to the same state. Bonds that depend on the path leave a "
       "moment in it that no load explains.";
   c.setup = fmt::format(
-      "Seven (10,10) tubes of {} bonds (16.5 nm) between two grips, with the line law between tubes, in damped "
+      "Seven {{tube}} tubes of {} bonds between two grips, with the line law between tubes, in damped "
       "motion with a time step of {} of the stability limit. One grip moves around closed loops: twisted by {:.0f} "
       "degrees and back; twisted, shifted sideways by {:.0f} nm, twisted back, shifted back; each leg takes {:.0f} "
       "ps or more. In another run the grips are held, {} times {:.0f} ps without damping at {:.0f} K. Each run "

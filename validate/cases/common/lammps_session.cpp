@@ -5,37 +5,83 @@
 #include <Eigen/Geometry>
 #include <chrono>
 #include <filesystem>
+#include <numeric>
 
 #include "io/files.hpp"
+#include "io/parameters_toml.hpp"
+#include "model/error.hpp"
 
 namespace ropewalk {
 
 namespace fs = std::filesystem;
 
-MdSession::MdSession(const CaseContext& context)
-    : potential_(find_potential("tersoff")), folder_(context.work), progress_(context.progress) {}
+namespace {
 
-RunContext MdSession::context_of(Chirality c, const std::string& folder) const {
-  return {c, potential_, folder, options_, 0, {}};
+Potential potential_of(const ParameterSet& set) {
+  const std::string name = provenance_value(set, "potential"), hash = provenance_value(set, "potential_hash");
+  Potential potential;
+  try {
+    potential = find_potential(name);
+  } catch (const InputError& e) {
+    throw NotApplicable(
+        fmt::format("the set was made with the interatomic potential \"{}\", which LAMMPS does not "
+                    "have here: {}",
+                    name, e.what()));
+  }
+  if (potential.file_hash != hash)
+    throw NotApplicable(fmt::format("the set was made with another file of the potential \"{}\": hash {}, here {}",
+                                    name, hash, potential.file_hash));
+  return potential;
+}
+
+AtomLaw law_of(const ParameterSet& set) {
+  AtomLaw law;
+  if (!set.line) return law;
+  law.epsilon = set.line->universal.epsilon;
+  law.sigma = set.line->universal.sigma;
+  law.cutoff = set.line->universal.lj_cutoff;
+  if (law.cutoff <= 0) throw NotApplicable("the law between atoms of two tubes has no cutoff, which lj/cut needs");
+  return law;
+}
+
+}  // namespace
+
+MdSession::MdSession(const CaseContext& context, const ParameterSet& set)
+    : set_(set),
+      potential_(potential_of(set)),
+      atom_law_(law_of(set)),
+      folder_(context.work),
+      progress_(context.progress) {}
+
+RunContext MdSession::context_of(const std::string& folder) const {
+  return {set_.chirality, potential_, folder, options_, 0, {}};
 }
 
 void MdSession::progress(const std::string& line) const {
   if (progress_) progress_(line);
 }
 
-RelaxedTube MdSession::relaxed(Chirality c) {
-  progress(fmt::format("relaxing ({},{})", c.n, c.m));
-  const std::string folder = (fs::path(folder_) / fmt::format("relax-{}-{}", c.n, c.m)).string();
+const RelaxedTube& MdSession::relaxed() {
+  if (relaxed_) return *relaxed_;
+  progress(fmt::format("relaxing {}", tube_name(set_)));
+  const std::string folder =
+      (fs::path(folder_) / fmt::format("relax-{}-{}", set_.chirality.n, set_.chirality.m)).string();
   fs::remove_all(folder);
-  RunContext run = context_of(c, folder);
-  const RelaxedTube tube = relax_tube(run);
+  RunContext run = context_of(folder);
+  relaxed_ = relax_tube(run);
   inputs_ += read_file(folder + "/relax.data") + read_file(folder + "/relax.in");
   seconds_ += run.lammps_seconds;
-  return tube;
+  return *relaxed_;
+}
+
+TubeShape MdSession::rest_shape() {
+  TubeShape shape = relaxed().shape;
+  shape.twist = natural_twist(set_);
+  return shape;
 }
 
 void MdSession::write(const std::string& name, const std::string& content) {
-  write_data(context_of({}, folder_), name, content);
+  write_data(context_of(folder_), name, content);
   inputs_ += content;
 }
 
@@ -43,7 +89,7 @@ std::vector<std::vector<double>> MdSession::run(const std::string& name, const s
                                                 std::size_t columns, std::size_t min_rows) {
   progress("LAMMPS: " + name);
   fs::remove(fs::path(folder_) / (name + ".dat"));  // it is appended to
-  RunContext context = context_of({}, folder_);
+  RunContext context = context_of(folder_);
   run_stage(context, name, input);
   inputs_ += input;
   seconds_ += context.lammps_seconds;
@@ -56,9 +102,7 @@ ReferenceTable MdSession::table(const std::string& title, const std::string& cas
   t.add("title", title);
   t.add("potential", fmt::format("{} ({}, hash {})", potential_.name, fs::path(potential_.file).filename().string(),
                                  potential_.file_hash));
-  if (contact)
-    t.add("between_tubes", fmt::format("Lennard-Jones, {} eV, {} nm, cut at {} nm, not shifted", atom_law_.epsilon,
-                                       atom_law_.sigma, atom_law_.cutoff));
+  if (contact) t.add("between_tubes", between_tubes(set_));
   t.add("lammps", lammps_version({}).text);
   t.add("input_hash", hash_hex(inputs_));
   t.add("wall_seconds", fmt::format("{:.0f}", seconds_));
@@ -71,6 +115,17 @@ long period_hexagons(Chirality c) { return cell_hexagons(c, translation_vector(c
 
 double period_of(Chirality c, const TubeShape& shape) {
   return static_cast<double>(period_hexagons(c)) * shape.length_per_hexagon;
+}
+
+long row_hexagons(Chirality c) { return std::gcd(c.n, c.m); }
+
+double row_height(Chirality c, const TubeShape& shape) {
+  return static_cast<double>(row_hexagons(c)) * shape.length_per_hexagon;
+}
+
+double natural_twist(const ParameterSet& set) {
+  const Quantity* twist = find_quantity(set, "atomistic.natural_twist");
+  return twist ? twist->value : 0;
 }
 
 std::vector<Vector3> tube_atoms(Chirality c, const TubeShape& shape, long hexagons, double turn) {

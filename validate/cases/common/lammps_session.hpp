@@ -3,35 +3,33 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "atomistic/finite_tube.hpp"
 #include "atomistic/runs.hpp"
 #include "contact/van_der_waals.hpp"
 #include "core/case.hpp"
 #include "core/reference.hpp"
+#include "io/parameters_toml.hpp"
 
 namespace ropewalk {
 
-// The tubes of these cases and the sets of the model.
-struct ValidatedTube {
-  Chirality chirality;
-  const char* set;
-  const char* name;
-};
-inline constexpr ValidatedTube tube_5_5{{5, 5}, "cnt-5-5-tersoff", "(5,5)"};
-inline constexpr ValidatedTube tube_10_10{{10, 10}, "cnt-10-10-tersoff", "(10,10)"};
-
-// All runs of one table, in one folder. They share the bonded potential; the hash covers all their inputs.
+// All runs of one table, in one folder. They share the interatomic potential and the law between tubes, those of
+// the set; the hash covers all their inputs. Throws NotApplicable where the set's potential is not one that is
+// known.
 class MdSession {
  public:
-  explicit MdSession(const CaseContext& context);
+  MdSession(const CaseContext& context, const ParameterSet& set);
 
   const Potential& potential() const { return potential_; }
   const AtomLaw& atom_law() const { return atom_law_; }
 
-  // The free tube at zero axial force.
-  RelaxedTube relaxed(Chirality c);
+  // The tube of the set, free and not twisted, at zero axial force.
+  const RelaxedTube& relaxed();
+  // The same tube at rest under no torque: with the natural twist of the set.
+  TubeShape rest_shape();
 
   void write(const std::string& name, const std::string& content);
   // Runs an input that appends `rows` lines of `columns` numbers to name.dat, or at least `min_rows` of them if
@@ -44,11 +42,13 @@ class MdSession {
                        std::vector<std::string> columns) const;
 
  private:
-  RunContext context_of(Chirality c, const std::string& folder) const;
+  RunContext context_of(const std::string& folder) const;
   void progress(const std::string& line) const;
 
+  ParameterSet set_;
   Potential potential_;
   AtomLaw atom_law_;
+  std::optional<RelaxedTube> relaxed_;
   StiffnessOptions options_;
   std::string folder_, inputs_;
   double seconds_ = 0;
@@ -58,6 +58,16 @@ class MdSession {
 // Hexagons of the shortest untwisted cell, and its length (nm).
 long period_hexagons(Chirality c);
 double period_of(Chirality c, const TubeShape& shape);
+
+// Rows of atoms that a symmetry of the tube takes into each other: gcd(n,m) hexagons, and their height (nm). A turn
+// by 2 pi/gcd(n,m) about the axis is a symmetry too.
+long row_hexagons(Chirality c);
+double row_height(Chirality c, const TubeShape& shape);
+
+inline bool is_chiral(Chirality c) { return c.m != 0 && c.n != c.m; }
+
+// Natural twist of the set's tube, rad/nm; 0 where the set has none.
+double natural_twist(const ParameterSet& set);
 
 // The atoms of a relaxed tube: so many hexagons, from z = 0 upwards, turned about its axis (nm, rad).
 std::vector<Vector3> tube_atoms(Chirality c, const TubeShape& shape, long hexagons, double turn = 0);

@@ -178,13 +178,9 @@ double chain_energy(const BondStiffness& bond, double element, double strain, do
   return bond_energy<double>(bond, element, element * (1 + strain) * chord, i, j).total() / element;
 }
 
-std::vector<double> column_where(const ReferenceTable& table, const std::string& column, const std::string& key,
-                                 double value) {
-  const std::vector<double> keys = table.column(key), all = table.column(column);
-  std::vector<double> some;
-  for (std::size_t k = 0; k < all.size(); ++k)
-    if (keys[k] == value) some.push_back(all[k]);
-  return some;
+double lammps_seconds(const ParameterSet& set, double length, double relaxations) {
+  constexpr double per_atom = 1.2e-3;  // s; 500 steps of the minimiser
+  return per_atom * set.atoms_per_length * length * relaxations;
 }
 
 }  // namespace ropewalk

@@ -40,8 +40,7 @@ void add_collapse(const TubeCurve& curve, const std::vector<double>& amplitude, 
 // Energy per length (eV/nm) of a chain of equal bonds; `element` is their length.
 double chain_energy(const BondStiffness& bond, double element, double strain, double twist, double curvature);
 
-// The numbers of `column` in the rows that have `value` in the column `key`.
-std::vector<double> column_where(const ReferenceTable& table, const std::string& column, const std::string& key,
-                                 double value);
+// About how long LAMMPS takes for `relaxations` of `length` nm of tube, s of one core (Tersoff).
+double lammps_seconds(const ParameterSet& set, double length, double relaxations);
 
 }  // namespace ropewalk

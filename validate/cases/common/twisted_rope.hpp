@@ -1,21 +1,26 @@
 // A rope of seven parallel tubes twisted by two rigid grips, with atoms (LAMMPS) and with elements.
 //
-// Atoms: armchair tubes side by side on a hexagonal lattice. The bands of atoms at both ends are the grips. They
+// Atoms: tubes side by side on a hexagonal lattice. The bands of atoms at both ends are the grips. They
 // turn as rigid bodies about the rope's axis by plus and minus half of the angle; the atoms between them are
 // relaxed at each increment. The bonded potential acts within a tube, Lennard-Jones only between tubes.
 //
-// Clamped length. The deforming part reaches from the last held row of atoms of one band to the first of the other:
-// with n free rows it is (n + 1) row distances, one more than the free atoms occupy. In a chain of elements the
-// bonds deform. So the innermost grip elements have their centres at those two held rows, and the clamped length is
-// divided into whole bonds.
+// Rows. A row is gcd(n,m) hexagons: of an armchair tube a ring of atoms, half a period high.
+//
+// Clamped length. Where a band ends, bonds join held atoms with free ones. The deforming part reaches from the mean
+// height of these held atoms at one band to that at the other; of an armchair tube with n free rows it is (n + 1)
+// row heights, one more than the free atoms occupy. In a chain of elements the bonds deform. So the innermost grip
+// elements have their centres at those two heights, and the clamped length is divided into whole bonds.
 //
 // Registry. A model of smooth tubes stands for the mean over registries. So each tube is turned about its own axis
 // and shifted along it, by parts of its symmetry that fill both evenly.
+//
+// Twist at the start: tubes have the natural twist of their set, at which its bonds are at rest.
 #pragma once
 
 #include <string>
 #include <vector>
 
+#include "atomistic/lattice.hpp"
 #include "atomistic/potential.hpp"
 #include "core/case.hpp"
 #include "core/reference.hpp"
@@ -24,31 +29,28 @@
 namespace ropewalk {
 
 struct TwistedRope {
-  std::string name;        // of the case and of its reference
-  std::string parameters;  // "cnt-5-5-tersoff"
-  int free_rows = 0;       // rows of atoms between the bands, half a period apart
-  int band_rows = 0;       // in each band
-  int bonds = 0;           // within the clamped length; 1.5 of them should be as long as a band
-  double step = 0;         // rad, between increments
-  int increments = 0;
-  int elastic_increments = 0;  // of these, within the elastic range: they are compared with the atoms
-  std::vector<int> collapsed;  // increments beyond the collapse of the walls, compared within 10 %
-  std::vector<bool> axial_free = {false, true};  // the series: grips fixed, and free along the axis
-  std::vector<std::string> remarks;
+  std::string name;   // of the table of references
+  int free_rows = 0;  // between the bands
+  int band_rows = 0;  // in each band
+  int bonds = 0;      // within the clamped length; 1.5 of them should be as long as a band
 };
-
-// Seven (10,10) tubes of 8.1 nm: of a case, and of the chart of speed against accuracy.
-TwistedRope rope_7_10_10();
-// The same, twisted until the walls have collapsed, with fixed grips.
-TwistedRope collapsed_rope_7_10_10();
+// About `length` nm between bands of 1 nm, with bonds of 0.62 nm.
+TwistedRope rope_of_length(const std::string& name, double length, const ParameterSet& set);
 
 double row_distance(const ParameterSet& set);
 double clamped_length(const TwistedRope& rope, const ParameterSet& set);
+
+// Angles between the grips (rad): of the stored table or, without one, from 0 in even increments to r tau =
+// `shear`.
+std::vector<double> angles_of(const TwistedRope& rope, const ParameterSet& set, const CaseContext& context,
+                              double shear, int increments);
 
 // Atoms of one tube of the rope, sorted: lower band, free part, upper band.
 struct RopeTube {
   std::vector<Vector3> below, free, above;  // nm
 };
+std::vector<RopeTube> rope_atoms(const TwistedRope& rope, const ParameterSet& set, const TubeShape& shape);
+// The same with the radius and the lengths of the set.
 std::vector<RopeTube> rope_atoms(const TwistedRope& rope, const ParameterSet& set);
 
 // Parts of a LAMMPS input with these atoms, tube by tube as types 1 to 7: the data file; the potentials; and the
@@ -61,7 +63,8 @@ std::string rope_groups(const std::vector<RopeTube>& rope);
 // Columns axial_free, angle_rad, energy_eV, tersoff_eV, vdw_eV, moment_eV, force_eV_nm, rise_nm. Energies are
 // absolute. The moment is the resistance of the rope on the upper grip, the force pulls the grips together, the
 // rise is the motion of the upper grip where it is free along the axis. Runs LAMMPS in context.work.
-ReferenceTable twist_atoms(const TwistedRope& rope, const CaseContext& context);
+ReferenceTable twist_atoms(const TwistedRope& rope, const ParameterSet& set, const std::vector<double>& angles,
+                           const std::vector<bool>& axial_free, const CaseContext& context);
 
 // One increment, of atoms or of elements.
 struct TwistedState {
@@ -73,12 +76,20 @@ struct TwistedState {
   double bending = 0;          // eV, of `tubes`; of elements only
 };
 std::vector<TwistedState> states_of(const ReferenceTable& table, bool axial_free);
-std::vector<TwistedState> twist_elements(const TwistedRope& rope, const ParameterSet& set, bool axial_free);
+std::vector<TwistedState> twist_elements(const TwistedRope& rope, const ParameterSet& set,
+                                         const std::vector<double>& angles, bool axial_free);
 
-// Compares elements with atoms (stored or fresh), with the grips fixed and free along the axis.
-CaseResult run_twisted_rope(const TwistedRope& rope, const CaseContext& context);
-
-// A case of this rope, without its order and its faults; `tube` as "(5,5)", `length` in nm.
-Case twisted_rope_case(const TwistedRope& rope, const std::string& tube, const std::string& length);
+// What is compared for each tube of a case.
+struct RopeComparison {
+  std::string name;     // of the table
+  double length = 8;    // nm
+  double shear = 0.04;  // r tau of the last increment, where none are stored
+  int increments = 6;
+  std::vector<bool> axial_free = {false, true};  // the series: grips fixed, and free along the axis
+  std::vector<double> collapsed;                 // degrees beyond the collapse, compared within 10 %
+  std::vector<std::string> remarks;
+};
+// A case of such ropes, without its order, its sets and its faults.
+Case twisted_rope_case(const RopeComparison& comparison, const std::string& title);
 
 }  // namespace ropewalk

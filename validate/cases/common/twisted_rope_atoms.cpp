@@ -1,17 +1,14 @@
 // The twisted rope of atoms: places of the atoms, LAMMPS input and results.
 #include <fmt/format.h>
 
-#include <chrono>
+#include <Eigen/Geometry>
 #include <cmath>
-#include <filesystem>
-#include <sstream>
 
-#include "atomistic/lammps.hpp"
-#include "atomistic/lattice.hpp"
 #include "atomistic/potential.hpp"
 #include "atomistic/runs.hpp"
+#include "cases/common/lammps_session.hpp"
 #include "cases/common/twisted_rope.hpp"
-#include "io/files.hpp"
+#include "io/parameters_toml.hpp"
 #include "scene/build.hpp"
 
 namespace ropewalk {
@@ -22,8 +19,10 @@ constexpr double golden = 0.6180339887498949;  // of the additive sequence that 
 
 double part(double x) { return x - std::floor(x); }
 
-// Fractions of the symmetries of a tube: five- or tenfold turns and half periods.
-double turn_of(int tube, Chirality c) { return part(tube * golden) * 2 * units::pi / c.n; }
+// Fractions of the symmetries of a tube: turns and rows.
+double turn_of(int tube, Chirality c) {
+  return part(tube * golden) * 2 * units::pi / static_cast<double>(row_hexagons(c));
+}
 double shift_of(int tube, double row) { return (part(tube * golden * golden * golden) - 0.5) * row; }
 
 // The grip's atoms move along the axis together: each feels the mean force.
@@ -40,35 +39,34 @@ std::string release_text(bool axial_free) {
 
 // The interior is turned evenly with the grips before it is relaxed. The moment needs the forces on held atoms, so
 // that the fixes which hold them are removed while it is read.
-std::string increments_text(const TwistedRope& rope, double length, bool axial_free) {
-  const double half = 0.5 * rope.step * units::rad_in_degree;
+std::string increments_text(const std::vector<double>& angles, double length, const std::string& results,
+                            bool axial_free) {
   const std::string minimise = hold_text(axial_free) + "minimize 0.0 5.0e-3 3000 6000\n";
-  const std::string report = release_text(axial_free) + "run 0 post no\n" +
-                             "print \"$(v_i) $(pe) $(c_lj) $(v_moment/10) $(v_pull) $(v_rise/10)\" append " +
-                             (axial_free ? "free.dat" : "fixed.dat") + " screen no\n";
-  std::string text = fmt::format(
-      "variable i equal 0\n"
-      "variable part atom f_ref[3]/{:.12f}\n"
-      "variable turned atom v_part*{:.15f}\n"
-      "variable dx atom x*(cos(v_turned)-1)-y*sin(v_turned)\n"
-      "variable dy atom x*sin(v_turned)+y*(cos(v_turned)-1)\n",
-      length / angstrom, rope.step);
-  text += minimise + report;
-  text += fmt::format(
-      "variable count loop {}\n"
-      "label next_increment\n"
-      "variable i equal ${{count}}\n"
-      "displace_atoms free move v_dx v_dy 0.0 units box\n"
-      "displace_atoms above rotate 0 0 0 0 0 1 {:.12f} units box\n"
-      "displace_atoms below rotate 0 0 0 0 0 1 {:.12f} units box\n",
-      rope.increments, half, -half);
-  return text + minimise + report + "next count\njump SELF next_increment\n";
+  const std::string report =
+      release_text(axial_free) +
+      "run 0 post no\nprint \"$(pe) $(c_lj) $(v_moment/10) $(v_pull) $(v_rise/10)\" append " + results +
+      ".dat screen no\n";
+  std::string text = fmt::format("variable part atom f_ref[3]/{:.12f}\n", length / angstrom) + minimise + report;
+  for (std::size_t k = 1; k < angles.size(); ++k) {
+    const double step = angles[k] - angles[k - 1], half = 0.5 * step * units::rad_in_degree;
+    text += fmt::format(
+        "variable turned atom v_part*{:.15f}\n"
+        "variable dx atom x*(cos(v_turned)-1)-y*sin(v_turned)\n"
+        "variable dy atom x*sin(v_turned)+y*(cos(v_turned)-1)\n"
+        "displace_atoms free move v_dx v_dy 0.0 units box\n"
+        "displace_atoms above rotate 0 0 0 0 0 1 {:.12f} units box\n"
+        "displace_atoms below rotate 0 0 0 0 0 1 {:.12f} units box\n",
+        step, half, -half);
+    text += minimise + report;
+  }
+  return text;
 }
 
-std::string input_text(const TwistedRope& rope, const ParameterSet& set, const Potential& potential,
-                       const std::vector<RopeTube>& atoms, bool axial_free) {
+std::string input_text(const TwistedRope& rope, const ParameterSet& set, const MdSession& session,
+                       const std::vector<RopeTube>& atoms, const std::vector<double>& angles,
+                       const std::string& results, bool axial_free) {
   std::string text = header_commands("s s s", 0.05) + "read_data rope.data\n";
-  text += rope_pairs(potential, set.line->universal) + rope_groups(atoms);
+  text += rope_pairs(session.potential(), set.line->universal) + rope_groups(atoms);
   text +=
       "fix ref all store/state 0 x y z\n"
       "compute lj all pair lj/cut\n"
@@ -85,19 +83,25 @@ std::string input_text(const TwistedRope& rope, const ParameterSet& set, const P
       "thermo_style custom step pe fnorm fmax c_lj c_twisting c_lifts c_pulls\n"
       "thermo 100\n"
       "thermo_modify flush yes lost error norm no format float %.12g\n";
-  return text + increments_text(rope, clamped_length(rope, set), axial_free);
+  return text + increments_text(angles, clamped_length(rope, set), results, axial_free);
 }
 
-void read_rows(const std::string& path, bool axial_free, const TwistedRope& rope, ReferenceTable& table) {
-  std::istringstream lines(read_file(path));
-  double i = 0, energy = 0, lj = 0, moment = 0, force = 0, rise = 0;
-  int count = 0;
-  while (lines >> i >> energy >> lj >> moment >> force >> rise) {
-    table.rows.push_back({axial_free ? 1.0 : 0.0, i * rope.step, energy, energy - lj, lj, moment, force, rise});
-    ++count;
+// Mean height (rows of hexagons) of the held atoms whose bonds cross the height `cut`, below it or above it.
+double held_height(Chirality c, long rows, long cut, bool below) {
+  const long row = row_hexagons(c), thirds = 3 * row * cut;
+  double sum = 0;
+  long count = 0;
+  for (const Site& site : strip_sites(c, rows * row)) {
+    if (site.second) continue;
+    for (const Site& other :
+         {Site{site.i, site.j, true}, Site{site.i - 1, site.j, true}, Site{site.i, site.j - 1, true}}) {
+      const long one = height_in_thirds(c, site), two = height_in_thirds(c, other);
+      if ((one < thirds) == (two < thirds)) continue;
+      sum += static_cast<double>(below ? std::min(one, two) : std::max(one, two));
+      ++count;
+    }
   }
-  if (count != rope.increments + 1)
-    throw LammpsError(fmt::format("LAMMPS left {} of {} increments in {}", count, rope.increments + 1, path));
+  return sum / static_cast<double>(3 * row * count);
 }
 
 }  // namespace
@@ -152,29 +156,56 @@ std::string rope_groups(const std::vector<RopeTube>& rope) {
 }
 
 double row_distance(const ParameterSet& set) {
-  // n hexagons of two atoms each in a row of an armchair tube.
-  return 2.0 * set.chirality.n / set.atoms_per_length;
+  return 2.0 * static_cast<double>(row_hexagons(set.chirality)) / set.atoms_per_length;
 }
 
 double clamped_length(const TwistedRope& rope, const ParameterSet& set) {
-  return (rope.free_rows + 1) * row_distance(set);
+  const long rows = rope.free_rows + 2 * rope.band_rows;
+  return row_distance(set) * (held_height(set.chirality, rows, rope.band_rows + rope.free_rows, false) -
+                              held_height(set.chirality, rows, rope.band_rows, true));
 }
 
-std::vector<RopeTube> rope_atoms(const TwistedRope& rope, const ParameterSet& set) {
-  const Chirality c = set.chirality;
+TwistedRope rope_of_length(const std::string& name, double length, const ParameterSet& set) {
   const double row = row_distance(set);
-  const TubeShape shape{set.radius, row / c.n, 0, 0, 0};
+  const auto rows = [&](double nm) { return static_cast<int>(std::lround(nm / row)); };
+  return {name, rows(length), rows(1), static_cast<int>(std::lround(length / 0.615))};
+}
+
+std::vector<double> angles_of(const TwistedRope& rope, const ParameterSet& set, const CaseContext& context,
+                              double shear, int increments) {
+  std::vector<double> angles;
+  const std::string stored = find_reference(context, set, rope.name);
+  if (!stored.empty()) {
+    for (const double angle : read_reference(stored).column("angle_rad")) {
+      if (!angles.empty() && angle < angles.back()) break;  // the next series
+      angles.push_back(angle);
+    }
+    return angles;
+  }
+  for (int k = 0; k <= increments; ++k)
+    angles.push_back(shear * clamped_length(rope, set) / set.radius * k / increments);
+  return angles;
+}
+
+std::vector<RopeTube> rope_atoms(const TwistedRope& rope, const ParameterSet& set, const TubeShape& shape) {
+  const Chirality c = set.chirality;
+  const double row = row_height(c, shape);
   const long rows = rope.free_rows + 2 * rope.band_rows;
-  const std::vector<Site> sites = strip_sites(c, rows * c.n);
+  const std::vector<Site> sites = strip_sites(c, rows * row_hexagons(c));
+  std::vector<double> heights;
+  double middle = 0;
+  for (const Site& site : sites) {
+    heights.push_back(place(c, site, shape).z());
+    middle += heights.back() / static_cast<double>(sites.size());
+  }
   std::vector<RopeTube> out;
   for (const auto& [x, y] : hexagonal_lattice(tubes, set.line->pair_spacing)) {
     const int t = static_cast<int>(out.size());
     const Eigen::AngleAxisd turn(turn_of(t, c), Vector3::UnitZ());
-    const double middle = 0.5 * static_cast<double>(rows - 1) * row;
     const Vector3 shift(x, y, shift_of(t, row));
     RopeTube tube;
     for (const Site& site : sites) {
-      const long at = height_in_thirds(c, site) / (3 * c.n);
+      const long at = height_in_thirds(c, site) / (3 * row_hexagons(c));
       auto& group = at < rope.band_rows                    ? tube.below
                     : at < rope.band_rows + rope.free_rows ? tube.free
                                                            : tube.above;
@@ -185,46 +216,32 @@ std::vector<RopeTube> rope_atoms(const TwistedRope& rope, const ParameterSet& se
   return out;
 }
 
-ReferenceTable twist_atoms(const TwistedRope& rope, const CaseContext& context) {
-  const ParameterSet set = context.parameters(rope.parameters);
-  const Potential potential = find_potential("tersoff");
-  const std::vector<RopeTube> atoms = rope_atoms(rope, set);
-  LammpsOptions options;
-  options.quiet_seconds = 600;
+std::vector<RopeTube> rope_atoms(const TwistedRope& rope, const ParameterSet& set) {
+  return rope_atoms(rope, set, {set.radius, 2 / set.atoms_per_length, natural_twist(set), 0, 0});
+}
 
-  ReferenceTable table;
-  table.columns = {"axial_free", "angle_rad", "energy_eV",   "tersoff_eV",
-                   "vdw_eV",     "moment_eV", "force_eV_nm", "rise_nm"};
-  std::filesystem::create_directories(context.work);
-  const std::string data = rope_data(atoms);
-  write_file_atomically(context.work + "/rope.data", data);
-  std::string inputs = data;
-  const auto start = std::chrono::steady_clock::now();
-  for (const bool axial_free : rope.axial_free) {
-    const std::string name = axial_free ? "free" : "fixed";
-    if (context.progress) context.progress(fmt::format("LAMMPS: grips {} along the axis", name));
-    const std::string results = context.work + "/" + name + ".dat";
-    std::filesystem::remove(results);
-    const std::string input = input_text(rope, set, potential, atoms, axial_free);
-    run_lammps(context.work, name, input, options);
-    read_rows(results, axial_free, rope, table);
-    inputs += input;
+ReferenceTable twist_atoms(const TwistedRope& rope, const ParameterSet& set, const std::vector<double>& angles,
+                           const std::vector<bool>& axial_free, const CaseContext& context) {
+  MdSession session(context, set);
+  const std::vector<RopeTube> atoms = rope_atoms(rope, set, session.rest_shape());
+  session.write("rope.data", rope_data(atoms));
+  std::vector<std::vector<double>> rows;
+  for (const bool free : axial_free) {
+    const std::string name = rope.name + (free ? "-free" : "-fixed");
+    const auto results =
+        session.run(name, input_text(rope, set, session, atoms, angles, name, free), angles.size(), 5);
+    for (std::size_t k = 0; k < angles.size(); ++k) {
+      const std::vector<double>& v = results[k];
+      rows.push_back({free ? 1.0 : 0.0, angles[k], v[0], v[0] - v[1], v[1], v[2], v[3], v[4]});
+    }
   }
-  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-
-  table.add("title", fmt::format("7-tube rope of ({},{}) twisted by rigid grips, clamped length {:.4f} nm",
-                                 set.chirality.n, set.chirality.m, clamped_length(rope, set)));
-  table.add("potential",
-            fmt::format("{} ({}, hash {})", potential.name,
-                        std::filesystem::path(potential.file).filename().string(), potential.file_hash));
-  const UniversalLine& law = set.line->universal;
-  table.add("lennard_jones", fmt::format("epsilon {} eV, sigma {} nm, cutoff {} nm, between tubes only",
-                                         law.epsilon, law.sigma, law.lj_cutoff));
-  table.add("lammps", lammps_version(options).text);
-  table.add("input_hash", hash_hex(inputs));
-  table.add("wall_seconds", fmt::format("{:.0f}", seconds.count()));
-  table.add("command", fmt::format("ropewalk validate run {} --fresh", rope.name));
-  return table;
+  ReferenceTable t = session.table(
+      fmt::format("7-tube rope of {} twisted by rigid grips, clamped length {:.4f} nm", tube_name(set),
+                  clamped_length(rope, set)),
+      rope.name, true,
+      {"axial_free", "angle_rad", "energy_eV", "tersoff_eV", "vdw_eV", "moment_eV", "force_eV_nm", "rise_nm"});
+  t.rows = std::move(rows);
+  return t;
 }
 
 }  // namespace ropewalk

@@ -51,8 +51,10 @@ ClampedRope::ClampedRope(const TwistedRope& rope, const ParameterSet& set)
   const double a = length_ / bonds_;
   ParameterSet divided = set;
   divided.element_length = a;
-  // The band ends half a row beyond its last row, a grip half an element beyond its last centre.
-  beyond_ = std::max(1, static_cast<int>(std::lround((rope.band_rows - 0.5) * row_distance(set) / a - 0.5)));
+  // A grip ends half an element beyond its last centre. Beyond the clamped length a band is longer by half of what
+  // this exceeds the free rows by.
+  const double band = rope.band_rows * row_distance(set) - 0.5 * (length_ - rope.free_rows * row_distance(set));
+  beyond_ = std::max(1, static_cast<int>(std::lround(band / a - 0.5)));
   topology_ = topology_of(divided);
   topology_.types.front().bond = set.anharmonic_bond(length_);
   const int elements = bonds_ + 1 + 2 * beyond_;
@@ -127,14 +129,15 @@ TwistedState ClampedRope::measure() const {
 
 }  // namespace
 
-std::vector<TwistedState> twist_elements(const TwistedRope& rope, const ParameterSet& set, bool axial_free) {
+std::vector<TwistedState> twist_elements(const TwistedRope& rope, const ParameterSet& set,
+                                         const std::vector<double>& angles, bool axial_free) {
   ClampedRope chains(rope, set);
   std::vector<TwistedState> states;
-  for (int k = 0; k <= rope.increments; ++k) {
-    if (k > 0) chains.turn(rope.step);
+  for (const double angle : angles) {
+    if (!states.empty()) chains.turn(angle - states.back().angle);
     if (axial_free) chains.release();
     states.push_back(chains.measure());
-    states.back().angle = k * rope.step;
+    states.back().angle = angle;
   }
   return states;
 }

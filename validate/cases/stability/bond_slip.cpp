@@ -8,7 +8,6 @@
 namespace ropewalk {
 namespace {
 
-constexpr const char* set_name = "cnt-10-10-tersoff";
 constexpr int increments = 24;
 
 // Two elements: one is held, a couple turns the other in growing steps. Returns the twist at rest (rad); NaN where
@@ -30,7 +29,7 @@ double twisted(const ParameterSet& set, double moment) {
 }
 
 CaseResult run(const CaseContext& context) {
-  const ParameterSet model = context.model(set_name), oracle = context.parameters(set_name);
+  const ParameterSet model = context.model(), oracle = context.set();
   const double theory = oracle.bond.twist / oracle.element_length;
   const double found =
       limit_between([&](double m) { return std::isnan(twisted(model, m)); }, 0.5 * theory, 1.6 * theory, 3e-3);
@@ -57,7 +56,7 @@ CaseResult run(const CaseContext& context) {
   figure.caption = "Beyond 90 degrees no angle is at rest: the bond slips.";
   result.figures.push_back(figure);
   result.remarks.push_back("A run stops before a bond slips and names the element.");
-  result.sources.push_back(set_name);
+  result.sources.push_back(context.tube().source);
   return result;
 }
 
@@ -66,6 +65,7 @@ const RegisteredCase registered([] {
   c.name = "limit-bond-slip";
   c.group = Case::Group::stability;
   c.order = 40;
+  c.law = Case::Law::none;
   c.title = "Moment at which a bond slips";
   c.why =
       "The torque of a bond is a sine of its twist. Beyond 90 degrees the bond would lose a turn without notice.";

@@ -9,7 +9,6 @@
 namespace ropewalk {
 namespace {
 
-constexpr const char* set_name = "cnt-10-10-tersoff";
 constexpr int bonds = 40;
 
 // Velocity Verlet with explicit damping becomes unstable where dt^2 K + 2 dt D has the eigenvalue 4, with K and D
@@ -44,7 +43,7 @@ double found(const ParameterSet& set, double rate) {
 }
 
 CaseResult run(const CaseContext& context) {
-  const ParameterSet model = context.model(set_name), oracle = context.parameters(set_name);
+  const ParameterSet model = context.model(), oracle = context.set();
   CaseResult result;
   std::vector<double> length, limit;
   for (const double factor : {1.0, 2.0, 4.0, 8.0}) {
@@ -93,7 +92,7 @@ CaseResult run(const CaseContext& context) {
       "`run` refuses a time step above its own estimate of this limit; by default it takes 0.9 of the estimate in "
       "cold scenes and 0.6 in others. Above some 10/ps the damping sets the step: a turn of all elements alike, "
       "with their lever arms, is damped more strongly than one of neighbours in opposite directions.");
-  result.sources.push_back(set_name);
+  result.sources.push_back(context.tube().source);
   return result;
 }
 
@@ -102,6 +101,7 @@ const RegisteredCase registered([] {
   c.name = "limit-chain-step";
   c.group = Case::Group::stability;
   c.order = 10;
+  c.law = Case::Law::none;
   c.title = "Largest time step of a single tube";
   c.why =
       "Too large a step blows a run up; too small a step wastes time. The default is 0.9 of the limit where a "

@@ -7,8 +7,6 @@
 namespace ropewalk {
 namespace {
 
-constexpr const char* set_name = "cnt-10-10-tersoff";
-
 // Seven short tubes at rest.
 Bundle bundle_at_rest(const ParameterSet& set) {
   Bundle b = line_bundle(set, 7, 8);
@@ -18,8 +16,7 @@ Bundle bundle_at_rest(const ParameterSet& set) {
 }
 
 CaseResult run(const CaseContext& context) {
-  const Bundle model = bundle_at_rest(context.model(set_name)),
-               oracle = bundle_at_rest(context.parameters(set_name));
+  const Bundle model = bundle_at_rest(context.model()), oracle = bundle_at_rest(context.set());
   const double theory = 2 / stiffest_frequency(oracle.topology, oracle.interaction, oracle.state);
   const auto fails = [&](double dt) { return blows_up(model.topology, model.interaction, model.state, dt); };
   const double found = limit_between(fails, 0.3 * theory, 3 * theory);
@@ -49,7 +46,7 @@ CaseResult run(const CaseContext& context) {
       "The stiffest motion is along the tubes, where the contact does not act. Sideways the chains are softer, and "
       "even a contact pressed to 98.5 % of its spacing does not make up for that. So `auto` may take the step of a "
       "single tube.");
-  result.sources.push_back(set_name);
+  result.sources.push_back(context.tube().source);
   return result;
 }
 

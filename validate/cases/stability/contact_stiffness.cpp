@@ -16,7 +16,7 @@ namespace {
 constexpr int tubes = 7, elements = 4;
 
 struct Series {
-  const char* set;
+  std::size_t set;  // of Case::sets
   bool paper;
   double length;                // of an element, over the set's
   std::vector<double> factors;  // of the contact's energy
@@ -25,9 +25,9 @@ struct Series {
 
 const std::vector<Series>& all_series() {
   static const std::vector<Series> series = {
-      {"cnt-10-10-tersoff", false, 1, {1, 4, 16, 64, 256}, "line law"},
-      {"cnt-10-10-tersoff", false, 2, {1, 4, 16, 64, 256}, "line law, elements twice as long"},
-      {"cnt-10-10-paper", true, 1, {1, 4, 16, 64}, "paper law"},
+      {0, false, 1, {1, 4, 16, 64, 256}, "line law"},
+      {0, false, 2, {1, 4, 16, 64, 256}, "line law, elements twice as long"},
+      {1, true, 1, {1, 4, 16, 64}, "paper law"},
   };
   return series;
 }
@@ -67,7 +67,7 @@ Bundle bundle_at_rest(const Series& s, const ParameterSet& set, double factor) {
 // estimate.
 double check_viscosity(const CaseContext& context, CaseResult& result) {
   const Series s = all_series().front();
-  Bundle oracle = bundle_at_rest(s, context.parameters(s.set), 1), model = packed(s, context.model(s.set), 1);
+  Bundle oracle = bundle_at_rest(s, context.set(s.set), 1), model = packed(s, context.model(s.set), 1);
   model.state = oracle.state;
   double margin = 1e9;
   CaseFigure figure;
@@ -116,7 +116,7 @@ CaseResult run(const CaseContext& context) {
   for (const Series& s : all_series()) {
     std::vector<double> at, limit, expected;
     for (const double factor : s.factors) {
-      const Bundle oracle = bundle_at_rest(s, context.parameters(s.set), factor);
+      const Bundle oracle = bundle_at_rest(s, context.set(s.set), factor);
       Bundle model = packed(s, context.model(s.set), factor);
       model.state = oracle.state;
       const double theory = 2 / stiffest_frequency(oracle.topology, oracle.interaction, oracle.state);
@@ -151,7 +151,7 @@ CaseResult run(const CaseContext& context) {
   result.remarks.push_back(
       "A contact many times as strong as that of the sets stands for tubes that are pressed together. At rest, the "
       "contact of no shipped set lowers the step.");
-  result.sources = {"cnt-10-10-tersoff", "cnt-10-10-paper"};
+  for (const CaseTube& tube : context.tubes()) result.sources.push_back(tube.source);
   return result;
 }
 
@@ -160,6 +160,8 @@ const RegisteredCase registered([] {
   c.name = "limit-contact-stiffness";
   c.group = Case::Group::stability;
   c.order = 50;
+  c.sets = {"cnt-10-10-tersoff", "cnt-10-10-paper"};
+  c.only_these = "it compares the contact laws of two shipped sets";
   c.title = "Largest time step by law, element length and stiffness";
   c.why =
       "A run must know its largest step before it begins: for every law and element length, and also where the "

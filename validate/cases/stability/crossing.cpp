@@ -15,8 +15,6 @@
 namespace ropewalk {
 namespace {
 
-constexpr const char *line_set = "cnt-10-10-tersoff", *paper_set = "cnt-10-10-paper";
-
 // Energy (eV) at a point of a path, and its slope by force or torque.
 struct EnergyAndSlope {
   double energy = 0, slope = 0;
@@ -276,7 +274,8 @@ void check_coinciding_nodes(RigidTubes& single, const ParameterSet& oracle, Case
                            Limit::Guard::refused, "elements that overlap at the start; a run stops long before"});
 }
 
-CaseFigure figure_of(RigidTubes& line_rows, RigidTubes& paper_rows, const ParameterSet& line, double line_at, double paper_at) {
+CaseFigure figure_of(RigidTubes& line_rows, RigidTubes& paper_rows, const ParameterSet& line, double line_at,
+                     double paper_at) {
   CaseFigure figure;
   figure.chart = {"Energy of two crossing tubes", {"crossing angle", "degrees"}, {"energy", "eV"}, {}, {}};
   std::vector<double> angle, by_line, by_paper;
@@ -297,8 +296,8 @@ CaseFigure figure_of(RigidTubes& line_rows, RigidTubes& paper_rows, const Parame
 }
 
 CaseResult run(const CaseContext& context) {
-  const ParameterSet line = context.model(line_set), paper = context.model(paper_set);
-  const ParameterSet line_oracle = context.parameters(line_set), paper_oracle = context.parameters(paper_set);
+  const ParameterSet line = context.model(0), paper = context.model(1);
+  const ParameterSet line_oracle = context.set(0), paper_oracle = context.set(1);
   const double line_at = line_parallel_well(line_oracle.line->density).distance, paper_at = 1.713;
   RigidTubes line_rows(line, line_interaction(line), 9), line_single(line, line_interaction(line), 1);
   const Interaction published = paper_interaction(paper, context.fault.missing_torque);
@@ -320,7 +319,7 @@ CaseResult run(const CaseContext& context) {
       "coincide, the force of the line law changes sign; no run gets there. The published form of the paper law "
       "jumps at a right angle wherever the line of centres is not normal to both axes. For tubes in one line it "
       "has no value once rounding takes the argument of an arc cosine above one.");
-  result.sources = {line_set, paper_set};
+  for (const CaseTube& tube : context.tubes()) result.sources.push_back(tube.source);
   return result;
 }
 
@@ -329,6 +328,8 @@ const RegisteredCase registered([] {
   c.name = "limit-crossing";
   c.group = Case::Group::stability;
   c.order = 70;
+  c.sets = {"cnt-10-10-tersoff", "cnt-10-10-paper"};
+  c.only_these = "it compares the contact laws of two shipped sets";
   c.title = "Crossing angle and collinear tubes";
   c.why = "A jump of the energy adds energy without work, and a force that is not finite ends a run.";
   c.setup =

@@ -14,8 +14,6 @@
 namespace ropewalk {
 namespace {
 
-constexpr const char *line_set = "cnt-10-10-tersoff", *paper_set = "cnt-10-10-paper";
-
 // --- Curvature: a tube bent by couples at its ends ---
 
 constexpr int bonds = 4;
@@ -54,20 +52,20 @@ double polygon_limit(const ParameterSet& set, double allowed) {
 
 void check_bending(const CaseContext& context, CaseResult& result) {
   struct Tube {
-    const char* set;
+    std::size_t set;
     double factor;
   };
-  for (const Tube& t : {Tube{line_set, 1}, Tube{line_set, 4}, Tube{paper_set, 1}})
+  for (const Tube& t : {Tube{0, 1}, Tube{0, 4}, Tube{1, 1}})
     for (const double allowed : {0.01, 0.05}) {
       const ParameterSet model = with_elements(context.model(t.set), t.factor),
-                         oracle = with_elements(context.parameters(t.set), t.factor);
+                         oracle = with_elements(context.set(t.set), t.factor);
       const double found = bend_limit(model, oracle, allowed), theory = polygon_limit(oracle, allowed);
       const std::string name = fmt::format("bend of an element of {:.2f} nm ({}) for {:.0f} % in EI",
-                                           oracle.element_length, t.set, 100 * allowed);
+                                           oracle.element_length, oracle.name, 100 * allowed);
       result.checks.push_back(relative_check(name, found, theory, 0.05, "rad", "curvature times element length"));
       if (t.factor == 1 && allowed < 0.02)
-        result.limits.push_back({fmt::format("curvature times element length, 1 % in EI, {}", t.set), found, theory,
-                                 "rad", Limit::Guard::told,
+        result.limits.push_back({fmt::format("curvature times element length, 1 % in EI, {}", oracle.name), found,
+                                 theory, "rad", Limit::Guard::told,
                                  "elements so long that they pass this before the tube kinks"});
     }
 }
@@ -77,8 +75,8 @@ CaseFigure bending_figure(const CaseContext& context) {
   figure.chart = {
       "Error of the bending stiffness", {"curvature times element length", "rad"}, {"error", "%"}, {}, {}};
   int colour = 0;
-  for (const char* name : {line_set, paper_set}) {
-    const ParameterSet model = context.model(name), oracle = context.parameters(name);
+  for (const CaseTube& tube : context.tubes()) {
+    const ParameterSet &model = tube.model, &oracle = tube.set;
     std::vector<double> angle, error;
     for (double m = 0.1; m < 0.8; m += 0.1) {
       angle.push_back(bend_of_bond(model, m));
@@ -86,7 +84,7 @@ CaseFigure bending_figure(const CaseContext& context) {
     }
     const double share = oracle.bond.shear_share(oracle.element_length);
     figure.chart.lines.push_back(theory_curve(
-        fmt::format("(3 s/8 - 1/6) d^2, {}", name),
+        fmt::format("(3 s/8 - 1/6) d^2, {}", oracle.name),
         [&](double d) { return 100 * (0.375 * share - 1.0 / 6) * d * d; }, 0, angle.back(), colour));
     figure.chart.lines.push_back(model_points("chain at rest", angle, error, colour));
     ++colour;
@@ -169,7 +167,7 @@ std::function<double(double)> line_pair_energy(const ParameterSet& set, double d
 }
 
 void check_nodes(const CaseContext& context, CaseResult& result) {
-  const ParameterSet model = context.model(line_set), oracle = context.parameters(line_set);
+  const ParameterSet model = context.model(0), oracle = context.set(0);
   const LineWell well = line_parallel_well(oracle.line->density);
   const double reach = oracle.line->density.cutoff();
   CaseFigure figure;
@@ -214,7 +212,7 @@ void check_nodes(const CaseContext& context, CaseResult& result) {
 }
 
 void check_paper(const CaseContext& context, CaseResult& result) {
-  const ParameterSet model = context.model(paper_set), oracle = context.parameters(paper_set);
+  const ParameterSet model = context.model(1), oracle = context.set(1);
   const double distance = pair_spacing(*oracle.paper, oracle.element_length), reach = oracle.paper->cutoff();
   const auto pair = [&](double z) {
     return oracle.paper->energy({distance, 0, z}, Vector3::UnitZ(), Vector3::UnitZ());
@@ -244,12 +242,12 @@ CaseResult run(const CaseContext& context) {
   result.figures.push_back(bending_figure(context));
   check_nodes(context, result);
   check_paper(context, result);
-  const ParameterSet set = context.parameters(line_set);
+  const ParameterSet set = context.set(0);
   result.remarks.push_back(fmt::format(
       "At the curvature at which the tube kinks, {:.3g}/nm, an element of its set is bent by only {:.2f} rad: the "
       "tube fails before its elements do. A run warns of elements so long that this does not hold.",
       set.validity.kink_curvature, set.validity.kink_curvature * set.element_length));
-  result.sources = {line_set, paper_set};
+  for (const CaseTube& tube : context.tubes()) result.sources.push_back(tube.source);
   return result;
 }
 
@@ -258,6 +256,8 @@ const RegisteredCase registered([] {
   c.name = "limit-element-length";
   c.group = Case::Group::stability;
   c.order = 60;
+  c.sets = {"cnt-10-10-tersoff", "cnt-10-10-paper"};
+  c.only_these = "it compares the contact laws of two shipped sets";
   c.title = "Element length and node spacing";
   c.why =
       "Elements that are too long do not have the bending stiffness of the tube. Nodes too far apart make tubes "

@@ -8,7 +8,6 @@
 namespace ropewalk {
 namespace {
 
-constexpr const char* set_name = "cnt-10-10-tersoff";
 constexpr int bonds = 12;
 constexpr double bent = 0.5;  // nm at the tip: no longer straight
 
@@ -108,7 +107,7 @@ double bow_in_theory(const ParameterSet& oracle, double load, double tolerance) 
 }
 
 CaseResult run(const CaseContext& context) {
-  const ParameterSet model = context.model(set_name), oracle = context.parameters(set_name);
+  const ParameterSet model = context.model(), oracle = context.set();
   const double theory = buckling_load(oracle), found = load_found(model, oracle);
   CaseResult result;
   result.checks.push_back(relative_check("load at which a relaxed column gives way", found, theory, 0.05, "eV/nm",
@@ -171,7 +170,7 @@ CaseResult run(const CaseContext& context) {
       "Forces vanish on a saddle as they do at rest. A perfectly straight tube above its buckling load counts as "
       "relaxed at any tolerance; give such a scene a perturbation. A relaxation that runs out of steps reports its "
       "largest force and ends with exit code 4.");
-  result.sources.push_back(set_name);
+  result.sources.push_back(context.tube().source);
   return result;
 }
 

@@ -13,7 +13,6 @@
 namespace ropewalk {
 namespace {
 
-constexpr const char* set_name = "cnt-10-10-tersoff";
 constexpr double time_step = 0.02;  // ps
 
 // Two elements in one line, just out of range of each other, that approach or turn.
@@ -94,7 +93,7 @@ double stale_path(const ParameterSet& model, double skin) {
 }
 
 CaseResult run(const CaseContext& context) {
-  const ParameterSet model = context.model(set_name), oracle = context.parameters(set_name);
+  const ParameterSet model = context.model(), oracle = context.set();
   CaseResult result;
   // At the largest speed that does not stop a run, half of it for each element; and turning.
   const double fastest = 2 * 0.24 * oracle.radius / time_step, spin = 0.45 / time_step;
@@ -151,7 +150,7 @@ CaseResult run(const CaseContext& context) {
   result.remarks.push_back(
       "Fast motion costs rebuilds but loses no contact: up to the speed at which a run is stopped, no pair is "
       "missed.");
-  result.sources.push_back(set_name);
+  result.sources.push_back(context.tube().source);
   return result;
 }
 

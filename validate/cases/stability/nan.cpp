@@ -10,7 +10,6 @@
 namespace ropewalk {
 namespace {
 
-constexpr const char* set_name = "cnt-10-10-tersoff";
 constexpr int bonds = 10;
 constexpr std::size_t hit = 6;
 
@@ -70,7 +69,7 @@ double sudden_couple(const ParameterSet& set, double about) {
 }
 
 CaseResult run(const CaseContext& context) {
-  const ParameterSet model = context.model(set_name), oracle = context.parameters(set_name);
+  const ParameterSet model = context.model(), oracle = context.set();
   CaseResult result;
   const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
   const std::vector<std::pair<const char*, std::function<void(State&)>>> injections = {
@@ -158,7 +157,7 @@ CaseResult run(const CaseContext& context) {
   result.remarks.push_back(
       "A number that is not finite ends the run in the step in which it arises, whichever number it is. A run does "
       "not start from a state that has one.");
-  result.sources.push_back(set_name);
+  result.sources.push_back(context.tube().source);
   return result;
 }
 

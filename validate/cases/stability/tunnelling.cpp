@@ -10,7 +10,6 @@
 namespace ropewalk {
 namespace {
 
-constexpr const char* set_name = "cnt-10-10-tersoff";
 constexpr double start = 3.0;  // nm apart, out of reach
 
 // Two single elements that cross at right angles and meet head on.
@@ -42,7 +41,7 @@ double closest(const ParameterSet& set, double speed, double time_step) {
 }
 
 CaseResult run(const CaseContext& context) {
-  const ParameterSet model = context.model(set_name), oracle = context.parameters(set_name);
+  const ParameterSet model = context.model(), oracle = context.set();
   const LineContact law = line_contact_of(oracle);
   const double barrier = law.energy(Vector3::Zero(), Vector3::UnitZ(), Vector3::UnitY());
   const double theory = std::sqrt(4 * barrier / oracle.element_mass(oracle.element_length));
@@ -86,7 +85,7 @@ CaseResult run(const CaseContext& context) {
   result.figures.push_back(figure);
   result.remarks.push_back(
       "Such speeds are ten times those of sound. A run reaches them only after it has blown up, and is stopped.");
-  result.sources.push_back(set_name);
+  result.sources.push_back(context.tube().source);
   return result;
 }
 

@@ -6,7 +6,6 @@
 namespace ropewalk {
 namespace {
 
-constexpr const char* set_name = "cnt-10-10-tersoff";
 constexpr int elements = 364;
 
 // A helix whose turns lie side by side in contact, without twist.
@@ -38,7 +37,7 @@ double best_radius(const ParameterSet& set, double from, double to) {
 }
 
 CaseResult run(const CaseContext& context) {
-  const ParameterSet model = context.model(set_name), oracle = context.parameters(set_name);
+  const ParameterSet model = context.model(), oracle = context.set();
   const double adhesion = -surface_integral(oracle).parallel_well().energy,
                length = elements * oracle.element_length;
   const double bend = oracle.bond.bend, bent = length - oracle.element_length;  // bonds are one less
@@ -63,11 +62,11 @@ CaseResult run(const CaseContext& context) {
   figure.chart = {"Energy of a coiled tube against its radius", {"radius", "nm"}, {"energy", "eV"}, {}, {}};
   figure.chart.lines.push_back(theory_curve("EI L/2R^2 - Gamma (L - 2 pi R)", energy, radii.front(), radii.back()));
   figure.chart.lines.push_back(model_points("coiled chain", radii, energies));
-  figure.caption = "A tube of 501 nm, whose coil has less than two turns of overlap.";
+  figure.caption = "A tube whose coil has less than two turns of overlap.";
   result.figures.push_back(figure);
   result.remarks.push_back(
       "The shape is prescribed: this case tests the balance of the two energies, not how a tube finds the ring.");
-  result.sources.push_back(set_name);
+  result.sources.push_back(context.tube().source);
   return result;
 }
 
@@ -76,10 +75,11 @@ const RegisteredCase registered([] {
   c.name = "adhesive-ring";
   c.group = Case::Group::theory;
   c.order = 100;
+  c.tier = Case::Tier::full;
   c.title = "A ring held closed by its own adhesion";
   c.why = "The balance of bending and adhesion sets the size of every fold, ring and racket of long tubes.";
   c.setup =
-      "A (10,10) tube of 364 elements (501 nm), coiled to a helix whose turns touch. Its radius is 0.75 to 1.2 "
+      "A {tube} tube of 364 elements, coiled to a helix whose turns touch. Its radius is 0.75 to 1.2 "
       "times that of theory; the energy is that of bonds and contact.";
   c.oracle =
       "U = EI L/(2 R^2) - Gamma (L - 2 pi R), lowest at R = (EI L/(2 pi Gamma))^(1/3), with Gamma the surface "

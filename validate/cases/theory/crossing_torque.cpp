@@ -6,8 +6,6 @@
 namespace ropewalk {
 namespace {
 
-constexpr const char* set_name = "cnt-10-10-tersoff";
-
 struct Crossing {
   double energy = 0;  // eV
   double torque = 0;  // eV, towards a larger angle
@@ -31,8 +29,8 @@ Crossing crossing(const LineContact& law, double distance, double angle) {
 }
 
 CaseResult run(const CaseContext& context) {
-  const LineContact law = line_contact_of(context.model(set_name));
-  const PairIntegral integral = surface_integral(context.parameters(set_name));
+  const LineContact law = line_contact_of(context.model());
+  const PairIntegral integral = surface_integral(context.set());
   const Well well = integral.crossed_well();
   const auto energy = [&](double angle) { return well.energy / std::sin(angle); };
   const auto torque = [&](double angle) { return well.energy * std::cos(angle) / std::pow(std::sin(angle), 2); };
@@ -69,7 +67,7 @@ CaseResult run(const CaseContext& context) {
   result.figures = {e, t};
   result.remarks.push_back(
       "The law has no angular factor. Energy and torque at every angle follow from one line density.");
-  result.sources.push_back(set_name);
+  result.sources.push_back(context.tube().source);
   return result;
 }
 
@@ -81,7 +79,7 @@ const RegisteredCase registered([] {
   c.title = "Energy and torque of two crossed tubes";
   c.why = "Tubes of neighbouring shells of a twisted rope cross. The torque decides whether they align.";
   c.setup =
-      "Two straight rows of (10,10) elements that cross at 15 to 90 degrees, at the distance of the minimum at a "
+      "Two straight rows of {tube} elements that cross at 15 to 90 degrees, at the distance of the minimum at a "
       "right angle.";
   c.oracle = "Surface integral of the Lennard-Jones law over two cylinders: E = E90/sin gamma, M = -dE/dgamma.";
   c.literature = "A. N. Volkov, L. V. Zhigilei, J. Phys. Chem. C 114, 5513 (2010), DOI 10.1021/jp906142h";

@@ -6,8 +6,6 @@
 namespace ropewalk {
 namespace {
 
-constexpr const char* set_name = "cnt-10-10-tersoff";
-
 // Lowest eigenvalue of a straight chain, shortened by the load, whose ends stay on the axis and turn freely.
 // Motions in one plane suffice.
 double lowest_under_load(const ParameterSet& set, int bonds, double load) {
@@ -23,7 +21,7 @@ double lowest_under_load(const ParameterSet& set, int bonds, double load) {
 }
 
 CaseResult run(const CaseContext& context) {
-  const ParameterSet model = context.model(set_name), oracle = context.parameters(set_name);
+  const ParameterSet model = context.model(), oracle = context.set();
   const auto euler = [&](double length) { return std::pow(units::pi / length, 2) * oracle.bond.bend; };
   CaseResult result;
   std::vector<double> lengths, loads;
@@ -49,7 +47,7 @@ CaseResult run(const CaseContext& context) {
   result.remarks.push_back(
       "The critical load is where the lowest eigenvalue of the straight chain passes zero, found by bisection. "
       "Neither a perturbation nor time enters.");
-  result.sources.push_back(set_name);
+  result.sources.push_back(context.tube().source);
   return result;
 }
 
@@ -58,10 +56,11 @@ const RegisteredCase registered([] {
   c.name = "euler-buckling";
   c.group = Case::Group::theory;
   c.order = 20;
+  c.law = Case::Law::none;
   c.title = "Buckling of a compressed tube";
   c.why = "Tubes inside a twisted rope are compressed, and buckle by this instability.";
   c.setup =
-      "Straight (10,10) tubes of 16 to 60 bonds under an axial load; the ends stay on the axis and turn freely. "
+      "Straight {tube} tubes of 16 to 60 bonds under an axial load; the ends stay on the axis and turn freely. "
       "The lowest eigenvalue of the tangent stiffness of the loaded chain is followed.";
   c.oracle = "P = pi^2 EI/L^2.";
   c.literature =

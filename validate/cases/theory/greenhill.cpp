@@ -6,7 +6,6 @@
 namespace ropewalk {
 namespace {
 
-constexpr const char* set_name = "cnt-10-10-tersoff";
 enum class Ends { pinned, clamped };
 
 // tan x = x: the clamped rod buckles at M L/2 EI = x.
@@ -28,7 +27,7 @@ double lowest_under_moment(const ParameterSet& set, int bonds, Ends ends, double
 }
 
 CaseResult run(const CaseContext& context) {
-  const ParameterSet model = context.model(set_name), oracle = context.parameters(set_name);
+  const ParameterSet model = context.model(), oracle = context.set();
   CaseResult result;
   CaseFigure figure;
   figure.chart = {"Critical twisting moment against length", {"length", "nm"}, {"moment", "eV"}, {}, {}};
@@ -59,7 +58,7 @@ CaseResult run(const CaseContext& context) {
       "symmetric. Greenhill's number stands for the static criterion, an eigenvalue that passes zero.");
   result.remarks.push_back(
       "GJ sets only the angle at which the moment is reached: this case does not see a wrong GJ.");
-  result.sources.push_back(set_name);
+  result.sources.push_back(context.tube().source);
   return result;
 }
 
@@ -68,10 +67,11 @@ const RegisteredCase registered([] {
   c.name = "greenhill";
   c.group = Case::Group::theory;
   c.order = 30;
+  c.law = Case::Law::none;
   c.title = "Buckling of a tube under a twisting moment";
   c.why = "A twisted rope turns into a helix by this instability; one tube is its simplest case.";
   c.setup =
-      "Straight (10,10) tubes of 16 to 40 bonds, uniformly twisted by end couples of fixed direction. The ends "
+      "Straight {tube} tubes of 16 to 40 bonds, uniformly twisted by end couples of fixed direction. The ends "
       "stay on the axis and may tilt (pinned) or not (clamped); all elements spin freely.";
   c.oracle = "M = 2 pi EI/L pinned; M = 2 x EI/L with tan x = x, that is 8.987 EI/L, clamped.";
   c.literature = "A. G. Greenhill, Proc. Inst. Mech. Eng. 34, 182 (1883)";

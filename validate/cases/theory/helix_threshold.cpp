@@ -13,7 +13,6 @@
 namespace ropewalk {
 namespace {
 
-constexpr const char* set_name = "cnt-10-10-tersoff";
 constexpr int tubes = 7;
 enum class Ends { pinned, clamped };
 using Sparse = Eigen::SparseMatrix<double>;
@@ -236,7 +235,7 @@ CaseFigure figure_of(Ends ends, double sliding, double glued, const Curve& free,
 }
 
 CaseResult run(const CaseContext& context) {
-  const ParameterSet model = context.model(set_name), oracle = context.parameters(set_name);
+  const ParameterSet model = context.model(), oracle = context.set();
   const double sliding = sliding_bend(oracle);
   const double glued = glued_bend(oracle, surface_integral(oracle).parallel_well().distance);
   CaseResult result;
@@ -263,10 +262,11 @@ CaseResult run(const CaseContext& context) {
       "Rigid cylinders at rest slide without friction, so that the rope of the model buckles at the lower limit. "
       "In real tubes corrugation and contacts raise the threshold towards the upper limit, which is 6 times as "
       "high for seven tubes and higher still for more.",
-      "Cohesion compresses the tubes lengthwise, with 12 eV/nm here. Unless the bonds are at rest under it, it "
-      "acts as a tension and raises the threshold by 11 % at 55 nm. In this case they are at rest.",
+      fmt::format("Cohesion compresses the tubes lengthwise, with {:.3g} eV/nm here. Unless the bonds are at rest "
+                  "under it, it acts as a tension and raises the threshold. In this case they are at rest.",
+                  -12 * surface_integral(oracle).parallel_well().energy),
       "The criterion is static, as Greenhill's: an eigenvalue of the tangent stiffness passes zero."};
-  result.sources.push_back(set_name);
+  result.sources.push_back(context.tube().source);
   return result;
 }
 
@@ -275,12 +275,14 @@ const RegisteredCase registered([] {
   c.name = "helix-threshold";
   c.group = Case::Group::theory;
   c.order = 120;
+  c.tier = Case::Tier::full;
   c.title = "Where a twisted rope turns into a helix: the two limits";
   c.why = "A straight rope under twist buckles into a helix. The moment depends on how far its tubes bend as one.";
   c.setup =
-      "Ropes of seven (10,10) tubes of 33 to 55 nm with the line law between them; every tube carries a seventh of "
+      "Ropes of seven {tube} tubes of 24 to 40 bonds with the line law between them; every tube carries a seventh "
+      "of "
       "the moment. The tangent stiffness of all elements; the ends stay in place and may tilt (pinned) or not "
-      "(clamped). Also without contact: tubes that share one shape and, at 165 and 220 nm, cross-sections that "
+      "(clamped). Also without contact: tubes that share one shape and, at 120 and 160 bonds, cross-sections that "
       "move as rigid bodies.";
   c.oracle =
       "M = 2 pi B/L pinned, 8.987 B/L clamped. B = N EI for sliding tubes, B = N EI + EA sum y^2 for glued ones, "

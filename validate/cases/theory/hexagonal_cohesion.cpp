@@ -7,8 +7,6 @@
 namespace ropewalk {
 namespace {
 
-constexpr const char* set_name = "cnt-10-10-tersoff";
-
 double vdw_energy(const ParameterSet& set, int tubes, int elements) {
   const Bundle b = line_bundle(set, tubes, elements);
   return Simulation(b.topology, b.interaction, {}, b.state, b.time_step).forces().energy.vdw;
@@ -34,7 +32,7 @@ double integral_per_length(const PairIntegral& integral, int tubes, double spaci
 }
 
 CaseResult run(const CaseContext& context) {
-  const ParameterSet model = context.model(set_name), oracle = context.parameters(set_name);
+  const ParameterSet model = context.model(), oracle = context.set();
   const PairIntegral integral = surface_integral(oracle);
   const Well pair = integral.parallel_well();
   CaseResult result;
@@ -61,9 +59,10 @@ CaseResult run(const CaseContext& context) {
   figure.caption = "Seven tubes have 12 contacts, 91 have 240.";
   result.figures.push_back(figure);
   result.remarks.push_back(
-      "For (10,10), the atoms of second neighbours are farther apart than the cutoff of the atom-atom law: the "
-      "contacts are the whole energy. Thinner tubes reach their second neighbours; the oracle includes these.");
-  result.sources.push_back(set_name);
+      "Where the atoms of second neighbours are farther apart than the cutoff of the atom-atom law, the contacts "
+      "are "
+      "the whole energy. Thin tubes reach their second neighbours; the oracle includes these.");
+  result.sources.push_back(context.tube().source);
   return result;
 }
 
@@ -75,7 +74,7 @@ const RegisteredCase registered([] {
   c.title = "Cohesion of straight ropes of 7 to 91 tubes";
   c.why = "Twisting works against this energy when it opens voids and breaks contacts.";
   c.setup =
-      "Straight (10,10) tubes on a hexagonal lattice of the law's spacing. The difference of two lengths has no "
+      "Straight {tube} tubes on a hexagonal lattice of the law's spacing. The difference of two lengths has no "
       "ends in it.";
   c.oracle =
       "E/L = (3 N - sqrt(12 N - 3)) E(R0), with E(R0) the surface integral at its minimum; second neighbours are "

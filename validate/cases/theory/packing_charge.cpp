@@ -8,7 +8,6 @@
 namespace ropewalk {
 namespace {
 
-constexpr const char* set_name = "cnt-10-10-tersoff";
 constexpr double ring_radius = 8;  // spacings
 
 // Integrated Gaussian curvature of the metric d rho^2 + (rho cos beta d phi)^2, tan beta = rate rho, in units of
@@ -65,8 +64,8 @@ double charge_inside(const LineContact& law, double radius, double rate, double 
 }
 
 CaseResult run(const CaseContext& context) {
-  const LineContact law = line_contact_of(context.model(set_name));
-  const Well pair = surface_integral(context.parameters(set_name)).parallel_well();
+  const LineContact law = line_contact_of(context.model());
+  const Well pair = surface_integral(context.set()).parallel_well();
   const double radius = ring_radius * pair.distance;
   CaseResult result;
   std::vector<double> angles, charges, counts;
@@ -103,7 +102,7 @@ CaseResult run(const CaseContext& context) {
       "actual rope is an integer that depends on where its tubes have come to rest.",
       "Counting neighbours by distance gives more. Where a triangle of tubes opens to a square, one contact is "
       "lost and the count rises by two without any disclination. A triangulation does not count it."};
-  result.sources.push_back(set_name);
+  result.sources.push_back(context.tube().source);
   return result;
 }
 
@@ -116,7 +115,7 @@ const RegisteredCase registered([] {
   c.why =
       "This curvature brings five-fold sites into a twisted hexagonal rope and, where they do not suffice, voids.";
   c.setup =
-      "Helical (10,10) tubes on rings of 7.5, 8 and 8.5 spacings around one axis, at twist angles of 0 to 50 "
+      "Helical {tube} tubes on rings of 7.5, 8 and 8.5 spacings around one axis, at twist angles of 0 to 50 "
       "degrees. The angle between neighbours at which their contact energy is lowest tells how many fit around a "
       "ring.";
   c.oracle =

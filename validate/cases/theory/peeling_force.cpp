@@ -6,7 +6,6 @@
 namespace ropewalk {
 namespace {
 
-constexpr const char* set_name = "cnt-10-10-tersoff";
 constexpr int elements = 50;
 
 struct Peel {
@@ -55,7 +54,7 @@ Peel peel(const ParameterSet& set, double opening, double crack) {
 }
 
 CaseResult run(const CaseContext& context) {
-  const ParameterSet model = context.model(set_name), oracle = context.parameters(set_name);
+  const ParameterSet model = context.model(), oracle = context.set();
   const double adhesion = -surface_integral(oracle).parallel_well().energy;
   // Cantilevers in balance with the adhesion, G = 9 EI w^2/c^4.
   const auto crack = [&](double w) { return std::pow(9 * oracle.bond.bend * w * w / adhesion, 0.25); };
@@ -95,7 +94,7 @@ CaseResult run(const CaseContext& context) {
       "the adhesion energy per length for any shape of the crack tip. No beam approximation enters the check.");
   result.remarks.push_back(
       "The beam formula, in which the arms are clamped at a sharp crack tip, is shown for comparison only.");
-  result.sources.push_back(set_name);
+  result.sources.push_back(context.tube().source);
   return result;
 }
 
@@ -109,7 +108,7 @@ const RegisteredCase registered([] {
       "The balance of adhesion and bending decides whether tubes of a rope stay together, and where voids and bird "
       "cages open.";
   c.setup =
-      "Two adhering (10,10) tubes of 50 elements. One end of each is held 1 to 4 nm off its place and is free to "
+      "Two adhering {tube} tubes of 50 elements. One end of each is held 1 to 4 nm off its place and is free to "
       "turn and to move along the tube; relaxed to 1e-5 eV/nm.";
   c.oracle =
       "F (sin a + sin b) = -E(R0), with a and b the slopes at the ends and E(R0) the surface integral at its "

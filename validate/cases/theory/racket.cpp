@@ -9,7 +9,6 @@
 namespace ropewalk {
 namespace {
 
-constexpr const char* set_name = "cnt-10-10-tersoff";
 constexpr int arm_elements = 20;  // 27 nm of each arm; the contact opens within 5 nm
 
 // The upper half of a head, from where the arms part (s = 0) to the tip on the line of symmetry.
@@ -185,7 +184,7 @@ CaseFigure curvature_figure(const Head& head, const State& chain, double element
 }
 
 CaseResult run(const CaseContext& context) {
-  const ParameterSet model = context.model(set_name), oracle = context.parameters(set_name);
+  const ParameterSet model = context.model(), oracle = context.set();
   const PairIntegral contact = surface_integral(oracle);
   const Well pair = contact.parallel_well();
   const double adhesion = -pair.energy, bend = oracle.bond.bend;
@@ -226,7 +225,7 @@ CaseResult run(const CaseContext& context) {
       fmt::format("The plane racket is not a minimum in space: one arm climbs onto the other, the gap closes, and "
                   "the energy falls from {:.1f} to {:.1f} eV. So the elements are held in the plane.",
                   energy.potential(), lifted_energy.potential())};
-  result.sources.push_back(set_name);
+  result.sources.push_back(context.tube().source);
   return result;
 }
 
@@ -235,12 +234,13 @@ const RegisteredCase registered([] {
   c.name = "racket";
   c.group = Case::Group::theory;
   c.order = 110;
+  c.tier = Case::Tier::full;
   c.title = "A tube folded into a racket";
   c.why =
       "Folded tubes, loops at the ends of ropes and buckled strands have this shape. Bending and adhesion alone "
       "set its size; no form is prescribed.";
   c.setup =
-      "A (10,10) tube of 245 elements (336 nm). It starts in the shape of a racket of 0.85 times the bending "
+      "A {tube} tube of 245 elements. It starts in the shape of a racket of 0.85 times the bending "
       "stiffness and is relaxed to 1e-5 eV/nm, first in its plane, then free.";
   c.oracle =
       "The elastica EI k' = -F cos(slope), integrated numerically. It starts where the arms part, half a spacing "

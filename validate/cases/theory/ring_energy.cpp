@@ -8,8 +8,6 @@
 namespace ropewalk {
 namespace {
 
-constexpr const char* set_name = "cnt-10-10-tersoff";
-
 // Elements on a circle whose chords are as long as unstretched bonds.
 double ring_energy(const ParameterSet& set, int elements, double circumference) {
   const double a = circumference / elements, step = 2 * units::pi / elements;
@@ -20,7 +18,7 @@ double ring_energy(const ParameterSet& set, int elements, double circumference) 
 }
 
 CaseResult run(const CaseContext& context) {
-  const ParameterSet model = context.model(set_name), oracle = context.parameters(set_name);
+  const ParameterSet model = context.model(), oracle = context.set();
   const double circumference = 50 * model.element_length;
   const double turn = 2 * units::pi;
   const double expected = oracle.bond.bend * turn * turn / (2 * circumference);
@@ -53,7 +51,7 @@ CaseResult run(const CaseContext& context) {
       "A bond bent by delta between chords has 1 + (3 s/16 - 1/12) delta^2 times the energy of the arc, with s = "
       "1/(1 + 12 EI/(kGA a^2)); without shear the factor of delta^2 is 5/48. The error falls with the square of "
       "the element length or faster.");
-  result.sources.push_back(set_name);
+  result.sources.push_back(context.tube().source);
   return result;
 }
 
@@ -62,10 +60,11 @@ const RegisteredCase registered([] {
   c.name = "ring-energy";
   c.group = Case::Group::theory;
   c.order = 50;
+  c.law = Case::Law::none;
   c.title = "Bending energy of a closed ring";
   c.why =
       "Half of the elastic energy of a twisted rope is bending. Its error depends on the curvature per element.";
-  c.setup = "A closed circle of the (10,10) tube of 68.9 nm, cut into 16 to 100 elements.";
+  c.setup = "A closed circle of the {tube} tube, as long as 50 elements of the set, cut into 16 to 100 elements.";
   c.oracle = "U = EI (2 pi)^2/(2 L).";
   c.literature = "V. A. Kuzkin, I. E. Asonov, Phys. Rev. E 86, 051301 (2012), DOI 10.1103/PhysRevE.86.051301";
   c.run = run;

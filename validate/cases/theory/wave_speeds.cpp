@@ -6,7 +6,6 @@
 namespace ropewalk {
 namespace {
 
-constexpr const char* set_name = "cnt-10-10-tersoff";
 constexpr int bonds = 60;
 
 struct StandingWave {
@@ -60,7 +59,7 @@ ChartLine thinned(const std::string& name, const StandingWave& wave, int colour)
 }
 
 CaseResult run(const CaseContext& context) {
-  const ParameterSet model = context.model(set_name), oracle = context.parameters(set_name);
+  const ParameterSet model = context.model(), oracle = context.set();
   const double mass = oracle.element_mass(1);
   const double axial = std::sqrt(oracle.bond.stretch / mass);
   const double torsional = std::sqrt(oracle.bond.twist / oracle.element_inertia(1));
@@ -83,7 +82,7 @@ CaseResult run(const CaseContext& context) {
   figure.caption = "Velocity of the first axial and torsional mode of a free tube.";
   result.figures.push_back(figure);
   result.remarks.push_back("The inertia of an element is m r^2, exact for torsion of a thin tube.");
-  result.sources.push_back(set_name);
+  result.sources.push_back(context.tube().source);
   return result;
 }
 
@@ -92,10 +91,11 @@ const RegisteredCase registered([] {
   c.name = "wave-speeds";
   c.group = Case::Group::theory;
   c.order = 60;
+  c.law = Case::Law::none;
   c.title = "Sound along a tube, axial and torsional";
   c.why = "Loads travel along a rope at these speeds. A twisting rate is slow if it is slow against them.";
   c.setup =
-      "A free straight (10,10) tube of 61 elements, undamped, with initial velocities of its first axial or "
+      "A free straight {tube} tube of 61 elements, undamped, with initial velocities of its first axial or "
       "torsional mode.";
   c.oracle = "c = sqrt(EA/mu) axial, c = sqrt(GJ/(mu r^2)) torsional, with mu the mass per length.";
   c.literature =
