@@ -219,6 +219,7 @@ int main(int argc, char** argv) {
   // Handed over before anything is parsed; named here for --help.
   app.add_subcommand("calibrate", "Derive a parameter set for any (n,m) from atomistic data");
   app.add_subcommand("validate", "Hold the model against theory, atoms and other codes");
+  app.add_subcommand("parametrize", "From a chirality to a validated parameter set: calibrate, make atoms, validate");
   add_energy(app, verbs);
   add_bench(app, verbs);
   try {

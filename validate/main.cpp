@@ -1,9 +1,11 @@
 // ropewalk-validate, also called as `ropewalk validate`: compares the model with references it was not fitted to.
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <cstring>
 
 #include "chart/chart.hpp"
 #include "model/error.hpp"
+#include "parametrize/parametrize.hpp"
 #include "runner/runner.hpp"
 #include "version.hpp"
 
@@ -16,6 +18,7 @@ struct Verbs {
   ValidateArguments run, stability;
   ReportArguments report;
   ChartArguments chart;
+  ParametrizeArguments parametrize;
   struct {
     std::string scene, model;
     long steps = 0;
@@ -56,6 +59,26 @@ void add_chart(CLI::App& app, Verbs& v) {
   steps->callback([&v] { step_for_counting(v.counted.scene, v.counted.model, v.counted.steps); });
 }
 
+// Also the verb `ropewalk parametrize`.
+void add_parametrize(CLI::App& app, Verbs& v) {
+  ParametrizeArguments& a = v.parametrize;
+  CLI::App* verb = app.add_subcommand(
+      "parametrize", "From chiralities to validated parameter sets: calibrate, make atoms, validate, one report");
+  verb->add_option("tubes", a.tubes, "Chiralities, as in 7,3 10,10")->required();
+  verb->add_option("--potential", a.potentials, "tersoff, airebo, rebo, lcbop; several, separated by commas")
+      ->delimiter(',')
+      ->capture_default_str();
+  verb->add_option("--out", a.out, "Directory of sets, atoms and reports; what is finished in it is kept")
+      ->capture_default_str();
+  verb->add_option("--budget", a.budget, "Minutes that the references of one tube may take [default: any]")
+      ->check(CLI::PositiveNumber);
+  verb->add_option("-j,--jobs", a.jobs, "Processes at a time [default: one for each core]")
+      ->check(CLI::PositiveNumber);
+  verb->add_flag("--again", a.again, "Make sets and results anew; references of atoms are kept");
+  verb->add_flag("--quiet", a.quiet, "No progress lines");
+  verb->callback([&v] { v.code = parametrize_command(v.parametrize); });
+}
+
 void add_verbs(CLI::App& app, Verbs& v) {
   CLI::App* list = app.add_subcommand("list", "List the cases");
   list->add_flag("--json", v.list.json, "JSON, with set-up, oracle and literature");
@@ -64,6 +87,7 @@ void add_verbs(CLI::App& app, Verbs& v) {
   CLI::App* run = app.add_subcommand("run", "Run cases and write the report");
   run->add_option("--tier", v.run.tier, "full, or quick: without ropes and bundles")->capture_default_str();
   run->add_flag("--fresh", v.run.fresh, "Make the references with LAMMPS and compare them with the stored ones");
+  run->add_option("--with", v.run.with, "A second set: pairs of unlike tubes are compared too");
   run->add_flag(
       "--atoms", v.run.atoms,
       "Make the references of the set's tube with LAMMPS and the set's potential, beside the set (minutes)");
@@ -83,15 +107,20 @@ void add_verbs(CLI::App& app, Verbs& v) {
   report->callback([&v] { v.code = validation_report_command(v.report); });
 
   add_chart(app, v);
+  add_parametrize(app, v);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
+  // `ropewalk parametrize` comes here as it was typed.
+  const bool parametrize = argc > 1 && std::strcmp(argv[1], "parametrize") == 0;
+  const char* name = parametrize ? "ropewalk" : "ropewalk validate";
+  const char* spoken = parametrize ? "ropewalk parametrize" : name;
   CLI::App app(
       "ropewalk validate compares the model with exact theory, LAMMPS references and other codes.\n"
       "Exit code: 0 all hold, 1 some miss, 2 wrong input, 3 a case could not be run.",
-      "ropewalk validate");
+      name);
   app.set_version_flag("--version", std::string("ropewalk-validate ") + version + " (" + git_id + ")");
   app.require_subcommand(1);
   Verbs verbs;
@@ -101,13 +130,13 @@ int main(int argc, char** argv) {
     return verbs.code;
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) return app.exit(e);
-    std::fprintf(stderr, "ropewalk validate: %s; see ropewalk validate --help\n", e.what());
+    std::fprintf(stderr, "%s: %s; see %s --help\n", spoken, e.what(), spoken);
     return 2;
   } catch (const InputError& e) {
-    std::fprintf(stderr, "ropewalk validate: %s\n", e.what());
+    std::fprintf(stderr, "%s: %s\n", spoken, e.what());
     return 2;
   } catch (const std::exception& e) {
-    std::fprintf(stderr, "ropewalk validate: %s\n", e.what());
+    std::fprintf(stderr, "%s: %s\n", spoken, e.what());
     return 3;
   }
 }

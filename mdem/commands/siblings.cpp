@@ -14,7 +14,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* siblings[] = {"calibrate", "validate"};
+struct Sibling {
+  const char* verb;
+  const char* program;  // its name without "ropewalk-"
+  bool keeps_verb;      // the verb is one of the program's own
+};
+constexpr Sibling siblings[] = {
+    {"calibrate", "calibrate", false}, {"validate", "validate", false}, {"parametrize", "validate", true}};
 
 // Beside this program, as installed; in the folder of its own, as built; else on the PATH.
 std::string find_sibling(const std::string& verb) {
@@ -30,12 +36,12 @@ std::string find_sibling(const std::string& verb) {
 
 void hand_over_to_sibling(char** argv) {
   if (!argv[0] || !argv[1]) return;
-  for (const char* verb : siblings) {
-    if (verb != std::string(argv[1])) continue;
-    const std::string program = find_sibling(verb);
+  for (const Sibling& sibling : siblings) {
+    if (sibling.verb != std::string(argv[1])) continue;
+    const std::string program = find_sibling(sibling.program);
     give_back_cores();
-    execvp(program.c_str(), argv + 1);
-    throw InputError({"", 0, verb}, fmt::format("the program {} cannot be started", program),
+    execvp(program.c_str(), sibling.keeps_verb ? argv : argv + 1);
+    throw InputError({"", 0, sibling.verb}, fmt::format("the program {} cannot be started", program),
                      "build all targets: cmake --build --preset release");
   }
 }

@@ -36,7 +36,13 @@ TEST_F(Validate, WrongInputGetsOneLine) {
         std::pair{"validate run --tier medium", "choose quick or full"},
         std::pair{"validate run euler-buckling --out file", "not a directory"},
         std::pair{"validate run euler-buckling --parameters nowhere", "no parameter set"},
-        std::pair{"validate report nowhere", "holds no results"},
+        std::pair{"validate run --atoms", "add --parameters SET"},
+        std::pair{"validate run --with cnt-5-5-tersoff", "add --parameters SET"},
+        std::pair{"validate run --parameters cnt-5-5-tersoff --budget 3", "add --atoms"},
+        std::pair{"validate report nowhere", "holds no results"}, std::pair{"parametrize", "tubes is required"},
+        std::pair{"parametrize 7,3 7-4", "is \"7-4\""},
+        std::pair{"parametrize 7,3 --potential tersof", "did you mean"},
+        std::pair{"parametrize 7,3 --out file", "not a directory"},
         std::pair{"validate chart --scenes no-such-scene", "there is no scene"},
         std::pair{"validate chart --scenes tube-twist,rope7-m", "did you mean \"rope7-md\"?"},
         std::pair{"validate chart --quick --out file", "not a directory"},
@@ -79,6 +85,44 @@ TEST_F(Validate, OneCaseIsRunKeptAndReported) {
   EXPECT_EQ(Json::parse(again.out).at("cases").at(0).at("checks"), report.at("cases").at(0).at("checks"));
   EXPECT_EQ(run("validate report v").code, 0);
   EXPECT_EQ(slurp(dir / "v/report.html"), page) << "the page is the same in every run";
+}
+
+// Theory of chains, and the reasons of all that a set without the line law and without a potential cannot show.
+TEST_F(Validate, APublishedSetIsHeldToTheory) {
+  const Outcome o = run("validate run --tier quick --parameters cnt-10-10-paper --quiet --out v");
+  ASSERT_EQ(o.code, 0) << o.out << o.err;
+  const Json report = Json::parse(slurp(dir / "v/report.json"));
+  int holds = 0;
+  for (const Json& c : report.at("cases")) {
+    for (const Json& set : c.at("sets")) EXPECT_EQ(set.at("name"), "cnt-10-10-paper") << c.at("case");
+    const std::string verdict = c.at("verdict");
+    EXPECT_TRUE(verdict == "holds" || verdict == "not applicable") << c;
+    EXPECT_EQ(verdict == "not applicable", !c.at("not_applicable").get<std::string>().empty());
+    if (c.at("case") == "stretch-and-cantilever") {
+      EXPECT_NEAR(c.at("checks").at(0).at("value").get<double>(), 9175, 10) << "its own EA, in eV/nm";
+    }
+    holds += verdict == "holds";
+  }
+  EXPECT_GE(holds, 6);
+}
+
+// A set that is there is kept, stored references of its tube and potential are used, and those that fit into the
+// budget are made with LAMMPS.
+TEST_F(Validate, ParametrizeGoesOnWithWhatIsThere) {
+  fs::create_directories(dir / "p");
+  for (const char* file : {".toml", "-stiffness.csv", "-contact.csv"})
+    fs::copy(std::string(ROPEWALK_SOURCE_DIR "/data/parameters/cnt-5-5-tersoff") + file, dir / "p");
+  const Outcome o = run("parametrize 5,5 --out p --budget 0.1");
+  ASSERT_EQ(o.code, 0) << o.out << o.err;
+  EXPECT_NE(o.err.find("set kept"), std::string::npos) << o.err;
+  EXPECT_TRUE(fs::exists(dir / "p/cnt-5-5-tersoff-atoms/pair-sliding.csv"));
+  EXPECT_FALSE(fs::exists(dir / "p/cnt-5-5-tersoff-atoms/crossed-tubes.csv"));
+  const std::string page = slurp(dir / "p/report.html");
+  EXPECT_NE(page.find("What the set is for"), std::string::npos);
+  EXPECT_NE(page.find("--budget 0.1"), std::string::npos);
+  const std::string table = slurp(dir / "p/tubes.csv");
+  EXPECT_NE(table.find("cnt-5-5-tersoff,5,5,tersoff,30.0000,"), std::string::npos) << table;
+  EXPECT_NE(table.find(",holds,"), std::string::npos) << table;
 }
 
 // Counting leaves what was measured before.

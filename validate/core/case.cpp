@@ -93,7 +93,6 @@ std::string tube_names(const std::vector<ParameterSet>& sets) {
 
 CaseResult run_case(const Case& c, const CaseContext& context) {
   CaseResult result = c.run(context);
-  if (context.given) return result;
   for (const Case::KnownMiss& miss : c.known_misses)
     for (Check& check : result.checks)
       if (check.name == miss.check) check.known = miss.size;

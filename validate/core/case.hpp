@@ -141,6 +141,8 @@ struct Case {
   Law law = Law::line;
   // Shipped sets that it runs with where none is given.
   std::vector<std::string> sets = {"cnt-10-10-tersoff"};
+  // Compares pairs of unlike tubes too: takes the second set of `validate run --with`.
+  bool takes_two = false;
   // The case is about these sets. A given one takes the place of none of them, unless it is of the same tube and
   // the same interatomic potential. The text says why.
   std::string only_these;
@@ -160,8 +162,7 @@ struct Case {
   // parameter tests nothing: each names at least one that it sees.
   std::vector<Red> turns_red;
   std::vector<Fault> stays_green;  // of quantities that the case does not depend on
-  // Checks of shipped sets that miss with the right parameters, and by how much; the remarks say why. A miss that
-  // changes is a miss.
+  // Checks that miss with the right parameters, and by how much; the remarks say why. A miss that changes is a miss.
   struct KnownMiss {
     std::string check;
     Check::Known size;

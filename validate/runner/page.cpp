@@ -220,28 +220,28 @@ std::string lead(const std::vector<Outcome>& outcomes) {
          "cases were run, and no reference was used in a fit. A case that misses names the assumption that fails.";
 }
 
-struct Heading {
-  std::string kicker, title;
-};
-
-Heading heading_of(const std::vector<Outcome>& outcomes) {
+PageTop top_of(const std::vector<Outcome>& outcomes) {
   const bool limits = !outcomes.empty() && std::all_of(outcomes.begin(), outcomes.end(), [](const Outcome& o) {
     return find_case(o.name).group == Case::Group::stability;
   });
-  if (limits) return {"where the methods fail, by bisection and by theory", "Stability"};
-  return {"the model against exact theory, atoms and other codes", "Validation"};
+  if (limits) return {"where the methods fail, by bisection and by theory", "Stability", ""};
+  return {"the model against exact theory, atoms and other codes", "Validation", ""};
 }
 
 }  // namespace
 
 std::string validation_page(const std::vector<Outcome>& outcomes, const std::vector<std::string>& facts) {
+  return validation_page(outcomes, facts, top_of(outcomes));
+}
+
+std::string validation_page(const std::vector<Outcome>& outcomes, const std::vector<std::string>& facts,
+                            const PageTop& top) {
   Figures figures;
-  const Heading top = heading_of(outcomes);
   std::string head = page_head(top.title);
   head.insert(head.find("</style>"), verdict_css);
   std::string html = head + "<body>\n<main>\n<p class=\"kicker\">Ropewalk: " + top.kicker + "</p>\n<h1>" +
-                     top.title + "</h1>\n<p class=\"lead\">" + lead(outcomes) +
-                     "</p>\n<div class=\"scroll\"><table class=\"verdicts\"><thead><tr><th>Verdict</th>"
+                     top.title + "</h1>\n<p class=\"lead\">" + lead(outcomes) + "</p>\n" + top.html +
+                     "<div class=\"scroll\"><table class=\"verdicts\"><thead><tr><th>Verdict</th>"
                      "<th>Case</th><th>Tube</th><th>Tightest check</th><th>Against</th></tr></thead><tbody>\n";
   for (const Outcome& o : outcomes) html += summary_row(o);
   html += "</tbody></table></div>\n" + limits_map(outcomes);

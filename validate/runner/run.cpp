@@ -1,16 +1,11 @@
 // `ropewalk validate list | run | report`.
 #include <fmt/format.h>
 #include <omp.h>
-#include <sys/prctl.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
 #include <cmath>
-#include <csignal>
-#include <cstring>
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -22,6 +17,7 @@
 #include "io/grade.hpp"
 #include "io/parameters_toml.hpp"
 #include "io/toml_table.hpp"
+#include "runner/processes.hpp"
 #include "runner/runner.hpp"
 #include "version.hpp"
 
@@ -51,7 +47,7 @@ ParameterSet shipped_set(const std::string& name) { return read_parameters(find_
 // All that the cases of one command share.
 struct Run {
   ValidateArguments arguments;
-  std::optional<ParameterSet> given;
+  std::optional<ParameterSet> given, second;
   std::string key;
   int jobs = 1;
 };
@@ -78,6 +74,7 @@ Task task_of(const Case& c, const Run& run) {
     if (!compares_sets) t.sets = {*run.given};
     for (ParameterSet& set : t.sets)
       if (like(set, *run.given)) set = *run.given;
+    if (run.second && c.takes_two) t.sets.push_back(*run.second);
   } catch (const NotApplicable& reason) {
     t.not_applicable = reason.what();
     t.sets = {*run.given};
@@ -173,27 +170,6 @@ void store(const Outcome& o, const Run& run) {
   write_file_atomically(result_path(run.arguments.out, o.name), outcome_json(o));
 }
 
-// Runs the task in a process of its own, which leaves the result in its file: cases share nothing, and one that
-// dies takes no other with it.
-pid_t start(const Task& task, const Run& run) {
-  std::fflush(nullptr);
-  const pid_t parent = getpid(), child = fork();
-  if (child < 0) throw std::runtime_error(fmt::format("no process can be started: {}", std::strerror(errno)));
-  if (child > 0) return child;
-  prctl(PR_SET_PDEATHSIG, SIGTERM);
-  if (getppid() != parent) _exit(3);
-  omp_set_num_threads(std::max(1, omp_get_num_procs() / run.jobs));
-  int code = 0;
-  try {
-    store(outcome_of(task, run), run);
-  } catch (const std::exception& e) {
-    fmt::print(stderr, "ropewalk validate: {}: {}\n", task.of->name, e.what());
-    code = 3;
-  }
-  std::fflush(nullptr);
-  _exit(code);
-}
-
 // A result with the run's key that is not one of a failure.
 bool finished(const Task& task, const Run& run) {
   const std::string path = result_path(run.arguments.out, task.of->name);
@@ -209,13 +185,76 @@ void report_of_death(const Task& task, const Run& run, int status) {
   o.key = run.key;
   o.tubes = tube_names(task.sets);
   o.sets = used_sets(task);
-  o.error = WIFSIGNALED(status) ? fmt::format("its process was ended by signal {}", WTERMSIG(status))
-                                : "its result could not be written";
+  o.error = death_words(status);
   store(o, run);
 }
 
-// What the sets of these results are worth.
-std::vector<std::string> facts(const std::vector<Outcome>& outcomes) {
+// All results in the directory, in the order of all_cases().
+std::vector<Outcome> outcomes_in(const std::string& dir) {
+  std::vector<Outcome> outcomes;
+  for (const Case& c : all_cases())
+    if (fs::exists(result_path(dir, c.name))) outcomes.push_back(read_outcome(result_path(dir, c.name)));
+  return outcomes;
+}
+
+void write_reports(const std::string& dir, const std::vector<Outcome>& outcomes) {
+  write_file_atomically(dir + "/report.html", validation_page(outcomes, page_facts(outcomes)));
+  write_file_atomically(dir + "/report.json", validation_json(outcomes));
+}
+
+int work(const Task& task, const Run& run) {
+  try {
+    store(outcome_of(task, run), run);
+    return 0;
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "ropewalk validate: {}: {}\n", task.of->name, e.what());
+    return 3;
+  }
+}
+
+void run_all(const std::vector<Task>& tasks, const Run& run) {
+  std::vector<ProcessTask> processes;
+  std::size_t number = 0;
+  const auto tell = [&run, count = tasks.size()](std::size_t at, const Task& task, const std::string& what) {
+    if (!run.arguments.quiet) fmt::print(stderr, "{}/{} {}{}\n", at, count, task.of->name, what);
+  };
+  for (const Task& task : tasks) {
+    ++number;
+    if (finished(task, run)) {
+      tell(number, task, ": kept");
+    } else if (!task.not_applicable.empty()) {
+      tell(number, task, ": not applicable");
+      store(outcome_of(task, run), run);
+    } else {
+      processes.push_back({[&, number] {
+                             tell(number, task,
+                                  task.make_atoms && task.seconds > 0
+                                      ? fmt::format(": about {:.2g} min of LAMMPS", task.seconds / 60)
+                                      : "");
+                             return work(task, run);
+                           },
+                           [&](int status) {
+                             if (status != 0) report_of_death(task, run, status);
+                             write_reports(run.arguments.out, outcomes_in(run.arguments.out));
+                           }});
+    }
+  }
+  run_processes(processes, run.jobs);
+  write_reports(run.arguments.out, outcomes_in(run.arguments.out));
+}
+
+int exit_code(const std::vector<Outcome>& outcomes) {
+  int code = 0;
+  for (const Outcome& o : outcomes) {
+    if (o.verdict() == Outcome::Verdict::failed) return 3;
+    if (o.verdict() == Outcome::Verdict::misses) code = 1;
+  }
+  return code;
+}
+
+}  // namespace
+
+std::vector<std::string> page_facts(const std::vector<Outcome>& outcomes) {
   std::map<std::string, UsedSet> sets;
   for (const Outcome& o : outcomes)
     for (const UsedSet& set : o.sets) sets[set.hash] = set;
@@ -235,19 +274,6 @@ std::vector<std::string> facts(const std::vector<Outcome>& outcomes) {
                   git_id, compiler, build_type)};
 }
 
-// All results in the directory, in the order of all_cases().
-std::vector<Outcome> outcomes_in(const std::string& dir) {
-  std::vector<Outcome> outcomes;
-  for (const Case& c : all_cases())
-    if (fs::exists(result_path(dir, c.name))) outcomes.push_back(read_outcome(result_path(dir, c.name)));
-  return outcomes;
-}
-
-void write_reports(const std::string& dir, const std::vector<Outcome>& outcomes) {
-  write_file_atomically(dir + "/report.html", validation_page(outcomes, facts(outcomes)));
-  write_file_atomically(dir + "/report.json", validation_json(outcomes));
-}
-
 void make_directory(const std::string& dir) {
   std::error_code error;
   if (fs::exists(dir, error) && !fs::is_directory(dir, error))
@@ -257,52 +283,6 @@ void make_directory(const std::string& dir) {
     throw InputError({dir, 0, "--out"}, fmt::format("cannot be created: {}", error.message()),
                      "choose a directory that you may write to");
 }
-
-void run_all(const std::vector<Task>& tasks, const Run& run) {
-  const bool quiet = run.arguments.quiet;
-  std::map<pid_t, const Task*> at_work;
-  std::size_t done = 0;
-  const auto wait_for_one = [&] {
-    int status = 0;
-    const pid_t child = waitpid(-1, &status, 0);
-    const auto at = at_work.find(child);
-    if (at == at_work.end()) return;
-    if (status != 0) report_of_death(*at->second, run, status);
-    at_work.erase(at);
-    ++done;
-    write_reports(run.arguments.out, outcomes_in(run.arguments.out));
-  };
-  for (const Task& task : tasks) {
-    const bool kept = finished(task, run);
-    while (at_work.size() >= static_cast<std::size_t>(run.jobs)) wait_for_one();
-    if (!quiet)
-      fmt::print(stderr, "{}/{} {}{}\n", done + at_work.size() + 1, tasks.size(), task.of->name,
-                 kept                           ? ": kept"
-                 : !task.not_applicable.empty() ? ": not applicable"
-                 : task.make_atoms && task.seconds > 0
-                     ? fmt::format(": about {:.2g} min of LAMMPS", task.seconds / 60)
-                     : "");
-    if (kept || !task.not_applicable.empty()) {
-      if (!kept) store(outcome_of(task, run), run);
-      ++done;
-      continue;
-    }
-    at_work.emplace(start(task, run), &task);
-  }
-  while (!at_work.empty()) wait_for_one();
-  write_reports(run.arguments.out, outcomes_in(run.arguments.out));
-}
-
-int exit_code(const std::vector<Outcome>& outcomes) {
-  int code = 0;
-  for (const Outcome& o : outcomes) {
-    if (o.verdict() == Outcome::Verdict::failed) return 3;
-    if (o.verdict() == Outcome::Verdict::misses) code = 1;
-  }
-  return code;
-}
-
-}  // namespace
 
 const char* group_name(Case::Group group) {
   switch (group) {
@@ -353,6 +333,10 @@ std::vector<Outcome> run_cases(const ValidateArguments& a) {
   Run run;
   run.arguments = a;
   if (!a.parameters.empty()) run.given = read_parameters(find_parameters(a.parameters, ""));
+  if (!a.with.empty()) run.second = read_parameters(find_parameters(a.with, ""));
+  if (run.second && !run.given)
+    throw InputError({"", 0, "--with"}, "is the second of two sets, and the first is not given",
+                     "add --parameters SET");
   if (a.atoms && !run.given)
     throw InputError({"", 0, "--atoms"}, "makes atoms of the set of --parameters, and none is given",
                      "add --parameters SET, or make references of shipped sets anew with --fresh");
@@ -360,7 +344,8 @@ std::vector<Outcome> run_cases(const ValidateArguments& a) {
     throw InputError({"", 0, "--budget"}, "limits what --atoms makes, which is not there", "add --atoms");
   const std::vector<const Case*> cases = chosen_cases(a);
   make_directory(a.out);
-  run.key = fmt::format("{} {} {}", git_id, run.given ? run.given->hash : "shipped", a.fresh ? "fresh" : "stored");
+  run.key = fmt::format("{} {}{} {}", git_id, run.given ? run.given->hash : "shipped",
+                        run.second ? " with " + run.second->hash : "", a.fresh ? "fresh" : "stored");
   run.jobs = a.jobs > 0 ? a.jobs : omp_get_num_procs();
   std::vector<Task> tasks;
   for (const Case* c : cases) tasks.push_back(task_of(*c, run));

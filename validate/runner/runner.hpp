@@ -20,6 +20,7 @@ struct ValidateArguments {
   std::string tier = "full";       // "quick": without ropes and bundles
   bool stability = false;          // the group `stability` instead of the others
   std::string parameters;          // a set that takes the place of the shipped ones
+  std::string with;                // a second set, for pairs of unlike tubes
   bool atoms = false;              // make references of the given set that are missing, with LAMMPS
   double budget = 0;               // minutes that these may take; 0: any
   int jobs = 0;                    // cases at a time; 0: one for each core
@@ -38,6 +39,9 @@ struct ReportArguments {
   std::string dir;
 };
 int validation_report_command(const ReportArguments& arguments);
+
+// The directory of --out. Throws InputError where it cannot be made.
+void make_directory(const std::string& dir);
 
 // --- Results of cases, and the reports made from them ---
 
@@ -67,8 +71,17 @@ std::string outcome_json(const Outcome& outcome);
 // Throws InputError where the file is not such a result.
 Outcome read_outcome(const std::string& path);
 
+// What stands above the cases of a page.
+struct PageTop {
+  std::string kicker, title;
+  std::string html;  // between the first sentence and the table of cases
+};
 // Outcomes in the order of all_cases(); `facts` are lines for the end of the page.
 std::string validation_page(const std::vector<Outcome>& outcomes, const std::vector<std::string>& facts);
+std::string validation_page(const std::vector<Outcome>& outcomes, const std::vector<std::string>& facts,
+                            const PageTop& top);
+// What the sets of these outcomes are worth, and how they were made.
+std::vector<std::string> page_facts(const std::vector<Outcome>& outcomes);
 std::string validation_json(const std::vector<Outcome>& outcomes);
 std::string validation_table(const std::vector<Outcome>& outcomes);
 

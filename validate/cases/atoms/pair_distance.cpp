@@ -204,6 +204,7 @@ const RegisteredCase registered([] {
   c.group = Case::Group::atoms;
   c.order = 40;
   c.sets = {"cnt-10-10-tersoff", "cnt-5-5-tersoff", "cnt-10-10-paper"};
+  c.takes_two = true;
   c.tables = {"pair-distance"};
   c.lammps_seconds = [](const ParameterSet& set) { return 0.02 * set.atoms_per_length; };
   c.title = "Two parallel tubes: energy against distance";

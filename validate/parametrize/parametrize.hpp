@@ -1,0 +1,52 @@
+// `ropewalk parametrize`: from chiralities to validated parameter sets and one report.
+//
+// Of each tube (n,m) and interatomic potential: the set is calibrated with its envelope, the references of its
+// atoms are made, all cases of validation that the set allows are run, and a page says what the set is worth. What
+// is finished is kept, so that a stopped command goes on where it was.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "model/parameters.hpp"
+#include "runner/runner.hpp"
+
+namespace ropewalk {
+
+struct ParametrizeArguments {
+  std::vector<std::string> tubes;  // "7,3"
+  std::vector<std::string> potentials = {"tersoff"};
+  std::string out = "parametrized";
+  double budget = 0;  // minutes of each tube's references; 0: any
+  int jobs = 0;       // processes at a time; 0: one for each core
+  bool again = false;
+  bool quiet = false;
+};
+// Exit codes: 0 all checks hold, 1 some miss, 2 wrong input, 3 a tube has no set or a case could not be run.
+int parametrize_command(const ParametrizeArguments& arguments);
+
+// --- What the pages are made from ---
+
+struct ParametrizedTube {
+  std::string name;   // "cnt-7-3-tersoff"
+  std::string tube;   // "(7,3)"
+  std::string error;  // why there is no set; empty otherwise
+  ParameterSet set;
+  std::vector<Outcome> outcomes;
+  double calibration_seconds = 0;  // wall time
+
+  bool holds() const;
+  double validation_seconds() const;  // sum over the cases, LAMMPS included
+};
+
+// The largest relative difference of twisting energies of ropes from those of atoms, with the check; null where no
+// rope was compared.
+const Check* worst_rope(const ParametrizedTube& tube);
+
+// The page of one tube, and that of several with links to theirs.
+std::string tube_page(const ParametrizedTube& tube);
+std::string overview_page(const std::vector<ParametrizedTube>& tubes);
+// One row a tube, with units in the header.
+std::string tubes_csv(const std::vector<ParametrizedTube>& tubes);
+
+}  // namespace ropewalk

@@ -1,0 +1,55 @@
+#include "runner/processes.hpp"
+
+#include <fmt/format.h>
+#include <omp.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <map>
+#include <stdexcept>
+
+namespace ropewalk {
+namespace {
+
+pid_t start(const ProcessTask& task, int jobs) {
+  std::fflush(nullptr);
+  const pid_t parent = getpid(), child = fork();
+  if (child < 0) throw std::runtime_error(fmt::format("no process can be started: {}", std::strerror(errno)));
+  if (child > 0) return child;
+  prctl(PR_SET_PDEATHSIG, SIGTERM);
+  if (getppid() != parent) _exit(3);
+  omp_set_num_threads(std::max(1, omp_get_num_procs() / jobs));
+  const int code = task.work();
+  std::fflush(nullptr);
+  _exit(code);
+}
+
+}  // namespace
+
+void run_processes(const std::vector<ProcessTask>& tasks, int jobs) {
+  std::map<pid_t, const ProcessTask*> at_work;
+  const auto wait_for_one = [&] {
+    int status = 0;
+    const auto at = at_work.find(waitpid(-1, &status, 0));
+    if (at == at_work.end()) return;
+    at->second->finish(status);
+    at_work.erase(at);
+  };
+  for (const ProcessTask& task : tasks) {
+    while (at_work.size() >= static_cast<std::size_t>(jobs)) wait_for_one();
+    at_work.emplace(start(task, jobs), &task);
+  }
+  while (!at_work.empty()) wait_for_one();
+}
+
+std::string death_words(int status) {
+  return WIFSIGNALED(status) ? fmt::format("its process was ended by signal {}", WTERMSIG(status))
+                             : "its result could not be written";
+}
+
+}  // namespace ropewalk
