@@ -51,6 +51,8 @@ void add_calibrate(CLI::App& app, Verbs& v) {
   app.add_option("--strain", a.stiffness.largest_strain, "Fit window of stretch")->capture_default_str();
   app.add_option("--shear", a.stiffness.largest_shear, "Fit window of twist: radius times twist")
       ->capture_default_str();
+  app.add_option("--bend-lengths", a.bend_lengths, "Free lengths of the shorter and the longer bent tube (nm)")
+      ->capture_default_str();
   app.add_flag("--json", a.json, "JSON");
   app.add_flag("--force", a.force, "Replace existing files");
   app.add_flag("--quiet", a.quiet, "No progress lines");

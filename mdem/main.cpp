@@ -41,6 +41,8 @@ struct Verbs {
   EnergyArguments energy;
   BenchArguments bench;
   ReportArguments report;
+  ErrorsArguments errors;
+  CompareArguments compare;
   PlanArguments plan;
   ExportArguments to_lammps;
   ImportArguments from_lammps;
@@ -93,6 +95,27 @@ void add_run(CLI::App& app, Verbs& v) {
   c->callback([&v] { v.code = run_command(v.run); });
 }
 
+void add_errors(CLI::App& app, Verbs& v) {
+  CLI::App* c = app.add_subcommand(
+      "errors", "Errors of a finished run's results that follow from those of its parameters: repeats it");
+  c->add_option("dir", v.errors.dir, "Directory of the run")->required();
+  c->add_option("-j,--jobs", v.errors.jobs, "Runs at a time [default: one for each core]")
+      ->check(CLI::PositiveNumber);
+  c->add_flag("--again", v.errors.again, "Repeat also what is finished");
+  c->add_flag("--json", v.errors.json, "JSON");
+  c->add_flag("--quiet", v.errors.quiet, "No progress lines");
+  c->callback([&v] { v.code = errors_command(v.errors); });
+}
+
+void add_compare(CLI::App& app, Verbs& v) {
+  CLI::App* c = app.add_subcommand("compare", "Parameter sets side by side: a table, and a page of their curves");
+  c->add_option("sets", v.compare.sets, "Two sets or more: files, or names of shipped ones")->required();
+  c->add_option("--page", v.compare.page, "Write the page with all curves here (HTML)");
+  c->add_flag("--json", v.compare.json, "JSON");
+  c->add_flag("--force", v.compare.force, "Replace an existing page");
+  c->callback([&v] { v.code = compare_command(v.compare); });
+}
+
 void add_resume(CLI::App& app, Verbs& v) {
   CLI::App* c = app.add_subcommand("resume", "Go on with a run from its last checkpoint, bit for bit");
   c->add_option("dir", v.resume.dir, "Directory of the run")->required();
@@ -127,9 +150,16 @@ void add_energy(CLI::App& app, Verbs& v) {
   CLI::App* c = app.add_subcommand(
       "energy", "Energies (eV), forces (eV/nm) and torques (eV) of one state: CSV tube,x_nm,y_nm,z_nm,qw,qx,qy,qz");
   c->add_option("state", v.energy.state, "State file; the tube axis is the body's z")->required();
-  c->add_option("--parameters", v.energy.parameters, "Parameter set: a file, or the name of a shipped one")
+  c->add_option("--parameters", v.energy.parameters,
+                "Parameter set: a file, or the name of a shipped one; several, separated by commas, for tube types")
+      ->delimiter(',')
       ->required();
+  c->add_option("--tube-types", v.energy.tube_types,
+                "Which of the sets each tube is: 0,1,1 [default: all the first]")
+      ->delimiter(',');
   c->add_option("--law", v.energy.law, "Contact law: line, paper or none [default: line where the set has it]");
+  c->add_option("--bond", v.energy.bond, "harmonic or anharmonic [default: anharmonic where the set has it]")
+      ->check(CLI::IsMember({"harmonic", "anharmonic"}));
   c->add_option("--exclude-along-tube-nm", v.energy.exclude_along_tube,
                 "Parts of one tube up to this far apart along it do not attract [default: as a scene has it]")
       ->check(CLI::PositiveNumber);
@@ -213,13 +243,16 @@ int main(int argc, char** argv) {
   add_resume(app, verbs);
   add_observe(app, verbs);
   add_report(app, verbs);
+  add_errors(app, verbs);
+  add_compare(app, verbs);
   add_plan(app, verbs);
   add_export(app, verbs);
   add_import(app, verbs);
   // Handed over before anything is parsed; named here for --help.
   app.add_subcommand("calibrate", "Derive a parameter set for any (n,m) from atomistic data");
   app.add_subcommand("validate", "Hold the model against theory, atoms and other codes");
-  app.add_subcommand("parametrize", "From a chirality to a validated parameter set: calibrate, make atoms, validate");
+  app.add_subcommand("parametrize",
+                     "From a chirality to a validated parameter set: calibrate, make atoms, validate");
   add_energy(app, verbs);
   add_bench(app, verbs);
   try {

@@ -76,7 +76,7 @@ Anharmonic AnharmonicFit::law(double radius, double coupling) const {
 }
 
 void fit_anharmonic(std::vector<AtomisticRow>& table, Chirality c, Stiffness& out) {
-  const bool chiral = c.m > 0 && c.m < c.n;
+  const bool chiral = c.chiral();
   const double r = out.radius.value;
   AnharmonicFit& fit = out.anharmonic;
   fit.terms.assign(std::size(anharmonic_terms), {});

@@ -50,12 +50,15 @@ long extra_hexagons(Chirality c, const TubeShape& shape, double length) {
 
 std::vector<AtomisticRow> bend_rows(RunContext& run, const RelaxedTube& tube, const BendSeries& series) {
   const long short_part = hexagons_in(run.c, tube.shape, series.short_length);
-  const long extra = extra_hexagons(run.c, tube.shape, series.long_length - series.short_length);
-  std::string input = "# finite tubes, two lengths, bent step by step\n";
+  const double additional = series.long_length - series.short_length;
+  std::vector<std::pair<const char*, long>> specimens = {{"-short", 0}};
+  if (series.middle) specimens.emplace_back("-middle", extra_hexagons(run.c, tube.shape, 0.5 * additional));
+  specimens.emplace_back("-long", extra_hexagons(run.c, tube.shape, additional));
+  std::string input = "# finite tubes of several lengths, bent step by step\n";
   std::vector<AtomisticRow> rows;
-  for (const bool is_long : {false, true}) {
-    const std::string kind = series.name + (is_long ? "-long" : "-short");
-    const FiniteTube finite(run.c, tube.shape, is_long ? short_part + extra : short_part, held_band(run.potential));
+  for (const auto& [ending, extra] : specimens) {
+    const std::string kind = series.name + ending;
+    const FiniteTube finite(run.c, tube.shape, short_part + extra, held_band(run.potential));
     write_data(run, kind + ".data", finite.data());
     const std::string results =
         fmt::format("print \"$(pe:%.15g) $(fnorm:%.6g)\" append {}.dat screen no\n", series.name);

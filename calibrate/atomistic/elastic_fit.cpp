@@ -341,6 +341,25 @@ void fit_stretch_twist(std::vector<AtomisticRow>& table, Stiffness& out) {
   out.GJ = {2 * c02.value, both(2 * c02.standard_error, GJ.half())};
   out.coupling = {c11.value, both(c11.standard_error, coupling.half())};
   out.natural_twist = {fit.value[2] * w.twist, both(fit.standard_error[2] * w.twist, twist.half())};
+  // The spread over windows is added to the errors as a part of its own: it weakens the correlations.
+  const auto place = [&](int i, int j) {
+    for (std::size_t k = 0; k < powers.size(); ++k)
+      if (powers[k].u == i && powers[k].v == j) return 3 + k;
+    return std::size_t{0};
+  };
+  const std::size_t of[] = {place(2, 0), place(0, 2), place(1, 1), 2};
+  const double fitted[] = {2 * c20.standard_error, 2 * c02.standard_error, c11.standard_error,
+                           fit.standard_error[2] * w.twist};
+  const double whole[] = {out.EA.standard_error, out.GJ.standard_error, out.coupling.standard_error,
+                          out.natural_twist.standard_error};
+  out.correlation.assign(4, std::vector<double>(4, 0));
+  for (std::size_t i = 0; i < 4; ++i)
+    for (std::size_t j = 0; j < 4; ++j) {
+      const double share = std::isfinite(fitted[i] * fitted[j]) && whole[i] * whole[j] > 0
+                               ? fitted[i] * fitted[j] / (whole[i] * whole[j])
+                               : 0;
+      out.correlation[i][j] = i == j ? 1 : share * fit.correlation[of[i]][of[j]];
+    }
   out.stretch_cubic = term(3, 0);
   out.twist_cubic = term(0, 3);
   out.twist_quartic = term(0, 4);
@@ -375,9 +394,10 @@ void fit_bend(std::vector<AtomisticRow>& table, Stiffness& out) {
     AtomisticRow* row;
     double unit;  // energy of the longer tube per y
   };
-  std::vector<AtomisticRow*> short_rows, long_rows;
+  std::vector<AtomisticRow*> short_rows, middle_rows, long_rows;
   for (AtomisticRow& row : table) {
     if (row.kind == "bend-short") short_rows.push_back(&row);
+    if (row.kind == "bend-middle") middle_rows.push_back(&row);
     if (row.kind == "bend-long") long_rows.push_back(&row);
   }
   const auto straight = [](const std::vector<AtomisticRow*>& rows) {
@@ -386,15 +406,20 @@ void fit_bend(std::vector<AtomisticRow>& table, Stiffness& out) {
     return 0.0;
   };
   const double short_zero = straight(short_rows), long_zero = straight(long_rows);
-  std::vector<BendPair> pairs;
-  for (AtomisticRow* l : long_rows)
-    for (const AtomisticRow* s : short_rows) {
-      const double k = l->curvature, length = l->length - s->length;
-      if (k == 0 || std::abs(k - s->curvature) > 1e-9 * std::abs(k) || length == 0) continue;
-      const double unit = 0.5 * length * k * k;
-      pairs.push_back({std::abs(k), ((l->energy - long_zero) - (s->energy - short_zero)) / unit, l, unit});
-    }
-  std::sort(pairs.begin(), pairs.end(), [](const BendPair& a, const BendPair& b) { return a.k < b.k; });
+  const auto pairs_of = [](const std::vector<AtomisticRow*>& longer, double longer_zero,
+                           const std::vector<AtomisticRow*>& shorter, double shorter_zero) {
+    std::vector<BendPair> found;
+    for (AtomisticRow* l : longer)
+      for (const AtomisticRow* s : shorter) {
+        const double k = l->curvature, length = l->length - s->length;
+        if (k == 0 || std::abs(k - s->curvature) > 1e-9 * std::abs(k) || length == 0) continue;
+        const double unit = 0.5 * length * k * k;
+        found.push_back({std::abs(k), ((l->energy - longer_zero) - (s->energy - shorter_zero)) / unit, l, unit});
+      }
+    std::sort(found.begin(), found.end(), [](const BendPair& a, const BendPair& b) { return a.k < b.k; });
+    return found;
+  };
+  const std::vector<BendPair> pairs = pairs_of(long_rows, long_zero, short_rows, short_zero);
   const auto not_enough = [&] {
     return InputError({"", 0, "bend"}, fmt::format("{} pairs of bent tubes do not determine EI", pairs.size()),
                       "give bend-short and bend-long rows at three or more equal curvatures");
@@ -403,19 +428,20 @@ void fit_bend(std::vector<AtomisticRow>& table, Stiffness& out) {
   const double largest = pairs.back().k;
 
   // A straight line in (k / largest)^2 over pairs first .. last, for the start values and the smaller windows.
-  const auto line = [&](std::size_t first, std::size_t last) {
+  const auto line_of = [largest](const std::vector<BendPair>& points, std::size_t first, std::size_t last) {
     double n = 0, x = 0, y = 0, xx = 0, xy = 0;
     for (std::size_t i = first; i <= last; ++i) {
-      const double q = raised(pairs[i].k / largest, 2);
+      const double q = raised(points[i].k / largest, 2);
       n += 1;
       x += q;
-      y += pairs[i].y;
+      y += points[i].y;
       xx += q * q;
-      xy += q * pairs[i].y;
+      xy += q * points[i].y;
     }
     const double slope = (n * xy - x * y) / (n * xx - x * x);
     return std::pair<double, double>{(y - slope * x) / n, slope};
   };
+  const auto line = [&](std::size_t first, std::size_t last) { return line_of(pairs, first, last); };
   const std::size_t last = pairs.size() - 1;
   const auto start = line(0, last);
   if (!(start.first > 0)) throw not_enough();
@@ -450,8 +476,19 @@ void fit_bend(std::vector<AtomisticRow>& table, Stiffness& out) {
     fit_range(0, last - 1);
     fit_range(1, last);
   }
+  // The lower and the upper half of the additional length apart: what the ends of the specimens still do.
+  Interval halves;
+  const double middle_zero = straight(middle_rows);
+  for (const auto& half : {pairs_of(middle_rows, middle_zero, short_rows, short_zero),
+                           pairs_of(long_rows, long_zero, middle_rows, middle_zero)}) {
+    if (half.size() < 3) continue;
+    const double value = line_of(half, 0, half.size() - 1).first;
+    halves.add(value);
+    windows += fmt::format("  {} half of the additional length: EI {:.6g} eV nm\n",
+                           half.front().row->kind == "bend-middle" ? "lower" : "upper", value);
+  }
   const double k4_unit = 0.5 * scale / (largest * largest);
-  out.EI = {fit.value[0] * scale, both(fit.standard_error[0] * scale, EI.half())};
+  out.EI = {fit.value[0] * scale, both(both(fit.standard_error[0] * scale, EI.half()), halves.half())};
   out.bend_quartic = {fit.value[1] * k4_unit, fit.standard_error[1] * k4_unit};
   out.fit_report += fmt::format(
       "bend: {} pairs of tubes of {:.4g} and {:.4g} nm, curvature <= {:.4g} /nm; rms residual {:.2g} and largest "

@@ -66,10 +66,12 @@ std::vector<AtomisticRow> stretch_twist_rows(const std::vector<CellResult>& cell
 std::vector<AtomisticRow> collapse_rows(RunContext& run, const RelaxedTube& tube,
                                         const std::vector<double>& shears);
 
-// Finite tubes of two lengths (nm) bent to these curvatures (1/nm); rows NAME-short and NAME-long.
+// Finite tubes of two or three lengths (nm) bent to these curvatures (1/nm); rows NAME-short, NAME-middle,
+// NAME-long.
 struct BendSeries {
   std::string name;
   double short_length = 0, long_length = 0;
+  bool middle = false;  // also a tube of the mean of both lengths
   std::vector<double> curvatures;
 };
 std::vector<AtomisticRow> bend_rows(RunContext& run, const RelaxedTube& tube, const BendSeries& series);

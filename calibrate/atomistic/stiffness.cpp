@@ -25,7 +25,7 @@ InputError bad_option(const char* key, const std::string& what, const std::strin
 void check_tube(Chirality c) {
   if (!c.valid())
     throw bad_option("chirality", fmt::format("({},{}) is not a tube", c.n, c.m),
-                     "give n >= 1 and 0 <= m <= n, for example 10,10");
+                     "give n and m, neither negative, for example 10,10");
   const double diameter = 2 * tube_radius(c);
   if (diameter < smallest_diameter)
     throw bad_option("chirality",
@@ -88,6 +88,7 @@ BendSeries elastic_bends(const StiffnessOptions& options, double curvature) {
   return {"bend",
           options.short_length,
           options.long_length,
+          true,
           {0.4 * curvature, 0.6 * curvature, 0.8 * curvature, curvature}};
 }
 
@@ -96,6 +97,7 @@ BendSeries wide_bends(double radius, double kink) {
   return {"wide-bend",
           std::max(6.0, 12 * radius),
           std::max(10.0, 20 * radius),
+          false,
           {0.3 * kink, 0.5 * kink, 0.65 * kink, 0.75 * kink, 0.85 * kink}};
 }
 

@@ -88,11 +88,13 @@ struct AnharmonicFit {
 };
 
 struct Stiffness {
-  Measured EA;                 // eV/nm
-  Measured EI;                 // eV nm
-  Measured GJ;                 // eV nm
-  Measured coupling;           // C, eV
-  Measured natural_twist;      // rad/nm, of the relaxed tube against the rolled sheet
+  Measured EA;             // eV/nm
+  Measured EI;             // eV nm
+  Measured GJ;             // eV nm
+  Measured coupling;       // C, eV
+  Measured natural_twist;  // rad/nm, of the relaxed tube against the rolled sheet
+  // Of the errors of EA, GJ, coupling and natural twist by their fit; empty: not known.
+  std::vector<std::vector<double>> correlation;
   Measured poisson;            // -d ln r / d strain
   Measured radius;             // nm, relaxed
   Measured atoms_per_length;   // 1/nm, relaxed

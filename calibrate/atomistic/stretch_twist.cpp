@@ -176,7 +176,7 @@ CellGrid elastic_grid(const StiffnessOptions& options) {
 CellGrid wide_grid(Chirality c, const Envelope& limits) {
   const double strain = limits.compression.value;
   CellGrid grid{"wide-stretch-twist", {}, limits.twist_collapse.value, {0, 0.4, 0.7, 1}};
-  if (c.m > 0 && c.m < c.n) grid.parts_of_shear = {-1, -0.7, -0.4, 0, 0.4, 0.7, 1};
+  if (c.chiral()) grid.parts_of_shear = {-1, -0.7, -0.4, 0, 0.4, 0.7, 1};
   for (int k = -4; k <= 4; ++k) grid.strains.push_back(strain * k / 4);
   return grid;
 }

@@ -48,6 +48,8 @@ UniversalFit fit_universal(const AtomLaw& law, const std::vector<std::pair<doubl
 
 // The published form (11 free parameters: epsilon A, epsilon B, alpha, beta, C1..C5, C_gamma, delta) for elements
 // of the given length, to the integrated energies of parallel rows and crossed tubes.
+inline constexpr const char* paper_parameters[] = {"A",  "B",  "alpha", "beta",    "C1",   "C2",
+                                                   "C3", "C4", "C5",    "C_gamma", "delta"};  // in the fit's order
 struct PaperFit {
   PaperContact law;
   FitResult fit;

@@ -18,7 +18,7 @@ namespace {
 
 constexpr double inside = 0.05;      // nm inside of the minimum
 constexpr double pair_weight = 0.3;  // of a pair alone: rows and crossings are what a rope consists of
-constexpr double min_theta = 0.1;  // the reader of parameter sets asks for 0.05
+constexpr double min_theta = 0.1;    // the reader of parameter sets asks for 0.05
 
 // Separation and axes of one pair of elements.
 struct Pose {
@@ -198,9 +198,8 @@ void set_form(const std::vector<double>& p, PaperContact& law) {
 
 // Bounds around the result of the search; exponents and angular terms keep their bounds.
 std::vector<FitParameter> box_around(const std::vector<double>& p, std::vector<FitParameter> box) {
-  const char* const names[] = {"A", "B", "alpha", "beta", "C1", "C2", "C3", "C4", "C5", "C_gamma", "delta"};
   for (std::size_t k = 0; k < box.size(); ++k) {
-    box[k].name = names[k];
+    box[k].name = paper_parameters[k];
     box[k].start = p[k];
     if (k == 0 || k == 1) box[k].lower = 0.2 * p[k], box[k].upper = 5 * p[k];
     if (k == 9) box[k].lower = 0, box[k].upper = 5 * p[k] + 1;

@@ -36,10 +36,10 @@ std::vector<FitParameter> box() {
     double start, below, above, slope;
   };
   const Bounds ranges[] = {{"ln K", 2, 0, 4, 10},
-                          {"s", 0.75, 0.3, 2, 3},
-                          {"c", -0.07, -0.4, 1, 3},
-                          {"p", 9, 5.6, 20, 60},
-                          {"q", 4.2, 2, 5.4, 10}};
+                           {"s", 0.75, 0.3, 2, 3},
+                           {"c", -0.07, -0.4, 1, 3},
+                           {"p", 9, 5.6, 20, 60},
+                           {"q", 4.2, 2, 5.4, 10}};
   static const char* const powers[] = {" 1", " x", " x^2", " x^3", " y", " x y"};
   std::vector<FitParameter> out;
   for (const Bounds& r : ranges)

@@ -487,6 +487,18 @@ void add_errors(Problem& problem, FitResult& result, const std::vector<std::size
     error = determined ? std::sqrt(s2 * variance) / length[k] * problem.width(k) : nan_value;
     if (!determined) result.undetermined.push_back(problem.parameter(k).name);
   }
+  const auto index = [&](Eigen::Index k) { return free[static_cast<std::size_t>(k)]; };
+  const auto product = [&](Eigen::Index k, Eigen::Index l) {
+    double sum = 0;
+    for (Eigen::Index d = 0; d < n; ++d)
+      if (svd.s[d] > rank_limit * svd.s[0]) sum += svd.v(k, d) * svd.v(l, d) / (svd.s[d] * svd.s[d]);
+    return sum;
+  };
+  for (Eigen::Index k = 0; k < n; ++k)
+    for (Eigen::Index l = 0; l < k; ++l)
+      if (std::isfinite(result.standard_error[index(k)]) && std::isfinite(result.standard_error[index(l)]))
+        result.correlation[index(k)][index(l)] = result.correlation[index(l)][index(k)] =
+            product(k, l) / std::sqrt(product(k, k) * product(l, l));
 }
 
 std::string figures(const FitResult& f) {
@@ -564,6 +576,8 @@ FitResult fit_least_squares(const std::vector<FitParameter>& parameters, std::si
     result.value.push_back(parameters[k].start);
     result.standard_error.push_back(parameters[k].free ? nan_value : 0);
     if (parameters[k].free) free.push_back(k);
+    result.correlation.emplace_back(parameters.size(), 0.0);
+    result.correlation.back()[k] = 1;
   }
   Fit fit(problem, options);
   fit.run();

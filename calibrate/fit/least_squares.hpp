@@ -41,7 +41,10 @@ struct FitResult {
   std::string message;                 // one line for a person: the verdict and what to do
   std::vector<double> value;           // of all parameters, in their order
   std::vector<double> standard_error;  // 0 for a fixed parameter, NaN for one that the data do not determine
-  std::vector<std::string> at_bound;   // names
+  // Of the errors of all parameters; 0 with and between those that are fixed or not determined, but for the
+  // diagonal.
+  std::vector<std::vector<double>> correlation;
+  std::vector<std::string> at_bound;  // names
   std::vector<std::string> undetermined;
   double chi2 = 0;
   double rms = 0;      // sqrt(chi2 / number of residuals)

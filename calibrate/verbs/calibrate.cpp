@@ -12,6 +12,7 @@
 #include "io/grade.hpp"
 #include "io/parameters_toml.hpp"
 #include "io/toml_table.hpp"
+#include "report/page.hpp"
 #include "verbs/verbs.hpp"
 
 namespace ropewalk {
@@ -37,10 +38,14 @@ void print_result(const Calibration& c, const Grade& grade, const std::string& o
   const Stiffness& s = c.stiffness;
   const ContactSummary sum = contact_summary(c);
   const auto row = [](const char* what, const Measured& m, const char* unit, double factor = 1) {
-    fmt::print("  {:<26} {:>14.6g}  +- {:<10.2g} {}\n", what, m.value * factor, m.standard_error * factor, unit);
+    fmt::print("  {:<26} {:>26} {}\n", what, measured_text(m.value * factor, m.standard_error * factor), unit);
   };
-  fmt::print("({},{}), {}, LAMMPS {}\n", c.request.chirality.n, c.request.chirality.m, c.request.potential.name,
-             c.lammps.text);
+  const Chirality tube = c.request.chirality;
+  fmt::print("({},{}), {}, LAMMPS {}\n", tube.n, tube.m, c.request.potential.name, c.lammps.text);
+  if (tube.chiral() && tube.m > tube.n)
+    fmt::print(
+        "  the mirror image of ({},{}): coupling, natural twist and terms odd in shear have the other sign\n",
+        tube.m, tube.n);
   row("radius", s.radius, "nm");
   row("atoms per length", s.atoms_per_length, "1/nm");
   row("EA", s.EA, "nN", units::eV_in_nN_nm);
@@ -154,11 +159,9 @@ Chirality parse_chirality(const std::string& text) {
   Chirality c;
   if (!two_numbers(text, c.n, c.m))
     throw InputError(place, fmt::format("is \"{}\"", printable(text, 40)), "write two integers, as in 10,10");
-  if (c.n >= 0 && c.m > c.n)
-    throw InputError(place, fmt::format("is ({},{}), with m above n", c.n, c.m),
-                     fmt::format("write {},{}: its mirror image has the same constants", c.m, c.n));
   if (!c.valid())
-    throw InputError(place, fmt::format("({},{}) is not a tube", c.n, c.m), "take n >= 1 and 0 <= m <= n");
+    throw InputError(place, fmt::format("({},{}) is not a tube", c.n, c.m),
+                     "take n and m that are not negative; m above n is the mirror image of m,n");
   return c;
 }
 
@@ -218,6 +221,9 @@ int calibrate_command(const CalibrateArguments& a) {
   request.law = parse_atom_law(a.lj, a.lj_cutoff);
   request.potential = a.user_potential.empty() ? find_potential(a.potential) : user_potential(a.user_potential);
   request.stiffness = a.stiffness;
+  if (!two_numbers(a.bend_lengths, request.stiffness.short_length, request.stiffness.long_length))
+    throw InputError({"", 0, "--bend-lengths"}, fmt::format("is \"{}\"", printable(a.bend_lengths, 40)),
+                     "write two lengths in nm, as in 6,10");
   request.stiffness.envelope = a.envelope;
   request.stiffness.lammps.interrupted = [] { return interrupted_by() != 0; };
   request.command = a.command;

@@ -132,18 +132,41 @@ void add_line(const Calibration& c, Quantities& q) {
             "for this tube, of the well; between unlike tubes this law is used");
 }
 
+// A group of quantities of one fit, in the fit's order; those without an error are left out.
+void add_correlation(const std::vector<std::string>& keys, const std::vector<std::vector<double>>& matrix,
+                     ParameterSet& set) {
+  std::vector<std::size_t> known;
+  for (std::size_t k = 0; k < keys.size() && k < matrix.size(); ++k) {
+    const Quantity* q = find_quantity(set, keys[k]);
+    if (q && q->standard_error.value_or(0) > 0) known.push_back(k);
+  }
+  if (known.size() < 2) return;
+  Correlation c;
+  for (const std::size_t i : known) {
+    c.of.push_back(keys[i]);
+    c.matrix.emplace_back();
+    for (const std::size_t j : known) c.matrix.back().push_back(matrix[i][j]);
+  }
+  set.correlations.push_back(std::move(c));
+}
+
+// A number that its data do not determine: its error exceeds it, or the search ended at a bound.
+std::string undetermined_note(const FitResult& fit, std::size_t k) {
+  const std::string name = paper_parameters[k];
+  if (std::find(fit.at_bound.begin(), fit.at_bound.end(), name) != fit.at_bound.end())
+    return "at a bound of the fit: not determined by its data";
+  return fit.standard_error[k] < std::fabs(fit.value[k]) ? "" : "not determined by its data";
+}
+
 void add_paper(const Calibration& c, Quantities& q) {
   const PaperContact& k = c.paper.law;
   const std::vector<double>& se = c.paper.fit.standard_error;
   q.section("contact.paper");
   q.chosen("epsilon", k.epsilon, "eV", fmt::format("unit of A and B; fit error {:.1e} of the well", c.paper.error));
-  q.calibrated("A", {k.repulsion, se[0]}, "1");
-  q.calibrated("B", {k.attraction, se[1]}, "1");
-  q.calibrated("alpha", {k.alpha, se[2]}, "1");
-  q.calibrated("beta", {k.beta, se[3]}, "1");
-  for (std::size_t i = 0; i < 5; ++i) q.calibrated(fmt::format("C{}", i + 1), {k.angular[i], se[4 + i]}, "1");
-  q.calibrated("C_gamma", {k.crossing, se[9]}, "1");
-  q.calibrated("delta", {k.delta, se[10]}, "1");
+  const double values[] = {k.repulsion,  k.attraction, k.alpha,      k.beta,     k.angular[0], k.angular[1],
+                           k.angular[2], k.angular[3], k.angular[4], k.crossing, k.delta};
+  for (std::size_t i = 0; i < std::size(paper_parameters); ++i)
+    q.calibrated(paper_parameters[i], {values[i], se[i]}, "1", undetermined_note(c.paper.fit, i));
   q.chosen("freeze", k.freeze, "r");
   q.chosen("switch_start", k.switch_start, "r");
   q.chosen("cutoff", k.cutoff_ratio, "r");
@@ -329,6 +352,13 @@ ParameterSet parameter_set(const Calibration& c, const std::string& stiffness_fi
   add_line(c, q);
   if (c.paper.fit.usable()) add_paper(c, q);
   add_atomistic(c, q);
+  add_correlation({"bond.EA", "bond.GJ", "atomistic.coupling", "atomistic.natural_twist"}, c.stiffness.correlation,
+                  set);
+  add_correlation({"contact.line.K", "contact.line.s", "contact.line.c", "contact.line.p", "contact.line.q"},
+                  c.line.fit.correlation, set);
+  std::vector<std::string> paper;
+  for (const char* name : paper_parameters) paper.push_back(std::string("contact.paper.") + name);
+  if (c.paper.fit.usable()) add_correlation(paper, c.paper.fit.correlation, set);
   add_validity(c, q);
   LineParameters line;
   line.surface_density = c.shell().density;

@@ -210,7 +210,8 @@ Settings read_settings(const TomlTable& top, const std::string& path) {
     throw top.error("base", "is missing", "the contact models need a set: base = \"cnt-10-10-tersoff\"");
   s.free = top.strings("free");
   const TomlTable search = top.table("search");
-  s.search.starts = static_cast<int>(search.integer_or("starts", s.search.starts, 1, 1000));
+  // All starts that were tried with contact laws ended alike, and each takes seconds.
+  s.search.starts = static_cast<int>(search.integer_or("starts", s.model == "stiffness" ? 8 : 2, 1, 1000));
   s.search.max_evaluations =
       static_cast<int>(search.integer_or("max_evaluations", s.search.max_evaluations, 10, 100000000));
   s.search.max_seconds = search.number_or("max_seconds", s.search.max_seconds, Bounds::positive(1e5));
@@ -273,6 +274,31 @@ void renew_wells(const Settings& s, const FitResult& fit, ParameterSet& set) {
         q = {key, value, q.unit, fit.rms * std::fabs(value), "derived", "", "of the law; error by rms"};
 }
 
+// The groups of the base that name a fitted number are replaced by one of this fit.
+void renew_correlations(const Settings& s, const FitModel& m, const FitResult& fit, ParameterSet& set) {
+  Correlation fitted;
+  std::vector<std::size_t> places;
+  for (std::size_t k = 0; k < m.named.size(); ++k) {
+    const bool is_free = std::find(s.free.begin(), s.free.end(), m.named[k].name) != s.free.end();
+    if (!is_free || !std::isfinite(fit.standard_error[k]) || !find_quantity(set, m.named[k].key)) continue;
+    fitted.of.push_back(m.named[k].key);
+    places.push_back(k);
+  }
+  const auto names_fitted = [&](const Correlation& c) {
+    return std::any_of(c.of.begin(), c.of.end(), [&](const std::string& key) {
+      return std::find(fitted.of.begin(), fitted.of.end(), key) != fitted.of.end();
+    });
+  };
+  auto& all = set.correlations;
+  all.erase(std::remove_if(all.begin(), all.end(), names_fitted), all.end());
+  if (places.size() < 2) return;
+  for (const std::size_t i : places) {
+    fitted.matrix.emplace_back();
+    for (const std::size_t j : places) fitted.matrix.back().push_back(fit.correlation[i][j]);
+  }
+  all.push_back(std::move(fitted));
+}
+
 // The base set with the fitted numbers; `command` is recorded as their origin.
 std::string new_set(const Settings& s, const FitModel& m, const FitResult& fit, const FitArguments& a) {
   ParameterSet set = *s.base;
@@ -288,6 +314,7 @@ std::string new_set(const Settings& s, const FitModel& m, const FitResult& fit, 
       q.note = "fitted to " + fs::path(a.data).filename().string();
     }
   if (s.model == "line") renew_wells(s, fit, set);
+  renew_correlations(s, m, fit, set);
   set.name = fs::path(a.out).stem().string();
   set.provenance.emplace_back("fit_command", a.command);
   set.provenance.emplace_back("fit_data_hash", hash_hex(read_file(a.data)));
@@ -302,6 +329,12 @@ void print_fit(const FitModel& m, const std::vector<FitParameter>& parameters, c
                parameters[k].free ? fmt::format("+- {:.3g}", fit.standard_error[k]) : "(held)", m.named[k].unit);
   fmt::print("  {} residuals, rms {:.3g}, largest {:.3g} of {}; {} evaluations\n  {}\n", m.residuals, fit.rms,
              fit.largest, m.weighting, fit.evaluations, fit.message);
+  std::vector<std::string> loose;
+  for (std::size_t k = 0; k < m.named.size(); ++k)
+    if (parameters[k].free && fit.standard_error[k] > std::fabs(fit.value[k])) loose.push_back(m.named[k].name);
+  if (!loose.empty())
+    fmt::print("  these data do not determine {}: their errors exceed them; take them out of `free`\n",
+               fmt::join(loose, ", "));
 }
 
 nlohmann::ordered_json fit_json(const FitModel& m, const FitResult& fit) {

@@ -43,10 +43,6 @@ std::string companion(const ParameterSet& set, const std::string& kind) {
   return path;
 }
 
-std::string error_text(const Quantity& q) {
-  return q.standard_error ? fmt::format("{:.2g}", *q.standard_error) : "not known";
-}
-
 // --- The page -----------------------------------------------------------------------------------------------
 
 struct Points {
@@ -239,8 +235,10 @@ void print_set(const ParameterSet& set) {
   for (const Quantity& q : set.quantities) {
     const std::size_t dot = q.key.rfind('.');
     if (q.key.substr(0, dot) != section) fmt::print("\n[{}]\n", section = q.key.substr(0, dot));
-    fmt::print("  {:<18}{:>16.9g} {:<9} +- {:<10} {:<11}{}\n", q.key.substr(dot + 1), q.value, q.unit,
-               error_text(q), q.origin, q.note);
+    fmt::print("  {:<18}{:>26} {:<9} {:<11}{}\n", q.key.substr(dot + 1),
+               q.standard_error ? measured_text(q.value, *q.standard_error)
+                                : fmt::format("{:.7g}, error not known", q.value),
+               q.unit, q.origin, q.note);
   }
   const Section s = effective_section(set);
   fmt::print(

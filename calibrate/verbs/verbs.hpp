@@ -20,7 +20,8 @@ struct CalibrateArguments {
   bool force = false;
   bool quiet = false;
   StiffnessOptions stiffness;
-  std::string command;  // as typed
+  std::string bend_lengths = "6,10";  // nm
+  std::string command;                // as typed
 };
 int calibrate_command(const CalibrateArguments& arguments);
 

@@ -18,6 +18,9 @@ struct RunArguments {
   bool quiet = false;
 };
 int run_command(const RunArguments& arguments);
+// The same for a scene that is not that of a file: arguments.scene is not used.
+struct Scene;
+int run_scene(const Scene& scene, const RunArguments& arguments);
 // Only makes the directory, with the state at time zero as its checkpoint.
 void begin_run(const RunArguments& arguments);
 
@@ -45,6 +48,23 @@ struct ReportArguments {
 };
 int report_command(const ReportArguments& arguments);
 
+struct ErrorsArguments {
+  std::string dir;
+  int jobs = 0;  // runs at a time; 0: one for each core
+  bool again = false;
+  bool json = false;
+  bool quiet = false;
+};
+int errors_command(const ErrorsArguments& arguments);
+
+struct CompareArguments {
+  std::vector<std::string> sets;
+  std::string page;  // HTML; empty: none
+  bool json = false;
+  bool force = false;
+};
+int compare_command(const CompareArguments& arguments);
+
 struct NewArguments {
   std::string name;
   std::string kind = "rope";
@@ -57,8 +77,10 @@ int check_command(const std::string& scene);
 
 struct EnergyArguments {
   std::string state;
-  std::string parameters;
-  std::string law;  // empty: the line law where the set has it
+  std::vector<std::string> parameters;  // one set, or one for each type of tube
+  std::vector<int> tube_types;          // of each tube, from 0; empty: all of the first
+  std::string law;                      // empty: the line law where the set has it
+  std::string bond;                     // "harmonic" or "anharmonic"; empty: anharmonic where all sets have it
   bool legacy_torque = false;
   bool reference = false;
   bool json = false;

@@ -19,8 +19,8 @@ using Json = nlohmann::ordered_json;
 Json vector_json(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
 
 // Empty: the default of a scene.
-std::string law_named(const std::string& name, const ParameterSet& set) {
-  const std::string law = !name.empty() ? name : default_contact_law({set});
+std::string law_named(const std::string& name, const std::vector<ParameterSet>& sets) {
+  const std::string law = !name.empty() ? name : default_contact_law(sets);
   if (law == "none") return law;
   const ContactLawKind* kind = contact_law_kind(law);
   if (!kind) {
@@ -29,10 +29,33 @@ std::string law_named(const std::string& name, const ParameterSet& set) {
     throw InputError({"", 0, "--law"}, fmt::format("there is no contact law '{}'", law),
                      fmt::format("choose {} or none", names));
   }
-  if (kind->in_set && !kind->in_set(set))
-    throw InputError({set.path, 0, "contact." + law}, fmt::format("the set has no `{}` law", law),
-                     "use --law none");
+  for (const ParameterSet& set : sets)
+    if (kind->in_set && !kind->in_set(set))
+      throw InputError({set.path, 0, "contact." + law}, fmt::format("the set has no `{}` law", law),
+                       "use --law none");
   return law;
+}
+
+bool anharmonic_bond(const std::string& name, const std::vector<ParameterSet>& sets) {
+  for (const ParameterSet& set : sets) {
+    if (set.anharmonic) continue;
+    if (name == "anharmonic")
+      throw InputError({set.path, 0, "bond.anharmonic"}, "is missing, which --bond anharmonic needs",
+                       "use --bond harmonic");
+    return false;
+  }
+  return name != "harmonic";
+}
+
+void check_types(const EnergyArguments& a) {
+  const int sets = static_cast<int>(a.parameters.size());
+  if (sets > 1 && a.tube_types.empty())
+    throw InputError({"", 0, "--tube-types"}, fmt::format("is missing, and there are {} sets", sets),
+                     "say for each tube which of them it is, as in 0,1,1");
+  for (const int type : a.tube_types)
+    if (type < 0 || type >= sets)
+      throw InputError({"", 0, "--tube-types"}, fmt::format("names type {} of {}", type, sets),
+                       fmt::format("types run from 0 to {}", sets - 1));
 }
 
 Forces evaluate(const EnergyArguments& a, const BuiltScene& built, const Interaction& in) {
@@ -88,10 +111,13 @@ int energy_command(const EnergyArguments& a) {
   use_threads(a.threads);
   Scene scene;
   scene.path = a.state;
-  scene.sets = {read_parameters(find_parameters(a.parameters, ""))};
+  for (const std::string& name : a.parameters) scene.sets.push_back(read_parameters(find_parameters(name, "")));
+  scene.tube_types = a.tube_types;
+  check_types(a);
+  scene.bond.anharmonic = anharmonic_bond(a.bond, scene.sets);
   scene.element_length = scene.parameters().element_length;
   scene.source = std::make_shared<StateSource>(a.state);
-  scene.contact.law = law_named(a.law, scene.parameters());
+  scene.contact.law = law_named(a.law, scene.sets);
   scene.contact.legacy_torque = a.legacy_torque;
   scene.contact.exclude_along_tube = a.exclude_along_tube;
   scene.contact.precision = Interaction::Precision::full;  // once, and compared with the reference

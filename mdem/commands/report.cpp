@@ -100,6 +100,7 @@ ReportInput gather(const RunDirectory& dir, const Scene& scene, const Prepared& 
     if (const Grade grade = grade_of(set); grade.level != Grade::Level::good)
       in.warnings.push_back("Parameters " + set.name + " are " + grade.words() + ".");
   in.log = read_log(dir.log());
+  in.errors = read_run_errors(dir.path, in.log);
   in.error_bars = error_bars_of(scene, p.topology, in.log);
   if (scene.twist) in.ramp_end_ps = scene.twist->ramp_time();
   in.tube_radius = p.topology.largest_radius();

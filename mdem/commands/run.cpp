@@ -542,10 +542,9 @@ void check_finer_directory(const RunDirectory& dir, const RunPolicy& policy) {
                      "take it away or choose another name for the run");
 }
 
-std::unique_ptr<Run> new_run(const RunArguments& a) {
+std::unique_ptr<Run> new_run(const Scene& scene, const RunArguments& a) {
   const RunDirectory dir{a.out};
   const RunPolicy policy{a.quiet, on_limit_of(a.on_limit), a.force};
-  Scene scene = read_scene(a.scene);
   // Everything that can be wrong is found before a file is touched.
   auto run = std::make_unique<Run>(dir, scene, policy);
   run->check_before_start();
@@ -585,10 +584,12 @@ void refuse_refined(const RunDirectory& dir) {
 
 int run_command(const RunArguments& a) {
   use_threads(a.threads);
-  return go_through(new_run(a));
+  return go_through(new_run(read_scene(a.scene), a));
 }
 
-void begin_run(const RunArguments& a) { new_run(a)->leave(); }
+int run_scene(const Scene& scene, const RunArguments& a) { return go_through(new_run(scene, a)); }
+
+void begin_run(const RunArguments& a) { new_run(read_scene(a.scene), a)->leave(); }
 
 int resume_command(const ResumeArguments& a) {
   use_threads(a.threads);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -62,6 +63,7 @@ class Reader {
     read_validity(top_.table("validity"));
     const TomlTable provenance = top_.table("provenance");
     for (const std::string& key : provenance.keys()) set_.provenance.emplace_back(key, provenance.string(key));
+    for (const TomlTable& t : top_.tables("correlation")) read_correlation(t);
     top_.finish();
     std::stable_sort(order_.begin(), order_.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
     for (auto& [line, quantity] : order_) set_.quantities.push_back(std::move(quantity));
@@ -104,7 +106,7 @@ class Reader {
     const std::vector<long> nm = t.integers("chirality", 0, 1000);
     if (nm.size() == 2) set_.chirality = {static_cast<int>(nm[0]), static_cast<int>(nm[1])};
     if (nm.size() != 2 || !set_.chirality.valid())
-      throw t.error("chirality", "is not that of a tube", "write [n, m] with n >= 1 and 0 <= m <= n");
+      throw t.error("chirality", "is not that of a tube", "write [n, m], neither negative, not both 0");
     set_.reference = t.string("reference");
     set_.doi = t.string_or("doi", "");
     if (!set_.doi.empty()) check_doi(t, set_.doi);
@@ -286,6 +288,32 @@ class Reader {
     if (t.has("linear_stretch")) quantity(t, "linear_stretch", "1", Bounds::positive(1));
   }
 
+  void read_correlation(const TomlTable& t) {
+    Correlation c;
+    c.of = t.strings("of");
+    const auto known = [&](const std::string& key) {
+      return std::any_of(order_.begin(), order_.end(), [&](const auto& q) { return q.second.key == key; });
+    };
+    for (const std::string& key : c.of) {
+      if (!known(key))
+        throw t.error("of", fmt::format("names \"{}\", which is no quantity of this set", printable(key, 40)),
+                      "write keys as in \"bond.EA\"");
+      for (const Correlation& other : set_.correlations)
+        if (std::find(other.of.begin(), other.of.end(), key) != other.of.end())
+          throw t.error("of", fmt::format("names \"{}\" a second time", key), "name it in one group");
+    }
+    c.matrix = t.matrix("matrix", Bounds::range(-1 - 1e-9, 1 + 1e-9), c.of.size());
+    Eigen::MatrixXd m(c.of.size(), c.of.size());
+    for (std::size_t i = 0; i < c.of.size(); ++i)
+      for (std::size_t j = 0; j < c.of.size(); ++j)
+        m(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = c.matrix[i][j];
+    if ((m - m.transpose()).cwiseAbs().maxCoeff() > 1e-9 || (m.diagonal().array() - 1).abs().maxCoeff() > 1e-9 ||
+        Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(m).eigenvalues().minCoeff() < -1e-6)
+      throw t.error("matrix", "is not one of correlations",
+                    "it must be symmetric, with 1 on the diagonal and no negative eigenvalue");
+    set_.correlations.push_back(std::move(c));
+  }
+
   std::string path_, text_;
   TomlTable top_;
   ParameterSet set_;
@@ -300,15 +328,35 @@ ParameterSet parameters_of_text(const std::string& text, const std::string& path
   return Reader(text, path).read();
 }
 
+std::vector<std::vector<double>> covariance(const ParameterSet& set, const std::vector<std::string>& keys) {
+  const auto error = [&](const std::string& key) {
+    const Quantity* q = find_quantity(set, key);
+    return q ? q->standard_error.value_or(0) : 0.0;
+  };
+  const auto correlation = [&](const std::string& i, const std::string& j) {
+    if (i == j) return 1.0;
+    for (const Correlation& c : set.correlations) {
+      const auto a = std::find(c.of.begin(), c.of.end(), i), b = std::find(c.of.begin(), c.of.end(), j);
+      if (a != c.of.end() && b != c.of.end())
+        return c.matrix[static_cast<std::size_t>(a - c.of.begin())][static_cast<std::size_t>(b - c.of.begin())];
+    }
+    return 0.0;
+  };
+  std::vector<std::vector<double>> out;
+  for (const std::string& i : keys) {
+    out.emplace_back();
+    for (const std::string& j : keys) out.back().push_back(correlation(i, j) * error(i) * error(j));
+  }
+  return out;
+}
+
 std::string provenance_value(const ParameterSet& set, const std::string& key) {
   for (const auto& [name, value] : set.provenance)
     if (name == key) return value;
   return "";
 }
 
-std::string tube_name(const ParameterSet& set) {
-  return fmt::format("({},{})", set.chirality.n, set.chirality.m);
-}
+std::string tube_name(const ParameterSet& set) { return fmt::format("({},{})", set.chirality.n, set.chirality.m); }
 
 const Quantity* find_quantity(const ParameterSet& set, const std::string& key) {
   for (const Quantity& q : set.quantities)
@@ -365,6 +413,17 @@ std::string parameters_text(const ParameterSet& set, const std::string& comment)
       if (section == "contact.line.universal") text += universal_rows_text(set.line->universal);
     }
     text += quantity_text(q, q.key.substr(dot + 1));
+  }
+  for (const Correlation& c : set.correlations) {
+    std::vector<std::string> names, rows;
+    for (const std::string& key : c.of) names.push_back(quoted(key));
+    for (const std::vector<double>& row : c.matrix) {
+      std::vector<std::string> numbers;
+      for (const double x : row) numbers.push_back(fmt::format("{:.10g}", x));
+      rows.push_back(fmt::format("  [{}],\n", fmt::join(numbers, ", ")));
+    }
+    text +=
+        fmt::format("\n[[correlation]]\nof = [{}]\nmatrix = [\n{}]\n", fmt::join(names, ", "), fmt::join(rows, ""));
   }
   if (!set.provenance.empty()) text += "\n[provenance]\n";
   for (const auto& [key, value] : set.provenance) text += fmt::format("{:<16} = {}\n", key, quoted(value));

@@ -15,6 +15,9 @@ ParameterSet parameters_of_text(const std::string& text, const std::string& path
 
 // Null if the set has no such number.
 const Quantity* find_quantity(const ParameterSet& set, const std::string& key);
+// Covariance of these quantities, in their units: of their standard errors and correlations. A quantity that the
+// set lacks, or whose error is not published, has none.
+std::vector<std::vector<double>> covariance(const ParameterSet& set, const std::vector<std::string>& keys);
 // An entry of [provenance]; empty if the set has none.
 std::string provenance_value(const ParameterSet& set, const std::string& key);
 // "(10,10)"

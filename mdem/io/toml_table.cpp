@@ -291,6 +291,25 @@ std::vector<double> TomlTable::numbers(const std::string& key, const Bounds& bou
   return out;
 }
 
+std::vector<std::vector<double>> TomlTable::matrix(const std::string& key, const Bounds& bounds,
+                                                   std::size_t size) const {
+  const std::string needed = fmt::format("{} arrays of {} numbers each", size, size);
+  const toml::node& n = node_->required(*this, key);
+  const toml::array& rows = checked_array(*this, key, n, needed);
+  const auto refuse = [&](const toml::node& node) {
+    refuse_type(*this, key, node, needed, "give all rows and columns");
+  };
+  if (rows.size() != size) refuse(n);
+  std::vector<std::vector<double>> out;
+  for (const toml::node& row : rows) {
+    if (!row.is_array() || row.as_array()->size() != size) refuse(row);
+    out.emplace_back();
+    for (const toml::node& element : *row.as_array())
+      out.back().push_back(checked_number(*this, key, element, bounds));
+  }
+  return out;
+}
+
 std::vector<long> TomlTable::integers(const std::string& key, long least, long most) const {
   const toml::node& n = node_->required(*this, key);
   const toml::array& array = checked_array(*this, key, n, "an array of integers");

@@ -47,6 +47,7 @@ class TomlTable {
   std::string text(const std::string& key) const;
   std::string string(const std::string& key) const;  // never empty
   std::vector<double> numbers(const std::string& key, const Bounds& bounds, std::size_t size) const;
+  std::vector<std::vector<double>> matrix(const std::string& key, const Bounds& bounds, std::size_t size) const;
   std::vector<long> integers(const std::string& key, long least, long most) const;  // never empty
   std::vector<std::string> strings(const std::string& key) const;                   // never empty, nor any of them
   template <class E>

@@ -21,6 +21,8 @@
 //               endless_collapse (r tau), linear_curvature, linear_twist, linear_stretch: where a stiffness is 1 %
 //               off
 //   [provenance] optional strings: what the set was made from and by
+//   [[correlation]]  optional, any number: of = ["bond.EA", ...] and matrix = [[1, ...], ...], the correlations of the
+//               standard errors of these quantities; quantities in none of them are independent
 //
 // Every number is an inline table { value, unit, standard_error, origin, doi, note }. The unit must be the one
 // above; standard_error is a number or "not published"; doi may be left out where origin is not "published".
@@ -51,6 +53,12 @@ struct Quantity {
   std::string origin;
   std::string doi;
   std::string note;
+};
+
+// Correlations of the standard errors of some quantities, by the fit that they come from.
+struct Correlation {
+  std::vector<std::string> of;              // keys
+  std::vector<std::vector<double>> matrix;  // symmetric, 1 on the diagonal
 };
 
 // Beyond these the rigid-element model is no longer the tube.
@@ -95,6 +103,7 @@ struct ParameterSet {
   std::optional<LineParameters> line;
   Validity validity;
   std::vector<Quantity> quantities;  // every number of the file, in its order
+  std::vector<Correlation> correlations;
   std::vector<std::pair<std::string, std::string>> provenance;
   std::string path;  // where it was read from
   std::string hash;  // xxh64 of the file, hex

@@ -22,8 +22,10 @@ struct Chirality {
   int n = 10;
   int m = 10;
 
-  // n >= 1, 0 <= m <= n: every tube once, mirror images counted as one.
-  bool valid() const { return n >= 1 && m >= 0 && m <= n; }
+  // (m,n) is the mirror image of (n,m).
+  bool valid() const { return n >= 0 && m >= 0 && n + m >= 1; }
+  // Tubes (n,n) and (n,0) are their own mirror images.
+  bool chiral() const { return n > 0 && m > 0 && n != m; }
 };
 
 inline double circumference(Chirality c, double a = graphene_lattice_constant) {
@@ -43,7 +45,7 @@ inline double translational_period(Chirality c, double a = graphene_lattice_cons
   return std::sqrt(3.0) * circumference(c, a) / std::gcd(2 * c.n + c.m, 2 * c.m + c.n);
 }
 
-inline double chiral_angle(Chirality c) {  // rad, 0 zigzag .. pi/6 armchair
+inline double chiral_angle(Chirality c) {  // rad, 0 zigzag .. pi/6 armchair; beyond that, mirror images
   return std::atan2(std::sqrt(3.0) * c.m, 2.0 * c.n + c.m);
 }
 

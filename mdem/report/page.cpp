@@ -118,6 +118,15 @@ std::string data_table(const std::vector<TableColumn>& columns, const char* sour
   return html + "</tbody></table></div></details>\n";
 }
 
+std::string measured_text(double value, double error) {
+  if (!(error > 0) || !std::isfinite(error)) return fmt::format("{:.7g}", value);
+  const int decimals = std::max(0, 1 - static_cast<int>(std::floor(std::log10(error))));
+  const std::string number = fmt::format("{:.{}f}", value, decimals);
+  // Small numbers of small errors are clearer with a power of ten.
+  if (decimals > 9) return fmt::format("{:.10g} ± {:.2g}", value, error);
+  return fmt::format("{} ± {:.{}f}", number, error, decimals);
+}
+
 std::string facts_part(const std::vector<ReportFact>& facts) {
   std::string html = "<div class=\"scroll\"><table class=\"facts\"><tbody>\n";
   for (const ReportFact& f : facts)

@@ -31,6 +31,9 @@ struct TableColumn {
 // A folded table under a figure, of at most 60 rows. `source` says where to find all rows.
 std::string data_table(const std::vector<TableColumn>& columns, const char* source);
 
+// "740.836 ± 0.052": as many digits as two of the error allow; seven where there is no error.
+std::string measured_text(double value, double error);
+
 struct ReportFact {
   std::string key, value, remark;  // the remark may be empty
 };

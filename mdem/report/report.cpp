@@ -100,6 +100,8 @@ LineChart chart_of(const ReportInput& in, const Panel& panel, const Clock& clock
   for (const Trace& trace : panel.traces) {
     ChartLine line{trace.name, x, values_of(in.log, trace.value), trace.colour, trace.dashed, panel.steps};
     if (panel.since_start) take_first_off(line.y);
+    for (std::size_t k = 0; !in.errors.empty() && k < in.log.size(); ++k)
+      line.error.push_back(in.errors.of(k, trace.value).error);
     chart.lines.push_back(std::move(line));
   }
   return chart;
@@ -493,6 +495,32 @@ std::string refinements_part(const std::vector<RefinementRecord>& refinements) {
   return html + "</ul>\n";
 }
 
+// The table of `ropewalk errors`, with the bands that the charts have.
+std::string carried_errors(const ReportInput& in) {
+  if (in.errors.empty() || in.log.empty()) return "";
+  std::string names;
+  for (const ErrorSource& source : in.errors.sources())
+    names += fmt::format("{}{} ({:.2g} %)", names.empty() ? "" : ", ", source.name, 100 * source.sigma);
+  std::string html =
+      paragraph("The bands of the charts are standard errors that follow from those of the parameters: " +
+                escape_markup(names) +
+                ". The run was repeated with each of them changed, and errors.csv has all rows. What the model "
+                "itself leaves out "
+                "is not in them.");
+  std::vector<ReportFact> facts;
+  for (std::size_t k = 0; k < observables().size(); ++k) {
+    const Observable& o = observables()[k];
+    if (o.name == "step" || o.name == "time_ps") continue;
+    const ResultError e = in.errors.of(in.log.size() - 1, [k](const LogRow& row) { return row.values()[k]; });
+    if (!std::isfinite(e.error) || e.error == 0) continue;
+    facts.push_back(
+        {o.name,
+         fmt::format("{} ± {} {}", number_text(in.log.back().values()[k], 6), number_text(e.error, 2), o.unit),
+         e.linear ? "" : "not linear in the parameters: an estimate of its size only"});
+  }
+  return html + facts_part(facts);
+}
+
 // Every column of the log, also those that no chart shows.
 std::string observables_part(const std::vector<LogRow>& log) {
   if (log.empty()) return paragraph("The log has no rows, so nothing is known.");
@@ -562,7 +590,8 @@ std::string report_html(const ReportInput& in) {
   html += log_part(in, sections, figures);
   html += heading("Beyond the limits of the model") + limits_part(in);
   html += refinements_part(in.watched.refinements);
-  if (!in.error_bars.empty()) html += heading("Error bars");
+  if (!in.error_bars.empty() || !in.errors.empty()) html += heading("Error bars");
+  html += carried_errors(in);
   for (const std::string& words : in.error_bars) html += paragraph(escape_markup(words));
   html += heading("All observables") + observables_part(in.log);
   html += heading("The run") + facts_part(in.facts);

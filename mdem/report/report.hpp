@@ -6,6 +6,7 @@
 
 #include "io/limits_file.hpp"
 #include "io/log.hpp"
+#include "io/run_errors.hpp"
 #include "model/parameters.hpp"
 #include "observe/observe.hpp"
 #include "report/page.hpp"
@@ -29,6 +30,7 @@ struct ReportInput {
   std::vector<ReportFact> facts;        // scene, program, how long it took: in the order of the page
 
   std::vector<LogRow> log;
+  RunErrors errors;           // empty: not known
   double ramp_end_ps = 0;     // end of the loading stage; 0: no such stage
   double tube_radius = 0;     // nm
   double spacing = 0;         // nm

@@ -2,8 +2,8 @@
 //
 // A tube is cut into pieces of one depth layer and one colour each. Layers are so thin that tubes in contact which
 // overlap on the page lie in different layers. So the order within a layer does not matter, and all its pieces of
-// one colour form one path. The picture of a rope of 91 tubes stays below 60 kB, because a coarse depth buffer removes
-// hidden pieces, coordinates are integers, and SVG moves are relative.
+// one colour form one path. The picture of a rope of 91 tubes stays below 60 kB, because a coarse depth buffer
+// removes hidden pieces, coordinates are integers, and SVG moves are relative.
 #include <fmt/format.h>
 
 #include <Eigen/Eigenvalues>

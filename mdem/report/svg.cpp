@@ -237,6 +237,35 @@ std::string path_of(const Plot& plot, const ChartLine& line) {
   return d;
 }
 
+// Bands of the lines' errors, cut at the edges of the plot. A missing error interrupts a band.
+std::string draw_error_bands(const LineChart& chart, const Plot& plot) {
+  std::string text;
+  const auto y = [&](double v) { return std::clamp(plot.py(v), plot.top, plot.bottom); };
+  for (const ChartLine& line : chart.lines) {
+    const std::size_t count = std::min({line.x.size(), line.y.size(), line.error.size()});
+    const std::size_t every = std::max<std::size_t>(1, count / (max_points / 2));
+    std::string upper, lower;
+    const auto close = [&] {
+      if (!upper.empty())
+        text += fmt::format("<path class=\"error e{}\" d=\"M{}L{}Z\"/>\n", line.colour % categorical_colours,
+                            upper.substr(1), lower.substr(1));
+      upper.clear();
+      lower.clear();
+    };
+    for (std::size_t i = 0; i < count; ++i) {
+      if (!std::isfinite(line.x[i] + line.y[i] + line.error[i])) {
+        close();
+        continue;
+      }
+      if (i % every != 0 && i + 1 != count) continue;
+      upper += fmt::format("L{:.1f} {:.1f}", plot.px(line.x[i]), y(line.y[i] + line.error[i]));
+      lower = fmt::format("L{:.1f} {:.1f}", plot.px(line.x[i]), y(line.y[i] - line.error[i])) + lower;
+    }
+    close();
+  }
+  return text;
+}
+
 // --- Labels at the right end ------------------------------------------------------------------------------
 
 struct EndLabel {
@@ -430,13 +459,14 @@ font-variant-numeric:tabular-nums;max-width:100%;height:auto}
 .zero{stroke:var(--soft);stroke-width:.9}
 .load{fill:var(--load)}.hold{fill:var(--hold)}
 .line{fill:none;stroke-width:1.7;stroke-linejoin:round;stroke-linecap:round}
+.error{fill-opacity:.2;stroke:none}
 .points{stroke-width:5.5}
 .dashed{stroke-dasharray:5 3.5;stroke-linecap:butt}
 .n5{fill:#d7352f}.n7{fill:#2b6cc4}.nx{fill:#e0a010}.n6{fill:#6b7078}.outermost{fill:#d4d7dc}
 .section circle{stroke:#4a4e55;stroke-width:.5}
 )";
   for (int k = 0; k < categorical_colours + sequential_colours; ++k)
-    css += fmt::format(".c{0}{{stroke:var(--c{0})}}", k);
+    css += fmt::format(".c{0}{{stroke:var(--c{0})}}.e{0}{{fill:var(--c{0})}}", k);
   return css + "\n";
 }
 
@@ -456,7 +486,7 @@ std::string scatter_svg(const ScatterChart& drawn) {
       "<svg class=\"chart\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\" role=\"img\" "
       "aria-label=\"{2}\">\n",
       chart.width, chart.height, escape_markup(chart.title));
-  text += draw_bands(chart, plot) + draw_axes(chart, plot);
+  text += draw_bands(chart, plot) + draw_axes(chart, plot) + draw_error_bands(chart, plot);
   for (const ChartLine& line : chart.lines)
     text += fmt::format("<path class=\"{}\" d=\"{}\"/>\n", stroke_class(line), path_of(plot, line));
   return text + draw_point_labels(scatter, plot) + draw_labels(chart, plot) + "</svg>\n";

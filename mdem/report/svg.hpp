@@ -40,6 +40,8 @@ struct ChartLine {
   bool dashed = false;
   bool steps = false;   // holds its value until the next point
   bool points = false;  // dots, not joined
+  // A band about the line, as wide as this to either side; empty: none.
+  std::vector<double> error = {};
 };
 
 struct ChartBand {

@@ -43,6 +43,8 @@ const std::vector<OutputFile>& run_files() {
       {"manifest.json", "run", "program, inputs and how the run ended"},
       {"checkpoint.bin", "run", "binary: where `resume` goes on"},
       {"report.html", "run, report", "page with charts, pictures and all observables"},
+      {"errors.csv", "errors", "standard errors of the observables, as log.csv"},
+      {"errors", "errors", "directory with the runs behind errors.csv, and errors.json"},
       {"final.csv", "run, import",
        "the state at the end, interrupted or not: the start of another scene by [state]"},
       {"failed-state.csv", "run", "the state of a run that failed"},

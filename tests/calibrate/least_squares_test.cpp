@@ -86,6 +86,22 @@ TEST(LeastSquares, NoisyPolynomialIsTheLinearRegression) {
   EXPECT_THAT(f.undetermined, IsEmpty());
 }
 
+// Of a straight line through points at x = 1, 2, 3 the covariance of intercept and slope is s^2 (X^T X)^-1, so that
+// their correlation is -sum x / sqrt(n sum x^2).
+TEST(LeastSquares, CorrelationIsThatOfTheLinearRegression) {
+  const std::vector<double> y = {1.1, 1.9, 3.2};
+  const auto residuals = [&](const std::vector<double>& p, std::vector<double>& r) {
+    for (int k = 0; k < 3; ++k) r[k] = p[0] + p[2] * (k + 1) - y[k];
+  };
+  const FitResult fit =
+      fit_least_squares({{"a", 0, -5, 5, true}, {"fixed", 3, 0, 5, false}, {"b", 0, -5, 5, true}}, 3, residuals);
+  ASSERT_TRUE(fit.usable()) << fit.message;
+  EXPECT_NEAR(fit.correlation[0][2], -6 / std::sqrt(3 * 14.0), 1e-6);
+  EXPECT_EQ(fit.correlation[0][2], fit.correlation[2][0]);
+  EXPECT_EQ(fit.correlation[1][1], 1);
+  EXPECT_EQ(fit.correlation[0][1], 0) << "one that is not fitted";
+}
+
 TEST(LeastSquares, FixedParameterKeepsItsStart) {
   const Polynomial data(energy_terms, 1e-3);
   auto box = energy_box();

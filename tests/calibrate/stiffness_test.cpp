@@ -6,6 +6,8 @@
 #include <unistd.h>
 
 #include <cmath>
+#include <cstdint>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -404,7 +406,7 @@ TEST_F(RealTube, BendOfAChiralTubeDoesNotDependOnTheLengths) {
     RelaxedTube tube = relax_tube(run);
     tube.shape.twist = -0.01107;  // natural
     std::vector<AtomisticRow> rows =
-        bend_rows(run, tube, {"bend", options.short_length, options.long_length, {0.02, 0.03, 0.04, 0.05}});
+        bend_rows(run, tube, {"bend", options.short_length, options.long_length, false, {0.02, 0.03, 0.04, 0.05}});
     Stiffness s;
     fit_bend(rows, s);
     EI[shorter] = s.EI.value;
@@ -412,6 +414,71 @@ TEST_F(RealTube, BendOfAChiralTubeDoesNotDependOnTheLengths) {
   }
   EXPECT_NEAR(EI[0], 327.0, 1.0);
   EXPECT_NEAR(EI[1], EI[0], 0.003 * EI[0]);
+}
+
+// A third specimen whose end is 0.3 eV/k^2 off: the two halves of the additional length then have EI that differ,
+// and half of the difference is in the error.
+TEST(Bend, UnlikeEndsAreInTheErrorOfEI) {
+  std::vector<AtomisticRow> rows = bend_table(22000, -2e6);
+  Stiffness without;
+  fit_bend(rows, without);
+  const std::vector<AtomisticRow> two = rows;
+  for (AtomisticRow row : two) {
+    if (row.kind != "bend-short") continue;
+    for (const AtomisticRow& longer : two)
+      if (longer.kind == "bend-long" && longer.curvature == row.curvature)
+        row.energy = 0.5 * (row.energy + longer.energy) + 60 * row.curvature * row.curvature;
+    row.kind = "bend-middle";
+    row.length = 8;
+    rows.push_back(row);
+  }
+  Stiffness with;
+  fit_bend(rows, with);
+  EXPECT_NEAR(with.EI.value, without.EI.value, 1e-9 * without.EI.value);
+  // The halves are 2 nm long: 2 x 60/2 on either side of EI.
+  EXPECT_NEAR(with.EI.standard_error, 60, 5);
+  EXPECT_LT(without.EI.standard_error, 5);
+}
+
+double part_of(std::uint64_t& state) {  // uniform in -1 .. 1
+  state = state * 6364136223846793005ULL + 1442695040888963407ULL;
+  return static_cast<double>(state >> 11) * 0x1p-52 - 1;
+}
+
+// Noisy energies of known constants, fitted again and again. The energy of a rope of seven (10,10) tubes that is
+// wound by 30 degrees over 20 nm with rigid sections, GJ t^2 (1 + 6 cos^2 b)/2L + 6 EI k^2 L/2 + 6 EA e^2 L/2, has
+// to lie within one and two of its errors as often as a normal distribution does. Windows widen the errors: more
+// than so many may.
+TEST(StandardErrors, CoverTheEnergyOfARope) {
+  const Known known;
+  constexpr double EI = 22650, length = 20, spacing = 1.69, angle = 0.5236;
+  const double tan = spacing * angle / length, cos2 = 1 / (1 + tan * tan), sin2 = 1 - cos2;
+  const double twist = angle * angle * (1 + 6 * cos2) / (2 * length),
+               bend = 3 * length * sin2 * sin2 / (spacing * spacing),
+               stretch = 3 * length * std::pow(std::sqrt(1 + tan * tan) - 1, 2);
+  const double right = known.GJ * twist + EI * bend + known.EA * stretch;
+  std::uint64_t state = 1;
+  int within_one = 0, within_two = 0;
+  constexpr int repeats = 50;
+  for (int k = 0; k < repeats; ++k) {
+    std::vector<AtomisticRow> rows = stretch_twist_table(known), bent = bend_table(EI, -2e6);
+    const auto noise = [&] { return part_of(state) + part_of(state) + part_of(state); };  // deviation 1
+    for (AtomisticRow& row : rows) row.energy += 1e-3 * row.length * noise();
+    for (AtomisticRow& row : bent) row.energy += 2e-3 * noise();
+    Stiffness s;
+    fit_stretch_twist(rows, s);
+    fit_bend(bent, s);
+    const double g[] = {twist * s.GJ.standard_error, stretch * s.EA.standard_error, bend * s.EI.standard_error};
+    const double error = std::sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2] + 2 * g[0] * g[1] * s.correlation[0][1]);
+    const double off = std::fabs(s.GJ.value * twist + s.EI.value * bend + s.EA.value * stretch - right) / error;
+    within_one += off < 1;
+    within_two += off < 2;
+  }
+  EXPECT_GE(within_one, 27) << "68 % are 34";
+  EXPECT_GE(within_two, 44) << "95 % are 48";
+  RecordProperty("within_one_of_50", within_one);
+  RecordProperty("within_two_of_50", within_two);
+  std::printf("within one error %d, within two %d of %d\n", within_one, within_two, repeats);
 }
 
 }  // namespace

@@ -691,4 +691,115 @@ TEST_F(Cli, EveryWrongFileGetsOneClearLine) {
   EXPECT_GE(count, 40);
 }
 
+// A rope under end moments in which only torsion counts: its energy goes as M^2/GJ, so that its relative error is
+// that of GJ, to which the contact adds.
+TEST_F(Cli, ErrorsOfTheSetAreCarriedThroughARun) {
+  fs::copy_file(std::string(ROPEWALK_SOURCE_DIR "/data/parameters/cnt-5-5-tersoff.toml"), dir / "set.toml");
+  spit(dir / "rope.toml", R"(
+format = "ropewalk-scene-1"
+parameters = "set.toml"
+[rope]
+tubes = 7
+length_nm = 7
+[twist]
+moment_nN_nm = 2
+reading = "per-tube"
+rate_nN_nm_per_ps = 0.2
+hold_ps = 10
+)");
+  ASSERT_EQ(run("run rope.toml --out r --quiet").code, 0);
+  const Outcome o = run("errors r --json --quiet");
+  ASSERT_EQ(o.code, 0) << o.err;
+  const Json errors = Json::parse(o.out);
+  const Json twist = errors.at("at_the_end").at("twist_eV");
+  const double value = twist.at("value"), parts = twist.at("parts").at("GJ");
+  const auto GJ = std::find_if(errors.at("sources").begin(), errors.at("sources").end(),
+                               [](const Json& s) { return s.at("name") == "GJ"; });
+  EXPECT_NEAR(std::fabs(parts) / value, GJ->at("standard_error").get<double>(),
+              0.1 * GJ->at("standard_error").get<double>());
+  EXPECT_LT(parts, 0) << "a stiffer tube stores less at the same moment";
+  EXPECT_GE(twist.at("standard_error").get<double>(), std::fabs(parts));
+  // Every row has errors, in the columns of the log, and the report draws them.
+  const std::string log = slurp(dir / "r/log.csv"), rows = slurp(dir / "r/errors.csv");
+  EXPECT_EQ(log.substr(0, log.find('\n')), rows.substr(0, rows.find('\n')));
+  EXPECT_EQ(std::count(log.begin(), log.end(), '\n'), std::count(rows.begin(), rows.end(), '\n'));
+  EXPECT_EQ(rows.find("nan"), std::string::npos);
+  const std::string page = slurp(dir / "r/report.html");
+  EXPECT_NE(page.find("class=\"error e"), std::string::npos);
+  EXPECT_NE(page.find("standard errors that follow"), std::string::npos);
+  // What is finished is kept.
+  const auto made = fs::last_write_time(dir / "r/errors/GJ-plus/log.csv");
+  ASSERT_EQ(run("errors r --quiet").code, 0);
+  EXPECT_EQ(fs::last_write_time(dir / "r/errors/GJ-plus/log.csv"), made);
+  EXPECT_EQ(run("errors rope.toml").code, 2);
+}
+
+TEST_F(Cli, APublishedSetHasNoErrorsToCarry) {
+  spit(dir / "chain.toml", R"(
+format = "ropewalk-scene-1"
+parameters = "cnt-10-10-paper"
+[chain]
+elements = 5
+[run]
+duration_ps = 1
+)");
+  ASSERT_EQ(run("run chain.toml --out r --quiet").code, 0);
+  const Outcome o = run("errors r");
+  EXPECT_EQ(o.code, 2);
+  EXPECT_NE(o.err.find("calibrated set"), std::string::npos) << o.err;
+}
+
+// `energy` takes the state of a run with tubes of two kinds, and finds the energies of its log.
+TEST_F(Cli, EnergyOfUnlikeTubesIsThatOfTheRun) {
+  spit(dir / "two.toml", R"(
+format = "ropewalk-scene-1"
+parameters = ["cnt-10-10-tersoff", "cnt-5-5-tersoff"]
+tube_types = [0, 1, 1, 1, 1, 1, 1]
+[rope]
+tubes = 7
+length_nm = 7
+perturbation_nm = 0.01
+[contact]
+precision = "double"
+[run]
+duration_ps = 0.5
+)");
+  ASSERT_EQ(run("run two.toml --out r --quiet").code, 0);
+  const Outcome o =
+      run("energy r/final.csv --parameters cnt-10-10-tersoff,cnt-5-5-tersoff --tube-types 0,1,1,1,1,1,1 --json");
+  ASSERT_EQ(o.code, 0) << o.err;
+  const Json energy = Json::parse(o.out).at("energy_eV");
+  std::istringstream log(slurp(dir / "r/log.csv"));
+  std::string line, header, last;
+  std::getline(log, header);
+  while (std::getline(log, line)) last = line;
+  const auto column = [&](const std::string& name) {
+    std::istringstream names(header), values(last);
+    for (std::string key, value; std::getline(names, key, ',') && std::getline(values, value, ',');)
+      if (key == name) return std::stod(value);
+    return std::nan("");
+  };
+  EXPECT_NEAR(energy.at("vdw").get<double>(), column("vdw_eV"), 1e-9 * std::fabs(column("vdw_eV")));
+  EXPECT_NEAR(energy.at("stretch").get<double>(), column("stretch_eV"), 1e-9 * column("stretch_eV"));
+  EXPECT_NEAR(energy.at("bend").get<double>(), column("bend_eV"), 1e-9 * column("bend_eV"));
+  EXPECT_NE(run("energy r/final.csv --parameters cnt-10-10-tersoff,cnt-5-5-tersoff").err.find("--tube-types"),
+            std::string::npos);
+  EXPECT_EQ(run("energy r/final.csv --parameters cnt-10-10-tersoff --tube-types 0,1,0,0,0,0,0").code, 2);
+}
+
+TEST_F(Cli, CompareSetsSideBySide) {
+  const Outcome o = run("compare cnt-5-5-tersoff cnt-10-10-tersoff cnt-10-10-paper --page c.html");
+  ASSERT_EQ(o.code, 0) << o.err;
+  for (const char* words : {"(5,5)", "not known", "1518.960 ± 0.097", "anharmonic"})
+    EXPECT_NE(o.out.find(words), std::string::npos) << words << o.out;
+  const std::string page = slurp(dir / "c.html");
+  EXPECT_NE(page.find("<svg"), std::string::npos);
+  EXPECT_NE(page.find("cnt-10-10-paper"), std::string::npos);
+  EXPECT_EQ(run("compare cnt-5-5-tersoff cnt-10-10-tersoff --page c.html").code, 2) << "exists";
+  EXPECT_EQ(run("compare cnt-5-5-tersoff").code, 2);
+  const Json both = Json::parse(run("compare cnt-5-5-tersoff cnt-10-10-paper --json").out);
+  EXPECT_EQ(both.at(1).at("bond.EA").at("value"), 1470);
+  EXPECT_TRUE(both.at(1).at("bond.EA").at("standard_error").is_null());
+}
+
 }  // namespace

@@ -16,11 +16,10 @@ namespace {
 
 constexpr double nN = units::eV_in_nN_nm;
 
-std::string with_error(const ParameterSet& set, const std::string& key, int digits = 5) {
+std::string with_error(const ParameterSet& set, const std::string& key) {
   const Quantity* q = find_quantity(set, key);
   if (!q) return "not known";
-  std::string text = number_text(q->value, digits);
-  if (q->standard_error && *q->standard_error > 0) text += " ± " + number_text(*q->standard_error, 2);
+  const std::string text = measured_text(q->value, q->standard_error.value_or(0));
   return q->unit == "1" ? text : text + " " + q->unit;
 }
 
@@ -192,15 +191,14 @@ std::string overview_row(const ParametrizedTube& t) {
   if (!t.error.empty())
     return fmt::format("<tr><td>{}</td><td>{}</td><td colspan=\"10\">no set: {}</td></tr>\n", escape_markup(t.tube),
                        escape_markup(t.name), escape_markup(t.error));
-  const auto cell = [&](const char* key, int digits = 5) {
-    return "<td class=\"number\">" + escape_markup(with_error(t.set, key, digits)) + "</td>";
+  const auto cell = [&](const char* key) {
+    return "<td class=\"number\">" + escape_markup(with_error(t.set, key)) + "</td>";
   };
   const Check* rope = worst_rope(t);
   return fmt::format("<tr><td>{}</td><td><a href=\"{}.html\">{}</a></td>", escape_markup(t.tube), t.name,
                      escape_markup(t.name)) +
          cell("tube.radius") + cell("bond.EA") + cell("bond.EI") + cell("bond.GJ") +
-         cell("atomistic.natural_twist", 3) + cell("contact.line.pair_spacing") +
-         cell("contact.line.pair_energy", 4) +
+         cell("atomistic.natural_twist") + cell("contact.line.pair_spacing") + cell("contact.line.pair_energy") +
          fmt::format("<td>{}</td><td class=\"number\">{}</td><td>{}</td></tr>\n",
                      t.holds() ? "✓ holds" : "✗ misses",
                      rope ? number_text(100 * std::fabs(rope->difference()), 2) + " %" : "",

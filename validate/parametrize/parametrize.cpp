@@ -16,8 +16,8 @@
 #include "atomistic/potential.hpp"
 #include "io/files.hpp"
 #include "io/parameters_toml.hpp"
+#include "io/processes.hpp"
 #include "model/error.hpp"
-#include "runner/processes.hpp"
 #include "verbs/verbs.hpp"
 
 namespace ropewalk {

@@ -17,7 +17,7 @@
 #include "io/grade.hpp"
 #include "io/parameters_toml.hpp"
 #include "io/toml_table.hpp"
-#include "runner/processes.hpp"
+#include "io/processes.hpp"
 #include "runner/runner.hpp"
 #include "version.hpp"
 

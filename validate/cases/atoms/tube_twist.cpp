@@ -62,7 +62,7 @@ std::vector<double> shears(Chirality c) {
   std::vector<double> list;
   for (double wanted = first_shear; wanted < last_shear + 0.5 * shear_step; wanted += shear_step) {
     list.push_back(wanted);
-    if (is_chiral(c)) list.insert(list.begin(), -wanted);
+    if (c.chiral()) list.insert(list.begin(), -wanted);
   }
   return list;
 }
@@ -160,7 +160,7 @@ CaseResult run(const CaseContext& context) {
         context, tube.set, "tube-twist", 0.02, [&] { return make_reference(context, tube.set); }, result);
     const TubeCurve curve = curve_of(tube, data);
     add_collapse_of_sense(curve, 1, result);
-    if (is_chiral(tube.set.chirality)) add_collapse_of_sense(curve, -1, result);
+    if (tube.set.chirality.chiral()) add_collapse_of_sense(curve, -1, result);
     add_curve(curve, result);
     if (curve.window < curve.end) add_beyond(curve, result);
     result.sources.push_back(tube.source);

@@ -64,8 +64,6 @@ double period_of(Chirality c, const TubeShape& shape);
 long row_hexagons(Chirality c);
 double row_height(Chirality c, const TubeShape& shape);
 
-inline bool is_chiral(Chirality c) { return c.m != 0 && c.n != c.m; }
-
 // Natural twist of the set's tube, rad/nm; 0 where the set has none.
 double natural_twist(const ParameterSet& set);
 

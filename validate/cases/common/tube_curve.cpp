@@ -2,11 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-
-#include "sim/state/state.hpp"
 
 namespace ropewalk {
 namespace {
@@ -167,15 +164,6 @@ void add_collapse(const TubeCurve& curve, const std::vector<double>& amplitude, 
   check.informative = true;
   check.note = note;
   result.checks.push_back(check);
-}
-
-double chain_energy(const BondStiffness& bond, double element, double strain, double twist, double curvature) {
-  const Frame<double> i = frame_of(Quaternion::Identity());
-  const double turn = curvature * element;
-  const Quaternion bent(Eigen::AngleAxisd(turn, Vector3::UnitY()));
-  const Frame<double> j = frame_of(bent * Quaternion(Eigen::AngleAxisd(twist * element, Vector3::UnitZ())));
-  const Vector3 chord(std::sin(0.5 * turn), 0, std::cos(0.5 * turn));
-  return bond_energy<double>(bond, element, element * (1 + strain) * chord, i, j).total() / element;
 }
 
 double lammps_seconds(const ParameterSet& set, double length, double relaxations) {

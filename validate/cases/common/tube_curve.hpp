@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cases/common/lammps_session.hpp"
+#include "sim/state/uniform_chain.hpp"
 
 namespace ropewalk {
 
@@ -36,9 +37,6 @@ std::size_t points_before_collapse(const std::vector<double>& amplitude, const s
 // Adds the amplitude of that collapse, for information.
 void add_collapse(const TubeCurve& curve, const std::vector<double>& amplitude, std::size_t points,
                   const std::string& note, CaseResult& result);
-
-// Energy per length (eV/nm) of a chain of equal bonds; `element` is their length.
-double chain_energy(const BondStiffness& bond, double element, double strain, double twist, double curvature);
 
 // About how long LAMMPS takes for `relaxations` of `length` nm of tube, s of one core (Tersoff).
 double lammps_seconds(const ParameterSet& set, double length, double relaxations);

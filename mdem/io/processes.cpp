@@ -1,4 +1,4 @@
-#include "runner/processes.hpp"
+#include "io/processes.hpp"
 
 #include <fmt/format.h>
 #include <omp.h>

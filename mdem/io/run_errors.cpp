@@ -1,0 +1,130 @@
+#include "io/run_errors.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "io/files.hpp"
+#include "model/error.hpp"
+
+namespace ropewalk {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* format_name = "ropewalk-errors-1";
+constexpr double unlike = 1e-3;  // of the value: a smaller effect is of no interest, linear or not
+
+LogRow nothing() {
+  LogRow row;
+  for (double& v : row.values()) v = std::numeric_limits<double>::quiet_NaN();
+  return row;
+}
+
+std::vector<LogRow> aligned(std::vector<LogRow> rows, const std::vector<LogRow>& log) {
+  bool alike = rows.size() == log.size();
+  for (std::size_t k = 0; alike && k < rows.size(); ++k) alike = rows[k]["step"] == log[k]["step"];
+  if (alike) return rows;
+  std::vector<LogRow> out(log.size(), nothing());
+  if (!rows.empty() && !out.empty()) out.back() = rows.back();
+  return out;
+}
+
+Json number(double v) { return std::isfinite(v) ? Json(v) : Json(nullptr); }
+
+bool is_clock(const std::string& name) { return name == "step" || name == "time_ps"; }
+
+RunErrors::Value column(std::size_t k) {
+  return [k](const LogRow& row) { return row.values()[k]; };
+}
+
+}  // namespace
+
+RunErrors::RunErrors(const std::string& directory, std::vector<ErrorSource> sources,
+                     std::vector<std::vector<double>> correlation, const std::vector<LogRow>& log)
+    : sources_(std::move(sources)), correlation_(std::move(correlation)), log_(log) {
+  for (const ErrorSource& s : sources_)
+    runs_.emplace_back(aligned(read_log(directory + "/" + s.plus + "/log.csv"), log),
+                       aligned(read_log(directory + "/" + s.minus + "/log.csv"), log));
+}
+
+ResultError RunErrors::of(std::size_t k, const Value& value) const {
+  ResultError out;
+  const double middle = value(log_.at(k));
+  for (std::size_t i = 0; i < sources_.size(); ++i) {
+    const double plus = value(runs_[i].first[k]), minus = value(runs_[i].second[k]);
+    const double scale = 0.5 * sources_[i].sigma / sources_[i].step;
+    double part = scale * (plus - minus);
+    const double bent = scale * std::fabs(plus + minus - 2 * middle);
+    if (bent > std::fabs(part)) {
+      part = std::copysign(std::hypot(part, bent), part);
+      if (bent > unlike * std::fabs(middle)) out.linear = false;
+    }
+    out.parts.push_back(part);
+  }
+  double variance = 0;
+  for (std::size_t i = 0; i < out.parts.size(); ++i)
+    for (std::size_t j = 0; j < out.parts.size(); ++j) variance += out.parts[i] * correlation_[i][j] * out.parts[j];
+  out.error = std::sqrt(std::max(0.0, variance));
+  if (!std::isfinite(variance)) out.error = std::numeric_limits<double>::quiet_NaN();
+  return out;
+}
+
+RunErrors read_run_errors(const std::string& run_directory, const std::vector<LogRow>& log) {
+  const std::string directory = run_directory + "/errors", path = directory + "/errors.json";
+  if (!std::filesystem::exists(path)) return {};
+  std::vector<ErrorSource> sources;
+  std::vector<std::vector<double>> correlation;
+  try {
+    const Json j = Json::parse(read_file(path));
+    if (j.at("format") != format_name) throw std::runtime_error("another format");
+    for (const Json& s : j.at("sources"))
+      sources.push_back({s.at("name"), s.at("plus"), s.at("minus"), s.at("standard_error"), s.at("step")});
+    correlation = j.at("correlation").get<std::vector<std::vector<double>>>();
+  } catch (const std::exception&) {
+    throw InputError({path, 0, ""}, "is not what `ropewalk errors` writes", "make it again, or take it away");
+  }
+  return {directory, std::move(sources), std::move(correlation), log};
+}
+
+std::string run_errors_json(const RunErrors& errors, const std::vector<LogRow>& log) {
+  Json sources = Json::array(), results = Json::object();
+  for (const ErrorSource& s : errors.sources())
+    sources.push_back(
+        {{"name", s.name}, {"standard_error", s.sigma}, {"step", s.step}, {"plus", s.plus}, {"minus", s.minus}});
+  for (std::size_t k = 0; k < observables().size() && !log.empty(); ++k) {
+    const std::string& name = observables()[k].name;
+    if (is_clock(name)) continue;
+    const ResultError e = errors.of(log.size() - 1, column(k));
+    Json parts = Json::object();
+    for (std::size_t i = 0; i < e.parts.size(); ++i) parts[errors.sources()[i].name] = number(e.parts[i]);
+    results[name] = {{"value", number(log.back().values()[k])},
+                     {"standard_error", number(e.error)},
+                     {"linear", e.linear},
+                     {"parts", parts}};
+  }
+  return Json{{"format", format_name},
+              {"sources", sources},
+              {"correlation", errors.correlation()},
+              {"at_the_end", results}}
+             .dump(1) +
+         "\n";
+}
+
+std::string run_errors_csv(const RunErrors& errors, const std::vector<LogRow>& log) {
+  std::string text = log_header();
+  if (text.empty() || text.back() != '\n') text += '\n';
+  for (std::size_t k = 0; k < log.size(); ++k) {
+    LogRow row = log[k];
+    for (std::size_t i = 0; i < observables().size(); ++i)
+      if (!is_clock(observables()[i].name)) row.values()[i] = errors.of(k, column(i)).error;
+    text += log_line(row);
+    if (text.back() != '\n') text += '\n';
+  }
+  return text;
+}
+
+}  // namespace ropewalk

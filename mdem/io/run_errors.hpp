@@ -1,0 +1,64 @@
+// Standard errors of the results of a run that follow from those of its parameter sets.
+//
+// Each source is a parameter p, known to a relative standard error sigma. The run was repeated with p (1 +- h). To
+// first order a result f then has the error
+//
+//   var f = sum_ij g_i rho_ij g_j,   g_i = sigma_i (f(p_i (1 + h)) - f(p_i (1 - h)))/2h
+//
+// with rho the correlations of the sources. Where the two runs do not lie on either side of the first, f is not
+// linear in p; half of their distance from it is then added to g_i, and the result is marked.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "io/log.hpp"
+
+namespace ropewalk {
+
+struct ErrorSource {
+  std::string name;         // "GJ", or "GJ of cnt-5-5-tersoff" where there are several sets
+  std::string plus, minus;  // directories of the runs, within that of the errors
+  double sigma = 0;         // relative standard error
+  double step = 0;          // h
+};
+
+struct ResultError {
+  double error = 0;
+  bool linear = true;
+  std::vector<double> parts;  // g_i
+};
+
+class RunErrors {
+ public:
+  using Value = std::function<double(const LogRow&)>;
+
+  RunErrors() = default;
+  // The logs of the runs are read from `directory`. Where they have other rows than `log`, the last ones are
+  // compared, and the other rows have no error (NaN). Throws InputError.
+  RunErrors(const std::string& directory, std::vector<ErrorSource> sources,
+            std::vector<std::vector<double>> correlation, const std::vector<LogRow>& log);
+
+  bool empty() const { return sources_.empty(); }
+  const std::vector<ErrorSource>& sources() const { return sources_; }
+  const std::vector<std::vector<double>>& correlation() const { return correlation_; }
+  // Of a value of row k of the log.
+  ResultError of(std::size_t k, const Value& value) const;
+
+ private:
+  std::vector<ErrorSource> sources_;
+  std::vector<std::vector<double>> correlation_;
+  std::vector<LogRow> log_;
+  std::vector<std::pair<std::vector<LogRow>, std::vector<LogRow>>> runs_;  // plus and minus, as long as log_
+};
+
+// errors/errors.json in the directory of a run; none where it is missing.
+RunErrors read_run_errors(const std::string& run_directory, const std::vector<LogRow>& log);
+// What read_run_errors reads, with the errors of all observables at the end.
+std::string run_errors_json(const RunErrors& errors, const std::vector<LogRow>& log);
+// As log.csv, with a standard error in the place of each value but those of step and time.
+std::string run_errors_csv(const RunErrors& errors, const std::vector<LogRow>& log);
+
+}  // namespace ropewalk
