@@ -149,6 +149,9 @@ struct Interval {
     high = std::max(high, x);
   }
   double half() const { return high > low ? 0.5 * (high - low) : 0; }
+  // Of values from a window and from two thirds of it: what a window of no width would be away from the first, if
+  // errors fall with the square of the window, 1/(1 - 4/9) times their difference.
+  double to_no_window() const { return 1.8 * 2 * half(); }
 };
 
 // Square root of the sum of squares: error of the fit, and half of the spread over windows.
@@ -216,7 +219,7 @@ void fit_radius(const std::vector<AtomisticRow*>& rows, double strain0, double t
 
 void warn_of_spread(const char* what, const Interval& range, Stiffness& out) {
   const double middle = 0.5 * (range.low + range.high);
-  if (range.half() > 0.005 * std::abs(middle))
+  if (range.to_no_window() > 0.005 * std::abs(middle))
     out.warnings.push_back(fmt::format(
         "{} depends on the fit window: {:.5g} to {:.5g} ({:.1f} % apart); the spread is in its standard error",
         what, range.low, range.high, 100 * 2 * range.half() / std::abs(middle)));
@@ -295,7 +298,7 @@ void fit_stretch_twist(std::vector<AtomisticRow>& table, Stiffness& out) {
   residuals(fit.value, left);
   for (std::size_t i = 0; i < rows.size(); ++i) rows[i]->residual = -left[i] * w.energy * rows[i]->length;
 
-  // The same constants from fits of lower order and from the inner part of the window.
+  // The same constants from the inner part of the window.
   Interval EA, GJ, coupling, twist, strain;
   std::string windows;
   const auto fit_window = [&](double part, int order) {
@@ -311,9 +314,9 @@ void fit_stretch_twist(std::vector<AtomisticRow>& table, Stiffness& out) {
         "{:.5g} rad/nm\n",
         100 * part, order, h.EA, h.GJ, h.coupling, h.twist);
   };
+  // An order less in the same window would be off by the terms that the fit has: no measure of its error.
   fit_window(1, degree);
-  if (degree > 3) fit_window(1, 3);
-  fit_window(2.0 / 3.0, std::min(degree, 3));
+  fit_window(2.0 / 3.0, degree);
 
   // Tension and compression apart, each extrapolated to zero strain: a potential with a knot there has two EA.
   Interval sides;
@@ -337,10 +340,10 @@ void fit_stretch_twist(std::vector<AtomisticRow>& table, Stiffness& out) {
   };
   const Measured c20 = term(2, 0), c11 = term(1, 1), c02 = term(0, 2);
   // Any value between the two is equally likely: the standard deviation of a uniform distribution.
-  out.EA = {2 * c20.value, both(both(2 * c20.standard_error, EA.half()), sides.half() / std::sqrt(3.0))};
-  out.GJ = {2 * c02.value, both(2 * c02.standard_error, GJ.half())};
-  out.coupling = {c11.value, both(c11.standard_error, coupling.half())};
-  out.natural_twist = {fit.value[2] * w.twist, both(fit.standard_error[2] * w.twist, twist.half())};
+  out.EA = {2 * c20.value, both(both(2 * c20.standard_error, EA.to_no_window()), sides.half() / std::sqrt(3.0))};
+  out.GJ = {2 * c02.value, both(2 * c02.standard_error, GJ.to_no_window())};
+  out.coupling = {c11.value, both(c11.standard_error, coupling.to_no_window())};
+  out.natural_twist = {fit.value[2] * w.twist, both(fit.standard_error[2] * w.twist, twist.to_no_window())};
   // The spread over windows is added to the errors as a part of its own: it weakens the correlations.
   const auto place = [&](int i, int j) {
     for (std::size_t k = 0; k < powers.size(); ++k)

@@ -41,13 +41,15 @@ std::string FiniteTube::data() const {
   return data_file(atoms_, radius + half, -half, half);
 }
 
-std::string FiniteTube::commands(const Potential& potential, const std::string& data) const {
+std::string FiniteTube::commands(const Potential& potential, const std::string& data, double turn) const {
   // A bend rarely moves an atom farther than this against its neighbours.
   std::string text = header_commands("s s s", 0.05) + fmt::format("read_data {}\n", data);
   for (const std::string& command : potential.commands) text += command + "\n";
   text += fmt::format(
       "group below id 1:{}\ngroup above id {}:{}\ngroup held union below above\ngroup free subtract all held\n",
       below_, below_ + free_ + 1, atoms_.size());
+  if (turn != 0)
+    text += fmt::format("displace_atoms all rotate 0 0 0 0 0 1 {:.12g} units box\n", turn * units::rad_in_degree);
   text +=
       "fix ref all store/state 0 x y z\n"
       "fix hold held setforce 0.0 0.0 0.0\n"

@@ -33,7 +33,8 @@ class FiniteTube {
   std::string data() const;
 
   // Reads the data; group `held` is the two bands `below` and `above`, and fix `ref` keeps the straight positions.
-  std::string commands(const Potential& potential, const std::string& data) const;
+  // `turn` (rad): the tube is turned by it about its axis first.
+  std::string commands(const Potential& potential, const std::string& data, double turn = 0) const;
 
  private:
   std::vector<Vector3> atoms_;

@@ -212,8 +212,8 @@ Settings read_settings(const TomlTable& top, const std::string& path) {
   const TomlTable search = top.table("search");
   // All starts that were tried with contact laws ended alike, and each takes seconds.
   s.search.starts = static_cast<int>(search.integer_or("starts", s.model == "stiffness" ? 8 : 2, 1, 1000));
-  s.search.max_evaluations =
-      static_cast<int>(search.integer_or("max_evaluations", s.search.max_evaluations, 10, 100000000));
+  s.search.max_evaluations = static_cast<int>(
+      search.integer_or("max_evaluations", s.model == "stiffness" ? 20000 : 100000, 10, 100000000));
   s.search.max_seconds = search.number_or("max_seconds", s.search.max_seconds, Bounds::positive(1e5));
   s.search.seed = static_cast<std::uint64_t>(search.integer_or("seed", 1, 0, std::numeric_limits<long>::max()));
   return s;

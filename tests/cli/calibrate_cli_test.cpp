@@ -33,7 +33,7 @@ TEST_F(Calibrate, WrongInputGetsOneLineAndLeavesNothing) {
   expect_refusal("--chirality 0,0 --quiet", "not a tube");
   expect_refusal("--chirality 3,0 --quiet", "(3,0)");
   expect_refusal("--chirality 200,200 --quiet", "(200,200)");
-  expect_refusal("--chirality 6,12 --quiet", "write 12,6");
+  expect_refusal("--chirality 6,-12 --quiet", "not negative");
   expect_refusal("--chirality 5,5 --quiet --lj-cutoff -1", "--lj-cutoff: is -1 nm");
   expect_refusal("--chirality 5,5 --quiet --lj-cutoff 0.4", "at least 2 sigma");
   expect_refusal("--chirality 5,5 --quiet --lj 3", "--lj");

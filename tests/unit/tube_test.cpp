@@ -32,7 +32,9 @@ TEST(Tube, AtomsPerPeriodAreWhole) {
 TEST(Tube, ValidityOfIndices) {
   EXPECT_TRUE((Chirality{5, 0}.valid()));
   EXPECT_FALSE((Chirality{0, 0}.valid()));
-  EXPECT_FALSE((Chirality{4, 5}.valid()));
+  EXPECT_TRUE((Chirality{4, 5}.valid())) << "the mirror image of (5,4)";
+  EXPECT_TRUE((Chirality{4, 5}.chiral()));
+  EXPECT_FALSE((Chirality{5, 5}.chiral() || Chirality{5, 0}.chiral()));
   EXPECT_FALSE((Chirality{4, -1}.valid()));
 }
 
