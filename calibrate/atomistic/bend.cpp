@@ -54,21 +54,23 @@ std::vector<AtomisticRow> bend_rows(RunContext& run, const RelaxedTube& tube, co
   std::vector<std::pair<const char*, long>> specimens = {{"-short", 0}};
   if (series.middle) specimens.emplace_back("-middle", extra_hexagons(run.c, tube.shape, 0.5 * additional));
   specimens.emplace_back("-long", extra_hexagons(run.c, tube.shape, additional));
-  // The energies of two planes at right angles have no cos 2 phi in their mean. No choice of lengths takes all of
-  // it out of a tube with a natural twist, whose ends turn along it.
-  std::vector<double> planes = {0};
-  if (std::gcd(run.c.n, run.c.m) == 2) planes.push_back(0.5 * units::pi);
+  // The energy of an end goes as k cos phi and k^2 cos 2 phi with its azimuth phi to the plane of bending. No
+  // choice of lengths takes this out of a tube with a natural twist, whose ends turn along it, but the mean over
+  // planes does: two at right angles for a tube with a twofold axis, four for one without an axis of symmetry.
+  const long axis = std::gcd(run.c.n, run.c.m);
+  const int planes = !series.middle || axis > 2 ? 1 : axis == 2 ? 2 : 4;
   const std::string results =
       fmt::format("print \"$(pe:%.15g) $(fnorm:%.6g)\" append {}.dat screen no\n", series.name);
   std::string input = "# finite tubes of several lengths, bent step by step\n";
   std::vector<AtomisticRow> rows;
-  for (const double plane : planes)
+  for (int plane = 0; plane < planes; ++plane)
     for (const auto& [ending, extra] : specimens) {
       const std::string kind = series.name + ending;
       const FiniteTube finite(run.c, tube.shape, short_part + extra, held_band(run.potential));
       if (plane == 0) write_data(run, kind + ".data", finite.data());
-      input += finite.commands(run.potential, kind + ".data", plane) + "variable ftol equal 1e-3\n" +
-               affine_bend_variables() + "minimize 0.0 ${ftol} 2000 20000\n" + results;
+      input += finite.commands(run.potential, kind + ".data", 0.5 * units::pi * plane) +
+               "variable ftol equal 1e-3\n" + affine_bend_variables() + "minimize 0.0 ${ftol} 2000 20000\n" +
+               results;
       AtomisticRow row;
       row.kind = kind;
       row.twist = tube.shape.twist;
@@ -84,14 +86,14 @@ std::vector<AtomisticRow> bend_rows(RunContext& run, const RelaxedTube& tube, co
       }
     }
   run_stage(run, series.name, input);
-  const std::size_t all = rows.size() * planes.size();
+  const std::size_t all = rows.size() * static_cast<std::size_t>(planes);
   const auto found = read_results(run, series.name, all, all, 2);
-  for (std::size_t p = 0; p < planes.size(); ++p) {
+  for (int plane = 0; plane < planes; ++plane) {
     double straight = 0;
     for (std::size_t i = 0; i < rows.size(); ++i) {
-      const std::vector<double>& at = found[p * rows.size() + i];
+      const std::vector<double>& at = found[static_cast<std::size_t>(plane) * rows.size() + i];
       if (rows[i].curvature == 0) straight = at[0];
-      rows[i].energy += (at[0] - straight) / static_cast<double>(planes.size());
+      rows[i].energy += (at[0] - straight) / planes;
       if (rows[i].curvature > 0) check_convergence(run, rows[i].kind, at[1] / angstrom, at[0] - straight);
     }
   }

@@ -71,7 +71,7 @@ std::vector<AtomisticRow> collapse_rows(RunContext& run, const RelaxedTube& tube
 struct BendSeries {
   std::string name;
   double short_length = 0, long_length = 0;
-  bool middle = false;  // also a tube of the mean of both lengths
+  bool middle = false;  // also a tube of the mean of both lengths; bent in all planes that its symmetry asks for
   std::vector<double> curvatures;
 };
 std::vector<AtomisticRow> bend_rows(RunContext& run, const RelaxedTube& tube, const BendSeries& series);
