@@ -120,6 +120,7 @@ std::string data_table(const std::vector<TableColumn>& columns, const char* sour
 
 std::string measured_text(double value, double error) {
   if (!(error > 0) || !std::isfinite(error)) return fmt::format("{:.7g}", value);
+  if (std::fabs(value) < 0.5 * error) return fmt::format("0 ± {:.2g}", error);
   const int decimals = std::max(0, 1 - static_cast<int>(std::floor(std::log10(error))));
   const std::string number = fmt::format("{:.{}f}", value, decimals);
   // Small numbers of small errors are clearer with a power of ten.

@@ -31,7 +31,8 @@ struct TableColumn {
 // A folded table under a figure, of at most 60 rows. `source` says where to find all rows.
 std::string data_table(const std::vector<TableColumn>& columns, const char* source);
 
-// "740.836 ± 0.052": as many digits as two of the error allow; seven where there is no error.
+// "740.836 ± 0.052": as many digits as two of the error allow, seven where there is no error, and "0 ± 0.0002" for less
+// than half of an error.
 std::string measured_text(double value, double error);
 
 struct ReportFact {

@@ -80,6 +80,7 @@ TEST(MeasuredText, HasAsManyDigitsAsTheErrorAllows) {
   EXPECT_EQ(measured_text(-0.0090643, 1.0e-6), "-0.0090643 ± 0.0000010");
   EXPECT_EQ(measured_text(0.34710715, 9.8e-8), "0.347107150 ± 0.000000098");
   EXPECT_EQ(measured_text(358.4, 0), "358.4");
+  EXPECT_EQ(measured_text(-3.2e-13, 2.5e-8), "0 ± 2.5e-08");
 }
 
 }  // namespace

@@ -192,7 +192,9 @@ std::string overview_row(const ParametrizedTube& t) {
     return fmt::format("<tr><td>{}</td><td>{}</td><td colspan=\"10\">no set: {}</td></tr>\n", escape_markup(t.tube),
                        escape_markup(t.name), escape_markup(t.error));
   const auto cell = [&](const char* key) {
-    return "<td class=\"number\">" + escape_markup(with_error(t.set, key)) + "</td>";
+    const Quantity* q = find_quantity(t.set, key);
+    return fmt::format("<td class=\"number\">{}</td>",
+                       q ? measured_text(q->value, q->standard_error.value_or(0)) : "not known");
   };
   const Check* rope = worst_rope(t);
   return fmt::format("<tr><td>{}</td><td><a href=\"{}.html\">{}</a></td>", escape_markup(t.tube), t.name,
@@ -253,14 +255,16 @@ std::string tube_page(const ParametrizedTube& t) {
 
 std::string overview_page(const std::vector<ParametrizedTube>& tubes) {
   Figures figures;
+  std::string head = page_head("Nanotubes");
+  head.insert(head.find("</style>"), ".tubes td{white-space:nowrap}\n");
   std::string html =
-      page_head("Nanotubes") +
+      head +
       "<body>\n<main>\n<p class=\"kicker\">Ropewalk: from atoms to validated parameter sets</p>\n"
-      "<h1>Nanotubes</h1>\n<div class=\"scroll\"><table class=\"facts\"><thead><tr><th>Tube</th>"
-      "<th>Set</th><th class=\"number\">Radius</th><th class=\"number\">EA</th><th class=\"number\">EI"
-      "</th><th class=\"number\">GJ</th><th class=\"number\">Natural twist</th><th class=\"number\">"
-      "Spacing</th><th class=\"number\">Pair energy</th><th>Validation</th><th class=\"number\">"
-      "Ropes</th><th>Grade</th></tr></thead><tbody>\n";
+      "<h1>Nanotubes</h1>\n<div class=\"scroll\"><table class=\"facts tubes\"><thead><tr><th>Tube</th><th>Set</th>";
+  for (const char* title : {"Radius, nm", "EA, nN", "EI, nN nm²", "GJ, nN nm²", "Natural twist, rad/nm",
+                            "Spacing, nm", "Pair energy, eV/nm"})
+    html += fmt::format("<th class=\"number\">{}</th>", title);
+  html += "<th>Validation</th><th class=\"number\">Ropes</th><th>Grade</th></tr></thead><tbody>\n";
   for (const ParametrizedTube& t : tubes) html += overview_row(t);
   html += "</tbody></table></div>\n" +
           paragraph(
