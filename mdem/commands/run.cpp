@@ -126,6 +126,16 @@ class Run {
     if (steps >= 0) last_step_ = steps;
   }
 
+  // Refuses an end that lies behind a run that goes on.
+  void check_end_lies_ahead(long steps, double ps) const {
+    const State& at = simulation_.state();
+    if ((steps < 0 && ps < 0) || last_step_ > at.step) return;
+    throw InputError(
+        {"", 0, ps >= 0 && steps < 0 ? "--until" : "--steps"},
+        fmt::format("ends at step {}, and the run stands at step {}, {:.4g} ps", last_step_, at.step, at.time),
+        "choose a later end, or run the scene anew");
+  }
+
   // Refuses what the run could not carry out, before any file is written.
   void check_before_start() const {
     refuse_cooling(scene_, prepared_);
@@ -505,6 +515,11 @@ class Run {
     write_limits();
     write_file_atomically(dir_.failed_state(), state_csv(prepared_.topology, simulation_.state()));
     write_manifest("failed", e.what());
+    try {
+      write_report(dir_, scene_, prepared_);
+    } catch (const std::exception&) {
+      // The failure is what counts; a state beyond all measure may not be drawn.
+    }
     fmt::print(stderr, "\nropewalk: {}. State written to {}\n", e.what(), dir_.failed_state());
     return 3;
   }
@@ -601,6 +616,7 @@ int resume_command(const ResumeArguments& a) {
   auto run = std::make_unique<Run>(dir, read_run_scene(dir), policy);
   run->stop_at(a.steps, a.until_ps);
   run->restore(checkpoint);
+  run->check_end_lies_ahead(a.steps, a.until_ps);
   return go_through(std::move(run));
 }
 

@@ -101,6 +101,8 @@ Scene read_run_scene(const RunDirectory& dir) {
   while (fs::exists(dir.parameters(sets.size()))) sets.push_back(dir.parameters(sets.size()));
   Scene scene = read_scene(dir.scene(), sets);
   if (scene.from_file()) scene.source = std::make_shared<StateSource>(dir.state());
+  // A scene without a name has that of its file, which here is always scene.toml.
+  if (fs::exists(dir.manifest())) scene.name = read_manifest(dir.manifest()).scene;
   return scene;
 }
 

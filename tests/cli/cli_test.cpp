@@ -734,6 +734,25 @@ hold_ps = 10
   EXPECT_EQ(run("errors rope.toml").code, 2);
 }
 
+TEST_F(Cli, ResumeKeepsTheNameAndRefusesAnEndBehindIt) {
+  spit(dir / "my-chain.toml", R"(
+format = "ropewalk-scene-1"
+parameters = "cnt-10-10-tersoff"
+[chain]
+elements = 5
+[run]
+duration_ps = 2
+)");
+  ASSERT_EQ(run("run my-chain.toml --out r --until 1 --quiet").code, 0);
+  const Outcome behind = run("resume r --until 0.5");
+  EXPECT_EQ(behind.code, 2);
+  EXPECT_NE(behind.err.find("--until: ends at step"), std::string::npos) << behind.err;
+  ASSERT_EQ(run("resume r --quiet").code, 0);
+  EXPECT_EQ(Json::parse(slurp(dir / "r/manifest.json")).at("scene"), "my-chain");
+  ASSERT_EQ(run("report r").code, 0);
+  EXPECT_NE(slurp(dir / "r/report.html").find("my-chain"), std::string::npos);
+}
+
 TEST_F(Cli, APublishedSetHasNoErrorsToCarry) {
   spit(dir / "chain.toml", R"(
 format = "ropewalk-scene-1"

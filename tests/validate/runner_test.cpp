@@ -265,8 +265,13 @@ TEST_F(StoredReference, IsThatOfTheSamePotentialAndLaw) {
   context.make_atoms = true;
   t.add("between_tubes", between_tubes(set));
   EXPECT_NO_THROW(get());
+  context.make_atoms = false;
   set.line->universal.epsilon *= 2;
   EXPECT_THROW(get(), NotApplicable) << "another law between tubes";
+  context.make_atoms = true;
+  EXPECT_NO_THROW(get()) << "made anew";
+  EXPECT_THAT(result.sources.back(), HasSubstr("fresh"));
+  context.make_atoms = false;
   for (auto& [key, value] : set.provenance)
     if (key == "potential_hash") value = "another";
   EXPECT_THROW(get(), NotApplicable);

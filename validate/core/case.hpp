@@ -162,7 +162,8 @@ struct Case {
   // parameter tests nothing: each names at least one that it sees.
   std::vector<Red> turns_red;
   std::vector<Fault> stays_green;  // of quantities that the case does not depend on
-  // Checks that miss with the right parameters, and by how much; the remarks say why. A miss that changes is a miss.
+  // Checks that miss with the right parameters, and by how much; the remarks say why. A miss that changes is a
+  // miss.
   struct KnownMiss {
     std::string check;
     Check::Known size;

@@ -162,11 +162,15 @@ ReferenceTable reference(const CaseContext& context, const ParameterSet& set, co
     throw NotApplicable("the set was fitted to data of yours, whose atoms are not known");
   const std::string stored = find_reference(context, set, name), label = fmt::format("{}/{}.csv", set.name, name);
   if (!context.fresh && !stored.empty()) {
-    ReferenceTable table = read_reference(stored);
-    check_origin(table, stored, set);
-    result.sources.push_back(
-        fmt::format("{} (stored; {}, LAMMPS {})", label, table.value("potential"), table.value("lammps")));
-    return table;
+    try {
+      ReferenceTable table = read_reference(stored);
+      check_origin(table, stored, set);
+      result.sources.push_back(
+          fmt::format("{} (stored; {}, LAMMPS {})", label, table.value("potential"), table.value("lammps")));
+      return table;
+    } catch (const NotApplicable&) {
+      if (!context.make_atoms) throw;
+    }
   }
   if (!context.fresh && !context.make_atoms)
     throw NotApplicable(

@@ -48,8 +48,8 @@ void check_origin(const ReferenceTable& table, const std::string& path, const Pa
 // The stored table NAME of a set or, with context.fresh, a new one by make(). The result's sources say which. A
 // fresh table is written to context.work/SET/NAME.csv and compared with the stored one, if there is one: the
 // largest difference of each column becomes a check ("stored against fresh"), within `tolerance` of the column's
-// range. Where no table is stored: with context.make_atoms it is made and stored in atoms_folder; otherwise throws
-// NotApplicable.
+// range. Where none is stored, or one of another potential or law: with context.make_atoms it is made and stored in
+// atoms_folder; otherwise throws NotApplicable.
 ReferenceTable reference(const CaseContext& context, const ParameterSet& set, const std::string& name,
                          double tolerance, const std::function<ReferenceTable()>& make, CaseResult& result);
 

@@ -63,6 +63,7 @@ int calibrate(const Place& place) {
     if (std::fflush(stdout) != 0) throw std::runtime_error(std::strerror(errno));
     return code;
   } catch (const std::exception& e) {
+    fs::remove(place.file("-calibration.json"));
     write_file_atomically(place.file("-error.txt"), std::string(e.what()) + "\n");
     return 3;
   }

@@ -13,7 +13,7 @@ namespace {
 constexpr int bonds = 12, rounds = 2;
 constexpr double angle = 48 * units::degree, shift = 2;  // nm
 constexpr double brake = 1.5;                            // 1/ps: nearly aperiodic for the slowest bending mode
-constexpr double leg = 8, settle = 15;                   // ps
+constexpr double leg = 8, settle = 30;                   // ps
 constexpr double step_fraction = 0.5;  // of the limit of total-energy bonds; that of incremental ones is lower
 constexpr double temperature = 300, warm = 20;  // K, ps
 
