@@ -44,6 +44,8 @@ void add_calibrate(CLI::App& app, Verbs& v) {
   app.add_option("--potential-file", a.user_potential, "Your own pair_style and pair_coeff lines, one atom type");
   add_law(app, a.lj, a.lj_cutoff);
   app.add_flag("--envelope", a.envelope, "Measure kink, collapse and 1 % limits with LAMMPS (minutes)");
+  app.add_option("--envelope-of", a.envelope_of,
+                 "Take them from this set of the same tube and potential instead, with the rows of its table");
   app.add_option("--out", a.out, "Parameter file; its tables lie beside it [default: cnt-N-M-POTENTIAL.toml]");
   app.add_option("--keep", a.keep, "Keep LAMMPS's inputs and logs in this new directory");
   app.add_option("--cell-length", a.stiffness.cell_length, "Least length of the periodic cells (nm); 0: chosen")

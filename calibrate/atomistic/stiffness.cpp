@@ -173,6 +173,10 @@ Stiffness measure_stiffness(Chirality c, const Potential& potential, const std::
     tell("looking for kink, collapse and buckling (minutes)");
     out.envelope = measured_envelope(run, tube, out, out.rows);
   }
+  if (options.known_envelope) {
+    out.envelope = options.known_envelope->limits;
+    add_rows(options.known_envelope->rows);
+  }
   if (options.anharmonic) {
     tell("stretching, twisting and bending up to the limits");
     const CellGrid wide = wide_grid(c, out.envelope);
@@ -187,6 +191,8 @@ Stiffness measure_stiffness(Chirality c, const Potential& potential, const std::
       add_rows(collapse_rows(run, tube, shears));
       timed(out.fit_seconds, [&] { fit_collapse(out.rows, out); });
     }
+    if (options.known_envelope && !out.anharmonic.terms.empty())
+      timed(out.fit_seconds, [&] { fit_collapse(out.rows, out); });
   }
   out.warnings.insert(out.warnings.end(), run.warnings.begin(), run.warnings.end());
   out.lammps_seconds = run.lammps_seconds;

@@ -20,6 +20,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -53,18 +54,6 @@ struct AtomisticRow {
   double radius = 0;    // nm, mean distance from the axis (straight cells)
 };
 
-struct StiffnessOptions {
-  double cell_length = 0;                     // nm, least length of the periodic cells; 0: chosen
-  double largest_strain = 0.01;               // fit windows, both signs
-  double largest_shear = 0.01;                // radius times twist
-  double largest_bend_strain = 0;             // radius times curvature; 0: chosen
-  double short_length = 6, long_length = 10;  // nm, bend
-  bool anharmonic = true;                     // also the wide windows of the terms beyond Hooke's law
-  bool envelope = false;                      // incremental runs to the kink, the collapse and 1 % nonlinearity
-  LammpsOptions lammps;
-  std::function<void(const std::string&)> progress;  // one line per stage
-};
-
 // Limits beyond which the model no longer describes the tube.
 struct Envelope {
   Measured kink_curvature;    // 1/nm
@@ -75,6 +64,25 @@ struct Envelope {
   Measured linear_shear;      // radius times twist: torque 1 % off GJ s
   Measured linear_strain;     // tension or compression: force 1 % off EA e
   bool measured = false;      // false: from scaling rules
+};
+
+// An envelope that was measured before, with the rows of its runs (envelope-*, collapse-twist).
+struct KnownEnvelope {
+  Envelope limits;
+  std::vector<AtomisticRow> rows;
+};
+
+struct StiffnessOptions {
+  double cell_length = 0;                       // nm, least length of the periodic cells; 0: chosen
+  double largest_strain = 0.01;                 // fit windows, both signs
+  double largest_shear = 0.01;                  // radius times twist
+  double largest_bend_strain = 0;               // radius times curvature; 0: chosen
+  double short_length = 6, long_length = 10;    // nm, bend
+  bool anharmonic = true;                       // also the wide windows of the terms beyond Hooke's law
+  bool envelope = false;                        // incremental runs to the kink, the collapse and 1 % nonlinearity
+  std::optional<KnownEnvelope> known_envelope;  // taken instead of these runs
+  LammpsOptions lammps;
+  std::function<void(const std::string&)> progress;  // one line per stage
 };
 
 // Terms beyond Hooke's law, in the order of anharmonic_terms(), with the window of their fit.

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "io/data_files.hpp"
 #include "io/files.hpp"
 #include "io/grade.hpp"
 #include "io/parameters_toml.hpp"
@@ -122,6 +123,37 @@ OutputFiles output_files(const CalibrateArguments& a, const std::string& name) {
   return f;
 }
 
+// The measured limits of a set of the same tube and potential, and the rows of its table that they came from.
+KnownEnvelope envelope_of(const std::string& name, const CalibrationRequest& request) {
+  const ParameterSet set = read_parameters(find_parameters(name, "", {"", 0, "--envelope-of"}));
+  const auto refuse = [&](const std::string& why, const std::string& remedy) {
+    throw InputError({set.path, 0, "--envelope-of"}, why, remedy);
+  };
+  if (set.chirality.n != request.chirality.n || set.chirality.m != request.chirality.m ||
+      provenance_value(set, "potential_hash") != request.potential.file_hash)
+    refuse("is a set of another tube or potential", "name one of the same, or measure with --envelope");
+  const Quantity* kink = find_quantity(set, "validity.kink_curvature");
+  if (kink->origin != "calibrated") refuse("has limits that were not measured", "measure them with --envelope");
+  const fs::path table = fs::path(set.path).parent_path() / provenance_value(set, "stiffness_table");
+  if (!fs::is_regular_file(table) || hash_hex(read_file(table.string())) != provenance_value(set, "stiffness_hash"))
+    refuse("has no stiffness table beside it, or another one", "bring the table that the set was made from");
+  const auto limit = [&](const char* key) {
+    const Quantity* q = find_quantity(set, std::string("validity.") + key);
+    return q ? Measured{q->value, q->standard_error.value_or(0)} : Measured{};
+  };
+  KnownEnvelope known;
+  known.limits.kink_curvature = limit("kink_curvature");
+  known.limits.twist_collapse = limit("twist_collapse");
+  known.limits.compression = limit("stretch");
+  known.limits.linear_curvature = limit("linear_curvature");
+  known.limits.linear_shear = limit("linear_twist");
+  known.limits.linear_strain = limit("linear_stretch");
+  known.limits.measured = true;
+  for (const AtomisticRow& row : read_atomistic_csv(table.string()))
+    if (row.kind.rfind("envelope-", 0) == 0 || row.kind == "collapse-twist") known.rows.push_back(row);
+  return known;
+}
+
 // Of the thinnest tubes, whose windows are too wide for the polynomial: the harmonic bond serves them.
 void leave_out_unusable_bond(Calibration& c, const std::string& text, const std::string& path) {
   try {
@@ -225,8 +257,11 @@ int calibrate_command(const CalibrateArguments& a) {
     throw InputError({"", 0, "--bend-lengths"}, fmt::format("is \"{}\"", printable(a.bend_lengths, 40)),
                      "write two lengths in nm, as in 6,10");
   request.stiffness.envelope = a.envelope;
+  if (a.envelope && !a.envelope_of.empty())
+    throw InputError({"", 0, "--envelope-of"}, "takes the place of --envelope", "give one of them");
   request.stiffness.lammps.interrupted = [] { return interrupted_by() != 0; };
   request.command = a.command;
+  if (!a.envelope_of.empty()) request.stiffness.known_envelope = envelope_of(a.envelope_of, request);
   const OutputFiles files = output_files(
       a, fmt::format("cnt-{}-{}-{}", request.chirality.n, request.chirality.m, request.potential.name));
   if (!a.quiet) request.stiffness.progress = [](const std::string& line) { fmt::print(stderr, "{}\n", line); };

@@ -20,6 +20,7 @@ struct CalibrateArguments {
   bool force = false;
   bool quiet = false;
   StiffnessOptions stiffness;
+  std::string envelope_of;            // a set whose envelope is taken
   std::string bend_lengths = "6,10";  // nm
   std::string command;                // as typed
 };
