@@ -809,7 +809,7 @@ duration_ps = 0.5
 TEST_F(Cli, CompareSetsSideBySide) {
   const Outcome o = run("compare cnt-5-5-tersoff cnt-10-10-tersoff cnt-10-10-paper --page c.html");
   ASSERT_EQ(o.code, 0) << o.err;
-  for (const char* words : {"(5,5)", "not known", "1518.960 ± 0.097", "anharmonic"})
+  for (const char* words : {"(5,5)", "not known", "1518.960 ± 0.037", "anharmonic"})
     EXPECT_NE(o.out.find(words), std::string::npos) << words << o.out;
   const std::string page = slurp(dir / "c.html");
   EXPECT_NE(page.find("<svg"), std::string::npos);
