@@ -231,8 +231,7 @@ int main(int argc, char** argv) {
       "ropewalk twists carbon-nanotube ropes by the mesoscopic distinct element method.\n"
       "Units: nm, ps, eV; moments nN nm; every key of a scene carries its unit.\n"
       "Exit code: 0 done, 2 wrong input, 3 stopped with the reason, 4 not relaxed within run.max_steps, 5 stopped "
-      "at a "
-      "limit, 128 + signal.");
+      "at a limit, 128 + signal.");
   app.set_version_flag("--version", std::string("ropewalk ") + version + " (" + git_id + ")");
   app.require_subcommand(1);
   app.footer(scene_key_help());

@@ -128,8 +128,7 @@ void fit_anharmonic(std::vector<AtomisticRow>& table, Chirality c, Stiffness& ou
 
   out.fit_report += fmt::format(
       "beyond Hooke's law: {} cells, strain {:.3g} to {:.3g}, shear <= {:.3g}: largest error {:.2g} of an energy; "
-      "{} "
-      "bends, radius times curvature <= {:.3g}: {:.2g}\n",
+      "{} bends, radius times curvature <= {:.3g}: {:.2g}\n",
       straight.rows.size(), fit.min_strain, fit.max_strain, fit.max_shear, fit.stretch_twist_error,
       bent.rows.size(), fit.max_bend, fit.bend_error);
   // The tube holds up to the kink, and the quartic term with it.

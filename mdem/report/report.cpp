@@ -403,8 +403,7 @@ std::vector<Limit> limits(const Validity& v) {
   return {{"Kinked", "kinked", limit(v.kink_curvature, "curvature beyond", " nm⁻¹"),
            "A real tube kinks there: its wall folds and it bends on at a fraction of the stiffness. Harmonic bonds "
            "bend on elastically and overestimate the bending energy; the moment of anharmonic ones stays constant, "
-           "that of "
-           "a tube falls by a third."},
+           "that of a tube falls by a third."},
           {"Overtwisted", "overtwisted", limit(v.twist_collapse, "radius times twist per length beyond", ""),
            "The wall of a real tube collapses into a ribbon there. Harmonic bonds store more torsional "
            "energy than the tube would; the torque of anharmonic ones stays constant, as that of a tube does."},

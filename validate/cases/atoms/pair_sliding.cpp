@@ -263,8 +263,8 @@ CaseResult run(const CaseContext& context) {
       "cancel; this is not tested.");
   result.remarks.push_back(
       "Where ends lie flush, atoms at the rims have fewer neighbours than the law assumes, which was made for "
-      "endless "
-      "tubes. The check \"ends flush\" says what this costs. It is one number for a pair of tubes, whatever their "
+      "endless tubes. The check \"ends flush\" says what this costs. It is one number for a pair of tubes, "
+      "whatever their "
       "length, and does not change the force of a pull.");
   return result;
 }
@@ -283,8 +283,7 @@ const RegisteredCase registered([] {
   c.setup =
       "Relaxed, frozen {tube} tubes at the distance of the energy minimum. Sliding: a periodic cell "
       "over one period or half a nanometre, for 16 pairs of turns. Pull-out: tubes of 8 nm at overlaps from 0.5 to "
-      "7.5 nm and with "
-      "flush ends, averaged over 12 registries.";
+      "7.5 nm and with flush ends, averaged over 12 registries.";
   c.oracle =
       "Lennard-Jones of LAMMPS, as in the set (2.84 meV, 0.34 nm, cut at 1.2 nm in the shipped ones). Mean energy "
       "and pull-out slope "

@@ -130,8 +130,7 @@ const RegisteredCase registered([] {
       "0.06 nm/r^2 and relaxed. The bond was fitted to other lengths.";
   c.oracle =
       "Energies of LAMMPS with the interatomic potential of the set, (E_long - E_short)/(L_long - L_short); for a "
-      "chain of "
-      "elements U/L = EI k^2/2 + c4 (r k)^4. Within 1 % up to the kink.";
+      "chain of elements U/L = EI k^2/2 + c4 (r k)^4. Within 1 % up to the kink.";
   c.literature =
       "S. Iijima, C. Brabec, A. Maiti, J. Bernholc, J. Chem. Phys. 104, 2089 (1996), DOI 10.1063/1.470966";
   c.run = run;

@@ -206,8 +206,8 @@ CaseResult run(const CaseContext& context) {
   add_heat_checks(ropes, result);
   result.remarks.push_back(
       "Twisted once, a rope of incremental bonds equals one of total-energy bonds. After a closed loop it keeps "
-      "energy for two "
-      "reasons. First, inertia takes the rope off the path; this part vanishes with the speed. Second, a path that "
+      "energy for two reasons. First, inertia takes the rope off the path; this part vanishes with the speed. "
+      "Second, a path that "
       "encloses an area of bend and twist leaves energy at any speed; this part is small at the bond angles that a "
       "tube allows.");
   result.remarks.push_back(

@@ -188,8 +188,7 @@ CaseFigure residual_figure(std::vector<Series> all) {
   }
   figure.caption =
       "Relative differences. At small angles the moment of atoms has a part due to registry that does not grow "
-      "with "
-      "the angle.";
+      "with the angle.";
   return figure;
 }
 
@@ -293,11 +292,10 @@ Case twisted_rope_case(const RopeComparison& comparison, const std::string& titl
       "measured on single tubes; no number was fitted to a rope.";
   c.setup = fmt::format(
       "Seven {{tube}} tubes in hexagonal packing, about {:.0f} nm between the clamps. Bands of 1 nm at both ends "
-      "turn as "
-      "rigid bodies by plus and minus half of the angle, at a fixed distance{}. The interior is relaxed after each "
+      "turn as rigid bodies by plus and minus half of the angle, at a fixed distance{}. The interior is relaxed "
+      "after each "
       "increment of the angle. The checks lie in the elastic range, in which the torsional stiffness of a single "
-      "tube "
-      "stays within 1 % (r tau = 0.04).",
+      "tube stays within 1 % (r tau = 0.04).",
       comparison.length,
       comparison.axial_free.size() > 1 ? " and, in a second series, free to approach each other" : "");
   c.oracle =
@@ -307,8 +305,8 @@ Case twisted_rope_case(const RopeComparison& comparison, const std::string& titl
       "other.";
   c.literature =
       "L. Lindsay, D. A. Broido, Phys. Rev. B 81, 205441 (2010), DOI 10.1103/PhysRevB.81.205441 (Tersoff "
-      "potential); "
-      "A. P. Thompson et al., Comput. Phys. Commun. 271, 108171 (2022), DOI 10.1016/j.cpc.2021.108171 (LAMMPS)";
+      "potential); A. P. Thompson et al., Comput. Phys. Commun. 271, 108171 (2022), DOI 10.1016/j.cpc.2021.108171 "
+      "(LAMMPS)";
   c.run = [comparison](const CaseContext& context) { return run_ropes(comparison, context); };
   c.tables = {comparison.name};
   c.lammps_seconds = [comparison](const ParameterSet& set) {
