@@ -136,6 +136,8 @@ void add_observe(CLI::App& app, Verbs& v) {
                 "Tubes closer than this are neighbours (nm) [default: the scene's]")
       ->check(CLI::PositiveNumber);
   c->add_flag("--json", v.observe.json, "JSON, with radius profile and centre line");
+  c->add_flag("--tubes", v.observe.tubes,
+              "Every tube of the last frame, as CSV: tension, twist, curvature, slip, pressure");
   c->callback([&v] { v.code = observe_command(v.observe); });
 }
 

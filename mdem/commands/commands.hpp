@@ -38,7 +38,8 @@ struct ObserveArguments {
   std::string dir;
   double neighbour_radius = -1;  // nm; -1: the scene's
   bool json = false;
-  bool list = false;  // only the table of observables
+  bool list = false;   // only the table of observables
+  bool tubes = false;  // every tube of the last frame, as CSV
 };
 int observe_command(const ObserveArguments& arguments);
 

@@ -156,7 +156,10 @@ class Import {
         prepared_(prepare(scene_)),
         observer_(make_observer(scene_, prepared_)),
         checkpoint_(read_checkpoint(dir_)),
-        reached_(simulation_at(dir_, scene_, prepared_, checkpoint_).state().step) {}
+        start_(simulation_at(dir_, scene_, prepared_, checkpoint_)),
+        reached_(start_.state().step),
+        gauges_(start_.gauges()),
+        first_(start(scene_, prepared_).forces().energy) {}
 
   int go() {
     const LammpsStart began = read_start(files_);
@@ -189,9 +192,9 @@ class Import {
       const auto row = rows_.find(state.step);
       if (state.step <= reached_ || row == rows_.end()) continue;
       state.time = row->second.time;
+      force_.force = force;
+      force_.torque = torque;
       add(state, row->second);
-      force_ = force;
-      torque_ = torque;
     }
   }
 
@@ -203,6 +206,8 @@ class Import {
     account.work = from.work;
     account.dissipated = from.dissipated;
     account.first_energy = checkpoint_.first_energy;
+    account.first = first_;
+    account.ends = readings_at(state);
     log_ += log_line(log_row(observer_, scene_, prepared_.topology, state, account));
     frames_ +=
         dump_frame(prepared_.topology, state, element_colours(prepared_.topology, prepared_.interaction, state));
@@ -212,10 +217,23 @@ class Import {
     ++taken_;
   }
 
+  // What the forces of this moment say: LAMMPS keeps no means.
+  EndReadings readings_at(const State& state) {
+    gauges_.follow(state);
+    gauges_.forget_work();
+    gauges_.sums.since = state.time;
+    std::vector<PointLoad> loads;
+    point_loads(prepared_.loads, state, state.time, loads);
+    return gauges_.read_still(
+        state,
+        reactions_at_rest(prepared_.topology, prepared_.loads, loaded_elements(prepared_.loads), force_, state), loads);
+  }
+
   // The checkpoint last: until it is there the run stands where it stood.
   void write(std::int64_t from) {
     Simulation simulation = start(scene_, prepared_);
-    simulation.inherit_from(force_, torque_, {last_.work, last_.dissipated});
+    simulation.inherit_from(force_.force, force_.torque, {last_.work, last_.dissipated});
+    simulation.inherit_from(gauges_.sums);
     checkpoint_.log_bytes = log_.size();
     checkpoint_.frame_bytes = frames_.size();
     checkpoint_.simulation = simulation.serialise();
@@ -245,10 +263,13 @@ class Import {
   Prepared prepared_;
   Observer observer_;
   RunCheckpoint checkpoint_;
+  Simulation start_;  // where the run stood
   std::int64_t reached_ = 0;
+  Gauges gauges_;
+  Energies first_;
   std::map<std::int64_t, LammpsRow> rows_;
   LammpsRow last_;
-  Vec3Array force_, torque_;
+  Forces force_;
   std::string log_, frames_;
   long taken_ = 0;
 };

@@ -7,6 +7,7 @@
 #include "commands/commands.hpp"
 #include "io/files.hpp"
 #include "model/error.hpp"
+#include "plan/forecast.hpp"
 #include "run/run_directory.hpp"
 #include "scene/prepare.hpp"
 #include "scene/scene_toml.hpp"
@@ -41,6 +42,7 @@ void say_source(const Scene& scene, const Prepared& p) {
 
 void say_loads(const Scene& scene) {
   if (!scene.loads.empty()) fmt::print("{} loads\n", scene.loads.size());
+  for (const SceneGrip& g : scene.grips) fmt::print("{}\n", g.grip->words());
   if (!scene.twist) return;
   const TwistLoad& w = *scene.twist;
   fmt::print(
@@ -94,6 +96,7 @@ int check_command(const std::string& path) {
   say_loads(scene);
   for (const std::string& warning : warnings_of(scene, p.topology)) fmt::print("note: {}\n", warning);
   for (const std::string& warning : warmth_of(scene, p)) fmt::print("note: {}\n", warning);
+  for (const std::string& warning : limits_ahead(scene, p)) fmt::print("note: {}\n", warning);
   const int every = scene.run.stepping.contact_every;
   if (every > 1)
     fmt::print("contact every {} steps, {:.4g} fs: a step of the log and of what is counted below\n", every,

@@ -7,6 +7,7 @@
 
 #include "commands/commands.hpp"
 #include "io/frames.hpp"
+#include "io/tube_table.hpp"
 #include "model/error.hpp"
 #include "observe/observables.hpp"
 #include "plan/planner.hpp"
@@ -118,12 +119,22 @@ int observe_command(const ObserveArguments& a) {
   DumpReader reader(dir.frames());
   const std::vector<Observable> chosen = observables_of_frames();
   const Console console(chosen);
+  if (a.tubes) {
+    DumpFrame last;
+    while (reader.next(prepared.topology, last)) {
+    }
+    if (last.state.size() == 0)
+      throw InputError({dir.frames(), 0, ""}, "holds no frame", "run the scene further with `ropewalk resume`");
+    fmt::print("{}", tube_table_csv(prepared.topology, last.state, observer.loading));
+    return 0;
+  }
   if (!a.json) console.print_heading();
   Json all = Json::array();
   DumpFrame frame;
   while (reader.next(prepared.topology, frame)) {
     const RopeObservation rope = observe(observer, scene, prepared.topology, frame.state);
-    const Measurement measurement{prepared.topology, frame.state, rope, {}};
+    const Loading load = loading(prepared.topology, frame.state, observer.loading);
+    const Measurement measurement{prepared.topology, frame.state, rope, load, observer.mass, {}};
     if (a.json) {
       all.push_back(as_json(measurement, chosen));
     } else {

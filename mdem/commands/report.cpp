@@ -68,6 +68,7 @@ void add_run_facts(const Scene& scene, const Prepared& p, const Manifest& m, Rep
   if (scene.thermostat)
     add("thermostat", fmt::format("{}, {:.4g} K", scene.thermostat->method, scene.thermostat->temperature),
         fmt::format("coupling {:.4g} 1/ps, seed {}", scene.thermostat->coupling, scene.thermostat->seed));
+  for (const SceneGrip& g : scene.grips) add("grip", g.grip->words());
   if (scene.twist) {
     const TwistLoad& w = *scene.twist;
     add("twist",
@@ -86,6 +87,30 @@ void add_run_facts(const Scene& scene, const Prepared& p, const Manifest& m, Rep
   add("program", fmt::format("ropewalk {} ({})", m.version, m.git_id),
       fmt::format("{}, {}", m.compiler, m.build_type));
   add("wall time", fmt::format("{:.0f} s on {} threads", m.wall_seconds, m.threads), "started " + m.started);
+}
+
+// Within some twenty degrees of one direction.
+bool are_parallel(const State& state) {
+  Vector3 sum = Vector3::Zero();
+  for (std::size_t i = 0; i < state.size(); ++i) sum += axis_of(state.orientation[i]);
+  const Vector3 mean = sum.normalized();
+  for (std::size_t i = 0; i < state.size(); ++i)
+    if (axis_of(state.orientation[i]).dot(mean) < 0.94) return false;
+  return true;
+}
+
+ReportLoading loading_of(const Topology& topology, const State& state, const LoadingReference& reference) {
+  ReportLoading out;
+  out.time_ps = state.time;
+  out.radius = reference.radius;
+  if (reference.law && reference.cell > 0)
+    for (const double pressure : tube_pressures(topology, state, reference))
+      out.pressure_GPa.push_back(pressure / units::nN_nm);  // nN/nm^2
+  for (int t = 0; t < topology.tubes(); ++t) {
+    out.tension_nN.emplace_back();
+    for (const double tension : tensions(topology, state, t)) out.tension_nN.back().push_back(tension / units::nN_nm);
+  }
+  return out;
 }
 
 ReportInput gather(const RunDirectory& dir, const Scene& scene, const Prepared& p) {
@@ -112,12 +137,15 @@ ReportInput gather(const RunDirectory& dir, const Scene& scene, const Prepared& 
     in.validity = validities(scene, p.topology).front();  // of more than one, no number holds for all
   if (std::filesystem::exists(dir.limits())) in.watched = read_limits(dir.limits());
   const Observer observer = make_observer(scene, p);
+  in.rope = p.topology.tubes() > 1 && !observer.loading.radius.empty() && are_parallel(p.state);
+  in.loaded = !p.loads.empty();
   in.shells = observer.shells;
   for (const DumpFrame& frame : read_frames(dir, p.topology)) {
     const RopeObservation o = observe(observer, scene, p.topology, frame.state);
     const double beta = o.beta / units::degree;
     in.sections.push_back({frame.state.time, beta, o.middle, o.radius_profile});
     in.views.push_back(view_of(p.topology, frame, beta));
+    if (in.rope) in.loading.push_back(loading_of(p.topology, frame.state, observer.loading));
   }
   in.parameter_name = scene.parameters().name;
   in.parameter_reference = scene.parameters().reference;

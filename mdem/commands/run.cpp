@@ -20,6 +20,7 @@
 #include "io/files.hpp"
 #include "io/frames.hpp"
 #include "model/error.hpp"
+#include "plan/forecast.hpp"
 #include "run/colours.hpp"
 #include "run/limit_watch.hpp"
 #include "run/progress.hpp"
@@ -109,12 +110,13 @@ class Run {
         prepared_(prepare(scene_)),
         observer_(make_observer(scene_, prepared_)),
         simulation_(start(scene_, prepared_)),
-        watch_(watched_of(scene_, prepared_.topology)),
+        watch_(watched_by_run(scene_, prepared_, observer_)),
         policy_(policy) {
     const double dt = prepared_.time_step;
     const double span = prepared_.duration > 0 ? prepared_.duration : 1000 * dt;
     log_every_ = every(scene_.run.log_every, span, 400, dt);
     frames_every_ = every(scene_.run.frames_every, span, 40, dt);
+    first_ = simulation_.forces().energy;
     last_step_ = scene_.run.mode == RunOptions::Mode::relax ? -1 : std::lround(prepared_.duration / dt);
   }
 
@@ -150,6 +152,7 @@ class Run {
     for (const std::string& note : warnings_of(scene_, prepared_.topology))
       fmt::print(stderr, "ropewalk: note: {}\n", note);
     for (const std::string& note : warmth_of(scene_, prepared_)) fmt::print(stderr, "ropewalk: note: {}\n", note);
+    for (const std::string& note : limits_ahead(scene_, prepared_)) fmt::print(stderr, "ropewalk: note: {}\n", note);
   }
 
   void begin() {
@@ -223,9 +226,9 @@ class Run {
   }
 
   // Says what is passed for the first time, and whether the run is to end here for it.
-  StopReason check_limits() {
+  StopReason check_limits(bool with_pressure) {
     const std::vector<std::string> passed =
-        watch_.check(prepared_.topology, simulation_.state(), simulation_.list());
+        watch_.check(prepared_.topology, simulation_.state(), simulation_.list(), with_pressure);
     for (const std::string& line : passed) say(line);
     if (!passed.empty()) write_limits();
     if (policy_.on_limit == OnLimit::stop && !passed.empty()) return StopReason::limit;
@@ -251,7 +254,7 @@ class Run {
     double checkpoint_at = now() + scene_.run.checkpoint_every;
     const long checked_every = std::min(log_every_, check_every);
     StopReason stop = StopReason::none;  // it ends after a step with energies: this one, or the next
-    if (simulation_.state().step < last_step_ && std::isfinite(simulation_.total_energy())) stop = check_limits();
+    if (simulation_.state().step < last_step_ && std::isfinite(simulation_.total_energy())) stop = check_limits(true);
     if (stop != StopReason::none) return stop;
     double seconds = patience;  // of a step
     while (simulation_.state().step < last_step_) {
@@ -261,7 +264,8 @@ class Run {
       const double began = now();
       simulation_.steps(count, logged);
       seconds = std::max((now() - began) / static_cast<double>(count), 1e-9);
-      if (stop == StopReason::none && (logged || step % checked_every == 0)) stop = check_limits();
+      if (stop == StopReason::none && (logged || step % checked_every == 0))
+        stop = check_limits(last || step % frames_every_ == 0);
       if (last && stop == StopReason::refine) stop = StopReason::none;
       const bool ends = logged && stop != StopReason::none;
       if (logged) write_row();
@@ -287,7 +291,7 @@ class Run {
     const Relaxed end = simulation_.relax(goal, max_steps, [&](long k) {
       if (k % 100 == 0) {
         write_row();
-        stop = check_limits();
+        stop = check_limits(false);
       }
       if (progress.due()) progress.show(static_cast<double>(k), status_text());
       return caught_signal == 0 && stop == StopReason::none;
@@ -296,7 +300,7 @@ class Run {
     write_row();
     write_frame();
     if (caught_signal) return StopReason::signal;
-    if (stop == StopReason::none) stop = check_limits();
+    if (stop == StopReason::none) stop = check_limits(true);
     if (stop != StopReason::none) return stop;
     at_rest_ = end.at_rest;
     const std::string left = fmt::format(
@@ -336,6 +340,8 @@ class Run {
     account.dissipated = simulation_.dissipated();
     account.heat = simulation_.heat();
     account.first_energy = first_energy_;
+    account.first = first_;
+    account.ends = simulation_.read_gauges();
     return log_row(observer_, scene_, prepared_.topology, s, account);
   }
 
@@ -474,6 +480,9 @@ class Run {
     }
     simulation_ = start(scene_, at);
     simulation_.inherit_from(simulation_.forces().force, simulation_.forces().torque, coarse.simulation_.account());
+    simulation_.set_gauges(observer_.loading.ends, prepared_.state);
+    simulation_.inherit_from(coarse.simulation_.gauges().sums);
+    first_ = coarse.first_;
     record_refinement(coarse);
     first_energy_ = coarse.first_energy_ + simulation_.total_energy() - coarse.simulation_.total_energy();
     earlier_seconds_ = coarse.wall();
@@ -535,6 +544,7 @@ class Run {
   LogRow last_row_;
   std::string reason_;
   std::string started_at_ = iso_time();
+  Energies first_;  // potential at the start
   double first_energy_ = 0, earlier_seconds_ = 0, started_ = now();
   long log_every_ = 1, frames_every_ = 1, last_step_ = 0;
   RunPolicy policy_;

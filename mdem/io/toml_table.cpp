@@ -190,6 +190,11 @@ bool TomlTable::is_string(const std::string& key) const {
   return n && n->is_string();
 }
 
+bool TomlTable::is_array(const std::string& key) const {
+  const toml::node* n = node_->find(key);
+  return n && n->is_array();
+}
+
 const std::vector<std::string>& TomlTable::keys() const { return node_->keys; }
 const std::string& TomlTable::path() const { return node_->path; }
 
@@ -288,6 +293,32 @@ std::vector<double> TomlTable::numbers(const std::string& key, const Bounds& bou
   if (array.size() != size) refuse_type(*this, key, n, needed, "give one number for each component");
   std::vector<double> out;
   for (const toml::node& element : array) out.push_back(checked_number(*this, key, element, bounds));
+  return out;
+}
+
+std::vector<double> TomlTable::list(const std::string& key, const Bounds& bounds) const {
+  const toml::node& n = node_->required(*this, key);
+  const toml::array& array = checked_array(*this, key, n, "an array of numbers");
+  if (array.empty()) throw error(key, "is an empty array", "give it at least one number");
+  std::vector<double> out;
+  for (const toml::node& element : array) out.push_back(checked_number(*this, key, element, bounds));
+  return out;
+}
+
+std::vector<std::vector<double>> TomlTable::rows(const std::string& key, const Bounds& bounds,
+                                                 std::size_t columns) const {
+  const std::string needed = fmt::format("a list of arrays of {} numbers", columns);
+  const toml::node& n = node_->required(*this, key);
+  const toml::array& array = checked_array(*this, key, n, needed);
+  if (array.empty()) throw error(key, "is an empty array", "give it at least one row");
+  std::vector<std::vector<double>> out;
+  for (const toml::node& row : array) {
+    if (!row.is_array() || row.as_array()->size() != columns)
+      refuse_type(*this, key, row, needed, "write it like [[0, 0], [100, 1]]");
+    out.emplace_back();
+    for (const toml::node& element : *row.as_array())
+      out.back().push_back(checked_number(*this, key, element, bounds));
+  }
   return out;
 }
 

@@ -38,6 +38,7 @@ class TomlTable {
 
   bool has(const std::string& key) const;
   bool is_string(const std::string& key) const;  // false where the key is missing
+  bool is_array(const std::string& key) const;
   const std::vector<std::string>& keys() const;  // sorted
 
   // Required keys.
@@ -47,6 +48,9 @@ class TomlTable {
   std::string text(const std::string& key) const;
   std::string string(const std::string& key) const;  // never empty
   std::vector<double> numbers(const std::string& key, const Bounds& bounds, std::size_t size) const;
+  std::vector<double> list(const std::string& key, const Bounds& bounds) const;  // never empty
+  // [[1, 2], [3, 4]]: at least one row of so many numbers.
+  std::vector<std::vector<double>> rows(const std::string& key, const Bounds& bounds, std::size_t columns) const;
   std::vector<std::vector<double>> matrix(const std::string& key, const Bounds& bounds, std::size_t size) const;
   std::vector<long> integers(const std::string& key, long least, long most) const;  // never empty
   std::vector<std::string> strings(const std::string& key) const;                   // never empty, nor any of them

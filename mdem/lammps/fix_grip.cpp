@@ -1,6 +1,7 @@
 #include "lammps/fix_grip.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 namespace ropewalk::lammps {
 namespace {
@@ -40,6 +41,8 @@ void FixGrip::use(const std::vector<int>& elements) {
   topology_ = Topology();
   topology_.types = model_->topology.types;
   for (const int e : elements) topology_.add_tube(1, model_->topology.tube_type[model_->topology.tube_of(e)]);
+  own_.resize(elements.size());
+  std::iota(own_.begin(), own_.end(), 0);
   state_ = State(elements.size());
   forces_ = Forces(elements.size());
 }
@@ -118,7 +121,9 @@ double FixGrip::own_power() {
 
 double FixGrip::constrain(double time, double kick) {
   gather();
-  const double work = ropewalk::constrain(topology_, acting_, time, forces_, kick, state_);
+  ropewalk::constrain(topology_, acting_, own_, time, kick, forces_, kick, state_, impulses_);
+  double work = 0;
+  for (const ConstraintImpulse& c : impulses_) work += c.work;
   for (std::size_t k = 0; k < atom_.size(); ++k)
     if (owned(k)) {
       store(atom->v[atom_[k]], state_.velocity[k]);

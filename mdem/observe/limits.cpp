@@ -10,7 +10,7 @@ namespace {
 
 constexpr double shock = 0.1;  // strain
 
-enum Kind : std::size_t { bend, twist, kink_curvature, wall_twist, strain, overlap, speed };
+enum Kind : std::size_t { bend, twist, kink_curvature, wall_twist, strain, overlap, speed, pressure };
 
 void raise(Peak& peak, double value, int element) {
   if (peak.element >= 0 && !(value > peak.value)) return;
@@ -87,8 +87,28 @@ const std::array<LimitKind, limit_count>& limit_kinds() {
        "the contact law is only continued there", "load it more gently, or start it without overlaps", false},
       {"speed_nm_per_ps", "nm/ps", 1, &Limits::speed, "the element moves with",
        "stopping it would strain the tube by 10 % or more", "load it more gently, or damp more", false},
+      {"pressure_GPa", "GPa", units::nN_nm, &Limits::pressure, "the tube is pressed from all sides by",  // nN/nm^2
+       "a real tube flattens there", "load it less, or do not trust its shape from now on", false},
   }};
   return kinds;
+}
+
+double collapse_pressure(double radius) {
+  constexpr double bending = 1.7, b = 0.44;  // eV, nm
+  const double d = 2 * radius;
+  return d > b ? 24 * bending * (1 - b * b / (d * d)) / (d * d * d) : 0;
+}
+
+Peak pressure_peak(const Topology& topology, const State& state, const Watched& watched) {
+  Peak out;
+  if (!watched.pressures) return out;
+  const std::vector<double> all = watched.pressures(state);
+  for (int t = 0; t < topology.tubes(); ++t) {
+    const double limit = watched.limits[static_cast<std::size_t>(topology.tube_type[t])].pressure;
+    const Peak here{all[static_cast<std::size_t>(t)], limit, topology.tube_begin[t] + topology.length_of(t) / 2};
+    if (out.element < 0 || here.value > out.value) out = here;
+  }
+  return out;
 }
 
 Limits default_limits(const TubeType& type, const Validity& validity) {
@@ -96,6 +116,7 @@ Limits default_limits(const TubeType& type, const Validity& validity) {
   limits.kink_curvature = validity.kink_curvature;
   limits.wall_twist = validity.twist_collapse;
   limits.strain = validity.stretch;
+  limits.pressure = collapse_pressure(type.radius);
   limits.speed = shock * std::sqrt(type.bond.stretch * type.element_length / type.mass);
   return limits;
 }

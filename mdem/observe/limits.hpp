@@ -14,6 +14,10 @@
 //   overlap (key press_nm): how much nearer (nm) the axes of two tubes come, at any angle, than two parallel tubes
 //           rest. The default is the core gap, below which the contact law is continued by its Taylor polynomial,
 //           soft and without a source
+//   pressure_GPa: of the contact across a tube (observe/loading.hpp). The default is the pressure at which the wall
+//           collapses, P d^3 = 24 D (1 - (b/d)^2) with the bending stiffness D = 1.7 eV of graphene, b = 0.44 nm and the
+//           diameter d. A. C. Torres-Dias et al., Carbon 123, 145 (2017), DOI 10.1016/j.carbon.2017.07.036. It costs as
+//           much as several steps and is looked at where a frame is stored
 //   speed   of an element: a tenth of the speed of sound along the tube, sqrt(EA a/m). A tube that is stopped
 //           from the speed v is strained by v/c: by 10 % there, more than any of the shipped sets allows.
 //
@@ -21,6 +25,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -38,6 +43,7 @@ struct Limits {
   double strain = 0;
   double overlap = 0;  // nm
   double speed = 0;    // nm/ps
+  double pressure = 0;  // eV/nm^3
 };
 
 // All but the overlap, which follows from the contact law.
@@ -53,7 +59,7 @@ struct LimitKind {
   const char* remedy;       // for one who meets it
   bool cured_by_finer;      // would shorter elements help
 };
-inline constexpr std::size_t limit_count = 7;
+inline constexpr std::size_t limit_count = 8;
 const std::array<LimitKind, limit_count>& limit_kinds();
 
 // The value with the largest ratio to its limit. If the limits of tube types differ, another value may be larger.
@@ -71,9 +77,16 @@ using Peaks = std::array<Peak, limit_count>;  // in the order of limit_kinds()
 struct Watched {
   std::vector<Limits> limits;  // by tube type
   std::vector<double> rest;  // nm: distance of parallel tubes of the types i, j at i * types + j; empty: no contact
+  // Of every tube of a state, eV/nm^3; none: not watched.
+  std::function<std::vector<double>(const State&)> pressures = {};
 };
 
-// The peaks of a state; of equal values the first element's. The list must be up to date; it may be empty.
+// eV/nm^3, for a tube of this radius (nm).
+double collapse_pressure(double radius);
+
+// The peaks of a state, but for the pressure; of equal values the first element's. The list must be up to date; it may
+// be empty.
 Peaks peaks(const Topology& topology, const State& state, const NeighbourList& list, const Watched& watched);
+Peak pressure_peak(const Topology& topology, const State& state, const Watched& watched);
 
 }  // namespace ropewalk

@@ -18,6 +18,16 @@ double balance(const M& m) {
   return a.potential.potential() + a.kinetic - a.work + a.dissipated - a.heat - a.first_energy;
 }
 
+// MJ/kg, which is 1 eV over 1 eV ps^2/nm^2.
+double stored(const M& m, double Energies::*part) {
+  return (m.account.potential.*part - m.account.first.*part) / m.mass;
+}
+double stored(const M& m) {
+  return (m.account.potential.potential() - m.account.first.potential()) / m.mass;
+}
+
+double torque(const M& m, End end, Eigen::Index axis) { return m.account.ends[end].torque[axis] / units::nN_nm; }
+
 std::vector<Observable>& table() {
   constexpr bool whole = true;
   static std::vector<Observable> entries = {
@@ -26,6 +36,31 @@ std::vector<Observable>& table() {
 
       {"moment_nN_nm", "nN nm", "moment of the twist protocol: per tube or in total, as the scene gives it",
        Group::load, [](const M& m) { return m.account.moment / units::nN_nm; }},
+
+      {"torque_upper_nN_nm", "nN nm",
+       "torque about z on the upper end, mean since the row before; positive: it twists the rope to the right",
+       Group::load, [](const M& m) { return torque(m, upper_end, 2); }},
+      {"torque_lower_nN_nm", "nN nm", "the same on the lower end, where a right-handed twist needs -z",
+       Group::load, [](const M& m) { return -torque(m, lower_end, 2); }},
+      {"torque_upper_x_nN_nm", "nN nm", "torque about x on the upper end, about its centre", Group::load,
+       [](const M& m) { return torque(m, upper_end, 0); }},
+      {"torque_upper_y_nN_nm", "nN nm", "the same about y", Group::load,
+       [](const M& m) { return torque(m, upper_end, 1); }},
+      {"torque_lower_x_nN_nm", "nN nm", "torque about x on the lower end, about its centre", Group::load,
+       [](const M& m) { return torque(m, lower_end, 0); }},
+      {"torque_lower_y_nN_nm", "nN nm", "the same about y", Group::load,
+       [](const M& m) { return torque(m, lower_end, 1); }},
+      {"tension_upper_nN", "nN", "force along z on the upper end, mean since the row before; positive: it pulls",
+       Group::load, [](const M& m) { return m.account.ends[upper_end].force.z() / units::nN_nm; }},
+      {"tension_lower_nN", "nN", "the same on the lower end, where -z pulls", Group::load,
+       [](const M& m) { return -m.account.ends[lower_end].force.z() / units::nN_nm; }},
+      {"rotation_deg", "deg", "rotation of the upper end against the lower one about z, whole turns included",
+       Group::load,
+       [](const M& m) { return (m.account.ends[upper_end].turned - m.account.ends[lower_end].turned) / degree; }},
+      {"work_upper_eV", "eV", "work done on the upper end since the start", Group::load,
+       [](const M& m) { return m.account.ends[upper_end].work; }},
+      {"work_lower_eV", "eV", "work done on the lower end since the start", Group::load,
+       [](const M& m) { return m.account.ends[lower_end].work; }},
 
       {"stretch_eV", "eV", "stretch energy of the bonds", Group::energy,
        [](const M& m) { return m.account.potential.stretch; }},
@@ -48,6 +83,38 @@ std::vector<Observable>& table() {
       {"balance_eV", "eV",
        "total energy - work + dissipated energy - heat, less its first value: the error of integration",
        Group::energy, balance},
+
+      {"stored_MJ_per_kg", "MJ/kg", "potential energy since the start over the mass of the tubes", Group::energy,
+       [](const M& m) { return stored(m); }},
+      {"stored_stretch_MJ_per_kg", "MJ/kg", "the share of stretch and shear", Group::energy,
+       [](const M& m) { return stored(m, &Energies::stretch) + stored(m, &Energies::shear); }},
+      {"stored_bend_MJ_per_kg", "MJ/kg", "the share of bending", Group::energy,
+       [](const M& m) { return stored(m, &Energies::bend); }},
+      {"stored_twist_MJ_per_kg", "MJ/kg", "the share of torsion", Group::energy,
+       [](const M& m) { return stored(m, &Energies::twist); }},
+      {"stored_contact_MJ_per_kg", "MJ/kg", "the share of the contacts", Group::energy,
+       [](const M& m) { return stored(m, &Energies::vdw); }},
+      {"cohesion_lost", "", "part of the van der Waals energy of the start that is lost", Group::energy,
+       [](const M& m) {
+         const double first = m.account.first.vdw;
+         return first < 0 ? (m.account.potential.vdw - first) / -first : 0.0;
+       }},
+
+      {"ends_apart_nm", "nm", "distance between the centres of both ends", Group::shape,
+       [](const M& m) { return m.loading.ends_apart; }},
+      {"ends_strain", "", "the change of that distance since the start, over the start's", Group::shape,
+       [](const M& m) { return m.loading.strain; }},
+      {"least_tension_nN", "nN", "tension of the tube with the least, over its middle third", Group::tubes,
+       [](const M& m) { return m.loading.least_tension / units::nN_nm; }},
+      {"most_tension_nN", "nN", "tension of the tube with the most, over its middle third", Group::tubes,
+       [](const M& m) { return m.loading.most_tension / units::nN_nm; }},
+      {"most_curvature_per_nm", "1/nm", "largest curvature of a tube", Group::tubes,
+       [](const M& m) { return m.loading.curvature; }},
+      {"slip_nm", "nm", "largest displacement of a tube along a neighbour since the start", Group::tubes,
+       [](const M& m) { return m.loading.slip; }},
+      {"core_pressure_GPa", "GPa", "pressure of the contacts on the innermost tube; none where no tube is internal",
+       Group::tubes, [](const M& m) { return m.loading.core_pressure / units::nN_nm; }  // 1 GPa is 1 nN/nm^2
+      },
 
       {"beta_deg", "deg", "mean angle of the outermost tubes to the rope axis, over the middle third", Group::twist,
        [](const M& m) { return m.rope.beta / degree; }},
@@ -120,6 +187,8 @@ const char* group_title(ObservableGroup group) {
       return "Load";
     case Group::energy:
       return "Energy";
+    case Group::tubes:
+      return "Tubes";
     case Group::twist:
       return "Twist";
     case Group::packing:

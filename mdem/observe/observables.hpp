@@ -6,13 +6,14 @@
 #include <string_view>
 #include <vector>
 
+#include "observe/loading.hpp"
 #include "observe/observe.hpp"
 #include "sim/state/interaction.hpp"
 #include "sim/state/state.hpp"
 
 namespace ropewalk {
 
-// Moment and energies at one time. Only the run itself knows them; frames do not store them.
+// Loads and energies at one time. Only the run itself knows them; frames do not store them.
 struct EnergyAccount {
   double moment = 0;  // eV, of the twist protocol
   Energies potential;
@@ -21,6 +22,8 @@ struct EnergyAccount {
   double dissipated = 0;    // eV, taken out by damping since the start
   double heat = 0;          // eV, brought in by the thermostat since the start
   double first_energy = 0;  // eV, total at the start
+  Energies first;           // potential at the start
+  EndReadings ends;         // means since the row before
 };
 
 // The input of an observable.
@@ -28,10 +31,12 @@ struct Measurement {
   const Topology& topology;
   const State& state;
   const RopeObservation& rope;
+  const Loading& loading;
+  double mass;  // eV ps^2/nm^2, of all tubes
   const EnergyAccount& account;
 };
 
-enum class ObservableGroup { time, load, energy, twist, packing, shape, limits };
+enum class ObservableGroup { time, load, energy, tubes, twist, packing, shape, limits };
 const char* group_title(ObservableGroup group);
 // Whether the group can be computed from a stored frame. Loads and energies are known only to the run itself.
 bool in_frames(ObservableGroup group);

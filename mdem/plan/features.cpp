@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <set>
 
 #include "sim/neighbours/neighbours.hpp"
 
@@ -84,8 +86,57 @@ void add_load(const LoadEffect& load, const Prepared& p, SceneFeatures& f) {
     if (along > 0) add_rope_twist(p, along, "torque", f);
     f.why.push_back(fmt::format("torque: curvature up to {:.3g} 1/nm", across));
   }
-  f.sudden = f.sudden || load.force > 0 || load.torque != Vector3::Zero();
+  const bool loaded = load.force > 0 || load.torque != Vector3::Zero();
+  f.sudden = f.sudden || (loaded && load.ramp <= 0);
   f.ramp = std::max(f.ramp, load.ramp);
+}
+
+// Tubes that clamps hold at both ends.
+bool any_tube_between_grips(const Prepared& p) {
+  std::array<std::set<int>, 2> tubes;
+  for (const GripLoad* grip : p.loads.of<GripLoad>())
+    for (const int e : grip->elements) tubes[grip->end == GripLoad::End::upper].insert(p.topology.tube_of(e));
+  return std::any_of(tubes[0].begin(), tubes[0].end(), [&](int t) { return tubes[1].count(t) > 0; });
+}
+
+// What clamps ask: pulling, bending, stretching where the rope is turned at a length that is held, and the bending of
+// tilted tubes where a clamp keeps them straight: over the length sqrt(EI/T), T the tension of a tube.
+void grip_features(const Prepared& p, SceneFeatures& f) {
+  const BondStiffness& k = p.topology.types[0].bond;
+  const bool between = any_tube_between_grips(p);
+  double pulled = 0, bent = 0, tension = 0;
+  bool held = between, straight = false;
+  for (const GripLoad* grip : p.loads.of<GripLoad>()) {
+    const GripAxis::Is z = grip->axes[GripLoad::z].is;
+    const double shared = grip->each ? 1 : static_cast<double>(grip->elements.size()) / grip->depth;
+    if (z == GripAxis::Is::moved && between) pulled += grip->schedule(GripLoad::z).largest();
+    if (z == GripAxis::Is::loaded) tension = std::max(tension, grip->schedule(GripLoad::z).largest() / shared);
+    held = held && z != GripAxis::Is::free && z != GripAxis::Is::loaded && !grip->slide_free;
+    straight = straight || !grip->tilt_free;
+    for (const std::size_t about : {std::size_t{3}, std::size_t{4}})
+      if (grip->axes[about].is == GripAxis::Is::moved) bent += grip->schedule(about).largest();
+  }
+  f.strain += pulled / f.length + tension / k.stretch;
+  f.curvature += bent / f.length;
+  if (bent > 0) {
+    f.strain += rope_radius(p) * bent / f.length;
+    f.why.push_back(fmt::format("bending: curvature up to {:.3g} 1/nm", bent / f.length));
+  }
+  if (f.tubes > 1 && f.turn > 0) {
+    const double slope = rope_radius(p) * f.turn;
+    if (held) {
+      f.strain += std::sqrt(1 + slope * slope) - 1;
+      tension = std::max(tension, k.stretch * f.strain);
+      if (f.tubes > 6)
+        f.pressure = k.stretch / (0.5 * std::sqrt(3.0) * p.spacing * p.spacing) * std::pow(slope, 4) / 8;
+    }
+    if (straight) {
+      const double bend = slope * std::sqrt(tension / k.bend);
+      f.curvature = std::max(f.curvature, bend);
+      f.why.push_back(fmt::format("tilted tubes at the clamps: curvature up to {:.3g} 1/nm", bend));
+    }
+  }
+  if (f.strain > 0) f.why.push_back(fmt::format("strain up to {:.3g}", f.strain));
 }
 
 }  // namespace
@@ -109,7 +160,13 @@ SceneFeatures features_of(const Scene& scene, const Prepared& p) {
     add_load(*effect, p, f);
     turned += effect->angle;
   }
+  for (const GripLoad* grip : p.loads.of<GripLoad>()) {
+    const LoadEffect effect = *grip->effect();
+    add_load(effect, p, f);
+    turned += effect.angle;
+  }
   if (turned > 0) add_rope_twist(p, turned / f.length, "rotation", f);
+  grip_features(p, f);
   if (turned > 0) f.driven_by = DrivenBy::rotation;
   if (scene.twist || f.sudden) f.driven_by = DrivenBy::load;
   if (scene.twist) {

@@ -20,6 +20,8 @@ struct SceneFeatures {
   double duration = 0;                        // ps
   bool sudden = false;                        // a force or a moment acts at once
   DrivenBy driven_by = DrivenBy::nothing;                 // by loads, where there are rotations as well
+  double strain = 0;                          // of a tube, the largest expected
+  double pressure = 0;                        // eV/nm^3, on the innermost tube
   double turn = 0;                            // rad/nm, of a rope as a whole at the end; part of `twist`
   double ramp = 0;                            // ps, in which it is turned
   std::vector<std::string> why;               // how the figures come about

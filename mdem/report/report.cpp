@@ -8,6 +8,8 @@
 #include <iterator>
 #include <limits>
 
+#include "report/loading_part.hpp"
+#include "report/log_figures.hpp"
 #include "report/page.hpp"
 
 namespace ropewalk {
@@ -25,110 +27,6 @@ std::vector<T> some(const std::vector<T>& all) {
 std::string degrees(double value) { return std::isfinite(value) ? fixed_text(value, 1) + "°" : "–"; }
 std::string picoseconds(double value) { return number_text(value) + " ps"; }
 
-// --- Charts of the log --------------------------------------------------------------------------------------
-
-using LogValue = std::function<double(const LogRow&)>;
-
-LogValue logged(const std::string& column) {
-  return [k = index_of_observable(column)](const LogRow& row) { return row.values()[k]; };
-}
-
-struct Trace {
-  std::string name;
-  LogValue value;
-  int colour = 0;
-  bool dashed = false;
-};
-
-struct Panel {
-  std::string title;
-  std::string caption;  // HTML
-  ChartAxis axis;
-  std::vector<Trace> traces;
-  bool steps = false;
-  bool since_start = false;  // the chart shows changes, the table the values themselves
-};
-
-double potential(const LogRow& r) {
-  return r["stretch_eV"] + r["shear_eV"] + r["bend_eV"] + r["twist_eV"] + r["vdw_eV"];
-}
-double total(const LogRow& r) { return potential(r) + r["kinetic_eV"]; }
-
-// A relaxation has steps, but no time.
-struct Clock {
-  ChartAxis axis;
-  std::string column;  // of the log
-
-  bool counts_steps() const { return column == "step"; }
-};
-
-Clock clock_of(const std::vector<LogRow>& log) {
-  double first = 0, last = 0;
-  if (!log.empty()) first = log.front()["time_ps"], last = log.back()["time_ps"];
-  if (log.size() > 1 && !(last > first) && log.back()["step"] > log.front()["step"])
-    return {{"step", "", true}, "step"};
-  return {{"time", "ps", false}, "time_ps"};
-}
-
-std::vector<double> values_of(const std::vector<LogRow>& log, const LogValue& value) {
-  std::vector<double> values;
-  for (const LogRow& row : log) values.push_back(value(row));
-  return values;
-}
-
-void take_first_off(std::vector<double>& values) {
-  const auto first = std::find_if(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
-  const double origin = first == values.end() ? 0 : *first;
-  for (double& v : values) v -= origin;
-}
-
-std::vector<ChartBand> stages(const ReportInput& in) {
-  if (!(in.ramp_end_ps > 0) || in.log.size() < 2) return {};
-  std::vector<ChartBand> bands{{in.log.front()["time_ps"], in.ramp_end_ps, "loading", false}};
-  if (in.log.back()["time_ps"] > in.ramp_end_ps)
-    bands.push_back({in.ramp_end_ps, in.log.back()["time_ps"], "holding", true});
-  return bands;
-}
-
-LineChart chart_of(const ReportInput& in, const Panel& panel, const Clock& clock) {
-  LineChart chart;
-  chart.title = panel.title;
-  chart.x = clock.axis;
-  chart.y = panel.axis;
-  if (!clock.counts_steps()) chart.bands = stages(in);
-  const std::vector<double> x = values_of(in.log, logged(clock.column));
-  for (const Trace& trace : panel.traces) {
-    ChartLine line{trace.name, x, values_of(in.log, trace.value), trace.colour, trace.dashed, panel.steps};
-    if (panel.since_start) take_first_off(line.y);
-    for (std::size_t k = 0; !in.errors.empty() && k < in.log.size(); ++k)
-      line.error.push_back(in.errors.of(k, trace.value).error);
-    chart.lines.push_back(std::move(line));
-  }
-  return chart;
-}
-
-std::string with_unit(const std::string& name, const std::string& unit) {
-  return unit.empty() ? name : fmt::format("{} ({})", name, unit);
-}
-
-std::string not_drawn(const std::string& title) {
-  return fmt::format(
-      "<figure><h3>{}</h3>\n<p class=\"none\">Not drawn: there are fewer than two values.</p></figure>\n",
-      escape_markup(title));
-}
-
-std::string log_figure(const ReportInput& in, const Panel& panel, Figures& figures) {
-  const Clock clock = clock_of(in.log);
-  const LineChart chart = chart_of(in, panel, clock);
-  if (!can_draw(chart)) return not_drawn(panel.title);
-  std::vector<TableColumn> columns{{with_unit(clock.axis.quantity, clock.axis.unit), chart.lines[0].x}};
-  for (const Trace& trace : panel.traces)
-    columns.push_back({with_unit(trace.name, panel.axis.unit), values_of(in.log, trace.value)});
-  return fmt::format("<figure><h3>{}</h3>\n", escape_markup(panel.title)) + chart_svg(chart) +
-         figures.caption(panel.caption) + data_table(columns, "Every row and column is in log.csv.") +
-         "</figure>\n";
-}
-
 Panel bond_energies() {
   return {"Energy of the bonds",
           "Elastic energy of all bonds, by kind of deformation.",
@@ -145,11 +43,11 @@ Panel other_energies(const std::vector<LogRow>& log) {
   if (!log.empty())
     caption += fmt::format(" At the start: van der Waals {} eV, kinetic {} eV, total {} eV.",
                            number_text(log.front()["vdw_eV"], 6), number_text(log.front()["kinetic_eV"], 5),
-                           number_text(total(log.front()), 6));
+                           number_text(total_energy(log.front()), 6));
   return {"Contact, kinetic and total energy",
           caption,
           {"change of energy", "eV", false},
-          {{"van der Waals", logged("vdw_eV"), 3}, {"kinetic", logged("kinetic_eV"), 2}, {"total", total, 5}},
+          {{"van der Waals", logged("vdw_eV"), 3}, {"kinetic", logged("kinetic_eV"), 2}, {"total", total_energy, 5}},
           false,
           true};
 }
@@ -195,6 +93,20 @@ Panel windings() {
           {{"windings", logged("windings"), 1}}};
 }
 
+Panel curvature() {
+  return {"Curvature",
+          "Largest curvature of a tube.",
+          {"curvature", "1/nm", false},
+          {{"curvature", logged("most_curvature_per_nm"), 0}}};
+}
+
+Panel tube_twist() {
+  return {"Twist, end to end",
+          "Stored in the bonds along a tube, mean over the tubes. Positive is right-handed.",
+          {"twist", "°", false},
+          {{"twist", logged("physical_twist_deg"), 1}}};
+}
+
 Panel work_and_heat() {
   return {"Work and dissipation",
           "Work done by the loads, and energy taken out by the damping, since the start.",
@@ -230,7 +142,7 @@ std::string when(const ReportInput& in, std::size_t k, std::size_t n, double tim
 }
 
 std::string tag(const ReportInput& in, const std::string& when, double beta) {
-  return "<div class=\"tag\">" + when + (in.tubes == 1 ? "" : " &#160; β = " + degrees(beta)) + "</div>\n";
+  return "<div class=\"tag\">" + when + (in.rope ? " &#160; β = " + degrees(beta) : "") + "</div>\n";
 }
 
 // --- Radius along the rope ----------------------------------------------------------------------------------
@@ -276,7 +188,7 @@ RopeCamera camera_for_page(const std::vector<RopeView>& views, double tube_radiu
 
 std::string views_figure(const ReportInput& in, Figures& figures) {
   const std::vector<RopeView> views = some(in.views);
-  if (views.empty()) return paragraph("There are no frames to draw the rope from.");
+  if (views.empty()) return paragraph("There are no frames to draw from.");
   const RopeCamera camera = camera_for_page(views, in.tube_radius);
   std::string html = "<figure class=\"strip\"><div class=\"views\">\n";
   for (std::size_t k = 0; k < views.size(); ++k) {
@@ -286,7 +198,7 @@ std::string views_figure(const ReportInput& in, Figures& figures) {
   }
   std::string caption =
       std::string(
-          "The rope from the side, at the same scale and from the same direction; the tubes are drawn "
+          "Seen from the side, at the same scale and from the same direction; the tubes are drawn "
           "at their radius. ") +
       fmt::format("The bar is {:g} nm long.", scale_bar_length(camera));
   html += "</div>\n";
@@ -371,7 +283,7 @@ std::string summary(const ReportInput& in) {
   const Clock clock = clock_of(in.log);
   std::string html = clock.counts_steps() ? fmt::format("After {} steps", fixed_text(r["step"], 0))
                                           : fmt::format("After {}", picoseconds(r["time_ps"]));
-  if (std::isfinite(r["beta_deg"]) && in.tubes != 1)
+  if (std::isfinite(r["beta_deg"]) && in.rope)
     html += fmt::format(" the outermost tubes stand at <b>β = {}</b> to the axis of the rope, and",
                         degrees(r["beta_deg"]));
   const double bonds = r["stretch_eV"] + r["shear_eV"] + r["bend_eV"] + r["twist_eV"];
@@ -379,8 +291,8 @@ std::string summary(const ReportInput& in) {
                       number_text(r["stretch_eV"], 3), number_text(r["shear_eV"], 3), number_text(r["bend_eV"], 3),
                       number_text(r["twist_eV"], 3));
   html += fmt::format(", the van der Waals contacts <b>{} eV</b>. The kinetic energy is {} eV, the total {} eV.",
-                      number_text(r["vdw_eV"]), number_text(r["kinetic_eV"], 3), number_text(total(r)));
-  if (any_internal(in.shells))
+                      number_text(r["vdw_eV"]), number_text(r["kinetic_eV"], 3), number_text(total_energy(r)));
+  if (in.rope && any_internal(in.shells))
     html += fmt::format(
         " The packing charge of the middle section is <b>Q = {}</b> by distance, {} by Delaunay "
         "triangulation.",
@@ -552,27 +464,32 @@ std::string log_part(const ReportInput& in, const std::vector<ReportSection>& se
                                                         ? "The log has no rows, so there are no charts."
                                                         : "The log has one row, so there are no charts over time.");
   const auto panel = [&](const Panel& p) { return log_figure(in, p, figures); };
-  const auto pair = [](const std::string& a, const std::string& b) {
-    return "<div class=\"pair\">\n" + a + b + "</div>\n";
-  };
   // In statements of their own, since figures are numbered and C++ does not fix the order of evaluation of
   // arguments.
-  std::string html = heading("Energies");
+  std::string html = loading_part(in, figures) + heading("Energies");
   const std::string bonds = panel(bond_energies()), others = panel(other_energies(in.log));
-  html += pair(bonds, others) + heading("Packing and twist");
-  const bool packed = any_internal(in.shells), single = in.tubes == 1;
-  if (!packed)
-    html +=
-        paragraph("No packing charge: no tube is internal, that is, has six neighbours in the untwisted state.");
-  const std::string charge = packed ? panel(packing_charge()) : "", beta = single ? "" : panel(twist_angle());
-  html += pair(charge, beta);
-  const std::string twists = panel(end_twists());
-  const std::string radius = single ? "" : radius_figure(in, sections, figures);
-  html += pair(twists, radius) + heading("Buckling of the rope");
-  const std::string deflection = panel(amplitude()), turns = panel(windings());
-  html += pair(deflection, turns) + heading("Energy balance");
+  html += pair_of(bonds, others);
+  const bool packed = any_internal(in.shells);
+  if (in.rope) {
+    html += heading("Packing and twist");
+    if (!packed)
+      html += paragraph(
+          "No packing charge: no tube is internal, that is, has six neighbours in the untwisted state.");
+    const std::string charge = packed ? panel(packing_charge()) : "", beta = panel(twist_angle());
+    html += pair_of(charge, beta);
+    const std::string twists = panel(end_twists()), radius = radius_figure(in, sections, figures);
+    html += pair_of(twists, radius) + heading("Buckling of the rope");
+    const std::string deflection = panel(amplitude()), turns = panel(windings());
+    html += pair_of(deflection, turns);
+  } else {
+    html += heading("Shape of the tubes");
+    const std::string curved = panel(curvature()), twists = panel(tube_twist());
+    html += pair_of(curved, twists);
+    if (in.tubes == 1) html += panel(amplitude());
+  }
+  html += heading("Energy balance");
   const std::string work = panel(work_and_heat()), error = panel(balance(in.log));
-  return html + pair(work, error);
+  return html + pair_of(work, error);
 }
 
 }  // namespace
@@ -584,8 +501,8 @@ std::string report_html(const ReportInput& in) {
                      "<body>\n<main>\n<p class=\"kicker\">Ropewalk: report on a run</p>\n<h1>" +
                      escape_markup(in.name) + "</h1>\n<p class=\"lead\">" + summary(in) + "</p>\n";
   html += warnings_part(in.warnings);
-  html += heading("The rope") + views_figure(in, figures);
-  html += heading("Cross-sections") + sections_part(in, sections, figures);
+  html += heading(in.rope ? "The rope" : in.tubes == 1 ? "The tube" : "The tubes") + views_figure(in, figures);
+  if (in.rope) html += heading("Cross-sections") + sections_part(in, sections, figures);
   html += log_part(in, sections, figures);
   html += heading("Beyond the limits of the model") + limits_part(in);
   html += refinements_part(in.watched.refinements);

@@ -21,6 +21,14 @@ struct ReportSection {
   std::vector<double> radius_profile;  // nm, per element index; may be empty
 };
 
+// Of one frame: what the tubes of a rope bear.
+struct ReportLoading {
+  double time_ps = 0;
+  std::vector<double> radius;                 // nm, of each tube from the axis at the start
+  std::vector<double> pressure_GPa;           // of each tube; empty: there is no contact
+  std::vector<std::vector<double>> tension_nN;  // along each tube
+};
+
 struct ReportInput {
   std::string name;
   std::string status;  // as in the manifest: running, finished, interrupted, failed, not relaxed
@@ -37,6 +45,9 @@ struct ReportInput {
   double element_length = 0;  // nm
   int tubes = 0;
   int bonds = 0;
+  bool rope = false;                   // several tubes of one length, parallel at the start
+  bool loaded = false;                 // by [twist], grips or loads
+  std::vector<ReportLoading> loading;  // in the order of time
   Validity validity;
   LimitsFile watched;  // empty if the run has no limits.json
 

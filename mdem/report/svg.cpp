@@ -270,8 +270,9 @@ std::string draw_error_bands(const LineChart& chart, const Plot& plot) {
 
 struct EndLabel {
   const ChartLine* line;
-  double end;  // where the line ends
-  double at;   // where its name stands
+  double end;    // where the line ends
+  double end_x;  // in units of the data
+  double at;    // where its name stands
 };
 
 std::vector<EndLabel> end_labels(const LineChart& chart, const Plot& plot) {
@@ -280,7 +281,7 @@ std::vector<EndLabel> end_labels(const LineChart& chart, const Plot& plot) {
     const std::vector<Stretch> all = stretches(line);
     if (all.empty()) continue;
     const double y = plot.py(all.back().back().y);
-    labels.push_back({&line, y, y});
+    labels.push_back({&line, y, all.back().back().x, y});
   }
   std::stable_sort(labels.begin(), labels.end(),
                    [](const EndLabel& a, const EndLabel& b) { return a.end < b.end; });
@@ -324,11 +325,15 @@ std::string draw_point_labels(const ScatterChart& scatter, const Plot& plot) {
 std::string draw_labels(const LineChart& chart, const Plot& plot) {
   std::string text;
   for (const EndLabel& label : end_labels(chart, plot)) {
-    const std::string leader = label.line->points ? fmt::format("M{:.1f} {:.1f}h0", plot.right + 20, label.at)
-                                                  : fmt::format("M{:.1f} {:.1f}L{:.1f} {:.1f}h14", plot.right + 1,
-                                                                label.end, plot.right + 9, label.at);
+    // A thin grey line leads from where a line ends at the edge to its name; the piece before the name is the key.
+    const bool at_edge = std::fabs(plot.px(label.end_x) - plot.right) < 3;
+    if (at_edge && !label.line->points)
+      text += fmt::format("<path class=\"leader\" d=\"M{:.1f} {:.1f}L{:.1f} {:.1f}\"/>", plot.right + 2, label.end,
+                          plot.right + 9, label.at);
+    const std::string key = label.line->points ? fmt::format("M{:.1f} {:.1f}h0", plot.right + 19, label.at)
+                                               : fmt::format("M{:.1f} {:.1f}h13", plot.right + 12, label.at);
     text += fmt::format("<path class=\"{}\" d=\"{}\"/><text x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n",
-                        stroke_class(*label.line), leader, plot.right + 28, label.at + 4,
+                        stroke_class(*label.line), key, plot.right + 29, label.at + 4,
                         escape_markup(label.line->name));
   }
   return text;
@@ -349,7 +354,7 @@ Plot layout(const ScatterChart& scatter) {
   for (const std::string& label : plot.y.labels) ticks = std::max(ticks, text_width(label));
   for (const ChartLine& line : chart.lines) names = std::max(names, text_width(line.name));
   plot.left = ticks + 32;
-  plot.right = chart.width - names - 34;
+  plot.right = chart.width - names - 35;
   plot.top = chart.bands.empty() ? 10 : 24;
   plot.bottom = chart.height - 42;
   return plot;
@@ -458,6 +463,7 @@ font-variant-numeric:tabular-nums;max-width:100%;height:auto}
 .axis{stroke:var(--soft);fill:none}.grid{stroke:var(--grid);stroke-width:.7}
 .zero{stroke:var(--soft);stroke-width:.9}
 .load{fill:var(--load)}.hold{fill:var(--hold)}
+.leader{fill:none;stroke:var(--soft);stroke-width:.7}
 .line{fill:none;stroke-width:1.7;stroke-linejoin:round;stroke-linecap:round}
 .error{fill-opacity:.2;stroke:none}
 .points{stroke-width:5.5}

@@ -33,9 +33,13 @@ void LimitWatch::inherit_from(const std::vector<LimitRecord>& earlier, std::int6
     if (r.passed_at_step > step) r.passed = false;
 }
 
-std::vector<std::string> LimitWatch::check(const Topology& topology, const State& state, const NeighbourList& list) {
+std::vector<std::string> LimitWatch::check(const Topology& topology, const State& state, const NeighbourList& list,
+                                           bool with_pressure) {
   std::vector<std::string> lines;
-  const Peaks now = peaks(topology, state, list, watched_);
+  Peaks now = peaks(topology, state, list, watched_);
+  if (with_pressure)
+    for (std::size_t k = 0; k < limit_count; ++k)
+      if (limit_kinds()[k].limit == &Limits::pressure) now[k] = pressure_peak(topology, state, watched_);
   records_.resize(limit_count);
   finer_would_help_ = false;
   for (std::size_t k = 0; k < limit_count; ++k) {

@@ -23,8 +23,9 @@ class LimitWatch {
   // after `step` had not happened.
   void inherit_from(const std::vector<LimitRecord>& earlier, std::int64_t step);
 
-  // One line for each limit that is passed for the first time.
-  std::vector<std::string> check(const Topology& topology, const State& state, const NeighbourList& list);
+  // One line for each limit that is passed for the first time. The pressure costs several steps.
+  std::vector<std::string> check(const Topology& topology, const State& state, const NeighbourList& list,
+                                 bool with_pressure);
 
   // Whether at the last check a limit was passed that shorter elements would cure.
   bool finer_would_help() const { return finer_would_help_; }

@@ -10,6 +10,7 @@
 #include "model/error.hpp"
 #include "scene/kinds/state.hpp"
 #include "scene/scene_toml.hpp"
+#include "scene/watch.hpp"
 
 namespace ropewalk {
 namespace {
@@ -147,6 +148,11 @@ Observer make_observer(const Scene& scene, const Prepared& prepared) {
   o.neighbour_radius = scene.observe.neighbour_radius > 0 ? scene.observe.neighbour_radius
                                                           : 0.5 * (1.0 + std::sqrt(3.0)) * prepared.spacing;
   o.shells = rope_shells(prepared.topology, prepared.state, o.neighbour_radius);
+  for (int t = 0; t < prepared.topology.tubes(); ++t)
+    o.mass += prepared.topology.length_of(t) * prepared.topology.type_of(t).mass / scene.run.mass_scale;
+  o.loading = loading_reference(prepared.topology, prepared.state, o.shells,
+                                ends_of(prepared.loads, prepared.topology), o.spacing, o.neighbour_radius,
+                                prepared.interaction.law);
   return o;
 }
 
@@ -154,9 +160,19 @@ RopeObservation observe(const Observer& o, const Scene& scene, const Topology& t
   return observe(topology, state, o.shells, validities(scene, topology), o.neighbour_radius, o.spacing);
 }
 
+Watched watched_by_run(const Scene& scene, const Prepared& prepared, const Observer& o) {
+  Watched out = watched_of(scene, prepared.topology);
+  if (o.loading.law && !o.loading.core.empty())
+    out.pressures = [topology = prepared.topology, reference = o.loading](const State& state) {
+      return tube_pressures(topology, state, reference);
+    };
+  return out;
+}
+
 LogRow log_row(const Observer& o, const Scene& scene, const Topology& topology, const State& state,
                const EnergyAccount& account) {
-  return LogRow({topology, state, observe(o, scene, topology, state), account});
+  return LogRow({topology, state, observe(o, scene, topology, state), loading(topology, state, o.loading), o.mass,
+                 account});
 }
 
 }  // namespace ropewalk

@@ -7,6 +7,7 @@
 
 #include "io/log.hpp"
 #include "io/manifest.hpp"
+#include "observe/loading.hpp"
 #include "observe/observe.hpp"
 #include "scene/prepare.hpp"
 
@@ -60,15 +61,19 @@ void write_checkpoint(const RunDirectory& dir, const RunCheckpoint& checkpoint);
 RunCheckpoint read_checkpoint(const RunDirectory& dir);
 
 // The reference data of all observations in a run: shells and spacing (nm) of the untwisted rope, and the scene's
-// neighbour radius (nm).
+// neighbour radius (nm). The ends are those that grips hold, or else the first and last elements of all tubes.
 struct Observer {
   RopeShells shells;
   double neighbour_radius = 0;
   double spacing = 0;
+  double mass = 0;  // eV ps^2/nm^2, of all tubes, not scaled
+  LoadingReference loading;
 };
 Observer make_observer(const Scene& scene, const Prepared& prepared);
 
 RopeObservation observe(const Observer& observer, const Scene& scene, const Topology& topology, const State& state);
+// What a run watches, with the pressure on every tube.
+Watched watched_by_run(const Scene& scene, const Prepared& prepared, const Observer& observer);
 LogRow log_row(const Observer& observer, const Scene& scene, const Topology& topology, const State& state,
                const EnergyAccount& account);
 

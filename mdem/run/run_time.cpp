@@ -115,7 +115,7 @@ Outputs time_outputs(const Scene& scene, const Prepared& p, const RunTime& t) {
   LimitWatch watch(watched_of(scene, p.topology));
   const double began = processor_seconds();
   const LogRow row = log_row(observer, scene, p.topology, s.state(), {});
-  watch.check(p.topology, s.state(), s.list());
+  watch.check(p.topology, s.state(), s.list(), false);
   log_line(row);
   o.row = processor_seconds() - began;
   dump_frame(p.topology, s.state(), element_colours(p.topology, p.interaction, s.state()));

@@ -50,7 +50,7 @@ void refine_tables(const Scene& scene, const Topology& topology, toml::table& to
     const bool matters = std::any_of(table.keys.begin(), table.keys.end(), [](const SceneKey& k) {
       return k.length_power != 0 || k.tube_size != SceneKey::TubeSize::no;
     });
-    if (table.name.empty() || table.name == "load" || !matters) continue;
+    if (table.name.empty() || table.listed() || !matters) continue;
     if (!top.contains(table.name) && table.optional()) continue;
     for (const SceneKey& key : table.keys) refine_key(key, scene, topology, table_of(top, table.name));
   }
@@ -73,6 +73,12 @@ void refine_loads(const Scene& scene, const Topology& topology, toml::table& top
       if (load["kind"].value_or(std::string()) == kind.name)
         for (const SceneKey& key : kind.keys) refine_key(key, scene, topology, load);
   }
+}
+
+void refine_grips(const Scene& scene, const Topology& topology, toml::table& top) {
+  for (std::size_t k = 0; k < scene.grips.size(); ++k)
+    for (const SceneKey& key : grip_table().keys)
+      refine_key(key, scene, topology, *top["grip"].as_array()->get_as<toml::table>(k));
 }
 
 // The typed step's share of the stability limit stays.
@@ -114,6 +120,7 @@ std::string finer_scene_text(const Scene& scene, const Prepared& prepared, const
   top.insert_or_assign("element_length_nm", 0.5 * scene.element_length);
   refine_tables(scene, prepared.topology, top);
   refine_loads(scene, prepared.topology, top);
+  refine_grips(scene, prepared.topology, top);
   if (scene.run.time_step > 0)
     table_of(top, "run")
         .insert_or_assign("time_step_fs", finer_time_step(scene, prepared, text_of(top, comment)) / units::fs);

@@ -69,22 +69,65 @@ void refuse_overlaps(const Scene& scene, const Prepared& p) {
     throw InputError(place, overlap, "move them apart, or relax the state first with mode = \"relax\"");
 }
 
-// A single tube bears the whole moment in every bond.
+// A couple on the last element of a tube goes through its last bond. A single tube bears it in every bond.
 void refuse_moment(const Scene& scene, const Prepared& p) {
-  if (!scene.twist || p.topology.tubes() != 1) return;
+  if (!scene.twist || scene.twist->application != TwistLoad::Application::couple) return;
+  const bool per_tube = scene.twist->reading == TwistLoad::Reading::per_tube;
+  const double moment = per_tube ? scene.twist->moment : scene.twist->moment / p.topology.tubes();
   const TubeType& t = p.topology.type_of(0);
   const double slip = t.bond.twist / t.element_length, most = largest_torque(t.bond, t.element_length);
   const auto refuse = [&](const std::string& what, const char* remedy) {
     throw InputError({scene.path, 0, "twist.moment_nN_nm"},
-                     fmt::format("{:.4g} nN nm are more than {}", scene.twist->moment / units::nN_nm, what),
+                     fmt::format("{:.4g} nN nm{} are more than {}", scene.twist->moment / units::nN_nm,
+                                 per_tube ? "" : " in total", what),
                      remedy);
   };
-  if (scene.twist->moment > slip)
-    refuse(fmt::format("a bond of {:.4g} nm bears before it slips, GJ/a = {:.4g}", t.element_length,
-                       slip / units::nN_nm),
+  if (moment > slip)
+    refuse(fmt::format("{}a bond of {:.4g} nm bears before it slips, GJ/a = {:.4g}",
+                       per_tube ? "" : fmt::format("the {} tubes bear: of each, ", p.topology.tubes()),
+                       t.element_length, slip / units::nN_nm),
            "lower the moment or take shorter elements");
-  if (scene.twist->moment > most)
+  if (p.topology.tubes() == 1 && moment > most)
     refuse(fmt::format("the tube bears, {:.4g}: its wall collapses", most / units::nN_nm), "lower the moment");
+}
+
+// Elements that two grips hold, and loads that nothing feels.
+void refuse_grips(const Scene& scene, const Prepared& p) {
+  const std::vector<const GripLoad*> grips = p.loads.of<GripLoad>();
+  std::vector<int> held;
+  for (const GripLoad* grip : grips) {
+    for (const int e : grip->elements) {
+      if (std::find(held.begin(), held.end(), e) == held.end()) continue;
+      const int tube = p.topology.tube_of(e);
+      throw InputError({scene.path, 0, "grip"},
+                       fmt::format("two grips hold element {} of tube {}", e - p.topology.tube_begin[tube], tube),
+                       "give each its own end or its own tubes");
+    }
+    held.insert(held.end(), grip->elements.begin(), grip->elements.end());
+    constexpr const char* names[] = {"x", "y", "z", "about_x", "about_y", "about_z"};
+    for (std::size_t axis = 0; axis < grip->axes.size(); ++axis)
+      if (grip->is_unfelt(axis, p.state))
+        throw InputError({scene.path, 0, fmt::format("grip.{}", names[axis])},
+                         "is a load that nothing in the clamp feels: the elements are free of it",
+                         "set slide_free, spin_free or tilt_free to false");
+  }
+}
+
+// A tolerance above all loads would call any state relaxed.
+void refuse_loose_tolerance(const Scene& scene, const Simulation& s) {
+  if (scene.run.mode != RunOptions::Mode::relax) return;
+  std::vector<PointLoad> loads;
+  point_loads(s.loads(), s.state(), s.state().time, loads);
+  double largest = 0;
+  for (const PointLoad& load : loads)
+    largest = std::max({largest, load.force.norm(),
+                        load.torque.norm() / s.topology().type_of_element(load.element).radius});
+  if (largest > 0 && scene.run.goal.force >= largest)
+    throw InputError({scene.path, 0, "run.force_tolerance_nN"},
+                     fmt::format("{:.3g} nN are not less than the largest load on an element, {:.3g} nN: the start "
+                                 "would pass as relaxed",
+                                 scene.run.goal.force / units::nN_nm, largest / units::nN_nm),
+                     fmt::format("take at most {:.1g}", 0.01 * largest / units::nN_nm));
 }
 
 // What the simulator would stop in the first step, whatever comes afterwards.
@@ -106,7 +149,7 @@ void refuse_first_step(const Scene& scene, const Simulation& s) {
       kicked.angular_velocity.add(i, 0.5 * dt / type.inertia * s.forces().torque[i]);
     }
   }
-  constrain(topology, s.loads(), kicked.time, s.forces(), 0.5 * dt, kicked);
+  constrain(topology, s.loads(), kicked.time, 0.5 * dt, kicked);
   for (std::size_t i = 0; i < kicked.size(); ++i) {
     const double moved = dt * kicked.velocity[i].norm(), turned = dt * kicked.angular_velocity[i].norm();
     if (moved >= farthest || turned >= MotionBound::turn)
@@ -198,7 +241,7 @@ Prepared prepare(Scene& scene) {
   if (scene.thermostat) out.stepping.thermostat = make_thermostat(*scene.thermostat);
   out.time_step = chosen_step(scene, out.limit) * out.stepping.contact_every;
   out.duration = scene.run.duration;
-  if (out.duration <= 0 && scene.twist) out.duration = scene.twist->ramp_time() + scene.twist->hold;
+  if (out.duration <= 0) out.duration = protocol_time(scene);
   if (out.duration / out.time_step > max_steps)
     throw InputError({scene.path, 0, "run"},
                      fmt::format("{:.4g} ps in steps of {:.4g} fs are {:.1g} steps", out.duration,
@@ -206,12 +249,27 @@ Prepared prepare(Scene& scene) {
                      fmt::format("at most {:.0g} can be counted; take a larger step or a shorter run", max_steps));
   refuse_overlaps(scene, out);
   refuse_moment(scene, out);
+  refuse_grips(scene, out);
   return out;
+}
+
+EndElements ends_of(const LoadsAndConstraints& loads, const Topology& topology) {
+  EndElements held;
+  for (const GripLoad* grip : loads.of<GripLoad>()) {
+    std::vector<int>& elements = held[grip->end == GripLoad::End::upper ? upper_end : lower_end];
+    elements.insert(elements.end(), grip->elements.begin(), grip->elements.end());
+  }
+  EndElements ends = tube_ends(topology);
+  for (const End end : {lower_end, upper_end})
+    if (!held[end].empty()) ends[end] = held[end];
+  return ends;
 }
 
 Simulation start(const Scene& scene, const Prepared& p) {
   Simulation simulation(p.topology, p.interaction, p.loads, p.state, p.time_step, scene.contact.skin, p.stepping);
+  simulation.set_gauges(ends_of(p.loads, p.topology), p.state);
   refuse_first_step(scene, simulation);
+  refuse_loose_tolerance(scene, simulation);
   return simulation;
 }
 

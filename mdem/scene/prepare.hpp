@@ -42,6 +42,9 @@ std::vector<std::string> warmth_of(const Scene& scene, const Prepared& prepared)
 
 // The simulation of a prepared scene, with the scene's list skin. Throws InputError where its first step would end
 // the run, or a bond slips already.
+// The elements at both ends: those in grips, or else the first and last of every tube.
+EndElements ends_of(const LoadsAndConstraints& loads, const Topology& topology);
+
 Simulation start(const Scene& scene, const Prepared& prepared);
 
 }  // namespace ropewalk

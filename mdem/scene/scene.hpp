@@ -13,6 +13,7 @@
 #include "model/parameters.hpp"
 #include "observe/limits.hpp"
 #include "scene/kinds/scene_kind.hpp"
+#include "scene/loads/grip.hpp"
 #include "scene/loads/load_kind.hpp"
 #include "scene/loads/twist.hpp"
 #include "sim/dynamics/relax_goal.hpp"
@@ -51,7 +52,7 @@ struct RunOptions {
   double time_step = 0;  // ps, of bonds; 0: chosen from the stiffest mode
   Stepping stepping;
   double mass_scale = 1;         // of masses and inertias
-  double duration = 0;           // ps; 0 with [twist]: ramp plus hold
+  double duration = 0;           // ps; 0: until [twist] and the schedules of all grips end
   double frames_every = 0;       // ps; 0: 40 frames
   double log_every = 0;          // ps; 0: 400 rows
   double checkpoint_every = 60;  // s of wall time
@@ -82,6 +83,7 @@ struct Scene {
   ContactOptions contact;
   Damping damping;
   std::vector<SceneLoad> loads;
+  std::vector<SceneGrip> grips;
   std::optional<TwistLoad> twist;
   std::optional<ThermostatOptions> thermostat;
   RunOptions run;

@@ -81,6 +81,12 @@ Interaction interaction_of(const Scene& scene) {
   return in;
 }
 
+double protocol_time(const Scene& scene) {
+  double last = scene.twist ? scene.twist->ramp_time() + scene.twist->hold : 0.0;
+  for (const SceneGrip& grip : scene.grips) last = std::max(last, grip.grip->ends());
+  return last;
+}
+
 LoadsAndConstraints loads_of(const Scene& scene, const Topology& topology) {
   LoadsAndConstraints loads;
   for (const SceneLoad& typed : scene.loads) {
@@ -88,6 +94,7 @@ LoadsAndConstraints loads_of(const Scene& scene, const Topology& topology) {
     load->elements = selected_elements(scene, typed.on, topology);
     loads.add(std::shared_ptr<const Load>(load));
   }
+  for (const SceneGrip& grip : scene.grips) loads.add(grip_of(scene, grip, topology));
   if (scene.twist) add_twist(*scene.twist, topology, loads);
   return loads;
 }

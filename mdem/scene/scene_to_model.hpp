@@ -41,6 +41,9 @@ std::shared_ptr<const ContactLaw> contact_law(const Scene& scene);
 // The reach of the contact viscosity must be set (build() does so).
 Interaction interaction_of(const Scene& scene);
 
+// ps, from when on neither [twist] nor the schedule of a grip changes anything.
+double protocol_time(const Scene& scene);
+
 // Throws InputError for loads on elements that do not exist.
 LoadsAndConstraints loads_of(const Scene& scene, const Topology& topology);
 

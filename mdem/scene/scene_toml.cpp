@@ -7,6 +7,7 @@
 #include "io/files.hpp"
 #include "io/toml_table.hpp"
 #include "scene/laws/contact_law_kind.hpp"
+#include "scene/scene_to_model.hpp"
 #include "scene/tables/tables.hpp"
 
 namespace ropewalk {
@@ -24,22 +25,33 @@ void check_contact_law(const TomlTable& top, const Scene& scene) {
   if (kind->check) kind->check(top, scene);
 }
 
+// Grips that are said twice.
+void check_grips(const TomlTable& top, const Scene& scene) {
+  if (scene.twist && !scene.grips.empty())
+    throw top.error("twist", "stands beside [[grip]], and both say what the ends do",
+                    "write the moment into a grip: as = \"each\", about_z = { torque_nN_nm = 35, rate_nN_nm_per_ps = 1 }");
+}
+
 void check_run(const TomlTable& top, const Scene& scene) {
   if (scene.run.mode == RunOptions::Mode::relax) {
     if (scene.twist)
       throw top.error("twist", "a ramp needs time, and run.mode is \"relax\"",
                       "take mode = \"dynamics\", or a [[load]] of kind \"torque\"");
-    for (const SceneLoad& load : scene.loads)
-      if (!load.load->needs_time().empty())
-        throw top.error("load", load.load->needs_time() + ", and run.mode is \"relax\"",
-                        "take mode = \"dynamics\"");
+    const auto refuse = [&](const char* table, const Load& load) {
+      if (!load.needs_time().empty())
+        throw top.error(table, load.needs_time() + ", and run.mode is \"relax\"", "take mode = \"dynamics\"");
+    };
+    for (const SceneLoad& load : scene.loads) refuse("load", *load.load);
+    for (const SceneGrip& grip : scene.grips) refuse("grip", *grip.grip);
     return;
   }
-  const double protocol = scene.twist ? scene.twist->ramp_time() + scene.twist->hold : 0.0;
+  const double protocol = protocol_time(scene);
   if (scene.run.duration <= 0 && protocol <= 0)
     throw top.table("run").error("duration_ps", "is missing",
-                                 scene.twist ? "ramp and hold of [twist] last no time; give a duration"
-                                             : "a run without [twist] needs it: duration_ps = 100");
+                                 scene.twist || !scene.grips.empty()
+                                     ? "ramp and hold of [twist] and the schedules of grips last no time; give a "
+                                       "duration"
+                                     : "a run without [twist] or a [[grip]] that moves needs it: duration_ps = 100");
 }
 
 // What does not go with a thermostat.
@@ -77,6 +89,7 @@ void read_tables(const TomlTable& top, Scene& scene) {
   check_contact_law(top, scene);
   scene.damping = damping_table().read(top.table("damping"), scene);
   for (const TomlTable& t : top.tables("load")) scene.loads.push_back(read_load(t, scene));
+  for (const TomlTable& t : top.tables("grip")) scene.grips.push_back(read_grip(t, scene));
   if (top.has("thermostat")) scene.thermostat = thermostat_table().read(top.table("thermostat"), scene);
   if (top.has("twist")) scene.twist = twist_table().read(top.table("twist"), scene);
   scene.run = run_table().read(top.table("run"), scene);
@@ -101,6 +114,7 @@ Scene scene_of_text(const std::string& text, const std::string& path, const std:
   Scene scene = table.read(top, file);
   read_tables(top, scene);
   top.finish(belongs_to);
+  check_grips(top, scene);
   check_run(top, scene);
   check_thermostat(top, scene);
   return scene;

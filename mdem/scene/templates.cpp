@@ -28,13 +28,75 @@ std::vector<Block> twisted_rope(const char* length, std::map<std::string, std::s
           {"twist", std::move(twist)}};
 }
 
+std::map<std::string, std::string> calibrated() { return {{"parameters", "\"cnt-10-10-tersoff\""}}; }
+
+Block rope_of(const char* tubes, const char* length) { return {"rope", {{"tubes", tubes}, {"length_nm", length}}}; }
+
+Block grip(const char* end, std::map<std::string, std::string> set = {}) {
+  set["end"] = std::string("\"") + end + "\"";
+  return {"grip", std::move(set)};
+}
+
 std::vector<Recipe> recipes() {
   return {
-      {"rope", "91 tubes of 67.8 nm twisted into a spindle (Wang et al. 2015, Fig. 2)",
+      {"rope", "91 tubes of 67.8 nm in a torsion machine: turned by 100 degrees at fixed length",
+       {{"", calibrated()},
+        rope_of("91", "67.8"),
+        grip("lower"),
+        grip("upper", {{"about_z", "{ rotation_deg = [[0, 0], [100, 100], [130, 100]] }"}})}},
+      {"constant-tension", "37 tubes of 67.8 nm, pulled with 200 nN and turned: how much does the rope contract?",
+       {{"", calibrated()},
+        rope_of("37", "67.8"),
+        grip("lower"),
+        grip("upper", {{"z", "{ force_nN = 200, rate_nN_per_ps = 4 }"},
+                       {"about_z", "{ rotation_deg = [[0, 0], [50, 0], [250, 150], [300, 150]] }"}})}},
+      {"loop", "37 tubes of 67.8 nm turned at fixed length, held, turned back and held: what is lost?",
+       {{"", calibrated()},
+        rope_of("37", "67.8"),
+        grip("lower"),
+        grip("upper", {{"about_z", "{ rotation_deg = [[0, 0], [200, 150], [250, 150], [450, 0], [500, 0]] }"}})}},
+      {"pull-out", "7 tubes of 40.7 nm: the centre tube is drawn out of the rope by 10 nm",
+       {{"", calibrated()},
+        rope_of("7", "40.7"),
+        grip("lower", {{"tubes", "[1, 2, 3, 4, 5, 6]"}}),
+        {"damping", {{"contact_viscosity_eV_ps_per_nm2", "0.1"}}},
+        grip("upper", {{"tubes", "[0]"}, {"z", "{ displacement_nm = 10, rate_nm_per_ps = 0.02 }"}})}},
+      {"pull-out-outer", "7 tubes of 40.7 nm: an outer tube is drawn along the rope by 10 nm",
+       {{"", calibrated()},
+        rope_of("7", "40.7"),
+        grip("lower", {{"tubes", "[0, 2, 3, 4, 5, 6]"}}),
+        {"damping", {{"contact_viscosity_eV_ps_per_nm2", "0.1"}}},
+        grip("upper", {{"tubes", "[1]"}, {"z", "{ displacement_nm = 10, rate_nm_per_ps = 0.02 }"}})}},
+      {"load-transfer", "19 tubes of 67.8 nm: the seven inner ones are pulled, the twelve outer ones are held below",
+       {{"", calibrated()},
+        rope_of("19", "67.8"),
+        grip("lower", {{"tubes", "[7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18]"}}),
+        grip("upper", {{"tubes", "[0, 1, 2, 3, 4, 5, 6]"}, {"z", "{ displacement_nm = 2, rate_nm_per_ps = 0.01 }"}})}},
+      {"bend", "37 tubes of 67.8 nm bent by 20 degrees between two clamps, one of which may slide",
+       {{"", calibrated()},
+        rope_of("37", "67.8"),
+        grip("lower", {{"about_y", "{ rotation_deg = -10, rate_deg_per_ps = 0.1 }"}}),
+        grip("upper", {{"x", "\"free\""}, {"z", "\"free\""}, {"about_y", "{ rotation_deg = 10, rate_deg_per_ps = 0.1 }"}}),
+        {"run", {{"duration_ps", "200"}}}}},
+      {"hot-chain", "one free tube of 67.8 nm in a bath of 300 K",
+       {{"", calibrated()},
+        {"chain", {{"elements", "50"}}},
+        {"contact", {{"law", "\"none\""}}},
+        {"start", {{"temperature_K", "300"}}},
+        {"thermostat", {{"temperature_K", "300"}, {"coupling_per_ps", "0.05"}}},
+        {"damping", {{"contact_viscosity_eV_ps_per_nm2", "0"}, {"bond_damping_per_ps", "0"}}},
+        {"run", {{"duration_ps", "5000"}}}}},
+      {"spindle",
+       "91 tubes of 67.8 nm twisted into a spindle (Wang et al. 2015, Fig. 2); real tubes collapse under this moment "
+       "(limits.wall_twist)",
        twisted_rope("67.8", {{"moment_nN_nm", "35"}, {"rate_nN_nm_per_ps", "1.0"}, {"hold_ps", "100"}})},
-      {"bird-cage", "91 tubes of 41 nm: a void opens inside, the bird cage (Fig. 3a)",
+      {"bird-cage",
+       "91 tubes of 41 nm: a void opens inside, the bird cage (Fig. 3a); real tubes collapse under this moment "
+       "(limits.wall_twist)",
        twisted_rope("41", {{"moment_nN_nm", "35"}, {"rate_nN_nm_per_ps", "1.0"}, {"hold_ps", "200"}})},
-      {"helix", "91 tubes of 163 nm that buckle into a helix (Fig. 4)",
+      {"helix",
+       "91 tubes of 163 nm that buckle into a helix (Fig. 4); real tubes collapse under this moment "
+       "(limits.wall_twist)",
        twisted_rope("163", {{"moment_nN_nm", "32"}, {"rate_nN_nm_per_ps", "0.68"}, {"hold_ps", "700"}})},
       {"geometric", "91 tubes of 41 nm under geometric twist alone (Fig. 3b)",
        twisted_rope("41", {{"moment_nN_nm", "12"},

@@ -81,7 +81,7 @@ TEST_F(Cli, EveryTemplateIsWrittenAndPassesItsCheck) {
 
 // The scenes that the documentation speaks of are the templates.
 TEST_F(Cli, ShippedScenesAreTheTemplates) {
-  for (const auto& [kind, name] : {std::pair{"rope", "rope-67nm"}, std::pair{"bird-cage", "bird-cage-41nm"},
+  for (const auto& [kind, name] : {std::pair{"rope", "rope-67nm"}, std::pair{"spindle", "spindle-67nm"}, std::pair{"bird-cage", "bird-cage-41nm"},
                                    std::pair{"helix", "helix-163nm"}, std::pair{"geometric", "geometric-41nm"}}) {
     ASSERT_EQ(run(std::string("new ") + name + " --kind " + kind).code, 0);
     EXPECT_EQ(slurp(dir / (std::string(name) + ".toml")),
@@ -481,7 +481,7 @@ TEST_F(Cli, ResumeRefusesALogOfOtherColumns) {
   const Outcome o = run("resume d");
   EXPECT_EQ(o.code, 2);
   EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << o.err;
-  EXPECT_NE(o.err.find("log.csv:1: column 14 of the header is \"beta_rad\", \"beta_deg\" is needed"),
+  EXPECT_NE(o.err.find("log.csv:1: column 38 of the header is \"beta_rad\", \"beta_deg\" is needed"),
             std::string::npos)
       << o.err;
   EXPECT_EQ(slurp(dir / "d/log.csv"), log) << "nothing is written";
@@ -522,10 +522,10 @@ TEST_F(Cli, SignalsWriteACheckpoint) {
 }
 
 TEST_F(Cli, BlowUpStopsWithAWrittenState) {
-  // A moment that comes within a few steps.
+  // Tangential forces that come within a few steps: a couple of this size is refused before the start.
   spit(dir / "s.toml",
        "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-paper\"\n[rope]\ntubes = 7\nlength_nm = 13.56\n"
-       "[twist]\nmoment_nN_nm = 4000\nrate_nN_nm_per_ps = 50000\nhold_ps = 2\n");
+       "[twist]\napplication = \"tangential\"\nmoment_nN_nm = 20000\nrate_nN_nm_per_ps = 50000\nhold_ps = 2\n");
   const Outcome o = run("run s.toml --out d");
   EXPECT_EQ(o.code, 3);
   EXPECT_TRUE(std::regex_search(o.err, std::regex("step [0-9]+, element [0-9]+"))) << o.err;
@@ -629,7 +629,7 @@ TEST_F(Cli, BenchKnowsScenesByName) {
   EXPECT_FALSE(paper.contains("spans_per_element"));
   EXPECT_EQ(run("bench film-1e9").code, 2);
   EXPECT_EQ(run("bench film-1e3 --after -1").code, 2);
-  EXPECT_EQ(run("bench --law paper " ROPEWALK_SOURCE_DIR "/data/scenes/rope-67nm.toml").code, 2);
+  EXPECT_EQ(run("bench --law paper " ROPEWALK_SOURCE_DIR "/data/scenes/spindle-67nm.toml").code, 2);
 }
 
 TEST_F(Cli, BenchMeasuresASceneLaterThanAtItsStart) {

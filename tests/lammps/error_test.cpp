@@ -94,7 +94,7 @@ TEST_F(LammpsErrors, ShortGhostCutoffIsRefused) {
 TEST_F(LammpsErrors, BlowUpAndSlipStopTheRun) {
   exported(
       "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-paper\"\n[rope]\ntubes = 7\nlength_nm = 13.56\n"
-      "[twist]\nmoment_nN_nm = 2000\nrate_nN_nm_per_ps = 2000\n[run]\nduration_ps = 5\n",
+      "[twist]\nmoment_nN_nm = 234\nrate_nN_nm_per_ps = 20\n[run]\nduration_ps = 30\n",
       "out");
   const Outcome o = lmp(2, "out");
   EXPECT_NE(o.code, 0);

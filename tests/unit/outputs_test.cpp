@@ -6,6 +6,7 @@
 #include "io/frames.hpp"
 #include "io/limits_file.hpp"
 #include "io/manifest.hpp"
+#include "io/tube_table.hpp"
 #include "observe/observables.hpp"
 #include "outputs_page.hpp"
 #include "run/run_directory.hpp"
@@ -20,6 +21,7 @@ using test::outputs_table;
 TEST(OutputsPage, HasTheTablesOfTheCode) {
   EXPECT_EQ(outputs_table("The directory of a run"), run_files_markdown());
   EXPECT_EQ(outputs_table("`log.csv`"), observables_markdown());
+  EXPECT_EQ(outputs_table("`observe --tubes`"), columns_markdown(tube_columns()));
   EXPECT_EQ(outputs_table("`frames.lammpstrj`"), columns_markdown(frame_columns()));
   EXPECT_EQ(outputs_table("`paraview/frame-*.vtp`"), columns_markdown(vtp_arrays()));
   EXPECT_EQ(outputs_table("`state.csv`, `final.csv` and `failed-state.csv`"), columns_markdown(state_columns()));

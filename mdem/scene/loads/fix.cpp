@@ -36,7 +36,7 @@ LoadKind fix_kind() {
                              check});
 }
 
-void FixLoad::constrain(const Topology&, double, const Forces&, double, State& state, double&) const {
+void FixLoad::constrain(const Topology&, double, double, State& state) const {
   for (const int e : elements) {
     const auto i = static_cast<std::size_t>(e);
     if (x) state.velocity.x[i] = 0;

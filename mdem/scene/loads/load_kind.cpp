@@ -77,12 +77,6 @@ std::vector<int> read_indices(const TomlTable& t, const char* key, const char* w
   return {indices.begin(), indices.end()};
 }
 
-void read_tubes(const TomlTable& t, const Scene& scene, Selection& on) {
-  on.all_tubes = !t.has("tubes") || (t.is_string("tubes") && t.word("tubes", Words<bool>{{"all", true}}));
-  const Source::Sizes sizes = scene.source->sizes(scene.element_length);
-  if (!on.all_tubes) on.tubes = read_indices(t, "tubes", "tube", 0, sizes.tubes);
-}
-
 void read_elements(const TomlTable& t, const Scene& scene, Selection& on) {
   const Source::Sizes sizes = scene.source->sizes(scene.element_length);
   if (!t.is_string("elements")) {
@@ -106,6 +100,14 @@ KeyTable<Selection> selection_table() {
           {}};
 }
 
+}  // namespace
+
+void read_tubes(const TomlTable& t, const Scene& scene, Selection& on) {
+  on.all_tubes = !t.has("tubes") || (t.is_string("tubes") && t.word("tubes", Words<bool>{{"all", true}}));
+  const Source::Sizes sizes = scene.source->sizes(scene.element_length);
+  if (!on.all_tubes) on.tubes = read_indices(t, "tubes", "tube", 0, sizes.tubes);
+}
+
 std::vector<int> selected_tubes(const Scene& scene, const Selection& on, const Topology& topology) {
   std::vector<int> tubes;
   if (on.all_tubes) {
@@ -120,8 +122,6 @@ std::vector<int> selected_tubes(const Scene& scene, const Selection& on, const T
   }
   return tubes;
 }
-
-}  // namespace
 
 const std::vector<LoadKind>& load_kinds() { return all_kinds(); }
 

@@ -66,7 +66,11 @@ struct SceneLoad {
 // One [[load]]. The source of the elements must have been read.
 SceneLoad read_load(const TomlTable& t, const Scene& scene);
 
-// Throws InputError for elements that do not exist.
+// The key `tubes`.
+void read_tubes(const TomlTable& t, const Scene& scene, Selection& on);
+
+// Both throw InputError for what does not exist.
+std::vector<int> selected_tubes(const Scene& scene, const Selection& on, const Topology& topology);
 std::vector<int> selected_elements(const Scene& scene, const Selection& on, const Topology& topology);
 
 }  // namespace ropewalk

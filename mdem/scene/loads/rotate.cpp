@@ -53,19 +53,8 @@ void PrescribedRotation::set_velocities(double time, std::size_t i, State& state
   state.angular_velocity.set(i, w);
 }
 
-// The kinetic energy is prescribed: what the other forces did not give, the constraint gave.
-void PrescribedRotation::constrain(const Topology& topology, double time, const Forces& total, double kick,
-                                   State& state, double& work) const {
-  for (const int e : elements) {
-    const auto i = static_cast<std::size_t>(e);
-    const TubeType& type = topology.type_of_element(e);
-    const Vector3 dv = kick / type.mass * total.force[i], dw = kick / type.inertia * total.torque[i];
-    const Vector3 v0 = state.velocity[i] - dv, w0 = state.angular_velocity[i] - dw;
-    set_velocities(time, i, state);
-    const Vector3 v1 = state.velocity[i], w1 = state.angular_velocity[i];
-    // Free components satisfy v1 - v0 = dv and drop out.
-    work += 0.5 * type.mass * (v1 - v0 - dv).dot(v1 + v0) + 0.5 * type.inertia * (w1 - w0 - dw).dot(w1 + w0);
-  }
+void PrescribedRotation::constrain(const Topology&, double time, double, State& state) const {
+  for (const int e : elements) set_velocities(time, static_cast<std::size_t>(e), state);
 }
 
 }  // namespace ropewalk

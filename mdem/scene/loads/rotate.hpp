@@ -22,12 +22,12 @@ class PrescribedRotation : public Load {
                      bool free_spin = false)
       : Load(std::move(on)), rate(turn_rate), angle(last_angle), axial_free(free_axial), spin_free(free_spin) {}
 
-  double speed(double time) const { return std::fabs(rate * time) < std::fabs(angle) ? rate : 0.0; }
+  double ends() const override { return rate != 0 ? angle / rate : 0.0; }
+  double speed(double time) const { return time >= 0 && std::fabs(rate * time) < std::fabs(angle) ? rate : 0.0; }
 
   std::shared_ptr<Load> copy() const override { return std::make_shared<PrescribedRotation>(*this); }
   Order order() const override { return Order::prescribed_motion; }
-  void constrain(const Topology&, double time, const Forces& total, double kick, State&,
-                 double& work) const override;
+  void constrain(const Topology&, double time, double ahead, State&) const override;
   std::string needs_time() const override { return "a rotation needs time"; }
   std::optional<LoadEffect> effect() const override;
 

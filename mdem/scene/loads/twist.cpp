@@ -88,7 +88,7 @@ void TwistLoad::add_forces(const State& state, double time, std::vector<PointLoa
 
 // Taking the velocity of the centre of mass from every element does no work on the others; a mean of another weight
 // would.
-void TwistLoad::constrain(const Topology& topology, double, const Forces&, double, State& state, double&) const {
+void TwistLoad::constrain(const Topology& topology, double, double, State& state) const {
   if (lateral_free && axial_free) return;
   Vector3 mean = Vector3::Zero();
   double mass = 0;

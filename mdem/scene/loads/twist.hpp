@@ -32,7 +32,7 @@ class TwistLoad : public Load {
   std::shared_ptr<Load> copy() const override { return std::make_shared<TwistLoad>(*this); }
   Order order() const override { return Order::grip; }
   void add_forces(const State&, double time, std::vector<PointLoad>& out) const override;
-  void constrain(const Topology&, double time, const Forces&, double kick, State&, double& work) const override;
+  void constrain(const Topology&, double time, double ahead, State&) const override;
   double spin_relaxation_interval() const override { return geometric_only ? increment : 0.0; }
   // For the middle of the grip, its mean velocity or the number of its elements.
   bool needs_all_elements() const override {

@@ -70,7 +70,7 @@ const KeyTable<RunOptions>& run_table() {
        Key::number("mass_scale", unit::none, Bounds::range(1e-3, 1e6), &R::mass_scale, standard(),
                    "masses times this: steps grow and waves slow down by its root, kinetic energies at a given "
                    "speed grow by it and at a given temperature stay; statics stay"),
-       Key::number("duration_ps", unit::ps, time, &R::duration, otherwise("100", "ramp and hold of [twist]"),
+       Key::number("duration_ps", unit::ps, time, &R::duration, otherwise("100", "until [twist] and all grips have done what they do"),
                    "dynamics: simulated time"),
        Key::number("frames_every_ps", unit::ps, time, &R::frames_every, otherwise("1", "40 frames"),
                    "time between stored frames"),

@@ -11,7 +11,7 @@
 namespace ropewalk {
 namespace {
 
-constexpr char magic[8] = "MDEM9";
+constexpr char magic[8] = "MDEM10";
 
 struct CheckpointHead {
   char format[sizeof magic];
@@ -101,6 +101,7 @@ void Simulation::visit_checkpoint(Archive& archive, Self& self, List& list) {
   archive(s.time);
   archive(s.step);
   archive(self.account_);
+  archive(self.gauges_.sums);
   archive(self.list_age_);
   archive(list.skin);
   archive(list.twist);

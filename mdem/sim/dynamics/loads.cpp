@@ -38,11 +38,46 @@ double load_power(const std::vector<PointLoad>& loads, const State& state) {
   return power;
 }
 
-double constrain(const Topology& topology, const LoadsAndConstraints& loads, double time, const Forces& total,
-                 double kick, State& state) {
-  double work = 0;
-  for (const auto& load : loads) load->constrain(topology, time, total, kick, state, work);
-  return work;
+void constrain(const Topology& topology, const LoadsAndConstraints& loads, double time, double ahead, State& state) {
+  for (const auto& load : loads) load->constrain(topology, time, ahead, state);
+}
+
+// The velocity was v0, the other forces alone would have made it v0 + dv, and now it is v1: the constraint gave
+// m (v1 - v0 - dv) at the mean velocity (v0 + v1)/2. The sum of all work is exact.
+void constrain(const Topology& topology, const LoadsAndConstraints& loads, const std::vector<int>& elements,
+               double time, double ahead, const Forces& total, double kick, State& state,
+               std::vector<ConstraintImpulse>& out) {
+  out.clear();
+  for (const int e : elements) {
+    const auto i = static_cast<std::size_t>(e);
+    out.push_back({e, state.velocity[i], state.angular_velocity[i], 0});
+  }
+  constrain(topology, loads, time, ahead, state);
+  for (ConstraintImpulse& c : out) {
+    const auto i = static_cast<std::size_t>(c.element);
+    const TubeType& type = topology.type_of_element(c.element);
+    const Vector3 v1 = state.velocity[i], w1 = state.angular_velocity[i];
+    const Vector3 v0 = c.linear - kick / type.mass * total.force[i],
+                  w0 = c.angular - kick / type.inertia * total.torque[i];
+    c.linear = type.mass * (v1 - c.linear);
+    c.angular = type.inertia * (w1 - c.angular);
+    c.work = 0.5 * (c.linear.dot(v0 + v1) + c.angular.dot(w0 + w1));
+  }
+}
+
+std::vector<ConstraintImpulse> reactions_at_rest(const Topology& topology, const LoadsAndConstraints& loads,
+                                                 const std::vector<int>& elements, const Forces& total,
+                                                 const State& state) {
+  State accelerated = state;
+  for (const int e : elements) {
+    const auto i = static_cast<std::size_t>(e);
+    const TubeType& type = topology.type_of_element(e);
+    accelerated.velocity.set(i, total.force[i] / type.mass);
+    accelerated.angular_velocity.set(i, total.torque[i] / type.inertia);
+  }
+  std::vector<ConstraintImpulse> out;
+  constrain(topology, loads, elements, before_all_motion, 0, total, 0, accelerated, out);
+  return out;
 }
 
 void relax_spins(const Topology& topology, State& state) {

@@ -41,10 +41,8 @@ class Load {
 
   // Appends the forces and torques at this time.
   virtual void add_forces(const State&, double /*time*/, std::vector<PointLoad>&) const {}
-  // Sets the constrained velocity components after a kick of duration `kick` by the forces `total`. Adds the work
-  // (eV) that the constraint did on the elements, which is zero where they are held at rest.
-  virtual void constrain(const Topology&, double /*time*/, const Forces& /*total*/, double /*kick*/, State&,
-                         double& /*work*/) const {}
+  // Sets the constrained velocity components. `ahead` (ps) is half of the drift with these velocities.
+  virtual void constrain(const Topology&, double /*time*/, double /*ahead*/, State&) const {}
 
   // ps between relaxations of all spins (relax_spins); 0: never.
   virtual double spin_relaxation_interval() const { return 0; }
@@ -54,6 +52,8 @@ class Load {
   virtual std::string needs_time() const { return ""; }
   // None where it cannot be said beforehand.
   virtual std::optional<LoadEffect> effect() const { return std::nullopt; }
+  // ps, from when on nothing changes any more.
+  virtual double ends() const { return 0; }
 
  protected:
   explicit Load(std::vector<int> on = {}) : elements(std::move(on)) {}
@@ -97,9 +97,31 @@ void point_loads(const LoadsAndConstraints& loads, const State& state, double ti
 // Work per time of these loads at the present velocities, eV/ps.
 double load_power(const std::vector<PointLoad>& loads, const State& state);
 
-// Applies all constraints (Load::constrain). Returns their work, eV.
-double constrain(const Topology& topology, const LoadsAndConstraints& loads, double time, const Forces& total,
-                 double kick, State& state);
+// Applies all constraints (Load::constrain).
+void constrain(const Topology& topology, const LoadsAndConstraints& loads, double time, double ahead, State& state);
+
+// A time at which no prescribed motion has begun: constraints let nothing move but what is free.
+inline constexpr double before_all_motion = -1;  // ps
+
+// What the constraints gave to an element in a kick.
+struct ConstraintImpulse {
+  int element = 0;
+  Vector3 linear = Vector3::Zero();   // eV ps/nm
+  Vector3 angular = Vector3::Zero();  // eV ps, about its centre
+  double work = 0;                    // eV; zero where it is held at rest
+};
+
+// The same after a kick by the forces `total`, with what the constraints gave to each of `elements`, which must be
+// all that they act on.
+void constrain(const Topology& topology, const LoadsAndConstraints& loads, const std::vector<int>& elements,
+               double time, double ahead, const Forces& total, double kick, State& state,
+               std::vector<ConstraintImpulse>& out);
+
+// What the constraints hold `elements` back with against the forces `total`, where nothing moves: forces and torques
+// in the place of impulses (eV/nm, eV).
+std::vector<ConstraintImpulse> reactions_at_rest(const Topology& topology, const LoadsAndConstraints& loads,
+                                                 const std::vector<int>& elements, const Forces& total,
+                                                 const State& state);
 
 // Turns every element about its own axis such that no bond is twisted, keeping the middle element of each
 // tube and all tube axes, and takes away the spin velocities: the exact minimum of the twist energy over the

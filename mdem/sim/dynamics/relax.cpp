@@ -72,7 +72,7 @@ Simulation::Motion Simulation::free_accelerations(const Motion& forces) const {
     free.velocity.set(i, forces.linear[i] / type.mass);
     free.angular_velocity.set(i, forces.angular[i] / type.inertia);
   });
-  constrain(topology_, loads_, state_.time, forces_, 0.0, free);
+  constrain(topology_, loads_, before_all_motion, 0.0, free);
   return {free.velocity, free.angular_velocity};
 }
 
@@ -233,7 +233,7 @@ bool Simulation::relax(double tolerance, long max_steps, const std::function<boo
         state_.angular_velocity.add(i, dt / type.inertia * forces_.torque[i]);
       }
     }
-    constrain(topology_, loads_, state_.time, forces_, 0.0, state_);
+    constrain(topology_, loads_, state_.time, 0.0, state_);
     for (std::size_t i = 0; i < n; ++i) {
       v2 += state_.velocity[i].squaredNorm() + scale2 * state_.angular_velocity[i].squaredNorm();
       f2 += forces_.force[i].squaredNorm() + forces_.torque[i].squaredNorm() / scale2;
@@ -246,7 +246,7 @@ bool Simulation::relax(double tolerance, long max_steps, const std::function<boo
       state_.velocity.set(i, (1 - mix) * state_.velocity[i] + turn * forces_.force[i]);
       state_.angular_velocity.set(i, (1 - mix) * state_.angular_velocity[i] + turn / scale2 * forces_.torque[i]);
     }
-    constrain(topology_, loads_, state_.time, forces_, 0.0, state_);
+    constrain(topology_, loads_, state_.time, 0.0, state_);
     for (std::size_t i = 0; i < n; ++i)
       fastest2 =
           std::max(fastest2, state_.velocity[i].squaredNorm() + scale2 * state_.angular_velocity[i].squaredNorm());

@@ -57,6 +57,8 @@ Simulation::Simulation(Topology topology, Interaction interaction, LoadsAndConst
       state_(std::move(state)),
       time_step_(time_step),
       stepping_(std::move(stepping)),
+      loaded_(loaded_elements(loads_)),
+      gauges_(topology_, tube_ends(topology_), state_),
       parts_(topology_),
       tunes_skin_(!(skin > 0)),
       list_(interaction_, skin > 0 ? skin : default_skin(interaction_)),
@@ -68,7 +70,7 @@ Simulation::Simulation(Topology topology, Interaction interaction, LoadsAndConst
   refuse_not_finite(state_);
   list_.build(topology_, state_);
   compute();
-  constrain(topology_, loads_, state_.time, forces_, 0.0, state_);
+  constrain(topology_, loads_, state_.time, 0.0, state_);
 }
 
 // --- what a step is made of ---------------------------------------------------------------------------
@@ -105,11 +107,13 @@ struct Simulation::TwoLevels {
     s.update_list();
     const Vec3Array velocity = s.state_.velocity, angular_velocity = s.state_.angular_velocity;
     const double work = s.account_.work;
+    const Gauges::Sums sums = s.gauges_.sums;
     kick_by_contact(0.5 * dt);
     s.compute_contact(energies);
     s.state_.velocity = velocity;
     s.state_.angular_velocity = angular_velocity;
     s.account_.work = work;
+    s.gauges_.sums = sums;
     s.add_levels();
     s.check_forces(energies);
     s.account_.dissipated -= dt * s.contact_.damping_power;
@@ -149,14 +153,21 @@ void Simulation::kick(const Forces& forces, double dt) {
       kick_elements(forces.torque, dt / type.inertia, state_.angular_velocity, of.begin, of.end);
     }
   }
-  account_.work += constrain(topology_, loads_, state_.time, forces, dt, state_);
+  if (loads_.empty()) return;
+  constrain(topology_, loads_, loaded_, state_.time, 0.5 * inner_step(), forces, dt, state_, impulses_);
+  for (const ConstraintImpulse& c : impulses_) account_.work += c.work;
+  gauges_.add_constraints(state_, impulses_);
 }
 
 // `forces` includes the loads. Their work is exact: the mean power before and after the kick, times dt.
 void Simulation::kick_with_loads(const Forces& forces, double dt) {
-  account_.work += 0.5 * dt * load_power(point_loads_, state_);
+  const auto half = [&] {
+    account_.work += 0.5 * dt * load_power(point_loads_, state_);
+    gauges_.add_loads(state_, point_loads_, 0.5 * dt);
+  };
+  half();
   kick(forces, dt);
-  account_.work += 0.5 * dt * load_power(point_loads_, state_);
+  half();
 }
 
 // Blocks with a velocity that is not finite stay where they are.
@@ -171,6 +182,7 @@ void Simulation::move(double dt) {
 void Simulation::drift(double dt) {
   move(dt);
   state_.time += dt;
+  gauges_.follow(state_);
   const MotionBound bound(topology_.largest_radius(), time_step_);
   if (std::all_of(fastest_.begin(), fastest_.end(), [&](const Fastest& f) { return bound.holds(f); })) return;
   int broken = 0;
@@ -182,7 +194,7 @@ void Simulation::drift(double dt) {
 void Simulation::exchange_heat(double dt) {
   const double before = kinetic_energy(topology_, state_);
   stepping_.thermostat->apply(topology_, dt, state_);
-  constrain(topology_, loads_, state_.time, forces_, 0.0, state_);
+  constrain(topology_, loads_, state_.time, 0.0, state_);
   account_.heat += kinetic_energy(topology_, state_) - before;
 }
 
@@ -274,6 +286,11 @@ void Simulation::relax_spins_if_due() {
   relax_spins(topology_, state_);
   compute();
   account_.dissipated += had - total_energy();
+}
+
+EndReadings Simulation::read_gauges() {
+  if (state_.time > gauges_.sums.since) return gauges_.read(state_);
+  return gauges_.read_still(state_, reactions_at_rest(topology_, loads_, loaded_, forces_, state_), point_loads_);
 }
 
 double Simulation::engine_seconds() const {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "sim/dynamics/energy_supply.hpp"
+#include "sim/dynamics/gauges.hpp"
 #include "sim/dynamics/loads.hpp"
 #include "sim/dynamics/relax_goal.hpp"
 #include "sim/dynamics/step_limit.hpp"
@@ -65,6 +66,10 @@ class Simulation {
   double heat() const { return account_.heat; }
   double list_seconds() const { return list_seconds_; }
   double integration_seconds() const { return integration_seconds_; }
+  // On these elements, before the first step; without it they are the ends of all tubes. Turns count from `start`.
+  void set_gauges(EndElements ends, const State& start) { gauges_ = Gauges(topology_, std::move(ends), start); }
+  // Mean forces and torques at both ends since the last reading; those of this moment where no time has passed.
+  EndReadings read_gauges();
   double total_energy() const { return forces_.energy.potential() + kinetic_energy(topology_, state_); }
   // Largest force in eV/nm, torques counted as torque over radius; constrained components left out.
   double largest_force() const;
@@ -80,6 +85,8 @@ class Simulation {
     forces_.torque = torque;
     account_ = account;
   }
+  void inherit_from(const Gauges::Sums& sums) { gauges_.sums = sums; }
+  const Gauges& gauges() const { return gauges_; }
 
  private:
   struct OneLevel;   // what verlet_step acts on
@@ -114,6 +121,9 @@ class Simulation {
   State state_;
   double time_step_ = 0;
   Stepping stepping_;
+  std::vector<int> loaded_;                  // elements
+  std::vector<ConstraintImpulse> impulses_;  // of the last kick
+  Gauges gauges_;
   TubeParts parts_;
   bool tunes_skin_ = false;
   NeighbourList list_;

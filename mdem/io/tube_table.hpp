@@ -1,0 +1,16 @@
+// What each tube of a state bears, as `ropewalk observe --tubes` prints it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "io/outputs.hpp"
+#include "observe/loading.hpp"
+
+namespace ropewalk {
+
+std::vector<OutputColumn> tube_columns();
+// A heading and one line for each tube.
+std::string tube_table_csv(const Topology& topology, const State& state, const LoadingReference& reference);
+
+}  // namespace ropewalk

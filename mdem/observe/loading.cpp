@@ -1,0 +1,185 @@
+#include "observe/loading.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "observe/centre_line.hpp"
+
+namespace ropewalk {
+namespace {
+
+// How far element k of tube b lies ahead of element k of tube a, along their mean direction.
+double ahead(const Topology& topology, const State& state, int a, int b, int k) {
+  const auto i = static_cast<std::size_t>(topology.tube_begin[a] + k),
+             j = static_cast<std::size_t>(topology.tube_begin[b] + k);
+  const Vector3 along = (axis_of(state.orientation[i]) + axis_of(state.orientation[j])).normalized();
+  return (state.position[j] - state.position[i]).dot(along);
+}
+
+// The largest slip of each pair of neighbours.
+std::vector<double> slips(const Topology& topology, const State& state, const LoadingReference& reference) {
+  std::vector<double> out;
+  std::size_t at = 0;
+  for (const auto& [a, b] : reference.neighbours) {
+    double most = 0;
+    for (int k = 0; k < topology.length_of(a); ++k, ++at)
+      most = std::max(most, std::fabs(ahead(topology, state, a, b, k) - reference.offset[at]));
+    out.push_back(most);
+  }
+  return out;
+}
+
+double mean_of_middle(const std::vector<double>& all) {
+  const std::size_t from = all.size() / 3, to = all.size() - from;
+  double sum = 0;
+  for (std::size_t k = from; k < to; ++k) sum += all[k];
+  return to > from ? sum / static_cast<double>(to - from) : 0;
+}
+
+double largest_curvature(const Topology& topology, const State& state, int tube) {
+  double most = 0;
+  for (int e = topology.tube_begin[tube]; e + 1 < topology.tube_begin[tube + 1]; ++e) {
+    const Vector3 a = axis_of(state.orientation[static_cast<std::size_t>(e)]),
+                  b = axis_of(state.orientation[static_cast<std::size_t>(e) + 1]);
+    most = std::max(most, std::atan2(a.cross(b).norm(), a.dot(b)));
+  }
+  return most / topology.type_of(tube).element_length;
+}
+
+double twist_of(const Topology& topology, const State& state, int tube) {
+  double sum = 0;
+  for (int e = topology.tube_begin[tube]; e + 1 < topology.tube_begin[tube + 1]; ++e)
+    sum += bond_twist_angle(frame_of(state.orientation[static_cast<std::size_t>(e)]),
+                            frame_of(state.orientation[static_cast<std::size_t>(e) + 1]));
+  const int bonds = topology.length_of(tube) - 1;
+  return bonds > 0 ? sum / (bonds * topology.type_of(tube).element_length) : 0;
+}
+
+}  // namespace
+
+LoadingReference loading_reference(const Topology& topology, const State& start, const RopeShells& shells,
+                                   EndElements ends, double spacing, double neighbour_radius,
+                                   std::shared_ptr<const ContactLaw> law) {
+  LoadingReference out;
+  out.ends_apart = (centre_of(topology, start, ends[upper_end]) - centre_of(topology, start, ends[lower_end])).norm();
+  out.ends = std::move(ends);
+  out.law = std::move(law);
+  out.cell = 0.5 * std::sqrt(3.0) * spacing * spacing;
+  const int n = common_length(topology);
+  if (n == 0) return out;
+  const Vector3 axis = centre_line(topology, start).tangents[static_cast<std::size_t>(n / 2)];
+  const Vector3 centre = centre_line(topology, start).points[static_cast<std::size_t>(n / 2)];
+  const auto middle = [&](int t) -> Vector3 {
+    const Vector3 arm = start.position[static_cast<std::size_t>(topology.tube_begin[t] + n / 2)] - centre;
+    return arm - arm.dot(axis) * axis;
+  };
+  for (int a = 0; a < topology.tubes(); ++a) {
+    out.radius.push_back(middle(a).norm());
+    for (int b = a + 1; b < topology.tubes(); ++b) {
+      if ((middle(b) - middle(a)).norm() > neighbour_radius) continue;
+      out.neighbours.emplace_back(a, b);
+      for (int k = 0; k < n; ++k) out.offset.push_back(ahead(topology, start, a, b, k));
+    }
+  }
+  double nearest = std::numeric_limits<double>::infinity();
+  for (int t = 0; t < topology.tubes(); ++t)
+    if (shells.internal[static_cast<std::size_t>(t)]) nearest = std::min(nearest, out.radius[static_cast<std::size_t>(t)]);
+  for (int t = 0; t < topology.tubes(); ++t)
+    if (shells.internal[static_cast<std::size_t>(t)] &&
+        out.radius[static_cast<std::size_t>(t)] < nearest + 0.1 * spacing)
+      out.core.push_back(t);
+  return out;
+}
+
+std::vector<double> tensions(const Topology& topology, const State& state, int tube) {
+  std::vector<double> out;
+  const TubeType& type = topology.type_of(tube);
+  for (int e = topology.tube_begin[tube]; e + 1 < topology.tube_begin[tube + 1]; ++e) {
+    const auto i = static_cast<std::size_t>(e), j = i + 1;
+    const Vector3 d = state.position[j] - state.position[i];
+    const BondForce<double> f = bond_energy_and_gradient(type.bond, type.element_length, d,
+                                                         frame_of(state.orientation[i]), frame_of(state.orientation[j]));
+    out.push_back(-f.force_j.dot(d.normalized()));
+  }
+  return out;
+}
+
+double tube_pressure(const Topology& topology, const State& state, const ContactLaw& law, double cell, int tube) {
+  constexpr int most = 8;  // elements
+  const int n = topology.length_of(tube), count = std::min(most, n - 2 * (n / 3)), from = (n - count) / 2,
+            to = from + count;
+  const double reach2 = law.cutoff() * law.cutoff();
+  double virial = 0;
+  for (int other = 0; other < topology.tubes(); ++other) {
+    if (other == tube) continue;
+    const TypePair types{topology.tube_type[tube], topology.tube_type[other]};
+    for (int k = from; k < to; ++k) {
+      const auto i = static_cast<std::size_t>(topology.tube_begin[tube] + k);
+      const Vector3 x = state.position[i], t = axis_of(state.orientation[i]);
+      for (int e = topology.tube_begin[other]; e < topology.tube_begin[other + 1]; ++e) {
+        const auto j = static_cast<std::size_t>(e);
+        const Vector3 d = state.position[j] - x;
+        if (!(d.squaredNorm() < reach2)) continue;
+        const Vector3 force = law.force(types, d, t, axis_of(state.orientation[j])).force_j;
+        virial += force.dot(d) - force.dot(t) * d.dot(t);
+      }
+    }
+  }
+  return virial / (4 * cell * count * topology.type_of(tube).element_length);
+}
+
+std::vector<double> tube_pressures(const Topology& topology, const State& state, const LoadingReference& reference) {
+  std::vector<double> out(static_cast<std::size_t>(topology.tubes()));
+#pragma omp parallel for schedule(dynamic)
+  for (int t = 0; t < topology.tubes(); ++t)
+    out[static_cast<std::size_t>(t)] = tube_pressure(topology, state, *reference.law, reference.cell, t);
+  return out;
+}
+
+std::vector<TubeLoading> tube_loadings(const Topology& topology, const State& state,
+                                       const LoadingReference& reference) {
+  std::vector<TubeLoading> out(static_cast<std::size_t>(topology.tubes()));
+#pragma omp parallel for schedule(dynamic)
+  for (int t = 0; t < topology.tubes(); ++t) {
+    TubeLoading& tube = out[static_cast<std::size_t>(t)];
+    const std::vector<double> pulls = tensions(topology, state, t);
+    tube.tension = mean_of_middle(pulls);
+    for (const double pull : pulls)
+      if (std::fabs(pull) > std::fabs(tube.most_tension)) tube.most_tension = pull;
+    tube.twist = twist_of(topology, state, t);
+    tube.curvature = largest_curvature(topology, state, t);
+    if (reference.law && reference.cell > 0)
+      tube.pressure = tube_pressure(topology, state, *reference.law, reference.cell, t);
+  }
+  const std::vector<double> slipped = slips(topology, state, reference);
+  for (std::size_t k = 0; k < slipped.size(); ++k)
+    for (const int t : {reference.neighbours[k].first, reference.neighbours[k].second})
+      out[static_cast<std::size_t>(t)].slip = std::max(out[static_cast<std::size_t>(t)].slip, slipped[k]);
+  return out;
+}
+
+Loading loading(const Topology& topology, const State& state, const LoadingReference& reference) {
+  Loading out;
+  out.ends_apart = (centre_of(topology, state, reference.ends[upper_end]) -
+                    centre_of(topology, state, reference.ends[lower_end]))
+                       .norm();
+  out.strain = reference.ends_apart > 0 ? out.ends_apart / reference.ends_apart - 1 : 0;
+  for (int t = 0; t < topology.tubes(); ++t) {
+    const double tension = mean_of_middle(tensions(topology, state, t));
+    out.least_tension = t == 0 ? tension : std::min(out.least_tension, tension);
+    out.most_tension = t == 0 ? tension : std::max(out.most_tension, tension);
+    out.curvature = std::max(out.curvature, largest_curvature(topology, state, t));
+  }
+  for (const double slip : slips(topology, state, reference)) out.slip = std::max(out.slip, slip);
+  out.core_pressure = std::numeric_limits<double>::quiet_NaN();
+  if (reference.law && !reference.core.empty() && reference.cell > 0) {
+    out.core_pressure = 0;
+    for (const int t : reference.core)
+      out.core_pressure += tube_pressure(topology, state, *reference.law, reference.cell, t) /
+                           static_cast<double>(reference.core.size());
+  }
+  return out;
+}
+
+}  // namespace ropewalk

@@ -1,0 +1,66 @@
+// What a loaded rope bears: between its ends, along its tubes and across it. Everything follows from the state and the
+// start alone.
+#pragma once
+
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "observe/observe.hpp"
+#include "sim/contact/contact_law.hpp"
+#include "sim/dynamics/gauges.hpp"
+
+namespace ropewalk {
+
+// Of the start, that later states are held against.
+struct LoadingReference {
+  EndElements ends;
+  double ends_apart = 0;                        // nm, between the centres of the ends
+  std::vector<std::pair<int, int>> neighbours;  // tubes, of equal length
+  std::vector<double> offset;                   // nm: element by element along each pair, as slip_of() has it
+  std::vector<double> radius;                   // nm, of each tube from the axis of the rope; empty: no common length
+  std::vector<int> core;                        // the internal tubes nearest to the axis
+  double cell = 0;                              // nm^2, of the cross-section for each tube
+  std::shared_ptr<const ContactLaw> law;        // null: no contact
+};
+LoadingReference loading_reference(const Topology& topology, const State& start, const RopeShells& shells,
+                                   EndElements ends, double spacing, double neighbour_radius,
+                                   std::shared_ptr<const ContactLaw> law);
+
+struct Loading {
+  double ends_apart = 0;     // nm, between the centres of the ends
+  double strain = 0;         // of that distance
+  double least_tension = 0;  // eV/nm, of a tube, mean over its middle third
+  double most_tension = 0;   // eV/nm, likewise
+  double curvature = 0;      // 1/nm, the largest
+  double slip = 0;           // nm, the largest displacement of a tube along its neighbour since the start
+  double core_pressure = 0;  // eV/nm^3; NaN where no tube is internal
+};
+Loading loading(const Topology& topology, const State& state, const LoadingReference& reference);
+
+// Of one tube.
+struct TubeLoading {
+  double tension = 0, most_tension = 0;  // eV/nm: mean over the middle third, largest absolute value
+  double twist = 0;                      // rad/nm, mean
+  double curvature = 0;                  // 1/nm, the largest
+  double slip = 0;                       // nm, the largest
+  double pressure = 0;                   // eV/nm^3
+};
+std::vector<TubeLoading> tube_loadings(const Topology& topology, const State& state,
+                                       const LoadingReference& reference);
+
+// eV/nm, in each bond of a tube.
+std::vector<double> tensions(const Topology& topology, const State& state, int tube);
+
+// The pressure of the contact on a tube (eV/nm^3), over up to eight elements in its middle, of the length L: half of the virial across the
+// tube of the forces F of all others on it, for each dimension and volume,
+//
+//   p = 1/(4 A L) sum F_ij (x_i - x_j) across
+//
+// with the area A of a tube's cell. In a rope that rests it is near zero: attraction at some distance balances the
+// repulsion of the neighbours.
+double tube_pressure(const Topology& topology, const State& state, const ContactLaw& law, double cell, int tube);
+// Of every tube.
+std::vector<double> tube_pressures(const Topology& topology, const State& state, const LoadingReference& reference);
+
+}  // namespace ropewalk

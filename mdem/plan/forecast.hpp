@@ -1,0 +1,14 @@
+// Which limits of the model a scene will pass, said before it is run.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scene/prepare.hpp"
+
+namespace ropewalk {
+
+// A sentence for each, by the upper estimates of features_of(); where the load grows, with the time when it gets there.
+std::vector<std::string> limits_ahead(const Scene& scene, const Prepared& prepared);
+
+}  // namespace ropewalk

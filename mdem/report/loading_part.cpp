@@ -1,0 +1,233 @@
+#include "report/loading_part.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "report/log_figures.hpp"
+#include "report/page.hpp"
+
+namespace ropewalk {
+namespace {
+
+double largest(const std::vector<LogRow>& log, const char* column) {
+  double most = 0;
+  for (const LogRow& r : log)
+    if (std::isfinite(r[column])) most = std::max(most, std::fabs(r[column]));
+  return most;
+}
+
+// Against the rotation where there is one.
+std::string against_rotation(const std::vector<LogRow>& log) {
+  return largest(log, "rotation_deg") > 1 ? "rotation_deg" : "";
+}
+
+Panel torque(const std::vector<LogRow>& log) {
+  return {"Torque",
+          "Torque about z that twists the rope at either end, mean over the time between two rows. Both are equal where "
+          "nothing moves.",
+          {"torque", "nN nm", false},
+          {{"upper", logged("torque_upper_nN_nm"), 0}, {"lower", logged("torque_lower_nN_nm"), 1}},
+          false,
+          false,
+          against_rotation(log)};
+}
+
+Panel tension(const std::vector<LogRow>& log) {
+  return {"Tension",
+          "Force along z that pulls at either end, mean over the time between two rows. At the start clamps bear the "
+          "cohesion of the rope, which would shorten free tubes a little.",
+          {"tension", "nN", false},
+          {{"upper", logged("tension_upper_nN"), 0}, {"lower", logged("tension_lower_nN"), 1}},
+          false,
+          false,
+          against_rotation(log)};
+}
+
+Panel stored(const std::vector<LogRow>& log) {
+  return {"Stored energy",
+          "Potential energy since the start over the mass of the tubes, and its parts.",
+          {"stored", "MJ/kg", false},
+          {{"all", logged("stored_MJ_per_kg"), 5},
+           {"stretch", logged("stored_stretch_MJ_per_kg"), 2},
+           {"bend", logged("stored_bend_MJ_per_kg"), 0},
+           {"twist", logged("stored_twist_MJ_per_kg"), 1},
+           {"contact", logged("stored_contact_MJ_per_kg"), 3}},
+          false,
+          false,
+          against_rotation(log)};
+}
+
+// Per cent of what is stored, from where it is a hundredth of the most.
+Panel shares(const std::vector<LogRow>& log) {
+  const double enough = 0.01 * largest(log, "stored_MJ_per_kg");
+  const auto share = [enough](const char* column) -> LogValue {
+    return [=, part = logged(column), whole = logged("stored_MJ_per_kg")](const LogRow& r) {
+      return whole(r) > enough ? 100 * part(r) / whole(r) : std::numeric_limits<double>::quiet_NaN();
+    };
+  };
+  return {"Shares of the stored energy",
+          "What holds the stored energy, in per cent of it.",
+          {"share", "%", false},
+          {{"stretch", share("stored_stretch_MJ_per_kg"), 2},
+           {"bend", share("stored_bend_MJ_per_kg"), 0},
+           {"twist", share("stored_twist_MJ_per_kg"), 1},
+           {"contact", share("stored_contact_MJ_per_kg"), 3}},
+          false,
+          false,
+          against_rotation(log)};
+}
+
+Panel length() {
+  return {"Length",
+          "Change of the distance between both ends, over that of the start.",
+          {"strain", "", false},
+          {{"strain", logged("ends_strain"), 0}}};
+}
+
+// Of tubes at the same distance from the axis, in the order of the distance.
+std::map<double, std::vector<std::size_t>> rings(const std::vector<double>& radius) {
+  std::map<double, std::vector<std::size_t>> out;
+  for (std::size_t t = 0; t < radius.size(); ++t) out[std::round(radius[t] * 20) / 20].push_back(t);
+  return out;
+}
+
+std::string tension_figure(const ReportInput& in, Figures& figures) {
+  const ReportLoading& last = in.loading.back();
+  const std::string title = "Tension along the tubes";
+  LineChart chart;
+  chart.title = title;
+  chart.x = {"position along the rope", "nm", false};
+  chart.y = {"tension", "nN", false};
+  std::vector<TableColumn> columns;
+  const auto all = rings(last.radius);
+  std::vector<double> chosen;
+  for (const auto& ring : all) chosen.push_back(ring.first);
+  const std::vector<std::size_t> some = evenly(chosen.size(), sequential_colours);
+  for (std::size_t k = 0; k < some.size(); ++k) {
+    const auto& [radius, tubes] = *all.find(chosen[some[k]]);
+    ChartLine line;
+    line.name = fmt::format("{} nm", number_text(radius, 3));
+    line.colour = sequential_colour(k, some.size());
+    for (std::size_t i = 0; i < last.tension_nN[tubes[0]].size(); ++i) {
+      double sum = 0;
+      for (const std::size_t t : tubes) sum += last.tension_nN[t][i];
+      line.x.push_back((static_cast<double>(i) + 0.5) * in.element_length);
+      line.y.push_back(sum / static_cast<double>(tubes.size()));
+    }
+    if (columns.empty()) columns.push_back({"position (nm)", line.x});
+    columns.push_back({line.name + " (nN)", line.y});
+    chart.lines.push_back(std::move(line));
+  }
+  if (!can_draw(chart)) return not_drawn(title);
+  return fmt::format("<figure><h3>{}</h3>\n", title) + chart_svg(chart) +
+         figures.caption("In the last frame, mean over the tubes that start at the same distance from the axis. The "
+                         "position is counted from the lower end.") +
+         data_table(columns, "ropewalk observe --tubes lists every tube.") + "</figure>\n";
+}
+
+std::string pressure_figure(const ReportInput& in, Figures& figures) {
+  const std::string title = "Pressure against radius";
+  LineChart chart;
+  chart.title = title;
+  chart.x = {"distance from the axis", "nm", false};
+  chart.y = {"pressure", "GPa", false};
+  std::vector<TableColumn> columns;
+  for (std::size_t k = 0; k < in.loading.size(); ++k) {
+    const ReportLoading& frame = in.loading[k];
+    if (frame.pressure_GPa.empty()) continue;
+    ChartLine line;
+    line.name = number_text(frame.time_ps) + " ps";
+    line.colour = sequential_colour(k, in.loading.size());
+    for (const auto& [radius, tubes] : rings(frame.radius)) {
+      double sum = 0;
+      for (const std::size_t t : tubes) sum += frame.pressure_GPa[t];
+      line.x.push_back(radius);
+      line.y.push_back(sum / static_cast<double>(tubes.size()));
+    }
+    if (columns.empty()) columns.push_back({"distance (nm)", line.x});
+    columns.push_back({line.name + " (GPa)", line.y});
+    chart.lines.push_back(std::move(line));
+  }
+  if (!can_draw(chart)) return "";
+  return fmt::format("<figure><h3>{}</h3>\n", title) + chart_svg(chart) +
+         figures.caption(
+             "Of the contacts across a tube in the middle of the rope, mean over the tubes that start at the same "
+             "distance from the axis; negative where they are drawn apart. Tension presses on the inner tubes; and the "
+             "neighbours of a twisted tube, cut across, need more room around the axis than there is, which draws the "
+             "inner tubes apart.") +
+         data_table(columns, "The frames are in frames.lammpstrj.") + "</figure>\n";
+}
+
+// Turned and turned back.
+std::string loop_words(const std::vector<LogRow>& log) {
+  const double most = largest(log, "rotation_deg"), last = std::fabs(log.back()["rotation_deg"]);
+  const double in = largest(log, "work_eV"), lost = log.back()["dissipated_eV"];
+  if (most < 5 || last > 0.5 * most || !(in > 0)) return "";
+  return paragraph(
+      fmt::format("The rope was turned by up to {}° and back to {}°: of {} eV that were put in, {} eV came back, and {} "
+                  "eV, <b>{} %</b>, are lost to damping or still move.",
+                  number_text(most), last < 0.01 ? "0" : number_text(last, 3), number_text(in), number_text(in - log.back()["work_eV"]),
+                  number_text(log.back()["work_eV"] - (potential(log.back()) - potential(log.front()))),
+                  number_text(100 * lost / in, 3)));
+}
+
+// The figures of other authors and samples, with their sources.
+std::string literature() {
+  struct Row {
+    const char* what;
+    const char* value;
+    const char* source;
+  };
+  constexpr Row rows[] = {
+      {"steel spring", "1.4·10⁻⁴", "Utsumi et al., Nat. Nanotechnol. 19, 1007 (2024), doi:10.1038/s41565-024-01645-x"},
+      {"lithium-ion battery", "≤ 0.72", "the same"},
+      {"ropes of single-walled tubes, pristine, turned by a motor: mean, largest", "0.22, 0.45",
+       "KAKEN 16K04893 (2018)"},
+      {"the same, treated (TPU, microwaves): mean, largest", "0.69, 2.1",
+       "KAKEN 19K05215 (2021); Utsumi et al. 2024"},
+      {"bundle of carbon nanothreads, molecular dynamics", "1.76",
+       "Zhan et al., Nat. Commun. 11, 1905 (2020), doi:10.1038/s41467-020-15807-7"},
+      {"limit by calculations of DFT type", "8", "KAKEN 16K04893; Fthenakis et al., Phys. Rev. B 95, 245402 (2017)"},
+  };
+  std::string html =
+      "<div class=\"scroll\"><table class=\"facts\"><thead><tr><th>Sample or model</th><th "
+      "class=\"number\">MJ/kg</th><th>Source</th></tr></thead><tbody>\n";
+  for (const Row& row : rows)
+    html += fmt::format("<tr><th>{}</th><td class=\"number\">{}</td><td class=\"soft\">{}</td></tr>\n", row.what,
+                        row.value, row.source);
+  return html + "</tbody></table></div>\n";
+}
+
+}  // namespace
+
+std::string loading_part(const ReportInput& in, Figures& figures) {
+  if (in.log.size() < 2 || !in.loaded) return "";
+  const auto panel = [&](const Panel& p) { return log_figure(in, p, figures); };
+  const bool twisted = in.rope && largest(in.log, "torque_upper_nN_nm") + largest(in.log, "torque_lower_nN_nm") > 0.01;
+  const bool pulled = largest(in.log, "tension_upper_nN") + largest(in.log, "tension_lower_nN") > 1e-3;
+  if (!twisted && !pulled) return "";
+  std::string html = heading("Loads at both ends");
+  const std::string torques = twisted ? panel(torque(in.log)) : "", pull = pulled ? panel(tension(in.log)) : "";
+  html += pair_of(torques, pull) + loop_words(in.log);
+  if (largest(in.log, "ends_strain") > 1e-6) html += panel(length());
+  if (!in.rope) return html;
+  html += heading("Stored energy");
+  const std::string energy = panel(stored(in.log)), parts = panel(shares(in.log));
+  html += pair_of(energy, parts);
+  if (twisted && largest(in.log, "stored_MJ_per_kg") > 1e-3)
+    html += paragraph(fmt::format("This rope stores up to <b>{} MJ/kg</b> in this run. Beside it, what others measured "
+                                  "and calculated. One perfect bundle is not a macroscopic rope: a yarn has bundles "
+                                  "that slip, gaps, bent and short tubes, and the mass of what is not loaded.",
+                                  number_text(largest(in.log, "stored_MJ_per_kg"), 3))) +
+            literature();
+  if (in.loading.empty()) return html;
+  html += heading("Inside the rope");
+  const std::string along = tension_figure(in, figures), across = pressure_figure(in, figures);
+  return html + pair_of(along, across);
+}
+
+}  // namespace ropewalk

@@ -1,0 +1,104 @@
+#include "report/log_figures.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "observe/observables.hpp"
+#include "report/page.hpp"
+
+namespace ropewalk {
+
+LogValue logged(const std::string& column) {
+  return [k = index_of_observable(column)](const LogRow& row) { return row.values()[k]; };
+}
+
+double potential(const LogRow& r) {
+  return r["stretch_eV"] + r["shear_eV"] + r["bend_eV"] + r["twist_eV"] + r["vdw_eV"];
+}
+double total_energy(const LogRow& r) { return potential(r) + r["kinetic_eV"]; }
+
+Clock clock_of(const std::vector<LogRow>& log) {
+  double first = 0, last = 0;
+  if (!log.empty()) first = log.front()["time_ps"], last = log.back()["time_ps"];
+  if (log.size() > 1 && !(last > first) && log.back()["step"] > log.front()["step"])
+    return {{"step", "", true}, "step"};
+  return {{"time", "ps", false}, "time_ps"};
+}
+
+std::vector<double> values_of(const std::vector<LogRow>& log, const LogValue& value) {
+  std::vector<double> values;
+  for (const LogRow& row : log) values.push_back(value(row));
+  return values;
+}
+
+namespace {
+
+void take_first_off(std::vector<double>& values) {
+  const auto first = std::find_if(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+  const double origin = first == values.end() ? 0 : *first;
+  for (double& v : values) v -= origin;
+}
+
+std::vector<ChartBand> stages(const ReportInput& in) {
+  if (!(in.ramp_end_ps > 0) || in.log.size() < 2) return {};
+  std::vector<ChartBand> bands{{in.log.front()["time_ps"], in.ramp_end_ps, "loading", false}};
+  if (in.log.back()["time_ps"] > in.ramp_end_ps)
+    bands.push_back({in.ramp_end_ps, in.log.back()["time_ps"], "holding", true});
+  return bands;
+}
+
+// A column as the horizontal axis: "rotation_deg" is the quantity "rotation" in its unit.
+Clock axis_of(const std::vector<LogRow>& log, const Panel& panel) {
+  if (panel.against.empty()) return clock_of(log);
+  const Observable& o = observables()[index_of_observable(panel.against)];
+  return {{panel.against.substr(0, panel.against.find('_')), o.unit, false}, panel.against};
+}
+
+LineChart chart_of(const ReportInput& in, const Panel& panel, const Clock& clock) {
+  LineChart chart;
+  chart.title = panel.title;
+  chart.x = clock.axis;
+  chart.y = panel.axis;
+  if (clock.column == "time_ps") chart.bands = stages(in);
+  const std::vector<double> x = values_of(in.log, logged(clock.column));
+  for (const Trace& trace : panel.traces) {
+    ChartLine line{trace.name, x, values_of(in.log, trace.value), trace.colour, trace.dashed, panel.steps};
+    if (panel.since_start) take_first_off(line.y);
+    for (std::size_t k = 0; !in.errors.empty() && k < in.log.size(); ++k)
+      line.error.push_back(in.errors.of(k, trace.value).error);
+    chart.lines.push_back(std::move(line));
+  }
+  return chart;
+}
+
+std::string with_unit(const std::string& name, const std::string& unit) {
+  return unit.empty() ? name : fmt::format("{} ({})", name, unit);
+}
+
+}  // namespace
+
+std::string not_drawn(const std::string& title) {
+  return fmt::format(
+      "<figure><h3>{}</h3>\n<p class=\"none\">Not drawn: there are fewer than two values.</p></figure>\n",
+      escape_markup(title));
+}
+
+std::string log_figure(const ReportInput& in, const Panel& panel, Figures& figures) {
+  const Clock clock = axis_of(in.log, panel);
+  const LineChart chart = chart_of(in, panel, clock);
+  if (!can_draw(chart)) return not_drawn(panel.title);
+  std::vector<TableColumn> columns{{with_unit(clock.axis.quantity, clock.axis.unit), chart.lines[0].x}};
+  for (const Trace& trace : panel.traces)
+    columns.push_back({with_unit(trace.name, panel.axis.unit), values_of(in.log, trace.value)});
+  return fmt::format("<figure><h3>{}</h3>\n", escape_markup(panel.title)) + chart_svg(chart) +
+         figures.caption(panel.caption) + data_table(columns, "Every row and column is in log.csv.") +
+         "</figure>\n";
+}
+
+std::string pair_of(const std::string& a, const std::string& b) {
+  return "<div class=\"pair\">\n" + a + b + "</div>\n";
+}
+
+}  // namespace ropewalk

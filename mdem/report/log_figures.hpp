@@ -1,0 +1,51 @@
+// Charts of the log: quantities against time, against steps, or against one another.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "report/report.hpp"
+
+namespace ropewalk {
+
+using LogValue = std::function<double(const LogRow&)>;
+LogValue logged(const std::string& column);
+
+struct Trace {
+  std::string name;
+  LogValue value;
+  int colour = 0;
+  bool dashed = false;
+};
+
+struct Panel {
+  std::string title;
+  std::string caption;  // HTML
+  ChartAxis axis;
+  std::vector<Trace> traces;
+  bool steps = false;
+  bool since_start = false;  // the chart shows changes, the table the values themselves
+  std::string against = {};  // a column of the log; empty: the clock
+};
+
+// A relaxation has steps, but no time.
+struct Clock {
+  ChartAxis axis;
+  std::string column;  // of the log
+
+  bool counts_steps() const { return column == "step"; }
+};
+Clock clock_of(const std::vector<LogRow>& log);
+
+double potential(const LogRow& r);     // eV
+double total_energy(const LogRow& r);  // eV
+std::vector<double> values_of(const std::vector<LogRow>& log, const LogValue& value);
+
+// A <figure> with chart, caption and table.
+std::string log_figure(const ReportInput& in, const Panel& panel, Figures& figures);
+std::string not_drawn(const std::string& title);
+// Two of them side by side.
+std::string pair_of(const std::string& a, const std::string& b);
+
+}  // namespace ropewalk

@@ -1,0 +1,471 @@
+#include "scene/loads/grip.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "scene/tables/tables.hpp"
+
+namespace ropewalk {
+namespace {
+
+using Is = GripAxis::Is;
+using Matrix3 = Eigen::Matrix3d;
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+// Of some of the six, without the heap.
+using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6>;
+using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1>;
+
+constexpr const char* axis_names[] = {"x", "y", "z", "about_x", "about_y", "about_z"};
+
+Matrix3 cross(const Vector3& v) {
+  Matrix3 m;
+  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+  return m;
+}
+
+// The velocity with which an arm that turns for so many ps moves along its chord.
+Matrix3 chord(const Vector3& turning, double time) {
+  const double angle = turning.norm() * time;
+  if (angle == 0) return cross(turning);
+  return (Eigen::AngleAxisd(angle, turning.normalized()).toRotationMatrix() - Matrix3::Identity()) / time;
+}
+
+// Of the components from `first` on that are driven like this.
+template <class Of>
+Vector3 driven(const std::array<Schedule, 6>& schedules, const std::array<GripAxis, 6>& axes, std::size_t first, Is is,
+               const Of& of) {
+  Vector3 out = Vector3::Zero();
+  for (std::size_t k = 0; k < 3; ++k)
+    if (axes[first + k].is == is) out[static_cast<Eigen::Index>(k)] = of(schedules[first + k]);
+  return out;
+}
+
+}  // namespace
+
+// A clamp and its elements now.
+struct GripLoad::Body {
+  std::size_t begin = 0, end = 0;  // of GripLoad::elements
+  Vector3 centre = Vector3::Zero();
+  Matrix3 held = Matrix3::Identity();  // the part of a velocity that the clamp holds
+  Matrix6 inertia = Matrix6::Zero();   // of what it holds: half of q.inertia.q is the energy of the rigid motion q
+
+  Matrix3 held_spin(const GripLoad& grip, const State& s, std::size_t k) const {
+    if (!grip.spin_free && !grip.tilt_free) return Matrix3::Identity();
+    const Vector3 t = axis_of(s.orientation[static_cast<std::size_t>(grip.elements[k])]);
+    const Matrix3 spin = t * t.transpose();
+    Matrix3 held_here = Matrix3::Zero();
+    if (!grip.spin_free) held_here += spin;
+    if (!grip.tilt_free) held_here += Matrix3::Identity() - spin;
+    return held_here;
+  }
+};
+
+std::vector<GripLoad::Body> GripLoad::bodies(const State& s) const {
+  const std::size_t size = each ? static_cast<std::size_t>(depth) : elements.size();
+  std::vector<Body> all;
+  for (std::size_t begin = 0; begin < elements.size(); begin += size) {
+    Body b;
+    b.begin = begin;
+    b.end = begin + size;
+    double mass = 0;
+    Vector3 axis = Vector3::Zero();
+    for (std::size_t k = b.begin; k < b.end; ++k) {
+      const auto i = static_cast<std::size_t>(elements[k]);
+      b.centre += mass_[k] * s.position[i];
+      axis += axis_of(s.orientation[i]);
+      mass += mass_[k];
+    }
+    b.centre /= mass;
+    if (slide_free) b.held -= axis.normalized() * axis.normalized().transpose();
+    for (std::size_t k = b.begin; k < b.end; ++k) {
+      const auto i = static_cast<std::size_t>(elements[k]);
+      const Matrix3 lever = -cross(s.position[i] - b.centre), by_turn = mass_[k] * b.held * lever;
+      b.inertia.topLeftCorner<3, 3>() += mass_[k] * b.held;
+      b.inertia.topRightCorner<3, 3>() += by_turn;
+      b.inertia.bottomLeftCorner<3, 3>() += by_turn.transpose();
+      b.inertia.bottomRightCorner<3, 3>() += lever.transpose() * by_turn + inertia_[k] * b.held_spin(*this, s, k);
+    }
+    all.push_back(b);
+  }
+  return all;
+}
+
+namespace {
+
+// Sets the components of q that are neither held nor moved, so that inertia.q = momentum in them.
+void solve_free(const std::array<GripAxis, 6>& axes, const Matrix6& inertia, const Vector6& momentum, Vector6& q) {
+  std::array<Eigen::Index, 6> index{};
+  Eigen::Index n = 0;
+  for (Eigen::Index k = 0; k < 6; ++k)
+    if (axes[static_cast<std::size_t>(k)].is == Is::free || axes[static_cast<std::size_t>(k)].is == Is::loaded)
+      index[static_cast<std::size_t>(n++)] = k;
+  if (n == 0) return;
+  const Vector6 left = momentum - inertia * q;
+  Matrix a(n, n);
+  Vector b(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    b[i] = left[index[static_cast<std::size_t>(i)]];
+    for (Eigen::Index j = 0; j < n; ++j)
+      a(i, j) = inertia(index[static_cast<std::size_t>(i)], index[static_cast<std::size_t>(j)]);
+  }
+  const Vector found = a.ldlt().solve(b);  // zero along what has no inertia
+  for (Eigen::Index i = 0; i < n; ++i) q[index[static_cast<std::size_t>(i)]] = found[i];
+}
+
+}  // namespace
+
+void GripLoad::constrain(const Topology&, double time, double ahead, State& s) const {
+  // The mean over the drift, so that a schedule is met exactly.
+  const auto rate = [&](const Schedule& schedule) {
+    return ahead > 0 ? (schedule.value(time + 2 * ahead) - schedule.value(time)) / (2 * ahead) : schedule.rate(time);
+  };
+  Vector6 prescribed;
+  prescribed << driven(schedules_, axes, 0, Is::moved, rate), driven(schedules_, axes, 3, Is::moved, rate);
+  for (const Body& b : bodies(s)) {
+    Vector6 momentum = Vector6::Zero();
+    for (std::size_t k = b.begin; k < b.end; ++k) {
+      const auto i = static_cast<std::size_t>(elements[k]);
+      const Vector3 p = mass_[k] * b.held * s.velocity[i], arm = s.position[i] - b.centre;
+      momentum.head<3>() += p;
+      momentum.tail<3>() += arm.cross(p) + inertia_[k] * b.held_spin(*this, s, k) * s.angular_velocity[i];
+    }
+    Vector6 q = prescribed;
+    solve_free(axes, b.inertia, momentum, q);
+    const Vector3 turn = q.tail<3>();
+    Vector6 bent = Vector6::Zero();  // what the centripetal accelerations take from the momentum in unit time
+    for (std::size_t k = b.begin; k < b.end; ++k) {
+      const Vector3 arm = s.position[static_cast<std::size_t>(elements[k])] - b.centre;
+      const Vector3 force = mass_[k] * b.held * turn.cross(turn.cross(arm));
+      bent.head<3>() -= force;
+      bent.tail<3>() -= arm.cross(force);
+    }
+    Vector6 faster = Vector6::Zero();  // acceleration of the free components
+    solve_free(axes, b.inertia, bent, faster);
+    const Vector6 then = q + ahead * faster;
+    const Vector3 velocity = then.head<3>(), turning = then.tail<3>();
+    const Matrix3 sweep = chord(turning, 2 * ahead);
+    for (std::size_t k = b.begin; k < b.end; ++k) {
+      const auto i = static_cast<std::size_t>(elements[k]);
+      const Vector3 rigid = velocity + sweep * (s.position[i] - b.centre);
+      const Vector3 v = s.velocity[i], w = s.angular_velocity[i];
+      s.velocity.set(i, v + b.held * (rigid - v));
+      s.angular_velocity.set(i, w + b.held_spin(*this, s, k) * (turning - w));
+    }
+  }
+}
+
+// As the forces that give the clamp its acceleration as a rigid body, so that none acts between its elements.
+void GripLoad::add_forces(const State& s, double time, std::vector<PointLoad>& out) const {
+  if (std::none_of(axes.begin(), axes.end(), [](const GripAxis& a) { return a.is == Is::loaded; })) return;
+  const auto now = [&](const Schedule& schedule) { return schedule.value(time); };
+  Vector6 load;
+  load << driven(schedules_, axes, 0, Is::loaded, now), driven(schedules_, axes, 3, Is::loaded, now);
+  for (const Body& b : bodies(s)) {
+    Vector6 q = Vector6::Zero();
+    solve_free(axes, b.inertia, load, q);
+    for (std::size_t k = b.begin; k < b.end; ++k) {
+      const auto i = static_cast<std::size_t>(elements[k]);
+      const Vector3 arm = s.position[i] - b.centre;
+      out.push_back({elements[k], mass_[k] * b.held * (q.head<3>() + q.tail<3>().cross(arm)),
+                     inertia_[k] * b.held_spin(*this, s, k) * q.tail<3>()});
+    }
+  }
+}
+
+bool GripLoad::is_unfelt(std::size_t axis, const State& s) const {
+  if (axes[axis].is != Is::loaded) return false;
+  for (const Body& b : bodies(s)) {
+    Vector6 load = Vector6::Zero(), q = Vector6::Zero();
+    load[static_cast<Eigen::Index>(axis)] = 1;
+    solve_free(axes, b.inertia, load, q);
+    if (std::fabs((b.inertia * q)[static_cast<Eigen::Index>(axis)] - 1) > 1e-6) return true;
+  }
+  return false;
+}
+
+GripLoad GripLoad::on_elements(std::vector<int> on, const Topology& topology) const {
+  GripLoad out = *this;
+  out.elements = std::move(on);
+  out.mass_.clear();
+  out.inertia_.clear();
+  double length = 0, sound = 0;  // ps, that a wave needs from end to end
+  for (const int e : out.elements) {
+    const TubeType& type = topology.type_of_element(e);
+    out.mass_.push_back(type.mass);
+    out.inertia_.push_back(type.inertia);
+    const double tube = (topology.length_of(topology.tube_of(e)) - 1) * type.element_length;
+    length = std::max(length, tube);
+    sound = std::max({sound, tube / std::sqrt(type.bond.stretch * type.element_length / type.mass),
+                      tube / std::sqrt(type.bond.twist * type.element_length / type.inertia)});
+  }
+  for (std::size_t k = 0; k < axes.size(); ++k) {
+    std::vector<Schedule::Point> points = axes[k].points;
+    for (Schedule::Point& p : points)
+      if (axes[k].strain) p.value *= end == End::upper ? length : -length;
+    out.schedules_[k] = Schedule(points, smooth < 0 ? 2 * sound : smooth);
+  }
+  return out;
+}
+
+std::string GripLoad::needs_time() const {
+  for (std::size_t k = 0; k < axes.size(); ++k) {
+    const bool steady =
+        std::all_of(axes[k].points.begin(), axes[k].points.end(),
+                    [&](const Schedule::Point& p) { return p.value == axes[k].points.front().value; });
+    if (axes[k].is == Is::moved || !steady) return fmt::format("the schedule of grip.{} needs time", axis_names[k]);
+  }
+  return "";
+}
+
+// Upper bounds on one element, of what bends and twists.
+std::optional<LoadEffect> GripLoad::effect() const {
+  LoadEffect out;
+  const double shared = each ? depth : static_cast<double>(elements.size());
+  for (std::size_t k = 0; k < axes.size(); ++k) {
+    const double most = schedules_[k].largest();
+    if (axes[k].is == Is::loaded && k < z) out.force = std::max(out.force, most / shared);
+    if (axes[k].is == Is::loaded && k >= 3)
+      out.torque[static_cast<Eigen::Index>(k - 3)] = most / shared;
+  }
+  if (axes[about_z].is == Is::moved) out.angle = schedules_[about_z].largest();
+  out.ramp = ends();
+  return out;
+}
+
+std::string GripLoad::words() const {
+  std::string held, rest;
+  for (std::size_t k = 0; k < axes.size(); ++k) {
+    const GripAxis& a = axes[k];
+    const bool turn = k >= 3;
+    const std::string name = turn ? fmt::format("about {}", "xyz"[k - 3]) : std::string(axis_names[k]);
+    if (a.is == Is::held) held += (held.empty() ? "" : ", ") + name;
+    if (a.is == Is::free) rest += fmt::format("; {} free", name);
+    if (a.is != Is::moved && a.is != Is::loaded) continue;
+    const double last = a.points.back().value;
+    const double unit = a.is == Is::loaded ? units::nN_nm : turn ? units::degree : 1.0;
+    const char* unit_name = a.strain ? "of its length" : a.is == Is::loaded ? (turn ? "nN nm" : "nN") : turn ? "deg" : "nm";
+    double most = 0;
+    for (const Schedule::Point& p : a.points) most = std::max(most, std::fabs(p.value));
+    rest += fmt::format("; {} {} {:.4g} {}", name, a.is == Is::loaded ? "loaded with" : "moved to", last / unit, unit_name);
+    if (most > std::fabs(last)) rest += fmt::format(" by way of {:.4g}", most / unit);
+    if (a.points.size() > 1) rest += fmt::format(" in {:.4g} ps", a.points.back().time);
+  }
+  std::string text = fmt::format("{} grip, {}: ", end == End::upper ? "upper" : "lower",
+                                 each ? "a clamp for each tube" : "one disc");
+  const auto is_held = [](const GripAxis& a) { return a.is == Is::held; };
+  text += held.empty()                                         ? "nothing held"
+          : std::all_of(axes.begin(), axes.end(), is_held) ? "held"
+                                                               : held + " held";
+  if (slide_free) rest += "; tubes slide";
+  if (spin_free) rest += "; tubes spin";
+  if (tilt_free) rest += "; tubes tilt";
+  return text + rest;
+}
+
+double GripLoad::ends() const {
+  double last = 0;
+  for (const GripAxis& a : axes)
+    if (!a.points.empty()) last = std::max(last, a.points.back().time);
+  return last;
+}
+
+// --- the table -------------------------------------------------------------------------------------------------
+
+namespace {
+
+// What a component of a clamp may follow.
+struct Drive {
+  const char* key;
+  double unit;
+  const char* rate_key;
+  bool rotation, load;
+};
+constexpr double rad = units::degree;
+constexpr Drive drives[] = {
+    {"displacement_nm", 1, "rate_nm_per_ps", false, false},
+    {"strain", 1, "rate_per_ps", false, false},
+    {"force_nN", units::nN_nm, "rate_nN_per_ps", false, true},
+    {"rotation_deg", rad, "rate_deg_per_ps", true, false},
+    {"rotation_turns", 360 * rad, "rate_turns_per_ps", true, false},
+    {"torque_nN_nm", units::nN_nm, "rate_nN_nm_per_ps", true, true},
+};
+constexpr double largest_value = 1e6;
+
+std::string example_of(const Drive& d) {
+  return fmt::format("{{ {} = 1, {} = 0.01 }}", d.key, d.rate_key);
+}
+
+// From 0 at the start to each value in turn, at this speed; a value twice would be a hold without a length.
+std::vector<Schedule::Point> at_rate(const TomlTable& t, const Drive& d, const std::vector<double>& values) {
+  const double rate = t.number(d.rate_key, Bounds::positive(largest_value));
+  std::vector<Schedule::Point> points{{0, 0}};
+  for (const double value : values) {
+    const Schedule::Point last = points.back();
+    if (value == last.value)
+      throw t.error(d.key, fmt::format("has {} after {}: no time passes between them", value, last.value),
+                    "write a hold as points in time: [[0, 0], [100, 1], [150, 1]]");
+    points.push_back({last.time + std::fabs(value - last.value) / rate, value});
+  }
+  return points;
+}
+
+std::vector<Schedule::Point> in_time(const TomlTable& t, const Drive& d) {
+  std::vector<Schedule::Point> points;
+  for (const std::vector<double>& row : t.rows(d.key, Bounds::range(-largest_value, longest_time), 2)) {
+    if (row[0] < 0 || (!points.empty() && row[0] <= points.back().time))
+      throw t.error(d.key, fmt::format("has the time {} ps in point {}", row[0], points.size() + 1),
+                    "times rise from one point to the next, from 0 on");
+    points.push_back({row[0], row[1]});
+  }
+  if (!d.load && points.front().value != 0)
+    throw t.error(d.key, fmt::format("begins at {}", points.front().value),
+                  "begin with 0: it counts from where the elements are at the start");
+  return points;
+}
+
+GripAxis read_drive(const TomlTable& t, const std::string& axis, bool rotation) {
+  std::string names;
+  const Drive* found = nullptr;
+  for (const Drive& d : drives) {
+    if (d.rotation != rotation) continue;
+    names += (names.empty() ? "" : ", ") + std::string(d.key);
+    if (!t.has(d.key)) continue;
+    if (found) throw t.error(d.key, fmt::format("stands beside {}", found->key), "take one of the two");
+    found = &d;
+  }
+  if (!found) {
+    for (const std::string& key : t.keys()) {
+      const std::string near = nearest_word(key, {drives[0].key, drives[1].key, drives[2].key, drives[3].key,
+                                                  drives[4].key, drives[5].key});
+      if (!near.empty()) throw t.error(key, fmt::format("is not for {}", axis), fmt::format("choose one of {}", names));
+    }
+    throw t.error("", "says nothing that the clamp follows", fmt::format("write one of {}", names));
+  }
+  const Drive& d = *found;
+  GripAxis out;
+  out.is = d.load ? Is::loaded : Is::moved;
+  out.strain = std::string(d.key) == "strain";
+  if (out.strain && axis != "z") throw t.error(d.key, "is along the rope, z", "take displacement_nm");
+  if (t.is_array(d.key) && t.has(d.rate_key)) {
+    out.points = at_rate(t, d, t.list(d.key, Bounds::range(-largest_value, largest_value)));
+  } else if (t.is_array(d.key)) {
+    out.points = in_time(t, d);
+  } else {
+    const double value = t.number(d.key, Bounds::range(-largest_value, largest_value));
+    if (t.has(d.rate_key)) {
+      out.points = at_rate(t, d, {value});
+    } else if (d.load) {
+      out.points = {{0, value}};
+    } else {
+      throw t.error(d.key, "has no time to happen in",
+                    fmt::format("add {} = ..., or write points: {} = [[0, 0], [100, {}]]", d.rate_key, d.key, value));
+    }
+  }
+  for (Schedule::Point& p : out.points) p.value *= d.unit;
+  if (out.points.back().time > longest_time)
+    throw t.error(d.key, fmt::format("takes {:.3g} ps", out.points.back().time), "go faster");
+  return out;
+}
+
+KeyOf<GripLoad> axis_key(std::size_t axis, const char* standard_word, const std::string& meaning) {
+  const std::string name = axis_names[axis];
+  return KeyOf<GripLoad>::custom(
+      name, "", standard(fmt::format("\"{}\"", standard_word)), meaning,
+      [=](const TomlTable& t, const Scene&, GripLoad& grip) {
+        if (!t.has(name)) return;
+        if (t.is_string(name)) {
+          grip.axes[axis] = {t.word(name, Words<Is>{{"held", Is::held}, {"free", Is::free}}), {}, false};
+          return;
+        }
+        const Drive& example = drives[axis < 3 ? 0 : 4];
+        grip.axes[axis] = read_drive(t.table(name, example_of(example)), name, axis >= 3);
+      });
+}
+
+void check(const TomlTable& t, const Scene&, GripLoad& grip) {
+  const auto driven = [&](std::size_t axis) {
+    return grip.axes[axis].is == Is::moved || grip.axes[axis].is == Is::loaded;
+  };
+  if (grip.slide_free && driven(GripLoad::z))
+    throw t.error("z", "drives tubes that slide through the clamp", "set slide_free = false, or leave z out");
+  if (grip.each && grip.spin_free && driven(GripLoad::about_z))
+    throw t.error("about_z", "drives tubes that spin freely in their clamps",
+                  "set spin_free = false, or leave about_z out");
+}
+
+const KeyTable<GripLoad>& table_of_grip() {
+  using Key = KeyOf<GripLoad>;
+  static const KeyTable<GripLoad> table = {
+      "grip",
+      "any number of these: one end in a clamp; what is not said is held",
+      {Key::word("end", Words<GripLoad::End>{{"lower", GripLoad::End::lower}, {"upper", GripLoad::End::upper}},
+                 &GripLoad::end, required("\"upper\""), "\"lower\": the first elements; \"upper\": the last ones"),
+       Key::word("as", Words<bool>{{"disc", false}, {"each", true}}, &GripLoad::each, standard(),
+                 "one rigid \"disc\", or a clamp for \"each\" tube: all that is said below holds for every one"),
+       Key::integer("elements", 1, 1000, &GripLoad::depth, standard(), "of each tube, in the clamp")
+           .goes_as_length(-1),
+       axis_key(0, "held", "\"held\", \"free\", or what it follows: { displacement_nm = ... }, { force_nN = ... }"),
+       axis_key(1, "held", "likewise"),
+       axis_key(2, "held",
+                "likewise, or { strain = ... }; a list is points [[ps, value], ...], or values reached one after "
+                "another at rate_nm_per_ps, rate_per_ps or rate_nN_per_ps"),
+       axis_key(3, "held",
+                "rotation about the clamp's own centre: \"held\", \"free\", { rotation_deg = ... }, { rotation_turns "
+                "= ... } or { torque_nN_nm = ... }, with rates likewise"),
+       axis_key(4, "held", "likewise"), axis_key(5, "held", "likewise: twisting"),
+       Key::boolean("slide_free", &GripLoad::slide_free, standard(), "tubes slide through the clamp along its axis"),
+       Key::boolean("spin_free", &GripLoad::spin_free, standard(), "tubes turn about their own axes in the clamp"),
+       Key::boolean("tilt_free", &GripLoad::tilt_free, standard(), "tubes tilt in the clamp"),
+       Key::number("smooth_ps", unit::ps, Bounds::non_negative(longest_time), &GripLoad::smooth,
+                   otherwise("10", "twice the travel of sound along the tubes"),
+                   "speeds change over this time, at most over half of the line between two points")},
+      check};
+  return table;
+}
+
+// Which tubes.
+KeyTable<Selection> tubes_of_grip() {
+  using Key = KeyOf<Selection>;
+  return {"grip",
+          "",
+          {Key::custom("tubes", "", standard("\"all\""), "that it holds: \"all\", or numbers from 0: [0, 3]",
+                       [](const TomlTable& t, const Scene& scene, Selection& on) { read_tubes(t, scene, on); })},
+          {}};
+}
+
+}  // namespace
+
+SceneTable grip_table() {
+  SceneTable table = table_of_grip().doc();
+  const SceneTable tubes = tubes_of_grip().doc();
+  table.keys.insert(table.keys.begin() + 1, tubes.keys.begin(), tubes.keys.end());
+  return table;
+}
+
+SceneGrip read_grip(const TomlTable& t, const Scene& scene) {
+  SceneGrip out;
+  out.on = tubes_of_grip().read(t, scene);
+  out.grip = std::make_shared<const GripLoad>(table_of_grip().read(t, scene));
+  return out;
+}
+
+GripLoad grip_of(const Scene& scene, const SceneGrip& g, const Topology& topology) {
+  std::vector<int> elements;
+  for (const int t : selected_tubes(scene, g.on, topology)) {
+    const int length = topology.length_of(t);
+    if (2 * g.grip->depth > length)
+      throw InputError({scene.path, 0, "grip.elements"},
+                       fmt::format("is {}, and tube {} has {}", g.grip->depth, t, length),
+                       "leave half of each tube to the other end");
+    const int first = g.grip->end == GripLoad::End::lower ? 0 : length - g.grip->depth;
+    for (int e = 0; e < g.grip->depth; ++e) elements.push_back(topology.tube_begin[t] + first + e);
+  }
+  return g.grip->on_elements(std::move(elements), topology);
+}
+
+}  // namespace ropewalk

@@ -1,0 +1,77 @@
+// [[grip]] one end of some tubes in a clamp, as in a testing machine: a rigid disc that all of them are fastened to,
+// or a clamp for each tube.
+//
+// A clamp is a rigid body of elements with the motion v = V + W x (x - c), w = W, where c is its centre of mass. Each
+// of its six components is held at zero, follows a displacement, follows a force or a couple, or is free. The free
+// components are those of the rigid motion nearest to the velocities that the elements would have without the clamp
+// (Gauss' principle of least constraint), so that momentum and angular momentum are kept. Elements may be released
+// from the clamp: to slide along its axis, to spin about their own axes, to tilt.
+//
+// A drift by v dt leads off a circle: elements drift along the chord to where the turn takes them.
+#pragma once
+
+#include <array>
+
+#include "scene/loads/load_kind.hpp"
+#include "sim/dynamics/loads.hpp"
+#include "sim/dynamics/schedule.hpp"
+
+namespace ropewalk {
+
+struct GripAxis {
+  enum class Is { held, free, moved, loaded };
+  Is is = Is::held;
+  std::vector<Schedule::Point> points;  // nm or rad where it is moved, eV/nm or eV where it is loaded
+  bool strain = false;                  // the values are strains of the tubes, positive where the clamp pulls
+};
+
+class GripLoad : public Load {
+ public:
+  enum class End { lower, upper };  // first or last elements
+  static constexpr std::size_t z = 2, about_z = 5;
+
+  End end = End::upper;
+  bool each = false;             // a clamp for each tube
+  int depth = 1;                 // elements of each tube in the clamp
+  std::array<GripAxis, 6> axes;  // displacement along x, y, z, rotation about x, y, z
+  bool slide_free = false, spin_free = false, tilt_free = false;
+  double smooth = -1;  // ps, of the corners of all schedules; negative: as long as sound needs to and fro
+
+  // On these elements of a scene, `depth` of each tube after one another.
+  GripLoad on_elements(std::vector<int> on, const Topology& topology) const;
+  const Schedule& schedule(std::size_t axis) const { return schedules_[axis]; }
+  // "upper grip, one disc: z held, about z moved by up to ..." for the user.
+  std::string words() const;
+  // Whether nothing that the clamp holds feels the load on this axis.
+  bool is_unfelt(std::size_t axis, const State& state) const;
+
+  std::shared_ptr<Load> copy() const override { return std::make_shared<GripLoad>(*this); }
+  Order order() const override { return Order::grip; }
+  void add_forces(const State&, double time, std::vector<PointLoad>& out) const override;
+  void constrain(const Topology&, double time, double ahead, State&) const override;
+  bool needs_all_elements() const override { return true; }
+  std::string needs_time() const override;
+  std::optional<LoadEffect> effect() const override;
+  double ends() const override;
+
+ private:
+  struct Body;
+  std::vector<Body> bodies(const State& state) const;
+
+  std::array<Schedule, 6> schedules_;    // in nm, rad, eV/nm and eV
+  std::vector<double> mass_, inertia_;   // of the elements
+};
+
+// One [[grip]] of a scene, and the tubes that it holds.
+struct SceneGrip {
+  Selection on;
+  std::shared_ptr<const GripLoad> grip;
+};
+
+SceneTable grip_table();
+// The source of the elements must have been read.
+SceneGrip read_grip(const TomlTable& t, const Scene& scene);
+// Throws InputError for tubes that do not exist.
+GripLoad grip_of(const Scene& scene, const SceneGrip& grip, const Topology& topology);
+
+}  // namespace ropewalk

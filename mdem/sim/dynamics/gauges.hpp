@@ -1,0 +1,82 @@
+// Gauges at both ends of the rope: what loads and constraints give to the end elements, whatever drives them.
+//
+//   impulse of the force      sum of F dt + J
+//   impulse of the torque     sum of M dt + K + (x - c) x (F dt + J)     about the end's centre of mass c
+//   work                      sum of (F v + M w) dt + (J v + K w)
+//
+// with the loads F, M and the impulses J, K of the constraints on each element, and the velocities in the middle of a
+// kick. All three are sums over every kick: a mean force or torque over some time is exact, and its work closes the
+// account of energy. The turn of an end is that about z which brings its elements nearest to where they were at the
+// start, by least squares of the masses; of a single element, the turn of a direction across it. Whole turns are
+// counted by following it.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "sim/dynamics/loads.hpp"
+#include "sim/state/plain_vector.hpp"
+
+namespace ropewalk {
+
+enum End : std::size_t { lower_end, upper_end };
+using EndElements = std::array<std::vector<int>, 2>;  // of the lower and of the upper end
+
+// First and last element of every tube.
+EndElements tube_ends(const Topology& topology);
+Vector3 centre_of(const Topology& topology, const State& state, const std::vector<int>& elements);
+
+// On the rope, at one end.
+struct EndReading {
+  Vector3 force = Vector3::Zero();   // eV/nm
+  Vector3 torque = Vector3::Zero();  // eV, about the end's centre
+  double turned = 0;                 // rad about z since the start, not reduced to one turn
+  double work = 0;                   // eV since the start
+};
+using EndReadings = std::array<EndReading, 2>;
+
+class Gauges {
+ public:
+  // What is summed up; all that the future of a gauge depends on.
+  struct Sum {
+    PlainVector force_time{}, torque_time{};  // since the last reading
+    double turned = 0, work = 0;          // since the start
+  };
+  struct Sums {
+    std::array<Sum, 2> of;
+    double since = 0;  // ps, of the last reading
+  };
+
+  Gauges() = default;
+  // `start`: what turns are counted from.
+  Gauges(const Topology& topology, EndElements ends, const State& start);
+
+  const EndElements& ends() const { return ends_; }
+  void add_loads(const State& state, const std::vector<PointLoad>& loads, double dt);
+  void add_constraints(const State& state, const std::vector<ConstraintImpulse>& impulses);
+  // Counts the turn, which must have changed by less than half a turn since it was called last.
+  void follow(const State& state);
+  // What another program did is not known here.
+  void forget_work();
+
+  // Means since the last reading, which must be earlier.
+  EndReadings read(const State& state);
+  // The same from what acts at this moment, where no time has passed.
+  EndReadings read_still(const State& state, const std::vector<ConstraintImpulse>& reactions,
+                         const std::vector<PointLoad>& loads);
+
+  Sums sums;
+
+ private:
+  void add(const State& state, int element, const Vector3& force, const Vector3& torque, double work);
+  void locate(const State& state);
+  Vector3 arm_now(const State& state, std::size_t end, std::size_t k) const;
+
+  EndElements ends_;
+  std::vector<signed char> end_of_;             // of every element; -1: neither
+  std::array<std::vector<double>, 2> mass_;     // of the elements at each end
+  std::array<std::vector<Vector3>, 2> arm_;  // of the start
+  std::array<Vector3, 2> centre_{Vector3::Zero(), Vector3::Zero()};
+};
+
+}  // namespace ropewalk

@@ -1,0 +1,78 @@
+#include "sim/dynamics/schedule.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ropewalk {
+
+Schedule::Schedule(std::vector<Point> points, double smooth) : points_(std::move(points)) {
+  std::vector<double> slope;
+  for (std::size_t k = 0; k + 1 < points_.size(); ++k)
+    slope.push_back((points_[k + 1].value - points_[k].value) / (points_[k + 1].time - points_[k].time));
+  const auto speed_at = [&](std::size_t point) {
+    if (point == 0 || point == slope.size() || slope[point - 1] * slope[point] <= 0) return 0.0;
+    return std::fabs(slope[point - 1]) < std::fabs(slope[point]) ? slope[point - 1] : slope[point];
+  };
+  for (std::size_t k = 0; k < slope.size(); ++k) {
+    Line line{points_[k].time, points_[k + 1].time - points_[k].time, points_[k].value};
+    line.smooth = std::min(smooth, 0.5 * line.length);
+    line.enter = speed_at(k);
+    line.leave = speed_at(k + 1);
+    const double rise = slope[k] * line.length;
+    line.along = (rise - 0.5 * line.smooth * (line.enter + line.leave)) / (line.length - line.smooth);
+    lines_.push_back(line);
+  }
+}
+
+double Schedule::Line::rate(double time) const {
+  const double since = time - begin, left = length - since;
+  if (since < smooth) return enter + (along - enter) * since / smooth;
+  if (left < smooth) return leave + (along - leave) * left / smooth;
+  return along;
+}
+
+double Schedule::Line::value(double time) const {
+  const double since = time - begin, left = length - since;
+  if (since < smooth) return from + 0.5 * since * (enter + rate(time));
+  const double reached = from + 0.5 * smooth * (enter + along);
+  if (left < smooth)
+    return reached + along * (length - 2 * smooth) + 0.5 * (smooth - left) * (along + rate(time));
+  return reached + along * (since - smooth);
+}
+
+const Schedule::Line* Schedule::at(double time) const {
+  const auto after = std::upper_bound(lines_.begin(), lines_.end(), time,
+                                      [](double t, const Line& line) { return t < line.begin; });
+  if (after == lines_.begin() || time >= ends()) return nullptr;
+  return &*std::prev(after);
+}
+
+double Schedule::value(double time) const {
+  if (const Line* line = at(time)) return line->value(time);
+  return time < ends() ? first() : last();
+}
+
+double Schedule::rate(double time) const {
+  const Line* line = at(time);
+  return line ? line->rate(time) : 0.0;
+}
+
+bool Schedule::constant() const {
+  return std::all_of(points_.begin(), points_.end(), [&](const Point& p) { return p.value == first(); });
+}
+
+double Schedule::largest() const {
+  double most = 0;
+  for (const Point& p : points_) most = std::max(most, std::fabs(p.value));
+  return most;
+}
+
+double Schedule::largest_rate() const {
+  double most = 0;
+  for (std::size_t k = 0; k + 1 < points_.size(); ++k)
+    most = std::max(most, std::fabs((points_[k + 1].value - points_[k].value) /
+                                    (points_[k + 1].time - points_[k].time)));
+  return most;
+}
+
+}  // namespace ropewalk

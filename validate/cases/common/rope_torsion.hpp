@@ -1,0 +1,13 @@
+// Torque, tension, energy and pressure of ropes in a testing machine, against concentric helices.
+#pragma once
+
+#include "cases/common/torsion_machine.hpp"
+#include "core/case.hpp"
+
+namespace ropewalk {
+
+CaseResult run_rope_torsion(const CaseContext& context, RopeInMachine::Length length);
+// What both cases have in common.
+Case rope_torsion_case();
+
+}  // namespace ropewalk
