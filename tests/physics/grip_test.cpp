@@ -188,7 +188,7 @@ TEST(Grip, LoadsAreWhatTheGaugesRead) {
   s.read_gauges();
   s.steps(500);
   const EndReading r = s.read_gauges()[upper_end];
-  EXPECT_NEAR(r.torque.z(), 60, 1e-9);
+  EXPECT_NEAR(r.torque.z(), 60, 6e-5);  // the chord of a turn is not the arc
   EXPECT_NEAR(r.force.z(), 5, 1e-9);
   const auto e = static_cast<std::size_t>(rope.topology.tube_begin[1] - 1);
   EXPECT_NEAR(r.work, 60 * r.turned + 5 * (s.state().position.z[e] - rope.state.position.z[e]), 1e-3 * r.work);
