@@ -1,4 +1,4 @@
-// What each tube of a state bears, as `ropewalk observe --tubes` prints it.
+// The table of `ropewalk observe --tubes`: tension, twist, curvature, slip and pressure of every tube.
 #pragma once
 
 #include <string>

@@ -18,7 +18,8 @@ class FixGrip : public LMP::Fix {
 
   // Work per time of the loads on this rank's elements, eV/ps.
   double own_power();
-  // Sets constrained velocities after a kick by the present forces, half as long as a drift; returns this rank's share of the work, eV.
+  // Sets constrained velocities after a kick by the present forces. The kick lasts half as long as the drift.
+  // Returns this rank's share of the work, eV.
   double constrain(double time, double kick);
   // Sets the constrained components of `linear` and `angular` to zero; both are arrays like v and omega.
   void free_parts(double time, double** linear, double** angular);
@@ -38,9 +39,9 @@ class FixGrip : public LMP::Fix {
   LoadsAndConstraints acting_;
   State state_;
   Forces forces_;
-  std::vector<int> own_;                      // all elements of this state
-  std::vector<ConstraintImpulse> impulses_;   // of the last kick
-  std::vector<PointLoad> loads_;              // of the last evaluation, on this rank's elements
+  std::vector<int> own_;                     // all elements of this state
+  std::vector<ConstraintImpulse> impulses_;  // of the last kick
+  std::vector<PointLoad> loads_;             // of the last evaluation, on this rank's elements
 };
 
 }  // namespace ropewalk::lammps

@@ -62,7 +62,8 @@ LoadingReference loading_reference(const Topology& topology, const State& start,
                                    EndElements ends, double spacing, double neighbour_radius,
                                    std::shared_ptr<const ContactLaw> law) {
   LoadingReference out;
-  out.ends_apart = (centre_of(topology, start, ends[upper_end]) - centre_of(topology, start, ends[lower_end])).norm();
+  out.ends_apart =
+      (centre_of(topology, start, ends[upper_end]) - centre_of(topology, start, ends[lower_end])).norm();
   out.ends = std::move(ends);
   out.law = std::move(law);
   out.cell = 0.5 * std::sqrt(3.0) * spacing * spacing;
@@ -84,7 +85,8 @@ LoadingReference loading_reference(const Topology& topology, const State& start,
   }
   double nearest = std::numeric_limits<double>::infinity();
   for (int t = 0; t < topology.tubes(); ++t)
-    if (shells.internal[static_cast<std::size_t>(t)]) nearest = std::min(nearest, out.radius[static_cast<std::size_t>(t)]);
+    if (shells.internal[static_cast<std::size_t>(t)])
+      nearest = std::min(nearest, out.radius[static_cast<std::size_t>(t)]);
   for (int t = 0; t < topology.tubes(); ++t)
     if (shells.internal[static_cast<std::size_t>(t)] &&
         out.radius[static_cast<std::size_t>(t)] < nearest + 0.1 * spacing)
@@ -98,8 +100,8 @@ std::vector<double> tensions(const Topology& topology, const State& state, int t
   for (int e = topology.tube_begin[tube]; e + 1 < topology.tube_begin[tube + 1]; ++e) {
     const auto i = static_cast<std::size_t>(e), j = i + 1;
     const Vector3 d = state.position[j] - state.position[i];
-    const BondForce<double> f = bond_energy_and_gradient(type.bond, type.element_length, d,
-                                                         frame_of(state.orientation[i]), frame_of(state.orientation[j]));
+    const BondForce<double> f = bond_energy_and_gradient(
+        type.bond, type.element_length, d, frame_of(state.orientation[i]), frame_of(state.orientation[j]));
     out.push_back(-f.force_j.dot(d.normalized()));
   }
   return out;
@@ -129,7 +131,8 @@ double tube_pressure(const Topology& topology, const State& state, const Contact
   return virial / (4 * cell * count * topology.type_of(tube).element_length);
 }
 
-std::vector<double> tube_pressures(const Topology& topology, const State& state, const LoadingReference& reference) {
+std::vector<double> tube_pressures(const Topology& topology, const State& state,
+                                   const LoadingReference& reference) {
   std::vector<double> out(static_cast<std::size_t>(topology.tubes()));
 #pragma omp parallel for schedule(dynamic)
   for (int t = 0; t < topology.tubes(); ++t)

@@ -1,5 +1,5 @@
-// What a loaded rope bears: between its ends, along its tubes and across it. Everything follows from the state and the
-// start alone.
+// Tension, curvature, slip and pressure of the tubes of a loaded rope, and the distance between its ends. All of
+// them follow from the present state and the state at the start.
 #pragma once
 
 #include <memory>
@@ -12,16 +12,17 @@
 
 namespace ropewalk {
 
-// Of the start, that later states are held against.
+// Quantities of the state at the start, from which strain and slip are counted.
 struct LoadingReference {
   EndElements ends;
   double ends_apart = 0;                        // nm, between the centres of the ends
   std::vector<std::pair<int, int>> neighbours;  // tubes, of equal length
-  std::vector<double> offset;                   // nm: element by element along each pair, as slip_of() has it
-  std::vector<double> radius;                   // nm, of each tube from the axis of the rope; empty: no common length
-  std::vector<int> core;                        // the internal tubes nearest to the axis
-  double cell = 0;                              // nm^2, of the cross-section for each tube
-  std::shared_ptr<const ContactLaw> law;        // null: no contact
+  std::vector<double>
+      offset;  // nm: element by element along each pair, the displacement of the second tube against the first
+  std::vector<double> radius;             // nm, of each tube from the axis of the rope; empty: no common length
+  std::vector<int> core;                  // the internal tubes nearest to the axis
+  double cell = 0;                        // nm^2, of the cross-section for each tube
+  std::shared_ptr<const ContactLaw> law;  // null: no contact
 };
 LoadingReference loading_reference(const Topology& topology, const State& start, const RopeShells& shells,
                                    EndElements ends, double spacing, double neighbour_radius,
@@ -52,13 +53,13 @@ std::vector<TubeLoading> tube_loadings(const Topology& topology, const State& st
 // eV/nm, in each bond of a tube.
 std::vector<double> tensions(const Topology& topology, const State& state, int tube);
 
-// The pressure of the contact on a tube (eV/nm^3), over up to eight elements in its middle, of the length L: half of the virial across the
-// tube of the forces F of all others on it, for each dimension and volume,
+// The contact pressure on a tube (eV/nm^3), from the virial of the contact forces F_ij that act on its elements i:
 //
-//   p = 1/(4 A L) sum F_ij (x_i - x_j) across
+//   p = 1/(4 A L) sum F_ij (x_i - x_j)
 //
-// with the area A of a tube's cell. In a rope that rests it is near zero: attraction at some distance balances the
-// repulsion of the neighbours.
+// Only the components across the tube enter. The sum runs over up to eight elements in the middle of the tube, L is
+// their length, and A is the area of a tube's cell in the cross-section. The pressure of a straight rope at rest is
+// near zero, because the attraction of second neighbours balances the repulsion of the first ones.
 double tube_pressure(const Topology& topology, const State& state, const ContactLaw& law, double cell, int tube);
 // Of every tube.
 std::vector<double> tube_pressures(const Topology& topology, const State& state, const LoadingReference& reference);

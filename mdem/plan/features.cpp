@@ -95,7 +95,7 @@ void add_load(const LoadEffect& load, const Prepared& p, SceneFeatures& f) {
 bool any_tube_between_grips(const Prepared& p) {
   std::array<std::set<int>, 2> tubes;
   for (const GripLoad* grip : p.loads.of<GripLoad>())
-    for (const int e : grip->elements) tubes[grip->end == GripLoad::End::upper].insert(p.topology.tube_of(e));
+    for (const int e : grip->elements) tubes[grip->end].insert(p.topology.tube_of(e));
   return std::any_of(tubes[0].begin(), tubes[0].end(), [&](int t) { return tubes[1].count(t) > 0; });
 }
 

@@ -1,4 +1,4 @@
-// Charts of the log: quantities against time, against steps, or against one another.
+// Charts of columns of the log. The horizontal axis is the time, the step, or another column such as the rotation.
 #pragma once
 
 #include <functional>

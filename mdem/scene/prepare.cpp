@@ -104,10 +104,9 @@ void refuse_grips(const Scene& scene, const Prepared& p) {
                        "give each its own end or its own tubes");
     }
     held.insert(held.end(), grip->elements.begin(), grip->elements.end());
-    constexpr const char* names[] = {"x", "y", "z", "about_x", "about_y", "about_z"};
     for (std::size_t axis = 0; axis < grip->axes.size(); ++axis)
       if (grip->is_unfelt(axis, p.state))
-        throw InputError({scene.path, 0, fmt::format("grip.{}", names[axis])},
+        throw InputError({scene.path, 0, fmt::format("grip.{}", grip_axis_names[axis])},
                          "is a load that nothing in the clamp feels: the elements are free of it",
                          "set slide_free, spin_free or tilt_free to false");
   }
@@ -256,7 +255,7 @@ Prepared prepare(Scene& scene) {
 EndElements ends_of(const LoadsAndConstraints& loads, const Topology& topology) {
   EndElements held;
   for (const GripLoad* grip : loads.of<GripLoad>()) {
-    std::vector<int>& elements = held[grip->end == GripLoad::End::upper ? upper_end : lower_end];
+    std::vector<int>& elements = held[grip->end];
     elements.insert(elements.end(), grip->elements.begin(), grip->elements.end());
   }
   EndElements ends = tube_ends(topology);

@@ -34,14 +34,14 @@ struct Rope {
     in.damping.contact = {20, spacing, 1.5 * spacing};
     in.damping.bond.rate = 0.2;
   }
-  GripLoad at(GripLoad grip, GripLoad::End end) const {
+  GripLoad at(GripLoad grip, End end) const {
     grip.end = end;
-    return grip.on_elements(tube_ends(topology)[end == GripLoad::End::upper ? upper_end : lower_end], topology);
+    return grip.on_elements(tube_ends(topology)[end], topology);
   }
   Simulation make(const GripLoad& lower, const GripLoad& upper, double dt = 0.01) const {
     LoadsAndConstraints loads;
-    loads.add(at(lower, GripLoad::End::lower));
-    loads.add(at(upper, GripLoad::End::upper));
+    loads.add(at(lower, lower_end));
+    loads.add(at(upper, upper_end));
     return Simulation(topology, in, loads, state, dt);
   }
 };

@@ -20,8 +20,6 @@ using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6>;
 using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1>;
 
-constexpr const char* axis_names[] = {"x", "y", "z", "about_x", "about_y", "about_z"};
-
 Matrix3 cross(const Vector3& v) {
   Matrix3 m;
   m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
@@ -206,7 +204,7 @@ GripLoad GripLoad::on_elements(std::vector<int> on, const Topology& topology) co
   for (std::size_t k = 0; k < axes.size(); ++k) {
     std::vector<Schedule::Point> points = axes[k].points;
     for (Schedule::Point& p : points)
-      if (axes[k].strain) p.value *= end == End::upper ? length : -length;
+      if (axes[k].strain) p.value *= end == upper_end ? length : -length;
     out.schedules_[k] = Schedule(points, smooth < 0 ? 2 * sound : smooth);
   }
   return out;
@@ -214,10 +212,7 @@ GripLoad GripLoad::on_elements(std::vector<int> on, const Topology& topology) co
 
 std::string GripLoad::needs_time() const {
   for (std::size_t k = 0; k < axes.size(); ++k) {
-    const bool steady =
-        std::all_of(axes[k].points.begin(), axes[k].points.end(),
-                    [&](const Schedule::Point& p) { return p.value == axes[k].points.front().value; });
-    if (axes[k].is == Is::moved || !steady) return fmt::format("the schedule of grip.{} needs time", axis_names[k]);
+    if (axes[k].is == Is::moved || !Schedule(axes[k].points).constant()) return fmt::format("the schedule of grip.{} needs time", grip_axis_names[k]);
   }
   return "";
 }
@@ -242,7 +237,7 @@ std::string GripLoad::words() const {
   for (std::size_t k = 0; k < axes.size(); ++k) {
     const GripAxis& a = axes[k];
     const bool turn = k >= 3;
-    const std::string name = turn ? fmt::format("about {}", "xyz"[k - 3]) : std::string(axis_names[k]);
+    const std::string name = turn ? fmt::format("about {}", "xyz"[k - 3]) : std::string(grip_axis_names[k]);
     if (a.is == Is::held) held += (held.empty() ? "" : ", ") + name;
     if (a.is == Is::free) rest += fmt::format("; {} free", name);
     if (a.is != Is::moved && a.is != Is::loaded) continue;
@@ -255,7 +250,7 @@ std::string GripLoad::words() const {
     if (most > std::fabs(last)) rest += fmt::format(" by way of {:.4g}", most / unit);
     if (a.points.size() > 1) rest += fmt::format(" in {:.4g} ps", a.points.back().time);
   }
-  std::string text = fmt::format("{} grip, {}: ", end == End::upper ? "upper" : "lower",
+  std::string text = fmt::format("{} grip, {}: ", end == upper_end ? "upper" : "lower",
                                  each ? "a clamp for each tube" : "one disc");
   const auto is_held = [](const GripAxis& a) { return a.is == Is::held; };
   text += held.empty()                                         ? "nothing held"
@@ -373,7 +368,7 @@ GripAxis read_drive(const TomlTable& t, const std::string& axis, bool rotation) 
 }
 
 KeyOf<GripLoad> axis_key(std::size_t axis, const char* standard_word, const std::string& meaning) {
-  const std::string name = axis_names[axis];
+  const std::string name = grip_axis_names[axis];
   return KeyOf<GripLoad>::custom(
       name, "", standard(fmt::format("\"{}\"", standard_word)), meaning,
       [=](const TomlTable& t, const Scene&, GripLoad& grip) {
@@ -403,7 +398,7 @@ const KeyTable<GripLoad>& table_of_grip() {
   static const KeyTable<GripLoad> table = {
       "grip",
       "any number of these: one end in a clamp; what is not said is held",
-      {Key::word("end", Words<GripLoad::End>{{"lower", GripLoad::End::lower}, {"upper", GripLoad::End::upper}},
+      {Key::word("end", Words<End>{{"lower", lower_end}, {"upper", upper_end}},
                  &GripLoad::end, required("\"upper\""), "\"lower\": the first elements; \"upper\": the last ones"),
        Key::word("as", Words<bool>{{"disc", false}, {"each", true}}, &GripLoad::each, standard(),
                  "one rigid \"disc\", or a clamp for \"each\" tube: all that is said below holds for every one"),
@@ -462,7 +457,7 @@ GripLoad grip_of(const Scene& scene, const SceneGrip& g, const Topology& topolog
       throw InputError({scene.path, 0, "grip.elements"},
                        fmt::format("is {}, and tube {} has {}", g.grip->depth, t, length),
                        "leave half of each tube to the other end");
-    const int first = g.grip->end == GripLoad::End::lower ? 0 : length - g.grip->depth;
+    const int first = g.grip->end == lower_end ? 0 : length - g.grip->depth;
     for (int e = 0; e < g.grip->depth; ++e) elements.push_back(topology.tube_begin[t] + first + e);
   }
   return g.grip->on_elements(std::move(elements), topology);

@@ -1,11 +1,11 @@
-// [[grip]] one end of some tubes in a clamp, as in a testing machine: a rigid disc that all of them are fastened to,
-// or a clamp for each tube.
+// [[grip]] one end of some tubes in a clamp, as in a testing machine: a rigid disc that all of them are fastened
+// to, or a clamp for each tube.
 //
-// A clamp is a rigid body of elements with the motion v = V + W x (x - c), w = W, where c is its centre of mass. Each
-// of its six components is held at zero, follows a displacement, follows a force or a couple, or is free. The free
-// components are those of the rigid motion nearest to the velocities that the elements would have without the clamp
-// (Gauss' principle of least constraint), so that momentum and angular momentum are kept. Elements may be released
-// from the clamp: to slide along its axis, to spin about their own axes, to tilt.
+// A clamp is a rigid body of elements with the motion v = V + W x (x - c), w = W, where c is its centre of mass.
+// Each of its six components is held at zero, follows a displacement, follows a force or a couple, or is free. The
+// free components are those of the rigid motion nearest to the velocities that the elements would have without the
+// clamp (Gauss' principle of least constraint), so that momentum and angular momentum are kept. Elements may be
+// released from the clamp: to slide along its axis, to spin about their own axes, to tilt.
 //
 // A drift by v dt leads off a circle: elements drift along the chord to where the turn takes them.
 #pragma once
@@ -13,10 +13,13 @@
 #include <array>
 
 #include "scene/loads/load_kind.hpp"
-#include "sim/dynamics/loads.hpp"
+#include "sim/dynamics/gauges.hpp"
 #include "sim/dynamics/schedule.hpp"
 
 namespace ropewalk {
+
+// "x" to "about_z", in the order of GripLoad::axes.
+inline constexpr const char* grip_axis_names[] = {"x", "y", "z", "about_x", "about_y", "about_z"};
 
 struct GripAxis {
   enum class Is { held, free, moved, loaded };
@@ -27,10 +30,9 @@ struct GripAxis {
 
 class GripLoad : public Load {
  public:
-  enum class End { lower, upper };  // first or last elements
   static constexpr std::size_t z = 2, about_z = 5;
 
-  End end = End::upper;
+  End end = upper_end;           // first or last elements
   bool each = false;             // a clamp for each tube
   int depth = 1;                 // elements of each tube in the clamp
   std::array<GripAxis, 6> axes;  // displacement along x, y, z, rotation about x, y, z
@@ -52,14 +54,14 @@ class GripLoad : public Load {
   bool needs_all_elements() const override { return true; }
   std::string needs_time() const override;
   std::optional<LoadEffect> effect() const override;
-  double ends() const override;
+  double ends() const;  // ps, of the last schedule
 
  private:
   struct Body;
   std::vector<Body> bodies(const State& state) const;
 
-  std::array<Schedule, 6> schedules_;    // in nm, rad, eV/nm and eV
-  std::vector<double> mass_, inertia_;   // of the elements
+  std::array<Schedule, 6> schedules_;   // in nm, rad, eV/nm and eV
+  std::vector<double> mass_, inertia_;  // of the elements
 };
 
 // One [[grip]] of a scene, and the tubes that it holds.

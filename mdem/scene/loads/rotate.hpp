@@ -22,7 +22,6 @@ class PrescribedRotation : public Load {
                      bool free_spin = false)
       : Load(std::move(on)), rate(turn_rate), angle(last_angle), axial_free(free_axial), spin_free(free_spin) {}
 
-  double ends() const override { return rate != 0 ? angle / rate : 0.0; }
   double speed(double time) const { return time >= 0 && std::fabs(rate * time) < std::fabs(angle) ? rate : 0.0; }
 
   std::shared_ptr<Load> copy() const override { return std::make_shared<PrescribedRotation>(*this); }

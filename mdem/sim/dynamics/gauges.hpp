@@ -4,11 +4,12 @@
 //   impulse of the torque     sum of M dt + K + (x - c) x (F dt + J)     about the end's centre of mass c
 //   work                      sum of (F v + M w) dt + (J v + K w)
 //
-// with the loads F, M and the impulses J, K of the constraints on each element, and the velocities in the middle of a
-// kick. All three are sums over every kick: a mean force or torque over some time is exact, and its work closes the
-// account of energy. The turn of an end is that about z which brings its elements nearest to where they were at the
-// start, by least squares of the masses; of a single element, the turn of a direction across it. Whole turns are
-// counted by following it.
+// with the loads F, M and the impulses J, K of the constraints on each element, and the velocities in the middle of
+// a kick. The sums run over every kick, so that mean forces and torques are exact and their work closes the account
+// of energy.
+//
+// The rotation of an end about z is the best fit, weighted by mass, of the elements' positions at the start to
+// their present positions. For a single element it is the rotation of its body axis e1. Whole turns are counted.
 #pragma once
 
 #include <array>
@@ -40,7 +41,7 @@ class Gauges {
   // What is summed up; all that the future of a gauge depends on.
   struct Sum {
     PlainVector force_time{}, torque_time{};  // since the last reading
-    double turned = 0, work = 0;          // since the start
+    double turned = 0, work = 0;              // since the start
   };
   struct Sums {
     std::array<Sum, 2> of;
@@ -73,8 +74,8 @@ class Gauges {
   Vector3 arm_now(const State& state, std::size_t end, std::size_t k) const;
 
   EndElements ends_;
-  std::vector<signed char> end_of_;             // of every element; -1: neither
-  std::array<std::vector<double>, 2> mass_;     // of the elements at each end
+  std::vector<signed char> end_of_;          // of every element; -1: neither
+  std::array<std::vector<double>, 2> mass_;  // of the elements at each end
   std::array<std::vector<Vector3>, 2> arm_;  // of the start
   std::array<Vector3, 2> centre_{Vector3::Zero(), Vector3::Zero()};
 };

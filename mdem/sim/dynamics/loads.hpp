@@ -52,8 +52,6 @@ class Load {
   virtual std::string needs_time() const { return ""; }
   // None where it cannot be said beforehand.
   virtual std::optional<LoadEffect> effect() const { return std::nullopt; }
-  // ps, from when on nothing changes any more.
-  virtual double ends() const { return 0; }
 
  protected:
   explicit Load(std::vector<int> on = {}) : elements(std::move(on)) {}
@@ -117,8 +115,8 @@ void constrain(const Topology& topology, const LoadsAndConstraints& loads, const
                double time, double ahead, const Forces& total, double kick, State& state,
                std::vector<ConstraintImpulse>& out);
 
-// What the constraints hold `elements` back with against the forces `total`, where nothing moves: forces and torques
-// in the place of impulses (eV/nm, eV).
+// The reactions of the constraints on `elements` at rest: they balance the forces `total` along every constrained
+// component. The result holds forces and torques (eV/nm, eV) in the place of impulses.
 std::vector<ConstraintImpulse> reactions_at_rest(const Topology& topology, const LoadsAndConstraints& loads,
                                                  const std::vector<int>& elements, const Forces& total,
                                                  const State& state);

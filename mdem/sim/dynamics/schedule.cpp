@@ -67,12 +67,4 @@ double Schedule::largest() const {
   return most;
 }
 
-double Schedule::largest_rate() const {
-  double most = 0;
-  for (std::size_t k = 0; k + 1 < points_.size(); ++k)
-    most = std::max(most, std::fabs((points_[k + 1].value - points_[k].value) /
-                                    (points_[k + 1].time - points_[k].time)));
-  return most;
-}
-
 }  // namespace ropewalk

@@ -1,5 +1,5 @@
-// A value that follows a list of points over time: straight lines between them, constant before the first and after
-// the last one.
+// A value prescribed over time by a list of points. Between two points the value changes evenly. Before the first
+// point and after the last one the value is constant.
 //
 // A corner is a jump of the speed, which sends a wave along the rope. With smooth > 0 (ps) the speed changes evenly
 // over that time instead, at most over half of the line. Every point is still met at its time: at a reversal, at a
@@ -30,7 +30,6 @@ class Schedule {
   double first() const { return points_.empty() ? 0.0 : points_.front().value; }
   double last() const { return points_.empty() ? 0.0 : points_.back().value; }
   double largest() const;       // of its absolute values
-  double largest_rate() const;  // of its speeds, without smoothing
 
  private:
   // Between two points: from the speed `enter` to `along` in the time `smooth`, and on to `leave` in the last of it.

@@ -19,7 +19,7 @@ constexpr long most_steps = 400000;
 
 GripLoad clamp(const Topology& topology, End end, bool free_length, bool spins_free) {
   GripLoad grip;
-  grip.end = end == upper_end ? GripLoad::End::upper : GripLoad::End::lower;
+  grip.end = end;
   grip.spin_free = spins_free;
   if (free_length) grip.axes[GripLoad::z] = {GripAxis::Is::free, {}, false};
   return grip.on_elements(tube_ends(topology)[end], topology);
@@ -177,7 +177,6 @@ RopeInMachine::Reading RopeInMachine::theory(const ParameterSet& oracle, double 
   }
   out.tension = kept == Length::held ? tension(1) : 0;
   out.torque = (energy(twist + step, out.stretch) - energy(twist - step, out.stretch)) / (2 * step) / bond_stretch_;
-  out.crowding = (crowding(twist + step) - crowding(twist - step)) / (2 * step);
   out.energy = (energy(twist, out.stretch) - energy(0, 1)) * bonded();
   double stretched = 0;
   for (const double rho : radii)

@@ -1,23 +1,28 @@
-// A hexagonal rope in a testing machine: two clamps hold the ends of all tubes as rigid discs. It is wound evenly into
-// concentric helices, clamps included, and brought to rest, so that no bay differs from another.
+// A hexagonal rope in a testing machine: two clamps hold the ends of all tubes as rigid discs. It is wound evenly
+// into concentric helices, clamps included, and brought to rest, so that no bay differs from another.
 //
-// The energy of such a rope per tube and length has three parts. With the rest radii rho, the twist phi (rad per length
-// of the relaxed rope) and the stretch lambda (of that length), s = sqrt(lambda^2 + rho^2 phi^2), tan(theta) = rho phi
-// /lambda:
+// The energy of such a rope per tube and length has three parts. With the rest radii rho, the twist phi (rad per
+// length of the relaxed rope) and the stretch lambda (of that length), s = sqrt(lambda^2 + rho^2 phi^2), tan(theta)
+// = rho phi /lambda:
 //
-//   bonds      exact, if the radii stay: a chain with the strain s - 1, the twist phi cos(theta) and the curvature phi
-//              sin(theta). For Hooke's bonds EA (s-1)^2/2 + GJ phi^2 cos^2(theta)/2 + EI phi^2 sin^2(theta)/2
-//   cohesion   -Gamma/s, Gamma what a tube binds with per length of it. It shortens the rope until the bonds bear it:
-//              everything is counted from there. Outer tubes have less of it, and clamps keep all equally long. Of the
-//              line law it is larger by (phi d)^2/4, d the distance of neighbours: lines that wind about each other are
-//              nearer to one another than parallel ones, d^2 + x^2 (1 - (phi d)^2/2) at the arc x between two points
-//   crowding   neighbours in a twisted rope lie as on a surface of the curvature K = 3 phi^2 (G. M. Grason, Rev. Mod.
+//   bonds      A chain has the strain s - 1, the twist phi cos(theta) and the curvature phi sin(theta). This part
+//   is
+//              exact if the radii do not change. For Hooke's bonds it is EA (s-1)^2/2 + GJ phi^2 cos^2(theta)/2 +
+//              EI phi^2 sin^2(theta)/2
+//   cohesion   -Gamma/s, Gamma what a tube binds with per length of it. It shortens the rope until the bonds bear
+//   it:
+//              everything is counted from there. Outer tubes have less of it, and clamps keep all equally long. Of
+//              the line law it is larger by (phi d)^2/4, d the distance of neighbours: lines that wind about each
+//              other are nearer to one another than parallel ones, d^2 + x^2 (1 - (phi d)^2/2) at the arc x between
+//              two points
+//   crowding   neighbours in a twisted rope lie as on a surface of the curvature K = 3 phi^2 (G. M. Grason, Rev.
+//   Mod.
 //              Phys. 87, 401 (2015), DOI 10.1103/RevModPhys.87.401). To lay a disc of the radius R of a hexagonal
-//              lattice with the Young's modulus Y upon it costs pi Y K^2 R^6/384, and draws its middle apart with the
-//              stress Y K R^2/16. Two tubes have room enough
+//              lattice with the Young's modulus Y upon it costs pi Y K^2 R^6/384, and draws its middle apart with
+//              the stress Y K R^2/16. Two tubes have room enough
 //
-// M = dU/dphi, T = dU/dlambda. On the core presses the tension of the tubes around it, E (phi R)^4/8 where the length
-// is held, with E = EA for each cell of the cross-section, and nothing where it is free.
+// The torque is M = dU/dphi and the tension T = dU/dlambda. At held length the tension of the outer tubes presses
+// on the core with E (phi R)^4/8, where E is EA over the area of a cell. At free length this pressure is zero.
 #pragma once
 
 #include <cmath>
@@ -38,15 +43,14 @@ struct RopeInMachine {
     double energy = 0;               // eV per tube, above the straight rope
     double stretch_share = 0;        // of the energy of the bonds
     double core_pressure = 0;        // eV/nm^3
-    double crowding = 0;             // exact: torque per tube of the third part, eV
   };
 
   ParameterSet set;
   int tubes = 0;
   Topology topology;
   Interaction interaction;
-  double spacing = 0;  // nm
-  double length = 0;   // nm, between the clamps, relaxed
+  double spacing = 0;            // nm
+  double length = 0;             // nm, between the clamps, relaxed
   std::vector<double> radii;     // nm, of the tubes
   std::vector<double> cohesion;  // eV/nm, of the tubes
   double modulus = 0;            // eV/nm^3, Y of the lattice
@@ -54,9 +58,9 @@ struct RopeInMachine {
   // Two tubes side by side, or a hexagonal number.
   RopeInMachine(const ParameterSet& set, int tubes, int elements);
   double bonded() const { return (topology.length_of(0) - 1) * set.element_length; }  // nm, of each tube
-  double outer_radius() const;                                                         // nm, of the outermost axes
-  double cell() const { return 0.5 * std::sqrt(3.0) * spacing * spacing; }             // nm^2, of each tube
-  double disc_radius() const { return std::sqrt(tubes * cell() / units::pi); }         // nm, of the cross-section
+  double outer_radius() const;                                                        // nm, of the outermost axes
+  double cell() const { return 0.5 * std::sqrt(3.0) * spacing * spacing; }            // nm^2, of each tube
+  double disc_radius() const { return std::sqrt(tubes * cell() / units::pi); }        // nm, of the cross-section
   double twist_at(double angle) const;  // rad/nm, where the outermost tubes lean by this angle
 
   // With the spins of all tubes held in the clamps or free.
