@@ -43,6 +43,8 @@ struct Verbs {
   ReportArguments report;
   ErrorsArguments errors;
   CompareArguments compare;
+  SweepArguments sweep;
+  GatherArguments gather;
   PlanArguments plan;
   ExportArguments to_lammps;
   ImportArguments from_lammps;
@@ -172,6 +174,35 @@ void add_energy(CLI::App& app, Verbs& v) {
   c->callback([&v] { v.code = energy_command(v.energy); });
 }
 
+void add_sweep(CLI::App& app, Verbs& v) {
+  CLI::App* c = app.add_subcommand("sweep", "Run a scene for many values of its keys, each point in a directory of its own");
+  c->add_option("file", v.sweep.file, "Sweep (TOML): scene = \"rope.toml\", then [vary] with rope.tubes = [7, 19]")
+      ->required();
+  c->add_option("--out", v.sweep.out, "Directory of the campaign; the same command goes on [default: FILE]");
+  c->add_option("-j,--jobs", v.sweep.jobs, "Runs at a time, each on one core [default: all cores]")
+      ->check(thread_range());
+  c->add_flag("--dry-run", v.sweep.dry_run, "Only list the points and what they cost");
+  c->add_option("--only", v.sweep.only, "Points by name, or by number from 1")->delimiter(',');
+  c->add_flag("--again", v.sweep.again, "Run failed points once more");
+  c->add_option("--slurm", v.sweep.slurm, "Only write a SLURM array with a job for each point to this file");
+  c->add_option("--snakemake", v.sweep.snakemake, "Only write a Snakemake file to this file");
+  c->add_flag("--force", v.sweep.force, "Replace points that were run with another scene");
+  c->add_flag("--quiet", v.sweep.quiet, "No progress line");
+  c->callback([&v] { v.code = sweep_command(v.sweep); });
+}
+
+void add_gather(CLI::App& app, Verbs& v) {
+  CLI::App* c = app.add_subcommand("gather", "One table (CSV) of all points of a campaign, at their ends");
+  c->add_option("dir", v.gather.dir, "Directory of the campaign")->required();
+  c->add_option("-o", v.gather.out, "File to write [default: the terminal]");
+  c->add_option("--columns", v.gather.columns, "Columns of log.csv [default: all]")->delimiter(',');
+  c->add_option("--mean", v.gather.mean_ps, "Means over the last rows of so much time, ps [default: the last row]")
+      ->check(CLI::PositiveNumber);
+  c->add_flag("--series", v.gather.series, "All rows of all logs instead of the ends");
+  c->add_flag("--force", v.gather.force, "Replace the file");
+  c->callback([&v] { v.code = gather_command(v.gather); });
+}
+
 void add_plan(CLI::App& app, Verbs& v) {
   CLI::App* c = app.add_subcommand("plan", "Choose the cheapest model that holds an error, by the shipped chart");
   c->add_option("scene", v.plan.scene, "Scene file (TOML)");
@@ -246,6 +277,8 @@ int main(int argc, char** argv) {
   add_report(app, verbs);
   add_errors(app, verbs);
   add_compare(app, verbs);
+  add_sweep(app, verbs);
+  add_gather(app, verbs);
   add_plan(app, verbs);
   add_export(app, verbs);
   add_import(app, verbs);

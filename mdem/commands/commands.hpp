@@ -66,6 +66,29 @@ struct CompareArguments {
 };
 int compare_command(const CompareArguments& arguments);
 
+struct SweepArguments {
+  std::string file;
+  std::string out;                // empty: FILE without .toml
+  std::vector<std::string> only;  // names of points, or their numbers from 1; empty: all
+  std::string slurm, snakemake;   // file to write instead
+  int jobs = 0;                   // runs at a time; 0: one for each core
+  bool dry_run = false;
+  bool again = false;  // failed points as well
+  bool force = false;
+  bool quiet = false;
+};
+int sweep_command(const SweepArguments& arguments);
+
+struct GatherArguments {
+  std::string dir;
+  std::string out;  // empty: to the terminal
+  double mean_ps = 0;
+  bool series = false;
+  std::vector<std::string> columns;
+  bool force = false;
+};
+int gather_command(const GatherArguments& arguments);
+
 struct NewArguments {
   std::string name;
   std::string kind = "rope";

@@ -132,6 +132,8 @@ class Run {
   void check_end_lies_ahead(long steps, double ps) const {
     const State& at = simulation_.state();
     if ((steps < 0 && ps < 0) || last_step_ > at.step) return;
+    // Killed where it was to end anyway: what is left is to say so.
+    if (last_step_ == at.step && read_manifest(dir_.manifest()).status == "running") return;
     throw InputError(
         {"", 0, ps >= 0 && steps < 0 ? "--until" : "--steps"},
         fmt::format("ends at step {}, and the run stands at step {}, {:.4g} ps", last_step_, at.step, at.time),

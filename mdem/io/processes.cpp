@@ -21,6 +21,7 @@ pid_t start(const ProcessTask& task, int jobs) {
   const pid_t parent = getpid(), child = fork();
   if (child < 0) throw std::runtime_error(fmt::format("no process can be started: {}", std::strerror(errno)));
   if (child > 0) return child;
+  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, SIG_DFL);
   prctl(PR_SET_PDEATHSIG, SIGTERM);
   if (getppid() != parent) _exit(3);
   omp_set_num_threads(std::max(1, omp_get_num_procs() / jobs));
@@ -31,17 +32,23 @@ pid_t start(const ProcessTask& task, int jobs) {
 
 }  // namespace
 
-void run_processes(const std::vector<ProcessTask>& tasks, int jobs) {
+void run_processes(const std::vector<ProcessTask>& tasks, int jobs, const volatile std::sig_atomic_t* stop) {
   std::map<pid_t, const ProcessTask*> at_work;
+  bool told = false;
   const auto wait_for_one = [&] {
     int status = 0;
-    const auto at = at_work.find(waitpid(-1, &status, 0));
+    const pid_t child = waitpid(-1, &status, 0);  // ends early, with -1, where a signal comes
+    if (stop && *stop && !told)
+      for (const auto& [id, task] : at_work) kill(id, SIGTERM);
+    told = told || (stop && *stop);
+    const auto at = at_work.find(child);
     if (at == at_work.end()) return;
     at->second->finish(status);
     at_work.erase(at);
   };
   for (const ProcessTask& task : tasks) {
     while (at_work.size() >= static_cast<std::size_t>(jobs)) wait_for_one();
+    if (stop && *stop) break;
     at_work.emplace(start(task, jobs), &task);
   }
   while (!at_work.empty()) wait_for_one();

@@ -1,0 +1,195 @@
+#include "campaign/campaign.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "io/files.hpp"
+#include "io/limits_file.hpp"
+#include "io/log.hpp"
+#include "model/error.hpp"
+#include "plan/scene_edit.hpp"
+#include "run/limit_watch.hpp"
+
+namespace ropewalk {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Whether a point that is there is the one that the sweep asks for.
+bool is_same(const RunDirectory& dir, const SweepPoint& point) {
+  const auto comparable = [&](const std::string& text) {  // the step of a branch is that of its start
+    return point.trunk.empty() ? text : with_value(text, "run.time_step_fs", "0", dir.scene());
+  };
+  if (comparable(read_file(dir.scene())) != comparable(point.text)) return false;
+  for (std::size_t k = 0; k < point.sets.size(); ++k)
+    if (!fs::exists(dir.parameters(k)) || read_file(dir.parameters(k)) != read_file(point.sets[k])) return false;
+  return true;
+}
+
+// Cells of CSV: quoted where they hold a comma, a quote or a newline.
+std::string cell(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + "\"";
+}
+
+std::string without_quotes(const std::string& value) {
+  const bool quoted = value.size() > 1 && value.front() == '"' && value.back() == '"';
+  return quoted ? value.substr(1, value.size() - 2) : value;
+}
+
+std::vector<std::size_t> columns_of(const GatherOptions& options) {
+  std::vector<std::size_t> out;
+  std::vector<std::string> names;
+  for (std::size_t k = 0; k < observables().size(); ++k) {
+    names.push_back(observables()[k].name);
+    if (options.columns.empty()) out.push_back(k);
+  }
+  for (const std::string& name : options.columns) {
+    const auto at = std::find(names.begin(), names.end(), name);
+    if (at == names.end())
+      throw InputError({"", 0, "--columns"}, fmt::format("log.csv has no column \"{}\"", name),
+                       "see `ropewalk observe --list`");
+    out.push_back(static_cast<std::size_t>(at - names.begin()));
+  }
+  return out;
+}
+
+// Means over the last rows; counts are not averaged.
+std::vector<double> end_of(const std::vector<LogRow>& log, double mean_ps) {
+  std::vector<double> values = log.back().values();
+  if (!(mean_ps > 0)) return values;
+  const double from = log.back()["time_ps"] - mean_ps - 1e-9;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    if (observables()[k].whole || observables()[k].name == std::string("time_ps")) continue;
+    double sum = 0;
+    int count = 0;
+    for (const LogRow& row : log)
+      if (row["time_ps"] >= from) sum += row.values()[k], ++count;
+    values[k] = sum / count;
+  }
+  return values;
+}
+
+std::string cells_of(const std::vector<double>& values, const std::vector<std::size_t>& columns) {
+  std::string text;
+  for (const std::size_t k : columns)
+    text += std::isfinite(values[k]) ? fmt::format(",{}", values[k]) : std::string(",nan");
+  return text;
+}
+
+std::string limits_of(const RunDirectory& dir) {
+  return fs::exists(dir.limits()) ? passed_words(read_limits(dir.limits()).limits) : "";
+}
+
+}  // namespace
+
+PointProgress progress_of(const RunDirectory& dir) {
+  using Stage = PointProgress::Stage;
+  PointProgress p;
+  p.status = "waiting";
+  if (!fs::exists(dir.manifest())) return p;
+  const Manifest m = read_manifest(dir.manifest());
+  p.status = m.status;
+  p.reason = m.reason;
+  p.wall_seconds = m.wall_seconds;
+  if (m.status == "failed")
+    p.stage = Stage::failed;
+  else if (m.status == "running" || m.status == "interrupted")
+    p.stage = fs::exists(dir.checkpoint()) ? Stage::begun : Stage::waiting;
+  else
+    p.stage = Stage::ended;
+  if (p.stage == Stage::begun) p.status = "interrupted";  // by whoever looks: nothing of it runs here
+  return p;
+}
+
+void create_campaign(const CampaignDirectory& dir, const Sweep& sweep, const std::vector<SweepPoint>& points,
+                     bool force) {
+  if (fs::exists(dir.path) && !fs::exists(dir.sweep()) && !(fs::is_directory(dir.path) && fs::is_empty(dir.path)))
+    throw InputError({dir.path, 0, "--out"}, "is not the directory of a campaign (no sweep.toml in it)",
+                     "choose another name");
+  for (const SweepPoint& p : points) {
+    const RunDirectory run = dir.point(p.name);
+    if (!fs::exists(run.scene()) || progress_of(run).stage == PointProgress::Stage::waiting) continue;
+    if (is_same(run, p)) continue;
+    if (!force)
+      throw InputError({run.path, 0, "--out"}, "was run with another scene or parameter set",
+                       "choose another --out, or give --force to run this point anew");
+    fs::remove_all(run.path);
+  }
+  std::error_code error;
+  for (const char* sub : {"points", "messages"}) fs::create_directories(dir.path + "/" + sub, error);
+  if (error)
+    throw InputError({dir.path, 0, "--out"}, fmt::format("cannot be made: {}", error.message()),
+                     "choose a place that you may write to");
+  write_file_atomically(dir.sweep(), sweep.text);
+  write_file_atomically(dir.scene(), sweep.scene_text);
+}
+
+Sweep read_campaign(const CampaignDirectory& dir) {
+  if (!fs::exists(dir.sweep()))
+    throw InputError({dir.path, 0, ""}, "is not the directory of a campaign (no sweep.toml in it)",
+                     "name the directory that `ropewalk sweep` made");
+  return sweep_of_text(read_file(dir.sweep()), dir.sweep(), dir.scene());
+}
+
+std::string gathered_csv(const CampaignDirectory& dir, const Sweep& sweep, const std::vector<SweepPoint>& points,
+                         const GatherOptions& options) {
+  const std::vector<std::size_t> columns = columns_of(options);
+  std::string text = "point";
+  for (const std::string& key : sweep.keys()) text += "," + cell(key);
+  text += ",status";
+  for (const std::size_t k : columns) text += fmt::format(",{}", observables()[k].name);
+  text += options.series ? "\n" : ",limits_passed\n";
+  for (const SweepPoint& p : points) {
+    const RunDirectory run = dir.point(p.name);
+    std::string begin = cell(p.name);
+    for (const std::string& value : p.values) begin += "," + cell(without_quotes(value));
+    begin += "," + progress_of(run).status;
+    const std::vector<LogRow> log = fs::exists(run.log()) ? read_log(run.log()) : std::vector<LogRow>();
+    if (options.series) {
+      for (const LogRow& row : log) text += begin + cells_of(row.values(), columns) + "\n";
+      continue;
+    }
+    text += begin;
+    text += log.empty() ? std::string(columns.size(), ',') : cells_of(end_of(log, options.mean_ps), columns);
+    text += "," + cell(limits_of(run)) + "\n";
+  }
+  return text;
+}
+
+std::string slurm_script(const std::string& sweep_file, const CampaignDirectory& dir, std::size_t points) {
+  return fmt::format(
+      "#!/bin/sh\n"
+      "#SBATCH --job-name=ropewalk\n"
+      "#SBATCH --array=1-{}\n"
+      "#SBATCH --ntasks=1\n"
+      "#SBATCH --cpus-per-task=1\n"
+      "#SBATCH --output={}/slurm-%a.txt\n"
+      "# Add --time, --partition and --account as your cluster asks. Submitted again, it goes on where points stopped.\n"
+      "ropewalk sweep '{}' --out '{}' --only \"$SLURM_ARRAY_TASK_ID\" --quiet\n",
+      points, dir.path, sweep_file, dir.path);
+}
+
+std::string snakemake_file(const std::string& sweep_file, const CampaignDirectory& dir,
+                           const std::vector<SweepPoint>& points) {
+  std::string names;
+  for (const SweepPoint& p : points) names += fmt::format("    \"{}\",\n", p.name);
+  return fmt::format(
+      "POINTS = [\n{0}]\n\n"
+      "rule table:\n"
+      "    input: expand(\"{1}/points/{{point}}/report.html\", point=POINTS)\n"
+      "    output: \"{1}/table.csv\"\n"
+      "    shell: \"ropewalk gather '{1}' -o {{output}} --force\"\n\n"
+      "rule point:\n"
+      "    input: \"{2}\"\n"
+      "    output: \"{1}/points/{{point}}/report.html\"\n"
+      "    shell: \"ropewalk sweep '{2}' --out '{1}' --only {{wildcards.point}} --quiet\"\n",
+      names, dir.path, sweep_file);
+}
+
+}  // namespace ropewalk

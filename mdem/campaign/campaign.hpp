@@ -1,0 +1,59 @@
+// The directory of a campaign: one run in points/NAME for each point, shared starts in starts/NAME, what each run
+// said in messages/NAME.txt, copies of the sweep and its scene, and table.csv.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "campaign/sweep_file.hpp"
+#include "io/manifest.hpp"
+#include "run/run_directory.hpp"
+
+namespace ropewalk {
+
+struct CampaignDirectory {
+  std::string path;
+
+  std::string sweep() const { return path + "/sweep.toml"; }
+  std::string scene() const { return path + "/scene.toml"; }
+  std::string table() const { return path + "/table.csv"; }
+  RunDirectory point(const std::string& name) const { return {path + "/points/" + name}; }
+  RunDirectory start(const std::string& name) const { return {path + "/starts/" + name}; }
+  std::string messages(const std::string& name) const { return path + "/messages/" + name + ".txt"; }
+};
+
+// How far the run of a point is.
+struct PointProgress {
+  enum class Stage { waiting, begun, ended, failed };
+  Stage stage = Stage::waiting;
+  std::string status;  // of the manifest; "waiting" where there is none
+  std::string reason;
+  double wall_seconds = 0;
+};
+PointProgress progress_of(const RunDirectory& dir);
+
+// Makes the directory with its copies. Throws InputError where it is not that of a campaign, or where a point in it
+// was run with another scene or parameter set, unless `force` is set: these points are then removed.
+void create_campaign(const CampaignDirectory& dir, const Sweep& sweep, const std::vector<SweepPoint>& points,
+                     bool force);
+
+// The sweep as the directory has it, with names and values of its points.
+Sweep read_campaign(const CampaignDirectory& dir);
+
+// How table.csv takes one value from the log of a run.
+struct GatherOptions {
+  double mean_ps = 0;                // mean over the last rows of so much time; 0: the last row
+  bool series = false;               // every row of every log instead
+  std::vector<std::string> columns;  // of the log; empty: all
+};
+// One line per point: its name, the values of the keys that vary, how it ended, the observables, the limits passed.
+// A point without rows has empty cells. Everything in it follows from the scenes alone: no times of the machine.
+std::string gathered_csv(const CampaignDirectory& dir, const Sweep& sweep, const std::vector<SweepPoint>& points,
+                         const GatherOptions& options);
+
+// For clusters: one job for each point, by its number from 1 or its name.
+std::string slurm_script(const std::string& sweep_file, const CampaignDirectory& dir, std::size_t points);
+std::string snakemake_file(const std::string& sweep_file, const CampaignDirectory& dir,
+                           const std::vector<SweepPoint>& points);
+
+}  // namespace ropewalk

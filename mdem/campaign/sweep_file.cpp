@@ -1,0 +1,332 @@
+#include "campaign/sweep_file.hpp"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <set>
+#include <sstream>
+
+#include "io/files.hpp"
+#include "io/toml_table.hpp"
+#include "model/error.hpp"
+#include "plan/scene_edit.hpp"
+#include "scene/kinds/scene_kind.hpp"
+#include "scene/scene_to_model.hpp"
+#include "scene/scene_toml.hpp"
+
+namespace ropewalk {
+namespace {
+
+constexpr const char* format_name = "ropewalk-sweep-1";
+constexpr std::size_t most_points = 100000;
+constexpr double relax_ps = 40;  // of dynamics, which cost as much as a relaxation, by guess
+constexpr std::size_t longest_value = 24;  // in the name of a point; a longer one is named by its number
+
+// --- Reading [vary] ---
+
+int line_of(const toml::node& node) { return static_cast<int>(node.source().begin.line); }
+
+std::string as_toml(const toml::node& node) {
+  std::ostringstream out;
+  node.visit([&](const auto& value) {
+    using Node = std::decay_t<decltype(value)>;
+    if constexpr (std::is_same_v<Node, toml::table>) {
+      std::string inside;
+      for (const auto& [key, v] : value)
+        inside += fmt::format("{}{} = {}", inside.empty() ? "" : ", ", std::string(key.str()), as_toml(v));
+      out << "{ " << inside << " }";
+    } else if constexpr (std::is_same_v<Node, toml::array>) {
+      std::string inside;
+      for (const toml::node& v : value) inside += (inside.empty() ? "" : ", ") + as_toml(v);
+      out << "[" << inside << "]";
+    } else if constexpr (std::is_same_v<Node, toml::value<double>>) {
+      out << fmt::format("{}", value.get());  // the shortest that reads back to the same bits
+    } else {
+      out << toml::toml_formatter(value);
+    }
+  });
+  return out.str();
+}
+
+bool is_range(const toml::table& table) { return table.contains("from") && table.contains("to"); }
+
+// { from, to, points } or { from, to, step }, evenly or, with log = true, in even ratios.
+std::vector<std::string> values_of_range(const toml::table& table, const std::string& key, const std::string& file) {
+  const InputError::Place at{file, line_of(table), key};
+  const auto number = [&](const char* name) {
+    const auto value = table[name].value<double>();
+    if (!value || !std::isfinite(*value))
+      throw InputError(at, fmt::format("\"{}\" is not a number", name), "write { from = 1, to = 9, points = 5 }");
+    return *value;
+  };
+  for (const auto& [name, value] : table)
+    if (name != "from" && name != "to" && name != "points" && name != "step" && name != "log")
+      throw InputError(at, fmt::format("unknown key \"{}\"", std::string(name.str())),
+                       "a range has from, to, points or step, and log");
+  const double from = number("from"), to = number("to");
+  const bool log = table["log"].value_or(false);
+  if (table.contains("points") == table.contains("step"))
+    throw InputError(at, "needs either points or step", "write { from = 1, to = 9, points = 5 }");
+  if (log && (!(from > 0) || !(to > 0) || table.contains("step")))
+    throw InputError(at, "log = true needs positive ends and points", "write { from = 1, to = 8, points = 4, log = true }");
+  std::size_t count = 0;
+  if (table.contains("points")) {
+    const double points = number("points");
+    if (points < 1 || points > most_points || points != std::floor(points))
+      throw InputError(at, "points must be a whole number from 1", "write { from = 1, to = 9, points = 5 }");
+    count = static_cast<std::size_t>(points);
+  } else {
+    const double steps = (to - from) / number("step");
+    if (!(steps >= 0) || steps > most_points)
+      throw InputError(at, "step does not lead from one end to the other", "give it the sign of to - from");
+    count = static_cast<std::size_t>(std::floor(steps + 1e-9)) + 1;
+  }
+  std::vector<std::string> values;
+  for (std::size_t k = 0; k < count; ++k) {
+    const double part = count > 1 ? static_cast<double>(k) / static_cast<double>(count - 1) : 0.0;
+    double value = log ? from * std::pow(to / from, part) : from + (to - from) * part;
+    if (table.contains("step")) value = from + static_cast<double>(k) * number("step");
+    value = std::stod(fmt::format("{:.12g}", value));  // 0.3, not 0.30000000000000004
+    values.push_back(fmt::format("{}", value));
+  }
+  return values;
+}
+
+// Leaves of the table: lists and ranges.
+void collect_axes(const toml::table& table, const std::string& above, const std::string& file,
+                  std::vector<SweepAxis>& axes) {
+  for (const auto& [name, node] : table) {
+    const std::string key = above + std::string(name.str());
+    SweepAxis axis{key, {}, static_cast<int>(name.source().begin.line)};
+    const InputError::Place at{file, axis.line, key};
+    if (const toml::array* list = node.as_array()) {
+      if (list->empty()) throw InputError(at, "is an empty list", "write the values that it takes: [1, 2, 3]");
+      for (const toml::node& value : *list) axis.values.push_back(as_toml(value));
+    } else if (const toml::table* inner = node.as_table()) {
+      if (!is_range(*inner)) {
+        collect_axes(*inner, key + ".", file, axes);
+        continue;
+      }
+      axis.values = values_of_range(*inner, key, file);
+    } else {
+      throw InputError(at, "is one value", "write a list, [1, 2, 3], or { from = 1, to = 9, points = 5 }");
+    }
+    const std::set<std::string> different(axis.values.begin(), axis.values.end());
+    if (different.size() < axis.values.size()) throw InputError(at, "has a value twice", "take one of the two away");
+    axes.push_back(std::move(axis));
+  }
+}
+
+std::vector<SweepAxis> axes_in(const toml::table* table, const std::string& file) {
+  std::vector<SweepAxis> axes;
+  if (table) collect_axes(*table, "", file, axes);
+  std::stable_sort(axes.begin(), axes.end(), [](const auto& a, const auto& b) { return a.line < b.line; });
+  return axes;
+}
+
+void check_zip(const Sweep& s) {
+  for (const SweepAxis& axis : s.axes)
+    if (s.zip && axis.values.size() != s.axes.front().values.size())
+      throw InputError({s.path, axis.line, axis.key},
+                       fmt::format("has {} values, and {} has {}", axis.values.size(), s.axes.front().key,
+                                   s.axes.front().values.size()),
+                       "combine = \"zip\" needs as many of each; or take combine = \"grid\"");
+}
+
+// --- Points ---
+
+// Each way to take one value of every axis; the last axis varies fastest.
+std::vector<std::vector<std::size_t>> combinations(const std::vector<SweepAxis>& axes, bool zip) {
+  std::vector<std::vector<std::size_t>> all = {{}};
+  if (zip && !axes.empty()) {
+    all.clear();
+    for (std::size_t k = 0; k < axes.front().values.size(); ++k)
+      all.emplace_back(axes.size(), k);
+    return all;
+  }
+  for (const SweepAxis& axis : axes) {
+    std::vector<std::vector<std::size_t>> more;
+    for (const auto& begun : all)
+      for (std::size_t k = 0; k < axis.values.size(); ++k) {
+        more.push_back(begun);
+        more.back().push_back(k);
+      }
+    all = std::move(more);
+  }
+  return all;
+}
+
+std::string in_a_name(const std::string& value, std::size_t number) {
+  std::string text = value;
+  if (text.size() > 1 && text.front() == text.back() && (text.front() == '"' || text.front() == '\''))
+    text = text.substr(1, text.size() - 2);
+  const bool plain = std::all_of(text.begin(), text.end(), [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) || c == '.' || c == '+' || c == '-';
+  });
+  return plain && !text.empty() && text.size() <= longest_value ? text : fmt::format("no{}", number);
+}
+
+// The last part of the key, or all of it where another axis ends alike.
+std::string short_name(const std::string& key, const std::vector<std::string>& keys) {
+  const auto leaf = [](const std::string& k) { return k.substr(k.rfind('.') + 1); };
+  const auto same = std::count_if(keys.begin(), keys.end(), [&](const auto& k) { return leaf(k) == leaf(key); });
+  return same > 1 ? key : leaf(key);
+}
+
+// The seed is varied last, once all else is set.
+std::vector<std::vector<std::size_t>> combinations_of(const Sweep& s) {
+  std::vector<SweepAxis> axes = s.axes;
+  std::vector<SweepAxis> seed;
+  if (s.replicates > 0) {
+    seed = {axes.back()};
+    axes.pop_back();
+  }
+  std::vector<std::vector<std::size_t>> all;
+  for (const auto& first : combinations(axes, s.zip))
+    for (const auto& last : combinations(seed, false)) {
+      all.push_back(first);
+      all.back().insert(all.back().end(), last.begin(), last.end());
+    }
+  return all;
+}
+
+struct Setting {
+  const SweepAxis* axis;
+  std::size_t number;
+};
+
+SweepPoint point_of(const Sweep& s, const std::vector<Setting>& settings) {
+  SweepPoint p;
+  p.text = s.scene_text;
+  for (const Setting& setting : settings) {
+    const std::string& value = setting.axis->values[setting.number];
+    try {
+      p.text = with_value(p.text, setting.axis->key, value, s.scene_path);
+    } catch (const toml::parse_error& e) {
+      throw InputError({s.path, setting.axis->line, setting.axis->key},
+                       fmt::format("cannot be set in {}: {}", s.scene_path, std::string(e.description())),
+                       "write the key as it would stand in the scene");
+    }
+    p.values.push_back(value);
+    if (setting.axis->values.size() == 1) continue;  // the same for all
+    p.name += (p.name.empty() ? "" : "_") + short_name(setting.axis->key, s.keys()) + "-" +
+              in_a_name(value, setting.number + 1);
+  }
+  if (p.name.empty()) p.name = "all";
+  return p;
+}
+
+// A wrong scene: named by the point, since it is in no file yet.
+void check_scene(const Sweep& s, SweepPoint& p) {
+  try {
+    const Scene scene = scene_of(s, p);
+    for (const ParameterSet& set : scene.sets) p.sets.push_back(set.path);
+    const bool relaxes = scene.run.mode == RunOptions::Mode::relax;
+    const double duration = scene.run.duration > 0 ? scene.run.duration : protocol_time(scene);
+    const Source::Sizes sizes = scene.source->sizes(scene.element_length);
+    p.work = std::max(1.0, static_cast<double>(sizes.tubes) * sizes.elements) * (relaxes ? relax_ps : duration);
+  } catch (const InputError& e) {
+    throw InputError({s.path, 0, ""}, fmt::format("point {}: {}", p.name, e.what()), "");
+  }
+}
+
+std::vector<Setting> settings_of(const std::vector<SweepAxis>& axes, const std::vector<std::size_t>& numbers) {
+  std::vector<Setting> out;
+  for (std::size_t k = 0; k < axes.size(); ++k) out.push_back({&axes[k], numbers[k]});
+  return out;
+}
+
+}  // namespace
+
+std::vector<std::string> Sweep::keys() const {
+  std::vector<std::string> all;
+  for (const SweepAxis& axis : axes) all.push_back(axis.key);
+  for (const SweepAxis& axis : branch_axes) all.push_back(axis.key);
+  return all;
+}
+
+Sweep sweep_of_text(const std::string& text, const std::string& path, const std::string& other_scene) {
+  const TomlTable top = TomlTable::parse(text, path);
+  if (!top.has("format")) throw top.error("format", "is missing", fmt::format("add format = \"{}\"", format_name));
+  if (top.string("format") != format_name)
+    throw top.error("format", "is not that of a sweep", fmt::format("this program reads \"{}\"", format_name));
+  Sweep s;
+  s.path = path;
+  s.text = text;
+  const std::filesystem::path scene = top.string("scene");
+  s.scene_path = other_scene.empty() ? (std::filesystem::path(path).parent_path() / scene).string() : other_scene;
+  if (!std::filesystem::exists(s.scene_path))
+    throw top.error("scene", fmt::format("\"{}\" does not exist", s.scene_path), "it is looked for beside the sweep");
+  s.scene_text = read_file(s.scene_path);
+  s.zip = top.word_or<bool>("combine", false, {{"grid", false}, {"zip", true}});
+  s.replicates = static_cast<int>(top.integer_or("replicates", 0, 1, 100000));
+  top.has("vary");  // read below: its keys are those of a scene
+  const TomlTable branch = top.table("branch");
+  if (top.has("branch")) s.branch_at = branch.number("at_ps", Bounds::positive());
+  branch.has("vary");
+  top.finish();
+  const toml::table file = toml::parse(text, path);
+  s.axes = axes_in(file["vary"].as_table(), path);
+  s.branch_axes = axes_in(file["branch"]["vary"].as_table(), path);
+  if (top.has("branch") && s.branch_axes.empty())
+    throw top.error("branch", "varies nothing", "add [branch.vary] with the keys that change at at_ps");
+  check_zip(s);
+  if (s.replicates > 0) {
+    SweepAxis seed{"start.seed", {}, top.line("replicates")};
+    for (int k = 1; k <= s.replicates; ++k) seed.values.push_back(fmt::format("{}", k));
+    s.axes.push_back(seed);
+  }
+  const std::vector<std::string> keys = s.keys();
+  if (keys.empty()) throw top.error("vary", "is missing or empty", "add [vary] with keys of the scene: rope.tubes = [7, 19]");
+  for (const std::string& key : keys)
+    if (std::count(keys.begin(), keys.end(), key) > 1)
+      throw top.error("vary", fmt::format("\"{}\" is varied twice", key), "take one of the two away");
+  double points = 1;
+  for (const SweepAxis& axis : s.axes) points *= s.zip ? 1 : static_cast<double>(axis.values.size());
+  for (const SweepAxis& axis : s.branch_axes) points *= static_cast<double>(axis.values.size());
+  if (points > most_points)
+    throw top.error("vary", fmt::format("makes {:.0f} points", points), fmt::format("at most {} go", most_points));
+  return s;
+}
+
+Sweep read_sweep(const std::string& path) { return sweep_of_text(read_file(path), path); }
+
+std::vector<SweepPoint> points_of(const Sweep& s, bool check) {
+  std::vector<SweepPoint> points;
+  std::set<std::string> names;
+  for (const auto& numbers : combinations_of(s)) {
+    const std::vector<Setting> shared = settings_of(s.axes, numbers);
+    for (const auto& later : combinations(s.branch_axes, false)) {
+      std::vector<Setting> all = shared;
+      for (const Setting& setting : settings_of(s.branch_axes, later)) all.push_back(setting);
+      points.push_back(point_of(s, all));
+      if (!s.branch_axes.empty()) points.back().trunk = point_of(s, shared).name;
+      if (check) check_scene(s, points.back());
+      if (!names.insert(points.back().name).second)
+        throw InputError({s.path, 0, "vary"}, fmt::format("two points would be named {}", points.back().name),
+                         "write values that differ in more than their signs");
+    }
+  }
+  return points;
+}
+
+std::vector<SweepPoint> trunks_of(const Sweep& s) {
+  std::vector<SweepPoint> trunks;
+  if (s.branch_axes.empty()) return trunks;
+  for (const auto& numbers : combinations_of(s)) {
+    trunks.push_back(point_of(s, settings_of(s.axes, numbers)));
+    check_scene(s, trunks.back());
+  }
+  return trunks;
+}
+
+Scene scene_of(const Sweep& sweep, const SweepPoint& point) {
+  Scene scene = scene_of_text(point.text, sweep.scene_path);
+  scene.name += ", " + point.name;
+  return scene;
+}
+
+}  // namespace ropewalk

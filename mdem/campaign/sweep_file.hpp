@@ -1,0 +1,62 @@
+// The file of a campaign: a scene, and the keys that vary.
+//
+//   format = "ropewalk-sweep-1"
+//   scene = "rope.toml"          # looked for beside this file
+//   combine = "grid"             # every value with every other, or "zip": the first values, the second ones, ...
+//   replicates = 3               # each point with start.seed 1, 2, 3
+//   [vary]
+//   rope.tubes = [7, 19, 37]
+//   thermostat.temperature_K = { from = 200, to = 400, points = 5 }   # or step = 50; log = true: even ratios
+//   [branch]                     # points that differ only below here share one run up to this time
+//   at_ps = 135
+//   [branch.vary]
+//   damping.contact_viscosity_eV_ps_per_nm2 = [8, 20]
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scene/scene.hpp"
+
+namespace ropewalk {
+
+struct SweepAxis {
+  std::string key;                  // "rope.tubes"
+  std::vector<std::string> values;  // as TOML
+  int line = 0;                     // in the file of the sweep
+};
+
+struct Sweep {
+  std::string path, text;
+  std::string scene_path, scene_text;
+  bool zip = false;
+  int replicates = 0;  // 0: the seed is not varied
+  std::vector<SweepAxis> axes, branch_axes;  // in the order of the file; the seed is the last of `axes`
+  double branch_at = 0;                      // ps; 0: nothing is shared
+  std::vector<std::string> keys() const;     // of all axes
+};
+
+// Throws InputError for anything that is not right, unknown keys of the sweep included.
+Sweep read_sweep(const std::string& path);
+// `scene` is read instead of the one that the text names where it is not empty.
+Sweep sweep_of_text(const std::string& text, const std::string& path, const std::string& scene = "");
+
+struct SweepPoint {
+  std::string name;                 // of its directory: "tubes-7_seed-1"
+  std::vector<std::string> values;  // of keys(), as TOML
+  std::string text;                 // its scene
+  std::string trunk;                // name of the run that it goes on from; empty: none
+  // Of its scene, where it was checked.
+  std::vector<std::string> sets;  // files of the parameter sets
+  double work = 0;                // elements times ps, which the time of a run goes by; a guess for relaxations
+};
+
+// With `check`, every scene is read once, so that a key or a value that is wrong is found here: InputError.
+std::vector<SweepPoint> points_of(const Sweep& sweep, bool check = true);
+// The runs that branches share: each once, in the order of the points.
+std::vector<SweepPoint> trunks_of(const Sweep& sweep);
+
+// The scene of a point, as one at the sweep's scene.
+Scene scene_of(const Sweep& sweep, const SweepPoint& point);
+
+}  // namespace ropewalk

@@ -1,0 +1,350 @@
+// `sweep` and `gather`: many runs of one scene, and one table of them.
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <omp.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <map>
+
+#include "campaign/campaign.hpp"
+#include "commands/commands.hpp"
+#include "io/files.hpp"
+#include "io/processes.hpp"
+#include "model/error.hpp"
+#include "plan/scene_edit.hpp"
+#include "run/run_time.hpp"
+#include "scene/scene_toml.hpp"
+
+namespace ropewalk {
+namespace {
+
+namespace fs = std::filesystem;
+using Stage = PointProgress::Stage;
+
+volatile std::sig_atomic_t caught_signal = 0;
+void on_signal(int signal) { caught_signal = signal; }
+
+constexpr std::size_t most_timed = 6;   // points of a dry run whose steps are timed
+constexpr double relax_steps = 2000;    // a guess, where a relaxation does not end at once
+
+double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+std::string duration_text(double s) {
+  if (s >= 5400) return fmt::format("{:.1f} h", s / 3600);
+  return s >= 90 ? fmt::format("{:.0f} min", s / 60) : fmt::format("{:.0f} s", s);
+}
+
+std::string default_directory(const std::string& file) {
+  return (fs::path(file).parent_path() / fs::path(file).stem()).string();
+}
+
+std::vector<SweepPoint> chosen(const std::vector<SweepPoint>& points, const std::vector<std::string>& only) {
+  if (only.empty()) return points;
+  std::vector<SweepPoint> out;
+  for (const std::string& word : only) {
+    const bool number = word.find_first_not_of("0123456789") == std::string::npos && word.size() < 8;
+    const std::size_t index = number && !word.empty() ? std::stoul(word) : 0;
+    const auto at = std::find_if(points.begin(), points.end(), [&](const auto& p) { return p.name == word; });
+    if (at != points.end())
+      out.push_back(*at);
+    else if (index >= 1 && index <= points.size())
+      out.push_back(points[index - 1]);
+    else
+      throw InputError({"", 0, "--only"}, fmt::format("there is no point \"{}\"", word),
+                       fmt::format("take a number from 1 to {}, or a name of --dry-run", points.size()));
+  }
+  return out;
+}
+
+// Keeps two processes from one run. Until the process ends.
+bool lock(const std::string& path, bool wait) {
+  const int file = open(path.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0666);
+  return file >= 0 && flock(file, LOCK_EX | (wait ? 0 : LOCK_NB)) == 0;
+}
+
+int run_or_resume(const RunDirectory& dir, const Scene& scene, double until_ps) {
+  if (progress_of(dir).stage == Stage::begun) {
+    ResumeArguments r;
+    r.dir = dir.path;
+    r.threads = 1;
+    r.until_ps = until_ps;
+    r.quiet = true;
+    return resume_command(r);
+  }
+  fs::remove_all(dir.path);  // of a run that was killed before its first checkpoint
+  RunArguments a;
+  a.out = dir.path;
+  a.until_ps = until_ps;
+  a.quiet = true;
+  use_threads(1);
+  return run_scene(scene, a);
+}
+
+class Campaign {
+ public:
+  Campaign(Sweep sweep, const SweepArguments& a)
+      : sweep_(std::move(sweep)),
+        dir_{a.out.empty() ? default_directory(a.file) : a.out},
+        all_(points_of(sweep_)),
+        points_(chosen(all_, a.only)),
+        arguments_(a),
+        jobs_(a.jobs > 0 ? a.jobs : omp_get_num_procs()) {}
+
+  int go() {
+    create_campaign(dir_, sweep_, all_, arguments_.force);
+    std::signal(SIGINT, on_signal);
+    std::signal(SIGTERM, on_signal);
+    began_ = now();
+    if (!sweep_.branch_axes.empty()) run_starts();
+    run_points();
+    if (caught_signal) {
+      fmt::print(stderr, "ropewalk: stopped by signal {}; go on with the same command\n",
+                 static_cast<int>(caught_signal));
+      return 128 + caught_signal;
+    }
+    if (arguments_.only.empty()) write_file_atomically(dir_.table(), gathered_csv(dir_, sweep_, all_, {}));
+    return summary();
+  }
+
+  int dry_run() const {
+    // From some of the points; the others lie between.
+    std::vector<std::pair<double, double>> timed;  // work, seconds
+    const std::size_t n = std::min(points_.size(), most_timed);
+    for (std::size_t k = 0; k < n; ++k) {
+      const std::size_t i = n > 1 ? k * (points_.size() - 1) / (n - 1) : 0;
+      const RunTime t = time_run(points_[i].text, sweep_.scene_path);
+      timed.emplace_back(points_[i].work, t.steps > 0 ? t.total() : relax_steps * t.each);
+    }
+    std::sort(timed.begin(), timed.end());
+    double total = 0;
+    fmt::print("{:>5}  {:<50} {:>10}\n", "", "point", "time");
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      const double seconds = between(timed, points_[i].work);
+      total += seconds;
+      fmt::print("{:>5}  {:<50} {:>10}{}\n", i + 1, points_[i].name, duration_text(seconds),
+                 stage_words(points_[i]));
+    }
+    const std::size_t runs = points_.size();
+    fmt::print("{} points, about {} of one core, {} on {} cores{}\n", runs, duration_text(total),
+               duration_text(total / std::min<double>(jobs_, static_cast<double>(runs))), jobs_,
+               sweep_.branch_axes.empty() ? "" : "; less what the shared starts save");
+    return 0;
+  }
+
+  int write_slurm() const {
+    write_new(arguments_.slurm, "--slurm", slurm_script(arguments_.file, dir_, all_.size()));
+    fmt::print("{} written: sbatch {}\n", arguments_.slurm, arguments_.slurm);
+    return 0;
+  }
+  int write_snakemake() const {
+    write_new(arguments_.snakemake, "--snakemake", snakemake_file(arguments_.file, dir_, all_));
+    fmt::print("{} written: snakemake -s {} --cores {}\n", arguments_.snakemake, arguments_.snakemake, jobs_);
+    return 0;
+  }
+
+ private:
+  void write_new(const std::string& path, const char* option, const std::string& text) const {
+    if (fs::exists(path) && !arguments_.force)
+      throw InputError({path, 0, option}, "exists", "choose another name, or give --force to replace it");
+    write_file_atomically(path, text);
+  }
+
+  // Of a list that rises in work.
+  static double between(const std::vector<std::pair<double, double>>& timed, double work) {
+    const auto above = std::lower_bound(timed.begin(), timed.end(), std::make_pair(work, 0.0));
+    if (above == timed.begin()) return above->second * work / above->first;
+    const auto below = std::prev(above);
+    if (above == timed.end()) return below->second * work / below->first;
+    const double part = (work - below->first) / (above->first - below->first);
+    return below->second + part * (above->second - below->second);
+  }
+
+  std::string stage_words(const SweepPoint& p) const {
+    const PointProgress progress = progress_of(dir_.point(p.name));
+    return progress.stage == Stage::waiting ? "" : "  " + progress.status;
+  }
+
+  bool is_to_run(const SweepPoint& p) const {
+    const Stage stage = progress_of(dir_.point(p.name)).stage;
+    return stage == Stage::waiting || stage == Stage::begun || (stage == Stage::failed && arguments_.again);
+  }
+
+  // In a process of its own, whose messages go to a file.
+  int in_a_process(const std::string& name, bool wait, const std::function<int()>& work) const {
+    const std::string messages = dir_.messages(name);
+    if (!std::freopen(messages.c_str(), "a", stderr) || !std::freopen(messages.c_str(), "a", stdout)) return 3;
+    setvbuf(stdout, nullptr, _IOLBF, 1 << 12);
+    if (!lock(messages, wait)) return busy;
+    try {
+      return work();
+    } catch (const std::exception& e) {
+      fmt::print(stderr, "ropewalk: {}\n", e.what());
+      return dynamic_cast<const InputError*>(&e) ? 2 : 3;
+    }
+  }
+
+  void run_starts() {
+    fs::create_directories(dir_.path + "/starts");
+    std::vector<ProcessTask> tasks;
+    for (const SweepPoint& p : trunks_of(sweep_)) {
+      const bool needed = std::any_of(points_.begin(), points_.end(), [&](const SweepPoint& q) {
+        return q.trunk == p.name && progress_of(dir_.point(q.name)).stage == Stage::waiting;
+      });
+      const RunDirectory to = dir_.start(p.name);
+      if (!needed || progress_of(to).stage == Stage::ended) continue;
+      tasks.push_back({[this, p, to] {
+                         return in_a_process("start-" + p.name, true, [&] {
+                           if (progress_of(to).stage == Stage::ended) return 0;
+                           return run_or_resume(to, scene_of(sweep_, p), sweep_.branch_at);
+                         });
+                       },
+                       [this, p](int status) {
+                         if (status != 0) say(fmt::format("the shared start {} did not reach its end", p.name));
+                       }});
+    }
+    run_processes(tasks, jobs_, &caught_signal);
+  }
+
+  // The shared run, with the scene of the point from here on. The time step stays, since files count by it.
+  void branch_off(const SweepPoint& p) const {
+    const RunDirectory from = dir_.start(p.trunk), to = dir_.point(p.name);
+    if (progress_of(from).stage != Stage::ended)
+      throw InputError({from.path, 0, ""}, "did not reach its end, and this point goes on from there",
+                       "see its messages");
+    fs::remove_all(to.path);
+    const std::string half = to.path + ".part";
+    fs::remove_all(half);
+    fs::copy(from.path, half, fs::copy_options::recursive);
+    const RunDirectory made{half};
+    const double step =
+        read_manifest(from.manifest()).time_step_fs / scene_of(sweep_, p).run.stepping.contact_every;
+    write_file_atomically(made.scene(),
+                          with_value(p.text, "run.time_step_fs", fmt::format("{:.17g}", step), sweep_.scene_path));
+    Manifest m = read_manifest(made.manifest());
+    m.status = "interrupted";
+    m.scene = scene_of(sweep_, p).name;
+    write_file_atomically(made.manifest(), manifest_json(m));
+    fs::rename(half, to.path);
+  }
+
+  int run_point(const SweepPoint& p) const {
+    const RunDirectory dir = dir_.point(p.name);
+    if (!is_to_run(p)) return 0;  // done by another process meanwhile
+    if (progress_of(dir).stage == Stage::failed) fs::remove_all(dir.path);
+    if (!p.trunk.empty() && progress_of(dir).stage == Stage::waiting) branch_off(p);
+    return run_or_resume(dir, scene_of(sweep_, p), -1);
+  }
+
+  void run_points() {
+    std::vector<ProcessTask> tasks;
+    for (const SweepPoint& p : points_) {
+      const double work = p.work;
+      if (!is_to_run(p)) {
+        ++done_;
+        continue;
+      }
+      work_left_ += work;
+      tasks.push_back({[this, p] {
+                         return in_a_process(p.name, false, [&] { return run_point(p); });
+                       },
+                       [this, p, work](int status) { ended(p, work, status); }});
+    }
+    if (done_ > 0) say(fmt::format("{} of {} points are done already", done_, points_.size()));
+    work_to_do_ = work_left_;
+    run_processes(tasks, jobs_, &caught_signal);
+  }
+
+  void ended(const SweepPoint& p, double work, int status) {
+    ++done_;
+    work_left_ -= work;
+    const PointProgress progress = progress_of(dir_.point(p.name));
+    if (WIFEXITED(status) && WEXITSTATUS(status) == busy)
+      say(fmt::format("{} is run by another process", p.name));
+    else if (progress.stage == Stage::failed)
+      say(fmt::format("{}: {}", p.name, progress.reason));
+    else if (progress.stage != Stage::ended && !caught_signal)
+      say(fmt::format("{} did not end; see {}", p.name, dir_.messages(p.name)));
+    const double passed = now() - began_, left = passed * work_left_ / std::max(work_to_do_ - work_left_, 1.0);
+    if (isatty(STDERR_FILENO) && !arguments_.quiet)
+      fmt::print(stderr, "\r\033[K{} of {} points, {} passed, {} left", done_, points_.size(), duration_text(passed),
+                 duration_text(left));
+    else if (now() > next_line_ || done_ == points_.size())
+      say(fmt::format("{} of {} points, {} passed, {} left", done_, points_.size(), duration_text(passed),
+                      duration_text(left)));
+    else
+      return;
+    next_line_ = now() + 10;
+  }
+
+  void say(const std::string& line) const {
+    if (!arguments_.quiet) fmt::print(stderr, "{}{}\n", isatty(STDERR_FILENO) ? "\r\033[K" : "", line);
+  }
+
+  int summary() const {
+    std::map<std::string, std::size_t> counts;
+    std::vector<std::string> failed;
+    double seconds = 0;
+    for (const SweepPoint& p : points_) {
+      const PointProgress progress = progress_of(dir_.point(p.name));
+      ++counts[progress.status];
+      seconds += progress.wall_seconds;
+      if (progress.stage != Stage::ended) failed.push_back(p.name);
+    }
+    std::string words;
+    for (const auto& [status, count] : counts)
+      words += fmt::format("{}{} {}", words.empty() ? "" : ", ", count, status);
+    if (isatty(STDERR_FILENO) && !arguments_.quiet) fmt::print(stderr, "\r\033[K");
+    fmt::print("{} points: {}; {} of one core in all\n", points_.size(), words, duration_text(seconds));
+    for (const std::string& name : failed) fmt::print("not ended: {}, see {}\n", name, dir_.messages(name));
+    if (arguments_.only.empty()) fmt::print("Table: {}\n", dir_.table());
+    return failed.empty() ? 0 : 3;
+  }
+
+  static constexpr int busy = 75;  // exit code of a process that found its point locked
+
+  Sweep sweep_;
+  CampaignDirectory dir_;
+  std::vector<SweepPoint> all_, points_;
+  const SweepArguments& arguments_;
+  int jobs_;
+  std::size_t done_ = 0;
+  double work_left_ = 0, work_to_do_ = 0, began_ = 0, next_line_ = 0;
+};
+
+}  // namespace
+
+int sweep_command(const SweepArguments& a) {
+  Campaign campaign(read_sweep(a.file), a);
+  if (a.dry_run) return campaign.dry_run();
+  if (!a.slurm.empty()) return campaign.write_slurm();
+  if (!a.snakemake.empty()) return campaign.write_snakemake();
+  return campaign.go();
+}
+
+int gather_command(const GatherArguments& a) {
+  const CampaignDirectory dir{a.dir};
+  const Sweep sweep = read_campaign(dir);
+  GatherOptions options;
+  options.mean_ps = a.mean_ps;
+  options.series = a.series;
+  options.columns = a.columns;
+  const std::string table = gathered_csv(dir, sweep, points_of(sweep, false), options);
+  if (a.out.empty()) {
+    fmt::print("{}", table);
+    return 0;
+  }
+  if (fs::exists(a.out) && !a.force)
+    throw InputError({a.out, 0, "-o"}, "exists", "choose another name, or give --force to replace it");
+  write_file_atomically(a.out, table);
+  fmt::print("{} written\n", a.out);
+  return 0;
+}
+
+}  // namespace ropewalk
