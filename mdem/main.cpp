@@ -110,11 +110,19 @@ void add_errors(CLI::App& app, Verbs& v) {
 }
 
 void add_compare(CLI::App& app, Verbs& v) {
-  CLI::App* c = app.add_subcommand("compare", "Parameter sets side by side: a table, and a page of their curves");
-  c->add_option("sets", v.compare.sets, "Two sets or more: files, or names of shipped ones")->required();
-  c->add_option("--page", v.compare.page, "Write the page with all curves here (HTML)");
-  c->add_flag("--json", v.compare.json, "JSON");
-  c->add_flag("--force", v.compare.force, "Replace an existing page");
+  CLI::App* c = app.add_subcommand("compare", "Side by side: runs and campaigns, or parameter sets");
+  c->add_option("names", v.compare.names,
+                "Directories of runs and campaigns; or parameter sets: files, or names of shipped ones")
+      ->required();
+  c->add_option("--page", v.compare.page, "Page with all curves (HTML) [default: compare.html for runs, none for sets]");
+  c->add_option("--x", v.compare.x, "Runs: column of log.csv on the horizontal axis")->capture_default_str();
+  c->add_option("--y", v.compare.y, "Runs: columns, a chart each [default: the usual ones that vary]")->delimiter(',');
+  c->add_option("--level", v.compare.levels, "Runs: a value to compare with, as 0.45:NAME");
+  c->add_flag("--log", v.compare.log, "Runs: logarithmic vertical axis");
+  c->add_option("--svg", v.compare.svg, "Runs: write the chart of the first column to this file instead");
+  c->add_option("--csv", v.compare.csv, "Runs: write the curves, and their standard errors, to this file instead");
+  c->add_flag("--json", v.compare.json, "Sets: JSON");
+  c->add_flag("--force", v.compare.force, "Replace existing files");
   c->callback([&v] { v.code = compare_command(v.compare); });
 }
 
@@ -184,6 +192,9 @@ void add_sweep(CLI::App& app, Verbs& v) {
   c->add_flag("--dry-run", v.sweep.dry_run, "Only list the points and what they cost");
   c->add_option("--only", v.sweep.only, "Points by name, or by number from 1")->delimiter(',');
   c->add_flag("--again", v.sweep.again, "Run failed points once more");
+  c->add_option("--on-limit", v.sweep.on_limit, "What points do where a limit of [limits] is passed: warn or stop")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"warn", "stop"}));
   c->add_option("--slurm", v.sweep.slurm, "Only write a SLURM array with a job for each point to this file");
   c->add_option("--snakemake", v.sweep.snakemake, "Only write a Snakemake file to this file");
   c->add_flag("--force", v.sweep.force, "Replace points that were run with another scene");

@@ -248,6 +248,13 @@ std::vector<std::string> Sweep::keys() const {
   return all;
 }
 
+bool Sweep::varies(const std::string& key) const {
+  for (const auto* list : {&axes, &branch_axes})
+    for (const SweepAxis& axis : *list)
+      if (axis.key == key && axis.values.size() > 1) return true;
+  return false;
+}
+
 Sweep sweep_of_text(const std::string& text, const std::string& path, const std::string& other_scene) {
   const TomlTable top = TomlTable::parse(text, path);
   if (!top.has("format")) throw top.error("format", "is missing", fmt::format("add format = \"{}\"", format_name));

@@ -34,6 +34,7 @@ struct Sweep {
   std::vector<SweepAxis> axes, branch_axes;  // in the order of the file; the seed is the last of `axes`
   double branch_at = 0;                      // ps; 0: nothing is shared
   std::vector<std::string> keys() const;     // of all axes
+  bool varies(const std::string& key) const;  // has more than one value
 };
 
 // Throws InputError for anything that is not right, unknown keys of the sweep included.

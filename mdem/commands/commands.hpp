@@ -59,18 +59,26 @@ struct ErrorsArguments {
 int errors_command(const ErrorsArguments& arguments);
 
 struct CompareArguments {
-  std::vector<std::string> sets;
-  std::string page;  // HTML; empty: none
+  std::vector<std::string> names;  // of parameter sets, or of directories: runs and campaigns
+  std::string page;                // HTML; empty: none for sets, compare.html for runs
   bool json = false;
   bool force = false;
+  // For runs.
+  std::string x = "time_ps";
+  std::vector<std::string> y;       // empty: the usual columns
+  std::vector<std::string> levels;  // "0.45:measured"
+  bool log = false;
+  std::string svg, csv;  // write these files instead of a page
 };
 int compare_command(const CompareArguments& arguments);
+int compare_runs(const CompareArguments& arguments);
 
 struct SweepArguments {
   std::string file;
   std::string out;                // empty: FILE without .toml
   std::vector<std::string> only;  // names of points, or their numbers from 1; empty: all
   std::string slurm, snakemake;   // file to write instead
+  std::string on_limit = "warn";  // or "stop"
   int jobs = 0;                   // runs at a time; 0: one for each core
   bool dry_run = false;
   bool again = false;  // failed points as well

@@ -1,4 +1,4 @@
-// `compare`: parameter sets side by side.
+// `compare`: parameter sets side by side. For runs, see compare_runs.cpp.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -230,15 +230,13 @@ void print_json(const std::vector<ParameterSet>& sets) {
 }  // namespace
 
 int compare_command(const CompareArguments& a) {
-  if (a.sets.size() < 2)
-    throw InputError({"", 0, "sets"}, "is one set", "name at least two: files, or names of shipped sets");
+  if (std::any_of(a.names.begin(), a.names.end(), [](const auto& name) { return std::filesystem::is_directory(name); }))
+    return compare_runs(a);
+  if (a.names.size() < 2)
+    throw InputError({"", 0, "names"}, "is one set", "name at least two: files, or names of shipped sets");
   std::vector<ParameterSet> sets;
-  for (const std::string& name : a.sets) {
-    if (std::filesystem::is_directory(name))
-      throw InputError({name, 0, ""}, "is a directory",
-                       "compare takes parameter sets; see `ropewalk report` for runs");
-    sets.push_back(read_parameters(find_parameters(name, "", {"", 0, "sets"})));
-  }
+  for (const std::string& name : a.names)
+    sets.push_back(read_parameters(find_parameters(name, "", {"", 0, "names"})));
   if (a.json)
     print_json(sets);
   else

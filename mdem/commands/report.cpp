@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "commands/commands.hpp"
+#include "commands/run_views.hpp"
 #include "io/files.hpp"
 #include "io/frames.hpp"
 #include "io/grade.hpp"
@@ -30,21 +31,6 @@ std::vector<DumpFrame> read_frames(const RunDirectory& dir, const Topology& topo
   std::vector<DumpFrame> some;
   for (std::size_t k = 0; k < pictured; ++k) some.push_back(all[k * (all.size() - 1) / (pictured - 1)]);
   return some;
-}
-
-RopeView view_of(const Topology& topology, const DumpFrame& frame, double beta) {
-  RopeView view;
-  view.time_ps = frame.state.time;
-  view.beta_deg = beta;
-  const auto& moment = frame.colours.bending_moment;
-  for (int t = 0; t < topology.tubes(); ++t) {
-    const int from = topology.tube_begin[t], to = topology.tube_begin[t + 1];
-    std::vector<Vector3> line;
-    for (int e = from; e < to; ++e) line.push_back(frame.state.position[static_cast<std::size_t>(e)]);
-    view.tubes.push_back(std::move(line));
-    if (!moment.empty()) view.bending_moment_eV.emplace_back(moment.begin() + from, moment.begin() + to);
-  }
-  return view;
 }
 
 void add_run_facts(const Scene& scene, const Prepared& p, const Manifest& m, ReportInput& in) {
@@ -155,6 +141,31 @@ ReportInput gather(const RunDirectory& dir, const Scene& scene, const Prepared& 
 
 }  // namespace
 
+RopeView view_of(const Topology& topology, const DumpFrame& frame, double beta_deg) {
+  RopeView view;
+  view.time_ps = frame.state.time;
+  view.beta_deg = beta_deg;
+  const auto& moment = frame.colours.bending_moment;
+  for (int t = 0; t < topology.tubes(); ++t) {
+    const int from = topology.tube_begin[t], to = topology.tube_begin[t + 1];
+    std::vector<Vector3> line;
+    for (int e = from; e < to; ++e) line.push_back(frame.state.position[static_cast<std::size_t>(e)]);
+    view.tubes.push_back(std::move(line));
+    if (!moment.empty()) view.bending_moment_eV.emplace_back(moment.begin() + from, moment.begin() + to);
+  }
+  return view;
+}
+
+std::optional<RopeView> last_view(const RunDirectory& dir, const Scene& scene, const Prepared& prepared) {
+  DumpReader reader(dir.frames());
+  DumpFrame frame;
+  bool any = false;
+  while (reader.next(prepared.topology, frame)) any = true;
+  if (!any) return {};
+  const double beta = observe(make_observer(scene, prepared), scene, prepared.topology, frame.state).beta;
+  return view_of(prepared.topology, frame, beta / units::degree);
+}
+
 void write_report(const RunDirectory& dir, const Scene& scene, const Prepared& prepared) {
   write_file_atomically(dir.report(), report_html(gather(dir, scene, prepared)));
 }
@@ -168,12 +179,10 @@ int report_command(const ReportArguments& a) {
     fmt::print("{} written\n", dir.report());
     return 0;
   }
-  const std::vector<DumpFrame> frames = read_frames(dir, prepared.topology);
-  if (frames.empty())
+  const std::optional<RopeView> view = last_view(dir, scene, prepared);
+  if (!view)
     throw InputError({dir.frames(), 0, ""}, "holds no frame", "run the scene further with `ropewalk resume`");
-  const double beta = observe(make_observer(scene, prepared), scene, prepared.topology, frames.back().state).beta;
-  write_file_atomically(a.picture, rope_svg(view_of(prepared.topology, frames.back(), beta / units::degree),
-                                            prepared.topology.largest_radius()));
+  write_file_atomically(a.picture, rope_svg(*view, prepared.topology.largest_radius()));
   fmt::print("{} written\n", a.picture);
   return 0;
 }

@@ -69,12 +69,13 @@ bool lock(const std::string& path, bool wait) {
   return file >= 0 && flock(file, LOCK_EX | (wait ? 0 : LOCK_NB)) == 0;
 }
 
-int run_or_resume(const RunDirectory& dir, const Scene& scene, double until_ps) {
+int run_or_resume(const RunDirectory& dir, const Scene& scene, double until_ps, const std::string& on_limit) {
   if (progress_of(dir).stage == Stage::begun) {
     ResumeArguments r;
     r.dir = dir.path;
     r.threads = 1;
     r.until_ps = until_ps;
+    r.on_limit = on_limit;
     r.quiet = true;
     return resume_command(r);
   }
@@ -82,6 +83,7 @@ int run_or_resume(const RunDirectory& dir, const Scene& scene, double until_ps) 
   RunArguments a;
   a.out = dir.path;
   a.until_ps = until_ps;
+  a.on_limit = on_limit;
   a.quiet = true;
   use_threads(1);
   return run_scene(scene, a);
@@ -202,7 +204,7 @@ class Campaign {
       tasks.push_back({[this, p, to] {
                          return in_a_process("start-" + p.name, true, [&] {
                            if (progress_of(to).stage == Stage::ended) return 0;
-                           return run_or_resume(to, scene_of(sweep_, p), sweep_.branch_at);
+                           return run_or_resume(to, scene_of(sweep_, p), sweep_.branch_at, "warn");
                          });
                        },
                        [this, p](int status) {
@@ -239,7 +241,7 @@ class Campaign {
     if (!is_to_run(p)) return 0;  // done by another process meanwhile
     if (progress_of(dir).stage == Stage::failed) fs::remove_all(dir.path);
     if (!p.trunk.empty() && progress_of(dir).stage == Stage::waiting) branch_off(p);
-    return run_or_resume(dir, scene_of(sweep_, p), -1);
+    return run_or_resume(dir, scene_of(sweep_, p), -1, arguments_.on_limit);
   }
 
   void run_points() {

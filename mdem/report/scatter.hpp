@@ -15,4 +15,7 @@ struct ScatterChart {
 // An <svg> element; empty if no line has two points at different x.
 std::string scatter_svg(const ScatterChart& scatter);
 
+// The same as a file of its own, with its colours, on white.
+std::string chart_file(const ScatterChart& scatter);
+
 }  // namespace ropewalk

@@ -15,6 +15,9 @@ namespace {
 constexpr double font = 12;            // pixels
 constexpr double label_distance = 15;  // between baselines
 constexpr std::size_t max_points = 400;
+constexpr int line_colours = categorical_colours + sequential_colours;
+
+int colour_of(const ChartLine& line) { return ((line.colour % line_colours) + line_colours) % line_colours; }
 
 std::string superscript(int exponent) {
   static const char* digits[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
@@ -247,7 +250,7 @@ std::string draw_error_bands(const LineChart& chart, const Plot& plot) {
     std::string upper, lower;
     const auto close = [&] {
       if (!upper.empty())
-        text += fmt::format("<path class=\"error e{}\" d=\"M{}L{}Z\"/>\n", line.colour % categorical_colours,
+        text += fmt::format("<path class=\"error e{}\" d=\"M{}L{}Z\"/>\n", colour_of(line),
                             upper.substr(1), lower.substr(1));
       upper.clear();
       lower.clear();
@@ -298,8 +301,7 @@ std::vector<EndLabel> end_labels(const LineChart& chart, const Plot& plot) {
 }
 
 std::string stroke_class(const ChartLine& line) {
-  const int colours = categorical_colours + sequential_colours;
-  return fmt::format("line c{}{}", ((line.colour % colours) + colours) % colours,
+  return fmt::format("line c{}{}", colour_of(line),
                      line.points   ? " points"
                      : line.dashed ? " dashed"
                                    : "");
@@ -471,7 +473,7 @@ font-variant-numeric:tabular-nums;max-width:100%;height:auto}
 .n5{fill:#d7352f}.n7{fill:#2b6cc4}.nx{fill:#e0a010}.n6{fill:#6b7078}.outermost{fill:#d4d7dc}
 .section circle{stroke:#4a4e55;stroke-width:.5}
 )";
-  for (int k = 0; k < categorical_colours + sequential_colours; ++k)
+  for (int k = 0; k < line_colours; ++k)
     css += fmt::format(".c{0}{{stroke:var(--c{0})}}.e{0}{{fill:var(--c{0})}}", k);
   return css + "\n";
 }
@@ -496,6 +498,17 @@ std::string scatter_svg(const ScatterChart& drawn) {
   for (const ChartLine& line : chart.lines)
     text += fmt::format("<path class=\"{}\" d=\"{}\"/>\n", stroke_class(line), path_of(plot, line));
   return text + draw_point_labels(scatter, plot) + draw_labels(chart, plot) + "</svg>\n";
+}
+
+std::string chart_file(const ScatterChart& scatter) {
+  const std::string svg = scatter_svg(scatter);
+  if (svg.empty()) return "";
+  const std::size_t head = svg.find('>') + 1;
+  const std::string name = "<svg";
+  const std::size_t dark = svg_css().find("@media screen"), light = svg_css().find("}}", dark) + 2;
+  return name + " xmlns=\"http://www.w3.org/2000/svg\"" + svg.substr(name.size(), head - name.size()) + "\n<style>" +
+         svg_css().substr(0, dark) + svg_css().substr(light) + "</style>\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>" +
+         svg.substr(head);
 }
 
 }  // namespace ropewalk

@@ -1,0 +1,218 @@
+#include "report/runs_page.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "report/log_figures.hpp"
+#include "report/page.hpp"
+#include "report/scatter.hpp"
+
+namespace ropewalk {
+namespace {
+
+// What most comparisons ask for, where it varies.
+const char* const usual[] = {"torque_upper_nN_nm", "tension_upper_nN", "stored_MJ_per_kg", "ends_strain",
+                             "beta_deg",           "Q",                "amplitude_nm",     "void_area_nm2",
+                             "vdw_eV",             "kinetic_eV"};
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+// "torque upper" and its unit.
+ChartAxis axis_of(const std::string& column) {
+  const Observable& o = observables()[index_of_observable(column)];
+  std::string suffix = "_" + o.unit;
+  std::replace(suffix.begin(), suffix.end(), ' ', '_');
+  std::string name = column;
+  const std::size_t at = name.size() > suffix.size() ? name.size() - suffix.size() : 0;
+  if (!o.unit.empty() && at > 0 && name.compare(at, suffix.size(), suffix) == 0) name.resize(at);
+  for (const char* unit : {"_MJ_per_kg", "_nm2", "_per_nm", "_per_ps"})
+    if (const std::size_t k = name.rfind(unit); k != std::string::npos) name.resize(k);
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return {name, o.unit, o.whole};
+}
+
+bool varies(const std::vector<RunCurve>& runs, const std::string& column) {
+  const LogValue value = logged(column);
+  double least = std::numeric_limits<double>::infinity(), most = -least;
+  for (const RunCurve& run : runs)
+    for (const LogRow& row : run.log)
+      if (const double v = value(row); std::isfinite(v)) least = std::min(least, v), most = std::max(most, v);
+  return most - least > 1e-9 * std::max(std::fabs(most), std::fabs(least));
+}
+
+std::vector<std::string> columns_of(const std::vector<RunCurve>& runs, const RunsFigure& figure) {
+  std::vector<std::string> out = figure.y;
+  if (out.empty())
+    for (const char* column : usual)
+      if (column != figure.x && varies(runs, column)) out.push_back(column);
+  return out;
+}
+
+// Names that leave no room for the curves are numbers on the page, which its first table explains.
+constexpr std::size_t longest_label = 26;
+bool are_long(const std::vector<RunCurve>& runs) {
+  return std::any_of(runs.begin(), runs.end(), [](const RunCurve& r) { return r.name.size() > longest_label; });
+}
+std::string label_of(const std::vector<RunCurve>& runs, std::size_t k) {
+  return are_long(runs) ? fmt::format("{}", k + 1) : runs[k].name;
+}
+
+// Many runs follow one another in colour; few are told apart.
+int colour_of(std::size_t k, std::size_t n) {
+  return n <= static_cast<std::size_t>(categorical_colours) ? static_cast<int>(k) : sequential_colour(k, n);
+}
+
+ScatterChart chart_of(const std::vector<RunCurve>& runs, const RunsFigure& figure, const std::string& column) {
+  ScatterChart scatter;
+  LineChart& chart = scatter.chart;
+  chart.title = axis_of(column).quantity + " against " + axis_of(figure.x).quantity;
+  chart.x = axis_of(figure.x);
+  chart.y = axis_of(column);
+  scatter.y_decades = figure.y_decades;
+  const LogValue x = logged(figure.x), y = logged(column);
+  double least = std::numeric_limits<double>::infinity(), most = -least;
+  for (std::size_t k = 0; k < runs.size(); ++k) {
+    ChartLine line{label_of(runs, k), values_of(runs[k].log, x), values_of(runs[k].log, y), colour_of(k, runs.size())};
+    if (!runs[k].error.empty() && !figure.y_decades) line.error = values_of(runs[k].error, y);
+    for (const double v : line.x)
+      if (std::isfinite(v)) least = std::min(least, v), most = std::max(most, v);
+    chart.lines.push_back(std::move(line));
+  }
+  for (const ReferenceLevel& level : figure.levels)
+    chart.lines.push_back({level.name, {least, most}, {level.value, level.value}, 5, true});
+  return scatter;
+}
+
+std::string pictures(const std::vector<RunCurve>& runs, Figures& figures) {
+  std::vector<RopeView> views;
+  double radius = 0;
+  for (const RunCurve& run : runs)
+    if (run.view) views.push_back(*run.view), radius = std::max(radius, run.tube_radius);
+  if (views.empty()) return "";
+  RopeCamera camera = rope_camera(views, radius, 1040);
+  std::string html = heading("Last states") + "<figure class=\"strip\"><div class=\"views\">\n";
+  std::size_t k = 0;
+  for (const RunCurve& run : runs) {
+    if (!run.view) continue;
+    html += fmt::format("<div class=\"view\"><div class=\"tag\">{}, {} ps</div>\n", escape_markup(run.name),
+                        number_text(run.view->time_ps, 4));
+    html += rope_picture(*run.view, camera, run.tube_radius, fmt::format("r{}", k), k + 1 == views.size()) + "</div>\n";
+    ++k;
+  }
+  html += "</div>\n";
+  if (camera.moment_eV > 0) html += moment_bar(camera.moment_eV);
+  return html +
+         figures.caption(fmt::format("All at the same scale; the bar is {:g} nm long. Colour: modulus of the bending "
+                                     "moment of the tube, where frames have it.",
+                                     scale_bar_length(camera))) +
+         "</figure>\n";
+}
+
+std::vector<TableColumn> table_of(const std::vector<RunCurve>& runs, const std::string& x, const std::string& y) {
+  std::vector<TableColumn> columns;
+  std::size_t rows = 0;
+  for (const RunCurve& run : runs) rows = std::max(rows, run.log.size());
+  for (const RunCurve& run : runs)
+    for (const std::string& name : {x, y}) {
+      columns.push_back({run.name + ", " + name, values_of(run.log, logged(name))});
+      columns.back().values.resize(rows, nan);
+    }
+  return columns;
+}
+
+std::string ends(const std::vector<RunCurve>& runs, const std::vector<std::string>& columns) {
+  std::string html = "<div class=\"scroll\"><table class=\"facts numbers\"><thead><tr><th></th><th>run</th><th>rows</th>";
+  for (const std::string& c : columns) html += "<th>" + escape_markup(c) + "</th>";
+  html += "<th></th></tr></thead><tbody>\n";
+  std::size_t k = 0;
+  for (const RunCurve& run : runs) {
+    html += fmt::format("<tr><td>{}</td><th>{}</th><td>{}</td>", ++k, escape_markup(run.name), run.log.size());
+    for (const std::string& c : columns) {
+      const double value = run.log.back()[c], error = run.error.empty() ? nan : run.error.back()[c];
+      html += "<td>" + (std::isfinite(value) ? measured_text(value, error) : std::string("–")) + "</td>";
+    }
+    html += "<td class=\"soft\">" + escape_markup(run.remark) + "</td></tr>\n";
+  }
+  return html + "</tbody></table></div>\n";
+}
+
+}  // namespace
+
+RunCurve mean_of(std::string name, const std::vector<std::vector<LogRow>>& logs) {
+  RunCurve curve{std::move(name), logs.front(), {}, logs.size(), "", {}, 0};
+  std::size_t rows = logs.front().size();
+  for (const auto& log : logs) rows = std::min(rows, log.size());
+  curve.log.resize(rows);
+  if (logs.size() < 2) return curve;
+  curve.error.resize(rows);
+  const auto n = static_cast<double>(logs.size());
+  for (std::size_t r = 0; r < rows; ++r)
+    for (std::size_t k = 0; k < observables().size(); ++k) {
+      double sum = 0, squares = 0;
+      for (const auto& log : logs) sum += log[r].values()[k];
+      const double mean = sum / n;
+      for (const auto& log : logs) squares += std::pow(log[r].values()[k] - mean, 2);
+      curve.log[r].values()[k] = mean;
+      curve.error[r].values()[k] = std::sqrt(squares / (n - 1) / n);
+    }
+  return curve;
+}
+
+std::string runs_page(const std::string& title, const std::vector<RunCurve>& runs, const RunsFigure& figure) {
+  Figures figures;
+  const std::vector<std::string> columns = columns_of(runs, figure);
+  std::string html = page_head(title) + "<body>\n<main>\n<p class=\"kicker\">Ropewalk: runs side by side</p>\n<h1>" +
+                     escape_markup(title) + "</h1>\n";
+  const bool replicated = std::any_of(runs.begin(), runs.end(), [](const RunCurve& r) { return r.replicates > 1; });
+  html += paragraph(fmt::format("The ends of {} {}.{}", runs.size(), replicated ? "ensembles" : "runs",
+                                replicated ? " Values are means over runs that differ in their seed alone, with the "
+                                             "standard error of the mean."
+                                           : "")) +
+          ends(runs, columns) + heading("Curves");
+  std::string open;
+  for (const std::string& column : columns) {
+    const std::string svg = scatter_svg(chart_of(runs, figure, column));
+    const std::string title_text = "<h3>" + escape_markup(axis_of(column).quantity) + "</h3>\n";
+    std::string meaning = observables()[index_of_observable(column)].meaning;
+    if (!meaning.empty()) meaning[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(meaning[0])));
+    const std::string one =
+        svg.empty() ? not_drawn(axis_of(column).quantity)
+                    : "<figure>" + title_text + svg +
+                          figures.caption(escape_markup(meaning) + "." +
+                                          (replicated ? " Bands: one standard error to either side." : "")) +
+                          data_table(table_of(runs, figure.x, column), "Every row is in the logs.") + "</figure>\n";
+    if (open.empty()) {
+      open = one;
+      continue;
+    }
+    html += pair_of(open, one);
+    open.clear();
+  }
+  if (!open.empty()) html += open;
+  return html + pictures(runs, figures) + "</main>\n</body>\n</html>\n";
+}
+
+std::string runs_svg(const std::vector<RunCurve>& runs, const RunsFigure& figure) {
+  const std::vector<std::string> columns = columns_of(runs, figure);
+  return columns.empty() ? "" : chart_file(chart_of(runs, figure, columns.front()));
+}
+
+std::string runs_csv(const std::vector<RunCurve>& runs, const RunsFigure& figure) {
+  const std::vector<std::string> columns = columns_of(runs, figure);
+  std::string text = "run,replicates," + figure.x;
+  for (const std::string& c : columns) text += fmt::format(",{},{}_standard_error", c, c);
+  text += "\n";
+  for (const RunCurve& run : runs)
+    for (std::size_t r = 0; r < run.log.size(); ++r) {
+      text += fmt::format("\"{}\",{},{:.8g}", run.name, run.replicates, run.log[r][figure.x]);
+      for (const std::string& c : columns)
+        text += fmt::format(",{:.8g},{:.3g}", run.log[r][c], run.error.empty() ? nan : run.error[r][c]);
+      text += "\n";
+    }
+  return text;
+}
+
+}  // namespace ropewalk

@@ -1,0 +1,47 @@
+// Several runs in one figure: curves of their logs with bands over replicates, and their last states side by side.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "io/log.hpp"
+#include "report/svg.hpp"
+
+namespace ropewalk {
+
+// One run, or the mean over replicates that differ in their seed alone.
+struct RunCurve {
+  std::string name;
+  std::vector<LogRow> log;
+  std::vector<LogRow> error;  // standard error of the mean, row by row; empty: a single run
+  std::size_t replicates = 1;
+  std::string remark;                // how it ended
+  std::optional<RopeView> view = {};  // of the last frame, of the first replicate
+  double tube_radius = 0;             // nm
+};
+
+// Means of logs with rows at the same times, as far as the shortest reaches.
+RunCurve mean_of(std::string name, const std::vector<std::vector<LogRow>>& logs);
+
+// A value to compare with, drawn across the chart.
+struct ReferenceLevel {
+  double value = 0;
+  std::string name;
+};
+
+struct RunsFigure {
+  std::string x = "time_ps";   // columns of the log
+  std::vector<std::string> y;  // a chart each; empty: those that vary, out of the usual ones
+  std::vector<ReferenceLevel> levels;
+  bool y_decades = false;
+};
+
+// Throws std::invalid_argument where a column does not exist.
+std::string runs_page(const std::string& title, const std::vector<RunCurve>& runs, const RunsFigure& figure);
+// The chart of the first y alone, as a file on white. Empty where there is nothing to draw.
+std::string runs_svg(const std::vector<RunCurve>& runs, const RunsFigure& figure);
+// x, then y and its error for each run: what the charts show.
+std::string runs_csv(const std::vector<RunCurve>& runs, const RunsFigure& figure);
+
+}  // namespace ropewalk
