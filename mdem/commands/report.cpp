@@ -52,7 +52,7 @@ void add_run_facts(const Scene& scene, const Prepared& p, const Manifest& m, Rep
   add("damping", fmt::format("contact viscosity {:.4g} eV ps/nm^2, bonds {:.4g} 1/ps, PFC local {:.4g}",
                              scene.damping.contact.eta, scene.damping.bond.rate, scene.damping.local));
   if (scene.thermostat)
-    add("thermostat", fmt::format("{}, {:.4g} K", scene.thermostat->method, scene.thermostat->temperature),
+    add("thermostat", fmt::format("{}, {} K", scene.thermostat->method, words_of(scene.thermostat->temperature)),
         fmt::format("coupling {:.4g} 1/ps, seed {}", scene.thermostat->coupling, scene.thermostat->seed));
   for (const SceneGrip& g : scene.grips) add("grip", g.grip->words());
   if (scene.twist) {

@@ -123,9 +123,9 @@ std::vector<std::string> warnings_of(const Scene& scene, const Topology& topolog
                     scene.run.mass_scale));
   if (scene.thermostat && (scene.damping.contact.eta > 0 || scene.damping.bond.rate > 0))
     warnings.push_back(
-        fmt::format("Damping takes out heat beside the thermostat: the tubes stay colder than {:.4g} K. Set "
+        fmt::format("Damping takes out heat beside the thermostat: the tubes stay colder than {} K. Set "
                     "damping.contact_viscosity_eV_ps_per_nm2 and damping.bond_damping_per_ps to 0 to hold it.",
-                    scene.thermostat->temperature));
+                    words_of(scene.thermostat->temperature)));
   if (scene.damping.local > 0)
     warnings.push_back("PFC local damping depends on the frame and does not conserve momentum.");
   if (scene.contact.law == "line" && scene.contact.nodes > 0) {

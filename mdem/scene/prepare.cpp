@@ -190,7 +190,7 @@ double automatic_step_fraction(const Scene& scene) {
 
 bool is_warm(const Scene& scene) {
   if (scene.run.mode == RunOptions::Mode::relax) return false;
-  if (scene.thermostat) return scene.thermostat->temperature > 0;
+  if (scene.thermostat) return scene.thermostat->temperature.largest() > 0;
   return scene.start.temperature > 0 && !scene.start.may_cool;
 }
 

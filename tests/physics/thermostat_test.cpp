@@ -27,7 +27,7 @@ constexpr double kT = units::boltzmann * room;
 
 Stepping langevin(double temperature, double friction, std::uint64_t seed = 1) {
   Stepping stepping;
-  stepping.thermostat = std::make_shared<LangevinThermostat>(temperature, friction, seed);
+  stepping.thermostat = std::make_shared<LangevinThermostat>(Schedule::always(temperature), friction, seed);
   return stepping;
 }
 

@@ -40,7 +40,7 @@ struct WarmChain {
   // shear and bend two.
   Excess measured(double step, int samples) const {
     Stepping stepping;
-    stepping.thermostat = std::make_shared<LangevinThermostat>(room, 8, 1);
+    stepping.thermostat = std::make_shared<LangevinThermostat>(Schedule::always(room), 8, 1);
     Simulation s(topology, {}, {}, state, step, 0, stepping);
     s.steps(static_cast<long>(30 / step));
     Energies sum;

@@ -464,7 +464,7 @@ std::string choices(const Scene& s) {
                         s.twist->hold, static_cast<int>(s.twist->reading), static_cast<int>(s.twist->application),
                         s.twist->lateral_free, s.twist->axial_free, s.twist->geometric_only, s.twist->increment);
   if (s.thermostat)
-    text += fmt::format("{} {:.10g} {:.10g} {} | ", s.thermostat->method, s.thermostat->temperature,
+    text += fmt::format("{} {:.10g} {:.10g} {} | ", s.thermostat->method, s.thermostat->temperature.first(),
                         s.thermostat->coupling, s.thermostat->seed);
   text += fmt::format("{} {} {:.10g} {:.10g} | ", s.run.stepping.contact_every, s.run.stepping.runge_kutta,
                       s.run.mass_scale, s.contact.cutoff);

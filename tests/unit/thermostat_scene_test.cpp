@@ -33,7 +33,7 @@ TEST(ThermostatTable, IsRead) {
   const Scene s = scene_from("[start]\nseed = 4\n[run]\nduration_ps = 1\n" + bath);
   ASSERT_TRUE(s.thermostat);
   EXPECT_EQ(s.thermostat->method, "langevin");
-  EXPECT_EQ(s.thermostat->temperature, 250);
+  EXPECT_EQ(s.thermostat->temperature.first(), 250);
   EXPECT_EQ(s.thermostat->coupling, 0.5);
   EXPECT_EQ(s.thermostat->seed, 4u) << "that of [start]";
   EXPECT_EQ(scene_from("[run]\nduration_ps = 1\n" + bath + "seed = 9\n").thermostat->seed, 9u);

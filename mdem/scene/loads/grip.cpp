@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/schedule_rows.hpp"
 #include "scene/tables/tables.hpp"
 
 namespace ropewalk {
@@ -310,13 +311,7 @@ std::vector<Schedule::Point> at_rate(const TomlTable& t, const Drive& d, const s
 }
 
 std::vector<Schedule::Point> in_time(const TomlTable& t, const Drive& d) {
-  std::vector<Schedule::Point> points;
-  for (const std::vector<double>& row : t.rows(d.key, Bounds::range(-largest_value, longest_time), 2)) {
-    if (row[0] < 0 || (!points.empty() && row[0] <= points.back().time))
-      throw t.error(d.key, fmt::format("has the time {} ps in point {}", row[0], points.size() + 1),
-                    "times rise from one point to the next, from 0 on");
-    points.push_back({row[0], row[1]});
-  }
+  const std::vector<Schedule::Point> points = points_in_time(t, d.key, Bounds::range(-largest_value, largest_value));
   if (!d.load && points.front().value != 0)
     throw t.error(d.key, fmt::format("begins at {}", points.front().value),
                   "begin with 0: it counts from where the elements are at the start");

@@ -1,4 +1,5 @@
 // [thermostat] a bath that keeps the temperature.
+#include "scene/schedule_rows.hpp"
 #include "scene/tables/tables.hpp"
 
 namespace ropewalk {
@@ -10,6 +11,14 @@ Words<std::string> methods() {
   Words<std::string> words;
   for (const ThermostatKind& kind : thermostat_kinds()) words.emplace_back(kind.name, kind.name);
   return words;
+}
+
+void read_temperature(const TomlTable& t, const Scene&, ThermostatOptions& o) {
+  const Bounds bounds = Bounds::range(0, 3000);
+  if (t.is_array("temperature_K"))
+    o.temperature = Schedule(points_in_time(t, "temperature_K", bounds));
+  else
+    o.temperature = Schedule::always(t.number("temperature_K", bounds));
 }
 
 void read_seed(const TomlTable& t, const Scene& scene, ThermostatOptions& o) {
@@ -26,8 +35,9 @@ const KeyTable<ThermostatOptions>& thermostat_table() {
       "a bath that keeps the temperature; without this table there is none",
       {Key::word("method", methods(), &O::method, standard(),
                  "\"langevin\": friction and noise on translation and rotation"),
-       Key::number("temperature_K", unit::kelvin, Bounds::range(0, 3000), &O::temperature, required("300"),
-                   "temperature of the bath"),
+       Key::custom("temperature_K", "K", required("300"),
+                   "temperature of the bath; a list is points in time, [[ps, K], ...], with straight lines between",
+                   read_temperature),
        Key::number("coupling_per_ps", {"1/ps", 1}, Bounds::positive(1e4), &O::coupling, required("0.1"),
                    "friction: velocities decay at this rate"),
        Key::custom("seed", "", otherwise("1", "that of [start]"), "of its random numbers", read_seed)},

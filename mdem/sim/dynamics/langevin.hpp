@@ -7,9 +7,11 @@
 //   v <- c v + sqrt((1 - c^2) kT/m) n,   w <- c w + sqrt((1 - c^2) kT/I) n,   c = exp(-g dt),
 //
 // with normal numbers n of variance 1. They follow from (seed, step, element, component) alone.
-// T in K, g in 1/ps. At T = 0 it is pure friction: the kinetic energy of free elements decays as exp(-2 g t).
+// T in K, that of the schedule at state.time; g in 1/ps. At T = 0 it is pure friction: the kinetic energy of free elements decays as exp(-2 g t).
 // R. L. Davidchack, T. E. Ouldridge, M. V. Tretyakov, J. Chem. Phys. 142, 144114 (2015), DOI 10.1063/1.4916312.
 #pragma once
+
+#include <utility>
 
 #include "sim/dynamics/thermostat.hpp"
 
@@ -17,12 +19,13 @@ namespace ropewalk {
 
 class LangevinThermostat : public Thermostat {
  public:
-  LangevinThermostat(double temperature, double friction, std::uint64_t seed)
-      : temperature_(temperature), friction_(friction), seed_(seed) {}
+  LangevinThermostat(Schedule temperature, double friction, std::uint64_t seed)
+      : temperature_(std::move(temperature)), friction_(friction), seed_(seed) {}
   void apply(const Topology& topology, double dt, State& state) const override;
 
  private:
-  double temperature_, friction_;
+  Schedule temperature_;
+  double friction_;
   std::uint64_t seed_;
 };
 

@@ -1,5 +1,7 @@
 #include "sim/dynamics/schedule.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -65,6 +67,12 @@ double Schedule::largest() const {
   double most = 0;
   for (const Point& p : points_) most = std::max(most, std::fabs(p.value));
   return most;
+}
+
+std::string words_of(const Schedule& schedule) {
+  std::string text;
+  for (const Schedule::Point& p : schedule.points()) text += fmt::format("{}{:.4g}", text.empty() ? "" : " to ", p.value);
+  return text.empty() ? "0" : text;
 }
 
 }  // namespace ropewalk

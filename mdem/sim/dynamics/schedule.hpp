@@ -6,6 +6,7 @@
 // hold and at either end the speed is zero there, and otherwise that of the slower of the two lines.
 #pragma once
 
+#include <string>
 #include <vector>
 
 namespace ropewalk {
@@ -21,6 +22,8 @@ class Schedule {
   // Times rise from one point to the next.
   explicit Schedule(std::vector<Point> points, double smooth = 0);
 
+  static Schedule always(double value) { return Schedule({{0, value}}); }
+
   double value(double time) const;
   double rate(double time) const;  // per ps
 
@@ -29,7 +32,7 @@ class Schedule {
   bool constant() const;                                                       // the same at all times
   double first() const { return points_.empty() ? 0.0 : points_.front().value; }
   double last() const { return points_.empty() ? 0.0 : points_.back().value; }
-  double largest() const;       // of its absolute values
+  double largest() const;  // of its absolute values
 
  private:
   // Between two points: from the speed `enter` to `along` in the time `smooth`, and on to `leave` in the last of it.
@@ -45,5 +48,8 @@ class Schedule {
   std::vector<Point> points_;
   std::vector<Line> lines_;
 };
+
+// Its values in order: "300", or "300 to 400 to 300".
+std::string words_of(const Schedule& schedule);
 
 }  // namespace ropewalk

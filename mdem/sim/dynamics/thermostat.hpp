@@ -6,13 +6,14 @@
 #include <string>
 #include <vector>
 
+#include "sim/dynamics/schedule.hpp"
 #include "sim/state/state.hpp"
 
 namespace ropewalk {
 
 struct ThermostatOptions {
   std::string method = "langevin";
-  double temperature = 0;  // K
+  Schedule temperature;    // K
   double coupling = 0;     // 1/ps
   std::uint64_t seed = 1;
 };
