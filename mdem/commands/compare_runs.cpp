@@ -44,7 +44,7 @@ std::vector<Group> groups_of(const CampaignDirectory& dir) {
       if (keys[k] == "start.seed") continue;
       values.push_back(p.values[k]);
       if (sweep.varies(keys[k]))
-        name += fmt::format("{}{} {}", name.empty() ? "" : ", ", keys[k].substr(keys[k].rfind('.') + 1), p.values[k]);
+        name += fmt::format("{}{} = {}", name.empty() ? "" : ", ", keys[k].substr(keys[k].rfind('.') + 1), p.values[k]);
     }
     const auto [entry, added] = at.emplace(values, groups.size());
     if (added) groups.push_back({name.empty() ? p.name : name, {}});

@@ -2,16 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "scene/tables/tables.hpp"
 
 namespace ropewalk {
 
 std::vector<Schedule::Point> points_in_time(const TomlTable& t, const std::string& key, const Bounds& bounds) {
   std::vector<Schedule::Point> points;
-  const Bounds times_too = Bounds::range(std::min(bounds.least, 0.0), std::max(bounds.most, longest_time));
-  for (const std::vector<double>& row : t.rows(key, times_too, 2)) {
+  for (const std::vector<double>& row : t.rows(key, Bounds::any(), 2)) {
     if (row[0] < 0 || row[0] > longest_time || (!points.empty() && row[0] <= points.back().time))
       throw t.error(key, fmt::format("has the time {} ps in point {}", row[0], points.size() + 1),
                     "times rise from one point to the next, from 0 on");

@@ -66,6 +66,13 @@ INSTANTIATE_TEST_SUITE_P(
                  "[twist]\nmoment_nN_nm = 20\nrate_nN_nm_per_ps = 30\n[damping]\npfc_local = 0.3\n"
                  "contact_viscosity_eV_ps_per_nm2 = 0\nbond_damping_per_ps = 0\n",
                  1e-6},
+        // A disc that turns and pulls, and clamps for each tube in which they spin and tilt. LAMMPS solves for the
+        // impulses of a clamp in another order.
+        Protocol{"Grips",
+                 "[[grip]]\nend = \"lower\"\nspin_free = true\ntilt_free = true\nas = \"each\"\n"
+                 "[[grip]]\nend = \"upper\"\nz = { force_nN = 5 }\nabout_x = \"free\"\n"
+                 "about_z = { rotation_deg = [[0, 0], [1, 3], [2, 0]] }\nsmooth_ps = 0.5\n",
+                 1e-9},
         Protocol{
             "LegacyTorque",
             "[start]\ntemperature_K = 100\nmay_cool = true\n[contact]\nlaw = \"paper\"\nlegacy_torque = true\n"},

@@ -431,6 +431,26 @@ TEST(SceneEdit, SetsKeysAndKeepsTheRest) {
   EXPECT_EQ(without_key(text, "two", "c"), text);
 }
 
+TEST(SceneEdit, SetsValuesAtPathsAndKeepsTheRest) {
+  const std::string text =
+      "a = 1  # é\n[one]\nc = { x = 1, y = \"é\", z = [1, 2] }  # c\n# d = 4\n[[load]]\nc = [[0, 0],\n [1, 2]]  # l\n"
+      "[[load]]\nc = 9\n";
+  const auto set = [&](const char* path, const char* value) { return with_value(text, path, value, "s.toml"); };
+  EXPECT_THAT(set("a", "2"), HasSubstr("a = 2  # é\n[one]"));
+  EXPECT_THAT(set("one.c.x", "7"), HasSubstr("{ x = 7, y = \"é\", z = [1, 2] }  # c"));
+  EXPECT_THAT(set("one.c.z.1", "7"), HasSubstr("y = \"é\", z = [1, 7] }  # c"));
+  EXPECT_THAT(set("one.c.w", "7"), HasSubstr("c = { w = 7, x = 1,"));
+  EXPECT_THAT(set("one.c", "7"), HasSubstr("[one]\nc = 7  # c\n"));
+  EXPECT_THAT(set("one.d", "5"), HasSubstr("\nd = 5\n[[load]]"));
+  EXPECT_THAT(set("load.0.c", "[]"), HasSubstr("[[load]]\nc = []  # l\n[[load]]\nc = 9\n"));
+  EXPECT_THAT(set("load.1.c", "[8]"), HasSubstr("  # l\n[[load]]\nc = [8]\n"));
+  EXPECT_THAT(set("load.1.e", "8"), HasSubstr("[[load]]\ne = 8\nc = 9\n"));
+  EXPECT_THAT(set("new.deep.key", "1"), HasSubstr("c = 9\n\n[new]\ndeep.key = 1\n"));
+  EXPECT_THAT(set("b", "1"), HasSubstr("b = 1\na = 1"));
+  for (const char* wrong : {"load.2.c", "load.x.c", "load", "one", "a.b"})
+    EXPECT_THROW(set(wrong, "1"), InputError) << wrong;
+}
+
 // A bent cantilever of harmonic bonds at rest: the finer model must find what beam theory says of the coarse one.
 TEST(SpotCheck, SeesWhatLongElementsCost) {
   const auto checked = [](double length, int elements) {

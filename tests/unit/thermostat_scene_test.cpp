@@ -66,6 +66,8 @@ TEST(ThermostatTable, RefusesWhatDoesNotGoWithIt) {
   expect(run + "temperature_K = 300\n", "thermostat.coupling_per_ps: is missing");
   expect(run + "coupling_per_ps = 1\n", "thermostat.temperature_K: is missing");
   expect(run + "temperature_K = -1\ncoupling_per_ps = 1\n", "thermostat.temperature_K");
+  expect(run + "temperature_K = [[0, 1], [0, 2]]\ncoupling_per_ps = 1\n", "has the time 0 ps in point 2");
+  expect(run + "temperature_K = [[0, 1], [9, -2]]\ncoupling_per_ps = 1\n", "has the value -2 in point 2");
   expect(run + "temperature_K = 300\ncoupling_per_ps = 0\n", "thermostat.coupling_per_ps");
   expect(run + "temperature_K = 300\ncoupling_per_ps = 1\nmethod = \"berendsen\"\n", "thermostat.method");
 }

@@ -1,0 +1,152 @@
+// Campaigns: interrupted, resumed, gathered and compared.
+#include <sstream>
+
+#include "cli/support.hpp"
+
+namespace ropewalk::test {
+namespace {
+
+class Campaign : public Cli {
+ protected:
+  void SetUp() override {
+    Cli::SetUp();
+    spit(dir / "tube.toml",
+         "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[rope]\ntubes = 1\nlength_nm = 13.56\n"
+         "[[grip]]\nend = \"lower\"\n[[grip]]\nend = \"upper\"\nabout_z = { rotation_deg = 10, rate_deg_per_ps = 1 }\n"
+         "[thermostat]\ntemperature_K = 100\ncoupling_per_ps = 0.5\n"
+         "[damping]\ncontact_viscosity_eV_ps_per_nm2 = 0\nbond_damping_per_ps = 0\n"
+         "[run]\nduration_ps = 12\nlog_every_ps = 1\n");
+  }
+
+  void sweep_file(const std::string& rest) const {
+    spit(dir / "s.toml", "format = \"ropewalk-sweep-1\"\nscene = \"tube.toml\"\n" + rest);
+  }
+
+  static std::vector<std::string> lines(const std::string& text) {
+    std::vector<std::string> out;
+    std::istringstream in(text);
+    for (std::string line; std::getline(in, line);) out.push_back(line);
+    return out;
+  }
+};
+
+TEST_F(Campaign, TableIsTheSameAfterInterruptions) {
+  sweep_file("replicates = 2\n[vary]\nrope.tubes = [1, 7]\nthermostat.temperature_K = [100, 300]\n");
+  const Outcome whole = run("sweep s.toml --out whole");
+  ASSERT_EQ(whole.code, 0) << whole.err;
+  EXPECT_NE(whole.out.find("8 points: 8 finished"), std::string::npos) << whole.out;
+  const std::string table = slurp(dir / "whole" / "table.csv");
+  ASSERT_EQ(lines(table).size(), 9u);
+  EXPECT_NE(table.find("tubes-7_temperature_K-300_seed-2,7,300,2,finished,"), std::string::npos) << table;
+  // Some points alone, one begun and left in the middle, one with nothing but its directory.
+  ASSERT_EQ(run("sweep s.toml --out parts --only 1,tubes-7_temperature_K-100_seed-1").code, 0);
+  const fs::path begun = dir / "parts" / "points" / "tubes-1_temperature_K-300_seed-1";
+  fs::copy(dir / "whole" / "points" / begun.filename(), dir / "scene-of", fs::copy_options::recursive);
+  spit(dir / "point.toml", slurp(dir / "scene-of" / "scene.toml"));
+  ASSERT_EQ(run("run point.toml --out " + begun.string() + " --steps 200 --quiet").code, 0);
+  std::string manifest = slurp(begun / "manifest.json");
+  manifest.replace(manifest.find("\"finished\""), 10, "\"running\"");
+  spit(begun / "manifest.json", manifest);
+  fs::create_directories(dir / "parts" / "points" / "tubes-7_temperature_K-300_seed-1");
+  const Outcome on = run("sweep s.toml --out parts -j 1");
+  ASSERT_EQ(on.code, 0) << on.err;
+  EXPECT_NE(on.err.find("2 of 8 points are done already"), std::string::npos) << on.err;
+  EXPECT_EQ(slurp(dir / "parts" / "table.csv"), table);
+  // Gathered otherwise.
+  EXPECT_EQ(lines(run("gather parts --columns beta_deg,kinetic_eV --mean 4").out)[0],
+            "point,rope.tubes,thermostat.temperature_K,start.seed,status,beta_deg,kinetic_eV,limits_passed");
+  EXPECT_EQ(lines(run("gather whole --series --columns time_ps").out).size(), 1 + 8 * 13u);
+  EXPECT_EQ(run("gather parts --columns nothing").code, 2);
+}
+
+TEST_F(Campaign, BranchesGoOnFromOneStart) {
+  sweep_file("[vary]\nrope.tubes = [1, 7]\n[branch]\nat_ps = 5\n[branch.vary]\nrun.duration_ps = [6, 8]\n");
+  ASSERT_EQ(run("sweep s.toml").code, 0) << slurp(dir / "stderr.txt");
+  const auto log = [&](const std::string& point) { return lines(slurp(dir / "s" / "points" / point / "log.csv")); };
+  const auto a = log("tubes-7_duration_ps-6"), b = log("tubes-7_duration_ps-8");
+  ASSERT_GE(a.size(), 8u);
+  ASSERT_GE(b.size(), a.size() + 2);
+  for (std::size_t k = 0; k < 7; ++k) EXPECT_EQ(a[k], b[k]);
+  // It ends where a run of its own ends, bit for bit.
+  spit(dir / "alone.toml", slurp(dir / "s" / "points" / "tubes-7_duration_ps-8" / "scene.toml"));
+  ASSERT_EQ(run("run alone.toml --out alone --quiet").code, 0);
+  EXPECT_EQ(slurp(dir / "alone" / "final.csv"), slurp(dir / "s" / "points" / "tubes-7_duration_ps-8" / "final.csv"));
+}
+
+TEST_F(Campaign, FailedPointsAreNamedAndKept) {
+  spit(dir / "tube.toml",
+       "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-paper\"\n[rope]\ntubes = 7\nlength_nm = 13.56\n"
+       "[twist]\napplication = \"tangential\"\nmoment_nN_nm = 1\nrate_nN_nm_per_ps = 50000\nhold_ps = 1\n");
+  sweep_file("[vary]\ntwist.moment_nN_nm = [1, 20000]\n");
+  const Outcome o = run("sweep s.toml");
+  EXPECT_EQ(o.code, 3);
+  EXPECT_NE(o.out.find("1 failed, 1 finished"), std::string::npos) << o.out;
+  EXPECT_NE(o.out.find("not ended: moment_nN_nm-20000"), std::string::npos) << o.out;
+  EXPECT_NE(slurp(dir / "s" / "table.csv").find("moment_nN_nm-20000,20000,failed,"), std::string::npos);
+  const auto written = fs::last_write_time(dir / "s" / "points" / "moment_nN_nm-20000" / "manifest.json");
+  EXPECT_EQ(run("sweep s.toml").code, 3);
+  EXPECT_EQ(fs::last_write_time(dir / "s" / "points" / "moment_nN_nm-20000" / "manifest.json"), written);
+  EXPECT_EQ(run("sweep s.toml --again").code, 3);
+  EXPECT_NE(fs::last_write_time(dir / "s" / "points" / "moment_nN_nm-20000" / "manifest.json"), written);
+}
+
+TEST_F(Campaign, RefusesWhatIsOfAnotherScene) {
+  sweep_file("[vary]\nrope.tubes = [1]\nstart.seed = [1, 2]\n");
+  ASSERT_EQ(run("sweep s.toml").code, 0);
+  EXPECT_EQ(run("sweep s.toml").code, 0);
+  spit(dir / "tube.toml", slurp(dir / "tube.toml") + "# changed\n");
+  const Outcome o = run("sweep s.toml");
+  EXPECT_EQ(o.code, 2);
+  EXPECT_NE(o.err.find("was run with another scene"), std::string::npos) << o.err;
+  EXPECT_EQ(run("sweep s.toml --force").code, 0);
+  fs::create_directories(dir / "mine");
+  spit(dir / "mine" / "thesis.txt", "mine");
+  EXPECT_EQ(run("sweep s.toml --out mine --force").code, 2);
+  EXPECT_EQ(slurp(dir / "mine" / "thesis.txt"), "mine");
+  EXPECT_EQ(run("sweep s.toml --only 3").code, 2);
+  EXPECT_EQ(run("sweep s.toml --only nobody").code, 2);
+  EXPECT_EQ(run("gather mine").code, 2);
+}
+
+TEST_F(Campaign, ClusterFilesRunEveryPoint) {
+  sweep_file("[vary]\nrope.tubes = [1, 7]\n");
+  ASSERT_EQ(run("sweep s.toml --slurm job.sh").code, 0);
+  EXPECT_EQ(run("sweep s.toml --slurm job.sh").code, 2) << "it exists";
+  const std::string job = slurp(dir / "job.sh");
+  EXPECT_NE(job.find("#SBATCH --array=1-2"), std::string::npos) << job;
+  const std::string bin = fs::path(ROPEWALK_PROGRAM).parent_path().string();
+  fs::create_directories(dir / "s");
+  for (const char* task : {"1", "2"})
+    EXPECT_EQ(std::system(("cd '" + dir.string() + "' && SLURM_ARRAY_TASK_ID=" + task + " PATH='" + bin +
+                           "':$PATH sh job.sh > out.txt 2>&1")
+                              .c_str()),
+              0)
+        << slurp(dir / "out.txt");
+  EXPECT_TRUE(fs::exists(dir / "s" / "points" / "tubes-7" / "report.html"));
+  ASSERT_EQ(run("sweep s.toml --snakemake Snakefile").code, 0);
+  EXPECT_NE(slurp(dir / "Snakefile").find("\"tubes-7\","), std::string::npos);
+}
+
+TEST_F(Campaign, CompareDrawsRunsAndEnsembles) {
+  sweep_file("replicates = 3\n[vary]\nrope.tubes = [1, 7]\n");
+  ASSERT_EQ(run("sweep s.toml").code, 0);
+  ASSERT_EQ(run("compare s --page page.html --x rotation_deg").code, 0) << slurp(dir / "stderr.txt");
+  const std::string page = slurp(dir / "page.html");
+  EXPECT_NE(page.find("The ends of 2 ensembles"), std::string::npos);
+  EXPECT_NE(page.find("tubes = 7"), std::string::npos);
+  EXPECT_NE(page.find("class=\"error"), std::string::npos);
+  EXPECT_NE(page.find("Last states"), std::string::npos);
+  EXPECT_EQ(run("compare s --page page.html").code, 2) << "it exists";
+  ASSERT_EQ(run("compare s/points/tubes-1_seed-1 s/points/tubes-7_seed-1 --y stored_MJ_per_kg --level 0.5:measured "
+                "--svg a.svg --csv a.csv")
+                .code,
+            0);
+  EXPECT_NE(slurp(dir / "a.svg").find(">measured</text>"), std::string::npos);
+  EXPECT_EQ(lines(slurp(dir / "a.csv")).size(), 1 + 2 * 13u);
+  EXPECT_EQ(run("compare s --y nothing").code, 2);
+  EXPECT_EQ(run("compare s --level x").code, 2);
+  EXPECT_EQ(run("compare s cnt-10-10-tersoff").code, 2);
+}
+
+}  // namespace
+}  // namespace ropewalk::test

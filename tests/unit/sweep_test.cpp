@@ -1,0 +1,128 @@
+// Sweeps: their points, names and refusals.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <set>
+
+#include "campaign/sweep_file.hpp"
+#include "model/error.hpp"
+
+namespace ropewalk {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+namespace fs = std::filesystem;
+
+class SweepFile : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    dir = fs::temp_directory_path() / ("ropewalk-sweep-" + std::to_string(getpid()));
+    fs::create_directories(dir);
+    std::ofstream(dir / "rope.toml") << "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n"
+                                        "[rope]\ntubes = 7\nlength_nm = 13.56\n"
+                                        "[twist]\nmoment_nN_nm = 8\nrate_nN_nm_per_ps = 1\n";
+  }
+  void TearDown() override { fs::remove_all(dir); }
+
+  Sweep sweep(const std::string& rest) const {
+    return sweep_of_text("format = \"ropewalk-sweep-1\"\nscene = \"rope.toml\"\n" + rest, (dir / "s.toml").string());
+  }
+  std::vector<std::string> names(const std::string& rest) const {
+    std::vector<std::string> out;
+    for (const SweepPoint& p : points_of(sweep(rest))) out.push_back(p.name);
+    return out;
+  }
+  std::string refusal(const std::string& rest) const {
+    try {
+      points_of(sweep(rest));
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return "";
+  }
+
+  fs::path dir;
+};
+
+TEST_F(SweepFile, GridTakesEveryValueWithEveryOther) {
+  EXPECT_THAT(names("replicates = 2\n[vary]\nrope.tubes = [7, 19]\ncontact.law = [\"line\"]\n"),
+              ElementsAre("tubes-7_seed-1", "tubes-7_seed-2", "tubes-19_seed-1", "tubes-19_seed-2"));
+  const std::vector<SweepPoint> points = points_of(sweep("[vary]\ntwist.moment_nN_nm = { from = 1, to = 2, points = 3 }\n"));
+  ASSERT_EQ(points.size(), 3u);
+  EXPECT_EQ(scene_of(sweep("[vary]\ntwist.moment_nN_nm = [1.5]\n"), points[1]).twist->moment,
+            scene_of(sweep("[vary]\ntwist.moment_nN_nm = [1.5]\n"),
+                     points_of(sweep("[vary]\ntwist.moment_nN_nm = [1.5]\n"))[0]).twist->moment);
+  EXPECT_LT(points[0].work, points[2].work);  // a longer ramp
+}
+
+TEST_F(SweepFile, ZipTakesThemSideBySideAndSeedsAfterwards) {
+  EXPECT_THAT(names("combine = \"zip\"\nreplicates = 2\n[vary]\nrope.tubes = [7, 19]\nrope.length_nm = [20, 30]\n"),
+              ElementsAre("tubes-7_length_nm-20_seed-1", "tubes-7_length_nm-20_seed-2",
+                          "tubes-19_length_nm-30_seed-1", "tubes-19_length_nm-30_seed-2"));
+}
+
+TEST_F(SweepFile, RangesAreEvenOrInEvenRatios) {
+  EXPECT_THAT(names("[vary]\ntwist.moment_nN_nm = { from = 1, to = 1.2, step = 0.1 }\n"),
+              ElementsAre("moment_nN_nm-1", "moment_nN_nm-1.1", "moment_nN_nm-1.2"));
+  EXPECT_THAT(names("[vary]\ntwist.moment_nN_nm = { from = 1, to = 4, points = 3, log = true }\n"),
+              ElementsAre("moment_nN_nm-1", "moment_nN_nm-2", "moment_nN_nm-4"));
+}
+
+TEST_F(SweepFile, BranchesShareAStart) {
+  const std::string text =
+      "[vary]\nrope.tubes = [7, 19]\n[branch]\nat_ps = 4\n[branch.vary]\ntwist.hold_ps = [1, 2]\n";
+  const std::vector<SweepPoint> points = points_of(sweep(text));
+  ASSERT_EQ(points.size(), 4u);
+  EXPECT_EQ(points[0].trunk, "tubes-7");
+  EXPECT_EQ(points[3].trunk, "tubes-19");
+  EXPECT_EQ(trunks_of(sweep(text)).size(), 2u);
+}
+
+TEST_F(SweepFile, WrongOnesGetOneClearLine) {
+  const std::pair<const char*, const char*> wrong[] = {
+      {"", "vary: is missing or empty"},
+      {"[vary]\nrope.tubes = 7\n", "rope.tubes: is one value"},
+      {"[vary]\nrope.tubes = []\n", "is an empty list"},
+      {"[vary]\nrope.tubes = [7, 7]\n", "has a value twice"},
+      {"[vary]\nrope.tubes = [8]\n", "point"},
+      {"[vary]\nrope.tubs = [7]\n", "did you mean \"tubes\""},
+      {"[vary]\nrope.tubes.x = [7]\n", "is not a table"},
+      {"[vary]\ngrip.0.z = [\"free\"]\n", "point"},
+      {"[vary]\nrope.tubes = { from = 1, to = 7 }\n", "needs either points or step"},
+      {"[vary]\nrope.tubes = { from = 1, to = 7, points = 0.5 }\n", "whole number"},
+      {"[vary]\nrope.length_nm = { from = 9, to = 7, step = 1 }\n", "does not lead"},
+      {"[vary]\nrope.length_nm = { from = -9, to = 7, points = 3, log = true }\n", "positive ends"},
+      {"[vary]\nrope.length_nm = { from = 9, to = 7, points = 3, steps = 1 }\n", "unknown key \"steps\""},
+      {"combine = \"zip\"\n[vary]\nrope.tubes = [7, 19]\nrope.length_nm = [20]\n", "has 1 values"},
+      {"replicates = 2\n[vary]\nstart.seed = [7]\n", "is varied twice"},
+      {"vari = 2\n[vary]\nrope.tubes = [7]\n", "vari: unknown key"},
+      {"[branch]\nat_ps = 3\n", "varies nothing"},
+      {"[vary]\nrope.length_nm = { from = 1, to = 2, points = 90000 }\nstart.seed = [1, 2]\n", "at most 100000"}};
+  for (const auto& [text, words] : wrong) {
+    const std::string line = refusal(text);
+    EXPECT_THAT(line, HasSubstr(words)) << text;
+    EXPECT_EQ(line.find('\n'), std::string::npos) << line;
+  }
+}
+
+// What data/campaigns shows is what this program reads.
+TEST(Campaigns, ShippedSweepsAreRead) {
+  int sweeps = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(ROPEWALK_SOURCE_DIR "/data/campaigns")) {
+    const std::string path = entry.path().string();
+    if (entry.path().extension() != ".toml" || path.find("/runs/") != std::string::npos) continue;
+    std::ifstream file(path);
+    const std::string text((std::istreambuf_iterator<char>(file)), {});
+    if (text.find("ropewalk-sweep-1") == std::string::npos) continue;
+    SCOPED_TRACE(path);
+    ++sweeps;
+    EXPECT_GT(points_of(read_sweep(path)).size(), 1u);
+  }
+  EXPECT_GE(sweeps, 2);
+}
+
+}  // namespace
+}  // namespace ropewalk
