@@ -66,6 +66,12 @@ class Stream {
     if (std::fflush(file_) != 0) fail();
   }
   std::uint64_t size() const { return size_; }
+  // What was written after this did not happen.
+  void cut(std::uint64_t keep) {
+    flush();
+    if (ftruncate(fileno(file_), static_cast<off_t>(keep)) != 0) fail();
+    size_ = keep;
+  }
 
  private:
   [[noreturn]] void fail() const {
@@ -165,17 +171,28 @@ class Run {
   void restore(const RunCheckpoint& c) {
     check_log_header(dir_.log());
     try {
+      if (c.mark) {
+        simulation_.restore(c.mark->simulation);
+        mark_.energy = energy_mark(simulation_);
+      }
       simulation_.restore(c.simulation);
     } catch (const std::runtime_error& e) {
       throw InputError({dir_.checkpoint(), 0, ""}, e.what(), "start the run anew with `ropewalk run`");
     }
     first_energy_ = c.first_energy;
     earlier_seconds_ = c.wall_seconds;
+    control_ = c.control;
     open(c.log_bytes, c.frame_bytes);
-    if (!std::filesystem::exists(dir_.limits())) return;
-    const LimitsFile earlier = read_limits(dir_.limits());
-    watch_.inherit_from(earlier.limits, simulation_.state().step);
-    refinements_ = earlier.refinements;
+    if (std::filesystem::exists(dir_.limits())) {
+      const LimitsFile earlier = read_limits(dir_.limits());
+      watch_.inherit_from(earlier.limits, simulation_.state().step);
+      refinements_ = earlier.refinements;
+    }
+    mark_.limits = watch_.records();
+    if (c.mark)
+      mark_.checkpoint = c.mark;
+    else
+      set_mark();
   }
 
   // For somebody else to go on with.
@@ -245,7 +262,7 @@ class Run {
   long steps_to_next_check(long checked_every, double seconds_of_a_step) const {
     const long step = static_cast<long>(simulation_.state().step);
     long count = last_step_ - step;
-    for (const long every : {checked_every, log_every_, frames_every_, pause_every})
+    for (const long every : {checked_every, log_every_, frames_every_, pause_every, StepControl::window})
       count = std::min(count, every - step % every);
     return std::min(count, std::max(2L, static_cast<long>(patience / seconds_of_a_step)));
   }
@@ -258,13 +275,25 @@ class Run {
     StopReason stop = StopReason::none;  // it ends after a step with energies: this one, or the next
     if (simulation_.state().step < last_step_ && std::isfinite(simulation_.total_energy())) stop = check_limits(true);
     if (stop != StopReason::none) return stop;
+    if (!mark_.checkpoint) set_mark();
     double seconds = patience;  // of a step
     while (simulation_.state().step < last_step_) {
       const long count = stop == StopReason::none ? steps_to_next_check(checked_every, seconds) : 1;
       const std::int64_t step = simulation_.state().step + count;
       const bool last = step == last_step_, logged = step % log_every_ == 0 || last || stop != StopReason::none;
+      const bool marked = step % StepControl::window == 0;
       const double began = now();
-      simulation_.steps(count, logged);
+      try {
+        simulation_.steps(count, logged || marked || last);
+      } catch (const NumericalError& e) {
+        if (!go_back(e.what())) throw;
+        stop = StopReason::none;
+        continue;
+      }
+      if ((marked || last) && !is_sound() && go_back("the account of energy did not close")) {
+        stop = StopReason::none;
+        continue;
+      }
       seconds = std::max((now() - began) / static_cast<double>(count), 1e-9);
       if (stop == StopReason::none && (logged || step % checked_every == 0))
         stop = check_limits(last || step % frames_every_ == 0);
@@ -275,6 +304,10 @@ class Run {
       if (ends) return stop;
       if (caught_signal) return StopReason::signal;
       if (progress.due()) progress.show(static_cast<double>(step), status_text());
+      if (marked) {
+        control_.lengthen(simulation_);
+        set_mark();
+      }
       if (step % pause_every == 0 && now() > checkpoint_at) {
         save();
         checkpoint_at = now() + scene_.run.checkpoint_every;
@@ -282,6 +315,41 @@ class Run {
     }
     progress.done();
     return StopReason::complete;
+  }
+
+  // --- The step that follows the motion ---
+
+  // A state to go back to, and what a run knew there.
+  struct Mark {
+    std::shared_ptr<const RunCheckpoint> checkpoint;
+    std::vector<LimitRecord> limits;
+    EnergyMark energy;
+  };
+
+  void set_mark() {
+    mark_.checkpoint = std::make_shared<const RunCheckpoint>(checkpoint_here());
+    mark_.limits = watch_.records();
+    mark_.energy = energy_mark(simulation_);
+  }
+
+  // A model that gains energy has no account to close.
+  bool is_sound() const { return scene_.contact.legacy_torque || account_closes(mark_.energy, simulation_); }
+
+  // False where steps are as short as they get: the failure stands.
+  bool go_back(const std::string& why) {
+    if (!mark_.checkpoint) return false;
+    const int divided = simulation_.divided();
+    const double time = simulation_.state().time;
+    if (2 * divided > StepControl::most) return false;
+    const RunCheckpoint& c = *mark_.checkpoint;
+    simulation_.restore(c.simulation);
+    control_.shorten(divided, simulation_.state().step, simulation_);
+    log_->cut(c.log_bytes);
+    frames_->cut(c.frame_bytes);
+    watch_.inherit_from(mark_.limits, simulation_.state().step);
+    say(fmt::format("{:.4g} ps: {}; back to {:.4g} ps, on with steps of {:.3g} fs", time, why, simulation_.state().time,
+                    simulation_.time_step() / simulation_.divided() / units::fs));
+    return true;
   }
 
   StopReason relax_loop() {
@@ -335,6 +403,7 @@ class Run {
   LogRow row() {
     const State& s = simulation_.state();
     EnergyAccount account;
+    account.time_step = simulation_.time_step() / simulation_.divided();
     if (scene_.twist) account.moment = scene_.twist->moment_at(s.time);
     account.potential = simulation_.forces().energy;
     account.kinetic = kinetic_energy(prepared_.topology, s);
@@ -380,14 +449,21 @@ class Run {
   void save() {
     log_->flush();
     frames_->flush();
+    RunCheckpoint c = checkpoint_here();
+    if (mark_.checkpoint && mark_.checkpoint->simulation != c.simulation) c.mark = mark_.checkpoint;
+    write_checkpoint(dir_, c);
+    write_limits();
+  }
+
+  RunCheckpoint checkpoint_here() const {
     RunCheckpoint c;
     c.log_bytes = log_->size();
     c.frame_bytes = frames_->size();
     c.first_energy = first_energy_;
     c.wall_seconds = wall();
+    c.control = control_;
     c.simulation = simulation_.serialise();
-    write_checkpoint(dir_, c);
-    write_limits();
+    return c;
   }
 
   void save_end() {
@@ -542,6 +618,8 @@ class Run {
   Simulation simulation_;
   std::unique_ptr<Stream> log_, frames_;
   LimitWatch watch_;
+  StepControl control_;
+  Mark mark_;
   std::vector<RefinementRecord> refinements_;
   LogRow last_row_;
   std::string reason_;

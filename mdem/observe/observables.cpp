@@ -34,6 +34,8 @@ std::vector<Observable>& table() {
       {"step", "", "time step", Group::time, [](const M& m) { return static_cast<double>(m.state.step); }, whole},
       {"time_ps", "ps", "time", Group::time, [](const M& m) { return m.state.time; }},
 
+      {"time_step_fs", "fs", "time step, a part of the whole one where the motion is fast", Group::load,
+       [](const M& m) { return m.account.time_step / units::fs; }},
       {"moment_nN_nm", "nN nm", "moment of the twist protocol: per tube or in total, as the scene gives it",
        Group::load, [](const M& m) { return m.account.moment / units::nN_nm; }},
 

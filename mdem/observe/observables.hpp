@@ -15,7 +15,8 @@ namespace ropewalk {
 
 // Loads and energies at one time. Only the run itself knows them; frames do not store them.
 struct EnergyAccount {
-  double moment = 0;  // eV, of the twist protocol
+  double time_step = 0;  // ps
+  double moment = 0;     // eV, of the twist protocol
   Energies potential;
   double kinetic = 0;       // eV
   double work = 0;          // eV, done by the loads since the start

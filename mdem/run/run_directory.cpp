@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* checkpoint_title = "ROPEWALK-CHECKPOINT 1 ";
+constexpr const char* checkpoint_title = "ROPEWALK-CHECKPOINT 2 ";
 
 bool belongs_to_a_run(const std::string& name) {
   for (const OutputFile& file : run_files()) {
@@ -107,14 +107,18 @@ Scene read_run_scene(const RunDirectory& dir) {
   return scene;
 }
 
-void write_checkpoint(const RunDirectory& dir, const RunCheckpoint& c) {
+void write_checkpoint(const RunDirectory& dir, const RunCheckpoint& checkpoint) {
   std::string body;
   const auto put = [&](const auto& value) { body.append(reinterpret_cast<const char*>(&value), sizeof value); };
-  put(c.log_bytes);
-  put(c.frame_bytes);
-  put(c.first_energy);
-  put(c.wall_seconds);
-  body += c.simulation;
+  for (const RunCheckpoint* c = &checkpoint; c; c = c->mark.get()) {
+    put(c->log_bytes);
+    put(c->frame_bytes);
+    put(c->first_energy);
+    put(c->wall_seconds);
+    put(c->control);
+    put(static_cast<std::uint64_t>(c->simulation.size()));
+    body += c->simulation;
+  }
   write_file_atomically(dir.checkpoint(), checkpoint_title + hash_hex(body) + "\n" + body);
 }
 
@@ -125,20 +129,29 @@ RunCheckpoint read_checkpoint(const RunDirectory& dir) {
   const std::string bytes = read_file(dir.checkpoint());
   const std::size_t head = std::strlen(checkpoint_title) + 17;
   const bool titled =
-      bytes.size() > head + 32 && bytes.compare(0, std::strlen(checkpoint_title), checkpoint_title) == 0;
+      bytes.size() > head + 64 && bytes.compare(0, std::strlen(checkpoint_title), checkpoint_title) == 0;
   if (!titled || bytes.substr(head - 17, 16) != hash_hex(std::string_view(bytes).substr(head)))
     throw InputError(place, "is damaged or of another version", "start the run anew with `ropewalk run`");
-  RunCheckpoint c;
   std::size_t at = head;
   const auto get = [&](auto& value) {
     std::memcpy(&value, bytes.data() + at, sizeof value);
     at += sizeof value;
   };
-  get(c.log_bytes);
-  get(c.frame_bytes);
-  get(c.first_energy);
-  get(c.wall_seconds);
-  c.simulation = bytes.substr(at);
+  const auto next = [&] {
+    RunCheckpoint c;
+    std::uint64_t size = 0;
+    get(c.log_bytes);
+    get(c.frame_bytes);
+    get(c.first_energy);
+    get(c.wall_seconds);
+    get(c.control);
+    get(size);
+    c.simulation = bytes.substr(at, size);
+    at += size;
+    return c;
+  };
+  RunCheckpoint c = next();
+  if (at < bytes.size()) c.mark = std::make_shared<const RunCheckpoint>(next());
   return c;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "io/manifest.hpp"
 #include "observe/loading.hpp"
 #include "observe/observe.hpp"
+#include "run/step_control.hpp"
 #include "scene/prepare.hpp"
 
 namespace ropewalk {
@@ -55,7 +57,9 @@ struct RunCheckpoint {
   std::uint64_t frame_bytes = 0;
   double first_energy = 0;  // eV, total at the start: origin of the balance
   double wall_seconds = 0;
+  StepControl control;
   std::string simulation;
+  std::shared_ptr<const RunCheckpoint> mark;  // the last state to go back to; null: this one
 };
 void write_checkpoint(const RunDirectory& dir, const RunCheckpoint& checkpoint);
 RunCheckpoint read_checkpoint(const RunDirectory& dir);

@@ -11,7 +11,7 @@
 namespace ropewalk {
 namespace {
 
-constexpr char magic[8] = "MDEM10";
+constexpr char magic[8] = "MDEM11";
 
 struct CheckpointHead {
   char format[sizeof magic];
@@ -98,6 +98,7 @@ template <class Archive, class Self, class List>
 void Simulation::visit_checkpoint(Archive& archive, Self& self, List& list) {
   auto& s = self.state_;
   archive(self.time_step_);
+  archive(self.divided_);
   archive(s.time);
   archive(s.step);
   archive(self.account_);
@@ -148,6 +149,7 @@ void Simulation::restore(const std::string& bytes) {
   list.position.resize(state_.size());
   list.axis.resize(state_.size());
   visit_checkpoint(read, *this, list);
+  state_.part = 0;
   list_.skin = list.skin;
   list_.build(topology_, std::move(list.position), std::move(list.axis));
   list_.set_twist(list.twist);

@@ -32,12 +32,13 @@ void to_normals(const double (&radial)[3][group], const double (&angular)[3][gro
 }
 
 // Of the elements first .. first + group - 1.
-void draw(std::uint64_t seed, std::int64_t step, std::ptrdiff_t first, Normals& out) {
+void draw(std::uint64_t seed, std::int64_t step, int part, std::ptrdiff_t first, Normals& out) {
   double radial[3][group], angular[3][group];
   const auto low = static_cast<std::uint32_t>(step), high = static_cast<std::uint32_t>(step >> 32);
   for (int k = 0; k < group; ++k) {
     const auto element = static_cast<std::uint32_t>(first + k);
-    const auto a = philox({low, high, element, 0}, seed), b = philox({low, high, element, 1}, seed);
+    const auto of = static_cast<std::uint32_t>(2 * part);
+    const auto a = philox({low, high, element, of}, seed), b = philox({low, high, element, of + 1}, seed);
     const std::uint32_t bits[3][2] = {{a[0], a[1]}, {a[2], a[3]}, {b[0], b[1]}};
     for (int pair = 0; pair < 3; ++pair) {
       radial[pair][k] = unit_interval(bits[pair][0]);
@@ -56,7 +57,7 @@ void LangevinThermostat::apply(const Topology& topology, double dt, State& state
 #pragma omp parallel for schedule(static) if (state.size() > parallel_from)
   for (int first = 0; first < n; first += group) {
     Normals normal;
-    draw(seed_, state.step, first, normal);
+    draw(seed_, state.step, state.part, first, normal);
     int tube = topology.tube_of(first);
     for (int k = 0; k < std::min(group, n - first); ++k) {
       while (first + k >= topology.tube_begin[tube + 1]) ++tube;

@@ -86,7 +86,7 @@ struct Simulation::OneLevel {
     s.update_list();
     s.compute(energies);
     s.check_forces(energies);
-    s.account_.dissipated -= s.time_step_ * s.forces_.damping_power;
+    s.account_.dissipated -= s.part_step() * s.forces_.damping_power;
   }
 };
 
@@ -131,11 +131,15 @@ void Simulation::steps(long count, bool energies) {
 
 void Simulation::step_once(bool energies) {
   ++state_.step;
-  if (two_levels()) {
-    two_level_step(TwoLevels{*this, energies}, time_step_, stepping_.contact_every);
-  } else {
-    verlet_step(OneLevel{*this, energies}, time_step_, stepping_.thermostat != nullptr);
+  for (state_.part = 0; state_.part < divided_; ++state_.part) {
+    const bool last = state_.part + 1 == divided_;
+    if (two_levels()) {
+      two_level_step(TwoLevels{*this, energies && last}, part_step(), stepping_.contact_every);
+    } else {
+      verlet_step(OneLevel{*this, energies && last}, part_step(), stepping_.thermostat != nullptr);
+    }
   }
+  state_.part = 0;
   relax_spins_if_due();
 }
 
@@ -183,7 +187,7 @@ void Simulation::drift(double dt) {
   move(dt);
   state_.time += dt;
   gauges_.follow(state_);
-  const MotionBound bound(topology_.largest_radius(), time_step_);
+  const MotionBound bound(topology_.largest_radius(), part_step());
   if (std::all_of(fastest_.begin(), fastest_.end(), [&](const Fastest& f) { return bound.holds(f); })) return;
   int broken = 0;
   while (broken + 1 < topology_.elements() && bound.holds(fastest(state_, broken, broken + 1))) ++broken;

@@ -59,6 +59,9 @@ class Simulation {
   const NeighbourList& list() const { return list_; }
   const ForceEngine& engine() const { return engine_; }
   double time_step() const { return time_step_; }
+  // From now on each step is so many shorter ones. Steps are counted as before.
+  void divide_steps(int parts) { divided_ = parts; }
+  int divided() const { return divided_; }
   const Stepping& stepping() const { return stepping_; }
   const EnergySupply& account() const { return account_; }
   double work() const { return account_.work; }
@@ -93,7 +96,8 @@ class Simulation {
   struct TwoLevels;  // what two_level_step acts on
 
   bool two_levels() const { return stepping_.contact_every > 1; }
-  double inner_step() const { return time_step_ / stepping_.contact_every; }
+  double part_step() const { return time_step_ / divided_; }
+  double inner_step() const { return part_step() / stepping_.contact_every; }
   void step_once(bool energies);
   void kick(const Forces& forces, double dt);
   void kick_with_loads(const Forces& forces, double dt);
@@ -120,6 +124,7 @@ class Simulation {
   LoadsAndConstraints loads_;
   State state_;
   double time_step_ = 0;
+  int divided_ = 1;
   Stepping stepping_;
   std::vector<int> loaded_;                  // elements
   std::vector<ConstraintImpulse> impulses_;  // of the last kick

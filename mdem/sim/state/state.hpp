@@ -100,6 +100,7 @@ struct State {
   Vec3Array angular_velocity;   // rad/ps, space frame
   double time = 0;              // ps
   std::int64_t step = 0;
+  int part = 0;  // of a step that is divided, from 0
 
   explicit State(std::size_t n = 0) : position(n), orientation(n), velocity(n), angular_velocity(n) {}
   std::size_t size() const { return position.size(); }

@@ -24,10 +24,10 @@ class AndersenThermostat : public Thermostat {
   void apply(const Topology& topology, double dt, State& state) const override {
     const double probability = -std::expm1(-rate_ * dt);
     for (std::size_t i = 0; i < state.size(); ++i) {
-      const auto bits = random_bits(state.step, i, 0);
+      const auto bits = random_bits(state, i, 0);
       if (unit_interval(bits[0]) >= probability) continue;
       const TubeType& type = topology.type_of_element(static_cast<int>(i));
-      const auto a = random_bits(state.step, i, 1), b = random_bits(state.step, i, 2);
+      const auto a = random_bits(state, i, 1), b = random_bits(state, i, 2);
       const auto n = normal_pair(a[0], a[1]), m = normal_pair(a[2], a[3]), o = normal_pair(b[0], b[1]);
       state.velocity.set(i, std::sqrt(kT_ / type.mass) * Vector3(n[0], n[1], m[0]));
       state.angular_velocity.set(i, std::sqrt(kT_ / type.inertia) * Vector3(m[1], o[0], o[1]));
@@ -35,10 +35,10 @@ class AndersenThermostat : public Thermostat {
   }
 
  private:
-  // A function of seed, step and element: the same on any number of threads, and in a resumed run.
-  std::array<std::uint32_t, 4> random_bits(std::int64_t step, std::size_t element, std::uint32_t draw) const {
-    return philox({static_cast<std::uint32_t>(step), static_cast<std::uint32_t>(step >> 32),
-                   static_cast<std::uint32_t>(element), draw},
+  // A function of seed, step, part of the step and element: the same on any number of threads, and in a resumed run.
+  std::array<std::uint32_t, 4> random_bits(const State& state, std::size_t element, std::uint32_t draw) const {
+    return philox({static_cast<std::uint32_t>(state.step), static_cast<std::uint32_t>(state.step >> 32),
+                   static_cast<std::uint32_t>(element), 3 * static_cast<std::uint32_t>(state.part) + draw},
                   seed_);
   }
 

@@ -1,0 +1,40 @@
+#include "run/step_control.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ropewalk {
+
+bool StepControl::shorten(int divided, std::int64_t step, Simulation& simulation) {
+  if (2 * divided > most) return false;
+  simulation.divide_steps(2 * divided);
+  const bool too_early = kept_until > 0 && step >= kept_until;  // they had just been put together again
+  if (too_early) keep = std::min(2 * keep, most_keep);
+  kept_until = step + keep;
+  return true;
+}
+
+void StepControl::lengthen(Simulation& simulation) {
+  const std::int64_t step = simulation.state().step;
+  if (step < kept_until) return;
+  if (simulation.divided() > 1) {
+    simulation.divide_steps(simulation.divided() / 2);
+    kept_until = step + least_keep;
+  } else if (keep > least_keep) {
+    keep = std::max(keep / 2, least_keep);
+    kept_until = step + least_keep;
+  }
+}
+
+EnergyMark energy_mark(const Simulation& s) { return {s.total_energy(), s.account()}; }
+
+bool account_closes(const EnergyMark& mark, const Simulation& s) {
+  constexpr double part = 0.03, part_of_bonds = 1e-3;
+  if (!std::isfinite(mark.energy)) return true;
+  const EnergyMark now = energy_mark(s);
+  const double error = now.energy - mark.energy - (now.supply.supplied() - mark.supply.supplied());
+  const double moving = kinetic_energy(s.topology(), s.state()) + std::fabs(now.supply.dissipated - mark.supply.dissipated);
+  return std::fabs(error) <= part * moving + part_of_bonds * s.forces().energy.bonds();
+}
+
+}  // namespace ropewalk

@@ -1,0 +1,40 @@
+// The step that follows the motion. A run marks a good state every `window` steps. Where the motion blows up, or the
+// account of energy does not close over a window, it goes back to the last mark and divides every step in two, up to
+// `most` parts, and puts steps together again once the motion has been quiet. Files count by the whole steps.
+//
+// All of it depends on the states alone: a run is the same bits on any number of threads and after a resume.
+#pragma once
+
+#include <cstdint>
+
+#include "sim/dynamics/simulation.hpp"
+
+namespace ropewalk {
+
+struct StepControl {
+  static constexpr std::int64_t window = 128, least_keep = 512, most_keep = 8192;  // steps
+  static constexpr int most = 16;
+
+  std::int64_t kept_until = 0;     // the step before which steps stay divided
+  std::int64_t keep = least_keep;  // for how many they are divided when it happens next
+
+  // After a failure, from the mark at `step`, which the simulation is back at. `divided`: as it was when it failed.
+  // False where steps are as short as they get.
+  bool shorten(int divided, std::int64_t step, Simulation& simulation);
+  // At a mark, after a window without failure.
+  void lengthen(Simulation& simulation);
+};
+
+// The account of energy at one time.
+struct EnergyMark {
+  double energy = 0;  // eV, in all; NaN where it is not known
+  EnergySupply supply;
+};
+EnergyMark energy_mark(const Simulation& simulation);
+
+// Whether what came in since the mark, less what went out, is what the energy has changed by, within 3 % of the
+// energies that move. A step that is too long adds more than that soon before it blows up; a sound run, hot ones
+// included, is off by 1 % at most.
+bool account_closes(const EnergyMark& mark, const Simulation& simulation);
+
+}  // namespace ropewalk
