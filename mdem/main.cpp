@@ -44,6 +44,7 @@ struct Verbs {
   ErrorsArguments errors;
   CompareArguments compare;
   SweepArguments sweep;
+  ThresholdArguments threshold;
   GatherArguments gather;
   PlanArguments plan;
   ExportArguments to_lammps;
@@ -202,6 +203,18 @@ void add_sweep(CLI::App& app, Verbs& v) {
   c->callback([&v] { v.code = sweep_command(v.sweep); });
 }
 
+void add_threshold(CLI::App& app, Verbs& v) {
+  CLI::App* c = app.add_subcommand(
+      "threshold", "The critical value of a key at each point of a sweep, by bisection and by growth rates: a phase diagram");
+  c->add_option("file", v.threshold.file, "Sweep (TOML) with [threshold]: key, from, to, column, above")->required();
+  c->add_option("--out", v.threshold.out, "Directory of the campaign; the same command goes on [default: FILE]");
+  c->add_option("-j,--jobs", v.threshold.jobs, "Points at a time, each on one core [default: all cores]")
+      ->check(thread_range());
+  c->add_flag("--force", v.threshold.force, "Replace runs of another scene");
+  c->add_flag("--quiet", v.threshold.quiet, "No progress");
+  c->callback([&v] { v.code = threshold_command(v.threshold); });
+}
+
 void add_gather(CLI::App& app, Verbs& v) {
   CLI::App* c = app.add_subcommand("gather", "One table (CSV) of all points of a campaign, at their ends");
   c->add_option("dir", v.gather.dir, "Directory of the campaign")->required();
@@ -289,6 +302,7 @@ int main(int argc, char** argv) {
   add_errors(app, verbs);
   add_compare(app, verbs);
   add_sweep(app, verbs);
+  add_threshold(app, verbs);
   add_gather(app, verbs);
   add_plan(app, verbs);
   add_export(app, verbs);

@@ -239,6 +239,18 @@ std::vector<Setting> settings_of(const std::vector<SweepAxis>& axes, const std::
   return out;
 }
 
+ThresholdQuestion read_threshold(const TomlTable& t) {
+  ThresholdQuestion q;
+  q.key = t.string("key");
+  q.from = t.number("from", Bounds::any());
+  q.to = t.number("to", Bounds::any());
+  if (!(q.to > q.from)) throw t.error("to", "is not above from", "give the range in which the value lies");
+  q.column = t.string_or("column", q.column);
+  q.above = t.number("above", Bounds::any());
+  q.accuracy = t.number_or("accuracy", q.accuracy, Bounds::range(1e-4, 0.5));
+  return q;
+}
+
 }  // namespace
 
 std::vector<std::string> Sweep::keys() const {
@@ -274,6 +286,7 @@ Sweep sweep_of_text(const std::string& text, const std::string& path, const std:
   const TomlTable branch = top.table("branch");
   if (top.has("branch")) s.branch_at = branch.number("at_ps", Bounds::positive());
   branch.has("vary");
+  if (top.has("threshold")) s.threshold = read_threshold(top.table("threshold"));
   top.finish();
   const toml::table file = toml::parse(text, path);
   s.axes = axes_in(file["vary"].as_table(), path);
@@ -287,7 +300,7 @@ Sweep sweep_of_text(const std::string& text, const std::string& path, const std:
     s.axes.push_back(seed);
   }
   const std::vector<std::string> keys = s.keys();
-  if (keys.empty()) throw top.error("vary", "is missing or empty", "add [vary] with keys of the scene: rope.tubes = [7, 19]");
+  if (keys.empty() && !s.threshold) throw top.error("vary", "is missing or empty", "add [vary] with keys of the scene: rope.tubes = [7, 19]");
   for (const std::string& key : keys)
     if (std::count(keys.begin(), keys.end(), key) > 1)
       throw top.error("vary", fmt::format("\"{}\" is varied twice", key), "take one of the two away");

@@ -7,12 +7,20 @@
 //   [vary]
 //   rope.tubes = [7, 19, 37]
 //   thermostat.temperature_K = { from = 200, to = 400, points = 5 }   # or step = 50; log = true: even ratios
+//   [threshold]                  # for `ropewalk threshold`: at each point, where this key begins to do this
+//   key = "twist.moment_nN_nm"
+//   from = 10
+//   to = 60
+//   column = "amplitude_nm"
+//   above = 1
+//   accuracy = 0.02
 //   [branch]                     # points that differ only below here share one run up to this time
 //   at_ps = 135
 //   [branch.vary]
 //   damping.contact_viscosity_eV_ps_per_nm2 = [8, 20]
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,6 +34,14 @@ struct SweepAxis {
   int line = 0;                     // in the file of the sweep
 };
 
+// [threshold] the critical value of a key, for `ropewalk threshold`.
+struct ThresholdQuestion {
+  std::string key, column = "amplitude_nm";
+  double from = 0, to = 0;
+  double above = 1;        // in the unit of the column
+  double accuracy = 0.02;  // the bracket is narrowed to this part of its middle
+};
+
 struct Sweep {
   std::string path, text;
   std::string scene_path, scene_text;
@@ -33,6 +49,7 @@ struct Sweep {
   int replicates = 0;  // 0: the seed is not varied
   std::vector<SweepAxis> axes, branch_axes;  // in the order of the file; the seed is the last of `axes`
   double branch_at = 0;                      // ps; 0: nothing is shared
+  std::optional<ThresholdQuestion> threshold;
   std::vector<std::string> keys() const;     // of all axes
   bool varies(const std::string& key) const;  // has more than one value
 };

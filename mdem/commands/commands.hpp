@@ -87,6 +87,15 @@ struct SweepArguments {
 };
 int sweep_command(const SweepArguments& arguments);
 
+struct ThresholdArguments {
+  std::string file;
+  std::string out;  // empty: FILE without .toml
+  int jobs = 0;     // points at a time; 0: one for each core
+  bool force = false;
+  bool quiet = false;
+};
+int threshold_command(const ThresholdArguments& arguments);
+
 struct GatherArguments {
   std::string dir;
   std::string out;  // empty: to the terminal

@@ -26,6 +26,7 @@
 #include "run/progress.hpp"
 #include "run/run_directory.hpp"
 #include "run/stages.hpp"
+#include "run/stop_watch.hpp"
 #include "scene/finer.hpp"
 #include "scene/scene_toml.hpp"
 #include "scene/state_csv.hpp"
@@ -117,6 +118,7 @@ class Run {
         observer_(make_observer(scene_, prepared_)),
         simulation_(start(scene_, prepared_)),
         watch_(watched_by_run(scene_, prepared_, observer_)),
+        stop_watch_(scene_.stops),
         policy_(policy) {
     const double dt = prepared_.time_step;
     const double span = prepared_.duration > 0 ? prepared_.duration : 1000 * dt;
@@ -188,6 +190,8 @@ class Run {
       watch_.inherit_from(earlier.limits, simulation_.state().step);
       refinements_ = earlier.refinements;
     }
+    if (!stop_watch_.empty())
+      for (const LogRow& earlier : read_log(dir_.log())) stop_watch_.add(earlier);
     mark_.limits = watch_.records();
     if (c.mark)
       mark_.checkpoint = c.mark;
@@ -300,6 +304,11 @@ class Run {
       if (last && stop == StopReason::refine) stop = StopReason::none;
       const bool ends = logged && stop != StopReason::none;
       if (logged) write_row();
+      if (logged && !last && stop == StopReason::none && is_decided()) {
+        write_frame();
+        progress.done();
+        return StopReason::complete;
+      }
       if (step % frames_every_ == 0 || last || ends) write_frame();
       if (ends) return stop;
       if (caught_signal) return StopReason::signal;
@@ -347,6 +356,7 @@ class Run {
     log_->cut(c.log_bytes);
     frames_->cut(c.frame_bytes);
     watch_.inherit_from(mark_.limits, simulation_.state().step);
+    stop_watch_.cut(simulation_.state().step);
     say(fmt::format("{:.4g} ps: {}; back to {:.4g} ps, on with steps of {:.3g} fs", time, why, simulation_.state().time,
                     simulation_.time_step() / simulation_.divided() / units::fs));
     return true;
@@ -416,8 +426,15 @@ class Run {
     return log_row(observer_, scene_, prepared_.topology, s, account);
   }
 
+  bool is_decided() {
+    if (stop_watch_.empty()) return false;
+    reason_ = stop_watch_.decided(watch_.records());
+    return !reason_.empty();
+  }
+
   void write_row() {
     last_row_ = row();
+    stop_watch_.add(last_row_);
     log_->write(log_line(last_row_));
     log_->flush();
   }
@@ -618,6 +635,7 @@ class Run {
   Simulation simulation_;
   std::unique_ptr<Stream> log_, frames_;
   LimitWatch watch_;
+  StopWatch stop_watch_;
   StepControl control_;
   Mark mark_;
   std::vector<RefinementRecord> refinements_;

@@ -1,12 +1,9 @@
 // `sweep` and `gather`: many runs of one scene, and one table of them.
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <omp.h>
-#include <sys/file.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
@@ -15,6 +12,7 @@
 
 #include "campaign/campaign.hpp"
 #include "commands/commands.hpp"
+#include "commands/point_runs.hpp"
 #include "io/files.hpp"
 #include "io/processes.hpp"
 #include "model/error.hpp"
@@ -28,18 +26,8 @@ namespace {
 namespace fs = std::filesystem;
 using Stage = PointProgress::Stage;
 
-volatile std::sig_atomic_t caught_signal = 0;
-void on_signal(int signal) { caught_signal = signal; }
-
 constexpr std::size_t most_timed = 6;   // points of a dry run whose steps are timed
 constexpr double relax_steps = 2000;    // a guess, where a relaxation does not end at once
-
-double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
-
-std::string duration_text(double s) {
-  if (s >= 5400) return fmt::format("{:.1f} h", s / 3600);
-  return s >= 90 ? fmt::format("{:.0f} min", s / 60) : fmt::format("{:.0f} s", s);
-}
 
 std::string default_directory(const std::string& file) {
   return (fs::path(file).parent_path() / fs::path(file).stem()).string();
@@ -63,32 +51,6 @@ std::vector<SweepPoint> chosen(const std::vector<SweepPoint>& points, const std:
   return out;
 }
 
-// Keeps two processes from one run. Until the process ends.
-bool lock(const std::string& path, bool wait) {
-  const int file = open(path.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0666);
-  return file >= 0 && flock(file, LOCK_EX | (wait ? 0 : LOCK_NB)) == 0;
-}
-
-int run_or_resume(const RunDirectory& dir, const Scene& scene, double until_ps, const std::string& on_limit) {
-  if (progress_of(dir).stage == Stage::begun) {
-    ResumeArguments r;
-    r.dir = dir.path;
-    r.threads = 1;
-    r.until_ps = until_ps;
-    r.on_limit = on_limit;
-    r.quiet = true;
-    return resume_command(r);
-  }
-  fs::remove_all(dir.path);  // of a run that was killed before its first checkpoint
-  RunArguments a;
-  a.out = dir.path;
-  a.until_ps = until_ps;
-  a.on_limit = on_limit;
-  a.quiet = true;
-  use_threads(1);
-  return run_scene(scene, a);
-}
-
 class Campaign {
  public:
   Campaign(Sweep sweep, const SweepArguments& a)
@@ -101,15 +63,14 @@ class Campaign {
 
   int go() {
     create_campaign(dir_, sweep_, all_, arguments_.force);
-    std::signal(SIGINT, on_signal);
-    std::signal(SIGTERM, on_signal);
+    listen_to_signals();
     began_ = now();
     if (!sweep_.branch_axes.empty()) run_starts();
     run_points();
-    if (caught_signal) {
+    if (campaign_signal) {
       fmt::print(stderr, "ropewalk: stopped by signal {}; go on with the same command\n",
-                 static_cast<int>(caught_signal));
-      return 128 + caught_signal;
+                 static_cast<int>(campaign_signal));
+      return 128 + campaign_signal;
     }
     if (arguments_.only.empty()) write_file_atomically(dir_.table(), gathered_csv(dir_, sweep_, all_, {}));
     return summary();
@@ -178,20 +139,6 @@ class Campaign {
     return stage == Stage::waiting || stage == Stage::begun || (stage == Stage::failed && arguments_.again);
   }
 
-  // In a process of its own, whose messages go to a file.
-  int in_a_process(const std::string& name, bool wait, const std::function<int()>& work) const {
-    const std::string messages = dir_.messages(name);
-    if (!std::freopen(messages.c_str(), "a", stderr) || !std::freopen(messages.c_str(), "a", stdout)) return 3;
-    setvbuf(stdout, nullptr, _IOLBF, 1 << 12);
-    if (!lock(messages, wait)) return busy;
-    try {
-      return work();
-    } catch (const std::exception& e) {
-      fmt::print(stderr, "ropewalk: {}\n", e.what());
-      return dynamic_cast<const InputError*>(&e) ? 2 : 3;
-    }
-  }
-
   void run_starts() {
     fs::create_directories(dir_.path + "/starts");
     std::vector<ProcessTask> tasks;
@@ -202,7 +149,7 @@ class Campaign {
       const RunDirectory to = dir_.start(p.name);
       if (!needed || progress_of(to).stage == Stage::ended) continue;
       tasks.push_back({[this, p, to] {
-                         return in_a_process("start-" + p.name, true, [&] {
+                         return in_a_process(dir_.messages("start-" + p.name), true, [&] {
                            if (progress_of(to).stage == Stage::ended) return 0;
                            return run_or_resume(to, scene_of(sweep_, p), sweep_.branch_at, "warn");
                          });
@@ -211,7 +158,7 @@ class Campaign {
                          if (status != 0) say(fmt::format("the shared start {} did not reach its end", p.name));
                        }});
     }
-    run_processes(tasks, jobs_, &caught_signal);
+    run_processes(tasks, jobs_, &campaign_signal);
   }
 
   // The shared run, with the scene of the point from here on. The time step stays, since files count by it.
@@ -254,24 +201,24 @@ class Campaign {
       }
       work_left_ += work;
       tasks.push_back({[this, p] {
-                         return in_a_process(p.name, false, [&] { return run_point(p); });
+                         return in_a_process(dir_.messages(p.name), false, [&] { return run_point(p); });
                        },
                        [this, p, work](int status) { ended(p, work, status); }});
     }
     if (done_ > 0) say(fmt::format("{} of {} points are done already", done_, points_.size()));
     work_to_do_ = work_left_;
-    run_processes(tasks, jobs_, &caught_signal);
+    run_processes(tasks, jobs_, &campaign_signal);
   }
 
   void ended(const SweepPoint& p, double work, int status) {
     ++done_;
     work_left_ -= work;
     const PointProgress progress = progress_of(dir_.point(p.name));
-    if (WIFEXITED(status) && WEXITSTATUS(status) == busy)
+    if (WIFEXITED(status) && WEXITSTATUS(status) == point_busy)
       say(fmt::format("{} is run by another process", p.name));
     else if (progress.stage == Stage::failed)
       say(fmt::format("{}: {}", p.name, progress.reason));
-    else if (progress.stage != Stage::ended && !caught_signal)
+    else if (progress.stage != Stage::ended && !campaign_signal)
       say(fmt::format("{} did not end; see {}", p.name, dir_.messages(p.name)));
     const double passed = now() - began_, left = passed * work_left_ / std::max(work_to_do_ - work_left_, 1.0);
     if (isatty(STDERR_FILENO) && !arguments_.quiet)
@@ -309,8 +256,6 @@ class Campaign {
     return failed.empty() ? 0 : 3;
   }
 
-  static constexpr int busy = 75;  // exit code of a process that found its point locked
-
   Sweep sweep_;
   CampaignDirectory dir_;
   std::vector<SweepPoint> all_, points_;
@@ -323,7 +268,10 @@ class Campaign {
 }  // namespace
 
 int sweep_command(const SweepArguments& a) {
-  Campaign campaign(read_sweep(a.file), a);
+  Sweep sweep = read_sweep(a.file);
+  if (sweep.threshold)
+    throw InputError({a.file, 0, "threshold"}, "asks for critical values", "run it with `ropewalk threshold`");
+  Campaign campaign(std::move(sweep), a);
   if (a.dry_run) return campaign.dry_run();
   if (!a.slurm.empty()) return campaign.write_slurm();
   if (!a.snakemake.empty()) return campaign.write_snakemake();

@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
 #include "model/error.hpp"
 #include "scene/maxwell.hpp"
 #include "scene/scene_to_model.hpp"
@@ -19,6 +23,26 @@ void set_tube_types(const Scene& scene, Topology& topology) {
         fmt::format("has {} numbers, and the scene has {} tubes", scene.tube_types.size(), topology.tubes()),
         "write one for each tube");
   topology.tube_type = scene.tube_types;
+}
+
+// u = A sin(pi n z/L) along x from the first to the last element, which lean as the line does.
+void add_wave(const Scene& scene, const Topology& topology, State& state) {
+  if (!(scene.start.wave > 0)) return;
+  if (!scene.source->is_parallel())
+    throw InputError({scene.path, 0, "start.wave_nm"}, "is for straight parallel tubes alone",
+                     "take it away, or bend the tubes of the state file");
+  for (int t = 0; t < topology.tubes(); ++t) {
+    const int first = topology.tube_begin[t], last = topology.tube_begin[t + 1] - 1;
+    const double z0 = state.position.z[first], length = state.position.z[last] - z0;
+    const double k = scene.start.half_waves * units::pi / std::max(length, 1e-9);
+    for (int e = first; e <= last; ++e) {
+      const auto i = static_cast<std::size_t>(e);
+      const double phase = k * (state.position.z[i] - z0);
+      state.position.x[i] += scene.start.wave * std::sin(phase);
+      const Quaternion lean(Eigen::AngleAxisd(std::atan(scene.start.wave * k * std::cos(phase)), Vector3::UnitY()));
+      state.orientation.set(i, lean * state.orientation[i]);
+    }
+  }
 }
 
 // What a state file may lack for the rest of the scene.
@@ -52,6 +76,7 @@ BuiltScene build(Scene& scene) {
   scene.damping.contact.outer = viscosity_reach * out.spacing;
   Random random(scene.start.seed);
   scene.source->place(scene, out.spacing, random, out.topology, out.state);
+  add_wave(scene, out.topology, out.state);
   set_tube_types(scene, out.topology);
   set_collapse(scene, out.topology);
   check_state(scene, out);

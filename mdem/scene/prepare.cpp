@@ -8,7 +8,9 @@
 
 #include "model/error.hpp"
 #include "model/segments.hpp"
+#include "io/toml_table.hpp"
 #include "observe/bending.hpp"
+#include "observe/observables.hpp"
 #include "sim/dynamics/blow_up.hpp"
 
 namespace ropewalk {
@@ -110,6 +112,19 @@ void refuse_grips(const Scene& scene, const Prepared& p) {
                          "is a load that nothing in the clamp feels: the elements are free of it",
                          "set slide_free, spin_free or tilt_free to false");
   }
+}
+
+void refuse_unknown_columns(const Scene& scene) {
+  std::vector<std::string> known;
+  for (const Observable& o : observables()) known.push_back(o.name);
+  for (const StopRule& rule : scene.stops) {
+    if (rule.column.empty() || std::find(known.begin(), known.end(), rule.column) != known.end()) continue;
+    const std::string near = nearest_word(rule.column, known);
+    throw InputError({scene.path, 0, "stop.column"}, fmt::format("log.csv has no column \"{}\"", rule.column),
+                     near.empty() ? "see `ropewalk observe --list`" : fmt::format("did you mean \"{}\"?", near));
+  }
+  if (!scene.stops.empty() && scene.run.mode == RunOptions::Mode::relax)
+    throw InputError({scene.path, 0, "stop"}, "is for dynamics, and run.mode is \"relax\"", "take it away");
 }
 
 // A tolerance above all loads would call any state relaxed.
@@ -249,6 +264,7 @@ Prepared prepare(Scene& scene) {
   refuse_overlaps(scene, out);
   refuse_moment(scene, out);
   refuse_grips(scene, out);
+  refuse_unknown_columns(scene);
   return out;
 }
 

@@ -16,6 +16,7 @@
 #include "scene/loads/grip.hpp"
 #include "scene/loads/load_kind.hpp"
 #include "scene/loads/twist.hpp"
+#include "scene/stop_rule.hpp"
 #include "sim/dynamics/relax_goal.hpp"
 #include "sim/dynamics/stepping.hpp"
 #include "sim/dynamics/thermostat.hpp"
@@ -29,6 +30,8 @@ struct StartOptions {
   double temperature = 0;  // K, of the initial velocities
   bool may_cool = false;   // damping may take that heat away
   std::uint64_t seed = 1;
+  double wave = 0;     // nm, by which straight tubes are bent sideways at first
+  int half_waves = 1;  // along them
 };
 
 struct BondOptions {
@@ -89,6 +92,7 @@ struct Scene {
   RunOptions run;
   ObserveOptions observe;
   LimitOptions limits;
+  std::vector<StopRule> stops;
 
   const ParameterSet& parameters() const { return sets.front(); }
   bool from_file() const { return source && !source->file().empty(); }  // a state with velocities of its own

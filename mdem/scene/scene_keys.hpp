@@ -31,7 +31,7 @@ struct SceneTable {
   std::string meaning;
   std::vector<SceneKey> keys;
 
-  bool listed() const { return name == "load" || name == "grip"; }  // [[name]], any number of them
+  bool listed() const { return name == "load" || name == "grip" || name == "stop"; }  // [[name]], any number of them
   std::string header() const { return listed() ? "[[" + name + "]]" : "[" + name + "]"; }
   // Whether the table may be left out as a whole, with what it stands for.
   bool optional() const;

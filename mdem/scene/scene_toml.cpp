@@ -95,6 +95,7 @@ void read_tables(const TomlTable& top, Scene& scene) {
   scene.run = run_table().read(top.table("run"), scene);
   scene.observe = observe_table().read(top.table("observe"), scene);
   scene.limits = limits_table().read(top.table("limits"), scene);
+  for (const TomlTable& t : top.tables("stop")) scene.stops.push_back(stop_table().read(t, scene));
 }
 
 }  // namespace

@@ -13,7 +13,10 @@ const KeyTable<StartOptions>& start_table() {
        Key::boolean("may_cool", &StartOptions::may_cool, standard(),
                     "damping may take this heat away; without this key or [thermostat] such a run is refused"),
        Key::integer("seed", 0, std::numeric_limits<long>::max(), &StartOptions::seed, standard(),
-                    "of all random numbers: the same seed gives the same run")},
+                    "of all random numbers: the same seed gives the same run"),
+       Key::number("wave_nm", unit::nm, Bounds::range(0, 100), &StartOptions::wave, standard(),
+                   "straight parallel tubes begin bent sideways by this, all alike, in sine waves along x"),
+       Key::integer("half_waves", 1, 1000, &StartOptions::half_waves, standard(), "of wave_nm, from end to end")},
       {}};
   return table;
 }

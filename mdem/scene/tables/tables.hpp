@@ -23,5 +23,6 @@ const KeyTable<TwistLoad>& twist_table();  // scene/loads/twist.cpp
 const KeyTable<RunOptions>& run_table();
 const KeyTable<ObserveOptions>& observe_table();
 const KeyTable<LimitOptions>& limits_table();
+const KeyTable<StopRule>& stop_table();
 
 }  // namespace ropewalk

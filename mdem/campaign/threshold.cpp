@@ -1,0 +1,226 @@
+#include "campaign/threshold.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <map>
+
+#include "io/files.hpp"
+#include "io/log.hpp"
+#include "observe/growth.hpp"
+#include "plan/scene_edit.hpp"
+#include "scene/kinds/scene_kind.hpp"
+#include "scene/prepare.hpp"
+#include "scene/scene_to_model.hpp"
+
+namespace ropewalk {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double clear_of_wave = 3, of_the_value = 0.1;  // growth is looked at from the larger of the two on
+constexpr double far_above = 1.8;                        // times the threshold: growth there says nothing about it
+constexpr std::size_t fewest_rows = 4;
+
+std::string value_text(double value) { return fmt::format("{:.10g}", value); }
+
+// A line y = a + b x by least squares, with the standard error of a and b; none from two points.
+struct Line {
+  double a = 0, b = 0, a_error = 0, b_error = 0;
+};
+std::optional<Line> line_through(const std::vector<double>& x, const std::vector<double>& y) {
+  const auto n = static_cast<double>(x.size());
+  if (x.size() < 2) return {};
+  double mx = 0, my = 0, xx = 0, xy = 0, squares = 0;
+  for (std::size_t k = 0; k < x.size(); ++k) mx += x[k] / n, my += y[k] / n;
+  for (std::size_t k = 0; k < x.size(); ++k) xx += (x[k] - mx) * (x[k] - mx), xy += (x[k] - mx) * (y[k] - my);
+  if (!(xx > 0)) return {};
+  Line l;
+  l.b = xy / xx;
+  l.a = my - l.b * mx;
+  for (std::size_t k = 0; k < x.size(); ++k) squares += std::pow(y[k] - l.a - l.b * x[k], 2);
+  const double variance = n > 2 ? squares / (n - 2) : std::numeric_limits<double>::quiet_NaN();
+  l.b_error = std::sqrt(variance / xx);
+  l.a_error = std::sqrt(variance * (1 / n + mx * mx / xx));
+  return l;
+}
+
+// "moment_nN_nm"
+std::string leaf_of(const std::string& key) { return key.substr(key.rfind('.') + 1); }
+
+double mean(const std::vector<double>& v) {
+  double sum = 0;
+  for (const double x : v) sum += x;
+  return sum / static_cast<double>(v.size());
+}
+
+// Moments per tube at which a rope whose ends may tilt becomes a helix: tubes that slide on each other freely, and
+// tubes that are glued.
+void add_theory(const Sweep& sweep, const Scene& scene, const Prepared& p, PhasePoint& point) {
+  point.tubes = p.topology.tubes();
+  if (!scene.source->is_parallel() || scene.sets.size() > 1) return;
+  double sum = 0, farthest = 0;
+  for (int t = 0; t < point.tubes; ++t) {
+    const auto i = static_cast<std::size_t>(p.topology.tube_begin[t]);
+    const double r = Vector3(p.state.position[i]).head<2>().norm();
+    sum += r * r;
+    farthest = std::max(farthest, r);
+  }
+  point.length = p.topology.length_of(0) * p.topology.longest_element();
+  point.radius = farthest + p.topology.largest_radius();
+  const bool per_tube = scene.twist && scene.twist->reading == TwistLoad::Reading::per_tube;
+  if (sweep.threshold->key != "twist.moment_nN_nm" || !per_tube) return;
+  const BondStiffness& bond = scene.parameters().bond;
+  const double glued = bond.bend + bond.stretch * sum / (2 * point.tubes);
+  point.sliding = 2 * units::pi * bond.bend / point.length / units::nN_nm;
+  point.glued = 2 * units::pi * glued / point.length / units::nN_nm;
+}
+
+}  // namespace
+
+std::optional<GrowthThreshold> growth_threshold(const std::vector<Trial>& trials) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Trial& t : trials)
+    if (t.passed) least = std::min(least, t.value);
+  std::vector<double> squares, values;
+  for (const Trial& t : trials) {
+    const bool grows = t.passed && t.rate && *t.rate > 0 && t.error.value_or(0) < 0.3 * *t.rate;
+    if (!grows || t.value > far_above * least) continue;
+    squares.push_back(*t.rate * *t.rate);
+    values.push_back(t.value);
+  }
+  const std::optional<Line> line = values.size() > 2 ? line_through(squares, values) : std::nullopt;
+  if (!line) return {};
+  return GrowthThreshold{line->a, line->a_error, values.size()};
+}
+
+std::optional<PowerLaw> power_law(const std::vector<double>& x, const std::vector<double>& y) {
+  std::vector<double> lx, ly;
+  for (std::size_t k = 0; k < x.size(); ++k)
+    if (x[k] > 0 && y[k] > 0) lx.push_back(std::log(x[k])), ly.push_back(std::log(y[k]));
+  const std::optional<Line> line = line_through(lx, ly);
+  if (!line) return {};
+  return PowerLaw{line->b, line->b_error, std::exp(line->a), lx.size()};
+}
+
+Trial trial_of(const std::vector<LogRow>& log, const ThresholdQuestion& q, double value, double wave,
+               double constant_from) {
+  Trial trial;
+  trial.value = value;
+  std::size_t end = 0;
+  while (end < log.size() && !(log[end][q.column] > q.above)) ++end;
+  trial.passed = end < log.size();
+  if (!trial.passed) return trial;
+  trial.time = log[end]["time_ps"];
+  // The last stretch of rows before it in which the observable is clear of the start.
+  const double clear = std::max(clear_of_wave * wave, of_the_value * q.above);
+  std::vector<double> times, values;
+  std::size_t begin = end;
+  while (begin > 0 && log[begin - 1][q.column] > clear && log[begin - 1]["time_ps"] >= constant_from) --begin;
+  for (std::size_t k = begin; k <= end; ++k) times.push_back(log[k]["time_ps"]), values.push_back(log[k][q.column]);
+  if (times.size() < fewest_rows) return trial;
+  const Growth growth = growth_of(times, values);
+  trial.rate = growth.rate;
+  trial.error = growth.error;
+  return trial;
+}
+
+std::string trial_text(const Sweep& sweep, const SweepPoint& point, double value) {
+  const ThresholdQuestion& q = *sweep.threshold;
+  return with_value(point.text, q.key, value_text(value), sweep.scene_path) +
+         fmt::format("\n[[stop]]\nwhen = \"above\"\ncolumn = \"{}\"\nvalue = {}\n", q.column, q.above);
+}
+
+RunDirectory trial_directory(const CampaignDirectory& dir, const Sweep& sweep, const SweepPoint& point, double value) {
+  return {fmt::format("{}/{}-{}", dir.point(point.name).path, leaf_of(sweep.threshold->key), value_text(value))};
+}
+
+Threshold threshold_of(const CampaignDirectory& dir, const Sweep& sweep, const SweepPoint& point) {
+  Threshold out;
+  const ThresholdQuestion& q = *sweep.threshold;
+  const std::string folder = dir.point(point.name).path, begins = leaf_of(q.key) + "-";
+  if (!fs::exists(folder)) return out;
+  const Scene scene = scene_of(sweep, point);
+  const double constant_from = scene.twist ? scene.twist->ramp_time() : 0;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    const RunDirectory run{entry.path().string()};
+    if (name.rfind(begins, 0) != 0 || progress_of(run).stage != PointProgress::Stage::ended) continue;
+    const double value = std::stod(name.substr(begins.size()));
+    // A moment that the ramp takes less time to.
+    const double ramp = scene.twist && scene.twist->moment > 0 && q.key == "twist.moment_nN_nm"
+                            ? constant_from * value * units::nN_nm / scene.twist->moment
+                            : constant_from;
+    out.trials.push_back(trial_of(read_log(run.log()), q, value, scene.start.wave, ramp));
+  }
+  std::sort(out.trials.begin(), out.trials.end(), [](const Trial& a, const Trial& b) { return a.value < b.value; });
+  out.below = q.from;
+  out.above = q.to;
+  for (const Trial& t : out.trials)
+    if (t.passed) out.above = std::min(out.above, t.value);
+  for (const Trial& t : out.trials)
+    if (!t.passed && t.value < out.above) out.below = std::max(out.below, t.value);
+  const bool any = std::any_of(out.trials.begin(), out.trials.end(), [](const Trial& t) { return t.passed; });
+  const bool all = std::all_of(out.trials.begin(), out.trials.end(), [](const Trial& t) { return t.passed; });
+  out.outside = !any || all;
+  return out;
+}
+
+double PhasePoint::by_bisection() const {
+  std::vector<double> middles;
+  for (const Threshold& t : seeds)
+    if (!t.outside) middles.push_back(t.middle());
+  return middles.empty() ? std::numeric_limits<double>::quiet_NaN() : mean(middles);
+}
+
+// Of the mean: scatter of the seeds, and a bracket in which every value is as likely.
+double PhasePoint::bisection_error() const {
+  std::vector<double> middles, widths;
+  for (const Threshold& t : seeds)
+    if (!t.outside) middles.push_back(t.middle()), widths.push_back(t.above - t.below);
+  if (middles.empty()) return std::numeric_limits<double>::quiet_NaN();
+  const auto n = static_cast<double>(middles.size());
+  double squares = 0;
+  for (const double m : middles) squares += std::pow(m - mean(middles), 2);
+  const double scatter = n > 1 ? std::sqrt(squares / (n - 1) / n) : 0;
+  return std::hypot(scatter, mean(widths) / std::sqrt(12 * n));
+}
+
+std::optional<GrowthThreshold> PhasePoint::by_growth() const {
+  std::vector<Trial> all;
+  for (const Threshold& t : seeds) all.insert(all.end(), t.trials.begin(), t.trials.end());
+  return growth_threshold(all);
+}
+
+std::vector<PhasePoint> phase_points(const CampaignDirectory& dir, const Sweep& sweep,
+                                     const std::vector<SweepPoint>& points) {
+  std::vector<PhasePoint> out;
+  std::map<std::vector<std::string>, std::size_t> at;
+  const std::vector<std::string> keys = sweep.keys();
+  for (const SweepPoint& p : points) {
+    std::vector<std::string> values;
+    std::string name;
+    for (std::size_t k = 0; k < keys.size(); ++k) {
+      if (keys[k] == "start.seed") continue;
+      values.push_back(p.values[k]);
+      name += fmt::format("{}{} = {}", name.empty() ? "" : ", ", leaf_of(keys[k]), p.values[k]);
+    }
+    const auto [entry, added] = at.emplace(values, out.size());
+    if (added) {
+      PhasePoint point;
+      point.name = name.empty() ? p.name : name;
+      point.values = values;
+      Scene scene = scene_of(sweep, p);
+      const Prepared prepared = prepare(scene);
+      add_theory(sweep, scene, prepared, point);
+      out.push_back(std::move(point));
+    }
+    out[entry->second].seeds.push_back(threshold_of(dir, sweep, p));
+  }
+  return out;
+}
+
+}  // namespace ropewalk

@@ -1,0 +1,73 @@
+// The critical value of a key: where a rope begins to pass a value of an observable within the time of its scene, and
+// where the rate of its growth goes to zero.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "campaign/campaign.hpp"
+
+namespace ropewalk {
+
+// One run at one value of the key.
+struct Trial {
+  double value = 0;
+  bool passed = false;
+  double time = 0;                   // ps, at which it passed
+  std::optional<double> rate, error;  // 1/ps, of the exponential growth on the way; none: it cannot be told
+};
+
+// Of a point, by its runs; values rise.
+struct Threshold {
+  std::vector<Trial> trials;
+  double below = 0, above = 0;        // the bracket of the bisection; equal: not bracketed within the range
+  bool outside = false;               // passed at the lower end already, or not even at the upper one
+  double middle() const { return 0.5 * (below + above); }
+};
+
+// Where the square of the rate goes to zero: value = critical + slope rate^2, by least squares over the runs that
+// passed. An undamped mode w of a load M grows with w^2 = (M - Mc)/slope.
+struct GrowthThreshold {
+  double critical = 0, error = 0;
+  std::size_t runs = 0;
+};
+std::optional<GrowthThreshold> growth_threshold(const std::vector<Trial>& trials);
+
+// Of y = C x^p, by least squares of the logarithms; the error is the standard error, none with two points.
+struct PowerLaw {
+  double exponent = 0, error = 0, factor = 1;
+  std::size_t points = 0;
+};
+std::optional<PowerLaw> power_law(const std::vector<double>& x, const std::vector<double>& y);
+
+// What the log of a run says. `wave`: nm, that the scene began with; `constant_from`: ps, when the load is whole.
+Trial trial_of(const std::vector<LogRow>& log, const ThresholdQuestion& question, double value, double wave,
+               double constant_from);
+
+// The scene of a trial: the point's, with the value, and ended where the question is decided.
+std::string trial_text(const Sweep& sweep, const SweepPoint& point, double value);
+RunDirectory trial_directory(const CampaignDirectory& dir, const Sweep& sweep, const SweepPoint& point, double value);
+// All that were run.
+Threshold threshold_of(const CampaignDirectory& dir, const Sweep& sweep, const SweepPoint& point);
+
+// Points that differ in their seed alone.
+struct PhasePoint {
+  std::string name;
+  std::vector<std::string> values;  // of the keys, without the seed
+  std::vector<Threshold> seeds;
+  int tubes = 0;
+  double length = 0, radius = 0;   // nm, of the rope; zero where it is none
+  double sliding = 0, glued = 0;   // theory, in the unit of the key; zero where there is none
+
+  double by_bisection() const, bisection_error() const;
+  std::optional<GrowthThreshold> by_growth() const;
+};
+std::vector<PhasePoint> phase_points(const CampaignDirectory& dir, const Sweep& sweep,
+                                     const std::vector<SweepPoint>& points);
+
+std::string thresholds_csv(const Sweep& sweep, const std::vector<PhasePoint>& points);
+std::string trials_csv(const Sweep& sweep, const std::vector<PhasePoint>& points);
+std::string phase_page(const Sweep& sweep, const std::vector<PhasePoint>& points);
+
+}  // namespace ropewalk

@@ -1,0 +1,160 @@
+// `threshold`: critical values over the points of a sweep.
+#include <fmt/format.h>
+#include <omp.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "campaign/threshold.hpp"
+#include "commands/commands.hpp"
+#include "commands/point_runs.hpp"
+#include "io/files.hpp"
+#include "io/processes.hpp"
+#include "model/error.hpp"
+#include "plan/scene_edit.hpp"
+#include "scene/scene_toml.hpp"
+
+namespace ropewalk {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Search {
+ public:
+  Search(Sweep sweep, const ThresholdArguments& a)
+      : sweep_(std::move(sweep)),
+        dir_{a.out.empty() ? (fs::path(a.file).parent_path() / fs::path(a.file).stem()).string() : a.out},
+        points_(points_of(sweep_)),
+        arguments_(a),
+        jobs_(a.jobs > 0 ? a.jobs : omp_get_num_procs()) {
+    // Both ends of the range, so that a wrong key or value is found before anything runs.
+    for (const SweepPoint& p : points_)
+      for (const double value : {sweep_.threshold->from, sweep_.threshold->to}) scene_at(p, value);
+  }
+
+  int go() {
+    create_campaign(dir_, sweep_, {}, arguments_.force);
+    refuse_other_scenes();
+    listen_to_signals();
+    const double began = now();
+    std::vector<ProcessTask> tasks;
+    std::size_t done = 0;
+    std::vector<std::string> failed;
+    for (const SweepPoint& p : points_)
+      tasks.push_back({[this, &p] { return in_a_process(dir_.messages(p.name), false, [&] { return bisect(p); }); },
+                       [&](int status) {
+                         ++done;
+                         if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) failed.push_back(p.name);
+                         if (!arguments_.quiet)
+                           fmt::print(stderr, "{} of {} points, {} passed: {}\n", done, points_.size(),
+                                      duration_text(now() - began), result_words(p));
+                       }});
+    run_processes(tasks, jobs_, &campaign_signal);
+    if (campaign_signal) {
+      fmt::print(stderr, "ropewalk: stopped by signal {}; go on with the same command\n",
+                 static_cast<int>(campaign_signal));
+      return 128 + campaign_signal;
+    }
+    write(failed);
+    return failed.empty() ? 0 : 3;
+  }
+
+ private:
+  Scene scene_at(const SweepPoint& p, double value) const {
+    try {
+      return scene_of_text(trial_text(sweep_, p, value), sweep_.scene_path);
+    } catch (const InputError& e) {
+      throw InputError({sweep_.path, 0, ""}, fmt::format("point {} at {:g}: {}", p.name, value, e.what()), "");
+    }
+  }
+
+  // Runs in the directory must be of this sweep.
+  void refuse_other_scenes() {
+    for (const SweepPoint& p : points_) {
+      const std::string folder = dir_.point(p.name).path;
+      if (!fs::exists(folder)) continue;
+      for (const Trial& t : threshold_of(dir_, sweep_, p).trials) {
+        const RunDirectory run = trial_directory(dir_, sweep_, p, t.value);
+        if (read_file(run.scene()) == trial_text(sweep_, p, t.value)) continue;
+        if (!arguments_.force)
+          throw InputError({run.path, 0, "--out"}, "was run with another scene",
+                           "choose another --out, or give --force to run it anew");
+        fs::remove_all(run.path);
+      }
+    }
+  }
+
+  // 0 where the run ended.
+  int try_at(const SweepPoint& p, double value) const {
+    const RunDirectory run = trial_directory(dir_, sweep_, p, value);
+    if (progress_of(run).stage == PointProgress::Stage::ended) return 0;
+    fs::create_directories(dir_.point(p.name).path);
+    Scene scene = scene_at(p, value);
+    scene.name += fmt::format(", {}, {:g}", p.name, value);
+    return run_or_resume(run, scene, -1, "warn");
+  }
+
+  int bisect(const SweepPoint& p) const {
+    const ThresholdQuestion& q = *sweep_.threshold;
+    // The upper end first: it is soon decided.
+    for (const double end : {q.to, q.from})
+      if (const int code = try_at(p, end)) return code;
+    for (;;) {
+      const Threshold t = threshold_of(dir_, sweep_, p);
+      if (t.outside || t.above - t.below <= q.accuracy * std::fabs(t.middle())) return 0;
+      if (const int code = try_at(p, std::stod(fmt::format("{:.4g}", t.middle())))) return code;
+    }
+  }
+
+  std::string result_words(const SweepPoint& p) const {
+    const Threshold t = threshold_of(dir_, sweep_, p);
+    if (t.trials.empty()) return fmt::format("{}: no run ended, see {}", p.name, dir_.messages(p.name));
+    if (t.outside)
+      return fmt::format("{}: {}", p.name,
+                         t.trials.back().passed ? "passed at the lower end already" : "not even at the upper end");
+    return fmt::format("{}: {:.4g} to {:.4g}", p.name, t.below, t.above);
+  }
+
+  void write(const std::vector<std::string>& failed) const {
+    const std::vector<PhasePoint> points = phase_points(dir_, sweep_, points_);
+    write_file_atomically(dir_.path + "/thresholds.csv", thresholds_csv(sweep_, points));
+    write_file_atomically(dir_.path + "/trials.csv", trials_csv(sweep_, points));
+    write_file_atomically(dir_.path + "/thresholds.html", phase_page(sweep_, points));
+    double seconds = 0;
+    std::size_t runs = 0;
+    for (const auto& entry : fs::recursive_directory_iterator(dir_.path + "/points"))
+      if (entry.path().filename() == "manifest.json")
+        seconds += progress_of({entry.path().parent_path().string()}).wall_seconds, ++runs;
+    for (const PhasePoint& p : points) {
+      const auto growth = p.by_growth();
+      fmt::print("{:<40} by bisection {:<18} by growth {}\n", p.name,
+                 std::isfinite(p.by_bisection())
+                     ? fmt::format("{:.4g} ± {:.2g}", p.by_bisection(), p.bisection_error())
+                     : std::string("not in the range"),
+                 growth ? fmt::format("{:.4g} ± {:.2g}", growth->critical, growth->error) : std::string("-"));
+    }
+    fmt::print("{} runs, {} of one core in all. Page: {}/thresholds.html\n", runs, duration_text(seconds), dir_.path);
+    for (const std::string& name : failed) fmt::print("not ended: {}, see {}\n", name, dir_.messages(name));
+  }
+
+  Sweep sweep_;
+  CampaignDirectory dir_;
+  std::vector<SweepPoint> points_;
+  const ThresholdArguments& arguments_;
+  int jobs_;
+};
+
+}  // namespace
+
+int threshold_command(const ThresholdArguments& a) {
+  Sweep sweep = read_sweep(a.file);
+  if (!sweep.threshold)
+    throw InputError({a.file, 0, "threshold"}, "is missing",
+                     "add [threshold] with key, from, to, column and above, or run it with `ropewalk sweep`");
+  if (!sweep.branch_axes.empty())
+    throw InputError({a.file, 0, "branch"}, "does not go with [threshold]", "take it away");
+  return Search(std::move(sweep), a).go();
+}
+
+}  // namespace ropewalk

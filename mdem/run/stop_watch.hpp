@@ -1,0 +1,32 @@
+// Whether the question of a run is decided, by the [[stop]] rules of its scene.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "io/limits_file.hpp"
+#include "io/log.hpp"
+#include "scene/stop_rule.hpp"
+
+namespace ropewalk {
+
+class StopWatch {
+ public:
+  StopWatch() = default;
+  explicit StopWatch(std::vector<StopRule> rules) : rules_(std::move(rules)) {}
+
+  bool empty() const { return rules_.empty(); }
+  void add(const LogRow& row);
+  // Rows after this step did not happen.
+  void cut(std::int64_t step);
+  // What is decided, in words; empty: nothing yet. `passed`: limits so far.
+  std::string decided(const std::vector<LimitRecord>& passed) const;
+
+ private:
+  std::string decided(const StopRule& rule, const std::vector<LimitRecord>& passed) const;
+
+  std::vector<StopRule> rules_;
+  std::vector<LogRow> rows_;
+};
+
+}  // namespace ropewalk

@@ -1,0 +1,18 @@
+// [[stop]] a run ends early where its question is decided.
+#pragma once
+
+#include <string>
+
+namespace ropewalk {
+
+struct StopRule {
+  enum class When { above, below, steady, growth, limit };
+  When when = When::above;
+  std::string column;  // of the log
+  double value = 0;    // above, below: in the column's unit; steady: the largest change; growth: the relative error
+  double over = 20;    // ps, of the last rows that steady and growth look at
+  double from = 0;     // ps, before which the rule does not look
+  std::string limit;   // a key of [limits]; empty: any of them
+};
+
+}  // namespace ropewalk

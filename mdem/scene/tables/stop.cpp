@@ -1,0 +1,63 @@
+// [[stop]] when a run ends before its time.
+#include "scene/stop_rule.hpp"
+
+#include "scene/tables/tables.hpp"
+
+namespace ropewalk {
+namespace {
+
+using Key = KeyOf<StopRule>;
+using When = StopRule::When;
+
+Words<When> occasions() {
+  return {{"above", When::above},   {"below", When::below},
+          {"steady", When::steady}, {"growth", When::growth},
+          {"limit", When::limit}};
+}
+
+void read_column(const TomlTable& t, const Scene&, StopRule& rule) {
+  if (rule.when == When::limit) {
+    if (t.has("column")) throw t.error("column", "is not for when = \"limit\"", "write limit = \"wall_twist\", or neither");
+    return;
+  }
+  rule.column = t.string("column");
+}
+
+void read_value(const TomlTable& t, const Scene&, StopRule& rule) {
+  if (rule.when == When::limit && !t.has("value")) return;
+  const bool any = rule.when == When::above || rule.when == When::below;
+  if (rule.when == When::limit) throw t.error("value", "is not for when = \"limit\"", "set the value in [limits]");
+  rule.value = t.number("value", any ? Bounds::any() : Bounds::positive(1e12));
+}
+
+void read_limit(const TomlTable& t, const Scene&, StopRule& rule) {
+  if (!t.has("limit")) return;
+  if (rule.when != When::limit) throw t.error("limit", "is for when = \"limit\" alone", "take it away");
+  Words<std::string> words;
+  for (const LimitKind& kind : limit_kinds()) words.emplace_back(kind.key, kind.key);
+  rule.limit = t.word("limit", words);
+}
+
+}  // namespace
+
+const KeyTable<StopRule>& stop_table() {
+  static const KeyTable<StopRule> table = {
+      "stop",
+      "any number of these: the run ends before its time where one of them comes true",
+      {Key::word("when", occasions(), &StopRule::when, required("\"above\""),
+                 "\"above\", \"below\": a column of the log passes a value; \"steady\": it changes by less than the "
+                 "value; \"growth\": the rate of its exponential growth is known to this relative error; \"limit\": a "
+                 "limit is passed"),
+       Key::custom("column", "", otherwise("\"amplitude_nm\"", "required but for \"limit\""), "of log.csv", read_column),
+       Key::custom("value", "", otherwise("1", "required but for \"limit\""),
+                   "in the unit of the column; growth: 0.05 is 5 %", read_value),
+       Key::number("over_ps", unit::ps, Bounds::positive(longest_time), &StopRule::over, standard(),
+                   "steady, growth: in the last rows of so much time"),
+       Key::number("from_ps", unit::ps, Bounds::non_negative(longest_time), &StopRule::from, standard(),
+                   "not looked at before"),
+       Key::custom("limit", "", otherwise("\"wall_twist\"", "any"), "limit: which key of [limits]", read_limit)},
+      {}};
+  return table;
+}
+
+}  // namespace ropewalk
