@@ -1,4 +1,5 @@
 // Campaigns: interrupted, resumed, gathered and compared.
+#include <cmath>
 #include <sstream>
 
 #include "cli/support.hpp"
@@ -125,6 +126,36 @@ TEST_F(Campaign, ClusterFilesRunEveryPoint) {
   EXPECT_TRUE(fs::exists(dir / "s" / "points" / "tubes-7" / "report.html"));
   ASSERT_EQ(run("sweep s.toml --snakemake Snakefile").code, 0);
   EXPECT_NE(slurp(dir / "Snakefile").find("\"tubes-7\","), std::string::npos);
+}
+
+TEST_F(Campaign, ThresholdIsThatOfTheFormula) {
+  // The ends of a tube turn by ML/GJ: its rotation passes 20 degrees at a moment that the set gives.
+  spit(dir / "tube.toml",
+       "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-paper\"\n[rope]\ntubes = 1\nlength_nm = 13.56\n"
+       "[damping]\nbond_damping_per_ps = 4\n[twist]\nmoment_nN_nm = 5\nrate_nN_nm_per_ps = 0.3\nhold_ps = 3\n"
+       "[run]\nlog_every_ps = 1\n");
+  sweep_file("replicates = 2\n[threshold]\nkey = \"twist.moment_nN_nm\"\nfrom = 2\nto = 20\ncolumn = \"rotation_deg\"\n"
+             "above = 20\naccuracy = 0.01\n[vary]\nrope.length_nm = [13.56, 20.34]\n");
+  EXPECT_EQ(run("sweep s.toml").code, 2);
+  const Outcome o = run("threshold s.toml");
+  ASSERT_EQ(o.code, 0) << o.err;
+  const std::vector<std::string> rows = lines(slurp(dir / "s" / "thresholds.csv"));
+  ASSERT_EQ(rows.size(), 3u);
+  // A bond turned by x bears GJ/a sin(x).
+  for (const auto& [k, bonds] : {std::pair(1, 9), std::pair(2, 14)}) {
+    std::vector<std::string> cells;
+    std::istringstream in(rows[static_cast<std::size_t>(k)]);
+    for (std::string cell; std::getline(in, cell, ',');) cells.push_back(cell);
+    const double angle = 20 * 3.14159265358979 / 180 / bonds, expected = 319.5 / 1.356 * std::sin(angle);
+    EXPECT_NEAR(std::stod(cells[5]), expected, 0.02 * expected) << rows[static_cast<std::size_t>(k)];
+  }
+  // Kept, and refused where the scene has changed.
+  const auto written = fs::last_write_time(dir / "s" / "points" / "length_nm-13.56_seed-1" / "moment_nN_nm-20" / "log.csv");
+  EXPECT_EQ(run("threshold s.toml").code, 0);
+  EXPECT_EQ(fs::last_write_time(dir / "s" / "points" / "length_nm-13.56_seed-1" / "moment_nN_nm-20" / "log.csv"), written);
+  EXPECT_NE(slurp(dir / "s" / "thresholds.html").find("by bisection"), std::string::npos);
+  spit(dir / "tube.toml", slurp(dir / "tube.toml") + "# changed\n");
+  EXPECT_EQ(run("threshold s.toml").code, 2);
 }
 
 TEST_F(Campaign, CompareDrawsRunsAndEnsembles) {

@@ -100,6 +100,9 @@ TEST_F(SweepFile, WrongOnesGetOneClearLine) {
       {"replicates = 2\n[vary]\nstart.seed = [7]\n", "is varied twice"},
       {"vari = 2\n[vary]\nrope.tubes = [7]\n", "vari: unknown key"},
       {"[branch]\nat_ps = 3\n", "varies nothing"},
+      {"[threshold]\nfrom = 3\nto = 4\nabove = 1\n", "threshold.key: is missing"},
+      {"[threshold]\nkey = \"a.b\"\nfrom = 3\nto = 3\nabove = 1\n", "is not above from"},
+      {"[threshold]\nkey = \"a.b\"\nfrom = 3\nto = 4\nabove = 1\nbelow = 2\n", "threshold.below: unknown key"},
       {"[vary]\nrope.length_nm = { from = 1, to = 2, points = 90000 }\nstart.seed = [1, 2]\n", "at most 100000"}};
   for (const auto& [text, words] : wrong) {
     const std::string line = refusal(text);

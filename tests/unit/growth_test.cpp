@@ -1,0 +1,128 @@
+// Growth rates, thresholds and power laws against data made up for them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "campaign/threshold.hpp"
+#include "io/log.hpp"
+#include "observe/growth.hpp"
+#include "run/stop_watch.hpp"
+
+namespace ropewalk {
+namespace {
+
+TEST(Growth, RateAndItsErrorOfNoisyGrowth) {
+  std::vector<double> t, y;
+  unsigned state = 1;
+  for (int k = 0; k < 200; ++k) {
+    state = state * 1664525u + 1013904223u;
+    t.push_back(0.5 * k);
+    y.push_back(0.03 * std::exp(0.021 * t.back()) * (1 + 0.1 * (state / 4294967296.0 - 0.5)));
+  }
+  const Growth g = growth_of(t, y);
+  EXPECT_NEAR(g.rate, 0.021, 4 * g.error);
+  // Even noise of the width 0.1: 0.029/sqrt(200)/28.9 ps.
+  EXPECT_NEAR(g.error, 7e-5, 2e-5);
+  EXPECT_TRUE(std::isinf(growth_of({0, 1, 2}, {1, 2, 4}).error));
+  EXPECT_EQ(growth_of({0, 1, 2}, {1, -2, 4}).values, 2u);
+}
+
+TEST(Growth, OscillationAboutGrowthCountsAsFewValues) {
+  std::vector<double> t, y;
+  for (int k = 0; k < 200; ++k) {
+    t.push_back(k);
+    y.push_back(std::exp(0.01 * k + 0.2 * std::sin(0.1 * k)));
+  }
+  const Growth g = growth_of(t, y);
+  EXPECT_NEAR(g.rate, 0.01, 3 * g.error);
+  EXPECT_GT(g.error, 2e-4);  // 1.7e-4 if all rows were independent
+}
+
+TEST(Threshold, SquareOfTheRateGoesToZero) {
+  std::vector<Trial> trials;
+  for (const double m : {30.0, 41.0, 43.0, 46.0, 60.0, 100.0}) {
+    Trial t;
+    t.value = m;
+    t.passed = m > 41;
+    if (t.passed) t.rate = std::sqrt((m - 40) / 1000) * (m > 90 ? 5 : 1), t.error = 1e-4;
+    trials.push_back(t);
+  }
+  const auto found = growth_threshold(trials);
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(found->critical, 40, 1e-9);
+  EXPECT_EQ(found->runs, 3u) << "without the one far above";
+  trials[3].rate.reset();
+  EXPECT_FALSE(growth_threshold(trials)) << "two runs have no error";
+}
+
+TEST(Threshold, PowerLawWithItsError) {
+  const auto law = power_law({1, 2, 4, 8}, {10, 5, 2.5, 1.25});
+  ASSERT_TRUE(law);
+  EXPECT_NEAR(law->exponent, -1, 1e-12);
+  EXPECT_NEAR(law->factor, 10, 1e-9);
+  EXPECT_NEAR(law->error, 0, 1e-12);
+  const auto noisy = power_law({1, 2, 4}, {1, 2.2, 4});
+  EXPECT_NEAR(noisy->error, std::log(1.1) * std::sqrt(2.0 / 3) / std::log(2.0) / std::sqrt(2.0), 1e-6);
+}
+
+LogRow row(double time, double amplitude) {
+  LogRow r;
+  r["time_ps"] = time;
+  r["step"] = 10 * time;
+  r["amplitude_nm"] = amplitude;
+  return r;
+}
+
+TEST(Trial, GrowthIsThatUnderTheWholeLoadAndClearOfTheStart) {
+  std::vector<LogRow> log;
+  for (int k = 0; k <= 100; ++k) log.push_back(row(k, k < 20 ? 0.02 : 0.02 * std::exp(0.05 * (k - 20))));
+  const ThresholdQuestion q{"twist.moment_nN_nm", "amplitude_nm", 0, 1, 1.0, 0.02};
+  const Trial t = trial_of(log, q, 30, 0.02, 10);
+  EXPECT_TRUE(t.passed);
+  EXPECT_EQ(t.time, 99);  // 0.02 exp(0.05 x 79) = 1.04
+  ASSERT_TRUE(t.rate);
+  EXPECT_NEAR(*t.rate, 0.05, 1e-9);
+  EXPECT_FALSE(trial_of(log, q, 30, 0.02, 97).rate) << "too few rows under the whole load";
+  EXPECT_FALSE(trial_of({log.begin(), log.begin() + 50}, q, 30, 0.02, 10).passed);
+}
+
+TEST(StopWatch, KnowsWhenAQuestionIsDecided) {
+  StopRule above, steady, growth, limit;
+  above.column = steady.column = growth.column = "amplitude_nm";
+  above.value = 2;
+  steady.when = StopRule::When::steady;
+  steady.value = 0.1;
+  steady.from = 30;
+  growth.when = StopRule::When::growth;
+  growth.value = 0.01;
+  limit.when = StopRule::When::limit;
+  limit.limit = "wall_twist";
+  const auto decided_at = [](const StopRule& rule, auto amplitude, const std::vector<LimitRecord>& passed = {}) {
+    StopWatch watch({rule});
+    for (int k = 0; k < 100; ++k) {
+      watch.add(row(k, amplitude(k)));
+      if (!watch.decided(passed).empty()) return k;
+    }
+    return -1;
+  };
+  EXPECT_EQ(decided_at(above, [](int k) { return 0.1 * k; }), 21);
+  EXPECT_EQ(decided_at(above, [](int) { return 1.0; }), -1);
+  EXPECT_EQ(decided_at(steady, [](int k) { return k < 60 ? 1.0 * k : 60.0; }), 80);
+  EXPECT_EQ(decided_at(steady, [](int) { return 1.0; }), 50) << "20 ps of rows, from 30 ps on";
+  EXPECT_EQ(decided_at(growth, [](int k) { return std::exp(0.1 * k); }), 20);
+  LimitRecord r;
+  r.key = "wall_twist";
+  EXPECT_EQ(decided_at(limit, [](int) { return 1.0; }, {r}), -1);
+  r.passed = true;
+  EXPECT_EQ(decided_at(limit, [](int) { return 1.0; }, {r}), 0);
+  StopWatch watch({above});
+  watch.add(row(1, 1));
+  watch.add(row(2, 3));
+  EXPECT_THAT(watch.decided({}), ::testing::HasSubstr("decided at 2 ps: amplitude_nm is 3, above 2"));
+  watch.cut(15);
+  EXPECT_EQ(watch.decided({}), "");
+}
+
+}  // namespace
+}  // namespace ropewalk
