@@ -41,6 +41,7 @@ struct Verbs {
   EnergyArguments energy;
   BenchArguments bench;
   ReportArguments report;
+  PictureArguments picture;
   ErrorsArguments errors;
   CompareArguments compare;
   SweepArguments sweep;
@@ -157,6 +158,27 @@ void add_report(CLI::App& app, Verbs& v) {
   c->add_option("dir", v.report.dir, "Directory of the run")->required();
   c->add_option("--picture", v.report.picture, "Write a side view of the last frame to this SVG file instead");
   c->callback([&v] { v.code = report_command(v.report); });
+}
+
+void add_picture(CLI::App& app, Verbs& v) {
+  CLI::App* c = app.add_subcommand("picture", "A figure for a paper: states of a run, their sections, curves with marks");
+  c->add_option("dir", v.picture.dir, "Directory of the run")->required();
+  c->add_option("-o", v.picture.out, "File to write: .svg, .pdf or .png")->required();
+  c->add_option("--at", v.picture.at, "Times of the states, ps [default: four over the run]")->delimiter(',');
+  c->add_option("--from", v.picture.from, "Seen from: side (the largest deflection in the page), x, y, z, or AZIMUTH,ELEVATION")
+      ->capture_default_str();
+  c->add_option("--curves", v.picture.curves, "Charts below: columns of log.csv, twist_eV+bend_eV,Q makes two")
+      ->delimiter(',');
+  c->add_flag("--sections", v.picture.sections, "The cross-section of each state beside it");
+  c->add_option("--width", v.picture.width, "Width of the figure, pixels")->capture_default_str()->check(CLI::Range(200, 8000));
+  c->add_option("--highest", v.picture.highest, "Largest height of a state, pixels")
+      ->capture_default_str()
+      ->check(CLI::Range(20, 8000));
+  c->add_option("--zoom", v.picture.zoom, "Pixels of a PNG per pixel of the figure")
+      ->capture_default_str()
+      ->check(CLI::Range(0.1, 20.0));
+  c->add_flag("--force", v.picture.force, "Replace the file");
+  c->callback([&v] { v.code = picture_command(v.picture); });
 }
 
 void add_energy(CLI::App& app, Verbs& v) {
@@ -299,6 +321,7 @@ int main(int argc, char** argv) {
   add_resume(app, verbs);
   add_observe(app, verbs);
   add_report(app, verbs);
+  add_picture(app, verbs);
   add_errors(app, verbs);
   add_compare(app, verbs);
   add_sweep(app, verbs);

@@ -49,6 +49,19 @@ struct ReportArguments {
 };
 int report_command(const ReportArguments& arguments);
 
+struct PictureArguments {
+  std::string dir;
+  std::string out;                   // .svg, .pdf or .png
+  std::vector<double> at;            // ps; empty: four times over the run
+  std::string from = "side";         // or "x", "y", "z", "AZIMUTH,ELEVATION"
+  std::vector<std::string> curves;   // "twist_eV+bend_eV" is one chart
+  bool sections = false;
+  double width = 1040, highest = 200;  // pixels, of the figure and of each state
+  double zoom = 2;                     // of a PNG
+  bool force = false;
+};
+int picture_command(const PictureArguments& arguments);
+
 struct ErrorsArguments {
   std::string dir;
   int jobs = 0;  // runs at a time; 0: one for each core

@@ -357,7 +357,8 @@ class Run {
     frames_->cut(c.frame_bytes);
     watch_.inherit_from(mark_.limits, simulation_.state().step);
     stop_watch_.cut(simulation_.state().step);
-    say(fmt::format("{:.4g} ps: {}; back to {:.4g} ps, on with steps of {:.3g} fs", time, why, simulation_.state().time,
+    // Without the remedy: this is it.
+    say(fmt::format("{:.4g} ps: {}; back to {:.4g} ps, on with steps of {:.3g} fs", time, why.substr(0, why.find(';')), simulation_.state().time,
                     simulation_.time_step() / simulation_.divided() / units::fs));
     return true;
   }

@@ -8,6 +8,7 @@
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
+#include <limits>
 #include <map>
 
 #include "campaign/campaign.hpp"
@@ -82,9 +83,14 @@ class Campaign {
     const std::size_t n = std::min(points_.size(), most_timed);
     for (std::size_t k = 0; k < n; ++k) {
       const std::size_t i = n > 1 ? k * (points_.size() - 1) / (n - 1) : 0;
-      const RunTime t = time_run(points_[i].text, sweep_.scene_path);
-      timed.emplace_back(points_[i].work, t.steps > 0 ? t.total() : relax_steps * t.each);
+      try {
+        const RunTime t = time_run(points_[i].text, sweep_.scene_path);
+        timed.emplace_back(points_[i].work, t.steps > 0 ? t.total() : relax_steps * t.each);
+      } catch (const std::exception& e) {
+        fmt::print(stderr, "ropewalk: {} cannot be timed: {}\n", points_[i].name, e.what());
+      }
     }
+    if (timed.empty()) timed.emplace_back(1, std::numeric_limits<double>::quiet_NaN());
     std::sort(timed.begin(), timed.end());
     double total = 0;
     fmt::print("{:>5}  {:<50} {:>10}\n", "", "point", "time");

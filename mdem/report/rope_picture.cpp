@@ -425,12 +425,10 @@ double moment_scale(const std::vector<RopeView>& views) {
 
 }  // namespace
 
-RopeCamera rope_camera(const std::vector<RopeView>& views, double radius, double widest, double highest) {
-  RopeCamera c;
-  if (views.empty()) return c;
-  c.right = chord_of(views.front());
-  c.up = deflection(views.back(), c.right, radius);
-  c.towards = c.right.cross(c.up);
+namespace {
+
+// With its directions: left end, width, scale and colours.
+RopeCamera framed(RopeCamera c, const std::vector<RopeView>& views, double radius, double widest, double highest) {
   Span x;
   double height = 1e-3;
   for (const RopeView& view : views) {
@@ -445,6 +443,29 @@ RopeCamera rope_camera(const std::vector<RopeView>& views, double radius, double
   c.scale = std::min({widest / c.width, highest / height, 24.0});
   c.moment_eV = moment_scale(views);
   return c;
+}
+
+}  // namespace
+
+RopeCamera rope_camera(const std::vector<RopeView>& views, double radius, double widest, double highest) {
+  RopeCamera c;
+  if (views.empty()) return c;
+  c.right = chord_of(views.front());
+  c.up = deflection(views.back(), c.right, radius);
+  c.towards = c.right.cross(c.up);
+  return framed(c, views, radius, widest, highest);
+}
+
+RopeCamera rope_camera(const std::vector<RopeView>& views, double radius, const Vector3& towards, double widest,
+                       double highest) {
+  RopeCamera c;
+  if (views.empty()) return c;
+  c.towards = towards.normalized();
+  const Vector3 chord = chord_of(views.front());
+  const Vector3 across = chord - chord.dot(c.towards) * c.towards;
+  c.right = across.norm() > 0.1 ? Vector3(across.normalized()) : c.towards.unitOrthogonal();
+  c.up = c.towards.cross(c.right);
+  return framed(c, views, radius, widest, highest);
 }
 
 double scale_bar_length(const RopeCamera& camera) {

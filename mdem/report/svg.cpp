@@ -500,15 +500,31 @@ std::string scatter_svg(const ScatterChart& drawn) {
   return text + draw_point_labels(scatter, plot) + draw_labels(chart, plot) + "</svg>\n";
 }
 
+std::string svg_file(const std::string& body, double width, double height) {
+  // Colours as they are on a light page; in place, since few programs but browsers know variables.
+  const std::string all = svg_css();
+  const std::size_t dark = all.find("@media screen"), after = all.find("}}", dark) + 2;
+  const std::string variables = all.substr(0, dark);
+  const auto in_place = [&](std::string text) {
+    for (std::size_t at = text.find("var(--"); at != std::string::npos; at = text.find("var(--")) {
+      const std::size_t end = text.find(')', at);
+      const std::string name = text.substr(at + 4, end - at - 4) + ":";
+      const std::size_t value = variables.find(name) + name.size();
+      text.replace(at, end + 1 - at, variables.substr(value, variables.find_first_of(";}", value) - value));
+    }
+    return text;
+  };
+  return fmt::format(
+             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" width=\"{0:.0f}\" "
+             "height=\"{1:.0f}\" font-family=\"Helvetica,Arial,sans-serif\" font-size=\"13\">\n<style>",
+             width, height) +
+         in_place(all.substr(after)) + "</style>\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n" +
+         in_place(body) + "</svg>\n";
+}
+
 std::string chart_file(const ScatterChart& scatter) {
   const std::string svg = scatter_svg(scatter);
-  if (svg.empty()) return "";
-  const std::size_t head = svg.find('>') + 1;
-  const std::string name = "<svg";
-  const std::size_t dark = svg_css().find("@media screen"), light = svg_css().find("}}", dark) + 2;
-  return name + " xmlns=\"http://www.w3.org/2000/svg\"" + svg.substr(name.size(), head - name.size()) + "\n<style>" +
-         svg_css().substr(0, dark) + svg_css().substr(light) + "</style>\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>" +
-         svg.substr(head);
+  return svg.empty() ? "" : svg_file(svg, scatter.chart.width, scatter.chart.height);
 }
 
 }  // namespace ropewalk

@@ -23,6 +23,9 @@ std::string fixed_text(double value, int decimals);
 // CSS rules for all pictures below, and the variables --paper, --ink, --soft and --rule, which a page may use too.
 std::string svg_css();
 
+// A file of its own, on white, with elements that have the colours of svg_css().
+std::string svg_file(const std::string& body, double width, double height);
+
 // "#rrggbb" of the viridis map at 0 .. 1; values outside are clamped.
 std::string viridis(double at);
 
@@ -88,6 +91,10 @@ struct RopeCamera {
 // The rope lies across the page, and the plane of its largest deflection in the page.
 RopeCamera rope_camera(const std::vector<RopeView>& views, double tube_radius, double widest = 1040,
                        double highest = 300);
+// From a side of one's choice: `towards` points to who looks. The rope lies across the page unless it is seen from its
+// end.
+RopeCamera rope_camera(const std::vector<RopeView>& views, double tube_radius, const Vector3& towards, double widest,
+                       double highest);
 
 // An <svg> element of at most 60 kB. `name` makes its ids unique in the page.
 std::string rope_picture(const RopeView& view, const RopeCamera& camera, double tube_radius,

@@ -241,7 +241,7 @@ TEST_F(LammpsRun, ImportRefusesALogOfOtherColumns) {
   spit(dir / "out/log.csv", log.replace(log.find("beta_deg"), 8, "beta_rad"));
   const Outcome o = run("import out");
   EXPECT_EQ(o.code, 2);
-  EXPECT_NE(o.err.find("log.csv:1: column 38 of the header is \"beta_rad\", \"beta_deg\" is needed"),
+  EXPECT_NE(o.err.find("log.csv:1: column 39 of the header is \"beta_rad\", \"beta_deg\" is needed"),
             std::string::npos)
       << o.err;
   EXPECT_EQ(slurp(dir / "out/log.csv"), log) << "nothing is written";

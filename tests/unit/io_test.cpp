@@ -203,8 +203,8 @@ TEST_F(IoTest, LogIsShort) {
   LogRow row;
   row["step"] = 12;
   row["time_ps"] = 0.1;
-  EXPECT_EQ(log_line(row).substr(0, 9), "12,0.1,0,");
-  EXPECT_EQ(log_header().substr(0, 26), "step,time_ps,moment_nN_nm,");
+  EXPECT_EQ(log_line(row).substr(0, 11), "12,0.1,0,0,");
+  EXPECT_EQ(log_header().substr(0, 26), "step,time_ps,time_step_fs,");
   EXPECT_EQ(count_of(log_line(row), ","), observables().size() - 1);
 }
 
@@ -214,7 +214,7 @@ TEST_F(IoTest, LogErrorsNameTheLine) {
   expect_error(reading(""), 1, "header");
   expect_error(reading(replaced(header, "time_ps", "time_fs") + good), 1, "\"time_fs\"");
   expect_error(reading(replaced(header, "\n", ",more\n") + good), 1, "more than");
-  expect_error(reading(replaced(header, ",largest_bond_twist_deg", "") + good), 1, "ends after column 53");
+  expect_error(reading(replaced(header, ",largest_bond_twist_deg", "") + good), 1, "ends after column 54");
   expect_error(reading(replaced(header, ",Q,", ",")), 1, "\"Q\" is needed");
   expect_error(reading(header + good + replaced(good, ",", "")), 3, "columns");
   expect_error(reading(header + good + "\n" + good), 3, "1 columns");

@@ -1,0 +1,147 @@
+// `picture`: a figure for a paper from the frames and the log of a run.
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "commands/commands.hpp"
+#include "commands/run_views.hpp"
+#include "io/files.hpp"
+#include "model/error.hpp"
+#include "report/plate.hpp"
+
+extern char** environ;
+
+namespace ropewalk {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t usual_states = 4;
+
+// Frames nearest to these times; evenly over the run where there are none.
+std::vector<DumpFrame> frames_at(const RunDirectory& dir, const Topology& topology, std::vector<double> times) {
+  std::vector<double> stored;
+  DumpFrame frame;
+  for (DumpReader reader(dir.frames()); reader.next(topology, frame);) stored.push_back(frame.state.time);
+  if (stored.empty())
+    throw InputError({dir.frames(), 0, ""}, "holds no frame", "run the scene further with `ropewalk resume`");
+  if (times.empty())
+    for (const std::size_t k : evenly(stored.size(), usual_states)) times.push_back(stored[k]);
+  std::vector<std::size_t> wanted;
+  const double apart = stored.size() > 1 ? (stored.back() - stored.front()) / static_cast<double>(stored.size() - 1) : 0;
+  for (const double time : times) {
+    const auto at = std::min_element(stored.begin(), stored.end(), [&](double a, double b) {
+      return std::fabs(a - time) < std::fabs(b - time);
+    });
+    if (std::fabs(*at - time) > 1.01 * apart + 1e-6)
+      throw InputError({"", 0, "--at"}, fmt::format("no frame is near {} ps: they are from {:.4g} to {:.4g} ps", time,
+                                                    stored.front(), stored.back()),
+                       "choose times of the run");
+    wanted.push_back(static_cast<std::size_t>(at - stored.begin()));
+  }
+  std::vector<DumpFrame> out(wanted.size());
+  std::size_t k = 0;
+  for (DumpReader reader(dir.frames()); reader.next(topology, frame); ++k)
+    for (std::size_t w = 0; w < wanted.size(); ++w)
+      if (wanted[w] == k) out[w] = frame;
+  return out;
+}
+
+// side: as reports have it; x, y, z: along that axis; AZIMUTH,ELEVATION about z, in degrees.
+RopeCamera camera_from(const std::string& from, const std::vector<RopeView>& views, double radius, double width,
+                       double height) {
+  if (from == "side") return rope_camera(views, radius, width, height);
+  if (from == "x") return rope_camera(views, radius, Vector3::UnitX(), width, height);
+  if (from == "y") return rope_camera(views, radius, Vector3::UnitY(), width, height);
+  if (from == "z" || from == "end") return rope_camera(views, radius, Vector3::UnitZ(), width, height);
+  double azimuth = 0, elevation = 0;
+  char rest = 0;
+  if (std::sscanf(from.c_str(), "%lf,%lf%c", &azimuth, &elevation, &rest) != 2)
+    throw InputError({"", 0, "--from"}, fmt::format("there is no side \"{}\"", from),
+                     "take side, x, y, z, or two angles in degrees: 30,20");
+  const double a = azimuth * units::degree, e = elevation * units::degree;
+  return rope_camera(views, radius, {std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e)}, width, height);
+}
+
+std::vector<std::vector<std::string>> curves_of(const std::vector<std::string>& groups) {
+  std::vector<std::vector<std::string>> out;
+  for (const std::string& group : groups) {
+    out.emplace_back(1);
+    for (const char c : group)
+      if (c == '+')
+        out.back().emplace_back();
+      else
+        out.back().back() += c;
+    for (const std::string& column : out.back()) {
+      try {
+        index_of_observable(column);
+      } catch (const std::invalid_argument&) {
+        throw InputError({"", 0, "--curves"}, fmt::format("log.csv has no column \"{}\"", column),
+                         "see `ropewalk observe --list`");
+      }
+    }
+  }
+  return out;
+}
+
+// PDF and PNG by librsvg's program.
+void convert(const std::string& svg, const std::string& out, const std::string& format, double zoom) {
+  const std::string draft = out + ".svg";
+  write_file_atomically(draft, svg);
+  std::vector<std::string> words = {"rsvg-convert", "-f", format, "-z", fmt::format("{}", zoom), "-o", out, draft};
+  std::vector<char*> argv;
+  for (std::string& w : words) argv.push_back(w.data());
+  argv.push_back(nullptr);
+  pid_t child = 0;
+  int status = -1;
+  const int error = posix_spawnp(&child, "rsvg-convert", nullptr, nullptr, argv.data(), environ);
+  if (error == 0) waitpid(child, &status, 0);
+  std::error_code ignored;
+  fs::remove(draft, ignored);
+  if (error != 0 || !WIFEXITED(status) || WEXITSTATUS(status) != 0)
+    throw InputError({out, 0, "-o"}, "cannot be made: rsvg-convert is missing or failed",
+                     "install librsvg2-bin, or write .svg");
+}
+
+}  // namespace
+
+int picture_command(const PictureArguments& a) {
+  const std::string format = fs::path(a.out).extension().string();
+  if (format != ".svg" && format != ".pdf" && format != ".png")
+    throw InputError({a.out, 0, "-o"}, "is no .svg, .pdf or .png", "end the name in one of them");
+  if (fs::exists(a.out) && !a.force)
+    throw InputError({a.out, 0, "-o"}, "exists", "choose another name, or give --force to replace it");
+  const RunDirectory dir{a.dir};
+  Scene scene = read_run_scene(dir);
+  const Prepared prepared = prepare(scene);
+  const Observer observer = make_observer(scene, prepared);
+  PlateInput in;
+  in.tube_radius = prepared.topology.largest_radius();
+  in.shells = observer.shells;
+  in.log = read_log(dir.log());
+  in.curves = curves_of(a.curves);
+  in.width = a.width;
+  for (const DumpFrame& frame : frames_at(dir, prepared.topology, a.at)) {
+    const RopeObservation o = observe(observer, scene, prepared.topology, frame.state);
+    const double beta = o.beta / units::degree;
+    in.views.push_back(view_of(prepared.topology, frame, beta));
+    if (a.sections && !o.middle.points.empty())
+      in.sections.push_back({frame.state.time, beta, o.middle, o.radius_profile});
+  }
+  if (in.sections.size() != in.views.size()) in.sections.clear();
+  in.camera = camera_from(a.from, in.views, in.tube_radius, a.width - 20 - (in.sections.empty() ? 0 : 164), a.highest);
+  const std::string svg = plate_svg(in);
+  if (format == ".svg")
+    write_file_atomically(a.out, svg);
+  else
+    convert(svg, a.out, format.substr(1), format == ".png" ? a.zoom : 1);
+  fmt::print("{} written\n", a.out);
+  return 0;
+}
+
+}  // namespace ropewalk
