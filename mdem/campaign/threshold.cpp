@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <limits>
 #include <map>
+#include <set>
 
 #include "io/files.hpp"
 #include "io/log.hpp"
@@ -92,7 +93,9 @@ std::optional<GrowthThreshold> growth_threshold(const std::vector<Trial>& trials
     squares.push_back(*t.rate * *t.rate);
     values.push_back(t.value);
   }
-  const std::optional<Line> line = values.size() > 2 ? line_through(squares, values) : std::nullopt;
+  // Three different values at least, whatever the seeds.
+  const std::set<double> different(values.begin(), values.end());
+  const std::optional<Line> line = different.size() > 2 ? line_through(squares, values) : std::nullopt;
   if (!line) return {};
   return GrowthThreshold{line->a, line->a_error, values.size()};
 }

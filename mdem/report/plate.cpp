@@ -75,17 +75,32 @@ std::string chart_of(const PlateInput& in, const std::vector<std::string>& colum
   return scatter_svg(scatter);
 }
 
+// Scales the pictures so that a whole number of them fills the width, shrunk a little or enlarged; returns the number.
+std::size_t fill(PlateInput& in, double section) {
+  constexpr double least = 0.7, most = 1.8;
+  const double picture = in.camera.width * in.camera.scale;
+  for (std::size_t n = std::min<std::size_t>(4, in.views.size()); n > 0; --n) {
+    const auto columns = static_cast<double>(n);
+    const double room = (in.width - 2 * margin - (columns - 1) * gap) / columns - section, factor = room / picture;
+    if (factor < least && n > 1) continue;
+    in.camera.scale *= std::min(factor, most);
+    return n;
+  }
+  return 1;
+}
+
 }  // namespace
 
-std::string plate_svg(const PlateInput& in) {
+std::string plate_svg(const PlateInput& input) {
+  PlateInput in = input;
   std::string body;
   double y = margin, half_width = 0;
   for (const ReportSection& s : in.sections)
     half_width = std::max(half_width, section_half_width(s.section, in.tube_radius));
   // States: as many side by side as find room, each with its section to its right.
   const double section = in.sections.empty() ? 0 : section_pixels + gap;
+  const std::size_t columns = fill(in, section);
   const double picture = in.camera.width * in.camera.scale, cell = picture + section + gap;
-  const auto columns = std::max<std::size_t>(1, static_cast<std::size_t>((in.width - 2 * margin + gap) / cell));
   for (std::size_t begin = 0; begin < in.views.size(); begin += columns) {
     double row = 0;
     for (std::size_t k = begin; k < std::min(begin + columns, in.views.size()); ++k) {

@@ -505,6 +505,10 @@ std::string svg_file(const std::string& body, double width, double height) {
   const std::string all = svg_css();
   const std::size_t dark = all.find("@media screen"), after = all.find("}}", dark) + 2;
   const std::string variables = all.substr(0, dark);
+  // In a file the elements have their sizes, which these rules for pages would undo.
+  std::string css = all.substr(after);
+  const std::string fluid = "max-width:100%;height:auto";
+  css.erase(css.find(fluid), fluid.size());
   const auto in_place = [&](std::string text) {
     for (std::size_t at = text.find("var(--"); at != std::string::npos; at = text.find("var(--")) {
       const std::size_t end = text.find(')', at);
@@ -518,7 +522,7 @@ std::string svg_file(const std::string& body, double width, double height) {
              "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" width=\"{0:.0f}\" "
              "height=\"{1:.0f}\" font-family=\"Helvetica,Arial,sans-serif\" font-size=\"13\">\n<style>",
              width, height) +
-         in_place(all.substr(after)) + "</style>\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n" +
+         in_place(css) + "</style>\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n" +
          in_place(body) + "</svg>\n";
 }
 

@@ -128,6 +128,29 @@ TEST_F(Campaign, ClusterFilesRunEveryPoint) {
   EXPECT_NE(slurp(dir / "Snakefile").find("\"tubes-7\","), std::string::npos);
 }
 
+TEST_F(Campaign, PictureIsAFigureInThreeFormats) {
+  spit(dir / "rope.toml", slurp(dir / "tube.toml"));
+  std::string text = slurp(dir / "rope.toml");
+  text.replace(text.find("tubes = 1"), 9, "tubes = 7");
+  spit(dir / "rope.toml", text + "frames_every_ps = 2\n");
+  ASSERT_EQ(run("run rope.toml --out d --quiet").code, 0);
+  ASSERT_EQ(run("picture d -o a.svg --at 0,6,12 --sections --curves twist_eV+bend_eV,beta_deg").code, 0)
+      << slurp(dir / "stderr.txt");
+  const std::string svg = slurp(dir / "a.svg");
+  for (const char* part : {">A</text>", ">C</text>", "6 ps, β", "class=\"section\"", "class=\"chart\"", " nm</text>"})
+    EXPECT_NE(svg.find(part), std::string::npos) << part;
+  EXPECT_EQ(svg.find("var(--"), std::string::npos) << "few programs know variables";
+  EXPECT_EQ(run("picture d -o a.svg").code, 2) << "it exists";
+  EXPECT_EQ(run("picture d -o a.png --from 30,20").code, 0) << slurp(dir / "stderr.txt");
+  EXPECT_EQ(slurp(dir / "a.png").substr(1, 3), "PNG");
+  EXPECT_EQ(run("picture d -o a.pdf --from z --at 12").code, 0);
+  EXPECT_EQ(slurp(dir / "a.pdf").substr(0, 4), "%PDF");
+  EXPECT_FALSE(fs::exists(dir / "a.pdf.svg"));
+  for (const char* wrong : {"-o b.jpg", "-o b.svg --at 99", "-o b.svg --from left", "-o b.svg --curves nothing"})
+    EXPECT_EQ(run(std::string("picture d ") + wrong).code, 2) << wrong;
+  EXPECT_FALSE(fs::exists(dir / "b.svg"));
+}
+
 TEST_F(Campaign, ThresholdIsThatOfTheFormula) {
   // The ends of a tube turn by ML/GJ: its rotation passes 20 degrees at a moment that the set gives.
   spit(dir / "tube.toml",
