@@ -116,9 +116,11 @@ void add_compare(CLI::App& app, Verbs& v) {
   c->add_option("names", v.compare.names,
                 "Directories of runs and campaigns; or parameter sets: files, or names of shipped ones")
       ->required();
-  c->add_option("--page", v.compare.page, "Page with all curves (HTML) [default: compare.html for runs, none for sets]");
+  c->add_option("--page", v.compare.page,
+                "Page with all curves (HTML) [default: compare.html for runs, none for sets]");
   c->add_option("--x", v.compare.x, "Runs: column of log.csv on the horizontal axis")->capture_default_str();
-  c->add_option("--y", v.compare.y, "Runs: columns, a chart each [default: the usual ones that vary]")->delimiter(',');
+  c->add_option("--y", v.compare.y, "Runs: columns, a chart each [default: the usual ones that vary]")
+      ->delimiter(',');
   c->add_option("--level", v.compare.levels, "Runs: a value to compare with, as 0.45:NAME");
   c->add_flag("--log", v.compare.log, "Runs: logarithmic vertical axis");
   c->add_option("--svg", v.compare.svg, "Runs: write the chart of the first column to this file instead");
@@ -161,16 +163,20 @@ void add_report(CLI::App& app, Verbs& v) {
 }
 
 void add_picture(CLI::App& app, Verbs& v) {
-  CLI::App* c = app.add_subcommand("picture", "A figure for a paper: states of a run, their sections, curves with marks");
+  CLI::App* c =
+      app.add_subcommand("picture", "A figure for a paper: states of a run, their sections, curves with marks");
   c->add_option("dir", v.picture.dir, "Directory of the run")->required();
   c->add_option("-o", v.picture.out, "File to write: .svg, .pdf or .png")->required();
   c->add_option("--at", v.picture.at, "Times of the states, ps [default: four over the run]")->delimiter(',');
-  c->add_option("--from", v.picture.from, "Seen from: side (the largest deflection in the page), x, y, z, or AZIMUTH,ELEVATION")
+  c->add_option("--from", v.picture.from,
+                "Seen from: side (the largest deflection in the page), x, y, z, or AZIMUTH,ELEVATION")
       ->capture_default_str();
   c->add_option("--curves", v.picture.curves, "Charts below: columns of log.csv, twist_eV+bend_eV,Q makes two")
       ->delimiter(',');
   c->add_flag("--sections", v.picture.sections, "The cross-section of each state beside it");
-  c->add_option("--width", v.picture.width, "Width of the figure, pixels")->capture_default_str()->check(CLI::Range(200, 8000));
+  c->add_option("--width", v.picture.width, "Width of the figure, pixels")
+      ->capture_default_str()
+      ->check(CLI::Range(200, 8000));
   c->add_option("--highest", v.picture.highest, "Largest height of a state, pixels")
       ->capture_default_str()
       ->check(CLI::Range(20, 8000));
@@ -206,7 +212,8 @@ void add_energy(CLI::App& app, Verbs& v) {
 }
 
 void add_sweep(CLI::App& app, Verbs& v) {
-  CLI::App* c = app.add_subcommand("sweep", "Run a scene for many values of its keys, each point in a directory of its own");
+  CLI::App* c =
+      app.add_subcommand("sweep", "Run a scene for many values of its keys, each point in a directory of its own");
   c->add_option("file", v.sweep.file, "Sweep (TOML): scene = \"rope.toml\", then [vary] with rope.tubes = [7, 19]")
       ->required();
   c->add_option("--out", v.sweep.out, "Directory of the campaign; the same command goes on [default: FILE]");
@@ -227,8 +234,10 @@ void add_sweep(CLI::App& app, Verbs& v) {
 
 void add_threshold(CLI::App& app, Verbs& v) {
   CLI::App* c = app.add_subcommand(
-      "threshold", "The critical value of a key at each point of a sweep, by bisection and by growth rates: a phase diagram");
-  c->add_option("file", v.threshold.file, "Sweep (TOML) with [threshold]: key, from, to, column, above")->required();
+      "threshold",
+      "The critical value of a key at each point of a sweep, by bisection and by growth rates: a phase diagram");
+  c->add_option("file", v.threshold.file, "Sweep (TOML) with [threshold]: key, from, to, column, above")
+      ->required();
   c->add_option("--out", v.threshold.out, "Directory of the campaign; the same command goes on [default: FILE]");
   c->add_option("-j,--jobs", v.threshold.jobs, "Points at a time, each on one core [default: all cores]")
       ->check(thread_range());

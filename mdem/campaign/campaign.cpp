@@ -170,7 +170,8 @@ std::string slurm_script(const std::string& sweep_file, const CampaignDirectory&
       "#SBATCH --ntasks=1\n"
       "#SBATCH --cpus-per-task=1\n"
       "#SBATCH --output={}/slurm-%a.txt\n"
-      "# Add --time, --partition and --account as your cluster asks. Submitted again, it goes on where points stopped.\n"
+      "# Add --time, --partition and --account as your cluster asks. Submitted again, it goes on where points "
+      "stopped.\n"
       "ropewalk sweep '{}' --out '{}' --only \"$SLURM_ARRAY_TASK_ID\" --quiet\n",
       points, dir.path, sweep_file, dir.path);
 }

@@ -134,35 +134,39 @@ std::string phase_page(const Sweep& sweep, const std::vector<PhasePoint>& points
   std::string html = page_head("Thresholds") +
                      "<body>\n<main>\n<p class=\"kicker\">Ropewalk: critical values</p>\n<h1>" +
                      escape_markup(q.key) + "</h1>\n";
-  html += paragraph(escape_markup(fmt::format(
-      "Where {} passes {:g}. By bisection: within the time of the scene, narrowed to {:g} % of the value. By growth: where "
-      "the square of the rate of its exponential growth, extrapolated over the runs that passed, goes to zero; a longer run "
-      "does not change it. Errors are standard errors over seeds and fits.",
-      q.column, q.above, 100 * q.accuracy)));
-  html += "<div class=\"scroll\"><table class=\"facts numbers\"><thead><tr><th>point</th><th>tubes</th><th>length, "
-          "nm</th><th>length/radius</th><th>by bisection</th><th>by growth</th><th>runs that grow</th><th>theory, sliding "
-          "tubes</th><th>glued tubes</th></tr></thead><tbody>\n";
+  html +=
+      paragraph(escape_markup(fmt::format("Where {} passes {:g}. By bisection: within the time of the scene, "
+                                          "narrowed to {:g} % of the value. By growth: where "
+                                          "the square of the rate of its exponential growth, extrapolated over the "
+                                          "runs that passed, goes to zero; a longer run "
+                                          "does not change it. Errors are standard errors over seeds and fits.",
+                                          q.column, q.above, 100 * q.accuracy)));
+  html +=
+      "<div class=\"scroll\"><table class=\"facts numbers\"><thead><tr><th>point</th><th>tubes</th><th>length, "
+      "nm</th><th>length/radius</th><th>by bisection</th><th>by growth</th><th>runs that grow</th><th>theory, "
+      "sliding "
+      "tubes</th><th>glued tubes</th></tr></thead><tbody>\n";
   for (const PhasePoint& p : points) {
     const auto growth = p.by_growth();
     const auto number = [](double v) { return v > 0 ? fmt::format("{:.4g}", v) : std::string("–"); };
-    html += fmt::format("<tr><th>{}</th><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}"
-                        "</td></tr>\n",
-                        escape_markup(p.name), p.tubes, number(p.length),
-                        number(p.radius > 0 ? p.length / p.radius : 0),
-                        std::isfinite(p.by_bisection()) ? measured_text(p.by_bisection(), p.bisection_error())
-                                                        : "not in the range",
-                        growth ? measured_text(growth->critical, growth->error) : "–", growth ? growth->runs : 0,
-                        number(p.sliding), number(p.glued));
+    html += fmt::format(
+        "<tr><th>{}</th><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}"
+        "</td></tr>\n",
+        escape_markup(p.name), p.tubes, number(p.length), number(p.radius > 0 ? p.length / p.radius : 0),
+        std::isfinite(p.by_bisection()) ? measured_text(p.by_bisection(), p.bisection_error()) : "not in the range",
+        growth ? measured_text(growth->critical, growth->error) : "–", growth ? growth->runs : 0, number(p.sliding),
+        number(p.glued));
   }
   html += "</tbody></table></div>\n";
   for (const auto& [tubes, some] : by_size(points)) {
     const std::string svg = scatter_svg(diagram(sweep, tubes, some));
     if (svg.empty()) continue;
     html += heading(fmt::format("{} tubes", tubes)) + "<figure>" + svg +
-            figures.caption(escape_markup(fmt::format(
-                "Every run, and the thresholds. By bisection it {}; by growth it {}. Theory: a rope whose ends may tilt, of "
-                "tubes that slide on each other freely, 2 pi EI/L for each of them, and of glued ones.",
-                law_words(by_bisection(some)), law_words(by_growth(some))))) +
+            figures.caption(escape_markup(
+                fmt::format("Every run, and the thresholds. By bisection it {}; by growth it {}. Theory: a rope "
+                            "whose ends may tilt, of "
+                            "tubes that slide on each other freely, 2 pi EI/L for each of them, and of glued ones.",
+                            law_words(by_bisection(some)), law_words(by_growth(some))))) +
             "</figure>\n";
   }
   return html + "</main>\n</body>\n</html>\n";

@@ -22,7 +22,7 @@ namespace {
 
 constexpr const char* format_name = "ropewalk-sweep-1";
 constexpr std::size_t most_points = 100000;
-constexpr double relax_ps = 40;  // of dynamics, which cost as much as a relaxation, by guess
+constexpr double relax_ps = 40;            // of dynamics, which cost as much as a relaxation, by guess
 constexpr std::size_t longest_value = 24;  // in the name of a point; a longer one is named by its number
 
 // --- Reading [vary] ---
@@ -54,7 +54,8 @@ std::string as_toml(const toml::node& node) {
 bool is_range(const toml::table& table) { return table.contains("from") && table.contains("to"); }
 
 // { from, to, points } or { from, to, step }, evenly or, with log = true, in even ratios.
-std::vector<std::string> values_of_range(const toml::table& table, const std::string& key, const std::string& file) {
+std::vector<std::string> values_of_range(const toml::table& table, const std::string& key,
+                                         const std::string& file) {
   const InputError::Place at{file, line_of(table), key};
   const auto number = [&](const char* name) {
     const auto value = table[name].value<double>();
@@ -71,7 +72,8 @@ std::vector<std::string> values_of_range(const toml::table& table, const std::st
   if (table.contains("points") == table.contains("step"))
     throw InputError(at, "needs either points or step", "write { from = 1, to = 9, points = 5 }");
   if (log && (!(from > 0) || !(to > 0) || table.contains("step")))
-    throw InputError(at, "log = true needs positive ends and points", "write { from = 1, to = 8, points = 4, log = true }");
+    throw InputError(at, "log = true needs positive ends and points",
+                     "write { from = 1, to = 8, points = 4, log = true }");
   std::size_t count = 0;
   if (table.contains("points")) {
     const double points = number("points");
@@ -115,7 +117,8 @@ void collect_axes(const toml::table& table, const std::string& above, const std:
       throw InputError(at, "is one value", "write a list, [1, 2, 3], or { from = 1, to = 9, points = 5 }");
     }
     const std::set<std::string> different(axis.values.begin(), axis.values.end());
-    if (different.size() < axis.values.size()) throw InputError(at, "has a value twice", "take one of the two away");
+    if (different.size() < axis.values.size())
+      throw InputError(at, "has a value twice", "take one of the two away");
     axes.push_back(std::move(axis));
   }
 }
@@ -143,8 +146,7 @@ std::vector<std::vector<std::size_t>> combinations(const std::vector<SweepAxis>&
   std::vector<std::vector<std::size_t>> all = {{}};
   if (zip && !axes.empty()) {
     all.clear();
-    for (std::size_t k = 0; k < axes.front().values.size(); ++k)
-      all.emplace_back(axes.size(), k);
+    for (std::size_t k = 0; k < axes.front().values.size(); ++k) all.emplace_back(axes.size(), k);
     return all;
   }
   for (const SweepAxis& axis : axes) {
@@ -278,7 +280,8 @@ Sweep sweep_of_text(const std::string& text, const std::string& path, const std:
   const std::filesystem::path scene = top.string("scene");
   s.scene_path = other_scene.empty() ? (std::filesystem::path(path).parent_path() / scene).string() : other_scene;
   if (!std::filesystem::exists(s.scene_path))
-    throw top.error("scene", fmt::format("\"{}\" does not exist", s.scene_path), "it is looked for beside the sweep");
+    throw top.error("scene", fmt::format("\"{}\" does not exist", s.scene_path),
+                    "it is looked for beside the sweep");
   s.scene_text = read_file(s.scene_path);
   s.zip = top.word_or<bool>("combine", false, {{"grid", false}, {"zip", true}});
   s.replicates = static_cast<int>(top.integer_or("replicates", 0, 1, 100000));
@@ -300,7 +303,8 @@ Sweep sweep_of_text(const std::string& text, const std::string& path, const std:
     s.axes.push_back(seed);
   }
   const std::vector<std::string> keys = s.keys();
-  if (keys.empty() && !s.threshold) throw top.error("vary", "is missing or empty", "add [vary] with keys of the scene: rope.tubes = [7, 19]");
+  if (keys.empty() && !s.threshold)
+    throw top.error("vary", "is missing or empty", "add [vary] with keys of the scene: rope.tubes = [7, 19]");
   for (const std::string& key : keys)
     if (std::count(keys.begin(), keys.end(), key) > 1)
       throw top.error("vary", fmt::format("\"{}\" is varied twice", key), "take one of the two away");

@@ -46,11 +46,11 @@ struct Sweep {
   std::string path, text;
   std::string scene_path, scene_text;
   bool zip = false;
-  int replicates = 0;  // 0: the seed is not varied
+  int replicates = 0;                        // 0: the seed is not varied
   std::vector<SweepAxis> axes, branch_axes;  // in the order of the file; the seed is the last of `axes`
   double branch_at = 0;                      // ps; 0: nothing is shared
   std::optional<ThresholdQuestion> threshold;
-  std::vector<std::string> keys() const;     // of all axes
+  std::vector<std::string> keys() const;      // of all axes
   bool varies(const std::string& key) const;  // has more than one value
 };
 

@@ -137,7 +137,8 @@ std::string trial_text(const Sweep& sweep, const SweepPoint& point, double value
          fmt::format("\n[[stop]]\nwhen = \"above\"\ncolumn = \"{}\"\nvalue = {}\n", q.column, q.above);
 }
 
-RunDirectory trial_directory(const CampaignDirectory& dir, const Sweep& sweep, const SweepPoint& point, double value) {
+RunDirectory trial_directory(const CampaignDirectory& dir, const Sweep& sweep, const SweepPoint& point,
+                             double value) {
   return {fmt::format("{}/{}-{}", dir.point(point.name).path, leaf_of(sweep.threshold->key), value_text(value))};
 }
 

@@ -1,5 +1,5 @@
-// The critical value of a key: where a rope begins to pass a value of an observable within the time of its scene, and
-// where the rate of its growth goes to zero.
+// The critical value of a key: where a rope begins to pass a value of an observable within the time of its scene,
+// and where the rate of its growth goes to zero.
 #pragma once
 
 #include <optional>
@@ -14,15 +14,15 @@ namespace ropewalk {
 struct Trial {
   double value = 0;
   bool passed = false;
-  double time = 0;                   // ps, at which it passed
+  double time = 0;                    // ps, at which it passed
   std::optional<double> rate, error;  // 1/ps, of the exponential growth on the way; none: it cannot be told
 };
 
 // Of a point, by its runs; values rise.
 struct Threshold {
   std::vector<Trial> trials;
-  double below = 0, above = 0;        // the bracket of the bisection; equal: not bracketed within the range
-  bool outside = false;               // passed at the lower end already, or not even at the upper one
+  double below = 0, above = 0;  // the bracket of the bisection; equal: not bracketed within the range
+  bool outside = false;         // passed at the lower end already, or not even at the upper one
   double middle() const { return 0.5 * (below + above); }
 };
 
@@ -47,7 +47,8 @@ Trial trial_of(const std::vector<LogRow>& log, const ThresholdQuestion& question
 
 // The scene of a trial: the point's, with the value, and ended where the question is decided.
 std::string trial_text(const Sweep& sweep, const SweepPoint& point, double value);
-RunDirectory trial_directory(const CampaignDirectory& dir, const Sweep& sweep, const SweepPoint& point, double value);
+RunDirectory trial_directory(const CampaignDirectory& dir, const Sweep& sweep, const SweepPoint& point,
+                             double value);
 // All that were run.
 Threshold threshold_of(const CampaignDirectory& dir, const Sweep& sweep, const SweepPoint& point);
 
@@ -57,8 +58,8 @@ struct PhasePoint {
   std::vector<std::string> values;  // of the keys, without the seed
   std::vector<Threshold> seeds;
   int tubes = 0;
-  double length = 0, radius = 0;   // nm, of the rope; zero where it is none
-  double sliding = 0, glued = 0;   // theory, in the unit of the key; zero where there is none
+  double length = 0, radius = 0;  // nm, of the rope; zero where it is none
+  double sliding = 0, glued = 0;  // theory, in the unit of the key; zero where there is none
 
   double by_bisection() const, bisection_error() const;
   std::optional<GrowthThreshold> by_growth() const;

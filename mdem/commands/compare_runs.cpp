@@ -44,7 +44,8 @@ std::vector<Group> groups_of(const CampaignDirectory& dir) {
       if (keys[k] == "start.seed") continue;
       values.push_back(p.values[k]);
       if (sweep.varies(keys[k]))
-        name += fmt::format("{}{} = {}", name.empty() ? "" : ", ", keys[k].substr(keys[k].rfind('.') + 1), p.values[k]);
+        name +=
+            fmt::format("{}{} = {}", name.empty() ? "" : ", ", keys[k].substr(keys[k].rfind('.') + 1), p.values[k]);
     }
     const auto [entry, added] = at.emplace(values, groups.size());
     if (added) groups.push_back({name.empty() ? p.name : name, {}});
@@ -86,8 +87,7 @@ ReferenceLevel level_of(const std::string& text) {
   try {
     std::size_t used = 0;
     const double value = std::stod(text.substr(0, at), &used);
-    if (used == std::min(at, text.size()))
-      return {value, at == std::string::npos ? text : text.substr(at + 1)};
+    if (used == std::min(at, text.size())) return {value, at == std::string::npos ? text : text.substr(at + 1)};
   } catch (const std::exception&) {
   }
   throw InputError({"", 0, "--level"}, fmt::format("\"{}\" does not begin with a number", text),
@@ -101,8 +101,8 @@ void check_columns(const RunsFigure& figure) {
     try {
       index_of_observable(column);
     } catch (const std::invalid_argument&) {
-      throw InputError({"", 0, column == figure.x ? "--x" : "--y"}, fmt::format("log.csv has no column \"{}\"", column),
-                       "see `ropewalk observe --list`");
+      throw InputError({"", 0, column == figure.x ? "--x" : "--y"},
+                       fmt::format("log.csv has no column \"{}\"", column), "see `ropewalk observe --list`");
     }
   }
 }
@@ -126,7 +126,8 @@ int compare_runs(const CompareArguments& a) {
   std::vector<Group> groups;
   for (const std::string& path : a.names) {
     if (!fs::is_directory(path))
-      throw InputError({path, 0, ""}, "is not the directory of a run", "name runs or campaigns alone, or sets alone");
+      throw InputError({path, 0, ""}, "is not the directory of a run",
+                       "name runs or campaigns alone, or sets alone");
     const CampaignDirectory campaign{path};
     if (fs::exists(campaign.sweep()))
       for (Group& group : groups_of(campaign)) groups.push_back(std::move(group));

@@ -33,14 +33,15 @@ std::vector<DumpFrame> frames_at(const RunDirectory& dir, const Topology& topolo
   if (times.empty())
     for (const std::size_t k : evenly(stored.size(), usual_states)) times.push_back(stored[k]);
   std::vector<std::size_t> wanted;
-  const double apart = stored.size() > 1 ? (stored.back() - stored.front()) / static_cast<double>(stored.size() - 1) : 0;
+  const double apart =
+      stored.size() > 1 ? (stored.back() - stored.front()) / static_cast<double>(stored.size() - 1) : 0;
   for (const double time : times) {
-    const auto at = std::min_element(stored.begin(), stored.end(), [&](double a, double b) {
-      return std::fabs(a - time) < std::fabs(b - time);
-    });
+    const auto at = std::min_element(stored.begin(), stored.end(),
+                                     [&](double a, double b) { return std::fabs(a - time) < std::fabs(b - time); });
     if (std::fabs(*at - time) > 1.01 * apart + 1e-6)
-      throw InputError({"", 0, "--at"}, fmt::format("no frame is near {} ps: they are from {:.4g} to {:.4g} ps", time,
-                                                    stored.front(), stored.back()),
+      throw InputError({"", 0, "--at"},
+                       fmt::format("no frame is near {} ps: they are from {:.4g} to {:.4g} ps", time,
+                                   stored.front(), stored.back()),
                        "choose times of the run");
     wanted.push_back(static_cast<std::size_t>(at - stored.begin()));
   }
@@ -65,7 +66,8 @@ RopeCamera camera_from(const std::string& from, const std::vector<RopeView>& vie
     throw InputError({"", 0, "--from"}, fmt::format("there is no side \"{}\"", from),
                      "take side, x, y, z, or two angles in degrees: 30,20");
   const double a = azimuth * units::degree, e = elevation * units::degree;
-  return rope_camera(views, radius, {std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e)}, width, height);
+  return rope_camera(views, radius, {std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e)}, width,
+                     height);
 }
 
 std::vector<std::vector<std::string>> curves_of(const std::vector<std::string>& groups) {
@@ -134,7 +136,8 @@ int picture_command(const PictureArguments& a) {
       in.sections.push_back({frame.state.time, beta, o.middle, o.radius_profile});
   }
   if (in.sections.size() != in.views.size()) in.sections.clear();
-  in.camera = camera_from(a.from, in.views, in.tube_radius, a.width - 20 - (in.sections.empty() ? 0 : 164), a.highest);
+  in.camera =
+      camera_from(a.from, in.views, in.tube_radius, a.width - 20 - (in.sections.empty() ? 0 : 164), a.highest);
   const std::string svg = plate_svg(in);
   if (format == ".svg")
     write_file_atomically(a.out, svg);

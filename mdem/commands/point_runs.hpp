@@ -12,14 +12,14 @@ namespace ropewalk {
 
 inline constexpr int point_busy = 75;  // exit code of a process that found its point locked by another one
 
-double now();                              // s
+double now();                               // s
 std::string duration_text(double seconds);  // "12 min"
 
 // A run that was begun goes on, another one is started, on one thread. Negative `until_ps`: to the scene's end.
 int run_or_resume(const RunDirectory& dir, const Scene& scene, double until_ps, const std::string& on_limit);
 
-// Sends what is printed to the file `messages` and keeps other processes from the same work, by a lock on it: waits for
-// them, or returns point_busy. Returns the exit code of `work`, or that of what it throws.
+// Sends what is printed to the file `messages` and keeps other processes from the same work, by a lock on it: waits
+// for them, or returns point_busy. Returns the exit code of `work`, or that of what it throws.
 int in_a_process(const std::string& messages, bool wait, const std::function<int()>& work);
 
 // SIGINT and SIGTERM, once listen_to_signals() was called.

@@ -162,7 +162,8 @@ class Run {
     for (const std::string& note : warnings_of(scene_, prepared_.topology))
       fmt::print(stderr, "ropewalk: note: {}\n", note);
     for (const std::string& note : warmth_of(scene_, prepared_)) fmt::print(stderr, "ropewalk: note: {}\n", note);
-    for (const std::string& note : limits_ahead(scene_, prepared_)) fmt::print(stderr, "ropewalk: note: {}\n", note);
+    for (const std::string& note : limits_ahead(scene_, prepared_))
+      fmt::print(stderr, "ropewalk: note: {}\n", note);
   }
 
   void begin() {
@@ -277,7 +278,8 @@ class Run {
     double checkpoint_at = now() + scene_.run.checkpoint_every;
     const long checked_every = std::min(log_every_, check_every);
     StopReason stop = StopReason::none;  // it ends after a step with energies: this one, or the next
-    if (simulation_.state().step < last_step_ && std::isfinite(simulation_.total_energy())) stop = check_limits(true);
+    if (simulation_.state().step < last_step_ && std::isfinite(simulation_.total_energy()))
+      stop = check_limits(true);
     if (stop != StopReason::none) return stop;
     if (!mark_.checkpoint) set_mark();
     double seconds = patience;  // of a step
@@ -358,7 +360,8 @@ class Run {
     watch_.inherit_from(mark_.limits, simulation_.state().step);
     stop_watch_.cut(simulation_.state().step);
     // Without the remedy: this is it.
-    say(fmt::format("{:.4g} ps: {}; back to {:.4g} ps, on with steps of {:.3g} fs", time, why.substr(0, why.find(';')), simulation_.state().time,
+    say(fmt::format("{:.4g} ps: {}; back to {:.4g} ps, on with steps of {:.3g} fs", time,
+                    why.substr(0, why.find(';')), simulation_.state().time,
                     simulation_.time_step() / simulation_.divided() / units::fs));
     return true;
   }

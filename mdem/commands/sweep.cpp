@@ -27,8 +27,8 @@ namespace {
 namespace fs = std::filesystem;
 using Stage = PointProgress::Stage;
 
-constexpr std::size_t most_timed = 6;   // points of a dry run whose steps are timed
-constexpr double relax_steps = 2000;    // a guess, where a relaxation does not end at once
+constexpr std::size_t most_timed = 6;  // points of a dry run whose steps are timed
+constexpr double relax_steps = 2000;   // a guess, where a relaxation does not end at once
 
 std::string default_directory(const std::string& file) {
   return (fs::path(file).parent_path() / fs::path(file).stem()).string();
@@ -206,10 +206,9 @@ class Campaign {
         continue;
       }
       work_left_ += work;
-      tasks.push_back({[this, p] {
-                         return in_a_process(dir_.messages(p.name), false, [&] { return run_point(p); });
-                       },
-                       [this, p, work](int status) { ended(p, work, status); }});
+      tasks.push_back(
+          {[this, p] { return in_a_process(dir_.messages(p.name), false, [&] { return run_point(p); }); },
+           [this, p, work](int status) { ended(p, work, status); }});
     }
     if (done_ > 0) say(fmt::format("{} of {} points are done already", done_, points_.size()));
     work_to_do_ = work_left_;
@@ -228,8 +227,8 @@ class Campaign {
       say(fmt::format("{} did not end; see {}", p.name, dir_.messages(p.name)));
     const double passed = now() - began_, left = passed * work_left_ / std::max(work_to_do_ - work_left_, 1.0);
     if (isatty(STDERR_FILENO) && !arguments_.quiet)
-      fmt::print(stderr, "\r\033[K{} of {} points, {} passed, {} left", done_, points_.size(), duration_text(passed),
-                 duration_text(left));
+      fmt::print(stderr, "\r\033[K{} of {} points, {} passed, {} left", done_, points_.size(),
+                 duration_text(passed), duration_text(left));
     else if (now() > next_line_ || done_ == points_.size())
       say(fmt::format("{} of {} points, {} passed, {} left", done_, points_.size(), duration_text(passed),
                       duration_text(left)));

@@ -1,4 +1,6 @@
 // `threshold`: critical values over the points of a sweep.
+#include "campaign/threshold.hpp"
+
 #include <fmt/format.h>
 #include <omp.h>
 #include <unistd.h>
@@ -6,7 +8,6 @@
 #include <cmath>
 #include <filesystem>
 
-#include "campaign/threshold.hpp"
 #include "commands/commands.hpp"
 #include "commands/point_runs.hpp"
 #include "io/files.hpp"
@@ -134,7 +135,8 @@ class Search {
                      : std::string("not in the range"),
                  growth ? fmt::format("{:.4g} ± {:.2g}", growth->critical, growth->error) : std::string("-"));
     }
-    fmt::print("{} runs, {} of one core in all. Page: {}/thresholds.html\n", runs, duration_text(seconds), dir_.path);
+    fmt::print("{} runs, {} of one core in all. Page: {}/thresholds.html\n", runs, duration_text(seconds),
+               dir_.path);
     for (const std::string& name : failed) fmt::print("not ended: {}, see {}\n", name, dir_.messages(name));
   }
 

@@ -17,7 +17,8 @@ Growth growth_of(const std::vector<double>& time, const std::vector<double>& y) 
   if (t.size() < 2) return g;
   double mean_t = 0, mean_l = 0, tt = 0, tl = 0;
   for (std::size_t k = 0; k < t.size(); ++k) mean_t += t[k] / n, mean_l += l[k] / n;
-  for (std::size_t k = 0; k < t.size(); ++k) tt += std::pow(t[k] - mean_t, 2), tl += (t[k] - mean_t) * (l[k] - mean_l);
+  for (std::size_t k = 0; k < t.size(); ++k)
+    tt += std::pow(t[k] - mean_t, 2), tl += (t[k] - mean_t) * (l[k] - mean_l);
   if (!(tt > 0)) return g;
   g.rate = tl / tt;
   if (t.size() < 4) return g;

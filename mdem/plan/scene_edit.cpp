@@ -61,7 +61,8 @@ LineRange range_of(const std::vector<std::string>& lines, const std::string& tab
   return r;
 }
 
-std::size_t find_key(const std::vector<std::string>& lines, const LineRange& r, const std::string& key, bool comment) {
+std::size_t find_key(const std::vector<std::string>& lines, const LineRange& r, const std::string& key,
+                     bool comment) {
   for (std::size_t k = r.from; k < r.to; ++k)
     if (starts_with(lines[k], {comment ? "#" : "", key.c_str(), "="})) return k;
   return std::string::npos;
@@ -135,8 +136,8 @@ LineRange range_from(const std::vector<std::string>& lines, std::size_t first) {
 // Columns count characters, not bytes.
 std::size_t byte_of(const std::string& line, std::size_t column) {
   std::size_t at = 0;
-  for (std::size_t k = 1; k < column && at < line.size(); ++k)
-    do ++at;
+  for (std::size_t k = 1; k < column && at < line.size(); ++k) do
+      ++at;
     while (at < line.size() && (static_cast<unsigned char>(line[at]) & 0xC0) == 0x80);
   return at;
 }

@@ -47,14 +47,16 @@ std::string chart_of(const PlateInput& in, const std::vector<std::string>& colum
   const Observable& first = observables()[index_of_observable(columns.front())];
   chart.title = columns.front();
   chart.x = clock.axis;
-  chart.y = {columns.size() == 1 ? name_of(columns.front()) : first.unit == "eV" ? "energy" : name_of(columns.front()),
+  chart.y = {columns.size() == 1  ? name_of(columns.front())
+             : first.unit == "eV" ? "energy"
+                                  : name_of(columns.front()),
              first.unit, first.whole};
   chart.width = width;
   chart.height = chart_height;
   const std::vector<double> x = values_of(in.log, logged(clock.column));
   for (std::size_t k = 0; k < columns.size(); ++k) {
-    chart.lines.push_back({name_of(columns[k]), x, values_of(in.log, logged(columns[k])),
-                           static_cast<int>(k) % categorical_colours});
+    chart.lines.push_back(
+        {name_of(columns[k]), x, values_of(in.log, logged(columns[k])), static_cast<int>(k) % categorical_colours});
     scatter.labels.emplace_back();
   }
   // The states, on the first curve.
@@ -75,7 +77,8 @@ std::string chart_of(const PlateInput& in, const std::vector<std::string>& colum
   return scatter_svg(scatter);
 }
 
-// Scales the pictures so that a whole number of them fills the width, shrunk a little or enlarged; returns the number.
+// Scales the pictures so that a whole number of them fills the width, shrunk a little or enlarged; returns the
+// number.
 std::size_t fill(PlateInput& in, double section) {
   constexpr double least = 0.7, most = 1.8;
   const double picture = in.camera.width * in.camera.scale;
@@ -110,8 +113,8 @@ std::string plate_svg(const PlateInput& input) {
               text_at(x + 18, y + 14,
                       fmt::format("{} ps{}", number_text(view.time_ps),
                                   std::isfinite(view.beta_deg) ? fmt::format(", β = {:.1f}°", view.beta_deg) : ""));
-      const std::string rope = rope_picture(view, in.camera, in.tube_radius, fmt::format("p{}", k),
-                                            k + 1 == in.views.size());
+      const std::string rope =
+          rope_picture(view, in.camera, in.tube_radius, fmt::format("p{}", k), k + 1 == in.views.size());
       body += placed(rope, x, y + tag_height);
       row = std::max(row, height_of(rope));
       if (in.sections.empty()) continue;

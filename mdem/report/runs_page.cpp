@@ -14,9 +14,9 @@ namespace ropewalk {
 namespace {
 
 // What most comparisons ask for, where it varies.
-const char* const usual[] = {"torque_upper_nN_nm", "tension_upper_nN", "stored_MJ_per_kg", "ends_strain",
-                             "beta_deg",           "Q",                "amplitude_nm",     "void_area_nm2",
-                             "vdw_eV",             "kinetic_eV"};
+const char* const usual[] = {
+    "torque_upper_nN_nm", "tension_upper_nN", "stored_MJ_per_kg", "ends_strain", "beta_deg", "Q",
+    "amplitude_nm",       "void_area_nm2",    "vdw_eV",           "kinetic_eV"};
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
@@ -75,7 +75,8 @@ ScatterChart chart_of(const std::vector<RunCurve>& runs, const RunsFigure& figur
   const LogValue x = logged(figure.x), y = logged(column);
   double least = std::numeric_limits<double>::infinity(), most = -least;
   for (std::size_t k = 0; k < runs.size(); ++k) {
-    ChartLine line{label_of(runs, k), values_of(runs[k].log, x), values_of(runs[k].log, y), colour_of(k, runs.size())};
+    ChartLine line{label_of(runs, k), values_of(runs[k].log, x), values_of(runs[k].log, y),
+                   colour_of(k, runs.size())};
     if (!runs[k].error.empty() && !figure.y_decades) line.error = values_of(runs[k].error, y);
     for (const double v : line.x)
       if (std::isfinite(v)) least = std::min(least, v), most = std::max(most, v);
@@ -99,15 +100,17 @@ std::string pictures(const std::vector<RunCurve>& runs, Figures& figures) {
     if (!run.view) continue;
     html += fmt::format("<div class=\"view\"><div class=\"tag\">{}, {} ps</div>\n", escape_markup(run.name),
                         number_text(run.view->time_ps, 4));
-    html += rope_picture(*run.view, camera, run.tube_radius, fmt::format("r{}", k), k + 1 == views.size()) + "</div>\n";
+    html +=
+        rope_picture(*run.view, camera, run.tube_radius, fmt::format("r{}", k), k + 1 == views.size()) + "</div>\n";
     ++k;
   }
   html += "</div>\n";
   if (camera.moment_eV > 0) html += moment_bar(camera.moment_eV);
   return html +
-         figures.caption(fmt::format("All at the same scale; the bar is {:g} nm long. Colour: modulus of the bending "
-                                     "moment of the tube, where frames have it.",
-                                     scale_bar_length(camera))) +
+         figures.caption(
+             fmt::format("All at the same scale; the bar is {:g} nm long. Colour: modulus of the bending "
+                         "moment of the tube, where frames have it.",
+                         scale_bar_length(camera))) +
          "</figure>\n";
 }
 
@@ -124,7 +127,8 @@ std::vector<TableColumn> table_of(const std::vector<RunCurve>& runs, const std::
 }
 
 std::string ends(const std::vector<RunCurve>& runs, const std::vector<std::string>& columns) {
-  std::string html = "<div class=\"scroll\"><table class=\"facts numbers\"><thead><tr><th></th><th>run</th><th>rows</th>";
+  std::string html =
+      "<div class=\"scroll\"><table class=\"facts numbers\"><thead><tr><th></th><th>run</th><th>rows</th>";
   for (const std::string& c : columns) html += "<th>" + escape_markup(c) + "</th>";
   html += "<th></th></tr></thead><tbody>\n";
   std::size_t k = 0;
@@ -164,14 +168,16 @@ RunCurve mean_of(std::string name, const std::vector<std::vector<LogRow>>& logs)
 std::string runs_page(const std::string& title, const std::vector<RunCurve>& runs, const RunsFigure& figure) {
   Figures figures;
   const std::vector<std::string> columns = columns_of(runs, figure);
-  std::string html = page_head(title) + "<body>\n<main>\n<p class=\"kicker\">Ropewalk: runs side by side</p>\n<h1>" +
+  std::string html = page_head(title) +
+                     "<body>\n<main>\n<p class=\"kicker\">Ropewalk: runs side by side</p>\n<h1>" +
                      escape_markup(title) + "</h1>\n";
   const bool replicated = std::any_of(runs.begin(), runs.end(), [](const RunCurve& r) { return r.replicates > 1; });
-  html += paragraph(fmt::format("The ends of {} {}.{}", runs.size(), replicated ? "ensembles" : "runs",
-                                replicated ? " Values are means over runs that differ in their seed alone, with the "
-                                             "standard error of the mean."
-                                           : "")) +
-          ends(runs, columns) + heading("Curves");
+  html +=
+      paragraph(fmt::format("The ends of {} {}.{}", runs.size(), replicated ? "ensembles" : "runs",
+                            replicated ? " Values are means over runs that differ in their seed alone, with the "
+                                         "standard error of the mean."
+                                       : "")) +
+      ends(runs, columns) + heading("Curves");
   std::string open;
   for (const std::string& column : columns) {
     const std::string svg = scatter_svg(chart_of(runs, figure, column));

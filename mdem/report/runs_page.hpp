@@ -16,7 +16,7 @@ struct RunCurve {
   std::vector<LogRow> log;
   std::vector<LogRow> error;  // standard error of the mean, row by row; empty: a single run
   std::size_t replicates = 1;
-  std::string remark;                // how it ended
+  std::string remark;                 // how it ended
   std::optional<RopeView> view = {};  // of the last frame, of the first replicate
   double tube_radius = 0;             // nm
 };

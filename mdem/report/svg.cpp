@@ -250,8 +250,8 @@ std::string draw_error_bands(const LineChart& chart, const Plot& plot) {
     std::string upper, lower;
     const auto close = [&] {
       if (!upper.empty())
-        text += fmt::format("<path class=\"error e{}\" d=\"M{}L{}Z\"/>\n", colour_of(line),
-                            upper.substr(1), lower.substr(1));
+        text += fmt::format("<path class=\"error e{}\" d=\"M{}L{}Z\"/>\n", colour_of(line), upper.substr(1),
+                            lower.substr(1));
       upper.clear();
       lower.clear();
     };
@@ -275,7 +275,7 @@ struct EndLabel {
   const ChartLine* line;
   double end;    // where the line ends
   double end_x;  // in units of the data
-  double at;    // where its name stands
+  double at;     // where its name stands
 };
 
 std::vector<EndLabel> end_labels(const LineChart& chart, const Plot& plot) {
@@ -301,10 +301,7 @@ std::vector<EndLabel> end_labels(const LineChart& chart, const Plot& plot) {
 }
 
 std::string stroke_class(const ChartLine& line) {
-  return fmt::format("line c{}{}", colour_of(line),
-                     line.points   ? " points"
-                     : line.dashed ? " dashed"
-                                   : "");
+  return fmt::format("line c{}{}", colour_of(line), line.points ? " points" : line.dashed ? " dashed" : "");
 }
 
 // The names of single points.
@@ -334,9 +331,9 @@ std::string draw_labels(const LineChart& chart, const Plot& plot) {
                           plot.right + 9, label.at);
     const std::string key = label.line->points ? fmt::format("M{:.1f} {:.1f}h0", plot.right + 19, label.at)
                                                : fmt::format("M{:.1f} {:.1f}h13", plot.right + 12, label.at);
-    text += fmt::format("<path class=\"{}\" d=\"{}\"/><text x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n",
-                        stroke_class(*label.line), key, plot.right + 29, label.at + 4,
-                        escape_markup(label.line->name));
+    text +=
+        fmt::format("<path class=\"{}\" d=\"{}\"/><text x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n",
+                    stroke_class(*label.line), key, plot.right + 29, label.at + 4, escape_markup(label.line->name));
   }
   return text;
 }
@@ -522,8 +519,8 @@ std::string svg_file(const std::string& body, double width, double height) {
              "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" width=\"{0:.0f}\" "
              "height=\"{1:.0f}\" font-family=\"Helvetica,Arial,sans-serif\" font-size=\"13\">\n<style>",
              width, height) +
-         in_place(css) + "</style>\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n" +
-         in_place(body) + "</svg>\n";
+         in_place(css) + "</style>\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n" + in_place(body) +
+         "</svg>\n";
 }
 
 std::string chart_file(const ScatterChart& scatter) {

@@ -163,9 +163,9 @@ Observer make_observer(const Scene& scene, const Prepared& prepared) {
   o.shells = rope_shells(prepared.topology, prepared.state, o.neighbour_radius);
   for (int t = 0; t < prepared.topology.tubes(); ++t)
     o.mass += prepared.topology.length_of(t) * prepared.topology.type_of(t).mass / scene.run.mass_scale;
-  o.loading = loading_reference(prepared.topology, prepared.state, o.shells,
-                                ends_of(prepared.loads, prepared.topology), o.spacing, o.neighbour_radius,
-                                prepared.interaction.law);
+  o.loading =
+      loading_reference(prepared.topology, prepared.state, o.shells, ends_of(prepared.loads, prepared.topology),
+                        o.spacing, o.neighbour_radius, prepared.interaction.law);
   return o;
 }
 
@@ -184,8 +184,8 @@ Watched watched_by_run(const Scene& scene, const Prepared& prepared, const Obser
 
 LogRow log_row(const Observer& o, const Scene& scene, const Topology& topology, const State& state,
                const EnergyAccount& account) {
-  return LogRow({topology, state, observe(o, scene, topology, state), loading(topology, state, o.loading), o.mass,
-                 account});
+  return LogRow(
+      {topology, state, observe(o, scene, topology, state), loading(topology, state, o.loading), o.mass, account});
 }
 
 }  // namespace ropewalk

@@ -33,7 +33,8 @@ bool account_closes(const EnergyMark& mark, const Simulation& s) {
   if (!std::isfinite(mark.energy)) return true;
   const EnergyMark now = energy_mark(s);
   const double error = now.energy - mark.energy - (now.supply.supplied() - mark.supply.supplied());
-  const double moving = kinetic_energy(s.topology(), s.state()) + std::fabs(now.supply.dissipated - mark.supply.dissipated);
+  const double moving =
+      kinetic_energy(s.topology(), s.state()) + std::fabs(now.supply.dissipated - mark.supply.dissipated);
   return std::fabs(error) <= part * moving + part_of_bonds * s.forces().energy.bonds();
 }
 

@@ -49,13 +49,13 @@ std::string StopWatch::decided(const StopRule& rule, const std::vector<LimitReco
   if (rule.when == When::steady) {
     const auto [least, most] = std::minmax_element(values.begin(), values.end());
     if (values.size() < 3 || !(*most - *least < rule.value)) return "";
-    return fmt::format("{} has changed by {:.3g} in the last {:.4g} ps, less than {:.4g}", rule.column, *most - *least,
-                       rule.over, rule.value);
+    return fmt::format("{} has changed by {:.3g} in the last {:.4g} ps, less than {:.4g}", rule.column,
+                       *most - *least, rule.over, rule.value);
   }
   const Growth g = growth_of(times, values);
   if (!(g.error < rule.value * std::fabs(g.rate))) return "";
-  return fmt::format("{} goes as exp(rate t) with {:.4g} ± {:.2g} per ps over the last {:.4g} ps", rule.column, g.rate,
-                     g.error, rule.over);
+  return fmt::format("{} goes as exp(rate t) with {:.4g} ± {:.2g} per ps over the last {:.4g} ps", rule.column,
+                     g.rate, g.error, rule.over);
 }
 
 }  // namespace ropewalk

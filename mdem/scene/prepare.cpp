@@ -6,9 +6,9 @@
 #include <cmath>
 #include <limits>
 
+#include "io/toml_table.hpp"
 #include "model/error.hpp"
 #include "model/segments.hpp"
-#include "io/toml_table.hpp"
 #include "observe/bending.hpp"
 #include "observe/observables.hpp"
 #include "sim/dynamics/blow_up.hpp"
@@ -134,8 +134,8 @@ void refuse_loose_tolerance(const Scene& scene, const Simulation& s) {
   point_loads(s.loads(), s.state(), s.state().time, loads);
   double largest = 0;
   for (const PointLoad& load : loads)
-    largest = std::max({largest, load.force.norm(),
-                        load.torque.norm() / s.topology().type_of_element(load.element).radius});
+    largest = std::max(
+        {largest, load.force.norm(), load.torque.norm() / s.topology().type_of_element(load.element).radius});
   if (largest > 0 && scene.run.goal.force >= largest)
     throw InputError({scene.path, 0, "run.force_tolerance_nN"},
                      fmt::format("{:.3g} nN are not less than the largest load on an element, {:.3g} nN: the start "

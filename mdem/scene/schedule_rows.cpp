@@ -13,8 +13,9 @@ std::vector<Schedule::Point> points_in_time(const TomlTable& t, const std::strin
       throw t.error(key, fmt::format("has the time {} ps in point {}", row[0], points.size() + 1),
                     "times rise from one point to the next, from 0 on");
     if (!bounds.allow(row[1]))
-      throw t.error(key, fmt::format("has the value {} in point {}, which {}", row[1], points.size() + 1, bounds.words()),
-                    "write points [[ps, value], ...]");
+      throw t.error(
+          key, fmt::format("has the value {} in point {}, which {}", row[1], points.size() + 1, bounds.words()),
+          "write points [[ps, value], ...]");
     points.push_back({row[0], row[1]});
   }
   return points;

@@ -13,7 +13,8 @@ class Campaign : public Cli {
     Cli::SetUp();
     spit(dir / "tube.toml",
          "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[rope]\ntubes = 1\nlength_nm = 13.56\n"
-         "[[grip]]\nend = \"lower\"\n[[grip]]\nend = \"upper\"\nabout_z = { rotation_deg = 10, rate_deg_per_ps = 1 }\n"
+         "[[grip]]\nend = \"lower\"\n[[grip]]\nend = \"upper\"\nabout_z = { rotation_deg = 10, rate_deg_per_ps = 1 "
+         "}\n"
          "[thermostat]\ntemperature_K = 100\ncoupling_per_ps = 0.5\n"
          "[damping]\ncontact_viscosity_eV_ps_per_nm2 = 0\nbond_damping_per_ps = 0\n"
          "[run]\nduration_ps = 12\nlog_every_ps = 1\n");
@@ -71,7 +72,8 @@ TEST_F(Campaign, BranchesGoOnFromOneStart) {
   // It ends where a run of its own ends, bit for bit.
   spit(dir / "alone.toml", slurp(dir / "s" / "points" / "tubes-7_duration_ps-8" / "scene.toml"));
   ASSERT_EQ(run("run alone.toml --out alone --quiet").code, 0);
-  EXPECT_EQ(slurp(dir / "alone" / "final.csv"), slurp(dir / "s" / "points" / "tubes-7_duration_ps-8" / "final.csv"));
+  EXPECT_EQ(slurp(dir / "alone" / "final.csv"),
+            slurp(dir / "s" / "points" / "tubes-7_duration_ps-8" / "final.csv"));
 }
 
 TEST_F(Campaign, FailedPointsAreNamedAndKept) {
@@ -137,7 +139,8 @@ TEST_F(Campaign, PictureIsAFigureInThreeFormats) {
   ASSERT_EQ(run("picture d -o a.svg --at 0,6,12 --sections --curves twist_eV+bend_eV,beta_deg").code, 0)
       << slurp(dir / "stderr.txt");
   const std::string svg = slurp(dir / "a.svg");
-  for (const char* part : {">A</text>", ">C</text>", " ps, β", "class=\"section\"", "class=\"chart\"", " nm</text>"})
+  for (const char* part :
+       {">A</text>", ">C</text>", " ps, β", "class=\"section\"", "class=\"chart\"", " nm</text>"})
     EXPECT_NE(svg.find(part), std::string::npos) << part;
   EXPECT_EQ(svg.find("var(--"), std::string::npos) << "few programs know variables";
   EXPECT_EQ(run("picture d -o a.svg").code, 2) << "it exists";
@@ -157,8 +160,9 @@ TEST_F(Campaign, ThresholdIsThatOfTheFormula) {
        "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-paper\"\n[rope]\ntubes = 1\nlength_nm = 13.56\n"
        "[damping]\nbond_damping_per_ps = 4\n[twist]\nmoment_nN_nm = 5\nrate_nN_nm_per_ps = 0.3\nhold_ps = 3\n"
        "[run]\nlog_every_ps = 1\n");
-  sweep_file("replicates = 2\n[threshold]\nkey = \"twist.moment_nN_nm\"\nfrom = 2\nto = 20\ncolumn = \"rotation_deg\"\n"
-             "above = 20\naccuracy = 0.01\n[vary]\nrope.length_nm = [13.56, 20.34]\n");
+  sweep_file(
+      "replicates = 2\n[threshold]\nkey = \"twist.moment_nN_nm\"\nfrom = 2\nto = 20\ncolumn = \"rotation_deg\"\n"
+      "above = 20\naccuracy = 0.01\n[vary]\nrope.length_nm = [13.56, 20.34]\n");
   EXPECT_EQ(run("sweep s.toml").code, 2);
   const Outcome o = run("threshold s.toml");
   ASSERT_EQ(o.code, 0) << o.err;
@@ -173,9 +177,11 @@ TEST_F(Campaign, ThresholdIsThatOfTheFormula) {
     EXPECT_NEAR(std::stod(cells[5]), expected, 0.02 * expected) << rows[static_cast<std::size_t>(k)];
   }
   // Kept, and refused where the scene has changed.
-  const auto written = fs::last_write_time(dir / "s" / "points" / "length_nm-13.56_seed-1" / "moment_nN_nm-20" / "log.csv");
+  const auto written =
+      fs::last_write_time(dir / "s" / "points" / "length_nm-13.56_seed-1" / "moment_nN_nm-20" / "log.csv");
   EXPECT_EQ(run("threshold s.toml").code, 0);
-  EXPECT_EQ(fs::last_write_time(dir / "s" / "points" / "length_nm-13.56_seed-1" / "moment_nN_nm-20" / "log.csv"), written);
+  EXPECT_EQ(fs::last_write_time(dir / "s" / "points" / "length_nm-13.56_seed-1" / "moment_nN_nm-20" / "log.csv"),
+            written);
   EXPECT_NE(slurp(dir / "s" / "thresholds.html").find("by bisection"), std::string::npos);
   spit(dir / "tube.toml", slurp(dir / "tube.toml") + "# changed\n");
   EXPECT_EQ(run("threshold s.toml").code, 2);

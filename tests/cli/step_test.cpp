@@ -24,7 +24,8 @@ class FollowingStep : public Cli {
     spit(dir / "s.toml",
          "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\nelement_length_nm = 1.356\n"
          "[state]\nfile = \"pair.csv\"\n[damping]\ncontact_viscosity_eV_ps_per_nm2 = 0\nbond_damping_per_ps = 0\n"
-         "[run]\nduration_ps = 60\nlog_every_ps = 1\n" + more);
+         "[run]\nduration_ps = 60\nlog_every_ps = 1\n" +
+             more);
   }
 
   std::vector<double> column(const std::string& run, const std::string& name) const {

@@ -1,4 +1,6 @@
 // Growth rates, thresholds and power laws against data made up for them.
+#include "observe/growth.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -6,7 +8,6 @@
 
 #include "campaign/threshold.hpp"
 #include "io/log.hpp"
-#include "observe/growth.hpp"
 #include "run/stop_watch.hpp"
 
 namespace ropewalk {

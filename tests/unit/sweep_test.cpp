@@ -28,7 +28,8 @@ class SweepFile : public ::testing::Test {
   void TearDown() override { fs::remove_all(dir); }
 
   Sweep sweep(const std::string& rest) const {
-    return sweep_of_text("format = \"ropewalk-sweep-1\"\nscene = \"rope.toml\"\n" + rest, (dir / "s.toml").string());
+    return sweep_of_text("format = \"ropewalk-sweep-1\"\nscene = \"rope.toml\"\n" + rest,
+                         (dir / "s.toml").string());
   }
   std::vector<std::string> names(const std::string& rest) const {
     std::vector<std::string> out;
@@ -50,11 +51,13 @@ class SweepFile : public ::testing::Test {
 TEST_F(SweepFile, GridTakesEveryValueWithEveryOther) {
   EXPECT_THAT(names("replicates = 2\n[vary]\nrope.tubes = [7, 19]\ncontact.law = [\"line\"]\n"),
               ElementsAre("tubes-7_seed-1", "tubes-7_seed-2", "tubes-19_seed-1", "tubes-19_seed-2"));
-  const std::vector<SweepPoint> points = points_of(sweep("[vary]\ntwist.moment_nN_nm = { from = 1, to = 2, points = 3 }\n"));
+  const std::vector<SweepPoint> points =
+      points_of(sweep("[vary]\ntwist.moment_nN_nm = { from = 1, to = 2, points = 3 }\n"));
   ASSERT_EQ(points.size(), 3u);
   EXPECT_EQ(scene_of(sweep("[vary]\ntwist.moment_nN_nm = [1.5]\n"), points[1]).twist->moment,
             scene_of(sweep("[vary]\ntwist.moment_nN_nm = [1.5]\n"),
-                     points_of(sweep("[vary]\ntwist.moment_nN_nm = [1.5]\n"))[0]).twist->moment);
+                     points_of(sweep("[vary]\ntwist.moment_nN_nm = [1.5]\n"))[0])
+                .twist->moment);
   EXPECT_LT(points[0].work, points[2].work);  // a longer ramp
 }
 
@@ -111,20 +114,21 @@ TEST_F(SweepFile, WrongOnesGetOneClearLine) {
   }
 }
 
-// What data/campaigns shows is what this program reads.
+// What data/campaigns and data/reproduction show is what this program reads.
 TEST(Campaigns, ShippedSweepsAreRead) {
   int sweeps = 0;
-  for (const auto& entry : fs::recursive_directory_iterator(ROPEWALK_SOURCE_DIR "/data/campaigns")) {
-    const std::string path = entry.path().string();
-    if (entry.path().extension() != ".toml" || path.find("/runs/") != std::string::npos) continue;
-    std::ifstream file(path);
-    const std::string text((std::istreambuf_iterator<char>(file)), {});
-    if (text.find("ropewalk-sweep-1") == std::string::npos) continue;
-    SCOPED_TRACE(path);
-    ++sweeps;
-    EXPECT_GT(points_of(read_sweep(path)).size(), 1u);
-  }
-  EXPECT_GE(sweeps, 2);
+  for (const char* folder : {"/data/campaigns", "/data/reproduction"})
+    for (const auto& entry : fs::recursive_directory_iterator(std::string(ROPEWALK_SOURCE_DIR) + folder)) {
+      const std::string path = entry.path().string();
+      if (entry.path().extension() != ".toml" || path.find("/runs/") != std::string::npos) continue;
+      std::ifstream file(path);
+      const std::string text((std::istreambuf_iterator<char>(file)), {});
+      if (text.find("ropewalk-sweep-1") == std::string::npos) continue;
+      SCOPED_TRACE(path);
+      ++sweeps;
+      EXPECT_GT(points_of(read_sweep(path)).size(), 1u);
+    }
+  EXPECT_GE(sweeps, 9);
 }
 
 }  // namespace

@@ -1,6 +1,5 @@
 // [[stop]] when a run ends before its time.
 #include "scene/stop_rule.hpp"
-
 #include "scene/tables/tables.hpp"
 
 namespace ropewalk {
@@ -10,14 +9,17 @@ using Key = KeyOf<StopRule>;
 using When = StopRule::When;
 
 Words<When> occasions() {
-  return {{"above", When::above},   {"below", When::below},
-          {"steady", When::steady}, {"growth", When::growth},
+  return {{"above", When::above},
+          {"below", When::below},
+          {"steady", When::steady},
+          {"growth", When::growth},
           {"limit", When::limit}};
 }
 
 void read_column(const TomlTable& t, const Scene&, StopRule& rule) {
   if (rule.when == When::limit) {
-    if (t.has("column")) throw t.error("column", "is not for when = \"limit\"", "write limit = \"wall_twist\", or neither");
+    if (t.has("column"))
+      throw t.error("column", "is not for when = \"limit\"", "write limit = \"wall_twist\", or neither");
     return;
   }
   rule.column = t.string("column");
@@ -44,11 +46,13 @@ const KeyTable<StopRule>& stop_table() {
   static const KeyTable<StopRule> table = {
       "stop",
       "any number of these: the run ends before its time where one of them comes true",
-      {Key::word("when", occasions(), &StopRule::when, required("\"above\""),
-                 "\"above\", \"below\": a column of the log passes a value; \"steady\": it changes by less than the "
-                 "value; \"growth\": the rate of its exponential growth is known to this relative error; \"limit\": a "
-                 "limit is passed"),
-       Key::custom("column", "", otherwise("\"amplitude_nm\"", "required but for \"limit\""), "of log.csv", read_column),
+      {Key::word(
+           "when", occasions(), &StopRule::when, required("\"above\""),
+           "\"above\", \"below\": a column of the log passes a value; \"steady\": it changes by less than the "
+           "value; \"growth\": the rate of its exponential growth is known to this relative error; \"limit\": a "
+           "limit is passed"),
+       Key::custom("column", "", otherwise("\"amplitude_nm\"", "required but for \"limit\""), "of log.csv",
+                   read_column),
        Key::custom("value", "", otherwise("1", "required but for \"limit\""),
                    "in the unit of the column; growth: 0.05 is 5 %", read_value),
        Key::number("over_ps", unit::ps, Bounds::positive(longest_time), &StopRule::over, standard(),

@@ -52,7 +52,8 @@ void draw(std::uint64_t seed, std::int64_t step, int part, std::ptrdiff_t first,
 
 void LangevinThermostat::apply(const Topology& topology, double dt, State& state) const {
   const double keep = std::exp(-friction_ * dt);
-  const double energy = -std::expm1(-2 * friction_ * dt) * units::boltzmann * temperature_.value(state.time);  // (1 - c^2) kT
+  const double energy =
+      -std::expm1(-2 * friction_ * dt) * units::boltzmann * temperature_.value(state.time);  // (1 - c^2) kT
   const auto n = static_cast<int>(state.size());
 #pragma omp parallel for schedule(static) if (state.size() > parallel_from)
   for (int first = 0; first < n; first += group) {

@@ -37,8 +37,7 @@ double Schedule::Line::value(double time) const {
   const double since = time - begin, left = length - since;
   if (since < smooth) return from + 0.5 * since * (enter + rate(time));
   const double reached = from + 0.5 * smooth * (enter + along);
-  if (left < smooth)
-    return reached + along * (length - 2 * smooth) + 0.5 * (smooth - left) * (along + rate(time));
+  if (left < smooth) return reached + along * (length - 2 * smooth) + 0.5 * (smooth - left) * (along + rate(time));
   return reached + along * (since - smooth);
 }
 
@@ -71,7 +70,8 @@ double Schedule::largest() const {
 
 std::string words_of(const Schedule& schedule) {
   std::string text;
-  for (const Schedule::Point& p : schedule.points()) text += fmt::format("{}{:.4g}", text.empty() ? "" : " to ", p.value);
+  for (const Schedule::Point& p : schedule.points())
+    text += fmt::format("{}{:.4g}", text.empty() ? "" : " to ", p.value);
   return text.empty() ? "0" : text;
 }
 

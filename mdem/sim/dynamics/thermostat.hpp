@@ -13,8 +13,8 @@ namespace ropewalk {
 
 struct ThermostatOptions {
   std::string method = "langevin";
-  Schedule temperature;    // K
-  double coupling = 0;     // 1/ps
+  Schedule temperature;  // K
+  double coupling = 0;   // 1/ps
   std::uint64_t seed = 1;
 };
 
@@ -23,8 +23,8 @@ class Thermostat {
   virtual ~Thermostat() = default;
   // Changes velocities and angular velocities as the bath does during dt (ps). The simulation calls this function
   // once in each step, restores the constrained components afterwards and books the change of the kinetic
-  // energy as heat. The result must depend on the arguments alone, state.step and state.part included, and not on the number of
-  // threads: a resumed run then goes on with the same bits.
+  // energy as heat. The result must depend on the arguments alone, state.step and state.part included, and not on
+  // the number of threads: a resumed run then goes on with the same bits.
   virtual void apply(const Topology& topology, double dt, State& state) const = 0;
 };
 

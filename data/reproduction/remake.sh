@@ -1,0 +1,22 @@
+#!/bin/sh
+# Runs everything on this page anew: remake.sh [PROGRAM], about an hour on two cores, fig5 the most of it. Runs stay in
+# runs/, and a second call goes on where the first one stopped.
+set -eu
+cd "$(dirname "$0")"
+program=${1:-ropewalk}
+for figure in fig2 fig3 fig3-pfc fig4 video; do
+  "$program" sweep $figure.toml --out runs/$figure
+  "$program" compare runs/$figure --y twist_eV,bend_eV,vdw_eV,Q,void_area_nm2,amplitude_nm --page $figure.html --force
+done
+"$program" threshold fig5.toml --out runs/fig5
+cp runs/fig5/thresholds.csv fig5-thresholds.csv
+cp runs/fig5/trials.csv fig5-trials.csv
+cp runs/fig5/thresholds.html fig5.html
+viscous=contact_viscosity_eV_ps_per_nm2
+curves=twist_eV+bend_eV+vdw_eV,Q
+"$program" picture runs/fig2/points/moment_nN_nm-35_$viscous-20 --at 0,35,70,185 --sections --curves $curves \
+  -o fig2.svg --force
+"$program" picture runs/fig3/points/moment_nN_nm-64_$viscous-20 --at 0,64,120,364 --sections --curves $curves \
+  -o fig3.svg --force
+"$program" picture runs/fig4/points/moment_nN_nm-32 --at 47,300,500,647 --curves twist_eV+bend_eV,amplitude_nm \
+  -o fig4.svg --force
