@@ -4,9 +4,10 @@
 set -eu
 cd "$(dirname "$0")"
 program=${1:-ropewalk}
-for figure in fig2 fig3 fig3-pfc fig4 video; do
+for figure in fig2 fig3 fig3-pfc fig3-calibrated fig4 video; do
   "$program" sweep $figure.toml --out runs/$figure
-  "$program" compare runs/$figure --y twist_eV,bend_eV,vdw_eV,Q,void_area_nm2,amplitude_nm --page $figure.html --force
+  "$program" gather runs/$figure -o $figure.csv --force \
+    --columns time_ps,beta_deg,twist_eV,bend_eV,vdw_eV,dissipated_eV,Q,Q_delaunay,void_area_nm2,amplitude_nm,windings
 done
 "$program" threshold fig5.toml --out runs/fig5
 cp runs/fig5/thresholds.csv fig5-thresholds.csv
@@ -14,9 +15,9 @@ cp runs/fig5/trials.csv fig5-trials.csv
 cp runs/fig5/thresholds.html fig5.html
 viscous=contact_viscosity_eV_ps_per_nm2
 curves=twist_eV+bend_eV+vdw_eV,Q
-"$program" picture runs/fig2/points/moment_nN_nm-35_$viscous-20 --at 0,35,70,185 --sections --curves $curves \
+"$program" picture runs/fig2/points/moment_nN_nm-35_$viscous-20 --at 20,35,70,185 --sections --curves $curves \
   -o fig2.svg --force
-"$program" picture runs/fig3/points/moment_nN_nm-64_$viscous-20 --at 0,64,120,364 --sections --curves $curves \
+"$program" picture runs/fig3/points/moment_nN_nm-64_$viscous-8 --at 32,64,100,364 --sections --curves $curves \
   -o fig3.svg --force
-"$program" picture runs/fig4/points/moment_nN_nm-32 --at 47,300,500,647 --curves twist_eV+bend_eV,amplitude_nm \
+"$program" picture runs/fig4/points/moment_nN_nm-64 --at 94,250,400,694 --curves twist_eV+bend_eV,amplitude_nm --highest 120 \
   -o fig4.svg --force

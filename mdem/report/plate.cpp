@@ -77,19 +77,22 @@ std::string chart_of(const PlateInput& in, const std::vector<std::string>& colum
   return scatter_svg(scatter);
 }
 
-// Scales the pictures so that a whole number of them fills the width, shrunk a little or enlarged; returns the
-// number.
+// Scales the pictures so that a whole number of them fills the width, shrunk a little or enlarged, in full rows if that
+// is possible; returns the number.
 std::size_t fill(PlateInput& in, double section) {
   constexpr double least = 0.7, most = 1.8;
   const double picture = in.camera.width * in.camera.scale;
-  for (std::size_t n = std::min<std::size_t>(4, in.views.size()); n > 0; --n) {
+  const auto factor_of = [&](std::size_t n) {
     const auto columns = static_cast<double>(n);
-    const double room = (in.width - 2 * margin - (columns - 1) * gap) / columns - section, factor = room / picture;
-    if (factor < least && n > 1) continue;
-    in.camera.scale *= std::min(factor, most);
-    return n;
+    return ((in.width - 2 * margin - (columns - 1) * gap) / columns - section) / picture;
+  };
+  std::size_t columns = 1;
+  for (std::size_t n = 2; n <= std::min<std::size_t>(4, in.views.size()); ++n) {
+    const bool full = in.views.size() % n == 0, was_full = in.views.size() % columns == 0;
+    if (factor_of(n) >= least && (full || !was_full || columns == 1)) columns = n;
   }
-  return 1;
+  in.camera.scale *= std::min(factor_of(columns), most);
+  return columns;
 }
 
 }  // namespace

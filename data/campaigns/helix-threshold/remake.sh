@@ -1,0 +1,7 @@
+#!/bin/sh
+# Finds the thresholds anew: remake.sh [PROGRAM]. Runs stay in runs/, and a second call goes on.
+set -eu
+cd "$(dirname "$0")"
+program=${1:-ropewalk}
+"$program" threshold 19-tubes.toml --out runs/19-tubes
+cp runs/19-tubes/thresholds.csv runs/19-tubes/trials.csv runs/19-tubes/thresholds.html .
