@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 // Whether a point that is there is the one that the sweep asks for.
 bool is_same(const RunDirectory& dir, const SweepPoint& point) {
   const auto comparable = [&](const std::string& text) {  // the step of a branch is that of its start
-    return point.trunk.empty() ? text : with_value(text, "run.time_step_fs", "0", dir.scene());
+    return point.start.empty() ? text : with_value(text, "run.time_step_fs", "0", dir.scene());
   };
   if (comparable(read_file(dir.scene())) != comparable(point.text)) return false;
   for (std::size_t k = 0; k < point.sets.size(); ++k)

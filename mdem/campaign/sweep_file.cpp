@@ -327,7 +327,7 @@ std::vector<SweepPoint> points_of(const Sweep& s, bool check) {
       std::vector<Setting> all = shared;
       for (const Setting& setting : settings_of(s.branch_axes, later)) all.push_back(setting);
       points.push_back(point_of(s, all));
-      if (!s.branch_axes.empty()) points.back().trunk = point_of(s, shared).name;
+      if (!s.branch_axes.empty()) points.back().start = point_of(s, shared).name;
       if (check) check_scene(s, points.back());
       if (!names.insert(points.back().name).second)
         throw InputError({s.path, 0, "vary"}, fmt::format("two points would be named {}", points.back().name),
@@ -337,14 +337,14 @@ std::vector<SweepPoint> points_of(const Sweep& s, bool check) {
   return points;
 }
 
-std::vector<SweepPoint> trunks_of(const Sweep& s) {
-  std::vector<SweepPoint> trunks;
-  if (s.branch_axes.empty()) return trunks;
+std::vector<SweepPoint> starts_of(const Sweep& s) {
+  std::vector<SweepPoint> starts;
+  if (s.branch_axes.empty()) return starts;
   for (const auto& numbers : combinations_of(s)) {
-    trunks.push_back(point_of(s, settings_of(s.axes, numbers)));
-    check_scene(s, trunks.back());
+    starts.push_back(point_of(s, settings_of(s.axes, numbers)));
+    check_scene(s, starts.back());
   }
-  return trunks;
+  return starts;
 }
 
 Scene scene_of(const Sweep& sweep, const SweepPoint& point) {

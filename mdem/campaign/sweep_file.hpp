@@ -63,7 +63,7 @@ struct SweepPoint {
   std::string name;                 // of its directory: "tubes-7_seed-1"
   std::vector<std::string> values;  // of keys(), as TOML
   std::string text;                 // its scene
-  std::string trunk;                // name of the run that it goes on from; empty: none
+  std::string start;                // name of the run that it goes on from; empty: none
   // Of its scene, where it was checked.
   std::vector<std::string> sets;  // files of the parameter sets
   double work = 0;                // elements times ps, which the time of a run goes by; a guess for relaxations
@@ -72,7 +72,7 @@ struct SweepPoint {
 // With `check`, every scene is read once, so that a key or a value that is wrong is found here: InputError.
 std::vector<SweepPoint> points_of(const Sweep& sweep, bool check = true);
 // The runs that branches share: each once, in the order of the points.
-std::vector<SweepPoint> trunks_of(const Sweep& sweep);
+std::vector<SweepPoint> starts_of(const Sweep& sweep);
 
 // The scene of a point, as one at the sweep's scene.
 Scene scene_of(const Sweep& sweep, const SweepPoint& point);

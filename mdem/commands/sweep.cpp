@@ -148,11 +148,12 @@ class Campaign {
   void run_starts() {
     fs::create_directories(dir_.path + "/starts");
     std::vector<ProcessTask> tasks;
-    for (const SweepPoint& p : trunks_of(sweep_)) {
+    for (const SweepPoint& p : starts_of(sweep_)) {
       const bool needed = std::any_of(points_.begin(), points_.end(), [&](const SweepPoint& q) {
-        return q.trunk == p.name && progress_of(dir_.point(q.name)).stage == Stage::waiting;
+        return q.start == p.name && progress_of(dir_.point(q.name)).stage == Stage::waiting;
       });
       const RunDirectory to = dir_.start(p.name);
+      if (fs::exists(to.scene()) && read_file(to.scene()) != p.text) fs::remove_all(to.path);  // of another scene
       if (!needed || progress_of(to).stage == Stage::ended) continue;
       tasks.push_back({[this, p, to] {
                          return in_a_process(dir_.messages("start-" + p.name), true, [&] {
@@ -169,7 +170,7 @@ class Campaign {
 
   // The shared run, with the scene of the point from here on. The time step stays, since files count by it.
   void branch_off(const SweepPoint& p) const {
-    const RunDirectory from = dir_.start(p.trunk), to = dir_.point(p.name);
+    const RunDirectory from = dir_.start(p.start), to = dir_.point(p.name);
     if (progress_of(from).stage != Stage::ended)
       throw InputError({from.path, 0, ""}, "did not reach its end, and this point goes on from there",
                        "see its messages");
@@ -193,7 +194,7 @@ class Campaign {
     const RunDirectory dir = dir_.point(p.name);
     if (!is_to_run(p)) return 0;  // done by another process meanwhile
     if (progress_of(dir).stage == Stage::failed) fs::remove_all(dir.path);
-    if (!p.trunk.empty() && progress_of(dir).stage == Stage::waiting) branch_off(p);
+    if (!p.start.empty() && progress_of(dir).stage == Stage::waiting) branch_off(p);
     return run_or_resume(dir, scene_of(sweep_, p), -1, arguments_.on_limit);
   }
 

@@ -79,9 +79,9 @@ TEST_F(SweepFile, BranchesShareAStart) {
       "[vary]\nrope.tubes = [7, 19]\n[branch]\nat_ps = 4\n[branch.vary]\ntwist.hold_ps = [1, 2]\n";
   const std::vector<SweepPoint> points = points_of(sweep(text));
   ASSERT_EQ(points.size(), 4u);
-  EXPECT_EQ(points[0].trunk, "tubes-7");
-  EXPECT_EQ(points[3].trunk, "tubes-19");
-  EXPECT_EQ(trunks_of(sweep(text)).size(), 2u);
+  EXPECT_EQ(points[0].start, "tubes-7");
+  EXPECT_EQ(points[3].start, "tubes-19");
+  EXPECT_EQ(starts_of(sweep(text)).size(), 2u);
 }
 
 TEST_F(SweepFile, WrongOnesGetOneClearLine) {
