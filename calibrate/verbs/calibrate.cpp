@@ -217,8 +217,7 @@ AtomLaw parse_atom_law(const std::string& lj, double cutoff) {
 
 void check_output(const std::string& path, const std::string& option, bool force) {
   std::error_code error;
-  if (!force && fs::exists(path, error))
-    throw InputError({path, 0, option}, "exists", "choose another name, or give --force to replace it");
+  refuse_existing(path, option, force);
   const fs::path folder = fs::path(path).parent_path();
   if (!folder.empty() && !fs::is_directory(folder, error))
     throw InputError({path, 0, option}, "lies in a directory that does not exist", "make the directory first");

@@ -18,25 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Whether a point that is there is the one that the sweep asks for.
-bool is_same(const RunDirectory& dir, const SweepPoint& point) {
-  const auto comparable = [&](const std::string& text) {  // the step of a branch is that of its start
-    return point.start.empty() ? text : with_value(text, "run.time_step_fs", "0", dir.scene());
-  };
-  if (comparable(read_file(dir.scene())) != comparable(point.text)) return false;
-  for (std::size_t k = 0; k < point.sets.size(); ++k)
-    if (!fs::exists(dir.parameters(k)) || read_file(dir.parameters(k)) != read_file(point.sets[k])) return false;
-  return true;
-}
-
-// Cells of CSV: quoted where they hold a comma, a quote or a newline.
-std::string cell(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return quoted + "\"";
-}
-
 std::string without_quotes(const std::string& value) {
   const bool quoted = value.size() > 1 && value.front() == '"' && value.back() == '"';
   return quoted ? value.substr(1, value.size() - 2) : value;
@@ -44,18 +25,8 @@ std::string without_quotes(const std::string& value) {
 
 std::vector<std::size_t> columns_of(const GatherOptions& options) {
   std::vector<std::size_t> out;
-  std::vector<std::string> names;
-  for (std::size_t k = 0; k < observables().size(); ++k) {
-    names.push_back(observables()[k].name);
-    if (options.columns.empty()) out.push_back(k);
-  }
-  for (const std::string& name : options.columns) {
-    const auto at = std::find(names.begin(), names.end(), name);
-    if (at == names.end())
-      throw InputError({"", 0, "--columns"}, fmt::format("log.csv has no column \"{}\"", name),
-                       "see `ropewalk observe --list`");
-    out.push_back(static_cast<std::size_t>(at - names.begin()));
-  }
+  for (const std::string& name : options.columns) out.push_back(column_of_log(name, {"", 0, "--columns"}));
+  for (std::size_t k = 0; options.columns.empty() && k < observables().size(); ++k) out.push_back(k);
   return out;
 }
 
@@ -107,6 +78,28 @@ PointProgress progress_of(const RunDirectory& dir) {
   return p;
 }
 
+std::string csv_cell(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + "\"";
+}
+
+CampaignDirectory campaign_directory(const std::string& sweep_file, const std::string& out) {
+  return {out.empty() ? (fs::path(sweep_file).parent_path() / fs::path(sweep_file).stem()).string() : out};
+}
+
+bool is_run_of(const RunDirectory& dir, const std::string& text, const std::vector<std::string>& sets,
+               bool any_step) {
+  const auto comparable = [&](const std::string& scene) {
+    return any_step ? with_value(scene, "run.time_step_fs", "0", dir.scene()) : scene;
+  };
+  if (comparable(read_file(dir.scene())) != comparable(text)) return false;
+  for (std::size_t k = 0; k < sets.size(); ++k)
+    if (!fs::exists(dir.parameters(k)) || read_file(dir.parameters(k)) != read_file(sets[k])) return false;
+  return true;
+}
+
 void create_campaign(const CampaignDirectory& dir, const Sweep& sweep, const std::vector<SweepPoint>& points,
                      bool force) {
   if (fs::exists(dir.path) && !fs::exists(dir.sweep()) && !(fs::is_directory(dir.path) && fs::is_empty(dir.path)))
@@ -115,7 +108,8 @@ void create_campaign(const CampaignDirectory& dir, const Sweep& sweep, const std
   for (const SweepPoint& p : points) {
     const RunDirectory run = dir.point(p.name);
     if (!fs::exists(run.scene()) || progress_of(run).stage == PointProgress::Stage::waiting) continue;
-    if (is_same(run, p)) continue;
+    // A point that goes on from a shared start has the time step of that start.
+    if (is_run_of(run, p.text, p.sets, !p.start.empty())) continue;
     if (!force)
       throw InputError({run.path, 0, "--out"}, "was run with another scene or parameter set",
                        "choose another --out, or give --force to run this point anew");
@@ -141,14 +135,14 @@ std::string gathered_csv(const CampaignDirectory& dir, const Sweep& sweep, const
                          const GatherOptions& options) {
   const std::vector<std::size_t> columns = columns_of(options);
   std::string text = "point";
-  for (const std::string& key : sweep.keys()) text += "," + cell(key);
+  for (const std::string& key : sweep.keys()) text += "," + csv_cell(key);
   text += ",status";
   for (const std::size_t k : columns) text += fmt::format(",{}", observables()[k].name);
   text += options.series ? "\n" : ",limits_passed\n";
   for (const SweepPoint& p : points) {
     const RunDirectory run = dir.point(p.name);
-    std::string begin = cell(p.name);
-    for (const std::string& value : p.values) begin += "," + cell(without_quotes(value));
+    std::string begin = csv_cell(p.name);
+    for (const std::string& value : p.values) begin += "," + csv_cell(without_quotes(value));
     begin += "," + progress_of(run).status;
     const std::vector<LogRow> log = fs::exists(run.log()) ? read_log(run.log()) : std::vector<LogRow>();
     if (options.series) {
@@ -157,7 +151,7 @@ std::string gathered_csv(const CampaignDirectory& dir, const Sweep& sweep, const
     }
     text += begin;
     text += log.empty() ? std::string(columns.size(), ',') : cells_of(end_of(log, options.mean_ps), columns);
-    text += "," + cell(limits_of(run)) + "\n";
+    text += "," + csv_cell(limits_of(run)) + "\n";
   }
   return text;
 }

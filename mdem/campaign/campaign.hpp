@@ -22,6 +22,14 @@ struct CampaignDirectory {
   std::string messages(const std::string& name) const { return path + "/messages/" + name + ".txt"; }
 };
 
+// Beside the file of the sweep, where `out` is empty.
+CampaignDirectory campaign_directory(const std::string& sweep_file, const std::string& out);
+
+// Whether the directory holds a run of this scene with these parameter sets (files); with `any_step` whatever its
+// time step.
+bool is_run_of(const RunDirectory& dir, const std::string& text, const std::vector<std::string>& sets,
+               bool any_step = false);
+
 // How far the run of a point is.
 struct PointProgress {
   enum class Stage { waiting, begun, ended, failed };
@@ -50,6 +58,9 @@ struct GatherOptions {
 // A point without rows has empty cells. Everything in it follows from the scenes alone: no times of the machine.
 std::string gathered_csv(const CampaignDirectory& dir, const Sweep& sweep, const std::vector<SweepPoint>& points,
                          const GatherOptions& options);
+
+// A cell of CSV: in quotes where it holds a comma, a quote or a newline.
+std::string csv_cell(const std::string& text);
 
 // For clusters: one job for each point, by its number from 1 or its name.
 std::string slurm_script(const std::string& sweep_file, const CampaignDirectory& dir, std::size_t points);

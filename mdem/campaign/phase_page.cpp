@@ -31,7 +31,7 @@ std::string head(const Sweep& sweep) {
 
 std::string values(const PhasePoint& p) {
   std::string text;
-  for (const std::string& v : p.values) text += (v.find(',') == std::string::npos ? v : "\"" + v + "\"") + ",";
+  for (const std::string& v : p.values) text += csv_cell(v) + ",";
   return text;
 }
 
@@ -72,7 +72,7 @@ ScatterChart diagram(const Sweep& sweep, int tubes, const std::vector<const Phas
   LineChart& chart = scatter.chart;
   chart.title = fmt::format("Phase diagram of {} tubes", tubes);
   chart.x = {"length", "nm", false};
-  chart.y = {sweep.threshold->key.substr(sweep.threshold->key.rfind('.') + 1), "", false};
+  chart.y = {leaf_of(sweep.threshold->key), "", false};
   chart.height = 380;
   ChartLine yes{"passes", {}, {}, 1}, no{"does not", {}, {}, 0};
   yes.points = no.points = true;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <set>
 #include <sstream>
 
@@ -173,9 +174,9 @@ std::string in_a_name(const std::string& value, std::size_t number) {
 
 // The last part of the key, or all of it where another axis ends alike.
 std::string short_name(const std::string& key, const std::vector<std::string>& keys) {
-  const auto leaf = [](const std::string& k) { return k.substr(k.rfind('.') + 1); };
-  const auto same = std::count_if(keys.begin(), keys.end(), [&](const auto& k) { return leaf(k) == leaf(key); });
-  return same > 1 ? key : leaf(key);
+  const auto same =
+      std::count_if(keys.begin(), keys.end(), [&](const auto& k) { return leaf_of(k) == leaf_of(key); });
+  return same > 1 ? key : leaf_of(key);
 }
 
 // The seed is varied last, once all else is set.
@@ -346,6 +347,28 @@ std::vector<SweepPoint> starts_of(const Sweep& s) {
   }
   return starts;
 }
+
+std::vector<Replicates> replicates_of(const Sweep& sweep, const std::vector<SweepPoint>& points) {
+  std::vector<Replicates> out;
+  std::map<std::vector<std::string>, std::size_t> at;
+  const std::vector<std::string> keys = sweep.keys();
+  for (const SweepPoint& p : points) {
+    Replicates r;
+    for (std::size_t k = 0; k < keys.size(); ++k) {
+      if (keys[k] == "start.seed") continue;
+      r.values.push_back(p.values[k]);
+      if (sweep.varies(keys[k]))
+        r.name += fmt::format("{}{} = {}", r.name.empty() ? "" : ", ", leaf_of(keys[k]), p.values[k]);
+    }
+    if (r.name.empty()) r.name = p.name;
+    const auto [entry, added] = at.emplace(r.values, out.size());
+    if (added) out.push_back(std::move(r));
+    out[entry->second].points.push_back(p);
+  }
+  return out;
+}
+
+std::string leaf_of(const std::string& key) { return key.substr(key.rfind('.') + 1); }
 
 Scene scene_of(const Sweep& sweep, const SweepPoint& point) {
   Scene scene = scene_of_text(point.text, sweep.scene_path);

@@ -74,6 +74,18 @@ std::vector<SweepPoint> points_of(const Sweep& sweep, bool check = true);
 // The runs that branches share: each once, in the order of the points.
 std::vector<SweepPoint> starts_of(const Sweep& sweep);
 
+// Points that differ in their seed alone.
+struct Replicates {
+  std::string name;                 // "tubes = 7, moment_nN_nm = 35": the keys that have more than one value
+  std::vector<std::string> values;  // of the keys without the seed
+  std::vector<SweepPoint> points;
+};
+// In the order of the points.
+std::vector<Replicates> replicates_of(const Sweep& sweep, const std::vector<SweepPoint>& points);
+
+// "moment_nN_nm" of "twist.moment_nN_nm".
+std::string leaf_of(const std::string& key);
+
 // The scene of a point, as one at the sweep's scene.
 Scene scene_of(const Sweep& sweep, const SweepPoint& point);
 

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
-#include <map>
 #include <set>
 
 #include "io/files.hpp"
@@ -26,31 +25,7 @@ constexpr double clear_of_wave = 3, of_the_value = 0.1;  // growth is looked at 
 constexpr double far_above = 1.8;                        // times the threshold: growth there says nothing about it
 constexpr std::size_t fewest_rows = 4;
 
-std::string value_text(double value) { return fmt::format("{:.10g}", value); }
-
-// A line y = a + b x by least squares, with the standard error of a and b; none from two points.
-struct Line {
-  double a = 0, b = 0, a_error = 0, b_error = 0;
-};
-std::optional<Line> line_through(const std::vector<double>& x, const std::vector<double>& y) {
-  const auto n = static_cast<double>(x.size());
-  if (x.size() < 2) return {};
-  double mx = 0, my = 0, xx = 0, xy = 0, squares = 0;
-  for (std::size_t k = 0; k < x.size(); ++k) mx += x[k] / n, my += y[k] / n;
-  for (std::size_t k = 0; k < x.size(); ++k) xx += (x[k] - mx) * (x[k] - mx), xy += (x[k] - mx) * (y[k] - my);
-  if (!(xx > 0)) return {};
-  Line l;
-  l.b = xy / xx;
-  l.a = my - l.b * mx;
-  for (std::size_t k = 0; k < x.size(); ++k) squares += std::pow(y[k] - l.a - l.b * x[k], 2);
-  const double variance = n > 2 ? squares / (n - 2) : std::numeric_limits<double>::quiet_NaN();
-  l.b_error = std::sqrt(variance / xx);
-  l.a_error = std::sqrt(variance * (1 / n + mx * mx / xx));
-  return l;
-}
-
-// "moment_nN_nm"
-std::string leaf_of(const std::string& key) { return key.substr(key.rfind('.') + 1); }
+std::string value_text(double value) { return fmt::format("{:.6g}", value); }
 
 double mean(const std::vector<double>& v) {
   double sum = 0;
@@ -95,7 +70,7 @@ std::optional<GrowthThreshold> growth_threshold(const std::vector<Trial>& trials
   }
   // Three different values at least, whatever the seeds.
   const std::set<double> different(values.begin(), values.end());
-  const std::optional<Line> line = different.size() > 2 ? line_through(squares, values) : std::nullopt;
+  const std::optional<StraightLine> line = different.size() > 2 ? line_through(squares, values) : std::nullopt;
   if (!line) return {};
   return GrowthThreshold{line->a, line->a_error, values.size()};
 }
@@ -104,9 +79,9 @@ std::optional<PowerLaw> power_law(const std::vector<double>& x, const std::vecto
   std::vector<double> lx, ly;
   for (std::size_t k = 0; k < x.size(); ++k)
     if (x[k] > 0 && y[k] > 0) lx.push_back(std::log(x[k])), ly.push_back(std::log(y[k]));
-  const std::optional<Line> line = line_through(lx, ly);
+  const std::optional<StraightLine> line = line_through(lx, ly);
   if (!line) return {};
-  return PowerLaw{line->b, line->b_error, std::exp(line->a), lx.size()};
+  return PowerLaw{line->b, line->b_error};
 }
 
 Trial trial_of(const std::vector<LogRow>& log, const ThresholdQuestion& q, double value, double wave,
@@ -202,27 +177,15 @@ std::optional<GrowthThreshold> PhasePoint::by_growth() const {
 std::vector<PhasePoint> phase_points(const CampaignDirectory& dir, const Sweep& sweep,
                                      const std::vector<SweepPoint>& points) {
   std::vector<PhasePoint> out;
-  std::map<std::vector<std::string>, std::size_t> at;
-  const std::vector<std::string> keys = sweep.keys();
-  for (const SweepPoint& p : points) {
-    std::vector<std::string> values;
-    std::string name;
-    for (std::size_t k = 0; k < keys.size(); ++k) {
-      if (keys[k] == "start.seed") continue;
-      values.push_back(p.values[k]);
-      name += fmt::format("{}{} = {}", name.empty() ? "" : ", ", leaf_of(keys[k]), p.values[k]);
-    }
-    const auto [entry, added] = at.emplace(values, out.size());
-    if (added) {
-      PhasePoint point;
-      point.name = name.empty() ? p.name : name;
-      point.values = values;
-      Scene scene = scene_of(sweep, p);
-      const Prepared prepared = prepare(scene);
-      add_theory(sweep, scene, prepared, point);
-      out.push_back(std::move(point));
-    }
-    out[entry->second].seeds.push_back(threshold_of(dir, sweep, p));
+  for (const Replicates& r : replicates_of(sweep, points)) {
+    PhasePoint point;
+    point.name = r.name;
+    point.values = r.values;
+    Scene scene = scene_of(sweep, r.points.front());
+    const Prepared prepared = prepare(scene);
+    add_theory(sweep, scene, prepared, point);
+    for (const SweepPoint& p : r.points) point.seeds.push_back(threshold_of(dir, sweep, p));
+    out.push_back(std::move(point));
   }
   return out;
 }

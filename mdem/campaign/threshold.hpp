@@ -34,10 +34,10 @@ struct GrowthThreshold {
 };
 std::optional<GrowthThreshold> growth_threshold(const std::vector<Trial>& trials);
 
-// Of y = C x^p, by least squares of the logarithms; the error is the standard error, none with two points.
+// The exponent p of y = C x^p, by least squares of the logarithms. `error` is its standard error, NaN with two
+// points.
 struct PowerLaw {
-  double exponent = 0, error = 0, factor = 1;
-  std::size_t points = 0;
+  double exponent = 0, error = 0;
 };
 std::optional<PowerLaw> power_law(const std::vector<double>& x, const std::vector<double>& y);
 

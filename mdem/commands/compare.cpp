@@ -242,8 +242,7 @@ int compare_command(const CompareArguments& a) {
   else
     print_table(sets);
   if (a.page.empty()) return 0;
-  if (std::filesystem::exists(a.page) && !a.force)
-    throw InputError({a.page, 0, "--page"}, "exists", "choose another name, or give --force to replace it");
+  refuse_existing(a.page, "--page", a.force);
   write_file_atomically(a.page, page(sets));
   if (!a.json) fmt::print("Page: {}\n", a.page);
   return 0;

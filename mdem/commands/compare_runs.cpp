@@ -29,27 +29,15 @@ std::string short_of(const std::string& path) {
   return (p.has_filename() ? p : p.parent_path()).filename().string();
 }
 
-// The points of a campaign; those that differ in their seed alone are one.
+// The runs of a campaign; those that differ in their seed alone are one group.
 std::vector<Group> groups_of(const CampaignDirectory& dir) {
   const Sweep sweep = read_campaign(dir);
-  const std::vector<std::string> keys = sweep.keys();
   std::vector<Group> groups;
-  std::map<std::vector<std::string>, std::size_t> at;
-  for (const SweepPoint& p : points_of(sweep, false)) {
-    const RunDirectory run = dir.point(p.name);
-    if (!fs::exists(run.log())) continue;
-    std::vector<std::string> values;
-    std::string name;
-    for (std::size_t k = 0; k < keys.size(); ++k) {
-      if (keys[k] == "start.seed") continue;
-      values.push_back(p.values[k]);
-      if (sweep.varies(keys[k]))
-        name +=
-            fmt::format("{}{} = {}", name.empty() ? "" : ", ", keys[k].substr(keys[k].rfind('.') + 1), p.values[k]);
-    }
-    const auto [entry, added] = at.emplace(values, groups.size());
-    if (added) groups.push_back({name.empty() ? p.name : name, {}});
-    groups[entry->second].runs.push_back(run);
+  for (const Replicates& r : replicates_of(sweep, points_of(sweep, false))) {
+    Group group{r.name, {}};
+    for (const SweepPoint& p : r.points)
+      if (fs::exists(dir.point(p.name).log())) group.runs.push_back(dir.point(p.name));
+    if (!group.runs.empty()) groups.push_back(std::move(group));
   }
   if (groups.empty()) throw InputError({dir.path, 0, ""}, "has no run yet", "run `ropewalk sweep`");
   return groups;
@@ -94,26 +82,6 @@ ReferenceLevel level_of(const std::string& text) {
                    "write it like 0.45:\"measured\"");
 }
 
-void check_columns(const RunsFigure& figure) {
-  std::vector<std::string> all = figure.y;
-  all.push_back(figure.x);
-  for (const std::string& column : all) {
-    try {
-      index_of_observable(column);
-    } catch (const std::invalid_argument&) {
-      throw InputError({"", 0, column == figure.x ? "--x" : "--y"},
-                       fmt::format("log.csv has no column \"{}\"", column), "see `ropewalk observe --list`");
-    }
-  }
-}
-
-void write_new(const std::string& path, const char* option, const std::string& text, bool force) {
-  if (fs::exists(path) && !force)
-    throw InputError({path, 0, option}, "exists", "choose another name, or give --force to replace it");
-  write_file_atomically(path, text);
-  fmt::print("{} written\n", path);
-}
-
 }  // namespace
 
 int compare_runs(const CompareArguments& a) {
@@ -122,7 +90,13 @@ int compare_runs(const CompareArguments& a) {
   figure.y = a.y;
   figure.y_decades = a.log;
   for (const std::string& level : a.levels) figure.levels.push_back(level_of(level));
-  check_columns(figure);
+  column_of_log(a.x, {"", 0, "--x"});
+  for (const std::string& column : a.y) column_of_log(column, {"", 0, "--y"});
+  const bool page = a.svg.empty() && a.csv.empty();
+  const std::string html = a.page.empty() ? "compare.html" : a.page;
+  if (page) refuse_existing(html, "--page", a.force);
+  if (!a.svg.empty()) refuse_existing(a.svg, "--svg", a.force);
+  if (!a.csv.empty()) refuse_existing(a.csv, "--csv", a.force);
   std::vector<Group> groups;
   for (const std::string& path : a.names) {
     if (!fs::is_directory(path))
@@ -134,19 +108,22 @@ int compare_runs(const CompareArguments& a) {
     else
       groups.push_back({short_of(path), {RunDirectory{path}}});
   }
-  const bool page = a.svg.empty() && a.csv.empty();
+  const auto write = [](const std::string& path, const std::string& text) {
+    write_file_atomically(path, text);
+    fmt::print("{} written\n", path);
+  };
   std::vector<RunCurve> curves;
   for (const Group& group : groups) curves.push_back(curve_of(group, page && groups.size() <= most_pictured));
   if (!a.svg.empty()) {
     const std::string svg = runs_svg(curves, figure);
     if (svg.empty())
       throw InputError({"", 0, "--y"}, "has no two values to draw", "choose another column or more of the runs");
-    write_new(a.svg, "--svg", svg, a.force);
+    write(a.svg, svg);
   }
-  if (!a.csv.empty()) write_new(a.csv, "--csv", runs_csv(curves, figure), a.force);
+  if (!a.csv.empty()) write(a.csv, runs_csv(curves, figure));
   if (!page) return 0;
   const std::string title = a.names.size() == 1 ? short_of(a.names.front()) : fmt::format("{} runs", curves.size());
-  write_new(a.page.empty() ? "compare.html" : a.page, "--page", runs_page(title, curves, figure), a.force);
+  write(html, runs_page(title, curves, figure));
   return 0;
 }
 

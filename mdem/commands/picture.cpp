@@ -79,14 +79,7 @@ std::vector<std::vector<std::string>> curves_of(const std::vector<std::string>& 
         out.back().emplace_back();
       else
         out.back().back() += c;
-    for (const std::string& column : out.back()) {
-      try {
-        index_of_observable(column);
-      } catch (const std::invalid_argument&) {
-        throw InputError({"", 0, "--curves"}, fmt::format("log.csv has no column \"{}\"", column),
-                         "see `ropewalk observe --list`");
-      }
-    }
+    for (const std::string& column : out.back()) column_of_log(column, {"", 0, "--curves"});
   }
   return out;
 }
@@ -116,8 +109,7 @@ int picture_command(const PictureArguments& a) {
   const std::string format = fs::path(a.out).extension().string();
   if (format != ".svg" && format != ".pdf" && format != ".png")
     throw InputError({a.out, 0, "-o"}, "is no .svg, .pdf or .png", "end the name in one of them");
-  if (fs::exists(a.out) && !a.force)
-    throw InputError({a.out, 0, "-o"}, "exists", "choose another name, or give --force to replace it");
+  refuse_existing(a.out, "-o", a.force);
   const RunDirectory dir{a.dir};
   Scene scene = read_run_scene(dir);
   const Prepared prepared = prepare(scene);

@@ -348,18 +348,17 @@ class Run {
 
   // False where steps are as short as they get: the failure stands.
   bool go_back(const std::string& why) {
-    if (!mark_.checkpoint) return false;
     const int divided = simulation_.divided();
     const double time = simulation_.state().time;
-    if (2 * divided > StepControl::most) return false;
+    if (divided >= StepControl::most) return false;
     const RunCheckpoint& c = *mark_.checkpoint;
     simulation_.restore(c.simulation);
-    control_.shorten(divided, simulation_.state().step, simulation_);
+    control_.shorten(divided, simulation_);
     log_->cut(c.log_bytes);
     frames_->cut(c.frame_bytes);
     watch_.inherit_from(mark_.limits, simulation_.state().step);
     stop_watch_.cut(simulation_.state().step);
-    // Without the remedy: this is it.
+    // The remedy, after the semicolon of the message, is left out: a shorter step is what the run takes now.
     say(fmt::format("{:.4g} ps: {}; back to {:.4g} ps, on with steps of {:.3g} fs", time,
                     why.substr(0, why.find(';')), simulation_.state().time,
                     simulation_.time_step() / simulation_.divided() / units::fs));

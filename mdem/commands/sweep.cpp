@@ -30,10 +30,6 @@ using Stage = PointProgress::Stage;
 constexpr std::size_t most_timed = 6;  // points of a dry run whose steps are timed
 constexpr double relax_steps = 2000;   // a guess, where a relaxation does not end at once
 
-std::string default_directory(const std::string& file) {
-  return (fs::path(file).parent_path() / fs::path(file).stem()).string();
-}
-
 std::vector<SweepPoint> chosen(const std::vector<SweepPoint>& points, const std::vector<std::string>& only) {
   if (only.empty()) return points;
   std::vector<SweepPoint> out;
@@ -56,7 +52,7 @@ class Campaign {
  public:
   Campaign(Sweep sweep, const SweepArguments& a)
       : sweep_(std::move(sweep)),
-        dir_{a.out.empty() ? default_directory(a.file) : a.out},
+        dir_(campaign_directory(a.file, a.out)),
         all_(points_of(sweep_)),
         points_(chosen(all_, a.only)),
         arguments_(a),
@@ -78,7 +74,7 @@ class Campaign {
   }
 
   int dry_run() const {
-    // From some of the points; the others lie between.
+    // Some of the points are timed; the time of the others is interpolated by their work.
     std::vector<std::pair<double, double>> timed;  // work, seconds
     const std::size_t n = std::min(points_.size(), most_timed);
     for (std::size_t k = 0; k < n; ++k) {
@@ -108,23 +104,19 @@ class Campaign {
   }
 
   int write_slurm() const {
-    write_new(arguments_.slurm, "--slurm", slurm_script(arguments_.file, dir_, all_.size()));
+    refuse_existing(arguments_.slurm, "--slurm", arguments_.force);
+    write_file_atomically(arguments_.slurm, slurm_script(arguments_.file, dir_, all_.size()));
     fmt::print("{} written: sbatch {}\n", arguments_.slurm, arguments_.slurm);
     return 0;
   }
   int write_snakemake() const {
-    write_new(arguments_.snakemake, "--snakemake", snakemake_file(arguments_.file, dir_, all_));
+    refuse_existing(arguments_.snakemake, "--snakemake", arguments_.force);
+    write_file_atomically(arguments_.snakemake, snakemake_file(arguments_.file, dir_, all_));
     fmt::print("{} written: snakemake -s {} --cores {}\n", arguments_.snakemake, arguments_.snakemake, jobs_);
     return 0;
   }
 
  private:
-  void write_new(const std::string& path, const char* option, const std::string& text) const {
-    if (fs::exists(path) && !arguments_.force)
-      throw InputError({path, 0, option}, "exists", "choose another name, or give --force to replace it");
-    write_file_atomically(path, text);
-  }
-
   // Of a list that rises in work.
   static double between(const std::vector<std::pair<double, double>>& timed, double work) {
     const auto above = std::lower_bound(timed.begin(), timed.end(), std::make_pair(work, 0.0));
@@ -153,7 +145,7 @@ class Campaign {
         return q.start == p.name && progress_of(dir_.point(q.name)).stage == Stage::waiting;
       });
       const RunDirectory to = dir_.start(p.name);
-      if (fs::exists(to.scene()) && read_file(to.scene()) != p.text) fs::remove_all(to.path);  // of another scene
+      if (fs::exists(to.scene()) && !is_run_of(to, p.text, p.sets)) fs::remove_all(to.path);
       if (!needed || progress_of(to).stage == Stage::ended) continue;
       tasks.push_back({[this, p, to] {
                          return in_a_process(dir_.messages("start-" + p.name), true, [&] {
@@ -168,7 +160,8 @@ class Campaign {
     run_processes(tasks, jobs_, &campaign_signal);
   }
 
-  // The shared run, with the scene of the point from here on. The time step stays, since files count by it.
+  // Copies the shared run and replaces its scene by that of the point. The point keeps the time step of the shared
+  // run, because the log and the frames count time by steps.
   void branch_off(const SweepPoint& p) const {
     const RunDirectory from = dir_.start(p.start), to = dir_.point(p.name);
     if (progress_of(from).stage != Stage::ended)
@@ -201,24 +194,23 @@ class Campaign {
   void run_points() {
     std::vector<ProcessTask> tasks;
     for (const SweepPoint& p : points_) {
-      const double work = p.work;
       if (!is_to_run(p)) {
         ++done_;
         continue;
       }
-      work_left_ += work;
+      work_left_ += p.work;
       tasks.push_back(
           {[this, p] { return in_a_process(dir_.messages(p.name), false, [&] { return run_point(p); }); },
-           [this, p, work](int status) { ended(p, work, status); }});
+           [this, p](int status) { ended(p, status); }});
     }
     if (done_ > 0) say(fmt::format("{} of {} points are done already", done_, points_.size()));
     work_to_do_ = work_left_;
     run_processes(tasks, jobs_, &campaign_signal);
   }
 
-  void ended(const SweepPoint& p, double work, int status) {
+  void ended(const SweepPoint& p, int status) {
     ++done_;
-    work_left_ -= work;
+    work_left_ -= p.work;
     const PointProgress progress = progress_of(dir_.point(p.name));
     if (WIFEXITED(status) && WEXITSTATUS(status) == point_busy)
       say(fmt::format("{} is run by another process", p.name));
@@ -285,6 +277,7 @@ int sweep_command(const SweepArguments& a) {
 }
 
 int gather_command(const GatherArguments& a) {
+  if (!a.out.empty()) refuse_existing(a.out, "-o", a.force);
   const CampaignDirectory dir{a.dir};
   const Sweep sweep = read_campaign(dir);
   GatherOptions options;
@@ -296,8 +289,6 @@ int gather_command(const GatherArguments& a) {
     fmt::print("{}", table);
     return 0;
   }
-  if (fs::exists(a.out) && !a.force)
-    throw InputError({a.out, 0, "-o"}, "exists", "choose another name, or give --force to replace it");
   write_file_atomically(a.out, table);
   fmt::print("{} written\n", a.out);
   return 0;

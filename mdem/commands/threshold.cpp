@@ -25,7 +25,7 @@ class Search {
  public:
   Search(Sweep sweep, const ThresholdArguments& a)
       : sweep_(std::move(sweep)),
-        dir_{a.out.empty() ? (fs::path(a.file).parent_path() / fs::path(a.file).stem()).string() : a.out},
+        dir_(campaign_directory(a.file, a.out)),
         points_(points_of(sweep_)),
         arguments_(a),
         jobs_(a.jobs > 0 ? a.jobs : omp_get_num_procs()) {
@@ -77,9 +77,9 @@ class Search {
       if (!fs::exists(folder)) continue;
       for (const Trial& t : threshold_of(dir_, sweep_, p).trials) {
         const RunDirectory run = trial_directory(dir_, sweep_, p, t.value);
-        if (read_file(run.scene()) == trial_text(sweep_, p, t.value)) continue;
+        if (is_run_of(run, trial_text(sweep_, p, t.value), p.sets)) continue;
         if (!arguments_.force)
-          throw InputError({run.path, 0, "--out"}, "was run with another scene",
+          throw InputError({run.path, 0, "--out"}, "was run with another scene or parameter set",
                            "choose another --out, or give --force to run it anew");
         fs::remove_all(run.path);
       }
@@ -104,7 +104,7 @@ class Search {
     for (;;) {
       const Threshold t = threshold_of(dir_, sweep_, p);
       if (t.outside || t.above - t.below <= q.accuracy * std::fabs(t.middle())) return 0;
-      if (const int code = try_at(p, std::stod(fmt::format("{:.4g}", t.middle())))) return code;
+      if (const int code = try_at(p, t.middle())) return code;
     }
   }
 

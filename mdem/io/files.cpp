@@ -149,6 +149,11 @@ void write_file_atomically(const std::string& path, std::string_view content) {
   flush_directory_of(path);
 }
 
+void refuse_existing(const std::string& path, const std::string& option, bool force) {
+  if (!force && ::access(path.c_str(), F_OK) == 0)
+    throw InputError({path, 0, option}, "exists", "choose another name, or give --force to replace it");
+}
+
 std::string hash_hex(std::string_view content) {
   return fmt::format("{:016x}", static_cast<std::uint64_t>(XXH64(content.data(), content.size(), 0)));
 }

@@ -132,4 +132,14 @@ void check_log_header(const std::string& path) {
   take_header(path, rest);
 }
 
+std::size_t column_of_log(const std::string& name, const InputError::Place& place) {
+  std::vector<std::string> known;
+  for (const Observable& o : observables()) known.push_back(o.name);
+  const auto at = std::find(known.begin(), known.end(), name);
+  if (at != known.end()) return static_cast<std::size_t>(at - known.begin());
+  const std::string near = nearest_word(name, known);
+  throw InputError(place, fmt::format("log.csv has no column \"{}\"", name),
+                   near.empty() ? "see `ropewalk observe --list`" : fmt::format("did you mean \"{}\"?", near));
+}
+
 }  // namespace ropewalk

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "model/error.hpp"
 #include "observe/observables.hpp"
 
 namespace ropewalk {
@@ -29,6 +30,9 @@ class LogRow {
 
 std::string log_header();
 std::string log_line(const LogRow& row);  // full precision: reading it back gives the same bits
+
+// Index of a column that a user names at `place`. Throws InputError where the log has none of this name.
+std::size_t column_of_log(const std::string& name, const InputError::Place& place);
 
 // Throws InputError with line and column. A last line without a newline, as after a kill, is left out, since its
 // last number may lack digits.

@@ -1,15 +1,21 @@
-// Exponential growth of a positive quantity: a straight line through its logarithms.
+// Straight lines, and exponential growth: the line through the logarithms of a positive quantity.
 #pragma once
 
-#include <cstddef>
+#include <optional>
 #include <vector>
 
 namespace ropewalk {
 
+// y = a + b x by least squares, with standard errors; these are NaN with two points.
+struct StraightLine {
+  double a = 0, b = 0, a_error = 0, b_error = 0;
+};
+// None where no two x differ.
+std::optional<StraightLine> line_through(const std::vector<double>& x, const std::vector<double>& y);
+
 struct Growth {
   double rate = 0;   // 1/ps
   double error = 0;  // standard error; infinite with fewer than four values
-  std::size_t values = 0;
 };
 
 // Least squares of ln(y) against t (ps). Values that are not positive are left out. Residuals of neighbouring rows

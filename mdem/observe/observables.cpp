@@ -216,6 +216,12 @@ void add_observable(const Observable& o) {
   table().push_back(o);
 }
 
+std::string quantity_of(const Observable& o) {
+  std::string name = o.name.substr(0, o.name.size() - suffix_of(o.unit).size());
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
+}
+
 std::size_t index_of_observable(std::string_view name) {
   const std::vector<Observable>& all = observables();
   const auto found = std::find_if(all.begin(), all.end(), [&](const Observable& o) { return o.name == name; });

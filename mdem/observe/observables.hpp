@@ -51,6 +51,9 @@ struct Observable {
   bool whole = false;                             // an integer
 };
 
+// Its name in words and without the unit: "torque upper" of torque_upper_nN_nm.
+std::string quantity_of(const Observable& observable);
+
 // In the order of the columns.
 const std::vector<Observable>& observables();
 

@@ -49,11 +49,11 @@ std::vector<ChartBand> stages(const ReportInput& in) {
   return bands;
 }
 
-// A column as the horizontal axis: "rotation_deg" is the quantity "rotation" in its unit.
+// A column as the horizontal axis.
 Clock axis_of(const std::vector<LogRow>& log, const Panel& panel) {
   if (panel.against.empty()) return clock_of(log);
   const Observable& o = observables()[index_of_observable(panel.against)];
-  return {{panel.against.substr(0, panel.against.find('_')), o.unit, false}, panel.against};
+  return {{quantity_of(o), o.unit, false}, panel.against};
 }
 
 LineChart chart_of(const ReportInput& in, const Panel& panel, const Clock& clock) {

@@ -34,9 +34,8 @@ std::string text_at(double x, double y, const std::string& text, bool bold = fal
                      escape_markup(text));
 }
 
-// "twist" of "twist_eV".
 std::string name_of(const std::string& column) {
-  std::string name = column.substr(0, column.find('_'));
+  const std::string name = quantity_of(observables()[index_of_observable(column)]);
   return name == "vdw" ? "van der Waals" : name;
 }
 

@@ -20,18 +20,9 @@ const char* const usual[] = {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-// "torque upper" and its unit.
 ChartAxis axis_of(const std::string& column) {
   const Observable& o = observables()[index_of_observable(column)];
-  std::string suffix = "_" + o.unit;
-  std::replace(suffix.begin(), suffix.end(), ' ', '_');
-  std::string name = column;
-  const std::size_t at = name.size() > suffix.size() ? name.size() - suffix.size() : 0;
-  if (!o.unit.empty() && at > 0 && name.compare(at, suffix.size(), suffix) == 0) name.resize(at);
-  for (const char* unit : {"_MJ_per_kg", "_nm2", "_per_nm", "_per_ps"})
-    if (const std::size_t k = name.rfind(unit); k != std::string::npos) name.resize(k);
-  std::replace(name.begin(), name.end(), '_', ' ');
-  return {name, o.unit, o.whole};
+  return {quantity_of(o), o.unit, o.whole};
 }
 
 bool varies(const std::vector<RunCurve>& runs, const std::string& column) {

@@ -5,13 +5,12 @@
 
 namespace ropewalk {
 
-bool StepControl::shorten(int divided, std::int64_t step, Simulation& simulation) {
-  if (2 * divided > most) return false;
+void StepControl::shorten(int divided, Simulation& simulation) {
+  const std::int64_t step = simulation.state().step;
   simulation.divide_steps(2 * divided);
   const bool too_early = kept_until > 0 && step >= kept_until;  // they had just been put together again
   if (too_early) keep = std::min(2 * keep, most_keep);
   kept_until = step + keep;
-  return true;
 }
 
 void StepControl::lengthen(Simulation& simulation) {

@@ -18,9 +18,8 @@ struct StepControl {
   std::int64_t kept_until = 0;     // the step before which steps stay divided
   std::int64_t keep = least_keep;  // for how many they are divided when it happens next
 
-  // After a failure, from the mark at `step`, which the simulation is back at. `divided`: as it was when it failed.
-  // False where steps are as short as they get.
-  bool shorten(int divided, std::int64_t step, Simulation& simulation);
+  // After a failure with steps divided into so many parts: halves them. The simulation stands at the mark again.
+  void shorten(int divided, Simulation& simulation);
   // At a mark, after a window without failure.
   void lengthen(Simulation& simulation);
 };

@@ -6,11 +6,10 @@
 #include <cmath>
 #include <limits>
 
-#include "io/toml_table.hpp"
+#include "io/log.hpp"
 #include "model/error.hpp"
 #include "model/segments.hpp"
 #include "observe/bending.hpp"
-#include "observe/observables.hpp"
 #include "sim/dynamics/blow_up.hpp"
 
 namespace ropewalk {
@@ -114,15 +113,9 @@ void refuse_grips(const Scene& scene, const Prepared& p) {
   }
 }
 
-void refuse_unknown_columns(const Scene& scene) {
-  std::vector<std::string> known;
-  for (const Observable& o : observables()) known.push_back(o.name);
-  for (const StopRule& rule : scene.stops) {
-    if (rule.column.empty() || std::find(known.begin(), known.end(), rule.column) != known.end()) continue;
-    const std::string near = nearest_word(rule.column, known);
-    throw InputError({scene.path, 0, "stop.column"}, fmt::format("log.csv has no column \"{}\"", rule.column),
-                     near.empty() ? "see `ropewalk observe --list`" : fmt::format("did you mean \"{}\"?", near));
-  }
+void refuse_stop_rules(const Scene& scene) {
+  for (const StopRule& rule : scene.stops)
+    if (!rule.column.empty()) column_of_log(rule.column, {scene.path, 0, "stop.column"});
   if (!scene.stops.empty() && scene.run.mode == RunOptions::Mode::relax)
     throw InputError({scene.path, 0, "stop"}, "is for dynamics, and run.mode is \"relax\"", "take it away");
 }
@@ -264,7 +257,7 @@ Prepared prepare(Scene& scene) {
   refuse_overlaps(scene, out);
   refuse_moment(scene, out);
   refuse_grips(scene, out);
-  refuse_unknown_columns(scene);
+  refuse_stop_rules(scene);
   return out;
 }
 
