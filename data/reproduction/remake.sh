@@ -1,6 +1,6 @@
 #!/bin/sh
-# Runs everything on this page anew: remake.sh [PROGRAM], about an hour on two cores, fig5 the most of it. Runs stay in
-# runs/, and a second call goes on where the first one stopped.
+# Runs everything on this page anew: remake.sh [PROGRAM], about two hours on two cores. Runs stay in runs/, and a second call
+# goes on where the first one stopped.
 set -eu
 cd "$(dirname "$0")"
 program=${1:-ropewalk}
@@ -8,6 +8,7 @@ for figure in fig2 fig3 fig3-pfc fig3-calibrated fig4 video; do
   "$program" sweep $figure.toml --out runs/$figure
   "$program" gather runs/$figure -o $figure.csv --force \
     --columns time_ps,beta_deg,twist_eV,bend_eV,vdw_eV,dissipated_eV,Q,Q_delaunay,void_area_nm2,amplitude_nm,windings
+  "$program" gather runs/$figure --series --columns time_ps,moment_nN_nm,twist_eV,Q | awk -f release.awk >$figure-release.csv
 done
 "$program" threshold fig5.toml --out runs/fig5
 cp runs/fig5/thresholds.csv fig5-thresholds.csv

@@ -25,8 +25,8 @@ struct CampaignDirectory {
 // Beside the file of the sweep, where `out` is empty.
 CampaignDirectory campaign_directory(const std::string& sweep_file, const std::string& out);
 
-// Whether the directory holds a run of this scene with these parameter sets (files); with `any_step` whatever its
-// time step.
+// Whether the directory holds a run of this scene with these parameter sets (files). With `any_step` its time step may
+// be another one.
 bool is_run_of(const RunDirectory& dir, const std::string& text, const std::vector<std::string>& sets,
                bool any_step = false);
 
@@ -48,7 +48,7 @@ void create_campaign(const CampaignDirectory& dir, const Sweep& sweep, const std
 // The sweep as the directory has it, with names and values of its points.
 Sweep read_campaign(const CampaignDirectory& dir);
 
-// How table.csv takes one value from the log of a run.
+// Which rows of a log the table shows.
 struct GatherOptions {
   double mean_ps = 0;                // mean over the last rows of so much time; 0: the last row
   bool series = false;               // every row of every log instead

@@ -47,6 +47,7 @@ class Search {
                        [&](int status) {
                          ++done;
                          if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) failed.push_back(p.name);
+                         write();
                          if (!arguments_.quiet)
                            fmt::print(stderr, "{} of {} points, {} passed: {}\n", done, points_.size(),
                                       duration_text(now() - began), result_words(p));
@@ -57,7 +58,7 @@ class Search {
                  static_cast<int>(campaign_signal));
       return 128 + campaign_signal;
     }
-    write(failed);
+    tell(failed);
     return failed.empty() ? 0 : 3;
   }
 
@@ -117,11 +118,16 @@ class Search {
     return fmt::format("{}: {:.4g} to {:.4g}", p.name, t.below, t.above);
   }
 
-  void write(const std::vector<std::string>& failed) const {
+  // The tables and the page of what is known so far.
+  void write() const {
     const std::vector<PhasePoint> points = phase_points(dir_, sweep_, points_);
     write_file_atomically(dir_.path + "/thresholds.csv", thresholds_csv(sweep_, points));
     write_file_atomically(dir_.path + "/trials.csv", trials_csv(sweep_, points));
     write_file_atomically(dir_.path + "/thresholds.html", phase_page(sweep_, points));
+  }
+
+  void tell(const std::vector<std::string>& failed) const {
+    const std::vector<PhasePoint> points = phase_points(dir_, sweep_, points_);
     double seconds = 0;
     std::size_t runs = 0;
     for (const auto& entry : fs::recursive_directory_iterator(dir_.path + "/points"))

@@ -189,7 +189,7 @@ TEST_P(HostileScenes, EndWithOneClearLine) {
   EXPECT_EQ(o.code, h.code) << o.err;
   EXPECT_THAT(o.out + o.err, HasSubstr(h.says));
   if (h.code == 0) return;
-  // A run may have said before it failed which limits it may pass and has passed, and that it tried shorter steps.
+  // Before its error a run may print other lines: limits that it may pass or has passed, and shorter steps that it tried.
   const auto is_news = [](const std::string& text) {
     return text.rfind("ropewalk: limit passed", 0) == 0 || text.rfind("ropewalk: note: The load may", 0) == 0 ||
            text.find(", on with steps of ") != std::string::npos;
