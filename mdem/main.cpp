@@ -259,15 +259,17 @@ void add_gather(CLI::App& app, Verbs& v) {
 }
 
 void add_plan(CLI::App& app, Verbs& v) {
-  CLI::App* c = app.add_subcommand("plan", "Choose the cheapest model that holds an error, by the shipped chart");
+  CLI::App* c = app.add_subcommand("plan", "Choose the cheapest model that holds an error, by short pilots of the scene");
   c->add_option("scene", v.plan.scene, "Scene file (TOML)");
   c->add_option("--error", v.plan.error, "Largest error of each observable: 2% or 0.02")->capture_default_str();
-  c->add_option("--observables", v.plan.observables, "Which ones: energy,beta,... [default: all in the chart]")
+  c->add_option("--observables", v.plan.observables, "Which ones: energy and columns of log.csv [default: energies, twist angle, torque, tension]")
       ->delimiter(',');
   c->add_flag("--end-state", v.plan.end_state, "Only the end is asked for, not the motion");
   c->add_option("-o", v.plan.out, "File to write, never one that exists [default: SCENE-planned.toml]");
-  c->add_option("--chart", v.plan.chart, "Directory of another chart (points.csv, scenes.csv)");
+  c->add_option("-j,--jobs", v.plan.jobs, "Pilots at a time [default: one for each core]")->check(CLI::Range(1, 4096));
   c->add_option("--check", v.plan.check, "Directory of a run: compare its end with a finer model instead");
+  c->add_option("--against", v.plan.against, "With --check: directory of a run of the same scene by a finer model");
+  c->add_option("--finest", v.plan.finest, "Also write the scene with the finest model that pilots took, to this file");
   c->add_option("--stretch", v.plan.stretch, "With --check: ps that both models go on")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);

@@ -158,12 +158,14 @@ int bench_command(const BenchArguments& arguments);
 struct PlanArguments {
   std::string scene;
   std::string error = "2%";
-  std::vector<std::string> observables;  // empty: all that the chart has
+  std::vector<std::string> observables;  // empty: the usual ones
   bool end_state = false;
   std::string out;     // empty: SCENE-planned.toml
-  std::string chart;   // directory; empty: the shipped one
   std::string check;   // directory of a run: hold it against a finer model instead
+  std::string against; // directory of a run of the same scene, to compare with instead of a short finer run
+  std::string finest;  // file to write the scene with the finest model to
   double stretch = 4;  // ps
+  int jobs = 0;        // pilots at a time; 0: one for each core
 };
 int plan_command(const PlanArguments& arguments);
 

@@ -1,17 +1,24 @@
 // `plan`: a model that a scene needs, and no more; and whether a planned run kept its promise.
 #include <fmt/format.h>
+#include <omp.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <functional>
 
 #include "commands/commands.hpp"
-#include "io/data_files.hpp"
+#include "commands/point_runs.hpp"
 #include "io/files.hpp"
+#include "io/processes.hpp"
 #include "model/error.hpp"
 #include "plan/check.hpp"
+#include "plan/outcome.hpp"
 #include "plan/planner.hpp"
+#include "run/processor_time.hpp"
 #include "run/run_directory.hpp"
 #include "run/run_time.hpp"
 #include "scene/scene_toml.hpp"
@@ -20,6 +27,9 @@ namespace ropewalk {
 namespace {
 
 namespace fs = std::filesystem;
+
+// What pilots may take: a tenth of the run, or a minute.
+constexpr double planning_part = 0.1, least_planning = 60;
 
 double error_of(const std::string& text) {
   char* end = nullptr;
@@ -31,67 +41,143 @@ double error_of(const std::string& text) {
   return value;
 }
 
-void say_time(const char* what, const RunTime& t) {
-  const double ns = 1e9 * t.each / t.elements;
-  if (t.steps > 0)
-    fmt::print(
-        "{}: {:.0f} elements, {:.0f} steps, {:.3g} s of processor time "
-        "({:.3g} s in steps of {:.0f} ns per element; timed here)\n",
-        what, t.elements, t.steps, t.total(), t.steps * t.each, ns);
-  else
-    fmt::print(
-        "{}: {:.0f} elements, {:.3g} s of processor time for 1000 steps of relaxation and {:.3g} s besides, timed "
-        "here; how many steps is not known\n",
-        what, t.elements, 1000 * t.each, t.outputs);
+// Runs pilots side by side, each in a process of its own with one thread.
+class PilotRuns {
+ public:
+  PilotRuns(std::string scene_path, int jobs)
+      : path_(std::move(scene_path)),
+        jobs_(jobs > 0 ? jobs : omp_get_num_procs()),
+        folder_((fs::temp_directory_path() / fmt::format("ropewalk-plan-{}", getpid())).string()) {
+    fs::create_directories(folder_);
+  }
+  PilotRuns(const PilotRuns&) = delete;
+  ~PilotRuns() {
+    std::error_code error;
+    fs::remove_all(folder_, error);
+  }
+
+  std::vector<PilotEnd> operator()(const std::vector<PilotTask>& tasks) {
+    std::vector<PilotEnd> ends(tasks.size());
+    std::vector<ProcessTask> processes;
+    for (std::size_t k = 0; k < tasks.size(); ++k) {
+      const std::string run = fmt::format("{}/{}", folder_, count_++);
+      processes.push_back({[this, run, &task = tasks[k]] { return work(run, task); },
+                           [this, run, &task = tasks[k], &end = ends[k]](int status) {
+                             end = read(run, status);
+                             seconds_ += end.seconds;
+                             if (isatty(STDERR_FILENO)) fmt::print(stderr, "\r\033[Kpilot: {}", task.name);
+                           }});
+    }
+    run_processes(processes, jobs_, &campaign_signal);
+    if (isatty(STDERR_FILENO)) fmt::print(stderr, "\r\033[K");
+    if (campaign_signal) throw std::runtime_error("stopped by a signal; nothing was written");
+    return ends;
+  }
+  double seconds() const { return seconds_; }
+
+ private:
+  int work(const std::string& run, const PilotTask& task) const {
+    return in_a_process(run + ".txt", false, [&] {
+      const int code = run_or_resume({run}, scene_of_text(task.text, path_), task.until, "warn");
+      write_file_atomically(run + ".seconds", fmt::format("{:.6g}", processor_seconds()));
+      return code;
+    });
+  }
+
+  // What a failed run said last, without the place of its files, which are gone.
+  static std::string last_line(std::string said) {
+    while (!said.empty() && said.back() == '\n') said.pop_back();
+    const std::size_t begin = said.find_last_of('\n');
+    if (begin != std::string::npos) said.erase(0, begin + 1);
+    const std::string name = "ropewalk: ";
+    if (said.rfind(name, 0) == 0) said.erase(0, name.size());
+    return said.substr(0, said.find(". State written to"));
+  }
+
+  static PilotEnd read(const std::string& run, int status) {
+    PilotEnd end;
+    constexpr int not_at_rest = 4;
+    if (!WIFEXITED(status)) {
+      end.failure = death_words(status);
+    } else if (WEXITSTATUS(status) != 0 && WEXITSTATUS(status) != not_at_rest) {
+      const std::string said = read_file(run + ".txt");
+      end.failure = last_line(said);
+    } else {
+      end.seconds = std::strtod(read_file(run + ".seconds").c_str(), nullptr);
+      end.log = read_log(RunDirectory{run}.log());
+    }
+    return end;
+  }
+
+  std::string path_;
+  int jobs_;
+  std::string folder_;
+  int count_ = 0;
+  double seconds_ = 0;
+};
+
+void say_models(const Plan& plan) {
+  std::vector<std::string> columns;
+  for (const auto& [name, error] : plan.standard.error) columns.push_back(name);
+  fmt::print("{:<58} {:>7}", "model", "time");
+  for (const std::string& name : columns) fmt::print(" {:>{}}", name, std::max<std::size_t>(9, name.size()));
+  fmt::print("\n");
+  const auto line = [&](const PlannedModel& m, const std::map<std::string, double>& errors) {
+    fmt::print("{:<58} {:>7.2f}", m.name.substr(0, 58), m.seconds / plan.standard.seconds);
+    for (const std::string& name : columns) {
+      const auto at = errors.find(name);
+      fmt::print(" {:>{}}", at == errors.end() ? "-" : fmt::format("{:.2f} %", 100 * at->second),
+                 std::max<std::size_t>(9, name.size()));
+    }
+    fmt::print("{}\n", m.failure.empty() ? (m.holds ? "  holds" : "") : "  failed: " + m.failure);
+  };
+  line(plan.finest, {});
+  line(plan.standard, plan.standard.error);
+  for (const PlannedModel& m : plan.tried) line(m, m.error);
 }
 
-// A model that costs no less than the default serves nobody who needs no more accuracy than that has.
-std::string cheaper_text(const Plan& plan, const std::string& path) {
-  RunTime planned;
-  try {
-    planned = time_run(plan.text, path);
-  } catch (const NumericalError& e) {  // knobs were tried one by one in the chart, not together
-    if (!plan.standard_holds) throw;
-    fmt::print("planned: {}\nthe default model is taken: it meets the tolerance\n", e.what());
-    return plan.standard_text;
+void say(const Plan& plan, const PlanRequest& request, const PilotRuns& runs) {
+  fmt::print("pilots: {}, {:.3g} s of processor time in all; differences from the finest model\n",
+             plan.pilots.empty() ? "the whole scene" : plan.pilots, runs.seconds());
+  say_models(plan);
+  if (!plan.scatter.empty()) {
+    fmt::print("{:<58} {:>7}", "by chance, one standard deviation", "");
+    for (const auto& [name, error] : plan.standard.error) {
+      const auto at = plan.scatter.find(name);
+      fmt::print(" {:>{}}", at == plan.scatter.end() ? "-" : fmt::format("{:.2f} %", 100 * at->second),
+                 std::max<std::size_t>(9, name.size()));
+    }
+    fmt::print("\n");
   }
-  say_time("planned", planned);
-  if (plan.stands_for.empty() || plan.text == plan.standard_text) return plan.text;
-  const RunTime standard = time_run(plan.standard_text, path);
-  say_time("default model", standard);
-  // Of two relaxations one may not be known.
-  const bool known = planned.steps > 0 && standard.steps > 0;
-  if (!known || !default_serves(plan, planned.total(), standard.total())) return plan.text;
-  fmt::print(
-      "the default model is taken: it meets the tolerance, and the planned one would save less than a tenth here. "
-      "Errors expected:\n");
-  for (const auto& [name, error] : plan.standard_expected) fmt::print("  {:16} {:6.2f} %\n", name, 100 * error);
-  return plan.standard_text;
+  for (const std::string& remark : plan.remarks) fmt::print("{}\n", remark);
+  fmt::print("planned for {:g} %: {}. Errors promised:\n", 100 * request.error, plan.chosen.name);
+  for (const auto& [name, error] : plan.chosen.expect) fmt::print("  {:20} {:6.2f} %\n", name, 100 * error);
+  for (const std::string& line : plan.chosen.why) fmt::print("  {}\n", line);
 }
 
-void say(const Plan& plan, const PlanRequest& request) {
-  for (const std::string& line : plan.why) fmt::print("  {}\n", line);
-  if (plan.stands_for.empty()) return;
-  if (!plan.driven_otherwise.empty()) fmt::print("{}\n", plan.driven_otherwise);
-  fmt::print("scene {} of the chart stands for this one; {} expected:\n", plan.stands_for,
-             request.observables.empty() ? "errors" : "errors asked for,");
-  for (const auto& [name, error] : plan.expected) {
-    const auto atoms = plan.atoms.find(name);
-    fmt::print("  {:16} {:6.2f} %{}\n", name, 100 * error,
-               atoms == plan.atoms.end()
-                   ? ""
-                   : fmt::format("   (the default model against atoms: {:.2f} %)", 100 * atoms->second));
+// Processor time of the whole run: that of the pilot where it was one, else as timed here, corrected by what the pilot took
+// longer than timed, such as in motions that no timing beforehand sees. 0: not known.
+double time_of(const PlannedModel& m, const Plan& plan, const std::string& path) {
+  if (plan.pilots.empty()) return m.seconds;
+  const RunTime whole = time_run(m.text, path), pilot = time_run(m.pilot_text, path);
+  if (whole.steps <= 0 || pilot.total() <= 0) return 0;
+  double expected = pilot.total();
+  if (plan.until >= 0) {
+    Scene scene = scene_of_text(m.pilot_text, path);
+    expected = pilot.outputs + (expected - pilot.outputs) * plan.until / prepare(scene).duration;
   }
-  if (!plan.holds)
-    fmt::print("no model of the chart meets {:g} %: this is the most accurate one\n", 100 * request.error);
-  fmt::print("chart: {:.2f} of the default model's time, {:.0f} ns per element-step\n", plan.cost,
-             plan.ns_per_element_step);
+  return whole.total() * std::clamp(m.seconds / expected, 0.7, 3.0);
 }
 
 std::string out_path(const PlanArguments& a) {
   if (!a.out.empty()) return a.out;
   const fs::path scene(a.scene);
   return (scene.parent_path() / (scene.stem().string() + "-planned.toml")).string();
+}
+
+std::string header_of(const Plan& plan, const PlanRequest& request) {
+  return fmt::format("# Planned for an error of {:g} % by pilots of {}: {}.\n", 100 * request.error,
+                     plan.pilots.empty() ? "the whole scene" : plan.pilots, plan.chosen.name);
 }
 
 int make_plan(const PlanArguments& a) {
@@ -102,22 +188,85 @@ int make_plan(const PlanArguments& a) {
   request.end_state = a.end_state;
   const std::string path = out_path(a);
   if (fs::exists(path)) throw InputError({path, 0, "-o"}, "exists", "choose another name with -o");
+  if (!a.finest.empty()) refuse_existing(a.finest, "--finest", false);
   Scene scene = read_scene(a.scene);
   refuse_cooling(scene, prepare(scene));
   for (const std::string& grade : grades_of(scene)) fmt::print("parameters {}\n", grade);
-  const Plan plan = plan_scene(scene, read_chart(a.chart.empty() ? data_directory() + "/chart" : a.chart), request);
-  say(plan, request);
-  write_file_atomically(path, cheaper_text(plan, path));
+  listen_to_signals();
+  const RunTime standard = time_run(default_text(scene), path);
+  constexpr double guessed_steps = 5000;  // of a relaxation
+  const double seconds = standard.steps > 0 ? standard.total() : standard.outputs + guessed_steps * standard.each;
+  PilotRuns runs(scene.path, a.jobs);
+  const Plan plan = plan_scene(scene, request, seconds, std::max(least_planning, planning_part * seconds), std::ref(runs));
+  say(plan, request, runs);
+  Expectations promised;
+  promised.asked = request.error;
+  promised.errors = plan.chosen.expect;
+  promised.seconds = time_of(plan.chosen, plan, path);
+  if (promised.seconds > 0) {
+    const double by_default = plan.chosen.name == plan.standard.name ? promised.seconds : time_of(plan.standard, plan, path);
+    fmt::print("processor time promised: {:.3g} s; with the default model {:.3g} s\n", promised.seconds, by_default);
+  }
+  write_file_atomically(path, header_of(plan, request) + expectation_lines(promised) + plan.chosen.text);
+  if (!a.finest.empty()) write_file_atomically(a.finest, plan.finest.text);
   fmt::print("{0} written. Go on with: ropewalk run {0} --out RUN; ropewalk plan --check RUN\n", path);
   return 0;
 }
 
-void say_whether_held(const SpotCheck& check, const Expectations& plan) {
+// What a check found of one observable.
+struct Checked {
+  double planned = 0, finer = 0, error = 0;
+};
+
+void say_check(const std::string& how, const std::map<std::string, Checked>& found, const Expectations& plan) {
+  fmt::print("{}\n{:20} {:>12} {:>12} {:>10} {:>10}\n", how, "", "as planned", "finer", "error", "promised");
   double largest = 0;
+  bool held = true;
+  for (const auto& [name, c] : found) {
+    const auto promise = plan.errors.find(name);
+    const bool promised = promise != plan.errors.end();
+    fmt::print("{:20} {:12.6g} {:12.6g} {:8.2f} % {:>10}\n", name, c.planned, c.finer, 100 * c.error,
+               promised ? fmt::format("{:.2f} %", 100 * promise->second) : "-");
+    if (!promised) continue;
+    largest = std::max(largest, c.error);
+    held = held && c.error <= std::max(promise->second, plan.asked);
+  }
   for (const auto& [name, error] : plan.errors)
-    if (check.observables.count(name)) largest = std::max(largest, check.observables.at(name).error());
-  fmt::print("{:g} % asked for, at most {:.2f} % seen: {}\n", 100 * plan.asked, 100 * largest,
-             largest <= plan.asked ? "held" : "not held");
+    if (!found.count(name)) fmt::print("{:20} is not part of this check\n", name);
+  if (plan.errors.empty())
+    fmt::print("the scene was not planned: nothing was promised\n");
+  else
+    fmt::print("{:g} % asked for, at most {:.2f} % seen: {}\n", 100 * plan.asked, 100 * largest,
+               held ? "held" : "not held");
+}
+
+void say_time(const RunDirectory& dir, const Expectations& plan) {
+  if (plan.seconds <= 0) return;
+  const Manifest m = read_manifest(dir.manifest());
+  fmt::print("{:.3g} s of processor time promised; the run took {:.3g} s on {} thread{}\n", plan.seconds,
+             m.wall_seconds, m.threads, m.threads == 1 ? "" : "s");
+}
+
+// The logs of two runs of one scene.
+int check_against(const PlanArguments& a) {
+  const RunDirectory dir{a.check}, other{a.against};
+  const Scene scene = read_run_scene(dir), finer = read_run_scene(other);
+  const Expectations plan = expectations_of(scene.text);
+  std::vector<std::string> names;
+  for (const auto& [name, error] : plan.errors) names.push_back(name);
+  if (names.empty()) names = usual_observables();
+  const auto outcome = [&](const RunDirectory& run, const Scene& s) {
+    const std::vector<LogRow> log = read_log(run.log());
+    if (log.empty()) throw InputError({run.log(), 0, ""}, "has no rows", "run the scene first");
+    return outcome_of(log, names, s.run.mode == RunOptions::Mode::relax);
+  };
+  const Outcome planned = outcome(dir, scene), reference = outcome(other, finer);
+  std::map<std::string, Checked> found;
+  for (const auto& [name, error] : differences(planned, reference))
+    found[name] = {planned.of.at(name).value, reference.of.at(name).value, error};
+  say_check("the ends of both runs, means over the last quarter", found, plan);
+  say_time(dir, plan);
+  return 0;
 }
 
 int check_run(const PlanArguments& a) {
@@ -132,20 +281,11 @@ int check_run(const PlanArguments& a) {
     throw InputError({dir.checkpoint(), 0, ""}, e.what(), "start the run anew with `ropewalk run`");
   }
   const Expectations plan = expectations_of(scene.text);
-  const std::map<std::string, double>& expected = plan.errors;
   const SpotCheck check = spot_check(scene, prepared, simulation.state(), a.stretch);
-  fmt::print("{}\n{:16} {:>12} {:>12} {:>9} {:>9}\n", check.how, "", "as planned", "finer", "error", "expected");
-  for (const auto& [name, pair] : check.observables) {
-    const auto promise = expected.find(name);
-    fmt::print("{:16} {:12.6g} {:12.6g} {:7.2f} % {:>9}\n", name, pair.planned, pair.finer, 100 * pair.error(),
-               promise == expected.end() ? "-" : fmt::format("{:.2f} %", 100 * promise->second));
-  }
-  for (const auto& [name, error] : expected)
-    if (!check.observables.count(name)) fmt::print("{:16} is not part of this check\n", name);
-  if (expected.empty())
-    fmt::print("the scene was not planned: nothing was expected\n");
-  else
-    say_whether_held(check, plan);
+  std::map<std::string, Checked> found;
+  for (const auto& [name, pair] : check.observables) found[name] = {pair.planned, pair.finer, pair.error()};
+  say_check(check.how, found, plan);
+  say_time(dir, plan);
   return 0;
 }
 
@@ -154,7 +294,10 @@ int check_run(const PlanArguments& a) {
 int plan_command(const PlanArguments& a) {
   if (!a.check.empty() && !a.scene.empty())
     throw InputError({"", 0, "--check"}, "stands beside a scene", "plan a scene, or check a run");
-  return a.check.empty() ? make_plan(a) : check_run(a);
+  if (a.check.empty() && !a.against.empty())
+    throw InputError({"", 0, "--against"}, "stands without --check", "name the planned run with --check");
+  if (a.check.empty()) return make_plan(a);
+  return a.against.empty() ? check_run(a) : check_against(a);
 }
 
 }  // namespace ropewalk

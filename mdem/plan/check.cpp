@@ -130,15 +130,16 @@ class Observed {
     const State& state = s.state();
     std::map<std::string, double> now;
     now["energy"] = s.forces().energy.potential() - zero_;
-    now["total_energy"] = s.forces().energy.potential();
+    now["twist_eV"] = s.forces().energy.twist;
+    now["bend_eV"] = s.forces().energy.bend;
     now["bending_moment"] = mean_bending_moment(m_.topology, state);
-    if (const auto moment = end_moment(m_.loads, s)) now["end_moment"] = *moment;
+    if (const auto moment = end_moment(m_.loads, s)) now["torque_upper_nN_nm"] = *moment;
     if (m_.interaction.has_contact() && m_.topology.tubes() > 1)
       now["spacing"] = tube_spacing(m_.topology, state, shells_);
     if (m_.topology.tubes() > 2) {
       const RopeObservation o = observe(m_.topology, state, shells_, validities(m_.scene, m_.topology), 0, m_.spacing);
-      now["beta"] = o.beta / units::degree;
-      now["end_angle"] = o.geometric_twist / units::degree;
+      now["beta_deg"] = o.beta / units::degree;
+      now["geometric_twist_deg"] = o.geometric_twist / units::degree;
       now["Q"] = o.middle.charge;
     }
     means_.add(now);

@@ -7,8 +7,6 @@
 #include <cmath>
 #include <set>
 
-#include "sim/neighbours/neighbours.hpp"
-
 namespace ropewalk {
 namespace {
 
@@ -24,24 +22,6 @@ void bond_features(const Topology& topology, const State& s, SceneFeatures& f) {
     }
   }
   f.why.push_back(fmt::format("start: curvature {:.3g} 1/nm, twist {:.3g} rad/nm", f.curvature, f.twist));
-}
-
-void crossing_features(const Prepared& p, SceneFeatures& f) {
-  NeighbourList list(p.interaction, default_skin(p.interaction));
-  list.build(p.topology, p.state);
-  double least = 90, most = 0;
-  for (int i = 0; i < p.topology.elements(); ++i)
-    list.for_neighbours(i, [&](int j) {
-      const double cosine = std::fabs(axis_of(p.state.orientation[static_cast<std::size_t>(i)])
-                                          .dot(axis_of(p.state.orientation[static_cast<std::size_t>(j)])));
-      const double angle = std::acos(std::min(cosine, 1.0)) / units::degree;
-      least = std::min(least, angle);
-      most = std::max(most, angle);
-    });
-  if (list.pairs() == 0) return;
-  f.crossing_from = least;
-  f.crossing_to = most;
-  f.why.push_back(fmt::format("start: tubes in reach cross at {:.3g} to {:.3g} deg", least, most));
 }
 
 // Distance of the farthest tube from the line through the mean of all, at the start.
@@ -69,8 +49,6 @@ void add_rope_twist(const Prepared& p, double twist, const char* what, SceneFeat
   f.turn += twist;
   f.curvature += bend;
   f.why.push_back(fmt::format("{}: twist up to {:.3g} rad/nm, curvature up to {:.3g} 1/nm", what, twist, bend));
-  if (!f.contact) return;
-  f.crossing_to += std::atan(p.spacing * twist) / units::degree;
 }
 
 void add_load(const LoadEffect& load, const Prepared& p, SceneFeatures& f) {
@@ -149,14 +127,10 @@ SceneFeatures features_of(const Scene& scene, const Prepared& p) {
   f.length = longest_tube(p.topology);
   f.duration = p.duration;
   bond_features(p.topology, p.state, f);
-  if (f.contact) crossing_features(p, f);
   double turned = 0;
   for (const SceneLoad& load : scene.loads) {
     const std::optional<LoadEffect> effect = load.load->effect();
-    if (!effect) {
-      f.not_estimable = "a load whose effect cannot be said beforehand";
-      continue;
-    }
+    if (!effect) continue;
     add_load(*effect, p, f);
     turned += effect->angle;
   }
@@ -167,13 +141,10 @@ SceneFeatures features_of(const Scene& scene, const Prepared& p) {
   }
   if (turned > 0) add_rope_twist(p, turned / f.length, "rotation", f);
   grip_features(p, f);
-  if (turned > 0) f.driven_by = DrivenBy::rotation;
-  if (scene.twist || f.sudden) f.driven_by = DrivenBy::load;
   if (scene.twist) {
     const TwistLoad& w = *scene.twist;
     const double each = w.reading == TwistLoad::Reading::per_tube ? w.moment : w.moment / f.tubes;
     add_rope_twist(p, each / p.topology.types[0].bond.twist, "[twist]", f);
-    if (w.geometric_only) f.not_estimable = "twist.geometric_only takes away what holds against the moment";
     f.sudden = f.sudden || w.rate <= 0;
     f.ramp = w.ramp_time();
   }
@@ -187,8 +158,6 @@ SceneFeatures features_of(const Scene& scene, const Prepared& p) {
     f.why.push_back(fmt::format("{:g} K: curvature {:.2g} 1/nm, twist {:.2g} rad/nm on top",
                                 scene.start.temperature, bend, twist));
   }
-  if (scene.thermostat) f.not_estimable = "a thermostat, whose noise hides the errors of a model";
-  if (scene.sets.size() > 1) f.not_estimable = "tubes of several kinds";
   return f;
 }
 

@@ -30,6 +30,8 @@ std::string fixed_length(const Scene& scene) {
   if (law && !law->any_element_length) return fmt::format("law \"{}\" holds for its set's length alone", law->name);
   for (const SceneLoad& load : scene.loads)
     if (!names_only_ends(load.on)) return "a load names elements by number";
+  for (const SceneGrip& grip : scene.grips)
+    if (grip.grip->depth > 1) return "a grip holds several elements of each tube";
   return "";
 }
 
@@ -48,6 +50,24 @@ double PlannedScene::longest() const {
   return elements > 0 ? elements * scene_.element_length : std::numeric_limits<double>::infinity();
 }
 
+void PlannedScene::start_from_default() {
+  struct Key {
+    const char *table, *key;
+    bool typed;
+  };
+  const ContactOptions& contact = scene_.contact;
+  const RunOptions& run = scene_.run;
+  for (const Key& k : {Key{"contact", "cutoff_nm", contact.cutoff > 0},
+                       Key{"contact", "nodes_per_element", contact.nodes > 0},
+                       Key{"contact", "precision", contact.precision.has_value()},
+                       Key{"run", "integrator", run.stepping.runge_kutta},
+                       Key{"run", "contact_every", run.stepping.contact_every > 1},
+                       Key{"run", "time_step_fs", run.time_step > 0}}) {
+    if (k.typed) remark(fmt::format("{}.{}: left to the program first", k.table, k.key));
+    take_away(k.table, k.key);
+  }
+}
+
 void PlannedScene::drop_what_is_not_there() {
   if (scene_.contact.law == "none" || features_.contact) return;
   if (features_.curvature * longest() > units::pi) {
@@ -61,7 +81,7 @@ void PlannedScene::lengthen(double times, const std::string& why) {
   if (!fixed_length(scene_).empty()) return;
   const double wanted = times * scene_.parameters().element_length, old = scene_.element_length;
   if (std::fabs(wanted / old - 1) < 1e-6) return;
-  const int overhang = scene_.twist || !scene_.loads.empty() ? 1 : 0;
+  const int overhang = scene_.twist || !scene_.loads.empty() || !scene_.grips.empty() ? 1 : 0;
   const double between = (elements_of(scene_) - overhang) * old;
   const long parts = std::max(2L, std::lround(between / wanted));
   const double length = between / static_cast<double>(parts);
@@ -94,8 +114,6 @@ void PlannedScene::finish() {
     Scene so_far = scene_of_text(text_, scene_.path);
     const Prepared p = prepare(so_far);
     const int every = so_far.run.stepping.contact_every;
-    // Whatever part of the limit the chart's default and this one's are. The chart's scenes are cold: a warm one's
-    // step is not lengthened.
     const double most =
                      is_warm(so_far) ? p.time_step / every : cold_step_fraction * inner_step_limit(p.limit, every),
                  chosen = std::min(step_ * p.time_step / every, most);

@@ -18,13 +18,14 @@ class PlannedScene {
   void take_away(const std::string& table, const std::string& key);
   void remark(std::string line) { why_.push_back(std::move(line)); }
 
+  // Leaves to the program what `plan` may change.
+  void start_from_default();
   // No contact for a lone tube that does not come back to itself.
   void drop_what_is_not_there();
-  // Elements so many times as long as the set's, which the chart's default has. As in the chart, what lies between
-  // the centres of the end elements stays as long as it is where loads act on them; else the whole tube does.
-  // Nothing where elements keep their length.
+  // Elements so many times as long as the set's. What lies between the centres of the end elements stays as long as it
+  // is where loads act on them; else the whole tube does. Nothing where elements keep their length.
   void lengthen(double times, const std::string& why);
-  void default_length() { lengthen(1, "as the chart's default"); }
+  void default_length() { lengthen(1, "as in the set"); }
   // Written at the end: nodes go with the length of the elements, the time step with everything.
   void set_nodes(double per_nm, const std::string& why) { nodes_per_nm_ = per_nm, nodes_why_ = why; }
   void set_step(double times_default, const std::string& why) { step_ = times_default, step_why_ = why; }

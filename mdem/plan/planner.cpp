@@ -4,408 +4,291 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <limits>
 #include <regex>
 
 #include "model/error.hpp"
-#include "plan/knobs.hpp"
-#include "scene/dissipation.hpp"
+#include "plan/model_changes.hpp"
+#include "plan/outcome.hpp"
+#include "plan/pilot_scene.hpp"
+#include "plan/scene_edit.hpp"
 #include "scene/scene_toml.hpp"
 
 namespace ropewalk {
 namespace {
 
-// --- which scene of the chart ---
+constexpr double pilots_in_all = 11.5;  // runs of the default model that all pilots take together, about, and the seeds
+constexpr int seeds = 3;
+constexpr double least_error = 1e-3;              // what a promise never goes below
+constexpr double caution = 1.3, more_caution = 2;  // factors of promises: of the whole scene, and of a smaller one
+constexpr double worth = 0.9;                      // of the default's time: a smaller gain is no gain
 
-constexpr double margin = 1.1;        // of what a charted scene covers
-constexpr double crossing_slack = 1;  // deg
-constexpr double radius_slack = 0.2;
-
-// Why a charted scene does not cover another one; empty: it does.
-std::string uncovered(const ChartedScene& c, const SceneFeatures& f) {
-  if (c.contact != f.contact) return c.contact ? "has contact" : "has no contact";
-  if (std::fabs(f.radius / c.radius - 1) > radius_slack) return fmt::format("tubes of radius {:.3g} nm", c.radius);
-  if (f.curvature > margin * c.curvature + 1e-4) return fmt::format("curvature up to {:.3g} 1/nm", c.curvature);
-  if (f.twist > margin * c.twist + 1e-4) return fmt::format("twist up to {:.3g} rad/nm", c.twist);
-  if (f.contact && (f.crossing_from < c.crossing_from - crossing_slack ||
-                    f.crossing_to > margin * c.crossing_to + crossing_slack))
-    return fmt::format("crossing angles of {:g} to {:g} deg", c.crossing_from, c.crossing_to);
-  return "";
+Scene scene_with_features(const std::string& text, const std::string& path, SceneFeatures& features) {
+  Scene scene = scene_of_text(text, path);
+  const Prepared prepared = prepare(scene);
+  features = features_of(scene, prepared);
+  return scene;
 }
 
-double distance(const ChartedScene& c, const SceneFeatures& f) {
-  const auto apart = [](double a, double b, double floor) {
-    return std::fabs(std::log((a + floor) / (b + floor)));
-  };
-  return apart(c.curvature, f.curvature, 1e-3) + apart(c.twist, f.twist, 1e-3) + 0.5 * apart(c.tubes, f.tubes, 0);
+bool has_random_numbers(const Scene& scene, const std::string& text) {
+  if (is_warm(scene) || scene.thermostat) return true;
+  static const std::regex noise("(^|\n)\\s*perturbation_nm\\s*=\\s*[0-9.eE+-]*[1-9]");
+  return std::regex_search(text, noise);
 }
 
-double length_of(const ChartedScene& c) { return c.standard()->elements * c.standard()->element_length / c.tubes; }
+class Planner {
+ public:
+  Planner(const Scene& scene, const PlanRequest& request, double seconds, double affordable, const RunPilots& run)
+      : request_(request), run_(run) {
+    scene_ = scene_with_features(scene.text, scene.path, features_);
+    const PilotScene pilot = pilot_scene(scene_, seconds, affordable / (pilots_in_all + (has_random_numbers(scene_, scene_.text) ? seeds - 1 : 0)));
+    plan_.pilots = pilot.words;
+    plan_.until = pilot.until;
+    pilot_ = scene_with_features(pilot.text, scene.path, pilot_features_);
+    relaxes_ = scene_.run.mode == RunOptions::Mode::relax;
+    for (const std::string& name : request.observables)
+      if (name != "energy") column_of_log(name, {"", 0, "--observables"});
+  }
 
-// In tubes less than half as long the ends count for more: the default's twist angle is 4 % off in seven tubes of
-// 8 nm, and less than 1 % in longer ropes.
-bool is_short(const ChartedScene& c, const SceneFeatures& f) { return length_of(c) < 0.5 * f.length; }
+  Plan go() {
+    const std::vector<ModelChange> finest = finest_changes(pilot_, pilot_features_);
+    halves_ = kept_length(pilot_).empty();
+    if (!halves_)
+      plan_.remarks.push_back("The error of the element length is not in the promise: " + kept_length(pilot_) + ".");
+    std::vector<std::string> not_tried;
+    const std::vector<ModelChange> cheaper = cheaper_changes(pilot_, pilot_features_, request_.end_state, not_tried);
+    for (const std::string& words : not_tried) plan_.remarks.push_back("Not tried: " + words + ".");
 
-bool nearer(const ChartedScene& a, const ChartedScene& b, const SceneFeatures& f) {
-  if ((a.driven_by == f.driven_by) != (b.driven_by == f.driven_by)) return a.driven_by == f.driven_by;
-  if (is_short(a, f) != is_short(b, f)) return is_short(b, f);
-  return distance(a, f) < distance(b, f);
-}
+    first_pilots(finest, cheaper);
+    if (!plan_.standard.holds && halves_ && !relaxes_) try_together({finest.front()});
+    combine(cheaper);
+    choose();
+    return std::move(plan_);
+  }
 
-const ChartedScene* nearest(const std::vector<ChartedScene>& chart, const SceneFeatures& f, Plan& plan) {
-  const ChartedScene* best = nullptr;
-  for (const ChartedScene& c : chart) {
-    if (!c.standard()) continue;
-    const std::string why = uncovered(c, f);
-    if (!why.empty()) {
-      plan.why.push_back(fmt::format("chart scene {} does not cover this one: {}", c.name, why));
-    } else if (!best || nearer(c, *best, f)) {
-      best = &c;
+ private:
+  // --- pilots ---
+
+  static std::string name_of(const std::vector<ModelChange>& changes) {
+    std::string name;
+    for (const ModelChange& c : changes) name += (name.empty() ? "" : ", ") + c.name;
+    return name.empty() ? "default" : name;
+  }
+
+  PlannedModel model_of(const std::vector<ModelChange>& changes) const {
+    PlannedModel m;
+    m.name = name_of(changes);
+    m.pilot_text = text_with(pilot_, pilot_features_, changes);
+    m.text = text_with(scene_, features_, changes, &m.why);
+    return m;
+  }
+
+  Outcome outcome(const PilotEnd& end, bool relaxed) const {
+    std::vector<std::string> observables = request_.observables;
+    if (observables.empty()) {
+      observables = usual_observables();
+      if (scene_.twist) observables.erase(std::find(observables.begin(), observables.end(), "torque_upper_nN_nm"));
+    }
+    return outcome_of(end.log, observables, relaxed);
+  }
+  Outcome outcome(const PlannedModel& m, const PilotEnd& end) const {
+    return outcome(end, relaxes_ || m.pilot_text.find("\nmode = \"relax\"") != std::string::npos);
+  }
+
+  // The finest model, the default with its seeds, and every change alone.
+  void first_pilots(const std::vector<ModelChange>& finest, const std::vector<ModelChange>& cheaper) {
+    plan_.finest = model_of(finest);
+    plan_.standard = model_of({});
+    std::vector<PilotTask> tasks = {task(plan_.finest), task(plan_.standard)};
+    const int more = has_random_numbers(pilot_, pilot_.text) ? seeds - 1 : 0;
+    for (int k = 1; k <= more; ++k) tasks.push_back(by_chance(k));
+    for (const ModelChange& change : cheaper) {
+      plan_.tried.push_back(model_of({change}));
+      tasks.push_back(task(plan_.tried.back()));
+    }
+    const std::vector<PilotEnd> ends = run_(tasks);
+    for (const std::size_t k : {std::size_t{1}, std::size_t{0}})
+      if (!ends[k].failure.empty() || ends[k].log.empty())
+        throw InputError({scene_.path, 0, ""}, fmt::format("a pilot ({}) failed: {}", tasks[k].name, ends[k].failure),
+                         "try the scene with `ropewalk run`");
+    plan_.finest.seconds = ends[0].seconds;
+    finest_ = outcome(plan_.finest, ends[0]);
+    add_scatter(ends, more);
+    const std::map<std::string, double> off = differences(outcome(plan_.standard, ends[1]), finest_);
+    for (const auto& [name, error] : off) own_[name] = halves_ ? error / 3 : 0;
+    judge(plan_.standard, ends[1]);
+    for (std::size_t k = 0; k < plan_.tried.size(); ++k)
+      judge(plan_.tried[k], ends[2 + static_cast<std::size_t>(more) + k]);
+  }
+
+  // The default model once more, as good as before. Another seed would make another film; there a step that is a little
+  // shorter does, which leads to other motions as soon as they are chaotic.
+  PilotTask by_chance(int k) const {
+    if (pilot_.kind == "film") return task(model_of({step_change(1 - 0.03 * k)}));
+    PilotTask seeded = task(plan_.standard);
+    const std::uint64_t seed = pilot_.start.seed + static_cast<std::uint64_t>(k);
+    seeded.name = fmt::format("default, seed {}", seed);
+    seeded.text = with_value(seeded.text, "start.seed", std::to_string(seed), pilot_.path);
+    return seeded;
+  }
+
+  PilotTask task(const PlannedModel& m) const { return {m.name, m.pilot_text, plan_.until}; }
+
+  void add_scatter(const std::vector<PilotEnd>& ends, int more) {
+    std::vector<Outcome> all;
+    for (int k = 0; k <= more; ++k) {
+      const PilotEnd& end = ends[static_cast<std::size_t>(1 + k)];
+      if (end.failure.empty() && !end.log.empty()) all.push_back(outcome(plan_.standard, end));
+    }
+    if (all.size() < 2) return;
+    for (const auto& [name, v] : finest_.of) {
+      double sum = 0, squares = 0;
+      for (const Outcome& o : all) sum += o.of.at(name).value / static_cast<double>(all.size());
+      for (const Outcome& o : all) squares += std::pow(o.of.at(name).value - sum, 2);
+      if (v.scale > 0 && std::isfinite(squares))
+        plan_.scatter[name] = std::sqrt(squares / static_cast<double>(all.size() - 1)) / v.scale;
     }
   }
-  if (best && best->driven_by != f.driven_by)
-    plan.driven_otherwise =
-        fmt::format("scene {} is driven by {}, this one by {}: angles and moments may be farther off than expected",
-                    best->name, words_of(best->driven_by), words_of(f.driven_by));
-  return best;
-}
 
-// --- the knobs ---
-
-struct Option {
-  const ChartedModel* model = nullptr;
-  std::map<std::string, double> change;  // of each observable, relative, from the knob's best value
-  double cost = 1;                       // in that of the default
-};
-
-// What the chart has of one knob.
-struct KnobOptions {
-  const Knob* knob = nullptr;
-  std::vector<Option> options;
-  std::map<std::string, double> standard;  // change of the default's value
-};
-
-// What the chart takes errors of an observable relative to: the reference, or what else it chose.
-double scale_of(const ChartedScene& c, const std::string& observable) {
-  for (const ChartedModel& m : c.models) {
-    const auto at = m.finest.find(observable);
-    if (at == m.finest.end()) continue;
-    const double off = std::fabs(at->second.value - at->second.reference);
-    if (at->second.error > 0 && off > 0) return off / at->second.error;
+  double scatter(const std::string& name) const {
+    const auto at = plan_.scatter.find(name);
+    return at == plan_.scatter.end() ? 0 : at->second;
   }
-  const double reference = std::fabs(c.standard()->finest.at(observable).reference);
-  return reference > 0 ? reference : 1.0;
-}
 
-// Element-steps per ps with elements of this length: the stable step goes with damping and contact of the scene,
-// whose reach is set.
-double element_steps(Scene scene, const SceneFeatures& f, double length) {
-  scene.damping = same_dissipation(scene.damping, scene.element_length, length);
-  scene.element_length = length;
-  scene.run.time_step = 0;
-  scene.run.stepping = Stepping{};
-  scene.run.mass_scale = 1;
-  scene.contact.nodes = 0;
-  scene.contact.cutoff = 0;
-  if (!f.contact) scene.contact.law = "none";
-  const Prepared p = prepare(scene);
-  return p.topology.elements() / p.time_step;
-}
-
-// Elements that stay as they are count as the shortest of the chart that are not shorter.
-void keep_length(const Scene& scene, const ChartedModel& standard, KnobOptions& k) {
-  const double ratio = scene.element_length / scene.parameters().element_length;
-  std::vector<Option> kept;
-  for (const Option& o : k.options)
-    if (o.model->element_length / standard.element_length > ratio * (1 - 1e-3) &&
-        (kept.empty() || o.model->element_length < kept[0].model->element_length))
-      kept = {o};
-  k.options = std::move(kept);
-}
-
-// In the time that the chart needs; elements of another length also cost what the scene makes of them.
-double cost_of(const Knob& knob, const ChartedModel& m, const KnobUse& use) {
-  const ChartedModel& standard = *use.charted.standard();
-  if (knob.id != Knob::Id::length || !fixed_length(use.scene).empty()) return m.cpu_per_ns / standard.cpu_per_ns;
-  const double own = use.scene.parameters().element_length;
-  return m.ns_per_element_step / standard.ns_per_element_step *
-         element_steps(use.scene, use.features, own * m.element_length / standard.element_length) /
-         element_steps(use.scene, use.features, own);
-}
-
-// Of the models, and the default as one of them.
-KnobOptions options_of(const Knob& knob, std::vector<const ChartedModel*> models, const KnobUse& use,
-                       const std::vector<std::string>& observables) {
-  const ChartedModel& standard = *use.charted.standard();
-  models.push_back(&standard);
-  const ChartedModel* best = *std::max_element(models.begin(), models.end(), [&](const auto* a, const auto* b) {
-    return knob.quality(*a) < knob.quality(*b);
-  });
-  KnobOptions k{&knob, {}, {}};
-  for (const ChartedModel* m : models) {
-    Option o{m, {}, cost_of(knob, *m, use)};
-    for (const std::string& w : observables) {
-      const double from = best->finest.at(w).value, scale = scale_of(use.charted, w);
-      o.change[w] = std::fabs(m->finest.at(w).value - from) / scale;
+  void judge(PlannedModel& m, const PilotEnd& end) const {
+    m.seconds = end.seconds;
+    m.failure = end.failure;
+    if (m.failure.empty() && end.log.empty()) m.failure = "it has no log";
+    if (!m.failure.empty()) return;
+    m.error = differences(outcome(m, end), finest_);
+    m.holds = true;
+    for (const auto& [name, error] : m.error) {
+      // Of the difference, what seeds make of it anyway is no error of the model.
+      const double by_chance = 2 * scatter(name), model = std::max(0.0, error - by_chance) + own_.at(name);
+      const double promised = (plan_.pilots.empty() ? caution : more_caution) * model + least_error;
+      m.expect[name] = promised + by_chance;
+      m.holds = m.holds && promised <= request_.error;
     }
-    if (m == &standard) k.standard = o.change;
-    k.options.push_back(std::move(o));
   }
-  std::sort(k.options.begin(), k.options.end(), [](const Option& a, const Option& b) { return a.cost < b.cost; });
-  if (knob.id == Knob::Id::length && !fixed_length(use.scene).empty()) keep_length(use.scene, standard, k);
-  return k;
-}
 
-std::vector<KnobOptions> knobs_of(const KnobUse& use, const std::vector<std::string>& observables) {
-  std::vector<KnobOptions> out;
-  for (const Knob& knob : all_knobs()) {
-    std::vector<const ChartedModel*> models;
-    for (const ChartedModel& m : use.charted.models) {
-      const auto has = [&](const std::string& o) { return m.finest.count(o) > 0; };
-      if (knob_of(m) != &knob || !std::all_of(observables.begin(), observables.end(), has)) continue;
-      // Another law is another physics, not another accuracy.
-      if (m.law == use.charted.standard()->law && knob.applies(use, m)) models.push_back(&m);
+  PlannedModel& try_together(const std::vector<ModelChange>& changes) {
+    plan_.tried.push_back(model_of(changes));
+    PlannedModel& m = plan_.tried.back();
+    judge(m, run_({task(m)}).front());
+    return m;
+  }
+
+  // --- the choice ---
+
+  // All changes that hold the error alone, the cheapest of each key; without the one that is farthest off where they do
+  // not hold it together.
+  void combine(const std::vector<ModelChange>& cheaper) {
+    std::vector<std::size_t> taken;  // of `cheaper` and of plan_.tried alike
+    for (std::size_t k = 0; k < cheaper.size(); ++k) {
+      const PlannedModel& m = plan_.tried[k];
+      if (!m.holds || m.seconds > 0.97 * plan_.standard.seconds) continue;
+      const auto same = std::find_if(taken.begin(), taken.end(), [&](std::size_t t) { return excludes(cheaper[t], cheaper[k]); });
+      if (same == taken.end())
+        taken.push_back(k);
+      else if (m.seconds < plan_.tried[*same].seconds)
+        *same = k;
     }
-    if (!models.empty()) out.push_back(options_of(knob, models, use, observables));
+    while (taken.size() > 1) {
+      std::vector<ModelChange> changes;
+      for (const std::size_t k : taken) changes.push_back(cheaper[k]);
+      if (try_together(changes).holds) return;
+      taken.erase(std::max_element(taken.begin(), taken.end(), [&](std::size_t a, std::size_t b) {
+        return largest(plan_.tried[a]) < largest(plan_.tried[b]);
+      }));
+    }
   }
-  return out;
-}
 
-// Of the default's error, what its knobs do not explain, and what another scene may add.
-std::map<std::string, double> unexplained(const ChartedScene& c, const std::vector<KnobOptions>& knobs,
-                                          const std::vector<std::string>& observables) {
-  std::map<std::string, double> left;
-  for (const std::string& w : observables) {
-    double rest = c.standard()->finest.at(w).error;
-    for (const KnobOptions& k : knobs) rest -= k.standard.at(w);
-    left[w] = std::max(0.0, rest) + (c.contact ? between_scenes : 0.0);
+  static bool excludes(const ModelChange& a, const ModelChange& b) {
+    const auto timed = [](const ModelChange& c) { return c.key == "mass_scale" || c.key == "mode"; };
+    return a.key == b.key || (timed(a) && timed(b));
   }
-  return left;
-}
 
-bool longer_than_charted(const ChartedScene& c, const Scene& scene) {
-  if (fixed_length(scene).empty()) return false;
-  const double ratio = scene.element_length / scene.parameters().element_length;
-  return std::none_of(c.models.begin(), c.models.end(), [&](const ChartedModel& m) {
-    const Knob* knob = knob_of(m);
-    return ((knob && knob->id == Knob::Id::length) || &m == c.standard()) &&
-           m.element_length / c.standard()->element_length > ratio * (1 - 1e-3);
-  });
-}
-
-// --- the choice ---
-
-struct Choice {
-  std::vector<const Option*> options;
-  std::map<std::string, double> error;
-  double cost = 1;
-  double largest() const {
-    double most = 0;
-    for (const auto& [name, e] : error) most = std::max(most, e);
+  static double largest(const PlannedModel& m) {
+    double most = m.failure.empty() ? 0 : INFINITY;
+    for (const auto& [name, e] : m.expect) most = std::max(most, e);
     return most;
   }
+
+  void choose() {
+    plan_.chosen = plan_.standard;
+    for (const PlannedModel& m : plan_.tried) {
+      if (!m.failure.empty()) continue;
+      const PlannedModel& best = plan_.chosen;
+      const bool better = m.holds ? !best.holds || m.seconds < best.seconds : !best.holds && largest(m) < largest(best);
+      if (better) plan_.chosen = m;
+    }
+    if (plan_.standard.holds && plan_.chosen.seconds > worth * plan_.standard.seconds) plan_.chosen = plan_.standard;
+    for (const auto& [name, s] : plan_.scatter)
+      if (2 * s > request_.error)
+        plan_.remarks.push_back(fmt::format(
+            "Chance alone makes runs differ by {:.2g} % in {} (one standard deviation): a single run is no better than that, whatever "
+            "its model.",
+            100 * s, name, 100 * request_.error));
+    if (!plan_.chosen.holds)
+      plan_.remarks.push_back(
+          fmt::format("No model that was tried holds {:g} %: this is the most accurate one.", 100 * request_.error));
+    if (!plan_.pilots.empty() && scene_.twist && scene_.source->is_parallel()) add_buckling();
+  }
+
+  // Pilots that are shorter stay straight where the whole rope buckles.
+  void add_buckling() {
+    const TwistLoad& twist = *scene_.twist;
+    const BondStiffness& k = scene_.parameters().bond;
+    const double each = twist.reading == TwistLoad::Reading::per_tube ? twist.moment : twist.moment / features_.tubes;
+    const double theory = 2 * units::pi * k.bend / features_.length;
+    if (each > theory)
+      plan_.remarks.push_back(fmt::format(
+          "The whole rope may buckle: tubes that slide do so from {:.3g} nN nm per tube on, by theory. The promise is for the "
+          "time before: when a rope buckles depends on its noise.",
+          theory / units::nN_nm));
+  }
+
+  const PlanRequest& request_;
+  const RunPilots& run_;
+  Scene scene_, pilot_;
+  SceneFeatures features_, pilot_features_;
+  bool relaxes_ = false, halves_ = false;
+  Outcome finest_;
+  std::map<std::string, double> own_;  // what the finest model is off
+  Plan plan_;
 };
-
-// A relaxation has neither time nor masses. Two levels at more than the default part of their limit are in no
-// chart: a rope of 37 tubes blew up at 0.9 of it.
-bool contradicts_itself(const std::vector<KnobOptions>& knobs, const Choice& c, const ChartedModel& standard) {
-  bool relaxed = false, timed = false, levels = false, long_steps = false;
-  for (std::size_t k = 0; k < knobs.size(); ++k) {
-    const Knob& knob = *knobs[k].knob;
-    const bool changed = c.options[k]->model != &standard;
-    relaxed |= knob.id == Knob::Id::mode && changed;
-    levels |= knob.id == Knob::Id::levels && changed;
-    long_steps |= knob.id == Knob::Id::step && c.options[k]->model->time_step > standard.time_step;
-    timed |= knob.in_time && changed;
-  }
-  return (relaxed && timed) || (levels && long_steps);
-}
-
-// The cheapest that holds the error; where none does, the most accurate.
-Choice choose(const std::vector<KnobOptions>& knobs, const std::map<std::string, double>& rest, double limit,
-              const ChartedModel& standard) {
-  std::vector<double> least(knobs.size() + 1, 1.0);  // cost of the knobs from here on, at least
-  for (std::size_t k = knobs.size(); k-- > 0;) least[k] = least[k + 1] * knobs[k].options.front().cost;
-  Choice best, now;
-  now.error = rest;
-  bool any = false, best_holds = false;
-  const std::function<void(std::size_t)> choose_from = [&](std::size_t k) {
-    if (best_holds && (now.largest() > limit || now.cost * least[k] >= best.cost)) return;
-    if (k == knobs.size()) {
-      if (contradicts_itself(knobs, now, standard)) return;
-      const bool holds = now.largest() <= limit;
-      const bool better = holds ? !best_holds || now.cost < best.cost : now.largest() < best.largest();
-      if (!any || better) best = now, best_holds = holds, any = true;
-      return;
-    }
-    for (const Option& o : knobs[k].options) {
-      const Choice before = now;
-      for (const auto& [name, change] : o.change) now.error[name] += change;
-      now.cost *= o.cost;
-      now.options.push_back(&o);
-      choose_from(k + 1);
-      now = before;
-    }
-  };
-  choose_from(0);
-  return best;
-}
-
-// --- the text ---
-
-std::string expectations(const std::map<std::string, double>& expected, bool energy_above_start, double asked) {
-  std::string text = fmt::format("# plan: asked {:.6g}\n", asked);
-  for (const auto& [name, error] : expected)
-    text += fmt::format("# plan: expect {} {:.6g}\n",
-                        name == "energy" && !energy_above_start ? "total_energy" : name, error);
-  return text;
-}
-
-std::string header_of(const Plan& plan, const PlanRequest& request) {
-  if (plan.stands_for.empty()) return "# The default model: the chart has no scene like this one.\n";
-  const std::string caution = plan.driven_otherwise.empty() ? "" : "# " + plan.driven_otherwise + ".\n";
-  return fmt::format("# Planned for an error of {:g} %{}, by scene {} of the chart.\n{}{}", 100 * request.error,
-                     plan.holds ? "" : ", which no model of the chart meets", plan.stands_for, caution,
-                     expectations(plan.expected, plan.energy_above_start, request.error));
-}
-
-std::string standard_header_of(const Plan& plan, const PlanRequest& request) {
-  return fmt::format("# The default model: it meets an error of {:g} %, by scene {} of the chart.\n{}",
-                     100 * request.error, plan.stands_for,
-                     expectations(plan.standard_expected, plan.energy_above_start, request.error));
-}
-
-// The keys of all knobs as the program has them by default, and the chart's default model too.
-void start_from_default(PlannedScene& w) {
-  for (const Knob& knob : all_knobs())
-    for (const Knob::Key& k : knob.keys) {
-      if (k.typed(w.scene())) w.remark(fmt::format("{}.{}: left to the program first", k.table, k.key));
-      w.take_away(k.table, k.key);
-    }
-}
-
-void write(const KnobOptions& k, const Option& option, const ChartedModel& standard, PlannedScene& w) {
-  const std::string why =
-      fmt::format("chart model {}, {:.2f} of the default's time", option.model->name, option.cost);
-  if (option.model != &standard)
-    k.knob->write(w, *option.model, standard, why);
-  else if (k.knob->id == Knob::Id::length)
-    w.default_length();
-}
-
-std::vector<std::string> observables_of(const ChartedScene& c, const PlanRequest& request) {
-  std::string known;
-  std::vector<std::string> all;
-  for (const auto& [name, value] : c.standard()->finest) {
-    all.push_back(name);
-    known += (known.empty() ? "" : ", ") + name;
-  }
-  for (const std::string& o : request.observables)
-    if (!std::count(all.begin(), all.end(), o))
-      throw InputError({"", 0, "--observables"},
-                       fmt::format("the chart has no \"{}\" for scenes like {}", o, c.name), "choose of " + known);
-  return request.observables.empty() ? all : request.observables;
-}
-
-// Where no rotation is prescribed, the loads give the end moment, or it is zero. Its error in the chart then bounds
-// that of the twist, and no run can check it.
-void leave_out_given_moment(const SceneFeatures& f, Plan& plan) {
-  const auto moment = plan.expected.find("end_moment");
-  if (f.driven_by == DrivenBy::rotation || moment == plan.expected.end()) return;
-  plan.why.push_back(
-      fmt::format("end_moment: loads give it here; its error in the chart, {:.2f} %, is to be expected of the "
-                  "twist instead",
-                  100 * moment->second));
-  plan.expected.erase(moment);
-  plan.standard_expected.erase("end_moment");
-}
-
-// What the chart has of the choice and of the default.
-void promise(const ChartedScene& c, const std::vector<KnobOptions>& knobs,
-             const std::map<std::string, double>& rest, const Choice& choice,
-             const std::vector<std::string>& observables, double limit, Plan& plan) {
-  plan.expected = choice.error;
-  plan.holds = choice.largest() <= limit;
-  plan.cost = choice.cost;
-  plan.ns_per_element_step = c.standard()->ns_per_element_step;
-  for (const Option* o : choice.options)
-    plan.ns_per_element_step *= o->model->ns_per_element_step / c.standard()->ns_per_element_step;
-  Choice standard;
-  standard.error = rest;
-  for (const KnobOptions& k : knobs)  // elements that cannot be others leave no choice
-    for (const auto& [name, change] : k.options.size() == 1 ? k.options[0].change : k.standard)
-      standard.error[name] += change;
-  plan.standard_expected = standard.error;
-  plan.standard_holds = standard.largest() <= limit;
-  for (const std::string& o : observables) {
-    const auto at = c.standard()->atoms.find(o);
-    if (at != c.standard()->atoms.end()) plan.atoms[o] = at->second.error;
-  }
-}
 
 }  // namespace
 
-Plan plan_scene(const Scene& scene, const std::vector<ChartedScene>& chart, const PlanRequest& request) {
-  Plan plan;
-  Scene built = scene;  // which sets the reach of its damping
-  const Prepared prepared = prepare(built);
-  const SceneFeatures f = features_of(built, prepared);
-  plan.why = f.why;
-  PlannedScene w(built, f);
-  start_from_default(w);
-  w.drop_what_is_not_there();
-  PlannedScene standard = w;
-  standard.default_length();
-  const bool line_or_none = !f.contact || scene.contact.law == "line";
-  const ChartedScene* c = f.not_estimable.empty() && line_or_none ? nearest(chart, f, plan) : nullptr;
-  if (c && longer_than_charted(*c, scene)) {
-    plan.why.push_back(fmt::format("elements of {:.4g} nm, which stay since {}, are longer than any in scene {}",
-                                   scene.element_length, fixed_length(scene), c->name));
-    c = nullptr;
-  }
-  if (!c) {
-    plan.driven_otherwise.clear();
-    if (!f.not_estimable.empty()) plan.why.push_back("the chart has nothing like it: " + f.not_estimable);
-    if (!line_or_none) plan.why.push_back("the chart varies law \"line\", and this scene has another");
-    plan.why.push_back("no point of the chart is near: the default model is taken, and no error is promised");
-  } else {
-    plan.stands_for = c->name;
-    plan.energy_above_start = c->energy_above_start;
-    const std::vector<std::string> observables = observables_of(*c, request);
-    const std::vector<KnobOptions> knobs = knobs_of({*c, built, f, request.end_state}, observables);
-    const std::map<std::string, double> rest = unexplained(*c, knobs, observables);
-    const Choice choice = choose(knobs, rest, request.error, *c->standard());
-    for (std::size_t k = 0; k < knobs.size(); ++k) write(knobs[k], *choice.options[k], *c->standard(), w);
-    if (!fixed_length(scene).empty()) w.remark("element length stays: " + fixed_length(scene));
-    if (request.end_state && !needs_time(scene).empty()) w.remark("no relaxation: " + needs_time(scene));
-    if (request.end_state && f.sudden)
-      w.remark("masses stay: a load acts at once, and heavy tubes swing for longer");
-    promise(*c, knobs, rest, choice, observables, request.error, plan);
-    leave_out_given_moment(f, plan);
-  }
-  w.finish();
-  plan.why.insert(plan.why.end(), w.why().begin(), w.why().end());
-  plan.text = header_of(plan, request) + w.text();
-  plan.standard_text = standard_header_of(plan, request) + standard.text();
-  for (const std::string& text : {plan.text, plan.standard_text})
-    scene_of_text(text, scene.path);  // must be scenes
-  return plan;
+Plan plan_scene(const Scene& scene, const PlanRequest& request, double seconds, double affordable,
+                const RunPilots& run) {
+  return Planner(scene, request, seconds, affordable, run).go();
 }
 
-bool default_serves(const Plan& plan, double planned_seconds, double standard_seconds) {
-  constexpr double noise = 1.1;
-  return plan.standard_holds && standard_seconds <= noise * planned_seconds;
+std::string default_text(const Scene& scene) {
+  SceneFeatures features;
+  const Scene built = scene_with_features(scene.text, scene.path, features);
+  return text_with(built, features, {});
 }
 
 Expectations expectations_of(const std::string& text) {
   Expectations out;
-  const std::regex line("# plan: expect (\\S+) (\\S+)"), asked("# plan: asked (\\S+)");
+  const std::regex line("# plan: expect (\\S+) (\\S+)");
   for (auto at = std::sregex_iterator(text.begin(), text.end(), line); at != std::sregex_iterator(); ++at)
     out.errors[(*at)[1]] = std::strtod((*at)[2].str().c_str(), nullptr);
-  std::smatch found;
-  if (std::regex_search(text, found, asked)) out.asked = std::strtod(found[1].str().c_str(), nullptr);
+  const auto number = [&](const char* pattern) {
+    std::smatch found;
+    return std::regex_search(text, found, std::regex(pattern)) ? std::strtod(found[1].str().c_str(), nullptr) : 0.0;
+  };
+  out.asked = number("# plan: asked (\\S+)");
+  out.seconds = number("# plan: seconds (\\S+)");
   return out;
+}
+
+std::string expectation_lines(const Expectations& e) {
+  std::string text = fmt::format("# plan: asked {:.6g}\n", e.asked);
+  if (e.seconds > 0) text += fmt::format("# plan: seconds {:.4g}\n", e.seconds);
+  for (const auto& [name, error] : e.errors) text += fmt::format("# plan: expect {} {:.6g}\n", name, error);
+  return text;
 }
 
 }  // namespace ropewalk

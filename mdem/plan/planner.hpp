@@ -1,63 +1,78 @@
-// Which model a scene needs: of those that the chart has measured, the cheapest that holds an error.
+// Which model a scene needs: the cheapest that holds an error, found by pilots.
 //
-// The nearest scene of the chart stands for the scene to be planned. Nearest means, in this order: driven in the
-// same way, not much shorter, then alike in curvature, twist and number of tubes. There, a knob that is set to o
-// instead of its best value b changes an observable by |value(o) - value(b)|. The planner adds the sizes of these
-// changes over all knobs, and the part of the default's error against the finest model that no knob explains. It
-// multiplies the costs. How the element length changes the number of elements and the stable step follows from the
-// scene itself. That changes add up is an assumption; where they cancel, the sum is too large. spot_check() tests
-// it on a run.
+// A pilot is the scene itself, or a smaller one like it (pilot_scene.hpp), run with one model. The planner runs it with
+// the program's default, with the finest model, with every change that makes it cheaper, and with those together that
+// hold the error. The error of a model is the difference of its outcome (outcome.hpp) from the finest one's, plus what the
+// finest is off itself: a third of the default's difference where elements are halved, since the error of elements goes
+// as the square of their length. Where the scene has random numbers, the default runs three times,
+// with other seeds: what these runs differ by is chance, and no model can promise less for a single run.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
 
-#include "plan/chart.hpp"
-#include "plan/features.hpp"
+#include "io/log.hpp"
+#include "scene/scene.hpp"
 
 namespace ropewalk {
 
-// Added to the error of a rope, since it is not the rope of the chart. In five ropes outside of the chart the error
-// exceeded the sum over the knobs by at most 0.44 %, in the energy of ropes that start unrelaxed
-// (data/chart/README.md). Tubes that touch nothing stayed within the sums.
-inline constexpr double between_scenes = 0.005;
-
 struct PlanRequest {
   double error = 0.02;                   // largest, of each observable
-  std::vector<std::string> observables;  // empty: all that the chart has of the scene
+  std::vector<std::string> observables;  // "energy" and columns of the log; empty: usual_observables()
   bool end_state = false;                // the motion itself does not matter
 };
 
-struct Plan {
-  std::string stands_for;                  // scene of the chart; empty: none is near, and the model is the default
-  std::string driven_otherwise;            // what it means that the scene of the chart is driven in another way
-  bool holds = false;                      // whether the error is held, as the chart has it
-  std::map<std::string, double> expected;  // error by observable
-  bool energy_above_start = true;          // what "energy" is there
-  std::map<std::string, double> atoms;     // that of the chart's default model against atoms, where it has it
-  double ns_per_element_step = 0;          // of CPU time, on the chart's machine
-  double cost = 1;                         // CPU time per simulated time, in that of the default model
-  std::vector<std::string> why;            // one line for each choice
-  std::string text;                        // of the scene
-  // The same with the default model, and whether that holds the error too.
-  std::string standard_text;
-  std::map<std::string, double> standard_expected;
-  bool standard_holds = false;
+struct PilotTask {
+  std::string name, text;
+  double until = -1;  // ps; negative: to its end
+};
+struct PilotEnd {
+  double seconds = 0;  // of processor time
+  std::vector<LogRow> log;
+  std::string failure;  // empty: it came to its end
+};
+// Runs pilots side by side.
+using RunPilots = std::function<std::vector<PilotEnd>(const std::vector<PilotTask>&)>;
+
+struct PlannedModel {
+  std::string name;
+  double seconds = 0;                    // of its pilot
+  std::map<std::string, double> error;   // found in the pilot, by observable
+  std::map<std::string, double> expect;  // what is promised
+  bool holds = false;
+  std::string failure;
+  std::string text, pilot_text;
+  std::vector<std::string> why;  // a line for each change
 };
 
-// Whether the default model is to be taken in the place of the planned one: it holds the error, and takes no
-// longer, or by less than timings are worth (a tenth).
-bool default_serves(const Plan& plan, double planned_seconds, double standard_seconds);
+struct Plan {
+  std::string pilots;                     // what they were: "19 of 91 tubes"; empty: the whole scene
+  double until = -1;                      // ps, where they ended; negative: at the scene's end
+  std::map<std::string, double> scatter;  // of runs that differ by chance, a standard deviation, relative
+  PlannedModel finest, standard;
+  std::vector<PlannedModel> tried;  // the others, in the order in which they were
+  PlannedModel chosen;
+  std::vector<std::string> remarks;  // sentences
+};
 
-// `scene` with its text. Throws InputError for an observable that the chart does not have.
-Plan plan_scene(const Scene& scene, const std::vector<ChartedScene>& chart, const PlanRequest& request);
+// `scene` with its text; `seconds`: what its run takes with the default model; `affordable`: what all pilots may take.
+// Throws InputError where an observable does not exist or a pilot of the default model fails.
+Plan plan_scene(const Scene& scene, const PlanRequest& request, double seconds, double affordable,
+                const RunPilots& run);
+
+// The text of the scene with the program's default model.
+std::string default_text(const Scene& scene);
 
 // What stands in a planned scene's text about itself; nothing in others.
 struct Expectations {
   double asked = 0;                      // the error that was to be held
-  std::map<std::string, double> errors;  // that the chart lets one expect, by observable
+  double seconds = 0;                    // processor time promised; 0: none
+  std::map<std::string, double> errors;  // promised, by observable
 };
 Expectations expectations_of(const std::string& text);
+// These lines, to be set before the text of a scene.
+std::string expectation_lines(const Expectations& expectations);
 
 }  // namespace ropewalk

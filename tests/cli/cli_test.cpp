@@ -168,27 +168,22 @@ TEST_F(Cli, TwoLevelsResumeBitForBit) {
   EXPECT_EQ(Json::parse(bench.out).at("contact_every"), 3);
 }
 
+// The whole way of a user: plan, run as planned, hold the run against a short finer one and against the finest model.
 TEST_F(Cli, PlanRunAndCheck) {
-  const std::string chart = " --chart " ROPEWALK_SOURCE_DIR "/tests/unit/chart";
   spit(dir / "s.toml",
        "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[rope]\ntubes = 7\nlength_nm = 13.6\n"
        "[twist]\nmoment_nN_nm = 6\nrate_nN_nm_per_ps = 1\nhold_ps = 4\n");
-  const Outcome plan = run("plan s.toml --error 4%" + chart);
+  const Outcome plan = run("plan s.toml --error 4% --finest f.toml");
   ASSERT_EQ(plan.code, 0) << plan.err;
-  EXPECT_NE(plan.out.find("scene bundle of the chart stands for this one"), std::string::npos) << plan.out;
-  std::smatch promised;
-  for (const char* what : {"planned", "default model"}) {
-    const std::regex line(
-        std::string(what) +
-        R"(: [0-9]+ elements, ([0-9]+) steps, ([0-9.e-]+) s of processor time \(([0-9.e-]+) s in)");
-    ASSERT_TRUE(std::regex_search(plan.out, promised, line)) << plan.out;
-    EXPECT_GT(std::stod(promised[2]), std::stod(promised[3])) << "a run starts, writes and reports as well";
-  }
-  for (const auto& entry : fs::directory_iterator(dir))
-    EXPECT_EQ(entry.path().string().find("timing"), std::string::npos) << entry.path();
-  EXPECT_EQ(run("plan s.toml --error 4%" + chart).code, 2) << "an existing file must stand";
-  EXPECT_EQ(run("plan s.toml --error 4 -o t.toml" + chart).code, 2);
-  EXPECT_EQ(run("plan s.toml -o t.toml --chart nowhere").code, 2);
+  EXPECT_NE(plan.out.find("pilots: the whole scene"), std::string::npos) << plan.out;
+  EXPECT_TRUE(std::regex_search(plan.out, std::regex("\ndefault +1.00 .* %.* holds\n"))) << plan.out;
+  EXPECT_NE(plan.out.find("Not tried: longer elements: tubes would have fewer than 8"), std::string::npos) << plan.out;
+  EXPECT_NE(plan.out.find("processor time promised"), std::string::npos) << plan.out;
+  EXPECT_EQ(run("plan s.toml --error 4%").code, 2) << "an existing file must stand";
+  EXPECT_EQ(run("plan s.toml -o t.toml --finest f.toml").code, 2);
+  EXPECT_EQ(run("plan s.toml --error 4 -o t.toml").code, 2);
+  EXPECT_EQ(run("plan s.toml -o t.toml --observables colour").code, 2);
+  EXPECT_FALSE(fs::exists(dir / "t.toml"));
   EXPECT_EQ(run("plan").code, 2);
   ASSERT_EQ(run("run s-planned.toml --out d --quiet").code, 0) << slurp(dir / "stderr.txt");
   const Outcome check = run("plan --check d --stretch 1");
@@ -205,32 +200,12 @@ TEST_F(Cli, PlanRunAndCheck) {
   EXPECT_EQ(row[2], std::stod(row[1]) <= 4 ? "held" : "not");
   EXPECT_NE(run("observe d").out.find("% asked for"), std::string::npos);
   EXPECT_EQ(run("observe d --json").out.find("asked for"), std::string::npos);
-}
-
-// A chart that calls small steps cheap, which take twice the time in the scene: the default stands.
-TEST_F(Cli, PlanIsNeverDearerThanTheDefault) {
-  const std::string from = ROPEWALK_SOURCE_DIR "/tests/unit/chart/";
-  std::string points = slurp(from + "points.csv");
-  const std::string honest = "7000000,20,500,,", wrong = "7000000,0.1,500,,";
-  for (std::size_t at = 0; (at = points.find("bundle,step-0.3", at)) != std::string::npos; ++at) {
-    const std::size_t cost = points.find(honest, at);
-    ASSERT_NE(cost, std::string::npos);
-    points.replace(cost, honest.size(), wrong);
-  }
-  fs::create_directories(dir / "chart");
-  spit(dir / "chart/points.csv", points);
-  fs::copy_file(from + "scenes.csv", dir / "chart/scenes.csv");
-  spit(dir / "s.toml",
-       "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[rope]\ntubes = 7\nlength_nm = 13.6\n"
-       "[twist]\nmoment_nN_nm = 6\nrate_nN_nm_per_ps = 0.1\nhold_ps = 400\n[run]\nlog_every_ps = 100\n"
-       "frames_every_ps = 100\n");
-  const Outcome plan = run("plan s.toml --error 1.1% --chart chart");
-  ASSERT_EQ(plan.code, 0) << plan.err;
-  EXPECT_NE(plan.out.find("chart model step-0.3"), std::string::npos) << plan.out;
-  EXPECT_NE(plan.out.find("the default model is taken"), std::string::npos) << plan.out;
-  const std::string text = slurp(dir / "s-planned.toml");
-  EXPECT_EQ(text.find("time_step_fs"), std::string::npos) << text;
-  EXPECT_NE(text.find("# plan: expect energy 0.01"), std::string::npos) << text;
+  ASSERT_EQ(run("run f.toml --out e --quiet").code, 0);
+  const Outcome against = run("plan --check d --against e");
+  EXPECT_NE(against.out.find("4 % asked for, at most"), std::string::npos) << against.out << against.err;
+  EXPECT_NE(against.out.find(" % seen: held"), std::string::npos) << against.out;
+  EXPECT_NE(against.out.find("s of processor time promised; the run took"), std::string::npos) << against.out;
+  EXPECT_EQ(run("plan --against e").code, 2);
 }
 
 TEST_F(Cli, ExportRefusesWhatLammpsLacks) {
@@ -275,7 +250,7 @@ TEST_F(Cli, TheGradeOfASetIsSaidEverywhere) {
   EXPECT_NE(report.find("has a standard deviation of 0.73 % of the well"), std::string::npos);
   EXPECT_NE(report.find("if the 12 pairs of a close-packed rope of as many tubes lie at random"),
             std::string::npos);
-  const Outcome plan = run("plan s.toml --error 5% --chart " ROPEWALK_SOURCE_DIR "/data/chart");
+  const Outcome plan = run("plan s.toml --error 5%");
   EXPECT_NE(plan.out.find("parameters " + grade), std::string::npos) << plan.out << plan.err;
   // Runs of before have no grade in their manifest.
   std::string manifest = slurp(dir / "d/manifest.json");

@@ -1,0 +1,40 @@
+// What `plan` may change in a model, and what the program chooses where nothing is typed.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "plan/planned_scene.hpp"
+
+namespace ropewalk {
+
+// One change of the default model. Of two with the same key only one can be taken.
+struct ModelChange {
+  std::string key;   // of the scene: "element_length_nm"
+  std::string name;  // "elements twice as long"
+  std::function<void(PlannedScene&)> write;
+};
+
+// Those that make the scene cheaper; `end_state`: its motion does not matter. `not_tried` says which were left out and
+// why, a sentence each.
+std::vector<ModelChange> cheaper_changes(const Scene& scene, const SceneFeatures& features, bool end_state,
+                                         std::vector<std::string>& not_tried);
+
+// Why the element length is not varied; empty: it may be.
+std::string kept_length(const Scene& scene);
+
+// Elements half as long, where they may be; else more nodes of the law. And half the time step.
+std::vector<ModelChange> finest_changes(const Scene& scene, const SceneFeatures& features);
+
+// The scene with the program's own choice in all that `plan` may change, and then the changes.
+std::string text_with(const Scene& scene, const SceneFeatures& features, const std::vector<ModelChange>& changes,
+                      std::vector<std::string>* why = nullptr);
+
+// The time step so many times as long as the default's, never beyond the part of the limit that the program takes.
+ModelChange step_change(double times);
+
+// Why there is no relaxation in the place of the motion; empty: there can be.
+std::string needs_time(const Scene& scene);
+
+}  // namespace ropewalk
