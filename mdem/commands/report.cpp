@@ -13,6 +13,7 @@
 #include "io/frames.hpp"
 #include "io/grade.hpp"
 #include "model/error.hpp"
+#include "run/plan_check.hpp"
 #include "run/run_directory.hpp"
 #include "scene/scene_to_model.hpp"
 
@@ -113,6 +114,8 @@ ReportInput gather(const RunDirectory& dir, const Scene& scene, const Prepared& 
   in.log = read_log(dir.log());
   in.errors = read_run_errors(dir.path, in.log);
   in.error_bars = error_bars_of(scene, p.topology, in.log);
+  if (const std::string words = plan_words(dir, scene, m); !words.empty())
+    in.error_bars.insert(in.error_bars.begin(), words);
   if (scene.twist) in.ramp_end_ps = scene.twist->ramp_time();
   in.tube_radius = p.topology.largest_radius();
   in.spacing = p.spacing;

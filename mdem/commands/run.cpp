@@ -215,7 +215,8 @@ class Run {
     std::signal(SIGINT, on_signal);
     std::signal(SIGTERM, on_signal);
     started_ = now();
-    std::filesystem::remove(dir_.final_state());  // of an earlier end
+    for (const std::string& of_an_earlier_end : {dir_.final_state(), dir_.plan_check()})
+      std::filesystem::remove(of_an_earlier_end);
     write_manifest("running", "");
     try {
       const bool relax = scene_.run.mode == RunOptions::Mode::relax;

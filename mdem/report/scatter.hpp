@@ -5,12 +5,26 @@
 
 namespace ropewalk {
 
+enum class Mark { dot, square, diamond, triangle, cross, star };
+inline constexpr int marks = 6;
+
+// How the points of a line are drawn, one by one.
+struct PointStyle {
+  Mark mark = Mark::dot;
+  std::vector<std::string> titles;  // what a reader sees who points at it
+  std::vector<bool> hollow;         // may be shorter than the line
+};
+
 struct ScatterChart {
   LineChart chart;
   bool x_decades = false, y_decades = false;  // logarithmic axes; points that are not positive are left out
   // Names beside the points of each line. Lists may be shorter than the lines, and names may be empty.
   std::vector<std::vector<std::string>> labels;
+  std::vector<PointStyle> styles = {};  // of the first lines; of those that are points
 };
+
+// The mark alone, for legends: an <svg> element of 16 pixels.
+std::string mark_svg(Mark mark, int colour, bool hollow = false);
 
 // An <svg> element; empty if no line has two points at different x.
 std::string scatter_svg(const ScatterChart& scatter);

@@ -321,9 +321,47 @@ std::string draw_point_labels(const ScatterChart& scatter, const Plot& plot) {
   return text;
 }
 
+// About (x, y).
+std::string mark_path(Mark mark, double x, double y) {
+  switch (mark) {
+    case Mark::dot:
+      return fmt::format("M{:.1f} {:.1f}a3.4 3.4 0 1 0 6.8 0a3.4 3.4 0 1 0 -6.8 0Z", x - 3.4, y);
+    case Mark::square:
+      return fmt::format("M{:.1f} {:.1f}h6v6h-6Z", x - 3, y - 3);
+    case Mark::diamond:
+      return fmt::format("M{:.1f} {:.1f}l4.2 4.2l-4.2 4.2l-4.2 -4.2Z", x, y - 4.2);
+    case Mark::triangle:
+      return fmt::format("M{:.1f} {:.1f}l4 7h-8Z", x, y - 4.2);
+    case Mark::cross:
+      return fmt::format("M{:.1f} {:.1f}h2.4v-2.4h2.4v2.4h2.4v2.4h-2.4v2.4h-2.4v-2.4h-2.4Z", x - 3.6, y - 1.2);
+    case Mark::star:
+      return fmt::format("M{:.1f} {:.1f}l1.9 4.4l4.8 .4l-3.7 3.2l1.1 4.7l-4.1 -2.5l-4.1 2.5l1.1 -4.7l-3.7 -3.2l4.8 -.4Z", x,
+                         y - 7);
+  }
+  return "";
+}
+
+std::string mark_element(const std::string& path, int colour, bool hollow, const std::string& title) {
+  const std::string tip = title.empty() ? "" : "<title>" + escape_markup(title) + "</title>";
+  return fmt::format("<path class=\"mark {}\" d=\"{}\">{}</path>\n",
+                     hollow ? fmt::format("hollow c{}", colour) : fmt::format("e{}", colour), path, tip);
+}
+
+std::string draw_marks(const ChartLine& line, const PointStyle& style, const Plot& plot) {
+  std::string text;
+  for (std::size_t i = 0; i < std::min(line.x.size(), line.y.size()); ++i) {
+    if (!std::isfinite(line.x[i]) || !std::isfinite(line.y[i])) continue;
+    const bool hollow = i < style.hollow.size() && style.hollow[i];
+    text += mark_element(mark_path(style.mark, plot.px(line.x[i]), plot.py(line.y[i])), colour_of(line), hollow,
+                         i < style.titles.size() ? style.titles[i] : "");
+  }
+  return text;
+}
+
 std::string draw_labels(const LineChart& chart, const Plot& plot) {
   std::string text;
   for (const EndLabel& label : end_labels(chart, plot)) {
+    if (label.line->name.empty()) continue;
     // A thin grey line leads from where a line ends at the edge to its name; the piece before the name is the key.
     const bool at_edge = std::fabs(plot.px(label.end_x) - plot.right) < 3;
     if (at_edge && !label.line->points)
@@ -466,6 +504,9 @@ font-variant-numeric:tabular-nums;max-width:100%;height:auto}
 .line{fill:none;stroke-width:1.7;stroke-linejoin:round;stroke-linecap:round}
 .error{fill-opacity:.2;stroke:none}
 .points{stroke-width:5.5}
+.mark{stroke:var(--paper);stroke-width:.6}.mark:hover{stroke:var(--ink);stroke-width:1.6}
+.hollow{fill:var(--paper);stroke-width:1.4}
+.key{vertical-align:-3px}
 .dashed{stroke-dasharray:5 3.5;stroke-linecap:butt}
 .n5{fill:#d7352f}.n7{fill:#2b6cc4}.nx{fill:#e0a010}.n6{fill:#6b7078}.outermost{fill:#d4d7dc}
 .section circle{stroke:#4a4e55;stroke-width:.5}
@@ -480,7 +521,7 @@ bool can_draw(const LineChart& chart) {
   return r.span() > 1e-9 * std::max(std::abs(r.low), std::abs(r.high));  // false where there are no points
 }
 
-std::string chart_svg(const LineChart& chart) { return scatter_svg({chart, false, false, {}}); }
+std::string chart_svg(const LineChart& chart) { return scatter_svg({chart, false, false, {}, {}}); }
 
 std::string scatter_svg(const ScatterChart& drawn) {
   const ScatterChart scatter = in_logarithms(drawn);
@@ -492,8 +533,13 @@ std::string scatter_svg(const ScatterChart& drawn) {
       "aria-label=\"{2}\">\n",
       chart.width, chart.height, escape_markup(chart.title));
   text += draw_bands(chart, plot) + draw_axes(chart, plot) + draw_error_bands(chart, plot);
-  for (const ChartLine& line : chart.lines)
-    text += fmt::format("<path class=\"{}\" d=\"{}\"/>\n", stroke_class(line), path_of(plot, line));
+  for (std::size_t l = 0; l < chart.lines.size(); ++l) {
+    const ChartLine& line = chart.lines[l];
+    if (line.points && l < scatter.styles.size())
+      text += draw_marks(line, scatter.styles[l], plot);
+    else
+      text += fmt::format("<path class=\"{}\" d=\"{}\"/>\n", stroke_class(line), path_of(plot, line));
+  }
   return text + draw_point_labels(scatter, plot) + draw_labels(chart, plot) + "</svg>\n";
 }
 
@@ -521,6 +567,11 @@ std::string svg_file(const std::string& body, double width, double height) {
              width, height) +
          in_place(css) + "</style>\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n" + in_place(body) +
          "</svg>\n";
+}
+
+std::string mark_svg(Mark mark, int colour, bool hollow) {
+  return "<svg class=\"chart key\" viewBox=\"0 0 16 16\" width=\"16\" height=\"16\" aria-hidden=\"true\">" +
+         mark_element(mark_path(mark, 8, 8), colour, hollow, "") + "</svg>";
 }
 
 std::string chart_file(const ScatterChart& scatter) {

@@ -46,6 +46,7 @@ const std::vector<OutputFile>& run_files() {
       {"report.html", "run, report", "page with charts, pictures and all observables"},
       {"errors.csv", "errors", "standard errors of the observables, as log.csv"},
       {"errors", "errors", "directory with the runs behind errors.csv, and errors.json"},
+      {"plan-check.csv", "plan", "of a planned run: how far it is off a finer model"},
       {"final.csv", "run, import",
        "the state at the end, interrupted or not: the start of another scene by [state]"},
       {"failed-state.csv", "run", "the state of a run that failed"},

@@ -200,6 +200,11 @@ TEST_F(Cli, PlanRunAndCheck) {
   EXPECT_EQ(row[2], std::stod(row[1]) <= 4 ? "held" : "not");
   EXPECT_NE(run("observe d").out.find("% asked for"), std::string::npos);
   EXPECT_EQ(run("observe d --json").out.find("asked for"), std::string::npos);
+  const std::string report = slurp(dir / "d/report.html");
+  EXPECT_NE(report.find("This run was planned for 4 %. Errors promised, and in brackets those seen: "),
+            std::string::npos);
+  EXPECT_NE(report.find("Compared with: "), std::string::npos);
+  EXPECT_EQ(slurp(dir / "d/plan-check.csv").find("observable,planned,finer,error,against\n"), 0u);
   ASSERT_EQ(run("run f.toml --out e --quiet").code, 0);
   const Outcome against = run("plan --check d --against e");
   EXPECT_NE(against.out.find("4 % asked for, at most"), std::string::npos) << against.out << against.err;

@@ -9,6 +9,7 @@
 #include "io/tube_table.hpp"
 #include "observe/observables.hpp"
 #include "outputs_page.hpp"
+#include "run/plan_check.hpp"
 #include "run/run_directory.hpp"
 #include "scene/lammps_files.hpp"
 #include "scene/state_csv.hpp"
@@ -26,6 +27,7 @@ TEST(OutputsPage, HasTheTablesOfTheCode) {
   EXPECT_EQ(outputs_table("`paraview/frame-*.vtp`"), columns_markdown(vtp_arrays()));
   EXPECT_EQ(outputs_table("`state.csv`, `final.csv` and `failed-state.csv`"), columns_markdown(state_columns()));
   EXPECT_EQ(outputs_table("`manifest.json`"), columns_markdown(manifest_keys()));
+  EXPECT_EQ(outputs_table("`plan-check.csv`"), columns_markdown(plan_check_columns()));
   EXPECT_EQ(outputs_table("An entry of `limits`"), columns_markdown(limit_keys()));
   EXPECT_EQ(outputs_table("An entry of `refinements`"), columns_markdown(refinement_keys()));
   EXPECT_EQ(outputs_table("`energy_before_eV` and `energy_after_eV`"), columns_markdown(energy_keys()));

@@ -46,6 +46,7 @@ struct ChartModel {
   bool at_once = false;           // relaxed once after the whole turn, not after each increment
   double contact_viscosity = 20;  // eV ps/nm^2, at the default's element length
   double bond_damping = 1;        // 1/ps, likewise
+  bool hooke = false;             // bonds; else as soft as the set's
 };
 
 inline constexpr const char* published_model = "published";
@@ -62,6 +63,7 @@ struct Specimen {
   State state;           // before it is turned
   double time_step = 0;  // ps, of the bonds
   double spacing = 0;    // nm; 0: one tube
+  double element = 0;    // nm, of the default model
 
   // Angle of each element about the z axis, in parts of the whole angle. With `about_itself` each element turns
   // about its own axis and stays in place.
@@ -99,6 +101,8 @@ struct ChartScene {
   // Whether a relaxation ends in the state of the dynamics. Under couples on its tubes a rope turns by friction
   // between them; a relaxation has none and ends at three quarters of the angle.
   bool relaxes = true;
+  // Whether the published model and its law apply: they are for (10,10) alone.
+  bool published = true;
 };
 
 // The scene of a model without elements: set, contact and damping at this element length (nm).

@@ -54,6 +54,7 @@ void add_single_tube_knobs(std::vector<ChartModel>& all) {
     all.push_back(
         varied("mass_scale", fmt::format("mass-{:g}", scale), [scale](ChartModel& m) { m.mass_scale = scale; }));
   all.push_back(varied("mode", "relax", [](ChartModel& m) { m.mode = RunOptions::Mode::relax; }));
+  all.push_back(varied("bond", "hooke", [](ChartModel& m) { m.hooke = true; }));
   for (const double rate : {0.0, 4.0})
     all.push_back(varied("bond_damping", fmt::format("bond-damping-{:g}", rate),
                          [rate](ChartModel& m) { m.bond_damping = rate; }));
@@ -71,56 +72,42 @@ void add_contact_knobs(std::vector<ChartModel>& all) {
     m.set = "cnt-10-10-paper";
     m.law = "paper";
   }));
-  for (const int nodes : {2, 3, 4, 5, 8, 12})
+  for (const int nodes : {2, 3, 4, 6, 8})
     all.push_back(
         varied("nodes_per_element", fmt::format("nodes-{}", nodes), [nodes](ChartModel& m) { m.nodes = nodes; }));
   for (const double cutoff : {2.6, 2.4, 2.2})
     all.push_back(
         varied("cutoff", fmt::format("cutoff-{:g}", cutoff), [cutoff](ChartModel& m) { m.cutoff = cutoff; }));
-  for (const int every : {2, 3})
-    all.push_back(varied("contact_every", fmt::format("contact-every-{}", every),
-                         [every](ChartModel& m) { m.stepping.contact_every = every; }));
   for (const double eta : {0.0, 5.0, 80.0})
     all.push_back(varied("contact_viscosity", fmt::format("viscosity-{:g}", eta),
                          [eta](ChartModel& m) { m.contact_viscosity = eta; }));
   all.push_back(varied("precision", "double", [](ChartModel& m) { m.precision = Precision::full; }));
 }
 
+// What pays alone, together.
 void add_combinations(const ChartScene& scene, std::vector<ChartModel>& all) {
-  // Two levels are meant for short elements, whose bonds are stiffer than the contact.
-  if (scene.contact)
-    all.push_back(varied("combination", "length-0.5+contact-every-3", [](ChartModel& m) {
-      m.length = 0.5;
-      m.stepping.contact_every = 3;
+  const auto combined = [&](std::string name, double length, int nodes, double part_of_cutoff, double mass, int relaxed) {
+    all.push_back(varied("combination", name, [&](ChartModel& m) {
+      m.length = length;
+      m.nodes = nodes;
+      m.cutoff = part_of_cutoff;
+      m.mass_scale = mass;
+      if (relaxed > 0) m.mode = RunOptions::Mode::relax;
+      m.at_once = relaxed > 1;
     }));
-  // Elements of the default's length: in a strongly twisted rope longer ones need all of their nodes.
-  if (scene.contact)
-    for (const double mass : {1.0, 4.0})
-      all.push_back(
-          varied("combination", mass > 1 ? "nodes-3+step-0.9+mass-4" : "nodes-3+step-0.9", [mass](ChartModel& m) {
-            m.nodes = 3;
-            m.step_fraction = 0.9;
-            m.mass_scale = mass;
-          }));
-  // In contact with four nodes in the default's length, in the place of six.
+  };
+  constexpr double near = 2.4;  // nm
+  for (const double mass : {1.0, 4.0, 16.0}) {
+    const std::string heavy = mass > 1 ? fmt::format("+mass-{:g}", mass) : "";
+    if (scene.contact && scene.published) combined("nodes-4+cutoff-2.4" + heavy, 1, 4, near, mass, 0);
+    if (scene.contact && scene.published) combined("length-2+nodes-8" + heavy, 2, 8, 0, mass, 0);
+    if (mass > 1) combined("length-2" + heavy, 2, 0, 0, mass, 0);
+    if (mass > 1) combined("length-4" + heavy, 4, 0, 0, mass, 0);
+  }
   for (const double times : {2.0, 4.0}) {
     const std::string name = fmt::format("length-{:g}", times);
-    const int fewer = scene.contact ? static_cast<int>(std::lround(4 * times)) : 0;
-    const auto combined = [&](const std::string& what, double mass, bool relax, bool once) {
-      all.push_back(varied("combination", name + what, [&](ChartModel& m) {
-        m.length = times;
-        m.nodes = fewer;
-        m.mass_scale = mass;
-        m.step_fraction = 0.9;
-        if (relax) m.mode = RunOptions::Mode::relax;
-        m.at_once = once;
-      }));
-    };
-    combined("+step-0.9", 1, false, false);
-    for (const double mass : {4.0, 16.0, 64.0})
-      combined(fmt::format("+step-0.9+mass-{:g}", mass), mass, false, false);
-    combined("+relax", 1, true, false);
-    if (scene.contact) combined("+relax-at-once", 1, true, true);
+    combined(name + "+relax", times, 0, 0, 1, 1);
+    if (scene.contact) combined(name + "+relax-at-once", times, 0, 0, 1, 2);
   }
 }
 
@@ -140,16 +127,15 @@ std::vector<ChartModel> chart_models(const ChartScene& scene, bool quick) {
   if (scene.contact) add_contact_knobs(all);
   add_combinations(scene, all);
   if (!scene.contact) std::for_each(all.begin(), all.end(), take_contact_away);
-  if (!scene.relaxes)
-    all.erase(std::remove_if(all.begin(), all.end(),
-                             [](const ChartModel& m) { return m.mode == RunOptions::Mode::relax; }),
-              all.end());
+  const auto drop = [&](auto unfit) { all.erase(std::remove_if(all.begin(), all.end(), unfit), all.end()); };
+  // Cutoffs are in nm, for (10,10) as well.
+  if (!scene.published)
+    drop([](const ChartModel& m) { return !m.set.empty() || m.law == "paper" || m.cutoff > 0; });
+  if (!scene.relaxes) drop([](const ChartModel& m) { return m.mode == RunOptions::Mode::relax; });
   if (quick) {
     static const std::vector<std::string> few = {finest_model, default_model, published_model,
                                                  "length-2",   "isotropic",   "relax"};
-    all.erase(std::remove_if(all.begin(), all.end(),
-                             [](const ChartModel& m) { return !std::count(few.begin(), few.end(), m.name); }),
-              all.end());
+    drop([](const ChartModel& m) { return !std::count(few.begin(), few.end(), m.name); });
   }
   return all;
 }
@@ -174,6 +160,7 @@ Scene knobs_of(const ChartModel& model, const std::string& default_set, double e
   scene.damping.contact.eta = model.contact_viscosity;
   scene.damping.bond.rate = model.bond_damping;
   scene.run.mode = model.mode;
+  scene.bond.anharmonic = !model.hooke && scene.parameters().anharmonic.has_value();
   return scene;
 }
 

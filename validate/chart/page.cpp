@@ -6,7 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
+#include <stdexcept>
 
 #include "chart/chart.hpp"
 #include "report/scatter.hpp"
@@ -14,7 +14,7 @@
 namespace ropewalk {
 namespace {
 
-constexpr double smallest_error = 1e-6;  // smaller errors are drawn here
+constexpr double smallest_error = 1e-5, largest_error = 0.3;  // what is beyond is drawn here, hollow
 constexpr double much = 10;              // times as cheap
 
 // Measured cost of another program for a step of this scene's rope; its accuracy is not known.
@@ -66,11 +66,49 @@ Series series_of(const std::vector<const ChartRow*>& rows) {
 
 // --- Figures ---
 
-double drawn(double error) { return 100 * std::max(error, smallest_error); }
+double drawn(double error) { return 100 * std::clamp(error, smallest_error, largest_error); }
+bool beyond(double error) { return error < smallest_error || error > largest_error; }
+
+// The same colour and mark of a setting in all figures.
+struct KindStyle {
+  const char *kind, *words;
+  int colour;
+  Mark mark;
+};
+constexpr KindStyle kind_styles[] = {
+    {"default", "default", 5, Mark::star},
+    {"published", "published model", 1, Mark::star},
+    {"finest", "finest model", 5, Mark::cross},
+    {"combination", "several at once", 2, Mark::star},
+    {"element_length", "element length", 0, Mark::dot},
+    {"nodes_per_element", "nodes per element", 1, Mark::dot},
+    {"cutoff", "cutoff", 2, Mark::dot},
+    {"time_step", "time step", 3, Mark::dot},
+    {"mass_scale", "masses", 4, Mark::dot},
+    {"mode", "relaxation", 5, Mark::diamond},
+    {"law", "contact law", 0, Mark::square},
+    {"precision", "precision", 1, Mark::square},
+    {"integrator", "integrator", 2, Mark::square},
+    {"contact_viscosity", "contact viscosity", 4, Mark::triangle},
+    {"bond_damping", "damping of bonds", 0, Mark::triangle},
+    {"bond", "Hooke's bonds", 3, Mark::diamond},
+};
+void check_style(const std::string& kind) {
+  for (const KindStyle& s : kind_styles)
+    if (kind == s.kind) return;
+  throw std::logic_error("no mark for models of kind " + kind);
+}
+
+std::string legend() {
+  std::string html = "<p class=\"legend\">";
+  for (const KindStyle& s : kind_styles)
+    html += fmt::format("<span style=\"white-space:nowrap\">{} {}</span> &nbsp; ", mark_svg(s.mark, s.colour), escape_markup(s.words));
+  return html + fmt::format("<span style=\"white-space:nowrap\">{} hollow: error below {:g} or above {:g} %</span></p>\n",
+                            mark_svg(Mark::dot, 5, true), 100 * smallest_error, 100 * largest_error);
+}
 
 ChartLine front_line(const Series& s, const std::vector<std::size_t>& front) {
   ChartLine line;
-  line.name = "Pareto front";
   line.colour = 5;
   line.steps = true;
   for (const std::size_t k : front) {
@@ -80,27 +118,37 @@ ChartLine front_line(const Series& s, const std::vector<std::size_t>& front) {
   return line;
 }
 
-void add_kinds(const std::vector<const ChartRow*>& rows, const std::set<std::size_t>& named,
-               ScatterChart& scatter) {
-  std::vector<std::string> kinds;
-  for (const ChartRow* r : rows)
-    if (!std::count(kinds.begin(), kinds.end(), r->point->kind)) kinds.push_back(r->point->kind);
-  for (std::size_t c = 0; c < kinds.size(); ++c) {
+// What a reader sees who points at a model.
+std::string title_of(const ChartRow& r) {
+  return fmt::format("{}: {} % off, {} s per ns, {} elements, steps of {} fs", r.point->model,
+                     number_text(100 * r.error, 3), number_text(r.point->cpu_per_ns(), 3), r.point->elements,
+                     r.point->mode == "relax" ? "-" : number_text(r.point->time_step / units::fs, 3));
+}
+
+// Those on the front have its numbers, from the cheapest.
+void add_kinds(const std::vector<const ChartRow*>& rows, const std::vector<std::size_t>& front, ScatterChart& scatter) {
+  for (const ChartRow* r : rows) check_style(r->point->kind);
+  for (const KindStyle& kind : kind_styles) {
     ChartLine line;
-    line.name = kinds[c];
-    std::replace(line.name.begin(), line.name.end(), '_', ' ');
-    line.colour = static_cast<int>(c) % (categorical_colours + sequential_colours);
+    line.colour = kind.colour;
     line.points = true;
+    PointStyle style;
+    style.mark = kind.mark;
     std::vector<std::string> labels;
     for (std::size_t k = 0; k < rows.size(); ++k) {
-      if (rows[k]->point->kind != kinds[c]) continue;
+      if (rows[k]->point->kind != kind.kind) continue;
       line.x.push_back(rows[k]->point->cpu_per_ns());
       line.y.push_back(drawn(rows[k]->error));
-      const bool own_kind = rows[k]->point->model == kinds[c];
-      labels.push_back(named.count(k) && !own_kind ? rows[k]->point->model : "");
+      style.titles.push_back(title_of(*rows[k]));
+      style.hollow.push_back(beyond(rows[k]->error));
+      const auto at = std::find(front.begin(), front.end(), k);
+      labels.push_back(at == front.end() ? "" : std::to_string(at - front.begin() + 1));
     }
+    if (line.x.empty()) continue;
     scatter.chart.lines.push_back(line);
     scatter.labels.push_back(labels);
+    scatter.styles.resize(scatter.chart.lines.size());
+    scatter.styles.back() = style;
   }
 }
 
@@ -131,9 +179,9 @@ void add_peers(const std::vector<const ChartRow*>& rows, LineChart& chart) {
 
 std::string front_names(const std::vector<const ChartRow*>& rows, const std::vector<std::size_t>& front) {
   std::string names;
-  for (const std::size_t k : front)
-    names += fmt::format("{}{} ({} %)", names.empty() ? "" : ", ", rows[k]->point->model,
-                         number_text(100 * rows[k]->error, 2));
+  for (std::size_t k = 0; k < front.size(); ++k)
+    names += fmt::format("{}{} {} ({} %)", names.empty() ? "" : ", ", k + 1, rows[front[k]]->point->model,
+                         number_text(100 * rows[front[k]]->error, 2));
   return names;
 }
 
@@ -150,10 +198,10 @@ std::string figure_html(const ChartScene& scene, const std::string& observable, 
   chart.title = fmt::format("{}: error of the {} against cost", scene.title, observable_title(observable));
   chart.x = {"CPU time per simulated ns", "s"};
   chart.y = {"error of the " + observable_title(observable), "%"};
-  chart.width = 640;
+  chart.width = 520;
   chart.height = 340;
   chart.lines = {front_line(s, front)};
-  add_kinds(rows, {front.begin(), front.end()}, scatter);
+  add_kinds(rows, front, scatter);
   add_peers(rows, chart);
   const std::string svg = scatter_svg(scatter);
   if (svg.empty()) return "";
@@ -276,7 +324,7 @@ std::string published_part(const std::vector<ChartPoint>& points, const std::vec
 
 // --- Good enough ---
 
-constexpr double tolerances[] = {0.003, 0.01, 0.03, 0.1};
+constexpr double tolerances[] = {0.005, 0.01, 0.02, 0.05};
 
 // The cheapest model whose observables all lie within this tolerance of the finest.
 const ChartPoint* cheapest_within(const ChartScene& scene, double tolerance, const std::vector<ChartPoint>& points,
@@ -317,12 +365,42 @@ std::string good_enough_part(const std::vector<ChartPoint>& points, const std::v
   return html + "</tbody></table></div>\n";
 }
 
+// What makes ropes of different tubes alike.
+std::string scenes_table(const std::vector<ChartRow>& rows) {
+  std::string html = heading("The scenes") +
+                     paragraph("In units of the tube's radius r, so that other tubes can be compared. R is the radius of the "
+                               "outermost axes, tau the twist per length of the rope or, under a moment, of its tubes; gamma "
+                               "the depth of the well of two parallel tubes per length.") +
+                     "<div class=\"scroll\"><table class=\"facts\"><thead><tr><th>Scene</th><th class=\"number\">tubes</th>"
+                     "<th class=\"number\">r, nm</th><th class=\"number\">r tau</th><th class=\"number\">R tau</th>"
+                     "<th class=\"number\">element/r</th><th class=\"number\">gamma r<sup>2</sup>/EI</th></tr></thead><tbody>\n";
+  for (const ChartScene& scene : chart_scenes()) {
+    if (std::none_of(rows.begin(), rows.end(), [&](const ChartRow& r) { return r.point->scene == scene.name; })) continue;
+    const Specimen s = scene.build(ChartModel());
+    const ParameterSet& set = s.scene.parameters();
+    const Topology& t = s.topology;
+    const double length = (t.length_of(0) - 1) * s.scene.element_length;
+    const double twist = s.moment > 0 ? s.moment / set.bond.twist : s.angle / length;
+    double outermost = 0;
+    for (std::size_t i = 0; i < s.state.size(); ++i)
+      outermost = std::max(outermost, Vector3(s.state.position[i]).head<2>().norm());
+    const bool rope = scene.contact && t.tubes() > 2, turned = rope || !scene.contact;
+    html += fmt::format("<tr><td>{}</td><td class=\"number\">{}</td><td class=\"number\">{}</td><td class=\"number\">{}</td>"
+                        "<td class=\"number\">{}</td><td class=\"number\">{}</td><td class=\"number\">{}</td></tr>\n",
+                        escape_markup(scene.title), t.tubes(), number_text(set.radius, 3),
+                        turned ? number_text(set.radius * twist, 2) : "", rope ? number_text(outermost * twist, 2) : "",
+                        number_text(s.element / set.radius, 3),
+                        scene.contact ? number_text(std::fabs(set.line->pair_energy) * set.radius * set.radius / set.bond.bend, 2) : "");
+  }
+  return html + "</tbody></table></div>\n";
+}
+
 std::string lead() {
   return "Cost and error of numerical models. Every dot is a model that differs from the default in one setting or "
          "in a few. Cost is CPU time of one thread per simulated nanosecond; for a relaxation, per nanosecond of "
          "the ramp and hold that it replaces. Errors are against the finest model (half the element length, all "
          "nodes, double precision) and, where there are results of atoms, against atoms. Both axes are "
-         "logarithmic; errors below 0.0001 % are drawn at 0.0001 %. Instructions, where counted, are those of the "
+         "logarithmic. Point at a mark for its numbers; those on the Pareto front are numbered and named below. Instructions, where counted, are those of the "
          "AVX2 kernels by callgrind, which do not depend on the load of the machine. No model is both cheaper and "
          "more accurate than one on the Pareto front. Each scene and observable has its own front.";
 }
@@ -335,7 +413,8 @@ std::string chart_page(const std::vector<ChartPoint>& points, const std::vector<
   std::string html = page_head("Speed against accuracy") +
                      "<body>\n<main>\n<p class=\"kicker\">Ropewalk: which settings pay</p>\n<h1>Speed against "
                      "accuracy</h1>\n<p class=\"lead\">" +
-                     lead() + "</p>\n" + published_part(points, rows) + good_enough_part(points, rows);
+                     lead() + "</p>\n" + legend() + published_part(points, rows) + good_enough_part(points, rows) +
+                     scenes_table(rows);
   for (const ChartScene& scene : chart_scenes()) {
     std::string part;
     for (const std::string& o : scene.observables)

@@ -30,6 +30,8 @@ constexpr double ring_length = 48 * element,
                  ring_twist = 6;              // nm, rad: half of the twist at which the ring leaves its plane
 constexpr double rope_length = 30 * element;  // nm
 constexpr double rope_angle = 90 * units::degree;
+constexpr double strong_angle = 200 * units::degree;
+constexpr double wall_shear = 0.02;                   // twist per length times the tube's radius
 constexpr double moment_length = 26 * element;        // nm
 constexpr double end_moment = 10;                     // nN nm per tube
 constexpr double moment_ramp = 66, moment_hold = 44;  // ps: three periods and two
@@ -43,7 +45,7 @@ void scale_damping(Specimen& s) {
   Damping& damping = s.scene.damping;
   damping.contact.inner = s.spacing;
   damping.contact.outer = viscosity_reach * s.spacing;
-  damping = same_dissipation(damping, element, s.scene.element_length);
+  damping = same_dissipation(damping, s.element, s.scene.element_length);
 }
 
 // Applies the model's settings to a specimen with topology and spacing.
@@ -62,17 +64,19 @@ void settle(const ChartModel& model, Specimen& s) {
 }
 
 // Number of bonds whose elements are not longer than this.
-int bonds_of(const ChartModel& model, double length) {
-  return static_cast<int>(std::ceil(length / (element * model.length) - 1e-6));
+int bonds_of(const ChartModel& model, double length, double element_length = element) {
+  return static_cast<int>(std::ceil(length / (element_length * model.length) - 1e-6));
 }
 
 // Parallel tubes along z, hexagonally packed, centred; `beyond` more elements on either side of the deforming
 // length.
-Specimen parallel_tubes(const ChartModel& model, int tubes, double length, double band) {
+Specimen parallel_tubes(const ChartModel& model, int tubes, double length, double band, const char* set = set_name,
+                        double element_length = element) {
   Specimen s;
-  const int bonds = bonds_of(model, length);
+  const int bonds = bonds_of(model, length, element_length);
   const double a = length / bonds;
-  s.scene = knobs_of(model, set_name, a);
+  s.scene = knobs_of(model, set, a);
+  s.element = element_length;
   s.topology = empty_topology(s.scene);
   s.spacing = tubes > 1 ? rest_spacing(s.scene) : 0;
   const int beyond = std::max(0, static_cast<int>(std::lround(band / a - 0.5)));
@@ -87,6 +91,7 @@ Specimen parallel_tubes(const ChartModel& model, int tubes, double length, doubl
       if (e <= beyond || e >= bonds + beyond) s.grips.push_back(first + e);
     }
   }
+  set_collapse(s.scene, s.topology);
   settle(model, s);
   return s;
 }
@@ -148,6 +153,32 @@ Specimen rope_of_91(const ChartModel& model) {
   return s;
 }
 
+// The same turned as far as the ropes of the paper.
+Specimen strong_rope_of_91(const ChartModel& model) {
+  Specimen s = parallel_tubes(model, 91, rope_length, 0);
+  s.angle = strong_angle;
+  s.axial_free = true;
+  s.ramp = 90;
+  s.hold = 20;
+  s.increments = 30;
+  return s;
+}
+
+// --- rope19-thin, rope19-wide ---
+
+// As many elements of the set's own length, turned so that the walls are sheared alike.
+Specimen rope_of_19(const ChartModel& model, const char* set) {
+  const ParameterSet parameters = read_parameters(find_parameters(set, ""));
+  const double length = 30 * parameters.element_length;
+  Specimen s = parallel_tubes(model, 19, length, 0, set, parameters.element_length);
+  s.angle = wall_shear / parameters.radius * length;
+  s.axial_free = true;
+  s.ramp = 60;
+  s.hold = 30;
+  s.increments = 10;
+  return s;
+}
+
 // --- rope19-moment ---
 
 Specimen rope_under_moment(const ChartModel& model) {
@@ -166,6 +197,7 @@ Specimen crossed_tubes(const ChartModel& model) {
   const int bonds = bonds_of(model, crossed_length);
   const double a = crossed_length / bonds;
   s.scene = knobs_of(model, set_name, a);
+  s.element = element;
   s.topology = empty_topology(s.scene);
   s.spacing = rest_spacing(s.scene);
   s.state = State(static_cast<std::size_t>(2 * (bonds + 1)));
@@ -191,6 +223,7 @@ Specimen crossed_tubes(const ChartModel& model) {
   s.increments = 6;
   s.moment_resists = false;
   s.above_start = false;
+  set_collapse(s.scene, s.topology);
   settle(model, s);
   return s;
 }
@@ -212,6 +245,7 @@ Specimen closed_ring(const ChartModel& model) {
   const int bonds = bonds_of(model, ring_length);
   const double a = ring_length / bonds, step = 2 * units::pi / bonds;
   s.scene = knobs_of(model, set_name, a);
+  s.element = element;
   s.topology = empty_topology(s.scene);
   s.topology.add_tube(bonds + 1);
   s.state = State(static_cast<std::size_t>(bonds + 1));
@@ -230,6 +264,7 @@ Specimen closed_ring(const ChartModel& model) {
   s.interior_follows = false;
   s.increments = 6;
   s.above_start = false;
+  set_collapse(s.scene, s.topology);
   settle(model, s);
   return s;
 }
@@ -263,6 +298,35 @@ std::vector<ChartScene> all_scenes() {
        {"energy", "beta", "spacing", "end_moment", "bending_moment", "Q"},
        rope_of_91,
        {}},
+      {"rope91-strong",
+       "91 tubes of 41 nm, strongly twisted",
+       fmt::format("The same rope turned by {:.0f} degrees in 90 ps, {:.2g} rad/nm, and held for 20: as strongly as the ropes of "
+                   "the paper.",
+                   strong_angle / units::degree, strong_angle / rope_length),
+       true,
+       {"energy", "beta", "spacing", "end_moment", "bending_moment", "Q"},
+       strong_rope_of_91,
+       {}},
+      {"rope19-thin",
+       "19 thin tubes",
+       fmt::format("19 (5,5) tubes of 30 elements between grips that turn as rigid discs until the walls are sheared by {:g}, in "
+                   "60 ps, and are held for 30. The tubes slide in the grips.",
+                   wall_shear),
+       true,
+       {"energy", "beta", "spacing", "end_moment", "bending_moment"},
+       [](const ChartModel& m) { return rope_of_19(m, "cnt-5-5-tersoff"); },
+       {},
+       true,
+       false},
+      {"rope19-wide",
+       "19 wide tubes",
+       "The same with (20,20) tubes.",
+       true,
+       {"energy", "beta", "spacing", "end_moment", "bending_moment"},
+       [](const ChartModel& m) { return rope_of_19(m, "cnt-20-20-tersoff"); },
+       {},
+       true,
+       false},
       {"rope19-moment",
        "19 tubes under a moment",
        fmt::format("19 (10,10) tubes of {:.4g} nm with free ends. A couple of {:g} nN nm acts on either end of "
