@@ -111,6 +111,7 @@ void write_lammps_files(const RunDirectory& run) {
 
 void refuse_what_lammps_lacks(const Scene& scene) {
   const char* lacking = scene.thermostat                             ? "thermostat"
+                        : scene.periodic                             ? "periodic"
                         : scene.twist && scene.twist->geometric_only ? "twist.geometric_only"
                         : scene.run.stepping.contact_every > 1       ? "run.contact_every"
                         : scene.run.stepping.runge_kutta             ? "run.integrator"

@@ -159,18 +159,17 @@ void say_choice(const Plan& plan, const PlanRequest& request) {
   for (const std::string& line : plan.chosen.why) fmt::print("  {}\n", line);
 }
 
-// Processor time of the whole run: that of the pilot where it was one, else as timed here, corrected by what the pilot took
-// longer than timed, such as in motions that no timing beforehand sees. 0: not known.
+// Processor time of the whole run: that of the pilot where it was one. Else the steps of the whole take as long as those
+// of the pilot, but for the ratio of the two at their starts. 0: not known.
 double time_of(const PlannedModel& m, const Plan& plan, const std::string& path) {
   if (plan.pilots.empty()) return m.seconds;
   const RunTime whole = time_run(m.text, path), pilot = time_run(m.pilot_text, path);
-  if (whole.steps <= 0 || pilot.total() <= 0) return 0;
-  double expected = pilot.total();
-  if (plan.until >= 0) {
-    Scene scene = scene_of_text(m.pilot_text, path);
-    expected = pilot.outputs + (expected - pilot.outputs) * plan.until / prepare(scene).duration;
-  }
-  return whole.total() * std::clamp(m.seconds / expected, 0.7, 3.0);
+  if (whole.steps <= 0 || pilot.steps <= 0) return 0;
+  Scene scene = scene_of_text(m.pilot_text, path);
+  const double part = plan.until >= 0 ? plan.until / prepare(scene).duration : 1;
+  const double least = 0.2 * pilot.each;
+  const double each = std::max(least, (m.seconds - pilot.outputs) / (part * pilot.steps));
+  return whole.outputs + whole.steps * each * whole.at_start / pilot.at_start;
 }
 
 std::string out_path(const PlanArguments& a) {

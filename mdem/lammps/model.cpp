@@ -19,8 +19,8 @@ LammpsModel load_lammps_model(const std::string& directory) {
   Scene scene = read_scene(dir.scene(), sets);
   scene.damping.contact.inner = m.start.viscosity_inner;
   scene.damping.contact.outer = m.start.viscosity_outer;
-  if (scene.thermostat)
-    throw InputError({dir.scene(), 0, "thermostat"}, "is not for LAMMPS", "run this scene with `ropewalk run`");
+  for (const auto& [there, table] : {std::pair{scene.thermostat.has_value(), "thermostat"}, {scene.periodic.has_value(), "periodic"}})
+    if (there) throw InputError({dir.scene(), 0, table}, "is not for LAMMPS", "run this scene with `ropewalk run`");
   m.topology = empty_topology(scene);
   read_tubes(dir, m.topology);
   set_collapse(scene, m.topology);

@@ -140,6 +140,10 @@ SceneFeatures features_of(const Scene& scene, const Prepared& p) {
     turned += effect.angle;
   }
   if (turned > 0) add_rope_twist(p, turned / f.length, "rotation", f);
+  for (const PeriodicLoad* slice : p.loads.of<PeriodicLoad>()) {
+    add_rope_twist(p, slice->schedule().largest(), "[periodic]", f);
+    f.ramp = std::max(f.ramp, slice->schedule().ends());
+  }
   grip_features(p, f);
   if (scene.twist) {
     const TwistLoad& w = *scene.twist;

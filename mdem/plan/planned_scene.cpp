@@ -30,6 +30,7 @@ std::string fixed_length(const Scene& scene) {
   if (law && !law->any_element_length) return fmt::format("law \"{}\" holds for its set's length alone", law->name);
   for (const SceneLoad& load : scene.loads)
     if (!names_only_ends(load.on)) return "a load names elements by number";
+  if (scene.periodic) return "a periodic slice counts its images in elements";
   for (const SceneGrip& grip : scene.grips)
     if (grip.grip->depth > 1) return "a grip holds several elements of each tube";
   return "";

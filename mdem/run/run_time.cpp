@@ -211,7 +211,9 @@ RunTime time_run(const std::string& text, const std::string& path) {
   t.relaxes = scene.run.mode == RunOptions::Mode::relax;
   if (t.relaxes) {
     time_relaxation(scene, p, t);
+    t.at_start = t.each;
   } else {
+    t.at_start = seconds_from_the_start(scene, p);
     t.each = seconds_of_steps(scene, p);
     t.steps = std::max(1.0, p.duration / p.time_step);
   }

@@ -243,6 +243,10 @@ Prepared prepare(Scene& scene) {
   out.spacing = built.spacing;
   out.interaction = interaction_of(scene);
   out.loads = loads_of(scene, out.topology);
+  for (const PeriodicLoad* slice : out.loads.of<PeriodicLoad>()) {
+    slice->wind(out.state);
+    slice->place(out.topology, out.state);
+  }
   out.limit = time_step_limit(out.topology, out.interaction, out.spacing);
   out.stepping = scene.run.stepping;
   if (scene.thermostat) out.stepping.thermostat = make_thermostat(*scene.thermostat);
@@ -267,6 +271,7 @@ EndElements ends_of(const LoadsAndConstraints& loads, const Topology& topology) 
     std::vector<int>& elements = held[grip->end];
     elements.insert(elements.end(), grip->elements.begin(), grip->elements.end());
   }
+  for (const PeriodicLoad* slice : loads.of<PeriodicLoad>()) return slice->ends();
   EndElements ends = tube_ends(topology);
   for (const End end : {lower_end, upper_end})
     if (!held[end].empty()) ends[end] = held[end];

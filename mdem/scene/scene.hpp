@@ -15,6 +15,7 @@
 #include "scene/kinds/scene_kind.hpp"
 #include "scene/loads/grip.hpp"
 #include "scene/loads/load_kind.hpp"
+#include "scene/loads/periodic.hpp"
 #include "scene/loads/twist.hpp"
 #include "scene/stop_rule.hpp"
 #include "sim/dynamics/relax_goal.hpp"
@@ -88,6 +89,7 @@ struct Scene {
   std::vector<SceneLoad> loads;
   std::vector<SceneGrip> grips;
   std::optional<TwistLoad> twist;
+  std::optional<PeriodicLoad> periodic;
   std::optional<ThermostatOptions> thermostat;
   RunOptions run;
   ObserveOptions observe;

@@ -22,7 +22,7 @@ std::vector<SceneTable> scene_tables() {
   for (const SceneKind& kind : scene_kinds()) tables.push_back(kind.table);
   for (const SceneTable& table :
        {start_table().doc(), bond_table().doc(), contact_table().doc(), damping_table().doc(), thermostat_table().doc(),
-        twist_table().doc(), grip_table(), load_table(), run_table().doc(), observe_table().doc(), limits_table().doc(),
+        twist_table().doc(), grip_table(), load_table(), periodic_table().doc(), run_table().doc(), observe_table().doc(), limits_table().doc(),
         stop_table().doc()})
     tables.push_back(table);
   return tables;

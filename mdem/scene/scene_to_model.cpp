@@ -84,6 +84,7 @@ Interaction interaction_of(const Scene& scene) {
 double protocol_time(const Scene& scene) {
   double last = scene.twist ? scene.twist->ramp_time() + scene.twist->hold : 0.0;
   for (const SceneGrip& grip : scene.grips) last = std::max(last, grip.grip->ends());
+  if (scene.periodic && !scene.periodic->twist.empty()) last = std::max(last, scene.periodic->twist.back().time);
   if (scene.thermostat) last = std::max(last, scene.thermostat->temperature.ends());
   return last;
 }
@@ -96,6 +97,7 @@ LoadsAndConstraints loads_of(const Scene& scene, const Topology& topology) {
     loads.add(std::shared_ptr<const Load>(load));
   }
   for (const SceneGrip& grip : scene.grips) loads.add(grip_of(scene, grip, topology));
+  if (scene.periodic) loads.add(scene.periodic->on_tubes(topology, interaction_of(scene).cutoff(), scene.path));
   if (scene.twist) add_twist(*scene.twist, topology, loads);
   return loads;
 }

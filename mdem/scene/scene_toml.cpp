@@ -43,6 +43,7 @@ void check_run(const TomlTable& top, const Scene& scene) {
     };
     for (const SceneLoad& load : scene.loads) refuse("load", *load.load);
     for (const SceneGrip& grip : scene.grips) refuse("grip", *grip.grip);
+    if (scene.periodic) refuse("periodic", *scene.periodic);
     return;
   }
   const double protocol = protocol_time(scene);
@@ -66,6 +67,18 @@ void check_thermostat(const TomlTable& top, const Scene& scene) {
   if (scene.damping.local > 0) refuse("damping", "pfc_local", "it brakes every velocity that the bath gives");
   if (scene.twist && scene.twist->geometric_only)
     refuse("twist", "geometric_only", "the bath turns the spins that it relaxes");
+}
+
+// What does not go with a slice that has no ends.
+void check_periodic(const TomlTable& top, const Scene& scene) {
+  if (!scene.periodic) return;
+  const auto refuse = [&](const char* table, const char* why) {
+    throw top.table("periodic").error("", fmt::format("does not go with {}: {}", table, why), "take one of the two away");
+  };
+  if (scene.twist) refuse("[twist]", "the slice has no ends; give twist_deg_per_nm, and read the torque in the log");
+  if (!scene.grips.empty()) refuse("[[grip]]", "the slice has no ends to be clamped");
+  if (scene.kind != "rope") refuse(("[" + scene.kind + "]").c_str(), "tubes must be parallel and alike; it needs a [rope]");
+  if (scene.run.stepping.contact_every > 1) refuse("contact_every", "images follow on one level alone");
 }
 
 // A key or table that is right elsewhere.
@@ -92,6 +105,7 @@ void read_tables(const TomlTable& top, Scene& scene) {
   for (const TomlTable& t : top.tables("grip")) scene.grips.push_back(read_grip(t, scene));
   if (top.has("thermostat")) scene.thermostat = thermostat_table().read(top.table("thermostat"), scene);
   if (top.has("twist")) scene.twist = twist_table().read(top.table("twist"), scene);
+  if (top.has("periodic")) scene.periodic = periodic_table().read(top.table("periodic"), scene);
   scene.run = run_table().read(top.table("run"), scene);
   scene.observe = observe_table().read(top.table("observe"), scene);
   scene.limits = limits_table().read(top.table("limits"), scene);
@@ -118,6 +132,7 @@ Scene scene_of_text(const std::string& text, const std::string& path, const std:
   check_grips(top, scene);
   check_run(top, scene);
   check_thermostat(top, scene);
+  check_periodic(top, scene);
   return scene;
 }
 
