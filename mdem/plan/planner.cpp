@@ -232,6 +232,7 @@ class Planner {
       plan_.remarks.push_back(
           fmt::format("No model that was tried holds {:g} %: this is the most accurate one.", 100 * request_.error));
     if (!plan_.pilots.empty() && scene_.twist && scene_.source->is_parallel()) add_buckling();
+    add_slice();
   }
 
   // Pilots that are shorter stay straight where the whole rope buckles.
@@ -245,6 +246,18 @@ class Planner {
           "The whole rope may buckle: tubes that slide do so from {:.3g} nN nm per tube on, by theory. The promise is for the "
           "time before: when a rope buckles depends on its noise.",
           theory / units::nN_nm));
+  }
+
+  // Whether the interior alone would do.
+  void add_slice() {
+    if (scene_.kind != "rope" || scene_.periodic || scene_.grips.empty() || features_.turn <= 0) return;
+    const double elements = elements_of(scene_), slice = 3 * std::ceil(prepare(scene_).interaction.cutoff() / scene_.element_length);
+    constexpr double much = 3;
+    if (elements > much * slice)
+      plan_.remarks.push_back(fmt::format(
+          "If only the rope's interior matters, a slice without ends takes {:.2g} of the time: [periodic] with twist_deg_per_nm up "
+          "to {:.3g}, tubes of {:.3g} nm or more.",
+          slice / elements, features_.turn / units::degree, slice * scene_.element_length));
   }
 
   const PlanRequest& request_;

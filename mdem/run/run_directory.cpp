@@ -164,6 +164,8 @@ Observer make_observer(const Scene& scene, const Prepared& prepared) {
   o.shells = rope_shells(prepared.topology, prepared.state, o.neighbour_radius);
   for (int t = 0; t < prepared.topology.tubes(); ++t)
     o.mass += prepared.topology.length_of(t) * prepared.topology.type_of(t).mass / scene.run.mass_scale;
+  // A slice goes on at both ends: as much of it as it has bonds.
+  if (scene.periodic) o.mass *= prepared.topology.bonds() / static_cast<double>(prepared.topology.elements());
   o.loading =
       loading_reference(prepared.topology, prepared.state, o.shells, ends_of(prepared.loads, prepared.topology),
                         o.spacing, o.neighbour_radius, prepared.interaction.law);
