@@ -159,8 +159,8 @@ void say_choice(const Plan& plan, const PlanRequest& request) {
   for (const std::string& line : plan.chosen.why) fmt::print("  {}\n", line);
 }
 
-// Processor time of the whole run: that of the pilot where it was one. Else the steps of the whole take as long as those
-// of the pilot, but for the ratio of the two at their starts. 0: not known.
+// Processor time of the whole run: that of the pilot where it was one. Else the steps of the whole take as long as
+// those of the pilot, but for the ratio of the two at their starts. 0: not known.
 double time_of(const PlannedModel& m, const Plan& plan, const std::string& path) {
   if (plan.pilots.empty()) return m.seconds;
   const RunTime whole = time_run(m.text, path), pilot = time_run(m.pilot_text, path);
@@ -200,7 +200,8 @@ int make_plan(const PlanArguments& a) {
   constexpr double guessed_steps = 5000;  // of a relaxation
   const double seconds = standard.steps > 0 ? standard.total() : standard.outputs + guessed_steps * standard.each;
   PilotRuns runs(scene.path, a.jobs);
-  Plan plan = plan_scene(scene, request, seconds, std::max(least_planning, planning_part * seconds), std::ref(runs));
+  Plan plan =
+      plan_scene(scene, request, seconds, std::max(least_planning, planning_part * seconds), std::ref(runs));
   say_pilots(plan, runs);
   Expectations promised;
   promised.asked = request.error;
@@ -216,7 +217,8 @@ int make_plan(const PlanArguments& a) {
   promised.errors = plan.chosen.expect;
   say_choice(plan, request);
   if (promised.seconds > 0)
-    fmt::print("processor time promised: {:.3g} s; with the default model {:.3g} s\n", promised.seconds, by_default);
+    fmt::print("processor time promised: {:.3g} s; with the default model {:.3g} s\n", promised.seconds,
+               by_default);
   write_file_atomically(path, header_of(plan, request) + expectation_lines(promised) + plan.chosen.text);
   if (!a.finest.empty()) write_file_atomically(a.finest, plan.finest.text);
   fmt::print("{0} written. Go on with: ropewalk run {0} --out RUN; ropewalk plan --check RUN\n", path);
@@ -224,7 +226,8 @@ int make_plan(const PlanArguments& a) {
 }
 
 void say_check(const PlanCheck& check, const Expectations& plan) {
-  fmt::print("{}\n{:20} {:>12} {:>12} {:>10} {:>10}\n", check.against, "", "as planned", "finer", "error", "promised");
+  fmt::print("{}\n{:20} {:>12} {:>12} {:>10} {:>10}\n", check.against, "", "as planned", "finer", "error",
+             "promised");
   double largest = 0;
   bool held = true;
   for (const auto& [name, c] : check.found) {

@@ -1,7 +1,5 @@
 #include "plan/features.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -21,7 +19,6 @@ void bond_features(const Topology& topology, const State& s, SceneFeatures& f) {
       f.twist = std::max(f.twist, std::fabs(bond_twist_angle(fi, fj)) / a);
     }
   }
-  f.why.push_back(fmt::format("start: curvature {:.3g} 1/nm, twist {:.3g} rad/nm", f.curvature, f.twist));
 }
 
 // Distance of the farthest tube from the line through the mean of all, at the start.
@@ -42,13 +39,12 @@ double longest_tube(const Topology& t) {
 }
 
 // The rope as a whole turned by `twist` per length.
-void add_rope_twist(const Prepared& p, double twist, const char* what, SceneFeatures& f) {
+void add_rope_twist(const Prepared& p, double twist, SceneFeatures& f) {
   const double radius = p.topology.tubes() > 1 ? rope_radius(p) : 0.0, slope = radius * twist;
   const double bend = slope * twist / (1 + slope * slope);
   f.twist += twist;
   f.turn += twist;
   f.curvature += bend;
-  f.why.push_back(fmt::format("{}: twist up to {:.3g} rad/nm, curvature up to {:.3g} 1/nm", what, twist, bend));
 }
 
 void add_load(const LoadEffect& load, const Prepared& p, SceneFeatures& f) {
@@ -56,13 +52,11 @@ void add_load(const LoadEffect& load, const Prepared& p, SceneFeatures& f) {
   if (load.force > 0) {
     const double bend = load.force * longest_tube(p.topology) / k.bend;
     f.curvature += bend;
-    f.why.push_back(fmt::format("force: curvature up to {:.3g} 1/nm", bend));
   }
   if (load.torque != Vector3::Zero()) {
     const double along = std::fabs(load.torque.z()) / k.twist, across = load.torque.head<2>().norm() / k.bend;
     f.curvature += across;
-    if (along > 0) add_rope_twist(p, along, "torque", f);
-    f.why.push_back(fmt::format("torque: curvature up to {:.3g} 1/nm", across));
+    if (along > 0) add_rope_twist(p, along, f);
   }
   const bool loaded = load.force > 0 || load.torque != Vector3::Zero();
   f.sudden = f.sudden || (loaded && load.ramp <= 0);
@@ -77,8 +71,8 @@ bool any_tube_between_grips(const Prepared& p) {
   return std::any_of(tubes[0].begin(), tubes[0].end(), [&](int t) { return tubes[1].count(t) > 0; });
 }
 
-// What clamps ask: pulling, bending, stretching where the rope is turned at a length that is held, and the bending of
-// tilted tubes where a clamp keeps them straight: over the length sqrt(EI/T), T the tension of a tube.
+// What clamps ask: pulling, bending, stretching where the rope is turned at a length that is held, and the bending
+// of tilted tubes where a clamp keeps them straight: over the length sqrt(EI/T), T the tension of a tube.
 void grip_features(const Prepared& p, SceneFeatures& f) {
   const BondStiffness& k = p.topology.types[0].bond;
   const bool between = any_tube_between_grips(p);
@@ -98,7 +92,6 @@ void grip_features(const Prepared& p, SceneFeatures& f) {
   f.curvature += bent / f.length;
   if (bent > 0) {
     f.strain += rope_radius(p) * bent / f.length;
-    f.why.push_back(fmt::format("bending: curvature up to {:.3g} 1/nm", bent / f.length));
   }
   if (f.tubes > 1 && f.turn > 0) {
     const double slope = rope_radius(p) * f.turn;
@@ -111,10 +104,8 @@ void grip_features(const Prepared& p, SceneFeatures& f) {
     if (straight) {
       const double bend = slope * std::sqrt(tension / k.bend);
       f.curvature = std::max(f.curvature, bend);
-      f.why.push_back(fmt::format("tilted tubes at the clamps: curvature up to {:.3g} 1/nm", bend));
     }
   }
-  if (f.strain > 0) f.why.push_back(fmt::format("strain up to {:.3g}", f.strain));
 }
 
 }  // namespace
@@ -123,9 +114,7 @@ SceneFeatures features_of(const Scene& scene, const Prepared& p) {
   SceneFeatures f;
   f.tubes = p.topology.tubes();
   f.contact = p.interaction.has_contact() && f.tubes > 1;
-  f.radius = p.topology.types[0].radius;
   f.length = longest_tube(p.topology);
-  f.duration = p.duration;
   bond_features(p.topology, p.state, f);
   double turned = 0;
   for (const SceneLoad& load : scene.loads) {
@@ -139,16 +128,16 @@ SceneFeatures features_of(const Scene& scene, const Prepared& p) {
     add_load(effect, p, f);
     turned += effect.angle;
   }
-  if (turned > 0) add_rope_twist(p, turned / f.length, "rotation", f);
+  if (turned > 0) add_rope_twist(p, turned / f.length, f);
   for (const PeriodicLoad* slice : p.loads.of<PeriodicLoad>()) {
-    add_rope_twist(p, slice->schedule().largest(), "[periodic]", f);
+    add_rope_twist(p, slice->schedule().largest(), f);
     f.ramp = std::max(f.ramp, slice->schedule().ends());
   }
   grip_features(p, f);
   if (scene.twist) {
     const TwistLoad& w = *scene.twist;
     const double each = w.reading == TwistLoad::Reading::per_tube ? w.moment : w.moment / f.tubes;
-    add_rope_twist(p, each / p.topology.types[0].bond.twist, "[twist]", f);
+    add_rope_twist(p, each / p.topology.types[0].bond.twist, f);
     f.sudden = f.sudden || w.rate <= 0;
     f.ramp = w.ramp_time();
   }
@@ -159,8 +148,6 @@ SceneFeatures features_of(const Scene& scene, const Prepared& p) {
                  twist = std::sqrt(kt / (t.bond.twist * t.element_length));
     f.curvature += bend;
     f.twist += twist;
-    f.why.push_back(fmt::format("{:g} K: curvature {:.2g} 1/nm, twist {:.2g} rad/nm on top",
-                                scene.start.temperature, bend, twist));
   }
   return f;
 }

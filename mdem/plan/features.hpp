@@ -1,9 +1,6 @@
 // What a scene asks of a model, estimated before it is run: how far its tubes will bend and twist.
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "scene/prepare.hpp"
 
 namespace ropewalk {
@@ -11,16 +8,13 @@ namespace ropewalk {
 struct SceneFeatures {
   bool contact = false;  // tubes that can touch one another
   int tubes = 0;
-  double radius = 0;                          // nm, of the first tube type
-  double curvature = 0, twist = 0;            // 1/nm, rad/nm, the largest expected
-  double length = 0;                          // nm, of the longest tube
-  double duration = 0;                        // ps
-  bool sudden = false;                        // a force or a moment acts at once
-  double strain = 0;                          // of a tube, the largest expected
-  double pressure = 0;                        // eV/nm^3, on the innermost tube
-  double turn = 0;                            // rad/nm, of a rope as a whole at the end; part of `twist`
-  double ramp = 0;                            // ps, in which it is turned
-  std::vector<std::string> why;               // how the figures come about
+  double curvature = 0, twist = 0;  // 1/nm, rad/nm, the largest expected
+  double length = 0;                // nm, of the longest tube
+  bool sudden = false;              // a force or a moment acts at once
+  double strain = 0;                // of a tube, the largest expected
+  double pressure = 0;              // eV/nm^3, on the innermost tube
+  double turn = 0;                  // rad/nm, of a rope as a whole at the end; part of `twist`
+  double ramp = 0;                  // ps, in which it is turned
 };
 
 // Upper estimates: a twisting moment twists each tube as if no other held it, M/GJ; a force bends a tube that is

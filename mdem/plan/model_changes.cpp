@@ -24,7 +24,8 @@ int default_nodes(Scene scene) {
 }
 
 ModelChange nodes_change(const Scene& scene, int nodes) {
-  const std::string name = fmt::format("{} nodes for {} in {:.3g} nm", nodes, default_nodes(scene), scene.element_length);
+  const std::string name =
+      fmt::format("{} nodes for {} in {:.3g} nm", nodes, default_nodes(scene), scene.element_length);
   const double per_nm = nodes / scene.element_length;
   return {"nodes_per_element", name, [=](PlannedScene& w) { w.set_nodes(per_nm, name); }};
 }
@@ -33,7 +34,8 @@ ModelChange cutoff_change(const Scene& scene, double part) {
   const ParameterSet& set = scene.parameters();
   const double cutoff = part * (scene.contact.law == "line" ? set.line->density.cutoff() : set.paper->cutoff());
   const std::string name = fmt::format("contact cut off at {:.3g} nm", cutoff);
-  return {"cutoff_nm", name, [=](PlannedScene& w) { w.set("contact", "cutoff_nm", fmt::format("{:.4g}", cutoff), name); }};
+  return {"cutoff_nm", name,
+          [=](PlannedScene& w) { w.set("contact", "cutoff_nm", fmt::format("{:.4g}", cutoff), name); }};
 }
 
 ModelChange mass_change(int times) {
@@ -90,7 +92,8 @@ std::vector<ModelChange> cheaper_changes(const Scene& scene, const SceneFeatures
   }
   if (f.contact && scene.sets.size() == 1) out.push_back(cutoff_change(scene, 0.86));
   if (scene.bond.anharmonic)
-    out.push_back({"law", "Hooke's bonds", [](PlannedScene& w) { w.set("bond", "law", "\"harmonic\"", "Hooke's bonds"); }});
+    out.push_back(
+        {"law", "Hooke's bonds", [](PlannedScene& w) { w.set("bond", "law", "\"harmonic\"", "Hooke's bonds"); }});
   if (scene.run.mode == RunOptions::Mode::relax) return out;
   if (!end_state) {
     not_tried.push_back("heavier masses and relaxation: the motion is asked for (give --end-state if it is not)");

@@ -16,8 +16,8 @@ struct ModelChange {
   std::function<void(PlannedScene&)> write;
 };
 
-// Those that make the scene cheaper; `end_state`: its motion does not matter. `not_tried` says which were left out and
-// why, a sentence each.
+// Those that make the scene cheaper; `end_state`: its motion does not matter. `not_tried` says which were left out
+// and why, a sentence each.
 std::vector<ModelChange> cheaper_changes(const Scene& scene, const SceneFeatures& features, bool end_state,
                                          std::vector<std::string>& not_tried);
 

@@ -1,10 +1,10 @@
 // What a run came to, and how far two runs differ in it.
 //
-// The outcome of a motion is the mean over the last quarter of its time, that of a relaxation its last row. "energy" is
-// the potential energy since the start (eV); every other observable is a column of log.csv. The difference of two runs is
-// relative to the larger of the value itself and a tenth of the largest value on the way; for the parts of the energy
-// that is a tenth of the energy. It is at least one degree, 0.01 nN or 0.01 nN nm. So a part that hardly counts is not held
-// to per cents.
+// The outcome of a motion is the mean over the last quarter of its time, that of a relaxation its last row.
+// "energy" is the potential energy since the start (eV); every other observable is a column of log.csv. The
+// difference of two runs is relative to the larger of the value itself and a tenth of the largest value on the way;
+// for the parts of the energy that is a tenth of the energy. It is at least one degree, 0.01 nN or 0.01 nN nm. So a
+// part that hardly counts is not held to per cents.
 #pragma once
 
 #include <map>

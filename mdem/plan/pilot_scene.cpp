@@ -41,13 +41,14 @@ class Shrinking {
     if (part > 0.9) return;
     const double length = std::round(part * elements) * scene_.element_length;
     const TwistLoad& twist = *scene_.twist;
-    attempt(part * part, fmt::format("{:.3g} of {:.3g} nm in as short a time", length, elements * scene_.element_length), [&] {
-      set("rope.length_nm", length);
-      if (twist.rate > 0) set("twist.rate_nN_nm_per_ps", twist.rate / units::nN_nm / part);
-      set("twist.hold_ps", twist.hold * part);
-      if (scene_.run.duration > 0) set("run.duration_ps", scene_.run.duration * part);
-      if (scene_.run.log_every > 0) set("run.log_every_ps", scene_.run.log_every * part);
-    });
+    attempt(part * part,
+            fmt::format("{:.3g} of {:.3g} nm in as short a time", length, elements * scene_.element_length), [&] {
+              set("rope.length_nm", length);
+              if (twist.rate > 0) set("twist.rate_nN_nm_per_ps", twist.rate / units::nN_nm / part);
+              set("twist.hold_ps", twist.hold * part);
+              if (scene_.run.duration > 0) set("run.duration_ps", scene_.run.duration * part);
+              if (scene_.run.log_every > 0) set("run.log_every_ps", scene_.run.log_every * part);
+            });
   }
 
   void fewer_tubes() {

@@ -15,7 +15,8 @@ struct PilotScene {
 };
 
 // The scene takes `seconds`, the pilot about `affordable` or more where it cannot be smaller. In this order:
-// 1. shorter tubes, 20 elements at least, in a rope under [twist], with ramp and hold shortened alike: twist per length,
+// 1. shorter tubes, 20 elements at least, in a rope under [twist], with ramp and hold shortened alike: twist per
+// length,
 //    bends and speeds stay;
 // 2. fewer tubes in a rope, 7 at least; a smaller box of a film, with as many tubes per area;
 // 3. the first part of the time.

@@ -58,12 +58,12 @@ void PlannedScene::start_from_default() {
   };
   const ContactOptions& contact = scene_.contact;
   const RunOptions& run = scene_.run;
-  for (const Key& k : {Key{"contact", "cutoff_nm", contact.cutoff > 0},
-                       Key{"contact", "nodes_per_element", contact.nodes > 0},
-                       Key{"contact", "precision", contact.precision.has_value()},
-                       Key{"run", "integrator", run.stepping.runge_kutta},
-                       Key{"run", "contact_every", run.stepping.contact_every > 1},
-                       Key{"run", "time_step_fs", run.time_step > 0}}) {
+  for (const Key& k :
+       {Key{"contact", "cutoff_nm", contact.cutoff > 0}, Key{"contact", "nodes_per_element", contact.nodes > 0},
+        Key{"contact", "precision", contact.precision.has_value()},
+        Key{"run", "integrator", run.stepping.runge_kutta},
+        Key{"run", "contact_every", run.stepping.contact_every > 1},
+        Key{"run", "time_step_fs", run.time_step > 0}}) {
     if (k.typed) remark(fmt::format("{}.{}: left to the program first", k.table, k.key));
     take_away(k.table, k.key);
   }

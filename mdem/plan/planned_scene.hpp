@@ -22,8 +22,8 @@ class PlannedScene {
   void start_from_default();
   // No contact for a lone tube that does not come back to itself.
   void drop_what_is_not_there();
-  // Elements so many times as long as the set's. What lies between the centres of the end elements stays as long as it
-  // is where loads act on them; else the whole tube does. Nothing where elements keep their length.
+  // Elements so many times as long as the set's. What lies between the centres of the end elements stays as long as
+  // it is where loads act on them; else the whole tube does. Nothing where elements keep their length.
   void lengthen(double times, const std::string& why);
   void default_length() { lengthen(1, "as in the set"); }
   // Written at the end: nodes go with the length of the elements, the time step with everything.
@@ -31,7 +31,6 @@ class PlannedScene {
   void set_step(double times_default, const std::string& why) { step_ = times_default, step_why_ = why; }
   void finish();
 
-  const Scene& scene() const { return scene_; }
   const std::string& text() const { return text_; }
   const std::vector<std::string>& why() const { return why_; }
 

@@ -16,11 +16,12 @@
 namespace ropewalk {
 namespace {
 
-constexpr double pilots_in_all = 14;  // runs of the default model that all pilots take together, about, and the seeds
+constexpr double pilots_in_all =
+    14;  // runs of the default model that all pilots take together, about, and the seeds
 constexpr int seeds = 3;
 constexpr double least_error = 1e-3;  // what a promise never goes below
 constexpr double caution = 1.5;       // factor of promises where the pilot is smaller than the scene
-constexpr double worth = 0.9;                      // of the default's time: a smaller gain is no gain
+constexpr double worth = 0.9;         // of the default's time: a smaller gain is no gain
 
 Scene scene_with_features(const std::string& text, const std::string& path, SceneFeatures& features) {
   Scene scene = scene_of_text(text, path);
@@ -40,7 +41,8 @@ class Planner {
   Planner(const Scene& scene, const PlanRequest& request, double seconds, double affordable, const RunPilots& run)
       : request_(request), run_(run) {
     scene_ = scene_with_features(scene.text, scene.path, features_);
-    const PilotScene pilot = pilot_scene(scene_, seconds, affordable / (pilots_in_all + (has_random_numbers(scene_, scene_.text) ? seeds - 1 : 0)));
+    const PilotScene pilot = pilot_scene(
+        scene_, seconds, affordable / (pilots_in_all + (has_random_numbers(scene_, scene_.text) ? seeds - 1 : 0)));
     plan_.pilots = pilot.words;
     plan_.until = pilot.until;
     pilot_ = scene_with_features(pilot.text, scene.path, pilot_features_);
@@ -53,9 +55,11 @@ class Planner {
     const std::vector<ModelChange> finest = finest_changes(pilot_, pilot_features_);
     halves_ = kept_length(pilot_).empty();
     if (!halves_)
-      plan_.remarks.push_back("The error of the element length is not in the promise: " + kept_length(pilot_) + ".");
+      plan_.remarks.push_back("The error of the element length is not in the promise: " + kept_length(pilot_) +
+                              ".");
     std::vector<std::string> not_tried;
-    const std::vector<ModelChange> cheaper = cheaper_changes(pilot_, pilot_features_, request_.end_state, not_tried);
+    const std::vector<ModelChange> cheaper =
+        cheaper_changes(pilot_, pilot_features_, request_.end_state, not_tried);
     for (const std::string& words : not_tried) plan_.remarks.push_back("Not tried: " + words + ".");
 
     first_pilots(finest, cheaper);
@@ -108,7 +112,8 @@ class Planner {
     const std::vector<PilotEnd> ends = run_(tasks);
     for (const std::size_t k : {std::size_t{1}, std::size_t{0}})
       if (!ends[k].failure.empty() || ends[k].log.empty())
-        throw InputError({scene_.path, 0, ""}, fmt::format("a pilot ({}) failed: {}", tasks[k].name, ends[k].failure),
+        throw InputError({scene_.path, 0, ""},
+                         fmt::format("a pilot ({}) failed: {}", tasks[k].name, ends[k].failure),
                          "try the scene with `ropewalk run`");
     plan_.finest.seconds = ends[0].seconds;
     finest_ = outcome(plan_.finest, ends[0]);
@@ -120,8 +125,8 @@ class Planner {
       judge(plan_.tried[k], ends[2 + static_cast<std::size_t>(more) + k]);
   }
 
-  // The default model once more, as good as before. Another seed would make another film; there a step that is a little
-  // shorter does, which leads to other motions as soon as they are chaotic.
+  // The default model once more, as good as before. Another seed would make another film; there a step that is a
+  // little shorter does, which leads to other motions as soon as they are chaotic.
   PilotTask by_chance(int k) const {
     if (pilot_.kind == "film") return task(model_of({step_change(1 - 0.03 * k)}));
     PilotTask seeded = task(plan_.standard);
@@ -141,9 +146,9 @@ class Planner {
     }
     if (all.size() < 2) return;
     for (const auto& [name, v] : finest_.of) {
-      double sum = 0, squares = 0;
-      for (const Outcome& o : all) sum += o.of.at(name).value / static_cast<double>(all.size());
-      for (const Outcome& o : all) squares += std::pow(o.of.at(name).value - sum, 2);
+      double mean = 0, squares = 0;
+      for (const Outcome& o : all) mean += o.of.at(name).value / static_cast<double>(all.size());
+      for (const Outcome& o : all) squares += std::pow(o.of.at(name).value - mean, 2);
       if (v.scale > 0 && std::isfinite(squares))
         plan_.scatter[name] = std::sqrt(squares / static_cast<double>(all.size() - 1)) / v.scale;
     }
@@ -179,14 +184,15 @@ class Planner {
 
   // --- the choice ---
 
-  // All changes that hold the error alone, the cheapest of each key; without the one that is farthest off where they do
-  // not hold it together.
+  // All changes that hold the error alone, the cheapest of each key; without the one that is farthest off where
+  // they do not hold it together.
   void combine(const std::vector<ModelChange>& cheaper) {
     std::vector<std::size_t> taken;  // of `cheaper` and of plan_.tried alike
     for (std::size_t k = 0; k < cheaper.size(); ++k) {
       const PlannedModel& m = plan_.tried[k];
       if (!m.holds || m.seconds > 0.97 * plan_.standard.seconds) continue;
-      const auto same = std::find_if(taken.begin(), taken.end(), [&](std::size_t t) { return excludes(cheaper[t], cheaper[k]); });
+      const auto same =
+          std::find_if(taken.begin(), taken.end(), [&](std::size_t t) { return excludes(cheaper[t], cheaper[k]); });
       if (same == taken.end())
         taken.push_back(k);
       else if (m.seconds < plan_.tried[*same].seconds)
@@ -218,19 +224,22 @@ class Planner {
     for (const PlannedModel& m : plan_.tried) {
       if (!m.failure.empty()) continue;
       const PlannedModel& best = plan_.chosen;
-      const bool better = m.holds ? !best.holds || m.seconds < best.seconds : !best.holds && largest(m) < largest(best);
+      const bool better =
+          m.holds ? !best.holds || m.seconds < best.seconds : !best.holds && largest(m) < largest(best);
       if (better) plan_.chosen = m;
     }
-    if (plan_.standard.holds && plan_.chosen.seconds > worth * plan_.standard.seconds) plan_.chosen = plan_.standard;
+    if (plan_.standard.holds && plan_.chosen.seconds > worth * plan_.standard.seconds)
+      plan_.chosen = plan_.standard;
     for (const auto& [name, s] : plan_.scatter)
       if (2 * s > request_.error)
-        plan_.remarks.push_back(fmt::format(
-            "Chance alone makes runs differ by {:.2g} % in {} (one standard deviation): a single run is no better than that, whatever "
-            "its model.",
-            100 * s, name, 100 * request_.error));
+        plan_.remarks.push_back(
+            fmt::format("Chance alone makes runs differ by {:.2g} % in {} (one standard deviation): a single run "
+                        "is no better than that, whatever "
+                        "its model.",
+                        100 * s, name, 100 * request_.error));
     if (!plan_.chosen.holds)
-      plan_.remarks.push_back(
-          fmt::format("No model that was tried holds {:g} %: this is the most accurate one.", 100 * request_.error));
+      plan_.remarks.push_back(fmt::format("No model that was tried holds {:g} %: this is the most accurate one.",
+                                          100 * request_.error));
     if (!plan_.pilots.empty() && scene_.twist && scene_.source->is_parallel()) add_buckling();
     add_slice();
   }
@@ -239,25 +248,29 @@ class Planner {
   void add_buckling() {
     const TwistLoad& twist = *scene_.twist;
     const BondStiffness& k = scene_.parameters().bond;
-    const double each = twist.reading == TwistLoad::Reading::per_tube ? twist.moment : twist.moment / features_.tubes;
+    const double each =
+        twist.reading == TwistLoad::Reading::per_tube ? twist.moment : twist.moment / features_.tubes;
     const double theory = 2 * units::pi * k.bend / features_.length;
     if (each > theory)
-      plan_.remarks.push_back(fmt::format(
-          "The whole rope may buckle: tubes that slide do so from {:.3g} nN nm per tube on, by theory. The promise is for the "
-          "time before: when a rope buckles depends on its noise.",
-          theory / units::nN_nm));
+      plan_.remarks.push_back(
+          fmt::format("The whole rope may buckle: tubes that slide do so from {:.3g} nN nm per tube on, by theory. "
+                      "The promise is for the "
+                      "time before: when a rope buckles depends on its noise.",
+                      theory / units::nN_nm));
   }
 
   // Whether the interior alone would do.
   void add_slice() {
     if (scene_.kind != "rope" || scene_.periodic || scene_.grips.empty() || features_.turn <= 0) return;
-    const double elements = elements_of(scene_), slice = 3 * std::ceil(prepare(scene_).interaction.cutoff() / scene_.element_length);
+    const double elements = elements_of(scene_),
+                 slice = 3 * std::ceil(prepare(scene_).interaction.cutoff() / scene_.element_length);
     constexpr double much = 3;
     if (elements > much * slice)
-      plan_.remarks.push_back(fmt::format(
-          "If only the rope's interior matters, a slice without ends takes {:.2g} of the time: [periodic] with twist_deg_per_nm up "
-          "to {:.3g}, tubes of {:.3g} nm or more.",
-          slice / elements, features_.turn / units::degree, slice * scene_.element_length));
+      plan_.remarks.push_back(
+          fmt::format("If only the rope's interior matters, a slice without ends takes {:.2g} of the time: "
+                      "[periodic] with twist_deg_per_nm up "
+                      "to {:.3g}, tubes of {:.3g} nm or more.",
+                      slice / elements, features_.turn / units::degree, slice * scene_.element_length));
   }
 
   const PlanRequest& request_;

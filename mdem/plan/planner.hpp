@@ -1,11 +1,12 @@
 // Which model a scene needs: the cheapest that holds an error, found by pilots.
 //
-// A pilot is the scene itself, or a smaller one like it (pilot_scene.hpp), run with one model. The planner runs it with
-// the program's default, with the finest model, with every change that makes it cheaper, and with those together that
-// hold the error. The error of a model is the difference of its outcome (outcome.hpp) from the finest one's, plus what the
-// finest is off itself: a third of the default's difference where elements are halved, since the error of elements goes
-// as the square of their length. Where the scene has random numbers, the default runs three times,
-// with other seeds: what these runs differ by is chance, and no model can promise less for a single run.
+// A pilot is the scene itself, or a smaller one like it (pilot_scene.hpp), run with one model. The planner runs it
+// with the program's default, with the finest model, with every change that makes it cheaper, and with those
+// together that hold the error. The error of a model is the difference of its outcome (outcome.hpp) from the finest
+// one's, plus what the finest is off itself: a third of the default's difference where elements are halved, since
+// the error of elements goes as the square of their length. Where the scene has random numbers, the default runs
+// three times, with other seeds: what these runs differ by is chance, and no model can promise less for a single
+// run.
 #pragma once
 
 #include <functional>
@@ -57,8 +58,8 @@ struct Plan {
   std::vector<std::string> remarks;  // sentences
 };
 
-// `scene` with its text; `seconds`: what its run takes with the default model; `affordable`: what all pilots may take.
-// Throws InputError where an observable does not exist or a pilot of the default model fails.
+// `scene` with its text; `seconds`: what its run takes with the default model; `affordable`: what all pilots may
+// take. Throws InputError where an observable does not exist or a pilot of the default model fails.
 Plan plan_scene(const Scene& scene, const PlanRequest& request, double seconds, double affordable,
                 const RunPilots& run);
 

@@ -16,7 +16,7 @@ struct PlanCheck {
     double planned = 0, finer = 0;
     double error = 0;  // relative, as plan/outcome.hpp has it
   };
-  std::string against;  // in words
+  std::string against;                 // in words
   std::map<std::string, Value> found;  // by observable
 };
 

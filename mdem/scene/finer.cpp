@@ -101,6 +101,7 @@ std::string text_of(const toml::table& top, const std::string& comment) {
 }  // namespace
 
 std::string why_not_finer(const Scene& scene, const Topology& topology) {
+  if (scene.periodic) return "a periodic slice counts its images in elements";
   const ContactLawKind* law = contact_law_kind(scene.contact.law);
   if (law && !law->any_element_length)
     return fmt::format("law \"{}\" holds for elements of {:.4g} nm alone", law->name,

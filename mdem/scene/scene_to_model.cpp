@@ -84,7 +84,7 @@ Interaction interaction_of(const Scene& scene) {
 double protocol_time(const Scene& scene) {
   double last = scene.twist ? scene.twist->ramp_time() + scene.twist->hold : 0.0;
   for (const SceneGrip& grip : scene.grips) last = std::max(last, grip.grip->ends());
-  if (scene.periodic && !scene.periodic->twist.empty()) last = std::max(last, scene.periodic->twist.back().time);
+  if (scene.periodic) last = std::max(last, scene.periodic->twist.back().time);
   if (scene.thermostat) last = std::max(last, scene.thermostat->temperature.ends());
   return last;
 }

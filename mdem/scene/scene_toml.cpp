@@ -28,8 +28,9 @@ void check_contact_law(const TomlTable& top, const Scene& scene) {
 // Grips that are said twice.
 void check_grips(const TomlTable& top, const Scene& scene) {
   if (scene.twist && !scene.grips.empty())
-    throw top.error("twist", "stands beside [[grip]], and both say what the ends do",
-                    "write the moment into a grip: as = \"each\", about_z = { torque_nN_nm = 35, rate_nN_nm_per_ps = 1 }");
+    throw top.error(
+        "twist", "stands beside [[grip]], and both say what the ends do",
+        "write the moment into a grip: as = \"each\", about_z = { torque_nN_nm = 35, rate_nN_nm_per_ps = 1 }");
 }
 
 void check_run(const TomlTable& top, const Scene& scene) {
@@ -48,11 +49,12 @@ void check_run(const TomlTable& top, const Scene& scene) {
   }
   const double protocol = protocol_time(scene);
   if (scene.run.duration <= 0 && protocol <= 0)
-    throw top.table("run").error("duration_ps", "is missing",
-                                 scene.twist || !scene.grips.empty()
-                                     ? "ramp and hold of [twist] and the schedules of grips last no time; give a "
-                                       "duration"
-                                     : "a run without [twist] or a [[grip]] that moves needs it: duration_ps = 100");
+    throw top.table("run").error(
+        "duration_ps", "is missing",
+        scene.twist || !scene.grips.empty()
+            ? "ramp and hold of [twist] and the schedules of grips last no time; give a "
+              "duration"
+            : "a run without [twist] or a [[grip]] that moves needs it: duration_ps = 100");
 }
 
 // What does not go with a thermostat.
@@ -73,11 +75,14 @@ void check_thermostat(const TomlTable& top, const Scene& scene) {
 void check_periodic(const TomlTable& top, const Scene& scene) {
   if (!scene.periodic) return;
   const auto refuse = [&](const char* table, const char* why) {
-    throw top.table("periodic").error("", fmt::format("does not go with {}: {}", table, why), "take one of the two away");
+    throw top.table("periodic")
+        .error("", fmt::format("does not go with {}: {}", table, why), "take one of the two away");
   };
-  if (scene.twist) refuse("[twist]", "the slice has no ends; give twist_deg_per_nm, and read the torque in the log");
+  if (scene.twist)
+    refuse("[twist]", "the slice has no ends; give twist_deg_per_nm, and read the torque in the log");
   if (!scene.grips.empty()) refuse("[[grip]]", "the slice has no ends to be clamped");
-  if (scene.kind != "rope") refuse(("[" + scene.kind + "]").c_str(), "tubes must be parallel and alike; it needs a [rope]");
+  if (scene.kind != "rope")
+    refuse(("[" + scene.kind + "]").c_str(), "tubes must be parallel and alike; it needs a [rope]");
   if (scene.run.stepping.contact_every > 1) refuse("contact_every", "images follow on one level alone");
 }
 

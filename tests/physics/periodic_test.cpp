@@ -1,5 +1,7 @@
-// A periodic slice: its forces are those of an endless rope, it keeps energy and momentum, and its torque is that of the
-// middle of a long rope.
+// A periodic slice: its forces are those of an endless rope, it keeps energy and momentum, and its torque is that
+// of the middle of a long rope.
+#include "scene/loads/periodic.hpp"
+
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +10,7 @@
 
 #include "model/error.hpp"
 #include "run/run_directory.hpp"
-#include "scene/loads/periodic.hpp"
+#include "scene/finer.hpp"
 #include "scene/random.hpp"
 #include "scene/scene_toml.hpp"
 
@@ -56,11 +58,12 @@ void shake(const Slice& slice, State& s, double by, double speed) {
 // Three periods and their images, copied out by hand.
 TEST(PeriodicSlice, ForcesAreThoseOfAnEndlessRope) {
   const double twist = 1.5;  // deg/nm
-  Slice slice(slice_text(7, 20, fmt::format("[periodic]\ntwist_deg_per_nm = [[0, {}]]\n[run]\nduration_ps = 1\n", twist)));
+  Slice slice(
+      slice_text(7, 20, fmt::format("[periodic]\ntwist_deg_per_nm = [[0, {}]]\n[run]\nduration_ps = 1\n", twist)));
   shake(slice, slice.p.state, 0.01, 0);
   const Simulation s = start(slice.scene, slice.p);
   const int n = slice.own, g = slice.images;
-  Slice whole(slice_text(7, 3 * n + 2 * g, "[periodic]\n[run]\nduration_ps = 1\n"));
+  Slice whole(slice_text(7, 3 * n + 2 * g, "[periodic]\ntwist_deg_per_nm = [[0, 0]]\n[run]\nduration_ps = 1\n"));
   const double angle = twist * units::degree * slice.load->period();
   for (int t = 0; t < 7; ++t)
     for (int k = 0; k < 3 * n + 2 * g; ++k) {
@@ -68,8 +71,8 @@ TEST(PeriodicSlice, ForcesAreThoseOfAnEndlessRope) {
       const auto from = static_cast<std::size_t>(slice.p.topology.tube_begin[t] + g + (k - g - n - period * n)),
                  to = static_cast<std::size_t>(whole.p.topology.tube_begin[t] + k);
       const Quaternion r(Eigen::AngleAxisd(period * angle, Vector3::UnitZ()));
-      whole.p.state.position.set(to, r * Vector3(slice.p.state.position[from]) +
-                                         Vector3(0, 0, period * slice.load->period()));
+      whole.p.state.position.set(
+          to, r * Vector3(slice.p.state.position[from]) + Vector3(0, 0, period * slice.load->period()));
       whole.p.state.orientation.set(to, (r * slice.p.state.orientation[from]).normalized());
     }
   const Simulation all(whole.p.topology, whole.p.interaction, {}, whole.p.state, whole.p.time_step);
@@ -78,7 +81,8 @@ TEST(PeriodicSlice, ForcesAreThoseOfAnEndlessRope) {
     for (int k = 0; k < n; ++k) {
       const auto a = static_cast<std::size_t>(slice.p.topology.tube_begin[t] + g + k),
                  b = static_cast<std::size_t>(whole.p.topology.tube_begin[t] + g + n + k);
-      const Vector3 f = s.forces().force[a], h = all.forces().force[b], m = s.forces().torque[a], o = all.forces().torque[b];
+      const Vector3 f = s.forces().force[a], h = all.forces().force[b], m = s.forces().torque[a],
+                    o = all.forces().torque[b];
       largest = std::max(largest, h.norm());
       EXPECT_LT((f - h).norm(), 1e-9);
       EXPECT_LT((m - o).norm(), 1e-9);
@@ -87,11 +91,12 @@ TEST(PeriodicSlice, ForcesAreThoseOfAnEndlessRope) {
 }
 
 void expect_conserved(double step_fs, double energy) {
-  Slice slice(slice_text(7, 20,
-                         fmt::format("[periodic]\ntwist_deg_per_nm = [[0, 1]]\n[damping]\n"
-                                     "contact_viscosity_eV_ps_per_nm2 = 0\nbond_damping_per_ps = 0\n[run]\nduration_ps = 1\n"
-                                     "time_step_fs = {}\n",
-                                     step_fs)));
+  Slice slice(slice_text(
+      7, 20,
+      fmt::format("[periodic]\ntwist_deg_per_nm = [[0, 1]]\n[damping]\n"
+                  "contact_viscosity_eV_ps_per_nm2 = 0\nbond_damping_per_ps = 0\n[run]\nduration_ps = 1\n"
+                  "time_step_fs = {}\n",
+                  step_fs)));
   shake(slice, slice.p.state, 0.002, 0.02);
   Simulation s = start(slice.scene, slice.p);
   const auto momenta = [&] {
@@ -102,7 +107,8 @@ void expect_conserved(double step_fs, double energy) {
       const auto i = static_cast<std::size_t>(e);
       const TubeType& type = slice.p.topology.type_of_element(e);
       const Vector3 x = state.position[i], v = state.velocity[i], w = state.angular_velocity[i];
-      sum += Vector3(type.mass * v.z(), type.mass * x.cross(v).z() + type.inertia * w.z(), type.mass * std::fabs(v.z()));
+      sum += Vector3(type.mass * v.z(), type.mass * x.cross(v).z() + type.inertia * w.z(),
+                     type.mass * std::fabs(v.z()));
     }
     return sum;
   };
@@ -143,9 +149,10 @@ TEST(PeriodicSlice, ImagesFollowATwistThatGrows) {
 
 // GJ tau of a single tube.
 TEST(PeriodicSlice, ReadsTheTorqueOfATube) {
-  Slice slice(slice_text(1, 40,
-                         "law = \"none\"\n[bond]\nlaw = \"harmonic\"\n[periodic]\ntwist_deg_per_nm = [[0, 0], [50, 1], "
-                         "[200, 1]]\n[damping]\nbond_damping_per_ps = 2\n"));
+  Slice slice(
+      slice_text(1, 40,
+                 "law = \"none\"\n[bond]\nlaw = \"harmonic\"\n[periodic]\ntwist_deg_per_nm = [[0, 0], [50, 1], "
+                 "[200, 1]]\n[damping]\nbond_damping_per_ps = 2\n"));
   Simulation s = start(slice.scene, slice.p);
   s.steps(std::lround(190 / slice.p.time_step), true);
   s.read_gauges();
@@ -172,15 +179,18 @@ TEST(PeriodicSlice, IsTheMiddleOfALongRope) {
     account.potential = s.forces().energy;
     return log_row(observer, scene, p.topology, s.state(), account);
   };
-  const LogRow slice = ends_of_run(slice_text(
-      19, 16, fmt::format("[periodic]\ntwist_deg_per_nm = [[0, 0], [{}, {}], [{}, {}]]\n", ramp, twist, ramp + hold, twist)));
+  const LogRow slice =
+      ends_of_run(slice_text(19, 16,
+                             fmt::format("[periodic]\ntwist_deg_per_nm = [[0, 0], [{}, {}], [{}, {}]]\n", ramp,
+                                         twist, ramp + hold, twist)));
   const int elements = 60;
   const double turned = twist * (elements - 1) * 1.3775870846;
   const LogRow rope = ends_of_run(slice_text(
       19, elements,
-      fmt::format("[[grip]]\nend = \"lower\"\ntilt_free = true\n[[grip]]\nend = \"upper\"\ntilt_free = true\nabout_z = {{ "
-                  "rotation_deg = [[0, 0], [{}, {}], [{}, {}]] }}\n",
-                  ramp, turned, ramp + hold, turned)));
+      fmt::format(
+          "[[grip]]\nend = \"lower\"\ntilt_free = true\n[[grip]]\nend = \"upper\"\ntilt_free = true\nabout_z = {{ "
+          "rotation_deg = [[0, 0], [{}, {}], [{}, {}]] }}\n",
+          ramp, turned, ramp + hold, turned)));
   // The long rope still swings: its two ends read alike in the mean.
   const auto torque = [](const LogRow& r) { return 0.5 * (r["torque_upper_nN_nm"] + r["torque_lower_nN_nm"]); };
   EXPECT_NEAR(torque(slice), torque(rope), 0.01 * torque(rope));
@@ -192,6 +202,11 @@ TEST(PeriodicSlice, IsTheMiddleOfALongRope) {
   EXPECT_NEAR(slice["twist_eV"] / 15, rope["twist_eV"] / (elements - 1), 5e-3 * slice["twist_eV"] / 15);
 }
 
+TEST(PeriodicSlice, IsNotRefined) {
+  const Slice slice(slice_text(7, 20, "[periodic]\ntwist_deg_per_nm = [[0, 1]]\n[run]\nduration_ps = 1\n"));
+  EXPECT_THAT(why_not_finer(slice.scene, slice.p.topology), HasSubstr("counts its images in elements"));
+}
+
 TEST(PeriodicSlice, RefusesWhatHasNoMeaning) {
   const auto said = [](const std::string& text) {
     try {
@@ -201,11 +216,17 @@ TEST(PeriodicSlice, RefusesWhatHasNoMeaning) {
     }
     return std::string();
   };
-  EXPECT_THAT(said(slice_text(7, 5, "[periodic]\n[run]\nduration_ps = 1\n")), HasSubstr("make the tubes at least"));
-  EXPECT_THAT(said(slice_text(7, 20, "[periodic]\nimages = 1\n[run]\nduration_ps = 1\n")), HasSubstr("the contact reaches"));
-  EXPECT_THAT(said(slice_text(7, 20, "[periodic]\n[twist]\nmoment_nN_nm = 5\nrate_nN_nm_per_ps = 1\nhold_ps = 1\n")),
+  EXPECT_THAT(said(slice_text(7, 5, "[periodic]\ntwist_deg_per_nm = [[0, 0]]\n[run]\nduration_ps = 1\n")),
+              HasSubstr("make the tubes at least"));
+  EXPECT_THAT(
+      said(slice_text(7, 20, "[periodic]\ntwist_deg_per_nm = [[0, 0]]\nimages = 1\n[run]\nduration_ps = 1\n")),
+      HasSubstr("the contact reaches"));
+  EXPECT_THAT(said(slice_text(7, 20,
+                              "[periodic]\ntwist_deg_per_nm = [[0, 0]]\n[twist]\nmoment_nN_nm = "
+                              "5\nrate_nN_nm_per_ps = 1\nhold_ps = 1\n")),
               HasSubstr("does not go with [twist]"));
-  EXPECT_THAT(said(slice_text(7, 20, "[periodic]\n[run]\nmode = \"relax\"\n")), HasSubstr("follow it in time"));
+  EXPECT_THAT(said(slice_text(7, 20, "[periodic]\ntwist_deg_per_nm = [[0, 0]]\n[run]\nmode = \"relax\"\n")),
+              HasSubstr("follow it in time"));
 }
 
 }  // namespace

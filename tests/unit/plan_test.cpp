@@ -84,12 +84,13 @@ TEST(Plan, TakesTheCheapestThatHoldsTheErrorTogether) {
   pilots.seconds = usual_seconds;
   const Plan p = planned(bundle, 0.05, pilots);
   EXPECT_TRUE(p.pilots.empty()) << p.pilots;
-  EXPECT_THAT(p.chosen.name, AllOf(HasSubstr("elements twice as long"), HasSubstr("nodes for"), HasSubstr("cut off")));
+  EXPECT_THAT(p.chosen.name,
+              AllOf(HasSubstr("elements twice as long"), HasSubstr("nodes for"), HasSubstr("cut off")));
   EXPECT_TRUE(p.chosen.holds);
   const Scene s = scene_from(p.chosen.text);
   const double times = s.element_length / scene_from(bundle).element_length;
-  // Elements add as the square of their length, nodes and cutoff add theirs. The finest model is off itself by a third of
-  // what the default is.
+  // Elements add as the square of their length, nodes and cutoff add theirs. The finest model is off itself by a
+  // third of what the default is.
   const double standard = 0.004 / 3, found = standard * (times * times - 0.25) / 0.75 + 0.002 + 0.008;
   EXPECT_NEAR(p.standard.error.at("energy"), standard, 1e-9);
   EXPECT_NEAR(p.chosen.error.at("energy"), found, 1e-9);
@@ -158,8 +159,9 @@ TEST(Plan, KnowsChanceFromError) {
 
 TEST(Plan, RunsASmallerSceneWhereTheWholeIsTooDear) {
   MadeUp pilots;
-  const std::string rope = head + "[rope]\ntubes = 91\nlength_nm = 163\n[twist]\nmoment_nN_nm = 8\n"
-                                  "rate_nN_nm_per_ps = 1\nhold_ps = 92\n";
+  const std::string rope = head +
+                           "[rope]\ntubes = 91\nlength_nm = 163\n[twist]\nmoment_nN_nm = 8\n"
+                           "rate_nN_nm_per_ps = 1\nhold_ps = 92\n";
   const Plan p = plan_scene(scene_from(rope), {}, 1000, 100, std::ref(pilots));
   EXPECT_THAT(p.pilots, HasSubstr("of 91 tubes"));
   EXPECT_THAT(p.pilots, HasSubstr("of 163 nm"));
@@ -171,8 +173,9 @@ TEST(Plan, RunsASmallerSceneWhereTheWholeIsTooDear) {
   const Scene chosen = scene_from(p.chosen.text);
   EXPECT_EQ(chosen.source->sizes(chosen.element_length).tubes, 91);
   // Grips that name tubes by number leave only the time to be cut.
-  const std::string named = head + "[rope]\ntubes = 91\nlength_nm = 163\n[[grip]]\nend = \"lower\"\ntubes = [0, 90]\n"
-                                   "[run]\nduration_ps = 50\n";
+  const std::string named = head +
+                            "[rope]\ntubes = 91\nlength_nm = 163\n[[grip]]\nend = \"lower\"\ntubes = [0, 90]\n"
+                            "[run]\nduration_ps = 50\n";
   const Plan q = plan_scene(scene_from(named), {}, 1000, 100, std::ref(pilots));
   EXPECT_THAT(q.pilots, HasSubstr("the first"));
   EXPECT_NEAR(pilots.seen.back().until, 50 * 100.0 / 14 / 1000, 1e-6);
@@ -180,7 +183,8 @@ TEST(Plan, RunsASmallerSceneWhereTheWholeIsTooDear) {
 
 TEST(Plan, StartsFromTheDefaultWhateverTheSceneHas) {
   MadeUp pilots;
-  const Plan p = planned(bundle + "time_step_fs = 5\n[contact]\nnodes_per_element = 9\ncutoff_nm = 2.6\n", 0.01, pilots);
+  const Plan p =
+      planned(bundle + "time_step_fs = 5\n[contact]\nnodes_per_element = 9\ncutoff_nm = 2.6\n", 0.01, pilots);
   const Scene s = scene_from(p.standard.text);
   EXPECT_EQ(s.run.time_step, 0);
   EXPECT_EQ(s.contact.nodes, 0);
@@ -188,8 +192,9 @@ TEST(Plan, StartsFromTheDefaultWhateverTheSceneHas) {
 }
 
 TEST(Plan, ForAnEndStateTimeIsFree) {
-  const std::string slow = head + "[rope]\ntubes = 7\nlength_nm = 27.2\n[[grip]]\nend = \"lower\"\n[[grip]]\n"
-                                  "end = \"upper\"\nabout_z = { rotation_deg = [[0, 0], [50, 20]] }\n";
+  const std::string slow = head +
+                           "[rope]\ntubes = 7\nlength_nm = 27.2\n[[grip]]\nend = \"lower\"\n[[grip]]\n"
+                           "end = \"upper\"\nabout_z = { rotation_deg = [[0, 0], [50, 20]] }\n";
   MadeUp pilots;
   pilots.seconds = {{"masses", 0.4}, {"relaxed", 0.2}, {"half", 6}};
   const Plan motion = planned(slow, 0.02, pilots);
@@ -240,7 +245,8 @@ TEST(Outcome, ComparesWhatCounts) {
     }
     return rows;
   };
-  const Outcome a = outcome_of(log(100, 1), usual_observables(), false), b = outcome_of(log(102, 2), usual_observables(), false);
+  const Outcome a = outcome_of(log(100, 1), usual_observables(), false),
+                b = outcome_of(log(102, 2), usual_observables(), false);
   EXPECT_NEAR(a.of.at("twist_eV").value, (100 - 5 + 100 + 100) / 3.0, 1e-9);
   const auto off = differences(b, a);
   EXPECT_NEAR(off.at("bend_eV"), 1 / (0.1 * 105), 1e-9) << "of a tenth of the largest energy since the start";
@@ -311,7 +317,8 @@ TEST(SceneEdit, SetsKeysAndKeepsTheRest) {
 
 TEST(SceneEdit, SetsValuesAtPathsAndKeepsTheRest) {
   const std::string text =
-      "a = 1  # é\n[one]\nc = { x = 1, y = \"é\", z = [1, 2] }  # c\n# d = 4\n[[load]]\nc = [[0, 0],\n [1, 2]]  # l\n"
+      "a = 1  # é\n[one]\nc = { x = 1, y = \"é\", z = [1, 2] }  # c\n# d = 4\n[[load]]\nc = [[0, 0],\n [1, 2]]  # "
+      "l\n"
       "[[load]]\nc = 9\n";
   const auto set = [&](const char* path, const char* value) { return with_value(text, path, value, "s.toml"); };
   EXPECT_THAT(set("a", "2"), HasSubstr("a = 2  # é\n[one]"));
@@ -362,7 +369,8 @@ TEST(SpotCheck, LooksAtSpacingAndEndAngleOfARope) {
   Scene scene = scene_from(head + "[rope]\ntubes = 7\nlength_nm = 13.6\n[run]\nduration_ps = 1\n");
   const Prepared p = prepare(scene);
   const SpotCheck check = spot_check(scene, p, turned_rope(p, 0.02, 0), 0.2);
-  const SpotCheck::Comparison spacing = check.observables.at("spacing"), angle = check.observables.at("geometric_twist_deg");
+  const SpotCheck::Comparison spacing = check.observables.at("spacing"),
+                              angle = check.observables.at("geometric_twist_deg");
   EXPECT_NEAR(spacing.planned, p.spacing, 0.01 * p.spacing);
   EXPECT_LT(spacing.error(), 2e-3);
   EXPECT_NEAR(angle.planned, 0.02 * 13.6 / units::degree, 2);

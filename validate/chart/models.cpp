@@ -86,7 +86,8 @@ void add_contact_knobs(std::vector<ChartModel>& all) {
 
 // What pays alone, together.
 void add_combinations(const ChartScene& scene, std::vector<ChartModel>& all) {
-  const auto combined = [&](std::string name, double length, int nodes, double part_of_cutoff, double mass, int relaxed) {
+  const auto combined = [&](std::string name, double length, int nodes, double part_of_cutoff, double mass,
+                            int relaxed) {
     all.push_back(varied("combination", name, [&](ChartModel& m) {
       m.length = length;
       m.nodes = nodes;

@@ -15,7 +15,7 @@ namespace ropewalk {
 namespace {
 
 constexpr double smallest_error = 1e-5, largest_error = 0.3;  // what is beyond is drawn here, hollow
-constexpr double much = 10;              // times as cheap
+constexpr double much = 10;                                   // times as cheap
 
 // Measured cost of another program for a step of this scene's rope; its accuracy is not known.
 struct Peer {
@@ -102,9 +102,11 @@ void check_style(const std::string& kind) {
 std::string legend() {
   std::string html = "<p class=\"legend\">";
   for (const KindStyle& s : kind_styles)
-    html += fmt::format("<span style=\"white-space:nowrap\">{} {}</span> &nbsp; ", mark_svg(s.mark, s.colour), escape_markup(s.words));
-  return html + fmt::format("<span style=\"white-space:nowrap\">{} hollow: error below {:g} or above {:g} %</span></p>\n",
-                            mark_svg(Mark::dot, 5, true), 100 * smallest_error, 100 * largest_error);
+    html += fmt::format("<span style=\"white-space:nowrap\">{} {}</span> &nbsp; ", mark_svg(s.mark, s.colour),
+                        escape_markup(s.words));
+  return html +
+         fmt::format("<span style=\"white-space:nowrap\">{} hollow: error below {:g} or above {:g} %</span></p>\n",
+                     mark_svg(Mark::dot, 5, true), 100 * smallest_error, 100 * largest_error);
 }
 
 ChartLine front_line(const Series& s, const std::vector<std::size_t>& front) {
@@ -126,7 +128,8 @@ std::string title_of(const ChartRow& r) {
 }
 
 // Those on the front have its numbers, from the cheapest.
-void add_kinds(const std::vector<const ChartRow*>& rows, const std::vector<std::size_t>& front, ScatterChart& scatter) {
+void add_kinds(const std::vector<const ChartRow*>& rows, const std::vector<std::size_t>& front,
+               ScatterChart& scatter) {
   for (const ChartRow* r : rows) check_style(r->point->kind);
   for (const KindStyle& kind : kind_styles) {
     ChartLine line;
@@ -367,15 +370,18 @@ std::string good_enough_part(const std::vector<ChartPoint>& points, const std::v
 
 // What makes ropes of different tubes alike.
 std::string scenes_table(const std::vector<ChartRow>& rows) {
-  std::string html = heading("The scenes") +
-                     paragraph("In units of the tube's radius r, so that other tubes can be compared. R is the radius of the "
-                               "outermost axes, tau the twist per length of the rope or, under a moment, of its tubes; gamma "
-                               "the depth of the well of two parallel tubes per length.") +
-                     "<div class=\"scroll\"><table class=\"facts\"><thead><tr><th>Scene</th><th class=\"number\">tubes</th>"
-                     "<th class=\"number\">r, nm</th><th class=\"number\">r tau</th><th class=\"number\">R tau</th>"
-                     "<th class=\"number\">element/r</th><th class=\"number\">gamma r<sup>2</sup>/EI</th></tr></thead><tbody>\n";
+  std::string html =
+      heading("The scenes") +
+      paragraph(
+          "In units of the tube's radius r, so that other tubes can be compared. R is the radius of the "
+          "outermost axes, tau the twist per length of the rope or, under a moment, of its tubes; gamma "
+          "the depth of the well of two parallel tubes per length.") +
+      "<div class=\"scroll\"><table class=\"facts\"><thead><tr><th>Scene</th><th class=\"number\">tubes</th>"
+      "<th class=\"number\">r, nm</th><th class=\"number\">r tau</th><th class=\"number\">R tau</th>"
+      "<th class=\"number\">element/r</th><th class=\"number\">gamma r<sup>2</sup>/EI</th></tr></thead><tbody>\n";
   for (const ChartScene& scene : chart_scenes()) {
-    if (std::none_of(rows.begin(), rows.end(), [&](const ChartRow& r) { return r.point->scene == scene.name; })) continue;
+    if (std::none_of(rows.begin(), rows.end(), [&](const ChartRow& r) { return r.point->scene == scene.name; }))
+      continue;
     const Specimen s = scene.build(ChartModel());
     const ParameterSet& set = s.scene.parameters();
     const Topology& t = s.topology;
@@ -385,12 +391,14 @@ std::string scenes_table(const std::vector<ChartRow>& rows) {
     for (std::size_t i = 0; i < s.state.size(); ++i)
       outermost = std::max(outermost, Vector3(s.state.position[i]).head<2>().norm());
     const bool rope = scene.contact && t.tubes() > 2, turned = rope || !scene.contact;
-    html += fmt::format("<tr><td>{}</td><td class=\"number\">{}</td><td class=\"number\">{}</td><td class=\"number\">{}</td>"
-                        "<td class=\"number\">{}</td><td class=\"number\">{}</td><td class=\"number\">{}</td></tr>\n",
-                        escape_markup(scene.title), t.tubes(), number_text(set.radius, 3),
-                        turned ? number_text(set.radius * twist, 2) : "", rope ? number_text(outermost * twist, 2) : "",
-                        number_text(s.element / set.radius, 3),
-                        scene.contact ? number_text(std::fabs(set.line->pair_energy) * set.radius * set.radius / set.bond.bend, 2) : "");
+    html += fmt::format(
+        "<tr><td>{}</td><td class=\"number\">{}</td><td class=\"number\">{}</td><td class=\"number\">{}</td>"
+        "<td class=\"number\">{}</td><td class=\"number\">{}</td><td class=\"number\">{}</td></tr>\n",
+        escape_markup(scene.title), t.tubes(), number_text(set.radius, 3),
+        turned ? number_text(set.radius * twist, 2) : "", rope ? number_text(outermost * twist, 2) : "",
+        number_text(s.element / set.radius, 3),
+        scene.contact ? number_text(std::fabs(set.line->pair_energy) * set.radius * set.radius / set.bond.bend, 2)
+                      : "");
   }
   return html + "</tbody></table></div>\n";
 }
@@ -400,7 +408,8 @@ std::string lead() {
          "in a few. Cost is CPU time of one thread per simulated nanosecond; for a relaxation, per nanosecond of "
          "the ramp and hold that it replaces. Errors are against the finest model (half the element length, all "
          "nodes, double precision) and, where there are results of atoms, against atoms. Both axes are "
-         "logarithmic. Point at a mark for its numbers; those on the Pareto front are numbered and named below. Instructions, where counted, are those of the "
+         "logarithmic. Point at a mark for its numbers; those on the Pareto front are numbered and named below. "
+         "Instructions, where counted, are those of the "
          "AVX2 kernels by callgrind, which do not depend on the load of the machine. No model is both cheaper and "
          "more accurate than one on the Pareto front. Each scene and observable has its own front.";
 }

@@ -143,24 +143,13 @@ std::vector<ChartReference> atoms_of_seven_tubes() {
 
 // --- rope91 ---
 
-Specimen rope_of_91(const ChartModel& model) {
+Specimen rope_of_91(const ChartModel& model, double angle, double ramp, int increments) {
   Specimen s = parallel_tubes(model, 91, rope_length, 0);
-  s.angle = rope_angle;
+  s.angle = angle;
   s.axial_free = true;
-  s.ramp = 40;
+  s.ramp = ramp;
   s.hold = 20;
-  s.increments = 15;
-  return s;
-}
-
-// The same turned as far as the ropes of the paper.
-Specimen strong_rope_of_91(const ChartModel& model) {
-  Specimen s = parallel_tubes(model, 91, rope_length, 0);
-  s.angle = strong_angle;
-  s.axial_free = true;
-  s.ramp = 90;
-  s.hold = 20;
-  s.increments = 30;
+  s.increments = increments;
   return s;
 }
 
@@ -296,20 +285,22 @@ std::vector<ChartScene> all_scenes() {
        "20. At its grip each tube is free along the axis, so that tubes slide.",
        true,
        {"energy", "beta", "spacing", "end_moment", "bending_moment", "Q"},
-       rope_of_91,
+       [](const ChartModel& m) { return rope_of_91(m, rope_angle, 40, 15); },
        {}},
       {"rope91-strong",
        "91 tubes of 41 nm, strongly twisted",
-       fmt::format("The same rope turned by {:.0f} degrees in 90 ps, {:.2g} rad/nm, and held for 20: as strongly as the ropes of "
+       fmt::format("The same rope turned by {:.0f} degrees in 90 ps, {:.2g} rad/nm, and held for 20: as strongly "
+                   "as the ropes of "
                    "the paper.",
                    strong_angle / units::degree, strong_angle / rope_length),
        true,
        {"energy", "beta", "spacing", "end_moment", "bending_moment", "Q"},
-       strong_rope_of_91,
+       [](const ChartModel& m) { return rope_of_91(m, strong_angle, 90, 30); },
        {}},
       {"rope19-thin",
        "19 thin tubes",
-       fmt::format("19 (5,5) tubes of 30 elements between grips that turn as rigid discs until the walls are sheared by {:g}, in "
+       fmt::format("19 (5,5) tubes of 30 elements between grips that turn as rigid discs until the walls are "
+                   "sheared by {:g}, in "
                    "60 ps, and are held for 30. The tubes slide in the grips.",
                    wall_shear),
        true,

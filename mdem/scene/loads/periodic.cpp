@@ -15,7 +15,6 @@ namespace {
 using Key = KeyOf<PeriodicLoad>;
 
 void read_twist(const TomlTable& t, const Scene&, PeriodicLoad& load) {
-  if (!t.has("twist_deg_per_nm")) return;
   load.twist = points_in_time(t, "twist_deg_per_nm", Bounds::range(-45, 45));
   for (Schedule::Point& p : load.twist) p.value *= units::degree;
 }
@@ -38,12 +37,13 @@ Vector3 angle_of(Quaternion q) {
 const KeyTable<PeriodicLoad>& periodic_table() {
   static const KeyTable<PeriodicLoad> table = {
       "periodic",
-      "the interior of a long rope: a slice that goes on at both ends as its own image; without this table, a whole rope",
-      {Key::integer("images", 1, 1000, &PeriodicLoad::images, otherwise("4", "as many as the contact reaches"),
-                    "elements at each end of a tube that are images of the other end; the period is what lies between")
-           .goes_as_length(-1),
-       Key::custom("twist_deg_per_nm", "deg/nm", otherwise("[[0, 0], [100, 2]]", "no twist"),
-                   "twist of the rope per length in time, [[ps, deg/nm], ...]", read_twist)},
+      "the interior of a long rope: a slice that goes on at both ends as its own image; without this table, a "
+      "whole rope",
+      {Key::integer(
+           "images", 1, 1000, &PeriodicLoad::images, otherwise("4", "as many as the contact reaches"),
+           "elements at each end of a tube that are images of the other end; the period is what lies between"),
+       Key::custom("twist_deg_per_nm", "deg/nm", required("[[0, 0], [100, 1.5]]"),
+                   "twist of the rope per length in time, [[ps, deg/nm], ...]; [[0, 0]]: none", read_twist)},
       {}};
   return table;
 }
@@ -58,7 +58,8 @@ PeriodicLoad PeriodicLoad::on_tubes(const Topology& topology, double reach, cons
   const int needed = std::max(1, static_cast<int>(std::ceil(reach / a)));
   if (out.images == 0) out.images = needed;
   if (out.images < needed)
-    throw InputError({path, 0, "periodic.images"}, fmt::format("is {}, and the contact reaches {:.3g} nm", images, reach),
+    throw InputError({path, 0, "periodic.images"},
+                     fmt::format("is {}, and the contact reaches {:.3g} nm", images, reach),
                      fmt::format("take at least {}, or leave the key away", needed));
   const int all = topology.length_of(0);
   for (int t = 0; t < topology.tubes(); ++t)
@@ -71,7 +72,7 @@ PeriodicLoad PeriodicLoad::on_tubes(const Topology& topology, double reach, cons
   out.period_ = own * a;
   // Twice what a torsional wave needs along the slice, so that the interior follows.
   const double wave = std::sqrt(type.bond.twist / (type.inertia / a));
-  out.schedule_ = Schedule(twist.empty() ? std::vector<Schedule::Point>{{0, 0}} : twist, 2 * all * a / wave);
+  out.schedule_ = Schedule(twist, 2 * all * a / wave);
   for (int t = 0; t < topology.tubes(); ++t)
     for (int k = 0; k < out.images; ++k) {
       out.ends_[lower_end].push_back(topology.tube_begin[t] + k);
@@ -112,7 +113,8 @@ void PeriodicLoad::for_images(const Topology& topology, const Act& act) const {
 }
 
 void PeriodicLoad::constrain(const Topology& topology, double time, double ahead, State& s) const {
-  for_images(topology, [&](int image, int original, double sign) { follow(image, original, sign, time, 2 * ahead, s); });
+  for_images(topology,
+             [&](int image, int original, double sign) { follow(image, original, sign, time, 2 * ahead, s); });
 }
 
 void PeriodicLoad::wind(State& s) const {
