@@ -71,7 +71,7 @@ class PilotRuns {
     }
     run_processes(processes, jobs_, &campaign_signal);
     if (isatty(STDERR_FILENO)) fmt::print(stderr, "\r\033[K");
-    if (campaign_signal) throw std::runtime_error("stopped by a signal; nothing was written");
+    if (campaign_signal) throw InputError({path_, 0, ""}, "planning was stopped by a signal", "nothing was written; start it again");
     return ends;
   }
   double seconds() const { return seconds_; }
