@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 #include <functional>
 #include <map>
 
@@ -228,6 +229,16 @@ TEST(Plan, IsRememberedInTheScene) {
   EXPECT_EQ(read.seconds, e.seconds);
   EXPECT_EQ(read.errors, e.errors);
   EXPECT_TRUE(expectations_of(bundle).errors.empty());
+}
+
+TEST(Plan, StoredScenesAreReadAndBuilt) {
+  int scenes = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(ROPEWALK_SOURCE_DIR "/data/plans/scenes")) {
+    Scene scene = read_scene(entry.path().string());
+    EXPECT_NO_THROW(prepare(scene)) << entry.path();
+    ++scenes;
+  }
+  EXPECT_EQ(scenes, 16);
 }
 
 // The means over the last quarter; small parts of the energy are held to a tenth of it.
