@@ -16,12 +16,12 @@ struct ModelChange {
   std::function<void(PlannedScene&)> write;
 };
 
-// Those that make the scene cheaper; `end_state`: its motion does not matter. `not_tried` says which were left out
-// and why, a sentence each.
+// The changes that make the scene cheaper. `end_state`: its motion does not matter. `not_tried` gets a sentence for
+// each change that was left out, with the reason.
 std::vector<ModelChange> cheaper_changes(const Scene& scene, const SceneFeatures& features, bool end_state,
                                          std::vector<std::string>& not_tried);
 
-// Why the element length is not varied; empty: it may be.
+// Why `plan` keeps the element length; empty: it varies the length.
 std::string kept_length(const Scene& scene);
 
 // Elements half as long, where they may be; else more nodes of the law. And half the time step.
@@ -34,7 +34,7 @@ std::string text_with(const Scene& scene, const SceneFeatures& features, const s
 // The time step so many times as long as the default's, never beyond the part of the limit that the program takes.
 ModelChange step_change(double times);
 
-// Why there is no relaxation in the place of the motion; empty: there can be.
+// Why a relaxation cannot replace the motion; empty: it can.
 std::string needs_time(const Scene& scene);
 
 }  // namespace ropewalk

@@ -9,8 +9,8 @@
 #include "model/error.hpp"
 #include "plan/planned_scene.hpp"
 #include "plan/scene_edit.hpp"
+#include "scene/build.hpp"
 #include "scene/kinds/film.hpp"
-#include "scene/kinds/rope.hpp"
 #include "scene/prepare.hpp"
 #include "scene/scene_toml.hpp"
 
@@ -53,14 +53,11 @@ class Shrinking {
 
   void fewer_tubes() {
     const int tubes = scene_.source->sizes(scene_.element_length).tubes;
-    int fewer = least_tubes;
-    for (int shell = 2; hexagonal(shell) < tubes; ++shell)
-      if (hexagonal(shell) <= left_ * tubes) fewer = hexagonal(shell);
+    const int fewer = std::max(least_tubes, nearest_hexagonal(static_cast<int>(left_ * tubes)).first);
     if (left_ >= near_enough || fewer >= tubes) return;
     attempt(static_cast<double>(fewer) / tubes, fmt::format("{} of {} tubes", fewer, tubes),
             [&] { set("rope.tubes", fewer); });
   }
-  static int hexagonal(int shell) { return 3 * shell * (shell + 1) + 1; }
 
   void smaller_box() {
     const auto& film = dynamic_cast<const FilmSource&>(*scene_.source);

@@ -15,7 +15,8 @@ struct PilotScene {
 
 // The scene takes `seconds`, the pilot about `affordable` or more where it cannot be smaller. In this order:
 //
-// 1. Shorter tubes in a rope under [twist], 20 elements at least. Ramp and hold are shortened alike, so that twist per
+// 1. Shorter tubes in a rope under [twist], 20 elements at least. Ramp and hold are shortened alike, so that twist
+// per
 //    length, bends and speeds stay.
 // 2. Fewer tubes in a rope, 7 at least; a smaller box of a film, as dense.
 // 3. The first part of the time.

@@ -22,8 +22,9 @@ class PlannedScene {
   void start_from_default();
   // No contact for a lone tube that does not come back to itself.
   void drop_what_is_not_there();
-  // Elements so many times as long as the set's. What lies between the centres of the end elements stays as long as
-  // it is where loads act on them; else the whole tube does. Nothing where elements keep their length.
+  // Makes elements so many times as long as the set's. Where loads act on the end elements, the distance between
+  // the centres of these elements stays; else the length of the tubes stays. Does nothing where fixed_length()
+  // forbids it.
   void lengthen(double times, const std::string& why);
   void default_length() { lengthen(1, "as in the set"); }
   // Written at the end: nodes go with the length of the elements, the time step with everything.

@@ -11,6 +11,7 @@
 #include "plan/outcome.hpp"
 #include "plan/pilot_scene.hpp"
 #include "plan/scene_edit.hpp"
+#include "scene/kinds/rope.hpp"
 #include "scene/scene_toml.hpp"
 
 namespace ropewalk {
@@ -30,10 +31,9 @@ Scene scene_with_features(const std::string& text, const std::string& path, Scen
   return scene;
 }
 
-bool has_random_numbers(const Scene& scene, const std::string& text) {
-  if (is_warm(scene) || scene.thermostat) return true;
-  static const std::regex noise("(^|\n)\\s*perturbation_nm\\s*=\\s*[0-9.eE+-]*[1-9]");
-  return std::regex_search(text, noise);
+bool has_random_numbers(const Scene& scene) {
+  const auto* rope = dynamic_cast<const RopeSource*>(scene.source.get());
+  return is_warm(scene) || scene.thermostat || (rope && rope->perturbation > 0);
 }
 
 class Planner {
@@ -41,8 +41,8 @@ class Planner {
   Planner(const Scene& scene, const PlanRequest& request, double seconds, double affordable, const RunPilots& run)
       : request_(request), run_(run) {
     scene_ = scene_with_features(scene.text, scene.path, features_);
-    const PilotScene pilot = pilot_scene(
-        scene_, seconds, affordable / (pilots_in_all + (has_random_numbers(scene_, scene_.text) ? seeds - 1 : 0)));
+    const PilotScene pilot =
+        pilot_scene(scene_, seconds, affordable / (pilots_in_all + (has_random_numbers(scene_) ? seeds - 1 : 0)));
     plan_.pilots = pilot.words;
     plan_.until = pilot.until;
     pilot_ = scene_with_features(pilot.text, scene.path, pilot_features_);
@@ -81,6 +81,7 @@ class Planner {
   PlannedModel model_of(const std::vector<ModelChange>& changes) const {
     PlannedModel m;
     m.name = name_of(changes);
+    m.relaxed = std::any_of(changes.begin(), changes.end(), [](const ModelChange& c) { return c.key == "mode"; });
     m.pilot_text = text_with(pilot_, pilot_features_, changes);
     m.text = text_with(scene_, features_, changes, &m.why);
     return m;
@@ -94,16 +95,14 @@ class Planner {
     }
     return outcome_of(end.log, observables, relaxed);
   }
-  Outcome outcome(const PlannedModel& m, const PilotEnd& end) const {
-    return outcome(end, relaxes_ || m.pilot_text.find("\nmode = \"relax\"") != std::string::npos);
-  }
+  Outcome outcome(const PlannedModel& m, const PilotEnd& end) const { return outcome(end, relaxes_ || m.relaxed); }
 
   // The finest model, the default with its seeds, and every change alone.
   void first_pilots(const std::vector<ModelChange>& finest, const std::vector<ModelChange>& cheaper) {
     plan_.finest = model_of(finest);
     plan_.standard = model_of({});
     std::vector<PilotTask> tasks = {task(plan_.finest), task(plan_.standard)};
-    const int more = has_random_numbers(pilot_, pilot_.text) ? seeds - 1 : 0;
+    const int more = has_random_numbers(pilot_) ? seeds - 1 : 0;
     for (int k = 1; k <= more; ++k) tasks.push_back(by_chance(k));
     for (const ModelChange& change : cheaper) {
       plan_.tried.push_back(model_of({change}));

@@ -3,10 +3,10 @@
 // A pilot is the scene itself, or a smaller one like it (pilot_scene.hpp), run with one model. The planner runs it
 // with the program's default, with the finest model, with every change that makes it cheaper, and with those
 // together that hold the error. The error of a model is the difference of its outcome (outcome.hpp) from the finest
-// one's, plus what the finest is off itself: a third of the default's difference where elements are halved, since
-// the error of elements goes as the square of their length. Where the scene has random numbers, the default runs
-// three times, with other seeds: what these runs differ by is chance, and no model can promise less for a single
-// run.
+// one's, plus the error of the finest model itself. Where elements are halved, the latter is a third of the
+// default's difference, since the error of elements goes as the square of their length. Where the scene has random
+// numbers, the default runs with three seeds. The differences between these runs are chance, and no model can
+// promise less for a single run.
 #pragma once
 
 #include <functional>
@@ -43,14 +43,15 @@ struct PlannedModel {
   std::map<std::string, double> error;   // found in the pilot, by observable
   std::map<std::string, double> expect;  // what is promised
   bool holds = false;
+  bool relaxed = false;  // in the place of the motion
   std::string failure;
   std::string text, pilot_text;
   std::vector<std::string> why;  // a line for each change
 };
 
 struct Plan {
-  std::string pilots;                     // what they were: "19 of 91 tubes"; empty: the whole scene
-  double until = -1;                      // ps, where they ended; negative: at the scene's end
+  std::string pilots;  // how they are smaller than the scene: "19 of 91 tubes"; empty: not at all
+  double until = -1;   // ps, at which pilots end; negative: at the scene's end
   std::map<std::string, double> scatter;  // of runs that differ by chance, a standard deviation, relative
   PlannedModel finest, standard;
   std::vector<PlannedModel> tried;  // the others, in the order in which they were
@@ -66,9 +67,9 @@ Plan plan_scene(const Scene& scene, const PlanRequest& request, double seconds, 
 // The text of the scene with the program's default model.
 std::string default_text(const Scene& scene);
 
-// What stands in a planned scene's text about itself; nothing in others.
+// The promises in the text of a planned scene; empty for other scenes.
 struct Expectations {
-  double asked = 0;                      // the error that was to be held
+  double asked = 0;                      // largest error that the user allows
   double seconds = 0;                    // processor time promised; 0: none
   std::map<std::string, double> errors;  // promised, by observable
 };

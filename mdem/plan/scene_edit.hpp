@@ -12,8 +12,8 @@ std::string with_key(const std::string& text, const std::string& table, const st
 
 // Sets the value at a path, whose parts are separated by points and count from 0 in lists: "rope.tubes",
 // "grip.1.about_z.rotation_deg". Everything else stays as it is, comments included. A missing key is set where it
-// stands as a comment, else as the first of its table, which is made where there is none. Throws InputError where the
-// path leads through something that is no table, or past the end of a list; `file` names the scene in it.
+// stands as a comment, else as the first of its table, which is made where there is none. Throws InputError where
+// the path leads through something that is no table, or past the end of a list; `file` names the scene in it.
 std::string with_value(const std::string& text, const std::string& path, const std::string& value,
                        const std::string& file);
 

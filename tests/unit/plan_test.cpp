@@ -241,7 +241,7 @@ TEST(Plan, StoredScenesAreReadAndBuilt) {
   EXPECT_EQ(scenes, 16);
 }
 
-// The means over the last quarter; small parts of the energy are held to a tenth of it.
+// An outcome is a mean over the last quarter. The error of a small part of the energy is relative to a tenth of the energy.
 TEST(Outcome, ComparesWhatCounts) {
   const auto log = [](double twist, double bend) {
     std::vector<LogRow> rows;

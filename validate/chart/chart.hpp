@@ -101,7 +101,7 @@ struct ChartScene {
   // Whether a relaxation ends in the state of the dynamics. Under couples on its tubes a rope turns by friction
   // between them; a relaxation has none and ends at three quarters of the angle.
   bool relaxes = true;
-  // Whether the published model and its law apply: they are for (10,10) alone.
+  // Whether the scene's tubes are (10,10): the published model and its law describe no others.
   bool published = true;
 };
 

@@ -69,7 +69,7 @@ Series series_of(const std::vector<const ChartRow*>& rows) {
 double drawn(double error) { return 100 * std::clamp(error, smallest_error, largest_error); }
 bool beyond(double error) { return error < smallest_error || error > largest_error; }
 
-// The same colour and mark of a setting in all figures.
+// Every figure draws a setting with the same colour and mark.
 struct KindStyle {
   const char *kind, *words;
   int colour;
