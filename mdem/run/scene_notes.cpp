@@ -117,6 +117,13 @@ std::vector<std::string> warnings_of(const Scene& scene, const Topology& topolog
   std::vector<std::string> warnings;
   if (scene.contact.legacy_torque)
     warnings.push_back("This run leaves out the torque that the published force code leaves out: it gains energy.");
+  for (const PeriodicLoad* slice : loads_of(scene, topology).of<PeriodicLoad>()) {
+    const int all = topology.length_of(0), own = all - 2 * slice->images;
+    warnings.push_back(fmt::format(
+        "This is a slice of an endless rope: of the {} elements of a tube {} are its own, {:.4g} nm, and {} at each end "
+        "are images. Energies in eV count the images too; energies per mass, torque and tension are those of the rope.",
+        all, own, slice->period(), slice->images));
+  }
   if (scene.run.mass_scale != 1)
     warnings.push_back(
         fmt::format("Masses are {:.4g} times those of the tubes: times, velocities and waves are not theirs.",
