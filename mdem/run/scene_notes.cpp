@@ -117,7 +117,8 @@ std::vector<std::string> warnings_of(const Scene& scene, const Topology& topolog
   std::vector<std::string> warnings;
   if (scene.contact.legacy_torque)
     warnings.push_back("This run leaves out the torque that the published force code leaves out: it gains energy.");
-  for (const PeriodicLoad* slice : loads_of(scene, topology).of<PeriodicLoad>()) {
+  const LoadsAndConstraints loads = loads_of(scene, topology);
+  for (const PeriodicLoad* slice : loads.of<PeriodicLoad>()) {
     const int all = topology.length_of(0), own = all - 2 * slice->images;
     warnings.push_back(fmt::format(
         "This is a slice of an endless rope: of the {} elements of a tube {} are its own, {:.4g} nm, and {} at each end "

@@ -71,9 +71,11 @@ class LoadsAndConstraints {
   bool empty() const { return all_.empty(); }
   auto begin() const { return all_.begin(); }
   auto end() const { return all_.end(); }
-  // Those of one class.
+  // Those of one class. They live as long as these loads, so a temporary has none to give.
   template <class L>
-  std::vector<const L*> of() const {
+  std::vector<const L*> of() const&& = delete;
+  template <class L>
+  std::vector<const L*> of() const& {
     std::vector<const L*> found;
     for (const auto& load : all_)
       if (const auto* one = dynamic_cast<const L*>(load.get())) found.push_back(one);
