@@ -131,6 +131,24 @@ TEST(ChartScenes, AreTheSameSpecimenAtEveryElementLength) {
   }
 }
 
+TEST(ChartScenes, AFilmHasTheSameTubesAtEveryElementLength) {
+  const ChartScene& scene = find_chart_scene("film");
+  const std::vector<ChartModel> models = chart_models(scene, false);
+  const Specimen base = scene.build(find_chart_model(models, default_model));
+  const auto length = [](const Specimen& s) { return s.topology.length_of(0) * s.scene.element_length; };
+  const auto middle = [](const Specimen& s, int tube) -> Vector3 {
+    const auto first = static_cast<std::size_t>(s.topology.tube_begin[tube]),
+               last = static_cast<std::size_t>(s.topology.tube_begin[tube + 1]) - 1;
+    return 0.5 * (s.state.position[first] + s.state.position[last]);
+  };
+  for (const char* other : {finest_model, "length-2", "length-4"}) {
+    const Specimen s = scene.build(find_chart_model(models, other));
+    EXPECT_NE(s.topology.elements(), base.topology.elements()) << other;
+    EXPECT_NEAR(length(s), length(base), 1e-9) << other;
+    for (int t = 0; t < base.topology.tubes(); ++t) EXPECT_LT((middle(s, t) - middle(base, t)).norm(), 1e-9) << t;
+  }
+}
+
 // As with [twist], a couple on each end element is ramped, and nothing is held.
 TEST(ChartScenes, ARopeIsTwistedByAMoment) {
   const ChartScene& scene = find_chart_scene("rope19-moment");
@@ -204,7 +222,8 @@ TEST_F(Chart, ComesOutWholeAndIsKept) {
   EXPECT_NEAR(energy, 0.5 * 330.11 / 0.1602177 * 1.791029 * 1.791029 / 43.392, 4e-3 * energy);
   EXPECT_NEAR(moment, 330.11 * 1.791029 / 43.392, 8e-3 * moment);
   EXPECT_NEAR(published.values.at("energy") / energy, 319.5 / 330.11, 4e-3);
-  for (const ChartPoint* p : {&ours, &coarse}) EXPECT_LT(error_of("end_moment", p->values.at("end_moment"), moment), 1e-3);
+  for (const ChartPoint* p : {&ours, &coarse})
+    EXPECT_LT(error_of("end_moment", p->values.at("end_moment"), moment), 1e-3);
 
   const std::string csv = read_file((dir / "points.csv").string());
   EXPECT_EQ(csv.substr(0, csv.find('\n')), columns);

@@ -8,11 +8,11 @@
 // the grips turn at a constant rate and are then held. The motion starts with the velocities of a uniform turn, so
 // that no wave starts from the grips. When the grips stop, the kinetic energy of the turn becomes vibration, which
 // is damped during the hold; ramps are so long that it is small. Observables are means over the second half of the
-// hold. One scene is load-controlled, where an error of the stiffness shows in the angle and not in the moment: a
-// couple on each grip element is ramped from rest at a constant rate, as [twist] does. Its ends are free, and only
-// damping removes the slowest torsional vibration; half of the hold is one period of it. Cost: CPU time of this
-// process in its steps, one thread, per simulated ns. A relaxation simulates no time; its CPU time counts for the
-// ramp and hold that it replaces.
+// hold. Two scenes are load-controlled, where an error of the stiffness shows in the angle and not in the moment: a
+// couple on each grip element is ramped from rest at a constant rate, as [twist] does. Their ends are free, and
+// only damping removes the slowest torsional vibration; half of the hold is one period of it. The film is laid down
+// and left to itself. Cost: CPU time of this process in its steps, one thread, per simulated ns. A relaxation
+// simulates no time; its CPU time counts for the ramp and hold that it replaces.
 #pragma once
 
 #include <functional>
@@ -80,6 +80,8 @@ struct Specimen {
   bool interior_follows = true;
   bool moment_resists = true;  // sign of the end moment: positive against the turn, otherwise with it
   bool above_start = true;     // the energy is that above the untwisted state
+  bool starts_at_rest = true;  // relaxed before it moves
+  bool is_rope = true;         // parallel tubes, if there are more than two
 
   double duration() const { return ramp + hold; }
   double outer_step() const { return time_step * scene.run.stepping.contact_every; }
@@ -103,6 +105,8 @@ struct ChartScene {
   bool relaxes = true;
   // Whether the scene's tubes are (10,10): the published model and its law describe no others.
   bool published = true;
+  // Whether its bonds may be as soft as the set's.
+  bool soft_bonds = true;
 };
 
 // The scene of a model without elements: set, contact and damping at this element length (nm).

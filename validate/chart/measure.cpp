@@ -99,7 +99,7 @@ double mean_bending_moment(const Specimen& s, const State& state) {
 class Reader {
  public:
   Reader(const Specimen& s, const State& untwisted, double zero) : s_(s), zero_(s.above_start ? zero : 0) {
-    if (s.topology.tubes() > 2) shells_ = rope_shells(s.topology, untwisted, 0);
+    if (is_rope()) shells_ = rope_shells(s.topology, untwisted, 0);
   }
 
   void add(const Simulation& simulation) {
@@ -109,8 +109,8 @@ class Reader {
     now["energy"] = simulation.forces().energy.potential() - zero_;
     now["end_moment"] = moment_on_grips(s_, simulation) * units::eV_in_nN_nm;
     now["bending_moment"] = mean_bending_moment(s_, state) * units::eV_in_nN_nm;
-    if (topology.tubes() > 1) now["spacing"] = tube_spacing(topology, state, shells_);
-    if (topology.tubes() > 2) {
+    if (s_.is_rope && topology.tubes() > 1) now["spacing"] = tube_spacing(topology, state, shells_);
+    if (is_rope()) {
       const RopeObservation o = observe(topology, state, shells_, validities(s_.scene, topology), 0, s_.spacing);
       now["beta"] = o.beta * units::rad_in_degree;
       now["end_angle"] = o.geometric_twist * units::rad_in_degree;
@@ -122,6 +122,8 @@ class Reader {
   std::map<std::string, double> means() const { return means_.values(); }
 
  private:
+  bool is_rope() const { return s_.is_rope && s_.topology.tubes() > 2; }
+
   const Specimen& s_;
   double zero_ = 0;
   RopeShells shells_;
@@ -198,7 +200,8 @@ ChartPoint describe(const ChartScene& scene, const ChartModel& model, const Spec
 
 void measure(const Specimen& s, const ChartModel& model, ChartPoint& point) {
   omp_set_num_threads(1);
-  const Simulation start = relaxed(s, s.state, start_tolerance);
+  const Simulation start = s.starts_at_rest ? relaxed(s, s.state, start_tolerance)
+                                            : Simulation(s.topology, s.interaction, s.held(), s.state, s.time_step);
   const State& untwisted = start.state();
   Reader reader(s, untwisted, start.forces().energy.potential());
   double total = 0;

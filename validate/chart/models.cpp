@@ -133,6 +133,7 @@ std::vector<ChartModel> chart_models(const ChartScene& scene, bool quick) {
   if (!scene.published)
     drop([](const ChartModel& m) { return !m.set.empty() || m.law == "paper" || m.cutoff > 0; });
   if (!scene.relaxes) drop([](const ChartModel& m) { return m.mode == RunOptions::Mode::relax; });
+  if (!scene.soft_bonds) drop([](const ChartModel& m) { return m.hooke; });
   if (quick) {
     static const std::vector<std::string> few = {finest_model, default_model, published_model,
                                                  "length-2",   "isotropic",   "relax"};

@@ -159,7 +159,9 @@ double peer_cost(const Peer& peer, const ChartPoint& published) {
   return peer.seconds_per_element_step * published.elements * 1e3 / peer.time_step;
 }
 
-void add_peers(const std::vector<const ChartRow*>& rows, LineChart& chart) {
+// A line at its cost, since its error is not known, and a mark that names its source.
+void add_peers(const std::vector<const ChartRow*>& rows, ScatterChart& scatter) {
+  LineChart& chart = scatter.chart;
   double low = 1e300, high = 0;
   for (const ChartRow* r : rows) {
     low = std::min(low, drawn(r->error));
@@ -177,6 +179,14 @@ void add_peers(const std::vector<const ChartRow*>& rows, LineChart& chart) {
     line.x = {peer_cost(peer, *published), peer_cost(peer, *published)};
     line.y = {low, high};
     chart.lines.push_back(line);
+    ChartLine mark;
+    mark.colour = 5;
+    mark.points = true;
+    mark.x = {line.x.back()};
+    mark.y = {line.y.back()};
+    chart.lines.push_back(mark);
+    scatter.styles.resize(chart.lines.size());
+    scatter.styles.back() = {Mark::triangle, {peer.remark}, {true}};
   }
 }
 
@@ -205,7 +215,7 @@ std::string figure_html(const ChartScene& scene, const std::string& observable, 
   chart.height = 340;
   chart.lines = {front_line(s, front)};
   add_kinds(rows, front, scatter);
-  add_peers(rows, chart);
+  add_peers(rows, scatter);
   const std::string svg = scatter_svg(scatter);
   if (svg.empty()) return "";
   return "<figure>" + svg +
@@ -390,7 +400,7 @@ std::string scenes_table(const std::vector<ChartRow>& rows) {
     double outermost = 0;
     for (std::size_t i = 0; i < s.state.size(); ++i)
       outermost = std::max(outermost, Vector3(s.state.position[i]).head<2>().norm());
-    const bool rope = scene.contact && t.tubes() > 2, turned = rope || !scene.contact;
+    const bool rope = s.is_rope && t.tubes() > 2, turned = rope || !scene.contact;
     html += fmt::format(
         "<tr><td>{}</td><td class=\"number\">{}</td><td class=\"number\">{}</td><td class=\"number\">{}</td>"
         "<td class=\"number\">{}</td><td class=\"number\">{}</td><td class=\"number\">{}</td></tr>\n",

@@ -16,6 +16,7 @@
 #include "model/error.hpp"
 #include "scene/build.hpp"
 #include "scene/dissipation.hpp"
+#include "scene/kinds/film.hpp"
 #include "scene/prepare.hpp"
 
 namespace ropewalk {
@@ -34,11 +35,15 @@ constexpr double strong_angle = 130 * units::degree;
 constexpr double wall_shear = 0.02;                   // twist per length times the tube's radius
 constexpr double moment_length = 26 * element;        // nm
 constexpr double end_moment = 10;                     // nN nm per tube
+constexpr double strong_moment = 40;                  // nN nm: twists a tube by 0.12 rad/nm
 constexpr double moment_ramp = 66, moment_hold = 44;  // ps: three periods and two
-constexpr double crossed_length = 8 * element;        // nm
-constexpr double crossed_from = 90, crossed_to = 30;  // degrees
-constexpr std::size_t md_increment = 4;               // of rope-7-short
-constexpr double md_angle = 18 * units::degree;       // there
+constexpr int film_tubes = 40;
+constexpr double film_length = 32 * element, film_side = 60, film_spacing = 1.7;  // nm
+constexpr double film_time = 30;                                                  // ps, twice
+constexpr double crossed_length = 8 * element;                                    // nm
+constexpr double crossed_from = 90, crossed_to = 30;                              // degrees
+constexpr std::size_t md_increment = 4;                                           // of rope-7-short
+constexpr double md_angle = 18 * units::degree;                                   // there
 
 // Damping constants of a model are given for elements of the default length.
 void scale_damping(Specimen& s) {
@@ -170,9 +175,9 @@ Specimen rope_of_19(const ChartModel& model, const char* set) {
 
 // --- rope19-moment ---
 
-Specimen rope_under_moment(const ChartModel& model) {
+Specimen rope_under_moment(const ChartModel& model, double moment) {
   Specimen s = parallel_tubes(model, 19, moment_length, 0);
-  s.moment = end_moment * units::nN_nm;
+  s.moment = moment * units::nN_nm;
   s.ramp = moment_ramp;
   s.hold = moment_hold;
   return s;
@@ -258,6 +263,30 @@ Specimen closed_ring(const ChartModel& model) {
   return s;
 }
 
+// --- film ---
+
+Specimen free_film(const ChartModel& model) {
+  Specimen s;
+  const int elements = bonds_of(model, film_length);
+  s.scene = knobs_of(model, set_name, film_length / elements);
+  s.element = element;
+  s.topology = empty_topology(s.scene);
+  s.spacing = rest_spacing(s.scene);
+  FilmSource film;
+  film.tubes = film_tubes;
+  film.length = film_length;
+  film.width = film.depth = film_side;
+  film.spacing = film_spacing;
+  Random random(s.scene.start.seed);
+  film.place(s.scene, s.spacing, random, s.topology, s.state);
+  s.twist_share.assign(s.state.size(), 0.0);
+  s.is_rope = s.starts_at_rest = s.above_start = false;
+  s.ramp = s.hold = film_time;
+  set_collapse(s.scene, s.topology);
+  settle(model, s);
+  return s;
+}
+
 std::vector<ChartScene> all_scenes() {
   return {
       {"tube-twist",
@@ -325,7 +354,35 @@ std::vector<ChartScene> all_scenes() {
                    moment_length, end_moment, moment_ramp, moment_hold),
        true,
        {"energy", "beta", "end_angle", "spacing", "bending_moment"},
-       rope_under_moment,
+       [](const ChartModel& m) { return rope_under_moment(m, end_moment); },
+       {},
+       false},
+      {"rope19-strong-moment",
+       "19 tubes under a strong moment",
+       fmt::format(
+           "The same under {:g} nN nm, which twists each tube by {:.2g} rad/nm, as in the published ropes, "
+           "with Hooke's bonds. A real (10,10) tube collapses at half of that twist, and bonds as soft as its "
+           "atoms bear no such moment.",
+           strong_moment, strong_moment * units::nN_nm / read_parameters(find_parameters(set_name, "")).bond.twist),
+       true,
+       {"energy", "beta", "end_angle", "spacing", "bending_moment"},
+       [](ChartModel m) {
+         m.hooke = true;
+         return rope_under_moment(m, strong_moment);
+       },
+       {},
+       false,
+       true,
+       false},
+      {"film",
+       "A film of 40 tubes",
+       fmt::format(
+           "{} (10,10) tubes of {:.4g} nm, laid at random over one another in a square of {:g} nm. They bend "
+           "towards one another for {:g} ps. Energies are those of contact and bonds.",
+           film_tubes, film_length, film_side, 2 * film_time),
+       true,
+       {"energy", "bending_moment"},
+       free_film,
        {},
        false},
       {"crossed-tubes",
