@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 
+#include "cli/command_line.hpp"
 #include "model/error.hpp"
 #include "verbs/verbs.hpp"
 #include "version.hpp"
@@ -111,13 +112,14 @@ int main(int argc, char** argv) {
   verbs.calibrate.command = verbs.fit.command = verbs.universal.command = command_line(argc, argv);
   add_calibrate(app, verbs);
   add_verbs(app, verbs);
+  add_describe(app, {"ropewalk-calibrate", version, ""});
   catch_interrupts();
   try {
     app.parse(argc, argv);
     return run(app, verbs);
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) return app.exit(e);
-    std::fprintf(stderr, "ropewalk calibrate: %s; see ropewalk calibrate --help\n", e.what());
+    std::fprintf(stderr, "ropewalk calibrate: %s\n", usage_error(app, e, "ropewalk calibrate").c_str());
     return 2;
   } catch (const InputError& e) {
     std::fprintf(stderr, "ropewalk calibrate: %s\n", e.what());

@@ -9,8 +9,10 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "cli/command_line.hpp"
 #include "commands/commands.hpp"
 #include "commands/siblings.hpp"
+#include "io/toml_table.hpp"
 #include "model/error.hpp"
 #include "run/cores.hpp"
 #include "scene/scene_toml.hpp"
@@ -50,7 +52,7 @@ struct Verbs {
   PlanArguments plan;
   ExportArguments to_lammps;
   ImportArguments from_lammps;
-  std::string check_scene;
+  std::string check_scene, help_topic;
   int code = 0;
 };
 
@@ -259,17 +261,21 @@ void add_gather(CLI::App& app, Verbs& v) {
 }
 
 void add_plan(CLI::App& app, Verbs& v) {
-  CLI::App* c = app.add_subcommand("plan", "Choose the cheapest model that holds an error, by short pilots of the scene");
+  CLI::App* c =
+      app.add_subcommand("plan", "Choose the cheapest model that holds an error, by short pilots of the scene");
   c->add_option("scene", v.plan.scene, "Scene file (TOML)");
   c->add_option("--error", v.plan.error, "Largest error of each observable: 2% or 0.02")->capture_default_str();
-  c->add_option("--observables", v.plan.observables, "Which ones: energy and columns of log.csv [default: energies, twist angle, torque, tension]")
+  c->add_option("--observables", v.plan.observables,
+                "Which ones: energy and columns of log.csv [default: energies, twist angle, torque, tension]")
       ->delimiter(',');
   c->add_flag("--end-state", v.plan.end_state, "Only the end is asked for, not the motion");
   c->add_option("-o", v.plan.out, "File to write, never one that exists [default: SCENE-planned.toml]");
-  c->add_option("-j,--jobs", v.plan.jobs, "Pilots at a time [default: one for each core]")->check(CLI::Range(1, 4096));
+  c->add_option("-j,--jobs", v.plan.jobs, "Pilots at a time [default: one for each core]")
+      ->check(CLI::Range(1, 4096));
   c->add_option("--check", v.plan.check, "Directory of a run: compare its end with a finer model instead");
   c->add_option("--against", v.plan.against, "With --check: directory of a run of the same scene by a finer model");
-  c->add_option("--finest", v.plan.finest, "Also write the scene with the finest model that pilots took, to this file");
+  c->add_option("--finest", v.plan.finest,
+                "Also write the scene with the finest model that pilots took, to this file");
   c->add_option("--stretch", v.plan.stretch, "With --check: ps that both models go on")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
@@ -314,6 +320,34 @@ void add_bench(CLI::App& app, Verbs& v) {
   c->callback([&v] { v.code = bench_command(v.bench); });
 }
 
+// The help of a verb, or what a scene may say.
+void add_help(CLI::App& app, Verbs& v) {
+  CLI::App* c = app.add_subcommand("help", "The help of a verb; help scene: every key of a scene, with its unit");
+  c->add_option("topic", v.help_topic, "scene, or a verb [default: the list of verbs]");
+  c->callback([&app, &v] {
+    const std::string& topic = v.help_topic;
+    if (topic == "scene") {
+      std::puts(scene_key_help().c_str());
+      return;
+    }
+    std::vector<std::string> names = {"scene"};
+    for (const CLI::App* verb : app.get_subcommands([](const CLI::App* a) { return !a->get_group().empty(); })) {
+      if (topic == verb->get_name()) {
+        std::fputs(verb->help().c_str(), stdout);
+        return;
+      }
+      names.push_back(verb->get_name());
+    }
+    if (topic.empty()) {
+      std::fputs(app.help().c_str(), stdout);
+      return;
+    }
+    const std::string near = nearest_word(topic, names);
+    throw InputError({"", 0, "help"}, "there is nothing on \"" + printable(topic, 60) + "\"",
+                     near.empty() ? "see ropewalk help" : "did you mean " + near + "?");
+  });
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -322,9 +356,9 @@ int main(int argc, char** argv) {
       "Units: nm, ps, eV; moments nN nm; every key of a scene carries its unit.\n"
       "Exit code: 0 done, 2 wrong input, 3 stopped with the reason, 4 not relaxed within run.max_steps, 5 stopped "
       "at a limit, 128 + signal.");
-  app.set_version_flag("--version", std::string("ropewalk ") + version + " (" + git_id + ")");
+  app.set_version_flag("--version", fmt::format("ropewalk {} ({}), {}, {}, {}", version, git_id, compiler,
+                                                build_type, instruction_sets().front()));
   app.require_subcommand(1);
-  app.footer(scene_key_help());
   Verbs verbs;
   add_new(app, verbs);
   add_check(app, verbs);
@@ -348,13 +382,15 @@ int main(int argc, char** argv) {
                      "From a chirality to a validated parameter set: calibrate, make atoms, validate");
   add_energy(app, verbs);
   add_bench(app, verbs);
+  add_help(app, verbs);
+  add_describe(app, {"ropewalk", version, scene_key_help()});
   try {
     hand_over_to_sibling(argv);
     wait_briefly(argv);
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) return app.exit(e);
-    std::fprintf(stderr, "ropewalk: %s; see ropewalk --help\n", e.what());
+    std::fprintf(stderr, "ropewalk: %s\n", usage_error(app, e, "ropewalk").c_str());
     return 2;
   } catch (const InputError& e) {
     std::fprintf(stderr, "ropewalk: %s\n", e.what());

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "chart/chart.hpp"
+#include "cli/command_line.hpp"
 #include "model/error.hpp"
 #include "parametrize/parametrize.hpp"
 #include "runner/runner.hpp"
@@ -125,12 +126,13 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   Verbs verbs;
   add_verbs(app, verbs);
+  add_describe(app, {"ropewalk-validate", version, ""});
   try {
     app.parse(argc, argv);
     return verbs.code;
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) return app.exit(e);
-    std::fprintf(stderr, "%s: %s; see %s --help\n", spoken, e.what(), spoken);
+    std::fprintf(stderr, "%s: %s\n", spoken, usage_error(app, e, name).c_str());
     return 2;
   } catch (const InputError& e) {
     std::fprintf(stderr, "%s: %s\n", spoken, e.what());

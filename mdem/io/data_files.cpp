@@ -28,7 +28,11 @@ std::string shipped_sets(const fs::path& folder) {
 
 std::string data_directory() {
   const char* set = std::getenv("ROPEWALK_DATA");
-  return set && *set ? set : ROPEWALK_DATA_DIR;
+  if (set && *set) return set;
+  // As installed, wherever the tree was moved to.
+  std::error_code error;
+  const fs::path beside = fs::read_symlink("/proc/self/exe", error).parent_path() / "../share/ropewalk";
+  return fs::is_directory(beside / "parameters", error) ? beside.lexically_normal().string() : ROPEWALK_DATA_DIR;
 }
 
 std::string find_parameters(const std::string& name, const std::string& folder, const InputError::Place& place,

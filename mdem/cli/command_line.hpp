@@ -1,0 +1,27 @@
+// What all programs of Ropewalk do with their command lines: say what was mistyped, and describe themselves to the
+// shell and to `man`.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+namespace ropewalk {
+
+// One line on what is wrong, with the nearest verb or option where one was mistyped. `program` as it is typed.
+std::string usage_error(const CLI::App& app, const CLI::ParseError& error, const std::string& program);
+
+// How a program describes itself.
+struct Description {
+  std::string program;  // the name of its file
+  std::string version;
+  std::string long_text;  // ends the man page; lines are kept
+};
+std::string man_page(const CLI::App& app, const Description& d);
+std::string bash_completion(const CLI::App& app, const Description& d);
+std::string zsh_completion(const CLI::App& app, const Description& d);
+std::string fish_completion(const CLI::App& app, const Description& d);
+
+// Adds the verb `describe`, which prints one of them. It is not listed.
+void add_describe(CLI::App& app, const Description& d);
+
+}  // namespace ropewalk

@@ -1,0 +1,56 @@
+#!/usr/bin/env bash
+# The installed tree: it works after it was moved and where nothing may be written, finds its own data, and other
+# programs build against it. Arguments: the build, and "libraries" where they are to be tried as well.
+set -euo pipefail
+build=$(realpath "$1") here=$(realpath "$(dirname "$0")")
+work=$(mktemp -d)
+trap 'chmod -R u+w "$work"; rm -rf "$work"' EXIT
+fail() { echo "installed_tree: $*" >&2; exit 1; }
+
+DESTDIR=$work/stage cmake --install "$build" --prefix /first >/dev/null
+mv "$work/stage/first" "$work/moved"
+chmod -R a-w "$work/moved"
+cd "$work"
+unset ROPEWALK_DATA
+ropewalk=$work/moved/bin/ropewalk
+
+"$ropewalk" new rope >/dev/null
+cat > seven.toml <<'SCENE'
+format = "ropewalk-scene-1"
+parameters = "cnt-10-10-tersoff"
+[rope]
+tubes = 7
+length_nm = 14
+[twist]
+moment_nN_nm = 5
+rate_nN_nm_per_ps = 5
+SCENE
+"$ropewalk" run seven.toml --out seven --quiet >/dev/null
+[ -s seven/report.html ] || fail "the run left no report"
+# The data are those of the tree, not those of the sources: a set that only the tree has is found.
+chmod u+w moved/share/ropewalk/parameters
+sed 's/^name *=.*/name = "only-here"/' moved/share/ropewalk/parameters/cnt-10-10-tersoff.toml > only-here.toml
+mv only-here.toml moved/share/ropewalk/parameters/
+sed 's/cnt-10-10-tersoff/only-here/' seven.toml > other.toml
+"$ropewalk" check other.toml >/dev/null || fail "the data beside the program are not found"
+"$ropewalk" calibrate show cnt-10-10-tersoff --table > table
+grep -q EI table || fail "ropewalk calibrate is not found"
+"$ropewalk" validate list > cases
+grep -q euler cases || fail "ropewalk validate is not found"
+
+grep -q 'time_step_fs' moved/share/man/man1/ropewalk.1 || fail "the man page lacks the keys of a scene"
+completed=$(bash -c 'source moved/share/bash-completion/completions/ropewalk
+  COMP_WORDS=(ropewalk thr) COMP_CWORD=1; _ropewalk; echo "${COMPREPLY[@]}"')
+[ "$completed" = threshold ] || fail "bash completes thr to: $completed"
+for program in ropewalk ropewalk-calibrate ropewalk-validate; do
+  for file in "share/man/man1/$program.1" "share/zsh/vendor-completions/_$program" \
+    "share/fish/vendor_completions.d/$program.fish"; do
+    [ -s "moved/$file" ] || fail "no $file"
+  done
+done
+
+[ "${2:-}" = libraries ] || exit 0
+cmake -S "$here/consumer" -B consumer -DCMAKE_PREFIX_PATH="$work/moved" -DCMAKE_BUILD_TYPE=Release >/dev/null
+cmake --build consumer >/dev/null
+ROPEWALK_DATA=$work/moved/share/ropewalk consumer/twist > said
+grep -q "70 elements" said || fail "the consumer's rope is wrong"
