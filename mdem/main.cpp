@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 
@@ -320,32 +321,39 @@ void add_bench(CLI::App& app, Verbs& v) {
   c->callback([&v] { v.code = bench_command(v.bench); });
 }
 
-// The help of a verb, or what a scene may say.
+std::vector<std::string> listed_verbs(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* verb : app.get_subcommands([](const CLI::App* a) { return !a->get_group().empty(); }))
+    names.push_back(verb->get_name());
+  return names;
+}
+
+// What a scene may say. The help of verbs is seen to by verb_before_help().
 void add_help(CLI::App& app, Verbs& v) {
   CLI::App* c = app.add_subcommand("help", "The help of a verb; help scene: every key of a scene, with its unit");
   c->add_option("topic", v.help_topic, "scene, or a verb [default: the list of verbs]");
   c->callback([&app, &v] {
-    const std::string& topic = v.help_topic;
-    if (topic == "scene") {
+    if (v.help_topic == "scene") {
       std::puts(scene_key_help().c_str());
       return;
     }
-    std::vector<std::string> names = {"scene"};
-    for (const CLI::App* verb : app.get_subcommands([](const CLI::App* a) { return !a->get_group().empty(); })) {
-      if (topic == verb->get_name()) {
-        std::fputs(verb->help().c_str(), stdout);
-        return;
-      }
-      names.push_back(verb->get_name());
-    }
-    if (topic.empty()) {
-      std::fputs(app.help().c_str(), stdout);
-      return;
-    }
-    const std::string near = nearest_word(topic, names);
-    throw InputError({"", 0, "help"}, "there is nothing on \"" + printable(topic, 60) + "\"",
+    std::vector<std::string> topics = listed_verbs(app);
+    topics.emplace_back("scene");
+    const std::string near = nearest_word(v.help_topic, topics);
+    throw InputError({"", 0, "help"}, "there is nothing on \"" + printable(v.help_topic, 60) + "\"",
                      near.empty() ? "see ropewalk help" : "did you mean " + near + "?");
   });
+}
+
+// "help run" as "run --help", and "help" as "--help".
+void verb_before_help(const CLI::App& app, int argc, char** argv) {
+  static char help[] = "--help";
+  if (argc < 2 || argc > 3 || std::string(argv[1]) != "help") return;
+  if (argc == 2) argv[1] = help;
+  const std::vector<std::string> verbs = listed_verbs(app);
+  if (argc == 2 || !std::count(verbs.begin(), verbs.end(), argv[2])) return;
+  argv[1] = argv[2];
+  argv[2] = help;
 }
 
 }  // namespace
@@ -353,7 +361,7 @@ void add_help(CLI::App& app, Verbs& v) {
 int main(int argc, char** argv) {
   CLI::App app(
       "ropewalk twists carbon-nanotube ropes by the mesoscopic distinct element method.\n"
-      "Units: nm, ps, eV; moments nN nm; every key of a scene carries its unit.\n"
+      "Units: nm, ps, eV; moments nN nm. Every key of a scene carries its unit: ropewalk help scene.\n"
       "Exit code: 0 done, 2 wrong input, 3 stopped with the reason, 4 not relaxed within run.max_steps, 5 stopped "
       "at a limit, 128 + signal.");
   app.set_version_flag("--version", fmt::format("ropewalk {} ({}), {}, {}, {}", version, git_id, compiler,
@@ -385,6 +393,7 @@ int main(int argc, char** argv) {
   add_help(app, verbs);
   add_describe(app, {"ropewalk", version, scene_key_help()});
   try {
+    verb_before_help(app, argc, argv);
     hand_over_to_sibling(argv);
     wait_briefly(argv);
     app.parse(argc, argv);

@@ -7,7 +7,8 @@
 
 namespace ropewalk {
 
-// The folder of the shipped sets and scenes: the environment variable ROPEWALK_DATA, or the source tree's data/.
+// The folder of the shipped sets and scenes: the environment variable ROPEWALK_DATA, else share/ropewalk beside the
+// program's bin, else what the build was given as ROPEWALK_DATA_DIR, the source tree's data/.
 std::string data_directory();
 
 // The file of a parameter set: `name` as a file in `folder` (empty: the current one), then as the name of a

@@ -43,9 +43,33 @@ TEST_F(Cli, HelpNamesEveryVerbAndUnits) {
   const Outcome o = run("--help");
   EXPECT_EQ(o.code, 0);
   for (const char* word : {"new", "check", "run", "resume", "observe", "report", "energy", "bench", "calibrate",
-                           "validate", "length_nm", "moment_nN_nm", "time_step_fs"})
+                           "validate", "help scene"})
     EXPECT_NE(o.out.find(word), std::string::npos) << word;
-  EXPECT_EQ(run("--version").code, 0);
+  EXPECT_EQ(run("help").out, o.out);
+  const std::string keys = run("help scene").out;
+  for (const char* word : {"length_nm", "moment_nN_nm", "time_step_fs"}) {
+    EXPECT_NE(keys.find(word), std::string::npos) << word;
+    EXPECT_EQ(run("run --help").out.find(word), std::string::npos) << "a verb has its own options alone";
+  }
+  EXPECT_EQ(run("help run").out, run("run --help").out);
+  const Outcome version = run("--version");
+  EXPECT_EQ(version.code, 0);
+  EXPECT_NE(version.out.find("GNU"), std::string::npos) << version.out;
+}
+
+TEST_F(Cli, MistypedVerbsAndOptionsAreNamedWithTheNearest) {
+  for (const auto& [line, says] :
+       {std::pair{"rn", "there is no verb \"rn\"; did you mean run?"},
+        std::pair{"run x.toml --ot d", "there is no option --ot of run; did you mean --out?"},
+        std::pair{"run x.toml --threds=2 --out d", "there is no option --threds of run; did you mean --threads?"},
+        std::pair{"calibrate --chiralty 10,10", "there is no option --chiralty; did you mean --chirality?"},
+        std::pair{"validate chrt", "there is no verb \"chrt\"; did you mean chart?"},
+        std::pair{"help scen", "did you mean scene?"}, std::pair{"--xyz", "there is no option --xyz; see ropewalk --help"}}) {
+    const Outcome o = run(line);
+    EXPECT_EQ(o.code, 2) << line;
+    EXPECT_NE(o.err.find(says), std::string::npos) << o.err;
+    EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << o.err;
+  }
 }
 
 TEST_F(Cli, WrongCommandLinesAreOneLine) {
