@@ -20,20 +20,31 @@
 namespace ropewalk {
 namespace {
 
+// ASE keeps no column of a dump that it does not know, but for those that begin with c_.
 struct ColourColumn {
   OutputColumn column;
+  const char* in_dump;
   std::vector<double> ElementColours::*values;
 };
 
 constexpr std::array<ColourColumn, 4> colour_columns = {{
-    {{"bond_energy_eV", "eV", "half of the energy of each bond of the element"}, &ElementColours::bond_energy},
-    {{"vdw_energy_eV", "eV", "half of the energy of each contact of the element"}, &ElementColours::vdw_energy},
-    {{"bending_moment_eV", "eV", "bending moment: EI times curvature"}, &ElementColours::bending_moment},
-    {{"twist_angle_rad", "rad", "twist angle, mean of the bonds of the element"}, &ElementColours::twist_angle},
+    {{"bond_energy_eV", "eV", "half of the energy of each bond of the element"},
+     "c_bond_energy_eV",
+     &ElementColours::bond_energy},
+    {{"vdw_energy_eV", "eV", "half of the energy of each contact of the element"},
+     "c_vdw_energy_eV",
+     &ElementColours::vdw_energy},
+    {{"bending_moment_eV", "eV", "bending moment: EI times curvature"},
+     "c_bending_moment_eV",
+     &ElementColours::bending_moment},
+    {{"twist_angle_rad", "rad", "twist angle, mean of the bonds of the element"},
+     "c_twist_angle_rad",
+     &ElementColours::twist_angle},
 }};
 
-// Columns of every frame. OVITO maps exactly these names to particle properties without the user's help.
-constexpr std::array<OutputColumn, 13> fixed_columns = {{
+// Columns of every frame. OVITO maps those of place, orientation and shape to particle properties without the
+// user's help. ASE has no use for mol, and finds the tube again as c_tube. MDAnalysis reads no ITEM: TIME.
+constexpr std::array<OutputColumn, 15> fixed_columns = {{
     {"id", "", "element, from 1"},
     {"mol", "", "tube, from 1"},
     {"type", "", "type of the tube, from 1"},
@@ -47,8 +58,10 @@ constexpr std::array<OutputColumn, 13> fixed_columns = {{
     {"c_shape[1]", "nm", "radius of the tube"},
     {"c_shape[2]", "nm", "radius of the tube"},
     {"c_shape[3]", "nm", "length of the element"},
+    {"c_tube", "", "tube, from 1, as mol"},
+    {"c_time_ps", "ps", "time of the frame"},
 }};
-enum Column { id, mol, type, x, y, z, qx, qy, qz, qw };
+enum Column { id, mol, type, x, y, z, qx, qy, qz, qw, needed, time = 14 };
 
 // --- Dump, writing --------------------------------------------------------------------------------------
 
@@ -72,10 +85,7 @@ Box box_of(const Topology& topology, const State& state) {
 
 void append_head(Buffer& out, const Topology& topology, const State& state) {
   const auto to = std::back_inserter(out);
-  // TIMESTEP comes first, although LAMMPS writes TIME before it: readers that do not know TIME expect TIMESTEP
-  // here.
-  fmt::format_to(to, "ITEM: TIMESTEP\n{}\nITEM: TIME\n{}\nITEM: NUMBER OF ATOMS\n{}\n", state.step, state.time,
-                 state.size());
+  fmt::format_to(to, "ITEM: TIMESTEP\n{}\nITEM: NUMBER OF ATOMS\n{}\n", state.step, state.size());
   const Box box = box_of(topology, state);
   fmt::format_to(to, "ITEM: BOX BOUNDS ff ff ff\n");
   for (int k = 0; k < 3; ++k) fmt::format_to(to, "{:.4f} {:.4f}\n", box.low[k], box.high[k]);
@@ -90,7 +100,7 @@ void append_columns(Buffer& out, const State& state, const ElementColours& colou
   fmt::format_to(to, "ITEM: ATOMS");
   fmt::format_to(to, " {}", column_names(fixed_columns, " "));
   for (const ColourColumn& column : colour_columns)
-    if (given(colours, column, state)) fmt::format_to(to, " {}", column.column.name);
+    if (given(colours, column, state)) fmt::format_to(to, " {}", column.in_dump);
   out.push_back('\n');
 }
 
@@ -99,9 +109,9 @@ void append_element(Buffer& out, const Topology& topology, const State& state, i
   const Quaternion q = state.orientation[i];
   const TubeType& type = topology.type_of(tube);
   fmt::format_to(std::back_inserter(out),
-                 "{} {} {} {:.7f} {:.7f} {:.7f} {:.8f} {:.8f} {:.8f} {:.8f} {:.6g} {:.6g} {:.6g}", i + 1, tube + 1,
-                 topology.tube_type[tube] + 1, p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w(), type.radius,
-                 type.radius, type.element_length);
+                 "{} {} {} {:.7f} {:.7f} {:.7f} {:.8f} {:.8f} {:.8f} {:.8f} {:.6g} {:.6g} {:.6g} {} {:.10g}", i + 1,
+                 tube + 1, topology.tube_type[tube] + 1, p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w(),
+                 type.radius, type.radius, type.element_length, tube + 1, state.time);
 }
 
 // --- Dump, reading --------------------------------------------------------------------------------------
@@ -129,8 +139,9 @@ constexpr int not_there = -1;
 // Where the columns of a frame stand: indices of the values in its lines.
 struct Layout {
   std::vector<std::string> names;
-  std::array<int, 10> fixed;
+  std::array<int, needed> fixed;
   std::array<int, colour_columns.size()> colour;
+  int time = not_there;
 };
 
 }  // namespace
@@ -194,7 +205,7 @@ struct DumpReader::Impl {
     std::string_view rest = item("ATOMS");
     Layout l;
     for (std::string_view word = next_word(rest); !word.empty(); word = next_word(rest)) l.names.emplace_back(word);
-    const auto place = [&](const char* name) {
+    const auto place = [&](const std::string& name) {
       for (std::size_t k = 0; k < l.names.size(); ++k)
         if (l.names[k] == name) return static_cast<int>(k);
       return not_there;
@@ -203,7 +214,11 @@ struct DumpReader::Impl {
       l.fixed[k] = place(fixed_columns[k].name);
       if (l.fixed[k] == not_there) throw garbled(fmt::format("column {} is missing", fixed_columns[k].name));
     }
-    for (std::size_t k = 0; k < l.colour.size(); ++k) l.colour[k] = place(colour_columns[k].column.name);
+    l.time = place(fixed_columns[time].name);
+    for (std::size_t k = 0; k < l.colour.size(); ++k) {
+      l.colour[k] = place(colour_columns[k].in_dump);
+      if (l.colour[k] == not_there) l.colour[k] = place(colour_columns[k].column.name);  // as version 0.1 called it
+    }
     return l;
   }
 
@@ -249,25 +264,33 @@ struct DumpReader::Impl {
     frame.state.orientation.set(i, q.normalized());  // its digits are rounded
     for (std::size_t k = 0; k < l.colour.size(); ++k)
       if (l.colour[k] != not_there) (frame.colours.*colour_columns[k].values)[i] = v[l.colour[k]];
+    if (l.time != not_there) frame.state.time = v[l.time];
   }
 
-  void read_head(const Topology& topology, DumpFrame& frame) {
+  // True where the time is here, as version 0.1 wrote it.
+  bool read_head(const Topology& topology, DumpFrame& frame) {
     frame.state.step = number_line<std::int64_t>("step");
-    item("TIME");
-    frame.state.time = number_line<double>("time");
-    item("NUMBER OF ATOMS");
+    need_line();
+    const bool timed = line == "ITEM: TIME";
+    if (timed) {
+      frame.state.time = number_line<double>("time");
+      need_line();
+    }
+    check_item("NUMBER OF ATOMS");
     const auto n = number_line<std::int64_t>("number of elements");
     if (n != topology.elements())
       throw error("", fmt::format("the frame has {} elements, the scene has {}", n, topology.elements()),
                   "is this the dump of the run whose scene is read?");
     skip_box();
+    return timed;
   }
 
   void read_frame(const Topology& topology, DumpFrame& frame) {
     frame.state = State(static_cast<std::size_t>(topology.elements()));
     frame.colours = {};
-    read_head(topology, frame);
+    const bool timed = read_head(topology, frame);
     const Layout l = layout();
+    if (!timed && l.time == not_there) throw garbled(fmt::format("column {} is missing", fixed_columns[time].name));
     for (std::size_t k = 0; k < l.colour.size(); ++k)
       if (l.colour[k] != not_there) (frame.colours.*colour_columns[k].values).resize(frame.state.size());
     std::vector<double> values(l.names.size());
@@ -359,6 +382,7 @@ std::string data_array(const char* name, int components, const std::vector<T>& v
 constexpr OutputColumn director{"director", "", "x axis of the element, normal to the tube: shows physical twist"};
 constexpr OutputColumn axis{"axis", "", "axis of the tube"};
 constexpr OutputColumn tube_number{"tube", "", "tube, from 1"};
+constexpr OutputColumn tube_radius{"radius", "nm", "radius of the tube: scale ParaView's Tube filter by it"};
 
 template <class Of>
 std::string vectors(const char* name, const State& state, const Of& of) {
@@ -394,8 +418,12 @@ std::string point_data(const Topology& topology, const State& state, const Eleme
       text += data_array(column.column.name, 1, std::vector<float>(values.begin(), values.end()));
     }
   std::vector<std::int32_t> tube;
-  for (int t = 0; t < topology.tubes(); ++t) tube.insert(tube.end(), topology.length_of(t), t + 1);
-  return text + data_array(tube_number.name, 1, tube);
+  std::vector<float> radius;
+  for (int t = 0; t < topology.tubes(); ++t) {
+    tube.insert(tube.end(), topology.length_of(t), t + 1);
+    radius.insert(radius.end(), topology.length_of(t), static_cast<float>(topology.type_of(t).radius));
+  }
+  return text + data_array(tube_number.name, 1, tube) + data_array(tube_radius.name, 1, radius);
 }
 
 int cell_count(const Topology& topology, bool single) {
@@ -416,7 +444,7 @@ constexpr const char* byte_order =
 
 std::vector<OutputColumn> frame_columns() {
   std::vector<OutputColumn> columns(fixed_columns.begin(), fixed_columns.end());
-  for (const ColourColumn& c : colour_columns) columns.push_back(c.column);
+  for (const ColourColumn& c : colour_columns) columns.push_back({c.in_dump, c.column.unit, c.column.meaning});
   return columns;
 }
 
@@ -424,6 +452,7 @@ std::vector<OutputColumn> vtp_arrays() {
   std::vector<OutputColumn> columns = {director, axis};
   for (const ColourColumn& c : colour_columns) columns.push_back(c.column);
   columns.push_back(tube_number);
+  columns.push_back(tube_radius);
   return columns;
 }
 

@@ -1,5 +1,6 @@
 // Frames for other programs. The LAMMPS text dump opens in OVITO (particles as capsules or cylinders along
-// their local z) and is what `ropewalk observe` and `report` read back; VTP/PVD opens in ParaView.
+// their local z), LAMMPS (read_dump, rerun), MDAnalysis and ASE, and is what `ropewalk observe` and `report` read
+// back; VTP/PVD opens in ParaView.
 #pragma once
 
 #include <memory>
@@ -20,7 +21,7 @@ struct ElementColours {
 };
 
 // One frame as text of the dump format, with the columns of frame_columns(); columns of colours that are not given
-// are left out. TIMESTEP is the step, ITEM: TIME the time in ps. The shape is not called shapex, shapey, shapez,
+// are left out. TIMESTEP is the step; c_time_ps has the time. The shape is not called shapex, shapey, shapez,
 // since OVITO takes these for diameters.
 std::string dump_frame(const Topology& topology, const State& state, const ElementColours& colours);
 

@@ -161,7 +161,7 @@ TEST_F(Cli, MixedTubesRunAndResume) {
   // What the frames colour by adds up to what the log has.
   const double energy = ropewalk::read_log((dir / "d/log.csv").string()).front()["vdw_eV"];
   EXPECT_LT(energy, -10);
-  EXPECT_NEAR(sum_of_column(frames.substr(0, frames.find("ITEM: TIMESTEP", 1)), "vdw_energy_eV"), energy,
+  EXPECT_NEAR(sum_of_column(frames.substr(0, frames.find("ITEM: TIMESTEP", 1)), "c_vdw_energy_eV"), energy,
               1e-4 * std::fabs(energy));
   EXPECT_EQ(run("observe d --json").code, 0);
   EXPECT_NE(slurp(dir / "d/report.html").find("cnt-5-5-tersoff"), std::string::npos);
