@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 
+#include "io/program.hpp"
 #include "model/error.hpp"
 #include "verbs/verbs.hpp"
 #include "version.hpp"
@@ -100,6 +101,7 @@ int run(CLI::App& app, Verbs& v) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  begin_program();
   CLI::App app(
       "ropewalk calibrate derives a tube's parameter set from atomistic data: stiffnesses from relaxed LAMMPS\n"
       "cells, van der Waals contact from the surface integral, both fitted with NLopt.\n"

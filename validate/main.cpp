@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "chart/chart.hpp"
+#include "io/program.hpp"
 #include "model/error.hpp"
 #include "parametrize/parametrize.hpp"
 #include "runner/runner.hpp"
@@ -113,6 +114,7 @@ void add_verbs(CLI::App& app, Verbs& v) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  begin_program();
   // `ropewalk parametrize` comes here as it was typed.
   const bool parametrize = argc > 1 && std::strcmp(argv[1], "parametrize") == 0;
   const char* name = parametrize ? "ropewalk" : "ropewalk validate";

@@ -2,6 +2,7 @@
 // their local z) and is what `ropewalk observe` and `report` read back; VTP/PVD opens in ParaView.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -38,6 +39,7 @@ class DumpReader {
   DumpReader(const DumpReader&) = delete;
   DumpReader& operator=(const DumpReader&) = delete;
   bool next(const Topology& topology, DumpFrame& frame);  // false at the end of the file
+  std::uint64_t position() const;                         // bytes, behind the frame just read
 
  private:
   struct Impl;
