@@ -363,10 +363,12 @@ class Run {
     const RunCheckpoint& c = *mark_.checkpoint;
     simulation_.restore(c.simulation);
     control_.shorten(divided, simulation_);
-    log_->cut(c.log.bytes);
-    frames_->cut(c.frames.bytes);
     watch_.inherit_from(c.limits.limits, simulation_.state().step);
     stop_watch_.cut(simulation_.state().step);
+    // A checkpoint later than this would know of more than the files then hold.
+    if (saved_step_ > simulation_.state().step) write_state(c.log, c.frames);
+    log_->cut(c.log.bytes);
+    frames_->cut(c.frames.bytes);
     // The remedy, after the semicolon of the message, is left out: a shorter step is what the run takes now.
     tell(fmt::format("{:.4g} ps: {}; back to {:.4g} ps, on with steps of {:.3g} fs", time,
                      why.substr(0, why.find(';')), simulation_.state().time,
@@ -486,12 +488,14 @@ class Run {
 
   void save() {
     sync_files();
-    write_state();
+    write_state(log_->mark(), frames_->mark());
   }
 
-  void write_state() {
+  void write_state(const FileMark& log, const FileMark& frames) {
     const double began = now();
     RunCheckpoint c = checkpoint_here();
+    c.log = log;
+    c.frames = frames;
     if (mark_.checkpoint && mark_.checkpoint->simulation != c.simulation) c.mark = mark_.checkpoint;
     c.origin = origin_;
     write_checkpoint(dir_, c);
@@ -506,7 +510,7 @@ class Run {
   void save_if_possible() {
     sync_files();
     try {
-      write_state();
+      write_state(log_->mark(), frames_->mark());
     } catch (const InputError& e) {
       if (!checkpoint_fails_) tell(fmt::format("{}; the run goes on, and it is tried again", e.what()));
       checkpoint_fails_ = true;

@@ -50,7 +50,7 @@ DirectoryLock::DirectoryLock(const std::string& directory) : path_(directory + "
 }
 
 DirectoryLock::~DirectoryLock() {
-  if (file_.open()) ::unlink(path_.c_str());
+  if (file_.open()) uninterrupted([&] { return ::unlink(path_.c_str()); });
 }
 
 }  // namespace ropewalk
