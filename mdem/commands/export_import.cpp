@@ -35,6 +35,7 @@ Simulation simulation_at(const RunDirectory& dir, const Scene& scene, const Prep
 
 // Where a run of this scene, and no other, stands.
 RunCheckpoint checkpoint_of(const RunDirectory& dir, const Scene& scene) {
+  check_log_header(dir.log());
   const ResumePoint point = find_resume_point(dir);
   RunOrigin origin = origin_of(dir, scene);
   origin.instructions = point.checkpoint.origin.instructions;  // LAMMPS has its own
@@ -184,7 +185,6 @@ class Import {
       throw InputError({files_.path, 0, ""}, "holds nothing that LAMMPS has done",
                        "run in.rope with lmp-ropewalk first, as README.txt says");
     for (const LammpsRow& row : read_lammps_rows(files_)) rows_[static_cast<std::int64_t>(row.step)] = row;
-    check_log_header(dir_.log());
     remove_parts(dir_.path);
     log_ = read_file(dir_.log()).substr(0, checkpoint_.log.bytes);
     if (checkpoint_.frames.bytes > 0) frames_ = read_file(dir_.frames()).substr(0, checkpoint_.frames.bytes);
@@ -246,7 +246,7 @@ class Import {
         loads);
   }
 
-  // The checkpoint last: until it is there the run stands where it stood.
+  // The checkpoint last: until it is there the run stands where it stood, and all of this can be done again.
   void write(std::int64_t from) {
     Simulation simulation = start(scene_, prepared_);
     simulation.inherit_from(force_.force, force_.torque, {last_.work, last_.dissipated});
@@ -257,13 +257,13 @@ class Import {
     checkpoint_.simulation = simulation.serialise();
     write_file_atomically(dir_.log(), log_);
     write_file_atomically(dir_.frames(), frames_);
-    write_checkpoint(dir_, checkpoint_);
     write_file_atomically(dir_.final_state(), state_csv(prepared_.topology, prepared_.state));
     Manifest m = read_manifest(dir_.manifest());
     m.steps = reached_;
     m.status = last_.time + 0.5 * prepared_.time_step >= prepared_.duration ? "finished" : "interrupted";
     m.reason = fmt::format("steps {} to {} by LAMMPS", from, reached_);
     write_file_atomically(dir_.manifest(), manifest_json(m));
+    write_checkpoint(dir_, checkpoint_);
     write_report(dir_, scene_, prepared_for_report());
     fmt::print("{} states taken over, up to step {}, {:.4g} ps. Report: {}\n", taken_, reached_, last_.time,
                dir_.report());
