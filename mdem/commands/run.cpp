@@ -155,7 +155,7 @@ class Run {
       for (const LogRow& earlier : read_log(dir_.log())) stop_watch_.add(earlier);
     // What was passed, and only said, may be cured now.
     if (policy_.on_limit == OnLimit::refine && passed_what_finer_cures()) at_once_ = check_limits(true);
-    saved_step_ = simulation_.state().step;
+    saved_step_ = written_step_ = simulation_.state().step;
     if (c.mark)
       mark_.checkpoint = c.mark;
     else
@@ -217,6 +217,7 @@ class Run {
     log_->write(log_header());
     write_row();
     write_frame();
+    written_step_ = simulation_.state().step;
     if (!relaxes() && simulation_.state().step < last_step_ && std::isfinite(simulation_.total_energy()))
       at_once_ = check_limits(true);
     save();
@@ -384,7 +385,7 @@ class Run {
                                            : scene_.run.max_steps;
     const Relaxed end = simulation_.relax(goal, max_steps, [&](long k) {
       if (k % 100 == 0) {
-        write_row();
+        if (simulation_.state().step != written_step_) write_row();
         stop = check_limits(false);
       }
       if (progress.due()) progress.show(static_cast<double>(k), status_text());
@@ -392,8 +393,10 @@ class Run {
       return stop_signal == 0 && stop == StopReason::none;
     });
     progress.done();
-    write_row();
-    write_frame();
+    if (simulation_.state().step != written_step_) {
+      write_row();
+      write_frame();
+    }
     if (stop_signal) return StopReason::signal;
     if (stop == StopReason::none) stop = check_limits(true);
     if (stop != StopReason::none) return stop;
@@ -733,6 +736,7 @@ class Run {
   } counted_from_;
   long log_every_ = 1, frames_every_ = 1, last_step_ = 0;
   std::int64_t saved_step_ = -1;
+  std::int64_t written_step_ = -1;  // of a relaxation: its row and frame were there when it began or went on
   double longest_save_ = 0;  // s
   bool checkpoint_fails_ = false;
   StopReason at_once_ = StopReason::none;  // before the first step

@@ -93,6 +93,7 @@ class Faults : public Cli {
     begin(from);
     const long calls = calls_of(command);
     ASSERT_GT(calls, 40);
+    int tried = 0;
     for (long n = 1; n <= calls; n += stride(1)) {
       const std::string when = fmt::format("{} at call {} of {} of {}", how, n, calls, command);
       begin(from);
@@ -101,13 +102,16 @@ class Faults : public Cli {
       EXPECT_NE(o.code, 0) << when;
       bring_to_its_end(from.empty() ? command : "", reference, when);
       if (HasFatalFailure()) return;
+      ++tried;
     }
+    fmt::print("{}{} in {}: {} tried\n", how, "", command, tried);
   }
 
   void fail_everywhere(const std::string& how, bool on, const std::string& command, const fs::path& from,
                        const std::string& reference, long usual_stride = 1) const {
     begin(from);
     const long calls = calls_of(command);
+    int tried = 0;
     for (long n = 1; n <= calls; n += stride(usual_stride)) {
       const std::string when =
           fmt::format("{}{} at call {} of {} of {}", how, on ? " from" : "", n, calls, command);
@@ -120,7 +124,9 @@ class Faults : public Cli {
       else
         bring_to_its_end(from.empty() ? command : "", reference, when);
       if (HasFatalFailure()) return;
+      ++tried;
     }
+    fmt::print("{}{} in {}: {} tried\n", how, on ? ", from then on," : ", once,", command, tried);
   }
 
   static constexpr const char* run_it = "run s.toml --out d --quiet";
@@ -149,6 +155,15 @@ TEST_F(Faults, RunKilledInAnyWrite) {
 TEST_F(Faults, ResumeKilledAtAnyCall) {
   references(true);
   kill_everywhere("kill", go_on, "half", "halves");
+}
+
+TEST_F(Faults, RelaxationKilledAtAnyCall) {
+  spit(dir / "s.toml",
+       "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-paper\"\n[chain]\nelements = 4\n[[load]]\n"
+       "kind = \"torque\"\nelements = [0]\ntorque_nN_nm = [0, -20, 0]\n[[load]]\nkind = \"torque\"\n"
+       "elements = [-1]\ntorque_nN_nm = [0, 20, 0]\n[run]\nmode = \"relax\"\n");
+  references(false);
+  kill_everywhere("kill", run_it, "", "whole");
 }
 
 TEST_F(Faults, DiskFullFromAnyCallOfARun) {
@@ -190,7 +205,8 @@ TEST_F(Faults, SweepKilledAndGoneOnWith) {
   ASSERT_EQ(run(sweep + "whole").code, 0) << slurp(dir / "stderr.txt");
   const std::string table = slurp(dir / "whole/table.csv");
   long n = 1;
-  for (;; n += stride(11)) {
+  int tried = 0;
+  for (;; n += stride(11), ++tried) {
     fs::remove_all(dir / "d");
     const Outcome o = with(fmt::format("kill:{}", n), sweep + "d");
     if (o.code == 0) break;  // there are no more calls
@@ -199,6 +215,7 @@ TEST_F(Faults, SweepKilledAndGoneOnWith) {
     ASSERT_EQ(slurp(dir / "d/table.csv"), table) << n;
   }
   EXPECT_GT(n, 100);
+  fmt::print("kill in sweep: {} tried\n", tried);
 }
 
 // What a power cut does to files that were not written to the disk yet, and what users do to make room.
