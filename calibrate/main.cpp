@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "cli/command_line.hpp"
+#include "io/program.hpp"
 #include "model/error.hpp"
 #include "verbs/verbs.hpp"
 #include "version.hpp"
@@ -101,6 +102,7 @@ int run(CLI::App& app, Verbs& v) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  begin_program();
   CLI::App app(
       "ropewalk calibrate derives a tube's parameter set from atomistic data: stiffnesses from relaxed LAMMPS\n"
       "cells, van der Waals contact from the surface integral, both fitted with NLopt.\n"

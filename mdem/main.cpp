@@ -1,6 +1,6 @@
 // ropewalk: the front door. Reads the command line, calls the verb, turns errors into one line and an exit
-// code: 0 done, 2 wrong input, 3 numerical failure, 4 a relaxation that did not come to rest, 5 stopped at a limit,
-// 128 + signal when interrupted.
+// code: 0 done, 2 wrong input, 3 numerical failure or a disk that takes no more, 4 a relaxation that did not come
+// to rest, 5 stopped at a limit, 6 stopped by --wall-time, 128 + signal when interrupted.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <unistd.h>
@@ -13,6 +13,7 @@
 #include "cli/command_line.hpp"
 #include "commands/commands.hpp"
 #include "commands/siblings.hpp"
+#include "io/program.hpp"
 #include "io/toml_table.hpp"
 #include "model/error.hpp"
 #include "run/cores.hpp"
@@ -72,6 +73,18 @@ void add_end(CLI::App* c, long& steps, double& until_ps) {
       ->excludes(count);
 }
 
+void add_wall_time(CLI::App* c, std::string& wall_time) {
+  c->add_option("--wall-time", wall_time,
+                "Stop with a checkpoint (exit code 6) before the program has run for so long: seconds, or H:MM:SS");
+}
+
+void add_instructions(CLI::App* c, std::string& name, const char* of, const std::string& by_default) {
+  c->add_option(
+       "--instructions", name,
+       fmt::format("Instruction set of {}: {} [default: {}]", of, fmt::join(instruction_sets(), ", "), by_default))
+      ->check(CLI::IsMember(instruction_sets()));
+}
+
 CLI::Range thread_range() { return CLI::Range(1, 1024); }
 
 void add_new(CLI::App& app, Verbs& v) {
@@ -97,6 +110,9 @@ void add_run(CLI::App& app, Verbs& v) {
       ->check(thread_range());
   add_end(c, v.run.steps, v.run.until_ps);
   add_on_limit(c, v.run.on_limit);
+  add_wall_time(c, v.run.wall_time);
+  add_instructions(c, v.run.instructions, "the calculation, for the same bits on other processors",
+                   instruction_sets().front());
   c->add_flag("--force", v.run.force, "Replace an earlier run in --out");
   c->add_flag("--quiet", v.run.quiet, "No progress line");
   c->callback([&v] { v.code = run_command(v.run); });
@@ -139,6 +155,10 @@ void add_resume(CLI::App& app, Verbs& v) {
   c->add_option("--threads", v.resume.threads, "Threads [default: all cores]")->check(thread_range());
   add_end(c, v.resume.steps, v.resume.until_ps);
   add_on_limit(c, v.resume.on_limit);
+  add_wall_time(c, v.resume.wall_time);
+  add_instructions(c, v.resume.instructions, "the calculation", "that of the run");
+  c->add_flag("--accept-changes", v.resume.accept_changes,
+              "Go on although the scene, the parameter set or the program is not what the run was begun with");
   c->add_flag("--quiet", v.resume.quiet, "No progress line");
   c->callback([&v] { v.code = resume_command(v.resume); });
 }
@@ -313,10 +333,7 @@ void add_bench(CLI::App& app, Verbs& v) {
   c->add_option("--threads", v.bench.threads, "Threads; 1,2: both, one after the other [default: 1]")
       ->delimiter(',')
       ->check(thread_range());
-  c->add_option("--instructions", v.bench.instructions,
-                fmt::format("Instruction set of the contact: {} [default: {}]", fmt::join(instruction_sets(), ", "),
-                            instruction_sets().front()))
-      ->check(CLI::IsMember(instruction_sets()));
+  add_instructions(c, v.bench.instructions, "the contact", instruction_sets().front());
   c->add_flag("--json", v.bench.json, "JSON");
   c->callback([&v] { v.code = bench_command(v.bench); });
 }
@@ -359,11 +376,12 @@ void verb_before_help(const CLI::App& app, int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  begin_program();
   CLI::App app(
       "ropewalk twists carbon-nanotube ropes by the mesoscopic distinct element method.\n"
       "Units: nm, ps, eV; moments nN nm. Every key of a scene carries its unit: ropewalk help scene.\n"
       "Exit code: 0 done, 2 wrong input, 3 stopped with the reason, 4 not relaxed within run.max_steps, 5 stopped "
-      "at a limit, 128 + signal.");
+      "at a limit, 6 stopped by --wall-time, 128 + signal.");
   app.set_version_flag("--version", fmt::format("ropewalk {} ({}), {}, {}, {}", version, git_id, compiler,
                                                 build_type, instruction_sets().front()));
   app.require_subcommand(1);

@@ -5,6 +5,7 @@
 
 #include "chart/chart.hpp"
 #include "cli/command_line.hpp"
+#include "io/program.hpp"
 #include "model/error.hpp"
 #include "parametrize/parametrize.hpp"
 #include "runner/runner.hpp"
@@ -114,6 +115,7 @@ void add_verbs(CLI::App& app, Verbs& v) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  begin_program();
   // `ropewalk parametrize` comes here as it was typed.
   const bool parametrize = argc > 1 && std::strcmp(argv[1], "parametrize") == 0;
   const char* name = parametrize ? "ropewalk" : "ropewalk validate";

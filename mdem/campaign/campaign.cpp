@@ -57,6 +57,16 @@ std::string limits_of(const RunDirectory& dir) {
   return fs::exists(dir.limits()) ? passed_words(read_limits(dir.limits()).limits) : "";
 }
 
+// Killed before its sweep.toml was written.
+bool was_just_begun(const CampaignDirectory& dir) {
+  if (!fs::is_directory(dir.path)) return false;
+  for (const auto& entry : fs::directory_iterator(dir.path)) {
+    const std::string name = entry.path().filename().string();
+    if (name != "points" && name != "messages" && without_part(name).empty()) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 PointProgress progress_of(const RunDirectory& dir) {
@@ -71,7 +81,7 @@ PointProgress progress_of(const RunDirectory& dir) {
   if (m.status == "failed")
     p.stage = Stage::failed;
   else if (m.status == "running" || m.status == "interrupted")
-    p.stage = fs::exists(dir.checkpoint()) ? Stage::begun : Stage::waiting;
+    p.stage = fs::exists(dir.checkpoint()) || fs::exists(dir.checkpoint_before()) ? Stage::begun : Stage::waiting;
   else
     p.stage = Stage::ended;
   if (p.stage == Stage::begun) p.status = "interrupted";  // by whoever looks: nothing of it runs here
@@ -102,7 +112,7 @@ bool is_run_of(const RunDirectory& dir, const std::string& text, const std::vect
 
 void create_campaign(const CampaignDirectory& dir, const Sweep& sweep, const std::vector<SweepPoint>& points,
                      bool force) {
-  if (fs::exists(dir.path) && !fs::exists(dir.sweep()) && !(fs::is_directory(dir.path) && fs::is_empty(dir.path)))
+  if (fs::exists(dir.path) && !fs::exists(dir.sweep()) && !was_just_begun(dir))
     throw InputError({dir.path, 0, "--out"}, "is not the directory of a campaign (no sweep.toml in it)",
                      "choose another name");
   for (const SweepPoint& p : points) {

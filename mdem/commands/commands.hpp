@@ -14,6 +14,8 @@ struct RunArguments {
   long steps = -1;                // time step at which to stop; -1: the scene's end
   double until_ps = -1;           // time at which to stop; -1: the scene's end
   std::string on_limit = "warn";  // "warn", "stop" or "refine"
+  std::string wall_time;          // see seconds_of_wall_time(); empty: any
+  std::string instructions;       // empty: the machine's best
   bool force = false;             // overwrite an earlier run
   bool quiet = false;
 };
@@ -30,6 +32,9 @@ struct ResumeArguments {
   long steps = -1;       // as of RunArguments
   double until_ps = -1;  // likewise
   std::string on_limit = "warn";
+  std::string wall_time;        // likewise
+  std::string instructions;     // empty: those that the run was begun with
+  bool accept_changes = false;  // of scene, sets or program
   bool quiet = false;
 };
 int resume_command(const ResumeArguments& arguments);
@@ -51,10 +56,10 @@ int report_command(const ReportArguments& arguments);
 
 struct PictureArguments {
   std::string dir;
-  std::string out;                   // .svg, .pdf or .png
-  std::vector<double> at;            // ps; empty: four times over the run
-  std::string from = "side";         // or "x", "y", "z", "AZIMUTH,ELEVATION"
-  std::vector<std::string> curves;   // "twist_eV+bend_eV" is one chart
+  std::string out;                  // .svg, .pdf or .png
+  std::vector<double> at;           // ps; empty: four times over the run
+  std::string from = "side";        // or "x", "y", "z", "AZIMUTH,ELEVATION"
+  std::vector<std::string> curves;  // "twist_eV+bend_eV" is one chart
   bool sections = false;
   double width = 1040, highest = 200;  // pixels, of the figure and of each state
   double zoom = 2;                     // of a PNG
@@ -160,12 +165,12 @@ struct PlanArguments {
   std::string error = "2%";
   std::vector<std::string> observables;  // empty: the usual ones
   bool end_state = false;
-  std::string out;     // empty: SCENE-planned.toml
-  std::string check;   // directory of a run: hold it against a finer model instead
-  std::string against; // directory of a run of the same scene, to compare with instead of a short finer run
-  std::string finest;  // file to write the scene with the finest model to
-  double stretch = 4;  // ps
-  int jobs = 0;        // pilots at a time; 0: one for each core
+  std::string out;      // empty: SCENE-planned.toml
+  std::string check;    // directory of a run: hold it against a finer model instead
+  std::string against;  // directory of a run of the same scene, to compare with instead of a short finer run
+  std::string finest;   // file to write the scene with the finest model to
+  double stretch = 4;   // ps
+  int jobs = 0;         // pilots at a time; 0: one for each core
 };
 int plan_command(const PlanArguments& arguments);
 

@@ -16,6 +16,7 @@
 #include "io/run_errors.hpp"
 #include "model/error.hpp"
 #include "run/run_directory.hpp"
+#include "run/tell.hpp"
 #include "scene/kinds/state.hpp"
 #include "scene/scene_toml.hpp"
 
@@ -191,20 +192,20 @@ int errors_command(const ErrorsArguments& a) {
   std::vector<std::string> failed;
   std::size_t number = 0;
   if (!a.quiet)
-    fmt::print(stderr, "{} runs like this one, about {:.2g} min on {} cores\n", 2 * sources.size(),
-               2 * static_cast<double>(sources.size()) * manifest.wall_seconds * manifest.threads / jobs / 60,
-               jobs);
+    tell_as_is(fmt::format(
+        "{} runs like this one, about {:.2g} min on {} cores\n", 2 * sources.size(),
+        2 * static_cast<double>(sources.size()) * manifest.wall_seconds * manifest.threads / jobs / 60, jobs));
   for (const VariedNumber& source : sources)
     for (const bool plus : {true, false}) {
       ++number;
       const std::string name = plus ? source.error.plus : source.error.minus;
       tasks.push_back({[&, plus, number, name] {
-                         if (!a.quiet) fmt::print(stderr, "{}/{} {}\n", number, 2 * sources.size(), name);
+                         if (!a.quiet) tell_as_is(fmt::format("{}/{} {}\n", number, 2 * sources.size(), name));
                          try {
                            if (!std::freopen("/dev/null", "w", stdout)) return 3;
                            return repetitions.run({&source, plus});
                          } catch (const std::exception& e) {
-                           fmt::print(stderr, "ropewalk errors: {}: {}\n", name, e.what());
+                           tell_as_is(fmt::format("ropewalk errors: {}: {}\n", name, e.what()));
                            return 3;
                          }
                        },

@@ -11,7 +11,9 @@
 #include "io/frames.hpp"
 #include "model/error.hpp"
 #include "run/colours.hpp"
-#include "run/run_directory.hpp"
+#include "run/origin_changes.hpp"
+#include "run/run_checkpoint.hpp"
+#include "run/tell.hpp"
 #include "scene/lammps_files.hpp"
 #include "scene/scene_toml.hpp"
 #include "scene/state_csv.hpp"
@@ -31,10 +33,21 @@ Simulation simulation_at(const RunDirectory& dir, const Scene& scene, const Prep
   return s;
 }
 
+// Where a run of this scene, and no other, stands.
+RunCheckpoint checkpoint_of(const RunDirectory& dir, const Scene& scene) {
+  check_log_header(dir.log());
+  const ResumePoint point = find_resume_point(dir);
+  RunOrigin origin = origin_of(dir, scene);
+  origin.instructions = point.checkpoint.origin.instructions;  // LAMMPS has its own
+  judge_changes(changes_of(point.checkpoint.origin, origin, dir), false, dir);
+  for (const std::string& remark : point.remarks) tell("note: " + remark);
+  return point.checkpoint;
+}
+
 // Of a run that stands somewhere: its files up to the checkpoint.
 void copy_run(const RunDirectory& from, const RunDirectory& to) {
-  const RunCheckpoint c = read_checkpoint(from);
   const Scene scene = read_run_scene(from);
+  const RunCheckpoint c = checkpoint_of(from, scene);
   const auto copy = [](const std::string& a, const std::string& b, std::uint64_t bytes) {
     write_file_atomically(b, std::string_view(read_file(a)).substr(0, bytes));
   };
@@ -43,10 +56,10 @@ void copy_run(const RunDirectory& from, const RunDirectory& to) {
   for (std::size_t k = 0; k < scene.sets.size(); ++k) copy(from.parameters(k), to.parameters(k), all);
   if (fs::exists(from.state())) copy(from.state(), to.state(), all);
   if (fs::exists(from.limits())) copy(from.limits(), to.limits(), all);
-  copy(from.log(), to.log(), c.log_bytes);
-  copy(from.frames(), to.frames(), c.frame_bytes);
+  copy(from.log(), to.log(), c.log.bytes);
+  copy(from.frames(), to.frames(), c.frames.bytes);
   copy(from.manifest(), to.manifest(), all);
-  copy(from.checkpoint(), to.checkpoint(), all);
+  write_checkpoint(to, c);
 }
 
 LammpsStart start_of(const Scene& scene, const Simulation& s) {
@@ -130,7 +143,7 @@ int export_command(const ExportArguments& a) {
     read_checkpoint(from);
     if (fs::exists(to.path) && fs::equivalent(from.path, to.path))
       throw InputError({to.path, 0, "--lammps"}, "is the run itself", "choose another directory");
-    create_run_directory(to, a.force);
+    const DirectoryLock lock = create_run_directory(to, a.force);
     copy_run(from, to);
   } else {
     refuse_what_lammps_lacks(read_scene(a.scene));
@@ -153,10 +166,11 @@ class Import {
   explicit Import(const std::string& path)
       : dir_{path},
         files_{path},
+        lock_(path),
         scene_(read_run_scene(dir_)),
         prepared_(prepare(scene_)),
         observer_(make_observer(scene_, prepared_)),
-        checkpoint_(read_checkpoint(dir_)),
+        checkpoint_(checkpoint_of(dir_, scene_)),
         start_(simulation_at(dir_, scene_, prepared_, checkpoint_)),
         reached_(start_.state().step),
         gauges_(start_.gauges()),
@@ -171,9 +185,9 @@ class Import {
       throw InputError({files_.path, 0, ""}, "holds nothing that LAMMPS has done",
                        "run in.rope with lmp-ropewalk first, as README.txt says");
     for (const LammpsRow& row : read_lammps_rows(files_)) rows_[static_cast<std::int64_t>(row.step)] = row;
-    check_log_header(dir_.log());
-    log_ = read_file(dir_.log()).substr(0, checkpoint_.log_bytes);
-    frames_ = read_file(dir_.frames()).substr(0, checkpoint_.frame_bytes);
+    remove_parts(dir_.path);
+    log_ = read_file(dir_.log()).substr(0, checkpoint_.log.bytes);
+    if (checkpoint_.frames.bytes > 0) frames_ = read_file(dir_.frames()).substr(0, checkpoint_.frames.bytes);
     const std::int64_t from = reached_;
     take_states(files_.states());
     if (fs::exists(files_.last_state())) take_states(files_.last_state());
@@ -228,26 +242,28 @@ class Import {
     point_loads(prepared_.loads, state, state.time, loads);
     return gauges_.read_still(
         state,
-        reactions_at_rest(prepared_.topology, prepared_.loads, loaded_elements(prepared_.loads), force_, state), loads);
+        reactions_at_rest(prepared_.topology, prepared_.loads, loaded_elements(prepared_.loads), force_, state),
+        loads);
   }
 
-  // The checkpoint last: until it is there the run stands where it stood.
+  // The checkpoint last: until it is there the run stands where it stood, and all of this can be done again.
   void write(std::int64_t from) {
     Simulation simulation = start(scene_, prepared_);
     simulation.inherit_from(force_.force, force_.torque, {last_.work, last_.dissipated});
     simulation.inherit_from(gauges_.sums);
-    checkpoint_.log_bytes = log_.size();
-    checkpoint_.frame_bytes = frames_.size();
+    checkpoint_.log = mark_of(log_);
+    checkpoint_.frames = mark_of(frames_);
+    checkpoint_.mark = nullptr;
     checkpoint_.simulation = simulation.serialise();
     write_file_atomically(dir_.log(), log_);
     write_file_atomically(dir_.frames(), frames_);
-    write_checkpoint(dir_, checkpoint_);
     write_file_atomically(dir_.final_state(), state_csv(prepared_.topology, prepared_.state));
     Manifest m = read_manifest(dir_.manifest());
     m.steps = reached_;
     m.status = last_.time + 0.5 * prepared_.time_step >= prepared_.duration ? "finished" : "interrupted";
     m.reason = fmt::format("steps {} to {} by LAMMPS", from, reached_);
     write_file_atomically(dir_.manifest(), manifest_json(m));
+    write_checkpoint(dir_, checkpoint_);
     write_report(dir_, scene_, prepared_for_report());
     fmt::print("{} states taken over, up to step {}, {:.4g} ps. Report: {}\n", taken_, reached_, last_.time,
                dir_.report());
@@ -261,6 +277,7 @@ class Import {
 
   RunDirectory dir_;
   LammpsDirectory files_;
+  DirectoryLock lock_;
   Scene scene_;
   Prepared prepared_;
   Observer observer_;

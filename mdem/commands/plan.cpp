@@ -20,8 +20,9 @@
 #include "plan/planner.hpp"
 #include "run/plan_check.hpp"
 #include "run/processor_time.hpp"
-#include "run/run_directory.hpp"
+#include "run/run_checkpoint.hpp"
 #include "run/run_time.hpp"
+#include "run/tell.hpp"
 #include "scene/scene_toml.hpp"
 
 namespace ropewalk {
@@ -66,12 +67,13 @@ class PilotRuns {
                            [this, run, &task = tasks[k], &end = ends[k]](int status) {
                              end = read(run, status);
                              seconds_ += end.seconds;
-                             if (isatty(STDERR_FILENO)) fmt::print(stderr, "\r\033[Kpilot: {}", task.name);
+                             if (isatty(STDERR_FILENO)) tell_as_is(fmt::format("\r\033[Kpilot: {}", task.name));
                            }});
     }
-    run_processes(processes, jobs_, &campaign_signal);
-    if (isatty(STDERR_FILENO)) fmt::print(stderr, "\r\033[K");
-    if (campaign_signal) throw InputError({path_, 0, ""}, "planning was stopped by a signal", "nothing was written; start it again");
+    run_processes(processes, jobs_, &stop_signal);
+    if (isatty(STDERR_FILENO)) tell_as_is("\r\033[K");
+    if (stop_signal)
+      throw InputError({path_, 0, ""}, "planning was stopped by a signal", "nothing was written; start it again");
     return ends;
   }
   double seconds() const { return seconds_; }
@@ -195,7 +197,7 @@ int make_plan(const PlanArguments& a) {
   Scene scene = read_scene(a.scene);
   refuse_cooling(scene, prepare(scene));
   for (const std::string& grade : grades_of(scene)) fmt::print("parameters {}\n", grade);
-  listen_to_signals();
+  listen_to_stop_signals();
   const RunTime standard = time_run(default_text(scene), path);
   constexpr double guessed_steps = 5000;  // of a relaxation
   const double seconds = standard.steps > 0 ? standard.total() : standard.outputs + guessed_steps * standard.each;

@@ -11,6 +11,7 @@
 #include "campaign/campaign.hpp"
 #include "commands/commands.hpp"
 #include "model/error.hpp"
+#include "run/tell.hpp"
 
 namespace ropewalk {
 namespace {
@@ -24,16 +25,7 @@ bool lock(const std::string& path, bool wait) {
   return file >= 0 && flock(file, LOCK_EX | (wait ? 0 : LOCK_NB)) == 0;
 }
 
-void on_signal(int signal) { campaign_signal = signal; }
-
 }  // namespace
-
-volatile std::sig_atomic_t campaign_signal = 0;
-
-void listen_to_signals() {
-  std::signal(SIGINT, on_signal);
-  std::signal(SIGTERM, on_signal);
-}
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
@@ -69,7 +61,7 @@ int in_a_process(const std::string& messages, bool wait, const std::function<int
   try {
     return work();
   } catch (const std::exception& e) {
-    fmt::print(stderr, "ropewalk: {}\n", e.what());
+    tell_as_is(fmt::format("ropewalk: {}\n", e.what()));
     return dynamic_cast<const InputError*>(&e) ? 2 : 3;
   }
 }

@@ -1,10 +1,10 @@
 // Runs of a campaign, each in a process of its own.
 #pragma once
 
-#include <csignal>
 #include <functional>
 #include <string>
 
+#include "io/stop_signals.hpp"
 #include "run/run_directory.hpp"
 #include "scene/scene.hpp"
 
@@ -21,9 +21,5 @@ int run_or_resume(const RunDirectory& dir, const Scene& scene, double until_ps, 
 // Sends what is printed to the file `messages` and keeps other processes from the same work, by a lock on it: waits
 // for them, or returns point_busy. Returns the exit code of `work`, or that of what it throws.
 int in_a_process(const std::string& messages, bool wait, const std::function<int()>& work);
-
-// SIGINT and SIGTERM, once listen_to_signals() was called.
-extern volatile std::sig_atomic_t campaign_signal;
-void listen_to_signals();
 
 }  // namespace ropewalk

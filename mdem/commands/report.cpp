@@ -95,7 +95,8 @@ ReportLoading loading_of(const Topology& topology, const State& state, const Loa
       out.pressure_GPa.push_back(pressure / units::nN_nm);  // nN/nm^2
   for (int t = 0; t < topology.tubes(); ++t) {
     out.tension_nN.emplace_back();
-    for (const double tension : tensions(topology, state, t)) out.tension_nN.back().push_back(tension / units::nN_nm);
+    for (const double tension : tensions(topology, state, t))
+      out.tension_nN.back().push_back(tension / units::nN_nm);
   }
   return out;
 }
@@ -169,8 +170,12 @@ std::optional<RopeView> last_view(const RunDirectory& dir, const Scene& scene, c
   return view_of(prepared.topology, frame, beta / units::degree);
 }
 
+std::string report_of(const RunDirectory& dir, const Scene& scene, const Prepared& prepared) {
+  return report_html(gather(dir, scene, prepared));
+}
+
 void write_report(const RunDirectory& dir, const Scene& scene, const Prepared& prepared) {
-  write_file_atomically(dir.report(), report_html(gather(dir, scene, prepared)));
+  write_file_atomically(dir.report(), report_of(dir, scene, prepared));
 }
 
 int report_command(const ReportArguments& a) {

@@ -2,43 +2,44 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <omp.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
 #include <cmath>
-#include <csignal>
 #include <cstdio>
-#include <cstring>
 #include <ctime>
 #include <filesystem>
 #include <memory>
+#include <new>
 
 #include "commands/commands.hpp"
 #include "io/files.hpp"
 #include "io/frames.hpp"
+#include "io/growing_file.hpp"
+#include "io/stop_signals.hpp"
 #include "model/error.hpp"
 #include "plan/forecast.hpp"
 #include "run/colours.hpp"
 #include "run/limit_watch.hpp"
+#include "run/origin_changes.hpp"
+#include "run/pending_files.hpp"
 #include "run/progress.hpp"
+#include "run/run_checkpoint.hpp"
 #include "run/run_directory.hpp"
 #include "run/stages.hpp"
 #include "run/stop_watch.hpp"
+#include "run/tell.hpp"
+#include "run/wall_time.hpp"
 #include "scene/finer.hpp"
 #include "scene/scene_toml.hpp"
 #include "scene/state_csv.hpp"
 #include "scene/watch.hpp"
+#include "sim/contact/line/engine.hpp"
 #include "sim/dynamics/refine.hpp"
 #include "version.hpp"
 
 namespace ropewalk {
 namespace {
-
-volatile std::sig_atomic_t caught_signal = 0;
-void on_signal(int signal) { caught_signal = signal; }
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
@@ -48,42 +49,6 @@ std::string iso_time() {
   std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", std::gmtime(&t));
   return text;
 }
-
-// A file that grows; cut back to a known length when a run is resumed.
-class Stream {
- public:
-  Stream(std::string path, std::uint64_t keep) : path_(std::move(path)), file_(std::fopen(path_.c_str(), "ab")) {
-    if (!file_ || ftruncate(fileno(file_), static_cast<off_t>(keep)) != 0) fail();
-    size_ = keep;
-  }
-  Stream(const Stream&) = delete;
-  ~Stream() { std::fclose(file_); }
-
-  void write(const std::string& text) {
-    if (std::fwrite(text.data(), 1, text.size(), file_) != text.size()) fail();
-    size_ += text.size();
-  }
-  void flush() {
-    if (std::fflush(file_) != 0) fail();
-  }
-  std::uint64_t size() const { return size_; }
-  // What was written after this did not happen.
-  void cut(std::uint64_t keep) {
-    flush();
-    if (ftruncate(fileno(file_), static_cast<off_t>(keep)) != 0) fail();
-    size_ = keep;
-  }
-
- private:
-  [[noreturn]] void fail() const {
-    throw InputError({path_, 0, ""}, fmt::format("cannot be written: {}", std::strerror(errno)),
-                     "free some space or choose another --out; the last checkpoint stands");
-  }
-
-  std::string path_;
-  std::FILE* file_;
-  std::uint64_t size_ = 0;
-};
 
 long every(double interval, double duration, long parts, double dt) {
   const double chosen = interval > 0 ? interval : duration / static_cast<double>(parts);
@@ -95,19 +60,16 @@ struct RunPolicy {
   bool quiet = false;
   OnLimit on_limit = OnLimit::warn;
   bool force = false;
+  double wall_time = 0;  // s, since the program was started; 0: any
 };
 
-enum class StopReason { none, complete, signal, limit, refine };
+enum class StopReason { none, complete, signal, limit, refine, wall_time };
 
 // Steps between two checks of the limits, at most: a check costs about as much as a step.
 constexpr long check_every = 128, pause_every = 16;
-constexpr double patience = 0.5;     // s, of who wants to stop a run
-constexpr int stopped_at_limit = 5;  // exit code
-
-// Above the progress line, where there is one.
-void say(const std::string& line) {
-  fmt::print(stderr, "{}ropewalk: {}\n", isatty(STDERR_FILENO) ? "\r\033[K" : "", line);
-}
+constexpr double patience = 0.5;  // s, of who wants to stop a run
+// Exit codes.
+constexpr int stopped_with_reason = 3, stopped_at_limit = 5, stopped_by_wall_time = 6;
 
 class Run {
  public:
@@ -120,19 +82,18 @@ class Run {
         watch_(watched_by_run(scene_, prepared_, observer_)),
         stop_watch_(scene_.stops),
         policy_(policy) {
-    const double dt = prepared_.time_step;
-    const double span = prepared_.duration > 0 ? prepared_.duration : 1000 * dt;
-    log_every_ = every(scene_.run.log_every, span, 400, dt);
-    frames_every_ = every(scene_.run.frames_every, span, 40, dt);
     first_ = simulation_.forces().energy;
-    last_step_ = scene_.run.mode == RunOptions::Mode::relax ? -1 : std::lround(prepared_.duration / dt);
+    set_intervals();
+    last_step_ = relaxes() ? -1 : step_at(prepared_.duration);
   }
+
+  // From now on no other process writes in the directory.
+  void hold(DirectoryLock lock) { lock_ = std::move(lock); }
 
   // A negative value means that the option was not given.
   void stop_at(long steps, double ps) {
-    if (ps >= 0 && scene_.run.mode == RunOptions::Mode::relax)
-      throw InputError({"", 0, "--until"}, "a relaxation has no time", "take --steps");
-    if (ps >= 0) last_step_ = std::lround(ps / prepared_.time_step);
+    if (ps >= 0 && relaxes()) throw InputError({"", 0, "--until"}, "a relaxation has no time", "take --steps");
+    if (ps >= 0) last_step_ = step_at(ps);
     if (steps >= 0) last_step_ = steps;
   }
 
@@ -141,7 +102,9 @@ class Run {
     const State& at = simulation_.state();
     if ((steps < 0 && ps < 0) || last_step_ > at.step) return;
     // Killed where it was to end anyway: what is left is to say so.
-    if (last_step_ == at.step && read_manifest(dir_.manifest()).status == "running") return;
+    if (last_step_ == at.step &&
+        (!std::filesystem::exists(dir_.manifest()) || read_manifest(dir_.manifest()).status == "running"))
+      return;
     throw InputError(
         {"", 0, ps >= 0 && steps < 0 ? "--until" : "--steps"},
         fmt::format("ends at step {}, and the run stands at step {}, {:.4g} ps", last_step_, at.step, at.time),
@@ -158,21 +121,19 @@ class Run {
 
   void say_notes() const {
     if (!policy_.quiet)
-      for (const std::string& grade : grades_of(scene_)) fmt::print(stderr, "ropewalk: parameters {}\n", grade);
-    for (const std::string& note : warnings_of(scene_, prepared_.topology))
-      fmt::print(stderr, "ropewalk: note: {}\n", note);
-    for (const std::string& note : warmth_of(scene_, prepared_)) fmt::print(stderr, "ropewalk: note: {}\n", note);
-    for (const std::string& note : limits_ahead(scene_, prepared_))
-      fmt::print(stderr, "ropewalk: note: {}\n", note);
+      for (const std::string& grade : grades_of(scene_)) tell("parameters " + grade);
+    for (const auto& notes :
+         {warnings_of(scene_, prepared_.topology), warmth_of(scene_, prepared_), limits_ahead(scene_, prepared_)})
+      for (const std::string& note : notes) tell("note: " + note);
   }
 
   void begin() {
+    origin_ = origin_of(dir_, scene_);
     first_energy_ = simulation_.total_energy();
     begin_files();
   }
 
-  void restore(const RunCheckpoint& c) {
-    check_log_header(dir_.log());
+  void restore(RunCheckpoint c) {
     try {
       if (c.mark) {
         simulation_.restore(c.mark->simulation);
@@ -182,29 +143,35 @@ class Run {
     } catch (const std::runtime_error& e) {
       throw InputError({dir_.checkpoint(), 0, ""}, e.what(), "start the run anew with `ropewalk run`");
     }
+    keep_time_step();
     first_energy_ = c.first_energy;
     earlier_seconds_ = c.wall_seconds;
     control_ = c.control;
-    open(c.log_bytes, c.frame_bytes);
-    if (std::filesystem::exists(dir_.limits())) {
-      const LimitsFile earlier = read_limits(dir_.limits());
-      watch_.inherit_from(earlier.limits, simulation_.state().step);
-      refinements_ = earlier.refinements;
-    }
+    origin_ = origin_of(dir_, scene_);
+    open(c.log.bytes, c.frames.bytes);
+    watch_.inherit_from(c.limits.limits, simulation_.state().step);
+    refinements_ = c.limits.refinements;
     if (!stop_watch_.empty())
       for (const LogRow& earlier : read_log(dir_.log())) stop_watch_.add(earlier);
-    mark_.limits = watch_.records();
+    // What was passed, and only said, may be cured now.
+    if (policy_.on_limit == OnLimit::refine && passed_what_finer_cures()) at_once_ = check_limits(true);
+    saved_step_ = written_step_ = simulation_.state().step;
     if (c.mark)
       mark_.checkpoint = c.mark;
     else
       set_mark();
+    // Left by the end that it had before; written anew at the next.
+    std::error_code ignored;
+    for (const std::string& path : {dir_.final_state(), dir_.plan_check()}) std::filesystem::remove(path, ignored);
+  }
+
+  void announce() {
+    write_manifest("running", "");
+    write_limits();
   }
 
   // For somebody else to go on with.
-  void leave() {
-    save();
-    write_manifest("interrupted", "not yet run");
-  }
+  void leave() { write_manifest("interrupted", "not yet run"); }
 
   // `next`: the run in which it goes on, elements split.
   struct Result {
@@ -212,55 +179,98 @@ class Run {
     std::unique_ptr<Run> next;
   };
   Result go() {
-    std::signal(SIGINT, on_signal);
-    std::signal(SIGTERM, on_signal);
     started_ = now();
-    for (const std::string& of_an_earlier_end : {dir_.final_state(), dir_.plan_check()})
-      std::filesystem::remove(of_an_earlier_end);
-    write_manifest("running", "");
     try {
-      const bool relax = scene_.run.mode == RunOptions::Mode::relax;
-      switch (relax ? relax_loop() : dynamics_loop()) {
+      switch (relaxes() ? relax_loop() : dynamics_loop()) {
         case StopReason::complete:
           return {finish(), nullptr};
         case StopReason::limit:
           return {stopped(), nullptr};
         case StopReason::refine:
           return {0, refined()};
+        case StopReason::wall_time:
+          return {interrupted(stopped_by_wall_time, "by --wall-time"), nullptr};
         case StopReason::signal:
         case StopReason::none:
           break;
       }
-      return {interrupted(), nullptr};
+      return {interrupted(128 + stop_signal, fmt::format("by signal {}", static_cast<int>(stop_signal))), nullptr};
     } catch (const NumericalError& e) {
       return {failed(e), nullptr};
+    } catch (const std::bad_alloc&) {
+      return {broken_off("there is not enough memory; take a machine with more, or end other programs"), nullptr};
+    } catch (const std::exception& e) {
+      return {broken_off(e.what()), nullptr};
     }
   }
 
  private:
   void open(std::uint64_t log_bytes, std::uint64_t frame_bytes) {
-    log_ = std::make_unique<Stream>(dir_.log(), log_bytes);
-    frames_ = std::make_unique<Stream>(dir_.frames(), frame_bytes);
+    log_ = std::make_unique<GrowingFile>(dir_.log(), log_bytes);
+    frames_ = std::make_unique<GrowingFile>(dir_.frames(), frame_bytes);
   }
 
+  // Up to the checkpoint at the start, from which even the first minute can be resumed.
   void begin_files() {
+    write_manifest("running", "");  // before the checkpoint: it has the name of the scene
     open(0, 0);
     log_->write(log_header());
     write_row();
     write_frame();
+    written_step_ = simulation_.state().step;
+    if (!relaxes() && simulation_.state().step < last_step_ && std::isfinite(simulation_.total_energy()))
+      at_once_ = check_limits(true);
+    save();
+  }
+
+  bool relaxes() const { return scene_.run.mode == RunOptions::Mode::relax; }
+
+  void set_intervals() {
+    const double dt = prepared_.time_step;
+    const double span = prepared_.duration > 0 ? prepared_.duration : 1000 * dt;
+    log_every_ = every(scene_.run.log_every, span, 400, dt);
+    frames_every_ = every(scene_.run.frames_every, span, 40, dt);
+  }
+
+  // The checkpoint may be of a scene with another time step, which then stays.
+  void keep_time_step() {
+    if (simulation_.time_step() == prepared_.time_step) return;
+    const int parts = scene_.run.stepping.contact_every;
+    const double limit = inner_step_limit(prepared_.limit, parts), step = simulation_.time_step() / parts;
+    if (step >= limit)
+      throw InputError({dir_.checkpoint(), 0, ""},
+                       fmt::format("has a time step of {:.4g} fs, and the changed scene bears less than {:.4g} fs",
+                                   step / units::fs, limit / units::fs),
+                       "start the run anew with `ropewalk run`");
+    tell(fmt::format("note: the time step stays {:.4g} fs", step / units::fs));
+    prepared_.time_step = simulation_.time_step();
+    counted_from_ = {simulation_.state().step, simulation_.state().time};
+    set_intervals();
+    if (!relaxes()) last_step_ = step_at(prepared_.duration);
+  }
+
+  // Steps are counted from zero, but where the time step was another one before.
+  long step_at(double ps) const {
+    return counted_from_.step + std::lround((ps - counted_from_.time) / prepared_.time_step);
+  }
+
+  bool passed_what_finer_cures() const {
+    for (std::size_t k = 0; k < watch_.records().size(); ++k)
+      if (watch_.records()[k].passed && limit_kinds()[k].cured_by_finer) return true;
+    return false;
   }
 
   // Says what is passed for the first time, and whether the run is to end here for it.
   StopReason check_limits(bool with_pressure) {
     const std::vector<std::string> passed =
         watch_.check(prepared_.topology, simulation_.state(), simulation_.list(), with_pressure);
-    for (const std::string& line : passed) say(line);
+    for (const std::string& line : passed) tell(line);
     if (!passed.empty()) write_limits();
     if (policy_.on_limit == OnLimit::stop && !passed.empty()) return StopReason::limit;
     if (policy_.on_limit != OnLimit::refine || !watch_.finer_would_help()) return StopReason::none;
     const std::string why = why_not_finer(scene_, prepared_.topology);
     if (why.empty()) return StopReason::refine;
-    if (!passed.empty()) say("not refined: " + why + "; the run goes on as it is");
+    if (!passed.empty()) tell("not refined: " + why + "; the run goes on as it is");
     return StopReason::none;
   }
 
@@ -279,9 +289,7 @@ class Run {
     double checkpoint_at = now() + scene_.run.checkpoint_every;
     const long checked_every = std::min(log_every_, check_every);
     StopReason stop = StopReason::none;  // it ends after a step with energies: this one, or the next
-    if (simulation_.state().step < last_step_ && std::isfinite(simulation_.total_energy()))
-      stop = check_limits(true);
-    if (stop != StopReason::none) return stop;
+    if (at_once_ != StopReason::none) return at_once_;
     if (!mark_.checkpoint) set_mark();
     double seconds = patience;  // of a step
     while (simulation_.state().step < last_step_) {
@@ -314,14 +322,15 @@ class Run {
       }
       if (step % frames_every_ == 0 || last || ends) write_frame();
       if (ends) return stop;
-      if (caught_signal) return StopReason::signal;
+      if (stop_signal) return StopReason::signal;
+      if (time_is_up()) return StopReason::wall_time;
       if (progress.due()) progress.show(static_cast<double>(step), status_text());
       if (marked) {
         control_.lengthen(simulation_);
         set_mark();
       }
       if (step % pause_every == 0 && now() > checkpoint_at) {
-        save();
+        save_if_possible();
         checkpoint_at = now() + scene_.run.checkpoint_every;
       }
     }
@@ -334,14 +343,14 @@ class Run {
   // A state to go back to, and what a run knew there.
   struct Mark {
     std::shared_ptr<const RunCheckpoint> checkpoint;
-    std::vector<LimitRecord> limits;
     EnergyMark energy;
+    std::int64_t step = 0;
   };
 
   void set_mark() {
     mark_.checkpoint = std::make_shared<const RunCheckpoint>(checkpoint_here());
-    mark_.limits = watch_.records();
     mark_.energy = energy_mark(simulation_);
+    mark_.step = simulation_.state().step;
   }
 
   // A model that gains energy has no account to close.
@@ -355,14 +364,16 @@ class Run {
     const RunCheckpoint& c = *mark_.checkpoint;
     simulation_.restore(c.simulation);
     control_.shorten(divided, simulation_);
-    log_->cut(c.log_bytes);
-    frames_->cut(c.frame_bytes);
-    watch_.inherit_from(mark_.limits, simulation_.state().step);
+    watch_.inherit_from(c.limits.limits, simulation_.state().step);
     stop_watch_.cut(simulation_.state().step);
+    // A checkpoint later than this would know of more than the files then hold.
+    if (saved_step_ > simulation_.state().step) write_state(c.log, c.frames);
+    log_->cut(c.log.bytes);
+    frames_->cut(c.frames.bytes);
     // The remedy, after the semicolon of the message, is left out: a shorter step is what the run takes now.
-    say(fmt::format("{:.4g} ps: {}; back to {:.4g} ps, on with steps of {:.3g} fs", time,
-                    why.substr(0, why.find(';')), simulation_.state().time,
-                    simulation_.time_step() / simulation_.divided() / units::fs));
+    tell(fmt::format("{:.4g} ps: {}; back to {:.4g} ps, on with steps of {:.3g} fs", time,
+                     why.substr(0, why.find(';')), simulation_.state().time,
+                     simulation_.time_step() / simulation_.divided() / units::fs));
     return true;
   }
 
@@ -374,16 +385,19 @@ class Run {
                                            : scene_.run.max_steps;
     const Relaxed end = simulation_.relax(goal, max_steps, [&](long k) {
       if (k % 100 == 0) {
-        write_row();
+        if (simulation_.state().step != written_step_) write_row();
         stop = check_limits(false);
       }
       if (progress.due()) progress.show(static_cast<double>(k), status_text());
-      return caught_signal == 0 && stop == StopReason::none;
+      if (stop == StopReason::none && time_is_up()) stop = StopReason::wall_time;
+      return stop_signal == 0 && stop == StopReason::none;
     });
     progress.done();
-    write_row();
-    write_frame();
-    if (caught_signal) return StopReason::signal;
+    if (simulation_.state().step != written_step_) {
+      write_row();
+      write_frame();
+    }
+    if (stop_signal) return StopReason::signal;
     if (stop == StopReason::none) stop = check_limits(true);
     if (stop != StopReason::none) return stop;
     at_rest_ = end.at_rest;
@@ -440,15 +454,15 @@ class Run {
     last_row_ = row();
     stop_watch_.add(last_row_);
     log_->write(log_line(last_row_));
-    log_->flush();
   }
 
   void write_frame() {
     const ElementColours colours = element_colours(prepared_.topology, prepared_.interaction, simulation_.state());
     frames_->write(dump_frame(prepared_.topology, simulation_.state(), colours));
-    frames_->flush();
     if (!scene_.run.paraview) return;
-    std::filesystem::create_directories(dir_.paraview());
+    std::error_code error;
+    std::filesystem::create_directories(dir_.paraview(), error);
+    if (error) throw file_error(dir_.paraview(), "cannot be made", error.value());
     write_file_atomically(fmt::format("{}/frame-{:09d}.vtp", dir_.paraview(), simulation_.state().step),
                           vtp_frame(prepared_.topology, simulation_.state(), colours));
     write_pvd();
@@ -457,51 +471,91 @@ class Run {
   // Lists the frames that are there, so that it is right after a resume as well.
   void write_pvd() {
     std::vector<PvdEntry> entries;
-    for (const auto& entry : std::filesystem::directory_iterator(dir_.paraview())) {
+    std::error_code error;
+    for (const auto& entry : std::filesystem::directory_iterator(dir_.paraview(), error)) {
       const std::string name = entry.path().filename().string();
       long step = 0;
       if (std::sscanf(name.c_str(), "frame-%ld.vtp", &step) == 1)
-        entries.push_back({static_cast<double>(step) * prepared_.time_step, name});
+        entries.push_back(
+            {counted_from_.time + static_cast<double>(step - counted_from_.step) * prepared_.time_step, name});
     }
     std::sort(entries.begin(), entries.end(), [](const auto& a, const auto& b) { return a.time < b.time; });
-    write_file_atomically(dir_.paraview() + "/rope.pvd", pvd_text(entries));
+    pending_.write(dir_.paraview() + "/rope.pvd", pvd_text(entries));
+  }
+
+  // What a checkpoint knows of log and frames is on the disk before it.
+  void sync_files() {
+    log_->sync();
+    frames_->sync();
   }
 
   void save() {
-    log_->flush();
-    frames_->flush();
+    sync_files();
+    write_state(log_->mark(), frames_->mark());
+  }
+
+  void write_state(const FileMark& log, const FileMark& frames) {
+    const double began = now();
     RunCheckpoint c = checkpoint_here();
+    c.log = log;
+    c.frames = frames;
     if (mark_.checkpoint && mark_.checkpoint->simulation != c.simulation) c.mark = mark_.checkpoint;
+    c.origin = origin_;
     write_checkpoint(dir_, c);
+    saved_step_ = simulation_.state().step;
+    checkpoint_fails_ = false;
     write_limits();
+    pending_.try_again();
+    longest_save_ = std::max(longest_save_, now() - began);
+  }
+
+  // The checkpoint before stands, and there is another chance.
+  void save_if_possible() {
+    sync_files();
+    try {
+      write_state(log_->mark(), frames_->mark());
+    } catch (const InputError& e) {
+      if (!checkpoint_fails_) tell(fmt::format("{}; the run goes on, and it is tried again", e.what()));
+      checkpoint_fails_ = true;
+    }
   }
 
   RunCheckpoint checkpoint_here() const {
     RunCheckpoint c;
-    c.log_bytes = log_->size();
-    c.frame_bytes = frames_->size();
+    c.log = log_->mark();
+    c.frames = frames_->mark();
     c.first_energy = first_energy_;
     c.wall_seconds = wall();
     c.control = control_;
+    c.limits = {watch_.records(), refinements_};
     c.simulation = simulation_.serialise();
     return c;
   }
 
   void save_end() {
-    save();
-    write_file_atomically(dir_.final_state(), state_csv(prepared_.topology, simulation_.state()));
+    save_if_possible();
+    if (checkpoint_fails_) save();
+    pending_.write(dir_.final_state(), state_csv(prepared_.topology, simulation_.state()));
   }
 
-  void write_limits() const { write_file_atomically(dir_.limits(), limits_json({watch_.records(), refinements_})); }
+  void write_limits() { pending_.write(dir_.limits(), limits_json({watch_.records(), refinements_})); }
+
+  // As long before --wall-time as a last checkpoint may take.
+  bool time_is_up() const {
+    if (policy_.wall_time <= 0) return false;
+    const double reserve = std::min(5 + 3 * longest_save_, 0.5 * policy_.wall_time);
+    return seconds_since_start() > policy_.wall_time - reserve;
+  }
 
   double wall() const { return earlier_seconds_ + now() - started_; }
 
-  void write_manifest(const char* status, const std::string& reason) const {
+  void write_manifest(const char* status, const std::string& reason) {
     Manifest m;
     m.version = version;
     m.git_id = git_id;
     m.compiler = compiler;
     m.build_type = build_type;
+    m.instructions = instructions_in_use();
     m.threads = omp_get_max_threads();
     m.seed = scene_.start.seed;
     m.scene_hash = scene_.hash;
@@ -514,20 +568,34 @@ class Run {
     m.status = status;
     m.reason = reason;
     m.scene = scene_.name;
-    write_file_atomically(dir_.manifest(), manifest_json(m));
+    pending_.write(dir_.manifest(), manifest_json(m));
+  }
+
+  // What cannot be written or drawn is said; it can be made later.
+  void write_end(const char* status, const std::string& reason) {
+    write_manifest(status, reason);
+    try {
+      pending_.write(dir_.report(), report_of(dir_, scene_, prepared_));
+    } catch (const std::exception& e) {
+      tell(fmt::format("no report: {}; make it with: ropewalk report {}", e.what(), dir_.path));
+    }
+    pending_.try_again();
   }
 
   int finish() {
     save_end();
-    write_manifest(at_rest_ ? "finished" : "not relaxed", reason_);
-    write_report(dir_, scene_, prepared_);
+    write_end(at_rest_ ? "finished" : "not relaxed", reason_);
     const std::string passed = passed_words(watch_.records());
-    if (!passed.empty()) fmt::print("Limits passed: {}\n", passed);
-    fmt::print("{}{} steps, {:.1f} ps, {:.0f} s. Report: {}\n", reason_.empty() ? "" : reason_ + "\n",
-               simulation_.state().step, simulation_.state().time, wall(), dir_.report());
+    if (!passed.empty()) print(fmt::format("Limits passed: {}\n", passed));
+    print(fmt::format("{}{} steps, {:.1f} ps, {:.0f} s. Report: {}\n", reason_.empty() ? "" : reason_ + "\n",
+                      simulation_.state().step, simulation_.state().time, wall(), dir_.report()));
+    if (!pending_.empty()) {
+      tell(fmt::format("the run is done, but for {}; write them with: ropewalk resume {}", pending_.names(),
+                       dir_.path));
+      return stopped_with_reason;
+    }
     if (at_rest_) return 0;
-    fmt::print(stderr, "ropewalk: {}; go on with `ropewalk resume {}`, or raise run.max_steps\n", reason_,
-               dir_.path);
+    tell(fmt::format("{}; go on with `ropewalk resume {}`, or raise run.max_steps", reason_, dir_.path));
     return 4;
   }
 
@@ -535,9 +603,8 @@ class Run {
     save_end();
     const std::string reason = fmt::format("stopped at {:.3f} ps where a limit was passed: {}",
                                            simulation_.state().time, passed_words(watch_.records()));
-    write_manifest("stopped", reason);
-    write_report(dir_, scene_, prepared_);
-    say(fmt::format("{}; go on all the same with: ropewalk resume {}", reason, dir_.path));
+    write_end("stopped", reason);
+    tell(fmt::format("{}; go on all the same with: ropewalk resume {}", reason, dir_.path));
     return stopped_at_limit;
   }
 
@@ -548,17 +615,17 @@ class Run {
   // This run ends here, whole; the next one is made of it.
   std::unique_ptr<Run> refined() {
     save_end();
-    const RunDirectory to = write_finer_scene(dir_, scene_, prepared_, simulation_.state().time, policy_.force);
+    const RunDirectory to = finer_directory(dir_);
+    DirectoryLock lock = write_finer_scene(dir_, scene_, prepared_, simulation_.state().time, policy_.force);
     auto next = std::make_unique<Run>(to, read_run_scene(to), policy_);
+    next->hold(std::move(lock));
     next->inherit_from(*this);
     refinements_ = next->refinements_;
     write_limits();
     const RefinementRecord& r = refinements_.back();
-    write_manifest("refined",
-                   fmt::format("every element was split at {:.3f} ps; it goes on in {}", r.time_ps, r.to));
-    write_report(dir_, scene_, prepared_);
+    write_end("refined", fmt::format("every element was split at {:.3f} ps; it goes on in {}", r.time_ps, r.to));
     const Energies &b = r.before.potential, &a = r.after.potential;
-    say(fmt::format(
+    tell(fmt::format(
         "refined at {:.4g} ps: {} elements of {:.4g} nm became {} of {:.4g} nm; energy {:.6g} -> {:.6g} eV (bonds "
         "{:+.3g}, contact {:+.3g}, kinetic {:+.3g}); it goes on in {}",
         r.time_ps, r.elements_before, r.length_before, r.elements_after, r.length_after, r.before.total(),
@@ -589,8 +656,8 @@ class Run {
     for (std::size_t k = 0; k < records.size(); ++k)
       if (limit_kinds()[k].cured_by_finer) records[k] = {};
     watch_.inherit_from(records, at.state.step);
+    origin_ = origin_of(dir_, scene_);
     begin_files();
-    save();
   }
 
   void record_refinement(const Run& coarse) {
@@ -610,26 +677,38 @@ class Run {
     refinements_.push_back(r);
   }
 
-  int interrupted() {
+  int interrupted(int code, const std::string& by) {
     save_end();
-    const std::string reason =
-        fmt::format("stopped by signal {} at {:.3f} ps", static_cast<int>(caught_signal), simulation_.state().time);
+    const std::string reason = fmt::format("stopped {} at {:.3f} ps", by, simulation_.state().time);
     write_manifest("interrupted", reason);
-    fmt::print(stderr, "\n{}; go on with: ropewalk resume {}\n", reason, dir_.path);
-    return 128 + caught_signal;
+    pending_.try_again();
+    tell_as_is(fmt::format("\n{}; go on with: ropewalk resume {}\n", reason, dir_.path));
+    return code;
   }
 
   int failed(const NumericalError& e) {
     write_limits();
-    write_file_atomically(dir_.failed_state(), state_csv(prepared_.topology, simulation_.state()));
-    write_manifest("failed", e.what());
+    pending_.write(dir_.failed_state(), state_csv(prepared_.topology, simulation_.state()));
+    write_end("failed", e.what());
+    tell_as_is(fmt::format("\nropewalk: {}. State written to {}\n", e.what(), dir_.failed_state()));
+    return stopped_with_reason;
+  }
+
+  // A full disk, no memory: the last good state is saved if that is still possible.
+  int broken_off(const std::string& why) {
     try {
-      write_report(dir_, scene_, prepared_);
+      if (mark_.checkpoint && mark_.step > saved_step_) {
+        sync_files();
+        RunCheckpoint c = *mark_.checkpoint;
+        c.origin = origin_;
+        write_checkpoint(dir_, c);
+      }
     } catch (const std::exception&) {
-      // The failure is what counts; a state beyond all measure may not be drawn.
+      // The last checkpoint stands.
     }
-    fmt::print(stderr, "\nropewalk: {}. State written to {}\n", e.what(), dir_.failed_state());
-    return 3;
+    write_manifest("interrupted", why);
+    tell(fmt::format("{}; then go on with: ropewalk resume {}", why, dir_.path));
+    return stopped_with_reason;
   }
 
   RunDirectory dir_;
@@ -637,7 +716,10 @@ class Run {
   Prepared prepared_;
   Observer observer_;
   Simulation simulation_;
-  std::unique_ptr<Stream> log_, frames_;
+  DirectoryLock lock_;
+  std::unique_ptr<GrowingFile> log_, frames_;
+  PendingFiles pending_;
+  RunOrigin origin_;
   LimitWatch watch_;
   StopWatch stop_watch_;
   StepControl control_;
@@ -648,7 +730,16 @@ class Run {
   std::string started_at_ = iso_time();
   Energies first_;  // potential at the start
   double first_energy_ = 0, earlier_seconds_ = 0, started_ = now();
+  struct {
+    std::int64_t step = 0;
+    double time = 0;
+  } counted_from_;
   long log_every_ = 1, frames_every_ = 1, last_step_ = 0;
+  std::int64_t saved_step_ = -1;
+  std::int64_t written_step_ = -1;  // of a relaxation: its row and frame were there when it began or went on
+  double longest_save_ = 0;  // s
+  bool checkpoint_fails_ = false;
+  StopReason at_once_ = StopReason::none;  // before the first step
   RunPolicy policy_;
   bool at_rest_ = true;  // false: a relaxation ran out of steps
 };
@@ -671,13 +762,14 @@ void check_finer_directory(const RunDirectory& dir, const RunPolicy& policy) {
 
 std::unique_ptr<Run> new_run(const Scene& scene, const RunArguments& a) {
   const RunDirectory dir{a.out};
-  const RunPolicy policy{a.quiet, on_limit_of(a.on_limit), a.force};
+  const RunPolicy policy{a.quiet, on_limit_of(a.on_limit), a.force, seconds_of_wall_time(a.wall_time)};
   // Everything that can be wrong is found before a file is touched.
   auto run = std::make_unique<Run>(dir, scene, policy);
   run->check_before_start();
   run->stop_at(a.steps, a.until_ps);
+  listen_to_stop_signals();
   check_finer_directory(dir, policy);
-  create_run_directory(dir, a.force);
+  run->hold(create_run_directory(dir, a.force));
   write_file_atomically(dir.scene(), scene.text);
   for (std::size_t k = 0; k < scene.sets.size(); ++k)
     write_file_atomically(dir.parameters(k), read_file(scene.sets[k].path));
@@ -711,6 +803,7 @@ void refuse_refined(const RunDirectory& dir) {
 
 int run_command(const RunArguments& a) {
   use_threads(a.threads);
+  use_instructions(a.instructions);
   return go_through(new_run(read_scene(a.scene), a));
 }
 
@@ -718,17 +811,50 @@ int run_scene(const Scene& scene, const RunArguments& a) { return go_through(new
 
 void begin_run(const RunArguments& a) { new_run(read_scene(a.scene), a)->leave(); }
 
+namespace {
+
+// Those that the run was begun with, so that it gives the same bits, unless others are asked for.
+void use_instructions_of(const RunOrigin& origin, const std::string& asked_for) {
+  const std::string& name = asked_for.empty() ? origin.instructions : asked_for;
+  if (!use_instructions(name) && asked_for.empty())
+    throw InputError({"", 0, "--instructions"},
+                     fmt::format("the run was begun with {}, which this processor has not got", name),
+                     fmt::format("go on elsewhere, or give one of {} for other last digits",
+                                 fmt::join(instruction_sets(), ", ")));
+  if (origin.instructions != instructions_in_use())
+    tell(fmt::format("note: instruction set {} -> {}: last digits differ", origin.instructions,
+                     instructions_in_use()));
+}
+
+}  // namespace
+
 int resume_command(const ResumeArguments& a) {
   use_threads(a.threads);
   const RunDirectory dir{a.dir};
-  const RunCheckpoint checkpoint = read_checkpoint(dir);
+  const RunPolicy policy{a.quiet, on_limit_of(a.on_limit), false, seconds_of_wall_time(a.wall_time)};
+  read_checkpoint(dir);  // is there one at all?
   refuse_refined(dir);
-  const RunPolicy policy{a.quiet, on_limit_of(a.on_limit), false};
   check_finer_directory(dir, policy);
-  auto run = std::make_unique<Run>(dir, read_run_scene(dir), policy);
+  DirectoryLock lock(dir.path);
+  remove_parts(dir.path);
+  remove_parts(dir.paraview());
+  check_log_header(dir.log());
+  ResumePoint point = find_resume_point(dir);
+  use_instructions_of(point.checkpoint.origin, a.instructions);
+  const Scene scene = read_run_scene(dir);
+  RunOrigin origin = origin_of(dir, scene);
+  origin.instructions = point.checkpoint.origin.instructions;  // spoken of already
+  judge_changes(changes_of(point.checkpoint.origin, origin, dir), a.accept_changes, dir);
+  for (const std::string& remark : point.remarks) tell("note: " + remark);
+  // The next one that is written must not take the place of the only good one.
+  if (point.path != dir.checkpoint()) std::filesystem::remove(dir.checkpoint());
+  auto run = std::make_unique<Run>(dir, scene, policy);
+  run->hold(std::move(lock));
+  run->restore(std::move(point.checkpoint));
   run->stop_at(a.steps, a.until_ps);
-  run->restore(checkpoint);
   run->check_end_lies_ahead(a.steps, a.until_ps);
+  listen_to_stop_signals();
+  run->announce();
   return go_through(std::move(run));
 }
 

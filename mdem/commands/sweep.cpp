@@ -18,7 +18,9 @@
 #include "io/processes.hpp"
 #include "model/error.hpp"
 #include "plan/scene_edit.hpp"
+#include "run/run_checkpoint.hpp"
 #include "run/run_time.hpp"
+#include "run/tell.hpp"
 #include "scene/scene_toml.hpp"
 
 namespace ropewalk {
@@ -60,14 +62,14 @@ class Campaign {
 
   int go() {
     create_campaign(dir_, sweep_, all_, arguments_.force);
-    listen_to_signals();
+    listen_to_stop_signals();
     began_ = now();
     if (!sweep_.branch_axes.empty()) run_starts();
     run_points();
-    if (campaign_signal) {
-      fmt::print(stderr, "ropewalk: stopped by signal {}; go on with the same command\n",
-                 static_cast<int>(campaign_signal));
-      return 128 + campaign_signal;
+    if (stop_signal) {
+      tell_as_is(fmt::format("ropewalk: stopped by signal {}; go on with the same command\n",
+                             static_cast<int>(stop_signal)));
+      return 128 + stop_signal;
     }
     if (arguments_.only.empty()) write_file_atomically(dir_.table(), gathered_csv(dir_, sweep_, all_, {}));
     return summary();
@@ -83,7 +85,7 @@ class Campaign {
         const RunTime t = time_run(points_[i].text, sweep_.scene_path);
         timed.emplace_back(points_[i].work, t.steps > 0 ? t.total() : relax_steps * t.each);
       } catch (const std::exception& e) {
-        fmt::print(stderr, "ropewalk: {} cannot be timed: {}\n", points_[i].name, e.what());
+        tell_as_is(fmt::format("ropewalk: {} cannot be timed: {}\n", points_[i].name, e.what()));
       }
     }
     if (timed.empty()) timed.emplace_back(1, std::numeric_limits<double>::quiet_NaN());
@@ -157,7 +159,7 @@ class Campaign {
                          if (status != 0) say(fmt::format("the shared start {} did not reach its end", p.name));
                        }});
     }
-    run_processes(tasks, jobs_, &campaign_signal);
+    run_processes(tasks, jobs_, &stop_signal);
   }
 
   // Copies the shared run and replaces its scene by that of the point. The point keeps the time step of the shared
@@ -176,6 +178,11 @@ class Campaign {
         read_manifest(from.manifest()).time_step_fs / scene_of(sweep_, p).run.stepping.contact_every;
     write_file_atomically(made.scene(),
                           with_value(p.text, "run.time_step_fs", fmt::format("{:.17g}", step), sweep_.scene_path));
+    // The shared run is one of every point's scene, up to here.
+    RunCheckpoint c = read_checkpoint(made);
+    c.origin = origin_of(made, read_run_scene(made));
+    write_checkpoint(made, c);
+    fs::remove(made.checkpoint_before());
     Manifest m = read_manifest(made.manifest());
     m.status = "interrupted";
     m.scene = scene_of(sweep_, p).name;
@@ -205,7 +212,7 @@ class Campaign {
     }
     if (done_ > 0) say(fmt::format("{} of {} points are done already", done_, points_.size()));
     work_to_do_ = work_left_;
-    run_processes(tasks, jobs_, &campaign_signal);
+    run_processes(tasks, jobs_, &stop_signal);
   }
 
   void ended(const SweepPoint& p, int status) {
@@ -216,12 +223,12 @@ class Campaign {
       say(fmt::format("{} is run by another process", p.name));
     else if (progress.stage == Stage::failed)
       say(fmt::format("{}: {}", p.name, progress.reason));
-    else if (progress.stage != Stage::ended && !campaign_signal)
+    else if (progress.stage != Stage::ended && !stop_signal)
       say(fmt::format("{} did not end; see {}", p.name, dir_.messages(p.name)));
     const double passed = now() - began_, left = passed * work_left_ / std::max(work_to_do_ - work_left_, 1.0);
     if (isatty(STDERR_FILENO) && !arguments_.quiet)
-      fmt::print(stderr, "\r\033[K{} of {} points, {} passed, {} left", done_, points_.size(),
-                 duration_text(passed), duration_text(left));
+      tell_as_is(fmt::format("\r\033[K{} of {} points, {} passed, {} left", done_, points_.size(),
+                             duration_text(passed), duration_text(left)));
     else if (now() > next_line_ || done_ == points_.size())
       say(fmt::format("{} of {} points, {} passed, {} left", done_, points_.size(), duration_text(passed),
                       duration_text(left)));
@@ -231,7 +238,7 @@ class Campaign {
   }
 
   void say(const std::string& line) const {
-    if (!arguments_.quiet) fmt::print(stderr, "{}{}\n", isatty(STDERR_FILENO) ? "\r\033[K" : "", line);
+    if (!arguments_.quiet) tell_as_is(fmt::format("{}{}\n", isatty(STDERR_FILENO) ? "\r\033[K" : "", line));
   }
 
   int summary() const {
@@ -247,7 +254,7 @@ class Campaign {
     std::string words;
     for (const auto& [status, count] : counts)
       words += fmt::format("{}{} {}", words.empty() ? "" : ", ", count, status);
-    if (isatty(STDERR_FILENO) && !arguments_.quiet) fmt::print(stderr, "\r\033[K");
+    if (isatty(STDERR_FILENO) && !arguments_.quiet) tell_as_is("\r\033[K");
     fmt::print("{} points: {}; {} of one core in all\n", points_.size(), words, duration_text(seconds));
     for (const std::string& name : failed) fmt::print("not ended: {}, see {}\n", name, dir_.messages(name));
     if (arguments_.only.empty()) fmt::print("Table: {}\n", dir_.table());

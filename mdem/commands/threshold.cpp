@@ -14,6 +14,7 @@
 #include "io/processes.hpp"
 #include "model/error.hpp"
 #include "plan/scene_edit.hpp"
+#include "run/tell.hpp"
 #include "scene/scene_toml.hpp"
 
 namespace ropewalk {
@@ -37,7 +38,7 @@ class Search {
   int go() {
     create_campaign(dir_, sweep_, {}, arguments_.force);
     refuse_other_scenes();
-    listen_to_signals();
+    listen_to_stop_signals();
     const double began = now();
     std::vector<ProcessTask> tasks;
     std::size_t done = 0;
@@ -49,14 +50,14 @@ class Search {
                          if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) failed.push_back(p.name);
                          write();
                          if (!arguments_.quiet)
-                           fmt::print(stderr, "{} of {} points, {} passed: {}\n", done, points_.size(),
-                                      duration_text(now() - began), result_words(p));
+                           tell_as_is(fmt::format("{} of {} points, {} passed: {}\n", done, points_.size(),
+                                                  duration_text(now() - began), result_words(p)));
                        }});
-    run_processes(tasks, jobs_, &campaign_signal);
-    if (campaign_signal) {
-      fmt::print(stderr, "ropewalk: stopped by signal {}; go on with the same command\n",
-                 static_cast<int>(campaign_signal));
-      return 128 + campaign_signal;
+    run_processes(tasks, jobs_, &stop_signal);
+    if (stop_signal) {
+      tell_as_is(fmt::format("ropewalk: stopped by signal {}; go on with the same command\n",
+                             static_cast<int>(stop_signal)));
+      return 128 + stop_signal;
     }
     tell(failed);
     return failed.empty() ? 0 : 3;

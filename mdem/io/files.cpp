@@ -9,14 +9,18 @@
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
+#include <filesystem>
+#include <vector>
 
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
-#include "model/error.hpp"
+#include "io/descriptor.hpp"
 
 namespace ropewalk {
 namespace {
+
+constexpr const char* part = ".part-";  // of the name of a file that is being written
 
 const char* remedy_for(int code) {
   switch (code) {
@@ -44,38 +48,14 @@ const char* remedy_for(int code) {
   }
 }
 
-InputError failure(const std::string& path, const char* what, int code) {
-  return InputError({path, 0, ""}, fmt::format("{}: {}", what, std::strerror(code)), remedy_for(code));
-}
-
-// Closes the file in the destructor. Call close() if its result matters.
-class Descriptor {
- public:
-  explicit Descriptor(int fd) : fd_(fd) {}
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  ~Descriptor() { close(); }
-
-  bool open() const { return fd_ >= 0; }
-  int get() const { return fd_; }
-  int close() {
-    const int fd = fd_;
-    fd_ = -1;
-    return fd >= 0 ? ::close(fd) : 0;
-  }
-
- private:
-  int fd_;
-};
-
 // A new file in the same directory, since rename() does not cross file systems. O_EXCL: no other process has it.
 class TemporaryFile {
  public:
   explicit TemporaryFile(const std::string& path) : fd_(-1) {
     static std::atomic<unsigned> counter{0};
     do {
-      name_ = fmt::format("{}.part-{}-{}", path, ::getpid(), counter++);
-      fd_ = ::open(name_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+      name_ = fmt::format("{}{}{}-{}", path, part, ::getpid(), counter++);
+      fd_ = uninterrupted([&] { return ::open(name_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666); });
     } while (fd_ < 0 && errno == EEXIST);
   }
   TemporaryFile(const TemporaryFile&) = delete;
@@ -86,7 +66,7 @@ class TemporaryFile {
 
   int descriptor() const { return fd_; }
   bool rename_to(const std::string& path) {
-    renamed_ = ::rename(name_.c_str(), path.c_str()) == 0;
+    renamed_ = uninterrupted([&] { return ::rename(name_.c_str(), path.c_str()); }) == 0;
     return renamed_;
   }
 
@@ -96,57 +76,68 @@ class TemporaryFile {
   bool renamed_ = false;
 };
 
-bool write_all(int fd, std::string_view content) {
-  while (!content.empty()) {
-    const ssize_t written = ::write(fd, content.data(), content.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) return false;
-    content.remove_prefix(static_cast<std::size_t>(written));
-  }
-  return true;
-}
-
 // The rename must reach the disk as well. Some file systems cannot flush a directory; this is not an error, since
 // the file is whole either way.
 void flush_directory_of(const std::string& path) {
   const std::size_t slash = path.rfind('/');
   const std::string directory = slash == std::string::npos ? "." : slash == 0 ? "/" : path.substr(0, slash);
-  const Descriptor fd(::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  if (fd.open()) ::fsync(fd.get());
+  const Descriptor fd(uninterrupted([&] { return ::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC); }));
+  if (fd.open()) uninterrupted([&] { return ::fsync(fd.get()); });
 }
 
 }  // namespace
 
+InputError file_error(const std::string& path, const char* what, int code) {
+  return InputError({path, 0, ""}, fmt::format("{}: {}", what, std::strerror(code)), remedy_for(code));
+}
+
 std::string read_file(const std::string& path) {
-  const Descriptor fd(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
-  if (!fd.open()) throw failure(path, "cannot be opened", errno);
+  const Descriptor fd(uninterrupted([&] { return ::open(path.c_str(), O_RDONLY | O_CLOEXEC); }));
+  if (!fd.open()) throw file_error(path, "cannot be opened", errno);
   struct stat status {};
-  if (::fstat(fd.get(), &status) != 0) throw failure(path, "cannot be read", errno);
+  if (::fstat(fd.get(), &status) != 0) throw file_error(path, "cannot be read", errno);
   std::string content;
   if (status.st_size > 0) content.reserve(static_cast<std::size_t>(status.st_size) + 1);
   char buffer[1 << 16];
   for (;;) {
-    const ssize_t n = ::read(fd.get(), buffer, sizeof buffer);
-    if (n < 0 && errno == EINTR) continue;
-    if (n < 0) throw failure(path, "cannot be read", errno);
+    const ssize_t n = uninterrupted([&] { return ::read(fd.get(), buffer, sizeof buffer); });
+    if (n < 0) throw file_error(path, "cannot be read", errno);
     if (n == 0) return content;
     content.append(buffer, static_cast<std::size_t>(n));
   }
 }
 
-void write_file_atomically(const std::string& path, std::string_view content) {
+void write_file_atomically(const std::string& path, std::string_view content, const std::string& keep_old_as) {
   constexpr const char* what = "cannot be written";
   TemporaryFile temporary(path);
   Descriptor fd(temporary.descriptor());
-  if (!fd.open()) throw failure(path, what, errno);
+  if (!fd.open()) throw file_error(path, what, errno);
   struct stat old {};
   if (::stat(path.c_str(), &old) == 0 && S_ISREG(old.st_mode) && ::fchmod(fd.get(), old.st_mode & 0777) != 0)
-    throw failure(path, what, errno);
-  if (!write_all(fd.get(), content)) throw failure(path, what, errno);
-  if (::fsync(fd.get()) != 0) throw failure(path, what, errno);
-  if (fd.close() != 0) throw failure(path, what, errno);
-  if (!temporary.rename_to(path)) throw failure(path, what, errno);
+    throw file_error(path, what, errno);
+  if (!write_all(fd.get(), content)) throw file_error(path, what, errno);
+  if (uninterrupted([&] { return ::fsync(fd.get()); }) != 0) throw file_error(path, what, errno);
+  if (fd.close() != 0 && errno != EINTR) throw file_error(path, what, errno);  // where interrupted it is closed
+  if (!keep_old_as.empty() && uninterrupted([&] { return ::rename(path.c_str(), keep_old_as.c_str()); }) != 0 &&
+      errno != ENOENT)
+    throw file_error(keep_old_as, what, errno);
+  if (!temporary.rename_to(path)) throw file_error(path, what, errno);
   flush_directory_of(path);
+}
+
+std::string without_part(const std::string& name) {
+  const std::size_t at = name.rfind(part);
+  if (at == std::string::npos || at == 0) return "";
+  const std::string number = name.substr(at + std::strlen(part));
+  return number.find_first_not_of("0123456789-") == std::string::npos ? name.substr(0, at) : "";
+}
+
+void remove_parts(const std::string& directory) {
+  std::error_code error;
+  std::vector<std::filesystem::path> parts;
+  for (std::filesystem::directory_iterator at(directory, error), end; !error && at != end; at.increment(error))
+    if (!without_part(at->path().filename().string()).empty()) parts.push_back(at->path());
+  for (const auto& path : parts) std::filesystem::remove(path, error);
 }
 
 void refuse_existing(const std::string& path, const std::string& option, bool force) {

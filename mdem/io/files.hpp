@@ -4,14 +4,25 @@
 #include <string>
 #include <string_view>
 
+#include "model/error.hpp"
+
 namespace ropewalk {
 
 // Throws InputError when it cannot be read.
 std::string read_file(const std::string& path);
 
 // Writes a temporary file beside `path`, flushes it to the disk and renames it. Throws InputError (disk full,
-// no permission, ...) and leaves an existing file untouched.
-void write_file_atomically(const std::string& path, std::string_view content);
+// no permission, ...) and leaves an existing file untouched. `keep_old_as`: the name that the existing file takes;
+// between the two renames it alone is there.
+void write_file_atomically(const std::string& path, std::string_view content, const std::string& keep_old_as = "");
+
+// The name of the file that a process was writing when it left one of this name; empty for any other name.
+std::string without_part(const std::string& name);
+// Removes what such processes left.
+void remove_parts(const std::string& directory);
+
+// "cannot be written: No space left on device", with a remedy. code: errno.
+InputError file_error(const std::string& path, const char* what, int code);
 
 // Throws InputError where a file that an option names exists, unless `force` is set.
 void refuse_existing(const std::string& path, const std::string& option, bool force);

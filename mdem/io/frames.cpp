@@ -321,6 +321,8 @@ bool DumpReader::next(const Topology& topology, DumpFrame& frame) {
   }
 }
 
+std::uint64_t DumpReader::position() const { return static_cast<std::uint64_t>(impl_->file.tellg()); }
+
 std::string dump_frame(const Topology& topology, const State& state, const ElementColours& colours) {
   Buffer out;
   append_head(out, topology, state);

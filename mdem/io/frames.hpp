@@ -3,6 +3,7 @@
 // back; VTP/PVD opens in ParaView.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -39,6 +40,7 @@ class DumpReader {
   DumpReader(const DumpReader&) = delete;
   DumpReader& operator=(const DumpReader&) = delete;
   bool next(const Topology& topology, DumpFrame& frame);  // false at the end of the file
+  std::uint64_t position() const;                         // bytes, behind the frame just read
 
  private:
   struct Impl;

@@ -100,8 +100,9 @@ std::string limits_json(const LimitsFile& file) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-LimitsFile read_limits(const std::string& path) {
-  const std::string text = read_file(path);
+LimitsFile read_limits(const std::string& path) { return limits_of_text(read_file(path), path); }
+
+LimitsFile limits_of_text(const std::string& text, const std::string& path) {
   LimitsFile file;
   try {
     const Json json = Json::parse(text);

@@ -56,5 +56,7 @@ std::string limits_json(const LimitsFile& file);
 
 // Throws InputError for a file that is missing, not JSON, or lacks a key.
 LimitsFile read_limits(const std::string& path);
+// The same of its text; `path` is named in errors.
+LimitsFile limits_of_text(const std::string& text, const std::string& path);
 
 }  // namespace ropewalk

@@ -23,6 +23,8 @@ void visit(M& m, const Visit& v) {
   v({"git_id", "", "commit of the program"}, m.git_id);
   v({"compiler", "", "compiler of the program"}, m.compiler);
   v({"build_type", "", "build type of the program"}, m.build_type);
+  v({"instructions", "", "instruction set, which `--instructions` takes to give the same bits elsewhere"},
+    m.instructions);
   v({"threads", "", "threads"}, m.threads);
   v({"seed", "", "seed of the scene"}, m.seed);
   v({"scene_hash", "", "xxh64 of scene.toml"}, m.scene_hash);
@@ -86,7 +88,8 @@ Manifest read_manifest(const std::string& path) {
   const Json json = parse(path, read_file(path));
   Manifest manifest;
   visit(manifest, [&](const OutputColumn& key, auto& value) {
-    if (std::string("grade") == key.name && !json.contains(key.name)) return;  // not written before 0.2.0
+    for (const char* later : {"grade", "instructions"})  // not written before 0.2.0
+      if (std::string(later) == key.name && !json.contains(key.name)) return;
     value = value_of<std::decay_t<decltype(value)>>(path, json, key.name);
   });
   return manifest;

@@ -15,6 +15,7 @@ struct Manifest {
   std::string git_id;
   std::string compiler;
   std::string build_type;
+  std::string instructions;
   int threads = 0;
   std::uint64_t seed = 0;
   std::string scene_hash;      // xxh64, hex

@@ -13,6 +13,8 @@
 #include <map>
 #include <stdexcept>
 
+#include "io/stop_signals.hpp"
+
 namespace ropewalk {
 namespace {
 
@@ -21,7 +23,7 @@ pid_t start(const ProcessTask& task, int jobs) {
   const pid_t parent = getpid(), child = fork();
   if (child < 0) throw std::runtime_error(fmt::format("no process can be started: {}", std::strerror(errno)));
   if (child > 0) return child;
-  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, SIG_DFL);
+  forget_stop_signals();
   prctl(PR_SET_PDEATHSIG, SIGTERM);
   if (getppid() != parent) _exit(3);
   omp_set_num_threads(std::max(1, omp_get_num_procs() / jobs));

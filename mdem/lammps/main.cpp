@@ -7,6 +7,7 @@
 #include <string>
 
 #include "input.h"
+#include "io/program.hpp"
 #include "lammps.h"
 #include "lammps/model.hpp"
 #include "lammps/register.hpp"
@@ -41,6 +42,7 @@ void LAMMPS_NS::LAMMPS::post_create() {
 }
 
 int main(int argc, char** argv) {
+  ropewalk::begin_program();
   MPI_Init(&argc, &argv);
   void* lmp = lammps_open(argc, argv, MPI_COMM_WORLD, nullptr);
   if (!hooked)

@@ -4,7 +4,8 @@
 #include <unistd.h>
 
 #include <chrono>
-#include <cstdio>
+
+#include "run/tell.hpp"
 
 namespace ropewalk {
 namespace {
@@ -42,13 +43,12 @@ void Progress::show(double done, const std::string& status) {
   } else {
     line = fmt::format("step {:.0f}  {}", done, status);
   }
-  fmt::print(stderr, terminal_ ? "\r{}\033[K" : "{}\n", line);
-  std::fflush(stderr);
+  tell_as_is(terminal_ ? "\r" + line + "\033[K" : line + "\n");
   shown_ = true;
 }
 
 void Progress::done() {
-  if (shown_ && terminal_) fmt::print(stderr, "\n");
+  if (shown_ && terminal_) tell_as_is("\n");
 }
 
 }  // namespace ropewalk

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <cstring>
 #include <filesystem>
 
 #include "io/files.hpp"
@@ -17,9 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* checkpoint_title = "ROPEWALK-CHECKPOINT 2 ";
-
-bool belongs_to_a_run(const std::string& name) {
+bool belongs_to_a_run(const std::string& file_name) {
+  const std::string whole = without_part(file_name), name = whole.empty() ? file_name : whole;
   for (const OutputFile& file : run_files()) {
     const std::string pattern = file.name;
     const std::size_t star = pattern.find('*');
@@ -43,6 +41,8 @@ const std::vector<OutputFile>& run_files() {
       {"limits.json", "run", "limits that were watched and passed, and refinements"},
       {"manifest.json", "run", "program, inputs and how the run ended"},
       {"checkpoint.bin", "run", "binary: where `resume` goes on"},
+      {"checkpoint-before.bin", "run", "binary: the checkpoint before it, which `resume` takes where it has to"},
+      {lock_name, "run, import", "names the process that works here; there only as long as it does"},
       {"report.html", "run, report", "page with charts, pictures and all observables"},
       {"errors.csv", "errors", "standard errors of the observables, as log.csv"},
       {"errors", "errors", "directory with the runs behind errors.csv, and errors.json"},
@@ -71,28 +71,36 @@ std::string run_files_markdown() {
   return text;
 }
 
-void create_run_directory(const RunDirectory& dir, bool force) {
+DirectoryLock create_run_directory(const RunDirectory& dir, bool force) {
   std::error_code error;
-  if (fs::exists(dir.path, error)) {
-    if (!fs::is_directory(dir.path, error))
-      throw InputError({dir.path, 0, "--out"}, "exists and is not a directory", "choose another name");
-    if (!fs::is_empty(dir.path, error)) {
-      if (!force)
-        throw InputError(
-            {dir.path, 0, "--out"}, "is not empty",
-            "choose another name, give --force to replace an earlier run, or go on with `ropewalk resume`");
-      for (const auto& entry : fs::directory_iterator(dir.path))
-        if (!belongs_to_a_run(entry.path().filename().string()))
-          throw InputError({dir.path, 0, "--force"},
-                           fmt::format("holds {}, which is not of a run", entry.path().filename().string()),
-                           "choose another directory");
-      for (const auto& entry : fs::directory_iterator(dir.path)) fs::remove_all(entry.path(), error);
-    }
-  }
+  const bool there = fs::exists(dir.path, error);
+  if (there && !fs::is_directory(dir.path, error))
+    throw InputError({dir.path, 0, "--out"}, "exists and is not a directory", "choose another name");
+  if (there && !force && !fs::is_empty(dir.path, error))
+    throw InputError(
+        {dir.path, 0, "--out"}, "is not empty",
+        "choose another name, give --force to replace an earlier run, or go on with `ropewalk resume`");
+  if (there)
+    for (const auto& entry : fs::directory_iterator(dir.path, error))
+      if (!belongs_to_a_run(entry.path().filename().string()))
+        throw InputError({dir.path, 0, "--force"},
+                         fmt::format("holds {}, which is not of a run", entry.path().filename().string()),
+                         "choose another directory");
   fs::create_directories(dir.path, error);
   if (error)
     throw InputError({dir.path, 0, "--out"}, fmt::format("cannot be made: {}", error.message()),
                      "choose a place that you may write to");
+  DirectoryLock lock(dir.path);
+  std::vector<fs::path> old;
+  for (const auto& entry : fs::directory_iterator(dir.path, error))
+    if (entry.path().filename() != lock_name) old.push_back(entry.path());
+  for (const fs::path& path : old) {
+    fs::remove_all(path, error);
+    if (error)
+      throw InputError({path.string(), 0, "--force"}, fmt::format("cannot be removed: {}", error.message()),
+                       "remove it, or choose another directory");
+  }
+  return lock;
 }
 
 Scene read_run_scene(const RunDirectory& dir) {
@@ -106,54 +114,6 @@ Scene read_run_scene(const RunDirectory& dir) {
   // A scene without a name has that of its file, which here is always scene.toml.
   if (fs::exists(dir.manifest())) scene.name = read_manifest(dir.manifest()).scene;
   return scene;
-}
-
-void write_checkpoint(const RunDirectory& dir, const RunCheckpoint& checkpoint) {
-  std::string body;
-  const auto put = [&](const auto& value) { body.append(reinterpret_cast<const char*>(&value), sizeof value); };
-  for (const RunCheckpoint* c = &checkpoint; c; c = c->mark.get()) {
-    put(c->log_bytes);
-    put(c->frame_bytes);
-    put(c->first_energy);
-    put(c->wall_seconds);
-    put(c->control);
-    put(static_cast<std::uint64_t>(c->simulation.size()));
-    body += c->simulation;
-  }
-  write_file_atomically(dir.checkpoint(), checkpoint_title + hash_hex(body) + "\n" + body);
-}
-
-RunCheckpoint read_checkpoint(const RunDirectory& dir) {
-  const InputError::Place place{dir.checkpoint(), 0, ""};
-  if (!fs::exists(dir.checkpoint()))
-    throw InputError(place, "there is no checkpoint", "start the run with `ropewalk run`");
-  const std::string bytes = read_file(dir.checkpoint());
-  const std::size_t head = std::strlen(checkpoint_title) + 17;
-  const bool titled =
-      bytes.size() > head + 64 && bytes.compare(0, std::strlen(checkpoint_title), checkpoint_title) == 0;
-  if (!titled || bytes.substr(head - 17, 16) != hash_hex(std::string_view(bytes).substr(head)))
-    throw InputError(place, "is damaged or of another version", "start the run anew with `ropewalk run`");
-  std::size_t at = head;
-  const auto get = [&](auto& value) {
-    std::memcpy(&value, bytes.data() + at, sizeof value);
-    at += sizeof value;
-  };
-  const auto next = [&] {
-    RunCheckpoint c;
-    std::uint64_t size = 0;
-    get(c.log_bytes);
-    get(c.frame_bytes);
-    get(c.first_energy);
-    get(c.wall_seconds);
-    get(c.control);
-    get(size);
-    c.simulation = bytes.substr(at, size);
-    at += size;
-    return c;
-  };
-  RunCheckpoint c = next();
-  if (at < bytes.size()) c.mark = std::make_shared<const RunCheckpoint>(next());
-  return c;
 }
 
 Observer make_observer(const Scene& scene, const Prepared& prepared) {

@@ -1,8 +1,6 @@
 // The directory of one run and its files.
 #pragma once
 
-#include <cstdint>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -10,7 +8,7 @@
 #include "io/manifest.hpp"
 #include "observe/loading.hpp"
 #include "observe/observe.hpp"
-#include "run/step_control.hpp"
+#include "run/directory_lock.hpp"
 #include "scene/prepare.hpp"
 
 namespace ropewalk {
@@ -22,6 +20,7 @@ struct RunDirectory {
   std::string log() const { return file("log.csv"); }
   std::string frames() const { return file("frames.lammpstrj"); }
   std::string checkpoint() const { return file("checkpoint.bin"); }
+  std::string checkpoint_before() const { return file("checkpoint-before.bin"); }
   std::string manifest() const { return file("manifest.json"); }
   std::string scene() const { return file("scene.toml"); }
   std::string parameters(std::size_t type) const {
@@ -45,25 +44,12 @@ struct OutputFile {
 const std::vector<OutputFile>& run_files();
 std::string run_files_markdown();  // the table in Markdown
 
-// Makes the directory. Throws InputError if it holds an earlier run, unless `force` is set, and if it holds other
-// files, even with `force`.
-void create_run_directory(const RunDirectory& dir, bool force);
+// Makes the directory and locks it. Throws InputError if it holds an earlier run, unless `force` is set, if another
+// process works there, and if it holds other files, even with `force`.
+DirectoryLock create_run_directory(const RunDirectory& dir, bool force);
 
 // The scene as the run had it: scene.toml, parameters.toml and state.csv of the directory.
 Scene read_run_scene(const RunDirectory& dir);
-
-// The state of a run for `resume`: that of the simulation, and of the files and counters around it.
-struct RunCheckpoint {
-  std::uint64_t log_bytes = 0;  // the files are cut back to these lengths
-  std::uint64_t frame_bytes = 0;
-  double first_energy = 0;  // eV, total at the start: origin of the balance
-  double wall_seconds = 0;
-  StepControl control;
-  std::string simulation;
-  std::shared_ptr<const RunCheckpoint> mark;  // the last state to go back to; null: this one
-};
-void write_checkpoint(const RunDirectory& dir, const RunCheckpoint& checkpoint);
-RunCheckpoint read_checkpoint(const RunDirectory& dir);
 
 // The reference data of all observations in a run: shells and spacing (nm) of the untwisted rope, and the scene's
 // neighbour radius (nm). The ends are those that grips hold, or else the first and last elements of all tubes.
@@ -90,7 +76,8 @@ std::vector<std::string> grades_of(const Scene& scene);
 std::vector<std::string> error_bars_of(const Scene& scene, const Topology& topology,
                                        const std::vector<LogRow>& log);
 
-// Makes report.html from the files of the directory.
+// report.html from the files of the directory: its text, and into its file.
+std::string report_of(const RunDirectory& dir, const Scene& scene, const Prepared& prepared);
 void write_report(const RunDirectory& dir, const Scene& scene, const Prepared& prepared);
 
 }  // namespace ropewalk

@@ -36,20 +36,20 @@ RunDirectory finer_directory(const RunDirectory& dir) {
   return {fmt::format("{}{}{}", path.substr(0, at), mark, stage + 1)};
 }
 
-RunDirectory write_finer_scene(const RunDirectory& from, const Scene& scene, const Prepared& prepared, double time,
-                               bool force) {
+DirectoryLock write_finer_scene(const RunDirectory& from, const Scene& scene, const Prepared& prepared, double time,
+                                bool force) {
   const RunDirectory to = finer_directory(from);
   const std::string text = finer_scene_text(
       scene, prepared,
       fmt::format("Made by ropewalk at {:.6g} ps of the run {}: every element split in two.", time, name_of(from)));
-  create_run_directory(to, force);
+  DirectoryLock lock = create_run_directory(to, force);
   write_file_atomically(to.scene(), text);
   for (std::size_t k = 0; k < scene.sets.size(); ++k)
     write_file_atomically(to.parameters(k), read_file(scene.sets[k].path));
   if (scene.from_file())
     write_file_atomically(to.state(),
                           state_csv(halved(prepared.topology), halved(prepared.topology, prepared.state)));
-  return to;
+  return lock;
 }
 
 }  // namespace ropewalk

@@ -16,7 +16,8 @@ std::string name_of(const RunDirectory& dir);
 
 // Makes the directory of the next stage with the finer scene, the parameter sets and, for [state], the halved state
 // of time zero. `force` replaces an earlier run there. `time` is the time of the splitting, ps.
-RunDirectory write_finer_scene(const RunDirectory& from, const Scene& scene, const Prepared& prepared, double time,
-                               bool force);
+// Returns the lock on that directory.
+DirectoryLock write_finer_scene(const RunDirectory& from, const Scene& scene, const Prepared& prepared, double time,
+                                bool force);
 
 }  // namespace ropewalk

@@ -45,7 +45,7 @@ HWY_AFTER_NAMESPACE();
 #include "bench/line_count.hpp"
 #include "bench/support.hpp"
 #include "sim/contact/line/engine.hpp"
-#include "sim/threads/vector_clones.hpp"
+#include "sim/threads/vector_unit.hpp"
 
 namespace ropewalk {
 HWY_EXPORT(RadialMixed);
@@ -105,7 +105,9 @@ void RadialTableDouble(benchmark::State& bench, const std::string& instructions)
 }
 
 // The law itself, as its formula says: what the tables replace.
-ROPEWALK_VECTOR_CLONES
+#ifdef ROPEWALK_HAS_VECTOR_UNITS
+__attribute__((target_clones("default", "arch=x86-64-v3", "arch=x86-64-v4")))
+#endif
 void radial_direct(const LineDensity& of, const double* X, double& u, double& slope) {
   const LineDensity law = of;
   double us = 0, slopes = 0;

@@ -495,9 +495,11 @@ TEST_F(Cli, ResumeRefusesALogOfOtherColumns) {
 TEST_F(Cli, DamagedCheckpointIsRefused) {
   small_rope("s.toml");
   ASSERT_EQ(run("run s.toml --out d --steps 20").code, 0);
-  std::string bytes = slurp(dir / "d/checkpoint.bin");
-  bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 1);
-  spit(dir / "d/checkpoint.bin", bytes);
+  for (const char* name : {"d/checkpoint.bin", "d/checkpoint-before.bin"}) {
+    std::string bytes = slurp(dir / name);
+    bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 1);
+    spit(dir / name, bytes);
+  }
   const Outcome o = run("resume d");
   EXPECT_EQ(o.code, 2);
   EXPECT_NE(o.err.find("damaged"), std::string::npos);

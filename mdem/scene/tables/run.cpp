@@ -70,13 +70,14 @@ const KeyTable<RunOptions>& run_table() {
        Key::number("mass_scale", unit::none, Bounds::range(1e-3, 1e6), &R::mass_scale, standard(),
                    "masses times this: steps grow and waves slow down by its root, kinetic energies at a given "
                    "speed grow by it and at a given temperature stay; statics stay"),
-       Key::number("duration_ps", unit::ps, time, &R::duration, otherwise("100", "until [twist] and all grips have done what they do"),
+       Key::number("duration_ps", unit::ps, time, &R::duration,
+                   otherwise("100", "until [twist] and all grips have done what they do"),
                    "dynamics: simulated time"),
        Key::number("frames_every_ps", unit::ps, time, &R::frames_every, otherwise("1", "40 frames"),
                    "time between stored frames"),
        Key::number("log_every_ps", unit::ps, time, &R::log_every, otherwise("0.1", "400 rows"),
                    "time between rows of the log"),
-       Key::number("checkpoint_every_s", unit::seconds, Bounds::range(1, 1e6), &R::checkpoint_every, standard(),
+       Key::number("checkpoint_every_s", unit::seconds, Bounds::positive(1e6), &R::checkpoint_every, standard(),
                    "wall time between checkpoints"),
        Key::number(
            "force_tolerance_nN", unit::nN, Bounds::range(1e-15, 1), [](auto& r) -> auto& { return r.goal.force; },

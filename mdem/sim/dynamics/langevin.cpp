@@ -5,7 +5,7 @@
 
 #include "model/units.hpp"
 #include "sim/dynamics/counter_random.hpp"
-#include "sim/threads/vector_clones.hpp"
+#include "sim/threads/vector_unit.hpp"
 
 namespace ropewalk {
 namespace {
@@ -19,17 +19,14 @@ struct Normals {
   double of[components][group];
 };
 
-// normal_pair() in loops that the compiler vectorises.
-ROPEWALK_VECTOR_CLONES
-void to_normals(const double (&radial)[3][group], const double (&angular)[3][group], Normals& out) {
-  for (int pair = 0; pair < 3; ++pair)
-#pragma omp simd
-    for (int k = 0; k < group; ++k) {
-      const double length = std::sqrt(-2 * std::log(radial[pair][k])), angle = 2 * units::pi * angular[pair][k];
-      out.of[2 * pair][k] = length * std::cos(angle);
-      out.of[2 * pair + 1][k] = length * std::sin(angle);
-    }
-}
+}  // namespace
+}  // namespace ropewalk
+
+#define ROPEWALK_LOOPS "sim/dynamics/langevin_loops-inl.hpp"
+#include "sim/threads/for_each_vector_unit-inl.hpp"
+
+namespace ropewalk {
+namespace {
 
 // Of the elements first .. first + group - 1.
 void draw(std::uint64_t seed, std::int64_t step, int part, std::ptrdiff_t first, Normals& out) {
@@ -45,7 +42,7 @@ void draw(std::uint64_t seed, std::int64_t step, int part, std::ptrdiff_t first,
       angular[pair][k] = unit_interval(bits[pair][1]);
     }
   }
-  to_normals(radial, angular, out);
+  ROPEWALK_IN_USE(to_normals)(radial, angular, out);
 }
 
 }  // namespace

@@ -5,22 +5,13 @@
 #include <algorithm>
 
 #include "sim/forces/bonds.hpp"
-#include "sim/threads/vector_clones.hpp"
+#include "sim/threads/vector_unit.hpp"
+
+#define ROPEWALK_LOOPS "sim/forces/axes_loops-inl.hpp"
+#include "sim/threads/for_each_vector_unit-inl.hpp"
 
 namespace ropewalk {
 namespace {
-
-// axis_of() over plain numbers, which the compiler vectorises.
-ROPEWALK_VECTOR_CLONES
-void axes_of(const QuaternionArray& q, std::ptrdiff_t begin, std::ptrdiff_t end, Vec3Array& out) {
-  const double *qw = q.w.data(), *qx = q.x.data(), *qy = q.y.data(), *qz = q.z.data();
-  double *tx = out.x.data(), *ty = out.y.data(), *tz = out.z.data();
-#pragma GCC ivdep
-  for (std::ptrdiff_t i = begin; i < end; ++i) {
-    const double w = qw[i], x = qx[i], y = qy[i], z = qz[i];
-    tx[i] = 2 * (x * z + w * y), ty[i] = 2 * (y * z - w * x), tz[i] = 1 - 2 * (x * x + y * y);
-  }
-}
 
 void clear(const Segment& of, const ForceRows& out) {
   for (Vec3Array* v : {&out.force, &out.torque})
@@ -54,7 +45,8 @@ void ForceEngine::compute(const Topology& topology, const Interaction& interacti
 
   // Before any element moves: the axes of a tube, and the bonds between its parts.
   const auto place = [&](int tube) {
-    if (contact) axes_of(state.orientation, topology.tube_begin[tube], topology.tube_begin[tube + 1], axis_);
+    if (contact)
+      ROPEWALK_IN_USE(axes_of)(state.orientation, topology.tube_begin[tube], topology.tube_begin[tube + 1], axis_);
     for (int k = parts_.begin(tube); bonds && k + 1 < parts_.begin(tube + 1); ++k)
       joints_[static_cast<std::size_t>(k)] = joint_behind(bonded, tube, parts_[k].end - 1);
   };

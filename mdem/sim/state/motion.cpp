@@ -3,63 +3,20 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/threads/vector_clones.hpp"
+#include "sim/threads/vector_unit.hpp"
+
+#define ROPEWALK_LOOPS "sim/state/motion_loops-inl.hpp"
+#include "sim/threads/for_each_vector_unit-inl.hpp"
 
 namespace ropewalk {
-namespace {
 
-// sin(h)/h and cos(h) of the square of h, up to the last bit for h below 0.25 and to 1e-12 below 0.5.
-inline double sine_over(double h2) {
-  return 1 + h2 * (-1.0 / 6 + h2 * (1.0 / 120 + h2 * (-1.0 / 5040 + h2 * (1.0 / 362880 - h2 / 39916800))));
-}
-inline double cosine(double h2) {
-  return 1 + h2 * (-0.5 + h2 * (1.0 / 24 +
-                                h2 * (-1.0 / 720 + h2 * (1.0 / 40320 + h2 * (-1.0 / 3628800 + h2 / 479001600)))));
-}
-
-}  // namespace
-
-ROPEWALK_VECTOR_CLONES
 void kick_elements(const Vec3Array& force, double by, Vec3Array& velocity, std::ptrdiff_t begin,
                    std::ptrdiff_t end) {
-  const double *fx = force.x.data(), *fy = force.y.data(), *fz = force.z.data();
-  double *vx = velocity.x.data(), *vy = velocity.y.data(), *vz = velocity.z.data();
-#pragma omp simd
-  for (std::ptrdiff_t i = begin; i < end; ++i) {
-    vx[i] += by * fx[i];
-    vy[i] += by * fy[i];
-    vz[i] += by * fz[i];
-  }
+  ROPEWALK_IN_USE(kick_elements)(force, by, velocity, begin, end);
 }
 
-ROPEWALK_VECTOR_CLONES
 void move_elements(State& s, double dt, std::ptrdiff_t begin, std::ptrdiff_t end) {
-  double *x = s.position.x.data(), *y = s.position.y.data(), *z = s.position.z.data();
-  double *qw = s.orientation.w.data(), *qx = s.orientation.x.data(), *qy = s.orientation.y.data(),
-         *qz = s.orientation.z.data();
-  const double *vx = s.velocity.x.data(), *vy = s.velocity.y.data(), *vz = s.velocity.z.data();
-  const double *wx = s.angular_velocity.x.data(), *wy = s.angular_velocity.y.data(),
-               *wz = s.angular_velocity.z.data();
-#pragma omp simd
-  for (std::ptrdiff_t i = begin; i < end; ++i) {
-    x[i] += dt * vx[i];
-    y[i] += dt * vy[i];
-    z[i] += dt * vz[i];
-    // The rotation by w dt as a quaternion (c, a).
-    const double h2 = 0.25 * dt * dt * (wx[i] * wx[i] + wy[i] * wy[i] + wz[i] * wz[i]);
-    const double scale = 0.5 * dt * sine_over(h2), c = cosine(h2);
-    const double ax = scale * wx[i], ay = scale * wy[i], az = scale * wz[i];
-    const double bw = qw[i], bx = qx[i], by = qy[i], bz = qz[i];
-    const double rw = c * bw - ax * bx - ay * by - az * bz;
-    const double rx = c * bx + ax * bw + ay * bz - az * by;
-    const double ry = c * by + ay * bw + az * bx - ax * bz;
-    const double rz = c * bz + az * bw + ax * by - ay * bx;
-    const double unit = 1.5 - 0.5 * (rw * rw + rx * rx + ry * ry + rz * rz);  // one Newton step to unit norm
-    qw[i] = unit * rw;
-    qx[i] = unit * rx;
-    qy[i] = unit * ry;
-    qz[i] = unit * rz;
-  }
+  ROPEWALK_IN_USE(move_elements)(s, dt, begin, end);
 }
 
 void move_elements_runge_kutta(State& s, double dt, std::ptrdiff_t begin, std::ptrdiff_t end) {
@@ -82,51 +39,13 @@ void move_elements_runge_kutta(State& s, double dt, std::ptrdiff_t begin, std::p
   }
 }
 
-ROPEWALK_VECTOR_CLONES
 Fastest fastest(const State& s, std::ptrdiff_t begin, std::ptrdiff_t end) {
-  const double *vx = s.velocity.x.data(), *vy = s.velocity.y.data(), *vz = s.velocity.z.data();
-  const double *wx = s.angular_velocity.x.data(), *wy = s.angular_velocity.y.data(),
-               *wz = s.angular_velocity.z.data();
-  double speed2 = 0, spin2 = 0, sum = 0;
-#pragma GCC ivdep
-  for (std::ptrdiff_t i = begin; i < end; ++i) {
-    const double v2 = vx[i] * vx[i] + vy[i] * vy[i] + vz[i] * vz[i];
-    const double w2 = wx[i] * wx[i] + wy[i] * wy[i] + wz[i] * wz[i];
-    speed2 = std::max(speed2, v2);
-    spin2 = std::max(spin2, w2);
-    sum += v2 + w2;
-  }
-  return {speed2, spin2, sum};
+  return ROPEWALK_IN_USE(fastest)(s, begin, end);
 }
 
-ROPEWALK_VECTOR_CLONES
 Change largest_change(const State& state, const Vec3Array& position, const Vec3Array& axis, double lever,
                       const TwistOfAll& twist, std::ptrdiff_t begin, std::ptrdiff_t end) {
-  const double *x = state.position.x.data(), *y = state.position.y.data(), *z = state.position.z.data();
-  const double *rx = position.x.data(), *ry = position.y.data(), *rz = position.z.data();
-  const double *qw = state.orientation.w.data(), *qx = state.orientation.x.data(), *qy = state.orientation.y.data(),
-               *qz = state.orientation.z.data();
-  const double *nx = axis.x.data(), *ny = axis.y.data(), *nz = axis.z.data();
-  const TwistOfAll by = twist;
-  double moved = 0, sum = 0, spin = 0, spin_z = 0;
-#pragma GCC ivdep
-  for (std::ptrdiff_t i = begin; i < end; ++i) {
-    const double px = rx[i] - by.x, py = ry[i] - by.y, pz = rz[i] - by.middle;
-    const double s = std::max(-by.most, std::min(by.sine + by.slope * pz, by.most)), c = std::sqrt(1 - s * s);
-    const double vx = x[i] - by.x, vy = y[i] - by.y;
-    const double dx = vx - (c * px - s * py), dy = vy - (s * px + c * py), dz = z[i] - rz[i];
-    const double ax = 2 * (qx[i] * qz[i] + qw[i] * qy[i]) - (c * nx[i] - s * ny[i]),
-                 ay = 2 * (qy[i] * qz[i] - qw[i] * qx[i]) - (s * nx[i] + c * ny[i]),
-                 az = 1 - 2 * (qx[i] * qx[i] + qy[i] * qy[i]) - nz[i];
-    const double turn = std::sqrt(ax * ax + ay * ay + az * az);
-    const double d = std::sqrt(dx * dx + dy * dy + dz * dz) + lever * turn;
-    const double product = px * vy - py * vx;
-    moved = std::max(moved, d);
-    sum += d;
-    spin += product;
-    spin_z += pz * product;
-  }
-  return {moved, sum, spin, spin_z};
+  return ROPEWALK_IN_USE(largest_change)(state, position, axis, lever, twist, begin, end);
 }
 
 }  // namespace ropewalk

@@ -2,7 +2,10 @@
 
 #include <omp.h>
 
-#include "sim/threads/vector_clones.hpp"
+#include "sim/threads/vector_unit.hpp"
+
+#define ROPEWALK_LOOPS "sim/contact/line/buffer_loops-inl.hpp"
+#include "sim/threads/for_each_vector_unit-inl.hpp"
 
 namespace ropewalk {
 namespace {
@@ -15,27 +18,11 @@ void make_tables(Buffers& b, const LineLaw& law, double unit) {
   b.unit = unit;
 }
 
-// What a buffer holds for elements of a tube, element j at j + shift.
-template <class T>
-__attribute__((always_inline)) inline void add_all(const BufferRange& of, const ContactBuffer<T>& b,
-                                                   const ForceRows& sums) {
-  const std::vector<T>* const from[6] = {&b.fx, &b.fy, &b.fz, &b.tx, &b.ty, &b.tz};
-  Vec3Array &force = sums.force, &torque = sums.torque;
-  std::vector<double>* const to[6] = {&force.x, &force.y, &force.z, &torque.x, &torque.y, &torque.z};
-  for (int a = 0; a < 6; ++a) {
-    const T* const on = from[a]->data() + of.begin + of.shift;
-    double* const sum = to[a]->data() + of.begin - sums.origin;
-#pragma omp simd
-    for (int i = 0; i < of.end - of.begin; ++i) sum[i] += static_cast<double>(on[i]);
-  }
+void add_range(const BufferRange& of, const ContactBuffer<float>& b, const ForceRows& sums) {
+  ROPEWALK_IN_USE(add_floats)(of, b, sums);
 }
-ROPEWALK_VECTOR_CLONES void add_range(const BufferRange& of, const ContactBuffer<float>& b,
-                                      const ForceRows& sums) {
-  add_all(of, b, sums);
-}
-ROPEWALK_VECTOR_CLONES void add_range(const BufferRange& of, const ContactBuffer<double>& b,
-                                      const ForceRows& sums) {
-  add_all(of, b, sums);
+void add_range(const BufferRange& of, const ContactBuffer<double>& b, const ForceRows& sums) {
+  ROPEWALK_IN_USE(add_doubles)(of, b, sums);
 }
 
 void add_viscosity(const ContactViscosity& viscosity, const State& state, const LineChunk& chunk, double /*unit*/,

@@ -107,9 +107,10 @@ void line_contact(const LineKernelInput<MixedTable, std::int32_t>& in, const Lin
 void line_contact(const LineKernelInput<FullTable, double>& in, const LineChunk& chunk, LineWork<double>& work,
                   ContactBuffer<double>& out);
 // Instruction sets of the kernel that this machine can run, best first; use_instructions limits the choice to one
-// of them ("" lifts the limit) and returns false where there is none of that name. For tests and `bench`.
+// of them ("" lifts the limit) and returns false where there is none of that name.
 std::vector<std::string> instruction_sets();
 bool use_instructions(const std::string& name);
+inline std::string instructions_in_use() { return instruction_sets().front(); }
 
 class LineEngine : public ContactEngine {
  public:

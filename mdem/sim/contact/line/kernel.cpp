@@ -9,6 +9,7 @@
 #include <type_traits>
 
 #include "sim/contact/line/engine.hpp"
+#include "sim/threads/vector_unit.hpp"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "sim/contact/line/kernel.cpp"
@@ -441,6 +442,16 @@ void line_contact(const LineKernelInput<FullTable, double>& in, const LineChunk&
   HWY_DYNAMIC_DISPATCH(Full)(in, chunk, work, out);
 }
 
+namespace {
+
+// The unit of the other loops, which has what the set has.
+VectorUnit unit_beside(const std::string& set) {
+  const auto begins = [&](const char* with) { return set.rfind(with, 0) == 0; };
+  return begins("AVX3") || begins("AVX10") ? VectorUnit::v4 : begins("AVX2") ? VectorUnit::v3 : VectorUnit::base;
+}
+
+}  // namespace
+
 std::vector<std::string> instruction_sets() {
   std::vector<std::string> names;
   for (auto left = hwy::SupportedTargets() & HWY_TARGETS; left != 0; left &= left - 1)
@@ -456,6 +467,7 @@ bool use_instructions(const std::string& name) {
   if (chosen == 0) return false;
   hwy::SetSupportedTargetsForTest(name.empty() ? 0 : chosen);
   hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  vector_unit_in_use = unit_beside(instructions_in_use());
   return true;
 }
 

@@ -9,7 +9,6 @@
 #include "sim/state/interaction.hpp"
 #include "sim/state/state.hpp"
 #include "sim/threads/scratch.hpp"
-#include "sim/threads/vector_clones.hpp"
 
 namespace ropewalk {
 

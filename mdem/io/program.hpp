@@ -1,0 +1,11 @@
+// What every program does first.
+#pragma once
+
+namespace ropewalk {
+
+// Opens the null device on standard input, output and error where they are closed, as under some daemons: the first
+// file opened would take their number, and messages would land in it. Has a file that passes the limit on sizes
+// (ulimit -f) be an error and not a signal.
+void begin_program();
+
+}  // namespace ropewalk

@@ -1,0 +1,31 @@
+#include "run/pending_files.hpp"
+
+#include <fmt/format.h>
+
+#include "io/files.hpp"
+#include "run/tell.hpp"
+
+namespace ropewalk {
+
+void PendingFiles::write(const std::string& path, std::string content) {
+  try {
+    write_file_atomically(path, content);
+    waiting_.erase(path);
+  } catch (const InputError& e) {
+    if (!waiting_.count(path)) tell(fmt::format("{}; the run goes on, and it is tried again", e.what()));
+    waiting_[path] = std::move(content);
+  }
+}
+
+void PendingFiles::try_again() {
+  const auto all = waiting_;
+  for (const auto& [path, content] : all) write(path, content);
+}
+
+std::string PendingFiles::names() const {
+  std::string words;
+  for (const auto& [path, content] : waiting_) words += (words.empty() ? "" : ", ") + path;
+  return words;
+}
+
+}  // namespace ropewalk

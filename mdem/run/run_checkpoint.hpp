@@ -1,0 +1,55 @@
+// The checkpoint of a run, for `resume`: the state of the simulation, of the files and of the counters around it,
+// and what the run is made of.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "io/growing_file.hpp"
+#include "io/limits_file.hpp"
+#include "run/run_directory.hpp"
+#include "run/step_control.hpp"
+
+namespace ropewalk {
+
+// What the motion of a run follows from.
+struct RunOrigin {
+  std::string scene;              // the text
+  std::vector<std::string> sets;  // hashes of the parameter sets
+  std::string state;              // hash of the start, of a scene that reads its state from a file
+  std::string version, git_id;    // of the program
+  std::string instructions;       // see instructions_in_use()
+};
+// Of a run in this directory by this program.
+RunOrigin origin_of(const RunDirectory& dir, const Scene& scene);
+
+struct RunCheckpoint {
+  FileMark log, frames;     // the files are cut back to these
+  double first_energy = 0;  // eV, total at the start: origin of the balance
+  double wall_seconds = 0;
+  StepControl control;
+  LimitsFile limits;
+  std::string simulation;
+  std::shared_ptr<const RunCheckpoint> mark;  // the last state to go back to; null: this one
+  RunOrigin origin;                           // not of a mark
+};
+
+// The one that was there before is kept as checkpoint-before.bin.
+void write_checkpoint(const RunDirectory& dir, const RunCheckpoint& checkpoint);
+
+// The newest that is whole. Throws InputError where there is none.
+RunCheckpoint read_checkpoint(const RunDirectory& dir);
+
+// Where a run can go on: the newest checkpoint that is whole and whose log and frames are there. Frames that are
+// missing or damaged are done without. `remarks`: what was found to be wrong, a sentence each. Throws InputError
+// where there is no whole checkpoint, or none whose log is there.
+struct ResumePoint {
+  std::string path;
+  RunCheckpoint checkpoint;
+  std::vector<std::string> remarks;
+};
+ResumePoint find_resume_point(const RunDirectory& dir);
+
+}  // namespace ropewalk

@@ -1,0 +1,33 @@
+#include "run/wall_time.hpp"
+
+#include <chrono>
+#include <regex>
+
+#include "model/error.hpp"
+
+namespace ropewalk {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+const Clock::time_point program_start = Clock::now();
+
+}  // namespace
+
+double seconds_of_wall_time(const std::string& text) {
+  if (text.empty()) return 0;
+  std::smatch m;
+  double seconds = 0;
+  if (std::regex_match(text, m, std::regex(R"((?:(\d{1,4})-)?(\d{1,4}):([0-5]\d):([0-5]\d))")))
+    seconds = 86400 * (m[1].matched ? std::stod(m[1]) : 0) + 3600 * std::stod(m[2]) + 60 * std::stod(m[3]) +
+              std::stod(m[4]);
+  else if (std::regex_match(text, std::regex(R"(\d{1,9})")))
+    seconds = std::stod(text);
+  if (!(seconds > 0))
+    throw InputError({"", 0, "--wall-time"}, "\"" + text + "\" is no time",
+                     "take seconds, as 5400, or H:MM:SS, as 1:30:00 or 2-12:00:00");
+  return seconds;
+}
+
+double seconds_since_start() { return std::chrono::duration<double>(Clock::now() - program_start).count(); }
+
+}  // namespace ropewalk

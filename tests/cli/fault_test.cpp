@@ -1,0 +1,320 @@
+// A program killed at any of its calls that change files, or with any of these calls failing (tests/faults):
+// nothing is lost, and what is resumed is byte for byte what it would have been.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include "cli/support.hpp"
+
+namespace ropewalk::test {
+namespace {
+
+using ::testing::HasSubstr;
+
+// Its account of energy does not close in the end, so that it goes back and divides its steps.
+constexpr const char* lively =
+    "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-paper\"\n[chain]\nelements = 4\n"
+    "[twist]\nmoment_nN_nm = 5\nrate_nN_nm_per_ps = 5\nhold_ps = 1\n[limits]\nspeed_nm_per_ps = 1e-5\n"
+    "[run]\nlog_every_ps = 0.2\nframes_every_ps = 0.5\ncheckpoint_every_s = 1e-6\n";
+constexpr const char* calm =
+    "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-paper\"\n[chain]\nelements = 4\n"
+    "[start]\ntemperature_K = 300\nmay_cool = true\n[run]\nduration_ps = 0.25\ntime_step_fs = 5\n"
+    "log_every_ps = 0.025\nframes_every_ps = 0.06\ncheckpoint_every_s = 1e-6\n";
+
+class Faults : public Cli {
+ protected:
+  // In memory where that is possible: thousands of files are written to the disk here.
+  void SetUp() override {
+    Cli::SetUp();
+    if (fs::exists("/dev/shm")) {
+      fs::remove_all(dir);
+      dir = fs::path("/dev/shm") / dir.filename();
+      fs::create_directories(dir);
+    }
+    spit(dir / "s.toml", lively);
+  }
+
+  Outcome with(const std::string& fault, const std::string& arguments) const {
+    return run(arguments, fmt::format("env LD_PRELOAD='{}' OMP_NUM_THREADS=1 GOMP_SPINCOUNT=0 "
+                                      "ROPEWALK_FAULTS_BELOW='{}' ROPEWALK_FAULT={} ROPEWALK_FAULTS_COUNT='{}'",
+                                      ROPEWALK_FAULTS, (dir / "d").string(), fault, (dir / "count").string()));
+  }
+
+  long calls_of(const std::string& arguments) const {
+    EXPECT_EQ(with("none:0", arguments).code, 0) << slurp(dir / "stderr.txt");
+    return std::stol("0" + slurp(dir / "count"));
+  }
+
+  // All numbers, or every few of them unless the environment has ROPEWALK_ALL_FAULTS.
+  static long stride(long usual) { return std::getenv("ROPEWALK_ALL_FAULTS") ? 1 : usual; }
+
+  void expect_same(const fs::path& a, const fs::path& b, const std::string& when) const {
+    for (const char* name : {"log.csv", "frames.lammpstrj", "final.csv", "limits.json"})
+      EXPECT_TRUE(slurp(dir / a / name) == slurp(dir / b / name) && fs::exists(dir / b / name))
+          << when << ": " << name;
+    EXPECT_THAT(slurp(dir / b / "manifest.json"), HasSubstr("\"finished\"")) << when;
+    for (const auto& entry : fs::directory_iterator(dir / b))
+      EXPECT_EQ(entry.path().string().find(".part-"), std::string::npos) << when << ": " << entry.path();
+  }
+
+  // Lines that say what is the matter, and no raw text of a library.
+  void expect_clear(const Outcome& o, const std::string& when) const {
+    EXPECT_THAT(o.code, ::testing::AnyOf(0, 2, 3)) << when << o.err;
+    EXPECT_EQ(o.code == 0 || !o.err.empty(), true) << when;
+    std::istringstream lines(o.err);
+    for (std::string line; std::getline(lines, line);)
+      EXPECT_EQ(line.rfind("ropewalk: ", 0), 0u) << when << ": " << line;
+    EXPECT_EQ(o.err.find("std::"), std::string::npos) << when << ": " << o.err;
+  }
+
+  void begin(const fs::path& from) const {
+    fs::remove_all(dir / "d");
+    if (!from.empty()) fs::copy(dir / from, dir / "d", fs::copy_options::recursive);
+  }
+
+  // After whatever happened to it.
+  void bring_to_its_end(const std::string& command, const std::string& reference, const std::string& when) const {
+    const bool begun = fs::exists(dir / "d/checkpoint.bin") || fs::exists(dir / "d/checkpoint-before.bin");
+    const Outcome on = run("resume d --quiet");
+    if (begun) {
+      ASSERT_EQ(on.code, 0) << when << ": " << on.err;
+    } else {
+      EXPECT_EQ(on.code, 2) << when;
+      EXPECT_EQ(std::count(on.err.begin(), on.err.end(), '\n'), 1) << when << ": " << on.err;
+      const Outcome anew = run(command + " --force");
+      ASSERT_EQ(anew.code, 0) << when << ": " << anew.err;
+    }
+    expect_same(reference, "d", when);
+    EXPECT_FALSE(fs::exists(dir / "d/lock")) << when;
+  }
+
+  // `from`: the directory as it is before the command; empty: none.
+  void kill_everywhere(const std::string& how, const std::string& command, const fs::path& from,
+                       const std::string& reference) const {
+    begin(from);
+    const long calls = calls_of(command);
+    ASSERT_GT(calls, 40);
+    int tried = 0;
+    for (long n = 1; n <= calls; n += stride(1)) {
+      const std::string when = fmt::format("{} at call {} of {} of {}", how, n, calls, command);
+      begin(from);
+      const Outcome o = with(fmt::format("{}:{}", how, n), command);
+      if (how == "torn" && o.code == 0) continue;  // not a write
+      EXPECT_NE(o.code, 0) << when;
+      bring_to_its_end(from.empty() ? command : "", reference, when);
+      if (HasFatalFailure()) return;
+      ++tried;
+    }
+    fmt::print("{}{} in {}: {} tried\n", how, "", command, tried);
+  }
+
+  void fail_everywhere(const std::string& how, bool on, const std::string& command, const fs::path& from,
+                       const std::string& reference, long usual_stride = 1) const {
+    begin(from);
+    const long calls = calls_of(command);
+    int tried = 0;
+    for (long n = 1; n <= calls; n += stride(usual_stride)) {
+      const std::string when =
+          fmt::format("{}{} at call {} of {} of {}", how, on ? " from" : "", n, calls, command);
+      begin(from);
+      const Outcome o = with(fmt::format("{}:{}{}", how, n, on ? ":on" : ""), command);
+      expect_clear(o, when);
+      EXPECT_TRUE(o.code == 0 || how != "EINTR") << when << o.err;
+      if (o.code == 0 && !on)
+        expect_same(reference, "d", when);
+      else
+        bring_to_its_end(from.empty() ? command : "", reference, when);
+      if (HasFatalFailure()) return;
+      ++tried;
+    }
+    fmt::print("{}{} in {}: {} tried\n", how, on ? ", from then on," : ", once,", command, tried);
+  }
+
+  static constexpr const char* run_it = "run s.toml --out d --quiet";
+  static constexpr const char* go_on = "resume d --quiet";
+
+  // `whole`: not disturbed. `half` ends in the middle, `halves` has gone on from there.
+  void references(bool halves) const {
+    ASSERT_EQ(run("run s.toml --out whole --quiet").code, 0) << slurp(dir / "stderr.txt");
+    if (!halves) return;
+    ASSERT_EQ(run("run s.toml --out half --quiet --steps 20").code, 0);
+    fs::copy(dir / "half", dir / "halves", fs::copy_options::recursive);
+    ASSERT_EQ(run("resume halves --quiet").code, 0);
+  }
+};
+
+TEST_F(Faults, RunKilledAtAnyCall) {
+  references(false);
+  kill_everywhere("kill", run_it, "", "whole");
+}
+
+TEST_F(Faults, RunKilledInAnyWrite) {
+  references(false);
+  kill_everywhere("torn", run_it, "", "whole");
+}
+
+TEST_F(Faults, ResumeKilledAtAnyCall) {
+  references(true);
+  kill_everywhere("kill", go_on, "half", "halves");
+}
+
+TEST_F(Faults, RelaxationKilledAtAnyCall) {
+  spit(dir / "s.toml",
+       "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-paper\"\n[chain]\nelements = 4\n[[load]]\n"
+       "kind = \"torque\"\nelements = [0]\ntorque_nN_nm = [0, -20, 0]\n[[load]]\nkind = \"torque\"\n"
+       "elements = [-1]\ntorque_nN_nm = [0, 20, 0]\n[run]\nmode = \"relax\"\n");
+  references(false);
+  kill_everywhere("kill", run_it, "", "whole");
+}
+
+TEST_F(Faults, DiskFullFromAnyCallOfARun) {
+  references(false);
+  fail_everywhere("ENOSPC", true, run_it, "", "whole");
+}
+
+TEST_F(Faults, DiskFullFromAnyCallOfAResume) {
+  references(true);
+  fail_everywhere("EDQUOT", true, go_on, "half", "halves");
+}
+
+TEST_F(Faults, AnyCallOfARunFailsOnce) {
+  references(true);
+  fail_everywhere("EIO", false, run_it, "", "whole");
+  fail_everywhere("ENOSPC", false, go_on, "half", "halves", 3);
+}
+
+TEST_F(Faults, SignalsInAnyCallAreOfNoConsequence) {
+  references(false);
+  fail_everywhere("EINTR", false, run_it, "", "whole", 2);
+}
+
+TEST_F(Faults, ReadOnlyFileSystem) {
+  references(true);
+  for (const char* command : {run_it, go_on}) {
+    begin(command == go_on ? "half" : "");
+    const Outcome o = with("EROFS:1:on", command);
+    EXPECT_EQ(o.code, 2) << o.err;
+    EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << o.err;
+    EXPECT_THAT(o.err, HasSubstr("the file system is read-only"));
+  }
+}
+
+// The same command goes on, and its table is that of a sweep that was left alone.
+TEST_F(Faults, SweepKilledAndGoneOnWith) {
+  spit(dir / "w.toml", "format = \"ropewalk-sweep-1\"\nscene = \"s.toml\"\n[vary]\ntwist.moment_nN_nm = [2, 3]\n");
+  const std::string sweep = "sweep w.toml --quiet -j 1 --out ";
+  ASSERT_EQ(run(sweep + "whole").code, 0) << slurp(dir / "stderr.txt");
+  const std::string table = slurp(dir / "whole/table.csv");
+  long n = 1;
+  int tried = 0;
+  for (;; n += stride(11), ++tried) {
+    fs::remove_all(dir / "d");
+    const Outcome o = with(fmt::format("kill:{}", n), sweep + "d");
+    if (o.code == 0) break;  // there are no more calls
+    const Outcome on = run(sweep + "d");
+    ASSERT_EQ(on.code, 0) << n << ": " << on.err;
+    ASSERT_EQ(slurp(dir / "d/table.csv"), table) << n;
+  }
+  EXPECT_GT(n, 100);
+  fmt::print("kill in sweep: {} tried\n", tried);
+}
+
+// What a power cut does to files that were not written to the disk yet, and what users do to make room.
+TEST_F(Faults, LostTails) {
+  spit(dir / "s.toml", calm);
+  references(true);
+  const auto size = [&](const char* name) { return fs::file_size(dir / "half" / name); };
+  const auto resumed = [&](const std::string& remark) {
+    const Outcome o = run(go_on);
+    ASSERT_EQ(o.code, 0) << o.err;
+    EXPECT_THAT(o.err, HasSubstr(remark));
+  };
+  // Behind the newest checkpoint but not behind the one before.
+  for (const char* name : {"log.csv", "frames.lammpstrj"}) {
+    begin("half");
+    fs::resize_file(dir / "d" / name, size(name) - 1);
+    resumed("the run goes on from the checkpoint before");
+    expect_same("whole", "d", name);
+  }
+  // Lengthened again by a file system that had only the size on the disk.
+  begin("half");
+  fs::resize_file(dir / "d/log.csv", size("log.csv") - 30);
+  fs::resize_file(dir / "d/log.csv", size("log.csv"));
+  resumed("is not what was written up to the checkpoint");
+  expect_same("whole", "d", "a tail of zeros");
+  // Frames are done without.
+  begin("half");
+  fs::resize_file(dir / "d/frames.lammpstrj", 100);
+  resumed("frames begin anew here");
+  EXPECT_EQ(slurp(dir / "d/log.csv"), slurp(dir / "halves/log.csv"));
+  EXPECT_EQ(slurp(dir / "d/frames.lammpstrj").rfind("ITEM: TIMESTEP\n", 0), 0u);
+  begin("half");
+  fs::remove(dir / "d/frames.lammpstrj");
+  resumed("frames.lammpstrj is missing");
+  EXPECT_EQ(run("observe d").code, 0) << slurp(dir / "stderr.txt");
+  begin("half");
+  const std::string frames = slurp(dir / "half/frames.lammpstrj");
+  const std::size_t second = frames.find("ITEM: TIMESTEP", 10);
+  fs::resize_file(dir / "d/frames.lammpstrj", second + 50);
+  resumed("frames go on behind the last whole one");
+  EXPECT_EQ(slurp(dir / "d/frames.lammpstrj").find('\0'), std::string::npos);
+  EXPECT_EQ(run("observe d").code, 0) << slurp(dir / "stderr.txt");
+  // A log is not.
+  begin("half");
+  fs::resize_file(dir / "d/log.csv", 1000);
+  const std::string log = slurp(dir / "d/log.csv");
+  const Outcome o = run(go_on);
+  EXPECT_EQ(o.code, 2);
+  EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << o.err;
+  EXPECT_THAT(o.err, HasSubstr("log.csv: has 1000 of the"));
+  EXPECT_THAT(o.err, HasSubstr("bring it back from a copy, or start the run anew"));
+  EXPECT_EQ(slurp(dir / "d/log.csv"), log) << "nothing is written";
+}
+
+TEST_F(Faults, DamagedCheckpoints) {
+  spit(dir / "s.toml", calm);
+  references(true);
+  const auto damage = [&](const char* name) {
+    std::string bytes = slurp(dir / "d" / name);
+    bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 1);
+    spit(dir / "d" / name, bytes);
+  };
+  begin("half");
+  damage("checkpoint.bin");
+  Outcome o = run(go_on);
+  EXPECT_EQ(o.code, 0) << o.err;
+  EXPECT_THAT(o.err, HasSubstr("checkpoint.bin is damaged"));
+  expect_same("whole", "d", "the newer damaged");
+  begin("half");
+  fs::remove(dir / "d/checkpoint.bin");
+  EXPECT_EQ(run(go_on).code, 0);
+  expect_same("whole", "d", "the newer missing");
+}
+
+// Under cron and daemons; the first file opened must not take the number of a standard stream.
+TEST_F(Faults, ClosedStandardStreams) {
+  references(true);
+  for (const char* closed : {"2>&-", ">&-", "<&-", "<&- >&- 2>&-"}) {
+    begin("");
+    const std::string in = fmt::format("cd '{}' && '{}' ", dir.string(), ROPEWALK_PROGRAM);
+    ASSERT_EQ(std::system((in + "run s.toml --out d " + closed).c_str()), 0) << closed;
+    expect_same("whole", "d", closed);
+    begin("half");
+    ASSERT_EQ(std::system((in + "resume d " + closed).c_str()), 0) << closed;
+    expect_same("halves", "d", closed);
+  }
+}
+
+// Messages that cannot be written end nothing.
+TEST_F(Faults, NobodyCanReadTheMessages) {
+  references(false);
+  for (const char* to : {"2> /dev/full", "2> /dev/full > /dev/full"}) {
+    begin("");
+    const std::string in = fmt::format("cd '{}' && '{}' ", dir.string(), ROPEWALK_PROGRAM);
+    const int status = std::system((in + "run s.toml --out d " + to).c_str());
+    ASSERT_TRUE(WIFEXITED(status)) << to;
+    expect_same("whole", "d", to);
+  }
+}
+
+}  // namespace
+}  // namespace ropewalk::test

@@ -1,0 +1,167 @@
+// A library to be loaded before a program (LD_PRELOAD): one of its calls that change files fails, or the program is
+// killed there. Only calls on files in one directory count: open, write, fsync, fdatasync, ftruncate, rename,
+// unlink.
+//
+//   ROPEWALK_FAULTS_BELOW  the directory, absolute
+//   ROPEWALK_FAULT         HOW:N[:on]   at the Nth call, from 1; "on": from then on. HOW: kill (before the call),
+//   torn
+//                          (in the middle of a write; nothing at other calls), ENOSPC, EIO, EDQUOT, EINTR, EROFS
+//   ROPEWALK_FAULTS_COUNT  file that takes the number of calls at the end
+#include <dlfcn.h>
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <climits>
+#include <csignal>
+#include <cstdarg>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <string>
+
+namespace {
+
+struct Fault {
+  std::string how, below;
+  long at = 0;
+  bool on = false;
+
+  Fault() {
+    if (const char* text = std::getenv("ROPEWALK_FAULTS_BELOW")) below = text;
+    const char* text = std::getenv("ROPEWALK_FAULT");
+    if (!text) return;
+    const std::string all = text;
+    const std::size_t colon = all.find(':');
+    how = all.substr(0, colon);
+    at = std::atol(all.c_str() + colon + 1);
+    on = all.size() > 3 && all.compare(all.size() - 3, 3, ":on") == 0;
+  }
+};
+
+const Fault& fault() {
+  static const Fault f;
+  return f;
+}
+
+std::atomic<long> calls{0};
+
+template <class F>
+F real(const char* name) {
+  return reinterpret_cast<F>(dlsym(RTLD_NEXT, name));
+}
+
+bool is_below(const char* path) {
+  if (fault().below.empty() || !path) return false;
+  std::string absolute = path;
+  if (path[0] != '/') {
+    char here[PATH_MAX];
+    if (!getcwd(here, sizeof here)) return false;
+    absolute = std::string(here) + "/" + path;
+  }
+  const std::string& below = fault().below;
+  return absolute.compare(0, below.size(), below) == 0;
+}
+
+bool is_below(int fd) {
+  char name[64], path[PATH_MAX];
+  std::snprintf(name, sizeof name, "/proc/self/fd/%d", fd);
+  const ssize_t n = readlink(name, path, sizeof path - 1);
+  if (n <= 0) return false;
+  path[n] = '\0';
+  return is_below(path);
+}
+
+int code_of(const std::string& how) {
+  if (how == "ENOSPC") return ENOSPC;
+  if (how == "EDQUOT") return EDQUOT;
+  if (how == "EINTR") return EINTR;
+  if (how == "EROFS") return EROFS;
+  return EIO;
+}
+
+// The number of the call is counted here. True: it is to fail, with errno.
+bool fails(bool counts, bool* torn = nullptr) {
+  if (!counts) return false;
+  const long k = ++calls;
+  const Fault& f = fault();
+  if (f.at == 0 || !(k == f.at || (f.on && k > f.at))) return false;
+  if (f.how == "torn") {
+    if (torn) *torn = true;
+    return false;
+  }
+  if (f.how == "kill") raise(SIGKILL);
+  errno = code_of(f.how);
+  return true;
+}
+
+struct AtEnd {
+  ~AtEnd() {
+    const char* path = std::getenv("ROPEWALK_FAULTS_COUNT");
+    if (std::FILE* file = path ? std::fopen(path, "w") : nullptr) {
+      std::fprintf(file, "%ld\n", calls.load());
+      std::fclose(file);
+    }
+  }
+} at_end;
+
+constexpr int writing = O_WRONLY | O_RDWR | O_CREAT;
+
+}  // namespace
+
+extern "C" {
+
+int open(const char* path, int flags, ...) {
+  va_list rest;
+  va_start(rest, flags);
+  const mode_t mode = flags & O_CREAT ? va_arg(rest, mode_t) : 0;
+  va_end(rest);
+  static const auto call = real<int (*)(const char*, int, ...)>("open");
+  return fails((flags & writing) && is_below(path)) ? -1 : call(path, flags, mode);
+}
+
+int open64(const char* path, int flags, ...) {
+  va_list rest;
+  va_start(rest, flags);
+  const mode_t mode = flags & O_CREAT ? va_arg(rest, mode_t) : 0;
+  va_end(rest);
+  static const auto call = real<int (*)(const char*, int, ...)>("open64");
+  return fails((flags & writing) && is_below(path)) ? -1 : call(path, flags, mode);
+}
+
+ssize_t write(int fd, const void* data, size_t size) {
+  static const auto call = real<ssize_t (*)(int, const void*, size_t)>("write");
+  bool torn = false;
+  if (fails(is_below(fd), &torn)) return -1;
+  if (!torn) return call(fd, data, size);
+  if (call(fd, data, size / 2) >= 0) raise(SIGKILL);
+  return -1;
+}
+
+int fsync(int fd) {
+  static const auto call = real<int (*)(int)>("fsync");
+  return fails(is_below(fd)) ? -1 : call(fd);
+}
+
+int fdatasync(int fd) {
+  static const auto call = real<int (*)(int)>("fdatasync");
+  return fails(is_below(fd)) ? -1 : call(fd);
+}
+
+int ftruncate(int fd, off_t size) {
+  static const auto call = real<int (*)(int, off_t)>("ftruncate");
+  return fails(is_below(fd)) ? -1 : call(fd, size);
+}
+
+int rename(const char* from, const char* to) {
+  static const auto call = real<int (*)(const char*, const char*)>("rename");
+  return fails(is_below(to)) ? -1 : call(from, to);
+}
+
+int unlink(const char* path) {
+  static const auto call = real<int (*)(const char*)>("unlink");
+  return fails(is_below(path)) ? -1 : call(path);
+}
+
+}  // extern "C"
