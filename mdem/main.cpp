@@ -11,7 +11,8 @@
 
 #include "commands/commands.hpp"
 #include "commands/siblings.hpp"
-#include "model/error.hpp"
+#include "io/failure.hpp"
+#include "io/plain_text.hpp"
 #include "run/cores.hpp"
 #include "scene/scene_toml.hpp"
 #include "sim/contact/line/engine.hpp"
@@ -259,17 +260,21 @@ void add_gather(CLI::App& app, Verbs& v) {
 }
 
 void add_plan(CLI::App& app, Verbs& v) {
-  CLI::App* c = app.add_subcommand("plan", "Choose the cheapest model that holds an error, by short pilots of the scene");
+  CLI::App* c =
+      app.add_subcommand("plan", "Choose the cheapest model that holds an error, by short pilots of the scene");
   c->add_option("scene", v.plan.scene, "Scene file (TOML)");
   c->add_option("--error", v.plan.error, "Largest error of each observable: 2% or 0.02")->capture_default_str();
-  c->add_option("--observables", v.plan.observables, "Which ones: energy and columns of log.csv [default: energies, twist angle, torque, tension]")
+  c->add_option("--observables", v.plan.observables,
+                "Which ones: energy and columns of log.csv [default: energies, twist angle, torque, tension]")
       ->delimiter(',');
   c->add_flag("--end-state", v.plan.end_state, "Only the end is asked for, not the motion");
   c->add_option("-o", v.plan.out, "File to write, never one that exists [default: SCENE-planned.toml]");
-  c->add_option("-j,--jobs", v.plan.jobs, "Pilots at a time [default: one for each core]")->check(CLI::Range(1, 4096));
+  c->add_option("-j,--jobs", v.plan.jobs, "Pilots at a time [default: one for each core]")
+      ->check(CLI::Range(1, 4096));
   c->add_option("--check", v.plan.check, "Directory of a run: compare its end with a finer model instead");
   c->add_option("--against", v.plan.against, "With --check: directory of a run of the same scene by a finer model");
-  c->add_option("--finest", v.plan.finest, "Also write the scene with the finest model that pilots took, to this file");
+  c->add_option("--finest", v.plan.finest,
+                "Also write the scene with the finest model that pilots took, to this file");
   c->add_option("--stretch", v.plan.stretch, "With --check: ps that both models go on")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
@@ -349,19 +354,16 @@ int main(int argc, char** argv) {
   add_energy(app, verbs);
   add_bench(app, verbs);
   try {
+    refuse_control_characters(argv);
     hand_over_to_sibling(argv);
     wait_briefly(argv);
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
-    if (e.get_exit_code() == 0) return app.exit(e);
-    std::fprintf(stderr, "ropewalk: %s; see ropewalk --help\n", e.what());
-    return 2;
-  } catch (const InputError& e) {
-    std::fprintf(stderr, "ropewalk: %s\n", e.what());
+    if (e.get_exit_code() == 0) return code_at_exit("ropewalk", app.exit(e));
+    std::fprintf(stderr, "ropewalk: %s; see ropewalk --help\n", printable(e.what(), 1000).c_str());
     return 2;
   } catch (const std::exception& e) {
-    std::fprintf(stderr, "ropewalk: %s\n", e.what());
-    return 3;
+    return tell_failure("ropewalk", e);
   }
-  return verbs.code;
+  return code_at_exit("ropewalk", verbs.code);
 }

@@ -4,7 +4,8 @@
 #include <cstring>
 
 #include "chart/chart.hpp"
-#include "model/error.hpp"
+#include "io/failure.hpp"
+#include "io/plain_text.hpp"
 #include "parametrize/parametrize.hpp"
 #include "runner/runner.hpp"
 #include "version.hpp"
@@ -126,17 +127,14 @@ int main(int argc, char** argv) {
   Verbs verbs;
   add_verbs(app, verbs);
   try {
+    refuse_control_characters(argv);
     app.parse(argc, argv);
-    return verbs.code;
+    return code_at_exit(spoken, verbs.code);
   } catch (const CLI::ParseError& e) {
-    if (e.get_exit_code() == 0) return app.exit(e);
-    std::fprintf(stderr, "%s: %s; see %s --help\n", spoken, e.what(), spoken);
-    return 2;
-  } catch (const InputError& e) {
-    std::fprintf(stderr, "%s: %s\n", spoken, e.what());
+    if (e.get_exit_code() == 0) return code_at_exit(spoken, app.exit(e));
+    std::fprintf(stderr, "%s: %s; see %s --help\n", spoken, printable(e.what(), 1000).c_str(), spoken);
     return 2;
   } catch (const std::exception& e) {
-    std::fprintf(stderr, "%s: %s\n", spoken, e.what());
-    return 3;
+    return tell_failure(spoken, e);
   }
 }

@@ -228,25 +228,28 @@ class Import {
     point_loads(prepared_.loads, state, state.time, loads);
     return gauges_.read_still(
         state,
-        reactions_at_rest(prepared_.topology, prepared_.loads, loaded_elements(prepared_.loads), force_, state), loads);
+        reactions_at_rest(prepared_.topology, prepared_.loads, loaded_elements(prepared_.loads), force_, state),
+        loads);
   }
 
-  // The checkpoint last: until it is there the run stands where it stood.
+  // All is read and made before the first file is touched, and the checkpoint is written after log and frames:
+  // until it is there the run stands where it stood.
   void write(std::int64_t from) {
     Simulation simulation = start(scene_, prepared_);
     simulation.inherit_from(force_.force, force_.torque, {last_.work, last_.dissipated});
     simulation.inherit_from(gauges_.sums);
+    Manifest m = read_manifest(dir_.manifest());
+    m.steps = reached_;
+    m.status = last_.time + 0.5 * prepared_.time_step >= prepared_.duration ? "finished" : "interrupted";
+    m.reason = fmt::format("steps {} to {} by LAMMPS", from, reached_);
+    const std::string final_state = state_csv(prepared_.topology, prepared_.state);
     checkpoint_.log_bytes = log_.size();
     checkpoint_.frame_bytes = frames_.size();
     checkpoint_.simulation = simulation.serialise();
     write_file_atomically(dir_.log(), log_);
     write_file_atomically(dir_.frames(), frames_);
     write_checkpoint(dir_, checkpoint_);
-    write_file_atomically(dir_.final_state(), state_csv(prepared_.topology, prepared_.state));
-    Manifest m = read_manifest(dir_.manifest());
-    m.steps = reached_;
-    m.status = last_.time + 0.5 * prepared_.time_step >= prepared_.duration ? "finished" : "interrupted";
-    m.reason = fmt::format("steps {} to {} by LAMMPS", from, reached_);
+    write_file_atomically(dir_.final_state(), final_state);
     write_file_atomically(dir_.manifest(), manifest_json(m));
     write_report(dir_, scene_, prepared_for_report());
     fmt::print("{} states taken over, up to step {}, {:.4g} ps. Report: {}\n", taken_, reached_, last_.time,

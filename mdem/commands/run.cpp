@@ -14,6 +14,7 @@
 #include <cstring>
 #include <ctime>
 #include <filesystem>
+#include <limits>
 #include <memory>
 
 #include "commands/commands.hpp"
@@ -77,7 +78,7 @@ class Stream {
  private:
   [[noreturn]] void fail() const {
     throw InputError({path_, 0, ""}, fmt::format("cannot be written: {}", std::strerror(errno)),
-                     "free some space or choose another --out; the last checkpoint stands");
+                     fmt::format("{}; the last checkpoint stands", remedy_for_errno(errno)));
   }
 
   std::string path_;
@@ -253,7 +254,7 @@ class Run {
   // Says what is passed for the first time, and whether the run is to end here for it.
   StopReason check_limits(bool with_pressure) {
     const std::vector<std::string> passed =
-        watch_.check(prepared_.topology, simulation_.state(), simulation_.list(), with_pressure);
+        watch_.check(prepared_.topology, simulation_.state(), simulation_.list(), drift(), with_pressure);
     for (const std::string& line : passed) say(line);
     if (!passed.empty()) write_limits();
     if (policy_.on_limit == OnLimit::stop && !passed.empty()) return StopReason::limit;
@@ -414,7 +415,7 @@ class Run {
                               last_row_["vdw_eV"]);
   }
 
-  LogRow row() {
+  EnergyAccount account() const {
     const State& s = simulation_.state();
     EnergyAccount account;
     account.time_step = simulation_.time_step() / simulation_.divided();
@@ -426,8 +427,19 @@ class Run {
     account.heat = simulation_.heat();
     account.first_energy = first_energy_;
     account.first = first_;
-    account.ends = simulation_.read_gauges();
-    return log_row(observer_, scene_, prepared_.topology, s, account);
+    return account;
+  }
+
+  // A relaxation makes its account of energy close.
+  double drift() const {
+    const bool relax = scene_.run.mode == RunOptions::Mode::relax;
+    return relax ? std::numeric_limits<double>::quiet_NaN() : energy_drift(account());
+  }
+
+  LogRow row() {
+    EnergyAccount now = account();
+    now.ends = simulation_.read_gauges();
+    return log_row(observer_, scene_, prepared_.topology, simulation_.state(), now);
   }
 
   bool is_decided() {

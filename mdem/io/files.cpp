@@ -18,6 +18,8 @@
 namespace ropewalk {
 namespace {
 
+constexpr std::size_t longest_stream = std::size_t{256} << 20;  // bytes of what is no regular file
+
 const char* remedy_for(int code) {
   switch (code) {
     case ENOENT:
@@ -38,7 +40,11 @@ const char* remedy_for(int code) {
       return "the limit on the size of files is reached; raise it (ulimit -f) or choose another place";
     case EMFILE:
     case ENFILE:
-      return "too many files are open; raise the limit (ulimit -n)";
+      return "close other files and programs, or raise the limit (ulimit -n)";
+    case ENOMEM:
+      return "free some memory, or raise the limit (ulimit -v)";
+    case EPIPE:
+      return "the program that reads it has ended";
     default:
       return "check the disk and the path";
   }
@@ -130,6 +136,10 @@ std::string read_file(const std::string& path) {
     if (n < 0 && errno == EINTR) continue;
     if (n < 0) throw failure(path, "cannot be read", errno);
     if (n == 0) return content;
+    if (!S_ISREG(status.st_mode) && content.size() >= longest_stream)
+      throw InputError({path, 0, ""},
+                       fmt::format("is no file, and has not ended after {} MiB", longest_stream >> 20),
+                       "name a file");
     content.append(buffer, static_cast<std::size_t>(n));
   }
 }
@@ -147,6 +157,16 @@ void write_file_atomically(const std::string& path, std::string_view content) {
   if (fd.close() != 0) throw failure(path, what, errno);
   if (!temporary.rename_to(path)) throw failure(path, what, errno);
   flush_directory_of(path);
+}
+
+const char* remedy_for_errno(int code) { return remedy_for(code); }
+
+InputError file_error(const std::string& path, const char* what, int code) { return failure(path, what, code); }
+
+void refuse_devices(const std::string& path) {
+  struct stat status {};
+  if (::stat(path.c_str(), &status) != 0) throw failure(path, "cannot be opened", errno);
+  if (!S_ISREG(status.st_mode)) throw InputError({path, 0, ""}, "is not a regular file", "name a file");
 }
 
 void refuse_existing(const std::string& path, const std::string& option, bool force) {

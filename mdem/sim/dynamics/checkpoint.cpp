@@ -1,6 +1,8 @@
 // Everything that the future of a simulation depends on, as bytes. Layout: `CheckpointHead`, then the values in the
 // order of visit_checkpoint, which serves both ways. Numbers are as this machine holds them.
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <stdexcept>
 #include <type_traits>
@@ -122,6 +124,40 @@ void Simulation::visit_checkpoint(Archive& archive, Self& self, List& list) {
   visit_forces(archive, self.contact_);
 }
 
+namespace {
+
+bool all_finite(const std::vector<double>& values) {
+  return std::all_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); });
+}
+
+template <class V>
+bool all_finite_xyz(const V& v) {
+  return all_finite(v.x) && all_finite(v.y) && all_finite(v.z);
+}
+
+}  // namespace
+
+// What a sum over the bytes does not tell: whether a simulation could go on from here.
+void Simulation::check_restored() const {
+  const State& s = state_;
+  bool fine = std::isfinite(time_step_) && time_step_ > 0 && divided_ >= 1 && divided_ <= 1024 &&
+              std::isfinite(s.time) && s.step >= 0 && list_age_ >= 0 && std::isfinite(account_.supplied()) &&
+              std::isfinite(gauges_.sums.since);
+  for (const Vec3Array* v : {&s.position, &s.velocity, &s.angular_velocity, &forces_.force, &forces_.torque})
+    fine = fine && all_finite_xyz(*v);
+  fine = fine && all_finite(s.orientation.w) && all_finite_xyz(s.orientation);
+  for (std::size_t i = 0; fine && i < s.size(); ++i) fine = std::fabs(s.orientation[i].norm() - 1) < 1e-3;
+  for (const PointLoad& load : point_loads_)
+    fine = fine && load.element >= 0 && load.element < topology_.elements() && load.force.allFinite() &&
+           load.torque.allFinite();
+  if (two_levels())
+    for (const Forces* f : {&inner_, &contact_})
+      fine = fine && all_finite_xyz(f->force) && all_finite_xyz(f->torque);
+  if (!fine)
+    throw std::runtime_error(
+        "the checkpoint holds a state that no run can have: a number in it is not finite or out of range");
+}
+
 std::string Simulation::serialise() const {
   Writer write;
   CheckpointHead head{{}, topology_.elements(), topology_.tubes(), stepping_.contact_every};
@@ -149,6 +185,10 @@ void Simulation::restore(const std::string& bytes) {
   list.position.resize(state_.size());
   list.axis.resize(state_.size());
   visit_checkpoint(read, *this, list);
+  if (read.at != bytes.size()) throw std::runtime_error("the checkpoint is longer than the state of this scene");
+  check_restored();
+  if (!std::isfinite(list.skin) || list.skin <= 0 || !all_finite_xyz(list.position) || !all_finite_xyz(list.axis))
+    throw std::runtime_error("the checkpoint holds a neighbour list that no run can have");
   state_.part = 0;
   list_.skin = list.skin;
   list_.build(topology_, std::move(list.position), std::move(list.axis));

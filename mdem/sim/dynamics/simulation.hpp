@@ -118,6 +118,7 @@ class Simulation {
   double above_minimum(double enough, long most) const;
   template <class Archive, class Self, class ListOrigin>
   static void visit_checkpoint(Archive& archive, Self& self, ListOrigin& list);
+  void check_restored() const;
 
   Topology topology_;
   Interaction interaction_;
