@@ -430,10 +430,14 @@ class Run {
     return account;
   }
 
-  // A relaxation makes its account of energy close.
+  // NaN where it is not judged: in a relaxation, which makes its account close, and in the first window of the step
+  // control, where next to nothing has moved.
   double drift() const {
+    const std::int64_t step = simulation_.state().step;
     const bool relax = scene_.run.mode == RunOptions::Mode::relax;
-    return relax ? std::numeric_limits<double>::quiet_NaN() : energy_drift(account());
+    if (relax || (step < StepControl::window && step != last_step_))
+      return std::numeric_limits<double>::quiet_NaN();
+    return energy_drift(account());
   }
 
   LogRow row() {
