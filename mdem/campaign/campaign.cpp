@@ -22,7 +22,8 @@ namespace {
 namespace fs = std::filesystem;
 
 std::string without_quotes(const std::string& value) {
-  const bool quoted = value.size() > 1 && value.front() == '"' && value.back() == '"';
+  const bool quoted =
+      value.size() > 1 && value.front() == value.back() && (value.front() == '"' || value.front() == '\'');
   return quoted ? value.substr(1, value.size() - 2) : value;
 }
 

@@ -9,6 +9,7 @@
 #include <new>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <system_error>
 
 #include "io/files.hpp"
 #include "io/plain_text.hpp"
@@ -20,6 +21,11 @@ namespace {
 template <class E>
 const E* as(const std::exception& failure) {
   return dynamic_cast<const E*>(&failure);
+}
+
+std::string no_output(int code) {
+  const char* why = code != 0 ? std::strerror(code) : "a write failed";
+  return fmt::format("the standard output cannot be written: {}; {}", why, remedy_for_errno(code));
 }
 
 bool lacks_memory(const std::exception& failure) {
@@ -38,14 +44,17 @@ std::string failure_words(const std::exception& failure) {
                        printable(failure.what(), longest));
   if (const auto* file = as<std::filesystem::filesystem_error>(failure))
     return printable(file_error(file->path1().string(), "cannot be used", file->code().value()).what(), longest);
-  if (const auto* system = as<std::system_error>(failure))
+  const auto* system = as<std::system_error>(failure);
+  if (system && std::ferror(stdout)) return no_output(system->code().value());
+  if (system)
     return fmt::format("{}; {}", printable(failure.what(), longest), remedy_for_errno(system->code().value()));
   return printable(failure.what(), longest);
 }
 
 int failure_code(const std::exception& failure) {
   const bool input = as<InputError>(failure) || as<nlohmann::json::exception>(failure) ||
-                     as<std::filesystem::filesystem_error>(failure);
+                     as<std::filesystem::filesystem_error>(failure) ||
+                     (as<std::system_error>(failure) && std::ferror(stdout));
   return input ? 2 : 3;
 }
 
@@ -58,9 +67,7 @@ int code_at_exit(const char* program, int code) {
   errno = 0;
   const bool failed = std::ferror(stdout) != 0;
   if (std::fflush(stdout) == 0 && !failed) return code;
-  const char* why = errno != 0 ? std::strerror(errno) : "a write failed";
-  std::fprintf(stderr, "%s: the standard output cannot be written: %s; %s\n", program, why,
-               remedy_for_errno(errno));
+  std::fprintf(stderr, "%s: %s\n", program, no_output(errno).c_str());
   return code == 0 ? 2 : code;
 }
 

@@ -134,7 +134,12 @@ RunCheckpoint read_checkpoint(const RunDirectory& dir) {
   if (!titled || bytes.substr(head - 17, 16) != hash_hex(std::string_view(bytes).substr(head)))
     throw InputError(place, "is damaged or of another version", "start the run anew with `ropewalk run`");
   std::size_t at = head;
+  const auto need = [&](std::uint64_t more) {
+    if (bytes.size() - at < more)
+      throw InputError(place, "ends too early", "start the run anew with `ropewalk run`");
+  };
   const auto get = [&](auto& value) {
+    need(sizeof value);
     std::memcpy(&value, bytes.data() + at, sizeof value);
     at += sizeof value;
   };
@@ -147,6 +152,7 @@ RunCheckpoint read_checkpoint(const RunDirectory& dir) {
     get(c.wall_seconds);
     get(c.control);
     get(size);
+    need(size);
     c.simulation = bytes.substr(at, size);
     at += size;
     return c;

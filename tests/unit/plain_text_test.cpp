@@ -71,7 +71,7 @@ TEST(PlainText, ACellIsNoFormula) {
 
 TEST(Cluster, FilesHoldNamesAsData) {
   const std::string odd = "it's $(touch pwned) `x` \"y\"";
-  const SweepPoint point{"tubes-7", "", {}, "", {}, 1};
+  const SweepPoint point{"tubes-7", {}, "", "", {}, 1};
   const std::string slurm = slurm_script(odd, {"a b"}, 3);
   EXPECT_NE(slurm.find("#SBATCH --output=\"a b/slurm-%a.txt\"\n"), std::string::npos) << slurm;
   EXPECT_NE(slurm.find("ropewalk sweep " + shell_quoted(odd) + " --out 'a b' --only"), std::string::npos) << slurm;
@@ -89,7 +89,7 @@ TEST(Failure, IsALineWithARemedy) {
   EXPECT_NE(failure_words(std::bad_alloc()).find("the memory does not suffice; take fewer"), std::string::npos);
   EXPECT_NE(failure_words(std::length_error("cannot create std::vector")).find("memory"), std::string::npos);
   try {
-    nlohmann::json::parse("{");
+    [[maybe_unused]] const auto json = nlohmann::json::parse("{");
   } catch (const std::exception& e) {
     EXPECT_EQ(failure_words(e).find("a JSON file does not hold what it should; restore it"), 0u)
         << failure_words(e);
