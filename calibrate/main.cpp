@@ -4,6 +4,8 @@
 #include <cstdio>
 
 #include "cli/command_line.hpp"
+#include "io/failure.hpp"
+#include "io/plain_text.hpp"
 #include "io/program.hpp"
 #include "model/error.hpp"
 #include "verbs/verbs.hpp"
@@ -117,21 +119,18 @@ int main(int argc, char** argv) {
   add_describe(app, {"ropewalk-calibrate", version, ""});
   catch_interrupts();
   try {
+    refuse_control_characters(argv);
     app.parse(argc, argv);
-    return run(app, verbs);
+    return code_at_exit("ropewalk calibrate", run(app, verbs));
   } catch (const CLI::ParseError& e) {
-    if (e.get_exit_code() == 0) return app.exit(e);
+    if (e.get_exit_code() == 0) return code_at_exit("ropewalk calibrate", app.exit(e));
     std::fprintf(stderr, "ropewalk calibrate: %s\n", usage_error(app, e, "ropewalk calibrate").c_str());
     return 2;
-  } catch (const InputError& e) {
-    std::fprintf(stderr, "ropewalk calibrate: %s\n", e.what());
-    return 2;
   } catch (const std::exception& e) {
-    if (interrupted_by() != 0) {
+    if (interrupted_by() != 0 && failure_code(e) == 3) {
       std::fprintf(stderr, "\nropewalk calibrate: interrupted; nothing was written\n");
       return 128 + interrupted_by();
     }
-    std::fprintf(stderr, "ropewalk calibrate: %s\n", e.what());
-    return 3;
+    return tell_failure("ropewalk calibrate", e);
   }
 }

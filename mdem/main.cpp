@@ -13,6 +13,8 @@
 #include "cli/command_line.hpp"
 #include "commands/commands.hpp"
 #include "commands/siblings.hpp"
+#include "io/failure.hpp"
+#include "io/plain_text.hpp"
 #include "io/program.hpp"
 #include "io/toml_table.hpp"
 #include "model/error.hpp"
@@ -411,20 +413,17 @@ int main(int argc, char** argv) {
   add_help(app, verbs);
   add_describe(app, {"ropewalk", version, scene_key_help()});
   try {
+    refuse_control_characters(argv);
     verb_before_help(app, argc, argv);
     hand_over_to_sibling(argv);
     wait_briefly(argv);
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
-    if (e.get_exit_code() == 0) return app.exit(e);
+    if (e.get_exit_code() == 0) return code_at_exit("ropewalk", app.exit(e));
     std::fprintf(stderr, "ropewalk: %s\n", usage_error(app, e, "ropewalk").c_str());
     return 2;
-  } catch (const InputError& e) {
-    std::fprintf(stderr, "ropewalk: %s\n", e.what());
-    return 2;
   } catch (const std::exception& e) {
-    std::fprintf(stderr, "ropewalk: %s\n", e.what());
-    return 3;
+    return tell_failure("ropewalk", e);
   }
-  return verbs.code;
+  return code_at_exit("ropewalk", verbs.code);
 }

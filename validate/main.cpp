@@ -5,8 +5,9 @@
 
 #include "chart/chart.hpp"
 #include "cli/command_line.hpp"
+#include "io/failure.hpp"
+#include "io/plain_text.hpp"
 #include "io/program.hpp"
-#include "model/error.hpp"
 #include "parametrize/parametrize.hpp"
 #include "runner/runner.hpp"
 #include "version.hpp"
@@ -130,17 +131,14 @@ int main(int argc, char** argv) {
   add_verbs(app, verbs);
   add_describe(app, {"ropewalk-validate", version, ""});
   try {
+    refuse_control_characters(argv);
     app.parse(argc, argv);
-    return verbs.code;
+    return code_at_exit(spoken, verbs.code);
   } catch (const CLI::ParseError& e) {
-    if (e.get_exit_code() == 0) return app.exit(e);
+    if (e.get_exit_code() == 0) return code_at_exit(spoken, app.exit(e));
     std::fprintf(stderr, "%s: %s\n", spoken, usage_error(app, e, name).c_str());
     return 2;
-  } catch (const InputError& e) {
-    std::fprintf(stderr, "%s: %s\n", spoken, e.what());
-    return 2;
   } catch (const std::exception& e) {
-    std::fprintf(stderr, "%s: %s\n", spoken, e.what());
-    return 3;
+    return tell_failure(spoken, e);
   }
 }

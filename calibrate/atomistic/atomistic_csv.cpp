@@ -7,6 +7,7 @@
 
 #include "atomistic/stiffness.hpp"
 #include "io/files.hpp"
+#include "io/plain_text.hpp"
 
 namespace ropewalk {
 namespace {
@@ -84,6 +85,9 @@ std::vector<AtomisticRow> read_atomistic_csv(const std::string& path, AtomisticO
   for (std::string line; std::getline(lines, line);) {
     ++number;
     if (trimmed(line).empty()) continue;
+    if (has_control_character(trimmed(line)))
+      throw InputError({path, number, ""}, "holds a control character",
+                       "write plain text, with commas between columns");
     if (line[0] == '#') {
       read_origin_line(line, head);
       continue;

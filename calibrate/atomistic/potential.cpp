@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "io/files.hpp"
+#include "io/plain_text.hpp"
 #include "model/error.hpp"
 
 namespace ropewalk {
@@ -82,8 +83,20 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
   return row.back();
 }
 
-std::string in_quotes(const std::string& path) {
-  return path.find_first_of(" \t#$&") == std::string::npos ? path : '"' + path + '"';
+// Of a line of the user's: what would reach beyond it in an input of LAMMPS.
+void refuse_reach(const std::string& path, int number, const std::string& line) {
+  const auto refuse = [&](const char* what, const char* remedy) {
+    throw InputError({path, number, ""}, what, remedy);
+  };
+  for (const char c : line)
+    if (c != '\t' && c != '\r' && has_control_character({&c, 1}))
+      refuse("holds a control character", "write plain text");
+  const std::size_t last = line.find_last_not_of(" \t\r");
+  if (last != std::string::npos && line[last] == '&')
+    refuse("goes on in the next line by &", "write the whole command in one line");
+  if (line.find('$') != std::string::npos) refuse("names a variable, $", "write its value");
+  if (line.find_first_of("\"'") != std::string::npos)
+    refuse("holds quotes", "write names without quotes and blanks; rename a file if need be");
 }
 
 }  // namespace
@@ -107,7 +120,7 @@ Potential find_potential(const std::string& name) {
   potential.file = find_file(known->file);
   potential.file_hash = hash_hex(read_file(potential.file));
   potential.commands = {fmt::format("pair_style {}", known->style),
-                        fmt::format("pair_coeff * * {} {}", in_quotes(potential.file), known->element)};
+                        fmt::format("pair_coeff * * {} {}", lammps_quoted(potential.file), known->element)};
   potential.reference = known->reference;
   potential.doi = known->doi;
   potential.cutoff = known->cutoff;
@@ -131,14 +144,15 @@ Potential user_potential(const std::string& path) {
     if (!std::getline(lines, line)) break;
     ++number;
     if (const auto comment = line.find('#'); comment != std::string::npos) line.resize(comment);
+    refuse_reach(path, number, line);
     std::vector<std::string> words;
     std::istringstream stream(line);
     for (std::string word; stream >> word;) words.push_back(word);
     if (words.empty()) continue;
     // Other commands could change the units, the box or the atoms.
     if (words[0] != "pair_style" && words[0] != "pair_coeff" && words[0] != "pair_modify")
-      throw InputError({path, number, words[0]}, "only pair_style, pair_coeff and pair_modify lines may stand here",
-                       "remove this line");
+      throw InputError({path, number, printable(words[0], 40)},
+                       "only pair_style, pair_coeff and pair_modify lines may stand here", "remove this line");
     if (words.size() < 2) throw InputError({path, number, words[0]}, "has no arguments", "write the whole command");
     if (words[0] == "pair_style" && potential.pair_style.empty()) potential.pair_style = words[1];
     has_coefficients = has_coefficients || words[0] == "pair_coeff";
@@ -146,7 +160,7 @@ Potential user_potential(const std::string& path) {
     for (std::size_t i = 1; i < words.size(); ++i) {
       std::error_code ignored;
       const fs::path beside = fs::path(folder) / words[i];
-      if (fs::is_regular_file(beside, ignored)) words[i] = in_quotes(beside.lexically_normal().string());
+      if (fs::is_regular_file(beside, ignored)) words[i] = lammps_quoted(beside.lexically_normal().string());
     }
     potential.commands.push_back(fmt::format("{}", fmt::join(words, " ")));
   }

@@ -3,12 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "io/files.hpp"
 #include "io/limits_file.hpp"
 #include "io/log.hpp"
+#include "io/plain_text.hpp"
 #include "model/error.hpp"
 #include "plan/scene_edit.hpp"
 #include "run/limit_watch.hpp"
@@ -19,7 +22,8 @@ namespace {
 namespace fs = std::filesystem;
 
 std::string without_quotes(const std::string& value) {
-  const bool quoted = value.size() > 1 && value.front() == '"' && value.back() == '"';
+  const bool quoted =
+      value.size() > 1 && value.front() == value.back() && (value.front() == '"' || value.front() == '\'');
   return quoted ? value.substr(1, value.size() - 2) : value;
 }
 
@@ -89,7 +93,12 @@ PointProgress progress_of(const RunDirectory& dir) {
 }
 
 std::string csv_cell(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  // A table calculation takes a text that begins so for a formula; of numbers it does not.
+  double number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  const bool is_number = error == std::errc() && end == text.data() + text.size();
+  if (!is_number && text.find_first_of("=+-@") == 0) return csv_cell("'" + text);
+  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
   std::string quoted = "\"";
   for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
   return quoted + "\"";
@@ -166,35 +175,59 @@ std::string gathered_csv(const CampaignDirectory& dir, const Sweep& sweep, const
   return text;
 }
 
+namespace {
+
+// A path in a file where `what` has a meaning of its own for some characters, which no quotes take away.
+void refuse_characters(const std::string& path, const char* characters, const char* option, const char* what) {
+  if (path.find_first_of(characters) == std::string::npos) return;
+  throw InputError({path, 0, option}, fmt::format("holds one of {}, which {} reads as its own", characters, what),
+                   "choose a path without");
+}
+
+// A string of Python; all that JSON escapes, Python does alike.
+std::string python_string(const std::string& text) { return nlohmann::json(text).dump(); }
+
+}  // namespace
+
 std::string slurm_script(const std::string& sweep_file, const CampaignDirectory& dir, std::size_t points) {
+  refuse_characters(dir.path, "\"'\\#%$`", "--slurm", "sbatch");
+  const bool plain = dir.path.find(' ') == std::string::npos;
   return fmt::format(
       "#!/bin/sh\n"
       "#SBATCH --job-name=ropewalk\n"
       "#SBATCH --array=1-{}\n"
       "#SBATCH --ntasks=1\n"
       "#SBATCH --cpus-per-task=1\n"
-      "#SBATCH --output={}/slurm-%a.txt\n"
+      "#SBATCH --output={}\n"
       "# Add --time, --partition and --account as your cluster asks. Submitted again, it goes on where points "
       "stopped.\n"
-      "ropewalk sweep '{}' --out '{}' --only \"$SLURM_ARRAY_TASK_ID\" --quiet\n",
-      points, dir.path, sweep_file, dir.path);
+      "ropewalk sweep {} --out {} --only \"$SLURM_ARRAY_TASK_ID\" --quiet\n",
+      points, fmt::format(plain ? "{}/slurm-%a.txt" : "\"{}/slurm-%a.txt\"", dir.path), shell_quoted(sweep_file),
+      shell_quoted(dir.path));
 }
 
 std::string snakemake_file(const std::string& sweep_file, const CampaignDirectory& dir,
                            const std::vector<SweepPoint>& points) {
+  for (const std::string& path : {dir.path, sweep_file}) refuse_characters(path, "{}", "--snakemake", "Snakemake");
   std::string names;
-  for (const SweepPoint& p : points) names += fmt::format("    \"{}\",\n", p.name);
+  for (const SweepPoint& p : points) names += fmt::format("    {},\n", python_string(p.name));
+  const std::string reports = python_string(dir.path + "/points/{point}/report.html");
   return fmt::format(
-      "POINTS = [\n{0}]\n\n"
+      "POINTS = [\n{}]\n\n"
       "rule table:\n"
-      "    input: expand(\"{1}/points/{{point}}/report.html\", point=POINTS)\n"
-      "    output: \"{1}/table.csv\"\n"
-      "    shell: \"ropewalk gather '{1}' -o {{output}} --force\"\n\n"
+      "    input: expand({}, point=POINTS)\n"
+      "    output: {}\n"
+      "    shell: {}\n\n"
       "rule point:\n"
-      "    input: \"{2}\"\n"
-      "    output: \"{1}/points/{{point}}/report.html\"\n"
-      "    shell: \"ropewalk sweep '{2}' --out '{1}' --only {{wildcards.point}} --quiet\"\n",
-      names, dir.path, sweep_file);
+      "    input: {}\n"
+      "    output: {}\n"
+      "    shell: {}\n",
+      names, reports, python_string(dir.table()),
+      python_string(
+          fmt::format("ropewalk gather {} -o {} --force", shell_quoted(dir.path), shell_quoted(dir.table()))),
+      python_string(sweep_file), reports,
+      python_string(fmt::format("ropewalk sweep {} --out {} --only {{wildcards.point}} --quiet",
+                                shell_quoted(sweep_file), shell_quoted(dir.path))));
 }
 
 }  // namespace ropewalk

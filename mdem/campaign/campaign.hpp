@@ -25,8 +25,8 @@ struct CampaignDirectory {
 // Beside the file of the sweep, where `out` is empty.
 CampaignDirectory campaign_directory(const std::string& sweep_file, const std::string& out);
 
-// Whether the directory holds a run of this scene with these parameter sets (files). With `any_step` its time step may
-// be another one.
+// Whether the directory holds a run of this scene with these parameter sets (files). With `any_step` its time step
+// may be another one.
 bool is_run_of(const RunDirectory& dir, const std::string& text, const std::vector<std::string>& sets,
                bool any_step = false);
 
@@ -59,7 +59,8 @@ struct GatherOptions {
 std::string gathered_csv(const CampaignDirectory& dir, const Sweep& sweep, const std::vector<SweepPoint>& points,
                          const GatherOptions& options);
 
-// A cell of CSV: in quotes where it holds a comma, a quote or a newline.
+// A cell of CSV: in quotes where it holds a comma, a quote or a newline, and with ' before it where a table
+// calculation would take it for a formula.
 std::string csv_cell(const std::string& text);
 
 // For clusters: one job for each point, by its number from 1 or its name.

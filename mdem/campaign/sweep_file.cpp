@@ -37,7 +37,8 @@ std::string as_toml(const toml::node& node) {
     if constexpr (std::is_same_v<Node, toml::table>) {
       std::string inside;
       for (const auto& [key, v] : value)
-        inside += fmt::format("{}{} = {}", inside.empty() ? "" : ", ", std::string(key.str()), as_toml(v));
+        inside +=
+            fmt::format("{}{} = {}", inside.empty() ? "" : ", ", toml_key(std::string(key.str())), as_toml(v));
       out << "{ " << inside << " }";
     } else if constexpr (std::is_same_v<Node, toml::array>) {
       std::string inside;
@@ -104,7 +105,10 @@ void collect_axes(const toml::table& table, const std::string& above, const std:
   for (const auto& [name, node] : table) {
     const std::string key = above + std::string(name.str());
     SweepAxis axis{key, {}, static_cast<int>(name.source().begin.line)};
-    const InputError::Place at{file, axis.line, key};
+    const InputError::Place at{file, axis.line, printable(key)};
+    // Names of points, which are names of directories, are made of it.
+    if (toml_key(std::string(name.str())) != name.str())
+      throw InputError(at, "is no key of a scene", "write it as it stands in the scene, without quotes");
     if (const toml::array* list = node.as_array()) {
       if (list->empty()) throw InputError(at, "is an empty list", "write the values that it takes: [1, 2, 3]");
       for (const toml::node& value : *list) axis.values.push_back(as_toml(value));

@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "commands/commands.hpp"
+#include "io/failure.hpp"
 #include "io/files.hpp"
 #include "io/grade.hpp"
 #include "io/manifest.hpp"
@@ -205,8 +206,7 @@ int errors_command(const ErrorsArguments& a) {
                            if (!std::freopen("/dev/null", "w", stdout)) return 3;
                            return repetitions.run({&source, plus});
                          } catch (const std::exception& e) {
-                           tell_as_is(fmt::format("ropewalk errors: {}: {}\n", name, e.what()));
-                           return 3;
+                           return tell_failure(fmt::format("ropewalk errors: {}", name).c_str(), e);
                          }
                        },
                        [&failed, name](int status) {

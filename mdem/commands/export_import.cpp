@@ -246,7 +246,8 @@ class Import {
         loads);
   }
 
-  // The checkpoint last: until it is there the run stands where it stood, and all of this can be done again.
+  // All is made before the first file is touched, and the checkpoint is written last: until it is there the run
+  // stands where it stood, and all of this can be done again.
   void write(std::int64_t from) {
     Simulation simulation = start(scene_, prepared_);
     simulation.inherit_from(force_.force, force_.torque, {last_.work, last_.dissipated});
@@ -255,13 +256,14 @@ class Import {
     checkpoint_.frames = mark_of(frames_);
     checkpoint_.mark = nullptr;
     checkpoint_.simulation = simulation.serialise();
-    write_file_atomically(dir_.log(), log_);
-    write_file_atomically(dir_.frames(), frames_);
-    write_file_atomically(dir_.final_state(), state_csv(prepared_.topology, prepared_.state));
     Manifest m = read_manifest(dir_.manifest());
     m.steps = reached_;
     m.status = last_.time + 0.5 * prepared_.time_step >= prepared_.duration ? "finished" : "interrupted";
     m.reason = fmt::format("steps {} to {} by LAMMPS", from, reached_);
+    const std::string final_state = state_csv(prepared_.topology, prepared_.state);
+    write_file_atomically(dir_.log(), log_);
+    write_file_atomically(dir_.frames(), frames_);
+    write_file_atomically(dir_.final_state(), final_state);
     write_file_atomically(dir_.manifest(), manifest_json(m));
     write_checkpoint(dir_, checkpoint_);
     write_report(dir_, scene_, prepared_for_report());

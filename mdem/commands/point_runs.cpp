@@ -10,7 +10,7 @@
 
 #include "campaign/campaign.hpp"
 #include "commands/commands.hpp"
-#include "model/error.hpp"
+#include "io/failure.hpp"
 #include "run/tell.hpp"
 
 namespace ropewalk {
@@ -61,8 +61,7 @@ int in_a_process(const std::string& messages, bool wait, const std::function<int
   try {
     return work();
   } catch (const std::exception& e) {
-    tell_as_is(fmt::format("ropewalk: {}\n", e.what()));
-    return dynamic_cast<const InputError*>(&e) ? 2 : 3;
+    return tell_failure("ropewalk", e);
   }
 }
 

@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <ctime>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <new>
 
@@ -263,7 +264,7 @@ class Run {
   // Says what is passed for the first time, and whether the run is to end here for it.
   StopReason check_limits(bool with_pressure) {
     const std::vector<std::string> passed =
-        watch_.check(prepared_.topology, simulation_.state(), simulation_.list(), with_pressure);
+        watch_.check(prepared_.topology, simulation_.state(), simulation_.list(), drift(), with_pressure);
     for (const std::string& line : passed) tell(line);
     if (!passed.empty()) write_limits();
     if (policy_.on_limit == OnLimit::stop && !passed.empty()) return StopReason::limit;
@@ -428,7 +429,7 @@ class Run {
                               last_row_["vdw_eV"]);
   }
 
-  LogRow row() {
+  EnergyAccount account() const {
     const State& s = simulation_.state();
     EnergyAccount account;
     account.time_step = simulation_.time_step() / simulation_.divided();
@@ -440,8 +441,23 @@ class Run {
     account.heat = simulation_.heat();
     account.first_energy = first_energy_;
     account.first = first_;
-    account.ends = simulation_.read_gauges();
-    return log_row(observer_, scene_, prepared_.topology, s, account);
+    return account;
+  }
+
+  // NaN where it is not judged: in a relaxation, which makes its account close, and in the first window of the step
+  // control, where next to nothing has moved.
+  double drift() const {
+    const std::int64_t step = simulation_.state().step;
+    const bool relax = scene_.run.mode == RunOptions::Mode::relax;
+    if (relax || (step < StepControl::window && step != last_step_))
+      return std::numeric_limits<double>::quiet_NaN();
+    return energy_drift(account());
+  }
+
+  LogRow row() {
+    EnergyAccount now = account();
+    now.ends = simulation_.read_gauges();
+    return log_row(observer_, scene_, prepared_.topology, simulation_.state(), now);
   }
 
   bool is_decided() {
@@ -737,7 +753,7 @@ class Run {
   long log_every_ = 1, frames_every_ = 1, last_step_ = 0;
   std::int64_t saved_step_ = -1;
   std::int64_t written_step_ = -1;  // of a relaxation: its row and frame were there when it began or went on
-  double longest_save_ = 0;  // s
+  double longest_save_ = 0;         // s
   bool checkpoint_fails_ = false;
   StopReason at_once_ = StopReason::none;  // before the first step
   RunPolicy policy_;

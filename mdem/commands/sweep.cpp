@@ -14,6 +14,7 @@
 #include "campaign/campaign.hpp"
 #include "commands/commands.hpp"
 #include "commands/point_runs.hpp"
+#include "io/failure.hpp"
 #include "io/files.hpp"
 #include "io/processes.hpp"
 #include "model/error.hpp"
@@ -85,7 +86,7 @@ class Campaign {
         const RunTime t = time_run(points_[i].text, sweep_.scene_path);
         timed.emplace_back(points_[i].work, t.steps > 0 ? t.total() : relax_steps * t.each);
       } catch (const std::exception& e) {
-        tell_as_is(fmt::format("ropewalk: {} cannot be timed: {}\n", points_[i].name, e.what()));
+        tell_as_is(fmt::format("ropewalk: {} cannot be timed: {}\n", points_[i].name, failure_words(e)));
       }
     }
     if (timed.empty()) timed.emplace_back(1, std::numeric_limits<double>::quiet_NaN());

@@ -20,7 +20,8 @@
 namespace ropewalk {
 namespace {
 
-constexpr const char* part = ".part-";  // of the name of a file that is being written
+constexpr const char* part = ".part-";                          // of the name of a file that is being written
+constexpr std::size_t longest_stream = std::size_t{256} << 20;  // bytes of what is no regular file
 
 const char* remedy_for(int code) {
   switch (code) {
@@ -42,7 +43,11 @@ const char* remedy_for(int code) {
       return "the limit on the size of files is reached; raise it (ulimit -f) or choose another place";
     case EMFILE:
     case ENFILE:
-      return "too many files are open; raise the limit (ulimit -n)";
+      return "close other files and programs, or raise the limit (ulimit -n)";
+    case ENOMEM:
+      return "free some memory, or raise the limit (ulimit -v)";
+    case EPIPE:
+      return "the program that reads it has ended";
     default:
       return "check the disk and the path";
   }
@@ -103,6 +108,10 @@ std::string read_file(const std::string& path) {
     const ssize_t n = uninterrupted([&] { return ::read(fd.get(), buffer, sizeof buffer); });
     if (n < 0) throw file_error(path, "cannot be read", errno);
     if (n == 0) return content;
+    if (!S_ISREG(status.st_mode) && content.size() >= longest_stream)
+      throw InputError({path, 0, ""},
+                       fmt::format("is no file, and has not ended after {} MiB", longest_stream >> 20),
+                       "name a file");
     content.append(buffer, static_cast<std::size_t>(n));
   }
 }
@@ -138,6 +147,14 @@ void remove_parts(const std::string& directory) {
   for (std::filesystem::directory_iterator at(directory, error), end; !error && at != end; at.increment(error))
     if (!without_part(at->path().filename().string()).empty()) parts.push_back(at->path());
   for (const auto& path : parts) std::filesystem::remove(path, error);
+}
+
+const char* remedy_for_errno(int code) { return remedy_for(code); }
+
+void refuse_devices(const std::string& path) {
+  struct stat status {};
+  if (::stat(path.c_str(), &status) != 0) throw file_error(path, "cannot be opened", errno);
+  if (!S_ISREG(status.st_mode)) throw InputError({path, 0, ""}, "is not a regular file", "name a file");
 }
 
 void refuse_existing(const std::string& path, const std::string& option, bool force) {

@@ -8,8 +8,13 @@
 
 namespace ropewalk {
 
-// Throws InputError when it cannot be read.
+// Throws InputError when it cannot be read. Of pipes and devices, which may never end, at most 256 MiB are read.
 std::string read_file(const std::string& path);
+
+// What to do about an error of the system, by its number.
+const char* remedy_for_errno(int code);
+// Refuses what is not a regular file: a device may have no end.
+void refuse_devices(const std::string& path);
 
 // Writes a temporary file beside `path`, flushes it to the disk and renames it. Throws InputError (disk full,
 // no permission, ...) and leaves an existing file untouched. `keep_old_as`: the name that the existing file takes;

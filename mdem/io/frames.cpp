@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -13,6 +14,7 @@
 #include <string_view>
 #include <system_error>
 
+#include "io/files.hpp"
 #include "io/markup.hpp"
 #include "io/toml_table.hpp"
 #include "model/error.hpp"
@@ -302,8 +304,10 @@ struct DumpReader::Impl {
   }
 };
 
-DumpReader::DumpReader(const std::string& path) : impl_(new Impl{path, std::ifstream(path), "", 0}) {
-  if (!impl_->file) throw InputError({path, 0, ""}, "cannot be opened", "check the name and the permissions");
+DumpReader::DumpReader(const std::string& path) {
+  refuse_devices(path);
+  impl_.reset(new Impl{path, std::ifstream(path), "", 0});
+  if (!impl_->file) throw file_error(path, "cannot be opened", errno);
 }
 
 DumpReader::~DumpReader() = default;

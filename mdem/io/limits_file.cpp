@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "io/files.hpp"
+#include "io/plain_text.hpp"
 #include "model/error.hpp"
 
 namespace ropewalk {
@@ -20,7 +21,7 @@ void visit_limit(R&& r, const Visit& v) {
   v({"limit", "`unit`", "the limit; 0: not watched"}, r.limit);
   v({"largest", "`unit`", "largest value so far"}, r.largest);
   v({"largest_at_ps", "ps", "time of the largest value"}, r.largest_at_ps);
-  v({"tube", "", "tube of the largest value, from 0; -1: none"}, r.tube);
+  v({"tube", "", "tube of the largest value, from 0; -1: none, or of the run as a whole"}, r.tube);
   v({"element", "", "element of the largest value, counted in the tube from 0; of a bond the first"}, r.element);
   v({"passed", "", "whether the limit was passed"}, r.passed);
   v({"passed_at_ps", "ps", "time when it was passed first"}, r.passed_at_ps);
@@ -55,7 +56,10 @@ auto into(Json& json) {
 }
 auto out_of(const Json& json) {
   return [&json](const OutputColumn& key, auto& value) {
-    value = json.at(key.name).get<std::decay_t<decltype(value)>>();
+    using Value = std::decay_t<decltype(value)>;
+    value = json.at(key.name).get<Value>();
+    if constexpr (std::is_same_v<Value, std::string>)
+      if (has_control_character(value)) throw std::runtime_error("control character");
   };
 }
 

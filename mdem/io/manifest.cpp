@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "io/files.hpp"
+#include "io/plain_text.hpp"
 #include "model/error.hpp"
 
 namespace ropewalk {
@@ -63,8 +64,15 @@ T value_of(const std::string& path, const Json& json, const char* key) {
                     : std::is_floating_point_v<T>      ? value.is_number()
                     : std::is_same_v<T, std::uint64_t> ? value.is_number_unsigned()
                                                        : value.is_number_integer();
-  if (!fits) throw InputError({path, 0, key}, fmt::format("{} is not of the right kind", value.dump()), remedy);
-  return value.get<T>();
+  if (!fits)
+    throw InputError({path, 0, key}, fmt::format("{} is not of the right kind", printable(value.dump(), 40)),
+                     remedy);
+  const T out = value.get<T>();
+  if constexpr (std::is_same_v<T, std::string>)
+    if (has_control_character(out)) throw InputError({path, 0, key}, "holds a control character", remedy);
+  if constexpr (std::is_integral_v<T>)
+    if (Json(out) != value) throw InputError({path, 0, key}, fmt::format("{} is too large", value.dump()), remedy);
+  return out;
 }
 
 }  // namespace

@@ -6,7 +6,6 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "io/files.hpp"
 #include "io/toml_table.hpp"
@@ -366,14 +365,13 @@ const Quantity* find_quantity(const ParameterSet& set, const std::string& key) {
 
 namespace {
 
-std::string quoted(const std::string& text) { return nlohmann::json(text).dump(); }
-
 std::string quantity_text(const Quantity& q, const std::string& key) {
   std::string text = fmt::format(
-      "{:<16} = {{ value = {}, unit = {}, standard_error = {}, origin = {}", key, q.value, quoted(q.unit),
-      q.standard_error ? fmt::format("{:.3g}", *q.standard_error) : quoted(not_published), quoted(q.origin));
-  if (!q.doi.empty()) text += ", doi = " + quoted(q.doi);
-  if (!q.note.empty()) text += ", note = " + quoted(q.note);
+      "{:<16} = {{ value = {}, unit = {}, standard_error = {}, origin = {}", key, q.value, toml_string(q.unit),
+      q.standard_error ? fmt::format("{:.3g}", *q.standard_error) : toml_string(not_published),
+      toml_string(q.origin));
+  if (!q.doi.empty()) text += ", doi = " + toml_string(q.doi);
+  if (!q.note.empty()) text += ", note = " + toml_string(q.note);
   return text + " }\n";
 }
 
@@ -401,9 +399,10 @@ std::string universal_rows_text(const UniversalLine& u) {
 
 std::string parameters_text(const ParameterSet& set, const std::string& comment) {
   std::string text = comment;
-  text += fmt::format("\n[meta]\nformat = \"{}\"\nname = {}\nchirality = [{}, {}]\nreference = {}\n",
-                      parameter_format, quoted(set.name), set.chirality.n, set.chirality.m, quoted(set.reference));
-  if (!set.doi.empty()) text += fmt::format("doi = {}\n", quoted(set.doi));
+  text +=
+      fmt::format("\n[meta]\nformat = \"{}\"\nname = {}\nchirality = [{}, {}]\nreference = {}\n", parameter_format,
+                  toml_string(set.name), set.chirality.n, set.chirality.m, toml_string(set.reference));
+  if (!set.doi.empty()) text += fmt::format("doi = {}\n", toml_string(set.doi));
   std::string section;
   for (const Quantity& q : set.quantities) {
     const std::size_t dot = q.key.rfind('.');
@@ -416,7 +415,7 @@ std::string parameters_text(const ParameterSet& set, const std::string& comment)
   }
   for (const Correlation& c : set.correlations) {
     std::vector<std::string> names, rows;
-    for (const std::string& key : c.of) names.push_back(quoted(key));
+    for (const std::string& key : c.of) names.push_back(toml_string(key));
     for (const std::vector<double>& row : c.matrix) {
       std::vector<std::string> numbers;
       for (const double x : row) numbers.push_back(fmt::format("{:.10g}", x));
@@ -426,7 +425,8 @@ std::string parameters_text(const ParameterSet& set, const std::string& comment)
         fmt::format("\n[[correlation]]\nof = [{}]\nmatrix = [\n{}]\n", fmt::join(names, ", "), fmt::join(rows, ""));
   }
   if (!set.provenance.empty()) text += "\n[provenance]\n";
-  for (const auto& [key, value] : set.provenance) text += fmt::format("{:<16} = {}\n", key, quoted(value));
+  for (const auto& [key, value] : set.provenance)
+    text += fmt::format("{:<16} = {}\n", toml_key(key), toml_string(value));
   return text;
 }
 

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "io/files.hpp"
+#include "io/plain_text.hpp"
 #include "model/error.hpp"
 
 namespace ropewalk {
@@ -81,9 +82,15 @@ RunErrors read_run_errors(const std::string& run_directory, const std::vector<Lo
   try {
     const Json j = Json::parse(read_file(path));
     if (j.at("format") != format_name) throw std::runtime_error("another format");
-    for (const Json& s : j.at("sources"))
+    for (const Json& s : j.at("sources")) {
       sources.push_back({s.at("name"), s.at("plus"), s.at("minus"), s.at("standard_error"), s.at("step")});
+      for (const std::string& text : {sources.back().name, sources.back().plus, sources.back().minus})
+        if (has_control_character(text)) throw std::runtime_error("a control character");
+    }
     correlation = j.at("correlation").get<std::vector<std::vector<double>>>();
+    bool square = correlation.size() == sources.size();
+    for (const std::vector<double>& row : correlation) square = square && row.size() == sources.size();
+    if (!square) throw std::runtime_error("a correlation of another size");
   } catch (const std::exception&) {
     throw InputError({path, 0, ""}, "is not what `ropewalk errors` writes", "make it again, or take it away");
   }

@@ -7,6 +7,7 @@
 #include <cctype>
 #include <climits>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 
@@ -67,23 +68,32 @@ bool same_but_for_unit(const std::string& a, const std::string& b) {
 
 int line_of(const toml::node& node) { return static_cast<int>(node.source().begin.line); }
 
+void refuse_control_characters(const toml::node& node, const std::string& key, const std::string& file) {
+  const auto refuse = [&](const toml::node& at, const std::string& where, const char* what) {
+    throw InputError({file, line_of(at), printable(where)}, what,
+                     "write it in one line, without tabs, newlines and escapes");
+  };
+  if (const auto* text = node.as_string(); text && has_control_character(text->get()))
+    refuse(node, key, "holds a control character");
+  if (const toml::array* array = node.as_array())
+    for (const toml::node& element : *array) refuse_control_characters(element, key, file);
+  if (const toml::table* table = node.as_table())
+    for (const auto& [name, value] : *table) {
+      const std::string path = (key.empty() ? "" : key + ".") + std::string(name.str());
+      if (has_control_character(name.str())) refuse(value, path, "is a key with a control character");
+      refuse_control_characters(value, path, file);
+    }
+}
+
 }  // namespace
 
-std::string printable(const std::string& text, std::size_t longest) {
-  std::string out;
-  for (const char c : text) {
-    const auto u = static_cast<unsigned char>(c);
-    if (c == '\n')
-      out += "\\n";
-    else if (u < 0x20 || u == 0x7f)
-      out += fmt::format("\\x{:02x}", u);
-    else
-      out += c;
-  }
-  if (out.size() <= longest) return out;
-  // Never in the middle of a UTF-8 sequence.
-  while (longest > 0 && (static_cast<unsigned char>(out[longest]) & 0xc0) == 0x80) --longest;
-  return out.substr(0, longest) + "...";
+std::string toml_string(const std::string& text) { return nlohmann::json(text).dump(); }
+
+std::string toml_key(const std::string& key) {
+  const bool bare = !key.empty() && std::all_of(key.begin(), key.end(), [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '-';
+  });
+  return bare ? key : toml_string(key);
 }
 
 std::string nearest_word(const std::string& word, const std::vector<std::string>& known) {
@@ -174,6 +184,7 @@ struct TomlTable::Stray {
 TomlTable TomlTable::parse(const std::string& text, const std::string& file) {
   try {
     const auto root = std::make_shared<const toml::table>(toml::parse(text, file));
+    refuse_control_characters(*root, "", file);
     return TomlTable(std::make_shared<Node>(file, "", root, root.get()));
   } catch (const toml::parse_error& e) {
     const int column = static_cast<int>(e.source().begin.column);
@@ -214,6 +225,8 @@ InputError TomlTable::error(const std::string& key, const std::string& what, con
 
 namespace {
 
+constexpr double smallest_number = 1e-100;  // its square is above what a double holds as a normal number
+
 [[noreturn]] void refuse_type(const TomlTable& t, const std::string& key, const toml::node& found,
                               const std::string& needed, const std::string& remedy) {
   throw t.error(key, fmt::format("is {}, {} is needed", describe(found), needed), remedy);
@@ -223,6 +236,9 @@ double checked_number(const TomlTable& t, const std::string& key, const toml::no
   if (!n.is_number())
     refuse_type(t, key, n, "a number", n.is_string() ? "write it without quotes" : "write a plain number");
   const double value = *n.value<double>();
+  if (value != 0 && std::fabs(value) < smallest_number)
+    throw t.error(key, fmt::format("is {}, too small a number to be calculated with", value),
+                  "write 0 if you mean none");
   if (!bounds.allow(value)) throw t.error(key, fmt::format("is {}", value), bounds.words());
   return value;
 }

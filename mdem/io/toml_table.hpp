@@ -1,5 +1,6 @@
 // A strict reader of TOML. A table records which keys were read, and finish() refuses the others. Every error is an
-// InputError of one line with file, line, key and remedy.
+// InputError of one line with file, line, key and remedy. No text and no key holds a control character: texts go
+// into files that other programs interpret.
 #pragma once
 
 #include <functional>
@@ -9,11 +10,13 @@
 #include <utility>
 #include <vector>
 
+#include "io/plain_text.hpp"  // printable
 #include "model/error.hpp"
 
 namespace ropewalk {
 
-// The allowed range of a number. Infinities and NaN are never allowed.
+// The allowed range of a number. Infinities and NaN are never allowed, nor numbers so small that products of them
+// vanish.
 struct Bounds {
   double least = -std::numeric_limits<double>::infinity();
   double most = std::numeric_limits<double>::infinity();
@@ -97,8 +100,10 @@ class TomlTable {
   std::shared_ptr<Node> node_;
 };
 
-// The text with control characters as escapes, cut to fit into a line of a message.
-std::string printable(const std::string& text, std::size_t longest = 200);
+// A key as TOML has it, in quotes where it needs them.
+std::string toml_key(const std::string& key);
+// A text as a string of TOML.
+std::string toml_string(const std::string& text);
 
 // The word of `known` that `word` was probably meant to be; empty if none is similar.
 std::string nearest_word(const std::string& word, const std::vector<std::string>& known);

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double shock = 0.1;  // strain
 
-enum Kind : std::size_t { bend, twist, kink_curvature, wall_twist, strain, overlap, speed, pressure };
+enum Kind : std::size_t { bend, twist, kink_curvature, wall_twist, strain, overlap, speed };
 
 void raise(Peak& peak, double value, int element) {
   if (peak.element >= 0 && !(value > peak.value)) return;
@@ -89,6 +89,10 @@ const std::array<LimitKind, limit_count>& limit_kinds() {
        "stopping it would strain the tube by 10 % or more", "load it more gently, or damp more", false},
       {"pressure_GPa", "GPa", units::nN_nm, &Limits::pressure, "the tube is pressed from all sides by",  // nN/nm^2
        "a real tube flattens there", "load it less, or do not trust its shape from now on", false},
+      {"energy_drift", "", 1, &Limits::energy_drift,
+       "the account of energy is off, over the energy that has moved, by",
+       "the steps themselves give or take energy", "take a shorter run.time_step_fs, or no step of your own", false,
+       true},
   }};
   return kinds;
 }

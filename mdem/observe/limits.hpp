@@ -15,11 +15,20 @@
 //           rest. The default is the core gap, below which the contact law is continued by its Taylor polynomial,
 //           soft and without a source
 //   pressure_GPa: of the contact across a tube (observe/loading.hpp). The default is the pressure at which the wall
-//           collapses, P d^3 = 24 D (1 - (b/d)^2) with the bending stiffness D = 1.7 eV of graphene, b = 0.44 nm and the
-//           diameter d. A. C. Torres-Dias et al., Carbon 123, 145 (2017), DOI 10.1016/j.carbon.2017.07.036. It costs as
-//           much as several steps and is looked at where a frame is stored
+//           collapses, P d^3 = 24 D (1 - (b/d)^2) with the bending stiffness D = 1.7 eV of graphene, b = 0.44 nm
+//           and the diameter d. A. C. Torres-Dias et al., Carbon 123, 145 (2017), DOI 10.1016/j.carbon.2017.07.036.
+//           It costs as much as several steps and is looked at where a frame is stored
 //   speed   of an element: a tenth of the speed of sound along the tube, sqrt(EA a/m). A tube that is stopped
 //           from the speed v is strained by v/c: by 10 % there, more than any of the shipped sets allows.
+//
+// One limit is of the run as a whole:
+//
+//   energy_drift    energy_drift() of observe/observables.hpp: the error of the account of energy over the energy
+//   that
+//           has moved since the start. With steps that the program chooses it stays below 0.02, cold and at 300 K.
+//           The step control (run/step_control.hpp) goes back where 0.03 are lost within a window; this limit sees
+//           what smaller losses add up to. Judged from the end of the first window on, where a row of the log is
+//           written
 //
 // Units nm, ps, rad. A limit of zero is not watched.
 #pragma once
@@ -41,9 +50,10 @@ struct Limits {
   double kink_curvature = 0;            // 1/nm
   double wall_twist = 0;
   double strain = 0;
-  double overlap = 0;  // nm
-  double speed = 0;    // nm/ps
+  double overlap = 0;   // nm
+  double speed = 0;     // nm/ps
   double pressure = 0;  // eV/nm^3
+  double energy_drift = 0.05;
 };
 
 // All but the overlap, which follows from the contact law.
@@ -58,8 +68,9 @@ struct LimitKind {
   const char* consequence;  // what is wrong there
   const char* remedy;       // for one who meets it
   bool cured_by_finer;      // would shorter elements help
+  bool whole = false;       // of the run as a whole, at no element
 };
-inline constexpr std::size_t limit_count = 8;
+inline constexpr std::size_t limit_count = 9;
 const std::array<LimitKind, limit_count>& limit_kinds();
 
 // The value with the largest ratio to its limit. If the limits of tube types differ, another value may be larger.
@@ -84,8 +95,8 @@ struct Watched {
 // eV/nm^3, for a tube of this radius (nm).
 double collapse_pressure(double radius);
 
-// The peaks of a state, but for the pressure; of equal values the first element's. The list must be up to date; it may
-// be empty.
+// The peaks of a state, but for the pressure and what is of the whole run; of equal values the first element's. The
+// list must be up to date; it may be empty.
 Peaks peaks(const Topology& topology, const State& state, const NeighbourList& list, const Watched& watched);
 Peak pressure_peak(const Topology& topology, const State& state, const Watched& watched);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <stdexcept>
 
 #include "model/units.hpp"
@@ -13,18 +14,13 @@ using Group = ObservableGroup;
 using M = Measurement;
 using units::degree;
 
-double balance(const M& m) {
-  const EnergyAccount& a = m.account;
-  return a.potential.potential() + a.kinetic - a.work + a.dissipated - a.heat - a.first_energy;
-}
+constexpr double rounding = 1e-4;  // of the potential energies, pairs being in single precision
 
 // MJ/kg, which is 1 eV over 1 eV ps^2/nm^2.
 double stored(const M& m, double Energies::*part) {
   return (m.account.potential.*part - m.account.first.*part) / m.mass;
 }
-double stored(const M& m) {
-  return (m.account.potential.potential() - m.account.first.potential()) / m.mass;
-}
+double stored(const M& m) { return (m.account.potential.potential() - m.account.first.potential()) / m.mass; }
 
 double torque(const M& m, End end, Eigen::Index axis) { return m.account.ends[end].torque[axis] / units::nN_nm; }
 
@@ -42,8 +38,8 @@ std::vector<Observable>& table() {
       {"torque_upper_nN_nm", "nN nm",
        "torque about z on the upper end, mean since the row before; positive: it twists the rope to the right",
        Group::load, [](const M& m) { return torque(m, upper_end, 2); }},
-      {"torque_lower_nN_nm", "nN nm", "the same on the lower end, where a right-handed twist needs -z",
-       Group::load, [](const M& m) { return -torque(m, lower_end, 2); }},
+      {"torque_lower_nN_nm", "nN nm", "the same on the lower end, where a right-handed twist needs -z", Group::load,
+       [](const M& m) { return -torque(m, lower_end, 2); }},
       {"torque_upper_x_nN_nm", "nN nm", "torque about x on the upper end, about its centre", Group::load,
        [](const M& m) { return torque(m, upper_end, 0); }},
       {"torque_upper_y_nN_nm", "nN nm", "the same about y", Group::load,
@@ -84,7 +80,7 @@ std::vector<Observable>& table() {
        [](const M& m) { return m.account.heat; }},
       {"balance_eV", "eV",
        "total energy - work + dissipated energy - heat, less its first value: the error of integration",
-       Group::energy, balance},
+       Group::energy, [](const M& m) { return energy_balance(m.account); }},
 
       {"stored_MJ_per_kg", "MJ/kg", "potential energy since the start over the mass of the tubes", Group::energy,
        [](const M& m) { return stored(m); }},
@@ -114,8 +110,10 @@ std::vector<Observable>& table() {
        [](const M& m) { return m.loading.curvature; }},
       {"slip_nm", "nm", "largest displacement of a tube along a neighbour since the start", Group::tubes,
        [](const M& m) { return m.loading.slip; }},
-      {"core_pressure_GPa", "GPa", "pressure of the contacts on the innermost tube; none where no tube is internal",
-       Group::tubes, [](const M& m) { return m.loading.core_pressure / units::nN_nm; }  // 1 GPa is 1 nN/nm^2
+      {
+          "core_pressure_GPa", "GPa",
+          "pressure of the contacts on the innermost tube; none where no tube is internal", Group::tubes,
+          [](const M& m) { return m.loading.core_pressure / units::nN_nm; }  // 1 GPa is 1 nN/nm^2
       },
 
       {"beta_deg", "deg", "mean angle of the outermost tubes to the rope axis, over the middle third", Group::twist,
@@ -180,6 +178,19 @@ bool ends_in(const std::string& name, const std::string& suffix) {
 }
 
 }  // namespace
+
+double energy_balance(const EnergyAccount& a) {
+  return a.potential.potential() + a.kinetic - a.work + a.dissipated - a.heat - a.first_energy;
+}
+
+double energy_drift(const EnergyAccount& a) {
+  const double change = a.potential.potential() - a.first.potential();
+  const double moved =
+      a.kinetic + std::fabs(a.work) + std::fabs(a.heat) + std::fabs(a.dissipated) + std::fabs(change);
+  const double at_rest = rounding * (a.potential.bonds() + std::fabs(a.potential.vdw));
+  const double scale = moved + at_rest;
+  return scale > 0 || std::isnan(scale) ? std::fabs(energy_balance(a)) / scale : 0;
+}
 
 const char* group_title(ObservableGroup group) {
   switch (group) {

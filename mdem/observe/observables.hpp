@@ -27,6 +27,12 @@ struct EnergyAccount {
   EndReadings ends;         // means since the row before
 };
 
+// The error of the integration: total energy less its first value and what has been supplied, eV.
+double energy_balance(const EnergyAccount& account);
+// That error over the energy that has moved: kinetic energy, work, heat, what was dissipated and the change of the
+// potential energy. Rounding of the energies that stay does not count. NaN where the energies are not known.
+double energy_drift(const EnergyAccount& account);
+
 // The input of an observable.
 struct Measurement {
   const Topology& topology;

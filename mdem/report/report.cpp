@@ -44,12 +44,13 @@ Panel other_energies(const std::vector<LogRow>& log) {
     caption += fmt::format(" At the start: van der Waals {} eV, kinetic {} eV, total {} eV.",
                            number_text(log.front()["vdw_eV"], 6), number_text(log.front()["kinetic_eV"], 5),
                            number_text(total_energy(log.front()), 6));
-  return {"Contact, kinetic and total energy",
-          caption,
-          {"change of energy", "eV", false},
-          {{"van der Waals", logged("vdw_eV"), 3}, {"kinetic", logged("kinetic_eV"), 2}, {"total", total_energy, 5}},
-          false,
-          true};
+  return {
+      "Contact, kinetic and total energy",
+      caption,
+      {"change of energy", "eV", false},
+      {{"van der Waals", logged("vdw_eV"), 3}, {"kinetic", logged("kinetic_eV"), 2}, {"total", total_energy, 5}},
+      false,
+      true};
 }
 
 Panel packing_charge() {
@@ -114,23 +115,24 @@ Panel work_and_heat() {
           {{"work", logged("work_eV"), 0}, {"dissipated", logged("dissipated_eV"), 1}}};
 }
 
-std::string balance_words(const std::vector<LogRow>& log) {
-  double largest = 0, work = 0;
-  for (const LogRow& r : log) {
+std::string balance_words(const ReportInput& in) {
+  double largest = 0;
+  for (const LogRow& r : in.log)
     if (std::isfinite(r["balance_eV"])) largest = std::max(largest, std::abs(r["balance_eV"]));
-    if (std::isfinite(r["work_eV"])) work = std::max(work, std::abs(r["work_eV"]));
-  }
-  std::string text = fmt::format("The largest deviation is {} eV", number_text(largest, 3));
-  if (work > 0) text += fmt::format(", {} % of the work done", number_text(100 * largest / work, 2));
-  return text + ".";
+  std::string text = fmt::format("The largest deviation is {} eV.", number_text(largest, 3));
+  for (const LimitRecord& r : in.watched.limits)
+    if (r.key == "energy_drift" && r.limit > 0)
+      text += fmt::format(" It was at most {} % of the energy that had moved; the limit is {} %.",
+                          number_text(100 * r.largest, 2), number_text(100 * r.limit, 2));
+  return text;
 }
 
-Panel balance(const std::vector<LogRow>& log) {
+Panel balance(const ReportInput& in) {
   return {"Energy balance",
           "Total energy − work + dissipated energy − heat of the thermostat, less its first value. It would stay "
           "at zero if time were "
           "continuous; what is left is the error of the integration. " +
-              balance_words(log),
+              balance_words(in),
           {"balance", "eV", false},
           {{"balance", logged("balance_eV"), 5}}};
 }
@@ -346,9 +348,10 @@ std::string limit_words(const ReportInput& in, const Limit& limit) {
 
 std::string passed_words(const LimitRecord& r) {
   const std::string unit = r.unit.empty() ? "" : " " + escape_markup(r.unit);
-  return fmt::format("<li><b>limits.{}</b>, {}{}: passed at {}; largest {}{} at {}, tube {}, element {}.</li>\n",
-                     escape_markup(r.key), number_text(r.limit), unit, picoseconds(r.passed_at_ps),
-                     number_text(r.largest), unit, picoseconds(r.largest_at_ps), r.tube, r.element);
+  const std::string place = r.tube >= 0 ? fmt::format(", tube {}, element {}", r.tube, r.element) : "";
+  return fmt::format("<li><b>limits.{}</b>, {}{}: passed at {}; largest {}{} at {}{}.</li>\n", escape_markup(r.key),
+                     number_text(r.limit), unit, picoseconds(r.passed_at_ps), number_text(r.largest), unit,
+                     picoseconds(r.largest_at_ps), place);
 }
 
 std::string limits_part(const ReportInput& in) {
@@ -473,8 +476,8 @@ std::string log_part(const ReportInput& in, const std::vector<ReportSection>& se
   if (in.rope) {
     html += heading("Packing and twist");
     if (!packed)
-      html += paragraph(
-          "No packing charge: no tube is internal, that is, has six neighbours in the untwisted state.");
+      html +=
+          paragraph("No packing charge: no tube is internal, that is, has six neighbours in the untwisted state.");
     const std::string charge = packed ? panel(packing_charge()) : "", beta = panel(twist_angle());
     html += pair_of(charge, beta);
     const std::string twists = panel(end_twists()), radius = radius_figure(in, sections, figures);
@@ -488,7 +491,7 @@ std::string log_part(const ReportInput& in, const std::vector<ReportSection>& se
     if (in.tubes == 1) html += panel(amplitude());
   }
   html += heading("Energy balance");
-  const std::string work = panel(work_and_heat()), error = panel(balance(in.log));
+  const std::string work = panel(work_and_heat()), error = panel(balance(in));
   return html + pair_of(work, error);
 }
 

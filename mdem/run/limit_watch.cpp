@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "model/error.hpp"
 
 namespace ropewalk {
@@ -11,11 +13,14 @@ namespace {
 std::string with_space(const std::string& unit) { return unit.empty() ? "" : " " + unit; }
 
 std::string line_of(const LimitKind& kind, const Topology& topology, const Peak& peak, double time) {
-  const int tube = topology.tube_of(peak.element);
-  return fmt::format(
-      "limit passed at {:.4g} ps, tube {}, element {}: {} {:.4g}{}, beyond limits.{} = {:.4g}: {}; {}", time, tube,
-      peak.element - topology.tube_begin[tube], kind.what, peak.value / kind.unit_size, with_space(kind.unit),
-      kind.key, peak.limit / kind.unit_size, kind.consequence, kind.remedy);
+  std::string place;
+  if (!kind.whole) {
+    const int tube = topology.tube_of(peak.element);
+    place = fmt::format(", tube {}, element {}", tube, peak.element - topology.tube_begin[tube]);
+  }
+  return fmt::format("limit passed at {:.4g} ps{}: {} {:.4g}{}, beyond limits.{} = {:.4g}: {}; {}", time, place,
+                     kind.what, peak.value / kind.unit_size, with_space(kind.unit), kind.key,
+                     peak.limit / kind.unit_size, kind.consequence, kind.remedy);
 }
 
 }  // namespace
@@ -34,12 +39,14 @@ void LimitWatch::inherit_from(const std::vector<LimitRecord>& earlier, std::int6
 }
 
 std::vector<std::string> LimitWatch::check(const Topology& topology, const State& state, const NeighbourList& list,
-                                           bool with_pressure) {
+                                           double energy_drift, bool with_pressure) {
   std::vector<std::string> lines;
   Peaks now = peaks(topology, state, list, watched_);
-  if (with_pressure)
-    for (std::size_t k = 0; k < limit_count; ++k)
-      if (limit_kinds()[k].limit == &Limits::pressure) now[k] = pressure_peak(topology, state, watched_);
+  for (std::size_t k = 0; k < limit_count; ++k) {
+    const auto limit = limit_kinds()[k].limit;
+    if (limit == &Limits::pressure && with_pressure) now[k] = pressure_peak(topology, state, watched_);
+    if (limit == &Limits::energy_drift) now[k] = {energy_drift, watched_.limits.front().energy_drift};
+  }
   records_.resize(limit_count);
   finer_would_help_ = false;
   for (std::size_t k = 0; k < limit_count; ++k) {
@@ -48,15 +55,16 @@ std::vector<std::string> LimitWatch::check(const Topology& topology, const State
     LimitRecord& r = records_[k];
     r.key = kind.key;
     r.unit = kind.unit;
-    if (peak.element < 0) continue;
+    if (kind.whole ? !std::isfinite(peak.value) : peak.element < 0) continue;
     const double value = peak.value / kind.unit_size;
     const bool first = peak.passed() && !r.passed;
-    if (r.element < 0 || value > r.largest) {
+    const bool none_yet = kind.whole ? r.limit == 0 && r.largest == 0 : r.element < 0;
+    if (none_yet || value > r.largest) {
       r.limit = peak.limit / kind.unit_size;
       r.largest = value;
       r.largest_at_ps = state.time;
-      r.tube = topology.tube_of(peak.element);
-      r.element = peak.element - topology.tube_begin[r.tube];
+      r.tube = kind.whole ? -1 : topology.tube_of(peak.element);
+      r.element = kind.whole ? -1 : peak.element - topology.tube_begin[r.tube];
     }
     finer_would_help_ = finer_would_help_ || (peak.passed() && kind.cured_by_finer);
     if (!first) continue;

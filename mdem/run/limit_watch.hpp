@@ -23,9 +23,10 @@ class LimitWatch {
   // after `step` had not happened.
   void inherit_from(const std::vector<LimitRecord>& earlier, std::int64_t step);
 
-  // One line for each limit that is passed for the first time. The pressure costs several steps.
+  // One line for each limit that is passed for the first time. The pressure costs several steps. `energy_drift` is
+  // NaN where the energies are not known.
   std::vector<std::string> check(const Topology& topology, const State& state, const NeighbourList& list,
-                                 bool with_pressure);
+                                 double energy_drift, bool with_pressure);
 
   // Whether at the last check a limit was passed that shorter elements would cure.
   bool finer_would_help() const { return finer_would_help_; }

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cstring>
 #include <filesystem>
+#include <limits>
 #include <vector>
 
 #include "commands/commands.hpp"
@@ -115,7 +116,7 @@ Outputs time_outputs(const Scene& scene, const Prepared& p, const RunTime& t) {
   LimitWatch watch(watched_of(scene, p.topology));
   const double began = processor_seconds();
   const LogRow row = log_row(observer, scene, p.topology, s.state(), {});
-  watch.check(p.topology, s.state(), s.list(), false);
+  watch.check(p.topology, s.state(), s.list(), std::numeric_limits<double>::quiet_NaN(), false);
   log_line(row);
   o.row = processor_seconds() - began;
   dump_frame(p.topology, s.state(), element_colours(p.topology, p.interaction, s.state()));

@@ -8,6 +8,7 @@
 
 #include "model/error.hpp"
 #include "scene/maxwell.hpp"
+#include "scene/memory.hpp"
 #include "scene/scene_to_model.hpp"
 
 namespace ropewalk {
@@ -76,6 +77,10 @@ BuiltScene build(Scene& scene) {
   scene.damping.contact.outer = viscosity_reach * out.spacing;
   Random random(scene.start.seed);
   scene.source->place(scene, out.spacing, random, out.topology, out.state);
+  if (const std::string memory = beyond_memory(out.topology.elements()); !memory.empty())
+    throw InputError({scene.path, 0, scene.kind},
+                     fmt::format("holds {} elements, {}", out.topology.elements(), memory),
+                     "take fewer elements, or another machine");
   add_wave(scene, out.topology, out.state);
   set_tube_types(scene, out.topology);
   set_collapse(scene, out.topology);

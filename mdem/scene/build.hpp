@@ -8,7 +8,7 @@
 
 namespace ropewalk {
 
-inline constexpr int max_elements = 10000000;  // in a scene: about 10 GB
+inline constexpr int max_elements = 10000000;  // in a scene: about 25 GB
 
 struct BuiltScene {
   Topology topology;

@@ -3,13 +3,16 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <string_view>
 
 #include "io/files.hpp"
+#include "io/plain_text.hpp"
 #include "model/error.hpp"
+#include "scene/build.hpp"
 
 namespace ropewalk {
 namespace {
@@ -112,6 +115,10 @@ constexpr std::array<OutputColumn, 20> state_columns = {{
     {"tqz", "eV", "torque, damping included"},
 }};
 
+constexpr double farthest = 1e12;    // of any number of a state, in its unit
+constexpr double norm_slack = 1e-6;  // of a quaternion
+constexpr double most_steps = 1e15;
+
 template <class Columns>
 std::vector<OutputColumn> listed(const Columns& columns) {
   return {columns.begin(), columns.end()};
@@ -146,6 +153,13 @@ LammpsStart read_start(const LammpsDirectory& dir) {
   } catch (const Json::exception&) {
     throw InputError({path, 0, ""}, "is damaged", remedy);
   }
+  for (const double value :
+       {start.time, start.time_step, start.work, start.dissipated, start.viscosity_inner, start.viscosity_outer})
+    if (!std::isfinite(value)) throw InputError({path, 0, ""}, "holds a number that is not finite", remedy);
+  for (const std::string& name : start.parameters)
+    if (has_control_character(name) || name.find('/') != std::string::npos)
+      throw InputError({path, 0, "parameters"},
+                       fmt::format("\"{}\" is no file of this directory", printable(name, 40)), remedy);
   return start;
 }
 
@@ -170,6 +184,9 @@ void read_tubes(const LammpsDirectory& dir, Topology& topology) {
     if (number == 1 || !read || tubes < 1 || elements < 1 || type < 0 ||
         type >= static_cast<int>(topology.types.size()))
       throw InputError({path, number, ""}, fmt::format("no line of {}", column_names(tube_columns)), remedy);
+    const double total = topology.elements() + double{1} * tubes * elements;
+    if (total > max_elements)
+      throw InputError({path, number, ""}, fmt::format("makes it {:.3g} elements", total), remedy);
     for (int t = 0; t < tubes; ++t) topology.add_tube(elements, type);
   });
   if (topology.tubes() == 0) throw InputError({path, 0, ""}, "holds no tube", remedy);
@@ -182,8 +199,8 @@ std::string lammps_data(const std::string& name, const Topology& topology, const
   std::string text = fmt::format(
       "{}: elements of nanotubes in nm, eV and ps, written by ropewalk\n\n{} atoms\n{} bonds\n{} atom types\n"
       "{} bond types\n\n{} {} xlo xhi\n{} {} ylo yhi\n{} {} zlo zhi\n\nAtoms # hybrid\n\n",
-      name, topology.elements(), topology.bonds(), topology.types.size(), topology.types.size(), box.low.x(),
-      box.high.x(), box.low.y(), box.high.y(), box.low.z(), box.high.z());
+      lammps_comment(name), topology.elements(), topology.bonds(), topology.types.size(), topology.types.size(),
+      box.low.x(), box.high.x(), box.low.y(), box.high.y(), box.low.z(), box.high.z());
   std::string velocities = "\nVelocities\n\n", bonds = "\nBonds\n\n", turns = "\nElements\n\n";
   int bond = 0;
   for (int t = 0; t < topology.tubes(); ++t) {
@@ -245,7 +262,7 @@ std::string lammps_input(const LammpsScript& s) {
       "newton on\n"
       "special_bonds lj/coul {} {} {}\n"
       "comm_modify mode single vel yes cutoff {}\n",
-      s.name, s.steps, s.every, weight(1), weight(2), weight(3), s.reach + s.skin);
+      lammps_comment(s.name), s.steps, s.every, weight(1), weight(2), weight(3), s.reach + s.skin);
   text += s.long_in_z ? "processors 1 1 *  # ropes lie along z: every cut is across them\n" : "comm_style tiled\n";
   text += fmt::format(
       "{0}\n"
@@ -300,18 +317,27 @@ std::vector<LammpsRow> read_lammps_rows(const LammpsDirectory& dir) {
     if (number == 1) title = line;
     if (line == title) return;  // a restarted run writes it again
     LammpsRow r;
+    std::size_t column = 0;
     for (double* value :
-         {&r.step, &r.time, &r.stretch, &r.shear, &r.bend, &r.twist, &r.vdw, &r.kinetic, &r.work, &r.dissipated})
+         {&r.step, &r.time, &r.stretch, &r.shear, &r.bend, &r.twist, &r.vdw, &r.kinetic, &r.work, &r.dissipated}) {
       if (!take(line, *value))
         throw InputError({dir.rows(), number, ""}, "has fewer numbers than the title names",
                          "take the line out if LAMMPS was killed while it wrote it");
+      if (!std::isfinite(*value))
+        throw InputError({dir.rows(), number, row_columns[column].name}, "is not finite", "run LAMMPS again");
+      ++column;
+    }
+    if (!(r.step >= 0 && r.step < most_steps) || r.step != std::floor(r.step))
+      throw InputError({dir.rows(), number, "step"}, fmt::format("{} is no step", r.step), "run LAMMPS again");
     rows.push_back(r);
   });
   return rows;
 }
 
-LammpsStates::LammpsStates(const std::string& path) : path_(path), file_(path) {
-  if (!file_) throw InputError({path, 0, ""}, "cannot be opened", "check the name");
+LammpsStates::LammpsStates(const std::string& path) : path_(path) {
+  refuse_devices(path);
+  file_.open(path);
+  if (!file_) throw file_error(path, "cannot be opened", errno);
 }
 
 bool LammpsStates::line() {
@@ -345,15 +371,22 @@ std::vector<int> LammpsStates::columns() {
   return out;
 }
 
-// Returns the element, its numbers in `values`.
+// Returns the element, its numbers in `values`: finite ones, and of the orientation a unit quaternion, since LAMMPS
+// writes all digits.
 std::size_t LammpsStates::element(const std::vector<int>& columns, std::array<double, 20>& values) const {
   std::string_view rest = text_;
   for (const int column : columns) {
     double value = 0;
     if (!take(rest, value)) fail("has fewer numbers than columns");
-    if (column >= 0) values[static_cast<std::size_t>(column)] = value;
+    if (column < 0) continue;
+    const auto k = static_cast<std::size_t>(column);
+    if (!(std::fabs(value) <= farthest)) fail(fmt::format("{} is {}", state_columns[k].name, value));
+    values[k] = value;
   }
-  if (!(values[0] >= 1)) fail("has no element's number");
+  if (!(values[0] >= 1) || values[0] != std::floor(values[0])) fail("has no element's number");
+  const double norm = Quaternion(values[4], values[5], values[6], values[7]).norm();
+  if (!(std::fabs(norm - 1) <= norm_slack))
+    fail(fmt::format("the quaternion d2_quat has length {:.6g}, not 1", norm));
   return static_cast<std::size_t>(values[0]) - 1;
 }
 

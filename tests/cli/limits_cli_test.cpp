@@ -1,4 +1,5 @@
 // What the program does where a run outgrows its model.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -186,7 +187,8 @@ TEST_F(Limits, WhatCannotBeRefinedIsRefusedBeforeItRuns) {
 // A relaxation whose chain is bent too far goes on with the finer one.
 TEST_F(Limits, ARelaxationIsRefinedAsWell) {
   spit(dir / "r.toml",
-       "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[bond]\nlaw = \"harmonic\"\n[chain]\nelements = 10\n[contact]\n"
+       "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[bond]\nlaw = "
+       "\"harmonic\"\n[chain]\nelements = 10\n[contact]\n"
        "law = \"none\"\n[[load]]\nkind = \"torque\"\nelements = [0]\ntorque_nN_nm = [0, -110, 0]\n[[load]]\n"
        "kind = \"torque\"\nelements = [-1]\ntorque_nN_nm = [0, 110, 0]\n[run]\nmode = \"relax\"\n"
        "max_steps = 20000\n");
@@ -199,6 +201,38 @@ TEST_F(Limits, ARelaxationIsRefinedAsWell) {
   const double theory = 17 * energy(110) + 2 * energy(55);
   EXPECT_NEAR(log_of("d.fine").back()["bend_eV"], theory, 2e-3 * theory);
   EXPECT_EQ(run("observe d.fine").code, 0);
+}
+
+// At 0.6 of its limit a hot chain without damping gives the steps some of its energy.
+TEST_F(Limits, EnergyDriftIsALimitOfTheWholeRun) {
+  const auto hot = [&](const char* name, const char* step, const char* limits) {
+    spit(dir / name,
+         fmt::format("format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[chain]\nelements = 40\n"
+                     "[damping]\ncontact_viscosity_eV_ps_per_nm2 = 0\nbond_damping_per_ps = 0\n[start]\n"
+                     "temperature_K = 300\n{}[run]\nduration_ps = 20\ntime_step_fs = {}\n",
+                     limits, step));
+  };
+  hot("long.toml", "32", "[limits]\nenergy_drift = 0.01\n");
+  const Outcome o = run("run long.toml --out d --quiet");
+  EXPECT_EQ(o.code, 0) << o.err;
+  EXPECT_THAT(o.err, HasSubstr("the account of energy is off, over the energy that has moved, by"));
+  EXPECT_THAT(o.err, HasSubstr("beyond limits.energy_drift = 0.01"));
+  EXPECT_THAT(o.out, HasSubstr("Limits passed: energy_drift up to 0.0"));
+  const Json limit = limits_of("d").at("limits").back();
+  EXPECT_EQ(limit.at("key"), "energy_drift");
+  EXPECT_EQ(limit.at("tube"), -1);
+  EXPECT_TRUE(limit.at("passed").get<bool>());
+  EXPECT_THAT(slurp(dir / "d/report.html"), HasSubstr("of the energy that had moved; the limit is 1 %"));
+  EXPECT_EQ(run("run long.toml --out e --quiet --on-limit stop").code, 5);
+  // It is judged alike after a resume.
+  EXPECT_EQ(run("run long.toml --out f --quiet --until 7").code, 0);
+  EXPECT_EQ(run("resume f --quiet --until 20").code, 0);
+  EXPECT_EQ(slurp(dir / "f/limits.json"), slurp(dir / "d/limits.json"));
+  hot("short.toml", "10", "");
+  EXPECT_THAT(run("run short.toml --out g --quiet").err, Not(HasSubstr("limits.energy_drift")));
+  EXPECT_LT(limits_of("g").at("limits").back().at("largest").get<double>(), 0.01);
+  hot("unwatched.toml", "32", "[limits]\nenergy_drift = 0\n");
+  EXPECT_THAT(run("run unwatched.toml --out h --quiet").err, Not(HasSubstr("limits.energy_drift")));
 }
 
 }  // namespace

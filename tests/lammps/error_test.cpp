@@ -1,4 +1,7 @@
 // What goes wrong is said in one line, with what to write instead.
+#include <map>
+#include <sstream>
+
 #include "lammps/support.hpp"
 
 namespace ropewalk::test {
@@ -130,6 +133,54 @@ TEST_F(LammpsErrors, ExportAndImportRefuse) {
   EXPECT_TRUE(fs::exists(dir / "out/checkpoint.bin"));
   spit(dir / "out/lammps.json", "{");
   expect("import out", "lammps");
+}
+
+// All that LAMMPS would obey, in a name.
+TEST_F(LammpsErrors, ANameIsNoCommand) {
+  exported(
+      "format = \"ropewalk-scene-1\"\nname = 'x & \"\"\" $(1/0) ${y} # \" shell touch pwned ; &'\n"
+      "parameters = \"cnt-10-10-paper\"\n[rope]\ntubes = 7\nlength_nm = 6.78\n[run]\nduration_ps = 0.3\n",
+      "out");
+  const Outcome o = lmp(0, "out");
+  EXPECT_EQ(o.code, 0) << o.out << o.err;
+  EXPECT_FALSE(fs::exists(dir / "out/pwned"));
+  EXPECT_EQ(run("import out").code, 0) << slurp(dir / "stderr.txt");
+}
+
+// Nothing is written before all of it is read.
+TEST_F(LammpsErrors, AnImportThatFailsLeavesTheRunAsItWas) {
+  exported(
+      "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-paper\"\n[rope]\ntubes = 7\nlength_nm = "
+      "6.78\n[run]\n"
+      "duration_ps = 0.3\n",
+      "out");
+  ASSERT_EQ(lmp(0, "out").code, 0);
+  std::map<std::string, std::string> before;
+  const auto files = [&] {
+    std::map<std::string, std::string> all;
+    for (const auto& entry : fs::directory_iterator(dir / "out"))
+      all[entry.path().filename().string()] = slurp(entry.path());
+    return all;
+  };
+  const std::string last = slurp(dir / "out/lammps-last.dump"), manifest = slurp(dir / "out/manifest.json");
+  std::string wrong = last;
+  const std::size_t line = wrong.rfind('\n', wrong.size() - 2) + 1;
+  std::istringstream words(wrong.substr(line));
+  std::string longer, word;
+  for (int k = 0; words >> word; ++k) longer += (k == 4 ? "3" : word) + " ";
+  spit(dir / "out/lammps-last.dump", wrong.substr(0, line) + longer + "\n");
+  before = files();
+  const Outcome o = run("import out");
+  EXPECT_EQ(o.code, 2);
+  EXPECT_NE(o.err.find("the quaternion d2_quat has length"), std::string::npos) << o.err;
+  EXPECT_EQ(files(), before);
+  spit(dir / "out/lammps-last.dump", last);
+  spit(dir / "out/manifest.json", "{");
+  before = files();
+  EXPECT_EQ(run("import out").code, 2);
+  EXPECT_EQ(files(), before);
+  spit(dir / "out/manifest.json", manifest);
+  EXPECT_EQ(run("import out").code, 0) << slurp(dir / "stderr.txt");
 }
 
 }  // namespace

@@ -52,7 +52,8 @@ TEST_F(LammpsFiles, TubesAreCountedInRows) {
 TEST_F(LammpsFiles, WrongTubesAreRefused) {
   for (const char* text :
        {"", "5,7,0\n", "tubes,elements,type\n", "tubes,elements,type\n5,7\n", "tubes,elements,type\n5,7,2\n",
-        "tubes,elements,type\n0,7,0\n", "tubes,elements,type\n5,7,0,1\n", "tubes,elements,type\nx,7,0\n"}) {
+        "tubes,elements,type\n2000000000,2000000000,0\n", "tubes,elements,type\n0,7,0\n",
+        "tubes,elements,type\n5,7,0,1\n", "tubes,elements,type\nx,7,0\n"}) {
     spit(dir.tubes(), text);
     Topology t = two_types();
     EXPECT_THROW(read_tubes(dir, t), InputError) << text;
@@ -133,6 +134,38 @@ TEST_F(LammpsFiles, DumpsWithOtherColumnsAreRefused) {
   EXPECT_THROW(read(head + "ITEM: ATOMS id x y z\n1 0 0 0\n", s), InputError);
   EXPECT_THROW(read(head + columns + "18 2 0.1 0.2 0.3 1 0 0 0 9 10 11 12 13 14 15 16 17 19 20\n", s), InputError);
   EXPECT_THROW(read(head + columns + "18 1 0.1\n", s), InputError);
+}
+
+// A quaternion of norm 3 placed elements where they are not; a number beyond all integers was cast to one.
+TEST_F(LammpsFiles, NumbersThatLammpsDoesNotWriteAreRefused) {
+  Topology t = published_topology();
+  t.add_tube(1);
+  const std::string head =
+      "ITEM: TIMESTEP\n5\nITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS mm mm mm\n0 1\n0 1\n0 1\nITEM: ATOMS id x y z "
+      "d2_quat[1] d2_quat[2] d2_quat[3] d2_quat[4] vx vy vz omegax omegay omegaz fx fy fz tqx tqy tqz\n";
+  const auto read = [&](const std::string& numbers) {
+    spit(dir.states(), head + numbers + " 1 2 3 4 5 6 7 8 9 10 11 12\n");
+    LammpsStates states(dir.states());
+    State s;
+    Vec3Array force, torque;
+    return states.next(t, s, force, torque);
+  };
+  EXPECT_TRUE(read("1 0 0 0 1 0 0 0"));
+  for (const char* wrong :
+       {"1 0 0 0 3 0 0 0", "1 0 0 0 0 0 0 0", "1 nan 0 0 1 0 0 0", "1 0 inf 0 1 0 0 0", "1 0 0 1e300 1 0 0 0",
+        "1e300 0 0 0 1 0 0 0", "nan 0 0 0 1 0 0 0", "1.5 0 0 0 1 0 0 0", "1 0 0 0 1.00001 0 0 0"})
+    EXPECT_THROW(read(wrong), InputError) << wrong;
+  const std::string title = "step,time_ps,stretch_eV\n";
+  for (const char* row : {"1e300,0,0,0,0,0,0,0,0,0\n", "nan,0,0,0,0,0,0,0,0,0\n", "-1,0,0,0,0,0,0,0,0,0\n",
+                          "0.5,0,0,0,0,0,0,0,0,0\n", "1,0,0,inf,0,0,0,0,0,0\n"}) {
+    spit(dir.rows(), title + row);
+    EXPECT_THROW(read_lammps_rows(dir), InputError) << row;
+  }
+  spit(dir.start(),
+       "{\"format\": \"ropewalk-lammps-1\", \"step\": 1, \"time_ps\": 0, \"time_step_ps\": 1, \"work_eV\": 0, "
+       "\"dissipated_eV\": 0, \"viscosity_inner_nm\": 0, \"viscosity_outer_nm\": 0, \"parameters\": "
+       "[\"../other.toml\"]}");
+  EXPECT_THROW(read_start(dir), InputError);
 }
 
 }  // namespace

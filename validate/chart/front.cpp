@@ -152,8 +152,8 @@ ChartPoint read_point(const std::string& path) {
   const auto wrong = [&] {
     return InputError({path, 0, ""}, "is not a point of this chart", "take it away, or choose another --out");
   };
-  if (!in.is_object() || in.value("format", "") != point_format) throw wrong();
   try {
+    if (!in.is_object() || in.at("format") != point_format) throw wrong();
     ChartPoint p;
     p.key = in.at("key");
     p.error = in.at("error");

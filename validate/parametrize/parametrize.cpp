@@ -14,6 +14,7 @@
 #include <nlohmann/json.hpp>
 
 #include "atomistic/potential.hpp"
+#include "io/failure.hpp"
 #include "io/files.hpp"
 #include "io/parameters_toml.hpp"
 #include "io/processes.hpp"
@@ -64,7 +65,7 @@ int calibrate(const Place& place) {
     return code;
   } catch (const std::exception& e) {
     fs::remove(place.file("-calibration.json"));
-    write_file_atomically(place.file("-error.txt"), std::string(e.what()) + "\n");
+    write_file_atomically(place.file("-error.txt"), failure_words(e) + "\n");
     return 3;
   }
 }

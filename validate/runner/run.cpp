@@ -13,6 +13,7 @@
 
 #include "core/reference.hpp"
 #include "io/data_files.hpp"
+#include "io/failure.hpp"
 #include "io/files.hpp"
 #include "io/grade.hpp"
 #include "io/parameters_toml.hpp"
@@ -154,7 +155,7 @@ Outcome outcome_of(const Task& task, const Run& run) {
   } catch (const NotApplicable& reason) {
     o.not_applicable = reason.what();
   } catch (const std::exception& e) {
-    o.error = e.what();
+    o.error = failure_words(e);
   }
   o.result.seconds = now() - begin;
   std::error_code ignored;
@@ -207,7 +208,7 @@ int work(const Task& task, const Run& run) {
     store(outcome_of(task, run), run);
     return 0;
   } catch (const std::exception& e) {
-    fmt::print(stderr, "ropewalk validate: {}: {}\n", task.of->name, e.what());
+    tell_failure(fmt::format("ropewalk validate: {}", task.of->name).c_str(), e);
     return 3;
   }
 }

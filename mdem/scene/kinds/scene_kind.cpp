@@ -6,6 +6,7 @@
 #include <cassert>
 
 #include "scene/build.hpp"
+#include "scene/memory.hpp"
 #include "scene/scene.hpp"
 
 namespace ropewalk {
@@ -17,8 +18,6 @@ SceneKind chain_kind();
 SceneKind state_kind();
 
 namespace {
-
-constexpr double kilobytes_per_element = 1.0;
 
 std::vector<SceneKind>& all_kinds() {
   static std::vector<SceneKind> kinds = {
@@ -87,10 +86,13 @@ double largest_radius(const Scene& scene) {
 
 void check_size(const TomlTable& t, const std::string& key, double tubes, double elements) {
   const double total = tubes * elements;
-  if (total <= max_elements) return;
-  throw t.error(key, fmt::format("asks for {:.0f} x {:.0f} = {:.3g} elements", tubes, elements, total),
-                fmt::format("at most {:.0e} are allowed; these would take about {:.3g} GB", double{max_elements},
-                            total * kilobytes_per_element * 1e-6));
+  const std::string asks = fmt::format("asks for {:.0f} x {:.0f} = {:.3g} elements", tubes, elements, total);
+  if (total > max_elements)
+    throw t.error(key, asks,
+                  fmt::format("at most {:.0e} are allowed; these would take about {:.3g} GB", double{max_elements},
+                              1e-9 * memory_needed(total)));
+  if (const std::string memory = beyond_memory(total); !memory.empty())
+    throw t.error(key, asks + ", " + memory, "take fewer or shorter tubes or longer elements, or another machine");
 }
 
 Bounds spacing_bounds(const Scene& scene) {

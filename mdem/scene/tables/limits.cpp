@@ -19,6 +19,7 @@ const std::array<Text, limit_count>& texts() {
       {otherwise("0.11", "down to the core gap of the law"), "how much nearer than at rest tubes are pressed"},
       {otherwise("2", "a tenth of the speed of sound along the tube"), "of an element"},
       {otherwise("2.3", "where a tube of this diameter collapses"), "of the contacts across a tube"},
+      {standard("0.05"), "error of the account of energy over the energy that has moved"},
   }};
   return all;
 }

@@ -1,6 +1,8 @@
 // Everything that the future of a simulation depends on, as bytes. Layout: `CheckpointHead`, then the values in the
 // order of visit_checkpoint, which serves both ways. Numbers are as this machine holds them.
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <stdexcept>
 #include <type_traits>
@@ -122,6 +124,49 @@ void Simulation::visit_checkpoint(Archive& archive, Self& self, List& list) {
   visit_forces(archive, self.contact_);
 }
 
+namespace {
+
+// In nm, ps and eV, and in units of these; beyond it a state is no longer one.
+constexpr double largest_number = 1e9;
+
+bool all_within(const std::vector<double>& values) {
+  return std::all_of(values.begin(), values.end(), [](double x) { return std::fabs(x) < largest_number; });
+}
+
+template <class V>
+bool all_xyz_within(const V& v) {
+  return all_within(v.x) && all_within(v.y) && all_within(v.z);
+}
+
+bool are_unit_vectors(const Vec3Array& v) {
+  for (std::size_t i = 0; i < v.size(); ++i)
+    if (!(std::fabs(v[i].norm() - 1) < 1e-3)) return false;
+  return true;
+}
+
+bool could_be(const ListOrigin& list) {
+  return list.skin > 0 && list.skin < largest_number && all_within({list.twist.begin(), list.twist.end()}) &&
+         all_xyz_within(list.position) && are_unit_vectors(list.axis);
+}
+
+}  // namespace
+
+// What a sum over the bytes does not tell: whether a simulation could go on from here.
+bool Simulation::could_go_on(double step_of_scene) const {
+  const State& s = state_;
+  bool fine = time_step_ > 0 && time_step_ < 1.1 * step_of_scene && divided_ >= 1 && divided_ <= 1024 &&
+              s.step >= 0 && list_age_ >= 0 &&
+              all_within({s.time, account_.work, account_.dissipated, account_.heat, gauges_.sums.since});
+  for (const Vec3Array* v : {&s.position, &s.velocity, &s.angular_velocity, &forces_.force, &forces_.torque})
+    fine = fine && all_xyz_within(*v);
+  for (std::size_t i = 0; fine && i < s.size(); ++i) fine = std::fabs(s.orientation[i].norm() - 1) < 1e-3;
+  for (const PointLoad& load : point_loads_)
+    fine = fine && load.element >= 0 && load.element < topology_.elements() && load.force.allFinite() &&
+           load.torque.allFinite();
+  for (const Forces* f : {&inner_, &contact_}) fine = fine && all_xyz_within(f->force) && all_xyz_within(f->torque);
+  return fine;
+}
+
 std::string Simulation::serialise() const {
   Writer write;
   CheckpointHead head{{}, topology_.elements(), topology_.tubes(), stepping_.contact_every};
@@ -148,7 +193,12 @@ void Simulation::restore(const std::string& bytes) {
   ListOrigin list;
   list.position.resize(state_.size());
   list.axis.resize(state_.size());
+  const double step_of_scene = time_step_;
   visit_checkpoint(read, *this, list);
+  if (read.at != bytes.size()) throw std::runtime_error("the checkpoint is longer than the state of this scene");
+  if (!could_go_on(step_of_scene) || !could_be(list))
+    throw std::runtime_error(
+        "the checkpoint holds a state that no run can have: a number is not finite or out of range");
   state_.part = 0;
   list_.skin = list.skin;
   list_.build(topology_, std::move(list.position), std::move(list.axis));

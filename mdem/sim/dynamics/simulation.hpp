@@ -118,6 +118,7 @@ class Simulation {
   double above_minimum(double enough, long most) const;
   template <class Archive, class Self, class ListOrigin>
   static void visit_checkpoint(Archive& archive, Self& self, ListOrigin& list);
+  bool could_go_on(double step_of_scene) const;
 
   Topology topology_;
   Interaction interaction_;
