@@ -310,6 +310,11 @@ void add_bench(CLI::App& app, Verbs& v) {
                 fmt::format("Instruction set of the contact: {} [default: {}]", fmt::join(instruction_sets(), ", "),
                             instruction_sets().front()))
       ->check(CLI::IsMember(instruction_sets()));
+  CLI::Option* lammps =
+      c->add_option("--lammps", v.bench.lammps, "Time lmp-ropewalk on so many ranks against as many threads, by turns")
+          ->check(thread_range());
+  c->add_flag("--plain", v.bench.plain, "With --lammps: its plain forms, pair by pair")->needs(lammps);
+  for (const char* other : {"--after", "--threads", "--instructions"}) lammps->excludes(c->get_option(other));
   c->add_flag("--json", v.bench.json, "JSON");
   c->callback([&v] { v.code = bench_command(v.bench); });
 }
