@@ -97,8 +97,7 @@ void BondVBond::apply(int i, int j) {
   if (evflag) tally(i, j, f, separation);
   double** q = orientations_;
   const double angle = bond_twist_angle(frame_of(quaternion(q[i])), frame_of(quaternion(q[j])));
-  if (std::fabs(angle) >= 0.5 * units::pi)
-    refuse_slip(element_of(*atom, i));
+  if (std::fabs(angle) >= 0.5 * units::pi) refuse_slip(element_of(*atom, i));
 }
 
 void BondVBond::compute(int eflag, int vflag) {

@@ -75,7 +75,8 @@ bool FixMotion::only_known_fixes() const {
   for (int k = 0; k < modify->nfix; ++k) {
     const LMP::Fix* fix = modify->fix[k];
     const std::string name = fix->style;
-    if (fix != this && fix != grip_ && fix != damp_ && name != "property/atom" && name != "print" && name != "balance")
+    if (fix != this && fix != grip_ && fix != damp_ && name != "property/atom" && name != "print" &&
+        name != "balance")
       return false;
   }
   return true;
@@ -100,7 +101,9 @@ void FixMotion::lead_exchanges() {
   reach_for(engine_->skin());
 }
 
-void FixMotion::reach_for(double skin) { comm->cutghostuser = ghost_reach(model_->topology, model_->interaction, skin); }
+void FixMotion::reach_for(double skin) {
+  comm->cutghostuser = ghost_reach(model_->topology, model_->interaction, skin);
+}
 
 void FixMotion::post_integrate() {
   if (!engine_) return;

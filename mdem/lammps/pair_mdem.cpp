@@ -66,8 +66,8 @@ void PairMdem::init_style() {
   }
   if (!engine_) Pair::init_style();  // which asks for a list of pairs
   const bool mixed = model_->interaction.precision == Interaction::Precision::mixed;
-  LMP::utils::logmesg(lmp, engine_ ? "Forces by the engine of the simulator, " + RankEngine::instructions() + ", in " +
-                                         (mixed ? "mixed" : "double") + " precision\n"
+  LMP::utils::logmesg(lmp, engine_ ? "Forces by the engine of the simulator, " + RankEngine::instructions() +
+                                         ", in " + (mixed ? "mixed" : "double") + " precision\n"
                                    : std::string("Forces by the plain forms, pair by pair\n"));
 }
 

@@ -1,6 +1,6 @@
-// pair_style mdem/paper DIR [plain], mdem/line DIR [plain]: the contact law of the scene in DIR. The simulator's engine
-// computes all forces of the model at once, those of bonds and damping as well. With `plain`, pair by pair, the forms
-// of mdem/model do: slowly, for comparison, and for energies and virials of atoms.
+// pair_style mdem/paper DIR [plain], mdem/line DIR [plain]: the contact law of the scene in DIR. The simulator's
+// engine computes all forces of the model at once, those of bonds and damping as well. With `plain`, pair by pair,
+// the forms of mdem/model do: slowly, for comparison, and for energies and virials of atoms.
 #pragma once
 
 #include "lammps/rank_engine.hpp"
@@ -32,7 +32,7 @@ class PairMdem : public LMP::Pair {
   std::string law_;
   std::shared_ptr<const LammpsModel> model_;
   std::unique_ptr<RankEngine> engine_;  // none: plain
-  std::vector<Vector3> axis_;  // of own and ghost elements
+  std::vector<Vector3> axis_;           // of own and ghost elements
   double energy_ = 0;
 };
 

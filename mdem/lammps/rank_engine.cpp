@@ -57,9 +57,7 @@ void AllRanks::join(double& largest, double (&sums)[3]) const {
 }
 
 RankEngine::RankEngine(LMP::LAMMPS* lmp, std::shared_ptr<const LammpsModel> model)
-    : lmp_(lmp),
-      model_(std::move(model)),
-      list_(model_->interaction, model_->interaction.law->default_skin()) {
+    : lmp_(lmp), model_(std::move(model)), list_(model_->interaction, model_->interaction.law->default_skin()) {
   if (lmp->comm->nprocs > 1) ranks_ = std::make_unique<AllRanks>(lmp->world);
   list_.others = ranks_.get();
 }
@@ -75,8 +73,7 @@ void RankEngine::take(const Stretch& of) {
   const double* q = quaternions_[of.atom];
   QuaternionArray& to = state_.orientation;
   double *w = to.w.data() + at, *x = to.x.data() + at, *y = to.y.data() + at, *z = to.z.data() + at;
-  for (int k = 0; k < of.count; ++k)
-    w[k] = q[4 * k], x[k] = q[4 * k + 1], y[k] = q[4 * k + 2], z[k] = q[4 * k + 3];
+  for (int k = 0; k < of.count; ++k) w[k] = q[4 * k], x[k] = q[4 * k + 1], y[k] = q[4 * k + 2], z[k] = q[4 * k + 3];
 }
 
 void RankEngine::give(const Stretch& of) {
@@ -88,8 +85,7 @@ void RankEngine::give(const Stretch& of) {
   double* q = quaternions_[of.atom];
   const QuaternionArray& from = state_.orientation;
   const double *w = from.w.data() + at, *x = from.x.data() + at, *y = from.y.data() + at, *z = from.z.data() + at;
-  for (int k = 0; k < of.count; ++k)
-    q[4 * k] = w[k], q[4 * k + 1] = x[k], q[4 * k + 2] = y[k], q[4 * k + 3] = z[k];
+  for (int k = 0; k < of.count; ++k) q[4 * k] = w[k], q[4 * k + 1] = x[k], q[4 * k + 2] = y[k], q[4 * k + 3] = z[k];
 }
 
 void RankEngine::take_own() {

@@ -1,11 +1,11 @@
-// The force engine of the simulator over the elements of one rank: its own, and its ghosts as copies. A pair or bond
-// belongs to the owner of its lower element; LAMMPS brings the forces on ghosts back to their owners. LAMMPS makes no
-// list of pairs. Its elements are exchanged when the engine's list asks for it, on all ranks at once.
+// The force engine of the simulator over the elements of one rank: its own, and its ghosts as copies. A pair or
+// bond belongs to the owner of its lower element; LAMMPS brings the forces on ghosts back to their owners. LAMMPS
+// makes no list of pairs. Its elements are exchanged when the engine's list asks for it, on all ranks at once.
 //
-// Where nothing but our own fixes acts on elements, the engine leads: its state of own elements is the one that moves,
-// by its own forces. LAMMPS's arrays are up to date in every step for the shared elements alone, which are ghosts of
-// other ranks or have loads; for all of them before an exchange and an output. Keeping both copies of all elements in
-// every step would cost as much as the bonds.
+// Where nothing but our own fixes acts on elements, the engine leads: its state of own elements is the one that
+// moves, by its own forces. LAMMPS's arrays are up to date in every step for the shared elements alone, which are
+// ghosts of other ranks or have loads; for all of them before an exchange and an output. Keeping both copies of all
+// elements in every step would cost as much as the bonds.
 #pragma once
 
 #include <memory>
@@ -46,8 +46,8 @@ class RankEngine {
   double kinetic_energy() const;
   // Position, velocity, spin and orientation of own elements from LAMMPS's arrays.
   void take_own();
-  // The same to them, with forces and torques where the engine leads: of all own elements, of the shared ones without
-  // forces, of some atoms likewise.
+  // The same to them, with forces and torques where the engine leads: of all own elements, of the shared ones
+  // without forces, of some atoms likewise.
   void give_own();
   void give_shared();
   void give(const std::vector<int>& atoms);
@@ -102,8 +102,8 @@ class RankEngine {
   bool shared_known_ = false;
   bool leads_ = false;
   bool shared_forces_there_ = false, all_forces_there_ = false;  // in LAMMPS's arrays, not yet taken from there
-  std::vector<Change> changes_;        // of each of own_
-  std::vector<Fastest> fastest_of_;    // likewise, in the last move
+  std::vector<Change> changes_;                                  // of each of own_
+  std::vector<Fastest> fastest_of_;                              // likewise, in the last move
   Fastest fastest_;
   NeighbourList list_;
   long steps_ = 0;  // since the list was built

@@ -234,7 +234,8 @@ std::string lammps_input(const LammpsScript& s) {
   const auto weight = [&](int bonds) { return bonds <= s.excluded_elements ? 0 : 1; };
   std::string text = fmt::format(
       "# {}. Run with lmp-ropewalk. Units are nm, ps and eV, in which LAMMPS's \"lj\" has all factors 1.\n"
-      "# On the command line: -var steps N, -var restart FILE (to go on from a restart file), -var forces plain (pair\n"
+      "# On the command line: -var steps N, -var restart FILE (to go on from a restart file), -var forces plain "
+      "(pair\n"
       "# by pair, slowly, as a check).\n"
       "variable dir index .\n"
       "variable forces index engine\n"

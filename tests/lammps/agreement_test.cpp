@@ -134,6 +134,27 @@ TEST_P(FiveStatesTest, ForcesEnergiesAndVirialAgree) {
   }
 }
 
+// Single precision in the pairs rounds at 1e-7 of the forces of a pair.
+TEST_P(FiveStatesTest, MixedPrecisionIsThatOfTheSimulator) {
+  std::string text = driven_scene(GetParam());
+  const std::string precision = "precision = \"double\"";
+  text.replace(text.find(precision), precision.size(), "precision = \"mixed\"");
+  exported(text, "mixed");
+  edit("mixed", "reset_timestep 0", "reset_timestep 1");
+  Scene mixed = read_scene((dir / "scene.toml").string());
+  Prepared here = prepare(mixed);
+  here.state = start(mixed, here).state();
+  const Forces expected = forces_here(here, here.time_step, false);
+  const Outcome o = lmp(2, "mixed", "-in in.rope -var steps 0");
+  ASSERT_EQ(o.code, 0) << o.out << o.err;
+  EXPECT_NE(o.out.find("in mixed precision"), std::string::npos) << o.out;
+  const Left left = left_by(dir / "mixed", here.topology);
+  EXPECT_LT(relative_difference(expected.force, left.force), 1e-6);
+  EXPECT_LT(relative_difference(expected.torque, left.torque), 5e-6);  // differences of forces
+  const Forces full = forces_here(prepared, here.time_step, false);
+  EXPECT_GT(relative_difference(full.force, left.force), 1e-10);  // it is not the double one
+}
+
 TEST_P(FiveStatesTest, TwoHundredStepsAgree) {
   constexpr int steps = 200;
   Simulation native = start(scene, prepared);

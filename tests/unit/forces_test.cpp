@@ -118,7 +118,8 @@ TEST_P(ForcesTest, FastEqualsReference) {
   expect_equal(fast(0.4, 2), reference, tolerance());
 }
 
-// The forces as several processes compute them: `owner` of each element; copies are what is in reach of own elements.
+// The forces as several processes compute them: `owner` of each element; copies are what is in reach of own
+// elements.
 Forces by_parts(const Topology& topology, const Interaction& in, const State& state, const std::vector<int>& owner,
                 double skin = 0.2) {
   Forces sum(state.size());
@@ -175,7 +176,8 @@ TEST_P(ForcesTest, PartsOfTheSceneAddUpToIt) {
     one.push_back(i == 100 ? 1 : 0);
     pairs.push_back(i / 2 % 2);
   }
-  for (const auto& owner : {slices, scattered, one, pairs}) expect_equal(by_parts(topology, in, state, owner), whole, mixed);
+  for (const auto& owner : {slices, scattered, one, pairs})
+    expect_equal(by_parts(topology, in, state, owner), whole, mixed);
 }
 
 // A hairpin whose arms do not touch by the exclusion, cut so that a process has both arms and not the bend.
@@ -188,7 +190,7 @@ TEST(PartOfScene, TheExclusionAlongATubeIsThatOfTheScene) {
   for (int i = 0; i < topology.elements(); ++i) {
     const int back = i - arm - head;
     const auto at = static_cast<std::size_t>(i);
-    state.position.set(at, i < arm      ? Vector3(0, 0, a * i)
+    state.position.set(at, i < arm     ? Vector3(0, 0, a * i)
                            : back >= 0 ? Vector3(apart, 0, a * (arm - 1 - back))
                                        : Vector3(0.5 * apart, 0, a * (arm + 2 + i - arm)));
   }

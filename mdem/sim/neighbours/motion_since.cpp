@@ -63,9 +63,7 @@ double MotionSince::bound(Change all, double within, double lever) {
 void MotionSince::follow(const Change& change) {
   const double determinant = arms2_[0] * arms2_[2] - arms2_[1] * arms2_[1];
   constexpr double fewest = 0.01;  // nm^2, mean squared distance from the axis: less in a single tube along z
-  if (!(arms2_[0] > fewest * elements_) ||
-      !(determinant > 1e-6 * arms2_[0] * arms2_[2]))
-    return;
+  if (!(arms2_[0] > fewest * elements_) || !(determinant > 1e-6 * arms2_[0] * arms2_[2])) return;
   twist_.sine = (change.spin * arms2_[2] - change.spin_z * arms2_[1]) / determinant;
   twist_.slope = (change.spin_z * arms2_[0] - change.spin * arms2_[1]) / determinant;
 }

@@ -28,8 +28,8 @@ class MotionSince {
   Change change(const State& state, double lever, std::ptrdiff_t begin, std::ptrdiff_t end) const;
 
   // Half of the largest possible change (nm) of the distance of two points of elements whose centres were no more
-  // than `within` (nm) apart, for the change of all (own) elements. It also fits the common twist, against which the next
-  // change is measured; the change must therefore be summed in a fixed order.
+  // than `within` (nm) apart, for the change of all (own) elements. It also fits the common twist, against which
+  // the next change is measured; the change must therefore be summed in a fixed order.
   double bound(Change all, double within, double lever);
 
   const Vec3Array& position() const { return position_; }
@@ -45,8 +45,8 @@ class MotionSince {
 
   Vec3Array position_, axis_;
   TwistOfAll twist_;
-  double farthest_ = 0;          // nm: largest distance of an element from the axis of the twist
-  double elements_ = 0;          // of all processes
+  double farthest_ = 0;  // nm: largest distance of an element from the axis of the twist
+  double elements_ = 0;  // of all processes
   const AllProcesses* others_ = nullptr;
   double arms2_[3] = {0, 0, 0};  // sums of the squared distances from the axis, times z^0, z^1 and z^2
 };

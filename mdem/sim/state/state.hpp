@@ -71,8 +71,9 @@ struct TubeType {
 };
 
 // Elements of a scene that one process owns, with copies of those near them, which other processes own. It computes
-// the pairs (i, j > i) and the bonds (i, i + 1) of its own elements i; copies only receive forces. So every pair and
-// bond of the scene belongs to one process. Tubes of such a topology are pieces: consecutive elements of one tube.
+// the pairs (i, j > i) and the bonds (i, i + 1) of its own elements i; copies only receive forces. So every pair
+// and bond of the scene belongs to one process. Tubes of such a topology are pieces: consecutive elements of one
+// tube.
 struct PartOfScene {
   std::vector<char> own;      // of each element
   std::vector<int> number;    // of each element, in the scene

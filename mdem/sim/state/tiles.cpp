@@ -44,15 +44,15 @@ std::vector<Piece> pieces_of(const Topology& topology, const Vec3Array& position
   const auto finite = [](double x) { return std::isfinite(x) ? x : 0.0; };
   for (int t = 0; t < topology.tubes(); ++t) {
     for (const Segment& tube : own_segments(topology, t))
-    for (int from = tube.begin; from < tube.end;) {
-      Piece piece;
-      piece.of = {t, from, end_of_piece(from, tube)};
-      for (int i = from; i < piece.of.end; ++i) piece.cost += cost[static_cast<std::size_t>(i)];
-      const auto middle = static_cast<std::size_t>((from + piece.of.end) / 2);
-      piece.centre = {finite(position.x[middle]), finite(position.y[middle]), finite(position.z[middle])};
-      pieces.push_back(piece);
-      from = piece.of.end;
-    }
+      for (int from = tube.begin; from < tube.end;) {
+        Piece piece;
+        piece.of = {t, from, end_of_piece(from, tube)};
+        for (int i = from; i < piece.of.end; ++i) piece.cost += cost[static_cast<std::size_t>(i)];
+        const auto middle = static_cast<std::size_t>((from + piece.of.end) / 2);
+        piece.centre = {finite(position.x[middle]), finite(position.y[middle]), finite(position.z[middle])};
+        pieces.push_back(piece);
+        from = piece.of.end;
+      }
   }
   return pieces;
 }

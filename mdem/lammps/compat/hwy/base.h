@@ -1,6 +1,6 @@
 // The operations of the Highway library that the kernels of mdem/sim use, over the compiler's own vectors: for
-// programs that must not link Debian's Highway, whose licence (Apache-2.0) does not go with GPL-2. Names and meanings
-// are those of its manual; nothing is copied from it. GCC; for x86-64 also with the compiler's intrinsics.
+// programs that must not link Debian's Highway, whose licence (Apache-2.0) does not go with GPL-2. Names and
+// meanings are those of its manual; nothing is copied from it. GCC; for x86-64 also with the compiler's intrinsics.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,8 @@
 #define HWY_NOINLINE __attribute__((noinline))
 #define HWY_LIKELY(x) __builtin_expect(static_cast<bool>(x), 1)
 
-// Instruction sets, best first. The last one is what the compiler makes without being told; HWY_SCALAR is never made.
+// Instruction sets, best first. The last one is what the compiler makes without being told; HWY_SCALAR is never
+// made.
 #define HWY_AVX3 1
 #define HWY_AVX2 2
 #define HWY_SSSE3 4
@@ -43,8 +44,7 @@ inline std::int64_t SupportedTargets() {
   std::int64_t targets = HWY_STATIC_TARGET;
 #if defined(__x86_64__)
   const auto has = [](bool yes, std::int64_t set) { return yes ? set : 0; };
-  const bool v3 =
-      __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi2");
+  const bool v3 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi2");
   targets |= has(v3, HWY_AVX2);
   targets |= has(v3 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
                      __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl"),

@@ -1,5 +1,5 @@
-// Includes the file HWY_TARGET_INCLUDE once for every instruction set but the last, which is made by the rest of the
-// translation unit.
+// Includes the file HWY_TARGET_INCLUDE once for every instruction set but the last, which is made by the rest of
+// the translation unit.
 #include "hwy/base.h"
 
 #ifndef ROPEWALK_HWY_FOREACH_TARGET

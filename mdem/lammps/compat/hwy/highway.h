@@ -132,10 +132,9 @@ struct IntegerOf<8> {
 #define HWY_NAMESPACE N_AVX3
 #define ROPEWALK_HWY_BYTES 64
 #define HWY_ATTR __attribute__((target("avx2,fma,bmi,bmi2,avx512f,avx512bw,avx512dq,avx512vl")))
-#define HWY_BEFORE_NAMESPACE()                                                               \
-  _Pragma("GCC push_options")                                                                \
-      _Pragma("GCC target(\"avx2,fma,bmi,bmi2,avx512f,avx512bw,avx512dq,avx512vl\")") \
-          static_assert(true, "")
+#define HWY_BEFORE_NAMESPACE() \
+  _Pragma("GCC push_options")  \
+      _Pragma("GCC target(\"avx2,fma,bmi,bmi2,avx512f,avx512bw,avx512dq,avx512vl\")") static_assert(true, "")
 #define HWY_AFTER_NAMESPACE() _Pragma("GCC pop_options") static_assert(true, "")
 #elif HWY_TARGET == HWY_AVX2
 #define HWY_NAMESPACE N_AVX2
@@ -612,7 +611,8 @@ HWY_INLINE Vec<D> ConcatLowerLower(D, VectorOf<D> high, VectorOf<D> low) {
 }
 template <class D>
 HWY_INLINE Vec<D> ConcatUpperUpper(D, VectorOf<D> high, VectorOf<D> low) {
-  return detail::shuffled(low, high, [](std::size_t k) { return k < D::lanes / 2 ? k + D::lanes / 2 : k + D::lanes; });
+  return detail::shuffled(low, high,
+                          [](std::size_t k) { return k < D::lanes / 2 ? k + D::lanes / 2 : k + D::lanes; });
 }
 template <class D>
 HWY_INLINE VectorOf<D> SwapAdjacentBlocks(VectorOf<D> v) {
