@@ -336,6 +336,11 @@ void add_bench(CLI::App& app, Verbs& v) {
       ->delimiter(',')
       ->check(thread_range());
   add_instructions(c, v.bench.instructions, "the contact", instruction_sets().front());
+  CLI::Option* lammps = c->add_option("--lammps", v.bench.lammps,
+                                      "Time lmp-ropewalk on so many ranks against as many threads, by turns")
+                            ->check(thread_range());
+  c->add_flag("--plain", v.bench.plain, "With --lammps: its plain forms, pair by pair")->needs(lammps);
+  for (const char* other : {"--after", "--threads", "--instructions"}) lammps->excludes(c->get_option(other));
   c->add_flag("--json", v.bench.json, "JSON");
   c->callback([&v] { v.code = bench_command(v.bench); });
 }

@@ -71,6 +71,11 @@ double bench_after(const std::string& name) {
   return s ? s->after : 0;
 }
 
+std::string bench_scene_text(const std::string& name, const std::string& law) {
+  const BenchScene* s = named(name);
+  return s ? text_of(*s, law == "paper") : "";
+}
+
 Scene bench_scene(const std::string& name, const std::string& law) {
   if (const BenchScene* s = named(name)) return scene_of_text(text_of(*s, law == "paper"), name);
   if (!std::filesystem::exists(name))

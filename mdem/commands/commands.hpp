@@ -157,8 +157,11 @@ struct BenchArguments {
   std::vector<int> threads = {1};  // measured one after another
   bool list = false;
   bool json = false;
+  int lammps = 0;      // ranks of LAMMPS, measured against as many threads here; 0: only here
+  bool plain = false;  // LAMMPS by the plain forms
 };
 int bench_command(const BenchArguments& arguments);
+int bench_lammps(const BenchArguments& arguments);
 
 struct PlanArguments {
   std::string scene;
@@ -178,6 +181,7 @@ struct ExportArguments {
   std::string scene;   // a file, or the directory of a run
   std::string lammps;  // directory to make
   bool force = false;
+  bool quiet = false;
 };
 int export_command(const ExportArguments& arguments);
 

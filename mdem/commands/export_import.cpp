@@ -151,10 +151,12 @@ int export_command(const ExportArguments& a) {
     run.scene = a.scene;
     run.out = a.lammps;
     run.force = a.force;
+    run.quiet = a.quiet;
     begin_run(run);
   }
   write_lammps_files(to);
-  fmt::print("{0} written. Go on with: cd {0} && mpirun -np 2 lmp-ropewalk -in in.rope\n", to.path);
+  if (!a.quiet)
+    fmt::print("{0} written. Go on with: cd {0} && mpirun -np 2 lmp-ropewalk -in in.rope\n", to.path);
   return 0;
 }
 

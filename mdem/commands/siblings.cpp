@@ -22,23 +22,21 @@ struct Sibling {
 constexpr Sibling siblings[] = {
     {"calibrate", "calibrate", false}, {"validate", "validate", false}, {"parametrize", "validate", true}};
 
-// Beside this program, as installed; in the folder of its own, as built; else on the PATH.
-std::string find_sibling(const std::string& verb) {
-  const std::string name = "ropewalk-" + verb;
+}  // namespace
+
+std::string find_program(const std::string& folder, const std::string& name) {
   std::error_code error;
   const fs::path here = fs::read_symlink("/proc/self/exe", error).parent_path();
-  for (const fs::path& place : {here / name, here / ".." / verb / name})
+  for (const fs::path& place : {here / name, here / folder / name, here / ".." / folder / name})
     if (fs::is_regular_file(place, error)) return place.lexically_normal().string();
   return name;
 }
-
-}  // namespace
 
 void hand_over_to_sibling(char** argv) {
   if (!argv[0] || !argv[1]) return;
   for (const Sibling& sibling : siblings) {
     if (sibling.verb != std::string(argv[1])) continue;
-    const std::string program = find_sibling(sibling.program);
+    const std::string program = find_program(sibling.program, std::string("ropewalk-") + sibling.program);
     give_back_cores();
     execvp(program.c_str(), sibling.keeps_verb ? argv : argv + 1);
     throw InputError({"", 0, sibling.verb}, fmt::format("the program {} cannot be started", program),

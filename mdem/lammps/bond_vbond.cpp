@@ -1,5 +1,6 @@
 #include "lammps/bond_vbond.hpp"
 
+#include "lammps/pair_mdem.hpp"
 #include "memory.h"
 #include "neighbor.h"
 
@@ -63,6 +64,25 @@ void BondVBond::tally(int i, int j, const BondForce<double>& f, const Vector3& s
   }
 }
 
+void BondVBond::refuse_slip(int element) {
+  refuse_one(lmp,
+             "step " + std::to_string(update->ntimestep) + ", element " + std::to_string(element) +
+                 ": the bond to the next element is twisted by 90 degrees, where its torque is largest: it is "
+                 "about to slip and forget a turn",
+             "lower the twisting moment");
+}
+
+// The engine has computed the bonds with the contact.
+void BondVBond::report(RankEngine& engine) {
+  sum_ = engine.bond_energy();
+  if (eflag_global) energy += sum_.total();
+  if (vflag_global) {
+    const std::array<double, 6> all = engine.virial(Parts::bonds);
+    for (std::size_t k = 0; k < 6; ++k) virial[k] += all[k];
+  }
+  if (engine.slipping_element() >= 0) refuse_slip(engine.slipping_element());
+}
+
 void BondVBond::apply(int i, int j) {
   const Vector3 separation = vector(atom->x[j]) - vector(atom->x[i]);
   const BondForce<double> f = evaluate(i, j, separation);
@@ -77,17 +97,13 @@ void BondVBond::apply(int i, int j) {
   if (evflag) tally(i, j, f, separation);
   double** q = orientations_;
   const double angle = bond_twist_angle(frame_of(quaternion(q[i])), frame_of(quaternion(q[j])));
-  if (std::fabs(angle) >= 0.5 * units::pi)
-    refuse_one(lmp,
-               "step " + std::to_string(update->ntimestep) + ", element " + std::to_string(element_of(*atom, i)) +
-                   ": the bond to the next element is twisted by 90 degrees, where its torque is largest: it is "
-                   "about to slip and forget a turn",
-               "lower the twisting moment");
+  if (std::fabs(angle) >= 0.5 * units::pi) refuse_slip(element_of(*atom, i));
 }
 
 void BondVBond::compute(int eflag, int vflag) {
   ev_init(eflag, vflag);
   sum_ = {};
+  if (RankEngine* engine = engine_of(lmp)) return report(*engine);
   orientations_ = orientations(lmp);
   for_bonds(*atom, neighbor->bondlist, neighbor->nbondlist, [&](int i, int j) { apply(i, j); });
 }

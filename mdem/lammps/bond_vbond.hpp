@@ -2,7 +2,7 @@
 #pragma once
 
 #include "bond.h"
-#include "lammps/shared.hpp"
+#include "lammps/rank_engine.hpp"
 
 namespace ropewalk::lammps {
 
@@ -24,6 +24,8 @@ class BondVBond : public LMP::Bond {
 
  private:
   BondForce<double> evaluate(int i, int j, const Vector3& separation) const;
+  void report(RankEngine& engine);
+  [[noreturn]] void refuse_slip(int element);
   void apply(int i, int j);
   void tally(int i, int j, const BondForce<double>& f, const Vector3& separation);
 

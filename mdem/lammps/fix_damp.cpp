@@ -43,6 +43,10 @@ void FixDamp::bonds() {
 }
 
 void FixDamp::pre_reverse(int, int) {
+  if (const RankEngine* engine = engine_of(lmp)) {
+    power_ = engine->damping_power();
+    return;
+  }
   power_ = 0;
   if (model_->interaction.has_contact() && model_->interaction.damped_contact()) contacts();
   if (model_->interaction.damping.bond.rate > 0) bonds();

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "lammps/pair_mdem.hpp"
+
 namespace ropewalk::lammps {
 namespace {
 
@@ -74,7 +76,14 @@ void FixGrip::share(std::vector<double>& values) const {
   MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE, MPI_SUM, world);
 }
 
+// Where the engine leads, LAMMPS's arrays are behind.
+RankEngine* FixGrip::leading_engine() const {
+  RankEngine* engine = engine_of(lmp);
+  return engine && engine->leads() ? engine : nullptr;
+}
+
 void FixGrip::gather() {
+  if (RankEngine* engine = leading_engine()) engine->give(atom_);
   double** q = orientations(lmp);
   for (std::size_t k = 0; k < atom_.size(); ++k) {
     const bool own = owned(k);
@@ -111,6 +120,7 @@ void FixGrip::post_force(int) {
 }
 
 double FixGrip::own_power() {
+  if (RankEngine* engine = leading_engine()) engine->give(atom_);
   for (std::size_t k = 0; k < atom_.size(); ++k)
     if (owned(k)) {
       state_.velocity.set(k, vector(atom->v[atom_[k]]));
@@ -129,6 +139,7 @@ double FixGrip::constrain(double time, double kick) {
       store(atom->v[atom_[k]], state_.velocity[k]);
       store(atom->omega[atom_[k]], state_.angular_velocity[k]);
     }
+  if (RankEngine* engine = leading_engine()) engine->take_velocities(atom_);
   return whole_ && comm->me > 0 ? 0.0 : work;  // if whole_, every rank has computed the total
 }
 

@@ -7,6 +7,8 @@
 
 namespace ropewalk::lammps {
 
+class RankEngine;
+
 class FixGrip : public LMP::Fix {
  public:
   FixGrip(LMP::LAMMPS* lmp, int count, char** words);
@@ -16,6 +18,8 @@ class FixGrip : public LMP::Fix {
   void setup(int vflag) override { post_force(vflag); }
   void post_force(int vflag) override;
 
+  // Of the elements that it acts on, on this rank; -1: on another one.
+  const std::vector<int>& atoms() const { return atom_; }
   // Work per time of the loads on this rank's elements, eV/ps.
   double own_power();
   // Sets constrained velocities after a kick by the present forces. The kick lasts half as long as the drift.
@@ -25,6 +29,7 @@ class FixGrip : public LMP::Fix {
   void free_parts(double time, double** linear, double** angular);
 
  private:
+  RankEngine* leading_engine() const;
   void use(const std::vector<int>& elements);
   void gather();
   void share(std::vector<double>& values) const;

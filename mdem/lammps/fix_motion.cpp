@@ -9,6 +9,7 @@
 #include "lammps/fix_grip.hpp"
 #include "lammps/pair_mdem.hpp"
 #include "neighbor.h"
+#include "output.h"
 #include "sim/dynamics/blow_up.hpp"
 #include "sim/state/motion.hpp"
 #include "timer.h"
@@ -36,6 +37,8 @@ FixMotion::FixMotion(LMP::LAMMPS* lmp, int count, char** words) : Fix(lmp, count
            std::string("write: fix motion all ") + words[2]);
   model_ = loaded(lmp, words[2]);
   time_integrate = 1;
+  force_reneighbor = 1;  // where the engine asks for it
+  next_reneighbor = -1;
   restart_global = 1;
   comm_forward = 4;
   vector_flag = 1;
@@ -49,7 +52,7 @@ FixMotion::FixMotion(LMP::LAMMPS* lmp, int count, char** words) : Fix(lmp, count
   }
 }
 
-int FixMotion::setmask() { return PRE_NEIGHBOR | POST_NEIGHBOR | PRE_FORCE; }
+int FixMotion::setmask() { return POST_INTEGRATE | PRE_EXCHANGE | PRE_NEIGHBOR | POST_NEIGHBOR | PRE_FORCE; }
 
 void FixMotion::init() {
   check_atoms(lmp, style);
@@ -60,6 +63,60 @@ void FixMotion::init() {
     refuse(lmp, "the time step is not that of the export", "take it from in.rope, or export a scene with another");
   grip_ = find_fix<FixGrip>(lmp);
   damp_ = find_fix<FixDamp>(lmp);
+  engine_ = engine_of(lmp);
+  if (engine_) {
+    lead_exchanges();
+    engine_->lead(engine_may_lead());
+  }
+}
+
+// Fixes that read or move elements in their own ways find them in LAMMPS's arrays.
+bool FixMotion::only_known_fixes() const {
+  for (int k = 0; k < modify->nfix; ++k) {
+    const LMP::Fix* fix = modify->fix[k];
+    const std::string name = fix->style;
+    if (fix != this && fix != grip_ && fix != damp_ && name != "property/atom" && name != "print" &&
+        name != "balance")
+      return false;
+  }
+  return true;
+}
+
+// Whether LAMMPS exchanges elements in this step, for whatever reason.
+bool FixMotion::exchanged_now() const {
+  const auto now = update->ntimestep;
+  if (output->restart_flag && output->next_restart == now) return true;
+  for (int k = 0; k < modify->nfix; ++k)
+    if (modify->fix[k]->force_reneighbor && modify->fix[k]->next_reneighbor == now) return true;
+  return false;
+}
+
+// LAMMPS exchanges elements when this fix says so, and at no other time; ghosts reach as far as the engine's list.
+void FixMotion::lead_exchanges() {
+  neighbor->every = 1;
+  neighbor->delay = MAXSMALLINT;
+  neighbor->dist_check = 0;
+  neighbor->skin = 0;
+  atom->sortfreq = 0;  // elements of a tube stay side by side
+  reach_for(engine_->skin());
+}
+
+void FixMotion::reach_for(double skin) {
+  comm->cutghostuser = ghost_reach(model_->topology, model_->interaction, skin);
+}
+
+void FixMotion::post_integrate() {
+  if (!engine_) return;
+  if (engine_->stale()) next_reneighbor = update->ntimestep;
+  if (!engine_->leads()) return;
+  if (exchanged_now())
+    engine_->give_own();
+  else
+    engine_->give_shared();
+}
+
+void FixMotion::pre_exchange() {
+  if (engine_) reach_for(engine_->choose_skin());
 }
 
 // Stops the run if an element has been lost. LAMMPS itself counts atoms only when it prints, and a script may tell
@@ -85,7 +142,8 @@ void FixMotion::check_masses() {
 
 // Checks the ghost cutoff before LAMMPS searches the ghosts for the other ends of bonds.
 void FixMotion::setup_pre_neighbor() {
-  const double reach = ghost_reach(model_->topology, model_->interaction, neighbor->skin);
+  const double reach =
+      ghost_reach(model_->topology, model_->interaction, engine_ ? engine_->skin() : neighbor->skin);
   const double has = *std::min_element(comm->cutghost, comm->cutghost + 3);
   if (has < reach * (1 - 1e-12))
     refuse(lmp,
@@ -100,9 +158,16 @@ void FixMotion::setup_pre_force(int vflag) {
 }
 
 // Sends the orientations to ghosts. LAMMPS itself does so only when it builds lists.
-void FixMotion::pre_force(int) { send_to_ghosts(*comm, this, 0); }
+void FixMotion::pre_force(int) {
+  if (engine_ && neighbor->ago == 0) {
+    engine_->share_none();
+    if (grip_) engine_->share(grip_->atoms().data(), static_cast<int>(grip_->atoms().size()));
+  }
+  send_to_ghosts(*comm, this, 0);
+}
 
 int FixMotion::pack_forward_comm(int count, int* list, double* buffer, int, int*) {
+  if (engine_ && neighbor->ago == 0) engine_->share(list, count);
   double** q = orientations(lmp);
   for (int k = 0; k < count; ++k) std::copy_n(q[list[k]], 4, buffer + 4 * k);
   return 4 * count;
@@ -114,6 +179,12 @@ void FixMotion::unpack_forward_comm(int count, int first, double* buffer) {
 }
 
 void FixMotion::move(double dt) {
+  if (engine_) {
+    if (!engine_->leads()) engine_->take_own();
+    engine_->move(dt);
+    if (!engine_->leads()) engine_->give_own();
+    return;
+  }
   double** q = orientations(lmp);
   const auto n = static_cast<std::size_t>(atom->nlocal);
   if (moved_.size() != n) moved_ = State(n);
@@ -135,6 +206,7 @@ void FixMotion::move(double dt) {
 }
 
 double FixMotion::own_kinetic_energy() const {
+  if (engine_ && engine_->leads()) return engine_->kinetic_energy();
   double sum = 0;
   for (int i = 0; i < atom->nlocal; ++i) {
     const TubeType& type = type_of(*model_, *atom, i);
@@ -199,6 +271,7 @@ void FixNve::setup(int) {
     store(atom->f[i], vector(last[i]));
     store(atom->torque[i], vector(last[i] + 3));
   }
+  if (engine_) engine_->use_lammps_forces();
 }
 
 // The kick of translation or rotation. Returns the energy that the local damping has dissipated.
@@ -219,9 +292,13 @@ double FixNve::push(double alpha, double TubeType::*inertia, double dt, double**
 
 void FixNve::kick(double dt, double time) {
   if (grip_) work_ += 0.5 * dt * grip_->own_power();
-  const double alpha = damp_ ? damp_->local() : 0.0;
-  dissipated_ += push(alpha, &TubeType::mass, dt, atom->v, atom->f);
-  dissipated_ += push(alpha, &TubeType::inertia, dt, atom->omega, atom->torque);
+  if (engine_ && engine_->leads()) {
+    engine_->kick(dt);
+  } else {
+    const double alpha = damp_ ? damp_->local() : 0.0;
+    dissipated_ += push(alpha, &TubeType::mass, dt, atom->v, atom->f);
+    dissipated_ += push(alpha, &TubeType::inertia, dt, atom->omega, atom->torque);
+  }
   if (!grip_) return;
   work_ += grip_->constrain(time, dt);
   work_ += 0.5 * dt * grip_->own_power();
@@ -230,10 +307,13 @@ void FixNve::kick(double dt, double time) {
 void FixNve::initial_integrate(int) {
   kick(0.5 * update->dt, model_->time_at(update->ntimestep - 1));
   move(update->dt);
+  check();
 }
 
 void FixNve::check() const {
   const MotionBound bound(model_->topology.largest_radius(), update->dt);
+  if (engine_ && bound.holds(engine_->fastest())) return;
+  if (engine_ && engine_->leads()) engine_->give_own();
   for (int i = 0; i < atom->nlocal; ++i)
     if (!(vector(atom->v[i]).squaredNorm() < bound.speed2) || !(vector(atom->omega[i]).squaredNorm() < bound.spin2))
       refuse_one(lmp,
@@ -244,15 +324,25 @@ void FixNve::check() const {
 }
 
 void FixNve::final_integrate() {
-  check();
   if (damp_) dissipated_ -= update->dt * damp_->own_power();
+  kick(0.5 * update->dt, now());
+  if (output->next != update->ntimestep) return;
+  if (engine_ && engine_->leads()) engine_->give_own();
+  if (output->restart_flag && output->next_restart == update->ntimestep) carry();
+}
+
+void FixNve::post_run() {
+  if (engine_ && engine_->leads()) engine_->give_own();
+  carry();
+}
+
+void FixNve::carry() {
   double** last = carried(lmp);
   for (int i = 0; i < atom->nlocal; ++i) {
     store(last[i], vector(atom->f[i]));
     store(last[i] + 3, vector(atom->torque[i]));
   }
   carried_ = update->ntimestep;
-  kick(0.5 * update->dt, now());
 }
 
 // --- relaxation: Simulation::relax, one force evaluation per step ---------------------------------------

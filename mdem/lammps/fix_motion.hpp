@@ -7,7 +7,8 @@
 
 #include <array>
 
-#include "lammps/shared.hpp"
+#include "lammps/fix_damp.hpp"
+#include "lammps/rank_engine.hpp"
 #include "sim/dynamics/fire.hpp"
 
 namespace ropewalk::lammps {
@@ -17,6 +18,8 @@ class FixMotion : public LMP::Fix {
   FixMotion(LMP::LAMMPS* lmp, int count, char** words);
   int setmask() override;
   void init() override;
+  void post_integrate() override;
+  void pre_exchange() override;
   void setup_pre_neighbor() override;
   void setup_post_neighbor() override { check_elements(); }
   void post_neighbor() override { check_elements(); }
@@ -30,15 +33,21 @@ class FixMotion : public LMP::Fix {
 
  protected:
   void move(double dt);  // x += v dt, q <- exp(w dt) q
+  bool only_known_fixes() const;
   double now() const { return model_->time_at(update->ntimestep); }
 
   std::shared_ptr<const LammpsModel> model_;
   FixGrip* grip_ = nullptr;
   FixDamp* damp_ = nullptr;
+  RankEngine* engine_ = nullptr;      // none: plain forms
   double work_ = 0, dissipated_ = 0;  // eV, this rank's share
   LMP::bigint carried_ = 0;           // the step whose forces are stored with the elements
 
  private:
+  virtual bool engine_may_lead() const { return false; }
+  bool exchanged_now() const;
+  void lead_exchanges();
+  void reach_for(double skin);
   void check_elements();
   void check_masses();
   double own_kinetic_energy() const;
@@ -56,8 +65,11 @@ class FixNve : public FixMotion {
   void setup(int vflag) override;
   void initial_integrate(int vflag) override;
   void final_integrate() override;
+  void post_run() override;
 
  private:
+  bool engine_may_lead() const override { return only_known_fixes() && !(damp_ && damp_->local() > 0); }
+  void carry();  // the forces along with the elements, into what is written next
   void kick(double dt, double time);
   double push(double alpha, double TubeType::*inertia, double dt, double** velocity, double** force) const;
   void check() const;

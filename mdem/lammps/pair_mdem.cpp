@@ -3,7 +3,9 @@
 #include <utility>
 
 #include "memory.h"
+#include "neighbor.h"
 #include "sim/contact/contact_law.hpp"
+#include "utils.h"
 
 namespace ropewalk::lammps {
 
@@ -30,12 +32,17 @@ void PairMdem::allocate() {
 
 void PairMdem::settings(int count, char** words) {
   const std::string name = "pair_style mdem/" + law_;
-  if (count != 1) refuse(lmp, name + " takes one word", "write: " + name + " DIR, DIR made by ropewalk export");
+  const bool plain = count == 2 && std::string(words[1]) == "plain";
+  if (count != 1 && !plain && !(count == 2 && std::string(words[1]) == "engine"))
+    refuse(lmp, name + " takes a directory, and how forces are computed",
+           "write: " + name + " DIR, DIR made by ropewalk export, or " + name + " DIR plain");
   check_atoms(lmp, name.c_str());
   model_ = load(lmp, words[0]);
   if (model_->law != law_)
     refuse(lmp, "the scene's contact is \"" + model_->law + "\", not \"" + law_ + "\"",
            "write: pair_style mdem/" + model_->law + " DIR, or export the scene anew");
+  engine_ = plain ? nullptr : std::make_unique<RankEngine>(lmp, model_);
+  no_virial_fdotr_compute = engine_ ? 1 : 0;  // LAMMPS's forces then are those of bonds and damping as well
 }
 
 void PairMdem::coeff(int count, char**) {
@@ -57,7 +64,11 @@ void PairMdem::init_style() {
     if (kept && force->special_lj[bonds] != 1)
       refuse(lmp, "special_bonds weakens contact along a tube", "write only 0 or 1 behind special_bonds lj/coul");
   }
-  Pair::init_style();
+  if (!engine_) Pair::init_style();  // which asks for a list of pairs
+  const bool mixed = model_->interaction.precision == Interaction::Precision::mixed;
+  LMP::utils::logmesg(lmp, engine_ ? "Forces by the engine of the simulator, " + RankEngine::instructions() +
+                                         ", in " + (mixed ? "mixed" : "double") + " precision\n"
+                                   : std::string("Forces by the plain forms, pair by pair\n"));
 }
 
 double PairMdem::init_one(int, int) { return model_->interaction.cutoff(); }
@@ -85,6 +96,27 @@ void PairMdem::contact(int i, int j) {
 
 void PairMdem::compute(int eflag, int vflag) {
   ev_init(eflag, vflag);
+  if (engine_) {
+    compute_by_engine(eflag);
+  } else {
+    compute_plain();
+  }
+}
+
+void PairMdem::compute_by_engine(int eflag) {
+  if (eflag_atom || vflag_atom || cvflag_atom)
+    refuse(lmp, "the engine sums no energies or virials of single elements",
+           "write: pair_style mdem/" + law_ + " DIR plain, or leave out computes of atoms");
+  if (neighbor->ago == 0) engine_->build();
+  engine_->compute(eflag != 0);
+  if (eflag_global) eng_vdwl = engine_->contact_energy();
+  if (vflag_global) {
+    const std::array<double, 6> sum = engine_->virial(Parts::contact);
+    std::copy(sum.begin(), sum.end(), virial);
+  }
+}
+
+void PairMdem::compute_plain() {
   energy_ = 0;
   double** q = orientations(lmp);
   const int all = atom->nlocal + atom->nghost;

@@ -1,7 +1,9 @@
-// pair_style mdem/paper DIR, mdem/line DIR: the contact law of the scene in DIR, as mdem/model has it.
+// pair_style mdem/paper DIR [plain], mdem/line DIR [plain]: the contact law of the scene in DIR. The simulator's
+// engine computes all forces of the model at once, those of bonds and damping as well. With `plain`, pair by pair,
+// the forms of mdem/model do: slowly, for comparison, and for energies and virials of atoms.
 #pragma once
 
-#include "lammps/shared.hpp"
+#include "lammps/rank_engine.hpp"
 #include "neigh_list.h"
 #include "pair.h"
 
@@ -17,17 +19,28 @@ class PairMdem : public LMP::Pair {
   double init_one(int i, int j) override;
   void compute(int eflag, int vflag) override;
 
-  double own_energy() const { return energy_; }  // eV, of this rank's pairs in the last evaluation
+  // eV, of this rank's pairs in the last evaluation.
+  double own_energy() const { return engine_ ? engine_->contact_energy() : energy_; }
+  RankEngine* engine() const { return engine_.get(); }
 
  private:
   void allocate();
+  void compute_plain();
+  void compute_by_engine(int eflag);
   void contact(int i, int j);
 
   std::string law_;
   std::shared_ptr<const LammpsModel> model_;
-  std::vector<Vector3> axis_;  // of own and ghost elements
+  std::unique_ptr<RankEngine> engine_;  // none: plain
+  std::vector<Vector3> axis_;           // of own and ghost elements
   double energy_ = 0;
 };
+
+// The engine in use, or null.
+inline RankEngine* engine_of(LMP::LAMMPS* lmp) {
+  const auto* pair = dynamic_cast<const PairMdem*>(lmp->force->pair);
+  return pair ? pair->engine() : nullptr;
+}
 
 // Calls f(i, j) for every pair of the half list of `pair` that interacts, i being the lower element, and both as
 // indices of atoms.

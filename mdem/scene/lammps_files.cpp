@@ -241,7 +241,7 @@ std::string row_variables() {
 
 std::string pair_line(const LammpsScript& s) {
   if (s.law == "none") return fmt::format("pair_style zero {} nocoeff", s.reach);
-  return fmt::format("pair_style mdem/{} ${{dir}}", s.law);
+  return fmt::format("pair_style mdem/{} ${{dir}} ${{forces}}", s.law);
 }
 
 }  // namespace
@@ -251,8 +251,11 @@ std::string lammps_input(const LammpsScript& s) {
   const auto weight = [&](int bonds) { return bonds <= s.excluded_elements ? 0 : 1; };
   std::string text = fmt::format(
       "# {}. Run with lmp-ropewalk. Units are nm, ps and eV, in which LAMMPS's \"lj\" has all factors 1.\n"
-      "# On the command line: -var steps N, -var restart FILE (to go on from a restart file).\n"
+      "# On the command line: -var steps N, -var restart FILE (to go on from a restart file), -var forces plain "
+      "(pair\n"
+      "# by pair, slowly, as a check).\n"
       "variable dir index .\n"
+      "variable forces index engine\n"
       "variable again equal is_defined(variable,restart)\n"
       "variable steps index {}\n"
       "variable every index {}\n"

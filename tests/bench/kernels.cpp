@@ -3,6 +3,7 @@
 #include "sim/contact/line/engine.hpp"
 #include "sim/contact/paper/engine.hpp"
 #include "sim/state/motion.hpp"
+#include "sim/state/part_of_scene.hpp"
 
 namespace ropewalk::bench {
 namespace {
@@ -110,6 +111,27 @@ BENCHMARK_CAPTURE(AllForces, line_mixed, Law::line, Interaction::Precision::mixe
 BENCHMARK_CAPTURE(AllForces, line_full, Law::line, Interaction::Precision::full)->Arg(7)->Arg(91);
 BENCHMARK_CAPTURE(AllForces, paper_mixed, Law::paper, Interaction::Precision::mixed)->Arg(7)->Arg(91);
 BENCHMARK_CAPTURE(AllForces, paper_full, Law::paper, Interaction::Precision::full)->Arg(7)->Arg(91);
+
+// A slice of a rope of 91 tubes as a rank of several computes it: so many elements of each tube are its own, and
+// four more at each end are copies (mdem/lammps/README.md has what follows for many ranks).
+void SliceOfARope(benchmark::State& bench) {
+  constexpr int tubes = 91, copies = 4;
+  const int own = static_cast<int>(bench.range(0)), all = own + 2 * copies;
+  Rope rope(tubes, all, Law::line, Interaction::Precision::mixed, 20);
+  std::vector<int> number;
+  std::vector<char> owned;
+  for (int i = 0; i < tubes * all; ++i) {
+    number.push_back(i);
+    owned.push_back(i % all >= copies && i % all < copies + own);
+  }
+  const Topology slice = part_of_scene(rope.topology, number, owned);
+  rope.list.build(slice, rope.state);
+  ForceEngine engine;
+  Forces forces(rope.state.size());
+  for (auto _ : bench) engine.compute(slice, rope.in, rope.list, rope.state, forces);
+  set_ns(bench, "ns/own", tubes * own);
+}
+BENCHMARK(SliceOfARope)->Arg(1)->Arg(5)->Arg(10)->Arg(25)->Arg(50)->Arg(100)->Unit(benchmark::kMicrosecond);
 
 }  // namespace
 }  // namespace ropewalk::bench

@@ -1,4 +1,6 @@
 // Grips, dampings and relaxation in LAMMPS against the simulator; restart files; plugin; `clear`.
+#include <functional>
+#include <initializer_list>
 #include <nlohmann/json.hpp>
 
 #include "io/log.hpp"
@@ -81,7 +83,85 @@ INSTANTIATE_TEST_SUITE_P(
                  "[[load]]\nkind = \"fix\"\nelements = [0]\n"}),
     [](const auto& info) { return std::string(info.param.name); });
 
-class LammpsRun : public Lammps {};
+class LammpsRun : public Lammps {
+ protected:
+  // So many steps in LAMMPS and here. Returns the largest relative difference of positions, velocities and spins.
+  void expect_equal_steps(const std::string& scene_text, int steps, std::initializer_list<int> ranks,
+                          double tolerance, const std::function<void()>& edit_script = {}) const {
+    exported(scene_text, "out");
+    if (edit_script) edit_script();
+    Scene scene = read_scene((dir / "scene.toml").string());
+    Simulation native = start(scene, prepare(scene));
+    const State before = native.state();
+    native.steps(steps);
+    ASSERT_GT(relative_difference(native.state().position, before.position), 1e-5);  // it has moved
+    for (const int n : ranks) {
+      SCOPED_TRACE(n);
+      const Outcome o = lmp(n, "out", "-in in.rope -var steps " + std::to_string(steps));
+      ASSERT_EQ(o.code, 0) << o.out << o.err;
+      const Left left = left_by(dir / "out", native.topology());
+      EXPECT_LT(relative_difference(native.state().position, left.state.position), tolerance);
+      EXPECT_LT(relative_difference(native.state().velocity, left.state.velocity), tolerance);
+      EXPECT_LT(relative_difference(native.state().angular_velocity, left.state.angular_velocity), tolerance);
+      const LammpsRow row = read_lammps_rows(LammpsDirectory{(dir / "out").string()}).back();
+      const Energies& e = native.forces().energy;
+      const double scale = std::fabs(e.vdw) + e.bonds();
+      EXPECT_NEAR(row.stretch + row.shear + row.bend + row.twist, e.bonds(), tolerance * scale);
+      EXPECT_NEAR(row.vdw, e.vdw, tolerance * scale);
+      EXPECT_NEAR(row.work, native.work(), tolerance * scale);
+      EXPECT_NEAR(row.dissipated, native.dissipated(), tolerance * scale);
+    }
+  }
+};
+
+std::string line_scene(const std::string& precision, const std::string& source, const std::string& rest) {
+  return "format = \"ropewalk-scene-1\"\nname = \"line\"\nparameters = \"cnt-10-10-tersoff\"\n" + source +
+         "[contact]\nlaw = \"line\"\nprecision = \"" + precision + "\"\n" + rest + "[run]\nduration_ps = 1000\n";
+}
+
+const char* const small_rope = "[rope]\ntubes = 19\nlength_nm = 40\nperturbation_nm = 0.01\n";
+const char* const hot_twist =
+    "[twist]\nmoment_nN_nm = 8\nrate_nN_nm_per_ps = 3\n[start]\ntemperature_K = 300\nmay_cool = true\n";
+
+// Lists are built many times, and elements go from rank to rank.
+TEST_F(LammpsRun, ARopeTwistsAsHereOnEveryNumberOfRanks) {
+  expect_equal_steps(line_scene("double", small_rope, hot_twist), 300, {1, 2, 4}, 1e-10);
+}
+
+TEST_F(LammpsRun, AFilmIsCutAndBalancedAgainAndAgain) {
+  expect_equal_steps(line_scene("double", "[film]\ntubes = 8\nwidth_nm = 40\ndepth_nm = 40\nlength_nm = 40\n",
+                                "[start]\ntemperature_K = 300\nmay_cool = true\n"),
+                     200, {1, 2, 4}, 1e-10,
+                     [&] { edit("out", "fix even all balance 1000", "fix even all balance 20"); });
+}
+
+TEST_F(LammpsRun, RanksWithoutElementsAndWithOneTakePart) {
+  const std::string tubes = state_text(
+      {straight({0, 0, 0}, Vector3::UnitZ(), 9, 1.356), straight({1.7, 0, 0.3}, Vector3::UnitZ(), 9, 1.356),
+       straight({0, 0, 90}, Vector3::UnitZ(), 1, 1.356)},
+      0.01, 5);
+  spit(dir / "tubes.csv", tubes);
+  expect_equal_steps(line_scene("double", "element_length_nm = 1.356\n[state]\nfile = \"tubes.csv\"\n",
+                                "[start]\ntemperature_K = 300\nmay_cool = true\n"),
+                     100, {1, 2, 4}, 1e-10, [&] {
+                       edit("out", "comm_style tiled\n", "processors 1 1 *\n");
+                       edit("out", "balance 1.05 rcb\nfix even all balance 1000 1.05 rcb\n", "");
+                     });
+}
+
+// Threads inside the ranks leave the bits as they are.
+TEST_F(LammpsRun, ThreadsGiveTheSameBits) {
+  exported(line_scene("mixed", small_rope, hot_twist), "out");
+  Scene scene = read_scene((dir / "scene.toml").string());
+  const Topology topology = prepare(scene).topology;
+  ASSERT_EQ(lmp(2, "out", "-in in.rope -var steps 60").code, 0);
+  const Left one = left_by(dir / "out", topology);
+  threads = 2;
+  ASSERT_EQ(lmp(2, "out", "-in in.rope -var steps 60").code, 0);
+  const Left two = left_by(dir / "out", topology);
+  EXPECT_EQ(relative_difference(one.state.position, two.state.position), 0);
+  EXPECT_EQ(relative_difference(one.state.velocity, two.state.velocity), 0);
+}
 
 TEST_F(LammpsRun, RelaxesToTheSameMinimum) {
   exported(rope("[[load]]\nkind = \"torque\"\nelements = [-1]\ntorque_nN_nm = [0, 0, 2]\n"

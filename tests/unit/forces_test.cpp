@@ -10,6 +10,7 @@
 #include "sim/contact/paper/law.hpp"
 #include "sim/contact/shared/neighbour_spans.hpp"
 #include "sim/dynamics/simulation.hpp"
+#include "sim/state/part_of_scene.hpp"
 #include "unit/support.hpp"
 
 namespace ropewalk {
@@ -115,6 +116,101 @@ TEST_P(ForcesTest, FastEqualsReference) {
   EXPECT_GT(std::fabs(reference.energy.vdw), 50);  // the scene does have contacts
   expect_equal(fast(0.0, 1), reference, tolerance());
   expect_equal(fast(0.4, 2), reference, tolerance());
+}
+
+// The forces as several processes compute them: `owner` of each element; copies are what is in reach of own
+// elements.
+Forces by_parts(const Topology& topology, const Interaction& in, const State& state, const std::vector<int>& owner,
+                double skin = 0.2) {
+  Forces sum(state.size());
+  const double reach = std::max(in.cutoff(), 1.5 * topology.longest_element()) + skin;
+  for (int process = 0; process <= *std::max_element(owner.begin(), owner.end()); ++process) {
+    std::vector<int> number;
+    std::vector<char> own;
+    for (int i = 0; i < topology.elements(); ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      bool near = owner[at] == process;
+      for (std::size_t k = 0; k < owner.size() && !near; ++k)
+        near = owner[k] == process && (state.position[k] - state.position[at]).norm() < reach;
+      if (!near) continue;
+      number.push_back(i);
+      own.push_back(owner[at] == process);
+    }
+    State part(number.size());
+    for (std::size_t k = 0; k < number.size(); ++k) {
+      const auto i = static_cast<std::size_t>(number[k]);
+      part.position.set(k, state.position[i]);
+      part.orientation.set(k, state.orientation[i]);
+      part.velocity.set(k, state.velocity[i]);
+      part.angular_velocity.set(k, state.angular_velocity[i]);
+    }
+    const Topology pieces = part_of_scene(topology, number, own);
+    NeighbourList list(in, skin);
+    list.build(pieces, part);
+    ForceEngine engine;
+    Forces f(part.size());
+    engine.compute(pieces, in, list, part, f);
+    for (std::size_t k = 0; k < number.size(); ++k) {
+      sum.force.add(static_cast<std::size_t>(number[k]), f.force[k]);
+      sum.torque.add(static_cast<std::size_t>(number[k]), f.torque[k]);
+    }
+    sum.energy.stretch += f.energy.stretch;
+    sum.energy.shear += f.energy.shear;
+    sum.energy.bend += f.energy.bend;
+    sum.energy.twist += f.energy.twist;
+    sum.energy.vdw += f.energy.vdw;
+    sum.damping_power += f.damping_power;
+  }
+  return sum;
+}
+
+TEST_P(ForcesTest, PartsOfTheSceneAddUpToIt) {
+  const Forces whole = fast(0.2, 2);
+  const double mixed = in.precision == Interaction::Precision::mixed ? tolerance() : 1e-12;
+  test::Random random(8);
+  std::vector<int> slices, scattered, one, pairs;
+  for (int i = 0; i < topology.elements(); ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    slices.push_back(std::clamp(static_cast<int>(state.position.z[at] / 30), 0, 3));
+    scattered.push_back(random.uniform(0, 1) < 0.5 ? 0 : 2);  // process 1 has none
+    one.push_back(i == 100 ? 1 : 0);
+    pairs.push_back(i / 2 % 2);
+  }
+  for (const auto& owner : {slices, scattered, one, pairs})
+    expect_equal(by_parts(topology, in, state, owner), whole, mixed);
+}
+
+// A hairpin whose arms do not touch by the exclusion, cut so that a process has both arms and not the bend.
+TEST(PartOfScene, TheExclusionAlongATubeIsThatOfTheScene) {
+  Topology topology = test::published_topology();
+  constexpr int arm = 12, head = 4;
+  constexpr double a = test::element_length, apart = 1.9;
+  topology.add_tube(2 * arm + head);
+  State state(static_cast<std::size_t>(topology.elements()));
+  for (int i = 0; i < topology.elements(); ++i) {
+    const int back = i - arm - head;
+    const auto at = static_cast<std::size_t>(i);
+    state.position.set(at, i < arm     ? Vector3(0, 0, a * i)
+                           : back >= 0 ? Vector3(apart, 0, a * (arm - 1 - back))
+                                       : Vector3(0.5 * apart, 0, a * (arm + 2 + i - arm)));
+  }
+  Interaction in;
+  in.law = line_law({test::line_contact(0.6785, 5, 0.6785, 5)});
+  std::vector<int> owner;
+  for (std::size_t i = 0; i < state.size(); ++i) owner.push_back(state.position.z[i] < 3.5 * a ? 0 : 1);
+  for (const double excluded : {40.0 * a, 3.0 * a}) {
+    in.exclude_along_tube = excluded;
+    NeighbourList list(in, 0.2);
+    list.build(topology, state);
+    ForceEngine engine;
+    Forces whole(state.size());
+    engine.compute(topology, in, list, state, whole);
+    EXPECT_EQ(whole.energy.vdw == 0, excluded > 20 * a);
+    const Forces parts = by_parts(topology, in, state, owner);
+    EXPECT_NEAR(parts.energy.vdw, whole.energy.vdw, 1e-12 * std::fabs(whole.energy.vdw));
+    for (std::size_t i = 0; i < state.size(); ++i)
+      EXPECT_LT((parts.force[i] - whole.force[i]).norm(), 1e-12 * (1 + whole.force[i].norm())) << i;
+  }
 }
 
 TEST_P(ForcesTest, BondsAndContactAddUpToAll) {

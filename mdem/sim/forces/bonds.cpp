@@ -56,6 +56,12 @@ void add(const BondSum& of, BondSum& sum) {
   if (sum.slipping < 0) sum.slipping = of.slipping;
 }
 
+void add_behind(const Joint& bond, int element, const ForceRows& out) {
+  const auto at = static_cast<std::size_t>(element - out.origin);
+  out.force.add(at, bond.force_j);
+  out.torque.add(at, bond.torque_j);
+}
+
 Joint joint_behind(const BondInput& in, int tube, int i) {
   thread_local TubeBonds work;
   work.resize(2);

@@ -24,4 +24,7 @@ Joint joint_behind(const BondInput& in, int tube, int i);
 BondSum compute_bonds(const BondInput& in, const Segment& of, const Joint* before, const Joint* behind,
                       const ForceRows& out);
 
+// Adds what a bond does to the element behind it.
+void add_behind(const Joint& bond, int element, const ForceRows& out);
+
 }  // namespace ropewalk

@@ -48,21 +48,23 @@ void ForceEngine::compute(const Topology& topology, const Interaction& interacti
     if (contact)
       ROPEWALK_IN_USE(axes_of)(state.orientation, topology.tube_begin[tube], topology.tube_begin[tube + 1], axis_);
     for (int k = parts_.begin(tube); bonds && k + 1 < parts_.begin(tube + 1); ++k)
-      joints_[static_cast<std::size_t>(k)] = joint_behind(bonded, tube, parts_[k].end - 1);
+      if (topology.owns(parts_[k].begin))
+        joints_[static_cast<std::size_t>(k)] = joint_behind(bonded, tube, parts_[k].end - 1);
   };
-  // Behind part k, if the tube goes on there.
+  // Behind part k, if the tube goes on there and the bond is one of this process.
   const auto joint = [&](int k, bool goes_on) -> const Joint* {
-    return goes_on ? &joints_[static_cast<std::size_t>(k)] : nullptr;
+    return goes_on && topology.owns(parts_[k].begin) ? &joints_[static_cast<std::size_t>(k)] : nullptr;
   };
   // The forces on a part of a tube: first its bonds, then the contact.
   const auto finish = [&](int k) {
     const Segment& part = parts_[k];
-    if (bonds) {
-      const Joint *before = joint(k - 1, part.begin > topology.tube_begin[part.tube]),
-                  *behind = joint(k, part.end < topology.tube_begin[part.tube + 1]);
+    const Joint* before = bonds ? joint(k - 1, part.begin > topology.tube_begin[part.tube]) : nullptr;
+    if (bonds && topology.owns(part.begin)) {
+      const Joint* behind = joint(k, part.end < topology.tube_begin[part.tube + 1]);
       sums_[static_cast<std::size_t>(k)] = compute_bonds(bonded, part, before, behind, on);
     } else {
       clear(part, on);
+      if (before) add_behind(*before, part.begin, on);
     }
     if (contact) contact->add_to(k, on);
   };

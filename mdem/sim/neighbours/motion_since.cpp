@@ -8,26 +8,34 @@
 namespace ropewalk {
 
 // The axis of the twist passes through the mean position. The bounds hold for any other axis too.
-void MotionSince::start(Vec3Array position, Vec3Array axis) {
+void MotionSince::start(const Topology& topology, Vec3Array position, Vec3Array axis, const AllProcesses* others) {
   position_ = std::move(position);
   axis_ = std::move(axis);
+  others_ = others;
   const Vec3Array& p = position_;
+  const auto each = [&](const auto& work) {
+    for (int i = 0; i < topology.elements(); ++i)
+      if (topology.owns(i)) work(static_cast<std::size_t>(i));
+  };
+  double none = 0, count[3] = {0, 0, 0}, mean[3] = {0, 0, 0};
+  each([&](std::size_t) { count[0] += 1; });
+  if (others_) others_->join(none, count);
+  const double n = count[0];
+  each([&](std::size_t i) { mean[0] += p.x[i] / n, mean[1] += p.y[i] / n, mean[2] += p.z[i] / n; });
+  if (others_) others_->join(none, mean);
+  elements_ = n;
   twist_ = {};
+  twist_.x = mean[0], twist_.y = mean[1], twist_.middle = mean[2];
   farthest_ = 0;
   for (double& sum : arms2_) sum = 0;
-  const double n = static_cast<double>(p.size());
-  for (std::size_t i = 0; i < p.size(); ++i) {
-    twist_.x += p.x[i] / n;
-    twist_.y += p.y[i] / n;
-    twist_.middle += p.z[i] / n;
-  }
-  for (std::size_t i = 0; i < p.size(); ++i) {
+  each([&](std::size_t i) {
     const double x = p.x[i] - twist_.x, y = p.y[i] - twist_.y, z = p.z[i] - twist_.middle, arm2 = x * x + y * y;
     farthest_ = std::max(farthest_, std::sqrt(arm2));
     arms2_[0] += arm2;
     arms2_[1] += z * arm2;
     arms2_[2] += z * z * arm2;
-  }
+  });
+  if (others_) others_->join(farthest_, arms2_);
 }
 
 Change MotionSince::change(const State& state, double lever, std::ptrdiff_t begin, std::ptrdiff_t end) const {
@@ -40,7 +48,12 @@ Change MotionSince::change(const State& state, double lever, std::ptrdiff_t begi
 
 // A common twist changes the distance of two points by no more than their relative rotation times their distance
 // from the axis.
-double MotionSince::bound(const Change& all, double within, double lever) {
+double MotionSince::bound(Change all, double within, double lever) {
+  if (others_) {
+    double sums[3] = {all.sum, all.spin, all.spin_z};
+    others_->join(all.moved, sums);
+    all.sum = sums[0], all.spin = sums[1], all.spin_z = sums[2];
+  }
   const double against = 1.01 * std::fabs(twist_.slope) * within;
   const double moved = all.moved + 0.5 * against * (farthest_ + lever);
   if (std::isfinite(moved)) follow(all);
@@ -50,9 +63,7 @@ double MotionSince::bound(const Change& all, double within, double lever) {
 void MotionSince::follow(const Change& change) {
   const double determinant = arms2_[0] * arms2_[2] - arms2_[1] * arms2_[1];
   constexpr double fewest = 0.01;  // nm^2, mean squared distance from the axis: less in a single tube along z
-  if (!(arms2_[0] > fewest * static_cast<double>(position_.size())) ||
-      !(determinant > 1e-6 * arms2_[0] * arms2_[2]))
-    return;
+  if (!(arms2_[0] > fewest * elements_) || !(determinant > 1e-6 * arms2_[0] * arms2_[2])) return;
   twist_.sine = (change.spin * arms2_[2] - change.spin_z * arms2_[1]) / determinant;
   twist_.slope = (change.spin_z * arms2_[0] - change.spin * arms2_[1]) / determinant;
 }

@@ -53,7 +53,7 @@ void NeighbourList::build(const Topology& topology, Vec3Array position, Vec3Arra
   static std::atomic<long> stamps{0};
   stamp_ = ++stamps;
   displacement_ = 0;
-  since_.start(std::move(position), std::move(axis));
+  since_.start(topology, std::move(position), std::move(axis), others);
   const Vec3Array& p = reference();
   const int n = static_cast<int>(p.size());
   const double reach = cutoff + skin;
@@ -67,7 +67,7 @@ void NeighbourList::build(const Topology& topology, Vec3Array position, Vec3Arra
     for (int t = 0; t < topology.tubes(); ++t) {
       const int excluded = topology.type_of(t).elements_within(excluded_arc);
       for (int i = topology.tube_begin[t]; i < topology.tube_begin[t + 1]; ++i)
-        last[static_cast<std::size_t>(i)] = std::min(i + excluded, topology.tube_begin[t + 1] - 1);
+        last[static_cast<std::size_t>(i)] = topology.last_within(excluded, i, t);
     }
 
     constexpr int parts = 64;
@@ -82,6 +82,7 @@ void NeighbourList::build(const Topology& topology, Vec3Array position, Vec3Arra
       std::size_t pairs = 0;
       for (int i = from; i < to; ++i) {
         const auto si = static_cast<std::size_t>(i);
+        if (!topology.owns(i)) continue;
         const std::size_t count = grid.find(i, last[si], near);
         const auto end = near.begin() + static_cast<std::ptrdiff_t>(count);
         std::sort(near.begin(), end);

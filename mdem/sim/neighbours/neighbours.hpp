@@ -50,6 +50,7 @@ class NeighbourList {
   double lever = 0;           // nm: turning moves the points of an element that are so far from its centre
   bool whole_ranges = false;  // buffers of the chunks cover [written_begin, written_end), used or not
   double excluded_arc = 0;    // nm: that of the interaction
+  const AllProcesses* others = nullptr;  // that own elements of the scene, or none
 
   NeighbourList() = default;
   // A list with the reach of all interactions; not yet built.
@@ -63,7 +64,8 @@ class NeighbourList {
   // Rebuilds the list if an element has moved too far; returns whether it did. A position that is not finite counts
   // as moved; the rebuilt list has no neighbours of that element.
   bool update(const Topology& topology, const State& state);
-  // Whether it has to be built anew by the change since the last build: that of all elements.
+  // Whether it has to be built anew by the change since the last build: that of all own elements. All processes
+  // must call it, and likewise build().
   bool stale(const Change& change);
   // Of the elements begin .. end - 1; infinite where a place is not finite.
   Change change(const State& state, std::ptrdiff_t begin, std::ptrdiff_t end) const;

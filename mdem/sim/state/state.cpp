@@ -9,6 +9,23 @@ int Topology::tube_of(int element) const {
   return static_cast<int>(after - tube_begin.begin()) - 1;
 }
 
+int Topology::change_of_owner(int begin, int end) const {
+  int i = begin;
+  while (i < end && owns(i) == owns(begin)) ++i;
+  return i;
+}
+
+int Topology::last_within(int elements, int element, int tube) const {
+  const auto t = static_cast<std::size_t>(tube);
+  if (!part) return std::min(element + elements, tube_begin[t + 1] - 1);
+  // Other pieces of the tube may follow.
+  const auto number = [&](int i) { return part->number[static_cast<std::size_t>(i)]; };
+  const int limit = std::min(number(element) + elements, part->tube_end[t] - 1);
+  int last = element;
+  while (last + 1 < this->elements() && number(last + 1) <= limit) ++last;
+  return last;
+}
+
 double Topology::largest_radius() const {
   double largest = 0;
   for (const TubeType& t : types) largest = std::max(largest, t.radius);

@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "model/bond.hpp"
@@ -69,12 +70,23 @@ struct TubeType {
   int elements_within(double arc) const { return static_cast<int>(std::ceil(arc / element_length - 1e-9)); }
 };
 
+// Elements of a scene that one process owns, with copies of those near them, which other processes own. It computes
+// the pairs (i, j > i) and the bonds (i, i + 1) of its own elements i; copies only receive forces. So every pair
+// and bond of the scene belongs to one process. Tubes of such a topology are pieces: consecutive elements of one
+// tube.
+struct PartOfScene {
+  std::vector<char> own;      // of each element
+  std::vector<int> number;    // of each element, in the scene
+  std::vector<int> tube_end;  // of each piece, the number behind the last element of its tube in the scene
+};
+
 // Which elements form which tube. Tube t owns the elements tube_begin[t] .. tube_begin[t+1] - 1; consecutive
 // ones are bonded.
 struct Topology {
   std::vector<int> tube_begin{0};
   std::vector<int> tube_type;  // of each tube, an index of `types`
   std::vector<TubeType> types = std::vector<TubeType>(1);
+  std::optional<PartOfScene> part;  // none: these elements are the scene
 
   int tubes() const { return static_cast<int>(tube_begin.size()) - 1; }
   int elements() const { return tube_begin.back(); }
@@ -89,6 +101,11 @@ struct Topology {
   double largest_radius() const;
   double longest_element() const;
   int tube_of(int element) const;
+  bool owns(int element) const { return !part || part->own[static_cast<std::size_t>(element)] != 0; }
+  // From `begin` on, the first element that is owned where that one is not, or the other way round; `end` at most.
+  int change_of_owner(int begin, int end) const;
+  // The last element of the same tube that is at most so many elements behind this one of `tube`.
+  int last_within(int elements, int element, int tube) const;
   // The least elements_within() of all types.
   int fewest_within(double arc) const;
 };

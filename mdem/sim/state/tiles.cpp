@@ -28,20 +28,31 @@ int end_of_piece(int begin, const Segment& tube) {
   return tube.end - end < piece_length / 2 ? tube.end : end;
 }
 
+std::vector<Segment> own_segments(const Topology& topology, int tube) {
+  const int first = topology.tube_begin[tube], last = topology.tube_begin[tube + 1];
+  if (!topology.part) return {{tube, first, last}};
+  std::vector<Segment> own;
+  for (int from = first, to; from < last; from = to) {
+    to = topology.change_of_owner(from, last);
+    if (topology.owns(from)) own.push_back({tube, from, to});
+  }
+  return own;
+}
+
 std::vector<Piece> pieces_of(const Topology& topology, const Vec3Array& position, const std::vector<double>& cost) {
   std::vector<Piece> pieces;
   const auto finite = [](double x) { return std::isfinite(x) ? x : 0.0; };
   for (int t = 0; t < topology.tubes(); ++t) {
-    const Segment tube{t, topology.tube_begin[t], topology.tube_begin[t + 1]};
-    for (int from = tube.begin; from < tube.end;) {
-      Piece piece;
-      piece.of = {t, from, end_of_piece(from, tube)};
-      for (int i = from; i < piece.of.end; ++i) piece.cost += cost[static_cast<std::size_t>(i)];
-      const auto middle = static_cast<std::size_t>((from + piece.of.end) / 2);
-      piece.centre = {finite(position.x[middle]), finite(position.y[middle]), finite(position.z[middle])};
-      pieces.push_back(piece);
-      from = piece.of.end;
-    }
+    for (const Segment& tube : own_segments(topology, t))
+      for (int from = tube.begin; from < tube.end;) {
+        Piece piece;
+        piece.of = {t, from, end_of_piece(from, tube)};
+        for (int i = from; i < piece.of.end; ++i) piece.cost += cost[static_cast<std::size_t>(i)];
+        const auto middle = static_cast<std::size_t>((from + piece.of.end) / 2);
+        piece.centre = {finite(position.x[middle]), finite(position.y[middle]), finite(position.z[middle])};
+        pieces.push_back(piece);
+        from = piece.of.end;
+      }
   }
   return pieces;
 }
@@ -105,11 +116,13 @@ void TubeParts::cut(const Topology& topology) {
   block_of_.clear();
   for (int t = 0; t < topology.tubes(); ++t) {
     begin_.push_back(count());
-    const int first = topology.tube_begin[t], elements = topology.length_of(t),
-              parts = (elements + most - 1) / most;
-    for (int k = 0; k < parts; ++k)
-      parts_.push_back({t, first + static_cast<int>(static_cast<std::int64_t>(elements) * k / parts),
-                        first + static_cast<int>(static_cast<std::int64_t>(elements) * (k + 1) / parts)});
+    for (int first = topology.tube_begin[t], end = topology.tube_begin[t + 1], last; first < end; first = last) {
+      last = topology.part ? topology.change_of_owner(first, end) : end;
+      const int elements = last - first, parts = (elements + most - 1) / most;
+      for (int k = 0; k < parts; ++k)
+        parts_.push_back({t, first + static_cast<int>(static_cast<std::int64_t>(elements) * k / parts),
+                          first + static_cast<int>(static_cast<std::int64_t>(elements) * (k + 1) / parts)});
+    }
   }
   begin_.push_back(count());
   for (int k = 0, first = 0; k < count(); ++k) {

@@ -18,6 +18,7 @@ struct Segment {
 
 // All tubes cut into parts of nearly equal length, for passes over all elements. A long tube has several parts, so
 // that several threads can work on it. Consecutive short parts form blocks, which are one unit of such a pass.
+// Where other processes own some elements, a part has own ones or copies only.
 class TubeParts {
  public:
   static constexpr int most = 512;                       // elements of a part
@@ -45,7 +46,7 @@ class TubeParts {
 // or across where what is to be cut is longest, so that tiles have least in common.
 enum class CutBy { index, position };
 
-// Cuts all elements into `count` tiles of nearly equal cost; `cost` has one entry per element. The segments of a
+// Cuts all own elements into `count` tiles of nearly equal cost; `cost` has one entry per element. The segments of a
 // tile are in the order of their elements; a tile may be empty. The method is recursive coordinate bisection
 // (Berger and Bokhari 1987, doi:10.1109/TC.1987.1676942), except for the first cut. Consecutive tiles lie near each
 // other. The tiles depend on the arguments only. Positions that are not finite count as zero.

@@ -16,8 +16,9 @@ void BufferedEngine::list_damped(const ContactInput& in) {
   for (const NeighbourList::Chunk& chunk : in.list.chunks()) {
     DampedBlocks blocks;
     for (int i = chunk.begin; i < chunk.end; ++i) {
-      const BufferRange own{i, std::min(chunk.end, topology.tube_begin[topology.tube_of(i) + 1]),
-                             -chunk.written_begin};
+      if (!topology.owns(i)) continue;
+      const int end = std::min(chunk.end, topology.tube_begin[topology.tube_of(i) + 1]);
+      const BufferRange own{i, topology.part ? topology.change_of_owner(i, end) : end, -chunk.written_begin};
       for (const ElementSpan& span : near.spans(i))
         for_tubes_of(topology, span, [&](int tube, int from, int to) {
           blocks.add(i, own, from, to,

@@ -1,0 +1,115 @@
+// The force engine of the simulator over the elements of one rank: its own, and its ghosts as copies. A pair or
+// bond belongs to the owner of its lower element; LAMMPS brings the forces on ghosts back to their owners. LAMMPS
+// makes no list of pairs. Its elements are exchanged when the engine's list asks for it, on all ranks at once.
+//
+// Where nothing but our own fixes acts on elements, the engine leads: its state of own elements is the one that
+// moves, by its own forces. LAMMPS's arrays are up to date in every step for the shared elements alone, which are
+// ghosts of other ranks or have loads; for all of them before an exchange and an output. Keeping both copies of all
+// elements in every step would cost as much as the bonds.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "lammps/shared.hpp"
+#include "sim/forces/forces.hpp"
+#include "sim/state/motion.hpp"
+
+namespace ropewalk::lammps {
+
+// What the ranks know of their elements, joined by one message.
+class AllRanks : public AllProcesses {
+ public:
+  explicit AllRanks(MPI_Comm world);
+  ~AllRanks() override;
+  AllRanks(const AllRanks&) = delete;
+  AllRanks& operator=(const AllRanks&) = delete;
+  void join(double& largest, double (&sums)[3]) const override;
+
+ private:
+  MPI_Comm world_;
+  MPI_Datatype numbers_;
+  MPI_Op join_;
+};
+
+class RankEngine {
+ public:
+  RankEngine(LMP::LAMMPS* lmp, std::shared_ptr<const LammpsModel> model);
+
+  bool leads() const { return leads_; }
+  void lead(bool yes) { leads_ = yes; }
+
+  // Own elements: v += F dt/m, w += M dt/I; x += v dt, q <- exp(w dt) q.
+  void kick(double dt);
+  void move(double dt);
+  const Fastest& fastest() const { return fastest_; }  // in the last move
+  double kinetic_energy() const;
+  // Position, velocity, spin and orientation of own elements from LAMMPS's arrays.
+  void take_own();
+  // The same to them, with forces and torques where the engine leads: of all own elements, of the shared ones
+  // without forces, of some atoms likewise.
+  void give_own();
+  void give_shared();
+  void give(const std::vector<int>& atoms);
+  void take_velocities(const std::vector<int>& atoms);
+  // The forces in LAMMPS's arrays are those of the next kick.
+  void use_lammps_forces() { all_forces_there_ = true; }
+  // After an exchange: these atoms are shared; ghosts among them do not count.
+  void share_none();
+  void share(const int* atoms, int count);
+  // Whether elements have to be exchanged and the list built anew, after a move. All ranks.
+  bool stale();
+  // The skin of the next list, nm. All ranks, before ghosts are chosen.
+  double choose_skin();
+  double skin() const { return list_.skin; }
+  // After an exchange. All ranks.
+  void build();
+  // Adds all forces and torques of the model to LAMMPS's. Energies of contact are summed only if wanted.
+  void compute(bool energies);
+
+  // Of the last evaluation, of this rank's pairs and bonds.
+  BondEnergy<double> bond_energy() const;
+  double contact_energy();  // evaluates the contact again where the last time left it out
+  double damping_power() const { return forces_.damping_power; }  // eV/ps
+  int slipping_element() const;                                   // of the scene; -1: none
+  // xx, yy, zz, xy, xz, yz of separation times force, without damping.
+  std::array<double, 6> virial(Parts parts);
+
+  static std::string instructions();
+
+ private:
+  // Consecutive elements here that are consecutive atoms of LAMMPS, of one type, own ones or ghosts.
+  struct Stretch {
+    int element, atom, count;
+  };
+  void take(const Stretch& of);
+  void give(const Stretch& of);
+  void take_forces(const Stretch& of);
+  void complete_forces();  // those of own elements by what LAMMPS's arrays have in addition
+  const std::vector<Stretch>& shared();
+  void evaluate(const State& state, const ForceOptions& options, Forces& out);
+
+  LMP::LAMMPS* lmp_;
+  double** quaternions_ = nullptr;  // valid during a call only
+  std::shared_ptr<const LammpsModel> model_;
+  std::unique_ptr<AllRanks> ranks_;  // none where there is one rank
+  Topology topology_;
+  State state_;
+  std::vector<Stretch> own_, ghosts_;  // own ones no longer than what stays in the first cache
+  std::vector<int> element_;           // of each own atom
+  std::vector<char> is_shared_;        // likewise
+  std::vector<Stretch> shared_;        // of those that are
+  bool shared_known_ = false;
+  bool leads_ = false;
+  bool shared_forces_there_ = false, all_forces_there_ = false;  // in LAMMPS's arrays, not yet taken from there
+  std::vector<Change> changes_;                                  // of each of own_
+  std::vector<Fastest> fastest_of_;                              // likewise, in the last move
+  Fastest fastest_;
+  NeighbourList list_;
+  long steps_ = 0;  // since the list was built
+  ForceEngine engine_;
+  Forces forces_, spare_;
+  bool contact_energy_known_ = false;
+};
+
+}  // namespace ropewalk::lammps

@@ -1,0 +1,22 @@
+#include "sim/state/part_of_scene.hpp"
+
+#include <utility>
+
+namespace ropewalk {
+
+Topology part_of_scene(const Topology& scene, std::vector<int> number, std::vector<char> own) {
+  Topology out;
+  out.types = scene.types;
+  PartOfScene& part = out.part.emplace();
+  for (std::size_t i = 0, next; i < number.size(); i = next) {
+    const int tube = scene.tube_of(number[i]), end = scene.tube_begin[static_cast<std::size_t>(tube) + 1];
+    for (next = i + 1; next < number.size() && number[next] == number[next - 1] + 1 && number[next] < end;) ++next;
+    out.add_tube(static_cast<int>(next - i), scene.tube_type[static_cast<std::size_t>(tube)]);
+    part.tube_end.push_back(end);
+  }
+  part.number = std::move(number);
+  part.own = std::move(own);
+  return out;
+}
+
+}  // namespace ropewalk

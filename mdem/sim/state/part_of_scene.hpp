@@ -1,0 +1,13 @@
+// The topology of what one of several processes works on: its own elements of a scene, and copies of others.
+#pragma once
+
+#include <vector>
+
+#include "sim/state/state.hpp"
+
+namespace ropewalk {
+
+// `number`: those of the scene that the process has, in rising order; `own`: which of them it owns.
+Topology part_of_scene(const Topology& scene, std::vector<int> number, std::vector<char> own);
+
+}  // namespace ropewalk
