@@ -44,6 +44,7 @@ const std::vector<OutputFile>& run_files() {
       {"manifest.json", "run", "program, inputs and how the run ended"},
       {"checkpoint.bin", "run", "binary: where `resume` goes on"},
       {"report.html", "run, report", "page with charts, pictures and all observables"},
+      {"view.html", "view", "page that shows the frames in space"},
       {"errors.csv", "errors", "standard errors of the observables, as log.csv"},
       {"errors", "errors", "directory with the runs behind errors.csv, and errors.json"},
       {"plan-check.csv", "plan", "of a planned run: how far it is off a finer model"},
