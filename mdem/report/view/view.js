@@ -166,45 +166,52 @@ function colourAt(s, value) {
 
 const canvas = $('canvas');
 let renderer, camera, controls, scene;
-const stride = 9;  // of a joint: position, normal of the ring, a direction in the ring
-const jointData = new Float32Array((joints + 1) * stride);
-const tints = new Uint8Array((joints + 1) * 4);
-const radii = new Float32Array(joints + 1);
-let jointBuffer, tintBuffer;
-const meshes = [];  // of the same segments with more and more sides
-let discs, discData, discBuffer;
-const discStride = 12;  // centre, two half axes, colour
+// A texel each: position, normal of the ring, a direction in the ring. Textures have 1024 joints in a row.
+const stride = 12, rowJoints = 1024, rows = Math.ceil(joints / rowJoints);
+const jointData = new Float32Array(rows * rowJoints * stride);
+const tints = new Uint8Array(rows * rowJoints * 4);
+const jointTexture = new THREE.DataTexture(jointData, 3 * rowJoints, rows, THREE.RGBAFormat, THREE.FloatType);
+const tintTexture = new THREE.DataTexture(tints, rowJoints, rows, THREE.RGBAFormat);
+const meshes = [];  // of the same tubes with more and more sides
+const discCorners = 16, mostDiscs = 10 * tubes;  // two ends of every tube and a few cuts through it
+let discs;
 let frame = frames - 1;
 
 const right = new THREE.Vector3(...facts.right), up = new THREE.Vector3(...facts.up),
   towards = new THREE.Vector3(...facts.towards);
 const cut = {normal: null, name: '', sign: 1, at: 0.5, offset: 0};
 
+// A tube is one instance: software that draws as a graphics card does takes as long for an instance as for hundreds of
+// triangles. A vertex is a corner of the ring at a joint, whose data stand in the texture. Thin tubes are ribbons that face
+// the reader and are lit like round ones, which takes a fifth of the triangles. WebGL 2.
 const vertexShader = `
-precision highp float;
-attribute vec3 position;  // cosine, sine, end
-attribute vec3 a, na, ua, b, nb, ub;
-attribute vec4 tint;
-attribute float radius;
-uniform mat4 viewMatrix, projectionMatrix;
-varying vec3 normal, eye, colour, world;
+attribute vec3 tube;  // first joint, elements, radius
+uniform highp sampler2D joints, tints;
+varying vec3 side, facing, eye, world;
+flat varying vec3 colour;
 void main() {
-  if (tint.a < 0.5) {  // between the end of a tube and the next one
-    gl_Position = vec4(0.0, 0.0, 2.0, 1.0);
-    return;
-  }
-  vec3 centre = mix(a, b, position.z), along = mix(na, nb, position.z), u = mix(ua, ub, position.z);
-  vec3 out_ = u * position.x + cross(along, u) * position.y;
-  world = centre + radius * out_;
+  int i = int(tube.x + min(position.z, tube.y));
+  ivec2 at = ivec2(i % ${rowJoints}, i / ${rowJoints});
+  ivec2 first = ivec2(3 * at.x, at.y);
+  vec3 centre = texelFetch(joints, first, 0).xyz, along = texelFetch(joints, first + ivec2(1, 0), 0).xyz;
+#ifdef RIBBON
+  vec3 towards = normalize(cameraPosition - centre);
+  vec3 outward = position.x * normalize(cross(along, towards));
+  facing = (viewMatrix * vec4(normalize(towards - dot(towards, along) * along), 0.0)).xyz;
+#else
+  vec3 u = texelFetch(joints, first + ivec2(2, 0), 0).xyz;
+  vec3 outward = u * position.x + cross(along, u) * position.y;
+  facing = vec3(0.0);
+#endif
+  world = centre + tube.z * outward;
+  colour = texelFetch(tints, at, 0).rgb;
   vec4 seen = viewMatrix * vec4(world, 1.0);
-  normal = (viewMatrix * vec4(out_, 0.0)).xyz;
+  side = (viewMatrix * vec4(outward, 0.0)).xyz;
   eye = seen.xyz;
-  colour = tint.rgb;
   gl_Position = projectionMatrix * seen;
 }`;
 
 const paint = `
-precision highp float;
 uniform vec3 paper;
 uniform vec2 haze;  // from this distance to that one
 vec3 lit(vec3 colour, vec3 n, vec3 eye) {
@@ -217,11 +224,12 @@ vec3 lit(vec3 colour, vec3 n, vec3 eye) {
   return (colour * light + 0.22 * shine) * mix(0.3, 1.0, smoothstep(0.05, 0.5, facing));
 }
 vec3 hazy(vec3 colour, vec3 eye) {
-  return mix(colour, paper, 0.45 * smoothstep(haze.x, haze.y, length(eye)));
+  return mix(colour, paper, 0.3 * smoothstep(haze.x, haze.y, length(eye)));
 }`;
 
 const fragmentShader = paint + `
-varying vec3 normal, eye, colour, world;
+varying vec3 side, facing, eye, world;
+flat varying vec3 colour;
 #ifdef CUT
 uniform vec4 plane;
 #endif
@@ -229,23 +237,26 @@ void main() {
 #ifdef CUT
   if (dot(world, plane.xyz) > plane.w) discard;
 #endif
-  vec3 c = gl_FrontFacing ? lit(colour, normalize(normal), eye) : 0.55 * colour;
+  vec3 n = normalize(side + facing * sqrt(max(0.0, 1.0 - dot(side, side))));
+#ifdef RIBBON
+  vec3 c = lit(colour, n, eye);
+#else
+  vec3 c = gl_FrontFacing ? lit(colour, n, eye) : 0.55 * colour;
+#endif
   gl_FragColor = vec4(hazy(c, eye), 1.0);
 }`;
 
 // Ends of tubes, and tubes cut across.
 const discVertexShader = `
-precision highp float;
-attribute vec3 position;
-attribute vec3 centre, half_a, half_b, tint;
-uniform mat4 viewMatrix, projectionMatrix;
+attribute vec2 corner;
+attribute vec3 tint;
 varying vec3 eye, colour;
 varying vec2 at;
 void main() {
-  vec4 seen = viewMatrix * vec4(centre + half_a * position.x + half_b * position.y, 1.0);
+  vec4 seen = viewMatrix * vec4(position, 1.0);
   eye = seen.xyz;
   colour = tint;
-  at = position.xy;
+  at = corner;
   gl_Position = projectionMatrix * seen;
 }`;
 const discFragmentShader = paint + `
@@ -260,33 +271,53 @@ const uniforms = {
   paper: {value: new THREE.Vector3(1, 1, 1)},
   haze: {value: new THREE.Vector2(0, 1)},
   plane: {value: new THREE.Vector4(0, 0, 0, 0)},
+  joints: {value: jointTexture},
+  tints: {value: tintTexture},
 };
 
-function segmentGeometry(sides) {
-  const ring = [], index = [];
-  for (let end = 0; end < 2; ++end)
-    for (let k = 0; k < sides; ++k)
-      ring.push(Math.cos(2 * Math.PI * k / sides), Math.sin(2 * Math.PI * k / sides), end);
-  for (let k = 0; k < sides; ++k) {
-    const l = (k + 1) % sides;
-    index.push(k, l, sides + l, k, sides + l, sides + k);
-  }
+// As many rings as the longest tube has joints; a shorter tube draws its last ring again.
+function tubeGeometry(sides) {
+  const elementsOf = facts.tube_radius.map((_, t) => elementBegin[t + 1] - elementBegin[t]);
+  const rings = Math.max(...elementsOf) + 1, corners = [], index = [];
+  for (let k = 0; k < rings; ++k)
+    for (let c = 0; c < sides; ++c)
+      corners.push(Math.cos(2 * Math.PI * c / sides), Math.sin(2 * Math.PI * c / sides), k);
+  // The last corner of a triangle gives it its colour: that of the joint where the element begins.
+  for (let k = 0; k + 1 < rings; ++k)
+    for (let c = 0; c < (sides === 2 ? 1 : sides); ++c) {  // two sides are a ribbon
+      const here = k * sides + c, next = k * sides + (c + 1) % sides;
+      index.push(next, next + sides, here, next + sides, here + sides, here);
+    }
   const g = new THREE.InstancedBufferGeometry();
-  g.setAttribute('position', new THREE.BufferAttribute(new Float32Array(ring), 3));
+  g.setAttribute('position', new THREE.BufferAttribute(new Float32Array(corners), 3));
   g.setIndex(index);
-  // A segment reaches from its joint to the next one.
-  ['a', 'na', 'ua', 'b', 'nb', 'ub'].forEach((name, k) =>
-    g.setAttribute(name, new THREE.InterleavedBufferAttribute(jointBuffer, 3, 3 * k)));
-  g.setAttribute('tint', tintBuffer);
-  g.setAttribute('radius', g.radius = segmentGeometry.radius);
-  g.maxInstancedCount = joints - 1;
+  g.setAttribute('tube', new THREE.InstancedBufferAttribute(
+    new Float32Array(elementsOf.flatMap((n, t) => [jointBegin[t], n, facts.tube_radius[t]])), 3));
+  return g;
+}
+
+function discGeometry() {
+  const corner = [], index = [];
+  for (let d = 0; d < mostDiscs; ++d) {
+    corner.push(0, 0);
+    for (let c = 0; c < discCorners; ++c) {
+      corner.push(Math.cos(2 * Math.PI * c / discCorners), Math.sin(2 * Math.PI * c / discCorners));
+      const first = d * (discCorners + 1);
+      index.push(first, first + 1 + c, first + 1 + (c + 1) % discCorners);
+    }
+  }
+  const g = new THREE.BufferGeometry(), vertices = corner.length / 2;
+  const moving = (values, n, scaled) => new THREE.BufferAttribute(values, n, scaled).setUsage(THREE.DynamicDrawUsage);
+  g.setAttribute('position', moving(new Float32Array(3 * vertices), 3));
+  g.setAttribute('tint', moving(new Uint8Array(3 * vertices), 3, true));
+  g.setAttribute('corner', new THREE.BufferAttribute(new Float32Array(corner), 2));
+  g.setIndex(index);
   return g;
 }
 
 function makeScene() {
-  const context = ['webgl2', 'webgl'].reduce((gl, kind) =>
-    gl || canvas.getContext(kind, {antialias: false, alpha: false, powerPreference: 'high-performance'}), null);
-  if (!context) throw new Error('this browser offers no WebGL; `ropewalk picture` makes pictures without it');
+  const context = canvas.getContext('webgl2', {antialias: false, alpha: false, powerPreference: 'high-performance'});
+  if (!context) throw new Error('this browser offers no WebGL 2; `ropewalk picture` makes pictures without it');
   renderer = new THREE.WebGLRenderer({canvas, context, antialias: false});
   scene = new THREE.Scene();
   camera = new THREE.PerspectiveCamera(26, 1, 1, 1000);
@@ -297,38 +328,20 @@ function makeScene() {
   controls.rotateSpeed = 0.8;
   controls.addEventListener('change', request);
 
-  for (let t = 0; t < tubes; ++t) radii.fill(facts.tube_radius[t], jointBegin[t], jointBegin[t + 1]);
-  jointBuffer = new THREE.InstancedInterleavedBuffer(jointData, stride, 1);
-  jointBuffer.setUsage(THREE.DynamicDrawUsage);
-  tintBuffer = new THREE.InstancedBufferAttribute(tints, 4, true, 1);
-  tintBuffer.setUsage(THREE.DynamicDrawUsage);
-  segmentGeometry.radius = new THREE.InstancedBufferAttribute(radii, 1, false, 1);
-  const material = (defines) => new THREE.RawShaderMaterial(
-    {vertexShader, fragmentShader, uniforms, defines, side: defines.CUT ? THREE.DoubleSide : THREE.FrontSide});
-  const whole = material({}), cutOpen = material({CUT: 1});
-  for (const sides of [5, 8, 12, 24]) {
-    const mesh = new THREE.Mesh(segmentGeometry(sides), whole);
+  const material = (defines) => new THREE.ShaderMaterial({
+    vertexShader, fragmentShader, uniforms, defines,
+    side: defines.CUT || defines.RIBBON ? THREE.DoubleSide : THREE.FrontSide,
+  });
+  for (const sides of [2, 8, 12, 24]) {
+    const ribbon = sides === 2 ? {RIBBON: 1} : {};
+    const materials = {whole: material(ribbon), cutOpen: material({...ribbon, CUT: 1})};
+    const mesh = new THREE.Mesh(tubeGeometry(sides), materials.whole);
     mesh.frustumCulled = false;
-    mesh.userData = {whole, cutOpen};
+    mesh.userData = materials;
     meshes.push(mesh);
     scene.add(mesh);
   }
-
-  // At most two ends of every tube and a few cuts through each.
-  const most = 10 * tubes;
-  discData = new Float32Array(most * discStride);
-  discBuffer = new THREE.InstancedInterleavedBuffer(discData, discStride, 1);
-  discBuffer.setUsage(THREE.DynamicDrawUsage);
-  const disc = new THREE.InstancedBufferGeometry(), fan = [0, 0, 0], index = [];
-  for (let k = 0; k < 24; ++k) {
-    fan.push(Math.cos(Math.PI * k / 12), Math.sin(Math.PI * k / 12), 0);
-    index.push(0, 1 + k, 1 + (k + 1) % 24);
-  }
-  disc.setAttribute('position', new THREE.BufferAttribute(new Float32Array(fan), 3));
-  disc.setIndex(index);
-  ['centre', 'half_a', 'half_b', 'tint'].forEach((name, k) =>
-    disc.setAttribute(name, new THREE.InterleavedBufferAttribute(discBuffer, 3, 3 * k)));
-  discs = new THREE.Mesh(disc, new THREE.RawShaderMaterial(
+  discs = new THREE.Mesh(discGeometry(), new THREE.ShaderMaterial(
     {vertexShader: discVertexShader, fragmentShader: discFragmentShader, uniforms, side: THREE.DoubleSide}));
   discs.frustumCulled = false;
   scene.add(discs);
@@ -350,11 +363,11 @@ function placeJoints() {
       n.subVectors(q, p).normalize();
       if (i === from) u.set(Math.abs(n.x) < 0.6 ? 1 : 0, Math.abs(n.x) < 0.6 ? 0 : 1, 0);
       u.addScaledVector(n, -u.dot(n)).normalize();
-      n.toArray(jointData, i * stride + 3);
-      u.toArray(jointData, i * stride + 6);
+      n.toArray(jointData, i * stride + 4);
+      u.toArray(jointData, i * stride + 8);
     }
   }
-  jointBuffer.needsUpdate = true;
+  jointTexture.needsUpdate = true;
 }
 
 function valueOf(s, element, tube) {
@@ -372,20 +385,24 @@ function paintElements() {
       tints[at + 2] = c[2];
       tints[at + 3] = 255;
     }
-    tints[4 * (jointBegin[t + 1] - 1) + 3] = 0;  // no segment begins at the last joint
   }
-  tintBuffer.needsUpdate = true;
+  tintTexture.needsUpdate = true;
 }
 
 let discCount = 0;
 
+// `a` and `b` are half axes.
 function addDisc(centre, a, b, joint) {
-  if (discCount * discStride >= discData.length) return;
-  const at = discCount++ * discStride;
-  centre.toArray(discData, at);
-  a.toArray(discData, at + 3);
-  b.toArray(discData, at + 6);
-  for (let k = 0; k < 3; ++k) discData[at + 9 + k] = tints[4 * joint + k] / 255;
+  if (discCount === mostDiscs) return;
+  const {position, tint, corner} = discs.geometry.attributes;
+  const first = discCount++ * (discCorners + 1);
+  for (let i = first; i <= first + discCorners; ++i) {
+    const x = corner.array[2 * i], y = corner.array[2 * i + 1];
+    position.array[3 * i] = centre.x + x * a.x + y * b.x;
+    position.array[3 * i + 1] = centre.y + x * a.y + y * b.y;
+    position.array[3 * i + 2] = centre.z + x * a.z + y * b.z;
+    for (let k = 0; k < 3; ++k) tint.array[3 * i + k] = tints[4 * joint + k];
+  }
 }
 
 function placeDiscs() {
@@ -397,8 +414,8 @@ function placeDiscs() {
     for (const [i, joint] of [[from, from], [to, to - 1]]) {
       centre.fromArray(jointData, i * stride);
       if (height(centre) > 0) continue;
-      n.fromArray(jointData, i * stride + 3);
-      a.fromArray(jointData, i * stride + 6).multiplyScalar(radius);
+      n.fromArray(jointData, i * stride + 4);
+      a.fromArray(jointData, i * stride + 8).multiplyScalar(radius);
       b.crossVectors(n, a);
       addDisc(centre, a, b, joint);
     }
@@ -412,7 +429,7 @@ function placeDiscs() {
       const slope = cut.sign * d.dot(cut.normal);
       if (Math.abs(slope) < 0.3) continue;  // the inside of the tube shows its colour instead
       centre.copy(p).lerp(q, hp / (hp - hq));
-      a.fromArray(jointData, i * stride + 6);
+      a.fromArray(jointData, i * stride + 8);
       a.addScaledVector(d, -a.dot(d)).normalize();
       b.crossVectors(d, a);
       // Slid along the tube into the plane.
@@ -420,9 +437,9 @@ function placeDiscs() {
       addDisc(centre, a, b, i);
     }
   }
-  discBuffer.needsUpdate = true;
-  discs.geometry.maxInstancedCount = discCount;
-  discs.visible = discCount > 0;
+  const {position, tint} = discs.geometry.attributes;
+  position.needsUpdate = tint.needsUpdate = true;
+  discs.geometry.setDrawRange(0, 3 * discCorners * discCount);
 }
 
 function placeCut() {
@@ -463,17 +480,21 @@ function refresh() {
 
 // --- Legend -------------------------------------------------------------------------------------------------
 
+// Numbers below the bar: both ends, with a sign where values lie beyond, and round numbers between.
 function ticksOf(s) {
+  const tick = (v, sign = '') => ({at: onBar(s, v), text: sign + tickText(v)});
   if (s.tube) {
     const all = [];
     for (let v = s.from; v <= s.to; ++v) all.push(v);
-    return all.length <= 12 ? all : [s.from, s.to];
+    return (all.length <= 12 ? all : [s.from, s.to]).map((v) => tick(v));
   }
+  const out = [tick(s.from, Math.min(...s.least) < s.from ? '≤ ' : ''), tick(s.to, Math.max(...s.most) > s.to ? '≥ ' : '')];
+  if (!(s.to > s.from)) return out.slice(0, 1);
   const rough = (s.to - s.from) / 4, base = Math.pow(10, Math.floor(Math.log10(rough)));
-  const step = [1, 2, 5, 10].map((m) => m * base).find((v) => v >= rough) || rough;
-  const ticks = [];
-  for (let v = Math.ceil(s.from / step - 1e-6); v * step <= s.to + 1e-6 * step; ++v) ticks.push(v * step);
-  return ticks;
+  const step = [1, 2, 5, 10].map((m) => m * base).find((v) => v >= rough);
+  for (let k = Math.ceil(s.from / step); k * step < s.to; ++k)
+    if (Math.abs(onBar(s, k * step) - 0.5) < 0.36) out.push(tick(k * step));
+  return out;
 }
 
 const tickText = (v) => numberText(Number(v.toPrecision(6)), 3).replace(/(\.\d*?)0+$/, '$1').replace(/\.$/, '');
@@ -506,12 +527,11 @@ function showLegend() {
     colours.append(i);
   }
   bar.append(colours);
-  for (const v of ticksOf(s)) {
+  for (const {at, text} of ticksOf(s)) {
     const tick = document.createElement('span');
-    const at = onBar(s, v);
     tick.className = at < 0.03 ? 'tick first' : at > 0.97 ? 'tick last' : 'tick';
     tick.style.left = 100 * at + '%';
-    tick.textContent = tickText(v);
+    tick.textContent = text;
     bar.append(tick);
   }
   bar.setAttribute('aria-label', `Colours of ${s.name} from ${tickText(s.from)} to ${withUnit(tickText(s.to), s.unit)}`);
@@ -533,12 +553,16 @@ function showNumbers() {
 
 // --- Looking ------------------------------------------------------------------------------------------------
 
-let wanted = false, moving = 0, ratio = 1, lastDraw = 0;
+let wanted = false, moving = 0, ratio = 1, lastDraw = 0, wasRestless = false;
 const still = Math.max(2, window.devicePixelRatio || 1);
 
 // Draws soon. While things move, as many pixels as come fast enough; then once more, smoothly.
 function request() {
   moving = performance.now();
+  schedule();
+}
+
+function schedule() {
   if (wanted || !renderer) return;
   wanted = true;
   requestAnimationFrame(draw);
@@ -552,7 +576,7 @@ function size(pixels) {
   camera.aspect = width / height;
 }
 
-function prepareCamera() {
+function prepareCamera(hasty) {
   const sphere = bounds();
   const distance = camera.position.distanceTo(sphere.centre);
   camera.near = Math.max(0.002 * sphere.radius, distance - 1.1 * sphere.radius);
@@ -562,7 +586,7 @@ function prepareCamera() {
   uniforms.haze.value.set(target, target + thick);
   // As many sides as the tubes' size on the screen needs.
   const pixels = Math.max(...facts.tube_radius) * pixelsPerNm() * renderer.getPixelRatio();
-  const detail = pixels < 4 ? 0 : pixels < 10 ? 1 : pixels < 30 ? 2 : 3;
+  const detail = pixels < 6 ? 0 : pixels < 14 || hasty ? 1 : pixels < 40 ? 2 : 3;
   meshes.forEach((mesh, k) => { mesh.visible = k === detail; });
 }
 
@@ -580,9 +604,10 @@ function bounds() {
   return {centre: low.clone().add(high).multiplyScalar(0.5), radius: 0.5 * low.distanceTo(high) + Math.max(...facts.tube_radius)};
 }
 
-function render(pixels) {
+// hasty: with fewer sides.
+function render(pixels, hasty = false) {
   size(pixels);
-  prepareCamera();
+  prepareCamera(hasty);
   renderer.setClearColor(stageColour());
   renderer.render(scene, camera);
 }
@@ -593,19 +618,18 @@ function draw(now) {
   const restless = playing || performance.now() - moving < 250;
   if (restless) {
     const gap = now - lastDraw;
-    if (gap < 300) {
-      if (gap > 36) ratio = Math.max(0.5, ratio * 0.85);
-      else if (gap < 22) ratio = Math.min(still, ratio * 1.05);
-    }
+    if (wasRestless && gap > 36) ratio = Math.max(0.5, ratio * 0.85);
+    if (wasRestless && gap < 22) ratio = Math.min(still, ratio * 1.05);
+    wasRestless = true;
     lastDraw = now;
-    render(ratio);
+    render(ratio, ratio < 0.9);
     counted(now);
     showScale();
     if (playing) step(now);
-    wanted = true;
-    requestAnimationFrame(draw);
+    schedule();
     return;
   }
+  wasRestless = false;
   render(still);
   showScale();
   document.documentElement.dataset.state = 'ready';
@@ -802,7 +826,7 @@ function pictureCanvas() {
     c.fillStyle = style.getPropertyValue('--ink').trim();
     c.fillText(s.name + (s.unit ? ', ' + s.unit : ''), left, 19);
     c.textAlign = 'center';
-    for (const v of ticksOf(s)) c.fillText(tickText(v), left + width * onBar(s, v), 56);
+    for (const {at, text} of ticksOf(s)) c.fillText(text, left + width * at, 56);
   }
   request();
   return out;
@@ -917,6 +941,17 @@ function listen() {
   matchMedia('(prefers-color-scheme: dark)').addEventListener('change', request);
 }
 
+// view.html#frame=12&colour=Shell&cut=right&at=0.3&look=end opens the page like that. Frames count from 1.
+function followAddress() {
+  const wish = new URLSearchParams(location.hash.slice(1));
+  const colour = sources.findIndex((s) => s.name === wish.get('colour'));
+  if (wish.has('frame')) showFrame(Number(wish.get('frame')) - 1 || 0);
+  if (colour >= 0) chooseSource(colour);
+  if (sides[wish.get('look')]) lookFrom(...sides[wish.get('look')]);
+  if (wish.has('at')) moveCut(Number(wish.get('at')) || 0);
+  if (['right', 'towards', 'up'].includes(wish.get('cut'))) chooseCut(wish.get('cut'));
+}
+
 function about() {
   const rounding = facts.fields.map((f) => `${f.name} to ${withUnit(numberText(0.5 * f.step, 2), f.unit)}`).join(', ');
   $('about').textContent = `${frames} of ${facts.stored_frames} stored frames; ${tubes} tubes, ${elements} elements. ` +
@@ -936,6 +971,8 @@ async function start() {
   showLegend();
   showFrame(frames - 1);
   lookFrom(...sides.oblique);
+  followAddress();
+  window.addEventListener('hashchange', followAddress);
   $('check').textContent = check();
 }
 
