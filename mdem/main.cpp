@@ -48,6 +48,7 @@ struct Verbs {
   BenchArguments bench;
   ReportArguments report;
   PictureArguments picture;
+  ViewArguments view;
   ErrorsArguments errors;
   CompareArguments compare;
   SweepArguments sweep;
@@ -210,6 +211,35 @@ void add_picture(CLI::App& app, Verbs& v) {
       ->check(CLI::Range(0.1, 20.0));
   c->add_flag("--force", v.picture.force, "Replace the file");
   c->callback([&v] { v.code = picture_command(v.picture); });
+}
+
+void add_view(CLI::App& app, Verbs& v) {
+  CLI::App* c = app.add_subcommand(
+      "view", "Show a run in space: a page to turn, play and cut through its frames; or a movie");
+  c->add_option("dir", v.view.dir, "Directory of the run")->required();
+  c->add_option("-o", v.view.out, "Page to write [default: DIR/view.html]");
+  c->add_option("--frames", v.view.frames, "At most so many frames, evenly over the run")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 100000));
+  c->add_option("--megabytes", v.view.megabytes, "The page is not longer: numbers are rounded, then frames left out")
+      ->capture_default_str()
+      ->check(CLI::Range(1.0, 2000.0));
+  CLI::Option* movie =
+      c->add_option("--movie", v.view.movie, "Write a movie of these frames instead: .webm or .mp4, by ffmpeg");
+  c->add_option("--from", v.view.from,
+                "Movie, seen from: side (the largest deflection in the picture), x, y, z, or AZIMUTH,ELEVATION")
+      ->capture_default_str()
+      ->needs(movie);
+  c->add_option("--fps", v.view.fps, "Movie: frames per second")
+      ->capture_default_str()
+      ->check(CLI::Range(0.1, 120.0))
+      ->needs(movie);
+  c->add_option("--width", v.view.width, "Movie: width, pixels")
+      ->capture_default_str()
+      ->check(CLI::Range(200, 7680))
+      ->needs(movie);
+  c->add_flag("--force", v.view.force, "Replace the file of -o or --movie");
+  c->callback([&v] { v.code = view_command(v.view); });
 }
 
 void add_energy(CLI::App& app, Verbs& v) {
@@ -400,6 +430,7 @@ int main(int argc, char** argv) {
   add_observe(app, verbs);
   add_report(app, verbs);
   add_picture(app, verbs);
+  add_view(app, verbs);
   add_errors(app, verbs);
   add_compare(app, verbs);
   add_sweep(app, verbs);

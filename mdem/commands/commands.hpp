@@ -67,6 +67,21 @@ struct PictureArguments {
 };
 int picture_command(const PictureArguments& arguments);
 
+struct ViewArguments {
+  std::string dir;
+  std::string out;            // the page; empty: DIR/view.html
+  int frames = 100;           // at most
+  double megabytes = 15;      // of the page, at most
+  std::string movie;          // .webm or .mp4 to write instead
+  std::string from = "side";  // of the movie: as of PictureArguments
+  double fps = 15;            // of the movie
+  int width = 1280;           // pixels, of the movie
+  bool force = false;
+};
+int view_command(const ViewArguments& arguments);
+// The movie alone.
+void make_movie(const ViewArguments& arguments);
+
 struct ErrorsArguments {
   std::string dir;
   int jobs = 0;  // runs at a time; 0: one for each core

@@ -1,8 +1,5 @@
 // `picture`: a figure for a paper from the frames and the log of a run.
 #include <fmt/format.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,10 +8,9 @@
 #include "commands/commands.hpp"
 #include "commands/run_views.hpp"
 #include "io/files.hpp"
+#include "io/processes.hpp"
 #include "model/error.hpp"
 #include "report/plate.hpp"
-
-extern char** environ;
 
 namespace ropewalk {
 namespace {
@@ -25,11 +21,7 @@ constexpr std::size_t usual_states = 4;
 
 // Frames nearest to these times; evenly over the run where there are none.
 std::vector<DumpFrame> frames_at(const RunDirectory& dir, const Topology& topology, std::vector<double> times) {
-  std::vector<double> stored;
-  DumpFrame frame;
-  for (DumpReader reader(dir.frames()); reader.next(topology, frame);) stored.push_back(frame.state.time);
-  if (stored.empty())
-    throw InputError({dir.frames(), 0, ""}, "holds no frame", "run the scene further with `ropewalk resume`");
+  const std::vector<double> stored = frame_times(dir, topology);
   if (times.empty())
     for (const std::size_t k : evenly(stored.size(), usual_states)) times.push_back(stored[k]);
   std::vector<std::size_t> wanted;
@@ -45,29 +37,7 @@ std::vector<DumpFrame> frames_at(const RunDirectory& dir, const Topology& topolo
                        "choose times of the run");
     wanted.push_back(static_cast<std::size_t>(at - stored.begin()));
   }
-  std::vector<DumpFrame> out(wanted.size());
-  std::size_t k = 0;
-  for (DumpReader reader(dir.frames()); reader.next(topology, frame); ++k)
-    for (std::size_t w = 0; w < wanted.size(); ++w)
-      if (wanted[w] == k) out[w] = frame;
-  return out;
-}
-
-// side: as reports have it; x, y, z: along that axis; AZIMUTH,ELEVATION about z, in degrees.
-RopeCamera camera_from(const std::string& from, const std::vector<RopeView>& views, double radius, double width,
-                       double height) {
-  if (from == "side") return rope_camera(views, radius, width, height);
-  if (from == "x") return rope_camera(views, radius, Vector3::UnitX(), width, height);
-  if (from == "y") return rope_camera(views, radius, Vector3::UnitY(), width, height);
-  if (from == "z" || from == "end") return rope_camera(views, radius, Vector3::UnitZ(), width, height);
-  double azimuth = 0, elevation = 0;
-  char rest = 0;
-  if (std::sscanf(from.c_str(), "%lf,%lf%c", &azimuth, &elevation, &rest) != 2)
-    throw InputError({"", 0, "--from"}, fmt::format("there is no side \"{}\"", from),
-                     "take side, x, y, z, or two angles in degrees: 30,20");
-  const double a = azimuth * units::degree, e = elevation * units::degree;
-  return rope_camera(views, radius, {std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e)}, width,
-                     height);
+  return frames_of(dir, topology, wanted);
 }
 
 std::vector<std::vector<std::string>> curves_of(const std::vector<std::string>& groups) {
@@ -88,17 +58,11 @@ std::vector<std::vector<std::string>> curves_of(const std::vector<std::string>& 
 void convert(const std::string& svg, const std::string& out, const std::string& format, double zoom) {
   const std::string draft = out + ".svg";
   write_file_atomically(draft, svg);
-  std::vector<std::string> words = {"rsvg-convert", "-f", format, "-z", fmt::format("{}", zoom), "-o", out, draft};
-  std::vector<char*> argv;
-  for (std::string& w : words) argv.push_back(w.data());
-  argv.push_back(nullptr);
-  pid_t child = 0;
-  int status = -1;
-  const int error = posix_spawnp(&child, "rsvg-convert", nullptr, nullptr, argv.data(), environ);
-  if (error == 0) waitpid(child, &status, 0);
+  const ProgramEnd end =
+      run_program({"rsvg-convert", "-f", format, "-z", fmt::format("{}", zoom), "-o", out, draft});
   std::error_code ignored;
   fs::remove(draft, ignored);
-  if (error != 0 || !WIFEXITED(status) || WEXITSTATUS(status) != 0)
+  if (end != ProgramEnd::well)
     throw InputError({out, 0, "-o"}, "cannot be made: rsvg-convert is missing or failed",
                      "install librsvg2-bin, or write .svg");
 }

@@ -127,7 +127,7 @@ ReportInput gather(const RunDirectory& dir, const Scene& scene, const Prepared& 
     in.validity = validities(scene, p.topology).front();  // of more than one, no number holds for all
   if (std::filesystem::exists(dir.limits())) in.watched = read_limits(dir.limits());
   const Observer observer = make_observer(scene, p);
-  in.rope = p.topology.tubes() > 1 && !observer.loading.radius.empty() && are_parallel(p.state);
+  in.rope = is_rope(p, observer);
   in.loaded = !p.loads.empty();
   in.shells = observer.shells;
   for (const DumpFrame& frame : read_frames(dir, p.topology)) {
@@ -144,6 +144,10 @@ ReportInput gather(const RunDirectory& dir, const Scene& scene, const Prepared& 
 }
 
 }  // namespace
+
+bool is_rope(const Prepared& p, const Observer& observer) {
+  return p.topology.tubes() > 1 && !observer.loading.radius.empty() && are_parallel(p.state);
+}
 
 RopeView view_of(const Topology& topology, const DumpFrame& frame, double beta_deg) {
   RopeView view;

@@ -1,4 +1,4 @@
-// Pictures of the frames of a run.
+// Frames of a run and pictures of them.
 #pragma once
 
 #include <optional>
@@ -13,5 +13,18 @@ namespace ropewalk {
 RopeView view_of(const Topology& topology, const DumpFrame& frame, double beta_deg);
 // Of the last frame; none where there is no frame.
 std::optional<RopeView> last_view(const RunDirectory& dir, const Scene& scene, const Prepared& prepared);
+
+// Several tubes of one length that are parallel at the start.
+bool is_rope(const Prepared& prepared, const Observer& observer);
+
+// The stored frames' times, ps. Throws InputError where there are none.
+std::vector<double> frame_times(const RunDirectory& dir, const Topology& topology);
+// The frames with these numbers, from 0.
+std::vector<DumpFrame> frames_of(const RunDirectory& dir, const Topology& topology,
+                                 const std::vector<std::size_t>& wanted);
+
+// What --from says. side: as reports have it; x, y, z: along that axis; AZIMUTH,ELEVATION about z, in degrees.
+RopeCamera camera_from(const std::string& from, const std::vector<RopeView>& views, double radius, double width,
+                       double height);
 
 }  // namespace ropewalk

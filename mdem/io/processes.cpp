@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <omp.h>
+#include <spawn.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -14,6 +15,8 @@
 #include <stdexcept>
 
 #include "io/stop_signals.hpp"
+
+extern char** environ;
 
 namespace ropewalk {
 namespace {
@@ -54,6 +57,19 @@ void run_processes(const std::vector<ProcessTask>& tasks, int jobs, const volati
     at_work.emplace(start(task, jobs), &task);
   }
   while (!at_work.empty()) wait_for_one();
+}
+
+ProgramEnd run_program(std::vector<std::string> words) {
+  std::vector<char*> argv;
+  for (std::string& w : words) argv.push_back(w.data());
+  argv.push_back(nullptr);
+  pid_t child = 0;
+  int status = 0;
+  const int error = posix_spawnp(&child, argv[0], nullptr, nullptr, argv.data(), environ);
+  if (error != 0) return error == ENOENT ? ProgramEnd::missing : ProgramEnd::failed;
+  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  return WIFEXITED(status) && WEXITSTATUS(status) == 0 ? ProgramEnd::well : ProgramEnd::failed;
 }
 
 std::string death_words(int status) {

@@ -162,13 +162,25 @@ std::string warnings_part(const std::vector<std::string>& warnings) {
   return html + "</ul></div>\n";
 }
 
-std::string page_head(const std::string& name) {
-  return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n"
-         "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src "
-         "'unsafe-inline'\"/>\n"
-         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n"
+namespace {
+
+std::string head(const std::string& name, const char* allowed, const std::string& more_css) {
+  return std::string(
+             "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n"
+             "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; ") +
+         allowed +
+         "\"/>\n<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n"
          "<meta name=\"color-scheme\" content=\"light dark\"/>\n<title>" +
-         escape_markup(name) + " – Ropewalk</title>\n<style>\n" + svg_css() + page_css + "</style>\n</head>\n";
+         escape_markup(name) + " – Ropewalk</title>\n<style>\n" + svg_css() + page_css + more_css +
+         "</style>\n</head>\n";
+}
+
+}  // namespace
+
+std::string page_head(const std::string& name) { return head(name, "style-src 'unsafe-inline'", ""); }
+
+std::string scripted_page_head(const std::string& name, const std::string& css) {
+  return head(name, "style-src 'unsafe-inline'; script-src 'unsafe-inline'", css);
 }
 
 }  // namespace ropewalk

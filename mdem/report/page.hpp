@@ -1,4 +1,5 @@
-// Parts of the program's HTML pages. A page is one file, without scripts or references to other files.
+// Parts of the program's HTML pages. A page is one file, without references to other files; only the page in space
+// (view/) has scripts.
 #pragma once
 
 #include <string>
@@ -45,5 +46,7 @@ std::string warnings_part(const std::vector<std::string>& warnings);
 
 // Everything before <body>.
 std::string page_head(const std::string& name);
+// Of a page with scripts in itself, and with more rules for its style.
+std::string scripted_page_head(const std::string& name, const std::string& css);
 
 }  // namespace ropewalk

@@ -44,6 +44,7 @@ const std::vector<OutputFile>& run_files() {
       {"checkpoint-before.bin", "run", "binary: the checkpoint before it, which `resume` takes where it has to"},
       {lock_name, "run, import", "names the process that works here; there only as long as it does"},
       {"report.html", "run, report", "page with charts, pictures and all observables"},
+      {"view.html", "view", "page that shows the frames in space"},
       {"errors.csv", "errors", "standard errors of the observables, as log.csv"},
       {"errors", "errors", "directory with the runs behind errors.csv, and errors.json"},
       {"plan-check.csv", "plan", "of a planned run: how far it is off a finer model"},

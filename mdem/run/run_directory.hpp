@@ -28,6 +28,7 @@ struct RunDirectory {
   }
   std::string state() const { return file("state.csv"); }
   std::string report() const { return file("report.html"); }
+  std::string view() const { return file("view.html"); }
   std::string plan_check() const { return file("plan-check.csv"); }
   std::string limits() const { return file("limits.json"); }
   std::string final_state() const { return file("final.csv"); }

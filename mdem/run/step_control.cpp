@@ -28,13 +28,14 @@ void StepControl::lengthen(Simulation& simulation) {
 EnergyMark energy_mark(const Simulation& s) { return {s.total_energy(), s.account()}; }
 
 bool account_closes(const EnergyMark& mark, const Simulation& s) {
-  constexpr double part = 0.03, part_of_bonds = 1e-3;
+  constexpr double part = 0.03, part_of_bonds = 1e-3, rounding = 1e-9;  // rounding: eV for each element
   if (!std::isfinite(mark.energy)) return true;
   const EnergyMark now = energy_mark(s);
   const double error = now.energy - mark.energy - (now.supply.supplied() - mark.supply.supplied());
   const double moving =
       kinetic_energy(s.topology(), s.state()) + std::fabs(now.supply.dissipated - mark.supply.dissipated);
-  return std::fabs(error) <= part * moving + part_of_bonds * s.forces().energy.bonds();
+  return std::fabs(error) <= part * moving + part_of_bonds * s.forces().energy.bonds() +
+                                 rounding * static_cast<double>(s.state().size());
 }
 
 }  // namespace ropewalk

@@ -1,0 +1,16 @@
+# Writes OUTPUT, a C++ source file with the text of each file of FILES ("name=path|name=path") as a constant `name`.
+# A name without a path gets an empty text.
+file(WRITE "${OUTPUT}.new" "// Written by cmake/embed.cmake.\n#include \"report/view/view_files.hpp\"\n\nnamespace ropewalk {\n\n")
+string(REPLACE "|" ";" FILES "${FILES}")
+foreach(entry ${FILES})
+  string(REGEX MATCH "^([^=]*)=(.*)$" entry "${entry}")
+  set(name "${CMAKE_MATCH_1}")
+  set(path "${CMAKE_MATCH_2}")
+  set(text "")
+  if(path)
+    file(READ "${path}" text)
+  endif()
+  file(APPEND "${OUTPUT}.new" "const char* const ${name} = R\"~~~~(${text})~~~~\";\n\n")
+endforeach()
+file(APPEND "${OUTPUT}.new" "}  // namespace ropewalk\n")
+file(RENAME "${OUTPUT}.new" "${OUTPUT}")

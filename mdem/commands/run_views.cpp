@@ -1,0 +1,48 @@
+#include "commands/run_views.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdio>
+
+#include "model/error.hpp"
+
+namespace ropewalk {
+
+std::vector<double> frame_times(const RunDirectory& dir, const Topology& topology) {
+  std::vector<double> times;
+  DumpFrame frame;
+  for (DumpReader reader(dir.frames()); reader.next(topology, frame);) times.push_back(frame.state.time);
+  if (times.empty())
+    throw InputError({dir.frames(), 0, ""}, "holds no frame", "run the scene further with `ropewalk resume`");
+  return times;
+}
+
+std::vector<DumpFrame> frames_of(const RunDirectory& dir, const Topology& topology,
+                                 const std::vector<std::size_t>& wanted) {
+  std::vector<DumpFrame> out(wanted.size());
+  std::size_t k = 0;
+  DumpFrame frame;
+  for (DumpReader reader(dir.frames()); reader.next(topology, frame); ++k)
+    for (std::size_t w = 0; w < wanted.size(); ++w)
+      if (wanted[w] == k) out[w] = frame;
+  return out;
+}
+
+RopeCamera camera_from(const std::string& from, const std::vector<RopeView>& views, double radius, double width,
+                       double height) {
+  if (from == "side") return rope_camera(views, radius, width, height);
+  if (from == "x") return rope_camera(views, radius, Vector3::UnitX(), width, height);
+  if (from == "y") return rope_camera(views, radius, Vector3::UnitY(), width, height);
+  if (from == "z" || from == "end") return rope_camera(views, radius, Vector3::UnitZ(), width, height);
+  double azimuth = 0, elevation = 0;
+  char rest = 0;
+  if (std::sscanf(from.c_str(), "%lf,%lf%c", &azimuth, &elevation, &rest) != 2)
+    throw InputError({"", 0, "--from"}, fmt::format("there is no side \"{}\"", from),
+                     "take side, x, y, z, or two angles in degrees: 30,20");
+  const double a = azimuth * units::degree, e = elevation * units::degree;
+  return rope_camera(views, radius, {std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e)}, width,
+                     height);
+}
+
+}  // namespace ropewalk
