@@ -101,6 +101,13 @@ ReportLoading loading_of(const Topology& topology, const State& state, const Loa
   return out;
 }
 
+// Not where the run has gone on since.
+bool has_view(const RunDirectory& dir) {
+  std::error_code none;
+  const auto view = std::filesystem::last_write_time(dir.view(), none);
+  return !none && view >= std::filesystem::last_write_time(dir.frames(), none) && !none;
+}
+
 ReportInput gather(const RunDirectory& dir, const Scene& scene, const Prepared& p) {
   ReportInput in;
   const Manifest m = read_manifest(dir.manifest());
@@ -137,6 +144,7 @@ ReportInput gather(const RunDirectory& dir, const Scene& scene, const Prepared& 
     in.views.push_back(view_of(p.topology, frame, beta));
     if (in.rope) in.loading.push_back(loading_of(p.topology, frame.state, observer.loading));
   }
+  in.in_space = has_view(dir);
   in.parameter_name = scene.parameters().name;
   in.parameter_reference = scene.parameters().reference;
   in.parameters = scene.parameters().quantities;

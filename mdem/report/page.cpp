@@ -69,7 +69,7 @@ figcaption b{color:var(--ink)}
 details{font-size:.82rem;margin-top:.5em}
 summary{cursor:pointer;color:var(--soft);width:max-content}
 details p{margin:.5em 0;color:var(--soft)}
-.scroll{overflow-x:auto}
+.scroll{overflow-x:auto}a{color:var(--c0)}
 table{border-collapse:collapse;font-size:.82rem;line-height:1.4;font-variant-numeric:tabular-nums}
 th,td{padding:3px 14px 3px 0;text-align:left;vertical-align:top;border-bottom:1px solid var(--rule)}
 thead th{color:var(--soft);font-weight:600;border-bottom-color:var(--soft)}

@@ -505,6 +505,8 @@ std::string report_html(const ReportInput& in) {
                      escape_markup(in.name) + "</h1>\n<p class=\"lead\">" + summary(in) + "</p>\n";
   html += warnings_part(in.warnings);
   html += heading(in.rope ? "The rope" : in.tubes == 1 ? "The tube" : "The tubes") + views_figure(in, figures);
+  html += paragraph(in.in_space ? "<a href=\"view.html\">In space</a>: turn it, play it, cut through it."
+                                : "<code>ropewalk view</code> makes a page that shows the run in space.");
   if (in.rope) html += heading("Cross-sections") + sections_part(in, sections, figures);
   html += log_part(in, sections, figures);
   html += heading("Beyond the limits of the model") + limits_part(in);

@@ -1,4 +1,4 @@
-// The report on one run: one HTML file without scripts or references to other files.
+// The report on one run: one HTML file without scripts. It asks for no other file; it has a link to view.html.
 #pragma once
 
 #include <string>
@@ -54,6 +54,7 @@ struct ReportInput {
   RopeShells shells;                    // of the untwisted rope
   std::vector<ReportSection> sections;  // in the order of time; of more than six, six are shown
   std::vector<RopeView> views;          // likewise
+  bool in_space = false;                // view.html stands beside the report
 
   std::string parameter_name;
   std::string parameter_reference;
