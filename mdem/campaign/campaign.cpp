@@ -85,7 +85,7 @@ PointProgress progress_of(const RunDirectory& dir) {
   if (m.status == "failed")
     p.stage = Stage::failed;
   else if (m.status == "running" || m.status == "interrupted")
-    p.stage = fs::exists(dir.checkpoint()) || fs::exists(dir.checkpoint_before()) ? Stage::begun : Stage::waiting;
+    p.stage = has_checkpoint(dir) ? Stage::begun : Stage::waiting;
   else
     p.stage = Stage::ended;
   if (p.stage == Stage::begun) p.status = "interrupted";  // by whoever looks: nothing of it runs here

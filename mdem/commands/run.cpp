@@ -769,8 +769,9 @@ void use_threads(int threads) {
 namespace {
 
 // A run that may be refined must find the place for it free.
-void check_finer_directory(const RunDirectory& dir, const RunPolicy& policy) {
+void check_finer_directory(const RunDirectory& dir, const RunPolicy& policy, bool resumed) {
   const RunDirectory finer = finer_directory(dir);
+  if (resumed && !has_checkpoint(finer)) return;  // killed while it was made: see write_finer_scene()
   if (policy.on_limit == OnLimit::refine && !policy.force && std::filesystem::exists(finer.path))
     throw InputError({finer.path, 0, "--on-limit"}, "exists, and a refined run would go on there",
                      "take it away or choose another name for the run");
@@ -784,7 +785,7 @@ std::unique_ptr<Run> new_run(const Scene& scene, const RunArguments& a) {
   run->check_before_start();
   run->stop_at(a.steps, a.until_ps);
   listen_to_stop_signals();
-  check_finer_directory(dir, policy);
+  check_finer_directory(dir, policy, false);
   run->hold(create_run_directory(dir, a.force));
   write_file_atomically(dir.scene(), scene.text);
   for (std::size_t k = 0; k < scene.sets.size(); ++k)
@@ -805,13 +806,11 @@ int go_through(std::unique_ptr<Run> run) {
 
 // A run whose elements were split goes on elsewhere.
 void refuse_refined(const RunDirectory& dir) {
-  if (!std::filesystem::exists(dir.limits())) return;
-  const LimitsFile file = read_limits(dir.limits());
-  if (file.refinements.empty() || file.refinements.back().from != name_of(dir)) return;
   const RunDirectory next = finer_directory(dir);
-  if (!std::filesystem::exists(next.checkpoint())) return;
-  throw InputError({dir.path, 0, ""},
-                   fmt::format("had its elements split at {:.4g} ps", file.refinements.back().time_ps),
+  if (!has_checkpoint(next)) return;
+  const std::vector<RefinementRecord> splits = read_checkpoint(next).limits.refinements;
+  if (splits.empty() || splits.back().from != name_of(dir)) return;
+  throw InputError({dir.path, 0, ""}, fmt::format("had its elements split at {:.4g} ps", splits.back().time_ps),
                    "go on with: ropewalk resume " + next.path);
 }
 
@@ -850,7 +849,7 @@ int resume_command(const ResumeArguments& a) {
   const RunPolicy policy{a.quiet, on_limit_of(a.on_limit), false, seconds_of_wall_time(a.wall_time)};
   read_checkpoint(dir);  // is there one at all?
   refuse_refined(dir);
-  check_finer_directory(dir, policy);
+  check_finer_directory(dir, policy, true);
   DirectoryLock lock(dir.path);
   remove_parts(dir.path);
   remove_parts(dir.paraview());

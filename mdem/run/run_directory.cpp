@@ -104,6 +104,10 @@ DirectoryLock create_run_directory(const RunDirectory& dir, bool force) {
   return lock;
 }
 
+bool has_checkpoint(const RunDirectory& dir) {
+  return fs::exists(dir.checkpoint()) || fs::exists(dir.checkpoint_before());
+}
+
 Scene read_run_scene(const RunDirectory& dir) {
   if (!fs::exists(dir.scene()))
     throw InputError({dir.path, 0, ""}, "is not the directory of a run (no scene.toml in it)",

@@ -49,6 +49,9 @@ std::string run_files_markdown();  // the table in Markdown
 // process works there, and if it holds other files, even with `force`.
 DirectoryLock create_run_directory(const RunDirectory& dir, bool force);
 
+// Whether there is a checkpoint, of either generation.
+bool has_checkpoint(const RunDirectory& dir);
+
 // The scene as the run had it: scene.toml, parameters.toml and state.csv of the directory.
 Scene read_run_scene(const RunDirectory& dir);
 

@@ -42,7 +42,7 @@ DirectoryLock write_finer_scene(const RunDirectory& from, const Scene& scene, co
   const std::string text = finer_scene_text(
       scene, prepared,
       fmt::format("Made by ropewalk at {:.6g} ps of the run {}: every element split in two.", time, name_of(from)));
-  DirectoryLock lock = create_run_directory(to, force);
+  DirectoryLock lock = create_run_directory(to, force || !has_checkpoint(to));
   write_file_atomically(to.scene(), text);
   for (std::size_t k = 0; k < scene.sets.size(); ++k)
     write_file_atomically(to.parameters(k), read_file(scene.sets[k].path));

@@ -15,8 +15,8 @@ RunDirectory finer_directory(const RunDirectory& dir);
 std::string name_of(const RunDirectory& dir);
 
 // Makes the directory of the next stage with the finer scene, the parameter sets and, for [state], the halved state
-// of time zero. `force` replaces an earlier run there. `time` is the time of the splitting, ps.
-// Returns the lock on that directory.
+// of time zero. `force` replaces an earlier run there; one that was killed before its first checkpoint is replaced
+// anyway. `time` is the time of the splitting, ps. Returns the lock on that directory.
 DirectoryLock write_finer_scene(const RunDirectory& from, const Scene& scene, const Prepared& prepared, double time,
                                 bool force);
 

@@ -218,6 +218,33 @@ TEST_F(Faults, SweepKilledAndGoneOnWith) {
   fmt::print("kill in sweep: {} tried\n", tried);
 }
 
+// Elements are split on the way, and the run goes on in another directory: `resume` finds the way on from both.
+TEST_F(Faults, RefinedRunKilledAndGoneOnWith) {
+  spit(dir / "s.toml",
+       "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[chain]\nelements = 6\n[contact]\n"
+       "law = \"none\"\n[twist]\nmoment_nN_nm = 14\nrate_nN_nm_per_ps = 7\nhold_ps = 1\n[limits]\ntwist_deg = 2\n"
+       "[run]\nlog_every_ps = 0.25\nframes_every_ps = 1\ncheckpoint_every_s = 1e-6\n");
+  const std::string refine = " --quiet --on-limit refine";
+  const auto clear = [&] {
+    for (const char* name : {"d", "d.fine"}) fs::remove_all(dir / name);
+  };
+  const long calls = calls_of("run s.toml --out d" + refine);
+  ASSERT_TRUE(fs::exists(dir / "d.fine/final.csv"));
+  fs::rename(dir / "d.fine", dir / "whole");
+  for (long n = 1; n <= calls; n += stride(5)) {
+    clear();
+    with(fmt::format("kill:{}", n), "run s.toml --out d" + refine);
+    Outcome o = run("resume d" + refine);
+    if (o.code == 2 && o.err.find("go on with: ropewalk resume d.fine") != std::string::npos)
+      o = run("resume d.fine" + refine);
+    else if (o.code == 2 && o.err.find("there is no checkpoint") != std::string::npos)
+      o = run("run s.toml --force --out d" + refine);
+    ASSERT_EQ(o.code, 0) << n << ": " << o.err;
+    for (const char* name : {"log.csv", "frames.lammpstrj", "final.csv"})
+      ASSERT_TRUE(slurp(dir / "d.fine" / name) == slurp(dir / "whole" / name)) << n << ": " << name;
+  }
+}
+
 // What a power cut does to files that were not written to the disk yet, and what users do to make room.
 TEST_F(Faults, LostTails) {
   spit(dir / "s.toml", calm);
