@@ -1,6 +1,4 @@
 // `view --movie`: our own pictures of the frames, joined by ffmpeg.
-#include "report/movie_picture.hpp"
-
 #include <fmt/format.h>
 #include <omp.h>
 #include <sys/wait.h>
@@ -14,6 +12,7 @@
 #include "io/files.hpp"
 #include "io/processes.hpp"
 #include "model/error.hpp"
+#include "report/movie_picture.hpp"
 #include "report/page.hpp"
 
 namespace ropewalk {
@@ -41,8 +40,8 @@ struct Folder {
 
 // Before minutes go into pictures. One black picture, thrown away.
 void need_ffmpeg() {
-  if (run_program({"ffmpeg", "-nostdin", "-v", "error", "-f", "lavfi", "-i", "color=s=16x16", "-frames:v", "1", "-f",
-                   "null", "-"}) != ProgramEnd::well)
+  if (run_program({"ffmpeg", "-nostdin", "-v", "error", "-f", "lavfi", "-i", "color=s=16x16", "-frames:v", "1",
+                   "-f", "null", "-"}) != ProgramEnd::well)
     throw InputError({"", 0, "--movie"}, "needs ffmpeg, which is missing or does not work", "install ffmpeg");
 }
 
@@ -50,20 +49,18 @@ void draw(const std::vector<RopeView>& views, const MovieStage& stage, const std
   bool all = true;
   std::vector<ProcessTask> tasks;
   for (std::size_t k = 0; k < views.size(); ++k)
-    tasks.push_back({[&, k] {
-                       try {
-                         const std::string name = fmt::format("{}/{:06}", folder, k);
-                         write_file_atomically(
-                             name + ".svg",
-                             movie_picture(views[k], stage, number_text(views[k].time_ps) + " ps"));
-                         return run_program({"rsvg-convert", "-o", name + ".png", name + ".svg"}) == ProgramEnd::well
-                                    ? 0
-                                    : 1;
-                       } catch (const std::exception&) {
-                         return 1;
-                       }
-                     },
-                     [&all](int status) { all = all && WIFEXITED(status) && WEXITSTATUS(status) == 0; }});
+    tasks.push_back(
+        {[&, k] {
+           try {
+             const std::string name = fmt::format("{}/{:06}", folder, k);
+             write_file_atomically(name + ".svg",
+                                   movie_picture(views[k], stage, number_text(views[k].time_ps) + " ps"));
+             return run_program({"rsvg-convert", "-o", name + ".png", name + ".svg"}) == ProgramEnd::well ? 0 : 1;
+           } catch (const std::exception&) {
+             return 1;
+           }
+         },
+         [&all](int status) { all = all && WIFEXITED(status) && WEXITSTATUS(status) == 0; }});
   run_processes(tasks, omp_get_num_procs());
   if (!all)
     throw InputError({folder, 0, "--movie"}, "pictures cannot be made: rsvg-convert is missing or failed",
@@ -83,17 +80,25 @@ void make_movie(const ViewArguments& a) {
   const Prepared prepared = prepare(scene);
   const std::size_t stored = frame_times(dir, prepared.topology).size();
   std::vector<RopeView> views;
-  for (const DumpFrame& f :
-       frames_of(dir, prepared.topology, evenly(stored, static_cast<std::size_t>(a.frames))))
+  for (const DumpFrame& f : frames_of(dir, prepared.topology, evenly(stored, static_cast<std::size_t>(a.frames))))
     views.push_back(view_of(prepared.topology, f, std::numeric_limits<double>::quiet_NaN()));
   const double radius = prepared.topology.largest_radius();
   const RopeCamera camera = camera_from(a.from, views, radius, a.width - 40, 0.5625 * a.width);
   const Folder folder(a.movie + ".frames");
   draw(views, movie_stage(views, camera, radius, a.width), folder.path);
-  std::vector<std::string> words = {"ffmpeg", "-nostdin", "-v", "error", "-y", "-framerate", fmt::format("{}", a.fps),
-                                    "-i", folder.path + "/%06d.png", "-pix_fmt", "yuv420p"};
-  const std::vector<std::string> webm = {"-c:v", "libvpx-vp9", "-crf", "30", "-b:v", "0", "-cpu-used", "4",
-                                         "-row-mt", "1"},
+  std::vector<std::string> words = {"ffmpeg",
+                                    "-nostdin",
+                                    "-v",
+                                    "error",
+                                    "-y",
+                                    "-framerate",
+                                    fmt::format("{}", a.fps),
+                                    "-i",
+                                    folder.path + "/%06d.png",
+                                    "-pix_fmt",
+                                    "yuv420p"};
+  const std::vector<std::string> webm = {"-c:v", "libvpx-vp9", "-crf", "30",      "-b:v",
+                                         "0",    "-cpu-used",  "4",    "-row-mt", "1"},
                                  mp4 = {"-c:v", "libx264", "-crf", "18", "-movflags", "+faststart"};
   const auto& codec = format == ".webm" ? webm : mp4;
   words.insert(words.end(), codec.begin(), codec.end());

@@ -1,6 +1,4 @@
 // `view`: the frames of a run in space, as a page or as a movie.
-#include "report/view/view_page.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,6 +11,7 @@
 #include "io/files.hpp"
 #include "model/error.hpp"
 #include "report/page.hpp"
+#include "report/view/view_page.hpp"
 
 namespace ropewalk {
 namespace {
@@ -108,7 +107,8 @@ std::vector<ViewField> fields_of(const Topology& topology, const std::vector<Dum
     }
     out.push_back(std::move(colour.field));
   }
-  ViewField tension{"Tension", "nN", "along the tube, mean of the bonds of the element; negative: pressed", true, {}, {}};
+  ViewField tension{"Tension", "nN", "along the tube, mean of the bonds of the element; negative: pressed",
+                    true,      {},   {}};
   for (const DumpFrame& f : frames) {
     tension.values.push_back(tension_of_elements(topology, f.state));
     tension.log_total.push_back(none);
@@ -135,7 +135,8 @@ ViewInput gather(const RunDirectory& dir, const Scene& scene, const Prepared& p,
   if (is_rope(p, observer))
     if (const std::vector<int> shells = shells_of(observer.loading); !shells.empty())
       in.tube_numbers.push_back({"Shell", "ring of the rope, 0: the innermost tube", shells});
-  if (scene.sets.size() > 1) in.tube_numbers.push_back({"Type of tube", "parameter set, from 0", p.topology.tube_type});
+  if (scene.sets.size() > 1)
+    in.tube_numbers.push_back({"Type of tube", "parameter set, from 0", p.topology.tube_type});
   in.camera = rope_camera({view_of(p.topology, frames.front(), none), view_of(p.topology, frames.back(), none)},
                           p.topology.largest_radius());
   return in;
@@ -159,9 +160,9 @@ int view_command(const ViewArguments& a) {
   const ViewPage page = view_page(in, static_cast<std::size_t>(a.megabytes * 1e6));
   const std::string out = a.out.empty() ? dir.view() : a.out;
   write_file_atomically(out, page.html);
-  fmt::print("{} written: {} of {} frames, {:.1f} MB; positions to {:.2g} nm, numbers to 1/{} of their range\n", out,
-             page.frames, in.stored_frames, static_cast<double>(page.html.size()) / 1e6, 0.5 * page.position_step,
-             2 * page.levels);
+  fmt::print("{} written: {} of {} frames, {:.1f} MB; positions to {:.2g} nm, numbers to 1/{} of their range\n",
+             out, page.frames, in.stored_frames, static_cast<double>(page.html.size()) / 1e6,
+             0.5 * page.position_step, 2 * page.levels);
   // The report then names the page.
   if (a.out.empty() && fs::exists(dir.report())) write_report(dir, scene, prepared);
   return 0;

@@ -23,7 +23,8 @@ int even(double v) { return 2 * static_cast<int>(std::ceil(0.5 * v)); }
 
 }  // namespace
 
-MovieStage movie_stage(const std::vector<RopeView>& views, const RopeCamera& camera, double tube_radius, int width) {
+MovieStage movie_stage(const std::vector<RopeView>& views, const RopeCamera& camera, double tube_radius,
+                       int width) {
   MovieStage out{camera, tube_radius, 0, 0, even(width), 0};
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (const RopeView& v : views) {
@@ -40,12 +41,14 @@ std::string movie_picture(const RopeView& view, const MovieStage& stage, const s
   const double left = 0.5 * (stage.width - c.width * c.scale);
   // The picture begins at the highest point of its own rope.
   const double top = head + (stage.high - highest(view, c.up) - 1.5 * stage.tube_radius) * c.scale;
-  std::string body = fmt::format("<text x=\"{}\" y=\"26\" font-size=\"17\">{}</text>\n", margin, escape_markup(when));
+  std::string body =
+      fmt::format("<text x=\"{}\" y=\"26\" font-size=\"17\">{}</text>\n", margin, escape_markup(when));
   body += fmt::format("<svg x=\"{:.1f}\" y=\"{:.1f}\"", left, std::isfinite(top) ? top : head) +
           rope_picture(view, c, stage.tube_radius, "m", false).substr(4);
   const double bar = scale_bar_length(c), y = stage.height - 0.5 * foot;
   body += fmt::format(
-      "<path d=\"M{0} {1:.1f}h{2:.1f}\" stroke=\"var(--ink)\" stroke-width=\"3\"/><text x=\"{3:.1f}\" y=\"{4:.1f}\" "
+      "<path d=\"M{0} {1:.1f}h{2:.1f}\" stroke=\"var(--ink)\" stroke-width=\"3\"/><text x=\"{3:.1f}\" "
+      "y=\"{4:.1f}\" "
       "fill=\"var(--ink)\">{5:g} nm</text>\n",
       margin, y, bar * c.scale, margin + bar * c.scale + 8, y + 4, bar);
   if (c.moment_eV > 0)

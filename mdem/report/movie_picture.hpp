@@ -10,9 +10,9 @@ namespace ropewalk {
 
 struct MovieStage {
   RopeCamera camera;
-  double tube_radius = 0;       // nm
-  double low = 0, high = 0;     // nm, of all pictures, along camera.up
-  int width = 0, height = 0;    // pixels, even
+  double tube_radius = 0;     // nm
+  double low = 0, high = 0;   // nm, of all pictures, along camera.up
+  int width = 0, height = 0;  // pixels, even
 };
 // Of all views. The camera is theirs, for a picture of this width.
 MovieStage movie_stage(const std::vector<RopeView>& views, const RopeCamera& camera, double tube_radius, int width);

@@ -47,16 +47,18 @@ struct Browsed {
 class View : public ropewalk::test::Cli {
  protected:
   void run_rope() const {
-    spit(dir / "s.toml",
-         "format = \"ropewalk-scene-1\"\nname = \"rope <1>\"\nparameters = \"cnt-10-10-paper\"\n[rope]\ntubes = 19\n"
-         "length_nm = 16\nperturbation_nm = 0.001\n[twist]\nmoment_nN_nm = 30\nrate_nN_nm_per_ps = 10\nhold_ps = 2\n"
-         "[run]\nlog_every_ps = 1\nframes_every_ps = 1\n");
+    spit(
+        dir / "s.toml",
+        "format = \"ropewalk-scene-1\"\nname = \"rope <1>\"\nparameters = \"cnt-10-10-paper\"\n[rope]\ntubes = 19\n"
+        "length_nm = 16\nperturbation_nm = 0.001\n[twist]\nmoment_nN_nm = 30\nrate_nN_nm_per_ps = 10\nhold_ps = 2\n"
+        "[run]\nlog_every_ps = 1\nframes_every_ps = 1\n");
     const Outcome o = run("run s.toml --out d --quiet");
     ASSERT_EQ(o.code, 0) << o.err;
   }
 
   // Chromium's own addresses are left out: it asks for updates whatever it is told.
-  Browsed browse(const std::string& file, const std::string& hash = "", const std::string& more = "--dump-dom") const {
+  Browsed browse(const std::string& file, const std::string& hash = "",
+                 const std::string& more = "--dump-dom") const {
     const std::string net = (dir / "net.json").string();
     const std::string command = fmt::format(
         "chromium --no-sandbox --headless --use-angle=swiftshader --enable-unsafe-swiftshader --hide-scrollbars "
@@ -91,8 +93,7 @@ TEST_F(View, ThePageShowsTheNumbersOfTheLog) {
     return text[0] == '-' ? "−" + text.substr(1) : text;
   };
   for (const std::size_t row : {std::size_t{2}, log.size() - 1}) {
-    const Browsed page =
-        browse("d/view.html", fmt::format("#frame={}&colour=van der Waals energy", row + 1));
+    const Browsed page = browse("d/view.html", fmt::format("#frame={}&colour=van der Waals energy", row + 1));
     EXPECT_TRUE(page.has("data-state=\"ready\"")) << page.text("id=\"failure\"") << page.console();
     EXPECT_EQ(page.console(), "");
     EXPECT_EQ(page.asked, std::set<std::string>());
@@ -139,7 +140,8 @@ TEST_F(View, TheStageIsNotBlank) {
            fmt::format("--window-size=1300,900 --screenshot='{}/shot.png' {}", dir.string(), more));
     // A page that counts: the browser itself reads its picture.
     spit(dir / "count.html", R"(<p id="count"></p><script>(async () => {
-      const i = new Image(); i.src = 'data:image/png;base64,)" + ropewalk::base64(slurp(dir / "shot.png")) +
+      const i = new Image(); i.src = 'data:image/png;base64,)" +
+                                 ropewalk::base64(slurp(dir / "shot.png")) +
                                  R"('; await i.decode();
       const c = document.createElement('canvas'); c.width = i.width; c.height = i.height;
       const g = c.getContext('2d'); g.drawImage(i, 0, 0);
@@ -187,9 +189,8 @@ TEST_F(View, AReportLinksOnlyAPageThatIsNotOlderThanTheFrames) {
 
 TEST_F(View, WrongOptionsAreOneLine) {
   run_rope();
-  for (const char* line :
-       {"view", "view nowhere", "view d --frames 0", "view d --fps 3", "view d --movie m.gif", "view d --movie m",
-        "view d -o s.toml", "view d --movie m.webm --from below"}) {
+  for (const char* line : {"view", "view nowhere", "view d --frames 0", "view d --fps 3", "view d --movie m.gif",
+                           "view d --movie m", "view d -o s.toml", "view d --movie m.webm --from below"}) {
     const Outcome o = run(line, "PATH=$PWD/bin:$PATH");
     EXPECT_EQ(o.code, 2) << line;
     EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << line << "\n" << o.err;
@@ -204,8 +205,9 @@ TEST_F(View, WrongOptionsAreOneLine) {
 TEST_F(View, AMovieIsMadeOfPicturesOfOneSize) {
   run_rope();
   fs::create_directory(dir / "bin");
-  spit(dir / "bin/ffmpeg", "#!/bin/sh\nfor last; do :; done\n[ \"$last\" = - ] && exit 0\n"
-                           "cp -r \"$(dirname \"$last\")\" kept && echo \"$@\" > \"$last\"\n");
+  spit(dir / "bin/ffmpeg",
+       "#!/bin/sh\nfor last; do :; done\n[ \"$last\" = - ] && exit 0\n"
+       "cp -r \"$(dirname \"$last\")\" kept && echo \"$@\" > \"$last\"\n");
   fs::permissions(dir / "bin/ffmpeg", fs::perms::owner_all);
   const Outcome o = run("view d --movie m.webm --frames 3 --fps 7.5 --width 801", "PATH=$PWD/bin:$PATH");
   ASSERT_EQ(o.code, 0) << o.err;

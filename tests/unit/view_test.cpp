@@ -1,6 +1,4 @@
 // The page in space: what the packing keeps, and what is left out of a page that would be too long.
-#include "report/view/view_page.hpp"
-
 #include <gtest/gtest.h>
 #include <zlib.h>
 
@@ -12,6 +10,7 @@
 
 #include "report/view/pack.hpp"
 #include "report/view/view_files.hpp"
+#include "report/view/view_page.hpp"
 
 namespace ropewalk {
 namespace {
@@ -64,7 +63,7 @@ Frames random_frames(std::size_t frames, std::size_t n, double low, double high,
 }
 
 TEST(ViewPacking, KeepsNumbersToHalfAStep) {
-  const std::vector<int> begin = {0, 1, 4, 4, 60};  // also a tube of one element and one of none
+  const std::vector<int> begin = {0, 1, 4, 60};  // also a tube of one element
   const double none = std::numeric_limits<double>::quiet_NaN();
   Frames wild = random_frames(3, 60, -5, 1e6, 1);  // jumps over the whole range
   wild[1][7] = none;
@@ -131,7 +130,7 @@ TEST(ViewPage, RoundsAndThenLeavesFramesOutWhereItWouldBeTooLong) {
   const ViewPage all = view_page(in, 100000000);
   EXPECT_EQ(all.frames, 40u);
   EXPECT_EQ(all.levels, 65534);
-  EXPECT_LE(all.position_step, 60.0 / 65534 * 1.0001);
+  EXPECT_DOUBLE_EQ(all.position_step, 0.001);
 
   const ViewPage rounded = view_page(in, all.html.size() - 5000);
   EXPECT_EQ(rounded.frames, 40u);
@@ -159,8 +158,8 @@ TEST(ViewPage, NamesAreTextAndNothingElseIsAskedFor) {
 
 // What CMake puts into the program is what stands in the tree.
 TEST(ViewFiles, AreTheFilesOfTheTree) {
-  for (const auto& [name, text] : {std::pair("view.html", view_body_html), std::pair("view.css", view_css),
-                                   std::pair("view.js", view_js)}) {
+  for (const auto& [name, text] :
+       {std::pair("view.html", view_body_html), std::pair("view.css", view_css), std::pair("view.js", view_js)}) {
     std::ifstream file(std::string(ROPEWALK_SOURCE_DIR "/mdem/report/view/") + name);
     std::stringstream expected;
     expected << file.rdbuf();

@@ -1,11 +1,11 @@
 // Numbers of many frames in few bytes, for the page in space, whose script view.js unpacks them.
 //
-// A number is stored as a code of 16 bits: value = low + code * step; the code 65535 stands for no number. A channel
-// is one quantity in all frames. Its codes are stored as differences, modulo 65536, from what the elements before in
-// the same tube predict: order 1 predicts the code before, order 2 goes on in a straight line. (The first element of a
-// tube is predicted by the first of the tube before, and that of the first tube by 0.) Differences are small and of
-// either sign; they are stored as 2d or -2d - 1, so that the high byte is mostly 0. Of every channel come first all low bytes,
-// then all high bytes. The bytes of all channels are deflated together (zlib's format).
+// A number is stored as a code of 16 bits: value = low + code * step; the code 65535 stands for no number. A
+// channel is one quantity in all frames. Its codes are stored as differences, modulo 65536, from what the elements
+// before in the same tube predict: order 1 predicts the code before, order 2 goes on in a straight line. (The first
+// element of a tube is predicted by the first of the tube before, and that of the first tube by 0.) Differences are
+// small and of either sign; they are stored as 2d or -2d - 1, so that the high byte is mostly 0. Of every channel
+// come first all low bytes, then all high bytes. The bytes of all channels are deflated together (zlib's format).
 #pragma once
 
 #include <cstdint>

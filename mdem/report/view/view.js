@@ -172,7 +172,7 @@ const jointData = new Float32Array(rows * rowJoints * stride);
 const tints = new Uint8Array(rows * rowJoints * 4);
 const jointTexture = new THREE.DataTexture(jointData, 3 * rowJoints, rows, THREE.RGBAFormat, THREE.FloatType);
 const tintTexture = new THREE.DataTexture(tints, rowJoints, rows, THREE.RGBAFormat);
-const meshes = [];  // of the same tubes with more and more sides
+const meshes = [];  // of the same tubes in more and more detail
 const discCorners = 16, mostDiscs = 10 * tubes;  // two ends of every tube and a few cuts through it
 let discs;
 let frame = frames - 1;
@@ -275,13 +275,13 @@ const uniforms = {
   tints: {value: tintTexture},
 };
 
-// As many rings as the longest tube has joints; a shorter tube draws its last ring again.
-function tubeGeometry(sides) {
+// Rings at every joint of the longest tube, or every second ...; a shorter tube draws its last ring again.
+function tubeGeometry(sides, every) {
   const elementsOf = facts.tube_radius.map((_, t) => elementBegin[t + 1] - elementBegin[t]);
-  const rings = Math.max(...elementsOf) + 1, corners = [], index = [];
+  const rings = Math.ceil(Math.max(...elementsOf) / every) + 1, corners = [], index = [];
   for (let k = 0; k < rings; ++k)
     for (let c = 0; c < sides; ++c)
-      corners.push(Math.cos(2 * Math.PI * c / sides), Math.sin(2 * Math.PI * c / sides), k);
+      corners.push(Math.cos(2 * Math.PI * c / sides), Math.sin(2 * Math.PI * c / sides), k * every);
   // The last corner of a triangle gives it its colour: that of the joint where the element begins.
   for (let k = 0; k + 1 < rings; ++k)
     for (let c = 0; c < (sides === 2 ? 1 : sides); ++c) {  // two sides are a ribbon
@@ -332,10 +332,10 @@ function makeScene() {
     vertexShader, fragmentShader, uniforms, defines,
     side: defines.CUT || defines.RIBBON ? THREE.DoubleSide : THREE.FrontSide,
   });
-  for (const sides of [2, 8, 12, 24]) {
+  for (const [sides, every] of [[2, 3], [2, 1], [8, 1], [12, 1], [24, 1]]) {
     const ribbon = sides === 2 ? {RIBBON: 1} : {};
     const materials = {whole: material(ribbon), cutOpen: material({...ribbon, CUT: 1})};
-    const mesh = new THREE.Mesh(tubeGeometry(sides), materials.whole);
+    const mesh = new THREE.Mesh(tubeGeometry(sides, every), materials.whole);
     mesh.frustumCulled = false;
     mesh.userData = materials;
     meshes.push(mesh);
@@ -584,9 +584,9 @@ function prepareCamera(hasty) {
   camera.updateProjectionMatrix();
   const target = camera.position.distanceTo(controls.target), thick = Math.max(8, 0.6 * sphere.radius);
   uniforms.haze.value.set(target, target + thick);
-  // As many sides as the tubes' size on the screen needs.
+  // As many sides as the tubes' size on the screen needs. In haste thin tubes pass over two joints of three.
   const pixels = Math.max(...facts.tube_radius) * pixelsPerNm() * renderer.getPixelRatio();
-  const detail = pixels < 6 ? 0 : pixels < 14 || hasty ? 1 : pixels < 40 ? 2 : 3;
+  const detail = pixels < 6 ? (hasty ? 0 : 1) : pixels < 14 || hasty ? 2 : pixels < 40 ? 3 : 4;
   meshes.forEach((mesh, k) => { mesh.visible = k === detail; });
 }
 
@@ -604,7 +604,7 @@ function bounds() {
   return {centre: low.clone().add(high).multiplyScalar(0.5), radius: 0.5 * low.distanceTo(high) + Math.max(...facts.tube_radius)};
 }
 
-// hasty: with fewer sides.
+// hasty: with fewer sides or joints.
 function render(pixels, hasty = false) {
   size(pixels);
   prepareCamera(hasty);

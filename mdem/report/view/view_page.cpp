@@ -78,9 +78,18 @@ std::pair<double, double> colour_range(const ViewField& field) {
 
 Json as_json(const ViewField& field, const CodeScale& scale) {
   const auto [low, high] = colour_range(field);
-  Json out = {{"name", field.name},   {"unit", field.unit}, {"meaning", field.meaning}, {"signed", field.is_signed},
-              {"low", scale.low},     {"step", scale.step}, {"from", low},              {"to", high},
-              {"total", Json::array()}, {"least", Json::array()}, {"most", Json::array()}, {"log", Json::array()}};
+  Json out = {{"name", field.name},
+              {"unit", field.unit},
+              {"meaning", field.meaning},
+              {"signed", field.is_signed},
+              {"low", scale.low},
+              {"step", scale.step},
+              {"from", low},
+              {"to", high},
+              {"total", Json::array()},
+              {"least", Json::array()},
+              {"most", Json::array()},
+              {"log", Json::array()}};
   for (std::size_t f = 0; f < field.values.size(); ++f) {
     double sum = 0, least = std::numeric_limits<double>::infinity(), most = -least;
     for (const double v : field.values[f])
@@ -113,7 +122,8 @@ Json numbers_to_check(const ViewInput& in) {
 
 // Ends a <script> early no more.
 std::string in_script(std::string text) {
-  for (std::size_t at = text.find("</"); at != std::string::npos; at = text.find("</", at)) text.insert(at + 1, "\\");
+  for (std::size_t at = text.find("</"); at != std::string::npos; at = text.find("</", at))
+    text.insert(at + 1, "\\");
   return text;
 }
 
@@ -150,21 +160,20 @@ ViewPage page_with(const ViewInput& in, int levels) {
   for (const ViewTubeNumber& n : in.tube_numbers)
     numbers.push_back({{"name", n.name}, {"meaning", n.meaning}, {"values", n.values}});
   for (int k = 0; k <= 8; ++k) colours.push_back(viridis(k / 8.0));
-  const Json facts = {
-      {"name", in.name},
-      {"time_ps", in.time_ps},
-      {"step", in.step},
-      {"stored_frames", in.stored_frames},
-      {"tube_begin", in.tube_begin},
-      {"tube_radius", in.tube_radius},
-      {"position", position},
-      {"fields", fields},
-      {"tube_numbers", numbers},
-      {"right", as_json(in.camera.right)},
-      {"up", as_json(in.camera.up)},
-      {"towards", as_json(in.camera.towards)},
-      {"colours", colours},
-      {"check", numbers_to_check(in)}};
+  const Json facts = {{"name", in.name},
+                      {"time_ps", in.time_ps},
+                      {"step", in.step},
+                      {"stored_frames", in.stored_frames},
+                      {"tube_begin", in.tube_begin},
+                      {"tube_radius", in.tube_radius},
+                      {"position", position},
+                      {"fields", fields},
+                      {"tube_numbers", numbers},
+                      {"right", as_json(in.camera.right)},
+                      {"up", as_json(in.camera.up)},
+                      {"towards", as_json(in.camera.towards)},
+                      {"colours", colours},
+                      {"check", numbers_to_check(in)}};
 
   std::string body = view_body_html;
   put(body, "name", escape_markup(in.name));

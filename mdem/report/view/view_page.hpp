@@ -40,16 +40,16 @@ struct ViewInput {
 
 struct ViewPage {
   std::string html;
-  std::size_t frames = 0;        // fewer than those given where these take too much room
-  double position_step = 0;      // nm: positions are whole multiples
-  int levels = 0;                // numbers are whole multiples of their range over this
+  std::size_t frames = 0;    // fewer than those given where these take too much room
+  double position_step = 0;  // nm: positions are whole multiples
+  int levels = 0;            // numbers are whole multiples of their range over this
 };
 
 // False where three.js was not there when this program was built.
 bool can_make_view();
 
-// Numbers are rounded more coarsely, down to a thousandth of their range, and then frames left out until the page is
-// not longer than this; with less than two frames it stays as it is.
+// Numbers are rounded more coarsely, down to a thousandth of their range, and then frames left out until the page
+// is not longer than this; with less than two frames it stays as it is.
 ViewPage view_page(const ViewInput& input, std::size_t max_bytes);
 
 }  // namespace ropewalk
