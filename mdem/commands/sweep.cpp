@@ -16,6 +16,7 @@
 #include "commands/point_runs.hpp"
 #include "io/failure.hpp"
 #include "io/files.hpp"
+#include "io/plain_text.hpp"
 #include "io/processes.hpp"
 #include "model/error.hpp"
 #include "plan/scene_edit.hpp"
@@ -223,7 +224,7 @@ class Campaign {
     if (WIFEXITED(status) && WEXITSTATUS(status) == point_busy)
       say(fmt::format("{} is run by another process", p.name));
     else if (progress.stage == Stage::failed)
-      say(fmt::format("{}: {}", p.name, progress.reason));
+      say(fmt::format("{}: {}", p.name, printable(progress.reason)));
     else if (progress.stage != Stage::ended && !stop_signal)
       say(fmt::format("{} did not end; see {}", p.name, dir_.messages(p.name)));
     const double passed = now() - began_, left = passed * work_left_ / std::max(work_to_do_ - work_left_, 1.0);

@@ -271,7 +271,7 @@ std::string ending(const ReportInput& in) {
     return (reason.empty() ? "The run finished as planned" : "The run finished" + reason) + ".";
   if (in.status == "interrupted") return "The run was interrupted" + reason + ". This page shows it up to there.";
   if (in.status == "not relaxed") return "The relaxation did not come to rest" + reason + ".";
-  if (in.status == "stopped") return "The run was " + in.reason + ". This page shows it up to there.";
+  if (in.status == "stopped") return "The run was " + escape_markup(in.reason) + ". This page shows it up to there.";
   if (in.status == "refined") return "The run ended here" + reason + ".";
   if (in.status == "failed") return "The run failed" + reason + ". This page shows it up to there.";
   if (in.status == "running") return "The run had not ended when this page was made" + reason + ".";

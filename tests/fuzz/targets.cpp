@@ -24,6 +24,7 @@
 #include "io/parameters_toml.hpp"
 #include "io/run_errors.hpp"
 #include "model/error.hpp"
+#include "run/run_checkpoint.hpp"
 #include "run/run_directory.hpp"
 #include "scene/lammps_files.hpp"
 #include "scene/prepare.hpp"
