@@ -240,6 +240,16 @@ TEST_F(LammpsRun, PluginDoesTheSame) {
   EXPECT_EQ(relative_difference(ours.state.position, left_by(dir / "out", topology).state.position), 0);
 }
 
+TEST_F(LammpsRun, BenchTimesBoth) {
+  const Outcome o = run("bench rope-91x50 --lammps 1 --steps 3 --json");
+  ASSERT_EQ(o.code, 0) << o.err;
+  const auto times = nlohmann::json::parse(o.out);
+  EXPECT_EQ(times["elements"], 4550);
+  EXPECT_GT(times["native_ns_per_element_step"], 1);
+  EXPECT_GT(times["lammps_ns_per_element_step"], 1);
+  EXPECT_GT(times["lammps_processor_ns_per_element_step"], 1);
+}
+
 // --- there and back -----------------------------------------------------------------------------------
 
 TEST_F(LammpsRun, ThereAndBackIsOneRun) {
