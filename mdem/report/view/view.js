@@ -940,6 +940,7 @@ function listen() {
     act(e);
   });
   new ResizeObserver(request).observe(canvas.parentElement);
+  window.addEventListener('beforeprint', () => { if (renderer) render(still); });
   matchMedia('(prefers-color-scheme: dark)').addEventListener('change', request);
 }
 
