@@ -129,16 +129,18 @@ ViewInput gather(const RunDirectory& dir, const Scene& scene, const Prepared& p,
     in.step.push_back(f.state.step);
     in.joints.push_back(joints_of(p.topology, f.state));
   }
-  // The log counts no images of a slice, and so sums up other elements.
-  in.fields = fields_of(p.topology, frames, scene.periodic ? std::vector<LogRow>() : read_log(dir.log()));
+  in.fields = fields_of(p.topology, frames, read_log(dir.log()));
   const Observer observer = make_observer(scene, p);
   if (is_rope(p, observer))
     if (const std::vector<int> shells = shells_of(observer.loading); !shells.empty())
       in.tube_numbers.push_back({"Shell", "ring of the rope, 0: the innermost tube", shells});
   if (scene.sets.size() > 1)
     in.tube_numbers.push_back({"Type of tube", "parameter set, from 0", p.topology.tube_type});
-  in.camera = rope_camera({view_of(p.topology, frames.front(), none), view_of(p.topology, frames.back(), none)},
-                          p.topology.largest_radius());
+  const std::vector<RopeView> ends = {view_of(p.topology, frames.front(), none),
+                                      view_of(p.topology, frames.back(), none)};
+  const double radius = p.topology.largest_radius();
+  const bool film = p.topology.tubes() > 1 && !is_rope(p, observer);  // lies flat
+  in.camera = film ? rope_camera(ends, radius, Vector3::UnitZ(), 1000, 1000) : rope_camera(ends, radius);
   return in;
 }
 

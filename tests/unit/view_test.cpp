@@ -147,6 +147,13 @@ TEST(ViewPage, RoundsAndThenLeavesFramesOutWhereItWouldBeTooLong) {
   EXPECT_EQ(view_page(in, 1).frames, 1u);
 }
 
+// A straight tube has no extent across.
+TEST(ViewPage, AStraightTubeIsAsExactAsARope) {
+  ViewInput in = noisy(1);
+  for (Vector3& p : in.joints[0]) p.x() = p.y() = 0;
+  EXPECT_DOUBLE_EQ(view_page(in, 100000000).position_step, 0.001);
+}
+
 TEST(ViewPage, NamesAreTextAndNothingElseIsAskedFor) {
   const std::string page = view_page(noisy(2), 100000000).html;
   EXPECT_EQ(page.find("a </script> rope"), std::string::npos);

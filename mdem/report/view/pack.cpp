@@ -18,6 +18,7 @@ std::uint16_t zigzag(std::uint16_t difference) {
 
 std::uint16_t CodeScale::code(double value) const {
   if (!std::isfinite(value)) return no_number_code;
+  if (step == 0) return 0;
   return static_cast<std::uint16_t>(std::clamp(std::round((value - low) / step), 0.0, no_number_code - 1.0));
 }
 
@@ -26,7 +27,7 @@ CodeScale code_scale(const std::vector<std::vector<double>>& frames, int levels)
   for (const auto& frame : frames)
     for (const double v : frame)
       if (std::isfinite(v)) low = std::min(low, v), high = std::max(high, v);
-  if (!(low < high)) return {std::isfinite(low) ? low : 0, 1};
+  if (!(low < high)) return {std::isfinite(low) ? low : 0, 0};
   return {low, (high - low) / levels};
 }
 

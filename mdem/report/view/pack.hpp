@@ -17,7 +17,7 @@ namespace ropewalk {
 inline constexpr std::uint16_t no_number_code = 65535;
 
 struct CodeScale {
-  double low = 0, step = 1;
+  double low = 0, step = 0;  // no step: all numbers are the same
 
   std::uint16_t code(double value) const;
   double value(std::uint16_t code) const { return low + code * step; }

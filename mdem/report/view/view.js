@@ -173,7 +173,7 @@ const tints = new Uint8Array(rows * rowJoints * 4);
 const jointTexture = new THREE.DataTexture(jointData, 3 * rowJoints, rows, THREE.RGBAFormat, THREE.FloatType);
 const tintTexture = new THREE.DataTexture(tints, rowJoints, rows, THREE.RGBAFormat);
 const meshes = [];  // of the same tubes in more and more detail
-const discCorners = 16, mostDiscs = 10 * tubes;  // two ends of every tube and a few cuts through it
+const discCorners = 24, mostDiscs = 10 * tubes;  // two ends of every tube and a few cuts through it
 let discs;
 let frame = frames - 1;
 
@@ -825,8 +825,10 @@ function pictureCanvas() {
     });
     c.fillStyle = style.getPropertyValue('--ink').trim();
     c.fillText(s.name + (s.unit ? ', ' + s.unit : ''), left, 19);
-    c.textAlign = 'center';
-    for (const {at, text} of ticksOf(s)) c.fillText(text, left + width * at, 56);
+    for (const {at, text} of ticksOf(s)) {
+      c.textAlign = at < 0.03 ? 'left' : at > 0.97 ? 'right' : 'center';
+      c.fillText(text, left + width * at, 56);
+    }
   }
   request();
   return out;
@@ -938,6 +940,7 @@ function listen() {
     act(e);
   });
   new ResizeObserver(request).observe(canvas.parentElement);
+  window.addEventListener('beforeprint', () => { if (renderer) render(still); });
   matchMedia('(prefers-color-scheme: dark)').addEventListener('change', request);
 }
 
