@@ -11,7 +11,8 @@ void Frames(benchmark::State& bench) {
   FrameArray frames;
   frames.resize(rope.state.size());
   for (auto _ : bench) {
-    frames_of(rope.state.orientation, 0, 0, static_cast<std::ptrdiff_t>(rope.state.size()), frames);
+    ROPEWALK_IN_USE(frames_of)
+    (rope.state.orientation, 0, 0, static_cast<std::ptrdiff_t>(rope.state.size()), frames);
     benchmark::ClobberMemory();
   }
   set_ns(bench, "ns/element", rope.elements());
@@ -27,7 +28,7 @@ struct Bonds {
   explicit Bonds(int tubes)
       : rope(tubes, 50, Law::line, Interaction::Precision::mixed, 20), out(rope.state.size()) {
     work.resize(static_cast<std::size_t>(rope.topology.length_of(0)));
-    frames_of(rope.state.orientation, 0, 0, rope.topology.length_of(0), work.frames);
+    ROPEWALK_IN_USE(frames_of)(rope.state.orientation, 0, 0, rope.topology.length_of(0), work.frames);
   }
   template <class F>
   void each_tube(F f) const {
@@ -41,7 +42,8 @@ void BondForces(benchmark::State& bench) {
   double slips = 1;
   for (auto _ : bench)
     b.each_tube([&](const TubeType& type, const BondRange& bonds) {
-      benchmark::DoNotOptimize(harmonic_forces(type, b.rope.state.position, b.work.frames, bonds, b.work.bonds, slips));
+      benchmark::DoNotOptimize(
+          ROPEWALK_IN_USE(harmonic_forces)(type, b.rope.state.position, b.work.frames, bonds, b.work.bonds, slips));
     });
   set_ns(bench, "ns/element", b.rope.elements());
 }
@@ -51,7 +53,8 @@ void BondDampingForces(benchmark::State& bench) {
   Bonds b(static_cast<int>(bench.range(0)));
   for (auto _ : bench)
     b.each_tube([&](const TubeType& type, const BondRange& bonds) {
-      benchmark::DoNotOptimize(bond_damping(type, b.rope.in.damping.bond, b.rope.state, bonds, b.work.bonds));
+      benchmark::DoNotOptimize(
+          ROPEWALK_IN_USE(bond_damping)(type, b.rope.in.damping.bond, b.rope.state, bonds, b.work.bonds));
     });
   set_ns(bench, "ns/element", b.rope.elements());
 }
