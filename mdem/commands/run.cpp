@@ -24,6 +24,7 @@
 #include "run/limit_watch.hpp"
 #include "run/origin_changes.hpp"
 #include "run/pending_files.hpp"
+#include "run/plan_check.hpp"
 #include "run/progress.hpp"
 #include "run/run_checkpoint.hpp"
 #include "run/run_directory.hpp"
@@ -603,6 +604,10 @@ class Run {
     write_end(at_rest_ ? "finished" : "not relaxed", reason_);
     const std::string passed = passed_words(watch_.records());
     if (!passed.empty()) print(fmt::format("Limits passed: {}\n", passed));
+    if (pending_.empty()) {
+      const std::string promise = plan_words(dir_, scene_, read_manifest(dir_.manifest()));
+      if (!promise.empty()) print(promise + "\n");
+    }
     print(fmt::format("{}{} steps, {:.1f} ps, {:.0f} s. Report: {}\n", reason_.empty() ? "" : reason_ + "\n",
                       simulation_.state().step, simulation_.state().time, wall(), dir_.report()));
     if (!pending_.empty()) {

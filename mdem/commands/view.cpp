@@ -100,8 +100,9 @@ std::vector<ViewField> fields_of(const Topology& topology, const std::vector<Dum
     if (!all) continue;
     for (const DumpFrame& f : frames) {
       colour.field.values.push_back(f.colours.*colour.values);
+      // Times of frames are rounded.
       const auto row = std::find_if(log.begin(), log.end(), [&](const LogRow& r) {
-        return r["step"] == static_cast<double>(f.state.step) && r["time_ps"] == f.state.time;
+        return r["step"] == static_cast<double>(f.state.step) && std::fabs(r["time_ps"] - f.state.time) < 1e-6;
       });
       colour.field.log_total.push_back(row == log.end() ? none : colour.log_total(*row));
     }

@@ -154,7 +154,7 @@ bool could_be(const ListOrigin& list) {
 // What a sum over the bytes does not tell: whether a simulation could go on from here.
 bool Simulation::could_go_on(double step_of_scene) const {
   const State& s = state_;
-  bool fine = time_step_ > 0 && time_step_ < 1.1 * step_of_scene && divided_ >= 1 && divided_ <= 1024 &&
+  bool fine = time_step_ > 0 && time_step_ < 1e3 * step_of_scene && divided_ >= 1 && divided_ <= 1024 &&
               s.step >= 0 && list_age_ >= 0 &&
               all_within({s.time, account_.work, account_.dissipated, account_.heat, gauges_.sums.since});
   for (const Vec3Array* v : {&s.position, &s.velocity, &s.angular_velocity, &forces_.force, &forces_.torque})
