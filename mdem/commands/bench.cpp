@@ -171,8 +171,9 @@ void print(const Cost& c, const BenchArguments& a, const Prepared& prepared) {
   const Timing& t = c.each;
   const double n = prepared.topology.elements();
   const int every = prepared.stepping.contact_every;
-  fmt::print("{} elements, {} threads, {} steps of {:.3g} fs{}\n", n, c.threads, a.steps,
-             prepared.time_step / units::fs, every > 1 ? fmt::format(", of {} bond steps each", every) : "");
+  fmt::print("{} elements, {} thread{}, {} steps of {:.3g} fs{}\n", n, c.threads, c.threads == 1 ? "" : "s",
+             a.steps, prepared.time_step / units::fs,
+             every > 1 ? fmt::format(", of {} bond steps each", every) : "");
   fmt::print("{:9.1f} ns per element-step, {:.1f} of processor time\n", t.wall, t.processor);
   fmt::print("{:9.1f} pairs per element (half list)\n", c.pairs);
   fmt::print(
@@ -193,8 +194,10 @@ void print(const Cost& c, const BenchArguments& a, const Prepared& prepared) {
 }
 
 void print(const Rates& rates, int threads) {
-  fmt::print("{:9.1f} GB/s moved on {} threads, about, as much as {:.0f} % of what memory gives here ({:.1f})",
-             rates.moved, threads, 100 * rates.share_of_transfer(), rates.peak.transfer);
+  const double share = rates.share_of_transfer();
+  fmt::print("{:9.1f} GB/s moved on {} thread{}, about; memory gives {:.1f} here, {}", rates.moved, threads,
+             threads == 1 ? "" : "s", rates.peak.transfer,
+             share <= 1 ? fmt::format("{:.0f} % of it is used", 100 * share) : "caches the rest");
   if (rates.operations > 0)
     fmt::print("; contact at {:.0f} % of {:.0f} GFLOP/s", 100 * rates.share_of_arithmetic(), rates.peak.arithmetic);
   fmt::print("\n");

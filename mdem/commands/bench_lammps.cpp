@@ -129,13 +129,14 @@ int bench_lammps(const BenchArguments& a) {
     fmt::print("{}\n", out.dump(1));
     return 0;
   }
+  const char* s = a.lammps == 1 ? "" : "s";
   fmt::print(
       "{} elements, {} steps from the start, the shortest of {} rounds by turns\n"
-      "{:9.1f} ns per element-step, {:.1f} of processor time: native on {} threads\n"
-      "{:9.1f} ns per element-step, {:.1f} of processor time: LAMMPS on {} ranks{}\n"
+      "{:9.1f} ns per element-step, {:.1f} of processor time: native on {} thread{}\n"
+      "{:9.1f} ns per element-step, {:.1f} of processor time: LAMMPS on {} rank{}{}\n"
       "{:9.2f} times as long, {:.2f} times the processor time\n",
-      prepared.topology.elements(), a.steps, rounds, native.wall * each, native.processor * each, a.lammps,
-      lammps.wall * each, lammps.processor * each, a.lammps, a.plain ? ", by the plain forms" : "", ratio,
+      prepared.topology.elements(), a.steps, rounds, native.wall * each, native.processor * each, a.lammps, s,
+      lammps.wall * each, lammps.processor * each, a.lammps, s, a.plain ? ", by the plain forms" : "", ratio,
       processor_ratio);
   return 0;
 }
