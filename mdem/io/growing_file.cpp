@@ -81,7 +81,7 @@ FileMark GrowingFile::mark() const { return {size_, hash_hex(tail_of(tail_))}; }
 
 void GrowingFile::fail() const {
   throw InputError({path_, 0, ""}, fmt::format("cannot be written: {}", std::strerror(errno)),
-                   "free some space or choose another place; the last checkpoint stands");
+                   fmt::format("{}; the last checkpoint stands", remedy_for_errno(errno)));
 }
 
 }  // namespace ropewalk
