@@ -9,7 +9,7 @@
 
 namespace ropewalk {
 
-// Closes the file in the destructor. Call close() if its result matters.
+// Owns a file descriptor: the destructor closes the file. Call close() where the result of closing matters.
 class Descriptor {
  public:
   Descriptor() = default;

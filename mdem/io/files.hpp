@@ -8,7 +8,8 @@
 
 namespace ropewalk {
 
-// Throws InputError when it cannot be read. Of pipes and devices, which may never end, at most 256 MiB are read.
+// The content of a file. Throws InputError when the file cannot be read, and when a pipe or a device, which may
+// never end, gives more than 256 MiB.
 std::string read_file(const std::string& path);
 
 // What to do about an error of the system, by its number.

@@ -78,7 +78,8 @@ class RankEngine {
   static std::string instructions();
 
  private:
-  // Consecutive elements here that are consecutive atoms of LAMMPS, of one type, own ones or ghosts.
+  // A run of elements with consecutive numbers in the engine and in LAMMPS. They have one type, and all of them are
+  // owned by this rank or all are ghosts.
   struct Stretch {
     int element, atom, count;
   };

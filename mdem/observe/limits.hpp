@@ -16,19 +16,19 @@
 //           soft and without a source
 //   pressure_GPa: of the contact across a tube (observe/loading.hpp). The default is the pressure at which the wall
 //           collapses, P d^3 = 24 D (1 - (b/d)^2) with the bending stiffness D = 1.7 eV of graphene, b = 0.44 nm
-//           and the diameter d. A. C. Torres-Dias et al., Carbon 123, 145 (2017), DOI 10.1016/j.carbon.2017.07.036.
-//           It costs as much as several steps and is looked at where a frame is stored
+//           and the diameter d (A. C. Torres-Dias et al., Carbon 123, 145 (2017),
+//           DOI 10.1016/j.carbon.2017.07.036). Computing the pressure takes as long as several steps, so it is
+//           looked at where a frame is stored
 //   speed   of an element: a tenth of the speed of sound along the tube, sqrt(EA a/m). A tube that is stopped
 //           from the speed v is strained by v/c: by 10 % there, more than any of the shipped sets allows.
 //
 // One limit is of the run as a whole:
 //
-//   energy_drift    energy_drift() of observe/observables.hpp: the error of the account of energy over the energy
-//   that
-//           has moved since the start. With steps that the program chooses it stays below 0.02, cold and at 300 K.
-//           The step control (run/step_control.hpp) goes back where 0.03 are lost within a window; this limit sees
-//           what smaller losses add up to. Judged from the end of the first window on, where a row of the log is
-//           written
+//   energy_drift    the error of the account of energy, relative to the energy that has moved since the start:
+//           energy_drift() of observe/observables.hpp. With steps that the program chooses it stays below 0.02,
+//           cold and at 300 K. The step control (run/step_control.hpp) goes back where 0.03 are lost within a
+//           window; this limit sees what smaller losses add up to. Judged from the end of the first window on,
+//           where a row of the log is written
 //
 // Units nm, ps, rad. A limit of zero is not watched.
 #pragma once

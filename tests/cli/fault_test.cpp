@@ -218,7 +218,7 @@ TEST_F(Faults, SweepKilledAndGoneOnWith) {
   fmt::print("kill in sweep: {} tried\n", tried);
 }
 
-// Elements are split on the way, and the run goes on in another directory: `resume` finds the way on from both.
+// A run that splits its elements goes on in a second directory. After a kill, `resume` of either directory goes on.
 TEST_F(Faults, RefinedRunKilledAndGoneOnWith) {
   spit(dir / "s.toml",
        "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[chain]\nelements = 6\n[contact]\n"

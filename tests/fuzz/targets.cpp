@@ -138,8 +138,8 @@ Simulation& small_simulation() {
   return made;
 }
 
-// An input is a list of changes to a true file, twelve bytes each: where, and eight bytes to put there. So inputs
-// stay good when the format changes, and get beyond its head.
+// An input is a list of changes to a valid file. A change has twelve bytes: a position, and the eight bytes to put
+// there. So stored inputs remain useful when the format changes, and they test more than the head of the file.
 std::string changed(std::string file, std::string_view changes) {
   while (changes.size() >= 12 && !file.empty()) {
     std::uint32_t at = 0;

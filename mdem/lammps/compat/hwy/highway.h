@@ -30,7 +30,8 @@
 
 namespace hwy {
 
-// A vector of N numbers. `raw` has the type of the compiler's intrinsics where these know the size.
+// A vector of N numbers. The member `raw` is of the type that the compiler's intrinsics take, where there is one of
+// this size.
 template <class T, std::size_t N>
 struct RawVector {
   typedef T Type __attribute__((vector_size(sizeof(T) * N)));
