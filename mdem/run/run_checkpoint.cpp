@@ -14,6 +14,7 @@
 #include "model/error.hpp"
 #include "scene/prepare.hpp"
 #include "sim/contact/line/engine.hpp"
+#include "sim/state/byte_archive.hpp"
 #include "version.hpp"
 
 namespace ropewalk {
@@ -24,41 +25,20 @@ namespace fs = std::filesystem;
 constexpr const char* title = "ROPEWALK-CHECKPOINT 3 ";
 constexpr std::size_t hash_length = 16;
 
-struct Writer {
-  std::string bytes;
-
-  template <class T>
-  void operator()(const T& value) {
-    static_assert(std::is_trivially_copyable_v<T>);
-    bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
-  }
+struct Writer : ByteWriter {
+  using ByteWriter::operator();
   void operator()(const std::string& text) {
     (*this)(static_cast<std::uint64_t>(text.size()));
     bytes += text;
   }
 };
 
-// Throws std::runtime_error where the bytes end too early.
-struct Reader {
-  std::string_view bytes;
-
-  template <class T>
-  void operator()(T& value) {
-    static_assert(std::is_trivially_copyable_v<T>);
-    std::memcpy(&value, take(sizeof value).data(), sizeof value);
-  }
+struct Reader : ByteReader {
+  using ByteReader::operator();
   void operator()(std::string& text) {
     std::uint64_t size = 0;
     (*this)(size);
     text = take(size);
-  }
-
- private:
-  std::string_view take(std::uint64_t count) {
-    if (bytes.size() < count) throw std::runtime_error("the checkpoint ends too early");
-    const std::string_view taken = bytes.substr(0, count);
-    bytes.remove_prefix(count);
-    return taken;
   }
 };
 
@@ -102,7 +82,7 @@ std::optional<RunCheckpoint> checkpoint_from(const std::string& path) {
   const std::string_view body = std::string_view(bytes).substr(head);
   if (bytes.substr(begin, hash_length) != hash_hex(body)) return {};
   try {
-    Reader read{body};
+    Reader read{{body}};
     RunOrigin origin;
     visit_origin(read, origin);
     RunCheckpoint c = state_from(read, path);

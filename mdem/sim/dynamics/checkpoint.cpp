@@ -5,10 +5,10 @@
 #include <cmath>
 #include <cstring>
 #include <stdexcept>
-#include <type_traits>
 #include <utility>
 
 #include "sim/dynamics/simulation.hpp"
+#include "sim/state/byte_archive.hpp"
 
 namespace ropewalk {
 namespace {
@@ -27,14 +27,8 @@ struct ListOrigin {
   Vec3Array position, axis;
 };
 
-struct Writer {
-  std::string bytes;
-
-  template <class T>
-  void operator()(const T& value) {
-    static_assert(std::is_trivially_copyable_v<T>);
-    bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
-  }
+struct Writer : ByteWriter {
+  using ByteWriter::operator();
   void operator()(const std::vector<double>& v) {
     bytes.append(reinterpret_cast<const char*>(v.data()), v.size() * sizeof(double));
   }
@@ -49,16 +43,12 @@ struct Writer {
 };
 
 // Arrays must have their size.
-struct Reader {
-  const std::string& bytes;
-  std::size_t at = 0;
-
-  template <class T>
-  void operator()(T& value) {
-    static_assert(std::is_trivially_copyable_v<T>);
-    take(&value, sizeof value);
+struct Reader : ByteReader {
+  using ByteReader::operator();
+  void operator()(std::vector<double>& v) {
+    const std::size_t size = v.size() * sizeof(double);
+    if (size > 0) std::memcpy(v.data(), take(size).data(), size);
   }
-  void operator()(std::vector<double>& v) { take(v.data(), v.size() * sizeof(double)); }
   void operator()(std::vector<PointLoad>& loads) {
     std::int64_t count = 0;
     (*this)(count);
@@ -70,13 +60,6 @@ struct Reader {
         for (int k = 0; k < 3; ++k) (*this)((*v)[k]);
       loads.push_back(load);
     }
-  }
-
- private:
-  void take(void* to, std::size_t count) {
-    if (bytes.size() - at < count) throw std::runtime_error("the checkpoint ends too early");
-    std::memcpy(to, bytes.data() + at, count);
-    at += count;
   }
 };
 
@@ -178,7 +161,7 @@ std::string Simulation::serialise() const {
 }
 
 void Simulation::restore(const std::string& bytes) {
-  Reader read{bytes};
+  Reader read{{bytes}};
   CheckpointHead head;
   read(head);
   if (std::memcmp(head.format, magic, sizeof magic) != 0)
@@ -195,7 +178,7 @@ void Simulation::restore(const std::string& bytes) {
   list.axis.resize(state_.size());
   const double step_of_scene = time_step_;
   visit_checkpoint(read, *this, list);
-  if (read.at != bytes.size()) throw std::runtime_error("the checkpoint is longer than the state of this scene");
+  if (!read.bytes.empty()) throw std::runtime_error("the checkpoint is longer than the state of this scene");
   if (!could_go_on(step_of_scene) || !could_be(list))
     throw std::runtime_error(
         "the checkpoint holds a state that no run can have: a number is not finite or out of range");
