@@ -241,7 +241,7 @@ TEST_F(LammpsRun, PluginDoesTheSame) {
 }
 
 TEST_F(LammpsRun, BenchTimesBoth) {
-  const Outcome o = run("bench rope-91x50 --lammps 1 --steps 3 --json");
+  const Outcome o = run("bench rope-91x50 --lammps 1 --steps 3 --json", leaks_allowed);
   ASSERT_EQ(o.code, 0) << o.err;
   const auto times = nlohmann::json::parse(o.out);
   EXPECT_EQ(times["elements"], 4550);
