@@ -296,6 +296,9 @@ void add_threshold(CLI::App& app, Verbs& v) {
   c->add_option("--out", v.threshold.out, "Directory of the campaign; the same command goes on [default: FILE]");
   c->add_option("-j,--jobs", v.threshold.jobs, "Points at a time, each on one core [default: all cores]")
       ->check(thread_range());
+  c->add_option("--known", v.threshold.known,
+                "trials.csv of an earlier search: its trials of the same scenes are not run again")
+      ->check(CLI::ExistingFile);
   c->add_flag("--force", v.threshold.force, "Replace runs of another scene");
   c->add_flag("--quiet", v.threshold.quiet, "No progress");
   c->callback([&v] { v.code = threshold_command(v.threshold); });

@@ -122,7 +122,8 @@ int sweep_command(const SweepArguments& arguments);
 
 struct ThresholdArguments {
   std::string file;
-  std::string out;  // empty: FILE without .toml
+  std::string out;    // empty: FILE without .toml
+  std::string known;  // trials.csv of an earlier search
   int jobs = 0;     // points at a time; 0: one for each core
   bool force = false;
   bool quiet = false;

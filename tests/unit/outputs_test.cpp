@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "campaign/threshold.hpp"
 #include "io/frames.hpp"
 #include "io/limits_file.hpp"
 #include "io/manifest.hpp"
@@ -28,6 +29,7 @@ TEST(OutputsPage, HasTheTablesOfTheCode) {
   EXPECT_EQ(outputs_table("`state.csv`, `final.csv` and `failed-state.csv`"), columns_markdown(state_columns()));
   EXPECT_EQ(outputs_table("`manifest.json`"), columns_markdown(manifest_keys()));
   EXPECT_EQ(outputs_table("`plan-check.csv`"), columns_markdown(plan_check_columns()));
+  EXPECT_EQ(outputs_table("`trials.csv`"), columns_markdown(trial_columns()));
   EXPECT_EQ(outputs_table("An entry of `limits`"), columns_markdown(limit_keys()));
   EXPECT_EQ(outputs_table("An entry of `refinements`"), columns_markdown(refinement_keys()));
   EXPECT_EQ(outputs_table("`energy_before_eV` and `energy_after_eV`"), columns_markdown(energy_keys()));
