@@ -47,6 +47,7 @@ struct Verbs {
   EnergyArguments energy;
   BenchArguments bench;
   ReportArguments report;
+  ConvertArguments convert;
   PictureArguments picture;
   ViewArguments view;
   ErrorsArguments errors;
@@ -188,6 +189,19 @@ void add_report(CLI::App& app, Verbs& v) {
   c->callback([&v] { v.code = report_command(v.report); });
 }
 
+void add_convert(CLI::App& app, Verbs& v) {
+  CLI::App* c = app.add_subcommand("convert", "Frames of a run in another format: GSD, LAMMPS dump, ParaView");
+  c->add_option("dir", v.convert.dir, "Directory of the run")->required();
+  c->add_option("file", v.convert.out,
+                "File to write: .gsd (OVITO, MDAnalysis), .lammpstrj (LAMMPS, ASE) or .pvd (ParaView)")
+      ->required();
+  c->add_option("--from-ps", v.convert.from_ps, "Leave out what is earlier")->capture_default_str();
+  c->add_option("--to-ps", v.convert.to_ps, "Leave out what is later");
+  c->add_option("--every", v.convert.every, "Every Nth frame")->check(CLI::PositiveNumber)->capture_default_str();
+  c->add_flag("--force", v.convert.force, "Replace an existing file");
+  c->callback([&v] { v.code = convert_command(v.convert); });
+}
+
 void add_picture(CLI::App& app, Verbs& v) {
   CLI::App* c =
       app.add_subcommand("picture", "A figure for a paper: states of a run, their sections, curves with marks");
@@ -221,7 +235,8 @@ void add_view(CLI::App& app, Verbs& v) {
   c->add_option("--frames", v.view.frames, "At most so many frames, evenly over the run")
       ->capture_default_str()
       ->check(CLI::Range(1, 100000));
-  c->add_option("--megabytes", v.view.megabytes, "The page is not longer: numbers are rounded, then frames left out")
+  c->add_option("--megabytes", v.view.megabytes,
+                "The page is not longer: numbers are rounded, then frames left out")
       ->capture_default_str()
       ->check(CLI::Range(1.0, 2000.0));
   CLI::Option* movie =
@@ -432,6 +447,7 @@ int main(int argc, char** argv) {
   add_resume(app, verbs);
   add_observe(app, verbs);
   add_report(app, verbs);
+  add_convert(app, verbs);
   add_picture(app, verbs);
   add_view(app, verbs);
   add_errors(app, verbs);

@@ -2,6 +2,7 @@
 // and turned into one line by main.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -53,6 +54,16 @@ struct ReportArguments {
   std::string picture;  // write the last frame as SVG here instead
 };
 int report_command(const ReportArguments& arguments);
+
+struct ConvertArguments {
+  std::string dir;
+  std::string out;  // .gsd, .lammpstrj or .pvd
+  double from_ps = 0;
+  std::optional<double> to_ps;
+  long every = 1;  // frames
+  bool force = false;
+};
+int convert_command(const ConvertArguments& arguments);
 
 struct PictureArguments {
   std::string dir;

@@ -15,7 +15,8 @@
 
 #include "commands/commands.hpp"
 #include "io/files.hpp"
-#include "io/frames.hpp"
+#include "io/frames/frames.hpp"
+#include "io/frames/vtp.hpp"
 #include "io/growing_file.hpp"
 #include "io/stop_signals.hpp"
 #include "model/error.hpp"
@@ -209,7 +210,10 @@ class Run {
  private:
   void open(std::uint64_t log_bytes, std::uint64_t frame_bytes) {
     log_ = std::make_unique<GrowingFile>(dir_.log(), log_bytes);
-    frames_ = std::make_unique<GrowingFile>(dir_.frames(), frame_bytes);
+    const std::string there = dir_.frames();
+    const FrameFormat format = std::filesystem::exists(there) ? format_of(there) : scene_.run.frames_format;
+    frames_ = frame_writer(dir_.frames(format), format, frame_bytes,
+                           static_cast<std::size_t>(std::max(0L, last_step_) / frames_every_));
   }
 
   // Up to the checkpoint at the start, from which even the first minute can be resumed.
@@ -475,7 +479,7 @@ class Run {
 
   void write_frame() {
     const ElementColours colours = element_colours(prepared_.topology, prepared_.interaction, simulation_.state());
-    frames_->write(dump_frame(prepared_.topology, simulation_.state(), colours));
+    frames_->write(prepared_.topology, simulation_.state(), colours);
     if (!scene_.run.paraview) return;
     std::error_code error;
     std::filesystem::create_directories(dir_.paraview(), error);
@@ -738,7 +742,8 @@ class Run {
   Observer observer_;
   Simulation simulation_;
   DirectoryLock lock_;
-  std::unique_ptr<GrowingFile> log_, frames_;
+  std::unique_ptr<GrowingFile> log_;
+  std::unique_ptr<FrameWriter> frames_;
   PendingFiles pending_;
   RunOrigin origin_;
   LimitWatch watch_;

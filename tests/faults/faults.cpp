@@ -1,5 +1,5 @@
 // A library to be loaded before a program (LD_PRELOAD): one of its calls that change files fails, or the program is
-// killed there. Only calls on files in one directory count: open, write, fsync, fdatasync, ftruncate, rename,
+// killed there. Only calls on files in one directory count: open, write, pwrite, fsync, fdatasync, ftruncate, rename,
 // unlink.
 //
 //   ROPEWALK_FAULTS_BELOW  the directory, absolute
@@ -136,6 +136,15 @@ ssize_t write(int fd, const void* data, size_t size) {
   if (fails(is_below(fd), &torn)) return -1;
   if (!torn) return call(fd, data, size);
   if (call(fd, data, size / 2) >= 0) raise(SIGKILL);
+  return -1;
+}
+
+ssize_t pwrite(int fd, const void* data, size_t size, off_t at) {
+  static const auto call = real<ssize_t (*)(int, const void*, size_t, off_t)>("pwrite");
+  bool torn = false;
+  if (fails(is_below(fd), &torn)) return -1;
+  if (!torn) return call(fd, data, size, at);
+  if (call(fd, data, size / 2, at) >= 0) raise(SIGKILL);
   return -1;
 }
 

@@ -14,7 +14,9 @@
 #include <regex>
 
 #include "io/files.hpp"
-#include "io/frames.hpp"
+#include "io/frames/dump.hpp"
+#include "io/frames/gsd.hpp"
+#include "io/frames/vtp.hpp"
 #include "io/log.hpp"
 #include "io/manifest.hpp"
 #include "model/error.hpp"
@@ -266,7 +268,7 @@ TEST_F(IoTest, DumpIsReadBackToItsPrintedPrecision) {
   DumpReader reader(put(
       "f", dump_frame(one.topology, one.state, one.colours) + dump_frame(two.topology, two.state, two.colours)));
   for (const Frames& f : {one, two}) {
-    DumpFrame read;
+    StoredFrame read;
     ASSERT_TRUE(reader.next(f.topology, read));
     EXPECT_EQ(read.state.step, f.state.step);
     EXPECT_EQ(read.state.time, f.state.time);
@@ -282,7 +284,7 @@ TEST_F(IoTest, DumpIsReadBackToItsPrintedPrecision) {
       EXPECT_EQ(read.state.velocity[i].norm(), 0);
     }
   }
-  DumpFrame none;
+  StoredFrame none;
   EXPECT_FALSE(reader.next(one.topology, none));
   EXPECT_FALSE(reader.next(one.topology, none));
 }
@@ -312,7 +314,7 @@ TEST_F(IoTest, DumpsOfVersion01AreStillRead) {
     old = replaced(old, std::string("c_") + name, name);
   old = replaced(old, "c_time_ps", "unknown");
   DumpReader reader(put("f", old));
-  DumpFrame read;
+  StoredFrame read;
   ASSERT_TRUE(reader.next(f.topology, read));
   EXPECT_EQ(read.state.time, 12.625);
   EXPECT_EQ(read.colours.vdw_energy.size(), f.state.size());
@@ -324,7 +326,7 @@ TEST_F(IoTest, DumpLeavesOutAFrameThatIsCutOff) {
   const std::string one = dump_frame(f.topology, f.state, f.colours);
   for (std::size_t cut = 0; cut < one.size(); cut += 7) {
     DumpReader reader(put("f", one + one.substr(0, cut)));
-    DumpFrame read;
+    StoredFrame read;
     EXPECT_TRUE(reader.next(f.topology, read));
     EXPECT_FALSE(reader.next(f.topology, read)) << cut;
     EXPECT_EQ(read.state.step, f.state.step) << "left as it was";
@@ -339,7 +341,7 @@ TEST_F(IoTest, DumpErrorsNameTheLine) {
   const auto second = [&](const std::string& text, const Topology& topology) {
     return [this, text, one, &topology, &f] {
       DumpReader reader(put("f", one + text));
-      DumpFrame read;
+      StoredFrame read;
       reader.next(f.topology, read);
       reader.next(topology, read);
     };
@@ -370,7 +372,7 @@ TEST_F(IoTest, DumpRefusesAnOrientationThatIsNoRotation) {
   Frames f = some_frames();
   f.state.orientation.set(1, Quaternion(1, 1, 0, 0));
   DumpReader reader(put("f", dump_frame(f.topology, f.state, f.colours)));
-  DumpFrame read;
+  StoredFrame read;
   expect_error([&] { reader.next(f.topology, read); }, 11, "norm");
 }
 

@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include "campaign/threshold.hpp"
-#include "io/frames.hpp"
+#include "io/frames/dump.hpp"
+#include "io/frames/gsd.hpp"
+#include "io/frames/vtp.hpp"
 #include "io/limits_file.hpp"
 #include "io/manifest.hpp"
 #include "io/tube_table.hpp"
