@@ -212,8 +212,7 @@ class Run {
     log_ = std::make_unique<GrowingFile>(dir_.log(), log_bytes);
     const std::string there = dir_.frames();
     const FrameFormat format = std::filesystem::exists(there) ? format_of(there) : scene_.run.frames_format;
-    frames_ = frame_writer(dir_.frames(format), format, frame_bytes,
-                           static_cast<std::size_t>(std::max(0L, last_step_) / frames_every_));
+    frames_ = frame_writer(dir_.frames(format), format, frame_bytes, expected_frames_);
   }
 
   // Up to the checkpoint at the start, from which even the first minute can be resumed.
@@ -236,6 +235,7 @@ class Run {
     const double span = prepared_.duration > 0 ? prepared_.duration : 1000 * dt;
     log_every_ = every(scene_.run.log_every, span, 400, dt);
     frames_every_ = every(scene_.run.frames_every, span, 40, dt);
+    expected_frames_ = static_cast<std::size_t>(span / dt / static_cast<double>(frames_every_));
   }
 
   // The checkpoint may be of a scene with another time step, which then stays.
@@ -761,6 +761,7 @@ class Run {
     double time = 0;
   } counted_from_;
   long log_every_ = 1, frames_every_ = 1, last_step_ = 0;
+  std::size_t expected_frames_ = 0;  // of the whole scene
   std::int64_t saved_step_ = -1;
   std::int64_t written_step_ = -1;  // of a relaxation: its row and frame were there when it began or went on
   double longest_save_ = 0;         // s

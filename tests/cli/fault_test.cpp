@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <algorithm>
+
 #include "cli/support.hpp"
+#include "io/frames/gsd.hpp"
 
 namespace ropewalk::test {
 namespace {
@@ -48,7 +51,7 @@ class Faults : public Cli {
   static long stride(long usual) { return std::getenv("ROPEWALK_ALL_FAULTS") ? 1 : usual; }
 
   void expect_same(const fs::path& a, const fs::path& b, const std::string& when) const {
-    for (const char* name : {"log.csv", "frames.lammpstrj", "final.csv", "limits.json"})
+    for (const char* name : {"log.csv", "frames.gsd", "final.csv", "limits.json"})
       EXPECT_TRUE(slurp(dir / a / name) == slurp(dir / b / name) && fs::exists(dir / b / name))
           << when << ": " << name;
     EXPECT_THAT(slurp(dir / b / "manifest.json"), HasSubstr("\"finished\"")) << when;
@@ -240,7 +243,7 @@ TEST_F(Faults, RefinedRunKilledAndGoneOnWith) {
     else if (o.code == 2 && o.err.find("there is no checkpoint") != std::string::npos)
       o = run("run s.toml --force --out d" + refine);
     ASSERT_EQ(o.code, 0) << n << ": " << o.err;
-    for (const char* name : {"log.csv", "frames.lammpstrj", "final.csv"})
+    for (const char* name : {"log.csv", "frames.gsd", "final.csv"})
       ASSERT_TRUE(slurp(dir / "d.fine" / name) == slurp(dir / "whole" / name)) << n << ": " << name;
   }
 }
@@ -256,7 +259,7 @@ TEST_F(Faults, LostTails) {
     EXPECT_THAT(o.err, HasSubstr(remark));
   };
   // Behind the newest checkpoint but not behind the one before.
-  for (const char* name : {"log.csv", "frames.lammpstrj"}) {
+  for (const char* name : {"log.csv", "frames.gsd"}) {
     begin("half");
     fs::resize_file(dir / "d" / name, size(name) - 1);
     resumed("the run goes on from the checkpoint before");
@@ -270,20 +273,24 @@ TEST_F(Faults, LostTails) {
   expect_same("whole", "d", "a tail of zeros");
   // Frames are done without.
   begin("half");
-  fs::resize_file(dir / "d/frames.lammpstrj", 100);
+  fs::resize_file(dir / "d/frames.gsd", 100);
   resumed("frames begin anew here");
   EXPECT_EQ(slurp(dir / "d/log.csv"), slurp(dir / "halves/log.csv"));
-  EXPECT_EQ(slurp(dir / "d/frames.lammpstrj").rfind("ITEM: TIMESTEP\n", 0), 0u);
+  EXPECT_TRUE(ropewalk::is_gsd((dir / "d/frames.gsd").string()));
   begin("half");
-  fs::remove(dir / "d/frames.lammpstrj");
-  resumed("frames.lammpstrj is missing");
+  fs::remove(dir / "d/frames.gsd");
+  resumed("frames.gsd is missing");
   EXPECT_EQ(run("observe d").code, 0) << slurp(dir / "stderr.txt");
   begin("half");
-  const std::string frames = slurp(dir / "half/frames.lammpstrj");
-  const std::size_t second = frames.find("ITEM: TIMESTEP", 10);
-  fs::resize_file(dir / "d/frames.lammpstrj", second + 50);
+  const ropewalk::GsdReader frames((dir / "half/frames.gsd").string());
+  const auto second = std::find_if(frames.entries().begin(), frames.entries().end(),
+                                   [](const ropewalk::GsdEntry& e) { return e.frame == 1; });
+  fs::resize_file(dir / "d/frames.gsd", static_cast<std::uintmax_t>(second->location) + 50);
   resumed("frames go on behind the last whole one");
-  EXPECT_EQ(slurp(dir / "d/frames.lammpstrj").find('\0'), std::string::npos);
+  const ropewalk::GsdReader mended((dir / "d/frames.gsd").string());
+  EXPECT_GE(mended.count(), 2u);
+  EXPECT_EQ(mended.entries()[static_cast<std::size_t>(second - frames.entries().begin())].location,
+            second->location);
   EXPECT_EQ(run("observe d").code, 0) << slurp(dir / "stderr.txt");
   // A log is not.
   begin("half");

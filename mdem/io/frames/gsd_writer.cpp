@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 constexpr std::uint64_t slot_bytes = 64, names_slots = 16;
 constexpr std::uint64_t chunks_of_a_frame = 5 + colour_columns.size();  // those that change, and the colours
-constexpr std::uint64_t spare_frames = 64;
+constexpr std::uint64_t spare_frames = 64, most_expected = 4096;        // a long run moves its index
 
 std::string_view bytes_of(const void* data, std::size_t bytes) { return {static_cast<const char*>(data), bytes}; }
 
@@ -126,7 +126,8 @@ std::uint64_t size_of(const std::string& path) {
 
 GsdWriter::GsdWriter(const std::string& path, std::uint64_t keep, std::size_t expected)
     : file_(path, keep == 0 ? 0 : size_of(path)),
-      expected_entries_(gsd_colours + colour_columns.size() + chunks_of_a_frame * (2 * expected + spare_frames)) {
+      expected_entries_(gsd_colours + colour_columns.size() +
+                        chunks_of_a_frame * (2 * std::min<std::uint64_t>(expected, most_expected) + spare_frames)) {
   if (keep > 0) {
     const GsdReader there(path);
     header_ = there.header();
