@@ -431,7 +431,7 @@ void verb_before_help(const CLI::App& app, int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  begin_program();
+  begin_program("ropewalk");
   CLI::App app(
       "ropewalk twists carbon-nanotube ropes by the mesoscopic distinct element method.\n"
       "Units: nm, ps, eV; moments nN nm. Every key of a scene carries its unit: ropewalk help scene.\n"

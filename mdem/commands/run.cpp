@@ -14,6 +14,7 @@
 #include <new>
 
 #include "commands/commands.hpp"
+#include "io/failure.hpp"
 #include "io/files.hpp"
 #include "io/frames/frames.hpp"
 #include "io/frames/vtp.hpp"
@@ -200,10 +201,8 @@ class Run {
       return {interrupted(128 + stop_signal, fmt::format("by signal {}", static_cast<int>(stop_signal))), nullptr};
     } catch (const NumericalError& e) {
       return {failed(e), nullptr};
-    } catch (const std::bad_alloc&) {
-      return {broken_off("there is not enough memory; take a machine with more, or end other programs"), nullptr};
     } catch (const std::exception& e) {
-      return {broken_off(e.what()), nullptr};
+      return {broken_off(failure_words(e)), nullptr};
     }
   }
 
@@ -598,7 +597,7 @@ class Run {
     try {
       pending_.write(dir_.report(), report_of(dir_, scene_, prepared_));
     } catch (const std::exception& e) {
-      tell(fmt::format("no report: {}; make it with: ropewalk report {}", e.what(), dir_.path));
+      tell(fmt::format("no report: {}; make it with: ropewalk report {}", failure_words(e), dir_.path));
     }
     pending_.try_again();
   }
