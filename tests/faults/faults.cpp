@@ -56,7 +56,7 @@ F real(const char* name) {
 }
 
 bool is_below(const char* path) {
-  if (fault().below.empty() || !path) return false;
+  if (fault().below.empty() || fault().how == "memory" || !path) return false;
   std::string absolute = path;
   if (path[0] != '/') {
     char here[PATH_MAX];
