@@ -120,12 +120,10 @@ int observe_command(const ObserveArguments& a) {
   const std::vector<Observable> chosen = observables_of_frames();
   const Console console(chosen);
   if (a.tubes) {
-    StoredFrame last;
-    while (reader->next(prepared.topology, last)) {
-    }
-    if (last.state.size() == 0)
+    const std::optional<StoredFrame> last = last_frame(dir.frames(), prepared.topology);
+    if (!last)
       throw InputError({dir.frames(), 0, ""}, "holds no frame", "run the scene further with `ropewalk resume`");
-    fmt::print("{}", tube_table_csv(prepared.topology, last.state, observer.loading));
+    fmt::print("{}", tube_table_csv(prepared.topology, last->state, observer.loading));
     return 0;
   }
   if (!a.json) console.print_heading();

@@ -23,15 +23,15 @@ namespace {
 constexpr std::size_t pictured = 6;
 
 std::vector<StoredFrame> read_frames(const RunDirectory& dir, const Topology& topology) {
-  std::vector<StoredFrame> all;
   const auto reader = open_frames(dir.frames());
-  StoredFrame frame;
-  while (reader->next(topology, frame)) all.push_back(frame);
-  if (all.size() <= pictured) return all;
+  const std::size_t all = reader->count(topology), some = std::min(all, pictured);
+  std::vector<StoredFrame> out(some);
   // First, last and evenly between.
-  std::vector<StoredFrame> some;
-  for (std::size_t k = 0; k < pictured; ++k) some.push_back(all[k * (all.size() - 1) / (pictured - 1)]);
-  return some;
+  for (std::size_t k = 0; k < some; ++k) {
+    reader->seek(some < pictured ? k : k * (all - 1) / (pictured - 1));
+    reader->next(topology, out[k]);
+  }
+  return out;
 }
 
 void add_run_facts(const Scene& scene, const Prepared& p, const Manifest& m, ReportInput& in) {
@@ -173,13 +173,10 @@ RopeView view_of(const Topology& topology, const StoredFrame& frame, double beta
 }
 
 std::optional<RopeView> last_view(const RunDirectory& dir, const Scene& scene, const Prepared& prepared) {
-  const auto reader = open_frames(dir.frames());
-  StoredFrame frame;
-  bool any = false;
-  while (reader->next(prepared.topology, frame)) any = true;
-  if (!any) return {};
-  const double beta = observe(make_observer(scene, prepared), scene, prepared.topology, frame.state).beta;
-  return view_of(prepared.topology, frame, beta / units::degree);
+  const std::optional<StoredFrame> frame = last_frame(dir.frames(), prepared.topology);
+  if (!frame) return {};
+  const double beta = observe(make_observer(scene, prepared), scene, prepared.topology, frame->state).beta;
+  return view_of(prepared.topology, *frame, beta / units::degree);
 }
 
 std::string report_of(const RunDirectory& dir, const Scene& scene, const Prepared& prepared) {

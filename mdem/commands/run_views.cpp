@@ -20,13 +20,13 @@ std::vector<double> frame_times(const RunDirectory& dir, const Topology& topolog
 }
 
 std::vector<StoredFrame> frames_of(const RunDirectory& dir, const Topology& topology,
-                                 const std::vector<std::size_t>& wanted) {
+                                   const std::vector<std::size_t>& wanted) {
   std::vector<StoredFrame> out(wanted.size());
-  std::size_t k = 0;
-  StoredFrame frame;
-  for (const auto reader = open_frames(dir.frames()); reader->next(topology, frame); ++k)
-    for (std::size_t w = 0; w < wanted.size(); ++w)
-      if (wanted[w] == k) out[w] = frame;
+  const auto reader = open_frames(dir.frames());
+  for (std::size_t w = 0; w < wanted.size(); ++w) {
+    reader->seek(wanted[w]);
+    reader->next(topology, out[w]);
+  }
   return out;
 }
 

@@ -286,6 +286,12 @@ TEST_F(IoTest, DumpIsReadBackToItsPrintedPrecision) {
   StoredFrame none;
   EXPECT_FALSE(reader.next(one.topology, none));
   EXPECT_FALSE(reader.next(one.topology, none));
+  ASSERT_EQ(reader.count(one.topology), 2u);
+  for (const std::size_t k : {1, 0}) {
+    reader.seek(k);
+    ASSERT_TRUE(reader.next(one.topology, none));
+    EXPECT_NEAR(none.state.position[0].x(), (k == 0 ? one : two).state.position[0].x(), 1e-6);
+  }
 }
 
 TEST_F(IoTest, DumpHasTheColumnsThatOvitoKnows) {
@@ -329,6 +335,7 @@ TEST_F(IoTest, DumpLeavesOutAFrameThatIsCutOff) {
     EXPECT_TRUE(reader.next(f.topology, read));
     EXPECT_FALSE(reader.next(f.topology, read)) << cut;
     EXPECT_EQ(read.state.step, f.state.step) << "left as it was";
+    EXPECT_EQ(reader.count(f.topology), 1u) << cut;
   }
 }
 
@@ -432,6 +439,13 @@ TEST_F(Gsd, TheIndexGrows) {
   const FileMark mark = writer.mark();
   fill(writer, 51, 300);
   EXPECT_EQ(steps("f"), up_to(300));
+  GsdReader reader(path("f"));
+  StoredFrame frame;
+  for (const std::size_t k : {299, 7}) {
+    reader.seek(k);
+    ASSERT_TRUE(reader.next(f.topology, frame));
+    EXPECT_EQ(frame.state.step, static_cast<long>(k + 1));
+  }
   EXPECT_TRUE(reaches(path("f"), mark));
   EXPECT_TRUE(reaches(path("f"), writer.mark()));
   const FileMark late = writer.mark();

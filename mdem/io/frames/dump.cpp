@@ -122,16 +122,39 @@ struct Layout {
 }  // namespace
 
 struct DumpReader::Impl {
+  struct Begin {
+    std::streamoff at;
+    int line;
+  };
+
   std::string path;
   std::ifstream file;
   std::string line;
   int number = 0;
+  std::vector<Begin> begins;  // of frames; empty until they are looked for
+  Begin end{0, 0};
 
   InputError error(const std::string& column, const std::string& what, const char* remedy) const {
     return InputError({path, number, column}, what, remedy);
   }
   InputError garbled(const std::string& what) const {
     return error("", what, "the file was changed or damaged; restore it, or run the scene again");
+  }
+
+  Begin here() { return {file.tellg(), number}; }
+  void find_begins() {
+    begins.clear();
+    go_to({0, 0});
+    for (Begin at{0, 0}; read_line(); at = here())
+      if (line == "ITEM: TIMESTEP") begins.push_back(at);
+    file.clear();
+    file.seekg(0, std::ios::end);
+    end = here();
+  }
+  void go_to(const Begin& begin) {
+    file.clear();
+    file.seekg(begin.at);
+    number = begin.line;
   }
 
   // A last line without a newline was cut off and is not read.
@@ -279,7 +302,7 @@ struct DumpReader::Impl {
 
 DumpReader::DumpReader(const std::string& path) {
   refuse_devices(path);
-  impl_.reset(new Impl{path, std::ifstream(path), "", 0});
+  impl_.reset(new Impl{path, std::ifstream(path), "", 0, {}, {0, 0}});
   if (!impl_->file) throw file_error(path, "cannot be opened", errno);
 }
 
@@ -296,6 +319,25 @@ bool DumpReader::next(const Topology& topology, StoredFrame& frame) {
   } catch (const CutOff&) {
     return false;
   }
+}
+
+std::size_t DumpReader::count(const Topology& topology) {
+  const Impl::Begin here = impl_->here();
+  impl_->find_begins();
+  std::size_t whole = impl_->begins.size();
+  if (whole > 0) {
+    StoredFrame last;
+    impl_->go_to(impl_->begins.back());
+    if (!next(topology, last)) --whole;
+  }
+  impl_->go_to(here);
+  return whole;
+}
+
+void DumpReader::seek(std::size_t frame) {
+  if (impl_->begins.empty()) impl_->find_begins();
+  const std::size_t frames = impl_->begins.size();
+  impl_->go_to(frame < frames ? impl_->begins[frame] : impl_->end);
 }
 
 std::uint64_t DumpReader::position() const { return static_cast<std::uint64_t>(impl_->file.tellg()); }

@@ -21,6 +21,8 @@ class DumpReader : public FrameReader {
   explicit DumpReader(const std::string& path);
   ~DumpReader() override;
   bool next(const Topology& topology, StoredFrame& frame) override;
+  std::size_t count(const Topology& topology) override;
+  void seek(std::size_t frame) override;
   std::uint64_t position() const override;
 
  private:

@@ -37,6 +37,16 @@ std::unique_ptr<FrameReader> open_frames(const std::string& path) {
   return std::make_unique<DumpReader>(path);
 }
 
+std::optional<StoredFrame> last_frame(const std::string& path, const Topology& topology) {
+  const auto reader = open_frames(path);
+  const std::size_t frames = reader->count(topology);
+  if (frames == 0) return {};
+  StoredFrame frame;
+  reader->seek(frames - 1);
+  reader->next(topology, frame);
+  return frame;
+}
+
 std::unique_ptr<FrameWriter> frame_writer(const std::string& path, FrameFormat format, std::uint64_t keep,
                                           std::size_t expected) {
   if (format == FrameFormat::gsd) return std::make_unique<GsdWriter>(path, keep, expected);

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "io/frames/colours.hpp"
@@ -24,11 +25,17 @@ class FrameReader {
   virtual ~FrameReader() = default;
   // False at the end of the file. Throws InputError where the file is damaged or of another scene.
   virtual bool next(const Topology& topology, StoredFrame& frame) = 0;
+  // Of whole frames. next() goes on with the frame that was sought, counted from 0 and at most count().
+  virtual std::size_t count(const Topology& topology) = 0;
+  virtual void seek(std::size_t frame) = 0;
   // Bytes, behind the frame just read.
   virtual std::uint64_t position() const = 0;
 };
 // By what the file holds, whatever its name.
 std::unique_ptr<FrameReader> open_frames(const std::string& path);
+
+// None where the file has no whole frame.
+std::optional<StoredFrame> last_frame(const std::string& path, const Topology& topology);
 
 // A file of frames that grows. Throws InputError where it cannot be written.
 class FrameWriter {

@@ -6,6 +6,7 @@
 // Lengths are in nm, energies in eV.
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -44,8 +45,9 @@ class GsdReader : public FrameReader {
   bool next(const Topology& topology, StoredFrame& frame) override;
   std::uint64_t position() const override { return position_; }
 
+  std::size_t count(const Topology&) override { return count(); }
   std::size_t count() const { return frame_begin_.size() - 1; }
-  void read(const Topology& topology, std::size_t k, StoredFrame& frame);
+  void seek(std::size_t frame) override { next_ = std::min(frame, count()); }
 
   const GsdHeader& header() const { return header_; }
   const std::vector<GsdEntry>& entries() const { return entries_; }
@@ -55,6 +57,7 @@ class GsdReader : public FrameReader {
   void read_index();
   void read_at(std::uint64_t at, void* to, std::uint64_t bytes) const;
   const GsdEntry* find(std::size_t k, const std::string& chunk) const;
+  void read(const Topology& topology, std::size_t k, StoredFrame& frame);
   template <class T>
   std::vector<T> values(std::size_t k, const std::string& chunk, std::uint64_t rows, std::uint32_t columns,
                         bool* there = nullptr) const;
