@@ -72,7 +72,7 @@ void FixGrip::post_neighbor() {
 }
 
 // Every value is nonzero on its owner only, so that the sum over the ranks is exact.
-void FixGrip::share(std::vector<double>& values) const {
+void FixGrip::share(Column& values) const {
   MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE, MPI_SUM, world);
 }
 
