@@ -45,14 +45,23 @@ void SteppedScene::divide_steps(int parts) {
   simulation();
   if (parts < 1 || parts > 1024) throw std::invalid_argument("a step is divided into 1 to 1024 parts");
   simulation_.divide_steps(parts);
+  seconds_of_a_step_ = patience;
 }
 
 void SteppedScene::steps(long count, bool energies) {
   if (count < 0) throw std::invalid_argument("the number of steps is negative");
   if (count == 0) return;
   const Turn turn(*this);
-  const py::gil_scoped_release release;
   energies_known_ = false;
+  if (static_cast<double>(count) * seconds_of_a_step_ < brief)
+    simulation_.steps(count, energies);
+  else
+    steps_with_breaks(count, energies);
+  if (energies) energies_ = simulation_.forces().energy, energies_known_ = true;
+}
+
+void SteppedScene::steps_with_breaks(long count, bool energies) {
+  const py::gil_scoped_release release;
   for (long done = 0; done < count;) {
     if (done > 0) look_for_signals();
     const long part = std::min(count - done, std::max(1L, static_cast<long>(patience / seconds_of_a_step_)));
@@ -61,7 +70,6 @@ void SteppedScene::steps(long count, bool energies) {
     seconds_of_a_step_ = std::max(seconds_since(began) / static_cast<double>(part), 1e-9);
     done += part;
   }
-  if (energies) energies_ = simulation_.forces().energy, energies_known_ = true;
 }
 
 Relaxed SteppedScene::relax(const RelaxGoal& goal, long max_steps) {

@@ -16,7 +16,8 @@ class SteppedScene {
  public:
   explicit SteppedScene(std::shared_ptr<const Model> model);
 
-  // Releases the interpreter meanwhile, and lets it look for Ctrl-C every `patience`.
+  // Where it takes longer than `brief`, other threads of Python run meanwhile, and Ctrl-C is looked for every
+  // `patience`.
   void steps(long count, bool energies);
   Relaxed relax(const RelaxGoal& goal, long max_steps);
 
@@ -36,7 +37,7 @@ class SteppedScene {
   void restore_run(const std::string& dir);
 
  private:
-  static constexpr double patience = 0.1;  // s
+  static constexpr double brief = 1e-3, patience = 0.1;  // s
 
   // While it lasts, the simulation belongs to this thread.
   struct Turn {
@@ -44,6 +45,8 @@ class SteppedScene {
     ~Turn() { of.stepping_ = false; }
     SteppedScene& of;
   };
+
+  void steps_with_breaks(long count, bool energies);
 
   std::shared_ptr<const Model> model_;
   Simulation simulation_;

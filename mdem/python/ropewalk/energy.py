@@ -38,10 +38,6 @@ def _set_name(name: SetName) -> str:
     return name.path if isinstance(name, ParameterSet) else os.fspath(name)
 
 
-def _is_one(sets: Union[SetName, Sequence[SetName]]) -> bool:
-    return isinstance(sets, (str, os.PathLike, ParameterSet))
-
-
 def energy(
     state: Union[State, Scene, Simulation, str, "os.PathLike[str]"],
     parameters: Union[SetName, Sequence[SetName], None] = None,
@@ -72,9 +68,10 @@ def energy(
         flat = (state.state if isinstance(state, Simulation) else state.start).flat
         found = _core.energy_in_scene(scene._core, flat.position, flat.orientation, reference)
     else:
-        sets = [parameters] if _is_one(parameters) else list(parameters)  # type: ignore[arg-type,list-item]
+        one = isinstance(parameters, (str, os.PathLike, ParameterSet))
+        sets: Sequence[SetName] = [parameters] if one else parameters  # type: ignore[list-item,assignment]
         options = _core.StateOptions(
-            [_set_name(s) for s in sets], list(tube_types), law or "", bond or "", legacy_torque,  # type: ignore[arg-type]
+            [_set_name(s) for s in sets], list(tube_types), law or "", bond or "", legacy_torque,
             exclude_along_tube_nm or 0.0, reference,
         )
         if isinstance(state, (Scene, Simulation, State)):
@@ -85,5 +82,6 @@ def energy(
             )
         else:
             found = _core.energy_of_file(os.fspath(state), options)
-    arrays = {k: np.asarray(found.pop(k)) for k in ("force", "torque", "net_force", "net_torque")}
-    return StateEnergy(**found, **arrays)
+    for name in ("net_force", "net_torque"):
+        found[name] = np.asarray(found[name])
+    return StateEnergy(**found)

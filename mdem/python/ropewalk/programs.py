@@ -19,8 +19,10 @@ from .errors import InputError, NumericalError, ProgramError
 from .parameters import ParameterSet
 from .results import Campaign, Check, ValidationCase, table_of
 from .runs import Run
-from .scene import Scene, _absolute, as_scene
+from .scene import Scene, as_scene
 from .toml import toml_of
+
+_SCENE = "scene-of-python.toml"  # the temporary file of a scene that has none
 
 _log = logging.getLogger("ropewalk")
 
@@ -60,9 +62,9 @@ def _call(arguments: Sequence[str], accept: Sequence[int] = (0,)) -> str:
     )
     try:
         out, told = process.communicate()
-    except KeyboardInterrupt:  # the program has the signal as well, and takes its leave with a checkpoint
+    except KeyboardInterrupt:  # let the program end by itself, with a checkpoint
         process.send_signal(signal.SIGINT)
-        process.wait()
+        process.communicate()
         raise
     lines = [_said(line) for line in told.splitlines() if line.strip()]
     if process.returncode in accept:
@@ -70,6 +72,9 @@ def _call(arguments: Sequence[str], accept: Sequence[int] = (0,)) -> str:
             _log.warning(line)
         return out
     text = lines[-1] if lines else f"ropewalk {arguments[0]} ended with code {process.returncode}"
+    for argument in arguments:
+        if os.path.basename(argument) == _SCENE:
+            text = text.replace(argument, "scene")
     if process.returncode == 2:
         raise InputError(text)
     if process.returncode == 3:
@@ -83,10 +88,11 @@ def _scene_file(scene: Scene) -> Iterator[str]:
     if scene._path is not None:
         yield scene._path
         return
+    _ = scene.time_step_fs  # what is wrong is said here, without the name of a temporary file
     with tempfile.TemporaryDirectory(prefix="ropewalk-") as folder:
-        path = os.path.join(folder, "scene.toml")
+        path = os.path.join(folder, _SCENE)
         with open(path, "w", encoding="utf-8") as file:
-            file.write(toml_of({"name": scene.name, **_absolute(scene.keys, scene._folder)}))
+            file.write(toml_of(scene._whole_keys()))
         yield path
 
 
@@ -193,7 +199,7 @@ def sweep(
     """
     of = as_scene(scene)
     with tempfile.TemporaryDirectory(prefix="ropewalk-") as folder, _scene_file(of) as path:
-        table = {"format": "ropewalk-sweep-1", "scene": path, "combine": combine, "vary": dict(vary)}
+        table: dict[str, Any] = {"format": "ropewalk-sweep-1", "scene": path, "combine": combine, "vary": dict(vary)}
         if replicates is not None:
             table["replicates"] = replicates
         file_name = os.path.join(folder, "sweep.toml")

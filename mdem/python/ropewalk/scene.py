@@ -42,6 +42,8 @@ class Scene:
         Scene({"parameters": "cnt-10-10-tersoff", "rope": {"tubes": 7, "length_nm": 14}, "run": {"duration_ps": 2}})
     """
 
+    _of_a_run = False
+
     def __init__(self, source: Mapping[str, Any] | str | os.PathLike[str], *, folder: str | os.PathLike[str] = "") -> None:
         """Reads a scene.
 
@@ -86,7 +88,18 @@ class Scene:
         scene._path = None
         scene._folder = os.path.abspath(directory)
         scene._core = _core.Scene.of_run(directory)
+        scene._of_a_run = True
         return scene
+
+    def _whole_keys(self) -> dict[str, Any]:
+        """The keys with its name, and with the files that it names by their whole paths."""
+        keys: dict[str, Any] = {"name": self.name, **_absolute(self.keys, self._folder)}
+        if self._of_a_run:  # which keeps copies of them
+            sets = [os.path.abspath(path) for path in self.parameter_sets]
+            keys["parameters"] = sets if len(sets) > 1 else sets[0]
+            if "state" in keys:
+                keys["state"]["file"] = os.path.join(self._folder, "state.csv")
+        return keys
 
     def __repr__(self) -> str:
         """Its name (no unit)."""
@@ -114,8 +127,7 @@ class Scene:
             changes: values by key, with the table before it: {"rope.tubes": 19, "twist.moment_nN_nm": 30}; None takes a
                 key away. `grip.1.rate` is of the second [[grip]]. Units stand in the names of the keys.
         """
-        keys = _absolute(self.keys, self._folder)
-        keys.setdefault("name", self.name)
+        keys = self._whole_keys()
         for name, value in changes.items():
             *tables, last = name.split(".")
             at: Any = keys
