@@ -28,7 +28,8 @@ void look_for_signals() {
 
 SteppedScene::SteppedScene(std::shared_ptr<const Model> model)
     : model_(std::move(model)), simulation_(start(model_->scene, model_->prepared)) {
-  energies_ = first_ = simulation_.forces().energy;
+  first_ = simulation_.forces().energy;
+  energies_ = first_;
   first_energy_ = simulation_.total_energy();
 }
 
@@ -41,10 +42,16 @@ const Simulation& SteppedScene::simulation() const {
   return simulation_;
 }
 
+void SteppedScene::forget() {
+  energies_.reset();
+  measured_.reset();
+}
+
 void SteppedScene::divide_steps(int parts) {
   simulation();
   if (parts < 1 || parts > 1024) throw std::invalid_argument("a step is divided into 1 to 1024 parts");
   simulation_.divide_steps(parts);
+  measured_.reset();
   seconds_of_a_step_ = patience;
 }
 
@@ -52,12 +59,12 @@ void SteppedScene::steps(long count, bool energies) {
   if (count < 0) throw std::invalid_argument("the number of steps is negative");
   if (count == 0) return;
   const Turn turn(*this);
-  energies_known_ = false;
+  forget();
   if (static_cast<double>(count) * seconds_of_a_step_ < brief)
     simulation_.steps(count, energies);
   else
     steps_with_breaks(count, energies);
-  if (energies) energies_ = simulation_.forces().energy, energies_known_ = true;
+  if (energies) energies_ = simulation_.forces().energy;
 }
 
 void SteppedScene::steps_with_breaks(long count, bool energies) {
@@ -75,7 +82,7 @@ void SteppedScene::steps_with_breaks(long count, bool energies) {
 Relaxed SteppedScene::relax(const RelaxGoal& goal, long max_steps) {
   const Turn turn(*this);
   const py::gil_scoped_release release;
-  energies_known_ = false;
+  forget();
   Clock::time_point looked = Clock::now();
   std::optional<py::error_already_set> raised;
   const Relaxed end = simulation_.relax(goal, max_steps, [&](long) {
@@ -86,24 +93,24 @@ Relaxed SteppedScene::relax(const RelaxGoal& goal, long max_steps) {
     raised.emplace();
     return false;
   });
-  energies_ = simulation_.forces().energy, energies_known_ = true;
+  energies_ = simulation_.forces().energy;
   if (raised) throw std::move(*raised);
   return end;
 }
 
 Energies SteppedScene::energies() {
-  if (energies_known_) return energies_;
   const Simulation& s = simulation();
+  if (energies_) return *energies_;
   Forces forces(s.state().size());
   ForceEngine engine;
   engine.compute(s.topology(), s.interaction(), s.list(), s.state(), forces);
   energies_ = forces.energy;
-  energies_known_ = true;
-  return energies_;
+  return *energies_;
 }
 
-std::vector<double> SteppedScene::measure() {
+const std::vector<double>& SteppedScene::measure() {
   const Simulation& s = simulation();
+  if (measured_) return *measured_;
   EnergyAccount account;
   account.time_step = s.time_step() / s.divided();
   if (model_->scene.twist) account.moment = model_->scene.twist->moment_at(s.state().time);
@@ -115,7 +122,8 @@ std::vector<double> SteppedScene::measure() {
   account.first_energy = first_energy_;
   account.first = first_;
   account.ends = simulation_.read_gauges();
-  return model_->measure(s.state(), account);
+  measured_ = model_->measure(s.state(), account);
+  return *measured_;
 }
 
 std::string SteppedScene::checkpoint() const {
@@ -136,7 +144,7 @@ void SteppedScene::restore(const std::string& bytes) {
     throw InputError({"", 0, "checkpoint"}, e.what(),
                      "restore it into a simulation of the scene that it came from");
   }
-  energies_known_ = false;
+  forget();
 }
 
 void SteppedScene::restore_run(const std::string& dir) {
@@ -148,7 +156,7 @@ void SteppedScene::restore_run(const std::string& dir) {
     throw InputError({RunDirectory{dir}.checkpoint(), 0, ""}, e.what(), "start the run anew with `ropewalk run`");
   }
   first_energy_ = c.first_energy;
-  energies_known_ = false;
+  forget();
 }
 
 namespace {

@@ -28,8 +28,8 @@ class SteppedScene {
 
   // Where the last step left them out, they are computed here.
   Energies energies();
-  // All observables. Torques and forces at the ends are means since the last call.
-  std::vector<double> measure();
+  // All observables. Torques and forces at the ends are means since the last moment that was measured.
+  const std::vector<double>& measure();
 
   // With a sum over the bytes behind.
   std::string checkpoint() const;
@@ -46,14 +46,16 @@ class SteppedScene {
     SteppedScene& of;
   };
 
+  void forget();
   void steps_with_breaks(long count, bool energies);
 
   std::shared_ptr<const Model> model_;
   Simulation simulation_;
   std::atomic<bool> stepping_ = false;
   double seconds_of_a_step_ = patience;
-  bool energies_known_ = true;
-  Energies energies_;
+  // Of the present state, where they are known.
+  std::optional<Energies> energies_;
+  std::optional<std::vector<double>> measured_;
   Energies first_;           // potential at the start
   double first_energy_ = 0;  // eV, total at the start
 };

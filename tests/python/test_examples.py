@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import unittest
@@ -41,6 +42,16 @@ class ExamplesTest(FolderTest):
         lines = self.said("size_sweep")
         self.assertEqual(sum("finished" in line for line in lines), 6)
         self.assertEqual(self.said("size_sweep"), lines)
+
+    def test_the_page_says_what_works(self):
+        page = (SCRIPTS.parents[1] / "docs" / "how-to" / "python.md").read_text()
+        blocks = re.findall(r"```python\n(.*?)```", page, re.S)
+        self.assertGreater(len(blocks), 4)
+        pathlib.Path("page.py").write_text("\n".join(blocks))
+        done = subprocess.run([sys.executable, "page.py"], capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        promised = re.search(r"print\(e\) +# (.*)", page).group(1)
+        self.assertEqual(done.stdout.splitlines()[-1], promised)
 
     def test_all_scripts_are_tested_and_short(self):
         names = sorted(path.stem for path in SCRIPTS.glob("*.py"))

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import gc
+import os
 import pathlib
 import signal
 import subprocess
@@ -79,6 +80,24 @@ class StepTest(FolderTest):
             simulation.step(20000)
         self.assertGreater(caught.exception.step, 0)
         self.assertIn(f"step {caught.exception.step}", str(caught.exception))
+
+
+class ForkTest(FolderTest):
+    def test_a_forked_process_steps(self):
+        before = ropewalk.threads()
+        self.addCleanup(ropewalk.set_threads, before)
+        ropewalk.set_threads(2)
+        simulation = ropewalk.Simulation({**ROPE, "rope": {"tubes": 37, "length_nm": 28}})
+        simulation.step(5)
+        child = os.fork()
+        if child == 0:
+            signal.alarm(60)  # else it would wait for ever for threads that are not there
+            simulation.step(5)
+            simulation.save("child")
+            os._exit(0)
+        self.assertEqual(os.waitpid(child, 0)[1], 0)
+        simulation.step(5)
+        self.assertEqual(pathlib.Path("child").read_bytes(), simulation.checkpoint())
 
 
 class ViewTest(FolderTest):
@@ -189,6 +208,19 @@ class MeasureTest(FolderTest):
         self.assertAlmostEqual(values["twist_eV"], simulation.energies.twist, places=12)
         with self.assertRaisesRegex(ropewalk.InputError, 'did you mean "beta_deg"'):
             simulation.measure("bta_deg")
+
+    def test_means_since_the_last_step_that_was_measured(self):
+        names = ("torque_upper_nN_nm", "torque_lower_nN_nm")
+        one, two = ropewalk.Simulation(ROPE), ropewalk.Simulation(ROPE)
+        for n in (10, 10):
+            one.step(n)
+            two.step(n)
+            at_once = one.measure()
+            # Asking for them one by one makes no difference.
+            self.assertEqual([two.measure(name) for name in names], [at_once[name] for name in names])
+        whole = ropewalk.Simulation(ROPE)
+        whole.step(20)
+        self.assertNotEqual(whole.measure(names[0]), at_once[names[0]])
 
     def test_energy_of_a_state(self):
         simulation = ropewalk.Simulation(ROPE)

@@ -24,6 +24,8 @@ def _load_core() -> None:
     finally:
         if not chosen:
             del _os.environ["GOMP_SPINCOUNT"]
+    # Threads of OpenMP do not outlive a fork, and who waits for them waits for ever.
+    _os.register_at_fork(after_in_child=lambda: _core.set_threads(1))
     # The shipped data: in a wheel inside of the package, else in the tree that the package is installed in.
     here = _os.path.dirname(_os.path.abspath(__file__))
     for folder in (here, *(_os.path.normpath(_os.path.join(here, *[".."] * up)) for up in range(1, 5))):

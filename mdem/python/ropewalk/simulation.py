@@ -68,8 +68,8 @@ class Simulation:
     """A scene in motion, step by step. Forces, loads, damping and thermostat are those of `ropewalk run`.
 
     The motion is the same, bit for bit, on any number of threads, and however the steps are divided into calls. The
-    program also halves its step where the account of energy does not close and watches limits; here you see both by
-    measure("balance_eV") and measure("kinked"), and set `divided` yourself.
+    program also halves its step where the account of energy does not close, watches limits and ends by [[stop]]; here you
+    see all of it by measure("balance_eV"), measure("kinked") and so on, and set `divided` yourself.
 
     Another Python thread may run while this one steps. The simulation itself belongs to one thread at a time.
     """
@@ -152,16 +152,23 @@ class Simulation:
         self.step(round(left / self._core.time_step))
 
     def relax(
-        self, force_eV_per_nm: float = 1e-4, energy: float = 1e-3, *, max_steps: int = 200000
+        self, force_eV_per_nm: Optional[float] = None, energy: Optional[float] = None, *, max_steps: Optional[int] = None
     ) -> Relaxed:
         """Goes to a nearby minimum of the energy (FIRE), under the loads of now; velocities are zero afterwards.
+
+        What is None is that of the [run] of the scene.
 
         Arguments:
             force_eV_per_nm: largest force at the end, torques over the tube's radius included, eV/nm
             energy: relative error of the energy of the bonds at the end, by estimate (no unit)
             max_steps: at most so many steps (no unit)
         """
-        return Relaxed(*self._core.relax(force_eV_per_nm, energy, max_steps))
+        of_scene = self._scene._core.goal
+        return Relaxed(*self._core.relax(
+            of_scene[0] if force_eV_per_nm is None else force_eV_per_nm,
+            of_scene[1] if energy is None else energy,
+            of_scene[2] if max_steps is None else max_steps,
+        ))
 
     # --- observers ---
 
@@ -235,8 +242,8 @@ class Simulation:
     def measure(self, name: Optional[str] = None) -> Union[float, dict[str, float]]:
         """Observables: one by its name, in the unit that the name ends in, or all as a dict.
 
-        They are those of log.csv. Forces and torques at the ends are means since the last call. A call costs about as much
-        as a step.
+        They are those of log.csv. Forces and torques at the ends are means since the step that was measured before. All are
+        computed at the first call after a step, which takes about as long as a step.
 
         Arguments:
             name: of an observable, see observables(); None: all

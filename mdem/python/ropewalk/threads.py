@@ -12,6 +12,8 @@ def threads() -> int:
 def set_threads(n: int) -> None:
     """Sets the threads that simulations in this process use; any number gives the same bits.
 
+    A process that was forked from one that has simulated has one thread, and cannot have more.
+
     Arguments:
         n: threads, from 1 (no unit)
     """
