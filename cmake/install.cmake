@@ -1,6 +1,6 @@
 # What goes where: programs in bin, data in share/ropewalk, headers in include/ropewalk, and what find_package(Ropewalk)
 # needs in lib. Components: ropewalk (the simulator, its data, man pages, completions), calibrate (with validate), lammps
-# (GPL-2), development.
+# (GPL-2), development, python (installed by mdem/python).
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -55,7 +55,7 @@ set(config_directory ${CMAKE_INSTALL_LIBDIR}/cmake/Ropewalk)
 install(TARGETS ${library_targets} EXPORT RopewalkTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}/ropewalk
         COMPONENT development)
 install(DIRECTORY mdem/ DESTINATION include/ropewalk COMPONENT development FILES_MATCHING PATTERN "*.hpp"
-        PATTERN bench EXCLUDE PATTERN commands EXCLUDE PATTERN lammps EXCLUDE)
+        PATTERN bench EXCLUDE PATTERN commands EXCLUDE PATTERN lammps EXCLUDE PATTERN python EXCLUDE)
 install(EXPORT RopewalkTargets NAMESPACE Ropewalk:: DESTINATION ${config_directory} COMPONENT development)
 configure_package_config_file(cmake/RopewalkConfig.cmake.in ${CMAKE_CURRENT_BINARY_DIR}/RopewalkConfig.cmake
   INSTALL_DESTINATION ${config_directory})
@@ -79,10 +79,20 @@ set(CPACK_DEBIAN_ROPEWALK_PACKAGE_NAME ropewalk)
 set(CPACK_DEBIAN_CALIBRATE_PACKAGE_NAME ropewalk-calibrate)
 set(CPACK_DEBIAN_LAMMPS_PACKAGE_NAME ropewalk-lammps)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libropewalk-dev)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-ropewalk)
 set(CPACK_DEBIAN_CALIBRATE_PACKAGE_DEPENDS "ropewalk (= ${PROJECT_VERSION})")
 set(CPACK_DEBIAN_LAMMPS_PACKAGE_DEPENDS "ropewalk (= ${PROJECT_VERSION})")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
     "libeigen3-dev, libfmt-dev, nlohmann-json3-dev, libtomlplusplus-dev, libqhull-dev, libhwy-dev, libxxhash-dev")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "ropewalk (= ${PROJECT_VERSION}), python3-numpy")
+if(Python3_VERSION_MAJOR)
+  # An extension module is for one version of Python.
+  math(EXPR next_minor "${Python3_VERSION_MINOR} + 1")
+  string(APPEND CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
+    ", python3 (>= 3.${Python3_VERSION_MINOR}), python3 (<< 3.${next_minor})")
+endif()
+set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "ropewalk-calibrate")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
 set(CPACK_DEBIAN_ROPEWALK_PACKAGE_RECOMMENDS "librsvg2-bin, lammps")
 set(CPACK_DEBIAN_CALIBRATE_PACKAGE_RECOMMENDS "lammps, lammps-data")
 include(CPack)

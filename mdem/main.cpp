@@ -261,22 +261,25 @@ void add_energy(CLI::App& app, Verbs& v) {
   CLI::App* c = app.add_subcommand(
       "energy", "Energies (eV), forces (eV/nm) and torques (eV) of one state: CSV tube,x_nm,y_nm,z_nm,qw,qx,qy,qz");
   c->add_option("state", v.energy.state, "State file; the tube axis is the body's z")->required();
-  c->add_option("--parameters", v.energy.parameters,
+  c->add_option("--parameters", v.energy.options.parameters,
                 "Parameter set: a file, or the name of a shipped one; several, separated by commas, for tube types")
       ->delimiter(',')
       ->required();
-  c->add_option("--tube-types", v.energy.tube_types,
+  c->add_option("--tube-types", v.energy.options.tube_types,
                 "Which of the sets each tube is: 0,1,1 [default: all the first]")
       ->delimiter(',');
-  c->add_option("--law", v.energy.law, "Contact law: line, paper or none [default: line where the set has it]");
-  c->add_option("--bond", v.energy.bond, "harmonic or anharmonic [default: anharmonic where the set has it]")
+  c->add_option("--law", v.energy.options.law,
+                "Contact law: line, paper or none [default: line where the set has it]");
+  c->add_option("--bond", v.energy.options.bond,
+                "harmonic or anharmonic [default: anharmonic where the set has it]")
       ->check(CLI::IsMember({"harmonic", "anharmonic"}));
-  c->add_option("--exclude-along-tube-nm", v.energy.exclude_along_tube,
+  c->add_option("--exclude-along-tube-nm", v.energy.options.exclude_along_tube,
                 "Parts of one tube up to this far apart along it do not attract [default: as a scene has it]")
       ->check(CLI::PositiveNumber);
   c->add_option("--threads", v.energy.threads, "Threads [default: all cores]")->check(thread_range());
-  c->add_flag("--legacy-torque", v.energy.legacy_torque, "Leave out the torque that the published code leaves out");
-  c->add_flag("--reference", v.energy.reference, "The plain O(N^2) path instead of the fast one");
+  c->add_flag("--legacy-torque", v.energy.options.legacy_torque,
+              "Leave out the torque that the published code leaves out");
+  c->add_flag("--reference", v.energy.options.reference, "The plain O(N^2) path instead of the fast one");
   c->add_flag("--json", v.energy.json, "JSON");
   c->callback([&v] { v.code = energy_command(v.energy); });
 }

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "scene/single_state.hpp"
+
 namespace ropewalk {
 
 struct RunArguments {
@@ -162,15 +164,9 @@ int new_command(const NewArguments& arguments);
 int check_command(const std::string& scene);
 
 struct EnergyArguments {
-  std::string state;
-  std::vector<std::string> parameters;  // one set, or one for each type of tube
-  std::vector<int> tube_types;          // of each tube, from 0; empty: all of the first
-  std::string law;                      // empty: the line law where the set has it
-  std::string bond;                     // "harmonic" or "anharmonic"; empty: anharmonic where all sets have it
-  bool legacy_torque = false;
-  bool reference = false;
+  std::string state;    // file
+  SingleState options;  // but for its source
   bool json = false;
-  double exclude_along_tube = 0;  // nm; 0: the set's
   int threads = 0;
 };
 int energy_command(const EnergyArguments& arguments);

@@ -13,6 +13,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+std::string said_directory;
+
 std::string shipped_sets(const fs::path& folder) {
   std::set<std::string> names;
   std::error_code error;
@@ -29,11 +31,14 @@ std::string shipped_sets(const fs::path& folder) {
 std::string data_directory() {
   const char* set = std::getenv("ROPEWALK_DATA");
   if (set && *set) return set;
+  if (!said_directory.empty()) return said_directory;
   // As installed, wherever the tree was moved to.
   std::error_code error;
   const fs::path beside = fs::read_symlink("/proc/self/exe", error).parent_path() / "../share/ropewalk";
   return fs::is_directory(beside / "parameters", error) ? beside.lexically_normal().string() : ROPEWALK_DATA_DIR;
 }
+
+void set_data_directory(const std::string& folder) { said_directory = folder; }
 
 std::string find_parameters(const std::string& name, const std::string& folder, const InputError::Place& place,
                             const std::string& data) {

@@ -7,9 +7,12 @@
 
 namespace ropewalk {
 
-// The folder of the shipped sets and scenes: the environment variable ROPEWALK_DATA, else share/ropewalk beside the
-// program's bin, else what the build was given as ROPEWALK_DATA_DIR, the source tree's data/.
+// The folder of the shipped sets and scenes: the environment variable ROPEWALK_DATA, else what
+// set_data_directory() said, else share/ropewalk beside the program's bin, else what the build was given as
+// ROPEWALK_DATA_DIR, the source tree's data/.
 std::string data_directory();
+// For libraries in a program that is not ours.
+void set_data_directory(const std::string& folder);
 
 // The file of a parameter set: `name` as a file in `folder` (empty: the current one), then as the name of a
 // shipped set. Throws InputError at `place` if there is neither.

@@ -72,12 +72,12 @@ void FixGrip::post_neighbor() {
 }
 
 // In one message. Every value is nonzero on its owner only, so that the sum over the ranks is exact.
-void FixGrip::share(const std::vector<std::vector<double>*>& all) {
+void FixGrip::share(const std::vector<Column*>& all) {
   shared_.clear();
-  for (const std::vector<double>* v : all) shared_.insert(shared_.end(), v->begin(), v->end());
+  for (const Column* v : all) shared_.insert(shared_.end(), v->begin(), v->end());
   MPI_Allreduce(MPI_IN_PLACE, shared_.data(), static_cast<int>(shared_.size()), MPI_DOUBLE, MPI_SUM, world);
   auto from = shared_.begin();
-  for (std::vector<double>* v : all) {
+  for (Column* v : all) {
     const auto to = from + static_cast<std::ptrdiff_t>(v->size());
     std::copy(from, to, v->begin());
     from = to;
@@ -104,7 +104,7 @@ void FixGrip::gather() {
     state_.orientation.set(k, own ? quaternion(q[atom_[k]]) : Quaternion(0, 0, 0, 0));
   }
   if (!whole_) return;
-  std::vector<std::vector<double>*> all;
+  std::vector<Column*> all;
   for (Vec3Array* v :
        {&state_.position, &state_.velocity, &state_.angular_velocity, &forces_.force, &forces_.torque})
     all.insert(all.end(), {&v->x, &v->y, &v->z});

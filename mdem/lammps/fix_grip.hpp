@@ -32,7 +32,7 @@ class FixGrip : public LMP::Fix {
   RankEngine* leading_engine() const;
   void use(const std::vector<int>& elements);
   void gather();
-  void share(const std::vector<std::vector<double>*>& all);
+  void share(const std::vector<Column*>& all);
   bool owned(std::size_t k) const { return atom_[k] >= 0; }
 
   std::shared_ptr<const LammpsModel> model_;

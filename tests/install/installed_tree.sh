@@ -49,6 +49,17 @@ for program in ropewalk ropewalk-calibrate ropewalk-validate; do
   done
 done
 
+# The Python package, where it was built, works with the programs and data of its own tree.
+if [ -d moved/lib/python3/dist-packages/ropewalk ]; then
+  PYTHONPATH=$work/moved/lib/python3/dist-packages /usr/bin/python3 -B - <<'SCRIPT' || fail "the Python package does not work"
+import os, ropewalk
+from ropewalk.programs import find_program
+assert find_program() == os.path.abspath("moved/bin/ropewalk"), find_program()
+run = ropewalk.run(ropewalk.Scene("other.toml"), "by-python")
+assert len(run.frames) > 1 and ropewalk.ParameterSet("only-here").grade == "good"
+SCRIPT
+fi
+
 [ "${2:-}" = libraries ] || exit 0
 cmake -S "$here/consumer" -B consumer -DCMAKE_PREFIX_PATH="$work/moved" -DCMAKE_BUILD_TYPE=Release >/dev/null
 cmake --build consumer >/dev/null

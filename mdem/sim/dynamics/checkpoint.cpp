@@ -29,7 +29,7 @@ struct ListOrigin {
 
 struct Writer : ByteWriter {
   using ByteWriter::operator();
-  void operator()(const std::vector<double>& v) {
+  void operator()(const Column& v) {
     bytes.append(reinterpret_cast<const char*>(v.data()), v.size() * sizeof(double));
   }
   void operator()(const std::vector<PointLoad>& loads) {
@@ -45,7 +45,7 @@ struct Writer : ByteWriter {
 // Arrays must have their size.
 struct Reader : ByteReader {
   using ByteReader::operator();
-  void operator()(std::vector<double>& v) {
+  void operator()(Column& v) {
     const std::size_t size = v.size() * sizeof(double);
     if (size > 0) std::memcpy(v.data(), take(size).data(), size);
   }
@@ -112,7 +112,8 @@ namespace {
 // In nm, ps and eV, and in units of these; beyond it a state is no longer one.
 constexpr double largest_number = 1e9;
 
-bool all_within(const std::vector<double>& values) {
+template <class Numbers>
+bool all_within(const Numbers& values) {
   return std::all_of(values.begin(), values.end(), [](double x) { return std::fabs(x) < largest_number; });
 }
 
@@ -128,8 +129,8 @@ bool are_unit_vectors(const Vec3Array& v) {
 }
 
 bool could_be(const ListOrigin& list) {
-  return list.skin > 0 && list.skin < largest_number && all_within({list.twist.begin(), list.twist.end()}) &&
-         all_xyz_within(list.position) && are_unit_vectors(list.axis);
+  return list.skin > 0 && list.skin < largest_number && all_within(list.twist) && all_xyz_within(list.position) &&
+         are_unit_vectors(list.axis);
 }
 
 }  // namespace
@@ -139,7 +140,7 @@ bool Simulation::could_go_on(double step_of_scene) const {
   const State& s = state_;
   bool fine = time_step_ > 0 && time_step_ < 1e3 * step_of_scene && divided_ >= 1 && divided_ <= 1024 &&
               s.step >= 0 && list_age_ >= 0 &&
-              all_within({s.time, account_.work, account_.dissipated, account_.heat, gauges_.sums.since});
+              all_within(std::array{s.time, account_.work, account_.dissipated, account_.heat, gauges_.sums.since});
   for (const Vec3Array* v : {&s.position, &s.velocity, &s.angular_velocity, &forces_.force, &forces_.torque})
     fine = fine && all_xyz_within(*v);
   for (std::size_t i = 0; fine && i < s.size(); ++i) fine = std::fabs(s.orientation[i].norm() - 1) < 1e-3;

@@ -12,7 +12,7 @@ double kick_tube(const Topology& topology, int tube, double alpha, const Forces&
   const std::ptrdiff_t from = topology.tube_begin[tube], to = topology.tube_begin[tube + 1];
   const double per_mass = dt / topology.type_of(tube).mass, per_inertia = dt / topology.type_of(tube).inertia;
   double removed = 0;
-  const auto push = [&](const std::vector<double>& force, double inverse, std::vector<double>& velocity) {
+  const auto push = [&](const Column& force, double inverse, Column& velocity) {
     for (std::ptrdiff_t i = from; i < to; ++i) {
       const double brake = pfc_local(alpha, force[i], velocity[i]);
       const double next = velocity[i] + inverse * (force[i] + brake);

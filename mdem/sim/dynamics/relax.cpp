@@ -192,8 +192,8 @@ bool Simulation::relax(double tolerance, long max_steps, const std::function<boo
   const double constant = total_energy() - account_.supplied();
   const auto balance = [&] { account_.dissipated += constant - total_energy() + account_.supplied(); };
   const auto stop = [&] {
-    state_.velocity = Vec3Array(n);
-    state_.angular_velocity = Vec3Array(n);
+    state_.velocity.set_to_zero();
+    state_.angular_velocity.set_to_zero();
     balance();
   };
   stop();

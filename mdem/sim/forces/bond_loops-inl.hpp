@@ -76,7 +76,7 @@ __attribute__((flatten)) BondEnergy<double> anharmonic_forces(const TubeType& ty
 double bond_damping(const TubeType& type, const BondDamping& damping, const State& s, const BondRange& bonds,
                     BondArray& out) {
   const std::ptrdiff_t from = bonds.from, to = bonds.to;
-  const auto at = [&](const std::vector<double>& v) { return v.data() + bonds.begin; };
+  const auto at = [&](const Column& v) { return v.data() + bonds.begin; };
   const double *x = at(s.position.x), *y = at(s.position.y), *z = at(s.position.z);
   const double *vx = at(s.velocity.x), *vy = at(s.velocity.y), *vz = at(s.velocity.z);
   const double *wx = at(s.angular_velocity.x), *wy = at(s.angular_velocity.y), *wz = at(s.angular_velocity.z);
@@ -102,7 +102,7 @@ double bond_damping(const TubeType& type, const BondDamping& damping, const Stat
 
 // What the bonds of a tube, of which there are so many here, do to the elements from .. to - 1, the first one's at
 // 0: bond i acts on the elements i and i + 1.
-void collect_bonds(const std::vector<double>& on_i, double sign_i, const std::vector<double>& on_j,
+void collect_bonds(const Column& on_i, double sign_i, const Column& on_j,
                    std::ptrdiff_t bonds, std::ptrdiff_t from, std::ptrdiff_t to, double* out) {
   const double *a = on_i.data(), *b = on_j.data();
   if (from == 0) out[0] = bonds > 0 ? sign_i * a[0] : 0.0;

@@ -88,8 +88,7 @@ BondSum compute_bonds(const BondInput& in, const Segment& of, const Joint* befor
     put(*behind, static_cast<std::size_t>(to - 1), each);
     add(behind->sum, sum);
   }
-  const auto collect = [&](const std::vector<double>& on_i, double sign_i, const std::vector<double>& on_j,
-                           std::vector<double>& sums) {
+  const auto collect = [&](const Column& on_i, double sign_i, const Column& on_j, Column& sums) {
     ROPEWALK_IN_USE(collect_bonds)(on_i, sign_i, on_j, bonds, from, to, sums.data() + (of.begin - out.origin));
   };
   collect(each.force_j.x, -1, each.force_j.x, out.force.x);

@@ -15,7 +15,7 @@ namespace {
 
 void clear(const Segment& of, const ForceRows& out) {
   for (Vec3Array* v : {&out.force, &out.torque})
-    for (std::vector<double>* c : {&v->x, &v->y, &v->z})
+    for (Column* c : {&v->x, &v->y, &v->z})
       std::fill(c->begin() + (of.begin - out.origin), c->begin() + (of.end - out.origin), 0.0);
 }
 

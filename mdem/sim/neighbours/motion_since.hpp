@@ -38,7 +38,7 @@ class MotionSince {
   // checkpoint stores it, so that a resumed run finds the same changes.
   std::array<double, 2> twist() const { return {twist_.sine, twist_.slope}; }
   void set_twist(const std::array<double, 2>& t) { twist_.sine = t[0], twist_.slope = t[1]; }
-  std::size_t bytes() const { return 3 * (position_.x.capacity() + axis_.x.capacity()) * sizeof(double); }
+  std::size_t bytes() const { return 3 * (position_.stride() + axis_.stride()) * sizeof(double); }
 
  private:
   void follow(const Change& change);

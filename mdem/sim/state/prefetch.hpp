@@ -12,7 +12,7 @@ namespace ropewalk {
 // The elements begin .. end - 1, of which there are some.
 HWY_INLINE void prefetch(const Vec3Array& v, int begin, int end) {
   constexpr int line = 8;  // numbers that come together
-  for (const std::vector<double>* c : {&v.x, &v.y, &v.z}) {
+  for (const Column* c : {&v.x, &v.y, &v.z}) {
     for (int at = begin; at < end; at += line) hwy::Prefetch(c->data() + at);
     hwy::Prefetch(c->data() + end - 1);
   }

@@ -5,10 +5,12 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "model/bond.hpp"
 #include "model/contact/contact.hpp"
+#include "sim/state/columns.hpp"
 
 namespace ropewalk {
 
@@ -20,16 +22,25 @@ inline constexpr int cached_elements = 128;
 // Smallest number of elements for which a team of threads saves time.
 inline constexpr std::size_t parallel_from = 512;
 
-// Three arrays of one component each.
-struct Vec3Array {
-  std::vector<double> x, y, z;
+// Of vectors.
+struct Vec3Array : ColumnBlock<3> {
+  Column x, y, z;
 
-  explicit Vec3Array(std::size_t n = 0) : x(n, 0.0), y(n, 0.0), z(n, 0.0) {}
+  explicit Vec3Array(std::size_t n = 0) { resize(n); }
+  Vec3Array(const Vec3Array& other) : ColumnBlock() { *this = other; }
+  Vec3Array(Vec3Array&& other) noexcept { *this = std::move(other); }
+  Vec3Array& operator=(const Vec3Array& other) {
+    if (this != &other) copy(columns(), {&other.x, &other.y, &other.z});
+    return *this;
+  }
+  Vec3Array& operator=(Vec3Array&& other) noexcept {
+    swap(columns(), other, other.columns());
+    return *this;
+  }
   std::size_t size() const { return x.size(); }
-  void resize(std::size_t n) {
-    x.resize(n, 0.0);
-    y.resize(n, 0.0);
-    z.resize(n, 0.0);
+  void resize(std::size_t n) { ColumnBlock::resize(columns(), n); }
+  void set_to_zero() {
+    for (Column* c : columns()) std::fill(c->begin(), c->end(), 0.0);
   }
   Vector3 operator[](std::size_t i) const { return {x[i], y[i], z[i]}; }
   void set(std::size_t i, const Vector3& v) {
@@ -42,12 +53,28 @@ struct Vec3Array {
     y[i] += v.y();
     z[i] += v.z();
   }
+
+ private:
+  Columns columns() { return {&x, &y, &z}; }
 };
 
-struct QuaternionArray {
-  std::vector<double> w, x, y, z;
+struct QuaternionArray : ColumnBlock<4> {
+  Column w, x, y, z;
 
-  explicit QuaternionArray(std::size_t n = 0) : w(n, 1.0), x(n, 0.0), y(n, 0.0), z(n, 0.0) {}
+  explicit QuaternionArray(std::size_t n = 0) {
+    resize(columns(), n);
+    std::fill(w.begin(), w.end(), 1.0);
+  }
+  QuaternionArray(const QuaternionArray& other) : ColumnBlock() { *this = other; }
+  QuaternionArray(QuaternionArray&& other) noexcept { *this = std::move(other); }
+  QuaternionArray& operator=(const QuaternionArray& other) {
+    if (this != &other) copy(columns(), {&other.w, &other.x, &other.y, &other.z});
+    return *this;
+  }
+  QuaternionArray& operator=(QuaternionArray&& other) noexcept {
+    swap(columns(), other, other.columns());
+    return *this;
+  }
   std::size_t size() const { return w.size(); }
   Quaternion operator[](std::size_t i) const { return {w[i], x[i], y[i], z[i]}; }
   void set(std::size_t i, const Quaternion& q) {
@@ -56,6 +83,9 @@ struct QuaternionArray {
     y[i] = q.y();
     z[i] = q.z();
   }
+
+ private:
+  Columns columns() { return {&w, &x, &y, &z}; }
 };
 
 // Properties of all tubes of one type.

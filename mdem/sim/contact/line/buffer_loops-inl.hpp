@@ -9,7 +9,7 @@ __attribute__((always_inline)) inline void add_all(const BufferRange& of, const 
                                                    const ForceRows& sums) {
   const std::vector<T>* const from[6] = {&b.fx, &b.fy, &b.fz, &b.tx, &b.ty, &b.tz};
   Vec3Array &force = sums.force, &torque = sums.torque;
-  std::vector<double>* const to[6] = {&force.x, &force.y, &force.z, &torque.x, &torque.y, &torque.z};
+  Column* const to[6] = {&force.x, &force.y, &force.z, &torque.x, &torque.y, &torque.z};
   for (int a = 0; a < 6; ++a) {
     const T* const on = from[a]->data() + of.begin + of.shift;
     double* const sum = to[a]->data() + of.begin - sums.origin;

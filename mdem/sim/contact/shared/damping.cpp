@@ -195,11 +195,11 @@ HWY_INLINE void take(const State& s, const BufferRange& of, double per_unit, Dam
   const int lanes = static_cast<int>(hn::Lanes(d));
   for (int k = of.begin; k < of.end; k += lanes) {
     const int left = std::min(of.end - k, lanes), entry = k + of.shift;
-    const auto some = [&](const std::vector<double>& v) HWY_ATTR { return load_some(d, v.data() + k, 0, left); };
-    const auto position = [&](const std::vector<double>& from, std::vector<std::int32_t>& to) HWY_ATTR {
+    const auto some = [&](const Column& v) HWY_ATTR { return load_some(d, v.data() + k, 0, left); };
+    const auto position = [&](const Column& from, std::vector<std::int32_t>& to) HWY_ATTR {
       hn::StoreU(hn::DemoteTo(whole, hn::Mul(some(from), units)), whole, to.data() + entry);
     };
-    const auto motion = [&](const std::vector<double>& from, std::vector<float>& to)
+    const auto motion = [&](const Column& from, std::vector<float>& to)
                             HWY_ATTR { hn::StoreU(hn::DemoteTo(floats, some(from)), floats, to.data() + entry); };
     position(s.position.x, e.x), position(s.position.y, e.y), position(s.position.z, e.z);
     motion(s.velocity.x, e.vx), motion(s.velocity.y, e.vy), motion(s.velocity.z, e.vz);

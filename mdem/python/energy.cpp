@@ -1,0 +1,110 @@
+// Energies, forces and torques of one state.
+#include "python/arrays.hpp"
+#include "python/scene.hpp"
+#include "scene/kinds/state.hpp"
+#include "scene/single_state.hpp"
+
+namespace ropewalk::python {
+namespace {
+
+// Elements at rest that a caller gives.
+class GivenState : public Source {
+ public:
+  GivenState(const std::vector<int>& tube_begin, const py::array_t<double>& position,
+             const py::array_t<double>& orientation)
+      : tube_begin_(tube_begin) {
+    state_.position = vectors_from(position);
+    state_.orientation = quaternions_from(orientation);
+    state_.velocity.resize(state_.size());
+    state_.angular_velocity.resize(state_.size());
+    if (tube_begin.empty() || tube_begin.back() != static_cast<int>(state_.size()) ||
+        state_.orientation.size() != state_.size())
+      throw std::invalid_argument("positions, orientations and tubes do not have the same number of elements");
+  }
+
+  void place(const Scene&, double, Random&, Topology& topology, State& state) const override {
+    for (std::size_t t = 0; t + 1 < tube_begin_.size(); ++t) topology.add_tube(tube_begin_[t + 1] - tube_begin_[t]);
+    state = state_;
+  }
+  std::string file() const override { return "the state"; }
+  const State& state() const { return state_; }
+
+ private:
+  std::vector<int> tube_begin_;
+  State state_;
+};
+
+py::dict as_dict(const State& state, const Forces& f) {
+  const NetForce net = net_force(state, f);
+  py::dict out;
+  out["stretch"] = f.energy.stretch;
+  out["shear"] = f.energy.shear;
+  out["bend"] = f.energy.bend;
+  out["twist"] = f.energy.twist;
+  out["vdw"] = f.energy.vdw;
+  out["force"] = copy_of(f.force);
+  out["torque"] = copy_of(f.torque);
+  out["net_force"] = std::vector<double>{net.force.x(), net.force.y(), net.force.z()};
+  out["net_torque"] = std::vector<double>{net.torque.x(), net.torque.y(), net.torque.z()};
+  return out;
+}
+
+py::dict evaluated(SingleState state) {
+  EvaluatedState found;
+  {
+    const py::gil_scoped_release release;
+    found = evaluate(state);
+  }
+  return as_dict(found.built.state, found.forces);
+}
+
+SingleState options(const std::vector<std::string>& parameters, const std::vector<int>& tube_types,
+                    const std::string& law, const std::string& bond, bool legacy_torque, double exclude_along_tube,
+                    bool reference) {
+  SingleState s;
+  s.parameters = parameters;
+  s.tube_types = tube_types;
+  s.law = law;
+  s.bond = bond;
+  s.legacy_torque = legacy_torque;
+  s.exclude_along_tube = exclude_along_tube;
+  s.reference = reference;
+  return s;
+}
+
+// The state at rest, with the bonds and contacts of a scene and without its loads.
+py::dict energy_in_scene(const SceneHandle& handle, const py::array_t<double>& position,
+                         const py::array_t<double>& orientation, bool reference) {
+  const std::shared_ptr<const Model> model = handle.model();
+  const Topology& topology = model->prepared.topology;
+  const GivenState given(topology.tube_begin, position, orientation);
+  Interaction interaction = model->prepared.interaction;
+  interaction.precision = Interaction::Precision::full;
+  Forces forces;
+  {
+    const py::gil_scoped_release release;
+    forces = forces_of(topology, interaction, given.state(), reference);
+  }
+  return as_dict(given.state(), forces);
+}
+
+}  // namespace
+
+void bind_energy(py::module_& m) {
+  py::class_<SingleState>(m, "StateOptions")
+      .def(py::init(&options), py::arg("parameters"), py::arg("tube_types"), py::arg("law"), py::arg("bond"),
+           py::arg("legacy_torque"), py::arg("exclude_along_tube"), py::arg("reference"));
+  m.def("energy_of_file", [](const std::string& path, SingleState s) {
+    s.source = std::make_shared<StateSource>(path);
+    return evaluated(std::move(s));
+  });
+  m.def("energy_of_state", [](const std::vector<int>& tube_begin, const py::array_t<double>& position,
+                              const py::array_t<double>& orientation, double element_length, SingleState s) {
+    s.source = std::make_shared<GivenState>(tube_begin, position, orientation);
+    s.element_length = element_length;
+    return evaluated(std::move(s));
+  });
+  m.def("energy_in_scene", energy_in_scene);
+}
+
+}  // namespace ropewalk::python

@@ -1,0 +1,33 @@
+// InputError and NumericalError become the exceptions of ropewalk/errors.py, with the same line of text.
+#include "model/error.hpp"
+#include "python/module.hpp"
+
+namespace ropewalk::python {
+namespace {
+
+// Of ropewalk.errors; never given back, since the interpreter may end after this module.
+PyObject* input_error = nullptr;
+PyObject* numerical_error = nullptr;
+
+void raise(PyObject* type, const py::tuple& arguments) { PyErr_SetObject(type, arguments.ptr()); }
+
+void translate(std::exception_ptr thrown) {
+  try {
+    std::rethrow_exception(thrown);
+  } catch (const InputError& e) {
+    raise(input_error, py::make_tuple(e.what(), e.place().file, e.place().line, e.place().key));
+  } catch (const NumericalError& e) {
+    raise(numerical_error, py::make_tuple(e.what(), e.step(), e.element()));
+  }
+}
+
+}  // namespace
+
+void bind_errors(py::module_&) {
+  const py::module_ errors = py::module_::import("ropewalk.errors");
+  input_error = py::object(errors.attr("InputError")).release().ptr();
+  numerical_error = py::object(errors.attr("NumericalError")).release().ptr();
+  py::register_exception_translator(translate);
+}
+
+}  // namespace ropewalk::python

@@ -1,0 +1,60 @@
+"""Ropes of carbon nanotubes: scenes, simulations and runs of Ropewalk, with arrays of numpy.
+
+    import ropewalk
+    run = ropewalk.run({"parameters": "cnt-10-10-tersoff", "rope": {"tubes": 7, "length_nm": 14},
+                        "twist": {"moment_nN_nm": 5, "rate_nN_nm_per_ps": 5}, "run": {"duration_ps": 2}}, "runs/first")
+    run.log["beta_deg"], run.frames[-1].position
+
+Lengths are in nm, times in ps, energies in eV, angles in rad; names of scene keys and observables end in their units.
+docs/how-to/python.md is the page to read first.
+"""
+from __future__ import annotations
+
+import os as _os
+
+
+def _load_core() -> None:
+    """Imports the module of the libraries. OpenMP reads its settings when it is loaded: threads that wait spin for some
+    ten microseconds, as those of the program do, and then sleep."""
+    chosen = "OMP_WAIT_POLICY" in _os.environ or "GOMP_SPINCOUNT" in _os.environ
+    if not chosen:
+        _os.environ["GOMP_SPINCOUNT"] = "2000"
+    try:
+        from . import _core
+    finally:
+        if not chosen:
+            del _os.environ["GOMP_SPINCOUNT"]
+    # Threads of OpenMP do not outlive a fork, and who waits for them waits for ever.
+    _os.register_at_fork(after_in_child=lambda: _core.set_threads(1))
+    # The shipped data: in a wheel inside of the package, else in the tree that the package is installed in.
+    here = _os.path.dirname(_os.path.abspath(__file__))
+    for folder in (here, *(_os.path.normpath(_os.path.join(here, *[".."] * up)) for up in range(1, 5))):
+        data = _os.path.join(folder, "share", "ropewalk")
+        if _os.path.isdir(_os.path.join(data, "parameters")):
+            _core.set_data_directory(data)
+            return
+
+
+_load_core()
+
+from ._core import version as __version__  # noqa: E402
+from .energy import StateEnergy, energy  # noqa: E402
+from .errors import Error, InputError, NumericalError, ProgramError  # noqa: E402
+from .frames import Frame, Frames  # noqa: E402
+from .log import Log  # noqa: E402
+from .observables import Observable, observables  # noqa: E402
+from .parameters import ParameterSet, Quantity, parameter_sets  # noqa: E402
+from .programs import calibrate, gather, resume, run, sweep, validate  # noqa: E402
+from .results import Campaign, Check, ValidationCase  # noqa: E402
+from .runs import Limit, Run, open  # noqa: E402
+from .scene import Scene  # noqa: E402
+from .simulation import Energies, Relaxed, Simulation  # noqa: E402
+from .state import Elements, State, write_state  # noqa: E402
+from .threads import set_threads, threads  # noqa: E402
+
+__all__ = [
+    "Campaign", "Check", "Elements", "Energies", "Error", "Frame", "Frames", "InputError", "Limit", "Log",
+    "NumericalError", "Observable", "ParameterSet", "ProgramError", "Quantity", "Relaxed", "Run", "Scene", "Simulation",
+    "State", "StateEnergy", "ValidationCase", "calibrate", "energy", "gather", "observables", "open", "parameter_sets",
+    "resume", "run", "set_threads", "sweep", "threads", "validate", "write_state",
+]

@@ -1,0 +1,123 @@
+"""Runs: directories that `ropewalk run` left."""
+from __future__ import annotations
+
+import json
+import os
+from typing import Any, TypedDict
+
+from . import _core
+from .errors import InputError
+from .frames import Frames
+from .log import Log
+from .scene import Scene
+from .simulation import Simulation
+
+
+class Limit(TypedDict):
+    """A limit that a run watched.
+
+    Keys:
+        key: as in the [limits] of a scene
+        unit: of `limit` and `largest`; "" for a pure number
+        limit: in `unit`; 0: not watched
+        largest: the largest value, in `unit`
+        largest_at_ps: its time, ps
+        tube, element: where, from 0; -1: nowhere (no unit)
+        passed: whether the limit was passed
+        passed_at_ps: when it was first, ps
+        passed_at_step: the same as a time step (no unit)
+    """
+
+    key: str
+    unit: str
+    limit: float
+    largest: float
+    largest_at_ps: float
+    tube: int
+    element: int
+    passed: bool
+    passed_at_ps: float
+    passed_at_step: int
+
+
+class Run:
+    """The directory of a run. Files are read when they are asked for, so that a run at work can be looked at."""
+
+    def __init__(self, directory: str | os.PathLike[str]) -> None:
+        """Reads the scene of the run.
+
+        Arguments:
+            directory: that `ropewalk run --out` made (no unit)
+        """
+        self._path = os.fspath(directory)
+        self._scene = Scene._of_run(self._path)
+
+    def __repr__(self) -> str:
+        """Directory and status (no unit)."""
+        return f"<Run {self.path}: {self.status}>"
+
+    def _file(self, name: str) -> str:
+        return os.path.join(self._path, name)
+
+    @property
+    def path(self) -> str:
+        """The directory (no unit)."""
+        return self._path
+
+    @property
+    def scene(self) -> Scene:
+        """The scene as the run had it; units stand in the names of its keys."""
+        return self._scene
+
+    @property
+    def log(self) -> Log:
+        """log.csv as it is now: columns (rows,), their units in log.units."""
+        return Log(self._file("log.csv"))
+
+    @property
+    def frames(self) -> Frames:
+        """The stored frames: positions in nm, energies in eV, times in ps."""
+        return Frames(_core.Frames(_core.frames_file(self._path), self._scene._core), self._scene._core)
+
+    @property
+    def manifest(self) -> dict[str, Any]:
+        """Program, inputs and how the run ended: the keys of manifest.json, with units in their names."""
+        found: dict[str, Any] = json.loads(_core.manifest_json(self._file("manifest.json")))
+        return found
+
+    @property
+    def status(self) -> str:
+        """running, finished, interrupted, stopped, refined, failed or not relaxed (no unit)."""
+        return str(self.manifest["status"])
+
+    @property
+    def limits(self) -> list[Limit]:
+        """The limits that the run watched, each in its unit."""
+        found: list[Limit] = json.loads(_core.limits_json(self._file("limits.json")))["limits"]
+        return found
+
+    @property
+    def refinements(self) -> list[dict[str, Any]]:
+        """Splittings of the elements, with units in the names of the keys; empty where there were none."""
+        found: list[dict[str, Any]] = json.loads(_core.limits_json(self._file("limits.json")))["refinements"]
+        return found
+
+    def simulation(self) -> Simulation:
+        """A simulation in memory that goes on from the last checkpoint of the run (units as of Simulation).
+
+        The files of the run stay as they are.
+        """
+        out = Simulation(self._scene)
+        out._core.restore_run(self._path)
+        return out
+
+
+def open(directory: str | os.PathLike[str]) -> Run:
+    """Opens a run: its log, frames, scene, manifest and limits, in nm, ps, eV and nN nm as their names say.
+
+    Arguments:
+        directory: that `ropewalk run --out` made (no unit)
+    """
+    if not os.path.isdir(directory):
+        raise InputError(f"{os.fspath(directory)}: is no directory; name the directory of a run", os.fspath(directory))
+    return Run(directory)

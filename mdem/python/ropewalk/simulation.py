@@ -1,0 +1,292 @@
+"""Simulations that Python steps."""
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any, Optional, Union, overload
+
+from . import _core
+from .errors import Error
+from .files import write_whole
+from .observables import index_of, observables
+from .scene import Scene, as_scene
+from .state import Elements, Floats, State
+
+
+@dataclass(frozen=True)
+class Energies:
+    """Energies of a state, eV.
+
+    Attributes:
+        stretch, shear, bend, twist: of the bonds, eV
+        vdw: of the contacts between tubes, eV
+        kinetic: of translation and rotation, eV
+    """
+
+    stretch: float
+    shear: float
+    bend: float
+    twist: float
+    vdw: float
+    kinetic: float = 0.0
+
+    @property
+    def bonds(self) -> float:
+        """Of all bonds, eV."""
+        return self.stretch + self.shear + self.bend + self.twist
+
+    @property
+    def potential(self) -> float:
+        """Of bonds and contacts, eV."""
+        return self.bonds + self.vdw
+
+    @property
+    def total(self) -> float:
+        """Potential and kinetic, eV."""
+        return self.potential + self.kinetic
+
+
+@dataclass(frozen=True)
+class Relaxed:
+    """How a relaxation ended.
+
+    Attributes:
+        at_rest: whether the goal was reached
+        force_eV_per_nm: the largest force left, torques over the tube's radius included, eV/nm
+        above_eV: energy above the minimum by estimate, eV; inf: no minimum is near; nan: not known
+        error: relative error of the energy of the bonds by estimate (no unit)
+    """
+
+    at_rest: bool
+    force_eV_per_nm: float
+    above_eV: float
+    error: float
+
+
+class Simulation:
+    """A scene in motion, step by step. Forces, loads, damping and thermostat are those of `ropewalk run`.
+
+    The motion is the same, bit for bit, on any number of threads, and however the steps are divided into calls. The
+    program also halves its step where the account of energy does not close, watches limits and ends by [[stop]]; here you
+    see all of it by measure("balance_eV"), measure("kinked") and so on, and set `divided` yourself.
+
+    Another Python thread may run while this one steps. The simulation itself belongs to one thread at a time.
+    """
+
+    def __init__(self, scene: Scene | Mapping[str, Any] | str | os.PathLike[str]) -> None:
+        """The state of the scene at time zero.
+
+        Arguments:
+            scene: a scene, a dict of its keys (units stand in their names), or a file
+        """
+        self._scene = as_scene(scene)
+        self._core = _core.Simulation(self._scene._core)
+        self._observers: list[tuple[Callable[[Simulation], object], int]] = []
+        self._observing = False
+
+    def __repr__(self) -> str:
+        """Scene, step and time, ps."""
+        return f"<Simulation of {self._scene.name}: step {self.step_number}, {self.time_ps:g} ps>"
+
+    @property
+    def scene(self) -> Scene:
+        """The scene; units stand in the names of its keys."""
+        return self._scene
+
+    @property
+    def step_number(self) -> int:
+        """Steps since the start (no unit)."""
+        return self._core.step
+
+    @property
+    def time_ps(self) -> float:
+        """Time, ps."""
+        return self._core.time
+
+    @property
+    def time_step_fs(self) -> float:
+        """By how much a step takes time forward, fs."""
+        return 1000 * self._core.time_step
+
+    @property
+    def divided(self) -> int:
+        """Into how many shorter steps a step is divided, 1 at first; steps are counted as before (no unit)."""
+        return self._core.divided
+
+    @divided.setter
+    def divided(self, parts: int) -> None:
+        self._core.divided = parts
+
+    # --- motion ---
+
+    def step(self, n: int = 1, *, energies: bool = True) -> None:
+        """Steps on. Ctrl-C ends it between two steps; the simulation can then go on.
+
+        Arguments:
+            n: so many steps (no unit)
+            energies: whether the last step computes the energies, a tenth of a step; without, they are computed when
+                they are asked for, which takes a whole evaluation of the forces
+        """
+        if not self._observers:
+            self._core.steps(n, energies)
+            return
+        if self._observing:
+            raise Error("an observer cannot step the simulation that calls it")
+        end = self.step_number + n
+        while self.step_number < end:
+            at = self.step_number
+            stop = min([end, *(at - at % every + every for _, every in self._observers)])
+            self._core.steps(stop - at, energies or stop < end)
+            self._call_observers()
+
+    def step_until(self, time_ps: float) -> None:
+        """Steps on to a time, in whole steps.
+
+        Arguments:
+            time_ps: ps
+        """
+        left = time_ps - self.time_ps
+        if left < -1e-9:
+            raise ValueError(f"{time_ps} ps lie before {self.time_ps} ps")
+        self.step(round(left / self._core.time_step))
+
+    def relax(
+        self, force_eV_per_nm: Optional[float] = None, energy: Optional[float] = None, *, max_steps: Optional[int] = None
+    ) -> Relaxed:
+        """Goes to a nearby minimum of the energy (FIRE), under the loads of now; velocities are zero afterwards.
+
+        What is None is that of the [run] of the scene.
+
+        Arguments:
+            force_eV_per_nm: largest force at the end, torques over the tube's radius included, eV/nm
+            energy: relative error of the energy of the bonds at the end, by estimate (no unit)
+            max_steps: at most so many steps (no unit)
+        """
+        of_scene = self._scene._core.goal
+        return Relaxed(*self._core.relax(
+            of_scene[0] if force_eV_per_nm is None else force_eV_per_nm,
+            of_scene[1] if energy is None else energy,
+            of_scene[2] if max_steps is None else max_steps,
+        ))
+
+    # --- observers ---
+
+    def add_observer(self, observer: Callable[[Simulation], object], every: int) -> None:
+        """Calls a function after every so many steps: those whose number is a multiple of `every`.
+
+        Arguments:
+            observer: gets this simulation; what it returns is not used, what it raises ends step()
+            every: steps (no unit)
+        """
+        if every < 1:
+            raise ValueError("`every` is 1 or more")
+        self._observers.append((observer, every))
+
+    def remove_observer(self, observer: Callable[[Simulation], object]) -> None:
+        """Takes an observer away.
+
+        Arguments:
+            observer: the function that was given to add_observer (no unit)
+        """
+        self._observers = [(f, every) for f, every in self._observers if f is not observer]
+
+    def _call_observers(self) -> None:
+        self._observing = True
+        try:
+            for observer, every in list(self._observers):
+                if self.step_number % every == 0:
+                    observer(self)
+        finally:
+            self._observing = False
+
+    # --- what it is like now ---
+
+    @property
+    def state(self) -> State:
+        """The state, as views: no copies, read-only, and always of the present step. Positions are in nm.
+
+        position (tubes, elements, 3) in nm, orientation (tubes, elements, 4), velocity in nm/ps and angular_velocity in
+        rad/ps, or all of them under `flat`. Take a .copy() to keep one. A view keeps the simulation in memory.
+        """
+        c = self._core
+        flat = Elements(c.position, c.orientation, c.velocity, c.angular_velocity)
+        return State(flat, self._scene._core.tube_begin, self._scene.element_length_nm)
+
+    @property
+    def force(self) -> Floats:
+        """Forces on all elements, loads included, a view (elements, 3), eV/nm."""
+        return self._core.force
+
+    @property
+    def torque(self) -> Floats:
+        """Torques on all elements about their centres, loads included, a view (elements, 3), eV."""
+        return self._core.torque
+
+    @property
+    def largest_force_eV_per_nm(self) -> float:
+        """Largest force, torques over the tube's radius included, constrained components left out, eV/nm."""
+        return self._core.largest_force
+
+    @property
+    def energies(self) -> Energies:
+        """Energies by kind, eV."""
+        return Energies(*self._core.energies, self._core.kinetic)
+
+    @overload
+    def measure(self, name: str) -> float: ...
+
+    @overload
+    def measure(self, name: None = None) -> dict[str, float]: ...
+
+    def measure(self, name: Optional[str] = None) -> Union[float, dict[str, float]]:
+        """Observables: one by its name, in the unit that the name ends in, or all as a dict.
+
+        They are those of log.csv. Forces and torques at the ends are means since the step that was measured before. All are
+        computed at the first call after a step, which takes about as long as a step.
+
+        Arguments:
+            name: of an observable, see observables(); None: all
+        """
+        index = None if name is None else index_of(name)
+        values = self._core.measure()
+        return dict(zip((o.name for o in observables()), values)) if index is None else values[index]
+
+    # --- files ---
+
+    def checkpoint(self) -> bytes:
+        """Everything that the future depends on, for restore() (no unit)."""
+        return self._core.checkpoint()
+
+    def restore(self, checkpoint: bytes) -> None:
+        """Goes back to a checkpoint of a simulation of the same scene: from there on all is the same, bit for bit.
+
+        Arguments:
+            checkpoint: what checkpoint() returned (no unit)
+        """
+        self._core.restore(checkpoint)
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Writes the checkpoint to a file, whole or not at all.
+
+        Arguments:
+            path: the file (no unit)
+        """
+        write_whole(path, self.checkpoint())
+
+    def load(self, path: str | os.PathLike[str]) -> None:
+        """Goes back to a checkpoint that save() wrote.
+
+        Arguments:
+            path: the file (no unit)
+        """
+        with open(path, "rb") as file:
+            self.restore(file.read())
+
+    def write_state(self, path: str | os.PathLike[str]) -> None:
+        """Writes the state as final.csv of a run: nm, nm/ps, rad/ps. Scenes start from it by {"state": {"file": path}}.
+
+        Arguments:
+            path: the file (no unit)
+        """
+        write_whole(path, self._core.state_csv().encode())

@@ -1,0 +1,37 @@
+// log.csv as columns; manifest and limits as checked JSON; parameter sets.
+#include "io/data_files.hpp"
+#include "io/grade.hpp"
+#include "io/limits_file.hpp"
+#include "io/log.hpp"
+#include "io/manifest.hpp"
+#include "io/parameters_toml.hpp"
+#include "python/arrays.hpp"
+#include "run/run_directory.hpp"
+
+namespace ropewalk::python {
+
+void bind_run_files(py::module_& m) {
+  // (rows, columns), with the columns of observables().
+  m.def("read_log", [](const std::string& path) {
+    const std::vector<LogRow> rows = read_log(path);
+    const auto columns = static_cast<py::ssize_t>(observables().size());
+    py::array_t<double> out({static_cast<py::ssize_t>(rows.size()), columns});
+    auto values = out.mutable_unchecked<2>();
+    for (py::ssize_t r = 0; r < values.shape(0); ++r)
+      for (py::ssize_t c = 0; c < columns; ++c)
+        values(r, c) = rows[static_cast<std::size_t>(r)].values()[static_cast<std::size_t>(c)];
+    return out;
+  });
+  // Of a run: GSD or the text dump, whichever is there.
+  m.def("frames_file", [](const std::string& directory) { return RunDirectory{directory}.frames(); });
+  m.def("manifest_json", [](const std::string& path) { return manifest_json(read_manifest(path)); });
+  // A file, or the name of a shipped set: its path, name and grade.
+  m.def("parameter_set", [](const std::string& name) {
+    const std::string path = find_parameters(name, "", {"", 0, "parameters"});
+    const ParameterSet set = read_parameters(path);
+    return py::make_tuple(path, set.name, grade_of(set).words());
+  });
+  m.def("limits_json", [](const std::string& path) { return limits_json(read_limits(path)); });
+}
+
+}  // namespace ropewalk::python

@@ -1,0 +1,211 @@
+#include "python/simulation.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "io/files.hpp"
+#include "model/error.hpp"
+#include "python/arrays.hpp"
+#include "run/run_checkpoint.hpp"
+#include "scene/single_state.hpp"
+#include "scene/state_csv.hpp"
+
+namespace ropewalk::python {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+double seconds_since(Clock::time_point then) { return std::chrono::duration<double>(Clock::now() - then).count(); }
+
+constexpr std::size_t digits = 16;  // of the sum behind a checkpoint
+
+// Throws what Ctrl-C or another signal handler raises.
+void look_for_signals() {
+  const py::gil_scoped_acquire acquire;
+  if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+}
+
+}  // namespace
+
+SteppedScene::SteppedScene(std::shared_ptr<const Model> model)
+    : model_(std::move(model)), simulation_(start(model_->scene, model_->prepared)) {
+  first_ = simulation_.forces().energy;
+  energies_ = first_;
+  first_energy_ = simulation_.total_energy();
+}
+
+SteppedScene::Turn::Turn(SteppedScene& of) : of(of) {
+  if (of.stepping_.exchange(true)) throw std::runtime_error("the simulation is at work in another thread");
+}
+
+const Simulation& SteppedScene::simulation() const {
+  if (stepping_) throw std::runtime_error("the simulation is at work in another thread");
+  return simulation_;
+}
+
+void SteppedScene::forget() {
+  energies_.reset();
+  measured_.reset();
+}
+
+void SteppedScene::divide_steps(int parts) {
+  simulation();
+  if (parts < 1 || parts > 1024) throw std::invalid_argument("a step is divided into 1 to 1024 parts");
+  simulation_.divide_steps(parts);
+  measured_.reset();
+  seconds_of_a_step_ = patience;
+}
+
+void SteppedScene::steps(long count, bool energies) {
+  if (count < 0) throw std::invalid_argument("the number of steps is negative");
+  if (count == 0) return;
+  const Turn turn(*this);
+  forget();
+  if (static_cast<double>(count) * seconds_of_a_step_ < brief)
+    simulation_.steps(count, energies);
+  else
+    steps_with_breaks(count, energies);
+  if (energies) energies_ = simulation_.forces().energy;
+}
+
+void SteppedScene::steps_with_breaks(long count, bool energies) {
+  const py::gil_scoped_release release;
+  for (long done = 0; done < count;) {
+    if (done > 0) look_for_signals();
+    const long part = std::min(count - done, std::max(1L, static_cast<long>(patience / seconds_of_a_step_)));
+    const Clock::time_point began = Clock::now();
+    simulation_.steps(part, energies && done + part == count);
+    seconds_of_a_step_ = std::max(seconds_since(began) / static_cast<double>(part), 1e-9);
+    done += part;
+  }
+}
+
+Relaxed SteppedScene::relax(const RelaxGoal& goal, long max_steps) {
+  const Turn turn(*this);
+  const py::gil_scoped_release release;
+  forget();
+  Clock::time_point looked = Clock::now();
+  std::optional<py::error_already_set> raised;
+  const Relaxed end = simulation_.relax(goal, max_steps, [&](long) {
+    if (seconds_since(looked) < patience) return true;
+    looked = Clock::now();
+    const py::gil_scoped_acquire acquire;
+    if (PyErr_CheckSignals() == 0) return true;
+    raised.emplace();
+    return false;
+  });
+  energies_ = simulation_.forces().energy;
+  if (raised) throw std::move(*raised);
+  return end;
+}
+
+Energies SteppedScene::energies() {
+  const Simulation& s = simulation();
+  if (energies_) return *energies_;
+  Forces forces(s.state().size());
+  ForceEngine engine;
+  engine.compute(s.topology(), s.interaction(), s.list(), s.state(), forces);
+  energies_ = forces.energy;
+  return *energies_;
+}
+
+const std::vector<double>& SteppedScene::measure() {
+  const Simulation& s = simulation();
+  if (measured_) return *measured_;
+  EnergyAccount account;
+  account.time_step = s.time_step() / s.divided();
+  if (model_->scene.twist) account.moment = model_->scene.twist->moment_at(s.state().time);
+  account.potential = energies();
+  account.kinetic = kinetic_energy(s.topology(), s.state());
+  account.work = s.work();
+  account.dissipated = s.dissipated();
+  account.heat = s.heat();
+  account.first_energy = first_energy_;
+  account.first = first_;
+  account.ends = simulation_.read_gauges();
+  measured_ = model_->measure(s.state(), account);
+  return *measured_;
+}
+
+std::string SteppedScene::checkpoint() const {
+  const std::string bytes = simulation().serialise();
+  return bytes + hash_hex(bytes);
+}
+
+void SteppedScene::restore(const std::string& bytes) {
+  simulation();
+  const std::size_t size = bytes.size() < digits ? 0 : bytes.size() - digits;
+  if (size == 0 || hash_hex(std::string_view(bytes).substr(0, size)) != std::string_view(bytes).substr(size))
+    throw InputError({"", 0, "checkpoint"}, "is damaged, or none", "give what Simulation.checkpoint() returned");
+  const std::string now = simulation_.serialise();
+  try {
+    simulation_.restore(bytes.substr(0, size));
+  } catch (const std::runtime_error& e) {
+    simulation_.restore(now);
+    throw InputError({"", 0, "checkpoint"}, e.what(),
+                     "restore it into a simulation of the scene that it came from");
+  }
+  forget();
+}
+
+void SteppedScene::restore_run(const std::string& dir) {
+  simulation();
+  const RunCheckpoint c = read_checkpoint({dir});
+  try {
+    simulation_.restore(c.simulation);
+  } catch (const std::runtime_error& e) {
+    throw InputError({RunDirectory{dir}.checkpoint(), 0, ""}, e.what(), "start the run anew with `ropewalk run`");
+  }
+  first_energy_ = c.first_energy;
+  forget();
+}
+
+namespace {
+
+using Class = py::class_<SteppedScene, std::shared_ptr<SteppedScene>>;
+
+py::tuple tuple_of(const Energies& e) { return py::make_tuple(e.stretch, e.shear, e.bend, e.twist, e.vdw); }
+
+// `of`: the simulation's array. The view keeps the Python object alive, and with it the memory, which never moves.
+template <class Of>
+void def_view(Class& c, const char* name, Of of) {
+  c.def_property_readonly(name, [of](const py::object& self) {
+    return view_of(of(self.cast<const SteppedScene&>().simulation()), self);
+  });
+}
+
+}  // namespace
+
+void bind_simulation(py::module_& m) {
+  Class c(m, "Simulation");
+  c.def(py::init([](const SceneHandle& scene) { return std::make_shared<SteppedScene>(scene.model()); }));
+  c.def("steps", &SteppedScene::steps, py::arg("count"), py::arg("energies"));
+  c.def("relax", [](SteppedScene& s, double force, double energy, long max_steps) {
+    const Relaxed end = s.relax({force, energy}, max_steps);
+    return py::make_tuple(end.at_rest, end.force, end.above, end.error);
+  });
+  def_view(c, "position", [](const Simulation& s) -> const Vec3Array& { return s.state().position; });
+  def_view(c, "orientation", [](const Simulation& s) -> const QuaternionArray& { return s.state().orientation; });
+  def_view(c, "velocity", [](const Simulation& s) -> const Vec3Array& { return s.state().velocity; });
+  def_view(c, "angular_velocity",
+           [](const Simulation& s) -> const Vec3Array& { return s.state().angular_velocity; });
+  def_view(c, "force", [](const Simulation& s) -> const Vec3Array& { return s.forces().force; });
+  def_view(c, "torque", [](const Simulation& s) -> const Vec3Array& { return s.forces().torque; });
+  c.def_property_readonly("time", [](const SteppedScene& s) { return s.simulation().state().time; });
+  c.def_property_readonly("step", [](const SteppedScene& s) { return s.simulation().state().step; });
+  c.def_property_readonly("time_step", [](const SteppedScene& s) { return s.simulation().time_step(); });
+  c.def_property(
+      "divided", [](const SteppedScene& s) { return s.simulation().divided(); }, &SteppedScene::divide_steps);
+  c.def_property_readonly("largest_force", [](const SteppedScene& s) { return s.simulation().largest_force(); });
+  c.def_property_readonly("energies", [](SteppedScene& s) { return tuple_of(s.energies()); });
+  c.def_property_readonly("kinetic", [](const SteppedScene& s) {
+    return kinetic_energy(s.simulation().topology(), s.simulation().state());
+  });
+  c.def("measure", &SteppedScene::measure);
+  c.def("checkpoint", [](const SteppedScene& s) { return py::bytes(s.checkpoint()); });
+  c.def("restore", [](SteppedScene& s, const py::bytes& bytes) { s.restore(bytes); });
+  c.def("restore_run", &SteppedScene::restore_run);
+  c.def("state_csv",
+        [](const SteppedScene& s) { return state_csv(s.simulation().topology(), s.simulation().state()); });
+}
+
+}  // namespace ropewalk::python

@@ -1,0 +1,63 @@
+// A simulation that Python steps, and the account of energy that a run keeps beside it.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "python/scene.hpp"
+
+namespace ropewalk::python {
+
+class SteppedScene {
+ public:
+  explicit SteppedScene(std::shared_ptr<const Model> model);
+
+  // Where it takes longer than `brief`, other threads of Python run meanwhile, and Ctrl-C is looked for every
+  // `patience`.
+  void steps(long count, bool energies);
+  Relaxed relax(const RelaxGoal& goal, long max_steps);
+
+  // Throws std::runtime_error while another thread steps it, as all that follow.
+  const Simulation& simulation() const;
+  const Model& model() const { return *model_; }
+  void divide_steps(int parts);
+
+  // Where the last step left them out, they are computed here.
+  Energies energies();
+  // All observables. Torques and forces at the ends are means since the last moment that was measured.
+  const std::vector<double>& measure();
+
+  // With a sum over the bytes behind.
+  std::string checkpoint() const;
+  void restore(const std::string& bytes);
+  void restore_run(const std::string& dir);
+
+ private:
+  static constexpr double brief = 1e-3, patience = 0.1;  // s
+
+  // While it lasts, the simulation belongs to this thread.
+  struct Turn {
+    explicit Turn(SteppedScene& of);
+    ~Turn() { of.stepping_ = false; }
+    SteppedScene& of;
+  };
+
+  void forget();
+  void steps_with_breaks(long count, bool energies);
+
+  std::shared_ptr<const Model> model_;
+  Simulation simulation_;
+  std::atomic<bool> stepping_ = false;
+  double seconds_of_a_step_ = patience;
+  // Of the present state, where they are known.
+  std::optional<Energies> energies_;
+  std::optional<std::vector<double>> measured_;
+  Energies first_;           // potential at the start
+  double first_energy_ = 0;  // eV, total at the start
+};
+
+}  // namespace ropewalk::python

@@ -1,0 +1,90 @@
+#include "scene/single_state.hpp"
+
+#include <fmt/format.h>
+
+#include "io/data_files.hpp"
+#include "io/parameters_toml.hpp"
+#include "model/error.hpp"
+#include "scene/laws/contact_law_kind.hpp"
+#include "scene/scene_to_model.hpp"
+
+namespace ropewalk {
+namespace {
+
+// Empty: the default of a scene.
+std::string law_named(const std::string& name, const std::vector<ParameterSet>& sets) {
+  const std::string law = !name.empty() ? name : default_contact_law(sets);
+  if (law == "none") return law;
+  const ContactLawKind* kind = contact_law_kind(law);
+  if (!kind) {
+    std::string names;
+    for (const ContactLawKind& k : contact_law_kinds()) names += (names.empty() ? "" : ", ") + k.name;
+    throw InputError({"", 0, "--law"}, fmt::format("there is no contact law '{}'", law),
+                     fmt::format("choose {} or none", names));
+  }
+  for (const ParameterSet& set : sets)
+    if (kind->in_set && !kind->in_set(set))
+      throw InputError({set.path, 0, "contact." + law}, fmt::format("the set has no `{}` law", law),
+                       "use --law none");
+  return law;
+}
+
+bool anharmonic_bond(const std::string& name, const std::vector<ParameterSet>& sets) {
+  if (!name.empty() && name != "harmonic" && name != "anharmonic")
+    throw InputError({"", 0, "--bond"}, fmt::format("there is no bond '{}'", name),
+                     "choose harmonic or anharmonic");
+  for (const ParameterSet& set : sets) {
+    if (set.anharmonic) continue;
+    if (name == "anharmonic")
+      throw InputError({set.path, 0, "bond.anharmonic"}, "is missing, which --bond anharmonic needs",
+                       "use --bond harmonic");
+    return false;
+  }
+  return name != "harmonic";
+}
+
+void check_types(const SingleState& s) {
+  const int sets = static_cast<int>(s.parameters.size());
+  if (sets > 1 && s.tube_types.empty())
+    throw InputError({"", 0, "--tube-types"}, fmt::format("is missing, and there are {} sets", sets),
+                     "say for each tube which of them it is, as in 0,1,1");
+  for (const int type : s.tube_types)
+    if (type < 0 || type >= sets)
+      throw InputError({"", 0, "--tube-types"}, fmt::format("names type {} of {}", type, sets),
+                       fmt::format("types run from 0 to {}", sets - 1));
+}
+
+}  // namespace
+
+Forces forces_of(const Topology& topology, const Interaction& interaction, const State& state, bool reference) {
+  Forces forces(state.size());
+  if (reference) {
+    compute_reference(topology, interaction, state, forces);
+    return forces;
+  }
+  NeighbourList list(interaction, 0);
+  list.build(topology, state);
+  ForceEngine engine;
+  engine.compute(topology, interaction, list, state, forces);
+  return forces;
+}
+
+EvaluatedState evaluate(const SingleState& s) {
+  Scene scene;
+  scene.source = s.source;
+  scene.path = s.source->file();
+  for (const std::string& name : s.parameters) scene.sets.push_back(read_parameters(find_parameters(name, "")));
+  scene.tube_types = s.tube_types;
+  check_types(s);
+  scene.bond.anharmonic = anharmonic_bond(s.bond, scene.sets);
+  scene.element_length = s.element_length > 0 ? s.element_length : scene.parameters().element_length;
+  scene.contact.law = law_named(s.law, scene.sets);
+  scene.contact.legacy_torque = s.legacy_torque;
+  scene.contact.exclude_along_tube = s.exclude_along_tube;
+  scene.contact.precision = Interaction::Precision::full;  // once, and compared with the reference
+  EvaluatedState out{build(scene), Forces()};
+  out.forces = forces_of(out.built.topology, interaction_of(scene), out.built.state, s.reference);
+  return out;
+}
+
+}  // namespace ropewalk

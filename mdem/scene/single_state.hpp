@@ -1,0 +1,35 @@
+// One state by itself, without a scene: what `ropewalk energy` evaluates.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "scene/build.hpp"
+#include "sim/forces/forces.hpp"
+
+namespace ropewalk {
+
+struct SingleState {
+  std::shared_ptr<const Source> source;
+  std::vector<std::string> parameters;  // one set, or one for each type of tube: files, or names of shipped ones
+  std::vector<int> tube_types;          // of each tube, from 0; empty: all of the first
+  double element_length = 0;            // nm; 0: that of the first set
+  std::string law;                      // empty: the line law where the set has it
+  std::string bond;                     // "harmonic" or "anharmonic"; empty: anharmonic where all sets have it
+  bool legacy_torque = false;
+  double exclude_along_tube = 0;  // nm; 0: as a scene has it
+  bool reference = false;         // by the plain path over all pairs
+};
+
+struct EvaluatedState {
+  BuiltScene built;
+  Forces forces;
+};
+// Throws InputError, which names the options of `ropewalk energy`.
+EvaluatedState evaluate(const SingleState& state);
+
+// Forces and energies, by the plain path over all pairs or by the fast one.
+Forces forces_of(const Topology& topology, const Interaction& interaction, const State& state, bool reference);
+
+}  // namespace ropewalk

@@ -1,0 +1,115 @@
+"""Programs as functions: run, resume, sweep, gather, validate, and how their ends are told."""
+from __future__ import annotations
+
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import time
+import unittest
+
+import numpy as np
+from support import ROPE, FolderTest
+
+import ropewalk
+
+
+class ProgramsTest(FolderTest):
+    def test_run_and_resume(self):
+        first = ropewalk.run(ROPE, "run", steps=20, threads=1)
+        self.assertEqual((first.log["step"][-1], first.scene.name), (20, "scene"))
+        self.assertIs(type(ropewalk.resume("run")), ropewalk.Run)
+        self.assertEqual(pathlib.Path("run/log.csv").read_text(),
+                         pathlib.Path(ropewalk.run(ROPE, "whole").path, "log.csv").read_text())
+
+    def test_a_directory_is_not_overwritten(self):
+        ropewalk.run(ROPE, "run", steps=1)
+        with self.assertRaisesRegex(ropewalk.InputError, "^run: --out: is not empty"):
+            ropewalk.run(ROPE, "run", steps=1)
+        self.assertEqual(ropewalk.run(ROPE, "run", steps=2, force=True).log["step"][-1], 2)
+
+    def test_errors_name_no_temporary_file(self):
+        # Found while the scene is read, prepared, and started.
+        slipping = np.zeros((1, 5, 4))
+        slipping[..., 0], slipping[..., 3] = np.cos(np.arange(5)), np.sin(np.arange(5))
+        ropewalk.write_state("slipping.csv", [[[0, 0, 1.378 * k] for k in range(5)]], slipping)
+        scene = {"parameters": "cnt-10-10-tersoff", "run": {"duration_ps": 1}}
+        for wrong, words in (({"rope": {"tubes": 8, "length_nm": 14}}, "scene: rope.tubes: is 8"),
+                             ({**ROPE, "run": {"duration_ps": 2, "time_step_fs": 900}}, "scene: run.time_step_fs: 900"),
+                             ({"state": {"file": "slipping.csv"}}, "scene: state: the bond after element 0")):
+            with self.assertRaises(ropewalk.InputError) as caught:
+                ropewalk.run({**scene, **wrong}, "run")
+            self.assertIn(words, str(caught.exception))
+            self.assertNotIn("/tmp", str(caught.exception))
+        self.assertFalse(os.path.exists("run"))
+
+    def test_notes_are_logged(self):
+        with self.assertLogs("ropewalk", "WARNING") as logged:
+            ropewalk.run({**ROPE, "limits": {"bend_deg": 0.01}}, "run")
+        self.assertTrue(any("limits.bend_deg" in line for line in logged.output), logged.output)
+
+    def test_a_run_that_ends_at_a_limit_is_returned(self):
+        with self.assertLogs("ropewalk"):
+            run = ropewalk.run({**ROPE, "limits": {"bend_deg": 0.01}}, "run", on_limit="stop")
+        self.assertEqual(run.status, "stopped")
+        self.assertTrue(any(limit["passed"] for limit in run.limits))
+
+    def test_sweep_and_gather(self):
+        campaign = ropewalk.sweep(ROPE, {"rope.tubes": [1, 7], "twist.moment_nN_nm": {"from": 4, "to": 5, "points": 2}},
+                                  "campaign")
+        self.assertEqual(list(campaign.table["rope.tubes"]), [1, 1, 7, 7])
+        self.assertEqual(list(campaign.table["twist.moment_nN_nm"]), [4, 5, 4, 5])
+        self.assertEqual(len(campaign.runs), 4)
+        for name, run in campaign.runs.items():
+            row = list(campaign.table["point"]).index(name)
+            self.assertEqual(run.log["twist_eV"][-1], campaign.table["twist_eV"][row])
+        series = ropewalk.gather(campaign, series=True, columns=["beta_deg"])
+        self.assertEqual(len(series["beta_deg"]), sum(run.log.rows for run in campaign.runs.values()))
+        before = os.stat("campaign/points/" + next(iter(campaign.runs)) + "/log.csv").st_mtime_ns
+        ropewalk.sweep(ROPE, {"rope.tubes": [1, 7], "twist.moment_nN_nm": {"from": 4, "to": 5, "points": 2}}, "campaign")
+        self.assertEqual(before, os.stat("campaign/points/" + next(iter(campaign.runs)) + "/log.csv").st_mtime_ns)
+        with self.assertRaisesRegex(ropewalk.InputError, "tubs"):
+            ropewalk.sweep(ROPE, {"rope.tubs": [1, 7]}, "other")
+
+    def test_validate(self):
+        case, = ropewalk.validate(["ring-energy"], parameters="cnt-5-5-tersoff", out="validation")
+        self.assertTrue(case.holds)
+        self.assertTrue(os.path.exists(case.report))
+        check = case.checks[0]
+        self.assertLessEqual(abs(check.value / check.reference - 1), check.tolerance)
+        with self.assertRaisesRegex(ropewalk.InputError, 'did you mean "ring-energy"'):
+            ropewalk.validate(["ring-enery"], out="validation")
+
+    def test_parameter_sets(self):
+        self.assertIn("cnt-10-10-tersoff", ropewalk.parameter_sets())
+        tube = ropewalk.ParameterSet("cnt-10-10-tersoff")
+        self.assertEqual((tube["bond.GJ"].unit, tube.grade), ("nN nm^2", "good"))
+        self.assertAlmostEqual(tube["bond.GJ"].value, 330.11, places=2)
+        self.assertGreater(tube["bond.GJ"].standard_error, 0)
+        with self.assertRaisesRegex(ropewalk.InputError, "no parameter set"):
+            ropewalk.ParameterSet("cnt-99-99")
+
+    def test_calibrate_says_what_is_wrong(self):
+        with self.assertRaises(ropewalk.InputError):
+            ropewalk.calibrate((0, 0), "never.toml")
+        self.assertFalse(os.path.exists("never.toml"))
+
+    def test_ctrl_c_leaves_a_run_to_resume(self):
+        code = f"import ropewalk; ropewalk.run({ {**ROPE, 'run': {'duration_ps': 1e6}} !r}, 'run')"
+        process = subprocess.Popen([sys.executable, "-c", code], stderr=subprocess.PIPE, text=True,
+                                   start_new_session=True)
+        while not os.path.exists("run/checkpoint.bin"):
+            self.assertIsNone(process.poll())
+            time.sleep(0.02)
+        os.killpg(process.pid, signal.SIGINT)  # as a terminal does
+        _, told = process.communicate(timeout=100)
+        self.assertIn("KeyboardInterrupt", told)
+        run = ropewalk.open("run")
+        self.assertEqual(run.status, "interrupted")
+        steps = run.manifest["steps"]
+        self.assertEqual(ropewalk.resume("run", steps=steps + 5).manifest["steps"], steps + 5)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,149 @@
+"""Directories of runs: log, frames, manifest, limits."""
+from __future__ import annotations
+
+import csv
+import json
+import pathlib
+import unittest
+
+import numpy as np
+from support import ROPE, FolderTest
+
+import ropewalk
+
+
+AS_TEXT = {**ROPE, "run": {**ROPE["run"], "frames_format": "lammpstrj"}}
+
+
+def frames_of(path: str) -> list[dict[str, np.ndarray]]:
+    """The columns of each frame, read here by hand."""
+    frames = []
+    with open(path, encoding="utf-8") as file:
+        for line in file:
+            if line.startswith("ITEM: TIMESTEP"):
+                step = int(next(file))
+            elif line.startswith("ITEM: NUMBER OF ATOMS"):
+                count = int(next(file))
+            elif line.startswith("ITEM: ATOMS"):
+                names = line.split()[2:]
+                values = np.array([next(file).split() for _ in range(count)], dtype=float)
+                frames.append({"step": step, **dict(zip(names, values.T))})
+    return frames
+
+
+class RunTest(FolderTest):
+    def setUp(self) -> None:
+        super().setUp()
+        self.run_ = ropewalk.run(AS_TEXT, "run")
+
+    def test_log_has_the_numbers_of_the_file(self):
+        log = self.run_.log
+        rows = list(csv.DictReader(pathlib.Path("run/log.csv").read_text().splitlines()))
+        self.assertEqual(log.rows, len(rows))
+        self.assertEqual(list(log), list(rows[0]))
+        for name in log:
+            np.testing.assert_array_equal(log[name], [float(row[name]) for row in rows], name)
+            self.assertEqual(log[name].shape, (len(rows),))
+        self.assertEqual(log["step"].dtype, np.int64)
+        self.assertEqual(log.units["torque_upper_nN_nm"], "nN nm")
+        self.assertEqual(log.units["Q"], "")
+        with self.assertRaisesRegex(ropewalk.InputError, 'did you mean "torque_upper_nN_nm"'):
+            log["torque_uper_nN_nm"]
+        self.assertNotIn("torque_uper_nN_nm", log)
+
+    def test_log_as_npz(self):
+        self.run_.log.to_npz("log.npz")
+        stored = np.load("log.npz")
+        self.assertEqual(list(stored["names"]), list(self.run_.log))
+        self.assertEqual(dict(zip(stored["names"], stored["units"])), self.run_.log.units)
+        for name in stored["names"]:
+            np.testing.assert_array_equal(stored[name], self.run_.log[name])
+        with self.assertRaises(OSError):
+            self.run_.log.to_npz("absent/log.npz")
+
+    def test_frames_have_the_numbers_of_the_file(self):
+        own, frames = frames_of("run/frames.lammpstrj"), self.run_.frames
+        self.assertEqual(len(frames), len(own))
+        for frame, wanted in zip(frames, own):
+            self.assertEqual(frame.step, wanted["step"])
+            self.assertEqual(frame.time_ps, wanted["c_time_ps"][0])
+            self.assertEqual(frame.position.shape, (7, 10, 3))
+            np.testing.assert_array_equal(frame.flat.position.T, [wanted[c] for c in "xyz"])
+            quaternion = [wanted[f"c_orient[{k}]"] for k in (4, 1, 2, 3)]
+            np.testing.assert_allclose(frame.flat.orientation.T, quaternion, atol=1e-7)
+            np.testing.assert_array_equal(frame.tube + 1, wanted["mol"])
+            for name in ("bond_energy", "vdw_energy"):
+                np.testing.assert_array_equal(getattr(frame, name).ravel(), wanted[f"c_{name}_eV"])
+            np.testing.assert_array_equal(frame.bending_moment.ravel(), wanted["c_bending_moment_eV"])
+            np.testing.assert_array_equal(frame.twist_angle.ravel(), wanted["c_twist_angle_rad"])
+        with self.assertRaisesRegex(ropewalk.Error, "velocity is not known"):
+            frames[0].velocity
+
+    def test_frames_are_a_sequence(self):
+        frames = self.run_.frames
+        steps = [frame.step for frame in frames]
+        self.assertEqual(frames[-1].step, steps[-1])
+        self.assertEqual(frames[1].step, steps[1])
+        self.assertEqual([f.step for f in frames[::-2]], steps[::-2])
+        self.assertEqual([f.step for f in frames[1:][1:]], steps[2:])
+        self.assertEqual(frames[1:3][-1].step, steps[2])
+        self.assertEqual(len(frames[5:1]), 0)
+        for index in (len(steps), -len(steps) - 1):
+            with self.assertRaises(IndexError):
+                frames[index]
+        kept = frames[0]
+        before = kept.position.copy()
+        frames[2]
+        np.testing.assert_array_equal(kept.position, before)
+
+    def test_frames_measure_what_the_log_has(self):
+        log, frame = self.run_.log, self.run_.frames[-1]
+        row = list(log["step"]).index(frame.step)
+        self.assertAlmostEqual(frame.measure("beta_deg"), log["beta_deg"][row], places=4)
+        self.assertNotIn("twist_eV", frame.measure())
+        with self.assertRaisesRegex(ropewalk.InputError, "take it from run.log"):
+            frame.measure("twist_eV")
+
+    def test_frames_of_a_killed_run_and_of_a_damaged_one(self):
+        path = pathlib.Path("run/frames.lammpstrj")
+        text, count = path.read_text(), len(self.run_.frames)
+        path.write_text(text[:-200])
+        self.assertEqual(len(self.run_.frames), count - 1)
+        path.write_text(text.replace("c_orient[4]", "nothing", 1))
+        with self.assertRaisesRegex(ropewalk.InputError, r"frames.lammpstrj:\d+: column c_orient\[4\] is missing"):
+            self.run_.frames[0]
+
+    def test_binary_frames_are_those_of_the_text(self):
+        binary = ropewalk.run(ROPE, "binary")
+        self.assertTrue(pathlib.Path("binary/frames.gsd").exists())
+        self.assertEqual(len(binary.frames), len(self.run_.frames))
+        for index in (-1, 0, 2):
+            one, other = binary.frames[index], self.run_.frames[index]
+            self.assertEqual((one.step, one.time_ps), (other.step, other.time_ps))
+            for name in ("position", "orientation", "bond_energy", "vdw_energy", "bending_moment", "twist_angle"):
+                np.testing.assert_allclose(getattr(one, name), getattr(other, name), rtol=1e-5, atol=1e-6)
+        with self.assertRaises(IndexError):
+            binary.frames[len(binary.frames)]
+
+    def test_manifest_limits_and_scene(self):
+        run = ropewalk.open("run")
+        manifest = json.loads(pathlib.Path("run/manifest.json").read_text())
+        self.assertEqual(run.manifest, manifest)
+        self.assertEqual(run.status, "finished")
+        self.assertEqual(run.manifest["steps"], run.log["step"][-1])
+        limits = json.loads(pathlib.Path("run/limits.json").read_text())
+        self.assertEqual((run.limits, run.refinements), (limits["limits"], limits["refinements"]))
+        self.assertEqual(run.scene.keys["rope"], AS_TEXT["rope"])
+        # The scene of a run stands for itself: its sets are the run's copies.
+        again = ropewalk.run(run.scene.changed({"run.duration_ps": 1}), "again")
+        self.assertLess(again.log["time_ps"][-1], 1.05)
+
+    def test_what_is_no_run_is_refused(self):
+        with self.assertRaisesRegex(ropewalk.InputError, "is not the directory of a run"):
+            ropewalk.open(".")
+        with self.assertRaisesRegex(ropewalk.InputError, "no directory"):
+            ropewalk.open("nowhere")
+
+
+if __name__ == "__main__":
+    unittest.main()
