@@ -32,7 +32,8 @@ def mathml(node, inline):
     # The converter aligns rows by itself.
     tex = re.sub(r"\\(begin|end)\{aligned\}", "", node.astext()).strip()
     try:
-        return tex2mathml(tex, inline=inline)
+        made = tex2mathml(tex, inline=inline)
+        return re.sub(r"(<mo>&ApplyFunction;</mo>)(?!\s*<mo)", r'\1<mspace width="0.17em"/>', made)
     except SyntaxError as error:
         logger.warning("no MathML of %s: %s", tex, error, location=node)
         return ""
