@@ -1,5 +1,6 @@
 """Settings of Sphinx. Pages come from stage.py; CMake's target `docs` runs both."""
 import re
+from pathlib import Path
 
 from docutils import nodes
 from docutils.utils.math.latex2mathml import tex2mathml
@@ -16,7 +17,7 @@ nitpicky = True
 
 html_theme = "furo"
 html_title = "Ropewalk"
-html_static_path = ["site.css"]
+html_static_path = ["site.css", "STIXMath-Regular.otf"]
 html_css_files = ["site.css"]
 html_extra_path = ["extra"]  # files that pages link to, laid there by stage.py
 html_copy_source = False
@@ -49,5 +50,18 @@ def visit_block(translator, node):
     raise nodes.SkipNode
 
 
+def complete_theme(app, error):
+    """Debian's furo takes one script from another as a module, and one style sheet from a web server's folder; a browser
+    that reads from a disk does neither. Both are put where they are called for."""
+    static = Path(app.outdir) / "_static"
+    script, called = static / "scripts/furo.js", 'import Gumshoe from "./gumshoe-patched.js";'
+    if called in script.read_text():
+        script.write_text(script.read_text().replace(called, (static / "scripts/gumshoe-patched.js").read_text()))
+    style, called = static / "styles/furo.css", "@import url(/javascript/normalize.css/normalize.css);"
+    if called in style.read_text():
+        style.write_text(style.read_text().replace(called, Path("/usr/share" + called[12:-2]).read_text()))
+
+
 def setup(app):
+    app.connect("build-finished", complete_theme)
     app.add_html_math_renderer("mathml", (visit_inline, None), (visit_block, None))

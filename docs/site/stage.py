@@ -31,6 +31,7 @@ contents = [
     ("The project", ["README", "architecture", "contributing", "CHANGELOG", "THIRD_PARTY", "*"]),
 ]
 pictures = {".svg", ".png"}
+font = Path("/usr/share/fonts/opentype/stix-word/STIXMath-Regular.otf")  # of formulas; Debian's fonts-stix
 link = re.compile(r"(!?)\[([^\]]*)\]\(([^()\s]+)\)")
 doi = re.compile(r"\bDOI(\s+)(10\.\d{4,}/[^\s,;)]*[^\s,;).])")
 
@@ -155,8 +156,8 @@ def main():
         stage.write(place_of(page), text)
     for name, text in made.items():
         stage.write(Path("reference") / name, text)
-    for name in ("conf.py", "site.css"):
-        shutil.copyfile(Path(__file__).parent / name, output / name)
+    for file in (Path(__file__).with_name("conf.py"), Path(__file__).with_name("site.css"), font):
+        shutil.copyfile(file, output / file.name)
     for error in stage.errors:
         print(f"stage.py: {error}", file=sys.stderr)
     return 1 if stage.errors else 0
