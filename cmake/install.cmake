@@ -8,7 +8,7 @@ install(TARGETS ropewalk RUNTIME COMPONENT ropewalk)
 install(DIRECTORY data/ DESTINATION ${CMAKE_INSTALL_DATADIR}/ropewalk COMPONENT ropewalk)
 install(FILES README.md CHANGELOG.md LICENSE THIRD_PARTY.md CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR}
         COMPONENT ropewalk)
-install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/docs COMPONENT ropewalk)
+install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/docs COMPONENT ropewalk PATTERN site EXCLUDE)
 if(TARGET ropewalk-calibrate)
   install(TARGETS ropewalk-calibrate ropewalk-validate RUNTIME COMPONENT calibrate)
 endif()

@@ -37,4 +37,11 @@ def svg_of(chart):
     look = ['bgcolor="white"', "node [shape=box style=rounded fontname=Helvetica fontsize=12]",
             "edge [fontname=Helvetica fontsize=11 color=gray40]"]
     text = "digraph {" + ";\n".join(look + dot_of(chart)) + "}"
+    svg = drawn(text)
+    if int(re.search(r'width="(\d+)pt"', svg)[1]) > 700:  # wider than a page
+        svg = drawn(text.replace("rankdir=LR", "rankdir=TB"))
+    return svg
+
+
+def drawn(text):
     return subprocess.run(["dot", "-Tsvg"], input=text, check=True, capture_output=True, text=True).stdout

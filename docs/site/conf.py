@@ -14,6 +14,7 @@ myst_enable_extensions = ["dollarmath"]
 myst_heading_anchors = 4
 highlight_language = "text"  # of indented blocks, which are commands and TOML in turn
 nitpicky = True
+smartquotes = False
 
 html_theme = "furo"
 html_title = "Ropewalk"
@@ -34,7 +35,8 @@ def mathml(node, inline):
     tex = re.sub(r"\\(begin|end)\{aligned\}", "", node.astext()).strip()
     try:
         made = tex2mathml(tex, inline=inline)
-        return re.sub(r"(<mo>&ApplyFunction;</mo>)(?!\s*<mo)", r'\1<mspace width="0.17em"/>', made)
+        made = re.sub(r"(<mo>&ApplyFunction;</mo>)(?!\s*<mo)", r'\1<mspace width="0.17em"/>', made)
+        return made.replace('<mo stretchy="false">|', '<mo stretchy="false" lspace="0" rspace="0">|')
     except SyntaxError as error:
         logger.warning("no MathML of %s: %s", tex, error, location=node)
         return ""

@@ -149,14 +149,16 @@ Nothing is written. Left: a line of a scene, a parameter set or a state. Right: 
 verbs say of it. These are the scenes that the tests hold the program to.
 """
     groups = {}
+    top, sets, state_files = "A scene as a whole", "Parameter sets", "State files"
+    tables = {t["table"].strip("[]"): f"`{t['table']}`" for t in programs[0]["scene"] if t["table"]}
     for message, line in refused(ropewalk, repository / "tests/cli/bad"):
         where, what = of_file(message)
         key = re.match(r"([a-zA-Z_]+)[.:]", what)
-        state = where.split(":")[0].endswith(".csv")
-        known = {t["table"].strip("[]") for t in programs[0]["scene"] if t["table"]}
-        group = ("State files" if state else f"`[{key[1]}]`" if key and key[1] in known else "Files, sets and the top of a scene")
-        groups.setdefault(group, []).append((what, line))
-    order = sorted(groups, key=lambda g: (g == "State files", g.startswith("`"), g))
+        file = where.split(":")[0]
+        group = (state_files if file.endswith(".csv") else sets if file.startswith("parameters/")
+                 else tables[key[1]] if key and key[1] in tables else top)
+        groups.setdefault(group, []).append((what, line if len(line) < 100 else line[:95] + " ..."))
+    order = sorted(groups, key=lambda g: ([top, sets, state_files].index(g) if g in (top, sets, state_files) else 0.5, g))
     for group in order:
         rows = [[code(line) if line else "", cell(what)] for what, line in groups[group]]
         text += f"\n### {group}\n\n" + table(["line", "message"], rows)
@@ -205,17 +207,18 @@ folders = {
 def first_sentence(header):
     words = []
     for line in header.read_text().split("\n"):
-        if not line.startswith("//"):
+        if not re.match(r"// {0,2}\S", line):  # the end of the paragraph, or an example
             break
         words.append(line.lstrip("/ "))
-    text = " ".join(words)
-    return re.split(r"(?<=[.:]) +(?=[A-Z(])", text)[0].rstrip(".:") if text else ""
+    text = re.split(r"(?<=[.;]) +(?=[A-Za-z(])", " ".join(words))[0]
+    return text.rstrip(".:;")
 
 
 def library(repository, tags):
     page_of = {}
     for file in xml.parse(tags).getroot().findall("compound[@kind='file']"):
-        page_of[file.findtext("path") + file.findtext("name")] = file.findtext("filename")
+        path = Path(file.findtext("path"), file.findtext("name"))
+        page_of[str(path.relative_to(repository / "mdem"))] = file.findtext("filename")
     text = made + """# The library
 
 The headers that `cmake --install` puts into `include/ropewalk`, with the first sentence of each. A name leads to all that

@@ -74,6 +74,7 @@ class Stage:
         self.output = output
         self.pages = pages_of_repository()
         self.errors = []
+        self.drawn = []  # pictures of flow charts
 
     def write(self, place, text):
         path = self.output / place
@@ -90,7 +91,7 @@ class Stage:
             return match[0]
         target, hash_, anchor = target.partition("#")
         file = Path(os.path.normpath(page.parent / target))
-        if (self.output / place_of(file)).is_file():  # made here
+        if place_of(file) in self.drawn:
             return match[0]
         if (repository / file).is_dir():
             file = file / "README.md"
@@ -115,11 +116,9 @@ class Stage:
         return doi.sub(r"[DOI\1\2](https://doi.org/\2)", text)
 
     def with_charts(self, page, text):
-        drawn = []
-
         def draw(match):
-            picture = place_of(page).with_name(f"{page.stem}-chart-{len(drawn) + 1}.svg")
-            drawn.append(picture)
+            picture = place_of(page).with_name(f"{page.stem}-chart-{len(self.drawn) + 1}.svg")
+            self.drawn.append(picture)
             self.write(picture, chart.svg_of(match[1]))
             return f"![Chart]({picture.name})"
 

@@ -1,6 +1,7 @@
 """Chromium without a window, spoken to over a pipe by its DevTools protocol."""
 import json
 import os
+import select
 import subprocess
 import tempfile
 
@@ -42,6 +43,8 @@ class Browser:
 
     def message(self):
         while b"\0" not in self.rest:
+            if not select.select([self.into], [], [], 60)[0]:
+                raise RuntimeError("Chromium says nothing for a minute")
             piece = os.read(self.into, 1 << 20)
             if not piece:
                 raise RuntimeError("Chromium has ended")
@@ -67,7 +70,8 @@ class Browser:
     def open(self, url):
         """Opens a page and waits until it is loaded. What it said and asked for since is in `said` and `asked`."""
         self.events = []
-        self.call("Page.navigate", url=url)
+        if "loaderId" not in self.call("Page.navigate", url=url):
+            return  # another place of the page that is open
         at = 0
         while True:
             for event in self.events[at:]:
