@@ -80,7 +80,7 @@ set(CPACK_DEBIAN_CALIBRATE_PACKAGE_NAME ropewalk-calibrate)
 set(CPACK_DEBIAN_LAMMPS_PACKAGE_NAME ropewalk-lammps)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libropewalk-dev)
 set(CPACK_DEBIAN_CALIBRATE_PACKAGE_DEPENDS "ropewalk (= ${PROJECT_VERSION})")
-set(CPACK_DEBIAN_LAMMPS_PACKAGE_DEPENDS "ropewalk (= ${PROJECT_VERSION})")
+set(CPACK_DEBIAN_LAMMPS_PACKAGE_DEPENDS "ropewalk (= ${PROJECT_VERSION}), openmpi-bin")  # not one rank starts without
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
     "libeigen3-dev, libfmt-dev, nlohmann-json3-dev, libtomlplusplus-dev, libqhull-dev, libhwy-dev, libxxhash-dev")
 set(CPACK_DEBIAN_ROPEWALK_PACKAGE_RECOMMENDS "librsvg2-bin, lammps")
