@@ -54,14 +54,20 @@ def visit_block(translator, node):
 
 def complete_theme(app, error):
     """Debian's furo takes one script from another as a module, and one style sheet from a web server's folder; a browser
-    that reads from a disk does neither. Both are put where they are called for."""
+    that reads from a disk does neither. Both are put where they are called for. It has also lost the dark colours of
+    readers whose system is dark."""
     static = Path(app.outdir) / "_static"
     script, called = static / "scripts/furo.js", 'import Gumshoe from "./gumshoe-patched.js";'
     if called in script.read_text():
         script.write_text(script.read_text().replace(called, (static / "scripts/gumshoe-patched.js").read_text()))
     style, called = static / "styles/furo.css", "@import url(/javascript/normalize.css/normalize.css);"
-    if called in style.read_text():
-        style.write_text(style.read_text().replace(called, Path("/usr/share" + called[12:-2]).read_text()))
+    text = style.read_text()
+    if called in text:
+        text = text.replace(called, Path("/usr/share" + called[12:-2]).read_text())
+    dark = re.search(r'body\[data-theme="dark"\] (\{.*?\})', text, re.S)
+    if "prefers-color-scheme" not in text and dark:
+        text += f'@media screen and (prefers-color-scheme: dark) {{ body[data-theme="auto"] {dark[1]} }}\n'
+    style.write_text(text)
 
 
 def setup(app):

@@ -30,8 +30,8 @@ def look(browser, site, page, size, name):
     for url in browser.asked():
         expect(url.startswith(site.as_uri() + "/") or url.startswith("data:"), f"{where}: asks for {url}")
     # What cannot be scrolled to is cut off.
-    wide = browser.value("""(() => {
-      const root = document.documentElement, width = root.clientWidth;
+    wide = browser.value(f"const given = {size[0]};" + """(() => {
+      const root = document.documentElement, width = Math.min(root.clientWidth, given);
       if (root.scrollWidth <= width) return '';
       const wide = [...document.querySelectorAll('body *')].filter(e => e.getBoundingClientRect().right > width + 1
         && !e.closest('.formula, .table-wrapper, pre, .sidebar-drawer, .toc-drawer'));
@@ -57,6 +57,17 @@ def formulas(browser, site):
     expect(found["flat"] == 0 and found["dollars"] == 0, f"theory.html: formulas that are not set: {found}")
     expect(int(found["bold"]) >= 600, f"theory.html: vectors are not bold: {found}")
     expect(found["font"], f"theory.html: the font of formulas is not loaded: {found}")
+
+
+def darkness(browser, site):
+    """Where the system is dark the page is, and its code as well."""
+    browser.size(*desk)
+    browser.call("Emulation.setEmulatedMedia", media="", features=[{"name": "prefers-color-scheme", "value": "dark"}])
+    browser.open((site / "tutorials/rope.html").as_uri())
+    shades = browser.value("""['body', 'pre', '.sidebar-drawer'].map(s => getComputedStyle(document.querySelector(s))
+      .backgroundColor.match(/\\d+/g).slice(0, 3).map(Number)).map(c => Math.max(...c))""")
+    expect(all(shade < 60 for shade in shades), f"tutorials/rope.html: not dark: {shades}")
+    browser.call("Emulation.setEmulatedMedia", media="", features=[])
 
 
 def search(browser, site):
@@ -107,6 +118,7 @@ def main():
                     look(browser, site, page, size, name)
         browser.call("Emulation.setEmulatedMedia", media="")
         formulas(browser, site)
+        darkness(browser, site)
         search(browser, site)
         browser.open((site / "theory.html").as_uri())
         pdf = base64.b64decode(browser.call("Page.printToPDF")["data"])
