@@ -76,7 +76,8 @@ def commands(programs):
         codes = exit_codes(p["about"])
         if codes:
             text += f"\n`{p['program']}`:\n\n" + table(["code", "meaning"],
-                                                      [[code(number), cell(meaning)] for number, meaning in codes])
+                                                      [[code(number), cell(meaning) or "ended by a signal"]
+                                                       for number, meaning in codes])
     return text
 
 
@@ -130,7 +131,9 @@ def numerical_errors(sources):
     for file in sorted(sources.rglob("*.cpp")):
         for call in re.finditer(r"NumericalError\((.*?)\);", file.read_text(), re.S):
             parts = re.split(r"(?<=\"),", call[1])  # between two string literals
-            texts = ["".join(re.findall(r'"((?:[^"\\]|\\.)*)"', part)) for part in parts]
+            # Literals in a row are one text; between others stands a number.
+            parts = [re.sub(r'"\s*"', "", part) for part in parts]
+            texts = ["...".join(re.findall(r'"((?:[^"\\]|\\.)*)"', part)) for part in parts]
             texts = [t for t in texts if t]
             if len(texts) == 2:
                 found.append(texts)

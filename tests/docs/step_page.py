@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 """Does what a page of the documentation says, and holds what comes out to what the page shows.
 
-    step_page.py PAGE.md BUILD [--write] [--keep DIRECTORY]
+    step_page.py PAGE.md BUILD [--write] [--keep DIRECTORY] [--pictures-only]
 
 All ```sh blocks run one after another, in one shell and one empty directory. A ```text block behind one shows lines of
 its output: they come in this order, with others between them. In them `...` stands for anything, and a number for those
 within 2 % of it, or within one of its last digit. A picture of the page must come out of the commands; --write puts it
-beside the page. A stand-in for SLURM's sbatch runs the tasks of a job array one after another."""
+beside the page, and --pictures-only runs nothing and looks for a command that names it. A stand-in for SLURM's sbatch runs the tasks of a job array one after another."""
 import argparse
 import os
 import re
@@ -98,19 +98,37 @@ def step(page, build, directory):
     return errors
 
 
+def pictures_of(page):
+    return re.findall(r"!\[[^\]]*\]\(([^)]*)\)", page.read_text())
+
+
+def unnamed_pictures(page):
+    commands = "".join(content for language, content in blocks(page.read_text()) if language == "sh")
+    return [f"no command makes {picture}" for picture in pictures_of(page) if f"-o {Path(picture).name} " not in commands]
+
+
+def tell(page, errors):
+    for error in errors:
+        print(f"{page}: {error}", file=sys.stderr)
+    return 1 if errors else 0
+
+
 def main():
     arguments = argparse.ArgumentParser()
     arguments.add_argument("page", type=Path)
     arguments.add_argument("build", type=Path)
     arguments.add_argument("--write", action="store_true")
     arguments.add_argument("--keep", type=Path)
+    arguments.add_argument("--pictures-only", action="store_true")
     given = arguments.parse_args()
     page = given.page.resolve()
+    if given.pictures_only:
+        return tell(page, unnamed_pictures(page))
     directory = given.keep or Path(tempfile.mkdtemp(prefix="ropewalk-page-"))
     directory.mkdir(exist_ok=True)
     try:
         errors = step(page, given.build.resolve(), directory)
-        for picture in re.findall(r"!\[[^\]]*\]\(([^)]*)\)", page.read_text()):
+        for picture in pictures_of(page):
             made = directory / Path(picture).name
             if not made.is_file():
                 errors.append(f"no command makes {made.name}")
@@ -119,9 +137,7 @@ def main():
     finally:
         if not given.keep:
             shutil.rmtree(directory, ignore_errors=True)
-    for error in errors:
-        print(f"{given.page}: {error}", file=sys.stderr)
-    return 1 if errors else 0
+    return tell(page, errors)
 
 
 if __name__ == "__main__":
