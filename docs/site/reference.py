@@ -220,7 +220,9 @@ def first_sentence(header):
 def library(repository, tags):
     page_of = {}
     for file in xml.parse(tags).getroot().findall("compound[@kind='file']"):
-        path = Path(file.findtext("path"), file.findtext("name"))
+        path = Path(file.findtext("path") or "", file.findtext("name"))
+        if path.suffix != ".hpp":
+            continue
         page_of[str(path.relative_to(repository / "mdem"))] = file.findtext("filename")
     text = made + """# The library
 

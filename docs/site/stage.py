@@ -20,7 +20,7 @@ repository = Path(__file__).resolve().parents[2]
 
 # The pages beside docs/, and the order of all: caption, then pages as they are named on the site.
 beside_docs = ["README.md", "CHANGELOG.md", "THIRD_PARTY.md", "calibrate/README.md", "validate/README.md",
-               "mdem/lammps/README.md", "data/README.md", "data/**/README.md"]
+               "mdem/lammps/README.md", "data/**/README.md"]
 contents = [
     ("Learn", ["tutorials/rope", "tutorials/tube", "tutorials/phase-diagram", "tutorials/cluster", "gallery"]),
     ("How to", ["how-to/install", "how-to/view", "how-to/resume", "how-to/plan", "how-to/campaign", "how-to/*"]),
@@ -44,7 +44,7 @@ def place_of(path):
 
 
 def pages_of_repository():
-    pages = {p.relative_to(repository) for p in (repository / "docs").rglob("*.md")}
+    pages = {p.relative_to(repository) for p in (repository / "docs").rglob("*.md") if p.parent.name != "site"}
     for pattern in beside_docs:
         pages |= {p.relative_to(repository) for p in repository.glob(pattern)}
     return sorted(pages)

@@ -68,7 +68,7 @@ class Page(HTMLParser):
 
 
 def check_site(site):
-    files = [p for p in site.rglob("*.html") if "api" not in p.relative_to(site).parts[:1]]
+    files = [p for p in site.rglob("*.html") if p.relative_to(site).parts[0] != "api"] + [site / "api/index.html"]
     parsed, count = {}, 0
 
     def page_of(path):

@@ -19,28 +19,36 @@ def expect(true, what):
         errors.append(what)
 
 
-def look(browser, site, page, size, name):
-    browser.size(*size, phone=size == phone)
-    browser.call("Emulation.setEmulatedMedia", media="print" if size == paper else "")
+def wider(browser, width):
+    """What sticks out of a page that is so wide, but for what scrolls by itself; empty if nothing does."""
+    return browser.value(f"(given => {{ {sticks_out} }})({width})")
+
+
+sticks_out = """
+  const root = document.documentElement, width = Math.min(root.clientWidth, given);
+  if (root.scrollWidth <= width) return '';
+  const wide = [...document.querySelectorAll('body *')].filter(e => e.getBoundingClientRect().right > width + 1
+    && !e.closest('.formula, .table-wrapper, pre, .sidebar-drawer, .toc-drawer'));
+  return root.scrollWidth + ' pixels: ' + wide.slice(0, 3).map(e => e.outerHTML.slice(0, 120)).join(' | ');"""
+
+
+def look(browser, site, page):
+    browser.size(*desk)
+    browser.call("Emulation.setEmulatedMedia", media="")
     browser.open((site / page).as_uri())
-    where = f"{page}, {name}"
-    browser.value("new Promise(done => setTimeout(done, 30))")  # what scripts do after loading
-    for line in browser.said():
-        errors.append(f"{where}: the console says: {line}")
-    for url in browser.asked():
-        expect(url.startswith(site.as_uri() + "/") or url.startswith("data:"), f"{where}: asks for {url}")
-    # What cannot be scrolled to is cut off.
-    wide = browser.value(f"const given = {size[0]};" + """(() => {
-      const root = document.documentElement, width = Math.min(root.clientWidth, given);
-      if (root.scrollWidth <= width) return '';
-      const wide = [...document.querySelectorAll('body *')].filter(e => e.getBoundingClientRect().right > width + 1
-        && !e.closest('.formula, .table-wrapper, pre, .sidebar-drawer, .toc-drawer'));
-      return root.scrollWidth + ' pixels: ' + wide.slice(0, 3).map(e => e.outerHTML.slice(0, 120)).join(' | ');
-    })()""")
-    expect(not wide, f"{where}: is wider than the page, {wide}")
+    for size, name in ((desk, "desk"), (phone, "phone"), (paper, "paper")):
+        browser.size(*size, phone=size == phone)
+        browser.call("Emulation.setEmulatedMedia", media="print" if size == paper else "")
+        browser.value("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
+        wide = wider(browser, size[0])
+        expect(not wide, f"{page}, {name}: is wider than the page, {wide}")
+        expect(browser.value("document.body.innerText.trim().length") > 40, f"{page}, {name}: is empty")
     broken = browser.value("""[...document.images].filter(i => i.complete && i.naturalWidth === 0).map(i => i.src)""")
-    expect(not broken, f"{where}: pictures are missing: {broken}")
-    expect(browser.value("document.body.innerText.trim().length") > 40, f"{where}: is empty")
+    expect(not broken, f"{page}: pictures are missing: {broken}")
+    for line in browser.said():
+        errors.append(f"{page}: the console says: {line}")
+    for url in browser.asked():
+        expect(url.startswith(site.as_uri() + "/") or url.startswith("data:"), f"{page}: asks for {url}")
 
 
 def formulas(browser, site):
@@ -95,11 +103,12 @@ def test_of_the_test(browser, site):
                    "<img src=http://elsewhere.invalid/x.png><script>console.log('said')</script>")
     try:
         kept, errors = errors, []
-        look(browser, site, "bad.html", phone, "phone")
+        look(browser, site, "bad.html")
         found, errors = errors, kept
     finally:
         bad.unlink()
-    for part in ("console says: said", "asks for http://elsewhere.invalid", "is wider than", "pictures are missing"):
+    for part in ("console says: said", "asks for http://elsewhere.invalid", "phone: is wider", "paper: is wider",
+                 "pictures are missing"):
         expect(any(part in line for line in found), f"a page with faults: not seen: {part}; seen: {found}")
 
 
@@ -113,9 +122,8 @@ def main():
     api = [Path("api/index.html"), *sorted(p.relative_to(site) for p in (site / "api").glob("bond_8hpp.html"))]
     with Browser() as browser:
         for page in pages + api:
-            for size, name in ((desk, "desk"), (phone, "phone"), (paper, "paper")):
-                if str(page) != "search.html":
-                    look(browser, site, page, size, name)
+            if str(page) != "search.html":
+                look(browser, site, page)
         browser.call("Emulation.setEmulatedMedia", media="")
         formulas(browser, site)
         darkness(browser, site)
