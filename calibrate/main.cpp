@@ -104,7 +104,7 @@ int run(CLI::App& app, Verbs& v) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  begin_program();
+  begin_program("ropewalk calibrate");
   CLI::App app(
       "ropewalk calibrate derives a tube's parameter set from atomistic data: stiffnesses from relaxed LAMMPS\n"
       "cells, van der Waals contact from the surface integral, both fitted with NLopt.\n"

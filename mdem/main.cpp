@@ -49,6 +49,7 @@ struct Verbs {
   EnergyArguments energy;
   BenchArguments bench;
   ReportArguments report;
+  ConvertArguments convert;
   PictureArguments picture;
   ViewArguments view;
   ErrorsArguments errors;
@@ -190,6 +191,19 @@ void add_report(CLI::App& app, Verbs& v) {
   c->callback([&v] { v.code = report_command(v.report); });
 }
 
+void add_convert(CLI::App& app, Verbs& v) {
+  CLI::App* c = app.add_subcommand("convert", "Frames of a run in another format: GSD, LAMMPS dump, ParaView");
+  c->add_option("dir", v.convert.dir, "Directory of the run")->required();
+  c->add_option("file", v.convert.out,
+                "File to write: .gsd (OVITO, MDAnalysis), .lammpstrj (LAMMPS, ASE) or .pvd (ParaView)")
+      ->required();
+  c->add_option("--from-ps", v.convert.from_ps, "Leave out what is earlier")->capture_default_str();
+  c->add_option("--to-ps", v.convert.to_ps, "Leave out what is later");
+  c->add_option("--every", v.convert.every, "Every Nth frame")->check(CLI::PositiveNumber)->capture_default_str();
+  c->add_flag("--force", v.convert.force, "Replace an existing file");
+  c->callback([&v] { v.code = convert_command(v.convert); });
+}
+
 void add_picture(CLI::App& app, Verbs& v) {
   CLI::App* c =
       app.add_subcommand("picture", "A figure for a paper: states of a run, their sections, curves with marks");
@@ -299,6 +313,9 @@ void add_threshold(CLI::App& app, Verbs& v) {
   c->add_option("--out", v.threshold.out, "Directory of the campaign; the same command goes on [default: FILE]");
   c->add_option("-j,--jobs", v.threshold.jobs, "Points at a time, each on one core [default: all cores]")
       ->check(thread_range());
+  c->add_option("--known", v.threshold.known,
+                "trials.csv of an earlier search: its trials of the same scenes are not run again")
+      ->check(CLI::ExistingFile);
   c->add_flag("--force", v.threshold.force, "Replace runs of another scene");
   c->add_flag("--quiet", v.threshold.quiet, "No progress");
   c->callback([&v] { v.code = threshold_command(v.threshold); });
@@ -437,7 +454,7 @@ void verb_before_help(const CLI::App& app, int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  begin_program();
+  begin_program("ropewalk");
   CLI::App app(
       "ropewalk twists carbon-nanotube ropes by the mesoscopic distinct element method.\n"
       "Units: nm, ps, eV; moments nN nm. Every key of a scene carries its unit: ropewalk help scene.\n"
@@ -453,6 +470,7 @@ int main(int argc, char** argv) {
   add_resume(app, verbs);
   add_observe(app, verbs);
   add_report(app, verbs);
+  add_convert(app, verbs);
   add_picture(app, verbs);
   add_view(app, verbs);
   add_errors(app, verbs);

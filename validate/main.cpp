@@ -116,7 +116,7 @@ void add_verbs(CLI::App& app, Verbs& v) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  begin_program();
+  begin_program("ropewalk validate");
   // `ropewalk parametrize` comes here as it was typed.
   const bool parametrize = argc > 1 && std::strcmp(argv[1], "parametrize") == 0;
   const char* name = parametrize ? "ropewalk" : "ropewalk validate";

@@ -2,11 +2,10 @@
 
 #include <array>
 #include <cmath>
-#include <cstdlib>
-#include <sstream>
+#include <cstdio>
 
 #include "atomistic/stiffness.hpp"
-#include "io/files.hpp"
+#include "io/csv_reader.hpp"
 #include "io/plain_text.hpp"
 
 namespace ropewalk {
@@ -28,32 +27,41 @@ constexpr std::array<OutputColumn, 9> table = {{
 }};
 const std::string columns = column_names(table);
 
-std::vector<std::string> cells_of(const std::string& line) {
-  std::vector<std::string> cells(1);
-  for (const char character : line) {
-    if (character == ',')
-      cells.emplace_back();
-    else if (character != '\r')
-      cells.back() += character;
-  }
-  return cells;
-}
-
-std::string trimmed(const std::string& text) {
-  const auto first = text.find_first_not_of(" \t\r");
-  if (first == std::string::npos) return "";
-  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
-}
-
-void read_origin_line(const std::string& line, AtomisticOrigin& origin) {
-  const auto colon = line.find(':');
-  if (colon == std::string::npos) return;
-  const std::string key = trimmed(line.substr(1, colon - 1)), value = trimmed(line.substr(colon + 1));
+// "key: value".
+void read_origin(std::string_view comment, AtomisticOrigin& origin) {
+  const auto colon = comment.find(':');
+  if (colon == std::string_view::npos) return;
+  const std::string_view key = comment.substr(0, colon);
+  const std::size_t from = comment.find_first_not_of(" \t", colon + 1);
+  const std::string value(from == std::string_view::npos ? "" : comment.substr(from));
   if (key == "chirality") std::sscanf(value.c_str(), "%d,%d", &origin.chirality.n, &origin.chirality.m);
   if (key == "potential") origin.potential = value;
   if (key == "potential file xxh64") origin.potential_hash = value;
   if (key == "LAMMPS") origin.lammps = value;
   if (key == "note") origin.notes.push_back(value);
+}
+
+AtomisticRow row_of(const CsvReader& csv) {
+  if (csv.cells().size() != table.size())
+    csv.fail("", fmt::format("has {} columns, not {}", csv.cells().size(), table.size()),
+             fmt::format("they are {}", columns));
+  const auto number = [&](std::size_t k) { return csv.finite_number(k, table[k].name, "write a finite number"); };
+  AtomisticRow row;
+  row.kind = csv.cells()[0];
+  if (row.kind.empty()) csv.fail("kind", "is empty", "write stretch-twist, bend-short, ...");
+  row.length = number(1);
+  row.strain = number(2);
+  row.twist = number(3);
+  row.curvature = number(4);
+  const double atoms = number(5);
+  if (!(atoms >= 1 && atoms <= 1e9 && atoms == std::floor(atoms)))
+    csv.fail("atoms", fmt::format("'{}' is not a count", csv.cells()[5]), "write a positive whole number");
+  row.atoms = static_cast<int>(atoms);
+  row.energy = number(6);
+  row.residual = number(7);
+  row.radius = number(8);
+  if (!(row.length > 0)) csv.fail("length_nm", "must be positive", "write the length of the relaxed cell");
+  return row;
 }
 
 }  // namespace
@@ -78,61 +86,24 @@ std::vector<AtomisticRow> read_atomistic_csv(const std::string& path, AtomisticO
   AtomisticOrigin ignored;
   AtomisticOrigin& head = origin ? *origin : ignored;
   head = AtomisticOrigin();
-  std::istringstream lines(read_file(path));
+  CsvReader csv(path);
+  if (!csv.next()) throw InputError({path, 0, ""}, "has no columns", fmt::format("write {}", columns));
   std::vector<AtomisticRow> rows;
-  bool has_columns = false;
-  int number = 0;
-  for (std::string line; std::getline(lines, line);) {
-    ++number;
-    if (trimmed(line).empty()) continue;
-    if (has_control_character(trimmed(line)))
-      throw InputError({path, number, ""}, "holds a control character",
-                       "write plain text, with commas between columns");
-    if (line[0] == '#') {
-      read_origin_line(line, head);
-      continue;
+  const auto read_comments = [&] {
+    for (const std::string_view comment : csv.comments()) {
+      if (has_control_character(comment))
+        csv.fail("", "a comment above holds a control character", "write plain text");
+      read_origin(comment, head);
     }
-    if (!has_columns) {
-      if (trimmed(line) != columns)
-        throw InputError({path, number, ""}, "the columns of an atomistic table are expected",
-                         fmt::format("write {}", columns));
-      has_columns = true;
-      continue;
-    }
-    const std::vector<std::string> cells = cells_of(line);
-    if (cells.size() != table.size())
-      throw InputError({path, number, ""}, fmt::format("has {} columns, not {}", cells.size(), table.size()),
-                       fmt::format("they are {}", columns));
-    const auto number_in = [&](std::size_t k) {
-      const std::string text = trimmed(cells[k]);
-      char* end = nullptr;
-      const double value = std::strtod(text.c_str(), &end);
-      if (text.empty() || *end != '\0' || !std::isfinite(value))
-        throw InputError({path, number, table[k].name}, fmt::format("'{}' is not a number", text),
-                         "write a finite number");
-      return value;
-    };
-    AtomisticRow row;
-    row.kind = trimmed(cells[0]);
-    if (row.kind.empty())
-      throw InputError({path, number, "kind"}, "is empty", "write stretch-twist, bend-short, ...");
-    row.length = number_in(1);
-    row.strain = number_in(2);
-    row.twist = number_in(3);
-    row.curvature = number_in(4);
-    const double atoms = number_in(5);
-    if (!(atoms >= 1 && atoms <= 1e9 && atoms == std::floor(atoms)))
-      throw InputError({path, number, "atoms"}, fmt::format("'{}' is not a count", trimmed(cells[5])),
-                       "write a positive whole number");
-    row.atoms = static_cast<int>(atoms);
-    row.energy = number_in(6);
-    row.residual = number_in(7);
-    row.radius = number_in(8);
-    if (!(row.length > 0))
-      throw InputError({path, number, "length_nm"}, "must be positive", "write the length of the relaxed cell");
-    rows.push_back(row);
+  };
+  read_comments();
+  if (csv.line_text() != columns)
+    csv.fail("", "the columns of an atomistic table are expected", fmt::format("write {}", columns));
+  while (csv.next()) {
+    read_comments();
+    rows.push_back(row_of(csv));
   }
-  if (!has_columns) throw InputError({path, 0, ""}, "has no columns", fmt::format("write {}", columns));
+  read_comments();
   if (rows.empty()) throw InputError({path, 0, ""}, "has no rows", "make it with ropewalk calibrate");
   return rows;
 }

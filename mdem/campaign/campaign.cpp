@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "io/csv_reader.hpp"
 #include "io/files.hpp"
 #include "io/limits_file.hpp"
 #include "io/log.hpp"
@@ -90,18 +90,6 @@ PointProgress progress_of(const RunDirectory& dir) {
     p.stage = Stage::ended;
   if (p.stage == Stage::begun) p.status = "interrupted";  // by whoever looks: nothing of it runs here
   return p;
-}
-
-std::string csv_cell(const std::string& text) {
-  // A table calculation takes a text that begins so for a formula; of numbers it does not.
-  double number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  const bool is_number = error == std::errc() && end == text.data() + text.size();
-  if (!is_number && text.find_first_of("=+-@") == 0) return csv_cell("'" + text);
-  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return quoted + "\"";
 }
 
 CampaignDirectory campaign_directory(const std::string& sweep_file, const std::string& out) {

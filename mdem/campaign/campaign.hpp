@@ -17,6 +17,7 @@ struct CampaignDirectory {
   std::string sweep() const { return path + "/sweep.toml"; }
   std::string scene() const { return path + "/scene.toml"; }
   std::string table() const { return path + "/table.csv"; }
+  std::string trials() const { return path + "/trials.csv"; }
   RunDirectory point(const std::string& name) const { return {path + "/points/" + name}; }
   RunDirectory start(const std::string& name) const { return {path + "/starts/" + name}; }
   std::string messages(const std::string& name) const { return path + "/messages/" + name + ".txt"; }
@@ -58,10 +59,6 @@ struct GatherOptions {
 // A point without rows has empty cells. Everything in it follows from the scenes alone: no times of the machine.
 std::string gathered_csv(const CampaignDirectory& dir, const Sweep& sweep, const std::vector<SweepPoint>& points,
                          const GatherOptions& options);
-
-// A cell of CSV: in quotes where it holds a comma, a quote or a newline, and with ' before it where a table
-// calculation would take it for a formula.
-std::string csv_cell(const std::string& text);
 
 // For clusters: one job for each point, by its number from 1 or its name.
 std::string slurm_script(const std::string& sweep_file, const CampaignDirectory& dir, std::size_t points);

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "campaign/threshold.hpp"
+#include "io/csv_reader.hpp"
 #include "report/page.hpp"
 #include "report/scatter.hpp"
 
@@ -118,13 +119,13 @@ std::string thresholds_csv(const Sweep& sweep, const std::vector<PhasePoint>& po
 }
 
 std::string trials_csv(const Sweep& sweep, const std::vector<PhasePoint>& points) {
-  std::string text = head(sweep) + "seed,value,passed,at_ps,rate_per_ps,rate_error_per_ps\n";
+  std::string text = head(sweep) + column_names(trial_columns()) + "\n";
   for (const PhasePoint& p : points)
     for (std::size_t s = 0; s < p.seeds.size(); ++s)
       for (const Trial& t : p.seeds[s].trials)
-        text += values(p) + fmt::format("{},{},{},{},{},{}\n", s + 1, cell(t.value), t.passed ? 1 : 0,
+        text += values(p) + fmt::format("{},{},{},{},{},{},{}\n", s + 1, cell(t.value), t.passed ? 1 : 0,
                                         cell(t.passed ? t.time : nan), cell(t.rate.value_or(nan)),
-                                        cell(t.error.value_or(nan)));
+                                        cell(t.error.value_or(nan)), t.scene_hash);
   return text;
 }
 

@@ -8,8 +8,10 @@
 #include <limits>
 #include <set>
 
+#include "io/csv_reader.hpp"
 #include "io/files.hpp"
 #include "io/log.hpp"
+#include "model/error.hpp"
 #include "observe/growth.hpp"
 #include "plan/scene_edit.hpp"
 #include "scene/kinds/scene_kind.hpp"
@@ -117,11 +119,20 @@ RunDirectory trial_directory(const CampaignDirectory& dir, const Sweep& sweep, c
   return {fmt::format("{}/{}-{}", dir.point(point.name).path, leaf_of(sweep.threshold->key), value_text(value))};
 }
 
-Threshold threshold_of(const CampaignDirectory& dir, const Sweep& sweep, const SweepPoint& point) {
-  Threshold out;
+std::string trial_hash(const Sweep& sweep, const SweepPoint& point, double value) {
+  std::string all = trial_text(sweep, point, value);
+  for (const std::string& set : point.sets) all += read_file(set);
+  return hash_hex(all);
+}
+
+namespace {
+
+// The runs in the directory.
+std::vector<Trial> trials_in(const CampaignDirectory& dir, const Sweep& sweep, const SweepPoint& point) {
+  std::vector<Trial> trials;
   const ThresholdQuestion& q = *sweep.threshold;
   const std::string folder = dir.point(point.name).path, begins = leaf_of(q.key) + "-";
-  if (!fs::exists(folder)) return out;
+  if (!fs::exists(folder)) return trials;
   const Scene scene = scene_of(sweep, point);
   const double constant_from = scene.twist ? scene.twist->ramp_time() : 0;
   for (const auto& entry : fs::directory_iterator(folder)) {
@@ -133,7 +144,23 @@ Threshold threshold_of(const CampaignDirectory& dir, const Sweep& sweep, const S
     const double ramp = scene.twist && scene.twist->moment > 0 && q.key == "twist.moment_nN_nm"
                             ? constant_from * value * units::nN_nm / scene.twist->moment
                             : constant_from;
-    out.trials.push_back(trial_of(read_log(run.log()), q, value, scene.start.wave, ramp));
+    trials.push_back(trial_of(read_log(run.log()), q, value, scene.start.wave, ramp));
+    trials.back().scene_hash = trial_hash(sweep, point, value);
+  }
+  return trials;
+}
+
+}  // namespace
+
+Threshold threshold_of(const CampaignDirectory& dir, const Sweep& sweep, const SweepPoint& point,
+                       const std::vector<Trial>& known) {
+  Threshold out;
+  const ThresholdQuestion& q = *sweep.threshold;
+  out.trials = trials_in(dir, sweep, point);
+  for (const Trial& t : known) {
+    const bool here = std::any_of(out.trials.begin(), out.trials.end(),
+                                  [&](const Trial& o) { return o.scene_hash == t.scene_hash; });
+    if (!here && trial_hash(sweep, point, t.value) == t.scene_hash) out.trials.push_back(t);
   }
   std::sort(out.trials.begin(), out.trials.end(), [](const Trial& a, const Trial& b) { return a.value < b.value; });
   out.below = q.from;
@@ -146,6 +173,43 @@ Threshold threshold_of(const CampaignDirectory& dir, const Sweep& sweep, const S
   const bool all = std::all_of(out.trials.begin(), out.trials.end(), [](const Trial& t) { return t.passed; });
   out.outside = !any || all;
   return out;
+}
+
+std::vector<OutputColumn> trial_columns() {
+  return {{"seed", "", "1, 2, ... in the order of the sweep"},
+          {"value", "that of the key", "value of the key in this run"},
+          {"passed", "", "1: the column passed its value within the time of the scene; 0: it did not"},
+          {"at_ps", "ps", "when it passed; nan: it did not"},
+          {"rate_per_ps", "1/ps", "rate of the exponential growth up to then; nan: it cannot be told"},
+          {"rate_error_per_ps", "1/ps", "its standard error"},
+          {"scene_xxh64", "", "hash of the scene and its parameter sets, by which `--known` finds it again"}};
+}
+
+std::vector<Trial> read_trials(const std::string& path) {
+  CsvReader csv(path);
+  const std::vector<OutputColumn> columns = trial_columns();
+  std::size_t first = 0;  // of these columns, behind the keys
+  bool right = csv.next() && csv.cells().size() >= columns.size();
+  if (right) first = csv.cells().size() - columns.size();
+  for (std::size_t k = 0; right && k < columns.size(); ++k) right = csv.cells()[first + k] == columns[k].name;
+  if (!right)
+    throw InputError({path, 1, ""}, fmt::format("has not the columns {} at its end", column_names(columns)),
+                     "it is another table, or an earlier version wrote it: take it away");
+  std::vector<Trial> trials;
+  while (csv.next()) {
+    if (csv.cells().size() != first + columns.size())
+      csv.fail("", fmt::format("has {} columns, the header {}", csv.cells().size(), first + columns.size()),
+               "the file was changed or damaged; restore it");
+    const auto number = [&](std::size_t k) { return csv.number(first + k, columns[k].name); };
+    Trial t;
+    t.value = number(1);
+    t.passed = number(2) != 0;
+    if (t.passed) t.time = number(3);
+    if (const double rate = number(4); std::isfinite(rate)) t.rate = rate, t.error = number(5);
+    t.scene_hash = csv.cells()[first + 6];
+    trials.push_back(t);
+  }
+  return trials;
 }
 
 double PhasePoint::by_bisection() const {
@@ -175,7 +239,7 @@ std::optional<GrowthThreshold> PhasePoint::by_growth() const {
 }
 
 std::vector<PhasePoint> phase_points(const CampaignDirectory& dir, const Sweep& sweep,
-                                     const std::vector<SweepPoint>& points) {
+                                     const std::vector<SweepPoint>& points, const std::vector<Trial>& known) {
   std::vector<PhasePoint> out;
   for (const Replicates& r : replicates_of(sweep, points)) {
     PhasePoint point;
@@ -184,7 +248,7 @@ std::vector<PhasePoint> phase_points(const CampaignDirectory& dir, const Sweep& 
     Scene scene = scene_of(sweep, r.points.front());
     const Prepared prepared = prepare(scene);
     add_theory(sweep, scene, prepared, point);
-    for (const SweepPoint& p : r.points) point.seeds.push_back(threshold_of(dir, sweep, p));
+    for (const SweepPoint& p : r.points) point.seeds.push_back(threshold_of(dir, sweep, p, known));
     out.push_back(std::move(point));
   }
   return out;

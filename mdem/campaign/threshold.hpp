@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "campaign/campaign.hpp"
+#include "io/outputs.hpp"
 
 namespace ropewalk {
 
@@ -16,6 +17,7 @@ struct Trial {
   bool passed = false;
   double time = 0;                    // ps, at which it passed
   std::optional<double> rate, error;  // 1/ps, of the exponential growth on the way; none: it cannot be told
+  std::string scene_hash;             // of its scene and parameter sets
 };
 
 // Of a point, by its runs; values rise.
@@ -49,8 +51,10 @@ Trial trial_of(const std::vector<LogRow>& log, const ThresholdQuestion& question
 std::string trial_text(const Sweep& sweep, const SweepPoint& point, double value);
 RunDirectory trial_directory(const CampaignDirectory& dir, const Sweep& sweep, const SweepPoint& point,
                              double value);
-// All that were run.
-Threshold threshold_of(const CampaignDirectory& dir, const Sweep& sweep, const SweepPoint& point);
+std::string trial_hash(const Sweep& sweep, const SweepPoint& point, double value);
+// All that were run, and those of `known` that are of this point.
+Threshold threshold_of(const CampaignDirectory& dir, const Sweep& sweep, const SweepPoint& point,
+                       const std::vector<Trial>& known);
 
 // Points that differ in their seed alone.
 struct PhasePoint {
@@ -65,7 +69,11 @@ struct PhasePoint {
   std::optional<GrowthThreshold> by_growth() const;
 };
 std::vector<PhasePoint> phase_points(const CampaignDirectory& dir, const Sweep& sweep,
-                                     const std::vector<SweepPoint>& points);
+                                     const std::vector<SweepPoint>& points, const std::vector<Trial>& known);
+
+// Columns of trials.csv behind those of the keys that vary.
+std::vector<OutputColumn> trial_columns();
+std::vector<Trial> read_trials(const std::string& path);
 
 std::string thresholds_csv(const Sweep& sweep, const std::vector<PhasePoint>& points);
 std::string trials_csv(const Sweep& sweep, const std::vector<PhasePoint>& points);

@@ -2,6 +2,7 @@
 // and turned into one line by main.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -53,6 +54,16 @@ struct ReportArguments {
   std::string picture;  // write the last frame as SVG here instead
 };
 int report_command(const ReportArguments& arguments);
+
+struct ConvertArguments {
+  std::string dir;
+  std::string out;  // .gsd, .lammpstrj or .pvd
+  double from_ps = 0;
+  std::optional<double> to_ps;
+  long every = 1;  // frames
+  bool force = false;
+};
+int convert_command(const ConvertArguments& arguments);
 
 struct PictureArguments {
   std::string dir;
@@ -122,7 +133,8 @@ int sweep_command(const SweepArguments& arguments);
 
 struct ThresholdArguments {
   std::string file;
-  std::string out;  // empty: FILE without .toml
+  std::string out;    // empty: FILE without .toml
+  std::string known;  // trials.csv of an earlier search
   int jobs = 0;     // points at a time; 0: one for each core
   bool force = false;
   bool quiet = false;

@@ -8,7 +8,7 @@
 
 #include "commands/commands.hpp"
 #include "io/files.hpp"
-#include "io/frames.hpp"
+#include "io/frames/frames.hpp"
 #include "model/error.hpp"
 #include "run/colours.hpp"
 #include "run/origin_changes.hpp"
@@ -57,7 +57,8 @@ void copy_run(const RunDirectory& from, const RunDirectory& to) {
   if (fs::exists(from.state())) copy(from.state(), to.state(), all);
   if (fs::exists(from.limits())) copy(from.limits(), to.limits(), all);
   copy(from.log(), to.log(), c.log.bytes);
-  copy(from.frames(), to.frames(), c.frames.bytes);
+  const FrameFormat format = format_of(from.frames());
+  NewFrames(to.frames(format), format, 0, from.frames(), c.frames.bytes).replace();
   copy(from.manifest(), to.manifest(), all);
   write_checkpoint(to, c);
 }
@@ -155,8 +156,7 @@ int export_command(const ExportArguments& a) {
     begin_run(run);
   }
   write_lammps_files(to);
-  if (!a.quiet)
-    fmt::print("{0} written. Go on with: cd {0} && mpirun -np 2 lmp-ropewalk -in in.rope\n", to.path);
+  if (!a.quiet) fmt::print("{0} written. Go on with: cd {0} && mpirun -np 2 lmp-ropewalk -in in.rope\n", to.path);
   return 0;
 }
 
@@ -189,7 +189,8 @@ class Import {
     for (const LammpsRow& row : read_lammps_rows(files_)) rows_[static_cast<std::int64_t>(row.step)] = row;
     remove_parts(dir_.path);
     log_ = read_file(dir_.log()).substr(0, checkpoint_.log.bytes);
-    if (checkpoint_.frames.bytes > 0) frames_ = read_file(dir_.frames()).substr(0, checkpoint_.frames.bytes);
+    const std::string there = dir_.frames();
+    frames_ = std::make_unique<NewFrames>(there, format_of(there), 0, there, checkpoint_.frames.bytes);
     const std::int64_t from = reached_;
     take_states(files_.states());
     if (fs::exists(files_.last_state())) take_states(files_.last_state());
@@ -227,8 +228,7 @@ class Import {
     account.first = first_;
     account.ends = readings_at(state);
     log_ += log_line(log_row(observer_, scene_, prepared_.topology, state, account));
-    frames_ +=
-        dump_frame(prepared_.topology, state, element_colours(prepared_.topology, prepared_.interaction, state));
+    (*frames_)->write(prepared_.topology, state, element_colours(prepared_.topology, prepared_.interaction, state));
     prepared_.state = state;
     last_ = from;
     reached_ = state.step;
@@ -255,7 +255,7 @@ class Import {
     simulation.inherit_from(force_.force, force_.torque, {last_.work, last_.dissipated});
     simulation.inherit_from(gauges_.sums);
     checkpoint_.log = mark_of(log_);
-    checkpoint_.frames = mark_of(frames_);
+    checkpoint_.frames = (*frames_)->mark();
     checkpoint_.mark = nullptr;
     checkpoint_.simulation = simulation.serialise();
     Manifest m = read_manifest(dir_.manifest());
@@ -264,7 +264,7 @@ class Import {
     m.reason = fmt::format("steps {} to {} by LAMMPS", from, reached_);
     const std::string final_state = state_csv(prepared_.topology, prepared_.state);
     write_file_atomically(dir_.log(), log_);
-    write_file_atomically(dir_.frames(), frames_);
+    frames_->replace();
     write_file_atomically(dir_.final_state(), final_state);
     write_file_atomically(dir_.manifest(), manifest_json(m));
     write_checkpoint(dir_, checkpoint_);
@@ -293,7 +293,8 @@ class Import {
   std::map<std::int64_t, LammpsRow> rows_;
   LammpsRow last_;
   Forces force_;
-  std::string log_, frames_;
+  std::string log_;
+  std::unique_ptr<NewFrames> frames_;
   long taken_ = 0;
 };
 

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "commands/commands.hpp"
-#include "io/frames.hpp"
+#include "io/frames/frames.hpp"
 #include "io/tube_table.hpp"
 #include "model/error.hpp"
 #include "observe/observables.hpp"
@@ -116,22 +116,20 @@ int observe_command(const ObserveArguments& a) {
   if (a.neighbour_radius > 0) scene.observe.neighbour_radius = a.neighbour_radius;
   const Prepared prepared = prepare(scene);
   const Observer observer = make_observer(scene, prepared);
-  DumpReader reader(dir.frames());
+  const auto reader = open_frames(dir.frames());
   const std::vector<Observable> chosen = observables_of_frames();
   const Console console(chosen);
   if (a.tubes) {
-    DumpFrame last;
-    while (reader.next(prepared.topology, last)) {
-    }
-    if (last.state.size() == 0)
+    const std::optional<StoredFrame> last = last_frame(dir.frames(), prepared.topology);
+    if (!last)
       throw InputError({dir.frames(), 0, ""}, "holds no frame", "run the scene further with `ropewalk resume`");
-    fmt::print("{}", tube_table_csv(prepared.topology, last.state, observer.loading));
+    fmt::print("{}", tube_table_csv(prepared.topology, last->state, observer.loading));
     return 0;
   }
   if (!a.json) console.print_heading();
   Json all = Json::array();
-  DumpFrame frame;
-  while (reader.next(prepared.topology, frame)) {
+  StoredFrame frame;
+  while (reader->next(prepared.topology, frame)) {
     const RopeObservation rope = observe(observer, scene, prepared.topology, frame.state);
     const Loading load = loading(prepared.topology, frame.state, observer.loading);
     const Measurement measurement{prepared.topology, frame.state, rope, load, observer.mass, {}};

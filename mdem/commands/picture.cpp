@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 constexpr std::size_t usual_states = 4;
 
 // Frames nearest to these times; evenly over the run where there are none.
-std::vector<DumpFrame> frames_at(const RunDirectory& dir, const Topology& topology, std::vector<double> times) {
+std::vector<StoredFrame> frames_at(const RunDirectory& dir, const Topology& topology, std::vector<double> times) {
   const std::vector<double> stored = frame_times(dir, topology);
   if (times.empty())
     for (const std::size_t k : evenly(stored.size(), usual_states)) times.push_back(stored[k]);
@@ -84,7 +84,7 @@ int picture_command(const PictureArguments& a) {
   in.log = read_log(dir.log());
   in.curves = curves_of(a.curves);
   in.width = a.width;
-  for (const DumpFrame& frame : frames_at(dir, prepared.topology, a.at)) {
+  for (const StoredFrame& frame : frames_at(dir, prepared.topology, a.at)) {
     const RopeObservation o = observe(observer, scene, prepared.topology, frame.state);
     const double beta = o.beta / units::degree;
     in.views.push_back(view_of(prepared.topology, frame, beta));

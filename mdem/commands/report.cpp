@@ -10,7 +10,7 @@
 #include "commands/commands.hpp"
 #include "commands/run_views.hpp"
 #include "io/files.hpp"
-#include "io/frames.hpp"
+#include "io/frames/frames.hpp"
 #include "io/grade.hpp"
 #include "model/error.hpp"
 #include "run/plan_check.hpp"
@@ -22,16 +22,16 @@ namespace {
 
 constexpr std::size_t pictured = 6;
 
-std::vector<DumpFrame> read_frames(const RunDirectory& dir, const Topology& topology) {
-  std::vector<DumpFrame> all;
-  DumpReader reader(dir.frames());
-  DumpFrame frame;
-  while (reader.next(topology, frame)) all.push_back(frame);
-  if (all.size() <= pictured) return all;
+std::vector<StoredFrame> read_frames(const RunDirectory& dir, const Topology& topology) {
+  const auto reader = open_frames(dir.frames());
+  const std::size_t all = reader->count(topology), some = std::min(all, pictured);
+  std::vector<StoredFrame> out(some);
   // First, last and evenly between.
-  std::vector<DumpFrame> some;
-  for (std::size_t k = 0; k < pictured; ++k) some.push_back(all[k * (all.size() - 1) / (pictured - 1)]);
-  return some;
+  for (std::size_t k = 0; k < some; ++k) {
+    reader->seek(some < pictured ? k : k * (all - 1) / (pictured - 1));
+    reader->next(topology, out[k]);
+  }
+  return out;
 }
 
 void add_run_facts(const Scene& scene, const Prepared& p, const Manifest& m, ReportInput& in) {
@@ -137,7 +137,7 @@ ReportInput gather(const RunDirectory& dir, const Scene& scene, const Prepared& 
   in.rope = is_rope(p, observer);
   in.loaded = !p.loads.empty();
   in.shells = observer.shells;
-  for (const DumpFrame& frame : read_frames(dir, p.topology)) {
+  for (const StoredFrame& frame : read_frames(dir, p.topology)) {
     const RopeObservation o = observe(observer, scene, p.topology, frame.state);
     const double beta = o.beta / units::degree;
     in.sections.push_back({frame.state.time, beta, o.middle, o.radius_profile});
@@ -157,7 +157,7 @@ bool is_rope(const Prepared& p, const Observer& observer) {
   return p.topology.tubes() > 1 && !observer.loading.radius.empty() && are_parallel(p.state);
 }
 
-RopeView view_of(const Topology& topology, const DumpFrame& frame, double beta_deg) {
+RopeView view_of(const Topology& topology, const StoredFrame& frame, double beta_deg) {
   RopeView view;
   view.time_ps = frame.state.time;
   view.beta_deg = beta_deg;
@@ -173,13 +173,10 @@ RopeView view_of(const Topology& topology, const DumpFrame& frame, double beta_d
 }
 
 std::optional<RopeView> last_view(const RunDirectory& dir, const Scene& scene, const Prepared& prepared) {
-  DumpReader reader(dir.frames());
-  DumpFrame frame;
-  bool any = false;
-  while (reader.next(prepared.topology, frame)) any = true;
-  if (!any) return {};
-  const double beta = observe(make_observer(scene, prepared), scene, prepared.topology, frame.state).beta;
-  return view_of(prepared.topology, frame, beta / units::degree);
+  const std::optional<StoredFrame> frame = last_frame(dir.frames(), prepared.topology);
+  if (!frame) return {};
+  const double beta = observe(make_observer(scene, prepared), scene, prepared.topology, frame->state).beta;
+  return view_of(prepared.topology, *frame, beta / units::degree);
 }
 
 std::string report_of(const RunDirectory& dir, const Scene& scene, const Prepared& prepared) {

@@ -14,8 +14,10 @@
 #include <new>
 
 #include "commands/commands.hpp"
+#include "io/failure.hpp"
 #include "io/files.hpp"
-#include "io/frames.hpp"
+#include "io/frames/frames.hpp"
+#include "io/frames/vtp.hpp"
 #include "io/growing_file.hpp"
 #include "io/stop_signals.hpp"
 #include "model/error.hpp"
@@ -199,17 +201,17 @@ class Run {
       return {interrupted(128 + stop_signal, fmt::format("by signal {}", static_cast<int>(stop_signal))), nullptr};
     } catch (const NumericalError& e) {
       return {failed(e), nullptr};
-    } catch (const std::bad_alloc&) {
-      return {broken_off("there is not enough memory; take a machine with more, or end other programs"), nullptr};
     } catch (const std::exception& e) {
-      return {broken_off(e.what()), nullptr};
+      return {broken_off(failure_words(e)), nullptr};
     }
   }
 
  private:
   void open(std::uint64_t log_bytes, std::uint64_t frame_bytes) {
     log_ = std::make_unique<GrowingFile>(dir_.log(), log_bytes);
-    frames_ = std::make_unique<GrowingFile>(dir_.frames(), frame_bytes);
+    const std::string there = dir_.frames();
+    const FrameFormat format = std::filesystem::exists(there) ? format_of(there) : scene_.run.frames_format;
+    frames_ = frame_writer(dir_.frames(format), format, frame_bytes, expected_frames_);
   }
 
   // Up to the checkpoint at the start, from which even the first minute can be resumed.
@@ -232,6 +234,7 @@ class Run {
     const double span = prepared_.duration > 0 ? prepared_.duration : 1000 * dt;
     log_every_ = every(scene_.run.log_every, span, 400, dt);
     frames_every_ = every(scene_.run.frames_every, span, 40, dt);
+    expected_frames_ = static_cast<std::size_t>(span / dt / static_cast<double>(frames_every_));
   }
 
   // The checkpoint may be of a scene with another time step, which then stays.
@@ -475,7 +478,7 @@ class Run {
 
   void write_frame() {
     const ElementColours colours = element_colours(prepared_.topology, prepared_.interaction, simulation_.state());
-    frames_->write(dump_frame(prepared_.topology, simulation_.state(), colours));
+    frames_->write(prepared_.topology, simulation_.state(), colours);
     if (!scene_.run.paraview) return;
     std::error_code error;
     std::filesystem::create_directories(dir_.paraview(), error);
@@ -594,7 +597,7 @@ class Run {
     try {
       pending_.write(dir_.report(), report_of(dir_, scene_, prepared_));
     } catch (const std::exception& e) {
-      tell(fmt::format("no report: {}; make it with: ropewalk report {}", e.what(), dir_.path));
+      tell(fmt::format("no report: {}; make it with: ropewalk report {}", failure_words(e), dir_.path));
     }
     pending_.try_again();
   }
@@ -738,7 +741,8 @@ class Run {
   Observer observer_;
   Simulation simulation_;
   DirectoryLock lock_;
-  std::unique_ptr<GrowingFile> log_, frames_;
+  std::unique_ptr<GrowingFile> log_;
+  std::unique_ptr<FrameWriter> frames_;
   PendingFiles pending_;
   RunOrigin origin_;
   LimitWatch watch_;
@@ -756,6 +760,7 @@ class Run {
     double time = 0;
   } counted_from_;
   long log_every_ = 1, frames_every_ = 1, last_step_ = 0;
+  std::size_t expected_frames_ = 0;  // of the whole scene
   std::int64_t saved_step_ = -1;
   std::int64_t written_step_ = -1;  // of a relaxation: its row and frame were there when it began or went on
   double longest_save_ = 0;         // s

@@ -11,21 +11,22 @@ namespace ropewalk {
 
 std::vector<double> frame_times(const RunDirectory& dir, const Topology& topology) {
   std::vector<double> times;
-  DumpFrame frame;
-  for (DumpReader reader(dir.frames()); reader.next(topology, frame);) times.push_back(frame.state.time);
+  StoredFrame frame;
+  for (const auto reader = open_frames(dir.frames()); reader->next(topology, frame);)
+    times.push_back(frame.state.time);
   if (times.empty())
     throw InputError({dir.frames(), 0, ""}, "holds no frame", "run the scene further with `ropewalk resume`");
   return times;
 }
 
-std::vector<DumpFrame> frames_of(const RunDirectory& dir, const Topology& topology,
-                                 const std::vector<std::size_t>& wanted) {
-  std::vector<DumpFrame> out(wanted.size());
-  std::size_t k = 0;
-  DumpFrame frame;
-  for (DumpReader reader(dir.frames()); reader.next(topology, frame); ++k)
-    for (std::size_t w = 0; w < wanted.size(); ++w)
-      if (wanted[w] == k) out[w] = frame;
+std::vector<StoredFrame> frames_of(const RunDirectory& dir, const Topology& topology,
+                                   const std::vector<std::size_t>& wanted) {
+  std::vector<StoredFrame> out(wanted.size());
+  const auto reader = open_frames(dir.frames());
+  for (std::size_t w = 0; w < wanted.size(); ++w) {
+    reader->seek(wanted[w]);
+    reader->next(topology, out[w]);
+  }
   return out;
 }
 

@@ -4,13 +4,13 @@
 #include <optional>
 #include <vector>
 
-#include "io/frames.hpp"
+#include "io/frames/frames.hpp"
 #include "report/svg.hpp"
 #include "run/run_directory.hpp"
 
 namespace ropewalk {
 
-RopeView view_of(const Topology& topology, const DumpFrame& frame, double beta_deg);
+RopeView view_of(const Topology& topology, const StoredFrame& frame, double beta_deg);
 // Of the last frame; none where there is no frame.
 std::optional<RopeView> last_view(const RunDirectory& dir, const Scene& scene, const Prepared& prepared);
 
@@ -20,7 +20,7 @@ bool is_rope(const Prepared& prepared, const Observer& observer);
 // The stored frames' times, ps. Throws InputError where there are none.
 std::vector<double> frame_times(const RunDirectory& dir, const Topology& topology);
 // The frames with these numbers, from 0.
-std::vector<DumpFrame> frames_of(const RunDirectory& dir, const Topology& topology,
+std::vector<StoredFrame> frames_of(const RunDirectory& dir, const Topology& topology,
                                  const std::vector<std::size_t>& wanted);
 
 // What --from says. side: as reports have it; x, y, z: along that axis; AZIMUTH,ELEVATION about z, in degrees.

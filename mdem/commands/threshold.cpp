@@ -5,8 +5,10 @@
 #include <omp.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <set>
 
 #include "commands/commands.hpp"
 #include "commands/point_runs.hpp"
@@ -38,6 +40,7 @@ class Search {
   int go() {
     create_campaign(dir_, sweep_, {}, arguments_.force);
     refuse_other_scenes();
+    read_known_trials();
     listen_to_stop_signals();
     const double began = now();
     std::vector<ProcessTask> tasks;
@@ -75,9 +78,7 @@ class Search {
   // Runs in the directory must be of this sweep.
   void refuse_other_scenes() {
     for (const SweepPoint& p : points_) {
-      const std::string folder = dir_.point(p.name).path;
-      if (!fs::exists(folder)) continue;
-      for (const Trial& t : threshold_of(dir_, sweep_, p).trials) {
+      for (const Trial& t : threshold_of(dir_, sweep_, p, {}).trials) {
         const RunDirectory run = trial_directory(dir_, sweep_, p, t.value);
         if (is_run_of(run, trial_text(sweep_, p, t.value), p.sets)) continue;
         if (!arguments_.force)
@@ -88,10 +89,40 @@ class Search {
     }
   }
 
+  // Trials whose runs are not in the directory: of its own table, and of another search.
+  void read_known_trials() {
+    if (fs::exists(dir_.trials())) {
+      known_ = read_trials(dir_.trials());
+      if (const std::size_t others = others_in(known_); others > 0 && !arguments_.force)
+        throw InputError({dir_.trials(), 0, ""},
+                         fmt::format("{} of its {} trials are of other scenes or parameter sets, and would be lost",
+                                     others, known_.size()),
+                         "choose another --out, or give --force");
+    }
+    if (arguments_.known.empty()) return;
+    const std::vector<Trial> more = read_trials(arguments_.known);
+    if (const std::size_t others = others_in(more); others > 0)
+      tell_as_is(
+          fmt::format("ropewalk: note: {} of the {} trials in {} are of other scenes or parameter sets and "
+                      "are not used.\n",
+                      others, more.size(), arguments_.known));
+    known_.insert(known_.end(), more.begin(), more.end());
+  }
+
+  std::size_t others_in(const std::vector<Trial>& trials) const {
+    std::set<std::string> ours;
+    for (const SweepPoint& p : points_)
+      for (const Trial& t : threshold_of(dir_, sweep_, p, trials).trials) ours.insert(t.scene_hash);
+    return static_cast<std::size_t>(
+        std::count_if(trials.begin(), trials.end(), [&](const Trial& t) { return ours.count(t.scene_hash) == 0; }));
+  }
+
   // 0 where the run ended.
   int try_at(const SweepPoint& p, double value) const {
     const RunDirectory run = trial_directory(dir_, sweep_, p, value);
-    if (progress_of(run).stage == PointProgress::Stage::ended) return 0;
+    const std::string hash = trial_hash(sweep_, p, value);
+    for (const Trial& t : threshold_of(dir_, sweep_, p, known_).trials)
+      if (t.scene_hash == hash) return 0;
     fs::create_directories(dir_.point(p.name).path);
     Scene scene = scene_at(p, value);
     scene.name += fmt::format(", {}, {:g}", p.name, value);
@@ -104,14 +135,14 @@ class Search {
     for (const double end : {q.to, q.from})
       if (const int code = try_at(p, end)) return code;
     for (;;) {
-      const Threshold t = threshold_of(dir_, sweep_, p);
+      const Threshold t = threshold_of(dir_, sweep_, p, known_);
       if (t.outside || t.above - t.below <= q.accuracy * std::fabs(t.middle())) return 0;
       if (const int code = try_at(p, t.middle())) return code;
     }
   }
 
   std::string result_words(const SweepPoint& p) const {
-    const Threshold t = threshold_of(dir_, sweep_, p);
+    const Threshold t = threshold_of(dir_, sweep_, p, known_);
     if (t.trials.empty()) return fmt::format("{}: no run ended, see {}", p.name, dir_.messages(p.name));
     if (t.outside)
       return fmt::format("{}: {}", p.name,
@@ -121,14 +152,14 @@ class Search {
 
   // The tables and the page of what is known so far.
   void write() const {
-    const std::vector<PhasePoint> points = phase_points(dir_, sweep_, points_);
+    const std::vector<PhasePoint> points = phase_points(dir_, sweep_, points_, known_);
     write_file_atomically(dir_.path + "/thresholds.csv", thresholds_csv(sweep_, points));
-    write_file_atomically(dir_.path + "/trials.csv", trials_csv(sweep_, points));
+    write_file_atomically(dir_.trials(), trials_csv(sweep_, points));
     write_file_atomically(dir_.path + "/thresholds.html", phase_page(sweep_, points));
   }
 
   void tell(const std::vector<std::string>& failed) const {
-    const std::vector<PhasePoint> points = phase_points(dir_, sweep_, points_);
+    const std::vector<PhasePoint> points = phase_points(dir_, sweep_, points_, known_);
     double seconds = 0;
     std::size_t runs = 0;
     for (const auto& entry : fs::recursive_directory_iterator(dir_.path + "/points"))
@@ -150,6 +181,7 @@ class Search {
   Sweep sweep_;
   CampaignDirectory dir_;
   std::vector<SweepPoint> points_;
+  std::vector<Trial> known_;  // without runs in the directory
   const ThresholdArguments& arguments_;
   int jobs_;
 };

@@ -91,14 +91,14 @@ std::vector<ColourField> colour_fields() {
 }
 
 // Quantities that some frame lacks are left out.
-std::vector<ViewField> fields_of(const Topology& topology, const std::vector<DumpFrame>& frames,
+std::vector<ViewField> fields_of(const Topology& topology, const std::vector<StoredFrame>& frames,
                                  const std::vector<LogRow>& log) {
   std::vector<ViewField> out;
   for (ColourField& colour : colour_fields()) {
     const bool all = std::none_of(frames.begin(), frames.end(),
-                                  [&](const DumpFrame& f) { return (f.colours.*colour.values).empty(); });
+                                  [&](const StoredFrame& f) { return (f.colours.*colour.values).empty(); });
     if (!all) continue;
-    for (const DumpFrame& f : frames) {
+    for (const StoredFrame& f : frames) {
       colour.field.values.push_back(f.colours.*colour.values);
       // Times of frames are rounded.
       const auto row = std::find_if(log.begin(), log.end(), [&](const LogRow& r) {
@@ -110,7 +110,7 @@ std::vector<ViewField> fields_of(const Topology& topology, const std::vector<Dum
   }
   ViewField tension{"Tension", "nN", "along the tube, mean of the bonds of the element; negative: pressed",
                     true,      {},   {}};
-  for (const DumpFrame& f : frames) {
+  for (const StoredFrame& f : frames) {
     tension.values.push_back(tension_of_elements(topology, f.state));
     tension.log_total.push_back(none);
   }
@@ -124,8 +124,8 @@ ViewInput gather(const RunDirectory& dir, const Scene& scene, const Prepared& p,
   in.tube_begin = p.topology.tube_begin;
   for (int t = 0; t < p.topology.tubes(); ++t) in.tube_radius.push_back(p.topology.type_of(t).radius);
   in.stored_frames = frame_times(dir, p.topology).size();
-  const std::vector<DumpFrame> frames = frames_of(dir, p.topology, evenly(in.stored_frames, most_frames));
-  for (const DumpFrame& f : frames) {
+  const std::vector<StoredFrame> frames = frames_of(dir, p.topology, evenly(in.stored_frames, most_frames));
+  for (const StoredFrame& f : frames) {
     in.time_ps.push_back(f.state.time);
     in.step.push_back(f.state.step);
     in.joints.push_back(joints_of(p.topology, f.state));

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdint>
 #include <string_view>
 #include <utility>
 
@@ -48,6 +49,17 @@ inline bool write_all(int fd, std::string_view content) {
     const ssize_t written = uninterrupted([&] { return ::write(fd, content.data(), content.size()); });
     if (written < 0) return false;
     content.remove_prefix(static_cast<std::size_t>(written));
+  }
+  return true;
+}
+
+inline bool write_all_at(int fd, std::string_view content, std::uint64_t at) {
+  while (!content.empty()) {
+    const ssize_t written =
+        uninterrupted([&] { return ::pwrite(fd, content.data(), content.size(), static_cast<off_t>(at)); });
+    if (written < 0) return false;
+    content.remove_prefix(static_cast<std::size_t>(written));
+    at += static_cast<std::uint64_t>(written);
   }
   return true;
 }

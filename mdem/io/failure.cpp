@@ -28,6 +28,9 @@ std::string no_output(int code) {
   return fmt::format("the standard output cannot be written: {}; {}", why, remedy_for_errno(code));
 }
 
+constexpr const char* no_memory =
+    "the memory does not suffice; take fewer or shorter tubes or fewer threads, or raise the limit (ulimit -v)";
+
 bool lacks_memory(const std::exception& failure) {
   return as<std::bad_alloc>(failure) || as<std::length_error>(failure);
 }
@@ -36,9 +39,7 @@ bool lacks_memory(const std::exception& failure) {
 
 std::string failure_words(const std::exception& failure) {
   constexpr std::size_t longest = 4000;
-  if (lacks_memory(failure))
-    return "the memory does not suffice; take fewer or shorter tubes or fewer threads, or raise the limit (ulimit "
-           "-v)";
+  if (lacks_memory(failure)) return no_memory;
   if (as<nlohmann::json::exception>(failure))
     return fmt::format("a JSON file does not hold what it should; restore it or make it again ({})",
                        printable(failure.what(), longest));
@@ -59,7 +60,11 @@ int failure_code(const std::exception& failure) {
 }
 
 int tell_failure(const char* program, const std::exception& failure) {
-  std::fprintf(stderr, "%s: %s\n", program, failure_words(failure).c_str());
+  try {
+    std::fprintf(stderr, "%s: %s\n", program, failure_words(failure).c_str());
+  } catch (const std::bad_alloc&) {  // not even for the words
+    std::fprintf(stderr, "%s: %s\n", program, no_memory);
+  }
   return failure_code(failure);
 }
 

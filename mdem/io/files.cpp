@@ -134,6 +134,8 @@ void write_file_atomically(const std::string& path, std::string_view content, co
   flush_directory_of(path);
 }
 
+std::string part_of(const std::string& path) { return fmt::format("{}{}{}", path, part, ::getpid()); }
+
 std::string without_part(const std::string& name) {
   const std::size_t at = name.rfind(part);
   if (at == std::string::npos || at == 0) return "";

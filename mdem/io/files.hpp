@@ -22,6 +22,8 @@ void refuse_devices(const std::string& path);
 // between the two renames it alone is there.
 void write_file_atomically(const std::string& path, std::string_view content, const std::string& keep_old_as = "");
 
+// The name under which this process writes a file before it is whole.
+std::string part_of(const std::string& path);
 // The name of the file that a process was writing when it left one of this name; empty for any other name.
 std::string without_part(const std::string& name);
 // Removes what such processes left.

@@ -19,9 +19,12 @@ std::string_view tail_of(std::string_view content) {
   return content.substr(content.size() - std::min<std::size_t>(content.size(), tail_bytes));
 }
 
-// The last bytes before `end`; fewer where the file is shorter or cannot be read.
-std::string tail_before(int fd, std::uint64_t end) {
-  const std::uint64_t from = end - std::min(end, tail_bytes);
+std::uint64_t tail_from(std::uint64_t end, std::uint64_t begin) {
+  return std::min(end, std::max(begin, end - std::min(end, tail_bytes)));
+}
+
+// Fewer where the file is shorter or cannot be read.
+std::string bytes_between(int fd, std::uint64_t from, std::uint64_t end) {
   std::string text(end - from, '\0');
   std::size_t have = 0;
   while (have < text.size()) {
@@ -34,29 +37,40 @@ std::string tail_before(int fd, std::uint64_t end) {
   return text;
 }
 
+Descriptor opened(const std::string& path) {
+  Descriptor file(uninterrupted([&] { return ::open(path.c_str(), O_RDONLY | O_CLOEXEC); }));
+  if (!file.open()) throw file_error(path, "cannot be opened", errno);
+  return file;
+}
+
 }  // namespace
 
-FileMark mark_of(std::string_view content) { return {content.size(), hash_hex(tail_of(content))}; }
+FileMark mark_of(std::string_view content) {
+  return {content.size(), tail_from(content.size(), 0), hash_hex(tail_of(content))};
+}
 
-FileMark mark_of(const std::string& path, std::uint64_t bytes) {
-  const Descriptor file(uninterrupted([&] { return ::open(path.c_str(), O_RDONLY | O_CLOEXEC); }));
-  if (!file.open()) throw file_error(path, "cannot be opened", errno);
-  return {bytes, hash_hex(tail_before(file.get(), bytes))};
+FileMark mark_of(const std::string& path, std::uint64_t bytes, std::uint64_t tail_begin) {
+  const std::uint64_t from = tail_from(bytes, tail_begin);
+  return {bytes, from, hash_hex(bytes_between(opened(path).get(), from, bytes))};
 }
 
 bool reaches(const std::string& path, const FileMark& mark) {
-  return ::access(path.c_str(), F_OK) == 0 && mark_of(path, mark.bytes).tail == mark.tail;
+  if (::access(path.c_str(), F_OK) != 0 || mark.tail_from > mark.bytes) return false;
+  struct stat status;
+  const Descriptor file = opened(path);
+  if (::fstat(file.get(), &status) != 0 || static_cast<std::uint64_t>(status.st_size) < mark.bytes) return false;
+  return hash_hex(bytes_between(file.get(), mark.tail_from, mark.bytes)) == mark.tail;
 }
 
 GrowingFile::GrowingFile(std::string path, std::uint64_t keep)
     : path_(std::move(path)),
-      file_(uninterrupted([&] { return ::open(path_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666); })) {
+      file_(uninterrupted([&] { return ::open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666); })) {
   if (!file_.open()) fail();
   cut(keep);
 }
 
 void GrowingFile::write(std::string_view text) {
-  if (!write_all(file_.get(), text)) {
+  if (!write_all_at(file_.get(), text, size_)) {
     const int code = errno;
     cut(size_);  // no part of a line stays behind
     errno = code;
@@ -67,17 +81,24 @@ void GrowingFile::write(std::string_view text) {
   if (tail_.size() > 2 * tail_bytes) tail_.erase(0, tail_.size() - tail_bytes);
 }
 
+void GrowingFile::patch(std::uint64_t at, std::string_view bytes) {
+  if (!write_all_at(file_.get(), bytes, at)) fail();
+}
+
 void GrowingFile::cut(std::uint64_t keep) {
   if (uninterrupted([&] { return ::ftruncate(file_.get(), static_cast<off_t>(keep)); }) != 0) fail();
   size_ = keep;
-  tail_ = tail_before(file_.get(), keep);
+  tail_ = bytes_between(file_.get(), tail_from(keep, 0), keep);
 }
 
 void GrowingFile::sync() {
   if (uninterrupted([&] { return ::fdatasync(file_.get()); }) != 0) fail();
 }
 
-FileMark GrowingFile::mark() const { return {size_, hash_hex(tail_of(tail_))}; }
+FileMark GrowingFile::mark() const {
+  const std::uint64_t from = tail_from(size_, tail_begin_);
+  return {size_, from, hash_hex(std::string_view(tail_).substr(tail_.size() - (size_ - from)))};
+}
 
 void GrowingFile::fail() const {
   throw InputError({path_, 0, ""}, fmt::format("cannot be written: {}", std::strerror(errno)),

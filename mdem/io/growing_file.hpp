@@ -12,12 +12,13 @@ namespace ropewalk {
 
 struct FileMark {
   std::uint64_t bytes = 0;
-  std::string tail;  // hash of the last bytes before it, hex
+  std::uint64_t tail_from = 0;
+  std::string tail;  // hash of the bytes from there on, hex
 };
 
 // Of a file with this content; of the first bytes of a file.
 FileMark mark_of(std::string_view content);
-FileMark mark_of(const std::string& path, std::uint64_t bytes);
+FileMark mark_of(const std::string& path, std::uint64_t bytes, std::uint64_t tail_begin = 0);
 
 // Whether the file holds what it held at the mark, and perhaps more.
 bool reaches(const std::string& path, const FileMark& mark);
@@ -29,19 +30,24 @@ class GrowingFile {
   GrowingFile(std::string path, std::uint64_t keep);
 
   void write(std::string_view text);
+  // Replaces bytes before the end. Marks must not take them in: see tail_begins_at().
+  void patch(std::uint64_t at, std::string_view bytes);
   // What was written after this did not happen.
   void cut(std::uint64_t keep);
   // Has all of it on the disk.
   void sync();
   FileMark mark() const;
+  std::uint64_t size() const { return size_; }
+  // Marks are made of the bytes from here on.
+  void tail_begins_at(std::uint64_t begin) { tail_begin_ = begin; }
 
  private:
   [[noreturn]] void fail() const;
 
   std::string path_;
   Descriptor file_;
-  std::uint64_t size_ = 0;
-  std::string tail_;
+  std::uint64_t size_ = 0, tail_begin_ = 0;
+  std::string tail_;  // the last bytes, as many as a mark needs or more
 };
 
 }  // namespace ropewalk

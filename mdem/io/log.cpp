@@ -3,13 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <iterator>
 #include <string_view>
-#include <system_error>
 
-#include "io/files.hpp"
+#include "io/csv_reader.hpp"
 #include "io/toml_table.hpp"
 #include "model/error.hpp"
 
@@ -22,77 +20,39 @@ constexpr const char* other_log =
     "the scene again";
 constexpr const char* damaged_log = "the file was changed or damaged; restore it, or run the scene again";
 
-struct LineReader {
-  const std::string& path;
-  std::string_view line;
-  int number;
-
-  InputError error(const std::string& column, const std::string& what, const char* remedy) const {
-    return InputError({path, number, column}, what, remedy);
-  }
-
-  double value(const Observable& column, std::string_view text) const {
-    double v = 0;
-    const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), v);
-    if (code != std::errc() || end != text.data() + text.size())
-      throw error(column.name, fmt::format("\"{}\" is not a number", printable(std::string(text), 40)),
-                  damaged_log);
+LogRow row_of(const CsvReader& csv) {
+  LogRow row;
+  const std::size_t columns = row.values().size();
+  if (csv.cells().size() != columns)
+    csv.fail("", fmt::format("{} columns, {} are needed", csv.cells().size(), columns), damaged_log);
+  for (std::size_t k = 0; k < columns; ++k) {
+    const Observable& column = observables()[k];
+    const double v = csv.number(k, column.name, damaged_log);
     if (column.whole && std::isfinite(v) && v != std::floor(v))
-      throw error(column.name, fmt::format("{} is not an integer", v), damaged_log);
-    return v;
+      csv.fail(column.name, fmt::format("{} is not an integer", v), damaged_log);
+    row.values()[k] = v;
   }
-
-  LogRow row() const {
-    LogRow row;
-    const std::size_t columns = row.values().size();
-    const auto commas = static_cast<std::size_t>(std::count(line.begin(), line.end(), ','));
-    if (commas + 1 != columns)
-      throw error("", fmt::format("{} columns, {} are needed", commas + 1, columns), damaged_log);
-    std::string_view rest = line;
-    for (std::size_t k = 0; k < columns; ++k) {
-      const std::size_t comma = rest.find(',');
-      row.values()[k] = value(observables()[k], rest.substr(0, comma));
-      rest.remove_prefix(comma == std::string_view::npos ? rest.size() : comma + 1);
-    }
-    return row;
-  }
-};
-
-// Reads a line up to its newline; returns false if there is none left. Windows line ends are accepted.
-bool take_line(std::string_view& text, std::string_view& line) {
-  const std::size_t newline = text.find('\n');
-  if (newline == std::string_view::npos) return false;
-  line = text.substr(0, newline);
-  if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
-  text.remove_prefix(newline + 1);
-  return true;
+  return row;
 }
 
-void take_header(const std::string& path, std::string_view& text) {
-  std::string_view line;
-  if (!take_line(text, line)) throw InputError({path, 1, ""}, "there is no header", other_log);
-  std::size_t number = 0;
-  for (bool more = true; more; ++number) {
-    const std::size_t comma = line.find(',');
-    const std::string name(line.substr(0, comma));
-    if (number == observables().size())
-      throw InputError(
-          {path, 1, ""},
-          fmt::format("the header has more than {} columns: \"{}\" is not known", number, printable(name, 40)),
+void read_header(CsvReader& csv, const std::string& path) {
+  if (!csv.next()) throw InputError({path, 1, ""}, "there is no header", other_log);
+  const std::vector<std::string_view>& names = csv.cells();
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    const std::string name = printable(std::string(names[k]), 40);
+    if (k == observables().size())
+      csv.fail("", fmt::format("the header has more than {} columns: \"{}\" is not known", k, name), other_log);
+    if (names[k] != observables()[k].name)
+      csv.fail(
+          "",
+          fmt::format("column {} of the header is \"{}\", \"{}\" is needed", k + 1, name, observables()[k].name),
           other_log);
-    if (name != observables()[number].name)
-      throw InputError({path, 1, ""},
-                       fmt::format("column {} of the header is \"{}\", \"{}\" is needed", number + 1,
-                                   printable(name, 40), observables()[number].name),
-                       other_log);
-    more = comma != std::string_view::npos;
-    line.remove_prefix(more ? comma + 1 : line.size());
   }
-  if (number < observables().size())
-    throw InputError(
-        {path, 1, ""},
-        fmt::format("the header ends after column {}, \"{}\" is needed next", number, observables()[number].name),
-        other_log);
+  if (names.size() < observables().size())
+    csv.fail("",
+             fmt::format("the header ends after column {}, \"{}\" is needed next", names.size(),
+                         observables()[names.size()].name),
+             other_log);
 }
 
 }  // namespace
@@ -117,19 +77,16 @@ std::string log_line(const LogRow& row) {
 }
 
 std::vector<LogRow> read_log(const std::string& path) {
-  const std::string content = read_file(path);
-  std::string_view rest = content;
-  take_header(path, rest);
+  CsvReader csv(path, CsvReader::LastLine::may_be_cut_off);
+  read_header(csv, path);
   std::vector<LogRow> rows;
-  std::string_view line;
-  for (int number = 2; take_line(rest, line); ++number) rows.push_back(LineReader{path, line, number}.row());
+  while (csv.next()) rows.push_back(row_of(csv));
   return rows;
 }
 
 void check_log_header(const std::string& path) {
-  const std::string content = read_file(path);
-  std::string_view rest = content;
-  take_header(path, rest);
+  CsvReader csv(path, CsvReader::LastLine::may_be_cut_off);
+  read_header(csv, path);
 }
 
 std::size_t column_of_log(const std::string& name, const InputError::Place& place) {

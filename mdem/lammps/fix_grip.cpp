@@ -71,9 +71,17 @@ void FixGrip::post_neighbor() {
   use(elements);
 }
 
-// Every value is nonzero on its owner only, so that the sum over the ranks is exact.
-void FixGrip::share(std::vector<double>& values) const {
-  MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE, MPI_SUM, world);
+// In one message. Every value is nonzero on its owner only, so that the sum over the ranks is exact.
+void FixGrip::share(const std::vector<std::vector<double>*>& all) {
+  shared_.clear();
+  for (const std::vector<double>* v : all) shared_.insert(shared_.end(), v->begin(), v->end());
+  MPI_Allreduce(MPI_IN_PLACE, shared_.data(), static_cast<int>(shared_.size()), MPI_DOUBLE, MPI_SUM, world);
+  auto from = shared_.begin();
+  for (std::vector<double>* v : all) {
+    const auto to = from + static_cast<std::ptrdiff_t>(v->size());
+    std::copy(from, to, v->begin());
+    from = to;
+  }
 }
 
 // Where the engine leads, LAMMPS's arrays are behind.
@@ -96,14 +104,13 @@ void FixGrip::gather() {
     state_.orientation.set(k, own ? quaternion(q[atom_[k]]) : Quaternion(0, 0, 0, 0));
   }
   if (!whole_) return;
+  std::vector<std::vector<double>*> all;
   for (Vec3Array* v :
-       {&state_.position, &state_.velocity, &state_.angular_velocity, &forces_.force, &forces_.torque}) {
-    share(v->x);
-    share(v->y);
-    share(v->z);
-  }
-  for (auto* v : {&state_.orientation.w, &state_.orientation.x, &state_.orientation.y, &state_.orientation.z})
-    share(*v);
+       {&state_.position, &state_.velocity, &state_.angular_velocity, &forces_.force, &forces_.torque})
+    all.insert(all.end(), {&v->x, &v->y, &v->z});
+  QuaternionArray& turned = state_.orientation;
+  all.insert(all.end(), {&turned.w, &turned.x, &turned.y, &turned.z});
+  share(all);
 }
 
 void FixGrip::post_force(int) {

@@ -32,7 +32,7 @@ class FixGrip : public LMP::Fix {
   RankEngine* leading_engine() const;
   void use(const std::vector<int>& elements);
   void gather();
-  void share(std::vector<double>& values) const;
+  void share(const std::vector<std::vector<double>*>& all);
   bool owned(std::size_t k) const { return atom_[k] >= 0; }
 
   std::shared_ptr<const LammpsModel> model_;
@@ -45,6 +45,7 @@ class FixGrip : public LMP::Fix {
   State state_;
   Forces forces_;
   std::vector<int> own_;                     // all elements of this state
+  std::vector<double> shared_;
   std::vector<ConstraintImpulse> impulses_;  // of the last kick
   std::vector<PointLoad> loads_;             // of the last evaluation, on this rank's elements
 };

@@ -42,7 +42,7 @@ void LAMMPS_NS::LAMMPS::post_create() {
 }
 
 int main(int argc, char** argv) {
-  ropewalk::begin_program();
+  ropewalk::begin_program("lmp-ropewalk");
   MPI_Init(&argc, &argv);
   void* lmp = lammps_open(argc, argv, MPI_COMM_WORLD, nullptr);
   if (!hooked)

@@ -159,7 +159,7 @@ std::string pressure_figure(const ReportInput& in, Figures& figures) {
              "distance from the axis; negative where they are drawn apart. Tension presses on the inner tubes; and the "
              "neighbours of a twisted tube, cut across, need more room around the axis than there is, which draws the "
              "inner tubes apart.") +
-         data_table(columns, "The frames are in frames.lammpstrj.") + "</figure>\n";
+         data_table(columns, "ropewalk observe RUN --tubes has that of every tube in the last frame.") + "</figure>\n";
 }
 
 // Turned and turned back.

@@ -172,7 +172,7 @@ std::string radius_figure(const ReportInput& in, const std::vector<ReportSection
          figures.caption(
              "Distance of the outermost tube from the centre line, plus the radius of a tube, at the "
              "times of the cross-sections. The position is counted in elements from the lower end.") +
-         data_table(columns, "The frames are in frames.lammpstrj.") + "</figure>\n";
+         data_table(columns, "ropewalk observe RUN --json has it for every frame.") + "</figure>\n";
 }
 
 // --- Pictures -----------------------------------------------------------------------------------------------

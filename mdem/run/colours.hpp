@@ -1,6 +1,6 @@
 #pragma once
 
-#include "io/frames.hpp"
+#include "io/frames/colours.hpp"
 #include "sim/state/interaction.hpp"
 
 namespace ropewalk {

@@ -2,10 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <cstdlib>
 #include <filesystem>
-#include <sstream>
 
+#include "io/csv_reader.hpp"
 #include "io/files.hpp"
 #include "plan/planner.hpp"
 
@@ -22,7 +21,7 @@ std::vector<OutputColumn> plan_check_columns() {
 void write_plan_check(const RunDirectory& dir, const PlanCheck& check) {
   std::string text = column_names(plan_check_columns()) + "\n";
   for (const auto& [name, v] : check.found)
-    text += fmt::format("{},{},{},{},\"{}\"\n", name, v.planned, v.finer, v.error, check.against);
+    text += fmt::format("{},{},{},{},{}\n", name, v.planned, v.finer, v.error, csv_cell(check.against));
   write_file_atomically(dir.plan_check(), text);
 }
 
@@ -32,18 +31,15 @@ namespace {
 std::map<std::string, double> checked_errors(const RunDirectory& dir, std::string& against) {
   std::map<std::string, double> out;
   if (!std::filesystem::exists(dir.plan_check())) return out;
-  std::istringstream lines(read_file(dir.plan_check()));
-  std::string line, cell;
-  std::getline(lines, line);
-  while (std::getline(lines, line)) {
-    std::istringstream cells(line);
-    std::vector<std::string> values;
-    while (values.size() < 4 && std::getline(cells, cell, ',')) values.push_back(cell);
-    if (values.size() < 4) continue;
-    out[values[0]] = std::strtod(values[3].c_str(), nullptr);
-    std::getline(cells, against);
+  CsvReader csv(dir.plan_check());
+  csv.next();  // the header
+  while (csv.next()) {
+    if (csv.cells().size() != plan_check_columns().size())
+      csv.fail("", fmt::format("has {} columns, not {}", csv.cells().size(), plan_check_columns().size()),
+               "make it again with `ropewalk plan --check`");
+    out[std::string(csv.cells()[0])] = csv.number(3, "error");
+    against = csv.cells()[4];
   }
-  if (against.size() > 2) against = against.substr(1, against.size() - 2);
   return out;
 }
 

@@ -10,7 +10,7 @@
 #include <type_traits>
 
 #include "io/files.hpp"
-#include "io/frames.hpp"
+#include "io/frames/frames.hpp"
 #include "model/error.hpp"
 #include "scene/prepare.hpp"
 #include "sim/contact/line/engine.hpp"
@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* title = "ROPEWALK-CHECKPOINT 3 ";
+constexpr const char* title = "ROPEWALK-CHECKPOINT 4 ";
 constexpr std::size_t hash_length = 16;
 
 struct Writer : ByteWriter {
@@ -57,6 +57,7 @@ template <class Archive, class Checkpoint>
 void visit_state(Archive& archive, Checkpoint& c) {
   for (auto* file : {&c.log, &c.frames}) {
     archive(file->bytes);
+    archive(file->tail_from);
     archive(file->tail);
   }
   archive(c.first_energy);
@@ -131,12 +132,12 @@ FileMark whole_frames(const RunDirectory& dir, std::uint64_t most) {
   Scene scene = read_run_scene(dir);
   const Topology topology = prepare(scene).topology;
   try {
-    DumpReader reader(dir.frames());
-    DumpFrame frame;
-    while (reader.next(topology, frame) && reader.position() <= most) bytes = reader.position();
+    const auto reader = open_frames(dir.frames());
+    StoredFrame frame;
+    while (reader->next(topology, frame) && reader->position() <= most) bytes = reader->position();
   } catch (const InputError&) {  // damaged from here on
   }
-  return mark_of(dir.frames(), bytes);
+  return mark_of(dir.frames(), bytes, bytes);
 }
 
 }  // namespace

@@ -28,6 +28,15 @@ bool belongs_to_a_run(const std::string& file_name) {
 
 }  // namespace
 
+std::string RunDirectory::frames(FrameFormat format) const {
+  return file(format == FrameFormat::gsd ? "frames.gsd" : "frames.lammpstrj");
+}
+
+std::string RunDirectory::frames() const {
+  const std::string gsd = frames(FrameFormat::gsd), dump = frames(FrameFormat::dump);
+  return !fs::exists(gsd) && fs::exists(dump) ? dump : gsd;
+}
+
 const std::vector<OutputFile>& run_files() {
   static const std::vector<OutputFile> files = {
       {"scene.toml", "run", "the scene"},
@@ -35,7 +44,8 @@ const std::vector<OutputFile>& run_files() {
       {"parameters-*.toml", "run", "the parameter sets of further types, from 1"},
       {"state.csv", "run", "the start, of a scene that reads its state from a file"},
       {"log.csv", "run", "observables against time"},
-      {"frames.lammpstrj", "run", "elements against time, for OVITO"},
+      {"frames.gsd", "run", "elements against time, for OVITO and MDAnalysis"},
+      {"frames.lammpstrj", "run, convert", "the same as text, for LAMMPS, ASE and OVITO"},
       {"paraview", "run",
        "directory with rope.pvd and a frame-*.vtp per frame, with `paraview = true` in the scene"},
       {"limits.json", "run", "limits that were watched and passed, and refinements"},

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "io/frames/frames.hpp"
 #include "io/log.hpp"
 #include "io/manifest.hpp"
 #include "observe/loading.hpp"
@@ -18,7 +19,8 @@ struct RunDirectory {
 
   std::string file(const char* name) const { return path + "/" + name; }
   std::string log() const { return file("log.csv"); }
-  std::string frames() const { return file("frames.lammpstrj"); }
+  std::string frames(FrameFormat format) const;
+  std::string frames() const;  // that is there; where there are none, those of GSD
   std::string checkpoint() const { return file("checkpoint.bin"); }
   std::string checkpoint_before() const { return file("checkpoint-before.bin"); }
   std::string manifest() const { return file("manifest.json"); }

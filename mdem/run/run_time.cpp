@@ -16,6 +16,7 @@
 
 #include "commands/commands.hpp"
 #include "io/files.hpp"
+#include "io/frames/dump.hpp"
 #include "model/error.hpp"
 #include "plan/expected_state.hpp"
 #include "plan/features.hpp"
@@ -119,7 +120,8 @@ Outputs time_outputs(const Scene& scene, const Prepared& p, const RunTime& t) {
   watch.check(p.topology, s.state(), s.list(), std::numeric_limits<double>::quiet_NaN(), false);
   log_line(row);
   o.row = processor_seconds() - began;
-  dump_frame(p.topology, s.state(), element_colours(p.topology, p.interaction, s.state()));
+  const ElementColours colours = element_colours(p.topology, p.interaction, s.state());
+  if (scene.run.frames_format == FrameFormat::dump) dump_frame(p.topology, s.state(), colours);
   o.frame = processor_seconds() - began - o.row;
   if (t.relaxes) {
     o.rows = std::ceil(t.steps / 100) + 1;  // as a relaxation writes them

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "io/frames/format.hpp"
 #include "model/damping.hpp"
 #include "model/parameters.hpp"
 #include "observe/limits.hpp"
@@ -62,7 +63,8 @@ struct RunOptions {
   double checkpoint_every = 60;  // s of wall time
   RelaxGoal goal;                // relax mode
   long max_steps = 200000;       // relax mode
-  bool paraview = false;         // also write VTP/PVD
+  FrameFormat frames_format = FrameFormat::gsd;
+  bool paraview = false;  // also write VTP/PVD
 };
 
 struct ObserveOptions {

@@ -3,11 +3,10 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <string_view>
 
-#include "io/files.hpp"
+#include "io/csv_reader.hpp"
 #include "io/toml_table.hpp"  // printable
 #include "model/error.hpp"
 #include "scene/build.hpp"
@@ -38,12 +37,6 @@ constexpr double farthest = 1e7;                          // nm
 constexpr double norm_slack = 1e-3;                       // of a quaternion
 constexpr double shortest_bond = 0.1, longest_bond = 10;  // element lengths
 
-std::string_view trimmed(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t\r");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
-}
-
 struct Row {
   int tube = 0;
   Vector3 position;
@@ -53,62 +46,42 @@ struct Row {
 
 class Reader {
  public:
-  Reader(const std::string& path, Topology& topology) : path_(path), topology_(topology) {}
+  Reader(const std::string& path, Topology& topology) : csv_(path), topology_(topology) {}
 
   State read() {
-    const std::string text = read_file(path_);
-    std::string_view rest = text;
-    if (rest.substr(0, 3) == "\xef\xbb\xbf") rest.remove_prefix(3);
-    while (!rest.empty()) {
-      const std::size_t end = rest.find('\n');
-      ++line_;
-      read_line(trimmed(rest.substr(0, end)));
-      rest = end == std::string_view::npos ? std::string_view() : rest.substr(end + 1);
+    if (!csv_.next()) fail("", "is empty", fmt::format("the first line must be {}", header));
+    check_header();
+    while (csv_.next()) {
+      if (rows_.size() == static_cast<std::size_t>(max_elements))
+        fail("", fmt::format("has more than {} elements", max_elements), "take fewer");
+      const Row row = parsed();
+      append_to_tubes(row);
+      rows_.push_back(row);
     }
-    if (!seen_header_) fail("", "is empty", fmt::format("the first line must be {}", header));
     if (rows_.empty()) fail("", "has no elements", "write one line for each, below the header");
     return state();
   }
 
  private:
   [[noreturn]] void fail(const std::string& column, const std::string& what, const std::string& remedy) const {
-    throw InputError({path_, line_, column}, what, remedy);
+    csv_.fail(column, what, remedy);
   }
 
-  void read_line(std::string_view line) {
-    if (line.empty() || line[0] == '#') return;
-    if (!seen_header_) return check_header(line);
-    if (rows_.size() == static_cast<std::size_t>(max_elements))
-      fail("", fmt::format("has more than {} elements", max_elements), "take fewer");
-    const Row row = parsed(line);
-    append_to_tubes(row);
-    rows_.push_back(row);
-  }
-
-  void check_header(std::string_view line) {
-    std::string squeezed;
-    for (const char c : line)
-      if (c != ' ' && c != '\t') squeezed += c;
-    if (squeezed != header && squeezed != whole_header)
-      fail("", fmt::format("the header is \"{}\"", printable(std::string(line), 60)),
+  void check_header() {
+    columns_here_ = csv_.cells().size();
+    bool right = columns_here_ == columns_at_rest || columns_here_ == columns.size();
+    for (std::size_t k = 0; right && k < columns_here_; ++k) right = csv_.cells()[k] == columns[k].name;
+    if (!right)
+      fail("", fmt::format("the header is \"{}\"", printable(std::string(csv_.line_text()), 60)),
            fmt::format("it must be {0}, or {1}", header, whole_header));
-    columns_here_ = squeezed == header ? columns_at_rest : columns.size();
-    seen_header_ = true;
   }
 
-  Row parsed(std::string_view line) const {
-    std::array<double, columns.size()> value{};
-    std::size_t count = 0;
-    while (true) {
-      const std::size_t comma = line.find(',');
-      if (count < columns_here_) value[count] = number(trimmed(line.substr(0, comma)), columns[count].name);
-      ++count;
-      if (comma == std::string_view::npos) break;
-      line.remove_prefix(comma + 1);
-    }
-    if (count != columns_here_)
-      fail("", fmt::format("has {} columns", count),
+  Row parsed() const {
+    if (csv_.cells().size() != columns_here_)
+      fail("", fmt::format("has {} columns", csv_.cells().size()),
            fmt::format("{} are needed, as the header has", columns_here_));
+    std::array<double, columns.size()> value{};
+    for (std::size_t k = 0; k < columns_here_; ++k) value[k] = number(k);
     const Quaternion q(value[4], value[5], value[6], value[7]);
     if (!(std::fabs(q.norm() - 1) <= norm_slack))
       fail("qw", fmt::format("the quaternion has length {:.6g}", q.norm()), "it must be 1 within 0.001");
@@ -119,15 +92,10 @@ class Reader {
             {value[11], value[12], value[13]}};
   }
 
-  double number(std::string_view text, const char* column) const {
-    double value = 0;
-    // from_chars takes no plus sign.
-    const std::string_view digits = !text.empty() && text[0] == '+' ? text.substr(1) : text;
-    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-    if (digits.empty() || error != std::errc() || end != digits.data() + digits.size())
-      fail(column, fmt::format("is \"{}\"", printable(std::string(text), 40)), "write a number");
+  double number(std::size_t k) const {
+    const double value = csv_.number(k, columns[k].name);
     if (!(std::fabs(value) <= farthest))
-      fail(column, fmt::format("is {}", value), fmt::format("must lie within {}", farthest));
+      fail(columns[k].name, fmt::format("is {}", value), fmt::format("must lie within {}", farthest));
     return value;
   }
 
@@ -169,13 +137,11 @@ class Reader {
     return s;
   }
 
-  std::string path_;
+  CsvReader csv_;
   Topology& topology_;
   double element_length_ = topology_.types.front().element_length;
   std::vector<Row> rows_;
-  int line_ = 0;
   std::size_t columns_here_ = 0;
-  bool seen_header_ = false;
 };
 
 }  // namespace

@@ -234,9 +234,9 @@ TEST_F(Table, ErrorsNameFileLineAndColumn) {
       "# ropewalk-atomistic-1\nkind,length_nm,strain,twist_rad_per_nm,curvature_per_nm,atoms,energy_eV,residual_eV,"
       "radius_nm\n";
   write(head + "stretch-twist,5,0,0,0,800,x,0,0.69\n");
-  EXPECT_THAT(error(), HasSubstr(path + ":3: energy_eV: 'x' is not a number"));
+  EXPECT_THAT(error(), HasSubstr(path + ":3: energy_eV: \"x\" is not a number"));
   write(head + "stretch-twist,5,0,0,0,800,nan,0,0.69\n");
-  EXPECT_THAT(error(), HasSubstr("'nan' is not a number"));
+  EXPECT_THAT(error(), HasSubstr("\"nan\" is not a finite number"));
   write(head + "stretch-twist,5,0,0,0,800,1,0,0.69\nstretch-twist,5,0\n");
   EXPECT_THAT(error(), HasSubstr(":4: has 3 columns"));
   write(head + "stretch-twist,5,0,0,0,8.5,1,0,0.69\n");

@@ -183,8 +183,31 @@ TEST_F(Campaign, ThresholdIsThatOfTheFormula) {
   EXPECT_EQ(fs::last_write_time(dir / "s" / "points" / "length_nm-13.56_seed-1" / "moment_nN_nm-20" / "log.csv"),
             written);
   EXPECT_NE(slurp(dir / "s" / "thresholds.html").find("by bisection"), std::string::npos);
+  // Its trials are enough to go on from, here and elsewhere: one run more for each of four tubes.
+  const auto runs_of = [&](const char* folder) {
+    std::size_t runs = 0;
+    if (fs::exists(dir / folder / "points"))
+      for (const auto& entry : fs::recursive_directory_iterator(dir / folder / "points"))
+        runs += entry.path().filename() == "manifest.json" ? 1 : 0;
+    return runs;
+  };
+  const std::string before = slurp(dir / "s/thresholds.csv");
+  ASSERT_EQ(run("threshold s.toml --out t --known s/trials.csv").code, 0);
+  EXPECT_EQ(slurp(dir / "t/thresholds.csv"), before);
+  EXPECT_EQ(runs_of("t"), 0u);
+  fs::remove_all(dir / "s/points");
+  std::string finer = slurp(dir / "s.toml");
+  finer.replace(finer.find("0.01"), 4, "0.005");
+  spit(dir / "s.toml", finer);
+  ASSERT_EQ(run("threshold s.toml").code, 0);
+  EXPECT_EQ(runs_of("s"), 4u);
+  EXPECT_EQ(lines(slurp(dir / "s/trials.csv")).size(), lines(slurp(dir / "t/trials.csv")).size() + 4);
   spit(dir / "tube.toml", slurp(dir / "tube.toml") + "# changed\n");
   EXPECT_EQ(run("threshold s.toml").code, 2);
+  const std::string others = run("threshold s.toml --out t --force --known s/trials.csv").err;
+  EXPECT_NE(others.find("trials in s/trials.csv are of other scenes"), std::string::npos) << others;
+  EXPECT_GT(runs_of("t"), 8u);
+  EXPECT_EQ(run("threshold s.toml --out u --known tube.toml").code, 2);
 }
 
 TEST_F(Campaign, CompareDrawsRunsAndEnsembles) {

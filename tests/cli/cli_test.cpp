@@ -65,7 +65,8 @@ TEST_F(Cli, MistypedVerbsAndOptionsAreNamedWithTheNearest) {
         std::pair{"run x.toml --threds=2 --out d", "there is no option --threds of run; did you mean --threads?"},
         std::pair{"calibrate --chiralty 10,10", "there is no option --chiralty; did you mean --chirality?"},
         std::pair{"validate chrt", "there is no verb \"chrt\"; did you mean chart?"},
-        std::pair{"help scen", "did you mean scene?"}, std::pair{"--xyz", "there is no option --xyz; see ropewalk --help"}}) {
+        std::pair{"help scen", "did you mean scene?"},
+        std::pair{"--xyz", "there is no option --xyz; see ropewalk --help"}}) {
     const Outcome o = run(line);
     EXPECT_EQ(o.code, 2) << line;
     EXPECT_NE(o.err.find(says), std::string::npos) << o.err;
@@ -130,8 +131,9 @@ TEST_F(Cli, DescribesItselfToPrograms) {
 
 // The scenes that the documentation speaks of are the templates.
 TEST_F(Cli, ShippedScenesAreTheTemplates) {
-  for (const auto& [kind, name] : {std::pair{"rope", "rope-67nm"}, std::pair{"spindle", "spindle-67nm"}, std::pair{"bird-cage", "bird-cage-41nm"},
-                                   std::pair{"helix", "helix-163nm"}, std::pair{"geometric", "geometric-41nm"}}) {
+  for (const auto& [kind, name] : {std::pair{"rope", "rope-67nm"}, std::pair{"spindle", "spindle-67nm"},
+                                   std::pair{"bird-cage", "bird-cage-41nm"}, std::pair{"helix", "helix-163nm"},
+                                   std::pair{"geometric", "geometric-41nm"}}) {
     ASSERT_EQ(run(std::string("new ") + name + " --kind " + kind).code, 0);
     EXPECT_EQ(slurp(dir / (std::string(name) + ".toml")),
               slurp(std::string(ROPEWALK_SOURCE_DIR "/data/scenes/") + name + ".toml"))
@@ -174,12 +176,12 @@ TEST_F(Cli, MixedTubesRunAndResume) {
   ASSERT_EQ(run("run s.toml --out d --quiet").code, 0) << slurp(dir / "stderr.txt");
   ASSERT_EQ(run("run s.toml --out half --quiet --steps 40").code, 0);
   ASSERT_EQ(run("resume half --quiet").code, 0) << slurp(dir / "stderr.txt");
-  const auto last_frame = [&](const char* file) {
-    const std::string all = slurp(dir / file);
-    return all.substr(all.rfind("ITEM: TIMESTEP"));
+  const auto as_text = [&](const std::string& folder) {
+    EXPECT_EQ(run("convert " + folder + " " + folder + ".lammpstrj").code, 0) << slurp(dir / "stderr.txt");
+    return slurp(dir / (folder + ".lammpstrj"));
   };
-  EXPECT_TRUE(last_frame("d/frames.lammpstrj") == last_frame("half/frames.lammpstrj"));
-  const std::string frames = slurp(dir / "d/frames.lammpstrj");
+  const std::string frames = as_text("d"), resumed = as_text("half");
+  EXPECT_TRUE(frames.substr(frames.rfind("ITEM: TIMESTEP")) == resumed.substr(resumed.rfind("ITEM: TIMESTEP")));
   EXPECT_NE(frames.find("\n1 1 2 "), std::string::npos) << "the first tube is of the second type";
   EXPECT_NE(frames.find("\n11 2 1 "), std::string::npos);
   EXPECT_TRUE(fs::exists(dir / "d/parameters-1.toml"));
@@ -208,7 +210,9 @@ TEST_F(Cli, TwoLevelsResumeBitForBit) {
     return all.substr(all.rfind(begins, all.size() - 2));
   };
   EXPECT_EQ(last("whole/log.csv", "\n"), last("half/log.csv", "\n"));
-  EXPECT_TRUE(last("whole/frames.lammpstrj", "ITEM: TIMESTEP") == last("half/frames.lammpstrj", "ITEM: TIMESTEP"));
+  for (const char* folder : {"whole", "half"})
+    ASSERT_EQ(run(std::string("convert ") + folder + " " + folder + ".lammpstrj").code, 0);
+  EXPECT_TRUE(last("whole.lammpstrj", "ITEM: TIMESTEP") == last("half.lammpstrj", "ITEM: TIMESTEP"));
   const auto rows = ropewalk::read_log((dir / "whole/log.csv").string());
   EXPECT_NEAR(rows.back()["time_ps"], 5.0, 0.1);
   EXPECT_LT(std::fabs(rows.back()["balance_eV"]), 2e-2 * rows.back()["work_eV"]);
@@ -217,7 +221,8 @@ TEST_F(Cli, TwoLevelsResumeBitForBit) {
   EXPECT_EQ(Json::parse(bench.out).at("contact_every"), 3);
 }
 
-// The whole way of a user: plan, run as planned, hold the run against a short finer one and against the finest model.
+// The whole way of a user: plan, run as planned, hold the run against a short finer one and against the finest
+// model.
 TEST_F(Cli, PlanRunAndCheck) {
   spit(dir / "s.toml",
        "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[rope]\ntubes = 7\nlength_nm = 13.6\n"
@@ -226,7 +231,8 @@ TEST_F(Cli, PlanRunAndCheck) {
   ASSERT_EQ(plan.code, 0) << plan.err;
   EXPECT_NE(plan.out.find("pilots: the whole scene"), std::string::npos) << plan.out;
   EXPECT_TRUE(std::regex_search(plan.out, std::regex("\ndefault +1.00 .* %.* holds\n"))) << plan.out;
-  EXPECT_NE(plan.out.find("Not tried: longer elements: tubes would have fewer than 8"), std::string::npos) << plan.out;
+  EXPECT_NE(plan.out.find("Not tried: longer elements: tubes would have fewer than 8"), std::string::npos)
+      << plan.out;
   EXPECT_NE(plan.out.find("processor time promised"), std::string::npos) << plan.out;
   EXPECT_EQ(run("plan s.toml --error 4%").code, 2) << "an existing file must stand";
   EXPECT_EQ(run("plan s.toml -o t.toml --finest f.toml").code, 2);
@@ -349,8 +355,8 @@ TEST_F(Cli, ThermostatGoesOnAfterAResume) {
 TEST_F(Cli, RunWritesEverythingAndProtectsIt) {
   small_rope("s.toml", "paraview = true\n");
   ASSERT_EQ(run("run s.toml --out d").code, 0);
-  for (const char* name : {"log.csv", "frames.lammpstrj", "manifest.json", "report.html", "checkpoint.bin",
-                           "scene.toml", "parameters.toml", "paraview/rope.pvd", "final.csv"})
+  for (const char* name : {"log.csv", "frames.gsd", "manifest.json", "report.html", "checkpoint.bin", "scene.toml",
+                           "parameters.toml", "paraview/rope.pvd", "final.csv"})
     EXPECT_TRUE(fs::exists(dir / "d" / name)) << name;
   const auto listed = ropewalk::test::outputs_names("The directory of a run");
   for (const auto& entry : fs::directory_iterator(dir / "d"))
@@ -457,7 +463,7 @@ TEST_F(Cli, ResumeCutsOffWhatWasWrittenAfterTheCheckpoint) {
   ASSERT_EQ(run("run s.toml --out whole").code, 0);
   ASSERT_EQ(run("run s.toml --out d --steps 100").code, 0);
   std::ofstream(dir / "d/log.csv", std::ios::app) << "half a li";
-  std::ofstream(dir / "d/frames.lammpstrj", std::ios::app) << "ITEM: TIMESTEP\n1234";
+  std::ofstream(dir / "d/frames.gsd", std::ios::app) << "half a frame";
   ASSERT_EQ(run("resume d").code, 0);
   EXPECT_EQ(ropewalk::read_log((dir / "d/log.csv").string()).back()["twist_eV"],
             ropewalk::read_log((dir / "whole/log.csv").string()).back()["twist_eV"]);
@@ -508,7 +514,7 @@ TEST_F(Cli, ResumeRefusesALogOfOtherColumns) {
   std::string log = slurp(dir / "d/log.csv");
   log.replace(log.find("beta_deg"), 8, "beta_rad");
   spit(dir / "d/log.csv", log);
-  const std::string frames = slurp(dir / "d/frames.lammpstrj");
+  const std::string frames = slurp(dir / "d/frames.gsd");
   const Outcome o = run("resume d");
   EXPECT_EQ(o.code, 2);
   EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << o.err;
@@ -516,7 +522,7 @@ TEST_F(Cli, ResumeRefusesALogOfOtherColumns) {
             std::string::npos)
       << o.err;
   EXPECT_EQ(slurp(dir / "d/log.csv"), log) << "nothing is written";
-  EXPECT_EQ(slurp(dir / "d/frames.lammpstrj"), frames);
+  EXPECT_EQ(slurp(dir / "d/frames.gsd"), frames);
 }
 
 TEST_F(Cli, DamagedCheckpointIsRefused) {

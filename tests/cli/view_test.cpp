@@ -198,7 +198,7 @@ TEST_F(View, AReportLinksOnlyAPageThatIsNotOlderThanTheFrames) {
   EXPECT_FALSE(linked());
   ASSERT_EQ(run("view d --frames 2").code, 0);
   EXPECT_TRUE(linked());
-  fs::last_write_time(dir / "d/frames.lammpstrj", fs::file_time_type::clock::now() + std::chrono::hours(1));
+  fs::last_write_time(dir / "d/frames.gsd", fs::file_time_type::clock::now() + std::chrono::hours(1));
   ASSERT_EQ(run("report d").code, 0);
   EXPECT_FALSE(linked());
 }

@@ -1,12 +1,14 @@
 // A library to be loaded before a program (LD_PRELOAD): one of its calls that change files fails, or the program is
-// killed there. Only calls on files in one directory count: open, write, fsync, fdatasync, ftruncate, rename,
-// unlink.
+// killed there. Only calls on files in one directory count: open, write, pwrite, fsync, fdatasync, ftruncate,
+// rename, unlink.
 //
 //   ROPEWALK_FAULTS_BELOW  the directory, absolute
 //   ROPEWALK_FAULT         HOW:N[:on]   at the Nth call, from 1; "on": from then on. HOW: kill (before the call),
 //   torn
 //                          (in the middle of a write; nothing at other calls), ENOSPC, EIO, EDQUOT, EINTR, EROFS
 //   ROPEWALK_FAULTS_COUNT  file that takes the number of calls at the end
+//
+// With HOW = memory the calls are those of operator new, and the directory does not matter.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <unistd.h>
@@ -19,6 +21,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <new>
 #include <string>
 
 namespace {
@@ -53,7 +56,7 @@ F real(const char* name) {
 }
 
 bool is_below(const char* path) {
-  if (fault().below.empty() || !path) return false;
+  if (fault().below.empty() || fault().how == "memory" || !path) return false;
   std::string absolute = path;
   if (path[0] != '/') {
     char here[PATH_MAX];
@@ -83,7 +86,7 @@ int code_of(const std::string& how) {
 
 // The number of the call is counted here. True: it is to fail, with errno.
 bool fails(bool counts, bool* torn = nullptr) {
-  if (!counts) return false;
+  if (!counts || fault().how == "memory") return false;
   const long k = ++calls;
   const Fault& f = fault();
   if (f.at == 0 || !(k == f.at || (f.on && k > f.at))) return false;
@@ -94,6 +97,22 @@ bool fails(bool counts, bool* torn = nullptr) {
   if (f.how == "kill") raise(SIGKILL);
   errno = code_of(f.how);
   return true;
+}
+
+// As operator new of the library; without memory where the fault asks for it.
+void* allocated(std::size_t size, std::size_t alignment) {
+  static thread_local bool here = false;  // what this library itself asks for does not count
+  if (!here) {
+    here = true;
+    const Fault& f = fault();
+    here = false;
+    const long k = f.how == "memory" ? ++calls : 0;
+    if (k > 0 && f.at > 0 && (k == f.at || (f.on && k > f.at))) throw std::bad_alloc();
+  }
+  void* memory = alignment > 0 ? std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment)
+                               : std::malloc(size > 0 ? size : 1);
+  if (!memory) throw std::bad_alloc();
+  return memory;
 }
 
 struct AtEnd {
@@ -109,6 +128,23 @@ struct AtEnd {
 constexpr int writing = O_WRONLY | O_RDWR | O_CREAT;
 
 }  // namespace
+
+void* operator new(std::size_t size) { return allocated(size, 0); }
+void* operator new[](std::size_t size) { return allocated(size, 0); }
+void* operator new(std::size_t size, std::align_val_t alignment) {
+  return allocated(size, static_cast<std::size_t>(alignment));
+}
+void* operator new[](std::size_t size, std::align_val_t alignment) {
+  return allocated(size, static_cast<std::size_t>(alignment));
+}
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete[](void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
+void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
+void operator delete[](void* memory, std::align_val_t) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
+void operator delete[](void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
 
 extern "C" {
 
@@ -136,6 +172,15 @@ ssize_t write(int fd, const void* data, size_t size) {
   if (fails(is_below(fd), &torn)) return -1;
   if (!torn) return call(fd, data, size);
   if (call(fd, data, size / 2) >= 0) raise(SIGKILL);
+  return -1;
+}
+
+ssize_t pwrite(int fd, const void* data, size_t size, off_t at) {
+  static const auto call = real<ssize_t (*)(int, const void*, size_t, off_t)>("pwrite");
+  bool torn = false;
+  if (fails(is_below(fd), &torn)) return -1;
+  if (!torn) return call(fd, data, size, at);
+  if (call(fd, data, size / 2, at) >= 0) raise(SIGKILL);
   return -1;
 }
 

@@ -17,7 +17,7 @@
 #include "campaign/sweep_file.hpp"
 #include "chart/chart.hpp"
 #include "io/files.hpp"
-#include "io/frames.hpp"
+#include "io/frames/frames.hpp"
 #include "io/limits_file.hpp"
 #include "io/log.hpp"
 #include "io/manifest.hpp"
@@ -183,14 +183,31 @@ void run_checkpoint(const std::string& bytes) {
   taken_or_refused([&] { read_checkpoint(dir); });
 }
 
-void dump(const std::string& bytes) {
-  const File file(bytes);
+void read_frames(const std::string& path) {
   taken_or_refused([&] {
-    DumpReader reader(file.path());
-    DumpFrame frame;
-    while (reader.next(short_tubes(), frame)) {
+    const auto reader = open_frames(path);
+    StoredFrame frame;
+    while (reader->next(short_tubes(), frame)) {
     }
   });
+}
+
+void dump(const std::string& bytes) {
+  const File file(bytes);
+  read_frames(file.path());
+}
+
+// Changes of two whole frames.
+void gsd(const std::string& bytes) {
+  static const std::string genuine = [] {
+    const std::string path = directory() + "/genuine.gsd";
+    const auto writer = frame_writer(path, FrameFormat::gsd, 0, 0);
+    const State state(static_cast<std::size_t>(short_tubes().elements()));
+    for (int k = 0; k < 2; ++k) writer->write(short_tubes(), state, {});
+    return read_file(path);
+  }();
+  const File file(changed(genuine, bytes));
+  read_frames(file.path());
 }
 
 void manifest(const std::string& bytes) {
@@ -275,13 +292,24 @@ void potential(const std::string& bytes) {
 }  // namespace
 
 const std::vector<Target>& targets() {
-  static const std::vector<Target> all = {
-      {"scene", scene},       {"parameters", parameters},       {"state", state},
-      {"sweep", sweep},       {"checkpoint", checkpoint},       {"run_checkpoint", run_checkpoint},
-      {"dump", dump},         {"manifest", manifest},           {"limits", limits},
-      {"log", log},           {"lammps_dump", lammps_dump},     {"lammps_tables", lammps_tables},
-      {"chart", chart},       {"contact_table", contact_table}, {"stiffness_table", stiffness_table},
-      {"settings", settings}, {"potential", potential}};
+  static const std::vector<Target> all = {{"scene", scene},
+                                          {"parameters", parameters},
+                                          {"state", state},
+                                          {"sweep", sweep},
+                                          {"checkpoint", checkpoint},
+                                          {"run_checkpoint", run_checkpoint},
+                                          {"gsd", gsd},
+                                          {"dump", dump},
+                                          {"manifest", manifest},
+                                          {"limits", limits},
+                                          {"log", log},
+                                          {"lammps_dump", lammps_dump},
+                                          {"lammps_tables", lammps_tables},
+                                          {"chart", chart},
+                                          {"contact_table", contact_table},
+                                          {"stiffness_table", stiffness_table},
+                                          {"settings", settings},
+                                          {"potential", potential}};
   return all;
 }
 

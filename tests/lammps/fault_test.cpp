@@ -39,7 +39,7 @@ TEST_F(Faults, ImportKilledAtAnyCall) {
       const Outcome again = run("import d");
       const bool had_come_far_enough = again.err.find("no whole state after step 30") != std::string::npos;
       EXPECT_TRUE(again.code == 0 || had_come_far_enough) << when << again.err;
-      for (const char* name : {"log.csv", "frames.lammpstrj", "final.csv"})
+      for (const char* name : {"log.csv", "frames.gsd", "final.csv"})
         ASSERT_TRUE(slurp(dir / "d" / name) == slurp(dir / "whole" / name)) << when << ": " << name;
       for (const auto& entry : fs::directory_iterator(dir / "d"))
         EXPECT_EQ(entry.path().string().find(".part-"), std::string::npos) << when << entry.path();

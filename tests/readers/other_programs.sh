@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The frames of a rope, a film and a rope of two kinds of tubes, read by LAMMPS, MDAnalysis and ASE. Argument: ropewalk.
+# The frames of a rope, a film and a film of two kinds of tubes, read by LAMMPS, MDAnalysis, ASE and gsd. Argument: ropewalk.
 set -euo pipefail
 ropewalk=$(realpath "$1") here=$(realpath "$(dirname "$0")")
 work=$(mktemp -d)
@@ -31,6 +31,7 @@ depth_nm = 20'
 
 for name in rope film mixed; do
   "$ropewalk" run $name.toml --out $name --quiet >/dev/null
+  "$ropewalk" convert $name $name/frames.lammpstrj >/dev/null
   last=$(grep -A1 'ITEM: TIMESTEP' $name/frames.lammpstrj | tail -1)
   cat > in.read <<LAMMPS
 units nano

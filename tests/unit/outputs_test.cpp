@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
-#include "io/frames.hpp"
+#include "campaign/threshold.hpp"
+#include "io/frames/dump.hpp"
+#include "io/frames/gsd.hpp"
+#include "io/frames/vtp.hpp"
 #include "io/limits_file.hpp"
 #include "io/manifest.hpp"
 #include "io/tube_table.hpp"
@@ -24,10 +27,12 @@ TEST(OutputsPage, HasTheTablesOfTheCode) {
   EXPECT_EQ(outputs_table("`log.csv`"), observables_markdown());
   EXPECT_EQ(outputs_table("`observe --tubes`"), columns_markdown(tube_columns()));
   EXPECT_EQ(outputs_table("`frames.lammpstrj`"), columns_markdown(frame_columns()));
+  EXPECT_EQ(outputs_table("`frames.gsd`"), columns_markdown(gsd_chunks()));
   EXPECT_EQ(outputs_table("`paraview/frame-*.vtp`"), columns_markdown(vtp_arrays()));
   EXPECT_EQ(outputs_table("`state.csv`, `final.csv` and `failed-state.csv`"), columns_markdown(state_columns()));
   EXPECT_EQ(outputs_table("`manifest.json`"), columns_markdown(manifest_keys()));
   EXPECT_EQ(outputs_table("`plan-check.csv`"), columns_markdown(plan_check_columns()));
+  EXPECT_EQ(outputs_table("`trials.csv`"), columns_markdown(trial_columns()));
   EXPECT_EQ(outputs_table("An entry of `limits`"), columns_markdown(limit_keys()));
   EXPECT_EQ(outputs_table("An entry of `refinements`"), columns_markdown(refinement_keys()));
   EXPECT_EQ(outputs_table("`energy_before_eV` and `energy_after_eV`"), columns_markdown(energy_keys()));

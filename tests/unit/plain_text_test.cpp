@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "campaign/campaign.hpp"
+#include "io/csv_reader.hpp"
 #include "io/failure.hpp"
 #include "model/error.hpp"
 #include "scene/memory.hpp"

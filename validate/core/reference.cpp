@@ -3,15 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
-#include <sstream>
 #include <stdexcept>
 
+#include "io/csv_reader.hpp"
 #include "io/files.hpp"
 #include "io/parameters_toml.hpp"
-#include "io/toml_table.hpp"
 #include "model/error.hpp"
 
 namespace ropewalk {
@@ -19,32 +17,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<std::string> cells_of(const std::string& line) {
-  std::vector<std::string> cells;
-  std::stringstream stream(line);
-  for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(cell);
-  return cells;
-}
+constexpr const char* fresh_remedy = "make the reference again with --fresh";
 
-// "# key: value".
-void read_origin(const std::string& line, ReferenceTable& t) {
-  const std::size_t colon = line.find(':');
-  if (colon == std::string::npos || colon < 3) return;
-  const std::size_t from = line.find_first_not_of(' ', colon + 1);
-  t.add(line.substr(2, colon - 2), from == std::string::npos ? "" : line.substr(from));
-}
-
-std::vector<double> numbers_of(const std::vector<std::string>& cells, const std::string& path, int line) {
-  std::vector<double> row;
-  for (const std::string& c : cells) {
-    double value = 0;
-    const auto [end, error] = std::from_chars(c.data(), c.data() + c.size(), value);
-    if (error != std::errc() || end != c.data() + c.size())
-      throw InputError({path, line, ""}, fmt::format("\"{}\" is not a number", printable(c, 40)),
-                       "make the reference again with --fresh");
-    row.push_back(value);
-  }
-  return row;
+// "key: value".
+void read_origin(std::string_view comment, ReferenceTable& t) {
+  const std::size_t colon = comment.find(':');
+  if (colon == std::string_view::npos || colon == 0) return;
+  const std::size_t from = comment.find_first_not_of(' ', colon + 1);
+  t.add(std::string(comment.substr(0, colon)),
+        std::string(from == std::string_view::npos ? "" : comment.substr(from)));
 }
 
 double range_of(const std::vector<double>& values) {
@@ -94,24 +75,21 @@ std::vector<double> ReferenceTable::column(const std::string& name) const {
 
 ReferenceTable read_reference(const std::string& path) {
   ReferenceTable t;
-  std::istringstream text(read_file(path));
-  int number = 0;
-  for (std::string line; std::getline(text, line);) {
-    ++number;
-    if (line.empty()) continue;
-    if (line[0] == '#') {
-      read_origin(line, t);
-    } else if (t.columns.empty()) {
-      t.columns = cells_of(line);
-    } else {
-      t.rows.push_back(numbers_of(cells_of(line), path, number));
-      if (t.rows.back().size() != t.columns.size())
-        throw InputError({path, number, ""},
-                         fmt::format("has {} columns, the header {}", t.rows.back().size(), t.columns.size()),
-                         "make the reference again with --fresh");
+  CsvReader csv(path);
+  while (csv.next()) {
+    for (const std::string_view comment : csv.comments()) read_origin(comment, t);
+    if (t.columns.empty()) {
+      t.columns.assign(csv.cells().begin(), csv.cells().end());
+      continue;
     }
+    if (csv.cells().size() != t.columns.size())
+      csv.fail("", fmt::format("has {} columns, the header {}", csv.cells().size(), t.columns.size()),
+               fresh_remedy);
+    std::vector<double> row;
+    for (std::size_t k = 0; k < t.columns.size(); ++k) row.push_back(csv.number(k, t.columns[k], fresh_remedy));
+    t.rows.push_back(std::move(row));
   }
-  if (t.rows.empty()) throw InputError({path, 0, ""}, "holds no data", "make the reference again with --fresh");
+  if (t.rows.empty()) throw InputError({path, 0, ""}, "holds no data", fresh_remedy);
   return t;
 }
 

@@ -650,6 +650,8 @@ function stageColour() {
   return colour;
 }
 
+let looked = null;
+
 // From a direction (of right, up and towards), so that the rope fills the stage.
 function lookFrom(x, y, z) {
   const direction = new THREE.Vector3().addScaledVector(right, x).addScaledVector(up, y).addScaledVector(towards, z)
@@ -686,7 +688,14 @@ function lookFrom(x, y, z) {
   controls.target.copy(target);
   camera.position.copy(target).addScaledVector(back, 1.06 * distance);
   controls.update();
+  looked = {from: [x, y, z], place: camera.position.clone()};
   request();
+}
+
+// The stage has another size. Whoever has not turned the rope since sees all of it again.
+function fitAgain() {
+  if (looked && camera.position.distanceTo(looked.place) < 1e-6) lookFrom(...looked.from);
+  else request();
 }
 
 const sides = {oblique: [0.55, 0.3, 0.78], side: [0, 0, 1], top: [0, 1, 1e-4], end: [1, 0, 1e-4]};
@@ -720,9 +729,8 @@ function showScale() {
   const perNm = pixelsPerNm(), longest = 0.2 * canvas.clientWidth / perNm;
   const base = Math.pow(10, Math.floor(Math.log10(longest)));
   const length = [5, 2, 1].map((m) => m * base).find((v) => v <= longest);
-  const [words, line] = $('scale').children;
-  words.textContent = tickText(length) + ' nm';
-  line.style.width = length * perNm + 'px';
+  $('scale').firstElementChild.textContent = tickText(length) + ' nm';
+  $('scale').style.width = 100 * length * perNm / canvas.clientWidth + '%';  // also of a stage that is printed smaller
 }
 
 // --- Pointing -----------------------------------------------------------------------------------------------
@@ -939,7 +947,7 @@ function listen() {
     e.preventDefault();
     act(e);
   });
-  new ResizeObserver(request).observe(canvas.parentElement);
+  new ResizeObserver(fitAgain).observe(canvas.parentElement);
   window.addEventListener('beforeprint', () => { if (renderer) render(still); });
   matchMedia('(prefers-color-scheme: dark)').addEventListener('change', request);
 }

@@ -75,6 +75,10 @@ const KeyTable<RunOptions>& run_table() {
                    "dynamics: simulated time"),
        Key::number("frames_every_ps", unit::ps, time, &R::frames_every, otherwise("1", "40 frames"),
                    "time between stored frames"),
+       Key::word("frames_format", Words<FrameFormat>{{"gsd", FrameFormat::gsd}, {"lammpstrj", FrameFormat::dump}},
+                 &R::frames_format, standard(),
+                 "\"gsd\": binary, for OVITO and MDAnalysis; \"lammpstrj\": text, for LAMMPS and ASE as well, four "
+                 "times as large"),
        Key::number("log_every_ps", unit::ps, time, &R::log_every, otherwise("0.1", "400 rows"),
                    "time between rows of the log"),
        Key::number("checkpoint_every_s", unit::seconds, Bounds::positive(1e6), &R::checkpoint_every, standard(),

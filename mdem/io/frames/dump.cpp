@@ -1,4 +1,4 @@
-#include "io/frames.hpp"
+#include "io/frames/dump.hpp"
 
 #include <fmt/format.h>
 
@@ -14,36 +14,12 @@
 #include <string_view>
 #include <system_error>
 
-#include "io/base64.hpp"
 #include "io/files.hpp"
-#include "io/markup.hpp"
 #include "io/toml_table.hpp"
 #include "model/error.hpp"
 
 namespace ropewalk {
 namespace {
-
-// ASE keeps no column of a dump that it does not know, but for those that begin with c_.
-struct ColourColumn {
-  OutputColumn column;
-  const char* in_dump;
-  std::vector<double> ElementColours::*values;
-};
-
-constexpr std::array<ColourColumn, 4> colour_columns = {{
-    {{"bond_energy_eV", "eV", "half of the energy of each bond of the element"},
-     "c_bond_energy_eV",
-     &ElementColours::bond_energy},
-    {{"vdw_energy_eV", "eV", "half of the energy of each contact of the element"},
-     "c_vdw_energy_eV",
-     &ElementColours::vdw_energy},
-    {{"bending_moment_eV", "eV", "bending moment: EI times curvature"},
-     "c_bending_moment_eV",
-     &ElementColours::bending_moment},
-    {{"twist_angle_rad", "rad", "twist angle, mean of the bonds of the element"},
-     "c_twist_angle_rad",
-     &ElementColours::twist_angle},
-}};
 
 // Columns of every frame. OVITO maps those of place, orientation and shape to particle properties without the
 // user's help. ASE has no use for mol, and finds the tube again as c_tube. MDAnalysis reads no ITEM: TIME.
@@ -94,16 +70,12 @@ void append_head(Buffer& out, const Topology& topology, const State& state) {
   for (int k = 0; k < 3; ++k) fmt::format_to(to, "{:.4f} {:.4f}\n", box.low[k], box.high[k]);
 }
 
-bool given(const ElementColours& colours, const ColourColumn& column, const State& state) {
-  return state.size() > 0 && (colours.*column.values).size() == state.size();
-}
-
 void append_columns(Buffer& out, const State& state, const ElementColours& colours) {
   const auto to = std::back_inserter(out);
   fmt::format_to(to, "ITEM: ATOMS");
   fmt::format_to(to, " {}", column_names(fixed_columns, " "));
   for (const ColourColumn& column : colour_columns)
-    if (given(colours, column, state)) fmt::format_to(to, " {}", column.in_dump);
+    if (given(colours, column, state.size())) fmt::format_to(to, " {}", column.in_dump);
   out.push_back('\n');
 }
 
@@ -150,16 +122,39 @@ struct Layout {
 }  // namespace
 
 struct DumpReader::Impl {
+  struct Begin {
+    std::streamoff at;
+    int line;
+  };
+
   std::string path;
   std::ifstream file;
   std::string line;
   int number = 0;
+  std::vector<Begin> begins;  // of frames; empty until they are looked for
+  Begin end{0, 0};
 
   InputError error(const std::string& column, const std::string& what, const char* remedy) const {
     return InputError({path, number, column}, what, remedy);
   }
   InputError garbled(const std::string& what) const {
     return error("", what, "the file was changed or damaged; restore it, or run the scene again");
+  }
+
+  Begin here() { return {file.tellg(), number}; }
+  void find_begins() {
+    begins.clear();
+    go_to({0, 0});
+    for (Begin at{0, 0}; read_line(); at = here())
+      if (line == "ITEM: TIMESTEP") begins.push_back(at);
+    file.clear();
+    file.seekg(0, std::ios::end);
+    end = here();
+  }
+  void go_to(const Begin& begin) {
+    file.clear();
+    file.seekg(begin.at);
+    number = begin.line;
   }
 
   // A last line without a newline was cut off and is not read.
@@ -257,7 +252,7 @@ struct DumpReader::Impl {
     return static_cast<std::size_t>(e);
   }
 
-  void place(const Layout& l, const std::vector<double>& v, std::size_t i, DumpFrame& frame) const {
+  void place(const Layout& l, const std::vector<double>& v, std::size_t i, StoredFrame& frame) const {
     const Vector3 p(v[l.fixed[x]], v[l.fixed[y]], v[l.fixed[z]]);
     const Quaternion q(v[l.fixed[qw]], v[l.fixed[qx]], v[l.fixed[qy]], v[l.fixed[qz]]);
     if (!p.allFinite()) throw garbled(fmt::format("the position of element {} is not finite", i + 1));
@@ -271,7 +266,7 @@ struct DumpReader::Impl {
   }
 
   // True where the time is here, as version 0.1 wrote it.
-  bool read_head(const Topology& topology, DumpFrame& frame) {
+  bool read_head(const Topology& topology, StoredFrame& frame) {
     frame.state.step = number_line<std::int64_t>("step");
     need_line();
     const bool timed = line == "ITEM: TIME";
@@ -288,7 +283,7 @@ struct DumpReader::Impl {
     return timed;
   }
 
-  void read_frame(const Topology& topology, DumpFrame& frame) {
+  void read_frame(const Topology& topology, StoredFrame& frame) {
     frame.state = State(static_cast<std::size_t>(topology.elements()));
     frame.colours = {};
     const bool timed = read_head(topology, frame);
@@ -307,23 +302,42 @@ struct DumpReader::Impl {
 
 DumpReader::DumpReader(const std::string& path) {
   refuse_devices(path);
-  impl_.reset(new Impl{path, std::ifstream(path), "", 0});
+  impl_.reset(new Impl{path, std::ifstream(path), "", 0, {}, {0, 0}});
   if (!impl_->file) throw file_error(path, "cannot be opened", errno);
 }
 
 DumpReader::~DumpReader() = default;
 
-bool DumpReader::next(const Topology& topology, DumpFrame& frame) {
+bool DumpReader::next(const Topology& topology, StoredFrame& frame) {
   try {
     if (!impl_->read_line()) return false;
     impl_->check_item("TIMESTEP");
-    DumpFrame read;
+    StoredFrame read;
     impl_->read_frame(topology, read);
     frame = std::move(read);
     return true;
   } catch (const CutOff&) {
     return false;
   }
+}
+
+std::size_t DumpReader::count(const Topology& topology) {
+  const Impl::Begin here = impl_->here();
+  impl_->find_begins();
+  std::size_t whole = impl_->begins.size();
+  if (whole > 0) {
+    StoredFrame last;
+    impl_->go_to(impl_->begins.back());
+    if (!next(topology, last)) --whole;
+  }
+  impl_->go_to(here);
+  return whole;
+}
+
+void DumpReader::seek(std::size_t frame) {
+  if (impl_->begins.empty()) impl_->find_begins();
+  const std::size_t frames = impl_->begins.size();
+  impl_->go_to(frame < frames ? impl_->begins[frame] : impl_->end);
 }
 
 std::uint64_t DumpReader::position() const { return static_cast<std::uint64_t>(impl_->file.tellg()); }
@@ -337,138 +351,17 @@ std::string dump_frame(const Topology& topology, const State& state, const Eleme
       const auto i = static_cast<std::size_t>(e);
       append_element(out, topology, state, t, i);
       for (const ColourColumn& column : colour_columns)
-        if (given(colours, column, state))
+        if (given(colours, column, state.size()))
           fmt::format_to(std::back_inserter(out), " {:.6g}", (colours.*column.values)[i]);
       out.push_back('\n');
     }
   return fmt::to_string(out);
 }
 
-// --- VTK XML --------------------------------------------------------------------------------------------
-
-namespace {
-
-template <class T>
-struct VtkType;
-template <>
-struct VtkType<float> {
-  static constexpr const char* name = "Float32";
-};
-template <>
-struct VtkType<std::int32_t> {
-  static constexpr const char* name = "Int32";
-};
-
-// Without compression VTK encodes the length, a UInt64, and the data as one block.
-template <class T>
-std::string data_array(const char* name, int components, const std::vector<T>& values) {
-  const std::uint64_t size = values.size() * sizeof(T);
-  std::string bytes(sizeof size + size, '\0');
-  std::memcpy(bytes.data(), &size, sizeof size);
-  if (size > 0) std::memcpy(bytes.data() + sizeof size, values.data(), size);
-  return fmt::format(
-      "<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"binary\">{}</DataArray>\n",
-      VtkType<T>::name, name, components, base64(bytes));
-}
-
-constexpr OutputColumn director{"director", "", "x axis of the element, normal to the tube: shows physical twist"};
-constexpr OutputColumn axis{"axis", "", "axis of the tube"};
-constexpr OutputColumn tube_number{"tube", "", "tube, from 1"};
-constexpr OutputColumn tube_radius{"radius", "nm", "radius of the tube: scale ParaView's Tube filter by it"};
-
-template <class Of>
-std::string vectors(const char* name, const State& state, const Of& of) {
-  std::vector<float> values;
-  values.reserve(3 * state.size());
-  for (std::size_t i = 0; i < state.size(); ++i) {
-    const Vector3 v = of(i);
-    for (int k = 0; k < 3; ++k) values.push_back(static_cast<float>(v[k]));
-  }
-  return data_array(name, 3, values);
-}
-
-// Polylines have two points or more; a tube of one element is a vertex.
-std::string cells(const char* kind, const Topology& topology, bool single) {
-  std::vector<std::int32_t> connectivity, offsets;
-  for (int t = 0; t < topology.tubes(); ++t) {
-    if ((topology.length_of(t) == 1) != single || topology.length_of(t) == 0) continue;
-    for (int e = topology.tube_begin[t]; e < topology.tube_begin[t + 1]; ++e) connectivity.push_back(e);
-    offsets.push_back(static_cast<std::int32_t>(connectivity.size()));
-  }
-  return fmt::format("<{0}>\n{1}{2}</{0}>\n", kind, data_array("connectivity", 1, connectivity),
-                     data_array("offsets", 1, offsets));
-}
-
-std::string point_data(const Topology& topology, const State& state, const ElementColours& colours) {
-  std::string text = vectors(director.name, state, [&](std::size_t i) -> Vector3 {
-    return state.orientation[i].toRotationMatrix().col(0);
-  });
-  text += vectors(axis.name, state, [&](std::size_t i) { return axis_of(state.orientation[i]); });
-  for (const ColourColumn& column : colour_columns)
-    if (given(colours, column, state)) {
-      const std::vector<double>& values = colours.*column.values;
-      text += data_array(column.column.name, 1, std::vector<float>(values.begin(), values.end()));
-    }
-  std::vector<std::int32_t> tube;
-  std::vector<float> radius;
-  for (int t = 0; t < topology.tubes(); ++t) {
-    tube.insert(tube.end(), topology.length_of(t), t + 1);
-    radius.insert(radius.end(), topology.length_of(t), static_cast<float>(topology.type_of(t).radius));
-  }
-  return text + data_array(tube_number.name, 1, tube) + data_array(tube_radius.name, 1, radius);
-}
-
-int cell_count(const Topology& topology, bool single) {
-  int count = 0;
-  for (int t = 0; t < topology.tubes(); ++t)
-    if (topology.length_of(t) > 0 && (topology.length_of(t) == 1) == single) ++count;
-  return count;
-}
-
-constexpr const char* byte_order =
-#if __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__
-    "LittleEndian";
-#else
-    "BigEndian";
-#endif
-
-}  // namespace
-
 std::vector<OutputColumn> frame_columns() {
   std::vector<OutputColumn> columns(fixed_columns.begin(), fixed_columns.end());
   for (const ColourColumn& c : colour_columns) columns.push_back({c.in_dump, c.column.unit, c.column.meaning});
   return columns;
-}
-
-std::vector<OutputColumn> vtp_arrays() {
-  std::vector<OutputColumn> columns = {director, axis};
-  for (const ColourColumn& c : colour_columns) columns.push_back(c.column);
-  columns.push_back(tube_number);
-  columns.push_back(tube_radius);
-  return columns;
-}
-
-std::string vtp_frame(const Topology& topology, const State& state, const ElementColours& colours) {
-  std::string text = fmt::format(
-      "<?xml version=\"1.0\"?>\n"
-      "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"{}\" header_type=\"UInt64\">\n<PolyData>\n"
-      "<FieldData>\n<DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">{}"
-      "</DataArray>\n</FieldData>\n"
-      "<Piece NumberOfPoints=\"{}\" NumberOfVerts=\"{}\" NumberOfLines=\"{}\" NumberOfStrips=\"0\" "
-      "NumberOfPolys=\"0\">\n",
-      byte_order, state.time, state.size(), cell_count(topology, true), cell_count(topology, false));
-  text += "<PointData>\n" + point_data(topology, state, colours) + "</PointData>\n";
-  text += "<Points>\n" + vectors("points", state, [&](std::size_t i) { return state.position[i]; }) + "</Points>\n";
-  text += cells("Verts", topology, true) + cells("Lines", topology, false);
-  return text + "</Piece>\n</PolyData>\n</VTKFile>\n";
-}
-
-std::string pvd_text(const std::vector<PvdEntry>& entries) {
-  std::string text = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n";
-  for (const PvdEntry& entry : entries)
-    text +=
-        fmt::format("<DataSet timestep=\"{}\" part=\"0\" file=\"{}\"/>\n", entry.time, escape_markup(entry.file));
-  return text + "</Collection>\n</VTKFile>\n";
 }
 
 }  // namespace ropewalk

@@ -1,0 +1,93 @@
+// `convert`: the frames of a run in another format.
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "commands/commands.hpp"
+#include "io/files.hpp"
+#include "io/frames/frames.hpp"
+#include "io/frames/vtp.hpp"
+#include "model/error.hpp"
+#include "run/run_directory.hpp"
+
+namespace ropewalk {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Takes frames one after another.
+struct Output {
+  virtual ~Output() = default;
+  virtual void add(const Topology& topology, const StoredFrame& frame) = 0;
+  virtual void end() = 0;
+};
+
+class FramesOutput : public Output {
+ public:
+  explicit FramesOutput(const std::string& path) : frames_(path, format_of(path), 0) {}
+  void add(const Topology& topology, const StoredFrame& f) override {
+    frames_->write(topology, f.state, f.colours);
+  }
+  void end() override { frames_.replace(); }
+
+ private:
+  NewFrames frames_;
+};
+
+// A PVD file and a folder of its name with the frames.
+class ParaviewOutput : public Output {
+ public:
+  explicit ParaviewOutput(const fs::path& pvd) : pvd_(pvd), folder_(fs::path(pvd).replace_extension("")) {
+    std::error_code error;
+    fs::create_directories(folder_, error);
+    if (error) throw file_error(folder_.string(), "cannot be made", error.value());
+  }
+  void add(const Topology& topology, const StoredFrame& f) override {
+    const std::string name = fmt::format("frame-{:09d}.vtp", f.state.step);
+    write_file_atomically((folder_ / name).string(), vtp_frame(topology, f.state, f.colours));
+    entries_.push_back({f.state.time, (folder_.filename() / name).string()});
+  }
+  void end() override { write_file_atomically(pvd_.string(), pvd_text(entries_)); }
+
+ private:
+  fs::path pvd_, folder_;
+  std::vector<PvdEntry> entries_;
+};
+
+std::unique_ptr<Output> output_for(const std::string& path) {
+  const std::string end = fs::path(path).extension().string();
+  if (end == ".pvd") return std::make_unique<ParaviewOutput>(path);
+  if (end == ".gsd" || end == ".lammpstrj") return std::make_unique<FramesOutput>(path);
+  throw InputError({path, 0, "FILE"}, "ends in none of .gsd, .lammpstrj, .pvd",
+                   "choose the format by the end of the name");
+}
+
+}  // namespace
+
+int convert_command(const ConvertArguments& a) {
+  const RunDirectory dir{a.dir};
+  const std::string from = dir.frames();
+  std::error_code error;
+  if (fs::equivalent(from, a.out, error))
+    throw InputError({a.out, 0, "FILE"}, "is where the frames are read from", "choose another name");
+  refuse_existing(a.out, "FILE", a.force);
+  Scene scene = read_run_scene(dir);
+  const Topology topology = prepare(scene).topology;
+  const auto frames = open_frames(from);
+  const std::unique_ptr<Output> out = output_for(a.out);
+  StoredFrame frame;
+  long read = 0, written = 0;
+  for (; frames->next(topology, frame); ++read) {
+    if (frame.state.time < a.from_ps || (a.to_ps && frame.state.time > *a.to_ps) || read % a.every != 0) continue;
+    out->add(topology, frame);
+    ++written;
+  }
+  if (written == 0)
+    throw InputError({from, 0, ""}, fmt::format("none of its {} frames was asked for", read),
+                     "look at --from-ps, --to-ps and --every");
+  out->end();
+  fmt::print("{} written, {} frame{}\n", a.out, written, written == 1 ? "" : "s");
+  return 0;
+}
+
+}  // namespace ropewalk

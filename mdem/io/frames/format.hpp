@@ -1,0 +1,7 @@
+#pragma once
+
+namespace ropewalk {
+
+enum class FrameFormat { gsd, dump };
+
+}  // namespace ropewalk
