@@ -109,6 +109,7 @@ class Stage:
 
     def page(self, page):
         text = self.with_charts(page, (repository / page).read_text())
+        text = re.sub(r"^( *)```math\n(.*?)^\1```$", r"\1$$\n\2\1$$", text, flags=re.S | re.M)
         lines = []
         for line, is_text in lines_outside_code(text):
             lines.append(link.sub(lambda m: self.new_link(page, m), line) if is_text else line)
