@@ -8,7 +8,7 @@ install(TARGETS ropewalk RUNTIME COMPONENT ropewalk)
 install(DIRECTORY data/ DESTINATION ${CMAKE_INSTALL_DATADIR}/ropewalk COMPONENT ropewalk)
 install(FILES README.md CHANGELOG.md LICENSE THIRD_PARTY.md CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR}
         COMPONENT ropewalk)
-install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/docs COMPONENT ropewalk)
+install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/docs COMPONENT ropewalk PATTERN site EXCLUDE)
 if(TARGET ropewalk-calibrate)
   install(TARGETS ropewalk-calibrate ropewalk-validate RUNTIME COMPONENT calibrate)
 endif()
@@ -81,7 +81,7 @@ set(CPACK_DEBIAN_LAMMPS_PACKAGE_NAME ropewalk-lammps)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libropewalk-dev)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-ropewalk)
 set(CPACK_DEBIAN_CALIBRATE_PACKAGE_DEPENDS "ropewalk (= ${PROJECT_VERSION})")
-set(CPACK_DEBIAN_LAMMPS_PACKAGE_DEPENDS "ropewalk (= ${PROJECT_VERSION})")
+set(CPACK_DEBIAN_LAMMPS_PACKAGE_DEPENDS "ropewalk (= ${PROJECT_VERSION}), openmpi-bin")  # not one rank starts without
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
     "libeigen3-dev, libfmt-dev, nlohmann-json3-dev, libtomlplusplus-dev, libqhull-dev, libhwy-dev, libxxhash-dev")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "ropewalk (= ${PROJECT_VERSION}), python3-numpy")

@@ -18,7 +18,9 @@
 #include "io/program.hpp"
 #include "io/toml_table.hpp"
 #include "model/error.hpp"
+#include "observe/limits.hpp"
 #include "run/cores.hpp"
+#include "scene/scene_keys.hpp"
 #include "scene/scene_toml.hpp"
 #include "sim/contact/line/engine.hpp"
 #include "version.hpp"
@@ -420,6 +422,27 @@ void add_help(CLI::App& app, Verbs& v) {
   });
 }
 
+// For describe json: the keys of a scene, and the limits that a run watches.
+nlohmann::ordered_json scenes_and_limits() {
+  auto scene = nlohmann::ordered_json::array(), limits = scene;
+  for (const SceneTable& t : scene_tables()) {
+    auto keys = nlohmann::ordered_json::array();
+    for (const SceneKey& k : t.keys)
+      keys.push_back({{"key", k.key},
+                      {"unit", k.unit},
+                      {"standard", k.standard.empty() ? k.value : k.standard},
+                      {"meaning", k.meaning}});
+    scene.push_back({{"table", t.name.empty() ? "" : t.header()}, {"meaning", t.meaning}, {"keys", keys}});
+  }
+  for (const LimitKind& kind : limit_kinds())
+    limits.push_back({{"key", kind.key},
+                      {"unit", kind.unit},
+                      {"what", kind.what},
+                      {"consequence", kind.consequence},
+                      {"remedy", kind.remedy}});
+  return {{"scene", scene}, {"limits", limits}};
+}
+
 // "help run" as "run --help", and "help" as "--help".
 void verb_before_help(const CLI::App& app, int argc, char** argv) {
   static char help[] = "--help";
@@ -469,7 +492,7 @@ int main(int argc, char** argv) {
   add_energy(app, verbs);
   add_bench(app, verbs);
   add_help(app, verbs);
-  add_describe(app, {"ropewalk", version, scene_key_help()});
+  add_describe(app, {"ropewalk", version, scene_key_help(), scenes_and_limits()});
   try {
     refuse_control_characters(argv);
     verb_before_help(app, argc, argv);

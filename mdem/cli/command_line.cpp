@@ -209,15 +209,44 @@ std::string fish_completion(const CLI::App& app, const Description& d) {
   return text;
 }
 
+nlohmann::ordered_json json_options(const CLI::App& app) {
+  auto out = nlohmann::ordered_json::array();
+  for (Option o : app.get_options()) {
+    if (o->get_group().empty()) continue;
+    const bool named = o->nonpositional();
+    out.push_back({{"names", named ? names_of(o) : std::vector<std::string>{o->get_name(true)}},
+                   {"positional", !named},
+                   {"required", o->get_required()},
+                   {"value", named && takes_value(o) ? value_name(o) : ""},
+                   {"default", o->get_default_str()},
+                   {"meaning", o->get_description()}});
+  }
+  return out;
+}
+
+std::string json_description(const CLI::App& app, const Description& d) {
+  nlohmann::ordered_json out = {{"program", d.program},
+                                {"version", d.version},
+                                {"about", app.get_description()},
+                                {"options", json_options(app)},
+                                {"verbs", nlohmann::ordered_json::array()}};
+  for (Verb verb : verbs_of(app))
+    out["verbs"].push_back(
+        {{"name", verb->get_name()}, {"meaning", verb->get_description()}, {"options", json_options(*verb)}});
+  out.update(d.more);
+  return out.dump(1) + "\n";
+}
+
 void add_describe(CLI::App& app, const Description& d) {
   CLI::App* c = app.add_subcommand("describe")->group("");
   auto what = std::make_shared<std::string>();
-  c->add_option("what", *what)->required()->check(CLI::IsMember({"man", "bash", "zsh", "fish"}));
+  c->add_option("what", *what)->required()->check(CLI::IsMember({"man", "bash", "zsh", "fish", "json"}));
   c->callback([&app, d, what] {
     const std::string text = *what == "man"    ? man_page(app, d)
                              : *what == "bash" ? bash_completion(app, d)
                              : *what == "zsh"  ? zsh_completion(app, d)
-                                               : fish_completion(app, d);
+                             : *what == "fish" ? fish_completion(app, d)
+                                               : json_description(app, d);
     std::fputs(text.c_str(), stdout);
   });
 }

@@ -1,8 +1,9 @@
 // What all programs of Ropewalk do with their command lines: say what was mistyped, and describe themselves to the
-// shell and to `man`.
+// shell, to `man` and to the pages of the documentation.
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
 #include <string>
 
 namespace ropewalk {
@@ -14,12 +15,15 @@ std::string usage_error(const CLI::App& app, const CLI::ParseError& error, const
 struct Description {
   std::string program;  // the name of its file
   std::string version;
-  std::string long_text;  // ends the man page; lines are kept
+  std::string long_text;                                           // ends the man page; lines are kept
+  nlohmann::ordered_json more = nlohmann::ordered_json::object();  // of a program alone, for describe json
 };
 std::string man_page(const CLI::App& app, const Description& d);
 std::string bash_completion(const CLI::App& app, const Description& d);
 std::string zsh_completion(const CLI::App& app, const Description& d);
 std::string fish_completion(const CLI::App& app, const Description& d);
+// Verbs and options, with all of `more`.
+std::string json_description(const CLI::App& app, const Description& d);
 
 // Adds the verb `describe`, which prints one of them. It is not listed.
 void add_describe(CLI::App& app, const Description& d);

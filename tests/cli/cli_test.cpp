@@ -1,5 +1,6 @@
 // The program as a user meets it: command lines, exit codes, messages and files.
 #include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
@@ -102,6 +103,30 @@ TEST_F(Cli, EveryTemplateIsWrittenAndPassesItsCheck) {
   }
   EXPECT_GE(count, 5);
   EXPECT_EQ(run("new my-rope --kind rope").code, 2) << "an existing file must stand";
+}
+
+// What the pages of the documentation are made from.
+TEST_F(Cli, DescribesItselfToPrograms) {
+  const Outcome o = run("describe json");
+  ASSERT_EQ(o.code, 0) << o.err;
+  const Json d = Json::parse(o.out);
+  std::vector<std::string> verbs, tables, limits, options;
+  for (const Json& verb : d.at("verbs")) {
+    verbs.push_back(verb.at("name"));
+    EXPECT_NE(verb.at("meaning"), "") << verbs.back();
+    if (verbs.back() == "run")
+      for (const Json& option : verb.at("options")) options.push_back(option.at("names").back());
+  }
+  for (const Json& table : d.at("scene")) {
+    tables.push_back(table.at("table"));
+    for (const Json& key : table.at("keys")) EXPECT_NE(key.at("meaning"), "") << key.at("key");
+  }
+  for (const Json& limit : d.at("limits")) limits.push_back(limit.at("key"));
+  EXPECT_THAT(verbs, ::testing::IsSupersetOf({"new", "run", "sweep", "calibrate", "help"}));
+  EXPECT_THAT(verbs, ::testing::Not(::testing::Contains("describe"))) << "it is not listed";
+  EXPECT_THAT(options, ::testing::IsSupersetOf({"scene", "--out", "--threads"}));
+  EXPECT_THAT(tables, ::testing::IsSupersetOf({"", "[rope]", "[[grip]]", "[limits]"}));
+  EXPECT_THAT(limits, ::testing::IsSupersetOf({"bend_deg", "energy_drift"}));
 }
 
 // The scenes that the documentation speaks of are the templates.

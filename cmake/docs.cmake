@@ -1,0 +1,12 @@
+# The documentation as a site: `cmake --build --preset release --target docs`.
+find_program(SPHINX_BUILD sphinx-build)
+find_program(DOXYGEN doxygen)
+find_program(DOT dot)
+if(SPHINX_BUILD AND DOXYGEN AND DOT AND TARGET ropewalk-calibrate)
+  set(docs_build ${PROJECT_BINARY_DIR}/docs)
+  configure_file(docs/site/Doxyfile.in ${docs_build}/Doxyfile @ONLY)
+  add_custom_target(docs COMMAND ${PROJECT_SOURCE_DIR}/docs/site/build ${PROJECT_BINARY_DIR} VERBATIM)
+  add_dependencies(docs ropewalk ropewalk-calibrate ropewalk-validate)
+else()
+  message(STATUS "The documentation as a site needs Sphinx, Doxygen and Graphviz. To have it: .ci/install documentation")
+endif()

@@ -1,0 +1,82 @@
+#!/usr/bin/env bash
+# The Debian packages on a bare Debian 12: installed, a rope twisted by an ordinary user, moved and read-only, removed without
+# a trace. As root, with debootstrap and a network; not a part of ctest. Arguments: a folder with the packages (`cd
+# build/release && cpack`), and a bare Debian 12, which is not changed (default: one is made by debootstrap).
+set -euo pipefail
+packages=$(realpath "$1") bare=${2:+$(realpath "$2")}
+work=$(mktemp -d) root=
+cleanup() {
+  [ -z "$root" ] || ! mountpoint -q "$root/proc" || umount "$root/proc"
+  rm -rf --one-file-system "$work"
+}
+trap cleanup EXIT
+root=$work/debian
+fail() { echo "bare_debian: $*" >&2; exit 1; }
+inside() { chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root DEBIAN_FRONTEND=noninteractive "$@" 2> "$work/errors" || fail "$*: $(tail -3 "$work/errors")"; }
+# What somebody else's home has no place for.
+as_user() { chroot --userspec=somebody "$root" env -i PATH=/usr/bin:/bin HOME=/home/somebody bash -ec "cd; $1"; }
+# Every file, but for logs, caches and lists of apt and dpkg.
+files() {
+  (cd "$root" && find . -xdev \( -path ./proc -o -path ./run -o -path ./var/cache -o -path ./var/log -o -path ./var/lib/apt -o -path './var/lib/dpkg/*-old' \
+    -o -path ./root/packages \) -prune -o -print) | sort
+}
+
+if [ -n "$bare" ]; then
+  cp -a "$bare" "$root"
+else
+  debootstrap --variant=minbase bookworm "$root" >/dev/null
+fi
+cp /etc/resolv.conf "$root/etc/"
+mount -t proc proc "$root/proc"
+inside apt-get update -qq
+inside useradd --create-home somebody
+files > "$work/before"
+inside dpkg-query -W > "$work/packages-before"
+
+mkdir "$root/root/packages"
+cp "$packages"/*.deb "$root/root/packages/"
+inside bash -c 'apt-get install -y -qq --no-install-recommends /root/packages/ropewalk_*.deb' >/dev/null
+[ -z "$(find "$root/usr/lib" -name 'liblammps*')" ] || fail "the simulator alone has brought LAMMPS"
+echo "installed: $(($(inside dpkg-query -W | wc -l) - $(wc -l < "$work/packages-before"))) packages for the simulator"
+
+cat > "$root/home/somebody/seven.toml" <<'SCENE'
+format = "ropewalk-scene-1"
+parameters = "cnt-10-10-tersoff"
+[rope]
+tubes = 7
+length_nm = 14
+[twist]
+moment_nN_nm = 5
+rate_nN_nm_per_ps = 5
+SCENE
+as_user 'ropewalk check seven.toml && ropewalk run seven.toml --out seven --quiet && ropewalk observe seven' > "$work/said" 2>&1 ||
+  fail "an ordinary user's rope: $(tail -3 "$work/said")"
+[ -s "$root/home/somebody/seven/report.html" ] || fail "the run left no report"
+
+# Moved, and where nothing may be written.
+mkdir -p "$root/opt/moved/bin" "$root/opt/moved/share"
+cp "$root/usr/bin/ropewalk" "$root/opt/moved/bin/"
+cp -r "$root/usr/share/ropewalk" "$root/opt/moved/share/"
+chmod -R a-w "$root/opt/moved"
+mv "$root/usr/share/ropewalk" "$root/usr/share/hidden"
+as_user '/opt/moved/bin/ropewalk run seven.toml --out moved --quiet' > "$work/said" 2>&1 || fail "the moved tree: $(tail -3 "$work/said")"
+mv "$root/usr/share/hidden" "$root/usr/share/ropewalk"
+chmod -R u+w "$root/opt/moved"
+rm -rf "$root/opt/moved"
+tail -n 1 "$root/home/somebody/seven/log.csv" | cmp - <(tail -n 1 "$root/home/somebody/moved/log.csv") ||
+  fail "the moved program has another result"
+
+inside bash -c 'apt-get install -y -qq --no-install-recommends /root/packages/*.deb' >/dev/null
+as_user 'ropewalk calibrate show cnt-10-10-tersoff --table && ropewalk validate run --tier quick wave-speeds' > "$work/said" 2>&1 ||
+  fail "calibration and validation: $(tail -3 "$work/said")"
+as_user 'ropewalk export seven.toml --lammps there && cd there && lmp-ropewalk -in in.rope && mpirun --oversubscribe -np 2 lmp-ropewalk -in in.rope && ropewalk import .' > "$work/said" 2>&1 ||
+  fail "LAMMPS: $(tail -30 "$work/said")"
+
+rm -rf "$root"/home/somebody/{seven,moved,there,validation,seven.toml}
+inside apt-get purge -y -qq 'ropewalk*' libropewalk-dev >/dev/null
+inside apt-get autoremove --purge -y -qq >/dev/null
+inside dpkg-query -W | diff "$work/packages-before" - >&2 || fail "packages are left"
+files | diff "$work/before" - > "$work/left" || true
+grep -iE 'ropewalk' "$work/left" && fail "files of Ropewalk are left"
+echo "removed; files that differ from those before, all of other packages: $(grep -c '^[<>]' "$work/left" || true)"
+cat "$work/left"
