@@ -57,6 +57,7 @@ class Search {
                                                   duration_text(now() - began), result_words(p)));
                        }});
     run_processes(tasks, jobs_, &stop_signal);
+    write();  // the trials of points that were stopped count as well
     if (stop_signal) {
       tell_as_is(fmt::format("ropewalk: stopped by signal {}; go on with the same command\n",
                              static_cast<int>(stop_signal)));
