@@ -85,7 +85,7 @@ class Frame(State):
 class Frames(Sequence[Frame]):
     """The frames of a run: len(), frames[i] (also from the end), frames[a:b:c], and iteration.
 
-    Frames are read from the file when they are asked for; going forward is quick, going back is not.
+    A frame is read from the file when it is asked for, in any order.
     """
 
     def __init__(self, file: _core.Frames, scene: _core.Scene, numbers: Optional[range] = None) -> None:
