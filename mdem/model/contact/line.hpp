@@ -97,8 +97,8 @@ struct LineContact {
 inline double line_node(int k, int nodes, double length) { return ((k + 0.5) / nodes - 0.5) * length; }
 
 // Nodes per element, spaced by at most 0.4 sqrt(R0 g0), R0 the distance and g0 the gap of two parallel tubes at rest:
-// along the axes u is as wide as sqrt(R0 g0). Keeps the corrugation below 2e-4 of the well at rest and below 4e-3 of it
-// where tubes are pressed 0.05 nm closer, for r = 0.2 .. 1.4 nm and any axial strain.
+// along the axes u is as wide as sqrt(R0 g0). Keeps the corrugation below 2.5e-4 of the well at rest and below 6e-3 of
+// it where tubes are pressed 0.05 nm closer, for r = 0.2 .. 1.4 nm and any axial strain.
 inline int line_nodes(double length, double pair_spacing, double contact) {
   const double spacing = 0.4 * std::sqrt(pair_spacing * (pair_spacing - contact));
   return std::max(1, static_cast<int>(std::ceil(length / spacing - 1e-9)));

@@ -101,7 +101,7 @@ const KeyTable<ContactOptions>& contact_table() {
       "contact",
       "van der Waals contact between elements",
       {Key::custom("law", "", otherwise("\"paper\"", "what the set has"), law_names(), read_law),
-       Key::integer("nodes_per_element", 1, max_nodes, &C::nodes, otherwise("5", "for a corrugation below 2e-4"),
+       Key::integer("nodes_per_element", 1, max_nodes, &C::nodes, otherwise("5", "for a corrugation below 2.5e-4"),
                     "line: nodes along an element")
            .goes_as_length(1),
        Key::word("precision", Words<Precision>{{"mixed", Precision::mixed}, {"double", Precision::full}},
