@@ -52,7 +52,7 @@ std::string trial_text(const Sweep& sweep, const SweepPoint& point, double value
 RunDirectory trial_directory(const CampaignDirectory& dir, const Sweep& sweep, const SweepPoint& point,
                              double value);
 std::string trial_hash(const Sweep& sweep, const SweepPoint& point, double value);
-// All that were run, and those of `known` that are of this point.
+// From the runs of this point in the directory, and from the trials of `known` that have its scene.
 Threshold threshold_of(const CampaignDirectory& dir, const Sweep& sweep, const SweepPoint& point,
                        const std::vector<Trial>& known);
 

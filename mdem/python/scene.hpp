@@ -1,4 +1,4 @@
-// A scene, and what follows from it, made when it is first asked for.
+// A scene for Python. Its model (elements, forces, reference data of the observables) is built at the first use.
 #pragma once
 
 #include <memory>

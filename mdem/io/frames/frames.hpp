@@ -61,7 +61,6 @@ class NewFrames {
   NewFrames& operator=(const NewFrames&) = delete;
   ~NewFrames();
 
-  FrameWriter& operator*() { return *writer_; }
   FrameWriter* operator->() { return writer_.get(); }
   void replace();
 

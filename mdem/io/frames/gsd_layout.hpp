@@ -31,7 +31,7 @@ inline constexpr std::uint8_t gsd_type<double> = 10;
 
 inline constexpr std::array<std::uint8_t, 11> gsd_type_bytes = {0, 1, 2, 4, 8, 1, 2, 4, 8, 4, 8};
 
-// In the order of the file. Those of `every frame` come first in docs, whose order is this one too.
+// In the order of the file and of docs/outputs.md.
 enum GsdChunk : std::uint16_t {
   gsd_step,
   gsd_box,
@@ -53,7 +53,7 @@ enum GsdChunk : std::uint16_t {
 inline constexpr std::array<OutputColumn, gsd_colours> gsd_fixed_chunks = {{
     {"configuration/step", "", "step of the run"},
     {"configuration/box", "nm", "a cube around the origin that holds every element"},
-    {"particles/N", "", "elements; in the first frame alone, as all up to bonds/group"},
+    {"particles/N", "", "number of elements; this chunk and all down to bonds/group are in the first frame alone"},
     {"particles/types", "", "types of tube"},
     {"particles/typeid", "", "type of the tube, from 0"},
     {"particles/mass", "eV ps^2/nm^2", "mass of the element"},
