@@ -153,14 +153,15 @@ std::vector<Trial> trials_in(const CampaignDirectory& dir, const Sweep& sweep, c
 }  // namespace
 
 Threshold threshold_of(const CampaignDirectory& dir, const Sweep& sweep, const SweepPoint& point,
-                       const std::vector<Trial>& known) {
+                       const KnownTrials& known) {
   Threshold out;
   const ThresholdQuestion& q = *sweep.threshold;
   out.trials = trials_in(dir, sweep, point);
-  for (const Trial& t : known) {
+  const auto earlier = known.find(point.name);
+  for (const Trial& t : earlier == known.end() ? std::vector<Trial>() : earlier->second) {
     const bool here = std::any_of(out.trials.begin(), out.trials.end(),
                                   [&](const Trial& o) { return o.scene_hash == t.scene_hash; });
-    if (!here && trial_hash(sweep, point, t.value) == t.scene_hash) out.trials.push_back(t);
+    if (!here) out.trials.push_back(t);
   }
   std::sort(out.trials.begin(), out.trials.end(), [](const Trial& a, const Trial& b) { return a.value < b.value; });
   out.below = q.from;
@@ -239,7 +240,7 @@ std::optional<GrowthThreshold> PhasePoint::by_growth() const {
 }
 
 std::vector<PhasePoint> phase_points(const CampaignDirectory& dir, const Sweep& sweep,
-                                     const std::vector<SweepPoint>& points, const std::vector<Trial>& known) {
+                                     const std::vector<SweepPoint>& points, const KnownTrials& known) {
   std::vector<PhasePoint> out;
   for (const Replicates& r : replicates_of(sweep, points)) {
     PhasePoint point;

@@ -2,6 +2,7 @@
 // and where the rate of its growth goes to zero.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -52,9 +53,11 @@ std::string trial_text(const Sweep& sweep, const SweepPoint& point, double value
 RunDirectory trial_directory(const CampaignDirectory& dir, const Sweep& sweep, const SweepPoint& point,
                              double value);
 std::string trial_hash(const Sweep& sweep, const SweepPoint& point, double value);
-// From the runs of this point in the directory, and from the trials of `known` that have its scene.
+// Trials of earlier searches by the name of their point.
+using KnownTrials = std::map<std::string, std::vector<Trial>>;
+// From the runs of this point in the directory, and from its known trials.
 Threshold threshold_of(const CampaignDirectory& dir, const Sweep& sweep, const SweepPoint& point,
-                       const std::vector<Trial>& known);
+                       const KnownTrials& known);
 
 // Points that differ in their seed alone.
 struct PhasePoint {
@@ -69,7 +72,7 @@ struct PhasePoint {
   std::optional<GrowthThreshold> by_growth() const;
 };
 std::vector<PhasePoint> phase_points(const CampaignDirectory& dir, const Sweep& sweep,
-                                     const std::vector<SweepPoint>& points, const std::vector<Trial>& known);
+                                     const std::vector<SweepPoint>& points, const KnownTrials& known);
 
 // Columns of trials.csv behind those of the keys that vary.
 std::vector<OutputColumn> trial_columns();

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <set>
 
 #include "commands/commands.hpp"
 #include "commands/point_runs.hpp"
@@ -93,29 +92,35 @@ class Search {
   // Trials whose runs are not in the directory: of its own table, and of another search.
   void read_known_trials() {
     if (fs::exists(dir_.trials())) {
-      known_ = read_trials(dir_.trials());
-      if (const std::size_t others = others_in(known_); others > 0 && !arguments_.force)
+      const auto [others, all] = take(dir_.trials());
+      if (others > 0 && !arguments_.force)
         throw InputError({dir_.trials(), 0, ""},
                          fmt::format("{} of its {} trials are of other scenes or parameter sets, and would be lost",
-                                     others, known_.size()),
+                                     others, all),
                          "choose another --out, or give --force");
     }
     if (arguments_.known.empty()) return;
-    const std::vector<Trial> more = read_trials(arguments_.known);
-    if (const std::size_t others = others_in(more); others > 0)
+    if (const auto [others, all] = take(arguments_.known); others > 0)
       tell_as_is(
           fmt::format("ropewalk: note: {} of the {} trials in {} are of other scenes or parameter sets and "
                       "are not used.\n",
-                      others, more.size(), arguments_.known));
-    known_.insert(known_.end(), more.begin(), more.end());
+                      others, all, arguments_.known));
   }
 
-  std::size_t others_in(const std::vector<Trial>& trials) const {
-    std::set<std::string> ours;
-    for (const SweepPoint& p : points_)
-      for (const Trial& t : threshold_of(dir_, sweep_, p, trials).trials) ours.insert(t.scene_hash);
-    return static_cast<std::size_t>(
-        std::count_if(trials.begin(), trials.end(), [&](const Trial& t) { return ours.count(t.scene_hash) == 0; }));
+  // How many trials of the file are of no point of this search, and how many there are.
+  std::pair<std::size_t, std::size_t> take(const std::string& path) {
+    const std::vector<Trial> trials = read_trials(path);
+    std::size_t others = 0;
+    for (const Trial& t : trials) {
+      const auto at = std::find_if(points_.begin(), points_.end(), [&](const SweepPoint& p) {
+        return trial_hash(sweep_, p, t.value) == t.scene_hash;
+      });
+      if (at == points_.end())
+        ++others;
+      else
+        known_[at->name].push_back(t);
+    }
+    return {others, trials.size()};
   }
 
   // 0 where the run ended.
@@ -182,7 +187,7 @@ class Search {
   Sweep sweep_;
   CampaignDirectory dir_;
   std::vector<SweepPoint> points_;
-  std::vector<Trial> known_;  // without runs in the directory
+  KnownTrials known_;
   const ThresholdArguments& arguments_;
   int jobs_;
 };
