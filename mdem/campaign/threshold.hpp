@@ -25,7 +25,7 @@ struct Trial {
 struct Threshold {
   std::vector<Trial> trials;
   double below = 0, above = 0;  // the bracket of the bisection; equal: not bracketed within the range
-  bool outside = false;         // passed at the lower end already, or not even at the upper one
+  bool outside = false;         // passed at the lower end already, or at no value that was tried
   double middle() const { return 0.5 * (below + above); }
 };
 

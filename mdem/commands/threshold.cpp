@@ -140,6 +140,13 @@ class Search {
     // The upper end first: it is soon decided.
     for (const double end : {q.to, q.from})
       if (const int code = try_at(p, end)) return code;
+    // An outcome may have a window: above it, a rope opens into a cage before it becomes a helix.
+    for (const double part : {0.5, 0.25, 0.75}) {
+      const auto passed = [](const Trial& t) { return t.passed; };
+      const std::vector<Trial> trials = threshold_of(dir_, sweep_, p, known_).trials;
+      if (std::any_of(trials.begin(), trials.end(), passed)) break;
+      if (const int code = try_at(p, q.from + part * (q.to - q.from))) return code;
+    }
     for (;;) {
       const Threshold t = threshold_of(dir_, sweep_, p, known_);
       if (t.outside || t.above - t.below <= q.accuracy * std::fabs(t.middle())) return 0;
@@ -151,8 +158,9 @@ class Search {
     const Threshold t = threshold_of(dir_, sweep_, p, known_);
     if (t.trials.empty()) return fmt::format("{}: no run ended, see {}", p.name, dir_.messages(p.name));
     if (t.outside)
-      return fmt::format("{}: {}", p.name,
-                         t.trials.back().passed ? "passed at the lower end already" : "not even at the upper end");
+      return fmt::format(
+          "{}: {}", p.name,
+          t.trials.back().passed ? "passed at the lower end already" : "at none of the values tried");
     return fmt::format("{}: {:.4g} to {:.4g}", p.name, t.below, t.above);
   }
 

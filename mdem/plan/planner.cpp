@@ -17,11 +17,9 @@
 namespace ropewalk {
 namespace {
 
-constexpr double pilots_in_all =
-    14;  // runs of the default model that all pilots take together, about, and the seeds
 constexpr int seeds = 3;
 constexpr double least_error = 1e-3;  // what a promise never goes below
-constexpr double caution = 1.5;       // factor of promises where the pilot is smaller than the scene
+constexpr double caution = 2;         // factor of promises where the pilot is smaller than the scene
 constexpr double worth = 0.9;         // of the default's time: a smaller gain is no gain
 
 Scene scene_with_features(const std::string& text, const std::string& path, SceneFeatures& features) {
@@ -41,8 +39,7 @@ class Planner {
   Planner(const Scene& scene, const PlanRequest& request, double seconds, double affordable, const RunPilots& run)
       : request_(request), run_(run) {
     scene_ = scene_with_features(scene.text, scene.path, features_);
-    const PilotScene pilot =
-        pilot_scene(scene_, seconds, affordable / (pilots_in_all + (has_random_numbers(scene_) ? seeds - 1 : 0)));
+    const PilotScene pilot = pilot_scene(scene_, seconds, affordable / pilots_in_all());
     plan_.pilots = pilot.words;
     plan_.until = pilot.until;
     pilot_ = scene_with_features(pilot.text, scene.path, pilot_features_);
@@ -71,6 +68,15 @@ class Planner {
 
  private:
   // --- pilots ---
+
+  // What all pilots take together, in runs of the default model, about.
+  double pilots_in_all() const {
+    std::vector<std::string> not_tried;
+    const auto changes =
+        static_cast<double>(cheaper_changes(scene_, features_, request_.end_state, not_tried).size());
+    const double finest = kept_length(scene_).empty() ? 5 : 2, together = std::clamp(changes - 1, 0.0, 2.0);
+    return finest + 1 + (has_random_numbers(scene_) ? seeds - 1 : 0) + changes + together;
+  }
 
   static std::string name_of(const std::vector<ModelChange>& changes) {
     std::string name;

@@ -77,6 +77,8 @@ thead th{color:var(--soft);font-weight:600;border-bottom-color:var(--soft)}
 .numbers td,.numbers th{white-space:nowrap}
 .facts tbody th{font-weight:600;padding-right:26px;white-space:nowrap}
 .facts td{overflow-wrap:anywhere}
+.facts td.number{overflow-wrap:normal}
+@media(max-width:600px){.facts td{min-width:6em}.facts td.number{min-width:0}}
 @media print{body{font-size:10.5pt}main{max-width:none;padding:0}
 h2{break-after:avoid}details{display:none}.pair{grid-template-columns:1fr 1fr}}
 )";

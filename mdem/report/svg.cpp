@@ -269,6 +269,34 @@ std::string draw_error_bands(const LineChart& chart, const Plot& plot) {
   return text;
 }
 
+// What lies below each whole line, shaded; its name stands under the highest point of the first one, that of what
+// lies above over the lowest.
+std::string draw_regions(const LineChart& chart, const Plot& plot) {
+  if (chart.below.empty()) return "";
+  std::string text, names;
+  for (const ChartLine& line : chart.lines) {
+    if (line.points || line.dashed) continue;
+    for (const Stretch& s : stretches(line)) {
+      const double first = plot.px(s.front().x), last = plot.px(s.back().x);
+      text += fmt::format("<path class=\"region e{}\" d=\"M{:.1f} {:.1f}", colour_of(line), first, plot.bottom);
+      for (const PagePoint& p : thinned(s, max_points))
+        text += fmt::format("L{:.1f} {:.1f}", plot.px(p.x), plot.py(p.y));
+      text += fmt::format("V{:.1f}Z\"/>\n", plot.bottom);
+      if (!names.empty()) continue;
+      const auto lower = [](const PagePoint& a, const PagePoint& b) { return a.y < b.y; };
+      const auto name = [&](double x, double y, const std::string& words) {
+        const double half = 0.5 * text_width(words) + 6;
+        return fmt::format("<text class=\"soft mid\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n",
+                           std::clamp(plot.px(x), first + half, std::max(first + half, last - half)), y,
+                           escape_markup(words));
+      };
+      names = name(std::max_element(s.begin(), s.end(), lower)->x, plot.bottom - 8, chart.below) +
+              name(std::min_element(s.begin(), s.end(), lower)->x, plot.top + 14, chart.above);
+    }
+  }
+  return text + names;
+}
+
 // --- Labels at the right end ------------------------------------------------------------------------------
 
 struct EndLabel {
@@ -335,8 +363,9 @@ std::string mark_path(Mark mark, double x, double y) {
     case Mark::cross:
       return fmt::format("M{:.1f} {:.1f}h2.4v-2.4h2.4v2.4h2.4v2.4h-2.4v2.4h-2.4v-2.4h-2.4Z", x - 3.6, y - 1.2);
     case Mark::star:
-      return fmt::format("M{:.1f} {:.1f}l1.9 4.4l4.8 .4l-3.7 3.2l1.1 4.7l-4.1 -2.5l-4.1 2.5l1.1 -4.7l-3.7 -3.2l4.8 -.4Z", x,
-                         y - 7);
+      return fmt::format(
+          "M{:.1f} {:.1f}l1.9 4.4l4.8 .4l-3.7 3.2l1.1 4.7l-4.1 -2.5l-4.1 2.5l1.1 -4.7l-3.7 -3.2l4.8 -.4Z", x,
+          y - 7);
   }
   return "";
 }
@@ -502,7 +531,7 @@ font-variant-numeric:tabular-nums;max-width:100%;height:auto}
 .load{fill:var(--load)}.hold{fill:var(--hold)}
 .leader{fill:none;stroke:var(--soft);stroke-width:.7}
 .line{fill:none;stroke-width:1.7;stroke-linejoin:round;stroke-linecap:round}
-.error{fill-opacity:.2;stroke:none}
+.error{fill-opacity:.2;stroke:none}.region{fill-opacity:.1;stroke:none}
 .points{stroke-width:5.5}
 .mark{stroke:var(--paper);stroke-width:.6}.mark:hover{stroke:var(--ink);stroke-width:1.6}
 .hollow{fill:var(--paper);stroke-width:1.4}
@@ -532,7 +561,8 @@ std::string scatter_svg(const ScatterChart& drawn) {
       "<svg class=\"chart\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\" role=\"img\" "
       "aria-label=\"{2}\">\n",
       chart.width, chart.height, escape_markup(chart.title));
-  text += draw_bands(chart, plot) + draw_axes(chart, plot) + draw_error_bands(chart, plot);
+  text +=
+      draw_bands(chart, plot) + draw_axes(chart, plot) + draw_error_bands(chart, plot) + draw_regions(chart, plot);
   for (std::size_t l = 0; l < chart.lines.size(); ++l) {
     const ChartLine& line = chart.lines[l];
     if (line.points && l < scatter.styles.size())

@@ -64,6 +64,8 @@ struct LineChart {
   std::vector<ChartLine> lines;
   std::vector<ChartBand> bands;
   double width = 540, height = 290;  // user units: pixels at full size
+  // Names of what lies below and above all whole lines, "stable" and "unstable"; what lies below is shaded.
+  std::string below = {}, above = {};
 };
 
 // False if no line has two finite points at different x.
@@ -91,10 +93,10 @@ struct RopeCamera {
 // The rope lies across the page, and the plane of its largest deflection in the page.
 RopeCamera rope_camera(const std::vector<RopeView>& views, double tube_radius, double widest = 1040,
                        double highest = 300);
-// From a side of one's choice: `towards` points to who looks. The rope lies across the page unless it is seen from its
-// end.
-RopeCamera rope_camera(const std::vector<RopeView>& views, double tube_radius, const Vector3& towards, double widest,
-                       double highest);
+// From a side of one's choice: `towards` points to who looks. The rope lies across the page unless it is seen from
+// its end.
+RopeCamera rope_camera(const std::vector<RopeView>& views, double tube_radius, const Vector3& towards,
+                       double widest, double highest);
 
 // An <svg> element of at most 60 kB. `name` makes its ids unique in the page.
 std::string rope_picture(const RopeView& view, const RopeCamera& camera, double tube_radius,

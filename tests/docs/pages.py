@@ -33,6 +33,7 @@ sticks_out = """
 
 
 def look(browser, site, page):
+    """Opens a page at three sizes and notes what is wrong with it."""
     browser.size(*desk)
     browser.call("Emulation.setEmulatedMedia", media="")
     browser.open((site / page).as_uri())

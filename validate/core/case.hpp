@@ -39,6 +39,7 @@ struct Check {
 struct CaseFigure {
   LineChart chart;
   std::string caption;  // what the figure shows
+  bool on_map = false;  // stands with the limits of all methods, at the top of the page
 };
 
 // A place where a method fails, for the map of `validate stability`.

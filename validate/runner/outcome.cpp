@@ -102,7 +102,8 @@ Json to_json(const CaseFigure& f) {
   for (const ChartBand& b : f.chart.bands)
     bands.push_back({{"from", b.from}, {"to", b.to}, {"label", b.label}, {"dark", b.dark}});
   return {{"title", f.chart.title}, {"x", to_json(f.chart.x)}, {"y", to_json(f.chart.y)},
-          {"lines", lines},         {"bands", bands},          {"caption", f.caption}};
+          {"lines", lines},         {"bands", bands},          {"caption", f.caption},
+          {"below", f.chart.below}, {"above", f.chart.above},  {"on_map", f.on_map}};
 }
 
 CaseFigure figure_of(const Json& j) {
@@ -123,7 +124,10 @@ CaseFigure figure_of(const Json& j) {
   }
   for (const Json& b : j.at("bands"))
     f.chart.bands.push_back({b.at("from"), b.at("to"), b.at("label"), b.at("dark")});
+  f.chart.below = j.value("below", "");  // earlier versions have none
+  f.chart.above = j.value("above", "");
   f.caption = j.at("caption");
+  f.on_map = j.value("on_map", false);
   return f;
 }
 

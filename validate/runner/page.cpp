@@ -118,14 +118,17 @@ std::string figure_html(const CaseFigure& f, Figures& figures) {
          data_table(columns, "The JSON file of the case has all lines.") + "</figure>\n";
 }
 
-std::string figures_html(const CaseResult& r, Figures& figures) {
+std::string figures_html(const std::vector<CaseFigure>& all, bool on_map, Figures& figures) {
   std::string html;
-  for (std::size_t k = 0; k < r.figures.size(); k += 2) {
-    html += "<div class=\"pair\">\n" + figure_html(r.figures[k], figures);
-    if (k + 1 < r.figures.size()) html += figure_html(r.figures[k + 1], figures);
-    html += "</div>\n";
+  int drawn = 0;
+  for (const CaseFigure& f : all) {
+    const std::string figure = f.on_map == on_map ? figure_html(f, figures) : "";
+    if (figure.empty()) continue;
+    if (drawn % 2 == 0) html += drawn == 0 ? "<div class=\"pair\">\n" : "</div>\n<div class=\"pair\">\n";
+    html += figure;
+    ++drawn;
   }
-  return html;
+  return drawn == 0 ? "" : html + "</div>\n";
 }
 
 std::string case_html(const Outcome& o, Figures& figures) {
@@ -135,7 +138,7 @@ std::string case_html(const Outcome& o, Figures& figures) {
   html += paragraph("<b>Set-up.</b> " + escape_markup(o.with_tubes(c.setup)) + " <b>Oracle.</b> " +
                     escape_markup(o.with_tubes(c.oracle)));
   if (!o.error.empty()) html += paragraph("<span class=\"bad\">" + escape_markup(o.error) + "</span>");
-  html += checks_table(o.result) + figures_html(o.result, figures);
+  html += checks_table(o.result) + figures_html(o.result.figures, false, figures);
   for (const std::string& r : o.result.remarks) html += paragraph(escape_markup(r));
   std::string sources = "<span class=\"soft\">Run it again: <code>ropewalk validate run " + o.name + "</code>. ";
   for (const std::string& s : o.result.sources) sources += "Reference: " + escape_markup(s) + ". ";
@@ -185,12 +188,15 @@ std::string limit_row(const Limit& l, const std::string& name) {
       strip(l.found / l.theory), guard_words(l.guard), escape_markup(l.how));
 }
 
-std::string limits_map(const std::vector<Outcome>& outcomes) {
+std::string limits_map(const std::vector<Outcome>& outcomes, Figures& figures) {
   std::string rows;
-  for (const Outcome& o : outcomes)
+  std::vector<CaseFigure> steps;
+  for (const Outcome& o : outcomes) {
     for (const Limit& l : o.result.limits) rows += limit_row(l, o.name);
+    steps.insert(steps.end(), o.result.figures.begin(), o.result.figures.end());
+  }
   if (rows.empty()) return "";
-  return heading("The map") +
+  return heading("The map") + figures_html(steps, true, figures) +
          paragraph(
              "The place where each method fails, found by bisection on the method itself, with theory beside it "
              "and "
@@ -244,7 +250,7 @@ std::string validation_page(const std::vector<Outcome>& outcomes, const std::vec
                      "<div class=\"scroll\"><table class=\"verdicts\"><thead><tr><th>Verdict</th>"
                      "<th>Case</th><th>Tube</th><th>Tightest check</th><th>Against</th></tr></thead><tbody>\n";
   for (const Outcome& o : outcomes) html += summary_row(o);
-  html += "</tbody></table></div>\n" + limits_map(outcomes);
+  html += "</tbody></table></div>\n" + limits_map(outcomes, figures);
   for (const Outcome& o : outcomes)
     if (o.not_applicable.empty()) html += case_html(o, figures);
   html += heading("How this page was made");

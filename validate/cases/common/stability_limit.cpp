@@ -105,6 +105,15 @@ double largest_eigenvalue(const Eigen::MatrixXd& m) {
 
 }  // namespace
 
+CaseFigure step_figure(const std::string& by, const ChartAxis& x) {
+  CaseFigure figure;
+  figure.chart = {"Largest stable step by " + by, x, {"largest step", "fs"}, {}, {}};
+  figure.chart.below = "stable";
+  figure.chart.above = "unstable";
+  figure.on_map = true;
+  return figure;
+}
+
 double stiffest_frequency(const Topology& topology, const Interaction& interaction, const State& state) {
   return std::sqrt(largest_eigenvalue(derivative(topology, interaction, state, By::position)));
 }

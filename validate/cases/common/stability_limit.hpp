@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cases/common/chain.hpp"
+#include "core/case.hpp"
 
 namespace ropewalk {
 
@@ -25,6 +26,9 @@ double stiffest_frequency(const Topology& topology, const Interaction& interacti
 // The step (ps) at which the largest eigenvalue of dt^2 K + 2 dt D is 4, with K and D the stiffness and the damping
 // over the masses by differences of the forces. Without damping it is 2/w.
 double largest_damped_step(const Topology& topology, const Interaction& interaction, const State& state);
+
+// An empty figure of the largest stable step, for the map of all limits.
+CaseFigure step_figure(const std::string& by, const ChartAxis& x);
 
 // The set with elements `factor` times as long.
 ParameterSet with_elements(ParameterSet set, double factor);

@@ -68,25 +68,19 @@ CaseResult run(const CaseContext& context) {
                              theory(oracle, rate), "fs", Limit::Guard::refused,
                              "a time step above the estimate, which includes the damping"});
   }
-  CaseFigure lengths;
-  lengths.chart = {
-      "Largest stable step by element length", {"element length", "nm"}, {"largest step", "fs"}, {}, {}};
+  CaseFigure lengths = step_figure("element length", {"element length", "nm"});
   lengths.chart.lines.push_back(theory_curve(
       "2/w of the stiffest mode",
       [&](double a) { return theory(with_elements(oracle, a / oracle.element_length), 0); }, length.front(),
       length.back(), 0));
   lengths.chart.lines.push_back(model_points("by bisection", length, limit, 1));
-  lengths.caption =
-      "Above the line a run blows up. The step grows with the element length: elements twice as long cost a "
-      "quarter.";
+  lengths.caption = "One tube. The step grows with the element length: elements twice as long cost a quarter.";
   result.figures.push_back(lengths);
-  CaseFigure damping;
-  damping.chart = {
-      "Largest stable step by bond damping", {"damping of the bonds", "1/ps"}, {"largest step", "fs"}, {}, {}};
+  CaseFigure damping = step_figure("bond damping", {"damping of the bonds", "1/ps"});
   damping.chart.lines.push_back(theory_curve(
       "dt^2 K + 2 dt D = 4", [&](double rate) { return theory(oracle, rate); }, 0, 80, 0));
   damping.chart.lines.push_back(model_points("by bisection", rates, damped, 1));
-  damping.caption = "Explicit damping lowers the largest step.";
+  damping.caption = "One tube. Explicit damping lowers the largest step.";
   result.figures.push_back(damping);
   result.remarks.push_back(
       "`run` refuses a time step above its own estimate of this limit; by default it takes 0.9 of the estimate in "

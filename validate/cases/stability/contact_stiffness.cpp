@@ -70,12 +70,7 @@ double check_viscosity(const CaseContext& context, CaseResult& result) {
   Bundle oracle = bundle_at_rest(s, context.set(s.set), 1), model = packed(s, context.model(s.set), 1);
   model.state = oracle.state;
   double margin = 1e9;
-  CaseFigure figure;
-  figure.chart = {"Largest stable step by contact viscosity",
-                  {"viscosity, log10 of eV ps/nm^2", ""},
-                  {"largest step", "fs"},
-                  {},
-                  {}};
+  CaseFigure figure = step_figure("contact viscosity", {"viscosity, log10 of eV ps/nm^2", ""});
   std::vector<double> at, limit, expected, estimates;
   for (const double eta : {20.0, 200.0, 1000.0, 5000.0}) {
     for (Bundle* b : {&model, &oracle}) b->interaction.damping.contact = {eta, b->spacing, 1.5 * b->spacing};
@@ -98,19 +93,15 @@ double check_viscosity(const CaseContext& context, CaseResult& result) {
   figure.chart.lines.push_back({"dt^2 K + 2 dt D = 4", at, expected, 0});
   figure.chart.lines.push_back(model_points("by bisection", at, limit, 1));
   figure.chart.lines.push_back({"estimate of `run`", at, estimates, 2, true});
-  figure.caption = "The estimate is lower: it is that of a tube with six neighbours in an endless rope under load.";
+  figure.caption =
+      "Seven tubes. The estimate is lower: it is that of a tube with six neighbours in an endless rope under load.";
   result.figures.push_back(figure);
   return margin;
 }
 
 CaseResult run(const CaseContext& context) {
   CaseResult result;
-  CaseFigure map;
-  map.chart = {"Largest stable step of a rope",
-               {"contact, log2 of its energy over the set's", ""},
-               {"largest step", "fs"},
-               {},
-               {}};
+  CaseFigure map = step_figure("stiffness of the contact", {"contact, log2 of its energy over the set's", ""});
   int colour = 0;
   double min_margin = 1e9;
   for (const Series& s : all_series()) {
@@ -138,7 +129,8 @@ CaseResult run(const CaseContext& context) {
     ++colour;
   }
   map.caption =
-      "Points: by bisection. Lines: by the eigenvalues. Where a line begins to fall, the contact becomes stiffer "
+      "Seven tubes. Points: by bisection. Lines: by the eigenvalues. Where a line begins to fall, the contact "
+      "becomes stiffer "
       "than the chains.";
   result.figures.push_back(map);
   min_margin = std::min(min_margin, check_viscosity(context, result));
