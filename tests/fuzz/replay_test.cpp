@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <iostream>
 #include <random>
 #include <sstream>
 
@@ -117,13 +118,16 @@ TEST_P(Readers, TakeOrRefuseWhateverTheyGet) {
   const std::vector<std::string> inputs = corpus(target.name);
   ASSERT_FALSE(inputs.empty()) << "no corpus for " << target.name;
   Mutator mutate(1);
+  std::size_t tried = 0;
   for (const std::string& input : inputs) {
     ASSERT_NO_THROW(target.read(input)) << input;
     for (int k = 0; k < mutants; ++k) {
       const std::string other = mutate(input);
       ASSERT_NO_THROW(target.read(other)) << other;
     }
+    tried += 1 + mutants;
   }
+  std::cout << target.name << ": " << tried << " inputs\n";
 }
 
 INSTANTIATE_TEST_SUITE_P(Fuzz, Readers, ::testing::ValuesIn(targets()),
