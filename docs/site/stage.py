@@ -24,8 +24,8 @@ beside_docs = ["README.md", "CHANGELOG.md", "THIRD_PARTY.md", "calibrate/README.
 contents = [
     ("Learn", ["tutorials/rope", "tutorials/tube", "tutorials/phase-diagram", "tutorials/cluster", "gallery"]),
     ("How to", ["how-to/install", "how-to/view", "how-to/resume", "how-to/plan", "how-to/campaign", "how-to/*"]),
-    ("Reference", ["reference/commands", "reference/scene", "outputs", "reference/messages", "reference/library",
-                   "glossary"]),
+    ("Reference", ["reference/commands", "reference/scene", "outputs", "faults", "reference/messages",
+                   "reference/library", "glossary"]),
     ("The model", ["theory", "calibrate/README", "validate/README", "mdem/lammps/README", "performance"]),
     ("Results", ["data/scenes/README", "data/**"]),
     ("The project", ["README", "architecture", "contributing", "CHANGELOG", "THIRD_PARTY", "*"]),

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <map>
 #include <set>
@@ -93,7 +94,7 @@ std::vector<std::string> values_of_range(const toml::table& table, const std::st
     const double part = count > 1 ? static_cast<double>(k) / static_cast<double>(count - 1) : 0.0;
     double value = log ? from * std::pow(to / from, part) : from + (to - from) * part;
     if (table.contains("step")) value = from + static_cast<double>(k) * number("step");
-    value = std::stod(fmt::format("{:.12g}", value));  // 0.3, not 0.30000000000000004
+    value = std::strtod(fmt::format("{:.12g}", value).c_str(), nullptr);  // 0.3, not 0.30000000000000004
     values.push_back(fmt::format("{}", value));
   }
   return values;

@@ -386,23 +386,32 @@ class Run {
     Progress progress(policy_.quiet, 0, 0);
     StopReason stop = StopReason::none;
     const RelaxGoal& goal = scene_.run.goal;
-    const long max_steps = last_step_ >= 0 ? std::max(0L, last_step_ - static_cast<long>(simulation_.state().step))
-                                           : scene_.run.max_steps;
+    const auto began = static_cast<long>(simulation_.relaxation_began());
+    const long max_steps = last_step_ >= 0 ? std::max(0L, last_step_ - began) : scene_.run.max_steps;
+    double checkpoint_at = now() + scene_.run.checkpoint_every;
     const Relaxed end = simulation_.relax(goal, max_steps, [&](long k) {
       if (k % 100 == 0) {
         if (simulation_.state().step != written_step_) write_row();
         stop = check_limits(false);
+        set_mark();
       }
       if (progress.due()) progress.show(static_cast<double>(k), status_text());
+      if (stop == StopReason::none && stop_signal) stop = StopReason::signal;
       if (stop == StopReason::none && time_is_up()) stop = StopReason::wall_time;
-      return stop_signal == 0 && stop == StopReason::none;
+      if (stop == StopReason::none && k % pause_every == 0 && now() > checkpoint_at) {
+        save_if_possible();
+        checkpoint_at = now() + scene_.run.checkpoint_every;
+      }
+      return stop == StopReason::none;
     });
     progress.done();
+    // In the middle of the relaxation, from where `resume` goes on.
+    if (stop == StopReason::signal || stop == StopReason::wall_time) return stop;
+    simulation_.end_relaxation();
     if (simulation_.state().step != written_step_) {
       write_row();
       write_frame();
     }
-    if (stop_signal) return StopReason::signal;
     if (stop == StopReason::none) stop = check_limits(true);
     if (stop != StopReason::none) return stop;
     at_rest_ = end.at_rest;
@@ -555,6 +564,7 @@ class Run {
   void save_end() {
     save_if_possible();
     if (checkpoint_fails_) save();
+    simulation_.end_relaxation();  // saved as it was; this file is of a state at rest
     pending_.write(dir_.final_state(), state_csv(prepared_.topology, simulation_.state()));
   }
 

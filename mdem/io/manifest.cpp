@@ -51,6 +51,8 @@ Json parse(const std::string& path, const std::string& text) {
     if (json.is_object() && json.value("format", "") == format) return json;
   } catch (const Json::parse_error& e) {
     throw InputError({path, line_of_byte(text, e.byte), ""}, "is not JSON", remedy);
+  } catch (const Json::out_of_range&) {
+    throw InputError({path, 0, ""}, "holds a number that is too large", remedy);
   } catch (const Json::type_error&) {  // format is not a string
   }
   throw InputError({path, 0, "format"}, fmt::format("\"{}\" is needed", format), remedy);

@@ -5,8 +5,8 @@ namespace ropewalk {
 
 // Opens the null device on standard input, output and error where they are closed, as under some daemons: the first
 // file opened would take their number, and messages would land in it. Has a file that passes the limit on sizes
-// (ulimit -f) be an error and not a signal. An exception that nothing catches, as where memory runs out in a library
-// that cannot bear it, is one line and exit code 3.
+// (ulimit -f) be an error and not a signal. Keeps some memory for small requests once large ones fail. An exception
+// that nothing catches is one line and exit code 3.
 void begin_program(const char* name);
 
 }  // namespace ropewalk

@@ -93,6 +93,7 @@ Relaxed SteppedScene::relax(const RelaxGoal& goal, long max_steps) {
     raised.emplace();
     return false;
   });
+  simulation_.end_relaxation();
   energies_ = simulation_.forces().energy;
   if (raised) throw std::move(*raised);
   return end;

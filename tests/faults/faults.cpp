@@ -4,11 +4,12 @@
 //
 //   ROPEWALK_FAULTS_BELOW  the directory, absolute
 //   ROPEWALK_FAULT         HOW:N[:on]   at the Nth call, from 1; "on": from then on. HOW: kill (before the call),
-//   torn
-//                          (in the middle of a write; nothing at other calls), ENOSPC, EIO, EDQUOT, EINTR, EROFS
+//                          torn (in the middle of a write; nothing at other calls), term (SIGTERM, and the call
+//                          goes on), ENOSPC, EIO, EDQUOT, EINTR, EROFS
 //   ROPEWALK_FAULTS_COUNT  file that takes the number of calls at the end
 //
-// With HOW = memory the calls are those of operator new, and the directory does not matter.
+// With HOW = memory the calls are those of operator new, and the directory does not matter. The Nth fails until the
+// program's new_handler has given something up; "on": and from then on all large ones fail.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <unistd.h>
@@ -94,10 +95,16 @@ bool fails(bool counts, bool* torn = nullptr) {
     if (torn) *torn = true;
     return false;
   }
+  if (f.how == "term") {
+    raise(SIGTERM);
+    return false;
+  }
   if (f.how == "kill") raise(SIGKILL);
   errno = code_of(f.how);
   return true;
 }
+
+constexpr std::size_t large = 4096;  // bytes
 
 // As operator new of the library; without memory where the fault asks for it.
 void* allocated(std::size_t size, std::size_t alignment) {
@@ -105,9 +112,13 @@ void* allocated(std::size_t size, std::size_t alignment) {
   if (!here) {
     here = true;
     const Fault& f = fault();
-    here = false;
     const long k = f.how == "memory" ? ++calls : 0;
-    if (k > 0 && f.at > 0 && (k == f.at || (f.on && k > f.at))) throw std::bad_alloc();
+    here = false;
+    const bool for_good = f.on && size > large;
+    if (k > 0 && f.at > 0 && (k == f.at || (for_good && k > f.at))) do {
+        if (!std::get_new_handler()) throw std::bad_alloc();
+        std::get_new_handler()();  // throws where there is nothing left to give up
+      } while (for_good);
   }
   void* memory = alignment > 0 ? std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment)
                                : std::malloc(size > 0 ? size : 1);

@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iostream>
 #include <random>
 #include <sstream>
 
@@ -16,7 +18,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int mutants = 100;
+// Of each input.
+int mutants() { return std::getenv("ROPEWALK_ALL_FAULTS") ? 1000 : 100; }
 
 std::vector<std::string> corpus(const std::string& name) {
   std::vector<fs::path> files;
@@ -117,13 +120,16 @@ TEST_P(Readers, TakeOrRefuseWhateverTheyGet) {
   const std::vector<std::string> inputs = corpus(target.name);
   ASSERT_FALSE(inputs.empty()) << "no corpus for " << target.name;
   Mutator mutate(1);
+  std::size_t tried = 0;
   for (const std::string& input : inputs) {
     ASSERT_NO_THROW(target.read(input)) << input;
-    for (int k = 0; k < mutants; ++k) {
+    for (int k = 0; k < mutants(); ++k) {
       const std::string other = mutate(input);
       ASSERT_NO_THROW(target.read(other)) << other;
     }
+    tried += 1 + static_cast<std::size_t>(mutants());
   }
+  std::cout << target.name << ": " << tried << " inputs\n";
 }
 
 INSTANTIATE_TEST_SUITE_P(Fuzz, Readers, ::testing::ValuesIn(targets()),

@@ -98,6 +98,46 @@ TEST(Relaxation, OfASlenderCantileverGoesOnToItsEnergy) {
   EXPECT_FALSE(c.make().relax(RelaxGoal{0.02, 1e-3}, 500, [](long) { return true; }).at_rest);
 }
 
+// Again and again, and each time read from its bytes by another simulation.
+TEST(Relaxation, InterruptedGoesOnToTheSameBits) {
+  Chain c(31);
+  c.loads.add(FixLoad({0}));
+  c.loads.add(ForceLoad({30}, {0.06, 0, 0}));
+  const RelaxGoal goal{0.02, 1e-2};
+  Simulation whole = c.make();
+  ASSERT_TRUE(whole.relax(goal, 400000, [](long) { return true; }).at_rest);
+  Simulation s = c.make();
+  int interruptions = 0;
+  for (;; ++interruptions) {
+    int steps = 0;
+    if (s.relax(goal, 400000, [&](long) { return steps++ < 101; }).at_rest) break;
+    ASSERT_LT(interruptions, 1000);
+    ASSERT_EQ(s.relaxation_began(), 0);
+    Simulation other = c.make();
+    other.restore(s.serialise());
+    s = std::move(other);
+  }
+  EXPECT_GT(interruptions, 5);
+  EXPECT_TRUE(s.serialise() == whole.serialise());
+}
+
+TEST(Relaxation, InterruptedIsAtRestBeforeAStep) {
+  Chain c(11);
+  c.loads.add(FixLoad({0}));
+  c.loads.add(ForceLoad({10}, {0.06, 0, 0}));
+  Simulation s = c.make();
+  s.relax(RelaxGoal{}, 400000, [](long k) { return k < 50; });
+  EXPECT_GT(kinetic_energy(s.topology(), s.state()), 0);
+  Simulation other = c.make();
+  other.restore(s.serialise());
+  other.end_relaxation();
+  EXPECT_EQ(kinetic_energy(other.topology(), other.state()), 0);
+  EXPECT_EQ(other.relaxation_began(), other.state().step);
+  s.step();
+  other.step();
+  EXPECT_TRUE(s.serialise() == other.serialise());
+}
+
 // Deflection under a small lateral load grows as 1/(1 - P/P_cr): three loads below extrapolate to P_cr.
 TEST(ChainBuckling, EulerColumn) {
   Chain c(31);

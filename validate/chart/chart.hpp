@@ -21,6 +21,7 @@
 #include <string>
 #include <vector>
 
+#include "chart/point.hpp"
 #include "io/outputs.hpp"
 #include "observe/observe.hpp"
 #include "scene/scene.hpp"
@@ -123,30 +124,6 @@ const ChartModel& find_chart_model(const std::vector<ChartModel>& models, const 
 std::string observable_unit(const std::string& observable);
 
 // --- Points ---
-
-// One model in one scene, as in the file of its result.
-struct ChartPoint {
-  std::string key;    // hash of program, scene and settings; a result with another key is stale
-  std::string error;  // why the model could not be run
-  std::string scene, model, kind, law, integrator, mode, precision;
-  int nodes = 0, contact_every = 1, elements = 0;
-  double cutoff = 0, element_length = 0;  // nm
-  double time_step = 0;                   // ps, of the bonds
-  double mass_scale = 1, contact_viscosity = 0, bond_damping = 0;
-  double simulated = 0;  // ps
-  double steps = 0;
-  double cpu = 0;                      // s
-  std::optional<double> instructions;  // per element-step
-  std::map<std::string, double> values;
-
-  double element_steps_per_ns() const { return elements * steps / (1e-3 * simulated); }
-  double cpu_per_ns() const { return cpu / (1e-3 * simulated); }
-  double cpu_per_element_step() const { return cpu / (elements * steps); }
-};
-
-std::string point_json(const ChartPoint& point);
-// Throws InputError where the file is not such a point.
-ChartPoint read_point(const std::string& path);
 
 // The columns of a point that are known before its run.
 ChartPoint describe(const ChartScene& scene, const ChartModel& model, const Specimen& specimen);

@@ -156,12 +156,12 @@ Simulation driven(const Specimen& s, State untwisted) {
                     s.scene.run.stepping);
 }
 
-struct Relaxation {
+struct RelaxedSpecimen {
   Simulation simulation;
   double seconds = 0;
 };
 
-Relaxation run_relaxation(const Specimen& s, int increments, State state) {
+RelaxedSpecimen run_relaxation(const Specimen& s, int increments, State state) {
   const double began = processor_seconds();
   state.step = 0;
   for (int k = 0; k < increments; ++k) {
@@ -209,7 +209,7 @@ void measure(const Specimen& s, const ChartModel& model, ChartPoint& point) {
   for (int k = 0; k < max_spans && total < min_seconds; ++k) {
     double seconds = 0;
     if (model.mode == RunOptions::Mode::relax) {
-      const Relaxation r = run_relaxation(s, model.at_once ? 1 : s.increments, untwisted);
+      const RelaxedSpecimen r = run_relaxation(s, model.at_once ? 1 : s.increments, untwisted);
       seconds = r.seconds;
       point.steps = static_cast<double>(r.simulation.state().step);
       if (k == 0) reader.add(r.simulation);

@@ -13,7 +13,7 @@
 namespace ropewalk {
 namespace {
 
-constexpr char magic[8] = "MDEM11";
+constexpr char magic[8] = "MDEM12";
 
 struct CheckpointHead {
   char format[sizeof magic];
@@ -79,6 +79,16 @@ void visit_forces(Archive& archive, F& f) {
 
 }  // namespace
 
+template <class Archive, class R>
+void visit_relaxation(Archive& archive, R& r) {
+  archive(r.began);
+  archive(r.part_began);
+  for (auto* x : {&r.goal.force, &r.goal.energy, &r.first_energy, &r.force, &r.constant, &r.longest_bond,
+                  &r.last_step, &r.fire.dt_max, &r.fire.dt_min, &r.fire.dt, &r.fire.mix})
+    archive(*x);
+  archive(r.fire.downhill);
+}
+
 template <class Archive, class Self, class List>
 void Simulation::visit_checkpoint(Archive& archive, Self& self, List& list) {
   auto& s = self.state_;
@@ -102,6 +112,7 @@ void Simulation::visit_checkpoint(Archive& archive, Self& self, List& list) {
   archive(self.forces_.energy);
   archive(self.forces_.damping_power);
   archive(self.point_loads_);
+  visit_relaxation(archive, self.relaxation_);
   if (!self.two_levels()) return;
   visit_forces(archive, self.inner_);
   visit_forces(archive, self.contact_);
@@ -133,13 +144,24 @@ bool could_be(const ListOrigin& list) {
          are_unit_vectors(list.axis);
 }
 
+bool could_be(const Relaxation& r, std::int64_t step, double longest_step) {
+  if (!r.underway()) return true;
+  const Fire& f = r.fire;
+  return r.began <= step && r.part_began <= step &&
+         all_within(std::array{r.goal.force, r.goal.energy, r.first_energy, r.force, r.constant, r.longest_bond}) &&
+         std::fabs(r.last_step) < longest_step && f.dt_max > 0 && f.dt_max < longest_step && f.dt_min >= 0 &&
+         f.dt_min <= f.dt && f.dt <= f.dt_max && f.mix >= 0 && f.mix <= 1 && f.downhill >= 0 && f.downhill <= step;
+}
+
 }  // namespace
 
 // What a sum over the bytes does not tell: whether a simulation could go on from here.
 bool Simulation::could_go_on(double step_of_scene) const {
   const State& s = state_;
+  constexpr std::int64_t most_steps = 1000000000000000;
   bool fine = time_step_ > 0 && time_step_ < 1e3 * step_of_scene && divided_ >= 1 && divided_ <= 1024 &&
-              s.step >= 0 && list_age_ >= 0 &&
+              s.step >= 0 && s.step < most_steps && list_age_ >= 0 && list_age_ < most_steps &&
+              could_be(relaxation_, s.step, 1e3 * step_of_scene) &&
               all_within(std::array{s.time, account_.work, account_.dissipated, account_.heat, gauges_.sums.since});
   for (const Vec3Array* v : {&s.position, &s.velocity, &s.angular_velocity, &forces_.force, &forces_.torque})
     fine = fine && all_xyz_within(*v);

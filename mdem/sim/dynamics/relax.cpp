@@ -151,77 +151,106 @@ double Simulation::above_minimum(double enough, long most) const {
   return power > 0 ? unknown : above;
 }
 
+void Simulation::begin_relaxation(const RelaxGoal& goal) {
+  relaxation_ = {};
+  relaxation_.began = state_.step;
+  relaxation_.goal = goal;
+  relaxation_.first_energy = forces_.energy.potential() - account_.work;
+  relaxation_.force = goal.force;
+}
+
+void Simulation::balance_relaxation() {
+  account_.dissipated += relaxation_.constant - total_energy() + account_.supplied();
+}
+
+void Simulation::stand_still() {
+  state_.velocity.set_to_zero();
+  state_.angular_velocity.set_to_zero();
+  balance_relaxation();
+}
+
+void Simulation::end_relaxation() {
+  if (relaxation_.underway() && relaxation_.part_began >= 0) stand_still();
+  relaxation_ = {};
+}
+
+bool Simulation::relax(double tolerance, long max_steps, const std::function<bool(long)>& progress) {
+  end_relaxation();
+  begin_relaxation({tolerance, std::numeric_limits<double>::infinity()});
+  const PartEnd end = relax_part(max_steps, progress);
+  end_relaxation();
+  return end == PartEnd::small_forces;
+}
+
 // Where the forces are small and the energy is not, they have to be smaller.
 Relaxed Simulation::relax(const RelaxGoal& goal, long max_steps, const std::function<bool(long)>& progress) {
   constexpr double least_part = 1e-3;  // of the contact's energy, which stands for that of bonds that hardly bear
   constexpr double no_force = 1e-2;    // of the goal: what rests here without a minimum rests on a saddle
   constexpr long least_iterations = 300;
-  const std::int64_t began = state_.step;
-  const auto done = [&] { return static_cast<long>(state_.step - began); };
-  const auto energy = [&] { return forces_.energy.potential() - account_.work; };
-  const double first = energy();
+  Relaxation& r = relaxation_;
+  if (!(r.goal == goal)) end_relaxation();
+  if (!r.underway()) begin_relaxation(goal);
   Relaxed out;
-  for (double force = goal.force;;) {
-    const bool small =
-        relax(force, max_steps - done(), [&, before = done()](long k) { return progress(before + k); });
+  for (;;) {
+    const PartEnd end = relax_part(max_steps, progress);
+    const bool small = end == PartEnd::small_forces;
     out.force = largest_force();
+    if (end == PartEnd::interrupted) return out;
     const double bonds = std::max({forces_.energy.bonds(), least_part * std::fabs(forces_.energy.vdw), 1e-6});
     const double enough = 0.25 * goal.energy * goal.energy * bonds;
-    if (!small && done() < max_steps) return out;  // interrupted
-    if (out.force < goal.force) out.above = above_minimum(small ? enough : bonds, least_iterations + done());
+    const auto done = static_cast<long>(state_.step - r.began);
+    if (out.force < goal.force) out.above = above_minimum(small ? enough : bonds, least_iterations + done);
     out.error = 2 * std::sqrt(out.above / bonds);
     const bool saddle = std::isinf(out.above) && out.force < no_force * goal.force;
     out.at_rest = small && (out.above <= enough || saddle);
     if (out.at_rest || !small) break;
-    force = out.force * (std::isfinite(out.above) ? std::max(0.01, 0.5 * std::sqrt(enough / out.above)) : 0.1);
+    r.force = out.force * (std::isfinite(out.above) ? std::max(0.01, 0.5 * std::sqrt(enough / out.above)) : 0.1);
   }
-  const double risen = energy() - first;
+  const double first = r.first_energy, risen = forces_.energy.potential() - account_.work - first;
+  end_relaxation();
   if (risen > 1e-6 * (1 + std::fabs(first)))
     throw NumericalError(state_.step, -1, "the relaxation went up in energy, by " + std::to_string(risen) + " eV",
                          "start from a state without overlaps");
   return out;
 }
 
-bool Simulation::relax(double tolerance, long max_steps, const std::function<bool(long)>& progress) {
+// `max_steps`: of the whole relaxation.
+Simulation::PartEnd Simulation::relax_part(long max_steps, const std::function<bool(long)>& progress) {
   // One ratio for all tube types: it only weighs turning against moving.
   const TubeType& lightest = *std::min_element(topology_.types.begin(), topology_.types.end(),
                                                [](const auto& a, const auto& b) { return a.mass < b.mass; });
   const double scale2 = lightest.inertia / lightest.mass;
-  Fire fire(inner_step());
   const std::size_t n = state_.size();
-  const double constant = total_energy() - account_.supplied();
-  const auto balance = [&] { account_.dissipated += constant - total_energy() + account_.supplied(); };
-  const auto stop = [&] {
-    state_.velocity.set_to_zero();
-    state_.angular_velocity.set_to_zero();
-    balance();
-  };
-  stop();
-  double last = 0;  // ps, of the last step
-  const double torn = std::max(2.0, 1.01 * longest_bond(topology_, state_.position).length);
   const double max_move = Fire::farthest(lightest.radius);
-  for (long k = 0; k < max_steps; ++k) {
-    if (k % Fire::check_every == 0) {
+  Relaxation& r = relaxation_;
+  Fire& fire = r.fire;
+  if (r.part_began < 0) {
+    r.part_began = state_.step;
+    fire = Fire(inner_step());
+    r.constant = total_energy() - account_.supplied();
+    stand_still();
+    r.last_step = 0;
+    r.longest_bond = std::max(2.0, 1.01 * longest_bond(topology_, state_.position).length);
+  }
+  while (state_.step - r.began < max_steps) {
+    if ((state_.step - r.part_began) % Fire::check_every == 0) {
       const LongestBond longest = longest_bond(topology_, state_.position);
-      if (longest.length > torn)
+      if (longest.length > r.longest_bond)
         throw NumericalError(state_.step, longest.element,
                              "the relaxation blew up: it tore the bond to the next element",
                              "start from a state without overlaps, or with smaller loads");
-      if (largest_force() < tolerance) break;
+      if (largest_force() < r.force) break;
     }
-    if (!progress(k)) {
-      stop();
-      return false;
-    }
+    if (!progress(static_cast<long>(state_.step - r.began))) return PartEnd::interrupted;
     double power = 0, v2 = 0, f2 = 0, fastest2 = 0;
     for (std::size_t i = 0; i < n; ++i)
       power += forces_.force[i].dot(state_.velocity[i]) + forces_.torque[i].dot(state_.angular_velocity[i]);
     if (power > 0) {
       fire.went_down();
     } else {
-      account_.work -= 0.5 * last * load_power(point_loads_, state_);
-      move(-0.5 * last);
-      stop();
+      account_.work -= 0.5 * r.last_step * load_power(point_loads_, state_);
+      move(-0.5 * r.last_step);
+      stand_still();
       fire.went_up();
     }
     const double dt = fire.dt, mix = fire.mix;
@@ -253,16 +282,17 @@ bool Simulation::relax(double tolerance, long max_steps, const std::function<boo
     const double step = std::min(dt, fastest2 > 0 ? max_move / std::sqrt(fastest2) : dt);
     account_.work += 0.5 * step * load_power(point_loads_, state_);
     move(step);
-    last = step;
+    r.last_step = step;
     ++state_.step;
     update_list();
     compute();
     account_.work += 0.5 * step * load_power(point_loads_, state_);
-    balance();
+    balance_relaxation();
     if (forces_.slipping_bond >= 0) check_forces(true);
   }
-  stop();
-  return largest_force() < tolerance;
+  stand_still();
+  r.part_began = -1;
+  return largest_force() < r.force ? PartEnd::small_forces : PartEnd::out_of_steps;
 }
 
 }  // namespace ropewalk

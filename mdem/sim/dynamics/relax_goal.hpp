@@ -1,7 +1,10 @@
-// What a relaxation has to reach, and what it came to.
+// What a relaxation has to reach, what it came to, and where it stands.
 #pragma once
 
+#include <cstdint>
 #include <limits>
+
+#include "sim/dynamics/fire.hpp"
 
 namespace ropewalk {
 
@@ -9,6 +12,8 @@ namespace ropewalk {
 struct RelaxGoal {
   double force = 1e-4;   // eV/nm: of the largest force, and of the largest torque over the radius of its tube
   double energy = 1e-3;  // of the bonds' energy: its error, by estimate
+
+  bool operator==(const RelaxGoal& o) const { return force == o.force && energy == o.energy; }
 };
 
 // How a relaxation ended. The energy is a parabola near its minimum, F.K^-1.F/2 above it with forces F and
@@ -20,6 +25,22 @@ struct Relaxed {
   // eV above the minimum; infinite: none is near, the energy falls along some motion; NaN: the forces are too large
   double above = std::numeric_limits<double>::quiet_NaN();
   double error = std::numeric_limits<double>::quiet_NaN();  // 2 sqrt(above/U)
+};
+
+// Where a relaxation stands between two of its steps. It has parts: where the forces are small and the energy is
+// not, the next part goes on to smaller forces.
+struct Relaxation {
+  std::int64_t began = -1;  // step; negative: none is underway
+  RelaxGoal goal;
+  double first_energy = 0;       // eV, potential less the work of the loads
+  std::int64_t part_began = -1;  // step; negative: the next part has yet to begin
+  double force = 0;              // eV/nm, that the part has to reach
+  double constant = 0;           // eV, energy less what was supplied
+  double longest_bond = 0;       // of an element's length; a longer one is torn
+  double last_step = 0;          // ps
+  Fire fire{0};
+
+  bool underway() const { return began >= 0; }
 };
 
 }  // namespace ropewalk

@@ -121,6 +121,7 @@ struct Simulation::TwoLevels {
 };
 
 void Simulation::steps(long count, bool energies) {
+  end_relaxation();
   const bool always = relaxes_spins(loads_);
   for (long k = 0; k < count; ++k) {
     const double began = omp_get_wtime(), elsewhere = engine_seconds() + list_seconds_;

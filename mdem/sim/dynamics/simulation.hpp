@@ -48,8 +48,13 @@ class Simulation {
   // fell below the tolerance (eV/nm) within the given steps. `progress` is called in every step; false ends the
   // relaxation. The account has the work of the loads, and as dissipated what the relaxation takes out.
   bool relax(double force_tolerance, long max_steps, const std::function<bool(long)>& progress);
-  // Goes on until the energy is near that of the minimum as well.
+  // Goes on until the energy is near that of the minimum as well. After progress() has ended it, it is still
+  // underway: with the same goal the next call goes on as if nothing had happened, also from a checkpoint. Steps
+  // are counted from its begin.
   Relaxed relax(const RelaxGoal& goal, long max_steps, const std::function<bool(long)>& progress);
+  // Everything stands still where the relaxation that is underway has come to. steps() begins with it.
+  void end_relaxation();
+  std::int64_t relaxation_began() const { return relaxation_.underway() ? relaxation_.began : state_.step; }
 
   const Topology& topology() const { return topology_; }
   const Interaction& interaction() const { return interaction_; }
@@ -113,6 +118,11 @@ class Simulation {
   void check_forces(bool energies) const;
   void relax_spins_if_due();
   double engine_seconds() const;
+  void begin_relaxation(const RelaxGoal& goal);
+  enum class PartEnd { small_forces, out_of_steps, interrupted };
+  PartEnd relax_part(long max_steps, const std::function<bool(long)>& progress);
+  void balance_relaxation();
+  void stand_still();
   struct Motion;
   Motion free_accelerations(const Motion& forces) const;
   double above_minimum(double enough, long most) const;
@@ -141,6 +151,7 @@ class Simulation {
   Forces inner_, contact_;              // its two parts, on two levels: bonds and loads; contact
   std::vector<PointLoad> point_loads_;  // those in the last forces: of the velocities in the middle of the step
   EnergySupply account_;
+  Relaxation relaxation_;
   double list_seconds_ = 0, integration_seconds_ = 0;
 };
 
