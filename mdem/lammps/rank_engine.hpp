@@ -62,6 +62,7 @@ class RankEngine {
   // The skin of the next list, nm. All ranks, before ghosts are chosen.
   double choose_skin();
   double skin() const { return list_.skin; }
+  void use_skin(double skin) { list_.skin = skin; }  // for the first list
   // After an exchange. All ranks.
   void build();
   // Adds all forces and torques of the model to LAMMPS's. Energies of contact are summed only if wanted.
