@@ -207,7 +207,7 @@ std::string lammps_input(const LammpsScript& s) {
   if (s.damped) text += "fix damping all mdem/damp\n";
   if (s.driven) text += "fix grips all mdem/grip\n";
   text += fmt::format("fix motion all mdem/{}\n", s.relax ? "relax" : "nve");
-  if (!s.long_in_z) text += "balance 1.05 rcb\nfix even all balance 1000 1.05 rcb\n";
+  if (!s.long_in_z) text += "balance 1.0 rcb\nfix even all balance 1000 1.01 rcb\n";
   text += row_variables();
   text += fmt::format(
       "fix rows all print ${{every}} \"{0}\" ${{open}} ${{dir}}/lammps-rows.csv screen no title \"{1}\"\n"

@@ -152,7 +152,7 @@ TEST_F(LammpsRun, RanksWithoutElementsAndWithOneTakePart) {
                                 "[start]\ntemperature_K = 300\nmay_cool = true\n"),
                      100, {1, 2, 4}, 1e-10, [&] {
                        edit("out", "comm_style tiled\n", "processors 1 1 *\n");
-                       edit("out", "balance 1.05 rcb\nfix even all balance 1000 1.05 rcb\n", "");
+                       edit("out", "balance 1.0 rcb\nfix even all balance 1000 1.01 rcb\n", "");
                      });
 }
 
