@@ -34,8 +34,6 @@ TEST_F(LammpsErrors, NameTheRemedy) {
        "more than one fix moves", "leave only one"},
       {"atom style", "atom_style hybrid sphere bond", "atom_style bond", "needs elements that turn",
        "atom_style hybrid sphere bond"},
-      {"atom style without bonds", "atom_style hybrid sphere bond", "atom_style sphere", "are bonded",
-       "atom_style hybrid sphere bond"},
       {"units", "units lj", "units metal", "units are not those", "units lj"},
       {"newton", "newton on", "newton off", "not sent back", "newton on"},
       {"ghost velocities", "vel yes", "vel no", "ghosts have no velocities", "comm_modify vel yes"},
