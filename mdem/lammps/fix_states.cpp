@@ -209,8 +209,10 @@ std::vector<int> FixStates::owners(const std::vector<StateRecord>& records) cons
 void FixStates::create(const std::vector<double>& records) {
   const Topology& topology = model_->topology;
   const std::size_t n = records.size() / sent;
-  std::vector<int> tag(n), type(n);
-  std::vector<double> x(3 * n), v(3 * n);
+  // Never empty: without numbers of elements LAMMPS would make some up, by a message that the other ranks do not
+  // send.
+  std::vector<int> tag(n + 1), type(n + 1);
+  std::vector<double> x(3 * n + 1), v(3 * n + 1);
   for (std::size_t i = 0; i < n; ++i) {
     const double* r = &records[sent * i];
     const int element = static_cast<int>(r[0]);
