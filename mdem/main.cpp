@@ -394,6 +394,12 @@ void add_bench(CLI::App& app, Verbs& v) {
                             ->check(thread_range());
   c->add_flag("--plain", v.bench.plain, "With --lammps: its plain forms, pair by pair")->needs(lammps);
   for (const char* other : {"--after", "--threads", "--instructions"}) lammps->excludes(c->get_option(other));
+  CLI::Option* parts =
+      c->add_option("--parts", v.bench.parts,
+                    "Cut the scene into 1, 2, 4 ... up to so many parts, as ranks of LAMMPS have them, and time the "
+                    "forces of each part alone")
+          ->check(CLI::Range(1, 4096));
+  for (const char* other : {"--after", "--threads", "--instructions", "--lammps"}) parts->excludes(c->get_option(other));
   c->add_flag("--json", v.bench.json, "JSON");
   c->callback([&v] { v.code = bench_command(v.bench); });
 }

@@ -213,6 +213,7 @@ int bench_command(const BenchArguments& a) {
   if (a.scene.empty())
     throw InputError({"", 0, "scene"}, "is missing", "give a file, or see `ropewalk bench --list`");
   if (a.lammps > 0) return bench_lammps(a);
+  if (a.parts > 0) return bench_parts(a);
   Scene scene = bench_scene(a.scene, a.law);
   const Prepared prepared = prepare(scene);
   use_instructions(a.instructions);

@@ -182,9 +182,11 @@ struct BenchArguments {
   bool json = false;
   int lammps = 0;      // ranks of LAMMPS, measured against as many threads here; 0: only here
   bool plain = false;  // LAMMPS by the plain forms
+  int parts = 0;       // cut the scene into so many, and measure each alone; 0: do not
 };
 int bench_command(const BenchArguments& arguments);
 int bench_lammps(const BenchArguments& arguments);
+int bench_parts(const BenchArguments& arguments);
 
 struct PlanArguments {
   std::string scene;

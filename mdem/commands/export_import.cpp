@@ -15,8 +15,10 @@
 #include "run/run_checkpoint.hpp"
 #include "run/tell.hpp"
 #include "scene/lammps_files.hpp"
+#include "scene/lammps_states.hpp"
 #include "scene/scene_toml.hpp"
 #include "scene/state_csv.hpp"
+#include "sim/state/part_of_scene.hpp"
 
 namespace ropewalk {
 namespace {
@@ -93,12 +95,20 @@ LammpsScript script_of(const Scene& scene, const Prepared& p, const Simulation& 
   script.damped = in.damped_contact() || in.damping.bond.rate > 0 || in.damping.local > 0;
   script.driven = !p.loads.empty();
   script.long_in_z = scene.source->is_parallel();
+  script.types = static_cast<int>(p.topology.types.size());
+  // A single straight tube needs a box that is wide.
+  constexpr double margin = 1;  // nm
+  const Vec3Array& x = s.state().position;
+  const auto range = [](const Column& c) { return std::minmax_element(c.begin(), c.end()); };
+  const auto [x0, x1] = range(x.x);
+  const auto [y0, y1] = range(x.y);
+  const auto [z0, z1] = range(x.z);
+  script.low = Vector3(*x0, *y0, *z0) - Vector3::Constant(margin);
+  script.high = Vector3(*x1, *y1, *z1) + Vector3::Constant(margin);
   script.skin = default_skin(in);
-  // A bond's far end must be there as well.
-  script.reach = std::max(in.cutoff(), 1.5 * p.topology.longest_element());
+  script.reach = copy_reach(p.topology, in, 0);
   script.excluded_elements = p.topology.fewest_within(in.excluded_arc());
   script.time_step = s.time_step();
-  script.step = s.state().step;
   const double dt = s.time_step(), span = p.duration > 0 ? p.duration : 1000 * dt;
   script.steps = script.relax ? scene.run.max_steps : std::llround(p.duration / dt) - s.state().step;
   script.every = script.relax ? relax_every : steps_between(scene.run.frames_every, span, 40, dt);
@@ -117,8 +127,13 @@ void write_lammps_files(const RunDirectory& run) {
   const Simulation s = simulation_at(run, scene, p, read_checkpoint(run));
   write_file_atomically(dir.start(), start_json(start_of(scene, s)));
   write_file_atomically(dir.tubes(), tubes_csv(p.topology));
-  write_file_atomically(dir.data(),
-                        lammps_data(scene.name, p.topology, s.state(), s.forces().force, s.forces().torque));
+  StateHeader header;
+  header.step = s.state().step;
+  header.elements = p.topology.elements();
+  header.time = s.state().time;
+  header.work = s.work();
+  header.dissipated = s.dissipated();
+  write_file_atomically(dir.first_state(), state_file(header, s.state(), s.forces().force, s.forces().torque));
   write_file_atomically(dir.input(), lammps_input(script_of(scene, p, s)));
   write_file_atomically(dir.readme(), readme);
 }
@@ -193,7 +208,6 @@ class Import {
     frames_ = std::make_unique<NewFrames>(there, format_of(there), 0, there, checkpoint_.frames.bytes);
     const std::int64_t from = reached_;
     take_states(files_.states());
-    if (fs::exists(files_.last_state())) take_states(files_.last_state());
     if (reached_ == from)
       throw InputError({files_.states(), 0, ""}, fmt::format("holds no whole state after step {}", from),
                        "let LAMMPS run further, or go on with `ropewalk resume`");
@@ -203,10 +217,10 @@ class Import {
 
  private:
   void take_states(const std::string& path) {
-    LammpsStates states(path);
+    LammpsStates states(path, prepared_.topology);
     State state;
     Vec3Array force, torque;
-    while (states.next(prepared_.topology, state, force, torque)) {
+    while (states.next(state, force, torque)) {
       const auto row = rows_.find(state.step);
       if (state.step <= reached_ || row == rows_.end()) continue;
       state.time = row->second.time;

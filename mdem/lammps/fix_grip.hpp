@@ -1,6 +1,7 @@
 // fix ID all mdem/grip: all loads and constraints of the scene (twisting moments on the grips, fixed and loaded
 // elements, prescribed rotations), with the functions of mdem/sim/dynamics/loads.hpp. These take a State; this fix
-// makes one of the driven elements: those of this rank, or all of them if a load needs the whole grip.
+// makes one of this rank's driven elements. Sums over a grip that several ranks share are a few numbers in a
+// message.
 #pragma once
 
 #include "lammps/shared.hpp"
@@ -18,7 +19,7 @@ class FixGrip : public LMP::Fix {
   void setup(int vflag) override { post_force(vflag); }
   void post_force(int vflag) override;
 
-  // Of the elements that it acts on, on this rank; -1: on another one.
+  // Of the elements that it acts on, on this rank.
   const std::vector<int>& atoms() const { return atom_; }
   // Work per time of the loads on this rank's elements, eV/ps.
   double own_power();
@@ -29,25 +30,39 @@ class FixGrip : public LMP::Fix {
   void free_parts(double time, double** linear, double** angular);
 
  private:
+  // An element that a load acts on.
+  struct Place {
+    int element;
+    int load;           // of the scene's loads
+    std::size_t place;  // in Load::elements
+    bool operator<(const Place& o) const { return element < o.element; }
+  };
+  // The ranks, for the loads.
+  class Ranks : public LoadProcesses {
+   public:
+    explicit Ranks(MPI_Comm world) : world_(world) {}
+    void sum(double* values, std::size_t count) const override;
+    std::vector<int> join(const std::vector<int>& own) const override;
+
+   private:
+    MPI_Comm world_;
+  };
+
   RankEngine* leading_engine() const;
-  void use(const std::vector<int>& elements);
   void gather();
-  void share(const std::vector<Column*>& all);
-  bool owned(std::size_t k) const { return atom_[k] >= 0; }
 
   std::shared_ptr<const LammpsModel> model_;
-  std::vector<int> driven_;  // elements, sorted
-  bool whole_ = false;       // the state holds all driven elements on every rank
-  // The scene of the driven elements: its element k is atom atom_[k] of this rank; -1: an atom of another rank.
+  Ranks ranks_;
+  std::vector<Place> places_;  // of all loads, by their elements
+  // The scene of this rank's driven elements: its element k is atom atom_[k].
   std::vector<int> atom_;
   Topology topology_;
   LoadsAndConstraints acting_;
   State state_;
   Forces forces_;
   std::vector<int> own_;                     // all elements of this state
-  std::vector<double> shared_;
   std::vector<ConstraintImpulse> impulses_;  // of the last kick
-  std::vector<PointLoad> loads_;             // of the last evaluation, on this rank's elements
+  std::vector<PointLoad> loads_;             // of the last evaluation
 };
 
 }  // namespace ropewalk::lammps

@@ -3,15 +3,18 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 #include "lammps/bond_vbond.hpp"
 #include "lammps/fix_damp.hpp"
 #include "lammps/fix_grip.hpp"
+#include "lammps/fix_states.hpp"
 #include "lammps/pair_mdem.hpp"
 #include "neighbor.h"
 #include "output.h"
 #include "sim/dynamics/blow_up.hpp"
 #include "sim/state/motion.hpp"
+#include "sim/state/part_of_scene.hpp"
 #include "timer.h"
 
 namespace ropewalk::lammps {
@@ -45,10 +48,14 @@ FixMotion::FixMotion(LMP::LAMMPS* lmp, int count, char** words) : Fix(lmp, count
   size_vector = 9;
   global_freq = 1;
   extvector = 0;
-  carried_ = model_->start.step;
+  const auto* states = find_fix<FixStates>(lmp);
+  if (!states || !states->began()) return;  // read_restart tells where the run stands
+  const StateHeader& began = *states->began();
+  carried_ = began.step;
+  first_skin_ = began.skin;
   if (comm->me == 0) {
-    work_ = model_->start.work;
-    dissipated_ = model_->start.dissipated;
+    work_ = began.work;
+    dissipated_ = began.dissipated;
   }
 }
 
@@ -65,6 +72,7 @@ void FixMotion::init() {
   damp_ = find_fix<FixDamp>(lmp);
   engine_ = engine_of(lmp);
   if (engine_) {
+    if (first_skin_ > 0) engine_->use_skin(std::exchange(first_skin_, 0.0));
     lead_exchanges();
     engine_->lead(engine_may_lead());
   }
@@ -75,9 +83,8 @@ bool FixMotion::only_known_fixes() const {
   for (int k = 0; k < modify->nfix; ++k) {
     const LMP::Fix* fix = modify->fix[k];
     const std::string name = fix->style;
-    if (fix != this && fix != grip_ && fix != damp_ && name != "property/atom" && name != "print" &&
-        name != "balance")
-      return false;
+    const bool ours = fix == this || fix == grip_ || fix == damp_ || dynamic_cast<const FixStates*>(fix);
+    if (!ours && name != "property/atom" && name != "print" && name != "balance") return false;
   }
   return true;
 }
@@ -102,7 +109,7 @@ void FixMotion::lead_exchanges() {
 }
 
 void FixMotion::reach_for(double skin) {
-  comm->cutghostuser = ghost_reach(model_->topology, model_->interaction, skin);
+  comm->cutghostuser = copy_reach(model_->topology, model_->interaction, skin);
 }
 
 void FixMotion::post_integrate() {
@@ -143,7 +150,7 @@ void FixMotion::check_masses() {
 // Checks the ghost cutoff before LAMMPS searches the ghosts for the other ends of bonds.
 void FixMotion::setup_pre_neighbor() {
   const double reach =
-      ghost_reach(model_->topology, model_->interaction, engine_ ? engine_->skin() : neighbor->skin);
+      copy_reach(model_->topology, model_->interaction, engine_ ? engine_->skin() : neighbor->skin);
   const double has = *std::min_element(comm->cutghost, comm->cutghost + 3);
   if (has < reach * (1 - 1e-12))
     refuse(lmp,
@@ -242,11 +249,12 @@ struct Account {
 }  // namespace
 
 void FixMotion::write_restart(FILE* file) {
-  const Account account = {sum_over_ranks(lmp, work_), sum_over_ranks(lmp, dissipated_), carried_};
+  const auto [work, dissipated] = account();
+  const Account all = {work, dissipated, carried_};
   if (comm->me > 0) return;
-  const int bytes = sizeof account;
+  const int bytes = sizeof all;
   std::fwrite(&bytes, sizeof bytes, 1, file);
-  std::fwrite(&account, sizeof account, 1, file);
+  std::fwrite(&all, sizeof all, 1, file);
 }
 
 void FixMotion::restart(char* bytes) {

@@ -26,6 +26,8 @@ class FixMotion : public LMP::Fix {
   void setup_pre_force(int vflag) override;
   void pre_force(int vflag) override;
   double compute_vector(int n) override;
+  // Work done and energy dissipated so far, eV. All ranks.
+  std::array<double, 2> account() const { return {sum_over_ranks(lmp, work_), sum_over_ranks(lmp, dissipated_)}; }
   void write_restart(FILE* file) override;
   void restart(char* bytes) override;
   int pack_forward_comm(int count, int* list, double* buffer, int, int*) override;
@@ -56,6 +58,7 @@ class FixMotion : public LMP::Fix {
   State moved_;  // buffer of move()
   std::array<double, 8> row_{};
   LMP::bigint row_step_ = -1;
+  double first_skin_ = 0;  // nm, of the list where the run goes on; 0: as the engine chooses
 };
 
 class FixNve : public FixMotion {

@@ -35,11 +35,6 @@ LammpsModel load_lammps_model(const std::string& directory) {
   return m;
 }
 
-double ghost_reach(const Topology& topology, const Interaction& in, double skin) {
-  constexpr double longest_bond = 1.5;  // element lengths, far above any strain for which the model holds
-  return std::max(in.cutoff(), longest_bond * topology.longest_element()) + skin;
-}
-
 std::string version_complaint(int built_against, int found) {
   if (built_against == found) return "";
   return fmt::format(

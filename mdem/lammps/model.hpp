@@ -35,9 +35,6 @@ struct LammpsModel {
 // Throws InputError.
 LammpsModel load_lammps_model(const std::string& directory);
 
-// The ghost cutoff (nm) that all forces need: contacts with the skin of the list, and both ends of a bond.
-double ghost_reach(const Topology& topology, const Interaction& interaction, double skin);
-
 // The error message if the version of LAMMPS is wrong, else empty. Versions are dates as numbers: 20210929.
 std::string version_complaint(int built_against, int found);
 

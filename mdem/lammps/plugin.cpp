@@ -38,7 +38,7 @@ void* make_fix(void* lmp, int count, char** words) {
 }
 
 constexpr lammpsplugin_factory1* pair_makers[] = {make_pair<0>, make_pair<1>};
-constexpr lammpsplugin_factory2* fix_makers[] = {make_fix<0>, make_fix<1>, make_fix<2>, make_fix<3>};
+constexpr lammpsplugin_factory2* fix_makers[] = {make_fix<0>, make_fix<1>, make_fix<2>, make_fix<3>, make_fix<4>};
 
 }  // namespace
 
@@ -60,7 +60,7 @@ extern "C" void lammpsplugin_init(void* lmp, void* handle, void* regfunc) {
   plugin.creator.v1 = make_bond;
   add(&plugin, lmp);
   plugin.style = "fix";
-  for (int k = 0; k < 4; ++k) {
+  for (int k = 0; k < 5; ++k) {
     plugin.name = ours::fix_entries[k].name;
     plugin.creator.v2 = fix_makers[k];
     add(&plugin, lmp);

@@ -167,21 +167,21 @@ void RankEngine::complete_forces() {
 void RankEngine::kick(double dt) {
   complete_forces();
 #pragma omp parallel for schedule(static) if (state_.size() > parallel_from)
-  for (std::size_t k = 0; k < own_.size(); ++k) {
-    const Stretch& s = own_[k];
-    const TubeType& type = type_of(*model_, *lmp_->atom, s.atom);
-    const auto at = static_cast<std::ptrdiff_t>(s.element), end = at + s.count;
+  for (std::size_t k = 0; k < moved_.size(); ++k) {
+    const Range& r = moved_[k];
+    const TubeType& type = topology_.type_of_element(r.element);
+    const auto at = static_cast<std::ptrdiff_t>(r.element), end = at + r.count;
     kick_elements(forces_.force, dt / type.mass, state_.velocity, at, end);
     kick_elements(forces_.torque, dt / type.inertia, state_.angular_velocity, at, end);
   }
 }
 
 void RankEngine::move(double dt) {
-  changes_.resize(own_.size());
-  fastest_of_.resize(own_.size());
+  changes_.resize(moved_.size());
+  fastest_of_.resize(moved_.size());
 #pragma omp parallel for schedule(static) if (state_.size() > parallel_from)
-  for (std::size_t k = 0; k < own_.size(); ++k) {
-    const auto at = static_cast<std::ptrdiff_t>(own_[k].element), end = at + own_[k].count;
+  for (std::size_t k = 0; k < moved_.size(); ++k) {
+    const auto at = static_cast<std::ptrdiff_t>(moved_[k].element), end = at + moved_[k].count;
     fastest_of_[k] = ropewalk::fastest(state_, at, end);
     move_elements(state_, dt, at, end);
     changes_[k] = list_.change(state_, at, end);
@@ -196,10 +196,10 @@ void RankEngine::move(double dt) {
 
 double RankEngine::kinetic_energy() const {
   double sum = 0;
-  for (const Stretch& s : own_)
-    for (int k = 0; k < s.count; ++k) {
-      const TubeType& type = type_of(*model_, *lmp_->atom, s.atom + k);
-      const auto i = static_cast<std::size_t>(s.element + k);
+  for (const Range& r : moved_)
+    for (int k = 0; k < r.count; ++k) {
+      const TubeType& type = topology_.type_of_element(r.element);
+      const auto i = static_cast<std::size_t>(r.element + k);
       sum += type.mass * state_.velocity[i].squaredNorm() + type.inertia * state_.angular_velocity[i].squaredNorm();
     }
   return 0.5 * sum;
@@ -238,6 +238,7 @@ void RankEngine::build() {
   own.reserve(order.size());
   own_.clear();
   ghosts_.clear();
+  moved_.clear();
   for (const auto& [element, i] : order) {
     const bool owned = i < atom.nlocal;
     if (!number.empty() && number.back() == element)
@@ -253,6 +254,14 @@ void RankEngine::build() {
       ++stretches.back().count;
     else
       stretches.push_back({at, i, 1});
+    if (owned) {
+      const bool moves_along = !moved_.empty() && moved_.back().element + moved_.back().count == at &&
+                               moved_.back().type == atom.type[i] && moved_.back().count < cached_elements;
+      if (moves_along)
+        ++moved_.back().count;
+      else
+        moved_.push_back({at, 1, atom.type[i]});
+    }
     number.push_back(element);
     own.push_back(owned);
   }

@@ -62,6 +62,7 @@ class RankEngine {
   // The skin of the next list, nm. All ranks, before ghosts are chosen.
   double choose_skin();
   double skin() const { return list_.skin; }
+  void use_skin(double skin) { list_.skin = skin; }  // for the first list
   // After an exchange. All ranks.
   void build();
   // Adds all forces and torques of the model to LAMMPS's. Energies of contact are summed only if wanted.
@@ -83,6 +84,11 @@ class RankEngine {
   struct Stretch {
     int element, atom, count;
   };
+  // A run of own elements of one type, whatever their places in LAMMPS: these change as elements come and go, and
+  // bits of the motion must not depend on that.
+  struct Range {
+    int element, count, type;
+  };
   void take(const Stretch& of);
   void give(const Stretch& of);
   void take_forces(const Stretch& of);
@@ -97,13 +103,14 @@ class RankEngine {
   Topology topology_;
   State state_;
   std::vector<Stretch> own_, ghosts_;  // own ones no longer than what stays in the first cache
+  std::vector<Range> moved_;           // own ones, likewise
   std::vector<int> element_;           // of each own atom
   std::vector<char> is_shared_;        // likewise
   std::vector<Stretch> shared_;        // of those that are
   bool shared_known_ = false;
   bool leads_ = false;
   bool shared_forces_there_ = false, all_forces_there_ = false;  // in LAMMPS's arrays, not yet taken from there
-  std::vector<Change> changes_;                                  // of each of own_
+  std::vector<Change> changes_;                                  // of each of moved_
   std::vector<Fastest> fastest_of_;                              // likewise, in the last move
   Fastest fastest_;
   NeighbourList list_;

@@ -5,6 +5,7 @@
 #include "lammps/fix_damp.hpp"
 #include "lammps/fix_grip.hpp"
 #include "lammps/fix_motion.hpp"
+#include "lammps/fix_states.hpp"
 #include "lammps/pair_mdem.hpp"
 #include "modify.h"
 
@@ -23,10 +24,11 @@ LMP::Fix* make_fix(LMP::LAMMPS* lmp, int count, char** words) {
 
 const PairEntry pair_entries[2] = {{"mdem/paper", make_paper}, {"mdem/line", make_line}};
 const BondEntry bond_entries[1] = {{"mdem/vbond", make_bond}};
-const FixEntry fix_entries[4] = {{"mdem/nve", make_fix<FixNve>},
+const FixEntry fix_entries[5] = {{"mdem/nve", make_fix<FixNve>},
                                  {"mdem/relax", make_fix<FixRelax>},
                                  {"mdem/damp", make_fix<FixDamp>},
-                                 {"mdem/grip", make_fix<FixGrip>}};
+                                 {"mdem/grip", make_fix<FixGrip>},
+                                 {"mdem/states", make_fix<FixStates>}};
 
 void register_styles(LMP::LAMMPS* lmp) {
   for (const PairEntry& e : pair_entries) (*lmp->force->pair_map)[e.name] = e.make;

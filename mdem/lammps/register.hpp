@@ -23,7 +23,7 @@ struct FixEntry {
 
 extern const PairEntry pair_entries[2];
 extern const BondEntry bond_entries[1];
-extern const FixEntry fix_entries[4];
+extern const FixEntry fix_entries[5];
 
 // Registers the styles with a LAMMPS instance.
 void register_styles(LAMMPS_NS::LAMMPS* lmp);

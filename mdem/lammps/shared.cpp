@@ -19,7 +19,6 @@ std::map<LMP::LAMMPS*, std::weak_ptr<const LammpsModel>>& models() {
   return all;
 }
 
-// Stops all ranks if any rank has trouble, such as missing files. One rank reports it.
 std::shared_ptr<const LammpsModel> read_on_all_ranks(LMP::LAMMPS* lmp, const std::string& directory) {
   std::shared_ptr<const LammpsModel> model;
   std::string trouble;
@@ -28,17 +27,8 @@ std::shared_ptr<const LammpsModel> read_on_all_ranks(LMP::LAMMPS* lmp, const std
   } catch (const std::exception& e) {
     trouble = e.what();
   }
-  int rank = 0, ranks = 1;
-  MPI_Comm_rank(lmp->world, &rank);
-  MPI_Comm_size(lmp->world, &ranks);
-  int first = trouble.empty() ? ranks : rank, of_all = ranks;
-  MPI_Allreduce(&first, &of_all, 1, MPI_INT, MPI_MIN, lmp->world);
-  if (of_all == ranks) return model;
-  int length = static_cast<int>(trouble.size());
-  MPI_Bcast(&length, 1, MPI_INT, of_all, lmp->world);
-  trouble.resize(static_cast<std::size_t>(length));
-  MPI_Bcast(trouble.data(), length, MPI_CHAR, of_all, lmp->world);
-  lmp->error->all(FLERR, trouble + (of_all > 0 ? " (on rank " + std::to_string(of_all) + ")" : ""));
+  refuse_together(lmp, trouble);
+  return model;
 }
 
 void check_boundary(LMP::LAMMPS* lmp) {
@@ -76,6 +66,20 @@ void refuse(LMP::LAMMPS* lmp, const std::string& what, const std::string& remedy
 
 void refuse_one(LMP::LAMMPS* lmp, const std::string& what, const std::string& remedy) {
   lmp->error->one(FLERR, what + "; " + remedy);
+}
+
+void refuse_together(LMP::LAMMPS* lmp, std::string trouble) {
+  int rank = 0, ranks = 1;
+  MPI_Comm_rank(lmp->world, &rank);
+  MPI_Comm_size(lmp->world, &ranks);
+  int first = trouble.empty() ? ranks : rank, of_all = ranks;
+  MPI_Allreduce(&first, &of_all, 1, MPI_INT, MPI_MIN, lmp->world);
+  if (of_all == ranks) return;
+  int length = static_cast<int>(trouble.size());
+  MPI_Bcast(&length, 1, MPI_INT, of_all, lmp->world);
+  trouble.resize(static_cast<std::size_t>(length));
+  MPI_Bcast(trouble.data(), length, MPI_CHAR, of_all, lmp->world);
+  lmp->error->all(FLERR, trouble + (of_all > 0 ? " (on rank " + std::to_string(of_all) + ")" : ""));
 }
 
 void check_atoms(LMP::LAMMPS* lmp, const char* who) {

@@ -33,6 +33,9 @@ std::shared_ptr<const LammpsModel> loaded(LMP::LAMMPS* lmp, const char* who);
 // Stops all ranks. A single rank may call it.
 [[noreturn]] void refuse_one(LMP::LAMMPS* lmp, const std::string& what, const std::string& remedy);
 
+// Stops all ranks with one line if any rank has trouble, such as a missing file. All ranks must call it.
+void refuse_together(LMP::LAMMPS* lmp, std::string trouble);
+
 // Checks atom style, units, box and the `newton` setting.
 void check_atoms(LMP::LAMMPS* lmp, const char* who);
 // Checks that every fix and style of the model is present once.

@@ -63,15 +63,12 @@ const std::vector<OutputFile>& run_files() {
       {"failed-state.csv", "run", "the state of a run that failed"},
       {"README.txt", "export", "how to run LAMMPS here"},
       {"in.rope", "export", "input of LAMMPS"},
-      {"rope.data", "export", "data of LAMMPS: elements, velocities, bonds"},
+      {"rope.state", "export", "binary: the state where LAMMPS begins"},
       {"tubes.csv", "export", "tubes, by kind"},
       {"lammps.json", "export", "where the run stands"},
-      {"lammps.dump", "lmp-ropewalk", "states against time"},
-      {"lammps-last.dump", "lmp-ropewalk", "the last state"},
+      {"lammps.states", "lmp-ropewalk", "binary: states against time, from the last of which LAMMPS goes on"},
       {"lammps-rows.csv", "lmp-ropewalk", "energies against time"},
       {"log.lammps", "lmp-ropewalk", "log of LAMMPS"},
-      {"rope.restart.a", "lmp-ropewalk", "binary: restart of LAMMPS"},
-      {"rope.restart.b", "lmp-ropewalk", "binary: restart of LAMMPS"},
   };
   return files;
 }

@@ -1,16 +1,14 @@
-// What `ropewalk export --lammps` adds to a run directory and `ropewalk import` reads back. All numbers are
-// written with the digits that give the same bits again.
+// What `ropewalk export --lammps` adds to a run directory and `ropewalk import` reads back. Numbers in text have
+// the digits that give the same bits again.
 //
 //   lammps.json   where the run stands: step, time, account of energy, and what the model took from its start
 //   tubes.csv     tubes of a kind after one another: how many, elements of each, type
-//   rope.data     LAMMPS data file: positions, velocities, spins, bonds, orientations
+//   rope.state    the state and its forces (scene/lammps_states.hpp)
 //   in.rope       LAMMPS input
-//   lammps.dump, lammps-last.dump, lammps-rows.csv   what LAMMPS writes: states, the last one, energies
+//   lammps.states, lammps-rows.csv   what LAMMPS writes: states and energies
 #pragma once
 
-#include <array>
 #include <cstdint>
-#include <fstream>
 #include <string>
 #include <vector>
 
@@ -36,19 +34,17 @@ struct LammpsDirectory {
   std::string scene() const { return file("scene.toml"); }
   std::string start() const { return file("lammps.json"); }
   std::string tubes() const { return file("tubes.csv"); }
-  std::string data() const { return file("rope.data"); }
+  std::string first_state() const { return file("rope.state"); }
   std::string input() const { return file("in.rope"); }
   std::string readme() const { return file("README.txt"); }
-  std::string states() const { return file("lammps.dump"); }
-  std::string last_state() const { return file("lammps-last.dump"); }
+  std::string states() const { return file("lammps.states"); }
   std::string rows() const { return file("lammps-rows.csv"); }
 };
 
-// What the files hold: lammps.json, tubes.csv, lammps-rows.csv, and both dumps.
+// What the files hold: lammps.json, tubes.csv and lammps-rows.csv.
 std::vector<OutputColumn> lammps_start_keys();
 std::vector<OutputColumn> lammps_tube_columns();
 std::vector<OutputColumn> lammps_row_columns();
-std::vector<OutputColumn> lammps_state_columns();
 
 std::string start_json(const LammpsStart& start);
 LammpsStart read_start(const LammpsDirectory& dir);
@@ -57,21 +53,18 @@ std::string tubes_csv(const Topology& topology);
 // Adds the tubes to a topology that has its types. Throws InputError.
 void read_tubes(const LammpsDirectory& dir, Topology& topology);
 
-// The total forces of the last step go along: they hold the damping at half-step velocities, which a state does not
-// tell, and the first kick needs them.
-std::string lammps_data(const std::string& name, const Topology& topology, const State& state,
-                        const Vec3Array& force, const Vec3Array& torque);
-
 // What the input script needs to know.
 struct LammpsScript {
   std::string name;
   std::string law = "paper";
   bool damped = false, driven = false, relax = false;
   bool long_in_z = true;  // a rope or a chain: cut across it
-  double radius = 0, skin = 0, reach = 0, longest_element = 0;
+  int types = 1;          // of tubes
+  Vector3 low, high;      // the box; it grows with the elements, and never shrinks below this
+  double skin = 0, reach = 0;
   int excluded_elements = 3;  // along any tube: contact skips at least so many
   double time_step = 0;
-  std::int64_t step = 0, steps = 0, every = 1;
+  std::int64_t steps = 0, every = 1;
 };
 std::string lammps_input(const LammpsScript& script);
 
@@ -84,23 +77,5 @@ struct LammpsRow {
 inline constexpr int lammps_row_numbers = 9;  // without the step
 // A last line without its end, as after a kill, is left out.
 std::vector<LammpsRow> read_lammps_rows(const LammpsDirectory& dir);
-
-// Reads the states of a dump one after another; one that the end of the file cuts off is left out.
-class LammpsStates {
- public:
-  explicit LammpsStates(const std::string& path);
-  // False at the end.
-  bool next(const Topology& topology, State& state, Vec3Array& force, Vec3Array& torque);
-
- private:
-  bool line();
-  [[noreturn]] void fail(const std::string& what) const;
-  std::vector<int> columns();
-  std::size_t element(const std::vector<int>& columns, std::array<double, 20>& values) const;
-
-  std::string path_, text_;
-  std::ifstream file_;
-  long line_ = 0;
-};
 
 }  // namespace ropewalk

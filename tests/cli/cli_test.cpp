@@ -666,6 +666,13 @@ TEST_F(Cli, BenchKnowsScenesByName) {
   const Json paper = Json::parse(run("bench rope-91x50 --law paper --steps 2 --json").out);
   EXPECT_EQ(paper["elements"], 4550);
   EXPECT_FALSE(paper.contains("spans_per_element"));
+  const Json parts = Json::parse(run("bench film-1e3 --parts 4 --steps 2 --json").out);
+  ASSERT_EQ(parts["cuts"].size(), 3U);
+  EXPECT_EQ(parts["cuts"][0]["copies"], 0);
+  for (const Json& cut : parts["cuts"])
+    EXPECT_NEAR(cut["own"].get<double>() * cut["parts"].get<double>(), parts["elements"].get<double>(), 1e-6);
+  EXPECT_GT(parts["cuts"][2]["copies"], 10);
+  EXPECT_GT(parts["ns_per_own_element"], 1);
   EXPECT_EQ(run("bench film-1e9").code, 2);
   EXPECT_EQ(run("bench film-1e3 --after -1").code, 2);
   EXPECT_EQ(run("bench --law paper " ROPEWALK_SOURCE_DIR "/data/scenes/spindle-67nm.toml").code, 2);

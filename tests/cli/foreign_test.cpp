@@ -46,7 +46,6 @@ TEST_F(Foreign, ANameIsOnlyAName) {
     return text.substr(text.find('\n'));
   };
   EXPECT_EQ(after_title("there/in.rope"), after_title("plain/in.rope"));
-  EXPECT_EQ(after_title("there/rope.data"), after_title("plain/rope.data"));
   ASSERT_EQ(run("run a.toml --out d --quiet").code, 0) << slurp(dir / "stderr.txt");
   ASSERT_EQ(run("compare d d --page c.html").code, 0) << slurp(dir / "stderr.txt");
   ASSERT_EQ(run("picture d -o p.svg").code, 0) << slurp(dir / "stderr.txt");

@@ -28,6 +28,7 @@
 #include "run/run_checkpoint.hpp"
 #include "run/run_directory.hpp"
 #include "scene/lammps_files.hpp"
+#include "scene/lammps_states.hpp"
 #include "scene/prepare.hpp"
 #include "scene/scene_toml.hpp"
 #include "scene/state_csv.hpp"
@@ -237,14 +238,14 @@ void log(const std::string& bytes) {
 
 // --- What LAMMPS leaves ---
 
-void lammps_dump(const std::string& bytes) {
+void lammps_states(const std::string& bytes) {
   const File file(bytes);
   taken_or_refused([&] {
     const Topology topology = short_tubes();
-    LammpsStates states(file.path());
+    LammpsStates states(file.path(), topology);
     State s;
     Vec3Array force, torque;
-    while (states.next(topology, s, force, torque)) {
+    while (states.next(s, force, torque)) {
     }
   });
 }
@@ -313,7 +314,7 @@ const std::vector<Target>& targets() {
                                           {"manifest", manifest},
                                           {"limits", limits},
                                           {"log", log},
-                                          {"lammps_dump", lammps_dump},
+                                          {"lammps_states", lammps_states},
                                           {"lammps_tables", lammps_tables},
                                           {"chart", chart},
                                           {"contact_table", contact_table},

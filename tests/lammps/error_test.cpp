@@ -34,8 +34,6 @@ TEST_F(LammpsErrors, NameTheRemedy) {
        "more than one fix moves", "leave only one"},
       {"atom style", "atom_style hybrid sphere bond", "atom_style bond", "needs elements that turn",
        "atom_style hybrid sphere bond"},
-      {"atom style without bonds", "atom_style hybrid sphere bond", "atom_style sphere", "are bonded",
-       "atom_style hybrid sphere bond"},
       {"units", "units lj", "units metal", "units are not those", "units lj"},
       {"newton", "newton on", "newton off", "not sent back", "newton on"},
       {"ghost velocities", "vel yes", "vel no", "ghosts have no velocities", "comm_modify vel yes"},
@@ -50,8 +48,13 @@ TEST_F(LammpsErrors, NameTheRemedy) {
        "compute each all pe/atom\ndump each all custom 1 each.dump id c_each\nfix motion all",
        "no energies or virials of single elements", "DIR plain"},
       {"directory", "variable dir index .", "variable dir index nowhere", "cannot be opened", "check the name"},
-      {"orientations", "d2_quat 4 d2_carried 6 ghost yes\" &\n  \"read_data",
-       "d2_other 4 d2_carried 6 ghost yes\" &\n  \"read_data", "no orientations", "d2_quat 4 d2_carried 6"},
+      {"orientations", "d2_quat 4", "d2_other 4", "no orientations", "d2_quat 4 d2_carried 6"},
+      {"the file of states", "from ${dir}/${from}", "from nowhere", "nowhere: cannot be opened", "check the name"},
+      {"another file", "from ${dir}/${from}", "from scene.toml", "does not begin as a state does", "this export"},
+      {"steps between states", "mdem/states ${every}", "mdem/states 0.5", "cannot write every 0.5 steps", "from 1"},
+      {"words of states", "from ${dir}/${from}", "${from}", "takes a number of steps", "from rope.state"},
+      {"motion before elements", "fix states all", "fix motion all mdem/nve\nfix states all",
+       "is there before them", "fix states before fix motion"},
       {"special bonds", "special_bonds lj/coul 0 0 0", "special_bonds lj/coul 0 0 0.5", "weakens contact",
        "only 0 or 1"},
       {"time step", "timestep 0.0", "timestep 0.00", "the time step is not that", "take it from in.rope"},
@@ -167,19 +170,18 @@ TEST_F(LammpsErrors, AnImportThatFailsLeavesTheRunAsItWas) {
       all[entry.path().filename().string()] = slurp(entry.path());
     return all;
   };
-  const std::string last = slurp(dir / "out/lammps-last.dump"), manifest = slurp(dir / "out/manifest.json");
-  std::string wrong = last;
-  const std::size_t line = wrong.rfind('\n', wrong.size() - 2) + 1;
-  std::istringstream words(wrong.substr(line));
-  std::string longer, word;
-  for (int k = 0; words >> word; ++k) longer += (k == 4 ? "3" : word) + " ";
-  spit(dir / "out/lammps-last.dump", wrong.substr(0, line) + longer + "\n");
+  const std::string right = slurp(dir / "out/lammps.states"), manifest = slurp(dir / "out/manifest.json");
+  const double three = 3;  // in the place of qw of the last element
+  std::string wrong = right;
+  wrong.replace(wrong.size() - sizeof(StateRecord) + 3 * sizeof three, sizeof three,
+                reinterpret_cast<const char*>(&three), sizeof three);
+  spit(dir / "out/lammps.states", wrong);
   before = files();
   const Outcome o = run("import out");
   EXPECT_EQ(o.code, 2);
-  EXPECT_NE(o.err.find("the quaternion d2_quat has length"), std::string::npos) << o.err;
+  EXPECT_NE(o.err.find("the quaternion has length"), std::string::npos) << o.err;
   EXPECT_EQ(files(), before);
-  spit(dir / "out/lammps-last.dump", last);
+  spit(dir / "out/lammps.states", right);
   spit(dir / "out/manifest.json", "{");
   before = files();
   EXPECT_EQ(run("import out").code, 2);

@@ -35,8 +35,10 @@ TEST_P(ProtocolTest, HundredStepsAgree) {
   Scene scene = read_scene((dir / "scene.toml").string());
   Simulation native = start(scene, prepare(scene));
   for (int k = 0; k < steps; ++k) native.step();
-  for (const int ranks : {1, 3}) {
-    SCOPED_TRACE(ranks);
+  const std::string across = "processors 1 1 *", along = "processors * 1 1";
+  for (const auto& [ranks, cut] : {std::pair{1, across}, {3, across}, {3, along}}) {
+    SCOPED_TRACE(std::to_string(ranks) + ", " + cut);
+    if (cut == along) edit("out", across, along);  // so that all of them have a part of each grip
     const Outcome o = lmp(ranks, "out", "-in in.rope -var steps " + std::to_string(steps));
     ASSERT_EQ(o.code, 0) << o.out << o.err;
     const Left left = left_by(dir / "out", native.topology());
@@ -74,6 +76,11 @@ INSTANTIATE_TEST_SUITE_P(
                  "[[grip]]\nend = \"lower\"\nspin_free = true\ntilt_free = true\nas = \"each\"\n"
                  "[[grip]]\nend = \"upper\"\nz = { force_nN = 5 }\nabout_x = \"free\"\n"
                  "about_z = { rotation_deg = [[0, 0], [1, 3], [2, 0]] }\nsmooth_ps = 0.5\n",
+                 1e-9},
+        // Of half of the tubes, so that some clamps have elements on two ranks.
+        Protocol{"DeepGrips",
+                 "[[grip]]\nend = \"lower\"\nelements = 6\nas = \"each\"\nslide_free = true\nabout_x = \"free\"\n"
+                 "[[grip]]\nend = \"upper\"\nelements = 5\nz = { force_nN = 5 }\nabout_z = { torque_nN_nm = 30 }\n",
                  1e-9},
         Protocol{
             "LegacyTorque",
@@ -145,7 +152,7 @@ TEST_F(LammpsRun, RanksWithoutElementsAndWithOneTakePart) {
                                 "[start]\ntemperature_K = 300\nmay_cool = true\n"),
                      100, {1, 2, 4}, 1e-10, [&] {
                        edit("out", "comm_style tiled\n", "processors 1 1 *\n");
-                       edit("out", "balance 1.05 rcb\nfix even all balance 1000 1.05 rcb\n", "");
+                       edit("out", "balance 1.0 rcb\nfix even all balance 1000 1.01 rcb\n", "");
                      });
 }
 
@@ -186,33 +193,77 @@ TEST_F(LammpsRun, RelaxesToTheSameMinimum) {
   }
 }
 
-TEST_F(LammpsRun, RestartFilesGoOnOnAnyNumberOfRanks) {
-  exported(
-      rope("[twist]\nmoment_nN_nm = 20\nrate_nN_nm_per_ps = 30\n[start]\ntemperature_K = 100\nmay_cool = true\n"),
-      "out");
-  const Topology topology = [&] {
-    Scene scene = read_scene((dir / "scene.toml").string());
-    return prepare(scene).topology;
-  }();
+const char* const warm_twist =
+    "[twist]\nmoment_nN_nm = 20\nrate_nN_nm_per_ps = 30\n[start]\ntemperature_K = 100\nmay_cool = true\n";
+
+// A run in two parts and an uninterrupted one: at most so far apart.
+void expect_same_run(const Left& whole, const Left& left, double tolerance) {
+  ASSERT_EQ(left.state.step, whole.state.step);
+  EXPECT_LE(relative_difference(whole.state.position, left.state.position), tolerance);
+  EXPECT_LE(difference_of_turns(whole.state.orientation, left.state.orientation), tolerance);
+  EXPECT_LE(relative_difference(whole.state.velocity, left.state.velocity), tolerance);
+  EXPECT_LE(relative_difference(whole.state.angular_velocity, left.state.angular_velocity), tolerance);
+  EXPECT_LE(relative_difference(whole.force, left.force), 100 * tolerance);  // bonds are stiff
+}
+
+void expect_same_account(const LammpsRow& whole, const LammpsRow& again) {
+  EXPECT_NEAR(again.work, whole.work, 1e-12 * whole.work);
+  EXPECT_NEAR(again.dissipated, whole.dissipated, 1e-12 * whole.dissipated);
+}
+
+// With the bits of an uninterrupted run where the ranks are as many. The skin of the list is not the first one.
+TEST_F(LammpsRun, GoesOnFromTheLastStateOnAnyNumberOfRanks) {
+  exported(line_scene("mixed", small_rope, hot_twist), "out");
+  Scene scene = read_scene((dir / "scene.toml").string());
+  const Topology topology = prepare(scene).topology;
   const LammpsDirectory files{(dir / "out").string()};
-  ASSERT_EQ(lmp(2, "out", "-in in.rope -var steps 120 -var every 60").code, 0);
+  for (const int ranks : {1, 2, 4}) {
+    ASSERT_EQ(lmp(ranks, "out", "-in in.rope -var steps 240 -var every 80").code, 0);
+    const Left whole = left_by(dir / "out", topology);
+    const LammpsRow row = read_lammps_rows(files).back();
+    const std::vector<StateInFile> states = find_states(files.states(), topology.elements());
+    ASSERT_EQ(states.size(), 3U);
+    ASSERT_NE(states[1].header.skin, states[0].header.skin);
+    const std::string all = slurp(files.states());
+    for (const int then : {1, 2, 4}) {
+      SCOPED_TRACE(std::to_string(ranks) + " ranks, then " + std::to_string(then));
+      // Killed while it wrote the third state: its mark is not there yet.
+      std::string cut = all.substr(0, static_cast<std::size_t>(states[2].end()) - 1000);
+      std::fill_n(cut.begin() + static_cast<std::ptrdiff_t>(states[2].at), sizeof(StateHeader), '\0');
+      spit(files.states(), cut);
+      const Outcome o = lmp(then, "out", "-in in.rope -var steps 80 -var every 80 -var from lammps.states");
+      ASSERT_EQ(o.code, 0) << o.out << o.err;
+      expect_same_run(whole, left_by(dir / "out", topology), then == ranks ? 0 : 1e-5);
+      EXPECT_EQ(find_states(files.states(), topology.elements()).size(), 3U);
+      EXPECT_EQ(slurp(files.states()) == all, then == ranks && then == 1);  // the account is summed by rank
+      const double tolerance = then == ranks ? 1e-12 : 1e-5;
+      EXPECT_NEAR(read_lammps_rows(files).back().work, row.work, tolerance * row.work);
+    }
+  }
+}
+
+// LAMMPS's own restart files, also one for each rank.
+TEST_F(LammpsRun, RestartFilesGoOnOnAnyNumberOfRanks) {
+  exported(rope(warm_twist), "out");
+  Scene scene = read_scene((dir / "scene.toml").string());
+  const Topology topology = prepare(scene).topology;
+  const LammpsDirectory files{(dir / "out").string()};
+  edit("out", "run ${steps}\n", "restart 60 restart.*.%\nrun ${steps}\n");
+  ASSERT_EQ(lmp(2, "out", "-in in.rope -var steps 120").code, 0);
   const Left whole = left_by(dir / "out", topology);
   const LammpsRow row = read_lammps_rows(files).back();
-  ASSERT_EQ(whole.state.step, 120);
-  fs::copy_file(dir / "out/rope.restart.a", dir / "out/middle.restart");  // a is step 60, b is step 120
+  std::string script = slurp(dir / "out/in.rope");
+  const std::size_t region = script.find("region box"), elements = script.find("fix elements");
+  script.replace(region, elements - region, "read_restart restart.60.%\n");
+  spit(dir / "out/in.rope", script);
+  edit("out", " from ${dir}/${from}", "");
+  fs::resize_file(files.states(), 0);
   for (const int ranks : {1, 2, 4}) {
     SCOPED_TRACE(ranks);
-    const Outcome o = lmp(ranks, "out", "-in in.rope -var steps 60 -var every 60 -var restart ./middle.restart");
+    const Outcome o = lmp(ranks, "out", "-in in.rope -var steps 60");
     ASSERT_EQ(o.code, 0) << o.out << o.err;
-    const Left left = left_by(dir / "out", topology);
-    ASSERT_EQ(left.state.step, 120);
-    EXPECT_LT(relative_difference(whole.state.position, left.state.position), 1e-12);
-    EXPECT_LT(relative_difference(whole.state.velocity, left.state.velocity), 1e-12);
-    EXPECT_LT(relative_difference(whole.state.angular_velocity, left.state.angular_velocity), 1e-12);
-    EXPECT_LT(relative_difference(whole.force, left.force), 1e-10);  // bonds are stiff
-    const LammpsRow again = read_lammps_rows(files).back();
-    EXPECT_NEAR(again.work, row.work, 1e-12 * row.work);
-    EXPECT_NEAR(again.dissipated, row.dissipated, 1e-12 * row.dissipated);
+    expect_same_run(whole, left_by(dir / "out", topology), 1e-12);
+    expect_same_account(row, read_lammps_rows(files).back());
   }
 }
 
@@ -231,11 +282,11 @@ TEST_F(LammpsRun, PluginDoesTheSame) {
   const Topology topology = prepare(scene).topology;
   ASSERT_EQ(lmp(1, "out", "-in in.rope -var steps 50").code, 0);
   const Left ours = left_by(dir / "out", topology);
-  fs::remove(dir / "out/lammps-last.dump");
+  fs::remove(dir / "out/lammps.states");
   const Outcome o = lmp(1, "out", "'" ROPEWALK_LMP_PLUGIN "' -in in.rope -var steps 50", ROPEWALK_LMP_HOST);
   ASSERT_EQ(o.code, 0) << o.out << o.err;
   for (const char* style : {"pair mdem/paper", "pair mdem/line", "bond mdem/vbond", "fix mdem/nve",
-                            "fix mdem/relax", "fix mdem/damp", "fix mdem/grip"})
+                            "fix mdem/relax", "fix mdem/damp", "fix mdem/grip", "fix mdem/states"})
     EXPECT_NE(o.out.find(std::string("plugin: ") + style + " for LAMMPS"), std::string::npos) << o.out;
   EXPECT_EQ(relative_difference(ours.state.position, left_by(dir / "out", topology).state.position), 0);
 }
@@ -314,9 +365,8 @@ TEST_F(LammpsRun, ExportLosesNoDigit) {
 TEST_F(LammpsRun, ImportLeavesOutWhatIsCutOff) {
   exported(rope(""), "out");
   ASSERT_EQ(lmp(1, "out", "-in in.rope -var steps 30 -var every 10").code, 0);
-  fs::remove(dir / "out/lammps-last.dump");
-  const fs::path dump = dir / "out/lammps.dump", rows = dir / "out/lammps-rows.csv";
-  fs::resize_file(dump, fs::file_size(dump) - 100);
+  const fs::path states = dir / "out/lammps.states", rows = dir / "out/lammps-rows.csv";
+  fs::resize_file(states, fs::file_size(states) - 100);
   fs::resize_file(rows, fs::file_size(rows) - 5);
   const Outcome o = run("import out");
   ASSERT_EQ(o.code, 0) << o.err;

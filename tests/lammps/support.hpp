@@ -8,6 +8,7 @@
 
 #include "cli/support.hpp"
 #include "scene/lammps_files.hpp"
+#include "scene/lammps_states.hpp"
 #include "scene/prepare.hpp"
 #include "scene/scene_toml.hpp"
 #include "unit/support.hpp"
@@ -26,7 +27,8 @@ class Lammps : public Cli {
               const std::string& program = ROPEWALK_LMP) const {
     // Many tests at once share few cores: ranks that wait must let others work, and none is bound to a core.
     const std::string environment = "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 " +
-                                    std::string(leaks_allowed) + " OMP_NUM_THREADS=" + std::to_string(threads) + " ";
+                                    std::string(leaks_allowed) + " OMP_NUM_THREADS=" + std::to_string(threads) +
+                                    " ";
     const std::string mpirun =
         "mpirun --oversubscribe --bind-to none --mca mpi_yield_when_idle 1 "
         "--mca btl_vader_single_copy_mechanism none -np " +
@@ -136,8 +138,10 @@ struct Left {
 
 inline Left left_by(const fs::path& folder, const Topology& topology) {
   Left out;
-  LammpsStates states(LammpsDirectory{folder.string()}.last_state());
-  EXPECT_TRUE(states.next(topology, out.state, out.force, out.torque));
+  LammpsStates states(LammpsDirectory{folder.string()}.states(), topology);
+  EXPECT_TRUE(states.next(out.state, out.force, out.torque));
+  while (states.next(out.state, out.force, out.torque)) {
+  }
   return out;
 }
 

@@ -123,7 +123,7 @@ TEST_P(ForcesTest, FastEqualsReference) {
 Forces by_parts(const Topology& topology, const Interaction& in, const State& state, const std::vector<int>& owner,
                 double skin = 0.2) {
   Forces sum(state.size());
-  const double reach = std::max(in.cutoff(), 1.5 * topology.longest_element()) + skin;
+  const double reach = copy_reach(topology, in, skin);
   for (int process = 0; process <= *std::max_element(owner.begin(), owner.end()); ++process) {
     std::vector<int> number;
     std::vector<char> own;

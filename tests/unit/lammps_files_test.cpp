@@ -4,10 +4,12 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 
 #include "model/error.hpp"
+#include "scene/lammps_states.hpp"
 #include "unit/support.hpp"
 
 namespace ropewalk::test {
@@ -86,75 +88,84 @@ TEST_F(LammpsFiles, StartKeepsItsBits) {
   EXPECT_THROW(read_start(dir), InputError);
 }
 
-// LAMMPS cuts lines of a data file after 255 characters.
-TEST_F(LammpsFiles, LongestLinesFit) {
-  Topology t = published_topology();
-  t.add_tube(1);
-  State s(1);
-  const double long_one = -1.2345678901234567e-11, longest = -1.2345678901234567e-98;
-  s.position.set(0, Vector3::Constant(long_one));
-  s.velocity.set(0, Vector3::Constant(longest));
-  s.angular_velocity.set(0, Vector3::Constant(longest));
-  s.orientation.set(0, Quaternion(-0.12345678901234567, long_one, long_one, long_one));
-  Vec3Array force(1), torque(1);
-  force.set(0, Vector3::Constant(longest));
-  torque.set(0, Vector3(-1.2345678901234567e-200, longest, longest));
-  std::istringstream text(lammps_data("long", t, s, force, torque));
-  std::size_t most = 0;
-  for (std::string line; std::getline(text, line);) most = std::max(most, line.size());
-  EXPECT_LE(most, 245U);  // and ten digits of an element's number, of which one is there
-  EXPECT_GT(most, 200U);
-}
-
-TEST_F(LammpsFiles, DumpsWithOtherColumnsAreRefused) {
-  Topology t = published_topology();
-  t.add_tube(1);
-  const std::string head =
-      "ITEM: TIMESTEP\n5\nITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS mm mm mm\n0 1\n0 1\n0 1\n";
-  const std::string columns =
-      "ITEM: ATOMS tqx id x y z d2_quat[1] d2_quat[2] d2_quat[3] d2_quat[4] vx vy vz omegax omegay omegaz fx fy fz "
-      "tqy tqz\n";
-  const std::string numbers = "18 1 0.1 0.2 0.3 1 0 0 0 9 10 11 12 13 14 15 16 17 19 20\n";
-  const auto read = [&](const std::string& text, State& s) {
-    spit(dir.states(), text);
-    LammpsStates states(dir.states());
-    Vec3Array force, torque;
-    const bool found = states.next(t, s, force, torque);
-    if (found) {
-      EXPECT_EQ(torque[0], Vector3(18, 19, 20));
+class LammpsStateFiles : public LammpsFiles {
+ protected:
+  LammpsStateFiles() : topology(published_topology()), state(2), force(2), torque(2) {
+    topology.add_tube(2);
+    header.step = 5;
+    header.elements = 2;
+    header.time = 0.1 + 0.2;
+    for (std::size_t i = 0; i < 2; ++i) {
+      state.position.set(i, {0.1, 0.2, 0.3 + static_cast<double>(i)});
+      state.orientation.set(i, Quaternion(0, 0, 0, 1));
+      state.angular_velocity.set(i, {12, 13, 14});
+      torque.set(i, {18, 19, 1e-300});
     }
-    return found;
-  };
-  State s;
-  ASSERT_TRUE(read(head + columns + numbers, s));
-  EXPECT_EQ(s.step, 5);
-  EXPECT_EQ(s.position[0], Vector3(0.1, 0.2, 0.3));
-  EXPECT_EQ(s.angular_velocity[0], Vector3(12, 13, 14));
-  EXPECT_FALSE(read(head + columns + "18 1 0.1 0.2", s));  // cut off
-  EXPECT_THROW(read(head + "ITEM: ATOMS id x y z\n1 0 0 0\n", s), InputError);
-  EXPECT_THROW(read(head + columns + "18 2 0.1 0.2 0.3 1 0 0 0 9 10 11 12 13 14 15 16 17 19 20\n", s), InputError);
-  EXPECT_THROW(read(head + columns + "18 1 0.1\n", s), InputError);
+  }
+  std::string bytes() const { return state_file(header, state, force, torque); }
+  // The number of states.
+  std::size_t read(const std::string& text) {
+    spit(dir.states(), text);
+    LammpsStates states(dir.states(), topology);
+    std::size_t n = 0;
+    while (states.next(found, force, torque)) ++n;
+    return n;
+  }
+
+  Topology topology;
+  State state, found;
+  Vec3Array force, torque;
+  StateHeader header;
+};
+
+TEST_F(LammpsStateFiles, KeepTheirBits) {
+  ASSERT_EQ(read(bytes()), 1U);
+  EXPECT_EQ(found.step, 5);
+  EXPECT_EQ(found.time, 0.1 + 0.2);
+  EXPECT_EQ(found.position[1], Vector3(0.1, 0.2, 1.3));
+  EXPECT_EQ(found.orientation[1].z(), 1);
+  EXPECT_EQ(found.angular_velocity[1], Vector3(12, 13, 14));
+  EXPECT_EQ(torque[1], Vector3(18, 19, 1e-300));
 }
 
-// A quaternion of norm 3 placed elements where they are not; a number beyond all integers was cast to one.
-TEST_F(LammpsFiles, NumbersThatLammpsDoesNotWriteAreRefused) {
-  Topology t = published_topology();
-  t.add_tube(1);
-  const std::string head =
-      "ITEM: TIMESTEP\n5\nITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS mm mm mm\n0 1\n0 1\n0 1\nITEM: ATOMS id x y z "
-      "d2_quat[1] d2_quat[2] d2_quat[3] d2_quat[4] vx vy vz omegax omegay omegaz fx fy fz tqx tqy tqz\n";
-  const auto read = [&](const std::string& numbers) {
-    spit(dir.states(), head + numbers + " 1 2 3 4 5 6 7 8 9 10 11 12\n");
-    LammpsStates states(dir.states());
-    State s;
-    Vec3Array force, torque;
-    return states.next(t, s, force, torque);
-  };
-  EXPECT_TRUE(read("1 0 0 0 1 0 0 0"));
-  for (const char* wrong :
-       {"1 0 0 0 3 0 0 0", "1 0 0 0 0 0 0 0", "1 nan 0 0 1 0 0 0", "1 0 inf 0 1 0 0 0", "1 0 0 1e300 1 0 0 0",
-        "1e300 0 0 0 1 0 0 0", "nan 0 0 0 1 0 0 0", "1.5 0 0 0 1 0 0 0", "1 0 0 0 1.00001 0 0 0"})
-    EXPECT_THROW(read(wrong), InputError) << wrong;
+TEST_F(LammpsStateFiles, WhatIsNotWholeDoesNotCount) {
+  const std::string one = bytes();
+  EXPECT_EQ(read(one + one + one), 3U);
+  EXPECT_EQ(read(one + one.substr(0, one.size() - 1)), 1U);
+  EXPECT_EQ(read(one + one.substr(0, 63)), 1U);
+  EXPECT_EQ(read(one + std::string(one.size(), '\0')), 1U) << "the mark is written last";
+  EXPECT_EQ(read(""), 0U);
+  EXPECT_THROW(last_state(dir.states(), 2), InputError);
+}
+
+TEST_F(LammpsStateFiles, OfOtherScenesOrProgramsAreRefused) {
+  EXPECT_THROW(read(std::string(100, 'x')), InputError);
+  header.elements = 3;
+  EXPECT_THROW(read(bytes()), InputError);
+  header.elements = 2;
+  header.step = -1;
+  EXPECT_THROW(read(bytes()), InputError);
+  header.step = 1;
+  header.work = std::nan("");
+  EXPECT_THROW(read(bytes()), InputError);
+}
+
+// A quaternion of norm 3 placed elements where they are not.
+TEST_F(LammpsStateFiles, NumbersThatLammpsDoesNotWriteAreRefused) {
+  for (const Quaternion& wrong : {Quaternion(3, 0, 0, 0), Quaternion(0, 0, 0, 0), Quaternion(1.00001, 0, 0, 0)}) {
+    state.orientation.set(1, wrong);
+    EXPECT_THROW(read(bytes()), InputError);
+  }
+  state.orientation.set(1, Quaternion(1, 0, 0, 0));
+  ASSERT_EQ(read(bytes()), 1U);
+  for (const double wrong : {std::nan(""), HUGE_VAL, 1e300}) {
+    state.velocity.set(1, {0, wrong, 0});
+    EXPECT_THROW(read(bytes()), InputError);
+  }
+}
+
+// A number beyond all integers was cast to one.
+TEST_F(LammpsFiles, RowsThatLammpsDoesNotWriteAreRefused) {
   const std::string title = "step,time_ps,stretch_eV\n";
   for (const char* row : {"1e300,0,0,0,0,0,0,0,0,0\n", "nan,0,0,0,0,0,0,0,0,0\n", "-1,0,0,0,0,0,0,0,0,0\n",
                           "0.5,0,0,0,0,0,0,0,0,0\n", "1,0,0,inf,0,0,0,0,0,0\n"}) {

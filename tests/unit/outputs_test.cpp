@@ -15,6 +15,7 @@
 #include "run/plan_check.hpp"
 #include "run/run_directory.hpp"
 #include "scene/lammps_files.hpp"
+#include "scene/lammps_states.hpp"
 #include "scene/state_csv.hpp"
 
 namespace ropewalk {
@@ -39,7 +40,7 @@ TEST(OutputsPage, HasTheTablesOfTheCode) {
   EXPECT_EQ(outputs_table("`lammps.json`"), columns_markdown(lammps_start_keys()));
   EXPECT_EQ(outputs_table("`tubes.csv`"), columns_markdown(lammps_tube_columns()));
   EXPECT_EQ(outputs_table("`lammps-rows.csv`"), columns_markdown(lammps_row_columns()));
-  EXPECT_EQ(outputs_table("`lammps.dump` and `lammps-last.dump`"), columns_markdown(lammps_state_columns()));
+  EXPECT_EQ(outputs_table("`rope.state` and `lammps.states`"), columns_markdown(lammps_state_columns()));
 }
 
 }  // namespace

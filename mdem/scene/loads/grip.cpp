@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 #include "scene/schedule_rows.hpp"
 #include "scene/tables/tables.hpp"
@@ -49,9 +50,11 @@ Vector3 driven(const std::array<Schedule, 6>& schedules, const std::array<GripAx
 // A clamp and its elements now.
 struct GripLoad::Body {
   std::size_t begin = 0, end = 0;  // of GripLoad::elements
-  Vector3 centre = Vector3::Zero();
+  double mass = 0;
+  Vector3 centre = Vector3::Zero(), axis = Vector3::Zero();
   Matrix3 held = Matrix3::Identity();  // the part of a velocity that the clamp holds
   Matrix6 inertia = Matrix6::Zero();   // of what it holds: half of q.inertia.q is the energy of the rigid motion q
+  Vector6 momentum = Vector6::Zero();
 
   Matrix3 held_spin(const GripLoad& grip, const State& s, std::size_t k) const {
     if (!grip.spin_free && !grip.tilt_free) return Matrix3::Identity();
@@ -64,34 +67,86 @@ struct GripLoad::Body {
   }
 };
 
-std::vector<GripLoad::Body> GripLoad::bodies(const State& s) const {
-  const std::size_t size = each ? static_cast<std::size_t>(depth) : elements.size();
-  std::vector<Body> all;
-  for (std::size_t begin = 0; begin < elements.size(); begin += size) {
-    Body b;
-    b.begin = begin;
-    b.end = begin + size;
-    double mass = 0;
-    Vector3 axis = Vector3::Zero();
-    for (std::size_t k = b.begin; k < b.end; ++k) {
-      const auto i = static_cast<std::size_t>(elements[k]);
-      b.centre += mass_[k] * s.position[i];
-      axis += axis_of(s.orientation[i]);
-      mass += mass_[k];
+// Adds up numbers of the clamps that are on several processes. `numbers_of` has them side by side in a clamp.
+template <class Of>
+void GripLoad::add_up(std::vector<Body>& all, int count, const Of& numbers_of) const {
+  if (shared_.empty()) return;
+  const auto n = static_cast<std::size_t>(count);
+  std::vector<double> sums(n * shared_.size());
+  const auto visit = [&](const auto& with) {
+    std::size_t k = 0;
+    for (Body& b : all) {
+      while (k < shared_.size() && shared_[k] < clamp_[b.begin]) ++k;
+      if (k < shared_.size() && shared_[k] == clamp_[b.begin]) with(numbers_of(b), &sums[n * k]);
     }
-    b.centre /= mass;
-    if (slide_free) b.held -= axis.normalized() * axis.normalized().transpose();
+  };
+  visit([&](const double* from, double* to) { std::copy_n(from, n, to); });
+  others_->sum(sums.data(), sums.size());
+  visit([&](double* to, const double* from) { std::copy_n(from, n, to); });
+}
+
+bool GripLoad::solves() const {
+  return std::any_of(axes.begin(), axes.end(),
+                     [](const GripAxis& a) { return a.is == Is::free || a.is == Is::loaded; });
+}
+
+std::vector<GripLoad::Body> GripLoad::bodies(const State& s) const {
+  std::vector<Body> all;
+  for (std::size_t k = 0; k < elements.size(); ++k) {
+    if (k == 0 || clamp_[k] != clamp_[k - 1]) {
+      all.emplace_back();
+      all.back().begin = k;
+    }
+    const auto i = static_cast<std::size_t>(elements[k]);
+    Body& b = all.back();
+    b.end = k + 1;
+    b.mass += mass_[k];
+    b.centre += mass_[k] * s.position[i];
+    b.axis += axis_of(s.orientation[i]);
+  }
+  static_assert(offsetof(Body, axis) == offsetof(Body, mass) + 4 * sizeof(double), "seven numbers side by side");
+  add_up(all, 7, [](Body& b) { return &b.mass; });
+  for (Body& b : all) {
+    b.centre /= b.mass;
+    if (slide_free) b.held -= b.axis.normalized() * b.axis.normalized().transpose();
+  }
+  return all;
+}
+
+// And the momentum.
+void GripLoad::find_inertia(const State& s, std::vector<Body>& all) const {
+  for (Body& b : all)
     for (std::size_t k = b.begin; k < b.end; ++k) {
       const auto i = static_cast<std::size_t>(elements[k]);
-      const Matrix3 lever = -cross(s.position[i] - b.centre), by_turn = mass_[k] * b.held * lever;
+      const Vector3 arm = s.position[i] - b.centre, p = mass_[k] * b.held * s.velocity[i];
+      const Matrix3 lever = -cross(arm), by_turn = mass_[k] * b.held * lever,
+                    spin = inertia_[k] * b.held_spin(*this, s, k);
       b.inertia.topLeftCorner<3, 3>() += mass_[k] * b.held;
       b.inertia.topRightCorner<3, 3>() += by_turn;
       b.inertia.bottomLeftCorner<3, 3>() += by_turn.transpose();
-      b.inertia.bottomRightCorner<3, 3>() += lever.transpose() * by_turn + inertia_[k] * b.held_spin(*this, s, k);
+      b.inertia.bottomRightCorner<3, 3>() += lever.transpose() * by_turn + spin;
+      b.momentum.head<3>() += p;
+      b.momentum.tail<3>() += arm.cross(p) + spin * s.angular_velocity[i];
     }
-    all.push_back(b);
+  static_assert(offsetof(Body, momentum) == offsetof(Body, inertia) + 36 * sizeof(double), "side by side");
+  add_up(all, 42, [](Body& b) { return b.inertia.data(); });
+}
+
+void GripLoad::keep(const std::vector<std::size_t>& places, const LoadProcesses& others) {
+  std::vector<int> of(clamp_.empty() ? 0 : static_cast<std::size_t>(clamp_.back()) + 1), some;
+  for (const int c : clamp_) ++of[static_cast<std::size_t>(c)];
+  elements = chosen(elements, places);
+  mass_ = chosen(mass_, places);
+  inertia_ = chosen(inertia_, places);
+  clamp_ = chosen(clamp_, places);
+  for (std::size_t k = 0, next; k < clamp_.size(); k = next) {
+    for (next = k + 1; next < clamp_.size() && clamp_[next] == clamp_[k];) ++next;
+    if (static_cast<int>(next - k) < of[static_cast<std::size_t>(clamp_[k])]) some.push_back(clamp_[k]);
   }
-  return all;
+  shared_ = others.join(some);
+  std::sort(shared_.begin(), shared_.end());
+  shared_.erase(std::unique(shared_.begin(), shared_.end()), shared_.end());
+  others_ = &others;
 }
 
 namespace {
@@ -125,28 +180,32 @@ void GripLoad::constrain(const Topology&, double time, double ahead, State& s) c
   };
   Vector6 prescribed;
   prescribed << driven(schedules_, axes, 0, Is::moved, rate), driven(schedules_, axes, 3, Is::moved, rate);
-  for (const Body& b : bodies(s)) {
-    Vector6 momentum = Vector6::Zero();
-    for (std::size_t k = b.begin; k < b.end; ++k) {
-      const auto i = static_cast<std::size_t>(elements[k]);
-      const Vector3 p = mass_[k] * b.held * s.velocity[i], arm = s.position[i] - b.centre;
-      momentum.head<3>() += p;
-      momentum.tail<3>() += arm.cross(p) + inertia_[k] * b.held_spin(*this, s, k) * s.angular_velocity[i];
+  std::vector<Body> all = bodies(s);
+  std::vector<Vector6> motion(all.size(), prescribed);
+  if (solves()) {
+    find_inertia(s, all);
+    for (std::size_t n = 0; n < all.size(); ++n) {
+      Body& b = all[n];
+      solve_free(axes, b.inertia, b.momentum, motion[n]);
+      const Vector3 turn = motion[n].tail<3>();
+      b.momentum.setZero();  // now what the centripetal accelerations take from it in unit time
+      for (std::size_t k = b.begin; k < b.end; ++k) {
+        const Vector3 arm = s.position[static_cast<std::size_t>(elements[k])] - b.centre;
+        const Vector3 force = mass_[k] * b.held * turn.cross(turn.cross(arm));
+        b.momentum.head<3>() -= force;
+        b.momentum.tail<3>() -= arm.cross(force);
+      }
     }
-    Vector6 q = prescribed;
-    solve_free(axes, b.inertia, momentum, q);
-    const Vector3 turn = q.tail<3>();
-    Vector6 bent = Vector6::Zero();  // what the centripetal accelerations take from the momentum in unit time
-    for (std::size_t k = b.begin; k < b.end; ++k) {
-      const Vector3 arm = s.position[static_cast<std::size_t>(elements[k])] - b.centre;
-      const Vector3 force = mass_[k] * b.held * turn.cross(turn.cross(arm));
-      bent.head<3>() -= force;
-      bent.tail<3>() -= arm.cross(force);
+    add_up(all, 6, [](Body& b) { return b.momentum.data(); });
+    for (std::size_t n = 0; n < all.size(); ++n) {
+      Vector6 faster = Vector6::Zero();  // acceleration of the free components
+      solve_free(axes, all[n].inertia, all[n].momentum, faster);
+      motion[n] += ahead * faster;
     }
-    Vector6 faster = Vector6::Zero();  // acceleration of the free components
-    solve_free(axes, b.inertia, bent, faster);
-    const Vector6 then = q + ahead * faster;
-    const Vector3 velocity = then.head<3>(), turning = then.tail<3>();
+  }
+  for (std::size_t n = 0; n < all.size(); ++n) {
+    const Body& b = all[n];
+    const Vector3 velocity = motion[n].head<3>(), turning = motion[n].tail<3>();
     const Matrix3 sweep = chord(turning, 2 * ahead);
     for (std::size_t k = b.begin; k < b.end; ++k) {
       const auto i = static_cast<std::size_t>(elements[k]);
@@ -164,7 +223,9 @@ void GripLoad::add_forces(const State& s, double time, std::vector<PointLoad>& o
   const auto now = [&](const Schedule& schedule) { return schedule.value(time); };
   Vector6 load;
   load << driven(schedules_, axes, 0, Is::loaded, now), driven(schedules_, axes, 3, Is::loaded, now);
-  for (const Body& b : bodies(s)) {
+  std::vector<Body> all = bodies(s);
+  find_inertia(s, all);
+  for (const Body& b : all) {
     Vector6 q = Vector6::Zero();
     solve_free(axes, b.inertia, load, q);
     for (std::size_t k = b.begin; k < b.end; ++k) {
@@ -178,7 +239,9 @@ void GripLoad::add_forces(const State& s, double time, std::vector<PointLoad>& o
 
 bool GripLoad::is_unfelt(std::size_t axis, const State& s) const {
   if (axes[axis].is != Is::loaded) return false;
-  for (const Body& b : bodies(s)) {
+  std::vector<Body> all = bodies(s);
+  find_inertia(s, all);
+  for (const Body& b : all) {
     Vector6 load = Vector6::Zero(), q = Vector6::Zero();
     load[static_cast<Eigen::Index>(axis)] = 1;
     solve_free(axes, b.inertia, load, q);
@@ -192,9 +255,11 @@ GripLoad GripLoad::on_elements(std::vector<int> on, const Topology& topology) co
   out.elements = std::move(on);
   out.mass_.clear();
   out.inertia_.clear();
+  out.clamp_.clear();
   double length = 0, sound = 0;  // ps, that a wave needs from end to end
   for (const int e : out.elements) {
     const TubeType& type = topology.type_of_element(e);
+    out.clamp_.push_back(each ? static_cast<int>(out.clamp_.size()) / depth : 0);
     out.mass_.push_back(type.mass);
     out.inertia_.push_back(type.inertia);
     const double tube = (topology.length_of(topology.tube_of(e)) - 1) * type.element_length;

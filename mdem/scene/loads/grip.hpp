@@ -51,7 +51,7 @@ class GripLoad : public Load {
   Order order() const override { return Order::grip; }
   void add_forces(const State&, double time, std::vector<PointLoad>& out) const override;
   void constrain(const Topology&, double time, double ahead, State&) const override;
-  bool needs_all_elements() const override { return true; }
+  void keep(const std::vector<std::size_t>& places, const LoadProcesses& others) override;
   std::string needs_time() const override;
   std::optional<LoadEffect> effect() const override;
   double ends() const;  // ps, of the last schedule
@@ -59,9 +59,17 @@ class GripLoad : public Load {
  private:
   struct Body;
   std::vector<Body> bodies(const State& state) const;
+  void find_inertia(const State& state, std::vector<Body>& all) const;
+  template <class Of>
+  void add_up(std::vector<Body>& all, int count, const Of& numbers_of) const;
+  bool solves() const;  // for components that nothing prescribes
 
   std::array<Schedule, 6> schedules_;   // in nm, rad, eV/nm and eV
   std::vector<double> mass_, inertia_;  // of the elements
+  std::vector<int> clamp_;              // of each element, in rising order
+  // Clamps with elements on several processes, in rising order, the same on all of these.
+  std::vector<int> shared_;
+  const LoadProcesses* others_ = nullptr;
 };
 
 // One [[grip]] of a scene, and the tubes that it holds.

@@ -38,7 +38,6 @@ class PeriodicLoad : public Load {
   std::shared_ptr<Load> copy() const override { return std::make_shared<PeriodicLoad>(*this); }
   Order order() const override { return Order::prescribed_motion; }
   void constrain(const Topology&, double time, double ahead, State&) const override;
-  bool needs_all_elements() const override { return true; }
   std::string needs_time() const override { return "the images of a periodic slice follow it in time"; }
 
  private:

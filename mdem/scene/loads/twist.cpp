@@ -11,27 +11,6 @@ using Key = KeyOf<TwistLoad>;
 
 constexpr const char* rate_key = "rate_nN_nm_per_ps";
 
-Vector3 mean_of(const Vec3Array& v, const std::vector<int>& elements) {
-  Vector3 mean = Vector3::Zero();
-  for (const int e : elements) mean += v[static_cast<std::size_t>(e)];
-  return mean / static_cast<double>(elements.size());
-}
-
-// Forces about the grip's own centre, proportional to the arm, that add up to the moment.
-void add_tangential(const State& state, const std::vector<int>& grip, double moment, std::vector<PointLoad>& out) {
-  const Vector3 centre = mean_of(state.position, grip);
-  double arms2 = 0;
-  for (const int e : grip) {
-    const Vector3 arm = state.position[static_cast<std::size_t>(e)] - centre;
-    arms2 += arm.x() * arm.x() + arm.y() * arm.y();
-  }
-  if (arms2 <= 0) return;
-  for (const int e : grip) {
-    const Vector3 arm = state.position[static_cast<std::size_t>(e)] - centre;
-    out.push_back({e, moment / arms2 * Vector3(-arm.y(), arm.x(), 0), Vector3::Zero()});
-  }
-}
-
 void check(const TomlTable& t, const Scene&, TwistLoad& twist) {
   if (twist.ramp_time() > longest_time)
     throw t.error(rate_key, fmt::format("makes a ramp of {:.3g} ps", twist.ramp_time()), "ramp faster");
@@ -76,10 +55,38 @@ TwistLoad TwistLoad::on_grip(std::vector<int> grip, double sign_there) const {
   return there;
 }
 
+void TwistLoad::keep(const std::vector<std::size_t>& places, const LoadProcesses& others) {
+  const bool some = !places.empty() && places.size() < elements.size();
+  all_ = count_of_all();
+  others_ = others.join(some ? std::vector<int>{1} : std::vector<int>{}).empty() ? nullptr : &others;
+  elements = chosen(elements, places);
+}
+
+// Forces about the grip's own centre, proportional to the arm, that add up to the moment.
+void TwistLoad::add_tangential(const State& state, double whole, std::vector<PointLoad>& out) const {
+  std::array<double, 3> sums{};
+  for (const int e : elements)
+    for (std::size_t k = 0; k < 3; ++k)
+      sums[k] += state.position[static_cast<std::size_t>(e)][static_cast<Eigen::Index>(k)];
+  add_up(sums);
+  const Vector3 centre = Vector3(sums[0], sums[1], sums[2]) / count_of_all();
+  std::array<double, 1> arms2{};
+  for (const int e : elements) {
+    const Vector3 arm = state.position[static_cast<std::size_t>(e)] - centre;
+    arms2[0] += arm.x() * arm.x() + arm.y() * arm.y();
+  }
+  add_up(arms2);
+  if (arms2[0] <= 0) return;
+  for (const int e : elements) {
+    const Vector3 arm = state.position[static_cast<std::size_t>(e)] - centre;
+    out.push_back({e, whole / arms2[0] * Vector3(-arm.y(), arm.x(), 0), Vector3::Zero()});
+  }
+}
+
 void TwistLoad::add_forces(const State& state, double time, std::vector<PointLoad>& out) const {
-  const double now = sign * moment_at(time), count = static_cast<double>(elements.size());
+  const double now = sign * moment_at(time), count = count_of_all();
   if (application == Application::tangential) {
-    add_tangential(state, elements, reading == Reading::per_tube ? now * count : now, out);
+    add_tangential(state, reading == Reading::per_tube ? now * count : now, out);
     return;
   }
   const double each = reading == Reading::per_tube ? now : now / count;
@@ -91,20 +98,23 @@ void TwistLoad::add_forces(const State& state, double time, std::vector<PointLoa
 void TwistLoad::constrain(const Topology& topology, double, double, State& state) const {
   if (lateral_free && axial_free) return;
   Vector3 mean = Vector3::Zero();
-  double mass = 0;
-  for (const int e : elements) {
-    const double m = topology.type_of_element(e).mass;
-    mean += m * state.velocity[static_cast<std::size_t>(e)];
-    mass += m;
+  if (!lateral_free) {
+    std::array<double, 3> sums{};  // of mass and momentum
+    for (const int e : elements) {
+      const double m = topology.type_of_element(e).mass;
+      const Vector3 v = state.velocity[static_cast<std::size_t>(e)];
+      sums[0] += m;
+      sums[1] += m * v.x();
+      sums[2] += m * v.y();
+    }
+    add_up(sums);
+    mean = Vector3(sums[1], sums[2], 0) / sums[0];
   }
-  mean /= mass;
   for (const int e : elements) {
     const auto i = static_cast<std::size_t>(e);
     // Held sideways means that the rope's end stays on its axis while the tubes in it may turn about it.
-    if (!lateral_free) {
-      state.velocity.x[i] -= mean.x();
-      state.velocity.y[i] -= mean.y();
-    }
+    state.velocity.x[i] -= mean.x();
+    state.velocity.y[i] -= mean.y();
     if (!axial_free) state.velocity.z[i] = 0;
   }
 }

@@ -2,6 +2,8 @@
 // end, - at the lower) is ramped at a rate and then held. One such load acts on one grip.
 #pragma once
 
+#include <array>
+
 #include "sim/dynamics/loads.hpp"
 
 namespace ropewalk {
@@ -34,10 +36,19 @@ class TwistLoad : public Load {
   void add_forces(const State&, double time, std::vector<PointLoad>& out) const override;
   void constrain(const Topology&, double time, double ahead, State&) const override;
   double spin_relaxation_interval() const override { return geometric_only ? increment : 0.0; }
-  // For the middle of the grip, its mean velocity or the number of its elements.
-  bool needs_all_elements() const override {
-    return application == Application::tangential || reading == Reading::total || !lateral_free;
+  void keep(const std::vector<std::size_t>& places, const LoadProcesses& others) override;
+
+ private:
+  double count_of_all() const { return all_ > 0 ? all_ : static_cast<double>(elements.size()); }
+  template <std::size_t n>
+  void add_up(std::array<double, n>& sums) const {
+    if (others_) others_->sum(sums.data(), n);
   }
+  void add_tangential(const State& state, double whole, std::vector<PointLoad>& out) const;
+
+  double all_ = 0;  // elements of the grip; 0: they are all here
+  // Those with whom the grip's elements are shared; null: nobody.
+  const LoadProcesses* others_ = nullptr;
 };
 
 // The upper and the lower grip of a scene's [twist].

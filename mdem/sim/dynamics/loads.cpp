@@ -4,6 +4,10 @@
 
 namespace ropewalk {
 
+void Load::keep(const std::vector<std::size_t>& places, const LoadProcesses&) {
+  elements = chosen(elements, places);
+}
+
 void LoadsAndConstraints::add(std::shared_ptr<const Load> load) {
   const auto behind =
       std::find_if(all_.begin(), all_.end(), [&](const auto& l) { return l->order() > load->order(); });
@@ -38,7 +42,8 @@ double load_power(const std::vector<PointLoad>& loads, const State& state) {
   return power;
 }
 
-void constrain(const Topology& topology, const LoadsAndConstraints& loads, double time, double ahead, State& state) {
+void constrain(const Topology& topology, const LoadsAndConstraints& loads, double time, double ahead,
+               State& state) {
   for (const auto& load : loads) load->constrain(topology, time, ahead, state);
 }
 

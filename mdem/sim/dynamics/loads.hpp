@@ -28,6 +28,16 @@ struct LoadEffect {
   double ramp = 0;                   // ps, in which it is turned
 };
 
+// The processes that have the elements of a load together. All of them must call each of these.
+class LoadProcesses {
+ public:
+  virtual ~LoadProcesses() = default;
+  // Replaces values by their sums over all processes.
+  virtual void sum(double* values, std::size_t count) const = 0;
+  // The lists of all processes behind one another.
+  virtual std::vector<int> join(const std::vector<int>& own) const = 0;
+};
+
 class Load {
  public:
   // Loads act in this order. Where two of them set one velocity, the later one decides.
@@ -46,8 +56,9 @@ class Load {
 
   // ps between relaxations of all spins (relax_spins); 0: never.
   virtual double spin_relaxation_interval() const { return 0; }
-  // Whether a process that owns only some of the elements must know the state of all of them.
-  virtual bool needs_all_elements() const { return false; }
+  // For a process that has only those of its elements that stand at these places of `elements`, in rising order.
+  // All processes call it at once. A load that needs sums over all its elements keeps `others` for them.
+  virtual void keep(const std::vector<std::size_t>& places, const LoadProcesses& others);
   // Why the load has no meaning in a relaxation; empty: it has.
   virtual std::string needs_time() const { return ""; }
   // None where it cannot be said beforehand.
@@ -58,6 +69,15 @@ class Load {
   Load(const Load&) = default;
   Load& operator=(const Load&) = default;
 };
+
+// The entries of `all` at these places.
+template <class T>
+std::vector<T> chosen(const std::vector<T>& all, const std::vector<std::size_t>& places) {
+  std::vector<T> out;
+  out.reserve(places.size());
+  for (const std::size_t k : places) out.push_back(all[k]);
+  return out;
+}
 
 // In the order in which they act. Copies share the loads, which never change.
 class LoadsAndConstraints {

@@ -1,5 +1,6 @@
 #include "sim/state/part_of_scene.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace ropewalk {
@@ -17,6 +18,11 @@ Topology part_of_scene(const Topology& scene, std::vector<int> number, std::vect
   part.number = std::move(number);
   part.own = std::move(own);
   return out;
+}
+
+double copy_reach(const Topology& topology, const Interaction& in, double skin) {
+  constexpr double longest_bond = 1.5;  // element lengths, far above any strain for which the model holds
+  return std::max(in.cutoff(), longest_bond * topology.longest_element()) + skin;
 }
 
 }  // namespace ropewalk

@@ -3,11 +3,16 @@
 
 #include <vector>
 
+#include "sim/state/interaction.hpp"
 #include "sim/state/state.hpp"
 
 namespace ropewalk {
 
 // `number`: those of the scene that the process has, in rising order; `own`: which of them it owns.
 Topology part_of_scene(const Topology& scene, std::vector<int> number, std::vector<char> own);
+
+// How far (nm) from own elements there must be copies of others: contacts with the skin of the list, and both ends
+// of a bond.
+double copy_reach(const Topology& topology, const Interaction& interaction, double skin);
 
 }  // namespace ropewalk

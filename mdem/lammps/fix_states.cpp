@@ -1,0 +1,333 @@
+#include "lammps/fix_states.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <filesystem>
+#include <limits>
+#include <numeric>
+
+#include "domain.h"
+#include "io/files.hpp"
+#include "lammps/fix_motion.hpp"
+#include "lammps/pair_mdem.hpp"
+#define LAMMPS_LIB_MPI
+#include "library.h"
+
+namespace ropewalk::lammps {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int numbers = std::tuple_size<StateRecord>::value;
+constexpr int sent = 1 + numbers;  // the element and its record
+
+// An open file; every failure is an InputError.
+class File {
+ public:
+  File(std::string path, int flags)
+      : path_(std::move(path)), file_(::open(path_.c_str(), flags | O_CLOEXEC, 0666)) {
+    if (file_ < 0) throw file_error(path_, "cannot be opened", errno);
+  }
+  ~File() {
+    if (file_ >= 0) ::close(file_);
+  }
+  File(const File&) = delete;
+  File& operator=(const File&) = delete;
+
+  void read(void* to, std::size_t bytes, std::int64_t at) const {
+    for (char* next = static_cast<char*>(to); bytes > 0;) {
+      const ssize_t n = ::pread(file_, next, bytes, at);
+      if (n < 0 && errno == EINTR) continue;
+      if (n <= 0) throw file_error(path_, "cannot be read", n < 0 ? errno : EIO);
+      next += n, at += n, bytes -= static_cast<std::size_t>(n);
+    }
+  }
+  void write(const void* from, std::size_t bytes, std::int64_t at) const {
+    for (const char* next = static_cast<const char*>(from); bytes > 0;) {
+      const ssize_t n = ::pwrite(file_, next, bytes, at);
+      if (n < 0 && errno == EINTR) continue;
+      if (n < 0) throw file_error(path_, "cannot be written", errno);
+      next += n, at += n, bytes -= static_cast<std::size_t>(n);
+    }
+  }
+  void cut(std::int64_t bytes) const {
+    if (::ftruncate(file_, bytes) != 0) throw file_error(path_, "cannot be written", errno);
+  }
+  void flush() const {
+    if (::fsync(file_) != 0) throw file_error(path_, "cannot be written", errno);
+  }
+
+ private:
+  std::string path_;
+  int file_;
+};
+
+// What `f` complains of; empty: nothing.
+template <class F>
+std::string trouble_of(const F& f) {
+  try {
+    f();
+  } catch (const std::exception& e) {
+    return e.what();
+  }
+  return "";
+}
+
+}  // namespace
+
+FixStates::FixStates(LMP::LAMMPS* lmp, int count, char** words) : Fix(lmp, count, words) {
+  const bool starts = count == 7 && std::string(words[5]) == "from";
+  if (igroup != 0 || (count != 5 && !starts))
+    refuse(lmp, "fix mdem/states takes a number of steps, a file, and the file where the run begins",
+           "write: fix states all mdem/states 1000 lammps.states from rope.state");
+  model_ = loaded(lmp, "fix mdem/states");
+  const double every = LMP::utils::numeric(FLERR, words[3], false, lmp);
+  if (!(every >= 1 && every <= std::numeric_limits<int>::max()) || every != static_cast<int>(every))
+    refuse(lmp, std::string("fix mdem/states cannot write every ") + words[3] + " steps",
+           "write a whole number from 1");
+  nevery = static_cast<int>(every);
+  force_reneighbor = 1;
+  path_ = words[4];
+  if (starts) make_elements(words[6]);
+  begin_file(starts ? words[6] : path_);
+}
+
+// --- slices -------------------------------------------------------------------------------------------
+
+LMP::bigint FixStates::slice_begin(int rank) const {
+  return LMP::bigint{model_->topology.elements()} * rank / comm->nprocs;
+}
+
+int FixStates::slice_of(LMP::bigint element) const {
+  return static_cast<int>(((element + 1) * comm->nprocs - 1) / model_->topology.elements());
+}
+
+// Each record goes to its rank. They arrive in the order of the ranks that sent them, and of each in its order.
+std::vector<double> FixStates::exchange(const std::vector<int>& to, const std::vector<double>& records) const {
+  const auto ranks = static_cast<std::size_t>(comm->nprocs);
+  std::vector<int> send(ranks), receive(ranks), send_at(ranks), receive_at(ranks);
+  for (const int rank : to) ++send[static_cast<std::size_t>(rank)];
+  MPI_Alltoall(send.data(), 1, MPI_INT, receive.data(), 1, MPI_INT, world);
+  std::partial_sum(send.begin(), send.end() - 1, send_at.begin() + 1);
+  std::partial_sum(receive.begin(), receive.end() - 1, receive_at.begin() + 1);
+  std::vector<double> sorted(records.size());
+  std::vector<int> next = send_at;
+  for (std::size_t k = 0; k < to.size(); ++k)
+    std::copy_n(&records[sent * k], sent,
+                &sorted[sent * static_cast<std::size_t>(next[static_cast<std::size_t>(to[k])]++)]);
+  std::vector<double> out(sent * static_cast<std::size_t>(receive.back() + receive_at.back()));
+  MPI_Datatype one;
+  MPI_Type_contiguous(sent, MPI_DOUBLE, &one);
+  MPI_Type_commit(&one);
+  MPI_Alltoallv(sorted.data(), send.data(), send_at.data(), one, out.data(), receive.data(), receive_at.data(), one,
+                world);
+  MPI_Type_free(&one);
+  return out;
+}
+
+// --- the start ----------------------------------------------------------------------------------------
+
+void FixStates::make_elements(const std::string& path) {
+  check_atoms(lmp, "fix mdem/states");
+  if (!domain->box_exist || atom->natoms > 0)
+    refuse(lmp, "fix mdem/states makes the elements, and needs a box without any",
+           "write it behind create_box, or leave out \"from\" and what is behind it");
+  if (find_fix<FixMotion>(lmp))
+    refuse(lmp, "the fix that moves the elements is there before them", "write: fix states before fix motion");
+  orientations(lmp);
+  std::string trouble;
+  if (comm->me == 0) trouble = trouble_of([&] { began_ = last_state(path, model_->topology.elements()); });
+  refuse_together(lmp, trouble);
+  MPI_Bcast(&began_, sizeof began_, MPI_BYTE, 0, world);
+  has_begun_ = true;
+  std::vector<StateRecord> slice;
+  refuse_together(lmp, trouble_of([&] { slice = read_slice(path); }));
+  widen_box(slice);
+  std::vector<double> records;
+  records.reserve(sent * slice.size());
+  auto element = static_cast<double>(slice_begin(comm->me));
+  for (const StateRecord& r : slice) {
+    records.push_back(element++);
+    records.insert(records.end(), r.begin(), r.end());
+  }
+  create(exchange(owners(slice), records));
+  if (update->ntimestep != began_.header.step) update->reset_timestep(LMP::bigint{began_.header.step});
+}
+
+std::vector<StateRecord> FixStates::read_slice(const std::string& path) const {
+  const LMP::bigint first = slice_begin(comm->me);
+  std::vector<StateRecord> slice(static_cast<std::size_t>(slice_begin(comm->me + 1) - first));
+  const File file(path, O_RDONLY);
+  file.read(slice.data(), slice.size() * sizeof(StateRecord), began_.record(first));
+  for (std::size_t k = 0; k < slice.size(); ++k) {
+    const std::string wrong = complaint_about(slice[k]);
+    if (!wrong.empty())
+      throw InputError({path, 0, ""},
+                       "element " + std::to_string(first + static_cast<LMP::bigint>(k)) + ": " + wrong,
+                       "was it written by the in.rope of this export?");
+  }
+  return slice;
+}
+
+// So that all elements are in it. The lower bound of its size stays, as LAMMPS would let it grow by itself.
+void FixStates::widen_box(const std::vector<StateRecord>& records) {
+  constexpr double margin = 1;  // nm
+  std::array<double, 6> own, all;
+  for (std::size_t k = 0; k < 3; ++k) own[k] = -domain->boxlo[k], own[3 + k] = domain->boxhi[k];
+  for (const StateRecord& r : records)
+    for (std::size_t k = 0; k < 3; ++k) {
+      own[k] = std::max(own[k], margin - r[k]);
+      own[3 + k] = std::max(own[3 + k], margin + r[k]);
+    }
+  MPI_Allreduce(own.data(), all.data(), 6, MPI_DOUBLE, MPI_MAX, world);
+  for (std::size_t k = 0; k < 3; ++k) domain->boxlo[k] = -all[k], domain->boxhi[k] = all[3 + k];
+  domain->set_global_box();
+  domain->set_local_box();
+}
+
+// The ranks are a grid of bricks as yet.
+std::vector<int> FixStates::owners(const std::vector<StateRecord>& records) const {
+  std::array<std::vector<double>, 3> low;  // of the bricks along each axis
+  for (std::size_t k = 0; k < 3; ++k) {
+    low[k].assign(static_cast<std::size_t>(comm->procgrid[k]), -std::numeric_limits<double>::infinity());
+    low[k][static_cast<std::size_t>(comm->myloc[k])] = domain->sublo[k];
+    MPI_Allreduce(MPI_IN_PLACE, low[k].data(), comm->procgrid[k], MPI_DOUBLE, MPI_MAX, world);
+  }
+  std::vector<int> rank;
+  for (const StateRecord& r : records) {
+    std::array<std::ptrdiff_t, 3> brick;
+    for (std::size_t k = 0; k < 3; ++k)
+      brick[k] = std::upper_bound(low[k].begin() + 1, low[k].end(), r[k]) - low[k].begin() - 1;
+    rank.push_back(comm->grid2proc[brick[0]][brick[1]][brick[2]]);
+  }
+  return rank;
+}
+
+void FixStates::create(const std::vector<double>& records) {
+  const Topology& topology = model_->topology;
+  const std::size_t n = records.size() / sent;
+  // Never empty: without numbers of elements LAMMPS would make some up, by a message that the other ranks do not
+  // send.
+  std::vector<int> tag(n + 1), type(n + 1);
+  std::vector<double> x(3 * n + 1), v(3 * n + 1);
+  for (std::size_t i = 0; i < n; ++i) {
+    const double* r = &records[sent * i];
+    const int element = static_cast<int>(r[0]);
+    tag[i] = element + 1;
+    type[i] = topology.tube_type[topology.tube_of(element)] + 1;
+    std::copy_n(r + 1, 3, &x[3 * i]);
+    std::copy_n(r + 8, 3, &v[3 * i]);
+  }
+  lammps_create_atoms(lmp, static_cast<int>(n), tag.data(), type.data(), x.data(), v.data(), nullptr, 0);
+  if (static_cast<std::size_t>(atom->nlocal) != n)
+    refuse_one(lmp, "LAMMPS has made " + std::to_string(atom->nlocal) + " of " + std::to_string(n) + " elements",
+               "take in.rope as the export has it");
+  double **q = orientations(lmp), **last = carried(lmp);
+  for (std::size_t i = 0; i < n; ++i) {
+    const double* r = &records[sent * i];
+    const auto tube = static_cast<std::size_t>(topology.tube_of(tag[i] - 1));
+    const TubeType& kind = topology.types[static_cast<std::size_t>(type[i] - 1)];
+    atom->molecule[i] = static_cast<int>(tube) + 1;
+    atom->radius[i] = kind.radius;
+    atom->rmass[i] = kind.mass;
+    std::copy_n(r + 4, 4, q[i]);
+    std::copy_n(r + 11, 3, atom->omega[i]);
+    std::copy_n(r + 14, 6, last[i]);
+    atom->num_bond[i] = tag[i] < topology.tube_begin[tube + 1] ? 1 : 0;
+    if (atom->num_bond[i] == 0) continue;
+    atom->bond_type[i][0] = type[i];
+    atom->bond_atom[i][0] = tag[i] + 1;
+  }
+  atom->nbonds = topology.bonds();
+}
+
+// --- the file -----------------------------------------------------------------------------------------
+
+// Keeps the states up to now of a file with which the run goes on; any other file begins anew.
+void FixStates::begin_file(const std::string& start) {
+  std::string trouble;
+  if (comm->me == 0)
+    trouble = trouble_of([&] {
+      std::error_code none;
+      if (start == path_ ? fs::exists(path_) : fs::equivalent(start, path_, none))
+        for (const StateInFile& s : find_states(path_, model_->topology.elements()))
+          if (s.header.step <= update->ntimestep) {
+            end_ = s.end();
+            written_ = s.header.step;
+          }
+      File(path_, O_RDWR | O_CREAT).cut(end_);
+    });
+  refuse_together(lmp, trouble);
+  MPI_Bcast(&end_, 1, MPI_INT64_T, 0, world);
+  MPI_Bcast(&written_, 1, MPI_LMP_BIGINT, 0, world);
+}
+
+void FixStates::init() { next_reneighbor = (update->ntimestep / nevery + 1) * nevery; }
+
+void FixStates::end_of_step() {
+  write();
+  next_reneighbor = update->ntimestep + nevery;
+}
+
+void FixStates::post_run() {
+  if (written_ != update->ntimestep) write();
+}
+
+void FixStates::write() {
+  RankEngine* engine = engine_of(lmp);
+  if (engine && engine->leads()) engine->give_own();
+  const auto* motion = find_fix<FixMotion>(lmp);
+  StateInFile state;
+  state.at = end_;
+  state.header.step = update->ntimestep;
+  state.header.elements = model_->topology.elements();
+  state.header.time = model_->time_at(update->ntimestep);
+  state.header.skin = engine ? engine->skin() : 0;
+  if (motion) {
+    const auto [work, dissipated] = motion->account();
+    state.header.work = work;
+    state.header.dissipated = dissipated;
+  }
+  const auto n = static_cast<std::size_t>(atom->nlocal);
+  std::vector<int> to(n);
+  std::vector<double> records(sent * n);
+  double** q = orientations(lmp);
+  for (std::size_t i = 0; i < n; ++i) {
+    const int element = element_of(*atom, static_cast<int>(i));
+    to[i] = slice_of(element);
+    double* r = &records[sent * i];
+    *r = element;
+    std::copy_n(atom->x[i], 3, r + 1);
+    std::copy_n(q[i], 4, r + 4);
+    std::copy_n(atom->v[i], 3, r + 8);
+    std::copy_n(atom->omega[i], 3, r + 11);
+    std::copy_n(atom->f[i], 3, r + 14);
+    std::copy_n(atom->torque[i], 3, r + 17);
+  }
+  const std::vector<double> mine = exchange(to, records);
+  refuse_together(lmp, trouble_of([&] { write_slice(state, mine); }));
+  // The header says that the rest is there.
+  std::string trouble;
+  if (comm->me == 0)
+    trouble = trouble_of([&] { File(path_, O_RDWR).write(&state.header, sizeof state.header, state.at); });
+  refuse_together(lmp, trouble);
+  end_ = state.end();
+  written_ = update->ntimestep;
+}
+
+void FixStates::write_slice(const StateInFile& state, const std::vector<double>& records) const {
+  const LMP::bigint first = slice_begin(comm->me);
+  std::vector<StateRecord> slice(static_cast<std::size_t>(slice_begin(comm->me + 1) - first));
+  for (std::size_t k = 0; k < records.size(); k += sent)
+    std::copy_n(&records[k + 1], numbers,
+                slice[static_cast<std::size_t>(records[k]) - static_cast<std::size_t>(first)].data());
+  if (slice.empty()) return;
+  const File file(path_, O_RDWR);
+  file.write(slice.data(), slice.size() * sizeof(StateRecord), state.record(first));
+  file.flush();
+}
+
+}  // namespace ropewalk::lammps

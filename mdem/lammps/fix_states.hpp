@@ -1,0 +1,46 @@
+// fix ID all mdem/states EVERY FILE [from START]: makes the elements of the last state in START, and adds their
+// states to FILE every so many steps and at the end of a run. The files are those of scene/lammps_states.hpp. Each
+// rank reads and writes a slice of them, of elements with consecutive numbers; messages bring elements from and to
+// their owners.
+//
+// LAMMPS goes on from any state to the same bits, on as many ranks: at every state elements are exchanged.
+#pragma once
+
+#include "lammps/shared.hpp"
+#include "scene/lammps_states.hpp"
+
+namespace ropewalk::lammps {
+
+class FixStates : public LMP::Fix {
+ public:
+  FixStates(LMP::LAMMPS* lmp, int count, char** words);
+  int setmask() override { return LMP::FixConst::END_OF_STEP; }
+  void init() override;
+  void end_of_step() override;
+  void post_run() override;
+
+  // Where the run began; null if this fix has not made the elements.
+  const StateHeader* began() const { return has_begun_ ? &began_.header : nullptr; }
+
+ private:
+  LMP::bigint slice_begin(int rank) const;
+  int slice_of(LMP::bigint element) const;
+  std::vector<double> exchange(const std::vector<int>& to, const std::vector<double>& records) const;
+  void make_elements(const std::string& path);
+  std::vector<StateRecord> read_slice(const std::string& path) const;
+  void widen_box(const std::vector<StateRecord>& records);
+  std::vector<int> owners(const std::vector<StateRecord>& records) const;
+  void create(const std::vector<double>& records);
+  void begin_file(const std::string& start);
+  void write();
+  void write_slice(const StateInFile& state, const std::vector<double>& records) const;
+
+  std::shared_ptr<const LammpsModel> model_;
+  std::string path_;
+  StateInFile began_;
+  bool has_begun_ = false;
+  std::int64_t end_ = 0;  // of the last state in the file, in bytes
+  LMP::bigint written_ = -1;
+};
+
+}  // namespace ropewalk::lammps

@@ -1,0 +1,76 @@
+// The binary files of states that `ropewalk export` and `lmp-ropewalk` exchange: rope.state, where LAMMPS begins,
+// and lammps.states, what it writes. A state is a header of 64 bytes and a record of 152 bytes for each element, in
+// the order of the scene, all numbers little-endian. Every process so knows where an element's record is, and many
+// of them read or write one file at once.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "io/outputs.hpp"
+#include "sim/state/state.hpp"
+
+namespace ropewalk {
+
+// Written last: a state that a kill has cut off has zeros here.
+inline constexpr std::array<char, 8> state_mark = {'R', 'W', 'S', 'T', 'A', 'T', 'E', '1'};
+
+struct StateHeader {
+  std::array<char, 8> mark = state_mark;
+  std::int64_t step = 0, elements = 0;
+  double time = 0;                  // ps
+  double work = 0, dissipated = 0;  // eV
+  double skin = 0;                  // nm, of the neighbour list; 0: there was none
+  double unused = 0;
+};
+static_assert(sizeof(StateHeader) == 64, "this is the format of the file");
+
+// Position, orientation, velocity, angular velocity, force and torque: the numbers of lammps_state_columns().
+using StateRecord = std::array<double, 19>;
+static_assert(sizeof(StateRecord) == 152, "this is the format of the file");
+
+struct StateInFile {
+  StateHeader header;
+  std::int64_t at = 0;  // byte of the file
+
+  std::int64_t record(std::int64_t element) const {
+    return at + static_cast<std::int64_t>(sizeof(StateHeader)) +
+           element * static_cast<std::int64_t>(sizeof(StateRecord));
+  }
+  std::int64_t end() const { return record(header.elements); }
+};
+
+std::vector<OutputColumn> lammps_state_columns();
+
+// The states of a file that are whole, in the order of the file. Throws InputError for other files.
+std::vector<StateInFile> find_states(const std::string& path, std::int64_t elements);
+// The last one. Throws InputError where there is none.
+StateInFile last_state(const std::string& path, std::int64_t elements);
+
+// What is wrong with a record that LAMMPS cannot have written: numbers that are not finite, or no unit quaternion.
+// Empty: nothing.
+std::string complaint_about(const StateRecord& record);
+
+// A file of one state. The total forces of the last step go along: they hold the damping at half-step velocities,
+// which a state does not tell, and the first kick needs them.
+std::string state_file(const StateHeader& header, const State& state, const Vec3Array& force,
+                       const Vec3Array& torque);
+
+// Reads the states of a file one after another; one that is cut off is left out.
+class LammpsStates {
+ public:
+  LammpsStates(const std::string& path, const Topology& topology);
+  // False at the end.
+  bool next(State& state, Vec3Array& force, Vec3Array& torque);
+
+ private:
+  std::string path_;
+  std::vector<StateInFile> all_;
+  std::size_t next_ = 0;
+  std::ifstream file_;
+};
+
+}  // namespace ropewalk
