@@ -63,8 +63,10 @@ Series by_growth(const std::vector<const PhasePoint*>& points) {
 
 std::string law_words(const Series& s) {
   const auto law = power_law(s.x, s.y);
-  if (!law) return "too few points for an exponent";
-  return fmt::format("goes as the length to the power {}", measured_text(law->exponent, law->error));
+  if (!law) return "has too few points for an exponent";
+  return fmt::format("goes as the length to the power {}",
+                     law->error > 0 ? measured_text(law->exponent, law->error)
+                                    : fmt::format("{:.2f}, of two points alone", law->exponent));
 }
 
 ScatterChart diagram(const Sweep& sweep, int tubes, const std::vector<const PhasePoint*>& points) {

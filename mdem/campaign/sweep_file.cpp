@@ -12,6 +12,7 @@
 #include <sstream>
 
 #include "io/files.hpp"
+#include "io/log.hpp"
 #include "io/toml_table.hpp"
 #include "model/error.hpp"
 #include "plan/scene_edit.hpp"
@@ -295,7 +296,10 @@ Sweep sweep_of_text(const std::string& text, const std::string& path, const std:
   const TomlTable branch = top.table("branch");
   if (top.has("branch")) s.branch_at = branch.number("at_ps", Bounds::positive());
   branch.has("vary");
-  if (top.has("threshold")) s.threshold = read_threshold(top.table("threshold"));
+  if (top.has("threshold")) {
+    s.threshold = read_threshold(top.table("threshold"));
+    column_of_log(s.threshold->column, {s.path, 0, "threshold.column"});
+  }
   top.finish();
   const toml::table file = toml::parse(text, path);
   s.axes = axes_in(file["vary"].as_table(), path);

@@ -73,7 +73,7 @@ std::optional<GrowthThreshold> growth_threshold(const std::vector<Trial>& trials
   // Three different values at least, whatever the seeds.
   const std::set<double> different(values.begin(), values.end());
   const std::optional<StraightLine> line = different.size() > 2 ? line_through(squares, values) : std::nullopt;
-  if (!line) return {};
+  if (!line || !(line->a > 0)) return {};
   return GrowthThreshold{line->a, line->a_error, values.size()};
 }
 

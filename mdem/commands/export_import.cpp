@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <limits>
 #include <map>
 
 #include "commands/commands.hpp"
@@ -11,6 +12,7 @@
 #include "io/frames/frames.hpp"
 #include "model/error.hpp"
 #include "run/colours.hpp"
+#include "run/limit_watch.hpp"
 #include "run/origin_changes.hpp"
 #include "run/run_checkpoint.hpp"
 #include "run/tell.hpp"
@@ -109,6 +111,7 @@ LammpsScript script_of(const Scene& scene, const Prepared& p, const Simulation& 
   script.reach = copy_reach(p.topology, in, 0);
   script.excluded_elements = p.topology.fewest_within(in.excluded_arc());
   script.time_step = s.time_step();
+  script.first_step = s.state().step;
   const double dt = s.time_step(), span = p.duration > 0 ? p.duration : 1000 * dt;
   script.steps = script.relax ? scene.run.max_steps : std::llround(p.duration / dt) - s.state().step;
   script.every = script.relax ? relax_every : steps_between(scene.run.frames_every, span, 40, dt);
@@ -188,6 +191,7 @@ class Import {
         prepared_(prepare(scene_)),
         observer_(make_observer(scene_, prepared_)),
         checkpoint_(checkpoint_of(dir_, scene_)),
+        watch_(watched_by_run(scene_, prepared_, observer_)),
         start_(simulation_at(dir_, scene_, prepared_, checkpoint_)),
         reached_(start_.state().step),
         gauges_(start_.gauges()),
@@ -207,6 +211,7 @@ class Import {
     const std::string there = dir_.frames();
     frames_ = std::make_unique<NewFrames>(there, format_of(there), 0, there, checkpoint_.frames.bytes);
     const std::int64_t from = reached_;
+    watch_.inherit_from(checkpoint_.limits.limits, from);
     take_states(files_.states());
     if (reached_ == from)
       throw InputError({files_.states(), 0, ""}, fmt::format("holds no whole state after step {}", from),
@@ -242,11 +247,21 @@ class Import {
     account.first = first_;
     account.ends = readings_at(state);
     log_ += log_line(log_row(observer_, scene_, prepared_.topology, state, account));
+    check_limits(state, account);
     (*frames_)->write(prepared_.topology, state, element_colours(prepared_.topology, prepared_.interaction, state));
     prepared_.state = state;
     last_ = from;
     reached_ = state.step;
     ++taken_;
+  }
+
+  // LAMMPS watches no limits: they are looked for in the states that it left.
+  void check_limits(const State& state, const EnergyAccount& account) {
+    NeighbourList list(prepared_.interaction, default_skin(prepared_.interaction));
+    list.build(prepared_.topology, state);
+    const bool relax = scene_.run.mode == RunOptions::Mode::relax;
+    const double drift = relax ? std::numeric_limits<double>::quiet_NaN() : energy_drift(account);
+    for (const std::string& line : watch_.check(prepared_.topology, state, list, drift, true)) tell(line);
   }
 
   // What the forces of this moment say: LAMMPS keeps no means.
@@ -271,6 +286,7 @@ class Import {
     checkpoint_.log = mark_of(log_);
     checkpoint_.frames = (*frames_)->mark();
     checkpoint_.mark = nullptr;
+    checkpoint_.limits.limits = watch_.records();
     checkpoint_.simulation = simulation.serialise();
     Manifest m = read_manifest(dir_.manifest());
     m.steps = reached_;
@@ -280,11 +296,14 @@ class Import {
     write_file_atomically(dir_.log(), log_);
     frames_->replace();
     write_file_atomically(dir_.final_state(), final_state);
+    write_file_atomically(dir_.limits(), limits_json(checkpoint_.limits));
     write_file_atomically(dir_.manifest(), manifest_json(m));
     write_checkpoint(dir_, checkpoint_);
     write_report(dir_, scene_, prepared_for_report());
     fmt::print("{} states taken over, up to step {}, {:.4g} ps. Report: {}\n", taken_, reached_, last_.time,
                dir_.report());
+    if (const std::string passed = passed_words(watch_.records()); !passed.empty())
+      fmt::print("Limits passed: {}\n", passed);
   }
 
   // The report compares with the state at time zero.
@@ -300,6 +319,7 @@ class Import {
   Prepared prepared_;
   Observer observer_;
   RunCheckpoint checkpoint_;
+  LimitWatch watch_;
   Simulation start_;  // where the run stood
   std::int64_t reached_ = 0;
   Gauges gauges_;

@@ -172,15 +172,16 @@ std::string lammps_input(const LammpsScript& s) {
   const auto weight = [&](int bonds) { return bonds <= s.excluded_elements ? 0 : 1; };
   std::string text = fmt::format(
       "# {}. Run with lmp-ropewalk. Units are nm, ps and eV, in which LAMMPS's \"lj\" has all factors 1.\n"
-      "# On the command line: -var steps N, -var from lammps.states (to go on from the last state written), -var "
-      "forces\n"
-      "# plain (pair by pair, slowly, as a check).\n"
+      "# On the command line: -var steps N (in all, from rope.state on), -var from lammps.states (to go on from "
+      "the\n"
+      "# last state written), -var forces plain (pair by pair, slowly, as a check).\n"
       "variable dir index .\n"
       "if \"$(is_defined(variable,from)) == 0\" then \"variable open index file\" else \"variable open index "
       "append\"\n"
       "variable from index rope.state\n"
       "variable forces index engine\n"
       "variable steps index {}\n"
+      "variable last equal {}+${{steps}}\n"
       "variable every index {}\n"
       "units lj\n"
       "atom_style hybrid sphere bond\n"
@@ -188,7 +189,7 @@ std::string lammps_input(const LammpsScript& s) {
       "newton on\n"
       "special_bonds lj/coul {} {} {}\n"
       "comm_modify mode single vel yes cutoff {}\n",
-      lammps_comment(s.name), s.steps, s.every, weight(1), weight(2), weight(3), s.reach + s.skin);
+      lammps_comment(s.name), s.steps, s.first_step, s.every, weight(1), weight(2), weight(3), s.reach + s.skin);
   text += s.long_in_z ? "processors 1 1 *  # ropes lie along z: every cut is across them\n" : "comm_style tiled\n";
   text += fmt::format(
       "region box block {} {} {} {} {} {}\n"
@@ -214,7 +215,7 @@ std::string lammps_input(const LammpsScript& s) {
       "thermo_style custom step f_motion[1] f_motion[4] f_motion[5] f_motion[6] f_motion[7] pe\n"
       "thermo_modify norm no lost error\n"
       "thermo ${{every}}\n"
-      "run ${{steps}}\n"
+      "run ${{last}} upto\n"
       "unfix rows\n"
       "print \"{0}\" append ${{dir}}/lammps-rows.csv screen no\n",
       "${step},${time},${stretch},${shear},${bend},${twist},${vdw},${kinetic},${work},${dissipated}",

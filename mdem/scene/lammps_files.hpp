@@ -64,7 +64,7 @@ struct LammpsScript {
   double skin = 0, reach = 0;
   int excluded_elements = 3;  // along any tube: contact skips at least so many
   double time_step = 0;
-  std::int64_t steps = 0, every = 1;
+  std::int64_t first_step = 0, steps = 0, every = 1;
 };
 std::string lammps_input(const LammpsScript& script);
 

@@ -231,7 +231,7 @@ TEST_F(LammpsRun, GoesOnFromTheLastStateOnAnyNumberOfRanks) {
       std::string cut = all.substr(0, static_cast<std::size_t>(states[2].end()) - 1000);
       std::fill_n(cut.begin() + static_cast<std::ptrdiff_t>(states[2].at), sizeof(StateHeader), '\0');
       spit(files.states(), cut);
-      const Outcome o = lmp(then, "out", "-in in.rope -var steps 80 -var every 80 -var from lammps.states");
+      const Outcome o = lmp(then, "out", "-in in.rope -var steps 240 -var every 80 -var from lammps.states");
       ASSERT_EQ(o.code, 0) << o.out << o.err;
       expect_same_run(whole, left_by(dir / "out", topology), then == ranks ? 0 : 1e-5);
       EXPECT_EQ(find_states(files.states(), topology.elements()).size(), 3U);
@@ -248,7 +248,7 @@ TEST_F(LammpsRun, RestartFilesGoOnOnAnyNumberOfRanks) {
   Scene scene = read_scene((dir / "scene.toml").string());
   const Topology topology = prepare(scene).topology;
   const LammpsDirectory files{(dir / "out").string()};
-  edit("out", "run ${steps}\n", "restart 60 restart.*.%\nrun ${steps}\n");
+  edit("out", "run ${last} upto\n", "restart 60 restart.*.%\nrun ${last} upto\n");
   ASSERT_EQ(lmp(2, "out", "-in in.rope -var steps 120").code, 0);
   const Left whole = left_by(dir / "out", topology);
   const LammpsRow row = read_lammps_rows(files).back();
@@ -260,7 +260,7 @@ TEST_F(LammpsRun, RestartFilesGoOnOnAnyNumberOfRanks) {
   fs::resize_file(files.states(), 0);
   for (const int ranks : {1, 2, 4}) {
     SCOPED_TRACE(ranks);
-    const Outcome o = lmp(ranks, "out", "-in in.rope -var steps 60");
+    const Outcome o = lmp(ranks, "out", "-in in.rope -var steps 120");
     ASSERT_EQ(o.code, 0) << o.out << o.err;
     expect_same_run(whole, left_by(dir / "out", topology), 1e-12);
     expect_same_account(row, read_lammps_rows(files).back());
@@ -359,6 +359,33 @@ TEST_F(LammpsRun, ExportLosesNoDigit) {
     EXPECT_EQ(native.forces().force[i], left.force[i]);
     EXPECT_EQ(native.forces().torque[i], left.torque[i]);
   }
+}
+
+TEST_F(LammpsRun, ImportLooksForLimits) {
+  spit(dir / "scene.toml",
+       "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[rope]\ntubes = 7\nlength_nm = 14\n"
+       "[[grip]]\nend = \"lower\"\n[[grip]]\nend = \"upper\"\nabout_z = { rotation_deg = [[0, 0], [3, 80]] }\n"
+       "[run]\nduration_ps = 3\nframes_every_ps = 0.5\n");
+  ASSERT_EQ(run("run scene.toml --out here --quiet").code, 0);
+  ASSERT_EQ(run("export scene.toml --lammps there --quiet").code, 0);
+  ASSERT_EQ(lmp(2, "there", "-in in.rope").code, 0);
+  const Outcome o = run("import there");
+  ASSERT_EQ(o.code, 0) << o.err;
+  EXPECT_NE(o.out.find("Limits passed: "), std::string::npos) << o.out;
+  const auto limits = [&](const char* run) {
+    return nlohmann::json::parse(slurp(dir / run / "limits.json"))["limits"];
+  };
+  const auto here = limits("here"), there = limits("there");
+  ASSERT_EQ(here.size(), there.size());
+  int passed = 0;
+  for (std::size_t k = 0; k < here.size(); ++k) {
+    SCOPED_TRACE(here[k].dump());
+    if (here[k]["key"] != "twist_deg" && here[k]["key"] != "wall_twist") continue;
+    EXPECT_EQ(there[k]["passed"], here[k]["passed"]);
+    EXPECT_NEAR(there[k]["largest"], here[k]["largest"], 0.05 * double{here[k]["largest"]});
+    passed += there[k]["passed"] ? 1 : 0;
+  }
+  EXPECT_EQ(passed, 2);
 }
 
 // A run that was killed: what is whole is taken.

@@ -125,7 +125,7 @@ class Scene:
 
         Arguments:
             changes: values by key, with the table before it: {"rope.tubes": 19, "twist.moment_nN_nm": 30}; None takes a
-                key away. `grip.1.rate` is of the second [[grip]]. Units stand in the names of the keys.
+                key away. `grip.1.end` is of the second [[grip]]. Units stand in the names of the keys.
         """
         keys = self._whole_keys()
         for name, value in changes.items():

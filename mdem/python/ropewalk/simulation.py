@@ -128,6 +128,9 @@ class Simulation:
             energies: whether the last step computes the energies, a tenth of a step; without, they are computed when
                 they are asked for, which takes a whole evaluation of the forces
         """
+        if n != int(n) or n < 0:
+            raise ValueError(f"{n} is no number of steps")
+        n = int(n)
         if not self._observers:
             self._core.steps(n, energies)
             return
