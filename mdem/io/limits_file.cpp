@@ -57,7 +57,10 @@ auto into(Json& json) {
 auto out_of(const Json& json) {
   return [&json](const OutputColumn& key, auto& value) {
     using Value = std::decay_t<decltype(value)>;
-    value = json.at(key.name).get<Value>();
+    const Json& entry = json.at(key.name);
+    if constexpr (std::is_integral_v<Value> && !std::is_same_v<Value, bool>)
+      if (!entry.is_number_integer()) throw std::runtime_error("no whole number");
+    value = entry.get<Value>();
     if constexpr (std::is_same_v<Value, std::string>)
       if (has_control_character(value)) throw std::runtime_error("control character");
   };

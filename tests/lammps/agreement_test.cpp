@@ -141,6 +141,7 @@ TEST_P(FiveStatesTest, MixedPrecisionIsThatOfTheSimulator) {
   text.replace(text.find(precision), precision.size(), "precision = \"mixed\"");
   exported(text, "mixed");
   edit("mixed", "fix motion all mdem/nve\n", "fix motion all mdem/nve\nreset_timestep 1\n");
+  edit("mixed", "run ${last} upto\n", "run 0\n");
   Scene mixed = read_scene((dir / "scene.toml").string());
   Prepared here = prepare(mixed);
   here.state = start(mixed, here).state();

@@ -48,6 +48,10 @@ ChartPoint read_point(const std::string& path) {
   const auto wrong = [&] {
     return InputError({path, 0, ""}, "is not a point of this chart", "take it away, or choose another --out");
   };
+  const auto whole = [&](const char* key) {
+    if (!in.at(key).is_number_integer()) throw wrong();
+    return in.at(key).get<int>();
+  };
   try {
     if (!in.is_object() || in.at("format") != point_format) throw wrong();
     ChartPoint p;
@@ -60,9 +64,9 @@ ChartPoint read_point(const std::string& path) {
     p.integrator = in.at("integrator");
     p.mode = in.at("mode");
     p.precision = in.at("precision");
-    p.nodes = in.at("nodes_per_element");
-    p.contact_every = in.at("contact_every");
-    p.elements = in.at("elements");
+    p.nodes = whole("nodes_per_element");
+    p.contact_every = whole("contact_every");
+    p.elements = whole("elements");
     p.cutoff = in.at("cutoff_nm");
     p.element_length = in.at("element_length_nm");
     p.time_step = in.at("time_step_ps");
