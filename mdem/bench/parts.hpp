@@ -1,5 +1,5 @@
-// What it costs to cut a scene into the parts of many processes: each part is its own elements and copies of those
-// within reach of them, and is computed alone, on one thread. No message is sent.
+// The cost of dividing a scene among processes. A part has its own elements and copies of the other elements within
+// their reach. Each part is computed alone, on one thread, and no message is sent.
 #pragma once
 
 #include <vector>
@@ -20,8 +20,8 @@ struct PartCost {
 std::vector<std::vector<PartCost>> cost_of_parts(const Topology& topology, const Interaction& interaction,
                                                  const State& state, int most, bool across_z);
 
-// Seconds for each own element and for each copy, fitted to all parts of these cuts by least squares of the
-// relative deviations.
+// Time of one evaluation of the forces, s, for each own element and for each copy. Least squares over all parts
+// minimise the relative deviations.
 struct ElementCost {
   double own = 0, copy = 0;
 };

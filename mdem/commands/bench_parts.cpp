@@ -1,4 +1,4 @@
-// `bench --parts N`: what the copies of elements cost where a scene is cut for many processes.
+// `bench --parts N` measures the cost of copied elements when a scene is divided among N processes.
 #include <fmt/format.h>
 
 #include <algorithm>

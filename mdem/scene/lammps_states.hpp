@@ -28,7 +28,8 @@ struct StateHeader {
 };
 static_assert(sizeof(StateHeader) == 64, "this is the format of the file");
 
-// Position, orientation, velocity, angular velocity, force and torque: the numbers of lammps_state_columns().
+// The numbers of one element, in the order of lammps_state_columns(): position, orientation, velocity, angular
+// velocity, force and torque.
 using StateRecord = std::array<double, 19>;
 static_assert(sizeof(StateRecord) == 152, "this is the format of the file");
 

@@ -211,7 +211,8 @@ void expect_same_account(const LammpsRow& whole, const LammpsRow& again) {
   EXPECT_NEAR(again.dissipated, whole.dissipated, 1e-12 * whole.dissipated);
 }
 
-// With the bits of an uninterrupted run where the ranks are as many. The skin of the list is not the first one.
+// On the same number of ranks the resumed run has the bits of an uninterrupted one. The skin of the neighbour list
+// has changed before the run is cut off.
 TEST_F(LammpsRun, GoesOnFromTheLastStateOnAnyNumberOfRanks) {
   exported(line_scene("mixed", small_rope, hot_twist), "out");
   Scene scene = read_scene((dir / "scene.toml").string());

@@ -62,7 +62,8 @@ void TwistLoad::keep(const std::vector<std::size_t>& places, const LoadProcesses
   elements = chosen(elements, places);
 }
 
-// Forces about the grip's own centre, proportional to the arm, that add up to the moment.
+// Tangential forces about the centre of the grip. They are proportional to the arm, and their moments add up to
+// `whole`.
 void TwistLoad::add_tangential(const State& state, double whole, std::vector<PointLoad>& out) const {
   std::array<double, 3> sums{};
   for (const int e : elements)

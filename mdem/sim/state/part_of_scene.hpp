@@ -11,8 +11,8 @@ namespace ropewalk {
 // `number`: those of the scene that the process has, in rising order; `own`: which of them it owns.
 Topology part_of_scene(const Topology& scene, std::vector<int> number, std::vector<char> own);
 
-// How far (nm) from own elements there must be copies of others: contacts with the skin of the list, and both ends
-// of a bond.
+// A process needs copies of all elements within this distance (nm) of its own ones. The distance covers the
+// contacts, with the skin of the neighbour list, and the other end of a bond.
 double copy_reach(const Topology& topology, const Interaction& interaction, double skin);
 
 }  // namespace ropewalk
