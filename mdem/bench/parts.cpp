@@ -65,14 +65,7 @@ class Part {
       number.push_back(i);
       owned.push_back(mine);
     }
-    state_ = State(number.size());
-    for (std::size_t k = 0; k < number.size(); ++k) {
-      const auto i = static_cast<std::size_t>(number[k]);
-      state_.position.set(k, s.position[i]);
-      state_.orientation.set(k, s.orientation[i]);
-      state_.velocity.set(k, s.velocity[i]);
-      state_.angular_velocity.set(k, s.angular_velocity[i]);
-    }
+    state_ = part_of_state(s, number);
     cost_.own = static_cast<int>(own.size());
     cost_.copies = static_cast<int>(number.size() - own.size());
     cost_.seconds = 1e300;

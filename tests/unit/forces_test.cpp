@@ -136,14 +136,7 @@ Forces by_parts(const Topology& topology, const Interaction& in, const State& st
       number.push_back(i);
       own.push_back(owner[at] == process);
     }
-    State part(number.size());
-    for (std::size_t k = 0; k < number.size(); ++k) {
-      const auto i = static_cast<std::size_t>(number[k]);
-      part.position.set(k, state.position[i]);
-      part.orientation.set(k, state.orientation[i]);
-      part.velocity.set(k, state.velocity[i]);
-      part.angular_velocity.set(k, state.angular_velocity[i]);
-    }
+    const State part = part_of_state(state, number);
     const Topology pieces = part_of_scene(topology, number, own);
     NeighbourList list(in, skin);
     list.build(pieces, part);

@@ -20,6 +20,18 @@ Topology part_of_scene(const Topology& scene, std::vector<int> number, std::vect
   return out;
 }
 
+State part_of_state(const State& scene, const std::vector<int>& number) {
+  State part(number.size());
+  for (std::size_t k = 0; k < number.size(); ++k) {
+    const auto i = static_cast<std::size_t>(number[k]);
+    part.position.set(k, scene.position[i]);
+    part.orientation.set(k, scene.orientation[i]);
+    part.velocity.set(k, scene.velocity[i]);
+    part.angular_velocity.set(k, scene.angular_velocity[i]);
+  }
+  return part;
+}
+
 double copy_reach(const Topology& topology, const Interaction& in, double skin) {
   constexpr double longest_bond = 1.5;  // element lengths, far above any strain for which the model holds
   return std::max(in.cutoff(), longest_bond * topology.longest_element()) + skin;

@@ -10,6 +10,8 @@ namespace ropewalk {
 
 // `number`: those of the scene that the process has, in rising order; `own`: which of them it owns.
 Topology part_of_scene(const Topology& scene, std::vector<int> number, std::vector<char> own);
+// The motion of these elements.
+State part_of_state(const State& scene, const std::vector<int>& number);
 
 // A process needs copies of all elements within this distance (nm) of its own ones. The distance covers the
 // contacts, with the skin of the neighbour list, and the other end of a bond.
