@@ -84,7 +84,7 @@ void add_verbs(CLI::App& app, Verbs& v) {
   check->add_flag("--all", v.check_shipped.all, "All of them");
   check->add_option("--tolerance", v.check_shipped.tolerance, "Relative difference allowed")
       ->capture_default_str()
-      ->check(CLI::PositiveNumber);
+      ->check(number_within(Bounds::positive()));
   check->callback([&v] { v.code = check_shipped_command(v.check_shipped); });
 
   CLI::App* universal = app.add_subcommand("universal", "Fit one contact law for all radii (minutes)");

@@ -73,9 +73,9 @@ void add_on_limit(CLI::App* c, std::string& word) {
 }
 
 void add_end(CLI::App* c, long& steps, double& until_ps) {
-  CLI::Option* count = c->add_option("--steps", steps, "Stop at this time step")->check(CLI::NonNegativeNumber);
+  CLI::Option* count = c->add_option("--steps", steps, "Stop at this time step")->check(whole_number(0));
   c->add_option("--until", until_ps, "Stop at this time (ps) instead of the scene's")
-      ->check(CLI::NonNegativeNumber)
+      ->check(number_within(Bounds::non_negative()))
       ->excludes(count);
 }
 
@@ -91,7 +91,7 @@ void add_instructions(CLI::App* c, std::string& name, const char* of, const std:
       ->check(CLI::IsMember(instruction_sets()));
 }
 
-CLI::Range thread_range() { return CLI::Range(1, 1024); }
+CLI::Validator thread_range() { return whole_number(1, 1024); }
 
 void add_new(CLI::App& app, Verbs& v) {
   CLI::App* c = app.add_subcommand("new", "Write a commented scene to start from");
@@ -128,8 +128,7 @@ void add_errors(CLI::App& app, Verbs& v) {
   CLI::App* c = app.add_subcommand(
       "errors", "Errors of a finished run's results that follow from those of its parameters: repeats it");
   c->add_option("dir", v.errors.dir, "Directory of the run")->required();
-  c->add_option("-j,--jobs", v.errors.jobs, "Runs at a time [default: one for each core]")
-      ->check(CLI::PositiveNumber);
+  c->add_option("-j,--jobs", v.errors.jobs, "Runs at a time [default: one for each core]")->check(whole_number(1));
   c->add_flag("--again", v.errors.again, "Repeat also what is finished");
   c->add_flag("--json", v.errors.json, "JSON");
   c->add_flag("--quiet", v.errors.quiet, "No progress lines");
@@ -177,7 +176,7 @@ void add_observe(CLI::App& app, Verbs& v) {
   c->add_flag("--list", v.observe.list, "List the observables: name, unit, meaning (Markdown)");
   c->add_option("--neighbour-radius", v.observe.neighbour_radius,
                 "Tubes closer than this are neighbours (nm) [default: the scene's]")
-      ->check(CLI::PositiveNumber);
+      ->check(number_within(Bounds::positive()));
   c->add_flag("--json", v.observe.json, "JSON, with radius profile and centre line");
   c->add_flag("--tubes", v.observe.tubes,
               "Every tube of the last frame, as CSV: tension, twist, curvature, slip, pressure");
@@ -199,7 +198,7 @@ void add_convert(CLI::App& app, Verbs& v) {
       ->required();
   c->add_option("--from-ps", v.convert.from_ps, "Leave out what is earlier")->capture_default_str();
   c->add_option("--to-ps", v.convert.to_ps, "Leave out what is later");
-  c->add_option("--every", v.convert.every, "Every Nth frame")->check(CLI::PositiveNumber)->capture_default_str();
+  c->add_option("--every", v.convert.every, "Every Nth frame")->check(whole_number(1))->capture_default_str();
   c->add_flag("--force", v.convert.force, "Replace an existing file");
   c->callback([&v] { v.code = convert_command(v.convert); });
 }
@@ -218,13 +217,13 @@ void add_picture(CLI::App& app, Verbs& v) {
   c->add_flag("--sections", v.picture.sections, "The cross-section of each state beside it");
   c->add_option("--width", v.picture.width, "Width of the figure, pixels")
       ->capture_default_str()
-      ->check(CLI::Range(200, 8000));
+      ->check(whole_number(200, 8000));
   c->add_option("--highest", v.picture.highest, "Largest height of a state, pixels")
       ->capture_default_str()
-      ->check(CLI::Range(20, 8000));
+      ->check(whole_number(20, 8000));
   c->add_option("--zoom", v.picture.zoom, "Pixels of a PNG per pixel of the figure")
       ->capture_default_str()
-      ->check(CLI::Range(0.1, 20.0));
+      ->check(number_within(Bounds::range(0.1, 20.0)));
   c->add_flag("--force", v.picture.force, "Replace the file");
   c->callback([&v] { v.code = picture_command(v.picture); });
 }
@@ -236,11 +235,11 @@ void add_view(CLI::App& app, Verbs& v) {
   c->add_option("-o", v.view.out, "Page to write [default: DIR/view.html]");
   c->add_option("--frames", v.view.frames, "At most so many frames, evenly over the run")
       ->capture_default_str()
-      ->check(CLI::Range(1, 100000));
+      ->check(whole_number(1, 100000));
   c->add_option("--megabytes", v.view.megabytes,
                 "The page is not longer: numbers are rounded, then frames left out")
       ->capture_default_str()
-      ->check(CLI::Range(1.0, 2000.0));
+      ->check(number_within(Bounds::range(1.0, 2000.0)));
   CLI::Option* movie =
       c->add_option("--movie", v.view.movie, "Write a movie of these frames instead: .webm or .mp4, by ffmpeg");
   c->add_option("--from", v.view.from,
@@ -249,11 +248,11 @@ void add_view(CLI::App& app, Verbs& v) {
       ->needs(movie);
   c->add_option("--fps", v.view.fps, "Movie: frames per second")
       ->capture_default_str()
-      ->check(CLI::Range(0.1, 120.0))
+      ->check(number_within(Bounds::range(0.1, 120.0)))
       ->needs(movie);
   c->add_option("--width", v.view.width, "Movie: width, pixels")
       ->capture_default_str()
-      ->check(CLI::Range(200, 7680))
+      ->check(whole_number(200, 7680))
       ->needs(movie);
   c->add_flag("--force", v.view.force, "Replace the file of -o or --movie");
   c->callback([&v] { v.code = view_command(v.view); });
@@ -277,7 +276,7 @@ void add_energy(CLI::App& app, Verbs& v) {
       ->check(CLI::IsMember({"harmonic", "anharmonic"}));
   c->add_option("--exclude-along-tube-nm", v.energy.options.exclude_along_tube,
                 "Parts of one tube up to this far apart along it do not attract [default: as a scene has it]")
-      ->check(CLI::PositiveNumber);
+      ->check(number_within(Bounds::positive()));
   c->add_option("--threads", v.energy.threads, "Threads [default: all cores]")->check(thread_range());
   c->add_flag("--legacy-torque", v.energy.options.legacy_torque,
               "Leave out the torque that the published code leaves out");
@@ -330,7 +329,7 @@ void add_gather(CLI::App& app, Verbs& v) {
   c->add_option("-o", v.gather.out, "File to write [default: the terminal]");
   c->add_option("--columns", v.gather.columns, "Columns of log.csv [default: all]")->delimiter(',');
   c->add_option("--mean", v.gather.mean_ps, "Means over the last rows of so much time, ps [default: the last row]")
-      ->check(CLI::PositiveNumber);
+      ->check(number_within(Bounds::positive()));
   c->add_flag("--series", v.gather.series, "All rows of all logs instead of the ends");
   c->add_flag("--force", v.gather.force, "Replace the file");
   c->callback([&v] { v.code = gather_command(v.gather); });
@@ -345,16 +344,21 @@ void add_plan(CLI::App& app, Verbs& v) {
                 "Which ones: energy and columns of log.csv [default: energies, twist angle, torque, tension]")
       ->delimiter(',');
   c->add_flag("--end-state", v.plan.end_state, "Only the end is asked for, not the motion");
+  c->add_option(
+       "--pilot-seconds", v.plan.pilot_seconds,
+       "Processor time for all pilots, about; with more they need not be smaller than the scene [default: a "
+       "tenth of the run, or a minute]")
+      ->check(number_within(Bounds::positive()));
   c->add_option("-o", v.plan.out, "File to write, never one that exists [default: SCENE-planned.toml]");
   c->add_option("-j,--jobs", v.plan.jobs, "Pilots at a time [default: one for each core]")
-      ->check(CLI::Range(1, 4096));
+      ->check(whole_number(1, 4096));
   c->add_option("--check", v.plan.check, "Directory of a run: compare its end with a finer model instead");
   c->add_option("--against", v.plan.against, "With --check: directory of a run of the same scene by a finer model");
   c->add_option("--finest", v.plan.finest,
                 "Also write the scene with the finest model that pilots took, to this file");
   c->add_option("--stretch", v.plan.stretch, "With --check: ps that both models go on")
       ->capture_default_str()
-      ->check(CLI::PositiveNumber);
+      ->check(number_within(Bounds::positive()));
   c->callback([&v] { v.code = plan_command(v.plan); });
 }
 
@@ -381,10 +385,10 @@ void add_bench(CLI::App& app, Verbs& v) {
   c->add_flag("--list", v.bench.list, "List the scenes that have a name");
   c->add_option("--law", v.bench.law, "Contact law of a named scene: line or paper [default: line]")
       ->check(CLI::IsMember({"line", "paper"}));
-  c->add_option("--steps", v.bench.steps, "Time steps")->capture_default_str()->check(CLI::PositiveNumber);
+  c->add_option("--steps", v.bench.steps, "Time steps")->capture_default_str()->check(whole_number(1));
   c->add_option("--after", v.bench.after,
                 "Time that the scene runs before it is measured, ps [default: as --list has it, or 0]")
-      ->check(CLI::NonNegativeNumber);
+      ->check(number_within(Bounds::non_negative()));
   c->add_option("--threads", v.bench.threads, "Threads; 1,2: both, one after the other [default: 1]")
       ->delimiter(',')
       ->check(thread_range());
@@ -395,11 +399,13 @@ void add_bench(CLI::App& app, Verbs& v) {
   c->add_flag("--plain", v.bench.plain, "With --lammps: its plain forms, pair by pair")->needs(lammps);
   for (const char* other : {"--after", "--threads", "--instructions"}) lammps->excludes(c->get_option(other));
   CLI::Option* parts =
-      c->add_option("--parts", v.bench.parts,
-                    "Cut the scene into 1, 2, 4 ... up to so many parts, as ranks of LAMMPS have them, and time the "
-                    "forces of each part alone")
-          ->check(CLI::Range(1, 4096));
-  for (const char* other : {"--after", "--threads", "--instructions", "--lammps"}) parts->excludes(c->get_option(other));
+      c->add_option(
+           "--parts", v.bench.parts,
+           "Cut the scene into 1, 2, 4 ... up to so many parts, as ranks of LAMMPS have them, and time the "
+           "forces of each part alone")
+          ->check(whole_number(1, 4096));
+  for (const char* other : {"--after", "--threads", "--instructions", "--lammps"})
+    parts->excludes(c->get_option(other));
   c->add_flag("--json", v.bench.json, "JSON");
   c->callback([&v] { v.code = bench_command(v.bench); });
 }

@@ -36,7 +36,7 @@ void add_run_options(CLI::App* verb, ValidateArguments& a) {
       "Run the cases with this set. Those that have nothing to compare it with are listed with the reason");
   verb->add_option("--out", a.out, "Directory of results and report; finished cases in it are not run again")
       ->capture_default_str();
-  verb->add_option("-j,--jobs", a.jobs, "Cases at a time [default: one for each core]")->check(CLI::PositiveNumber);
+  verb->add_option("-j,--jobs", a.jobs, "Cases at a time [default: one for each core]")->check(whole_number(1));
   verb->add_flag("--again", a.again, "Run finished cases again");
   verb->add_flag("--json", a.json, "JSON");
   verb->add_flag("--quiet", a.quiet, "No progress lines");
@@ -58,7 +58,7 @@ void add_chart(CLI::App& app, Verbs& v) {
   CLI::App* steps = app.add_subcommand("chart-steps")->group("");
   steps->add_option("scene", v.counted.scene)->required();
   steps->add_option("model", v.counted.model)->required();
-  steps->add_option("steps", v.counted.steps)->required()->check(CLI::PositiveNumber);
+  steps->add_option("steps", v.counted.steps)->required()->check(whole_number(1));
   steps->callback([&v] { step_for_counting(v.counted.scene, v.counted.model, v.counted.steps); });
 }
 
@@ -74,9 +74,8 @@ void add_parametrize(CLI::App& app, Verbs& v) {
   verb->add_option("--out", a.out, "Directory of sets, atoms and reports; what is finished in it is kept")
       ->capture_default_str();
   verb->add_option("--budget", a.budget, "Minutes that the references of one tube may take [default: any]")
-      ->check(CLI::PositiveNumber);
-  verb->add_option("-j,--jobs", a.jobs, "Processes at a time [default: one for each core]")
-      ->check(CLI::PositiveNumber);
+      ->check(number_within(Bounds::positive()));
+  verb->add_option("-j,--jobs", a.jobs, "Processes at a time [default: one for each core]")->check(whole_number(1));
   verb->add_flag("--again", a.again, "Make sets and results anew; references of atoms are kept");
   verb->add_flag("--quiet", a.quiet, "No progress lines");
   verb->callback([&v] { v.code = parametrize_command(v.parametrize); });
@@ -95,7 +94,7 @@ void add_verbs(CLI::App& app, Verbs& v) {
       "--atoms", v.run.atoms,
       "Make the references of the set's tube with LAMMPS and the set's potential, beside the set (minutes)");
   run->add_option("--budget", v.run.budget, "Minutes that these may take [default: any]")
-      ->check(CLI::PositiveNumber);
+      ->check(number_within(Bounds::positive()));
   add_run_options(run, v.run);
   run->callback([&v] { v.code = validate_command(v.run); });
 

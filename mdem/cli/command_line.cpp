@@ -2,10 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <cstdio>
 #include <vector>
-
-#include "io/toml_table.hpp"
 
 namespace ropewalk {
 namespace {
@@ -108,6 +107,11 @@ std::string zsh_arguments(const CLI::App& app) {
   return text;
 }
 
+// Empty where the value is allowed.
+std::string refusal(const std::string& text, double value, const Bounds& bounds) {
+  return bounds.allow(value) ? "" : printable(text, 60) + " " + bounds.words();
+}
+
 }  // namespace
 
 std::string usage_error(const CLI::App& app, const CLI::ParseError& error, const std::string& program) {
@@ -134,6 +138,26 @@ std::string usage_error(const CLI::App& app, const CLI::ParseError& error, const
                         known);
   }
   return printable(error.what(), 1000) + help;
+}
+
+CLI::Validator number_within(const Bounds& bounds) {
+  return {[bounds](const std::string& text) {
+            double value = 0;
+            const bool number = CLI::detail::lexical_cast(text, value) && std::isfinite(value);
+            return number ? refusal(text, value, bounds) : printable(text, 60) + " is not a number";
+          },
+          ""};
+}
+
+CLI::Validator whole_number(int least, int most) {
+  const Bounds bounds = most == unbounded ? Bounds::range(least, std::numeric_limits<double>::infinity())
+                                          : Bounds::range(least, most);
+  return {[bounds](const std::string& text) {
+            long value = 0;
+            return CLI::detail::lexical_cast(text, value) ? refusal(text, static_cast<double>(value), bounds)
+                                                          : printable(text, 60) + " is not a whole number";
+          },
+          ""};
 }
 
 std::string man_page(const CLI::App& app, const Description& d) {

@@ -3,13 +3,21 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
+
+#include "io/toml_table.hpp"  // Bounds
 
 namespace ropewalk {
 
 // One line on what is wrong, with the nearest verb or option where one was mistyped. `program` as it is typed.
 std::string usage_error(const CLI::App& app, const CLI::ParseError& error, const std::string& program);
+
+// What an option takes; the error says what it must be.
+CLI::Validator number_within(const Bounds& bounds);
+constexpr int unbounded = std::numeric_limits<int>::max();
+CLI::Validator whole_number(int least, int most = unbounded);
 
 // How a program describes itself.
 struct Description {

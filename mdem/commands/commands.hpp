@@ -137,7 +137,7 @@ struct ThresholdArguments {
   std::string file;
   std::string out;    // empty: FILE without .toml
   std::string known;  // trials.csv of an earlier search
-  int jobs = 0;     // points at a time; 0: one for each core
+  int jobs = 0;       // points at a time; 0: one for each core
   bool force = false;
   bool quiet = false;
 };
@@ -193,12 +193,13 @@ struct PlanArguments {
   std::string error = "2%";
   std::vector<std::string> observables;  // empty: the usual ones
   bool end_state = false;
-  std::string out;      // empty: SCENE-planned.toml
-  std::string check;    // directory of a run: hold it against a finer model instead
-  std::string against;  // directory of a run of the same scene, to compare with instead of a short finer run
-  std::string finest;   // file to write the scene with the finest model to
-  double stretch = 4;   // ps
-  int jobs = 0;         // pilots at a time; 0: one for each core
+  std::string out;           // empty: SCENE-planned.toml
+  std::string check;         // directory of a run: hold it against a finer model instead
+  std::string against;       // directory of a run of the same scene, to compare with instead of a short finer run
+  std::string finest;        // file to write the scene with the finest model to
+  double stretch = 4;        // ps
+  double pilot_seconds = 0;  // of processor time, of all pilots; 0: a tenth of the run, or a minute
+  int jobs = 0;              // pilots at a time; 0: one for each core
 };
 int plan_command(const PlanArguments& arguments);
 

@@ -21,7 +21,11 @@ namespace {
 const SceneTemplate& find_template(const std::string& kind) {
   for (const SceneTemplate& t : scene_templates())
     if (t.name == kind) return t;
-  throw InputError({"", 0, "--kind"}, fmt::format("there is no template '{}'", kind), "see `ropewalk new --list`");
+  std::vector<std::string> names;
+  for (const SceneTemplate& t : scene_templates()) names.push_back(t.name);
+  const std::string near = nearest_word(kind, names);
+  throw InputError({"", 0, "--kind"}, fmt::format("there is no template \"{}\"", printable(kind)),
+                   near.empty() ? "see `ropewalk new --list`" : fmt::format("did you mean {}?", near));
 }
 
 void say_source(const Scene& scene, const Prepared& p) {
@@ -83,7 +87,7 @@ int new_command(const NewArguments& a) {
     throw InputError({path, 0, ""}, "exists", "choose another name or give --force");
   write_file_atomically(path, t.text);
   fmt::print("{} written. Look it over, then: ropewalk check {}; ropewalk run {} --out {}\n", path, path, path,
-             "run-" + std::filesystem::path(path).stem().string());
+             "runs/" + std::filesystem::path(path).stem().string());
   return 0;
 }
 

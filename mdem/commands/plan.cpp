@@ -30,7 +30,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What pilots may take: a tenth of the run, or a minute.
+// What pilots may take where it is not said: a tenth of the run, or a minute.
 constexpr double planning_part = 0.1, least_planning = 60;
 
 double error_of(const std::string& text) {
@@ -202,8 +202,9 @@ int make_plan(const PlanArguments& a) {
   constexpr double guessed_steps = 5000;  // of a relaxation
   const double seconds = standard.steps > 0 ? standard.total() : standard.outputs + guessed_steps * standard.each;
   PilotRuns runs(scene.path, a.jobs);
-  Plan plan =
-      plan_scene(scene, request, seconds, std::max(least_planning, planning_part * seconds), std::ref(runs));
+  const double affordable =
+      a.pilot_seconds > 0 ? a.pilot_seconds : std::max(least_planning, planning_part * seconds);
+  Plan plan = plan_scene(scene, request, seconds, affordable, std::ref(runs));
   say_pilots(plan, runs);
   Expectations promised;
   promised.asked = request.error;

@@ -395,7 +395,7 @@ class Run {
         stop = check_limits(false);
         set_mark();
       }
-      if (progress.due()) progress.show(static_cast<double>(k), status_text());
+      if (progress.due()) progress.show(static_cast<double>(k), relax_text());
       if (stop == StopReason::none && stop_signal) stop = StopReason::signal;
       if (stop == StopReason::none && time_is_up()) stop = StopReason::wall_time;
       if (stop == StopReason::none && k % pause_every == 0 && now() > checkpoint_at) {
@@ -431,6 +431,11 @@ class Run {
     else if (!at_rest_ && std::isfinite(end.above))
       reason_ += fmt::format("; energy {}, {:.2g} asked for", left, goal.energy);
     return StopReason::complete;
+  }
+
+  std::string relax_text() const {
+    const Energies& e = simulation_.forces().energy;
+    return fmt::format("twist {:.0f}  bend {:.0f}  vdW {:.0f} eV", e.twist, e.bend, e.vdw);
   }
 
   std::string status_text() const {
@@ -621,8 +626,9 @@ class Run {
       const std::string promise = plan_words(dir_, scene_, read_manifest(dir_.manifest()));
       if (!promise.empty()) print(promise + "\n");
     }
-    print(fmt::format("{}{} steps, {:.1f} ps, {:.0f} s. Report: {}\n", reason_.empty() ? "" : reason_ + "\n",
-                      simulation_.state().step, simulation_.state().time, wall(), dir_.report()));
+    const std::string time = relaxes() ? "" : fmt::format("{:.1f} ps, ", simulation_.state().time);
+    print(fmt::format("{}{} steps, {}{:.0f} s. Report: {}\n", reason_.empty() ? "" : reason_ + "\n",
+                      simulation_.state().step, time, wall(), dir_.report()));
     if (!pending_.empty()) {
       tell(fmt::format("the run is done, but for {}; write them with: ropewalk resume {}", pending_.names(),
                        dir_.path));

@@ -15,15 +15,21 @@ namespace fs = std::filesystem;
 
 std::string said_directory;
 
-std::string shipped_sets(const fs::path& folder) {
-  std::set<std::string> names;
+std::string instead_of(const std::string& name, const fs::path& folder) {
+  std::set<std::string> shipped;
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(folder, error))
-    if (entry.path().extension() == ".toml") names.insert("\"" + entry.path().stem().string() + "\"");
-  if (names.empty()) return fmt::format("no set is shipped in {}; is ROPEWALK_DATA right?", folder.string());
-  std::string text;
-  for (const std::string& n : names) text += (text.empty() ? "" : ", ") + n;
-  return "name a file, or a shipped set: " + text;
+    if (entry.path().extension() == ".toml") shipped.insert(entry.path().stem().string());
+  if (shipped.empty()) return fmt::format("no set is shipped in {}; is ROPEWALK_DATA right?", folder.string());
+  const std::string near = nearest_word(name, {shipped.begin(), shipped.end()});
+  std::string text = near.empty() ? "" : fmt::format("did you mean \"{}\"? Or ", near);
+  text += "name a file, or a shipped set";
+  const char* before = ": ";
+  for (const std::string& n : shipped) {
+    text += fmt::format("{}\"{}\"", before, n);
+    before = ", ";
+  }
+  return text;
 }
 
 }  // namespace
@@ -48,7 +54,8 @@ std::string find_parameters(const std::string& name, const std::string& folder, 
   const fs::path shipped = fs::path(data) / "parameters";
   for (const std::string& file : {name + ".toml", name})
     if (fs::is_regular_file(shipped / file, error)) return (shipped / file).string();
-  throw InputError(place, fmt::format("there is no parameter set \"{}\"", printable(name)), shipped_sets(shipped));
+  throw InputError(place, fmt::format("there is no parameter set \"{}\"", printable(name)),
+                   instead_of(name, shipped));
 }
 
 }  // namespace ropewalk

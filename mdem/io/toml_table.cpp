@@ -102,7 +102,8 @@ std::string nearest_word(const std::string& word, const std::vector<std::string>
   std::string best;
   std::size_t least = 1 + std::min<std::size_t>(3, 1 + w.size() / 4);
   for (const std::string& k : known) {
-    const std::size_t d = same_but_for_unit(w, lower(k)) ? 1 : edit_distance(w, lower(k));
+    std::size_t d = edit_distance(w, lower(k));
+    if (d > 1 && same_but_for_unit(w, lower(k))) d = 1;
     if (d < least && 2 * d < std::max(w.size(), k.size())) {
       least = d;
       best = k;

@@ -18,6 +18,7 @@ namespace ropewalk {
 namespace {
 
 constexpr int least_elements = 20, least_tubes = 7;
+constexpr double caution_if_shorter = 1.5, caution_if_fewer = 2;
 constexpr double near_enough = 0.85;  // of the time that is too much
 
 class Shrinking {
@@ -41,7 +42,7 @@ class Shrinking {
     if (part > 0.9) return;
     const double length = std::round(part * elements) * scene_.element_length;
     const TwistLoad& twist = *scene_.twist;
-    attempt(part * part,
+    attempt(part * part, caution_if_shorter,
             fmt::format("{:.3g} of {:.3g} nm in as short a time", length, elements * scene_.element_length), [&] {
               set("rope.length_nm", length);
               if (twist.rate > 0) set("twist.rate_nN_nm_per_ps", twist.rate / units::nN_nm / part);
@@ -55,7 +56,7 @@ class Shrinking {
     const int tubes = scene_.source->sizes(scene_.element_length).tubes;
     const int fewer = std::max(least_tubes, nearest_hexagonal(static_cast<int>(left_ * tubes)).first);
     if (left_ >= near_enough || fewer >= tubes) return;
-    attempt(static_cast<double>(fewer) / tubes, fmt::format("{} of {} tubes", fewer, tubes),
+    attempt(static_cast<double>(fewer) / tubes, caution_if_fewer, fmt::format("{} of {} tubes", fewer, tubes),
             [&] { set("rope.tubes", fewer); });
   }
 
@@ -65,7 +66,7 @@ class Shrinking {
     const double side = std::max(std::sqrt(left_), smallest);
     if (side >= 0.95) return;
     const int tubes = std::max(2, static_cast<int>(std::lround(film.tubes * side * side)));
-    attempt(side * side, fmt::format("{} of {} tubes, as dense", tubes, film.tubes), [&] {
+    attempt(side * side, caution_if_fewer, fmt::format("{} of {} tubes, as dense", tubes, film.tubes), [&] {
       set("film.tubes", tubes);
       set("film.width_nm", film.width * side);
       set("film.depth_nm", film.depth * side);
@@ -77,7 +78,7 @@ class Shrinking {
     Scene small = scene_of_text(pilot_.text, scene_.path);
     const double duration = prepare(small).duration;
     pilot_.until = left_ * duration;
-    say(fmt::format("the first {:.3g} of {:.3g} ps", pilot_.until, duration));
+    say(fmt::format("the first {:.3g} of {:.3g} ps", pilot_.until, duration), caution_if_shorter);
   }
 
   void set(const char* path, double value) {
@@ -85,7 +86,7 @@ class Shrinking {
   }
 
   // Undone where it makes no scene, such as one whose grips name tubes that are gone.
-  void attempt(double part, const std::string& words, const std::function<void()>& change) {
+  void attempt(double part, double caution, const std::string& words, const std::function<void()>& change) {
     const PilotScene before = pilot_;
     try {
       change();
@@ -96,10 +97,13 @@ class Shrinking {
       return;
     }
     left_ /= part;
-    say(words);
+    say(words, caution);
   }
 
-  void say(const std::string& words) { pilot_.words += (pilot_.words.empty() ? "" : ", ") + words; }
+  void say(const std::string& words, double caution) {
+    pilot_.words += (pilot_.words.empty() ? "" : ", ") + words;
+    pilot_.caution = std::max(pilot_.caution, caution);
+  }
 
   const Scene& scene_;
   double left_;  // of the time, that is still too much

@@ -19,7 +19,6 @@ namespace {
 
 constexpr int seeds = 3;
 constexpr double least_error = 1e-3;  // what a promise never goes below
-constexpr double caution = 2;         // factor of promises where the pilot is smaller than the scene
 constexpr double worth = 0.9;         // of the default's time: a smaller gain is no gain
 
 Scene scene_with_features(const std::string& text, const std::string& path, SceneFeatures& features) {
@@ -41,6 +40,7 @@ class Planner {
     scene_ = scene_with_features(scene.text, scene.path, features_);
     const PilotScene pilot = pilot_scene(scene_, seconds, affordable / pilots_in_all());
     plan_.pilots = pilot.words;
+    caution_ = pilot.caution;
     plan_.until = pilot.until;
     pilot_ = scene_with_features(pilot.text, scene.path, pilot_features_);
     relaxes_ = scene_.run.mode == RunOptions::Mode::relax;
@@ -174,7 +174,7 @@ class Planner {
     for (const auto& [name, error] : m.error) {
       // Of the difference, what seeds make of it anyway is no error of the model.
       const double by_chance = 2 * scatter(name), model = std::max(0.0, error - by_chance) + own_.at(name);
-      const double promised = (plan_.pilots.empty() ? 1 : caution) * model + least_error;
+      const double promised = caution_ * (model + least_error);
       m.expect[name] = promised + by_chance;
       m.holds = m.holds && promised <= request_.error;
     }
@@ -283,6 +283,7 @@ class Planner {
   Scene scene_, pilot_;
   SceneFeatures features_, pilot_features_;
   bool relaxes_ = false, halves_ = false;
+  double caution_ = 1;
   Outcome finest_;
   std::map<std::string, double> own_;  // what the finest model is off
   Plan plan_;

@@ -38,8 +38,8 @@ void Progress::show(double done, const std::string& status) {
   std::string line;
   if (total_ > 0) {
     const double part = done / total_;
-    const double left = done > first_ ? elapsed * (total_ - done) / (done - first_) : 0.0;
-    line = fmt::format("{:5.1f} %  {} left  {}", 100 * part, clock(left), status);
+    const std::string left = done > first_ ? clock(elapsed * (total_ - done) / (done - first_)) + " left" : "";
+    line = fmt::format("{:5.1f} %  {}  {}", 100 * part, left, status);
   } else {
     line = fmt::format("step {:.0f}  {}", done, status);
   }

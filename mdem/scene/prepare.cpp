@@ -253,6 +253,11 @@ Prepared prepare(Scene& scene) {
   out.time_step = chosen_step(scene, out.limit) * out.stepping.contact_every;
   out.duration = scene.run.duration;
   if (out.duration <= 0) out.duration = protocol_time(scene);
+  if (out.duration > 0 && out.duration < 0.5 * out.time_step)
+    throw InputError({scene.path, 0, "run.duration_ps"},
+                     fmt::format("{:.4g} ps are less than half a step of {:.4g} fs: the run would take none",
+                                 out.duration, out.time_step / units::fs),
+                     "run longer, or set run.time_step_fs");
   if (out.duration / out.time_step > max_steps)
     throw InputError({scene.path, 0, "run"},
                      fmt::format("{:.4g} ps in steps of {:.4g} fs are {:.1g} steps", out.duration,

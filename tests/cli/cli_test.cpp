@@ -58,12 +58,18 @@ TEST_F(Cli, HelpNamesEveryVerbAndUnits) {
   EXPECT_NE(version.out.find("GNU"), std::string::npos) << version.out;
 }
 
-TEST_F(Cli, MistypedVerbsAndOptionsAreNamedWithTheNearest) {
+TEST_F(Cli, WrongVerbsAndOptionsSayWhatWasMeant) {
   for (const auto& [line, says] :
        {std::pair{"rn", "there is no verb \"rn\"; did you mean run?"},
         std::pair{"run x.toml --ot d", "there is no option --ot of run; did you mean --out?"},
         std::pair{"run x.toml --threds=2 --out d", "there is no option --threds of run; did you mean --threads?"},
         std::pair{"calibrate --chiralty 10,10", "there is no option --chiralty; did you mean --chirality?"},
+        std::pair{"new x --kind spindl", "there is no template \"spindl\"; did you mean spindle?"},
+        std::pair{"run x.toml --out d --threads many",
+                  "--threads: many is not a whole number; see ropewalk run --help"},
+        std::pair{"run x.toml --out d --threads 5000", "--threads: 5000 must lie between 1 and 1024"},
+        std::pair{"run x.toml --out d --until -1", "--until: -1 must not be negative"},
+        std::pair{"plan --check d --stretch 0", "--stretch: 0 must be positive"},
         std::pair{"validate chrt", "there is no verb \"chrt\"; did you mean chart?"},
         std::pair{"help scen", "did you mean scene?"},
         std::pair{"--xyz", "there is no option --xyz; see ropewalk --help"}}) {

@@ -13,11 +13,12 @@
 // angle, u being the Abel inverse of the parallel-tube energy; so no angular factor is needed. The nodes of
 // consecutive elements form one uniform row, for which the midpoint rule converges exponentially (line_nodes).
 //
-// The double sum of two rows with node spacings D_i and D_j is off by the Fourier components of u at the wave vectors
-// that both rows share. For parallel rows of one spacing D these are the multiples of 2 pi/D, so that the energy of
-// two tubes ripples with their shift z along each other by the first of them,
+// The double sum of two rows with node spacings D_i and D_j is off by the Fourier components of u at the wave
+// vectors that both rows share. For parallel rows of one spacing D these are the multiples of 2 pi/D, so that the
+// energy of two tubes ripples with their shift z along each other by the first of them,
 //   dE(z) = 2 cos(2 pi z/D) int u(sqrt(R^2 + t^2)) cos(2 pi t/D) dt   per length,
-// which falls exponentially with 1/D (line_nodes). Axial strain and crossing angles make the rows share fewer waves.
+// which falls exponentially with 1/D (line_nodes). Axial strain and crossing angles make the rows share fewer
+// waves.
 //
 // Forces are central between nodes, so force, torque and momentum balance are exact by construction.
 // Units eV, nm. u in eV/nm^2. Symmetric under exchange of i and j and under flipping either axis.
@@ -96,9 +97,9 @@ struct LineContact {
 // Place of node k of `nodes` on an element, from its centre (nm).
 inline double line_node(int k, int nodes, double length) { return ((k + 0.5) / nodes - 0.5) * length; }
 
-// Nodes per element, spaced by at most 0.4 sqrt(R0 g0), R0 the distance and g0 the gap of two parallel tubes at rest:
-// along the axes u is as wide as sqrt(R0 g0). Keeps the corrugation below 2.5e-4 of the well at rest and below 6e-3 of
-// it where tubes are pressed 0.05 nm closer, for r = 0.2 .. 1.4 nm and any axial strain.
+// Nodes per element, spaced by at most 0.4 sqrt(R0 g0), R0 the distance and g0 the gap of two parallel tubes at
+// rest: along the axes u is as wide as sqrt(R0 g0). Keeps the corrugation below 2.5e-4 of the well at rest and
+// below 6e-3 of it where tubes are pressed 0.05 nm closer, for r = 0.2 .. 1.4 nm and any axial strain.
 inline int line_nodes(double length, double pair_spacing, double contact) {
   const double spacing = 0.4 * std::sqrt(pair_spacing * (pair_spacing - contact));
   return std::max(1, static_cast<int>(std::ceil(length / spacing - 1e-9)));
@@ -191,13 +192,18 @@ LineWell lowest_point(F energy, double from, double to) {
   constexpr int grid = 200;
   const double step = (to - from) / grid;
   int lowest = 0;
+  double least = energy(from);
   for (int k = 1; k <= grid; ++k)
-    if (energy(from + k * step) < energy(from + lowest * step)) lowest = k;
+    if (const double e = energy(from + k * step); e < least) {
+      lowest = k;
+      least = e;
+    }
   const double part = 0.5 * (std::sqrt(5.0) - 1);
   double a = from + std::max(lowest - 1, 0) * step, b = from + std::min(lowest + 1, grid) * step;
   while (b - a > 1e-8) {
     const double x1 = b - part * (b - a), x2 = a + part * (b - a);
-    (energy(x1) < energy(x2) ? b : a) = energy(x1) < energy(x2) ? x2 : x1;
+    const bool left = energy(x1) < energy(x2);
+    (left ? b : a) = left ? x2 : x1;
   }
   return {0.5 * (a + b), energy(0.5 * (a + b))};
 }

@@ -13,6 +13,7 @@ LineLaw::LineLaw(std::vector<LineContact> all)
     : pairs(std::move(all)), types_(static_cast<int>(std::lround(std::sqrt(static_cast<double>(pairs.size()))))) {
   if (pairs.empty() || static_cast<std::size_t>(types_) * static_cast<std::size_t>(types_) != pairs.size())
     throw std::invalid_argument("the line law takes one contact for each pair of tube types");
+  for (const LineContact& pair : pairs) wells_.push_back(line_parallel_well(pair.density));
 }
 
 double LineLaw::cutoff() const {

@@ -29,18 +29,19 @@ class LineLaw : public ContactLaw {
     return of(types).energy_and_gradient(separation, n_i, n_j);
   }
   bool reaches(TypePair types, const Vector3& separation, const Vector3& n_i, const Vector3& n_j) const override;
-  double parallel_distance(TypePair types, double) const override {
-    return line_parallel_well(of(types).density).distance;
-  }
+  double parallel_distance(TypePair types, double) const override { return well(types).distance; }
   double crossed_distance(TypePair types, double) const override;
-  double binding(TypePair types, double) const override { return -line_parallel_well(of(types).density).energy; }
+  double binding(TypePair types, double) const override { return -well(types).energy; }
   double range(TypePair types) const override { return of(types).density.cutoff(); }
   double core_distance(TypePair types) const override {
     return of(types).density.contact + of(types).density.core_gap;
   }
 
  private:
+  const LineWell& well(TypePair p) const { return wells_[static_cast<std::size_t>(p.i * types_ + p.j)]; }
+
   int types_ = 0;
+  std::vector<LineWell> wells_;  // of parallel tubes, as `pairs`: a search each
 };
 
 inline std::shared_ptr<const LineLaw> line_law(std::vector<LineContact> pairs) {
