@@ -347,7 +347,7 @@ void add_plan(CLI::App& app, Verbs& v) {
   c->add_option(
        "--pilot-seconds", v.plan.pilot_seconds,
        "Processor time for all pilots, about; with more they need not be smaller than the scene [default: a "
-       "tenth of the run, or a minute]")
+       "tenth of the run's, or a minute of each core]")
       ->check(number_within(Bounds::positive()));
   c->add_option("-o", v.plan.out, "File to write, never one that exists [default: SCENE-planned.toml]");
   c->add_option("-j,--jobs", v.plan.jobs, "Pilots at a time [default: one for each core]")

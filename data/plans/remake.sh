@@ -1,6 +1,6 @@
 #!/bin/sh
 # Plans all scenes, runs them with three models each and holds them against the finest: remake.sh [PROGRAM], half an hour of
-# one core. A second call goes on where the first one stopped. Leave the machine alone meanwhile: times are compared.
+# two cores. A second call goes on where the first one stopped. Leave the machine alone meanwhile: times are compared.
 set -eu
 cd "$(dirname "$0")"
 program=${1:-ropewalk}

@@ -30,7 +30,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What pilots may take where it is not said: a tenth of the run, or a minute.
+// What pilots may take where it is not said: a tenth of the run's processor time, or a minute of each core.
 constexpr double planning_part = 0.1, least_planning = 60;
 
 double error_of(const std::string& text) {
@@ -48,7 +48,7 @@ class PilotRuns {
  public:
   PilotRuns(std::string scene_path, int jobs)
       : path_(std::move(scene_path)),
-        jobs_(jobs > 0 ? jobs : omp_get_num_procs()),
+        jobs_(jobs),
         folder_((fs::temp_directory_path() / fmt::format("ropewalk-plan-{}", getpid())).string()) {
     fs::create_directories(folder_);
   }
@@ -201,9 +201,10 @@ int make_plan(const PlanArguments& a) {
   const RunTime standard = time_run(default_text(scene), path);
   constexpr double guessed_steps = 5000;  // of a relaxation
   const double seconds = standard.steps > 0 ? standard.total() : standard.outputs + guessed_steps * standard.each;
-  PilotRuns runs(scene.path, a.jobs);
+  const int jobs = a.jobs > 0 ? a.jobs : omp_get_num_procs();
+  PilotRuns runs(scene.path, jobs);
   const double affordable =
-      a.pilot_seconds > 0 ? a.pilot_seconds : std::max(least_planning, planning_part * seconds);
+      a.pilot_seconds > 0 ? a.pilot_seconds : std::max(jobs * least_planning, planning_part * seconds);
   Plan plan = plan_scene(scene, request, seconds, affordable, std::ref(runs));
   say_pilots(plan, runs);
   Expectations promised;
