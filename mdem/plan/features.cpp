@@ -47,6 +47,26 @@ void add_rope_twist(const Prepared& p, double twist, SceneFeatures& f) {
   f.curvature += bend;
 }
 
+// The twist (rad/nm) at which tubes under `moment` each (eV) rest where the length of the rope is free:
+// M = GJ phi + EA Var(rho^2) phi^3/2.
+double resting_twist(const Prepared& p, double moment, bool geometric_only) {
+  const BondStiffness& k = p.topology.types[0].bond;
+  double mean = 0, mean2 = 0;
+  for (int t = 0; t < p.topology.tubes(); ++t) {
+    const double rho2 =
+        Vector3(p.state.position[static_cast<std::size_t>(p.topology.tube_begin[t])]).head<2>().squaredNorm();
+    mean += rho2 / p.topology.tubes();
+    mean2 += rho2 * rho2 / p.topology.tubes();
+  }
+  const double cubic = geometric_only ? 0 : 0.5 * k.stretch * (mean2 - mean * mean);
+  double low = 0, high = moment / k.twist;
+  for (int step = 0; step < 60; ++step) {
+    const double phi = 0.5 * (low + high);
+    (k.twist * phi + cubic * phi * phi * phi < moment ? low : high) = phi;
+  }
+  return low;
+}
+
 void add_load(const LoadEffect& load, const Prepared& p, SceneFeatures& f) {
   const BondStiffness& k = p.topology.types[0].bond;
   if (load.force > 0) {
@@ -137,7 +157,9 @@ SceneFeatures features_of(const Scene& scene, const Prepared& p) {
   if (scene.twist) {
     const TwistLoad& w = *scene.twist;
     const double each = w.reading == TwistLoad::Reading::per_tube ? w.moment : w.moment / f.tubes;
-    add_rope_twist(p, each / p.topology.types[0].bond.twist, f);
+    const double alone = each / p.topology.types[0].bond.twist, turn_before = f.turn;
+    add_rope_twist(p, alone, f);
+    f.turn = turn_before + resting_twist(p, each, w.geometric_only);
     f.sudden = f.sudden || w.rate <= 0;
     f.ramp = w.ramp_time();
   }

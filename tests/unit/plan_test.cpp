@@ -275,6 +275,29 @@ TEST(Outcome, ComparesWhatCounts) {
   EXPECT_NEAR(outcome_of(log(100, 1), {"twist_eV"}, true).of.at("twist_eV").value, 100, 1e-12);
 }
 
+// The moment is the slope of the energy of tubes that turn together, as long as one another along the axis.
+TEST(Features, ARopeTurnsAsFarAsItsTubesBearTogether) {
+  Scene scene = scene_from(bundle);
+  const Prepared p = prepare(scene);
+  const double turn = features_of(scene, p).turn, moment = 8 * units::nN_nm;
+  const BondStiffness& k = p.topology.types[0].bond;
+  const auto energy = [&](double at) {  // per length
+    std::vector<double> strains;
+    double mean = 0;
+    for (int t = 0; t < 7; ++t) {
+      const Vector3 first = p.state.position[static_cast<std::size_t>(p.topology.tube_begin[t])];
+      strains.push_back(0.5 * first.head<2>().squaredNorm() * at * at);
+      mean += strains.back() / 7;
+    }
+    double sum = 7 * 0.5 * k.twist * at * at;
+    for (const double strain : strains) sum += 0.5 * k.stretch * (strain - mean) * (strain - mean);
+    return sum;
+  };
+  const double h = 1e-4 * turn;
+  EXPECT_NEAR((energy(turn + h) - energy(turn - h)) / (2 * h), 7 * moment, 1e-5 * 7 * moment);
+  EXPECT_LT(turn, moment / k.twist) << "a tube alone would turn farther";
+}
+
 // Helices of the same length, evenly twisted: no strain, no bond longer, the outer tubes at atan(R t).
 TEST(ExpectedState, IsARopeThatHasBeenTwisted) {
   Scene scene = scene_from(bundle);

@@ -49,11 +49,12 @@ void read_cutoff(const TomlTable& t, const Scene& scene, ContactOptions& contact
   changed.contact = contact;
   const std::vector<ContactRange> own = contact_ranges(changed);
   changed.contact.cutoff = contact.cutoff = t.number("cutoff_nm", Bounds::positive(1e3));
+  for (const ContactRange& range : own)  // first: what a law with a far cutoff binds takes long to find
+    if (contact.cutoff > range.cutoff + 1e-9)
+      throw t.error("cutoff_nm", fmt::format("is {} nm", contact.cutoff),
+                    fmt::format("the law ends at {:.4g} nm; leave the key out", range.cutoff));
   const std::vector<ContactRange> now = contact_ranges(changed);
   for (std::size_t k = 0; k < own.size(); ++k) {
-    if (contact.cutoff > own[k].cutoff + 1e-9)
-      throw t.error("cutoff_nm", fmt::format("is {} nm", contact.cutoff),
-                    fmt::format("the law ends at {:.4g} nm; leave the key out", own[k].cutoff));
     const double left = now[k].binding / own[k].binding;
     if (!(left >= 0.5))
       throw t.error("cutoff_nm",
