@@ -198,7 +198,7 @@ struct PlanArguments {
   std::string against;       // directory of a run of the same scene, to compare with instead of a short finer run
   std::string finest;        // file to write the scene with the finest model to
   double stretch = 4;        // ps
-  double pilot_seconds = 0;  // processor time of all pilots; 0: see --help
+  double pilot_seconds = 0;  // processor time of all; 0: a tenth of the run or a minute of each core
   int jobs = 0;              // pilots at a time; 0: one for each core
 };
 int plan_command(const PlanArguments& arguments);

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <string_view>
+#include <type_traits>
 
 #include "io/files.hpp"
 #include "io/plain_text.hpp"
@@ -103,7 +104,12 @@ LammpsStart read_start(const LammpsDirectory& dir) {
     const Json json = Json::parse(read_file(path));
     if (json.at("format") != start_format)
       throw InputError({path, 0, "format"}, fmt::format("\"{}\" is needed", start_format), remedy);
-    visit_start(start, [&](const OutputColumn& key, auto& value) { json.at(key.name).get_to(value); });
+    visit_start(start, [&](const OutputColumn& key, auto& value) {
+      const Json& found = json.at(key.name);
+      if (std::is_integral_v<std::decay_t<decltype(value)>> && !found.is_number_integer())
+        throw InputError({path, 0, key.name}, "is no whole number", remedy);
+      found.get_to(value);
+    });
   } catch (const Json::exception&) {
     throw InputError({path, 0, ""}, "is damaged", remedy);
   }
