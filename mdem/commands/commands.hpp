@@ -194,11 +194,11 @@ struct PlanArguments {
   std::vector<std::string> observables;  // empty: the usual ones
   bool end_state = false;
   std::string out;           // empty: SCENE-planned.toml
-  std::string check;         // directory of a run: hold it against a finer model instead
-  std::string against;       // directory of a run of the same scene, to compare with instead of a short finer run
-  std::string finest;        // file to write the scene with the finest model to
+  std::string check;         // directory of a run to compare with a finer model; then no plan is made
+  std::string against;       // with `check`: directory of a finer run of the same scene; empty: a short one is made
+  std::string finest;        // file for the scene with the finest model; empty: none
   double stretch = 4;        // ps
-  double pilot_seconds = 0;  // processor time of all; 0: a tenth of the run or a minute of each core
+  double pilot_seconds = 0;  // processor time of all pilots; 0: a tenth of the run, or a minute of each core
   int jobs = 0;              // pilots at a time; 0: one for each core
 };
 int plan_command(const PlanArguments& arguments);

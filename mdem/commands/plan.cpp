@@ -30,7 +30,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What pilots may take where it is not said: a tenth of the run's processor time, or a minute of each core.
+// Processor time for all pilots together, unless the user gives one: the larger of a tenth of the run's and a
+// minute of each core.
 constexpr double planning_part = 0.1, least_planning = 60;
 
 double error_of(const std::string& text) {

@@ -47,8 +47,8 @@ void add_rope_twist(const Prepared& p, double twist, SceneFeatures& f) {
   f.curvature += bend;
 }
 
-// The twist (rad/nm) at which tubes under `moment` each (eV) rest where the length of the rope is free:
-// M = GJ phi + EA Var(rho^2) phi^3/2.
+// Twist phi (rad/nm) of a rope in equilibrium, if `moment` M (eV) acts on each tube and the rope's length is free:
+// M = GJ phi + EA Var(rho^2) phi^3/2, rho the distance of a tube from the axis.
 double resting_twist(const Prepared& p, double moment, bool geometric_only) {
   const BondStiffness& k = p.topology.types[0].bond;
   double mean = 0, mean2 = 0;

@@ -13,7 +13,7 @@ struct SceneFeatures {
   bool sudden = false;              // a force or a moment acts at once
   double strain = 0;                // of a tube, the largest expected
   double pressure = 0;              // eV/nm^3, on the innermost tube
-  double turn = 0;                  // rad/nm, of a rope as a whole where it comes to rest
+  double turn = 0;                  // rad/nm, twist of the rope as a whole at mechanical equilibrium
   double ramp = 0;                  // ps, in which it is turned
 };
 

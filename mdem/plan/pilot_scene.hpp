@@ -11,8 +11,8 @@ struct PilotScene {
   std::string text;
   double until = -1;  // ps, where it is run to; negative: to its end
   std::string words;  // "19 of 91 tubes, 27.1 of 67.8 nm"; empty: the whole scene
-  // Errors of the scene may be so many times those of the pilot. With fewer tubes none lies as far from the axis,
-  // where tubes bend most.
+  // Factor from errors of the pilot to promised errors of the scene. A pilot with fewer tubes needs a larger
+  // factor: it lacks the outer tubes, which bend most.
   double caution = 1;
 };
 

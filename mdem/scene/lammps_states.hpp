@@ -28,8 +28,8 @@ struct StateHeader {
 };
 static_assert(sizeof(StateHeader) == 64, "this is the format of the file");
 
-// The numbers of one element, in the order of lammps_state_columns(): position, orientation, velocity, angular
-// velocity, force and torque.
+// One element of a state: position, orientation, velocity, angular velocity, force and torque, as
+// lammps_state_columns() lists their components.
 using StateRecord = std::array<double, 19>;
 static_assert(sizeof(StateRecord) == 152, "this is the format of the file");
 

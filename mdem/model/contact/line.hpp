@@ -13,12 +13,13 @@
 // angle, u being the Abel inverse of the parallel-tube energy; so no angular factor is needed. The nodes of
 // consecutive elements form one uniform row, for which the midpoint rule converges exponentially (line_nodes).
 //
-// The double sum of two rows with node spacings D_i and D_j is off by the Fourier components of u at the wave
-// vectors that both rows share. For parallel rows of one spacing D these are the multiples of 2 pi/D, so that the
-// energy of two tubes ripples with their shift z along each other by the first of them,
-//   dE(z) = 2 cos(2 pi z/D) int u(sqrt(R^2 + t^2)) cos(2 pi t/D) dt   per length,
-// which falls exponentially with 1/D (line_nodes). Axial strain and crossing angles make the rows share fewer
-// waves.
+// Corrugation: the double sum over two rows of nodes differs from the double integral by the Fourier components of
+// u at the wave vectors that both rows share. Two parallel rows with the node spacing D share the multiples of 2
+// pi/D. The first multiple gives the largest error: the energy per length of two tubes at the distance R, one of
+// them shifted by z along its axis, oscillates by
+//   dE(z) = 2 cos(2 pi z/D) int u(sqrt(R^2 + t^2)) cos(2 pi t/D) dt.
+// The amplitude falls exponentially with 1/D (line_nodes). Rows that are strained or cross share fewer wave
+// vectors.
 //
 // Forces are central between nodes, so force, torque and momentum balance are exact by construction.
 // Units eV, nm. u in eV/nm^2. Symmetric under exchange of i and j and under flipping either axis.
