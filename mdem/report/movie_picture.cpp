@@ -9,7 +9,7 @@
 namespace ropewalk {
 namespace {
 
-constexpr double margin = 20, head = 40, foot = 44;  // pixels
+constexpr double edge = 20, head = 40, foot = 44;  // pixels
 
 double highest(const RopeView& view, const Vector3& up) {
   double high = -std::numeric_limits<double>::infinity();
@@ -42,7 +42,7 @@ std::string movie_picture(const RopeView& view, const MovieStage& stage, const s
   // The picture begins at the highest point of its own rope.
   const double top = head + (stage.high - highest(view, c.up) - 1.5 * stage.tube_radius) * c.scale;
   std::string body =
-      fmt::format("<text x=\"{}\" y=\"26\" font-size=\"17\">{}</text>\n", margin, escape_markup(when));
+      fmt::format("<text x=\"{}\" y=\"26\" font-size=\"17\">{}</text>\n", edge, escape_markup(when));
   body += fmt::format("<svg x=\"{:.1f}\" y=\"{:.1f}\"", left, std::isfinite(top) ? top : head) +
           rope_picture(view, c, stage.tube_radius, "m", false).substr(4);
   const double bar = scale_bar_length(c), y = stage.height - 0.5 * foot;
@@ -50,7 +50,7 @@ std::string movie_picture(const RopeView& view, const MovieStage& stage, const s
       "<path d=\"M{0} {1:.1f}h{2:.1f}\" stroke=\"var(--ink)\" stroke-width=\"3\"/><text x=\"{3:.1f}\" "
       "y=\"{4:.1f}\" "
       "fill=\"var(--ink)\">{5:g} nm</text>\n",
-      margin, y, bar * c.scale, margin + bar * c.scale + 8, y + 4, bar);
+      edge, y, bar * c.scale, edge + bar * c.scale + 8, y + 4, bar);
   if (c.moment_eV > 0)
     body += fmt::format("<svg x=\"{:.1f}\" y=\"{:.1f}\"", stage.width - 440.0, y - 10) +
             moment_bar(c.moment_eV).substr(4);
