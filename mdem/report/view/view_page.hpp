@@ -1,4 +1,4 @@
-// The page that shows a run in three dimensions: one HTML file with the frames, our script view.js and three.js. It
+// The page that shows a run in three dimensions: one HTML file with the frames, our scripts and three.js. It
 // asks for no other file and no network.
 #pragma once
 
