@@ -45,7 +45,7 @@ std::string movie_picture(const RopeView& view, const MovieStage& stage, const s
       fmt::format("<text x=\"{}\" y=\"26\" font-size=\"17\">{}</text>\n", edge, escape_markup(when));
   body += fmt::format("<svg x=\"{:.1f}\" y=\"{:.1f}\"", left, std::isfinite(top) ? top : head_height) +
           rope_picture(view, c, stage.tube_radius, "m", false).substr(4);
-  const double bar = scale_bar_length(c), y = stage.height - 0.5 * foot;
+  const double bar = scale_bar_length(c), y = stage.height - 0.5 * foot_height;
   body += fmt::format(
       "<path d=\"M{0} {1:.1f}h{2:.1f}\" stroke=\"var(--ink)\" stroke-width=\"3\"/><text x=\"{3:.1f}\" "
       "y=\"{4:.1f}\" "
