@@ -19,8 +19,8 @@
 // Limits: the torque of twist peaks at phi = 90 degrees and is zero at 180; beyond the peak a bond slips, and the
 // simulator stops before it does.
 //
-// The anharmonic bond has the energy per length of anharmonic.hpp, times a, and shear that a bond which is part of
-// a circle does not feel:
+// The anharmonic bond has the energy per length of anharmonic.hpp, times a, and shear that a bond which is part of a
+// circle does not feel:
 //
 //   stretch, twist, bend   of the strain of the arc  e = D/a (1 + (1 - c)/12) - 1,
 //                          of the twist  tau = phi/a  and of the curvature  kappa = delta/a
@@ -86,7 +86,7 @@ struct BondForce {
 // The bond of BondStiffness without its anharmonic part.
 template <class T, class V>
 BondEnergy<T> harmonic_energy(const BondStiffness& k, double a, const typename Frame<T, V>::Vector& separation,
-                              const Frame<T, V>& i, const Frame<T, V>& j) {
+                          const Frame<T, V>& i, const Frame<T, V>& j) {
   using std::sqrt;
   const T length = sqrt(separation.dot(separation));
   const V d = separation / length;
@@ -104,8 +104,9 @@ BondEnergy<T> harmonic_energy(const BondStiffness& k, double a, const typename F
 }
 
 template <class T, class V>
-BondForce<T, V> harmonic_force(const BondStiffness& k, double a, const typename Frame<T, V>::Vector& separation,
-                               const Frame<T, V>& i, const Frame<T, V>& j) {
+BondForce<T, V> harmonic_force(const BondStiffness& k, double a,
+                                         const typename Frame<T, V>::Vector& separation, const Frame<T, V>& i,
+                                         const Frame<T, V>& j) {
   using std::sqrt;
   const T length = sqrt(separation.dot(separation));
   const V d = separation / length;
@@ -133,8 +134,8 @@ T bond_twist_angle(const Frame<T, V>& i, const Frame<T, V>& j) {
   return atan2(i.e2.dot(j.e1) - i.e1.dot(j.e2), i.e1.dot(j.e1) + i.e2.dot(j.e2));
 }
 
-// delta^2 of cos delta = 1 - u, and its derivative: the series of arccos(1 - u)^2, within 3e-3 at 90 degrees and
-// 1e-6 at 40.
+// delta^2 of cos delta = 1 - u, and its derivative: the series of arccos(1 - u)^2, within 3e-3 at 90 degrees and 1e-6
+// at 40.
 template <class T>
 T squared_angle(T u) {
   return 2.0 * u * (1.0 + u * (1.0 / 6 + u * (2.0 / 45 + u * (1.0 / 70 + u * (8.0 / 1575)))));
@@ -194,8 +195,8 @@ BondEnergy<T> bond_energy(const BondStiffness& k, double a, const typename Frame
                            : harmonic_energy(k, a, separation, i, j);
 }
 
-// The harmonic bond that is as stiff as an anharmonic one anywhere on the edges of its window, where it is
-// stiffest: each of its stiffnesses is a polynomial of second degree.
+// The harmonic bond that is as stiff as an anharmonic one anywhere on the edges of its window, where it is stiffest:
+// each of its stiffnesses is a polynomial of second degree.
 inline BondStiffness stiffest_in_window(const BondStiffness& k) {
   const Anharmonic& h = k.anharmonic;
   BondStiffness out = k;

@@ -105,8 +105,7 @@ double mean_bending_moment(const Topology& topology, const State& s) {
   return topology.bonds() > 0 ? sum / topology.bonds() * units::eV_in_nN_nm : 0.0;
 }
 
-// The moment by which the group of elements that turns farthest resists, about its axis, nN nm. None where nothing
-// turns.
+// The moment (nN nm) by which the group of elements that turns farthest resists. None where nothing turns.
 std::optional<double> end_moment(const LoadsAndConstraints& loads, const Simulation& s) {
   const std::vector<const PrescribedRotation*> rotations = loads.of<PrescribedRotation>();
   if (rotations.empty()) return std::nullopt;
@@ -138,8 +137,7 @@ class Observed {
     if (m_.interaction.has_contact() && m_.topology.tubes() > 1)
       now["spacing"] = tube_spacing(m_.topology, state, shells_);
     if (m_.topology.tubes() > 2) {
-      const RopeObservation o =
-          observe(m_.topology, state, shells_, validities(m_.scene, m_.topology), 0, m_.spacing);
+      const RopeObservation o = observe(m_.topology, state, shells_, validities(m_.scene, m_.topology), 0, m_.spacing);
       now["beta_deg"] = o.beta / units::degree;
       now["geometric_twist_deg"] = o.geometric_twist / units::degree;
       now["Q"] = o.middle.charge;
