@@ -91,8 +91,8 @@ bool any_tube_between_grips(const Prepared& p) {
   return std::any_of(tubes[0].begin(), tubes[0].end(), [&](int t) { return tubes[1].count(t) > 0; });
 }
 
-// What clamps ask: pulling, bending, stretching where the rope is turned at a length that is held, and the bending
-// of tilted tubes where a clamp keeps them straight: over the length sqrt(EI/T), T the tension of a tube.
+// Adds the demands of clamps: pulling, bending, stretching where the rope is turned at a length that is held, and the
+// bending of tilted tubes where a clamp keeps them straight, over the length sqrt(EI/T), T the tension of a tube.
 void grip_features(const Prepared& p, SceneFeatures& f) {
   const BondStiffness& k = p.topology.types[0].bond;
   const bool between = any_tube_between_grips(p);

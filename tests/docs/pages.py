@@ -28,7 +28,7 @@ def expect(true, what):
 
 
 def wider(browser, width):
-    """What sticks out of a page that is so wide, but for what scrolls by itself; empty if nothing does."""
+    """Names elements that stick out of a page of this width, but for those that scroll; empty if none does."""
     return browser.value(f"(given => {{ {sticks_out} }})({width})")
 
 

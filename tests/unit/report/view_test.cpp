@@ -164,7 +164,7 @@ TEST(ViewPage, NamesAreTextAndNothingElseIsAskedFor) {
   EXPECT_EQ(page.find("{{"), page.find("{{", page.find(view_js))) << "every mark of view.html is filled";
 }
 
-// What CMake puts into the program is what stands in the tree.
+// CMake puts the files of the tree into the program.
 TEST(ViewFiles, AreTheFilesOfTheTree) {
   const auto tree = [](const std::string& name) {
     std::ifstream file(ROPEWALK_SOURCE_DIR "/mdem/report/view/" + name);
