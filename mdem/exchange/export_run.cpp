@@ -110,17 +110,6 @@ void write_lammps_files(const RunDirectory& run) {
   write_file_atomically(dir.readme(), readme);
 }
 
-void refuse_what_lammps_lacks(const Scene& scene) {
-  const char* lacking = scene.thermostat                             ? "thermostat"
-                        : scene.periodic                             ? "periodic"
-                        : scene.twist && scene.twist->geometric_only ? "twist.geometric_only"
-                        : scene.run.stepping.contact_every > 1       ? "run.contact_every"
-                        : scene.run.stepping.runge_kutta             ? "run.integrator"
-                                                                     : nullptr;
-  if (lacking)
-    throw InputError({scene.path, 0, lacking}, "is not for LAMMPS", "run this scene with `ropewalk run`");
-}
-
 }  // namespace
 
 RunCheckpoint checkpoint_to_export(const RunDirectory& dir, const Scene& scene, RunListener& listener) {

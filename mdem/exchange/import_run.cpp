@@ -80,7 +80,7 @@ class Import {
   void add(const State& state, const LammpsRow& from) {
     EnergyAccount account;
     account.time_step = prepared_.time_step;
-    if (scene_.twist) account.moment = scene_.twist->moment_at(from.time);
+    if (const MomentRamp* ramp = scene_.moment_ramp()) account.moment = ramp->moment_at(from.time);
     account.potential = {from.stretch, from.shear, from.bend, from.twist, from.vdw};
     account.kinetic = from.kinetic;
     account.work = from.work;

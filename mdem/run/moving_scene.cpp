@@ -7,7 +7,7 @@ EnergyAccount account_of(const Scene& scene, const Simulation& simulation, const
   const State& s = simulation.state();
   EnergyAccount account;
   account.time_step = simulation.time_step() / simulation.divided();
-  if (scene.twist) account.moment = scene.twist->moment_at(s.time);
+  if (const MomentRamp* ramp = scene.moment_ramp()) account.moment = ramp->moment_at(s.time);
   account.potential = simulation.forces().energy;
   account.kinetic = kinetic_energy(simulation.topology(), s);
   account.work = simulation.work();
