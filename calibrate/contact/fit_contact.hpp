@@ -10,7 +10,7 @@
 #include "model/contact/line.hpp"
 #include "model/contact/paper.hpp"
 
-namespace ropewalk {
+namespace ropewalk::calibrate {
 
 // A point of the integral with the fit, for tables and plots.
 struct ContactPoint {
@@ -59,4 +59,8 @@ struct PaperFit {
 };
 PaperFit fit_paper(const AtomLaw& law, const Shell& shell, double element_length, const FitOptions& options = {});
 
-}  // namespace ropewalk
+// The constants of a law from the parameters of its fit, in the fit's order.
+void set_form(const std::vector<double>& p, LineDensity& law);
+void set_form(const std::vector<double>& p, PaperContact& law);
+
+}  // namespace ropewalk::calibrate

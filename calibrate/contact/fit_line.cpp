@@ -5,7 +5,7 @@
 #include "contact/fit_contact.hpp"
 #include "contact/line_targets.hpp"
 
-namespace ropewalk {
+namespace ropewalk::calibrate {
 namespace {
 
 double seconds_since(std::chrono::steady_clock::time_point begin) {
@@ -13,14 +13,6 @@ double seconds_since(std::chrono::steady_clock::time_point begin) {
 }
 
 Well well(const LineWell& w) { return {w.distance, w.energy}; }
-
-void set_form(const std::vector<double>& p, LineDensity& d) {
-  d.K = p[0];
-  d.s = p[1];
-  d.c = p[2];
-  d.p = p[3];
-  d.q = p[4];
-}
 
 void add_curves(const PairIntegral& integral, const LineTargets& targets, LineFit& fit) {
   const double right = 0.5 * units::pi;
@@ -35,6 +27,10 @@ void add_curves(const PairIntegral& integral, const LineTargets& targets, LineFi
 }
 
 }  // namespace
+
+void set_form(const std::vector<double>& p, LineDensity& d) {
+  d.K = p[0], d.s = p[1], d.c = p[2], d.p = p[3], d.q = p[4];
+}
 
 FitResult fit_density(const LineTargets& targets, const AtomLaw& law, double unit, const FitOptions& options,
                       LineDensity& density) {
@@ -76,4 +72,4 @@ LineFit fit_line(const AtomLaw& law, const Shell& i, const Shell& j, const FitOp
   return out;
 }
 
-}  // namespace ropewalk
+}  // namespace ropewalk::calibrate

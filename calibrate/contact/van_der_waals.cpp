@@ -9,12 +9,10 @@
 #include "contact/quadrature.hpp"
 #include "model/units.hpp"
 
-namespace ropewalk {
+namespace ropewalk::calibrate {
 namespace {
 
 using units::pi;
-
-constexpr double infinite = std::numeric_limits<double>::infinity();
 
 // int over |theta| <= acos(c) of cos^m theta, for even m from 0 to 12.
 struct CosinePowers {
@@ -278,4 +276,4 @@ RegistrySpread registry_spread(const AtomLaw& law, const AtomColumn& i, const At
   return out;
 }
 
-}  // namespace ropewalk
+}  // namespace ropewalk::calibrate

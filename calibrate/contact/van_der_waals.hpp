@@ -21,7 +21,9 @@
 
 #include "model/bond.hpp"
 
-namespace ropewalk {
+namespace ropewalk::calibrate {
+
+inline constexpr double infinite = std::numeric_limits<double>::infinity();
 
 // Lennard-Jones between two carbon atoms.
 struct AtomLaw {
@@ -75,4 +77,4 @@ struct Well {
 Well parallel_well(const AtomLaw& law, const Shell& i, const Shell& j);
 Well crossed_well(const AtomLaw& law, const Shell& i, const Shell& j, double angle);
 
-}  // namespace ropewalk
+}  // namespace ropewalk::calibrate

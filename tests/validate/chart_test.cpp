@@ -15,7 +15,7 @@
 #include "model/error.hpp"
 #include "scene/loads/twist.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 using ::testing::ElementsAre;
@@ -254,4 +254,4 @@ TEST_F(Chart, ComesOutWholeAndIsKept) {
 }
 
 }  // namespace
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

@@ -20,7 +20,7 @@
 #include "scene/loads/twist.hpp"
 #include "scene/prepare.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 constexpr const char* set_name = "cnt-10-10-tersoff";
@@ -480,4 +480,4 @@ std::string observable_unit(const std::string& observable) {
   return units.at(observable);
 }
 
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

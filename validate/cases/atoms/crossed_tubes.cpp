@@ -12,7 +12,7 @@
 #include "cases/common/tube_curve.hpp"
 #include "cases/common/tube_pair.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate::crossed_tubes {
 namespace {
 
 // Fixed beforehand.
@@ -32,19 +32,6 @@ std::vector<Vector3> crossing_tube(const std::vector<Vector3>& atoms, double ang
   for (const Vector3& atom : atoms) turned.push_back(rotation * atom);
   return turned;
 }
-
-// Centred, and shifted by a part of a row so that the crossing is at another place of the lattice.
-std::vector<Vector3> centred_tube(Chirality c, const TubeShape& shape, long hexagons, double turn, double shift) {
-  std::vector<Vector3> atoms =
-      tube_atoms(c, shape, hexagons, 2 * units::pi * turn / static_cast<double>(row_hexagons(c)));
-  const double up = shift * row_height(c, shape) - 0.5 * static_cast<double>(hexagons) * shape.length_per_hexagon;
-  for (Vector3& atom : atoms) atom.z() += up;
-  return atoms;
-}
-
-struct Sum {
-  double energy = 0, squares = 0, difference = 0, lever = 0;
-};
 
 // One registry at one angle: the distances at angle - step, angle and angle + step.
 std::string crossing_input(const AtomLaw& law, const std::string& data, double rest) {
@@ -71,7 +58,7 @@ ReferenceTable make_reference(const CaseContext& context, const ParameterSet& se
   const long hexagons = hexagons_in(c, shape, tube_length);
   const double length = static_cast<double>(hexagons) * shape.length_per_hexagon;
   const Shell shell{shape.radius, 2 / (2 * units::pi * shape.radius * shape.length_per_hexagon)};
-  const double rest = crossed_well(session.atom_law(), shell, shell, units::pi / 2).distance;
+  const double rest = calibrate::crossed_well(session.atom_law(), shell, shell, units::pi / 2).distance;
   std::string input = "# frozen crossed tubes at several angles and distances, for several registries\n";
   int number = 0;
   for (const double angle : angles)
@@ -79,7 +66,7 @@ ReferenceTable make_reference(const CaseContext& context, const ParameterSet& se
       const std::string data = fmt::format("crossed-{}.data", number++);
       const std::vector<Vector3> two = crossing_tube(centred_tube(c, shape, hexagons, r.turn_j, r.shift_j),
                                                      (angle - angle_step) * units::degree);
-      session.write(data, pair_data(centred_tube(c, shape, hexagons, r.turn_i, r.shift_i), two, 0.5 * length + 2,
+      session.write(data, data_file({centred_tube(c, shape, hexagons, r.turn_i, r.shift_i), two}, 0.5 * length + 2,
                                     -0.5 * length - 1, 0.5 * length + 1));
       input += crossing_input(session.atom_law(), data, rest);
     }
@@ -93,19 +80,15 @@ ReferenceTable make_reference(const CaseContext& context, const ParameterSet& se
   t.add("torque", fmt::format("energy at {0} degrees more less that at {0} degrees less", angle_step));
   for (std::size_t a = 0; a < all; ++a)
     for (std::size_t k = 0; k < count; ++k) {
-      Sum sum;
-      for (std::size_t r = 0; r < registry_count; ++r) {
-        const auto row = [&](std::size_t side) {
-          return results[((a * registry_count + r) * sides + side) * count + k];
-        };
-        sum.energy += row(1)[0] / registry_count;
-        sum.squares += row(1)[0] * row(1)[0] / registry_count;
-        sum.difference += (row(2)[0] - row(0)[0]) / (2 * angle_step * units::degree) / registry_count;
-        sum.lever += row(1)[1] / registry_count;
-      }
-      t.rows.push_back({angles[a], rest + offsets[k], sum.energy,
-                        std::sqrt(std::max(0.0, sum.squares - sum.energy * sum.energy)), sum.difference, sum.lever,
-                        length});
+      const auto value = [&](std::size_t r, std::size_t side, std::size_t column) {
+        return results[((a * registry_count + r) * sides + side) * count + k][column];
+      };
+      const auto over = [&](const std::function<double(std::size_t)>& v) { return spread_over(registry_count, v); };
+      const Spread energy = over([&](std::size_t r) { return value(r, 1, 0); });
+      const double slope = over([&](std::size_t r) { return value(r, 2, 0) - value(r, 0, 0); }).mean;
+      t.rows.push_back({angles[a], rest + offsets[k], energy.mean, energy.deviation,
+                        slope / (2 * angle_step * units::degree),
+                        over([&](std::size_t r) { return value(r, 1, 1); }).mean, length});
     }
   return t;
 }
@@ -150,27 +133,20 @@ void add_checks(const Crossing& c, const CrossedRows& rows, CaseResult& result) 
   const LineWell model = detail::lowest_point([&](double d) { return rows.at(angle, d).energy; },
                                               c.distance.front(), c.distance.front() + 0.15);
   const std::string name = fmt::format("{:.0f} degrees: ", c.angle);
-  result.checks.push_back(
-      {name + "least energy", model.energy, atoms.energy, energy_tolerance, true, "eV", false,
-       fmt::format("minimum over the distance; the standard deviation over registries is {:.1f} %",
-                   100 * c.deviation[at_rest] / std::abs(atoms.energy))});
-  result.checks.push_back(
-      {name + "distance of rest", model.distance, atoms.distance, spacing_tolerance, true, "nm", false, ""});
+  result.check_relative(name + "least energy", model.energy, atoms.energy, energy_tolerance, "eV",
+                        fmt::format("minimum over the distance; the standard deviation over registries is {:.1f} %",
+                                    100 * c.deviation[at_rest] / std::abs(atoms.energy)));
+  result.check_relative(name + "distance of rest", model.distance, atoms.distance, spacing_tolerance, "nm");
   // At 90 degrees the torque vanishes by symmetry.
   if (c.angle > 80) return;
-  result.checks.push_back({name + "torque towards parallel", rows.at(angle, distance).torque_j.x(),
-                           c.torque[at_rest], torque_tolerance, true, "eV/rad", false,
-                           fmt::format("at {:.3f} nm", distance)});
-  result.checks.push_back({name + "torque by the atoms' forces over that by their energy",
-                           c.torque_of_forces[at_rest] / c.torque[at_rest], 1, torque_tolerance, true, "1", true,
-                           "the forces of LAMMPS leave out the step of the truncated law at its cutoff"});
+  result.check_relative(name + "torque towards parallel", rows.at(angle, distance).torque_j.x(), c.torque[at_rest],
+                        torque_tolerance, "eV/rad", fmt::format("at {:.3f} nm", distance));
+  result.show_relative(name + "torque by the atoms' forces over that by their energy",
+                       c.torque_of_forces[at_rest] / c.torque[at_rest], 1, torque_tolerance, "1",
+                       "the forces of LAMMPS leave out the step of the truncated law at its cutoff");
 }
 
 CaseFigure angle_figure(const std::vector<Crossing>& list, const CrossedRows& rows, bool torque) {
-  LineChart chart;
-  chart.title = torque ? "Torque of two crossed tubes against angle" : "Energy of two crossed tubes against angle";
-  chart.x = {"crossing angle", "degrees"};
-  chart.y = torque ? ChartAxis{"torque towards parallel", "eV/rad"} : ChartAxis{"energy", "eV"};
   ChartLine atoms{"atoms (LAMMPS)", {}, {}, 0};
   atoms.points = true;
   ChartLine model{"model", {}, {}, 1};
@@ -184,16 +160,18 @@ CaseFigure angle_figure(const std::vector<Crossing>& list, const CrossedRows& ro
     model.x.push_back(angle);
     model.y.push_back(torque ? f.torque_j.x() : f.energy);
   }
-  chart.lines = {model, atoms};
-  return {chart, torque ? "The torque turns crossed tubes towards parallel."
-                        : fmt::format("At {:.3f} nm, the distance of the energy minimum at 90 degrees.", distance)};
+  return case_figure(
+      torque ? "Torque of two crossed tubes against angle" : "Energy of two crossed tubes against angle",
+      {"crossing angle", "degrees"},
+      torque ? ChartAxis{"torque towards parallel", "eV/rad"} : ChartAxis{"energy", "eV"},
+      torque ? "The torque turns crossed tubes towards parallel."
+             : fmt::format("At {:.3f} nm, the distance of the energy minimum at 90 degrees.", distance),
+      {model, atoms});
 }
 
 CaseFigure distance_figure(const std::vector<Crossing>& list, const CrossedRows& rows) {
-  LineChart chart;
-  chart.title = "Energy of two crossed tubes against distance";
-  chart.x = {"distance of the axes", "nm"};
-  chart.y = {"energy", "eV"};
+  CaseFigure figure = case_figure("Energy of two crossed tubes against distance", {"distance of the axes", "nm"},
+                                  {"energy", "eV"}, "The distance of the minimum does not depend on the angle.");
   int colour = 0;
   for (const Crossing& c : list) {
     ChartLine model{fmt::format("{:.0f} degrees, model", c.angle), {}, {}, colour};
@@ -203,18 +181,17 @@ CaseFigure distance_figure(const std::vector<Crossing>& list, const CrossedRows&
       model.x.push_back(d);
       model.y.push_back(rows.at(c.angle * units::degree, d).energy);
     }
-    chart.lines.push_back(model);
-    chart.lines.push_back(atoms);
+    figure.chart.lines.push_back(model);
+    figure.chart.lines.push_back(atoms);
   }
-  return {chart, "The distance of the minimum does not depend on the angle."};
+  return figure;
 }
 
 CaseFigure residual_figure(const std::vector<Crossing>& list, const CrossedRows& rows) {
-  LineChart chart;
-  chart.title = "Residual of the energy of two crossed tubes";
-  chart.x = {"distance of the axes", "nm"};
-  chart.y = {"model minus atoms, over the well", "%"};
-  chart.height = 220;
+  CaseFigure figure =
+      case_figure("Residual of the energy of two crossed tubes", {"distance of the axes", "nm"},
+                  {"model minus atoms, over the well", "%"}, "In percent of the lowest energy at each angle.");
+  figure.chart.height = 220;
   int colour = 0;
   for (const Crossing& c : list) {
     ChartLine line{fmt::format("{:.0f} degrees", c.angle), {}, {}, colour++};
@@ -223,9 +200,9 @@ CaseFigure residual_figure(const std::vector<Crossing>& list, const CrossedRows&
       line.x.push_back(c.distance[k]);
       line.y.push_back(100 * (rows.at(c.angle * units::degree, c.distance[k]).energy - c.energy[k]) / well);
     }
-    chart.lines.push_back(line);
+    figure.chart.lines.push_back(line);
   }
-  return {chart, "In percent of the lowest energy at each angle."};
+  return figure;
 }
 
 CaseResult run(const CaseContext& context) {
@@ -244,7 +221,6 @@ CaseResult run(const CaseContext& context) {
   result.figures.push_back(angle_figure(list, rows, true));
   result.figures.push_back(distance_figure(list, rows));
   result.figures.push_back(residual_figure(list, rows));
-  result.sources.push_back(tube.source);
   result.remarks.push_back(
       "The law was made from two parallel tubes; no crossing was fitted. By the theorem behind the line law, "
       "energy and torque at every angle follow. This case tests the theorem with atoms.");
@@ -283,4 +259,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk
+}  // namespace ropewalk::validate::crossed_tubes

@@ -10,7 +10,7 @@
 #include "cases/common/tube_curve.hpp"
 #include "cases/common/tube_pair.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate::pair_distance {
 namespace {
 
 // Fixed beforehand: registry changes the well by 1 to 3 %, and a shell without atoms has none.
@@ -25,14 +25,6 @@ std::vector<double> gaps() {
   for (int k = 1; k <= 10; ++k) list.push_back(0.47 + 0.05 * k);
   list.push_back(1.1);
   return list;
-}
-
-// The atoms of so many rows, turned and shifted by parts of the symmetry, with their middle at z = 0.
-std::vector<Vector3> centred_tube(Chirality c, const TubeShape& shape, long hexagons, double turn, double shift) {
-  std::vector<Vector3> atoms = tube_atoms(c, shape, hexagons, 2 * units::pi * turn / std::gcd(c.n, c.m));
-  const double up = shift * row_height(c, shape) - 0.5 * static_cast<double>(hexagons) * shape.length_per_hexagon;
-  for (Vector3& atom : atoms) atom.z() += up;
-  return atoms;
 }
 
 // A piece of i, of whole periods, beside a j that reaches beyond it by more than the cutoff: tubes of different
@@ -50,9 +42,9 @@ ReferenceTable make_reference(const CaseContext& context, const ParameterSet& i,
   int number = 0;
   for (const Registry& r : registries(registry_count)) {
     const std::string data = fmt::format("distance-{}.data", number++);
-    session.write(
-        data, pair_data(centred_tube(ci, one, hexagons, r.turn_i, r.shift_i),
-                        centred_tube(cj, two, hexagons_in(cj, two, reach), r.turn_j, r.shift_j), 4, -reach, reach));
+    session.write(data, data_file({centred_tube(ci, one, hexagons, r.turn_i, r.shift_i),
+                                   centred_tube(cj, two, hexagons_in(cj, two, reach), r.turn_j, r.shift_j)},
+                                  4, -reach, reach));
     input += pair_commands(session.atom_law(), "s s s", data);
     double last = 0;
     for (const double gap : list) {
@@ -67,13 +59,9 @@ ReferenceTable make_reference(const CaseContext& context, const ParameterSet& i,
       command, true, {"distance_nm", "energy_eV_per_nm", "registry_deviation_eV_per_nm"});
   t.add("registries", fmt::format("{}, averaged at each distance", registry_count));
   for (std::size_t k = 0; k < list.size(); ++k) {
-    double sum = 0, squares = 0;
-    for (std::size_t r = 0; r < registry_count; ++r) {
-      const double energy = results[r * list.size() + k][0] / length;
-      sum += energy / registry_count;
-      squares += energy * energy / registry_count;
-    }
-    t.rows.push_back({one.radius + two.radius + list[k], sum, std::sqrt(std::max(0.0, squares - sum * sum))});
+    const Spread energy =
+        spread_over(registry_count, [&](std::size_t r) { return results[r * list.size() + k][0] / length; });
+    t.rows.push_back({one.radius + two.radius + list[k], energy.mean, energy.deviation});
   }
   return t;
 }
@@ -101,23 +89,22 @@ PairCurve curve_of(const CaseTube& i, const CaseTube& j, const CaseContext& cont
 
 void add_checks(const PairCurve& c, const LineWell& atoms, CaseResult& result) {
   const LineWell model = detail::lowest_point(c.model, c.distance.front(), c.distance.back());
-  result.checks.push_back({c.name + ": spacing", model.distance, atoms.distance, spacing_tolerance, true, "nm",
-                           false, "the distance of lowest energy"});
-  result.checks.push_back({c.name + ": cohesion at rest", model.energy, atoms.energy, depth_tolerance, true,
-                           "eV/nm", false, "registry changes it by 1 to 3 %"});
+  result.check_relative(c.name + ": spacing", model.distance, atoms.distance, spacing_tolerance, "nm",
+                        "the distance of lowest energy");
+  result.check_relative(c.name + ": cohesion at rest", model.energy, atoms.energy, depth_tolerance, "eV/nm",
+                        "registry changes it by 1 to 3 %");
   double registry = 0;
   for (std::size_t k = 0; k < c.distance.size(); ++k)
     if (std::abs(c.distance[k] - atoms.distance) < 0.006) registry = c.deviation[k] / std::abs(atoms.energy);
-  result.checks.push_back({c.name + ": standard deviation over registries at the minimum, over the well", 0,
-                           registry, 0, false, "1", true,
-                           "how far one placement of the atoms is from the mean; the model has no registry"});
+  result.show_absolute(c.name + ": standard deviation over registries at the minimum, over the well", 0, registry,
+                       0, "1", "how far one placement of the atoms is from the mean; the model has no registry");
 }
 
 CaseFigure energy_figure(const std::vector<PairCurve>& curves) {
-  LineChart chart;
-  chart.title = "Energy of two parallel tubes against distance";
-  chart.x = {"distance of the axes", "nm"};
-  chart.y = {"energy per length", "eV/nm"};
+  CaseFigure figure =
+      case_figure("Energy of two parallel tubes against distance", {"distance of the axes", "nm"},
+                  {"energy per length", "eV/nm"},
+                  "Points: atoms, mean over registries. Lines: rows of elements with the line law.");
   int colour = 0;
   for (const PairCurve& c : curves) {
     ChartLine model{c.name + " model", {}, {}, colour};
@@ -130,10 +117,10 @@ CaseFigure energy_figure(const std::vector<PairCurve>& curves) {
     for (ChartLine* line : {&model, &atoms})  // energies above zero would flatten the wells
       for (double& y : line->y)
         if (y > 0.6) y = std::nan("");
-    chart.lines.push_back(model);
-    chart.lines.push_back(atoms);
+    figure.chart.lines.push_back(model);
+    figure.chart.lines.push_back(atoms);
   }
-  return {chart, "Points: atoms, mean over registries. Lines: rows of elements with the line law."};
+  return figure;
 }
 
 // The published law beside the atoms of its tube: binds about twice as strongly.
@@ -142,8 +129,8 @@ void add_published(const ParameterSet& published, const LineWell& atoms, LineCha
     return paper_parallel_energy(*published.paper, published.element_length, distance);
   };
   const LineWell well = detail::lowest_point(paper, 1.6, 2.6);
-  result.checks.push_back({"(10,10) paper law: cohesion over that of the atoms", well.energy / atoms.energy, 1,
-                           depth_tolerance, true, "1", true, "the published law binds about twice as strongly"});
+  result.show_relative("(10,10) paper law: cohesion over that of the atoms", well.energy / atoms.energy, 1,
+                       depth_tolerance, "1", "the published law binds about twice as strongly");
   ChartLine line{"(10,10)-(10,10) paper law", {}, {}, static_cast<int>(chart.lines.size() / 2)};
   line.dashed = true;
   for (double x = 1.6; x < 2.6; x += 0.004) {
@@ -155,11 +142,12 @@ void add_published(const ParameterSet& published, const LineWell& atoms, LineCha
 }
 
 CaseFigure residual_figure(const std::vector<PairCurve>& curves, const std::vector<LineWell>& wells) {
-  LineChart chart;
-  chart.title = "Residual of the energy of two parallel tubes";
-  chart.x = {"distance minus the atoms' spacing", "nm"};
-  chart.y = {"model minus atoms, over the well", "%"};
-  chart.height = 220;
+  CaseFigure figure =
+      case_figure("Residual of the energy of two parallel tubes", {"distance minus the atoms' spacing", "nm"},
+                  {"model minus atoms, over the well", "%"},
+                  "In percent of the well. On the repulsive wall a small difference of the spacing gives a large "
+                  "difference of the energy.");
+  figure.chart.height = 220;
   for (std::size_t p = 0; p < curves.size(); ++p) {
     ChartLine line{curves[p].name, {}, {}, static_cast<int>(p)};
     for (std::size_t k = 0; k < curves[p].distance.size(); ++k) {
@@ -169,11 +157,9 @@ CaseFigure residual_figure(const std::vector<PairCurve>& curves, const std::vect
       line.y.push_back(100 * (curves[p].model(curves[p].distance[k]) - curves[p].atoms[k]) /
                        std::abs(wells[p].energy));
     }
-    chart.lines.push_back(line);
+    figure.chart.lines.push_back(line);
   }
-  return {chart,
-          "In percent of the well. On the repulsive wall a small difference of the spacing gives a large "
-          "difference of the energy."};
+  return figure;
 }
 
 CaseResult run(const CaseContext& context) {
@@ -192,7 +178,6 @@ CaseResult run(const CaseContext& context) {
   if (!context.given)
     add_published(context.model(context.sets.size() - 1), wells[0], result.figures.back().chart, result);
   result.figures.push_back(residual_figure(curves, wells));
-  for (const CaseTube& tube : context.tubes()) result.sources.push_back(tube.source);
   if (tubes.size() > 1) result.remarks.push_back("Tubes of two kinds use the law for all pairs of radii.");
   result.remarks.push_back("Registry, how the lattices of two tubes lie on one another, is left out of the model.");
   return result;
@@ -226,4 +211,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk
+}  // namespace ropewalk::validate::pair_distance

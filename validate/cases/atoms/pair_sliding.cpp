@@ -12,7 +12,7 @@
 #include "cases/common/tube_curve.hpp"
 #include "cases/common/tube_pair.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate::pair_sliding {
 namespace {
 
 // Fixed beforehand.
@@ -29,10 +29,8 @@ constexpr double fit_from = 2, fit_to = 6;  // nm: without the influence of the 
 
 double rest_distance(const MdSession& session, const TubeShape& shape) {
   const Shell shell{shape.radius, 2 / (2 * units::pi * shape.radius * shape.length_per_hexagon)};
-  return parallel_well(session.atom_law(), shell, shell).distance;
+  return calibrate::parallel_well(session.atom_law(), shell, shell).distance;
 }
-
-double full_turn(Chirality c) { return 2 * units::pi / static_cast<double>(row_hexagons(c)); }
 
 ReferenceTable make_sliding(const CaseContext& context, const ParameterSet& set) {
   MdSession session(context, set);
@@ -41,27 +39,11 @@ ReferenceTable make_sliding(const CaseContext& context, const ParameterSet& set)
   const double period = period_of(c, shape), range = std::min(period, longest_slide),
                distance = rest_distance(session, shape);
   const long periods = static_cast<long>(std::ceil(cell / period)), hexagons = periods * period_hexagons(c);
-  const double length = static_cast<double>(periods) * period, turn = full_turn(c);
-  std::string input = "# frozen tubes slid along each other, for several turns\n";
-  for (int i = 0; i < turns; ++i)
-    for (int j = 0; j < turns; ++j) {
-      const std::string data = fmt::format("sliding-{}-{}.data", i, j);
-      session.write(data, pair_data(tube_atoms(c, shape, hexagons, turn * i / turns),
-                                    tube_atoms(c, shape, hexagons, turn * j / turns), 4, 0, length));
-      input += pair_commands(session.atom_law(), "s s p", data) + move_two({distance, 0, 0});
-      for (int s = 0; s < shifts; ++s)
-        input += print_values("sliding", "$(pe:%.15g)") + move_two({0, 0, range / shifts});
-    }
-  const auto results = session.run("sliding", input, turns * turns * shifts, 1);
+  const auto rows = slid_pairs(session, "sliding", c, shape, {hexagons, distance, range, turns, shifts});
   ReferenceTable t =
       session.table(fmt::format("Energy of two frozen parallel {} tubes against axial shift", tube_name(set)),
                     "pair-sliding", true, {"turn_i", "turn_j", "distance_nm", "shift_nm", "energy_eV_per_nm"});
-  std::size_t k = 0;
-  for (int i = 0; i < turns; ++i)
-    for (int j = 0; j < turns; ++j)
-      for (int s = 0; s < shifts; ++s)
-        t.rows.push_back(
-            {turn * i / turns, turn * j / turns, distance, range * s / shifts, results[k++][0] / length});
+  for (const std::vector<double>& row : rows) t.rows.push_back({row[0], row[1], distance, row[2], row[3]});
   return t;
 }
 
@@ -78,15 +60,17 @@ ReferenceTable make_pull_out(const CaseContext& context, const ParameterSet& set
   const Chirality c = set.chirality;
   const TubeShape shape = session.rest_shape();
   const long hexagons = hexagons_in(c, shape, free_length);
-  const double length = static_cast<double>(hexagons) * shape.length_per_hexagon, turn = full_turn(c);
+  const double length = static_cast<double>(hexagons) * shape.length_per_hexagon,
+               turn = 2 * units::pi / static_cast<double>(row_hexagons(c));
   const double distance = rest_distance(session, shape);
   std::string input = "# frozen finite tubes at several overlaps, for several registries\n";
   const std::vector<double> list = overlaps(length);
   int number = 0;
   for (const Registry& r : registries(registry_count)) {
     const std::string data = fmt::format("pull-out-{}.data", number++);
-    session.write(data, pair_data(tube_atoms(c, shape, hexagons, turn * r.turn_i),
-                                  tube_atoms(c, shape, hexagons, turn * r.turn_j), 4, -1, length + 1));
+    session.write(data, data_file({tube_atoms(c, shape, hexagons, turn * r.turn_i),
+                                   tube_atoms(c, shape, hexagons, turn * r.turn_j)},
+                                  4, -1, length + 1));
     input += pair_commands(session.atom_law(), "s s s", data) + move_two({distance, 0, 0});
     double last = length;
     for (const double overlap : list) {
@@ -104,13 +88,8 @@ ReferenceTable make_pull_out(const CaseContext& context, const ParameterSet& set
       "pair-sliding", true, {"overlap_nm", "energy_eV", "registry_deviation_eV", "distance_nm", "length_nm"});
   t.add("registries", fmt::format("{}, averaged at each overlap", registry_count));
   for (std::size_t k = 0; k < count; ++k) {
-    double sum = 0, squares = 0;
-    for (std::size_t r = 0; r < registry_count; ++r) {
-      const double energy = results[r * count + k][0];
-      sum += energy / registry_count;
-      squares += energy * energy / registry_count;
-    }
-    t.rows.push_back({list[k], sum, std::sqrt(std::max(0.0, squares - sum * sum)), distance, length});
+    const Spread energy = spread_over(registry_count, [&](std::size_t r) { return results[r * count + k][0]; });
+    t.rows.push_back({list[k], energy.mean, energy.deviation, distance, length});
   }
   return t;
 }
@@ -152,22 +131,16 @@ void add_sliding(const ReferenceTable& data, const LineContact& contact, CaseRes
   Slide rows;  // along one element, the only period that the model can have
   constexpr int points = 64;
   for (int k = 0; k <= points; ++k) rows.push_back(parallel_rows(contact, distance, contact.length_j * k / points));
-  result.checks.push_back({"energy per length at rest", mean(rows), atoms_mean, energy_tolerance, true, "eV/nm",
-                           false, "mean over turns and shifts"});
-  result.checks.push_back({"corrugation of the rows over the well", width(rows) / std::abs(mean(rows)), 0,
-                           smoothness_tolerance, false, "1", false,
-                           "highest minus lowest energy of the model along one element"});
-  result.checks.push_back({"corrugation of the atoms over the well: mean over turns", 0,
-                           widths / std::abs(atoms_mean), 0, false, "1", true, "the model has none"});
-  result.checks.push_back({"corrugation of the atoms over the well: worst turn", 0,
-                           width(rough) / std::abs(atoms_mean), 0, false, "1", true, "the model has none"});
-  result.checks.push_back({"largest sliding force of the atoms per length", 0, 1000 * force * units::eV_in_nN_nm, 0,
-                           false, "pN/nm", true,
-                           "at zero temperature, for rigid tubes in registry over the whole length"});
-  LineChart chart;
-  chart.title = "Energy of two parallel tubes against axial shift";
-  chart.x = {"axial shift", "nm"};
-  chart.y = {"energy minus its mean", "meV/nm"};
+  result.check_relative("energy per length at rest", mean(rows), atoms_mean, energy_tolerance, "eV/nm",
+                        "mean over turns and shifts");
+  result.check_absolute("corrugation of the rows over the well", width(rows) / std::abs(mean(rows)), 0,
+                        smoothness_tolerance, "1", "highest minus lowest energy of the model along one element");
+  result.show_absolute("corrugation of the atoms over the well: mean over turns", 0, widths / std::abs(atoms_mean),
+                       0, "1", "the model has none");
+  result.show_absolute("corrugation of the atoms over the well: worst turn", 0, width(rough) / std::abs(atoms_mean),
+                       0, "1", "the model has none");
+  result.show_absolute("largest sliding force of the atoms per length", 0, 1000 * force * units::eV_in_nN_nm, 0,
+                       "pN/nm", "at zero temperature, for rigid tubes in registry over the whole length");
   const auto line_of = [&](const std::string& name, const Slide& slide, int colour) {
     ChartLine line{name, {}, {}, colour};
     for (std::size_t k = 0; k < slide.size(); ++k) {
@@ -181,11 +154,12 @@ void add_sliding(const ReferenceTable& data, const LineContact& contact, CaseRes
     flat.x.push_back(step * k);
     flat.y.push_back(1000 * (parallel_rows(contact, distance, step * k) - mean(rows)));
   }
-  chart.lines = {line_of("atoms, roughest turn", rough, 0), line_of("atoms, smoothest turn", smooth, 1), flat};
-  result.figures.push_back({chart,
-                            "One period of the lattice, or half a nanometre of a longer one. Atoms resist sliding "
-                            "weakly, and how much depends on how "
-                            "the tubes are turned; rows of elements slide freely."});
+  result.figure("Energy of two parallel tubes against axial shift", {"axial shift", "nm"},
+                {"energy minus its mean", "meV/nm"},
+                "One period of the lattice, or half a nanometre of a longer one. Atoms resist sliding "
+                "weakly, and how much depends on how "
+                "the tubes are turned; rows of elements slide freely.",
+                {line_of("atoms, roughest turn", rough, 0), line_of("atoms, smoothest turn", smooth, 1), flat});
 }
 
 struct Straight {
@@ -219,15 +193,15 @@ void add_pull_out(const ReferenceTable& data, const ParameterSet& set, CaseResul
   }
   const double flush = model.back() - atoms.back();
   const Straight of_atoms = fit_straight(overlap, atoms), of_model = fit_straight(overlap, model);
-  result.checks.push_back({"pull-out: energy per overlap", of_model.slope, of_atoms.slope, energy_tolerance, true,
-                           "eV/nm", false, "slope from 2 to 6 nm of overlap: the pulling force"});
-  result.checks.push_back({"pull-out: force", -1000 * of_model.slope * units::eV_in_nN_nm,
-                           -1000 * of_atoms.slope * units::eV_in_nN_nm, energy_tolerance, true, "pN", true,
-                           "the same, in piconewton"});
-  result.checks.push_back({"pull-out: energy of both ends", of_model.at_zero, of_atoms.at_zero, 0.01, false, "eV",
-                           true, "the straight line at zero overlap; the theory of shells has no ends"});
-  result.checks.push_back({"ends flush: energy of the model above that of the atoms", flush, 0, 0.01, false, "eV",
-                           true, "two pairs of open ends side by side: the law of endless tubes has no rims"});
+  result.check_relative("pull-out: energy per overlap", of_model.slope, of_atoms.slope, energy_tolerance, "eV/nm",
+                        "slope from 2 to 6 nm of overlap: the pulling force");
+  result.show_relative("pull-out: force", -1000 * of_model.slope * units::eV_in_nN_nm,
+                       -1000 * of_atoms.slope * units::eV_in_nN_nm, energy_tolerance, "pN",
+                       "the same, in piconewton");
+  result.show_absolute("pull-out: energy of both ends", of_model.at_zero, of_atoms.at_zero, 0.01, "eV",
+                       "the straight line at zero overlap; the theory of shells has no ends");
+  result.show_absolute("ends flush: energy of the model above that of the atoms", flush, 0, 0.01, "eV",
+                       "two pairs of open ends side by side: the law of endless tubes has no rims");
   LineChart chart;
   chart.title = "Energy of two finite tubes against overlap";
   chart.x = {"overlap", "nm"};
@@ -255,7 +229,6 @@ CaseResult run(const CaseContext& context) {
       context, tube.set, "pair-pull-out", 0.001, [&] { return make_pull_out(context, tube.set); }, result);
   add_sliding(sliding, contact_of(tube.model, tube.model, tube.set.element_length), result);
   add_pull_out(pull_out, tube.model, result);
-  result.sources.push_back(tube.source);
   result.remarks.push_back(
       "The model has no barrier against sliding. The worst case for this are two equal armchair tubes, straight, "
       "frozen and in registry over their whole length: their barrier grows with the length. Where neighbours are "
@@ -298,4 +271,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk
+}  // namespace ropewalk::validate::pair_sliding

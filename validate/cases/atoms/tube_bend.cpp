@@ -9,7 +9,7 @@
 #include "atomistic/finite_tube.hpp"
 #include "cases/common/tube_curve.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate::tube_bend {
 namespace {
 
 // Other lengths than those that the stiffness was fitted to.
@@ -23,7 +23,7 @@ std::string bend_input(const FiniteTube& tube, const Potential& potential, const
   const std::string relax =
       fmt::format("minimize 0.0 2e-3 1500 20000\nprint \"$(pe:%.15g)\" append {}.dat screen no\n", name);
   std::string input = "# bent step by step, with a little noise\n" + tube.commands(potential, name + ".data") +
-                      affine_bend_variables() + relax;
+                      calibrate::affine_bend_variables() + relax;
   double last = 0;
   int seed = 4001;
   for (const double curvature : curvatures) {
@@ -101,7 +101,6 @@ CaseResult run(const CaseContext& context) {
     add_curve(curve, result);
     add_collapse(curve, curve.more_amplitude, curve.amplitude.size(),
                  "the specimen that kinks first, against the kink curvature of the set", result);
-    result.sources.push_back(tube.source);
   }
   result.remarks.push_back(
       "The cross-section flattens, which the quartic term of the bond describes; without it the bond is 12 to 20 % "
@@ -140,4 +139,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk
+}  // namespace ropewalk::validate::tube_bend

@@ -8,7 +8,7 @@
 #include "scene/random.hpp"
 #include "sim/forces/forces.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 constexpr double enough_growth = 1e6;  // of the kinetic energy
@@ -55,6 +55,11 @@ ParameterSet with_elements(ParameterSet set, double factor) {
 bool blows_up(const Topology& topology, const Interaction& interaction, const State& state, double time_step,
               long steps) {
   return !(growth(topology, interaction, state, time_step, steps) < enough_growth);
+}
+
+double largest_step(const Topology& topology, const Interaction& interaction, const State& state, double about) {
+  return limit_between([&](double dt) { return blows_up(topology, interaction, state, dt); }, 0.3 * about,
+                       3 * about);
 }
 
 namespace {
@@ -105,9 +110,10 @@ double largest_eigenvalue(const Eigen::MatrixXd& m) {
 
 }  // namespace
 
-CaseFigure step_figure(const std::string& by, const ChartAxis& x) {
-  CaseFigure figure;
-  figure.chart = {"Largest stable step by " + by, x, {"largest step", "fs"}, {}, {}};
+CaseFigure step_figure(const std::string& by, const ChartAxis& x, std::string caption,
+                       std::vector<ChartLine> lines) {
+  CaseFigure figure =
+      case_figure("Largest stable step by " + by, x, {"largest step", "fs"}, std::move(caption), std::move(lines));
   figure.chart.below = "stable";
   figure.chart.above = "unstable";
   figure.on_map = true;
@@ -125,4 +131,4 @@ double largest_damped_step(const Topology& topology, const Interaction& interact
                        1e-3);
 }
 
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

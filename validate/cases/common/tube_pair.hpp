@@ -1,6 +1,7 @@
 // Two tubes of frozen relaxed atoms with Lennard-Jones between them, and rows of elements in the same place.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -8,7 +9,7 @@
 #include "model/contact/contact.hpp"
 #include "model/contact/line.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 
 // How the atoms of two tubes are turned and shifted, in parts of a symmetry turn or of a period, 0 .. 1.
 struct Registry {
@@ -17,15 +18,33 @@ struct Registry {
 // The first `count` of a sequence that fills the four dimensions evenly.
 std::vector<Registry> registries(int count);
 
+// The atoms of a tube turned and shifted by parts of its symmetry, with their middle at z = 0.
+std::vector<Vector3> centred_tube(Chirality c, const TubeShape& shape, long hexagons, double turn, double shift);
+
 // LAMMPS commands that read the atoms as groups `one` and `two` (types 1 and 2). Lennard-Jones acts only between
 // these groups.
 std::string pair_commands(const AtomLaw& law, const std::string& boundary, const std::string& data);
-std::string pair_data(const std::vector<Vector3>& one, const std::vector<Vector3>& two, double half_width,
-                      double z_low, double z_high);
 // Moves group `two` (nm).
 std::string move_two(const Vector3& by);
 // Appends the values, given as immediate variables, to name.dat.
 std::string print_values(const std::string& name, const std::string& values);
+
+// Two tubes alike of so many hexagons at this distance (nm), frozen in a periodic cell, one of them slid over
+// `range` (nm), for several turns of either: rows of both turns (rad), the shift (nm) and the energy per length
+// (eV/nm).
+struct SlidPairs {
+  long hexagons = 0;
+  double distance = 0, range = 0;
+  int turns = 0, shifts = 0;
+};
+std::vector<std::vector<double>> slid_pairs(MdSession& session, const std::string& name, Chirality c,
+                                            const TubeShape& shape, const SlidPairs& pairs);
+
+// Mean and standard deviation of a value over so many registries.
+struct Spread {
+  double mean = 0, deviation = 0;
+};
+Spread spread_over(int registries, const std::function<double(std::size_t)>& value);
 
 // The line law of a scene with these tubes, alike or not, and elements of this length (nm).
 LineContact contact_of(const ParameterSet& i, const ParameterSet& j, double element_length);
@@ -43,4 +62,4 @@ double parallel_rows(const LineContact& contact, double distance, double shift =
 // Minimum of a tabulated curve: that of a quartic fitted to the points within `reach` (nm) of the lowest.
 LineWell lowest_of(const std::vector<double>& distance, const std::vector<double>& energy, double reach);
 
-}  // namespace ropewalk
+}  // namespace ropewalk::validate
