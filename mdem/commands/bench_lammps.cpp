@@ -12,9 +12,10 @@
 #include "commands/commands.hpp"
 #include "commands/siblings.hpp"
 #include "io/files.hpp"
+#include "io/processor_time.hpp"
 #include "model/error.hpp"
 #include "run/cores.hpp"
-#include "run/processor_time.hpp"
+#include "run/threads.hpp"
 #include "scene/prepare.hpp"
 
 namespace ropewalk {

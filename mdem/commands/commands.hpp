@@ -23,11 +23,6 @@ struct RunArguments {
   bool quiet = false;
 };
 int run_command(const RunArguments& arguments);
-// The same for a scene that is not that of a file: arguments.scene is not used.
-struct Scene;
-int run_scene(const Scene& scene, const RunArguments& arguments);
-// Only makes the directory, with the state at time zero as its checkpoint.
-void begin_run(const RunArguments& arguments);
 
 struct ResumeArguments {
   std::string dir;
@@ -215,7 +210,5 @@ struct ImportArguments {
   std::string dir;  // that of the export, after LAMMPS has run in it
 };
 int import_command(const ImportArguments& arguments);
-
-void use_threads(int threads);
 
 }  // namespace ropewalk

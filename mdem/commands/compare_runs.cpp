@@ -6,10 +6,10 @@
 
 #include "campaign/campaign.hpp"
 #include "commands/commands.hpp"
-#include "commands/run_views.hpp"
 #include "io/files.hpp"
 #include "model/error.hpp"
 #include "report/runs_page.hpp"
+#include "run/pages/run_views.hpp"
 #include "run/run_directory.hpp"
 
 namespace ropewalk {

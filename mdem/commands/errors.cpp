@@ -16,8 +16,9 @@
 #include "io/processes.hpp"
 #include "io/run_errors.hpp"
 #include "model/error.hpp"
-#include "run/run_directory.hpp"
+#include "run/begin_run.hpp"
 #include "run/tell.hpp"
+#include "run/terminal_listener.hpp"
 #include "scene/kinds/state.hpp"
 #include "scene/scene_toml.hpp"
 
@@ -128,11 +129,8 @@ class Repetitions {
     if (scene.from_file()) scene.source = std::make_shared<StateSource>(base_.state());
     scene.run.time_step = time_step_;
     scene.run.frames_every = 1e9;  // ps: the logs alone are compared
-    scene.run.paraview = false;
-    RunArguments a;
-    a.out = dir.path;
-    a.quiet = true;
-    const int code = run_scene(scene, a);
+    TerminalListener terminal(true);
+    const int code = tell_end(go_through(begin_run(scene, dir, {}, terminal)));
     write_file_atomically(dir.file("changed.toml"), text);
     fs::remove(set);
     return code;

@@ -11,11 +11,13 @@
 #include "io/files.hpp"
 #include "io/frames/frames.hpp"
 #include "model/error.hpp"
+#include "run/begin_run.hpp"
 #include "run/colours.hpp"
 #include "run/limit_watch.hpp"
 #include "run/origin_changes.hpp"
 #include "run/run_checkpoint.hpp"
 #include "run/tell.hpp"
+#include "run/terminal_listener.hpp"
 #include "scene/lammps_files.hpp"
 #include "scene/lammps_states.hpp"
 #include "scene/scene_toml.hpp"
@@ -43,8 +45,10 @@ RunCheckpoint checkpoint_of(const RunDirectory& dir, const Scene& scene) {
   const ResumePoint point = find_resume_point(dir);
   RunOrigin origin = origin_of(dir, scene);
   origin.instructions = point.checkpoint.origin.instructions;  // LAMMPS has its own
-  judge_changes(changes_of(point.checkpoint.origin, origin, dir), false, dir);
-  for (const std::string& remark : point.remarks) tell("note: " + remark);
+  const std::vector<std::string> changes =
+      judged_changes(changes_of(point.checkpoint.origin, origin, dir), false, dir);
+  for (const std::string& note : changes) tell("note: " + note);
+  for (const std::string& note : point.remarks) tell("note: " + note);
   return point.checkpoint;
 }
 
@@ -165,13 +169,13 @@ int export_command(const ExportArguments& a) {
     const DirectoryLock lock = create_run_directory(to, a.force);
     copy_run(from, to);
   } else {
-    refuse_what_lammps_lacks(read_scene(a.scene));
-    RunArguments run;
-    run.scene = a.scene;
-    run.out = a.lammps;
-    run.force = a.force;
-    run.quiet = a.quiet;
-    begin_run(run);
+    const Scene scene = read_scene(a.scene);
+    refuse_what_lammps_lacks(scene);
+    TerminalListener terminal(a.quiet);
+    RunSettings settings;
+    settings.force = a.force;
+    // LAMMPS goes on with it, or `resume`.
+    begin_run(scene, to, settings, terminal)->write_manifest("interrupted", "not yet run");
   }
   write_lammps_files(to);
   if (!a.quiet) fmt::print("{0} written. Go on with: cd {0} && mpirun -np 2 lmp-ropewalk -in in.rope\n", to.path);

@@ -8,12 +8,12 @@
 #include <limits>
 
 #include "commands/commands.hpp"
-#include "commands/run_views.hpp"
 #include "io/files.hpp"
 #include "io/processes.hpp"
 #include "model/error.hpp"
 #include "report/movie_picture.hpp"
 #include "report/page.hpp"
+#include "run/pages/run_views.hpp"
 
 namespace ropewalk {
 namespace {

@@ -6,11 +6,11 @@
 #include <filesystem>
 
 #include "commands/commands.hpp"
-#include "commands/run_views.hpp"
 #include "io/files.hpp"
 #include "io/processes.hpp"
 #include "model/error.hpp"
 #include "report/plate.hpp"
+#include "run/pages/run_views.hpp"
 
 namespace ropewalk {
 namespace {

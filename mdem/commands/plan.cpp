@@ -14,12 +14,12 @@
 #include "commands/point_runs.hpp"
 #include "io/files.hpp"
 #include "io/processes.hpp"
+#include "io/processor_time.hpp"
 #include "model/error.hpp"
 #include "plan/check.hpp"
 #include "plan/outcome.hpp"
 #include "plan/planner.hpp"
 #include "run/plan_check.hpp"
-#include "run/processor_time.hpp"
 #include "run/run_checkpoint.hpp"
 #include "run/run_time.hpp"
 #include "run/tell.hpp"
@@ -82,7 +82,7 @@ class PilotRuns {
  private:
   int work(const std::string& run, const PilotTask& task) const {
     return in_a_process(run + ".txt", false, [&] {
-      const int code = run_or_resume({run}, scene_of_text(task.text, path_), task.until, "warn");
+      const int code = run_or_resume({run}, scene_of_text(task.text, path_), task.until, OnLimit::warn);
       write_file_atomically(run + ".seconds", fmt::format("{:.6g}", processor_seconds()));
       return code;
     });

@@ -23,6 +23,7 @@
 #include "run/run_checkpoint.hpp"
 #include "run/run_time.hpp"
 #include "run/tell.hpp"
+#include "run/wall_time.hpp"
 #include "scene/scene_toml.hpp"
 
 namespace ropewalk {
@@ -65,7 +66,7 @@ class Campaign {
   int go() {
     create_campaign(dir_, sweep_, all_, arguments_.force);
     listen_to_stop_signals();
-    began_ = now();
+    began_ = steady_seconds();
     if (!sweep_.branch_axes.empty()) run_starts();
     run_points();
     if (stop_signal) {
@@ -154,7 +155,7 @@ class Campaign {
       tasks.push_back({[this, p, to] {
                          return in_a_process(dir_.messages("start-" + p.name), true, [&] {
                            if (progress_of(to).stage == Stage::ended) return 0;
-                           return run_or_resume(to, scene_of(sweep_, p), sweep_.branch_at, "warn");
+                           return run_or_resume(to, scene_of(sweep_, p), sweep_.branch_at, OnLimit::warn);
                          });
                        },
                        [this, p](int status) {
@@ -197,7 +198,7 @@ class Campaign {
     if (!is_to_run(p)) return 0;  // done by another process meanwhile
     if (progress_of(dir).stage == Stage::failed) fs::remove_all(dir.path);
     if (!p.start.empty() && progress_of(dir).stage == Stage::waiting) branch_off(p);
-    return run_or_resume(dir, scene_of(sweep_, p), -1, arguments_.on_limit);
+    return run_or_resume(dir, scene_of(sweep_, p), -1, on_limit_of(arguments_.on_limit));
   }
 
   void run_points() {
@@ -227,16 +228,16 @@ class Campaign {
       say(fmt::format("{}: {}", p.name, printable(progress.reason)));
     else if (progress.stage != Stage::ended && !stop_signal)
       say(fmt::format("{} did not end; see {}", p.name, dir_.messages(p.name)));
-    const double passed = now() - began_, left = passed * work_left_ / std::max(work_to_do_ - work_left_, 1.0);
+    const double passed = steady_seconds() - began_, left = passed * work_left_ / std::max(work_to_do_ - work_left_, 1.0);
     if (isatty(STDERR_FILENO) && !arguments_.quiet)
       tell_as_is(fmt::format("\r\033[K{} of {} points, {} passed, {} left", done_, points_.size(),
                              duration_text(passed), duration_text(left)));
-    else if (now() > next_line_ || done_ == points_.size())
+    else if (steady_seconds() > next_line_ || done_ == points_.size())
       say(fmt::format("{} of {} points, {} passed, {} left", done_, points_.size(), duration_text(passed),
                       duration_text(left)));
     else
       return;
-    next_line_ = now() + 10;
+    next_line_ = steady_seconds() + 10;
   }
 
   void say(const std::string& line) const {

@@ -16,6 +16,7 @@
 #include "model/error.hpp"
 #include "plan/scene_edit.hpp"
 #include "run/tell.hpp"
+#include "run/wall_time.hpp"
 #include "scene/scene_toml.hpp"
 
 namespace ropewalk {
@@ -41,7 +42,7 @@ class Search {
     refuse_other_scenes();
     read_known_trials();
     listen_to_stop_signals();
-    const double began = now();
+    const double began = steady_seconds();
     std::vector<ProcessTask> tasks;
     std::size_t done = 0;
     std::vector<std::string> failed;
@@ -53,7 +54,7 @@ class Search {
                          write();
                          if (!arguments_.quiet)
                            tell_as_is(fmt::format("{} of {} points, {} passed: {}\n", done, points_.size(),
-                                                  duration_text(now() - began), result_words(p)));
+                                                  duration_text(steady_seconds() - began), result_words(p)));
                        }});
     run_processes(tasks, jobs_, &stop_signal);
     write();  // the trials of points that were stopped count as well
@@ -132,7 +133,7 @@ class Search {
     fs::create_directories(dir_.point(p.name).path);
     Scene scene = scene_at(p, value);
     scene.name += fmt::format(", {}, {:g}", p.name, value);
-    return run_or_resume(run, scene, -1, "warn");
+    return run_or_resume(run, scene, -1, OnLimit::warn);
   }
 
   int bisect(const SweepPoint& p) const {

@@ -7,11 +7,11 @@
 #include <limits>
 
 #include "commands/commands.hpp"
-#include "commands/run_views.hpp"
 #include "io/files.hpp"
 #include "model/error.hpp"
 #include "report/page.hpp"
 #include "report/view/view_page.hpp"
+#include "run/pages/run_views.hpp"
 
 namespace ropewalk {
 namespace {

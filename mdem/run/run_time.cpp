@@ -14,17 +14,17 @@
 #include <limits>
 #include <vector>
 
-#include "commands/commands.hpp"
 #include "io/files.hpp"
 #include "io/frames/dump.hpp"
+#include "io/processor_time.hpp"
 #include "model/error.hpp"
 #include "plan/expected_state.hpp"
 #include "plan/features.hpp"
 #include "plan/scene_edit.hpp"
 #include "run/colours.hpp"
 #include "run/limit_watch.hpp"
-#include "run/processor_time.hpp"
 #include "run/run_directory.hpp"
+#include "run/threads.hpp"
 #include "scene/scene_toml.hpp"
 #include "scene/watch.hpp"
 

@@ -1,4 +1,4 @@
-#include "commands/run_views.hpp"
+#include "run/pages/run_views.hpp"
 
 #include <fmt/format.h>
 
