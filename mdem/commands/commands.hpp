@@ -87,8 +87,6 @@ struct ViewArguments {
   bool force = false;
 };
 int view_command(const ViewArguments& arguments);
-// The movie alone.
-void make_movie(const ViewArguments& arguments);
 
 struct ErrorsArguments {
   std::string dir;
@@ -197,6 +195,7 @@ struct PlanArguments {
   int jobs = 0;              // pilots at a time; 0: one for each core
 };
 int plan_command(const PlanArguments& arguments);
+int check_plan(const PlanArguments& arguments);  // of --check
 
 struct ExportArguments {
   std::string scene;   // a file, or the directory of a run

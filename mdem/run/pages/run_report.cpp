@@ -1,6 +1,4 @@
 // report.html from the files of a run.
-#include "report/report.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,6 +9,7 @@
 #include "io/frames/frames.hpp"
 #include "io/grade.hpp"
 #include "model/error.hpp"
+#include "report/report.hpp"
 #include "run/pages/run_views.hpp"
 #include "run/plan_check.hpp"
 #include "run/run_directory.hpp"

@@ -1,4 +1,4 @@
-#include "commands/point_runs.hpp"
+#include "campaign/point_runs.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
