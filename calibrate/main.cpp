@@ -14,6 +14,7 @@
 namespace {
 
 using namespace ropewalk;
+using namespace ropewalk::calibrate;
 
 struct Verbs {
   CalibrateArguments calibrate;

@@ -15,6 +15,7 @@
 namespace {
 
 using namespace ropewalk;
+using namespace ropewalk::validate;
 
 struct Verbs {
   ListArguments list;

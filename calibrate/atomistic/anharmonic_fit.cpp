@@ -8,7 +8,7 @@
 #include "atomistic/stiffness.hpp"
 #include "fit/least_squares.hpp"
 
-namespace ropewalk {
+namespace ropewalk::calibrate {
 namespace {
 
 using Matrix = Eigen::MatrixXd;
@@ -191,4 +191,4 @@ void fit_collapse(std::vector<AtomisticRow>& table, Stiffness& out) {
       law.max_shear, rows.size(), largest, fit.collapse_error, found.message);
 }
 
-}  // namespace ropewalk
+}  // namespace ropewalk::calibrate

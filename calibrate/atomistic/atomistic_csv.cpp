@@ -8,7 +8,7 @@
 #include "io/csv_reader.hpp"
 #include "io/plain_text.hpp"
 
-namespace ropewalk {
+namespace ropewalk::calibrate {
 namespace {
 
 constexpr const char* format_line = "# ropewalk-atomistic-1";
@@ -108,4 +108,4 @@ std::vector<AtomisticRow> read_atomistic_csv(const std::string& path, AtomisticO
   return rows;
 }
 
-}  // namespace ropewalk
+}  // namespace ropewalk::calibrate

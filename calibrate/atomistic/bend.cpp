@@ -13,7 +13,7 @@
 #include "atomistic/finite_tube.hpp"
 #include "atomistic/runs.hpp"
 
-namespace ropewalk {
+namespace ropewalk::calibrate {
 namespace {
 
 // Relaxed displacements grow in proportion to the curvature, so the next start is the next affine bend with the
@@ -100,4 +100,4 @@ std::vector<AtomisticRow> bend_rows(RunContext& run, const RelaxedTube& tube, co
   return rows;
 }
 
-}  // namespace ropewalk
+}  // namespace ropewalk::calibrate

@@ -14,7 +14,7 @@
 #include <cstdlib>
 #include <thread>
 
-namespace ropewalk {
+namespace ropewalk::calibrate {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -195,4 +195,4 @@ ChildEnd run_child(const std::vector<std::string>& arguments, const ChildOptions
   }
 }
 
-}  // namespace ropewalk
+}  // namespace ropewalk::calibrate

@@ -12,7 +12,7 @@
 #include "atomistic/stiffness.hpp"
 #include "fit/least_squares.hpp"
 
-namespace ropewalk {
+namespace ropewalk::calibrate {
 namespace {
 
 using Matrix = Eigen::MatrixXd;
@@ -502,4 +502,4 @@ void fit_bend(std::vector<AtomisticRow>& table, Stiffness& out) {
   warn_of_spread("EI", EI, out);
 }
 
-}  // namespace ropewalk
+}  // namespace ropewalk::calibrate

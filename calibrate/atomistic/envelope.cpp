@@ -7,7 +7,7 @@
 #include "atomistic/finite_tube.hpp"
 #include "atomistic/runs.hpp"
 
-namespace ropewalk {
+namespace ropewalk::calibrate {
 namespace {
 
 constexpr double one_percent = 0.01;
@@ -206,4 +206,4 @@ Envelope measured_envelope(RunContext& run, const RelaxedTube& tube, const Stiff
   return envelope;
 }
 
-}  // namespace ropewalk
+}  // namespace ropewalk::calibrate

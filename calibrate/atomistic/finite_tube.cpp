@@ -8,7 +8,7 @@
 
 #include "atomistic/runs.hpp"
 
-namespace ropewalk {
+namespace ropewalk::calibrate {
 long hexagons_in(Chirality c, const TubeShape& shape, double length) {
   const long step = std::gcd(c.n, c.m);
   return step * std::max(1L, std::lround(length / (shape.length_per_hexagon * static_cast<double>(step))));
@@ -73,4 +73,4 @@ std::string affine_bend_variables() {
          "variable next_z atom v_bent_z+(z-v_last_z)*v_k/v_k0\n";
 }
 
-}  // namespace ropewalk
+}  // namespace ropewalk::calibrate

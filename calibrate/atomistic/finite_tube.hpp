@@ -7,7 +7,7 @@
 #include "atomistic/lattice.hpp"
 #include "atomistic/potential.hpp"
 
-namespace ropewalk {
+namespace ropewalk::calibrate {
 
 // Width of a band (nm) at which no free atom interacts with the bare end: forces of bond-order potentials reach
 // over two cutoffs.
@@ -47,4 +47,4 @@ class FiniteTube {
 // next_x, next_y, next_z are the same with the displacements from the bend k0, scaled by k/k0.
 std::string affine_bend_variables();
 
-}  // namespace ropewalk
+}  // namespace ropewalk::calibrate

@@ -15,7 +15,7 @@
 #include "atomistic/child_process.hpp"
 #include "io/files.hpp"
 
-namespace ropewalk {
+namespace ropewalk::calibrate {
 namespace {
 
 namespace fs = std::filesystem;
@@ -226,4 +226,4 @@ void run_lammps(const std::string& folder, const std::string& name, const std::s
   }
 }
 
-}  // namespace ropewalk
+}  // namespace ropewalk::calibrate

@@ -9,7 +9,7 @@
 
 #include "model/error.hpp"
 
-namespace ropewalk {
+namespace ropewalk::calibrate {
 
 struct LammpsVersion {
   std::string text;  // "29 Sep 2021 - Update 2"
@@ -40,4 +40,4 @@ LammpsVersion lammps_version(const LammpsOptions& options);
 void run_lammps(const std::string& folder, const std::string& name, const std::string& input,
                 const LammpsOptions& options);
 
-}  // namespace ropewalk
+}  // namespace ropewalk::calibrate

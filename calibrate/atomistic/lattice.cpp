@@ -5,7 +5,7 @@
 #include <numeric>
 #include <stdexcept>
 
-namespace ropewalk {
+namespace ropewalk::calibrate {
 namespace {
 
 constexpr double pi = units::pi;
@@ -178,4 +178,4 @@ std::vector<LatticeVector> twisted_periods(Chirality c, double min_length, doubl
   return periods;
 }
 
-}  // namespace ropewalk
+}  // namespace ropewalk::calibrate

@@ -21,7 +21,7 @@
 #include "model/bond.hpp"
 #include "model/tube.hpp"
 
-namespace ropewalk {
+namespace ropewalk::calibrate {
 
 struct LatticeVector {
   int p = 0, q = 0;
@@ -84,4 +84,4 @@ TubeCell tube_cell(Chirality c, LatticeVector period, double a = graphene_lattic
 std::vector<LatticeVector> twisted_periods(Chirality c, double min_length, double max_length, double max_shear,
                                            double a = graphene_lattice_constant);
 
-}  // namespace ropewalk
+}  // namespace ropewalk::calibrate

@@ -13,7 +13,7 @@
 #include "io/plain_text.hpp"
 #include "model/error.hpp"
 
-namespace ropewalk {
+namespace ropewalk::calibrate {
 namespace {
 
 namespace fs = std::filesystem;
@@ -171,4 +171,4 @@ Potential user_potential(const std::string& path) {
   return potential;
 }
 
-}  // namespace ropewalk
+}  // namespace ropewalk::calibrate

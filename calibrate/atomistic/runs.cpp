@@ -9,7 +9,7 @@
 
 #include "io/files.hpp"
 
-namespace ropewalk {
+namespace ropewalk::calibrate {
 
 std::string header_commands(const std::string& boundary, double skin) {
   return fmt::format(
@@ -84,4 +84,4 @@ void check_convergence(RunContext& run, const std::string& what, double force, d
                     what, force, left, energy));
 }
 
-}  // namespace ropewalk
+}  // namespace ropewalk::calibrate

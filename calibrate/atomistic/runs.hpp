@@ -7,7 +7,7 @@
 #include "atomistic/lattice.hpp"
 #include "atomistic/stiffness.hpp"
 
-namespace ropewalk {
+namespace ropewalk::calibrate {
 
 inline constexpr double angstrom = 0.1;  // nm: LAMMPS's metal units
 
@@ -92,4 +92,4 @@ std::vector<std::vector<double>> read_results(const RunContext& run, const std::
 void check_convergence(RunContext& run, const std::string& what, double force, double energy);
 void run_stage(RunContext& run, const std::string& name, const std::string& input);
 
-}  // namespace ropewalk
+}  // namespace ropewalk::calibrate

@@ -11,7 +11,7 @@
 #include "atomistic/runs.hpp"
 #include "io/grade.hpp"
 
-namespace ropewalk {
+namespace ropewalk::calibrate {
 namespace {
 
 // The bend window: half of the curvature at which the moment is 1 % off, large enough for the quartic term to be
@@ -199,4 +199,4 @@ Stiffness measure_stiffness(Chirality c, const Potential& potential, const std::
   return out;
 }
 
-}  // namespace ropewalk
+}  // namespace ropewalk::calibrate

@@ -30,7 +30,7 @@
 #include "model/anharmonic.hpp"
 #include "model/tube.hpp"
 
-namespace ropewalk {
+namespace ropewalk::calibrate {
 
 struct Measured {
   double value = 0;
@@ -157,4 +157,4 @@ void fit_collapse(std::vector<AtomisticRow>& rows, Stiffness& out);
 // Replaces the 1 % limits of the envelope by limits from the anharmonic terms, if these are known.
 void limits_from_terms(const Stiffness& stiffness, Envelope& envelope);
 
-}  // namespace ropewalk
+}  // namespace ropewalk::calibrate

@@ -8,7 +8,7 @@
 #include "atomistic/runs.hpp"
 #include "io/files.hpp"
 
-namespace ropewalk {
+namespace ropewalk::calibrate {
 namespace {
 
 constexpr double pi = units::pi;
@@ -302,4 +302,4 @@ std::vector<AtomisticRow> collapse_rows(RunContext& run, const RelaxedTube& tube
   return rows;
 }
 
-}  // namespace ropewalk
+}  // namespace ropewalk::calibrate

@@ -10,7 +10,7 @@
 #include "model/contact/line.hpp"
 #include "model/contact/paper.hpp"
 
-namespace ropewalk {
+namespace ropewalk::calibrate {
 
 // A point of the integral with the fit, for tables and plots.
 struct ContactPoint {
@@ -59,4 +59,4 @@ struct PaperFit {
 };
 PaperFit fit_paper(const AtomLaw& law, const Shell& shell, double element_length, const FitOptions& options = {});
 
-}  // namespace ropewalk
+}  // namespace ropewalk::calibrate

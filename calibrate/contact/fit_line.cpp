@@ -5,7 +5,7 @@
 #include "contact/fit_contact.hpp"
 #include "contact/line_targets.hpp"
 
-namespace ropewalk {
+namespace ropewalk::calibrate {
 namespace {
 
 double seconds_since(std::chrono::steady_clock::time_point begin) {
@@ -76,4 +76,4 @@ LineFit fit_line(const AtomLaw& law, const Shell& i, const Shell& j, const FitOp
   return out;
 }
 
-}  // namespace ropewalk
+}  // namespace ropewalk::calibrate

@@ -13,7 +13,7 @@
 #include "contact/integral.hpp"
 #include "contact/quadrature.hpp"
 
-namespace ropewalk {
+namespace ropewalk::calibrate {
 namespace {
 
 constexpr double inside = 0.05;      // nm inside of the minimum
@@ -293,4 +293,4 @@ PaperFit fit_paper(const AtomLaw& law, const Shell& shell, double element_length
   return out;
 }
 
-}  // namespace ropewalk
+}  // namespace ropewalk::calibrate

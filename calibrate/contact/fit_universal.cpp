@@ -7,7 +7,7 @@
 #include "contact/fit_contact.hpp"
 #include "contact/line_targets.hpp"
 
-namespace ropewalk {
+namespace ropewalk::calibrate {
 namespace {
 
 constexpr double unit_density = 38;  // atoms per nm^2; the law is in units of it
@@ -126,4 +126,4 @@ UniversalFit fit_universal(const AtomLaw& law, const std::vector<std::pair<doubl
   return out;
 }
 
-}  // namespace ropewalk
+}  // namespace ropewalk::calibrate

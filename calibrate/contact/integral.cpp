@@ -12,7 +12,7 @@
 
 #include "contact/quadrature.hpp"
 
-namespace ropewalk {
+namespace ropewalk::calibrate {
 namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
@@ -166,4 +166,4 @@ double PairIntegral::zero(const std::function<double(double)>& slope) const {
   return root;
 }
 
-}  // namespace ropewalk
+}  // namespace ropewalk::calibrate

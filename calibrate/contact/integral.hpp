@@ -12,7 +12,7 @@
 
 #include "contact/van_der_waals.hpp"
 
-namespace ropewalk {
+namespace ropewalk::calibrate {
 
 class PairIntegral {
  public:
@@ -41,4 +41,4 @@ class PairIntegral {
 double abel_inverse(const AtomLaw& law, const Shell& i, const Shell& j, double rho,
                     const std::function<double(double)>& slope);
 
-}  // namespace ropewalk
+}  // namespace ropewalk::calibrate

@@ -5,7 +5,7 @@
 
 #include "contact/quadrature.hpp"
 
-namespace ropewalk {
+namespace ropewalk::calibrate {
 namespace {
 
 constexpr double inside = 0.05;   // nm inside of the minimum: the error is evaluated from here outwards
@@ -138,4 +138,4 @@ double LineTargets::error(const LineDensity& density) const {
   return largest;
 }
 
-}  // namespace ropewalk
+}  // namespace ropewalk::calibrate

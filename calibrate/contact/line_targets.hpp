@@ -8,7 +8,7 @@
 #include "fit/least_squares.hpp"
 #include "model/contact/line.hpp"
 
-namespace ropewalk {
+namespace ropewalk::calibrate {
 
 // Gaps at which the closed form is switched off and continued into the core, for an atom-atom law. If this law has
 // a cutoff, u ends in a corner at that gap. The smooth switch approximates the corner best if it begins early and
@@ -52,4 +52,4 @@ class LineTargets {
 FitResult fit_density(const LineTargets& targets, const AtomLaw& law, double unit, const FitOptions& options,
                       LineDensity& density);
 
-}  // namespace ropewalk
+}  // namespace ropewalk::calibrate

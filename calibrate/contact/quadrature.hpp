@@ -12,7 +12,7 @@
 
 #include "model/units.hpp"
 
-namespace ropewalk {
+namespace ropewalk::calibrate {
 
 inline double square(double x) { return x * x; }
 
@@ -85,4 +85,4 @@ class Quadrature {
   std::unique_ptr<gsl_integration_workspace, void (*)(gsl_integration_workspace*)> work_;
 };
 
-}  // namespace ropewalk
+}  // namespace ropewalk::calibrate

@@ -9,7 +9,7 @@
 #include "contact/quadrature.hpp"
 #include "model/units.hpp"
 
-namespace ropewalk {
+namespace ropewalk::calibrate {
 namespace {
 
 using units::pi;
@@ -278,4 +278,4 @@ RegistrySpread registry_spread(const AtomLaw& law, const AtomColumn& i, const At
   return out;
 }
 
-}  // namespace ropewalk
+}  // namespace ropewalk::calibrate

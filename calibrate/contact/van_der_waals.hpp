@@ -21,7 +21,7 @@
 
 #include "model/bond.hpp"
 
-namespace ropewalk {
+namespace ropewalk::calibrate {
 
 // Lennard-Jones between two carbon atoms.
 struct AtomLaw {
@@ -75,4 +75,4 @@ struct Well {
 Well parallel_well(const AtomLaw& law, const Shell& i, const Shell& j);
 Well crossed_well(const AtomLaw& law, const Shell& i, const Shell& j, double angle);
 
-}  // namespace ropewalk
+}  // namespace ropewalk::calibrate

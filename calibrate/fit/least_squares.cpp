@@ -11,7 +11,7 @@
 #include <random>
 #include <stdexcept>
 
-namespace ropewalk {
+namespace ropewalk::calibrate {
 namespace {
 
 using Vector = Eigen::VectorXd;
@@ -600,4 +600,4 @@ FitResult fit_least_squares(const std::vector<FitParameter>& parameters, std::si
   return result;
 }
 
-}  // namespace ropewalk
+}  // namespace ropewalk::calibrate

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-namespace ropewalk {
+namespace ropewalk::calibrate {
 
 struct FitParameter {
   std::string name;
@@ -59,4 +59,4 @@ struct FitResult {
 FitResult fit_least_squares(const std::vector<FitParameter>& parameters, std::size_t residuals,
                             const Residuals& function, const FitOptions& options = {});
 
-}  // namespace ropewalk
+}  // namespace ropewalk::calibrate

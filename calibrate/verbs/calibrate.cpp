@@ -16,7 +16,7 @@
 #include "report/page.hpp"
 #include "verbs/verbs.hpp"
 
-namespace ropewalk {
+namespace ropewalk::calibrate {
 namespace {
 
 namespace fs = std::filesystem;
@@ -292,4 +292,4 @@ int calibrate_command(const CalibrateArguments& a) {
   return 0;
 }
 
-}  // namespace ropewalk
+}  // namespace ropewalk::calibrate

@@ -16,7 +16,7 @@
 #include "verbs/tables.hpp"
 #include "version.hpp"
 
-namespace ropewalk {
+namespace ropewalk::calibrate {
 namespace {
 
 constexpr double right_angle = 0.5 * units::pi;
@@ -438,4 +438,4 @@ std::string universal_file(const UniversalFit& fit, const std::string& command) 
   return text;
 }
 
-}  // namespace ropewalk
+}  // namespace ropewalk::calibrate

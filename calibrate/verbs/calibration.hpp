@@ -10,7 +10,7 @@
 #include "contact/fit_contact.hpp"
 #include "model/parameters.hpp"
 
-namespace ropewalk {
+namespace ropewalk::calibrate {
 
 struct CalibrationRequest {
   Chirality chirality;
@@ -64,4 +64,4 @@ std::string universal_path();
 std::optional<UniversalLine> universal_law(const AtomLaw& law);
 std::string universal_file(const UniversalFit& fit, const std::string& command);
 
-}  // namespace ropewalk
+}  // namespace ropewalk::calibrate

@@ -8,7 +8,7 @@
 #include "io/parameters_toml.hpp"
 #include "verbs/verbs.hpp"
 
-namespace ropewalk {
+namespace ropewalk::calibrate {
 namespace {
 
 namespace fs = std::filesystem;
@@ -89,4 +89,4 @@ int check_shipped_command(const CheckShippedArguments& a) {
   return same ? 0 : 3;
 }
 
-}  // namespace ropewalk
+}  // namespace ropewalk::calibrate

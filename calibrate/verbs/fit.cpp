@@ -23,7 +23,7 @@
 #include "verbs/tables.hpp"
 #include "verbs/verbs.hpp"
 
-namespace ropewalk {
+namespace ropewalk::calibrate {
 namespace {
 
 namespace fs = std::filesystem;
@@ -389,4 +389,4 @@ int fit_command(const FitArguments& a) {
   return 0;
 }
 
-}  // namespace ropewalk
+}  // namespace ropewalk::calibrate

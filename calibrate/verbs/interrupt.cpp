@@ -2,7 +2,7 @@
 
 #include "verbs/verbs.hpp"
 
-namespace ropewalk {
+namespace ropewalk::calibrate {
 namespace {
 
 volatile std::sig_atomic_t caught = 0;
@@ -18,4 +18,4 @@ void catch_interrupts() {
 
 int interrupted_by() { return caught; }
 
-}  // namespace ropewalk
+}  // namespace ropewalk::calibrate

@@ -14,7 +14,7 @@
 #include "verbs/tables.hpp"
 #include "verbs/verbs.hpp"
 
-namespace ropewalk {
+namespace ropewalk::calibrate {
 namespace {
 
 namespace fs = std::filesystem;
@@ -282,4 +282,4 @@ int show_command(const ShowArguments& a) {
   return 0;
 }
 
-}  // namespace ropewalk
+}  // namespace ropewalk::calibrate

@@ -10,7 +10,7 @@
 #include "model/error.hpp"
 #include "model/units.hpp"
 
-namespace ropewalk {
+namespace ropewalk::calibrate {
 namespace {
 
 constexpr std::array<OutputColumn, 5> table = {{
@@ -71,4 +71,4 @@ std::vector<OutputColumn> contact_columns() { return {table.begin(), table.end()
 
 std::vector<ContactRow> read_contact_csv(const std::string& path) { return ContactReader(path).read(); }
 
-}  // namespace ropewalk
+}  // namespace ropewalk::calibrate

@@ -6,7 +6,7 @@
 
 #include "io/outputs.hpp"
 
-namespace ropewalk {
+namespace ropewalk::calibrate {
 
 struct ContactRow {
   std::string kind;     // "density" (eV/nm^2), "parallel" (eV/nm) or "crossed" (eV)
@@ -22,4 +22,4 @@ std::vector<OutputColumn> contact_columns();
 // InputError with file and line.
 std::vector<ContactRow> read_contact_csv(const std::string& path);
 
-}  // namespace ropewalk
+}  // namespace ropewalk::calibrate

@@ -6,7 +6,7 @@
 #include "io/files.hpp"
 #include "verbs/verbs.hpp"
 
-namespace ropewalk {
+namespace ropewalk::calibrate {
 namespace {
 
 // Pairs of equal and unequal radii over the range of the law.
@@ -37,4 +37,4 @@ int universal_command(const UniversalArguments& a) {
   return 0;
 }
 
-}  // namespace ropewalk
+}  // namespace ropewalk::calibrate

@@ -5,7 +5,7 @@
 
 #include "verbs/calibration.hpp"
 
-namespace ropewalk {
+namespace ropewalk::calibrate {
 
 struct CalibrateArguments {
   std::string chirality;
@@ -99,4 +99,4 @@ Section effective_section(const ParameterSet& set);
 void print_set(const ParameterSet& set);
 std::string calibration_page(const ParameterSet& set);
 
-}  // namespace ropewalk
+}  // namespace ropewalk::calibrate

@@ -9,7 +9,7 @@
 
 #include "contact/line_targets.hpp"
 
-namespace ropewalk {
+namespace ropewalk::calibrate {
 namespace {
 
 constexpr double right_angle = 0.5 * units::pi;
@@ -219,4 +219,4 @@ TEST(PaperFit, ThinTube) {
 TEST(PaperFit, NeedsALength) { EXPECT_THROW(fit_paper({}, shell(0.6785), 0), std::invalid_argument); }
 
 }  // namespace
-}  // namespace ropewalk
+}  // namespace ropewalk::calibrate

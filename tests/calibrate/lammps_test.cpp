@@ -18,7 +18,7 @@
 
 #include "atomistic/potential.hpp"
 
-namespace ropewalk {
+namespace ropewalk::calibrate {
 namespace {
 
 namespace fs = std::filesystem;
@@ -310,4 +310,4 @@ TEST_F(Lammps, UserPotentialHasPairLinesOnly) {
 }
 
 }  // namespace
-}  // namespace ropewalk
+}  // namespace ropewalk::calibrate

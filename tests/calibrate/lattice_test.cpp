@@ -10,7 +10,7 @@
 #include <set>
 #include <tuple>
 
-namespace ropewalk {
+namespace ropewalk::calibrate {
 namespace {
 
 const double bond = graphene_lattice_constant / std::sqrt(3.0);
@@ -201,4 +201,4 @@ TEST(Lattice, HugeTubesAreCheapAndExact) {
 }
 
 }  // namespace
-}  // namespace ropewalk
+}  // namespace ropewalk::calibrate

@@ -11,7 +11,7 @@
 #include <stdexcept>
 #include <thread>
 
-namespace ropewalk {
+namespace ropewalk::calibrate {
 namespace {
 
 using testing::ElementsAre;
@@ -354,4 +354,4 @@ TEST(LeastSquares, AsManyDataAsParametersHaveNoError) {
 }
 
 }  // namespace
-}  // namespace ropewalk
+}  // namespace ropewalk::calibrate

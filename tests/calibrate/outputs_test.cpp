@@ -5,7 +5,7 @@
 #include "outputs_page.hpp"
 #include "verbs/tables.hpp"
 
-namespace ropewalk {
+namespace ropewalk::calibrate {
 namespace {
 
 TEST(OutputsPage, HasTheTablesOfCalibrate) {
@@ -14,4 +14,4 @@ TEST(OutputsPage, HasTheTablesOfCalibrate) {
 }
 
 }  // namespace
-}  // namespace ropewalk
+}  // namespace ropewalk::calibrate

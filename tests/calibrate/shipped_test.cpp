@@ -11,7 +11,7 @@
 #include "scene/scene_toml.hpp"
 #include "verbs/calibration.hpp"
 
-namespace ropewalk {
+namespace ropewalk::calibrate {
 namespace {
 
 ParameterSet shipped(const std::string& name) { return read_parameters(find_parameters(name, "")); }
@@ -191,4 +191,4 @@ TEST(UniversalLaw, ScalesWithEpsilonAndRefusesAnotherCutoff) {
 }
 
 }  // namespace
-}  // namespace ropewalk
+}  // namespace ropewalk::calibrate

@@ -14,7 +14,7 @@
 
 #include "atomistic/runs.hpp"
 
-namespace ropewalk {
+namespace ropewalk::calibrate {
 namespace {
 
 namespace fs = std::filesystem;
@@ -482,4 +482,4 @@ TEST(StandardErrors, CoverTheEnergyOfARope) {
 }
 
 }  // namespace
-}  // namespace ropewalk
+}  // namespace ropewalk::calibrate

@@ -8,7 +8,7 @@
 
 #include "contact/integral.hpp"
 
-namespace ropewalk {
+namespace ropewalk::calibrate {
 namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
@@ -243,4 +243,4 @@ TEST(VanDerWaals, WrongInputIsRefused) {
 }
 
 }  // namespace
-}  // namespace ropewalk
+}  // namespace ropewalk::calibrate

@@ -266,21 +266,21 @@ void lammps_tables(const std::string& bytes) {
 
 void chart(const std::string& bytes) {
   const File file(bytes);
-  taken_or_refused([&] { point_json(read_point(file.path())); });
+  taken_or_refused([&] { point_json(validate::read_point(file.path())); });
 }
 
 void contact_table(const std::string& bytes) {
   const File file(bytes);
-  taken_or_refused([&] { read_contact_csv(file.path()); });
+  taken_or_refused([&] { calibrate::read_contact_csv(file.path()); });
 }
 
 void stiffness_table(const std::string& bytes) {
   const File file(bytes);
   taken_or_refused([&] {
-    AtomisticOrigin origin;
-    const std::vector<AtomisticRow> rows = read_atomistic_csv(file.path(), &origin);
-    const File again(atomistic_csv(rows, origin));
-    read_atomistic_csv(again.path());
+    calibrate::AtomisticOrigin origin;
+    const std::vector<calibrate::AtomisticRow> rows = calibrate::read_atomistic_csv(file.path(), &origin);
+    const File again(calibrate::atomistic_csv(rows, origin));
+    calibrate::read_atomistic_csv(again.path());
   });
 }
 
@@ -288,16 +288,16 @@ void stiffness_table(const std::string& bytes) {
 void settings(const std::string& bytes) {
   const File file(bytes);
   taken_or_refused([&] {
-    FitArguments a;
+    calibrate::FitArguments a;
     a.data = ROPEWALK_SOURCE_DIR "/tests/fuzz/corpus/stiffness_table/one-row.csv";
     a.settings = file.path();
-    fit_command(a);
+    calibrate::fit_command(a);
   });
 }
 
 void potential(const std::string& bytes) {
   const File file(bytes);
-  taken_or_refused([&] { user_potential(file.path()); });
+  taken_or_refused([&] { calibrate::user_potential(file.path()); });
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include "runner/runner.hpp"
 #include "validate/support.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 using test::check_of;
@@ -31,4 +31,4 @@ TEST(MissingReference, IsNotApplicableAndSaysWhatToDo) {
 }
 
 }  // namespace
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

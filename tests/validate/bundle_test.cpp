@@ -4,7 +4,7 @@
 #include "runner/runner.hpp"
 #include "validate/support.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 using test::check_of;
@@ -28,4 +28,4 @@ TEST(WarmBundle, MissesWhatTheWallsOfTheAtomsDo) {
 }
 
 }  // namespace
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

@@ -14,7 +14,7 @@
 #include "io/files.hpp"
 #include "model/error.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 using ::testing::ElementsAre;
@@ -253,4 +253,4 @@ TEST_F(Chart, ComesOutWholeAndIsKept) {
 }
 
 }  // namespace
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

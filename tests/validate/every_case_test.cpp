@@ -10,7 +10,7 @@
 
 #include "validate/support.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 struct Trial {
@@ -127,4 +127,4 @@ INSTANTIATE_TEST_SUITE_P(Cases, WrongParameter, ::testing::ValuesIn(trials_that_
 INSTANTIATE_TEST_SUITE_P(Cases, UnrelatedParameter, ::testing::ValuesIn(trials_that_stay_green()), test_name);
 
 }  // namespace
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

@@ -7,7 +7,7 @@
 #include "cases/common/driven_rope.hpp"
 #include "validate/support.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 ParameterSet shipped() { return test::shipped("cnt-10-10-tersoff"); }
@@ -61,4 +61,4 @@ TEST(OtherCodes, DrivenRopeRests) {
 }
 
 }  // namespace
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

@@ -7,7 +7,7 @@
 #include "outputs_page.hpp"
 #include "runner/runner.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 TEST(OutputsPage, HasTheKeysOfTheReport) {
@@ -25,4 +25,4 @@ TEST(OutputsPage, HasTheTableOfTheChart) {
 }
 
 }  // namespace
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

@@ -14,7 +14,7 @@
 #include "model/error.hpp"
 #include "validate/support.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 using ::testing::HasSubstr;
@@ -290,4 +290,4 @@ TEST_F(StoredReference, IsHeldToAFreshOne) {
 }
 
 }  // namespace
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 TEST(StabilityLimit, IsFoundByBisectionAndNotANumberWhereThereIsNone) {
@@ -16,4 +16,4 @@ TEST(StabilityLimit, IsFoundByBisectionAndNotANumberWhereThereIsNone) {
 }
 
 }  // namespace
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

@@ -10,7 +10,7 @@
 #include "io/data_files.hpp"
 #include "io/parameters_toml.hpp"
 
-namespace ropewalk::test {
+namespace ropewalk::validate::test {
 
 inline ParameterSet shipped(const std::string& name) { return read_parameters(find_parameters(name, "")); }
 
@@ -45,4 +45,4 @@ inline const Check& check_of(const CaseResult& result, const std::string& part) 
   return *at;
 }
 
-}  // namespace ropewalk::test
+}  // namespace ropewalk::validate::test

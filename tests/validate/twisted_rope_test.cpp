@@ -10,7 +10,7 @@
 #include "runner/runner.hpp"
 #include "validate/support.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 
 namespace {
 
@@ -90,4 +90,4 @@ TEST(TwistedRope, UntwistedElementsCarryNoMoment) {
 }
 
 }  // namespace
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

@@ -27,7 +27,7 @@
 #include "scene/scene.hpp"
 #include "sim/dynamics/simulation.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 
 // --- Models ---
 
@@ -175,4 +175,4 @@ struct ChartArguments {
 };
 int chart_command(const ChartArguments& arguments);
 
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

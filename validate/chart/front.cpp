@@ -8,7 +8,7 @@
 
 #include "chart/chart.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 constexpr double min_charge = 6;  // that of an ideally packed twisted rope
@@ -113,4 +113,4 @@ std::string points_csv(const std::vector<ChartRow>& rows) {
   return text;
 }
 
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

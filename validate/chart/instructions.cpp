@@ -14,7 +14,7 @@
 #include "chart/chart.hpp"
 #include "io/files.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 namespace fs = std::filesystem;
@@ -35,7 +35,7 @@ std::optional<double> collected(const std::string& path) {
 
 std::optional<double> counted(const std::string& scene, const std::string& model, long steps,
                               const std::string& folder) {
-  ChildOptions options;
+  calibrate::ChildOptions options;
   options.folder = folder;
   options.output = (fs::absolute(folder) / "callgrind.txt").string();
   options.quiet_seconds = options.max_seconds = 600;
@@ -48,9 +48,9 @@ std::optional<double> counted(const std::string& scene, const std::string& model
                                               scene,
                                               model,
                                               std::to_string(steps)};
-  const ChildEnd end = run_child(arguments, options);
+  const calibrate::ChildEnd end = calibrate::run_child(arguments, options);
   const std::optional<double> count =
-      end.kind == ChildEnd::Kind::exited && end.code == 0 ? collected(options.output) : std::nullopt;
+      end.kind == calibrate::ChildEnd::Kind::exited && end.code == 0 ? collected(options.output) : std::nullopt;
   fs::remove(options.output);
   return count;
 }
@@ -73,4 +73,4 @@ std::optional<double> count_instructions(const ChartScene& scene, const ChartMod
   return *count / (static_cast<double>(steps) * elements);
 }
 
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

@@ -16,7 +16,7 @@
 #include "scene/scene_to_model.hpp"
 #include "sim/contact/contact_law.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 constexpr double start_tolerance = 5e-3, turned_tolerance = 5e-3;  // eV/nm
@@ -246,4 +246,4 @@ void step_for_counting(const std::string& scene_name, const std::string& model_n
   count_to_here();
 }
 
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

@@ -12,7 +12,7 @@
 #include "scene/scene_to_model.hpp"
 #include "sim/contact/paper/law.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 using Precision = Interaction::Precision;
@@ -172,4 +172,4 @@ double rest_spacing(const Scene& scene) {
   return line_parallel_well(line_contacts(scene).front().density).distance;
 }
 
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

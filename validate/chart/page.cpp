@@ -11,7 +11,7 @@
 #include "chart/chart.hpp"
 #include "report/scatter.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 constexpr double smallest_error = 1e-5, largest_error = 0.3;  // what is beyond is drawn here, hollow
@@ -448,4 +448,4 @@ std::string chart_page(const std::vector<ChartPoint>& points, const std::vector<
   return html + "</main>\n</body>\n</html>\n";
 }
 
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

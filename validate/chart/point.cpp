@@ -6,7 +6,7 @@
 #include "io/files.hpp"
 #include "model/error.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -85,4 +85,4 @@ ChartPoint read_point(const std::string& path) {
   }
 }
 
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-namespace ropewalk {
+namespace ropewalk::validate {
 
 // One model in one scene, as in the file of its result.
 struct ChartPoint {
@@ -31,4 +31,4 @@ std::string point_json(const ChartPoint& point);
 // Throws InputError where the file is not such a point.
 ChartPoint read_point(const std::string& path);
 
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

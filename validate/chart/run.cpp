@@ -9,7 +9,7 @@
 #include "model/error.hpp"
 #include "version.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 namespace fs = std::filesystem;
@@ -136,4 +136,4 @@ int chart_command(const ChartArguments& a) {
   return 0;
 }
 
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

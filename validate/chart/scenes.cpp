@@ -19,7 +19,7 @@
 #include "scene/kinds/film.hpp"
 #include "scene/prepare.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 constexpr const char* set_name = "cnt-10-10-tersoff";
@@ -479,4 +479,4 @@ std::string observable_unit(const std::string& observable) {
   return units.at(observable);
 }
 
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

@@ -9,7 +9,7 @@
 
 #include "io/parameters_toml.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 // A local static exists when the first registration needs it, whichever file's comes first.
@@ -134,4 +134,4 @@ std::vector<Case> sorted_cases(std::vector<Case> cases) {
   return cases;
 }
 
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

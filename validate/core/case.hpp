@@ -13,7 +13,7 @@
 #include "model/parameters.hpp"
 #include "report/svg.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 
 // One number compared with its oracle.
 struct Check {
@@ -199,4 +199,4 @@ void check_applicable(const Case& c, const ParameterSet& given, const std::vecto
 // Sorts the cases for the report. Throws std::invalid_argument where two have the same name.
 std::vector<Case> sorted_cases(std::vector<Case> cases);
 
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

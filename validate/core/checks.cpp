@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace ropewalk {
+namespace ropewalk::validate {
 
 Check relative_check(std::string name, double value, double reference, double tolerance, std::string unit,
                      std::string note) {
@@ -50,4 +50,4 @@ ChartLine model_points(std::string name, std::vector<double> x, std::vector<doub
   return line;
 }
 
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

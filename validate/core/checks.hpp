@@ -7,7 +7,7 @@
 
 #include "core/case.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 
 // The tolerance is a fraction of |reference|.
 Check relative_check(std::string name, double value, double reference, double tolerance, std::string unit,
@@ -24,4 +24,4 @@ ChartLine theory_curve(std::string name, const std::function<double(double)>& cu
 // Numbers of the model, as points.
 ChartLine model_points(std::string name, std::vector<double> x, std::vector<double> y, int colour = 1);
 
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

@@ -12,7 +12,7 @@
 #include "io/parameters_toml.hpp"
 #include "model/error.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 namespace fs = std::filesystem;
@@ -166,4 +166,4 @@ ReferenceTable reference(const CaseContext& context, const ParameterSet& set, co
   return table;
 }
 
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

@@ -19,7 +19,7 @@
 
 #include "core/case.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 
 struct ReferenceTable {
   std::vector<std::pair<std::string, std::string>> origin;
@@ -53,4 +53,4 @@ void check_origin(const ReferenceTable& table, const std::string& path, const Pa
 ReferenceTable reference(const CaseContext& context, const ParameterSet& set, const std::string& name,
                          double tolerance, const std::function<ReferenceTable()>& make, CaseResult& result);
 
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

@@ -11,7 +11,7 @@
 #include "io/parameters_toml.hpp"
 #include "parametrize/parametrize.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 constexpr double nN = units::eV_in_nN_nm;
@@ -315,4 +315,4 @@ std::string tubes_csv(const std::vector<ParametrizedTube>& tubes) {
   return text;
 }
 
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

@@ -21,7 +21,7 @@
 #include "model/error.hpp"
 #include "verbs/verbs.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 namespace fs = std::filesystem;
@@ -39,8 +39,8 @@ std::vector<Place> places(const ParametrizeArguments& a) {
   std::vector<Place> all;
   for (const std::string& text : a.tubes)
     for (const std::string& potential : a.potentials) {
-      const Chirality c = parse_chirality(text);
-      find_potential(potential);
+      const Chirality c = calibrate::parse_chirality(text);
+      calibrate::find_potential(potential);
       const Place place{text, potential, fmt::format("cnt-{}-{}-{}", c.n, c.m, potential), a.out};
       const auto twice = [&](const Place& other) { return other.name == place.name; };
       if (std::none_of(all.begin(), all.end(), twice)) all.push_back(place);
@@ -50,7 +50,7 @@ std::vector<Place> places(const ParametrizeArguments& a) {
 
 // In a process of its own. The numbers go to NAME-calibration.json, and the reason of a failure to NAME-error.txt.
 int calibrate(const Place& place) {
-  CalibrateArguments c;
+  calibrate::CalibrateArguments c;
   c.chirality = place.tube;
   c.potential = place.potential;
   c.envelope = c.json = c.force = c.quiet = true;
@@ -60,7 +60,7 @@ int calibrate(const Place& place) {
   try {
     if (!std::freopen(place.file("-calibration.json").c_str(), "w", stdout))
       throw std::runtime_error(fmt::format("{}: {}", place.file("-calibration.json"), std::strerror(errno)));
-    const int code = calibrate_command(c);
+    const int code = calibrate::calibrate_command(c);
     if (std::fflush(stdout) != 0) throw std::runtime_error(std::strerror(errno));
     return code;
   } catch (const std::exception& e) {
@@ -101,7 +101,7 @@ double calibration_seconds(const Place& place) {
 ParametrizedTube validated(const Place& place, const ParametrizeArguments& a, int jobs) {
   ParametrizedTube tube;
   tube.name = place.name;
-  const Chirality c = parse_chirality(place.tube);
+  const Chirality c = calibrate::parse_chirality(place.tube);
   tube.tube = fmt::format("({},{})", c.n, c.m);
   if (!fs::exists(place.file(".toml"))) {
     tube.error = fs::exists(place.file("-error.txt")) ? read_file(place.file("-error.txt")) : "was interrupted";
@@ -197,4 +197,4 @@ int parametrize_command(const ParametrizeArguments& a) {
   return code;
 }
 
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

@@ -11,7 +11,7 @@
 #include "model/parameters.hpp"
 #include "runner/runner.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 
 struct ParametrizeArguments {
   std::vector<std::string> tubes;  // "7,3"
@@ -49,4 +49,4 @@ std::string overview_page(const std::vector<ParametrizedTube>& tubes);
 // One row a tube, with units in the header.
 std::string tubes_csv(const std::vector<ParametrizedTube>& tubes);
 
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

@@ -10,7 +10,7 @@
 #include "model/error.hpp"
 #include "runner/runner.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -248,4 +248,4 @@ std::string validation_table(const std::vector<Outcome>& outcomes) {
   return text;
 }
 
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

@@ -7,7 +7,7 @@
 
 #include "runner/runner.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 const char* verdict_css = R"(
@@ -258,4 +258,4 @@ std::string validation_page(const std::vector<Outcome>& outcomes, const std::vec
   return html + "</main>\n</body>\n</html>\n";
 }
 
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

@@ -22,7 +22,7 @@
 #include "runner/runner.hpp"
 #include "version.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 namespace fs = std::filesystem;
@@ -379,4 +379,4 @@ int validation_report_command(const ReportArguments& a) {
   return 0;
 }
 
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

@@ -6,7 +6,7 @@
 
 #include "core/case.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 
 struct Outcome;
 
@@ -89,4 +89,4 @@ std::string validation_table(const std::vector<Outcome>& outcomes);
 const Case& find_case(const std::string& name);
 const char* group_name(Case::Group group);
 
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

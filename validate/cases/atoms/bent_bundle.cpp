@@ -24,7 +24,7 @@
 #include "model/error.hpp"
 #include "scene/build.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 // Fixed beforehand.
@@ -486,4 +486,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

@@ -12,7 +12,7 @@
 #include "cases/common/tube_curve.hpp"
 #include "cases/common/tube_pair.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 // Fixed beforehand.
@@ -71,7 +71,7 @@ ReferenceTable make_reference(const CaseContext& context, const ParameterSet& se
   const long hexagons = hexagons_in(c, shape, tube_length);
   const double length = static_cast<double>(hexagons) * shape.length_per_hexagon;
   const Shell shell{shape.radius, 2 / (2 * units::pi * shape.radius * shape.length_per_hexagon)};
-  const double rest = crossed_well(session.atom_law(), shell, shell, units::pi / 2).distance;
+  const double rest = calibrate::crossed_well(session.atom_law(), shell, shell, units::pi / 2).distance;
   std::string input = "# frozen crossed tubes at several angles and distances, for several registries\n";
   int number = 0;
   for (const double angle : angles)
@@ -283,4 +283,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

@@ -10,7 +10,7 @@
 #include "cases/common/tube_curve.hpp"
 #include "cases/common/tube_pair.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 // Fixed beforehand: registry changes the well by 1 to 3 %, and a shell without atoms has none.
@@ -226,4 +226,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

@@ -12,7 +12,7 @@
 #include "cases/common/tube_curve.hpp"
 #include "cases/common/tube_pair.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 // Fixed beforehand.
@@ -29,7 +29,7 @@ constexpr double fit_from = 2, fit_to = 6;  // nm: without the influence of the 
 
 double rest_distance(const MdSession& session, const TubeShape& shape) {
   const Shell shell{shape.radius, 2 / (2 * units::pi * shape.radius * shape.length_per_hexagon)};
-  return parallel_well(session.atom_law(), shell, shell).distance;
+  return calibrate::parallel_well(session.atom_law(), shell, shell).distance;
 }
 
 double full_turn(Chirality c) { return 2 * units::pi / static_cast<double>(row_hexagons(c)); }
@@ -298,4 +298,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

@@ -9,7 +9,7 @@
 #include "atomistic/finite_tube.hpp"
 #include "cases/common/tube_curve.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 // Other lengths than those that the stiffness was fitted to.
@@ -23,7 +23,7 @@ std::string bend_input(const FiniteTube& tube, const Potential& potential, const
   const std::string relax =
       fmt::format("minimize 0.0 2e-3 1500 20000\nprint \"$(pe:%.15g)\" append {}.dat screen no\n", name);
   std::string input = "# bent step by step, with a little noise\n" + tube.commands(potential, name + ".data") +
-                      affine_bend_variables() + relax;
+                      calibrate::affine_bend_variables() + relax;
   double last = 0;
   int seed = 4001;
   for (const double curvature : curvatures) {
@@ -140,4 +140,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

@@ -10,7 +10,7 @@
 #include "atomistic/finite_tube.hpp"
 #include "cases/common/tube_curve.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 constexpr double lengths[] = {12, 24, 47, 94};  // nm
@@ -220,4 +220,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

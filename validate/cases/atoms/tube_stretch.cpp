@@ -8,7 +8,7 @@
 
 #include "cases/common/tube_curve.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 constexpr double cell_length = 5;  // nm: room for a buckle, which is about as long as the tube is wide
@@ -140,4 +140,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

@@ -9,7 +9,7 @@
 
 #include "cases/common/tube_curve.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 // A flattened, twisted ribbon needs a long cell to form.
@@ -27,7 +27,7 @@ TwistedCell cell_of(Chirality c, const TubeShape& shape, LatticeVector period) {
   TwistedCell cell;
   cell.hexagons = cell_hexagons(c, period);
   cell.length = static_cast<double>(cell.hexagons) * shape.length_per_hexagon;
-  cell.twist = -2 * units::pi * period_turns(c, period) / cell.length;
+  cell.twist = -2 * units::pi * calibrate::period_turns(c, period) / cell.length;
   return cell;
 }
 
@@ -72,7 +72,7 @@ ReferenceTable make_reference(const CaseContext& context, const ParameterSet& se
   const Chirality c = set.chirality;
   const RelaxedTube& relaxed = session.relaxed();
   const std::vector<LatticeVector> periods =
-      twisted_periods(c, shortest_cell, longest_cell, 1.05 * last_shear / relaxed.shape.radius);
+      calibrate::twisted_periods(c, shortest_cell, longest_cell, 1.05 * last_shear / relaxed.shape.radius);
   std::string input = "# uniformly twisted periodic cells\n";
   std::vector<TwistedCell> cells;
   for (const double wanted : shears(c)) {
@@ -203,4 +203,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

@@ -21,7 +21,7 @@
 #include "scene/build.hpp"
 #include "scene/maxwell.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 // Fixed beforehand.
@@ -469,4 +469,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

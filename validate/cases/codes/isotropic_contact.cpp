@@ -7,7 +7,7 @@
 #include "scene/build.hpp"
 #include "sim/contact/paper/law.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 template <class Law>
@@ -105,4 +105,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

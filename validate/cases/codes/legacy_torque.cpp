@@ -7,7 +7,7 @@
 #include "scene/kinds/rope.hpp"
 #include "scene/prepare.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 constexpr double duration = 400, step = 0.016, enough = 150;  // ps, ps, eV
@@ -106,4 +106,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

@@ -5,7 +5,7 @@
 
 #include "cases/common/chain.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 constexpr int bonds = 20;
@@ -129,4 +129,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

@@ -6,7 +6,7 @@
 #include "cases/common/slide.hpp"
 #include "scene/build.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 constexpr int bonds = 30, increments = 6;  // an even number, for Simpson's rule
@@ -301,4 +301,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

@@ -9,7 +9,7 @@
 #include "scene/build.hpp"
 #include "sim/contact/paper/law.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 constexpr int bonds = 30, records = 100;
@@ -268,4 +268,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

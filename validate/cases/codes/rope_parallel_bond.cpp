@@ -7,7 +7,7 @@
 
 #include "cases/common/driven_rope.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 constexpr int bonds = 12, rounds = 2;
@@ -249,4 +249,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

@@ -4,7 +4,7 @@
 
 #include "model/error.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 constexpr double force_tolerance = 1e-4;  // eV/nm
@@ -125,4 +125,4 @@ double BeadRope::moment() const {
   return resisting_moment(rope_.upper, position_, force_, Vec3Array(position_.size()));
 }
 
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

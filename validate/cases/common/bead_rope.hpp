@@ -9,7 +9,7 @@
 
 #include "cases/common/gripped_rope.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 
 // 12-6 law between beads. Two long parallel rows have the given spacing (nm) and mean energy per length (eV/nm).
 struct BeadLaw {
@@ -61,4 +61,4 @@ class BeadRope {
   double stretch_ = 0, bend_ = 0, contact_ = 0;
 };
 
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

@@ -5,7 +5,7 @@
 #include "scene/build.hpp"
 #include "sim/contact/line/law.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 
 LineContact line_contact_of(const ParameterSet& set) {
   const LineDensity& density = set.line->density;
@@ -47,4 +47,4 @@ double resisting_moment(const std::vector<int>& elements, const Vec3Array& posit
   return sum;
 }
 
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

@@ -4,7 +4,9 @@
 #include "cases/common/chain.hpp"
 #include "contact/integral.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
+
+using calibrate::AtomLaw, calibrate::PairIntegral, calibrate::Shell, calibrate::Well;
 
 // The line law of a set between elements of its own length.
 LineContact line_contact_of(const ParameterSet& set);
@@ -26,4 +28,4 @@ Bundle line_bundle(const ParameterSet& set, int tubes, int elements);
 double resisting_moment(const std::vector<int>& elements, const Vec3Array& position, const Vec3Array& force,
                         const Vec3Array& torque);
 
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

@@ -6,7 +6,7 @@
 
 #include "model/error.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 
 Topology topology_of(const ParameterSet& set) {
   Topology topology;
@@ -98,4 +98,4 @@ double zero_between(const std::function<double(double)>& falling, double low, do
   return 0.5 * (low + high);
 }
 
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

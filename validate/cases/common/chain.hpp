@@ -14,7 +14,7 @@
 #include "scene/loads/torque.hpp"
 #include "sim/dynamics/simulation.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 
 // One tube type, element length and mass as the set says; no tubes yet.
 Topology topology_of(const ParameterSet& set);
@@ -55,4 +55,4 @@ double lowest_eigenvalue(const Eigen::MatrixXd& stiffness);
 // The zero of a falling function, by bisection.
 double zero_between(const std::function<double(double)>& falling, double low, double high);
 
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

@@ -4,7 +4,7 @@
 
 #include "scene/maxwell.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 
 DrivenRope::DrivenRope(const ParameterSet& set, int bonds, Bonds kind, double step_fraction, double brake)
     : rope_(set, bonds, "line"),
@@ -96,4 +96,4 @@ void DrivenRope::step(const GripPlace& place) {
   forces();
 }
 
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

@@ -9,7 +9,7 @@
 #include "cases/common/gripped_rope.hpp"
 #include "cases/common/parallel_bond.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 
 // Position of the upper grip: turned about the axis and shifted across it.
 struct GripPlace {
@@ -59,4 +59,4 @@ class DrivenRope {
   double bonds_ = 0, contact_ = 0, twist_ = 0, moment_ = 0;
 };
 
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

@@ -7,7 +7,7 @@
 #include "sim/contact/line/law.hpp"
 #include "sim/contact/paper/law.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 
 GrippedRope::GrippedRope(const ParameterSet& set, int bonds_, const std::string& law)
     : topology(topology_of(set)), bonds(bonds_) {
@@ -61,4 +61,4 @@ double simpson_sum(const std::vector<double>& values, double distance) {
   return sum * distance / 3;
 }
 
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

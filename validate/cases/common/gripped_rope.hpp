@@ -9,7 +9,7 @@
 #include "cases/common/bundle.hpp"
 #include "scene/scene.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 
 struct GrippedRope {
   static constexpr int tubes = 7, held = 2;  // elements of a grip in each tube
@@ -41,4 +41,4 @@ double torsion_energy(const BondStiffness& bond, double spacing, double length, 
 // Integral of an odd number of values at even distances, by Simpson's rule.
 double simpson_sum(const std::vector<double>& values, double distance);
 
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

@@ -11,7 +11,7 @@
 #include "io/parameters_toml.hpp"
 #include "model/error.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 
 namespace fs = std::filesystem;
 
@@ -21,7 +21,7 @@ Potential potential_of(const ParameterSet& set) {
   const std::string name = provenance_value(set, "potential"), hash = provenance_value(set, "potential_hash");
   Potential potential;
   try {
-    potential = find_potential(name);
+    potential = calibrate::find_potential(name);
   } catch (const InputError& e) {
     throw NotApplicable(
         fmt::format("the set was made with the interatomic potential \"{}\", which LAMMPS does not "
@@ -53,7 +53,7 @@ MdSession::MdSession(const CaseContext& context, const ParameterSet& set)
       folder_(context.work),
       progress_(context.progress) {}
 
-RunContext MdSession::context_of(const std::string& folder) const {
+calibrate::RunContext MdSession::context_of(const std::string& folder) const {
   return {set_.chirality, potential_, folder, options_, 0, {}};
 }
 
@@ -67,8 +67,8 @@ const RelaxedTube& MdSession::relaxed() {
   const std::string folder =
       (fs::path(folder_) / fmt::format("relax-{}-{}", set_.chirality.n, set_.chirality.m)).string();
   fs::remove_all(folder);
-  RunContext run = context_of(folder);
-  relaxed_ = relax_tube(run);
+  calibrate::RunContext run = context_of(folder);
+  relaxed_ = calibrate::relax_tube(run);
   inputs_ += read_file(folder + "/relax.data") + read_file(folder + "/relax.in");
   seconds_ += run.lammps_seconds;
   return *relaxed_;
@@ -81,7 +81,7 @@ TubeShape MdSession::rest_shape() {
 }
 
 void MdSession::write(const std::string& name, const std::string& content) {
-  write_data(context_of(folder_), name, content);
+  calibrate::write_data(context_of(folder_), name, content);
   inputs_ += content;
 }
 
@@ -89,11 +89,11 @@ std::vector<std::vector<double>> MdSession::run(const std::string& name, const s
                                                 std::size_t columns, std::size_t min_rows) {
   progress("LAMMPS: " + name);
   fs::remove(fs::path(folder_) / (name + ".dat"));  // it is appended to
-  RunContext context = context_of(folder_);
-  run_stage(context, name, input);
+  calibrate::RunContext context = context_of(folder_);
+  calibrate::run_stage(context, name, input);
   inputs_ += input;
   seconds_ += context.lammps_seconds;
-  return read_results(context, name, min_rows > 0 ? min_rows : rows, rows, columns);
+  return calibrate::read_results(context, name, min_rows > 0 ? min_rows : rows, rows, columns);
 }
 
 ReferenceTable MdSession::table(const std::string& title, const std::string& case_name, bool contact,
@@ -103,7 +103,7 @@ ReferenceTable MdSession::table(const std::string& title, const std::string& cas
   t.add("potential", fmt::format("{} ({}, hash {})", potential_.name, fs::path(potential_.file).filename().string(),
                                  potential_.file_hash));
   if (contact) t.add("between_tubes", between_tubes(set_));
-  t.add("lammps", lammps_version({}).text);
+  t.add("lammps", calibrate::lammps_version({}).text);
   t.add("input_hash", hash_hex(inputs_));
   t.add("wall_seconds", fmt::format("{:.0f}", seconds_));
   t.add("command", fmt::format("ropewalk validate run {} --fresh", case_name));
@@ -111,7 +111,7 @@ ReferenceTable MdSession::table(const std::string& title, const std::string& cas
   return t;
 }
 
-long period_hexagons(Chirality c) { return cell_hexagons(c, translation_vector(c)); }
+long period_hexagons(Chirality c) { return cell_hexagons(c, calibrate::translation_vector(c)); }
 
 double period_of(Chirality c, const TubeShape& shape) {
   return static_cast<double>(period_hexagons(c)) * shape.length_per_hexagon;
@@ -135,4 +135,4 @@ std::vector<Vector3> tube_atoms(Chirality c, const TubeShape& shape, long hexago
   return atoms;
 }
 
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

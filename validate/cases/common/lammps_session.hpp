@@ -14,7 +14,13 @@
 #include "core/reference.hpp"
 #include "io/parameters_toml.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
+
+using calibrate::angstrom, calibrate::header_commands, calibrate::data_file;
+using calibrate::AtomLaw, calibrate::Shell, calibrate::Well, calibrate::Potential;
+using calibrate::cell_hexagons, calibrate::extra_hexagons, calibrate::hexagons_in, calibrate::held_band;
+using calibrate::FiniteTube, calibrate::RelaxedTube, calibrate::TubeShape;
+using calibrate::Site, calibrate::LatticeVector, calibrate::strip_sites, calibrate::height_in_thirds;
 
 // All runs of one table, in one folder. They share the interatomic potential and the law between tubes, those of
 // the set; the hash covers all their inputs. Throws NotApplicable where the set's potential is not one that is
@@ -42,14 +48,14 @@ class MdSession {
                        std::vector<std::string> columns) const;
 
  private:
-  RunContext context_of(const std::string& folder) const;
+  calibrate::RunContext context_of(const std::string& folder) const;
   void progress(const std::string& line) const;
 
   ParameterSet set_;
   Potential potential_;
   AtomLaw atom_law_;
   std::optional<RelaxedTube> relaxed_;
-  StiffnessOptions options_;
+  calibrate::StiffnessOptions options_;
   std::string folder_, inputs_;
   double seconds_ = 0;
   std::function<void(const std::string&)> progress_;
@@ -70,4 +76,4 @@ double natural_twist(const ParameterSet& set);
 // The atoms of a relaxed tube: so many hexagons, from z = 0 upwards, turned about its axis (nm, rad).
 std::vector<Vector3> tube_atoms(Chirality c, const TubeShape& shape, long hexagons, double turn = 0);
 
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

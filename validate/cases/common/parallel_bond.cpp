@@ -4,7 +4,7 @@
 
 #include "cases/common/chain.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 
 // Shear and bending stiffness are chosen such that a chain is a slender beam, as in the total-energy bond.
 ParallelBond::ParallelBond(const BondStiffness& bond, double a)
@@ -73,4 +73,4 @@ double parallel_bond_deflection(const ParameterSet& set, int bonds, double force
   return x.back().x() - start.back().x();
 }
 
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

@@ -7,7 +7,7 @@
 
 #include "model/parameters.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 
 // Motion of one element in one step.
 struct ElementMove {
@@ -33,4 +33,4 @@ class ParallelBond {
 // Deflection (nm) of the end of a cantilever of such bonds under a force (eV/nm) across it, after damped motion.
 double parallel_bond_deflection(const ParameterSet& set, int bonds, double force);
 
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

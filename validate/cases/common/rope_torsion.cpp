@@ -6,7 +6,7 @@
 
 #include "core/checks.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 using Length = RopeInMachine::Length;
@@ -122,4 +122,4 @@ Case rope_torsion_case() {
   return c;
 }
 
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

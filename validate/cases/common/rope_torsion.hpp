@@ -4,10 +4,10 @@
 #include "cases/common/torsion_machine.hpp"
 #include "core/case.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 
 CaseResult run_rope_torsion(const CaseContext& context, RopeInMachine::Length length);
 // What both cases have in common.
 Case rope_torsion_case();
 
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

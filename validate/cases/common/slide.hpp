@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-namespace ropewalk {
+namespace ropewalk::validate {
 
 struct Slide {
   std::vector<double> shift, energy;  // in elements, both ends of the period included; eV/nm
@@ -35,4 +35,4 @@ struct Slide {
   }
 };
 
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

@@ -8,7 +8,7 @@
 #include "scene/random.hpp"
 #include "sim/forces/forces.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 constexpr double enough_growth = 1e6;  // of the kinetic energy
@@ -125,4 +125,4 @@ double largest_damped_step(const Topology& topology, const Interaction& interact
                        1e-3);
 }
 
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

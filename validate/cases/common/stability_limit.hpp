@@ -4,7 +4,7 @@
 #include "cases/common/chain.hpp"
 #include "core/case.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 
 // The value at which `fails` turns from false to true, with the relative error `relative`. NaN where `low` fails or
 // `high` does not.
@@ -33,4 +33,4 @@ CaseFigure step_figure(const std::string& by, const ChartAxis& x);
 // The set with elements `factor` times as long.
 ParameterSet with_elements(ParameterSet set, double factor);
 
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

@@ -11,7 +11,7 @@
 #include "scene/scene_toml.hpp"
 #include "sim/state/uniform_chain.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 constexpr double at_rest = 1e-4;  // eV/nm
@@ -188,4 +188,4 @@ RopeInMachine::Reading RopeInMachine::theory(const ParameterSet& oracle, double 
   return out;
 }
 
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

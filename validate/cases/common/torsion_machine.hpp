@@ -32,7 +32,7 @@
 #include "scene/loads/grip.hpp"
 #include "sim/dynamics/simulation.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 
 struct RopeInMachine {
   enum class Length { held, free };
@@ -75,4 +75,4 @@ struct RopeInMachine {
   double bond_stretch_ = 1;  // of the relaxed rope
 };
 
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

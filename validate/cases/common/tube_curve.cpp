@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 constexpr int curve_points = 160;
@@ -171,4 +171,4 @@ double lammps_seconds(const ParameterSet& set, double length, double relaxations
   return per_atom * set.atoms_per_length * length * relaxations;
 }
 
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

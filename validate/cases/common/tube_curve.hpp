@@ -9,7 +9,7 @@
 #include "cases/common/lammps_session.hpp"
 #include "sim/state/uniform_chain.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 
 // Fixed beforehand: the anharmonic bond claims energies within 1 % up to the limits of the set.
 inline constexpr double window_tolerance = 0.01;
@@ -41,4 +41,4 @@ void add_collapse(const TubeCurve& curve, const std::vector<double>& amplitude, 
 // About how long LAMMPS takes for `relaxations` of `length` nm of tube, s of one core (Tersoff).
 double lammps_seconds(const ParameterSet& set, double length, double relaxations);
 
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

@@ -9,7 +9,7 @@
 #include "scene/build.hpp"
 #include "scene/scene_to_model.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 
 std::vector<Registry> registries(int count) {
   // Powers of the root of x^5 = x + 1: the most even additive sequence in four dimensions.
@@ -116,4 +116,4 @@ LineWell lowest_of(const std::vector<double>& distance, const std::vector<double
   return {distance[lowest] + reach * well.distance, well.energy};
 }
 
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

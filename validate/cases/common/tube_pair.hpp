@@ -8,7 +8,7 @@
 #include "model/contact/contact.hpp"
 #include "model/contact/line.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 
 // How the atoms of two tubes are turned and shifted, in parts of a symmetry turn or of a period, 0 .. 1.
 struct Registry {
@@ -43,4 +43,4 @@ double parallel_rows(const LineContact& contact, double distance, double shift =
 // Minimum of a tabulated curve: that of a quartic fitted to the points within `reach` (nm) of the lowest.
 LineWell lowest_of(const std::vector<double>& distance, const std::vector<double>& energy, double reach);
 
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

@@ -12,7 +12,7 @@
 #include "io/grade.hpp"
 #include "model/error.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 // Of the range of each column: the error of the minimiser.
@@ -316,4 +316,4 @@ Case twisted_rope_case(const RopeComparison& comparison, const std::string& titl
   return c;
 }
 
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

@@ -26,7 +26,7 @@
 #include "core/reference.hpp"
 #include "model/bond.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 
 struct TwistedRope {
   std::string name;   // of the table of references
@@ -92,4 +92,4 @@ struct RopeComparison {
 // A case of such ropes, without its order, its sets and its faults.
 Case twisted_rope_case(const RopeComparison& comparison, const std::string& title);
 
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

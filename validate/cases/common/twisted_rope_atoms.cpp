@@ -11,7 +11,7 @@
 #include "io/parameters_toml.hpp"
 #include "scene/build.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 constexpr int tubes = 7;
@@ -244,4 +244,4 @@ ReferenceTable twist_atoms(const TwistedRope& rope, const ParameterSet& set, con
   return t;
 }
 
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

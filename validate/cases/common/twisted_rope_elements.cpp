@@ -8,7 +8,7 @@
 #include "scene/loads/fix.hpp"
 #include "sim/contact/line/law.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 constexpr int tubes = 7;
@@ -142,4 +142,4 @@ std::vector<TwistedState> twist_elements(const TwistedRope& rope, const Paramete
   return states;
 }
 
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

@@ -6,7 +6,7 @@
 
 #include "cases/common/stability_limit.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 constexpr int bonds = 40;
@@ -113,4 +113,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

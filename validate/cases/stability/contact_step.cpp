@@ -4,7 +4,7 @@
 #include "cases/common/bundle.hpp"
 #include "cases/common/stability_limit.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 // Seven short tubes at rest.
@@ -70,4 +70,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

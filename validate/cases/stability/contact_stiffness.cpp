@@ -10,7 +10,7 @@
 #include "scene/random.hpp"
 #include "sim/contact/paper/law.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 constexpr int tubes = 7, elements = 4;
@@ -169,4 +169,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

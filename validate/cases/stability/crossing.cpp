@@ -12,7 +12,7 @@
 #include "sim/contact/paper/law.hpp"
 #include "sim/forces/forces.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 // Energy (eV) at a point of a path, and its slope by force or torque.
@@ -348,4 +348,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

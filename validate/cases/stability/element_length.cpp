@@ -11,7 +11,7 @@
 #include "sim/contact/paper/law.hpp"
 #include "sim/forces/forces.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 // --- Curvature: a tube bent by couples at its ends ---
@@ -277,4 +277,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

@@ -10,7 +10,7 @@
 #include "sim/contact/line/law.hpp"
 #include "sim/forces/forces.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 constexpr double time_step = 0.02;  // ps
@@ -175,4 +175,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

@@ -7,7 +7,7 @@
 #include "cases/common/stability_limit.hpp"
 #include "model/error.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 constexpr int bonds = 10;
@@ -183,4 +183,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

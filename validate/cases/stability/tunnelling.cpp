@@ -7,7 +7,7 @@
 #include "model/error.hpp"
 #include "sim/contact/line/law.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 constexpr double start = 3.0;  // nm apart, out of reach
@@ -110,4 +110,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

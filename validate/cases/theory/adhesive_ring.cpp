@@ -3,7 +3,7 @@
 
 #include "cases/common/bundle.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 constexpr int elements = 364;
@@ -91,4 +91,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

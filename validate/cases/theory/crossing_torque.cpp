@@ -3,7 +3,7 @@
 
 #include "cases/common/bundle.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 struct Crossing {
@@ -89,4 +89,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

@@ -3,7 +3,7 @@
 
 #include "cases/common/chain.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 // Lowest eigenvalue of a straight chain, shortened by the load, whose ends stay on the axis and turn freely.
@@ -72,4 +72,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

@@ -4,7 +4,7 @@
 #include "cases/common/torsion_machine.hpp"
 #include "core/checks.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 CaseResult run(const CaseContext& context) {
@@ -81,4 +81,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

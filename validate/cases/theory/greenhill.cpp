@@ -3,7 +3,7 @@
 
 #include "cases/common/chain.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 enum class Ends { pinned, clamped };
@@ -81,4 +81,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

@@ -10,7 +10,7 @@
 #include "cases/common/bundle.hpp"
 #include "scene/build.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 constexpr int tubes = 7;
@@ -294,4 +294,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

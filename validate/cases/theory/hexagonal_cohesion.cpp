@@ -4,7 +4,7 @@
 #include "cases/common/bundle.hpp"
 #include "scene/build.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 double vdw_energy(const ParameterSet& set, int tubes, int elements) {
@@ -88,4 +88,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

@@ -7,7 +7,7 @@
 #include "scene/prepare.hpp"
 #include "scene/scene_toml.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 constexpr double kelvin = 300;
@@ -97,4 +97,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

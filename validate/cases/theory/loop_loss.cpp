@@ -10,7 +10,7 @@
 #include "scene/prepare.hpp"
 #include "scene/scene_toml.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 constexpr int elements = 20;
@@ -125,4 +125,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

@@ -6,7 +6,7 @@
 
 #include "cases/common/chain.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 using Vector6 = Eigen::Matrix<double, 6, 1>;
@@ -159,4 +159,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

@@ -5,7 +5,7 @@
 
 #include "cases/common/bundle.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 constexpr double ring_radius = 8;  // spacings
@@ -129,4 +129,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

@@ -3,7 +3,7 @@
 
 #include "cases/common/bundle.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 constexpr int elements = 50;
@@ -122,4 +122,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

@@ -9,7 +9,7 @@
 #include "scene/prepare.hpp"
 #include "scene/scene_toml.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 constexpr int elements = 24;
@@ -105,4 +105,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

@@ -6,7 +6,7 @@
 
 #include "cases/common/bundle.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 constexpr int arm_elements = 20;  // 27 nm of each arm; the contact opens within 5 nm
@@ -255,4 +255,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

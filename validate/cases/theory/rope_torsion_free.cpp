@@ -1,7 +1,7 @@
 // A rope turned without tension.
 #include "cases/common/rope_torsion.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 const RegisteredCase registered([] {
@@ -20,4 +20,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk
+}  // namespace ropewalk::validate

@@ -3,7 +3,7 @@
 
 #include "cases/common/chain.hpp"
 
-namespace ropewalk {
+namespace ropewalk::validate {
 namespace {
 
 constexpr int bonds = 20;
@@ -90,4 +90,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk
+}  // namespace ropewalk::validate
