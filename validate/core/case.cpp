@@ -93,6 +93,7 @@ std::string tube_names(const std::vector<ParameterSet>& sets) {
 
 CaseResult run_case(const Case& c, const CaseContext& context) {
   CaseResult result = c.run(context);
+  for (const CaseTube& tube : context.tubes()) result.sources.push_back(tube.source);
   for (const Case::KnownMiss& miss : c.known_misses)
     for (Check& check : result.checks)
       if (check.name == miss.check) check.known = miss.size;

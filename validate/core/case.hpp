@@ -59,10 +59,23 @@ struct CaseResult {
   std::vector<Limit> limits;  // only in cases of the group `stability`
   std::vector<CaseFigure> figures;
   std::vector<std::string> remarks;  // sentences: the cause of a miss, the assumption that a number tests
-  std::vector<std::string> sources;  // reference files (with "stored" or "fresh"), parameter sets
+  std::vector<std::string> sources;  // reference files (with "stored" or "fresh"); run_case() adds the sets
   double seconds = 0;
 
   bool holds() const;  // every check that is not informative holds
+
+  // Adds a check whose tolerance is a fraction of |reference|, or is in the unit. show_... adds one that decides
+  // nothing.
+  void check_relative(std::string name, double value, double reference, double tolerance, std::string unit,
+                      std::string note = "");
+  void check_absolute(std::string name, double value, double reference, double tolerance, std::string unit,
+                      std::string note = "");
+  void show_relative(std::string name, double value, double reference, double tolerance, std::string unit,
+                     std::string note = "");
+  void show_absolute(std::string name, double value, double reference, double tolerance, std::string unit,
+                     std::string note = "");
+  // Adds a figure; see case_figure().
+  void figure(std::string title, ChartAxis x, ChartAxis y, std::string caption, std::vector<ChartLine> lines);
 };
 
 // A deliberately wrong parameter of the model, never of the oracle.
@@ -191,7 +204,7 @@ const std::vector<Case>& all_cases();
 std::string tube_names(const std::vector<ParameterSet>& sets);
 // Of the same tube and the same interatomic potential.
 bool like(const ParameterSet& i, const ParameterSet& j);
-// Runs the case and marks its known misses.
+// Runs the case, names its sets among the sources and marks its known misses.
 CaseResult run_case(const Case& c, const CaseContext& context);
 // Whether the case can run with a set that the user gives: throws NotApplicable where it cannot.
 void check_applicable(const Case& c, const ParameterSet& given, const std::vector<ParameterSet>& shipped);

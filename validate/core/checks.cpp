@@ -4,8 +4,8 @@
 
 namespace ropewalk::validate {
 
-Check relative_check(std::string name, double value, double reference, double tolerance, std::string unit,
-                     std::string note) {
+void CaseResult::check_relative(std::string name, double value, double reference, double tolerance,
+                                std::string unit, std::string note) {
   Check c;
   c.name = std::move(name);
   c.value = value;
@@ -13,26 +13,41 @@ Check relative_check(std::string name, double value, double reference, double to
   c.tolerance = tolerance;
   c.unit = std::move(unit);
   c.note = std::move(note);
-  return c;
+  checks.push_back(std::move(c));
 }
 
-Check absolute_check(std::string name, double value, double reference, double tolerance, std::string unit,
-                     std::string note) {
-  Check c = relative_check(std::move(name), value, reference, tolerance, std::move(unit), std::move(note));
-  c.relative = false;
-  return c;
+void CaseResult::check_absolute(std::string name, double value, double reference, double tolerance,
+                                std::string unit, std::string note) {
+  check_relative(std::move(name), value, reference, tolerance, std::move(unit), std::move(note));
+  checks.back().relative = false;
 }
 
-Check information(Check check) {
-  check.informative = true;
-  return check;
+void CaseResult::show_relative(std::string name, double value, double reference, double tolerance, std::string unit,
+                               std::string note) {
+  check_relative(std::move(name), value, reference, tolerance, std::move(unit), std::move(note));
+  checks.back().informative = true;
 }
 
-ChartLine theory_curve(std::string name, const std::function<double(double)>& curve, double from, double to,
-                       int colour) {
-  ChartLine line;
-  line.name = std::move(name);
-  line.colour = colour;
+void CaseResult::show_absolute(std::string name, double value, double reference, double tolerance, std::string unit,
+                               std::string note) {
+  check_absolute(std::move(name), value, reference, tolerance, std::move(unit), std::move(note));
+  checks.back().informative = true;
+}
+
+CaseFigure case_figure(std::string title, ChartAxis x, ChartAxis y, std::string caption,
+                       std::vector<ChartLine> lines) {
+  return {{std::move(title), std::move(x), std::move(y), std::move(lines), {}}, std::move(caption)};
+}
+
+void CaseResult::figure(std::string title, ChartAxis x, ChartAxis y, std::string caption,
+                        std::vector<ChartLine> lines) {
+  figures.push_back(
+      case_figure(std::move(title), std::move(x), std::move(y), std::move(caption), std::move(lines)));
+}
+
+ChartLine theory_curve(std::string name, double from, double to, int colour,
+                       const std::function<double(double)>& curve) {
+  ChartLine line{std::move(name), {}, {}, colour};
   for (int k = 0; k <= 100; ++k) {
     line.x.push_back(from + 0.01 * k * (to - from));
     line.y.push_back(curve(line.x.back()));
@@ -40,12 +55,12 @@ ChartLine theory_curve(std::string name, const std::function<double(double)>& cu
   return line;
 }
 
+ChartLine theory_curve(std::string name, double from, double to, const std::function<double(double)>& curve) {
+  return theory_curve(std::move(name), from, to, 0, curve);
+}
+
 ChartLine model_points(std::string name, std::vector<double> x, std::vector<double> y, int colour) {
-  ChartLine line;
-  line.name = std::move(name);
-  line.x = std::move(x);
-  line.y = std::move(y);
-  line.colour = colour;
+  ChartLine line{std::move(name), std::move(x), std::move(y), colour};
   line.points = true;
   return line;
 }

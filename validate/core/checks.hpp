@@ -1,4 +1,4 @@
-// Makes the checks and the figure lines of cases.
+// Makes the figures of cases and their lines.
 #pragma once
 
 #include <functional>
@@ -9,18 +9,13 @@
 
 namespace ropewalk::validate {
 
-// The tolerance is a fraction of |reference|.
-Check relative_check(std::string name, double value, double reference, double tolerance, std::string unit,
-                     std::string note = "");
-// The tolerance is in the unit.
-Check absolute_check(std::string name, double value, double reference, double tolerance, std::string unit,
-                     std::string note = "");
-// The check, shown without deciding anything.
-Check information(Check check);
+CaseFigure case_figure(std::string title, ChartAxis x, ChartAxis y, std::string caption,
+                       std::vector<ChartLine> lines = {});
 
 // The curve of an oracle between two abscissae, as a line.
-ChartLine theory_curve(std::string name, const std::function<double(double)>& curve, double from, double to,
-                       int colour = 0);
+ChartLine theory_curve(std::string name, double from, double to, const std::function<double(double)>& curve);
+ChartLine theory_curve(std::string name, double from, double to, int colour,
+                       const std::function<double(double)>& curve);
 // Numbers of the model, as points.
 ChartLine model_points(std::string name, std::vector<double> x, std::vector<double> y, int colour = 1);
 

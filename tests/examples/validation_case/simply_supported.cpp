@@ -34,21 +34,16 @@ CaseResult run(const CaseContext& context) {
   const std::vector<double> found = deflections(model);
 
   CaseResult result;
-  result.checks.push_back(relative_check("deflection in the middle", found[bonds / 2], beam(0.5 * length), 1e-3,
-                                         "nm", "the bond is the exact element of this beam"));
-  result.checks.push_back(
-      relative_check("deflection at a quarter", found[bonds / 4], beam(0.25 * length), 1e-3, "nm"));
+  result.check_relative("deflection in the middle", found[bonds / 2], beam(0.5 * length), 1e-3, "nm",
+                        "the bond is the exact element of this beam");
+  result.check_relative("deflection at a quarter", found[bonds / 4], beam(0.25 * length), 1e-3, "nm");
   std::vector<double> place;
   for (std::size_t i = 0; i < found.size(); ++i) place.push_back(static_cast<double>(i) * oracle.element_length);
-  CaseFigure figure;
-  figure.chart = {
-      "Deflection of a tube on two supports", {"place along the tube", "nm"}, {"deflection", "nm"}, {}, {}};
-  figure.chart.lines = {theory_curve("Timoshenko beam", beam, 0, length),
-                        model_points("chain of elements", place, found)};
-  figure.caption = "The force acts in the middle; the ends are held across the tube and turn freely.";
-  result.figures = {figure};
+  result.figure(
+      "Deflection of a tube on two supports", {"place along the tube", "nm"}, {"deflection", "nm"},
+      "The force acts in the middle; the ends are held across the tube and turn freely.",
+      {theory_curve("Timoshenko beam", 0, length, beam), model_points("chain of elements", place, found)});
   result.remarks = {"Shear adds 12 EI/(kGA L^2) times the deflection of the Euler-Bernoulli beam."};
-  result.sources = {context.tube().source};
   return result;
 }
 

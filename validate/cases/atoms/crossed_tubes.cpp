@@ -150,27 +150,20 @@ void add_checks(const Crossing& c, const CrossedRows& rows, CaseResult& result) 
   const LineWell model = detail::lowest_point([&](double d) { return rows.at(angle, d).energy; },
                                               c.distance.front(), c.distance.front() + 0.15);
   const std::string name = fmt::format("{:.0f} degrees: ", c.angle);
-  result.checks.push_back(
-      {name + "least energy", model.energy, atoms.energy, energy_tolerance, true, "eV", false,
-       fmt::format("minimum over the distance; the standard deviation over registries is {:.1f} %",
-                   100 * c.deviation[at_rest] / std::abs(atoms.energy))});
-  result.checks.push_back(
-      {name + "distance of rest", model.distance, atoms.distance, spacing_tolerance, true, "nm", false, ""});
+  result.check_relative(name + "least energy", model.energy, atoms.energy, energy_tolerance, "eV",
+                        fmt::format("minimum over the distance; the standard deviation over registries is {:.1f} %",
+                                    100 * c.deviation[at_rest] / std::abs(atoms.energy)));
+  result.check_relative(name + "distance of rest", model.distance, atoms.distance, spacing_tolerance, "nm");
   // At 90 degrees the torque vanishes by symmetry.
   if (c.angle > 80) return;
-  result.checks.push_back({name + "torque towards parallel", rows.at(angle, distance).torque_j.x(),
-                           c.torque[at_rest], torque_tolerance, true, "eV/rad", false,
-                           fmt::format("at {:.3f} nm", distance)});
-  result.checks.push_back({name + "torque by the atoms' forces over that by their energy",
-                           c.torque_of_forces[at_rest] / c.torque[at_rest], 1, torque_tolerance, true, "1", true,
-                           "the forces of LAMMPS leave out the step of the truncated law at its cutoff"});
+  result.check_relative(name + "torque towards parallel", rows.at(angle, distance).torque_j.x(), c.torque[at_rest],
+                        torque_tolerance, "eV/rad", fmt::format("at {:.3f} nm", distance));
+  result.show_relative(name + "torque by the atoms' forces over that by their energy",
+                       c.torque_of_forces[at_rest] / c.torque[at_rest], 1, torque_tolerance, "1",
+                       "the forces of LAMMPS leave out the step of the truncated law at its cutoff");
 }
 
 CaseFigure angle_figure(const std::vector<Crossing>& list, const CrossedRows& rows, bool torque) {
-  LineChart chart;
-  chart.title = torque ? "Torque of two crossed tubes against angle" : "Energy of two crossed tubes against angle";
-  chart.x = {"crossing angle", "degrees"};
-  chart.y = torque ? ChartAxis{"torque towards parallel", "eV/rad"} : ChartAxis{"energy", "eV"};
   ChartLine atoms{"atoms (LAMMPS)", {}, {}, 0};
   atoms.points = true;
   ChartLine model{"model", {}, {}, 1};
@@ -184,16 +177,18 @@ CaseFigure angle_figure(const std::vector<Crossing>& list, const CrossedRows& ro
     model.x.push_back(angle);
     model.y.push_back(torque ? f.torque_j.x() : f.energy);
   }
-  chart.lines = {model, atoms};
-  return {chart, torque ? "The torque turns crossed tubes towards parallel."
-                        : fmt::format("At {:.3f} nm, the distance of the energy minimum at 90 degrees.", distance)};
+  return case_figure(
+      torque ? "Torque of two crossed tubes against angle" : "Energy of two crossed tubes against angle",
+      {"crossing angle", "degrees"},
+      torque ? ChartAxis{"torque towards parallel", "eV/rad"} : ChartAxis{"energy", "eV"},
+      torque ? "The torque turns crossed tubes towards parallel."
+             : fmt::format("At {:.3f} nm, the distance of the energy minimum at 90 degrees.", distance),
+      {model, atoms});
 }
 
 CaseFigure distance_figure(const std::vector<Crossing>& list, const CrossedRows& rows) {
-  LineChart chart;
-  chart.title = "Energy of two crossed tubes against distance";
-  chart.x = {"distance of the axes", "nm"};
-  chart.y = {"energy", "eV"};
+  CaseFigure figure = case_figure("Energy of two crossed tubes against distance", {"distance of the axes", "nm"},
+                                  {"energy", "eV"}, "The distance of the minimum does not depend on the angle.");
   int colour = 0;
   for (const Crossing& c : list) {
     ChartLine model{fmt::format("{:.0f} degrees, model", c.angle), {}, {}, colour};
@@ -203,18 +198,17 @@ CaseFigure distance_figure(const std::vector<Crossing>& list, const CrossedRows&
       model.x.push_back(d);
       model.y.push_back(rows.at(c.angle * units::degree, d).energy);
     }
-    chart.lines.push_back(model);
-    chart.lines.push_back(atoms);
+    figure.chart.lines.push_back(model);
+    figure.chart.lines.push_back(atoms);
   }
-  return {chart, "The distance of the minimum does not depend on the angle."};
+  return figure;
 }
 
 CaseFigure residual_figure(const std::vector<Crossing>& list, const CrossedRows& rows) {
-  LineChart chart;
-  chart.title = "Residual of the energy of two crossed tubes";
-  chart.x = {"distance of the axes", "nm"};
-  chart.y = {"model minus atoms, over the well", "%"};
-  chart.height = 220;
+  CaseFigure figure =
+      case_figure("Residual of the energy of two crossed tubes", {"distance of the axes", "nm"},
+                  {"model minus atoms, over the well", "%"}, "In percent of the lowest energy at each angle.");
+  figure.chart.height = 220;
   int colour = 0;
   for (const Crossing& c : list) {
     ChartLine line{fmt::format("{:.0f} degrees", c.angle), {}, {}, colour++};
@@ -223,9 +217,9 @@ CaseFigure residual_figure(const std::vector<Crossing>& list, const CrossedRows&
       line.x.push_back(c.distance[k]);
       line.y.push_back(100 * (rows.at(c.angle * units::degree, c.distance[k]).energy - c.energy[k]) / well);
     }
-    chart.lines.push_back(line);
+    figure.chart.lines.push_back(line);
   }
-  return {chart, "In percent of the lowest energy at each angle."};
+  return figure;
 }
 
 CaseResult run(const CaseContext& context) {
@@ -244,7 +238,6 @@ CaseResult run(const CaseContext& context) {
   result.figures.push_back(angle_figure(list, rows, true));
   result.figures.push_back(distance_figure(list, rows));
   result.figures.push_back(residual_figure(list, rows));
-  result.sources.push_back(tube.source);
   result.remarks.push_back(
       "The law was made from two parallel tubes; no crossing was fitted. By the theorem behind the line law, "
       "energy and torque at every angle follow. This case tests the theorem with atoms.");

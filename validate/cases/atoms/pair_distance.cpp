@@ -101,23 +101,22 @@ PairCurve curve_of(const CaseTube& i, const CaseTube& j, const CaseContext& cont
 
 void add_checks(const PairCurve& c, const LineWell& atoms, CaseResult& result) {
   const LineWell model = detail::lowest_point(c.model, c.distance.front(), c.distance.back());
-  result.checks.push_back({c.name + ": spacing", model.distance, atoms.distance, spacing_tolerance, true, "nm",
-                           false, "the distance of lowest energy"});
-  result.checks.push_back({c.name + ": cohesion at rest", model.energy, atoms.energy, depth_tolerance, true,
-                           "eV/nm", false, "registry changes it by 1 to 3 %"});
+  result.check_relative(c.name + ": spacing", model.distance, atoms.distance, spacing_tolerance, "nm",
+                        "the distance of lowest energy");
+  result.check_relative(c.name + ": cohesion at rest", model.energy, atoms.energy, depth_tolerance, "eV/nm",
+                        "registry changes it by 1 to 3 %");
   double registry = 0;
   for (std::size_t k = 0; k < c.distance.size(); ++k)
     if (std::abs(c.distance[k] - atoms.distance) < 0.006) registry = c.deviation[k] / std::abs(atoms.energy);
-  result.checks.push_back({c.name + ": standard deviation over registries at the minimum, over the well", 0,
-                           registry, 0, false, "1", true,
-                           "how far one placement of the atoms is from the mean; the model has no registry"});
+  result.show_absolute(c.name + ": standard deviation over registries at the minimum, over the well", 0, registry,
+                       0, "1", "how far one placement of the atoms is from the mean; the model has no registry");
 }
 
 CaseFigure energy_figure(const std::vector<PairCurve>& curves) {
-  LineChart chart;
-  chart.title = "Energy of two parallel tubes against distance";
-  chart.x = {"distance of the axes", "nm"};
-  chart.y = {"energy per length", "eV/nm"};
+  CaseFigure figure =
+      case_figure("Energy of two parallel tubes against distance", {"distance of the axes", "nm"},
+                  {"energy per length", "eV/nm"},
+                  "Points: atoms, mean over registries. Lines: rows of elements with the line law.");
   int colour = 0;
   for (const PairCurve& c : curves) {
     ChartLine model{c.name + " model", {}, {}, colour};
@@ -130,10 +129,10 @@ CaseFigure energy_figure(const std::vector<PairCurve>& curves) {
     for (ChartLine* line : {&model, &atoms})  // energies above zero would flatten the wells
       for (double& y : line->y)
         if (y > 0.6) y = std::nan("");
-    chart.lines.push_back(model);
-    chart.lines.push_back(atoms);
+    figure.chart.lines.push_back(model);
+    figure.chart.lines.push_back(atoms);
   }
-  return {chart, "Points: atoms, mean over registries. Lines: rows of elements with the line law."};
+  return figure;
 }
 
 // The published law beside the atoms of its tube: binds about twice as strongly.
@@ -142,8 +141,8 @@ void add_published(const ParameterSet& published, const LineWell& atoms, LineCha
     return paper_parallel_energy(*published.paper, published.element_length, distance);
   };
   const LineWell well = detail::lowest_point(paper, 1.6, 2.6);
-  result.checks.push_back({"(10,10) paper law: cohesion over that of the atoms", well.energy / atoms.energy, 1,
-                           depth_tolerance, true, "1", true, "the published law binds about twice as strongly"});
+  result.show_relative("(10,10) paper law: cohesion over that of the atoms", well.energy / atoms.energy, 1,
+                       depth_tolerance, "1", "the published law binds about twice as strongly");
   ChartLine line{"(10,10)-(10,10) paper law", {}, {}, static_cast<int>(chart.lines.size() / 2)};
   line.dashed = true;
   for (double x = 1.6; x < 2.6; x += 0.004) {
@@ -155,11 +154,12 @@ void add_published(const ParameterSet& published, const LineWell& atoms, LineCha
 }
 
 CaseFigure residual_figure(const std::vector<PairCurve>& curves, const std::vector<LineWell>& wells) {
-  LineChart chart;
-  chart.title = "Residual of the energy of two parallel tubes";
-  chart.x = {"distance minus the atoms' spacing", "nm"};
-  chart.y = {"model minus atoms, over the well", "%"};
-  chart.height = 220;
+  CaseFigure figure =
+      case_figure("Residual of the energy of two parallel tubes", {"distance minus the atoms' spacing", "nm"},
+                  {"model minus atoms, over the well", "%"},
+                  "In percent of the well. On the repulsive wall a small difference of the spacing gives a large "
+                  "difference of the energy.");
+  figure.chart.height = 220;
   for (std::size_t p = 0; p < curves.size(); ++p) {
     ChartLine line{curves[p].name, {}, {}, static_cast<int>(p)};
     for (std::size_t k = 0; k < curves[p].distance.size(); ++k) {
@@ -169,11 +169,9 @@ CaseFigure residual_figure(const std::vector<PairCurve>& curves, const std::vect
       line.y.push_back(100 * (curves[p].model(curves[p].distance[k]) - curves[p].atoms[k]) /
                        std::abs(wells[p].energy));
     }
-    chart.lines.push_back(line);
+    figure.chart.lines.push_back(line);
   }
-  return {chart,
-          "In percent of the well. On the repulsive wall a small difference of the spacing gives a large "
-          "difference of the energy."};
+  return figure;
 }
 
 CaseResult run(const CaseContext& context) {
@@ -192,7 +190,6 @@ CaseResult run(const CaseContext& context) {
   if (!context.given)
     add_published(context.model(context.sets.size() - 1), wells[0], result.figures.back().chart, result);
   result.figures.push_back(residual_figure(curves, wells));
-  for (const CaseTube& tube : context.tubes()) result.sources.push_back(tube.source);
   if (tubes.size() > 1) result.remarks.push_back("Tubes of two kinds use the law for all pairs of radii.");
   result.remarks.push_back("Registry, how the lattices of two tubes lie on one another, is left out of the model.");
   return result;

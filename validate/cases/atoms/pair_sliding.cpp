@@ -152,22 +152,16 @@ void add_sliding(const ReferenceTable& data, const LineContact& contact, CaseRes
   Slide rows;  // along one element, the only period that the model can have
   constexpr int points = 64;
   for (int k = 0; k <= points; ++k) rows.push_back(parallel_rows(contact, distance, contact.length_j * k / points));
-  result.checks.push_back({"energy per length at rest", mean(rows), atoms_mean, energy_tolerance, true, "eV/nm",
-                           false, "mean over turns and shifts"});
-  result.checks.push_back({"corrugation of the rows over the well", width(rows) / std::abs(mean(rows)), 0,
-                           smoothness_tolerance, false, "1", false,
-                           "highest minus lowest energy of the model along one element"});
-  result.checks.push_back({"corrugation of the atoms over the well: mean over turns", 0,
-                           widths / std::abs(atoms_mean), 0, false, "1", true, "the model has none"});
-  result.checks.push_back({"corrugation of the atoms over the well: worst turn", 0,
-                           width(rough) / std::abs(atoms_mean), 0, false, "1", true, "the model has none"});
-  result.checks.push_back({"largest sliding force of the atoms per length", 0, 1000 * force * units::eV_in_nN_nm, 0,
-                           false, "pN/nm", true,
-                           "at zero temperature, for rigid tubes in registry over the whole length"});
-  LineChart chart;
-  chart.title = "Energy of two parallel tubes against axial shift";
-  chart.x = {"axial shift", "nm"};
-  chart.y = {"energy minus its mean", "meV/nm"};
+  result.check_relative("energy per length at rest", mean(rows), atoms_mean, energy_tolerance, "eV/nm",
+                        "mean over turns and shifts");
+  result.check_absolute("corrugation of the rows over the well", width(rows) / std::abs(mean(rows)), 0,
+                        smoothness_tolerance, "1", "highest minus lowest energy of the model along one element");
+  result.show_absolute("corrugation of the atoms over the well: mean over turns", 0, widths / std::abs(atoms_mean),
+                       0, "1", "the model has none");
+  result.show_absolute("corrugation of the atoms over the well: worst turn", 0, width(rough) / std::abs(atoms_mean),
+                       0, "1", "the model has none");
+  result.show_absolute("largest sliding force of the atoms per length", 0, 1000 * force * units::eV_in_nN_nm, 0,
+                       "pN/nm", "at zero temperature, for rigid tubes in registry over the whole length");
   const auto line_of = [&](const std::string& name, const Slide& slide, int colour) {
     ChartLine line{name, {}, {}, colour};
     for (std::size_t k = 0; k < slide.size(); ++k) {
@@ -181,11 +175,12 @@ void add_sliding(const ReferenceTable& data, const LineContact& contact, CaseRes
     flat.x.push_back(step * k);
     flat.y.push_back(1000 * (parallel_rows(contact, distance, step * k) - mean(rows)));
   }
-  chart.lines = {line_of("atoms, roughest turn", rough, 0), line_of("atoms, smoothest turn", smooth, 1), flat};
-  result.figures.push_back({chart,
-                            "One period of the lattice, or half a nanometre of a longer one. Atoms resist sliding "
-                            "weakly, and how much depends on how "
-                            "the tubes are turned; rows of elements slide freely."});
+  result.figure("Energy of two parallel tubes against axial shift", {"axial shift", "nm"},
+                {"energy minus its mean", "meV/nm"},
+                "One period of the lattice, or half a nanometre of a longer one. Atoms resist sliding "
+                "weakly, and how much depends on how "
+                "the tubes are turned; rows of elements slide freely.",
+                {line_of("atoms, roughest turn", rough, 0), line_of("atoms, smoothest turn", smooth, 1), flat});
 }
 
 struct Straight {
@@ -219,15 +214,15 @@ void add_pull_out(const ReferenceTable& data, const ParameterSet& set, CaseResul
   }
   const double flush = model.back() - atoms.back();
   const Straight of_atoms = fit_straight(overlap, atoms), of_model = fit_straight(overlap, model);
-  result.checks.push_back({"pull-out: energy per overlap", of_model.slope, of_atoms.slope, energy_tolerance, true,
-                           "eV/nm", false, "slope from 2 to 6 nm of overlap: the pulling force"});
-  result.checks.push_back({"pull-out: force", -1000 * of_model.slope * units::eV_in_nN_nm,
-                           -1000 * of_atoms.slope * units::eV_in_nN_nm, energy_tolerance, true, "pN", true,
-                           "the same, in piconewton"});
-  result.checks.push_back({"pull-out: energy of both ends", of_model.at_zero, of_atoms.at_zero, 0.01, false, "eV",
-                           true, "the straight line at zero overlap; the theory of shells has no ends"});
-  result.checks.push_back({"ends flush: energy of the model above that of the atoms", flush, 0, 0.01, false, "eV",
-                           true, "two pairs of open ends side by side: the law of endless tubes has no rims"});
+  result.check_relative("pull-out: energy per overlap", of_model.slope, of_atoms.slope, energy_tolerance, "eV/nm",
+                        "slope from 2 to 6 nm of overlap: the pulling force");
+  result.show_relative("pull-out: force", -1000 * of_model.slope * units::eV_in_nN_nm,
+                       -1000 * of_atoms.slope * units::eV_in_nN_nm, energy_tolerance, "pN",
+                       "the same, in piconewton");
+  result.show_absolute("pull-out: energy of both ends", of_model.at_zero, of_atoms.at_zero, 0.01, "eV",
+                       "the straight line at zero overlap; the theory of shells has no ends");
+  result.show_absolute("ends flush: energy of the model above that of the atoms", flush, 0, 0.01, "eV",
+                       "two pairs of open ends side by side: the law of endless tubes has no rims");
   LineChart chart;
   chart.title = "Energy of two finite tubes against overlap";
   chart.x = {"overlap", "nm"};
@@ -255,7 +250,6 @@ CaseResult run(const CaseContext& context) {
       context, tube.set, "pair-pull-out", 0.001, [&] { return make_pull_out(context, tube.set); }, result);
   add_sliding(sliding, contact_of(tube.model, tube.model, tube.set.element_length), result);
   add_pull_out(pull_out, tube.model, result);
-  result.sources.push_back(tube.source);
   result.remarks.push_back(
       "The model has no barrier against sliding. The worst case for this are two equal armchair tubes, straight, "
       "frozen and in registry over their whole length: their barrier grows with the length. Where neighbours are "

@@ -101,7 +101,6 @@ CaseResult run(const CaseContext& context) {
     add_curve(curve, result);
     add_collapse(curve, curve.more_amplitude, curve.amplitude.size(),
                  "the specimen that kinks first, against the kink curvature of the set", result);
-    result.sources.push_back(tube.source);
   }
   result.remarks.push_back(
       "The cross-section flattens, which the quartic term of the bond describes; without it the bond is 12 to 20 % "

@@ -111,12 +111,8 @@ double collapse_of(const std::vector<double>& twist, const std::vector<double>& 
 }
 
 CaseFigure limits_figure(const std::vector<ChartLine>& lines) {
-  LineChart chart;
-  chart.title = "Collapse against length";
-  chart.x = {"length between held ends", "nm"};
-  chart.y = {"radius times twist", "1"};
-  chart.lines = lines;
-  return {chart, "Points: atoms. Lines: the limit of the sets."};
+  return case_figure("Collapse against length", {"length between held ends", "nm"}, {"radius times twist", "1"},
+                     "Points: atoms. Lines: the limit of the sets.", lines);
 }
 
 // Torque between two steps, at their middle.
@@ -131,14 +127,12 @@ ChartLine torque_line(const std::string& name, int colour, double radius, const 
 }
 
 CaseFigure torque_figure(std::vector<ChartLine> lines) {
-  LineChart chart;
-  chart.title = "Torque up to the collapse";
-  chart.x = {"radius times twist", "1"};
-  chart.y = {"energy of a step over its twist per length", "eV nm"};
-  chart.lines = std::move(lines);
-  return {chart,
-          "The last point of each line is the step over which the wall collapses. The energy is that of the whole "
-          "tube, so that the torque of long ones is drawn higher."};
+  return case_figure(
+      "Torque up to the collapse", {"radius times twist", "1"},
+      {"energy of a step over its twist per length", "eV nm"},
+      "The last point of each line is the step over which the wall collapses. The energy is that of the whole "
+      "tube, so that the torque of long ones is drawn higher.",
+      std::move(lines));
 }
 
 CaseResult run(const CaseContext& context) {
@@ -182,7 +176,6 @@ CaseResult run(const CaseContext& context) {
       model.x.push_back(length), model.y.push_back(set.validity.collapse_at(set.radius, length));
     lines.push_back(model);
     lines.push_back(atoms);
-    result.sources.push_back(tube.source);
   }
   result.figures.push_back(limits_figure(lines));
   result.figures.push_back(torque_figure(torques));

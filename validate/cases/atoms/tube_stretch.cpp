@@ -103,7 +103,6 @@ CaseResult run(const CaseContext& context) {
     add_buckling(curve, result);
     end_at_collapse(curve);
     add_curve(curve, result);
-    result.sources.push_back(tube.source);
   }
   result.remarks.push_back(
       "Carbon bonds soften in tension and stiffen in compression. The anharmonic bond has the terms of third and "

@@ -163,7 +163,6 @@ CaseResult run(const CaseContext& context) {
     if (tube.set.chirality.chiral()) add_collapse_of_sense(curve, -1, result);
     add_curve(curve, result);
     if (curve.window < curve.end) add_beyond(curve, result);
-    result.sources.push_back(tube.source);
   }
   result.remarks.push_back(
       "A periodic cell has no held ends, which keep a tube round: its wall flattens from three quarters of the "

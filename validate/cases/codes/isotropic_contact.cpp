@@ -24,17 +24,16 @@ Slide slide(const Law& law, double element_length, double distance) {
 }
 
 // Appends what the published law makes of the same rows, for comparison.
-void add_published(const ParameterSet& paper, double compression, LineChart& chart, CaseResult& result) {
+void add_published(const ParameterSet& paper, double compression, std::vector<ChartLine>& lines,
+                   CaseResult& result) {
   const double length = paper.element_length, spacing = pair_spacing(*paper.paper, length);
   const double well = std::fabs(paper_parallel_energy(*paper.paper, length, spacing));
   const Slide at_rest = slide(*paper.paper, length, spacing);
-  result.checks.push_back(
-      information(absolute_check("corrugation of the paper law over its well", at_rest.corrugation() / well, 0,
-                                 1e-3, "1", "smooth where it was fitted")));
-  result.checks.push_back(information(
-      absolute_check("the same, 0.05 nm inside of the well",
-                     slide(*paper.paper, length, spacing - compression).corrugation() / well, 0, 4e-3, "1")));
-  chart.lines.push_back(model_points("paper law", at_rest.shift, at_rest.relative(-well), 2));
+  result.show_absolute("corrugation of the paper law over its well", at_rest.corrugation() / well, 0, 1e-3, "1",
+                       "smooth where it was fitted");
+  result.show_absolute("the same, 0.05 nm inside of the well",
+                       slide(*paper.paper, length, spacing - compression).corrugation() / well, 0, 4e-3, "1");
+  lines.push_back(model_points("paper law", at_rest.shift, at_rest.relative(-well), 2));
 }
 
 CaseResult run(const CaseContext& context) {
@@ -47,39 +46,29 @@ CaseResult run(const CaseContext& context) {
   const double depth = std::fabs(pair.energy);
 
   CaseResult result;
-  CaseFigure figure;
-  figure.chart = {"Energy of two parallel rows that slide along each other",
-                  {"shift", "elements"},
-                  {"energy from its mean, of the well", "%"},
-                  {},
-                  {}};
-  figure.chart.lines.push_back(theory_curve(
-      "smooth tubes", [](double) { return 0.0; }, 0, 1));
-  figure.chart.lines.push_back(model_points("isotropic bead", by_bead.shift, by_bead.relative(pair.energy), 1));
-  result.checks.push_back(absolute_check("corrugation of the line law over the well", by_line.corrugation() / depth,
-                                         0, 1e-3, "1", "registry of real tubes is 1e-2"));
-  result.checks.push_back(absolute_check("the same, 0.05 nm inside of the well",
-                                         slide(line, a, pair.distance - compression).corrugation() / depth, 0, 6e-3,
-                                         "1", "most for (7,2): 5.5e-3"));
-  result.checks.push_back(relative_check("mean energy of the line law", by_line.mean(), pair.energy, 3e-3, "eV/nm",
-                                         "contact fitted to the surface integral"));
-  if (context.sets.size() > 1) add_published(context.model(1), compression, figure.chart, result);
-  result.checks.push_back(information(absolute_check("corrugation of the isotropic bead law over the well",
-                                                     by_bead.corrugation() / depth, 0, 1e-3, "1",
-                                                     "beads fall into the gaps of the other row")));
-  result.checks.push_back(
-      information(absolute_check("the same, 0.05 nm inside of the well",
-                                 slide(bead, a, pair.distance - compression).corrugation() / depth, 0, 4e-3, "1")));
-  result.checks.push_back(
-      information(absolute_check("sliding barrier of one element of the bead law", by_bead.corrugation() * a, 0,
-                                 units::boltzmann * 300, "eV", "against the thermal energy at 300 K")));
-  figure.chart.lines.push_back(model_points("line law", by_line.shift, by_line.relative(pair.energy), 3));
-  figure.caption = "A tube is smooth along its axis. Any corrugation is an error of the law's discretisation.";
-  result.figures.push_back(figure);
+  std::vector<ChartLine> lines = {theory_curve("smooth tubes", 0, 1, [](double) { return 0.0; }),
+                                  model_points("isotropic bead", by_bead.shift, by_bead.relative(pair.energy))};
+  result.check_absolute("corrugation of the line law over the well", by_line.corrugation() / depth, 0, 1e-3, "1",
+                        "registry of real tubes is 1e-2");
+  result.check_absolute("the same, 0.05 nm inside of the well",
+                        slide(line, a, pair.distance - compression).corrugation() / depth, 0, 6e-3, "1",
+                        "most for (7,2): 5.5e-3");
+  result.check_relative("mean energy of the line law", by_line.mean(), pair.energy, 3e-3, "eV/nm",
+                        "contact fitted to the surface integral");
+  if (context.sets.size() > 1) add_published(context.model(1), compression, lines, result);
+  result.show_absolute("corrugation of the isotropic bead law over the well", by_bead.corrugation() / depth, 0,
+                       1e-3, "1", "beads fall into the gaps of the other row");
+  result.show_absolute("the same, 0.05 nm inside of the well",
+                       slide(bead, a, pair.distance - compression).corrugation() / depth, 0, 4e-3, "1");
+  result.show_absolute("sliding barrier of one element of the bead law", by_bead.corrugation() * a, 0,
+                       units::boltzmann * 300, "eV", "against the thermal energy at 300 K");
+  lines.push_back(model_points("line law", by_line.shift, by_line.relative(pair.energy), 3));
+  result.figure("Energy of two parallel rows that slide along each other", {"shift", "elements"},
+                {"energy from its mean, of the well", "%"},
+                "A tube is smooth along its axis. Any corrugation is an error of the law's discretisation.", lines);
   result.remarks.push_back(
       "The bead law has the spacing and the mean cohesion of the oracle; only its shape differs. A rope of beads "
       "resists sliding by this artefact, and its beads carry no torsion.");
-  for (const CaseTube& tube : context.tubes()) result.sources.push_back(tube.source);
   return result;
 }
 

@@ -62,23 +62,19 @@ CaseResult run(const CaseContext& context) {
   const Record full = undamped_bundle(model, context.fault.missing_torque);
   const Record legacy = undamped_bundle(model, true);
   CaseResult result;
-  result.checks.push_back(absolute_check("drift of the energy, full gradient", full.drift(), 0, 0.1, "eV",
-                                         "1e-3 of the cohesion; oscillation of the time step"));
-  result.checks.push_back(information(absolute_check("largest energy gained without the torque",
-                                                     *std::max_element(legacy.gain.begin(), legacy.gain.end()), 0,
-                                                     0.1, "eV", "stopped at 150 eV")));
-  CaseFigure figure;
-  figure.chart = {"Energy of an undamped bundle of seven tubes", {"time", "ps"}, {"energy gained", "eV"}, {}, {}};
-  figure.chart.lines.push_back(theory_curve(
-      "conserved", [](double) { return 0.0; }, 0, duration));
-  figure.chart.lines.push_back(model_points("full gradient", full.time, full.gain, 1));
-  figure.chart.lines.push_back(model_points("without the torque", legacy.time, legacy.gain, 2));
-  figure.caption = "No load, no damping, 10 K at the start: every change of the energy is an error.";
-  result.figures.push_back(figure);
+  result.check_absolute("drift of the energy, full gradient", full.drift(), 0, 0.1, "eV",
+                        "1e-3 of the cohesion; oscillation of the time step");
+  result.show_absolute("largest energy gained without the torque",
+                       *std::max_element(legacy.gain.begin(), legacy.gain.end()), 0, 0.1, "eV",
+                       "stopped at 150 eV");
+  result.figure("Energy of an undamped bundle of seven tubes", {"time", "ps"}, {"energy gained", "eV"},
+                "No load, no damping, 10 K at the start: every change of the energy is an error.",
+                {theory_curve("conserved", 0, duration, [](double) { return 0.0; }),
+                 model_points("full gradient", full.time, full.gain),
+                 model_points("without the torque", legacy.time, legacy.gain, 2)});
   result.remarks.push_back(
       "A contact energy that depends on an angle exerts a torque. Without this torque the forces are not the "
       "gradient of the energy, and the bundle heats up at any time step.");
-  result.sources.push_back(context.tube().source);
   return result;
 }
 

@@ -55,19 +55,17 @@ CaseResult run(const CaseContext& context) {
   };
   CaseResult result;
   const double small = 0.02;
-  result.checks.push_back(relative_check("total energy: deflection at small force",
-                                         total_energy_deflection(model, small), beam(small), 2e-3, "nm"));
-  result.checks.push_back(relative_check("incremental: deflection at small force",
-                                         parallel_bond_deflection(model, bonds, small), beam(small), 2e-3, "nm",
-                                         "the same beam while rotations are small"));
-  result.checks.push_back(absolute_check("total energy: energy left after a closed loop of 0.3 rad",
-                                         closed_loop(model, 0.3).total, 0, 1e-9, "eV", "a function of the state"));
-  result.checks.push_back(relative_check("incremental: energy left after a closed loop of 0.1 rad",
-                                         closed_loop(model, 0.1).incremental, left(0.1), 3e-2, "eV",
-                                         "order of the commutator of two rotations"));
-  result.checks.push_back(information(absolute_check("incremental: energy left after a closed loop of 0.3 rad",
-                                                     closed_loop(model, 0.3).incremental, 0, 1e-9, "eV",
-                                                     "does not fall with the step")));
+  result.check_relative("total energy: deflection at small force", total_energy_deflection(model, small),
+                        beam(small), 2e-3, "nm");
+  result.check_relative("incremental: deflection at small force", parallel_bond_deflection(model, bonds, small),
+                        beam(small), 2e-3, "nm", "the same beam while rotations are small");
+  result.check_absolute("total energy: energy left after a closed loop of 0.3 rad", closed_loop(model, 0.3).total,
+                        0, 1e-9, "eV", "a function of the state");
+  result.check_relative("incremental: energy left after a closed loop of 0.1 rad",
+                        closed_loop(model, 0.1).incremental, left(0.1), 3e-2, "eV",
+                        "order of the commutator of two rotations");
+  result.show_absolute("incremental: energy left after a closed loop of 0.3 rad",
+                       closed_loop(model, 0.3).incremental, 0, 1e-9, "eV", "does not fall with the step");
   std::vector<double> force, total, incremental, amplitude, energy, none;
   for (const double f : {0.5, 1.0, 2.0, 3.0, 4.0}) {
     force.push_back(f);
@@ -80,26 +78,23 @@ CaseResult run(const CaseContext& context) {
     energy.push_back(loop.incremental);
     none.push_back(loop.total);
   }
-  result.checks.push_back(
-      information(relative_check("incremental against total energy at 4 eV/nm", incremental.back(), total.back(),
-                                 1e-2, "nm", "one monotonic bend in a plane: no loop")));
-  CaseFigure bend, drift;
-  bend.chart = {"Deflection of a cantilever", {"force", "eV/nm"}, {"deflection", "nm"}, {}, {}};
-  bend.chart.lines.push_back(theory_curve("small deflections", beam, 0, 4));
-  bend.chart.lines.push_back(model_points("total-energy bond", force, total, 1));
+  result.show_relative("incremental against total energy at 4 eV/nm", incremental.back(), total.back(), 1e-2, "nm",
+                       "one monotonic bend in a plane: no loop");
+  CaseFigure bend =
+      case_figure("Deflection of a cantilever", {"force", "eV/nm"}, {"deflection", "nm"},
+                  "Bent once in a plane, both bonds follow the same beam, also at large deflections.");
+  CaseFigure drift = case_figure("Energy left in a bond after a closed loop", {"radius of the loop", "rad"},
+                                 {"energy", "eV"}, "Bent and twisted once around a loop and back to rest.");
+  bend.chart.lines.push_back(theory_curve("small deflections", 0, 4, beam));
+  bend.chart.lines.push_back(model_points("total-energy bond", force, total));
   bend.chart.lines.push_back(model_points("incremental bond", force, incremental, 2));
-  bend.caption = "Bent once in a plane, both bonds follow the same beam, also at large deflections.";
-  drift.chart = {
-      "Energy left in a bond after a closed loop", {"radius of the loop", "rad"}, {"energy", "eV"}, {}, {}};
-  drift.chart.lines.push_back(theory_curve("commutator of the rotations", left, 0, 0.3));
+  drift.chart.lines.push_back(theory_curve("commutator of the rotations", 0, 0.3, left));
   drift.chart.lines.push_back(model_points("incremental bond", amplitude, energy, 2));
-  drift.chart.lines.push_back(model_points("total-energy bond", amplitude, none, 1));
-  drift.caption = "Bent and twisted once around a loop and back to rest.";
+  drift.chart.lines.push_back(model_points("total-energy bond", amplitude, none));
   result.figures = {bend, drift};
   result.remarks.push_back(
       "The incremental bond sums angular velocities, and these have no integral in three dimensions. After a "
       "closed loop of bend and twist some energy stays in the bond, however small the steps.");
-  result.sources.push_back(context.tube().source);
   return result;
 }
 

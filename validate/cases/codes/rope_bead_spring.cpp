@@ -113,66 +113,53 @@ struct Straight {
 void add_straight_checks(const Straight& s, CaseResult& result) {
   constexpr double GPa = 1e-9 * units::electron_charge_C * 1e27;  // one eV/nm^3
   const double depth = std::fabs(s.well), circumference = 2 * units::pi * s.radius;
-  result.checks.push_back(absolute_check("elements: corrugation over the well, centre tube slides",
-                                         s.elements.corrugation() / depth, 0, 1e-3, "1",
-                                         "registry of real tubes is 1e-2"));
-  result.checks.push_back(information(absolute_check("beads: corrugation over the well, centre tube slides",
-                                                     s.beads.corrugation() / depth, 0, 1e-3, "1",
-                                                     "beads fall into the gaps of the other tubes")));
+  result.check_absolute("elements: corrugation over the well, centre tube slides", s.elements.corrugation() / depth,
+                        0, 1e-3, "1", "registry of real tubes is 1e-2");
+  result.show_absolute("beads: corrugation over the well, centre tube slides", s.beads.corrugation() / depth, 0,
+                       1e-3, "1", "beads fall into the gaps of the other tubes");
   // The amplitude c of a pair's cosine is half of the corrugation; shifts by thirds gain 3c/2.
-  result.checks.push_back(information(
-      relative_check("beads: energy gained by staggering, over the cohesion", s.beads_gain / s.cohesion,
-                     0.75 * s.beads.corrugation() / depth, 0.05, "1",
-                     "reference: 3/4 of the corrugation, for an energy that is a cosine of the shift")));
-  result.checks.push_back(information(
-      absolute_check("beads: barrier of one bead of the centre tube", s.beads.corrugation() * s.element_length, 0,
-                     units::boltzmann * 300, "eV", "against the thermal energy at 300 K")));
+  result.show_relative("beads: energy gained by staggering, over the cohesion", s.beads_gain / s.cohesion,
+                       0.75 * s.beads.corrugation() / depth, 0.05, "1",
+                       "reference: 3/4 of the corrugation, for an energy that is a cosine of the shift");
+  result.show_absolute("beads: barrier of one bead of the centre tube", s.beads.corrugation() * s.element_length, 0,
+                       units::boltzmann * 300, "eV", "against the thermal energy at 300 K");
   const auto strength = [&](const Slide& slide) {
     return 1e3 * GPa * slide.resistance(s.element_length) / circumference;
   };
-  result.checks.push_back(information(absolute_check(
+  result.show_absolute(
       "beads: shear strength against sliding of the centre tube", strength(s.beads), strength(s.elements), 1, "MPa",
-      "reference: the elements. All beads of the tube resist at once; force over the tube's surface")));
+      "reference: the elements. All beads of the tube resist at once; force over the tube's surface");
 }
 
 void add_twist_checks(const Twisted& elements, const Twisted& beads, double torsion, CaseResult& result) {
   const double angle = angle_step;
-  result.checks.push_back(relative_check(
+  result.check_relative(
       "elements: torsion energy at 90 degrees", elements.twist, torsion, 5e-3, "eV",
-      "the clamped ends straighten the helix; this changes the energy by less than 1 - cos^2(beta)"));
-  result.checks.push_back(relative_check("elements: work of the grips up to 90 degrees",
-                                         simpson_sum(elements.moment, angle), elements.energy.back(), 1e-3, "eV",
-                                         "stored energy; Simpson's rule over six increments"));
-  result.checks.push_back(information(relative_check(
-      "beads: work of the grips up to 90 degrees", simpson_sum(beads.moment, angle), beads.energy.back(), 1e-3,
-      "eV", "shows that the beads are conservative: the energy that they lack is not a numerical error")));
-  result.checks.push_back(information(relative_check("beads: twisting energy at 90 degrees", beads.energy.back(),
-                                                     elements.energy.back(), 0.05, "eV")));
-  result.checks.push_back(information(
-      relative_check("beads: end moment at 90 degrees", beads.moment.back(), elements.moment.back(), 0.05, "eV")));
-  result.checks.push_back(information(absolute_check("elements: torsion energy over the twisting energy",
-                                                     elements.twist / elements.energy.back(), 1, 0.1, "1")));
-  result.checks.push_back(information(relative_check("beads: bending energy", beads.bend, elements.bend, 0.1, "eV",
-                                                     "the clamped ends differ only by the shear of a bond")));
-  result.checks.push_back(information(
-      relative_check("beads: stretching energy", beads.stretch, elements.stretch, 0.1, "eV", "the same helix")));
-  result.checks.push_back(information(absolute_check("beads: change of the vdW energy", beads.vdw, elements.vdw,
-                                                     0.01 * elements.energy.back(), "eV")));
+      "the clamped ends straighten the helix; this changes the energy by less than 1 - cos^2(beta)");
+  result.check_relative("elements: work of the grips up to 90 degrees", simpson_sum(elements.moment, angle),
+                        elements.energy.back(), 1e-3, "eV", "stored energy; Simpson's rule over six increments");
+  result.show_relative("beads: work of the grips up to 90 degrees", simpson_sum(beads.moment, angle),
+                       beads.energy.back(), 1e-3, "eV",
+                       "shows that the beads are conservative: the energy that they lack is not a numerical error");
+  result.show_relative("beads: twisting energy at 90 degrees", beads.energy.back(), elements.energy.back(), 0.05,
+                       "eV");
+  result.show_relative("beads: end moment at 90 degrees", beads.moment.back(), elements.moment.back(), 0.05, "eV");
+  result.show_absolute("elements: torsion energy over the twisting energy", elements.twist / elements.energy.back(),
+                       1, 0.1, "1");
+  result.show_relative("beads: bending energy", beads.bend, elements.bend, 0.1, "eV",
+                       "the clamped ends differ only by the shear of a bond");
+  result.show_relative("beads: stretching energy", beads.stretch, elements.stretch, 0.1, "eV", "the same helix");
+  result.show_absolute("beads: change of the vdW energy", beads.vdw, elements.vdw, 0.01 * elements.energy.back(),
+                       "eV");
 }
 
 CaseFigure slide_figure(const Straight& s) {
-  CaseFigure figure;
-  figure.chart = {"Energy of a rope whose centre tube slides along the other six",
-                  {"shift", "elements"},
-                  {"energy from its mean, of the well", "%"},
-                  {},
-                  {}};
-  figure.chart.lines.push_back(theory_curve(
-      "smooth tubes", [](double) { return 0.0; }, 0, 1));
-  figure.chart.lines.push_back(model_points("beads", s.beads.shift, s.beads.relative(s.well), 2));
-  figure.chart.lines.push_back(model_points("elements", s.elements.shift, s.elements.relative(s.well), 1));
-  figure.caption = "Six rows of beads keep the seventh in step. A real tube is smooth along its axis.";
-  return figure;
+  return case_figure("Energy of a rope whose centre tube slides along the other six", {"shift", "elements"},
+                     {"energy from its mean, of the well", "%"},
+                     "Six rows of beads keep the seventh in step. A real tube is smooth along its axis.",
+                     {theory_curve("smooth tubes", 0, 1, [](double) { return 0.0; }),
+                      model_points("beads", s.beads.shift, s.beads.relative(s.well), 2),
+                      model_points("elements", s.elements.shift, s.elements.relative(s.well))});
 }
 
 // How close beads would have to be, at the same spacing and cohesion of the tubes.
@@ -184,31 +171,22 @@ CaseFigure spacing_figure(const Well& pair) {
     const Slide s = slide_centre(law, length.back(), pair.distance);
     corrugation.push_back(std::log10(std::max(s.corrugation() / (6 * std::fabs(pair.energy)), 1e-12)));
   }
-  CaseFigure figure;
-  figure.chart = {"Corrugation against the distance of beads",
-                  {"distance of beads along a tube", "nm"},
-                  {"log10 of the corrugation over the well", ""},
-                  {},
-                  {}};
-  figure.chart.lines.push_back(theory_curve(
-      "registry of real tubes", [](double) { return -2.0; }, 0.4, 2));
-  figure.chart.lines.push_back(model_points("beads", length, corrugation, 2));
-  figure.caption =
+  return case_figure(
+      "Corrugation against the distance of beads", {"distance of beads along a tube", "nm"},
+      {"log10 of the corrugation over the well", ""},
       "A bead law is as smooth as real tubes only if the beads are closer than half the distance of the tubes. The "
-      "number of pairs grows with the square of the beads per length, and the time step falls.";
-  return figure;
+      "number of pairs grows with the square of the beads per length, and the time step falls.",
+      {theory_curve("registry of real tubes", 0.4, 2, [](double) { return -2.0; }),
+       model_points("beads", length, corrugation, 2)});
 }
 
 CaseFigure twist_figure(const std::string& title, const std::string& quantity, const Twisted& elements,
                         const Twisted& beads, const std::vector<double> Twisted::*value,
                         const std::function<double(double)>& torsion, const std::string& caption) {
-  CaseFigure figure;
-  figure.chart = {title, {"angle between the grips", "deg"}, {quantity, "eV"}, {}, {}};
-  figure.chart.lines.push_back(theory_curve("torsion of the tubes", torsion, 0, last_angle * units::rad_in_degree));
-  figure.chart.lines.push_back(model_points("elements", elements.angle, elements.*value, 1));
-  figure.chart.lines.push_back(model_points("beads", beads.angle, beads.*value, 2));
-  figure.caption = caption;
-  return figure;
+  return case_figure(title, {"angle between the grips", "deg"}, {quantity, "eV"}, caption,
+                     {theory_curve("torsion of the tubes", 0, last_angle * units::rad_in_degree, torsion),
+                      model_points("elements", elements.angle, elements.*value),
+                      model_points("beads", beads.angle, beads.*value, 2)});
 }
 
 Straight straight_rope(const ParameterSet& model, const Well& pair, const BeadLaw& bead) {
@@ -232,9 +210,8 @@ CaseResult run(const CaseContext& context) {
   const double length = bonds * oracle.element_length;
   CaseResult result;
   const Straight straight = straight_rope(model, pair, bead);
-  result.checks.push_back(relative_check("elements: cohesion of the straight rope", straight.elements.mean(),
-                                         straight.cohesion, 3e-3, "eV/nm",
-                                         "twelve pairs; contact fitted to 1.4e-3 of the well"));
+  result.check_relative("elements: cohesion of the straight rope", straight.elements.mean(), straight.cohesion,
+                        3e-3, "eV/nm", "twelve pairs; contact fitted to 1.4e-3 of the well");
   add_straight_checks(straight, result);
   context.progress("twisting the rope of elements");
   const Twisted elements = twist_elements(model);
@@ -268,7 +245,6 @@ CaseResult run(const CaseContext& context) {
       "Three neighbours cannot all be half an element apart. With a cosine of amplitude c per pair, shifts of a "
       "third of an element are best and gain 3c/2. Beads side by side, as in a rope cut straight, are the state of "
       "highest energy; only the stretch of the tubes between two grips keeps them there.");
-  result.sources.push_back(context.tube().source);
   return result;
 }
 

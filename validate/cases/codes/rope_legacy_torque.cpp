@@ -128,19 +128,12 @@ CaseFigure size_figure(const ParameterSet& set, double rate, bool fault) {
     full.push_back(100 * missing_moment(set, tubes, rate, fault));
     legacy.push_back(100 * missing_moment(set, tubes, rate, true));
   }
-  CaseFigure figure;
-  figure.chart = {"Moment that the contact forces lack, against the size of the rope",
-                  {"tubes", "", true},
-                  {"missing moment over the torsion moment of the tubes", "%"},
-                  {},
-                  {}};
-  figure.chart.lines.push_back(theory_curve(
-      "derivative of the energy", [](double) { return 0.0; }, 7, 91));
-  figure.chart.lines.push_back(model_points("full gradient", size, full, 1));
-  figure.chart.lines.push_back(model_points("without the torque", size, legacy, 2));
-  figure.caption =
-      "Tubes wound evenly around each other by 0.01 rad/nm, at rest: neither damping nor a time step enters.";
-  return figure;
+  return case_figure(
+      "Moment that the contact forces lack, against the size of the rope", {"tubes", "", true},
+      {"missing moment over the torsion moment of the tubes", "%"},
+      "Tubes wound evenly around each other by 0.01 rad/nm, at rest: neither damping nor a time step enters.",
+      {theory_curve("derivative of the energy", 7, 91, [](double) { return 0.0; }),
+       model_points("full gradient", size, full), model_points("without the torque", size, legacy, 2)});
 }
 
 double last(const std::vector<double>& values) {
@@ -148,21 +141,20 @@ double last(const std::vector<double>& values) {
 }
 
 void add_full_checks(const Record& full, double torsion, CaseResult& result) {
-  result.checks.push_back(absolute_check("full gradient: error of the energy balance over the work",
-                                         last(full.unaccounted) / full.work, 0, 1e-3, "1",
-                                         "stored + kinetic + dissipated - work; the error of the time step"));
-  result.checks.push_back(absolute_check("full gradient: kinetic energy at the end over the stored energy",
-                                         full.kinetic / full.stored, 0, 1e-4, "1", "the rope has come to rest"));
-  result.checks.push_back(relative_check(
+  result.check_absolute("full gradient: error of the energy balance over the work",
+                        last(full.unaccounted) / full.work, 0, 1e-3, "1",
+                        "stored + kinetic + dissipated - work; the error of the time step");
+  result.check_absolute("full gradient: kinetic energy at the end over the stored energy",
+                        full.kinetic / full.stored, 0, 1e-4, "1", "the rope has come to rest");
+  result.check_relative(
       "full gradient: torsion energy at rest", full.twist, torsion, 5e-3, "eV",
-      "the clamped ends straighten the helix; this changes the energy by less than 1 - cos^2(beta)"));
+      "the clamped ends straighten the helix; this changes the energy by less than 1 - cos^2(beta)");
 }
 
 void add_legacy_information(const std::string& name, const Record& legacy, const Record& full, CaseResult& result) {
   const auto add = [&](const std::string& what, double value, double reference, double tolerance, bool relative) {
-    result.checks.push_back(
-        information(relative ? relative_check(name + ": " + what, value, reference, tolerance, "eV")
-                             : absolute_check(name + ": " + what, value, reference, tolerance, "eV")));
+    result.show_relative(name + ": " + what, value, reference, tolerance, "eV");
+    result.checks.back().relative = relative;
   };
   add("error of the energy balance at the end", last(legacy.unaccounted), 0, 1e-3 * full.work, false);
   add("kinetic energy at the end", legacy.kinetic, full.kinetic, 1e-4 * full.stored, false);
@@ -176,8 +168,7 @@ void add_legacy_information(const std::string& name, const Record& legacy, const
 CaseFigure record_figure(const std::string& title, const std::string& quantity,
                          const std::vector<double> Record::*value, const Record& full, const Record& legacy,
                          const Record& weak, const std::string& caption) {
-  CaseFigure figure;
-  figure.chart = {title, {"time", "ps"}, {quantity, "eV"}, {}, {}};
+  CaseFigure figure = case_figure(title, {"time", "ps"}, {quantity, "eV"}, caption);
   const auto line = [&](const std::string& name, const Record& r, int colour) {
     figure.chart.lines.push_back(model_points(name, r.time, r.*value, colour));
     figure.chart.lines.back().points = false;
@@ -185,7 +176,6 @@ CaseFigure record_figure(const std::string& title, const std::string& quantity,
   line("full gradient", full, 1);
   line("no torque", legacy, 2);
   line("no torque, damping/10", weak, 3);
-  figure.caption = caption;
   return figure;
 }
 
@@ -199,9 +189,8 @@ CaseResult run(const CaseContext& context) {
                   torsion_energy(oracle.bond, pair_spacing(*oracle.paper, oracle.element_length),
                                  bonds * oracle.element_length, angle),
                   result);
-  result.checks.push_back(
-      absolute_check("full gradient, a tenth of the damping: error of the energy balance over the work",
-                     last(full_weak.unaccounted) / full_weak.work, 0, 1e-3, "1"));
+  result.check_absolute("full gradient, a tenth of the damping: error of the energy balance over the work",
+                        last(full_weak.unaccounted) / full_weak.work, 0, 1e-3, "1");
   add_legacy_information("without the torque", legacy, full, result);
   add_legacy_information("without the torque, a tenth of the damping", weak, full_weak, result);
   result.figures = {
@@ -213,14 +202,14 @@ CaseResult run(const CaseContext& context) {
                     weak, fmt::format("The grips turn for {:.0f} ps and are then held.", turning))};
   const double rate = 0.01;  // 1/nm: 5 degrees at the surface of 91 tubes
   const bool fault = context.fault.missing_torque;
-  result.checks.push_back(absolute_check(
+  result.check_absolute(
       "full gradient: missing moment of the contact, 91 tubes, over the torsion moment",
       missing_moment(model, 91, rate, fault), 0, 1e-6, "1",
-      "by virtual work of the forces against the derivative of the energy; difference quotient and rounding"));
+      "by virtual work of the forces against the derivative of the energy; difference quotient and rounding");
   for (const int tubes : {7, 91})
-    result.checks.push_back(information(absolute_check(
+    result.show_absolute(
         fmt::format("without the torque: missing moment of the contact, {} tubes, over the torsion moment", tubes),
-        missing_moment(model, tubes, rate, true), 0, 1e-2, "1", "evenly wound, 0.01 rad/nm")));
+        missing_moment(model, tubes, rate, true), 0, 1e-2, "1", "evenly wound, 0.01 rad/nm");
   result.figures.push_back(size_figure(model, rate, fault));
   result.remarks.push_back(
       fmt::format("Without the torque the damped rope also comes to rest, at the same energy; its picture shows no "
@@ -233,7 +222,6 @@ CaseResult run(const CaseContext& context) {
       "their neighbours. Evenly spread couples do not bend a tube; they act as tangential forces at the grips, and "
       "their moment grows with the distance from the axis. So the missing part of the moment hardly depends on the "
       "angle and grows with the size of the rope. Seven tubes show the smallest error.");
-  result.sources.push_back(context.tube().source);
   return result;
 }
 

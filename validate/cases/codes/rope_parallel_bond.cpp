@@ -89,17 +89,14 @@ constexpr double returns = 1e-4;         // eV: far below the heat of one degree
 constexpr double moment_returns = 1e-2;  // eV: 1e-5 of the twisting moment
 
 void add_return_checks(const std::string& path, const Left& left, CaseResult& result) {
-  result.checks.push_back(absolute_check("total energy: energy left, " + path, left.energy, 0, returns, "eV",
-                                         "a function of the state; the tolerance is for motion that is left"));
-  result.checks.push_back(
-      absolute_check("total energy: moment left, " + path, left.moment, 0, moment_returns, "eV"));
+  result.check_absolute("total energy: energy left, " + path, left.energy, 0, returns, "eV",
+                        "a function of the state; the tolerance is for motion that is left");
+  result.check_absolute("total energy: moment left, " + path, left.moment, 0, moment_returns, "eV");
 }
 
 void add_residue(const std::string& path, const Left& left, CaseResult& result, const std::string& note = "") {
-  result.checks.push_back(
-      information(absolute_check("incremental: energy left, " + path, left.energy, 0, returns, "eV", note)));
-  result.checks.push_back(
-      information(absolute_check("incremental: moment left, " + path, left.moment, 0, moment_returns, "eV")));
+  result.show_absolute("incremental: energy left, " + path, left.energy, 0, returns, "eV", note);
+  result.show_absolute("incremental: moment left, " + path, left.moment, 0, moment_returns, "eV");
 }
 
 // The rope at rest with total-energy bonds, with incremental ones, and with these at half the time step.
@@ -110,14 +107,13 @@ struct Ropes {
 void add_twist_checks(const Ropes& ropes, const ParameterSet& oracle, CaseResult& result) {
   const Twisted ours = twisted(ropes.total), theirs = twisted(ropes.coarse);
   const double spacing = line_parallel_well(oracle.line->density).distance;
-  result.checks.push_back(relative_check(
+  result.check_relative(
       "total energy: torsion of the twisted rope", ours.twist,
       torsion_energy(oracle.bond, spacing, bonds * oracle.element_length, angle), 1e-2, "eV",
-      "the clamped ends straighten the helix; this changes the energy by less than 1 - cos^2(beta)"));
-  result.checks.push_back(information(relative_check("incremental: energy of the twisted rope", theirs.energy,
-                                                     ours.energy, 1e-2, "eV", "twisted once: the same rope")));
-  result.checks.push_back(information(
-      relative_check("incremental: moment of the twisted rope", theirs.moment, ours.moment, 1e-2, "eV")));
+      "the clamped ends straighten the helix; this changes the energy by less than 1 - cos^2(beta)");
+  result.show_relative("incremental: energy of the twisted rope", theirs.energy, ours.energy, 1e-2, "eV",
+                       "twisted once: the same rope");
+  result.show_relative("incremental: moment of the twisted rope", theirs.moment, ours.moment, 1e-2, "eV");
 }
 
 // Extrapolates energies to infinite duration; each belongs to twice the duration of the one before.
@@ -142,27 +138,20 @@ void add_loop_checks(const Ropes& ropes, CaseResult& result) {
     by_square.push_back(1e3 * s.energy);
   }
   for (const auto& [name, energy] : {std::pair(back.name, energy_back), std::pair(square.name, energy_square)})
-    result.checks.push_back(information(
-        absolute_check("incremental: energy left without speed, " + name, at_no_speed(energy), 0, returns, "eV",
-                       "extrapolated from the two slowest, with the square of the speed")));
+    result.show_absolute("incremental: energy left without speed, " + name, at_no_speed(energy), 0, returns, "eV",
+                         "extrapolated from the two slowest, with the square of the speed");
   add_residue(fmt::format("{}, legs of {:.0f} ps, half the time step", square.name, leg),
               move_around(ropes.fine, square, leg), result);
   add_return_checks(back.name, move_around(ropes.total, back, leg), result);
   add_return_checks(square.name, move_around(ropes.total, square, leg), result);
-  CaseFigure figure;
-  figure.chart = {"Energy left by incremental bonds after one closed loop of a grip",
-                  {"duration of a leg", "ps"},
-                  {"energy", "meV"},
-                  {},
-                  {}};
-  figure.chart.lines.push_back(theory_curve(
-      "a function of the state", [](double) { return 0.0; }, 0, duration.back()));
-  figure.chart.lines.push_back(model_points("twisted and back", duration, by_back, 3));
-  figure.chart.lines.push_back(model_points("and shifted between", duration, by_square, 2));
-  figure.caption =
+  result.figure(
+      "Energy left by incremental bonds after one closed loop of a grip", {"duration of a leg", "ps"},
+      {"energy", "meV"},
       "Incremental bonds, with the grip back in place and the rope at rest. A slow path there and back the same "
-      "way leaves no energy. A path around an area leaves some, however slow.";
-  result.figures.push_back(figure);
+      "way leaves no energy. A path around an area leaves some, however slow.",
+      {theory_curve("a function of the state", 0, duration.back(), [](double) { return 0.0; }),
+       model_points("twisted and back", duration, by_back, 3),
+       model_points("and shifted between", duration, by_square, 2)});
 }
 
 ChartLine heat_line(const std::string& name, const std::vector<Left>& left, int colour) {
@@ -180,18 +169,13 @@ void add_heat_checks(const Ropes& ropes, CaseResult& result) {
   add_return_checks(path, total.back(), result);
   add_residue(path, coarse.back(), result, "errors of small rotations add up as a random walk");
   add_residue(path + ", half the time step", fine.back(), result);
-  CaseFigure figure;
-  figure.chart = {
-      "Energy left in a rope after heating and cooling", {"time at 300 K", "ps"}, {"energy", "eV"}, {}, {}};
-  figure.chart.lines.push_back(theory_curve(
-      "a function of the state", [](double) { return 0.0; }, 0, rounds * warm));
-  figure.chart.lines.push_back(heat_line("total energy", total, 1));
-  figure.chart.lines.push_back(heat_line("incremental", coarse, 2));
-  figure.chart.lines.push_back(heat_line("incremental, step/2", fine, 3));
-  figure.caption =
+  result.figure(
+      "Energy left in a rope after heating and cooling", {"time at 300 K", "ps"}, {"energy", "eV"},
       "The rope is held, warmed and cooled. The elements come to rest again, but the rest angles of incremental "
-      "bonds have moved.";
-  result.figures.push_back(figure);
+      "bonds have moved.",
+      {theory_curve("a function of the state", 0, rounds * warm, [](double) { return 0.0; }),
+       heat_line("total energy", total, 1), heat_line("incremental", coarse, 2),
+       heat_line("incremental, step/2", fine, 3)});
 }
 
 CaseResult run(const CaseContext& context) {
@@ -215,7 +199,6 @@ CaseResult run(const CaseContext& context) {
       "second order in its rotations. The rest angles of the bonds drift, and the rope stores energy that no load "
       "has put there. Smaller steps leave less, but not nothing. Total-energy bonds accumulate nothing at any "
       "step.");
-  result.sources.push_back(context.tube().source);
   return result;
 }
 

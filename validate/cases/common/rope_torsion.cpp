@@ -29,45 +29,46 @@ void check_at(const RopeInMachine& rope, const CaseTube& tube, double degrees, L
   const double twist = rope.twist_at(degrees * units::degree);
   const RopeInMachine::Reading seen = rope.wound(twist, kept), exact = rope.theory(tube.set, twist, kept);
   const bool paper = !tube.set.line.has_value();
-  const std::string at = fmt::format("{} tubes of {}, {:g}°", rope.tubes, paper ? "the published set" : tube.name, degrees);
-  const bool initial = degrees < 1, steep = degrees > 12;
+  const std::string at =
+      fmt::format("{} tubes of {}, {:g}°", rope.tubes, paper ? "the published set" : tube.name, degrees);
+  const bool initial = degrees<1, steep = degrees> 12;
   const char* why = initial ? (paper ? "the published contact has a grain along the tubes" : "closed form")
                     : steep ? "radii change by up to 1 %, and crowding is known to its first order in the curvature"
                             : "radii change a little, and crowding is known to its first order in the curvature";
-  result.checks.push_back(relative_check("torque per tube, " + at, seen.torque * in_nN_nm, exact.torque * in_nN_nm,
-                                         initial ? (paper ? 2e-2 : 1e-2) : steep ? 5e-2 : 2e-2, "nN nm", why));
+  result.check_relative("torque per tube, " + at, seen.torque * in_nN_nm, exact.torque * in_nN_nm,
+                        initial ? (paper ? 2e-2 : 1e-2)
+                        : steep ? 5e-2
+                                : 2e-2,
+                        "nN nm", why);
   if (initial) return;
   if (kept == Length::held) {
-    result.checks.push_back(
-        relative_check("tension per tube, " + at, seen.tension * in_nN_nm, exact.tension * in_nN_nm, 2e-2, "nN"));
+    result.check_relative("tension per tube, " + at, seen.tension * in_nN_nm, exact.tension * in_nN_nm, 2e-2, "nN");
   } else {
-    result.checks.push_back(relative_check("contraction, " + at, 100 * (1 - seen.stretch), 100 * (1 - exact.stretch),
-                                           3e-2, "%"));
+    result.check_relative("contraction, " + at, 100 * (1 - seen.stretch), 100 * (1 - exact.stretch), 3e-2, "%");
   }
   const double mass = (rope.topology.length_of(0) - 1) * rope.topology.types[0].mass;  // between the clamps
   if (kept == Length::held && degrees == 10)
-    result.checks.push_back(relative_check("specific energy, " + at, seen.energy / mass, exact.energy / mass, 3e-2,
-                                           "MJ/kg", why));
+    result.check_relative("specific energy, " + at, seen.energy / mass, exact.energy / mass, 3e-2, "MJ/kg", why);
   if (kept == Length::held && steep)
-    result.checks.push_back(absolute_check("share of stretch in the bonds, " + at, 100 * seen.stretch_share,
-                                           100 * exact.stretch_share, 3, "%"));
+    result.check_absolute("share of stretch in the bonds, " + at, 100 * seen.stretch_share,
+                          100 * exact.stretch_share, 3, "%");
   if (rope.tubes >= 37 && degrees == 10)
-    result.checks.push_back(relative_check(
-        "pressure on the core, " + at, gigapascals(seen.core_pressure), gigapascals(exact.core_pressure), 0.15, "GPa",
-        "crowding draws the middle apart with more than tension presses on it; a discrete lattice of a few rings"));
+    result.check_relative(
+        "pressure on the core, " + at, gigapascals(seen.core_pressure), gigapascals(exact.core_pressure), 0.15,
+        "GPa",
+        "crowding draws the middle apart with more than tension presses on it; a discrete lattice of a few rings");
 }
 
 }  // namespace
 
 CaseResult run_rope_torsion(const CaseContext& context, Length kept) {
   CaseResult result;
-  CaseFigure figure;
-  figure.chart = {"Torque of a rope against its twist", {"lean of the outermost tubes", "°"}, {"torque per tube", "nN nm"},
-                  {},                                   {}};
+  CaseFigure figure = case_figure(
+      "Torque of a rope against its twist", {"lean of the outermost tubes", "°"}, {"torque per tube", "nN nm"},
+      "Of the first set. Angles at which a tube would pass four fifths of its limits are left out.");
   int colour = 0;
   for (std::size_t k = 0; k < context.sets.size(); ++k) {
     const CaseTube tube = context.tube(k);
-    result.sources.push_back(tube.source);
     // Of other sets fewer, for the time that they take.
     const std::vector<int> sizes = context.given ? std::vector<int>{7, 37} : std::vector<int>{7, 19, 37, 91};
     for (const int tubes : sizes) {
@@ -76,32 +77,34 @@ CaseResult run_rope_torsion(const CaseContext& context, Length kept) {
       for (const double degrees : {0.5, 5.0, 10.0, 15.0}) {
         const double twist = rope.twist_at(degrees * units::degree);
         if (!bearable(rope, twist)) continue;
-        if (context.progress) context.progress(fmt::format("{} tubes of {}, {:g} degrees", tubes, tube.name, degrees));
+        if (context.progress)
+          context.progress(fmt::format("{} tubes of {}, {:g} degrees", tubes, tube.name, degrees));
         const std::size_t before = result.checks.size();
         check_at(rope, tube, degrees, kept, result);
         leans.push_back(degrees);
         torques.push_back(result.checks[before].value);
       }
       if (k > 0 || (tubes != sizes.front() && tubes != sizes.back())) continue;
-      figure.chart.lines.push_back(theory_curve(
-          fmt::format("theory, {} tubes", tubes),
-          [&](double lean) {
+      figure.chart.lines.push_back(
+          theory_curve(fmt::format("theory, {} tubes", tubes), 0.5, leans.back(), colour, [&](double lean) {
             return rope.theory(tube.set, rope.twist_at(lean * units::degree), kept).torque * in_nN_nm;
-          },
-          0.5, leans.back(), colour));
+          }));
       figure.chart.lines.push_back(model_points(fmt::format("{} tubes", tubes), leans, torques, colour));
       ++colour;
     }
   }
-  figure.caption = "Of the first set. Angles at which a tube would pass four fifths of its limits are left out.";
   result.figures.push_back(figure);
   result.remarks.push_back(
-      "Three parts of the energy count: the bonds on helices, the cohesion of unequal tubes that clamps keep equally "
-      "long, and the crowding of the twisted lattice. Without the crowding the torque of 91 tubes would be 6 % too small "
-      "at 10° and held length, and 12 % where the length is free; without the cohesion the initial stiffness 1 % too "
+      "Three parts of the energy count: the bonds on helices, the cohesion of unequal tubes that clamps keep "
+      "equally "
+      "long, and the crowding of the twisted lattice. Without the crowding the torque of 91 tubes would be 6 % too "
+      "small "
+      "at 10° and held length, and 12 % where the length is free; without the cohesion the initial stiffness 1 % "
+      "too "
       "large.");
   result.remarks.push_back(
-      "Bonds count twist per element, not per stretched length: a twisted tube does not lengthen by itself, as a rod "
+      "Bonds count twist per element, not per stretched length: a twisted tube does not lengthen by itself, as a "
+      "rod "
       "would whose twist per length falls where it is stretched.");
   return result;
 }
@@ -113,11 +116,14 @@ Case rope_torsion_case() {
   c.law = Case::Law::none;
   c.sets = {"cnt-10-10-tersoff", "cnt-10-10-paper"};
   c.oracle =
-      "u = u_bonds(s - 1, phi cos θ, phi sin θ) - Gamma/s + crowding, s = sqrt(λ² + ρ²phi²), at the rest radii ρ; M = "
-      "dU/dphi, T = dU/dλ. Crowding is the energy of a flat lattice on a surface of the curvature 3 phi². Pressure on the "
+      "u = u_bonds(s - 1, phi cos θ, phi sin θ) - Gamma/s + crowding, s = sqrt(λ² + ρ²phi²), at the rest radii ρ; "
+      "M = "
+      "dU/dphi, T = dU/dλ. Crowding is the energy of a flat lattice on a surface of the curvature 3 phi². Pressure "
+      "on the "
       "core: E (phi R)⁴/8 of the tension, less 3 Y (phi R)²/16 of the crowding.";
   c.literature =
-      "G. M. Grason, Rev. Mod. Phys. 87, 401 (2015), DOI 10.1103/RevModPhys.87.401; I. R. Bruss, G. M. Grason, PNAS "
+      "G. M. Grason, Rev. Mod. Phys. 87, 401 (2015), DOI 10.1103/RevModPhys.87.401; I. R. Bruss, G. M. Grason, "
+      "PNAS "
       "109, 10781 (2012), DOI 10.1073/pnas.1205606109";
   return c;
 }

@@ -57,6 +57,11 @@ bool blows_up(const Topology& topology, const Interaction& interaction, const St
   return !(growth(topology, interaction, state, time_step, steps) < enough_growth);
 }
 
+double largest_step(const Topology& topology, const Interaction& interaction, const State& state, double about) {
+  return limit_between([&](double dt) { return blows_up(topology, interaction, state, dt); }, 0.3 * about,
+                       3 * about);
+}
+
 namespace {
 
 // Minus the derivative of all forces and torques by positions and rotations, or by velocities, over the masses.
@@ -105,9 +110,10 @@ double largest_eigenvalue(const Eigen::MatrixXd& m) {
 
 }  // namespace
 
-CaseFigure step_figure(const std::string& by, const ChartAxis& x) {
-  CaseFigure figure;
-  figure.chart = {"Largest stable step by " + by, x, {"largest step", "fs"}, {}, {}};
+CaseFigure step_figure(const std::string& by, const ChartAxis& x, std::string caption,
+                       std::vector<ChartLine> lines) {
+  CaseFigure figure =
+      case_figure("Largest stable step by " + by, x, {"largest step", "fs"}, std::move(caption), std::move(lines));
   figure.chart.below = "stable";
   figure.chart.above = "unstable";
   figure.on_map = true;

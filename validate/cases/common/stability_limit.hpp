@@ -14,6 +14,8 @@ double limit_between(const std::function<bool(double)>& fails, double low, doubl
 // grows a millionfold.
 bool blows_up(const Topology& topology, const Interaction& interaction, const State& state, double time_step,
               long steps = 500);
+// The step (ps) between 0.3 and 3 times `about` at which it begins to.
+double largest_step(const Topology& topology, const Interaction& interaction, const State& state, double about);
 
 // Factor by which the kinetic energy of such a state grows in `steps`; infinite where the simulator stops.
 double growth(const Topology& topology, const Interaction& interaction, const State& state, double time_step,
@@ -27,8 +29,9 @@ double stiffest_frequency(const Topology& topology, const Interaction& interacti
 // over the masses by differences of the forces. Without damping it is 2/w.
 double largest_damped_step(const Topology& topology, const Interaction& interaction, const State& state);
 
-// An empty figure of the largest stable step, for the map of all limits.
-CaseFigure step_figure(const std::string& by, const ChartAxis& x);
+// A figure of the largest stable step, for the map of all limits.
+CaseFigure step_figure(const std::string& by, const ChartAxis& x, std::string caption,
+                       std::vector<ChartLine> lines);
 
 // The set with elements `factor` times as long.
 ParameterSet with_elements(ParameterSet set, double factor);

@@ -70,10 +70,10 @@ void add_leaving(const TubeCurve& c, double sign, CaseResult& result) {
 }
 
 CaseFigure energy_figure(const TubeCurve& c) {
-  LineChart chart;
-  chart.title = fmt::format("Energy of {} against {}", c.tube, c.amplitude_name);
-  chart.x = {c.amplitude_name, c.unit};
-  chart.y = {"energy per length", "eV/nm"};
+  CaseFigure figure =
+      case_figure(fmt::format("Energy of {} against {}", c.tube, c.amplitude_name), {c.amplitude_name, c.unit},
+                  {"energy per length", "eV/nm"},
+                  fmt::format("{}: the tube gives way, by the set, at {}.", c.tube, at_amplitude(c, c.end)));
   ChartLine atoms{"atoms (LAMMPS)", c.amplitude, c.atoms, 0};
   atoms.points = true;
   ChartLine model{"model", {}, {}, 1};
@@ -82,32 +82,32 @@ CaseFigure energy_figure(const TubeCurve& c) {
     model.x.push_back(*least + (*most - *least) * k / curve_points);
     model.y.push_back(c.model(model.x.back()));
   }
-  chart.lines = {model, atoms};
+  figure.chart.lines = {model, atoms};
   if (!c.more_amplitude.empty()) {
     ChartLine more{c.more_name, c.more_amplitude, c.more_atoms, 2};
     more.dashed = true;
-    chart.lines.push_back(more);
+    figure.chart.lines.push_back(more);
   }
-  chart.bands = {{*least < 0 ? -c.window : 0, c.window, "compared", false}};
-  return {chart, fmt::format("{}: the tube gives way, by the set, at {}.", c.tube, at_amplitude(c, c.end))};
+  figure.chart.bands = {{*least < 0 ? -c.window : 0, c.window, "compared", false}};
+  return figure;
 }
 
 CaseFigure residual_figure(const TubeCurve& c) {
-  LineChart chart;
-  chart.title = fmt::format("Residual of {} against {}", c.tube, c.amplitude_name);
-  chart.x = {c.amplitude_name, c.unit};
-  chart.y = {"model against atoms", "%"};
-  chart.height = 200;
+  CaseFigure figure =
+      case_figure(fmt::format("Residual of {} against {}", c.tube, c.amplitude_name), {c.amplitude_name, c.unit},
+                  {"model against atoms", "%"},
+                  fmt::format("{}: relative difference of the energies. The tolerance in the window is {:.0f} %.",
+                              c.tube, 100 * window_tolerance));
+  figure.chart.height = 200;
   ChartLine line{"model / atoms - 1", {}, {}, 0};
   for (std::size_t k = 0; k < c.amplitude.size(); ++k) {
     if (c.amplitude[k] == 0) continue;
     line.x.push_back(c.amplitude[k]);
     line.y.push_back(100 * deviation(c, k));
   }
-  chart.lines = {line};
-  chart.bands = {{line.x.front() < 0 ? -c.window : 0, c.window, "compared", false}};
-  return {chart, fmt::format("{}: relative difference of the energies. The tolerance in the window is {:.0f} %.",
-                             c.tube, 100 * window_tolerance)};
+  figure.chart.lines = {line};
+  figure.chart.bands = {{line.x.front() < 0 ? -c.window : 0, c.window, "compared", false}};
+  return figure;
 }
 
 }  // namespace

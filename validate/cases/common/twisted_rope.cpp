@@ -75,17 +75,16 @@ void add_checks(const ParameterSet& set, const Series& series, CaseResult& resul
     const TwistedState atoms = change(series.atoms, k), elements = change(series.elements, k);
     const std::string at = series.at(k), tube = series.tube + ": ";
     const double registry = registry_bar(set, series, k);
-    result.checks.push_back(relative_check(tube + "twisting energy" + at, elements.total, atoms.total,
-                                           std::hypot(0.02, registry), "eV", "2 %, and the error bar of registry"));
-    result.checks.push_back(
-        relative_check(tube + "energy inside of the tubes" + at, elements.tubes, atoms.tubes, 0.02, "eV"));
-    result.checks.push_back(relative_check(tube + "vdW energy" + at, series.elements[k].vdw, series.atoms[k].vdw,
-                                           0.10, "eV", "of the twisted rope, whole"));
-    result.checks.push_back(absolute_check(
+    result.check_relative(tube + "twisting energy" + at, elements.total, atoms.total, std::hypot(0.02, registry),
+                          "eV", "2 %, and the error bar of registry");
+    result.check_relative(tube + "energy inside of the tubes" + at, elements.tubes, atoms.tubes, 0.02, "eV");
+    result.check_relative(tube + "vdW energy" + at, series.elements[k].vdw, series.atoms[k].vdw, 0.10, "eV",
+                          "of the twisted rope, whole");
+    result.check_absolute(
         tube + "vdW part of the twisting energy" + at, elements.vdw / elements.total, atoms.vdw / atoms.total,
         std::hypot(0.01, 2 * registry), "1",
-        "relative to the twisting energy: 1 %, and two error bars of registry, which smooth tubes do not have"));
-    result.checks.push_back(relative_check(tube + "end moment" + at, elements.moment, atoms.moment, 0.05, "eV"));
+        "relative to the twisting energy: 1 %, and two error bars of registry, which smooth tubes do not have");
+    result.check_relative(tube + "end moment" + at, elements.moment, atoms.moment, 0.05, "eV");
   }
 }
 
@@ -95,9 +94,8 @@ void add_collapsed_checks(const RopeComparison& c, const Series& series, CaseRes
     for (const double degrees : c.collapsed) {
       if (std::fabs(series.atoms[k].angle * units::rad_in_degree - degrees) > 0.01) continue;
       const TwistedState atoms = change(series.atoms, k), elements = change(series.elements, k);
-      result.checks.push_back(
-          relative_check(fmt::format("{}: twisting energy of collapsed tubes, {:.4g} deg", series.tube, degrees),
-                         elements.total, atoms.total, 0.10, "eV"));
+      result.check_relative(fmt::format("{}: twisting energy of collapsed tubes, {:.4g} deg", series.tube, degrees),
+                            elements.total, atoms.total, 0.10, "eV");
     }
 }
 
@@ -115,21 +113,20 @@ void add_shear_information(const TwistedRope& rope, ParameterSet set, const Seri
   rigid.elements = twist_elements(rope, set, angles_in(series), series.grips == "free");
   for (const std::size_t k : compared(series)) {
     const TwistedState atoms = change(rigid.atoms, k), elements = change(rigid.elements, k);
-    result.checks.push_back(information(
-        relative_check(series.tube + ": twisting energy with bonds rigid in shear" + series.at(k), elements.total,
-                       atoms.total, 0.05, "eV", "the published kind of bond, for comparison")));
+    result.show_relative(series.tube + ": twisting energy with bonds rigid in shear" + series.at(k), elements.total,
+                         atoms.total, 0.05, "eV", "the published kind of bond, for comparison");
   }
 }
 
 void add_registry_information(const ParameterSet& set, const Series& series, CaseResult& result) {
   if (registry_deviation(set) < 0) return;
   for (const std::size_t k : compared(series))
-    result.checks.push_back(information(absolute_check(
+    result.show_absolute(
         series.tube + ": registry over twisting energy" + series.at(k), 0, registry_bar(set, series, k), 0, "1",
         fmt::format(
             "error bar of the twisting energy: {:.2g} % of the vdW energy a pair, of 12 pairs at random; the "
             "model has no registry",
-            100 * registry_deviation(set)))));
+            100 * registry_deviation(set)));
 }
 
 // Shortening is of second order in the angle, and softer in the atoms.
@@ -138,10 +135,10 @@ void add_axial_information(const Series& series, CaseResult& result) {
   const char* note =
       "shown only: rises with the square of the angle, and depends on how the clamps take up the strain";
   const auto add = [&](const std::string& name, double TwistedState::*value, const char* unit) {
-    result.checks.push_back(information(relative_check(
+    result.show_relative(
         fmt::format("{}: {}, {:.4g} deg", series.tube, name, series.atoms[k].angle * units::rad_in_degree),
         series.elements[k].*value - series.elements[0].*value, series.atoms[k].*value - series.atoms[0].*value, 0.3,
-        unit, note)));
+        unit, note);
   };
   if (series.grips == "fixed")
     add("tension due to the twist, grips fixed", &TwistedState::force, "eV/nm");
@@ -159,24 +156,21 @@ ChartLine line(const Series& s, std::vector<double> values, const std::string& n
 
 CaseFigure comparison(const std::vector<Series>& all, double TwistedState::*value, bool against_start,
                       const std::string& quantity, const std::string& unit, const std::string& caption) {
-  CaseFigure figure;
-  figure.chart.title = quantity + " against the angle between the grips";
-  figure.chart.x = {"angle between the grips", "deg"};
-  figure.chart.y = {quantity, unit};
+  CaseFigure figure = case_figure(quantity + " against the angle between the grips",
+                                  {"angle between the grips", "deg"}, {quantity, unit}, caption);
   for (const Series& s : all) {
     const double a = against_start ? s.atoms[0].*value : 0, e = against_start ? s.elements[0].*value : 0;
     figure.chart.lines.push_back(points(s, each(s.atoms, value, a)));
     figure.chart.lines.push_back(line(s, each(s.elements, value, e)));
   }
-  figure.caption = caption;
   return figure;
 }
 
 CaseFigure residual_figure(std::vector<Series> all) {
-  CaseFigure figure;
-  figure.chart.title = "Elements against atoms";
-  figure.chart.x = {"angle between the grips", "deg"};
-  figure.chart.y = {"elements over atoms", "%"};
+  CaseFigure figure = case_figure(
+      "Elements against atoms", {"angle between the grips", "deg"}, {"elements over atoms", "%"},
+      "Relative differences. At small angles the moment of atoms has a part due to registry that does not grow "
+      "with the angle.");
   for (Series& s : all) {
     figure.chart.lines.push_back(line(s, residuals(s, &TwistedState::moment), "end moment"));
     figure.chart.lines.back().dashed = true;
@@ -186,9 +180,6 @@ CaseFigure residual_figure(std::vector<Series> all) {
     }
     figure.chart.lines.push_back(line(s, residuals(s, &TwistedState::total), "twisting energy"));
   }
-  figure.caption =
-      "Relative differences. At small angles the moment of atoms has a part due to registry that does not grow "
-      "with the angle.";
   return figure;
 }
 
@@ -255,7 +246,6 @@ void compare(const RopeComparison& c, const CaseTube& tube, const CaseContext& c
     add_shear_information(rope, tube.model, series, result);
     all.push_back(std::move(series));
   }
-  result.sources.push_back(tube.source);
 }
 
 CaseResult run_ropes(const RopeComparison& c, const CaseContext& context) {

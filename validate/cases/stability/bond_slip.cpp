@@ -34,29 +34,25 @@ CaseResult run(const CaseContext& context) {
   const double found =
       limit_between([&](double m) { return std::isnan(twisted(model, m)); }, 0.5 * theory, 1.6 * theory, 3e-3);
   CaseResult result;
-  result.checks.push_back(relative_check("moment at which a bond slips", found / units::nN_nm,
-                                         theory / units::nN_nm, 0.05, "nN nm",
-                                         "in 24 increments, each brought to rest"));
-  result.checks.push_back(information(absolute_check(
-      "moment on a tube at a twist of 10 degrees per element", theory * std::sin(10 * units::degree) / units::nN_nm,
-      theory * 10 * units::degree / units::nN_nm, 0, "nN nm",
-      "the torque of a bond is a sine, 0.5 % below that of a rod at 10 degrees")));
+  result.check_relative("moment at which a bond slips", found / units::nN_nm, theory / units::nN_nm, 0.05, "nN nm",
+                        "in 24 increments, each brought to rest");
+  result.show_absolute("moment on a tube at a twist of 10 degrees per element",
+                       theory * std::sin(10 * units::degree) / units::nN_nm,
+                       theory * 10 * units::degree / units::nN_nm, 0, "nN nm",
+                       "the torque of a bond is a sine, 0.5 % below that of a rod at 10 degrees");
   result.limits.push_back({"moment at which a bond slips", found / units::nN_nm, theory / units::nN_nm, "nN nm",
                            Limit::Guard::stopped, "a bond twisted by 90 degrees; names its element"});
-  CaseFigure figure;
-  figure.chart = {"Torque of a bond", {"twist of the bond", "degrees"}, {"moment", "nN nm"}, {}, {}};
   std::vector<double> angle, moment;
   for (double part = 0.1; part < 1; part += 0.1) {
     angle.push_back(twisted(model, part * theory) / units::degree);
     moment.push_back(part * theory / units::nN_nm);
   }
-  figure.chart.lines.push_back(theory_curve(
-      "GJ/a sin", [&](double x) { return theory * std::sin(x * units::degree) / units::nN_nm; }, 0, 180, 0));
-  figure.chart.lines.push_back(model_points("at rest under a couple", angle, moment, 1));
-  figure.caption = "Beyond 90 degrees no angle is at rest: the bond slips.";
-  result.figures.push_back(figure);
+  result.figure("Torque of a bond", {"twist of the bond", "degrees"}, {"moment", "nN nm"},
+                "Beyond 90 degrees no angle is at rest: the bond slips.",
+                {theory_curve("GJ/a sin", 0, 180,
+                              [&](double x) { return theory * std::sin(x * units::degree) / units::nN_nm; }),
+                 model_points("at rest under a couple", angle, moment)});
   result.remarks.push_back("A run stops before a bond slips and names the element.");
-  result.sources.push_back(context.tube().source);
   return result;
 }
 

@@ -38,8 +38,7 @@ double found(const ParameterSet& set, double rate) {
   Chain c(set, bonds);
   c.interaction.damping.bond.rate = rate;
   const double about = time_step_limit(c.topology, c.interaction, 0).limit;
-  const auto fails = [&](double dt) { return blows_up(c.topology, c.interaction, c.state, dt); };
-  return limit_between(fails, 0.3 * about, 3 * about) / units::fs;
+  return largest_step(c.topology, c.interaction, c.state, about) / units::fs;
 }
 
 CaseResult run(const CaseContext& context) {
@@ -50,9 +49,8 @@ CaseResult run(const CaseContext& context) {
     const ParameterSet m = with_elements(model, factor), o = with_elements(oracle, factor);
     length.push_back(o.element_length);
     limit.push_back(found(m, 0));
-    result.checks.push_back(relative_check(fmt::format("largest step, elements of {:.2f} nm", o.element_length),
-                                           limit.back(), theory(o, 0), 0.05, "fs",
-                                           "a chain of 41 elements, not an endless one"));
+    result.check_relative(fmt::format("largest step, elements of {:.2f} nm", o.element_length), limit.back(),
+                          theory(o, 0), 0.05, "fs", "a chain of 41 elements, not an endless one");
     result.limits.push_back(
         {fmt::format("time step, single tube, elements of {:.2f} nm", o.element_length), limit.back(), theory(o, 0),
          "fs", Limit::Guard::refused,
@@ -61,32 +59,27 @@ CaseResult run(const CaseContext& context) {
   std::vector<double> rates = {5, 20, 60}, damped;
   for (const double rate : rates) {
     damped.push_back(found(model, rate));
-    result.checks.push_back(relative_check(fmt::format("largest step, bonds damped by {:.0f}/ps", rate),
-                                           damped.back(), theory(oracle, rate), 0.05, "fs",
-                                           "a chain of 41 elements, not an endless one"));
+    result.check_relative(fmt::format("largest step, bonds damped by {:.0f}/ps", rate), damped.back(),
+                          theory(oracle, rate), 0.05, "fs", "a chain of 41 elements, not an endless one");
     result.limits.push_back({fmt::format("time step, bonds damped by {:.0f}/ps", rate), damped.back(),
                              theory(oracle, rate), "fs", Limit::Guard::refused,
                              "a time step above the estimate, which includes the damping"});
   }
-  CaseFigure lengths = step_figure("element length", {"element length", "nm"});
-  lengths.chart.lines.push_back(theory_curve(
-      "2/w of the stiffest mode",
-      [&](double a) { return theory(with_elements(oracle, a / oracle.element_length), 0); }, length.front(),
-      length.back(), 0));
-  lengths.chart.lines.push_back(model_points("by bisection", length, limit, 1));
-  lengths.caption = "One tube. The step grows with the element length: elements twice as long cost a quarter.";
-  result.figures.push_back(lengths);
-  CaseFigure damping = step_figure("bond damping", {"damping of the bonds", "1/ps"});
-  damping.chart.lines.push_back(theory_curve(
-      "dt^2 K + 2 dt D = 4", [&](double rate) { return theory(oracle, rate); }, 0, 80, 0));
-  damping.chart.lines.push_back(model_points("by bisection", rates, damped, 1));
-  damping.caption = "One tube. Explicit damping lowers the largest step.";
-  result.figures.push_back(damping);
+  result.figures = {
+      step_figure(
+          "element length", {"element length", "nm"},
+          "One tube. The step grows with the element length: elements twice as long cost a quarter.",
+          {theory_curve("2/w of the stiffest mode", length.front(), length.back(),
+                        [&](double a) { return theory(with_elements(oracle, a / oracle.element_length), 0); }),
+           model_points("by bisection", length, limit)}),
+      step_figure("bond damping", {"damping of the bonds", "1/ps"},
+                  "One tube. Explicit damping lowers the largest step.",
+                  {theory_curve("dt^2 K + 2 dt D = 4", 0, 80, [&](double rate) { return theory(oracle, rate); }),
+                   model_points("by bisection", rates, damped)})};
   result.remarks.push_back(
       "`run` refuses a time step above its own estimate of this limit; by default it takes 0.9 of the estimate in "
       "cold scenes and 0.6 in others. Above some 10/ps the damping sets the step: a turn of all elements alike, "
       "with their lever arms, is damped more strongly than one of neighbours in opposite directions.");
-  result.sources.push_back(context.tube().source);
   return result;
 }
 

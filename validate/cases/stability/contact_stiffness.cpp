@@ -70,13 +70,11 @@ double check_viscosity(const CaseContext& context, CaseResult& result) {
   Bundle oracle = bundle_at_rest(s, context.set(s.set), 1), model = packed(s, context.model(s.set), 1);
   model.state = oracle.state;
   double margin = 1e9;
-  CaseFigure figure = step_figure("contact viscosity", {"viscosity, log10 of eV ps/nm^2", ""});
   std::vector<double> at, limit, expected, estimates;
   for (const double eta : {20.0, 200.0, 1000.0, 5000.0}) {
     for (Bundle* b : {&model, &oracle}) b->interaction.damping.contact = {eta, b->spacing, 1.5 * b->spacing};
     const double theory = largest_damped_step(oracle.topology, oracle.interaction, oracle.state);
-    const auto fails = [&](double dt) { return blows_up(model.topology, model.interaction, model.state, dt); };
-    const double found = limit_between(fails, 0.3 * theory, 3 * theory);
+    const double found = largest_step(model.topology, model.interaction, model.state, theory);
     const double estimate = time_step_limit(oracle.topology, oracle.interaction, oracle.spacing).limit;
     margin = std::min(margin, theory / estimate);
     at.push_back(std::log10(eta));
@@ -84,24 +82,23 @@ double check_viscosity(const CaseContext& context, CaseResult& result) {
     expected.push_back(theory / units::fs);
     estimates.push_back(estimate / units::fs);
     const std::string name = fmt::format("line law, viscosity {:.0f} eV ps/nm^2", eta);
-    result.checks.push_back(
-        relative_check(name, limit.back(), expected.back(), 0.05, "fs", "a scene has 20 by default"));
+    result.check_relative(name, limit.back(), expected.back(), 0.05, "fs", "a scene has 20 by default");
     result.limits.push_back({"time step, seven tubes, " + name, limit.back(), expected.back(), "fs",
                              Limit::Guard::refused,
                              "a time step above the estimate, which includes the viscosity"});
   }
-  figure.chart.lines.push_back({"dt^2 K + 2 dt D = 4", at, expected, 0});
-  figure.chart.lines.push_back(model_points("by bisection", at, limit, 1));
-  figure.chart.lines.push_back({"estimate of `run`", at, estimates, 2, true});
-  figure.caption =
-      "Seven tubes. The estimate is lower: it is that of a tube with six neighbours in an endless rope under load.";
-  result.figures.push_back(figure);
+  result.figures.push_back(step_figure(
+      "contact viscosity", {"viscosity, log10 of eV ps/nm^2", ""},
+      "Seven tubes. The estimate is lower: it is that of a tube with six neighbours in an endless rope under load.",
+      {{"dt^2 K + 2 dt D = 4", at, expected, 0},
+       model_points("by bisection", at, limit),
+       {"estimate of `run`", at, estimates, 2, true}}));
   return margin;
 }
 
 CaseResult run(const CaseContext& context) {
   CaseResult result;
-  CaseFigure map = step_figure("stiffness of the contact", {"contact, log2 of its energy over the set's", ""});
+  std::vector<ChartLine> lines;
   int colour = 0;
   double min_margin = 1e9;
   for (const Series& s : all_series()) {
@@ -111,39 +108,34 @@ CaseResult run(const CaseContext& context) {
       Bundle model = packed(s, context.model(s.set), factor);
       model.state = oracle.state;
       const double theory = 2 / stiffest_frequency(oracle.topology, oracle.interaction, oracle.state);
-      const auto fails = [&](double dt) { return blows_up(model.topology, model.interaction, model.state, dt); };
-      const double found = limit_between(fails, 0.3 * theory, 3 * theory);
+      const double found = largest_step(model.topology, model.interaction, model.state, theory);
       at.push_back(std::log2(factor));
       limit.push_back(found / units::fs);
       expected.push_back(theory / units::fs);
       const double estimate = time_step_limit(oracle.topology, oracle.interaction, oracle.spacing).limit;
       min_margin = std::min(min_margin, theory / estimate);
-      result.checks.push_back(relative_check(fmt::format("{}, contact x {:.0f}", s.name, factor), limit.back(),
-                                             expected.back(), 0.05, "fs", "seven tubes of four elements at rest"));
+      result.check_relative(fmt::format("{}, contact x {:.0f}", s.name, factor), limit.back(), expected.back(),
+                            0.05, "fs", "seven tubes of four elements at rest");
     }
     result.limits.push_back({fmt::format("time step, seven tubes, {}", s.name), limit.front(), expected.front(),
                              "fs", Limit::Guard::refused, "a time step above the estimate"});
-    ChartLine theory{"2/w, " + s.name, at, expected, colour};
-    map.chart.lines.push_back(theory);
-    map.chart.lines.push_back(model_points("by bisection", at, limit, colour));
+    lines.push_back({"2/w, " + s.name, at, expected, colour});
+    lines.push_back(model_points("by bisection", at, limit, colour));
     ++colour;
   }
-  map.caption =
-      "Seven tubes. Points: by bisection. Lines: by the eigenvalues. Where a line begins to fall, the contact "
-      "becomes stiffer "
-      "than the chains.";
-  result.figures.push_back(map);
+  result.figures.push_back(
+      step_figure("stiffness of the contact", {"contact, log2 of its energy over the set's", ""},
+                  "Seven tubes. Points: by bisection. Lines: by the eigenvalues. Where a line begins to fall, the "
+                  "contact becomes stiffer than the chains.",
+                  lines));
   min_margin = std::min(min_margin, check_viscosity(context, result));
   // The estimate of `run` must never lie above the stable step.
-  result.checks.push_back(
-      absolute_check("estimates of `run` above the limit", min_margin < 1 ? 1 : 0, 0, 0, "", "0: none of these"));
-  result.checks.push_back(
-      information(absolute_check("smallest limit over estimate", min_margin, 1, 0, "",
-                                 "`auto` takes 0.9 of the estimate in cold scenes, 0.6 in others")));
+  result.check_absolute("estimates of `run` above the limit", min_margin < 1 ? 1 : 0, 0, 0, "", "0: none of these");
+  result.show_absolute("smallest limit over estimate", min_margin, 1, 0, "",
+                       "`auto` takes 0.9 of the estimate in cold scenes, 0.6 in others");
   result.remarks.push_back(
       "A contact many times as strong as that of the sets stands for tubes that are pressed together. At rest, the "
       "contact of no shipped set lowers the step.");
-  for (const CaseTube& tube : context.tubes()) result.sources.push_back(tube.source);
   return result;
 }
 

@@ -203,13 +203,13 @@ void check_law(const std::string& law, const std::vector<Named>& paths, CaseResu
     if (s.slope_jump / s.steepest >= kink)
       kink = s.slope_jump / s.steepest, kink_where = fmt::format("{} at {:.4g}", n.name, s.slope_at);
   }
-  result.checks.push_back(absolute_check(law + ": finite everywhere (1: yes)", finite ? 1 : 0, 1, 0, "",
-                                         fmt::format("highest energy {:.3g} eV", highest)));
-  result.checks.push_back(absolute_check(law + ": largest jump of the energy", jump, 0, 1e-5, "eV", where));
-  result.checks.push_back(absolute_check(law + ": largest jump of force or torque", kink, 0, 1e-6, "1",
-                                         "over the largest on the path; " + kink_where));
-  result.checks.push_back(absolute_check(law + ": forces against differences of the energy", gradient, 0, 1e-5, "1",
-                                         "over the largest on the path"));
+  result.check_absolute(law + ": finite everywhere (1: yes)", finite ? 1 : 0, 1, 0, "",
+                        fmt::format("highest energy {:.3g} eV", highest));
+  result.check_absolute(law + ": largest jump of the energy", jump, 0, 1e-5, "eV", where);
+  result.check_absolute(law + ": largest jump of force or torque", kink, 0, 1e-6, "1",
+                        "over the largest on the path; " + kink_where);
+  result.check_absolute(law + ": forces against differences of the energy", gradient, 0, 1e-5, "1",
+                        "over the largest on the path");
 }
 
 // `overlap`: the smallest distance of the centres of two elements in one line.
@@ -241,10 +241,10 @@ void check_published_jump(const ParameterSet& model, const ParameterSet& oracle,
     return published_energy(*oracle.paper, centre, Vector3::UnitZ(), {0, -std::sin(angle), std::cos(angle)});
   };
   const double theory = std::fabs(by_hand(right + 1e-9) - by_hand(right - 1e-9));
-  result.checks.push_back(relative_check("published form: angle at which it jumps", at * units::rad_in_degree, 90,
-                                         1e-4, "degrees", "the bisector changes to the other pair of angles"));
-  result.checks.push_back(relative_check("published form: height of the jump", jump, theory, 0.05, "eV",
-                                         "one pair, against a second implementation of the published form"));
+  result.check_relative("published form: angle at which it jumps", at * units::rad_in_degree, 90, 1e-4, "degrees",
+                        "the bisector changes to the other pair of angles");
+  result.check_relative("published form: height of the jump", jump, theory, 0.05, "eV",
+                        "one pair, against a second implementation of the published form");
   result.limits.push_back({"angle at which the published law jumps", at * units::rad_in_degree, 90, "degrees",
                            Limit::Guard::none, "not needed: blended within 10 degrees, with exact forces"});
 }
@@ -265,19 +265,16 @@ void check_coinciding_nodes(RigidTubes& single, const ParameterSet& oracle, Case
   // The distance of two nodes is rounded off at 1e-6 nm.
   const double jump = std::fabs(path(at + 1e-5).slope - path(at - 1e-5).slope);
   single.put({0, 0, at}, 0);
-  result.checks.push_back(
-      relative_check("line law, tubes inside one another in one line: shift at which nodes coincide", at, spacing,
-                     1e-3, "nm", "place of the largest jump of the force"));
-  result.checks.push_back(relative_check("line law, nodes that coincide: jump of the force", jump, theory, 0.05,
-                                         "eV/nm", fmt::format("at an energy of {:.3g} eV", single.energy())));
+  result.check_relative("line law, tubes inside one another in one line: shift at which nodes coincide", at,
+                        spacing, 1e-3, "nm", "place of the largest jump of the force");
+  result.check_relative("line law, nodes that coincide: jump of the force", jump, theory, 0.05, "eV/nm",
+                        fmt::format("at an energy of {:.3g} eV", single.energy()));
   result.limits.push_back({"jump of the line law's force where nodes coincide", jump, theory, "eV/nm",
                            Limit::Guard::refused, "elements that overlap at the start; a run stops long before"});
 }
 
 CaseFigure figure_of(RigidTubes& line_rows, RigidTubes& paper_rows, const ParameterSet& line, double line_at,
                      double paper_at) {
-  CaseFigure figure;
-  figure.chart = {"Energy of two crossing tubes", {"crossing angle", "degrees"}, {"energy", "eV"}, {}, {}};
   std::vector<double> angle, by_line, by_paper;
   for (int degrees = 0; degrees <= 90; degrees += 3) {
     angle.push_back(degrees);
@@ -287,12 +284,11 @@ CaseFigure figure_of(RigidTubes& line_rows, RigidTubes& paper_rows, const Parame
     by_paper.push_back(paper_rows.energy());
   }
   const double crossed = line_crossed_energy(line.line->density, line_at, 0.5 * units::pi);
-  figure.chart.lines.push_back(theory_curve(
-      "endless tubes, E90/sin", [&](double d) { return crossed / std::sin(d * units::degree); }, 12, 90, 0));
-  figure.chart.lines.push_back(model_points("line law", angle, by_line, 0));
-  figure.chart.lines.push_back(model_points("paper law", angle, by_paper, 1));
-  figure.caption = "Two tubes of nine elements that cross in the middle, at the distance of two parallel ones.";
-  return figure;
+  return case_figure("Energy of two crossing tubes", {"crossing angle", "degrees"}, {"energy", "eV"},
+                     "Two tubes of nine elements that cross in the middle, at the distance of two parallel ones.",
+                     {theory_curve("endless tubes, E90/sin", 12, 90,
+                                   [&](double d) { return crossed / std::sin(d * units::degree); }),
+                      model_points("line law", angle, by_line, 0), model_points("paper law", angle, by_paper)});
 }
 
 CaseResult run(const CaseContext& context) {
@@ -308,8 +304,8 @@ CaseResult run(const CaseContext& context) {
   const double right = 0.5 * units::pi;
   line_rows.put({line_at, 0, 0}, right);
   const double crossed = line_crossed_energy(line_oracle.line->density, line_at, right);
-  result.checks.push_back(relative_check("line law: energy at 90 degrees", line_rows.energy(), crossed, 0.01, "eV",
-                                         "nine elements against the closed integral of endless tubes"));
+  result.check_relative("line law: energy at 90 degrees", line_rows.energy(), crossed, 0.01, "eV",
+                        "nine elements against the closed integral of endless tubes");
   check_coinciding_nodes(line_single, line_oracle, result);
   check_published_jump(paper, paper_oracle, result);
   result.figures.push_back(figure_of(line_rows, paper_rows, line_oracle, line_at, paper_at));
@@ -319,7 +315,6 @@ CaseResult run(const CaseContext& context) {
       "coincide, the force of the line law changes sign; no run gets there. The published form of the paper law "
       "jumps at a right angle wherever the line of centres is not normal to both axes. For tubes in one line it "
       "has no value once rounding takes the argument of an arc cosine above one.");
-  for (const CaseTube& tube : context.tubes()) result.sources.push_back(tube.source);
   return result;
 }
 

@@ -62,7 +62,7 @@ void check_bending(const CaseContext& context, CaseResult& result) {
       const double found = bend_limit(model, oracle, allowed), theory = polygon_limit(oracle, allowed);
       const std::string name = fmt::format("bend of an element of {:.2f} nm ({}) for {:.0f} % in EI",
                                            oracle.element_length, oracle.name, 100 * allowed);
-      result.checks.push_back(relative_check(name, found, theory, 0.05, "rad", "curvature times element length"));
+      result.check_relative(name, found, theory, 0.05, "rad", "curvature times element length");
       if (t.factor == 1 && allowed < 0.02)
         result.limits.push_back({fmt::format("curvature times element length, 1 % in EI, {}", oracle.name), found,
                                  theory, "rad", Limit::Guard::told,
@@ -71,9 +71,10 @@ void check_bending(const CaseContext& context, CaseResult& result) {
 }
 
 CaseFigure bending_figure(const CaseContext& context) {
-  CaseFigure figure;
-  figure.chart = {
-      "Error of the bending stiffness", {"curvature times element length", "rad"}, {"error", "%"}, {}, {}};
+  CaseFigure figure = case_figure(
+      "Error of the bending stiffness", {"curvature times element length", "rad"}, {"error", "%"},
+      "Moment over curvature against EI. Bonds without shear (paper) stiffen, bonds with shear soften. The curve "
+      "is the leading term; the checks use the whole expression.");
   int colour = 0;
   for (const CaseTube& tube : context.tubes()) {
     const ParameterSet &model = tube.model, &oracle = tube.set;
@@ -83,15 +84,12 @@ CaseFigure bending_figure(const CaseContext& context) {
       error.push_back(100 * (m * model.bond.bend / oracle.bond.bend / angle.back() - 1));
     }
     const double share = oracle.bond.shear_share(oracle.element_length);
-    figure.chart.lines.push_back(theory_curve(
-        fmt::format("(3 s/8 - 1/6) d^2, {}", oracle.name),
-        [&](double d) { return 100 * (0.375 * share - 1.0 / 6) * d * d; }, 0, angle.back(), colour));
+    figure.chart.lines.push_back(theory_curve(fmt::format("(3 s/8 - 1/6) d^2, {}", oracle.name), 0, angle.back(),
+                                              colour,
+                                              [&](double d) { return 100 * (0.375 * share - 1.0 / 6) * d * d; }));
     figure.chart.lines.push_back(model_points("chain at rest", angle, error, colour));
     ++colour;
   }
-  figure.caption =
-      "Moment over curvature against EI. Bonds without shear (paper) stiffen, bonds with shear soften. The curve "
-      "is the leading term; the checks use the whole expression.";
   return figure;
 }
 
@@ -170,12 +168,11 @@ void check_nodes(const CaseContext& context, CaseResult& result) {
   const ParameterSet model = context.model(0), oracle = context.set(0);
   const LineWell well = line_parallel_well(oracle.line->density);
   const double reach = oracle.line->density.cutoff();
-  CaseFigure figure;
-  figure.chart = {"Corrugation of a row of nodes",
-                  {"tube distance over node spacing", ""},
-                  {"log10 of corrugation over the well", ""},
-                  {},
-                  {}};
+  CaseFigure figure = case_figure(
+      "Corrugation of a row of nodes", {"tube distance over node spacing", ""},
+      {"log10 of corrugation over the well", ""},
+      "The corrugation falls exponentially with the number of nodes per tube distance. The default spacing is a "
+      "seventh of that distance.");
   int colour = 0;
   for (const double inside : {0.0, 0.05}) {
     const double distance = well.distance - inside;
@@ -185,8 +182,8 @@ void check_nodes(const CaseContext& context, CaseResult& result) {
     const double theory = limit_between([&](double d) { return predicted(d) > 1e-3; }, 0.2, 1.4, 1e-5);
     const double found = limit_between([&](double d) { return seen(d) > 1e-3; }, 0.2, 1.4, 2e-3);
     const std::string where = inside > 0 ? "0.05 nm inside of the well" : "in the well";
-    result.checks.push_back(relative_check("node spacing over distance for 1e-3, " + where, found / distance,
-                                           theory / distance, 0.05, "", "line law, parallel rows"));
+    result.check_relative("node spacing over distance for 1e-3, " + where, found / distance, theory / distance,
+                          0.05, "", "line law, parallel rows");
     result.limits.push_back({"node spacing over tube distance, corrugation 1e-3, " + where, found / distance,
                              theory / distance, "", Limit::Guard::told,
                              "fewer nodes than 1e-3 takes; the default has more"});
@@ -195,20 +192,16 @@ void check_nodes(const CaseContext& context, CaseResult& result) {
       at.push_back(distance / d);
       log.push_back(std::log10(seen(d)));
     }
-    figure.chart.lines.push_back(theory_curve(
-        "Poisson sum, " + where, [&](double x) { return std::log10(predicted(distance / x)); }, at.back(),
-        at.front(), colour));
+    figure.chart.lines.push_back(theory_curve("Poisson sum, " + where, at.back(), at.front(), colour,
+                                              [&](double x) { return std::log10(predicted(distance / x)); }));
     figure.chart.lines.push_back(model_points("sliding element", at, log, colour));
     ++colour;
   }
-  figure.caption =
-      "The corrugation falls exponentially with the number of nodes per tube distance. The default spacing is a "
-      "seventh of that distance.";
   result.figures.push_back(figure);
   const int taken = line_nodes(oracle.element_length, well.distance, oracle.line->density.contact);
-  result.checks.push_back(information(absolute_check("node spacing over distance that `auto` takes",
-                                                     oracle.element_length / taken / well.distance, 0, 0, "",
-                                                     "every row of a scene has this spacing or less")));
+  result.show_absolute("node spacing over distance that `auto` takes",
+                       oracle.element_length / taken / well.distance, 0, 0, "",
+                       "every row of a scene has this spacing or less");
 }
 
 void check_paper(const CaseContext& context, CaseResult& result) {
@@ -230,7 +223,7 @@ void check_paper(const CaseContext& context, CaseResult& result) {
     const double theory = limit(predicted), found = limit(seen);
     const std::string name =
         fmt::format("{} element of the paper law, corrugation 1e-2", longer ? "longest" : "shortest");
-    result.checks.push_back(relative_check(name, found, theory, 2e-3, "nm", "one point per element"));
+    result.check_relative(name, found, theory, 2e-3, "nm", "one point per element");
     result.limits.push_back(
         {name, found, theory, "nm", Limit::Guard::refused, "any element length other than the set's, 1.356 nm"});
   }
@@ -247,7 +240,6 @@ CaseResult run(const CaseContext& context) {
       "At the curvature at which the tube kinks, {:.3g}/nm, an element of its set is bent by only {:.2f} rad: the "
       "tube fails before its elements do. A run warns of elements so long that this does not hold.",
       set.validity.kink_curvature, set.validity.kink_curvature * set.element_length));
-  for (const CaseTube& tube : context.tubes()) result.sources.push_back(tube.source);
   return result;
 }
 

@@ -110,19 +110,18 @@ CaseResult run(const CaseContext& context) {
   const ParameterSet model = context.model(), oracle = context.set();
   const double theory = buckling_load(oracle), found = load_found(model, oracle);
   CaseResult result;
-  result.checks.push_back(relative_check("load at which a relaxed column gives way", found, theory, 0.05, "eV/nm",
-                                         "from a bow of 1 pm"));
+  result.check_relative("load at which a relaxed column gives way", found, theory, 0.05, "eV/nm",
+                        "from a bow of 1 pm");
   result.limits.push_back({"load at which relaxation leaves a column", found, theory, "eV/nm", Limit::Guard::none,
                            "not needed: this is the physics of the column"});
 
   const double load = 1.2 * theory, tolerance = 1e-4;
   const Rest straight = relaxed(Column(model, load), tolerance, 20000);
-  result.checks.push_back(absolute_check("straight, 20 % above that load: bow at which the relaxation ends",
-                                         straight.tip, 0, 1e-9, "nm",
-                                         straight.said ? "says that it is relaxed" : "says nothing"));
+  result.check_absolute("straight, 20 % above that load: bow at which the relaxation ends", straight.tip, 0, 1e-9,
+                        "nm", straight.said ? "says that it is relaxed" : "says nothing");
   const double bow = smallest_bow(model, load, tolerance), bow_theory = bow_in_theory(oracle, load, tolerance);
-  result.checks.push_back(relative_check("smallest bow that leaves the saddle", 1e3 * bow, 1e3 * bow_theory, 0.05,
-                                         "pm", "20 % above the load, tolerance 1e-4 eV/nm"));
+  result.check_relative("smallest bow that leaves the saddle", 1e3 * bow, 1e3 * bow_theory, 0.05, "pm",
+                        "20 % above the load, tolerance 1e-4 eV/nm");
   result.limits.push_back({"bow below which a saddle is taken for rest", 1e3 * bow, 1e3 * bow_theory, "pm",
                            Limit::Guard::told, "the largest force and the tolerance; start with perturbation_nm"});
 
@@ -141,36 +140,26 @@ CaseResult run(const CaseContext& context) {
   displace(slow.chain.state, softest_mode(model, slow.chain.state), 0.1);
   const long few = std::lround(0.5 * steps.back());
   const Rest cut = relaxed(slow, 1e-6, few);
-  result.checks.push_back(absolute_check("steps run out: reported as relaxed (1: yes)", cut.said ? 1 : 0, 0, 0, "",
-                                         "2 % below the load, with half of the steps that it needs"));
-  CaseFigure figure;
-  figure.chart = {
-      "Steps of a relaxation near the buckling load", {"load over that of buckling", ""}, {"steps", ""}, {}, {}};
-  figure.chart.lines.push_back(theory_curve(
-      "first point times (1 - P/Pc)^-1/2", [&](double x) { return steps.front() / std::sqrt(1 - x); }, 0, 0.98, 0));
-  figure.chart.lines.push_back(model_points("until 1e-6 eV/nm", part, steps, 1));
-  figure.caption =
+  result.check_absolute("steps run out: reported as relaxed (1: yes)", cut.said ? 1 : 0, 0, 0, "",
+                        "2 % below the load, with half of the steps that it needs");
+  result.figure(
+      "Steps of a relaxation near the buckling load", {"load over that of buckling", ""}, {"steps", ""},
       "At first the number of steps grows with the period of the softest motion. Close to the load the forces of "
       "this motion are so small that they fall below the tolerance before the column is straight: the relaxation "
-      "ends too early.";
-  CaseFigure bows;
-  bows.chart = {"Bow that is left when the relaxation ends",
-                {"load over that of buckling", ""},
-                {"log10 of the bow in pm", ""},
-                {},
-                {}};
-  bows.chart.lines.push_back({"tolerance over the softest stiffness", part, allowed, 0});
-  bows.chart.lines.push_back(model_points("at 1e-6 eV/nm", part, left, 1));
-  bows.caption =
+      "ends too early.",
+      {theory_curve("first point times (1 - P/Pc)^-1/2", 0, 0.98,
+                    [&](double x) { return steps.front() / std::sqrt(1 - x); }),
+       model_points("until 1e-6 eV/nm", part, steps)});
+  result.figure(
+      "Bow that is left when the relaxation ends", {"load over that of buckling", ""},
+      {"log10 of the bow in pm", ""},
       "A tolerance of the force allows a bow that grows as 1/(1 - P/Pc). The motion does not stall; the criterion "
-      "is met too early.";
-  result.figures.push_back(figure);
-  result.figures.push_back(bows);
+      "is met too early.",
+      {{"tolerance over the softest stiffness", part, allowed, 0}, model_points("at 1e-6 eV/nm", part, left)});
   result.remarks.push_back(
       "Forces vanish on a saddle as they do at rest. A perfectly straight tube above its buckling load counts as "
       "relaxed at any tolerance; give such a scene a perturbation. A relaxation that runs out of steps reports its "
       "largest force and ends with exit code 4.");
-  result.sources.push_back(context.tube().source);
   return result;
 }
 

@@ -113,16 +113,16 @@ CaseResult run(const CaseContext& context) {
     missed = std::max(missed, a.missed / a.largest);
     weakest = std::min(weakest, a.largest);
   }
-  result.checks.push_back(absolute_check("contact energy that the list misses, over the largest", missed, 0, 1e-9,
-                                         "1", "at up to 16 km/s or 0.45 rad in a step, skins of 0.02 to 0.5 nm"));
-  result.checks.push_back(information(absolute_check("smallest of the largest contact energies", weakest, 0, 0,
-                                                     "eV", "shows that there was a contact to miss")));
+  result.check_absolute("contact energy that the list misses, over the largest", missed, 0, 1e-9, "1",
+                        "at up to 16 km/s or 0.45 rad in a step, skins of 0.02 to 0.5 nm");
+  result.show_absolute("smallest of the largest contact energies", weakest, 0, 0, "eV",
+                       "shows that there was a contact to miss");
   // A list that is never rebuilt.
   std::vector<double> skins = {0.1, 0.25, 0.5}, paths;
   for (const double skin : skins) {
     paths.push_back(stale_path(model, skin));
-    result.checks.push_back(relative_check(fmt::format("path after which an old list misses, skin {:.2f} nm", skin),
-                                           paths.back(), skin, 0.05, "nm", "both have moved half of it"));
+    result.check_relative(fmt::format("path after which an old list misses, skin {:.2f} nm", skin), paths.back(),
+                          skin, 0.05, "nm", "both have moved half of it");
   }
   result.limits.push_back({"path until an old list misses a contact, skin 0.25 nm", paths[1], skins[1], "nm",
                            Limit::Guard::none,
@@ -131,26 +131,23 @@ CaseResult run(const CaseContext& context) {
   const double speed = 1.0;
   const double found = limit_between([&](double s) { return steps_per_build(model, s, speed) > 1.5; }, 1e-3, 0.2);
   const double theory = speed * time_step;  // each of the two moves at half the speed, and may move half the skin
-  result.checks.push_back(relative_check("skin below which the list is built in every step", found, theory, 0.05,
-                                         "nm", "1 km/s, steps of 20 fs"));
+  result.check_relative("skin below which the list is built in every step", found, theory, 0.05, "nm",
+                        "1 km/s, steps of 20 fs");
   result.limits.push_back({"skin below which every step builds the list, 1 km/s", found, theory, "nm",
                            Limit::Guard::none, "not needed: the run is slow, not wrong; the default is 0.25 nm"});
-  CaseFigure figure;
-  figure.chart = {"Steps between two builds of the list", {"speed of approach", "km/s"}, {"steps", ""}, {}, {}};
   std::vector<double> v, every;
   for (double at = 0.1; at < 2.05; at += 0.1) {
     v.push_back(at);
     every.push_back(steps_per_build(model, 0.25, at));
   }
-  figure.chart.lines.push_back(theory_curve(
-      "skin/(v dt)", [&](double x) { return std::max(1.0, 0.25 / (x * time_step)); }, 0.1, 2, 0));
-  figure.chart.lines.push_back(model_points("counted, skin of 0.25 nm", v, every, 1));
-  figure.caption = "The list is rebuilt in the step in which an element has moved more than half the skin.";
-  result.figures.push_back(figure);
+  result.figure(
+      "Steps between two builds of the list", {"speed of approach", "km/s"}, {"steps", ""},
+      "The list is rebuilt in the step in which an element has moved more than half the skin.",
+      {theory_curve("skin/(v dt)", 0.1, 2, [&](double x) { return std::max(1.0, 0.25 / (x * time_step)); }),
+       model_points("counted, skin of 0.25 nm", v, every)});
   result.remarks.push_back(
       "Fast motion costs rebuilds but loses no contact: up to the speed at which a run is stopped, no pair is "
       "missed.");
-  result.sources.push_back(context.tube().source);
   return result;
 }
 

@@ -80,14 +80,13 @@ CaseResult run(const CaseContext& context) {
       {"place infinite", [&](State& s) { s.position.z[hit] = -inf; }},
       {"orientation NaN", [&](State& s) { s.orientation.w[hit] = nan; }}};
   for (const auto& [name, inject] : injections)
-    result.checks.push_back(
-        absolute_check(fmt::format("{}: stopped in the first step, with its element (1: yes)", name),
-                       found_at_once(model, inject), 1, 0, "", "element 6 of 11"));
+    result.check_absolute(fmt::format("{}: stopped in the first step, with its element (1: yes)", name),
+                          found_at_once(model, inject), 1, 0, "", "element 6 of 11");
 
   for (const bool relax : {false, true})
-    result.checks.push_back(absolute_check(
+    result.check_absolute(
         fmt::format("force NaN{}: stopped in the first step, with its element (1: yes)", relax ? ", relaxing" : ""),
-        load_found_at_once(model, nan, relax), 1, 0, "", "element 6 of 11"));
+        load_found_at_once(model, nan, relax), 1, 0, "", "element 6 of 11");
 
   const double oracle_dt = step_of(oracle);
   const auto kicked = [&](double speed) {
@@ -106,13 +105,10 @@ CaseResult run(const CaseContext& context) {
   const double spin = limit_between(spun, 0.15 / oracle_dt, 1.5 / oracle_dt), spin_theory = 0.5 / oracle_dt;
   const double torque_theory = 2 * oracle.bond.twist / (units::pi * oracle.element_length);
   const double torque = sudden_couple(model, torque_theory);
-  result.checks.push_back(
-      relative_check("kick that ends a run", speed, speed_theory, 0.05, "km/s", "one element of a tube at rest"));
-  result.checks.push_back(
-      relative_check("spin that ends a run", spin, spin_theory, 0.05, "rad/ps", "one element of a tube at rest"));
-  result.checks.push_back(relative_check("sudden couple at which a bond slips", torque / units::nN_nm,
-                                         torque_theory / units::nN_nm, 0.05, "nN nm",
-                                         "two elements, undamped, so that the twist overshoots"));
+  result.check_relative("kick that ends a run", speed, speed_theory, 0.05, "km/s", "one element of a tube at rest");
+  result.check_relative("spin that ends a run", spin, spin_theory, 0.05, "rad/ps", "one element of a tube at rest");
+  result.check_relative("sudden couple at which a bond slips", torque / units::nN_nm, torque_theory / units::nN_nm,
+                        0.05, "nN nm", "two elements, undamped, so that the twist overshoots");
   result.limits.push_back(
       {"kick of an element", speed, speed_theory, "km/s", Limit::Guard::stopped,
        "a move of more than a quarter of the radius in a step, or one that is not finite; names the element"});
@@ -122,8 +118,6 @@ CaseResult run(const CaseContext& context) {
   result.limits.push_back({"couple put on at once", torque / units::nN_nm, torque_theory / units::nN_nm, "nN nm",
                            Limit::Guard::stopped, "a bond twisted by 90 degrees; names its element"});
 
-  CaseFigure figure;
-  figure.chart = {"Twist under a sudden couple", {"couple", "nN nm"}, {"largest twist", "degrees"}, {}, {}};
   std::vector<double> couple, largest;
   for (double part = 0.2; part < 0.99; part += 0.1) {
     Chain c(model, 1);
@@ -148,16 +142,14 @@ CaseResult run(const CaseContext& context) {
     theory.x.push_back(stiffness * (1 - std::cos(phi)) / phi);
     theory.y.push_back(degrees);
   }
-  figure.chart.lines.push_back(theory);
-  figure.chart.lines.push_back(model_points("largest twist of the bond", couple, largest, 1));
-  figure.caption =
+  result.figure(
+      "Twist under a sudden couple", {"couple", "nN nm"}, {"largest twist", "degrees"},
       "A sudden couple twists a bond about twice as far as it does at rest. A bond slips under 2/pi of the largest "
-      "moment that it bears at rest.";
-  result.figures.push_back(figure);
+      "moment that it bears at rest.",
+      {theory, model_points("largest twist of the bond", couple, largest)});
   result.remarks.push_back(
       "A number that is not finite ends the run in the step in which it arises, whichever number it is. A run does "
       "not start from a state that has one.");
-  result.sources.push_back(context.tube().source);
   return result;
 }
 

@@ -48,8 +48,8 @@ CaseResult run(const CaseContext& context) {
   const auto fails = [&](double speed) { return closest(model, speed, 2e-3 / speed) < 0; };
   const double found = limit_between(fails, 0.3 * theory, 3 * theory);
   CaseResult result;
-  result.checks.push_back(relative_check("speed that goes through", found, theory, 0.05, "km/s",
-                                         "two elements, relative speed; a step of 2 pm"));
+  result.check_relative("speed that goes through", found, theory, 0.05, "km/s",
+                        "two elements, relative speed; a step of 2 pm");
   // At the default step the simulator must stop such a run.
   const Bundle b = crossed(oracle, theory);
   const double step = default_step_fraction * time_step_limit(b.topology, b.interaction, 1.7).limit;
@@ -59,12 +59,10 @@ CaseResult run(const CaseContext& context) {
   } catch (const NumericalError&) {
     stopped = 1;
   }
-  result.checks.push_back(absolute_check("stopped at the default step (1: yes)", stopped, 1, 0, "",
-                                         "a move of a quarter of the radius in a step ends the run"));
+  result.check_absolute("stopped at the default step (1: yes)", stopped, 1, 0, "",
+                        "a move of a quarter of the radius in a step ends the run");
   result.limits.push_back({"speed that goes through a tube", found, theory, "km/s", Limit::Guard::stopped,
                            "a move of a quarter of the radius in one step"});
-  CaseFigure figure;
-  figure.chart = {"Closest approach", {"distance of the axes", "nm"}, {"energy", "eV"}, {}, {}};
   const double mass = oracle.element_mass(oracle.element_length);
   std::vector<double> distance, energy;
   for (double part = 0.1; part < 1; part += 0.1) {
@@ -72,20 +70,17 @@ CaseResult run(const CaseContext& context) {
     distance.push_back(closest(model, speed, 2e-3 / speed));
     energy.push_back(0.25 * mass * speed * speed);
   }
-  figure.chart.lines.push_back(theory_curve(
-      "energy of the law",
-      [&](double x) {
-        return law.energy({x, 0, 0}, Vector3::UnitZ(), Vector3::UnitY());
-      },
-      0, 1.8, 0));
-  figure.chart.lines.push_back(model_points("kinetic energy, closest approach", distance, energy, 1));
-  figure.caption =
+  result.figure(
+      "Closest approach", {"distance of the axes", "nm"}, {"energy", "eV"},
       "The kinetic energy of two crossed elements decides how close they come. They pass through one another where "
-      "it exceeds the energy of full overlap.";
-  result.figures.push_back(figure);
+      "it exceeds the energy of full overlap.",
+      {theory_curve("energy of the law", 0, 1.8,
+                    [&](double x) {
+                      return law.energy({x, 0, 0}, Vector3::UnitZ(), Vector3::UnitY());
+                    }),
+       model_points("kinetic energy, closest approach", distance, energy)});
   result.remarks.push_back(
       "Such speeds are ten times those of sound. A run reaches them only after it has blown up, and is stopped.");
-  result.sources.push_back(context.tube().source);
   return result;
 }
 

@@ -46,27 +46,23 @@ CaseResult run(const CaseContext& context) {
   };
   const double radius = std::cbrt(bend * bent / (2 * units::pi * adhesion));
   CaseResult result;
-  result.checks.push_back(relative_check("radius of the coil", best_radius(model, 0.7 * radius, 1.2 * radius),
-                                         radius, 1e-2, "nm",
-                                         "ends and tilt of the turns change it by less than 0.5 %"));
+  result.check_relative("radius of the coil", best_radius(model, 0.7 * radius, 1.2 * radius), radius, 1e-2, "nm",
+                        "ends and tilt of the turns change it by less than 0.5 %");
   const double wide = 1.15 * radius, tight = 0.8 * radius;
-  result.checks.push_back(relative_check(
-      "energy from 1.15 to 0.8 of that radius", coil_energy(model, tight) - coil_energy(model, wide),
-      energy(tight) - energy(wide), 2e-2, "eV", "a small difference of two large energies, bending and adhesion"));
+  result.check_relative("energy from 1.15 to 0.8 of that radius",
+                        coil_energy(model, tight) - coil_energy(model, wide), energy(tight) - energy(wide), 2e-2,
+                        "eV", "a small difference of two large energies, bending and adhesion");
   std::vector<double> radii, energies;
   for (double r = 0.75; r < 1.2; r += 0.05) {
     radii.push_back(r * radius);
     energies.push_back(coil_energy(model, radii.back()));
   }
-  CaseFigure figure;
-  figure.chart = {"Energy of a coiled tube against its radius", {"radius", "nm"}, {"energy", "eV"}, {}, {}};
-  figure.chart.lines.push_back(theory_curve("EI L/2R^2 - Gamma (L - 2 pi R)", energy, radii.front(), radii.back()));
-  figure.chart.lines.push_back(model_points("coiled chain", radii, energies));
-  figure.caption = "A tube whose coil has less than two turns of overlap.";
-  result.figures.push_back(figure);
+  result.figure("Energy of a coiled tube against its radius", {"radius", "nm"}, {"energy", "eV"},
+                "A tube whose coil has less than two turns of overlap.",
+                {theory_curve("EI L/2R^2 - Gamma (L - 2 pi R)", radii.front(), radii.back(), energy),
+                 model_points("coiled chain", radii, energies)});
   result.remarks.push_back(
       "The shape is prescribed: this case tests the balance of the two energies, not how a tube finds the ring.");
-  result.sources.push_back(context.tube().source);
   return result;
 }
 

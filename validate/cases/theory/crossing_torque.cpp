@@ -45,29 +45,24 @@ CaseResult run(const CaseContext& context) {
     torques.push_back(c.torque);
     const std::string at = " at " + std::to_string(degrees) + " degrees";
     if (degrees == 20 || degrees == 45 || degrees == 90)
-      result.checks.push_back(relative_check("energy" + at, c.energy, energy(angle), 5e-3, "eV", why));
+      result.check_relative("energy" + at, c.energy, energy(angle), 5e-3, "eV", why);
     if (degrees == 20 || degrees == 45 || degrees == 60)
-      result.checks.push_back(relative_check("torque" + at, c.torque, torque(angle), 1e-2, "eV", why));
-    if (degrees == 90)
-      result.checks.push_back(absolute_check("torque" + at, c.torque, 0, 1e-2, "eV", "by symmetry"));
+      result.check_relative("torque" + at, c.torque, torque(angle), 1e-2, "eV", why);
+    if (degrees == 90) result.check_absolute("torque" + at, c.torque, 0, 1e-2, "eV", "by symmetry");
   }
-  CaseFigure e, t;
-  e.chart = {"Energy of two crossed tubes against the angle", {"angle", "degrees"}, {"energy", "eV"}, {}, {}};
-  e.chart.lines.push_back(theory_curve(
-      "surface integral, E90/sin", [&](double x) { return energy(x * units::degree); }, 15, 90));
-  e.chart.lines.push_back(model_points("line law", angles, energies));
-  e.caption = "The distance is that of the minimum at a right angle.";
-  t.chart = {"Torque between two crossed tubes against the angle", {"angle", "degrees"}, {"torque", "eV"}, {}, {}};
-  t.chart.lines.push_back(theory_curve(
-      "-dE/dgamma", [&](double x) { return torque(x * units::degree); }, 15, 90));
-  t.chart.lines.push_back(model_points("line law", angles, torques));
-  t.caption =
+  result.figure(
+      "Energy of two crossed tubes against the angle", {"angle", "degrees"}, {"energy", "eV"},
+      "The distance is that of the minimum at a right angle.",
+      {theory_curve("surface integral, E90/sin", 15, 90, [&](double x) { return energy(x * units::degree); }),
+       model_points("line law", angles, energies)});
+  result.figure(
+      "Torque between two crossed tubes against the angle", {"angle", "degrees"}, {"torque", "eV"},
       "A negative torque turns the tubes parallel. It is the sum of the torques and moments of the forces on all "
-      "elements of one row.";
-  result.figures = {e, t};
+      "elements of one row.",
+      {theory_curve("-dE/dgamma", 15, 90, [&](double x) { return torque(x * units::degree); }),
+       model_points("line law", angles, torques)});
   result.remarks.push_back(
       "The law has no angular factor. Energy and torque at every angle follow from one line density.");
-  result.sources.push_back(context.tube().source);
   return result;
 }
 

@@ -32,22 +32,18 @@ CaseResult run(const CaseContext& context) {
     lengths.push_back(length);
     loads.push_back(load);
     if (bonds == 20 || bonds == 60)
-      result.checks.push_back(relative_check("critical load of " + std::to_string(bonds) + " bonds", load, expected,
-                                             bonds == 20 ? 1e-2 : 3e-3, "eV/nm",
-                                             "the column shortens by P/EA before it buckles; the elements' error "
-                                             "falls with the square of their length"));
+      result.check_relative("critical load of " + std::to_string(bonds) + " bonds", load, expected,
+                            bonds == 20 ? 1e-2 : 3e-3, "eV/nm",
+                            "the column shortens by P/EA before it buckles; the elements' error "
+                            "falls with the square of their length");
   }
-  CaseFigure figure;
-  figure.chart = {
-      "Euler load against the length of the column", {"length", "nm"}, {"critical load", "eV/nm"}, {}, {}};
-  figure.chart.lines.push_back(theory_curve("pi^2 EI/L^2", euler, lengths.front(), lengths.back()));
-  figure.chart.lines.push_back(model_points("loss of stiffness of the chain", lengths, loads));
-  figure.caption = "Load at which the lowest eigenvalue of the chain's stiffness passes zero.";
-  result.figures.push_back(figure);
+  result.figure("Euler load against the length of the column", {"length", "nm"}, {"critical load", "eV/nm"},
+                "Load at which the lowest eigenvalue of the chain's stiffness passes zero.",
+                {theory_curve("pi^2 EI/L^2", lengths.front(), lengths.back(), euler),
+                 model_points("loss of stiffness of the chain", lengths, loads)});
   result.remarks.push_back(
       "The critical load is where the lowest eigenvalue of the straight chain passes zero, found by bisection. "
       "Neither a perturbation nor time enters.");
-  result.sources.push_back(context.tube().source);
   return result;
 }
 

@@ -21,39 +21,33 @@ CaseResult run(const CaseContext& context) {
       const RopeInMachine::Reading exact = pair.theory(tube.set, twist, RopeInMachine::Length::free, true);
       const std::string at = ", " + std::to_string(degrees) + "°" + of;
       const double kept = 1 - std::sqrt(1 - std::pow(rho * twist, 2));
-      result.checks.push_back(relative_check("contraction" + at, 100 * (1 - seen.stretch), 100 * (1 - exact.stretch), 2e-2,
-                                             "%"));
-      result.checks.push_back(relative_check("torque per tube" + at, seen.torque * units::eV_in_nN_nm,
-                                             exact.torque * units::eV_in_nN_nm, degrees > 5 ? 0.1 : 5e-2, "nN nm",
-                                             degrees > 5 ? "what wound tubes bind more is known to its first order"
-                                                         : ""));
+      result.check_relative("contraction" + at, 100 * (1 - seen.stretch), 100 * (1 - exact.stretch), 2e-2, "%");
+      result.check_relative("torque per tube" + at, seen.torque * units::eV_in_nN_nm,
+                            exact.torque * units::eV_in_nN_nm, degrees > 5 ? 0.1 : 5e-2, "nN nm",
+                            degrees > 5 ? "what wound tubes bind more is known to its first order" : "");
       leans.push_back(degrees);
       contractions.push_back(100 * (1 - seen.stretch));
       if (degrees > 5) continue;
-      result.checks.push_back(relative_check("contraction, arc length kept" + at, 100 * (1 - seen.stretch), 100 * kept,
-                                             2e-2, "%", "L = sqrt(L0² - (r psi)²); bending lengthens the tubes a little"));
-      result.checks.push_back(relative_check(
-          "torque per tube, leading order" + at, seen.torque * units::eV_in_nN_nm,
-          2 * tube.set.bond.bend * rho * rho * std::pow(twist, 3) * units::eV_in_nN_nm, 0.1, "nN nm",
-          "2 EI rho² phi³: without what wound tubes bind more than parallel ones"));
+      result.check_relative("contraction, arc length kept" + at, 100 * (1 - seen.stretch), 100 * kept, 2e-2, "%",
+                            "L = sqrt(L0² - (r psi)²); bending lengthens the tubes a little");
+      result.check_relative("torque per tube, leading order" + at, seen.torque * units::eV_in_nN_nm,
+                            2 * tube.set.bond.bend * rho * rho * std::pow(twist, 3) * units::eV_in_nN_nm, 0.1,
+                            "nN nm", "2 EI rho² phi³: without what wound tubes bind more than parallel ones");
     }
-    result.sources.push_back(tube.source);
     if (k > 0) continue;
-    CaseFigure figure;
-    figure.chart = {"Contraction of two tubes wound about each other", {"lean", "°"}, {"contraction", "%"}, {}, {}};
-    figure.chart.lines.push_back(theory_curve(
-        "helices without torsion",
-        [&](double lean) {
-          return 100 * (1 - pair.theory(tube.set, pair.twist_at(lean * units::degree), RopeInMachine::Length::free, true)
-                                .stretch);
-        },
-        1, 10));
-    figure.chart.lines.push_back(model_points(tube.name, leans, contractions));
-    figure.caption = "Of the first set.";
-    result.figures.push_back(figure);
+    result.figure("Contraction of two tubes wound about each other", {"lean", "°"}, {"contraction", "%"},
+                  "Of the first set.",
+                  {theory_curve("helices without torsion", 1, 10,
+                                [&](double lean) {
+                                  return 100 * (1 - pair.theory(tube.set, pair.twist_at(lean * units::degree),
+                                                                RopeInMachine::Length::free, true)
+                                                        .stretch);
+                                }),
+                   model_points(tube.name, leans, contractions)});
   }
   result.remarks.push_back(
-      "Spins that are free leave bending alone to hold the moment. It also lengthens the tubes a little, so that they "
+      "Spins that are free leave bending alone to hold the moment. It also lengthens the tubes a little, so that "
+      "they "
       "contract less than their arc length would have it.");
   return result;
 }
@@ -71,7 +65,8 @@ const RegisteredCase registered([] {
       "Two tubes of {tube}, 40 elements each, wound by 5 and 10 degrees between clamps in which they spin freely, "
       "one of which moves freely along the axis.";
   c.oracle =
-      "Concentric helices of chains without torsion, whose length is free; at small angles L = sqrt(L0² - (r psi)²) with the "
+      "Concentric helices of chains without torsion, whose length is free; at small angles L = sqrt(L0² - (r "
+      "psi)²) with the "
       "turn psi of the clamps, and M = 2 EI ρ² phi³ for each tube.";
   c.literature = "A. E. H. Love, A Treatise on the Mathematical Theory of Elasticity, 4th ed. (1927), ch. XIX";
   c.run = run;

@@ -29,8 +29,8 @@ double lowest_under_moment(const ParameterSet& set, int bonds, Ends ends, double
 CaseResult run(const CaseContext& context) {
   const ParameterSet model = context.model(), oracle = context.set();
   CaseResult result;
-  CaseFigure figure;
-  figure.chart = {"Critical twisting moment against length", {"length", "nm"}, {"moment", "eV"}, {}, {}};
+  CaseFigure figure = case_figure("Critical twisting moment against length", {"length", "nm"}, {"moment", "eV"},
+                                  "Moment at which the twisted straight chain loses its lateral stiffness.");
   for (const Ends ends : {Ends::pinned, Ends::clamped}) {
     const bool pinned = ends == Ends::pinned;
     const std::string name = pinned ? "pinned" : "clamped";
@@ -44,21 +44,18 @@ CaseResult run(const CaseContext& context) {
       moments.push_back(
           zero_between([&](double m) { return lowest_under_moment(model, bonds, ends, m); }, 0.5 * expected, most));
     }
-    result.checks.push_back(relative_check("critical moment, " + name + ", 40 bonds", moments.back(),
-                                           greenhill(lengths.back()), 2e-2, "eV",
-                                           "a bond twists by 0.15 to 0.3 rad, whose cosine is 1 to 4 % below one"));
-    figure.chart.lines.push_back(theory_curve(pinned ? "2 pi EI/L" : "8.987 EI/L", greenhill, lengths.front(),
-                                              lengths.back(), pinned ? 0 : 2));
+    result.check_relative("critical moment, " + name + ", 40 bonds", moments.back(), greenhill(lengths.back()),
+                          2e-2, "eV", "a bond twists by 0.15 to 0.3 rad, whose cosine is 1 to 4 % below one");
+    figure.chart.lines.push_back(theory_curve(pinned ? "2 pi EI/L" : "8.987 EI/L", lengths.front(), lengths.back(),
+                                              pinned ? 0 : 2, greenhill));
     figure.chart.lines.push_back(model_points(name + " chain", lengths, moments, pinned ? 1 : 3));
   }
-  figure.caption = "Moment at which the twisted straight chain loses its lateral stiffness.";
   result.figures.push_back(figure);
   result.remarks.push_back(
       "A couple of fixed direction on a pinned end has no potential, so that the stiffness matrix is not "
       "symmetric. Greenhill's number stands for the static criterion, an eigenvalue that passes zero.");
   result.remarks.push_back(
       "GJ sets only the angle at which the moment is reached: this case does not see a wrong GJ.");
-  result.sources.push_back(context.tube().source);
   return result;
 }
 

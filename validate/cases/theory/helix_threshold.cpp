@@ -209,29 +209,21 @@ Curve thresholds(Tubes kind, const ParameterSet& set, const std::vector<int>& bo
 void hold_to(const std::string& name, const Curve& curve, Ends ends, double bend, const std::string& note,
              CaseResult& result) {
   const double length = curve.lengths.back();
-  result.checks.push_back(relative_check(fmt::format("{}, {}, {:.0f} nm", name, name_of(ends), length),
-                                         curve.moments.back(), factor_of(ends) * bend / length, 2e-2, "eV", note));
+  result.check_relative(fmt::format("{}, {}, {:.0f} nm", name, name_of(ends), length), curve.moments.back(),
+                        factor_of(ends) * bend / length, 2e-2, "eV", note);
 }
 
 CaseFigure figure_of(Ends ends, double sliding, double glued, const Curve& free, const Curve& rope,
                      const Curve& one) {
   const double from = free.lengths.front(), to = one.lengths.back();
-  CaseFigure figure;
-  figure.chart = {"Moment at which a rope of seven tubes leaves its line, " + std::string(name_of(ends)),
-                  {"length", "nm"},
-                  {"moment of the rope", "eV"},
-                  {},
-                  {}};
-  figure.chart.lines = {
-      theory_curve(
-          "sliding tubes", [&](double l) { return factor_of(ends) * sliding / l; }, from, to, 0),
-      theory_curve(
-          "one glued body", [&](double l) { return factor_of(ends) * glued / l; }, 3 * from, to, 2),
-      model_points("chains that share their shape", free.lengths, free.moments, 3),
-      model_points("chains that touch", rope.lengths, rope.moments, 1),
-      model_points("chains in rigid sections", one.lengths, one.moments, 4)};
-  figure.caption = "Both limits fall with 1/length. The rope of the model lies on the lower one.";
-  return figure;
+  return case_figure(
+      "Moment at which a rope of seven tubes leaves its line, " + std::string(name_of(ends)), {"length", "nm"},
+      {"moment of the rope", "eV"}, "Both limits fall with 1/length. The rope of the model lies on the lower one.",
+      {theory_curve("sliding tubes", from, to, [&](double l) { return factor_of(ends) * sliding / l; }),
+       theory_curve("one glued body", 3 * from, to, 2, [&](double l) { return factor_of(ends) * glued / l; }),
+       model_points("chains that share their shape", free.lengths, free.moments, 3),
+       model_points("chains that touch", rope.lengths, rope.moments),
+       model_points("chains in rigid sections", one.lengths, one.moments, 4)});
 }
 
 CaseResult run(const CaseContext& context) {
@@ -250,10 +242,10 @@ CaseResult run(const CaseContext& context) {
     hold_to("tubes that touch, by sliding", rope, ends, sliding, "as above; corrugation of the contact: 0.1 %",
             result);
     const double limit = factor_of(ends) / rope.lengths.back();
-    result.checks.push_back(absolute_check(
+    result.check_absolute(
         "stiffness of tubes in contact between sliding (0) and glued (1), " + std::string(name_of(ends)),
         (rope.moments.back() - free.moments.back()) / (limit * (glued - sliding)), 0, 1e-2, "",
-        "the model has no friction except the corrugation of its contact"));
+        "the model has no friction except the corrugation of its contact");
     result.figures.push_back(figure_of(ends, sliding, glued, free, rope, one));
   }
   result.remarks = {
@@ -266,7 +258,6 @@ CaseResult run(const CaseContext& context) {
                   "under it, it acts as a tension and raises the threshold. In this case they are at rest.",
                   -12 * surface_integral(oracle).parallel_well().energy),
       "The criterion is static, as Greenhill's: an eigenvalue of the tangent stiffness passes zero."};
-  result.sources.push_back(context.tube().source);
   return result;
 }
 

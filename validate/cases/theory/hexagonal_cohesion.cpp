@@ -41,28 +41,24 @@ CaseResult run(const CaseContext& context) {
     const double energy = energy_per_length(model, n);
     tubes.push_back(n);
     energies.push_back(energy);
-    result.checks.push_back(relative_check("energy per length of " + std::to_string(n) + " tubes", energy,
-                                           integral_per_length(integral, n, pair.distance), 3e-3, "eV/nm",
-                                           "contact fitted to 1.4e-3 of the well"));
+    result.check_relative("energy per length of " + std::to_string(n) + " tubes", energy,
+                          integral_per_length(integral, n, pair.distance), 3e-3, "eV/nm",
+                          "contact fitted to 1.4e-3 of the well");
   }
-  result.checks.push_back(relative_check("spacing", line_parallel_well(model.line->density).distance, pair.distance,
-                                         1e-3, "nm", "place of the minimum"));
+  result.check_relative("spacing", line_parallel_well(model.line->density).distance, pair.distance, 1e-3, "nm",
+                        "place of the minimum");
   const double second = std::sqrt(3.0) * pair.distance;
-  result.checks.push_back(
-      absolute_check("energy of second neighbours", line_parallel_energy(model.line->density, second),
-                     integral.parallel(second), 3e-3 * std::fabs(pair.energy), "eV/nm", "as the well"));
-  CaseFigure figure;
-  figure.chart = {"Cohesion of hexagonal ropes", {"tubes", "", true}, {"energy per length", "eV/nm"}, {}, {}};
-  figure.chart.lines.push_back(theory_curve(
-      "(3 N - sqrt(12 N - 3)) E(R0)", [&](double n) { return contacts(n) * pair.energy; }, 7, 91));
-  figure.chart.lines.push_back(model_points("ropes", tubes, energies));
-  figure.caption = "Seven tubes have 12 contacts, 91 have 240.";
-  result.figures.push_back(figure);
+  result.check_absolute("energy of second neighbours", line_parallel_energy(model.line->density, second),
+                        integral.parallel(second), 3e-3 * std::fabs(pair.energy), "eV/nm", "as the well");
+  result.figure(
+      "Cohesion of hexagonal ropes", {"tubes", "", true}, {"energy per length", "eV/nm"},
+      "Seven tubes have 12 contacts, 91 have 240.",
+      {theory_curve("(3 N - sqrt(12 N - 3)) E(R0)", 7, 91, [&](double n) { return contacts(n) * pair.energy; }),
+       model_points("ropes", tubes, energies)});
   result.remarks.push_back(
       "Where the atoms of second neighbours are farther apart than the cutoff of the atom-atom law, the contacts "
       "are "
       "the whole energy. Thin tubes reach their second neighbours; the oracle includes these.");
-  result.sources.push_back(context.tube().source);
   return result;
 }
 

@@ -17,11 +17,12 @@ constexpr double begin = 300, duration = 6000, every = 2;  // ps
 CaseResult run(const CaseContext& context) {
   const CaseTube tube = context.tube();
   Scene scene = scene_of_text(
-      fmt::format("format = \"ropewalk-scene-1\"\nparameters = \"{}\"\n[chain]\nelements = {}\n[contact]\nlaw = \"none\"\n"
-                  "[bond]\nlaw = \"harmonic\"\n[start]\ntemperature_K = {}\n[thermostat]\ntemperature_K = {}\n"
-                  "coupling_per_ps = 0.5\n[damping]\ncontact_viscosity_eV_ps_per_nm2 = 0\nbond_damping_per_ps = 0\n[run]\n"
-                  "duration_ps = {}\n",
-                  tube.set.path, elements, kelvin, kelvin, begin + duration),
+      fmt::format(
+          "format = \"ropewalk-scene-1\"\nparameters = \"{}\"\n[chain]\nelements = {}\n[contact]\nlaw = \"none\"\n"
+          "[bond]\nlaw = \"harmonic\"\n[start]\ntemperature_K = {}\n[thermostat]\ntemperature_K = {}\n"
+          "coupling_per_ps = 0.5\n[damping]\ncontact_viscosity_eV_ps_per_nm2 = 0\nbond_damping_per_ps = 0\n[run]\n"
+          "duration_ps = {}\n",
+          tube.set.path, elements, kelvin, kelvin, begin + duration),
       "");
   scene.sets = {tube.model};
   const Prepared p = prepare(scene);
@@ -50,31 +51,29 @@ CaseResult run(const CaseContext& context) {
   CaseResult result;
   const char* why = "the statistical error is about 1 %, and the time step makes positions up to 2 % too hot";
   // <t_i . t_(i+1)> = 1 - a/l for a bond much shorter than the persistence length l.
-  result.checks.push_back(relative_check("persistence length", 1e-3 * a / (0.5 * bend2 / n), 1e-3 * tube.set.bond.bend / kt,
-                                         5e-2, "µm", why));
-  result.checks.push_back(relative_check("energy of bending in a bond, of kT", 0.5 * tube.set.bond.bend / a * bend2 / n / kt,
-                                         1, 4e-2, "", why));
-  result.checks.push_back(relative_check("energy of torsion in a bond, of kT/2",
-                                         tube.set.bond.twist / a * twist2 / n / kt, 1, 4e-2, "", why));
-  result.checks.push_back(relative_check("energy of stretching in a bond, of kT/2",
-                                         tube.set.bond.stretch * a * stretch2 / n / kt, 1, 4e-2, "", why));
-  result.checks.push_back(relative_check("kinetic energy of an element, of 3 kT",
-                                         kinetic / static_cast<double>(samples) / elements / (3 * kt), 1, 2e-2, "",
-                                         "half of it in each of translation and rotation"));
+  result.check_relative("persistence length", 1e-3 * a / (0.5 * bend2 / n), 1e-3 * tube.set.bond.bend / kt, 5e-2,
+                        "µm", why);
+  result.check_relative("energy of bending in a bond, of kT", 0.5 * tube.set.bond.bend / a * bend2 / n / kt, 1,
+                        4e-2, "", why);
+  result.check_relative("energy of torsion in a bond, of kT/2", tube.set.bond.twist / a * twist2 / n / kt, 1, 4e-2,
+                        "", why);
+  result.check_relative("energy of stretching in a bond, of kT/2", tube.set.bond.stretch * a * stretch2 / n / kt, 1,
+                        4e-2, "", why);
+  result.check_relative("kinetic energy of an element, of 3 kT",
+                        kinetic / static_cast<double>(samples) / elements / (3 * kt), 1, 2e-2, "",
+                        "half of it in each of translation and rotation");
   for (double& b : bent) {
     position.push_back(a * (static_cast<double>(position.size()) + 1));
     b *= 0.5 * tube.set.bond.bend / a / static_cast<double>(samples) / kt;
   }
-  CaseFigure figure;
-  figure.chart = {"Heat of bending along the tube", {"position", "nm"}, {"energy of a bond, of kT", ""}, {}, {}};
-  figure.chart.lines.push_back(theory_curve("kT/2 in either plane", [](double) { return 1.0; }, a, a * bonds));
-  figure.chart.lines.push_back(model_points("bonds", position, bent));
-  figure.caption = "The mean over the run of each bond.";
-  result.figures.push_back(figure);
+  result.figure("Heat of bending along the tube", {"position", "nm"}, {"energy of a bond, of kT", ""},
+                "The mean over the run of each bond.",
+                {theory_curve("kT/2 in either plane", a, a * bonds, [](double) { return 1.0; }),
+                 model_points("bonds", position, bent)});
   result.remarks.push_back(
-      "No experiment has a free tube of this length in a vacuum at rest: the case tests the statistics of the model, which "
+      "No experiment has a free tube of this length in a vacuum at rest: the case tests the statistics of the "
+      "model, which "
       "ropes in heat rely on.");
-  result.sources.push_back(tube.source);
   return result;
 }
 
@@ -88,7 +87,8 @@ const RegisteredCase registered([] {
   c.title = "A free tube in heat";
   c.why = "Ropes are twisted at room temperature, not at zero.";
   c.setup =
-      "A free tube of {tube} of 60 elements with harmonic bonds in a Langevin bath of 300 K, sampled every 2 ps for 6 ns.";
+      "A free tube of {tube} of 60 elements with harmonic bonds in a Langevin bath of 300 K, sampled every 2 ps "
+      "for 6 ns.";
   c.oracle = "kT/2 for every quadratic term of the energy; persistence length EI/kT.";
   c.literature = "L. D. Landau, E. M. Lifshitz, Statistical Physics, 3rd ed. (1980), sections 44 and 127";
   c.run = run;

@@ -72,34 +72,27 @@ CaseResult run(const CaseContext& context) {
     open = std::max(open, std::fabs(loop.open) / loop.put_in);
   }
   const StraightLine fit = *line_through(rates, losses);
-  result.checks.push_back(
-      absolute_check("exponent of the loss", fit.b, 1, 0.1, "", "two decades of the rate, all slower than sound"));
-  result.checks.push_back(absolute_check("account of energy, part of the work", open, 0, 2e-3, "",
-                                         "the error of the integration over a whole loop"));
+  result.check_absolute("exponent of the loss", fit.b, 1, 0.1, "",
+                        "two decades of the rate, all slower than sound");
+  result.check_absolute("account of energy, part of the work", open, 0, 2e-3, "",
+                        "the error of the integration over a whole loop");
   const RopeInMachine rope(tube.set, 7, elements);
   const double turned = twist * units::degree * elements * tube.set.element_length / rope.bonded();
-  result.checks.push_back(relative_check("energy put in at the slowest rate", slowest,
-                                         7 * rope.theory(tube.set, turned, RopeInMachine::Length::held).energy,
-                                         2e-2, "eV", "that of a rope turned infinitely slowly"));
-  CaseFigure figure;
-  figure.chart = {"Loss of a loop against its rate",
-                  {"log₁₀ of the rate in °/ps", ""},
-                  {"log₁₀ of the loss in eV", ""},
-                  {},
-                  {}};
+  result.check_relative("energy put in at the slowest rate", slowest,
+                        7 * rope.theory(tube.set, turned, RopeInMachine::Length::held).energy, 2e-2, "eV",
+                        "that of a rope turned infinitely slowly");
   const auto mean = [](const std::vector<double>& v) {
     return std::accumulate(v.begin(), v.end(), 0.0) / static_cast<double>(v.size());
   };
   const double level = mean(losses) - mean(rates);
-  figure.chart.lines.push_back(theory_curve(
-      "proportional", [&](double x) { return level + x; }, rates.back(), rates.front()));
-  figure.chart.lines.push_back(model_points("loops", rates, losses));
-  figure.caption = "Seven tubes turned and turned back between clamps at fixed length.";
-  result.figures.push_back(figure);
+  result.figure("Loss of a loop against its rate", {"log₁₀ of the rate in °/ps", ""},
+                {"log₁₀ of the loss in eV", ""},
+                "Seven tubes turned and turned back between clamps at fixed length.",
+                {theory_curve("proportional", rates.back(), rates.front(), [&](double x) { return level + x; }),
+                 model_points("loops", rates, losses)});
   result.remarks.push_back(
       "The only friction of the model is viscous. A real rope may lose energy at any rate, where tubes slip with "
       "static friction.");
-  result.sources.push_back(tube.source);
   return result;
 }
 

@@ -105,35 +105,26 @@ CaseResult run(const CaseContext& context) {
   };
   CaseResult result;
   for (const int waves : {2, 3, 4})
-    result.checks.push_back(relative_check("critical twist, " + std::to_string(waves) + " waves, 240 elements",
-                                           critical_twist(model, 240, waves, michell(waves)), michell(waves), 1e-2,
-                                           "rad", "a bond twists by 0.05 to 0.11 rad"));
+    result.check_relative("critical twist, " + std::to_string(waves) + " waves, 240 elements",
+                          critical_twist(model, 240, waves, michell(waves)), michell(waves), 1e-2, "rad",
+                          "a bond twists by 0.05 to 0.11 rad");
   if (context.sets.size() > 1) {
     const ParameterSet& paper = context.set(1);
     const double published = 2 * units::pi * std::sqrt(3.0) * paper.bond.bend / paper.bond.twist;
-    result.checks.push_back(relative_check("critical twist, 2 waves, published constants",
-                                           critical_twist(context.model(1), 240, 2, published), published, 1e-2,
-                                           "rad", "12.21 rad"));
+    result.check_relative("critical twist, 2 waves, published constants",
+                          critical_twist(context.model(1), 240, 2, published), published, 1e-2, "rad", "12.21 rad");
   }
   std::vector<double> elements, twists;
   for (const int n : {40, 60, 80, 120, 180, 240}) {
     elements.push_back(n);
     twists.push_back(critical_twist(model, n, 2, michell(2)));
   }
-  CaseFigure figure;
-  figure.chart = {"Critical twist of a ring against the number of its elements",
-                  {"elements", "", true},
-                  {"critical twist", "rad"},
-                  {},
-                  {}};
-  figure.chart.lines.push_back(theory_curve(
-      "2 pi sqrt(3) EI/GJ", [&](double) { return michell(2); }, 0, 240));
-  figure.chart.lines.push_back(model_points("ring of elements", elements, twists));
-  figure.caption = "The error falls with the square of the twist in a bond.";
-  result.figures.push_back(figure);
+  result.figure("Critical twist of a ring against the number of its elements", {"elements", "", true},
+                {"critical twist", "rad"}, "The error falls with the square of the twist in a bond.",
+                {theory_curve("2 pi sqrt(3) EI/GJ", 0, 240, [&](double) { return michell(2); }),
+                 model_points("ring of elements", elements, twists)});
   result.remarks.push_back(
       "Coarse rings buckle later, because the twist energy goes as 1 - cos of the bond's angle.");
-  for (const CaseTube& tube : context.tubes()) result.sources.push_back(tube.source);
   return result;
 }
 

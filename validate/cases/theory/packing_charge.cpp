@@ -76,33 +76,30 @@ CaseResult run(const CaseContext& context) {
     angles.push_back(degrees);
     charges.push_back(charge_inside(law, radius, rate, pair.distance));
     counts.push_back(ring.tubes);
-    result.checks.push_back(absolute_check("charge" + at, charges.back(), ideal_charge(beta), 2e-2, "",
-                                           "finite distance of the tubes: (spacing/radius)^2 = 0.016"));
-    result.checks.push_back(relative_check("energy of a contact" + at, ring.energy, pair.energy, 5e-3, "eV/nm",
-                                           "contact fitted to 1.4e-3; bent tubes: 0.1 %"));
+    result.check_absolute("charge" + at, charges.back(), ideal_charge(beta), 2e-2, "",
+                          "finite distance of the tubes: (spacing/radius)^2 = 0.016");
+    result.check_relative("energy of a contact" + at, ring.energy, pair.energy, 5e-3, "eV/nm",
+                          "contact fitted to 1.4e-3; bent tubes: 0.1 %");
   }
-  CaseFigure charge, count;
-  charge.chart = {"Packing charge against twist", {"twist angle", "degrees"}, {"charge", ""}, {}, {}};
-  charge.chart.lines = {theory_curve(
-                            "6 (1 - cos^3 beta)", [](double d) { return ideal_charge(d * units::degree); }, 0, 55),
-                        model_points("rings of tubes in contact", angles, charges)};
-  charge.caption =
-      "The first five-fold site is expected where the curve passes one half to one, at 14 to 20 degrees.";
-  count.chart = {"Tubes that fit around a ring", {"twist angle", "degrees"}, {"tubes", ""}, {}, {}};
+  CaseFigure charge = case_figure(
+      "Packing charge against twist", {"twist angle", "degrees"}, {"charge", ""},
+      "The first five-fold site is expected where the curve passes one half to one, at 14 to 20 degrees.");
+  CaseFigure count = case_figure(
+      "Tubes that fit around a ring", {"twist angle", "degrees"}, {"tubes", ""},
+      "A ring with a radius of 8 spacings. In the cross-section, twisted tubes are wider by 1/cos beta.");
+  charge.chart.lines = {
+      theory_curve("6 (1 - cos^3 beta)", 0, 55, [](double d) { return ideal_charge(d * units::degree); }),
+      model_points("rings of tubes in contact", angles, charges)};
   count.chart.lines = {
-      theory_curve(
-          "2 pi rho cos beta/spacing",
-          [](double d) { return 2 * units::pi * ring_radius * std::cos(d * units::degree); }, 0, 55),
+      theory_curve("2 pi rho cos beta/spacing", 0, 55,
+                   [](double d) { return 2 * units::pi * ring_radius * std::cos(d * units::degree); }),
       model_points("by the contact law", angles, counts)};
-  count.caption =
-      "A ring with a radius of 8 spacings. In the cross-section, twisted tubes are wider by 1/cos beta.";
   result.figures = {charge, count};
   result.remarks = {
       "This case tests the metric that the contact law imposes on the packing, not a packing. The charge of an "
       "actual rope is an integer that depends on where its tubes have come to rest.",
       "Counting neighbours by distance gives more. Where a triangle of tubes opens to a square, one contact is "
       "lost and the count rises by two without any disclination. A triangulation does not count it."};
-  result.sources.push_back(context.tube().source);
   return result;
 }
 

@@ -67,34 +67,26 @@ CaseResult run(const CaseContext& context) {
     releases.push_back(p.release);
     forces.push_back(p.force);
     const std::string at = " opened by " + std::to_string(static_cast<int>(w)) + " nm each";
-    result.checks.push_back(relative_check("2 F sin(slope)," + at, p.release, adhesion, 1e-2, "eV/nm",
-                                           "exact for any shape; contact fitted to 1.4e-3"));
+    result.check_relative("2 F sin(slope)," + at, p.release, adhesion, 1e-2, "eV/nm",
+                          "exact for any shape; contact fitted to 1.4e-3");
     if (w == 4.0)
-      result.checks.push_back(
-          information(relative_check("force," + at, p.force, force(w), 0.1, "eV/nm",
-                                     "a beam clamped at the crack tip; the contact yields a little")));
+      result.show_relative("force," + at, p.force, force(w), 0.1, "eV/nm",
+                           "a beam clamped at the crack tip; the contact yields a little");
   }
-  CaseFigure energy, pull;
-  energy.chart = {"Energy released by peeling, per length",
-                  {"opening of each end", "nm"},
-                  {"energy per length", "eV/nm"},
-                  {},
-                  {}};
-  energy.chart.lines.push_back(theory_curve(
-      "adhesion of parallel tubes", [&](double) { return adhesion; }, 0.5, 4.5));
-  energy.chart.lines.push_back(model_points("2 F sin(slope) of the chains", openings, releases));
-  energy.caption = "The work of the end forces per length of contact lost, from force and slope at the ends.";
-  pull.chart = {"Peeling force against opening", {"opening of each end", "nm"}, {"force", "eV/nm"}, {}, {}};
-  pull.chart.lines.push_back(theory_curve("beams clamped at the crack tip", force, 0.5, 4.5));
-  pull.chart.lines.push_back(model_points("chains", openings, forces));
-  pull.caption = "The softness of the contact beyond the crack tip lowers the force of short cracks.";
-  result.figures = {energy, pull};
+  result.figure("Energy released by peeling, per length", {"opening of each end", "nm"},
+                {"energy per length", "eV/nm"},
+                "The work of the end forces per length of contact lost, from force and slope at the ends.",
+                {theory_curve("adhesion of parallel tubes", 0.5, 4.5, [&](double) { return adhesion; }),
+                 model_points("2 F sin(slope) of the chains", openings, releases)});
+  result.figure(
+      "Peeling force against opening", {"opening of each end", "nm"}, {"force", "eV/nm"},
+      "The softness of the contact beyond the crack tip lowers the force of short cracks.",
+      {theory_curve("beams clamped at the crack tip", 0.5, 4.5, force), model_points("chains", openings, forces)});
   result.remarks.push_back(
       "Force times slope is a path-independent integral along both rods. If the bonded part is at rest, it equals "
       "the adhesion energy per length for any shape of the crack tip. No beam approximation enters the check.");
   result.remarks.push_back(
       "The beam formula, in which the arms are clamped at a sharp crack tip, is shown for comparison only.");
-  result.sources.push_back(context.tube().source);
   return result;
 }
 

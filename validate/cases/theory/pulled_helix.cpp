@@ -8,8 +8,8 @@ namespace {
 
 constexpr int bonds = 60;
 
-// The lowest eigenvalue of a straight chain, stretched by the tension and twisted by the moment, whose ends stay on the
-// axis and tilt freely.
+// The lowest eigenvalue of a straight chain, stretched by the tension and twisted by the moment, whose ends stay on
+// the axis and tilt freely.
 double lowest(const ParameterSet& set, double tension, double moment) {
   Chain c(set, bonds);
   const double twist = std::asin(moment * set.element_length / set.bond.twist);
@@ -40,22 +40,18 @@ CaseResult run(const CaseContext& context) {
     tensions.push_back(tension * units::eV_in_nN_nm);
     moments.push_back(moment * units::eV_in_nN_nm);
     if (times == 0 || times == 6)
-      result.checks.push_back(relative_check(
+      result.check_relative(
           times == 0 ? "critical moment without tension" : "critical moment at six times the Euler load, pulling",
           moment * units::eV_in_nN_nm, expected * units::eV_in_nN_nm, 3e-2, "nN nm",
-          "a bond twists by up to 0.3 rad, whose cosine is 4 % below one"));
+          "a bond twists by up to 0.3 rad, whose cosine is 4 % below one");
   }
-  CaseFigure figure;
-  figure.chart = {"Critical moment against tension", {"tension", "nN"}, {"moment", "nN nm"}, {}, {}};
-  figure.chart.lines.push_back(theory_curve(
-      "2 sqrt(EI (T + pi²EI/L²))", [&](double t) { return theory(t * units::nN_nm) * units::eV_in_nN_nm; },
-      tensions.front(), tensions.back()));
-  figure.chart.lines.push_back(model_points("chain", tensions, moments));
-  figure.caption = "Moment at which the pulled and twisted chain loses its lateral stiffness.";
-  result.figures.push_back(figure);
+  result.figure("Critical moment against tension", {"tension", "nN"}, {"moment", "nN nm"},
+                "Moment at which the pulled and twisted chain loses its lateral stiffness.",
+                {theory_curve("2 sqrt(EI (T + pi²EI/L²))", tensions.front(), tensions.back(),
+                              [&](double t) { return theory(t * units::nN_nm) * units::eV_in_nN_nm; }),
+                 model_points("chain", tensions, moments)});
   result.remarks.push_back(
       "The ends tilt freely. Clamps that hold them straight raise the moment of a short tube, not of a long one.");
-  result.sources.push_back(context.tube().source);
   return result;
 }
 
@@ -68,11 +64,13 @@ const RegisteredCase registered([] {
   c.title = "Buckling of a pulled tube under a twisting moment";
   c.why = "Tension keeps a twisted rope straight: it says how much a testing machine must pull.";
   c.setup =
-      "A straight {tube} tube of 60 bonds, pulled with up to six times its Euler load and uniformly twisted. The ends stay "
+      "A straight {tube} tube of 60 bonds, pulled with up to six times its Euler load and uniformly twisted. The "
+      "ends stay "
       "on the axis and tilt freely.";
   c.oracle = "M = 2 sqrt(EI (T + pi² EI/L²)); of a long rod 2 sqrt(EI T).";
   c.literature =
-      "A. G. Greenhill, Proc. Inst. Mech. Eng. 34, 182 (1883); J. M. T. Thompson, A. R. Champneys, Proc. R. Soc. Lond. A "
+      "A. G. Greenhill, Proc. Inst. Mech. Eng. 34, 182 (1883); J. M. T. Thompson, A. R. Champneys, Proc. R. Soc. "
+      "Lond. A "
       "452, 117 (1996), DOI 10.1098/rspa.1996.0007";
   c.run = run;
   c.turns_red = {wrong_EI(1.1)};

@@ -134,8 +134,6 @@ State tilted(State state) {
 }
 
 CaseFigure shape_figure(const Head& head, const State& chain) {
-  CaseFigure figure;
-  figure.chart = {"Head of a racket", {"along the arms", "nm"}, {"across", "nm"}, {}, {}};
   ChartLine theory;
   theory.name = "elastica";
   for (int side : {1, -1})
@@ -150,14 +148,12 @@ CaseFigure shape_figure(const Head& head, const State& chain) {
     x.push_back(chain.position.x[e] - tip);
     y.push_back(chain.position.y[e]);
   }
-  figure.chart.lines = {theory, model_points("relaxed chain, every third element", x, y)};
-  figure.caption = "The tips are drawn in one place; the arms continue to the left.";
-  return figure;
+  return case_figure("Head of a racket", {"along the arms", "nm"}, {"across", "nm"},
+                     "The tips are drawn in one place; the arms continue to the left.",
+                     {theory, model_points("relaxed chain, every third element", x, y)});
 }
 
 CaseFigure curvature_figure(const Head& head, const State& chain, double element_length) {
-  CaseFigure figure;
-  figure.chart = {"Curvature along the tube", {"contour from the tip", "nm"}, {"curvature", "1/nm"}, {}, {}};
   ChartLine theory;
   theory.name = "elastica";
   for (std::size_t k = head.size(); k-- > 0;) {
@@ -176,11 +172,11 @@ CaseFigure curvature_figure(const Head& head, const State& chain, double element
     s.push_back(from_tip);
     k.push_back(std::asin(t.cross(u).z()) / element_length);
   }
-  figure.chart.lines = {theory, model_points("relaxed chain", s, k)};
-  figure.caption =
+  return case_figure(
+      "Curvature along the tube", {"contour from the tip", "nm"}, {"curvature", "1/nm"},
       "Theory has a jump to sqrt(Gamma/EI) where the arms part; in the chain it spreads over the range of the "
-      "attraction.";
-  return figure;
+      "attraction.",
+      {theory, model_points("relaxed chain", s, k)});
 }
 
 CaseResult run(const CaseContext& context) {
@@ -200,22 +196,20 @@ CaseResult run(const CaseContext& context) {
   const double before = contour(head) - around(head, far), length = (elements - 1) * model.element_length;
   const std::string soft = "the arms part over the range of the attraction, not in one point: 0.5 % of the energy";
   CaseResult result;
-  result.checks = {
-      relative_check("contour of the head", around(flat, model.element_length, far) + before, contour(head), 1e-2,
-                     "nm", soft),
-      relative_check("width of the head", width(flat), width(head), 1e-2, "nm", soft),
-      relative_check("energy of the head", energy.bonds(), bending(head, bend), 1e-2, "eV", soft),
-      relative_check("length above which a racket has less energy than the straight tube",
-                     length + 2 * energy.potential() / adhesion,
-                     contour(head) + 2 * (bending(head, bend) + attraction(head, contact)) / adhesion, 1e-2, "nm",
-                     "as above; ends of the arms: 1 nm"),
-      relative_check("oracle alone: 2 U/Gamma of a head whose arms have no distance",
-                     2 * bending(closed, bend) / adhesion, contour(closed), 1e-3, "nm",
-                     "U goes as 1/contour; at the lowest total energy U = Gamma contour/2"),
-      information(relative_check("contour of the head, free to leave its plane",
-                                 around(lifted, model.element_length, far) + before, contour(head), 1e-2, "nm",
-                                 "see the remarks")),
-  };
+  result.check_relative("contour of the head", around(flat, model.element_length, far) + before, contour(head),
+                        1e-2, "nm", soft);
+  result.check_relative("width of the head", width(flat), width(head), 1e-2, "nm", soft);
+  result.check_relative("energy of the head", energy.bonds(), bending(head, bend), 1e-2, "eV", soft);
+  result.check_relative("length above which a racket has less energy than the straight tube",
+                        length + 2 * energy.potential() / adhesion,
+                        contour(head) + 2 * (bending(head, bend) + attraction(head, contact)) / adhesion, 1e-2,
+                        "nm", "as above; ends of the arms: 1 nm");
+  result.check_relative("oracle alone: 2 U/Gamma of a head whose arms have no distance",
+                        2 * bending(closed, bend) / adhesion, contour(closed), 1e-3, "nm",
+                        "U goes as 1/contour; at the lowest total energy U = Gamma contour/2");
+  result.show_relative("contour of the head, free to leave its plane",
+                       around(lifted, model.element_length, far) + before, contour(head), 1e-2, "nm",
+                       "see the remarks");
   result.figures = {shape_figure(head, flat), curvature_figure(head, flat, model.element_length)};
   result.remarks = {
       "The arms lie at the distance of the energy minimum. The oracle has this gap too, which makes its head 1.3 % "
@@ -225,7 +219,6 @@ CaseResult run(const CaseContext& context) {
       fmt::format("The plane racket is not a minimum in space: one arm climbs onto the other, the gap closes, and "
                   "the energy falls from {:.1f} to {:.1f} eV. So the elements are held in the plane.",
                   energy.potential(), lifted_energy.potential())};
-  result.sources.push_back(context.tube().source);
   return result;
 }
 

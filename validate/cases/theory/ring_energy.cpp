@@ -28,30 +28,26 @@ CaseResult run(const CaseContext& context) {
   const auto leading = [&](double n) {
     return (3 * oracle.bond.shear_share(circumference / n) / 16 - 1.0 / 12) * turn * turn / (n * n);
   };
-  result.checks.push_back(relative_check("energy of 50 elements", ring_energy(model, 50, circumference), expected,
-                                         2e-3, "eV", "chords and cosines of bends of 0.126 rad: -0.09 %"));
+  result.check_relative("energy of 50 elements", ring_energy(model, 50, circumference), expected, 2e-3, "eV",
+                        "chords and cosines of bends of 0.126 rad: -0.09 %");
   for (const int n : {50, 100})
-    result.checks.push_back(relative_check(fmt::format("error of {} elements", n), error(n), leading(n), 2e-2, "1",
-                                           "second order in the element length, apart from shear"));
+    result.check_relative(fmt::format("error of {} elements", n), error(n), leading(n), 2e-2, "1",
+                          "second order in the element length, apart from shear");
   std::vector<double> elements, errors;
   for (const int n : {16, 20, 25, 32, 40, 50, 64, 80, 100}) {
     elements.push_back(n);
     errors.push_back(100 * error(n));
   }
-  CaseFigure figure;
-  figure.chart = {"Error of the bending energy of a ring", {"elements", "", true}, {"error", "%"}, {}, {}};
-  figure.chart.lines.push_back(theory_curve(
-      "(3 s/16 - 1/12) (2 pi/N)^2", [&](double n) { return 100 * leading(n); }, 16, 100));
-  figure.chart.lines.push_back(model_points("ring of elements", elements, errors));
-  figure.caption =
+  result.figure(
+      "Error of the bending energy of a ring", {"elements", "", true}, {"error", "%"},
       "Bending energy of a circle of fixed circumference in N elements, against EI (2 pi)^2/(2 L). The line is the "
-      "leading term of the bond's energy; s depends on the shear stiffness of a bond of this length.";
-  result.figures.push_back(figure);
+      "leading term of the bond's energy; s depends on the shear stiffness of a bond of this length.",
+      {theory_curve("(3 s/16 - 1/12) (2 pi/N)^2", 16, 100, [&](double n) { return 100 * leading(n); }),
+       model_points("ring of elements", elements, errors)});
   result.remarks.push_back(
       "A bond bent by delta between chords has 1 + (3 s/16 - 1/12) delta^2 times the energy of the arc, with s = "
       "1/(1 + 12 EI/(kGA a^2)); without shear the factor of delta^2 is 5/48. The error falls with the square of "
       "the element length or faster.");
-  result.sources.push_back(context.tube().source);
   return result;
 }
 

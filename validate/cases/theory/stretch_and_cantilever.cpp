@@ -31,42 +31,34 @@ CaseResult run(const CaseContext& context) {
   const double length = bonds * model.element_length, tip = 1e-2, pull = 5, couple = 5;
   CaseResult result;
   const EndMotion stretched = loaded_end(model, {0, 0, pull}, Vector3::Zero());
-  result.checks.push_back(relative_check("axial stiffness F L/u", pull * length / stretched.displacement.z(),
-                                         oracle.bond.stretch, 1e-4, "eV/nm", "linear spring: exact"));
+  result.check_relative("axial stiffness F L/u", pull * length / stretched.displacement.z(), oracle.bond.stretch,
+                        1e-4, "eV/nm", "linear spring: exact");
   const EndMotion bent = loaded_end(model, {tip, 0, 0}, Vector3::Zero());
   const double sheared = oracle.bond.shear > 0 ? length / oracle.bond.shear : 0;  // bonds without kGA do not shear
   const double compliance = std::pow(length, 3) / (3 * oracle.bond.bend) + sheared;
-  result.checks.push_back(relative_check("deflection under a force across", bent.displacement.x(), tip * compliance,
-                                         2e-4, "nm", "the bond is the exact element of this beam"));
+  result.check_relative("deflection under a force across", bent.displacement.x(), tip * compliance, 2e-4, "nm",
+                        "the bond is the exact element of this beam");
   ParameterSet slender = model;
   slender.bond.shear = 0;
-  result.checks.push_back(relative_check("deflection without shear",
-                                         loaded_end(slender, {tip, 0, 0}, Vector3::Zero()).displacement.x(),
-                                         tip * std::pow(length, 3) / (3 * oracle.bond.bend), 2e-4, "nm"));
+  result.check_relative("deflection without shear",
+                        loaded_end(slender, {tip, 0, 0}, Vector3::Zero()).displacement.x(),
+                        tip * std::pow(length, 3) / (3 * oracle.bond.bend), 2e-4, "nm");
   const EndMotion turned = loaded_end(model, Vector3::Zero(), {0, 0, couple});
-  result.checks.push_back(relative_check("torsional stiffness M L/phi", couple * length / turned.rotation,
-                                         oracle.bond.twist, 1e-4, "eV nm", "each bond twists by 0.003 rad"));
+  result.check_relative("torsional stiffness M L/phi", couple * length / turned.rotation, oracle.bond.twist, 1e-4,
+                        "eV nm", "each bond twists by 0.003 rad");
 
   std::vector<double> force, deflection;
   for (const double f : {0.0, 0.1, 0.2, 0.3, 0.4, 0.5}) {
     force.push_back(f);
     deflection.push_back(f > 0 ? loaded_end(model, {f, 0, 0}, Vector3::Zero()).displacement.x() : 0.0);
   }
-  CaseFigure figure;
-  figure.chart = {"Cantilever: deflection of the end against the force on it",
-                  {"force", "eV/nm"},
-                  {"deflection", "nm"},
-                  {},
-                  {}};
-  figure.chart.lines.push_back(theory_curve(
-      "F L^3/3 EI + F L/kGA", [&](double f) { return f * compliance; }, 0, 0.5));
-  figure.chart.lines.push_back(model_points("chain of elements", force, deflection));
-  figure.caption =
+  result.figure(
+      "Cantilever: deflection of the end against the force on it", {"force", "eV/nm"}, {"deflection", "nm"},
       "The chain bends as the beam does. At the largest force the points fall below the line of small deflections, "
-      "as they do for an elastica.";
-  result.figures.push_back(figure);
+      "as they do for an elastica.",
+      {theory_curve("F L^3/3 EI + F L/kGA", 0, 0.5, [&](double f) { return f * compliance; }),
+       model_points("chain of elements", force, deflection)});
   result.remarks.push_back("The three stiffnesses are independent: each load measures one of them.");
-  result.sources.push_back(context.tube().source);
   return result;
 }
 

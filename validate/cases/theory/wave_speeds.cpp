@@ -65,24 +65,19 @@ CaseResult run(const CaseContext& context) {
   const double torsional = std::sqrt(oracle.bond.twist / oracle.element_inertia(1));
   const StandingWave a = standing_wave(model, false), t = standing_wave(model, true);
   CaseResult result;
-  result.checks.push_back(
-      relative_check("axial wave speed", a.speed, axial, 3e-3, "km/s", "discrete chain and time step: below 1e-3"));
-  result.checks.push_back(relative_check("torsional wave speed", t.speed, torsional, 3e-3, "km/s",
-                                         "discrete chain and time step: below 1e-3"));
-  CaseFigure figure;
-  figure.chart = {
-      "First standing waves of a free tube", {"time", "ps"}, {"velocity of the mode, relative", ""}, {}, {}};
+  result.check_relative("axial wave speed", a.speed, axial, 3e-3, "km/s",
+                        "discrete chain and time step: below 1e-3");
+  result.check_relative("torsional wave speed", t.speed, torsional, 3e-3, "km/s",
+                        "discrete chain and time step: below 1e-3");
   const double k = units::pi / ((bonds + 1) * oracle.element_length);
-  figure.chart.lines.push_back(theory_curve(
-      "axial, theory", [&](double x) { return std::cos(k * axial * x); }, 0, a.time.back(), 0));
-  figure.chart.lines.push_back(thinned("axial, chain", a, 1));
-  figure.chart.lines.push_back(theory_curve(
-      "torsion, theory", [&](double x) { return std::cos(k * torsional * x); }, 0, t.time.back(), 2));
-  figure.chart.lines.push_back(thinned("torsion, chain", t, 3));
-  figure.caption = "Velocity of the first axial and torsional mode of a free tube.";
-  result.figures.push_back(figure);
+  result.figure(
+      "First standing waves of a free tube", {"time", "ps"}, {"velocity of the mode, relative", ""},
+      "Velocity of the first axial and torsional mode of a free tube.",
+      {theory_curve("axial, theory", 0, a.time.back(), [&](double x) { return std::cos(k * axial * x); }),
+       thinned("axial, chain", a, 1),
+       theory_curve("torsion, theory", 0, t.time.back(), 2, [&](double x) { return std::cos(k * torsional * x); }),
+       thinned("torsion, chain", t, 3)});
   result.remarks.push_back("The inertia of an element is m r^2, exact for torsion of a thin tube.");
-  result.sources.push_back(context.tube().source);
   return result;
 }
 
