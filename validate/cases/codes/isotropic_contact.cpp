@@ -1,26 +1,18 @@
 // Sliding of one row of elements along another: three contact laws.
 #include <cmath>
 
-#include "cases/common/bead_rope.hpp"
+#include "cases/common/bead_law.hpp"
 #include "cases/common/bundle.hpp"
 #include "cases/common/slide.hpp"
 #include "scene/build.hpp"
+#include "sim/contact/line/law.hpp"
 #include "sim/contact/paper/law.hpp"
 
 namespace ropewalk::validate {
 namespace {
 
-template <class Law>
-Slide slide(const Law& law, double element_length, double distance) {
-  Slide s;
-  for (int k = 0; k <= 40; ++k) {
-    s.shift.push_back(k / 40.0);
-    double sum = 0;
-    for (int e = -30; e <= 30; ++e)
-      sum += law.energy({distance, 0, (e + s.shift.back()) * element_length}, Vector3::UnitZ(), Vector3::UnitZ());
-    s.energy.push_back(sum / element_length);
-  }
-  return s;
+Slide slide(const ContactLaw& law, double element_length, double distance) {
+  return slide_first(law, element_length, {{0, 0}, {distance, 0}});
 }
 
 // Appends what the published law makes of the same rows, for comparison.
@@ -28,20 +20,21 @@ void add_published(const ParameterSet& paper, double compression, std::vector<Ch
                    CaseResult& result) {
   const double length = paper.element_length, spacing = pair_spacing(*paper.paper, length);
   const double well = std::fabs(paper_parallel_energy(*paper.paper, length, spacing));
-  const Slide at_rest = slide(*paper.paper, length, spacing);
+  const PaperLaw law(*paper.paper);
+  const Slide at_rest = slide(law, length, spacing);
   result.show_absolute("corrugation of the paper law over its well", at_rest.corrugation() / well, 0, 1e-3, "1",
                        "smooth where it was fitted");
   result.show_absolute("the same, 0.05 nm inside of the well",
-                       slide(*paper.paper, length, spacing - compression).corrugation() / well, 0, 4e-3, "1");
+                       slide(law, length, spacing - compression).corrugation() / well, 0, 4e-3, "1");
   lines.push_back(model_points("paper law", at_rest.shift, at_rest.relative(-well), 2));
 }
 
 CaseResult run(const CaseContext& context) {
   const ParameterSet model = context.model();
   const Well pair = surface_integral(context.set()).parallel_well();
-  const LineContact line = line_contact_of(model);
+  const LineLaw line({line_contact_of(model)});
   const double a = model.element_length, compression = 0.05;
-  const BeadLaw bead(pair.distance, pair.energy, a);
+  const BeadLaw bead(pair.distance, pair.energy, a, BeadLaw::uncut);
   const Slide by_line = slide(line, a, pair.distance), by_bead = slide(bead, a, pair.distance);
   const double depth = std::fabs(pair.energy);
 

@@ -2,9 +2,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cases/common/bead_rope.hpp"
+#include "cases/common/bead_law.hpp"
+#include "cases/common/gripped_rope.hpp"
 #include "cases/common/slide.hpp"
 #include "scene/build.hpp"
+#include "sim/contact/line/law.hpp"
 
 namespace ropewalk::validate {
 namespace {
@@ -15,41 +17,15 @@ constexpr double angle_step = last_angle / increments;
 
 // --- Straight rope ---
 
-// Energy per length (eV/nm) of seven long rows, each shifted along the rope by a part of an element.
-template <class Law>
-double rows_energy(const Law& law, double element_length, double spacing, const std::vector<double>& shift) {
-  const auto lattice = hexagonal_lattice(GrippedRope::tubes, spacing);
-  double sum = 0;
-  for (std::size_t t = 0; t < lattice.size(); ++t)
-    for (std::size_t u = t + 1; u < lattice.size(); ++u)
-      for (int e = -30; e <= 30; ++e)
-        sum += law.energy({lattice[u].first - lattice[t].first, lattice[u].second - lattice[t].second,
-                           (e + shift[u] - shift[t]) * element_length},
-                          Vector3::UnitZ(), Vector3::UnitZ());
-  return sum / element_length;
-}
-
-// The centre tube slides by one element along the other six.
-template <class Law>
-Slide slide_centre(const Law& law, double element_length, double spacing) {
-  Slide s;
-  for (int k = 0; k <= 40; ++k) {
-    std::vector<double> shift(GrippedRope::tubes, 0.0);
-    shift[0] = k / 40.0;
-    s.shift.push_back(shift[0]);
-    s.energy.push_back(rows_energy(law, element_length, spacing, shift));
-  }
-  return s;
-}
+Places rows_at(double spacing) { return hexagonal_lattice(GrippedRope::tubes, spacing); }
 
 // Energy per length with tubes shifted by thirds of an element, minus that without shifts. Neighbours on a
 // triangular lattice cannot all be half an element apart; with thirds all pairs are equal.
-template <class Law>
-double gained_by_staggering(const Law& law, double element_length, double spacing) {
+double gained_by_staggering(const ContactLaw& law, double element_length, double spacing) {
   std::vector<double> shift(GrippedRope::tubes, 0.0);
+  const double straight = rows_energy(law, element_length, rows_at(spacing), shift);
   for (std::size_t t = 1; t < shift.size(); ++t) shift[t] = t % 2 ? 1.0 / 3 : 2.0 / 3;
-  return rows_energy(law, element_length, spacing, shift) -
-         rows_energy(law, element_length, spacing, std::vector<double>(GrippedRope::tubes, 0.0));
+  return rows_energy(law, element_length, rows_at(spacing), shift) - straight;
 }
 
 // --- Twisted rope ---
@@ -59,22 +35,17 @@ struct Twisted {
   double stretch = 0, bend = 0, twist = 0, vdw = 0;  // at the last angle, of the energy
 };
 
-Twisted twist_elements(const ParameterSet& set) {
-  GrippedRope rope(set, bonds, "line");
-  rope.hold_grips();
-  const double step = 0.9 * time_step_limit(rope.topology, rope.interaction, rope.spacing).limit;
+Twisted twisted(GrippedRope rope, double tolerance) {
   Twisted out;
   Energies straight;
   for (int k = 0; k <= increments; ++k) {
     if (k > 0) rope.turn(angle_step);
-    const Simulation s =
-        at_rest(Simulation(rope.topology, rope.interaction, rope.loads, rope.state, step), 1e-3, 100000);
-    rope.state = s.state();
-    const Energies& now = s.forces().energy;
+    rope.relax(tolerance);
+    const Energies& now = rope.forces.energy;
     if (k == 0) straight = now;
     out.angle.push_back(k * angle_step * units::rad_in_degree);
     out.energy.push_back(now.potential() - straight.potential());
-    out.moment.push_back(resisting_moment(rope.upper, rope.state.position, s.forces().force, s.forces().torque));
+    out.moment.push_back(rope.moment());
     out.stretch = now.stretch - straight.stretch;
     out.bend = now.bend + now.shear - straight.bend - straight.shear;
     out.twist = now.twist - straight.twist;
@@ -83,22 +54,11 @@ Twisted twist_elements(const ParameterSet& set) {
   return out;
 }
 
-Twisted twist_beads(const ParameterSet& set, const BeadLaw& law) {
-  BeadRope rope(GrippedRope(set, bonds, "line"), law);
-  rope.relax();
-  const double stretch = rope.stretch(), bend = rope.bend(), vdw = rope.contact();
-  Twisted out;
-  for (int k = 0; k <= increments; ++k) {
-    if (k > 0) rope.turn(angle_step);
-    rope.relax();
-    out.angle.push_back(k * angle_step * units::rad_in_degree);
-    out.energy.push_back(rope.total() - stretch - bend - vdw);
-    out.moment.push_back(rope.moment());
-  }
-  out.stretch = rope.stretch() - stretch;
-  out.bend = rope.bend() - bend;
-  out.vdw = rope.contact() - vdw;
-  return out;
+// A tube of beads: elements that neither twist nor shear, so that only the places of their centres count.
+GrippedRope rope_of_beads(ParameterSet set, const Well& pair) {
+  const auto law = std::make_shared<const BeadLaw>(pair.distance, pair.energy, set.element_length, 4);
+  set.bond.twist = set.bond.shear = 0;
+  return {set, bonds, law, line_parallel_well(set.line->density).distance};
 }
 
 // --- Checks and figures ---
@@ -167,8 +127,8 @@ CaseFigure spacing_figure(const Well& pair) {
   std::vector<double> length, corrugation;
   for (int k = 4; k <= 20; ++k) {
     length.push_back(0.1 * k);
-    const BeadLaw law(pair.distance, pair.energy, length.back());
-    const Slide s = slide_centre(law, length.back(), pair.distance);
+    const BeadLaw law(pair.distance, pair.energy, length.back(), BeadLaw::uncut);
+    const Slide s = slide_first(law, length.back(), rows_at(pair.distance));
     corrugation.push_back(std::log10(std::max(s.corrugation() / (6 * std::fabs(pair.energy)), 1e-12)));
   }
   return case_figure(
@@ -191,13 +151,12 @@ CaseFigure twist_figure(const std::string& title, const std::string& quantity, c
 
 Straight straight_rope(const ParameterSet& model, const Well& pair, const BeadLaw& bead) {
   const double a = model.element_length;
-  const LineContact line = line_contact_of(model);
   Straight s;
   s.element_length = a;
   s.radius = model.radius;
   s.well = 6 * pair.energy;
-  s.elements = slide_centre(line, a, pair.distance);
-  s.beads = slide_centre(bead, a, pair.distance);
+  s.elements = slide_first(LineLaw({line_contact_of(model)}), a, rows_at(pair.distance));
+  s.beads = slide_first(bead, a, rows_at(pair.distance));
   s.beads_gain = gained_by_staggering(bead, a, pair.distance);
   s.cohesion = 12 * pair.energy;
   return s;
@@ -206,7 +165,7 @@ Straight straight_rope(const ParameterSet& model, const Well& pair, const BeadLa
 CaseResult run(const CaseContext& context) {
   const ParameterSet model = context.model(), oracle = context.set();
   const Well pair = surface_integral(oracle).parallel_well();
-  const BeadLaw bead(pair.distance, pair.energy, oracle.element_length);
+  const BeadLaw bead(pair.distance, pair.energy, oracle.element_length, BeadLaw::uncut);
   const double length = bonds * oracle.element_length;
   CaseResult result;
   const Straight straight = straight_rope(model, pair, bead);
@@ -214,9 +173,9 @@ CaseResult run(const CaseContext& context) {
                         3e-3, "eV/nm", "twelve pairs; contact fitted to 1.4e-3 of the well");
   add_straight_checks(straight, result);
   context.progress("twisting the rope of elements");
-  const Twisted elements = twist_elements(model);
+  const Twisted elements = twisted(gripped_rope(model, bonds), 1e-3);
   context.progress("twisting the rope of beads");
-  const Twisted beads = twist_beads(oracle, bead);
+  const Twisted beads = twisted(rope_of_beads(oracle, pair), 1e-4);
   add_twist_checks(elements, beads, torsion_energy(oracle.bond, pair.distance, length, last_angle), result);
   const auto energy = [&](double degrees) {
     return torsion_energy(oracle.bond, pair.distance, length, degrees * units::degree);

@@ -23,22 +23,17 @@ struct Record {
   bool ended = false;                                                            // as planned
 };
 
-GrippedRope turning_rope(const ParameterSet& set, bool legacy, double damping) {
-  GrippedRope rope(set, bonds, "paper");
-  rope.interaction.law = paper_law(*set.paper, legacy);
+// damping: factor on the defaults of a scene.
+Record twist(const ParameterSet& set, bool legacy, double damping) {
+  GrippedRope rope(set, bonds, paper_law(*set.paper, legacy), pair_spacing(*set.paper, set.element_length));
   rope.interaction.damping.contact = {damping * viscosity, rope.spacing, 1.5 * rope.spacing};
   rope.interaction.damping.bond.rate = damping * bond_damping;
   const double half = 0.5 * angle, rate = half / turning;
-  rope.loads.add(PrescribedRotation(rope.lower, -rate, -half, false));
-  rope.loads.add(PrescribedRotation(rope.upper, rate, half, false));
-  return rope;
-}
-
-// damping: factor on the defaults of a scene.
-Record twist(const ParameterSet& set, bool legacy, double damping) {
-  const GrippedRope rope = turning_rope(set, legacy, damping);
+  LoadsAndConstraints grips;
+  grips.add(PrescribedRotation(rope.lower, -rate, -half, false));
+  grips.add(PrescribedRotation(rope.upper, rate, half, false));
   const double step = default_step_fraction * time_step_limit(rope.topology, rope.interaction, rope.spacing).limit;
-  Simulation s(rope.topology, rope.interaction, rope.loads, rope.state, step);
+  Simulation s(rope.topology, rope.interaction, grips, rope.state, step);
   const Energies first = s.forces().energy;
   // The constraint accelerates the grips at the start; that work does not count.
   const double start = s.total_energy();

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "scene/build.hpp"
+#include "scene/kinds/scene_kind.hpp"
 #include "sim/contact/line/law.hpp"
 
 namespace ropewalk::validate {
@@ -26,13 +27,7 @@ Bundle line_bundle(const ParameterSet& set, int tubes, int elements) {
   b.topology = topology_of(set);
   b.interaction.law = line_law({line_contact_of(set)});
   b.spacing = line_parallel_well(set.line->density).distance;
-  b.state = State(static_cast<std::size_t>(tubes * elements));
-  std::size_t i = 0;
-  for (const auto& [x, y] : hexagonal_lattice(tubes, b.spacing)) {
-    b.topology.add_tube(elements);
-    for (int e = 0; e < elements; ++e)
-      b.state.position.set(i++, {x, y, (e - 0.5 * (elements - 1)) * set.element_length});
-  }
+  add_straight_tubes(hexagonal_lattice(tubes, b.spacing), elements, set.element_length, b.topology, b.state);
   b.time_step = default_step_fraction * time_step_limit(b.topology, b.interaction, b.spacing).limit;
   return b;
 }

@@ -7,7 +7,7 @@
 namespace ropewalk::validate {
 
 DrivenRope::DrivenRope(const ParameterSet& set, int bonds, Bonds kind, double step_fraction, double brake)
-    : rope_(set, bonds, "line"),
+    : rope_(gripped_rope(set, bonds)),
       kind_(kind),
       time_step_(step_fraction * time_step_limit(rope_.topology, rope_.interaction, rope_.spacing).limit),
       brake_(brake),

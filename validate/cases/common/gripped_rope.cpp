@@ -4,51 +4,52 @@
 #include <cmath>
 
 #include "scene/build.hpp"
+#include "scene/kinds/scene_kind.hpp"
 #include "sim/contact/line/law.hpp"
-#include "sim/contact/paper/law.hpp"
 
 namespace ropewalk::validate {
 
-GrippedRope::GrippedRope(const ParameterSet& set, int bonds_, const std::string& law)
-    : topology(topology_of(set)), bonds(bonds_) {
-  if (law == "paper") {
-    interaction.law = paper_law(*set.paper);
-    spacing = pair_spacing(*set.paper, set.element_length);
-  } else {
-    interaction.law = line_law({line_contact_of(set)});
-    spacing = line_parallel_well(set.line->density).distance;
-  }
+GrippedRope::GrippedRope(const ParameterSet& set, int bonds_, std::shared_ptr<const ContactLaw> law, double spacing_,
+                         int held_)
+    : topology(topology_of(set)), bonds(bonds_), held(held_), spacing(spacing_) {
+  interaction.law = std::move(law);
   const int elements = elements_of_tube();
-  state = State(static_cast<std::size_t>(tubes * elements));
-  for (const auto& [x, y] : hexagonal_lattice(tubes, spacing)) {
-    const int first = topology.elements();
-    topology.add_tube(elements);
-    for (int e = 0; e < elements; ++e) {
-      state.position.set(static_cast<std::size_t>(first + e),
-                         {x, y, (e - 0.5 * (elements - 1)) * set.element_length});
-      if (e < held) lower.push_back(first + e);
-      if (e >= elements - held) upper.push_back(first + e);
-    }
+  add_straight_tubes(hexagonal_lattice(tubes, spacing), elements, set.element_length, topology, state);
+  for (int i = 0; i < topology.elements(); ++i) {
+    if (i % elements < held) lower.push_back(i);
+    if (i % elements >= elements - held) upper.push_back(i);
   }
+}
+
+GrippedRope gripped_rope(const ParameterSet& set, int bonds) {
+  return {set, bonds, line_law({line_contact_of(set)}), line_parallel_well(set.line->density).distance};
 }
 
 double GrippedRope::fraction_at(int element) const {
   return std::clamp(static_cast<double>(element % elements_of_tube() - held + 1) / bonds, 0.0, 1.0);
 }
 
-void GrippedRope::hold_grips() {
-  for (const int e : lower) loads.add(FixLoad({e}));
-  for (const int e : upper) loads.add(FixLoad({e}));
-}
-
 void GrippedRope::turn(double angle) {
   for (int e = 0; e < topology.elements(); ++e) {
     const auto i = static_cast<std::size_t>(e);
-    const Quaternion by = turn_about(Vector3::UnitZ(), turn_of(e, angle));
+    const Quaternion by = turn_about(Vector3::UnitZ(), (fraction_at(e) - 0.5) * angle);
     state.position.set(i, by * state.position[i]);
     state.orientation.set(i, (by * state.orientation[i]).normalized());
   }
 }
+
+void GrippedRope::relax(double tolerance) {
+  constexpr double step_fraction = 0.9;  // of the stability limit: nothing has to be conserved
+  LoadsAndConstraints grips;
+  for (const auto* grip : {&lower, &upper})
+    for (const int e : *grip) grips.add(FixLoad({e}));
+  const double step = step_fraction * time_step_limit(topology, interaction, spacing).limit;
+  const Simulation rest = at_rest(Simulation(topology, interaction, grips, state, step), tolerance, 100000);
+  state = rest.state();
+  forces = rest.forces();
+}
+
+double GrippedRope::moment() const { return resisting_moment(upper, state.position, forces.force, forces.torque); }
 
 double torsion_energy(const BondStiffness& bond, double spacing, double length, double angle) {
   const double slope = spacing * angle / length, cos2 = 1 / (1 + slope * slope);

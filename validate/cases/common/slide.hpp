@@ -1,38 +1,29 @@
-// The energy of a row of elements or beads that slides along others by one element: its mean and its corrugation.
+// Long parallel rows of elements or beads that slide along one another: mean energy and corrugation.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
+#include <utility>
 #include <vector>
 
+#include "sim/contact/contact_law.hpp"
+
 namespace ropewalk::validate {
+
+using Places = std::vector<std::pair<double, double>>;  // nm, of the rows across their axis
 
 struct Slide {
   std::vector<double> shift, energy;  // in elements, both ends of the period included; eV/nm
 
-  double mean() const {
-    double sum = 0;
-    for (std::size_t k = 0; k + 1 < energy.size(); ++k) sum += energy[k];
-    return sum / static_cast<double>(energy.size() - 1);
-  }
-  // Highest less lowest energy.
-  double corrugation() const {
-    const auto [low, high] = std::minmax_element(energy.begin(), energy.end());
-    return *high - *low;
-  }
+  double mean() const;
+  double corrugation() const;  // highest less lowest energy
   // Largest force per length that resists sliding, eV/nm^2.
-  double resistance(double element_length) const {
-    double largest = 0;
-    for (std::size_t k = 1; k < energy.size(); ++k)
-      largest = std::max(largest, (energy[k] - energy[k - 1]) / (element_length * (shift[k] - shift[k - 1])));
-    return largest;
-  }
+  double resistance(double element_length) const;
   // Difference from the mean, in percent of the well.
-  std::vector<double> relative(double well) const {
-    std::vector<double> out;
-    for (const double e : energy) out.push_back(100 * (e - mean()) / std::fabs(well));
-    return out;
-  }
+  std::vector<double> relative(double well) const;
 };
+
+// Energy per length (eV/nm) of rows that are shifted by these parts of an element.
+double rows_energy(const ContactLaw& law, double element_length, const Places& rows, const std::vector<double>& shift);
+// The first row slides by one element along the others.
+Slide slide_first(const ContactLaw& law, double element_length, const Places& rows);
 
 }  // namespace ropewalk::validate

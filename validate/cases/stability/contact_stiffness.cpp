@@ -7,6 +7,7 @@
 #include "cases/common/bundle.hpp"
 #include "cases/common/stability_limit.hpp"
 #include "scene/build.hpp"
+#include "scene/kinds/scene_kind.hpp"
 #include "scene/random.hpp"
 #include "sim/contact/paper/law.hpp"
 
@@ -41,12 +42,7 @@ Bundle packed(const Series& s, ParameterSet set, double factor) {
   b.topology = topology_of(set);
   b.interaction.law = paper_law(*set.paper);
   b.spacing = pair_spacing(*set.paper, set.element_length);
-  b.state = State(tubes * elements);
-  std::size_t i = 0;
-  for (const auto& [x, y] : hexagonal_lattice(tubes, b.spacing)) {
-    b.topology.add_tube(elements);
-    for (int e = 0; e < elements; ++e) b.state.position.set(i++, {x, y, e * set.element_length});
-  }
+  add_straight_tubes(hexagonal_lattice(tubes, b.spacing), elements, set.element_length, b.topology, b.state);
   b.time_step = default_step_fraction * time_step_limit(b.topology, b.interaction, b.spacing).limit;
   return b;
 }
