@@ -38,7 +38,7 @@ std::string FiniteTube::data() const {
   double radius = 0;
   for (const Vector3& atom : atoms_) radius = std::max(radius, std::hypot(atom.x(), atom.y()));
   const double half = 0.5 * total_length_ + 1;
-  return data_file(atoms_, radius + half, -half, half);
+  return data_file({atoms_}, radius + half, -half, half);
 }
 
 std::string FiniteTube::commands(const Potential& potential, const std::string& data, double turn) const {

@@ -133,6 +133,24 @@ TubeCell tube_cell(Chirality c, LatticeVector period, double a) {
   return cell;
 }
 
+TwistedCell twisted_cell_near(Chirality c, const TubeShape& shape, const std::vector<LatticeVector>& periods,
+                              double twist) {
+  const auto cell_of = [&](const LatticeVector& period) {
+    TwistedCell cell{period, cell_hexagons(c, period)};
+    cell.length = static_cast<double>(cell.hexagons) * shape.length_per_hexagon;
+    cell.twist = -2 * pi * period_turns(c, period) / cell.length;
+    return cell;
+  };
+  const auto cost = [&](const TwistedCell& cell) {
+    const double off = std::abs(cell.twist / twist - 1);
+    return off < 0.02 ? cell.length : 1e6 * off;
+  };
+  TwistedCell best = cell_of(periods.front());
+  for (const LatticeVector& period : periods)
+    if (const TwistedCell cell = cell_of(period); cost(cell) < cost(best)) best = cell;
+  return best;
+}
+
 std::vector<LatticeVector> twisted_periods(Chirality c, double min_length, double max_length, double max_shear,
                                            double a) {
   check(c);

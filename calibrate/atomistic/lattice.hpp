@@ -79,6 +79,16 @@ struct TubeCell {
 // The cell of period V, of a sheet of lattice constant a. Throws std::invalid_argument if V is parallel to C.
 TubeCell tube_cell(Chirality c, LatticeVector period, double a = graphene_lattice_constant);
 
+// A relaxed tube as a uniformly twisted cell of this period.
+struct TwistedCell {
+  LatticeVector period;
+  long hexagons = 0;
+  double length = 0, twist = 0;  // nm, rad/nm
+};
+// The shortest such cell within 2 % of the wanted twist (not 0); if there is none, the nearest.
+TwistedCell twisted_cell_near(Chirality c, const TubeShape& shape, const std::vector<LatticeVector>& periods,
+                              double twist);
+
 // Lattice vectors whose cell is at least min_length and at most max_length long, sorted by twist, with |twist|
 // times radius (the shear) at most max_shear. One vector for each twist: the shortest.
 std::vector<LatticeVector> twisted_periods(Chirality c, double min_length, double max_length, double max_shear,

@@ -23,16 +23,29 @@ std::string header_commands(const std::string& boundary, double skin) {
       boundary, skin / angstrom);
 }
 
-std::string data_file(const std::vector<Vector3>& atoms, double half_width, double z_low, double z_high) {
-  std::string text = fmt::format(
-      "carbon nanotube, Angstrom\n\n{} atoms\n1 atom types\n\n{:.6f} {:.6f} xlo xhi\n{:.6f} {:.6f} ylo yhi\n"
-      "{:.12f} {:.12f} zlo zhi\n\nMasses\n\n1 12.011\n\nAtoms # atomic\n\n",
-      atoms.size(), -half_width / angstrom, half_width / angstrom, -half_width / angstrom, half_width / angstrom,
-      z_low / angstrom, z_high / angstrom);
-  for (std::size_t i = 0; i < atoms.size(); ++i)
-    text += fmt::format("{} {} {:.12f} {:.12f} {:.12f}\n", i + 1, 1, atoms[i].x() / angstrom,
-                        atoms[i].y() / angstrom, atoms[i].z() / angstrom);
-  return text;
+std::string data_file(const std::vector<std::vector<Vector3>>& tubes, double half_width, double z_low,
+                      double z_high) {
+  const double half = half_width / angstrom;
+  std::string masses, atoms;
+  std::size_t type = 0, id = 0;
+  for (const std::vector<Vector3>& tube : tubes) {
+    masses += fmt::format("{} {}\n", ++type, units::carbon_atomic_weight);
+    for (const Vector3& atom : tube)
+      atoms += fmt::format("{} {} {:.12f} {:.12f} {:.12f}\n", ++id, type, atom.x() / angstrom, atom.y() / angstrom,
+                           atom.z() / angstrom);
+  }
+  return fmt::format(
+      "carbon nanotubes, Angstrom\n\n{} atoms\n{} atom types\n\n{:.6f} {:.6f} xlo xhi\n{:.6f} {:.6f} ylo yhi\n"
+      "{:.12f} {:.12f} zlo zhi\n\nMasses\n\n{}\nAtoms # atomic\n\n{}",
+      id, type, -half, half, -half, half, z_low / angstrom, z_high / angstrom, masses, atoms);
+}
+
+std::string cell_commands(const Potential& potential, const std::string& data) {
+  std::string text = header_commands("s s p", 0.05) + "read_data " + data + "\n";
+  for (const std::string& command : potential.commands) text += command + "\n";
+  return text +
+         "min_style cg\nmin_modify dmax 0.05 line quadratic\nthermo 200\n"
+         "thermo_modify flush yes lost error norm no\n";
 }
 
 void write_data(const RunContext& run, const std::string& name, const std::string& content) {

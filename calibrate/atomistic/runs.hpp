@@ -82,7 +82,11 @@ Envelope measured_envelope(RunContext& run, const RelaxedTube& tube, const Stiff
 
 // Shared pieces of the inputs.
 std::string header_commands(const std::string& boundary, double skin);
-std::string data_file(const std::vector<Vector3>& atoms, double half_width, double z_low, double z_high);
+// The atoms of each tube (nm) as a type of their own, in a box about the axis.
+std::string data_file(const std::vector<std::vector<Vector3>>& tubes, double half_width, double z_low,
+                      double z_high);
+// The start of an input that minimises one periodic cell, which may buckle or collapse.
+std::string cell_commands(const Potential& potential, const std::string& data);
 void write_data(const RunContext& run, const std::string& name, const std::string& content);
 // Numbers that a run printed to folder/name.dat, `columns` per line. Throws LammpsError for fewer than `least`
 // lines or more than `most`.

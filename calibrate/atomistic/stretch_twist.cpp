@@ -11,7 +11,7 @@
 namespace ropewalk::calibrate {
 namespace {
 
-constexpr double pi = units::pi;
+using units::pi;
 constexpr double skin = 0.04;  // nm; nothing moves far in these cells
 
 // All atoms of a uniform cell are equivalent: the minimiser effectively varies three numbers (radius and inner
@@ -20,7 +20,7 @@ constexpr const char* minimiser =
     "min_style cg\n"
     "min_modify dmax 0.02 line quadratic\n";
 
-std::string cell_commands(const Potential& potential, const std::string& data) {
+std::string uniform_cell_commands(const Potential& potential, const std::string& data) {
   std::string text = header_commands("s s p", skin) + fmt::format("read_data {}\n", data);
   for (const std::string& command : potential.commands) text += command + "\n";
   text += minimiser;
@@ -137,12 +137,12 @@ RelaxedTube relax_tube(RunContext& run) {
   const double length = static_cast<double>(hexagons) * shape.length_per_hexagon;
   shape.twist = -2 * pi * period_turns(c, period) / length;
   const std::vector<Site> sites = strip_sites(c, hexagons);
-  write_data(run, "relax.data", data_file(atoms_of(c, hexagons, shape), shape.radius + 0.5, 0, length));
+  write_data(run, "relax.data", data_file({atoms_of(c, hexagons, shape)}, shape.radius + 0.5, 0, length));
 
   const std::string values = report("relax", "$(pe:%.15g) $(fnorm:%.6g) $(lz:%.15g) $(c_rho:%.15g)");
   run_stage(run, "relax",
             "# the free tube: radius, length and inner shift; then once stretched, for its contraction\n" +
-                cell_commands(run.potential, "relax.data") +
+                uniform_cell_commands(run.potential, "relax.data") +
                 "fix cell all box/relax z 0.0 vmax 0.002\n"
                 "minimize 0.0 1e-7 2000 20000\n"
                 "unfix cell\n"
@@ -212,8 +212,8 @@ std::vector<CellResult> stretch_twist_cells(RunContext& run, const RelaxedTube& 
         shape.length_per_hexagon *= 1 + strain;
         shape.radius *= 1 - start.contraction * strain;
         shape.twist = angle / cell.length;
-        write_data(run, data, data_file(atoms_of(c, hexagons, shape), shape.radius + 0.5, 0, cell.length));
-        input += cell_commands(run.potential, data);
+        write_data(run, data, data_file({atoms_of(c, hexagons, shape)}, shape.radius + 0.5, 0, cell.length));
+        input += uniform_cell_commands(run.potential, data);
       } else {
         const double step = cell.length / cells.back().length - 1;
         input += fmt::format(
@@ -261,37 +261,23 @@ std::vector<AtomisticRow> collapse_rows(RunContext& run, const RelaxedTube& tube
   const double radius = tube.shape.radius;
   const std::vector<LatticeVector> periods =
       twisted_periods(c, collapse_cell, longest_collapse_cell, 1.05 * shears.back() / radius);
-  const auto length_of = [&](const LatticeVector& v) {
-    return static_cast<double>(cell_hexagons(c, v)) * tube.shape.length_per_hexagon;
-  };
-  const auto twist_of = [&](const LatticeVector& v) { return -2 * pi * period_turns(c, v) / length_of(v); };
   std::string input = "# twisted cells with a little noise, which may collapse\n";
   std::vector<AtomisticRow> rows;
   for (const double shear : shears) {
-    const auto cost = [&](const LatticeVector& v) {
-      const double off = std::abs(twist_of(v) * radius / shear - 1);
-      return off < 0.02 ? length_of(v) : 1e6 * off;
-    };
-    LatticeVector period = periods.front();
-    for (const LatticeVector& v : periods)
-      if (cost(v) < cost(period)) period = v;
+    const TwistedCell cell = twisted_cell_near(c, tube.shape, periods, shear / radius);
     AtomisticRow row;
     row.kind = "collapse-twist";
-    row.length = length_of(period);
-    row.twist = twist_of(period);
-    row.atoms = static_cast<int>(2 * cell_hexagons(c, period));
+    row.length = cell.length;
+    row.twist = cell.twist;
+    row.atoms = static_cast<int>(2 * cell.hexagons);
     if (!rows.empty() && row.twist == rows.back().twist) continue;  // no cell is twisted further
     TubeShape shape = tube.shape;
     shape.twist = row.twist;
     const std::string data = fmt::format("collapse-{}.data", rows.size());
-    write_data(run, data, data_file(atoms_of(c, cell_hexagons(c, period), shape), radius + 1, 0, row.length));
-    input += header_commands("s s p", 0.05) + "read_data " + data + "\n";
-    for (const std::string& command : run.potential.commands) input += command + "\n";
-    input += fmt::format(
-        "min_style cg\nmin_modify dmax 0.05 line quadratic\nthermo 200\n"
-        "thermo_modify flush yes lost error norm no\n"
-        "displace_atoms all random 0.02 0.02 0.02 {} units box\nminimize 0.0 2e-4 6000 60000\n",
-        3001 + rows.size());
+    write_data(run, data, data_file({atoms_of(c, cell.hexagons, shape)}, radius + 1, 0, row.length));
+    input += cell_commands(run.potential, data) +
+             fmt::format("displace_atoms all random 0.02 0.02 0.02 {} units box\nminimize 0.0 2e-4 6000 60000\n",
+                         3001 + rows.size());
     input += report("collapse", "$(pe:%.15g) $(fnorm:%.6g)");
     rows.push_back(row);
   }

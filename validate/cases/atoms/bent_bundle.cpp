@@ -165,27 +165,12 @@ ReferenceTable slide_pairs(const CaseContext& context, const ParameterSet& set) 
   const Chirality c = set.chirality;
   MdSession session(context, set);
   const TubeShape shape{set.radius, row_distance(set) / c.n, 0, 0, 0};
-  const double period = period_of(c, shape), turn = 2 * units::pi / c.n;
-  std::string input = "# frozen tubes slid along each other, for several turns\n";
-  for (int i = 0; i < turns; ++i)
-    for (int j = 0; j < turns; ++j) {
-      const std::string data = fmt::format("pair-{}-{}.data", i, j);
-      session.write(data, pair_data(tube_atoms(c, shape, periods * period_hexagons(c), turn * i / turns),
-                                    tube_atoms(c, shape, periods * period_hexagons(c), turn * j / turns), 4, 0,
-                                    periods * period));
-      input += pair_commands(session.atom_law(), "s s p", data) + move_two({set.line->pair_spacing, 0, 0});
-      for (int s = 0; s < shifts; ++s)
-        input += print_values("pair", "$(pe:%.15g)") + move_two({0, 0, period / shifts});
-    }
-  const auto results = session.run("pair", input, turns * turns * shifts, 1);
+  const auto rows =
+      slid_pairs(session, "pair", c, shape,
+                 {periods * period_hexagons(c), set.line->pair_spacing, period_of(c, shape), turns, shifts});
   ReferenceTable t = session.table("Energy of two frozen parallel (5,5) tubes against axial shift", "bent-bundle",
                                    true, {"turn_i", "turn_j", "shift_nm", "energy_eV_per_nm"});
-  std::size_t k = 0;
-  for (int i = 0; i < turns; ++i)
-    for (int j = 0; j < turns; ++j)
-      for (int s = 0; s < shifts; ++s)
-        t.rows.push_back(
-            {turn * i / turns, turn * j / turns, period * s / shifts, results[k++][0] / (periods * period)});
+  t.rows = rows;
   return t;
 }
 

@@ -33,19 +33,6 @@ std::vector<Vector3> crossing_tube(const std::vector<Vector3>& atoms, double ang
   return turned;
 }
 
-// Centred, and shifted by a part of a row so that the crossing is at another place of the lattice.
-std::vector<Vector3> centred_tube(Chirality c, const TubeShape& shape, long hexagons, double turn, double shift) {
-  std::vector<Vector3> atoms =
-      tube_atoms(c, shape, hexagons, 2 * units::pi * turn / static_cast<double>(row_hexagons(c)));
-  const double up = shift * row_height(c, shape) - 0.5 * static_cast<double>(hexagons) * shape.length_per_hexagon;
-  for (Vector3& atom : atoms) atom.z() += up;
-  return atoms;
-}
-
-struct Sum {
-  double energy = 0, squares = 0, difference = 0, lever = 0;
-};
-
 // One registry at one angle: the distances at angle - step, angle and angle + step.
 std::string crossing_input(const AtomLaw& law, const std::string& data, double rest) {
   std::string input = pair_commands(law, "s s s", data);
@@ -79,7 +66,7 @@ ReferenceTable make_reference(const CaseContext& context, const ParameterSet& se
       const std::string data = fmt::format("crossed-{}.data", number++);
       const std::vector<Vector3> two = crossing_tube(centred_tube(c, shape, hexagons, r.turn_j, r.shift_j),
                                                      (angle - angle_step) * units::degree);
-      session.write(data, pair_data(centred_tube(c, shape, hexagons, r.turn_i, r.shift_i), two, 0.5 * length + 2,
+      session.write(data, data_file({centred_tube(c, shape, hexagons, r.turn_i, r.shift_i), two}, 0.5 * length + 2,
                                     -0.5 * length - 1, 0.5 * length + 1));
       input += crossing_input(session.atom_law(), data, rest);
     }
@@ -93,19 +80,15 @@ ReferenceTable make_reference(const CaseContext& context, const ParameterSet& se
   t.add("torque", fmt::format("energy at {0} degrees more less that at {0} degrees less", angle_step));
   for (std::size_t a = 0; a < all; ++a)
     for (std::size_t k = 0; k < count; ++k) {
-      Sum sum;
-      for (std::size_t r = 0; r < registry_count; ++r) {
-        const auto row = [&](std::size_t side) {
-          return results[((a * registry_count + r) * sides + side) * count + k];
-        };
-        sum.energy += row(1)[0] / registry_count;
-        sum.squares += row(1)[0] * row(1)[0] / registry_count;
-        sum.difference += (row(2)[0] - row(0)[0]) / (2 * angle_step * units::degree) / registry_count;
-        sum.lever += row(1)[1] / registry_count;
-      }
-      t.rows.push_back({angles[a], rest + offsets[k], sum.energy,
-                        std::sqrt(std::max(0.0, sum.squares - sum.energy * sum.energy)), sum.difference, sum.lever,
-                        length});
+      const auto value = [&](std::size_t r, std::size_t side, std::size_t column) {
+        return results[((a * registry_count + r) * sides + side) * count + k][column];
+      };
+      const auto over = [&](const std::function<double(std::size_t)>& v) { return spread_over(registry_count, v); };
+      const Spread energy = over([&](std::size_t r) { return value(r, 1, 0); });
+      const double slope = over([&](std::size_t r) { return value(r, 2, 0) - value(r, 0, 0); }).mean;
+      t.rows.push_back({angles[a], rest + offsets[k], energy.mean, energy.deviation,
+                        slope / (2 * angle_step * units::degree),
+                        over([&](std::size_t r) { return value(r, 1, 1); }).mean, length});
     }
   return t;
 }

@@ -27,14 +27,6 @@ std::vector<double> gaps() {
   return list;
 }
 
-// The atoms of so many rows, turned and shifted by parts of the symmetry, with their middle at z = 0.
-std::vector<Vector3> centred_tube(Chirality c, const TubeShape& shape, long hexagons, double turn, double shift) {
-  std::vector<Vector3> atoms = tube_atoms(c, shape, hexagons, 2 * units::pi * turn / std::gcd(c.n, c.m));
-  const double up = shift * row_height(c, shape) - 0.5 * static_cast<double>(hexagons) * shape.length_per_hexagon;
-  for (Vector3& atom : atoms) atom.z() += up;
-  return atoms;
-}
-
 // A piece of i, of whole periods, beside a j that reaches beyond it by more than the cutoff: tubes of different
 // periods need no common one.
 ReferenceTable make_reference(const CaseContext& context, const ParameterSet& i, const ParameterSet& j,
@@ -50,9 +42,9 @@ ReferenceTable make_reference(const CaseContext& context, const ParameterSet& i,
   int number = 0;
   for (const Registry& r : registries(registry_count)) {
     const std::string data = fmt::format("distance-{}.data", number++);
-    session.write(
-        data, pair_data(centred_tube(ci, one, hexagons, r.turn_i, r.shift_i),
-                        centred_tube(cj, two, hexagons_in(cj, two, reach), r.turn_j, r.shift_j), 4, -reach, reach));
+    session.write(data, data_file({centred_tube(ci, one, hexagons, r.turn_i, r.shift_i),
+                                   centred_tube(cj, two, hexagons_in(cj, two, reach), r.turn_j, r.shift_j)},
+                                  4, -reach, reach));
     input += pair_commands(session.atom_law(), "s s s", data);
     double last = 0;
     for (const double gap : list) {
@@ -67,13 +59,9 @@ ReferenceTable make_reference(const CaseContext& context, const ParameterSet& i,
       command, true, {"distance_nm", "energy_eV_per_nm", "registry_deviation_eV_per_nm"});
   t.add("registries", fmt::format("{}, averaged at each distance", registry_count));
   for (std::size_t k = 0; k < list.size(); ++k) {
-    double sum = 0, squares = 0;
-    for (std::size_t r = 0; r < registry_count; ++r) {
-      const double energy = results[r * list.size() + k][0] / length;
-      sum += energy / registry_count;
-      squares += energy * energy / registry_count;
-    }
-    t.rows.push_back({one.radius + two.radius + list[k], sum, std::sqrt(std::max(0.0, squares - sum * sum))});
+    const Spread energy =
+        spread_over(registry_count, [&](std::size_t r) { return results[r * list.size() + k][0] / length; });
+    t.rows.push_back({one.radius + two.radius + list[k], energy.mean, energy.deviation});
   }
   return t;
 }

@@ -32,8 +32,6 @@ double rest_distance(const MdSession& session, const TubeShape& shape) {
   return calibrate::parallel_well(session.atom_law(), shell, shell).distance;
 }
 
-double full_turn(Chirality c) { return 2 * units::pi / static_cast<double>(row_hexagons(c)); }
-
 ReferenceTable make_sliding(const CaseContext& context, const ParameterSet& set) {
   MdSession session(context, set);
   const Chirality c = set.chirality;
@@ -41,27 +39,11 @@ ReferenceTable make_sliding(const CaseContext& context, const ParameterSet& set)
   const double period = period_of(c, shape), range = std::min(period, longest_slide),
                distance = rest_distance(session, shape);
   const long periods = static_cast<long>(std::ceil(cell / period)), hexagons = periods * period_hexagons(c);
-  const double length = static_cast<double>(periods) * period, turn = full_turn(c);
-  std::string input = "# frozen tubes slid along each other, for several turns\n";
-  for (int i = 0; i < turns; ++i)
-    for (int j = 0; j < turns; ++j) {
-      const std::string data = fmt::format("sliding-{}-{}.data", i, j);
-      session.write(data, pair_data(tube_atoms(c, shape, hexagons, turn * i / turns),
-                                    tube_atoms(c, shape, hexagons, turn * j / turns), 4, 0, length));
-      input += pair_commands(session.atom_law(), "s s p", data) + move_two({distance, 0, 0});
-      for (int s = 0; s < shifts; ++s)
-        input += print_values("sliding", "$(pe:%.15g)") + move_two({0, 0, range / shifts});
-    }
-  const auto results = session.run("sliding", input, turns * turns * shifts, 1);
+  const auto rows = slid_pairs(session, "sliding", c, shape, {hexagons, distance, range, turns, shifts});
   ReferenceTable t =
       session.table(fmt::format("Energy of two frozen parallel {} tubes against axial shift", tube_name(set)),
                     "pair-sliding", true, {"turn_i", "turn_j", "distance_nm", "shift_nm", "energy_eV_per_nm"});
-  std::size_t k = 0;
-  for (int i = 0; i < turns; ++i)
-    for (int j = 0; j < turns; ++j)
-      for (int s = 0; s < shifts; ++s)
-        t.rows.push_back(
-            {turn * i / turns, turn * j / turns, distance, range * s / shifts, results[k++][0] / length});
+  for (const std::vector<double>& row : rows) t.rows.push_back({row[0], row[1], distance, row[2], row[3]});
   return t;
 }
 
@@ -78,15 +60,17 @@ ReferenceTable make_pull_out(const CaseContext& context, const ParameterSet& set
   const Chirality c = set.chirality;
   const TubeShape shape = session.rest_shape();
   const long hexagons = hexagons_in(c, shape, free_length);
-  const double length = static_cast<double>(hexagons) * shape.length_per_hexagon, turn = full_turn(c);
+  const double length = static_cast<double>(hexagons) * shape.length_per_hexagon,
+               turn = 2 * units::pi / static_cast<double>(row_hexagons(c));
   const double distance = rest_distance(session, shape);
   std::string input = "# frozen finite tubes at several overlaps, for several registries\n";
   const std::vector<double> list = overlaps(length);
   int number = 0;
   for (const Registry& r : registries(registry_count)) {
     const std::string data = fmt::format("pull-out-{}.data", number++);
-    session.write(data, pair_data(tube_atoms(c, shape, hexagons, turn * r.turn_i),
-                                  tube_atoms(c, shape, hexagons, turn * r.turn_j), 4, -1, length + 1));
+    session.write(data, data_file({tube_atoms(c, shape, hexagons, turn * r.turn_i),
+                                   tube_atoms(c, shape, hexagons, turn * r.turn_j)},
+                                  4, -1, length + 1));
     input += pair_commands(session.atom_law(), "s s s", data) + move_two({distance, 0, 0});
     double last = length;
     for (const double overlap : list) {
@@ -104,13 +88,8 @@ ReferenceTable make_pull_out(const CaseContext& context, const ParameterSet& set
       "pair-sliding", true, {"overlap_nm", "energy_eV", "registry_deviation_eV", "distance_nm", "length_nm"});
   t.add("registries", fmt::format("{}, averaged at each overlap", registry_count));
   for (std::size_t k = 0; k < count; ++k) {
-    double sum = 0, squares = 0;
-    for (std::size_t r = 0; r < registry_count; ++r) {
-      const double energy = results[r * count + k][0];
-      sum += energy / registry_count;
-      squares += energy * energy / registry_count;
-    }
-    t.rows.push_back({list[k], sum, std::sqrt(std::max(0.0, squares - sum * sum)), distance, length});
+    const Spread energy = spread_over(registry_count, [&](std::size_t r) { return results[r * count + k][0]; });
+    t.rows.push_back({list[k], energy.mean, energy.deviation, distance, length});
   }
   return t;
 }

@@ -14,20 +14,12 @@ namespace {
 constexpr double cell_length = 5;  // nm: room for a buckle, which is about as long as the tube is wide
 constexpr double magnitudes[] = {0.002, 0.004, 0.01, 0.02, 0.03, 0.04, 0.05, 0.06, 0.07, 0.08};
 
-std::string cell_commands(const Potential& potential, const std::string& data) {
-  std::string text = header_commands("s s p", 0.05) + "read_data " + data + "\n";
-  for (const std::string& command : potential.commands) text += command + "\n";
-  return text +
-         "min_style cg\nmin_modify dmax 0.05 line quadratic\nthermo 200\n"
-         "thermo_modify flush yes lost error norm no\n";
-}
-
 std::string strain_input(const Potential& potential, const std::string& name, double length) {
   const std::string relax =
       fmt::format("minimize 0.0 3e-4 3000 30000\nprint \"$(pe:%.15g)\" append {}.dat screen no\n", name);
   std::string input = "# one periodic cell, compressed and then stretched from the relaxed tube\n";
   for (const double sign : {-1.0, 1.0}) {
-    input += cell_commands(potential, name + ".data") + relax;
+    input += calibrate::cell_commands(potential, name + ".data") + relax;
     int step = 0;
     for (const double magnitude : magnitudes)
       input += fmt::format(
@@ -45,7 +37,7 @@ ReferenceTable make_reference(const CaseContext& context, const ParameterSet& se
   const TubeShape shape = session.relaxed().shape;
   const long hexagons = period_hexagons(c) * std::max(1L, std::lround(cell_length / period_of(c, shape)));
   const double length = static_cast<double>(hexagons) * shape.length_per_hexagon;
-  session.write("stretch.data", data_file(tube_atoms(c, shape, hexagons), shape.radius + 1, 0, length));
+  session.write("stretch.data", data_file({tube_atoms(c, shape, hexagons)}, shape.radius + 1, 0, length));
   const std::size_t steps = std::size(magnitudes) + 1;
   const auto results = session.run("stretch", strain_input(session.potential(), "stretch", length), 2 * steps, 1);
   ReferenceTable t = session.table(

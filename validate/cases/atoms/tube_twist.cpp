@@ -18,40 +18,8 @@ constexpr double shortest_cell = 9, longest_cell = 24;  // nm
 // Shears times radius (nm): collapse is expected near 0.03.
 constexpr double first_shear = 0.0075, shear_step = 0.003, last_shear = 0.045;
 
-struct TwistedCell {
-  long hexagons = 0;
-  double length = 0, twist = 0;  // nm, rad/nm
-};
-
-TwistedCell cell_of(Chirality c, const TubeShape& shape, LatticeVector period) {
-  TwistedCell cell;
-  cell.hexagons = cell_hexagons(c, period);
-  cell.length = static_cast<double>(cell.hexagons) * shape.length_per_hexagon;
-  cell.twist = -2 * units::pi * calibrate::period_turns(c, period) / cell.length;
-  return cell;
-}
-
-// The shortest cell within 2 % of the wanted shear; if there is none, the nearest.
-TwistedCell cell_near(Chirality c, const TubeShape& shape, const std::vector<LatticeVector>& periods,
-                      double shear) {
-  const auto cost = [&](const TwistedCell& cell) {
-    const double off = std::abs(cell.twist * shape.radius / shear - 1);
-    return off < 0.02 ? cell.length : 1e6 * off;
-  };
-  TwistedCell best = cell_of(c, shape, periods.front());
-  for (const LatticeVector& period : periods) {
-    const TwistedCell cell = cell_of(c, shape, period);
-    if (cost(cell) < cost(best)) best = cell;
-  }
-  return best;
-}
-
 std::string twist_input(const Potential& potential, const std::string& data, const std::string& results) {
-  std::string text = header_commands("s s p", 0.05) + "read_data " + data + "\n";
-  for (const std::string& command : potential.commands) text += command + "\n";
-  return text +
-         "min_style cg\nmin_modify dmax 0.05 line quadratic\nthermo 200\n"
-         "thermo_modify flush yes lost error norm no\n"
+  return calibrate::cell_commands(potential, data) +
          "displace_atoms all random 0.02 0.02 0.02 3001 units box\n"
          "minimize 0.0 2e-4 6000 60000\n" +
          fmt::format("print \"$(pe:%.15g)\" append {}.dat screen no\n", results);
@@ -74,14 +42,15 @@ ReferenceTable make_reference(const CaseContext& context, const ParameterSet& se
   const std::vector<LatticeVector> periods =
       calibrate::twisted_periods(c, shortest_cell, longest_cell, 1.05 * last_shear / relaxed.shape.radius);
   std::string input = "# uniformly twisted periodic cells\n";
-  std::vector<TwistedCell> cells;
+  std::vector<calibrate::TwistedCell> cells;
   for (const double wanted : shears(c)) {
-    const TwistedCell cell = cell_near(c, relaxed.shape, periods, wanted / relaxed.shape.radius);
+    const auto cell = calibrate::twisted_cell_near(c, relaxed.shape, periods,
+                                                   wanted / (relaxed.shape.radius * relaxed.shape.radius));
     if (!cells.empty() && cell.twist == cells.back().twist) continue;  // no cell is twisted further
     TubeShape shape = relaxed.shape;
     shape.twist = cell.twist;
     const std::string data = fmt::format("twist-{}.data", cells.size());
-    session.write(data, data_file(tube_atoms(c, shape, cell.hexagons), shape.radius + 1, 0, cell.length));
+    session.write(data, data_file({tube_atoms(c, shape, cell.hexagons)}, shape.radius + 1, 0, cell.length));
     input += twist_input(session.potential(), data, "twist");
     cells.push_back(cell);
   }

@@ -264,7 +264,7 @@ ReferenceTable wall_atoms(const CaseContext& context, const ParameterSet& set) {
   const TubeShape shape{set.radius, row_distance(set) / c.n, 0, 0, 0};
   const long rows = slices * rows_per_slice;
   session.write("tube.data",
-                data_file(tube_atoms(c, shape, rows * c.n), 2, 0, static_cast<double>(rows) * row_distance(set)));
+                data_file({tube_atoms(c, shape, rows * c.n)}, 2, 0, static_cast<double>(rows) * row_distance(set)));
   const std::vector<double> mean = session.run("tube", wall_input(session), 1, 3)[0];
   ReferenceTable t = session.table("Radius of one periodic (5,5) tube at 100 K", "warm-bundle", false,
                                    {"temperature_K", "rest_radius_nm", "radius_nm", "radius_variance_nm2"});

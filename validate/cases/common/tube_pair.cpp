@@ -34,21 +34,12 @@ std::string pair_commands(const AtomLaw& law, const std::string& boundary, const
          "thermo_modify norm no lost error\n";
 }
 
-std::string pair_data(const std::vector<Vector3>& one, const std::vector<Vector3>& two, double half_width,
-                      double z_low, double z_high) {
-  std::string text = fmt::format(
-      "two carbon nanotubes, Angstrom\n\n{} atoms\n2 atom types\n\n{:.6f} {:.6f} xlo xhi\n{:.6f} {:.6f} ylo yhi\n"
-      "{:.12f} {:.12f} zlo zhi\n\nMasses\n\n1 12.011\n2 12.011\n\nAtoms # atomic\n\n",
-      one.size() + two.size(), -half_width / angstrom, half_width / angstrom, -half_width / angstrom,
-      half_width / angstrom, z_low / angstrom, z_high / angstrom);
-  std::size_t id = 0;
-  for (const auto* tube : {&one, &two})
-    for (const Vector3& atom : *tube) {
-      ++id;
-      text += fmt::format("{} {} {:.12f} {:.12f} {:.12f}\n", id, tube == &one ? 1 : 2, atom.x() / angstrom,
-                          atom.y() / angstrom, atom.z() / angstrom);
-    }
-  return text;
+std::vector<Vector3> centred_tube(Chirality c, const TubeShape& shape, long hexagons, double turn, double shift) {
+  std::vector<Vector3> atoms =
+      tube_atoms(c, shape, hexagons, 2 * units::pi * turn / static_cast<double>(row_hexagons(c)));
+  const double up = shift * row_height(c, shape) - 0.5 * static_cast<double>(hexagons) * shape.length_per_hexagon;
+  for (Vector3& atom : atoms) atom.z() += up;
+  return atoms;
 }
 
 std::string move_two(const Vector3& by) {
@@ -58,6 +49,41 @@ std::string move_two(const Vector3& by) {
 
 std::string print_values(const std::string& name, const std::string& values) {
   return fmt::format("run 0 post no\nprint \"{}\" append {}.dat screen no\n", values, name);
+}
+
+std::vector<std::vector<double>> slid_pairs(MdSession& session, const std::string& name, Chirality c,
+                                            const TubeShape& shape, const SlidPairs& p) {
+  const double length = static_cast<double>(p.hexagons) * shape.length_per_hexagon,
+               turn = 2 * units::pi / static_cast<double>(row_hexagons(c));
+  std::string input = "# frozen tubes slid along each other, for several turns\n";
+  for (int i = 0; i < p.turns; ++i)
+    for (int j = 0; j < p.turns; ++j) {
+      const std::string data = fmt::format("{}-{}-{}.data", name, i, j);
+      session.write(data, data_file({tube_atoms(c, shape, p.hexagons, turn * i / p.turns),
+                                     tube_atoms(c, shape, p.hexagons, turn * j / p.turns)},
+                                    4, 0, length));
+      input += pair_commands(session.atom_law(), "s s p", data) + move_two({p.distance, 0, 0});
+      for (int s = 0; s < p.shifts; ++s)
+        input += print_values(name, "$(pe:%.15g)") + move_two({0, 0, p.range / p.shifts});
+    }
+  const auto results = session.run(name, input, static_cast<std::size_t>(p.turns * p.turns * p.shifts), 1);
+  std::vector<std::vector<double>> rows;
+  std::size_t k = 0;
+  for (int i = 0; i < p.turns; ++i)
+    for (int j = 0; j < p.turns; ++j)
+      for (int s = 0; s < p.shifts; ++s)
+        rows.push_back({turn * i / p.turns, turn * j / p.turns, p.range * s / p.shifts, results[k++][0] / length});
+  return rows;
+}
+
+Spread spread_over(int registries, const std::function<double(std::size_t)>& value) {
+  double sum = 0, squares = 0;
+  for (int r = 0; r < registries; ++r) {
+    const double v = value(static_cast<std::size_t>(r));
+    sum += v / registries;
+    squares += v * v / registries;
+  }
+  return {sum, std::sqrt(std::max(0.0, squares - sum * sum))};
 }
 
 LineContact contact_of(const ParameterSet& i, const ParameterSet& j, double element_length) {

@@ -1,6 +1,7 @@
 // Two tubes of frozen relaxed atoms with Lennard-Jones between them, and rows of elements in the same place.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -17,15 +18,33 @@ struct Registry {
 // The first `count` of a sequence that fills the four dimensions evenly.
 std::vector<Registry> registries(int count);
 
+// The atoms of a tube turned and shifted by parts of its symmetry, with their middle at z = 0.
+std::vector<Vector3> centred_tube(Chirality c, const TubeShape& shape, long hexagons, double turn, double shift);
+
 // LAMMPS commands that read the atoms as groups `one` and `two` (types 1 and 2). Lennard-Jones acts only between
 // these groups.
 std::string pair_commands(const AtomLaw& law, const std::string& boundary, const std::string& data);
-std::string pair_data(const std::vector<Vector3>& one, const std::vector<Vector3>& two, double half_width,
-                      double z_low, double z_high);
 // Moves group `two` (nm).
 std::string move_two(const Vector3& by);
 // Appends the values, given as immediate variables, to name.dat.
 std::string print_values(const std::string& name, const std::string& values);
+
+// Two tubes alike of so many hexagons at this distance (nm), frozen in a periodic cell, one of them slid over
+// `range` (nm), for several turns of either: rows of both turns (rad), the shift (nm) and the energy per length
+// (eV/nm).
+struct SlidPairs {
+  long hexagons = 0;
+  double distance = 0, range = 0;
+  int turns = 0, shifts = 0;
+};
+std::vector<std::vector<double>> slid_pairs(MdSession& session, const std::string& name, Chirality c,
+                                            const TubeShape& shape, const SlidPairs& pairs);
+
+// Mean and standard deviation of a value over so many registries.
+struct Spread {
+  double mean = 0, deviation = 0;
+};
+Spread spread_over(int registries, const std::function<double(std::size_t)>& value);
 
 // The line law of a scene with these tubes, alike or not, and elements of this length (nm).
 LineContact contact_of(const ParameterSet& i, const ParameterSet& j, double element_length);

@@ -107,25 +107,14 @@ double held_height(Chirality c, long rows, long cut, bool below) {
 }  // namespace
 
 std::string rope_data(const std::vector<RopeTube>& rope) {
-  std::size_t count = 0;
   double half = 0;
-  std::string atoms;
-  int type = 0;
+  std::vector<std::vector<Vector3>> tubes_of_atoms;
   for (const RopeTube& tube : rope) {
-    ++type;
-    for (const auto* group : {&tube.below, &tube.free, &tube.above})
-      for (const Vector3& atom : *group) {
-        half = std::max(half, atom.cwiseAbs().maxCoeff() + 1);
-        atoms += fmt::format("{} {} {:.12f} {:.12f} {:.12f}\n", ++count, type, atom.x() / angstrom,
-                             atom.y() / angstrom, atom.z() / angstrom);
-      }
+    std::vector<Vector3>& atoms = tubes_of_atoms.emplace_back(tube.below);
+    for (const auto* group : {&tube.free, &tube.above}) atoms.insert(atoms.end(), group->begin(), group->end());
+    for (const Vector3& atom : atoms) half = std::max(half, atom.cwiseAbs().maxCoeff() + 1);
   }
-  std::string text = fmt::format("rope of nanotubes, Angstrom\n\n{} atoms\n{} atom types\n\n", count, tubes);
-  for (const char axis : {'x', 'y', 'z'})
-    text += fmt::format("{:.6f} {:.6f} {}lo {}hi\n", -half / angstrom, half / angstrom, axis, axis);
-  text += "\nMasses\n\n";
-  for (int t = 1; t <= tubes; ++t) text += fmt::format("{} {}\n", t, units::carbon_atomic_weight);
-  return text + "\nAtoms # atomic\n\n" + atoms;
+  return data_file(tubes_of_atoms, half, -half, half);
 }
 
 std::string rope_pairs(const Potential& potential, const UniversalLine& law) {
