@@ -225,49 +225,46 @@ void warn_of_spread(const char* what, const Interval& range, Stiffness& out) {
         what, range.low, range.high, 100 * 2 * range.half() / std::abs(middle)));
 }
 
-}  // namespace
+// --- Stretch and twist ---
 
-void fit_stretch_twist(std::vector<AtomisticRow>& table, Stiffness& out) {
-  std::vector<AtomisticRow*> rows;
-  for (AtomisticRow& row : table)
-    if (row.kind == "stretch-twist") rows.push_back(&row);
-
-  StretchTwistWindow w;
+// The points within `part` of the window in strain and twist, with a margin so that points on its edge are
+// included.
+std::vector<EnergyPoint> points_within(const std::vector<AtomisticRow*>& rows, const StretchTwistWindow& w,
+                                       double part) {
+  std::vector<EnergyPoint> points;
   for (const AtomisticRow* row : rows) {
-    w.strain = std::max(w.strain, std::abs(row->strain));
-    w.twist = std::max(w.twist, std::abs(row->twist));
-    w.energy = std::max(w.energy, std::abs(row->energy / row->length));
+    const EnergyPoint p{row->strain / w.strain, row->twist / w.twist, row->energy / row->length / w.energy};
+    if (std::abs(p.u) <= part + 0.02 && std::abs(p.v) <= part + 0.02) points.push_back(p);
   }
-  const auto not_enough = [&] {
-    return InputError({"", 0, "stretch-twist"},
-                      fmt::format("{} rows do not determine EA, GJ and the natural twist", rows.size()),
-                      "give at least three strains at each of three twists, both signs");
-  };
-  if (!(w.strain > 0 && w.twist > 0 && w.energy > 0)) throw not_enough();
+  return points;
+}
 
-  // The points within `part` of the window in strain and twist, with a margin so that points on its edge are
-  // included.
-  const auto points_within = [&](double part) {
-    std::vector<EnergyPoint> points;
-    for (const AtomisticRow* row : rows) {
-      const EnergyPoint p{row->strain / w.strain, row->twist / w.twist, row->energy / row->length / w.energy};
-      if (std::abs(p.u) <= part + 0.02 && std::abs(p.v) <= part + 0.02) points.push_back(p);
-    }
-    return points;
-  };
-  const std::vector<EnergyPoint> all = points_within(1);
-  Polynomial polynomial;
-  int degree = max_degree;
-  while (degree >= 2 && !fit_polynomial(all, degree, polynomial)) --degree;
-  if (degree < 2) throw not_enough();
-  const Minimum minimum = minimum_of(polynomial);
-  if (!minimum.found)
-    throw InputError({"", 0, "stretch-twist"}, "the energies have no minimum near zero strain and twist",
-                     "widen the window, or check the potential");
+// The bounded fit in energy, strain and twist of the minimum, and the Taylor coefficients from second order on.
+struct TaylorFit {
+  std::vector<Power> powers;  // of parameter 3 + k
+  FitResult fit;
+  StretchTwistWindow window;
 
-  // Parameters: energy, strain and twist of the minimum, then the Taylor coefficients from second order on.
+  // The parameter of u^i v^j; 0 where there is none.
+  std::size_t place(int i, int j) const {
+    for (std::size_t k = 0; k < powers.size(); ++k)
+      if (powers[k].u == i && powers[k].v == j) return 3 + k;
+    return 0;
+  }
+  // In eV and nm; `times`: a factor.
+  Measured term(int i, int j, double times = 1) const {
+    const std::size_t at = place(i, j);
+    if (at == 0) return {};
+    const double unit = times * window.energy / (raised(window.strain, i) * raised(window.twist, j));
+    return {fit.value[at] * unit, fit.standard_error[at] * unit};
+  }
+};
+
+TaylorFit fit_taylor(const std::vector<EnergyPoint>& all, const Polynomial& polynomial, const Minimum& minimum,
+                     const StretchTwistWindow& window, std::vector<double>& left) {
+  TaylorFit out;
+  out.window = window;
   std::vector<FitParameter> parameters;
-  std::vector<Power> powers;
   const double spread = std::max(1e-3, polynomial.coefficients.cwiseAbs().maxCoeff());
   const auto add = [&](const std::string& name, double start, double half_box) {
     parameters.push_back({name, start, start - half_box, start + half_box, true});
@@ -277,95 +274,172 @@ void fit_stretch_twist(std::vector<AtomisticRow>& table, Stiffness& out) {
   add("twist", minimum.v, 1);
   for (const Power& p : polynomial.powers) {
     if (p.u + p.v < 2) continue;
-    powers.push_back(p);
+    out.powers.push_back(p);
     add(fmt::format("c{}{}", p.u, p.v), polynomial.taylor(p.u, p.v, minimum.u, minimum.v), 2 * spread);
   }
   const Residuals residuals = [&](const std::vector<double>& p, std::vector<double>& r) {
     for (std::size_t i = 0; i < all.size(); ++i) {
       double y = p[0];
-      for (std::size_t k = 0; k < powers.size(); ++k)
-        y += p[3 + k] * raised(all[i].u - p[1], powers[k].u) * raised(all[i].v - p[2], powers[k].v);
+      for (std::size_t k = 0; k < out.powers.size(); ++k)
+        y += p[3 + k] * raised(all[i].u - p[1], out.powers[k].u) * raised(all[i].v - p[2], out.powers[k].v);
       r[i] = y - all[i].y;
     }
   };
   FitOptions options;
   options.starts = 2;
   options.max_seconds = 5;
-  const FitResult fit = fit_least_squares(parameters, all.size(), residuals, options);
-  if (fit.verdict == FitResult::Verdict::nothing_finite) throw not_enough();
+  out.fit = fit_least_squares(parameters, all.size(), residuals, options);
+  left.resize(all.size());
+  residuals(out.fit.value, left);
+  return out;
+}
 
-  std::vector<double> left(all.size());
-  residuals(fit.value, left);
-  for (std::size_t i = 0; i < rows.size(); ++i) rows[i]->residual = -left[i] * w.energy * rows[i]->length;
+// The same constants from parts of the window, and from tension and compression alone.
+struct Windows {
+  Interval EA, GJ, coupling, twist, strain, sides;
+  std::string text;
+};
 
-  // The same constants from the inner part of the window.
-  Interval EA, GJ, coupling, twist, strain;
-  std::string windows;
-  const auto fit_window = [&](double part, int order) {
-    const Harmonic h = harmonic_of(points_within(part), order, w, polynomial);
-    if (!h.found) return;
-    EA.add(h.EA);
-    GJ.add(h.GJ);
-    coupling.add(h.coupling);
-    twist.add(h.twist);
-    strain.add(h.strain);
-    windows += fmt::format(
+Windows over_windows(const std::vector<AtomisticRow*>& rows, const StretchTwistWindow& w, int degree,
+                     const Polynomial& polynomial, const Minimum& minimum) {
+  Windows out;
+  // An order less in the same window would be off by the terms that the fit has: no measure of its error.
+  for (const double part : {1.0, 2.0 / 3.0}) {
+    const Harmonic h = harmonic_of(points_within(rows, w, part), degree, w, polynomial);
+    if (!h.found) continue;
+    out.EA.add(h.EA);
+    out.GJ.add(h.GJ);
+    out.coupling.add(h.coupling);
+    out.twist.add(h.twist);
+    out.strain.add(h.strain);
+    out.text += fmt::format(
         "  window {:.0f} %, order {}: EA {:.6g} eV/nm, GJ {:.6g} eV nm, C {:.4g} eV, natural twist "
         "{:.5g} rad/nm\n",
-        100 * part, order, h.EA, h.GJ, h.coupling, h.twist);
-  };
-  // An order less in the same window would be off by the terms that the fit has: no measure of its error.
-  fit_window(1, degree);
-  fit_window(2.0 / 3.0, degree);
-
-  // Tension and compression apart, each extrapolated to zero strain: a potential with a knot there has two EA.
-  Interval sides;
+        100 * part, degree, h.EA, h.GJ, h.coupling, h.twist);
+  }
+  // Each extrapolated to zero strain: a potential with a knot there has two EA.
   for (const double side : {1.0, -1.0}) {
     std::vector<EnergyPoint> half;
-    for (const EnergyPoint& p : all)
+    for (const EnergyPoint& p : points_within(rows, w, 1))
       if (side * (p.u - minimum.u) >= -0.02) half.push_back(p);
     const Harmonic h = harmonic_of(half, std::min(degree, 3), w, polynomial);
     if (!h.found) continue;
-    sides.add(h.EA);
-    windows += fmt::format("  {} alone: EA {:.6g} eV/nm\n", side > 0 ? "tension" : "compression", h.EA);
+    out.sides.add(h.EA);
+    out.text += fmt::format("  {} alone: EA {:.6g} eV/nm\n", side > 0 ? "tension" : "compression", h.EA);
   }
+  return out;
+}
 
-  const auto term = [&](int i, int j) {
-    for (std::size_t k = 0; k < powers.size(); ++k)
-      if (powers[k].u == i && powers[k].v == j) {
-        const double unit = w.energy / (raised(w.strain, i) * raised(w.twist, j));
-        return Measured{fit.value[3 + k] * unit, fit.standard_error[3 + k] * unit};
-      }
-    return Measured{};
-  };
-  const Measured c20 = term(2, 0), c11 = term(1, 1), c02 = term(0, 2);
-  // Any value between the two is equally likely: the standard deviation of a uniform distribution.
-  out.EA = {2 * c20.value, both(both(2 * c20.standard_error, EA.to_no_window()), sides.half() / std::sqrt(3.0))};
-  out.GJ = {2 * c02.value, both(2 * c02.standard_error, GJ.to_no_window())};
-  out.coupling = {c11.value, both(c11.standard_error, coupling.to_no_window())};
-  out.natural_twist = {fit.value[2] * w.twist, both(fit.standard_error[2] * w.twist, twist.to_no_window())};
-  // The spread over windows is added to the errors as a part of its own: it weakens the correlations.
-  const auto place = [&](int i, int j) {
-    for (std::size_t k = 0; k < powers.size(); ++k)
-      if (powers[k].u == i && powers[k].v == j) return 3 + k;
-    return std::size_t{0};
-  };
-  const std::size_t of[] = {place(2, 0), place(0, 2), place(1, 1), 2};
-  const double fitted[] = {2 * c20.standard_error, 2 * c02.standard_error, c11.standard_error,
-                           fit.standard_error[2] * w.twist};
-  const double whole[] = {out.EA.standard_error, out.GJ.standard_error, out.coupling.standard_error,
-                          out.natural_twist.standard_error};
-  out.correlation.assign(4, std::vector<double>(4, 0));
+// Of EA, GJ, coupling and natural twist. The spread over windows is added to the errors as a part of its own: it
+// weakens the correlations.
+std::vector<std::vector<double>> correlation_of(const TaylorFit& taylor, const Stiffness& s) {
+  const std::size_t of[] = {taylor.place(2, 0), taylor.place(0, 2), taylor.place(1, 1), 2};
+  const double fitted[] = {taylor.term(2, 0, 2).standard_error, taylor.term(0, 2, 2).standard_error,
+                           taylor.term(1, 1).standard_error, taylor.fit.standard_error[2] * taylor.window.twist};
+  const double whole[] = {s.EA.standard_error, s.GJ.standard_error, s.coupling.standard_error,
+                          s.natural_twist.standard_error};
+  std::vector<std::vector<double>> out(4, std::vector<double>(4, 0));
   for (std::size_t i = 0; i < 4; ++i)
     for (std::size_t j = 0; j < 4; ++j) {
-      const double share = std::isfinite(fitted[i] * fitted[j]) && whole[i] * whole[j] > 0
-                               ? fitted[i] * fitted[j] / (whole[i] * whole[j])
-                               : 0;
-      out.correlation[i][j] = i == j ? 1 : share * fit.correlation[of[i]][of[j]];
+      const bool known = std::isfinite(fitted[i] * fitted[j]) && whole[i] * whole[j] > 0;
+      const double share = known ? fitted[i] * fitted[j] / (whole[i] * whole[j]) : 0;
+      out[i][j] = i == j ? 1 : share * taylor.fit.correlation[of[i]][of[j]];
     }
-  out.stretch_cubic = term(3, 0);
-  out.twist_cubic = term(0, 3);
-  out.twist_quartic = term(0, 4);
+  return out;
+}
+
+// --- Bend ---
+
+struct BendPair {
+  double k, y;  // y = 2 (E_long - E_short)/(L_long - L_short)/k^2, which is EI + 2 k4 k^2
+  AtomisticRow* row;
+  double unit;  // energy of the longer tube per y
+};
+
+// Rows of two kinds with the same curvature, energies above the straight tubes; sorted by curvature.
+std::vector<BendPair> bend_pairs(std::vector<AtomisticRow>& table, const char* longer, const char* shorter) {
+  const auto straight = [&](const char* kind) {
+    for (const AtomisticRow& row : table)
+      if (row.kind == kind && row.curvature == 0) return row.energy;
+    return 0.0;
+  };
+  const double longer_zero = straight(longer), shorter_zero = straight(shorter);
+  std::vector<BendPair> found;
+  for (AtomisticRow& l : table)
+    for (const AtomisticRow& s : table) {
+      const double k = l.curvature, length = l.length - s.length;
+      if (l.kind != longer || s.kind != shorter || k == 0 || length == 0) continue;
+      if (std::abs(k - s.curvature) > 1e-9 * std::abs(k)) continue;
+      const double unit = 0.5 * length * k * k;
+      found.push_back({std::abs(k), ((l.energy - longer_zero) - (s.energy - shorter_zero)) / unit, &l, unit});
+    }
+  std::sort(found.begin(), found.end(), [](const BendPair& a, const BendPair& b) { return a.k < b.k; });
+  return found;
+}
+
+// A straight line in (k / largest)^2 over pairs first .. last: value at zero and slope.
+std::pair<double, double> line_of(const std::vector<BendPair>& pairs, double largest, std::size_t first,
+                                  std::size_t last) {
+  double n = 0, x = 0, y = 0, xx = 0, xy = 0;
+  for (std::size_t i = first; i <= last; ++i) {
+    const double q = raised(pairs[i].k / largest, 2);
+    n += 1;
+    x += q;
+    y += pairs[i].y;
+    xx += q * q;
+    xy += q * pairs[i].y;
+  }
+  const double slope = (n * xy - x * y) / (n * xx - x * x);
+  return {(y - slope * x) / n, slope};
+}
+
+}  // namespace
+
+void fit_stretch_twist(std::vector<AtomisticRow>& table, Stiffness& out) {
+  std::vector<AtomisticRow*> rows;
+  StretchTwistWindow w;
+  for (AtomisticRow& row : table) {
+    if (row.kind != "stretch-twist") continue;
+    rows.push_back(&row);
+    w.strain = std::max(w.strain, std::abs(row.strain));
+    w.twist = std::max(w.twist, std::abs(row.twist));
+    w.energy = std::max(w.energy, std::abs(row.energy / row.length));
+  }
+  const auto not_enough = [&] {
+    return InputError({"", 0, "stretch-twist"},
+                      fmt::format("{} rows do not determine EA, GJ and the natural twist", rows.size()),
+                      "give at least three strains at each of three twists, both signs");
+  };
+  if (!(w.strain > 0 && w.twist > 0 && w.energy > 0)) throw not_enough();
+  const std::vector<EnergyPoint> all = points_within(rows, w, 1);
+  Polynomial polynomial;
+  int degree = max_degree;
+  while (degree >= 2 && !fit_polynomial(all, degree, polynomial)) --degree;
+  if (degree < 2) throw not_enough();
+  const Minimum minimum = minimum_of(polynomial);
+  if (!minimum.found)
+    throw InputError({"", 0, "stretch-twist"}, "the energies have no minimum near zero strain and twist",
+                     "widen the window, or check the potential");
+  std::vector<double> left;
+  const TaylorFit taylor = fit_taylor(all, polynomial, minimum, w, left);
+  const FitResult& fit = taylor.fit;
+  if (fit.verdict == FitResult::Verdict::nothing_finite) throw not_enough();
+  for (std::size_t i = 0; i < rows.size(); ++i) rows[i]->residual = -left[i] * w.energy * rows[i]->length;
+
+  const Windows windows = over_windows(rows, w, degree, polynomial, minimum);
+  const auto with_spread = [](const Measured& m, const Interval& spread) {
+    return Measured{m.value, both(m.standard_error, spread.to_no_window())};
+  };
+  out.EA = with_spread(taylor.term(2, 0, 2), windows.EA);
+  // Any value between the two sides is equally likely: the standard deviation of a uniform distribution.
+  out.EA.standard_error = both(out.EA.standard_error, windows.sides.half() / std::sqrt(3.0));
+  out.GJ = with_spread(taylor.term(0, 2, 2), windows.GJ);
+  out.coupling = with_spread(taylor.term(1, 1), windows.coupling);
+  out.natural_twist = with_spread({fit.value[2] * w.twist, fit.standard_error[2] * w.twist}, windows.twist);
+  out.correlation = correlation_of(taylor, out);
+  out.stretch_cubic = taylor.term(3, 0);
+  out.twist_cubic = taylor.term(0, 3);
+  out.twist_quartic = taylor.term(0, 4);
 
   const double strain0 = fit.value[1] * w.strain;
   out.energy_offset = fit.value[0] * w.energy;
@@ -373,94 +447,47 @@ void fit_stretch_twist(std::vector<AtomisticRow>& table, Stiffness& out) {
   for (const AtomisticRow* row : rows) atoms_per_length += row->atoms / row->length;
   atoms_per_length /= static_cast<double>(rows.size()) * (1 + strain0);
   out.atoms_per_length = {atoms_per_length,
-                          atoms_per_length * both(fit.standard_error[1] * w.strain, strain.half())};
+                          atoms_per_length * both(fit.standard_error[1] * w.strain, windows.strain.half())};
   fit_radius(rows, strain0, out.natural_twist.value, out);
 
   out.fit_report += fmt::format(
       "stretch and twist: {} cells, |strain| <= {:.3g}, |twist| <= {:.4g} rad/nm (shear {:.3g}), order {}; rms "
       "residual {:.2g} and largest {:.2g} of the largest energy; {} evaluations; {}\n{}",
       rows.size(), w.strain, w.twist, w.twist * out.radius.value, degree, fit.rms, fit.largest, fit.evaluations,
-      fit.message, windows);
+      fit.message, windows.text);
   if (!fit.usable()) out.warnings.push_back("the fit of stretch and twist: " + fit.message);
-  warn_of_spread("EA", EA, out);
-  if (sides.half() > 0.005 * out.EA.value)
+  warn_of_spread("EA", windows.EA, out);
+  if (windows.sides.half() > 0.005 * out.EA.value)
     out.warnings.push_back(fmt::format(
         "EA is {:.5g} eV/nm on one side of zero strain and {:.5g} on the other: the potential has a knot "
         "there, and the value given lies between; the spread is in its standard error",
-        sides.low, sides.high));
-  warn_of_spread("GJ", GJ, out);
+        windows.sides.low, windows.sides.high));
+  warn_of_spread("GJ", windows.GJ, out);
 }
 
 void fit_bend(std::vector<AtomisticRow>& table, Stiffness& out) {
-  struct BendPair {
-    double k, y;  // y = 2 (E_long - E_short)/(L_long - L_short)/k^2, which is EI + 2 k4 k^2
-    AtomisticRow* row;
-    double unit;  // energy of the longer tube per y
-  };
-  std::vector<AtomisticRow*> short_rows, middle_rows, long_rows;
-  for (AtomisticRow& row : table) {
-    if (row.kind == "bend-short") short_rows.push_back(&row);
-    if (row.kind == "bend-middle") middle_rows.push_back(&row);
-    if (row.kind == "bend-long") long_rows.push_back(&row);
-  }
-  const auto straight = [](const std::vector<AtomisticRow*>& rows) {
-    for (const AtomisticRow* row : rows)
-      if (row->curvature == 0) return row->energy;
-    return 0.0;
-  };
-  const double short_zero = straight(short_rows), long_zero = straight(long_rows);
-  const auto pairs_of = [](const std::vector<AtomisticRow*>& longer, double longer_zero,
-                           const std::vector<AtomisticRow*>& shorter, double shorter_zero) {
-    std::vector<BendPair> found;
-    for (AtomisticRow* l : longer)
-      for (const AtomisticRow* s : shorter) {
-        const double k = l->curvature, length = l->length - s->length;
-        if (k == 0 || std::abs(k - s->curvature) > 1e-9 * std::abs(k) || length == 0) continue;
-        const double unit = 0.5 * length * k * k;
-        found.push_back({std::abs(k), ((l->energy - longer_zero) - (s->energy - shorter_zero)) / unit, l, unit});
-      }
-    std::sort(found.begin(), found.end(), [](const BendPair& a, const BendPair& b) { return a.k < b.k; });
-    return found;
-  };
-  const std::vector<BendPair> pairs = pairs_of(long_rows, long_zero, short_rows, short_zero);
+  const std::vector<BendPair> pairs = bend_pairs(table, "bend-long", "bend-short");
   const auto not_enough = [&] {
     return InputError({"", 0, "bend"}, fmt::format("{} pairs of bent tubes do not determine EI", pairs.size()),
                       "give bend-short and bend-long rows at three or more equal curvatures");
   };
   if (pairs.size() < 3) throw not_enough();
   const double largest = pairs.back().k;
-
-  // A straight line in (k / largest)^2 over pairs first .. last, for the start values and the smaller windows.
-  const auto line_of = [largest](const std::vector<BendPair>& points, std::size_t first, std::size_t last) {
-    double n = 0, x = 0, y = 0, xx = 0, xy = 0;
-    for (std::size_t i = first; i <= last; ++i) {
-      const double q = raised(points[i].k / largest, 2);
-      n += 1;
-      x += q;
-      y += points[i].y;
-      xx += q * q;
-      xy += q * points[i].y;
-    }
-    const double slope = (n * xy - x * y) / (n * xx - x * x);
-    return std::pair<double, double>{(y - slope * x) / n, slope};
-  };
-  const auto line = [&](std::size_t first, std::size_t last) { return line_of(pairs, first, last); };
   const std::size_t last = pairs.size() - 1;
-  const auto start = line(0, last);
-  if (!(start.first > 0)) throw not_enough();
+  const auto [scale, start_slope] = line_of(pairs, largest, 0, last);
+  if (!(scale > 0)) throw not_enough();
 
-  const double scale = start.first;
-  const std::vector<FitParameter> parameters{
-      {"EI", 1, 0.5, 1.5, true},
-      {"k4", start.second / scale, start.second / scale - 0.5, start.second / scale + 0.5, true}};
-  const Residuals residuals = [&](const std::vector<double>& p, std::vector<double>& r) {
+  const double slope = start_slope / scale;
+  const Residuals residuals = [&pairs, largest, unit = scale](const std::vector<double>& p,
+                                                              std::vector<double>& r) {
     for (std::size_t i = 0; i < pairs.size(); ++i)
-      r[i] = p[0] + p[1] * raised(pairs[i].k / largest, 2) - pairs[i].y / scale;
+      r[i] = p[0] + p[1] * raised(pairs[i].k / largest, 2) - pairs[i].y / unit;
   };
   FitOptions options;
   options.starts = 2;
   options.max_seconds = 2;
-  const FitResult fit = fit_least_squares(parameters, pairs.size(), residuals, options);
+  const FitResult fit = fit_least_squares(
+      {{"EI", 1, 0.5, 1.5, true}, {"k4", slope, slope - 0.5, slope + 0.5, true}}, pairs.size(), residuals, options);
   if (fit.verdict == FitResult::Verdict::nothing_finite) throw not_enough();
   std::vector<double> left(pairs.size());
   residuals(fit.value, left);
@@ -468,24 +495,20 @@ void fit_bend(std::vector<AtomisticRow>& table, Stiffness& out) {
 
   Interval EI;
   std::string windows;
-  const auto fit_range = [&](std::size_t first, std::size_t to) {
-    const double value = line(first, to).first;
+  std::vector<std::pair<std::size_t, std::size_t>> ranges = {{0, last}};
+  if (pairs.size() > 3) ranges.insert(ranges.end(), {{0, last - 1}, {1, last}});
+  for (const auto& [first, to] : ranges) {
+    const double value = line_of(pairs, largest, first, to).first;
     EI.add(value);
     windows +=
         fmt::format("  curvature {:.4g} to {:.4g} /nm: EI {:.6g} eV nm\n", pairs[first].k, pairs[to].k, value);
-  };
-  fit_range(0, last);
-  if (pairs.size() > 3) {
-    fit_range(0, last - 1);
-    fit_range(1, last);
   }
   // The lower and the upper half of the additional length apart: what the ends of the specimens still do.
   Interval halves;
-  const double middle_zero = straight(middle_rows);
-  for (const auto& half : {pairs_of(middle_rows, middle_zero, short_rows, short_zero),
-                           pairs_of(long_rows, long_zero, middle_rows, middle_zero)}) {
+  for (const auto& half :
+       {bend_pairs(table, "bend-middle", "bend-short"), bend_pairs(table, "bend-long", "bend-middle")}) {
     if (half.size() < 3) continue;
-    const double value = line_of(half, 0, half.size() - 1).first;
+    const double value = line_of(half, largest, 0, half.size() - 1).first;
     halves.add(value);
     windows += fmt::format("  {} half of the additional length: EI {:.6g} eV nm\n",
                            half.front().row->kind == "bend-middle" ? "lower" : "upper", value);
@@ -493,11 +516,14 @@ void fit_bend(std::vector<AtomisticRow>& table, Stiffness& out) {
   const double k4_unit = 0.5 * scale / (largest * largest);
   out.EI = {fit.value[0] * scale, both(both(fit.standard_error[0] * scale, EI.half()), halves.half())};
   out.bend_quartic = {fit.value[1] * k4_unit, fit.standard_error[1] * k4_unit};
+  const auto length_of = [&](const char* kind) {
+    return std::find_if(table.begin(), table.end(), [&](const AtomisticRow& r) { return r.kind == kind; })->length;
+  };
   out.fit_report += fmt::format(
       "bend: {} pairs of tubes of {:.4g} and {:.4g} nm, curvature <= {:.4g} /nm; rms residual {:.2g} and largest "
       "{:.2g} of EI; {} evaluations; {}\n{}",
-      pairs.size(), short_rows.front()->length, long_rows.front()->length, largest, fit.rms, fit.largest,
-      fit.evaluations, fit.message, windows);
+      pairs.size(), length_of("bend-short"), length_of("bend-long"), largest, fit.rms, fit.largest, fit.evaluations,
+      fit.message, windows);
   if (!fit.usable()) out.warnings.push_back("the fit of bending: " + fit.message);
   warn_of_spread("EI", EI, out);
 }
