@@ -8,7 +8,7 @@
 namespace ropewalk::calibrate {
 namespace {
 
-constexpr double pi = units::pi;
+using units::pi;
 
 void check(Chirality c) {
   if (c.n < 0 || c.m < 0 || c.n + c.m == 0 || c.n > 10000 || c.m > 10000)

@@ -59,4 +59,8 @@ struct PaperFit {
 };
 PaperFit fit_paper(const AtomLaw& law, const Shell& shell, double element_length, const FitOptions& options = {});
 
+// The constants of a law from the parameters of its fit, in the fit's order.
+void set_form(const std::vector<double>& p, LineDensity& law);
+void set_form(const std::vector<double>& p, PaperContact& law);
+
 }  // namespace ropewalk::calibrate

@@ -14,14 +14,6 @@ double seconds_since(std::chrono::steady_clock::time_point begin) {
 
 Well well(const LineWell& w) { return {w.distance, w.energy}; }
 
-void set_form(const std::vector<double>& p, LineDensity& d) {
-  d.K = p[0];
-  d.s = p[1];
-  d.c = p[2];
-  d.p = p[3];
-  d.q = p[4];
-}
-
 void add_curves(const PairIntegral& integral, const LineTargets& targets, LineFit& fit) {
   const double right = 0.5 * units::pi;
   std::vector<double> parallel, crossed;
@@ -35,6 +27,10 @@ void add_curves(const PairIntegral& integral, const LineTargets& targets, LineFi
 }
 
 }  // namespace
+
+void set_form(const std::vector<double>& p, LineDensity& d) {
+  d.K = p[0], d.s = p[1], d.c = p[2], d.p = p[3], d.q = p[4];
+}
 
 FitResult fit_density(const LineTargets& targets, const AtomLaw& law, double unit, const FitOptions& options,
                       LineDensity& density) {

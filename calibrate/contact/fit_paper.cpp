@@ -16,7 +16,7 @@
 namespace ropewalk::calibrate {
 namespace {
 
-constexpr double inside = 0.05;      // nm inside of the minimum
+constexpr double within = 0.05;      // nm inside of the minimum
 constexpr double pair_weight = 0.3;  // of a pair alone: rows and crossings are what a rope consists of
 constexpr double min_theta = 0.1;    // the reader of parameter sets asks for 0.05
 
@@ -93,11 +93,11 @@ class PaperTargets {
   PaperTargets(const PairIntegral& integral, const Shell& shell, double length)
       : integral_(integral), length_(length), reach_(8 * shell.radius) {
     const Well parallel = integral.parallel_well(), crossed = integral.crossed_well();
-    for (const double gap : {-inside, -0.02, 0.0, 0.03, 0.08, 0.16, 0.28, 0.45, 0.7, 1.0}) {
+    for (const double gap : {-within, -0.02, 0.0, 0.03, 0.08, 0.16, 0.28, 0.45, 0.7, 1.0}) {
       for (const double shift : {0.0, 0.25, 0.5}) add_row(parallel.distance + gap, shift, parallel);
       for (const double shift : {0.0, 0.5, 1.0, 1.5}) add_pair(parallel.distance + gap, shift * length, parallel);
     }
-    for (const double gap : {-inside, 0.0, 0.06, 0.2, 0.5})
+    for (const double gap : {-within, 0.0, 0.06, 0.2, 0.5})
       for (const double degrees : {30.0, 60.0, 90.0})
         add_crossing(crossed.distance + gap, degrees * units::degree, crossed);
   }
@@ -186,16 +186,6 @@ class Meaning {
   double ratio_, depth_;
 };
 
-void set_form(const std::vector<double>& p, PaperContact& law) {
-  law.repulsion = p[0];
-  law.attraction = p[1];
-  law.alpha = p[2];
-  law.beta = p[3];
-  for (std::size_t k = 0; k < 5; ++k) law.angular[k] = p[4 + k];
-  law.crossing = p[9];
-  law.delta = p[10];
-}
-
 // Bounds around the result of the search; exponents and angular terms keep their bounds.
 std::vector<FitParameter> box_around(const std::vector<double>& p, std::vector<FitParameter> box) {
   for (std::size_t k = 0; k < box.size(); ++k) {
@@ -246,7 +236,7 @@ void describe(const PairIntegral& integral, double length, PaperFit& out) {
   };
   out.parallel = well_of({parallel.distance - 0.1, parallel.distance + 0.3}, rows);
   out.crossed = well_of({crossed.distance - 0.1, crossed.distance + 0.3}, crossings);
-  for (double gap = -inside; gap < 1.2; gap += 0.01) {
+  for (double gap = -within; gap < 1.2; gap += 0.01) {
     const double Rp = parallel.distance + gap, Rx = crossed.distance + gap;
     out.error = std::max({out.error, std::fabs((rows(Rp) - integral.parallel(Rp)) / parallel.energy),
                           std::fabs((crossings(Rx) - integral.crossed(Rx)) / crossed.energy)});
@@ -254,6 +244,12 @@ void describe(const PairIntegral& integral, double length, PaperFit& out) {
 }
 
 }  // namespace
+
+void set_form(const std::vector<double>& p, PaperContact& law) {
+  law.repulsion = p[0], law.attraction = p[1], law.alpha = p[2], law.beta = p[3];
+  std::copy(p.begin() + 4, p.begin() + 9, law.angular.begin());
+  law.crossing = p[9], law.delta = p[10];
+}
 
 PaperFit fit_paper(const AtomLaw& law, const Shell& shell, double element_length, const FitOptions& options) {
   if (!(element_length > 0)) throw std::invalid_argument("paper contact: the element length must be positive");

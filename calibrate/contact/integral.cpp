@@ -15,8 +15,7 @@
 namespace ropewalk::calibrate {
 namespace {
 
-constexpr double infinite = std::numeric_limits<double>::infinity();
-constexpr std::size_t order = 96;  // of the Chebyshev series
+constexpr std::size_t chebyshev_order = 96;  // of the Chebyshev series
 
 // Distances R above `from` at which E' has a kink or ends: the two circles then touch at the cutoff.
 std::vector<double> parts(const AtomLaw& law, const Shell& i, const Shell& j, double from) {
@@ -64,7 +63,7 @@ struct Part {
   }
 };
 
-double weight(double gap) { return std::pow(gap, 6); }
+double tail_weight(double gap) { return std::pow(gap, 6); }
 
 }  // namespace
 
@@ -86,18 +85,19 @@ PairIntegral::PairIntegral(const AtomLaw& law, const Shell& i, const Shell& j, d
     Part part;
   };
   // The integrand may throw through gsl_cheb_init(), so that the series needs an owner.
-  const std::unique_ptr<gsl_cheb_series, void (*)(gsl_cheb_series*)> series(gsl_cheb_alloc(order), gsl_cheb_free);
+  const std::unique_ptr<gsl_cheb_series, void (*)(gsl_cheb_series*)> series(gsl_cheb_alloc(chebyshev_order),
+                                                                            gsl_cheb_free);
   for (std::size_t k = 0; k + 1 < edges_.size(); ++k) {
     Task task{*this, {edges_[k], edges_[k + 1], contact_}};
     gsl_function f;
     f.function = [](double x, void* data) {
       const Task& t = *static_cast<Task*>(data);
       const double R = t.part.distance(x);
-      return parallel_energy_derivative(t.self.law_, t.self.i_, t.self.j_, R) * weight(R - t.self.contact_);
+      return parallel_energy_derivative(t.self.law_, t.self.i_, t.self.j_, R) * tail_weight(R - t.self.contact_);
     };
     f.params = &task;
     gsl_cheb_init(series.get(), &f, 0, 1);
-    series_.emplace_back(series->c, series->c + order + 1);
+    series_.emplace_back(series->c, series->c + chebyshev_order + 1);
   }
 }
 
@@ -108,12 +108,12 @@ double PairIntegral::slope(double distance) const {
   const double x = 2 * Part{edges_[k], edges_[k + 1], contact_}.coordinate(distance) - 1;
   const std::vector<double>& c = series_[k];
   double b1 = 0, b2 = 0;  // Clenshaw's sum
-  for (std::size_t n = order; n > 0; --n) {
+  for (std::size_t n = chebyshev_order; n > 0; --n) {
     const double b = 2 * x * b1 - b2 + c[n];
     b2 = b1;
     b1 = b;
   }
-  return (x * b1 - b2 + 0.5 * c[0]) / weight(distance - contact_);
+  return (x * b1 - b2 + 0.5 * c[0]) / tail_weight(distance - contact_);
 }
 
 double PairIntegral::parallel(double distance) const {

@@ -14,8 +14,6 @@ namespace {
 
 using units::pi;
 
-constexpr double infinite = std::numeric_limits<double>::infinity();
-
 // int over |theta| <= acos(c) of cos^m theta, for even m from 0 to 12.
 struct CosinePowers {
   double of[7];  // of[k]: m = 2 k

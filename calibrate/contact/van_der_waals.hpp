@@ -23,6 +23,8 @@
 
 namespace ropewalk::calibrate {
 
+inline constexpr double infinite = std::numeric_limits<double>::infinity();
+
 // Lennard-Jones between two carbon atoms.
 struct AtomLaw {
   double epsilon = 2.84e-3;  // eV

@@ -35,29 +35,41 @@ bool two_numbers(const std::string& text, T& a, T& b) {
   return number(p, p + comma, a) && number(p + comma + 1, p + text.size(), b);
 }
 
-void print_result(const Calibration& c, const Grade& grade, const std::string& out) {
+// The numbers of a calibration, for a person and for a script.
+struct Number {
+  const char *words, *key, *unit;
+  Measured value;  // in the unit
+};
+
+std::vector<Number> numbers_of(const Calibration& c) {
   const Stiffness& s = c.stiffness;
   const ContactSummary sum = contact_summary(c);
-  const auto row = [](const char* what, const Measured& m, const char* unit, double factor = 1) {
-    fmt::print("  {:<26} {:>26} {}\n", what, measured_text(m.value * factor, m.standard_error * factor), unit);
+  const auto nN = [](const Measured& m) {
+    return Measured{m.value * units::eV_in_nN_nm, m.standard_error * units::eV_in_nN_nm};
   };
+  return {{"EA", "EA_nN", "nN", nN(s.EA)},
+          {"EI", "EI_nN_nm2", "nN nm^2", nN(s.EI)},
+          {"GJ", "GJ_nN_nm2", "nN nm^2", nN(s.GJ)},
+          {"radius", "radius_nm", "nm", s.radius},
+          {"atoms per length", "atoms_per_nm", "1/nm", s.atoms_per_length},
+          {"natural twist", "natural_twist", "rad/nm", s.natural_twist},
+          {"spacing of a pair", "pair_spacing_nm", "nm", sum.pair_spacing},
+          {"energy of a pair", "pair_energy_eV_per_nm", "eV/nm", sum.pair_energy},
+          {"energy crossed at 90 deg", "cross90_energy_eV", "eV", sum.cross90_energy},
+          {"stretch-twist coupling", "coupling_nN_nm", "nN nm", nN(s.coupling)},
+          {"Poisson contraction", "poisson", "", s.poisson}};
+}
+
+void print_result(const Calibration& c, const Grade& grade, const std::string& out) {
+  const Stiffness& s = c.stiffness;
   const Chirality tube = c.request.chirality;
   fmt::print("({},{}), {}, LAMMPS {}\n", tube.n, tube.m, c.request.potential.name, c.lammps.text);
   if (tube.chiral() && tube.m > tube.n)
     fmt::print(
         "  the mirror image of ({},{}): coupling, natural twist and terms odd in shear have the other sign\n",
         tube.m, tube.n);
-  row("radius", s.radius, "nm");
-  row("atoms per length", s.atoms_per_length, "1/nm");
-  row("EA", s.EA, "nN", units::eV_in_nN_nm);
-  row("EI", s.EI, "nN nm^2", units::eV_in_nN_nm);
-  row("GJ", s.GJ, "nN nm^2", units::eV_in_nN_nm);
-  row("stretch-twist coupling", s.coupling, "nN nm", units::eV_in_nN_nm);
-  row("natural twist", s.natural_twist, "rad/nm");
-  row("Poisson contraction", s.poisson, "");
-  row("spacing of a pair", sum.pair_spacing, "nm");
-  row("energy of a pair", sum.pair_energy, "eV/nm");
-  row("energy crossed at 90 deg", sum.cross90_energy, "eV");
+  for (const Number& n : numbers_of(c))
+    fmt::print("  {:<26} {:>26} {}\n", n.words, measured_text(n.value.value, n.value.standard_error), n.unit);
   fmt::print("  line law: largest error {:.1e} of the well; published form {:.1e}", c.line.error, c.paper.error);
   if (c.universal) fmt::print("; universal law {:.1e}", c.universal_error);
   fmt::print("\n");
@@ -76,25 +88,13 @@ void print_result(const Calibration& c, const Grade& grade, const std::string& o
 
 nlohmann::ordered_json result_json(const Calibration& c, const Grade& grade, const std::string& out) {
   const Stiffness& s = c.stiffness;
-  const ContactSummary sum = contact_summary(c);
   nlohmann::ordered_json j;
-  const auto add = [&](const std::string& key, const Measured& m, double factor = 1) {
-    j[key] = m.value * factor;
-    j[key + "_standard_error"] = m.standard_error * factor;
-  };
   j["chirality"] = {c.request.chirality.n, c.request.chirality.m};
   j["potential"] = c.request.potential.name;
-  add("EA_nN", s.EA, units::eV_in_nN_nm);
-  add("EI_nN_nm2", s.EI, units::eV_in_nN_nm);
-  add("GJ_nN_nm2", s.GJ, units::eV_in_nN_nm);
-  add("radius_nm", s.radius);
-  add("atoms_per_nm", s.atoms_per_length);
-  add("natural_twist", s.natural_twist);  // rad/nm
-  add("pair_spacing_nm", sum.pair_spacing);
-  add("pair_energy_eV_per_nm", sum.pair_energy);
-  add("cross90_energy_eV", sum.cross90_energy);
-  add("coupling_nN_nm", s.coupling, units::eV_in_nN_nm);
-  add("poisson", s.poisson);
+  for (const Number& n : numbers_of(c)) {
+    j[n.key] = n.value.value;
+    j[std::string(n.key) + "_standard_error"] = n.value.standard_error;
+  }
   j["line_error"] = c.line.error;
   j["paper_error"] = c.paper.error;
   if (c.universal) j["universal_error"] = c.universal_error;

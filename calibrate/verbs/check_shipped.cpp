@@ -20,17 +20,14 @@ double value_of(const ParameterSet& set, const std::string& key) {
   return q->value;
 }
 
-std::string potential_of(const ParameterSet& set) {
-  for (const auto& [key, value] : set.provenance)
-    if (key == "potential") return value;
-  throw InputError({set.path, 0, "provenance.potential"}, "is missing",
-                   "only a set made by `ropewalk calibrate` can be remade");
-}
-
 Calibration remake(const ParameterSet& set) {
   CalibrationRequest request;
   request.chirality = set.chirality;
-  request.potential = find_potential(potential_of(set));
+  const std::string potential = provenance_value(set, "potential");
+  if (potential.empty())
+    throw InputError({set.path, 0, "provenance.potential"}, "is missing",
+                     "only a set made by `ropewalk calibrate` can be remade");
+  request.potential = find_potential(potential);
   request.law = parse_atom_law(
       fmt::format("{},{}", value_of(set, "contact.line.epsilon"), value_of(set, "contact.line.sigma")),
       value_of(set, "contact.line.lj_cutoff"));

@@ -124,20 +124,16 @@ std::vector<double> weights_of(const std::vector<ContactRow>& rows) {
   return weights;
 }
 
-template <class Law, class Set, class Energy>
-void add_contact_residuals(FitModel& m, std::vector<ContactRow> rows, Law law, Set set, Energy energy) {
+template <class Law, class Energy>
+void add_contact_residuals(FitModel& m, std::vector<ContactRow> rows, Law law, Energy energy) {
   const std::vector<double> weights = weights_of(rows);
   m.residuals = rows.size();
   m.weighting = "the depth of its well";
   m.function = [=](const std::vector<double>& p, std::vector<double>& r) {
     Law trial = law;
-    set(p, trial);
+    set_form(p, trial);
     for (std::size_t k = 0; k < rows.size(); ++k) r[k] = weights[k] * (energy(trial, rows[k]) - rows[k].energy);
   };
-}
-
-void set_line_form(const std::vector<double>& p, LineDensity& d) {
-  d.K = p[0], d.s = p[1], d.c = p[2], d.p = p[3], d.q = p[4];
 }
 
 FitModel line_model(const std::string& path, const ParameterSet& base) {
@@ -156,21 +152,15 @@ FitModel line_model(const std::string& path, const ParameterSet& base) {
     if (r.kind == "density") return d.energy(r.distance);
     return r.kind == "parallel" ? line_parallel_energy(d, r.distance) : line_crossed_energy(d, r.distance, r.angle);
   };
-  add_contact_residuals(m, read_contact_csv(path), base.line->density, set_line_form, energy);
+  add_contact_residuals(m, read_contact_csv(path), base.line->density, energy);
   return m;
-}
-
-void set_paper_form(const std::vector<double>& p, PaperContact& k) {
-  k.repulsion = p[0], k.attraction = p[1], k.alpha = p[2], k.beta = p[3];
-  std::copy(p.begin() + 4, p.begin() + 9, k.angular.begin());
-  k.crossing = p[9], k.delta = p[10];
 }
 
 FitModel paper_model(const std::string& path, const ParameterSet& base) {
   if (!base.paper)
     throw InputError({base.path, 0, "contact.paper"}, "is missing", "take a base that has the published law");
   FitModel m;
-  for (const char* name : {"A", "B", "alpha", "beta", "C1", "C2", "C3", "C4", "C5", "C_gamma", "delta"})
+  for (const char* name : paper_parameters)
     m.named.push_back(
         {name, std::string("contact.paper.") + name, "1", name[0] == 'C' && name[1] != '_' ? 0.05 : 0});
   std::vector<ContactRow> rows = read_contact_csv(path);
@@ -184,7 +174,7 @@ FitModel paper_model(const std::string& path, const ParameterSet& base) {
     return r.kind == "parallel" ? paper_parallel_energy(k, length, r.distance)
                                 : paper_crossed_energy(k, length, r.distance, r.angle);
   };
-  add_contact_residuals(m, std::move(rows), *base.paper, set_paper_form, energy);
+  add_contact_residuals(m, std::move(rows), *base.paper, energy);
   return m;
 }
 
@@ -263,7 +253,7 @@ void check_free(const TomlTable& top, const Settings& s, const FitModel& m) {
 // Quantities that follow from the line law, computed again after the law has changed.
 void renew_wells(const Settings& s, const FitResult& fit, ParameterSet& set) {
   LineDensity d = s.base->line->density;
-  set_line_form(fit.value, d);
+  set_form(fit.value, d);
   const LineWell parallel = line_parallel_well(d), crossed = line_crossed_well(d, 0.5 * units::pi);
   const std::pair<const char*, double> values[] = {{"contact.line.pair_spacing", parallel.distance},
                                                    {"contact.line.pair_energy", parallel.energy},

@@ -23,21 +23,13 @@ constexpr double wall_thickness = 0.335;    // nm, of the published section
 constexpr double GPa = units::eV_in_nN_nm;  // nN/nm^2 is GPa; stiffnesses are kept in eV
 constexpr const char* page_mark = "<!-- ropewalk calibrate show -->";
 
-const std::string* provenance(const ParameterSet& set, const std::string& key) {
-  for (const auto& [name, value] : set.provenance)
-    if (name == key) return &value;
-  return nullptr;
-}
-
 // The table that a set names, if it lies beside the set; else empty. Throws InputError if the set was made from
 // another table.
 std::string companion(const ParameterSet& set, const std::string& kind) {
-  const std::string* name = provenance(set, kind + "_table");
-  const std::string* hash = provenance(set, kind + "_hash");
-  if (!name || !hash) return "";
-  const std::string path = (fs::path(set.path).parent_path() / *name).string();
-  if (!fs::exists(path)) return "";
-  if (hash_hex(read_file(path)) != *hash)
+  const std::string name = provenance_value(set, kind + "_table"), hash = provenance_value(set, kind + "_hash");
+  const std::string path = (fs::path(set.path).parent_path() / name).string();
+  if (name.empty() || hash.empty() || !fs::exists(path)) return "";
+  if (hash_hex(read_file(path)) != hash)
     throw InputError({path, 0, ""}, fmt::format("is not the table that {} was made from", set.name),
                      "calibrate anew, or move the file away to see the set without its plots");
   return path;
