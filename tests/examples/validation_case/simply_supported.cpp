@@ -5,7 +5,7 @@
 
 #include "cases/common/chain.hpp"
 
-namespace ropewalk::validate {
+namespace ropewalk::validate::simply_supported {
 namespace {
 
 constexpr int bonds = 20;
@@ -67,4 +67,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk::validate
+}  // namespace ropewalk::validate::simply_supported

@@ -24,7 +24,7 @@
 #include "model/error.hpp"
 #include "scene/build.hpp"
 
-namespace ropewalk::validate {
+namespace ropewalk::validate::bent_bundle {
 namespace {
 
 // Fixed beforehand.
@@ -464,4 +464,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk::validate
+}  // namespace ropewalk::validate::bent_bundle

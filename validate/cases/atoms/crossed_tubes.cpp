@@ -12,7 +12,7 @@
 #include "cases/common/tube_curve.hpp"
 #include "cases/common/tube_pair.hpp"
 
-namespace ropewalk::validate {
+namespace ropewalk::validate::crossed_tubes {
 namespace {
 
 // Fixed beforehand.
@@ -259,4 +259,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk::validate
+}  // namespace ropewalk::validate::crossed_tubes

@@ -10,7 +10,7 @@
 #include "cases/common/tube_curve.hpp"
 #include "cases/common/tube_pair.hpp"
 
-namespace ropewalk::validate {
+namespace ropewalk::validate::pair_distance {
 namespace {
 
 // Fixed beforehand: registry changes the well by 1 to 3 %, and a shell without atoms has none.
@@ -211,4 +211,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk::validate
+}  // namespace ropewalk::validate::pair_distance

@@ -12,7 +12,7 @@
 #include "cases/common/tube_curve.hpp"
 #include "cases/common/tube_pair.hpp"
 
-namespace ropewalk::validate {
+namespace ropewalk::validate::pair_sliding {
 namespace {
 
 // Fixed beforehand.
@@ -271,4 +271,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk::validate
+}  // namespace ropewalk::validate::pair_sliding

@@ -1,7 +1,7 @@
 // The rope of rope_7_short.cpp, twisted beyond the collapse of its walls.
 #include "cases/common/twisted_rope.hpp"
 
-namespace ropewalk::validate {
+namespace ropewalk::validate::rope_7_collapse {
 namespace {
 
 const RegisteredCase registered([] {
@@ -24,4 +24,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk::validate
+}  // namespace ropewalk::validate::rope_7_collapse

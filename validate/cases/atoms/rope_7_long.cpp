@@ -1,7 +1,7 @@
 // Seven tubes of twice the length of rope_7_short.cpp, in which the clamps count for less.
 #include "cases/common/twisted_rope.hpp"
 
-namespace ropewalk::validate {
+namespace ropewalk::validate::rope_7_long {
 namespace {
 
 const RegisteredCase registered([] {
@@ -16,4 +16,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk::validate
+}  // namespace ropewalk::validate::rope_7_long

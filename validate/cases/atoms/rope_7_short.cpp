@@ -1,7 +1,7 @@
 // Seven tubes, so short that the bending at the clamps takes a sixth of the energy.
 #include "cases/common/twisted_rope.hpp"
 
-namespace ropewalk::validate {
+namespace ropewalk::validate::rope_7_short {
 namespace {
 
 const RegisteredCase registered([] {
@@ -24,4 +24,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk::validate
+}  // namespace ropewalk::validate::rope_7_short

@@ -9,7 +9,7 @@
 #include "atomistic/finite_tube.hpp"
 #include "cases/common/tube_curve.hpp"
 
-namespace ropewalk::validate {
+namespace ropewalk::validate::tube_bend {
 namespace {
 
 // Other lengths than those that the stiffness was fitted to.
@@ -139,4 +139,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk::validate
+}  // namespace ropewalk::validate::tube_bend

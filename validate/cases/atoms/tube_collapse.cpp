@@ -10,7 +10,7 @@
 #include "atomistic/finite_tube.hpp"
 #include "cases/common/tube_curve.hpp"
 
-namespace ropewalk::validate {
+namespace ropewalk::validate::tube_collapse {
 namespace {
 
 constexpr double lengths[] = {12, 24, 47, 94};  // nm
@@ -213,4 +213,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk::validate
+}  // namespace ropewalk::validate::tube_collapse

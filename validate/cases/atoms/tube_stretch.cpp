@@ -8,7 +8,7 @@
 
 #include "cases/common/tube_curve.hpp"
 
-namespace ropewalk::validate {
+namespace ropewalk::validate::tube_stretch {
 namespace {
 
 constexpr double cell_length = 5;  // nm: room for a buckle, which is about as long as the tube is wide
@@ -131,4 +131,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk::validate
+}  // namespace ropewalk::validate::tube_stretch

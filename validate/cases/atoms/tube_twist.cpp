@@ -9,7 +9,7 @@
 
 #include "cases/common/tube_curve.hpp"
 
-namespace ropewalk::validate {
+namespace ropewalk::validate::tube_twist {
 namespace {
 
 // A flattened, twisted ribbon needs a long cell to form.
@@ -171,4 +171,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk::validate
+}  // namespace ropewalk::validate::tube_twist

@@ -21,7 +21,7 @@
 #include "scene/build.hpp"
 #include "scene/maxwell.hpp"
 
-namespace ropewalk::validate {
+namespace ropewalk::validate::warm_bundle {
 namespace {
 
 // Fixed beforehand.
@@ -458,4 +458,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk::validate
+}  // namespace ropewalk::validate::warm_bundle

@@ -8,7 +8,7 @@
 #include "sim/contact/line/law.hpp"
 #include "sim/contact/paper/law.hpp"
 
-namespace ropewalk::validate {
+namespace ropewalk::validate::isotropic_contact {
 namespace {
 
 Slide slide(const ContactLaw& law, double element_length, double distance) {
@@ -87,4 +87,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk::validate
+}  // namespace ropewalk::validate::isotropic_contact

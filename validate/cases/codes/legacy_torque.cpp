@@ -7,7 +7,7 @@
 #include "scene/kinds/rope.hpp"
 #include "scene/prepare.hpp"
 
-namespace ropewalk::validate {
+namespace ropewalk::validate::legacy_torque {
 namespace {
 
 constexpr double duration = 400, step = 0.016, enough = 150;  // ps, ps, eV
@@ -102,4 +102,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk::validate
+}  // namespace ropewalk::validate::legacy_torque

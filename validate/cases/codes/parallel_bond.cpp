@@ -5,7 +5,7 @@
 
 #include "cases/common/chain.hpp"
 
-namespace ropewalk::validate {
+namespace ropewalk::validate::parallel_bond {
 namespace {
 
 constexpr int bonds = 20;
@@ -124,4 +124,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk::validate
+}  // namespace ropewalk::validate::parallel_bond

@@ -8,7 +8,7 @@
 #include "scene/build.hpp"
 #include "sim/contact/line/law.hpp"
 
-namespace ropewalk::validate {
+namespace ropewalk::validate::rope_bead_spring {
 namespace {
 
 constexpr int bonds = 30, increments = 6;  // an even number, for Simpson's rule
@@ -236,4 +236,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk::validate
+}  // namespace ropewalk::validate::rope_bead_spring

@@ -9,7 +9,7 @@
 #include "scene/build.hpp"
 #include "sim/contact/paper/law.hpp"
 
-namespace ropewalk::validate {
+namespace ropewalk::validate::rope_legacy_torque {
 namespace {
 
 constexpr int bonds = 30, records = 100;
@@ -251,4 +251,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk::validate
+}  // namespace ropewalk::validate::rope_legacy_torque

@@ -7,7 +7,7 @@
 
 #include "cases/common/driven_rope.hpp"
 
-namespace ropewalk::validate {
+namespace ropewalk::validate::rope_parallel_bond {
 namespace {
 
 constexpr int bonds = 12, rounds = 2;
@@ -232,4 +232,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk::validate
+}  // namespace ropewalk::validate::rope_parallel_bond

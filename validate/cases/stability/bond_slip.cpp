@@ -5,7 +5,7 @@
 #include "cases/common/stability_limit.hpp"
 #include "model/error.hpp"
 
-namespace ropewalk::validate {
+namespace ropewalk::validate::bond_slip {
 namespace {
 
 constexpr int increments = 24;
@@ -74,4 +74,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk::validate
+}  // namespace ropewalk::validate::bond_slip

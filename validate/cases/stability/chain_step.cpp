@@ -6,7 +6,7 @@
 
 #include "cases/common/stability_limit.hpp"
 
-namespace ropewalk::validate {
+namespace ropewalk::validate::chain_step {
 namespace {
 
 constexpr int bonds = 40;
@@ -106,4 +106,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk::validate
+}  // namespace ropewalk::validate::chain_step

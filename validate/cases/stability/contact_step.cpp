@@ -4,7 +4,7 @@
 #include "cases/common/bundle.hpp"
 #include "cases/common/stability_limit.hpp"
 
-namespace ropewalk::validate {
+namespace ropewalk::validate::contact_step {
 namespace {
 
 // Seven short tubes at rest.
@@ -64,4 +64,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk::validate
+}  // namespace ropewalk::validate::contact_step

@@ -11,7 +11,7 @@
 #include "scene/random.hpp"
 #include "sim/contact/paper/law.hpp"
 
-namespace ropewalk::validate {
+namespace ropewalk::validate::contact_stiffness {
 namespace {
 
 constexpr int tubes = 7, elements = 4;
@@ -157,4 +157,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk::validate
+}  // namespace ropewalk::validate::contact_stiffness

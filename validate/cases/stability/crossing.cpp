@@ -12,7 +12,7 @@
 #include "sim/contact/paper/law.hpp"
 #include "sim/forces/forces.hpp"
 
-namespace ropewalk::validate {
+namespace ropewalk::validate::crossing {
 namespace {
 
 // Energy (eV) at a point of a path, and its slope by force or torque.
@@ -343,4 +343,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk::validate
+}  // namespace ropewalk::validate::crossing

@@ -11,7 +11,7 @@
 #include "sim/contact/paper/law.hpp"
 #include "sim/forces/forces.hpp"
 
-namespace ropewalk::validate {
+namespace ropewalk::validate::element_length {
 namespace {
 
 // --- Curvature: a tube bent by couples at its ends ---
@@ -269,4 +269,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk::validate
+}  // namespace ropewalk::validate::element_length

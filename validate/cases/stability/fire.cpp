@@ -5,7 +5,7 @@
 
 #include "cases/common/stability_limit.hpp"
 
-namespace ropewalk::validate {
+namespace ropewalk::validate::fire {
 namespace {
 
 constexpr int bonds = 12;
@@ -183,4 +183,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk::validate
+}  // namespace ropewalk::validate::fire

@@ -10,7 +10,7 @@
 #include "sim/contact/line/law.hpp"
 #include "sim/forces/forces.hpp"
 
-namespace ropewalk::validate {
+namespace ropewalk::validate::list_skin {
 namespace {
 
 constexpr double time_step = 0.02;  // ps
@@ -172,4 +172,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk::validate
+}  // namespace ropewalk::validate::list_skin

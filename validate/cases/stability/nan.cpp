@@ -7,7 +7,7 @@
 #include "cases/common/stability_limit.hpp"
 #include "model/error.hpp"
 
-namespace ropewalk::validate {
+namespace ropewalk::validate::nan {
 namespace {
 
 constexpr int bonds = 10;
@@ -175,4 +175,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk::validate
+}  // namespace ropewalk::validate::nan

@@ -7,7 +7,7 @@
 #include "model/error.hpp"
 #include "sim/contact/line/law.hpp"
 
-namespace ropewalk::validate {
+namespace ropewalk::validate::tunnelling {
 namespace {
 
 constexpr double start = 3.0;  // nm apart, out of reach
@@ -105,4 +105,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk::validate
+}  // namespace ropewalk::validate::tunnelling

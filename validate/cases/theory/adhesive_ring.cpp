@@ -3,7 +3,7 @@
 
 #include "cases/common/bundle.hpp"
 
-namespace ropewalk::validate {
+namespace ropewalk::validate::adhesive_ring {
 namespace {
 
 constexpr int elements = 364;
@@ -87,4 +87,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk::validate
+}  // namespace ropewalk::validate::adhesive_ring

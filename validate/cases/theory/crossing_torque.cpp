@@ -3,7 +3,7 @@
 
 #include "cases/common/bundle.hpp"
 
-namespace ropewalk::validate {
+namespace ropewalk::validate::crossing_torque {
 namespace {
 
 struct Crossing {
@@ -84,4 +84,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk::validate
+}  // namespace ropewalk::validate::crossing_torque

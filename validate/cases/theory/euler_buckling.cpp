@@ -3,7 +3,7 @@
 
 #include "cases/common/chain.hpp"
 
-namespace ropewalk::validate {
+namespace ropewalk::validate::euler_buckling {
 namespace {
 
 // Lowest eigenvalue of a straight chain, shortened by the load, whose ends stay on the axis and turn freely.
@@ -68,4 +68,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk::validate
+}  // namespace ropewalk::validate::euler_buckling

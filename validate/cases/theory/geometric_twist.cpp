@@ -4,7 +4,7 @@
 #include "cases/common/torsion_machine.hpp"
 #include "core/checks.hpp"
 
-namespace ropewalk::validate {
+namespace ropewalk::validate::geometric_twist {
 namespace {
 
 CaseResult run(const CaseContext& context) {
@@ -76,4 +76,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk::validate
+}  // namespace ropewalk::validate::geometric_twist

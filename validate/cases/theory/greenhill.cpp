@@ -3,7 +3,7 @@
 
 #include "cases/common/chain.hpp"
 
-namespace ropewalk::validate {
+namespace ropewalk::validate::greenhill {
 namespace {
 
 enum class Ends { pinned, clamped };
@@ -78,4 +78,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk::validate
+}  // namespace ropewalk::validate::greenhill

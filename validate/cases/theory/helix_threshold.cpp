@@ -10,7 +10,7 @@
 #include "cases/common/bundle.hpp"
 #include "scene/build.hpp"
 
-namespace ropewalk::validate {
+namespace ropewalk::validate::helix_threshold {
 namespace {
 
 constexpr int tubes = 7;
@@ -285,4 +285,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk::validate
+}  // namespace ropewalk::validate::helix_threshold

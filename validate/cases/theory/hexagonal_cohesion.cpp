@@ -4,7 +4,7 @@
 #include "cases/common/bundle.hpp"
 #include "scene/build.hpp"
 
-namespace ropewalk::validate {
+namespace ropewalk::validate::hexagonal_cohesion {
 namespace {
 
 double vdw_energy(const ParameterSet& set, int tubes, int elements) {
@@ -84,4 +84,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk::validate
+}  // namespace ropewalk::validate::hexagonal_cohesion

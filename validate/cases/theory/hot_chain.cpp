@@ -7,7 +7,7 @@
 #include "scene/prepare.hpp"
 #include "scene/scene_toml.hpp"
 
-namespace ropewalk::validate {
+namespace ropewalk::validate::hot_chain {
 namespace {
 
 constexpr double kelvin = 300;
@@ -97,4 +97,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk::validate
+}  // namespace ropewalk::validate::hot_chain

@@ -10,7 +10,7 @@
 #include "scene/prepare.hpp"
 #include "scene/scene_toml.hpp"
 
-namespace ropewalk::validate {
+namespace ropewalk::validate::loop_loss {
 namespace {
 
 constexpr int elements = 20;
@@ -118,4 +118,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk::validate
+}  // namespace ropewalk::validate::loop_loss

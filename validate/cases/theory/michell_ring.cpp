@@ -6,7 +6,7 @@
 
 #include "cases/common/chain.hpp"
 
-namespace ropewalk::validate {
+namespace ropewalk::validate::michell_ring {
 namespace {
 
 using Vector6 = Eigen::Matrix<double, 6, 1>;
@@ -150,4 +150,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk::validate
+}  // namespace ropewalk::validate::michell_ring

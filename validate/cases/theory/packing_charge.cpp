@@ -5,7 +5,7 @@
 
 #include "cases/common/bundle.hpp"
 
-namespace ropewalk::validate {
+namespace ropewalk::validate::packing_charge {
 namespace {
 
 constexpr double ring_radius = 8;  // spacings
@@ -126,4 +126,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk::validate
+}  // namespace ropewalk::validate::packing_charge

@@ -3,7 +3,7 @@
 
 #include "cases/common/bundle.hpp"
 
-namespace ropewalk::validate {
+namespace ropewalk::validate::peeling_force {
 namespace {
 
 constexpr int elements = 50;
@@ -114,4 +114,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk::validate
+}  // namespace ropewalk::validate::peeling_force

@@ -9,7 +9,7 @@
 #include "scene/prepare.hpp"
 #include "scene/scene_toml.hpp"
 
-namespace ropewalk::validate {
+namespace ropewalk::validate::pull_out {
 namespace {
 
 constexpr int elements = 24;
@@ -106,4 +106,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk::validate
+}  // namespace ropewalk::validate::pull_out

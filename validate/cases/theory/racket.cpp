@@ -6,7 +6,7 @@
 
 #include "cases/common/bundle.hpp"
 
-namespace ropewalk::validate {
+namespace ropewalk::validate::racket {
 namespace {
 
 constexpr int arm_elements = 20;  // 27 nm of each arm; the contact opens within 5 nm
@@ -248,4 +248,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk::validate
+}  // namespace ropewalk::validate::racket

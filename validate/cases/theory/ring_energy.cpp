@@ -5,7 +5,7 @@
 
 #include "cases/common/chain.hpp"
 
-namespace ropewalk::validate {
+namespace ropewalk::validate::ring_energy {
 namespace {
 
 // Elements on a circle whose chords are as long as unstretched bonds.
@@ -69,4 +69,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk::validate
+}  // namespace ropewalk::validate::ring_energy

@@ -1,7 +1,7 @@
 // A rope turned without tension.
 #include "cases/common/rope_torsion.hpp"
 
-namespace ropewalk::validate {
+namespace ropewalk::validate::rope_torsion_free {
 namespace {
 
 const RegisteredCase registered([] {
@@ -20,4 +20,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk::validate
+}  // namespace ropewalk::validate::rope_torsion_free

@@ -1,7 +1,7 @@
 // A rope turned at fixed length.
 #include "cases/common/rope_torsion.hpp"
 
-namespace ropewalk::validate {
+namespace ropewalk::validate::rope_torsion_held {
 namespace {
 
 const RegisteredCase registered([] {
@@ -21,4 +21,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk::validate
+}  // namespace ropewalk::validate::rope_torsion_held

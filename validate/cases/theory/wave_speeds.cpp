@@ -3,7 +3,7 @@
 
 #include "cases/common/chain.hpp"
 
-namespace ropewalk::validate {
+namespace ropewalk::validate::wave_speeds {
 namespace {
 
 constexpr int bonds = 60;
@@ -102,4 +102,4 @@ const RegisteredCase registered([] {
 });
 
 }  // namespace
-}  // namespace ropewalk::validate
+}  // namespace ropewalk::validate::wave_speeds
