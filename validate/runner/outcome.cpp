@@ -62,14 +62,14 @@ Check check_of(const Json& j) {
   return c;
 }
 
-constexpr const char* guard_words[] = {"refused", "stopped", "told", "none"};  // in the order of Limit::Guard
+constexpr const char* guard_names[] = {"refused", "stopped", "told", "none"};  // in the order of Limit::Guard
 
 Json to_json(const Limit& l) {
   return {{"method", l.method},
           {"found", number(l.found)},
           {"theory", number(l.theory)},
           {"unit", l.unit},
-          {"guard", guard_words[static_cast<std::size_t>(l.guard)]},
+          {"guard", guard_names[static_cast<std::size_t>(l.guard)]},
           {"how", l.how}};
 }
 
@@ -79,9 +79,9 @@ Limit limit_of(const Json& j) {
   l.found = number(j.at("found"));
   l.theory = number(j.at("theory"));
   l.unit = j.at("unit");
-  const auto* word = std::find(std::begin(guard_words), std::end(guard_words), j.at("guard").get<std::string>());
-  if (word == std::end(guard_words)) throw std::runtime_error("unknown guard");
-  l.guard = static_cast<Limit::Guard>(word - std::begin(guard_words));
+  const auto* word = std::find(std::begin(guard_names), std::end(guard_names), j.at("guard").get<std::string>());
+  if (word == std::end(guard_names)) throw std::runtime_error("unknown guard");
+  l.guard = static_cast<Limit::Guard>(word - std::begin(guard_names));
   l.how = j.at("how");
   return l;
 }

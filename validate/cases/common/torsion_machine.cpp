@@ -14,7 +14,7 @@
 namespace ropewalk::validate {
 namespace {
 
-constexpr double at_rest = 1e-4;  // eV/nm
+constexpr double largest_force = 1e-4;  // eV/nm
 constexpr long most_steps = 400000;
 
 GripLoad clamp(const Topology& topology, End end, bool free_length, bool spins_free) {
@@ -30,7 +30,7 @@ Simulation relaxed(const RopeInMachine& rope, const State& start, bool free_leng
   loads.add(clamp(rope.topology, lower_end, false, spins_free));
   loads.add(clamp(rope.topology, upper_end, free_length, spins_free));
   Simulation s(rope.topology, rope.interaction, loads, start, step);
-  if (!s.relax(at_rest, most_steps, [](long) { return true; }))
+  if (!s.relax(largest_force, most_steps, [](long) { return true; }))
     throw std::runtime_error(fmt::format("a rope of {} tubes does not come to rest", rope.tubes));
   return s;
 }

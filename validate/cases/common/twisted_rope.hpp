@@ -21,7 +21,7 @@
 #include <vector>
 
 #include "atomistic/lattice.hpp"
-#include "atomistic/potential.hpp"
+#include "cases/common/lammps_session.hpp"
 #include "core/case.hpp"
 #include "core/reference.hpp"
 #include "model/bond.hpp"
