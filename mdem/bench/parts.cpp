@@ -6,7 +6,7 @@
 #include <memory>
 #include <numeric>
 
-#include "run/processor_time.hpp"
+#include "io/processor_time.hpp"
 #include "sim/dynamics/simulation.hpp"
 #include "sim/state/part_of_scene.hpp"
 

@@ -23,11 +23,6 @@ struct RunArguments {
   bool quiet = false;
 };
 int run_command(const RunArguments& arguments);
-// The same for a scene that is not that of a file: arguments.scene is not used.
-struct Scene;
-int run_scene(const Scene& scene, const RunArguments& arguments);
-// Only makes the directory, with the state at time zero as its checkpoint.
-void begin_run(const RunArguments& arguments);
 
 struct ResumeArguments {
   std::string dir;
@@ -92,8 +87,6 @@ struct ViewArguments {
   bool force = false;
 };
 int view_command(const ViewArguments& arguments);
-// The movie alone.
-void make_movie(const ViewArguments& arguments);
 
 struct ErrorsArguments {
   std::string dir;
@@ -202,6 +195,7 @@ struct PlanArguments {
   int jobs = 0;              // pilots at a time; 0: one for each core
 };
 int plan_command(const PlanArguments& arguments);
+int check_plan(const PlanArguments& arguments);  // of --check
 
 struct ExportArguments {
   std::string scene;   // a file, or the directory of a run
@@ -215,7 +209,5 @@ struct ImportArguments {
   std::string dir;  // that of the export, after LAMMPS has run in it
 };
 int import_command(const ImportArguments& arguments);
-
-void use_threads(int threads);
 
 }  // namespace ropewalk

@@ -1,16 +1,14 @@
 // `picture`: a figure for a paper from the frames and the log of a run.
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <filesystem>
 
 #include "commands/commands.hpp"
-#include "commands/run_views.hpp"
 #include "io/files.hpp"
 #include "io/processes.hpp"
 #include "model/error.hpp"
 #include "report/plate.hpp"
+#include "run/pages/run_views.hpp"
 
 namespace ropewalk {
 namespace {
@@ -18,27 +16,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t usual_states = 4;
-
-// Frames nearest to these times; evenly over the run where there are none.
-std::vector<StoredFrame> frames_at(const RunDirectory& dir, const Topology& topology, std::vector<double> times) {
-  const std::vector<double> stored = frame_times(dir, topology);
-  if (times.empty())
-    for (const std::size_t k : evenly(stored.size(), usual_states)) times.push_back(stored[k]);
-  std::vector<std::size_t> wanted;
-  const double apart =
-      stored.size() > 1 ? (stored.back() - stored.front()) / static_cast<double>(stored.size() - 1) : 0;
-  for (const double time : times) {
-    const auto at = std::min_element(stored.begin(), stored.end(),
-                                     [&](double a, double b) { return std::fabs(a - time) < std::fabs(b - time); });
-    if (std::fabs(*at - time) > 1.01 * apart + 1e-6)
-      throw InputError({"", 0, "--at"},
-                       fmt::format("no frame is near {} ps: they are from {:.4g} to {:.4g} ps", time,
-                                   stored.front(), stored.back()),
-                       "choose times of the run");
-    wanted.push_back(static_cast<std::size_t>(at - stored.begin()));
-  }
-  return frames_of(dir, topology, wanted);
-}
 
 std::vector<std::vector<std::string>> curves_of(const std::vector<std::string>& groups) {
   std::vector<std::vector<std::string>> out;
@@ -84,7 +61,7 @@ int picture_command(const PictureArguments& a) {
   in.log = read_log(dir.log());
   in.curves = curves_of(a.curves);
   in.width = a.width;
-  for (const StoredFrame& frame : frames_at(dir, prepared.topology, a.at)) {
+  for (const StoredFrame& frame : frames_at(dir, prepared.topology, a.at, usual_states)) {
     const RopeObservation o = observe(observer, scene, prepared.topology, frame.state);
     const double beta = o.beta / units::degree;
     in.views.push_back(view_of(prepared.topology, frame, beta));

@@ -21,5 +21,6 @@ PYBIND11_MODULE(_core, m) {
   python::bind_simulation(m);
   python::bind_frames(m);
   python::bind_run_files(m);
+  python::bind_runs(m);
   python::bind_energy(m);
 }

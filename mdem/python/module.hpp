@@ -16,6 +16,7 @@ void bind_scene(py::module_& m);
 void bind_simulation(py::module_& m);
 void bind_frames(py::module_& m);
 void bind_run_files(py::module_& m);
+void bind_runs(py::module_& m);
 void bind_energy(py::module_& m);
 
 }  // namespace ropewalk::python

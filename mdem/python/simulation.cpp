@@ -6,6 +6,7 @@
 #include "io/files.hpp"
 #include "model/error.hpp"
 #include "python/arrays.hpp"
+#include "run/moving_scene.hpp"
 #include "run/run_checkpoint.hpp"
 #include "scene/single_state.hpp"
 #include "scene/state_csv.hpp"
@@ -112,16 +113,8 @@ Energies SteppedScene::energies() {
 const std::vector<double>& SteppedScene::measure() {
   const Simulation& s = simulation();
   if (measured_) return *measured_;
-  EnergyAccount account;
-  account.time_step = s.time_step() / s.divided();
-  if (model_->scene.twist) account.moment = model_->scene.twist->moment_at(s.state().time);
-  account.potential = energies();
-  account.kinetic = kinetic_energy(s.topology(), s.state());
-  account.work = s.work();
-  account.dissipated = s.dissipated();
-  account.heat = s.heat();
-  account.first_energy = first_energy_;
-  account.first = first_;
+  EnergyAccount account = account_of(model_->scene, s, first_, first_energy_);
+  account.potential = energies();  // the last step may have left them out
   account.ends = simulation_.read_gauges();
   measured_ = model_->measure(s.state(), account);
   return *measured_;

@@ -17,8 +17,10 @@ namespace {
 
 std::string this_process() {
   const std::time_t t = std::time(nullptr);
+  std::tm utc{};
+  gmtime_r(&t, &utc);
   char since[32];
-  std::strftime(since, sizeof since, "%Y-%m-%d %H:%M:%S UTC", std::gmtime(&t));
+  std::strftime(since, sizeof since, "%Y-%m-%d %H:%M:%S UTC", &utc);
   utsname system{};
   uname(&system);
   return fmt::format("process {} on {} since {}", ::getpid(), system.nodename, since);

@@ -11,7 +11,6 @@
 
 #include "io/toml_table.hpp"
 #include "model/error.hpp"
-#include "run/tell.hpp"
 
 namespace ropewalk {
 namespace {
@@ -103,13 +102,16 @@ OriginChanges changes_of(const RunOrigin& before, const RunOrigin& now, const Ru
   return out;
 }
 
-void judge_changes(const OriginChanges& changes, bool accepted, const RunDirectory& dir) {
+std::vector<std::string> judged_changes(const OriginChanges& changes, bool accepted, const RunDirectory& dir) {
   if (!changes.others.empty() && !accepted)
     throw InputError({dir.path, 0, ""},
                      fmt::format("is not what the run was begun with: {}", fmt::join(changes.others, "; ")),
                      "put it back, or give --accept-changes to go on all the same");
+  std::vector<std::string> remarks;
   for (const auto* list : {&changes.harmless, &changes.others})
-    if (!list->empty()) tell(fmt::format("note: changed since the run was begun: {}", fmt::join(*list, "; ")));
+    if (!list->empty())
+      remarks.push_back(fmt::format("changed since the run was begun: {}", fmt::join(*list, "; ")));
+  return remarks;
 }
 
 }  // namespace ropewalk

@@ -22,7 +22,7 @@ struct OriginChanges {
 };
 OriginChanges changes_of(const RunOrigin& before, const RunOrigin& now, const RunDirectory& dir);
 
-// Tells the harmless ones. Throws InputError where there are others, or tells them as well if they are `accepted`.
-void judge_changes(const OriginChanges& changes, bool accepted, const RunDirectory& dir);
+// The changes as remarks. Throws InputError where there are others than harmless ones and they are not `accepted`.
+std::vector<std::string> judged_changes(const OriginChanges& changes, bool accepted, const RunDirectory& dir);
 
 }  // namespace ropewalk

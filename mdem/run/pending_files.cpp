@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "io/files.hpp"
-#include "run/tell.hpp"
 
 namespace ropewalk {
 
@@ -12,7 +11,7 @@ void PendingFiles::write(const std::string& path, std::string content) {
     write_file_atomically(path, content);
     waiting_.erase(path);
   } catch (const InputError& e) {
-    if (!waiting_.count(path)) tell(fmt::format("{}; the run goes on, and it is tried again", e.what()));
+    if (!waiting_.count(path)) listener_.tell(fmt::format("{}; the run goes on, and it is tried again", e.what()));
     waiting_[path] = std::move(content);
   }
 }

@@ -5,17 +5,21 @@
 #include <map>
 #include <string>
 
+#include "run/run_listener.hpp"
+
 namespace ropewalk {
 
 class PendingFiles {
  public:
+  explicit PendingFiles(RunListener& listener) : listener_(listener) {}
+
   void write(const std::string& path, std::string content);
   // What could not be written.
   void try_again();
-  bool empty() const { return waiting_.empty(); }
   std::string names() const;  // "D/limits.json, D/manifest.json"
 
  private:
+  RunListener& listener_;
   std::map<std::string, std::string> waiting_;  // content by path
 };
 

@@ -6,9 +6,42 @@
 
 #include "io/csv_reader.hpp"
 #include "io/files.hpp"
+#include "model/error.hpp"
+#include "plan/check.hpp"
+#include "plan/outcome.hpp"
 #include "plan/planner.hpp"
+#include "run/run_checkpoint.hpp"
 
 namespace ropewalk {
+
+PlanCheck checked_against(const RunDirectory& dir, const RunDirectory& other) {
+  const Scene scene = read_run_scene(dir), finer = read_run_scene(other);
+  const Expectations plan = expectations_of(scene.text);
+  std::vector<std::string> names;
+  for (const auto& [name, error] : plan.errors) names.push_back(name);
+  if (names.empty()) names = usual_observables();
+  const auto outcome = [&](const RunDirectory& run, const Scene& s) {
+    const std::vector<LogRow> log = read_log(run.log());
+    if (log.empty()) throw InputError({run.log(), 0, ""}, "has no rows", "run the scene first");
+    return outcome_of(log, names, s.run.mode == RunOptions::Mode::relax);
+  };
+  const Outcome planned = outcome(dir, scene), reference = outcome(other, finer);
+  PlanCheck check{"the end of another run, means over the last quarter", {}};
+  for (const auto& [name, error] : differences(planned, reference))
+    check.found[name] = {planned.of.at(name).value, reference.of.at(name).value, error};
+  return check;
+}
+
+PlanCheck checked_by_stretch(const RunDirectory& dir, double stretch) {
+  Scene scene = read_run_scene(dir);
+  const RunCheckpoint checkpoint = read_checkpoint(dir);
+  const Prepared prepared = prepare(scene);
+  const Simulation simulation = simulation_at(dir, scene, prepared, checkpoint);
+  const SpotCheck spot = spot_check(scene, prepared, simulation.state(), stretch);
+  PlanCheck check{spot.how, {}};
+  for (const auto& [name, pair] : spot.observables) check.found[name] = {pair.planned, pair.finer, pair.error()};
+  return check;
+}
 
 std::vector<OutputColumn> plan_check_columns() {
   return {{"observable", "", "\"energy\", or a column of log.csv"},

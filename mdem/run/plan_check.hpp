@@ -20,6 +20,11 @@ struct PlanCheck {
   std::map<std::string, Value> found;  // by observable
 };
 
+// The end of a run against that of a finer run of the same scene, by their logs.
+PlanCheck checked_against(const RunDirectory& dir, const RunDirectory& finer);
+// The state that a run has reached, gone on with for a stretch (ps) with its own model and a finer one.
+PlanCheck checked_by_stretch(const RunDirectory& dir, double stretch);
+
 std::vector<OutputColumn> plan_check_columns();
 void write_plan_check(const RunDirectory& dir, const PlanCheck& check);
 

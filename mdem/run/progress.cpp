@@ -3,16 +3,11 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <chrono>
-
 #include "run/tell.hpp"
+#include "run/wall_time.hpp"
 
 namespace ropewalk {
 namespace {
-
-double seconds() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 std::string clock(double s) {
   const long t = static_cast<long>(s + 0.5);
@@ -23,18 +18,22 @@ std::string clock(double s) {
 }  // namespace
 
 Progress::Progress(bool quiet, double done, double total)
-    : quiet_(quiet), terminal_(isatty(STDERR_FILENO) != 0), first_(done), total_(total), started_(seconds()) {}
+    : quiet_(quiet),
+      terminal_(isatty(STDERR_FILENO) != 0),
+      first_(done),
+      total_(total),
+      started_(steady_seconds()) {}
 
 bool Progress::due() {
   if (quiet_ || ++calls_ % 8 != 0) return false;
-  const double t = seconds();
+  const double t = steady_seconds();
   if (t < next_) return false;
   next_ = t + (terminal_ ? 0.5 : 10.0);
   return true;
 }
 
 void Progress::show(double done, const std::string& status) {
-  const double elapsed = seconds() - started_;
+  const double elapsed = steady_seconds() - started_;
   std::string line;
   if (total_ > 0) {
     const double part = done / total_;

@@ -210,4 +210,14 @@ ResumePoint find_resume_point(const RunDirectory& dir) {
   return out;
 }
 
+Simulation simulation_at(const RunDirectory& dir, const Scene& scene, const Prepared& p, const RunCheckpoint& c) {
+  Simulation s = start(scene, p);
+  try {
+    s.restore(c.simulation);
+  } catch (const std::runtime_error& e) {
+    throw InputError({dir.checkpoint(), 0, ""}, e.what(), "start the run anew with `ropewalk run`");
+  }
+  return s;
+}
+
 }  // namespace ropewalk

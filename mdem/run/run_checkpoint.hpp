@@ -52,4 +52,8 @@ struct ResumePoint {
 };
 ResumePoint find_resume_point(const RunDirectory& dir);
 
+// The simulation of a scene where the checkpoint has it. Throws InputError where it is of another scene.
+Simulation simulation_at(const RunDirectory& dir, const Scene& scene, const Prepared& prepared,
+                         const RunCheckpoint& checkpoint);
+
 }  // namespace ropewalk

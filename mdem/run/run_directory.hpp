@@ -35,7 +35,6 @@ struct RunDirectory {
   std::string limits() const { return file("limits.json"); }
   std::string final_state() const { return file("final.csv"); }
   std::string failed_state() const { return file("failed-state.csv"); }
-  std::string paraview() const { return file("paraview"); }
 };
 
 // A file of a run directory; a * stands for a number. --force removes these files and nothing else.

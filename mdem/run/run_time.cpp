@@ -1,30 +1,26 @@
 #include "run/run_time.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <omp.h>
-#include <spawn.h>
-#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstring>
 #include <filesystem>
 #include <limits>
 #include <vector>
 
-#include "commands/commands.hpp"
 #include "io/files.hpp"
 #include "io/frames/dump.hpp"
+#include "io/processes.hpp"
+#include "io/processor_time.hpp"
 #include "model/error.hpp"
 #include "plan/expected_state.hpp"
 #include "plan/features.hpp"
 #include "plan/scene_edit.hpp"
+#include "run/begin_run.hpp"
 #include "run/colours.hpp"
-#include "run/limit_watch.hpp"
-#include "run/processor_time.hpp"
-#include "run/run_directory.hpp"
+#include "run/threads.hpp"
 #include "scene/scene_toml.hpp"
 #include "scene/watch.hpp"
 
@@ -36,7 +32,7 @@ namespace fs = std::filesystem;
 constexpr double enough = 0.2;  // s, of each thing that is timed
 constexpr long min_steps = 12, max_steps = 2000;
 constexpr double usual_frames = 40, usual_rows = 400;
-constexpr double pictured = 6;  // frames in a report
+constexpr double frames_in_report = 6;  // frames in a report
 
 // --- Steps ---
 
@@ -135,48 +131,45 @@ Outputs time_outputs(const Scene& scene, const Prepared& p, const RunTime& t) {
   return o;
 }
 
-// A file and a folder, gone afterwards.
+// A folder, gone afterwards.
 struct Scratch {
-  std::string scene, run;
+  std::string path = (fs::temp_directory_path() / fmt::format("ropewalk-timing-{}", getpid())).string();
+  Scratch() { fs::create_directories(path); }
+  Scratch(const Scratch&) = delete;
   ~Scratch() {
     std::error_code error;
-    fs::remove(scene, error);
-    fs::remove_all(run, error);
+    fs::remove_all(path, error);
   }
 };
 
-// Without the setting that main() makes before it starts itself once more: the child is to do so as well.
-std::vector<char*> environment_of_a_user() {
-  std::vector<char*> all;
-  for (char** e = environ; *e; ++e)
-    if (std::strncmp(*e, "GOMP_SPINCOUNT=", 15) != 0) all.push_back(*e);
-  all.push_back(nullptr);
-  return all;
-}
+class Nobody : public RunListener {
+  void tell(const std::string&) override {}
+};
 
-// Processor time of this program with other arguments, quietly. Throws where it fails.
-double seconds_of_a_process(std::vector<std::string> arguments) {
-  std::vector<char*> argv;
-  for (std::string& a : arguments) argv.push_back(a.data());
-  argv.push_back(nullptr);
-  posix_spawn_file_actions_t quiet;
-  posix_spawn_file_actions_init(&quiet);
-  for (const int stream : {STDOUT_FILENO, STDERR_FILENO})
-    posix_spawn_file_actions_addopen(&quiet, stream, "/dev/null", O_WRONLY, 0);
-  pid_t child = 0;
-  const int error =
-      posix_spawn(&child, "/proc/self/exe", &quiet, nullptr, argv.data(), environment_of_a_user().data());
-  posix_spawn_file_actions_destroy(&quiet);
-  int status = 0;
-  rusage used{};
-  constexpr int not_at_rest = 4;  // exit code of a relaxation that ran out of steps
-  if (error != 0 || wait4(child, &status, 0, &used) != child || !WIFEXITED(status) ||
-      (WEXITSTATUS(status) != 0 && WEXITSTATUS(status) != not_at_rest))
-    throw std::runtime_error("a short run of the scene, to see what it takes, failed: try it with `ropewalk run`");
-  const auto seconds = [](const timeval& t) {
-    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+// Processor time of the first steps of a run, with all its files. Throws where it fails.
+double seconds_of_a_run(const std::string& text, const std::string& path, long steps) {
+  const Scratch scratch;
+  const std::string seconds = scratch.path + "/seconds";
+  bool ended = false;
+  const auto work = [&] {
+    try {
+      use_threads(1);
+      Nobody nobody;
+      RunSettings settings;
+      settings.steps = steps;
+      const Scene scene = scene_of_text(text, path);
+      const RunEnd end = go_through(begin_run(scene, {scratch.path + "/run"}, settings, nobody)).end;
+      if (end != RunEnd::finished && end != RunEnd::not_relaxed) return 1;
+      write_file_atomically(seconds, fmt::format("{:.9g}", processor_seconds()));
+      return 0;
+    } catch (const std::exception&) {
+      return 1;
+    }
   };
-  return seconds(used.ru_utime) + seconds(used.ru_stime);
+  run_processes({{work, [&](int status) { ended = WIFEXITED(status) && WEXITSTATUS(status) == 0; }}}, 1);
+  if (!ended)
+    throw std::runtime_error("a short run of the scene, to see what it takes, failed: try it with `ropewalk run`");
+  return std::stod(read_file(seconds));
 }
 
 void time_outputs_of_a_run(const std::string& text, const std::string& path, const Scene& scene, const Prepared& p,
@@ -186,18 +179,14 @@ void time_outputs_of_a_run(const std::string& text, const std::string& path, con
   const double steps = std::max(1.0, std::min(affordable, t.relaxes ? t.steps : all.rows));
   Outputs some;
   some.rows = t.relaxes ? steps / 100 + 1 : steps;
-  const double apart = std::max(1.0, std::floor(steps / std::max(pictured, all.frames * steps / all.rows)));
+  const double apart = std::max(1.0, std::floor(steps / std::max(frames_in_report, all.frames * steps / all.rows)));
   some.frames = t.relaxes ? 2 : steps / apart;
   std::string brief = text;
   if (!t.relaxes) {
     brief = with_key(brief, "run", "log_every_ps", fmt::format("{:.17g}", p.time_step));
     brief = with_key(brief, "run", "frames_every_ps", fmt::format("{:.17g}", apart * p.time_step));
   }
-  const Scratch scratch{fmt::format("{}.timing-{}.toml", path, getpid()),
-                        (fs::temp_directory_path() / fmt::format("ropewalk-timing-{}", getpid())).string()};
-  write_file_atomically(scratch.scene, brief);
-  const double seconds = seconds_of_a_process({"ropewalk", "run", scratch.scene, "--out", scratch.run, "--quiet",
-                                               "--threads", "1", "--steps", fmt::format("{:.0f}", steps)});
+  const double seconds = seconds_of_a_run(brief, path, std::lround(steps));
   t.outputs = std::max(0.0, seconds - std::floor(steps) * t.each) + (all.rows - some.rows) * all.row +
               (all.frames - some.frames) * all.frame;
 }

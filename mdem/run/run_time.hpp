@@ -7,10 +7,10 @@ namespace ropewalk {
 
 struct RunTime {
   double elements = 0;
-  double steps = 0;    // 0 for a relaxation that did not come to rest during the timing
+  double steps = 0;     // 0 for a relaxation that did not come to rest during the timing
   double each = 0;      // s per step, mean over the run
   double at_start = 0;  // s per step, of the first steps
-  double outputs = 0;  // s: start-up, log, frames, checkpoint, report
+  double outputs = 0;   // s: start-up, log, frames, checkpoint, report
   bool relaxes = false;
   double total() const { return steps * each + outputs; }
 };
@@ -23,7 +23,7 @@ struct RunTime {
 // rows and frames as time allows; the time of the others is that of a single one. A relaxation is begun; its number
 // of steps is known if it comes to rest.
 //
-// `text` is a scene as in a file at `path`. A temporary file is written beside `path`.
+// `text` is a scene as in a file at `path`. Throws InputError for a scene that cannot be run.
 RunTime time_run(const std::string& text, const std::string& path);
 
 }  // namespace ropewalk

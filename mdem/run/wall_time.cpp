@@ -1,17 +1,25 @@
 #include "run/wall_time.hpp"
 
+#include <algorithm>
 #include <chrono>
+#include <ctime>
 #include <regex>
 
 #include "model/error.hpp"
 
 namespace ropewalk {
+
+double steady_seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
 namespace {
 
-using Clock = std::chrono::steady_clock;
-const Clock::time_point program_start = Clock::now();
+const double started = steady_seconds();
 
 }  // namespace
+
+double program_start() { return started; }
 
 double seconds_of_wall_time(const std::string& text) {
   if (text.empty()) return 0;
@@ -28,6 +36,19 @@ double seconds_of_wall_time(const std::string& text) {
   return seconds;
 }
 
-double seconds_since_start() { return std::chrono::duration<double>(Clock::now() - program_start).count(); }
+bool WallTime::is_up(double last_save) const {
+  if (allowed <= 0) return false;
+  const double reserve = std::min(5 + 3 * last_save, 0.5 * allowed);
+  return steady_seconds() - since > allowed - reserve;
+}
+
+std::string RunClock::iso_time() {
+  const std::time_t t = std::time(nullptr);
+  std::tm utc{};
+  gmtime_r(&t, &utc);
+  char text[32];
+  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
+  return text;
+}
 
 }  // namespace ropewalk

@@ -64,7 +64,6 @@ struct RunOptions {
   RelaxGoal goal;                // relax mode
   long max_steps = 200000;       // relax mode
   FrameFormat frames_format = FrameFormat::gsd;
-  bool paraview = false;  // also write VTP/PVD
 };
 
 struct ObserveOptions {

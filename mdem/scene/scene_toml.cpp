@@ -86,8 +86,14 @@ void check_periodic(const TomlTable& top, const Scene& scene) {
   if (scene.run.stepping.contact_every > 1) refuse("contact_every", "images follow on one level alone");
 }
 
-// A key or table that is right elsewhere.
+// Keys of earlier versions, and what to do without them.
+constexpr std::pair<const char*, const char*> former_keys[] = {
+    {"paraview", "take it away: `ropewalk convert RUN rope.pvd` writes the frames of a run for ParaView"}};
+
+// What to do about a key or table that is right elsewhere, or was once.
 std::string belongs_to(const std::string& key) {
+  for (const auto& [former, remedy] : former_keys)
+    if (key == former) return remedy;
   for (const SceneTable& t : scene_tables()) {
     if (!t.name.empty() && t.name == key) return fmt::format("{} is a table of its own", t.header());
     for (const SceneKey& k : t.keys)

@@ -170,7 +170,7 @@ TEST_F(Cli, MixedTubesRunAndResume) {
        "format = \"ropewalk-scene-1\"\nparameters = [\"cnt-10-10-tersoff\", \"cnt-5-5-tersoff\"]\n"
        "tube_types = [1, 0, 0, 0, 0, 0, 1]\n[rope]\ntubes = 7\nlength_nm = 14\n[start]\ntemperature_K = "
        "50\nmay_cool = true\n"
-       "[run]\nduration_ps = 2\nframes_every_ps = 1\nlog_every_ps = 0.5\nparaview = true\n");
+       "[run]\nduration_ps = 2\nframes_every_ps = 1\nlog_every_ps = 0.5\n");
   const Outcome check = run("check s.toml");
   ASSERT_EQ(check.code, 0) << check.err;
   EXPECT_NE(check.out.find("contact law line"), std::string::npos);
@@ -359,10 +359,10 @@ TEST_F(Cli, ThermostatGoesOnAfterAResume) {
 }
 
 TEST_F(Cli, RunWritesEverythingAndProtectsIt) {
-  small_rope("s.toml", "paraview = true\n");
+  small_rope("s.toml");
   ASSERT_EQ(run("run s.toml --out d").code, 0);
   for (const char* name : {"log.csv", "frames.gsd", "manifest.json", "report.html", "checkpoint.bin", "scene.toml",
-                           "parameters.toml", "paraview/rope.pvd", "final.csv"})
+                           "parameters.toml", "final.csv"})
     EXPECT_TRUE(fs::exists(dir / "d" / name)) << name;
   const auto listed = ropewalk::test::outputs_names("The directory of a run");
   for (const auto& entry : fs::directory_iterator(dir / "d"))

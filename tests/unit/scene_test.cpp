@@ -295,7 +295,7 @@ TEST(SceneFile, EveryKeyReachesTheScene) {
       "application = \"tangential\"\nlateral = \"held\"\naxial = \"held\"\ngeometric_only = true\nincrement_ps = "
       "2\n"
       "[run]\nmode = \"dynamics\"\ntime_step_fs = 15\nduration_ps = 30\nframes_every_ps = 2\nlog_every_ps = 0.5\n"
-      "checkpoint_every_s = 10\nparaview = true\nintegrator = \"rk4\"\nmass_scale = 25\n"
+      "checkpoint_every_s = 10\nintegrator = \"rk4\"\nmass_scale = 25\n"
       "[observe]\nneighbour_radius_nm = 2.4\n");
   EXPECT_EQ(s.name, "all");
   EXPECT_FALSE(s.hash.empty());
@@ -332,7 +332,6 @@ TEST(SceneFile, EveryKeyReachesTheScene) {
   EXPECT_EQ(s.run.frames_every, 2);
   EXPECT_EQ(s.run.log_every, 0.5);
   EXPECT_EQ(s.run.checkpoint_every, 10);
-  EXPECT_TRUE(s.run.paraview);
   EXPECT_EQ(s.observe.neighbour_radius, 2.4);
 }
 
@@ -468,10 +467,10 @@ std::string choices(const Scene& s) {
                         s.thermostat->coupling, s.thermostat->seed);
   text += fmt::format("{} {} {:.10g} {:.10g} | ", s.run.stepping.contact_every, s.run.stepping.runge_kutta,
                       s.run.mass_scale, s.contact.cutoff);
-  return text + fmt::format("{} {:.10g} {:.10g} {:.10g} {:.10g} {:.10g} {:.3g} {} {} | {:.10g}",
+  return text + fmt::format("{} {:.10g} {:.10g} {:.10g} {:.10g} {:.10g} {:.3g} {} | {:.10g}",
                             static_cast<int>(s.run.mode), s.run.time_step, s.run.duration, s.run.frames_every,
                             s.run.log_every, s.run.checkpoint_every, s.run.goal.force, s.run.max_steps,
-                            s.run.paraview, s.observe.neighbour_radius);
+                            s.observe.neighbour_radius);
 }
 
 // The keys of a table with the values of the key list: the required ones, or all whose default is a value.

@@ -24,8 +24,9 @@ def _load_core() -> None:
     finally:
         if not chosen:
             del _os.environ["GOMP_SPINCOUNT"]
-    # Threads of OpenMP do not outlive a fork, and who waits for them waits for ever.
-    _os.register_at_fork(after_in_child=lambda: _core.set_threads(1))
+    from .threads import _have_one_thread
+
+    _os.register_at_fork(after_in_child=_have_one_thread)
     # The shipped data: in a wheel inside of the package, else in the tree that the package is installed in.
     here = _os.path.dirname(_os.path.abspath(__file__))
     for folder in (here, *(_os.path.normpath(_os.path.join(here, *[".."] * up)) for up in range(1, 5))):
@@ -44,8 +45,9 @@ from .frames import Frame, Frames  # noqa: E402
 from .log import Log  # noqa: E402
 from .observables import Observable, observables  # noqa: E402
 from .parameters import ParameterSet, Quantity, parameter_sets  # noqa: E402
-from .programs import calibrate, gather, resume, run, sweep, validate  # noqa: E402
+from .programs import calibrate, gather, sweep, validate  # noqa: E402
 from .results import Campaign, Check, ValidationCase  # noqa: E402
+from .running import resume, run  # noqa: E402
 from .runs import Limit, Run, open  # noqa: E402
 from .scene import Scene  # noqa: E402
 from .simulation import Energies, Relaxed, Simulation  # noqa: E402

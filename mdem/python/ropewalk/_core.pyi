@@ -1,5 +1,5 @@
 # What mdem/python/*.cpp binds. Positions in nm, times in ps, energies in eV.
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -74,6 +74,15 @@ class Frames:
     def __len__(self) -> int: ...
     def at(self, number: int) -> tuple[int, float, Floats, Floats, dict[str, Floats]]: ...
     def measure(self, number: int) -> list[float]: ...
+
+class RunOptions:
+    def __init__(
+        self, steps: int | None, until_ps: float | None, threads: int | None, on_limit: str, wall_time_s: float | None,
+        instructions: str, tell: Callable[[str], object], progress: Callable[[int, int, str], object] | None,
+    ) -> None: ...
+
+def run(scene: Scene, out: str, force: bool, options: RunOptions) -> None: ...
+def resume(directory: str, accept_changes: bool, options: RunOptions) -> None: ...
 
 class StateOptions:
     def __init__(

@@ -11,22 +11,19 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any, NoReturn, Optional, Union
+from typing import Any, NoReturn, Optional
 
 from numpy.typing import NDArray
 
 from .errors import InputError, NumericalError, ProgramError
 from .parameters import ParameterSet
 from .results import Campaign, Check, ValidationCase, table_of
-from .runs import Run
-from .scene import Scene, as_scene
+from .scene import Scene, SceneLike, as_scene
 from .toml import toml_of
 
 _SCENE = "scene-of-python.toml"  # the temporary file of a scene that has none
 
 _log = logging.getLogger("ropewalk")
-
-SceneLike = Union[Scene, Mapping[str, Any], str, "os.PathLike[str]"]
 
 
 def find_program() -> str:
@@ -105,71 +102,6 @@ def _options(**given: Any) -> list[str]:
             continue
         words.append(option if value is True else f"{option}={value}")
     return words
-
-
-# The run ended at a limit, by its wall time, or without coming to rest: Run.status says so.
-_ENDED = (0, 4, 5, 6)
-
-
-def run(
-    scene: SceneLike,
-    out: str | os.PathLike[str],
-    *,
-    until_ps: Optional[float] = None,
-    steps: Optional[int] = None,
-    threads: Optional[int] = None,
-    on_limit: str = "warn",
-    wall_time_s: Optional[float] = None,
-    instructions: Optional[str] = None,
-    force: bool = False,
-) -> Run:
-    """Runs a scene as `ropewalk run` does, in a directory with log, frames, checkpoint and report. Times are in ps.
-
-    Notes of the program are logged by `logging` as "ropewalk". After Ctrl-C the run can be resumed.
-
-    Arguments:
-        scene: a scene, a dict of its keys (units stand in their names), or a file
-        out: directory to make
-        until_ps: time to stop at instead of the scene's, ps
-        steps: time step to stop at instead (no unit)
-        threads: threads; None: all cores (no unit)
-        on_limit: where a limit of [limits] is passed: "warn", "stop" or "refine" (it then goes on in OUT.fine)
-        wall_time_s: stops with a checkpoint before the program has run for so long, s
-        instructions: instruction set, for the same bits on other processors
-        force: replaces an earlier run in `out`
-    """
-    with _scene_file(as_scene(scene)) as path:
-        _call(["run", path, f"--out={os.fspath(out)}", "--quiet",
-               *_options(until=until_ps, steps=steps, threads=threads, on_limit=on_limit, wall_time=wall_time_s,
-                         instructions=instructions, force=force)], _ENDED)
-    return Run(out)
-
-
-def resume(
-    directory: str | os.PathLike[str],
-    *,
-    until_ps: Optional[float] = None,
-    steps: Optional[int] = None,
-    threads: Optional[int] = None,
-    on_limit: str = "warn",
-    wall_time_s: Optional[float] = None,
-    accept_changes: bool = False,
-) -> Run:
-    """Goes on with a run from its last checkpoint, bit for bit, as `ropewalk resume`. Times are in ps.
-
-    Arguments:
-        directory: of the run
-        until_ps: time to stop at, ps; None: the scene's
-        steps: time step to stop at instead (no unit)
-        threads: threads; None: all cores (no unit)
-        on_limit: where a limit of [limits] is passed: "warn", "stop" or "refine"
-        wall_time_s: stops with a checkpoint before the program has run for so long, s
-        accept_changes: goes on although scene, parameter set or program are not what the run was begun with
-    """
-    _call(["resume", os.fspath(directory), "--quiet",
-           *_options(until=until_ps, steps=steps, threads=threads, on_limit=on_limit, wall_time=wall_time_s,
-                     accept_changes=accept_changes)], _ENDED)
-    return Run(directory)
 
 
 def sweep(

@@ -6,7 +6,7 @@ import os
 import re
 import tomllib
 from collections.abc import Mapping
-from typing import Any, Optional
+from typing import Any, Optional, Union
 
 from . import _core
 from .errors import InputError
@@ -101,6 +101,10 @@ class Scene:
                 keys["state"]["file"] = os.path.join(self._folder, "state.csv")
         return keys
 
+    def _to_run(self) -> _core.Scene:
+        """The scene as a run keeps it: one without a file has its name in it, and files by their whole paths."""
+        return self._core if self._path is not None else self._of_keys(self._whole_keys())
+
     def __repr__(self) -> str:
         """Its name (no unit)."""
         return f"<Scene {self.name}>"
@@ -194,7 +198,10 @@ class Scene:
         return list(self._core.notes())
 
 
-def as_scene(source: Scene | Mapping[str, Any] | str | os.PathLike[str]) -> Scene:
+SceneLike = Union[Scene, Mapping[str, Any], str, "os.PathLike[str]"]
+
+
+def as_scene(source: SceneLike) -> Scene:
     """The scene itself, or what Scene() makes of a dict or a file.
 
     Arguments:

@@ -90,8 +90,7 @@ const KeyTable<RunOptions>& run_table() {
        Key::number(
            "energy_tolerance", unit::none, Bounds::range(1e-9, 1), [](auto& r) -> auto& { return r.goal.energy; },
            standard(), "relax: and the bonds' energy is within this part of the minimum's, by estimate"),
-       Key::integer("max_steps", 1, 1000000000, &R::max_steps, standard(), "relax: give up after so many steps"),
-       Key::boolean("paraview", &R::paraview, standard(), "also write frames for ParaView (VTP)")},
+       Key::integer("max_steps", 1, 1000000000, &R::max_steps, standard(), "relax: give up after so many steps")},
       check};
   return table;
 }

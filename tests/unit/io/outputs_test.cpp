@@ -29,7 +29,7 @@ TEST(OutputsPage, HasTheTablesOfTheCode) {
   EXPECT_EQ(outputs_table("`observe --tubes`"), columns_markdown(tube_columns()));
   EXPECT_EQ(outputs_table("`frames.lammpstrj`"), columns_markdown(frame_columns()));
   EXPECT_EQ(outputs_table("`frames.gsd`"), columns_markdown(gsd_chunks()));
-  EXPECT_EQ(outputs_table("`paraview/frame-*.vtp`"), columns_markdown(vtp_arrays()));
+  EXPECT_EQ(outputs_table("`rope/frame-*.vtp`"), columns_markdown(vtp_arrays()));
   EXPECT_EQ(outputs_table("`state.csv`, `final.csv` and `failed-state.csv`"), columns_markdown(state_columns()));
   EXPECT_EQ(outputs_table("`manifest.json`"), columns_markdown(manifest_keys()));
   EXPECT_EQ(outputs_table("`plan-check.csv`"), columns_markdown(plan_check_columns()));

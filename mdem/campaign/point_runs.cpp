@@ -1,17 +1,17 @@
-#include "commands/point_runs.hpp"
+#include "campaign/point_runs.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/file.h>
 
-#include <chrono>
 #include <cstdio>
 #include <filesystem>
 
 #include "campaign/campaign.hpp"
-#include "commands/commands.hpp"
 #include "io/failure.hpp"
-#include "run/tell.hpp"
+#include "run/begin_run.hpp"
+#include "run/terminal_listener.hpp"
+#include "run/threads.hpp"
 
 namespace ropewalk {
 namespace {
@@ -26,31 +26,25 @@ bool lock(const std::string& path, bool wait) {
 
 }  // namespace
 
-double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
-
 std::string duration_text(double s) {
   if (s >= 5400) return fmt::format("{:.1f} h", s / 3600);
   return s >= 90 ? fmt::format("{:.0f} min", s / 60) : fmt::format("{:.0f} s", s);
 }
 
-int run_or_resume(const RunDirectory& dir, const Scene& scene, double until_ps, const std::string& on_limit) {
+int run_or_resume(const RunDirectory& dir, const Scene& scene, double until_ps, OnLimit on_limit) {
+  use_threads(1);
+  TerminalListener terminal(true);
   if (progress_of(dir).stage == PointProgress::Stage::begun) {
-    ResumeArguments r;
-    r.dir = dir.path;
-    r.threads = 1;
-    r.until_ps = until_ps;
-    r.on_limit = on_limit;
-    r.quiet = true;
-    return resume_command(r);
+    ResumeSettings asked;
+    asked.until_ps = until_ps;
+    asked.on_limit = on_limit;
+    return tell_end(go_through(resume_run(dir, asked, terminal)));
   }
   fs::remove_all(dir.path);  // of a run that was killed before its first checkpoint
-  RunArguments a;
-  a.out = dir.path;
-  a.until_ps = until_ps;
-  a.on_limit = on_limit;
-  a.quiet = true;
-  use_threads(1);
-  return run_scene(scene, a);
+  RunSettings asked;
+  asked.until_ps = until_ps;
+  asked.on_limit = on_limit;
+  return tell_end(go_through(begin_run(scene, dir, asked, terminal)));
 }
 
 int in_a_process(const std::string& messages, bool wait, const std::function<int()>& work) {

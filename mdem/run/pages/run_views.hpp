@@ -21,7 +21,12 @@ bool is_rope(const Prepared& prepared, const Observer& observer);
 std::vector<double> frame_times(const RunDirectory& dir, const Topology& topology);
 // The frames with these numbers, from 0.
 std::vector<StoredFrame> frames_of(const RunDirectory& dir, const Topology& topology,
-                                 const std::vector<std::size_t>& wanted);
+                                   const std::vector<std::size_t>& wanted);
+
+// The frames nearest to these times, ps; where none is asked for, so many as usual, evenly over the run. Throws
+// InputError where no frame is near.
+std::vector<StoredFrame> frames_at(const RunDirectory& dir, const Topology& topology, std::vector<double> times,
+                                   std::size_t usual);
 
 // The camera that --from names. side: as reports have it; x, y, z: along that axis; AZIMUTH,ELEVATION about z, in
 // degrees.

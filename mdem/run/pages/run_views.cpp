@@ -1,11 +1,13 @@
-#include "commands/run_views.hpp"
+#include "run/pages/run_views.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
 #include "model/error.hpp"
+#include "report/page.hpp"
 
 namespace ropewalk {
 
@@ -28,6 +30,27 @@ std::vector<StoredFrame> frames_of(const RunDirectory& dir, const Topology& topo
     reader->next(topology, out[w]);
   }
   return out;
+}
+
+std::vector<StoredFrame> frames_at(const RunDirectory& dir, const Topology& topology, std::vector<double> times,
+                                   std::size_t usual) {
+  const std::vector<double> stored = frame_times(dir, topology);
+  if (times.empty())
+    for (const std::size_t k : evenly(stored.size(), usual)) times.push_back(stored[k]);
+  std::vector<std::size_t> wanted;
+  const double apart =
+      stored.size() > 1 ? (stored.back() - stored.front()) / static_cast<double>(stored.size() - 1) : 0;
+  for (const double time : times) {
+    const auto at = std::min_element(stored.begin(), stored.end(),
+                                     [&](double a, double b) { return std::fabs(a - time) < std::fabs(b - time); });
+    if (std::fabs(*at - time) > 1.01 * apart + 1e-6)
+      throw InputError({"", 0, "--at"},
+                       fmt::format("no frame is near {} ps: they are from {:.4g} to {:.4g} ps", time,
+                                   stored.front(), stored.back()),
+                       "choose times of the run");
+    wanted.push_back(static_cast<std::size_t>(at - stored.begin()));
+  }
+  return frames_of(dir, topology, wanted);
 }
 
 RopeCamera camera_from(const std::string& from, const std::vector<RopeView>& views, double radius, double width,

@@ -5,18 +5,17 @@
 #include <string>
 
 #include "io/stop_signals.hpp"
+#include "run/limit_watch.hpp"
 #include "run/run_directory.hpp"
-#include "scene/scene.hpp"
 
 namespace ropewalk {
 
 inline constexpr int point_busy = 75;  // exit code of a process that found its point locked by another one
 
-double now();                               // s
 std::string duration_text(double seconds);  // "12 min"
 
 // A run that was begun goes on, another one is started, on one thread. Negative `until_ps`: to the scene's end.
-int run_or_resume(const RunDirectory& dir, const Scene& scene, double until_ps, const std::string& on_limit);
+int run_or_resume(const RunDirectory& dir, const Scene& scene, double until_ps, OnLimit on_limit);
 
 // Sends what is printed to the file `messages` and keeps other processes from the same work, by a lock on it: waits
 // for them, or returns point_busy. Returns the exit code of `work`, or that of what it throws.

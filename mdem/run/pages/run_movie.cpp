@@ -1,4 +1,5 @@
-// `view --movie`: our own pictures of the frames, joined by ffmpeg.
+#include "run/pages/run_movie.hpp"
+
 #include <fmt/format.h>
 #include <omp.h>
 #include <sys/wait.h>
@@ -7,13 +8,12 @@
 #include <filesystem>
 #include <limits>
 
-#include "commands/commands.hpp"
-#include "commands/run_views.hpp"
 #include "io/files.hpp"
 #include "io/processes.hpp"
 #include "model/error.hpp"
 #include "report/movie_picture.hpp"
 #include "report/page.hpp"
+#include "run/pages/run_views.hpp"
 
 namespace ropewalk {
 namespace {
@@ -69,13 +69,12 @@ void draw(const std::vector<RopeView>& views, const MovieStage& stage, const std
 
 }  // namespace
 
-void make_movie(const ViewArguments& a) {
-  const std::string format = fs::path(a.movie).extension().string();
+MovieSize make_movie(const RunDirectory& dir, const MovieOptions& a) {
+  const std::string format = fs::path(a.file).extension().string();
   if (format != ".webm" && format != ".mp4")
-    throw InputError({a.movie, 0, "--movie"}, "is no .webm or .mp4", "end the name in one of them");
-  refuse_existing(a.movie, "--movie", a.force);
+    throw InputError({a.file, 0, "--movie"}, "is no .webm or .mp4", "end the name in one of them");
+  refuse_existing(a.file, "--movie", a.force);
   need_ffmpeg();
-  const RunDirectory dir{a.dir};
   Scene scene = read_run_scene(dir);
   const Prepared prepared = prepare(scene);
   const std::size_t stored = frame_times(dir, prepared.topology).size();
@@ -84,7 +83,7 @@ void make_movie(const ViewArguments& a) {
     views.push_back(view_of(prepared.topology, f, std::numeric_limits<double>::quiet_NaN()));
   const double radius = prepared.topology.largest_radius();
   const RopeCamera camera = camera_from(a.from, views, radius, a.width - 40, 0.5625 * a.width);
-  const Folder folder(a.movie + ".frames");
+  const Folder folder(a.file + ".frames");
   draw(views, movie_stage(views, camera, radius, a.width), folder.path);
   std::vector<std::string> words = {"ffmpeg",
                                     "-nostdin",
@@ -106,11 +105,11 @@ void make_movie(const ViewArguments& a) {
   words.push_back(draft);
   std::error_code error;
   const bool made = run_program(words) == ProgramEnd::well;
-  if (made) fs::rename(draft, a.movie, error);
+  if (made) fs::rename(draft, a.file, error);
   if (!made || error)
-    throw InputError({a.movie, 0, "--movie"}, "cannot be made: ffmpeg failed",
+    throw InputError({a.file, 0, "--movie"}, "cannot be made: ffmpeg failed",
                      "take the other of .webm and .mp4, and look for room on the disk");
-  fmt::print("{} written: {} of {} frames\n", a.movie, views.size(), stored);
+  return {views.size(), stored};
 }
 
 }  // namespace ropewalk

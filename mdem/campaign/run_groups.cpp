@@ -1,0 +1,72 @@
+#include "campaign/run_groups.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <map>
+
+#include "model/error.hpp"
+#include "run/pages/run_views.hpp"
+
+namespace ropewalk {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The runs of a campaign; those that differ in their seed alone are one group.
+std::vector<RunGroup> groups_of(const CampaignDirectory& dir) {
+  const Sweep sweep = read_campaign(dir);
+  std::vector<RunGroup> groups;
+  for (const Replicates& r : replicates_of(sweep, points_of(sweep, false))) {
+    RunGroup group{r.name, {}};
+    for (const SweepPoint& p : r.points)
+      if (fs::exists(dir.point(p.name).log())) group.runs.push_back(dir.point(p.name));
+    if (!group.runs.empty()) groups.push_back(std::move(group));
+  }
+  if (groups.empty()) throw InputError({dir.path, 0, ""}, "has no run yet", "run `ropewalk sweep`");
+  return groups;
+}
+
+std::string remark_of(const std::vector<RunDirectory>& runs) {
+  std::map<std::string, int> counts;
+  std::string text;
+  for (const RunDirectory& run : runs) ++counts[progress_of(run).status];
+  for (const auto& [status, count] : counts)
+    text += (text.empty() ? "" : ", ") + (runs.size() > 1 ? fmt::format("{} {}", count, status) : status);
+  return text;
+}
+
+}  // namespace
+
+std::string last_part_of(const std::string& path) {
+  const fs::path p(path);
+  return (p.has_filename() ? p : p.parent_path()).filename().string();
+}
+
+std::vector<RunGroup> groups_in(const std::string& path) {
+  if (!fs::is_directory(path))
+    throw InputError({path, 0, ""}, "is not the directory of a run", "name runs or campaigns alone, or sets alone");
+  const CampaignDirectory campaign{path};
+  if (fs::exists(campaign.sweep())) return groups_of(campaign);
+  return {{last_part_of(path), {RunDirectory{path}}}};
+}
+
+RunCurve curve_of(const RunGroup& group, bool pictured) {
+  std::vector<std::vector<LogRow>> logs;
+  for (const RunDirectory& run : group.runs) {
+    std::vector<LogRow> log = read_log(run.log());
+    if (!log.empty()) logs.push_back(std::move(log));
+  }
+  if (logs.empty()) throw InputError({group.runs.front().log(), 0, ""}, "has no rows", "run the scene further");
+  RunCurve curve = mean_of(group.name, logs);
+  curve.remark = remark_of(group.runs);
+  if (!pictured) return curve;
+  const RunDirectory& first = group.runs.front();
+  Scene scene = read_run_scene(first);
+  const Prepared prepared = prepare(scene);
+  curve.tube_radius = prepared.topology.largest_radius();
+  curve.view = last_view(first, scene, prepared);
+  return curve;
+}
+
+}  // namespace ropewalk

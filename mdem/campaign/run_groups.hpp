@@ -1,0 +1,25 @@
+// Runs as curves to compare: alone, or those of a campaign that differ in their seed alone together.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "campaign/campaign.hpp"
+#include "report/runs_page.hpp"
+
+namespace ropewalk {
+
+struct RunGroup {
+  std::string name;
+  std::vector<RunDirectory> runs;
+};
+
+// The run or the campaign in this directory. Throws InputError where it is neither.
+std::vector<RunGroup> groups_in(const std::string& directory);
+// The name of a directory.
+std::string last_part_of(const std::string& path);
+
+// The mean of its logs; `pictured`: with the last frame of the first run.
+RunCurve curve_of(const RunGroup& group, bool pictured);
+
+}  // namespace ropewalk

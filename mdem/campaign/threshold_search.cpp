@@ -1,0 +1,140 @@
+#include "campaign/threshold_search.hpp"
+
+#include <fmt/format.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "campaign/point_runs.hpp"
+#include "io/files.hpp"
+#include "io/processes.hpp"
+#include "model/error.hpp"
+#include "scene/scene_toml.hpp"
+
+namespace ropewalk {
+namespace {
+
+namespace fs = std::filesystem;
+
+}  // namespace
+
+ThresholdSearch::ThresholdSearch(Sweep sweep, CampaignDirectory dir)
+    : sweep_(std::move(sweep)), dir_(std::move(dir)), points_(points_of(sweep_)) {
+  for (const SweepPoint& p : points_)
+    for (const double value : {sweep_.threshold->from, sweep_.threshold->to}) scene_at(p, value);
+}
+
+Scene ThresholdSearch::scene_at(const SweepPoint& p, double value) const {
+  try {
+    return scene_of_text(trial_text(sweep_, p, value), sweep_.scene_path);
+  } catch (const InputError& e) {
+    throw InputError({sweep_.path, 0, ""}, fmt::format("point {} at {:g}: {}", p.name, value, e.what()), "");
+  }
+}
+
+void ThresholdSearch::begin(bool force) {
+  create_campaign(dir_, sweep_, {}, force);
+  refuse_other_scenes(force);
+  // Of its own table, where runs are not in the directory.
+  if (fs::exists(dir_.trials())) {
+    const auto [others, all] = take(dir_.trials());
+    if (others > 0 && !force)
+      throw InputError(
+          {dir_.trials(), 0, ""},
+          fmt::format("{} of its {} trials are of other scenes or parameter sets, and would be lost", others, all),
+          "choose another --out, or give --force");
+  }
+}
+
+// Runs in the directory must be of this sweep.
+void ThresholdSearch::refuse_other_scenes(bool force) const {
+  for (const SweepPoint& p : points_) {
+    for (const Trial& t : threshold_of(dir_, sweep_, p, {}).trials) {
+      const RunDirectory run = trial_directory(dir_, sweep_, p, t.value);
+      if (is_run_of(run, trial_text(sweep_, p, t.value), p.sets)) continue;
+      if (!force)
+        throw InputError({run.path, 0, "--out"}, "was run with another scene or parameter set",
+                         "choose another --out, or give --force to run it anew");
+      fs::remove_all(run.path);
+    }
+  }
+}
+
+std::pair<std::size_t, std::size_t> ThresholdSearch::take(const std::string& path) {
+  const std::vector<Trial> trials = read_trials(path);
+  std::size_t others = 0;
+  for (const Trial& t : trials) {
+    const auto at = std::find_if(points_.begin(), points_.end(), [&](const SweepPoint& p) {
+      return trial_hash(sweep_, p, t.value) == t.scene_hash;
+    });
+    if (at == points_.end())
+      ++others;
+    else
+      known_[at->name].push_back(t);
+  }
+  return {others, trials.size()};
+}
+
+void ThresholdSearch::go(int jobs, const std::function<void(const SweepPoint&, bool)>& ended) {
+  std::vector<ProcessTask> tasks;
+  for (const SweepPoint& p : points_)
+    tasks.push_back({[this, &p] { return in_a_process(dir_.messages(p.name), false, [&] { return bisect(p); }); },
+                     [this, &p, &ended](int status) {
+                       write();
+                       ended(p, WIFEXITED(status) && WEXITSTATUS(status) == 0);
+                     }});
+  run_processes(tasks, jobs, &stop_signal);
+  write();  // the trials of points that were stopped count as well
+}
+
+// 0 where the run ended.
+int ThresholdSearch::try_at(const SweepPoint& p, double value) const {
+  const RunDirectory run = trial_directory(dir_, sweep_, p, value);
+  const std::string hash = trial_hash(sweep_, p, value);
+  for (const Trial& t : threshold_of(dir_, sweep_, p, known_).trials)
+    if (t.scene_hash == hash) return 0;
+  fs::create_directories(dir_.point(p.name).path);
+  Scene scene = scene_at(p, value);
+  scene.name += fmt::format(", {}, {:g}", p.name, value);
+  return run_or_resume(run, scene, -1, OnLimit::warn);
+}
+
+int ThresholdSearch::bisect(const SweepPoint& p) const {
+  const ThresholdQuestion& q = *sweep_.threshold;
+  // The upper end first: it is soon decided.
+  for (const double end : {q.to, q.from})
+    if (const int code = try_at(p, end)) return code;
+  // An outcome may have a window: above it, a rope opens into a cage before it becomes a helix.
+  for (const double part : {0.5, 0.25, 0.75}) {
+    const auto passed = [](const Trial& t) { return t.passed; };
+    const std::vector<Trial> trials = threshold_of(dir_, sweep_, p, known_).trials;
+    if (std::any_of(trials.begin(), trials.end(), passed)) break;
+    if (const int code = try_at(p, q.from + part * (q.to - q.from))) return code;
+  }
+  for (;;) {
+    const Threshold t = threshold_of(dir_, sweep_, p, known_);
+    if (t.outside || t.above - t.below <= q.accuracy * std::fabs(t.middle())) return 0;
+    if (const int code = try_at(p, t.middle())) return code;
+  }
+}
+
+std::string ThresholdSearch::words_of(const SweepPoint& p) const {
+  const Threshold t = threshold_of(dir_, sweep_, p, known_);
+  if (t.trials.empty()) return fmt::format("{}: no run ended, see {}", p.name, dir_.messages(p.name));
+  if (t.outside)
+    return fmt::format("{}: {}", p.name,
+                       t.trials.back().passed ? "passed at the lower end already" : "at none of the values tried");
+  return fmt::format("{}: {:.4g} to {:.4g}", p.name, t.below, t.above);
+}
+
+// The tables and the page of what is known so far.
+void ThresholdSearch::write() const {
+  const std::vector<PhasePoint> points = phase_points(dir_, sweep_, points_, known_);
+  write_file_atomically(dir_.path + "/thresholds.csv", thresholds_csv(sweep_, points));
+  write_file_atomically(dir_.trials(), trials_csv(sweep_, points));
+  write_file_atomically(dir_.path + "/thresholds.html", phase_page(sweep_, points));
+}
+
+}  // namespace ropewalk

@@ -1,0 +1,44 @@
+// The search for critical values at the points of a sweep, side by side, each in a process of its own.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "campaign/threshold.hpp"
+
+namespace ropewalk {
+
+class ThresholdSearch {
+ public:
+  // Reads the scenes at both ends of the range. Throws InputError for a key or value that is wrong.
+  ThresholdSearch(Sweep sweep, CampaignDirectory dir);
+
+  // Makes the directory. Throws InputError where it holds runs or trials of other scenes, unless `force` is set.
+  void begin(bool force);
+  // Takes trials of an earlier search (trials.csv). Returns how many of the file are of other scenes, and all.
+  std::pair<std::size_t, std::size_t> take(const std::string& trials);
+
+  // `ended` hears of each point, and whether its search came to its end. Tables and page are written anew each
+  // time. Ends early by io/stop_signals.hpp.
+  void go(int jobs, const std::function<void(const SweepPoint& point, bool well)>& ended);
+
+  std::size_t size() const { return points_.size(); }
+  std::vector<PhasePoint> results() const { return phase_points(dir_, sweep_, points_, known_); }
+  // What is known of a point, in words.
+  std::string words_of(const SweepPoint& point) const;
+
+ private:
+  Scene scene_at(const SweepPoint& point, double value) const;
+  void refuse_other_scenes(bool force) const;
+  int try_at(const SweepPoint& point, double value) const;
+  int bisect(const SweepPoint& point) const;
+  void write() const;
+
+  Sweep sweep_;
+  CampaignDirectory dir_;
+  std::vector<SweepPoint> points_;
+  KnownTrials known_;
+};
+
+}  // namespace ropewalk

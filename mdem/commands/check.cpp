@@ -1,0 +1,98 @@
+// `check`: what a scene would do and how long it would take.
+#include <fmt/format.h>
+
+#include <chrono>
+
+#include "commands/commands.hpp"
+#include "plan/forecast.hpp"
+#include "run/run_directory.hpp"
+#include "scene/scene_toml.hpp"
+#include "scene/watch.hpp"
+#include "sim/contact/line/law.hpp"
+
+namespace ropewalk {
+namespace {
+
+void say_source(const Scene& scene, const Prepared& p) {
+  const Topology& t = p.topology;
+  fmt::print("{} tubes, {} elements of {:.4g} nm", t.tubes(), t.elements(), t.longest_element());
+  const std::string description = scene.source->description(t, p.state, p.spacing);
+  fmt::print("{}{}\n", description.empty() ? "" : ": ", description);
+  for (const ParameterSet& set : scene.sets)
+    fmt::print("parameters {} ({}), EA {:.5g} nN, EI {:.5g} nN nm^2, GJ {:.5g} nN nm^2, {} bonds\n", set.name,
+               set.path, set.bond.stretch * units::eV_in_nN_nm, set.bond.bend * units::eV_in_nN_nm,
+               set.bond.twist * units::eV_in_nN_nm, scene.bond.anharmonic ? "anharmonic" : "harmonic");
+  for (const std::string& grade : grades_of(scene)) fmt::print("grade of {}\n", grade);
+  fmt::print("contact law {}", scene.contact.law);
+  if (const auto* line = dynamic_cast<const LineLaw*>(p.interaction.law.get()))
+    fmt::print(", {} nodes on an element", line->nodes());
+  fmt::print("\n");
+}
+
+void say_loads(const Scene& scene) {
+  if (!scene.loads.empty()) fmt::print("{} loads\n", scene.loads.size());
+  for (const SceneGrip& g : scene.grips) fmt::print("{}\n", g.grip->words());
+  if (!scene.twist) return;
+  const TwistLoad& w = *scene.twist;
+  fmt::print(
+      "twist: {:.4g} nN nm {} by {} on the grips, ramped in {:.4g} ps, held for {:.4g} ps; grips {} along the "
+      "axis, {} sideways{}\n",
+      w.moment / units::nN_nm, w.reading == TwistLoad::Reading::per_tube ? "per tube" : "in total",
+      w.application == TwistLoad::Application::couple ? "couples" : "tangential forces", w.ramp_time(), w.hold,
+      w.axial_free ? "free" : "held", w.lateral_free ? "free" : "held",
+      w.geometric_only ? "; spins relaxed (geometric twist only)" : "");
+}
+
+void say_limits(const Scene& scene, const Topology& topology) {
+  const std::vector<Limits> all = watched_of(scene, topology).limits;
+  for (std::size_t type = 0; type < all.size(); ++type) {
+    std::string text;
+    for (const LimitKind& kind : limit_kinds())
+      if (all[type].*kind.limit > 0)
+        text +=
+            fmt::format("{}{} {:.4g}", text.empty() ? "" : ", ", kind.key, all[type].*kind.limit / kind.unit_size);
+    fmt::print("watched{}: {}\n", all.size() > 1 ? " in " + scene.sets[type].name : "",
+               text.empty() ? "nothing" : text);
+  }
+}
+
+}  // namespace
+
+int check_command(const std::string& path) {
+  Scene scene = read_scene(path);
+  const Prepared p = prepare(scene);
+  refuse_cooling(scene, p);
+  Simulation simulation = start(scene, p);
+  say_source(scene, p);
+  say_loads(scene);
+  for (const std::string& warning : warnings_of(scene, p.topology)) fmt::print("note: {}\n", warning);
+  for (const std::string& warning : warmth_of(scene, p)) fmt::print("note: {}\n", warning);
+  for (const std::string& warning : limits_ahead(scene, p)) fmt::print("note: {}\n", warning);
+  const int every = scene.run.stepping.contact_every;
+  if (every > 1)
+    fmt::print("contact every {} steps, {:.4g} fs: a step of the log and of what is counted below\n", every,
+               p.time_step / units::fs);
+  say_limits(scene, p.topology);
+  fmt::print(
+      "time step {:.4g} fs; stability limit {:.4g} fs (chain {:.3g}, contact {:.3g} rad/ps, damping {:.3g} 1/ps)\n",
+      p.time_step / every / units::fs, inner_step_limit(p.limit, every) / units::fs, p.limit.chain_frequency,
+      p.limit.contact_frequency, p.limit.damping_rate);
+  const Energies& e = simulation.forces().energy;
+  fmt::print("start: {:.6g} eV in bonds, {:.6g} eV van der Waals, largest force {:.3g} eV/nm\n", e.bonds(), e.vdw,
+             simulation.largest_force());
+  if (scene.run.mode == RunOptions::Mode::relax) {
+    fmt::print(
+        "relaxation to {:.3g} eV/nm and an energy of the bonds within {:.2g} of the minimum's, at most {} steps\n",
+        scene.run.goal.force, scene.run.goal.energy, scene.run.max_steps);
+    return 0;
+  }
+  constexpr long sample = 20;
+  const auto began = std::chrono::steady_clock::now();
+  simulation.steps(sample);
+  const double each = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count() / sample;
+  const double steps = p.duration / p.time_step;
+  fmt::print("{:.4g} ps = {:.0f} steps, about {:.0f} s on all cores\n", p.duration, steps, steps * each);
+  return 0;
+}
+
+}  // namespace ropewalk

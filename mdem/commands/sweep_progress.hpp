@@ -1,0 +1,31 @@
+// What `sweep` says while its points run.
+#pragma once
+
+#include "campaign/sweep_runs.hpp"
+
+namespace ropewalk {
+
+class SweepProgress {
+ public:
+  // The clock starts here.
+  SweepProgress(const CampaignDirectory& dir, const std::vector<SweepPoint>& points, const SweepRuns& runs,
+                bool quiet);
+
+  void start_failed(const SweepPoint& start) const;
+  // Says how many points are done already.
+  void begin();
+  void ended(const SweepPoint& point, int status);
+  void clear_line() const;
+
+ private:
+  void say(const std::string& line) const;
+
+  const CampaignDirectory& dir_;
+  const std::vector<SweepPoint>& points_;
+  const SweepRuns& runs_;
+  bool quiet_;
+  std::size_t done_ = 0;
+  double work_left_ = 0, work_to_do_ = 0, began_, next_line_ = 0;
+};
+
+}  // namespace ropewalk

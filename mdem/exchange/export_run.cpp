@@ -1,0 +1,157 @@
+#include "exchange/export_run.hpp"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "io/files.hpp"
+#include "io/frames/frames.hpp"
+#include "model/error.hpp"
+#include "run/begin_run.hpp"
+#include "run/origin_changes.hpp"
+#include "scene/lammps_files.hpp"
+#include "scene/lammps_states.hpp"
+#include "sim/state/part_of_scene.hpp"
+
+namespace ropewalk {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The files of a run up to its checkpoint.
+void copy_run(const RunDirectory& from, const RunDirectory& to, RunListener& listener) {
+  const Scene scene = read_run_scene(from);
+  const RunCheckpoint c = checkpoint_to_export(from, scene, listener);
+  const auto copy = [](const std::string& a, const std::string& b, std::uint64_t bytes) {
+    write_file_atomically(b, std::string_view(read_file(a)).substr(0, bytes));
+  };
+  const auto all = std::string::npos;
+  copy(from.scene(), to.scene(), all);
+  for (std::size_t k = 0; k < scene.sets.size(); ++k) copy(from.parameters(k), to.parameters(k), all);
+  if (fs::exists(from.state())) copy(from.state(), to.state(), all);
+  if (fs::exists(from.limits())) copy(from.limits(), to.limits(), all);
+  copy(from.log(), to.log(), c.log.bytes);
+  const FrameFormat format = format_of(from.frames());
+  NewFrames(to.frames(format), format, 0, from.frames(), c.frames.bytes).replace();
+  copy(from.manifest(), to.manifest(), all);
+  write_checkpoint(to, c);
+}
+
+LammpsStart start_of(const Scene& scene, const Simulation& s) {
+  LammpsStart start;
+  start.step = s.state().step;
+  start.time = s.state().time;
+  start.time_step = s.time_step();
+  start.work = s.work();
+  start.dissipated = s.dissipated();
+  start.viscosity_inner = scene.damping.contact.inner;
+  start.viscosity_outer = scene.damping.contact.outer;
+  const RunDirectory here{"."};
+  for (std::size_t k = 0; k < scene.sets.size(); ++k)
+    start.parameters.push_back(fs::path(here.parameters(k)).filename().string());
+  return start;
+}
+
+std::int64_t steps_between(double interval, double duration, double parts, double dt) {
+  return std::max<std::int64_t>(1, std::llround((interval > 0 ? interval : duration / parts) / dt));
+}
+
+constexpr std::int64_t relax_every = 1000;  // steps
+
+LammpsScript script_of(const Scene& scene, const Prepared& p, const Simulation& s) {
+  const Interaction& in = p.interaction;
+  LammpsScript script;
+  script.name = scene.name;
+  script.law = scene.contact.law;
+  script.relax = scene.run.mode == RunOptions::Mode::relax;
+  script.damped = in.damped_contact() || in.damping.bond.rate > 0 || in.damping.local > 0;
+  script.driven = !p.loads.empty();
+  script.long_in_z = scene.source->is_parallel();
+  script.types = static_cast<int>(p.topology.types.size());
+  // A single straight tube needs a box that is wide.
+  constexpr double margin = 1;  // nm
+  const Vec3Array& x = s.state().position;
+  const auto range = [](const Column& c) { return std::minmax_element(c.begin(), c.end()); };
+  const auto [x0, x1] = range(x.x);
+  const auto [y0, y1] = range(x.y);
+  const auto [z0, z1] = range(x.z);
+  script.low = Vector3(*x0, *y0, *z0) - Vector3::Constant(margin);
+  script.high = Vector3(*x1, *y1, *z1) + Vector3::Constant(margin);
+  script.skin = default_skin(in);
+  script.reach = copy_reach(p.topology, in, 0);
+  script.excluded_elements = p.topology.fewest_within(in.excluded_arc());
+  script.time_step = s.time_step();
+  script.first_step = s.state().step;
+  const double dt = s.time_step(), span = p.duration > 0 ? p.duration : 1000 * dt;
+  script.steps = script.relax ? scene.run.max_steps : std::llround(p.duration / dt) - s.state().step;
+  script.every = script.relax ? relax_every : steps_between(scene.run.frames_every, span, 40, dt);
+  return script;
+}
+
+constexpr const char* readme =
+    "Run:              lmp-ropewalk -in in.rope\n"
+    "Run on N ranks:   mpirun -np N lmp-ropewalk -in in.rope\n"
+    "Bring it back:    ropewalk import .      (then observe, report or resume this directory)\n";
+
+void write_lammps_files(const RunDirectory& run) {
+  const LammpsDirectory dir{run.path};
+  Scene scene = read_run_scene(run);
+  const Prepared p = prepare(scene);
+  const Simulation s = simulation_at(run, scene, p, read_checkpoint(run));
+  write_file_atomically(dir.start(), start_json(start_of(scene, s)));
+  write_file_atomically(dir.tubes(), tubes_csv(p.topology));
+  StateHeader header;
+  header.step = s.state().step;
+  header.elements = p.topology.elements();
+  header.time = s.state().time;
+  header.work = s.work();
+  header.dissipated = s.dissipated();
+  write_file_atomically(dir.first_state(), state_file(header, s.state(), s.forces().force, s.forces().torque));
+  write_file_atomically(dir.input(), lammps_input(script_of(scene, p, s)));
+  write_file_atomically(dir.readme(), readme);
+}
+
+void refuse_what_lammps_lacks(const Scene& scene) {
+  const char* lacking = scene.thermostat                             ? "thermostat"
+                        : scene.periodic                             ? "periodic"
+                        : scene.twist && scene.twist->geometric_only ? "twist.geometric_only"
+                        : scene.run.stepping.contact_every > 1       ? "run.contact_every"
+                        : scene.run.stepping.runge_kutta             ? "run.integrator"
+                                                                     : nullptr;
+  if (lacking)
+    throw InputError({scene.path, 0, lacking}, "is not for LAMMPS", "run this scene with `ropewalk run`");
+}
+
+}  // namespace
+
+RunCheckpoint checkpoint_to_export(const RunDirectory& dir, const Scene& scene, RunListener& listener) {
+  check_log_header(dir.log());
+  const ResumePoint point = find_resume_point(dir);
+  RunOrigin origin = origin_of(dir, scene);
+  origin.instructions = point.checkpoint.origin.instructions;  // LAMMPS has its own
+  const std::vector<std::string> changes =
+      judged_changes(changes_of(point.checkpoint.origin, origin, dir), false, dir);
+  for (const std::string& note : changes) listener.tell("note: " + note);
+  for (const std::string& note : point.remarks) listener.tell("note: " + note);
+  return point.checkpoint;
+}
+
+void export_scene(const Scene& scene, const RunDirectory& to, bool force, RunListener& listener) {
+  refuse_what_lammps_lacks(scene);
+  RunSettings settings;
+  settings.force = force;
+  // LAMMPS goes on with it, or `resume`.
+  begin_run(scene, to, settings, listener)->write_manifest("interrupted", "not yet run");
+  write_lammps_files(to);
+}
+
+void export_run(const RunDirectory& from, const RunDirectory& to, bool force, RunListener& listener) {
+  refuse_what_lammps_lacks(read_run_scene(from));
+  read_checkpoint(from);
+  if (fs::exists(to.path) && fs::equivalent(from.path, to.path))
+    throw InputError({to.path, 0, "--lammps"}, "is the run itself", "choose another directory");
+  const DirectoryLock lock = create_run_directory(to, force);
+  copy_run(from, to, listener);
+  write_lammps_files(to);
+}
+
+}  // namespace ropewalk

@@ -1,0 +1,178 @@
+#include "exchange/import_run.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <limits>
+#include <map>
+
+#include "exchange/export_run.hpp"
+#include "io/files.hpp"
+#include "io/frames/frames.hpp"
+#include "model/error.hpp"
+#include "run/colours.hpp"
+#include "run/limit_watch.hpp"
+#include "scene/lammps_files.hpp"
+#include "scene/lammps_states.hpp"
+#include "scene/state_csv.hpp"
+#include "sim/state/part_of_scene.hpp"
+
+namespace ropewalk {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Import {
+ public:
+  Import(const RunDirectory& dir, RunListener& listener)
+      : listener_(listener),
+        dir_(dir),
+        files_{dir.path},
+        lock_(dir.path),
+        scene_(read_run_scene(dir_)),
+        prepared_(prepare(scene_)),
+        observer_(make_observer(scene_, prepared_)),
+        checkpoint_(checkpoint_to_export(dir_, scene_, listener)),
+        watch_(watched_by_run(scene_, prepared_, observer_)),
+        start_(simulation_at(dir_, scene_, prepared_, checkpoint_)),
+        reached_(start_.state().step),
+        gauges_(start_.gauges()),
+        first_(start(scene_, prepared_).forces().energy) {}
+
+  ImportedRun go() {
+    const LammpsStart began = read_start(files_);
+    if (began.time_step != prepared_.time_step)
+      throw InputError({files_.start(), 0, "time_step_ps"}, "is not that of the scene",
+                       "has scene.toml been changed? Export the run again");
+    if (!fs::exists(files_.rows()) || !fs::exists(files_.states()))
+      throw InputError({files_.path, 0, ""}, "holds nothing that LAMMPS has done",
+                       "run in.rope with lmp-ropewalk first, as README.txt says");
+    for (const LammpsRow& row : read_lammps_rows(files_)) rows_[static_cast<std::int64_t>(row.step)] = row;
+    remove_parts(dir_.path);
+    log_ = read_file(dir_.log()).substr(0, checkpoint_.log.bytes);
+    const std::string there = dir_.frames();
+    frames_ = std::make_unique<NewFrames>(there, format_of(there), 0, there, checkpoint_.frames.bytes);
+    const std::int64_t from = reached_;
+    watch_.inherit_from(checkpoint_.limits.limits, from);
+    take_states(files_.states());
+    if (reached_ == from)
+      throw InputError({files_.states(), 0, ""}, fmt::format("holds no whole state after step {}", from),
+                       "let LAMMPS run further, or go on with `ropewalk resume`");
+    write(from);
+    return {taken_, reached_, last_.time, passed_words(watch_.records())};
+  }
+
+ private:
+  void take_states(const std::string& path) {
+    LammpsStates states(path, prepared_.topology);
+    State state;
+    Vec3Array force, torque;
+    while (states.next(state, force, torque)) {
+      const auto row = rows_.find(state.step);
+      if (state.step <= reached_ || row == rows_.end()) continue;
+      state.time = row->second.time;
+      force_.force = force;
+      force_.torque = torque;
+      add(state, row->second);
+    }
+  }
+
+  void add(const State& state, const LammpsRow& from) {
+    EnergyAccount account;
+    account.time_step = prepared_.time_step;
+    if (scene_.twist) account.moment = scene_.twist->moment_at(from.time);
+    account.potential = {from.stretch, from.shear, from.bend, from.twist, from.vdw};
+    account.kinetic = from.kinetic;
+    account.work = from.work;
+    account.dissipated = from.dissipated;
+    account.first_energy = checkpoint_.first_energy;
+    account.first = first_;
+    account.ends = readings_at(state);
+    log_ += log_line(log_row(observer_, scene_, prepared_.topology, state, account));
+    check_limits(state, account);
+    (*frames_)->write(prepared_.topology, state, element_colours(prepared_.topology, prepared_.interaction, state));
+    prepared_.state = state;
+    last_ = from;
+    reached_ = state.step;
+    ++taken_;
+  }
+
+  // LAMMPS watches no limits: they are looked for in the states that it left.
+  void check_limits(const State& state, const EnergyAccount& account) {
+    NeighbourList list(prepared_.interaction, default_skin(prepared_.interaction));
+    list.build(prepared_.topology, state);
+    const bool relax = scene_.run.mode == RunOptions::Mode::relax;
+    const double drift = relax ? std::numeric_limits<double>::quiet_NaN() : energy_drift(account);
+    for (const std::string& line : watch_.check(prepared_.topology, state, list, drift, true)) listener_.tell(line);
+  }
+
+  // What the forces of this moment say: LAMMPS keeps no means.
+  EndReadings readings_at(const State& state) {
+    gauges_.follow(state);
+    gauges_.forget_work();
+    gauges_.sums.since = state.time;
+    std::vector<PointLoad> loads;
+    point_loads(prepared_.loads, state, state.time, loads);
+    return gauges_.read_still(
+        state,
+        reactions_at_rest(prepared_.topology, prepared_.loads, loaded_elements(prepared_.loads), force_, state),
+        loads);
+  }
+
+  // All is made before the first file is touched, and the checkpoint is written last: until it is there the run
+  // stands where it stood, and all of this can be done again.
+  void write(std::int64_t from) {
+    Simulation simulation = start(scene_, prepared_);
+    simulation.inherit_from(force_.force, force_.torque, {last_.work, last_.dissipated});
+    simulation.inherit_from(gauges_.sums);
+    checkpoint_.log = mark_of(log_);
+    checkpoint_.frames = (*frames_)->mark();
+    checkpoint_.mark = nullptr;
+    checkpoint_.limits.limits = watch_.records();
+    checkpoint_.simulation = simulation.serialise();
+    Manifest m = read_manifest(dir_.manifest());
+    m.steps = reached_;
+    m.status = last_.time + 0.5 * prepared_.time_step >= prepared_.duration ? "finished" : "interrupted";
+    m.reason = fmt::format("steps {} to {} by LAMMPS", from, reached_);
+    const std::string final_state = state_csv(prepared_.topology, prepared_.state);
+    write_file_atomically(dir_.log(), log_);
+    frames_->replace();
+    write_file_atomically(dir_.final_state(), final_state);
+    write_file_atomically(dir_.limits(), limits_json(checkpoint_.limits));
+    write_file_atomically(dir_.manifest(), manifest_json(m));
+    write_checkpoint(dir_, checkpoint_);
+    write_report(dir_, scene_, prepared_for_report());
+  }
+
+  // The report compares with the state at time zero.
+  Prepared prepared_for_report() {
+    Scene scene = scene_;
+    return prepare(scene);
+  }
+
+  RunListener& listener_;
+  RunDirectory dir_;
+  LammpsDirectory files_;
+  DirectoryLock lock_;
+  Scene scene_;
+  Prepared prepared_;
+  Observer observer_;
+  RunCheckpoint checkpoint_;
+  LimitWatch watch_;
+  Simulation start_;  // where the run stood
+  std::int64_t reached_ = 0;
+  Gauges gauges_;
+  Energies first_;
+  std::map<std::int64_t, LammpsRow> rows_;
+  LammpsRow last_;
+  Forces force_;
+  std::string log_;
+  std::unique_ptr<NewFrames> frames_;
+  long taken_ = 0;
+};
+
+}  // namespace
+
+ImportedRun import_run(const RunDirectory& dir, RunListener& listener) { return Import(dir, listener).go(); }
+
+}  // namespace ropewalk

@@ -1,0 +1,97 @@
+#include "run/begin_run.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <filesystem>
+
+#include "io/files.hpp"
+#include "model/error.hpp"
+#include "run/origin_changes.hpp"
+#include "run/stages.hpp"
+#include "sim/contact/line/engine.hpp"
+
+namespace ropewalk {
+namespace {
+
+// A run that may be refined must find the place for it free.
+void check_finer_directory(const RunDirectory& dir, const RunSettings& asked, bool resumed) {
+  const RunDirectory finer = finer_directory(dir);
+  if (resumed && !has_checkpoint(finer)) return;  // killed while it was made: see write_finer_scene()
+  if (asked.on_limit == OnLimit::refine && !asked.force && std::filesystem::exists(finer.path))
+    throw InputError({finer.path, 0, "--on-limit"}, "exists, and a refined run would go on there",
+                     "take it away or choose another name for the run");
+}
+
+// A run whose elements were split goes on elsewhere.
+void refuse_refined(const RunDirectory& dir) {
+  const RunDirectory next = finer_directory(dir);
+  if (!has_checkpoint(next)) return;
+  const std::vector<RefinementRecord> splits = read_checkpoint(next).limits.refinements;
+  if (splits.empty() || splits.back().from != name_of(dir)) return;
+  throw InputError({dir.path, 0, ""}, fmt::format("had its elements split at {:.4g} ps", splits.back().time_ps),
+                   "go on with: ropewalk resume " + next.path);
+}
+
+// Those that the run was begun with, so that it gives the same bits, unless others are asked for.
+void use_instructions_of(const RunOrigin& origin, const std::string& asked_for, RunListener& listener) {
+  const std::string& name = asked_for.empty() ? origin.instructions : asked_for;
+  if (!use_instructions(name) && asked_for.empty())
+    throw InputError({"", 0, "--instructions"},
+                     fmt::format("the run was begun with {}, which this processor has not got", name),
+                     fmt::format("go on elsewhere, or give one of {} for other last digits",
+                                 fmt::join(instruction_sets(), ", ")));
+  if (origin.instructions != instructions_in_use())
+    listener.tell(fmt::format("note: instruction set {} -> {}: last digits differ", origin.instructions,
+                              instructions_in_use()));
+}
+
+}  // namespace
+
+std::unique_ptr<Run> begin_run(const Scene& scene, const RunDirectory& dir, const RunSettings& asked,
+                               RunListener& listener) {
+  auto run = std::make_unique<Run>(dir, scene, asked, listener);
+  run->check_before_start();
+  run->end_at(asked.steps, asked.until_ps);
+  listener.before_files();
+  check_finer_directory(dir, asked, false);
+  run->hold(create_run_directory(dir, asked.force));
+  write_file_atomically(dir.scene(), scene.text);
+  for (std::size_t k = 0; k < scene.sets.size(); ++k)
+    write_file_atomically(dir.parameters(k), read_file(scene.sets[k].path));
+  if (scene.from_file()) write_file_atomically(dir.state(), read_file(scene.source->file()));
+  run->tell_notes();
+  run->begin_files();
+  return run;
+}
+
+std::unique_ptr<Run> resume_run(const RunDirectory& dir, const ResumeSettings& asked, RunListener& listener) {
+  read_checkpoint(dir);  // is there one at all?
+  refuse_refined(dir);
+  check_finer_directory(dir, asked, true);
+  DirectoryLock lock(dir.path);
+  remove_parts(dir.path);
+  check_log_header(dir.log());
+  ResumePoint point = find_resume_point(dir);
+  use_instructions_of(point.checkpoint.origin, asked.instructions, listener);
+  const Scene scene = read_run_scene(dir);
+  RunOrigin origin = origin_of(dir, scene);
+  origin.instructions = point.checkpoint.origin.instructions;  // spoken of already
+  std::vector<std::string> notes =
+      judged_changes(changes_of(point.checkpoint.origin, origin, dir), asked.accept_changes, dir);
+  notes.insert(notes.end(), point.remarks.begin(), point.remarks.end());
+  for (const std::string& note : notes) listener.tell("note: " + note);
+  // The next one that is written must not take the place of the only good one.
+  if (point.path != dir.checkpoint()) std::filesystem::remove(dir.checkpoint());
+  auto run = std::make_unique<Run>(dir, scene, asked, listener);
+  run->hold(std::move(lock));
+  run->restore(std::move(point.checkpoint));
+  run->end_at(asked.steps, asked.until_ps);
+  run->check_end_lies_ahead();
+  listener.before_files();
+  run->write_manifest("running");
+  run->write_limits();
+  return run;
+}
+
+}  // namespace ropewalk

@@ -1,0 +1,85 @@
+#include "run/checkpoints.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "model/error.hpp"
+
+namespace ropewalk {
+
+RunCheckpoint Checkpoints::here() const {
+  RunCheckpoint c;
+  c.log = files_.log_mark();
+  c.frames = files_.frames_mark();
+  c.first_energy = moving_.first_energy;
+  c.wall_seconds = clock_.seconds();
+  c.control = moving_.control;
+  c.limits = limits_.file();
+  c.simulation = moving_.simulation.serialise();
+  return c;
+}
+
+void Checkpoints::set_mark() {
+  mark_ = std::make_shared<const RunCheckpoint>(here());
+  mark_step_ = moving_.state().step;
+}
+
+void Checkpoints::write(const FileMark& log, const FileMark& frames) {
+  const double began = steady_seconds();
+  RunCheckpoint c = here();
+  c.log = log;
+  c.frames = frames;
+  if (mark_ && mark_->simulation != c.simulation) c.mark = mark_;
+  c.origin = origin;
+  files_.write_checkpoint(c);
+  saved_step_ = moving_.state().step;
+  fails_ = false;
+  limits_.write();
+  files_.try_again();
+  longest_save_ = std::max(longest_save_, steady_seconds() - began);
+}
+
+void Checkpoints::save() {
+  files_.sync();
+  write(files_.log_mark(), files_.frames_mark());
+}
+
+void Checkpoints::save_if_possible() {
+  files_.sync();
+  try {
+    write(files_.log_mark(), files_.frames_mark());
+  } catch (const InputError& e) {
+    if (!fails_) listener_.tell(fmt::format("{}; the run goes on, and it is tried again", e.what()));
+    fails_ = true;
+  }
+}
+
+void Checkpoints::begin_interval() { due_ = steady_seconds() + moving_.scene.run.checkpoint_every; }
+
+void Checkpoints::save_if_due() {
+  if (steady_seconds() <= due_) return;
+  save_if_possible();
+  begin_interval();
+}
+
+void Checkpoints::save_end() {
+  save_if_possible();
+  if (fails_) save();
+  moving_.simulation.end_relaxation();  // saved as it was; final.csv is of a state at rest
+  files_.write_final_state(moving_);
+}
+
+void Checkpoints::save_mark() const {
+  if (!mark_ || mark_step_ <= saved_step_) return;
+  files_.sync();
+  RunCheckpoint c = *mark_;
+  c.origin = origin;
+  files_.write_checkpoint(c);
+}
+
+void Checkpoints::save_mark_over_later() {
+  if (saved_step_ > moving_.state().step) write(mark_->log, mark_->frames);
+}
+
+}  // namespace ropewalk

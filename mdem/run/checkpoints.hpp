@@ -1,0 +1,58 @@
+// The checkpoints of a run: on the disk for `resume`, and in memory to go back to.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "run/limit_guard.hpp"
+#include "run/run_checkpoint.hpp"
+#include "run/wall_time.hpp"
+
+namespace ropewalk {
+
+class Checkpoints {
+ public:
+  Checkpoints(MovingScene& moving, RunFiles& files, LimitGuard& limits, const RunClock& clock,
+              RunListener& listener)
+      : moving_(moving), files_(files), limits_(limits), clock_(clock), listener_(listener) {}
+
+  RunOrigin origin;
+
+  // The last good state; null: none yet.
+  const std::shared_ptr<const RunCheckpoint>& mark() const { return mark_; }
+  void set_mark();
+  void set_mark(std::shared_ptr<const RunCheckpoint> earlier) { mark_ = std::move(earlier); }
+
+  // Throws InputError where it cannot be written.
+  void save();
+  // The checkpoint before stands where it cannot be written, and it is tried again.
+  void save_if_possible();
+  void begin_interval();
+  void save_if_due();
+  // With final.csv. Throws InputError as save().
+  void save_end();
+  // The run broke off: the last good state is saved if it is newer than the checkpoint.
+  void save_mark() const;
+  // The run went back to the mark: a checkpoint later than this would know of more than log and frames then hold.
+  void save_mark_over_later();
+  // The state is that of the checkpoint on the disk.
+  void stands_at_checkpoint() { saved_step_ = moving_.state().step; }
+
+  double longest_save() const { return longest_save_; }  // s
+
+ private:
+  RunCheckpoint here() const;
+  void write(const FileMark& log, const FileMark& frames);
+
+  MovingScene& moving_;
+  RunFiles& files_;
+  LimitGuard& limits_;
+  const RunClock& clock_;
+  RunListener& listener_;
+  std::shared_ptr<const RunCheckpoint> mark_;
+  std::int64_t mark_step_ = 0, saved_step_ = -1;
+  double longest_save_ = 0, due_ = 0;  // s
+  bool fails_ = false;
+};
+
+}  // namespace ropewalk

@@ -1,0 +1,37 @@
+// The loop of a run over time steps.
+#pragma once
+
+#include <string>
+
+#include "run/run_parts.hpp"
+
+namespace ropewalk {
+
+class DynamicsLoop {
+ public:
+  explicit DynamicsLoop(RunParts& run) : run_(run) {}
+
+  // Throws NumericalError where the motion blows up and shorter steps do not help.
+  StopReason go();
+
+ private:
+  // A number of steps after which something is due.
+  struct Turn {
+    long count = 0;
+    std::int64_t step = 0;  // at its end
+    bool last = false, logged = false, marked = false, framed = false, checked = false;
+  };
+  Turn next_turn() const;
+  // False where the run went back.
+  bool advance(const Turn& turn);
+  // Whether the run ends after it.
+  StopReason end_of(const Turn& turn);
+  bool is_decided();
+  std::string status() const;
+
+  RunParts& run_;
+  StopReason stop_ = StopReason::none;  // the run ends after a step with energies: this one, or the next
+  double seconds_of_a_step_ = RunSchedule::patience;
+};
+
+}  // namespace ropewalk

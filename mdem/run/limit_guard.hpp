@@ -1,0 +1,48 @@
+// What a run does about its limits: it says which are passed, keeps limits.json, and may end for one.
+#pragma once
+
+#include <vector>
+
+#include "run/limit_watch.hpp"
+#include "run/run_files.hpp"
+#include "run/run_schedule.hpp"
+#include "run/stop_reason.hpp"
+
+namespace ropewalk {
+
+class LimitGuard {
+ public:
+  LimitGuard(OnLimit on_limit, const MovingScene& moving, const RunSchedule& schedule, RunFiles& files,
+             RunListener& listener);
+
+  // Throws InputError where elements are to be split and cannot be.
+  void check_before_start() const;
+  // Says what is passed for the first time, and whether the run is to end here for it. The pressure costs several
+  // steps.
+  StopReason check(bool with_pressure);
+
+  // Of a run that goes on. What was passed after `step` had not happened.
+  void inherit(const LimitsFile& earlier, std::int64_t step);
+  // The run went back to a state with these records.
+  void go_back_to(const LimitsFile& earlier, std::int64_t step) { watch_.inherit_from(earlier.limits, step); }
+  void add(const RefinementRecord& refinement) { refinements_.push_back(refinement); }
+
+  // What was passed, and only said, may be cured now.
+  bool would_refine() const;
+  const std::vector<LimitRecord>& records() const { return watch_.records(); }
+  LimitsFile file() const { return {watch_.records(), refinements_}; }
+  void write() { files_.write_limits(file()); }
+
+ private:
+  double drift() const;
+
+  OnLimit on_limit_;
+  const MovingScene& moving_;
+  const RunSchedule& schedule_;
+  RunFiles& files_;
+  RunListener& listener_;
+  LimitWatch watch_;
+  std::vector<RefinementRecord> refinements_;
+};
+
+}  // namespace ropewalk

@@ -1,0 +1,33 @@
+// A scene in motion, and the account of its energy since the start.
+#pragma once
+
+#include "io/limits_file.hpp"
+#include "run/run_directory.hpp"
+#include "run/step_control.hpp"
+
+namespace ropewalk {
+
+// Without the forces at the ends. `first`, `first_energy` (eV): potential and total energy at the start.
+EnergyAccount account_of(const Scene& scene, const Simulation& simulation, const Energies& first,
+                         double first_energy);
+
+struct MovingScene {
+  explicit MovingScene(Scene of);
+
+  const State& state() const { return simulation.state(); }
+  bool relaxes() const { return scene.run.mode == RunOptions::Mode::relax; }
+  EnergyAccount account() const { return account_of(scene, simulation, first, first_energy); }
+  EnergyParts energies() const;
+  // All observables. Forces at the ends are means since the last row.
+  LogRow row();
+
+  Scene scene;
+  Prepared prepared;
+  Observer observer;
+  Simulation simulation;
+  StepControl control;
+  Energies first;
+  double first_energy = 0;
+};
+
+}  // namespace ropewalk

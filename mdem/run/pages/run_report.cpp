@@ -1,0 +1,188 @@
+// report.html from the files of a run.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "io/files.hpp"
+#include "io/frames/frames.hpp"
+#include "io/grade.hpp"
+#include "model/error.hpp"
+#include "report/report.hpp"
+#include "run/pages/run_views.hpp"
+#include "run/plan_check.hpp"
+#include "run/run_directory.hpp"
+#include "scene/scene_to_model.hpp"
+
+namespace ropewalk {
+namespace {
+
+constexpr std::size_t pictured = 6;
+
+std::vector<StoredFrame> read_frames(const RunDirectory& dir, const Topology& topology) {
+  const auto reader = open_frames(dir.frames());
+  const std::size_t all = reader->count(topology), some = std::min(all, pictured);
+  std::vector<StoredFrame> out(some);
+  // First, last and evenly between.
+  for (std::size_t k = 0; k < some; ++k) {
+    reader->seek(some < pictured ? k : k * (all - 1) / (pictured - 1));
+    reader->next(topology, out[k]);
+  }
+  return out;
+}
+
+void add_run_facts(const Scene& scene, const Prepared& p, const Manifest& m, ReportInput& in) {
+  const auto add = [&](std::string key, std::string value, std::string remark = "") {
+    in.facts.push_back({std::move(key), std::move(value), std::move(remark)});
+  };
+  const Topology& t = p.topology;
+  add("scene", scene.name, "hash " + scene.hash);
+  add("tubes", fmt::format("{} with {} elements of {:.4g} nm in all", t.tubes(), t.elements(), t.longest_element()),
+      t.tubes() > 0 ? fmt::format("the first is {:.4g} nm long", t.length_of(0) * t.longest_element()) : "");
+  for (std::size_t k = 0; k < scene.sets.size(); ++k) {
+    const auto tubes = std::count(t.tube_type.begin(), t.tube_type.end(), static_cast<int>(k));
+    add(k == 0 ? "parameters" : "parameters, type " + std::to_string(k), scene.sets[k].name,
+        (scene.sets.size() > 1 ? fmt::format("{} tubes, ", tubes) : "") + "hash " + scene.sets[k].hash);
+    add("grade", grade_of(scene.sets[k]).words(), "how far the set stands for its tube");
+  }
+  add("contact law", scene.contact.law,
+      scene.contact.legacy_torque ? "legacy torque: not a gradient, energy is not conserved" : "full gradient");
+  add("damping", fmt::format("contact viscosity {:.4g} eV ps/nm^2, bonds {:.4g} 1/ps, PFC local {:.4g}",
+                             scene.damping.contact.eta, scene.damping.bond.rate, scene.damping.local));
+  if (scene.thermostat)
+    add("thermostat", fmt::format("{}, {} K", scene.thermostat->method, words_of(scene.thermostat->temperature)),
+        fmt::format("coupling {:.4g} 1/ps, seed {}", scene.thermostat->coupling, scene.thermostat->seed));
+  for (const SceneGrip& g : scene.grips) add("grip", g.grip->words());
+  if (scene.twist) {
+    const TwistLoad& w = *scene.twist;
+    add("twist",
+        fmt::format("{:.4g} nN nm {} as {}", w.moment / units::nN_nm,
+                    w.reading == TwistLoad::Reading::per_tube ? "per tube" : "in total",
+                    w.application == TwistLoad::Application::couple ? "couples" : "tangential forces"),
+        fmt::format("ramp {:.4g} ps, hold {:.4g} ps{}", w.ramp_time(), w.hold,
+                    w.geometric_only ? "; spins relaxed at each increment" : ""));
+  }
+  const int every = scene.run.stepping.contact_every;
+  add("time step", fmt::format("{:.4g} fs", p.time_step / every / units::fs),
+      fmt::format("stability limit {:.4g} fs{}", inner_step_limit(p.limit, every) / units::fs,
+                  every > 1 ? fmt::format("; contact every {} steps", every) : ""));
+  for (const std::string& words : warmth_of(scene, p)) add("temperature", words);
+  add("seed", fmt::format("{}", m.seed));
+  add("program", fmt::format("ropewalk {} ({})", m.version, m.git_id),
+      fmt::format("{}, {}", m.compiler, m.build_type));
+  add("wall time", fmt::format("{:.0f} s on {} threads", m.wall_seconds, m.threads), "started " + m.started);
+}
+
+// Within some twenty degrees of one direction.
+bool are_parallel(const State& state) {
+  Vector3 sum = Vector3::Zero();
+  for (std::size_t i = 0; i < state.size(); ++i) sum += axis_of(state.orientation[i]);
+  const Vector3 mean = sum.normalized();
+  for (std::size_t i = 0; i < state.size(); ++i)
+    if (axis_of(state.orientation[i]).dot(mean) < 0.94) return false;
+  return true;
+}
+
+ReportLoading loading_of(const Topology& topology, const State& state, const LoadingReference& reference) {
+  ReportLoading out;
+  out.time_ps = state.time;
+  out.radius = reference.radius;
+  if (reference.law && reference.cell > 0)
+    for (const double pressure : tube_pressures(topology, state, reference))
+      out.pressure_GPa.push_back(pressure / units::nN_nm);  // nN/nm^2
+  for (int t = 0; t < topology.tubes(); ++t) {
+    out.tension_nN.emplace_back();
+    for (const double tension : tensions(topology, state, t))
+      out.tension_nN.back().push_back(tension / units::nN_nm);
+  }
+  return out;
+}
+
+// Not where the run has gone on since.
+bool has_view(const RunDirectory& dir) {
+  std::error_code none;
+  const auto view = std::filesystem::last_write_time(dir.view(), none);
+  return !none && view >= std::filesystem::last_write_time(dir.frames(), none) && !none;
+}
+
+ReportInput gather(const RunDirectory& dir, const Scene& scene, const Prepared& p) {
+  ReportInput in;
+  const Manifest m = read_manifest(dir.manifest());
+  in.name = scene.name;
+  in.status = m.status;
+  in.reason = m.reason;
+  add_run_facts(scene, p, m, in);
+  in.warnings = warnings_of(scene, p.topology);
+  for (const ParameterSet& set : scene.sets)
+    if (const Grade grade = grade_of(set); grade.level != Grade::Level::good)
+      in.warnings.push_back("Parameters " + set.name + " are " + grade.words() + ".");
+  in.log = read_log(dir.log());
+  in.errors = read_run_errors(dir.path, in.log);
+  in.error_bars = error_bars_of(scene, p.topology, in.log);
+  if (const std::string words = plan_words(dir, scene, m); !words.empty())
+    in.error_bars.insert(in.error_bars.begin(), words);
+  if (scene.twist) in.ramp_end_ps = scene.twist->ramp_time();
+  in.tube_radius = p.topology.largest_radius();
+  in.spacing = p.spacing;
+  in.element_length = p.topology.longest_element();
+  in.tubes = p.topology.tubes();
+  in.bonds = p.topology.bonds();
+  if (scene.sets.size() == 1)
+    in.validity = validities(scene, p.topology).front();  // of more than one, no number holds for all
+  if (std::filesystem::exists(dir.limits())) in.watched = read_limits(dir.limits());
+  const Observer observer = make_observer(scene, p);
+  in.rope = is_rope(p, observer);
+  in.loaded = !p.loads.empty();
+  in.shells = observer.shells;
+  for (const StoredFrame& frame : read_frames(dir, p.topology)) {
+    const RopeObservation o = observe(observer, scene, p.topology, frame.state);
+    const double beta = o.beta / units::degree;
+    in.sections.push_back({frame.state.time, beta, o.middle, o.radius_profile});
+    in.views.push_back(view_of(p.topology, frame, beta));
+    if (in.rope) in.loading.push_back(loading_of(p.topology, frame.state, observer.loading));
+  }
+  in.in_space = has_view(dir);
+  in.parameter_name = scene.parameters().name;
+  in.parameter_reference = scene.parameters().reference;
+  in.parameters = scene.parameters().quantities;
+  return in;
+}
+
+}  // namespace
+
+bool is_rope(const Prepared& p, const Observer& observer) {
+  return p.topology.tubes() > 1 && !observer.loading.radius.empty() && are_parallel(p.state);
+}
+
+RopeView view_of(const Topology& topology, const StoredFrame& frame, double beta_deg) {
+  RopeView view;
+  view.time_ps = frame.state.time;
+  view.beta_deg = beta_deg;
+  const auto& moment = frame.colours.bending_moment;
+  for (int t = 0; t < topology.tubes(); ++t) {
+    const int from = topology.tube_begin[t], to = topology.tube_begin[t + 1];
+    std::vector<Vector3> line;
+    for (int e = from; e < to; ++e) line.push_back(frame.state.position[static_cast<std::size_t>(e)]);
+    view.tubes.push_back(std::move(line));
+    if (!moment.empty()) view.bending_moment_eV.emplace_back(moment.begin() + from, moment.begin() + to);
+  }
+  return view;
+}
+
+std::optional<RopeView> last_view(const RunDirectory& dir, const Scene& scene, const Prepared& prepared) {
+  const std::optional<StoredFrame> frame = last_frame(dir.frames(), prepared.topology);
+  if (!frame) return {};
+  const double beta = observe(make_observer(scene, prepared), scene, prepared.topology, frame->state).beta;
+  return view_of(prepared.topology, *frame, beta / units::degree);
+}
+
+std::string report_of(const RunDirectory& dir, const Scene& scene, const Prepared& prepared) {
+  return report_html(gather(dir, scene, prepared));
+}
+
+void write_report(const RunDirectory& dir, const Scene& scene, const Prepared& prepared) {
+  write_file_atomically(dir.report(), report_of(dir, scene, prepared));
+}
+
+}  // namespace ropewalk

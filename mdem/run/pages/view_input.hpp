@@ -1,0 +1,13 @@
+// What the page in space shows of a run.
+#pragma once
+
+#include "report/view/view_page.hpp"
+#include "run/run_directory.hpp"
+
+namespace ropewalk {
+
+// Of at most so many frames, evenly over the run. Throws InputError where there are none.
+ViewInput view_input(const RunDirectory& dir, const Scene& scene, const Prepared& prepared,
+                     std::size_t most_frames);
+
+}  // namespace ropewalk

@@ -1,0 +1,67 @@
+#include "run/relaxation_loop.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace ropewalk {
+
+StopReason RelaxationLoop::go() {
+  Simulation& simulation = run_.moving.simulation;
+  const RunOptions& options = run_.moving.scene.run;
+  const std::int64_t last_step = run_.schedule.last_step();
+  const long max_steps =
+      last_step >= 0 ? std::max<long>(0, last_step - simulation.relaxation_began()) : options.max_steps;
+  run_.listener.begin_loop(0, 0);
+  run_.checkpoints.begin_interval();
+  const Relaxed end = simulation.relax(options.goal, max_steps, [this](long step) { return goes_on_after(step); });
+  run_.listener.end_loop();
+  // In the middle of the relaxation, from where `resume` goes on.
+  if (stop_ == StopReason::asked || stop_ == StopReason::wall_time) return stop_;
+  simulation.end_relaxation();
+  if (run_.state().step != run_.first_step) {
+    run_.write_row();
+    run_.write_frame();
+  }
+  if (stop_ == StopReason::none) stop_ = run_.limits.check(true);
+  if (stop_ != StopReason::none) return stop_;
+  run_.at_rest = end.at_rest;
+  run_.reason = words_of(end, max_steps);
+  return StopReason::complete;
+}
+
+bool RelaxationLoop::goes_on_after(long step) {
+  if (step % 100 == 0) {
+    if (run_.state().step != run_.first_step) run_.write_row();
+    stop_ = run_.limits.check(false);
+    run_.way_back.set_mark();
+  }
+  if (run_.listener.wants_progress()) run_.listener.progress(static_cast<double>(step), status());
+  if (stop_ == StopReason::none) stop_ = run_.asked_to_stop();
+  if (stop_ == StopReason::none && RunSchedule::has_pause(step)) run_.checkpoints.save_if_due();
+  return stop_ == StopReason::none;
+}
+
+std::string RelaxationLoop::words_of(const Relaxed& end, long max_steps) const {
+  const RelaxGoal& goal = run_.moving.scene.run.goal;
+  const std::string left = fmt::format("{:.2g} eV above the minimum, that of the bonds within {:.2g} of its value",
+                                       end.above, end.error);
+  if (end.at_rest && std::isinf(end.above))
+    return fmt::format(
+        "relaxed: largest force {:.3g} eV/nm; on a saddle, or along some soft motion the energy may still fall",
+        end.force);
+  if (end.at_rest)
+    return fmt::format("relaxed: largest force below {:.3g} eV/nm; energy {}, by estimate", goal.force, left);
+  const std::string words = fmt::format("not relaxed after {} steps: largest force {:.3g} eV/nm, {:.3g} asked for",
+                                        max_steps, end.force, goal.force);
+  if (std::isinf(end.above)) return words + "; the energy may still fall along some motion: no minimum is near";
+  return std::isfinite(end.above) ? words + fmt::format("; energy {}, {:.2g} asked for", left, goal.energy) : words;
+}
+
+std::string RelaxationLoop::status() const {
+  const Energies& e = run_.moving.simulation.forces().energy;
+  return fmt::format("twist {:.0f}  bend {:.0f}  vdW {:.0f} eV", e.twist, e.bend, e.vdw);
+}
+
+}  // namespace ropewalk

@@ -1,0 +1,152 @@
+#include "run/run.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "io/failure.hpp"
+#include "model/error.hpp"
+#include "run/dynamics_loop.hpp"
+#include "run/plan_check.hpp"
+#include "run/refined_run.hpp"
+#include "run/relaxation_loop.hpp"
+#include "run/run_manifest.hpp"
+
+namespace ropewalk {
+
+void Run::write_manifest(const char* status, const std::string& reason) {
+  parts_.files.write_manifest(manifest_of(parts_, status, reason));
+}
+
+// A report that cannot be drawn can be made later.
+void Run::write_end(const char* status, const std::string& reason) {
+  const RunDirectory& dir = parts_.files.directory();
+  write_manifest(status, reason);
+  try {
+    parts_.files.write_report(report_of(dir, parts_.moving.scene, parts_.moving.prepared));
+  } catch (const std::exception& e) {
+    parts_.listener.tell(
+        fmt::format("no report: {}; make it with: ropewalk report {}", failure_words(e), dir.path));
+  }
+  parts_.files.try_again();
+}
+
+RunResult Run::go() {
+  parts_.clock.since = steady_seconds();
+  try {
+    switch (parts_.moving.relaxes() ? RelaxationLoop(parts_).go() : DynamicsLoop(parts_).go()) {
+      case StopReason::limit:
+        return stopped_at_limit();
+      case StopReason::refine:
+        return refined();
+      case StopReason::wall_time:
+        return stopped(RunEnd::wall_time);
+      case StopReason::asked:
+        return stopped(RunEnd::asked);
+      case StopReason::complete:
+      case StopReason::none:
+        break;
+    }
+    return finish();
+  } catch (const NumericalError& e) {
+    return failed(e);
+  } catch (const std::exception& e) {
+    return broken_off(e);
+  }
+}
+
+RunResult Run::result(RunEnd end, const std::string& reason) const {
+  RunResult r;
+  r.end = end;
+  r.directory = parts_.files.directory();
+  r.reason = reason;
+  r.passed = passed_words(parts_.limits.records());
+  r.missing = parts_.files.missing();
+  r.steps = parts_.state().step;
+  r.time_ps = parts_.state().time;
+  r.wall_seconds = parts_.clock.seconds();
+  r.relaxes = parts_.moving.relaxes();
+  return r;
+}
+
+RunResult Run::finish() {
+  parts_.checkpoints.save_end();
+  write_end(parts_.at_rest ? "finished" : "not relaxed", parts_.reason);
+  RunResult r = result(parts_.at_rest ? RunEnd::finished : RunEnd::not_relaxed, parts_.reason);
+  if (r.missing.empty())
+    r.plan = plan_words(r.directory, parts_.moving.scene, read_manifest(r.directory.manifest()));
+  else
+    r.end = RunEnd::incomplete;
+  return r;
+}
+
+RunResult Run::stopped_at_limit() {
+  parts_.checkpoints.save_end();
+  const std::string reason = fmt::format("stopped at {:.3f} ps where a limit was passed: {}", parts_.state().time,
+                                         passed_words(parts_.limits.records()));
+  write_end("stopped", reason);
+  return result(RunEnd::at_limit, reason);
+}
+
+RunResult Run::stopped(RunEnd end) {
+  parts_.checkpoints.save_end();
+  const std::string reason = fmt::format("stopped {} at {:.3f} ps", parts_.asked_by, parts_.state().time);
+  write_manifest("interrupted", reason);
+  parts_.files.try_again();
+  return result(end, reason);
+}
+
+// This run ends here, whole; the next one is made of it.
+RunResult Run::refined() {
+  parts_.checkpoints.save_end();
+  const RunDirectory& from = parts_.files.directory();
+  const RunDirectory to = finer_directory(from);
+  DirectoryLock lock = write_finer_scene(from, parts_.moving.scene, parts_.moving.prepared, parts_.state().time,
+                                         parts_.settings.force);
+  auto next = std::make_unique<Run>(to, read_run_scene(to), parts_.settings, parts_.listener);
+  next->hold(std::move(lock));
+  const RefinementRecord split = go_on_finer(parts_, next->parts_);
+  next->begin_files();
+  parts_.limits.add(split);
+  write_limits();
+  write_end("refined",
+            fmt::format("every element was split at {:.3f} ps; it goes on in {}", split.time_ps, split.to));
+  parts_.listener.tell(refinement_words(split, to));
+  RunResult r;
+  r.next = std::move(next);
+  return r;
+}
+
+RunResult Run::failed(const std::exception& e) {
+  write_limits();
+  parts_.files.write_failed_state(parts_.moving);
+  write_end("failed", e.what());
+  RunResult r = result(RunEnd::failed, e.what());
+  r.error = std::current_exception();
+  return r;
+}
+
+// The last good state is saved if that is still possible.
+RunResult Run::broken_off(const std::exception& e) {
+  const std::string why = failure_words(e);
+  std::exception_ptr error = std::current_exception();
+  try {
+    parts_.checkpoints.save_mark();
+  } catch (const std::exception&) {
+    // The last checkpoint stands.
+  }
+  write_manifest("interrupted", why);
+  RunResult r = result(RunEnd::broken_off, why);
+  r.error = std::move(error);
+  return r;
+}
+
+RunResult go_through(std::unique_ptr<Run> run) {
+  for (;;) {
+    RunResult result = run->go();
+    if (!result.next) return result;
+    run = std::move(result.next);
+  }
+}
+
+}  // namespace ropewalk

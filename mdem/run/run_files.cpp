@@ -1,0 +1,41 @@
+#include "run/run_files.hpp"
+
+#include <filesystem>
+
+#include "run/colours.hpp"
+#include "scene/state_csv.hpp"
+
+namespace ropewalk {
+
+void RunFiles::open(FrameFormat format, std::uint64_t log_bytes, std::uint64_t frame_bytes,
+                    std::size_t expected_frames) {
+  log_ = std::make_unique<GrowingFile>(dir_.log(), log_bytes);
+  const std::string there = dir_.frames();
+  if (std::filesystem::exists(there)) format = format_of(there);
+  frames_ = frame_writer(dir_.frames(format), format, frame_bytes, expected_frames);
+}
+
+void RunFiles::write_header() { log_->write(log_header()); }
+
+void RunFiles::write_row(const LogRow& row) { log_->write(log_line(row)); }
+
+void RunFiles::write_frame(const MovingScene& m) {
+  frames_->write(m.prepared.topology, m.state(),
+                 element_colours(m.prepared.topology, m.prepared.interaction, m.state()));
+}
+
+void RunFiles::cut(const FileMark& log, const FileMark& frames) {
+  log_->cut(log.bytes);
+  frames_->cut(frames.bytes);
+}
+
+void RunFiles::sync() {
+  log_->sync();
+  frames_->sync();
+}
+
+void RunFiles::write_state(const std::string& path, const MovingScene& m) {
+  pending_.write(path, state_csv(m.prepared.topology, m.state()));
+}
+
+}  // namespace ropewalk

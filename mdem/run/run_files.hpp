@@ -1,0 +1,57 @@
+// The files that a run writes while it goes on.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "io/frames/frames.hpp"
+#include "io/growing_file.hpp"
+#include "run/moving_scene.hpp"
+#include "run/pending_files.hpp"
+#include "run/run_checkpoint.hpp"
+
+namespace ropewalk {
+
+class RunFiles {
+ public:
+  RunFiles(RunDirectory dir, RunListener& listener) : dir_(std::move(dir)), pending_(listener) {}
+
+  const RunDirectory& directory() const { return dir_; }
+  // From now on no other process writes in the directory.
+  void hold(DirectoryLock lock) { lock_ = std::move(lock); }
+
+  // Log and frames, made or cut back to so many bytes.
+  void open(FrameFormat format, std::uint64_t log_bytes, std::uint64_t frame_bytes, std::size_t expected_frames);
+  void write_header();
+  void write_row(const LogRow& row);
+  void write_frame(const MovingScene& moving);
+  // What was written after this did not happen.
+  void cut(const FileMark& log, const FileMark& frames);
+  FileMark log_mark() const { return log_->mark(); }
+  FileMark frames_mark() const { return frames_->mark(); }
+  // What a checkpoint knows of log and frames is on the disk before it.
+  void sync();
+
+  // Throws InputError where it cannot be written; the checkpoint before it then stands.
+  void write_checkpoint(const RunCheckpoint& checkpoint) const { ropewalk::write_checkpoint(dir_, checkpoint); }
+  // These end no run where they cannot be written.
+  void write_limits(const LimitsFile& limits) { pending_.write(dir_.limits(), limits_json(limits)); }
+  void write_manifest(const Manifest& manifest) { pending_.write(dir_.manifest(), manifest_json(manifest)); }
+  void write_final_state(const MovingScene& moving) { write_state(dir_.final_state(), moving); }
+  void write_failed_state(const MovingScene& moving) { write_state(dir_.failed_state(), moving); }
+  void write_report(std::string page) { pending_.write(dir_.report(), std::move(page)); }
+  void try_again() { pending_.try_again(); }
+  std::string missing() const { return pending_.names(); }  // could not be written
+
+ private:
+  void write_state(const std::string& path, const MovingScene& moving);
+
+  RunDirectory dir_;
+  DirectoryLock lock_;
+  std::unique_ptr<GrowingFile> log_;
+  std::unique_ptr<FrameWriter> frames_;
+  PendingFiles pending_;
+};
+
+}  // namespace ropewalk

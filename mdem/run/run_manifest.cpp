@@ -1,0 +1,35 @@
+#include "run/run_manifest.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <omp.h>
+
+#include "sim/contact/line/engine.hpp"
+#include "version.hpp"
+
+namespace ropewalk {
+
+Manifest manifest_of(const RunParts& run, const std::string& status, const std::string& reason) {
+  const Scene& scene = run.moving.scene;
+  Manifest m;
+  m.version = version;
+  m.git_id = git_id;
+  m.compiler = compiler;
+  m.build_type = build_type;
+  m.instructions = instructions_in_use();
+  m.threads = omp_get_max_threads();
+  m.seed = scene.start.seed;
+  m.scene_hash = scene.hash;
+  m.parameter_hash = scene.parameters().hash;
+  m.grade = fmt::format("{}", fmt::join(grades_of(scene), "; "));
+  m.started = run.clock.begun;
+  m.wall_seconds = run.clock.seconds();
+  m.steps = run.state().step;
+  m.time_step_fs = run.moving.prepared.time_step / units::fs;
+  m.status = status;
+  m.reason = reason;
+  m.scene = scene.name;
+  return m;
+}
+
+}  // namespace ropewalk

@@ -1,0 +1,41 @@
+// What a run consists of. Its loops work on these.
+#pragma once
+
+#include <string>
+
+#include "run/run_settings.hpp"
+#include "run/way_back.hpp"
+
+namespace ropewalk {
+
+struct RunParts {
+  RunParts(RunDirectory dir, Scene scene, const RunSettings& asked, RunListener& follower);
+  RunParts(const RunParts&) = delete;
+  RunParts& operator=(const RunParts&) = delete;
+
+  const State& state() const { return moving.state(); }
+  void write_row();
+  void write_frame() { files.write_frame(moving); }
+  // Whether somebody asks for an end: the listener, or the wall time.
+  StopReason asked_to_stop();
+
+  RunSettings settings;
+  RunListener& listener;
+  RunClock clock;
+  MovingScene moving;
+  RunSchedule schedule;
+  StopWatch stops;
+  RunFiles files;
+  LimitGuard limits;
+  Checkpoints checkpoints;
+  WayBack way_back;
+
+  LogRow last_row;
+  std::int64_t first_step = -1;           // its row and frame were there when the run began or went on
+  StopReason at_once = StopReason::none;  // before the first step
+  std::string asked_by;                   // who asked for an end
+  std::string reason;                     // of the end, in words
+  bool at_rest = true;                    // false: a relaxation ran out of steps
+};
+
+}  // namespace ropewalk

@@ -1,0 +1,47 @@
+// When a run writes and checks, and where it ends, in time steps.
+#pragma once
+
+#include <cstdint>
+
+#include "scene/prepare.hpp"
+
+namespace ropewalk {
+
+class RunSchedule {
+ public:
+  RunSchedule(const Scene& scene, const Prepared& prepared);
+
+  // The end at a step or a time (ps); negative: not asked for. Throws InputError for the time of a relaxation.
+  void end_at(long steps, double ps);
+  // From this step and time (ps) on steps are of this length (ps). The end is the scene's.
+  void count_from(std::int64_t step, double time, double time_step);
+
+  std::int64_t last_step() const { return last_step_; }  // -1: of a relaxation, which ends by itself
+  bool ends_with_the_scene() const;
+  std::size_t expected_frames() const { return expected_frames_; }  // of the whole scene
+  bool has_row(std::int64_t step) const { return step % log_every_ == 0; }
+  bool has_frame(std::int64_t step) const { return step % frames_every_ == 0; }
+  bool has_check(std::int64_t step) const { return step % check_every_ == 0; }
+  static bool has_pause(std::int64_t step) { return step % pause_every == 0; }  // for a checkpoint, if one is due
+  // Until something is written or checked, or somebody waits for an answer.
+  long steps_to_next(std::int64_t step, double seconds_of_a_step) const;
+
+  static constexpr double patience = 0.5;  // s, of who wants to stop a run
+
+ private:
+  static constexpr long pause_every = 16;
+
+  std::int64_t step_at(double ps) const;
+
+  double log_interval_, frames_interval_, duration_;  // ps
+  bool relaxes_;
+  struct {
+    std::int64_t step = 0;
+    double time = 0, time_step = 0;
+  } counted_from_;
+  long log_every_ = 1, frames_every_ = 1, check_every_ = 1;
+  std::int64_t last_step_ = -1;
+  std::size_t expected_frames_ = 0;
+};
+
+}  // namespace ropewalk

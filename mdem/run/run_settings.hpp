@@ -1,0 +1,24 @@
+// What is asked of a run besides its scene.
+#pragma once
+
+#include <string>
+
+#include "run/limit_watch.hpp"
+#include "run/wall_time.hpp"
+
+namespace ropewalk {
+
+struct RunSettings {
+  long steps = -1;       // time step at which it stops; -1: the scene's end
+  double until_ps = -1;  // time at which it stops; -1: the scene's end
+  OnLimit on_limit = OnLimit::warn;
+  WallTime wall_time;
+  bool force = false;  // replace an earlier run
+};
+
+struct ResumeSettings : RunSettings {
+  std::string instructions;     // empty: those that the run was begun with
+  bool accept_changes = false;  // of scene, sets or program
+};
+
+}  // namespace ropewalk

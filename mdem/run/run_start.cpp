@@ -1,0 +1,105 @@
+// A run before its loop: checks, first files, and what a checkpoint brings back.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "model/error.hpp"
+#include "plan/forecast.hpp"
+#include "run/run.hpp"
+
+namespace ropewalk {
+
+void Run::check_before_start() const {
+  refuse_cooling(parts_.moving.scene, parts_.moving.prepared);
+  parts_.limits.check_before_start();
+}
+
+void Run::check_end_lies_ahead() const {
+  const State& at = parts_.state();
+  const RunSettings& asked = parts_.settings;
+  const std::int64_t last_step = parts_.schedule.last_step();
+  if ((asked.steps < 0 && asked.until_ps < 0) || last_step > at.step) return;
+  // Killed where it was to end anyway: what is left is to say so.
+  const std::string manifest = parts_.files.directory().manifest();
+  if (last_step == at.step && (!std::filesystem::exists(manifest) || read_manifest(manifest).status == "running"))
+    return;
+  throw InputError(
+      {"", 0, asked.steps < 0 ? "--until" : "--steps"},
+      fmt::format("ends at step {}, and the run stands at step {}, {:.4g} ps", last_step, at.step, at.time),
+      "choose a later end, or run the scene anew");
+}
+
+void Run::tell_notes() const {
+  const Scene& scene = parts_.moving.scene;
+  const Prepared& prepared = parts_.moving.prepared;
+  for (const std::string& grade : grades_of(scene)) parts_.listener.tell_detail("parameters " + grade);
+  for (const auto& notes :
+       {warnings_of(scene, prepared.topology), warmth_of(scene, prepared), limits_ahead(scene, prepared)})
+    for (const std::string& note : notes) parts_.listener.tell("note: " + note);
+}
+
+void Run::begin_files() {
+  RunParts& p = parts_;
+  const Scene& scene = p.moving.scene;
+  p.checkpoints.origin = origin_of(p.files.directory(), scene);
+  write_manifest("running");  // before the checkpoint: it has the name of the scene
+  p.files.open(scene.run.frames_format, 0, 0, p.schedule.expected_frames());
+  p.files.write_header();
+  p.write_row();
+  p.write_frame();
+  p.first_step = p.state().step;
+  if (!p.moving.relaxes() && p.state().step < p.schedule.last_step() &&
+      std::isfinite(p.moving.simulation.total_energy()))
+    p.at_once = p.limits.check(true);
+  p.checkpoints.save();
+}
+
+void Run::restore(RunCheckpoint c) {
+  RunParts& p = parts_;
+  const RunDirectory& dir = p.files.directory();
+  try {
+    if (c.mark) p.way_back.restore(*c.mark);
+    p.moving.simulation.restore(c.simulation);
+  } catch (const std::runtime_error& e) {
+    throw InputError({dir.checkpoint(), 0, ""}, e.what(), "start the run anew with `ropewalk run`");
+  }
+  keep_time_step();
+  p.moving.first_energy = c.first_energy;
+  p.moving.control = c.control;
+  p.clock.earlier = c.wall_seconds;
+  p.checkpoints.origin = origin_of(dir, p.moving.scene);
+  p.files.open(p.moving.scene.run.frames_format, c.log.bytes, c.frames.bytes, p.schedule.expected_frames());
+  p.limits.inherit(c.limits, p.state().step);
+  if (!p.stops.empty())
+    for (const LogRow& earlier : read_log(dir.log())) p.stops.add(earlier);
+  if (p.limits.would_refine()) p.at_once = p.limits.check(true);
+  p.checkpoints.stands_at_checkpoint();
+  p.first_step = p.state().step;
+  if (c.mark)
+    p.checkpoints.set_mark(c.mark);
+  else
+    p.way_back.set_mark();
+  // Left by the end that it had before; written anew at the next.
+  std::error_code ignored;
+  for (const std::string& path : {dir.final_state(), dir.plan_check()}) std::filesystem::remove(path, ignored);
+}
+
+// The checkpoint may be of a scene with another time step, which then stays.
+void Run::keep_time_step() {
+  MovingScene& m = parts_.moving;
+  const double kept = m.simulation.time_step();
+  if (kept == m.prepared.time_step) return;
+  const int parts = m.scene.run.stepping.contact_every;
+  const double limit = inner_step_limit(m.prepared.limit, parts), step = kept / parts;
+  if (step >= limit)
+    throw InputError({parts_.files.directory().checkpoint(), 0, ""},
+                     fmt::format("has a time step of {:.4g} fs, and the changed scene bears less than {:.4g} fs",
+                                 step / units::fs, limit / units::fs),
+                     "start the run anew with `ropewalk run`");
+  parts_.listener.tell(fmt::format("note: the time step stays {:.4g} fs", step / units::fs));
+  m.prepared.time_step = kept;
+  parts_.schedule.count_from(m.state().step, m.state().time, kept);
+}
+
+}  // namespace ropewalk

@@ -1,0 +1,40 @@
+#include "run/way_back.hpp"
+
+#include <fmt/format.h>
+
+namespace ropewalk {
+
+void WayBack::set_mark() {
+  checkpoints_.set_mark();
+  energy_ = energy_mark(moving_.simulation);
+}
+
+void WayBack::restore(const RunCheckpoint& mark) {
+  moving_.simulation.restore(mark.simulation);
+  energy_ = energy_mark(moving_.simulation);
+}
+
+bool WayBack::is_sound() const {
+  return moving_.scene.contact.legacy_torque || account_closes(energy_, moving_.simulation);
+}
+
+bool WayBack::go_back(const std::string& why) {
+  Simulation& simulation = moving_.simulation;
+  const int divided = simulation.divided();
+  const double time = simulation.state().time;
+  if (divided >= StepControl::most) return false;
+  const RunCheckpoint& c = *checkpoints_.mark();
+  simulation.restore(c.simulation);
+  moving_.control.shorten(divided, simulation);
+  limits_.go_back_to(c.limits, simulation.state().step);
+  stops_.cut(simulation.state().step);
+  checkpoints_.save_mark_over_later();
+  files_.cut(c.log, c.frames);
+  // The remedy, after the semicolon of the message, is left out: a shorter step is what the run takes now.
+  listener_.tell(fmt::format("{:.4g} ps: {}; back to {:.4g} ps, on with steps of {:.3g} fs", time,
+                             why.substr(0, why.find(';')), simulation.state().time,
+                             simulation.time_step() / simulation.divided() / units::fs));
+  return true;
+}
+
+}  // namespace ropewalk

@@ -1,0 +1,42 @@
+// The way of a run back to its last good state, where the motion blows up or the account of energy does not close.
+// Steps are shorter from there on (run/step_control.hpp).
+#pragma once
+
+#include <string>
+
+#include "run/checkpoints.hpp"
+#include "run/stop_watch.hpp"
+
+namespace ropewalk {
+
+class WayBack {
+ public:
+  WayBack(MovingScene& moving, RunFiles& files, LimitGuard& limits, StopWatch& stops, Checkpoints& checkpoints,
+          RunListener& listener)
+      : moving_(moving),
+        files_(files),
+        limits_(limits),
+        stops_(stops),
+        checkpoints_(checkpoints),
+        listener_(listener) {}
+
+  // The present state is good.
+  void set_mark();
+  // The state that was good when the run was stopped. The simulation stands there afterwards.
+  void restore(const RunCheckpoint& mark);
+  // A model that gains energy has no account to close.
+  bool is_sound() const;
+  // False where steps are as short as they get: the failure stands.
+  bool go_back(const std::string& why);
+
+ private:
+  MovingScene& moving_;
+  RunFiles& files_;
+  LimitGuard& limits_;
+  StopWatch& stops_;
+  Checkpoints& checkpoints_;
+  RunListener& listener_;
+  EnergyMark energy_;  // of the mark
+};
+
+}  // namespace ropewalk
