@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "model/error.hpp"
-#include "scene/build.hpp"
 #include "scene/scene_to_model.hpp"
 #include "scene/scene_toml.hpp"
 

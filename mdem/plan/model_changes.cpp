@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "scene/laws/line.hpp"
 #include "scene/scene_to_model.hpp"
 
 namespace ropewalk {

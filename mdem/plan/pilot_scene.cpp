@@ -9,8 +9,8 @@
 #include "model/error.hpp"
 #include "plan/planned_scene.hpp"
 #include "plan/scene_edit.hpp"
-#include "scene/build.hpp"
 #include "scene/kinds/film.hpp"
+#include "scene/lattice.hpp"
 #include "scene/prepare.hpp"
 #include "scene/scene_toml.hpp"
 

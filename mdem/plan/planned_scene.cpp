@@ -8,6 +8,7 @@
 
 #include "plan/scene_edit.hpp"
 #include "scene/dissipation.hpp"
+#include "scene/kinds/scene_kind.hpp"
 #include "scene/laws/contact_law_kind.hpp"
 #include "scene/scene_toml.hpp"
 

@@ -8,6 +8,8 @@
 #include "model/self_contact.hpp"
 #include "observe/bending.hpp"
 #include "run/run_directory.hpp"
+#include "scene/laws/line.hpp"
+#include "scene/laws/paper.hpp"
 #include "scene/scene_to_model.hpp"
 
 namespace ropewalk {

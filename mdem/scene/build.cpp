@@ -10,6 +10,7 @@
 #include "scene/maxwell.hpp"
 #include "scene/memory.hpp"
 #include "scene/scene_to_model.hpp"
+#include "scene/spacing.hpp"
 
 namespace ropewalk {
 namespace {

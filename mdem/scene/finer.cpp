@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <sstream>
 
+#include "scene/bounds.hpp"
 #include "scene/laws/contact_law_kind.hpp"
 #include "scene/scene_to_model.hpp"
 #include "scene/scene_toml.hpp"
@@ -92,7 +93,7 @@ double finer_time_step(const Scene& scene, const Prepared& p, const std::string&
   return scene.run.time_step / p.limit.limit * limit;
 }
 
-std::string text_of(const toml::table& top, const std::string& comment) {
+std::string finer_text(const toml::table& top, const std::string& comment) {
   std::ostringstream text;
   text << "# " << comment << "\n" << top << "\n";
   return text.str();
@@ -124,8 +125,8 @@ std::string finer_scene_text(const Scene& scene, const Prepared& prepared, const
   refine_grips(scene, prepared.topology, top);
   if (scene.run.time_step > 0)
     table_of(top, "run")
-        .insert_or_assign("time_step_fs", finer_time_step(scene, prepared, text_of(top, comment)) / units::fs);
-  return text_of(top, comment);
+        .insert_or_assign("time_step_fs", finer_time_step(scene, prepared, finer_text(top, comment)) / units::fs);
+  return finer_text(top, comment);
 }
 
 }  // namespace ropewalk

@@ -18,7 +18,7 @@
 
 #include "io/toml_table.hpp"
 #include "model/units.hpp"
-#include "scene/scene_keys.hpp"
+#include "scene/scene_key.hpp"
 
 namespace ropewalk {
 

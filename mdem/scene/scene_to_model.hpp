@@ -3,8 +3,6 @@
 
 #include "scene/scene.hpp"
 #include "sim/contact/contact_law.hpp"
-#include "sim/contact/line/law.hpp"
-#include "sim/contact/paper/law.hpp"
 #include "sim/dynamics/loads.hpp"
 #include "sim/state/interaction.hpp"
 
@@ -17,12 +15,6 @@ std::vector<Validity> validities(const Scene& scene, const Topology& topology);
 Topology empty_topology(const Scene& scene);
 // The bonds of tubes as long as those that the topology holds: long ones collapse earlier.
 void set_collapse(const Scene& scene, Topology& topology);
-
-// The `line` law between all pairs of the scene's tube types, i, j at i * types + j.
-std::vector<LineContact> line_contacts(const Scene& scene);
-
-// The `paper` law of the scene.
-PaperContact paper_contact(const Scene& scene);
 
 // How far the scene's law reaches (nm), and what two parallel tubes bind with at most (eV/nm, positive); of each
 // pair of tube types.

@@ -1,7 +1,7 @@
-// Distances at which tubes bind best.
+#include "scene/spacing.hpp"
+
 #include <algorithm>
 
-#include "scene/build.hpp"
 #include "scene/scene_to_model.hpp"
 
 namespace ropewalk {
@@ -21,6 +21,12 @@ double largest_distance(const Scene& scene, double (ContactLaw::*distance)(TypeP
 }
 
 }  // namespace
+
+double largest_radius(const Scene& scene) {
+  double largest = 0;
+  for (const ParameterSet& set : scene.sets) largest = std::max(largest, set.radius);
+  return largest;
+}
 
 double parallel_spacing(const Scene& scene) { return largest_distance(scene, &ContactLaw::parallel_distance); }
 

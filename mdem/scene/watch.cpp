@@ -1,6 +1,5 @@
 #include "scene/watch.hpp"
 
-#include "scene/build.hpp"
 #include "scene/scene_to_model.hpp"
 
 namespace ropewalk {

@@ -13,6 +13,7 @@
 #include "model/error.hpp"
 #include "scene/build.hpp"
 #include "scene/kinds/rope.hpp"
+#include "scene/lattice.hpp"
 #include "scene/loads/fix.hpp"
 #include "scene/loads/force.hpp"
 #include "scene/loads/rotate.hpp"

@@ -1,11 +1,14 @@
 // law = "line": from the sets' [contact.line], and between different tubes from [contact.line.universal].
+#include "scene/laws/line.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "io/grade.hpp"
 #include "scene/laws/contact_law_kind.hpp"
-#include "scene/scene_to_model.hpp"
+#include "scene/scene.hpp"
+#include "sim/contact/line/law.hpp"
 
 namespace ropewalk {
 namespace {

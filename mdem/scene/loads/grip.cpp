@@ -8,8 +8,9 @@
 #include <cmath>
 #include <cstddef>
 
+#include "scene/bounds.hpp"
+#include "scene/scene.hpp"
 #include "scene/schedule_rows.hpp"
-#include "scene/tables/tables.hpp"
 
 namespace ropewalk {
 namespace {
@@ -442,7 +443,7 @@ KeyOf<GripLoad> axis_key(std::size_t axis, const char* standard_word, const std:
       });
 }
 
-void check(const TomlTable& t, const Scene&, GripLoad& grip) {
+void check_grip(const TomlTable& t, const Scene&, GripLoad& grip) {
   const auto driven = [&](std::size_t axis) {
     return grip.axes[axis].is == Is::moved || grip.axes[axis].is == Is::loaded;
   };
@@ -479,7 +480,7 @@ const KeyTable<GripLoad>& table_of_grip() {
        Key::number("smooth_ps", unit::ps, Bounds::non_negative(longest_time), &GripLoad::smooth,
                    otherwise("10", "twice the travel of sound along the tubes"),
                    "speeds change over this time, at most over half of the line between two points")},
-      check};
+      check_grip};
   return table;
 }
 

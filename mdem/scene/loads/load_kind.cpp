@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cassert>
 
-#include "scene/build.hpp"
+#include "scene/bounds.hpp"
 #include "scene/scene.hpp"
 
 namespace ropewalk {
@@ -18,7 +18,7 @@ LoadKind rotate_kind();
 
 namespace {
 
-std::vector<LoadKind>& all_kinds() {
+std::vector<LoadKind>& kinds_of_loads() {
   static std::vector<LoadKind> kinds = {
       fix_kind(),
       force_kind(),
@@ -123,12 +123,12 @@ std::vector<int> selected_tubes(const Scene& scene, const Selection& on, const T
   return tubes;
 }
 
-const std::vector<LoadKind>& load_kinds() { return all_kinds(); }
+const std::vector<LoadKind>& load_kinds() { return kinds_of_loads(); }
 
 bool add_load_kind(LoadKind kind) {
-  assert(std::none_of(all_kinds().begin(), all_kinds().end(),
+  assert(std::none_of(kinds_of_loads().begin(), kinds_of_loads().end(),
                       [&](const LoadKind& other) { return other.name == kind.name; }));
-  all_kinds().push_back(std::move(kind));
+  kinds_of_loads().push_back(std::move(kind));
   return true;
 }
 

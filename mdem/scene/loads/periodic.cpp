@@ -7,12 +7,9 @@
 #include "model/error.hpp"
 #include "scene/scene.hpp"
 #include "scene/schedule_rows.hpp"
-#include "scene/tables/tables.hpp"
 
 namespace ropewalk {
 namespace {
-
-using Key = KeyOf<PeriodicLoad>;
 
 void read_twist(const TomlTable& t, const Scene&, PeriodicLoad& load) {
   load.twist = points_in_time(t, "twist_deg_per_nm", Bounds::range(-45, 45));
@@ -35,6 +32,7 @@ Vector3 angle_of(Quaternion q) {
 }  // namespace
 
 const KeyTable<PeriodicLoad>& periodic_table() {
+  using Key = KeyOf<PeriodicLoad>;
   static const KeyTable<PeriodicLoad> table = {
       "periodic",
       "the interior of a long rope: a slice that goes on at both ends as its own image; without this table, a "

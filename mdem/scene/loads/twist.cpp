@@ -2,16 +2,15 @@
 
 #include <fmt/format.h>
 
-#include "scene/tables/tables.hpp"
+#include "scene/bounds.hpp"
+#include "scene/scene.hpp"
 
 namespace ropewalk {
 namespace {
 
-using Key = KeyOf<TwistLoad>;
-
 constexpr const char* rate_key = "rate_nN_nm_per_ps";
 
-void check(const TomlTable& t, const Scene&, TwistLoad& twist) {
+void check_twist(const TomlTable& t, const Scene&, TwistLoad& twist) {
   if (twist.ramp_time() > longest_time)
     throw t.error(rate_key, fmt::format("makes a ramp of {:.3g} ps", twist.ramp_time()), "ramp faster");
 }
@@ -19,6 +18,7 @@ void check(const TomlTable& t, const Scene&, TwistLoad& twist) {
 }  // namespace
 
 const KeyTable<TwistLoad>& twist_table() {
+  using Key = KeyOf<TwistLoad>;
   using T = TwistLoad;
   static const Words<bool> grips = {{"free", true}, {"held", false}};
   static const KeyTable<T> table = {
@@ -44,7 +44,7 @@ const KeyTable<TwistLoad>& twist_table() {
                     "relax the tubes' own twist at each increment"),
        Key::number("increment_ps", unit::ps, Bounds::positive(longest_time), &T::increment, standard(),
                    "time between such relaxations")},
-      check};
+      check_twist};
   return table;
 }
 

@@ -4,6 +4,7 @@
 
 #include <array>
 
+#include "scene/key_table.hpp"
 #include "sim/dynamics/loads.hpp"
 
 namespace ropewalk {
@@ -53,5 +54,7 @@ class TwistLoad : public Load {
 
 // The upper and the lower grip of a scene's [twist].
 void add_twist(const TwistLoad& twist, const Topology& topology, LoadsAndConstraints& loads);
+
+const KeyTable<TwistLoad>& twist_table();
 
 }  // namespace ropewalk

@@ -4,15 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scene/build.hpp"
+#include "scene/bounds.hpp"
 #include "scene/laws/contact_law_kind.hpp"
 #include "scene/scene_to_model.hpp"
 #include "scene/tables/tables.hpp"
 
 namespace ropewalk {
 namespace {
-
-using Key = KeyOf<ContactOptions>;
 
 constexpr long max_nodes = 64;
 
@@ -24,7 +22,7 @@ std::string law_names() {
   return text + " or \"none\"";
 }
 
-void read_law(const TomlTable& t, const Scene& scene, ContactOptions& c) {
+void read_contact_law(const TomlTable& t, const Scene& scene, ContactOptions& c) {
   Words<std::string> laws;
   for (const ContactLawKind& kind : contact_law_kinds()) laws.emplace_back(kind.name.c_str(), kind.name);
   laws.emplace_back("none", "none");
@@ -88,7 +86,7 @@ void read_exclusion(const TomlTable& t, const Scene& scene, ContactOptions& cont
 }
 
 // A key that would be without effect is refused, since it was meant to have one.
-void check(const TomlTable& t, const Scene&, ContactOptions& c) {
+void check_contact(const TomlTable& t, const Scene&, ContactOptions& c) {
   if (c.nodes > 0 && c.law != "line")
     throw t.error("nodes_per_element", "belongs to law = \"line\"", "take it away");
 }
@@ -96,12 +94,13 @@ void check(const TomlTable& t, const Scene&, ContactOptions& c) {
 }  // namespace
 
 const KeyTable<ContactOptions>& contact_table() {
+  using Key = KeyOf<ContactOptions>;
   using C = ContactOptions;
   using Precision = Interaction::Precision;
   static const KeyTable<C> table = {
       "contact",
       "van der Waals contact between elements",
-      {Key::custom("law", "", otherwise("\"paper\"", "what the set has"), law_names(), read_law),
+      {Key::custom("law", "", otherwise("\"paper\"", "what the set has"), law_names(), read_contact_law),
        Key::integer("nodes_per_element", 1, max_nodes, &C::nodes, otherwise("5", "for a corrugation below 2.5e-4"),
                     "line: nodes along an element")
            .goes_as_length(1),
@@ -116,7 +115,7 @@ const KeyTable<ContactOptions>& contact_table() {
                    "parts of one tube up to this far apart along it do not attract", read_exclusion),
        Key::number("skin_nm", unit::nm, Bounds::positive(5), &C::skin, otherwise("0.15", "chosen by the program"),
                    "margin of the neighbour list; speed only")},
-      check};
+      check_contact};
   return table;
 }
 

@@ -6,7 +6,6 @@
 namespace ropewalk {
 namespace {
 
-using Key = KeyOf<RunOptions>;
 using Mode = RunOptions::Mode;
 
 constexpr long max_inner_steps = 1000;
@@ -29,7 +28,7 @@ void read_time_step(const TomlTable& t, const Scene&, RunOptions& r) {
                                             : t.number_or("time_step_fs", 0, Bounds::positive(1000)) * units::fs;
 }
 
-void check(const TomlTable& t, const Scene& scene, RunOptions& r) {
+void check_run_keys(const TomlTable& t, const Scene& scene, RunOptions& r) {
   const char* used = r.stepping.contact_every > 1 ? "contact_every"
                      : r.stepping.runge_kutta     ? "integrator"
                      : r.mass_scale != 1          ? "mass_scale"
@@ -46,6 +45,7 @@ void check(const TomlTable& t, const Scene& scene, RunOptions& r) {
 }  // namespace
 
 const KeyTable<RunOptions>& run_table() {
+  using Key = KeyOf<RunOptions>;
   using R = RunOptions;
   const Bounds time = Bounds::positive(longest_time);
   static const KeyTable<R> table = {
@@ -92,7 +92,7 @@ const KeyTable<RunOptions>& run_table() {
            standard(), "relax: and the bonds' energy is within this part of the minimum's, by estimate"),
        Key::integer("max_steps", 1, 1000000000, &R::max_steps, standard(), "relax: give up after so many steps"),
        Key::boolean("paraview", &R::paraview, standard(), "also write frames for ParaView (VTP)")},
-      check};
+      check_run_keys};
   return table;
 }
 

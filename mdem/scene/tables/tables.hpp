@@ -5,12 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "scene/bounds.hpp"
 #include "scene/key_table.hpp"
 #include "scene/scene.hpp"
 
 namespace ropewalk {
-
-inline constexpr double longest_time = 1e7;  // ps, that a key may name
 
 // `copies`: files to be read in the place of the sets that the scene names, where there are any.
 KeyTable<Scene> top_table(const std::vector<std::string>& copies);
@@ -19,7 +18,6 @@ const KeyTable<BondOptions>& bond_table();
 const KeyTable<ContactOptions>& contact_table();
 const KeyTable<Damping>& damping_table();
 const KeyTable<ThermostatOptions>& thermostat_table();
-const KeyTable<TwistLoad>& twist_table();  // scene/loads/twist.cpp
 const KeyTable<RunOptions>& run_table();
 const KeyTable<ObserveOptions>& observe_table();
 const KeyTable<LimitOptions>& limits_table();

@@ -5,8 +5,6 @@
 namespace ropewalk {
 namespace {
 
-using Key = KeyOf<ThermostatOptions>;
-
 Words<std::string> methods() {
   Words<std::string> words;
   for (const ThermostatKind& kind : thermostat_kinds()) words.emplace_back(kind.name, kind.name);
@@ -29,6 +27,7 @@ void read_seed(const TomlTable& t, const Scene& scene, ThermostatOptions& o) {
 }  // namespace
 
 const KeyTable<ThermostatOptions>& thermostat_table() {
+  using Key = KeyOf<ThermostatOptions>;
   using O = ThermostatOptions;
   static const KeyTable<O> table = {
       "thermostat",
