@@ -90,6 +90,16 @@ std::vector<OutputColumn> lammps_start_keys() {
 std::vector<OutputColumn> lammps_tube_columns() { return listed(tube_columns); }
 std::vector<OutputColumn> lammps_row_columns() { return listed(row_columns); }
 
+void refuse_what_lammps_lacks(const Scene& scene) {
+  std::string lacking;
+  for (const auto& drive : scene.drives)
+    if (lacking.empty()) lacking = drive->not_for_lammps();
+  if (lacking.empty() && scene.run.stepping.contact_every > 1) lacking = "run.contact_every";
+  if (lacking.empty() && scene.run.stepping.runge_kutta) lacking = "run.integrator";
+  if (!lacking.empty())
+    throw InputError({scene.path, 0, lacking}, "is not for LAMMPS", "run this scene with `ropewalk run`");
+}
+
 std::string start_json(const LammpsStart& start) {
   Json json;
   json["format"] = start_format;

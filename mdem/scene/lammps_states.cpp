@@ -13,7 +13,7 @@
 namespace ropewalk {
 namespace {
 
-constexpr std::array<OutputColumn, std::tuple_size<StateRecord>::value> state_columns = {{
+constexpr std::array<OutputColumn, std::tuple_size<StateRecord>::value> record_columns = {{
     {"x", "nm", "centre of the element"},
     {"y", "nm", "centre of the element"},
     {"z", "nm", "centre of the element"},
@@ -59,7 +59,7 @@ void append(std::string& to, const T& value) {
 
 }  // namespace
 
-std::vector<OutputColumn> lammps_state_columns() { return {state_columns.begin(), state_columns.end()}; }
+std::vector<OutputColumn> lammps_state_columns() { return {record_columns.begin(), record_columns.end()}; }
 
 std::vector<StateInFile> find_states(const std::string& path, std::int64_t elements) {
   std::ifstream file = opened(path);
@@ -90,7 +90,7 @@ StateInFile last_state(const std::string& path, std::int64_t elements) {
 
 std::string complaint_about(const StateRecord& record) {
   for (std::size_t k = 0; k < record.size(); ++k)
-    if (!(std::fabs(record[k]) <= largest_number)) return fmt::format("{} is {}", state_columns[k].name, record[k]);
+    if (!(std::fabs(record[k]) <= largest_number)) return fmt::format("{} is {}", record_columns[k].name, record[k]);
   const double norm = Quaternion(record[3], record[4], record[5], record[6]).norm();
   if (!(std::fabs(norm - 1) <= quaternion_slack)) return fmt::format("the quaternion has length {:.6g}, not 1", norm);
   return "";

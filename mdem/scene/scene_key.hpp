@@ -18,6 +18,7 @@ struct SceneKey {
   int length_power = 0;
   double most = std::numeric_limits<double>::infinity();
   bool whole = false;  // an integer, rounded up
+  bool numbers_elements = false;  // "ends" or a list of elements: both halves take the place of each
   // Whether it is the size of every tube of the scene.
   enum class TubeSize { no, length, elements };
   TubeSize tube_size = TubeSize::no;
@@ -29,9 +30,9 @@ struct SceneTable {
   std::string name;  // empty: the top of the file
   std::string meaning;
   std::vector<SceneKey> keys;
+  bool listed = false;  // [[name]], any number of them
 
-  bool listed() const { return name == "load" || name == "grip" || name == "stop"; }  // [[name]], any number of them
-  std::string header() const { return listed() ? "[[" + name + "]]" : "[" + name + "]"; }
+  std::string header() const { return listed ? "[[" + name + "]]" : "[" + name + "]"; }
   // Whether the table may be left out as a whole, with what it stands for.
   bool optional() const;
 };

@@ -45,13 +45,13 @@ void read_cutoff(const TomlTable& t, const Scene& scene, ContactOptions& contact
   if (contact.law == "none") throw t.error("cutoff_nm", "is of no use without contact", "take it away");
   Scene changed = scene;
   changed.contact = contact;
-  const std::vector<ContactRange> own = contact_ranges(changed);
+  const std::vector<ContactRange> own = contact_ranges(changed, contact_law(changed).get());
   changed.contact.cutoff = contact.cutoff = t.number("cutoff_nm", Bounds::positive(1e3));
   for (const ContactRange& range : own)  // first: what a law with a far cutoff binds takes long to find
     if (contact.cutoff > range.cutoff + 1e-9)
       throw t.error("cutoff_nm", fmt::format("is {} nm", contact.cutoff),
                     fmt::format("the law ends at {:.4g} nm; leave the key out", range.cutoff));
-  const std::vector<ContactRange> now = contact_ranges(changed);
+  const std::vector<ContactRange> now = contact_ranges(changed, contact_law(changed).get());
   for (std::size_t k = 0; k < own.size(); ++k) {
     const double left = now[k].binding / own[k].binding;
     if (!(left >= 0.5))
@@ -75,7 +75,7 @@ void read_exclusion(const TomlTable& t, const Scene& scene, ContactOptions& cont
   if (contact.law == "none") throw t.error(exclusion_key, "is of no use without contact", "take it away");
   Scene changed = scene;
   changed.contact = contact;
-  const double least = least_exclusion(changed);
+  const double least = least_exclusion(changed, contact_law(changed).get());
   contact.exclude_along_tube = t.number(exclusion_key, Bounds::positive(1e7));
   if (contact.exclude_along_tube < least - 1e-9)
     throw t.error(

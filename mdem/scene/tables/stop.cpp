@@ -60,7 +60,9 @@ const KeyTable<StopRule>& stop_table() {
        Key::number("from_ps", unit::ps, Bounds::non_negative(longest_time), &StopRule::from, standard(),
                    "not looked at before"),
        Key::custom("limit", "", otherwise("\"wall_twist\"", "any"), "limit: which key of [limits]", read_limit)},
-      {}};
+      {},
+      StopRule(),
+      true};
   return table;
 }
 

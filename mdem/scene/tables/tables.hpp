@@ -1,4 +1,4 @@
-// The tables of a scene that are neither a kind (scene/kinds/) nor a load (scene/loads/), each in a file of its
+// The tables of a scene that are neither a kind (scene/kinds/) nor a drive (scene/loads/), each in a file of its
 // own. A new one needs a struct in scene.hpp, its file here, a line in scene_keys.cpp and one in scene_toml.cpp.
 #pragma once
 
@@ -17,7 +17,6 @@ const KeyTable<StartOptions>& start_table();
 const KeyTable<BondOptions>& bond_table();
 const KeyTable<ContactOptions>& contact_table();
 const KeyTable<Damping>& damping_table();
-const KeyTable<ThermostatOptions>& thermostat_table();
 const KeyTable<RunOptions>& run_table();
 const KeyTable<ObserveOptions>& observe_table();
 const KeyTable<LimitOptions>& limits_table();
