@@ -320,7 +320,7 @@ TEST(SceneFile, EveryKeyReachesTheScene) {
   EXPECT_EQ(s.damping.contact.eta, 3);
   EXPECT_EQ(s.damping.bond.rate, 0.5);
   EXPECT_EQ(s.damping.local, 0.7);
-  ASSERT_TRUE(s.twist);
+  ASSERT_TRUE(s.moment_ramp());
   EXPECT_NEAR(twist_of(s).moment, 64 * units::nN_nm, 1e-12);
   EXPECT_NEAR(twist_of(s).ramp_time(), 128, 1e-12);
   EXPECT_EQ(twist_of(s).hold, 4);
