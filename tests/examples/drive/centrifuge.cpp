@@ -1,8 +1,7 @@
 // The example of docs/how-to/drive.md: [centrifuge] drives all elements away from the z axis, F = m w^2 r.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
-#include <fmt/format.h>
 
 #include <cmath>
 
@@ -120,7 +119,8 @@ TEST(Centrifuge, IsTheSameForElementsHalfAsLong) {
   Scene finer = scene_of_text(finer_scene_text(scene, p, "finer"), "centrifuge.toml");
   EXPECT_EQ(finer.drives_of<CentrifugeDrive>().at(0)->rate, scene.drives_of<CentrifugeDrive>().at(0)->rate);
   const Prepared after = prepare(finer);
-  EXPECT_EQ(after.loads.of<CentrifugeLoad>().at(0)->elements.size(), 2 * p.loads.of<CentrifugeLoad>().at(0)->elements.size());
+  EXPECT_EQ(after.loads.of<CentrifugeLoad>().at(0)->elements.size(),
+            2 * p.loads.of<CentrifugeLoad>().at(0)->elements.size());
 }
 
 TEST(Centrifuge, IsInHelpTemplatesAndErrors) {
