@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 
+#include "io/descriptor.hpp"
 #include "model/error.hpp"
 
 namespace ropewalk {
@@ -12,9 +13,9 @@ namespace ropewalk {
 // never end, gives more than 256 MiB.
 std::string read_file(const std::string& path);
 
-// What to do about an error of the system, by its number.
+// Says how to remedy an error of the system, by its number.
 const char* remedy_for_errno(int code);
-// Refuses what is not a regular file: a device may have no end.
+// Refuses anything but a regular file: a device may have no end.
 void refuse_devices(const std::string& path);
 
 // Writes a temporary file beside `path`, flushes it to the disk and renames it. Throws InputError (disk full,
@@ -31,6 +32,8 @@ void remove_parts(const std::string& directory);
 
 // "cannot be written: No space left on device", with a remedy. code: errno.
 InputError file_error(const std::string& path, const char* what, int code);
+// Throws InputError where the file cannot be opened.
+Descriptor opened_to_read(const std::string& path);
 
 // Throws InputError where a file that an option names exists, unless `force` is set.
 void refuse_existing(const std::string& path, const std::string& option, bool force);

@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t slot_bytes = 64, names_slots = 16;
+constexpr std::uint64_t names_slots = 16;
 constexpr std::uint64_t chunks_of_a_frame = 5 + colour_columns.size();  // those that change, and the colours
 constexpr std::uint64_t spare_frames = 64, most_expected = 4096;        // a long run moves its index
 
@@ -78,7 +78,7 @@ std::string cylinder(double radius, double length) {
   return nlohmann::json{{"type", "Mesh"}, {"vertices", vertices}, {"indices", triangles}}.dump();
 }
 
-// What does not change: in the first frame alone.
+// Chunks that do not change stand in the first frame alone.
 void add_topology(FrameChunks& chunks, const Topology& topology) {
   std::vector<std::uint32_t> type, bonds;
   std::vector<std::int32_t> tube;
