@@ -12,7 +12,7 @@
 //
 #include "sim/vectors/operations-inl.hpp"
 //
-#include "sim/threads/lanes-inl.hpp"
+#include "sim/vectors/lanes-inl.hpp"
 
 VEC_BEFORE_NAMESPACE();
 namespace ropewalk::VEC_SET {
