@@ -11,11 +11,11 @@ struct MachinePeak {
   double transfer = 0;    // GB/s to and from memory, of `triad`
 };
 
-// The peak of so many threads together, in single or double precision: the best of some short trials. Takes about
+// The peak of `threads` threads together, in single or double precision: the best of some short trials. Takes about
 // 0.3 s and 400 MB for a short time; throws std::bad_alloc without this memory.
 MachinePeak machine_peak(int threads, bool in_double);
 
-// The loops that are timed. multiply_adds() makes so many rounds of  a = a factor + 1/4  in independent chains and
+// The loops that are timed. multiply_adds() makes `rounds` rounds of  a = a factor + 1/4  in independent chains and
 // writes their sum to `out` (64 bytes). It returns the number of operations.
 std::size_t multiply_adds(std::size_t rounds, float factor, float* out);
 std::size_t multiply_adds(std::size_t rounds, double factor, double* out);

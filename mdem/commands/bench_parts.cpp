@@ -12,7 +12,7 @@
 namespace ropewalk {
 namespace {
 
-// Of all parts of a cut.
+// Sums over all parts of a cut.
 struct PartsRow {
   double parts = 0, own = 0, copies = 0;  // elements, of a part on average
   double seconds = 0, longest = 0;        // all parts one after another, and the slowest one

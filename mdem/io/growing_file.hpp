@@ -26,7 +26,7 @@ bool reaches(const std::string& path, const FileMark& mark);
 // Throws InputError where the disk is full, the file cannot be written, ...
 class GrowingFile {
  public:
-  // Makes the file, or cuts it back to so many bytes.
+  // Makes the file, or cuts it back to `keep` bytes.
   GrowingFile(std::string path, std::uint64_t keep);
 
   void write(std::string_view text);

@@ -52,7 +52,7 @@ class TomlTable {
   std::string string(const std::string& key) const;  // never empty
   std::vector<double> numbers(const std::string& key, const Bounds& bounds, std::size_t size) const;
   std::vector<double> list(const std::string& key, const Bounds& bounds) const;  // never empty
-  // [[1, 2], [3, 4]]: at least one row of so many numbers.
+  // [[1, 2], [3, 4]]: at least one row of `columns` numbers.
   std::vector<std::vector<double>> rows(const std::string& key, const Bounds& bounds, std::size_t columns) const;
   std::vector<std::vector<double>> matrix(const std::string& key, const Bounds& bounds, std::size_t size) const;
   std::vector<long> integers(const std::string& key, long least, long most) const;  // never empty

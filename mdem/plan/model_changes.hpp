@@ -31,7 +31,7 @@ std::vector<ModelChange> finest_changes(const Scene& scene, const SceneFeatures&
 std::string text_with(const Scene& scene, const SceneFeatures& features, const std::vector<ModelChange>& changes,
                       std::vector<std::string>* why = nullptr);
 
-// The time step so many times as long as the default's, never beyond the part of the limit that the program takes.
+// A time step `times` as long as the default's, never beyond the part of the limit that the program takes.
 ModelChange step_change(double times);
 
 // Why a relaxation cannot replace the motion; empty: it can.

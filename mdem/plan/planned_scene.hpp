@@ -22,7 +22,7 @@ class PlannedScene {
   void start_from_default();
   // No contact for a lone tube that does not come back to itself.
   void drop_what_is_not_there();
-  // Makes elements so many times as long as the set's. Where loads act on the end elements, the distance between
+  // Makes elements `times` as long as the set's. Where loads act on the end elements, the distance between
   // the centres of these elements stays; else the length of the tubes stays. Does nothing where fixed_length()
   // forbids it.
   void lengthen(double times, const std::string& why);

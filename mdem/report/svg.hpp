@@ -15,9 +15,9 @@ namespace ropewalk {
 
 // --- Text ---
 
-// A number with so many digits, with a true minus sign, and as a power of 10 if that is shorter; a dash for NaN.
+// A number with `digits` digits, with a true minus sign, and as a power of 10 if that is shorter; a dash for NaN.
 std::string number_text(double value, int digits = 4);
-// A number with so many decimals, for columns; digits are in groups of three from 10 000 on.
+// A number with `decimals` decimals, for columns; digits are in groups of three from 10 000 on.
 std::string fixed_text(double value, int decimals);
 
 // CSS rules for all pictures below, and the variables --paper, --ink, --soft and --rule, which a page may use too.

@@ -18,7 +18,7 @@ struct StepControl {
   std::int64_t kept_until = 0;     // the step before which steps stay divided
   std::int64_t keep = least_keep;  // for how many they are divided when it happens next
 
-  // After a failure with steps divided into so many parts: halves them. The simulation stands at the mark again.
+  // Halves the steps after a failure with steps divided into `divided` parts. The simulation stands at the mark again.
   void shorten(int divided, Simulation& simulation);
   // At a mark, after a window without failure.
   void lengthen(Simulation& simulation);

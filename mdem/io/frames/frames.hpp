@@ -47,7 +47,7 @@ class FrameWriter {
   virtual void sync() = 0;
   virtual FileMark mark() const = 0;
 };
-// Makes the file, or cuts it back to so many bytes. `expected`: frames, about.
+// Makes the file, or cuts it back to `keep` bytes. `expected`: frames, about.
 std::unique_ptr<FrameWriter> frame_writer(const std::string& path, FrameFormat format, std::uint64_t keep,
                                           std::size_t expected);
 

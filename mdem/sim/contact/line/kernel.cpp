@@ -131,7 +131,7 @@ template <class Table, class D>
 using Form =
     std::conditional_t<(VEC_TARGET > VEC_AVX512) && std::is_same_v<Table, MixedTable>, InPieces<D>, InTable<D>>;
 
-// Of K vectors of squared distances X: du/dy and, if wanted, u; zero from the cutoff on.
+// For K vectors of squared distances X: du/dy and, if wanted, u; zero from the cutoff on.
 template <bool energies, int K, class D, class Table>
 VEC_INLINE void radial(D d, const Table& t, const ops::Vec<D> (&X)[K], ops::Vec<D> (&u)[K], ops::Vec<D> (&slope)[K]) {
   using T = typename Table::Value;
@@ -206,7 +206,7 @@ VEC_INLINE void totals(V fx, V fy, V fz, V mx, V my, V mz, double (&f)[3], doubl
   m[0] = total(d, mx), m[1] = total(d, my), m[2] = total(d, mz);
 }
 
-// What one element meets. N is the number of its nodes where the compiler knows it, or 0.
+// The contact of one element. N is the number of its nodes where the compiler knows it, or 0.
 template <bool energies, int N, class In>
 struct ElementContact {
   using Table = typename In::Table;
@@ -250,7 +250,7 @@ struct ElementContact {
             ops::MulAdd(x, x, ops::MulAdd(y, y, ops::Mul(z, z))),
             ops::MulAdd(n[0], x, ops::MulAdd(n[1], y, ops::Mul(n[2], z)))};
   }
-  // Those within the cutoff of the element's axis between its first and its last node.
+  // Marks nodes within the cutoff of the element's axis between its first and its last node.
   VEC_INLINE std::uint64_t near(const Nodes& nodes, int count, const PairTables<Table>& pair) const {
     const D d;
     const V ahead = ops::Max(ops::Sub(ops::Abs(nodes.along), ops::Set(d, pair.half)), ops::Zero(d));
