@@ -13,6 +13,7 @@
 
 #include "io/files.hpp"
 #include "model/error.hpp"
+#include "scene/loads/twist.hpp"
 
 namespace ropewalk {
 namespace {

@@ -9,6 +9,7 @@
 
 #include "scene/loads/fix.hpp"
 #include "scene/loads/rotate.hpp"
+#include "scene/loads/twist.hpp"
 #include "scene/scene_toml.hpp"
 #include "scene/watch.hpp"
 #include "sim/dynamics/refine.hpp"
