@@ -14,6 +14,7 @@
 #include "commands/commands.hpp"
 #include "model/error.hpp"
 #include "run/processor_time.hpp"
+#include "run/threads.hpp"
 #include "scene/prepare.hpp"
 #include "sim/contact/line/engine.hpp"
 #include "sim/contact/line/law.hpp"

@@ -15,6 +15,7 @@
 #include "model/error.hpp"
 #include "run/cores.hpp"
 #include "run/processor_time.hpp"
+#include "run/threads.hpp"
 #include "scene/prepare.hpp"
 
 namespace ropewalk {

@@ -216,6 +216,4 @@ struct ImportArguments {
 };
 int import_command(const ImportArguments& arguments);
 
-void use_threads(int threads);
-
 }  // namespace ropewalk

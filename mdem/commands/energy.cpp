@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "commands/commands.hpp"
+#include "run/threads.hpp"
 #include "scene/kinds/state.hpp"
 
 namespace ropewalk {

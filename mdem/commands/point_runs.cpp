@@ -12,6 +12,7 @@
 #include "commands/commands.hpp"
 #include "io/failure.hpp"
 #include "run/tell.hpp"
+#include "run/threads.hpp"
 
 namespace ropewalk {
 namespace {

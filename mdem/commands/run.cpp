@@ -33,6 +33,7 @@
 #include "run/stages.hpp"
 #include "run/stop_watch.hpp"
 #include "run/tell.hpp"
+#include "run/threads.hpp"
 #include "run/wall_time.hpp"
 #include "scene/finer.hpp"
 #include "scene/scene_toml.hpp"
@@ -786,14 +787,6 @@ class Run {
   RunPolicy policy_;
   bool at_rest_ = true;  // false: a relaxation ran out of steps
 };
-
-}  // namespace
-
-void use_threads(int threads) {
-  if (threads > 0) omp_set_num_threads(threads);
-}
-
-namespace {
 
 // A run that may be refined must find the place for it free.
 void check_finer_directory(const RunDirectory& dir, const RunPolicy& policy, bool resumed) {

@@ -14,7 +14,6 @@
 #include <limits>
 #include <vector>
 
-#include "commands/commands.hpp"
 #include "io/files.hpp"
 #include "io/frames/dump.hpp"
 #include "model/error.hpp"
@@ -25,6 +24,7 @@
 #include "run/limit_watch.hpp"
 #include "run/processor_time.hpp"
 #include "run/run_directory.hpp"
+#include "run/threads.hpp"
 #include "scene/scene_toml.hpp"
 #include "scene/watch.hpp"
 

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Every link of the Markdown pages, as a code host shows them, and of the built site leads to a file that is there, and to
-an anchor that is in it. Addresses elsewhere are listed, not asked.
+an anchor that is in it. Addresses elsewhere are listed, not asked. The version is one: of CMake, of the citation, of the newest
+release notes, and of the example that finds the installed package.
 
     links.py REPOSITORY [SITE]"""
 import re
@@ -53,6 +54,19 @@ def check_markdown(repository):
     return len(pages), count
 
 
+def check_version(repository):
+    """The first match of each is the version, or its beginning."""
+    found = {}
+    for file, pattern in (("CMakeLists.txt", r"project\(ropewalk VERSION (\S+)"), ("CITATION.cff", r"^version: (\S+)"),
+                          ("CHANGELOG.md", r"^## (\S+)"), ("docs/how-to/install.md", r"find_package\(Ropewalk (\S+)")):
+        match = re.search(pattern, (repository / file).read_text(), re.M)
+        found[file] = match[1] if match else "none"
+    version = found["CMakeLists.txt"]
+    for file, text in found.items():
+        if not (version + ".").startswith(text + "."):
+            errors.append(f"{file}: has version {text}, and CMakeLists.txt has {version}")
+
+
 class Page(HTMLParser):
     def __init__(self, text):
         super().__init__()
@@ -96,6 +110,7 @@ def check_site(site):
 def main():
     repository = Path(sys.argv[1]).resolve()
     print("{} pages of Markdown, {} links".format(*check_markdown(repository)))
+    check_version(repository)
     if len(sys.argv) > 2:
         print("{} pages of the site, {} links".format(*check_site(Path(sys.argv[2]).resolve())))
     print("Elsewhere, not asked:", *sorted(elsewhere), sep="\n  ")

@@ -24,7 +24,6 @@ ELSEWHERE = {
     "sim/dynamics/gauges": "physics/grip_test.cpp",
     "sim/dynamics/langevin": "physics/thermostat_test.cpp",
     "sim/dynamics/loads": "physics/grip_test.cpp",
-    "sim/dynamics/pfc_local": "unit/thermostat_scene_test.cpp",
     "sim/dynamics/relax": "physics/chain_test.cpp",
     "sim/dynamics/relax_goal": "physics/chain_test.cpp",
     "sim/dynamics/schedule": "physics/grip_test.cpp",

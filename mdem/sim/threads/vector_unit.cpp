@@ -6,11 +6,9 @@ namespace {
 constexpr const char* names[] = {"baseline", "AVX2", "AVX512"};
 
 VectorUnit best_unit() {
-#if defined(__x86_64__)
+#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__)
   __builtin_cpu_init();
-#ifndef __SANITIZE_ADDRESS__
   if (__builtin_cpu_supports("x86-64-v4")) return VectorUnit::v4;
-#endif
   if (__builtin_cpu_supports("x86-64-v3")) return VectorUnit::v3;
 #endif
   return VectorUnit::base;

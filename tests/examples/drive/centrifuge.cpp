@@ -135,7 +135,7 @@ TEST(Centrifuge, IsInHelpTemplatesAndErrors) {
     return "";
   };
   EXPECT_THAT(message("[centrifuge]\n[run]\nduration_ps = 1\n"),
-              HasSubstr("centrifuge.toml:10: centrifuge.rate_deg_per_ps: is missing"));
+              HasSubstr("centrifuge.toml:11: centrifuge.rate_deg_per_ps: is missing"));
   EXPECT_THAT(message(turning + "[periodic]\ntwist_deg_per_nm = [[0, 0]]\n[run]\nduration_ps = 1\n"),
               HasSubstr("centrifuge: does not go with a slice without ends"));
 }
