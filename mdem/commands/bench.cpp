@@ -133,8 +133,7 @@ nlohmann::ordered_json json_of(const Cost& c, const Rates& rates, const BenchArg
   out["threads"] = c.threads;
   out["steps"] = a.steps;
   out["after_ps"] = c.after;
-  out["time_step_fs"] = prepared.time_step / units::fs;  // of contact
-  out["contact_every"] = prepared.stepping.contact_every;
+  out["time_step_fs"] = prepared.time_step / units::fs;
   out["ns_per_element_step"] = c.each.wall;
   out["processor_ns_per_element_step"] = c.each.processor;
   out["pairs_per_element"] = c.pairs;
@@ -170,10 +169,8 @@ nlohmann::ordered_json json_of(const Cost& c, const Rates& rates, const BenchArg
 void print(const Cost& c, const BenchArguments& a, const Prepared& prepared) {
   const Timing& t = c.each;
   const double n = prepared.topology.elements();
-  const int every = prepared.stepping.contact_every;
-  fmt::print("{} elements, {} thread{}, {} steps of {:.3g} fs{}\n", n, c.threads, c.threads == 1 ? "" : "s",
-             a.steps, prepared.time_step / units::fs,
-             every > 1 ? fmt::format(", of {} bond steps each", every) : "");
+  fmt::print("{} elements, {} thread{}, {} steps of {:.3g} fs\n", n, c.threads, c.threads == 1 ? "" : "s", a.steps,
+             prepared.time_step / units::fs);
   fmt::print("{:9.1f} ns per element-step, {:.1f} of processor time\n", t.wall, t.processor);
   fmt::print("{:9.1f} pairs per element (half list)\n", c.pairs);
   fmt::print(

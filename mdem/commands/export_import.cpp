@@ -145,7 +145,6 @@ void refuse_what_lammps_lacks(const Scene& scene) {
   const char* lacking = scene.thermostat                             ? "thermostat"
                         : scene.periodic                             ? "periodic"
                         : scene.twist && scene.twist->geometric_only ? "twist.geometric_only"
-                        : scene.run.stepping.contact_every > 1       ? "run.contact_every"
                         : scene.run.stepping.runge_kutta             ? "run.integrator"
                                                                      : nullptr;
   if (lacking)

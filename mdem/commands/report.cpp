@@ -65,10 +65,8 @@ void add_run_facts(const Scene& scene, const Prepared& p, const Manifest& m, Rep
         fmt::format("ramp {:.4g} ps, hold {:.4g} ps{}", w.ramp_time(), w.hold,
                     w.geometric_only ? "; spins relaxed at each increment" : ""));
   }
-  const int every = scene.run.stepping.contact_every;
-  add("time step", fmt::format("{:.4g} fs", p.time_step / every / units::fs),
-      fmt::format("stability limit {:.4g} fs{}", inner_step_limit(p.limit, every) / units::fs,
-                  every > 1 ? fmt::format("; contact every {} steps", every) : ""));
+  add("time step", fmt::format("{:.4g} fs", p.time_step / units::fs),
+      fmt::format("stability limit {:.4g} fs", p.limit.limit / units::fs));
   for (const std::string& words : warmth_of(scene, p)) add("temperature", words);
   add("seed", fmt::format("{}", m.seed));
   add("program", fmt::format("ropewalk {} ({})", m.version, m.git_id),

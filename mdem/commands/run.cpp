@@ -240,8 +240,7 @@ class Run {
   // The checkpoint may be of a scene with another time step, which then stays.
   void keep_time_step() {
     if (simulation_.time_step() == prepared_.time_step) return;
-    const int parts = scene_.run.stepping.contact_every;
-    const double limit = inner_step_limit(prepared_.limit, parts), step = simulation_.time_step() / parts;
+    const double limit = prepared_.limit.limit, step = simulation_.time_step();
     if (step >= limit)
       throw InputError({dir_.checkpoint(), 0, ""},
                        fmt::format("has a time step of {:.4g} fs, and the changed scene bears less than {:.4g} fs",

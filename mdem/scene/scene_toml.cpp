@@ -65,7 +65,6 @@ void check_thermostat(const TomlTable& top, const Scene& scene) {
                                  "take one of the two away");
   };
   if (scene.run.mode == RunOptions::Mode::relax) refuse("run", "mode", "a relaxation has no temperature");
-  if (scene.run.stepping.contact_every > 1) refuse("run", "contact_every", "the bath acts on one level alone");
   if (scene.damping.local > 0) refuse("damping", "pfc_local", "it brakes every velocity that the bath gives");
   if (scene.twist && scene.twist->geometric_only)
     refuse("twist", "geometric_only", "the bath turns the spins that it relaxes");
@@ -83,7 +82,6 @@ void check_periodic(const TomlTable& top, const Scene& scene) {
   if (!scene.grips.empty()) refuse("[[grip]]", "the slice has no ends to be clamped");
   if (scene.kind != "rope")
     refuse(("[" + scene.kind + "]").c_str(), "tubes must be parallel and alike; it needs a [rope]");
-  if (scene.run.stepping.contact_every > 1) refuse("contact_every", "images follow on one level alone");
 }
 
 // A key or table that is right elsewhere.

@@ -13,11 +13,11 @@
 namespace ropewalk {
 namespace {
 
-constexpr char magic[8] = "MDEM12";
+constexpr char magic[8] = "MDEM13";
 
 struct CheckpointHead {
   char format[sizeof magic];
-  std::int64_t elements = 0, tubes = 0, contact_every = 0;
+  std::int64_t elements = 0, tubes = 0;
 };
 
 // What the neighbour list is made of again, and what the next list depends on.
@@ -113,9 +113,6 @@ void Simulation::visit_checkpoint(Archive& archive, Self& self, List& list) {
   archive(self.forces_.damping_power);
   archive(self.point_loads_);
   visit_relaxation(archive, self.relaxation_);
-  if (!self.two_levels()) return;
-  visit_forces(archive, self.inner_);
-  visit_forces(archive, self.contact_);
 }
 
 namespace {
@@ -169,13 +166,12 @@ bool Simulation::could_go_on(double step_of_scene) const {
   for (const PointLoad& load : point_loads_)
     fine = fine && load.element >= 0 && load.element < topology_.elements() && load.force.allFinite() &&
            load.torque.allFinite();
-  for (const Forces* f : {&inner_, &contact_}) fine = fine && all_xyz_within(f->force) && all_xyz_within(f->torque);
   return fine;
 }
 
 std::string Simulation::serialise() const {
   Writer write;
-  CheckpointHead head{{}, topology_.elements(), topology_.tubes(), stepping_.contact_every};
+  CheckpointHead head{{}, topology_.elements(), topology_.tubes()};
   std::memcpy(head.format, magic, sizeof magic);
   write(head);
   const ListOrigin list{list_.skin, list_.twist(), list_.reference(), list_.reference_axis()};
@@ -193,9 +189,6 @@ void Simulation::restore(const std::string& bytes) {
     throw std::runtime_error("the checkpoint holds " + std::to_string(head.tubes) + " tubes of " +
                              std::to_string(head.elements) + " elements, the scene " +
                              std::to_string(topology_.tubes()) + " of " + std::to_string(topology_.elements()));
-  if (head.contact_every != stepping_.contact_every)
-    throw std::runtime_error("the checkpoint is of contact_every = " + std::to_string(head.contact_every) +
-                             ", the scene of " + std::to_string(stepping_.contact_every));
   ListOrigin list;
   list.position.resize(state_.size());
   list.axis.resize(state_.size());

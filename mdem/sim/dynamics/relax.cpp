@@ -226,7 +226,7 @@ Simulation::PartEnd Simulation::relax_part(long max_steps, const std::function<b
   Fire& fire = r.fire;
   if (r.part_began < 0) {
     r.part_began = state_.step;
-    fire = Fire(inner_step());
+    fire = Fire(part_step());
     r.constant = total_energy() - account_.supplied();
     stand_still();
     r.last_step = 0;

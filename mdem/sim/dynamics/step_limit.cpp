@@ -195,7 +195,6 @@ TimeStepLimit time_step_limit(const Topology& given, const Interaction& in, doub
   const auto raise = [](double& value, double to) { value = std::max(value, to); };
   for (const TubeType& t : topology.types) {
     raise(out.chain_frequency, stiffest_chain_frequency(t.bond, t.element_length, t.mass, t.inertia));
-    raise(out.sideways_frequency, stiffest_sideways_frequency(t.bond, t.element_length, t.mass, t.inertia));
   }
   out.limit = 2 / out.chain_frequency;
   for (const TubeType& t : topology.types) {
@@ -210,36 +209,17 @@ TimeStepLimit time_step_limit(const Topology& given, const Interaction& in, doub
       const Vector6 rates = eigenvalues(wave.bond_damping + wave.contact_damping);
       out.damping_rates.insert(out.damping_rates.end(), rates.begin(), rates.end());
       raise(out.damping_rate, rates[5]);
-      raise(out.contact_damping, largest_eigenvalue(wave.contact_damping));
     }
   }
   return out;
 }
 
-double inner_step_limit(const TimeStepLimit& limit, int contact_every) {
-  if (contact_every <= 1) return limit.limit;
-  const double chain =
-      damped_step_limit(limit.chain_frequency * limit.chain_frequency, limit.damping_rate - limit.contact_damping);
-  const double w = limit.sideways_frequency, contact2 = limit.contact_frequency * limit.contact_frequency;
-  const auto stable = [&](double outer) {
-    const double half = 0.5 * w * outer;
-    return contact2 * outer * outer + 2 * limit.contact_damping * outer < 4 * half / std::tan(half);
-  };
-  double below = 0, above = units::pi / w;
-  for (int k = 0; k < 60; ++k) {
-    const double middle = 0.5 * (below + above);
-    (stable(middle) ? below : above) = middle;
-  }
-  return std::min(chain, below / contact_every);
-}
-
-double excess_of_positions(const TimeStepLimit& limit, double step, int contact_every) {
+double excess_of_positions(const TimeStepLimit& limit, double step) {
   const auto of_mode = [](double w2, double h) {
     const double left = 1 - 0.25 * w2 * h * h;
     return left > 0 ? 1 / left - 1 : std::numeric_limits<double>::infinity();
   };
-  const double contact = limit.contact_frequency * limit.contact_frequency;
-  double largest = contact_every > 1 ? of_mode(contact, contact_every * step) : 0;
+  double largest = 0;
   for (const std::vector<double>& waves : limit.stiffest) {
     double sum = 0;
     for (const double w2 : waves) sum += of_mode(w2, step);
@@ -248,11 +228,11 @@ double excess_of_positions(const TimeStepLimit& limit, double step, int contact_
   return largest;
 }
 
-double step_of_excess(const TimeStepLimit& limit, double excess, int contact_every) {
+double step_of_excess(const TimeStepLimit& limit, double excess) {
   double below = 0, above = 2 / limit.chain_frequency;
   for (int k = 0; k < 60; ++k) {
     const double middle = 0.5 * (below + above);
-    (excess_of_positions(limit, middle, contact_every) < excess ? below : above) = middle;
+    (excess_of_positions(limit, middle) < excess ? below : above) = middle;
   }
   return below;
 }
