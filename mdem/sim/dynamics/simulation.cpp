@@ -5,11 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "model/error.hpp"
 #include "sim/dynamics/blow_up.hpp"
-#include "sim/dynamics/pfc_local.hpp"
+#include "sim/dynamics/kick.hpp"
 #include "sim/dynamics/verlet.hpp"
 #include "sim/state/motion.hpp"
 
@@ -81,9 +82,10 @@ struct Simulation::System {
   void exchange_heat(double dt) { s.exchange_heat(dt); }
   void compute_forces() {
     s.update_list();
-    s.compute(energies);
+    s.compute(energies, s.part_step());
     s.check_forces(energies);
     s.account_.dissipated -= s.part_step() * s.forces_.damping_power;
+    s.account_.dissipated += s.forces_.lost;
   }
 };
 
@@ -110,17 +112,13 @@ void Simulation::step_once(bool energies) {
 // --- motion -------------------------------------------------------------------------------------------
 
 void Simulation::kick(double dt) {
-  if (interaction_.damping.local > 0) {
-    account_.dissipated += kick_with_local_damping(topology_, interaction_.damping.local, forces_, dt, state_);
-  } else {
+  const ForceTerms* const terms = engine_.terms().act_in_kick() ? &engine_.terms() : nullptr;
+  const ForceRows total = rows_of(forces_);
+  removed_.resize(static_cast<std::size_t>(parts_.count()));
 #pragma omp parallel for schedule(static) if (state_.size() > parallel_from)
-    for (int k = 0; k < parts_.count(); ++k) {
-      const Segment& of = parts_[k];
-      const TubeType& type = topology_.type_of(of.tube);
-      kick_elements(forces_.force, dt / type.mass, state_.velocity, of.begin, of.end);
-      kick_elements(forces_.torque, dt / type.inertia, state_.angular_velocity, of.begin, of.end);
-    }
-  }
+  for (int k = 0; k < parts_.count(); ++k)
+    removed_[static_cast<std::size_t>(k)] = ropewalk::kick(topology_, terms, total, dt, parts_[k], state_);
+  if (terms) account_.dissipated += std::accumulate(removed_.begin(), removed_.end(), 0.0);
   if (loads_.empty()) return;
   constrain(topology_, loads_, loaded_, state_.time, 0.5 * part_step(), forces_, dt, state_, impulses_);
   for (const ConstraintImpulse& c : impulses_) account_.work += c.work;
@@ -167,7 +165,7 @@ void Simulation::exchange_heat(double dt) {
 }
 
 void Simulation::update_list() {
-  if (!interaction_.has_contact()) return;
+  if (!(list_.cutoff > 0)) return;
   const double began = omp_get_wtime();
   ++list_age_;
   for_blocks(state_.size(), [&](std::size_t block, std::ptrdiff_t begin, std::ptrdiff_t end) {
@@ -176,7 +174,7 @@ void Simulation::update_list() {
   Change all;  // in the order of the blocks, whatever the threads
   for (const Change& c : changes_) all = both(all, c);
   if (list_.stale(all)) {
-    if (tunes_skin_) list_.skin = engine_.contact()->best_skin(topology_, list_.skin, list_age_);
+    if (tunes_skin_ && engine_.contact()) list_.skin = engine_.contact()->best_skin(topology_, list_.skin, list_age_);
     list_.build(topology_, state_);
     list_age_ = 0;
   }
@@ -186,8 +184,8 @@ void Simulation::update_list() {
 // --- forces -------------------------------------------------------------------------------------------
 
 // Model forces at the present positions and velocities, plus loads: their sum in `forces_`.
-void Simulation::compute(bool energies) {
-  engine_.compute(topology_, interaction_, list_, state_, forces_, {Parts::all, energies});
+void Simulation::compute(bool energies, std::optional<double> passed) {
+  engine_.compute(topology_, interaction_, list_, state_, forces_, {Parts::all, energies, passed});
   if (!energies) forces_.energy.vdw = std::numeric_limits<double>::quiet_NaN();
   point_loads(loads_, state_, state_.time, point_loads_);
   for (const PointLoad& load : point_loads_) {
@@ -221,6 +219,22 @@ void Simulation::relax_spins_if_due() {
 EndReadings Simulation::read_gauges() {
   if (state_.time > gauges_.sums.since) return gauges_.read(state_);
   return gauges_.read_still(state_, reactions_at_rest(topology_, loads_, loaded_, forces_, state_), point_loads_);
+}
+
+void Simulation::remember(const std::vector<double>& memory) {
+  engine_.remember(interaction_, memory, topology_.elements());
+  engine_.prepare_again(topology_, list_, state_);
+  compute();
+}
+
+Forces Simulation::forces_at(const State& state, Interaction::Precision precision) const {
+  Interaction in = interaction_;
+  in.precision = precision;
+  ForceEngine engine;
+  engine.take_terms_of(engine_);
+  Forces forces(state.size());
+  engine.compute(topology_, in, list_, state, forces);
+  return forces;
 }
 
 double Simulation::engine_seconds() const {

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -93,6 +94,12 @@ class Simulation {
     account_ = account;
   }
   void inherit_from(const Gauges::Sums& sums) { gauges_.sums = sums; }
+  // The memories of all force terms, ForceTerms::memory(), and a simulation that goes on with such ones: its forces
+  // and energies are those of the present state.
+  std::vector<double> memory() const { return engine_.terms().memory(); }
+  void remember(const std::vector<double>& memory);
+  // As of an engine of its own, with all energies; in the precision that is asked for, without the loads.
+  Forces forces_at(const State& state, Interaction::Precision precision) const;
   const Gauges& gauges() const { return gauges_; }
 
  private:
@@ -106,7 +113,7 @@ class Simulation {
   void move(double dt);
   void exchange_heat(double dt);
   void update_list();
-  void compute(bool energies = true);
+  void compute(bool energies = true, std::optional<double> passed = {});
   void check_forces(bool energies) const;
   void relax_spins_if_due();
   double engine_seconds() const;
@@ -131,6 +138,7 @@ class Simulation {
   Stepping stepping_;
   std::vector<int> loaded_;                  // elements
   std::vector<ConstraintImpulse> impulses_;  // of the last kick
+  std::vector<double> removed_;              // likewise, by terms in the kick, from each part
   Gauges gauges_;
   TubeParts parts_;
   bool tunes_skin_ = false;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sim/contact/contact_law.hpp"
+#include "sim/forces/force_term.hpp"
 
 namespace ropewalk {
 namespace {
@@ -75,6 +76,7 @@ struct Lattice {
   BondDamping bond;
   double spacing = 0;    // nm
   double stiffness = 0;  // eV/nm^2, of a neighbouring row
+  double held = 0;       // eV/nm^2, by force terms
   ContactViscosity viscosity;
 
   // A chain's matrix: `along` of deflections and of rotations about the axis, `sideways` of the rest.
@@ -156,6 +158,7 @@ struct Lattice {
           Wave wave;
           if (!alone) add_contact(Vector3(b1, (2 * b2 - b1) / std::sqrt(3.0), 0), q, wave);
           add_bonds(q, wave);
+          for (int axis = 0; axis < 3; ++axis) wave.stiffness(axis, axis) += held / type.mass;
           all.push_back(wave);
         }
       }
@@ -164,7 +167,8 @@ struct Lattice {
 };
 
 Lattice lattice_of(const Topology& topology, const Interaction& in, const TubeType& type, double spacing) {
-  Lattice out{type, in.damping.bond, spacing, 0, {}};
+  Lattice out{type, in.damping.bond, spacing, 0, 0, {}};
+  for (const auto& term : in.terms) out.held += term->stiffness();
   if (!in.has_contact() || topology.tubes() < 2 || spacing <= 0) return out;
   out.stiffness = std::max(contact_stiffness(topology, in, type, spacing), 0.0);
   if (in.damped_contact()) out.viscosity = in.damping.contact;

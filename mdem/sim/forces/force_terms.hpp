@@ -37,6 +37,8 @@ class ForceTerms : private PairWork {
   bool act_in_kick() const { return in_kick_; }
   void add_in_kick(const State& state, const ForceRows& total, const Segment& of, const ForceRows& out) const;
 
+  void add_reference(const Topology& topology, const Interaction& in, const State& state, Forces& out) const;
+
   std::vector<double> memory() const;
   // prepare() then finds all lists new. Throws std::runtime_error.
   void remember(const std::vector<double>& numbers, int elements);

@@ -1,15 +1,16 @@
 #include "sim/forces/forces.hpp"
 
 namespace ropewalk {
-namespace {
 
-void apply(const DampingForce& d, std::size_t i, std::size_t j, Forces& out) {
+void add_pair(const DampingForce& d, std::size_t i, std::size_t j, Forces& out) {
   out.force.add(i, -d.force_j);
   out.force.add(j, d.force_j);
   out.torque.add(i, d.torque_i);
   out.torque.add(j, d.torque_j);
   out.damping_power += d.power;
 }
+
+namespace {
 
 void contact_pair(TypePair types, const Interaction& in, const State& s, std::size_t i, std::size_t j,
                   Forces& out) {
@@ -21,10 +22,6 @@ void contact_pair(TypePair types, const Interaction& in, const State& s, std::si
   out.force.add(j, f.force_j);
   out.torque.add(i, f.torque_i);
   out.torque.add(j, f.torque_j);
-  if (in.damped_contact() && separation.norm() < in.damping.contact.outer)
-    apply(in.damping.contact.force(separation, s.velocity[i], s.angular_velocity[i], s.velocity[j],
-                                   s.angular_velocity[j]),
-          i, j, out);
 }
 
 void bond(const TubeType& type, const Interaction& in, const State& s, std::size_t i, Forces& out) {
@@ -43,7 +40,7 @@ void bond(const TubeType& type, const Interaction& in, const State& s, std::size
   if (std::fabs(bond_twist_angle(fi, fj)) >= 0.5 * units::pi && out.slipping_bond < 0)
     out.slipping_bond = static_cast<int>(i);
   if (in.damping.bond.rate > 0)
-    apply(in.damping.bond.force(type.mass, type.inertia, separation, s.velocity[i], s.angular_velocity[i],
+    add_pair(in.damping.bond.force(type.mass, type.inertia, separation, s.velocity[i], s.angular_velocity[i],
                                 s.velocity[j], s.angular_velocity[j]),
           i, j, out);
 }
@@ -55,14 +52,14 @@ void compute_reference(const Topology& topology, const Interaction& in, const St
   for (int t = 0; t < topology.tubes(); ++t)
     for (int i = topology.tube_begin[t]; i + 1 < topology.tube_begin[t + 1]; ++i)
       bond(topology.type_of(t), in, s, static_cast<std::size_t>(i), out);
-  if (!in.has_contact()) return;
-  for (int i = 0; i < topology.elements(); ++i)
-    for (int j = i + 1; j < topology.elements(); ++j) {
-      const int tube_i = topology.tube_of(i), tube_j = topology.tube_of(j);
-      if (tube_i == tube_j && j - i <= topology.type_of(tube_i).elements_within(in.excluded_arc())) continue;
-      contact_pair({topology.tube_type[tube_i], topology.tube_type[tube_j]}, in, s, static_cast<std::size_t>(i),
-                   static_cast<std::size_t>(j), out);
-    }
+  if (in.has_contact())
+    for_all_pairs(topology, in, [&](int i, int j) {
+      contact_pair({topology.tube_type[topology.tube_of(i)], topology.tube_type[topology.tube_of(j)]}, in, s,
+                   static_cast<std::size_t>(i), static_cast<std::size_t>(j), out);
+    });
+  ForceTerms terms;
+  terms.use(in);
+  terms.add_reference(topology, in, s, out);
 }
 
 }  // namespace ropewalk

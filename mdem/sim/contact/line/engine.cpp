@@ -65,9 +65,8 @@ void LineEngine::compute_chunk(std::size_t k, std::size_t thread, PairWork* pair
 }
 
 template <class Buffers>
-void LineEngine::compute_all(Buffers& b, const Topology& topology, const Interaction& interaction,
-                             const NeighbourList& list, const State& state, const Vec3Array& axis, bool energies,
-                             const TubeWork& tubes) {
+void LineEngine::compute_all(Buffers& b, const Topology& topology, const NeighbourList& list, const State& state,
+                             const Vec3Array& axis, bool energies, const TubeWork& tubes) {
   const bool parallel = state.size() > parallel_from, at_once = state.size() > finish_at_once_from;
   const int threads = parallel ? omp_get_max_threads() : 1;
   const KernelInput<Buffers> input{
@@ -77,9 +76,7 @@ void LineEngine::compute_all(Buffers& b, const Topology& topology, const Interac
   b.nodes.resize(static_cast<std::size_t>(threads));
   b.work.resize(static_cast<std::size_t>(threads));
   for (auto& nodes : b.nodes) nodes.reserve(list_.largest().nodes);
-  for (auto& work : b.work) {
-    work.found.reserve(list_.largest().vectors);
-  }
+  for (auto& work : b.work) work.found.reserve(list_.largest().vectors);
   left_.start(written_.chunks_on());
   const auto finish = [&](int block) {
     if (omp_get_thread_num() != 0) return tubes.finish(block);
@@ -111,9 +108,9 @@ void LineEngine::compute(const Topology& topology, const Interaction& in, const 
                          const State& state, const Vec3Array& axis, bool energies, const TubeWork& tubes) {
   update_list(topology, in, list, tubes);
   if (full_) {
-    compute_all(full_buffers_, topology, in, list, state, axis, energies, tubes);
+    compute_all(full_buffers_, topology, list, state, axis, energies, tubes);
   } else {
-    compute_all(mixed_, topology, in, list, state, axis, energies, tubes);
+    compute_all(mixed_, topology, list, state, axis, energies, tubes);
   }
 }
 

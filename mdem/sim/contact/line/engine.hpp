@@ -136,8 +136,8 @@ class LineEngine : public ContactEngine {
   void update_list(const Topology& topology, const Interaction& interaction, const NeighbourList& list,
                    const TubeWork& tubes);
   template <class Buffers>
-  void compute_all(Buffers& b, const Topology& topology, const Interaction& interaction, const NeighbourList& list,
-                   const State& state, const Vec3Array& axis, bool energies, const TubeWork& tubes);
+  void compute_all(Buffers& b, const Topology& topology, const NeighbourList& list, const State& state,
+                   const Vec3Array& axis, bool energies, const TubeWork& tubes);
   template <class Buffers>
   void compute_chunk(std::size_t chunk, std::size_t thread, PairWork* pairs, Buffers& b, KernelInput<Buffers> in);
   // What `of` makes of the buffers in use.
