@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <limits>
 #include <map>
+#include <numeric>
 
 #include "commands/commands.hpp"
 #include "io/files.hpp"
@@ -94,6 +95,7 @@ LammpsScript script_of(const Scene& scene, const Prepared& p, const Simulation& 
   script.name = scene.name;
   script.law = scene.contact.law;
   script.relax = scene.run.mode == RunOptions::Mode::relax;
+  script.terms = static_cast<int>(in.terms.size());
   script.damped = in.damped_contact() || in.damping.bond.rate > 0 || in.damping.local > 0;
   script.driven = !p.loads.empty();
   script.long_in_z = scene.source->is_parallel();
@@ -136,7 +138,7 @@ void write_lammps_files(const RunDirectory& run) {
   header.time = s.state().time;
   header.work = s.work();
   header.dissipated = s.dissipated();
-  write_file_atomically(dir.first_state(), state_file(header, s.state(), s.forces().force, s.forces().torque));
+  write_file_atomically(dir.first_state(), state_file(header, s.state(), s.forces().force, s.forces().torque, s.memory()));
   write_file_atomically(dir.input(), lammps_input(script_of(scene, p, s)));
   write_file_atomically(dir.readme(), readme);
 }
@@ -204,7 +206,8 @@ class Import {
     if (!fs::exists(files_.rows()) || !fs::exists(files_.states()))
       throw InputError({files_.path, 0, ""}, "holds nothing that LAMMPS has done",
                        "run in.rope with lmp-ropewalk first, as README.txt says");
-    for (const LammpsRow& row : read_lammps_rows(files_)) rows_[static_cast<std::int64_t>(row.step)] = row;
+    for (const LammpsRow& row : read_lammps_rows(files_, prepared_.interaction.terms.size()))
+      rows_[static_cast<std::int64_t>(row.step)] = row;
     remove_parts(dir_.path);
     log_ = read_file(dir_.log()).substr(0, checkpoint_.log.bytes);
     const std::string there = dir_.frames();
@@ -230,6 +233,7 @@ class Import {
       state.time = row->second.time;
       force_.force = force;
       force_.torque = torque;
+      memory_ = states.memory();
       add(state, row->second);
     }
   }
@@ -238,7 +242,9 @@ class Import {
     EnergyAccount account;
     account.time_step = prepared_.time_step;
     if (scene_.twist) account.moment = scene_.twist->moment_at(from.time);
-    account.potential = {from.stretch, from.shear, from.bend, from.twist, from.vdw};
+    account.potential = {from.stretch, from.shear, from.bend, from.twist, from.vdw,
+                         std::accumulate(from.terms.begin(), from.terms.end(), 0.0)};
+    account.terms = term_energies(prepared_.interaction, from.terms);
     account.kinetic = from.kinetic;
     account.work = from.work;
     account.dissipated = from.dissipated;
@@ -280,6 +286,7 @@ class Import {
   // stands where it stood, and all of this can be done again.
   void write(std::int64_t from) {
     Simulation simulation = start(scene_, prepared_);
+    simulation.remember(memory_);
     simulation.inherit_from(force_.force, force_.torque, {last_.work, last_.dissipated});
     simulation.inherit_from(gauges_.sums);
     checkpoint_.log = mark_of(log_);
@@ -326,6 +333,7 @@ class Import {
   std::map<std::int64_t, LammpsRow> rows_;
   LammpsRow last_;
   Forces force_;
+  std::vector<double> memory_;  // of the force terms, in the last state
   std::string log_;
   std::unique_ptr<NewFrames> frames_;
   long taken_ = 0;

@@ -452,6 +452,7 @@ class Run {
     account.time_step = simulation_.time_step() / simulation_.divided();
     if (scene_.twist) account.moment = scene_.twist->moment_at(s.time);
     account.potential = simulation_.forces().energy;
+    account.terms = term_energies(prepared_.interaction, simulation_.forces().term_energy);
     account.kinetic = kinetic_energy(prepared_.topology, s);
     account.work = simulation_.work();
     account.dissipated = simulation_.dissipated();
@@ -684,6 +685,7 @@ class Run {
         stop_at(-1, static_cast<double>(coarse.last_step_) * dt);
     }
     simulation_ = start(scene_, at);
+    simulation_.remember(coarse.simulation_.halved_memory());
     simulation_.inherit_from(simulation_.forces().force, simulation_.forces().torque, coarse.simulation_.account());
     simulation_.set_gauges(observer_.loading.ends, prepared_.state);
     simulation_.inherit_from(coarse.simulation_.gauges().sums);

@@ -38,6 +38,7 @@
 // Units nm, ps, eV.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -79,7 +80,7 @@ class ForceTerm {
  public:
   virtual ~ForceTerm() = default;
   virtual std::unique_ptr<ForceTerm> copy() const = 0;
-  // Different for all terms of a scene. A kind that scenes name has the energy column NAME_eV in the log.
+  // Its energy counts in the column NAME_eV of the log, with that of other terms of the same name.
   virtual std::string name() const = 0;
 
   // Events happen here: links form, contacts begin and end. In a part of a scene (Topology::part) the term acts on
@@ -120,16 +121,27 @@ class ForceTerm {
   // The memory where every element e has been split into 2 e and 2 e + 1. As it stands it goes to the first half.
   virtual TermMemory halved(const TermMemory& coarse) const;
 
-  // The oracle: adds to forces, energies and power in one thread and with a list of its own, from all pairs. Terms
-  // with a plain form put it here.
-  virtual void add_reference(const Topology&, const Interaction&, const State&, Forces&) const;
+  // For the oracle (compute_reference): a plain form, over all pairs and in one thread, which adds to forces, energies
+  // and power. Without one, false: add and add_pairs are called with a list of all pairs, whole tubes and one buffer.
+  virtual bool add_reference(const Topology&, const Interaction&, const State&, Forces&) const { return false; }
 
   // Of its lists, which an evaluation goes through.
   virtual std::size_t bytes() const { return 0; }
 };
 
+// A kind of term that scenes can have: the log has its energy as the column NAME_eV, with this meaning.
+struct TermKind {
+  std::string name, energy;
+};
+const std::vector<TermKind>& term_kinds();
+// To be called before main() begins, for a static variable.
+bool add_term_kind(TermKind kind);
+
 // Adds a term, and sees that the neighbour list reaches as far as it does.
 void add_term(std::shared_ptr<const ForceTerm> term, Interaction& interaction);
+
+// Energies of the terms (eV) by their names; those of one name are added up.
+std::map<std::string, double> term_energies(const Interaction& interaction, const std::vector<double>& energies);
 
 // Calls work(i, j) for all pairs i < j that are not excluded as near along one tube, in rising order.
 void for_all_pairs(const Topology& topology, const Interaction& interaction,

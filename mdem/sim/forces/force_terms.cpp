@@ -137,15 +137,6 @@ void ForceTerms::add_in_kick(const State& state, const ForceRows& total, const S
     if (w.term->acts_in_kick()) w.term->add_in_kick(state, total, of, out);
 }
 
-void ForceTerms::add_reference(const Topology& topology, const Interaction& in, const State& state,
-                               Forces& out) const {
-  for (std::size_t k = 0; k < terms_.size(); ++k) {
-    const double before = out.energy.terms;
-    if (!terms_[k].term->acts_in_kick()) terms_[k].term->add_reference(topology, in, state, out);
-    if (k < copied_.size()) out.term_energy.push_back(out.energy.terms - before);
-  }
-}
-
 std::vector<double> ForceTerms::memory() const {
   std::vector<TermMemory> all;
   for (const Working& w : terms_) all.push_back(w.term->memory());

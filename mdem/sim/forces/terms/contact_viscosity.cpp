@@ -45,8 +45,8 @@ class ContactViscosityTerm : public ForceTerm {
     return {0, contact_damping(viscosity_, state, {of.blocks, of.ranges, unit_}, elements, *buffer.floats)};
   }
 
-  void add_reference(const Topology& topology, const Interaction& in, const State& s, Forces& out) const override {
-    if (!in.has_contact()) return;
+  bool add_reference(const Topology& topology, const Interaction& in, const State& s, Forces& out) const override {
+    if (!in.has_contact()) return true;
     const double reach = std::min(viscosity_.outer, in.cutoff());
     for_all_pairs(topology, in, [&](int a, int b) {
       const auto i = static_cast<std::size_t>(a), j = static_cast<std::size_t>(b);
@@ -56,6 +56,7 @@ class ContactViscosityTerm : public ForceTerm {
                                 s.angular_velocity[j]),
                i, j, out);
     });
+    return true;
   }
 
   std::size_t bytes() const override {
