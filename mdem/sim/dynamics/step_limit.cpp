@@ -49,9 +49,6 @@ double contact_stiffness(const Topology& topology, const Interaction& in, const 
   return largest;
 }
 
-//   w^2 dt^2 + 2 g dt = 4
-double damped_step_limit(double w2, double g) { return (std::sqrt(g * g + 4.0 * w2) - g) / w2; }
-
 using Matrix6 = Eigen::Matrix<std::complex<double>, 6, 6>;
 
 using Vector6 = Eigen::Matrix<double, 6, 1>;
