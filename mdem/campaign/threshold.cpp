@@ -49,7 +49,8 @@ void add_theory(const Sweep& sweep, const Scene& scene, const Prepared& p, Phase
   }
   point.length = p.topology.length_of(0) * p.topology.longest_element();
   point.radius = farthest + p.topology.largest_radius();
-  const bool per_tube = scene.twist && scene.twist->reading == TwistLoad::Reading::per_tube;
+  const MomentRamp* ramp = scene.moment_ramp();
+  const bool per_tube = ramp && ramp->reading == MomentRamp::Reading::per_tube;
   if (sweep.threshold->key != "twist.moment_nN_nm" || !per_tube) return;
   const BondStiffness& bond = scene.parameters().bond;
   const double glued = bond.bend + bond.stretch * sum / (2 * point.tubes);
@@ -134,17 +135,18 @@ std::vector<Trial> trials_in(const CampaignDirectory& dir, const Sweep& sweep, c
   const std::string folder = dir.point(point.name).path, begins = leaf_of(q.key) + "-";
   if (!fs::exists(folder)) return trials;
   const Scene scene = scene_of(sweep, point);
-  const double constant_from = scene.twist ? scene.twist->ramp_time() : 0;
+  const MomentRamp* ramp = scene.moment_ramp();
+  const double constant_from = ramp ? ramp->ramp_time() : 0;
   for (const auto& entry : fs::directory_iterator(folder)) {
     const std::string name = entry.path().filename().string();
     const RunDirectory run{entry.path().string()};
     if (name.rfind(begins, 0) != 0 || progress_of(run).stage != PointProgress::Stage::ended) continue;
     const double value = std::stod(name.substr(begins.size()));
     // A moment that the ramp takes less time to.
-    const double ramp = scene.twist && scene.twist->moment > 0 && q.key == "twist.moment_nN_nm"
-                            ? constant_from * value * units::nN_nm / scene.twist->moment
+    const double from = ramp && ramp->moment > 0 && q.key == "twist.moment_nN_nm"
+                            ? constant_from * value * units::nN_nm / ramp->moment
                             : constant_from;
-    trials.push_back(trial_of(read_log(run.log()), q, value, scene.start.wave, ramp));
+    trials.push_back(trial_of(read_log(run.log()), q, value, scene.start.wave, from));
     trials.back().scene_hash = trial_hash(sweep, point, value);
   }
   return trials;

@@ -143,16 +143,6 @@ void write_lammps_files(const RunDirectory& run) {
   write_file_atomically(dir.readme(), readme);
 }
 
-void refuse_what_lammps_lacks(const Scene& scene) {
-  const char* lacking = scene.thermostat                             ? "thermostat"
-                        : scene.periodic                             ? "periodic"
-                        : scene.twist && scene.twist->geometric_only ? "twist.geometric_only"
-                        : scene.run.stepping.runge_kutta             ? "run.integrator"
-                                                                     : nullptr;
-  if (lacking)
-    throw InputError({scene.path, 0, lacking}, "is not for LAMMPS", "run this scene with `ropewalk run`");
-}
-
 }  // namespace
 
 int export_command(const ExportArguments& a) {
@@ -241,7 +231,7 @@ class Import {
   void add(const State& state, const LammpsRow& from) {
     EnergyAccount account;
     account.time_step = prepared_.time_step;
-    if (scene_.twist) account.moment = scene_.twist->moment_at(from.time);
+    if (const MomentRamp* ramp = scene_.moment_ramp()) account.moment = ramp->moment_at(from.time);
     account.potential = {from.stretch, from.shear, from.bend, from.twist, from.vdw,
                          std::accumulate(from.terms.begin(), from.terms.end(), 0.0)};
     account.terms = term_energies(prepared_.interaction, from.terms);

@@ -6,6 +6,7 @@
 
 #include "commands/commands.hpp"
 #include "io/files.hpp"
+#include "io/toml_table.hpp"  // nearest_word, printable
 #include "model/error.hpp"
 #include "plan/forecast.hpp"
 #include "run/run_directory.hpp"
@@ -44,22 +45,8 @@ void say_source(const Scene& scene, const Prepared& p) {
   fmt::print("\n");
 }
 
-void say_loads(const Scene& scene) {
-  if (!scene.loads.empty()) fmt::print("{} loads\n", scene.loads.size());
-  for (const SceneGrip& g : scene.grips) fmt::print("{}\n", g.grip->words());
-  if (!scene.twist) return;
-  const TwistLoad& w = *scene.twist;
-  fmt::print(
-      "twist: {:.4g} nN nm {} by {} on the grips, ramped in {:.4g} ps, held for {:.4g} ps; grips {} along the "
-      "axis, {} sideways{}\n",
-      w.moment / units::nN_nm, w.reading == TwistLoad::Reading::per_tube ? "per tube" : "in total",
-      w.application == TwistLoad::Application::couple ? "couples" : "tangential forces", w.ramp_time(), w.hold,
-      w.axial_free ? "free" : "held", w.lateral_free ? "free" : "held",
-      w.geometric_only ? "; spins relaxed (geometric twist only)" : "");
-}
-
-void say_limits(const Scene& scene, const Topology& topology) {
-  const std::vector<Limits> all = watched_of(scene, topology).limits;
+void say_limits(const Scene& scene, const Prepared& p) {
+  const std::vector<Limits> all = watched_of(scene, p.topology, p.interaction.law.get()).limits;
   for (std::size_t type = 0; type < all.size(); ++type) {
     std::string text;
     for (const LimitKind& kind : limit_kinds())
@@ -97,11 +84,11 @@ int check_command(const std::string& path) {
   refuse_cooling(scene, p);
   Simulation simulation = start(scene, p);
   say_source(scene, p);
-  say_loads(scene);
-  for (const std::string& warning : warnings_of(scene, p.topology)) fmt::print("note: {}\n", warning);
+  for (const auto& drive : scene.drives) fmt::print("{}\n", drive->words());
+  for (const std::string& warning : warnings_of(scene, p)) fmt::print("note: {}\n", warning);
   for (const std::string& warning : warmth_of(scene, p)) fmt::print("note: {}\n", warning);
   for (const std::string& warning : limits_ahead(scene, p)) fmt::print("note: {}\n", warning);
-  say_limits(scene, p.topology);
+  say_limits(scene, p);
   fmt::print(
       "time step {:.4g} fs; stability limit {:.4g} fs (chain {:.3g}, contact {:.3g} rad/ps, damping {:.3g} 1/ps)\n",
       p.time_step / units::fs, p.limit.limit / units::fs, p.limit.chain_frequency,

@@ -52,19 +52,7 @@ void add_run_facts(const Scene& scene, const Prepared& p, const Manifest& m, Rep
       scene.contact.legacy_torque ? "legacy torque: not a gradient, energy is not conserved" : "full gradient");
   add("damping", fmt::format("contact viscosity {:.4g} eV ps/nm^2, bonds {:.4g} 1/ps, PFC local {:.4g}",
                              scene.damping.contact.eta, scene.damping.bond.rate, scene.damping.local));
-  if (scene.thermostat)
-    add("thermostat", fmt::format("{}, {} K", scene.thermostat->method, words_of(scene.thermostat->temperature)),
-        fmt::format("coupling {:.4g} 1/ps, seed {}", scene.thermostat->coupling, scene.thermostat->seed));
-  for (const SceneGrip& g : scene.grips) add("grip", g.grip->words());
-  if (scene.twist) {
-    const TwistLoad& w = *scene.twist;
-    add("twist",
-        fmt::format("{:.4g} nN nm {} as {}", w.moment / units::nN_nm,
-                    w.reading == TwistLoad::Reading::per_tube ? "per tube" : "in total",
-                    w.application == TwistLoad::Application::couple ? "couples" : "tangential forces"),
-        fmt::format("ramp {:.4g} ps, hold {:.4g} ps{}", w.ramp_time(), w.hold,
-                    w.geometric_only ? "; spins relaxed at each increment" : ""));
-  }
+  for (const auto& drive : scene.drives) add(drive->table().name, drive->words());
   add("time step", fmt::format("{:.4g} fs", p.time_step / units::fs),
       fmt::format("stability limit {:.4g} fs", p.limit.limit / units::fs));
   for (const std::string& words : warmth_of(scene, p)) add("temperature", words);
@@ -113,7 +101,7 @@ ReportInput gather(const RunDirectory& dir, const Scene& scene, const Prepared& 
   in.status = m.status;
   in.reason = m.reason;
   add_run_facts(scene, p, m, in);
-  in.warnings = warnings_of(scene, p.topology);
+  in.warnings = warnings_of(scene, p);
   for (const ParameterSet& set : scene.sets)
     if (const Grade grade = grade_of(set); grade.level != Grade::Level::good)
       in.warnings.push_back("Parameters " + set.name + " are " + grade.words() + ".");
@@ -122,7 +110,7 @@ ReportInput gather(const RunDirectory& dir, const Scene& scene, const Prepared& 
   in.error_bars = error_bars_of(scene, p.topology, in.log);
   if (const std::string words = plan_words(dir, scene, m); !words.empty())
     in.error_bars.insert(in.error_bars.begin(), words);
-  if (scene.twist) in.ramp_end_ps = scene.twist->ramp_time();
+  if (const MomentRamp* ramp = scene.moment_ramp()) in.ramp_end_ps = ramp->ramp_time();
   in.tube_radius = p.topology.largest_radius();
   in.spacing = p.spacing;
   in.element_length = p.topology.longest_element();

@@ -127,7 +127,7 @@ class Run {
     if (!policy_.quiet)
       for (const std::string& grade : grades_of(scene_)) tell("parameters " + grade);
     for (const auto& notes :
-         {warnings_of(scene_, prepared_.topology), warmth_of(scene_, prepared_), limits_ahead(scene_, prepared_)})
+         {warnings_of(scene_, prepared_), warmth_of(scene_, prepared_), limits_ahead(scene_, prepared_)})
       for (const std::string& note : notes) tell("note: " + note);
   }
 
@@ -440,7 +440,8 @@ class Run {
   std::string status_text() const {
     const State& s = simulation_.state();
     std::string text = fmt::format("{:8.2f} ps", s.time);
-    if (scene_.twist) text += fmt::format("  moment {:5.1f} nN nm", scene_.twist->moment_at(s.time) / units::nN_nm);
+    if (const MomentRamp* ramp = scene_.moment_ramp())
+      text += fmt::format("  moment {:5.1f} nN nm", ramp->moment_at(s.time) / units::nN_nm);
     return text + fmt::format("  beta {:5.1f} deg  Q {}  twist {:.0f}  bend {:.0f}  vdW {:.0f} eV",
                               last_row_["beta_deg"], last_row_["Q"], last_row_["twist_eV"], last_row_["bend_eV"],
                               last_row_["vdw_eV"]);
@@ -450,7 +451,7 @@ class Run {
     const State& s = simulation_.state();
     EnergyAccount account;
     account.time_step = simulation_.time_step() / simulation_.divided();
-    if (scene_.twist) account.moment = scene_.twist->moment_at(s.time);
+    if (const MomentRamp* ramp = scene_.moment_ramp()) account.moment = ramp->moment_at(s.time);
     account.potential = simulation_.forces().energy;
     account.terms = term_energies(prepared_.interaction, simulation_.forces().term_energy);
     account.kinetic = kinetic_energy(prepared_.topology, s);

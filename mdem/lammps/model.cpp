@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "model/error.hpp"
-#include "scene/build.hpp"
 #include "scene/scene_to_model.hpp"
 #include "scene/scene_toml.hpp"
 
@@ -19,19 +18,15 @@ LammpsModel load_lammps_model(const std::string& directory) {
   Scene scene = read_scene(dir.scene(), sets);
   scene.damping.contact.inner = m.start.viscosity_inner;
   scene.damping.contact.outer = m.start.viscosity_outer;
-  for (const auto& [there, table] : {std::pair{scene.thermostat.has_value(), "thermostat"}, {scene.periodic.has_value(), "periodic"}})
-    if (there) throw InputError({dir.scene(), 0, table}, "is not for LAMMPS", "run this scene with `ropewalk run`");
+  refuse_what_lammps_lacks(scene);
   m.topology = empty_topology(scene);
   read_tubes(dir, m.topology);
   set_collapse(scene, m.topology);
   m.interaction = interaction_of(scene);
-  m.loads = loads_of(scene, m.topology);
+  m.loads = loads_of(scene, m.topology, m.interaction);
   m.law = scene.contact.law;
   m.relax = scene.run.mode == RunOptions::Mode::relax;
   m.force_tolerance = scene.run.goal.force;
-  if (m.loads.spin_relaxation_interval() > 0)
-    throw InputError({dir.scene(), 0, "twist.geometric_only"}, "is not for LAMMPS",
-                     "run this scene with `ropewalk run`");
   return m;
 }
 

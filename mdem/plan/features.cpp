@@ -78,35 +78,34 @@ void add_load(const LoadEffect& load, const Prepared& p, SceneFeatures& f) {
     f.curvature += across;
     if (along > 0) add_rope_twist(p, along, f);
   }
+  if (load.twist > 0) add_rope_twist(p, load.twist, f);
   const bool loaded = load.force > 0 || load.torque != Vector3::Zero();
   f.sudden = f.sudden || (loaded && load.ramp <= 0);
   f.ramp = std::max(f.ramp, load.ramp);
 }
 
-// Tubes that clamps hold at both ends.
-bool any_tube_between_grips(const Prepared& p) {
-  std::array<std::set<int>, 2> tubes;
-  for (const GripLoad* grip : p.loads.of<GripLoad>())
-    for (const int e : grip->elements) tubes[grip->end].insert(p.topology.tube_of(e));
-  return std::any_of(tubes[0].begin(), tubes[0].end(), [&](int t) { return tubes[1].count(t) > 0; });
-}
-
 // What clamps ask: pulling, bending, stretching where the rope is turned at a length that is held, and the bending
 // of tilted tubes where a clamp keeps them straight: over the length sqrt(EI/T), T the tension of a tube.
-void grip_features(const Prepared& p, SceneFeatures& f) {
+void add_clamps(const Prepared& p, SceneFeatures& f) {
   const BondStiffness& k = p.topology.types[0].bond;
-  const bool between = any_tube_between_grips(p);
+  EndElements clamped;
+  for (const auto& load : p.loads)
+    if (const auto effect = load->effect(); effect && effect->clamp) load->add_ends(clamped);
+  std::array<std::set<int>, 2> tubes;
+  for (const End end : {lower_end, upper_end})
+    for (const int e : clamped[end]) tubes[end].insert(p.topology.tube_of(e));
+  const bool between = std::any_of(tubes[lower_end].begin(), tubes[lower_end].end(),
+                                   [&](int t) { return tubes[upper_end].count(t) > 0; });
   double pulled = 0, bent = 0, tension = 0;
   bool held = between, straight = false;
-  for (const GripLoad* grip : p.loads.of<GripLoad>()) {
-    const GripAxis::Is z = grip->axes[GripLoad::z].is;
-    const double shared = grip->each ? 1 : static_cast<double>(grip->elements.size()) / grip->depth;
-    if (z == GripAxis::Is::moved && between) pulled += grip->schedule(GripLoad::z).largest();
-    if (z == GripAxis::Is::loaded) tension = std::max(tension, grip->schedule(GripLoad::z).largest() / shared);
-    held = held && z != GripAxis::Is::free && z != GripAxis::Is::loaded && !grip->slide_free;
-    straight = straight || !grip->tilt_free;
-    for (const std::size_t about : {std::size_t{3}, std::size_t{4}})
-      if (grip->axes[about].is == GripAxis::Is::moved) bent += grip->schedule(about).largest();
+  for (const auto& load : p.loads) {
+    const std::optional<LoadEffect> effect = load->effect();
+    if (!effect || !effect->clamp) continue;
+    if (between) pulled += effect->clamp->pull;
+    bent += effect->clamp->bend;
+    tension = std::max(tension, effect->clamp->tension);
+    held = held && effect->clamp->keeps_length;
+    straight = straight || effect->clamp->keeps_tilt;
   }
   f.strain += pulled / f.length + tension / k.stretch;
   f.curvature += bent / f.length;
@@ -137,31 +136,20 @@ SceneFeatures features_of(const Scene& scene, const Prepared& p) {
   f.length = longest_tube(p.topology);
   bond_features(p.topology, p.state, f);
   double turned = 0;
-  for (const SceneLoad& load : scene.loads) {
-    const std::optional<LoadEffect> effect = load.load->effect();
+  for (const auto& load : p.loads) {
+    const std::optional<LoadEffect> effect = load->effect();
     if (!effect) continue;
     add_load(*effect, p, f);
     turned += effect->angle;
   }
-  for (const GripLoad* grip : p.loads.of<GripLoad>()) {
-    const LoadEffect effect = *grip->effect();
-    add_load(effect, p, f);
-    turned += effect.angle;
-  }
   if (turned > 0) add_rope_twist(p, turned / f.length, f);
-  for (const PeriodicLoad* slice : p.loads.of<PeriodicLoad>()) {
-    add_rope_twist(p, slice->schedule().largest(), f);
-    f.ramp = std::max(f.ramp, slice->schedule().ends());
-  }
-  grip_features(p, f);
-  if (scene.twist) {
-    const TwistLoad& w = *scene.twist;
-    const double each = w.reading == TwistLoad::Reading::per_tube ? w.moment : w.moment / f.tubes;
-    const double alone = each / p.topology.types[0].bond.twist, turn_before = f.turn;
-    add_rope_twist(p, alone, f);
-    f.turn = turn_before + resting_twist(p, each, w.geometric_only);
-    f.sudden = f.sudden || w.rate <= 0;
-    f.ramp = w.ramp_time();
+  add_clamps(p, f);
+  if (const MomentRamp* ramp = scene.moment_ramp()) {
+    const double each = ramp->of_each(f.tubes), turn_before = f.turn;
+    add_rope_twist(p, each / p.topology.types[0].bond.twist, f);
+    f.turn = turn_before + resting_twist(p, each, ramp->geometric_only);
+    f.sudden = f.sudden || ramp->rate <= 0;
+    f.ramp = ramp->ramp_time();
   }
   if (scene.start.temperature > 0) {
     const TubeType& t = p.topology.types[0];

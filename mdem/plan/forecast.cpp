@@ -24,8 +24,8 @@ double expected(const SceneFeatures& f, const TubeType& type, double Limits::*li
 std::vector<std::string> limits_ahead(const Scene& scene, const Prepared& p) {
   std::vector<std::string> out;
   SceneFeatures f = features_of(scene, p);
-  if (scene.twist && scene.source->is_parallel()) f.twist = f.turn;
-  const Limits limits = watched_of(scene, p.topology).limits.front();
+  if (scene.moment_ramp() && scene.source->is_parallel()) f.twist = f.turn;
+  const Limits limits = watched_of(scene, p.topology, p.interaction.law.get()).limits.front();
   for (const LimitKind& kind : limit_kinds()) {
     const double limit = limits.*kind.limit, value = expected(f, p.topology.types[0], kind.limit);
     if (limit <= 0 || value <= limit) continue;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "scene/laws/line.hpp"
 #include "scene/scene_to_model.hpp"
 
 namespace ropewalk {
@@ -65,12 +66,9 @@ std::string kept_length(const Scene& scene) {
 }
 
 std::string needs_time(const Scene& scene) {
-  if (scene.twist) return "the moment of [twist] is ramped, and where a rope ends depends on the way";
-  for (const SceneLoad& load : scene.loads)
-    if (!load.load->needs_time().empty()) return load.load->needs_time();
-  for (const SceneGrip& grip : scene.grips)
-    if (!grip.grip->needs_time().empty()) return grip.grip->needs_time();
-  if (scene.start.temperature > 0 || scene.thermostat) return "the scene is warm";
+  for (const auto& drive : scene.drives)
+    if (const std::string why = drive->needs_time(); !why.empty()) return why;
+  if (scene.start.temperature > 0 || scene.bath()) return "the scene is warm";
   return "";
 }
 
@@ -101,7 +99,7 @@ std::vector<ModelChange> cheaper_changes(const Scene& scene, const SceneFeatures
   }
   if (f.sudden)
     not_tried.push_back("heavier masses: a load acts at once, and heavy tubes swing for longer");
-  else if (is_warm(scene) || scene.thermostat)
+  else if (is_warm(scene) || scene.bath())
     not_tried.push_back("heavier masses: the scene is warm");
   else
     for (const int times : {4, 16}) out.push_back(mass_change(times));

@@ -9,8 +9,8 @@
 #include "model/error.hpp"
 #include "plan/planned_scene.hpp"
 #include "plan/scene_edit.hpp"
-#include "scene/build.hpp"
 #include "scene/kinds/film.hpp"
+#include "scene/lattice.hpp"
 #include "scene/prepare.hpp"
 #include "scene/scene_toml.hpp"
 
@@ -27,7 +27,7 @@ class Shrinking {
 
   PilotScene go() {
     if (left_ < near_enough && scene_.kind == "rope") {
-      if (scene_.twist && scene_.loads.empty() && scene_.grips.empty()) shorten();
+      shorten();
       fewer_tubes();
     }
     if (left_ < near_enough && scene_.kind == "film") smaller_box();
@@ -36,17 +36,23 @@ class Shrinking {
   }
 
  private:
+  // All drives must do the same in a shorter time, and one of them at least has something to do.
   void shorten() {
     const int elements = elements_of(scene_);
     const double part = std::max(std::sqrt(left_), static_cast<double>(least_elements) / elements);
     if (part > 0.9) return;
     const double length = std::round(part * elements) * scene_.element_length;
-    const TwistLoad& twist = *scene_.twist;
+    std::vector<std::pair<std::string, double>> keys;
+    for (const auto& drive : scene_.drives) {
+      const auto hastened = drive->hastened(part);
+      if (!hastened) return;
+      keys.insert(keys.end(), hastened->begin(), hastened->end());
+    }
+    if (keys.empty()) return;
     attempt(part * part, caution_if_shorter,
             fmt::format("{:.3g} of {:.3g} nm in as short a time", length, elements * scene_.element_length), [&] {
               set("rope.length_nm", length);
-              if (twist.rate > 0) set("twist.rate_nN_nm_per_ps", twist.rate / units::nN_nm / part);
-              set("twist.hold_ps", twist.hold * part);
+              for (const auto& [key, value] : keys) set(key.c_str(), value);
               if (scene_.run.duration > 0) set("run.duration_ps", scene_.run.duration * part);
               if (scene_.run.log_every > 0) set("run.log_every_ps", scene_.run.log_every * part);
             });

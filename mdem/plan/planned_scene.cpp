@@ -8,18 +8,11 @@
 
 #include "plan/scene_edit.hpp"
 #include "scene/dissipation.hpp"
+#include "scene/kinds/scene_kind.hpp"
 #include "scene/laws/contact_law_kind.hpp"
 #include "scene/scene_toml.hpp"
 
 namespace ropewalk {
-namespace {
-
-bool names_only_ends(const Selection& on) {
-  return on.all_elements ||
-         std::all_of(on.elements.begin(), on.elements.end(), [](int e) { return e == 0 || e == -1; });
-}
-
-}  // namespace
 
 int elements_of(const Scene& scene) { return scene.source->sizes(scene.element_length).elements; }
 
@@ -28,11 +21,8 @@ std::string fixed_length(const Scene& scene) {
   if (tube_size_key(scene).tube_size == SceneKey::TubeSize::no) return "the tubes have no common length";
   const ContactLawKind* law = contact_law_kind(scene.contact.law);
   if (law && !law->any_element_length) return fmt::format("law \"{}\" holds for its set's length alone", law->name);
-  for (const SceneLoad& load : scene.loads)
-    if (!names_only_ends(load.on)) return "a load names elements by number";
-  if (scene.periodic) return "a periodic slice counts its images in elements";
-  for (const SceneGrip& grip : scene.grips)
-    if (grip.grip->depth > 1) return "a grip holds several elements of each tube";
+  for (const auto& drive : scene.drives)
+    if (const std::string why = drive->why_not_lengthened(); !why.empty()) return why;
   return "";
 }
 
@@ -81,7 +71,10 @@ void PlannedScene::lengthen(double times, const std::string& why) {
   if (!fixed_length(scene_).empty()) return;
   const double wanted = times * scene_.parameters().element_length, old = scene_.element_length;
   if (std::fabs(wanted / old - 1) < 1e-6) return;
-  const int overhang = scene_.twist || !scene_.loads.empty() || !scene_.grips.empty() ? 1 : 0;
+  // Whatever drives the elements, but for a bath, has hold of end elements.
+  const auto& drives = scene_.drives;
+  const bool held = std::any_of(drives.begin(), drives.end(), [](const auto& drive) { return !drive->temperature(); });
+  const int overhang = held ? 1 : 0;
   const double between = (elements_of(scene_) - overhang) * old;
   const long parts = std::max(2L, std::lround(between / wanted));
   const double length = between / static_cast<double>(parts);

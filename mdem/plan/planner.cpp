@@ -30,7 +30,7 @@ Scene scene_with_features(const std::string& text, const std::string& path, Scen
 
 bool has_random_numbers(const Scene& scene) {
   const auto* rope = dynamic_cast<const RopeSource*>(scene.source.get());
-  return is_warm(scene) || scene.thermostat || (rope && rope->perturbation > 0);
+  return is_warm(scene) || scene.bath() || (rope && rope->perturbation > 0);
 }
 
 class Planner {
@@ -97,7 +97,7 @@ class Planner {
     std::vector<std::string> observables = request_.observables;
     if (observables.empty()) {
       observables = usual_observables();
-      if (scene_.twist) observables.erase(std::find(observables.begin(), observables.end(), "torque_upper_nN_nm"));
+      if (scene_.moment_ramp()) observables.erase(std::find(observables.begin(), observables.end(), "torque_upper_nN_nm"));
     }
     return outcome_of(end.log, observables, relaxed);
   }
@@ -245,16 +245,14 @@ class Planner {
     if (!plan_.chosen.holds)
       plan_.remarks.push_back(fmt::format("No model that was tried holds {:g} %: this is the most accurate one.",
                                           100 * request_.error));
-    if (!plan_.pilots.empty() && scene_.twist && scene_.source->is_parallel()) add_buckling();
+    if (!plan_.pilots.empty() && scene_.moment_ramp() && scene_.source->is_parallel()) add_buckling();
     add_slice();
   }
 
   // Pilots that are shorter stay straight where the whole rope buckles.
   void add_buckling() {
-    const TwistLoad& twist = *scene_.twist;
     const BondStiffness& k = scene_.parameters().bond;
-    const double each =
-        twist.reading == TwistLoad::Reading::per_tube ? twist.moment : twist.moment / features_.tubes;
+    const double each = scene_.moment_ramp()->of_each(features_.tubes);
     const double theory = 2 * units::pi * k.bend / features_.length;
     if (each > theory)
       plan_.remarks.push_back(
@@ -266,7 +264,7 @@ class Planner {
 
   // Whether the interior alone would do.
   void add_slice() {
-    if (scene_.kind != "rope" || scene_.periodic || scene_.grips.empty() || features_.turn <= 0) return;
+    if (scene_.kind != "rope" || !scene_.has_ends(Drive::Ends::clamped) || features_.turn <= 0) return;
     const double elements = elements_of(scene_),
                  slice = 3 * std::ceil(prepare(scene_).interaction.cutoff() / scene_.element_length);
     constexpr double much = 3;

@@ -111,7 +111,7 @@ const std::vector<double>& SteppedScene::measure() {
   if (measured_) return *measured_;
   EnergyAccount account;
   account.time_step = s.time_step() / s.divided();
-  if (model_->scene.twist) account.moment = model_->scene.twist->moment_at(s.state().time);
+  if (const MomentRamp* ramp = model_->scene.moment_ramp()) account.moment = ramp->moment_at(s.state().time);
   account.potential = energies();
   account.terms = term_energies(s.interaction(), s.forces().term_energy);
   account.kinetic = kinetic_energy(s.topology(), s.state());

@@ -137,7 +137,7 @@ Observer make_observer(const Scene& scene, const Prepared& prepared) {
   for (int t = 0; t < prepared.topology.tubes(); ++t)
     o.mass += prepared.topology.length_of(t) * prepared.topology.type_of(t).mass / scene.run.mass_scale;
   // A slice goes on at both ends: as much of it as it has bonds.
-  if (scene.periodic) o.mass *= prepared.topology.bonds() / static_cast<double>(prepared.topology.elements());
+  if (scene.has_ends(Drive::Ends::endless)) o.mass *= prepared.topology.bonds() / static_cast<double>(prepared.topology.elements());
   o.loading =
       loading_reference(prepared.topology, prepared.state, o.shells, ends_of(prepared.loads, prepared.topology),
                         o.spacing, o.neighbour_radius, prepared.interaction.law);
@@ -149,7 +149,7 @@ RopeObservation observe(const Observer& o, const Scene& scene, const Topology& t
 }
 
 Watched watched_by_run(const Scene& scene, const Prepared& prepared, const Observer& o) {
-  Watched out = watched_of(scene, prepared.topology);
+  Watched out = watched_of(scene, prepared.topology, prepared.interaction.law.get());
   if (o.loading.law && !o.loading.core.empty())
     out.pressures = [topology = prepared.topology, reference = o.loading](const State& state) {
       return tube_pressures(topology, state, reference);

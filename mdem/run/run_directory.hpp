@@ -75,7 +75,7 @@ LogRow log_row(const Observer& observer, const Scene& scene, const Topology& top
                const EnergyAccount& account);
 
 // Warnings about the scene for readers of the results, one sentence each.
-std::vector<std::string> warnings_of(const Scene& scene, const Topology& topology);
+std::vector<std::string> warnings_of(const Scene& scene, const Prepared& prepared);
 // "NAME: good" of each parameter set, see io/grade.hpp.
 std::vector<std::string> grades_of(const Scene& scene);
 // What registry, which the model leaves out, may add to the energies at the end of a run; a paragraph each.

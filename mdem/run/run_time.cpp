@@ -114,7 +114,7 @@ Outputs time_outputs(const Scene& scene, const Prepared& p, const RunTime& t) {
   Outputs o;
   const Simulation s = start(scene, p);
   const Observer observer = make_observer(scene, p);
-  LimitWatch watch(watched_of(scene, p.topology));
+  LimitWatch watch(watched_of(scene, p.topology, p.interaction.law.get()));
   const double began = processor_seconds();
   const LogRow row = log_row(observer, scene, p.topology, s.state(), {});
   watch.check(p.topology, s.state(), s.list(), std::numeric_limits<double>::quiet_NaN(), false);

@@ -6,9 +6,10 @@
 
 #include "io/grade.hpp"
 #include "model/self_contact.hpp"
-#include "observe/bending.hpp"
 #include "run/run_directory.hpp"
+#include "scene/laws/line.hpp"
 #include "scene/scene_to_model.hpp"
+#include "sim/contact/paper/law.hpp"
 
 namespace ropewalk {
 namespace {
@@ -25,10 +26,11 @@ void warn_of_long_elements(const ParameterSet& set, double length, std::vector<s
 }
 
 // The `paper` law has one point on an element, so that crossed tubes feel where along their elements they cross.
-void warn_of_paper(const Scene& scene, std::vector<std::string>& warnings) {
+void warn_of_paper(const Scene& scene, const ContactLaw* law, std::vector<std::string>& warnings) {
   const ParameterSet& set = scene.parameters();
-  if (scene.contact.law != "paper" || !set.line) return;
-  const PaperWells w = paper_wells(paper_contact(scene), scene.element_length);
+  const auto* paper = dynamic_cast<const PaperLaw*>(law);
+  if (!paper || !set.line) return;
+  const PaperWells w = paper_wells(paper->contact, scene.element_length);
   const LineParameters& integral = *set.line;
   const double off = std::max({std::fabs(w.parallel / integral.pair_energy - 1),
                                std::fabs(w.crossed_deepest / integral.cross90_energy - 1),
@@ -45,11 +47,12 @@ void warn_of_paper(const Scene& scene, std::vector<std::string>& warnings) {
 }
 
 // A shorter cutoff makes another, weaker law.
-void warn_of_cutoff(const Scene& scene, std::vector<std::string>& warnings) {
+void warn_of_cutoff(const Scene& scene, const ContactLaw* law, std::vector<std::string>& warnings) {
   if (scene.contact.cutoff <= 0) return;
   Scene whole = scene;
   whole.contact.cutoff = 0;
-  const std::vector<ContactRange> now = contact_ranges(scene), own = contact_ranges(whole);
+  const std::vector<ContactRange> now = contact_ranges(scene, law),
+                                  own = contact_ranges(whole, contact_law(whole).get());
   double left = 1;
   for (std::size_t k = 0; k < own.size(); ++k) left = std::min(left, now[k].binding / own[k].binding);
   if (left < 0.99)
@@ -73,9 +76,9 @@ void warn_of_unlike_tubes(const Scene& scene, std::vector<std::string>& warnings
 }
 
 // Where a tube is long enough to come back to itself without a kink, and the contact is left out there.
-void warn_of_long_exclusion(const Scene& scene, const Topology& topology, std::vector<std::string>& warnings) {
+void warn_of_long_exclusion(const Scene& scene, const Topology& topology, const ContactLaw* law,
+                            std::vector<std::string>& warnings) {
   const double excluded = scene.contact.exclude_along_tube;
-  const auto law = contact_law(scene);
   std::vector<bool> told(scene.sets.size());
   for (int t = 0; law && t < topology.tubes(); ++t) {
     const int type = topology.tube_type[t];
@@ -93,18 +96,6 @@ void warn_of_long_exclusion(const Scene& scene, const Topology& topology, std::v
   }
 }
 
-// Collapsed tubes twist on without end where nothing else holds the moment.
-void warn_of_collapsing_moment(const Scene& scene, const Topology& topology, std::vector<std::string>& warnings) {
-  if (!scene.twist || !scene.bond.anharmonic) return;
-  const TubeType& type = topology.types.front();
-  const double most = largest_torque(type.bond, type.element_length);
-  if (scene.twist->moment > most)
-    warnings.push_back(fmt::format(
-        "A moment of {:.4g} nN nm per tube is more than {} bears before its wall collapses, {:.4g}: beyond "
-        "that only what the rope stores otherwise holds it, and its tubes are flat ribbons.",
-        scene.twist->moment / units::nN_nm, scene.parameters().name, most / units::nN_nm));
-}
-
 }  // namespace
 
 std::vector<std::string> grades_of(const Scene& scene) {
@@ -113,27 +104,16 @@ std::vector<std::string> grades_of(const Scene& scene) {
   return out;
 }
 
-std::vector<std::string> warnings_of(const Scene& scene, const Topology& topology) {
+std::vector<std::string> warnings_of(const Scene& scene, const Prepared& p) {
+  const ContactLaw* law = p.interaction.law.get();
   std::vector<std::string> warnings;
   if (scene.contact.legacy_torque)
     warnings.push_back("This run leaves out the torque that the published force code leaves out: it gains energy.");
-  const LoadsAndConstraints loads = loads_of(scene, topology);
-  for (const PeriodicLoad* slice : loads.of<PeriodicLoad>()) {
-    const int all = topology.length_of(0), own = all - 2 * slice->images;
-    warnings.push_back(fmt::format(
-        "This is a slice of an endless rope: of the {} elements of a tube {} are its own, {:.4g} nm, and {} at each end "
-        "are images. Energies in eV count the images too; energies per mass, torque and tension are those of the rope.",
-        all, own, slice->period(), slice->images));
-  }
+  for (const auto& drive : scene.drives) drive->warn(scene, p.topology, p.loads, warnings);
   if (scene.run.mass_scale != 1)
     warnings.push_back(
         fmt::format("Masses are {:.4g} times those of the tubes: times, velocities and waves are not theirs.",
                     scene.run.mass_scale));
-  if (scene.thermostat && (scene.damping.contact.eta > 0 || scene.damping.bond.rate > 0))
-    warnings.push_back(
-        fmt::format("Damping takes out heat beside the thermostat: the tubes stay colder than {} K. Set "
-                    "damping.contact_viscosity_eV_ps_per_nm2 and damping.bond_damping_per_ps to 0 to hold it.",
-                    words_of(scene.thermostat->temperature)));
   if (scene.damping.local > 0)
     warnings.push_back("PFC local damping depends on the frame and does not conserve momentum.");
   if (scene.contact.law == "line" && scene.contact.nodes > 0) {
@@ -147,11 +127,10 @@ std::vector<std::string> warnings_of(const Scene& scene, const Topology& topolog
                       "2e-4 of the binding energy.",
                       scene.contact.nodes, needed));
   }
-  warn_of_collapsing_moment(scene, topology, warnings);
-  warn_of_long_exclusion(scene, topology, warnings);
-  warn_of_cutoff(scene, warnings);
+  warn_of_long_exclusion(scene, p.topology, law, warnings);
+  warn_of_cutoff(scene, law, warnings);
   warn_of_unlike_tubes(scene, warnings);
-  warn_of_paper(scene, warnings);
+  warn_of_paper(scene, law, warnings);
   for (const ParameterSet& set : scene.sets) warn_of_long_elements(set, scene.element_length, warnings);
   return warnings;
 }

@@ -10,6 +10,7 @@
 #include "scene/maxwell.hpp"
 #include "scene/memory.hpp"
 #include "scene/scene_to_model.hpp"
+#include "scene/spacing.hpp"
 
 namespace ropewalk {
 namespace {
@@ -57,14 +58,6 @@ void check_state(const Scene& scene, const BuiltScene& built) {
       throw InputError({scene.path, 0, "start.temperature_K"},
                        fmt::format("would replace the velocities of {}", scene.source->file()),
                        "take it away, or the last six columns of the file");
-  if (!scene.twist) return;
-  if (scene.twist->application == TwistLoad::Application::tangential && built.topology.tubes() == 1)
-    throw InputError({scene.path, 0, "twist.application"},
-                     "tangential forces about the axis of one tube have no arm", "take \"couple\"");
-  for (int t = 0; t < built.topology.tubes(); ++t)
-    if (built.topology.length_of(t) < 2)
-      throw InputError({scene.path, 0, "twist"}, fmt::format("tube {} has one element and no two grips", t),
-                       "take tubes of two elements or more");
 }
 
 }  // namespace
@@ -72,7 +65,8 @@ void check_state(const Scene& scene, const BuiltScene& built) {
 BuiltScene build(Scene& scene) {
   BuiltScene out;
   out.topology = empty_topology(scene);
-  out.spacing = scene.source->typed_spacing() > 0 ? scene.source->typed_spacing() : parallel_spacing(scene);
+  out.law = contact_law(scene);
+  out.spacing = scene.source->typed_spacing() > 0 ? scene.source->typed_spacing() : parallel_spacing(scene, out.law.get());
   scene.damping.contact.inner = out.spacing;
   scene.damping.contact.outer = viscosity_reach * out.spacing;
   Random random(scene.start.seed);

@@ -5,10 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
+#include <map>
 #include <sstream>
 
+#include "scene/bounds.hpp"
 #include "scene/laws/contact_law_kind.hpp"
+#include "scene/loads/drive_kind.hpp"
 #include "scene/scene_to_model.hpp"
 #include "scene/scene_toml.hpp"
 #include "sim/dynamics/refine.hpp"
@@ -21,12 +25,25 @@ toml::table& table_of(toml::table& top, const std::string& name) {
   return *top[name].as_table();
 }
 
+// "ends" or a list, as the reader takes them; from the end as well: -1 becomes -2 and -1.
+toml::array both_halves(const toml::node& typed) {
+  toml::array elements;
+  const toml::array ends{0, -1};
+  for (const auto& e : typed.is_array() ? *typed.as_array() : ends) {
+    elements.push_back(2 * e.value_or(std::int64_t{0}));
+    elements.push_back(2 * e.value_or(std::int64_t{0}) + 1);
+  }
+  return elements;
+}
+
 // The key where elements are half as long. Nothing is written for a key that has no effect on them, or that is left
 // to the program.
 void refine_key(const SceneKey& key, const Scene& scene, const Topology& topology, toml::table& table) {
   const int elements = topology.length_of(0);
   if (key.tube_size == SceneKey::TubeSize::length) table.insert_or_assign(key.key, elements * scene.element_length);
   if (key.tube_size == SceneKey::TubeSize::elements) table.insert_or_assign(key.key, 2 * elements);
+  if (key.numbers_elements && table[key.key].value_or(std::string()) != "all")
+    table.insert_or_assign(key.key, both_halves(*table.get(key.key)));
   if (key.length_power == 0) return;
   const double factor = std::pow(0.5, key.length_power);
   if (const auto* vector = table[key.key].as_array()) {
@@ -45,40 +62,31 @@ void refine_key(const SceneKey& key, const Scene& scene, const Topology& topolog
     table.insert_or_assign(key.key, refined);
 }
 
+// Refined with each drive.
+bool is_drive(const std::string& table) {
+  return std::any_of(drive_kinds().begin(), drive_kinds().end(),
+                     [&](const DriveKind& kind) { return kind.table().name == table; });
+}
+
 void refine_tables(const Scene& scene, const Topology& topology, toml::table& top) {
   for (const SceneTable& table : scene_tables()) {
     const bool matters = std::any_of(table.keys.begin(), table.keys.end(), [](const SceneKey& k) {
       return k.length_power != 0 || k.tube_size != SceneKey::TubeSize::no;
     });
-    if (table.name.empty() || table.listed() || !matters) continue;
+    if (table.name.empty() || table.listed || is_drive(table.name) || !matters) continue;
     if (!top.contains(table.name) && table.optional()) continue;
     for (const SceneKey& key : table.keys) refine_key(key, scene, topology, table_of(top, table.name));
   }
 }
 
-toml::array both_halves(const Selection& on) {
-  toml::array elements;
-  for (const int e : on.elements) {
-    elements.push_back(2 * e);  // from the end as well: -1 becomes -2 and -1
-    elements.push_back(2 * e + 1);
+void refine_drives(const Scene& scene, const Topology& topology, toml::table& top) {
+  std::map<std::string, std::size_t> found;
+  for (const auto& drive : scene.drives) {
+    const SceneTable table = drive->table();
+    toml::node& typed = *top.get(table.name);
+    toml::table& keys = table.listed ? *typed.as_array()->get_as<toml::table>(found[table.name]++) : *typed.as_table();
+    for (const SceneKey& key : table.keys) refine_key(key, scene, topology, keys);
   }
-  return elements;
-}
-
-void refine_loads(const Scene& scene, const Topology& topology, toml::table& top) {
-  for (std::size_t k = 0; k < scene.loads.size(); ++k) {
-    toml::table& load = *top["load"].as_array()->get_as<toml::table>(k);
-    if (!scene.loads[k].on.all_elements) load.insert_or_assign("elements", both_halves(scene.loads[k].on));
-    for (const LoadKind& kind : load_kinds())
-      if (load["kind"].value_or(std::string()) == kind.name)
-        for (const SceneKey& key : kind.keys) refine_key(key, scene, topology, load);
-  }
-}
-
-void refine_grips(const Scene& scene, const Topology& topology, toml::table& top) {
-  for (std::size_t k = 0; k < scene.grips.size(); ++k)
-    for (const SceneKey& key : grip_table().keys)
-      refine_key(key, scene, topology, *top["grip"].as_array()->get_as<toml::table>(k));
 }
 
 // The typed step's share of the stability limit stays.
@@ -92,7 +100,7 @@ double finer_time_step(const Scene& scene, const Prepared& p, const std::string&
   return scene.run.time_step / p.limit.limit * limit;
 }
 
-std::string text_of(const toml::table& top, const std::string& comment) {
+std::string finer_text(const toml::table& top, const std::string& comment) {
   std::ostringstream text;
   text << "# " << comment << "\n" << top << "\n";
   return text.str();
@@ -101,7 +109,8 @@ std::string text_of(const toml::table& top, const std::string& comment) {
 }  // namespace
 
 std::string why_not_finer(const Scene& scene, const Topology& topology) {
-  if (scene.periodic) return "a periodic slice counts its images in elements";
+  for (const auto& drive : scene.drives)
+    if (const std::string why = drive->why_not_split(); !why.empty()) return why;
   const ContactLawKind* law = contact_law_kind(scene.contact.law);
   if (law && !law->any_element_length)
     return fmt::format("law \"{}\" holds for elements of {:.4g} nm alone", law->name,
@@ -120,12 +129,11 @@ std::string finer_scene_text(const Scene& scene, const Prepared& prepared, const
   top.insert_or_assign("name", scene.name);
   top.insert_or_assign("element_length_nm", 0.5 * scene.element_length);
   refine_tables(scene, prepared.topology, top);
-  refine_loads(scene, prepared.topology, top);
-  refine_grips(scene, prepared.topology, top);
+  refine_drives(scene, prepared.topology, top);
   if (scene.run.time_step > 0)
     table_of(top, "run")
-        .insert_or_assign("time_step_fs", finer_time_step(scene, prepared, text_of(top, comment)) / units::fs);
-  return text_of(top, comment);
+        .insert_or_assign("time_step_fs", finer_time_step(scene, prepared, finer_text(top, comment)) / units::fs);
+  return finer_text(top, comment);
 }
 
 }  // namespace ropewalk

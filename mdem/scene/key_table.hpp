@@ -18,7 +18,7 @@
 
 #include "io/toml_table.hpp"
 #include "model/units.hpp"
-#include "scene/scene_keys.hpp"
+#include "scene/scene_key.hpp"
 
 namespace ropewalk {
 
@@ -127,6 +127,10 @@ struct KeyOf {
     doc.length_power = power;
     return std::move(*this);
   }
+  KeyOf that_numbers_elements() && {
+    doc.numbers_elements = true;
+    return std::move(*this);
+  }
   KeyOf is_tube_size(SceneKey::TubeSize size) && {
     doc.tube_size = size;
     return std::move(*this);
@@ -152,6 +156,7 @@ struct KeyTable {
   std::vector<KeyOf<T>> keys;
   std::function<void(const TomlTable&, const Scene&, T&)> check;  // of what was read, as a whole; may complete it
   T defaults = T();
+  bool listed = false;  // [[name]], any number of them
 
   // In the order of the keys. `scene` holds what was read before this table.
   T read(const TomlTable& t, const Scene& scene) const {
@@ -161,7 +166,7 @@ struct KeyTable {
     return out;
   }
   SceneTable doc() const {
-    SceneTable out{name, meaning, {}};
+    SceneTable out{name, meaning, {}, listed};
     for (const KeyOf<T>& k : keys) {
       out.keys.push_back(k.doc);
       out.keys.back().table = name;

@@ -13,7 +13,7 @@
 #include "io/files.hpp"
 #include "io/plain_text.hpp"
 #include "model/error.hpp"
-#include "scene/build.hpp"
+#include "scene/bounds.hpp"
 
 namespace ropewalk {
 namespace {
@@ -21,7 +21,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* start_format = "ropewalk-lammps-1";
-constexpr const char* remedy = "export the run again with `ropewalk export`";
+constexpr const char* export_again = "export the run again with `ropewalk export`";
 
 template <class S, class Visit>
 void visit_start(S&& s, const Visit& v) {
@@ -90,6 +90,15 @@ std::vector<OutputColumn> lammps_start_keys() {
 std::vector<OutputColumn> lammps_tube_columns() { return listed(tube_columns); }
 std::vector<OutputColumn> lammps_row_columns() { return listed(row_columns); }
 
+void refuse_what_lammps_lacks(const Scene& scene) {
+  std::string lacking;
+  for (const auto& drive : scene.drives)
+    if (lacking.empty()) lacking = drive->not_for_lammps();
+  if (lacking.empty() && scene.run.stepping.runge_kutta) lacking = "run.integrator";
+  if (!lacking.empty())
+    throw InputError({scene.path, 0, lacking}, "is not for LAMMPS", "run this scene with `ropewalk run`");
+}
+
 std::string start_json(const LammpsStart& start) {
   Json json;
   json["format"] = start_format;
@@ -103,23 +112,23 @@ LammpsStart read_start(const LammpsDirectory& dir) {
   try {
     const Json json = Json::parse(read_file(path));
     if (json.at("format") != start_format)
-      throw InputError({path, 0, "format"}, fmt::format("\"{}\" is needed", start_format), remedy);
+      throw InputError({path, 0, "format"}, fmt::format("\"{}\" is needed", start_format), export_again);
     visit_start(start, [&](const OutputColumn& key, auto& value) {
       const Json& found = json.at(key.name);
       if (std::is_integral_v<std::decay_t<decltype(value)>> && !found.is_number_integer())
-        throw InputError({path, 0, key.name}, "is no whole number", remedy);
+        throw InputError({path, 0, key.name}, "is no whole number", export_again);
       found.get_to(value);
     });
   } catch (const Json::exception&) {
-    throw InputError({path, 0, ""}, "is damaged", remedy);
+    throw InputError({path, 0, ""}, "is damaged", export_again);
   }
   for (const double value :
        {start.time, start.time_step, start.work, start.dissipated, start.viscosity_inner, start.viscosity_outer})
-    if (!std::isfinite(value)) throw InputError({path, 0, ""}, "holds a number that is not finite", remedy);
+    if (!std::isfinite(value)) throw InputError({path, 0, ""}, "holds a number that is not finite", export_again);
   for (const std::string& name : start.parameters)
     if (has_control_character(name) || name.find('/') != std::string::npos)
       throw InputError({path, 0, "parameters"},
-                       fmt::format("\"{}\" is no file of this directory", printable(name, 40)), remedy);
+                       fmt::format("\"{}\" is no file of this directory", printable(name, 40)), export_again);
   return start;
 }
 
@@ -143,13 +152,13 @@ void read_tubes(const LammpsDirectory& dir, Topology& topology) {
     const bool read = take(line, tubes) && take(line, elements) && take(line, type) && line.empty();
     if (number == 1 || !read || tubes < 1 || elements < 1 || type < 0 ||
         type >= static_cast<int>(topology.types.size()))
-      throw InputError({path, number, ""}, fmt::format("no line of {}", column_names(tube_columns)), remedy);
+      throw InputError({path, number, ""}, fmt::format("no line of {}", column_names(tube_columns)), export_again);
     const double total = topology.elements() + double{1} * tubes * elements;
     if (total > max_elements)
-      throw InputError({path, number, ""}, fmt::format("makes it {:.3g} elements", total), remedy);
+      throw InputError({path, number, ""}, fmt::format("makes it {:.3g} elements", total), export_again);
     for (int t = 0; t < tubes; ++t) topology.add_tube(elements, type);
   });
-  if (topology.tubes() == 0) throw InputError({path, 0, ""}, "holds no tube", remedy);
+  if (topology.tubes() == 0) throw InputError({path, 0, ""}, "holds no tube", export_again);
 }
 
 namespace {

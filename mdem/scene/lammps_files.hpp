@@ -46,6 +46,9 @@ std::vector<OutputColumn> lammps_start_keys();
 std::vector<OutputColumn> lammps_tube_columns();
 std::vector<OutputColumn> lammps_row_columns();
 
+// Throws InputError for what the LAMMPS styles cannot carry.
+void refuse_what_lammps_lacks(const Scene& scene);
+
 std::string start_json(const LammpsStart& start);
 LammpsStart read_start(const LammpsDirectory& dir);
 

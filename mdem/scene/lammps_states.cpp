@@ -13,7 +13,7 @@
 namespace ropewalk {
 namespace {
 
-constexpr std::array<OutputColumn, std::tuple_size<StateRecord>::value> state_columns = {{
+constexpr std::array<OutputColumn, std::tuple_size<StateRecord>::value> record_columns = {{
     {"x", "nm", "centre of the element"},
     {"y", "nm", "centre of the element"},
     {"z", "nm", "centre of the element"},
@@ -35,10 +35,10 @@ constexpr std::array<OutputColumn, std::tuple_size<StateRecord>::value> state_co
     {"tqz", "eV", "torque, damping included"},
 }};
 
-constexpr double farthest = 1e12;    // of any number of a state, in its unit
-constexpr double norm_slack = 1e-6;  // of a quaternion
-constexpr std::int64_t most_steps = 1000000000000000;
-constexpr const char* remedy = "was it written by the in.rope of this export?";
+constexpr double largest_number = 1e12;    // of any number of a state, in its unit
+constexpr double quaternion_slack = 1e-6;  // of a quaternion
+constexpr std::int64_t largest_step = 1000000000000000;
+constexpr const char* ask_for_export = "was it written by the in.rope of this export?";
 
 template <class T>
 bool read(std::ifstream& file, T& value) {
@@ -59,14 +59,14 @@ void append(std::string& to, const T& value) {
 
 }  // namespace
 
-std::vector<OutputColumn> lammps_state_columns() { return {state_columns.begin(), state_columns.end()}; }
+std::vector<OutputColumn> lammps_state_columns() { return {record_columns.begin(), record_columns.end()}; }
 
 std::vector<StateInFile> find_states(const std::string& path, std::int64_t elements) {
   std::ifstream file = opened(path);
   const auto bytes = static_cast<std::int64_t>(std::filesystem::file_size(path));
   std::vector<StateInFile> found;
   const auto fail = [&](const std::string& what) {
-    throw InputError({path, 0, ""}, fmt::format("state {}: {}", found.size() + 1, what), remedy);
+    throw InputError({path, 0, ""}, fmt::format("state {}: {}", found.size() + 1, what), ask_for_export);
   };
   for (StateInFile s; file.seekg(s.at) && read(file, s.header); s.at = s.end()) {
     const StateHeader& h = s.header;
@@ -74,9 +74,9 @@ std::vector<StateInFile> find_states(const std::string& path, std::int64_t eleme
     if (h.mark != state_mark) fail("does not begin as a state does");
     if (h.elements != elements) fail(fmt::format("{} elements are here, {} in the scene", h.elements, elements));
     if (h.memory < 0 || h.memory > bytes) fail(fmt::format("{} numbers of memory", h.memory));
-    if (h.step < 0 || h.step > most_steps) fail(fmt::format("{} is no step", h.step));
+    if (h.step < 0 || h.step > largest_step) fail(fmt::format("{} is no step", h.step));
     for (const double value : {h.time, h.work, h.dissipated, h.skin})
-      if (!(std::fabs(value) <= farthest)) fail("holds a number that is not finite");
+      if (!(std::fabs(value) <= largest_number)) fail("holds a number that is not finite");
     if (s.end() > bytes) break;
     found.push_back(s);
   }
@@ -85,15 +85,15 @@ std::vector<StateInFile> find_states(const std::string& path, std::int64_t eleme
 
 StateInFile last_state(const std::string& path, std::int64_t elements) {
   const std::vector<StateInFile> all = find_states(path, elements);
-  if (all.empty()) throw InputError({path, 0, ""}, "holds no whole state", remedy);
+  if (all.empty()) throw InputError({path, 0, ""}, "holds no whole state", ask_for_export);
   return all.back();
 }
 
 std::string complaint_about(const StateRecord& record) {
   for (std::size_t k = 0; k < record.size(); ++k)
-    if (!(std::fabs(record[k]) <= farthest)) return fmt::format("{} is {}", state_columns[k].name, record[k]);
+    if (!(std::fabs(record[k]) <= largest_number)) return fmt::format("{} is {}", record_columns[k].name, record[k]);
   const double norm = Quaternion(record[3], record[4], record[5], record[6]).norm();
-  if (!(std::fabs(norm - 1) <= norm_slack)) return fmt::format("the quaternion has length {:.6g}, not 1", norm);
+  if (!(std::fabs(norm - 1) <= quaternion_slack)) return fmt::format("the quaternion has length {:.6g}, not 1", norm);
   return "";
 }
 
@@ -142,7 +142,7 @@ bool LammpsStates::next(State& s, Vec3Array& force, Vec3Array& torque) {
     if (!read(file_, r)) throw file_error(path_, "cannot be read", EIO);
     const std::string wrong = complaint_about(r);
     if (!wrong.empty())
-      throw InputError({path_, 0, ""}, fmt::format("state of step {}, element {}: {}", s.step, i, wrong), remedy);
+      throw InputError({path_, 0, ""}, fmt::format("state of step {}, element {}: {}", s.step, i, wrong), ask_for_export);
     s.position.set(i, {r[0], r[1], r[2]});
     s.orientation.set(i, {r[3], r[4], r[5], r[6]});
     s.velocity.set(i, {r[7], r[8], r[9]});

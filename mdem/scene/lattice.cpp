@@ -1,7 +1,7 @@
-// The counts and places of scene/build.hpp that need nothing else.
+#include "scene/lattice.hpp"
+
 #include <cmath>
 
-#include "scene/build.hpp"
 
 namespace ropewalk {
 namespace {

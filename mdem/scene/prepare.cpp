@@ -9,7 +9,6 @@
 #include "io/log.hpp"
 #include "model/error.hpp"
 #include "model/segments.hpp"
-#include "observe/bending.hpp"
 #include "sim/dynamics/blow_up.hpp"
 
 namespace ropewalk {
@@ -65,49 +64,6 @@ void refuse_overlaps(const Scene& scene, const Prepared& p) {
     });
   if (!overlap.empty() && scene.run.mode != RunOptions::Mode::relax)
     throw InputError(place, overlap, "move them apart, or relax the state first with mode = \"relax\"");
-}
-
-// A couple on the last element of a tube goes through its last bond. A single tube bears it in every bond.
-void refuse_moment(const Scene& scene, const Prepared& p) {
-  if (!scene.twist || scene.twist->application != TwistLoad::Application::couple) return;
-  const bool per_tube = scene.twist->reading == TwistLoad::Reading::per_tube;
-  const double moment = per_tube ? scene.twist->moment : scene.twist->moment / p.topology.tubes();
-  const TubeType& t = p.topology.type_of(0);
-  const double slip = t.bond.twist / t.element_length, most = largest_torque(t.bond, t.element_length);
-  const auto refuse = [&](const std::string& what, const char* remedy) {
-    throw InputError({scene.path, 0, "twist.moment_nN_nm"},
-                     fmt::format("{:.4g} nN nm{} are more than {}", scene.twist->moment / units::nN_nm,
-                                 per_tube ? "" : " in total", what),
-                     remedy);
-  };
-  if (moment > slip)
-    refuse(fmt::format("{}a bond of {:.4g} nm bears before it slips, GJ/a = {:.4g}",
-                       per_tube ? "" : fmt::format("the {} tubes bear: of each, ", p.topology.tubes()),
-                       t.element_length, slip / units::nN_nm),
-           "lower the moment or take shorter elements");
-  if (p.topology.tubes() == 1 && moment > most)
-    refuse(fmt::format("the tube bears, {:.4g}: its wall collapses", most / units::nN_nm), "lower the moment");
-}
-
-// Elements that two grips hold, and loads that nothing feels.
-void refuse_grips(const Scene& scene, const Prepared& p) {
-  const std::vector<const GripLoad*> grips = p.loads.of<GripLoad>();
-  std::vector<int> held;
-  for (const GripLoad* grip : grips) {
-    for (const int e : grip->elements) {
-      if (std::find(held.begin(), held.end(), e) == held.end()) continue;
-      const int tube = p.topology.tube_of(e);
-      throw InputError({scene.path, 0, "grip"},
-                       fmt::format("two grips hold element {} of tube {}", e - p.topology.tube_begin[tube], tube),
-                       "give each its own end or its own tubes");
-    }
-    held.insert(held.end(), grip->elements.begin(), grip->elements.end());
-    for (std::size_t axis = 0; axis < grip->axes.size(); ++axis)
-      if (grip->is_unfelt(axis, p.state))
-        throw InputError({scene.path, 0, fmt::format("grip.{}", grip_axis_names[axis])},
-                         "is a load that nothing in the clamp feels: the elements are free of it",
-                         "set slide_free, spin_free or tilt_free to false");
-  }
 }
 
 void refuse_stop_rules(const Scene& scene) {
@@ -187,18 +143,18 @@ double half_life(const Scene& scene, const Prepared& p) {
 }  // namespace
 
 double automatic_step_fraction(const Scene& scene) {
-  const bool cold = scene.start.temperature == 0 && !scene.thermostat && !scene.from_file();
+  const bool cold = scene.start.temperature == 0 && !scene.bath() && !scene.from_file();
   return cold && scene.run.mode != RunOptions::Mode::relax ? cold_step_fraction : default_step_fraction;
 }
 
 bool is_warm(const Scene& scene) {
   if (scene.run.mode == RunOptions::Mode::relax) return false;
-  if (scene.thermostat) return scene.thermostat->temperature.largest() > 0;
+  if (const Schedule* bath = scene.bath()) return bath->largest() > 0;
   return scene.start.temperature > 0 && !scene.start.may_cool;
 }
 
 void refuse_cooling(const Scene& scene, const Prepared& p) {
-  if (!is_warm(scene) || scene.thermostat) return;
+  if (!is_warm(scene) || scene.bath()) return;
   const double left = start_heat_left(scene, p, p.duration);
   if (left > 0.5) return;
   throw InputError(
@@ -218,7 +174,7 @@ std::vector<std::string> warmth_of(const Scene& scene, const Prepared& p) {
         fmt::format("The time step makes positions, and so the energies of the bonds, up to {:.2g} % hotter "
                     "than velocities.",
                     100 * excess_of_positions(p.limit, p.time_step)));
-  if (scene.run.mode == RunOptions::Mode::relax || scene.start.temperature <= 0 || scene.thermostat) return out;
+  if (scene.run.mode == RunOptions::Mode::relax || scene.start.temperature <= 0 || scene.bath()) return out;
   std::string text =
       fmt::format("The {:.4g} K at the start are in the velocities alone; bonds at rest take half of that heat.",
                   scene.start.temperature);
@@ -235,15 +191,15 @@ Prepared prepare(Scene& scene) {
   out.topology = std::move(built.topology);
   out.state = std::move(built.state);
   out.spacing = built.spacing;
-  out.interaction = interaction_of(scene);
-  out.loads = loads_of(scene, out.topology);
-  for (const PeriodicLoad* slice : out.loads.of<PeriodicLoad>()) {
-    slice->wind(out.state);
-    slice->place(out.topology, out.state);
-  }
-  out.limit = time_step_limit(out.topology, out.interaction, out.spacing);
+  out.interaction = interaction_of(scene, std::move(built.law));
+  out.loads = loads_of(scene, out.topology, out.interaction);
   out.stepping = scene.run.stepping;
-  if (scene.thermostat) out.stepping.thermostat = make_thermostat(*scene.thermostat);
+  for (const auto& drive : scene.drives) {
+    drive->refuse_start(scene, out.topology, out.state, out.loads);
+    drive->set_stepping(out.stepping);
+  }
+  for (const auto& load : out.loads) load->begin(out.topology, out.state);
+  out.limit = time_step_limit(out.topology, out.interaction, out.spacing);
   out.time_step = chosen_step(scene, out.limit);
   out.duration = scene.run.duration;
   if (out.duration <= 0) out.duration = protocol_time(scene);
@@ -258,20 +214,13 @@ Prepared prepare(Scene& scene) {
                                  out.time_step / units::fs, out.duration / out.time_step),
                      fmt::format("at most {:.0g} can be counted; take a larger step or a shorter run", max_steps));
   refuse_overlaps(scene, out);
-  refuse_moment(scene, out);
-  refuse_grips(scene, out);
   refuse_stop_rules(scene);
   return out;
 }
 
 EndElements ends_of(const LoadsAndConstraints& loads, const Topology& topology) {
-  EndElements held;
-  for (const GripLoad* grip : loads.of<GripLoad>()) {
-    std::vector<int>& elements = held[grip->end];
-    elements.insert(elements.end(), grip->elements.begin(), grip->elements.end());
-  }
-  for (const PeriodicLoad* slice : loads.of<PeriodicLoad>()) return slice->ends();
-  EndElements ends = tube_ends(topology);
+  EndElements held, ends = tube_ends(topology);
+  for (const auto& load : loads) load->add_ends(held);
   for (const End end : {lower_end, upper_end})
     if (!held[end].empty()) ends[end] = held[end];
   return ends;

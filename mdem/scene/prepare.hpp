@@ -40,11 +40,11 @@ void refuse_cooling(const Scene& scene, const Prepared& prepared);
 // What the time step and damping do to the temperature of a scene that has one; a sentence each.
 std::vector<std::string> warmth_of(const Scene& scene, const Prepared& prepared);
 
-// The simulation of a prepared scene, with the scene's list skin. Throws InputError where its first step would end
-// the run, or a bond slips already.
-// The elements at both ends: those in grips, or else the first and last of every tube.
+// The elements at both ends: those that loads name, or else the first and last of every tube.
 EndElements ends_of(const LoadsAndConstraints& loads, const Topology& topology);
 
+// The simulation of a prepared scene, with the scene's list skin. Throws InputError where its first step would end
+// the run, or a bond slips already.
 Simulation start(const Scene& scene, const Prepared& prepared);
 
 }  // namespace ropewalk

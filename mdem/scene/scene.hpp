@@ -2,6 +2,7 @@
 // defaults stand with the reader of each table: scene/tables/, scene/kinds/ and scene/loads/.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -13,15 +14,11 @@
 #include "model/damping.hpp"
 #include "model/parameters.hpp"
 #include "observe/limits.hpp"
-#include "scene/kinds/scene_kind.hpp"
-#include "scene/loads/grip.hpp"
-#include "scene/loads/load_kind.hpp"
-#include "scene/loads/periodic.hpp"
-#include "scene/loads/twist.hpp"
+#include "scene/drive.hpp"
+#include "scene/source.hpp"
 #include "scene/stop_rule.hpp"
 #include "sim/dynamics/relax_goal.hpp"
 #include "sim/dynamics/stepping.hpp"
-#include "sim/dynamics/thermostat.hpp"
 #include "sim/state/interaction.hpp"
 
 namespace ropewalk {
@@ -57,7 +54,7 @@ struct RunOptions {
   double time_step = 0;  // ps; 0: chosen from the stiffest mode
   Stepping stepping;
   double mass_scale = 1;         // of masses and inertias
-  double duration = 0;           // ps; 0: until [twist] and the schedules of all grips end
+  double duration = 0;           // ps; 0: until all drives have done what they do
   double frames_every = 0;       // ps; 0: 40 frames
   double log_every = 0;          // ps; 0: 400 rows
   double checkpoint_every = 60;  // s of wall time
@@ -88,11 +85,7 @@ struct Scene {
   BondOptions bond;
   ContactOptions contact;
   Damping damping;
-  std::vector<SceneLoad> loads;
-  std::vector<SceneGrip> grips;
-  std::optional<TwistLoad> twist;
-  std::optional<PeriodicLoad> periodic;
-  std::optional<ThermostatOptions> thermostat;
+  std::vector<std::shared_ptr<const Drive>> drives;  // kind by kind, as in the register
   RunOptions run;
   ObserveOptions observe;
   LimitOptions limits;
@@ -100,6 +93,29 @@ struct Scene {
 
   const ParameterSet& parameters() const { return sets.front(); }
   bool from_file() const { return source && !source->file().empty(); }  // a state with velocities of its own
+
+  // The drives of one class.
+  template <class D>
+  std::vector<const D*> drives_of() const {
+    std::vector<const D*> found;
+    for (const auto& drive : drives)
+      if (const auto* one = dynamic_cast<const D*>(drive.get())) found.push_back(one);
+    return found;
+  }
+  bool has_ends(Drive::Ends ends) const {
+    return std::any_of(drives.begin(), drives.end(), [&](const auto& drive) { return drive->ends() == ends; });
+  }
+  // What the first drive applies that has it; null: none has.
+  const MomentRamp* moment_ramp() const { return first(&Drive::moment_ramp); }
+  const Schedule* bath() const { return first(&Drive::temperature); }  // K
+
+ private:
+  template <class T>
+  const T* first(const T* (Drive::*of)() const) const {
+    for (const auto& drive : drives)
+      if (const T* found = ((*drive).*of)()) return found;
+    return nullptr;
+  }
 };
 
 }  // namespace ropewalk

@@ -5,8 +5,7 @@
 #include <algorithm>
 
 #include "scene/kinds/scene_kind.hpp"
-#include "scene/loads/grip.hpp"
-#include "scene/loads/load_kind.hpp"
+#include "scene/loads/drive_kind.hpp"
 #include "scene/tables/tables.hpp"
 
 namespace ropewalk {
@@ -20,10 +19,10 @@ std::string as_toml(double value) { return fmt::format("{:.6g}", value); }
 std::vector<SceneTable> scene_tables() {
   std::vector<SceneTable> tables = {top_table({}).doc()};
   for (const SceneKind& kind : scene_kinds()) tables.push_back(kind.table);
-  for (const SceneTable& table :
-       {start_table().doc(), bond_table().doc(), contact_table().doc(), damping_table().doc(), thermostat_table().doc(),
-        twist_table().doc(), grip_table(), load_table(), periodic_table().doc(), run_table().doc(), observe_table().doc(), limits_table().doc(),
-        stop_table().doc()})
+  for (const SceneTable& table : {start_table().doc(), bond_table().doc(), contact_table().doc(), damping_table().doc()})
+    tables.push_back(table);
+  for (const DriveKind& kind : drive_kinds()) tables.push_back(kind.table());
+  for (const SceneTable& table : {run_table().doc(), observe_table().doc(), limits_table().doc(), stop_table().doc()})
     tables.push_back(table);
   return tables;
 }

@@ -1,41 +1,9 @@
-// Every key of a scene file, for the program's help, the templates, the refinement and the remedies for keys
-// that stand in the wrong table. Each table is typed once, with its reader: see scene/key_table.hpp.
+// Every key of a scene file.
 #pragma once
 
-#include <limits>
-#include <string>
-#include <vector>
+#include "scene/scene_key.hpp"
 
 namespace ropewalk {
-
-struct SceneKey {
-  std::string table = {};
-  std::string key;
-  std::string unit;      // empty: none
-  std::string value;     // the default as TOML, or an example of one
-  std::string standard;  // what holds where the key is missing, in words; empty: `value`
-  std::string meaning;
-  // For scenes with elements of another length: the value goes as this power of it, up to `most`.
-  int length_power = 0;
-  double most = std::numeric_limits<double>::infinity();
-  bool whole = false;  // an integer, rounded up
-  // Whether it is the size of every tube of the scene.
-  enum class TubeSize { no, length, elements };
-  TubeSize tube_size = TubeSize::no;
-
-  bool required() const { return standard == "required"; }
-};
-
-struct SceneTable {
-  std::string name;  // empty: the top of the file
-  std::string meaning;
-  std::vector<SceneKey> keys;
-
-  bool listed() const { return name == "load" || name == "grip" || name == "stop"; }  // [[name]], any number of them
-  std::string header() const { return listed() ? "[[" + name + "]]" : "[" + name + "]"; }
-  // Whether the table may be left out as a whole, with what it stands for.
-  bool optional() const;
-};
 
 // In the order of help and templates.
 std::vector<SceneTable> scene_tables();

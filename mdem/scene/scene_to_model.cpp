@@ -1,6 +1,7 @@
 #include "scene/scene_to_model.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "model/self_contact.hpp"
 #include "scene/laws/contact_law_kind.hpp"
@@ -46,18 +47,16 @@ std::vector<Validity> validities(const Scene& scene, const Topology& topology) {
   return all;
 }
 
-std::vector<ContactRange> contact_ranges(const Scene& scene) {
+std::vector<ContactRange> contact_ranges(const Scene& scene, const ContactLaw* law) {
   std::vector<ContactRange> out;
-  const auto law = contact_law(scene);
   for (int i = 0; law && i < static_cast<int>(scene.sets.size()); ++i)
     for (int j = 0; j < static_cast<int>(scene.sets.size()); ++j)
       out.push_back({law->range({i, j}), law->binding({i, j}, scene.element_length)});
   return out;
 }
 
-double least_exclusion(const Scene& scene) {
+double least_exclusion(const Scene& scene, const ContactLaw* law) {
   double length = 0;
-  const auto law = contact_law(scene);
   for (int t = 0; law && t < static_cast<int>(scene.sets.size()); ++t)
     length = std::max(
         length, nearest_arc(scene.sets[static_cast<std::size_t>(t)].validity.kink_curvature, law->range({t, t})));
@@ -69,36 +68,27 @@ std::shared_ptr<const ContactLaw> contact_law(const Scene& scene) {
   return kind ? kind->make(scene) : nullptr;
 }
 
-Interaction interaction_of(const Scene& scene) {
+Interaction interaction_of(const Scene& scene, std::shared_ptr<const ContactLaw> law) {
   Interaction in;
-  in.law = contact_law(scene);
+  in.law = std::move(law);
   const bool relax = scene.run.mode == RunOptions::Mode::relax;
   in.precision =
       scene.contact.precision.value_or(relax ? Interaction::Precision::full : Interaction::Precision::mixed);
   in.exclude_along_tube =
-      scene.contact.exclude_along_tube > 0 ? scene.contact.exclude_along_tube : least_exclusion(scene);
+      scene.contact.exclude_along_tube > 0 ? scene.contact.exclude_along_tube : least_exclusion(scene, in.law.get());
   in.damping = scene.damping;
   return in;
 }
 
 double protocol_time(const Scene& scene) {
-  double last = scene.twist ? scene.twist->ramp_time() + scene.twist->hold : 0.0;
-  for (const SceneGrip& grip : scene.grips) last = std::max(last, grip.grip->ends());
-  if (scene.periodic) last = std::max(last, scene.periodic->twist.back().time);
-  if (scene.thermostat) last = std::max(last, scene.thermostat->temperature.ends());
+  double last = 0;
+  for (const auto& drive : scene.drives) last = std::max(last, drive->lasts());
   return last;
 }
 
-LoadsAndConstraints loads_of(const Scene& scene, const Topology& topology) {
+LoadsAndConstraints loads_of(const Scene& scene, const Topology& topology, const Interaction& interaction) {
   LoadsAndConstraints loads;
-  for (const SceneLoad& typed : scene.loads) {
-    const std::shared_ptr<Load> load = typed.load->copy();
-    load->elements = selected_elements(scene, typed.on, topology);
-    loads.add(std::shared_ptr<const Load>(load));
-  }
-  for (const SceneGrip& grip : scene.grips) loads.add(grip_of(scene, grip, topology));
-  if (scene.periodic) loads.add(scene.periodic->on_tubes(topology, interaction_of(scene).cutoff(), scene.path));
-  if (scene.twist) add_twist(*scene.twist, topology, loads);
+  for (const auto& drive : scene.drives) drive->add_loads(scene, topology, interaction, loads);
   return loads;
 }
 

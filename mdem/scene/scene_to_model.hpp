@@ -3,8 +3,6 @@
 
 #include "scene/scene.hpp"
 #include "sim/contact/contact_law.hpp"
-#include "sim/contact/line/law.hpp"
-#include "sim/contact/paper/law.hpp"
 #include "sim/dynamics/loads.hpp"
 #include "sim/state/interaction.hpp"
 
@@ -18,33 +16,28 @@ Topology empty_topology(const Scene& scene);
 // The bonds of tubes as long as those that the topology holds: long ones collapse earlier.
 void set_collapse(const Scene& scene, Topology& topology);
 
-// The `line` law between all pairs of the scene's tube types, i, j at i * types + j.
-std::vector<LineContact> line_contacts(const Scene& scene);
-
-// The `paper` law of the scene.
-PaperContact paper_contact(const Scene& scene);
+// The contact law of the scene; null: none. It takes searches for its wells: make it once and hand it on.
+std::shared_ptr<const ContactLaw> contact_law(const Scene& scene);
 
 // How far the scene's law reaches (nm), and what two parallel tubes bind with at most (eV/nm, positive); of each
 // pair of tube types.
 struct ContactRange {
   double cutoff = 0, binding = 0;
 };
-std::vector<ContactRange> contact_ranges(const Scene& scene);
+std::vector<ContactRange> contact_ranges(const Scene& scene, const ContactLaw* law);
 
 // nm, along a tube: so far the contact reaches on one nearly straight piece of it (nearest_arc), at the kink
 // curvature of the set; the largest of all tube types. 0 without contact.
-double least_exclusion(const Scene& scene);
-
-// The contact law of the scene; null: none.
-std::shared_ptr<const ContactLaw> contact_law(const Scene& scene);
+double least_exclusion(const Scene& scene, const ContactLaw* law);
 
 // The reach of the contact viscosity must be set (build() does so).
-Interaction interaction_of(const Scene& scene);
+Interaction interaction_of(const Scene& scene, std::shared_ptr<const ContactLaw> law);
+inline Interaction interaction_of(const Scene& scene) { return interaction_of(scene, contact_law(scene)); }
 
-// ps, from when on neither [twist] nor the schedule of a grip changes anything.
+// ps, from when on no drive changes anything.
 double protocol_time(const Scene& scene);
 
 // Throws InputError for loads on elements that do not exist.
-LoadsAndConstraints loads_of(const Scene& scene, const Topology& topology);
+LoadsAndConstraints loads_of(const Scene& scene, const Topology& topology, const Interaction& interaction);
 
 }  // namespace ropewalk

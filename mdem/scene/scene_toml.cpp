@@ -6,7 +6,9 @@
 
 #include "io/files.hpp"
 #include "io/toml_table.hpp"
+#include "scene/kinds/scene_kind.hpp"
 #include "scene/laws/contact_law_kind.hpp"
+#include "scene/loads/drive_kind.hpp"
 #include "scene/scene_to_model.hpp"
 #include "scene/tables/tables.hpp"
 
@@ -25,63 +27,20 @@ void check_contact_law(const TomlTable& top, const Scene& scene) {
   if (kind->check) kind->check(top, scene);
 }
 
-// Grips that are said twice.
-void check_grips(const TomlTable& top, const Scene& scene) {
-  if (scene.twist && !scene.grips.empty())
-    throw top.error(
-        "twist", "stands beside [[grip]], and both say what the ends do",
-        "write the moment into a grip: as = \"each\", about_z = { torque_nN_nm = 35, rate_nN_nm_per_ps = 1 }");
-}
-
 void check_run(const TomlTable& top, const Scene& scene) {
   if (scene.run.mode == RunOptions::Mode::relax) {
-    if (scene.twist)
-      throw top.error("twist", "a ramp needs time, and run.mode is \"relax\"",
-                      "take mode = \"dynamics\", or a [[load]] of kind \"torque\"");
-    const auto refuse = [&](const char* table, const Load& load) {
-      if (!load.needs_time().empty())
-        throw top.error(table, load.needs_time() + ", and run.mode is \"relax\"", "take mode = \"dynamics\"");
-    };
-    for (const SceneLoad& load : scene.loads) refuse("load", *load.load);
-    for (const SceneGrip& grip : scene.grips) refuse("grip", *grip.grip);
-    if (scene.periodic) refuse("periodic", *scene.periodic);
+    for (const auto& drive : scene.drives)
+      if (!drive->needs_time().empty())
+        throw top.error(drive->table().name, drive->needs_time() + ", and run.mode is \"relax\"",
+                        "take mode = \"dynamics\"");
     return;
   }
-  const double protocol = protocol_time(scene);
-  if (scene.run.duration <= 0 && protocol <= 0)
-    throw top.table("run").error(
-        "duration_ps", "is missing",
-        scene.twist || !scene.grips.empty()
-            ? "ramp and hold of [twist] and the schedules of grips last no time; give a "
-              "duration"
-            : "a run without [twist] or a [[grip]] that moves needs it: duration_ps = 100");
-}
-
-// What does not go with a thermostat.
-void check_thermostat(const TomlTable& top, const Scene& scene) {
-  if (!scene.thermostat) return;
-  const auto refuse = [&](const char* table, const char* key, const char* why) {
-    throw top.table(table).error(key, fmt::format("does not go with [thermostat]: {}", why),
-                                 "take one of the two away");
-  };
-  if (scene.run.mode == RunOptions::Mode::relax) refuse("run", "mode", "a relaxation has no temperature");
-  if (scene.damping.local > 0) refuse("damping", "pfc_local", "it brakes every velocity that the bath gives");
-  if (scene.twist && scene.twist->geometric_only)
-    refuse("twist", "geometric_only", "the bath turns the spins that it relaxes");
-}
-
-// What does not go with a slice that has no ends.
-void check_periodic(const TomlTable& top, const Scene& scene) {
-  if (!scene.periodic) return;
-  const auto refuse = [&](const char* table, const char* why) {
-    throw top.table("periodic")
-        .error("", fmt::format("does not go with {}: {}", table, why), "take one of the two away");
-  };
-  if (scene.twist)
-    refuse("[twist]", "the slice has no ends; give twist_deg_per_nm, and read the torque in the log");
-  if (!scene.grips.empty()) refuse("[[grip]]", "the slice has no ends to be clamped");
-  if (scene.kind != "rope")
-    refuse(("[" + scene.kind + "]").c_str(), "tubes must be parallel and alike; it needs a [rope]");
+  if (scene.run.duration > 0 || protocol_time(scene) > 0) return;
+  const bool driven = scene.has_ends(Drive::Ends::loaded) || scene.has_ends(Drive::Ends::clamped);
+  throw top.table("run").error(
+      "duration_ps", "is missing",
+      driven ? "ramp and hold of [twist] and the schedules of grips last no time; give a duration"
+             : "a run without [twist] or a [[grip]] that moves needs it: duration_ps = 100");
 }
 
 // A key or table that is right elsewhere.
@@ -104,11 +63,13 @@ void read_tables(const TomlTable& top, Scene& scene) {
   scene.contact = contact_table().read(top.table("contact"), scene);
   check_contact_law(top, scene);
   scene.damping = damping_table().read(top.table("damping"), scene);
-  for (const TomlTable& t : top.tables("load")) scene.loads.push_back(read_load(t, scene));
-  for (const TomlTable& t : top.tables("grip")) scene.grips.push_back(read_grip(t, scene));
-  if (top.has("thermostat")) scene.thermostat = thermostat_table().read(top.table("thermostat"), scene);
-  if (top.has("twist")) scene.twist = twist_table().read(top.table("twist"), scene);
-  if (top.has("periodic")) scene.periodic = periodic_table().read(top.table("periodic"), scene);
+  for (const DriveKind& kind : drive_kinds()) {
+    const SceneTable table = kind.table();
+    if (table.listed)
+      for (const TomlTable& t : top.tables(table.name)) scene.drives.push_back(kind.read(t, scene));
+    else if (top.has(table.name))
+      scene.drives.push_back(kind.read(top.table(table.name), scene));
+  }
   scene.run = run_table().read(top.table("run"), scene);
   scene.observe = observe_table().read(top.table("observe"), scene);
   scene.limits = limits_table().read(top.table("limits"), scene);
@@ -132,10 +93,8 @@ Scene scene_of_text(const std::string& text, const std::string& path, const std:
   Scene scene = table.read(top, file);
   read_tables(top, scene);
   top.finish(belongs_to);
-  check_grips(top, scene);
+  for (const auto& drive : scene.drives) drive->refuse(top, scene);
   check_run(top, scene);
-  check_thermostat(top, scene);
-  check_periodic(top, scene);
   return scene;
 }
 

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "scene/tables/tables.hpp"
+#include "scene/bounds.hpp"
 
 namespace ropewalk {
 

@@ -83,7 +83,7 @@ EvaluatedState evaluate(const SingleState& s) {
   scene.contact.exclude_along_tube = s.exclude_along_tube;
   scene.contact.precision = Interaction::Precision::full;  // once, and compared with the reference
   EvaluatedState out{build(scene), Forces()};
-  out.forces = forces_of(out.built.topology, interaction_of(scene), out.built.state, s.reference);
+  out.forces = forces_of(out.built.topology, interaction_of(scene, out.built.law), out.built.state, s.reference);
   return out;
 }
 

@@ -1,7 +1,7 @@
-// Distances at which tubes bind best.
+#include "scene/spacing.hpp"
+
 #include <algorithm>
 
-#include "scene/build.hpp"
 #include "scene/scene_to_model.hpp"
 
 namespace ropewalk {
@@ -10,8 +10,8 @@ namespace {
 constexpr double graphite_gap = 0.335;  // nm, between the walls of tubes for which there is no law
 
 // The largest of all pairs of tube types, by this function of the law.
-double largest_distance(const Scene& scene, double (ContactLaw::*distance)(TypePair, double) const) {
-  const auto law = contact_law(scene);
+double largest_distance(const Scene& scene, const ContactLaw* law,
+                        double (ContactLaw::*distance)(TypePair, double) const) {
   if (!law) return 2 * largest_radius(scene) + graphite_gap;
   double largest = 0;
   for (int i = 0; i < static_cast<int>(scene.sets.size()); ++i)
@@ -22,8 +22,18 @@ double largest_distance(const Scene& scene, double (ContactLaw::*distance)(TypeP
 
 }  // namespace
 
-double parallel_spacing(const Scene& scene) { return largest_distance(scene, &ContactLaw::parallel_distance); }
+double largest_radius(const Scene& scene) {
+  double largest = 0;
+  for (const ParameterSet& set : scene.sets) largest = std::max(largest, set.radius);
+  return largest;
+}
 
-double crossed_spacing(const Scene& scene) { return largest_distance(scene, &ContactLaw::crossed_distance); }
+double parallel_spacing(const Scene& scene, const ContactLaw* law) {
+  return largest_distance(scene, law, &ContactLaw::parallel_distance);
+}
+
+double crossed_spacing(const Scene& scene) {
+  return largest_distance(scene, contact_law(scene).get(), &ContactLaw::crossed_distance);
+}
 
 }  // namespace ropewalk

@@ -9,7 +9,7 @@
 #include "io/csv_reader.hpp"
 #include "io/toml_table.hpp"  // printable
 #include "model/error.hpp"
-#include "scene/build.hpp"
+#include "scene/bounds.hpp"
 
 namespace ropewalk {
 namespace {
@@ -44,9 +44,9 @@ struct Row {
   Vector3 velocity, spin;
 };
 
-class Reader {
+class StateReader {
  public:
-  Reader(const std::string& path, Topology& topology) : csv_(path), topology_(topology) {}
+  StateReader(const std::string& path, Topology& topology) : csv_(path), topology_(topology) {}
 
   State read() {
     if (!csv_.next()) fail("", "is empty", fmt::format("the first line must be {}", header));
@@ -151,7 +151,7 @@ std::vector<OutputColumn> state_columns() { return {columns.begin(), columns.end
 void read_state_csv(const std::string& path, Topology& topology, State& state) {
   topology.tube_begin = {0};
   topology.tube_type.clear();
-  state = Reader(path, topology).read();
+  state = StateReader(path, topology).read();
 }
 
 std::string state_csv(const Topology& topology, const State& s) {

@@ -1,13 +1,11 @@
 #include "scene/watch.hpp"
 
-#include "scene/build.hpp"
 #include "scene/scene_to_model.hpp"
 
 namespace ropewalk {
 
-Watched watched_of(const Scene& scene, const Topology& topology) {
+Watched watched_of(const Scene& scene, const Topology& topology, const ContactLaw* law) {
   Watched out;
-  const auto law = contact_law(scene);
   const auto types = static_cast<int>(scene.sets.size());
   for (int i = 0; law && i < types; ++i)
     for (int j = 0; j < types; ++j) out.rest.push_back(law->parallel_distance({i, j}, scene.element_length));

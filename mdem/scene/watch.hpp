@@ -3,9 +3,11 @@
 
 #include "observe/limits.hpp"
 #include "scene/scene.hpp"
+#include "sim/contact/contact_law.hpp"
 
 namespace ropewalk {
 
-Watched watched_of(const Scene& scene, const Topology& topology);
+// `law`: that of the scene; null: none.
+Watched watched_of(const Scene& scene, const Topology& topology, const ContactLaw* law);
 
 }  // namespace ropewalk

@@ -6,7 +6,7 @@
 #include "atomistic/stiffness.hpp"
 #include "contact/integral.hpp"
 #include "io/parameters_toml.hpp"
-#include "scene/build.hpp"
+#include "scene/laws/line.hpp"
 #include "scene/scene_to_model.hpp"
 #include "scene/scene_toml.hpp"
 #include "verbs/calibration.hpp"

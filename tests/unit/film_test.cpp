@@ -10,6 +10,7 @@
 #include "model/error.hpp"
 #include "scene/build.hpp"
 #include "scene/scene_toml.hpp"
+#include "scene/spacing.hpp"
 
 namespace ropewalk {
 namespace {

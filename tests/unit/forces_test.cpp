@@ -4,7 +4,7 @@
 
 #include <atomic>
 
-#include "scene/build.hpp"
+#include "scene/lattice.hpp"
 #include "sim/contact/line/engine.hpp"
 #include "sim/contact/line/law.hpp"
 #include "sim/contact/paper/law.hpp"

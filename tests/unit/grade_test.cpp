@@ -107,7 +107,7 @@ Scene scene_with(const std::string& set, const std::string& law) {
                        "t.toml");
 }
 
-std::vector<std::string> warnings(const Scene& scene) { return warnings_of(scene, empty_topology(scene)); }
+std::vector<std::string> warnings(Scene scene) { return warnings_of(scene, prepare(scene)); }
 
 // The bad error of the published form between crossed tubes is computed from law and set.
 TEST(Grade, TheScenesWarningGivesTheErrorOfThePublishedForm) {

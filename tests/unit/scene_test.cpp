@@ -13,10 +13,14 @@
 #include "model/error.hpp"
 #include "scene/build.hpp"
 #include "scene/kinds/rope.hpp"
+#include "scene/lattice.hpp"
 #include "scene/loads/fix.hpp"
 #include "scene/loads/force.hpp"
+#include "scene/loads/load_kind.hpp"
 #include "scene/loads/rotate.hpp"
+#include "scene/loads/thermostat.hpp"
 #include "scene/loads/torque.hpp"
+#include "scene/loads/twist.hpp"
 #include "scene/maxwell.hpp"
 #include "scene/prepare.hpp"
 #include "scene/scene_to_model.hpp"
@@ -68,6 +72,8 @@ Scene scene_from(const std::string& body) {
   const Folder folder;
   return read_scene(folder.write("scene.toml", head + body));
 }
+
+const TwistLoad& twist_of(const Scene& scene) { return scene.drives_of<TwistDrive>().at(0)->load; }
 
 BuiltScene built_from(const std::string& body) {
   Scene scene = scene_from(body);
@@ -315,15 +321,15 @@ TEST(SceneFile, EveryKeyReachesTheScene) {
   EXPECT_EQ(s.damping.bond.rate, 0.5);
   EXPECT_EQ(s.damping.local, 0.7);
   ASSERT_TRUE(s.twist);
-  EXPECT_NEAR(s.twist->moment, 64 * units::nN_nm, 1e-12);
-  EXPECT_NEAR(s.twist->ramp_time(), 128, 1e-12);
-  EXPECT_EQ(s.twist->hold, 4);
-  EXPECT_EQ(s.twist->reading, TwistLoad::Reading::total);
-  EXPECT_EQ(s.twist->application, TwistLoad::Application::tangential);
-  EXPECT_FALSE(s.twist->lateral_free);
-  EXPECT_FALSE(s.twist->axial_free);
-  EXPECT_TRUE(s.twist->geometric_only);
-  EXPECT_EQ(s.twist->increment, 2);
+  EXPECT_NEAR(twist_of(s).moment, 64 * units::nN_nm, 1e-12);
+  EXPECT_NEAR(twist_of(s).ramp_time(), 128, 1e-12);
+  EXPECT_EQ(twist_of(s).hold, 4);
+  EXPECT_EQ(twist_of(s).reading, TwistLoad::Reading::total);
+  EXPECT_EQ(twist_of(s).application, TwistLoad::Application::tangential);
+  EXPECT_FALSE(twist_of(s).lateral_free);
+  EXPECT_FALSE(twist_of(s).axial_free);
+  EXPECT_TRUE(twist_of(s).geometric_only);
+  EXPECT_EQ(twist_of(s).increment, 2);
   EXPECT_NEAR(s.run.time_step, 0.015, 1e-15);
   EXPECT_TRUE(s.run.stepping.runge_kutta);
   EXPECT_EQ(s.run.mass_scale, 25);
@@ -359,22 +365,23 @@ TEST(SceneFile, Loads) {
       "[[load]]\nkind = \"torque\"\ntubes = \"all\"\nelements = [-1]\ntorque_nN_nm = [0, 0, 3]\n"
       "[[load]]\nkind = \"rotate\"\nelements = [2]\nrate_deg_per_ps = -2\nangle_deg = 90\ncentre_nm = [1, 2]\n"
       "axial_free = false\nspin_free = true\n");
-  ASSERT_EQ(s.loads.size(), 5u);
-  const auto& fix = dynamic_cast<const FixLoad&>(*s.loads[0].load);
+  const auto loads = s.drives_of<LoadDrive>();
+  ASSERT_EQ(loads.size(), 5u);
+  const auto& fix = dynamic_cast<const FixLoad&>(*loads[0]->load);
   EXPECT_TRUE(fix.x && !fix.y && fix.z && !fix.rotation);
-  EXPECT_EQ(s.loads[0].on.elements, (std::vector<int>{0, 1}));
-  EXPECT_TRUE(s.loads[0].on.all_tubes);
-  const auto& spin = dynamic_cast<const FixLoad&>(*s.loads[1].load);
+  EXPECT_EQ(loads[0]->on.elements, (std::vector<int>{0, 1}));
+  EXPECT_TRUE(loads[0]->on.all_tubes);
+  const auto& spin = dynamic_cast<const FixLoad&>(*loads[1]->load);
   EXPECT_TRUE(!spin.x && !spin.y && !spin.z && spin.rotation);
-  EXPECT_TRUE(s.loads[1].on.all_elements);
-  EXPECT_LT((dynamic_cast<const ForceLoad&>(*s.loads[2].load).force - units::nN_nm * Vector3(1, 0, -2.5)).norm(),
+  EXPECT_TRUE(loads[1]->on.all_elements);
+  EXPECT_LT((dynamic_cast<const ForceLoad&>(*loads[2]->load).force - units::nN_nm * Vector3(1, 0, -2.5)).norm(),
             1e-14);
-  EXPECT_FALSE(s.loads[2].on.all_tubes);
-  EXPECT_EQ(s.loads[2].on.tubes, std::vector<int>{0});
-  EXPECT_EQ(s.loads[2].on.elements, (std::vector<int>{0, -1}));
-  EXPECT_LT((dynamic_cast<const TorqueLoad&>(*s.loads[3].load).torque - units::nN_nm * Vector3(0, 0, 3)).norm(),
+  EXPECT_FALSE(loads[2]->on.all_tubes);
+  EXPECT_EQ(loads[2]->on.tubes, std::vector<int>{0});
+  EXPECT_EQ(loads[2]->on.elements, (std::vector<int>{0, -1}));
+  EXPECT_LT((dynamic_cast<const TorqueLoad&>(*loads[3]->load).torque - units::nN_nm * Vector3(0, 0, 3)).norm(),
             1e-14);
-  const auto& turn = dynamic_cast<const PrescribedRotation&>(*s.loads[4].load);
+  const auto& turn = dynamic_cast<const PrescribedRotation&>(*loads[4]->load);
   EXPECT_NEAR(turn.rate, -2 * units::degree, 1e-15);
   EXPECT_NEAR(turn.angle, -90 * units::degree, 1e-15);  // with the sign of the rate
   EXPECT_EQ(turn.centre, Vector3(1, 2, 0));
@@ -432,18 +439,18 @@ TEST(Templates, AreTheScenesOfThePaper) {
   const auto [rope, topology] = read("spindle");
   EXPECT_EQ(topology.tubes(), 91);
   EXPECT_EQ(topology.length_of(0), 50);
-  EXPECT_NEAR(rope.twist->moment / units::nN_nm, 35, 1e-9);
-  EXPECT_EQ(rope.twist->reading, TwistLoad::Reading::per_tube);
-  EXPECT_EQ(rope.twist->hold, 100);
+  EXPECT_NEAR(twist_of(rope).moment / units::nN_nm, 35, 1e-9);
+  EXPECT_EQ(twist_of(rope).reading, TwistLoad::Reading::per_tube);
+  EXPECT_EQ(twist_of(rope).hold, 100);
   EXPECT_EQ(read("bird-cage").second.length_of(0), 30);
   EXPECT_EQ(read("helix").second.length_of(0), 120);
-  EXPECT_NEAR(read("helix").first.twist->rate / units::nN_nm, 0.68, 1e-12);
-  EXPECT_TRUE(read("geometric").first.twist->geometric_only);
+  EXPECT_NEAR(twist_of(read("helix").first).rate / units::nN_nm, 0.68, 1e-12);
+  EXPECT_TRUE(twist_of(read("geometric").first).geometric_only);
   const auto [bundle, seven] = read("bundle");
   EXPECT_EQ(seven.elements(), 35);
   EXPECT_EQ(bundle.start.temperature, 10);
   EXPECT_EQ(bundle.damping.contact.eta + bundle.damping.bond.rate + bundle.damping.local, 0);
-  EXPECT_EQ(read("chain").first.loads.size(), 2u);
+  EXPECT_EQ(read("chain").first.drives.size(), 2u);
   EXPECT_EQ(read("relax").first.run.mode, RunOptions::Mode::relax);
 }
 
@@ -455,13 +462,13 @@ std::string choices(const Scene& s) {
                                  s.damping.contact.eta, s.damping.bond.rate, s.damping.local);
   if (const auto* r = dynamic_cast<const RopeSource*>(s.source.get()))
     text += fmt::format("{} {:.10g} {:.10g} {:.10g} | ", r->tubes, r->length, r->spacing, r->perturbation);
-  if (s.twist)
-    text += fmt::format("{:.10g} {:.10g} {:.10g} {} {} {} {} {} {:.10g} | ", s.twist->moment, s.twist->rate,
-                        s.twist->hold, static_cast<int>(s.twist->reading), static_cast<int>(s.twist->application),
-                        s.twist->lateral_free, s.twist->axial_free, s.twist->geometric_only, s.twist->increment);
-  if (s.thermostat)
-    text += fmt::format("{} {:.10g} {:.10g} {} | ", s.thermostat->method, s.thermostat->temperature.first(),
-                        s.thermostat->coupling, s.thermostat->seed);
+  if (!s.drives_of<TwistDrive>().empty())
+    text += fmt::format("{:.10g} {:.10g} {:.10g} {} {} {} {} {} {:.10g} | ", twist_of(s).moment, twist_of(s).rate,
+                        twist_of(s).hold, static_cast<int>(twist_of(s).reading), static_cast<int>(twist_of(s).application),
+                        twist_of(s).lateral_free, twist_of(s).axial_free, twist_of(s).geometric_only, twist_of(s).increment);
+  for (const ThermostatDrive* bath : s.drives_of<ThermostatDrive>())
+    text += fmt::format("{} {:.10g} {:.10g} {} | ", bath->options.method, bath->options.temperature.first(),
+                        bath->options.coupling, bath->options.seed);
   text += fmt::format("{} {:.10g} {:.10g} | ", s.run.stepping.runge_kutta,
                       s.run.mass_scale, s.contact.cutoff);
   return text + fmt::format("{} {:.10g} {:.10g} {:.10g} {:.10g} {:.10g} {:.3g} {} {} | {:.10g}",
@@ -502,7 +509,7 @@ TEST(SceneKeys, StatedLimitsAreTheDefaults) {
   const std::string start = "[chain]\nelements = 5\n[run]\nduration_ps = 1\n";
   const auto limits = [&](const std::string& more) {
     const Scene s = scene_from(start + more);
-    return watched_of(s, empty_topology(s)).limits.at(0);
+    return watched_of(s, empty_topology(s), contact_law(s).get()).limits.at(0);
   };
   const Limits silent = limits(""), stated = limits("[limits]\n" + keys_of("limits", true));
   EXPECT_DOUBLE_EQ(silent.bend, stated.bend);
@@ -528,15 +535,15 @@ TEST(SceneKeys, StatedLoadDefaultsAreTheDefaults) {
   const Scene fix = scene_from(start + "kind = \"fix\"\n");
   const Scene fix_written =
       scene_from(start + "kind = \"fix\"\ntubes = \"all\"\naxes = \"xyz\"\nrotation = true\n");
-  const auto& a = dynamic_cast<const FixLoad&>(*fix.loads[0].load);
-  const auto& b = dynamic_cast<const FixLoad&>(*fix_written.loads[0].load);
+  const auto& a = dynamic_cast<const FixLoad&>(*fix.drives_of<LoadDrive>().at(0)->load);
+  const auto& b = dynamic_cast<const FixLoad&>(*fix_written.drives_of<LoadDrive>().at(0)->load);
   EXPECT_TRUE(a.x && a.y && a.z && a.rotation && b.x && b.y && b.z && b.rotation);
-  EXPECT_TRUE(fix.loads[0].on.all_tubes && fix_written.loads[0].on.all_tubes);
+  EXPECT_TRUE(fix.drives_of<LoadDrive>().at(0)->on.all_tubes && fix_written.drives_of<LoadDrive>().at(0)->on.all_tubes);
   const std::string turn = start + "kind = \"rotate\"\nrate_deg_per_ps = 1\nangle_deg = 360\n";
   const Scene plain = scene_from(turn);
   const Scene written = scene_from(turn + "centre_nm = [0, 0]\naxial_free = true\nspin_free = false\n");
-  const auto& c = dynamic_cast<const PrescribedRotation&>(*plain.loads[0].load);
-  const auto& d = dynamic_cast<const PrescribedRotation&>(*written.loads[0].load);
+  const auto& c = dynamic_cast<const PrescribedRotation&>(*plain.drives_of<LoadDrive>().at(0)->load);
+  const auto& d = dynamic_cast<const PrescribedRotation&>(*written.drives_of<LoadDrive>().at(0)->load);
   EXPECT_EQ(c.centre, d.centre);
   EXPECT_EQ(c.axial_free, d.axial_free);
   EXPECT_EQ(c.spin_free, d.spin_free);

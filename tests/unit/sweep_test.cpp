@@ -54,10 +54,10 @@ TEST_F(SweepFile, GridTakesEveryValueWithEveryOther) {
   const std::vector<SweepPoint> points =
       points_of(sweep("[vary]\ntwist.moment_nN_nm = { from = 1, to = 2, points = 3 }\n"));
   ASSERT_EQ(points.size(), 3u);
-  EXPECT_EQ(scene_of(sweep("[vary]\ntwist.moment_nN_nm = [1.5]\n"), points[1]).twist->moment,
+  EXPECT_EQ(scene_of(sweep("[vary]\ntwist.moment_nN_nm = [1.5]\n"), points[1]).moment_ramp()->moment,
             scene_of(sweep("[vary]\ntwist.moment_nN_nm = [1.5]\n"),
                      points_of(sweep("[vary]\ntwist.moment_nN_nm = [1.5]\n"))[0])
-                .twist->moment);
+                .moment_ramp()->moment);
   EXPECT_LT(points[0].work, points[2].work);  // a longer ramp
 }
 

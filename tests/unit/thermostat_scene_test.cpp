@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "model/error.hpp"
+#include "scene/loads/thermostat.hpp"
 #include "scene/prepare.hpp"
 #include "scene/scene_toml.hpp"
 
@@ -20,6 +21,8 @@ Scene scene_from(const std::string& body) {
       ROPEWALK_SOURCE_DIR "/data/scenes/test.toml", {});
 }
 
+const ThermostatOptions& bath_of(const Scene& scene) { return scene.drives_of<ThermostatDrive>().at(0)->options; }
+
 std::string refusal(const std::string& body) {
   try {
     scene_from(body);
@@ -31,13 +34,13 @@ std::string refusal(const std::string& body) {
 
 TEST(ThermostatTable, IsRead) {
   const Scene s = scene_from("[start]\nseed = 4\n[run]\nduration_ps = 1\n" + bath);
-  ASSERT_TRUE(s.thermostat);
-  EXPECT_EQ(s.thermostat->method, "langevin");
-  EXPECT_EQ(s.thermostat->temperature.first(), 250);
-  EXPECT_EQ(s.thermostat->coupling, 0.5);
-  EXPECT_EQ(s.thermostat->seed, 4u) << "that of [start]";
-  EXPECT_EQ(scene_from("[run]\nduration_ps = 1\n" + bath + "seed = 9\n").thermostat->seed, 9u);
-  EXPECT_FALSE(scene_from("[run]\nduration_ps = 1\n").thermostat);
+  const ThermostatOptions& read = bath_of(s);
+  EXPECT_EQ(read.method, "langevin");
+  EXPECT_EQ(read.temperature.first(), 250);
+  EXPECT_EQ(read.coupling, 0.5);
+  EXPECT_EQ(read.seed, 4u) << "that of [start]";
+  EXPECT_EQ(bath_of(scene_from("[run]\nduration_ps = 1\n" + bath + "seed = 9\n")).seed, 9u);
+  EXPECT_FALSE(scene_from("[run]\nduration_ps = 1\n").bath());
 }
 
 TEST(ThermostatTable, ReachesTheSimulation) {

@@ -8,7 +8,8 @@
 #include "io/data_files.hpp"
 #include "io/parameters_toml.hpp"
 #include "io/toml_table.hpp"
-#include "scene/build.hpp"
+#include "scene/laws/line.hpp"
+#include "scene/laws/paper.hpp"
 #include "scene/scene_to_model.hpp"
 #include "sim/contact/paper/law.hpp"
 

@@ -14,9 +14,9 @@
 #include "io/parameters_toml.hpp"
 #include "io/toml_table.hpp"
 #include "model/error.hpp"
-#include "scene/build.hpp"
 #include "scene/dissipation.hpp"
 #include "scene/kinds/film.hpp"
+#include "scene/lattice.hpp"
 #include "scene/prepare.hpp"
 
 namespace ropewalk {

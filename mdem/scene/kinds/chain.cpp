@@ -21,7 +21,7 @@ class ChainSource : public Source {
   bool is_parallel() const override { return true; }
 };
 
-void read_elements(const TomlTable& t, const Scene& scene, ChainSource& chain) {
+void read_chain_elements(const TomlTable& t, const Scene& scene, ChainSource& chain) {
   const auto elements = static_cast<double>(t.integer("elements", 2, 1000000000));
   check_size(t, "elements", 1, elements);
   chain.length = elements * scene.element_length;
@@ -34,7 +34,7 @@ SceneKind chain_kind() {
   return scene_kind<ChainSource>(
       {"chain",
        "instead of [rope]: one straight tube along z",
-       {Key::custom("elements", "", required("41"), "number of elements, 2 or more", read_elements)
+       {Key::custom("elements", "", required("41"), "number of elements, 2 or more", read_chain_elements)
             .is_tube_size(SceneKey::TubeSize::elements)},
        {}});
 }

@@ -6,17 +6,18 @@
 #include <cmath>
 #include <cstdint>
 
-#include "scene/build.hpp"
+#include "scene/bounds.hpp"
+#include "scene/lattice.hpp"
+#include "scene/scene.hpp"
+#include "scene/spacing.hpp"
 
 namespace ropewalk {
 namespace {
 
-using Key = KeyOf<FilmSource>;
-
 // Thicker films are no films, and laying them takes a time that grows with the square of the tubes.
 constexpr double max_coverage = 50;  // areas of the box, by what the tubes cover one by one
 
-void check(const TomlTable& t, const Scene& scene, FilmSource& film) {
+void check_film(const TomlTable& t, const Scene& scene, FilmSource& film) {
   const double elements = std::round(film.length / scene.element_length);
   const double length = elements * scene.element_length;
   if (elements < 2)
@@ -208,6 +209,7 @@ std::vector<FilmTube> lay_film(const FilmSource& film, int elements, double elem
 }
 
 SceneKind film_kind() {
+  using Key = KeyOf<FilmSource>;
   return scene_kind<FilmSource>(
       {"film",
        "instead of [rope]: straight tubes at random in a box, flat in x and y, laid one upon another",
@@ -222,7 +224,7 @@ SceneKind film_kind() {
         Key::number("spacing_nm", unit::nm, spacing_bounds, &FilmSource::spacing,
                     otherwise("1.7", "where two crossed tubes bind best"),
                     "no two tube axes are closer at the start")},
-       check});
+       check_film});
 }
 
 Source::Sizes FilmSource::sizes(double element_length) const {

@@ -4,14 +4,14 @@
 
 #include <cmath>
 
-#include "scene/build.hpp"
+#include "scene/bounds.hpp"
+#include "scene/lattice.hpp"
+#include "scene/scene.hpp"
 
 namespace ropewalk {
 namespace {
 
-using Key = KeyOf<RopeSource>;
-
-void check(const TomlTable& t, const Scene& scene, RopeSource& rope) {
+void check_rope(const TomlTable& t, const Scene& scene, RopeSource& rope) {
   const auto [below, above] = nearest_hexagonal(rope.tubes);
   if (below != above)
     throw t.error("tubes", fmt::format("is {}, not a hexagonal number", rope.tubes),
@@ -34,6 +34,7 @@ void displace(double amplitude, Random& random, State& state) {
 }  // namespace
 
 SceneKind rope_kind() {
+  using Key = KeyOf<RopeSource>;
   return scene_kind<RopeSource>(
       {"rope",
        "parallel tubes along z in hexagonal packing, centred on the origin",
@@ -46,7 +47,7 @@ SceneKind rope_kind() {
                     otherwise("1.713", "where two tubes bind best"), "distance between tube axes"),
         Key::number("perturbation_nm", unit::nm, Bounds::non_negative(0.1), &RopeSource::perturbation, standard(),
                     "each element is displaced at random by up to this in x and y")},
-       check});
+       check_rope});
 }
 
 Source::Sizes RopeSource::sizes(double element_length) const {

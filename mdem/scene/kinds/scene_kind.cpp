@@ -5,9 +5,10 @@
 #include <algorithm>
 #include <cassert>
 
-#include "scene/build.hpp"
+#include "scene/bounds.hpp"
 #include "scene/memory.hpp"
 #include "scene/scene.hpp"
+#include "scene/spacing.hpp"
 
 namespace ropewalk {
 
@@ -19,7 +20,7 @@ SceneKind state_kind();
 
 namespace {
 
-std::vector<SceneKind>& all_kinds() {
+std::vector<SceneKind>& kinds_of_scenes() {
   static std::vector<SceneKind> kinds = {
       rope_kind(),
       film_kind(),
@@ -50,12 +51,12 @@ std::string headers() {
 
 }  // namespace
 
-const std::vector<SceneKind>& scene_kinds() { return all_kinds(); }
+const std::vector<SceneKind>& scene_kinds() { return kinds_of_scenes(); }
 
 bool add_scene_kind(SceneKind kind) {
-  assert(std::none_of(all_kinds().begin(), all_kinds().end(),
+  assert(std::none_of(kinds_of_scenes().begin(), kinds_of_scenes().end(),
                       [&](const SceneKind& other) { return other.table.name == kind.table.name; }));
-  all_kinds().push_back(std::move(kind));
+  kinds_of_scenes().push_back(std::move(kind));
   return true;
 }
 
@@ -76,12 +77,6 @@ SceneKey tube_size_key(const Scene& scene) {
     for (const SceneKey& key : kind.table.keys)
       if (kind.table.name == scene.kind && key.tube_size != SceneKey::TubeSize::no) return key;
   return {};
-}
-
-double largest_radius(const Scene& scene) {
-  double largest = 0;
-  for (const ParameterSet& set : scene.sets) largest = std::max(largest, set.radius);
-  return largest;
 }
 
 void check_size(const TomlTable& t, const std::string& key, double tubes, double elements) {

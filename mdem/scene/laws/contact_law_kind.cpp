@@ -12,7 +12,7 @@ ContactLawKind paper_kind();
 
 namespace {
 
-std::vector<ContactLawKind>& all_kinds() {
+std::vector<ContactLawKind>& laws_of_contact() {
   static std::vector<ContactLawKind> kinds = {
       line_kind(),
       paper_kind(),
@@ -22,23 +22,23 @@ std::vector<ContactLawKind>& all_kinds() {
 
 }  // namespace
 
-const std::vector<ContactLawKind>& contact_law_kinds() { return all_kinds(); }
+const std::vector<ContactLawKind>& contact_law_kinds() { return laws_of_contact(); }
 
 bool add_contact_law(ContactLawKind kind) {
   assert(!contact_law_kind(kind.name) && kind.name != "none");
-  all_kinds().push_back(std::move(kind));
+  laws_of_contact().push_back(std::move(kind));
   return true;
 }
 
 const ContactLawKind* contact_law_kind(const std::string& name) {
-  for (const ContactLawKind& kind : all_kinds())
+  for (const ContactLawKind& kind : laws_of_contact())
     if (kind.name == name) return &kind;
   return nullptr;
 }
 
 std::string default_contact_law(const std::vector<ParameterSet>& sets) {
   std::string last;
-  for (const ContactLawKind& kind : all_kinds()) {
+  for (const ContactLawKind& kind : laws_of_contact()) {
     if (!kind.in_set) continue;
     if (std::all_of(sets.begin(), sets.end(), kind.in_set)) return kind.name;
     last = kind.name;

@@ -1,11 +1,14 @@
 // law = "line": from the sets' [contact.line], and between different tubes from [contact.line.universal].
+#include "scene/laws/line.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "io/grade.hpp"
 #include "scene/laws/contact_law_kind.hpp"
-#include "scene/scene_to_model.hpp"
+#include "scene/scene.hpp"
+#include "sim/contact/line/law.hpp"
 
 namespace ropewalk {
 namespace {
@@ -43,36 +46,43 @@ void check_mixture(const TomlTable& top, const Scene& scene) {
   }
 }
 
-}  // namespace
+// The contacts, and the wells of parallel tubes, which their nodes are chosen by.
+struct LinePairs {
+  std::vector<LineContact> contacts;
+  std::vector<LineWell> wells;
+};
 
-std::vector<LineContact> line_contacts(const Scene& scene) {
+LinePairs line_pairs(const Scene& scene) {
   const std::size_t types = scene.sets.size();
-  std::vector<LineContact> pairs;
+  const double length = scene.element_length;
+  LinePairs out;
   std::vector<int> nodes(types, 1);  // of each type: what its most demanding partner needs
   const std::vector<LineDensity> densities = line_densities(scene);
-  for (std::size_t a = 0; a < types; ++a)
-    for (std::size_t b = 0; b < types; ++b) {
-      LineContact pair;
-      pair.density = densities[a * types + b];
-      // A cutoff that leaves no well is refused by the reader.
-      const double rest = line_parallel_well(pair.density).distance;
-      const int needed =
-          rest > pair.density.contact ? line_nodes(scene.element_length, rest, pair.density.contact) : 1;
-      nodes[a] = std::max(nodes[a], scene.contact.nodes > 0 ? scene.contact.nodes : needed);
-      pairs.push_back(pair);
-    }
-  for (std::size_t a = 0; a < types; ++a)
-    for (std::size_t b = 0; b < types; ++b) {
-      LineContact& pair = pairs[a * types + b];
-      pair = {pair.density, scene.element_length, scene.element_length, nodes[a], nodes[b]};
-    }
-  return pairs;
+  for (std::size_t k = 0; k < densities.size(); ++k) {
+    // A cutoff that leaves no well is refused by the reader.
+    out.wells.push_back(line_parallel_well(densities[k]));
+    const double rest = out.wells.back().distance, contact = densities[k].contact;
+    const int needed = rest > contact ? line_nodes(length, rest, contact) : 1;
+    nodes[k / types] = std::max(nodes[k / types], scene.contact.nodes > 0 ? scene.contact.nodes : needed);
+  }
+  for (std::size_t k = 0; k < densities.size(); ++k)
+    out.contacts.push_back({densities[k], length, length, nodes[k / types], nodes[k % types]});
+  return out;
 }
+
+std::shared_ptr<const ContactLaw> line_law_of(const Scene& scene) {
+  LinePairs pairs = line_pairs(scene);
+  return std::make_shared<const LineLaw>(std::move(pairs.contacts), std::move(pairs.wells));
+}
+
+}  // namespace
+
+std::vector<LineContact> line_contacts(const Scene& scene) { return line_pairs(scene).contacts; }
 
 ContactLawKind line_kind() {
   ContactLawKind kind;
   kind.name = "line";
-  kind.make = [](const Scene& scene) { return line_law(line_contacts(scene)); };
+  kind.make = line_law_of;
   kind.in_set = [](const ParameterSet& set) { return set.line.has_value(); };
   kind.check = check_mixture;
   return kind;

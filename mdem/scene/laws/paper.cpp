@@ -1,6 +1,9 @@
 // law = "paper": the published law, from the set's [contact.paper].
+#include "scene/laws/paper.hpp"
+
 #include "scene/laws/contact_law_kind.hpp"
-#include "scene/scene_to_model.hpp"
+#include "scene/scene.hpp"
+#include "sim/contact/paper/law.hpp"
 
 namespace ropewalk {
 

@@ -7,8 +7,6 @@
 namespace ropewalk {
 namespace {
 
-using Key = KeyOf<FixLoad>;
-
 void read_axes(const TomlTable& t, const Scene&, FixLoad& fix) {
   if (!t.has("axes")) return;
   // Empty is a text here: nothing but the orientation.
@@ -21,7 +19,7 @@ void read_axes(const TomlTable& t, const Scene&, FixLoad& fix) {
                   "write x, y and z, each at most once: \"xy\"");
 }
 
-void check(const TomlTable& t, const Scene&, FixLoad& fix) {
+void check_fix(const TomlTable& t, const Scene&, FixLoad& fix) {
   if (!fix.x && !fix.y && !fix.z && !fix.rotation)
     throw t.error("axes", "is empty and rotation is false: nothing is fixed", "take the load away");
 }
@@ -29,11 +27,12 @@ void check(const TomlTable& t, const Scene&, FixLoad& fix) {
 }  // namespace
 
 LoadKind fix_kind() {
+  using Key = KeyOf<FixLoad>;
   return load_kind<FixLoad>({"fix",
                              "",
                              {Key::custom("axes", "", standard("\"xyz\""), "coordinates that are held", read_axes),
                               Key::boolean("rotation", &FixLoad::rotation, standard(), "orientation is held")},
-                             check});
+                             check_fix});
 }
 
 void FixLoad::constrain(const Topology&, double, double, State& state) const {

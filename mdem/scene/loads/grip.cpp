@@ -8,8 +8,10 @@
 #include <cmath>
 #include <cstddef>
 
+#include "scene/bounds.hpp"
+#include "scene/loads/drive_kind.hpp"
+#include "scene/scene.hpp"
 #include "scene/schedule_rows.hpp"
-#include "scene/tables/tables.hpp"
 
 namespace ropewalk {
 namespace {
@@ -294,7 +296,16 @@ std::optional<LoadEffect> GripLoad::effect() const {
       out.torque[static_cast<Eigen::Index>(k - 3)] = most / shared;
   }
   if (axes[about_z].is == Is::moved) out.angle = schedules_[about_z].largest();
-  out.ramp = ends();
+  out.ramp = lasts();
+  LoadEffect::Clamp clamp;
+  const double tubes = each ? 1 : static_cast<double>(elements.size()) / depth;
+  if (axes[z].is == Is::moved) clamp.pull = schedules_[z].largest();
+  if (axes[z].is == Is::loaded) clamp.tension = schedules_[z].largest() / tubes;
+  for (const std::size_t about : {std::size_t{3}, std::size_t{4}})
+    if (axes[about].is == Is::moved) clamp.bend += schedules_[about].largest();
+  clamp.keeps_length = axes[z].is != Is::free && axes[z].is != Is::loaded && !slide_free;
+  clamp.keeps_tilt = !tilt_free;
+  out.clamp = clamp;
   return out;
 }
 
@@ -328,7 +339,7 @@ std::string GripLoad::words() const {
   return text + rest;
 }
 
-double GripLoad::ends() const {
+double GripLoad::lasts() const {
   double last = 0;
   for (const GripAxis& a : axes)
     if (!a.points.empty()) last = std::max(last, a.points.back().time);
@@ -340,14 +351,14 @@ double GripLoad::ends() const {
 namespace {
 
 // What a component of a clamp may follow.
-struct Drive {
+struct Course {
   const char* key;
   double unit;
   const char* rate_key;
   bool rotation, load;
 };
 constexpr double rad = units::degree;
-constexpr Drive drives[] = {
+constexpr Course courses[] = {
     {"displacement_nm", 1, "rate_nm_per_ps", false, false},
     {"strain", 1, "rate_per_ps", false, false},
     {"force_nN", units::nN_nm, "rate_nN_per_ps", false, true},
@@ -357,12 +368,12 @@ constexpr Drive drives[] = {
 };
 constexpr double largest_value = 1e6;
 
-std::string example_of(const Drive& d) {
+std::string example_of(const Course& d) {
   return fmt::format("{{ {} = 1, {} = 0.01 }}", d.key, d.rate_key);
 }
 
 // From 0 at the start to each value in turn, at this speed; a value twice would be a hold without a length.
-std::vector<Schedule::Point> at_rate(const TomlTable& t, const Drive& d, const std::vector<double>& values) {
+std::vector<Schedule::Point> at_rate(const TomlTable& t, const Course& d, const std::vector<double>& values) {
   const double rate = t.number(d.rate_key, Bounds::positive(largest_value));
   std::vector<Schedule::Point> points{{0, 0}};
   for (const double value : values) {
@@ -375,7 +386,7 @@ std::vector<Schedule::Point> at_rate(const TomlTable& t, const Drive& d, const s
   return points;
 }
 
-std::vector<Schedule::Point> in_time(const TomlTable& t, const Drive& d) {
+std::vector<Schedule::Point> in_time(const TomlTable& t, const Course& d) {
   const std::vector<Schedule::Point> points = points_in_time(t, d.key, Bounds::range(-largest_value, largest_value));
   if (!d.load && points.front().value != 0)
     throw t.error(d.key, fmt::format("begins at {}", points.front().value),
@@ -385,8 +396,8 @@ std::vector<Schedule::Point> in_time(const TomlTable& t, const Drive& d) {
 
 GripAxis read_drive(const TomlTable& t, const std::string& axis, bool rotation) {
   std::string names;
-  const Drive* found = nullptr;
-  for (const Drive& d : drives) {
+  const Course* found = nullptr;
+  for (const Course& d : courses) {
     if (d.rotation != rotation) continue;
     names += (names.empty() ? "" : ", ") + std::string(d.key);
     if (!t.has(d.key)) continue;
@@ -395,13 +406,13 @@ GripAxis read_drive(const TomlTable& t, const std::string& axis, bool rotation) 
   }
   if (!found) {
     for (const std::string& key : t.keys()) {
-      const std::string near = nearest_word(key, {drives[0].key, drives[1].key, drives[2].key, drives[3].key,
-                                                  drives[4].key, drives[5].key});
+      const std::string near = nearest_word(key, {courses[0].key, courses[1].key, courses[2].key, courses[3].key,
+                                                  courses[4].key, courses[5].key});
       if (!near.empty()) throw t.error(key, fmt::format("is not for {}", axis), fmt::format("choose one of {}", names));
     }
     throw t.error("", "says nothing that the clamp follows", fmt::format("write one of {}", names));
   }
-  const Drive& d = *found;
+  const Course& d = *found;
   GripAxis out;
   out.is = d.load ? Is::loaded : Is::moved;
   out.strain = std::string(d.key) == "strain";
@@ -437,12 +448,12 @@ KeyOf<GripLoad> axis_key(std::size_t axis, const char* standard_word, const std:
           grip.axes[axis] = {t.word(name, Words<Is>{{"held", Is::held}, {"free", Is::free}}), {}, false};
           return;
         }
-        const Drive& example = drives[axis < 3 ? 0 : 4];
+        const Course& example = courses[axis < 3 ? 0 : 4];
         grip.axes[axis] = read_drive(t.table(name, example_of(example)), name, axis >= 3);
       });
 }
 
-void check(const TomlTable& t, const Scene&, GripLoad& grip) {
+void check_grip(const TomlTable& t, const Scene&, GripLoad& grip) {
   const auto driven = [&](std::size_t axis) {
     return grip.axes[axis].is == Is::moved || grip.axes[axis].is == Is::loaded;
   };
@@ -479,7 +490,7 @@ const KeyTable<GripLoad>& table_of_grip() {
        Key::number("smooth_ps", unit::ps, Bounds::non_negative(longest_time), &GripLoad::smooth,
                    otherwise("10", "twice the travel of sound along the tubes"),
                    "speeds change over this time, at most over half of the line between two points")},
-      check};
+      check_grip};
   return table;
 }
 
@@ -489,38 +500,67 @@ KeyTable<Selection> tubes_of_grip() {
   return {"grip",
           "",
           {Key::custom("tubes", "", standard("\"all\""), "that it holds: \"all\", or numbers from 0: [0, 3]",
-                       [](const TomlTable& t, const Scene& scene, Selection& on) { read_tubes(t, scene, on); })},
+                       [](const TomlTable& t, const Scene& scene, Selection& on) { read_tube_selection(t, scene, on); })},
           {}};
 }
 
-}  // namespace
-
+// The keys of both, `tubes` behind `end`.
 SceneTable grip_table() {
   SceneTable table = table_of_grip().doc();
   const SceneTable tubes = tubes_of_grip().doc();
   table.keys.insert(table.keys.begin() + 1, tubes.keys.begin(), tubes.keys.end());
+  table.listed = true;
   return table;
 }
 
-SceneGrip read_grip(const TomlTable& t, const Scene& scene) {
-  SceneGrip out;
-  out.on = tubes_of_grip().read(t, scene);
-  out.grip = std::make_shared<const GripLoad>(table_of_grip().read(t, scene));
-  return out;
+}  // namespace
+
+DriveKind grip_drive() {
+  return {grip_table, [](const TomlTable& t, const Scene& scene) -> std::shared_ptr<const Drive> {
+            auto drive = std::make_shared<GripDrive>();
+            drive->on = tubes_of_grip().read(t, scene);
+            drive->load = table_of_grip().read(t, scene);
+            return drive;
+          }};
 }
 
-GripLoad grip_of(const Scene& scene, const SceneGrip& g, const Topology& topology) {
+SceneTable GripDrive::table() const { return grip_table(); }
+
+void GripDrive::add_loads(const Scene& scene, const Topology& topology, const Interaction&,
+                          LoadsAndConstraints& loads) const {
   std::vector<int> elements;
-  for (const int t : selected_tubes(scene, g.on, topology)) {
+  for (const int t : selected_tubes(scene, on, topology)) {
     const int length = topology.length_of(t);
-    if (2 * g.grip->depth > length)
+    if (2 * load.depth > length)
       throw InputError({scene.path, 0, "grip.elements"},
-                       fmt::format("is {}, and tube {} has {}", g.grip->depth, t, length),
+                       fmt::format("is {}, and tube {} has {}", load.depth, t, length),
                        "leave half of each tube to the other end");
-    const int first = g.grip->end == lower_end ? 0 : length - g.grip->depth;
-    for (int e = 0; e < g.grip->depth; ++e) elements.push_back(topology.tube_begin[t] + first + e);
+    const int first = load.end == lower_end ? 0 : length - load.depth;
+    for (int e = 0; e < load.depth; ++e) elements.push_back(topology.tube_begin[t] + first + e);
   }
-  return g.grip->on_elements(std::move(elements), topology);
+  loads.add(load.on_elements(std::move(elements), topology));
+}
+
+// Elements that two grips hold, and loads that nothing feels. The first grip looks at all.
+void GripDrive::refuse_start(const Scene& scene, const Topology& topology, const State& state,
+                             const LoadsAndConstraints& loads) const {
+  if (scene.drives_of<GripDrive>().front() != this) return;
+  std::vector<int> held;
+  for (const GripLoad* grip : loads.of<GripLoad>()) {
+    for (const int e : grip->elements) {
+      if (std::find(held.begin(), held.end(), e) == held.end()) continue;
+      const int tube = topology.tube_of(e);
+      throw InputError({scene.path, 0, "grip"},
+                       fmt::format("two grips hold element {} of tube {}", e - topology.tube_begin[tube], tube),
+                       "give each its own end or its own tubes");
+    }
+    held.insert(held.end(), grip->elements.begin(), grip->elements.end());
+    for (std::size_t axis = 0; axis < grip->axes.size(); ++axis)
+      if (grip->is_unfelt(axis, state))
+        throw InputError({scene.path, 0, fmt::format("grip.{}", grip_axis_names[axis])},
+                         "is a load that nothing in the clamp feels: the elements are free of it",
+                         "set slide_free, spin_free or tilt_free to false");
+  }
 }
 
 }  // namespace ropewalk

@@ -54,7 +54,10 @@ class GripLoad : public Load {
   void keep(const std::vector<std::size_t>& places, const LoadProcesses& others) override;
   std::string needs_time() const override;
   std::optional<LoadEffect> effect() const override;
-  double ends() const;  // ps, of the last schedule
+  void add_ends(EndElements& ends) const override {
+    ends[end].insert(ends[end].end(), elements.begin(), elements.end());
+  }
+  double lasts() const;  // ps, to the end of the last schedule
 
  private:
   struct Body;
@@ -73,15 +76,21 @@ class GripLoad : public Load {
 };
 
 // One [[grip]] of a scene, and the tubes that it holds.
-struct SceneGrip {
+class GripDrive : public Drive {
+ public:
   Selection on;
-  std::shared_ptr<const GripLoad> grip;
-};
+  GripLoad load;
 
-SceneTable grip_table();
-// The source of the elements must have been read.
-SceneGrip read_grip(const TomlTable& t, const Scene& scene);
-// Throws InputError for tubes that do not exist.
-GripLoad grip_of(const Scene& scene, const SceneGrip& grip, const Topology& topology);
+  SceneTable table() const override;
+  std::string words() const override { return load.words(); }
+  std::string needs_time() const override { return load.needs_time(); }
+  double lasts() const override { return load.lasts(); }
+  void add_loads(const Scene&, const Topology&, const Interaction&, LoadsAndConstraints&) const override;
+  void refuse_start(const Scene&, const Topology&, const State&, const LoadsAndConstraints&) const override;
+  Ends ends() const override { return Ends::clamped; }
+  std::string why_not_lengthened() const override {
+    return load.depth > 1 ? "a grip holds several elements of each tube" : "";
+  }
+};
 
 }  // namespace ropewalk

@@ -5,7 +5,8 @@
 #include <algorithm>
 #include <cassert>
 
-#include "scene/build.hpp"
+#include "scene/bounds.hpp"
+#include "scene/loads/drive_kind.hpp"
 #include "scene/scene.hpp"
 
 namespace ropewalk {
@@ -18,7 +19,7 @@ LoadKind rotate_kind();
 
 namespace {
 
-std::vector<LoadKind>& all_kinds() {
+std::vector<LoadKind>& kinds_of_loads() {
   static std::vector<LoadKind> kinds = {
       fix_kind(),
       force_kind(),
@@ -94,15 +95,18 @@ KeyTable<Selection> selection_table() {
           "any number of these: what else acts on elements",
           {Key::custom("kind", "", required("\"fix\""), kind_names(),
                        [](const TomlTable& t, const Scene&, Selection&) { read_kind(t); }),
-           Key::custom("tubes", "", standard("\"all\""), "\"all\" or numbers from 0: [0, 3]", read_tubes),
+           Key::custom("tubes", "", standard("\"all\""), "\"all\" or numbers from 0: [0, 3]", read_tube_selection),
            Key::custom("elements", "", required("\"ends\""),
-                       "\"all\", \"ends\" or numbers from 0, negative from the end", read_elements)},
-          {}};
+                       "\"all\", \"ends\" or numbers from 0, negative from the end", read_elements)
+               .that_numbers_elements()},
+          {},
+          Selection(),
+          true};
 }
 
 }  // namespace
 
-void read_tubes(const TomlTable& t, const Scene& scene, Selection& on) {
+void read_tube_selection(const TomlTable& t, const Scene& scene, Selection& on) {
   on.all_tubes = !t.has("tubes") || (t.is_string("tubes") && t.word("tubes", Words<bool>{{"all", true}}));
   const Source::Sizes sizes = scene.source->sizes(scene.element_length);
   if (!on.all_tubes) on.tubes = read_indices(t, "tubes", "tube", 0, sizes.tubes);
@@ -123,15 +127,18 @@ std::vector<int> selected_tubes(const Scene& scene, const Selection& on, const T
   return tubes;
 }
 
-const std::vector<LoadKind>& load_kinds() { return all_kinds(); }
+const std::vector<LoadKind>& load_kinds() { return kinds_of_loads(); }
 
 bool add_load_kind(LoadKind kind) {
-  assert(std::none_of(all_kinds().begin(), all_kinds().end(),
+  assert(std::none_of(kinds_of_loads().begin(), kinds_of_loads().end(),
                       [&](const LoadKind& other) { return other.name == kind.name; }));
-  all_kinds().push_back(std::move(kind));
+  kinds_of_loads().push_back(std::move(kind));
   return true;
 }
 
+namespace {
+
+// The keys of all loads, then those of each kind.
 SceneTable load_table() {
   SceneTable table = selection_table().doc();
   for (const LoadKind& kind : load_kinds())
@@ -144,11 +151,40 @@ SceneTable load_table() {
   return table;
 }
 
-SceneLoad read_load(const TomlTable& t, const Scene& scene) {
-  SceneLoad load;
-  load.on = selection_table().read(t, scene);
-  load.load = read_kind(t).read(t, scene);
-  return load;
+}  // namespace
+
+DriveKind load_drive() {
+  return {load_table, [](const TomlTable& t, const Scene& scene) -> std::shared_ptr<const Drive> {
+            auto drive = std::make_shared<LoadDrive>();
+            drive->on = selection_table().read(t, scene);
+            drive->kind = read_kind(t);
+            drive->load = drive->kind.read(t, scene);
+            return drive;
+          }};
+}
+
+SceneTable LoadDrive::table() const {
+  SceneTable table = selection_table().doc();
+  table.keys.insert(table.keys.end(), kind.keys.begin(), kind.keys.end());
+  return table;
+}
+
+std::string LoadDrive::words() const {
+  return fmt::format("load: {} on {} of {}", kind.name,
+                     on.all_elements ? "all elements" : fmt::format("{} elements", on.elements.size()),
+                     on.all_tubes ? "every tube" : fmt::format("each of {} tubes", on.tubes.size()));
+}
+
+void LoadDrive::add_loads(const Scene& scene, const Topology& topology, const Interaction&,
+                          LoadsAndConstraints& loads) const {
+  const std::shared_ptr<Load> acting = load->copy();
+  acting->elements = selected_elements(scene, on, topology);
+  loads.add(std::shared_ptr<const Load>(acting));
+}
+
+std::string LoadDrive::why_not_lengthened() const {
+  const bool ends = std::all_of(on.elements.begin(), on.elements.end(), [](int e) { return e == 0 || e == -1; });
+  return on.all_elements || ends ? "" : "a load names elements by number";
 }
 
 std::vector<int> selected_elements(const Scene& scene, const Selection& on, const Topology& topology) {

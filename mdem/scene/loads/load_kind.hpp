@@ -1,13 +1,13 @@
-// The register of [[load]] kinds. A kind is one file: its class (sim/dynamics/loads.hpp), its keys and its entry
-// here.
+// [[load]] and the register of its kinds. A kind is one file: its class (sim/dynamics/loads.hpp), its keys and its
+// entry here.
 #pragma once
 
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "scene/drive.hpp"
 #include "scene/key_table.hpp"
-#include "sim/dynamics/loads.hpp"
 
 namespace ropewalk {
 
@@ -45,9 +45,6 @@ const std::vector<LoadKind>& load_kinds();
 // For kinds from elsewhere; returns true, so that a static variable can do it. The name must be new.
 bool add_load_kind(LoadKind kind);
 
-// The keys of [[load]]: those of all loads, then those of each kind.
-SceneTable load_table();
-
 // Elements that a load acts on: every combination of a tube and an element index; negative indices count
 // from the end of the tube.
 struct Selection {
@@ -58,16 +55,21 @@ struct Selection {
 };
 
 // One [[load]] of a scene, and what it acts on.
-struct SceneLoad {
+class LoadDrive : public Drive {
+ public:
   Selection on;
+  LoadKind kind;
   std::shared_ptr<const Load> load;
+
+  SceneTable table() const override;  // with the keys of this kind alone
+  std::string words() const override;
+  std::string needs_time() const override { return load->needs_time(); }
+  void add_loads(const Scene&, const Topology&, const Interaction&, LoadsAndConstraints&) const override;
+  std::string why_not_lengthened() const override;
 };
 
-// One [[load]]. The source of the elements must have been read.
-SceneLoad read_load(const TomlTable& t, const Scene& scene);
-
 // The key `tubes`.
-void read_tubes(const TomlTable& t, const Scene& scene, Selection& on);
+void read_tube_selection(const TomlTable& t, const Scene& scene, Selection& on);
 
 // Both throw InputError for what does not exist.
 std::vector<int> selected_tubes(const Scene& scene, const Selection& on, const Topology& topology);

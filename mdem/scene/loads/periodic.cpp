@@ -5,14 +5,13 @@
 #include <cmath>
 
 #include "model/error.hpp"
+#include "scene/key_table.hpp"
+#include "scene/loads/drive_kind.hpp"
 #include "scene/scene.hpp"
 #include "scene/schedule_rows.hpp"
-#include "scene/tables/tables.hpp"
 
 namespace ropewalk {
 namespace {
-
-using Key = KeyOf<PeriodicLoad>;
 
 void read_twist(const TomlTable& t, const Scene&, PeriodicLoad& load) {
   load.twist = points_in_time(t, "twist_deg_per_nm", Bounds::range(-45, 45));
@@ -32,9 +31,8 @@ Vector3 angle_of(Quaternion q) {
   return sine > 0 ? Vector3(2 * std::atan2(sine, q.w()) / sine * q.vec()) : Vector3::Zero();
 }
 
-}  // namespace
-
 const KeyTable<PeriodicLoad>& periodic_table() {
+  using Key = KeyOf<PeriodicLoad>;
   static const KeyTable<PeriodicLoad> table = {
       "periodic",
       "the interior of a long rope: a slice that goes on at both ends as its own image; without this table, a "
@@ -46,6 +44,63 @@ const KeyTable<PeriodicLoad>& periodic_table() {
                    "twist of the rope per length in time, [[ps, deg/nm], ...]; [[0, 0]]: none", read_twist)},
       {}};
   return table;
+}
+
+}  // namespace
+
+// --- the drive -------------------------------------------------------------------------------------------------
+
+DriveKind periodic_drive() {
+  return {[] { return periodic_table().doc(); },
+          [](const TomlTable& t, const Scene& scene) -> std::shared_ptr<const Drive> {
+            auto drive = std::make_shared<PeriodicDrive>();
+            drive->load = periodic_table().read(t, scene);
+            return drive;
+          }};
+}
+
+SceneTable PeriodicDrive::table() const { return periodic_table().doc(); }
+
+std::string PeriodicDrive::words() const {
+  return fmt::format("periodic: a slice of an endless rope, twisted to {:.4g} deg/nm in {:.4g} ps",
+                     load.twist.back().value / units::degree, lasts());
+}
+
+void PeriodicDrive::refuse(const TomlTable& top, const Scene& scene) const {
+  const auto refuse = [&](const std::string& table, const char* why) {
+    throw top.table("periodic")
+        .error("", fmt::format("does not go with {}: {}", table, why), "take one of the two away");
+  };
+  for (const auto& drive : scene.drives) {
+    if (drive->ends() == Ends::loaded)
+      refuse(drive->table().header(), "the slice has no ends; give twist_deg_per_nm, and read the torque in the log");
+    if (drive->ends() == Ends::clamped) refuse(drive->table().header(), "the slice has no ends to be clamped");
+  }
+  if (scene.kind != "rope") refuse("[" + scene.kind + "]", "tubes must be parallel and alike; it needs a [rope]");
+}
+
+void PeriodicDrive::add_loads(const Scene& scene, const Topology& topology, const Interaction& interaction,
+                              LoadsAndConstraints& loads) const {
+  loads.add(load.on_tubes(topology, interaction.cutoff(), scene.path));
+}
+
+void PeriodicDrive::warn(const Scene&, const Topology& topology, const LoadsAndConstraints& loads,
+                         std::vector<std::string>& warnings) const {
+  const PeriodicLoad& slice = *loads.of<PeriodicLoad>().front();
+  const int all = topology.length_of(0), own = all - 2 * slice.images;
+  warnings.push_back(fmt::format(
+      "This is a slice of an endless rope: of the {} elements of a tube {} are its own, {:.4g} nm, and {} at each end "
+      "are images. Energies in eV count the images too; energies per mass, torque and tension are those of the rope.",
+      all, own, slice.period(), slice.images));
+}
+
+// --- the load --------------------------------------------------------------------------------------------------
+
+std::optional<LoadEffect> PeriodicLoad::effect() const {
+  LoadEffect out;
+  out.twist = schedule_.largest();
+  out.ramp = schedule_.ends();
+  return out;
 }
 
 PeriodicLoad PeriodicLoad::on_tubes(const Topology& topology, double reach, const std::string& path) const {

@@ -13,8 +13,7 @@
 
 #include <vector>
 
-#include "scene/key_table.hpp"
-#include "sim/dynamics/gauges.hpp"
+#include "scene/drive.hpp"
 #include "sim/dynamics/schedule.hpp"
 
 namespace ropewalk {
@@ -31,14 +30,22 @@ class PeriodicLoad : public Load {
   void wind(State&) const;
   // Puts the images where they belong.
   void place(const Topology&, State&) const;
-  EndElements ends() const { return ends_; }  // the images
-  double period() const { return period_; }   // nm
+  double period() const { return period_; }  // nm
   const Schedule& schedule() const { return schedule_; }
 
   std::shared_ptr<Load> copy() const override { return std::make_shared<PeriodicLoad>(*this); }
   Order order() const override { return Order::prescribed_motion; }
   void constrain(const Topology&, double time, double ahead, State&) const override;
   std::string needs_time() const override { return "the images of a periodic slice follow it in time"; }
+  std::optional<LoadEffect> effect() const override;
+  // The images.
+  void add_ends(EndElements& ends) const override {
+    for (const End end : {lower_end, upper_end}) ends[end].insert(ends[end].end(), ends_[end].begin(), ends_[end].end());
+  }
+  void begin(const Topology& topology, State& state) const override {
+    wind(state);
+    place(topology, state);
+  }
 
  private:
   // Calls act(image, original, sign of the period between them).
@@ -51,6 +58,20 @@ class PeriodicLoad : public Load {
   double period_ = 0;  // nm
 };
 
-const KeyTable<PeriodicLoad>& periodic_table();
+class PeriodicDrive : public Drive {
+ public:
+  PeriodicLoad load;
+
+  SceneTable table() const override;
+  std::string words() const override;
+  void refuse(const TomlTable& top, const Scene&) const override;
+  std::string needs_time() const override { return load.needs_time(); }
+  double lasts() const override { return load.twist.back().time; }
+  void add_loads(const Scene&, const Topology&, const Interaction&, LoadsAndConstraints&) const override;
+  void warn(const Scene&, const Topology&, const LoadsAndConstraints&, std::vector<std::string>&) const override;
+  Ends ends() const override { return Ends::endless; }
+  std::string why_not_split() const override { return "a periodic slice counts its images in elements"; }
+  std::string not_for_lammps() const override { return "periodic"; }
+};
 
 }  // namespace ropewalk

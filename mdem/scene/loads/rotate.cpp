@@ -5,15 +5,13 @@
 namespace ropewalk {
 namespace {
 
-using Key = KeyOf<PrescribedRotation>;
-
 void read_centre(const TomlTable& t, const Scene&, PrescribedRotation& load) {
   if (!t.has("centre_nm")) return;
   const std::vector<double> c = t.numbers("centre_nm", Bounds::range(-1e6, 1e6), 2);
   load.centre = {c[0], c[1], 0};
 }
 
-void check(const TomlTable& t, const Scene&, PrescribedRotation& load) {
+void check_rotation(const TomlTable& t, const Scene&, PrescribedRotation& load) {
   if (load.rate == 0)
     throw t.error("rate_deg_per_ps", "is 0", "to hold elements where they are take kind = \"fix\"");
   load.angle = std::copysign(load.angle, load.rate);
@@ -22,6 +20,7 @@ void check(const TomlTable& t, const Scene&, PrescribedRotation& load) {
 }  // namespace
 
 LoadKind rotate_kind() {
+  using Key = KeyOf<PrescribedRotation>;
   using R = PrescribedRotation;
   return load_kind<R>(
       {"rotate",
@@ -32,7 +31,7 @@ LoadKind rotate_kind() {
         Key::custom("centre_nm", "nm", standard("[0, 0]"), "x and y of the axis", read_centre),
         Key::boolean("axial_free", &R::axial_free, standard(), "z is free"),
         Key::boolean("spin_free", &R::spin_free, standard(), "elements may turn about their own axes")},
-       check});
+       check_rotation});
 }
 
 std::optional<LoadEffect> PrescribedRotation::effect() const {

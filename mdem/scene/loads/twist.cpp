@@ -2,23 +2,25 @@
 
 #include <fmt/format.h>
 
-#include "scene/tables/tables.hpp"
+#include "model/error.hpp"
+#include "observe/bending.hpp"
+#include "scene/bounds.hpp"
+#include "scene/key_table.hpp"
+#include "scene/loads/drive_kind.hpp"
+#include "scene/scene.hpp"
 
 namespace ropewalk {
 namespace {
 
-using Key = KeyOf<TwistLoad>;
-
 constexpr const char* rate_key = "rate_nN_nm_per_ps";
 
-void check(const TomlTable& t, const Scene&, TwistLoad& twist) {
+void check_twist(const TomlTable& t, const Scene&, TwistLoad& twist) {
   if (twist.ramp_time() > longest_time)
     throw t.error(rate_key, fmt::format("makes a ramp of {:.3g} ps", twist.ramp_time()), "ramp faster");
 }
 
-}  // namespace
-
 const KeyTable<TwistLoad>& twist_table() {
+  using Key = KeyOf<TwistLoad>;
   using T = TwistLoad;
   static const Words<bool> grips = {{"free", true}, {"held", false}};
   static const KeyTable<T> table = {
@@ -44,9 +46,101 @@ const KeyTable<TwistLoad>& twist_table() {
                     "relax the tubes' own twist at each increment"),
        Key::number("increment_ps", unit::ps, Bounds::positive(longest_time), &T::increment, standard(),
                    "time between such relaxations")},
-      check};
+      check_twist};
   return table;
 }
+
+// A couple on the last element of a tube goes through its last bond. A single tube bears it in every bond.
+void refuse_moment(const Scene& scene, const Topology& topology, const TwistLoad& twist) {
+  const bool per_tube = twist.reading == TwistLoad::Reading::per_tube;
+  const double moment = twist.of_each(topology.tubes());
+  const TubeType& t = topology.type_of(0);
+  const double slip = t.bond.twist / t.element_length, most = largest_torque(t.bond, t.element_length);
+  const auto refuse = [&](const std::string& what, const char* remedy) {
+    throw InputError({scene.path, 0, "twist.moment_nN_nm"},
+                     fmt::format("{:.4g} nN nm{} are more than {}", twist.moment / units::nN_nm,
+                                 per_tube ? "" : " in total", what),
+                     remedy);
+  };
+  if (moment > slip)
+    refuse(fmt::format("{}a bond of {:.4g} nm bears before it slips, GJ/a = {:.4g}",
+                       per_tube ? "" : fmt::format("the {} tubes bear: of each, ", topology.tubes()),
+                       t.element_length, slip / units::nN_nm),
+           "lower the moment or take shorter elements");
+  if (topology.tubes() == 1 && moment > most)
+    refuse(fmt::format("the tube bears, {:.4g}: its wall collapses", most / units::nN_nm), "lower the moment");
+}
+
+}  // namespace
+
+// --- the drive -------------------------------------------------------------------------------------------------
+
+DriveKind twist_drive() {
+  return {[] { return twist_table().doc(); },
+          [](const TomlTable& t, const Scene& scene) -> std::shared_ptr<const Drive> {
+            auto drive = std::make_shared<TwistDrive>();
+            drive->load = twist_table().read(t, scene);
+            return drive;
+          }};
+}
+
+SceneTable TwistDrive::table() const { return twist_table().doc(); }
+
+std::string TwistDrive::words() const {
+  return fmt::format(
+      "twist: {:.4g} nN nm {} by {} on the grips, ramped in {:.4g} ps, held for {:.4g} ps; grips {} along the "
+      "axis, {} sideways{}",
+      load.moment / units::nN_nm, load.reading == TwistLoad::Reading::per_tube ? "per tube" : "in total",
+      load.application == TwistLoad::Application::couple ? "couples" : "tangential forces", load.ramp_time(),
+      load.hold, load.axial_free ? "free" : "held", load.lateral_free ? "free" : "held",
+      load.geometric_only ? "; spins relaxed (geometric twist only)" : "");
+}
+
+void TwistDrive::refuse(const TomlTable& top, const Scene& scene) const {
+  if (scene.has_ends(Ends::clamped))
+    throw top.error(
+        "twist", "stands beside [[grip]], and both say what the ends do",
+        "write the moment into a grip: as = \"each\", about_z = { torque_nN_nm = 35, rate_nN_nm_per_ps = 1 }");
+  if (scene.run.mode == RunOptions::Mode::relax)
+    throw top.error("twist", "a ramp needs time, and run.mode is \"relax\"",
+                    "take mode = \"dynamics\", or a [[load]] of kind \"torque\"");
+}
+
+std::string TwistDrive::needs_time() const {
+  return "the moment of [twist] is ramped, and where a rope ends depends on the way";
+}
+
+void TwistDrive::refuse_start(const Scene& scene, const Topology& topology, const State&,
+                              const LoadsAndConstraints&) const {
+  if (load.application == TwistLoad::Application::tangential && topology.tubes() == 1)
+    throw InputError({scene.path, 0, "twist.application"},
+                     "tangential forces about the axis of one tube have no arm", "take \"couple\"");
+  for (int t = 0; t < topology.tubes(); ++t)
+    if (topology.length_of(t) < 2)
+      throw InputError({scene.path, 0, "twist"}, fmt::format("tube {} has one element and no two grips", t),
+                       "take tubes of two elements or more");
+  if (load.application == TwistLoad::Application::couple) refuse_moment(scene, topology, load);
+}
+
+// Collapsed tubes twist on without end where nothing else holds the moment.
+void TwistDrive::warn(const Scene& scene, const Topology& topology, const LoadsAndConstraints&,
+                      std::vector<std::string>& warnings) const {
+  const TubeType& type = topology.types.front();
+  const double most = largest_torque(type.bond, type.element_length);
+  if (scene.bond.anharmonic && load.moment > most)
+    warnings.push_back(fmt::format(
+        "A moment of {:.4g} nN nm per tube is more than {} bears before its wall collapses, {:.4g}: beyond "
+        "that only what the rope stores otherwise holds it, and its tubes are flat ribbons.",
+        load.moment / units::nN_nm, scene.parameters().name, most / units::nN_nm));
+}
+
+std::optional<std::vector<std::pair<std::string, double>>> TwistDrive::hastened(double part) const {
+  std::vector<std::pair<std::string, double>> keys = {{"twist.hold_ps", load.hold * part}};
+  if (load.rate > 0) keys.emplace_back("twist.rate_nN_nm_per_ps", load.rate / units::nN_nm / part);
+  return keys;
+}
+
+// --- the load --------------------------------------------------------------------------------------------------
 
 TwistLoad TwistLoad::on_grip(std::vector<int> grip, double sign_there) const {
   TwistLoad there = *this;

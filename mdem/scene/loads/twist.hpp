@@ -4,31 +4,20 @@
 
 #include <array>
 
-#include "sim/dynamics/loads.hpp"
+#include "scene/drive.hpp"
 
 namespace ropewalk {
 
-class TwistLoad : public Load {
+class TwistLoad : public Load, public MomentRamp {
  public:
-  enum class Reading { per_tube, total };         // the moment is that of each grip element, or of all of them
   enum class Application { couple, tangential };  // a couple on each element, or tangential forces on the grip
-  double moment = 0;                              // eV, in its reading
-  double rate = 0;                                // eV/ps
   double hold = 0;                                // ps after the ramp
-  Reading reading = Reading::per_tube;
   Application application = Application::couple;
   bool lateral_free = true;
   bool axial_free = true;
-  bool geometric_only = false;  // relax every spin about the tube axis at each increment
-  double increment = 1.0;       // ps between such relaxations
-  double sign = 1;              // of the moment: + on the upper grip, - on the lower
+  double increment = 1.0;  // ps between relaxations of every spin, where the twist is geometric only
+  double sign = 1;         // of the moment: + on the upper grip, - on the lower
 
-  double ramp_time() const { return rate > 0 ? moment / rate : 0.0; }
-  // eV, without the sign.
-  double moment_at(double time) const {
-    const double ramped = rate > 0 ? rate * time : moment;
-    return ramped < moment ? ramped : moment;
-  }
   TwistLoad on_grip(std::vector<int> grip, double sign_there) const;
 
   std::shared_ptr<Load> copy() const override { return std::make_shared<TwistLoad>(*this); }
@@ -53,5 +42,26 @@ class TwistLoad : public Load {
 
 // The upper and the lower grip of a scene's [twist].
 void add_twist(const TwistLoad& twist, const Topology& topology, LoadsAndConstraints& loads);
+
+class TwistDrive : public Drive {
+ public:
+  TwistLoad load;
+
+  SceneTable table() const override;
+  std::string words() const override;
+  void refuse(const TomlTable& top, const Scene&) const override;
+  std::string needs_time() const override;
+  double lasts() const override { return load.ramp_time() + load.hold; }
+  void add_loads(const Scene&, const Topology& topology, const Interaction&,
+                 LoadsAndConstraints& loads) const override {
+    add_twist(load, topology, loads);
+  }
+  void refuse_start(const Scene&, const Topology&, const State&, const LoadsAndConstraints&) const override;
+  void warn(const Scene&, const Topology&, const LoadsAndConstraints&, std::vector<std::string>&) const override;
+  Ends ends() const override { return Ends::loaded; }
+  const MomentRamp* moment_ramp() const override { return &load; }
+  std::string not_for_lammps() const override { return load.geometric_only ? "twist.geometric_only" : ""; }
+  std::optional<std::vector<std::pair<std::string, double>>> hastened(double part) const override;
+};
 
 }  // namespace ropewalk

@@ -6,9 +6,7 @@
 namespace ropewalk {
 namespace {
 
-using Key = KeyOf<BondOptions>;
-
-void read_law(const TomlTable& t, const Scene& scene, BondOptions& bond) {
+void read_bond_law(const TomlTable& t, const Scene& scene, BondOptions& bond) {
   const auto has = [](const ParameterSet& set) { return set.anharmonic.has_value(); };
   const bool all = std::all_of(scene.sets.begin(), scene.sets.end(), has);
   bond.anharmonic = t.word_or<bool>("law", all, {{"harmonic", false}, {"anharmonic", true}});
@@ -22,11 +20,12 @@ void read_law(const TomlTable& t, const Scene& scene, BondOptions& bond) {
 }  // namespace
 
 const KeyTable<BondOptions>& bond_table() {
+  using Key = KeyOf<BondOptions>;
   static const KeyTable<BondOptions> table = {
       "bond",
       "elastic bonds between elements",
       {Key::custom("law", "", otherwise("\"harmonic\"", "\"anharmonic\" where the set has it"),
-                   "\"anharmonic\": as soft as the atoms up to the set's limits; \"harmonic\": Hooke's law", read_law)},
+                   "\"anharmonic\": as soft as the atoms up to the set's limits; \"harmonic\": Hooke's law", read_bond_law)},
       {}};
   return table;
 }

@@ -4,15 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scene/build.hpp"
+#include "scene/bounds.hpp"
 #include "scene/laws/contact_law_kind.hpp"
 #include "scene/scene_to_model.hpp"
 #include "scene/tables/tables.hpp"
 
 namespace ropewalk {
 namespace {
-
-using Key = KeyOf<ContactOptions>;
 
 constexpr long max_nodes = 64;
 
@@ -24,7 +22,7 @@ std::string law_names() {
   return text + " or \"none\"";
 }
 
-void read_law(const TomlTable& t, const Scene& scene, ContactOptions& c) {
+void read_contact_law(const TomlTable& t, const Scene& scene, ContactOptions& c) {
   Words<std::string> laws;
   for (const ContactLawKind& kind : contact_law_kinds()) laws.emplace_back(kind.name.c_str(), kind.name);
   laws.emplace_back("none", "none");
@@ -47,13 +45,13 @@ void read_cutoff(const TomlTable& t, const Scene& scene, ContactOptions& contact
   if (contact.law == "none") throw t.error("cutoff_nm", "is of no use without contact", "take it away");
   Scene changed = scene;
   changed.contact = contact;
-  const std::vector<ContactRange> own = contact_ranges(changed);
+  const std::vector<ContactRange> own = contact_ranges(changed, contact_law(changed).get());
   changed.contact.cutoff = contact.cutoff = t.number("cutoff_nm", Bounds::positive(1e3));
   for (const ContactRange& range : own)  // first: what a law with a far cutoff binds takes long to find
     if (contact.cutoff > range.cutoff + 1e-9)
       throw t.error("cutoff_nm", fmt::format("is {} nm", contact.cutoff),
                     fmt::format("the law ends at {:.4g} nm; leave the key out", range.cutoff));
-  const std::vector<ContactRange> now = contact_ranges(changed);
+  const std::vector<ContactRange> now = contact_ranges(changed, contact_law(changed).get());
   for (std::size_t k = 0; k < own.size(); ++k) {
     const double left = now[k].binding / own[k].binding;
     if (!(left >= 0.5))
@@ -77,7 +75,7 @@ void read_exclusion(const TomlTable& t, const Scene& scene, ContactOptions& cont
   if (contact.law == "none") throw t.error(exclusion_key, "is of no use without contact", "take it away");
   Scene changed = scene;
   changed.contact = contact;
-  const double least = least_exclusion(changed);
+  const double least = least_exclusion(changed, contact_law(changed).get());
   contact.exclude_along_tube = t.number(exclusion_key, Bounds::positive(1e7));
   if (contact.exclude_along_tube < least - 1e-9)
     throw t.error(
@@ -88,7 +86,7 @@ void read_exclusion(const TomlTable& t, const Scene& scene, ContactOptions& cont
 }
 
 // A key that would be without effect is refused, since it was meant to have one.
-void check(const TomlTable& t, const Scene&, ContactOptions& c) {
+void check_contact(const TomlTable& t, const Scene&, ContactOptions& c) {
   if (c.nodes > 0 && c.law != "line")
     throw t.error("nodes_per_element", "belongs to law = \"line\"", "take it away");
 }
@@ -96,12 +94,13 @@ void check(const TomlTable& t, const Scene&, ContactOptions& c) {
 }  // namespace
 
 const KeyTable<ContactOptions>& contact_table() {
+  using Key = KeyOf<ContactOptions>;
   using C = ContactOptions;
   using Precision = Interaction::Precision;
   static const KeyTable<C> table = {
       "contact",
       "van der Waals contact between elements",
-      {Key::custom("law", "", otherwise("\"paper\"", "what the set has"), law_names(), read_law),
+      {Key::custom("law", "", otherwise("\"paper\"", "what the set has"), law_names(), read_contact_law),
        Key::integer("nodes_per_element", 1, max_nodes, &C::nodes, otherwise("5", "for a corrugation below 2.5e-4"),
                     "line: nodes along an element")
            .goes_as_length(1),
@@ -116,7 +115,7 @@ const KeyTable<ContactOptions>& contact_table() {
                    "parts of one tube up to this far apart along it do not attract", read_exclusion),
        Key::number("skin_nm", unit::nm, Bounds::positive(5), &C::skin, otherwise("0.15", "chosen by the program"),
                    "margin of the neighbour list; speed only")},
-      check};
+      check_contact};
   return table;
 }
 

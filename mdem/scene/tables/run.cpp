@@ -6,7 +6,6 @@
 namespace ropewalk {
 namespace {
 
-using Key = KeyOf<RunOptions>;
 using Mode = RunOptions::Mode;
 
 // Refuses keys that have no effect in the chosen mode: whoever wrote them expects one.
@@ -27,7 +26,7 @@ void read_time_step(const TomlTable& t, const Scene&, RunOptions& r) {
                                             : t.number_or("time_step_fs", 0, Bounds::positive(1000)) * units::fs;
 }
 
-void check(const TomlTable& t, const Scene&, RunOptions& r) {
+void check_run_keys(const TomlTable& t, const Scene&, RunOptions& r) {
   if (t.has("contact_every"))
     throw t.error("contact_every", "was removed: two-level steps were faster in no scene that was measured",
                   "take it away; time_step_fs is the step of bonds and contact");
@@ -39,6 +38,7 @@ void check(const TomlTable& t, const Scene&, RunOptions& r) {
 }  // namespace
 
 const KeyTable<RunOptions>& run_table() {
+  using Key = KeyOf<RunOptions>;
   using R = RunOptions;
   const Bounds time = Bounds::positive(longest_time);
   static const KeyTable<R> table = {
@@ -79,7 +79,7 @@ const KeyTable<RunOptions>& run_table() {
            standard(), "relax: and the bonds' energy is within this part of the minimum's, by estimate"),
        Key::integer("max_steps", 1, 1000000000, &R::max_steps, standard(), "relax: give up after so many steps"),
        Key::boolean("paraview", &R::paraview, standard(), "also write frames for ParaView (VTP)")},
-      check};
+      check_run_keys};
   return table;
 }
 

@@ -5,7 +5,6 @@
 namespace ropewalk {
 namespace {
 
-using Key = KeyOf<StopRule>;
 using When = StopRule::When;
 
 Words<When> occasions() {
@@ -43,6 +42,7 @@ void read_limit(const TomlTable& t, const Scene&, StopRule& rule) {
 }  // namespace
 
 const KeyTable<StopRule>& stop_table() {
+  using Key = KeyOf<StopRule>;
   static const KeyTable<StopRule> table = {
       "stop",
       "any number of these: the run ends before its time where one of them comes true",
@@ -60,7 +60,9 @@ const KeyTable<StopRule>& stop_table() {
        Key::number("from_ps", unit::ps, Bounds::non_negative(longest_time), &StopRule::from, standard(),
                    "not looked at before"),
        Key::custom("limit", "", otherwise("\"wall_twist\"", "any"), "limit: which key of [limits]", read_limit)},
-      {}};
+      {},
+      StopRule(),
+      true};
   return table;
 }
 

@@ -1,16 +1,15 @@
-// The tables of a scene that are neither a kind (scene/kinds/) nor a load (scene/loads/), each in a file of its
+// The tables of a scene that are neither a kind (scene/kinds/) nor a drive (scene/loads/), each in a file of its
 // own. A new one needs a struct in scene.hpp, its file here, a line in scene_keys.cpp and one in scene_toml.cpp.
 #pragma once
 
 #include <string>
 #include <vector>
 
+#include "scene/bounds.hpp"
 #include "scene/key_table.hpp"
 #include "scene/scene.hpp"
 
 namespace ropewalk {
-
-inline constexpr double longest_time = 1e7;  // ps, that a key may name
 
 // `copies`: files to be read in the place of the sets that the scene names, where there are any.
 KeyTable<Scene> top_table(const std::vector<std::string>& copies);
@@ -18,8 +17,6 @@ const KeyTable<StartOptions>& start_table();
 const KeyTable<BondOptions>& bond_table();
 const KeyTable<ContactOptions>& contact_table();
 const KeyTable<Damping>& damping_table();
-const KeyTable<ThermostatOptions>& thermostat_table();
-const KeyTable<TwistLoad>& twist_table();  // scene/loads/twist.cpp
 const KeyTable<RunOptions>& run_table();
 const KeyTable<ObserveOptions>& observe_table();
 const KeyTable<LimitOptions>& limits_table();

@@ -20,9 +20,6 @@
 
 namespace ropewalk {
 
-enum End : std::size_t { lower_end, upper_end };
-using EndElements = std::array<std::vector<int>, 2>;  // of the lower and of the upper end
-
 // First and last element of every tube.
 EndElements tube_ends(const Topology& topology);
 Vector3 centre_of(const Topology& topology, const State& state, const std::vector<int>& elements);

@@ -4,6 +4,7 @@
 // The simulator knows the interface `Load` alone. Each kind of load is one file of scene/loads/.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
@@ -21,12 +22,26 @@ struct PointLoad {
   Vector3 torque = Vector3::Zero();  // eV
 };
 
+enum End : std::size_t { lower_end, upper_end };
+using EndElements = std::array<std::vector<int>, 2>;  // of the lower and of the upper end
+
 // Upper bounds of what a load does, known before it is run.
 struct LoadEffect {
+  // A clamp about the ends of tubes.
+  struct Clamp {
+    double pull = 0;           // nm, along the rope
+    double tension = 0;        // eV/nm on one tube
+    double bend = 0;           // rad, about axes across the rope
+    bool keeps_length = true;  // where both ends are clamped
+    bool keeps_tilt = true;    // of the tubes in it
+  };
+
   double force = 0;                  // eV/nm on one element
   Vector3 torque = Vector3::Zero();  // eV on one element
   double angle = 0;                  // rad, of a prescribed rotation
   double ramp = 0;                   // ps, in which it is turned
+  double twist = 0;                  // rad/nm, prescribed to the rope as a whole
+  std::optional<Clamp> clamp = {};
 };
 
 // The processes that have the elements of a load together.
@@ -47,6 +62,11 @@ class Load {
   virtual void add_forces(const State&, double /*time*/, std::vector<PointLoad>&) const {}
   // Sets the constrained velocity components. `ahead` (ps) is half of the drift with these velocities.
   virtual void constrain(const Topology&, double /*time*/, double /*ahead*/, State&) const {}
+
+  // Appends the elements at the ends of the rope where it says which ones they are.
+  virtual void add_ends(EndElements&) const {}
+  // Puts elements where it needs them at the start.
+  virtual void begin(const Topology&, State&) const {}
 
   // ps between relaxations of all spins (relax_spins); 0: never.
   virtual double spin_relaxation_interval() const { return 0; }

@@ -151,7 +151,7 @@ TEST(BeadLaw, RunsInAScene) {
     return sum / (4 * scene.element_length);
   };
   EXPECT_NEAR(test::derivative([&](double h) { return energy(p.spacing + h); }, 1e-4), 0, 1e-5);
-  EXPECT_NEAR(contact_ranges(scene)[0].binding, -energy(p.spacing), 1e-9);
+  EXPECT_NEAR(contact_ranges(scene, contact_law(scene).get())[0].binding, -energy(p.spacing), 1e-9);
   // Undamped, the energy stays.
   Simulation s = start(scene, p);
   const double first = s.total_energy(), kinetic = kinetic_energy(s.topology(), s.state());

@@ -95,8 +95,9 @@ TEST(SpringLoad, IsSharedByTheHalvesOfAnElement) {
   Scene scene = spring_scene(clamp + pull, "[run]\nduration_ps = 1\n");
   const Prepared p = prepare(scene);
   const Scene finer = scene_of_text(finer_scene_text(scene, p, "finer"), "spring.toml");
-  const auto& spring = dynamic_cast<const SpringLoad&>(*finer.loads.at(1).load);
-  EXPECT_EQ(finer.loads.at(1).on.elements, (std::vector<int>{-2, -1}));
+  const LoadDrive& load = *finer.drives_of<LoadDrive>().at(1);
+  const auto& spring = dynamic_cast<const SpringLoad&>(*load.load);
+  EXPECT_EQ(load.on.elements, (std::vector<int>{-2, -1}));
   EXPECT_DOUBLE_EQ(spring.stiffness, 0.01 * units::nN_nm);
   EXPECT_EQ(spring.point.x(), 1);
 }

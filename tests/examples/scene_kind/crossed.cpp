@@ -5,11 +5,12 @@
 
 #include <cmath>
 
-#include "scene/build.hpp"
 #include "scene/finer.hpp"
 #include "scene/kinds/scene_kind.hpp"
+#include "scene/lattice.hpp"
 #include "scene/prepare.hpp"
 #include "scene/scene_toml.hpp"
+#include "scene/spacing.hpp"
 #include "scene/templates.hpp"
 #include "sim/contact/line/law.hpp"
 #include "sim/dynamics/refine.hpp"

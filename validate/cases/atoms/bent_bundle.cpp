@@ -22,7 +22,7 @@
 #include "cases/common/tube_pair.hpp"
 #include "cases/common/twisted_rope.hpp"
 #include "model/error.hpp"
-#include "scene/build.hpp"
+#include "scene/lattice.hpp"
 
 namespace ropewalk {
 namespace {

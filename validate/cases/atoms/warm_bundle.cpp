@@ -18,7 +18,7 @@
 #include "cases/common/twisted_rope.hpp"
 #include "io/files.hpp"
 #include "model/error.hpp"
-#include "scene/build.hpp"
+#include "scene/lattice.hpp"
 #include "scene/maxwell.hpp"
 
 namespace ropewalk {

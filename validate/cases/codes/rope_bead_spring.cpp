@@ -4,7 +4,7 @@
 
 #include "cases/common/bead_rope.hpp"
 #include "cases/common/slide.hpp"
-#include "scene/build.hpp"
+#include "scene/lattice.hpp"
 
 namespace ropewalk {
 namespace {

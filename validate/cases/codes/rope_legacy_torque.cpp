@@ -6,7 +6,7 @@
 
 #include "cases/common/gripped_rope.hpp"
 #include "model/error.hpp"
-#include "scene/build.hpp"
+#include "scene/lattice.hpp"
 #include "sim/contact/paper/law.hpp"
 
 namespace ropewalk {

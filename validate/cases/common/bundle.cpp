@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "scene/build.hpp"
+#include "scene/lattice.hpp"
 #include "sim/contact/line/law.hpp"
 
 namespace ropewalk {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scene/build.hpp"
+#include "scene/lattice.hpp"
 #include "sim/contact/line/law.hpp"
 #include "sim/contact/paper/law.hpp"
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scene/build.hpp"
+#include "scene/laws/line.hpp"
 #include "scene/scene_to_model.hpp"
 
 namespace ropewalk {

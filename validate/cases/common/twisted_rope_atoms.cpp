@@ -9,7 +9,7 @@
 #include "cases/common/lammps_session.hpp"
 #include "cases/common/twisted_rope.hpp"
 #include "io/parameters_toml.hpp"
-#include "scene/build.hpp"
+#include "scene/lattice.hpp"
 
 namespace ropewalk {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "cases/common/bundle.hpp"
 #include "cases/common/twisted_rope.hpp"
-#include "scene/build.hpp"
+#include "scene/lattice.hpp"
 #include "scene/loads/fix.hpp"
 #include "sim/contact/line/law.hpp"
 

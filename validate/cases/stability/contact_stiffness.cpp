@@ -6,7 +6,7 @@
 
 #include "cases/common/bundle.hpp"
 #include "cases/common/stability_limit.hpp"
-#include "scene/build.hpp"
+#include "scene/lattice.hpp"
 #include "scene/random.hpp"
 #include "sim/contact/paper/law.hpp"
 

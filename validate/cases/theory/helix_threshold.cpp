@@ -8,7 +8,7 @@
 #include <string>
 
 #include "cases/common/bundle.hpp"
-#include "scene/build.hpp"
+#include "scene/lattice.hpp"
 
 namespace ropewalk {
 namespace {

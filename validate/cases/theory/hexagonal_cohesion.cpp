@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "cases/common/bundle.hpp"
-#include "scene/build.hpp"
+#include "scene/lattice.hpp"
 
 namespace ropewalk {
 namespace {

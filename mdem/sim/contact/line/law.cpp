@@ -9,11 +9,14 @@
 
 namespace ropewalk {
 
-LineLaw::LineLaw(std::vector<LineContact> all)
-    : pairs(std::move(all)), types_(static_cast<int>(std::lround(std::sqrt(static_cast<double>(pairs.size()))))) {
+LineLaw::LineLaw(std::vector<LineContact> all, std::vector<LineWell> wells)
+    : pairs(std::move(all)),
+      types_(static_cast<int>(std::lround(std::sqrt(static_cast<double>(pairs.size()))))),
+      wells_(std::move(wells)) {
   if (pairs.empty() || static_cast<std::size_t>(types_) * static_cast<std::size_t>(types_) != pairs.size())
     throw std::invalid_argument("the line law takes one contact for each pair of tube types");
-  for (const LineContact& pair : pairs) wells_.push_back(line_parallel_well(pair.density));
+  if (wells_.empty())
+    for (const LineContact& pair : pairs) wells_.push_back(line_parallel_well(pair.density));
 }
 
 double LineLaw::cutoff() const {

@@ -12,8 +12,9 @@ class LineLaw : public ContactLaw {
  public:
   const std::vector<LineContact> pairs;  // of tube types i, j at i * types + j
 
-  // Throws std::invalid_argument where the pairs are not those of a whole number of types.
-  explicit LineLaw(std::vector<LineContact> all);
+  // `wells`: of parallel tubes, pair by pair, where they are known; empty: they are searched for. Throws
+  // std::invalid_argument where the pairs are not those of a whole number of types.
+  explicit LineLaw(std::vector<LineContact> all, std::vector<LineWell> wells = {});
   const LineContact& of(TypePair p) const { return pairs[static_cast<std::size_t>(p.i * types_ + p.j)]; }
   int types() const { return types_; }
 
@@ -41,7 +42,7 @@ class LineLaw : public ContactLaw {
   const LineWell& well(TypePair p) const { return wells_[static_cast<std::size_t>(p.i * types_ + p.j)]; }
 
   int types_ = 0;
-  std::vector<LineWell> wells_;  // of parallel tubes, as `pairs`: a search each
+  std::vector<LineWell> wells_;  // of parallel tubes, as `pairs`
 };
 
 inline std::shared_ptr<const LineLaw> line_law(std::vector<LineContact> pairs) {

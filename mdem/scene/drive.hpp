@@ -1,0 +1,83 @@
+// What drives the elements of a scene from outside: one table of its file, such as [[grip]] or [thermostat]. Reader,
+// model, refinement, planner, reports and the export to LAMMPS ask each drive through this interface, in one loop
+// each. loads/drive_kind.hpp is the register of drives.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "scene/scene_key.hpp"
+#include "sim/dynamics/loads.hpp"
+#include "sim/dynamics/schedule.hpp"
+#include "sim/dynamics/stepping.hpp"
+
+namespace ropewalk {
+
+struct Interaction;
+struct Scene;
+class TomlTable;
+
+// A moment about the axis of the rope, on its end elements, that rises at a rate and then stays.
+struct MomentRamp {
+  enum class Reading { per_tube, total };  // the moment is that of each end element, or of all of them
+  double moment = 0;                       // eV, in its reading
+  double rate = 0;                         // eV/ps; 0: it acts at once
+  Reading reading = Reading::per_tube;
+  bool geometric_only = false;  // spins are relaxed, so that no bond holds the moment by its twist
+
+  double ramp_time() const { return rate > 0 ? moment / rate : 0.0; }  // ps
+  // eV, without a sign.
+  double moment_at(double time) const {
+    const double ramped = rate > 0 ? rate * time : moment;
+    return ramped < moment ? ramped : moment;
+  }
+  double of_each(int tubes) const { return reading == Reading::per_tube ? moment : moment / tubes; }  // eV
+};
+
+class Drive {
+ public:
+  // What becomes of the ends of the tubes: nothing, loads act on them, clamps hold them, or there are none.
+  enum class Ends { free, loaded, clamped, endless };
+
+  virtual ~Drive() = default;
+
+  // Its table, with the keys that this drive may have.
+  virtual SceneTable table() const = 0;
+  // For the user, in one line.
+  virtual std::string words() const = 0;
+
+  // Throws InputError for what does not go with it in the rest of the scene, which has been read.
+  virtual void refuse(const TomlTable& /*top*/, const Scene&) const {}
+  // Why it has no meaning in a relaxation; empty: it has.
+  virtual std::string needs_time() const { return ""; }
+  // ps, from when on it changes nothing.
+  virtual double lasts() const { return 0; }
+
+  // Adds its loads and constraints. Throws InputError for elements that do not exist.
+  virtual void add_loads(const Scene&, const Topology&, const Interaction&, LoadsAndConstraints&) const {}
+  virtual void set_stepping(Stepping&) const {}
+  // Throws InputError for what the elements at the start do not bear; `loads` are those of all drives.
+  virtual void refuse_start(const Scene&, const Topology&, const State&, const LoadsAndConstraints& /*loads*/) const {}
+  // Appends what the user should know before the run; a sentence or two each.
+  virtual void warn(const Scene&, const Topology&, const LoadsAndConstraints&, std::vector<std::string>&) const {}
+
+  virtual Ends ends() const { return Ends::free; }
+  // The moment that it applies; null: none.
+  virtual const MomentRamp* moment_ramp() const { return nullptr; }
+  // K, of a bath that keeps the temperature; null: it is none.
+  virtual const Schedule* temperature() const { return nullptr; }
+
+  // Why its elements cannot be split in two, and why they cannot be of any other length; empty: they can.
+  virtual std::string why_not_split() const { return ""; }
+  virtual std::string why_not_lengthened() const { return why_not_split(); }
+  // The key of the scene, or the table, that LAMMPS cannot carry; empty: it can.
+  virtual std::string not_for_lammps() const { return ""; }
+  // The keys with which it does the same in this part of the time, and their values; none: it cannot.
+  virtual std::optional<std::vector<std::pair<std::string, double>>> hastened(double /*part*/) const {
+    return std::nullopt;
+  }
+};
+
+}  // namespace ropewalk

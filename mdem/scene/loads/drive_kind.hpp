@@ -1,0 +1,23 @@
+// The register of drives (scene/drive.hpp). A drive is one file, or a pair, with its class, its keys and its entry here.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "io/toml_table.hpp"
+#include "scene/drive.hpp"
+
+namespace ropewalk {
+
+struct DriveKind {
+  SceneTable (*table)();  // with the keys of all drives of this kind
+  // `scene` holds its elements and what precedes the drives in help.
+  std::shared_ptr<const Drive> (*read)(const TomlTable&, const Scene& scene);
+};
+
+// In the order of help and templates.
+const std::vector<DriveKind>& drive_kinds();
+// For drives from elsewhere; returns true, so that a static variable can do it. The table's name must be new.
+bool add_drive_kind(DriveKind kind);
+
+}  // namespace ropewalk

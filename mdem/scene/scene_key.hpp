@@ -1,0 +1,40 @@
+// What help, templates and refinement know of a key of a scene file, and of a table.
+#pragma once
+
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace ropewalk {
+
+struct SceneKey {
+  std::string table = {};
+  std::string key;
+  std::string unit;      // empty: none
+  std::string value;     // the default as TOML, or an example of one
+  std::string standard;  // what holds where the key is missing, in words; empty: `value`
+  std::string meaning;
+  // For scenes with elements of another length: the value goes as this power of it, up to `most`.
+  int length_power = 0;
+  double most = std::numeric_limits<double>::infinity();
+  bool whole = false;  // an integer, rounded up
+  bool numbers_elements = false;  // "ends" or a list of elements: both halves take the place of each
+  // Whether it is the size of every tube of the scene.
+  enum class TubeSize { no, length, elements };
+  TubeSize tube_size = TubeSize::no;
+
+  bool required() const { return standard == "required"; }
+};
+
+struct SceneTable {
+  std::string name;  // empty: the top of the file
+  std::string meaning;
+  std::vector<SceneKey> keys;
+  bool listed = false;  // [[name]], any number of them
+
+  std::string header() const { return listed ? "[[" + name + "]]" : "[" + name + "]"; }
+  // Whether the table may be left out as a whole, with what it stands for.
+  bool optional() const;
+};
+
+}  // namespace ropewalk

@@ -1,0 +1,37 @@
+// Where the elements of a scene come from.
+#pragma once
+
+#include <string>
+
+#include "sim/state/state.hpp"
+
+namespace ropewalk {
+
+class Random;
+struct Scene;
+
+class Source {
+ public:
+  struct Sizes {
+    int tubes = 0, elements = 0;  // elements of each tube
+  };
+
+  virtual ~Source() = default;
+  // With elements of this length (nm). Zeros where only place() knows.
+  virtual Sizes sizes(double /*element_length*/) const { return {}; }
+  // Adds the tubes to `topology`, which has the scene's types, and puts their elements in place; whatever `state`
+  // held is gone. `spacing` (nm) is that of neighbouring parallel tubes.
+  virtual void place(const Scene& scene, double spacing, Random& random, Topology& topology,
+                     State& state) const = 0;
+
+  // Of neighbouring parallel tubes, nm; 0: where two of them bind best.
+  virtual double typed_spacing() const { return 0; }
+  // Whether all tubes are straight and parallel to z.
+  virtual bool is_parallel() const { return false; }
+  // That the elements are read from; empty: there is none.
+  virtual std::string file() const { return ""; }
+  // For the user, of what was placed.
+  virtual std::string description(const Topology&, const State&, double /*spacing*/) const { return ""; }
+};
+
+}  // namespace ropewalk

@@ -1,0 +1,16 @@
+// Distances at which the tubes of a scene bind best.
+#pragma once
+
+namespace ropewalk {
+
+class ContactLaw;
+struct Scene;
+
+double largest_radius(const Scene& scene);  // nm, of the tube types
+
+// The distances of two parallel and of two crossed tubes (nm) at which their energy is lowest; without a law, that
+// of their walls in graphite. Of several tube types, the largest.
+double parallel_spacing(const Scene& scene, const ContactLaw* law);
+double crossed_spacing(const Scene& scene);
+
+}  // namespace ropewalk
