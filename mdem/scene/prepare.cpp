@@ -192,6 +192,7 @@ Prepared prepare(Scene& scene) {
   out.state = std::move(built.state);
   out.spacing = built.spacing;
   out.interaction = interaction_of(scene, std::move(built.law));
+  add_terms(scene, out.topology, out.interaction);
   out.loads = loads_of(scene, out.topology, out.interaction);
   out.stepping = scene.run.stepping;
   for (const auto& drive : scene.drives) {
