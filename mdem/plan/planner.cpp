@@ -97,7 +97,8 @@ class Planner {
     std::vector<std::string> observables = request_.observables;
     if (observables.empty()) {
       observables = usual_observables();
-      if (scene_.moment_ramp()) observables.erase(std::find(observables.begin(), observables.end(), "torque_upper_nN_nm"));
+      if (scene_.moment_ramp())
+        observables.erase(std::find(observables.begin(), observables.end(), "torque_upper_nN_nm"));
     }
     return outcome_of(end.log, observables, relaxed);
   }

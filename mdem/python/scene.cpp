@@ -12,8 +12,8 @@ std::vector<std::string> notes_of(const SceneHandle& handle) {
   const std::shared_ptr<const Model> model = handle.model();
   refuse_cooling(model->scene, model->prepared);
   std::vector<std::string> all;
-  for (const auto& notes : {warnings_of(model->scene, model->prepared),
-                            warmth_of(model->scene, model->prepared), limits_ahead(model->scene, model->prepared)})
+  for (const auto& notes : {warnings_of(model->scene, model->prepared), warmth_of(model->scene, model->prepared),
+                            limits_ahead(model->scene, model->prepared)})
     all.insert(all.end(), notes.begin(), notes.end());
   return all;
 }

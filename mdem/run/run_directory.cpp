@@ -137,7 +137,8 @@ Observer make_observer(const Scene& scene, const Prepared& prepared) {
   for (int t = 0; t < prepared.topology.tubes(); ++t)
     o.mass += prepared.topology.length_of(t) * prepared.topology.type_of(t).mass / scene.run.mass_scale;
   // A slice goes on at both ends: as much of it as it has bonds.
-  if (scene.has_ends(Drive::Ends::endless)) o.mass *= prepared.topology.bonds() / static_cast<double>(prepared.topology.elements());
+  if (scene.has_ends(Drive::Ends::endless))
+    o.mass *= prepared.topology.bonds() / static_cast<double>(prepared.topology.elements());
   o.loading =
       loading_reference(prepared.topology, prepared.state, o.shells, ends_of(prepared.loads, prepared.topology),
                         o.spacing, o.neighbour_radius, prepared.interaction.law);

@@ -66,7 +66,8 @@ BuiltScene build(Scene& scene) {
   BuiltScene out;
   out.topology = empty_topology(scene);
   out.law = contact_law(scene);
-  out.spacing = scene.source->typed_spacing() > 0 ? scene.source->typed_spacing() : parallel_spacing(scene, out.law.get());
+  out.spacing =
+      scene.source->typed_spacing() > 0 ? scene.source->typed_spacing() : parallel_spacing(scene, out.law.get());
   scene.damping.contact.inner = out.spacing;
   scene.damping.contact.outer = viscosity_reach * out.spacing;
   Random random(scene.start.seed);

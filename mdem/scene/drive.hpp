@@ -1,6 +1,6 @@
-// What drives the elements of a scene from outside: one table of its file, such as [[grip]] or [thermostat]. Reader,
-// model, refinement, planner, reports and the export to LAMMPS ask each drive through this interface, in one loop
-// each. loads/drive_kind.hpp is the register of drives.
+// What drives the elements of a scene from outside: one table of its file, such as [[grip]] or [thermostat].
+// Reader, model, refinement, planner, reports and the export to LAMMPS ask each drive through this interface, in
+// one loop each. loads/drive_kind.hpp is the register of drives.
 #pragma once
 
 #include <optional>
@@ -61,7 +61,8 @@ class Drive {
   virtual void add_terms(const Scene&, const Topology&, Interaction&) const {}
   virtual void set_stepping(Stepping&) const {}
   // Throws InputError for what the elements at the start do not bear; `loads` are those of all drives.
-  virtual void refuse_start(const Scene&, const Topology&, const State&, const LoadsAndConstraints& /*loads*/) const {}
+  virtual void refuse_start(const Scene&, const Topology&, const State&,
+                            const LoadsAndConstraints& /*loads*/) const {}
   // Appends what the user should know before the run; a sentence or two each.
   virtual void warn(const Scene&, const Topology&, const LoadsAndConstraints&, std::vector<std::string>&) const {}
 

@@ -84,7 +84,8 @@ void refine_drives(const Scene& scene, const Topology& topology, toml::table& to
   for (const auto& drive : scene.drives) {
     const SceneTable table = drive->table();
     toml::node& typed = *top.get(table.name);
-    toml::table& keys = table.listed ? *typed.as_array()->get_as<toml::table>(found[table.name]++) : *typed.as_table();
+    toml::table& keys =
+        table.listed ? *typed.as_array()->get_as<toml::table>(found[table.name]++) : *typed.as_table();
     for (const SceneKey& key : table.keys) refine_key(key, scene, topology, keys);
   }
 }

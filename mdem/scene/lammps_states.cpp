@@ -91,9 +91,11 @@ StateInFile last_state(const std::string& path, std::int64_t elements) {
 
 std::string complaint_about(const StateRecord& record) {
   for (std::size_t k = 0; k < record.size(); ++k)
-    if (!(std::fabs(record[k]) <= largest_number)) return fmt::format("{} is {}", record_columns[k].name, record[k]);
+    if (!(std::fabs(record[k]) <= largest_number))
+      return fmt::format("{} is {}", record_columns[k].name, record[k]);
   const double norm = Quaternion(record[3], record[4], record[5], record[6]).norm();
-  if (!(std::fabs(norm - 1) <= quaternion_slack)) return fmt::format("the quaternion has length {:.6g}, not 1", norm);
+  if (!(std::fabs(norm - 1) <= quaternion_slack))
+    return fmt::format("the quaternion has length {:.6g}, not 1", norm);
   return "";
 }
 
@@ -142,7 +144,8 @@ bool LammpsStates::next(State& s, Vec3Array& force, Vec3Array& torque) {
     if (!read(file_, r)) throw file_error(path_, "cannot be read", EIO);
     const std::string wrong = complaint_about(r);
     if (!wrong.empty())
-      throw InputError({path_, 0, ""}, fmt::format("state of step {}, element {}: {}", s.step, i, wrong), ask_for_export);
+      throw InputError({path_, 0, ""}, fmt::format("state of step {}, element {}: {}", s.step, i, wrong),
+                       ask_for_export);
     s.position.set(i, {r[0], r[1], r[2]});
     s.orientation.set(i, {r[3], r[4], r[5], r[6]});
     s.velocity.set(i, {r[7], r[8], r[9]});

@@ -17,7 +17,7 @@ struct SceneKey {
   // For scenes with elements of another length: the value goes as this power of it, up to `most`.
   int length_power = 0;
   double most = std::numeric_limits<double>::infinity();
-  bool whole = false;  // an integer, rounded up
+  bool whole = false;             // an integer, rounded up
   bool numbers_elements = false;  // "ends" or a list of elements: both halves take the place of each
   // Whether it is the size of every tube of the scene.
   enum class TubeSize { no, length, elements };

@@ -19,10 +19,12 @@ std::string as_toml(double value) { return fmt::format("{:.6g}", value); }
 std::vector<SceneTable> scene_tables() {
   std::vector<SceneTable> tables = {top_table({}).doc()};
   for (const SceneKind& kind : scene_kinds()) tables.push_back(kind.table);
-  for (const SceneTable& table : {start_table().doc(), bond_table().doc(), contact_table().doc(), damping_table().doc()})
+  for (const SceneTable& table :
+       {start_table().doc(), bond_table().doc(), contact_table().doc(), damping_table().doc()})
     tables.push_back(table);
   for (const DriveKind& kind : drive_kinds()) tables.push_back(kind.table());
-  for (const SceneTable& table : {run_table().doc(), observe_table().doc(), limits_table().doc(), stop_table().doc()})
+  for (const SceneTable& table :
+       {run_table().doc(), observe_table().doc(), limits_table().doc(), stop_table().doc()})
     tables.push_back(table);
   return tables;
 }

@@ -74,8 +74,8 @@ Interaction interaction_of(const Scene& scene, std::shared_ptr<const ContactLaw>
   const bool relax = scene.run.mode == RunOptions::Mode::relax;
   in.precision =
       scene.contact.precision.value_or(relax ? Interaction::Precision::full : Interaction::Precision::mixed);
-  in.exclude_along_tube =
-      scene.contact.exclude_along_tube > 0 ? scene.contact.exclude_along_tube : least_exclusion(scene, in.law.get());
+  in.exclude_along_tube = scene.contact.exclude_along_tube > 0 ? scene.contact.exclude_along_tube
+                                                               : least_exclusion(scene, in.law.get());
   in.damping = scene.damping;
   return in;
 }

@@ -320,7 +320,7 @@ TEST(SceneFile, EveryKeyReachesTheScene) {
   EXPECT_EQ(s.damping.contact.eta, 3);
   EXPECT_EQ(s.damping.bond.rate, 0.5);
   EXPECT_EQ(s.damping.local, 0.7);
-  ASSERT_TRUE(s.twist);
+  ASSERT_TRUE(s.moment_ramp());
   EXPECT_NEAR(twist_of(s).moment, 64 * units::nN_nm, 1e-12);
   EXPECT_NEAR(twist_of(s).ramp_time(), 128, 1e-12);
   EXPECT_EQ(twist_of(s).hold, 4);
@@ -464,8 +464,9 @@ std::string choices(const Scene& s) {
     text += fmt::format("{} {:.10g} {:.10g} {:.10g} | ", r->tubes, r->length, r->spacing, r->perturbation);
   if (!s.drives_of<TwistDrive>().empty())
     text += fmt::format("{:.10g} {:.10g} {:.10g} {} {} {} {} {} {:.10g} | ", twist_of(s).moment, twist_of(s).rate,
-                        twist_of(s).hold, static_cast<int>(twist_of(s).reading), static_cast<int>(twist_of(s).application),
-                        twist_of(s).lateral_free, twist_of(s).axial_free, twist_of(s).geometric_only, twist_of(s).increment);
+                        twist_of(s).hold, static_cast<int>(twist_of(s).reading),
+                        static_cast<int>(twist_of(s).application), twist_of(s).lateral_free, twist_of(s).axial_free,
+                        twist_of(s).geometric_only, twist_of(s).increment);
   for (const ThermostatDrive* bath : s.drives_of<ThermostatDrive>())
     text += fmt::format("{} {:.10g} {:.10g} {} | ", bath->options.method, bath->options.temperature.first(),
                         bath->options.coupling, bath->options.seed);
@@ -538,7 +539,8 @@ TEST(SceneKeys, StatedLoadDefaultsAreTheDefaults) {
   const auto& a = dynamic_cast<const FixLoad&>(*fix.drives_of<LoadDrive>().at(0)->load);
   const auto& b = dynamic_cast<const FixLoad&>(*fix_written.drives_of<LoadDrive>().at(0)->load);
   EXPECT_TRUE(a.x && a.y && a.z && a.rotation && b.x && b.y && b.z && b.rotation);
-  EXPECT_TRUE(fix.drives_of<LoadDrive>().at(0)->on.all_tubes && fix_written.drives_of<LoadDrive>().at(0)->on.all_tubes);
+  EXPECT_TRUE(fix.drives_of<LoadDrive>().at(0)->on.all_tubes &&
+              fix_written.drives_of<LoadDrive>().at(0)->on.all_tubes);
   const std::string turn = start + "kind = \"rotate\"\nrate_deg_per_ps = 1\nangle_deg = 360\n";
   const Scene plain = scene_from(turn);
   const Scene written = scene_from(turn + "centre_nm = [0, 0]\naxial_free = true\nspin_free = false\n");

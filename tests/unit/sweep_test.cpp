@@ -57,7 +57,8 @@ TEST_F(SweepFile, GridTakesEveryValueWithEveryOther) {
   EXPECT_EQ(scene_of(sweep("[vary]\ntwist.moment_nN_nm = [1.5]\n"), points[1]).moment_ramp()->moment,
             scene_of(sweep("[vary]\ntwist.moment_nN_nm = [1.5]\n"),
                      points_of(sweep("[vary]\ntwist.moment_nN_nm = [1.5]\n"))[0])
-                .moment_ramp()->moment);
+                .moment_ramp()
+                ->moment);
   EXPECT_LT(points[0].work, points[2].work);  // a longer ramp
 }
 

@@ -1,4 +1,5 @@
-// The register of drives (scene/drive.hpp). A drive is one file, or a pair, with its class, its keys and its entry here.
+// The register of drives (scene/drive.hpp). A drive is one file, or a pair, with its class, its keys and its entry
+// here.
 #pragma once
 
 #include <memory>

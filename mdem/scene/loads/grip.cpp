@@ -368,9 +368,7 @@ constexpr Course courses[] = {
 };
 constexpr double largest_value = 1e6;
 
-std::string example_of(const Course& d) {
-  return fmt::format("{{ {} = 1, {} = 0.01 }}", d.key, d.rate_key);
-}
+std::string example_of(const Course& d) { return fmt::format("{{ {} = 1, {} = 0.01 }}", d.key, d.rate_key); }
 
 // From 0 at the start to each value in turn, at this speed; a value twice would be a hold without a length.
 std::vector<Schedule::Point> at_rate(const TomlTable& t, const Course& d, const std::vector<double>& values) {
@@ -406,8 +404,8 @@ GripAxis read_drive(const TomlTable& t, const std::string& axis, bool rotation) 
   }
   if (!found) {
     for (const std::string& key : t.keys()) {
-      const std::string near = nearest_word(key, {courses[0].key, courses[1].key, courses[2].key, courses[3].key,
-                                                  courses[4].key, courses[5].key});
+      const std::string near = nearest_word(
+          key, {courses[0].key, courses[1].key, courses[2].key, courses[3].key, courses[4].key, courses[5].key});
       if (!near.empty()) throw t.error(key, fmt::format("is not for {}", axis), fmt::format("choose one of {}", names));
     }
     throw t.error("", "says nothing that the clamp follows", fmt::format("write one of {}", names));
@@ -469,8 +467,8 @@ const KeyTable<GripLoad>& table_of_grip() {
   static const KeyTable<GripLoad> table = {
       "grip",
       "any number of these: one end in a clamp; what is not said is held",
-      {Key::word("end", Words<End>{{"lower", lower_end}, {"upper", upper_end}},
-                 &GripLoad::end, required("\"upper\""), "\"lower\": the first elements; \"upper\": the last ones"),
+      {Key::word("end", Words<End>{{"lower", lower_end}, {"upper", upper_end}}, &GripLoad::end,
+                 required("\"upper\""), "\"lower\": the first elements; \"upper\": the last ones"),
        Key::word("as", Words<bool>{{"disc", false}, {"each", true}}, &GripLoad::each, standard(),
                  "one rigid \"disc\", or a clamp for \"each\" tube: all that is said below holds for every one"),
        Key::integer("elements", 1, 1000, &GripLoad::depth, standard(), "of each tube, in the clamp")
@@ -480,11 +478,13 @@ const KeyTable<GripLoad>& table_of_grip() {
        axis_key(2, "held",
                 "likewise, or { strain = ... }; a list is points [[ps, value], ...], or values reached one after "
                 "another at rate_nm_per_ps, rate_per_ps or rate_nN_per_ps"),
-       axis_key(3, "held",
-                "rotation about the clamp's own centre: \"held\", \"free\", { rotation_deg = ... }, { rotation_turns "
-                "= ... } or { torque_nN_nm = ... }, with rates likewise"),
+       axis_key(
+           3, "held",
+           "rotation about the clamp's own centre: \"held\", \"free\", { rotation_deg = ... }, { rotation_turns "
+           "= ... } or { torque_nN_nm = ... }, with rates likewise"),
        axis_key(4, "held", "likewise"), axis_key(5, "held", "likewise: twisting"),
-       Key::boolean("slide_free", &GripLoad::slide_free, standard(), "tubes slide through the clamp along its axis"),
+       Key::boolean("slide_free", &GripLoad::slide_free, standard(),
+                    "tubes slide through the clamp along its axis"),
        Key::boolean("spin_free", &GripLoad::spin_free, standard(), "tubes turn about their own axes in the clamp"),
        Key::boolean("tilt_free", &GripLoad::tilt_free, standard(), "tubes tilt in the clamp"),
        Key::number("smooth_ps", unit::ps, Bounds::non_negative(longest_time), &GripLoad::smooth,
@@ -499,8 +499,9 @@ KeyTable<Selection> tubes_of_grip() {
   using Key = KeyOf<Selection>;
   return {"grip",
           "",
-          {Key::custom("tubes", "", standard("\"all\""), "that it holds: \"all\", or numbers from 0: [0, 3]",
-                       [](const TomlTable& t, const Scene& scene, Selection& on) { read_tube_selection(t, scene, on); })},
+          {Key::custom(
+              "tubes", "", standard("\"all\""), "that it holds: \"all\", or numbers from 0: [0, 3]",
+              [](const TomlTable& t, const Scene& scene, Selection& on) { read_tube_selection(t, scene, on); })},
           {}};
 }
 

@@ -73,7 +73,8 @@ void PeriodicDrive::refuse(const TomlTable& top, const Scene& scene) const {
   };
   for (const auto& drive : scene.drives) {
     if (drive->ends() == Ends::loaded)
-      refuse(drive->table().header(), "the slice has no ends; give twist_deg_per_nm, and read the torque in the log");
+      refuse(drive->table().header(),
+             "the slice has no ends; give twist_deg_per_nm, and read the torque in the log");
     if (drive->ends() == Ends::clamped) refuse(drive->table().header(), "the slice has no ends to be clamped");
   }
   if (scene.kind != "rope") refuse("[" + scene.kind + "]", "tubes must be parallel and alike; it needs a [rope]");
@@ -88,10 +89,12 @@ void PeriodicDrive::warn(const Scene&, const Topology& topology, const LoadsAndC
                          std::vector<std::string>& warnings) const {
   const PeriodicLoad& slice = *loads.of<PeriodicLoad>().front();
   const int all = topology.length_of(0), own = all - 2 * slice.images;
-  warnings.push_back(fmt::format(
-      "This is a slice of an endless rope: of the {} elements of a tube {} are its own, {:.4g} nm, and {} at each end "
-      "are images. Energies in eV count the images too; energies per mass, torque and tension are those of the rope.",
-      all, own, slice.period(), slice.images));
+  warnings.push_back(
+      fmt::format("This is a slice of an endless rope: of the {} elements of a tube {} are its own, {:.4g} nm, and "
+                  "{} at each end "
+                  "are images. Energies in eV count the images too; energies per mass, torque and tension are "
+                  "those of the rope.",
+                  all, own, slice.period(), slice.images));
 }
 
 // --- the load --------------------------------------------------------------------------------------------------

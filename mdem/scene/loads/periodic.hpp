@@ -40,7 +40,8 @@ class PeriodicLoad : public Load {
   std::optional<LoadEffect> effect() const override;
   // The images.
   void add_ends(EndElements& ends) const override {
-    for (const End end : {lower_end, upper_end}) ends[end].insert(ends[end].end(), ends_[end].begin(), ends_[end].end());
+    for (const End end : {lower_end, upper_end})
+      ends[end].insert(ends[end].end(), ends_[end].begin(), ends_[end].end());
   }
   void begin(const Topology& topology, State& state) const override {
     wind(state);

@@ -1,5 +1,8 @@
 // [twist] the two-stage protocol: the moment on the grip elements (first and last of every tube; + at the upper
 // end, - at the lower) is ramped at a rate and then held. One such load acts on one grip.
+//
+// Two grips with a couple on each tube give the same motion to rounding where everything is free (tests/physics/
+// grip_test.cpp). Held sideways, tangential forces and relaxed spins are no motions of rigid clamps.
 #pragma once
 
 #include <array>

@@ -25,7 +25,8 @@ const KeyTable<BondOptions>& bond_table() {
       "bond",
       "elastic bonds between elements",
       {Key::custom("law", "", otherwise("\"harmonic\"", "\"anharmonic\" where the set has it"),
-                   "\"anharmonic\": as soft as the atoms up to the set's limits; \"harmonic\": Hooke's law", read_bond_law)},
+                   "\"anharmonic\": as soft as the atoms up to the set's limits; \"harmonic\": Hooke's law",
+                   read_bond_law)},
       {}};
   return table;
 }

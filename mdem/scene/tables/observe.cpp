@@ -1,4 +1,5 @@
 // [observe] what to measure.
+#include "scene/spacing.hpp"
 #include "scene/tables/tables.hpp"
 
 namespace ropewalk {
