@@ -22,7 +22,7 @@ repository = Path(__file__).resolve().parents[2]
 beside_docs = ["README.md", "CHANGELOG.md", "THIRD_PARTY.md", "calibrate/README.md", "validate/README.md",
                "mdem/lammps/README.md", "data/**/README.md"]
 contents = [
-    ("Learn", ["tutorials/rope", "tutorials/tube", "tutorials/phase-diagram", "tutorials/cluster", "gallery"]),
+    ("Learn", ["tutorials/rope", "tutorials/tube", "tutorials/phase-diagram", "tutorials/cluster", "guide", "gallery"]),
     ("How to", ["how-to/install", "how-to/view", "how-to/resume", "how-to/plan", "how-to/campaign", "how-to/*"]),
     ("Reference", ["reference/commands", "reference/scene", "outputs", "faults", "reference/messages",
                    "reference/library", "glossary"]),

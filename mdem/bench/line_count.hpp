@@ -25,7 +25,7 @@ int radial_lanes(Interaction::Precision precision);
 // only summed where they are reported.
 int radial_operations(Interaction::Precision precision);
 
-// Of the present state by the line law, from up to `most` of its elements.
+// Counts for the present state by the line law, from up to `most` of its elements.
 RadialCount count_radial(const Topology& topology, const Interaction& interaction, const State& state,
                          const NeighbourList& neighbours, const LineList& list, int most);
 

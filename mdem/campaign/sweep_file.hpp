@@ -64,7 +64,7 @@ struct SweepPoint {
   std::vector<std::string> values;  // of keys(), as TOML
   std::string text;                 // its scene
   std::string start;                // name of the run that it goes on from; empty: none
-  // Of its scene, where it was checked.
+  // Found out where its scene was checked:
   std::vector<std::string> sets;  // files of the parameter sets
   double work = 0;                // elements times ps, which the time of a run goes by; a guess for relaxations
 };

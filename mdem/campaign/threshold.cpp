@@ -222,7 +222,7 @@ double PhasePoint::by_bisection() const {
   return middles.empty() ? std::numeric_limits<double>::quiet_NaN() : mean(middles);
 }
 
-// Of the mean: scatter of the seeds, and a bracket in which every value is as likely.
+// The error of the mean: scatter of the seeds, and a bracket in which every value is as likely.
 double PhasePoint::bisection_error() const {
   std::vector<double> middles, widths;
   for (const Threshold& t : seeds)

@@ -21,7 +21,7 @@ struct Trial {
   std::string scene_hash;             // of its scene and parameter sets
 };
 
-// Of a point, by its runs; values rise.
+// The threshold of a point, by its runs; values rise.
 struct Threshold {
   std::vector<Trial> trials;
   double below = 0, above = 0;  // the bracket of the bisection; equal: not bracketed within the range
@@ -44,7 +44,8 @@ struct PowerLaw {
 };
 std::optional<PowerLaw> power_law(const std::vector<double>& x, const std::vector<double>& y);
 
-// What the log of a run says. `wave`: nm, that the scene began with; `constant_from`: ps, when the load is whole.
+// Reads the answer from the log of a run. `wave`: nm, that the scene began with; `constant_from`: ps, when the load
+// is whole.
 Trial trial_of(const std::vector<LogRow>& log, const ThresholdQuestion& question, double value, double wave,
                double constant_from);
 

@@ -12,9 +12,9 @@ namespace ropewalk {
 // never end, gives more than 256 MiB.
 std::string read_file(const std::string& path);
 
-// What to do about an error of the system, by its number.
+// Says how to remedy an error of the system, by its number.
 const char* remedy_for_errno(int code);
-// Refuses what is not a regular file: a device may have no end.
+// Refuses anything but a regular file: a device may have no end.
 void refuse_devices(const std::string& path);
 
 // Writes a temporary file beside `path`, flushes it to the disk and renames it. Throws InputError (disk full,

@@ -13,7 +13,7 @@ namespace ropewalk {
 struct Grade {
   enum class Level { good, limited, unfit };
   Level level = Level::good;
-  std::vector<std::string> reasons;  // of what is not good, each with its figure
+  std::vector<std::string> reasons;  // for each fault, with its figure
 
   std::string words() const;  // "good", or "limited: " and the reasons
 };
@@ -26,7 +26,7 @@ Grade grade_of(const ParameterSet& set);
 // Largest error of the set's own line law against the surface integral, over the well, as the set states it.
 // Negative: it states none.
 double line_fit_error(const ParameterSet& set);
-// Of the universal law, which acts between tubes of different kinds. Negative: the set has none.
+// The error of the universal law, which acts between tubes of different kinds. Negative: the set has none.
 double universal_error(const ParameterSet& set);
 // A contact law that is further off than this is of no use.
 inline constexpr double unusable_contact = 0.1;  // of the well

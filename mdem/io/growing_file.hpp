@@ -16,7 +16,7 @@ struct FileMark {
   std::string tail;  // hash of the bytes from there on, hex
 };
 
-// Of a file with this content; of the first bytes of a file.
+// The mark of a file with this content, or of the first bytes of a file.
 FileMark mark_of(std::string_view content);
 FileMark mark_of(const std::string& path, std::uint64_t bytes, std::uint64_t tail_begin = 0);
 
@@ -32,7 +32,7 @@ class GrowingFile {
   void write(std::string_view text);
   // Replaces bytes before the end. Marks must not take them in: see tail_begins_at().
   void patch(std::uint64_t at, std::string_view bytes);
-  // What was written after this did not happen.
+  // Drops all that was written after this mark.
   void cut(std::uint64_t keep);
   // Has all of it on the disk.
   void sync();

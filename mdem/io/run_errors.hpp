@@ -44,7 +44,7 @@ class RunErrors {
   bool empty() const { return sources_.empty(); }
   const std::vector<ErrorSource>& sources() const { return sources_; }
   const std::vector<std::vector<double>>& correlation() const { return correlation_; }
-  // Of a value of row k of the log.
+  // The error of one value of row k of the log.
   ResultError of(std::size_t k, const Value& value) const;
 
  private:
@@ -56,7 +56,7 @@ class RunErrors {
 
 // errors/errors.json in the directory of a run; none where it is missing.
 RunErrors read_run_errors(const std::string& run_directory, const std::vector<LogRow>& log);
-// What read_run_errors reads, with the errors of all observables at the end.
+// Writes the file that read_run_errors reads, with the errors of all observables at the end.
 std::string run_errors_json(const RunErrors& errors, const std::vector<LogRow>& log);
 // As log.csv, with a standard error in the place of each value but those of step and time.
 std::string run_errors_csv(const RunErrors& errors, const std::vector<LogRow>& log);

@@ -53,7 +53,7 @@ struct TwistEnergy {
   T energy, by_twist;
 };
 
-// Of twist alone; GJ is the harmonic stiffness (eV nm).
+// The energy of twist alone; GJ is the harmonic stiffness (eV nm).
 template <class T>
 TwistEnergy<T> twist_energy(const Anharmonic& h, double GJ, T twist) {
   const double g = GJ / (h.radius * h.radius);
@@ -62,7 +62,7 @@ TwistEnergy<T> twist_energy(const Anharmonic& h, double GJ, T twist) {
   return {s * s * (0.5 * g + s * (h.s3 + s * h.s4)) + slope * (shear - s), h.radius * slope};
 }
 
-// What strain adds to EA/2 e^2 and to the energy of twist.
+// The energy that strain adds to EA/2 e^2 and to the energy of twist.
 template <class T>
 struct StrainEnergy {
   T energy, by_strain, by_twist;

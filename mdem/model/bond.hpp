@@ -164,7 +164,7 @@ BondForce<T, V> anharmonic_force(const BondStiffness& k, double a, const typenam
   const T cos_psi = along.dot(d);
   const double shear = 12.0 * k.shear_share(a) * k.bend / a;
 
-  // Of the energy: by the strain over the length, by the angle of twist, and by u.
+  // Derivatives of the energy: by the strain over the length, by the angle of twist, and by u.
   const T pull = k.stretch * strain + of_strain.by_strain, moment = of_twist.by_twist + of_strain.by_twist;
   const T by_u = of_bend.by_curvature2 * squared_angle_slope(u) / a + pull * length * (1.0 / 12);
 
@@ -238,7 +238,7 @@ inline double stiffest_sideways_frequency(const BondStiffness& k, double a, doub
   return std::sqrt(largest);
 }
 
-// Of all: also the longitudinal and torsional branches at the zone boundary.
+// The stiffest of all branches: sideways, and longitudinal and torsional at the zone boundary. 1/ps.
 inline double stiffest_chain_frequency(const BondStiffness& k, double a, double mass, double inertia) {
   const double along = std::sqrt(std::fmax(4.0 * k.stretch / (a * mass), 4.0 * k.twist / (a * inertia)));
   return std::fmax(along, stiffest_sideways_frequency(k, a, mass, inertia));

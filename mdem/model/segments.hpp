@@ -16,7 +16,7 @@ inline double squared_segment_distance(const Vector3& separation, const Vector3&
                                        double half_i, double half_j) {
   const double c = n_i.dot(n_j), p = n_i.dot(separation), q = n_j.dot(separation);
   const double sine2 = n_i.cross(n_j).squaredNorm();
-  // Of parallel segments every a that is in range of the other's middle is as good.
+  // Segments are parallel: every a that is in range of the other's middle is as good.
   const double free_a = sine2 > 1e-20 ? (p - c * q) / sine2 : p;
   double a = std::clamp(free_a, -half_i, half_i);
   const double b = std::clamp(c * a - q, -half_j, half_j);
@@ -24,7 +24,8 @@ inline double squared_segment_distance(const Vector3& separation, const Vector3&
   return (separation + b * n_j - a * n_i).squaredNorm();
 }
 
-// What it is not less than (nm^2), by far fewer operations; may be negative. Ahead along i's axis, and beside it:
+// A lower bound of the squared distance (nm^2), by far fewer operations; may be negative. Ahead along i's axis, and
+// beside it:
 //   max(|d.n_i| - ahead, 0)^2 + d^2 - (d.n_i)^2 - beside |d.n_j - (d.n_i)(n_i.n_j)|
 // with d the separation, ahead = half_i + half_j and beside = 2 half_j.
 inline double min_squared_distance(const Vector3& separation, const Vector3& n_i, const Vector3& n_j,

@@ -88,7 +88,7 @@ using Peaks = std::array<Peak, limit_count>;  // in the order of limit_kinds()
 struct Watched {
   std::vector<Limits> limits;  // by tube type
   std::vector<double> rest;  // nm: distance of parallel tubes of the types i, j at i * types + j; empty: no contact
-  // Of every tube of a state, eV/nm^3; none: not watched.
+  // The pressure on every tube of a state, eV/nm^3; none: not watched.
   std::function<std::vector<double>(const State&)> pressures = {};
 };
 

@@ -39,7 +39,7 @@ struct Loading {
 };
 Loading loading(const Topology& topology, const State& state, const LoadingReference& reference);
 
-// Of one tube.
+// The load on one tube.
 struct TubeLoading {
   double tension = 0, most_tension = 0;  // eV/nm: mean over the middle third, largest absolute value
   double twist = 0;                      // rad/nm, mean
@@ -61,7 +61,7 @@ std::vector<double> tensions(const Topology& topology, const State& state, int t
 // their length, and A is the area of a tube's cell in the cross-section. The pressure of a straight rope at rest is
 // near zero, because the attraction of second neighbours balances the repulsion of the first ones.
 double tube_pressure(const Topology& topology, const State& state, const ContactLaw& law, double cell, int tube);
-// Of every tube.
+// The pressure on every tube, eV/nm^3.
 std::vector<double> tube_pressures(const Topology& topology, const State& state, const LoadingReference& reference);
 
 }  // namespace ropewalk

@@ -106,7 +106,7 @@ double mean_bending_moment(const Topology& topology, const State& s) {
   return topology.bonds() > 0 ? sum / topology.bonds() * units::eV_in_nN_nm : 0.0;
 }
 
-// What the element group that turns farthest resists with, about its axis, nN nm. None where nothing is turned.
+// The moment (nN nm) by which the group of elements that turns farthest resists. None where nothing turns.
 std::optional<double> end_moment(const LoadsAndConstraints& loads, const Simulation& s) {
   const std::vector<const PrescribedRotation*> rotations = loads.of<PrescribedRotation>();
   if (rotations.empty()) return std::nullopt;

@@ -1,4 +1,4 @@
-// What a scene asks of a model, estimated before it is run: how far its tubes will bend and twist.
+// The demands of a scene on a model, estimated before it is run: how far its tubes will bend and twist.
 #pragma once
 
 #include "scene/prepare.hpp"

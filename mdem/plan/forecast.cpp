@@ -8,7 +8,7 @@
 namespace ropewalk {
 namespace {
 
-// What a scene brings a limit to; 0: not estimated.
+// The value that a scene brings a limit to; 0: not estimated.
 double expected(const SceneFeatures& f, const TubeType& type, double Limits::*limit) {
   if (limit == &Limits::wall_twist) return type.radius * f.twist;
   if (limit == &Limits::twist) return type.element_length * f.twist;

@@ -18,7 +18,7 @@ ModelChange length_change(double times, std::string name) {
 
 bool has_line_law(const Scene& scene, const SceneFeatures& f) { return f.contact && scene.contact.law == "line"; }
 
-// Of the line law, per element, where none are typed.
+// Nodes of the line law per element, where none are typed.
 int default_nodes(Scene scene) {
   scene.contact.nodes = 0;
   return line_contacts(scene).front().nodes_i;

@@ -1,4 +1,4 @@
-// What `plan` may change in a model, and what the program chooses where nothing is typed.
+// Changes that `plan` may make in a model, and the model that the program chooses where nothing is typed.
 #pragma once
 
 #include <functional>

@@ -1,4 +1,4 @@
-// What a run came to, and how far two runs differ in it.
+// The outcome of a run, and how far the outcomes of two runs differ.
 //
 // The outcome of a motion is the mean over the last quarter of its time, that of a relaxation its last row.
 // "energy" is the potential energy since the start (eV); every other observable is a column of log.csv. The
@@ -23,14 +23,14 @@ struct Outcome {
   std::map<std::string, Value> of;
 };
 
-// Of a log with at least one row, for these observables. Throws std::invalid_argument for a name that is neither
-// "energy" nor a column of the log.
+// The outcome of a log with at least one row, for these observables. Throws std::invalid_argument for a name that is
+// neither "energy" nor a column of the log.
 Outcome outcome_of(const std::vector<LogRow>& log, const std::vector<std::string>& observables, bool relaxed);
 
-// Those that are compared where the user names none.
+// The observables that are compared where the user names none.
 const std::vector<std::string>& usual_observables();
 
-// |value - reference| over the scale of the reference, for what has a scale and is finite in both.
+// |value - reference| over the scale of the reference, for observables that have a scale and are finite in both.
 std::map<std::string, double> differences(const Outcome& run, const Outcome& reference);
 
 }  // namespace ropewalk

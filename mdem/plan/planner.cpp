@@ -69,7 +69,7 @@ class Planner {
  private:
   // --- pilots ---
 
-  // What all pilots take together, in runs of the default model, about.
+  // The time of all pilots together, in runs of the default model, about.
   double pilots_in_all() const {
     std::vector<std::string> not_tried;
     const auto changes =
@@ -173,7 +173,7 @@ class Planner {
     m.error = differences(outcome(m, end), finest_);
     m.holds = true;
     for (const auto& [name, error] : m.error) {
-      // Of the difference, what seeds make of it anyway is no error of the model.
+      // The difference that other seeds make as well is no error of the model.
       const double by_chance = 2 * scatter(name), model = std::max(0.0, error - by_chance) + own_.at(name);
       const double promised = caution_ * (model + least_error);
       m.expect[name] = promised + by_chance;

@@ -88,7 +88,7 @@ Panel length() {
           {{"strain", logged("ends_strain"), 0}}};
 }
 
-// Of tubes at the same distance from the axis, in the order of the distance.
+// Groups of tubes at the same distance from the axis, in the order of the distance.
 std::map<double, std::vector<std::size_t>> rings(const std::vector<double>& radius) {
   std::map<double, std::vector<std::size_t>> out;
   for (std::size_t t = 0; t < radius.size(); ++t) out[std::round(radius[t] * 20) / 20].push_back(t);

@@ -1,5 +1,4 @@
-// What loads do to a rope, for the report: torque, tension, stored energy, the tension along tubes, the pressure across
-// them.
+// The report's part on loads: torque, tension, stored energy, the tension along tubes, the pressure across them.
 #pragma once
 
 #include <string>

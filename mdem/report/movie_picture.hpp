@@ -14,7 +14,7 @@ struct MovieStage {
   double low = 0, high = 0;   // nm, of all pictures, along camera.up
   int width = 0, height = 0;  // pixels, even
 };
-// Of all views. The camera is theirs, for a picture of this width.
+// The stage that holds all views. The camera is theirs, for a picture of this width.
 MovieStage movie_stage(const std::vector<RopeView>& views, const RopeCamera& camera, double tube_radius, int width);
 
 // A complete SVG file. `when` stands above the rope.

@@ -37,7 +37,7 @@ std::string plain_number(double value) {
 }
 
 const char* page_css = R"(*{box-sizing:border-box}
-body{margin:0;background:var(--paper);color:var(--ink);
+body{margin:0;background:var(--paper);color:var(--ink);overflow-wrap:break-word;
 font:17px/1.55 Charter,"Bitstream Charter","Iowan Old Style",Palatino,"Liberation Serif",Georgia,serif}
 main{max-width:1130px;margin:0 auto;padding:40px 28px 72px}
 p,ul,.warnings{max-width:74ch}
@@ -67,8 +67,9 @@ figcaption b{color:var(--ink)}
 .warnings{border:1px solid var(--c1);border-left-width:5px;border-radius:3px;padding:10px 18px;margin:1.4em 0}
 .warnings ul{margin:.3em 0;padding-left:1.2em}
 details{font-size:.82rem;margin-top:.5em}
-summary{cursor:pointer;color:var(--soft);width:max-content}
+summary{cursor:pointer;color:var(--soft);width:max-content;max-width:100%}
 details p{margin:.5em 0;color:var(--soft)}
+.legend>span{display:inline-block;margin-right:1.1em}
 .scroll{overflow-x:auto}a{color:var(--c0)}
 table{border-collapse:collapse;font-size:.82rem;line-height:1.4;font-variant-numeric:tabular-nums}
 th,td{padding:3px 14px 3px 0;text-align:left;vertical-align:top;border-bottom:1px solid var(--rule)}

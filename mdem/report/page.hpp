@@ -32,8 +32,8 @@ struct TableColumn {
 // A folded table under a figure, of at most 60 rows. `source` says where to find all rows.
 std::string data_table(const std::vector<TableColumn>& columns, const char* source);
 
-// "740.836 ± 0.052": as many digits as two of the error allow, seven where there is no error, and "0 ± 0.0002" for less
-// than half of an error.
+// "740.836 ± 0.052": as many digits as two of the error allow, seven where there is no error, and "0 ± 0.0002" for
+// less than half of an error.
 std::string measured_text(double value, double error);
 
 struct ReportFact {
@@ -46,7 +46,7 @@ std::string warnings_part(const std::vector<std::string>& warnings);
 
 // Everything before <body>.
 std::string page_head(const std::string& name);
-// Of a page with scripts in itself, and with more rules for its style.
+// The head of a page with scripts in itself, and with more rules for its style.
 std::string scripted_page_head(const std::string& name, const std::string& css);
 
 }  // namespace ropewalk

@@ -21,11 +21,11 @@ struct ReportSection {
   std::vector<double> radius_profile;  // nm, per element index; may be empty
 };
 
-// Of one frame: what the tubes of a rope bear.
+// The load on the tubes of a rope in one frame.
 struct ReportLoading {
   double time_ps = 0;
-  std::vector<double> radius;                 // nm, of each tube from the axis at the start
-  std::vector<double> pressure_GPa;           // of each tube; empty: there is no contact
+  std::vector<double> radius;                   // nm, of each tube from the axis at the start
+  std::vector<double> pressure_GPa;             // of each tube; empty: there is no contact
   std::vector<std::vector<double>> tension_nN;  // along each tube
 };
 

@@ -13,7 +13,7 @@
 namespace ropewalk {
 namespace {
 
-// What most comparisons ask for, where it varies.
+// Columns of most comparisons, drawn where they vary.
 const char* const usual[] = {
     "torque_upper_nN_nm", "tension_upper_nN", "stored_MJ_per_kg", "ends_strain", "beta_deg", "Q",
     "amplitude_nm",       "void_area_nm2",    "vdw_eV",           "kinetic_eV"};

@@ -20,7 +20,7 @@ struct ScatterChart {
   bool x_decades = false, y_decades = false;  // logarithmic axes; points that are not positive are left out
   // Names beside the points of each line. Lists may be shorter than the lines, and names may be empty.
   std::vector<std::vector<std::string>> labels;
-  std::vector<PointStyle> styles = {};  // of the first lines; of those that are points
+  std::vector<PointStyle> styles = {};  // one each for the first lines; used by lines that are points
 };
 
 // The mark alone, for legends: an <svg> element of 16 pixels.

@@ -109,7 +109,7 @@ Scale scale_of(const AxisRange& range, int parts, bool whole) {
   return s;
 }
 
-// Of logarithms: decades, and 2 and 5 between them where there are few.
+// The ticks of a logarithmic axis: decades, and 2 and 5 between them where there are few.
 Scale decades_of(const AxisRange& range) {
   Scale s;
   s.range = range;
@@ -269,8 +269,8 @@ std::string draw_error_bands(const LineChart& chart, const Plot& plot) {
   return text;
 }
 
-// What lies below each whole line, shaded; its name stands under the highest point of the first one, that of what
-// lies above over the lowest.
+// Shades the area below each whole line. The name of the area below stands under the highest point of the first
+// line, the name of the area above over its lowest.
 std::string draw_regions(const LineChart& chart, const Plot& plot) {
   if (chart.below.empty()) return "";
   std::string text, names;

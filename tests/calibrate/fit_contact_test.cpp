@@ -17,7 +17,7 @@ constexpr double right_angle = 0.5 * units::pi;
 double density() { return graphene_density(0.1421 * std::sqrt(3.0)); }
 Shell shell(double radius) { return {radius, density()}; }
 
-// What every fitted density must be, whatever its parameters: stiff and monotonic down to full overlap, deepest
+// Every fitted density, whatever its parameters, must be stiff and monotonic down to full overlap, deepest
 // near the gap of graphite, without a second minimum, and smooth to its end.
 void expect_sound(const LineDensity& d) {
   EXPECT_GT(d.core_gap + d.c, 0);

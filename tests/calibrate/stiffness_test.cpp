@@ -174,7 +174,7 @@ TEST(Envelope, LimitsFollowFromTheTerms) {
   s.bend_quartic.value = -300;
   limits_from_terms(s, rules);
   EXPECT_EQ(rules.linear_curvature.value, scaled_envelope(0.69).linear_curvature.value);
-  // Of all twists with the torque 1 % off, the one next to zero.
+  // The twist next to zero of all with the torque 1 % off.
   double first = 0;
   for (double t = 1e-6; first == 0; t += 1e-6)
     for (const double s1 : {t, -t})

@@ -60,7 +60,7 @@ TEST_F(Calibrate, AThinTubesSetServesOneKindOfTube) {
   spit(dir / "two.toml",
        scene + "[\"cnt-4-1-tersoff.toml\", \"cnt-5-5-tersoff\"]\ntube_types = [0,1,0,1,0,1,0]\n" + rest);
   EXPECT_NE(run("check two.toml").err.find("has no [contact.line.universal]"), std::string::npos);
-  // A set of before, with a law that is as far off.
+  // A set that an earlier version made, with a law that is as far off.
   std::string text = slurp(std::string(ROPEWALK_SOURCE_DIR) + "/data/parameters/cnt-6-6-tersoff.toml");
   const std::size_t at = text.find("value", text.find("\nerror "));
   text.replace(at, text.find(',', at) - at, "value = 1.23");

@@ -295,7 +295,7 @@ TEST_F(Faults, RefinedRunKilledAndGoneOnWith) {
   fmt::print("kill in a refined run: {} tried\n", tried);
 }
 
-// What a power cut does to files that were not written to the disk yet, and what users do to make room.
+// Files lose their tails, as by a power cut before they reach the disk, or by users who make room.
 TEST_F(Faults, LostTails) {
   spit(dir / "s.toml", calm);
   references(true);

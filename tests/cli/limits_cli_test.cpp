@@ -1,4 +1,4 @@
-// What the program does where a run outgrows its model.
+// The program where a run outgrows its model.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ class Limits : public ropewalk::test::Cli {
     return ropewalk::read_log((dir / run / "log.csv").string());
   }
   Json limits_of(const std::string& run) const { return Json::parse(slurp(dir / run / "limits.json")); }
-  // What was said of the run itself, without what was said before it of what may come.
+  // The messages of the run itself, without those before it about limits that the load may pass.
   static std::string said(const std::string& text) {
     std::string out;
     std::istringstream lines(text);

@@ -47,7 +47,7 @@ class SameBits : public Cli, public ::testing::WithParamInterface<BitsScene> {
     spit(dir / "s.toml", GetParam().text);
   }
 
-  // Of the state at the end, all its digits, and of the frames.
+  // The hash of the state at the end, in all its digits, and of the frames.
   std::string hash_after(const std::string& arguments) const {
     const Outcome o = run(arguments + " --quiet");
     EXPECT_EQ(o.code, 0) << arguments << o.err;

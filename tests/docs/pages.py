@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """The built site in Chromium, at the size of a desk, of a phone and on paper: no message on the console, no request but for
-the site's own files, nothing wider than the page, formulas as MathML, pictures that are there.
+the site's own files, nothing wider than the page, also with wider fonts, formulas as MathML, pictures that are there.
 
     pages.py SITE"""
 import base64
@@ -10,8 +10,16 @@ from pathlib import Path
 
 from browser import Browser
 
-desk, phone, paper = (1300, 900), (390, 844), (718, 1000)  # CSS pixels; paper: A4 less margins
+desk, phone, paper = (1300, 900), (360, 780), (718, 1000)  # CSS pixels; paper: A4 less margins
 errors = []
+
+# Fonts differ from machine to machine. A twentieth is added to the width of all text, so that a page which fits here has
+# room there. A letter is about half as wide as it is high.
+wider_text = """(() => {
+  const style = document.createElement('style');
+  style.textContent = '* { letter-spacing: 0.03em !important }';
+  document.head.append(style);
+})()"""
 
 
 def expect(true, what):
@@ -20,7 +28,7 @@ def expect(true, what):
 
 
 def wider(browser, width):
-    """What sticks out of a page that is so wide, but for what scrolls by itself; empty if nothing does."""
+    """Names elements that stick out of a page of this width, but for those that scroll; empty if none does."""
     return browser.value(f"(given => {{ {sticks_out} }})({width})")
 
 
@@ -28,7 +36,7 @@ sticks_out = """
   const root = document.documentElement, width = Math.min(root.clientWidth, given);
   if (root.scrollWidth <= width) return '';
   const wide = [...document.querySelectorAll('body *')].filter(e => e.getBoundingClientRect().right > width + 1
-    && !e.closest('.formula, .table-wrapper, pre, .sidebar-drawer, .toc-drawer'));
+    && !e.closest('.formula, .scroll, .table-wrapper, pre, svg > *, .sidebar-drawer, .toc-drawer'));
   return root.scrollWidth + ' pixels: ' + wide.slice(0, 3).map(e => e.outerHTML.slice(0, 120)).join(' | ');"""
 
 
@@ -37,6 +45,7 @@ def look(browser, site, page):
     browser.size(*desk)
     browser.call("Emulation.setEmulatedMedia", media="")
     browser.open((site / page).as_uri())
+    browser.value(wider_text)
     for size, name in ((desk, "desk"), (phone, "phone"), (paper, "paper")):
         browser.size(*size, phone=size == phone)
         browser.call("Emulation.setEmulatedMedia", media="print" if size == paper else "")
@@ -113,6 +122,31 @@ def test_of_the_test(browser, site):
         expect(any(part in line for line in found), f"a page with faults: not seen: {part}; seen: {found}")
 
 
+def test_of_the_margin(browser, site):
+    """A line that takes 98 % of the width, in whatever font there is, fits and is found faulty."""
+    global errors
+    bad = site / "bad.html"
+
+    def write(size):
+        bad.write_text("<!DOCTYPE html><meta name=viewport content='width=device-width'><body style='margin:0'><p style="
+                       f"'margin:0;width:max-content;white-space:nowrap;font-size:{size}px'>nanotubes</p>"
+                       "A line that just fits, for the test of the test.")
+        browser.size(*phone, phone=True)
+        browser.open(bad.as_uri())
+
+    try:
+        write(50)
+        write(50 * 0.98 * phone[0] / browser.value("document.querySelector('p').getBoundingClientRect().width"))
+        fits = not wider(browser, phone[0])
+        kept, errors = errors, []
+        look(browser, site, "bad.html")
+        found, errors = errors, kept
+    finally:
+        bad.unlink()
+    expect(fits and any("phone: is wider" in line for line in found),
+           f"a page that just fits: fits: {fits}, faults seen: {found}")
+
+
 def main():
     if not shutil.which("chromium"):
         print("Chromium is not installed")
@@ -133,6 +167,7 @@ def main():
         pdf = base64.b64decode(browser.call("Page.printToPDF")["data"])
         expect(pdf.startswith(b"%PDF") and len(pdf) > 50000, "theory.html: cannot be printed")
         test_of_the_test(browser, site)
+        test_of_the_margin(browser, site)
     print(f"{len(pages) + len(api)} pages at three sizes")
     for error in errors:
         print(error, file=sys.stderr)

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Of each input.
+// The number of mutants of each input.
 int mutants() { return std::getenv("ROPEWALK_ALL_FAULTS") ? 1000 : 100; }
 
 std::vector<std::string> corpus(const std::string& name) {

@@ -104,7 +104,7 @@ void scene(const std::string& bytes) {
 void parameters(const std::string& bytes) {
   taken_or_refused([&] {
     const ParameterSet set = parameters_of_text(bytes, "set.toml");
-    // What is written of it is a set again.
+    // The text that is written of a set is a set again.
     parameters_of_text(parameters_text(set, ""), "again.toml");
   });
 }
@@ -151,7 +151,7 @@ std::string changed(std::string file, std::string_view changes) {
     file.replace(at, std::min<std::size_t>(8, file.size() - at), value.substr(0, file.size() - at));
     changes.remove_prefix(12);
   }
-  // What is left over cuts the end off.
+  // A byte that is left over says where the end is cut off.
   return changes.empty() ? file : file.substr(0, file.size() * static_cast<unsigned char>(changes[0]) / 256);
 }
 

@@ -13,7 +13,7 @@ trap cleanup EXIT
 root=$work/debian
 fail() { echo "bare_debian: $*" >&2; exit 1; }
 inside() { chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root DEBIAN_FRONTEND=noninteractive "$@" 2> "$work/errors" || fail "$*: $(tail -3 "$work/errors")"; }
-# What somebody else's home has no place for.
+# Runs a command as a user who has a home and no rights elsewhere.
 as_user() { chroot --userspec=somebody "$root" env -i PATH=/usr/bin:/bin HOME=/home/somebody bash -ec "cd; $1"; }
 # Every file, but for logs, caches and lists of apt and dpkg.
 files() {

@@ -65,3 +65,11 @@ cmake -S "$here/consumer" -B consumer -DCMAKE_PREFIX_PATH="$work/moved" -DCMAKE_
 cmake --build consumer >/dev/null
 ROPEWALK_DATA=$work/moved/share/ropewalk consumer/twist > said
 grep -q "70 elements" said || fail "the consumer's rope is wrong"
+# A load of one's own, registered by a program outside of this tree, in a scene that names it.
+cmake -S "$here/own_load" -B own_load -DCMAKE_PREFIX_PATH="$work/moved" -DCMAKE_BUILD_TYPE=Release >/dev/null
+cmake --build own_load >/dev/null
+export ROPEWALK_DATA=$work/moved/share/ropewalk
+own_load/own_load "$here/own_load/wind.toml" || fail "the tube in the wind does not bend as a beam does"
+sed '/^growth/d' "$here/own_load/wind.toml" > calm.toml
+own_load/own_load calm.toml 2> said && fail "a scene without growth_nN_per_nm runs"
+grep -q "load.growth_nN_per_nm: is missing" said || fail "the load's own key is not named: $(cat said)"

@@ -1,4 +1,4 @@
-// What goes wrong is said in one line, with what to write instead.
+// Every error is one line that says what to write instead.
 #include <map>
 #include <sstream>
 

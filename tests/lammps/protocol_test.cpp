@@ -77,7 +77,7 @@ INSTANTIATE_TEST_SUITE_P(
                  "[[grip]]\nend = \"upper\"\nz = { force_nN = 5 }\nabout_x = \"free\"\n"
                  "about_z = { rotation_deg = [[0, 0], [1, 3], [2, 0]] }\nsmooth_ps = 0.5\n",
                  1e-9},
-        // Of half of the tubes, so that some clamps have elements on two ranks.
+        // Clamps that reach half of a tube, so that some have elements on two ranks.
         Protocol{"DeepGrips",
                  "[[grip]]\nend = \"lower\"\nelements = 6\nas = \"each\"\nslide_free = true\nabout_x = \"free\"\n"
                  "[[grip]]\nend = \"upper\"\nelements = 5\nz = { force_nN = 5 }\nabout_z = { torque_nN_nm = 30 }\n",

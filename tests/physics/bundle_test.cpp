@@ -443,7 +443,7 @@ TEST(TwistLoad, HeldGripOfUnlikeTubesKeepsTheAccountClosed) {
     mass += b.topology.type_of(t).mass;
   }
   EXPECT_LT((moved / mass).head<2>().norm(), 1e-9);
-  // What the grip bears is no force that is left over.
+  // A force that the grip bears counts as balanced.
   LoadsAndConstraints grip;
   TwistLoad at_rest = twist;
   at_rest.moment = 1e-9, at_rest.rate = 0;

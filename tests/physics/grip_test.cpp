@@ -129,7 +129,7 @@ TEST(Grip, DiscTurnsOnItsCircleAndTheGaugeCountsWholeTurns) {
   EXPECT_LT((s.state().position[0] - rope.state.position[0]).norm(), 1e-6);  // two whole turns
 }
 
-// What loads put in and what the gauges read are the same; the sums close the account.
+// The work that loads put in is the work that the gauges read; the sums close the account.
 TEST(Gauges, WorkOfTheReactionsIsThatOfTheAccountOverALoop) {
   const Rope rope(20);
   GripLoad upper;
@@ -220,7 +220,7 @@ TEST(Grip, EachUnderACoupleIsTheTwistProtocol) {
   EXPECT_GT(twisted.work(), 1);
 }
 
-// What is released moves as it would without the clamp, and what is held does not.
+// Released components move as they would without the clamp, and held ones do not.
 TEST(Grip, LetsGoWhatItIsToLetGo) {
   Topology topology = test::published_topology();
   State state = test::disordered_bundle(topology, 7, 1, spacing, 0.1, 1);

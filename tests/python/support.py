@@ -1,4 +1,4 @@
-"""What the tests of the package share. PYTHONPATH names the package; the work is done in a folder of its own."""
+"""Functions that the tests of the package share. PYTHONPATH names the package; they work in a folder of their own."""
 from __future__ import annotations
 
 import os

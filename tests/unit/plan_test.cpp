@@ -38,7 +38,7 @@ const std::string lone = head + "[chain]\nelements = 41\n[run]\nduration_ps = 20
 
 Scene scene_from(const std::string& text) { return scene_of_text(text, "scene.toml"); }
 
-// What pilots find, made up: the energy is off by a part that each change of the model adds, and beta by another.
+// Made-up findings of pilots: the energy is off by a part that each change of the model adds, and beta by another.
 struct MadeUp {
   double longer = 0.004, fewer_nodes = 0.002, nearer = 0.008, chance = 0;  // relative
   std::map<std::string, double> seconds = {};  // of models whose name has this in it; 1 for others

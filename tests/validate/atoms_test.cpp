@@ -1,4 +1,4 @@
-// What is known about one and two tubes of atoms beyond the verdicts of their cases, and a missing reference.
+// Facts about one and two tubes of atoms beyond the verdicts of their cases, and a missing reference.
 #include <gtest/gtest.h>
 
 #include <string>

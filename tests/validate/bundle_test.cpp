@@ -1,4 +1,4 @@
-// What is known about bent and warm bundles beyond the verdicts of their cases.
+// Facts about bent and warm bundles beyond the verdicts of their cases.
 #include <gtest/gtest.h>
 
 #include "runner/runner.hpp"

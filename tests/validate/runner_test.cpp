@@ -1,4 +1,4 @@
-// What becomes of the cases' numbers: verdicts, files, page.
+// Verdicts, files and page that are made of the cases' numbers.
 #include "runner/runner.hpp"
 
 #include <gmock/gmock.h>

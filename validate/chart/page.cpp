@@ -102,11 +102,9 @@ void check_style(const std::string& kind) {
 std::string legend() {
   std::string html = "<p class=\"legend\">";
   for (const KindStyle& s : kind_styles)
-    html += fmt::format("<span style=\"white-space:nowrap\">{} {}</span> &nbsp; ", mark_svg(s.mark, s.colour),
-                        escape_markup(s.words));
-  return html +
-         fmt::format("<span style=\"white-space:nowrap\">{} hollow: error below {:g} or above {:g} %</span></p>\n",
-                     mark_svg(Mark::dot, 5, true), 100 * smallest_error, 100 * largest_error);
+    html += fmt::format("<span>{} {}</span> ", mark_svg(s.mark, s.colour), escape_markup(s.words));
+  return html + fmt::format("<span>{} hollow: error below {:g} or above {:g} %</span></p>\n",
+                            mark_svg(Mark::dot, 5, true), 100 * smallest_error, 100 * largest_error);
 }
 
 ChartLine front_line(const Series& s, const std::vector<std::size_t>& front) {

@@ -25,7 +25,7 @@ class FrameReader {
   virtual ~FrameReader() = default;
   // False at the end of the file. Throws InputError where the file is damaged or of another scene.
   virtual bool next(const Topology& topology, StoredFrame& frame) = 0;
-  // Of whole frames. next() goes on with the frame that was sought, counted from 0 and at most count().
+  // The number of whole frames. next() goes on with the frame that was sought, counted from 0 and at most count().
   virtual std::size_t count(const Topology& topology) = 0;
   virtual void seek(std::size_t frame) = 0;
   // Bytes, behind the frame just read.
@@ -42,7 +42,7 @@ class FrameWriter {
  public:
   virtual ~FrameWriter() = default;
   virtual void write(const Topology& topology, const State& state, const ElementColours& colours) = 0;
-  // What was written after this did not happen.
+  // Drops all that was written after this mark.
   virtual void cut(std::uint64_t keep) = 0;
   virtual void sync() = 0;
   virtual FileMark mark() const = 0;

@@ -1,4 +1,4 @@
-// What the chunks of a GSD file are called, and the numbers of their types.
+// Names of the chunks of a GSD file, and numbers of their types.
 #pragma once
 
 #include <array>

@@ -78,7 +78,7 @@ std::string cylinder(double radius, double length) {
   return nlohmann::json{{"type", "Mesh"}, {"vertices", vertices}, {"indices", triangles}}.dump();
 }
 
-// What does not change: in the first frame alone.
+// Chunks that do not change stand in the first frame alone.
 void add_topology(FrameChunks& chunks, const Topology& topology) {
   std::vector<std::uint32_t> type, bonds;
   std::vector<std::int32_t> tube;

@@ -1,4 +1,4 @@
-// What every contact law between two rigid tube elements returns: exact gradients of one energy, so that
+// The result of every contact law between two rigid tube elements: exact gradients of one energy, so that
 // force_i = -force_j and torque_i + torque_j + separation x force_j = 0.
 #pragma once
 

@@ -83,7 +83,7 @@ struct LineContact {
   double length_i = 0, length_j = 0;  // nm
   int nodes_i = 1, nodes_j = 1;
 
-  // Of the element centres: beyond it no two nodes reach each other, however the elements are turned.
+  // The distance of element centres beyond which no two nodes reach each other, however the elements are turned.
   double cutoff() const {
     return density.cutoff() + 0.5 * (length_i * (1 - 1.0 / nodes_i) + length_j * (1 - 1.0 / nodes_j));
   }

@@ -188,7 +188,7 @@ struct PaperTerms {
     return {x, x_p, sign * x_p, -2 * sign * x * inverse};
   }
 
-  // Of both bisectors, and the weight w of the first.
+  // The terms of both bisectors, mixed by the weight w of the first.
   inline __attribute__((always_inline)) BisectorTerms<T> two_bisectors(T p, T q, T c) const {
     const T y = std::min(std::max(c * inv_blend, T(-1)), T(1));
     const T w = T(0.5) + y * (T(0.75) - T(0.25) * y * y);

@@ -1,4 +1,4 @@
-// Numbers of many frames in few bytes, for the page in space, whose script view.js unpacks them.
+// Numbers of many frames in few bytes, for the page in space, whose script frames.js unpacks them.
 //
 // A number is stored as a code of 16 bits: value = low + code * step; the code 65535 stands for no number. A
 // channel is one quantity in all frames. Its codes are stored as differences, modulo 65536, from what the elements

@@ -181,7 +181,7 @@ ViewPage page_with(const ViewInput& in, int levels) {
   put(body, "OrbitControls.js", three_orbit_js);
   put(body, "facts", in_script(facts.dump()));
   put(body, "frames", base64(packer.deflated()));
-  put(body, "view.js", view_js);
+  put(body, "scripts", view_js);
   out.html = scripted_page_head(in.name, view_css) + body;
   return out;
 }

@@ -1,4 +1,4 @@
-// The page that shows a run in three dimensions: one HTML file with the frames, our script view.js and three.js. It
+// The page that shows a run in three dimensions: one HTML file with the frames, our scripts and three.js. It
 // asks for no other file and no network.
 #pragma once
 
@@ -15,7 +15,7 @@ struct ViewField {
   std::string name, unit, meaning;
   bool is_signed = false;                   // zero is the middle of its colours
   std::vector<std::vector<double>> values;  // of each frame, of each element
-  std::vector<double> log_total;            // of each frame: what log.csv has for the sum; NaN: it has none
+  std::vector<double> log_total;            // for each frame the sum in log.csv; NaN: it has none
 };
 
 // A whole number that every tube has.
@@ -28,14 +28,14 @@ struct ViewInput {
   std::string name;
   std::vector<int> tube_begin;      // as of a Topology
   std::vector<double> tube_radius;  // nm, of each tube
-  // Of the frames in the order of time. Element e of tube t reaches from joint e + t to joint e + t + 1.
+  // One entry a frame, in the order of time. Element e of tube t reaches from joint e + t to joint e + t + 1.
   std::vector<double> time_ps;
   std::vector<std::int64_t> step;
   std::vector<std::vector<Vector3>> joints;
   std::vector<ViewField> fields;
   std::vector<ViewTubeNumber> tube_numbers;
   RopeCamera camera;              // the side from which the page looks first
-  std::size_t stored_frames = 0;  // of the run: of these some were chosen
+  std::size_t stored_frames = 0;  // frames of the run, of which some were chosen
 };
 
 struct ViewPage {

@@ -30,7 +30,7 @@ BuiltScene film(const std::string& keys, const std::string& more = "",
   return build(scene);
 }
 
-// Of two segments, tried along one of them: the distance to a segment is convex along another one.
+// The distance of two segments, tried along one of them: the distance to a segment is convex along another one.
 double segment_distance(const Vector3& x, const Vector3& u, const Vector3& y, const Vector3& v, double half) {
   const auto from_point = [&](double s) {
     const Vector3 p = x + s * u;

@@ -8,7 +8,7 @@
 
 #include "io/log.hpp"
 #include "model/units.hpp"
-#include "support.hpp"
+#include "unit/support.hpp"
 
 namespace ropewalk {
 namespace {

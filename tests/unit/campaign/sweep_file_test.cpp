@@ -115,7 +115,7 @@ TEST_F(SweepFile, WrongOnesGetOneClearLine) {
   }
 }
 
-// What data/campaigns and data/reproduction show is what this program reads.
+// The program reads every sweep of data/campaigns and data/reproduction.
 TEST(Campaigns, ShippedSweepsAreRead) {
   int sweeps = 0;
   for (const char* folder : {"/data/campaigns", "/data/reproduction"})

@@ -16,7 +16,7 @@ struct Read {
   double energy = 0, force = 0;  // eV/nm^2, eV/nm^3
 };
 
-// What the kernel does, but for the order of its sums, one distance at a time.
+// Reads the table as the kernel does, but for the order of its sums, one distance at a time.
 template <class Table, class Bits>
 Read read(const Table& t, double rho) {
   using T = typename Table::Value;
@@ -74,7 +74,7 @@ void expect_table_close(const LineDensity& law, double unit, double tolerance) {
   }
 }
 
-// Of thin, usual, unlike and wide tubes, and with a nearer cutoff.
+// Laws of thin, usual, unlike and wide tubes, and one with a nearer cutoff.
 std::vector<LineDensity> laws() {
   const LineDensity usual = test::line_density();
   return {test::line_density(0.34, 0.34), usual, test::line_density(1.36, 0.34), test::line_density(1.4, 1.4),

@@ -1,4 +1,4 @@
-// What is near, against all pairs, for every instruction set.
+// Near elements that the grid finds, against all pairs, for every instruction set.
 #include "sim/neighbours/cell_grid.hpp"
 
 #include <gtest/gtest.h>

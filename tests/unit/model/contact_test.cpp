@@ -315,7 +315,7 @@ LineContact chosen_rows(double radius) {
   return {u, length, length, nodes, nodes};
 }
 
-// What the header of line_nodes states, for the elements that calibration makes.
+// Bounds that the header of line_nodes states, for the elements that calibration makes.
 TEST(LineContact, RowsHardlyCorrugateAtAnyStrain) {
   for (const double radius : {0.2, 0.27, 0.34, 0.4, 0.5, 0.6, 0.6785, 0.8, 1.0, 1.2, 1.4}) {
     const LineContact k = chosen_rows(radius);
