@@ -291,7 +291,8 @@ void RankEngine::find_moved() {
   moved_.clear();
   for (int t = 0; t < topology_.tubes(); ++t)
     for (int i = topology_.tube_begin[t], to; i < topology_.tube_begin[t + 1]; i = to) {
-      to = topology_.change_of_owner(i, std::min(topology_.tube_begin[t + 1], i + cached_elements));
+      to = std::min(topology_.tube_begin[t + 1], i + cached_elements);
+      if (topology_.part) to = topology_.change_of_owner(i, to);
       if (topology_.owns(i)) moved_.push_back({t, i, to});
     }
 }

