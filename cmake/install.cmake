@@ -83,7 +83,7 @@ set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-ropewalk)
 set(CPACK_DEBIAN_CALIBRATE_PACKAGE_DEPENDS "ropewalk (= ${PROJECT_VERSION})")
 set(CPACK_DEBIAN_LAMMPS_PACKAGE_DEPENDS "ropewalk (= ${PROJECT_VERSION}), openmpi-bin")  # not one rank starts without
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
-    "libeigen3-dev, libfmt-dev, nlohmann-json3-dev, libtomlplusplus-dev, libqhull-dev, libhwy-dev, libxxhash-dev")
+    "libeigen3-dev, libfmt-dev, nlohmann-json3-dev, libtomlplusplus-dev, libqhull-dev, libxxhash-dev")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "ropewalk (= ${PROJECT_VERSION}), python3-numpy")
 if(Python3_VERSION_MAJOR)
   # An extension module is for one version of Python.

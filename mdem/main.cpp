@@ -417,7 +417,7 @@ std::vector<std::string> listed_verbs(const CLI::App& app) {
   return names;
 }
 
-// What a scene may say. The help of verbs is seen to by verb_before_help().
+// Help on the keys of a scene. verb_before_help() gives the help of verbs.
 void add_help(CLI::App& app, Verbs& v) {
   CLI::App* c = app.add_subcommand("help", "The help of a verb; help scene: every key of a scene, with its unit");
   c->add_option("topic", v.help_topic, "scene, or a verb [default: the list of verbs]");

@@ -9,10 +9,6 @@
 namespace ropewalk {
 namespace {
 
-bool wide(const std::string& instructions) {
-  return instructions.rfind("AVX3", 0) == 0 || instructions.rfind("AVX10", 0) == 0;
-}
-
 struct Counter {
   const Topology& topology;
   const Interaction& in;
@@ -71,15 +67,13 @@ void RadialCount::add(const RadialCount& other, double share) {
 }
 
 int radial_lanes(Interaction::Precision precision) {
-  const std::string best = instruction_sets().front();
-  if (best == "SCALAR") return 1;
-  const int bytes = wide(best) ? 64 : best == "AVX2" ? 32 : 16;
+  const int bytes = vector_unit_in_use == VectorUnit::v4 ? 64 : vector_unit_in_use == VectorUnit::v3 ? 32 : 16;
   return bytes / (precision == Interaction::Precision::mixed ? 4 : 8);
 }
 
 int radial_operations(Interaction::Precision precision) {
   const int polynomial = precision == Interaction::Precision::full ? FullTable::operations
-                         : wide(instruction_sets().front())        ? MixedTable::operations
+                         : vector_unit_in_use == VectorUnit::v4    ? MixedTable::operations
                                                                    : decltype(MixedTable::pieces)::operations;
   return 3 + polynomial + 3;
 }

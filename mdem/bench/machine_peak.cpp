@@ -1,30 +1,30 @@
 #include "bench/machine_peak.hpp"
 
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "bench/machine_peak.cpp"
-#include <hwy/foreach_target.h>
+#undef VEC_SOURCE
+#define VEC_SOURCE "bench/machine_peak.cpp"
+#include "sim/vectors/each_set-inl.hpp"
 //
-#include <hwy/highway.h>
+#include "sim/vectors/operations-inl.hpp"
 
-HWY_BEFORE_NAMESPACE();
-namespace ropewalk::HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
+VEC_BEFORE_NAMESPACE();
+namespace ropewalk::VEC_SET {
+namespace ops = vec::VEC_SET;
 
 // Number of independent chains: more than latency times throughput of any unit in use, and few enough for 16
 // registers.
 constexpr int chains = 12;
 
 template <class T, int cap>
-HWY_INLINE std::size_t in_chains(std::size_t rounds, T by, T* out) {
-  const hn::CappedTag<T, cap> d;
-  const auto factor = hn::Set(d, by), term = hn::Set(d, static_cast<T>(0.25));
-  hn::Vec<decltype(d)> a[chains];
-  for (int k = 0; k < chains; ++k) a[k] = hn::Set(d, static_cast<T>(k));
+VEC_INLINE std::size_t in_chains(std::size_t rounds, T by, T* out) {
+  const ops::CappedTag<T, cap> d;
+  const auto factor = ops::Set(d, by), term = ops::Set(d, static_cast<T>(0.25));
+  ops::Vec<decltype(d)> a[chains];
+  for (int k = 0; k < chains; ++k) a[k] = ops::Set(d, static_cast<T>(k));
   for (std::size_t r = 0; r < rounds; ++r)
-    for (int k = 0; k < chains; ++k) a[k] = hn::MulAdd(a[k], factor, term);
-  for (int k = 1; k < chains; ++k) a[0] = hn::Add(a[0], a[k]);
-  hn::StoreU(a[0], d, out);
-  return rounds * chains * 2 * hn::Lanes(d);
+    for (int k = 0; k < chains; ++k) a[k] = ops::MulAdd(a[k], factor, term);
+  for (int k = 1; k < chains; ++k) a[0] = ops::Add(a[0], a[k]);
+  ops::StoreU(a[0], d, out);
+  return rounds * chains * 2 * ops::Lanes(d);
 }
 
 std::size_t PeakOfFloats(std::size_t rounds, float factor, float* out) {
@@ -34,36 +34,37 @@ std::size_t PeakOfDoubles(std::size_t rounds, double factor, double* out) {
   return in_chains<double, 8>(rounds, factor, out);
 }
 
-void Triad(double* HWY_RESTRICT a, const double* HWY_RESTRICT b, const double* HWY_RESTRICT c, std::size_t n) {
-  const hn::CappedTag<double, 8> d;
-  const auto three = hn::Set(d, 3.0);
-  for (std::size_t i = 0; i < n; i += hn::Lanes(d))
-    hn::Store(hn::MulAdd(hn::Load(d, c + i), three, hn::Load(d, b + i)), d, a + i);
+void Triad(double* __restrict a, const double* __restrict b, const double* __restrict c, std::size_t n) {
+  const ops::CappedTag<double, 8> d;
+  const auto three = ops::Set(d, 3.0);
+  for (std::size_t i = 0; i < n; i += ops::Lanes(d))
+    ops::Store(ops::MulAdd(ops::Load(d, c + i), three, ops::Load(d, b + i)), d, a + i);
 }
 
-}  // namespace ropewalk::HWY_NAMESPACE
-HWY_AFTER_NAMESPACE();
+}  // namespace ropewalk::VEC_SET
+VEC_AFTER_NAMESPACE();
 
-#if HWY_ONCE
-#include <hwy/aligned_allocator.h>
+#if VEC_ONCE
 #include <omp.h>
 
 #include <algorithm>
+#include <cstdlib>
+#include <memory>
 #include <new>
 
 namespace ropewalk {
 
-HWY_EXPORT(PeakOfFloats);
-HWY_EXPORT(PeakOfDoubles);
-HWY_EXPORT(Triad);
+VEC_EXPORT(PeakOfFloats);
+VEC_EXPORT(PeakOfDoubles);
+VEC_EXPORT(Triad);
 
 std::size_t multiply_adds(std::size_t rounds, float factor, float* out) {
-  return HWY_DYNAMIC_DISPATCH(PeakOfFloats)(rounds, factor, out);
+  return VEC_IN_USE(PeakOfFloats)(rounds, factor, out);
 }
 std::size_t multiply_adds(std::size_t rounds, double factor, double* out) {
-  return HWY_DYNAMIC_DISPATCH(PeakOfDoubles)(rounds, factor, out);
+  return VEC_IN_USE(PeakOfDoubles)(rounds, factor, out);
 }
-void triad(double* a, const double* b, const double* c, std::size_t n) { HWY_DYNAMIC_DISPATCH(Triad)(a, b, c, n); }
+void triad(double* a, const double* b, const double* c, std::size_t n) { VEC_IN_USE(Triad)(a, b, c, n); }
 
 namespace {
 
@@ -96,7 +97,8 @@ double arithmetic_peak(int threads) {
 double transfer_peak(int threads) {
   // 128 MiB in each array, more than the caches hold, in as many pieces for each thread.
   const std::ptrdiff_t pieces = 64 * threads, piece = (std::ptrdiff_t{1} << 24) / pieces / 8 * 8;
-  const auto array = [&] { return hwy::AllocateAligned<double>(static_cast<std::size_t>(pieces * piece)); };
+  const auto array = [&] { return std::unique_ptr<double[], decltype(&std::free)>(
+        static_cast<double*>(std::aligned_alloc(64, static_cast<std::size_t>(pieces * piece) * sizeof(double))), &std::free); };
   const auto a = array(), b = array(), c = array();
   if (!a || !b || !c) throw std::bad_alloc();
     // Memory is placed near the thread that writes to it first.
@@ -117,4 +119,4 @@ MachinePeak machine_peak(int threads, bool in_double) {
 }
 
 }  // namespace ropewalk
-#endif  // HWY_ONCE
+#endif  // VEC_ONCE

@@ -12,7 +12,7 @@ namespace {
 using Verb = const CLI::App*;
 using Option = const CLI::Option*;
 
-// Those that --help lists.
+// The verbs that --help lists.
 std::vector<Verb> verbs_of(const CLI::App& app) {
   return app.get_subcommands([](const CLI::App* verb) { return !verb->get_group().empty(); });
 }

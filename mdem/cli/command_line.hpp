@@ -1,5 +1,5 @@
-// What all programs of Ropewalk do with their command lines: say what was mistyped, and describe themselves to the
-// shell, to `man` and to the pages of the documentation.
+// Command lines of all programs of Ropewalk: they name mistyped words, and describe themselves to the shell, to `man` and
+// to the pages of the documentation.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -14,7 +14,7 @@ namespace ropewalk {
 // One line on what is wrong, with the nearest verb or option where one was mistyped. `program` as it is typed.
 std::string usage_error(const CLI::App& app, const CLI::ParseError& error, const std::string& program);
 
-// What an option takes; the error says what it must be.
+// The values that an option takes; the error names them.
 CLI::Validator number_within(const Bounds& bounds);
 constexpr int unbounded = std::numeric_limits<int>::max();
 CLI::Validator whole_number(int least, int most = unbounded);

@@ -146,7 +146,7 @@ nlohmann::ordered_json json_of(const Cost& c, const Rates& rates, const BenchArg
   out["list_skin_nm"] = c.skin;
   out["list_share"] = per(c.each.list, c.each.wall);
   if (dynamic_cast<const LineLaw*>(prepared.interaction.law.get())) {
-    out["instructions"] = instruction_sets().front();
+    out["instructions"] = instructions_in_use();
     out["lanes"] = radial_lanes(prepared.interaction.precision);
     out["spans_per_element"] = c.radial.spans;
     out["nodes_per_span"] = per(c.radial.nodes, c.radial.spans);

@@ -13,13 +13,13 @@ namespace ropewalk {
 namespace {
 
 // Of all parts of a cut.
-struct Row {
+struct PartsRow {
   double parts = 0, own = 0, copies = 0;  // elements, of a part on average
   double seconds = 0, longest = 0;        // all parts one after another, and the slowest one
 };
 
-Row row_of(const std::vector<PartCost>& parts) {
-  Row row;
+PartsRow row_of(const std::vector<PartCost>& parts) {
+  PartsRow row;
   row.parts = static_cast<double>(parts.size());
   for (const PartCost& p : parts) {
     row.own += p.own / row.parts;
@@ -46,7 +46,7 @@ int bench_parts(const BenchArguments& a) {
     fmt::print("{:>6} {:>14} {:>10} {:>14} {:>10} {:>10}\n", "parts", "own, each", "copies", "us, all parts",
                "of whole", "slowest");
   for (const auto& parts : cuts) {
-    const Row r = row_of(parts);
+    const PartsRow r = row_of(parts);
     const double slowest = r.longest * r.parts / r.seconds;  // of the mean
     if (a.json) {
       rows.push_back({{"parts", parts.size()},

@@ -261,7 +261,7 @@ void say_time(const RunDirectory& dir, const Expectations& plan) {
 }
 
 // On the terminal, in the run's directory and in its report.
-void tell(const RunDirectory& dir, Scene scene, const PlanCheck& check) {
+void tell_check(const RunDirectory& dir, Scene scene, const PlanCheck& check) {
   const Expectations plan = expectations_of(scene.text);
   say_check(check, plan);
   say_time(dir, plan);
@@ -288,7 +288,7 @@ int check_against(const PlanArguments& a) {
   PlanCheck check{"the end of another run, means over the last quarter", {}};
   for (const auto& [name, error] : differences(planned, reference))
     check.found[name] = {planned.of.at(name).value, reference.of.at(name).value, error};
-  tell(dir, scene, check);
+  tell_check(dir, scene, check);
   return 0;
 }
 
@@ -306,7 +306,7 @@ int check_run(const PlanArguments& a) {
   const SpotCheck spot = spot_check(scene, prepared, simulation.state(), a.stretch);
   PlanCheck check{spot.how, {}};
   for (const auto& [name, pair] : spot.observables) check.found[name] = {pair.planned, pair.finer, pair.error()};
-  tell(dir, scene, check);
+  tell_check(dir, scene, check);
   return 0;
 }
 

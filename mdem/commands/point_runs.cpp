@@ -17,7 +17,6 @@ namespace ropewalk {
 namespace {
 
 namespace fs = std::filesystem;
-using Stage = PointProgress::Stage;
 
 // Until the process ends.
 bool lock(const std::string& path, bool wait) {
@@ -35,7 +34,7 @@ std::string duration_text(double s) {
 }
 
 int run_or_resume(const RunDirectory& dir, const Scene& scene, double until_ps, const std::string& on_limit) {
-  if (progress_of(dir).stage == Stage::begun) {
+  if (progress_of(dir).stage == PointProgress::Stage::begun) {
     ResumeArguments r;
     r.dir = dir.path;
     r.threads = 1;

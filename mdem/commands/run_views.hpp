@@ -11,7 +11,7 @@
 namespace ropewalk {
 
 RopeView view_of(const Topology& topology, const StoredFrame& frame, double beta_deg);
-// Of the last frame; none where there is no frame.
+// The view of the last frame; none where there is no frame.
 std::optional<RopeView> last_view(const RunDirectory& dir, const Scene& scene, const Prepared& prepared);
 
 // Several tubes of one length that are parallel at the start.
@@ -23,7 +23,8 @@ std::vector<double> frame_times(const RunDirectory& dir, const Topology& topolog
 std::vector<StoredFrame> frames_of(const RunDirectory& dir, const Topology& topology,
                                  const std::vector<std::size_t>& wanted);
 
-// What --from says. side: as reports have it; x, y, z: along that axis; AZIMUTH,ELEVATION about z, in degrees.
+// The camera that --from names. side: as reports have it; x, y, z: along that axis; AZIMUTH,ELEVATION about z, in
+// degrees.
 RopeCamera camera_from(const std::string& from, const std::vector<RopeView>& views, double radius, double width,
                        double height);
 

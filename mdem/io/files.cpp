@@ -15,7 +15,6 @@
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
-#include "io/descriptor.hpp"
 
 namespace ropewalk {
 namespace {
@@ -96,9 +95,14 @@ InputError file_error(const std::string& path, const char* what, int code) {
   return InputError({path, 0, ""}, fmt::format("{}: {}", what, std::strerror(code)), remedy_for(code));
 }
 
+Descriptor opened_to_read(const std::string& path) {
+  Descriptor file(uninterrupted([&] { return ::open(path.c_str(), O_RDONLY | O_CLOEXEC); }));
+  if (!file.open()) throw file_error(path, "cannot be opened", errno);
+  return file;
+}
+
 std::string read_file(const std::string& path) {
-  const Descriptor fd(uninterrupted([&] { return ::open(path.c_str(), O_RDONLY | O_CLOEXEC); }));
-  if (!fd.open()) throw file_error(path, "cannot be opened", errno);
+  const Descriptor fd = opened_to_read(path);
   struct stat status {};
   if (::fstat(fd.get(), &status) != 0) throw file_error(path, "cannot be read", errno);
   std::string content;

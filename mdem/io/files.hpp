@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 
+#include "io/descriptor.hpp"
 #include "model/error.hpp"
 
 namespace ropewalk {
@@ -31,6 +32,8 @@ void remove_parts(const std::string& directory);
 
 // "cannot be written: No space left on device", with a remedy. code: errno.
 InputError file_error(const std::string& path, const char* what, int code);
+// Throws InputError where the file cannot be opened.
+Descriptor opened_to_read(const std::string& path);
 
 // Throws InputError where a file that an option names exists, unless `force` is set.
 void refuse_existing(const std::string& path, const std::string& option, bool force);

@@ -37,12 +37,6 @@ std::string bytes_between(int fd, std::uint64_t from, std::uint64_t end) {
   return text;
 }
 
-Descriptor opened(const std::string& path) {
-  Descriptor file(uninterrupted([&] { return ::open(path.c_str(), O_RDONLY | O_CLOEXEC); }));
-  if (!file.open()) throw file_error(path, "cannot be opened", errno);
-  return file;
-}
-
 }  // namespace
 
 FileMark mark_of(std::string_view content) {
@@ -51,13 +45,13 @@ FileMark mark_of(std::string_view content) {
 
 FileMark mark_of(const std::string& path, std::uint64_t bytes, std::uint64_t tail_begin) {
   const std::uint64_t from = tail_from(bytes, tail_begin);
-  return {bytes, from, hash_hex(bytes_between(opened(path).get(), from, bytes))};
+  return {bytes, from, hash_hex(bytes_between(opened_to_read(path).get(), from, bytes))};
 }
 
 bool reaches(const std::string& path, const FileMark& mark) {
   if (::access(path.c_str(), F_OK) != 0 || mark.tail_from > mark.bytes) return false;
   struct stat status;
-  const Descriptor file = opened(path);
+  const Descriptor file = opened_to_read(path);
   if (::fstat(file.get(), &status) != 0 || static_cast<std::uint64_t>(status.st_size) < mark.bytes) return false;
   return hash_hex(bytes_between(file.get(), mark.tail_from, mark.bytes)) == mark.tail;
 }

@@ -11,7 +11,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* format = "ropewalk-limits-1";
+constexpr const char* limits_format = "ropewalk-limits-1";
 
 // One list for writer, reader and documentation, in the order of the file.
 template <class R, class Visit>
@@ -95,7 +95,7 @@ std::vector<OutputColumn> energy_keys() {
 
 std::string limits_json(const LimitsFile& file) {
   Json json;
-  json["format"] = format;
+  json["format"] = limits_format;
   json["limits"] = Json::array();
   json["refinements"] = Json::array();
   for (const LimitRecord& r : file.limits) visit_limit(r, into(json["limits"].emplace_back()));
@@ -114,7 +114,7 @@ LimitsFile limits_of_text(const std::string& text, const std::string& path) {
   LimitsFile file;
   try {
     const Json json = Json::parse(text);
-    if (json.at("format") != format) throw std::runtime_error("format");
+    if (json.at("format") != limits_format) throw std::runtime_error("format");
     for (const Json& entry : json.at("limits")) visit_limit(file.limits.emplace_back(), out_of(entry));
     for (const Json& entry : json.at("refinements")) {
       RefinementRecord& r = file.refinements.emplace_back();

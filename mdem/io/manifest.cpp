@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* format = "ropewalk-manifest-1";
+constexpr const char* manifest_format = "ropewalk-manifest-1";
 constexpr const char* remedy = "is this the manifest.json of a run? Restore it, or run the scene again";
 
 // One list for writer, reader and documentation, in the order of the file.
@@ -48,14 +48,14 @@ int line_of_byte(const std::string& text, std::size_t byte) {
 Json parse(const std::string& path, const std::string& text) {
   try {
     Json json = Json::parse(text);
-    if (json.is_object() && json.value("format", "") == format) return json;
+    if (json.is_object() && json.value("format", "") == manifest_format) return json;
   } catch (const Json::parse_error& e) {
     throw InputError({path, line_of_byte(text, e.byte), ""}, "is not JSON", remedy);
   } catch (const Json::out_of_range&) {
     throw InputError({path, 0, ""}, "holds a number that is too large", remedy);
   } catch (const Json::type_error&) {  // format is not a string
   }
-  throw InputError({path, 0, "format"}, fmt::format("\"{}\" is needed", format), remedy);
+  throw InputError({path, 0, "format"}, fmt::format("\"{}\" is needed", manifest_format), remedy);
 }
 
 template <class T>
@@ -83,14 +83,14 @@ T value_of(const std::string& path, const Json& json, const char* key) {
 
 std::string manifest_json(const Manifest& manifest) {
   Json json;
-  json["format"] = format;
+  json["format"] = manifest_format;
   visit(manifest, [&](const OutputColumn& key, const auto& value) { json[key.name] = value; });
   // A message may quote a file that is not UTF-8.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 std::vector<OutputColumn> manifest_keys() {
-  std::vector<OutputColumn> keys = {{"format", "", format}};
+  std::vector<OutputColumn> keys = {{"format", "", manifest_format}};
   const Manifest manifest;
   visit(manifest, [&](const OutputColumn& key, const auto&) { keys.push_back(key); });
   return keys;

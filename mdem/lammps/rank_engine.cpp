@@ -70,7 +70,7 @@ RankEngine::RankEngine(LMP::LAMMPS* lmp, std::shared_ptr<const LammpsModel> mode
   list_.others = ranks_.get();
 }
 
-std::string RankEngine::instructions() { return instruction_sets().front(); }
+std::string RankEngine::instructions() { return instructions_in_use(); }
 
 void RankEngine::take(const Stretch& of) {
   const LMP::Atom& atom = *lmp_->atom;

@@ -27,6 +27,9 @@ double arc_length(const std::vector<Vector3>& line);
 // Largest distance from the chord, nm. (From the first point, where the line is closed.)
 double chord_amplitude(const std::vector<Vector3>& line);
 
+// The part of v across a unit axis.
+inline Vector3 normal_part(const Vector3& v, const Vector3& axis) { return v - v.dot(axis) * axis; }
+
 // Turns about the axis of the helix, positive for a right-handed one; see the .cpp for the estimator.
 double chord_windings(const std::vector<Vector3>& line);
 

@@ -13,7 +13,6 @@ constexpr double on_axis = 0.25;  // of the spacing: the azimuth of a tube neare
 
 double angle_between(const Vector3& a, const Vector3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
-Vector3 normal_part(const Vector3& v, const Vector3& axis) { return v - v.dot(axis) * axis; }
 
 double twist_of_bond(const State& state, int i) {
   return bond_twist_angle(frame_of(state.orientation[i]), frame_of(state.orientation[i + 1]));

@@ -8,6 +8,8 @@
 #include <numeric>
 #include <utility>
 
+#include "observe/centre_line.hpp"
+
 namespace ropewalk {
 namespace {
 
@@ -20,7 +22,6 @@ struct Measure {
   double circumradius = 0, area = 0;
 };
 
-Vector3 normal_part(const Vector3& v, const Vector3& axis) { return v - v.dot(axis) * axis; }
 
 Measure measure(const Triangle& t, const std::vector<Vector3>& points, const std::vector<Vector3>& tangents) {
   const Vector3 axis = (tangents[t[0]] + tangents[t[1]] + tangents[t[2]]).normalized();

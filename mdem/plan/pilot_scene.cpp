@@ -17,7 +17,7 @@
 namespace ropewalk {
 namespace {
 
-constexpr int least_elements = 20, least_tubes = 7;
+constexpr int least_elements_of_pilot = 20, least_tubes = 7;
 constexpr double caution_if_shorter = 1.5, caution_if_fewer = 2;
 constexpr double near_enough = 0.85;  // of the time that is too much
 
@@ -39,7 +39,7 @@ class Shrinking {
   // All drives must do the same in a shorter time, and one of them at least has something to do.
   void shorten() {
     const int elements = elements_of(scene_);
-    const double part = std::max(std::sqrt(left_), static_cast<double>(least_elements) / elements);
+    const double part = std::max(std::sqrt(left_), static_cast<double>(least_elements_of_pilot) / elements);
     if (part > 0.9) return;
     const double length = std::round(part * elements) * scene_.element_length;
     std::vector<std::pair<std::string, double>> keys;

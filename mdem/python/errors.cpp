@@ -5,7 +5,7 @@
 namespace ropewalk::python {
 namespace {
 
-// Of ropewalk.errors; never given back, since the interpreter may end after this module.
+// Classes of ropewalk.errors; never given back, since the interpreter may end after this module.
 PyObject* input_error = nullptr;
 PyObject* numerical_error = nullptr;
 

@@ -22,7 +22,7 @@ void bind_run_files(py::module_& m) {
         values(r, c) = rows[static_cast<std::size_t>(r)].values()[static_cast<std::size_t>(c)];
     return out;
   });
-  // Of a run: GSD or the text dump, whichever is there.
+  // The frames of a run: GSD or the text dump, whichever is there.
   m.def("frames_file", [](const std::string& directory) { return RunDirectory{directory}.frames(); });
   m.def("manifest_json", [](const std::string& path) { return manifest_json(read_manifest(path)); });
   // A file, or the name of a shipped set: its path, name and grade.

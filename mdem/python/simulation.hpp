@@ -53,7 +53,7 @@ class SteppedScene {
   Simulation simulation_;
   std::atomic<bool> stepping_ = false;
   double seconds_of_a_step_ = patience;
-  // Of the present state, where they are known.
+  // Values of the present state, where they are known.
   std::optional<Energies> energies_;
   std::optional<std::vector<double>> measured_;
   Energies first_;           // potential at the start

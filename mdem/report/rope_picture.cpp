@@ -25,7 +25,7 @@ constexpr double layer_thickness = 1.2;  // radii
 constexpr double overlap = 0.25;         // of two pieces of a tube, radii
 constexpr double per_nm = 100;           // coordinates are whole hundredths of a nanometre
 
-struct Span {
+struct Extent {
   double low = std::numeric_limits<double>::infinity();
   double high = -std::numeric_limits<double>::infinity();
   void take(double v) {
@@ -95,7 +95,7 @@ void set_moments(std::vector<SeenTube>& tubes, const RopeView& view, std::size_t
 class DepthBuffer {
  public:
   DepthBuffer(const std::vector<SeenTube>& tubes, double radius) : radius_(reach * radius) {
-    Span x, y;
+    Extent x, y;
     for (const SeenTube& tube : tubes)
       for (const Segment& s : tube)
         for (const Seen& p : {s.a, s.b}) x.take(p.x), y.take(p.y);
@@ -254,8 +254,8 @@ struct Painter {
   }
 };
 
-Span vertical_extent(const RopeView& view, const RopeCamera& camera, double radius) {
-  Span y;
+Extent vertical_extent(const RopeView& view, const RopeCamera& camera, double radius) {
+  Extent y;
   for (const auto& tube : view.tubes)
     for (const Vector3& p : tube)
       if (p.allFinite()) y.take(p.dot(camera.up));
@@ -429,7 +429,7 @@ namespace {
 
 // With its directions: left end, width, scale and colours.
 RopeCamera framed(RopeCamera c, const std::vector<RopeView>& views, double radius, double widest, double highest) {
-  Span x;
+  Extent x;
   double height = 1e-3;
   for (const RopeView& view : views) {
     for (const auto& tube : view.tubes)
@@ -478,7 +478,7 @@ double scale_bar_length(const RopeCamera& camera) {
 
 std::string rope_picture(const RopeView& view, const RopeCamera& camera, double radius, const std::string& name,
                          bool scale_bar) {
-  const Span y = vertical_extent(view, camera, radius);
+  const Extent y = vertical_extent(view, camera, radius);
   const double width = camera.width * camera.scale, height = y.size() * camera.scale;
   const double bar = scale_bar ? 24 : 0;
   std::string text = fmt::format(
@@ -518,7 +518,7 @@ std::string moment_bar(double moment_eV) {
 
 std::string rope_svg(const RopeView& view, double radius, double width) {
   RopeCamera camera = rope_camera({view}, radius, width - 20, width);
-  const Span y = vertical_extent(view, camera, radius);
+  const Extent y = vertical_extent(view, camera, radius);
   const bool coloured = camera.moment_eV > 0;
   const double rope = y.size() * camera.scale, height = rope + (coloured ? 62 : 44);
   const double left = 0.5 * (width - camera.width * camera.scale);

@@ -19,7 +19,7 @@ class StopWatch {
   void add(const LogRow& row);
   // Rows after this step did not happen.
   void cut(std::int64_t step);
-  // What is decided, in words; empty: nothing yet. `passed`: limits so far.
+  // The decision in words; empty: none yet. `passed`: limits so far.
   std::string decided(const std::vector<LimitRecord>& passed) const;
 
  private:

@@ -5,7 +5,7 @@
 namespace ropewalk {
 namespace {
 
-// Of one tube against a neighbour, per length.
+// The viscosity of one tube against a neighbour, per length.
 double viscosity_per_length(const ContactViscosity& viscosity, double element_length) {
   const int reach = static_cast<int>(viscosity.outer / element_length) + 1;
   double sum = 0;

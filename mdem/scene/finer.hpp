@@ -1,7 +1,7 @@
 // A scene with elements of half the length: what a run goes on with when its elements have become too long.
 //
-// What belongs to a length of tube stays where it is on the tube. Lengths are those that the tubes have, in whole
-// elements; a [[load]] on an element acts on both its halves; fixed and rotated elements are so with both halves.
+// Loads and properties of a length of tube stay where they are on the tube. Lengths are those that the tubes have, in
+// whole elements; a [[load]] on an element acts on both its halves; fixed and rotated elements are so with both halves.
 // The grips of [twist] are the end elements of the tubes as in any scene: the same ends, gripped half as long, a
 // quarter of a length farther out. How every other key goes with the length of an element stands with the key
 // (SceneKey::length_power): the halves share a force or couple, so that the total and its place are the same; nodes

@@ -1,34 +1,34 @@
 // The line law: one radial evaluation, the kernel for every instruction set and precision, its damping and its
 // list. It contains the kernel's source, whose inner functions no header shows: what is measured is what is
 // shipped.
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "bench/line_kernel.cpp"
-#include <hwy/foreach_target.h>
+#undef VEC_SOURCE
+#define VEC_SOURCE "bench/line_kernel.cpp"
+#include "sim/vectors/each_set-inl.hpp"
 //
 #include "sim/contact/line/kernel.cpp"
 // The source has named itself; the passes for the other instruction sets must come here.
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "bench/line_kernel.cpp"
+#undef VEC_SOURCE
+#define VEC_SOURCE "bench/line_kernel.cpp"
 
-HWY_BEFORE_NAMESPACE();
-namespace ropewalk::HWY_NAMESPACE {
+VEC_BEFORE_NAMESPACE();
+namespace ropewalk::VEC_SET {
 
 // u and du/dy of n squared distances, added up: `out` has two vectors' room. n is a multiple of 16.
 template <class Table>
-HWY_INLINE void radial_row(const Table& table, const typename Table::Value* X, std::size_t n,
+VEC_INLINE void radial_row(const Table& table, const typename Table::Value* X, std::size_t n,
                            typename Table::Value* out) {
   const typename Lanes<typename Table::Value>::D d;
-  auto us = hn::Zero(d), slopes = hn::Zero(d);
-  for (std::size_t i = 0; i < n; i += hn::Lanes(d)) {
-    using V = hn::Vec<typename Lanes<typename Table::Value>::D>;
-    const V at[1] = {hn::Load(d, X + i)};
+  auto us = ops::Zero(d), slopes = ops::Zero(d);
+  for (std::size_t i = 0; i < n; i += ops::Lanes(d)) {
+    using V = ops::Vec<typename Lanes<typename Table::Value>::D>;
+    const V at[1] = {ops::Load(d, X + i)};
     V u[1], slope[1];
     radial<true>(d, table, at, u, slope);
-    us = hn::Add(us, u[0]);
-    slopes = hn::Add(slopes, slope[0]);
+    us = ops::Add(us, u[0]);
+    slopes = ops::Add(slopes, slope[0]);
   }
-  hn::StoreU(us, d, out);
-  hn::StoreU(slopes, d, out + hn::Lanes(d));
+  ops::StoreU(us, d, out);
+  ops::StoreU(slopes, d, out + ops::Lanes(d));
 }
 
 void RadialMixed(const MixedTable& table, const float* X, std::size_t n, float* out) {
@@ -38,18 +38,18 @@ void RadialFull(const FullTable& table, const double* X, std::size_t n, double* 
   radial_row(table, X, n, out);
 }
 
-}  // namespace ropewalk::HWY_NAMESPACE
-HWY_AFTER_NAMESPACE();
+}  // namespace ropewalk::VEC_SET
+VEC_AFTER_NAMESPACE();
 
-#if HWY_ONCE
+#if VEC_ONCE
 #include "bench/line_count.hpp"
 #include "bench/support.hpp"
 #include "sim/contact/line/engine.hpp"
 #include "sim/threads/vector_unit.hpp"
 
 namespace ropewalk {
-HWY_EXPORT(RadialMixed);
-HWY_EXPORT(RadialFull);
+VEC_EXPORT(RadialMixed);
+VEC_EXPORT(RadialFull);
 }  // namespace ropewalk
 
 namespace ropewalk::bench {
@@ -82,7 +82,7 @@ void RadialTableFloat(benchmark::State& bench, const std::string& instructions) 
   const Distances<float> at;
   float out[32];
   for (auto _ : bench) {
-    HWY_DYNAMIC_DISPATCH(RadialMixed)(table, at.X, distances, out);
+    VEC_IN_USE(RadialMixed)(table, at.X, distances, out);
     benchmark::ClobberMemory();
   }
   set_ns(bench, "ns/evaluation", distances);
@@ -96,7 +96,7 @@ void RadialTableDouble(benchmark::State& bench, const std::string& instructions)
   const Distances<double> at;
   double out[16];
   for (auto _ : bench) {
-    HWY_DYNAMIC_DISPATCH(RadialFull)(table, at.X, distances, out);
+    VEC_IN_USE(RadialFull)(table, at.X, distances, out);
     benchmark::ClobberMemory();
   }
   set_ns(bench, "ns/evaluation", distances);
@@ -253,4 +253,4 @@ const bool registered = [] {
 
 }  // namespace
 }  // namespace ropewalk::bench
-#endif  // HWY_ONCE
+#endif  // VEC_ONCE

@@ -1,42 +1,41 @@
 // What this machine can do at most, for one thread: arithmetic (fused multiply-adds, products and sums where there
 // are none), lookups in a table held in registers, and transfer. The roofline that the kernels are held to.
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "bench/peak.cpp"
-#include <hwy/foreach_target.h>
+#undef VEC_SOURCE
+#define VEC_SOURCE "bench/peak.cpp"
+#include "sim/vectors/each_set-inl.hpp"
 //
-#include <hwy/highway.h>
+#include "sim/vectors/operations-inl.hpp"
 
 #include <cstddef>
 
-HWY_BEFORE_NAMESPACE();
-namespace ropewalk::bench::HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
+VEC_BEFORE_NAMESPACE();
+namespace ropewalk::bench::VEC_SET {
+namespace ops = vec::VEC_SET;
 
 // Lookups in 32 floats in two registers; 0 where an instruction set has none.
 std::size_t LookUp([[maybe_unused]] std::size_t rounds, [[maybe_unused]] const float* table,
                    [[maybe_unused]] float* out) {
-#if HWY_TARGET <= HWY_AVX3
+#if VEC_TARGET <= VEC_AVX512
   constexpr int chains = 12;  // independent, as in bench/machine_peak.cpp
-  const hn::CappedTag<float, 16> d;
-  const auto low = hn::LoadU(d, table), high = hn::LoadU(d, table + 16);
-  hn::Vec<decltype(d)> a[chains];
-  for (int k = 0; k < chains; ++k) a[k] = hn::Set(d, static_cast<float>(k));
+  const ops::CappedTag<float, 16> d;
+  const auto low = ops::LoadU(d, table), high = ops::LoadU(d, table + 16);
+  ops::Vec<decltype(d)> a[chains];
+  for (int k = 0; k < chains; ++k) a[k] = ops::Set(d, static_cast<float>(k));
   for (std::size_t r = 0; r < rounds; ++r)
     for (int k = 0; k < chains; ++k)
       a[k].raw = _mm512_permutex2var_ps(low.raw, _mm512_castps_si512(a[k].raw), high.raw);
-  for (int k = 1; k < chains; ++k) a[0] = hn::Add(a[0], a[k]);
-  hn::StoreU(a[0], d, out);
+  for (int k = 1; k < chains; ++k) a[0] = ops::Add(a[0], a[k]);
+  ops::StoreU(a[0], d, out);
   return rounds * chains * 16;
 #else
   return 0;
 #endif
 }
 
-}  // namespace ropewalk::bench::HWY_NAMESPACE
-HWY_AFTER_NAMESPACE();
+}  // namespace ropewalk::bench::VEC_SET
+VEC_AFTER_NAMESPACE();
 
-#if HWY_ONCE
-#include <hwy/aligned_allocator.h>
+#if VEC_ONCE
 
 #include "bench/machine_peak.hpp"
 #include "bench/support.hpp"
@@ -44,7 +43,7 @@ HWY_AFTER_NAMESPACE();
 
 namespace ropewalk::bench {
 
-HWY_EXPORT(LookUp);
+VEC_EXPORT(LookUp);
 
 namespace {
 
@@ -80,7 +79,7 @@ void PeakLookUp(benchmark::State& bench) {
   std::size_t entries = 0;
   for (auto _ : bench) {
     benchmark::DoNotOptimize(table);
-    entries = HWY_DYNAMIC_DISPATCH(LookUp)(10000, table, out);
+    entries = VEC_IN_USE(LookUp)(10000, table, out);
     benchmark::DoNotOptimize(out);
   }
   if (entries == 0) return bench.SkipWithError("no lookups in registers here");
@@ -91,7 +90,7 @@ BENCHMARK(PeakLookUp);
 // Argument: KiB of the three arrays together. Counts 24 bytes per entry, as STREAM does.
 void PeakTriad(benchmark::State& bench) {
   const auto n = static_cast<std::size_t>(bench.range(0)) * 1024 / 24 / 8 * 8;
-  const auto array = [&] { return hwy::AllocateAligned<double>(n); };
+  const auto array = [&] { return std::unique_ptr<double[], decltype(&std::free)>(static_cast<double*>(std::aligned_alloc(64, n * sizeof(double))), &std::free); };
   const auto a = array(), b = array(), c = array();
   std::fill(a.get(), a.get() + n, 1.0);
   std::fill(b.get(), b.get() + n, 2.0);
@@ -114,4 +113,4 @@ const bool registered = [] {
 
 }  // namespace
 }  // namespace ropewalk::bench
-#endif  // HWY_ONCE
+#endif  // VEC_ONCE

@@ -18,12 +18,13 @@ namespace ropewalk {
 struct GsdHeader {
   std::uint64_t magic = 0x65DF65DF65DF65DF;
   std::uint64_t index_location = 0, index_allocated = 0;  // bytes, entries
-  std::uint64_t names_location = 0, names_allocated = 0;  // bytes, slots of 64 bytes
+  std::uint64_t names_location = 0, names_allocated = 0;  // bytes, slots
   std::uint32_t schema_version = 1 << 16 | 4;
   std::uint32_t version = 2 << 16;
   char application[64] = {}, schema[64] = {}, reserved[80] = {};
 };
 static_assert(sizeof(GsdHeader) == 256);
+inline constexpr std::uint64_t slot_bytes = 64;  // of a name
 
 // Where a chunk is: rows times columns of a type. Entries of the index rise by frame, then by name; one with
 // location 0 is free.

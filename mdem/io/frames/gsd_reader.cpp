@@ -17,7 +17,6 @@ namespace ropewalk {
 namespace {
 
 constexpr const char* damaged = "the file was changed or damaged; restore it, or run the scene again";
-constexpr std::uint64_t slot_bytes = 64;
 
 std::uint64_t bytes_of(const GsdEntry& e) { return e.rows * e.columns * gsd_type_bytes[e.type]; }
 std::uint64_t end_of(const GsdEntry& e) { return static_cast<std::uint64_t>(e.location) + bytes_of(e); }
@@ -30,21 +29,15 @@ bool lies_within(const GsdEntry& e, std::uint64_t size) {
   return e.rows <= (size - location) / e.columns / gsd_type_bytes[e.type];
 }
 
-Descriptor opened(const std::string& path) {
-  Descriptor file(uninterrupted([&] { return ::open(path.c_str(), O_RDONLY | O_CLOEXEC); }));
-  if (!file.open()) throw file_error(path, "cannot be opened", errno);
-  return file;
-}
-
 }  // namespace
 
 bool is_gsd(const std::string& path) {
-  const Descriptor file = opened(path);
+  const Descriptor file = opened_to_read(path);
   std::uint64_t magic = 0;
   return ::pread(file.get(), &magic, sizeof magic, 0) == sizeof magic && magic == GsdHeader().magic;
 }
 
-GsdReader::GsdReader(const std::string& path) : path_(path), file_(opened(path)) {
+GsdReader::GsdReader(const std::string& path) : path_(path), file_(opened_to_read(path)) {
   struct stat status;
   if (::fstat(file_.get(), &status) != 0) throw file_error(path, "cannot be read", errno);
   size_ = static_cast<std::uint64_t>(status.st_size);

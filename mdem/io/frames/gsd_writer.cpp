@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t slot_bytes = 64, names_slots = 16;
+constexpr std::uint64_t names_slots = 16;
 constexpr std::uint64_t chunks_of_a_frame = 5 + colour_columns.size();  // those that change, and the colours
 constexpr std::uint64_t spare_frames = 64, most_expected = 4096;        // a long run moves its index
 

@@ -28,7 +28,7 @@ struct Fire {
 
   // nm: no element moves farther in one step.
   static double farthest(double radius) { return 0.05 * radius; }
-  // Of forces and torques, in steps.
+  // Steps between two checks of forces and torques.
   static constexpr int check_every = 10;
 };
 

@@ -28,7 +28,7 @@ struct Normals {
 namespace ropewalk {
 namespace {
 
-// Of the elements first .. first + group - 1.
+// Draws the numbers of the elements first .. first + group - 1.
 void draw(std::uint64_t seed, std::int64_t step, int part, std::ptrdiff_t first, Normals& out) {
   double radial[3][group], angular[3][group];
   const auto low = static_cast<std::uint32_t>(step), high = static_cast<std::uint32_t>(step >> 32);

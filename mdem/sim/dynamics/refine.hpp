@@ -17,10 +17,10 @@
 // become 2 n - 1 of phi/2, since half a length more of the tube is now free to twist.
 //
 // Velocities are those of the same map under the motion of the coarse elements, so that rigid motions stay what
-// they are. Then each tube is given the rigid motion that makes its linear and angular momentum those of before: of
-// all changes that do so this is the one of least kinetic energy. Mass is kept as it is. Energy is not: the finer
-// chain is another model, and has more bonds; the caller reports the difference. Of thermal motion the waves that
-// only the finer chain has start cold.
+// they are. Then each tube is given the rigid motion that makes its linear and angular momentum those of the
+// coarse one: of all changes that do so this is the one of least kinetic energy. Mass is kept as it is. Energy is
+// not: the finer chain is another model, and has more bonds; the caller reports the difference. Waves of thermal
+// motion that only the finer chain has start cold.
 //
 // Bends below 180 degrees, twists within (-180, 180] degrees per bond. Units nm, ps, eV.
 // Source: shape functions of the Timoshenko element, J. S. Przemieniecki, Theory of Matrix Structural Analysis

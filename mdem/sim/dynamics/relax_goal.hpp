@@ -1,4 +1,4 @@
-// What a relaxation has to reach, what it came to, and where it stands.
+// The goal of a relaxation, its result, and where it stands.
 #pragma once
 
 #include <cstdint>

@@ -100,8 +100,8 @@ double bond_damping(const TubeType& type, const BondDamping& damping, const Stat
   return power;
 }
 
-// What the bonds of a tube, of which there are so many here, do to the elements from .. to - 1, the first one's at
-// 0: bond i acts on the elements i and i + 1.
+// Collects the action of `bonds` bonds of a tube on the elements from .. to - 1, numbered from the first bond's element:
+// bond i acts on the elements i and i + 1.
 void collect_bonds(const Column& on_i, double sign_i, const Column& on_j,
                    std::ptrdiff_t bonds, std::ptrdiff_t from, std::ptrdiff_t to, double* out) {
   const double *a = on_i.data(), *b = on_j.data();

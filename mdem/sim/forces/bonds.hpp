@@ -6,7 +6,7 @@
 
 namespace ropewalk {
 
-// What the bonds follow from.
+// The input of the bonds.
 struct BondInput {
   const Topology& topology;
   const BondDamping& damping;

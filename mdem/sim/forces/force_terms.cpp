@@ -10,12 +10,12 @@
 namespace ropewalk {
 namespace {
 
-void add_to(TermSum& all, const TermSum& one) {
+void add_sum(TermSum& all, const TermSum& one) {
   all.energy += one.energy;
   all.power += one.power;
 }
 
-bool same(const Damping& a, const Damping& b) {
+bool same_terms(const Damping& a, const Damping& b) {
   return a.local == b.local && a.contact.eta == b.contact.eta && a.contact.inner == b.contact.inner &&
          a.contact.outer == b.contact.outer;
 }
@@ -56,7 +56,7 @@ std::vector<TermMemory> memories_of(const std::vector<double>& numbers, std::siz
 }
 
 bool ForceTerms::use(const Interaction& in) {
-  if (copied_ == in.terms && same(damping_, in.damping)) return false;
+  if (copied_ == in.terms && same_terms(damping_, in.damping)) return false;
   copied_ = in.terms;
   damping_ = in.damping;
   terms_.clear();
@@ -99,8 +99,8 @@ void ForceTerms::sum_up(Forces& out) const {
   out.term_energy.assign(copied_.size(), 0);
   for (std::size_t k = 0; k < terms_.size(); ++k) {
     TermSum all;
-    for (const TermSum& sum : terms_[k].of_part) add_to(all, sum);
-    for (const TermSum& sum : terms_[k].of_chunk) add_to(all, sum);
+    for (const TermSum& sum : terms_[k].of_part) add_sum(all, sum);
+    for (const TermSum& sum : terms_[k].of_chunk) add_sum(all, sum);
     out.energy.terms += all.energy;
     out.damping_power += all.power;
     if (k < copied_.size()) out.term_energy[k] = all.energy;

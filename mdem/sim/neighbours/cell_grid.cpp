@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "sim/neighbours/cell_grid.cpp"
-#include <hwy/foreach_target.h>
+#undef VEC_SOURCE
+#define VEC_SOURCE "sim/neighbours/cell_grid.cpp"
+#include "sim/vectors/each_set-inl.hpp"
 //
-#include <hwy/highway.h>
+#include "sim/vectors/operations-inl.hpp"
 
 #ifndef ROPEWALK_CELL_SEARCH
 #define ROPEWALK_CELL_SEARCH
@@ -28,38 +28,38 @@ struct CellSearch {
 }  // namespace ropewalk
 #endif
 
-HWY_BEFORE_NAMESPACE();
-namespace ropewalk::HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
+VEC_BEFORE_NAMESPACE();
+namespace ropewalk::VEC_SET {
+namespace ops = vec::VEC_SET;
 
 // Without branches on what is near: a guess would be wrong too often. A vector more than what is found is written.
 std::size_t FindNear(const CellSearch& s, const MemberRange* first, const MemberRange* last, int* found) {
-  const hn::ScalableTag<float> d;
-  const hn::RebindToSigned<decltype(d)> di;
-  const int lanes = static_cast<int>(hn::Lanes(d));
-  const auto x = hn::Set(d, s.at_x), y = hn::Set(d, s.at_y), z = hn::Set(d, s.at_z), reach2 = hn::Set(d, s.reach2);
-  const auto after = hn::Set(di, s.after);
+  const ops::ScalableTag<float> d;
+  const ops::RebindToSigned<decltype(d)> di;
+  const int lanes = static_cast<int>(ops::Lanes(d));
+  const auto x = ops::Set(d, s.at_x), y = ops::Set(d, s.at_y), z = ops::Set(d, s.at_z), reach2 = ops::Set(d, s.reach2);
+  const auto after = ops::Set(di, s.after);
   std::size_t count = 0;
   for (const MemberRange* r = first; r != last; ++r)
     for (int k = r->begin; k < r->end; k += lanes) {
-      const auto dx = hn::Sub(hn::LoadU(d, s.x + k), x), dy = hn::Sub(hn::LoadU(d, s.y + k), y),
-                 dz = hn::Sub(hn::LoadU(d, s.z + k), z);
-      const auto member = hn::LoadU(di, s.member + k);
-      const auto near = hn::Lt(hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz))), reach2);
-      const auto met = hn::And(hn::And(hn::RebindMask(di, near), hn::Gt(member, after)),
-                               hn::FirstN(di, static_cast<std::size_t>(r->end - k)));
-      count += hn::CompressStore(member, met, di, found + count);
+      const auto dx = ops::Sub(ops::LoadU(d, s.x + k), x), dy = ops::Sub(ops::LoadU(d, s.y + k), y),
+                 dz = ops::Sub(ops::LoadU(d, s.z + k), z);
+      const auto member = ops::LoadU(di, s.member + k);
+      const auto near = ops::Lt(ops::MulAdd(dx, dx, ops::MulAdd(dy, dy, ops::Mul(dz, dz))), reach2);
+      const auto met = ops::And(ops::And(ops::RebindMask(di, near), ops::Gt(member, after)),
+                               ops::FirstN(di, static_cast<std::size_t>(r->end - k)));
+      count += ops::CompressStore(member, met, di, found + count);
     }
   return count;
 }
 
-}  // namespace ropewalk::HWY_NAMESPACE
-HWY_AFTER_NAMESPACE();
+}  // namespace ropewalk::VEC_SET
+VEC_AFTER_NAMESPACE();
 
-#if HWY_ONCE
+#if VEC_ONCE
 namespace ropewalk {
 
-HWY_EXPORT(FindNear);
+VEC_EXPORT(FindNear);
 
 namespace {
 
@@ -156,7 +156,7 @@ std::size_t CellGrid::find(int i, int after, std::vector<int>& found) const {
   const auto from_origin = [&](std::size_t a) { return static_cast<float>(place_[a][own] - origin_[a]); };
   const CellSearch search{x_.data(),      y_.data(),      z_.data(), member_.data(), from_origin(0),
                           from_origin(1), from_origin(2), search2_,  after};
-  int* const last = found.data() + HWY_DYNAMIC_DISPATCH(FindNear)(search, ranges, end, found.data());
+  int* const last = found.data() + VEC_IN_USE(FindNear)(search, ranges, end, found.data());
   const auto too_far = [&](int j) {
     const auto other = static_cast<std::size_t>(j);
     double distance2 = 0;
@@ -167,4 +167,4 @@ std::size_t CellGrid::find(int i, int after, std::vector<int>& found) const {
 }
 
 }  // namespace ropewalk
-#endif  // HWY_ONCE
+#endif  // VEC_ONCE

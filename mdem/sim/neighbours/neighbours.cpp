@@ -12,7 +12,7 @@
 namespace ropewalk {
 namespace {
 
-// Of one element's neighbours in rising order; a span of an earlier element is never made longer.
+// Appends the spans of one element's neighbours, in rising order; a span of an earlier element is never made longer.
 void append_spans(const int* number, std::size_t count, std::vector<ElementSpan>& spans) {
   for (std::size_t k = 0; k < count; ++k) {
     if (k > 0 && number[k] == spans.back().end)

@@ -67,7 +67,7 @@ class NeighbourList {
   // Whether it has to be built anew by the change since the last build: that of all own elements. All processes
   // must call it, and likewise build().
   bool stale(const Change& change);
-  // Of the elements begin .. end - 1; infinite where a place is not finite.
+  // The change of the elements begin .. end - 1; infinite where a place is not finite.
   Change change(const State& state, std::ptrdiff_t begin, std::ptrdiff_t end) const;
   void build(const Topology& topology, const State& state);
   void build(const Topology& topology, Vec3Array position, Vec3Array axis);

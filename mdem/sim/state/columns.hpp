@@ -44,7 +44,7 @@ class ColumnBlock {
  protected:
   using Columns = std::array<Column*, N>;
 
-  // What the columns hold stays; new numbers are 0. Memory moves only where there is too little.
+  // The columns keep their numbers; new numbers are 0. Memory moves only where there is too little.
   void resize(const Columns& columns, std::size_t n) {
     if (n > stride_) {
       const std::size_t stride = (n + 3) & ~std::size_t{1};  // as apart as the heap would put them

@@ -22,7 +22,7 @@ inline constexpr int cached_elements = 128;
 // Smallest number of elements for which a team of threads saves time.
 inline constexpr std::size_t parallel_from = 512;
 
-// Of vectors.
+// An array of vectors, by components.
 struct Vec3Array : ColumnBlock<3> {
   Column x, y, z;
 

@@ -3,10 +3,14 @@
 namespace ropewalk {
 namespace {
 
+constexpr const char* names[] = {"baseline", "AVX2", "AVX512"};
+
 VectorUnit best_unit() {
-#ifdef ROPEWALK_HAS_VECTOR_UNITS
+#if defined(__x86_64__)
   __builtin_cpu_init();
+#ifndef __SANITIZE_ADDRESS__
   if (__builtin_cpu_supports("x86-64-v4")) return VectorUnit::v4;
+#endif
   if (__builtin_cpu_supports("x86-64-v3")) return VectorUnit::v3;
 #endif
   return VectorUnit::base;
@@ -15,5 +19,27 @@ VectorUnit best_unit() {
 }  // namespace
 
 VectorUnit vector_unit_in_use = best_unit();
+
+std::vector<std::string> instruction_sets() {
+  std::vector<std::string> sets;
+  for (int unit = static_cast<int>(best_unit()); unit >= 0; --unit) sets.emplace_back(names[unit]);
+  return sets;
+}
+
+std::string instructions_in_use() { return names[static_cast<int>(vector_unit_in_use)]; }
+
+bool use_instructions(const std::string& name) {
+  const VectorUnit best = best_unit();
+  if (name.empty()) {
+    vector_unit_in_use = best;
+    return true;
+  }
+  for (int unit = 0; unit <= static_cast<int>(best); ++unit)
+    if (name == names[unit]) {
+      vector_unit_in_use = static_cast<VectorUnit>(unit);
+      return true;
+    }
+  return false;
+}
 
 }  // namespace ropewalk

@@ -1,12 +1,15 @@
-// Loops over elements outside the contact kernels, compiled for several vector units: for every x86-64, and for
-// those of the levels v3 (AVX2) and v4 (AVX-512). One binary runs on all of them, and sums have other last digits
-// on each; so that the unit in use is one that can be chosen, and not the loader's choice.
+// The vector unit in use: loops over elements and the contact kernels (sim/vectors/base.hpp) are compiled for every
+// x86-64, and for those of the levels v3 (AVX2) and v4 (AVX-512). One binary runs on all of them. Sums have other last
+// digits on each, so that the unit can be chosen.
 //
-// Such loops stand in a file of their own, NAME_loops-inl.hpp, in namespace ROPEWALK_UNIT:
+// Loops stand in a file of their own, NAME_loops-inl.hpp, in namespace ROPEWALK_UNIT:
 //   #define ROPEWALK_LOOPS "NAME_loops-inl.hpp"
 //   #include "sim/threads/for_each_vector_unit-inl.hpp"
 //   ... ROPEWALK_IN_USE(function)(arguments)
 #pragma once
+
+#include <string>
+#include <vector>
 
 namespace ropewalk {
 
@@ -14,6 +17,12 @@ enum class VectorUnit { base, v3, v4 };
 
 // The best of the processor, until another one is chosen.
 extern VectorUnit vector_unit_in_use;
+
+// Names of the units that this machine has, best first.
+std::vector<std::string> instruction_sets();
+std::string instructions_in_use();
+// Chooses a unit by its name; "" chooses the best. Returns false where there is none of that name.
+bool use_instructions(const std::string& name);
 
 }  // namespace ropewalk
 

@@ -3,7 +3,7 @@ namespace ropewalk {
 namespace ROPEWALK_UNIT {
 namespace {
 
-// What a buffer holds for elements of a tube, element j at j + shift.
+// Adds a buffer's forces on elements of a tube, element j at j + shift.
 template <class T>
 __attribute__((always_inline)) inline void add_all(const BufferRange& of, const ContactBuffer<T>& b,
                                                    const ForceRows& sums) {

@@ -11,6 +11,7 @@
 #include "sim/contact/line/radial_table.hpp"
 #include "sim/contact/line/written_ranges.hpp"
 #include "sim/contact/shared/buffer.hpp"
+#include "sim/threads/vector_unit.hpp"
 #include "sim/threads/work_shares.hpp"
 
 namespace ropewalk {
@@ -105,11 +106,6 @@ void line_contact(const LineKernelInput<MixedTable, std::int32_t>& in, const Lin
                   LineWork<float>& work, ContactBuffer<float>& out);
 void line_contact(const LineKernelInput<FullTable, double>& in, const LineChunk& chunk, LineWork<double>& work,
                   ContactBuffer<double>& out);
-// Instruction sets of the kernel that this machine can run, best first; use_instructions limits the choice to one
-// of them ("" lifts the limit) and returns false where there is none of that name.
-std::vector<std::string> instruction_sets();
-bool use_instructions(const std::string& name);
-inline std::string instructions_in_use() { return instruction_sets().front(); }
 
 class LineEngine : public ContactEngine {
  public:

@@ -293,9 +293,9 @@ void LineList::find_ranges(const Topology& topology, LineChunk& chunk) {
 
 namespace {
 
-class NearPairs : public ChunkPairs {
+class LinePairs : public ChunkPairs {
  public:
-  NearPairs(const LineList& list, const LineChunk& chunk) : list_(list), chunk_(chunk) {}
+  LinePairs(const LineList& list, const LineChunk& chunk) : list_(list), chunk_(chunk) {}
 
   int entries() const override { return chunk_.elements; }
   void each(const std::function<void(const NearElements&)>& visit) const override {
@@ -350,7 +350,7 @@ void LineList::build(const Topology& topology, const Interaction& in, const Neig
   for (std::size_t c = 0; c < chunks_.size(); ++c)
     if (!chunks_[c].own.empty()) {
       find_ranges(topology, chunks_[c]);
-      if (pairs) pairs->list(c, NearPairs(*this, chunks_[c]));
+      if (pairs) pairs->list(c, LinePairs(*this, chunks_[c]));
     }
   largest_ = {};
   for (const LineChunk& chunk : chunks_)

@@ -2,16 +2,16 @@
 
 #include <algorithm>
 
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "sim/contact/line/nodes.cpp"
-#include <hwy/foreach_target.h>
+#undef VEC_SOURCE
+#define VEC_SOURCE "sim/contact/line/nodes.cpp"
+#include "sim/vectors/each_set-inl.hpp"
 //
-#include <hwy/highway.h>
+#include "sim/vectors/operations-inl.hpp"
 
-HWY_BEFORE_NAMESPACE();
-namespace ropewalk::HWY_NAMESPACE {
+VEC_BEFORE_NAMESPACE();
+namespace ropewalk::VEC_SET {
 namespace nodes {
-namespace hn = hwy::HWY_NAMESPACE;
+namespace ops = vec::VEC_SET;
 
 constexpr int block = 32;  // elements whose positions or sums stay in the first cache
 
@@ -22,16 +22,16 @@ template <class C>
 constexpr double rounds = sizeof(C) == 4 ? 103079215104.5 : 0.0;
 
 template <class D>
-HWY_INLINE void store(D, hn::Vec<D> v, std::int32_t* to) {
-  const hn::RebindToUnsigned<D> bits;
-  const hn::Rebind<std::uint32_t, D> low;
-  const hn::Rebind<std::int32_t, D> coordinate;
-  const auto number = hn::TruncateTo(low, hn::ShiftRight<behind_point>(hn::BitCast(bits, v)));
-  hn::StoreU(hn::BitCast(coordinate, number), coordinate, to);
+VEC_INLINE void store(D, ops::Vec<D> v, std::int32_t* to) {
+  const ops::RebindToUnsigned<D> bits;
+  const ops::Rebind<std::uint32_t, D> low;
+  const ops::Rebind<std::int32_t, D> coordinate;
+  const auto number = ops::TruncateTo(low, ops::ShiftRight<behind_point>(ops::BitCast(bits, v)));
+  ops::StoreU(ops::BitCast(coordinate, number), coordinate, to);
 }
 template <class D>
-HWY_INLINE void store(D d, hn::Vec<D> v, double* to) {
-  hn::StoreU(v, d, to);
+VEC_INLINE void store(D d, ops::Vec<D> v, double* to) {
+  ops::StoreU(v, d, to);
 }
 
 // One component of the centres and of the axes of consecutive elements, in units of the nodes.
@@ -39,7 +39,7 @@ struct Component {
   double centre[block], along[block];
 
   template <class C>
-  HWY_INLINE void load(const double* x, const double* n, double per_unit, int elements) {
+  VEC_INLINE void load(const double* x, const double* n, double per_unit, int elements) {
     for (int i = 0; i < elements; ++i) {
       centre[i] = x[i] * per_unit + rounds<C>;
       along[i] = n[i] * per_unit;
@@ -50,39 +50,39 @@ struct Component {
 // The nodes of an element fill some vectors, but for lanes at the end of the last one: the next element's nodes are
 // stored over these. A count known to the compiler keeps the places in registers.
 template <int known, class D, class C>
-HWY_INLINE void position_row(D d, const Component (&of)[3], int elements, int each, const double* s,
+VEC_INLINE void position_row(D d, const Component (&of)[3], int elements, int each, const double* s,
                              C* const (&to)[3]) {
-  constexpr int lanes = static_cast<int>(hn::MaxLanes(D()));
+  constexpr int lanes = static_cast<int>(ops::MaxLanes(D()));
   const int vectors = known > 0 ? known : (each + lanes - 1) / lanes;
   for (int i = 0, at = 0; i < elements; ++i, at += each)
     for (int c = 0; c < 3; ++c) {
-      const auto centre = hn::Set(d, of[c].centre[i]), along = hn::Set(d, of[c].along[i]);
+      const auto centre = ops::Set(d, of[c].centre[i]), along = ops::Set(d, of[c].along[i]);
       for (int v = 0; v < vectors; ++v)
-        store(d, hn::MulAdd(hn::LoadU(d, s + v * lanes), along, centre), to[c] + at + v * lanes);
+        store(d, ops::MulAdd(ops::LoadU(d, s + v * lanes), along, centre), to[c] + at + v * lanes);
     }
 }
 
 template <class C>
-HWY_INLINE void position_row(const Component (&of)[3], int elements, int each, const double* s, C* const (&to)[3]) {
-  const hn::CappedTag<double, 4> narrow;
-  const hn::CappedTag<double, NodeOffsets::padding> wide;
-  if (each <= static_cast<int>(hn::MaxLanes(narrow))) return position_row<1>(narrow, of, elements, each, s, to);
-  if (each <= static_cast<int>(hn::MaxLanes(wide))) return position_row<1>(wide, of, elements, each, s, to);
+VEC_INLINE void position_row(const Component (&of)[3], int elements, int each, const double* s, C* const (&to)[3]) {
+  const ops::CappedTag<double, 4> narrow;
+  const ops::CappedTag<double, NodeOffsets::padding> wide;
+  if (each <= static_cast<int>(ops::MaxLanes(narrow))) return position_row<1>(narrow, of, elements, each, s, to);
+  if (each <= static_cast<int>(ops::MaxLanes(wide))) return position_row<1>(wide, of, elements, each, s, to);
   position_row<0>(wide, of, elements, each, s, to);
 }
 
 template <class What>
-HWY_INLINE void for_ranges(const NodeInput& of, const What& what) {
+VEC_INLINE void for_ranges(const NodeInput& of, const What& what) {
   for (const WrittenRange& range : of.chunk.ranges)
     what(range, of.offsets[static_cast<std::size_t>(of.tube_type[static_cast<std::size_t>(range.tube)])]);
 }
 
 template <class C>
-HWY_INLINE void position(const NodeInput& of, double per_unit, NodePositions<C>& out) {
+VEC_INLINE void position(const NodeInput& of, double per_unit, NodePositions<C>& out) {
   Component component[3];
   const double *x[] = {of.position.x.data(), of.position.y.data(), of.position.z.data()},
                *n[] = {of.axis.x.data(), of.axis.y.data(), of.axis.z.data()};
-  for_ranges(of, [&](const WrittenRange& range, const NodeOffsets& offsets) HWY_ATTR {
+  for_ranges(of, [&](const WrittenRange& range, const NodeOffsets& offsets) VEC_ATTR {
     for (int from = range.begin; from < range.end; from += block) {
       const int elements = std::min(block, range.end - from), first = range.first_node(from);
       for (int c = 0; c < 3; ++c) component[c].load<C>(x[c] + from, n[c] + from, per_unit, elements);
@@ -94,7 +94,7 @@ HWY_INLINE void position(const NodeInput& of, double per_unit, NodePositions<C>&
 
 // The sum of each element's nodes and its first moment, in nodes, from the middle. `known` as above.
 template <int known, class T>
-HWY_INLINE void moments_of(const T* x, int elements, int count, T* sum, T* moment) {
+VEC_INLINE void moments_of(const T* x, int elements, int count, T* sum, T* moment) {
   const int nodes = known > 0 ? known : count;
   const T middle = static_cast<T>(0.5) * static_cast<T>(nodes - 1);
   for (int i = 0; i < elements; ++i, x += nodes) {
@@ -108,7 +108,7 @@ HWY_INLINE void moments_of(const T* x, int elements, int count, T* sum, T* momen
   }
 }
 template <class T>
-HWY_INLINE void moments(const T* x, int elements, int count, T* sum, T* moment) {
+VEC_INLINE void moments(const T* x, int elements, int count, T* sum, T* moment) {
   if (count == 4) return moments_of<4>(x, elements, count, sum, moment);
   if (count == 5) return moments_of<5>(x, elements, count, sum, moment);
   moments_of<0>(x, elements, count, sum, moment);
@@ -124,7 +124,7 @@ struct ForceComponent {
   const T* m1;
 };
 template <class T>
-HWY_INLINE void add_component(const ForceComponent<T>& c, double spacing, int elements, T* force, T* torque) {
+VEC_INLINE void add_component(const ForceComponent<T>& c, double spacing, int elements, T* force, T* torque) {
   for (int i = 0; i < elements; ++i) {
     force[i] += c.f[i];
     torque[i] +=
@@ -133,9 +133,9 @@ HWY_INLINE void add_component(const ForceComponent<T>& c, double spacing, int el
 }
 
 template <class T>
-HWY_INLINE void add_forces(const NodeInput& of, const NodeForces<T>& forces, ContactBuffer<T>& out) {
+VEC_INLINE void add_forces(const NodeInput& of, const NodeForces<T>& forces, ContactBuffer<T>& out) {
   T fx[block], fy[block], fz[block], mx[block], my[block], mz[block];
-  for_ranges(of, [&](const WrittenRange& range, const NodeOffsets& offsets) HWY_ATTR {
+  for_ranges(of, [&](const WrittenRange& range, const NodeOffsets& offsets) VEC_ATTR {
     for (int from = range.begin; from < range.end; from += block) {
       const int elements = std::min(block, range.end - from), at = range.first_node(from),
                 each = range.nodes_per_element;
@@ -167,28 +167,28 @@ void AddDoubles(const NodeInput& of, const NodeForces<double>& forces, ContactBu
   nodes::add_forces(of, forces, out);
 }
 
-}  // namespace ropewalk::HWY_NAMESPACE
-HWY_AFTER_NAMESPACE();
+}  // namespace ropewalk::VEC_SET
+VEC_AFTER_NAMESPACE();
 
-#if HWY_ONCE
+#if VEC_ONCE
 namespace ropewalk {
 
-HWY_EXPORT(PositionUnits);
-HWY_EXPORT(PositionNm);
-HWY_EXPORT(AddFloats);
-HWY_EXPORT(AddDoubles);
+VEC_EXPORT(PositionUnits);
+VEC_EXPORT(PositionNm);
+VEC_EXPORT(AddFloats);
+VEC_EXPORT(AddDoubles);
 
 void position_nodes(const NodeInput& of, double unit, NodePositions<std::int32_t>& out) {
-  HWY_DYNAMIC_DISPATCH(PositionUnits)(of, unit, out);
+  VEC_IN_USE(PositionUnits)(of, unit, out);
 }
 void position_nodes(const NodeInput& of, double unit, NodePositions<double>& out) {
-  HWY_DYNAMIC_DISPATCH(PositionNm)(of, unit, out);
+  VEC_IN_USE(PositionNm)(of, unit, out);
 }
 void add_node_forces(const NodeInput& of, const NodeForces<float>& forces, ContactBuffer<float>& out) {
-  HWY_DYNAMIC_DISPATCH(AddFloats)(of, forces, out);
+  VEC_IN_USE(AddFloats)(of, forces, out);
 }
 void add_node_forces(const NodeInput& of, const NodeForces<double>& forces, ContactBuffer<double>& out) {
-  HWY_DYNAMIC_DISPATCH(AddDoubles)(of, forces, out);
+  VEC_IN_USE(AddDoubles)(of, forces, out);
 }
 
 NodeOffsets node_offsets(int count, double length) {
@@ -200,4 +200,4 @@ NodeOffsets node_offsets(int count, double length) {
 }
 
 }  // namespace ropewalk
-#endif  // HWY_ONCE
+#endif  // VEC_ONCE

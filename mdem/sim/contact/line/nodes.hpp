@@ -53,7 +53,7 @@ struct NodeInput {
   const Vec3Array& axis;
 };
 
-// With the widest vectors that the machine has; `unit` (nm) of the integers.
+// Uses the widest vectors that the machine has. `unit`: nm, of the integers.
 void position_nodes(const NodeInput& of, double unit, NodePositions<std::int32_t>& out);
 void position_nodes(const NodeInput& of, double unit, NodePositions<double>& out);
 // Adds what acts on the nodes to the buffer of the chunk.

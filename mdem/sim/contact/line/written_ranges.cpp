@@ -5,7 +5,7 @@
 namespace ropewalk {
 namespace {
 
-// What a chunk acts on, part by part of the tubes.
+// Calls `what` with the elements that a chunk acts on, part by part of the tubes.
 template <class What>
 void for_written(const TubeParts& parts, const LineChunk& chunk, const What& what) {
   for (const WrittenRange& range : chunk.ranges)

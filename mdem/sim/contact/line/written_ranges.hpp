@@ -19,7 +19,7 @@ class WrittenRanges {
 
   void list(const TubeParts& parts, const std::vector<LineChunk>& chunks);
 
-  // Of a part, in the order of the chunks.
+  // The ranges written in a part, in the order of the chunks.
   Span<Written> on(int part) const { return entries_of(part, begin_, written_); }
   // The blocks of parts that a chunk acts on, and how many chunks act on each.
   const std::vector<int>& blocks(std::size_t chunk) const { return blocks_[chunk]; }

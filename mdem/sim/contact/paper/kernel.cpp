@@ -9,16 +9,16 @@
 
 #include "sim/contact/paper/engine.hpp"
 
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "sim/contact/paper/kernel.cpp"
-#include <hwy/foreach_target.h>
+#undef VEC_SOURCE
+#define VEC_SOURCE "sim/contact/paper/kernel.cpp"
+#include "sim/vectors/each_set-inl.hpp"
 //
-#include <hwy/highway.h>
+#include "sim/vectors/operations-inl.hpp"
 
-HWY_BEFORE_NAMESPACE();
-namespace ropewalk::HWY_NAMESPACE {
+VEC_BEFORE_NAMESPACE();
+namespace ropewalk::VEC_SET {
 namespace paper {
-namespace hn = hwy::HWY_NAMESPACE;
+namespace ops = vec::VEC_SET;
 
 // Values of a pair that the loops hand on: the invariants (model/contact/paper.hpp), D and its derivatives, the
 // derivatives of U by D, r and c, and the force (eV/nm) and torque (eV) on the neighbour.
@@ -56,59 +56,59 @@ struct Centre {
   T n[3];
 };
 
-HWY_INLINE std::size_t length_of(const ElementSpan& span) { return static_cast<std::size_t>(span.end - span.begin); }
+VEC_INLINE std::size_t length_of(const ElementSpan& span) { return static_cast<std::size_t>(span.end - span.begin); }
 
 template <class T>
-HWY_INLINE void copy_span(const PaperElements<T>& from, const ElementSpan& span, std::size_t at, Block<T>& to) {
-  const hn::CappedTag<typename Block<T>::C, 8> dc;
-  const hn::CappedTag<T, 8> dt;
-  const std::size_t lanes = hn::Lanes(dt), end = static_cast<std::size_t>(span.end);
+VEC_INLINE void copy_span(const PaperElements<T>& from, const ElementSpan& span, std::size_t at, Block<T>& to) {
+  const ops::CappedTag<typename Block<T>::C, 8> dc;
+  const ops::CappedTag<T, 8> dt;
+  const std::size_t lanes = ops::Lanes(dt), end = static_cast<std::size_t>(span.end);
   const auto *x = from.x.data(), *y = from.y.data(), *z = from.z.data();
   const auto *nx = from.nx.data(), *ny = from.ny.data(), *nz = from.nz.data();
   for (auto j = static_cast<std::size_t>(span.begin); j < end; j += lanes, at += lanes) {
-    hn::StoreU(hn::LoadU(dc, x + j), dc, to.x[0] + at);
-    hn::StoreU(hn::LoadU(dc, y + j), dc, to.x[1] + at);
-    hn::StoreU(hn::LoadU(dc, z + j), dc, to.x[2] + at);
-    hn::StoreU(hn::LoadU(dt, nx + j), dt, to.n[0] + at);
-    hn::StoreU(hn::LoadU(dt, ny + j), dt, to.n[1] + at);
-    hn::StoreU(hn::LoadU(dt, nz + j), dt, to.n[2] + at);
+    ops::StoreU(ops::LoadU(dc, x + j), dc, to.x[0] + at);
+    ops::StoreU(ops::LoadU(dc, y + j), dc, to.x[1] + at);
+    ops::StoreU(ops::LoadU(dc, z + j), dc, to.x[2] + at);
+    ops::StoreU(ops::LoadU(dt, nx + j), dt, to.n[0] + at);
+    ops::StoreU(ops::LoadU(dt, ny + j), dt, to.n[1] + at);
+    ops::StoreU(ops::LoadU(dt, nz + j), dt, to.n[2] + at);
   }
 }
 
 // The forces on the elements of a run, the first of them at `first` in the chunk.
 template <class T>
-HWY_INLINE void add_span(const Block<T>& s, std::size_t at, std::size_t count, std::size_t first, T* to,
+VEC_INLINE void add_span(const Block<T>& s, std::size_t at, std::size_t count, std::size_t first, T* to,
                         std::size_t stride) {
-  const hn::CappedTag<T, 8> d;
-  const std::size_t lanes = hn::Lanes(d);
+  const ops::CappedTag<T, 8> d;
+  const std::size_t lanes = ops::Lanes(d);
   for (std::size_t m = 0; m < count; m += lanes) {
-    const auto wanted = hn::FirstN(d, count - m);
+    const auto wanted = ops::FirstN(d, count - m);
     T* out = to + first + m;
     for (int k = 0; k < 6; ++k, out += stride) {
-      const auto f = hn::IfThenElseZero(wanted, hn::LoadU(d, s.pair[fx + k] + at + m));
-      hn::StoreU(hn::Add(hn::LoadU(d, out), f), d, out);
+      const auto f = ops::IfThenElseZero(wanted, ops::LoadU(d, s.pair[fx + k] + at + m));
+      ops::StoreU(ops::Add(ops::LoadU(d, out), f), d, out);
     }
   }
 }
 
 // Pads the pairs to whole vectors with pairs so far apart that the law is zero.
 template <class T>
-HWY_INLINE std::size_t fill_up(Block<T>& s, std::size_t count, const Centre<T>& centre, double far) {
+VEC_INLINE std::size_t fill_up(Block<T>& s, std::size_t count, const Centre<T>& centre, double far) {
   using C = typename Block<T>::C;
-  const hn::CappedTag<C, 16> dc;
-  const hn::CappedTag<T, 16> dt;
+  const ops::CappedTag<C, 16> dc;
+  const ops::CappedTag<T, 16> dt;
   const std::size_t end = (count + Block<T>::lanes - 1) / Block<T>::lanes * Block<T>::lanes;
-  for (std::size_t m = count; m < end; m += hn::Lanes(dt))
+  for (std::size_t m = count; m < end; m += ops::Lanes(dt))
     for (int a = 0; a < 3; ++a) {
-      hn::StoreU(hn::Set(dc, static_cast<C>(centre.x[a] + (a == 0 ? far : 0))), dc, s.x[a] + m);
-      hn::StoreU(hn::Set(dt, centre.n[a]), dt, s.n[a] + m);
+      ops::StoreU(ops::Set(dc, static_cast<C>(centre.x[a] + (a == 0 ? far : 0))), dc, s.x[a] + m);
+      ops::StoreU(ops::Set(dt, centre.n[a]), dt, s.n[a] + m);
     }
   return end;
 }
 
 // Computes the invariants. Returns the smallest |c|.
 template <class T>
-HWY_INLINE T invariants(Block<T>& s, std::size_t count, const Centre<T>& centre, T unit) {
+VEC_INLINE T invariants(Block<T>& s, std::size_t count, const Centre<T>& centre, T unit) {
   const auto *x = s.x[0], *y = s.x[1], *z = s.x[2];
   const auto xi = centre.x[0], yi = centre.x[1], zi = centre.x[2];
   const T *nx = s.n[0], *ny = s.n[1], *nz = s.n[2];
@@ -138,7 +138,7 @@ HWY_INLINE T invariants(Block<T>& s, std::size_t count, const Centre<T>& centre,
 
 // Computes D and its derivatives. Returns the smallest D.
 template <bool blended, class T>
-HWY_INLINE T gaps(const PaperTerms<T>& law, Block<T>& s, std::size_t count) {
+VEC_INLINE T gaps(const PaperTerms<T>& law, Block<T>& s, std::size_t count) {
   const T *ir = s.pair[r], *ip = s.pair[p], *iq = s.pair[q], *ic = s.pair[c];
   T *od = s.pair[d], *od_r = s.pair[d_r], *od_p = s.pair[d_p], *od_q = s.pair[d_q], *od_c = s.pair[d_c];
   T least = ir[0];
@@ -157,7 +157,7 @@ HWY_INLINE T gaps(const PaperTerms<T>& law, Block<T>& s, std::size_t count) {
 
 // Computes the derivatives of U = factor * V. Returns the energy.
 template <class Powers, bool core, bool energies, class T>
-HWY_INLINE T wells(const PaperTerms<T>& law, Block<T>& s, std::size_t count) {
+VEC_INLINE T wells(const PaperTerms<T>& law, Block<T>& s, std::size_t count) {
   const T *id = s.pair[d], *ir = s.pair[r], *ic = s.pair[c];
   T *ou_d = s.pair[u_d], *ou_r = s.pair[u_r], *ou_c = s.pair[u_c];
   T energy = 0;
@@ -175,7 +175,7 @@ HWY_INLINE T wells(const PaperTerms<T>& law, Block<T>& s, std::size_t count) {
 
 // Computes force and torque on every neighbour. Returns the sums on the element.
 template <bool legacy, class T>
-HWY_INLINE ElementSum forces(Block<T>& s, std::size_t count, const Centre<T>& centre) {
+VEC_INLINE ElementSum forces(Block<T>& s, std::size_t count, const Centre<T>& centre) {
   const T *nx = s.n[0], *ny = s.n[1], *nz = s.n[2];
   const T nix = centre.n[0], niy = centre.n[1], niz = centre.n[2];
   const T *iux = s.pair[ux], *iuy = s.pair[uy], *iuz = s.pair[uz], *iinv = s.pair[inv], *ip = s.pair[p],
@@ -213,7 +213,7 @@ HWY_INLINE ElementSum forces(Block<T>& s, std::size_t count, const Centre<T>& ce
 }
 
 template <class Powers, bool legacy, bool energies, class T>
-HWY_INLINE ElementSum evaluate(const PaperTerms<T>& law, Block<T>& s, std::size_t count, const Centre<T>& centre,
+VEC_INLINE ElementSum evaluate(const PaperTerms<T>& law, Block<T>& s, std::size_t count, const Centre<T>& centre,
                                T unit) {
   const bool blended = invariants(s, count, centre, unit) < law.blend;
   const T least = blended ? gaps<true>(law, s, count) : gaps<false>(law, s, count);
@@ -225,7 +225,7 @@ HWY_INLINE ElementSum evaluate(const PaperTerms<T>& law, Block<T>& s, std::size_
 }
 
 template <class T>
-HWY_INLINE void add_up(const T* from, std::vector<double>& to) {
+VEC_INLINE void add_up(const T* from, std::vector<double>& to) {
   double* out = to.data();
   const std::size_t n = to.size();
 #pragma omp simd
@@ -233,7 +233,7 @@ HWY_INLINE void add_up(const T* from, std::vector<double>& to) {
 }
 
 template <class Powers, bool legacy, bool energies, class T>
-HWY_NOINLINE void all_elements(const PaperKernelInput<T>& in, const NeighbourList::Chunk& chunk,
+VEC_NOINLINE void all_elements(const PaperKernelInput<T>& in, const NeighbourList::Chunk& chunk,
                                ContactBuffer<double>& out) {
   const PaperElements<T>& all = *in.elements;
   const PaperTerms<T> law(*in.law);
@@ -266,7 +266,7 @@ HWY_NOINLINE void all_elements(const PaperKernelInput<T>& in, const NeighbourLis
 }
 
 template <class Powers, class T>
-HWY_INLINE void variant(const PaperKernelInput<T>& in, const NeighbourList::Chunk& chunk,
+VEC_INLINE void variant(const PaperKernelInput<T>& in, const NeighbourList::Chunk& chunk,
                         ContactBuffer<double>& out) {
   if (in.legacy_torque) {
     all_elements<Powers, true, true>(in, chunk, out);
@@ -278,7 +278,7 @@ HWY_INLINE void variant(const PaperKernelInput<T>& in, const NeighbourList::Chun
 }
 
 template <class T>
-HWY_INLINE void any(const PaperKernelInput<T>& in, const NeighbourList::Chunk& chunk, ContactBuffer<double>& out) {
+VEC_INLINE void any(const PaperKernelInput<T>& in, const NeighbourList::Chunk& chunk, ContactBuffer<double>& out) {
   if (in.law->has_published_powers()) {
     variant<PublishedPowers>(in, chunk, out);
   } else {
@@ -296,24 +296,24 @@ void PaperFull(const PaperKernelInput<double>& in, const NeighbourList::Chunk& c
   paper::any(in, chunk, out);
 }
 
-}  // namespace ropewalk::HWY_NAMESPACE
-HWY_AFTER_NAMESPACE();
+}  // namespace ropewalk::VEC_SET
+VEC_AFTER_NAMESPACE();
 
-#if HWY_ONCE
+#if VEC_ONCE
 namespace ropewalk {
 
-HWY_EXPORT(PaperMixed);
-HWY_EXPORT(PaperFull);
+VEC_EXPORT(PaperMixed);
+VEC_EXPORT(PaperFull);
 
 void paper_contact(const PaperKernelInput<float>& in, const NeighbourList::Chunk& chunk,
                    ContactBuffer<double>& out) {
-  HWY_DYNAMIC_DISPATCH(PaperMixed)(in, chunk, out);
+  VEC_IN_USE(PaperMixed)(in, chunk, out);
 }
 
 void paper_contact(const PaperKernelInput<double>& in, const NeighbourList::Chunk& chunk,
                    ContactBuffer<double>& out) {
-  HWY_DYNAMIC_DISPATCH(PaperFull)(in, chunk, out);
+  VEC_IN_USE(PaperFull)(in, chunk, out);
 }
 
 }  // namespace ropewalk
-#endif  // HWY_ONCE
+#endif  // VEC_ONCE

@@ -36,7 +36,7 @@ inline std::shared_ptr<const PaperLaw> paper_law(const PaperContact& contact, bo
 // The distance of two parallel rows (nm) at which their energy is lowest.
 double pair_spacing(const PaperContact& contact, double element_length);
 
-// What it gives two long tubes in elements of this length.
+// The wells of two long tubes in elements of this length.
 struct PaperWells {
   double spacing = 0, parallel = 0;                    // nm and eV/nm, of parallel ones at rest
   double crossed_deepest = 0, crossed_shallowest = 0;  // eV at a right angle: it depends on where along their

@@ -11,9 +11,9 @@ namespace ropewalk {
 namespace {
 
 // The pairs of a chunk, from the spans of elements that come near.
-class NearPairs : public ChunkPairs {
+class SpanPairs : public ChunkPairs {
  public:
-  NearPairs(const Topology& topology, const ElementSpans& near, const NeighbourList::Chunk& chunk)
+  SpanPairs(const Topology& topology, const ElementSpans& near, const NeighbourList::Chunk& chunk)
       : topology_(topology), near_(near), chunk_(chunk) {}
 
   int entries() const override { return chunk_.written_end - chunk_.written_begin; }
@@ -47,7 +47,7 @@ void BufferedEngine::list_pairs(const ContactInput& in, PairWork& pairs) const {
   near.build(in.list, pairs.reach());
   const auto& chunks = in.list.chunks();
   pairs.start(chunks.size());
-  for (std::size_t k = 0; k < chunks.size(); ++k) pairs.list(k, NearPairs(in.topology, near, chunks[k]));
+  for (std::size_t k = 0; k < chunks.size(); ++k) pairs.list(k, SpanPairs(in.topology, near, chunks[k]));
 }
 
 void BufferedEngine::compute(const Topology& topology, const Interaction& interaction, const NeighbourList& list,

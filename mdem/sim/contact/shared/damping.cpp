@@ -6,18 +6,18 @@
 
 #include "sim/state/prefetch.hpp"
 
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "sim/contact/shared/damping.cpp"
-#include <hwy/foreach_target.h>
+#undef VEC_SOURCE
+#define VEC_SOURCE "sim/contact/shared/damping.cpp"
+#include "sim/vectors/each_set-inl.hpp"
 //
-#include <hwy/highway.h>
+#include "sim/vectors/operations-inl.hpp"
 //
 #include "sim/threads/lanes-inl.hpp"
 
-HWY_BEFORE_NAMESPACE();
-namespace ropewalk::HWY_NAMESPACE {
+VEC_BEFORE_NAMESPACE();
+namespace ropewalk::VEC_SET {
 namespace damping {
-namespace hn = hwy::HWY_NAMESPACE;
+namespace ops = vec::VEC_SET;
 
 template <class V>
 struct Vec3 {
@@ -25,25 +25,25 @@ struct Vec3 {
 };
 
 template <class V>
-HWY_INLINE Vec3<V> operator+(const Vec3<V>& a, const Vec3<V>& b) {
-  return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
+VEC_INLINE Vec3<V> operator+(const Vec3<V>& a, const Vec3<V>& b) {
+  return {ops::Add(a.x, b.x), ops::Add(a.y, b.y), ops::Add(a.z, b.z)};
 }
 template <class V>
-HWY_INLINE Vec3<V> operator-(const Vec3<V>& a, const Vec3<V>& b) {
-  return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
+VEC_INLINE Vec3<V> operator-(const Vec3<V>& a, const Vec3<V>& b) {
+  return {ops::Sub(a.x, b.x), ops::Sub(a.y, b.y), ops::Sub(a.z, b.z)};
 }
 template <class V>
-HWY_INLINE Vec3<V> operator*(V a, const Vec3<V>& b) {
-  return {hn::Mul(a, b.x), hn::Mul(a, b.y), hn::Mul(a, b.z)};
+VEC_INLINE Vec3<V> operator*(V a, const Vec3<V>& b) {
+  return {ops::Mul(a, b.x), ops::Mul(a, b.y), ops::Mul(a, b.z)};
 }
 template <class V>
-HWY_INLINE Vec3<V> cross(const Vec3<V>& a, const Vec3<V>& b) {
-  return {hn::MulSub(a.y, b.z, hn::Mul(a.z, b.y)), hn::MulSub(a.z, b.x, hn::Mul(a.x, b.z)),
-          hn::MulSub(a.x, b.y, hn::Mul(a.y, b.x))};
+VEC_INLINE Vec3<V> cross(const Vec3<V>& a, const Vec3<V>& b) {
+  return {ops::MulSub(a.y, b.z, ops::Mul(a.z, b.y)), ops::MulSub(a.z, b.x, ops::Mul(a.x, b.z)),
+          ops::MulSub(a.x, b.y, ops::Mul(a.y, b.x))};
 }
 template <class V>
-HWY_INLINE V dot(const Vec3<V>& a, const Vec3<V>& b) {
-  return hn::MulAdd(a.x, b.x, hn::MulAdd(a.y, b.y, hn::Mul(a.z, b.z)));
+VEC_INLINE V dot(const Vec3<V>& a, const Vec3<V>& b) {
+  return ops::MulAdd(a.x, b.x, ops::MulAdd(a.y, b.y, ops::Mul(a.z, b.z)));
 }
 
 // Position, velocity and angular velocity of the elements in the lanes.
@@ -55,70 +55,70 @@ struct Motion {
 
 // -eta w(R)
 template <class D>
-HWY_INLINE hn::Vec<D> strength(D d, const ContactViscosity& c, const Vec3<hn::Vec<D>>& separation) {
-  using T = hn::TFromD<D>;
-  const auto set = [&](double x) HWY_ATTR { return hn::Set(d, static_cast<T>(x)); };
-  const auto distance = hn::Sqrt(dot(separation, separation));
+VEC_INLINE ops::Vec<D> strength(D d, const ContactViscosity& c, const Vec3<ops::Vec<D>>& separation) {
+  using T = ops::TFromD<D>;
+  const auto set = [&](double x) VEC_ATTR { return ops::Set(d, static_cast<T>(x)); };
+  const auto distance = ops::Sqrt(dot(separation, separation));
   const auto y =
-      hn::Min(hn::Max(hn::Mul(hn::Sub(distance, set(c.inner)), set(1 / (c.outer - c.inner))), hn::Zero(d)), set(1));
-  const auto weight = hn::NegMulAdd(hn::Mul(y, y), hn::NegMulAdd(set(2), y, set(3)), set(1));
-  return hn::Mul(set(-c.eta), weight);
+      ops::Min(ops::Max(ops::Mul(ops::Sub(distance, set(c.inner)), set(1 / (c.outer - c.inner))), ops::Zero(d)), set(1));
+  const auto weight = ops::NegMulAdd(ops::Mul(y, y), ops::NegMulAdd(set(2), y, set(3)), set(1));
+  return ops::Mul(set(-c.eta), weight);
 }
 
 // Adds whole vectors: unused lanes are zero, and the buffers have room behind the elements. After a masked store
 // the next load from the same memory would have to wait.
 template <class V, class T>
-HWY_INLINE void add_to(const Vec3<V>& v, std::ptrdiff_t at, std::vector<T>& x, std::vector<T>& y,
+VEC_INLINE void add_to(const Vec3<V>& v, std::ptrdiff_t at, std::vector<T>& x, std::vector<T>& y,
                        std::vector<T>& z) {
-  const hn::DFromV<V> d;
+  const ops::DFromV<V> d;
   const auto add = [&](std::vector<T>& a, V what)
-                       HWY_ATTR { hn::StoreU(hn::Add(hn::LoadU(d, a.data() + at), what), d, a.data() + at); };
+                       VEC_ATTR { ops::StoreU(ops::Add(ops::LoadU(d, a.data() + at), what), d, a.data() + at); };
   add(x, v.x), add(y, v.y), add(z, v.z);
 }
 
 // Reads the state in double precision. Unused lanes are zero; they may lie outside of the state's arrays.
 struct Doubles {
-  using D = hn::CappedTag<double, DampedBlock::max_lanes>;
-  using V = hn::Vec<D>;
+  using D = ops::CappedTag<double, DampedBlock::max_lanes>;
+  using V = ops::Vec<D>;
   const State& state;
   ContactBuffer<double>& out;
 
-  static HWY_INLINE Vec3<V> some(const Vec3Array& a, std::ptrdiff_t at, int first, int last) {
+  static VEC_INLINE Vec3<V> some(const Vec3Array& a, std::ptrdiff_t at, int first, int last) {
     const D d;
     return {load_some(d, a.x.data() + at, first, last), load_some(d, a.y.data() + at, first, last),
             load_some(d, a.z.data() + at, first, last)};
   }
-  HWY_INLINE Motion<V, V> load(std::ptrdiff_t at, std::ptrdiff_t, int first, int last) const {
+  VEC_INLINE Motion<V, V> load(std::ptrdiff_t at, std::ptrdiff_t, int first, int last) const {
     return {some(state.position, at, first, last), some(state.velocity, at, first, last),
             some(state.angular_velocity, at, first, last)};
   }
-  HWY_INLINE Vec3<V> apart(const Vec3<V>& j, const Vec3<V>& i) const { return j - i; }
+  VEC_INLINE Vec3<V> apart(const Vec3<V>& j, const Vec3<V>& i) const { return j - i; }
 };
 
 // Reads the copies in single precision. Unused lanes hold other elements or arbitrary numbers.
 struct Floats {
-  using D = hn::CappedTag<float, DampedBlock::max_lanes>;
-  using V = hn::Vec<D>;
-  using Position = hn::Vec<hn::RebindToSigned<D>>;
+  using D = ops::CappedTag<float, DampedBlock::max_lanes>;
+  using V = ops::Vec<D>;
+  using Position = ops::Vec<ops::RebindToSigned<D>>;
   const DampedElements& elements;
   ContactBuffer<float>& out;
   float unit;
 
   template <class X>
-  static HWY_INLINE auto whole(const X& x, const X& y, const X& z, std::ptrdiff_t at) {
-    const hn::Rebind<typename X::value_type, D> d;
-    return Vec3<hn::Vec<decltype(d)>>{hn::LoadU(d, x.data() + at), hn::LoadU(d, y.data() + at),
-                                      hn::LoadU(d, z.data() + at)};
+  static VEC_INLINE auto whole(const X& x, const X& y, const X& z, std::ptrdiff_t at) {
+    const ops::Rebind<typename X::value_type, D> d;
+    return Vec3<ops::Vec<decltype(d)>>{ops::LoadU(d, x.data() + at), ops::LoadU(d, y.data() + at),
+                                      ops::LoadU(d, z.data() + at)};
   }
-  HWY_INLINE Motion<Position, V> load(std::ptrdiff_t, std::ptrdiff_t entry, int, int) const {
+  VEC_INLINE Motion<Position, V> load(std::ptrdiff_t, std::ptrdiff_t entry, int, int) const {
     const DampedElements& e = elements;
     return {whole(e.x, e.y, e.z, entry), whole(e.vx, e.vy, e.vz, entry), whole(e.wx, e.wy, e.wz, entry)};
   }
-  HWY_INLINE Vec3<V> apart(const Vec3<Position>& j, const Vec3<Position>& i) const {
+  VEC_INLINE Vec3<V> apart(const Vec3<Position>& j, const Vec3<Position>& i) const {
     const D d;
     const Vec3<Position> in_units = j - i;
-    return hn::Set(d, unit) *
-           Vec3<V>{hn::ConvertTo(d, in_units.x), hn::ConvertTo(d, in_units.y), hn::ConvertTo(d, in_units.z)};
+    return ops::Set(d, unit) *
+           Vec3<V>{ops::ConvertTo(d, in_units.x), ops::ConvertTo(d, in_units.y), ops::ConvertTo(d, in_units.z)};
   }
 };
 
@@ -126,14 +126,14 @@ struct Floats {
 // consecutive offsets of one block write to overlapping memory, and a load would wait for the preceding store if no
 // other block came between. Returns the power in each lane.
 template <class Of>
-HWY_INLINE typename Of::V group_damping(const ContactViscosity& viscosity, const Of& of, const DampedBlock* first,
+VEC_INLINE typename Of::V group_damping(const ContactViscosity& viscosity, const Of& of, const DampedBlock* first,
                                         const DampedBlock* last, int lane) {
   using V = typename Of::V;
-  using T = hn::TFromD<typename Of::D>;
+  using T = ops::TFromD<typename Of::D>;
   const typename Of::D d;
-  const V half = hn::Set(d, static_cast<T>(0.5)), zero = hn::Zero(d);
+  const V half = ops::Set(d, static_cast<T>(0.5)), zero = ops::Zero(d);
   const int own = first->i + lane, own_entry = first->at_i + lane,
-            lanes = std::min(static_cast<int>(hn::Lanes(d)), first->lanes - lane);
+            lanes = std::min(static_cast<int>(ops::Lanes(d)), first->lanes - lane);
   const auto i = of.load(own, own_entry, 0, lanes);
   Vec3<V> force{zero, zero, zero}, torque{zero, zero, zero};
   V power = zero;
@@ -149,9 +149,9 @@ HWY_INLINE typename Of::V group_damping(const ContactViscosity& viscosity, const
       const Vec3<V> apart = of.apart(j.position, i.position);
       const Vec3<V> arm = half * apart;
       const Vec3<V> relative = j.velocity - i.velocity - cross(i.spin + j.spin, arm);
-      const V k = hn::IfThenElseZero(some_lanes(d, begin, end), strength(d, viscosity, apart));
+      const V k = ops::IfThenElseZero(some_lanes(d, begin, end), strength(d, viscosity, apart));
       const Vec3<V> f = k * relative, t = cross(f, arm);
-      power = hn::Add(power, dot(f, relative));
+      power = ops::Add(power, dot(f, relative));
       force = force - f;
       torque = torque + t;
       add_to(f, entry, of.out.fx, of.out.fy, of.out.fz);
@@ -164,22 +164,22 @@ HWY_INLINE typename Of::V group_damping(const ContactViscosity& viscosity, const
 
 // Returns the power of all blocks. Every 32 groups the sums in the lanes are added to a total in double precision.
 template <class Of>
-HWY_INLINE double all_groups(const ContactViscosity& viscosity, const Of& of,
+VEC_INLINE double all_groups(const ContactViscosity& viscosity, const Of& of,
                              const std::vector<DampedBlock>& blocks) {
   const typename Of::D d;
   constexpr int few = 32;
   double sum = 0;
-  auto power = hn::Zero(d);
+  auto power = ops::Zero(d);
   int groups = 0;
-  const auto add_up = [&]() HWY_ATTR {
-    sum += static_cast<double>(hn::GetLane(hn::SumOfLanes(d, power)));
-    power = hn::Zero(d);
+  const auto add_up = [&]() VEC_ATTR {
+    sum += static_cast<double>(ops::GetLane(ops::SumOfLanes(d, power)));
+    power = ops::Zero(d);
   };
   const DampedBlock* const all = blocks.data() + blocks.size();
   for (const DampedBlock *first = blocks.data(), *last = first; first != all; first = last) {
     while (last != all && last->i == first->i) ++last;
-    for (int lane = 0; lane < first->lanes; lane += static_cast<int>(hn::Lanes(d)))
-      power = hn::Add(power, group_damping(viscosity, of, first, last, lane));
+    for (int lane = 0; lane < first->lanes; lane += static_cast<int>(ops::Lanes(d)))
+      power = ops::Add(power, group_damping(viscosity, of, first, last, lane));
     if (++groups % few == 0) add_up();
   }
   add_up();
@@ -187,20 +187,20 @@ HWY_INLINE double all_groups(const ContactViscosity& viscosity, const Of& of,
 }
 
 // Of the elements of a part. Whole vectors, whose last lanes the next part's elements are stored over.
-HWY_INLINE void take(const State& s, const BufferRange& of, double per_unit, DampedElements& e) {
-  const hn::CappedTag<double, 8> d;
-  const hn::Rebind<std::int32_t, decltype(d)> whole;
-  const hn::Rebind<float, decltype(d)> floats;
-  const auto units = hn::Set(d, per_unit);
-  const int lanes = static_cast<int>(hn::Lanes(d));
+VEC_INLINE void take(const State& s, const BufferRange& of, double per_unit, DampedElements& e) {
+  const ops::CappedTag<double, 8> d;
+  const ops::Rebind<std::int32_t, decltype(d)> whole;
+  const ops::Rebind<float, decltype(d)> floats;
+  const auto units = ops::Set(d, per_unit);
+  const int lanes = static_cast<int>(ops::Lanes(d));
   for (int k = of.begin; k < of.end; k += lanes) {
     const int left = std::min(of.end - k, lanes), entry = k + of.shift;
-    const auto some = [&](const Column& v) HWY_ATTR { return load_some(d, v.data() + k, 0, left); };
-    const auto position = [&](const Column& from, std::vector<std::int32_t>& to) HWY_ATTR {
-      hn::StoreU(hn::DemoteTo(whole, hn::Mul(some(from), units)), whole, to.data() + entry);
+    const auto some = [&](const Column& v) VEC_ATTR { return load_some(d, v.data() + k, 0, left); };
+    const auto position = [&](const Column& from, std::vector<std::int32_t>& to) VEC_ATTR {
+      ops::StoreU(ops::DemoteTo(whole, ops::Mul(some(from), units)), whole, to.data() + entry);
     };
     const auto motion = [&](const Column& from, std::vector<float>& to)
-                            HWY_ATTR { hn::StoreU(hn::DemoteTo(floats, some(from)), floats, to.data() + entry); };
+                            VEC_ATTR { ops::StoreU(ops::DemoteTo(floats, some(from)), floats, to.data() + entry); };
     position(s.position.x, e.x), position(s.position.y, e.y), position(s.position.z, e.z);
     motion(s.velocity.x, e.vx), motion(s.velocity.y, e.vy), motion(s.velocity.z, e.vz);
     motion(s.angular_velocity.x, e.wx), motion(s.angular_velocity.y, e.wy), motion(s.angular_velocity.z, e.wz);
@@ -226,23 +226,23 @@ double BlocksInFloats(const ContactViscosity& viscosity, const State& state, con
   return damping::all_groups(viscosity, damping::Floats{e, out, static_cast<float>(of.unit)}, of.blocks);
 }
 
-}  // namespace ropewalk::HWY_NAMESPACE
-HWY_AFTER_NAMESPACE();
+}  // namespace ropewalk::VEC_SET
+VEC_AFTER_NAMESPACE();
 
-#if HWY_ONCE
+#if VEC_ONCE
 namespace ropewalk {
 
-HWY_EXPORT(BlocksOfState);
-HWY_EXPORT(BlocksInFloats);
+VEC_EXPORT(BlocksOfState);
+VEC_EXPORT(BlocksInFloats);
 
 double contact_damping(const ContactViscosity& viscosity, const State& state,
                        const std::vector<DampedBlock>& blocks, ContactBuffer<double>& out) {
-  return HWY_DYNAMIC_DISPATCH(BlocksOfState)(viscosity, state, blocks, out);
+  return VEC_IN_USE(BlocksOfState)(viscosity, state, blocks, out);
 }
 
 double contact_damping(const ContactViscosity& viscosity, const State& state, const DampedChunk& of,
                        DampedElements& elements, ContactBuffer<float>& out) {
-  return HWY_DYNAMIC_DISPATCH(BlocksInFloats)(viscosity, state, of, elements, out);
+  return VEC_IN_USE(BlocksInFloats)(viscosity, state, of, elements, out);
 }
 
 void DampedBlocks::add(int i, const BufferRange& own, int from, int to, const BufferRange& partners) {
@@ -282,4 +282,4 @@ std::vector<DampedBlock> DampedBlocks::take() {
 }
 
 }  // namespace ropewalk
-#endif  // HWY_ONCE
+#endif  // VEC_ONCE

@@ -1,7 +1,7 @@
-#include "hwy/base.h"
+#include "sim/vectors/base.hpp"
 
-#ifndef ROPEWALK_HWY_ONCE
-#define ROPEWALK_HWY_ONCE
+#ifndef VEC_ONCE
+#define VEC_ONCE (VEC_TARGET == VEC_BASE)
 
 #include <algorithm>
 #include <cmath>
@@ -11,24 +11,22 @@
 #include <immintrin.h>
 #endif
 
-#define HWY_ONCE (HWY_TARGET == HWY_STATIC_TARGET)
-
-#if HWY_TARGETS & HWY_AVX3
-#define ROPEWALK_HWY_AVX3(F) &N_AVX3::F
+#ifdef VEC_HAS_AVX2
+#define VEC_IN_V3(F) &in_v3::F
 #else
-#define ROPEWALK_HWY_AVX3(F) nullptr
+#define VEC_IN_V3(F) &in_base::F
 #endif
-#if HWY_TARGETS & HWY_AVX2
-#define ROPEWALK_HWY_AVX2(F) &N_AVX2::F
+#ifdef VEC_HAS_AVX512
+#define VEC_IN_V4(F) &in_v4::F
 #else
-#define ROPEWALK_HWY_AVX2(F) nullptr
+#define VEC_IN_V4(F) VEC_IN_V3(F)
 #endif
-// In the order of hwy::Set.
-#define HWY_EXPORT(F) \
-  static decltype(&N_COMPILED::F) const F##_of_sets[] = {ROPEWALK_HWY_AVX3(F), ROPEWALK_HWY_AVX2(F), &N_COMPILED::F}
-#define HWY_DYNAMIC_DISPATCH(F) (*F##_of_sets[hwy::GetChosenTarget().set])
+// In the order of VectorUnit.
+#define VEC_EXPORT(F) \
+  static decltype(&in_base::F) const F##_of_units[] = {&in_base::F, VEC_IN_V3(F), VEC_IN_V4(F)}
+#define VEC_IN_USE(F) (*F##_of_units[static_cast<int>(vector_unit_in_use)])
 
-namespace hwy {
+namespace ropewalk::vec {
 
 // A vector of N numbers. The member `raw` is of the type that the compiler's intrinsics take, where there is one of
 // this size.
@@ -114,47 +112,50 @@ struct IntegerOf<8> {
   using Unsigned = std::uint64_t;
 };
 
-}  // namespace hwy
-#endif  // ROPEWALK_HWY_ONCE
+// The place of the lowest bit of a number that is not zero.
+inline std::size_t first_bit(std::uint64_t bits) { return static_cast<std::size_t>(__builtin_ctzll(bits)); }
 
-#if defined(ROPEWALK_HWY_PER_TARGET) == defined(HWY_TARGET_TOGGLE)
-#ifdef ROPEWALK_HWY_PER_TARGET
-#undef ROPEWALK_HWY_PER_TARGET
+}  // namespace ropewalk::vec
+#endif  // VEC_ONCE
+
+#if defined(VEC_OPERATIONS_PER_SET) == defined(VEC_TOGGLE)
+#ifdef VEC_OPERATIONS_PER_SET
+#undef VEC_OPERATIONS_PER_SET
 #else
-#define ROPEWALK_HWY_PER_TARGET
+#define VEC_OPERATIONS_PER_SET
 #endif
 
-#undef HWY_NAMESPACE
-#undef HWY_ATTR
-#undef HWY_BEFORE_NAMESPACE
-#undef HWY_AFTER_NAMESPACE
-#undef ROPEWALK_HWY_BYTES
-#if HWY_TARGET == HWY_AVX3
-#define HWY_NAMESPACE N_AVX3
-#define ROPEWALK_HWY_BYTES 64
-#define HWY_ATTR __attribute__((target("avx2,fma,bmi,bmi2,avx512f,avx512bw,avx512dq,avx512vl")))
-#define HWY_BEFORE_NAMESPACE() \
+#undef VEC_SET
+#undef VEC_ATTR
+#undef VEC_BEFORE_NAMESPACE
+#undef VEC_AFTER_NAMESPACE
+#undef VEC_BYTES
+#if VEC_TARGET == VEC_AVX512
+#define VEC_SET in_v4
+#define VEC_BYTES 64
+#define VEC_ATTR __attribute__((target("avx2,fma,bmi,bmi2,avx512f,avx512bw,avx512dq,avx512vl")))
+#define VEC_BEFORE_NAMESPACE() \
   _Pragma("GCC push_options")  \
       _Pragma("GCC target(\"avx2,fma,bmi,bmi2,avx512f,avx512bw,avx512dq,avx512vl\")") static_assert(true, "")
-#define HWY_AFTER_NAMESPACE() _Pragma("GCC pop_options") static_assert(true, "")
-#elif HWY_TARGET == HWY_AVX2
-#define HWY_NAMESPACE N_AVX2
-#define ROPEWALK_HWY_BYTES 32
-#define HWY_ATTR __attribute__((target("avx2,fma,bmi,bmi2")))
-#define HWY_BEFORE_NAMESPACE() \
+#define VEC_AFTER_NAMESPACE() _Pragma("GCC pop_options") static_assert(true, "")
+#elif VEC_TARGET == VEC_AVX2
+#define VEC_SET in_v3
+#define VEC_BYTES 32
+#define VEC_ATTR __attribute__((target("avx2,fma,bmi,bmi2")))
+#define VEC_BEFORE_NAMESPACE() \
   _Pragma("GCC push_options") _Pragma("GCC target(\"avx2,fma,bmi,bmi2\")") static_assert(true, "")
-#define HWY_AFTER_NAMESPACE() _Pragma("GCC pop_options") static_assert(true, "")
+#define VEC_AFTER_NAMESPACE() _Pragma("GCC pop_options") static_assert(true, "")
 #else
-#define HWY_NAMESPACE N_COMPILED
-#define ROPEWALK_HWY_BYTES 16
-#define HWY_ATTR
-#define HWY_BEFORE_NAMESPACE() static_assert(true, "")
-#define HWY_AFTER_NAMESPACE() static_assert(true, "")
+#define VEC_SET in_base
+#define VEC_BYTES 16
+#define VEC_ATTR
+#define VEC_BEFORE_NAMESPACE() static_assert(true, "")
+#define VEC_AFTER_NAMESPACE() static_assert(true, "")
 #endif
 
-HWY_BEFORE_NAMESPACE();
-namespace hwy {
-namespace HWY_NAMESPACE {
+VEC_BEFORE_NAMESPACE();
+namespace ropewalk::vec {
+namespace VEC_SET {
 
 // --- types ----------------------------------------------------------------------------------------------
 
@@ -164,9 +165,9 @@ struct Simd {
   static constexpr std::size_t lanes = N;
 };
 template <class T, std::size_t most>
-using CappedTag = Simd<T, std::min(most, ROPEWALK_HWY_BYTES / sizeof(T))>;
+using CappedTag = Simd<T, std::min(most, VEC_BYTES / sizeof(T))>;
 template <class T>
-using ScalableTag = Simd<T, ROPEWALK_HWY_BYTES / sizeof(T)>;
+using ScalableTag = Simd<T, VEC_BYTES / sizeof(T)>;
 template <class D>
 using TFromD = typename D::T;
 template <class T, class D>
@@ -187,10 +188,10 @@ struct VectorOf {
   using Tag = D;
   typename RawVector<T, N>::Type raw;
 
-  HWY_INLINE Lanes v() const { return reinterpret_cast<Lanes>(raw); }
-  HWY_INLINE Bits bits() const { return reinterpret_cast<Bits>(raw); }
-  static HWY_INLINE VectorOf of(Lanes v) { return {reinterpret_cast<decltype(raw)>(v)}; }
-  static HWY_INLINE VectorOf of_bits(Bits v) { return {reinterpret_cast<decltype(raw)>(v)}; }
+  VEC_INLINE Lanes v() const { return reinterpret_cast<Lanes>(raw); }
+  VEC_INLINE Bits bits() const { return reinterpret_cast<Bits>(raw); }
+  static VEC_INLINE VectorOf of(Lanes v) { return {reinterpret_cast<decltype(raw)>(v)}; }
+  static VEC_INLINE VectorOf of_bits(Bits v) { return {reinterpret_cast<decltype(raw)>(v)}; }
 };
 template <class D>
 using Vec = VectorOf<std::remove_cv_t<D>>;
@@ -200,7 +201,7 @@ using DFromV = typename V::Tag;
 // Of every lane a bit with AVX-512, else all bits of the lane.
 template <class D>
 struct MaskOf {
-#if HWY_TARGET == HWY_AVX3
+#if VEC_TARGET == VEC_AVX512
   using Raw = std::conditional_t<(D::lanes > 8), std::uint16_t, std::uint8_t>;
 #else
   using Raw = typename VectorOf<D>::Bits;
@@ -211,89 +212,89 @@ template <class D>
 using Mask = MaskOf<std::remove_cv_t<D>>;
 
 template <class D>
-HWY_INLINE constexpr std::size_t Lanes(D) {
+VEC_INLINE constexpr std::size_t Lanes(D) {
   return D::lanes;
 }
 template <class D>
-HWY_INLINE constexpr std::size_t MaxLanes(D) {
+VEC_INLINE constexpr std::size_t MaxLanes(D) {
   return D::lanes;
 }
 
 // --- memory ---------------------------------------------------------------------------------------------
 
 template <class D>
-HWY_INLINE Vec<D> LoadU(D, const TFromD<D>* p) {
+VEC_INLINE Vec<D> LoadU(D, const TFromD<D>* p) {
   Vec<D> v;
   std::memcpy(&v.raw, p, sizeof v.raw);
   return v;
 }
 template <class D>
-HWY_INLINE Vec<D> Load(D d, const TFromD<D>* p) {
+VEC_INLINE Vec<D> Load(D d, const TFromD<D>* p) {
   return LoadU(d, p);
 }
 template <class D>
-HWY_INLINE void StoreU(Vec<D> v, D, TFromD<D>* p) {
+VEC_INLINE void StoreU(Vec<D> v, D, TFromD<D>* p) {
   std::memcpy(p, &v.raw, sizeof v.raw);
 }
 template <class D>
-HWY_INLINE void Store(Vec<D> v, D d, TFromD<D>* p) {
+VEC_INLINE void Store(Vec<D> v, D d, TFromD<D>* p) {
   StoreU(v, d, p);
 }
 
 // --- arithmetic -----------------------------------------------------------------------------------------
 
 template <class D>
-HWY_INLINE Vec<D> Zero(D) {
+VEC_INLINE Vec<D> Zero(D) {
   return Vec<D>::of(typename Vec<D>::Lanes{});
 }
 template <class D>
-HWY_INLINE Vec<D> Set(D, TFromD<D> x) {
+VEC_INLINE Vec<D> Set(D, TFromD<D> x) {
   return Vec<D>::of(x - typename Vec<D>::Lanes{});
 }
 template <class D>
-HWY_INLINE VectorOf<D> Add(VectorOf<D> a, VectorOf<D> b) {
+VEC_INLINE VectorOf<D> Add(VectorOf<D> a, VectorOf<D> b) {
   return Vec<D>::of(a.v() + b.v());
 }
 template <class D>
-HWY_INLINE VectorOf<D> Sub(VectorOf<D> a, VectorOf<D> b) {
+VEC_INLINE VectorOf<D> Sub(VectorOf<D> a, VectorOf<D> b) {
   return Vec<D>::of(a.v() - b.v());
 }
 template <class D>
-HWY_INLINE VectorOf<D> Mul(VectorOf<D> a, VectorOf<D> b) {
+VEC_INLINE VectorOf<D> Mul(VectorOf<D> a, VectorOf<D> b) {
   return Vec<D>::of(a.v() * b.v());
 }
 template <class D>
-HWY_INLINE VectorOf<D> Div(VectorOf<D> a, VectorOf<D> b) {
+VEC_INLINE VectorOf<D> Div(VectorOf<D> a, VectorOf<D> b) {
   return Vec<D>::of(a.v() / b.v());
 }
 // The compiler makes one instruction of these where the machine has it.
 template <class D>
-HWY_INLINE VectorOf<D> MulAdd(VectorOf<D> a, VectorOf<D> b, VectorOf<D> c) {
+VEC_INLINE VectorOf<D> MulAdd(VectorOf<D> a, VectorOf<D> b, VectorOf<D> c) {
   return Vec<D>::of(a.v() * b.v() + c.v());
 }
 template <class D>
-HWY_INLINE VectorOf<D> MulSub(VectorOf<D> a, VectorOf<D> b, VectorOf<D> c) {
+VEC_INLINE VectorOf<D> MulSub(VectorOf<D> a, VectorOf<D> b, VectorOf<D> c) {
   return Vec<D>::of(a.v() * b.v() - c.v());
 }
 template <class D>
-HWY_INLINE VectorOf<D> NegMulAdd(VectorOf<D> a, VectorOf<D> b, VectorOf<D> c) {
+VEC_INLINE VectorOf<D> NegMulAdd(VectorOf<D> a, VectorOf<D> b, VectorOf<D> c) {
   return Vec<D>::of(c.v() - a.v() * b.v());
 }
 template <class D>
-HWY_INLINE VectorOf<D> Sqrt(VectorOf<D> a) {
+VEC_INLINE VectorOf<D> Sqrt(VectorOf<D> a) {
   using T = TFromD<D>;
 #if defined(__x86_64__)
   if constexpr (sizeof a == 16) {
     if constexpr (sizeof(T) == 4) return {_mm_sqrt_ps(a.raw)};
     if constexpr (sizeof(T) == 8) return {_mm_sqrt_pd(a.raw)};
   }
-#if HWY_TARGET <= HWY_AVX2
+#if VEC_TARGET <= VEC_AVX2
   if constexpr (sizeof a == 32) {
     if constexpr (sizeof(T) == 4) return {_mm256_sqrt_ps(a.raw)};
     if constexpr (sizeof(T) == 8) return {_mm256_sqrt_pd(a.raw)};
   }
 #endif
-#if HWY_TARGET == HWY_AVX3
+#if VEC_TARGET == VEC_AVX512
   if constexpr (sizeof a == 64) {
     if constexpr (sizeof(T) == 4) return {_mm512_sqrt_ps(a.raw)};
     if constexpr (sizeof(T) == 8) return {_mm512_sqrt_pd(a.raw)};
@@ -305,47 +306,47 @@ HWY_INLINE VectorOf<D> Sqrt(VectorOf<D> a) {
   return Vec<D>::of(v);
 }
 template <class D>
-HWY_INLINE VectorOf<D> Abs(VectorOf<D> a) {
+VEC_INLINE VectorOf<D> Abs(VectorOf<D> a) {
   using I = typename IntegerOf<sizeof(TFromD<D>)>::Unsigned;
   constexpr I all_but_sign = static_cast<I>(~I{0}) >> 1;
   return Vec<D>::of_bits(a.bits() & static_cast<typename IntegerOf<sizeof(TFromD<D>)>::Signed>(all_but_sign));
 }
 
 template <class To, class D>
-HWY_INLINE Vec<To> BitCast(To, VectorOf<D> v) {
+VEC_INLINE Vec<To> BitCast(To, VectorOf<D> v) {
   return {reinterpret_cast<decltype(Vec<To>::raw)>(v.raw)};
 }
 template <class To, class D>
-HWY_INLINE Vec<To> ConvertTo(To, VectorOf<D> v) {
+VEC_INLINE Vec<To> ConvertTo(To, VectorOf<D> v) {
   return Vec<To>::of(__builtin_convertvector(v.v(), typename Vec<To>::Lanes));
 }
 template <class To, class D>
-HWY_INLINE Vec<To> DemoteTo(To to, VectorOf<D> v) {
+VEC_INLINE Vec<To> DemoteTo(To to, VectorOf<D> v) {
   return ConvertTo(to, v);
 }
 template <class To, class D>
-HWY_INLINE Vec<To> TruncateTo(To to, VectorOf<D> v) {
+VEC_INLINE Vec<To> TruncateTo(To to, VectorOf<D> v) {
   return ConvertTo(to, v);
 }
 template <int bits, class D>
-HWY_INLINE VectorOf<D> ShiftLeft(VectorOf<D> v) {
+VEC_INLINE VectorOf<D> ShiftLeft(VectorOf<D> v) {
   return Vec<D>::of(v.v() << bits);
 }
 template <int bits, class D>
-HWY_INLINE VectorOf<D> ShiftRight(VectorOf<D> v) {
+VEC_INLINE VectorOf<D> ShiftRight(VectorOf<D> v) {
   return Vec<D>::of(v.v() >> bits);
 }
 template <class D>
-HWY_INLINE VectorOf<D> And(VectorOf<D> a, VectorOf<D> b) {
+VEC_INLINE VectorOf<D> And(VectorOf<D> a, VectorOf<D> b) {
   return Vec<D>::of_bits(a.bits() & b.bits());
 }
 template <class D>
-HWY_INLINE TFromD<D> GetLane(VectorOf<D> v) {
+VEC_INLINE TFromD<D> GetLane(VectorOf<D> v) {
   return v.v()[0];
 }
 // The sum in all lanes.
 template <class D>
-HWY_INLINE Vec<D> SumOfLanes(D d, VectorOf<D> v) {
+VEC_INLINE Vec<D> SumOfLanes(D d, VectorOf<D> v) {
   TFromD<D> part[D::lanes];
   StoreU(v, d, part);
   for (std::size_t half = D::lanes / 2; half > 0; half /= 2)
@@ -355,12 +356,12 @@ HWY_INLINE Vec<D> SumOfLanes(D d, VectorOf<D> v) {
 
 // --- comparisons and masks ------------------------------------------------------------------------------
 
-#if HWY_TARGET == HWY_AVX3
+#if VEC_TARGET == VEC_AVX512
 
 template <class D>
-HWY_INLINE Mask<D> Lt(VectorOf<D> a, VectorOf<D> b) {
+VEC_INLINE Mask<D> Lt(VectorOf<D> a, VectorOf<D> b) {
   using T = TFromD<D>;
-  const auto mask = [&]() HWY_ATTR {
+  const auto mask = [&]() VEC_ATTR {
     if constexpr (std::is_same_v<T, float>) {
       if constexpr (sizeof a == 64) return _mm512_cmp_ps_mask(a.raw, b.raw, _CMP_LT_OQ);
       if constexpr (sizeof a == 32) return _mm256_cmp_ps_mask(a.raw, b.raw, _CMP_LT_OQ);
@@ -379,7 +380,7 @@ HWY_INLINE Mask<D> Lt(VectorOf<D> a, VectorOf<D> b) {
   return {static_cast<typename Mask<D>::Raw>(mask())};
 }
 template <class D>
-HWY_INLINE VectorOf<D> IfThenElse(Mask<D> m, VectorOf<D> yes, VectorOf<D> no) {
+VEC_INLINE VectorOf<D> IfThenElse(Mask<D> m, VectorOf<D> yes, VectorOf<D> no) {
   using T = TFromD<D>;
   static_assert(std::is_floating_point_v<T>);
   if constexpr (sizeof(T) == 4) {
@@ -393,36 +394,36 @@ HWY_INLINE VectorOf<D> IfThenElse(Mask<D> m, VectorOf<D> yes, VectorOf<D> no) {
   }
 }
 template <class D>
-HWY_INLINE VectorOf<D> IfThenElseZero(Mask<D> m, VectorOf<D> yes) {
+VEC_INLINE VectorOf<D> IfThenElseZero(Mask<D> m, VectorOf<D> yes) {
   return IfThenElse(m, yes, Zero(D()));
 }
 template <class D>
-HWY_INLINE Mask<D> FirstN(D, std::size_t n) {
+VEC_INLINE Mask<D> FirstN(D, std::size_t n) {
   const std::uint32_t first = static_cast<std::uint32_t>(std::min<std::size_t>(n, D::lanes));
   return {static_cast<typename Mask<D>::Raw>((1U << first) - 1U)};
 }
 template <class D>
-HWY_INLINE MaskOf<D> And(MaskOf<D> a, MaskOf<D> b) {
+VEC_INLINE MaskOf<D> And(MaskOf<D> a, MaskOf<D> b) {
   return {static_cast<typename Mask<D>::Raw>(a.raw & b.raw)};
 }
 template <class D>
-HWY_INLINE MaskOf<D> AndNot(MaskOf<D> a, MaskOf<D> b) {
+VEC_INLINE MaskOf<D> AndNot(MaskOf<D> a, MaskOf<D> b) {
   return {static_cast<typename Mask<D>::Raw>(~a.raw & b.raw)};
 }
 template <class D>
-HWY_INLINE bool AllFalse(D, Mask<D> m) {
+VEC_INLINE bool AllFalse(D, Mask<D> m) {
   return m.raw == 0;
 }
 template <class D>
-HWY_INLINE std::uint64_t bits_of_mask(D, Mask<D> m) {
+VEC_INLINE std::uint64_t bits_of_mask(D, Mask<D> m) {
   return m.raw;
 }
 template <class To, class D>
-HWY_INLINE Mask<To> RebindMask(To, MaskOf<D> m) {
+VEC_INLINE Mask<To> RebindMask(To, MaskOf<D> m) {
   return {m.raw};
 }
 template <class D>
-HWY_INLINE Vec<D> VecFromMask(D, Mask<D> m) {
+VEC_INLINE Vec<D> VecFromMask(D, Mask<D> m) {
   static_assert(std::is_same_v<TFromD<D>, float> && D::lanes == 16);
   return {_mm512_castsi512_ps(_mm512_movm_epi32(m.raw))};
 }
@@ -430,19 +431,19 @@ HWY_INLINE Vec<D> VecFromMask(D, Mask<D> m) {
 #else
 
 template <class D>
-HWY_INLINE Mask<D> Lt(VectorOf<D> a, VectorOf<D> b) {
+VEC_INLINE Mask<D> Lt(VectorOf<D> a, VectorOf<D> b) {
   return {a.v() < b.v()};
 }
 template <class D>
-HWY_INLINE VectorOf<D> IfThenElse(Mask<D> m, VectorOf<D> yes, VectorOf<D> no) {
+VEC_INLINE VectorOf<D> IfThenElse(Mask<D> m, VectorOf<D> yes, VectorOf<D> no) {
   return Vec<D>::of_bits((m.raw & yes.bits()) | (~m.raw & no.bits()));
 }
 template <class D>
-HWY_INLINE VectorOf<D> IfThenElseZero(Mask<D> m, VectorOf<D> yes) {
+VEC_INLINE VectorOf<D> IfThenElseZero(Mask<D> m, VectorOf<D> yes) {
   return Vec<D>::of_bits(m.raw & yes.bits());
 }
 template <class D>
-HWY_INLINE Mask<D> FirstN(D, std::size_t n) {
+VEC_INLINE Mask<D> FirstN(D, std::size_t n) {
   using Bits = typename VectorOf<D>::Bits;
   using I = typename IntegerOf<sizeof(TFromD<D>)>::Signed;
   Bits place;
@@ -450,22 +451,22 @@ HWY_INLINE Mask<D> FirstN(D, std::size_t n) {
   return {place < static_cast<I>(std::min<std::size_t>(n, D::lanes)) - Bits{}};
 }
 template <class D>
-HWY_INLINE MaskOf<D> And(MaskOf<D> a, MaskOf<D> b) {
+VEC_INLINE MaskOf<D> And(MaskOf<D> a, MaskOf<D> b) {
   return {a.raw & b.raw};
 }
 template <class D>
-HWY_INLINE MaskOf<D> AndNot(MaskOf<D> a, MaskOf<D> b) {
+VEC_INLINE MaskOf<D> AndNot(MaskOf<D> a, MaskOf<D> b) {
   return {~a.raw & b.raw};
 }
 template <class D>
-HWY_INLINE std::uint64_t bits_of_mask(D, Mask<D> m) {
+VEC_INLINE std::uint64_t bits_of_mask(D, Mask<D> m) {
 #if defined(__x86_64__)
   using T = TFromD<D>;
   if constexpr (sizeof m == 16 && sizeof(T) == 4)
     return static_cast<unsigned>(_mm_movemask_ps(reinterpret_cast<__m128>(m.raw)));
   if constexpr (sizeof m == 16 && sizeof(T) == 8)
     return static_cast<unsigned>(_mm_movemask_pd(reinterpret_cast<__m128d>(m.raw)));
-#if HWY_TARGET == HWY_AVX2
+#if VEC_TARGET == VEC_AVX2
   if constexpr (sizeof m == 32 && sizeof(T) == 4)
     return static_cast<unsigned>(_mm256_movemask_ps(reinterpret_cast<__m256>(m.raw)));
   if constexpr (sizeof m == 32 && sizeof(T) == 8)
@@ -477,19 +478,19 @@ HWY_INLINE std::uint64_t bits_of_mask(D, Mask<D> m) {
   return bits;
 }
 template <class D>
-HWY_INLINE bool AllFalse(D d, Mask<D> m) {
+VEC_INLINE bool AllFalse(D d, Mask<D> m) {
   return bits_of_mask(d, m) == 0;
 }
 template <class To, class D>
-HWY_INLINE Mask<To> RebindMask(To, MaskOf<D> m) {
+VEC_INLINE Mask<To> RebindMask(To, MaskOf<D> m) {
   return {m.raw};
 }
 template <class D>
-HWY_INLINE Vec<D> VecFromMask(D, Mask<D> m) {
+VEC_INLINE Vec<D> VecFromMask(D, Mask<D> m) {
   return Vec<D>::of_bits(m.raw);
 }
 template <class D>
-HWY_INLINE std::size_t StoreMaskBits(D d, Mask<D> m, std::uint8_t* bits) {
+VEC_INLINE std::size_t StoreMaskBits(D d, Mask<D> m, std::uint8_t* bits) {
   static_assert(D::lanes <= 8);
   bits[0] = static_cast<std::uint8_t>(bits_of_mask(d, m));
   return 1;
@@ -498,20 +499,20 @@ HWY_INLINE std::size_t StoreMaskBits(D d, Mask<D> m, std::uint8_t* bits) {
 #endif
 
 template <class D>
-HWY_INLINE Mask<D> Gt(VectorOf<D> a, VectorOf<D> b) {
+VEC_INLINE Mask<D> Gt(VectorOf<D> a, VectorOf<D> b) {
   return Lt(b, a);
 }
 template <class D>
-HWY_INLINE VectorOf<D> Min(VectorOf<D> a, VectorOf<D> b) {
-#if HWY_TARGET == HWY_AVX3
+VEC_INLINE VectorOf<D> Min(VectorOf<D> a, VectorOf<D> b) {
+#if VEC_TARGET == VEC_AVX512
   if constexpr (std::is_same_v<TFromD<D>, float> && sizeof a == 64) return {_mm512_min_ps(a.raw, b.raw)};
   if constexpr (std::is_same_v<TFromD<D>, double> && sizeof a == 64) return {_mm512_min_pd(a.raw, b.raw)};
 #endif
   return Vec<D>::of(a.v() < b.v() ? a.v() : b.v());
 }
 template <class D>
-HWY_INLINE VectorOf<D> Max(VectorOf<D> a, VectorOf<D> b) {
-#if HWY_TARGET == HWY_AVX3
+VEC_INLINE VectorOf<D> Max(VectorOf<D> a, VectorOf<D> b) {
+#if VEC_TARGET == VEC_AVX512
   if constexpr (std::is_same_v<TFromD<D>, float> && sizeof a == 64) return {_mm512_max_ps(a.raw, b.raw)};
   if constexpr (std::is_same_v<TFromD<D>, double> && sizeof a == 64) return {_mm512_max_pd(a.raw, b.raw)};
 #endif
@@ -520,10 +521,10 @@ HWY_INLINE VectorOf<D> Max(VectorOf<D> a, VectorOf<D> b) {
 
 // --- some lanes -----------------------------------------------------------------------------------------
 
-#if HWY_TARGET <= HWY_AVX2
+#if VEC_TARGET <= VEC_AVX2
 template <class D>
-HWY_INLINE Vec<D> MaskedLoad(Mask<D> m, D, const double* p) {
-#if HWY_TARGET == HWY_AVX3
+VEC_INLINE Vec<D> MaskedLoad(Mask<D> m, D, const double* p) {
+#if VEC_TARGET == VEC_AVX512
   if constexpr (D::lanes == 8) return {_mm512_maskz_loadu_pd(m.raw, p)};
   if constexpr (D::lanes == 4) return {_mm256_maskz_loadu_pd(m.raw, p)};
 #else
@@ -535,9 +536,9 @@ HWY_INLINE Vec<D> MaskedLoad(Mask<D> m, D, const double* p) {
 
 // The lanes of the mask one after another; a whole vector may be written. Returns their number.
 template <class D>
-HWY_INLINE std::size_t CompressStore(Vec<D> v, Mask<D> m, D d, std::int32_t* to) {
+VEC_INLINE std::size_t CompressStore(Vec<D> v, Mask<D> m, D d, std::int32_t* to) {
   std::uint64_t bits = bits_of_mask(d, m);
-#if HWY_TARGET == HWY_AVX3
+#if VEC_TARGET == VEC_AVX512
   if constexpr (sizeof v == 64) {
     StoreU(Vec<D>{_mm512_maskz_compress_epi32(m.raw, v.raw)}, d, to);
     return static_cast<std::size_t>(__builtin_popcountll(bits));
@@ -546,17 +547,17 @@ HWY_INLINE std::size_t CompressStore(Vec<D> v, Mask<D> m, D d, std::int32_t* to)
   std::int32_t all[D::lanes];
   StoreU(v, d, all);
   std::size_t count = 0;
-  for (; bits != 0; bits &= bits - 1) to[count++] = all[Num0BitsBelowLS1Bit_Nonzero64(bits)];
+  for (; bits != 0; bits &= bits - 1) to[count++] = all[first_bit(bits)];
   return count;
 }
 
 // --- look-ups -------------------------------------------------------------------------------------------
 
 template <class D, class I>
-HWY_INLINE Vec<D> GatherIndex(D, const TFromD<D>* table, VectorOf<I> index) {
-#if HWY_TARGET == HWY_AVX3
+VEC_INLINE Vec<D> GatherIndex(D, const TFromD<D>* table, VectorOf<I> index) {
+#if VEC_TARGET == VEC_AVX512
   if constexpr (sizeof(TFromD<D>) == 8 && D::lanes == 8) return {_mm512_i64gather_pd(index.raw, table, 8)};
-#elif HWY_TARGET == HWY_AVX2
+#elif VEC_TARGET == VEC_AVX2
   if constexpr (sizeof(TFromD<D>) == 8 && D::lanes == 4) return {_mm256_i64gather_pd(table, index.raw, 8)};
 #endif
   typename Vec<D>::Lanes v;
@@ -564,17 +565,17 @@ HWY_INLINE Vec<D> GatherIndex(D, const TFromD<D>* table, VectorOf<I> index) {
   return Vec<D>::of(v);
 }
 template <class D, class I>
-HWY_INLINE VectorOf<I> IndicesFromVec(D, VectorOf<I> index) {
+VEC_INLINE VectorOf<I> IndicesFromVec(D, VectorOf<I> index) {
   return index;
 }
 template <class D, class I>
-HWY_INLINE VectorOf<D> TableLookupLanes(VectorOf<D> table, VectorOf<I> index) {
+VEC_INLINE VectorOf<D> TableLookupLanes(VectorOf<D> table, VectorOf<I> index) {
   return Vec<D>::of(__builtin_shuffle(table.v(), index.v()));
 }
-#if HWY_TARGET == HWY_AVX2
+#if VEC_TARGET == VEC_AVX2
 // The same four numbers in both halves.
 template <class D>
-HWY_INLINE Vec<D> LoadDup128(D, const float* p) {
+VEC_INLINE Vec<D> LoadDup128(D, const float* p) {
   static_assert(D::lanes == 8);
   const __m128 four = _mm_loadu_ps(p);
   return {_mm256_insertf128_ps(_mm256_castps128_ps256(four), four, 1)};
@@ -586,7 +587,7 @@ HWY_INLINE Vec<D> LoadDup128(D, const float* p) {
 namespace detail {
 // Lane k of the result is lane place(k) of a, or place(k) - lanes of b.
 template <class D, class Place>
-HWY_INLINE VectorOf<D> shuffled(VectorOf<D> a, VectorOf<D> b, Place place) {
+VEC_INLINE VectorOf<D> shuffled(VectorOf<D> a, VectorOf<D> b, Place place) {
   using I = typename IntegerOf<sizeof(TFromD<D>)>::Signed;
   typename VectorOf<D>::Bits places;
   for (std::size_t k = 0; k < D::lanes; ++k) places[k] = static_cast<I>(place(k));
@@ -597,32 +598,32 @@ constexpr std::size_t in_block = 16 / sizeof(TFromD<D>);
 }  // namespace detail
 
 template <class D>
-HWY_INLINE Vec<D> InterleaveLower(D, VectorOf<D> a, VectorOf<D> b) {
+VEC_INLINE Vec<D> InterleaveLower(D, VectorOf<D> a, VectorOf<D> b) {
   constexpr std::size_t n = detail::in_block<D>;
   return detail::shuffled(a, b, [](std::size_t k) { return k / n * n + k % n / 2 + (k % 2) * D::lanes; });
 }
 template <class D>
-HWY_INLINE Vec<D> InterleaveUpper(D, VectorOf<D> a, VectorOf<D> b) {
+VEC_INLINE Vec<D> InterleaveUpper(D, VectorOf<D> a, VectorOf<D> b) {
   constexpr std::size_t n = detail::in_block<D>;
   return detail::shuffled(a, b, [](std::size_t k) { return k / n * n + n / 2 + k % n / 2 + (k % 2) * D::lanes; });
 }
 template <class D>
-HWY_INLINE Vec<D> ConcatLowerLower(D, VectorOf<D> high, VectorOf<D> low) {
+VEC_INLINE Vec<D> ConcatLowerLower(D, VectorOf<D> high, VectorOf<D> low) {
   return detail::shuffled(low, high, [](std::size_t k) { return k < D::lanes / 2 ? k : k + D::lanes / 2; });
 }
 template <class D>
-HWY_INLINE Vec<D> ConcatUpperUpper(D, VectorOf<D> high, VectorOf<D> low) {
+VEC_INLINE Vec<D> ConcatUpperUpper(D, VectorOf<D> high, VectorOf<D> low) {
   return detail::shuffled(low, high,
                           [](std::size_t k) { return k < D::lanes / 2 ? k + D::lanes / 2 : k + D::lanes; });
 }
 template <class D>
-HWY_INLINE VectorOf<D> SwapAdjacentBlocks(VectorOf<D> v) {
+VEC_INLINE VectorOf<D> SwapAdjacentBlocks(VectorOf<D> v) {
   constexpr std::size_t n = detail::in_block<D>;
   return detail::shuffled(v, v, [](std::size_t k) { return k / n % 2 == 0 ? k + n : k - n; });
 }
 
-}  // namespace HWY_NAMESPACE
-}  // namespace hwy
-HWY_AFTER_NAMESPACE();
+}  // namespace VEC_SET
+}  // namespace ropewalk::vec
+VEC_AFTER_NAMESPACE();
 
 #endif  // per target
