@@ -84,8 +84,8 @@ void add_load(const LoadEffect& load, const Prepared& p, SceneFeatures& f) {
   f.ramp = std::max(f.ramp, load.ramp);
 }
 
-// What clamps ask: pulling, bending, stretching where the rope is turned at a length that is held, and the bending
-// of tilted tubes where a clamp keeps them straight: over the length sqrt(EI/T), T the tension of a tube.
+// Adds the demands of clamps: pulling, bending, stretching where the rope is turned at a length that is held, and the
+// bending of tilted tubes where a clamp keeps them straight, over the length sqrt(EI/T), T the tension of a tube.
 void add_clamps(const Prepared& p, SceneFeatures& f) {
   const BondStiffness& k = p.topology.types[0].bond;
   EndElements clamped;
