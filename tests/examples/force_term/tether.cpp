@@ -32,6 +32,10 @@ std::string tether(const std::string& ends, const std::string& more = "") {
 }
 const std::string between = "tube = 1\nelements = [-1]\nto_tube = 4\nto_elements = [0, 1]\n",
                   to_point = "tube = 2\nelements = [3]\nto_point_nm = [4, 1, 2]\n";
+// A load draws the rope away from the point until the tether breaks.
+const std::string breaking =
+    tether(to_point, "breaks_at_nm = 3.5\n") +
+    "[[load]]\nkind = \"force\"\nelements = \"all\"\nforce_nN = [-1.5, 0, 0]\n";
 
 Simulation simulation_of(Scene scene) {
   const Prepared p = prepare(scene);
@@ -50,7 +54,10 @@ Forces forces_of_terms(const Prepared& p, const State& state) {
   in.terms.clear();
   ForceEngine bonds;
   bonds.compute(p.topology, in, list, state, without);
-  for (std::size_t i = 0; i < state.size(); ++i) with.force.add(i, -without.force[i]);
+  for (std::size_t i = 0; i < state.size(); ++i) {
+    with.force.add(i, -without.force[i]);
+    with.torque.add(i, -without.torque[i]);
+  }
   return with;
 }
 
@@ -89,7 +96,7 @@ TEST(Tether, IsThatOfItsFormulaAndOfTheReference) {
   Scene scene = rope(tether(to_point, "rest_nm = 1\n"));
   const Prepared p = prepare(scene);
   const Simulation s = start(scene, p);
-  const std::size_t i = 23;
+  const auto i = static_cast<std::size_t>(p.topology.tube_begin[2] + 3);
   const Vector3 apart = Vector3(4, 1, 2) - p.state.position[i];
   EXPECT_NEAR(s.forces().energy.terms, 0.5 * k * std::pow(apart.norm() - 1, 2), 1e-12);
   const Forces f = forces_of_terms(p, p.state);
@@ -104,29 +111,25 @@ TEST(Tether, IsAtRestAsItStartsWhereNoLengthIsTyped) {
   EXPECT_EQ(simulation_of(rope(tether(between))).forces().energy.terms, 0);
 }
 
-// A tether that is stretched by 3 nm draws tubes together; one that breaks takes its energy away.
 TEST(Tether, TheAccountOfEnergyStaysClosedAlsoWhereOneBreaks) {
-  const auto run = [](const std::string& more) {
-    Scene scene = rope(tether(to_point, more),
-                       "duration_ps = 20\ntime_step_fs = 4\n", "[contact]\nprecision = \"double\"\n");
-    Simulation s = simulation_of(scene);
+  const auto run = [](const std::string& tethers) {
+    Simulation s = simulation_of(rope(tethers, "duration_ps = 20\ntime_step_fs = 4\n", "[contact]\nprecision = \"double\"\n"));
     const double total = s.total_energy(), first = s.forces().energy.terms;
-    EXPECT_GT(first, 0.1);
     bool broke = false;
     for (int n = 0; n < 1000; ++n) {
       const double before = s.forces().energy.terms;
       s.step();
       broke = broke || (before > 0 && s.forces().energy.terms == 0);
-      EXPECT_NEAR(s.total_energy() - s.account().supplied(), total, 2e-3 * (1 + first)) << n;
+      EXPECT_NEAR(s.total_energy() - s.account().supplied(), total, 2e-3 * (1 + first + s.work())) << n;
     }
     EXPECT_GT(s.dissipated(), 0.01);
     return broke;
   };
-  EXPECT_FALSE(run("rest_nm = 1\n"));
-  EXPECT_TRUE(run("rest_nm = 4\nbreaks_at_nm = 3.6\n")) << "it pushes the tube away until it breaks";
+  EXPECT_FALSE(run(tether(to_point, "rest_nm = 1\n")));
+  EXPECT_TRUE(run(breaking));
 }
 
-const std::string strong_then_weak = tether(between, "rest_nm = 6\n") + tether(to_point, "rest_nm = 4\nbreaks_at_nm = 3.6\n");
+const std::string strong_then_weak = tether(between, "rest_nm = 6\n") + breaking;
 
 TEST(Tether, SameBitsOnAnyThreadsAndAfterResume) {
   Scene scene = rope(strong_then_weak, "duration_ps = 20\ntime_step_fs = 8\n", "[start]\ntemperature_K = 300\nmay_cool = true\n");
@@ -159,12 +162,13 @@ TEST(Tether, SameBitsOnAnyThreadsAndAfterResume) {
   EXPECT_THROW(simulation_of(rope(tether(between))).restore(damaged), std::runtime_error) << "another scene's memory";
 }
 
-// The halves hold the tether together, and it remembers its length and that it is broken.
+// The halves hold the tether together, and it remembers its length and that it is broken. Their centre is that of the
+// element where the tube is straight; the pull of the tether bends it.
 TEST(Tether, IsCarriedOverWhereElementsAreSplit) {
   Scene coarse = rope(strong_then_weak, "duration_ps = 20\n");
   const Prepared p = prepare(coarse);
   Simulation s = start(coarse, p);
-  for (const int steps : {3, 400}) {
+  for (const int steps : {3, 60}) {
     s.steps(steps);
     Scene finer = scene_of_text(finer_scene_text(coarse, p, "finer"), "finer.toml");
     Prepared q = prepare(finer);
@@ -173,8 +177,8 @@ TEST(Tether, IsCarriedOverWhereElementsAreSplit) {
     split.remember(s.halved_memory());
     const std::vector<double>&before = s.forces().term_energy, &after = split.forces().term_energy;
     ASSERT_EQ(after.size(), 2u);
-    for (std::size_t t = 0; t < 2; ++t) EXPECT_NEAR(after[t], before[t], 1e-3 * (before[t] + 1e-9)) << steps;
-    EXPECT_EQ(before[1] == 0, steps > 100);
+    for (std::size_t t = 0; t < 2; ++t) EXPECT_NEAR(after[t], before[t], 5e-3 * before[t] + 1e-4) << steps;
+    EXPECT_EQ(before[1] == 0, steps > 3);
     EXPECT_GT(before[0], 0.01);
   }
 }
