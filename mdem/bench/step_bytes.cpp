@@ -6,15 +6,14 @@ double step_bytes(const Simulation& simulation) {
   constexpr int state = 3 + 4 + 3 + 3, axis = 3, force = 3 + 3;  // numbers of an element
   const Interaction& in = simulation.interaction();
   const auto elements = static_cast<double>(simulation.state().size());
-  // Two levels of time steps make one pass per step of the bonds. Forces are stored with two levels, and with local
-  // damping, which needs the total force.
-  const int passes = simulation.stepping().contact_every;
-  const bool stored = passes > 1 || in.damping.local > 0;
-  double sum = 2.0 * passes * (state + (stored ? force : 0)) * sizeof(double) * elements;
+  // What acts in the kick needs the total force, which is then stored.
+  const bool stored = simulation.engine().terms().act_in_kick();
+  double sum = 2.0 * (state + (stored ? force : 0)) * sizeof(double) * elements;
   if (!in.has_contact()) return sum;
   sum += 2 * axis * sizeof(double) * elements;
   const std::size_t number = in.precision == Interaction::Precision::mixed ? sizeof(float) : sizeof(double);
-  return sum + simulation.engine().contact()->step_bytes(simulation.list(), number);
+  return sum + simulation.engine().contact()->step_bytes(simulation.list(), number) +
+         static_cast<double>(simulation.engine().terms().bytes());
 }
 
 }  // namespace ropewalk

@@ -100,8 +100,7 @@ nlohmann::ordered_json json_of(const StepCost& c, const Rates& rates, const std:
   out["threads"] = c.threads;
   out["steps"] = steps;
   out["after_ps"] = c.after;
-  out["time_step_fs"] = prepared.time_step / units::fs;  // of contact
-  out["contact_every"] = prepared.stepping.contact_every;
+  out["time_step_fs"] = prepared.time_step / units::fs;
   out["ns_per_element_step"] = c.each.wall;
   out["processor_ns_per_element_step"] = c.each.processor;
   out["pairs_per_element"] = c.pairs;

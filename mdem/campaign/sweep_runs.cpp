@@ -93,7 +93,7 @@ void SweepRuns::branch_off(const SweepPoint& p) const {
   fs::remove_all(half);
   fs::copy(from.path, half, fs::copy_options::recursive);
   const RunDirectory made{half};
-  const double step = read_manifest(from.manifest()).time_step_fs / scene_of(sweep_, p).run.stepping.contact_every;
+  const double step = read_manifest(from.manifest()).time_step_fs;
   write_file_atomically(made.scene(),
                         with_value(p.text, "run.time_step_fs", fmt::format("{:.17g}", step), sweep_.scene_path));
   // The shared run is one of every point's scene, up to here.

@@ -16,10 +16,8 @@ namespace {
 void print(const StepCost& c, const BenchArguments& a, const Prepared& prepared) {
   const StepTiming& t = c.each;
   const double n = prepared.topology.elements();
-  const int every = prepared.stepping.contact_every;
-  fmt::print("{} elements, {} thread{}, {} steps of {:.3g} fs{}\n", n, c.threads, c.threads == 1 ? "" : "s",
-             a.steps, prepared.time_step / units::fs,
-             every > 1 ? fmt::format(", of {} bond steps each", every) : "");
+  fmt::print("{} elements, {} thread{}, {} steps of {:.3g} fs\n", n, c.threads, c.threads == 1 ? "" : "s", a.steps,
+             prepared.time_step / units::fs);
   fmt::print("{:9.1f} ns per element-step, {:.1f} of processor time\n", t.wall, t.processor);
   fmt::print("{:9.1f} pairs per element (half list)\n", c.pairs);
   fmt::print(

@@ -54,14 +54,10 @@ int check_command(const std::string& path) {
   for (const std::string& warning : warnings_of(scene, p)) fmt::print("note: {}\n", warning);
   for (const std::string& warning : warmth_of(scene, p)) fmt::print("note: {}\n", warning);
   for (const std::string& warning : limits_ahead(scene, p)) fmt::print("note: {}\n", warning);
-  const int every = scene.run.stepping.contact_every;
-  if (every > 1)
-    fmt::print("contact every {} steps, {:.4g} fs: a step of the log and of what is counted below\n", every,
-               p.time_step / units::fs);
   say_limits(scene, p);
   fmt::print(
       "time step {:.4g} fs; stability limit {:.4g} fs (chain {:.3g}, contact {:.3g} rad/ps, damping {:.3g} 1/ps)\n",
-      p.time_step / every / units::fs, inner_step_limit(p.limit, every) / units::fs, p.limit.chain_frequency,
+      p.time_step / units::fs, p.limit.limit / units::fs, p.limit.chain_frequency,
       p.limit.contact_frequency, p.limit.damping_rate);
   const Energies& e = simulation.forces().energy;
   fmt::print("start: {:.6g} eV in bonds, {:.6g} eV van der Waals, largest force {:.3g} eV/nm\n", e.bonds(), e.vdw,

@@ -51,8 +51,7 @@ int errors_command(const ErrorsArguments& a) {
   const std::vector<LogRow> log = read_log(dir.log());
   if (log.empty()) throw InputError({dir.log(), 0, ""}, "has no rows", "run the scene anew");
   const std::vector<VariedNumber> sources = varied_numbers(scene, prepared.topology.tubes());
-  const double step = prepared.time_step / scene.run.stepping.contact_every;
-  const ErrorRuns runs(dir, scene, step, a.again);
+  const ErrorRuns runs(dir, scene, prepared.time_step, a.again);
   const int jobs = a.jobs > 0 ? a.jobs : omp_get_num_procs();
   std::vector<ProcessTask> tasks;
   std::vector<std::string> failed;

@@ -63,6 +63,7 @@ LammpsScript script_of(const Scene& scene, const Prepared& p, const Simulation& 
   script.name = scene.name;
   script.law = scene.contact.law;
   script.relax = scene.run.mode == RunOptions::Mode::relax;
+  script.terms = static_cast<int>(in.terms.size());
   script.damped = in.damped_contact() || in.damping.bond.rate > 0 || in.damping.local > 0;
   script.driven = !p.loads.empty();
   script.long_in_z = scene.source->is_parallel();
@@ -105,7 +106,7 @@ void write_lammps_files(const RunDirectory& run) {
   header.time = s.state().time;
   header.work = s.work();
   header.dissipated = s.dissipated();
-  write_file_atomically(dir.first_state(), state_file(header, s.state(), s.forces().force, s.forces().torque));
+  write_file_atomically(dir.first_state(), state_file(header, s.state(), s.forces().force, s.forces().torque, s.memory()));
   write_file_atomically(dir.input(), lammps_input(script_of(scene, p, s)));
   write_file_atomically(dir.readme(), readme);
 }

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <limits>
 #include <map>
+#include <numeric>
 
 #include "exchange/export_run.hpp"
 #include "io/files.hpp"
@@ -47,7 +48,8 @@ class Import {
     if (!fs::exists(files_.rows()) || !fs::exists(files_.states()))
       throw InputError({files_.path, 0, ""}, "holds nothing that LAMMPS has done",
                        "run in.rope with lmp-ropewalk first, as README.txt says");
-    for (const LammpsRow& row : read_lammps_rows(files_)) rows_[static_cast<std::int64_t>(row.step)] = row;
+    for (const LammpsRow& row : read_lammps_rows(files_, prepared_.interaction.terms.size()))
+      rows_[static_cast<std::int64_t>(row.step)] = row;
     remove_parts(dir_.path);
     log_ = read_file(dir_.log()).substr(0, checkpoint_.log.bytes);
     const std::string there = dir_.frames();
@@ -73,6 +75,7 @@ class Import {
       state.time = row->second.time;
       force_.force = force;
       force_.torque = torque;
+      memory_ = states.memory();
       add(state, row->second);
     }
   }
@@ -81,7 +84,9 @@ class Import {
     EnergyAccount account;
     account.time_step = prepared_.time_step;
     if (const MomentRamp* ramp = scene_.moment_ramp()) account.moment = ramp->moment_at(from.time);
-    account.potential = {from.stretch, from.shear, from.bend, from.twist, from.vdw};
+    account.potential = {from.stretch, from.shear, from.bend, from.twist, from.vdw,
+                         std::accumulate(from.terms.begin(), from.terms.end(), 0.0)};
+    account.terms = term_energies(prepared_.interaction, from.terms);
     account.kinetic = from.kinetic;
     account.work = from.work;
     account.dissipated = from.dissipated;
@@ -123,6 +128,7 @@ class Import {
   // stands where it stood, and all of this can be done again.
   void write(std::int64_t from) {
     Simulation simulation = start(scene_, prepared_);
+    simulation.remember(memory_);
     simulation.inherit_from(force_.force, force_.torque, {last_.work, last_.dissipated});
     simulation.inherit_from(gauges_.sums);
     checkpoint_.log = mark_of(log_);
@@ -166,6 +172,7 @@ class Import {
   std::map<std::int64_t, LammpsRow> rows_;
   LammpsRow last_;
   Forces force_;
+  std::vector<double> memory_;  // of the force terms, in the last state
   std::string log_;
   std::unique_ptr<NewFrames> frames_;
   long taken_ = 0;

@@ -48,6 +48,7 @@ void visit_energies(E&& e, const Visit& v) {
   v({"bend", "eV", "bending energy of the bonds"}, e.potential.bend);
   v({"twist", "eV", "torsional energy of the bonds"}, e.potential.twist);
   v({"contact", "eV", "van der Waals energy of the contacts"}, e.potential.vdw);
+  v({"terms", "eV", "energy of all force terms"}, e.potential.terms);
   v({"kinetic", "eV", "kinetic energy"}, e.kinetic);
 }
 

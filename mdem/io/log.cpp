@@ -61,6 +61,12 @@ LogRow::LogRow(const Measurement& measurement) {
   for (const Observable& observable : observables()) values_.push_back(observable.value(measurement));
 }
 
+double potential_energy(const LogRow& row) {
+  double sum = row["stretch_eV"] + row["shear_eV"] + row["bend_eV"] + row["twist_eV"] + row["vdw_eV"];
+  for (const std::string& column : term_energy_columns()) sum += row[column];
+  return sum;
+}
+
 std::string log_header() {
   std::string text;
   for (const Observable& column : observables()) text += (text.empty() ? "" : ",") + column.name;

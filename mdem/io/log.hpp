@@ -28,6 +28,9 @@ class LogRow {
   std::vector<double> values_;
 };
 
+// eV: bonds, contacts and force terms.
+double potential_energy(const LogRow& row);
+
 std::string log_header();
 std::string log_line(const LogRow& row);  // full precision: reading it back gives the same bits
 

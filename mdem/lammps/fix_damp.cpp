@@ -43,10 +43,7 @@ void FixDamp::bonds() {
 }
 
 void FixDamp::pre_reverse(int, int) {
-  if (const RankEngine* engine = engine_of(lmp)) {
-    power_ = engine->damping_power();
-    return;
-  }
+  if (engine_of(lmp)) return;  // which has all dampings
   power_ = 0;
   if (model_->interaction.has_contact() && model_->interaction.damped_contact()) contacts();
   if (model_->interaction.damping.bond.rate > 0) bonds();

@@ -7,22 +7,6 @@
 
 namespace ropewalk::lammps {
 
-void FixGrip::Ranks::sum(double* values, std::size_t count) const {
-  MPI_Allreduce(MPI_IN_PLACE, values, static_cast<int>(count), MPI_DOUBLE, MPI_SUM, world_);
-}
-
-std::vector<int> FixGrip::Ranks::join(const std::vector<int>& own) const {
-  int ranks = 1;
-  MPI_Comm_size(world_, &ranks);
-  const int count = static_cast<int>(own.size());
-  std::vector<int> counts(static_cast<std::size_t>(ranks)), at(counts.size());
-  MPI_Allgather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, world_);
-  std::partial_sum(counts.begin(), counts.end() - 1, at.begin() + 1);
-  std::vector<int> all(static_cast<std::size_t>(counts.back() + at.back()));
-  MPI_Allgatherv(own.data(), count, MPI_INT, all.data(), counts.data(), at.data(), MPI_INT, world_);
-  return all;
-}
-
 FixGrip::FixGrip(LMP::LAMMPS* lmp, int count, char** words) : Fix(lmp, count, words), ranks_(world) {
   if (count != 3 || igroup != 0)
     refuse(lmp, "fix mdem/grip takes no words: the scene says what it drives", "write: fix grips all mdem/grip");

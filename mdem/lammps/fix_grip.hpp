@@ -37,22 +37,11 @@ class FixGrip : public LMP::Fix {
     std::size_t place;  // in Load::elements
     bool operator<(const Place& o) const { return element < o.element; }
   };
-  // The ranks, for the loads.
-  class Ranks : public LoadProcesses {
-   public:
-    explicit Ranks(MPI_Comm world) : world_(world) {}
-    void sum(double* values, std::size_t count) const override;
-    std::vector<int> join(const std::vector<int>& own) const override;
-
-   private:
-    MPI_Comm world_;
-  };
-
   RankEngine* leading_engine() const;
   void gather();
 
   std::shared_ptr<const LammpsModel> model_;
-  Ranks ranks_;
+  RankMessages ranks_;
   std::vector<Place> places_;  // of all loads, by their elements
   // The scene of this rank's driven elements: its element k is atom atom_[k].
   std::vector<int> atom_;

@@ -45,7 +45,7 @@ FixMotion::FixMotion(LMP::LAMMPS* lmp, int count, char** words) : Fix(lmp, count
   restart_global = 1;
   comm_forward = 4;
   vector_flag = 1;
-  size_vector = 9;
+  size_vector = 9 + static_cast<int>(model_->interaction.terms.size());
   global_freq = 1;
   extvector = 0;
   const auto* states = find_fix<FixStates>(lmp);
@@ -53,6 +53,7 @@ FixMotion::FixMotion(LMP::LAMMPS* lmp, int count, char** words) : Fix(lmp, count
   const StateHeader& began = *states->began();
   carried_ = began.step;
   first_skin_ = began.skin;
+  first_memory_ = states->memory();
   if (comm->me == 0) {
     work_ = began.work;
     dissipated_ = began.dissipated;
@@ -73,6 +74,7 @@ void FixMotion::init() {
   engine_ = engine_of(lmp);
   if (engine_) {
     if (first_skin_ > 0) engine_->use_skin(std::exchange(first_skin_, 0.0));
+    if (!first_memory_.empty()) engine_->set_memory(std::exchange(first_memory_, {}));
     lead_exchanges();
     engine_->lead(engine_may_lead());
   }
@@ -222,16 +224,16 @@ double FixMotion::own_kinetic_energy() const {
   return 0.5 * sum;
 }
 
-std::array<double, 8> FixMotion::energies() const {
+std::vector<double> FixMotion::energies() const {
   BondEnergy<double> bonds;
   if (const auto* style = dynamic_cast<const BondVBond*>(force->bond)) bonds = style->own_energy();
   const auto* pair = dynamic_cast<const PairMdem*>(force->pair);
-  std::array<double, 8> own = {
+  std::vector<double> own = {
       bonds.stretch,        bonds.shear, bonds.bend, bonds.twist, pair ? pair->own_energy() : 0.0,
       own_kinetic_energy(), work_,       dissipated_};
-  std::array<double, 8> all{};
-  MPI_Allreduce(own.data(), all.data(), static_cast<int>(own.size()), MPI_DOUBLE, MPI_SUM, world);
-  return all;
+  if (engine_) own.insert(own.end(), engine_->term_energy().begin(), engine_->term_energy().end());
+  MPI_Allreduce(MPI_IN_PLACE, own.data(), static_cast<int>(own.size()), MPI_DOUBLE, MPI_SUM, world);
+  return own;
 }
 
 // Outputs request one number after another, on all ranks.
@@ -251,10 +253,14 @@ struct Account {
 void FixMotion::write_restart(FILE* file) {
   const auto [work, dissipated] = account();
   const Account all = {work, dissipated, carried_};
+  const std::vector<double> memory = engine_ ? engine_->memory() : std::vector<double>();
   if (comm->me > 0) return;
-  const int bytes = sizeof all;
+  const int bytes = static_cast<int>(sizeof all + (1 + memory.size()) * sizeof(double));
+  const auto count = static_cast<double>(memory.size());
   std::fwrite(&bytes, sizeof bytes, 1, file);
   std::fwrite(&all, sizeof all, 1, file);
+  std::fwrite(&count, sizeof count, 1, file);
+  std::fwrite(memory.data(), sizeof(double), memory.size(), file);
 }
 
 void FixMotion::restart(char* bytes) {
@@ -263,6 +269,11 @@ void FixMotion::restart(char* bytes) {
   work_ = comm->me == 0 ? account.work : 0.0;
   dissipated_ = comm->me == 0 ? account.dissipated : 0.0;
   carried_ = account.carried;
+  double count = 0;
+  std::memcpy(&count, bytes + sizeof account, sizeof count);
+  first_memory_.resize(static_cast<std::size_t>(count));
+  if (!first_memory_.empty())
+    std::memcpy(first_memory_.data(), bytes + sizeof account + sizeof count, first_memory_.size() * sizeof(double));
 }
 
 // --- dynamics -----------------------------------------------------------------------------------------
@@ -301,7 +312,7 @@ double FixNve::push(double alpha, double TubeType::*inertia, double dt, double**
 void FixNve::kick(double dt, double time) {
   if (grip_) work_ += 0.5 * dt * grip_->own_power();
   if (engine_ && engine_->leads()) {
-    engine_->kick(dt);
+    dissipated_ += engine_->kick(dt);
   } else {
     const double alpha = damp_ ? damp_->local() : 0.0;
     dissipated_ += push(alpha, &TubeType::mass, dt, atom->v, atom->f);
@@ -332,7 +343,11 @@ void FixNve::check() const {
 }
 
 void FixNve::final_integrate() {
-  if (damp_) dissipated_ -= update->dt * damp_->own_power();
+  if (engine_) {
+    dissipated_ += engine_->lost() - update->dt * engine_->damping_power();
+  } else if (damp_) {
+    dissipated_ -= update->dt * damp_->own_power();
+  }
   kick(0.5 * update->dt, now());
   if (output->next != update->ntimestep) return;
   if (engine_ && engine_->leads()) engine_->give_own();

@@ -2,10 +2,12 @@
 // fix ID all mdem/relax: Simulation::relax, step by step; LAMMPS's minimisers leave orientations as they are.
 //
 // Both send orientations to ghosts before the forces are evaluated, check the set-up, and keep the account of
-// energy: f_ID[1..9] = time, stretch, shear, bend, twist, vdw, kinetic, work, dissipated (ps, eV).
+// energy: f_ID[1..9] = time, stretch, shear, bend, twist, vdw, kinetic, work, dissipated (ps, eV), behind them the
+// energy of each force term.
 #pragma once
 
 #include <array>
+#include <vector>
 
 #include "lammps/fix_damp.hpp"
 #include "lammps/rank_engine.hpp"
@@ -53,12 +55,14 @@ class FixMotion : public LMP::Fix {
   void check_elements();
   void check_masses();
   double own_kinetic_energy() const;
-  std::array<double, 8> energies() const;
+  std::vector<double> energies() const;
 
   State moved_;  // buffer of move()
-  std::array<double, 8> row_{};
+  std::vector<double> row_;
   LMP::bigint row_step_ = -1;
-  double first_skin_ = 0;  // nm, of the list where the run goes on; 0: as the engine chooses
+  // Where the run goes on: the skin of the list (nm; 0: as the engine chooses) and the memories of force terms.
+  double first_skin_ = 0;
+  std::vector<double> first_memory_;
 };
 
 class FixNve : public FixMotion {
@@ -71,7 +75,7 @@ class FixNve : public FixMotion {
   void post_run() override;
 
  private:
-  bool engine_may_lead() const override { return only_known_fixes() && !(damp_ && damp_->local() > 0); }
+  bool engine_may_lead() const override { return only_known_fixes(); }
   void carry();  // the forces along with the elements, into what is written next
   void kick(double dt, double time);
   double push(double alpha, double TubeType::*inertia, double dt, double** velocity, double** force) const;

@@ -139,9 +139,15 @@ void FixStates::make_elements(const std::string& path) {
     refuse(lmp, "the fix that moves the elements is there before them", "write: fix states before fix motion");
   orientations(lmp);
   std::string trouble;
-  if (comm->me == 0) trouble = trouble_of([&] { began_ = last_state(path, model_->topology.elements()); });
+  if (comm->me == 0)
+    trouble = trouble_of([&] {
+      began_ = last_state(path, model_->topology.elements());
+      memory_ = memory_in(path, began_);
+    });
   refuse_together(lmp, trouble);
   MPI_Bcast(&began_, sizeof began_, MPI_BYTE, 0, world);
+  memory_.resize(static_cast<std::size_t>(began_.header.memory));
+  MPI_Bcast(memory_.data(), static_cast<int>(memory_.size()), MPI_DOUBLE, 0, world);
   has_begun_ = true;
   std::vector<StateRecord> slice;
   refuse_together(lmp, trouble_of([&] { slice = read_slice(path); }));
@@ -307,12 +313,19 @@ void FixStates::write() {
     std::copy_n(atom->f[i], 3, r + 14);
     std::copy_n(atom->torque[i], 3, r + 17);
   }
+  const std::vector<double> memory = engine ? engine->memory() : std::vector<double>();
+  state.header.memory = static_cast<std::int64_t>(memory.size());
   const std::vector<double> mine = exchange(to, records);
   refuse_together(lmp, trouble_of([&] { write_slice(state, mine); }));
   // The header says that the rest is there.
   std::string trouble;
   if (comm->me == 0)
-    trouble = trouble_of([&] { File(path_, O_RDWR).write(&state.header, sizeof state.header, state.at); });
+    trouble = trouble_of([&] {
+      const File file(path_, O_RDWR);
+      file.write(memory.data(), memory.size() * sizeof(double), state.record(state.header.elements));
+      file.flush();
+      file.write(&state.header, sizeof state.header, state.at);
+    });
   refuse_together(lmp, trouble);
   end_ = state.end();
   written_ = update->ntimestep;

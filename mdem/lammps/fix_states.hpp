@@ -21,6 +21,8 @@ class FixStates : public LMP::Fix {
 
   // Where the run began; null if this fix has not made the elements.
   const StateHeader* began() const { return has_begun_ ? &began_.header : nullptr; }
+  // The memories of the force terms there.
+  const std::vector<double>& memory() const { return memory_; }
 
  private:
   LMP::bigint slice_begin(int rank) const;
@@ -39,6 +41,7 @@ class FixStates : public LMP::Fix {
   std::string path_;
   StateInFile began_;
   bool has_begun_ = false;
+  std::vector<double> memory_;
   std::int64_t end_ = 0;  // of the last state in the file, in bytes
   LMP::bigint written_ = -1;
 };

@@ -5,6 +5,7 @@
 #include "memory.h"
 #include "neighbor.h"
 #include "sim/contact/contact_law.hpp"
+#include "sim/forces/force_term.hpp"
 #include "utils.h"
 
 namespace ropewalk::lammps {
@@ -41,6 +42,9 @@ void PairMdem::settings(int count, char** words) {
   if (model_->law != law_)
     refuse(lmp, "the scene's contact is \"" + model_->law + "\", not \"" + law_ + "\"",
            "write: pair_style mdem/" + model_->law + " DIR, or export the scene anew");
+  if (plain && !model_->interaction.terms.empty())
+    refuse(lmp, "the scene has \"" + model_->interaction.terms.front()->name() + "\", which only the engine computes",
+           "write: " + name + " DIR");
   engine_ = plain ? nullptr : std::make_unique<RankEngine>(lmp, model_);
   no_virial_fdotr_compute = engine_ ? 1 : 0;  // LAMMPS's forces then are those of bonds and damping as well
 }

@@ -1,10 +1,12 @@
 #include "lammps/rank_engine.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 #include "sim/contact/contact_law.hpp"
 #include "sim/contact/line/engine.hpp"
+#include "sim/dynamics/kick.hpp"
 #include "sim/state/part_of_scene.hpp"
 
 namespace ropewalk::lammps {
@@ -57,8 +59,14 @@ void AllRanks::join(double& largest, double (&sums)[3]) const {
 }
 
 RankEngine::RankEngine(LMP::LAMMPS* lmp, std::shared_ptr<const LammpsModel> model)
-    : lmp_(lmp), model_(std::move(model)), list_(model_->interaction, model_->interaction.law->default_skin()) {
-  if (lmp->comm->nprocs > 1) ranks_ = std::make_unique<AllRanks>(lmp->world);
+    : lmp_(lmp),
+      model_(std::move(model)),
+      messages_(lmp->world),
+      list_(model_->interaction, model_->interaction.law->default_skin()) {
+  if (lmp->comm->nprocs > 1) {
+    ranks_ = std::make_unique<AllRanks>(lmp->world);
+    engine_.share_with(&messages_);
+  }
   list_.others = ranks_.get();
 }
 
@@ -164,16 +172,15 @@ void RankEngine::complete_forces() {
   all_forces_there_ = shared_forces_there_ = false;
 }
 
-void RankEngine::kick(double dt) {
+double RankEngine::kick(double dt) {
   complete_forces();
+  const ForceTerms* const terms = engine_.terms().act_in_kick() ? &engine_.terms() : nullptr;
+  const ForceRows total = rows_of(forces_);
+  removed_.resize(moved_.size());
 #pragma omp parallel for schedule(static) if (state_.size() > parallel_from)
-  for (std::size_t k = 0; k < moved_.size(); ++k) {
-    const Range& r = moved_[k];
-    const TubeType& type = topology_.type_of_element(r.element);
-    const auto at = static_cast<std::ptrdiff_t>(r.element), end = at + r.count;
-    kick_elements(forces_.force, dt / type.mass, state_.velocity, at, end);
-    kick_elements(forces_.torque, dt / type.inertia, state_.angular_velocity, at, end);
-  }
+  for (std::size_t k = 0; k < moved_.size(); ++k)
+    removed_[k] = ropewalk::kick(topology_, terms, total, dt, moved_[k], state_);
+  return terms ? std::accumulate(removed_.begin(), removed_.end(), 0.0) : 0;
 }
 
 void RankEngine::move(double dt) {
@@ -181,7 +188,7 @@ void RankEngine::move(double dt) {
   fastest_of_.resize(moved_.size());
 #pragma omp parallel for schedule(static) if (state_.size() > parallel_from)
   for (std::size_t k = 0; k < moved_.size(); ++k) {
-    const auto at = static_cast<std::ptrdiff_t>(moved_[k].element), end = at + moved_[k].count;
+    const std::ptrdiff_t at = moved_[k].begin, end = moved_[k].end;
     fastest_of_[k] = ropewalk::fastest(state_, at, end);
     move_elements(state_, dt, at, end);
     changes_[k] = list_.change(state_, at, end);
@@ -196,10 +203,10 @@ void RankEngine::move(double dt) {
 
 double RankEngine::kinetic_energy() const {
   double sum = 0;
-  for (const Range& r : moved_)
-    for (int k = 0; k < r.count; ++k) {
-      const TubeType& type = topology_.type_of_element(r.element);
-      const auto i = static_cast<std::size_t>(r.element + k);
+  for (const Segment& of : moved_)
+    for (int k = of.begin; k < of.end; ++k) {
+      const TubeType& type = topology_.type_of(of.tube);
+      const auto i = static_cast<std::size_t>(k);
       sum += type.mass * state_.velocity[i].squaredNorm() + type.inertia * state_.angular_velocity[i].squaredNorm();
     }
   return 0.5 * sum;
@@ -225,7 +232,13 @@ double RankEngine::choose_skin() {
   return list_.skin = best;
 }
 
+std::vector<double> RankEngine::memory() const {
+  const std::vector<double> own = engine_.terms().memory();
+  return ranks_ && !engine_.terms().empty() ? messages_.join(own) : own;
+}
+
 void RankEngine::build() {
+  const std::vector<double> memories = first_memory_ ? *std::exchange(first_memory_, std::nullopt) : memory();
   const LMP::Atom& atom = *lmp_->atom;
   const int all = atom.nlocal + atom.nghost;
   std::vector<std::pair<int, int>> order;  // element of the scene, atom
@@ -238,7 +251,6 @@ void RankEngine::build() {
   own.reserve(order.size());
   own_.clear();
   ghosts_.clear();
-  moved_.clear();
   for (const auto& [element, i] : order) {
     const bool owned = i < atom.nlocal;
     if (!number.empty() && number.back() == element)
@@ -254,19 +266,12 @@ void RankEngine::build() {
       ++stretches.back().count;
     else
       stretches.push_back({at, i, 1});
-    if (owned) {
-      const bool moves_along = !moved_.empty() && moved_.back().element + moved_.back().count == at &&
-                               moved_.back().type == atom.type[i] && moved_.back().count < cached_elements;
-      if (moves_along)
-        ++moved_.back().count;
-      else
-        moved_.push_back({at, 1, atom.type[i]});
-    }
     number.push_back(element);
     own.push_back(owned);
   }
   topology_ = part_of_scene(model_->topology, std::move(number), std::move(own));
   if (!ranks_) topology_.part.reset();  // it is the scene
+  find_moved();
   if (state_.size() != order.size()) {
     state_ = State(order.size());
     forces_ = Forces(order.size());
@@ -278,7 +283,18 @@ void RankEngine::build() {
   for (const Stretch& s : own_)
     for (int k = 0; k < s.count; ++k) element_[static_cast<std::size_t>(s.atom + k)] = s.element + k;
   list_.build(topology_, state_);
+  engine_.remember(model_->interaction, memories, model_->topology.elements());
   steps_ = 0;
+}
+
+void RankEngine::find_moved() {
+  moved_.clear();
+  for (int t = 0; t < topology_.tubes(); ++t)
+    for (int i = topology_.tube_begin[t], to; i < topology_.tube_begin[t + 1]; i = to) {
+      to = std::min(topology_.tube_begin[t + 1], i + cached_elements);
+      if (topology_.part) to = topology_.change_of_owner(i, to);
+      if (topology_.owns(i)) moved_.push_back({t, i, to});
+    }
 }
 
 void RankEngine::evaluate(const State& state, const ForceOptions& options, Forces& out) {
@@ -290,7 +306,10 @@ void RankEngine::compute(bool energies) {
   const LMP::Atom& atom = *lmp_->atom;
   quaternions_ = orientations(lmp_);
   for (const Stretch& s : ghosts_) take(s);
-  evaluate(state_, {Parts::all, energies}, forces_);
+  // At the start of a run no time has passed; in a relaxation none does.
+  std::optional<double> passed;
+  if (!lmp_->update->setupflag) passed = model_->relax ? 0.0 : lmp_->update->dt;
+  evaluate(state_, {Parts::all, energies, passed}, forces_);
   contact_energy_known_ = energies;
   // At the start of a run LAMMPS writes forces before the first step.
   const bool all = !leads_ || lmp_->update->setupflag;

@@ -9,6 +9,8 @@
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "lammps/shared.hpp"
@@ -39,8 +41,9 @@ class RankEngine {
   bool leads() const { return leads_; }
   void lead(bool yes) { leads_ = yes; }
 
-  // Own elements: v += F dt/m, w += M dt/I; x += v dt, q <- exp(w dt) q.
-  void kick(double dt);
+  // Own elements: v += F dt/m, w += M dt/I; x += v dt, q <- exp(w dt) q. The kick returns what force terms that act
+  // in it take out, eV.
+  double kick(double dt);
   void move(double dt);
   const Fastest& fastest() const { return fastest_; }  // in the last move
   double kinetic_energy() const;
@@ -68,10 +71,16 @@ class RankEngine {
   // Adds all forces and torques of the model to LAMMPS's. Energies of contact are summed only if wanted.
   void compute(bool energies);
 
+  // The memories of all force terms, of all ranks; the first build begins with those that are set. All ranks.
+  std::vector<double> memory() const;
+  void set_memory(std::vector<double> memory) { first_memory_ = std::move(memory); }
+
   // Of the last evaluation, of this rank's pairs and bonds.
   BondEnergy<double> bond_energy() const;
   double contact_energy();  // evaluates the contact again where the last time left it out
   double damping_power() const { return forces_.damping_power; }  // eV/ps
+  const std::vector<double>& term_energy() const { return forces_.term_energy; }  // of each force term
+  double lost() const { return forces_.lost; }  // eV, by force terms whose memory has moved on
   int slipping_element() const;                                   // of the scene; -1: none
   // xx, yy, zz, xy, xz, yz of separation times force, without damping.
   std::array<double, 6> virial(Parts parts);
@@ -84,11 +93,7 @@ class RankEngine {
   struct Stretch {
     int element, atom, count;
   };
-  // A run of own elements of one type, whatever their places in LAMMPS: these change as elements come and go, and
-  // bits of the motion must not depend on that.
-  struct Range {
-    int element, count, type;
-  };
+  void find_moved();
   void take(const Stretch& of);
   void give(const Stretch& of);
   void take_forces(const Stretch& of);
@@ -100,10 +105,15 @@ class RankEngine {
   double** quaternions_ = nullptr;  // valid during a call only
   std::shared_ptr<const LammpsModel> model_;
   std::unique_ptr<AllRanks> ranks_;  // none where there is one rank
+  RankMessages messages_;
+  std::optional<std::vector<double>> first_memory_;
   Topology topology_;
   State state_;
   std::vector<Stretch> own_, ghosts_;  // own ones no longer than what stays in the first cache
-  std::vector<Range> moved_;           // own ones, likewise
+  // Own elements of a tube, likewise, whatever their places in LAMMPS: these change as elements come and go, and bits
+  // of the motion must not depend on that.
+  std::vector<Segment> moved_;
+  std::vector<double> removed_;        // from each of them by the last kick, eV
   std::vector<int> element_;           // of each own atom
   std::vector<char> is_shared_;        // likewise
   std::vector<Stretch> shared_;        // of those that are

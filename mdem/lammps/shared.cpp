@@ -135,6 +135,31 @@ double** property(LMP::LAMMPS* lmp, const char* name, int wanted) {
 double** orientations(LMP::LAMMPS* lmp) { return property(lmp, "quat", 4); }
 double** carried(LMP::LAMMPS* lmp) { return property(lmp, "carried", 6); }
 
+namespace {
+
+template <class T>
+std::vector<T> joined(const std::vector<T>& own, MPI_Datatype type, MPI_Comm world) {
+  int ranks = 1;
+  MPI_Comm_size(world, &ranks);
+  const int count = static_cast<int>(own.size());
+  std::vector<int> counts(static_cast<std::size_t>(ranks)), at(counts.size());
+  MPI_Allgather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, world);
+  std::partial_sum(counts.begin(), counts.end() - 1, at.begin() + 1);
+  std::vector<T> all(static_cast<std::size_t>(counts.back() + at.back()));
+  MPI_Allgatherv(own.data(), count, type, all.data(), counts.data(), at.data(), type, world);
+  return all;
+}
+
+}  // namespace
+
+void RankMessages::sum(double* values, std::size_t count) const {
+  MPI_Allreduce(MPI_IN_PLACE, values, static_cast<int>(count), MPI_DOUBLE, MPI_SUM, world_);
+}
+std::vector<int> RankMessages::join(const std::vector<int>& own) const { return joined(own, MPI_INT, world_); }
+std::vector<double> RankMessages::join(const std::vector<double>& own) const {
+  return joined(own, MPI_DOUBLE, world_);
+}
+
 double sum_over_ranks(LMP::LAMMPS* lmp, double value) {
   double sum = 0;
   MPI_Allreduce(&value, &sum, 1, MPI_DOUBLE, MPI_SUM, lmp->world);

@@ -14,6 +14,7 @@
 #include "lammps.h"
 #include "lammps/model.hpp"
 #include "modify.h"
+#include "sim/state/processes.hpp"
 #include "update.h"
 
 namespace ropewalk::lammps {
@@ -73,5 +74,17 @@ inline const TubeType& type_of(const LammpsModel& model, const LMP::Atom& atom, 
 }
 
 double sum_over_ranks(LMP::LAMMPS* lmp, double value);
+
+// The messages of the ranks that loads and force terms need.
+class RankMessages : public Processes {
+ public:
+  explicit RankMessages(MPI_Comm world) : world_(world) {}
+  void sum(double* values, std::size_t count) const override;
+  std::vector<int> join(const std::vector<int>& own) const override;
+  std::vector<double> join(const std::vector<double>& own) const override;
+
+ private:
+  MPI_Comm world_;
+};
 
 }  // namespace ropewalk::lammps

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "model/units.hpp"
+#include "sim/forces/force_term.hpp"
 
 namespace ropewalk {
 namespace {
@@ -153,6 +154,14 @@ std::vector<Observable>& table() {
       {"largest_bond_twist_deg", "deg", "largest twist of one bond, absolute", Group::limits,
        [](const M& m) { return m.rope.largest_bond_twist / degree; }},
   };
+  // Kinds register before main() begins, in no certain order with those who ask for the table there.
+  static std::size_t terms = 0;
+  for (; terms < term_kinds().size(); ++terms)
+    entries.push_back({term_kinds()[terms].name + "_eV", "eV", term_kinds()[terms].energy, Group::energy,
+                       [name = term_kinds()[terms].name](const M& m) {
+                         const auto at = m.account.terms.find(name);
+                         return at == m.account.terms.end() ? 0.0 : at->second;
+                       }});
   return entries;
 }
 
@@ -190,6 +199,12 @@ double energy_drift(const EnergyAccount& a) {
   const double at_rest = rounding * (a.potential.bonds() + std::fabs(a.potential.vdw));
   const double scale = moved + at_rest;
   return scale > 0 || std::isnan(scale) ? std::fabs(energy_balance(a)) / scale : 0;
+}
+
+std::vector<std::string> term_energy_columns() {
+  std::vector<std::string> columns;
+  for (const TermKind& kind : term_kinds()) columns.push_back(kind.name + "_eV");
+  return columns;
 }
 
 const char* group_title(ObservableGroup group) {

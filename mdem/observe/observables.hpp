@@ -2,6 +2,8 @@
 // `observe --json`, a column of its console, a row of the report and a line of docs/outputs.md.
 #pragma once
 
+#include <functional>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,6 +26,7 @@ struct EnergyAccount {
   double heat = 0;          // eV, brought in by the thermostat since the start
   double first_energy = 0;  // eV, total at the start
   Energies first;           // potential at the start
+  std::map<std::string, double> terms;  // eV, of the force terms by their names
   EndReadings ends;         // means since the row before
 };
 
@@ -53,7 +56,7 @@ struct Observable {
   std::string unit;     // "nN nm", "nm^2", "1/ps"; empty: a pure number
   std::string meaning;  // one clause, without a full stop
   ObservableGroup group = ObservableGroup::shape;
-  double (*value)(const Measurement&) = nullptr;  // in `unit`
+  std::function<double(const Measurement&)> value;  // in `unit`
   bool whole = false;                             // an integer
 };
 
@@ -66,6 +69,9 @@ const std::vector<Observable>& observables();
 // Adds a column behind the others; call it before anything is logged or read. Throws std::invalid_argument if the
 // name is taken, has characters other than letters, digits and _, or does not end in the unit.
 void add_observable(const Observable& observable);
+
+// The columns NAME_eV of the force terms, which follow from term_kinds() by themselves.
+std::vector<std::string> term_energy_columns();
 
 // Index in observables(). Throws std::invalid_argument if no observable has this name.
 std::size_t index_of_observable(std::string_view name);

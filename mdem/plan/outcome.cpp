@@ -22,12 +22,8 @@ double least_scale(const std::string& name) {
   return ends_with("_nN") || ends_with("_nN_nm") ? least_force : 0;
 }
 
-double potential(const LogRow& r) {
-  return r["stretch_eV"] + r["shear_eV"] + r["bend_eV"] + r["twist_eV"] + r["vdw_eV"];
-}
-
 double value_of(const LogRow& row, const LogRow& first, const std::string& name) {
-  if (name == "energy") return potential(row) - potential(first);
+  if (name == "energy") return potential_energy(row) - potential_energy(first);
   return name == "vdw_eV" ? row[name] - first[name] : row[name];
 }
 

@@ -52,7 +52,6 @@ void PlannedScene::start_from_default() {
        {Key{"contact", "cutoff_nm", contact.cutoff > 0}, Key{"contact", "nodes_per_element", contact.nodes > 0},
         Key{"contact", "precision", contact.precision.has_value()},
         Key{"run", "integrator", run.stepping.runge_kutta},
-        Key{"run", "contact_every", run.stepping.contact_every > 1},
         Key{"run", "time_step_fs", run.time_step > 0}}) {
     if (k.typed) remark(fmt::format("{}.{}: left to the program first", k.table, k.key));
     take_away(k.table, k.key);
@@ -108,10 +107,8 @@ void PlannedScene::finish() {
     text_ = with_key(text_, "run", "time_step_fs", "\"auto\"");
     Scene so_far = scene_of_text(text_, scene_.path);
     const Prepared p = prepare(so_far);
-    const int every = so_far.run.stepping.contact_every;
-    const double most =
-                     is_warm(so_far) ? p.time_step / every : cold_step_fraction * inner_step_limit(p.limit, every),
-                 chosen = std::min(step_ * p.time_step / every, most);
+    const double most = is_warm(so_far) ? p.time_step : cold_step_fraction * p.limit.limit,
+                 chosen = std::min(step_ * p.time_step, most);
     set("run", "time_step_fs", fmt::format("{:.4g}", chosen / units::fs), step_why_);
   }
 }

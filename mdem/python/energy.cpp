@@ -42,6 +42,7 @@ py::dict as_dict(const State& state, const Forces& f) {
   out["bend"] = f.energy.bend;
   out["twist"] = f.energy.twist;
   out["vdw"] = f.energy.vdw;
+  out["terms"] = f.energy.terms;
   out["force"] = copy_of(f.force);
   out["torque"] = copy_of(f.torque);
   out["net_force"] = std::vector<double>{net.force.x(), net.force.y(), net.force.z()};

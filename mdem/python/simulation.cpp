@@ -103,10 +103,7 @@ Relaxed SteppedScene::relax(const RelaxGoal& goal, long max_steps) {
 Energies SteppedScene::energies() {
   const Simulation& s = simulation();
   if (energies_) return *energies_;
-  Forces forces(s.state().size());
-  ForceEngine engine;
-  engine.compute(s.topology(), s.interaction(), s.list(), s.state(), forces);
-  energies_ = forces.energy;
+  energies_ = s.forces_at(s.state(), s.interaction().precision).energy;
   return *energies_;
 }
 
@@ -157,7 +154,7 @@ namespace {
 
 using Class = py::class_<SteppedScene, std::shared_ptr<SteppedScene>>;
 
-py::tuple tuple_of(const Energies& e) { return py::make_tuple(e.stretch, e.shear, e.bend, e.twist, e.vdw); }
+py::tuple tuple_of(const Energies& e) { return py::make_tuple(e.stretch, e.shear, e.bend, e.twist, e.vdw, e.terms); }
 
 // `of`: the simulation's array. The view keeps the Python object alive, and with it the memory, which never moves.
 template <class Of>

@@ -171,7 +171,7 @@ std::string loop_words(const std::vector<LogRow>& log) {
       fmt::format("The rope was turned by up to {}° and back to {}°: of {} eV that were put in, {} eV came back, and {} "
                   "eV, <b>{} %</b>, are lost to damping or still move.",
                   number_text(most), last < 0.01 ? "0" : number_text(last, 3), number_text(in), number_text(in - log.back()["work_eV"]),
-                  number_text(log.back()["work_eV"] - (potential(log.back()) - potential(log.front()))),
+                  number_text(log.back()["work_eV"] - (potential_energy(log.back()) - potential_energy(log.front()))),
                   number_text(100 * lost / in, 3)));
 }
 

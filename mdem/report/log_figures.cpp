@@ -14,10 +14,7 @@ LogValue logged(const std::string& column) {
   return [k = index_of_observable(column)](const LogRow& row) { return row.values()[k]; };
 }
 
-double potential(const LogRow& r) {
-  return r["stretch_eV"] + r["shear_eV"] + r["bend_eV"] + r["twist_eV"] + r["vdw_eV"];
-}
-double total_energy(const LogRow& r) { return potential(r) + r["kinetic_eV"]; }
+double total_energy(const LogRow& r) { return potential_energy(r) + r["kinetic_eV"]; }
 
 Clock clock_of(const std::vector<LogRow>& log) {
   double first = 0, last = 0;

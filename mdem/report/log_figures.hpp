@@ -38,7 +38,6 @@ struct Clock {
 };
 Clock clock_of(const std::vector<LogRow>& log);
 
-double potential(const LogRow& r);     // eV
 double total_energy(const LogRow& r);  // eV
 std::vector<double> values_of(const std::vector<LogRow>& log, const LogValue& value);
 

@@ -37,6 +37,16 @@ Panel bond_energies() {
            {"twist", logged("twist_eV"), 1}}};
 }
 
+// The energy columns of the force terms that the run has.
+std::vector<std::string> terms_in(const std::vector<LogRow>& log) {
+  std::vector<std::string> columns;
+  for (const std::string& column : term_energy_columns())
+    if (std::any_of(log.begin(), log.end(), [&](const LogRow& row) { return row[column] != 0; }))
+      columns.push_back(column);
+  return columns;
+}
+std::string term_of(const std::string& column) { return column.substr(0, column.rfind("_eV")); }
+
 Panel other_energies(const std::vector<LogRow>& log) {
   std::string caption =
       "Change since the start of the van der Waals energy between the tubes, the kinetic energy and the total.";
@@ -44,13 +54,15 @@ Panel other_energies(const std::vector<LogRow>& log) {
     caption += fmt::format(" At the start: van der Waals {} eV, kinetic {} eV, total {} eV.",
                            number_text(log.front()["vdw_eV"], 6), number_text(log.front()["kinetic_eV"], 5),
                            number_text(total_energy(log.front()), 6));
-  return {
+  Panel panel{
       "Contact, kinetic and total energy",
       caption,
       {"change of energy", "eV", false},
       {{"van der Waals", logged("vdw_eV"), 3}, {"kinetic", logged("kinetic_eV"), 2}, {"total", total_energy, 5}},
       false,
       true};
+  for (const std::string& column : terms_in(log)) panel.traces.push_back({term_of(column), logged(column), 4});
+  return panel;
 }
 
 Panel packing_charge() {
@@ -292,6 +304,8 @@ std::string summary(const ReportInput& in) {
   html += fmt::format(" the bonds hold <b>{} eV</b> (stretch {}, shear {}, bend {}, twist {})", number_text(bonds),
                       number_text(r["stretch_eV"], 3), number_text(r["shear_eV"], 3), number_text(r["bend_eV"], 3),
                       number_text(r["twist_eV"], 3));
+  for (const std::string& column : terms_in(in.log))
+    html += fmt::format(", {} <b>{} eV</b>", term_of(column), number_text(r[column], 3));
   html += fmt::format(", the van der Waals contacts <b>{} eV</b>. The kinetic energy is {} eV, the total {} eV.",
                       number_text(r["vdw_eV"]), number_text(r["kinetic_eV"], 3), number_text(total_energy(r)));
   if (in.rope && any_internal(in.shells))
@@ -384,6 +398,7 @@ std::string energy_words(const EnergyParts& before, const EnergyParts& after) {
   add("bend", a.bend, b.bend);
   add("twist", a.twist, b.twist);
   add("van der Waals", a.vdw, b.vdw);
+  if (a.terms != 0 || b.terms != 0) add("force terms", a.terms, b.terms);
   add("kinetic", before.kinetic, after.kinetic);
   return words;
 }

@@ -90,14 +90,13 @@ void Run::keep_time_step() {
   MovingScene& m = parts_.moving;
   const double kept = m.simulation.time_step();
   if (kept == m.prepared.time_step) return;
-  const int parts = m.scene.run.stepping.contact_every;
-  const double limit = inner_step_limit(m.prepared.limit, parts), step = kept / parts;
-  if (step >= limit)
+  const double limit = m.prepared.limit.limit;
+  if (kept >= limit)
     throw InputError({parts_.files.directory().checkpoint(), 0, ""},
                      fmt::format("has a time step of {:.4g} fs, and the changed scene bears less than {:.4g} fs",
-                                 step / units::fs, limit / units::fs),
+                                 kept / units::fs, limit / units::fs),
                      "start the run anew with `ropewalk run`");
-  parts_.listener.tell(fmt::format("note: the time step stays {:.4g} fs", step / units::fs));
+  parts_.listener.tell(fmt::format("note: the time step stays {:.4g} fs", kept / units::fs));
   m.prepared.time_step = kept;
   parts_.schedule.count_from(m.state().step, m.state().time, kept);
 }

@@ -42,7 +42,7 @@ void refine_key(const SceneKey& key, const Scene& scene, const Topology& topolog
   const int elements = topology.length_of(0);
   if (key.tube_size == SceneKey::TubeSize::length) table.insert_or_assign(key.key, elements * scene.element_length);
   if (key.tube_size == SceneKey::TubeSize::elements) table.insert_or_assign(key.key, 2 * elements);
-  if (key.numbers_elements && table[key.key].value_or(std::string()) != "all")
+  if (key.numbers_elements && table.contains(key.key) && table[key.key].value_or(std::string()) != "all")
     table.insert_or_assign(key.key, both_halves(*table.get(key.key)));
   if (key.length_power == 0) return;
   const double factor = std::pow(0.5, key.length_power);
@@ -97,7 +97,10 @@ double finer_time_step(const Scene& scene, const Prepared& p, const std::string&
   Scene finer = scene_of_text(text, scene.path, sets);
   finer.damping.contact.inner = scene.damping.contact.inner;
   finer.damping.contact.outer = scene.damping.contact.outer;
-  const double limit = time_step_limit(halved(p.topology), interaction_of(finer), p.spacing).limit;
+  const Topology halves = halved(p.topology);
+  Interaction interaction = interaction_of(finer);
+  add_terms(finer, halves, interaction);
+  const double limit = time_step_limit(halves, interaction, p.spacing).limit;
   return scene.run.time_step / p.limit.limit * limit;
 }
 

@@ -94,7 +94,6 @@ void refuse_what_lammps_lacks(const Scene& scene) {
   std::string lacking;
   for (const auto& drive : scene.drives)
     if (lacking.empty()) lacking = drive->not_for_lammps();
-  if (lacking.empty() && scene.run.stepping.contact_every > 1) lacking = "run.contact_every";
   if (lacking.empty() && scene.run.stepping.runge_kutta) lacking = "run.integrator";
   if (!lacking.empty())
     throw InputError({scene.path, 0, lacking}, "is not for LAMMPS", "run this scene with `ropewalk run`");
@@ -164,10 +163,28 @@ void read_tubes(const LammpsDirectory& dir, Topology& topology) {
 
 namespace {
 
-// The numbers of fix `motion` under names, with all their digits.
-std::string row_variables() {
-  const std::array<const char*, lammps_row_numbers> names = {"time", "stretch", "shear", "bend",      "twist",
-                                                             "vdw",  "kinetic", "work",  "dissipated"};
+// What a row has: the numbers of fix `motion` under names.
+std::vector<std::string> row_names(int terms) {
+  std::vector<std::string> names = {"time", "stretch", "shear", "bend", "twist", "vdw", "kinetic", "work", "dissipated"};
+  for (int k = 1; k <= terms; ++k) names.push_back(fmt::format("term{}", k));
+  return names;
+}
+
+std::string row_title(int terms) {
+  std::string title = column_names(row_columns);
+  for (int k = 1; k <= terms; ++k) title += fmt::format(",term{}_eV", k);
+  return title;
+}
+
+std::string row_format(int terms) {
+  std::string text = "${step}";
+  for (const std::string& name : row_names(terms)) text += fmt::format(",${{{}}}", name);
+  return text;
+}
+
+// With all their digits.
+std::string row_variables(int terms) {
+  const std::vector<std::string> names = row_names(terms);
   std::string text = "variable now equal step\nvariable step format now %.0f\n";
   for (std::size_t k = 0; k < names.size(); ++k) {
     text +=
@@ -225,7 +242,7 @@ std::string lammps_input(const LammpsScript& s) {
   if (s.driven) text += "fix grips all mdem/grip\n";
   text += fmt::format("fix motion all mdem/{}\n", s.relax ? "relax" : "nve");
   if (!s.long_in_z) text += "balance 1.0 rcb\nfix even all balance 1000 1.01 rcb\n";
-  text += row_variables();
+  text += row_variables(s.terms);
   text += fmt::format(
       "fix rows all print ${{every}} \"{0}\" ${{open}} ${{dir}}/lammps-rows.csv screen no title \"{1}\"\n"
       "thermo_style custom step f_motion[1] f_motion[4] f_motion[5] f_motion[6] f_motion[7] pe\n"
@@ -234,26 +251,28 @@ std::string lammps_input(const LammpsScript& s) {
       "run ${{last}} upto\n"
       "unfix rows\n"
       "print \"{0}\" append ${{dir}}/lammps-rows.csv screen no\n",
-      "${step},${time},${stretch},${shear},${bend},${twist},${vdw},${kinetic},${work},${dissipated}",
-      column_names(row_columns));
+      row_format(s.terms), row_title(s.terms));
   return text;
 }
 
-std::vector<LammpsRow> read_lammps_rows(const LammpsDirectory& dir) {
+std::vector<LammpsRow> read_lammps_rows(const LammpsDirectory& dir, std::size_t terms) {
   std::vector<LammpsRow> rows;
   std::string title;
   for_each_line(read_file(dir.rows()), [&](int number, std::string_view line) {
     if (number == 1) title = line;
     if (line == title) return;  // a restarted run writes it again
     LammpsRow r;
+    r.terms.resize(terms);
     std::size_t column = 0;
-    for (double* value :
-         {&r.step, &r.time, &r.stretch, &r.shear, &r.bend, &r.twist, &r.vdw, &r.kinetic, &r.work, &r.dissipated}) {
+    std::vector<double*> values = {&r.step, &r.time, &r.stretch, &r.shear,   &r.bend,
+                                   &r.twist, &r.vdw, &r.kinetic, &r.work, &r.dissipated};
+    for (double& energy : r.terms) values.push_back(&energy);
+    for (double* value : values) {
       if (!take(line, *value))
         throw InputError({dir.rows(), number, ""}, "has fewer numbers than the title names",
                          "take the line out if LAMMPS was killed while it wrote it");
       if (!std::isfinite(*value))
-        throw InputError({dir.rows(), number, row_columns[column].name}, "is not finite", "run LAMMPS again");
+        throw InputError({dir.rows(), number, column < row_columns.size() ? row_columns[column].name : "term"}, "is not finite", "run LAMMPS again");
       ++column;
     }
     if (!(r.step >= 0 && r.step < most_steps) || r.step != std::floor(r.step))

@@ -68,6 +68,7 @@ struct LammpsScript {
   int excluded_elements = 3;  // along any tube: contact skips at least so many
   double time_step = 0;
   std::int64_t first_step = 0, steps = 0, every = 1;
+  int terms = 0;  // force terms, each with its energy in a row
 };
 std::string lammps_input(const LammpsScript& script);
 
@@ -76,9 +77,10 @@ struct LammpsRow {
   double step = 0, time = 0;
   double stretch = 0, shear = 0, bend = 0, twist = 0, vdw = 0, kinetic = 0;
   double work = 0, dissipated = 0;
+  std::vector<double> terms;  // eV, of each force term
 };
-inline constexpr int lammps_row_numbers = 9;  // without the step
+inline constexpr int lammps_row_numbers = 9;  // without the step and the terms
 // A last line without its end, as after a kill, is left out.
-std::vector<LammpsRow> read_lammps_rows(const LammpsDirectory& dir);
+std::vector<LammpsRow> read_lammps_rows(const LammpsDirectory& dir, std::size_t terms = 0);
 
 }  // namespace ropewalk

@@ -73,6 +73,7 @@ std::vector<StateInFile> find_states(const std::string& path, std::int64_t eleme
     if (h.mark == std::array<char, 8>{}) break;
     if (h.mark != state_mark) fail("does not begin as a state does");
     if (h.elements != elements) fail(fmt::format("{} elements are here, {} in the scene", h.elements, elements));
+    if (h.memory < 0 || h.memory > bytes) fail(fmt::format("{} numbers of memory", h.memory));
     if (h.step < 0 || h.step > largest_step) fail(fmt::format("{} is no step", h.step));
     for (const double value : {h.time, h.work, h.dissipated, h.skin})
       if (!(std::fabs(value) <= largest_number)) fail("holds a number that is not finite");
@@ -98,8 +99,10 @@ std::string complaint_about(const StateRecord& record) {
   return "";
 }
 
-std::string state_file(const StateHeader& header, const State& s, const Vec3Array& force, const Vec3Array& torque) {
+std::string state_file(StateHeader header, const State& s, const Vec3Array& force, const Vec3Array& torque,
+                       const std::vector<double>& memory) {
   std::string bytes;
+  header.memory = static_cast<std::int64_t>(memory.size());
   bytes.reserve(sizeof header + s.size() * sizeof(StateRecord));
   append(bytes, header);
   for (std::size_t i = 0; i < s.size(); ++i) {
@@ -108,7 +111,20 @@ std::string state_file(const StateHeader& header, const State& s, const Vec3Arra
     append(bytes, StateRecord{x.x(), x.y(), x.z(), q.w(), q.x(), q.y(), q.z(), v.x(), v.y(), v.z(), w.x(), w.y(),
                               w.z(), f.x(), f.y(), f.z(), m.x(), m.y(), m.z()});
   }
+  for (const double number : memory) append(bytes, number);
   return bytes;
+}
+
+std::vector<double> memory_in(const std::string& path, const StateInFile& state) {
+  std::ifstream file = opened(path);
+  file.seekg(state.record(state.header.elements));
+  std::vector<double> memory(static_cast<std::size_t>(state.header.memory));
+  for (double& number : memory) {
+    if (!read(file, number)) throw file_error(path, "cannot be read", EIO);
+    if (!(std::fabs(number) <= largest_number))
+      throw InputError({path, 0, ""}, "holds a number that is not finite in the memory of a force term", ask_for_export);
+  }
+  return memory;
 }
 
 LammpsStates::LammpsStates(const std::string& path, const Topology& topology)
@@ -137,6 +153,7 @@ bool LammpsStates::next(State& s, Vec3Array& force, Vec3Array& torque) {
     force.set(i, {r[13], r[14], r[15]});
     torque.set(i, {r[16], r[17], r[18]});
   }
+  memory_ = memory_in(path_, from);
   return true;
 }
 

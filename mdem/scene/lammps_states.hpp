@@ -1,6 +1,7 @@
 // The binary files of states that `ropewalk export` and `lmp-ropewalk` exchange: rope.state, where LAMMPS begins,
 // and lammps.states, what it writes. A state is a header of 64 bytes and a record of 152 bytes for each element, in
-// the order of the scene, all numbers little-endian. Every process so knows where an element's record is, and many
+// the order of the scene, then the memories of the force terms (ForceTerms::memory()), if any; all numbers
+// little-endian. Every process so knows where an element's record is, and many
 // of them read or write one file at once.
 #pragma once
 
@@ -24,7 +25,7 @@ struct StateHeader {
   double time = 0;                  // ps
   double work = 0, dissipated = 0;  // eV
   double skin = 0;                  // nm, of the neighbour list; 0: there was none
-  double unused = 0;
+  std::int64_t memory = 0;          // numbers behind the records, of the force terms
 };
 static_assert(sizeof(StateHeader) == 64, "this is the format of the file");
 
@@ -41,7 +42,7 @@ struct StateInFile {
     return at + static_cast<std::int64_t>(sizeof(StateHeader)) +
            element * static_cast<std::int64_t>(sizeof(StateRecord));
   }
-  std::int64_t end() const { return record(header.elements); }
+  std::int64_t end() const { return record(header.elements) + header.memory * std::int64_t{sizeof(double)}; }
 };
 
 std::vector<OutputColumn> lammps_state_columns();
@@ -57,8 +58,11 @@ std::string complaint_about(const StateRecord& record);
 
 // A file of one state. The total forces of the last step go along: they hold the damping at half-step velocities,
 // which a state does not tell, and the first kick needs them.
-std::string state_file(const StateHeader& header, const State& state, const Vec3Array& force,
-                       const Vec3Array& torque);
+std::string state_file(StateHeader header, const State& state, const Vec3Array& force, const Vec3Array& torque,
+                       const std::vector<double>& memory = {});
+
+// The memories of the force terms behind a state.
+std::vector<double> memory_in(const std::string& path, const StateInFile& state);
 
 // Reads the states of a file one after another; one that is cut off is left out.
 class LammpsStates {
@@ -66,11 +70,14 @@ class LammpsStates {
   LammpsStates(const std::string& path, const Topology& topology);
   // False at the end.
   bool next(State& state, Vec3Array& force, Vec3Array& torque);
+  // The memories of the force terms in the last state that was read.
+  const std::vector<double>& memory() const { return memory_; }
 
  private:
   std::string path_;
   std::vector<StateInFile> all_;
   std::size_t next_ = 0;
+  std::vector<double> memory_;
   std::ifstream file_;
 };
 

@@ -16,21 +16,18 @@ namespace {
 
 constexpr double max_steps = 1e12;  // years, even of a single tube
 
-// Of the bonds.
 double chosen_step(const Scene& scene, const TimeStepLimit& limit) {
   const double typed = scene.run.time_step;
-  const int every = scene.run.stepping.contact_every;
-  const double largest = inner_step_limit(limit, every);
+  const double largest = limit.limit;
   if (typed <= 0) {
     const double step = automatic_step_fraction(scene) * largest;
-    return is_warm(scene) ? std::min(step, step_of_excess(limit, warm_excess, every)) : step;
+    return is_warm(scene) ? std::min(step, step_of_excess(limit, warm_excess)) : step;
   }
   if (typed < largest) return typed;
-  const char* why = limit.damping_rate * largest * every > 1 ? "the strongest damping" : "the stiffest mode";
-  const std::string levels = every > 1 ? fmt::format(" with contact_every = {}", every) : "";
+  const char* why = limit.damping_rate * largest > 1 ? "the strongest damping" : "the stiffest mode";
   throw InputError({scene.path, 0, "run.time_step_fs"},
-                   fmt::format("{:.4g} fs is not below the stability limit of {:.4g} fs{}, set by {}",
-                               typed / units::fs, largest / units::fs, levels, why),
+                   fmt::format("{:.4g} fs is not below the stability limit of {:.4g} fs, set by {}",
+                               typed / units::fs, largest / units::fs, why),
                    fmt::format("take at most {:.3g}, or \"auto\"", 0.9 * largest / units::fs));
 }
 
@@ -147,9 +144,7 @@ double half_life(const Scene& scene, const Prepared& p) {
 
 double automatic_step_fraction(const Scene& scene) {
   const bool cold = scene.start.temperature == 0 && !scene.bath() && !scene.from_file();
-  return cold && scene.run.mode != RunOptions::Mode::relax && scene.run.stepping.contact_every == 1
-             ? cold_step_fraction
-             : default_step_fraction;
+  return cold && scene.run.mode != RunOptions::Mode::relax ? cold_step_fraction : default_step_fraction;
 }
 
 bool is_warm(const Scene& scene) {
@@ -174,12 +169,11 @@ void refuse_cooling(const Scene& scene, const Prepared& p) {
 
 std::vector<std::string> warmth_of(const Scene& scene, const Prepared& p) {
   std::vector<std::string> out;
-  const int every = scene.run.stepping.contact_every;
   if (is_warm(scene))
     out.push_back(
         fmt::format("The time step makes positions, and so the energies of the bonds, up to {:.2g} % hotter "
                     "than velocities.",
-                    100 * excess_of_positions(p.limit, p.time_step / every, every)));
+                    100 * excess_of_positions(p.limit, p.time_step)));
   if (scene.run.mode == RunOptions::Mode::relax || scene.start.temperature <= 0 || scene.bath()) return out;
   std::string text =
       fmt::format("The {:.4g} K at the start are in the velocities alone; bonds at rest take half of that heat.",
@@ -198,6 +192,7 @@ Prepared prepare(Scene& scene) {
   out.state = std::move(built.state);
   out.spacing = built.spacing;
   out.interaction = interaction_of(scene, std::move(built.law));
+  add_terms(scene, out.topology, out.interaction);
   out.loads = loads_of(scene, out.topology, out.interaction);
   out.stepping = scene.run.stepping;
   for (const auto& drive : scene.drives) {
@@ -206,7 +201,7 @@ Prepared prepare(Scene& scene) {
   }
   for (const auto& load : out.loads) load->begin(out.topology, out.state);
   out.limit = time_step_limit(out.topology, out.interaction, out.spacing);
-  out.time_step = chosen_step(scene, out.limit) * out.stepping.contact_every;
+  out.time_step = chosen_step(scene, out.limit);
   out.duration = scene.run.duration;
   if (out.duration <= 0) out.duration = protocol_time(scene);
   if (out.duration > 0 && out.duration < 0.5 * out.time_step)

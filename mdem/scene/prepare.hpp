@@ -18,7 +18,7 @@ struct Prepared {
   LoadsAndConstraints loads;
   double spacing = 0;  // nm, of the untwisted rope; 0 where there is none
   TimeStepLimit limit;
-  double time_step = 0;  // ps, of contact: what a step of the simulation takes
+  double time_step = 0;  // ps
   Stepping stepping;
   double duration = 0;  // ps
 };

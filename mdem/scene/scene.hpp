@@ -51,7 +51,7 @@ struct ContactOptions {
 struct RunOptions {
   enum class Mode { dynamics, relax };
   Mode mode = Mode::dynamics;
-  double time_step = 0;  // ps, of bonds; 0: chosen from the stiffest mode
+  double time_step = 0;  // ps; 0: chosen from the stiffest mode
   Stepping stepping;
   double mass_scale = 1;         // of masses and inertias
   double duration = 0;           // ps; 0: until all drives have done what they do

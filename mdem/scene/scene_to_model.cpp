@@ -80,6 +80,10 @@ Interaction interaction_of(const Scene& scene, std::shared_ptr<const ContactLaw>
   return in;
 }
 
+void add_terms(const Scene& scene, const Topology& topology, Interaction& interaction) {
+  for (const auto& drive : scene.drives) drive->add_terms(scene, topology, interaction);
+}
+
 double protocol_time(const Scene& scene) {
   double last = 0;
   for (const auto& drive : scene.drives) last = std::max(last, drive->lasts());

@@ -198,7 +198,7 @@ BENCHMARK(LineCollect)->Arg(7)->Arg(91);
 void LineListBuild(benchmark::State& bench) {
   const Rope rope(static_cast<int>(bench.range(0)), 49, Law::line, Precision::mixed, 20);
   LineList list;
-  for (auto _ : bench) list.build(rope.topology, rope.in, rope.list);
+  for (auto _ : bench) list.build(rope.topology, rope.in, rope.list, nullptr);
   set_ns(bench, "ns/element", rope.elements());
   bench.counters["spans"] = static_cast<double>(list.spans()) / rope.elements();
   bench.counters["bytes"] = static_cast<double>(list.bytes()) / rope.elements();
@@ -209,21 +209,17 @@ template <class T>
 void ViscousDamping(benchmark::State& bench) {
   constexpr bool mixed = std::is_same_v<T, float>;
   const Rope rope(static_cast<int>(bench.range(0)), 49, Law::line, mixed ? Precision::mixed : Precision::full, 20);
+  ForceTerms terms;
+  terms.use(rope.in);
+  terms.prepare(rope.topology, rope.list, rope.state);
+  terms.begin(rope.state, 0);
   LineList list;
-  list.build(rope.topology, rope.in, rope.list);
-  const ContactViscosity& viscosity = rope.in.damping.contact;
+  list.build(rope.topology, rope.in, rope.list, terms.pairs());
   std::vector<ContactBuffer<T>> buffers(list.chunks().size());
-  DampedElements floats;
-  floats.resize(list.largest().elements);
   for (auto _ : bench) {
     for (std::size_t k = 0; k < buffers.size(); ++k) {
-      const LineChunk& chunk = list.chunks()[k];
-      buffers[k].clear(static_cast<std::size_t>(chunk.elements));
-      if constexpr (mixed)
-        contact_damping(viscosity, rope.state, {chunk.damped, chunk.damped_ranges, list.unit()}, floats,
-                        buffers[k]);
-      else
-        contact_damping(viscosity, rope.state, chunk.damped, buffers[k]);
+      buffers[k].clear(static_cast<std::size_t>(list.chunks()[k].elements));
+      terms.pairs()->add(k, buffers[k]);
     }
     benchmark::ClobberMemory();
   }

@@ -63,8 +63,6 @@ const std::vector<Hostile> scenes = {
      "not below the stability limit"},
     {"StepJustBeyond", std::string(rope) + "[run]\nduration_ps = 5\ntime_step_fs = 60\n", 2,
      "not below the stability limit"},
-    {"StepBeyondOnTwoLevels", std::string(rope) + "[run]\nduration_ps = 5\ntime_step_fs = 30\ncontact_every = 40\n",
-     2, "fs with contact_every = 40, set by"},
     {"StepAbsurd", std::string(chain) + "[run]\nduration_ps = 2e9\ntime_step_fs = 1e9\n", 2, "run.time_step_fs"},
     {"StepZero", std::string(chain) + "[run]\nduration_ps = 2\ntime_step_fs = 0\n", 2, "run.time_step_fs"},
     {"StepNotANumber", std::string(chain) + "[run]\nduration_ps = 2\ntime_step_fs = nan\n", 2, "run.time_step_fs"},

@@ -135,6 +135,37 @@ TEST_F(LammpsRun, ARopeTwistsAsHereOnEveryNumberOfRanks) {
   expect_equal_steps(line_scene("double", small_rope, hot_twist), 300, {1, 2, 4}, 1e-10);
 }
 
+// Tethers within a rank and across ranks, one of which breaks on the way; then a run that goes on remembers it.
+TEST_F(LammpsRun, TethersHoldAndBreakAsHere) {
+  const std::string tethers =
+      "[[tether]]\ntube = 1\nelements = [0]\nto_tube = 8\nto_elements = [-1]\nstiffness_nN_per_nm = 0.2\nrest_nm = 30\n"
+      "[[tether]]\ntube = 3\nelements = [2]\nto_tube = 5\nto_elements = [2]\nstiffness_nN_per_nm = 2\nrest_nm = 1\n"
+      "[[tether]]\ntube = 7\nelements = [-1]\nto_point_nm = [9, 0, 20]\nstiffness_nN_per_nm = 4\nrest_nm = 12\n"
+      "breaks_at_nm = 8.5\n",
+                    cold = "[start]\ntemperature_K = 100\nmay_cool = true\n";
+  const std::string scene_text = line_scene("double", small_rope, tethers + cold);
+  expect_equal_steps(scene_text, 300, {1, 2, 4}, 1e-10);
+  Scene scene = read_scene((dir / "scene.toml").string());
+  Simulation native = start(scene, prepare(scene));
+  native.steps(300);
+  const std::vector<double>& energy = native.forces().term_energy;
+  ASSERT_EQ(energy.size(), 3u);
+  EXPECT_GT(energy[0], 0.1);
+  EXPECT_GT(energy[1], 0.01);
+  for (const int n : {1, 2, 4}) {
+    SCOPED_TRACE(n);
+    exported(scene_text, "parts");
+    ASSERT_EQ(lmp(n, "parts", "-in in.rope -var steps 150").code, 0);
+    ASSERT_EQ(lmp(n, "parts", "-in in.rope -var from lammps.states -var steps 300").code, 0);
+    const LammpsRow row = read_lammps_rows(LammpsDirectory{(dir / "parts").string()}, 3).back();
+    EXPECT_EQ(row.step, 300);
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(row.terms[k], energy[k], 1e-9 * (1 + energy[k])) << k;
+    EXPECT_NEAR(row.dissipated, native.dissipated(), 1e-9 * native.dissipated());
+    ASSERT_EQ(run("import parts").code, 0);
+    EXPECT_EQ(read_log((dir / "parts/log.csv").string()).back()["tether_eV"], row.terms[0] + row.terms[1] + row.terms[2]);
+  }
+}
+
 TEST_F(LammpsRun, AFilmIsCutAndBalancedAgainAndAgain) {
   expect_equal_steps(line_scene("double", "[film]\ntubes = 8\nwidth_nm = 40\ndepth_nm = 40\nlength_nm = 40\n",
                                 "[start]\ntemperature_K = 300\nmay_cool = true\n"),

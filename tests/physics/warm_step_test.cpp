@@ -72,7 +72,7 @@ struct WarmChain {
 TEST(WarmStep, KeepsTheBondsAsWarmAsTheVelocities) {
   const WarmChain chain(24);
   const TimeStepLimit limit = chain.limit();
-  const double warm = step_of_excess(limit, warm_excess, 1), before = default_step_fraction * limit.limit;
+  const double warm = step_of_excess(limit, warm_excess), before = default_step_fraction * limit.limit;
   const Excess old = chain.measured(before, 20000), now = chain.measured(warm, 60000);
   const auto record = [](const char* name, const Excess& e, double step) {
     std::printf("%s, %.3g fs: stretch %+.1f %%, shear %+.1f %%, bend %+.1f %%, twist %+.1f %%\n", name,
@@ -81,7 +81,7 @@ TEST(WarmStep, KeepsTheBondsAsWarmAsTheVelocities) {
   record("0.6 of the limit", old, before);
   record("warm step", now, warm);
   EXPECT_GT(old.stretch, 0.15);
-  EXPECT_LT(old.largest(), excess_of_positions(limit, before, 1) + 0.03);
+  EXPECT_LT(old.largest(), excess_of_positions(limit, before) + 0.03);
   for (const double kind : {now.stretch, now.shear, now.bend, now.twist}) {
     EXPECT_LT(kind, warm_excess + 0.02);
     EXPECT_GT(kind, -0.02);
@@ -96,18 +96,9 @@ TEST(WarmStep, IsThatOfTheClosedFormWhereStretchIsStiffest) {
   bond.shear = 0;
   const TimeStepLimit limit = chain.limit();
   for (const double part : {0.2, 0.4, 0.6})
-    EXPECT_NEAR(excess_of_positions(limit, part * limit.limit, 1) / (1 / std::sqrt(1 - part * part) - 1), 1, 0.02);
-  const double step = step_of_excess(limit, 0.05, 1);
-  EXPECT_NEAR(excess_of_positions(limit, step, 1), 0.05, 1e-6);
-}
-
-// On two levels the contact has the longer step.
-TEST(WarmStep, CountsTheContactOnTwoLevels) {
-  TimeStepLimit limit = WarmChain(2).limit();
-  limit.contact_frequency = 0.5 * limit.chain_frequency;
-  const double alone = step_of_excess(limit, warm_excess, 1), two = step_of_excess(limit, warm_excess, 10);
-  EXPECT_LT(10 * two * limit.contact_frequency, 0.3);
-  EXPECT_LT(two, alone);
+    EXPECT_NEAR(excess_of_positions(limit, part * limit.limit) / (1 / std::sqrt(1 - part * part) - 1), 1, 0.02);
+  const double step = step_of_excess(limit, 0.05);
+  EXPECT_NEAR(excess_of_positions(limit, step), 0.05, 1e-6);
 }
 
 // Energy of a chain under bond damping alone, against what the estimate says is left.

@@ -346,6 +346,10 @@ Forces line_contact_of(const Topology& topology, const Interaction& in, const St
   engine.finish_at_once_from = at_once_from;
   Forces out(state.size());
   const TubeParts parts(topology);
+  ForceTerms terms;
+  terms.use(in);
+  terms.prepare(topology, list, state);
+  terms.begin(state, parts.count());
   std::vector<std::atomic<int>> times(static_cast<std::size_t>(parts.count()));
   const auto place = [&](int t) {
     for (int i = topology.tube_begin[t]; i < topology.tube_begin[t + 1]; ++i)
@@ -365,10 +369,10 @@ Forces line_contact_of(const Topology& topology, const Interaction& in, const St
       for (int i = parts[k].begin; i < parts[k].end; ++i) send_away(static_cast<std::size_t>(i));
     }
   };
-  engine.compute(topology, in, list, state, axis, true, {parts, place, finish});
+  engine.compute(topology, in, list, state, axis, true, {parts, place, finish, terms.pairs()});
   for (const auto& n : times) EXPECT_EQ(n, 1);
+  terms.sum_up(out);
   out.energy.vdw = engine.energy();
-  out.damping_power = engine.damping_power();
   return out;
 }
 

@@ -332,7 +332,6 @@ TEST(SceneFile, EveryKeyReachesTheScene) {
   EXPECT_EQ(twist_of(s).increment, 2);
   EXPECT_NEAR(s.run.time_step, 0.015, 1e-15);
   EXPECT_TRUE(s.run.stepping.runge_kutta);
-  EXPECT_EQ(s.run.stepping.contact_every, 1);
   EXPECT_EQ(s.run.mass_scale, 25);
   EXPECT_EQ(s.run.duration, 30);
   EXPECT_EQ(s.run.frames_every, 2);
@@ -345,18 +344,15 @@ TEST(SceneFile, KnobsReachTheSimulation) {
   Scene plain = scene_from("[rope]\ntubes = 7\nlength_nm = 6.78\n[run]\nduration_ps = 1\n");
   Scene s = scene_from(
       "[rope]\ntubes = 7\nlength_nm = 6.78\n[contact]\ncutoff_nm = 4.5\n"
-      "[run]\nduration_ps = 1\ncontact_every = 3\nmass_scale = 4\n");
+      "[run]\nduration_ps = 1\nmass_scale = 4\n");
   const Prepared p = prepare(plain), q = prepare(s);
   EXPECT_EQ(q.topology.types[0].mass, 4 * p.topology.types[0].mass);
   EXPECT_EQ(q.topology.types[0].inertia, 4 * p.topology.types[0].inertia);
   EXPECT_NEAR(q.interaction.cutoff(), 4.5, 1e-12);
   const PaperContact& contact = dynamic_cast<const PaperLaw&>(*q.interaction.law).contact;
   EXPECT_LT(contact.switch_start * contact.radius, 4.5);
-  EXPECT_EQ(q.stepping.contact_every, 3);
-  EXPECT_NEAR(q.time_step, 3 * default_step_fraction * inner_step_limit(q.limit, 3), 1e-15);
-  const Simulation simulation = start(s, q);
-  EXPECT_EQ(simulation.stepping().contact_every, 3);
-  EXPECT_EQ(simulation.time_step(), q.time_step);
+  EXPECT_NEAR(q.time_step, cold_step_fraction * q.limit.limit, 1e-15);
+  EXPECT_EQ(start(s, q).time_step(), q.time_step);
 }
 
 TEST(SceneFile, Loads) {
@@ -473,7 +469,7 @@ std::string choices(const Scene& s) {
   for (const ThermostatDrive* bath : s.drives_of<ThermostatDrive>())
     text += fmt::format("{} {:.10g} {:.10g} {} | ", bath->options.method, bath->options.temperature.first(),
                         bath->options.coupling, bath->options.seed);
-  text += fmt::format("{} {} {:.10g} {:.10g} | ", s.run.stepping.contact_every, s.run.stepping.runge_kutta,
+  text += fmt::format("{} {:.10g} {:.10g} | ", s.run.stepping.runge_kutta,
                       s.run.mass_scale, s.contact.cutoff);
   return text + fmt::format("{} {:.10g} {:.10g} {:.10g} {:.10g} {:.10g} {:.3g} {} | {:.10g}",
                             static_cast<int>(s.run.mode), s.run.time_step, s.run.duration, s.run.frames_every,

@@ -23,7 +23,7 @@ using ::testing::HasSubstr;
 namespace fs = std::filesystem;
 
 constexpr const char* columns =
-    "scene,model,kind,law,nodes_per_element,cutoff_nm,element_length_nm,integrator,contact_every,time_step_fs,"
+    "scene,model,kind,law,nodes_per_element,cutoff_nm,element_length_nm,integrator,time_step_fs,"
     "mass_scale,mode,contact_viscosity,bond_damping,precision,elements,simulated_ps,element_steps_per_ns,cpu_s_per_"
     "ns,"
     "cpu_ns_per_element_step,instructions_per_element_step,observable,unit,value,reference,reference_kind,error";

@@ -85,7 +85,6 @@ struct Specimen {
   bool is_rope = true;         // parallel tubes, if there are more than two
 
   double duration() const { return ramp + hold; }
-  double outer_step() const { return time_step * scene.run.stepping.contact_every; }
   LoadsAndConstraints held() const;   // before the ramp; free in load control
   LoadsAndConstraints loads() const;  // of the ramp and the hold
 };

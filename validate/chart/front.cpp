@@ -73,7 +73,6 @@ std::vector<OutputColumn> points_columns() {
       {"cutoff_nm", "nm", "cutoff of the contact; 0: none"},
       {"element_length_nm", "nm", "length of an element"},
       {"integrator", "", "integrator"},
-      {"contact_every", "", "steps of the bonds per step of the contact"},
       {"time_step_fs", "fs", "time step"},
       {"mass_scale", "", "masses, over those of the tubes"},
       {"mode", "", "dynamics or relax"},
@@ -101,10 +100,10 @@ std::string points_csv(const std::vector<ChartRow>& rows) {
   for (const ChartRow& r : rows) {
     const ChartPoint& p = *r.point;
     text += fmt::format(
-        "{},{},{},{},{},{:.6g},{:.6g},{},{},{:.6g},{:g},{},{:g},{:g},{},{},{:g},{:.6g},{:.4g},{:.4g},{},{},{},{:."
+        "{},{},{},{},{},{:.6g},{:.6g},{},{:.6g},{:g},{},{:g},{:g},{},{},{:g},{:.6g},{:.4g},{:.4g},{},{},{},{:."
         "8g},"
         "{:.8g},{},{:.4g}\n",
-        p.scene, p.model, p.kind, p.law, p.nodes, p.cutoff, p.element_length, p.integrator, p.contact_every,
+        p.scene, p.model, p.kind, p.law, p.nodes, p.cutoff, p.element_length, p.integrator,
         p.time_step / units::fs, p.mass_scale, p.mode, p.contact_viscosity, p.bond_damping, p.precision, p.elements,
         p.simulated, p.element_steps_per_ns(), p.cpu_per_ns(), 1e9 * p.cpu_per_element_step(),
         p.instructions ? fmt::format("{:.5g}", *p.instructions) : "", r.observable, observable_unit(r.observable),

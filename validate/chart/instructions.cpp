@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double wanted_element_steps = 6000;
-constexpr long min_steps = 12, whole_steps = 12;  // a multiple of every contact_every
+constexpr long min_steps = 12, whole_steps = 12;
 
 // Reads "==12== Collected : 123456"; none where callgrind did not finish.
 std::optional<double> collected(const std::string& path) {

@@ -134,7 +134,7 @@ class Reader {
 
 // Returns the CPU time of the steps; samples observables if there is a reader.
 double run_dynamics(const Specimen& s, Reader* reader, Simulation& simulation) {
-  const long steps = std::lround(s.duration() / s.outer_step());
+  const long steps = std::lround(s.duration() / s.time_step);
   const auto sampled = static_cast<long>(static_cast<double>(steps) * (1 - sampled_part * s.hold / s.duration()));
   const long every = std::max(1L, (steps - sampled) / samples);
   double seconds = 0, began = processor_seconds();
@@ -152,7 +152,7 @@ double run_dynamics(const Specimen& s, Reader* reader, Simulation& simulation) {
 Simulation driven(const Specimen& s, State untwisted) {
   set_turning(s, untwisted);
   untwisted.step = 0;
-  return Simulation(s.topology, s.interaction, s.loads(), std::move(untwisted), s.outer_step(), 0,
+  return Simulation(s.topology, s.interaction, s.loads(), std::move(untwisted), s.time_step, 0,
                     s.scene.run.stepping);
 }
 
@@ -182,7 +182,6 @@ ChartPoint describe(const ChartScene& scene, const ChartModel& model, const Spec
   p.kind = model.kind;
   p.law = model.law;
   p.integrator = model.stepping.runge_kutta ? "rk4" : "verlet";
-  p.contact_every = model.stepping.contact_every;
   p.mass_scale = model.mass_scale;
   p.mode = model.mode == RunOptions::Mode::relax ? "relax" : "dynamics";
   p.precision = s.interaction.precision == Interaction::Precision::mixed ? "mixed" : "double";
@@ -216,7 +215,7 @@ void measure(const Specimen& s, const ChartModel& model, ChartPoint& point) {
     } else {
       Simulation simulation = driven(s, untwisted);
       seconds = run_dynamics(s, k == 0 ? &reader : nullptr, simulation);
-      point.steps = static_cast<double>(simulation.state().step) * s.scene.run.stepping.contact_every;
+      point.steps = static_cast<double>(simulation.state().step);
     }
     point.cpu = std::min(point.cpu, seconds);
     total += seconds;
@@ -242,7 +241,7 @@ void step_for_counting(const std::string& scene_name, const std::string& model_n
   Simulation simulation = driven(s, s.state);
   simulation.step(false);  // allocates and caches, before the cost is measured
   count_from_here();
-  for (long k = 0; k < steps; k += model.stepping.contact_every) simulation.step(false);
+  for (long k = 0; k < steps; ++k) simulation.step(false);
   count_to_here();
 }
 

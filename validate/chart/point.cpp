@@ -27,7 +27,6 @@ std::string point_json(const ChartPoint& p) {
               {"mode", p.mode},
               {"precision", p.precision},
               {"nodes_per_element", p.nodes},
-              {"contact_every", p.contact_every},
               {"elements", p.elements},
               {"cutoff_nm", p.cutoff},
               {"element_length_nm", p.element_length},
@@ -65,7 +64,6 @@ ChartPoint read_point(const std::string& path) {
     p.mode = in.at("mode");
     p.precision = in.at("precision");
     p.nodes = whole("nodes_per_element");
-    p.contact_every = whole("contact_every");
     p.elements = whole("elements");
     p.cutoff = in.at("cutoff_nm");
     p.element_length = in.at("element_length_nm");

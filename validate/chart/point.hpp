@@ -12,7 +12,7 @@ struct ChartPoint {
   std::string key;    // hash of program, scene and settings; a result with another key is stale
   std::string error;  // why the model could not be run
   std::string scene, model, kind, law, integrator, mode, precision;
-  int nodes = 0, contact_every = 1, elements = 0;
+  int nodes = 0, elements = 0;
   double cutoff = 0, element_length = 0;  // nm
   double time_step = 0;                   // ps, of the bonds
   double mass_scale = 1, contact_viscosity = 0, bond_damping = 0;

@@ -58,8 +58,7 @@ void scale_damping(Specimen& s) {
 void settle(const ChartModel& model, Specimen& s) {
   scale_damping(s);
   s.interaction = interaction_of(s.scene);
-  const double limit =
-      inner_step_limit(time_step_limit(s.topology, s.interaction, s.spacing), model.stepping.contact_every);
+  const double limit = time_step_limit(s.topology, s.interaction, s.spacing).limit;
   const double part = model.step_fraction > 0 ? model.step_fraction : automatic_step_fraction(s.scene);
   s.time_step = model.time_step > 0 ? model.time_step : part * limit;
   if (s.time_step >= limit)

@@ -21,6 +21,7 @@ class Energies:
     Attributes:
         stretch, shear, bend, twist: of the bonds, eV
         vdw: of the contacts between tubes, eV
+        terms: of all force terms, such as tethers, eV
         kinetic: of translation and rotation, eV
     """
 
@@ -29,6 +30,7 @@ class Energies:
     bend: float
     twist: float
     vdw: float
+    terms: float = 0.0
     kinetic: float = 0.0
 
     @property
@@ -38,8 +40,8 @@ class Energies:
 
     @property
     def potential(self) -> float:
-        """Of bonds and contacts, eV."""
-        return self.bonds + self.vdw
+        """Of bonds, contacts and force terms, eV."""
+        return self.bonds + self.vdw + self.terms
 
     @property
     def total(self) -> float:

@@ -51,10 +51,8 @@ void add_run_facts(const Scene& scene, const Prepared& p, const Manifest& m, Rep
   add("damping", fmt::format("contact viscosity {:.4g} eV ps/nm^2, bonds {:.4g} 1/ps, PFC local {:.4g}",
                              scene.damping.contact.eta, scene.damping.bond.rate, scene.damping.local));
   for (const auto& drive : scene.drives) add(drive->table().name, drive->words());
-  const int every = scene.run.stepping.contact_every;
-  add("time step", fmt::format("{:.4g} fs", p.time_step / every / units::fs),
-      fmt::format("stability limit {:.4g} fs{}", inner_step_limit(p.limit, every) / units::fs,
-                  every > 1 ? fmt::format("; contact every {} steps", every) : ""));
+  add("time step", fmt::format("{:.4g} fs", p.time_step / units::fs),
+      fmt::format("stability limit {:.4g} fs", p.limit.limit / units::fs));
   for (const std::string& words : warmth_of(scene, p)) add("temperature", words);
   add("seed", fmt::format("{}", m.seed));
   add("program", fmt::format("ropewalk {} ({})", m.version, m.git_id),

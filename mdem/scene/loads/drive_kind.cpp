@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cassert>
 
+#include "sim/forces/force_term.hpp"
+
 namespace ropewalk {
 
 // One line for each shipped drive, and one below.
@@ -11,19 +13,34 @@ DriveKind twist_drive();
 DriveKind grip_drive();
 DriveKind load_drive();
 DriveKind periodic_drive();
+DriveKind tether_drive();
 
 namespace {
 
+DriveKind with_its_energy(DriveKind kind) {
+  if (kind.energy) add_term_kind({kind.table().name, kind.energy});
+  return kind;
+}
+
+std::vector<DriveKind> with_their_energies(std::vector<DriveKind> kinds) {
+  for (const DriveKind& kind : kinds) with_its_energy(kind);
+  return kinds;
+}
+
 std::vector<DriveKind>& kinds_of_drives() {
-  static std::vector<DriveKind> kinds = {
+  static std::vector<DriveKind> kinds = with_their_energies({
       thermostat_drive(),
       twist_drive(),
       grip_drive(),
       load_drive(),
       periodic_drive(),
-  };
+      tether_drive(),
+  });
   return kinds;
 }
+
+// The columns of the log must be there before main() begins.
+const bool registered = !kinds_of_drives().empty();
 
 }  // namespace
 
@@ -32,7 +49,7 @@ const std::vector<DriveKind>& drive_kinds() { return kinds_of_drives(); }
 bool add_drive_kind(DriveKind kind) {
   assert(std::none_of(kinds_of_drives().begin(), kinds_of_drives().end(),
                       [&](const DriveKind& other) { return other.table().name == kind.table().name; }));
-  kinds_of_drives().push_back(kind);
+  kinds_of_drives().push_back(with_its_energy(kind));
   return true;
 }
 

@@ -78,7 +78,6 @@ void PeriodicDrive::refuse(const TomlTable& top, const Scene& scene) const {
     if (drive->ends() == Ends::clamped) refuse(drive->table().header(), "the slice has no ends to be clamped");
   }
   if (scene.kind != "rope") refuse("[" + scene.kind + "]", "tubes must be parallel and alike; it needs a [rope]");
-  if (scene.run.stepping.contact_every > 1) refuse("contact_every", "images follow on one level alone");
 }
 
 void PeriodicDrive::add_loads(const Scene& scene, const Topology& topology, const Interaction& interaction,

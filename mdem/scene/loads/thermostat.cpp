@@ -71,7 +71,6 @@ void ThermostatDrive::refuse(const TomlTable& top, const Scene& scene) const {
                                  "take one of the two away");
   };
   if (scene.run.mode == RunOptions::Mode::relax) refuse("run", "mode", "a relaxation has no temperature");
-  if (scene.run.stepping.contact_every > 1) refuse("run", "contact_every", "the bath acts on one level alone");
   if (scene.damping.local > 0) refuse("damping", "pfc_local", "it brakes every velocity that the bath gives");
   for (const auto& drive : scene.drives)
     if (drive->moment_ramp() && drive->moment_ramp()->geometric_only)

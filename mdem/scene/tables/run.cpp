@@ -8,8 +8,6 @@ namespace {
 
 using Mode = RunOptions::Mode;
 
-constexpr long max_inner_steps = 1000;
-
 // Refuses keys that have no effect in the chosen mode: whoever wrote them expects one.
 void read_mode(const TomlTable& t, const Scene&, RunOptions& r) {
   r.mode = t.word_or("mode", r.mode, Words<Mode>{{"dynamics", Mode::dynamics}, {"relax", Mode::relax}});
@@ -28,18 +26,13 @@ void read_time_step(const TomlTable& t, const Scene&, RunOptions& r) {
                                             : t.number_or("time_step_fs", 0, Bounds::positive(1000)) * units::fs;
 }
 
-void check_run_keys(const TomlTable& t, const Scene& scene, RunOptions& r) {
-  const char* used = r.stepping.contact_every > 1 ? "contact_every"
-                     : r.stepping.runge_kutta     ? "integrator"
-                     : r.mass_scale != 1          ? "mass_scale"
-                                                  : nullptr;
+void check_run_keys(const TomlTable& t, const Scene&, RunOptions& r) {
+  if (t.has("contact_every"))
+    throw t.error("contact_every", "was removed: two-level steps were faster in no scene that was measured",
+                  "take it away; time_step_fs is the step of bonds and contact");
+  const char* used = r.stepping.runge_kutta ? "integrator" : r.mass_scale != 1 ? "mass_scale" : nullptr;
   if (r.mode == Mode::relax && used)
     throw t.error(used, "belongs to mode = \"dynamics\"", "take it away: relaxation does not depend on it");
-  if (r.stepping.contact_every == 1) return;
-  if (scene.contact.law == "none") throw t.error("contact_every", "is of no use without contact", "take it away");
-  if (scene.damping.local > 0)
-    throw t.error("contact_every", "does not go with pfc_local, which damps the total force",
-                  "take one of them away");
 }
 
 }  // namespace
@@ -55,14 +48,8 @@ const KeyTable<RunOptions>& run_table() {
                    "\"dynamics\", or \"relax\": to the nearest minimum of the energy", read_mode),
        Key::custom(
            "time_step_fs", "fs", standard("\"auto\""),
-           "\"auto\": 0.9 of the stability limit; 0.6 from a state file, with contact_every, where heat may_cool, "
-           "or to relax; where warm, positions are at most 2 % hotter than velocities",
+           "\"auto\": 0.9 of the stability limit; 0.6 from a state file, where heat may_cool, or to relax; where warm, positions are at most 2 % hotter than velocities",
            read_time_step),
-       Key::integer(
-           "contact_every", 1, max_inner_steps, [](auto& r) -> auto& { return r.stepping.contact_every; },
-           standard(),
-           "contact acts every so many steps of the bonds (r-RESPA); pays where elements are short and bonds "
-           "therefore stiffer than contact; log and frames go by these longer steps"),
        Key::word(
            "integrator", Words<bool>{{"verlet", false}, {"rk4", true}},
            [](auto& r) -> auto& { return r.stepping.runge_kutta; }, standard(),

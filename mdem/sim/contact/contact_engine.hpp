@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "sim/contact/contact_law.hpp"
+#include "sim/contact/pair_work.hpp"
 #include "sim/neighbours/neighbours.hpp"
 #include "sim/state/force_rows.hpp"
 #include "sim/state/interaction.hpp"
@@ -15,11 +16,13 @@
 
 namespace ropewalk {
 
-// What tubes need besides the contact: `place` prepares a tube, before any element moves, and `finish` ends a block
-// of elements once nothing acts on it any more. Each is called once, by any thread.
+// What an evaluation does besides the contact: `place` prepares a tube, before any element moves, and `finish` ends a
+// block of elements once nothing acts on it any more. Each is called once, by any thread. `pairs` acts on the pairs of
+// each chunk; null: nothing does.
 struct TubeWork {
   const TubeParts& parts;
   std::function<void(int)> place, finish;
+  PairWork* pairs = nullptr;
 };
 
 using PairEnergy = std::function<double(TypePair, const Vector3&, const Vector3&, const Vector3&)>;
@@ -35,8 +38,7 @@ class ContactEngine {
                        const State& state, const Vec3Array& axis, bool energies, const TubeWork& tubes) = 0;
   // Adds what acts on a part of a tube, in a fixed order.
   virtual void add_to(int part, const ForceRows& sums) const = 0;
-  virtual double energy() const = 0;         // eV
-  virtual double damping_power() const = 0;  // eV/ps
+  virtual double energy() const = 0;  // eV
 
   // The skin (nm) whose lists would have cost least, where a list with the skin `listed` lasted so many steps.
   virtual double best_skin(const Topology&, double listed, long /*steps*/) const { return listed; }

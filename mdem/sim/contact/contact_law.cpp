@@ -70,7 +70,7 @@ double ContactLaw::binding(TypePair types, double length) const {
   return -lowest(cutoff(), [&](double d) { return parallel_energy(*this, types, length, d); }).energy;
 }
 
-double Interaction::cutoff() const { return law ? law->cutoff() : 0; }
+double Interaction::cutoff() const { return std::max(law ? law->cutoff() : 0.0, term_reach); }
 double Interaction::lever() const { return law ? law->lever() : 0; }
 bool Interaction::whole_ranges() const { return law && law->whole_ranges(); }
 

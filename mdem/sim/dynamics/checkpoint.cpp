@@ -13,15 +13,16 @@
 namespace ropewalk {
 namespace {
 
-constexpr char magic[8] = "MDEM12";
+constexpr char magic[8] = "MDEM13";
 
 struct CheckpointHead {
   char format[sizeof magic];
-  std::int64_t elements = 0, tubes = 0, contact_every = 0;
+  std::int64_t elements = 0, tubes = 0;
 };
 
-// What the neighbour list is made of again, and what the next list depends on.
+// What the neighbour list and the memories of the terms are made of again, and what the next list depends on.
 struct ListOrigin {
+  std::vector<double> memory;
   double skin = 0;
   std::array<double, 2> twist{};
   Vec3Array position, axis;
@@ -31,6 +32,10 @@ struct Writer : ByteWriter {
   using ByteWriter::operator();
   void operator()(const Column& v) {
     bytes.append(reinterpret_cast<const char*>(v.data()), v.size() * sizeof(double));
+  }
+  void operator()(const std::vector<double>& numbers) {
+    (*this)(static_cast<std::int64_t>(numbers.size()));
+    bytes.append(reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(double));
   }
   void operator()(const std::vector<PointLoad>& loads) {
     (*this)(static_cast<std::int64_t>(loads.size()));
@@ -48,6 +53,15 @@ struct Reader : ByteReader {
   void operator()(Column& v) {
     const std::size_t size = v.size() * sizeof(double);
     if (size > 0) std::memcpy(v.data(), take(size).data(), size);
+  }
+  void operator()(std::vector<double>& numbers) {
+    std::int64_t count = 0;
+    (*this)(count);
+    if (count < 0 || static_cast<std::uint64_t>(count) > bytes.size() / sizeof(double))
+      throw std::runtime_error("the checkpoint ends too early");
+    numbers.resize(static_cast<std::size_t>(count));
+    const std::size_t size = numbers.size() * sizeof(double);
+    if (size > 0) std::memcpy(numbers.data(), take(size).data(), size);
   }
   void operator()(std::vector<PointLoad>& loads) {
     std::int64_t count = 0;
@@ -99,6 +113,7 @@ void Simulation::visit_checkpoint(Archive& archive, Self& self, List& list) {
   archive(self.account_);
   archive(self.gauges_.sums);
   archive(self.list_age_);
+  archive(list.memory);
   archive(list.skin);
   archive(list.twist);
   visit_xyz(archive, list.position);
@@ -110,12 +125,10 @@ void Simulation::visit_checkpoint(Archive& archive, Self& self, List& list) {
   visit_xyz(archive, s.angular_velocity);
   visit_forces(archive, self.forces_);
   archive(self.forces_.energy);
+  archive(self.forces_.term_energy);
   archive(self.forces_.damping_power);
   archive(self.point_loads_);
   visit_relaxation(archive, self.relaxation_);
-  if (!self.two_levels()) return;
-  visit_forces(archive, self.inner_);
-  visit_forces(archive, self.contact_);
 }
 
 namespace {
@@ -140,7 +153,7 @@ bool are_unit_vectors(const Vec3Array& v) {
 }
 
 bool could_be(const ListOrigin& list) {
-  return list.skin > 0 && list.skin < largest_number && all_within(list.twist) && all_xyz_within(list.position) &&
+  return all_within(list.memory) && list.skin > 0 && list.skin < largest_number && all_within(list.twist) && all_xyz_within(list.position) &&
          are_unit_vectors(list.axis);
 }
 
@@ -166,19 +179,19 @@ bool Simulation::could_go_on(double step_of_scene) const {
   for (const Vec3Array* v : {&s.position, &s.velocity, &s.angular_velocity, &forces_.force, &forces_.torque})
     fine = fine && all_xyz_within(*v);
   for (std::size_t i = 0; fine && i < s.size(); ++i) fine = std::fabs(s.orientation[i].norm() - 1) < 1e-3;
+  fine = fine && forces_.term_energy.size() == interaction_.terms.size();
   for (const PointLoad& load : point_loads_)
     fine = fine && load.element >= 0 && load.element < topology_.elements() && load.force.allFinite() &&
            load.torque.allFinite();
-  for (const Forces* f : {&inner_, &contact_}) fine = fine && all_xyz_within(f->force) && all_xyz_within(f->torque);
   return fine;
 }
 
 std::string Simulation::serialise() const {
   Writer write;
-  CheckpointHead head{{}, topology_.elements(), topology_.tubes(), stepping_.contact_every};
+  CheckpointHead head{{}, topology_.elements(), topology_.tubes()};
   std::memcpy(head.format, magic, sizeof magic);
   write(head);
-  const ListOrigin list{list_.skin, list_.twist(), list_.reference(), list_.reference_axis()};
+  const ListOrigin list{memory(), list_.skin, list_.twist(), list_.reference(), list_.reference_axis()};
   visit_checkpoint(write, *this, list);
   return std::move(write.bytes);
 }
@@ -193,9 +206,6 @@ void Simulation::restore(const std::string& bytes) {
     throw std::runtime_error("the checkpoint holds " + std::to_string(head.tubes) + " tubes of " +
                              std::to_string(head.elements) + " elements, the scene " +
                              std::to_string(topology_.tubes()) + " of " + std::to_string(topology_.elements()));
-  if (head.contact_every != stepping_.contact_every)
-    throw std::runtime_error("the checkpoint is of contact_every = " + std::to_string(head.contact_every) +
-                             ", the scene of " + std::to_string(stepping_.contact_every));
   ListOrigin list;
   list.position.resize(state_.size());
   list.axis.resize(state_.size());
@@ -209,9 +219,11 @@ void Simulation::restore(const std::string& bytes) {
   list_.skin = list.skin;
   list_.build(topology_, std::move(list.position), std::move(list.axis));
   list_.set_twist(list.twist);
+  engine_.remember(interaction_, list.memory, topology_.elements());
+  engine_.prepare_again(topology_, list_, state_);
   // The line law's list, which the skin of the next one follows from.
   Forces made(state_.size());
-  if (tunes_skin_) engine_.compute(topology_, interaction_, list_, state_, made, {Parts::contact, false});
+  if (tunes_skin_ && engine_.contact()) engine_.compute(topology_, interaction_, list_, state_, made, {Parts::contact, false});
 }
 
 }  // namespace ropewalk

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "sim/forces/forces.hpp"
+#include "sim/state/processes.hpp"
 #include "sim/state/state.hpp"
 
 namespace ropewalk {
@@ -43,15 +44,8 @@ struct LoadEffect {
   std::optional<Clamp> clamp = {};
 };
 
-// The processes that have the elements of a load together. All of them must call each of these.
-class LoadProcesses {
- public:
-  virtual ~LoadProcesses() = default;
-  // Replaces values by their sums over all processes.
-  virtual void sum(double* values, std::size_t count) const = 0;
-  // The lists of all processes behind one another.
-  virtual std::vector<int> join(const std::vector<int>& own) const = 0;
-};
+// The processes that have the elements of a load together.
+using LoadProcesses = Processes;
 
 class Load {
  public:

@@ -99,6 +99,7 @@ double Simulation::above_minimum(double enough, long most) const {
   Interaction in = interaction_;
   in.precision = Interaction::Precision::full;
   ForceEngine engine;
+  engine.take_terms_of(engine_);
   const auto n = static_cast<std::ptrdiff_t>(state_.size());
   std::vector<PointLoad> loads;
   const auto forces_after = [&](const Motion& motion, double time) {
@@ -226,7 +227,7 @@ Simulation::PartEnd Simulation::relax_part(long max_steps, const std::function<b
   Fire& fire = r.fire;
   if (r.part_began < 0) {
     r.part_began = state_.step;
-    fire = Fire(inner_step());
+    fire = Fire(part_step());
     r.constant = total_energy() - account_.supplied();
     stand_still();
     r.last_step = 0;
@@ -285,7 +286,7 @@ Simulation::PartEnd Simulation::relax_part(long max_steps, const std::function<b
     r.last_step = step;
     ++state_.step;
     update_list();
-    compute();
+    compute(true, 0);
     account_.work += 0.5 * step * load_power(point_loads_, state_);
     balance_relaxation();
     if (forces_.slipping_bond >= 0) check_forces(true);

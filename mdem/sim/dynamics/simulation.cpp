@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "model/error.hpp"
 #include "sim/dynamics/blow_up.hpp"
-#include "sim/dynamics/pfc_local.hpp"
-#include "sim/dynamics/two_levels.hpp"
+#include "sim/dynamics/kick.hpp"
 #include "sim/dynamics/verlet.hpp"
 #include "sim/state/motion.hpp"
 
@@ -64,9 +64,7 @@ Simulation::Simulation(Topology topology, Interaction interaction, LoadsAndConst
       list_(interaction_, skin > 0 ? skin : default_skin(interaction_)),
       changes_(blocks_of(state_.size())),
       fastest_(blocks_of(state_.size())),
-      forces_(state_.size()),
-      inner_(two_levels() ? state_.size() : 0),
-      contact_(two_levels() ? state_.size() : 0) {
+      forces_(state_.size()) {
   refuse_not_finite(state_);
   list_.build(topology_, state_);
   compute();
@@ -75,48 +73,19 @@ Simulation::Simulation(Topology topology, Interaction interaction, LoadsAndConst
 
 // --- what a step is made of ---------------------------------------------------------------------------
 
-struct Simulation::OneLevel {
+struct Simulation::System {
   Simulation& s;
   bool energies;
 
-  void kick(double dt) { s.kick_with_loads(s.forces_, dt); }
+  void kick(double dt) { s.kick_with_loads(dt); }
   void drift(double dt) { s.drift(dt); }
   void exchange_heat(double dt) { s.exchange_heat(dt); }
   void compute_forces() {
     s.update_list();
-    s.compute(energies);
+    s.compute(energies, s.part_step());
     s.check_forces(energies);
     s.account_.dissipated -= s.part_step() * s.forces_.damping_power;
-  }
-};
-
-struct Simulation::TwoLevels {
-  Simulation& s;
-  bool energies;
-
-  void kick_by_contact(double dt) { s.kick(s.contact_, dt); }
-  void kick_by_bonds(double dt) { s.kick_with_loads(s.inner_, dt); }
-  void drift(double dt) { s.drift(dt); }
-  void compute_bonds(double dt) {
-    s.compute_bonds();
-    s.account_.dissipated -= dt * s.inner_.damping_power;
-  }
-  // With the velocities in the middle of the impulse, as the last contact forces predict them. Those before it are
-  // off by what the bonds alone have done in a loaded rope: viscosity would act where nothing slides.
-  void compute_contact(double dt) {
-    s.update_list();
-    const Vec3Array velocity = s.state_.velocity, angular_velocity = s.state_.angular_velocity;
-    const double work = s.account_.work;
-    const Gauges::Sums sums = s.gauges_.sums;
-    kick_by_contact(0.5 * dt);
-    s.compute_contact(energies);
-    s.state_.velocity = velocity;
-    s.state_.angular_velocity = angular_velocity;
-    s.account_.work = work;
-    s.gauges_.sums = sums;
-    s.add_levels();
-    s.check_forces(energies);
-    s.account_.dissipated -= dt * s.contact_.damping_power;
+    s.account_.dissipated += s.forces_.lost;
   }
 };
 
@@ -134,11 +103,7 @@ void Simulation::step_once(bool energies) {
   ++state_.step;
   for (state_.part = 0; state_.part < divided_; ++state_.part) {
     const bool last = state_.part + 1 == divided_;
-    if (two_levels()) {
-      two_level_step(TwoLevels{*this, energies && last}, part_step(), stepping_.contact_every);
-    } else {
-      verlet_step(OneLevel{*this, energies && last}, part_step(), stepping_.thermostat != nullptr);
-    }
+    verlet_step(System{*this, energies && last}, part_step(), stepping_.thermostat != nullptr);
   }
   state_.part = 0;
   relax_spins_if_due();
@@ -146,32 +111,28 @@ void Simulation::step_once(bool energies) {
 
 // --- motion -------------------------------------------------------------------------------------------
 
-void Simulation::kick(const Forces& forces, double dt) {
-  if (interaction_.damping.local > 0) {
-    account_.dissipated += kick_with_local_damping(topology_, interaction_.damping.local, forces, dt, state_);
-  } else {
+void Simulation::kick(double dt) {
+  const ForceTerms* const terms = engine_.terms().act_in_kick() ? &engine_.terms() : nullptr;
+  const ForceRows total = rows_of(forces_);
+  removed_.resize(static_cast<std::size_t>(parts_.count()));
 #pragma omp parallel for schedule(static) if (state_.size() > parallel_from)
-    for (int k = 0; k < parts_.count(); ++k) {
-      const Segment& of = parts_[k];
-      const TubeType& type = topology_.type_of(of.tube);
-      kick_elements(forces.force, dt / type.mass, state_.velocity, of.begin, of.end);
-      kick_elements(forces.torque, dt / type.inertia, state_.angular_velocity, of.begin, of.end);
-    }
-  }
+  for (int k = 0; k < parts_.count(); ++k)
+    removed_[static_cast<std::size_t>(k)] = ropewalk::kick(topology_, terms, total, dt, parts_[k], state_);
+  if (terms) account_.dissipated += std::accumulate(removed_.begin(), removed_.end(), 0.0);
   if (loads_.empty()) return;
-  constrain(topology_, loads_, loaded_, state_.time, 0.5 * inner_step(), forces, dt, state_, impulses_);
+  constrain(topology_, loads_, loaded_, state_.time, 0.5 * part_step(), forces_, dt, state_, impulses_);
   for (const ConstraintImpulse& c : impulses_) account_.work += c.work;
   gauges_.add_constraints(state_, impulses_);
 }
 
-// `forces` includes the loads. Their work is exact: the mean power before and after the kick, times dt.
-void Simulation::kick_with_loads(const Forces& forces, double dt) {
+// The work of the loads is exact: the mean power before and after the kick, times dt.
+void Simulation::kick_with_loads(double dt) {
   const auto half = [&] {
     account_.work += 0.5 * dt * load_power(point_loads_, state_);
     gauges_.add_loads(state_, point_loads_, 0.5 * dt);
   };
   half();
-  kick(forces, dt);
+  kick(dt);
   half();
 }
 
@@ -204,7 +165,7 @@ void Simulation::exchange_heat(double dt) {
 }
 
 void Simulation::update_list() {
-  if (!interaction_.has_contact()) return;
+  if (!(list_.cutoff > 0)) return;
   const double began = omp_get_wtime();
   ++list_age_;
   for_blocks(state_.size(), [&](std::size_t block, std::ptrdiff_t begin, std::ptrdiff_t end) {
@@ -213,7 +174,7 @@ void Simulation::update_list() {
   Change all;  // in the order of the blocks, whatever the threads
   for (const Change& c : changes_) all = both(all, c);
   if (list_.stale(all)) {
-    if (tunes_skin_) list_.skin = engine_.contact()->best_skin(topology_, list_.skin, list_age_);
+    if (tunes_skin_ && engine_.contact()) list_.skin = engine_.contact()->best_skin(topology_, list_.skin, list_age_);
     list_.build(topology_, state_);
     list_age_ = 0;
   }
@@ -223,52 +184,14 @@ void Simulation::update_list() {
 // --- forces -------------------------------------------------------------------------------------------
 
 // Model forces at the present positions and velocities, plus loads: their sum in `forces_`.
-void Simulation::compute(bool energies) {
-  if (two_levels()) {
-    compute_bonds();
-    compute_contact(energies);
-    add_levels();
-    return;
-  }
-  engine_.compute(topology_, interaction_, list_, state_, forces_, {Parts::all, energies});
+void Simulation::compute(bool energies, std::optional<double> passed) {
+  engine_.compute(topology_, interaction_, list_, state_, forces_, {Parts::all, energies, passed});
   if (!energies) forces_.energy.vdw = std::numeric_limits<double>::quiet_NaN();
-  add_loads(forces_);
-}
-
-void Simulation::compute_bonds() {
-  engine_.compute(topology_, interaction_, list_, state_, inner_, {Parts::bonds});
-  add_loads(inner_);
-}
-
-void Simulation::compute_contact(bool energies) {
-  engine_.compute(topology_, interaction_, list_, state_, contact_, {Parts::contact, energies});
-  if (!energies) contact_.energy.vdw = std::numeric_limits<double>::quiet_NaN();
-}
-
-void Simulation::add_loads(Forces& forces) {
   point_loads(loads_, state_, state_.time, point_loads_);
   for (const PointLoad& load : point_loads_) {
-    forces.force.add(static_cast<std::size_t>(load.element), load.force);
-    forces.torque.add(static_cast<std::size_t>(load.element), load.torque);
+    forces_.force.add(static_cast<std::size_t>(load.element), load.force);
+    forces_.torque.add(static_cast<std::size_t>(load.element), load.torque);
   }
-}
-
-void Simulation::add_levels() {
-  const auto n = static_cast<std::ptrdiff_t>(state_.size());
-  const auto add = [&](const Vec3Array& a, const Vec3Array& b, Vec3Array& sum) {
-#pragma omp parallel for schedule(static) if (state_.size() > parallel_from)
-    for (std::ptrdiff_t i = 0; i < n; ++i) {
-      sum.x[i] = a.x[i] + b.x[i];
-      sum.y[i] = a.y[i] + b.y[i];
-      sum.z[i] = a.z[i] + b.z[i];
-    }
-  };
-  add(inner_.force, contact_.force, forces_.force);
-  add(inner_.torque, contact_.torque, forces_.torque);
-  forces_.energy = inner_.energy;
-  forces_.energy.vdw = contact_.energy.vdw;
-  forces_.damping_power = inner_.damping_power + contact_.damping_power;
-  forces_.slipping_bond = inner_.slipping_bond;
 }
 
 void Simulation::check_forces(bool energies) const {
@@ -298,6 +221,22 @@ EndReadings Simulation::read_gauges() {
   return gauges_.read_still(state_, reactions_at_rest(topology_, loads_, loaded_, forces_, state_), point_loads_);
 }
 
+void Simulation::remember(const std::vector<double>& memory) {
+  engine_.remember(interaction_, memory, topology_.elements());
+  engine_.prepare_again(topology_, list_, state_);
+  compute();
+}
+
+Forces Simulation::forces_at(const State& state, Interaction::Precision precision) const {
+  Interaction in = interaction_;
+  in.precision = precision;
+  ForceEngine engine;
+  engine.take_terms_of(engine_);
+  Forces forces(state.size());
+  engine.compute(topology_, in, list_, state, forces);
+  return forces;
+}
+
 double Simulation::engine_seconds() const {
   const ForceEngine::Times& t = engine_.times();
   return t.contact + t.bonds;
@@ -305,7 +244,7 @@ double Simulation::engine_seconds() const {
 
 std::size_t Simulation::bytes() const {
   const std::size_t n = state_.size();
-  const std::size_t state = (3 + 4 + 3 + 3) * n, forces = (two_levels() ? 18 : 6) * n;
+  const std::size_t state = (3 + 4 + 3 + 3) * n, forces = 6 * n;
   const std::size_t reference = 6 * n;  // of the list
   return (state + forces + reference) * sizeof(double) + engine_.bytes() + list_.bytes();
 }

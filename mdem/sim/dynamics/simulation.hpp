@@ -1,11 +1,11 @@
-// Dynamics of a scene: steps of velocity Verlet (sim/dynamics/verlet.hpp), or on two levels
-// (sim/dynamics/two_levels.hpp), with an account of the energy that comes in and goes out; relaxation; checkpoints.
-// A step of the simulation is an outer one where there are two levels.
+// Dynamics of a scene: steps of velocity Verlet (sim/dynamics/verlet.hpp) with an account of the energy that comes in
+// and goes out; relaxation; checkpoints.
 //
 // total energy - account().supplied() is constant up to the error of the integration.
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,7 +26,7 @@ namespace ropewalk {
 // Parts of the limit that are used when the step is not typed. A cold rope hardly moves in the waves that set the
 // limit: its energies are the same to 4 digits with either step. Heat is in all of them: at 300 K, without damping,
 // the account of energy is off by 6 % of the kinetic energy in the first picosecond with 0.6, by 20 % with 0.9 (and
-// stays there). Relaxation and two levels have bounds of their own.
+// stays there). Relaxation has bounds of its own.
 inline constexpr double default_step_fraction = 0.6;
 inline constexpr double cold_step_fraction = 0.9;
 
@@ -94,27 +94,28 @@ class Simulation {
     account_ = account;
   }
   void inherit_from(const Gauges::Sums& sums) { gauges_.sums = sums; }
+  // The memories of all force terms, ForceTerms::memory(), and a simulation that goes on with such ones: its forces
+  // and energies are those of the present state.
+  std::vector<double> memory() const { return engine_.terms().memory(); }
+  void remember(const std::vector<double>& memory);
+  // As of the same simulation with every element split in two.
+  std::vector<double> halved_memory() const { return engine_.terms().halved_memory(); }
+  // As of an engine of its own, with all energies; in the precision that is asked for, without the loads.
+  Forces forces_at(const State& state, Interaction::Precision precision) const;
   const Gauges& gauges() const { return gauges_; }
 
  private:
-  struct OneLevel;   // what verlet_step acts on
-  struct TwoLevels;  // what two_level_step acts on
+  struct System;  // what verlet_step acts on
 
-  bool two_levels() const { return stepping_.contact_every > 1; }
   double part_step() const { return time_step_ / divided_; }
-  double inner_step() const { return part_step() / stepping_.contact_every; }
   void step_once(bool energies);
-  void kick(const Forces& forces, double dt);
-  void kick_with_loads(const Forces& forces, double dt);
+  void kick(double dt);
+  void kick_with_loads(double dt);
   void drift(double dt);
   void move(double dt);
   void exchange_heat(double dt);
   void update_list();
-  void compute(bool energies = true);
-  void compute_bonds();
-  void compute_contact(bool energies);
-  void add_loads(Forces& forces);
-  void add_levels();
+  void compute(bool energies = true, std::optional<double> passed = {});
   void check_forces(bool energies) const;
   void relax_spins_if_due();
   double engine_seconds() const;
@@ -139,6 +140,7 @@ class Simulation {
   Stepping stepping_;
   std::vector<int> loaded_;                  // elements
   std::vector<ConstraintImpulse> impulses_;  // of the last kick
+  std::vector<double> removed_;              // likewise, by terms in the kick, from each part
   Gauges gauges_;
   TubeParts parts_;
   bool tunes_skin_ = false;
@@ -147,8 +149,7 @@ class Simulation {
   std::vector<Change> changes_;   // since then, of cached_elements each
   std::vector<Fastest> fastest_;  // in the last drift, likewise
   ForceEngine engine_;
-  Forces forces_;                       // of all
-  Forces inner_, contact_;              // its two parts, on two levels: bonds and loads; contact
+  Forces forces_;                       // with the loads
   std::vector<PointLoad> point_loads_;  // those in the last forces: of the velocities in the middle of the step
   EnergySupply account_;
   Relaxation relaxation_;

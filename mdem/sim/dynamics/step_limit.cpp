@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sim/contact/contact_law.hpp"
+#include "sim/forces/force_term.hpp"
 
 namespace ropewalk {
 namespace {
@@ -48,9 +49,6 @@ double contact_stiffness(const Topology& topology, const Interaction& in, const 
   return largest;
 }
 
-//   w^2 dt^2 + 2 g dt = 4
-double damped_step_limit(double w2, double g) { return (std::sqrt(g * g + 4.0 * w2) - g) / w2; }
-
 using Matrix6 = Eigen::Matrix<std::complex<double>, 6, 6>;
 
 using Vector6 = Eigen::Matrix<double, 6, 1>;
@@ -75,6 +73,7 @@ struct Lattice {
   BondDamping bond;
   double spacing = 0;    // nm
   double stiffness = 0;  // eV/nm^2, of a neighbouring row
+  double held = 0;       // eV/nm^2, by force terms
   ContactViscosity viscosity;
 
   // A chain's matrix: `along` of deflections and of rotations about the axis, `sideways` of the rest.
@@ -156,6 +155,7 @@ struct Lattice {
           Wave wave;
           if (!alone) add_contact(Vector3(b1, (2 * b2 - b1) / std::sqrt(3.0), 0), q, wave);
           add_bonds(q, wave);
+          for (int axis = 0; axis < 3; ++axis) wave.stiffness(axis, axis) += held / type.mass;
           all.push_back(wave);
         }
       }
@@ -164,7 +164,8 @@ struct Lattice {
 };
 
 Lattice lattice_of(const Topology& topology, const Interaction& in, const TubeType& type, double spacing) {
-  Lattice out{type, in.damping.bond, spacing, 0, {}};
+  Lattice out{type, in.damping.bond, spacing, 0, 0, {}};
+  for (const auto& term : in.terms) out.held += term->stiffness();
   if (!in.has_contact() || topology.tubes() < 2 || spacing <= 0) return out;
   out.stiffness = std::max(contact_stiffness(topology, in, type, spacing), 0.0);
   if (in.damped_contact()) out.viscosity = in.damping.contact;
@@ -195,7 +196,6 @@ TimeStepLimit time_step_limit(const Topology& given, const Interaction& in, doub
   const auto raise = [](double& value, double to) { value = std::max(value, to); };
   for (const TubeType& t : topology.types) {
     raise(out.chain_frequency, stiffest_chain_frequency(t.bond, t.element_length, t.mass, t.inertia));
-    raise(out.sideways_frequency, stiffest_sideways_frequency(t.bond, t.element_length, t.mass, t.inertia));
   }
   out.limit = 2 / out.chain_frequency;
   for (const TubeType& t : topology.types) {
@@ -210,36 +210,17 @@ TimeStepLimit time_step_limit(const Topology& given, const Interaction& in, doub
       const Vector6 rates = eigenvalues(wave.bond_damping + wave.contact_damping);
       out.damping_rates.insert(out.damping_rates.end(), rates.begin(), rates.end());
       raise(out.damping_rate, rates[5]);
-      raise(out.contact_damping, largest_eigenvalue(wave.contact_damping));
     }
   }
   return out;
 }
 
-double inner_step_limit(const TimeStepLimit& limit, int contact_every) {
-  if (contact_every <= 1) return limit.limit;
-  const double chain =
-      damped_step_limit(limit.chain_frequency * limit.chain_frequency, limit.damping_rate - limit.contact_damping);
-  const double w = limit.sideways_frequency, contact2 = limit.contact_frequency * limit.contact_frequency;
-  const auto stable = [&](double outer) {
-    const double half = 0.5 * w * outer;
-    return contact2 * outer * outer + 2 * limit.contact_damping * outer < 4 * half / std::tan(half);
-  };
-  double below = 0, above = units::pi / w;
-  for (int k = 0; k < 60; ++k) {
-    const double middle = 0.5 * (below + above);
-    (stable(middle) ? below : above) = middle;
-  }
-  return std::min(chain, below / contact_every);
-}
-
-double excess_of_positions(const TimeStepLimit& limit, double step, int contact_every) {
+double excess_of_positions(const TimeStepLimit& limit, double step) {
   const auto of_mode = [](double w2, double h) {
     const double left = 1 - 0.25 * w2 * h * h;
     return left > 0 ? 1 / left - 1 : std::numeric_limits<double>::infinity();
   };
-  const double contact = limit.contact_frequency * limit.contact_frequency;
-  double largest = contact_every > 1 ? of_mode(contact, contact_every * step) : 0;
+  double largest = 0;
   for (const std::vector<double>& waves : limit.stiffest) {
     double sum = 0;
     for (const double w2 : waves) sum += of_mode(w2, step);
@@ -248,11 +229,11 @@ double excess_of_positions(const TimeStepLimit& limit, double step, int contact_
   return largest;
 }
 
-double step_of_excess(const TimeStepLimit& limit, double excess, int contact_every) {
+double step_of_excess(const TimeStepLimit& limit, double excess) {
   double below = 0, above = 2 / limit.chain_frequency;
   for (int k = 0; k < 60; ++k) {
     const double middle = 0.5 * (below + above);
-    (excess_of_positions(limit, middle, contact_every) < excess ? below : above) = middle;
+    (excess_of_positions(limit, middle) < excess ? below : above) = middle;
   }
   return below;
 }

@@ -23,8 +23,6 @@ struct TimeStepLimit {
   double chain_frequency = 0;     // rad/ps
   double contact_frequency = 0;   // rad/ps
   double damping_rate = 0;        // 1/ps
-  double sideways_frequency = 0;  // rad/ps: the stiffest mode of the chain in which elements move sideways
-  double contact_damping = 0;     // 1/ps: part of damping_rate
   // Of each plane wave: w^2 (rad^2/ps^2) of its stiffest mode, by tube type, and the six rates of damping (1/ps).
   std::vector<std::vector<double>> stiffest;
   std::vector<double> damping_rates;
@@ -32,24 +30,14 @@ struct TimeStepLimit {
 // `spacing` of the tubes in nm; 0: a single tube.
 TimeStepLimit time_step_limit(const Topology& topology, const Interaction& interaction, double spacing);
 
-// Stability limit of the inner step (ps) with contact_every = n of them in an outer one, D. Within: the chain and
-// the damping of its bonds as above. Outside: an impulse of the contact W meets a mode w of the chain, which alone
-// would be stepped exactly, stably as long as
-//   W^2 D^2 + 2 g D < 4 (w D/2) cot(w D/2),
-// which for soft modes is the limit of the contact alone and for stiff ones ends before their half period, pi/w:
-// there the impulses resonate. Only modes that move elements sideways are taken; along a tube and about its axis a
-// smooth contact has next to no stiffness.
-// n = 1: TimeStepLimit::limit.
-double inner_step_limit(const TimeStepLimit& limit, int contact_every);
-
 // By how much positions are hotter than velocities, relative, in a scene with heat. A harmonic mode w in velocity
 // Verlet with the step h keeps v^2/2 + w^2 x^2/2 (1 - (w h)^2/4), and BAOAB keeps the same ratio, so that
 //   w^2 <x^2>/<v^2> = 1/(1 - (w h)^2/4).
 // The mean over all waves, of the stiffest mode of each and of the tube type with the largest: stretch, shear, bend
-// and twist are no hotter. With contact_every = n not less than that of the stiffest contact in the step n h.
-double excess_of_positions(const TimeStepLimit& limit, double step, int contact_every);
-// The step (ps, of bonds) at which that is `excess`.
-double step_of_excess(const TimeStepLimit& limit, double excess, int contact_every);
+// and twist are no hotter.
+double excess_of_positions(const TimeStepLimit& limit, double step);
+// The step (ps) at which that is `excess`.
+double step_of_excess(const TimeStepLimit& limit, double excess);
 
 // Part of the kinetic energy of an even distribution over all waves that damping has not taken after `time` (ps):
 // mean of exp(-c t) over the rates c of damping. An estimate, since it leaves out what damping makes of the modes.

@@ -1,4 +1,4 @@
-// How a simulation steps: on one level or on two, with which rotation, with which thermostat.
+// How a simulation steps: with which rotation, with which thermostat.
 #pragma once
 
 #include <memory>
@@ -8,9 +8,8 @@
 namespace ropewalk {
 
 struct Stepping {
-  int contact_every = 1;                              // inner steps in one step of the simulation
   bool runge_kutta = false;                           // rotations by move_elements_runge_kutta
-  std::shared_ptr<const Thermostat> thermostat = {};  // on one level only; none: constant energy
+  std::shared_ptr<const Thermostat> thermostat = {};  // none: constant energy
 };
 
 }  // namespace ropewalk

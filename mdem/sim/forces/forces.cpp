@@ -27,13 +27,26 @@ ContactEngine* ForceEngine::engine_of(const std::shared_ptr<const ContactLaw>& l
 }
 
 std::size_t ForceEngine::bytes() const {
-  return 3 * axis_.size() * sizeof(double) + (contact_ ? contact_->bytes() : 0);
+  return 3 * axis_.size() * sizeof(double) + (contact_ ? contact_->bytes() : 0) + terms_.bytes();
+}
+
+void ForceEngine::remember(const Interaction& interaction, const std::vector<double>& memory, int elements) {
+  use_terms(interaction);
+  terms_.remember(memory, elements);
+}
+
+// A contact engine has listed the pairs of the terms that were there before.
+void ForceEngine::use_terms(const Interaction& interaction) {
+  if (!terms_.use(interaction)) return;
+  contact_ = nullptr;
+  law_ = nullptr;
 }
 
 void ForceEngine::compute(const Topology& topology, const Interaction& interaction, const NeighbourList& list,
                           const State& state, Forces& out, const ForceOptions& options) {
   const double began = omp_get_wtime();
-  const bool bonds = options.parts != Parts::contact;
+  const bool bonds = options.parts != Parts::contact, all_parts = options.parts == Parts::all;
+  use_terms(interaction);
   ContactEngine* const contact = options.parts == Parts::bonds ? nullptr : engine_of(interaction.law);
   const double finished_before = contact ? contact->finish_seconds() : 0;
   parts_.cut(topology);
@@ -42,6 +55,11 @@ void ForceEngine::compute(const Topology& topology, const Interaction& interacti
   if (contact) axis_.resize(state.size());
   const BondInput bonded{topology, interaction.damping.bond, state};
   const ForceRows on = rows_of(out);
+  if (options.parts != Parts::bonds) {
+    terms_.prepare(topology, list, state);
+    terms_.begin(state, parts_.count());
+  }
+  out.lost = options.passed ? terms_.advance(*options.passed, state) : 0;
 
   // Before any element moves: the axes of a tube, and the bonds between its parts.
   const auto place = [&](int tube) {
@@ -55,7 +73,7 @@ void ForceEngine::compute(const Topology& topology, const Interaction& interacti
   const auto joint = [&](int k, bool goes_on) -> const Joint* {
     return goes_on && topology.owns(parts_[k].begin) ? &joints_[static_cast<std::size_t>(k)] : nullptr;
   };
-  // The forces on a part of a tube: first its bonds, then the contact.
+  // The forces on a part of a tube: first its bonds, then the contact, then the terms.
   const auto finish = [&](int k) {
     const Segment& part = parts_[k];
     const Joint* before = bonds ? joint(k - 1, part.begin > topology.tube_begin[part.tube]) : nullptr;
@@ -67,13 +85,15 @@ void ForceEngine::compute(const Topology& topology, const Interaction& interacti
       if (before) add_behind(*before, part.begin, on);
     }
     if (contact) contact->add_to(k, on);
+    if (all_parts && !terms_.empty() && topology.owns(part.begin)) terms_.add(k, part, on);
   };
   const auto finish_block = [&](int block) {
     for (int k = parts_.block_begin(block); k < parts_.block_begin(block + 1); ++k) finish(k);
   };
 
   if (contact) {
-    contact->compute(topology, interaction, list, state, axis_, options.energies, {parts_, place, finish_block});
+    contact->compute(topology, interaction, list, state, axis_, options.energies,
+                     {parts_, place, finish_block, terms_.pairs()});
   } else {
 #pragma omp parallel if (state.size() > parallel_from)
     {
@@ -86,8 +106,9 @@ void ForceEngine::compute(const Topology& topology, const Interaction& interacti
   BondSum all;
   for (const BondSum& sum : sums_) add(sum, all);
   out.energy = {all.energy.stretch, all.energy.shear, all.energy.bend, all.energy.twist,
-                contact ? contact->energy() : 0};
-  out.damping_power = all.power + (contact ? contact->damping_power() : 0);
+                contact ? contact->energy() : 0, 0};
+  out.damping_power = all.power;
+  if (options.parts != Parts::bonds) terms_.sum_up(out);
   out.slipping_bond = all.slipping;
   const double spent = omp_get_wtime() - began,
                finished = contact ? contact->finish_seconds() - finished_before : spent;

@@ -3,10 +3,11 @@
 #pragma once
 
 #include <memory>
-#include <utility>
+#include <optional>
 #include <vector>
 
 #include "sim/contact/contact_engine.hpp"
+#include "sim/forces/force_terms.hpp"
 #include "sim/neighbours/neighbours.hpp"
 #include "sim/state/force_rows.hpp"
 #include "sim/state/interaction.hpp"
@@ -19,6 +20,8 @@ struct Forces {
   Vec3Array force;   // eV/nm
   Vec3Array torque;  // eV, about the element centres, space frame
   Energies energy;
+  std::vector<double> term_energy;  // eV, of each of Interaction::terms
+  double lost = 0;                  // eV, by terms whose memory has moved on
   double damping_power = 0;  // work per time of the damping forces, never positive, eV/ps
   int slipping_bond = -1;    // first element of a bond twisted by 90 degrees or more, -1: none
 
@@ -75,24 +78,14 @@ struct Joint {
   BondSum sum;
 };
 
-// Contact and its viscosity, bonds and their damping, or one of them alone: their time scales differ.
+// All forces; bonds and their damping; or contact and the terms that act on its pairs.
 enum class Parts { all, bonds, contact };
 
 struct ForceOptions {
   Parts parts = Parts::all;
   bool energies = true;  // without them that of the line law's contact may be left out; forces are the same bits
-};
-
-// Copies the engine with itself.
-struct ContactEnginePointer : std::unique_ptr<ContactEngine> {
-  using std::unique_ptr<ContactEngine>::unique_ptr;
-  ContactEnginePointer(std::unique_ptr<ContactEngine> engine) : unique_ptr(std::move(engine)) {}
-  ContactEnginePointer(const ContactEnginePointer& other) : unique_ptr(other ? other->copy() : nullptr) {}
-  ContactEnginePointer(ContactEnginePointer&&) = default;
-  ContactEnginePointer& operator=(ContactEnginePointer other) noexcept {
-    swap(other);
-    return *this;
-  }
+  // ps that have passed since the last evaluation: the terms' memories move on. None: they stay as they are.
+  std::optional<double> passed = {};
 };
 
 // The list must be up to date, but for the bonds alone.
@@ -109,22 +102,38 @@ class ForceEngine {
   const Times& times() const { return times_; }
   // Null before the first contact.
   const ContactEngine* contact() const { return contact_.get(); }
+  // The terms of the last interaction, with their memories.
+  const ForceTerms& terms() const { return terms_; }
+  // Goes on with the memories of another engine, for the same list.
+  void take_terms_of(const ForceEngine& other) { terms_ = other.terms_; }
+  // Goes on with these memories, ForceTerms::memory(). Throws std::runtime_error.
+  void remember(const Interaction& interaction, const std::vector<double>& memory, int elements);
+  // Makes the terms ready for a list that a state with this memory has had before.
+  void prepare_again(const Topology& topology, const NeighbourList& list, const State& state) {
+    terms_.prepare(topology, list, state, true);
+  }
+  void share_with(const Processes* others) { terms_.share_with(others); }
   std::size_t bytes() const;
 
  private:
   ContactEngine* engine_of(const std::shared_ptr<const ContactLaw>& law);
+  void use_terms(const Interaction& interaction);
 
   TubeParts parts_;
   std::vector<Joint> joints_;  // behind each part
   std::vector<BondSum> sums_;  // of each part
   Vec3Array axis_;             // of all elements
   std::shared_ptr<const ContactLaw> law_;
-  ContactEnginePointer contact_;  // of this law
+  Cloned<ContactEngine> contact_;  // of this law
+  ForceTerms terms_;
   Times times_;
 };
 
 // The oracle: O(N^2), no list, no threads, no vectors.
 void compute_reference(const Topology& topology, const Interaction& interaction, const State& state, Forces& out);
+
+// Adds a damping force and its power.
+void add_pair(const DampingForce& damping, std::size_t i, std::size_t j, Forces& out);
 
 double kinetic_energy(const Topology& topology, const State& state);
 

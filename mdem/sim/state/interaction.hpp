@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "model/damping.hpp"
 #include "sim/state/state.hpp"
@@ -9,6 +10,7 @@
 namespace ropewalk {
 
 class ContactLaw;  // sim/contact/contact_law.hpp
+class ForceTerm;   // sim/forces/force_term.hpp
 
 struct Interaction {
   std::shared_ptr<const ContactLaw> law;  // null: no contact
@@ -18,12 +20,13 @@ struct Interaction {
   Precision precision = Precision::full;
   double exclude_along_tube = 0;  // nm; 0: the cutoff of the law
   Damping damping;
+  std::vector<std::shared_ptr<const ForceTerm>> terms;  // what else adds forces, as it is at the start; see add_term()
+  double term_reach = 0;                                // nm: pairs that the terms ask the neighbour list for
 
   bool has_contact() const { return law != nullptr; }
   bool damped_contact() const { return damping.contact.eta > 0; }
-  // Those of the law; without one, zero.
-  double cutoff() const;  // nm, of element centres
-  double lever() const;   // nm
+  double cutoff() const;  // nm, of element centres: that of the law, or of the terms where they reach farther
+  double lever() const;   // nm, of the law; without one, zero
   // nm: elements of one tube with points nearer than this along it do not interact.
   double excluded_arc() const { return exclude_along_tube > 0 ? exclude_along_tube : cutoff(); }
   bool whole_ranges() const;
@@ -31,8 +34,9 @@ struct Interaction {
 
 struct Energies {
   double stretch = 0, shear = 0, bend = 0, twist = 0, vdw = 0;  // eV
+  double terms = 0;                                             // eV, of all force terms
   double bonds() const { return stretch + shear + bend + twist; }
-  double potential() const { return bonds() + vdw; }
+  double potential() const { return bonds() + vdw + terms; }
 };
 
 }  // namespace ropewalk

@@ -29,7 +29,7 @@ TEST(Observables, LogHasTheColumnsAndBytesThatItAlwaysHad) {
       "stored_contact_MJ_per_kg,cohesion_lost,ends_apart_nm,ends_strain,least_tension_nN,most_tension_nN,"
       "most_curvature_per_nm,slip_nm,core_pressure_GPa,beta_deg,physical_twist_deg,geometric_twist_deg,Q,Q_delaunay,"
       "contacts,voids,void_area_nm2,radius_mid_nm,radius_end_nm,length_nm,amplitude_nm,windings,kinked,overtwisted,"
-      "overstretched,largest_bond_twist_deg\n");
+      "overstretched,largest_bond_twist_deg,tether_eV\n");
   const Topology topology;
   State state;
   state.step = 123456789012345;

@@ -25,29 +25,20 @@ void add_range(const BufferRange& of, const ContactBuffer<double>& b, const Forc
   ROPEWALK_IN_USE(add_doubles)(of, b, sums);
 }
 
-void add_viscosity(const ContactViscosity& viscosity, const State& state, const LineChunk& chunk, double /*unit*/,
-                   LineWork<double>& /*work*/, ContactBuffer<double>& out) {
-  contact_damping(viscosity, state, chunk.damped, out);
-}
-void add_viscosity(const ContactViscosity& viscosity, const State& state, const LineChunk& chunk, double unit,
-                   LineWork<float>& work, ContactBuffer<float>& out) {
-  contact_damping(viscosity, state, {chunk.damped, chunk.damped_ranges, unit}, work.damped, out);
-}
-
 }  // namespace
 
 void LineEngine::update_list(const Topology& topology, const Interaction& in, const NeighbourList& list,
-                             const TubeParts& parts) {
+                             const TubeWork& tubes) {
   if (stamp_ == list.stamp()) return;
   const double began = omp_get_wtime();
-  list_.build(topology, in, list);
+  list_.build(topology, in, list, tubes.pairs);
   stamp_ = list.stamp();
   full_ = in.precision == Interaction::Precision::full;
   offsets_.clear();
   const LineLaw& law = line_law_of(in);
   for (int a = 0; a < static_cast<int>(topology.types.size()); ++a)
     offsets_.push_back(node_offsets(list_.nodes_per_element(a), law.of({a, 0}).length_i));
-  written_.list(parts, list_.chunks());
+  written_.list(tubes.parts, list_.chunks());
   if (full_) {
     make_tables(full_buffers_, law, 1);
   } else {
@@ -58,7 +49,7 @@ void LineEngine::update_list(const Topology& topology, const Interaction& in, co
 
 // By one thread: the positions of the nodes, what acts on them, and that on their elements.
 template <class Buffers>
-void LineEngine::compute_chunk(std::size_t k, std::size_t thread, const Interaction& interaction, Buffers& b,
+void LineEngine::compute_chunk(std::size_t k, std::size_t thread, PairWork* pairs, Buffers& b,
                                KernelInput<Buffers> in) {
   const LineChunk& chunk = list_.chunks()[k];
   auto& work = b.work[thread];
@@ -67,16 +58,15 @@ void LineEngine::compute_chunk(std::size_t k, std::size_t thread, const Interact
   position_nodes(elements, b.unit, b.nodes[thread]);
   in.nodes = &b.nodes[thread];
   out.clear(static_cast<std::size_t>(chunk.elements));
-  if (interaction.damped_contact()) add_viscosity(interaction.damping.contact, *in.state, chunk, b.unit, work, out);
+  if (pairs) pairs->add(k, out);
   work.forces.clear(chunk.nodes);
   line_contact(in, chunk, work, out);
   add_node_forces(elements, work.forces, out);
 }
 
 template <class Buffers>
-void LineEngine::compute_all(Buffers& b, const Topology& topology, const Interaction& interaction,
-                             const NeighbourList& list, const State& state, const Vec3Array& axis, bool energies,
-                             const TubeWork& tubes) {
+void LineEngine::compute_all(Buffers& b, const Topology& topology, const NeighbourList& list, const State& state,
+                             const Vec3Array& axis, bool energies, const TubeWork& tubes) {
   const bool parallel = state.size() > parallel_from, at_once = state.size() > finish_at_once_from;
   const int threads = parallel ? omp_get_max_threads() : 1;
   const KernelInput<Buffers> input{
@@ -86,10 +76,7 @@ void LineEngine::compute_all(Buffers& b, const Topology& topology, const Interac
   b.nodes.resize(static_cast<std::size_t>(threads));
   b.work.resize(static_cast<std::size_t>(threads));
   for (auto& nodes : b.nodes) nodes.reserve(list_.largest().nodes);
-  for (auto& work : b.work) {
-    work.found.reserve(list_.largest().vectors);
-    if (!full_) work.damped.resize(list_.largest().elements);
-  }
+  for (auto& work : b.work) work.found.reserve(list_.largest().vectors);
   left_.start(written_.chunks_on());
   const auto finish = [&](int block) {
     if (omp_get_thread_num() != 0) return tubes.finish(block);
@@ -105,7 +92,7 @@ void LineEngine::compute_all(Buffers& b, const Topology& topology, const Interac
     const int thread = omp_get_thread_num();
     for (int piece; (piece = shares_.take(thread)) >= 0;) {
       const auto k = static_cast<std::size_t>(piece);
-      compute_chunk(k, static_cast<std::size_t>(thread), interaction, b, input);
+      compute_chunk(k, static_cast<std::size_t>(thread), tubes.pairs, b, input);
       if (at_once)
         for (int block : written_.blocks(k))
           if (left_.last(block)) finish(block);
@@ -119,11 +106,11 @@ void LineEngine::compute_all(Buffers& b, const Topology& topology, const Interac
 
 void LineEngine::compute(const Topology& topology, const Interaction& in, const NeighbourList& list,
                          const State& state, const Vec3Array& axis, bool energies, const TubeWork& tubes) {
-  update_list(topology, in, list, tubes.parts);
+  update_list(topology, in, list, tubes);
   if (full_) {
-    compute_all(full_buffers_, topology, in, list, state, axis, energies, tubes);
+    compute_all(full_buffers_, topology, list, state, axis, energies, tubes);
   } else {
-    compute_all(mixed_, topology, in, list, state, axis, energies, tubes);
+    compute_all(mixed_, topology, list, state, axis, energies, tubes);
   }
 }
 
@@ -136,14 +123,6 @@ double LineEngine::energy() const {
   return in_use([](const auto& b) {
     double sum = 0;
     for (const auto& out : b.of_chunks) sum += out.energy;
-    return sum;
-  });
-}
-
-double LineEngine::damping_power() const {
-  return in_use([](const auto& b) {
-    double sum = 0;
-    for (const auto& out : b.of_chunks) sum += out.power;
     return sum;
   });
 }
@@ -164,7 +143,7 @@ double LineEngine::step_bytes(const NeighbourList&, std::size_t number) const {
   const auto of = [](const auto& v) { return static_cast<double>(v.size() * sizeof(v[0])); };
   double sum = static_cast<double>(list_.spans() * sizeof(NeighbourSpan));
   for (const LineChunk& chunk : list_.chunks())
-    sum += of(chunk.ranges) + of(chunk.damped) + of(chunk.damped_ranges) + buffer_bytes(chunk.elements, number);
+    sum += of(chunk.ranges) + buffer_bytes(chunk.elements, number);
   return sum;
 }
 
@@ -174,7 +153,7 @@ std::size_t LineEngine::bytes() const {
     for (const auto& out : b.of_chunks) total += out.bytes();
     for (const auto& nodes : b.nodes) total += 3 * nodes.x.capacity() * sizeof(nodes.x[0]);
     for (const auto& work : b.work)
-      total += 3 * work.forces.x.capacity() * sizeof(work.forces.x[0]) + work.found.bytes() + work.damped.bytes();
+      total += 3 * work.forces.x.capacity() * sizeof(work.forces.x[0]) + work.found.bytes();
   };
   count(mixed_);
   count(full_buffers_);

@@ -49,7 +49,6 @@ template <class T>
 struct LineWork {
   NodeForces<T> forces;
   NodeVectors<T> found;
-  DampedElements damped;  // in floats alone
 };
 
 // What the kernel needs of a pair of tube types, in units of the list.
@@ -119,7 +118,6 @@ class LineEngine : public ContactEngine {
                const State& state, const Vec3Array& axis, bool energies, const TubeWork& tubes) override;
   void add_to(int part, const ForceRows& sums) const override;
   double energy() const override;
-  double damping_power() const override;
   double best_skin(const Topology& topology, double listed, long steps) const override {
     return list_.best_skin(topology, listed, steps);
   }
@@ -132,13 +130,12 @@ class LineEngine : public ContactEngine {
   template <class Buffers>
   using KernelInput = LineKernelInput<typename Buffers::Table, typename Buffers::C>;
   void update_list(const Topology& topology, const Interaction& interaction, const NeighbourList& list,
-                   const TubeParts& parts);
+                   const TubeWork& tubes);
   template <class Buffers>
-  void compute_all(Buffers& b, const Topology& topology, const Interaction& interaction, const NeighbourList& list,
-                   const State& state, const Vec3Array& axis, bool energies, const TubeWork& tubes);
+  void compute_all(Buffers& b, const Topology& topology, const NeighbourList& list, const State& state,
+                   const Vec3Array& axis, bool energies, const TubeWork& tubes);
   template <class Buffers>
-  void compute_chunk(std::size_t chunk, std::size_t thread, const Interaction& interaction, Buffers& b,
-                     KernelInput<Buffers> in);
+  void compute_chunk(std::size_t chunk, std::size_t thread, PairWork* pairs, Buffers& b, KernelInput<Buffers> in);
   // What `of` makes of the buffers in use.
   template <class Of>
   auto in_use(const Of& of) const {

@@ -35,15 +35,17 @@ struct SpanFinder {
   const Topology& topology;
   const Interaction& in;
   const NeighbourList& list;
+  double near_reach;  // nm, of other work on pairs; 0: there is none
   int i, tube_i, tube_j;
   const LineContact& law;
   double half_i, half_j;
 
-  SpanFinder(const Topology& t, const Interaction& interaction, const NeighbourList& neighbours, int element,
-             int own_tube, int other_tube)
+  SpanFinder(const Topology& t, const Interaction& interaction, const NeighbourList& neighbours, double reach,
+             int element, int own_tube, int other_tube)
       : topology(t),
         in(interaction),
         list(neighbours),
+        near_reach(reach),
         i(element),
         tube_i(own_tube),
         tube_j(other_tube),
@@ -92,14 +94,14 @@ struct SpanFinder {
     span.gap_to_cutoff = static_cast<float>(gap_to_cutoff(span.first, span.first + span.elements - 1));
   }
 
-  void find_damped(int first, int last, NeighbourSpan& span) const {
-    if (!in.damped_contact()) return;
-    const double reach = in.damping.contact.outer + list.skin;
+  void find_near(int first, int last, NeighbourSpan& span) const {
+    if (!(near_reach > 0)) return;
+    const double reach = near_reach + list.skin;
     const auto near = [&](int j) { return (position(j) - position(i)).squaredNorm() < reach * reach; };
     while (first <= last && !near(first)) ++first;
     while (first <= last && !near(last)) --last;
-    span.damped_from = static_cast<std::int8_t>(first - span.first);
-    span.damped = static_cast<std::int8_t>(last + 1 - first);
+    span.near_from = static_cast<std::int8_t>(first - span.first);
+    span.near = static_cast<std::int8_t>(last + 1 - first);
   }
 
   // What element i can reach of first .. last.
@@ -111,8 +113,8 @@ struct SpanFinder {
       span.range = tube_j;  // until find_ranges
       span.first = first;
       find_nodes(first, to, span);
-      find_damped(first, to, span);
-      if (span.elements > 0 || span.damped > 0) spans.push_back(span);
+      find_near(first, to, span);
+      if (span.elements > 0 || span.near > 0) spans.push_back(span);
     }
   }
 };
@@ -124,12 +126,13 @@ struct LineList::Found {
   std::vector<NeighbourSpan> spans;
   std::vector<std::size_t> count;  // of each element
 
-  void find(const Topology& topology, const Interaction& in, const NeighbourList& list, int tube) {
+  void find(const Topology& topology, const Interaction& in, const NeighbourList& list, double near_reach,
+            int tube) {
     for (int i = topology.tube_begin[tube]; i < topology.tube_begin[tube + 1]; ++i) {
       const std::size_t before = spans.size();
       for (const ElementSpan& span : list.spans(i))
         for_tubes_of(topology, span, [&](int tube_j, int begin, int end) {
-          SpanFinder(topology, in, list, i, tube, tube_j).add(begin, end - 1, spans);
+          SpanFinder(topology, in, list, near_reach, i, tube, tube_j).add(begin, end - 1, spans);
         });
       count.push_back(spans.size() - before);
     }
@@ -211,12 +214,12 @@ struct Elements {
   }
 };
 
-// Those that the contact or its viscosity may reach.
+// Those that the contact or other work on pairs may reach.
 Elements reached(const NeighbourSpan& span) {
-  const Elements damped{span.first + span.damped_from, span.first + span.damped_from + span.damped};
-  if (span.elements == 0) return damped;
+  const Elements near{span.first + span.near_from, span.first + span.near_from + span.near};
+  if (span.elements == 0) return near;
   Elements all{span.first, span.first + span.elements};
-  if (span.damped > 0) all.include(damped);
+  if (span.near > 0) all.include(near);
   return all;
 }
 
@@ -279,7 +282,7 @@ void LineList::find_ranges(const Topology& topology, LineChunk& chunk) {
       }
       chunk.vectors = std::max(chunk.vectors, vectors);
     }
-  chunk.elements = DampedBlock::max_lanes;  // room for vectors that begin before the first one
+  chunk.elements = room_before;
   for (WrittenRange& r : chunk.ranges) {
     r.element_shift = chunk.elements - r.begin;
     r.node_origin = chunk.nodes - r.begin * r.nodes_per_element;
@@ -288,37 +291,44 @@ void LineList::find_ranges(const Topology& topology, LineChunk& chunk) {
   }
 }
 
-void LineList::list_damped(LineChunk& chunk) const {
-  DampedBlocks blocks;
-  RangeOf range_of(chunk);
-  std::vector<char> damped(chunk.ranges.size(), 0);
-  for (const Segment& of : chunk.own)
-    for (int i = of.begin; i < of.end; ++i)
-      for (const NeighbourSpan& span : spans(i)) {
-        if (span.damped == 0) continue;
-        BufferRange own = range_of(i).elements();
-        own.end = std::min(own.end, of.end);
-        const int from = span.first + span.damped_from;
-        blocks.add(i, own, from, from + span.damped, chunk.ranges[static_cast<std::size_t>(span.range)].elements());
-        damped[static_cast<std::size_t>(span.range)] = 1;
-        damped[static_cast<std::size_t>(&range_of(i) - chunk.ranges.data())] = 1;
-      }
-  chunk.damped = blocks.take();
-  for (std::size_t p = 0; p < damped.size(); ++p)
-    if (damped[p]) chunk.damped_ranges.push_back(chunk.ranges[p].elements());
-}
+namespace {
 
-void LineList::build(const Topology& topology, const Interaction& in, const NeighbourList& list) {
+class LinePairs : public ChunkPairs {
+ public:
+  LinePairs(const LineList& list, const LineChunk& chunk) : list_(list), chunk_(chunk) {}
+
+  int entries() const override { return chunk_.elements; }
+  void each(const std::function<void(const NearElements&)>& visit) const override {
+    RangeOf range_of(chunk_);
+    for (const Segment& of : chunk_.own)
+      for (int i = of.begin; i < of.end; ++i)
+        for (const NeighbourSpan& span : list_.spans(i)) {
+          if (span.near == 0) continue;
+          const int from = span.first + span.near_from;
+          visit({i, range_of(i).elements(), of.end, from, from + span.near,
+                 chunk_.ranges[static_cast<std::size_t>(span.range)].elements()});
+        }
+  }
+
+ private:
+  const LineList& list_;
+  const LineChunk& chunk_;
+};
+
+}  // namespace
+
+void LineList::build(const Topology& topology, const Interaction& in, const NeighbourList& list, PairWork* pairs) {
   check_nodes(topology, in);
   unit_ = list.coordinate_unit();
   const bool parallel = topology.elements() > static_cast<int>(parallel_from);
   const int tubes = topology.tubes(), parts = std::min(tubes, 64);
+  const double near_reach = pairs ? pairs->reach() : 0;
   std::vector<Found> found(static_cast<std::size_t>(parts));
 #pragma omp parallel for schedule(dynamic, 1) if (parallel)
   for (int part = 0; part < parts; ++part)
     for (int t = static_cast<int>(static_cast<std::int64_t>(tubes) * part / parts);
          t < static_cast<int>(static_cast<std::int64_t>(tubes) * (part + 1) / parts); ++t)
-      found[static_cast<std::size_t>(part)].find(topology, in, list, t);
+      found[static_cast<std::size_t>(part)].find(topology, in, list, near_reach, t);
 
   std::size_t total = 0;
   for (const Found& part : found) total += part.spans.size();
@@ -335,11 +345,12 @@ void LineList::build(const Topology& topology, const Interaction& in, const Neig
     nodes_per_element_.push_back(line_law_of(in).of({a, 0}).nodes_i);
 
   cut_into_chunks(topology, list.reference(), list.chunks().size());
+  if (pairs) pairs->start(chunks_.size());
 #pragma omp parallel for schedule(dynamic, 1) if (parallel)
   for (std::size_t c = 0; c < chunks_.size(); ++c)
     if (!chunks_[c].own.empty()) {
       find_ranges(topology, chunks_[c]);
-      if (in.damped_contact()) list_damped(chunks_[c]);
+      if (pairs) pairs->list(c, LinePairs(*this, chunks_[c]));
     }
   largest_ = {};
   for (const LineChunk& chunk : chunks_)
@@ -350,8 +361,7 @@ void LineList::build(const Topology& topology, const Interaction& in, const Neig
 std::size_t LineList::bytes() const {
   std::size_t total = spans_.capacity() * sizeof(NeighbourSpan) + begin_.capacity() * sizeof(std::size_t);
   for (const LineChunk& chunk : chunks_)
-    total += chunk.own.capacity() * sizeof(Segment) + chunk.ranges.capacity() * sizeof(WrittenRange) +
-             chunk.damped.capacity() * sizeof(DampedBlock) + chunk.damped_ranges.capacity() * sizeof(BufferRange);
+    total += chunk.own.capacity() * sizeof(Segment) + chunk.ranges.capacity() * sizeof(WrittenRange);
   return total;
 }
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "sim/contact/line/law.hpp"
-#include "sim/contact/shared/damping.hpp"
+#include "sim/contact/pair_work.hpp"
 #include "sim/neighbours/neighbours.hpp"
 #include "sim/state/interaction.hpp"
 #include "sim/state/tiles.hpp"
@@ -26,7 +26,7 @@ struct NeighbourSpan {
   short node_from = 0, nodes = 0;  // that may come within the cutoff; counted from the first node of `first`
   short type = 0;                  // of the tube
   std::int8_t elements = 0;        // that may come within the cutoff
-  std::int8_t damped_from = 0, damped = 0;  // elements that the contact viscosity may reach, counted from `first`
+  std::int8_t near_from = 0, near = 0;      // elements that other work on pairs may reach, counted from `first`
 
   // `moved` (nm): by no more have distances shrunk since the list was built.
   bool may_be_in_reach(double moved) const { return elements > 0 && static_cast<double>(gap_to_cutoff) <= moved; }
@@ -47,10 +47,8 @@ struct WrittenRange {
 struct LineChunk {
   std::vector<Segment> own;          // in the order of their elements
   std::vector<WrittenRange> ranges;  // in the order of their elements
-  std::vector<DampedBlock> damped;
-  std::vector<BufferRange> damped_ranges;  // those that have any
-  int elements = 0, nodes = 0;              // sizes of its buffers
-  int vectors = 0;                          // of 16 nodes, that one of its elements may meet
+  int elements = 0, nodes = 0;       // sizes of its buffers
+  int vectors = 0;                   // of 16 nodes, that one of its elements may meet
 };
 
 // Finds the ranges that elements of a chunk are in, asked for in rising order.
@@ -71,9 +69,12 @@ inline const LineLaw& line_law_of(const Interaction& in) { return static_cast<co
 
 class LineList {
  public:
-  // From the pairs of the neighbour list and the positions that it was built at. Throws std::invalid_argument where
-  // a tube type has other numbers of nodes towards different partners.
-  void build(const Topology& topology, const Interaction& interaction, const NeighbourList& list);
+  // Entries of a chunk's buffers before its first element, so that whole vectors can begin there.
+  static constexpr int room_before = 16;
+
+  // From the pairs of the neighbour list and the positions that it was built at, and lists the pairs for `pairs` (or
+  // null). Throws std::invalid_argument where a tube type has other numbers of nodes towards different partners.
+  void build(const Topology& topology, const Interaction& interaction, const NeighbourList& list, PairWork* pairs);
 
   Span<NeighbourSpan> spans(int element) const { return entries_of(element, begin_, spans_); }
   std::size_t spans() const { return spans_.size(); }
@@ -93,7 +94,6 @@ class LineList {
   double cost(int element) const;
   void cut_into_chunks(const Topology& topology, const Vec3Array& position, std::size_t count);
   void find_ranges(const Topology& topology, LineChunk& chunk);
-  void list_damped(LineChunk& chunk) const;
 
   std::vector<int> nodes_per_element_;  // of each tube type
   std::vector<NeighbourSpan> spans_;

@@ -24,14 +24,14 @@ void set_zero(std::vector<T>& v, std::size_t n) {
 template <class T>
 struct ContactBuffer {
   std::vector<T> fx, fy, fz, tx, ty, tz;
-  double energy = 0, power = 0;
+  double energy = 0;
 
   static constexpr std::size_t room =
       64 / sizeof(T);  // entries behind the elements, so that whole vectors can be stored
 
   void clear(std::size_t elements) {
     for (auto* v : {&fx, &fy, &fz, &tx, &ty, &tz}) set_zero(*v, elements + room);
-    energy = power = 0;
+    energy = 0;
   }
   std::size_t bytes() const { return 6 * fx.capacity() * sizeof(T); }
 };

@@ -8,26 +8,46 @@
 
 namespace ropewalk {
 
-void BufferedEngine::list_damped(const ContactInput& in) {
-  const Topology& topology = in.topology;
-  ElementSpans near;
-  near.build(in.list, in.interaction.damping.contact.outer);
-  damped_.clear();
-  for (const NeighbourList::Chunk& chunk : in.list.chunks()) {
-    DampedBlocks blocks;
-    for (int i = chunk.begin; i < chunk.end; ++i) {
-      if (!topology.owns(i)) continue;
-      const int end = std::min(chunk.end, topology.tube_begin[topology.tube_of(i) + 1]);
-      const BufferRange own{i, topology.part ? topology.change_of_owner(i, end) : end, -chunk.written_begin};
-      for (const ElementSpan& span : near.spans(i))
-        for_tubes_of(topology, span, [&](int tube, int from, int to) {
-          blocks.add(i, own, from, to,
-                     {std::max(topology.tube_begin[tube], chunk.written_begin),
-                      std::min(topology.tube_begin[tube + 1], chunk.written_end), -chunk.written_begin});
+namespace {
+
+// The pairs of a chunk, from the spans of elements that come near.
+class SpanPairs : public ChunkPairs {
+ public:
+  SpanPairs(const Topology& topology, const ElementSpans& near, const NeighbourList::Chunk& chunk)
+      : topology_(topology), near_(near), chunk_(chunk) {}
+
+  int entries() const override { return chunk_.written_end - chunk_.written_begin; }
+  void each(const std::function<void(const NearElements&)>& visit) const override {
+    for (int i = chunk_.begin; i < chunk_.end; ++i) {
+      if (!topology_.owns(i)) continue;
+      const int tube = topology_.tube_of(i), end = std::min(chunk_.end, topology_.tube_begin[tube + 1]),
+                own_end = topology_.part ? topology_.change_of_owner(i, end) : end;
+      for (const ElementSpan& span : near_.spans(i))
+        for_tubes_of(topology_, span, [&](int tube_j, int from, int to) {
+          visit({i, written(tube), own_end, from, to, written(tube_j)});
         });
     }
-    damped_.push_back(blocks.take());
   }
+
+ private:
+  BufferRange written(int tube) const {
+    return {std::max(topology_.tube_begin[tube], chunk_.written_begin),
+            std::min(topology_.tube_begin[tube + 1], chunk_.written_end), -chunk_.written_begin};
+  }
+
+  const Topology& topology_;
+  const ElementSpans& near_;
+  const NeighbourList::Chunk& chunk_;
+};
+
+}  // namespace
+
+void BufferedEngine::list_pairs(const ContactInput& in, PairWork& pairs) const {
+  ElementSpans near;
+  near.build(in.list, pairs.reach());
+  const auto& chunks = in.list.chunks();
+  pairs.start(chunks.size());
+  for (std::size_t k = 0; k < chunks.size(); ++k) pairs.list(k, SpanPairs(in.topology, near, chunks[k]));
 }
 
 void BufferedEngine::compute(const Topology& topology, const Interaction& interaction, const NeighbourList& list,
@@ -39,7 +59,7 @@ void BufferedEngine::compute(const Topology& topology, const Interaction& intera
   if (stamp_ != list.stamp()) {
     const double began = omp_get_wtime();
     update_list(in);
-    if (interaction.damped_contact()) list_damped(in);
+    if (tubes.pairs) list_pairs(in, *tubes.pairs);
     stamp_ = list.stamp();
     list_seconds_ += omp_get_wtime() - began;
   }
@@ -52,7 +72,7 @@ void BufferedEngine::compute(const Topology& topology, const Interaction& intera
     const NeighbourList::Chunk& chunk = list.chunks()[k];
     buffers_[k].clear(static_cast<std::size_t>(chunk.written_end - chunk.written_begin));
     add_chunk(in, chunk, buffers_[k]);
-    if (interaction.damped_contact()) contact_damping(interaction.damping.contact, state, damped_[k], buffers_[k]);
+    if (tubes.pairs) tubes.pairs->add(k, buffers_[k]);
   }
   const double began = omp_get_wtime();
 #pragma omp parallel for schedule(static) if (parallel)
@@ -85,16 +105,9 @@ double BufferedEngine::energy() const {
   return sum;
 }
 
-double BufferedEngine::damping_power() const {
-  double sum = 0;
-  for (const ContactBuffer<double>& b : buffers_) sum += b.power;
-  return sum;
-}
-
 std::size_t BufferedEngine::bytes() const {
   std::size_t total = 0;
   for (const ContactBuffer<double>& b : buffers_) total += b.bytes();
-  for (const auto& blocks : damped_) total += blocks.capacity() * sizeof(DampedBlock);
   return total;
 }
 

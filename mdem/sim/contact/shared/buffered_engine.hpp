@@ -1,12 +1,11 @@
 // The common part of engines that work through the chunks of the neighbour list and give each chunk a buffer of its
-// own: contact viscosity, parallel work, and the sum of the buffers in the order of the chunks.
+// own: work on pairs beside the contact, parallel work, and the sum of the buffers in the order of the chunks.
 #pragma once
 
 #include <vector>
 
 #include "sim/contact/contact_engine.hpp"
 #include "sim/contact/shared/buffer.hpp"
-#include "sim/contact/shared/damping.hpp"
 
 namespace ropewalk {
 
@@ -24,7 +23,6 @@ class BufferedEngine : public ContactEngine {
                const State& state, const Vec3Array& axis, bool energies, const TubeWork& tubes) override;
   void add_to(int part, const ForceRows& sums) const override;
   double energy() const override;
-  double damping_power() const override;
   std::size_t bytes() const override;
   double step_bytes(const NeighbourList& list, std::size_t number) const override;
 
@@ -37,12 +35,11 @@ class BufferedEngine : public ContactEngine {
   virtual void add_chunk(const ContactInput& in, const NeighbourList::Chunk& chunk, ContactBuffer<double>& out) = 0;
 
  private:
-  void list_damped(const ContactInput& in);
+  void list_pairs(const ContactInput& in, PairWork& pairs) const;
 
   const NeighbourList* list_ = nullptr;  // of the last sum, with its parts
   const TubeParts* parts_ = nullptr;
-  std::vector<ContactBuffer<double>> buffers_;    // of each chunk
-  std::vector<std::vector<DampedBlock>> damped_;  // of each chunk
+  std::vector<ContactBuffer<double>> buffers_;  // of each chunk
   long stamp_ = 0;
 };
 

@@ -209,13 +209,13 @@ VEC_INLINE void take(const State& s, const BufferRange& of, double per_unit, Dam
 
 }  // namespace damping
 
-void BlocksOfState(const ContactViscosity& viscosity, const State& state, const std::vector<DampedBlock>& blocks,
-                   ContactBuffer<double>& out) {
-  out.power += damping::all_groups(viscosity, damping::Doubles{state, out}, blocks);
+double BlocksOfState(const ContactViscosity& viscosity, const State& state, const std::vector<DampedBlock>& blocks,
+                     ContactBuffer<double>& out) {
+  return damping::all_groups(viscosity, damping::Doubles{state, out}, blocks);
 }
 
-void BlocksInFloats(const ContactViscosity& viscosity, const State& state, const DampedChunk& of, DampedElements& e,
-                    ContactBuffer<float>& out) {
+double BlocksInFloats(const ContactViscosity& viscosity, const State& state, const DampedChunk& of,
+                      DampedElements& e, ContactBuffer<float>& out) {
   constexpr std::size_t ahead = 4;  // parts
   for (std::size_t k = 0; k < of.parts.size(); ++k) {
     if (k + ahead < of.parts.size())
@@ -223,7 +223,7 @@ void BlocksInFloats(const ContactViscosity& viscosity, const State& state, const
         prefetch(*v, of.parts[k + ahead].begin, of.parts[k + ahead].end);
     damping::take(state, of.parts[k], 1 / of.unit, e);
   }
-  out.power += damping::all_groups(viscosity, damping::Floats{e, out, static_cast<float>(of.unit)}, of.blocks);
+  return damping::all_groups(viscosity, damping::Floats{e, out, static_cast<float>(of.unit)}, of.blocks);
 }
 
 }  // namespace ropewalk::VEC_SET
@@ -235,14 +235,14 @@ namespace ropewalk {
 VEC_EXPORT(BlocksOfState);
 VEC_EXPORT(BlocksInFloats);
 
-void contact_damping(const ContactViscosity& viscosity, const State& state, const std::vector<DampedBlock>& blocks,
-                     ContactBuffer<double>& out) {
-  VEC_IN_USE(BlocksOfState)(viscosity, state, blocks, out);
+double contact_damping(const ContactViscosity& viscosity, const State& state,
+                       const std::vector<DampedBlock>& blocks, ContactBuffer<double>& out) {
+  return VEC_IN_USE(BlocksOfState)(viscosity, state, blocks, out);
 }
 
-void contact_damping(const ContactViscosity& viscosity, const State& state, const DampedChunk& of,
-                     DampedElements& elements, ContactBuffer<float>& out) {
-  VEC_IN_USE(BlocksInFloats)(viscosity, state, of, elements, out);
+double contact_damping(const ContactViscosity& viscosity, const State& state, const DampedChunk& of,
+                       DampedElements& elements, ContactBuffer<float>& out) {
+  return VEC_IN_USE(BlocksInFloats)(viscosity, state, of, elements, out);
 }
 
 void DampedBlocks::add(int i, const BufferRange& own, int from, int to, const BufferRange& partners) {

@@ -9,15 +9,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "sim/contact/shared/buffer.hpp"
+#include "sim/contact/pair_work.hpp"
 #include "sim/threads/scratch.hpp"
 
 namespace ropewalk {
-
-// Of a chunk: consecutive elements of one tube that it acts on; element j is entry j + shift of its buffer.
-struct BufferRange {
-  int begin = 0, end = 0, shift = 0;
-};
 
 // The pairs (i + l, j + l + c) for l < lanes and c < offsets, if j + l + c is one of `partners`.
 struct DampedBlock {
@@ -61,9 +56,9 @@ struct DampedElements {
   std::size_t bytes() const { return 3 * x.capacity() * sizeof(x[0]) + 6 * vx.capacity() * sizeof(vx[0]); }
 };
 
-// With the widest vectors that the machine has. Added to what the buffer holds, of which up to DampedBlock::max_lanes
-// entries before a part and behind the last one are read and written as they were.
-void contact_damping(const ContactViscosity& viscosity, const State& state, const std::vector<DampedBlock>& blocks,
+// Adds damping forces to the buffer, with the widest vectors of the machine. Up to DampedBlock::max_lanes entries on
+// either side of a part are read and written back unchanged. Returns the power, eV/ps.
+double contact_damping(const ContactViscosity& viscosity, const State& state, const std::vector<DampedBlock>& blocks,
                      ContactBuffer<double>& out);
 
 // The blocks of a chunk, the ranges of their elements, and the unit of the integer positions (nm).
@@ -73,7 +68,7 @@ struct DampedChunk {
   double unit;
 };
 // The same in single precision.
-void contact_damping(const ContactViscosity& viscosity, const State& state, const DampedChunk& of,
+double contact_damping(const ContactViscosity& viscosity, const State& state, const DampedChunk& of,
                      DampedElements& elements, ContactBuffer<float>& out);
 
 }  // namespace ropewalk

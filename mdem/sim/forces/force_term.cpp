@@ -1,0 +1,48 @@
+#include "sim/forces/force_term.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace ropewalk {
+namespace {
+
+std::vector<TermKind>& all_kinds_of_terms() {
+  static std::vector<TermKind> kinds;
+  return kinds;
+}
+
+}  // namespace
+
+TermMemory ForceTerm::halved(const TermMemory& coarse) const {
+  TermMemory fine = coarse;
+  for (TermRecord& record : fine) record.element *= 2;
+  return fine;
+}
+
+const std::vector<TermKind>& term_kinds() { return all_kinds_of_terms(); }
+
+bool add_term_kind(TermKind kind) {
+  all_kinds_of_terms().push_back(std::move(kind));
+  return true;
+}
+
+void add_term(std::shared_ptr<const ForceTerm> term, Interaction& interaction) {
+  interaction.term_reach = std::max(interaction.term_reach, term->pair_reach());
+  interaction.terms.push_back(std::move(term));
+}
+
+std::map<std::string, double> term_energies(const Interaction& interaction, const std::vector<double>& energies) {
+  std::map<std::string, double> all;
+  for (std::size_t k = 0; k < energies.size(); ++k) all[interaction.terms[k]->name()] += energies[k];
+  return all;
+}
+
+void for_all_pairs(const Topology& topology, const Interaction& in, const std::function<void(int, int)>& work) {
+  for (int i = 0; i < topology.elements(); ++i) {
+    const int tube = topology.tube_of(i), excluded = topology.type_of(tube).elements_within(in.excluded_arc());
+    for (int j = i + 1; j < topology.elements(); ++j)
+      if (j >= topology.tube_begin[tube + 1] || j - i > excluded) work(i, j);
+  }
+}
+
+}  // namespace ropewalk

@@ -1,0 +1,150 @@
+// A force term: what adds forces besides bonds and contact law, and may have a memory. One class says all about it;
+// the sums of forces and energies, the log, the account of energy, checkpoints, relaxations, splitting and the ranks
+// of LAMMPS follow from the list of terms (Interaction::terms) by themselves.
+//
+// The engine of forces has copies of the terms of its interaction and calls for each of them
+//
+//   prepare     after each build of the neighbour list, before anything is computed with it
+//   gather      before each evaluation of forces
+//   advance     once in each step, at its new positions, before its forces
+//   add         in each evaluation: forces on elements, tube part by tube part
+//   add_pairs   in each evaluation: forces on pairs that are near each other, in the loop of the contact engine
+//   add_in_kick instead of both, in each kick: forces that follow from all others and the loads
+//
+// Functions that are not const are called by one thread, in the order of the terms, except for list_chunk and
+// add_pairs: one thread for each chunk. The bits of a run must not depend on the number of threads. They do not if a
+// function uses nothing but its arguments, the memory, and what prepare and gather have left.
+//
+// The memory is what the future follows from besides the state: whether a tether is broken, how far a contact is
+// strained. Only prepare and advance change it. It is handed out as records of numbers that belong to elements of
+// the scene, so that a checkpoint can hold it and elements can take it along to another process.
+//
+// Two terms to come, and how they fit:
+//
+// Friction with a spring in each contact (P. A. Cundall, O. D. L. Strack, Geotechnique 29, 47 (1979), DOI
+// 10.1680/geot.1979.29.1.47). pair_reach() is that of the contact; list_chunk collects the contacts (i, j) of a chunk
+// and finds the strain u of each in the records of before, or zero. advance turns u by the motion of the contact point
+// since the last step (taken from positions, which the memory holds), cuts it back to mu N/k where it slips and
+// returns the lost k u^2/2. add_pairs adds -k u and its couples, as contact viscosity does. memory() has a record for
+// each i: j, u and the last contact point, for all contacts of i; remember() keeps them until the next list_chunk.
+// halved() gives each half the contact with the nearer half.
+//
+// Links that form where elements stay near (permanent bonds between tubes). prepare goes through the list in its
+// order, (i, j) rising, and forms a link with a probability by CounterRandom(seed, state.step, i, j), numbers of the
+// scene; not where scene.again is true. add adds the springs of the links of a part's elements, as tethers
+// (scene/terms/tether.cpp) do. advance breaks what is too long and returns its energy. memory() has a record for each
+// i: the partner and the rest length of each of its links.
+//
+// Units nm, ps, eV.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "sim/contact/pair_work.hpp"
+#include "sim/neighbours/neighbours.hpp"
+#include "sim/state/force_rows.hpp"
+#include "sim/state/interaction.hpp"
+#include "sim/state/processes.hpp"
+#include "sim/state/state.hpp"
+#include "sim/state/tiles.hpp"
+
+namespace ropewalk {
+
+struct Forces;
+
+struct TermSum {
+  double energy = 0;  // eV
+  double power = 0;   // work per time of the term's dissipative forces, eV/ps
+};
+
+// A new list, and the state that it was built for.
+struct ListedScene {
+  const Topology& topology;
+  const NeighbourList& list;
+  const State& state;
+  bool again = false;                 // the list of a checkpoint: what it brings about has happened
+  const Processes* others = nullptr;  // that own the other elements of the scene; null: there are none
+};
+
+// Numbers that a term remembers, and the element of the scene that they belong to.
+struct TermRecord {
+  int element = 0;
+  std::vector<double> numbers;
+};
+using TermMemory = std::vector<TermRecord>;
+
+class ForceTerm {
+ public:
+  virtual ~ForceTerm() = default;
+  virtual std::unique_ptr<ForceTerm> copy() const = 0;
+  // Its energy counts in the column NAME_eV of the log, with that of other terms of the same name.
+  virtual std::string name() const = 0;
+
+  // Events happen here: links form, contacts begin and end. In a part of a scene (Topology::part) the term acts on
+  // own elements and finds its own memory among all that it was given.
+  virtual void prepare(const ListedScene&) {}
+  // What depends on elements of other processes is collected here.
+  virtual void gather(const State&) {}
+  // Moves the memory on to the present positions; `dt` (ps) has passed since the last call, none in a relaxation.
+  // Returns the energy (eV) that the term has lost thereby: it counts as dissipated.
+  virtual double advance(double /*dt*/, const State&) { return 0; }
+
+  // Adds the forces on elements of a part, which are own ones. A force between two elements is computed for each of
+  // them; one of them has its energy.
+  virtual TermSum add(const State&, const Segment& /*part*/, const ForceRows&) const { return {}; }
+
+  // nm, of element centres: pairs that come nearer before the next list are in list_chunk; 0: the term has none.
+  // At most the cutoff of the list. Without a contact law there are no chunks.
+  virtual double pair_reach() const { return 0; }
+  virtual void start_chunks(std::size_t /*count*/) {}
+  virtual void list_chunk(std::size_t /*chunk*/, const ChunkPairs&) {}
+  virtual TermSum add_pairs(const State&, std::size_t /*chunk*/, const PairBuffer&) { return {}; }
+
+  // Whether it acts in the kick: on the sum of all other forces, the loads and constraints of which no other term
+  // knows. It then adds, to rows of zeros, the forces on the elements of a part; `total` has all elements. What they
+  // do in the kick counts as dissipated.
+  virtual bool acts_in_kick() const { return false; }
+  virtual void add_in_kick(const State&, const ForceRows& /*total*/, const Segment& /*part*/,
+                           const ForceRows& /*out*/) const {}
+
+  // eV/nm^2: the largest eigenvalue of the second derivatives of its energy by the positions of all elements; an
+  // upper bound. The time step follows from it.
+  virtual double stiffness() const { return 0; }
+
+  // The records of own elements, and back: those of all processes.
+  virtual TermMemory memory() const { return {}; }
+  // Throws std::runtime_error where the term cannot have had this memory.
+  virtual void remember(const TermMemory&) {}
+  // The memory where every element e has been split into 2 e and 2 e + 1. As it stands it goes to the first half.
+  virtual TermMemory halved(const TermMemory& coarse) const;
+
+  // For the oracle (compute_reference): a plain form, over all pairs and in one thread, which adds to forces, energies
+  // and power. Without one, false: add and add_pairs are called with a list of all pairs, whole tubes and one buffer.
+  virtual bool add_reference(const Topology&, const Interaction&, const State&, Forces&) const { return false; }
+
+  // Of its lists, which an evaluation goes through.
+  virtual std::size_t bytes() const { return 0; }
+};
+
+// A kind of term that scenes can have: the log has its energy as the column NAME_eV, with this meaning.
+struct TermKind {
+  std::string name, energy;
+};
+const std::vector<TermKind>& term_kinds();
+// To be called before main() begins, for a static variable.
+bool add_term_kind(TermKind kind);
+
+// Adds a term, and sees that the neighbour list reaches as far as it does.
+void add_term(std::shared_ptr<const ForceTerm> term, Interaction& interaction);
+
+// Energies of the terms (eV) by their names; those of one name are added up.
+std::map<std::string, double> term_energies(const Interaction& interaction, const std::vector<double>& energies);
+
+// Calls work(i, j) for all pairs i < j that are not excluded as near along one tube, in rising order.
+void for_all_pairs(const Topology& topology, const Interaction& interaction,
+                   const std::function<void(int, int)>& work);
+
+}  // namespace ropewalk

@@ -1,0 +1,164 @@
+#include "sim/forces/force_terms.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "sim/forces/forces.hpp"
+#include "sim/forces/terms/damping_terms.hpp"
+
+namespace ropewalk {
+namespace {
+
+void add_sum(TermSum& all, const TermSum& one) {
+  all.energy += one.energy;
+  all.power += one.power;
+}
+
+bool same_terms(const Damping& a, const Damping& b) {
+  return a.local == b.local && a.contact.eta == b.contact.eta && a.contact.inner == b.contact.inner &&
+         a.contact.outer == b.contact.outer;
+}
+
+}  // namespace
+
+std::vector<double> numbers_of(const std::vector<TermMemory>& memories) {
+  std::vector<double> numbers;
+  for (std::size_t term = 0; term < memories.size(); ++term)
+    for (const TermRecord& r : memories[term]) {
+      for (const double head : {static_cast<double>(term), static_cast<double>(r.element),
+                                static_cast<double>(r.numbers.size())})
+        numbers.push_back(head);
+      numbers.insert(numbers.end(), r.numbers.begin(), r.numbers.end());
+    }
+  return numbers;
+}
+
+std::vector<TermMemory> memories_of(const std::vector<double>& numbers, std::size_t terms, int elements) {
+  std::vector<TermMemory> all(terms);
+  const auto whole = [&](std::size_t at, double end) {
+    if (at >= numbers.size() || !(numbers[at] >= 0 && numbers[at] < end) || numbers[at] != std::floor(numbers[at]))
+      throw std::runtime_error("the memory of the force terms is damaged");
+    return static_cast<std::size_t>(numbers[at]);
+  };
+  for (std::size_t at = 0; at < numbers.size();) {
+    const std::size_t term = whole(at, static_cast<double>(terms)), element = whole(at + 1, elements),
+                      left = numbers.size() - at - std::min(numbers.size() - at, std::size_t{3}),
+                      count = whole(at + 2, static_cast<double>(left) + 1);
+    const auto begin = numbers.begin() + static_cast<std::ptrdiff_t>(at + 3);
+    all[term].push_back({static_cast<int>(element), {begin, begin + static_cast<std::ptrdiff_t>(count)}});
+    at += 3 + count;
+  }
+  for (TermMemory& records : all)
+    std::stable_sort(records.begin(), records.end(),
+                     [](const TermRecord& a, const TermRecord& b) { return a.element < b.element; });
+  return all;
+}
+
+bool ForceTerms::use(const Interaction& in) {
+  if (copied_ == in.terms && same_terms(damping_, in.damping)) return false;
+  copied_ = in.terms;
+  damping_ = in.damping;
+  terms_.clear();
+  for (const auto& term : in.terms) terms_.push_back({term->copy(), {}, {}});
+  if (damping_.contact.eta > 0) terms_.push_back({contact_viscosity_term(damping_.contact), {}, {}});
+  if (damping_.local > 0) terms_.push_back({local_damping_term(damping_.local), {}, {}});
+  in_kick_ = std::any_of(terms_.begin(), terms_.end(), [](const Working& w) { return w.term->acts_in_kick(); });
+  stamp_ = 0;
+  return true;
+}
+
+void ForceTerms::prepare(const Topology& topology, const NeighbourList& list, const State& state, bool again) {
+  if (stamp_ == list.stamp()) return;
+  stamp_ = list.stamp();
+  for (Working& w : terms_) w.term->prepare({topology, list, state, again, others_});
+}
+
+void ForceTerms::begin(const State& state, int parts) {
+  state_ = &state;
+  for (Working& w : terms_) {
+    w.term->gather(state);
+    w.of_part.assign(static_cast<std::size_t>(parts), {});
+    w.of_chunk.assign(w.of_chunk.size(), {});
+  }
+}
+
+double ForceTerms::advance(double dt, const State& state) {
+  double lost = 0;
+  for (Working& w : terms_) lost += w.term->advance(dt, state);
+  return lost;
+}
+
+void ForceTerms::add(int part, const Segment& of, const ForceRows& out) {
+  for (Working& w : terms_)
+    if (!w.term->acts_in_kick()) w.of_part[static_cast<std::size_t>(part)] = w.term->add(*state_, of, out);
+}
+
+// Parts and chunks in their order, whatever the threads.
+void ForceTerms::sum_up(Forces& out) const {
+  out.term_energy.assign(copied_.size(), 0);
+  for (std::size_t k = 0; k < terms_.size(); ++k) {
+    TermSum all;
+    for (const TermSum& sum : terms_[k].of_part) add_sum(all, sum);
+    for (const TermSum& sum : terms_[k].of_chunk) add_sum(all, sum);
+    out.energy.terms += all.energy;
+    out.damping_power += all.power;
+    if (k < copied_.size()) out.term_energy[k] = all.energy;
+  }
+}
+
+double ForceTerms::reach() const {
+  double farthest = 0;
+  for (const Working& w : terms_) farthest = std::max(farthest, w.term->pair_reach());
+  return farthest;
+}
+
+void ForceTerms::start(std::size_t chunks) {
+  for (Working& w : terms_) {
+    if (!(w.term->pair_reach() > 0)) continue;
+    w.term->start_chunks(chunks);
+    w.of_chunk.assign(chunks, {});
+  }
+}
+
+void ForceTerms::list(std::size_t chunk, const ChunkPairs& pairs) {
+  for (Working& w : terms_)
+    if (w.term->pair_reach() > 0) w.term->list_chunk(chunk, pairs);
+}
+
+void ForceTerms::add(std::size_t chunk, const PairBuffer& buffer) {
+  for (Working& w : terms_)
+    if (w.term->pair_reach() > 0) w.of_chunk[chunk] = w.term->add_pairs(*state_, chunk, buffer);
+}
+
+void ForceTerms::add_in_kick(const State& state, const ForceRows& total, const Segment& of,
+                             const ForceRows& out) const {
+  for (const Working& w : terms_)
+    if (w.term->acts_in_kick()) w.term->add_in_kick(state, total, of, out);
+}
+
+std::vector<double> ForceTerms::memory() const {
+  std::vector<TermMemory> all;
+  for (const Working& w : terms_) all.push_back(w.term->memory());
+  return numbers_of(all);
+}
+
+void ForceTerms::remember(const std::vector<double>& numbers, int elements) {
+  const std::vector<TermMemory> all = memories_of(numbers, terms_.size(), elements);
+  for (std::size_t k = 0; k < terms_.size(); ++k) terms_[k].term->remember(all[k]);
+  stamp_ = 0;
+}
+
+std::vector<double> ForceTerms::halved_memory() const {
+  std::vector<TermMemory> all;
+  for (const Working& w : terms_) all.push_back(w.term->halved(w.term->memory()));
+  return numbers_of(all);
+}
+
+std::size_t ForceTerms::bytes() const {
+  std::size_t total = 0;
+  for (const Working& w : terms_) total += w.term->bytes();
+  return total;
+}
+
+}  // namespace ropewalk

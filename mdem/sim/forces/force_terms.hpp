@@ -1,0 +1,67 @@
+// The terms that one engine of forces works with (sim/forces/force_term.hpp): copies of those of an interaction, with
+// memories of their own, and those that its dampings stand for.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "sim/forces/force_term.hpp"
+#include "sim/threads/cloned.hpp"
+
+namespace ropewalk {
+
+// The memories of several terms as one list of numbers: for each record the number of its term, its element, how
+// many numbers follow, and these. Lists of several processes may stand behind one another.
+std::vector<double> numbers_of(const std::vector<TermMemory>& memories);
+// Records in the order of their elements. Throws std::runtime_error where these are not the memories of so many terms
+// in a scene of so many elements.
+std::vector<TermMemory> memories_of(const std::vector<double>& numbers, std::size_t terms, int elements);
+
+class ForceTerms : private PairWork {
+ public:
+  // Returns whether these are other terms than before: new copies, as at the start of the scene.
+  bool use(const Interaction& interaction);
+  void share_with(const Processes* others) { others_ = others; }
+  bool empty() const { return terms_.empty(); }
+
+  // Prepares the terms for a list that is new to them.
+  void prepare(const Topology& topology, const NeighbourList& list, const State& state, bool again = false);
+  // In the order of one evaluation. advance() returns the energy that the terms have lost, eV.
+  void begin(const State& state, int parts);
+  double advance(double dt, const State& state);
+  void add(int part, const Segment& of, const ForceRows& out);
+  void sum_up(Forces& out) const;
+  // For the contact engine; null: no term acts on pairs.
+  PairWork* pairs() { return reach() > 0 ? this : nullptr; }
+
+  bool act_in_kick() const { return in_kick_; }
+  void add_in_kick(const State& state, const ForceRows& total, const Segment& of, const ForceRows& out) const;
+
+  void add_reference(const Topology& topology, const Interaction& in, const State& state, Forces& out) const;
+
+  std::vector<double> memory() const;
+  // prepare() then finds all lists new. Throws std::runtime_error.
+  void remember(const std::vector<double>& numbers, int elements);
+  std::vector<double> halved_memory() const;
+  std::size_t bytes() const;
+
+ private:
+  struct Working {
+    Cloned<ForceTerm> term;
+    std::vector<TermSum> of_part, of_chunk;
+  };
+  double reach() const override;
+  void start(std::size_t chunks) override;
+  void list(std::size_t chunk, const ChunkPairs& pairs) override;
+  void add(std::size_t chunk, const PairBuffer& buffer) override;
+
+  std::vector<Working> terms_;
+  std::vector<std::shared_ptr<const ForceTerm>> copied_;  // the first of them are copies of these
+  Damping damping_;                                       // that the others stand for
+  const Processes* others_ = nullptr;
+  const State* state_ = nullptr;  // of the evaluation
+  long stamp_ = 0;                // of the list that they are prepared for
+  bool in_kick_ = false;
+};
+
+}  // namespace ropewalk
