@@ -12,14 +12,14 @@
 namespace ropewalk::lammps {
 namespace {
 
-constexpr int joined = 4;  // numbers
+constexpr int numbers_joined = 4;  // numbers
 
 void join_numbers(void* from, void* to, int* count, MPI_Datatype*) {
   for (int k = 0; k < *count; ++k) {
-    const double* a = static_cast<const double*>(from) + joined * k;
-    double* b = static_cast<double*>(to) + joined * k;
+    const double* a = static_cast<const double*>(from) + numbers_joined * k;
+    double* b = static_cast<double*>(to) + numbers_joined * k;
     b[0] = std::max(a[0], b[0]);
-    for (int m = 1; m < joined; ++m) b[m] += a[m];
+    for (int m = 1; m < numbers_joined; ++m) b[m] += a[m];
   }
 }
 
@@ -40,7 +40,7 @@ void add_vectors(const Vec3Array& from, std::ptrdiff_t at, int count, double* to
 }  // namespace
 
 AllRanks::AllRanks(MPI_Comm world) : world_(world) {
-  MPI_Type_contiguous(joined, MPI_DOUBLE, &numbers_);
+  MPI_Type_contiguous(numbers_joined, MPI_DOUBLE, &numbers_);
   MPI_Type_commit(&numbers_);
   MPI_Op_create(join_numbers, 1, &join_);
 }
@@ -51,11 +51,11 @@ AllRanks::~AllRanks() {
 }
 
 void AllRanks::join(double& largest, double (&sums)[3]) const {
-  const double own[joined] = {largest, sums[0], sums[1], sums[2]};
-  double all[joined];
+  const double own[numbers_joined] = {largest, sums[0], sums[1], sums[2]};
+  double all[numbers_joined];
   MPI_Allreduce(own, all, 1, numbers_, join_, world_);
   largest = all[0];
-  std::copy(all + 1, all + joined, sums);
+  std::copy(all + 1, all + numbers_joined, sums);
 }
 
 RankEngine::RankEngine(LMP::LAMMPS* lmp, std::shared_ptr<const LammpsModel> model)
