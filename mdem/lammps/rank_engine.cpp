@@ -6,7 +6,7 @@
 
 #include "sim/contact/contact_law.hpp"
 #include "sim/contact/line/engine.hpp"
-#include "sim/dynamics/kick.hpp"
+#include "sim/forces/kick.hpp"
 #include "sim/state/part_of_scene.hpp"
 
 namespace ropewalk::lammps {

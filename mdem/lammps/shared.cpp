@@ -1,5 +1,7 @@
 #include "lammps/shared.hpp"
 
+#include <numeric>
+
 #include <map>
 
 #include "bond.h"
@@ -138,7 +140,7 @@ double** carried(LMP::LAMMPS* lmp) { return property(lmp, "carried", 6); }
 namespace {
 
 template <class T>
-std::vector<T> joined(const std::vector<T>& own, MPI_Datatype type, MPI_Comm world) {
+std::vector<T> from_all(const std::vector<T>& own, MPI_Datatype type, MPI_Comm world) {
   int ranks = 1;
   MPI_Comm_size(world, &ranks);
   const int count = static_cast<int>(own.size());
@@ -155,9 +157,9 @@ std::vector<T> joined(const std::vector<T>& own, MPI_Datatype type, MPI_Comm wor
 void RankMessages::sum(double* values, std::size_t count) const {
   MPI_Allreduce(MPI_IN_PLACE, values, static_cast<int>(count), MPI_DOUBLE, MPI_SUM, world_);
 }
-std::vector<int> RankMessages::join(const std::vector<int>& own) const { return joined(own, MPI_INT, world_); }
+std::vector<int> RankMessages::join(const std::vector<int>& own) const { return from_all(own, MPI_INT, world_); }
 std::vector<double> RankMessages::join(const std::vector<double>& own) const {
-  return joined(own, MPI_DOUBLE, world_);
+  return from_all(own, MPI_DOUBLE, world_);
 }
 
 double sum_over_ranks(LMP::LAMMPS* lmp, double value) {

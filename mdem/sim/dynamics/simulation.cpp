@@ -10,7 +10,7 @@
 
 #include "model/error.hpp"
 #include "sim/dynamics/blow_up.hpp"
-#include "sim/dynamics/kick.hpp"
+#include "sim/forces/kick.hpp"
 #include "sim/dynamics/verlet.hpp"
 #include "sim/state/motion.hpp"
 

@@ -1,4 +1,4 @@
-#include "sim/dynamics/kick.hpp"
+#include "sim/forces/kick.hpp"
 
 #include "sim/state/motion.hpp"
 
