@@ -58,8 +58,6 @@ TEST(StepBytes, AreOfTheStateAndOfWhatIsListed) {
   Interaction braked;
   braked.damping.local = 0.1;
   EXPECT_EQ(per_element(braked), alone + 2 * 6 * 8);
-  EXPECT_EQ(step_bytes(Simulation(topology, {}, {}, state, 1e-3, 0, {3})) / topology.elements(),
-            3 * (alone + 2 * 6 * 8));
   line.exclude_along_tube = 20 * test::element_length;
   Interaction apart = line;
   LineContact shorter = test::line_contact(0.6785, 6, 0.6785, 6);

@@ -27,7 +27,7 @@ struct Rope {
       position.set(i, 30 * random.direction());
       axis.set(i, random.direction());
     }
-    chunk.elements = DampedBlock::max_lanes;
+    chunk.elements = LineList::room_before;
     for (const auto& [tube, begin, end] : {std::array{0, 3, 8}, std::array{0, 11, 57}, std::array{1, 100, 101}}) {
       chunk.ranges.push_back({tube, begin, end, chunk.elements - begin, chunk.nodes - begin * nodes, nodes});
       chunk.elements += end - begin;
