@@ -13,6 +13,7 @@
 #include "io/files.hpp"
 #include "io/stop_signals.hpp"
 #include "model/error.hpp"
+#include "run/run_directory.hpp"
 #include "run/run_time.hpp"
 #include "scene/scene_toml.hpp"
 

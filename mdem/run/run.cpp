@@ -11,6 +11,7 @@
 #include "run/refined_run.hpp"
 #include "run/relaxation_loop.hpp"
 #include "run/run_manifest.hpp"
+#include "run/stages.hpp"
 
 namespace ropewalk {
 
