@@ -186,7 +186,7 @@ class RunningTest(FolderTest):
         process = multiprocessing.get_context("fork").Process(target=ropewalk.run, args=(ROPE, "there"),
                                                               kwargs={"threads": 2})
         process.start()
-        process.join(60)
+        process.join(300)
         self.assertEqual(process.exitcode, 0)
         self.assertEqual(ropewalk.open("there").manifest["threads"], 1)
 
