@@ -161,7 +161,7 @@ TEST_F(RunDirectoryOf, InstructionsAreKept) {
   const std::string help = run("run --help").out;
   const std::string all = std::regex_replace(help, std::regex("[^]*other\\s+processors:([^\\[]*)\\[[^]*"), "$1");
   std::vector<std::string> sets;
-  const std::regex name("[A-Z][A-Z0-9_]+");
+  const std::regex name("[A-Za-z][A-Za-z0-9_]+");
   for (std::sregex_iterator at(all.begin(), all.end(), name), end; at != end; ++at) sets.push_back(at->str());
   ASSERT_FALSE(sets.empty()) << help;
   const std::string other = sets.back();  // the narrowest, which every processor has
