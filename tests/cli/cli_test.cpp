@@ -763,6 +763,8 @@ hold_ps = 10
               0.1 * GJ->at("standard_error").get<double>());
   EXPECT_LT(parts, 0) << "a stiffer tube stores less at the same moment";
   EXPECT_GE(twist.at("standard_error").get<double>(), std::fabs(parts));
+  // Potentials differ by 19 % in GJ: 10^4 times the error of the fit.
+  EXPECT_NEAR(twist.at("potential_error").get<double>() / value, 0.194, 0.02);
   // Every row has errors, in the columns of the log, and the report draws them.
   const std::string log = slurp(dir / "r/log.csv"), rows = slurp(dir / "r/errors.csv");
   EXPECT_EQ(log.substr(0, log.find('\n')), rows.substr(0, rows.find('\n')));
@@ -773,8 +775,13 @@ hold_ps = 10
   EXPECT_NE(page.find("standard errors that follow"), std::string::npos);
   // What is finished is kept.
   const auto made = fs::last_write_time(dir / "r/errors/GJ-plus/log.csv");
-  ASSERT_EQ(run("errors r --quiet").code, 0);
+  const Outcome table = run("errors r --quiet");
+  ASSERT_EQ(table.code, 0);
   EXPECT_EQ(fs::last_write_time(dir / "r/errors/GJ-plus/log.csv"), made);
+  EXPECT_NE(table.out.find("of the parameters alone"), std::string::npos) << table.out;
+  // Its last rows still move, by more than the error of the fit: no digit beyond is printed.
+  EXPECT_GT(twist.at("moves_by").get<double>(), 2 * twist.at("standard_error").get<double>());
+  EXPECT_TRUE(std::regex_search(table.out, std::regex("\ntwist_eV +[0-9]+\\.[0-9]{1,4} "))) << table.out;
   EXPECT_EQ(run("errors rope.toml").code, 2);
 }
 
@@ -818,6 +825,7 @@ TEST_F(Cli, EnergyOfUnlikeTubesIsThatOfTheRun) {
 format = "ropewalk-scene-1"
 parameters = ["cnt-10-10-tersoff", "cnt-5-5-tersoff"]
 tube_types = [0, 1, 1, 1, 1, 1, 1]
+element_length_nm = 0.7
 [rope]
 tubes = 7
 length_nm = 7
@@ -853,7 +861,7 @@ duration_ps = 0.5
 TEST_F(Cli, CompareSetsSideBySide) {
   const Outcome o = run("compare cnt-5-5-tersoff cnt-10-10-tersoff cnt-10-10-paper --page c.html");
   ASSERT_EQ(o.code, 0) << o.err;
-  for (const char* words : {"(5,5)", "not known", "1518.960 ± 0.037", "anharmonic"})
+  for (const char* words : {"(5,5)", "not known", "1518.960 ± 0.037 ± 210 (potential)", "anharmonic"})
     EXPECT_NE(o.out.find(words), std::string::npos) << words << o.out;
   const std::string page = slurp(dir / "c.html");
   EXPECT_NE(page.find("<svg"), std::string::npos);
