@@ -121,6 +121,22 @@ TEST(StretchTwist, KnotInThePotentialIsASpreadAndAWarning) {
   EXPECT_THAT(out.warnings, testing::Contains(HasSubstr("EA depends on the fit window")));
 }
 
+// As AIREBO has it: the second derivatives are continuous, the third are not, so that GJ goes linearly with the
+// twist.
+TEST(StretchTwist, ACuspInTwistIsInTheErrorOfGJ) {
+  Known known;
+  known.natural = known.C = 0;
+  const Extra cusp = [](double e, double t) {
+    return 9480 * std::abs(e) * e * e + 0.5 * 2060 * t * t * 0.05 * std::abs(t) / 0.016;
+  };
+  std::vector<AtomisticRow> rows = stretch_twist_table(known, cusp);
+  Stiffness out;
+  fit_stretch_twist(rows, out);
+  EXPECT_GT(std::abs(out.GJ.value - known.GJ), 0.005 * known.GJ);
+  EXPECT_LT(std::abs(out.GJ.value - known.GJ), 1.5 * out.GJ.standard_error);
+  EXPECT_LT(out.GJ.standard_error, 0.05 * known.GJ);
+}
+
 TEST(StretchTwist, TooFewRowsAreAnInputError) {
   std::vector<AtomisticRow> rows = stretch_twist_table({});
   Stiffness out;
