@@ -54,11 +54,14 @@ Twisted twisted(GrippedRope rope, double tolerance) {
   return out;
 }
 
-// A tube of beads: elements that neither twist nor shear, so that only the places of their centres count.
+// A tube of beads: elements that neither twist nor shear, so that only the places of their centres count, also in
+// the grips.
 GrippedRope rope_of_beads(ParameterSet set, const Well& pair) {
   const auto law = std::make_shared<const BeadLaw>(pair.distance, pair.energy, set.element_length, 4);
   set.bond.twist = set.bond.shear = 0;
-  return {set, bonds, law, line_parallel_well(set.line->density).distance};
+  GrippedRope rope(set, bonds, law, line_parallel_well(set.line->density).distance);
+  rope.holds_orientations = false;
+  return rope;
 }
 
 // --- Checks and figures ---
