@@ -36,6 +36,7 @@ struct ParametrizedTube {
   double calibration_seconds = 0;  // wall time
 
   bool holds() const;
+  std::string grade() const;          // in words, with the cases that miss
   double validation_seconds() const;  // sum over the cases, LAMMPS included
 };
 

@@ -261,9 +261,10 @@ std::vector<std::string> page_facts(const std::vector<Outcome>& outcomes) {
     for (const UsedSet& set : o.sets) sets[set.hash] = set;
   std::string of_sets;
   for (const auto& [hash, set] : sets)
-    of_sets += fmt::format(
-        "{}{}, {} (hash {}): {}{}", of_sets.empty() ? "Sets: " : "; ", set.name, set.tube, hash, set.grade,
-        set.registry >= 0 ? fmt::format("; registry {:.2g} % of the well", 100 * set.registry) : "");
+    of_sets +=
+        fmt::format("{}{}, {} (hash {}): {}{}", of_sets.empty() ? "Sets: " : "; ", set.name, set.tube, hash,
+                    grade_with_verdicts(set.grade, hash, outcomes),
+                    set.registry >= 0 ? fmt::format("; registry {:.2g} % of the well", 100 * set.registry) : "");
   return {
       of_sets + ".",
       "Registry is how the lattices of two tubes lie on one another. The model leaves it out. It is an error bar "

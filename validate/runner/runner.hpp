@@ -67,6 +67,11 @@ struct Outcome {
   std::string with_tubes(std::string text) const;  // {tube} replaced
 };
 
+// What a set is worth: its grade by its own numbers, and the cases in which it misses. A set that misses is not
+// good.
+std::string grade_with_verdicts(const std::string& grade, const std::string& hash,
+                                const std::vector<Outcome>& outcomes);
+
 std::string outcome_json(const Outcome& outcome);
 // Throws InputError where the file is not such a result.
 Outcome read_outcome(const std::string& path);

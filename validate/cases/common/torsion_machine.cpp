@@ -179,9 +179,17 @@ RopeInMachine::Reading RopeInMachine::theory(const ParameterSet& oracle, double 
   out.tension = kept == Length::held ? tension(1) : 0;
   out.torque = (energy(twist + step, out.stretch) - energy(twist - step, out.stretch)) / (2 * step) / bond_stretch_;
   out.energy = (energy(twist, out.stretch) - energy(0, 1)) * bonded();
+  // All terms with the strain in them are counted as stretch, those with the twist too: twisted tubes of one hand
+  // are stretched at another cost.
   double stretched = 0;
-  for (const double rho : radii)
-    stretched += chain_energy(bond, a, bond_stretch_ * std::hypot(out.stretch, rho * twist) - 1, 0, 0) / tubes;
+  for (const double rho : radii) {
+    const double s = std::hypot(out.stretch, rho * twist);
+    const double turned = spins_free ? 0 : twist * out.stretch / s * bond_stretch_;
+    const double bent = twist * rho * twist / s * bond_stretch_;
+    stretched +=
+        (chain_energy(bond, a, bond_stretch_ * s - 1, turned, bent) - chain_energy(bond, a, 0, turned, bent)) /
+        tubes;
+  }
   out.stretch_share = stretched / bonds(twist, out.stretch);
   const double turn = twist * disc;
   out.core_pressure = -3 * modulus * turn * turn / 16;
