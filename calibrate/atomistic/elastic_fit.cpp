@@ -149,7 +149,7 @@ struct Interval {
     high = std::max(high, x);
   }
   double half() const { return high > low ? 0.5 * (high - low) : 0; }
-  // Of values from a window and from two thirds of it: what a window of no width would be away from the first, if
+  // How far the value of a window of no width lies from the first, by a window and two thirds of it, if
   // errors fall with the square of the window, 1/(1 - 4/9) times their difference.
   double to_no_window() const { return 1.8 * 2 * half(); }
   bool wide() const { return to_no_window() > 0.005 * std::abs(0.5 * (low + high)); }
@@ -358,7 +358,7 @@ Windows over_windows(const std::vector<AtomisticRow*>& rows, const StretchTwistW
   return out;
 }
 
-// Of EA, GJ, coupling and natural twist. The spread over windows is added to the errors as a part of its own: it
+// Correlations of EA, GJ, coupling and natural twist. The spread over windows is a separate part of the errors: it
 // weakens the correlations.
 std::vector<std::vector<double>> correlation_of(const TaylorFit& taylor, const Stiffness& s) {
   const std::size_t of[] = {taylor.place(2, 0), taylor.place(0, 2), taylor.place(1, 1), 2};

@@ -90,7 +90,7 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
   return row.back();
 }
 
-// Of a line of the user's: what would reach beyond it in an input of LAMMPS.
+// Refuses a line of the user's that would reach beyond itself in an input of LAMMPS.
 void refuse_reach(const std::string& path, int number, const std::string& line) {
   const auto refuse = [&](const char* what, const char* remedy) {
     throw InputError({path, number, ""}, what, remedy);

@@ -159,7 +159,8 @@ KnownEnvelope envelope_of(const std::string& name, const CalibrationRequest& req
   return known;
 }
 
-// Of the thinnest tubes, whose windows are too wide for the polynomial: the harmonic bond serves them.
+// Leaves out the bond of the thinnest tubes, whose windows are too wide for the polynomial; they have the harmonic
+// one.
 void leave_out_unusable_bond(Calibration& c, const std::string& text, const std::string& path) {
   try {
     parameters_of_text(text, path);
@@ -170,8 +171,8 @@ void leave_out_unusable_bond(Calibration& c, const std::string& text, const std:
   }
 }
 
-// Of the set as every other command will read it. A set that they would refuse, or whose contact is another one, is
-// not written.
+// The grade of the set as other commands will read it. A set that they would refuse, or whose contact is another
+// one, is not written.
 Grade usable_grade(const std::string& text, const std::string& path, Chirality tube) {
   const auto refuse = [&](const std::string& why) {
     throw InputError({"", 0, "--chirality"},

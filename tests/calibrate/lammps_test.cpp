@@ -1,4 +1,4 @@
-// LAMMPS as a child process: what it says, and every way in which it can end.
+// LAMMPS as a child process: its messages, and every way in which it can end.
 #include "atomistic/lammps.hpp"
 
 #include <gmock/gmock.h>

@@ -463,8 +463,8 @@ double part_of(std::uint64_t& state) {  // uniform in -1 .. 1
 
 // Noisy energies of known constants, fitted again and again. The energy of a rope of seven (10,10) tubes that is
 // wound by 30 degrees over 20 nm with rigid sections, GJ t^2 (1 + 6 cos^2 b)/2L + 6 EI k^2 L/2 + 6 EA e^2 L/2, has
-// to lie within one and two of its errors as often as a normal distribution does. Windows widen the errors: more
-// than so many may.
+// to lie within one and two of its errors as often as a normal distribution does. Windows widen the errors, so
+// that more may.
 TEST(StandardErrors, CoverTheEnergyOfARope) {
   const Known known;
   constexpr double EI = 22650, length = 20, spacing = 1.69, angle = 0.5236;

@@ -111,7 +111,7 @@ TEST_F(Cli, EveryTemplateIsWrittenAndPassesItsCheck) {
   EXPECT_EQ(run("new my-rope --kind rope").code, 2) << "an existing file must stand";
 }
 
-// What the pages of the documentation are made from.
+// The pages of the documentation are made from this output.
 TEST_F(Cli, DescribesItselfToPrograms) {
   const Outcome o = run("describe json");
   ASSERT_EQ(o.code, 0) << o.err;
@@ -191,7 +191,7 @@ TEST_F(Cli, MixedTubesRunAndResume) {
   EXPECT_NE(frames.find("\n1 1 2 "), std::string::npos) << "the first tube is of the second type";
   EXPECT_NE(frames.find("\n11 2 1 "), std::string::npos);
   EXPECT_TRUE(fs::exists(dir / "d/parameters-1.toml"));
-  // What the frames colour by adds up to what the log has.
+  // The energies that frames are coloured by add up to those of the log.
   const double energy = ropewalk::read_log((dir / "d/log.csv").string()).front()["vdw_eV"];
   EXPECT_LT(energy, -10);
   EXPECT_NEAR(sum_of_column(frames.substr(0, frames.find("ITEM: TIMESTEP", 1)), "c_vdw_energy_eV"), energy,
@@ -312,7 +312,7 @@ TEST_F(Cli, TheGradeOfASetIsSaidEverywhere) {
             std::string::npos);
   const Outcome plan = run("plan s.toml --error 5%");
   EXPECT_NE(plan.out.find("parameters " + grade), std::string::npos) << plan.out << plan.err;
-  // Runs of before have no grade in their manifest.
+  // Runs of 0.1 have no grade in their manifest.
   std::string manifest = slurp(dir / "d/manifest.json");
   const std::size_t at = manifest.find("  \"grade\"");
   manifest.erase(at, manifest.find('\n', at) + 1 - at);
@@ -717,7 +717,7 @@ TEST_F(Cli, RelaxationThatRunsOutOfStepsKeepsItsFilesAndCanGoOn) {
   EXPECT_EQ(Json::parse(slurp(dir / "d/manifest.json")).at("status"), "finished");
 }
 
-// Every wrong file of tests/cli/bad: exit code 2, one line, what it expects.
+// Every wrong file of tests/cli/bad: exit code 2 and the one line that it expects.
 TEST_F(Cli, EveryWrongFileGetsOneClearLine) {
   int count = 0;
   for (const auto& entry : fs::directory_iterator(ROPEWALK_SOURCE_DIR "/tests/cli/bad")) {
@@ -773,7 +773,7 @@ hold_ps = 10
   const std::string page = slurp(dir / "r/report.html");
   EXPECT_NE(page.find("class=\"error e"), std::string::npos);
   EXPECT_NE(page.find("standard errors that follow"), std::string::npos);
-  // What is finished is kept.
+  // Finished runs are kept.
   const auto made = fs::last_write_time(dir / "r/errors/GJ-plus/log.csv");
   const Outcome table = run("errors r --quiet");
   ASSERT_EQ(table.code, 0);

@@ -1,4 +1,4 @@
-// Scenes and parameter sets: what is read, what is refused and with which words, and what is built from it.
+// Scenes and parameter sets: keys, the words of refusals, and the model built from them.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -128,7 +128,7 @@ struct Figure {
 
 double radius(const ParametrizedTube& t) { return t.set.radius; }
 
-// Divided by what a thin wall would give, stiffnesses of all tubes are those of the sheet.
+// Divided by those of a thin wall, stiffnesses of all tubes are those of the sheet.
 std::vector<Figure> overview_figures(const std::vector<ParametrizedTube>& tubes) {
   const auto stretch = [](const ParametrizedTube& t) {
     return t.set.bond.stretch * nN / (2 * units::pi * t.set.radius);
@@ -203,7 +203,7 @@ std::string overview_row(const ParametrizedTube& t) {
              rope ? number_text(100 * std::fabs(rope->difference()), 2) + " %" : "", escape_markup(t.grade()));
 }
 
-// Of each tube that has sets by several potentials: how far they lie apart.
+// The spread of the sets of each tube that has several, by potentials.
 std::string spread_part(const std::vector<ParametrizedTube>& tubes) {
   std::map<std::string, std::vector<const ParametrizedTube*>> groups;
   for (const ParametrizedTube& t : tubes)

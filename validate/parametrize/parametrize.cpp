@@ -27,7 +27,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Where the files of a tube lie.
+// The places of a tube's files.
 struct Place {
   std::string tube, potential;  // as typed
   std::string name;             // "cnt-7-3-tersoff"

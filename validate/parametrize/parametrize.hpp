@@ -1,6 +1,6 @@
 // `ropewalk parametrize`: from chiralities to validated parameter sets and one report.
 //
-// Of each tube (n,m) and interatomic potential: the set is calibrated with its envelope, the references of its
+// For each tube (n,m) and interatomic potential the set is calibrated with its envelope, the references of its
 // atoms are made, all cases of validation that the set allows are run, and a page says what the set is worth. What
 // is finished is kept, so that a stopped command goes on where it was.
 #pragma once
