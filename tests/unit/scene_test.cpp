@@ -823,10 +823,9 @@ TEST(StateFile, StatesTheLengthOfItsElements) {
     try {
       const Folder folder;
       folder.write("elements.csv", csv);
-      build(read_scene(folder.write("scene.toml", head + more +
-                                                      "[state]\nfile = \"elements.csv\"\n[contact]\nlaw = "
-                                                      "\"none\"\n" +
-                                                      run)));
+      Scene scene = read_scene(folder.write(
+          "scene.toml", head + more + "[state]\nfile = \"elements.csv\"\n[contact]\nlaw = \"none\"\n" + run));
+      build(scene);
     } catch (const InputError& e) {
       return e.what();
     }
