@@ -5,6 +5,7 @@
 
 #include "cases/common/bead_law.hpp"
 #include "cases/common/driven_rope.hpp"
+#include "runner/runner.hpp"
 #include "validate/support.hpp"
 
 namespace ropewalk::validate {
