@@ -8,6 +8,7 @@
 #include <numeric>
 #include <utility>
 
+#include "model/contract.hpp"
 #include "model/error.hpp"
 #include "sim/dynamics/blow_up.hpp"
 #include "sim/forces/kick.hpp"
@@ -65,6 +66,7 @@ Simulation::Simulation(Topology topology, Interaction interaction, LoadsAndConst
       changes_(blocks_of(state_.size())),
       fastest_(blocks_of(state_.size())),
       forces_(state_.size()) {
+  ROPEWALK_EXPECTS(static_cast<int>(state_.size()) == topology_.elements() && time_step_ > 0 && skin >= 0);
   refuse_not_finite(state_);
   list_.build(topology_, state_);
   compute();
@@ -90,6 +92,7 @@ struct Simulation::System {
 };
 
 void Simulation::steps(long count, bool energies) {
+  ROPEWALK_EXPECTS(count >= 0);
   end_relaxation();
   const bool always = relaxes_spins(loads_);
   for (long k = 0; k < count; ++k) {
@@ -228,6 +231,7 @@ void Simulation::remember(const std::vector<double>& memory) {
 }
 
 Forces Simulation::forces_at(const State& state, Interaction::Precision precision) const {
+  ROPEWALK_EXPECTS(state.size() == state_.size());
   Interaction in = interaction_;
   in.precision = precision;
   ForceEngine engine;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "model/contract.hpp"
 #include "sim/neighbours/cell_grid.hpp"
 #include "sim/threads/scratch.hpp"
 
@@ -50,6 +51,7 @@ void NeighbourList::build(const Topology& topology, const State& state) {
 }
 
 void NeighbourList::build(const Topology& topology, Vec3Array position, Vec3Array axis) {
+  ROPEWALK_EXPECTS(cutoff >= 0 && skin >= 0 && lever >= 0);
   static std::atomic<long> stamps{0};
   stamp_ = ++stamps;
   displacement_ = 0;
@@ -99,6 +101,7 @@ void NeighbourList::build(const Topology& topology, Vec3Array position, Vec3Arra
     for (const auto& list : found) spans_.insert(spans_.end(), list.begin(), list.end());
     for (std::size_t pairs : pairs_of_part) pairs_ += pairs;
     for (std::size_t i = 1; i < begin_.size(); ++i) begin_[i] += begin_[i - 1];
+    ROPEWALK_ENSURES(begin_.back() == spans_.size());
   }
   cut_into_chunks(n);
 }
@@ -147,6 +150,7 @@ void NeighbourList::cut_into_chunks(int n, int count) {
       for (const ElementSpan& span : spans(i)) chunk.written_end = std::max(chunk.written_end, span.end);
     from = to;
   }
+  ROPEWALK_ENSURES(from == n);
 }
 
 }  // namespace ropewalk

@@ -8,6 +8,7 @@
 #include <array>
 #include <vector>
 
+#include "model/contract.hpp"
 #include "sim/neighbours/motion_since.hpp"
 #include "sim/state/interaction.hpp"
 #include "sim/state/state.hpp"
@@ -73,7 +74,10 @@ class NeighbourList {
   void build(const Topology& topology, Vec3Array position, Vec3Array axis);
 
   // The neighbours j > i of element i, none of which is in two spans.
-  Span<ElementSpan> spans(int i) const { return entries_of(i, begin_, spans_); }
+  Span<ElementSpan> spans(int i) const {
+    ROPEWALK_EXPECTS(builds_ > 0);
+    return entries_of(i, begin_, spans_);
+  }
   template <class Work>
   void for_neighbours(int i, const Work& work) const {
     for (const ElementSpan& span : spans(i))
