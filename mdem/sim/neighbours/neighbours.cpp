@@ -107,11 +107,8 @@ void NeighbourList::build(const Topology& topology, Vec3Array position, Vec3Arra
 }
 
 double NeighbourList::coordinate_unit() const {
-  double largest = 1;
-  for (const auto* v : {&reference().x, &reference().y, &reference().z})
-    for (double x : *v)
-      if (std::isfinite(x)) largest = std::max(largest, std::fabs(x));
-  return std::exp2(std::ceil(std::log2(largest + 64)) - 28);
+  const double period = 32 * (cutoff + 2 * lever);
+  return std::exp2(std::max(8.0, std::ceil(std::log2(period))) - 32);
 }
 
 // The chunks do not depend on the number of threads. Where tubes with distant numbers cross, the buffers of the chunks

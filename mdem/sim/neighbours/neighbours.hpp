@@ -95,7 +95,8 @@ class NeighbourList {
   const Vec3Array& reference() const { return since_.position(); }
   const Vec3Array& reference_axis() const { return since_.axis(); }
   long builds() const { return builds_; }
-  // A unit of length (nm, a power of two) in which every coordinate fits into 29 bits until the next build.
+  // nm, a power of two: the unit of coordinates modulo 2^32 (sim/contact/shared/wrapped.hpp). 2^-24, or more where
+  // elements so long that 2^32 units are not 32 times as far as elements act on each other.
   double coordinate_unit() const;
   // Differs for every build of every list.
   long stamp() const { return stamp_; }

@@ -21,7 +21,7 @@ VEC_BEFORE_NAMESPACE();
 namespace ropewalk::VEC_SET {
 namespace ops = vec::VEC_SET;
 
-// Vectors of a precision. Coordinates of `float` are 32-bit integers, so that differences are exact.
+// Vectors of a precision. Coordinates of `float` are whole numbers modulo 2^32 (sim/contact/shared/wrapped.hpp).
 template <class T>
 struct Lanes;
 template <>
@@ -29,8 +29,10 @@ struct Lanes<float> {
   using D = ops::CappedTag<float, 16>;
   static VEC_INLINE std::int32_t coordinate(double x) { return static_cast<std::int32_t>(std::lrint(x)); }
   static VEC_INLINE ops::Vec<D> difference(const std::int32_t* x, std::int32_t from) {
-    const ops::RebindToSigned<D> di;
-    return ops::ConvertTo(D(), ops::Sub(ops::LoadU(di, x), ops::Set(di, from)));
+    const ops::RebindToUnsigned<D> modulo;
+    const auto to = ops::LoadU(modulo, reinterpret_cast<const std::uint32_t*>(x)),
+               apart = ops::Sub(to, ops::Set(modulo, static_cast<std::uint32_t>(from)));
+    return ops::ConvertTo(D(), ops::BitCast(ops::RebindToSigned<D>(), apart));
   }
 };
 template <>

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "sim/contact/shared/wrapped.hpp"
+
 #undef VEC_SOURCE
 #define VEC_SOURCE "sim/contact/line/nodes.cpp"
 #include "sim/vectors/each_set-inl.hpp"
@@ -15,18 +17,15 @@ namespace ops = vec::VEC_SET;
 
 constexpr int block = 32;  // elements whose positions or sums stay in the first cache
 
-// Added to a number it leaves the nearest integer, of 32 bits, in front of the last 16 bits: 1.5 * 2^36, and a half
-// as they are cut off.
-constexpr int behind_point = 16;
 template <class C>
-constexpr double rounds = sizeof(C) == 4 ? 103079215104.5 : 0.0;
+constexpr double rounds = sizeof(C) == 4 ? rounds_to_whole : 0.0;
 
 template <class D>
 VEC_INLINE void store(D, ops::Vec<D> v, std::int32_t* to) {
   const ops::RebindToUnsigned<D> bits;
   const ops::Rebind<std::uint32_t, D> low;
   const ops::Rebind<std::int32_t, D> coordinate;
-  const auto number = ops::TruncateTo(low, ops::ShiftRight<behind_point>(ops::BitCast(bits, v)));
+  const auto number = ops::TruncateTo(low, ops::ShiftRight<bits_behind_point>(ops::BitCast(bits, v)));
   ops::StoreU(ops::BitCast(coordinate, number), coordinate, to);
 }
 template <class D>

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sim/contact/paper/engine.hpp"
+#include "sim/contact/shared/wrapped.hpp"
 
 #undef VEC_SOURCE
 #define VEC_SOURCE "sim/contact/paper/kernel.cpp"
@@ -100,7 +101,7 @@ VEC_INLINE std::size_t fill_up(Block<T>& s, std::size_t count, const Centre<T>& 
   const std::size_t end = (count + Block<T>::lanes - 1) / Block<T>::lanes * Block<T>::lanes;
   for (std::size_t m = count; m < end; m += ops::Lanes(dt))
     for (int a = 0; a < 3; ++a) {
-      ops::StoreU(ops::Set(dc, static_cast<C>(centre.x[a] + (a == 0 ? far : 0))), dc, s.x[a] + m);
+      ops::StoreU(ops::Set(dc, wrapped_difference(centre.x[a], static_cast<C>(a == 0 ? far : 0))), dc, s.x[a] + m);
       ops::StoreU(ops::Set(dt, centre.n[a]), dt, s.n[a] + m);
     }
   return end;
@@ -118,8 +119,9 @@ VEC_INLINE T invariants(Block<T>& s, std::size_t count, const Centre<T>& centre,
   T least = 1;
 #pragma omp simd reduction(min : least)
   for (std::size_t m = 0; m < count; ++m) {
-    const T dx = static_cast<T>(x[m] - xi) * unit, dy = static_cast<T>(y[m] - yi) * unit,
-            dz = static_cast<T>(z[m] - zi) * unit;
+    const T dx = static_cast<T>(wrapped_difference(x[m], xi)) * unit,
+            dy = static_cast<T>(wrapped_difference(y[m], yi)) * unit,
+            dz = static_cast<T>(wrapped_difference(z[m], zi)) * unit;
     const T distance = std::sqrt(std::max(dx * dx + dy * dy + dz * dz, T(1e-12))), inverse = 1 / distance;
     const T vx = dx * inverse, vy = dy * inverse, vz = dz * inverse;
     const T cosine = nix * nx[m] + niy * ny[m] + niz * nz[m];

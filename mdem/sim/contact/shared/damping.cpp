@@ -4,6 +4,7 @@
 #include <tuple>
 #include <utility>
 
+#include "sim/contact/shared/wrapped.hpp"
 #include "sim/state/prefetch.hpp"
 
 #undef VEC_SOURCE
@@ -99,7 +100,7 @@ struct Doubles {
 struct Floats {
   using D = ops::CappedTag<float, DampedBlock::max_lanes>;
   using V = ops::Vec<D>;
-  using Position = ops::Vec<ops::RebindToSigned<D>>;
+  using Position = ops::Vec<ops::RebindToUnsigned<D>>;
   const DampedElements& elements;
   ContactBuffer<float>& out;
   float unit;
@@ -116,9 +117,10 @@ struct Floats {
   }
   VEC_INLINE Vec3<V> apart(const Vec3<Position>& j, const Vec3<Position>& i) const {
     const D d;
+    const ops::RebindToSigned<D> whole;
     const Vec3<Position> in_units = j - i;
-    return ops::Set(d, unit) *
-           Vec3<V>{ops::ConvertTo(d, in_units.x), ops::ConvertTo(d, in_units.y), ops::ConvertTo(d, in_units.z)};
+    const auto number = [&](const Position& modulo) VEC_ATTR { return ops::ConvertTo(d, ops::BitCast(whole, modulo)); };
+    return ops::Set(d, unit) * Vec3<V>{number(in_units.x), number(in_units.y), number(in_units.z)};
   }
 };
 
@@ -189,15 +191,18 @@ VEC_INLINE double all_groups(const ContactViscosity& viscosity, const Of& of,
 // Of the elements of a part. Whole vectors, whose last lanes the next part's elements are stored over.
 VEC_INLINE void take(const State& s, const BufferRange& of, double per_unit, DampedElements& e) {
   const ops::CappedTag<double, 8> d;
-  const ops::Rebind<std::int32_t, decltype(d)> whole;
+  const ops::RebindToUnsigned<decltype(d)> bits;
+  const ops::Rebind<std::uint32_t, decltype(d)> whole;
   const ops::Rebind<float, decltype(d)> floats;
   const auto units = ops::Set(d, per_unit);
   const int lanes = static_cast<int>(ops::Lanes(d));
   for (int k = of.begin; k < of.end; k += lanes) {
     const int left = std::min(of.end - k, lanes), entry = k + of.shift;
     const auto some = [&](const Column& v) VEC_ATTR { return load_some(d, v.data() + k, 0, left); };
-    const auto position = [&](const Column& from, std::vector<std::int32_t>& to) VEC_ATTR {
-      ops::StoreU(ops::DemoteTo(whole, ops::Mul(some(from), units)), whole, to.data() + entry);
+    const auto position = [&](const Column& from, std::vector<std::uint32_t>& to) VEC_ATTR {
+      const auto rounded = ops::MulAdd(some(from), units, ops::Set(d, rounds_to_whole));
+      const auto number = ops::ShiftRight<bits_behind_point>(ops::BitCast(bits, rounded));
+      ops::StoreU(ops::TruncateTo(whole, number), whole, to.data() + entry);
     };
     const auto motion = [&](const Column& from, std::vector<float>& to)
                             VEC_ATTR { ops::StoreU(ops::DemoteTo(floats, some(from)), floats, to.data() + entry); };
