@@ -1,6 +1,6 @@
-# What goes where: programs in bin, data in share/ropewalk, headers in include/ropewalk, and what find_package(Ropewalk)
-# needs in lib. Components: ropewalk (the simulator, its data, man pages, completions), calibrate (with validate), lammps
-# (GPL-2), development, python (installed by mdem/python).
+# Places of installed files: programs in bin, data in share/ropewalk, headers in include/ropewalk, and in lib the files
+# of find_package(Ropewalk). Components: ropewalk (the simulator, its data, man pages, completions), calibrate (with
+# validate), lammps (GPL-2), development, python (installed by mdem/python).
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 

@@ -149,9 +149,10 @@ struct Interval {
     high = std::max(high, x);
   }
   double half() const { return high > low ? 0.5 * (high - low) : 0; }
-  // Of values from a window and from two thirds of it: what a window of no width would be away from the first, if
+  // How far the value of a window of no width lies from the first, by a window and two thirds of it, if
   // errors fall with the square of the window, 1/(1 - 4/9) times their difference.
   double to_no_window() const { return 1.8 * 2 * half(); }
+  bool wide() const { return to_no_window() > 0.005 * std::abs(0.5 * (low + high)); }
 };
 
 // Square root of the sum of squares: error of the fit, and half of the spread over windows.
@@ -219,7 +220,7 @@ void fit_radius(const std::vector<AtomisticRow*>& rows, double strain0, double t
 
 void warn_of_spread(const char* what, const Interval& range, Stiffness& out) {
   const double middle = 0.5 * (range.low + range.high);
-  if (range.to_no_window() > 0.005 * std::abs(middle))
+  if (range.wide())
     out.warnings.push_back(fmt::format(
         "{} depends on the fit window: {:.5g} to {:.5g} ({:.1f} % apart); the spread is in its standard error",
         what, range.low, range.high, 100 * 2 * range.half() / std::abs(middle)));
@@ -296,9 +297,29 @@ TaylorFit fit_taylor(const std::vector<EnergyPoint>& all, const Polynomial& poly
 
 // The same constants from parts of the window, and from tension and compression alone.
 struct Windows {
-  Interval EA, GJ, coupling, twist, strain, sides;
+  Interval EA, GJ, coupling, twist, strain, sides, cusp;
   std::string text;
 };
+
+// GJ from the unstretched cells alone: energies of the twist t to t^2, with a term t^4 or with |t|^3. A potential
+// with knots has the second, and its stiffness goes linearly with the window, which a polynomial does not see. 0:
+// there are too few twists.
+double twist_of_slice(const std::vector<EnergyPoint>& all, const Minimum& minimum, bool cusp,
+                      const StretchTwistWindow& w) {
+  std::vector<EnergyPoint> slice;
+  for (const EnergyPoint& p : all)
+    if (std::abs(p.u) < 0.02) slice.push_back(p);
+  if (slice.size() < 5) return 0;
+  Matrix a(static_cast<Eigen::Index>(slice.size()), 4);
+  Vector b(a.rows());
+  for (Eigen::Index i = 0; i < a.rows(); ++i) {
+    const EnergyPoint& p = slice[static_cast<std::size_t>(i)];
+    const double t = p.v - minimum.v;
+    a.row(i) << 1, t, t * t, cusp ? std::abs(t * t * t) : raised(t, 4);
+    b[i] = p.y;
+  }
+  return 2 * a.colPivHouseholderQr().solve(b)[2] * w.energy / (w.twist * w.twist);
+}
 
 Windows over_windows(const std::vector<AtomisticRow*>& rows, const StretchTwistWindow& w, int degree,
                      const Polynomial& polynomial, const Minimum& minimum) {
@@ -317,6 +338,13 @@ Windows over_windows(const std::vector<AtomisticRow*>& rows, const StretchTwistW
         "{:.5g} rad/nm\n",
         100 * part, degree, h.EA, h.GJ, h.coupling, h.twist);
   }
+  if (out.EA.wide() || out.GJ.wide()) {
+    for (const bool cusp : {false, true})
+      if (const double GJ = twist_of_slice(points_within(rows, w, 1), minimum, cusp, w)) {
+        out.cusp.add(GJ);
+        out.text += fmt::format("  twist alone, with a term {}: GJ {:.6g} eV nm\n", cusp ? "|t|^3" : "t^4", GJ);
+      }
+  }
   // Each extrapolated to zero strain: a potential with a knot there has two EA.
   for (const double side : {1.0, -1.0}) {
     std::vector<EnergyPoint> half;
@@ -330,7 +358,7 @@ Windows over_windows(const std::vector<AtomisticRow*>& rows, const StretchTwistW
   return out;
 }
 
-// Of EA, GJ, coupling and natural twist. The spread over windows is added to the errors as a part of its own: it
+// Correlations of EA, GJ, coupling and natural twist. The spread over windows is a separate part of the errors: it
 // weakens the correlations.
 std::vector<std::vector<double>> correlation_of(const TaylorFit& taylor, const Stiffness& s) {
   const std::size_t of[] = {taylor.place(2, 0), taylor.place(0, 2), taylor.place(1, 1), 2};
@@ -434,6 +462,7 @@ void fit_stretch_twist(std::vector<AtomisticRow>& table, Stiffness& out) {
   // Any value between the two sides is equally likely: the standard deviation of a uniform distribution.
   out.EA.standard_error = both(out.EA.standard_error, windows.sides.half() / std::sqrt(3.0));
   out.GJ = with_spread(taylor.term(0, 2, 2), windows.GJ);
+  out.GJ.standard_error = both(out.GJ.standard_error, 2 * windows.cusp.half());
   out.coupling = with_spread(taylor.term(1, 1), windows.coupling);
   out.natural_twist = with_spread({fit.value[2] * w.twist, fit.standard_error[2] * w.twist}, windows.twist);
   out.correlation = correlation_of(taylor, out);

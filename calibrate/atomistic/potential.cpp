@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <numeric>
 #include <sstream>
 
@@ -58,12 +59,18 @@ std::vector<std::string> potential_folders() {
   return {"/usr/share/lammps/potentials", "/usr/local/share/lammps/potentials"};
 }
 
-std::string find_file(const std::string& name) {
+// Empty: it is in none of them.
+std::string file_in_folders(const std::string& name) {
   for (const std::string& folder : potential_folders()) {
     std::error_code ignored;
     const fs::path path = fs::path(folder) / name;
     if (fs::is_regular_file(path, ignored)) return fs::absolute(path).string();
   }
+  return "";
+}
+
+std::string find_file(const std::string& name) {
+  if (const std::string path = file_in_folders(name); !path.empty()) return path;
   throw InputError({name, 0, ""},
                    fmt::format("the potential file is not in {}", fmt::join(potential_folders(), ", ")),
                    "apt-get install lammps-data, or set LAMMPS_POTENTIALS to the folder that has it");
@@ -83,7 +90,7 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
   return row.back();
 }
 
-// Of a line of the user's: what would reach beyond it in an input of LAMMPS.
+// Refuses a line of the user's that would reach beyond itself in an input of LAMMPS.
 void refuse_reach(const std::string& path, int number, const std::string& line) {
   const auto refuse = [&](const char* what, const char* remedy) {
     throw InputError({path, number, ""}, what, remedy);
@@ -97,6 +104,23 @@ void refuse_reach(const std::string& path, int number, const std::string& line) 
   if (line.find('$') != std::string::npos) refuse("names a variable, $", "write its value");
   if (line.find_first_of("\"'") != std::string::npos)
     refuse("holds quotes", "write names without quotes and blanks; rename a file if need be");
+}
+
+// Potential files name their units in the first line. LAMMPS converts some that say `real`, and believes them.
+void check_units(const std::string& path) {
+  std::ifstream file(path);
+  std::string line;
+  std::getline(file, line);
+  const std::string key = "UNITS:";
+  const std::size_t at = line.find(key);
+  if (at == std::string::npos) return;
+  std::istringstream words(line.substr(at + key.size()));
+  std::string units;
+  words >> units;
+  if (units != "metal")
+    throw InputError({path, 1, "UNITS"}, fmt::format("is \"{}\"", printable(units, 40)),
+                     "energies are taken in eV and lengths in Angstrom: convert the numbers of the file and write "
+                     "UNITS: metal, or correct its header");
 }
 
 }  // namespace
@@ -118,6 +142,7 @@ Potential find_potential(const std::string& name) {
   potential.name = known->name;
   potential.pair_style = split(known->style, ' ').front();
   potential.file = find_file(known->file);
+  check_units(potential.file);
   potential.file_hash = hash_hex(read_file(potential.file));
   potential.commands = {fmt::format("pair_style {}", known->style),
                         fmt::format("pair_coeff * * {} {}", lammps_quoted(potential.file), known->element)};
@@ -129,6 +154,7 @@ Potential find_potential(const std::string& name) {
 
 Potential user_potential(const std::string& path) {
   const std::string content = read_file(path);
+  check_units(path);
   Potential potential;
   potential.name = "user";
   potential.file = fs::absolute(path).lexically_normal().string();
@@ -160,7 +186,11 @@ Potential user_potential(const std::string& path) {
     for (std::size_t i = 1; i < words.size(); ++i) {
       std::error_code ignored;
       const fs::path beside = fs::path(folder) / words[i];
-      if (fs::is_regular_file(beside, ignored)) words[i] = lammps_quoted(beside.lexically_normal().string());
+      const bool here = fs::is_regular_file(beside, ignored);
+      // Where LAMMPS looks for files that are not in its own folder.
+      const std::string found = here ? beside.lexically_normal().string() : file_in_folders(words[i]);
+      if (!found.empty()) check_units(found);
+      if (here) words[i] = lammps_quoted(found);
     }
     potential.commands.push_back(fmt::format("{}", fmt::join(words, " ")));
   }

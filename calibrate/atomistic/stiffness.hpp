@@ -101,7 +101,7 @@ struct Stiffness {
   Measured GJ;             // eV nm
   Measured coupling;       // C, eV
   Measured natural_twist;  // rad/nm, of the relaxed tube against the rolled sheet
-  // Of the errors of EA, GJ, coupling and natural twist by their fit; empty: not known.
+  // Correlations of the errors of EA, GJ, coupling and natural twist by their fit; empty: not known.
   std::vector<std::vector<double>> correlation;
   Measured poisson;            // -d ln r / d strain
   Measured radius;             // nm, relaxed

@@ -12,6 +12,7 @@
 #include "io/files.hpp"
 #include "io/grade.hpp"
 #include "io/parameters_toml.hpp"
+#include "io/potential_spread.hpp"
 #include "io/toml_table.hpp"
 #include "report/page.hpp"
 #include "verbs/verbs.hpp"
@@ -38,7 +39,8 @@ bool two_numbers(const std::string& text, T& a, T& b) {
 // The numbers of a calibration, for a person and for a script.
 struct Number {
   const char *words, *key, *unit;
-  Measured value;  // in the unit
+  Measured value;           // in the unit
+  const char* in_set = "";  // its key there, where potentials differ in it
 };
 
 std::vector<Number> numbers_of(const Calibration& c) {
@@ -49,9 +51,9 @@ std::vector<Number> numbers_of(const Calibration& c) {
   };
   return {{"radius", "radius_nm", "nm", s.radius},
           {"atoms per length", "atoms_per_nm", "1/nm", s.atoms_per_length},
-          {"EA", "EA_nN", "nN", nN(s.EA)},
-          {"EI", "EI_nN_nm2", "nN nm^2", nN(s.EI)},
-          {"GJ", "GJ_nN_nm2", "nN nm^2", nN(s.GJ)},
+          {"EA", "EA_nN", "nN", nN(s.EA), "bond.EA"},
+          {"EI", "EI_nN_nm2", "nN nm^2", nN(s.EI), "bond.EI"},
+          {"GJ", "GJ_nN_nm2", "nN nm^2", nN(s.GJ), "bond.GJ"},
           {"stretch-twist coupling", "coupling_nN_nm", "nN nm", nN(s.coupling)},
           {"natural twist", "natural_twist", "rad/nm", s.natural_twist},
           {"Poisson contraction", "poisson", "", s.poisson},
@@ -69,7 +71,8 @@ void print_result(const Calibration& c, const Grade& grade, const std::string& o
         "  the mirror image of ({},{}): coupling, natural twist and terms odd in shear have the other sign\n",
         tube.m, tube.n);
   for (const Number& n : numbers_of(c))
-    fmt::print("  {:<26} {:>26} {}\n", n.words, measured_text(n.value.value, n.value.standard_error), n.unit);
+    fmt::print("  {:<26} {:>26} {}\n", n.words,
+               measured_text({n.in_set, n.value.value, "", n.value.standard_error, "", "", ""}), n.unit);
   fmt::print("  line law: largest error {:.1e} of the well; published form {:.1e}", c.line.error, c.paper.error);
   if (c.universal) fmt::print("; universal law {:.1e}", c.universal_error);
   fmt::print("\n");
@@ -94,6 +97,8 @@ nlohmann::ordered_json result_json(const Calibration& c, const Grade& grade, con
   for (const Number& n : numbers_of(c)) {
     j[n.key] = n.value.value;
     j[std::string(n.key) + "_standard_error"] = n.value.standard_error;
+    if (const double spread = potential_spread(n.in_set); spread > 0)
+      j[std::string(n.key) + "_potential_error"] = spread * n.value.value;
   }
   j["line_error"] = c.line.error;
   j["paper_error"] = c.paper.error;
@@ -154,7 +159,8 @@ KnownEnvelope envelope_of(const std::string& name, const CalibrationRequest& req
   return known;
 }
 
-// Of the thinnest tubes, whose windows are too wide for the polynomial: the harmonic bond serves them.
+// Leaves out the bond of the thinnest tubes, whose windows are too wide for the polynomial; they have the harmonic
+// one.
 void leave_out_unusable_bond(Calibration& c, const std::string& text, const std::string& path) {
   try {
     parameters_of_text(text, path);
@@ -165,8 +171,8 @@ void leave_out_unusable_bond(Calibration& c, const std::string& text, const std:
   }
 }
 
-// Of the set as every other command will read it. A set that they would refuse, or whose contact is another one, is
-// not written.
+// The grade of the set as other commands will read it. A set that they would refuse, or whose contact is another
+// one, is not written.
 Grade usable_grade(const std::string& text, const std::string& path, Chirality tube) {
   const auto refuse = [&](const std::string& why) {
     throw InputError({"", 0, "--chirality"},
@@ -181,6 +187,12 @@ Grade usable_grade(const std::string& text, const std::string& path, Chirality t
   }
   const Grade grade = grade_of(set);
   if (line_fit_error(set) > unusable_contact) refuse(grade.words());
+  const double wall = wall_stiffness(set);
+  if (!(wall >= softest_wall && wall <= stiffest_wall))
+    throw InputError({"", 0, "--potential"},
+                     fmt::format("makes a wall of {:.4g} N/m, EA/(2 pi r), and one of carbon has {:.0f} to {:.0f}",
+                                 wall, softest_wall, stiffest_wall),
+                     "check its parameters and their units, eV and Angstrom; nothing was written");
   return grade;
 }
 

@@ -264,6 +264,24 @@ void renew_wells(const Settings& s, const FitResult& fit, ParameterSet& set) {
         q = {key, value, q.unit, fit.rms * std::fabs(value), "derived", "", "of the law; error by rms"};
 }
 
+// The shear stiffness of a thin tube follows from EA and GJ (add_bond in calibration.cpp).
+void renew_shear(const Settings& s, ParameterSet& set) {
+  const auto is_free = [&](const char* name) {
+    return std::find(s.free.begin(), s.free.end(), name) != s.free.end();
+  };
+  if (!is_free("EA") && !is_free("GJ")) return;
+  const auto value = [&](const char* key) { return find_quantity(set, key)->value * units::nN_nm; };
+  BondStiffness bond;
+  bond.stretch = value("bond.EA");
+  bond.twist = value("bond.GJ");
+  const double relative_error = find_quantity(set, "bond.GJ")->standard_error.value_or(0) / value("bond.GJ");
+  for (Quantity& q : set.quantities)
+    if (q.key == "bond.kGA" && q.origin == "derived") {
+      q.value = thin_tube_shear(bond, set.radius) * units::eV_in_nN_nm;
+      q.standard_error = relative_error * units::nN_nm * q.value;
+    }
+}
+
 // The groups of the base that name a fitted number are replaced by one of this fit.
 void renew_correlations(const Settings& s, const FitModel& m, const FitResult& fit, ParameterSet& set) {
   Correlation fitted;
@@ -304,6 +322,7 @@ std::string new_set(const Settings& s, const FitModel& m, const FitResult& fit, 
       q.note = "fitted to " + fs::path(a.data).filename().string();
     }
   if (s.model == "line") renew_wells(s, fit, set);
+  if (s.model == "stiffness") renew_shear(s, set);
   renew_correlations(s, m, fit, set);
   set.name = fs::path(a.out).stem().string();
   set.provenance.emplace_back("fit_command", a.command);
@@ -373,7 +392,9 @@ int fit_command(const FitArguments& a) {
   }
   if (!fit.usable()) return 3;
   if (!a.out.empty()) {
-    write_file_atomically(a.out, new_set(s, m, fit, a));
+    const std::string text = new_set(s, m, fit, a);
+    parameters_of_text(text, a.out);  // throws where other commands would refuse it
+    write_file_atomically(a.out, text);
     if (!a.json) fmt::print("Set: {}\n", a.out);
   }
   return 0;

@@ -228,9 +228,8 @@ void print_set(const ParameterSet& set) {
     const std::size_t dot = q.key.rfind('.');
     if (q.key.substr(0, dot) != section) fmt::print("\n[{}]\n", section = q.key.substr(0, dot));
     fmt::print("  {:<18}{:>26} {:<9} {:<11}{}\n", q.key.substr(dot + 1),
-               q.standard_error ? measured_text(q.value, *q.standard_error)
-                                : fmt::format("{:.7g}, error not known", q.value),
-               q.unit, q.origin, q.note);
+               q.standard_error ? measured_text(q) : fmt::format("{:.7g}, error not known", q.value), q.unit,
+               q.origin, q.note);
   }
   const Section s = effective_section(set);
   fmt::print(

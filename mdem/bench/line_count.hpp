@@ -21,7 +21,7 @@ int radial_lanes(Interaction::Precision precision);
 
 // Floating-point operations (a fused multiply-add is two) of one evaluation, that is of two nodes of two elements:
 // 3 for the squared distance, those of the polynomial (radial_table.hpp) and 3 for the two sums of forces. Not
-// counted: look-ups, comparisons, selections, what is done once for a node of a neighbour, and energies, which are
+// counted: look-ups, comparisons, selections, work done once for a node of a neighbour, and energies, which are
 // only summed where they are reported.
 int radial_operations(Interaction::Precision precision);
 

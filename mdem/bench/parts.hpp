@@ -16,7 +16,7 @@ struct PartCost {
 };
 
 // The costs of 1, 2, 4 ... up to `most` parts of equal numbers of elements, measured by turns. `across_z`: all cuts
-// are across z; otherwise across the longest side of what is cut.
+// are across z; otherwise across the longest side of each piece.
 std::vector<std::vector<PartCost>> cost_of_parts(const Topology& topology, const Interaction& interaction,
                                                  const State& state, int most, bool across_z);
 

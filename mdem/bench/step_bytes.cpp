@@ -6,7 +6,7 @@ double step_bytes(const Simulation& simulation) {
   constexpr int state = 3 + 4 + 3 + 3, axis = 3, force = 3 + 3;  // numbers of an element
   const Interaction& in = simulation.interaction();
   const auto elements = static_cast<double>(simulation.state().size());
-  // What acts in the kick needs the total force, which is then stored.
+  // Terms that act in the kick need the total force, which is then stored.
   const bool stored = simulation.engine().terms().act_in_kick();
   double sum = 2.0 * (state + (stored ? force : 0)) * sizeof(double) * elements;
   if (!in.has_contact()) return sum;

@@ -53,7 +53,7 @@ StepCost cost_of_step(const Scene& scene, const Prepared& prepared, double after
   simulation.steps(std::max(5L, steps / 10), false);  // warm caches
   StepCost c;
   const StepTiming before = timing(simulation, 0, 0);
-  // Counted a few times on the way: what is within reach changes between two builds of the list.
+  // Counted a few times on the way: the pairs within reach change between two builds of the list.
   const long samples = std::min(10L, steps);
   double wall = 0, processor = 0;
   for (long part = 0; part < samples; ++part) {

@@ -46,7 +46,7 @@ struct Rates {
 // `prepared`: the scene that was measured.
 Rates rates_of(const StepCost& cost, const Prepared& prepared);
 
-// Of contact: 1e9/s.
+// Operations of the contact, 1e9/s.
 double operations_per_ns(const StepCost& cost, const Interaction& interaction);
 
 // `scene`: its name.

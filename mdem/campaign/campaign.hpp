@@ -49,7 +49,7 @@ void create_campaign(const CampaignDirectory& dir, const Sweep& sweep, const std
 // The sweep as the directory has it, with names and values of its points.
 Sweep read_campaign(const CampaignDirectory& dir);
 
-// Which rows of a log the table shows.
+// Chooses the rows of a log that the table shows.
 struct GatherOptions {
   double mean_ps = 0;                // mean over the last rows of so much time; 0: the last row
   bool series = false;               // every row of every log instead

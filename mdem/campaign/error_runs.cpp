@@ -56,10 +56,11 @@ std::vector<VariedNumber> varied_numbers(const Scene& scene, int tubes) {
                          std::string correlated) {
       if (!(sigma > 0)) return;
       const std::string folder = (k > 0 ? fmt::format("type-{}-", k) : "") + name;
-      all.push_back({{name + of, folder + "-plus", folder + "-minus", sigma, std::max(least_step, sigma)},
-                     k,
-                     std::move(keys),
-                     std::move(correlated)});
+      all.push_back(
+          {{name + of, folder + "-plus", folder + "-minus", sigma, std::max(least_step, sigma), correlated},
+           k,
+           std::move(keys),
+           std::move(correlated)});
     };
     const auto relative = [&](const char* key) {
       const Quantity* q = find_quantity(set, key);

@@ -23,7 +23,7 @@ std::vector<std::vector<double>> correlation_of(const std::vector<VariedNumber>&
 
 class ErrorRuns {
  public:
-  // time_step: of the run that is repeated, ps. again: also what is finished.
+  // time_step: of the run that is repeated, ps. again: finished runs too.
   ErrorRuns(const RunDirectory& base, const Scene& scene, double time_step, bool again)
       : base_(base), scene_(scene), time_step_(time_step), again_(again) {}
 

@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What a failed run said last, without the place of its files, which are gone.
+// The last message of a failed run, without the place of its files, which are gone.
 std::string last_line(std::string said) {
   while (!said.empty() && said.back() == '\n') said.pop_back();
   const std::size_t begin = said.find_last_of('\n');

@@ -17,8 +17,8 @@ std::string duration_text(double seconds);  // "12 min"
 // A run that was begun goes on, another one is started, on one thread. Negative `until_ps`: to the scene's end.
 int run_or_resume(const RunDirectory& dir, const Scene& scene, double until_ps, OnLimit on_limit);
 
-// Sends what is printed to the file `messages` and keeps other processes from the same work, by a lock on it: waits
-// for them, or returns point_busy. Returns the exit code of `work`, or that of what it throws.
+// Prints to the file `messages` and keeps other processes from the same work, by a lock on it: waits for them, or
+// returns point_busy. Returns the exit code of `work`, or that of its exception.
 int in_a_process(const std::string& messages, bool wait, const std::function<int()>& work);
 
 }  // namespace ropewalk

@@ -59,7 +59,10 @@ RunCurve curve_of(const RunGroup& group, bool pictured) {
   }
   if (logs.empty()) throw InputError({group.runs.front().log(), 0, ""}, "has no rows", "run the scene further");
   RunCurve curve = mean_of(group.name, logs);
-  curve.remark = remark_of(group.runs);
+  if (curve.log.empty())
+    throw InputError({group.runs.front().log(), 0, ""}, "has no row at the same time as the others of its kind",
+                     "compare runs of one log interval");
+  curve.remark = remark_of(group.runs) + (curve.remark.empty() ? "" : "; " + curve.remark);
   if (!pictured) return curve;
   const RunDirectory& first = group.runs.front();
   Scene scene = read_run_scene(first);

@@ -29,8 +29,8 @@ struct Threshold {
   double middle() const { return 0.5 * (below + above); }
 };
 
-// Where the square of the rate goes to zero: value = critical + slope rate^2, by least squares over the runs that
-// passed. An undamped mode w of a load M grows with w^2 = (M - Mc)/slope.
+// The load at which the square of the rate is zero: value = critical + slope rate^2, by least squares over the runs
+// that passed. An undamped mode w of a load M grows with w^2 = (M - Mc)/slope.
 struct GrowthThreshold {
   double critical = 0, error = 0;
   std::size_t runs = 0;

@@ -37,7 +37,7 @@ Scene ThresholdSearch::scene_at(const SweepPoint& p, double value) const {
 void ThresholdSearch::begin(bool force) {
   create_campaign(dir_, sweep_, {}, force);
   refuse_other_scenes(force);
-  // Of its own table, where runs are not in the directory.
+  // Runs of its own table that are not in the directory.
   if (fs::exists(dir_.trials())) {
     const auto [others, all] = take(dir_.trials());
     if (others > 0 && !force)

@@ -19,13 +19,13 @@ class ThresholdSearch {
   // Takes trials of an earlier search (trials.csv). Returns how many of the file are of other scenes, and all.
   std::pair<std::size_t, std::size_t> take(const std::string& trials);
 
-  // `ended` hears of each point, and whether its search came to its end. Tables and page are written anew each
+  // `ended` hears of each point, and whether its search came to its end. Tables and page are written again each
   // time. Ends early by io/stop_signals.hpp.
   void go(int jobs, const std::function<void(const SweepPoint& point, bool well)>& ended);
 
   std::size_t size() const { return points_.size(); }
   std::vector<PhasePoint> results() const { return phase_points(dir_, sweep_, points_, known_); }
-  // What is known of a point, in words.
+  // The verdict on a point, in words.
   std::string words_of(const SweepPoint& point) const;
 
  private:

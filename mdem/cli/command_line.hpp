@@ -11,7 +11,7 @@
 
 namespace ropewalk {
 
-// One line on what is wrong, with the nearest verb or option where one was mistyped. `program` as it is typed.
+// The fault in one line, with the nearest verb or option where one was mistyped. `program` as it is typed.
 std::string usage_error(const CLI::App& app, const CLI::ParseError& error, const std::string& program);
 
 // The values that an option takes; the error names them.

@@ -175,7 +175,7 @@ struct BenchArguments {
   bool json = false;
   int lammps = 0;      // ranks of LAMMPS, measured against as many threads here; 0: only here
   bool plain = false;  // LAMMPS by the plain forms
-  int parts = 0;       // cut the scene into so many, and measure each alone; 0: do not
+  int parts = 0;       // number of parts to cut the scene into, each measured alone; 0: none
 };
 int bench_command(const BenchArguments& arguments);
 int bench_lammps(const BenchArguments& arguments);

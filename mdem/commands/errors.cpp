@@ -17,12 +17,25 @@
 namespace ropewalk {
 namespace {
 
+// No digit of a value beyond two of the error of its fit, or of what it still moves by.
+std::string value_text(double value, double error) {
+  if (!(error > 0)) return fmt::format("{:.6g}", value);
+  const int decimals = 1 - static_cast<int>(std::floor(std::log10(error)));
+  const double unit = std::pow(10.0, decimals);
+  return decimals > 0 ? fmt::format("{:.{}f}", value, std::min(decimals, 9))
+                      : fmt::format("{:.0f}", std::round(value * unit) / unit);
+}
+
 void print_table(const RunErrors& errors, const std::vector<LogRow>& log) {
-  fmt::print("{:<26} {:>14} {:>12}   {}\n", "at the end", "value", "std. error", "from");
+  fmt::print(
+      "Errors of the parameters alone: nothing of time step, elements, rate of loading or noise is in them.\n"
+      "{:<26} {:>14} {:>10} {:>11} {:>9}   {}\n",
+      "at the end", "value", "± fit", "± potential", "moves by", "the fit's from");
   for (std::size_t k = 0; k < observables().size(); ++k) {
     const Observable& o = observables()[k];
     if (o.name == "step" || o.name == "time_ps") continue;
-    const ResultError e = errors.of(log.size() - 1, [k](const LogRow& row) { return row.values()[k]; });
+    const RunErrors::Value value = [k](const LogRow& row) { return row.values()[k]; };
+    const ResultError e = errors.of(log.size() - 1, value);
     if (!std::isfinite(e.error) || e.error == 0) continue;
     double sum = 0;
     for (const double part : e.parts) sum += part * part;
@@ -33,7 +46,9 @@ void print_table(const RunErrors& errors, const std::vector<LogRow>& log) {
     std::string from;
     for (const auto& [share, name] : shares)
       if (share > 0.05) from += fmt::format("{}{} {:.0f} %", from.empty() ? "" : ", ", name, 100 * share);
-    fmt::print("{:<26} {:>14.6g} {:>12.2g}   {}{}\n", o.name, log.back().values()[k], e.error, from,
+    const double moves = movement(log, value);
+    fmt::print("{:<26} {:>14} {:>10.2g} {:>11.2g} {:>9.2g}   {}{}\n", o.name,
+               value_text(value(log.back()), std::max(e.error, moves)), e.error, e.potential, moves, from,
                e.linear ? "" : "; not linear: an estimate of its size only");
   }
 }
@@ -87,13 +102,15 @@ int errors_command(const ErrorsArguments& a) {
   for (const VariedNumber& s : sources) described.push_back(s.error);
   const RunErrors errors(dir.path + "/errors", described, correlation_of(sources, scene), log);
   write_file_atomically(dir.path + "/errors/errors.json", run_errors_json(errors, log));
-  write_file_atomically(dir.file("errors.csv"), run_errors_csv(errors, log));
+  write_file_atomically(dir.file("errors.csv"), run_errors_csv(errors, log, &ResultError::error));
+  write_file_atomically(dir.file("errors-potential.csv"), run_errors_csv(errors, log, &ResultError::potential));
   write_report(dir, scene, prepared);
   if (a.json) {
     fmt::print("{}", run_errors_json(errors, log));
   } else {
     print_table(errors, log);
-    fmt::print("Errors of every row: {}; bands in {}\n", dir.file("errors.csv"), dir.report());
+    fmt::print("Errors of every row: {} and {}; bands in {}\n", dir.file("errors.csv"),
+               dir.file("errors-potential.csv"), dir.report());
   }
   return 0;
 }

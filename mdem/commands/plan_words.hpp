@@ -1,4 +1,4 @@
-// What `plan` prints.
+// The output of `plan`.
 #pragma once
 
 #include "plan/planner.hpp"
@@ -7,7 +7,7 @@ namespace ropewalk {
 
 // All models that were tried. `seconds`: processor time of all pilots.
 void print_pilots(const Plan& plan, double seconds);
-// The chosen one, and what it promises.
+// The chosen model and its promised errors.
 void print_choice(const Plan& plan, const PlanRequest& request);
 
 }  // namespace ropewalk

@@ -9,7 +9,7 @@ namespace ropewalk {
 // the PATH.
 std::string find_program(const std::string& folder, const std::string& name);
 
-// Where argv[1] names a sibling, becomes it; returns otherwise. Throws InputError where it is not to be found.
+// Becomes the sibling that argv[1] names; returns if it names none. Throws InputError where it is not to be found.
 void hand_over_to_sibling(char** argv);
 
 }  // namespace ropewalk

@@ -1,4 +1,4 @@
-// What `sweep` says while its points run.
+// The messages of `sweep` while its points run.
 #pragma once
 
 #include "campaign/sweep_runs.hpp"

@@ -7,14 +7,14 @@
 
 namespace ropewalk {
 
-// Makes the directory for a scene at time zero. Throws InputError for what LAMMPS lacks. `force` replaces an
-// earlier run there.
+// Makes the directory for a scene at time zero. Throws InputError for a scene that LAMMPS cannot run. `force`
+// replaces an earlier run there.
 void export_scene(const Scene& scene, const RunDirectory& to, bool force, RunListener& listener);
 
 // Makes the directory for a run where it stands.
 void export_run(const RunDirectory& from, const RunDirectory& to, bool force, RunListener& listener);
 
-// Where a run of this scene, and no other, stands.
+// The checkpoint of a run of this scene. Throws InputError for a run of another scene.
 RunCheckpoint checkpoint_to_export(const RunDirectory& dir, const Scene& scene, RunListener& listener);
 
 }  // namespace ropewalk

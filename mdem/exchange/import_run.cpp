@@ -111,7 +111,7 @@ class Import {
     for (const std::string& line : watch_.check(prepared_.topology, state, list, drift, true)) listener_.tell(line);
   }
 
-  // What the forces of this moment say: LAMMPS keeps no means.
+  // Readings by the forces of this moment: LAMMPS keeps no means.
   EndReadings readings_at(const State& state) {
     gauges_.follow(state);
     gauges_.forget_work();

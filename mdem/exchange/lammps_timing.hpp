@@ -22,8 +22,8 @@ struct StepsTime {
 struct LammpsTiming {
   StepsTime native, lammps;
 };
-// The shortest times of so many rounds of steps from the start. `lammps`: the program lmp-ropewalk. `plain`: LAMMPS
-// by the plain forms. Throws InputError where LAMMPS fails.
+// The shortest times of `rounds` rounds of steps from the start. `lammps`: the program lmp-ropewalk. `plain`:
+// LAMMPS by the plain forms. Throws InputError where LAMMPS fails.
 LammpsTiming time_beside_lammps(Scene scene, const std::string& lammps, int ranks, long steps, bool plain,
                                 int rounds);
 

@@ -1,4 +1,4 @@
-// File descriptors, for what the standard streams do not offer: locks, the way to the disk, whole errors.
+// File descriptors, for features that the standard streams lack: locks, the way to the disk, whole errors.
 #pragma once
 
 #include <unistd.h>

@@ -20,7 +20,7 @@ namespace ropewalk {
 namespace {
 
 constexpr const char* part = ".part-";                          // of the name of a file that is being written
-constexpr std::size_t longest_stream = std::size_t{256} << 20;  // bytes of what is no regular file
+constexpr std::size_t longest_stream = std::size_t{256} << 20;  // bytes of a file that is not a regular one
 
 const char* remedy_for(int code) {
   switch (code) {

@@ -32,6 +32,17 @@ void grade_stiffness(const ParameterSet& set, Grade& grade) {
   }
 }
 
+// Carbon in any potential has 250 to 355 N/m; 23, the ratio of two units of energy, lies far outside.
+void grade_wall(const ParameterSet& set, Grade& grade) {
+  const double wall = wall_stiffness(set);
+  if (wall >= softest_wall && wall <= stiffest_wall) return;
+  add(grade, Level::unfit,
+      fmt::format(
+          "EA/(2 pi r) is {:.4g} N/m, and a wall of carbon has {:.0f} to {:.0f}: is a unit of the potential "
+          "or of the set wrong?",
+          wall, softest_wall, stiffest_wall));
+}
+
 void grade_width(const ParameterSet& set, Grade& grade) {
   const double diameter = 2 * set.radius;
   const double shell = 2 * set.bond.bend / (set.bond.stretch * set.radius * set.radius);
@@ -103,9 +114,14 @@ std::string Grade::words() const {
 Grade grade_of(const ParameterSet& set) {
   Grade grade;
   grade_stiffness(set, grade);
+  grade_wall(set, grade);
   grade_width(set, grade);
   grade_contact(set, grade);
   return grade;
+}
+
+double wall_stiffness(const ParameterSet& set) {
+  return set.bond.stretch * units::eV_in_nN_nm / (2 * units::pi * set.radius);
 }
 
 // The file format keeps it in the note of K: "fit error 1.4e-03 of the well".

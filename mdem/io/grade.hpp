@@ -19,9 +19,14 @@ struct Grade {
 };
 
 // good: stiffnesses known to 1 %, the line law within 1 % of the well of the surface integral, 0.5 to 2 nm wide.
-// unfit: the line law off by more than a tenth of the well, or wider than 4.2 nm, where tubes may collapse by
-// themselves (J. A. Elliott et al., Phys. Rev. Lett. 92, 095501 (2004), DOI 10.1103/PhysRevLett.92.095501).
+// unfit: a wall that is not of carbon, the line law off by more than a tenth of the well, or wider than 4.2 nm,
+// where tubes may collapse by themselves (J. A. Elliott et al., Phys. Rev. Lett. 92, 095501 (2004),
+// DOI 10.1103/PhysRevLett.92.095501).
 Grade grade_of(const ParameterSet& set);
+
+// EA/(2 pi r), N/m: the stiffness of the sheet that the tube is rolled from.
+double wall_stiffness(const ParameterSet& set);
+inline constexpr double softest_wall = 200, stiffest_wall = 500;  // N/m, of carbon
 
 // Largest error of the set's own line law against the surface integral, over the well, as the set states it.
 // Negative: it states none.

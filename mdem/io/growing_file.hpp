@@ -1,5 +1,5 @@
 // A file that grows while a run goes on: log and frames. A checkpoint marks how far it had come, so that a resumed
-// run finds out whether all of that has reached the disk, and cuts off what was written afterwards.
+// run finds out whether all of that has reached the disk, and cuts off the rest.
 #pragma once
 
 #include <cstdint>

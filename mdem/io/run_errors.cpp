@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -9,6 +10,7 @@
 
 #include "io/files.hpp"
 #include "io/plain_text.hpp"
+#include "io/potential_spread.hpp"
 #include "model/error.hpp"
 
 namespace ropewalk {
@@ -66,12 +68,36 @@ ResultError RunErrors::of(std::size_t k, const Value& value) const {
     }
     out.parts.push_back(part);
   }
-  double variance = 0;
+  double variance = 0, between = 0;
   for (std::size_t i = 0; i < out.parts.size(); ++i)
-    for (std::size_t j = 0; j < out.parts.size(); ++j) variance += out.parts[i] * correlation_[i][j] * out.parts[j];
+    for (std::size_t j = 0; j < out.parts.size(); ++j) {
+      const double product = out.parts[i] * out.parts[j];
+      variance += product * correlation_[i][j];
+      between += product / (sources_[i].sigma * sources_[j].sigma) *
+                 potential_covariance(sources_[i].key, sources_[j].key);
+    }
+  out.potential = std::isfinite(variance) ? std::sqrt(std::max(0.0, between)) : std::nan("");
   out.error = std::sqrt(std::max(0.0, variance));
   if (!std::isfinite(variance)) out.error = std::numeric_limits<double>::quiet_NaN();
   return out;
+}
+
+double movement(const std::vector<LogRow>& log, const RunErrors::Value& value) {
+  const std::size_t n = std::min(log.size(), std::max<std::size_t>(8, log.size() / 10));
+  if (n < 4) return 0;
+  const std::size_t first = log.size() - n;
+  double t = 0, y = 0, tt = 0, ty = 0;
+  const auto rows = static_cast<double>(n);
+  for (std::size_t k = first; k < log.size(); ++k) t += log[k]["time_ps"] / rows, y += value(log[k]) / rows;
+  for (std::size_t k = first; k < log.size(); ++k) {
+    const double from = log[k]["time_ps"] - t;
+    tt += from * from;
+    ty += from * (value(log[k]) - y);
+  }
+  double most = 0;
+  for (std::size_t k = first; k < log.size(); ++k)
+    most = std::max(most, std::fabs(value(log[k]) - y - (tt > 0 ? ty / tt : 0) * (log[k]["time_ps"] - t)));
+  return most;
 }
 
 RunErrors read_run_errors(const std::string& run_directory, const std::vector<LogRow>& log) {
@@ -83,8 +109,11 @@ RunErrors read_run_errors(const std::string& run_directory, const std::vector<Lo
     const Json j = Json::parse(read_file(path));
     if (j.at("format") != format_name) throw std::runtime_error("another format");
     for (const Json& s : j.at("sources")) {
-      sources.push_back({s.at("name"), s.at("plus"), s.at("minus"), s.at("standard_error"), s.at("step")});
-      for (const std::string& text : {sources.back().name, sources.back().plus, sources.back().minus})
+      const std::string name = s.at("name");  // files of 0.2 have it alone
+      sources.push_back({name, s.at("plus"), s.at("minus"), s.at("standard_error"), s.at("step"),
+                         s.value("key", "bond." + name.substr(0, name.find(' ')))});
+      const ErrorSource& read = sources.back();
+      for (const std::string& text : {read.name, read.plus, read.minus, read.key})
         if (has_control_character(text)) throw std::runtime_error("a control character");
     }
     correlation = j.at("correlation").get<std::vector<std::vector<double>>>();
@@ -100,8 +129,12 @@ RunErrors read_run_errors(const std::string& run_directory, const std::vector<Lo
 std::string run_errors_json(const RunErrors& errors, const std::vector<LogRow>& log) {
   Json sources = Json::array(), results = Json::object();
   for (const ErrorSource& s : errors.sources())
-    sources.push_back(
-        {{"name", s.name}, {"standard_error", s.sigma}, {"step", s.step}, {"plus", s.plus}, {"minus", s.minus}});
+    sources.push_back({{"name", s.name},
+                       {"key", s.key},
+                       {"standard_error", s.sigma},
+                       {"step", s.step},
+                       {"plus", s.plus},
+                       {"minus", s.minus}});
   for (std::size_t k = 0; k < observables().size() && !log.empty(); ++k) {
     const std::string& name = observables()[k].name;
     if (is_clock(name)) continue;
@@ -110,6 +143,8 @@ std::string run_errors_json(const RunErrors& errors, const std::vector<LogRow>& 
     for (std::size_t i = 0; i < e.parts.size(); ++i) parts[errors.sources()[i].name] = number(e.parts[i]);
     results[name] = {{"value", number(log.back().values()[k])},
                      {"standard_error", number(e.error)},
+                     {"potential_error", number(e.potential)},
+                     {"moves_by", number(movement(log, column(k)))},
                      {"linear", e.linear},
                      {"parts", parts}};
   }
@@ -121,13 +156,13 @@ std::string run_errors_json(const RunErrors& errors, const std::vector<LogRow>& 
          "\n";
 }
 
-std::string run_errors_csv(const RunErrors& errors, const std::vector<LogRow>& log) {
+std::string run_errors_csv(const RunErrors& errors, const std::vector<LogRow>& log, double ResultError::*which) {
   std::string text = log_header();
   if (text.empty() || text.back() != '\n') text += '\n';
   for (std::size_t k = 0; k < log.size(); ++k) {
     LogRow row = log[k];
     for (std::size_t i = 0; i < observables().size(); ++i)
-      if (!is_clock(observables()[i].name)) row.values()[i] = errors.of(k, column(i)).error;
+      if (!is_clock(observables()[i].name)) row.values()[i] = errors.of(k, column(i)).*which;
     text += log_line(row);
     if (text.back() != '\n') text += '\n';
   }

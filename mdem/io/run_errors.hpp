@@ -7,6 +7,9 @@
 //
 // with rho the correlations of the sources. Where the two runs do not lie on either side of the first, f is not
 // linear in p; half of their distance from it is then added to g_i, and the result is marked.
+//
+// A second error follows from how far potentials lie apart (potential_spread.hpp), with C in the place of sigma rho
+// sigma. Both are of the parameters alone: time step, elements, rate of loading and noise are not in them.
 #pragma once
 
 #include <functional>
@@ -23,10 +26,12 @@ struct ErrorSource {
   std::string plus, minus;  // directories of the runs, within that of the errors
   double sigma = 0;         // relative standard error
   double step = 0;          // h
+  std::string key;          // of the quantity, "bond.GJ"; empty: independent of all others
 };
 
 struct ResultError {
   double error = 0;
+  double potential = 0;  // the error by the spread between potentials
   bool linear = true;
   std::vector<double> parts;  // g_i
 };
@@ -54,11 +59,15 @@ class RunErrors {
   std::vector<std::pair<std::vector<LogRow>, std::vector<LogRow>>> runs_;  // plus and minus, as long as log_
 };
 
+// How far a value still moves at the end: the largest distance of its last rows, a tenth of the log and at least
+// eight, from a straight line through them. 0 for fewer than four rows.
+double movement(const std::vector<LogRow>& log, const RunErrors::Value& value);
+
 // errors/errors.json in the directory of a run; none where it is missing.
 RunErrors read_run_errors(const std::string& run_directory, const std::vector<LogRow>& log);
 // Writes the file that read_run_errors reads, with the errors of all observables at the end.
 std::string run_errors_json(const RunErrors& errors, const std::vector<LogRow>& log);
-// As log.csv, with a standard error in the place of each value but those of step and time.
-std::string run_errors_csv(const RunErrors& errors, const std::vector<LogRow>& log);
+// As log.csv, with an error in the place of each value but those of step and time: `error` or `potential`.
+std::string run_errors_csv(const RunErrors& errors, const std::vector<LogRow>& log, double ResultError::*which);
 
 }  // namespace ropewalk

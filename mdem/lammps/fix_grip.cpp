@@ -60,7 +60,7 @@ void FixGrip::post_neighbor() {
   forces_ = Forces(atom_.size());
 }
 
-// Where the engine leads, LAMMPS's arrays are behind.
+// The engine that leads; LAMMPS's arrays are then behind. Null: none leads.
 RankEngine* FixGrip::leading_engine() const {
   RankEngine* engine = engine_of(lmp);
   return engine && engine->leads() ? engine : nullptr;

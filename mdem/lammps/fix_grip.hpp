@@ -19,7 +19,7 @@ class FixGrip : public LMP::Fix {
   void setup(int vflag) override { post_force(vflag); }
   void post_force(int vflag) override;
 
-  // Of the elements that it acts on, on this rank.
+  // Atoms of the elements that it acts on, on this rank.
   const std::vector<int>& atoms() const { return atom_; }
   // Work per time of the loads on this rank's elements, eV/ps.
   double own_power();

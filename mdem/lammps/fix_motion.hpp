@@ -60,7 +60,7 @@ class FixMotion : public LMP::Fix {
   State moved_;  // buffer of move()
   std::vector<double> row_;
   LMP::bigint row_step_ = -1;
-  // Where the run goes on: the skin of the list (nm; 0: as the engine chooses) and the memories of force terms.
+  // For a run that goes on: the skin of the list (nm; 0: as the engine chooses) and the memories of force terms.
   double first_skin_ = 0;
   std::vector<double> first_memory_;
 };
@@ -76,7 +76,7 @@ class FixNve : public FixMotion {
 
  private:
   bool engine_may_lead() const override { return only_known_fixes(); }
-  void carry();  // the forces along with the elements, into what is written next
+  void carry();  // the forces along with the elements, into the next output
   void kick(double dt, double time);
   double push(double alpha, double TubeType::*inertia, double dt, double** velocity, double** force) const;
   void check() const;

@@ -65,7 +65,7 @@ class File {
   int file_;
 };
 
-// What `f` complains of; empty: nothing.
+// The complaint of `f`; empty: none.
 template <class F>
 std::string trouble_of(const F& f) {
   try {
@@ -252,7 +252,7 @@ void FixStates::create(const std::vector<double>& records) {
 
 // --- the file -----------------------------------------------------------------------------------------
 
-// Keeps the states up to now of a file with which the run goes on; any other file begins anew.
+// Keeps the states up to now of a file that the run continues; any other file is overwritten.
 void FixStates::begin_file(const std::string& start) {
   std::string trouble;
   if (comm->me == 0)

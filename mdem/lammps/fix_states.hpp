@@ -1,5 +1,5 @@
 // fix ID all mdem/states EVERY FILE [from START]: makes the elements of the last state in START, and adds their
-// states to FILE every so many steps and at the end of a run. The files are those of scene/lammps_states.hpp. Each
+// states to FILE every EVERY steps and at the end of a run. The files are those of scene/lammps_states.hpp. Each
 // rank reads and writes a slice of them, of elements with consecutive numbers; messages bring elements from and to
 // their owners.
 //
@@ -19,7 +19,7 @@ class FixStates : public LMP::Fix {
   void end_of_step() override;
   void post_run() override;
 
-  // Where the run began; null if this fix has not made the elements.
+  // The header of the state that the run began with; null if this fix has not made the elements.
   const StateHeader* began() const { return has_begun_ ? &began_.header : nullptr; }
   // The memories of the force terms there.
   const std::vector<double>& memory() const { return memory_; }

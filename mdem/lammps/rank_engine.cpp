@@ -219,7 +219,7 @@ bool RankEngine::stale() {
   return list_.stale(all);
 }
 
-// The mean of what the ranks find best, by their elements.
+// The mean of the best skins of all ranks, weighted by their elements.
 double RankEngine::choose_skin() {
   if (!engine_.contact() || steps_ == 0) return list_.skin;
   double best = engine_.contact()->best_skin(topology_, list_.skin, steps_);

@@ -2,7 +2,7 @@
 // bond belongs to the owner of its lower element; LAMMPS brings the forces on ghosts back to their owners. LAMMPS
 // makes no list of pairs. Its elements are exchanged when the engine's list asks for it, on all ranks at once.
 //
-// Where nothing but our own fixes acts on elements, the engine leads: its state of own elements is the one that
+// If nothing but our own fixes acts on elements, the engine leads: its state of own elements is the one that
 // moves, by its own forces. LAMMPS's arrays are up to date in every step for the shared elements alone, which are
 // ghosts of other ranks or have loads; for all of them before an exchange and an output. Keeping both copies of all
 // elements in every step would cost as much as the bonds.
@@ -19,7 +19,7 @@
 
 namespace ropewalk::lammps {
 
-// What the ranks know of their elements, joined by one message.
+// Joins what the ranks know of their elements, by one message.
 class AllRanks : public AllProcesses {
  public:
   explicit AllRanks(MPI_Comm world);
@@ -60,7 +60,7 @@ class RankEngine {
   // After an exchange: these atoms are shared; ghosts among them do not count.
   void share_none();
   void share(const int* atoms, int count);
-  // Whether elements have to be exchanged and the list built anew, after a move. All ranks.
+  // Whether, after a move, elements must be exchanged and the list rebuilt. All ranks.
   bool stale();
   // The skin of the next list, nm. All ranks, before ghosts are chosen.
   double choose_skin();
@@ -75,7 +75,7 @@ class RankEngine {
   std::vector<double> memory() const;
   void set_memory(std::vector<double> memory) { first_memory_ = std::move(memory); }
 
-  // Of the last evaluation, of this rank's pairs and bonds.
+  // Energies of this rank's pairs and bonds in the last evaluation.
   BondEnergy<double> bond_energy() const;
   double contact_energy();  // evaluates the contact again where the last time left it out
   double damping_power() const { return forces_.damping_power; }  // eV/ps
@@ -97,7 +97,7 @@ class RankEngine {
   void take(const Stretch& of);
   void give(const Stretch& of);
   void take_forces(const Stretch& of);
-  void complete_forces();  // those of own elements by what LAMMPS's arrays have in addition
+  void complete_forces();  // adds the forces in LAMMPS's arrays to those of own elements
   const std::vector<Stretch>& shared();
   void evaluate(const State& state, const ForceOptions& options, Forces& out);
 
@@ -109,7 +109,7 @@ class RankEngine {
   std::optional<std::vector<double>> first_memory_;
   Topology topology_;
   State state_;
-  std::vector<Stretch> own_, ghosts_;  // own ones no longer than what stays in the first cache
+  std::vector<Stretch> own_, ghosts_;  // own ones short enough for the first cache
   // Own elements of a tube, likewise, whatever their places in LAMMPS: these change as elements come and go, and bits
   // of the motion must not depend on that.
   std::vector<Segment> moved_;

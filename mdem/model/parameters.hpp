@@ -78,7 +78,7 @@ struct Validity {
   }
 };
 
-// The `line` law of a set, with what it was integrated from.
+// The `line` law of a set, with the input of its integrals.
 struct LineParameters {
   double surface_density = 0;  // atoms per nm^2
   LineDensity density;         // of two tubes of this kind

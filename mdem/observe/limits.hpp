@@ -95,8 +95,8 @@ struct Watched {
 // eV/nm^3, for a tube of this radius (nm).
 double collapse_pressure(double radius);
 
-// The peaks of a state, but for the pressure and what is of the whole run; of equal values the first element's. The
-// list must be up to date; it may be empty.
+// The peaks of a state, without the pressure and the limits of the whole run; of equal values the first element's.
+// The list must be up to date; it may be empty.
 Peaks peaks(const Topology& topology, const State& state, const NeighbourList& list, const Watched& watched);
 Peak pressure_peak(const Topology& topology, const State& state, const Watched& watched);
 

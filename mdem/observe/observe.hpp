@@ -14,7 +14,7 @@
 
 namespace ropewalk {
 
-// Which tubes are internal and outermost, from the untwisted state.
+// The internal and the outermost tubes, from the untwisted state.
 struct RopeShells {
   std::vector<char> internal;   // has six neighbours in the reference state
   std::vector<char> outermost;  // not internal

@@ -48,7 +48,7 @@ struct Groups {
   void join(int i, int j) { parent[root(i)] = root(j); }
 };
 
-// Which triangles lie on each edge: two inside, one on the hull (the other is -1).
+// The triangles on each edge: two inside, one on the hull (the other is -1).
 using Edges = std::map<std::pair<int, int>, std::pair<int, int>>;
 
 Edges edges_of(const std::vector<Triangle>& triangles) {

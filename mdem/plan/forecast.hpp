@@ -1,4 +1,4 @@
-// Which limits of the model a scene will pass, said before it is run.
+// Forecast, before a run, of the limits of the model that a scene will pass.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// Which model a scene needs: the cheapest that holds an error, found by pilots.
+// The model that a scene needs: the cheapest within an error, found by pilots.
 //
 // A pilot is the scene itself, or a smaller one like it (pilot_scene.hpp), run with one model. The planner runs it
 // with the program's default, with the finest model, with every change that makes it cheaper, and with those

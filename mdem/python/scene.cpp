@@ -7,7 +7,7 @@
 namespace ropewalk::python {
 namespace {
 
-// What `ropewalk run` says before it starts.
+// The notes that `ropewalk run` prints before it starts.
 std::vector<std::string> notes_of(const SceneHandle& handle) {
   const std::shared_ptr<const Model> model = handle.model();
   refuse_cooling(model->scene, model->prepared);

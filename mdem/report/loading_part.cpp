@@ -61,7 +61,7 @@ Panel stored(const std::vector<LogRow>& log) {
           against_rotation(log)};
 }
 
-// Per cent of what is stored, from where it is a hundredth of the most.
+// Per cent of the stored energy, once it is a hundredth of its largest value.
 Panel shares(const std::vector<LogRow>& log) {
   const double enough = 0.01 * largest(log, "stored_MJ_per_kg");
   const auto share = [enough](const char* column) -> LogValue {

@@ -63,8 +63,10 @@ LineChart chart_of(const ReportInput& in, const Panel& panel, const Clock& clock
   for (const Trace& trace : panel.traces) {
     ChartLine line{trace.name, x, values_of(in.log, trace.value), trace.colour, trace.dashed, panel.steps};
     if (panel.since_start) take_first_off(line.y);
-    for (std::size_t k = 0; !in.errors.empty() && k < in.log.size(); ++k)
-      line.error.push_back(in.errors.of(k, trace.value).error);
+    for (std::size_t k = 0; !in.errors.empty() && k < in.log.size(); ++k) {
+      const ResultError e = in.errors.of(k, trace.value);
+      line.error.push_back(std::hypot(e.error, e.potential));
+    }
     chart.lines.push_back(std::move(line));
   }
   return chart;

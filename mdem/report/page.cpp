@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "io/potential_spread.hpp"
+
 namespace ropewalk {
 namespace {
 
@@ -131,6 +133,15 @@ std::string measured_text(double value, double error) {
   return fmt::format("{} ± {:.{}f}", number, error, decimals);
 }
 
+std::string measured_text(const Quantity& q, bool and_unit) {
+  std::string text = measured_text(q.value, q.standard_error.value_or(0));
+  if (const double spread = potential_spread(q.key) * std::fabs(q.value); spread > 0) {
+    const double unit = std::pow(10.0, std::floor(std::log10(spread)) - 1);  // of its second digit
+    text += fmt::format(" ± {:g} (potential)", std::round(spread / unit) * unit);
+  }
+  return and_unit && q.unit != "1" ? text + " " + q.unit : text;
+}
+
 std::string facts_part(const std::vector<ReportFact>& facts) {
   std::string html = "<div class=\"scroll\"><table class=\"facts\"><tbody>\n";
   for (const ReportFact& f : facts)
@@ -148,12 +159,14 @@ std::string parameters_part(const std::string& name, const std::string& referenc
   if (parameters.empty()) return html + paragraph("No parameters are listed.");
   html +=
       "<div class=\"scroll\"><table class=\"facts\"><thead><tr><th>Parameter</th><th class=\"number\">Value</th>"
-      "<th>Unit</th><th>Standard error</th><th>Origin</th><th>DOI</th></tr></thead><tbody>\n";
+      "<th>Unit</th><th>Standard error</th><th>Between potentials</th><th>Origin</th><th>DOI</th></tr></thead>"
+      "<tbody>\n";
   for (const Quantity& q : parameters)
     html += fmt::format(
-        "<tr><td>{}</td><td class=\"number\">{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
+        "<tr><td>{}</td><td class=\"number\">{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
         escape_markup(q.key), plain_number(q.value), with_powers(q.unit),
         q.standard_error ? plain_number(*q.standard_error) : "<span class=\"soft\">not published</span>",
+        potential_spread(q.key) > 0 ? number_text(potential_spread(q.key) * std::fabs(q.value), 2) : "",
         escape_markup(q.origin), escape_markup(q.doi));
   return html + "</tbody></table></div>\n";
 }

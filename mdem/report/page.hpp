@@ -36,6 +36,10 @@ std::string data_table(const std::vector<TableColumn>& columns, const char* sour
 // less than half of an error.
 std::string measured_text(double value, double error);
 
+// A number of a set with its errors: "1518.960 ± 0.037 ± 205 (potential)", that of the fit and the spread between
+// potentials. `and_unit`: with its unit, where it has one.
+std::string measured_text(const Quantity& q, bool and_unit = false);
+
 struct ReportFact {
   std::string key, value, remark;  // the remark may be empty
 };

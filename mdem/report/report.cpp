@@ -430,22 +430,27 @@ std::string carried_errors(const ReportInput& in) {
   std::string names;
   for (const ErrorSource& source : in.errors.sources())
     names += fmt::format("{}{} ({:.2g} %)", names.empty() ? "" : ", ", source.name, 100 * source.sigma);
-  std::string html =
-      paragraph("The bands of the charts are standard errors that follow from those of the parameters: " +
-                escape_markup(names) +
-                ". The run was repeated with each of them changed, and errors.csv has all rows. What the model "
-                "itself leaves out "
-                "is not in them.");
+  std::string html = paragraph(
+      "Two standard errors that follow from the parameters alone: ± that of their fits, " + escape_markup(names) +
+      ", and ± that of the interatomic potential, by how far four potentials of carbon lie apart. The bands "
+      "of the charts are both together. The run was repeated with each parameter changed; errors.csv and "
+      "errors-potential.csv have all rows. What the model itself leaves out is not in them, nor are time "
+      "step, length of the elements, rate of loading and noise.");
   std::vector<ReportFact> facts;
   for (std::size_t k = 0; k < observables().size(); ++k) {
     const Observable& o = observables()[k];
     if (o.name == "step" || o.name == "time_ps") continue;
-    const ResultError e = in.errors.of(in.log.size() - 1, [k](const LogRow& row) { return row.values()[k]; });
+    const RunErrors::Value value = [k](const LogRow& row) { return row.values()[k]; };
+    const ResultError e = in.errors.of(in.log.size() - 1, value);
     if (!std::isfinite(e.error) || e.error == 0) continue;
-    facts.push_back(
-        {o.name,
-         fmt::format("{} ± {} {}", number_text(in.log.back().values()[k], 6), number_text(e.error, 2), o.unit),
-         e.linear ? "" : "not linear in the parameters: an estimate of its size only"});
+    const double moves = movement(in.log, value);
+    std::string remark = e.linear ? "" : "not linear in the parameters: an estimate of its size only";
+    if (moves > e.error)
+      remark += fmt::format("{}still moves by {}", remark.empty() ? "" : "; ", number_text(moves, 2));
+    facts.push_back({o.name,
+                     fmt::format("{} ± {} ± {} {}", number_text(value(in.log.back()), 6), number_text(e.error, 2),
+                                 number_text(e.potential, 2), o.unit),
+                     remark});
   }
   return html + facts_part(facts);
 }

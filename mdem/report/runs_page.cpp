@@ -138,9 +138,17 @@ std::string ends(const std::vector<RunCurve>& runs, const std::vector<std::strin
 
 RunCurve mean_of(std::string name, const std::vector<std::vector<LogRow>>& logs) {
   RunCurve curve{std::move(name), logs.front(), {}, logs.size(), "", {}, 0};
-  std::size_t rows = logs.front().size();
-  for (const auto& log : logs) rows = std::min(rows, log.size());
+  std::size_t rows = logs.front().size(), most = 0;
+  for (const auto& log : logs) {
+    rows = std::min(rows, log.size());
+    most = std::max(most, log.size());
+    for (std::size_t r = 0; r < rows; ++r)
+      if (std::fabs(log[r]["time_ps"] - logs.front()[r]["time_ps"]) > 1e-6 * log[r]["time_ps"]) rows = r;
+  }
   curve.log.resize(rows);
+  if (rows < most && rows > 0)
+    curve.remark = fmt::format("means up to {:.6g} ps, as far as all of them have rows at the same times",
+                               curve.log.back()["time_ps"]);
   if (logs.size() < 2) return curve;
   curve.error.resize(rows);
   const auto n = static_cast<double>(logs.size());

@@ -8,6 +8,7 @@
 
 #include "io/grade.hpp"
 #include "io/parameters_toml.hpp"
+#include "io/potential_spread.hpp"
 #include "report/page.hpp"
 #include "sim/state/uniform_chain.hpp"
 
@@ -36,7 +37,7 @@ constexpr Row compared[] = {{"radius", "tube.radius"},
 
 std::string cell(const ParameterSet& set, const char* key) {
   const Quantity* q = find_quantity(set, key);
-  return q ? measured_text(q->value, q->standard_error.value_or(0)) : "-";
+  return q ? measured_text(*q) : "-";
 }
 
 std::string unit_of(const std::vector<ParameterSet>& sets, const char* key) {
@@ -45,11 +46,14 @@ std::string unit_of(const std::vector<ParameterSet>& sets, const char* key) {
   return "";
 }
 
-// "+3.1 % (12 errors)" of a set against the first.
+// "+3.1 % (12 errors)" of a set against the first. Sets of two potentials have the error of these as well.
 std::string difference(const ParameterSet& first, const ParameterSet& other, const char* key) {
   const Quantity *a = find_quantity(first, key), *b = find_quantity(other, key);
   if (!a || !b || std::fabs(a->value) < 1e-6) return "";
-  const double error = std::hypot(a->standard_error.value_or(0), b->standard_error.value_or(0));
+  const bool alike = provenance_value(first, "potential_hash") == provenance_value(other, "potential_hash");
+  const double spread = alike ? 0 : potential_spread(key);
+  const double error = std::hypot(std::hypot(a->standard_error.value_or(0), b->standard_error.value_or(0)),
+                                  spread * a->value, spread * b->value);
   const double change = b->value - a->value;
   return fmt::format("{:+.3g} %{}", 100 * change / std::fabs(a->value),
                      error > 0 && change != 0 ? fmt::format(" ({:.2g} errors)", std::fabs(change) / error) : "");
@@ -202,6 +206,8 @@ std::string sets_json(const std::vector<ParameterSet>& sets) {
         j[row.key] = {{"value", q->value}, {"unit", q->unit}};
         j[row.key]["standard_error"] =
             q->standard_error ? nlohmann::ordered_json(*q->standard_error) : nlohmann::ordered_json();
+        if (const double spread = potential_spread(row.key); spread > 0)
+          j[row.key]["potential_error"] = spread * std::fabs(q->value);
       }
     all.push_back(std::move(j));
   }

@@ -64,7 +64,7 @@ struct LineChart {
   std::vector<ChartLine> lines;
   std::vector<ChartBand> bands;
   double width = 540, height = 290;  // user units: pixels at full size
-  // Names of what lies below and above all whole lines, "stable" and "unstable"; what lies below is shaded.
+  // Names of the fields below and above all whole lines, "stable" and "unstable"; the lower one is shaded.
   std::string below = {}, above = {};
 };
 

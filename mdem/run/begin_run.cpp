@@ -33,7 +33,7 @@ void refuse_refined(const RunDirectory& dir) {
                    "go on with: ropewalk resume " + next.path);
 }
 
-// Those that the run was begun with, so that it gives the same bits, unless others are asked for.
+// Uses the instructions that the run was begun with, so that it gives the same bits, unless others are asked for.
 void use_instructions_of(const RunOrigin& origin, const std::string& asked_for, RunListener& listener) {
   const std::string& name = asked_for.empty() ? origin.instructions : asked_for;
   if (!use_instructions(name) && asked_for.empty())

@@ -1,4 +1,4 @@
-// What a run does about its limits: it says which are passed, keeps limits.json, and may end for one.
+// The guard of a run's limits: it says which are passed, keeps limits.json, and may end for one.
 #pragma once
 
 #include <vector>
@@ -17,17 +17,17 @@ class LimitGuard {
 
   // Throws InputError where elements are to be split and cannot be.
   void check_before_start() const;
-  // Says what is passed for the first time, and whether the run is to end here for it. The pressure costs several
-  // steps.
+  // Tells the limits passed for the first time; returns whether the run is to end here for one. The pressure costs
+  // several steps.
   StopReason check(bool with_pressure);
 
-  // Of a run that goes on. What was passed after `step` had not happened.
+  // Takes over the limits of a run that goes on, without those passed after `step`.
   void inherit(const LimitsFile& earlier, std::int64_t step);
   // The run went back to a state with these records.
   void go_back_to(const LimitsFile& earlier, std::int64_t step) { watch_.inherit_from(earlier.limits, step); }
   void add(const RefinementRecord& refinement) { refinements_.push_back(refinement); }
 
-  // What was passed, and only said, may be cured now.
+  // Whether a limit that was passed, and only said, may be cured now.
   bool would_refine() const;
   const std::vector<LimitRecord>& records() const { return watch_.records(); }
   LimitsFile file() const { return {watch_.records(), refinements_}; }

@@ -19,8 +19,8 @@ class LimitWatch {
  public:
   explicit LimitWatch(Watched watched) : watched_(std::move(watched)) {}
 
-  // A run that goes on: from its own file, or from that of the run before its elements were split. What was passed
-  // after `step` had not happened.
+  // Takes over the limits of a run that goes on, from its own file or from that of the run before its elements were
+  // split, without those passed after `step`.
   void inherit_from(const std::vector<LimitRecord>& earlier, std::int64_t step);
 
   // One line for each limit that is passed for the first time. The pressure costs several steps. `energy_drift` is

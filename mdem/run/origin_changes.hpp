@@ -1,4 +1,4 @@
-// What a run was begun with against what it would go on with.
+// Differences between the inputs a run was begun with and those it would go on with.
 #pragma once
 
 #include <string>

@@ -14,7 +14,7 @@ class PendingFiles {
   explicit PendingFiles(RunListener& listener) : listener_(listener) {}
 
   void write(const std::string& path, std::string content);
-  // What could not be written.
+  // Tries again to write the files that could not be written.
   void try_again();
   std::string names() const;  // "D/limits.json, D/manifest.json"
 

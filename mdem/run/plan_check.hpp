@@ -28,7 +28,7 @@ PlanCheck checked_by_stretch(const RunDirectory& dir, double stretch);
 std::vector<OutputColumn> plan_check_columns();
 void write_plan_check(const RunDirectory& dir, const PlanCheck& check);
 
-// What was promised and what was seen, a paragraph; empty for a scene that was not planned.
+// Promised and found errors, a paragraph; empty for a scene that was not planned.
 std::string plan_words(const RunDirectory& dir, const Scene& scene, const Manifest& manifest);
 
 }  // namespace ropewalk

@@ -27,7 +27,7 @@ struct RunResult {
   RunDirectory directory;
   std::string reason;   // in words
   std::string passed;   // limits, in words
-  std::string plan;     // what was planned and seen, in words
+  std::string plan;     // planned and seen errors, in words
   std::string missing;  // files
   std::int64_t steps = 0;
   double time_ps = 0, wall_seconds = 0;
@@ -42,18 +42,18 @@ class Run {
   Run(RunDirectory dir, Scene scene, const RunSettings& settings, RunListener& listener)
       : parts_(std::move(dir), std::move(scene), settings, listener) {}
 
-  // Throws InputError for what the run could not carry out.
+  // Throws InputError for settings that the run could not carry out.
   void check_before_start() const;
   void end_at(long steps, double ps) { parts_.schedule.end_at(steps, ps); }
   // Throws InputError for an end that lies behind a run that goes on.
   void check_end_lies_ahead() const;
   void hold(DirectoryLock lock) { parts_.files.hold(std::move(lock)); }
 
-  // Tells what is to be known of the scene.
+  // Tells the listener the notes on the scene.
   void tell_notes() const;
   // The files of a new run, up to the checkpoint at the start, from which even the first minute can be resumed.
   void begin_files();
-  // Log and frames are cut back to what the checkpoint knows of. Throws InputError where it is of another scene.
+  // Cuts log and frames back to the checkpoint. Throws InputError if it is of another scene.
   void restore(RunCheckpoint checkpoint);
   void write_manifest(const char* status, const std::string& reason = "");
   void write_limits() { parts_.limits.write(); }

@@ -100,7 +100,7 @@ struct StoredCheckpoint {
   std::optional<RunCheckpoint> content;  // none: damaged
 };
 
-// Those that are there, the newest first.
+// The checkpoints that are there, the newest first.
 std::vector<StoredCheckpoint> stored_checkpoints(const RunDirectory& dir) {
   std::vector<StoredCheckpoint> all;
   for (const std::string& path : {dir.checkpoint(), dir.checkpoint_before()})

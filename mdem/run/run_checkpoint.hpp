@@ -14,7 +14,7 @@
 
 namespace ropewalk {
 
-// What the motion of a run follows from.
+// The inputs that the motion of a run follows from.
 struct RunOrigin {
   std::string scene;              // the text
   std::vector<std::string> sets;  // hashes of the parameter sets
@@ -22,7 +22,7 @@ struct RunOrigin {
   std::string version, git_id;    // of the program
   std::string instructions;       // see instructions_in_use()
 };
-// Of a run in this directory by this program.
+// The origin of a run in this directory by this program.
 RunOrigin origin_of(const RunDirectory& dir, const Scene& scene);
 
 struct RunCheckpoint {
@@ -42,8 +42,8 @@ void write_checkpoint(const RunDirectory& dir, const RunCheckpoint& checkpoint);
 // The newest that is whole. Throws InputError where there is none.
 RunCheckpoint read_checkpoint(const RunDirectory& dir);
 
-// Where a run can go on: the newest checkpoint that is whole and whose log and frames are there. Frames that are
-// missing or damaged are done without. `remarks`: what was found to be wrong, a sentence each. Throws InputError
+// The place where a run can go on: the newest checkpoint that is whole and whose log and frames are there. Frames
+// that are missing or damaged are done without. `remarks`: the faults found, a sentence each. Throws InputError
 // where there is no whole checkpoint, or none whose log is there.
 struct ResumePoint {
   std::string path;

@@ -68,7 +68,7 @@ struct Observer {
 Observer make_observer(const Scene& scene, const Prepared& prepared);
 
 RopeObservation observe(const Observer& observer, const Scene& scene, const Topology& topology, const State& state);
-// What a run watches, with the pressure on every tube.
+// The limits that a run watches, with the pressure on every tube.
 Watched watched_by_run(const Scene& scene, const Prepared& prepared, const Observer& observer);
 LogRow log_row(const Observer& observer, const Scene& scene, const Topology& topology, const State& state,
                const EnergyAccount& account);
@@ -77,7 +77,7 @@ LogRow log_row(const Observer& observer, const Scene& scene, const Topology& top
 std::vector<std::string> warnings_of(const Scene& scene, const Prepared& prepared);
 // "NAME: good" of each parameter set, see io/grade.hpp.
 std::vector<std::string> grades_of(const Scene& scene);
-// What registry, which the model leaves out, may add to the energies at the end of a run; a paragraph each.
+// Error bars by registry, which the model leaves out, of the energies at the end of a run; a paragraph each.
 std::vector<std::string> error_bars_of(const Scene& scene, const Topology& topology,
                                        const std::vector<LogRow>& log);
 

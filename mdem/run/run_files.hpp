@@ -21,16 +21,16 @@ class RunFiles {
   // From now on no other process writes in the directory.
   void hold(DirectoryLock lock) { lock_ = std::move(lock); }
 
-  // Log and frames, made or cut back to so many bytes.
+  // Opens log and frames, made or cut back to this many bytes.
   void open(FrameFormat format, std::uint64_t log_bytes, std::uint64_t frame_bytes, std::size_t expected_frames);
   void write_header();
   void write_row(const LogRow& row);
   void write_frame(const MovingScene& moving);
-  // What was written after this did not happen.
+  // Removes whatever was written after these marks.
   void cut(const FileMark& log, const FileMark& frames);
   FileMark log_mark() const { return log_->mark(); }
   FileMark frames_mark() const { return frames_->mark(); }
-  // What a checkpoint knows of log and frames is on the disk before it.
+  // Puts log and frames on the disk; called before a checkpoint that refers to them.
   void sync();
 
   // Throws InputError where it cannot be written; the checkpoint before it then stands.

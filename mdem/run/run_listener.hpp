@@ -16,7 +16,7 @@ class RunListener {
   virtual void tell_detail(const std::string&) {}
   // The input is good, and the first file is about to be written.
   virtual void before_files() {}
-  // Who asks for an end, as "by signal 2"; empty: nobody. The run then saves what it has.
+  // The origin of a request to stop, as "by signal 2"; empty: no request. The run then saves its state and ends.
   virtual std::string asked_to_stop() { return ""; }
 
   // The loop begins. `total`: 0 if the end is not known (relaxation).

@@ -4,7 +4,7 @@
 
 namespace ropewalk {
 
-// What manifest.json says of a run now. `status`: see Manifest.
+// The content of manifest.json for a run as it stands. `status`: see Manifest.
 Manifest manifest_of(const RunParts& run, const std::string& status, const std::string& reason);
 
 }  // namespace ropewalk

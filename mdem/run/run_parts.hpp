@@ -1,4 +1,4 @@
-// What a run consists of. Its loops work on these.
+// The parts of a run, on which its loops work.
 #pragma once
 
 #include <string>
@@ -16,7 +16,7 @@ struct RunParts {
   const State& state() const { return moving.state(); }
   void write_row();
   void write_frame() { files.write_frame(moving); }
-  // Whether somebody asks for an end: the listener, or the wall time.
+  // Whether the listener or the wall time asks for an end.
   StopReason asked_to_stop();
 
   RunSettings settings;

@@ -23,10 +23,10 @@ class RunSchedule {
   bool has_frame(std::int64_t step) const { return step % frames_every_ == 0; }
   bool has_check(std::int64_t step) const { return step % check_every_ == 0; }
   static bool has_pause(std::int64_t step) { return step % pause_every == 0; }  // for a checkpoint, if one is due
-  // Until something is written or checked, or somebody waits for an answer.
+  // Steps until something is written or checked, or a request to stop has waited for `patience`.
   long steps_to_next(std::int64_t step, double seconds_of_a_step) const;
 
-  static constexpr double patience = 0.5;  // s, of who wants to stop a run
+  static constexpr double patience = 0.5;  // s, of a request to stop a run
 
  private:
   static constexpr long pause_every = 16;

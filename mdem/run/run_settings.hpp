@@ -1,4 +1,4 @@
-// What is asked of a run besides its scene.
+// Settings of a run besides its scene.
 #pragma once
 
 #include <string>

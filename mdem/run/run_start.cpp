@@ -20,7 +20,7 @@ void Run::check_end_lies_ahead() const {
   const RunSettings& asked = parts_.settings;
   const std::int64_t last_step = parts_.schedule.last_step();
   if ((asked.steps < 0 && asked.until_ps < 0) || last_step > at.step) return;
-  // Killed where it was to end anyway: what is left is to say so.
+  // The run was killed at its end: only the manifest has to say so.
   const std::string manifest = parts_.files.directory().manifest();
   if (last_step == at.step && (!std::filesystem::exists(manifest) || read_manifest(manifest).status == "running"))
     return;
@@ -80,7 +80,7 @@ void Run::restore(RunCheckpoint c) {
     p.checkpoints.set_mark(c.mark);
   else
     p.way_back.set_mark();
-  // Left by the end that it had before; written anew at the next.
+  // Files of the earlier end; the next end writes them again.
   std::error_code ignored;
   for (const std::string& path : {dir.final_state(), dir.plan_check()}) std::filesystem::remove(path, ignored);
 }

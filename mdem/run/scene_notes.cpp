@@ -1,4 +1,4 @@
-// What a scene says of itself before and after a run: grades, warnings, error bars.
+// Notes on a scene before and after a run: grades, warnings, error bars.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -75,7 +75,7 @@ void warn_of_unlike_tubes(const Scene& scene, std::vector<std::string>& warnings
                   least->radius, most->radius));
 }
 
-// Where a tube is long enough to come back to itself without a kink, and the contact is left out there.
+// Warns of tubes long enough to come back to themselves without a kink, where the contact is left out.
 void warn_of_long_exclusion(const Scene& scene, const Topology& topology, const ContactLaw* law,
                             std::vector<std::string>& warnings) {
   const double excluded = scene.contact.exclude_along_tube;
@@ -135,7 +135,7 @@ std::vector<std::string> warnings_of(const Scene& scene, const Prepared& p) {
   return warnings;
 }
 
-// What registry, which the model leaves out, may add to the energies at the end of the run.
+// Error bars by registry, which the model leaves out, of the energies at the end of the run.
 std::vector<std::string> error_bars_of(const Scene& scene, const Topology& topology,
                                        const std::vector<LogRow>& log) {
   if (scene.contact.law == "none") return {};

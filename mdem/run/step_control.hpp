@@ -33,8 +33,8 @@ EnergyMark energy_mark(const Simulation& simulation);
 
 // Whether the account of energy closes since the mark: the work of the loads and of the bath, less what damping
 // took, equals the change of the energy. The error may be 3 % of the energies that move. A step that is too long
-// adds more than that soon before it blows up. The error of a sound run, cold or hot, is at most 1 %. What it adds
-// up to is judged by the limit energy_drift (observe/limits.hpp).
+// adds more than that soon before it blows up. The error of a sound run, cold or hot, is at most 1 %. Its
+// sum is judged by the limit energy_drift (observe/limits.hpp).
 bool account_closes(const EnergyMark& mark, const Simulation& simulation);
 
 }  // namespace ropewalk

@@ -5,7 +5,7 @@
 
 namespace ropewalk {
 
-// Of a clock that never goes back, s.
+// The time of a clock that never goes back, s.
 double steady_seconds();
 // When this program was started, by that clock.
 double program_start();
@@ -22,7 +22,7 @@ struct WallTime {
   bool is_up(double last_save) const;
 };
 
-// How long a run has taken, and what it took before it was resumed.
+// The time that a run has taken, with that before it was resumed.
 struct RunClock {
   std::string begun = iso_time();
   double earlier = 0, since = steady_seconds();  // s

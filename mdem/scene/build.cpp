@@ -47,7 +47,7 @@ void add_wave(const Scene& scene, const Topology& topology, State& state) {
   }
 }
 
-// What a state file may lack for the rest of the scene.
+// Refuses state files that lack what the rest of the scene needs.
 void check_state(const Scene& scene, const BuiltScene& built) {
   if (scene.start.temperature > 0 && built.state.size() < 2)
     throw InputError({scene.path, 0, "start.temperature_K"},

@@ -1,8 +1,8 @@
 // Damping of elements of another length.
 //
-// The constants belong to a pair of elements and to a bond, what they dissipate belongs to a length of tube: others
-// are needed for the same dissipation in the tubes and between them. For two parallel tubes whose elements lie side
-// by side, at the distance `inner` of the contact viscosity,
+// The constants belong to a pair of elements and to a bond, the dissipation to a length of tube: elements of
+// another length need other constants for the same dissipation in the tubes and between them. For two parallel
+// tubes whose elements lie side by side, at the distance `inner` of the contact viscosity,
 //
 //   eta sum_k w(hypot(inner, k a))/a   and   lambda a^2   stay the same.
 //

@@ -1,4 +1,4 @@
-// What drives the elements of a scene from outside: one table of its file, such as [[grip]] or [thermostat].
+// A drive acts on the elements of a scene from outside: one table of its file, such as [[grip]] or [thermostat].
 // Reader, model, refinement, planner, reports and the export to LAMMPS ask each drive through this interface, in
 // one loop each. loads/drive_kind.hpp is the register of drives.
 #pragma once
@@ -38,7 +38,7 @@ struct MomentRamp {
 
 class Drive {
  public:
-  // What becomes of the ends of the tubes: nothing, loads act on them, clamps hold them, or there are none.
+  // The ends of the tubes are free, loads act on them, clamps hold them, or there are none.
   enum class Ends { free, loaded, clamped, endless };
 
   virtual ~Drive() = default;
@@ -48,11 +48,11 @@ class Drive {
   // For the user, in one line.
   virtual std::string words() const = 0;
 
-  // Throws InputError for what does not go with it in the rest of the scene, which has been read.
+  // Throws InputError if the rest of the scene, which has been read, contradicts it.
   virtual void refuse(const TomlTable& /*top*/, const Scene&) const {}
   // Why it has no meaning in a relaxation; empty: it has.
   virtual std::string needs_time() const { return ""; }
-  // ps, from when on it changes nothing.
+  // The time, ps, after which it changes nothing.
   virtual double lasts() const { return 0; }
 
   // Adds its loads and constraints. Throws InputError for elements that do not exist.
@@ -60,7 +60,7 @@ class Drive {
   // Adds its force terms (sim/forces/force_term.hpp), with add_term(). Throws likewise.
   virtual void add_terms(const Scene&, const Topology&, Interaction&) const {}
   virtual void set_stepping(Stepping&) const {}
-  // Throws InputError for what the elements at the start do not bear; `loads` are those of all drives.
+  // Throws InputError if the elements at the start do not bear it; `loads` are those of all drives.
   virtual void refuse_start(const Scene&, const Topology&, const State&,
                             const LoadsAndConstraints& /*loads*/) const {}
   // Appends what the user should know before the run; a sentence or two each.

@@ -35,7 +35,7 @@ inline constexpr Unit fs{"fs", units::fs}, degree{"deg", units::degree};
 inline constexpr Unit nN{"nN", units::nN_nm}, nN_nm{"nN nm", units::nN_nm};
 }  // namespace unit
 
-// What holds where a key is missing.
+// The value of a key that is missing.
 struct Presence {
   std::string value;     // as TOML; empty: that of the struct
   std::string standard;  // in words; empty: `value`

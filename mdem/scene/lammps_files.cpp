@@ -163,7 +163,7 @@ void read_tubes(const LammpsDirectory& dir, Topology& topology) {
 
 namespace {
 
-// What a row has: the numbers of fix `motion` under names.
+// Names of the numbers that fix `motion` writes in a row.
 std::vector<std::string> row_names(int terms) {
   std::vector<std::string> names = {"time", "stretch", "shear", "bend", "twist", "vdw", "kinetic", "work", "dissipated"};
   for (int k = 1; k <= terms; ++k) names.push_back(fmt::format("term{}", k));

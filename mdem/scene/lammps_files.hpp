@@ -1,5 +1,5 @@
-// What `ropewalk export --lammps` adds to a run directory and `ropewalk import` reads back. Numbers in text have
-// the digits that give the same bits again.
+// Files that `ropewalk export --lammps` adds to a run directory and `ropewalk import` reads back. Numbers in text
+// have the digits that give the same bits again.
 //
 //   lammps.json   where the run stands: step, time, account of energy, and what the model took from its start
 //   tubes.csv     tubes of a kind after one another: how many, elements of each, type
@@ -41,12 +41,12 @@ struct LammpsDirectory {
   std::string rows() const { return file("lammps-rows.csv"); }
 };
 
-// What the files hold: lammps.json, tubes.csv and lammps-rows.csv.
+// Keys and columns of the files lammps.json, tubes.csv and lammps-rows.csv.
 std::vector<OutputColumn> lammps_start_keys();
 std::vector<OutputColumn> lammps_tube_columns();
 std::vector<OutputColumn> lammps_row_columns();
 
-// Throws InputError for what the LAMMPS styles cannot carry.
+// Throws InputError for a scene that the LAMMPS styles cannot carry.
 void refuse_what_lammps_lacks(const Scene& scene);
 
 std::string start_json(const LammpsStart& start);
@@ -56,7 +56,7 @@ std::string tubes_csv(const Topology& topology);
 // Adds the tubes to a topology that has its types. Throws InputError.
 void read_tubes(const LammpsDirectory& dir, Topology& topology);
 
-// What the input script needs to know.
+// The facts that the input script needs.
 struct LammpsScript {
   std::string name;
   std::string law = "paper";
@@ -65,7 +65,7 @@ struct LammpsScript {
   int types = 1;          // of tubes
   Vector3 low, high;      // the box; it grows with the elements, and never shrinks below this
   double skin = 0, reach = 0;
-  int excluded_elements = 3;  // along any tube: contact skips at least so many
+  int excluded_elements = 3;  // neighbours along any tube that contact skips, at least
   double time_step = 0;
   std::int64_t first_step = 0, steps = 0, every = 1;
   int terms = 0;  // force terms, each with its energy in a row

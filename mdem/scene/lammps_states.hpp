@@ -52,8 +52,8 @@ std::vector<StateInFile> find_states(const std::string& path, std::int64_t eleme
 // The last one. Throws InputError where there is none.
 StateInFile last_state(const std::string& path, std::int64_t elements);
 
-// What is wrong with a record that LAMMPS cannot have written: numbers that are not finite, or no unit quaternion.
-// Empty: nothing.
+// Names the fault of a record that LAMMPS cannot have written: numbers that are not finite, or no unit quaternion.
+// Empty: none.
 std::string complaint_about(const StateRecord& record);
 
 // A file of one state. The total forces of the last step go along: they hold the damping at half-step velocities,

@@ -31,7 +31,7 @@ double chosen_step(const Scene& scene, const TimeStepLimit& limit) {
                    fmt::format("take at most {:.3g}, or \"auto\"", 0.9 * largest / units::fs));
 }
 
-// What is inside of one another goes apart like an explosion, or through the core unseen. A relaxation may part
+// Elements inside of one another go apart like an explosion, or through the core unseen. A relaxation may part
 // tubes, but not those that lie side by side on one axis: walls of a multi-walled tube.
 void refuse_overlaps(const Scene& scene, const Prepared& p) {
   if (!scene.from_file() || !p.interaction.has_contact()) return;
@@ -90,7 +90,7 @@ void refuse_loose_tolerance(const Scene& scene, const Simulation& s) {
                      fmt::format("take at most {:.1g}", 0.01 * largest / units::nN_nm));
 }
 
-// What the simulator would stop in the first step, whatever comes afterwards.
+// Refuses scenes that the simulator would stop in the first step.
 void refuse_first_step(const Scene& scene, const Simulation& s) {
   const Topology& topology = s.topology();
   if (s.forces().slipping_bond >= 0)

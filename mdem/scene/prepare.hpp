@@ -26,7 +26,7 @@ struct Prepared {
 // Throws InputError for a typed time step above the limit, for loads on elements that do not exist, for tubes of a
 // state file inside one another (unless they are to be relaxed) and for a moment that a single tube cannot bear.
 Prepared prepare(Scene& scene);
-// Of the stability limit, where no time step is typed; in a warm scene at most this.
+// Fraction of the stability limit that an untyped time step takes; an upper bound in warm scenes.
 double automatic_step_fraction(const Scene& scene);
 
 // It has a thermostat, or a temperature at the start that is not to be lost. Its automatic step keeps
@@ -37,7 +37,7 @@ inline constexpr double warm_excess = 0.02;
 // Throws InputError where damping would take most of the heat that the scene starts with before the run ends. Not
 // part of prepare(), so that runs that are there already can be read.
 void refuse_cooling(const Scene& scene, const Prepared& prepared);
-// What the time step and damping do to the temperature of a scene that has one; a sentence each.
+// Effects of time step and damping on the temperature of a scene that has one; a sentence each.
 std::vector<std::string> warmth_of(const Scene& scene, const Prepared& prepared);
 
 // The elements at both ends: those that loads name, or else the first and last of every tube.

@@ -54,7 +54,7 @@ struct RunOptions {
   double time_step = 0;  // ps; 0: chosen from the stiffest mode
   Stepping stepping;
   double mass_scale = 1;         // of masses and inertias
-  double duration = 0;           // ps; 0: until all drives have done what they do
+  double duration = 0;           // ps; 0: until all drives have ended
   double frames_every = 0;       // ps; 0: 40 frames
   double log_every = 0;          // ps; 0: 400 rows
   double checkpoint_every = 60;  // s of wall time
@@ -104,7 +104,7 @@ struct Scene {
   bool has_ends(Drive::Ends ends) const {
     return std::any_of(drives.begin(), drives.end(), [&](const auto& drive) { return drive->ends() == ends; });
   }
-  // What the first drive applies that has it; null: none has.
+  // The value of the first drive that has one; null: none has.
   const MomentRamp* moment_ramp() const { return first(&Drive::moment_ramp); }
   const Schedule* bath() const { return first(&Drive::temperature); }  // K
 

@@ -1,4 +1,4 @@
-// What help, templates and refinement know of a key of a scene file, and of a table.
+// A key of a scene file, and a table, as help, templates and refinement know them.
 #pragma once
 
 #include <limits>
@@ -33,7 +33,7 @@ struct SceneTable {
   bool listed = false;  // [[name]], any number of them
 
   std::string header() const { return listed ? "[[" + name + "]]" : "[" + name + "]"; }
-  // Whether the table may be left out as a whole, with what it stands for.
+  // Whether the whole table may be left out.
   bool optional() const;
 };
 

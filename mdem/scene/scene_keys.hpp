@@ -7,7 +7,7 @@ namespace ropewalk {
 
 // In the order of help and templates.
 std::vector<SceneTable> scene_tables();
-// Those of all tables.
+// The keys of all tables.
 std::vector<SceneKey> scene_keys();
 
 // A table of all of them for the program's help.

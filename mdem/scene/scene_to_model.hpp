@@ -1,4 +1,4 @@
-// What acts in a scene, resolved to elements: all that another engine needs besides the state.
+// The forces of a scene, resolved to elements: all that another engine needs besides the state.
 #pragma once
 
 #include "scene/scene.hpp"
@@ -8,7 +8,7 @@
 
 namespace ropewalk {
 
-// Of each tube type, for its longest tube.
+// The validity of each tube type, for its longest tube.
 std::vector<Validity> validities(const Scene& scene, const Topology& topology);
 
 // The scene's tube types, and no tubes yet.

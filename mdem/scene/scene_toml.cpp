@@ -15,7 +15,7 @@
 namespace ropewalk {
 namespace {
 
-// What the contact law asks of the parameter sets and the elements.
+// Checks the demands of the contact law on the parameter sets and the elements.
 void check_contact_law(const TomlTable& top, const Scene& scene) {
   const ContactLawKind* kind = contact_law_kind(scene.contact.law);
   if (!kind) return;
@@ -47,7 +47,7 @@ void check_run(const TomlTable& top, const Scene& scene) {
 constexpr std::pair<const char*, const char*> former_keys[] = {
     {"paraview", "take it away: `ropewalk convert RUN rope.pvd` writes the frames of a run for ParaView"}};
 
-// What to do about a key or table that is right elsewhere, or was once.
+// Advice on a key or table that belongs elsewhere, or that older versions had.
 std::string belongs_to(const std::string& key) {
   for (const auto& [former, remedy] : former_keys)
     if (key == former) return remedy;

@@ -2,11 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "io/data_files.hpp"
 #include "io/parameters_toml.hpp"
 #include "model/error.hpp"
 #include "scene/laws/contact_law_kind.hpp"
 #include "scene/scene_to_model.hpp"
+#include "scene/state_csv.hpp"
 
 namespace ropewalk {
 namespace {
@@ -43,6 +46,16 @@ bool anharmonic_bond(const std::string& name, const std::vector<ParameterSet>& s
   return name != "harmonic";
 }
 
+void check_length_of_law(const Scene& scene) {
+  const ContactLawKind* kind = contact_law_kind(scene.contact.law);
+  const double own = scene.parameters().element_length;
+  if (kind && !kind->any_element_length && std::fabs(scene.element_length / own - 1) > 1e-6)
+    throw InputError({scene.path, 0, "--law"},
+                     fmt::format("law \"{}\" holds for elements of {:.6g} nm, and these have {:.6g} nm", kind->name,
+                                 own, scene.element_length),
+                     "use a set with the line law, or --law none");
+}
+
 void check_types(const SingleState& s) {
   const int sets = static_cast<int>(s.parameters.size());
   if (sets > 1 && s.tube_types.empty())
@@ -77,8 +90,11 @@ EvaluatedState evaluate(const SingleState& s) {
   scene.tube_types = s.tube_types;
   check_types(s);
   scene.bond.anharmonic = anharmonic_bond(s.bond, scene.sets);
-  scene.element_length = s.element_length > 0 ? s.element_length : scene.parameters().element_length;
+  const double stated =
+      s.element_length > 0 || scene.path.empty() ? s.element_length : state_element_length(scene.path);
+  scene.element_length = stated > 0 ? stated : scene.parameters().element_length;
   scene.contact.law = law_named(s.law, scene.sets);
+  check_length_of_law(scene);
   scene.contact.legacy_torque = s.legacy_torque;
   scene.contact.exclude_along_tube = s.exclude_along_tube;
   scene.contact.precision = Interaction::Precision::full;  // once, and compared with the reference

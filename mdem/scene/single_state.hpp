@@ -14,7 +14,7 @@ struct SingleState {
   std::shared_ptr<const Source> source;
   std::vector<std::string> parameters;  // one set, or one for each type of tube: files, or names of shipped ones
   std::vector<int> tube_types;          // type of each tube, an index of `parameters`; empty: all tubes have type 0
-  double element_length = 0;            // nm; 0: that of the first set
+  double element_length = 0;            // nm; 0: what the file states, else that of the first set
   std::string law;                      // empty: the line law where the set has it
   std::string bond;                     // "harmonic" or "anharmonic"; empty: anharmonic where all sets have it
   bool legacy_torque = false;

@@ -24,13 +24,13 @@ class Source {
   virtual void place(const Scene& scene, double spacing, Random& random, Topology& topology,
                      State& state) const = 0;
 
-  // Of neighbouring parallel tubes, nm; 0: where two of them bind best.
+  // The spacing of neighbouring parallel tubes, nm; 0: where two of them bind best.
   virtual double typed_spacing() const { return 0; }
   // Whether all tubes are straight and parallel to z.
   virtual bool is_parallel() const { return false; }
-  // That the elements are read from; empty: there is none.
+  // The file that the elements are read from; empty: no file.
   virtual std::string file() const { return ""; }
-  // For the user, of what was placed.
+  // Describes the placed elements to the user.
   virtual std::string description(const Topology&, const State&, double /*spacing*/) const { return ""; }
 };
 

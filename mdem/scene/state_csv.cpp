@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <string_view>
 
 #include "io/csv_reader.hpp"
@@ -36,6 +38,9 @@ const std::string header = whole_header.substr(0, whole_header.find(",vx"));
 constexpr double farthest = 1e7;                          // nm
 constexpr double norm_slack = 1e-3;                       // of a quaternion
 constexpr double shortest_bond = 0.1, longest_bond = 10;  // element lengths
+// Of the median bond of a tube: beyond any strain that a tube bears, and short of elements split or joined in two.
+constexpr double shortest_usual = 0.75, longest_usual = 1.34;
+constexpr const char* length_words = "element_length_nm: ";
 
 struct Row {
   int tube = 0;
@@ -44,14 +49,30 @@ struct Row {
   Vector3 velocity, spin;
 };
 
+// In the comments before this line, nm; 0: nothing is said.
+double stated_length(const CsvReader& csv) {
+  for (const std::string_view comment : csv.comments()) {
+    if (comment.rfind(length_words, 0) != 0) continue;
+    const std::string text(comment.substr(std::string_view(length_words).size()));
+    char* end = nullptr;
+    const double length = std::strtod(text.c_str(), &end);
+    if (text.empty() || *end != '\0' || !(length > 0 && length <= farthest))
+      csv.fail("", fmt::format("the comment above says \"{}\" of the element length", printable(text, 40)),
+               "write a positive number of nm, or take the comment away");
+    return length;
+  }
+  return 0;
+}
+
 class StateReader {
  public:
-  StateReader(const std::string& path, Topology& topology) : csv_(path), topology_(topology) {}
+  StateReader(const std::string& path, Topology& topology) : path_(path), csv_(path), topology_(topology) {}
 
   State read() {
     if (!csv_.next()) fail("", "is empty", fmt::format("the first line must be {}", header));
     check_header();
     while (csv_.next()) {
+      if (rows_.empty()) check_length();
       if (rows_.size() == static_cast<std::size_t>(max_elements))
         fail("", fmt::format("has more than {} elements", max_elements), "take fewer");
       const Row row = parsed();
@@ -59,6 +80,7 @@ class StateReader {
       rows_.push_back(row);
     }
     if (rows_.empty()) fail("", "has no elements", "write one line for each, below the header");
+    if (!stated_) check_spacing();
     return state();
   }
 
@@ -74,6 +96,38 @@ class StateReader {
     if (!right)
       fail("", fmt::format("the header is \"{}\"", printable(std::string(csv_.line_text()), 60)),
            fmt::format("it must be {0}, or {1}", header, whole_header));
+  }
+
+  // What the file says of its elements against what they are read as.
+  void check_length() {
+    const double length = stated_length(csv_);
+    stated_ = length > 0;
+    if (length > 0 && std::fabs(length / element_length_ - 1) > 1e-6)
+      fail("",
+           fmt::format("elements of this file are {:.6g} nm long, and are read as {:.6g} nm", length,
+                       element_length_),
+           fmt::format("take element_length_nm = {}, the length in the comment above", length));
+  }
+
+  // Of a file that says nothing. One that does may hold the state of a run that blew up.
+  void check_spacing() const {
+    std::size_t first = 0;
+    for (int t = 0; t < topology_.tubes(); ++t, first = static_cast<std::size_t>(topology_.tube_begin[t])) {
+      std::vector<double> bonds;
+      for (std::size_t i = first + 1; i < static_cast<std::size_t>(topology_.tube_begin[t + 1]); ++i)
+        bonds.push_back((rows_[i].position - rows_[i - 1].position).norm());
+      if (bonds.empty()) continue;
+      std::nth_element(bonds.begin(), bonds.begin() + static_cast<std::ptrdiff_t>(bonds.size() / 2), bonds.end());
+      const double usual = bonds[bonds.size() / 2];
+      if (usual < shortest_usual * element_length_ || usual > longest_usual * element_length_)
+        throw InputError(
+            {path_, 0, ""},
+            fmt::format("elements of tube {} follow one another at {:.4g} nm, and are read as {:.4g} nm "
+                        "long",
+                        t, usual, element_length_),
+            "give the length that they had: element_length_nm in a scene, --element-length-nm of "
+            "`ropewalk energy`");
+    }
   }
 
   Row parsed() const {
@@ -137,11 +191,13 @@ class StateReader {
     return s;
   }
 
+  std::string path_;
   CsvReader csv_;
   Topology& topology_;
   double element_length_ = topology_.types.front().element_length;
   std::vector<Row> rows_;
   std::size_t columns_here_ = 0;
+  bool stated_ = false;  // the length, by the file
 };
 
 }  // namespace
@@ -154,8 +210,13 @@ void read_state_csv(const std::string& path, Topology& topology, State& state) {
   state = StateReader(path, topology).read();
 }
 
+double state_element_length(const std::string& path) {
+  CsvReader csv(path);
+  return csv.next() && csv.next() ? stated_length(csv) : 0;
+}
+
 std::string state_csv(const Topology& topology, const State& s) {
-  std::string text = whole_header + "\n";
+  std::string text = fmt::format("{}\n# {}{}\n", whole_header, length_words, topology.types.front().element_length);
   for (int t = 0; t < topology.tubes(); ++t)
     for (int e = topology.tube_begin[t]; e < topology.tube_begin[t + 1]; ++e) {
       const auto i = static_cast<std::size_t>(e);

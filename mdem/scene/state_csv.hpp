@@ -1,6 +1,7 @@
 // Elements from a CSV file: tube,x_nm,y_nm,z_nm,qw,qx,qy,qz and, where they move, velocities and spins; one element
 // a line, those of a tube one after another along it, tubes numbered 0, 1, 2, ... in order. Empty lines and lines
-// that start with # are skipped. The quaternion turns the element's own z into its tube axis.
+// that start with # are skipped. The quaternion turns the element's own z into its tube axis. The line below the
+// header, "# element_length_nm: 1.356", states the length of an element; a file may leave it out.
 #pragma once
 
 #include <string>
@@ -14,8 +15,11 @@ namespace ropewalk {
 std::vector<OutputColumn> state_columns();
 
 // Fills tubes and state; all elements have the length of the first of topology.types. Throws InputError with file,
-// line and column.
+// line and column, also where the file states another length, or states none and neighbours along a tube lie at another.
 void read_state_csv(const std::string& path, Topology& topology, State& state);
+
+// The length (nm) that a state file states; 0 where it states none. Throws InputError.
+double state_element_length(const std::string& path);
 
 // The file, with velocities, in all digits.
 std::string state_csv(const Topology& topology, const State& state);

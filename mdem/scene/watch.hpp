@@ -1,4 +1,4 @@
-// What a run of a scene watches: the defaults of observe/limits.hpp, and what [limits] says instead.
+// The limits that a run of a scene watches: the defaults of observe/limits.hpp, or the values of [limits].
 #pragma once
 
 #include "observe/limits.hpp"

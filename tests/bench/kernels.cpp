@@ -83,7 +83,7 @@ void NeighbourListBuild(benchmark::State& bench) {
 }
 BENCHMARK(NeighbourListBuild)->Arg(7)->Arg(91);
 
-// What every step pays to find that the list still holds.
+// The cost, in every step, of finding that the list still holds.
 void NeighbourListCheck(benchmark::State& bench) {
   Rope rope(static_cast<int>(bench.range(0)), 50, Law::line);
   for (auto _ : bench) benchmark::DoNotOptimize(rope.list.update(rope.topology, rope.state));
@@ -112,8 +112,8 @@ BENCHMARK_CAPTURE(AllForces, line_full, Law::line, Interaction::Precision::full)
 BENCHMARK_CAPTURE(AllForces, paper_mixed, Law::paper, Interaction::Precision::mixed)->Arg(7)->Arg(91);
 BENCHMARK_CAPTURE(AllForces, paper_full, Law::paper, Interaction::Precision::full)->Arg(7)->Arg(91);
 
-// A slice of a rope of 91 tubes as a rank of several computes it: so many elements of each tube are its own, and
-// four more at each end are copies (mdem/lammps/README.md has what follows for many ranks).
+// A slice of a rope of 91 tubes as a rank of several computes it: a part of the elements of each tube is its own,
+// and four more at each end are copies (mdem/lammps/README.md has what follows for many ranks).
 void SliceOfARope(benchmark::State& bench) {
   constexpr int tubes = 91, copies = 4;
   const int own = static_cast<int>(bench.range(0)), all = own + 2 * copies;

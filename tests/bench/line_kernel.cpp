@@ -1,6 +1,6 @@
 // The line law: one radial evaluation, the kernel for every instruction set and precision, its damping and its
-// list. It contains the kernel's source, whose inner functions no header shows: what is measured is what is
-// shipped.
+// list. It contains the kernel's source, whose inner functions no header shows: the measured code is the
+// shipped code.
 #undef VEC_SOURCE
 #define VEC_SOURCE "bench/line_kernel.cpp"
 #include "sim/vectors/each_set-inl.hpp"
@@ -179,7 +179,7 @@ void LineKernel(benchmark::State& bench, const Choice& c) {
   use_instructions("");
 }
 
-// What the tubes collect from the chunks, alone.
+// The collection of the chunks' forces by the tubes, alone.
 void LineCollect(benchmark::State& bench) {
   const Rope rope(static_cast<int>(bench.range(0)), 49, Law::line);
   LineEngine engine;

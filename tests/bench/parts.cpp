@@ -1,5 +1,5 @@
-// What a force evaluation consists of besides contact. It contains bonds.cpp, whose loops no header shows: what is
-// measured is what is shipped.
+// The parts of a force evaluation besides contact. It contains bonds.cpp, whose loops no header shows: the measured
+// code is the shipped code.
 #include "bench/support.hpp"
 #include "sim/forces/bonds.cpp"
 

@@ -1,4 +1,4 @@
-// What this machine can do at most, for one thread: arithmetic (fused multiply-adds, products and sums where there
+// The peak of this machine, for one thread: arithmetic (fused multiply-adds, products and sums where there
 // are none), lookups in a table held in registers, and transfer. The roofline that the kernels are held to.
 #undef VEC_SOURCE
 #define VEC_SOURCE "bench/peak.cpp"

@@ -20,7 +20,7 @@ namespace ropewalk::bench {
 
 enum class Law { paper, line };
 
-// Of the line law between (10,10) tubes, with as many nodes as a scene would choose.
+// The line law between (10,10) tubes, with as many nodes as a scene would choose.
 inline LineContact graphite_contact() {
   const LineDensity density = test::line_density();
   const double length = test::element_length;

@@ -1,4 +1,4 @@
-// LAMMPS as a child process: what it says, and every way in which it can end.
+// LAMMPS as a child process: its messages, and every way in which it can end.
 #include "atomistic/lammps.hpp"
 
 #include <gmock/gmock.h>
@@ -306,6 +306,14 @@ TEST_F(Lammps, UserPotentialHasPairLinesOnly) {
   EXPECT_THAT(error_of("pair_coeff * * x\n"), HasSubstr("pair_style: is missing"));
   EXPECT_THAT(error_of("pair_style tersoff\n"), HasSubstr("pair_coeff: is missing"));
   EXPECT_THAT(error_of("pair_style\n"), HasSubstr("mine:1"));
+  // LAMMPS would divide energies of such a file by 23, and the tube be so much too soft.
+  std::ofstream(folder + "/my.tersoff") << "# DATE: 2013-03-21 UNITS: real CONTRIBUTOR: me\nC C C 3\n";
+  EXPECT_THAT(error_of("pair_style tersoff\npair_coeff * * my.tersoff C\n"),
+              HasSubstr("my.tersoff:1: UNITS: is \"real\"; energies are taken in eV"));
+  EXPECT_THAT(error_of("# UNITS: real\npair_style tersoff\npair_coeff * * x C\n"), HasSubstr("mine:1: UNITS"));
+  const Environment elsewhere("LAMMPS_POTENTIALS", folder);
+  std::ofstream(folder + "/C.lcbop") << "# UNITS: real";
+  EXPECT_THROW(find_potential("lcbop"), InputError);
   EXPECT_THROW(user_potential(folder + "/none"), InputError);
 }
 

@@ -121,6 +121,22 @@ TEST(StretchTwist, KnotInThePotentialIsASpreadAndAWarning) {
   EXPECT_THAT(out.warnings, testing::Contains(HasSubstr("EA depends on the fit window")));
 }
 
+// As AIREBO has it: the second derivatives are continuous, the third are not, so that GJ goes linearly with the
+// twist.
+TEST(StretchTwist, ACuspInTwistIsInTheErrorOfGJ) {
+  Known known;
+  known.natural = known.C = 0;
+  const Extra cusp = [](double e, double t) {
+    return 9480 * std::abs(e) * e * e + 0.5 * 2060 * t * t * 0.05 * std::abs(t) / 0.016;
+  };
+  std::vector<AtomisticRow> rows = stretch_twist_table(known, cusp);
+  Stiffness out;
+  fit_stretch_twist(rows, out);
+  EXPECT_GT(std::abs(out.GJ.value - known.GJ), 0.005 * known.GJ);
+  EXPECT_LT(std::abs(out.GJ.value - known.GJ), 1.5 * out.GJ.standard_error);
+  EXPECT_LT(out.GJ.standard_error, 0.05 * known.GJ);
+}
+
 TEST(StretchTwist, TooFewRowsAreAnInputError) {
   std::vector<AtomisticRow> rows = stretch_twist_table({});
   Stiffness out;
@@ -447,8 +463,8 @@ double part_of(std::uint64_t& state) {  // uniform in -1 .. 1
 
 // Noisy energies of known constants, fitted again and again. The energy of a rope of seven (10,10) tubes that is
 // wound by 30 degrees over 20 nm with rigid sections, GJ t^2 (1 + 6 cos^2 b)/2L + 6 EI k^2 L/2 + 6 EA e^2 L/2, has
-// to lie within one and two of its errors as often as a normal distribution does. Windows widen the errors: more
-// than so many may.
+// to lie within one and two of its errors as often as a normal distribution does. Windows widen the errors, so
+// that more may.
 TEST(StandardErrors, CoverTheEnergyOfARope) {
   const Known known;
   constexpr double EI = 22650, length = 20, spacing = 1.69, angle = 0.5236;

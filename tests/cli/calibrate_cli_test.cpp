@@ -1,4 +1,5 @@
 // `ropewalk calibrate` as a user meets it. The calibration itself runs LAMMPS on the thinnest shipped tube.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -151,6 +152,30 @@ TEST_F(Calibrate, AThinTubeFromChiralityToRun) {
   // A table that was changed afterwards is not shown as the set's own.
   spit(dir / "cnt-5-5-tersoff-contact.csv", "kind,distance_nm,angle_deg,energy\n");
   EXPECT_EQ(run("calibrate show cnt-5-5-tersoff.toml").code, 2);
+}
+
+// Twice as stiff a wall, by energies of one's own: the shear stiffness follows, which no row of the table names.
+TEST_F(Calibrate, AFitOfTorsionTakesTheShearWithIt) {
+  std::istringstream table(slurp(ROPEWALK_SOURCE_DIR "/data/parameters/cnt-5-5-tersoff-stiffness.csv"));
+  std::string twice;
+  for (std::string line; std::getline(table, line);) {
+    if (line.rfind("stretch-twist,", 0) == 0) {
+      std::size_t from = 0;
+      for (int k = 0; k < 6; ++k) from = line.find(',', from) + 1;
+      const std::size_t to = line.find(',', from);
+      line.replace(from, to - from, fmt::format("{:.12g}", 2 * std::stod(line.substr(from, to - from))));
+    }
+    twice += line + "\n";
+  }
+  spit(dir / "twice.csv", twice);
+  spit(dir / "fit.toml",
+       "format = \"ropewalk-fit-1\"\nmodel = \"stiffness\"\nbase = \"cnt-5-5-tersoff\"\nfree = [\"EA\", \"GJ\"]\n");
+  const Outcome fit = run("calibrate fit twice.csv fit.toml --out twice.toml");
+  ASSERT_EQ(fit.code, 0) << fit.err << fit.out;
+  const auto kGA = [&](const std::string& set) {
+    return Json::parse(run("compare " + set + " cnt-5-5-tersoff --json").out).at(0).at("bond.kGA").at("value");
+  };
+  EXPECT_NEAR(kGA("twice.toml").get<double>() / kGA("cnt-5-5-tersoff").get<double>(), 2, 0.02);
 }
 
 }  // namespace

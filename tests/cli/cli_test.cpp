@@ -111,7 +111,7 @@ TEST_F(Cli, EveryTemplateIsWrittenAndPassesItsCheck) {
   EXPECT_EQ(run("new my-rope --kind rope").code, 2) << "an existing file must stand";
 }
 
-// What the pages of the documentation are made from.
+// The pages of the documentation are made from this output.
 TEST_F(Cli, DescribesItselfToPrograms) {
   const Outcome o = run("describe json");
   ASSERT_EQ(o.code, 0) << o.err;
@@ -191,7 +191,7 @@ TEST_F(Cli, MixedTubesRunAndResume) {
   EXPECT_NE(frames.find("\n1 1 2 "), std::string::npos) << "the first tube is of the second type";
   EXPECT_NE(frames.find("\n11 2 1 "), std::string::npos);
   EXPECT_TRUE(fs::exists(dir / "d/parameters-1.toml"));
-  // What the frames colour by adds up to what the log has.
+  // The energies that frames are coloured by add up to those of the log.
   const double energy = ropewalk::read_log((dir / "d/log.csv").string()).front()["vdw_eV"];
   EXPECT_LT(energy, -10);
   EXPECT_NEAR(sum_of_column(frames.substr(0, frames.find("ITEM: TIMESTEP", 1)), "c_vdw_energy_eV"), energy,
@@ -312,7 +312,7 @@ TEST_F(Cli, TheGradeOfASetIsSaidEverywhere) {
             std::string::npos);
   const Outcome plan = run("plan s.toml --error 5%");
   EXPECT_NE(plan.out.find("parameters " + grade), std::string::npos) << plan.out << plan.err;
-  // Runs of before have no grade in their manifest.
+  // Runs of 0.1 have no grade in their manifest.
   std::string manifest = slurp(dir / "d/manifest.json");
   const std::size_t at = manifest.find("  \"grade\"");
   manifest.erase(at, manifest.find('\n', at) + 1 - at);
@@ -717,7 +717,7 @@ TEST_F(Cli, RelaxationThatRunsOutOfStepsKeepsItsFilesAndCanGoOn) {
   EXPECT_EQ(Json::parse(slurp(dir / "d/manifest.json")).at("status"), "finished");
 }
 
-// Every wrong file of tests/cli/bad: exit code 2, one line, what it expects.
+// Every wrong file of tests/cli/bad: exit code 2 and the one line that it expects.
 TEST_F(Cli, EveryWrongFileGetsOneClearLine) {
   int count = 0;
   for (const auto& entry : fs::directory_iterator(ROPEWALK_SOURCE_DIR "/tests/cli/bad")) {
@@ -763,6 +763,8 @@ hold_ps = 10
               0.1 * GJ->at("standard_error").get<double>());
   EXPECT_LT(parts, 0) << "a stiffer tube stores less at the same moment";
   EXPECT_GE(twist.at("standard_error").get<double>(), std::fabs(parts));
+  // Potentials differ by 19 % in GJ: 10^4 times the error of the fit.
+  EXPECT_NEAR(twist.at("potential_error").get<double>() / value, 0.194, 0.02);
   // Every row has errors, in the columns of the log, and the report draws them.
   const std::string log = slurp(dir / "r/log.csv"), rows = slurp(dir / "r/errors.csv");
   EXPECT_EQ(log.substr(0, log.find('\n')), rows.substr(0, rows.find('\n')));
@@ -771,10 +773,15 @@ hold_ps = 10
   const std::string page = slurp(dir / "r/report.html");
   EXPECT_NE(page.find("class=\"error e"), std::string::npos);
   EXPECT_NE(page.find("standard errors that follow"), std::string::npos);
-  // What is finished is kept.
+  // Finished runs are kept.
   const auto made = fs::last_write_time(dir / "r/errors/GJ-plus/log.csv");
-  ASSERT_EQ(run("errors r --quiet").code, 0);
+  const Outcome table = run("errors r --quiet");
+  ASSERT_EQ(table.code, 0);
   EXPECT_EQ(fs::last_write_time(dir / "r/errors/GJ-plus/log.csv"), made);
+  EXPECT_NE(table.out.find("of the parameters alone"), std::string::npos) << table.out;
+  // Its last rows still move, by more than the error of the fit: no digit beyond is printed.
+  EXPECT_GT(twist.at("moves_by").get<double>(), 2 * twist.at("standard_error").get<double>());
+  EXPECT_TRUE(std::regex_search(table.out, std::regex("\ntwist_eV +[0-9]+\\.[0-9]{1,4} "))) << table.out;
   EXPECT_EQ(run("errors rope.toml").code, 2);
 }
 
@@ -818,6 +825,7 @@ TEST_F(Cli, EnergyOfUnlikeTubesIsThatOfTheRun) {
 format = "ropewalk-scene-1"
 parameters = ["cnt-10-10-tersoff", "cnt-5-5-tersoff"]
 tube_types = [0, 1, 1, 1, 1, 1, 1]
+element_length_nm = 0.7
 [rope]
 tubes = 7
 length_nm = 7
@@ -853,7 +861,7 @@ duration_ps = 0.5
 TEST_F(Cli, CompareSetsSideBySide) {
   const Outcome o = run("compare cnt-5-5-tersoff cnt-10-10-tersoff cnt-10-10-paper --page c.html");
   ASSERT_EQ(o.code, 0) << o.err;
-  for (const char* words : {"(5,5)", "not known", "1518.960 ± 0.037", "anharmonic"})
+  for (const char* words : {"(5,5)", "not known", "1518.960 ± 0.037 ± 210 (potential)", "anharmonic"})
     EXPECT_NE(o.out.find(words), std::string::npos) << words << o.out;
   const std::string page = slurp(dir / "c.html");
   EXPECT_NE(page.find("<svg"), std::string::npos);

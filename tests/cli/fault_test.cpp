@@ -1,5 +1,5 @@
 // A program killed at any of its calls that change files, or with any of these calls failing (tests/faults):
-// nothing is lost, and what is resumed is byte for byte what it would have been.
+// nothing is lost, and a resumed run is byte for byte that of an undisturbed one.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
@@ -59,7 +59,7 @@ class Faults : public Cli {
       EXPECT_EQ(entry.path().string().find(".part-"), std::string::npos) << when << ": " << entry.path();
   }
 
-  // Lines that say what is the matter, and no raw text of a library.
+  // Lines that name the fault, and no raw text of a library.
   void expect_clear(const Outcome& o, const std::string& when) const {
     EXPECT_THAT(o.code, ::testing::AnyOf(0, 2, 3)) << when << o.err;
     EXPECT_EQ(o.code == 0 || !o.err.empty(), true) << when;

@@ -125,7 +125,7 @@ TEST_F(Validate, ParametrizeGoesOnWithWhatIsThere) {
   EXPECT_NE(table.find(",holds,"), std::string::npos) << table;
 }
 
-// Counting leaves what was measured before.
+// Counting leaves earlier measurements unchanged.
 TEST_F(Validate, ChartCountsInstructions) {
   const std::string chart = "validate chart --quick --quiet --scenes tube-twist --out c";
   const auto point = [&](const std::string& model) {

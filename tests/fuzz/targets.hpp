@@ -26,7 +26,7 @@ class File {
   std::string path_;
 };
 
-// A directory of this process; files in it are written anew for every input.
+// A directory of this process; files in it are written again for every input.
 std::string directory();
 void write(const std::string& path, const std::string& bytes);
 

@@ -92,7 +92,8 @@ INSTANTIATE_TEST_SUITE_P(
 
 class LammpsRun : public Lammps {
  protected:
-  // So many steps in LAMMPS and here. Returns the largest relative difference of positions, velocities and spins.
+  // Makes `steps` steps in LAMMPS and here. Returns the largest relative difference of positions, velocities and
+  // spins.
   void expect_equal_steps(const std::string& scene_text, int steps, std::initializer_list<int> ranks,
                           double tolerance, const std::function<void()>& edit_script = {}) const {
     exported(scene_text, "out");
@@ -421,7 +422,7 @@ TEST_F(LammpsRun, ImportLooksForLimits) {
   EXPECT_GE(passed, 1);
 }
 
-// A run that was killed: what is whole is taken.
+// Of a killed run all whole states are taken.
 TEST_F(LammpsRun, ImportLeavesOutWhatIsCutOff) {
   exported(rope(""), "out");
   ASSERT_EQ(lmp(1, "out", "-in in.rope -var steps 30 -var every 10").code, 0);

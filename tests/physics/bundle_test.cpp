@@ -256,7 +256,7 @@ TEST(ListSkin, FollowsTheMotion) {
   EXPECT_NEAR(f.total_energy(), fixed.total_energy(), 1e-5 * f.work());
 }
 
-// In slow motion nobody looks in most steps how far elements have come: what is known bounds it all the same.
+// In slow motion most steps do not measure how far elements have come: known bounds hold all the same.
 TEST(ListSkin, IsNeverUsedUpUnseen) {
   const TurnedRope rope(0.004);
   Simulation s = rope.make(0.3);

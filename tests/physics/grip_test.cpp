@@ -1,4 +1,4 @@
-// Clamps of a testing machine: schedules, rigid discs, what they let go, and what the gauges at both ends read.
+// Clamps of a testing machine: schedules, rigid discs, free components, and readings of the gauges at both ends.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -297,7 +297,7 @@ struct Oscillator {
   void compute_forces() {}
 };
 
-// Far from small steps: w dt = 1.5, where that of velocities at the end of a step is 0.44 of what it should be.
+// Far from small steps: w dt = 1.5, where that of velocities at the end of a step is 0.44 of the right value.
 TEST(Verlet, SamplesOscillatorsExactlyAtAnyStableStep) {
   const double w2 = 4, dt = 0.75;
   double x = 0, v = 0, x2 = 0, v2 = 0, v2_middle = 0;

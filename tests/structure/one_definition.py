@@ -23,7 +23,7 @@ def files_of_objects(build):
     text = subprocess.run(["ninja", "-C", build, "-t", "deps"], check=True, capture_output=True, text=True).stdout
     for line in text.splitlines():
         if line.startswith("    "):
-            path = build / line.strip()  # an absolute path stays what it is
+            path = build / line.strip()  # an absolute path stays absolute
             if path.is_relative_to(root) and current is not None:
                 current.add(path.resolve())
         elif line.strip():

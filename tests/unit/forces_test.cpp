@@ -118,8 +118,8 @@ TEST_P(ForcesTest, FastEqualsReference) {
   expect_equal(fast(0.4, 2), reference, tolerance());
 }
 
-// The forces as several processes compute them: `owner` of each element; copies are what is in reach of own
-// elements.
+// The forces as several processes compute them: `owner` of each element; copies are all elements within reach of
+// own ones.
 Forces by_parts(const Topology& topology, const Interaction& in, const State& state, const std::vector<int>& owner,
                 double skin = 0.2) {
   Forces sum(state.size());
@@ -626,7 +626,7 @@ State many_short_elements(Topology& topology) {
   return state;
 }
 
-// In both precisions; `exact` bounds what is left in double.
+// In both precisions; `exact` bounds the difference in double.
 void expect_many_pairs_equal_reference(const Topology& topology, const State& state, Interaction in, double exact) {
   in.exclude_along_tube = 200 * test::element_length;
   Forces reference(state.size()), f(state.size());
@@ -848,7 +848,7 @@ TEST(NeighbourList, TurningTogetherNeedsNoBuild) {
     expect_equal(fast, reference, 1e-10);
   }
   EXPECT_GT(farthest, 0.25);
-  // What moves one alone still counts.
+  // A force on one alone still counts.
   State s = start;
   s.position.add(20, {0.14, 0, 0});
   EXPECT_TRUE(list.update(topology, s));

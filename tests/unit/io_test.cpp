@@ -386,7 +386,7 @@ TEST_F(IoTest, DumpRefusesAnOrientationThatIsNoRotation) {
 
 class Gsd : public IoTest {
  protected:
-  // So many frames whose steps count from 1.
+  // Writes the frames first .. last; their steps count from 1.
   void fill(GsdWriter& writer, int first, int last) {
     for (int k = first; k <= last; ++k) {
       f.state.step = k;

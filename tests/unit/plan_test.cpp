@@ -1,4 +1,4 @@
-// The planner with pilots made up for it, whose errors can be added up by hand; and what it is made of.
+// The planner with invented pilots, whose errors can be added up by hand; and the parts of the planner.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <gmock/gmock.h>
@@ -145,7 +145,7 @@ TEST(Plan, GoesFinerWhereTheDefaultDoesNotHold) {
   EXPECT_THAT(fmt::format("{}", fmt::join(none.remarks, "\n")), HasSubstr("No model that was tried holds 0.11 %"));
 }
 
-// A rope with noise is run with three seeds, and what they differ by is no error of a model.
+// A rope with noise is run with three seeds, whose differences are no error of a model.
 TEST(Plan, KnowsChanceFromError) {
   MadeUp pilots;
   pilots.chance = 0.03;
@@ -175,7 +175,7 @@ TEST(Plan, RunsASmallerSceneWhereTheWholeIsTooDear) {
   EXPECT_EQ(twist.moment, slow.moment);
   const Scene chosen = scene_from(p.chosen.text);
   EXPECT_EQ(chosen.source->sizes(chosen.element_length).tubes, 91);
-  // The default is off by what was found and by a third of it, which the finest model is off itself.
+  // The default is off by the found difference and a third more, by which the finest model is off itself.
   const auto promise = [](const Plan& plan, double caution) {
     return caution * (plan.standard.error.at("energy") * 4 / 3 + 1e-3);
   };

@@ -1,4 +1,4 @@
-// Scenes and parameter sets: what is read, what is refused and with which words, and what is built from it.
+// Scenes and parameter sets: keys, the words of refusals, and the model built from them.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -808,6 +808,43 @@ TEST(StateFile, KeepsVelocitiesAndSpins) {
   EXPECT_THAT(message(moving + "0,0,0,0,1,0,0,0\n"), HasSubstr("has 8 columns; 14 are needed, as the header has"));
   EXPECT_THAT(message(moving + "0,0,0,0,1,0,0,0,0,nan,0,0,0,0\n"), HasSubstr("vy_nm_per_ps"));
   EXPECT_THAT(message("tube,x_nm\n0,0\n"), HasSubstr("wz_rad_per_ps"));
+}
+
+// Elements of 0.678 nm read as those of 1.356 nm are stretched by half: 10^5 eV without a word.
+TEST(StateFile, StatesTheLengthOfItsElements) {
+  Topology t = test::published_topology();
+  t.types[0].element_length = 0.678;
+  t.add_tube(5);
+  State s(5);
+  for (int i = 0; i < 5; ++i) s.position.set(static_cast<std::size_t>(i), Vector3(0, 0, 0.678 * i));
+  const std::string stated = state_csv(t, s);
+  EXPECT_THAT(stated, HasSubstr("wz_rad_per_ps\n# element_length_nm: 0.678\n0,"));
+  const auto message = [](const std::string& csv, const std::string& more) -> std::string {
+    try {
+      const Folder folder;
+      folder.write("elements.csv", csv);
+      Scene scene = read_scene(folder.write(
+          "scene.toml", head + more + "[state]\nfile = \"elements.csv\"\n[contact]\nlaw = \"none\"\n" + run));
+      build(scene);
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return "";
+  };
+  const std::string finer = "element_length_nm = 0.678\n";
+  EXPECT_EQ(message(stated, finer), "");
+  EXPECT_THAT(message(stated, ""),
+              HasSubstr("are 0.678 nm long, and are read as 1.356 nm; take element_length_nm = 0.678"));
+  std::string silent = stated;
+  silent.erase(silent.find('#'), silent.find('\n', silent.find('#')) + 1 - silent.find('#'));
+  EXPECT_EQ(message(silent, finer), "");
+  EXPECT_THAT(message(silent, ""),
+              HasSubstr("elements of tube 0 follow one another at 0.678 nm, and are read as 1.356 nm long"));
+  EXPECT_THAT(message(silent, "element_length_nm = 0.339\n"), HasSubstr("follow one another at 0.678 nm"));
+  EXPECT_EQ(message(silent, "element_length_nm = 0.6\n"), "");  // stretched, but of this length
+  std::string unreadable = stated;
+  unreadable.replace(unreadable.find("0.678\n0,"), 5, "long");
+  EXPECT_THAT(message(unreadable, finer), HasSubstr("says \"long\" of the element length"));
 }
 
 TEST(StateFile, OneElementHasNoTemperature) {

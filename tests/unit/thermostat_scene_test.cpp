@@ -1,4 +1,4 @@
-// The table [thermostat] of a scene: what is read, what is refused, what it changes.
+// The table [thermostat] of a scene: its keys, refusals and effects.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -236,7 +236,7 @@ TEST_F(Chart, ComesOutWholeAndIsKept) {
   EXPECT_THAT(page, HasSubstr("Against the published model"));
   EXPECT_EQ(page.find("<script"), std::string::npos);
 
-  // A second run keeps what is there, but for the point that was made with something else.
+  // A second run keeps all points but the one that another program made.
   const std::string kept = read_file(point(default_model));
   nlohmann::ordered_json stale = nlohmann::ordered_json::parse(read_file(point("length-2")));
   stale["key"] = "another version";

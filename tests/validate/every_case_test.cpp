@@ -70,7 +70,7 @@ void expect_figures_and_sources(const Case& c, const CaseResult& result) {
   }
 }
 
-// A limit has its place on the map, and what was found agrees with theory.
+// A limit has its place on the map, and the found value agrees with theory.
 void expect_limits(const Case& c, const CaseResult& result) {
   EXPECT_EQ(c.group == Case::Group::stability, !result.limits.empty());
   for (const Limit& l : result.limits) {

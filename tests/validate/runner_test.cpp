@@ -87,6 +87,18 @@ TEST(ValidationOutcome, NotApplicableIsNoMiss) {
   EXPECT_THAT(page, HasSubstr("the set has no &lt;law&gt;"));
 }
 
+TEST(ValidationOutcome, NoSetThatMissesIsGood) {
+  Outcome miss = outcome_with({check(1.011, 1, 0.01)}), other = miss, hold = outcome_with({check(1, 1, 0.01)});
+  miss.name = "tube-bend";
+  miss.sets = hold.sets = {{"mine", "hash", "(6,2)", "good", -1}};
+  other.sets = {{"another", "other hash", "(9,1)", "good", -1}};
+  EXPECT_EQ(grade_with_verdicts("good", "hash", {hold, other}), "good");
+  EXPECT_EQ(grade_with_verdicts("good", "hash", {hold, miss}), "limited: it misses in tube-bend");
+  EXPECT_EQ(grade_with_verdicts("limited: EA is known to 2 %", "hash", {miss}),
+            "limited: EA is known to 2 %; it misses in tube-bend");
+  EXPECT_THAT(page_facts({miss}).front(), HasSubstr("limited: it misses in tube-bend"));
+}
+
 TEST(ValidationOutcome, NamesTheTubesInItsTexts) {
   Outcome o = outcome_with({});
   o.tubes = "(7,3)";

@@ -85,7 +85,7 @@ void add_contact_knobs(std::vector<ChartModel>& all) {
   all.push_back(varied("precision", "double", [](ChartModel& m) { m.precision = Precision::full; }));
 }
 
-// What pays alone, together.
+// Combines the changes that pay alone.
 void add_combinations(const ChartScene& scene, std::vector<ChartModel>& all) {
   const auto combined = [&](std::string name, double length, int nodes, double part_of_cutoff, double mass,
                             int relaxed) {

@@ -14,7 +14,7 @@
 namespace ropewalk::validate {
 namespace {
 
-constexpr double smallest_error = 1e-5, largest_error = 0.3;  // what is beyond is drawn here, hollow
+constexpr double smallest_error = 1e-5, largest_error = 0.3;  // points beyond are drawn here, hollow
 constexpr double much = 10;                                   // times as cheap
 
 // Measured cost of another program for a step of this scene's rope; its accuracy is not known.
@@ -118,14 +118,14 @@ ChartLine front_line(const Series& s, const std::vector<std::size_t>& front) {
   return line;
 }
 
-// What a reader sees who points at a model.
+// The text that a reader sees who points at a model.
 std::string title_of(const ChartRow& r) {
   return fmt::format("{}: {} % off, {} s per ns, {} elements, steps of {} fs", r.point->model,
                      number_text(100 * r.error, 3), number_text(r.point->cpu_per_ns(), 3), r.point->elements,
                      r.point->mode == "relax" ? "-" : number_text(r.point->time_step / units::fs, 3));
 }
 
-// Those on the front have its numbers, from the cheapest.
+// Adds the models by kind; those on the front have its numbers, from the cheapest.
 void add_kinds(const std::vector<const ChartRow*>& rows, const std::vector<std::size_t>& front,
                ScatterChart& scatter) {
   for (const ChartRow* r : rows) check_style(r->point->kind);
@@ -376,7 +376,7 @@ std::string good_enough_part(const std::vector<ChartPoint>& points, const std::v
   return html + "</tbody></table></div>\n";
 }
 
-// What makes ropes of different tubes alike.
+// The numbers that make ropes of different tubes alike.
 std::string scenes_table(const std::vector<ChartRow>& rows) {
   std::string html =
       heading("The scenes") +

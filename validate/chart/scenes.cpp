@@ -1,4 +1,4 @@
-// The scenes of the chart: what is built, held and turned.
+// The scenes of the chart: specimens, grips and loads.
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
@@ -160,7 +160,7 @@ Specimen rope_of_91(const ChartModel& model, double angle, double ramp, int incr
 
 // --- rope19-thin, rope19-wide ---
 
-// As many elements of the set's own length, turned so that the walls are sheared alike.
+// Has the same number of elements, of the set's own length, turned so that the walls are sheared alike.
 Specimen rope_of_19(const ChartModel& model, const char* set) {
   const ParameterSet parameters = read_parameters(find_parameters(set, ""));
   const double length = 30 * parameters.element_length;

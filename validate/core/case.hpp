@@ -23,7 +23,7 @@ struct Check {
   double tolerance = 0;  // largest difference allowed
   bool relative = true;  // tolerance over |reference|; otherwise in the unit
   std::string unit;
-  // Shown for what it tells (another code's error, a known limit); decides nothing.
+  // Shown for information (another code's error, a known limit); decides nothing.
   bool informative = false;
   std::string note;  // the reason for this tolerance, or what a miss means
   // A miss that the case declares: it holds while the difference stays within `spread` of `expected`.
@@ -44,7 +44,7 @@ struct CaseFigure {
 
 // A place where a method fails, for the map of `validate stability`.
 struct Limit {
-  // What `run` does there: it does not start, it ends with the reason, it warns, or it does nothing.
+  // The response of `run` there: it does not start, it ends with the reason, it warns, or it does nothing.
   enum class Guard { refused, stopped, told, none };
   std::string method;  // "time step of a single tube"
   double found = 0;    // by bisection on the method itself
@@ -109,7 +109,7 @@ struct CaseTube {
   std::string source;  // "cnt-10-10-tersoff (hash ...)", for CaseResult::sources
 };
 
-// What a case may use.
+// The means of a case.
 struct CaseContext {
   // The sets that the case runs with: Case::sets or, in the place of all of them, the one given with --parameters.
   std::vector<ParameterSet> sets;
@@ -162,8 +162,8 @@ struct Case {
   std::string only_these;
   // Texts may contain {tube}, which stands for the names of the tubes: "(5,5) and (10,10)".
   std::string title;
-  std::string why;         // what it matters for in a rope
-  std::string setup;       // what is built and loaded
+  std::string why;         // why it matters in a rope
+  std::string setup;       // the specimen and its loads
   std::string oracle;      // what the model is compared with, with the equation
   std::string literature;  // citation with DOI
   std::function<CaseResult(const CaseContext&)> run;
@@ -172,8 +172,8 @@ struct Case {
   std::vector<std::string> tables;
   std::function<double(const ParameterSet&)> lammps_seconds;
 
-  // What the test of every case makes sure of, besides that the case holds. A case that holds under every wrong
-  // parameter tests nothing: each names at least one that it sees.
+  // The test of every case makes sure that it holds, and that these turn it red. A case that holds under every
+  // wrong parameter tests nothing: each names at least one that it sees.
   std::vector<Red> turns_red;
   std::vector<Fault> stays_green;  // of quantities that the case does not depend on
   // Checks that miss with the right parameters, and by how much; the remarks say why. A miss that changes is a
@@ -202,7 +202,7 @@ const std::vector<Case>& all_cases();
 
 // "(5,5) and (10,10)", the tubes of these sets; laws apart, each once.
 std::string tube_names(const std::vector<ParameterSet>& sets);
-// Of the same tube and the same interatomic potential.
+// Whether two sets are of the same tube and the same interatomic potential.
 bool like(const ParameterSet& i, const ParameterSet& j);
 // Runs the case, names its sets among the sources and marks its known misses.
 CaseResult run_case(const Case& c, const CaseContext& context);

@@ -35,12 +35,12 @@ struct ReferenceTable {
 ReferenceTable read_reference(const std::string& path);
 std::string reference_csv(const ReferenceTable& table);
 
-// Where references of this set are made.
+// The folder in which references of this set are made.
 std::string atoms_folder(const ParameterSet& set);
 // The stored table of a set: beside it or, for the same tube and potential, among the shipped ones. Empty: none.
 std::string find_reference(const CaseContext& context, const ParameterSet& set, const std::string& name);
 
-// What a table must say of its origin to be of this set. Throws NotApplicable where it says something else, or
+// The origin that a table must state to be of this set. Throws NotApplicable where it says something else, or
 // where the set names no potential that is known.
 std::string between_tubes(const ParameterSet& set);
 void check_origin(const ReferenceTable& table, const std::string& path, const ParameterSet& set);

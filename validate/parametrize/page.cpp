@@ -18,9 +18,7 @@ constexpr double nN = units::eV_in_nN_nm;
 
 std::string with_error(const ParameterSet& set, const std::string& key) {
   const Quantity* q = find_quantity(set, key);
-  if (!q) return "not known";
-  const std::string text = measured_text(q->value, q->standard_error.value_or(0));
-  return q->unit == "1" ? text : text + " " + q->unit;
+  return q ? measured_text(*q, true) : "not known";
 }
 
 ReportFact fact(const ParameterSet& set, const std::string& name, const std::string& key,
@@ -67,7 +65,7 @@ std::string agreement(const ParametrizedTube& t) {
 }
 
 std::string uses_part(const ParametrizedTube& t) {
-  const Grade grade = grade_of(t.set);
+  const std::string grade = t.grade();
   std::string html = paragraph(
       "<b>For:</b> ropes, bundles, rings and films of such tubes at rest or in slow motion, "
       "within the limits below. " +
@@ -75,7 +73,7 @@ std::string uses_part(const ParametrizedTube& t) {
   std::string not_for =
       "<b>Not for:</b> what walls do: their vibration (a warm bundle loses more cohesion than the model says), "
       "their flattening in contact, registry, open ends (see “ends flush”), defects, chemistry.";
-  if (grade.level != Grade::Level::good) not_for += " " + escape_markup("This set is " + grade.words() + ".");
+  if (grade != "good") not_for += " " + escape_markup("This set is " + grade + ".");
   if (!t.set.anharmonic)
     not_for += " The set has no terms beyond Hooke's law: near the limits its energies are 3 to 20 % too large.";
   return html + paragraph(not_for);
@@ -130,7 +128,7 @@ struct Figure {
 
 double radius(const ParametrizedTube& t) { return t.set.radius; }
 
-// Divided by what a thin wall would give, stiffnesses of all tubes are those of the sheet.
+// Divided by those of a thin wall, stiffnesses of all tubes are those of the sheet.
 std::vector<Figure> overview_figures(const std::vector<ParametrizedTube>& tubes) {
   const auto stretch = [](const ParametrizedTube& t) {
     return t.set.bond.stretch * nN / (2 * units::pi * t.set.radius);
@@ -193,21 +191,19 @@ std::string overview_row(const ParametrizedTube& t) {
                        escape_markup(t.name), escape_markup(t.error));
   const auto cell = [&](const char* key) {
     const Quantity* q = find_quantity(t.set, key);
-    return fmt::format("<td class=\"number\">{}</td>",
-                       q ? measured_text(q->value, q->standard_error.value_or(0)) : "not known");
+    return fmt::format("<td class=\"number\">{}</td>", q ? measured_text(*q) : "not known");
   };
   const Check* rope = worst_rope(t);
   return fmt::format("<tr><td>{}</td><td><a href=\"{}.html\">{}</a></td>", escape_markup(t.tube), t.name,
                      escape_markup(t.name)) +
          cell("tube.radius") + cell("bond.EA") + cell("bond.EI") + cell("bond.GJ") +
          cell("atomistic.natural_twist") + cell("contact.line.pair_spacing") + cell("contact.line.pair_energy") +
-         fmt::format("<td>{}</td><td class=\"number\">{}</td><td>{}</td></tr>\n",
-                     t.holds() ? "✓ holds" : "✗ misses",
-                     rope ? number_text(100 * std::fabs(rope->difference()), 2) + " %" : "",
-                     escape_markup(grade_of(t.set).words()));
+         fmt::format(
+             "<td>{}</td><td class=\"number\">{}</td><td>{}</td></tr>\n", t.holds() ? "✓ holds" : "✗ misses",
+             rope ? number_text(100 * std::fabs(rope->difference()), 2) + " %" : "", escape_markup(t.grade()));
 }
 
-// Of each tube that has sets by several potentials: how far they lie apart.
+// The spread of the sets of each tube that has several, by potentials.
 std::string spread_part(const std::vector<ParametrizedTube>& tubes) {
   std::map<std::string, std::vector<const ParametrizedTube*>> groups;
   for (const ParametrizedTube& t : tubes)
@@ -241,13 +237,12 @@ std::string tube_page(const ParametrizedTube& t) {
   PageTop top;
   top.kicker = "a nanotube, from its atoms to a validated parameter set";
   top.title = fmt::format("{}, potential {}", t.tube, provenance_value(t.set, "potential"));
-  top.html =
-      heading("What the set is for") + uses_part(t) + heading("The numbers") + numbers_part(t) +
-      paragraph("Set <b>" + escape_markup(t.name) + ".toml</b>, grade: " + escape_markup(grade_of(t.set).words()) +
-                ". Its tables lie beside it. <code>ropewalk calibrate "
-                "show " +
-                escape_markup(t.name) + ".toml</code> draws every fit.") +
-      heading("Limits") + limits_part(t) + heading("What was compared");
+  top.html = heading("What the set is for") + uses_part(t) + heading("The numbers") + numbers_part(t) +
+             paragraph("Set <b>" + escape_markup(t.name) + ".toml</b>, grade: " + escape_markup(t.grade()) +
+                       ". Its tables lie beside it. <code>ropewalk calibrate "
+                       "show " +
+                       escape_markup(t.name) + ".toml</code> draws every fit.") +
+             heading("Limits") + limits_part(t) + heading("What was compared");
   std::vector<std::string> facts = page_facts(t.outcomes);
   facts.insert(facts.begin(), times(t));
   return validation_page(t.outcomes, facts, top);
@@ -269,7 +264,7 @@ std::string overview_page(const std::vector<ParametrizedTube>& tubes) {
   html += "</tbody></table></div>\n" +
           paragraph(
               "Ropes: the largest difference of twisting energies from atoms, ropes of seven tubes, up to r τ = "
-              "0.04. Errors are standard errors of the calibration; potentials differ by more.");
+              "0.04. The first error is that of the calibration, the second how far potentials lie apart.");
   const std::vector<Figure> all = overview_figures(tubes);
   for (std::size_t k = 0; k < all.size(); k += 2) {
     html += "<div class=\"pair\">\n";
@@ -308,7 +303,7 @@ std::string tubes_csv(const std::vector<ParametrizedTube>& tubes) {
       text += q ? fmt::format(",{:.10g},{:.3g}", q->value, q->standard_error.value_or(0)) : ",,";
     }
     const Check* rope = worst_rope(t);
-    text += fmt::format(",{:.4g},\"{}\",{},{},{:.1f},{:.1f}\n", registry_deviation(t.set), grade_of(t.set).words(),
+    text += fmt::format(",{:.4g},\"{}\",{},{},{:.1f},{:.1f}\n", registry_deviation(t.set), t.grade(),
                         t.holds() ? "holds" : "misses", rope ? fmt::format("{:.4g}", rope->difference()) : "",
                         t.calibration_seconds, t.validation_seconds());
   }

@@ -16,6 +16,7 @@
 #include "atomistic/potential.hpp"
 #include "io/failure.hpp"
 #include "io/files.hpp"
+#include "io/grade.hpp"
 #include "io/parameters_toml.hpp"
 #include "io/processes.hpp"
 #include "model/error.hpp"
@@ -26,7 +27,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Where the files of a tube lie.
+// The places of a tube's files.
 struct Place {
   std::string tube, potential;  // as typed
   std::string name;             // "cnt-7-3-tersoff"
@@ -154,6 +155,10 @@ bool ParametrizedTube::holds() const {
   return error.empty() && std::all_of(outcomes.begin(), outcomes.end(), [](const Outcome& o) {
            return o.verdict() == Outcome::Verdict::holds || o.verdict() == Outcome::Verdict::not_applicable;
          });
+}
+
+std::string ParametrizedTube::grade() const {
+  return grade_with_verdicts(grade_of(set).words(), set.hash, outcomes);
 }
 
 double ParametrizedTube::validation_seconds() const {

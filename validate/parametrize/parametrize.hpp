@@ -1,6 +1,6 @@
 // `ropewalk parametrize`: from chiralities to validated parameter sets and one report.
 //
-// Of each tube (n,m) and interatomic potential: the set is calibrated with its envelope, the references of its
+// For each tube (n,m) and interatomic potential the set is calibrated with its envelope, the references of its
 // atoms are made, all cases of validation that the set allows are run, and a page says what the set is worth. What
 // is finished is kept, so that a stopped command goes on where it was.
 #pragma once
@@ -36,6 +36,7 @@ struct ParametrizedTube {
   double calibration_seconds = 0;  // wall time
 
   bool holds() const;
+  std::string grade() const;          // in words, with the cases that miss
   double validation_seconds() const;  // sum over the cases, LAMMPS included
 };
 

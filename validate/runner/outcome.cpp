@@ -189,6 +189,18 @@ std::string Outcome::with_tubes(std::string text) const {
   return text;
 }
 
+std::string grade_with_verdicts(const std::string& grade, const std::string& hash,
+                                const std::vector<Outcome>& outcomes) {
+  std::string misses;
+  for (const Outcome& o : outcomes) {
+    const auto same = [&](const UsedSet& set) { return set.hash == hash; };
+    if (o.verdict() == Outcome::Verdict::misses && std::any_of(o.sets.begin(), o.sets.end(), same))
+      misses += (misses.empty() ? "" : ", ") + o.name;
+  }
+  if (misses.empty()) return grade;
+  return (grade == "good" ? "limited: " : grade + "; ") + "it misses in " + misses;
+}
+
 std::string outcome_json(const Outcome& outcome) { return body(outcome).dump(1) + "\n"; }
 
 Outcome read_outcome(const std::string& path) {

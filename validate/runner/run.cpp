@@ -53,7 +53,7 @@ struct Run {
   int jobs = 1;
 };
 
-// A case that is to be run: with which sets, and what it may do.
+// A case to run, its sets and its means.
 struct Task {
   const Case* of = nullptr;
   std::vector<ParameterSet> sets;
@@ -63,7 +63,7 @@ struct Task {
   std::string no_atoms = "make them with --atoms";
 };
 
-// Where only the shipped sets make sense, the given one takes the place of that of its tube.
+// If only the shipped sets make sense, the given one takes the place of that of its tube.
 Task task_of(const Case& c, const Run& run) {
   Task t;
   t.of = &c;
@@ -176,7 +176,7 @@ bool finished(const Task& task, const Run& run) {
   const std::string path = result_path(run.arguments.out, task.of->name);
   if (run.arguments.again || !fs::exists(path)) return false;
   const Outcome o = read_outcome(path);
-  // What was not applicable may have become so.
+  // A case that was not applicable may have become so.
   return o.key == run.key && o.error.empty() && o.not_applicable.empty();
 }
 
@@ -261,9 +261,10 @@ std::vector<std::string> page_facts(const std::vector<Outcome>& outcomes) {
     for (const UsedSet& set : o.sets) sets[set.hash] = set;
   std::string of_sets;
   for (const auto& [hash, set] : sets)
-    of_sets += fmt::format(
-        "{}{}, {} (hash {}): {}{}", of_sets.empty() ? "Sets: " : "; ", set.name, set.tube, hash, set.grade,
-        set.registry >= 0 ? fmt::format("; registry {:.2g} % of the well", 100 * set.registry) : "");
+    of_sets +=
+        fmt::format("{}{}, {} (hash {}): {}{}", of_sets.empty() ? "Sets: " : "; ", set.name, set.tube, hash,
+                    grade_with_verdicts(set.grade, hash, outcomes),
+                    set.registry >= 0 ? fmt::format("; registry {:.2g} % of the well", 100 * set.registry) : "");
   return {
       of_sets + ".",
       "Registry is how the lattices of two tubes lie on one another. The model leaves it out. It is an error bar "

@@ -30,7 +30,7 @@ struct ValidateArguments {
   bool json = false;
   bool quiet = false;
 };
-// What `validate run` does without its output: runs the cases that have no result in a.out yet and writes results
+// `validate run` without its output: runs the cases that have no result in a.out yet and writes results
 // and reports. Throws InputError.
 std::vector<Outcome> run_cases(const ValidateArguments& arguments);
 int validate_command(const ValidateArguments& arguments);
@@ -67,11 +67,16 @@ struct Outcome {
   std::string with_tubes(std::string text) const;  // {tube} replaced
 };
 
+// What a set is worth: its grade by its own numbers, and the cases in which it misses. A set that misses is not
+// good.
+std::string grade_with_verdicts(const std::string& grade, const std::string& hash,
+                                const std::vector<Outcome>& outcomes);
+
 std::string outcome_json(const Outcome& outcome);
 // Throws InputError where the file is not such a result.
 Outcome read_outcome(const std::string& path);
 
-// What stands above the cases of a page.
+// The part above the cases of a page.
 struct PageTop {
   std::string kicker, title;
   std::string html;  // between the first sentence and the table of cases
@@ -80,7 +85,7 @@ struct PageTop {
 std::string validation_page(const std::vector<Outcome>& outcomes, const std::vector<std::string>& facts);
 std::string validation_page(const std::vector<Outcome>& outcomes, const std::vector<std::string>& facts,
                             const PageTop& top);
-// What the sets of these outcomes are worth, and how they were made.
+// Grades of the sets of these outcomes, and how they were made.
 std::vector<std::string> page_facts(const std::vector<Outcome>& outcomes);
 std::string validation_json(const std::vector<Outcome>& outcomes);
 std::string validation_table(const std::vector<Outcome>& outcomes);

@@ -111,7 +111,7 @@ bool parse(std::string_view word, T& value) {
 
 constexpr int not_there = -1;
 
-// Where the columns of a frame stand: indices of the values in its lines.
+// The columns of a frame: indices of the values in its lines.
 struct Layout {
   std::vector<std::string> names;
   std::array<int, needed> fixed;

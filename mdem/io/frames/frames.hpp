@@ -31,7 +31,7 @@ class FrameReader {
   // Bytes, behind the frame just read.
   virtual std::uint64_t position() const = 0;
 };
-// By what the file holds, whatever its name.
+// Opens a file by its content, whatever its name.
 std::unique_ptr<FrameReader> open_frames(const std::string& path);
 
 // None where the file has no whole frame.
@@ -51,7 +51,7 @@ class FrameWriter {
 std::unique_ptr<FrameWriter> frame_writer(const std::string& path, FrameFormat format, std::uint64_t keep,
                                           std::size_t expected);
 
-// Frames that replace a file once they are whole. The destructor throws away what was not.
+// Frames that replace a file once they are whole. The destructor removes an unfinished file.
 class NewFrames {
  public:
   // They begin with the first bytes of `from`.

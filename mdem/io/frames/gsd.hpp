@@ -26,7 +26,7 @@ struct GsdHeader {
 static_assert(sizeof(GsdHeader) == 256);
 inline constexpr std::uint64_t slot_bytes = 64;  // of a name
 
-// Where a chunk is: rows times columns of a type. Entries of the index rise by frame, then by name; one with
+// The place of a chunk: rows times columns of a type. Entries of the index rise by frame, then by name; one with
 // location 0 is free.
 struct GsdEntry {
   std::uint64_t frame = 0, rows = 0;

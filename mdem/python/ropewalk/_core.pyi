@@ -1,4 +1,4 @@
-# What mdem/python/*.cpp binds. Positions in nm, times in ps, energies in eV.
+# The names that mdem/python/*.cpp binds. Positions in nm, times in ps, energies in eV.
 from collections.abc import Callable, Sequence
 from typing import Any
 

@@ -48,7 +48,7 @@ function prepareCamera(hasty) {
   camera.updateProjectionMatrix();
   const target = camera.position.distanceTo(controls.target), thick = Math.max(8, 0.6 * sphere.radius);
   uniforms.haze.value.set(target, target + thick);
-  // As many sides as the tubes' size on the screen needs. In haste thin tubes pass over two joints of three.
+  // The number of sides follows the tubes' size on the screen. In haste thin tubes pass over two joints of three.
   const pixels = Math.max(...facts.tube_radius) * pixelsPerNm() * renderer.getPixelRatio();
   const detail = pixels < 6 ? (hasty ? 0 : 1) : pixels < 14 || hasty ? 2 : pixels < 40 ? 3 : 4;
   meshes.forEach((mesh, k) => { mesh.visible = k === detail; });
@@ -125,7 +125,7 @@ export function lookFrom(x, y, z) {
   const tall = Math.tan(camera.fov * Math.PI / 360), box = canvas.parentElement;
   const wide = tall * box.clientWidth / box.clientHeight;
   const radius = 1.6 * Math.max(...facts.tube_radius);
-  // The middle of what is seen, then as near as all points allow.
+  // Looks at the middle of the shown part, from as near as all its points allow.
   const middle = bounds().centre;
   let target = middle;
   let distance = 0;

@@ -48,7 +48,7 @@ function barColours(s) {
     mapped(s.signed ? diverging : sequential, s.tube ? (n > 1 ? k / (n - 1) : 0) : (k + 0.5) / n));
 }
 
-// Where a value stands on the bar, from 0 to 1. The colours of whole numbers are fields of one width.
+// The place of a value on the bar, from 0 to 1. The colours of whole numbers are fields of one width.
 function onBar(s, v) {
   if (s.tube) return (v - s.from + 0.5) / (s.to - s.from + 1);
   return s.to > s.from ? (v - s.from) / (s.to - s.from) : 0;

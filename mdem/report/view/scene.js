@@ -208,7 +208,7 @@ export function makeScene() {
 
 // --- A frame ------------------------------------------------------------------------------------------------
 
-// Where a joint is in this frame.
+// The position of a joint in this frame.
 export const jointAt = (i, into) => into.fromArray(jointData, i * stride);
 
 const p = new THREE.Vector3(), q = new THREE.Vector3(), n = new THREE.Vector3(), u = new THREE.Vector3();

@@ -23,8 +23,8 @@ std::vector<double> frame_times(const RunDirectory& dir, const Topology& topolog
 std::vector<StoredFrame> frames_of(const RunDirectory& dir, const Topology& topology,
                                    const std::vector<std::size_t>& wanted);
 
-// The frames nearest to these times, ps; where none is asked for, so many as usual, evenly over the run. Throws
-// InputError where no frame is near.
+// The frames nearest to these times, ps; without times, `usual` frames, evenly over the run. Throws InputError
+// where no frame is near.
 std::vector<StoredFrame> frames_at(const RunDirectory& dir, const Topology& topology, std::vector<double> times,
                                    std::size_t usual);
 

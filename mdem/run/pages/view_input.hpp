@@ -1,4 +1,4 @@
-// What the page in space shows of a run.
+// The input of the page in space, from a run.
 #pragma once
 
 #include "report/view/view_page.hpp"
@@ -6,7 +6,7 @@
 
 namespace ropewalk {
 
-// Of at most so many frames, evenly over the run. Throws InputError where there are none.
+// Takes at most `frames` frames, evenly over the run. Throws InputError where there are none.
 ViewInput view_input(const RunDirectory& dir, const Scene& scene, const Prepared& prepared,
                      std::size_t most_frames);
 

@@ -14,8 +14,8 @@ struct DriveKind {
   SceneTable (*table)();  // with the keys of all drives of this kind
   // `scene` holds its elements and what precedes the drives in help.
   std::shared_ptr<const Drive> (*read)(const TomlTable&, const Scene& scene);
-  // What the energy of its force terms is, which have the name of the table: the log then has the column NAME_eV. Null:
-  // it adds none.
+  // Describes the energy of its force terms, which have the name of the table; the log then has the column NAME_eV.
+  // Null: it adds no energy.
   const char* energy = nullptr;
 };
 

@@ -20,7 +20,7 @@ using Is = GripAxis::Is;
 using Matrix3 = Eigen::Matrix3d;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
-// Of some of the six, without the heap.
+// Matrices and vectors of some of the six components, without the heap.
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6>;
 using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1>;
 
@@ -30,14 +30,14 @@ Matrix3 cross(const Vector3& v) {
   return m;
 }
 
-// The velocity with which an arm that turns for so many ps moves along its chord.
+// The velocity with which an arm that turns for `time` ps moves along its chord.
 Matrix3 chord(const Vector3& turning, double time) {
   const double angle = turning.norm() * time;
   if (angle == 0) return cross(turning);
   return (Eigen::AngleAxisd(angle, turning.normalized()).toRotationMatrix() - Matrix3::Identity()) / time;
 }
 
-// Of the components from `first` on that are driven like this.
+// Values of the components from `first` on that are driven like this.
 template <class Of>
 Vector3 driven(const std::array<Schedule, 6>& schedules, const std::array<GripAxis, 6>& axes, std::size_t first, Is is,
                const Of& of) {
@@ -169,7 +169,7 @@ void solve_free(const std::array<GripAxis, 6>& axes, const Matrix6& inertia, con
     for (Eigen::Index j = 0; j < n; ++j)
       a(i, j) = inertia(index[static_cast<std::size_t>(i)], index[static_cast<std::size_t>(j)]);
   }
-  const Vector found = a.ldlt().solve(b);  // zero along what has no inertia
+  const Vector found = a.ldlt().solve(b);  // zero along components without inertia
   for (Eigen::Index i = 0; i < n; ++i) q[index[static_cast<std::size_t>(i)]] = found[i];
 }
 
@@ -285,7 +285,7 @@ std::string GripLoad::needs_time() const {
   return "";
 }
 
-// Upper bounds on one element, of what bends and twists.
+// Upper bounds of the force and the moments on one element.
 std::optional<LoadEffect> GripLoad::effect() const {
   LoadEffect out;
   const double shared = each ? depth : static_cast<double>(elements.size());
@@ -350,7 +350,7 @@ double GripLoad::lasts() const {
 
 namespace {
 
-// What a component of a clamp may follow.
+// A course that a component of a clamp may follow.
 struct Course {
   const char* key;
   double unit;
@@ -494,7 +494,7 @@ const KeyTable<GripLoad>& table_of_grip() {
   return table;
 }
 
-// Which tubes.
+// The keys that choose the tubes of a grip.
 KeyTable<Selection> tubes_of_grip() {
   using Key = KeyOf<Selection>;
   return {"grip",

@@ -88,7 +88,7 @@ void read_elements(const TomlTable& t, const Scene& scene, Selection& on) {
   if (!on.all_elements) on.elements = {0, -1};
 }
 
-// What all loads have.
+// The keys of all loads.
 KeyTable<Selection> selection_table() {
   using Key = KeyOf<Selection>;
   return {"load",

@@ -33,7 +33,7 @@ struct TetherEnd {
   std::vector<int> own;             // the elements of this process, by their places in its state
 };
 
-// Those of `elements` that this process owns, by their places in its state.
+// The places, in this process's state, of those `elements` that it owns.
 std::vector<int> own_places(const Topology& topology, const std::vector<int>& elements) {
   if (!topology.part) return elements;
   std::vector<int> own;

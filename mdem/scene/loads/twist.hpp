@@ -39,7 +39,7 @@ class TwistLoad : public Load, public MomentRamp {
   void add_tangential(const State& state, double whole, std::vector<PointLoad>& out) const;
 
   double all_ = 0;  // elements of the grip; 0: they are all here
-  // Those with whom the grip's elements are shared; null: nobody.
+  // The processes that share this grip; null in a run on one process.
   const LoadProcesses* others_ = nullptr;
 };
 

@@ -38,8 +38,8 @@ void read_contact_law(const TomlTable& t, const Scene& scene, ContactOptions& c)
                   "take law = \"line\"");
 }
 
-// Where the taper of the shortened law left less than half of what two parallel tubes bind with, it would be
-// another law; and beyond its cutoff the law was never fitted.
+// Refuses a cutoff whose taper leaves less than half of the binding of two parallel tubes, which would be another
+// law, and one beyond the cutoff of the fit.
 void read_cutoff(const TomlTable& t, const Scene& scene, ContactOptions& contact) {
   if (!t.has("cutoff_nm")) return;
   if (contact.law == "none") throw t.error("cutoff_nm", "is of no use without contact", "take it away");

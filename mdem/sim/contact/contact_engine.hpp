@@ -16,9 +16,9 @@
 
 namespace ropewalk {
 
-// What an evaluation does besides the contact: `place` prepares a tube, before any element moves, and `finish` ends a
-// block of elements once nothing acts on it any more. Each is called once, by any thread. `pairs` acts on the pairs of
-// each chunk; null: nothing does.
+// The work of an evaluation besides the contact: `place` prepares a tube, before any element moves, and `finish`
+// ends a block of elements once nothing acts on it any more. Each is called once, by any thread. `pairs` acts on
+// the pairs of each chunk; null: nothing does.
 struct TubeWork {
   const TubeParts& parts;
   std::function<void(int)> place, finish;
@@ -40,7 +40,7 @@ class ContactEngine {
   virtual void add_to(int part, const ForceRows& sums) const = 0;
   virtual double energy() const = 0;  // eV
 
-  // The skin (nm) whose lists would have cost least, where a list with the skin `listed` lasted so many steps.
+  // The skin (nm) that would have cost least, given that a list of skin `listed` lasted `steps` steps.
   virtual double best_skin(const Topology&, double listed, long /*steps*/) const { return listed; }
   // U of one pair as law.energy() has it, by tables where these are at hand. The law must outlive it.
   virtual PairEnergy pair_energy(const ContactLaw& law) const;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int grid = 400;
 
-// Of an element of tube i against the whole tube j, over the length, in eV/nm: the mean of four offsets.
+// The energy of an element of tube i against the whole tube j over its length, in eV/nm: the mean of four offsets.
 double parallel_energy(const ContactLaw& law, TypePair types, double length, double distance) {
   const int reach = static_cast<int>(law.cutoff() / length) + 1;
   double sum = 0;
@@ -21,7 +21,7 @@ double parallel_energy(const ContactLaw& law, TypePair types, double length, dou
   return sum / (4 * length);
 }
 
-// Of two tubes at a right angle, each at a quarter of an element, in eV.
+// The energy of two tubes at a right angle, each at a quarter of an element, in eV.
 double crossed_energy(const ContactLaw& law, TypePair types, double length, double distance) {
   const int reach = static_cast<int>(law.cutoff() / length) + 1;
   double sum = 0;

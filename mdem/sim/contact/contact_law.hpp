@@ -1,6 +1,6 @@
 // The contact between elements of two tubes as one energy U(s, n_i, n_j) of a pair, eV: s = x_j - x_i in nm, n_i
-// and n_j the unit axes. A law says here what it is. How it is summed is the matter of a ContactEngine
-// (sim/contact/contact_engine.hpp). A law is immutable and has no state.
+// and n_j the unit axes. A law states its energy here; a ContactEngine (sim/contact/contact_engine.hpp)
+// sums it. A law is immutable and has no state.
 #pragma once
 
 #include <memory>

@@ -50,7 +50,7 @@ struct PairBuffer {
   }
 };
 
-// What an engine does for all terms on pairs.
+// The work of an engine for all terms on pairs.
 class PairWork {
  public:
   virtual ~PairWork() = default;

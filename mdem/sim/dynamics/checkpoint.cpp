@@ -20,7 +20,7 @@ struct CheckpointHead {
   std::int64_t elements = 0, tubes = 0;
 };
 
-// What the neighbour list and the memories of the terms are made of again, and what the next list depends on.
+// The state that the neighbour list and the memories of terms are rebuilt from, and that the next list depends on.
 struct ListOrigin {
   std::vector<double> memory;
   double skin = 0;
@@ -168,7 +168,7 @@ bool could_be(const Relaxation& r, std::int64_t step, double longest_step) {
 
 }  // namespace
 
-// What a sum over the bytes does not tell: whether a simulation could go on from here.
+// Whether a simulation could go on from here, which a sum over the bytes does not tell.
 bool Simulation::could_go_on(double step_of_scene) const {
   const State& s = state_;
   constexpr std::int64_t most_steps = 1000000000000000;

@@ -35,7 +35,7 @@ using EndReadings = std::array<EndReading, 2>;
 
 class Gauges {
  public:
-  // What is summed up; all that the future of a gauge depends on.
+  // The sums: all that the future of a gauge depends on.
   struct Sum {
     PlainVector force_time{}, torque_time{};  // since the last reading
     double turned = 0, work = 0;              // since the start
@@ -54,12 +54,12 @@ class Gauges {
   void add_constraints(const State& state, const std::vector<ConstraintImpulse>& impulses);
   // Counts the turn, which must have changed by less than half a turn since it was called last.
   void follow(const State& state);
-  // What another program did is not known here.
+  // Sets the work to unknown, after another program has moved the elements.
   void forget_work();
 
   // Means since the last reading, which must be earlier.
   EndReadings read(const State& state);
-  // The same from what acts at this moment, where no time has passed.
+  // The same by the forces of this moment, if no time has passed.
   EndReadings read_still(const State& state, const std::vector<ConstraintImpulse>& reactions,
                          const std::vector<PointLoad>& loads);
 

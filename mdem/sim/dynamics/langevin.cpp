@@ -12,8 +12,8 @@ namespace ropewalk {
 namespace {
 
 constexpr int components = 6;  // of velocity and angular velocity
-// Elements whose numbers are made together, always in full: a vector function and its scalar twin for what is left
-// over differ in the last bits.
+// Elements whose numbers are made together, always in full: a vector function and its scalar twin, which would take
+// a remainder, differ in the last bits.
 constexpr int group = 16;
 
 struct Normals {

@@ -105,7 +105,7 @@ class LoadsAndConstraints {
   bool empty() const { return all_.empty(); }
   auto begin() const { return all_.begin(); }
   auto end() const { return all_.end(); }
-  // Those of one class. They live as long as these loads, so a temporary has none to give.
+  // The loads of one class. They live as long as these loads, so a temporary has none to give.
   template <class L>
   std::vector<const L*> of() const&& = delete;
   template <class L>
@@ -134,10 +134,10 @@ double load_power(const std::vector<PointLoad>& loads, const State& state);
 // Applies all constraints (Load::constrain).
 void constrain(const Topology& topology, const LoadsAndConstraints& loads, double time, double ahead, State& state);
 
-// A time at which no prescribed motion has begun: constraints let nothing move but what is free.
+// A time at which no prescribed motion has begun: constraints let free components move alone.
 inline constexpr double before_all_motion = -1;  // ps
 
-// What the constraints gave to an element in a kick.
+// The impulse that the constraints gave to an element in a kick.
 struct ConstraintImpulse {
   int element = 0;
   Vector3 linear = Vector3::Zero();   // eV ps/nm
@@ -145,8 +145,8 @@ struct ConstraintImpulse {
   double work = 0;                    // eV; zero where it is held at rest
 };
 
-// The same after a kick by the forces `total`, with what the constraints gave to each of `elements`, which must be
-// all that they act on.
+// The same after a kick by the forces `total`, with the impulse of the constraints on each of `elements`, which
+// must be all that they act on.
 void constrain(const Topology& topology, const LoadsAndConstraints& loads, const std::vector<int>& elements,
                double time, double ahead, const Forces& total, double kick, State& state,
                std::vector<ConstraintImpulse>& out);

@@ -48,7 +48,7 @@ void for_elements(const Topology& topology, const Work& work) {
 
 }  // namespace
 
-// Of all elements: displacements and turns, velocities and spins, or forces and torques.
+// Vectors of all elements: displacements and turns, velocities and spins, or forces and torques.
 struct Simulation::Motion {
   Vec3Array linear, angular;
 
@@ -66,7 +66,7 @@ struct Simulation::Motion {
   }
 };
 
-// What the constraints let through.
+// The accelerations that the constraints let through.
 Simulation::Motion Simulation::free_accelerations(const Motion& forces) const {
   State free = state_;
   for_elements(topology_, [&](const TubeType& type, std::size_t i) {
@@ -91,9 +91,9 @@ double Simulation::largest_force() const {
 
 // F.K^-1.F/2 by conjugate gradients, with masses as the preconditioner and K times a motion from the difference of
 // two forces, in double. It grows with the iterations: one that is more than `enough` (eV) is returned as it is. M.
-// R. Hestenes, E. Stiefel, J. Res. Natl. Bur. Stand. 49, 409 (1952), DOI 10.6028/jres.049.044: what the last
-// iterations have added is what is still missing. Infinite where K is not positive or `most` iterations are too
-// few.
+// R. Hestenes, E. Stiefel, J. Res. Natl. Bur. Stand. 49, 409 (1952), DOI 10.6028/jres.049.044: the
+// rest is estimated by the sum of the last iterations. Infinite where K is not positive or `most` iterations are
+// too few.
 double Simulation::above_minimum(double enough, long most) const {
   constexpr double unknown = std::numeric_limits<double>::infinity();
   constexpr double step = 1e-4;  // nm: less, and rounding hides the soft motions
@@ -184,7 +184,7 @@ bool Simulation::relax(double tolerance, long max_steps, const std::function<boo
   return end == PartEnd::small_forces;
 }
 
-// Where the forces are small and the energy is not, they have to be smaller.
+// If the forces are small and the energy is not, the forces have to become smaller.
 Relaxed Simulation::relax(const RelaxGoal& goal, long max_steps, const std::function<bool(long)>& progress) {
   ROPEWALK_EXPECTS(goal.force > 0 && goal.energy > 0 && max_steps >= 0);
   constexpr double least_part = 1e-3;  // of the contact's energy, which stands for that of bonds that hardly bear

@@ -27,7 +27,7 @@ struct Relaxed {
   double error = std::numeric_limits<double>::quiet_NaN();  // 2 sqrt(above/U)
 };
 
-// Where a relaxation stands between two of its steps. It has parts: where the forces are small and the energy is
+// The state of a relaxation between two of its steps. It has parts: if the forces are small and the energy is
 // not, the next part goes on to smaller forces.
 struct Relaxation {
   std::int64_t began = -1;  // step; negative: none is underway
@@ -35,7 +35,7 @@ struct Relaxation {
   double first_energy = 0;       // eV, potential less the work of the loads
   std::int64_t part_began = -1;  // step; negative: the next part has yet to begin
   double force = 0;              // eV/nm, that the part has to reach
-  double constant = 0;           // eV, energy less what was supplied
+  double constant = 0;           // eV, energy less supplied energy
   double longest_bond = 0;       // of an element's length; a longer one is torn
   double last_step = 0;          // ps
   Fire fire{0};

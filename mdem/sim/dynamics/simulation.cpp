@@ -212,7 +212,7 @@ void Simulation::check_forces(bool energies) const {
                          "lower the twisting moment");
 }
 
-// Of [twist] with geometric_only.
+// For [twist] with geometric_only.
 void Simulation::relax_spins_if_due() {
   const double interval = loads_.spin_relaxation_interval();
   if (interval <= 0) return;

@@ -43,7 +43,7 @@ class Simulation {
   // Without `energies` the contact energy may be NaN afterwards, and with it the total one: they cost a tenth of a
   // step. The motion is the same bits.
   void step(bool energies = true) { steps(1, energies); }
-  // So many steps, with energies in the last one: the same bits as one by one.
+  // Advances `count` steps; energies in the last. Bitwise equal to `count` calls of step().
   void steps(long count, bool energies = true);
   // Relaxes orientations and positions to a nearby minimum of the energy (FIRE). Returns whether largest_force()
   // fell below the tolerance (eV/nm) within the given steps. `progress` is called in every step; false ends the
@@ -65,7 +65,7 @@ class Simulation {
   const NeighbourList& list() const { return list_; }
   const ForceEngine& engine() const { return engine_; }
   double time_step() const { return time_step_; }
-  // From now on each step is so many shorter ones. Steps are counted as before.
+  // From now on each step is `parts` shorter ones. Steps are counted as before.
   void divide_steps(int parts) {
     ROPEWALK_EXPECTS(parts > 0);
     divided_ = parts;

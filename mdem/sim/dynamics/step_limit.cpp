@@ -68,7 +68,7 @@ struct Wave {
   }
 };
 
-// Of one tube type in a rope of its own kind.
+// The lattice of one tube type in a rope of its own kind.
 struct Lattice {
   const TubeType& type;
   BondDamping bond;

@@ -19,11 +19,11 @@ namespace ropewalk {
 // DOI 10.1103/PhysRevLett.92.095501); at rest the stiffness is 0.3 of it.
 struct TimeStepLimit {
   double limit = 0;  // ps
-  // What it comes from, each on its own: the stiffest mode, the fastest damping.
+  // Its causes, each on its own: the stiffest mode, the fastest damping.
   double chain_frequency = 0;     // rad/ps
   double contact_frequency = 0;   // rad/ps
   double damping_rate = 0;        // 1/ps
-  // Of each plane wave: w^2 (rad^2/ps^2) of its stiffest mode, by tube type, and the six rates of damping (1/ps).
+  // For each plane wave: w^2 (rad^2/ps^2) of its stiffest mode, by tube type, and the six rates of damping (1/ps).
   std::vector<std::vector<double>> stiffest;
   std::vector<double> damping_rates;
 };

@@ -1,6 +1,6 @@
-// A force term: what adds forces besides bonds and contact law, and may have a memory. One class says all about it;
-// the sums of forces and energies, the log, the account of energy, checkpoints, relaxations, splitting and the ranks
-// of LAMMPS follow from the list of terms (Interaction::terms) by themselves.
+// A force term adds forces besides bonds and contact law, and may have a memory. One class describes it;
+// the sums of forces and energies, the log, the account of energy, checkpoints, relaxations, splitting and the
+// ranks of LAMMPS follow from the list of terms (Interaction::terms) by themselves.
 //
 // The engine of forces has copies of the terms of its interaction and calls for each of them
 //
@@ -12,27 +12,27 @@
 //   add_in_kick instead of both, in each kick: forces that follow from all others and the loads
 //
 // Functions that are not const are called by one thread, in the order of the terms, except for list_chunk and
-// add_pairs: one thread for each chunk. The bits of a run must not depend on the number of threads. They do not if a
-// function uses nothing but its arguments, the memory, and what prepare and gather have left.
+// add_pairs: one thread for each chunk. The bits of a run must not depend on the number of threads. They do not if
+// a function uses nothing but its arguments, the memory, and the results of prepare and gather.
 //
-// The memory is what the future follows from besides the state: whether a tether is broken, how far a contact is
-// strained. Only prepare and advance change it. It is handed out as records of numbers that belong to elements of
-// the scene, so that a checkpoint can hold it and elements can take it along to another process.
+// The memory holds whatever the future depends on besides the state: broken tethers, the strain of contacts. Only
+// prepare and advance change it. It is handed out as records of numbers that belong to elements of the scene, so
+// that a checkpoint can hold it and elements can take it along to another process.
 //
 // Two terms to come, and how they fit:
 //
 // Friction with a spring in each contact (P. A. Cundall, O. D. L. Strack, Geotechnique 29, 47 (1979), DOI
-// 10.1680/geot.1979.29.1.47). pair_reach() is that of the contact; list_chunk collects the contacts (i, j) of a chunk
-// and finds the strain u of each in the records of before, or zero. advance turns u by the motion of the contact point
-// since the last step (taken from positions, which the memory holds), cuts it back to mu N/k where it slips and
-// returns the lost k u^2/2. add_pairs adds -k u and its couples, as contact viscosity does. memory() has a record for
-// each i: j, u and the last contact point, for all contacts of i; remember() keeps them until the next list_chunk.
-// halved() gives each half the contact with the nearer half.
+// 10.1680/geot.1979.29.1.47). pair_reach() is that of the contact; list_chunk collects the contacts (i, j) of a
+// chunk and finds the strain u of each in the earlier records, or zero. advance turns u by the motion of the
+// contact point since the last step (taken from positions, which the memory holds), cuts it back to mu N/k where it
+// slips and returns the lost k u^2/2. add_pairs adds -k u and its couples, as contact viscosity does. memory() has
+// a record for each i: j, u and the last contact point, for all contacts of i; remember() keeps them until the next
+// list_chunk. halved() gives each half the contact with the nearer half.
 //
 // Links that form where elements stay near (permanent bonds between tubes). prepare goes through the list in its
-// order, (i, j) rising, and forms a link with a probability by CounterRandom(seed, state.step, i, j), numbers of the
-// scene; not where scene.again is true. add adds the springs of the links of a part's elements, as tethers
-// (scene/loads/tether.cpp) do. advance breaks what is too long and returns its energy. memory() has a record for each
+// order, (i, j) rising, and forms a link with a probability by CounterRandom(seed, state.step, i, j), numbers of
+// the scene; not where scene.again is true. add adds the springs of the links of a part's elements, as tethers
+// (scene/loads/tether.cpp) do. advance breaks long links and returns their energy. memory() has a record for each
 // i: the partner and the rest length of each of its links.
 //
 // Units nm, ps, eV.
@@ -65,7 +65,7 @@ struct ListedScene {
   const Topology& topology;
   const NeighbourList& list;
   const State& state;
-  bool again = false;                 // the list of a checkpoint: what it brings about has happened
+  bool again = false;                 // the list of a checkpoint: its events have happened
   const Processes* others = nullptr;  // that own the other elements of the scene; null: there are none
 };
 
@@ -86,7 +86,7 @@ class ForceTerm {
   // Events happen here: links form, contacts begin and end. In a part of a scene (Topology::part) the term acts on
   // own elements and finds its own memory among all that it was given.
   virtual void prepare(const ListedScene&) {}
-  // What depends on elements of other processes is collected here.
+  // Collects here whatever depends on elements of other processes.
   virtual void gather(const State&) {}
   // Moves the memory on to the present positions; `dt` (ps) has passed since the last call, none in a relaxation.
   // Returns the energy (eV) that the term has lost thereby: it counts as dissipated.
@@ -125,7 +125,7 @@ class ForceTerm {
   // and power. Without one, false: add and add_pairs are called with a list of all pairs, whole tubes and one buffer.
   virtual bool add_reference(const Topology&, const Interaction&, const State&, Forces&) const { return false; }
 
-  // Of its lists, which an evaluation goes through.
+  // The size of its lists, which an evaluation reads.
   virtual std::size_t bytes() const { return 0; }
 };
 

@@ -13,8 +13,8 @@ namespace ropewalk {
 // The memories of several terms as one list of numbers: for each record the number of its term, its element, how
 // many numbers follow, and these. Lists of several processes may stand behind one another.
 std::vector<double> numbers_of(const std::vector<TermMemory>& memories);
-// Records in the order of their elements. Throws std::runtime_error where these are not the memories of so many terms
-// in a scene of so many elements.
+// Records in the order of their elements. Throws std::runtime_error if these are not the memories of `terms` terms
+// in a scene of `elements` elements.
 std::vector<TermMemory> memories_of(const std::vector<double>& numbers, std::size_t terms, int elements);
 
 class ForceTerms : private PairWork {

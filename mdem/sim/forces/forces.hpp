@@ -42,7 +42,7 @@ struct FrameArray {
   Frame<double> operator[](std::size_t i) const { return {e1[i], e2[i], t[i]}; }
 };
 
-// Of the bond from element i to i + 1, at i.
+// At i stands the bond from element i to i + 1.
 struct BondArray {
   Vec3Array force_j, torque_i, torque_j;
 
@@ -65,7 +65,7 @@ struct TubeBonds {
   }
 };
 
-// What some bonds do, besides their forces.
+// Energy and power of some bonds.
 struct BondSum {
   BondEnergy<double> energy;
   double power = 0;   // of their damping

@@ -13,7 +13,7 @@
 #define ROPEWALK_CELL_SEARCH
 namespace ropewalk {
 
-// Members begin .. end - 1; what is behind them may be read.
+// Members begin .. end - 1; memory behind them may be read.
 struct MemberRange {
   int begin, end;
 };
@@ -32,7 +32,7 @@ VEC_BEFORE_NAMESPACE();
 namespace ropewalk::VEC_SET {
 namespace ops = vec::VEC_SET;
 
-// Without branches on what is near: a guess would be wrong too often. A vector more than what is found is written.
+// Without branches on distances, which are mispredicted too often. Writes up to a vector beyond the found members.
 std::size_t FindNear(const CellSearch& s, const MemberRange* first, const MemberRange* last, int* found) {
   const ops::ScalableTag<float> d;
   const ops::RebindToSigned<decltype(d)> di;

@@ -65,7 +65,7 @@ class NeighbourList {
   // Rebuilds the list if an element has moved too far; returns whether it did. A position that is not finite counts
   // as moved; the rebuilt list has no neighbours of that element.
   bool update(const Topology& topology, const State& state);
-  // Whether it has to be built anew by the change since the last build: that of all own elements. All processes
+  // Whether the list must be rebuilt after this change since the last build, of all own elements. All processes
   // must call it, and likewise build().
   bool stale(const Change& change);
   // The change of the elements begin .. end - 1; infinite where a place is not finite.

@@ -1,4 +1,4 @@
-// The topology of what one of several processes works on: its own elements of a scene, and copies of others.
+// The topology of a part of a scene, for one of several processes: its own elements, and copies of others.
 #pragma once
 
 #include <vector>

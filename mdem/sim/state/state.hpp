@@ -97,7 +97,7 @@ struct TubeType {
   double inertia = 0;         // isotropic, eV ps^2
   BondStiffness bond;
 
-  // Elements of one tube up to so many apart have points within `arc` (nm) of each other along it.
+  // The number of elements along a length `arc` (nm) of a tube, rounded up.
   int elements_within(double arc) const {
     ROPEWALK_EXPECTS(arc >= 0 && element_length > 0);
     return static_cast<int>(std::ceil(arc / element_length - 1e-9));
@@ -114,7 +114,7 @@ struct PartOfScene {
   std::vector<int> tube_end;  // of each piece, the number behind the last element of its tube in the scene
 };
 
-// Which elements form which tube. Tube t owns the elements tube_begin[t] .. tube_begin[t+1] - 1; consecutive
+// Elements and their tubes. Tube t owns the elements tube_begin[t] .. tube_begin[t+1] - 1; consecutive
 // ones are bonded.
 struct Topology {
   std::vector<int> tube_begin{0};
@@ -148,7 +148,7 @@ struct Topology {
   }
   // From `begin` on, the first element that is owned where that one is not, or the other way round; `end` at most.
   int change_of_owner(int begin, int end) const;
-  // The last element of the same tube that is at most so many elements behind this one of `tube`.
+  // The last element of the same tube that is at most `elements` elements behind this one of `tube`.
   int last_within(int elements, int element, int tube) const;
   // The least elements_within() of all types.
   int fewest_within(double arc) const;

@@ -18,7 +18,7 @@ struct Segment {
 
 // All tubes cut into parts of nearly equal length, for passes over all elements. A long tube has several parts, so
 // that several threads can work on it. Consecutive short parts form blocks, which are one unit of such a pass.
-// Where other processes own some elements, a part has own ones or copies only.
+// If other processes own some elements, a part has own ones or copies only.
 class TubeParts {
  public:
   static constexpr int most = 512;                       // elements of a part
@@ -43,7 +43,7 @@ class TubeParts {
 };
 
 // Into the tubes with low and with high numbers, which two threads have to themselves in every pass over the tubes;
-// or across where what is to be cut is longest, so that tiles have least in common.
+// or across the longest side of each piece, so that tiles have least in common.
 enum class CutBy { index, position };
 
 // Cuts all own elements into `count` tiles of nearly equal cost; `cost` has one entry per element. The segments of a

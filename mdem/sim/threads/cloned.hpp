@@ -1,4 +1,4 @@
-// A pointer that copies what it points to, by its copy().
+// A pointer that copies its object, by the object's copy().
 #pragma once
 
 #include <memory>

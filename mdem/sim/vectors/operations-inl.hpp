@@ -198,7 +198,7 @@ using Vec = VectorOf<std::remove_cv_t<D>>;
 template <class V>
 using DFromV = typename V::Tag;
 
-// Of every lane a bit with AVX-512, else all bits of the lane.
+// A bit for each lane with AVX-512, else all bits of the lane.
 template <class D>
 struct MaskOf {
 #if VEC_TARGET == VEC_AVX512

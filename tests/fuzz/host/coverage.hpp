@@ -1,4 +1,4 @@
-// Which branches of the readers were taken, and how often: GCC calls __sanitizer_cov_trace_pc() at each.
+// Counts the branches of the readers that were taken: GCC calls __sanitizer_cov_trace_pc() at each.
 #pragma once
 
 #include <array>

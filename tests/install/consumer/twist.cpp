@@ -1,4 +1,5 @@
-// A program of somebody else, built against the installed libraries: ten steps of a rope, and what a run would take.
+// A program outside of this tree, built against the installed libraries: ten steps of a rope, and what a run would
+// take.
 #include <cstdio>
 #include <string>
 

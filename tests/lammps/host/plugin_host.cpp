@@ -1,4 +1,4 @@
-// A LAMMPS with what the PLUGIN package does for ours: opens the plugin, and makes known what it announces.
+// A LAMMPS with the part of the PLUGIN package that ours needs: opens the plugin and registers its styles.
 // Debian's LAMMPS lacks that package. First argument: the plugin; then those of LAMMPS.
 #include <dlfcn.h>
 #include <mpi.h>

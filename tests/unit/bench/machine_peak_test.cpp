@@ -35,7 +35,7 @@ TEST(MachinePeak, IsFound) {
   EXPECT_GT(peak.transfer, 0);
 }
 
-// Without contact the state alone, read and written; with it the axes and what is listed besides.
+// Without contact the state alone, read and written; with it the axes and the list besides.
 TEST(StepBytes, AreOfTheStateAndOfWhatIsListed) {
   Topology topology = test::published_topology();
   const State state = test::disordered_bundle(topology, 7, 40, 1.75, 0.02, 21);

@@ -46,6 +46,16 @@ TEST(Grade, NamesWhatIsKnownBadly) {
   EXPECT_NE(airebo.words().find("EA is known to 1.4 %"), std::string::npos) << airebo.words();
 }
 
+TEST(Grade, OfAWallThatIsNotOfCarbonIsUnfit) {
+  EXPECT_NEAR(wall_stiffness(shipped("cnt-10-10-tersoff")), 351, 0.1);
+  ParameterSet soft = shipped("cnt-10-10-tersoff");
+  for (double* k : {&soft.bond.stretch, &soft.bond.bend, &soft.bond.twist}) *k /= 23.06;  // kcal/mol in an eV
+  EXPECT_EQ(grade_of(soft).level, Grade::Level::unfit);
+  EXPECT_NE(grade_of(soft).words().find("EA/(2 pi r) is 15.22 N/m, and a wall of carbon has 200 to 500"),
+            std::string::npos)
+      << grade_of(soft).words();
+}
+
 TEST(Grade, NamesThinWallsByTheirShellRelation) {
   ParameterSet thin = shipped("cnt-5-5-tersoff");
   thin.radius = 0.2;

@@ -1,4 +1,4 @@
-// Texts of users where something else interprets them, and what is said when a program ends.
+// Texts of users that another program interprets, and the last message of a program.
 #include "io/plain_text.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// The limits of a run: what is measured, what the defaults mean, and what is kept of it.
+// The limits of a run: measured values, the meaning of defaults, and the file that keeps them.
 #include "observe/limits.hpp"
 
 #include <gtest/gtest.h>
@@ -81,7 +81,7 @@ TEST(Limits, SpeedIsATenthOfThatOfSound) {
   EXPECT_NEAR(limits.speed, 2.15, 0.05);
 }
 
-// Where tube types have limits of their own the one that is nearest to its own counts, not the largest number.
+// If tube types have limits of their own, the one that is nearest to its own counts, not the largest number.
 TEST(Limits, AreThoseOfTheTubeType) {
   Topology topology = published_topology();
   topology.types.push_back(topology.types[0]);

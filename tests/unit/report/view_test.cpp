@@ -1,4 +1,4 @@
-// The page in space: what the packing keeps, and what is left out of a page that would be too long.
+// The page in space: the precision of packing, and the frames left out of a page that would be too long.
 #include <gtest/gtest.h>
 #include <zlib.h>
 

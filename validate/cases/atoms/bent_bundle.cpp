@@ -406,7 +406,7 @@ CaseResult run(const CaseContext& context) {
   std::vector<Series> all;
   for (const Grips& grips : {glued, sliding}) {
     if (context.progress) context.progress(fmt::format("elements: ends {}", grips.name));
-    // Where end planes stay planes, neighbours stay in registry.
+    // If end planes stay planes, neighbours stay in registry.
     all.push_back({grips, states_of(table, grips), bend_elements(grips, model), grips.glued ? 0 : registry});
     add_checks(all.back(), bounds, result);
     result.figures.push_back(energy_figure(all.back(), bounds));

@@ -81,7 +81,7 @@ std::vector<std::pair<int, int>> contacts() {
   return pairs;
 }
 
-// Of the centres of slices, tube by tube.
+// Spacing by the centres of slices, tube by tube.
 double spacing_of(const std::vector<Vector3>& centres) {
   Vector3 axis = Vector3::Zero();
   for (int k = 0; k < tubes * slices; ++k) axis += (k % slices < slices / 2 ? -1 : 1) * centres[k];
@@ -355,10 +355,10 @@ void add_changes(const Measured& model, const Measured& atoms, double length, Ca
                   model.warm.error.vdw, atoms.warm.error.vdw, registry));
 }
 
-// Estimate of what vibrating walls add to elements, whose walls are rigid. The distance of a contact changes by the
-// displacements of both walls, independent and of variance s^2 each. So its energy rises by s^2 times the second
-// derivative by the distance, and its minimum moves by -s^2 times the third over the second derivative, and by the
-// change of both mean radii.
+// Estimates the effect of vibrating walls on elements, whose walls are rigid. The distance of a contact changes by
+// the displacements of both walls, independent and of variance s^2 each. So its energy rises by s^2 times the
+// second derivative by the distance, and its minimum moves by -s^2 times the third over the second derivative, and
+// by the change of both mean radii.
 void add_walls(const ReferenceTable& walls, const ParameterSet& set, const Measured& model, const Measured& atoms,
                CaseResult& result) {
   const double variance = walls.column("radius_variance_nm2").at(0);
@@ -452,7 +452,7 @@ const RegisteredCase registered([] {
       "Andersen, J. Chem. Phys. 72, 2384 (1980), DOI 10.1063/1.439486 (redrawn velocities)";
   c.run = run;
   c.turns_red = {{wrong_contact(2), {"vdW energy per length, at rest", "vdW energy per length, 100 K"}}};
-  // What rigid walls lack. The samples scatter by a tenth of it.
+  // Rigid walls lack this much. The samples scatter by a tenth of it.
   c.known_misses = {{"loss of cohesion per length", {-0.0654, 0.015}}};
   return c;
 });

@@ -62,7 +62,7 @@ Left move_around(const DrivenRope& start, const Loop& loop, double leg_duration)
   return left_in(rope, start);
 }
 
-// What is left after 0, 1, .. rounds of heating and cooling with the grips held.
+// Twist and energy left after 0, 1, .. rounds of heating and cooling with the grips held.
 std::vector<Left> shake(const DrivenRope& start) {
   DrivenRope rope = start;
   std::vector<Left> left{{}};

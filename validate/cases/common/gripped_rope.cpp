@@ -42,7 +42,7 @@ void GrippedRope::relax(double tolerance) {
   constexpr double step_fraction = 0.9;  // of the stability limit: nothing has to be conserved
   LoadsAndConstraints grips;
   for (const auto* grip : {&lower, &upper})
-    for (const int e : *grip) grips.add(FixLoad({e}));
+    for (const int e : *grip) grips.add(FixLoad({e}, true, true, true, holds_orientations));
   const double step = step_fraction * time_step_limit(topology, interaction, spacing).limit;
   const Simulation rest = at_rest(Simulation(topology, interaction, grips, state, step), tolerance, 100000);
   state = rest.state();

@@ -2,7 +2,9 @@
 // elements in place of a rope of atoms.
 //
 // A grip holds the positions and orientations of the outermost elements of every tube. The length between the inner
-// ones deforms; it is a whole number of bonds. The grips keep their distance along the axis.
+// ones deforms; it is a whole number of bonds. The grips keep their distance along the axis. Grips of beads hold
+// places alone: a tube then leaves the last bond within the grip by a hinge, half a bond further out than an
+// element whose orientation is held.
 #pragma once
 
 #include <memory>
@@ -23,6 +25,7 @@ struct GrippedRope {
   int bonds = 0;                  // between the grips, of each tube
   int held = 0;                   // elements of a grip in each tube
   double spacing = 0;             // nm
+  bool holds_orientations = true;
 
   GrippedRope(const ParameterSet& set, int bonds, std::shared_ptr<const ContactLaw> law, double spacing,
               int held = 2);

@@ -73,7 +73,7 @@ double row_height(Chirality c, const TubeShape& shape);
 // Natural twist of the set's tube, rad/nm; 0 where the set has none.
 double natural_twist(const ParameterSet& set);
 
-// The atoms of a relaxed tube: so many hexagons, from z = 0 upwards, turned about its axis (nm, rad).
+// The atoms of a relaxed tube of `hexagons` hexagons, from z = 0 upwards, turned about its axis (nm, rad).
 std::vector<Vector3> tube_atoms(Chirality c, const TubeShape& shape, long hexagons, double turn = 0);
 
 }  // namespace ropewalk::validate

@@ -24,7 +24,7 @@ bool bearable(const RopeInMachine& rope, double twist) {
   return shear < 0.8 * v.collapse_at(rope.set.radius, rope.length) && strain < 0.8 * v.stretch;
 }
 
-// Sorted by what is asked, so that a fault turns its own checks red.
+// Sorted by question, so that a fault turns its own checks red.
 void check_at(const RopeInMachine& rope, const CaseTube& tube, double degrees, Length kept, CaseResult& result) {
   const double twist = rope.twist_at(degrees * units::degree);
   const RopeInMachine::Reading seen = rope.wound(twist, kept), exact = rope.theory(tube.set, twist, kept);
@@ -69,7 +69,7 @@ CaseResult run_rope_torsion(const CaseContext& context, Length kept) {
   int colour = 0;
   for (std::size_t k = 0; k < context.sets.size(); ++k) {
     const CaseTube tube = context.tube(k);
-    // Of other sets fewer, for the time that they take.
+    // Other sets have fewer sizes, for the time that they take.
     const std::vector<int> sizes = context.given ? std::vector<int>{7, 37} : std::vector<int>{7, 19, 37, 91};
     for (const int tubes : sizes) {
       const RopeInMachine rope(tube.model, tubes, elements);

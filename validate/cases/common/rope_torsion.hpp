@@ -7,7 +7,7 @@
 namespace ropewalk::validate {
 
 CaseResult run_rope_torsion(const CaseContext& context, RopeInMachine::Length length);
-// What both cases have in common.
+// The common part of both cases.
 Case rope_torsion_case();
 
 }  // namespace ropewalk::validate

@@ -1,4 +1,4 @@
-// Where a method fails: by bisection on the method itself, and by the eigenvalues of its forces.
+// The step at which a method fails: by bisection on the method itself, and by the eigenvalues of its forces.
 #pragma once
 
 #include "cases/common/chain.hpp"

@@ -41,7 +41,7 @@ double apart(const Topology& topology, const State& s) {
   return (centre_of(topology, s, ends[upper_end]) - centre_of(topology, s, ends[lower_end])).norm();
 }
 
-// What element `at` of a tube has with all others, eV.
+// The contact energy of element `at` of a tube with all others, eV.
 double contact_of(const Topology& topology, const State& s, const ContactLaw& law, int tube, int at) {
   double sum = 0;
   const auto i = static_cast<std::size_t>(topology.tube_begin[tube] + at);
@@ -55,7 +55,7 @@ double contact_of(const Topology& topology, const State& s, const ContactLaw& la
   return sum;
 }
 
-// Of two parallel rows of elements side by side, eV/nm.
+// The energy of two parallel rows of elements side by side, eV/nm.
 double side_by_side(const ContactLaw& law, double element, double distance) {
   const int reach = static_cast<int>(law.cutoff() / element) + 2;
   double sum = 0;
@@ -166,7 +166,7 @@ RopeInMachine::Reading RopeInMachine::theory(const ParameterSet& oracle, double 
     return bonds(phi, lambda) - wound * bound / tubes + bond_stretch_ * crowding(phi);
   };
   constexpr double step = 1e-6;
-  const double relaxed = (energy(0, 1 + step) - energy(0, 1 - step)) / (2 * step);  // what is left of its tension
+  const double relaxed = (energy(0, 1 + step) - energy(0, 1 - step)) / (2 * step);  // its remaining tension
   const auto tension = [&](double lambda) {
     return ((energy(twist, lambda + step) - energy(twist, lambda - step)) / (2 * step) - relaxed) / bond_stretch_;
   };
@@ -179,9 +179,17 @@ RopeInMachine::Reading RopeInMachine::theory(const ParameterSet& oracle, double 
   out.tension = kept == Length::held ? tension(1) : 0;
   out.torque = (energy(twist + step, out.stretch) - energy(twist - step, out.stretch)) / (2 * step) / bond_stretch_;
   out.energy = (energy(twist, out.stretch) - energy(0, 1)) * bonded();
+  // All terms with the strain in them are counted as stretch, those with the twist too: twisted tubes of one hand
+  // are stretched at another cost.
   double stretched = 0;
-  for (const double rho : radii)
-    stretched += chain_energy(bond, a, bond_stretch_ * std::hypot(out.stretch, rho * twist) - 1, 0, 0) / tubes;
+  for (const double rho : radii) {
+    const double s = std::hypot(out.stretch, rho * twist);
+    const double turned = spins_free ? 0 : twist * out.stretch / s * bond_stretch_;
+    const double bent = twist * rho * twist / s * bond_stretch_;
+    stretched +=
+        (chain_energy(bond, a, bond_stretch_ * s - 1, turned, bent) - chain_energy(bond, a, 0, turned, bent)) /
+        tubes;
+  }
   out.stretch_share = stretched / bonds(twist, out.stretch);
   const double turn = twist * disc;
   out.core_pressure = -3 * modulus * turn * turn / 16;

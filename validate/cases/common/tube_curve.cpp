@@ -153,6 +153,18 @@ std::size_t points_before_collapse(const std::vector<double>& amplitude, const s
   return energy.size();
 }
 
+std::size_t points_before_break(const std::vector<double>& amplitude, const std::vector<double>& energy) {
+  constexpr double leap = 4.0 / 3;
+  double stiffest = 0;
+  for (std::size_t k = 1; k < energy.size(); ++k) {
+    const double middle = 0.5 * (amplitude[k] + amplitude[k - 1]);
+    const double stiffness = (energy[k] - energy[k - 1]) / (amplitude[k] - amplitude[k - 1]) / middle;
+    if (k > 1 && stiffness > leap * stiffest) return k;
+    stiffest = std::max(stiffest, stiffness);
+  }
+  return energy.size();
+}
+
 void add_collapse(const TubeCurve& curve, const std::vector<double>& amplitude, std::size_t points,
                   const std::string& note, CaseResult& result) {
   if (points >= amplitude.size()) return;

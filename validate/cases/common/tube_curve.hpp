@@ -34,7 +34,10 @@ void add_curve(const TubeCurve& curve, CaseResult& result);
 
 // Number of points, from rest outwards, before the slope of the energy (force, torque or moment) falls by a tenth.
 std::size_t points_before_collapse(const std::vector<double>& amplitude, const std::vector<double>& energy);
-// Adds the amplitude of that collapse, for information.
+// Number of points, from rest outwards, before the energy leaps: before its slope over the amplitude, which bending
+// keeps or lowers, rises by a third above the largest so far. Parts that touch, or a minimiser that went astray.
+std::size_t points_before_break(const std::vector<double>& amplitude, const std::vector<double>& energy);
+// Adds the amplitude of a collapse, for information.
 void add_collapse(const TubeCurve& curve, const std::vector<double>& amplitude, std::size_t points,
                   const std::string& note, CaseResult& result);
 

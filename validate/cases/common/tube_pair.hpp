@@ -29,7 +29,7 @@ std::string move_two(const Vector3& by);
 // Appends the values, given as immediate variables, to name.dat.
 std::string print_values(const std::string& name, const std::string& values);
 
-// Two tubes alike of so many hexagons at this distance (nm), frozen in a periodic cell, one of them slid over
+// Two equal tubes of `hexagons` hexagons at this distance (nm), frozen in a periodic cell, one of them slid over
 // `range` (nm), for several turns of either: rows of both turns (rad), the shift (nm) and the energy per length
 // (eV/nm).
 struct SlidPairs {
@@ -40,7 +40,7 @@ struct SlidPairs {
 std::vector<std::vector<double>> slid_pairs(MdSession& session, const std::string& name, Chirality c,
                                             const TubeShape& shape, const SlidPairs& pairs);
 
-// Mean and standard deviation of a value over so many registries.
+// Mean and standard deviation of a value over `registries` registries.
 struct Spread {
   double mean = 0, deviation = 0;
 };

@@ -15,7 +15,7 @@
 namespace ropewalk::validate {
 namespace {
 
-// Of the range of each column: the error of the minimiser.
+// A part of the range of each column: the error of the minimiser.
 constexpr double fresh_tolerance = 0.01;
 
 struct Series {
@@ -63,7 +63,7 @@ TwistedState change(const std::vector<TwistedState>& states, std::size_t k) {
 
 std::array<std::size_t, 3> compared(const Series& s) { return {(s.elastic + 2) / 3, 2 * s.elastic / 3, s.elastic}; }
 
-// What the registry of real tubes, which the model leaves out, may move the twisting energy by, over that energy:
+// The error bar of the twisting energy by the registry of real tubes, which the model leaves out, over that energy:
 // the registries of twelve pairs of neighbours at random. It falls with the square of the angle. 0: not known.
 double registry_bar(const ParameterSet& set, const Series& series, std::size_t k) {
   return std::max(0.0, registry_deviation(set)) * std::fabs(series.atoms[k].vdw) / std::sqrt(12.0) /

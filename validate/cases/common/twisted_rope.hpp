@@ -79,7 +79,7 @@ std::vector<TwistedState> states_of(const ReferenceTable& table, bool axial_free
 std::vector<TwistedState> twist_elements(const TwistedRope& rope, const ParameterSet& set,
                                          const std::vector<double>& angles, bool axial_free);
 
-// What is compared for each tube of a case.
+// The comparison for each tube of a case.
 struct RopeComparison {
   std::string name;     // of the table
   double length = 8;    // nm

@@ -1,4 +1,4 @@
-// The twisted rope of elements: grips, increments and what is measured.
+// The twisted rope of elements: grips, increments and measured values.
 #include <algorithm>
 #include <cmath>
 
@@ -19,8 +19,8 @@ GrippedRope clamped_rope(const TwistedRope& rope, const ParameterSet& set) {
   const double length = clamped_length(rope, set), a = length / rope.bonds;
   ParameterSet divided = set;
   divided.element_length = a;
-  // A grip ends half an element beyond its last centre. Beyond the clamped length a band is longer by half of what
-  // this exceeds the free rows by.
+  // A grip ends half an element beyond its last centre. Beyond the clamped length a band is longer by half of
+  // its excess over the free rows.
   const double band = rope.band_rows * row_distance(set) - 0.5 * (length - rope.free_rows * row_distance(set));
   const int beyond = std::max(1, static_cast<int>(std::lround(band / a - 0.5)));
   GrippedRope out(divided, rope.bonds, line_law({line_contact_of(divided)}), set.line->pair_spacing, beyond + 1);

@@ -44,7 +44,7 @@ double polygon_error(double shear_share, double delta) {
 }
 
 double polygon_limit(const ParameterSet& set, double allowed) {
-  // Of a Timoshenko beam: s = 1/(1 + 12 EI/(kGA a^2)), 1 where it does not shear.
+  // The share of shear in a Timoshenko beam: s = 1/(1 + 12 EI/(kGA a^2)), 1 where it does not shear.
   const double a = set.element_length, kGA = set.bond.shear;
   const double share = kGA > 0 ? 1 / (1 + 12 * set.bond.bend / (kGA * a * a)) : 1;
   return limit_between([&](double d) { return std::fabs(polygon_error(share, d)) > allowed; }, 0.02, 1.0, 1e-5);

@@ -1,4 +1,4 @@
-// Where a relaxation takes a saddle for a minimum, and where it runs out of steps.
+// Relaxations that take a saddle for a minimum, or that run out of steps.
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-// A rope turned and turned back: what is lost, against the rate.
+// A rope turned and turned back: the lost energy against the rate.
 #include <fmt/format.h>
 
 #include <cmath>

@@ -18,7 +18,7 @@ struct Drawn {
   double energy = 0, force = 0;  // eV, eV/nm
 };
 
-// One tube of seven drawn out by so many elements, at rest: its upper end and the lower ends of the others in
+// One tube of seven drawn out by `by` elements, at rest: its upper end and the lower ends of the others in
 // clamps.
 Drawn drawn(const ParameterSet& set, int tube, int by) {
   std::string others;

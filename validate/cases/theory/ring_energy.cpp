@@ -24,7 +24,8 @@ CaseResult run(const CaseContext& context) {
   const double expected = oracle.bond.bend * turn * turn / (2 * circumference);
   const auto error = [&](int n) { return ring_energy(model, n, circumference) / expected - 1; };
   CaseResult result;
-  // Of a bond bent by delta: (1 - cos delta) + s (12 (1 - cos(delta/2)) - 3 (1 - cos delta)), to delta^4.
+  // The energy of a bond bent by delta: (1 - cos delta) + s (12 (1 - cos(delta/2)) - 3 (1 - cos delta)), to
+  // delta^4.
   const auto leading = [&](double n) {
     return (3 * oracle.bond.shear_share(circumference / n) / 16 - 1.0 / 12) * turn * turn / (n * n);
   };

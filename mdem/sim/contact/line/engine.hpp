@@ -24,7 +24,7 @@ struct NodeVectors {
   std::vector<int> first;
   int count = 0;
 
-  // So many vectors of the widest kind.
+  // Makes room for `vectors` vectors of the widest kind.
   void reserve(int vectors) {
     set_size(first, static_cast<std::size_t>(vectors * node_padding));
     set_size(data_, static_cast<std::size_t>((vectors + 1) * node_padding * arrays));
@@ -44,14 +44,14 @@ struct NodeVectors {
   T* begin_ = nullptr;
 };
 
-// Of one thread.
+// The work space of one thread.
 template <class T>
 struct LineWork {
   NodeForces<T> forces;
   NodeVectors<T> found;
 };
 
-// What the kernel needs of a pair of tube types, in units of the list.
+// Tables of the kernel for a pair of tube types, in units of the list.
 template <class Table>
 struct PairTables {
   using T = typename Table::Value;
@@ -92,7 +92,7 @@ struct LineBuffers {
   using T = typename Table::Value;
   std::vector<PairTables<Table>> pairs;
   double unit = 0;  // nm, of the tables
-  // Of each thread, for the chunk that it works on.
+  // One for each thread, for the chunk that it works on.
   std::vector<NodePositions<C>> nodes;
   std::vector<LineWork<T>> work;
   std::vector<ContactBuffer<T>> of_chunks;
@@ -100,8 +100,8 @@ struct LineBuffers {
 using MixedBuffers = LineBuffers<MixedTable, std::int32_t>;
 using FullBuffers = LineBuffers<FullTable, double>;
 
-// The kernel: one chunk, with the widest vectors that the machine has. `out` takes energies and what acts on the
-// chunk's own elements, `work` what acts on the nodes of their neighbours.
+// The kernel: one chunk, with the widest vectors that the machine has. `out` takes energies and the forces on the
+// chunk's own elements, `work` the forces on the nodes of their neighbours.
 void line_contact(const LineKernelInput<MixedTable, std::int32_t>& in, const LineChunk& chunk,
                   LineWork<float>& work, ContactBuffer<float>& out);
 void line_contact(const LineKernelInput<FullTable, double>& in, const LineChunk& chunk, LineWork<double>& work,
@@ -136,7 +136,7 @@ class LineEngine : public ContactEngine {
                    const Vec3Array& axis, bool energies, const TubeWork& tubes);
   template <class Buffers>
   void compute_chunk(std::size_t chunk, std::size_t thread, PairWork* pairs, Buffers& b, KernelInput<Buffers> in);
-  // What `of` makes of the buffers in use.
+  // Calls `of` with the buffers in use.
   template <class Of>
   auto in_use(const Of& of) const {
     return full_ ? of(full_buffers_) : of(mixed_);

@@ -104,7 +104,7 @@ struct SpanFinder {
     span.near = static_cast<std::int8_t>(last + 1 - first);
   }
 
-  // What element i can reach of first .. last.
+  // Adds the elements of first .. last that element i can reach.
   void add(int first, int last, std::vector<NeighbourSpan>& spans) const {
     for (int to; first <= last; first = to + 1) {
       to = std::min(last, first + NeighbourSpan::longest - 1);
@@ -193,7 +193,7 @@ double LineList::best_skin(const Topology& topology, double listed, long steps) 
   return best;
 }
 
-// Of equal cost, whatever the threads: the cut belongs to the list.
+// Cuts into chunks of equal cost, whatever the threads: the cut belongs to the list.
 void LineList::cut_into_chunks(const Topology& topology, const Vec3Array& position, std::size_t count) {
   std::vector<double> costs;
   costs.reserve(static_cast<std::size_t>(topology.elements()));
@@ -214,7 +214,7 @@ struct Elements {
   }
 };
 
-// Those that the contact or other work on pairs may reach.
+// The elements that the contact or other work on pairs may reach.
 Elements reached(const NeighbourSpan& span) {
   const Elements near{span.first + span.near_from, span.first + span.near_from + span.near};
   if (span.elements == 0) return near;
@@ -225,8 +225,8 @@ Elements reached(const NeighbourSpan& span) {
 
 }  // namespace
 
-// What a chunk writes to: its own elements that have neighbours, and these. Its spans, which had their tubes, get
-// their ranges.
+// Finds the ranges that a chunk writes to: its own elements that have neighbours, and these. Its spans, which had
+// their tubes, get their ranges.
 void LineList::find_ranges(const Topology& topology, LineChunk& chunk) {
   constexpr int gap = 4;  // elements in between that are cheaper to have in the buffers than to leave out
   std::vector<Elements> hull(static_cast<std::size_t>(topology.tubes()), {topology.elements(), 0});
@@ -246,7 +246,7 @@ void LineList::find_ranges(const Topology& topology, LineChunk& chunk) {
     all.include(e);
   });
   std::sort(tubes.begin(), tubes.end());
-  // Of the elements of all hulls, one after another: whether they are acted on, later their ranges.
+  // For the elements of all hulls, one after another: whether they are acted on, later their ranges.
   std::vector<int> shift(static_cast<std::size_t>(topology.tubes()));
   int total = 0;
   for (int t : tubes) {

@@ -1,4 +1,4 @@
-// What the line law's kernel runs over: for every element the spans of consecutive elements of other tubes that may
+// The list of the line law's kernel: for every element the spans of consecutive elements of other tubes that may
 // come within its reach before the list is built again, and chunks of elements as units of parallel work. No index
 // per pair.
 #pragma once
@@ -64,7 +64,7 @@ class RangeOf {
   const WrittenRange* range_;
 };
 
-// Of an interaction by the line law.
+// The law of an interaction by the line law.
 inline const LineLaw& line_law_of(const Interaction& in) { return static_cast<const LineLaw&>(*in.law); }
 
 class LineList {
@@ -82,7 +82,7 @@ class LineList {
   const std::vector<LineChunk>& chunks() const { return chunks_; }
   // The largest of any chunk.
   const LineChunk& largest() const { return largest_; }
-  // The skin (nm) whose lists would have cost least, building included, where this one of `listed` lasted so many
+  // The skin (nm) that would have cost least, building included, given that a list of skin `listed` lasted `steps`
   // steps. It follows from the list and not from a clock: the same run has the same lists.
   double best_skin(const Topology& topology, double listed, long steps) const;
   // A power of two (nm) that resolves every coordinate in 29 bits.

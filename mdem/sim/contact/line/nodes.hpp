@@ -36,7 +36,7 @@ struct NodeForces {
   }
 };
 
-// Where the nodes of one tube type are on its elements.
+// The places of the nodes of one tube type on its elements.
 struct NodeOffsets {
   static constexpr int padding = 8;  // zeros behind them, for vectors that are not full
   std::vector<double> s;             // nm from the centre

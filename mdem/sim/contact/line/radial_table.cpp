@@ -12,7 +12,7 @@
 namespace ropewalk {
 namespace {
 
-// Where the switch begins at the end of a segment, with the smallest delta that reaches the cutoff.
+// The smallest delta that reaches the cutoff and lets the switch begin at the end of a segment.
 double radial_delta(double core2, double switch2, double cutoff2, int octaves, int per_octave) {
   const double last = std::exp2(octaves), smallest = (cutoff2 - core2) / (last - 1);
   for (int k = octaves * per_octave - 1; k > 0; --k) {

@@ -57,7 +57,7 @@ struct RadialTable {
 
   RadialTable() = default;
   RadialTable(const LineDensity& law, double unit_nm);
-  // u at a squared distance in units of unit^2: one alone, as a check and for what no loop over many is worth.
+  // u at one squared distance, in units of unit^2; loops use the vector form.
   T energy(T X) const;
 };
 

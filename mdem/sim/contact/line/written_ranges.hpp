@@ -1,4 +1,4 @@
-// Which chunks of the line law's list act on which parts of the tubes.
+// The parts of the tubes that each chunk of the line law's list acts on.
 #pragma once
 
 #include <cstddef>

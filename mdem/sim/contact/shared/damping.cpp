@@ -188,7 +188,7 @@ VEC_INLINE double all_groups(const ContactViscosity& viscosity, const Of& of,
   return sum;
 }
 
-// Of the elements of a part. Whole vectors, whose last lanes the next part's elements are stored over.
+// Takes the elements of a part, in whole vectors, whose last lanes the next part's elements are stored over.
 VEC_INLINE void take(const State& s, const BufferRange& of, double per_unit, DampedElements& e) {
   const ops::CappedTag<double, 8> d;
   const ops::RebindToUnsigned<decltype(d)> bits;
@@ -261,7 +261,7 @@ void DampedBlocks::add(int i, const BufferRange& own, int from, int to, const Bu
 }
 
 void DampedBlocks::finish_group() {
-  constexpr int worth_a_block = 3;  // so many offsets without a pair cost what another block does
+  constexpr int worth_a_block = 3;  // offsets without a pair that cost as much as another block
   std::sort(ranges_.begin(), ranges_.end(), [](const Offsets& a, const Offsets& b) {
     return std::tie(a.partners.begin, a.from) < std::tie(b.partners.begin, b.from);
   });

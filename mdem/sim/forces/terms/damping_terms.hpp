@@ -9,7 +9,7 @@
 
 namespace ropewalk {
 
-// Of pairs of elements within the reach of the viscosity, where there is contact.
+// Acts on pairs of elements within the reach of the viscosity, where there is contact.
 std::unique_ptr<ForceTerm> contact_viscosity_term(const ContactViscosity& viscosity);
 
 // PFC's local damping, of the strength alpha: acts on the sum of all forces in the kick.

@@ -1,4 +1,4 @@
-// Splitting every element in two: the map against chains whose rod is known, and what it must keep.
+// Splitting every element in two: the map against chains whose rod is known, and its conserved quantities.
 #include "sim/dynamics/refine.hpp"
 
 #include <gtest/gtest.h>

@@ -1,0 +1,31 @@
+// How far the end of a log still moves.
+#include "io/run_errors.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace ropewalk {
+namespace {
+
+std::vector<LogRow> log_of(int rows, const std::function<double(double)>& torque) {
+  std::vector<LogRow> log(static_cast<std::size_t>(rows));
+  for (int k = 0; k < rows; ++k) {
+    log[static_cast<std::size_t>(k)]["time_ps"] = k;
+    log[static_cast<std::size_t>(k)]["torque_upper_nN_nm"] = torque(k);
+  }
+  return log;
+}
+
+double torque(const LogRow& row) { return row["torque_upper_nN_nm"]; }
+
+TEST(Movement, IsThatAboutALine) {
+  EXPECT_NEAR(movement(log_of(200, [](double t) { return 16 + 0.032 * std::sin(0.7 * t); }), torque), 0.032, 0.004);
+  EXPECT_NEAR(movement(log_of(200, [](double t) { return 16 + 0.5 * t; }), torque), 0, 1e-12);  // a ramp
+  // What moved long ago counts no more.
+  EXPECT_NEAR(movement(log_of(200, [](double t) { return t < 100 ? std::sin(t) : 16; }), torque), 0, 1e-12);
+  EXPECT_EQ(movement(log_of(3, [](double t) { return std::sin(t); }), torque), 0);
+}
+
+}  // namespace
+}  // namespace ropewalk
