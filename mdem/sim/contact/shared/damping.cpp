@@ -73,7 +73,7 @@ VEC_INLINE void add_to(const Vec3<V>& v, std::ptrdiff_t at, std::vector<T>& x, s
                        std::vector<T>& z) {
   const ops::DFromV<V> d;
   const auto add = [&](std::vector<T>& a, V what)
-                       VEC_ATTR { ops::StoreU(ops::Add(ops::LoadU(d, a.data() + at), what), d, a.data() + at); };
+                       VEC_ATTR { ops::Store(ops::Add(ops::Load(d, a.data() + at), what), d, a.data() + at); };
   add(x, v.x), add(y, v.y), add(z, v.z);
 }
 
@@ -108,8 +108,8 @@ struct Floats {
   template <class X>
   static VEC_INLINE auto whole(const X& x, const X& y, const X& z, std::ptrdiff_t at) {
     const ops::Rebind<typename X::value_type, D> d;
-    return Vec3<ops::Vec<decltype(d)>>{ops::LoadU(d, x.data() + at), ops::LoadU(d, y.data() + at),
-                                      ops::LoadU(d, z.data() + at)};
+    return Vec3<ops::Vec<decltype(d)>>{ops::Load(d, x.data() + at), ops::Load(d, y.data() + at),
+                                       ops::Load(d, z.data() + at)};
   }
   VEC_INLINE Motion<Position, V> load(std::ptrdiff_t, std::ptrdiff_t entry, int, int) const {
     const DampedElements& e = elements;
@@ -202,10 +202,10 @@ VEC_INLINE void take(const State& s, const BufferRange& of, double per_unit, Dam
     const auto position = [&](const Column& from, std::vector<std::uint32_t>& to) VEC_ATTR {
       const auto rounded = ops::MulAdd(some(from), units, ops::Set(d, rounds_to_whole));
       const auto number = ops::ShiftRight<bits_behind_point>(ops::BitCast(bits, rounded));
-      ops::StoreU(ops::TruncateTo(whole, number), whole, to.data() + entry);
+      ops::Store(ops::ConvertTo(whole, number), whole, to.data() + entry);
     };
     const auto motion = [&](const Column& from, std::vector<float>& to)
-                            VEC_ATTR { ops::StoreU(ops::DemoteTo(floats, some(from)), floats, to.data() + entry); };
+                            VEC_ATTR { ops::Store(ops::ConvertTo(floats, some(from)), floats, to.data() + entry); };
     position(s.position.x, e.x), position(s.position.y, e.y), position(s.position.z, e.z);
     motion(s.velocity.x, e.vx), motion(s.velocity.y, e.vy), motion(s.velocity.z, e.vz);
     motion(s.angular_velocity.x, e.wx), motion(s.angular_velocity.y, e.wy), motion(s.angular_velocity.z, e.wz);
