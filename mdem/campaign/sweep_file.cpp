@@ -207,10 +207,36 @@ struct Setting {
   std::size_t number;
 };
 
+constexpr const char* length_key = "element_length_nm";
+
+// Tubes with other elements in a scene that has none of this length yet: their free length stays as near as whole
+// elements go. Nothing is changed where the scene is wrong, which is said elsewhere, or where the size of the tubes
+// goes with the elements, value by value.
+void keep_free_length(const Sweep& s, const std::string& before, double length, std::string& text) {
+  try {
+    const Scene scene = scene_of_text(before, s.scene_path);
+    const SceneKey size = tube_size_key(scene);
+    const std::string key = size.table + "." + size.key;
+    const auto same = [&](const SweepAxis& axis) { return axis.key == key; };
+    if (size.tube_size == SceneKey::TubeSize::no || scene.has_ends(Drive::Ends::endless) ||
+        !(length > 1e-3 * scene.element_length) ||
+        (s.zip && std::any_of(s.axes.begin(), s.axes.end(), same)))
+      return;
+    const int held = elements_held(scene, 0), free = scene.source->sizes(scene.element_length).elements - held;
+    const long elements = std::max(1L, std::lround(free * scene.element_length / length)) + held;
+    text = with_value(text, key,
+                      size.tube_size == SceneKey::TubeSize::elements
+                          ? std::to_string(elements)
+                          : fmt::format("{:.10g}", static_cast<double>(elements) * length),
+                      s.scene_path);
+  } catch (const InputError&) {
+  }
+}
+
 SweepPoint point_of(const Sweep& s, const std::vector<Setting>& settings) {
   SweepPoint p;
   p.text = s.scene_text;
-  for (const Setting& setting : settings) {
+  const auto set = [&](const Setting& setting) {
     const std::string& value = setting.axis->values[setting.number];
     try {
       p.text = with_value(p.text, setting.axis->key, value, s.scene_path);
@@ -218,6 +244,16 @@ SweepPoint point_of(const Sweep& s, const std::vector<Setting>& settings) {
       throw InputError({s.path, setting.axis->line, setting.axis->key},
                        fmt::format("cannot be set in {}: {}", s.scene_path, std::string(e.description())),
                        "write the key as it would stand in the scene");
+    }
+  };
+  for (const Setting& setting : settings)
+    if (setting.axis->key != length_key) set(setting);
+  const std::string before = p.text;
+  for (const Setting& setting : settings) {
+    const std::string& value = setting.axis->values[setting.number];
+    if (setting.axis->key == length_key) {
+      set(setting);
+      keep_free_length(s, before, std::strtod(value.c_str(), nullptr), p.text);
     }
     p.values.push_back(value);
     if (setting.axis->values.size() == 1) continue;  // the same for all

@@ -12,6 +12,7 @@
 #include "plan/planned_scene.hpp"
 #include "scene/dissipation.hpp"
 #include "scene/loads/rotate.hpp"
+#include "sim/dynamics/refine.hpp"
 
 namespace ropewalk {
 namespace {
@@ -33,27 +34,6 @@ struct Model {
     return Simulation(topology, interaction, loads, state, time_step, scene.contact.skin, stepping);
   }
 };
-
-// Another element between every two, all of half the length: the ends stay where loads hold them.
-State halved(const Topology& topology, const State& s) {
-  State out(static_cast<std::size_t>(2 * topology.elements() - topology.tubes()));
-  out.time = s.time;
-  std::size_t k = 0;
-  for (int t = 0; t < topology.tubes(); ++t)
-    for (int e = topology.tube_begin[t]; e < topology.tube_begin[t + 1]; ++e) {
-      const auto i = static_cast<std::size_t>(e), j = i + 1;
-      out.position.set(k, s.position[i]);
-      out.orientation.set(k, s.orientation[i]);
-      out.velocity.set(k, s.velocity[i]);
-      out.angular_velocity.set(k++, s.angular_velocity[i]);
-      if (e + 1 == topology.tube_begin[t + 1]) continue;
-      out.position.set(k, 0.5 * (s.position[i] + s.position[j]));
-      out.orientation.set(k, s.orientation[i].slerp(0.5, s.orientation[j]));
-      out.velocity.set(k, 0.5 * (s.velocity[i] + s.velocity[j]));
-      out.angular_velocity.set(k++, 0.5 * (s.angular_velocity[i] + s.angular_velocity[j]));
-    }
-  return out;
-}
 
 void scale(double by, Vec3Array& v) {
   for (auto* c : {&v.x, &v.y, &v.z})
@@ -77,8 +57,8 @@ Model finer_model(const Model& planned, bool half) {
   if (half) {
     m.scene.element_length *= 0.5;
     m.scene.damping = same_dissipation(m.scene.damping, planned.scene.element_length, m.scene.element_length);
-    m.start = halved(planned.topology, m.start);
-    m.end = halved(planned.topology, m.end);
+    m.start = halved(planned.topology, m.start, Splitting::between);
+    m.end = halved(planned.topology, m.end, Splitting::between);
   }
   m.topology = empty_topology(m.scene);
   for (int t = 0; t < planned.topology.tubes(); ++t)

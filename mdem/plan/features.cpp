@@ -32,12 +32,6 @@ double rope_radius(const Prepared& p) {
   return largest;
 }
 
-double longest_tube(const Topology& t) {
-  double longest = 0;
-  for (int k = 0; k < t.tubes(); ++k) longest = std::max(longest, t.length_of(k) * t.type_of(k).element_length);
-  return longest;
-}
-
 // The rope as a whole turned by `twist` per length.
 void add_rope_twist(const Prepared& p, double twist, SceneFeatures& f) {
   const double radius = p.topology.tubes() > 1 ? rope_radius(p) : 0.0, slope = radius * twist;
@@ -70,7 +64,7 @@ double resting_twist(const Prepared& p, double moment, bool geometric_only) {
 void add_load(const LoadEffect& load, const Prepared& p, SceneFeatures& f) {
   const BondStiffness& k = p.topology.types[0].bond;
   if (load.force > 0) {
-    const double bend = load.force * longest_tube(p.topology) / k.bend;
+    const double bend = load.force * f.length / k.bend;
     f.curvature += bend;
   }
   if (load.torque != Vector3::Zero()) {
@@ -133,7 +127,7 @@ SceneFeatures features_of(const Scene& scene, const Prepared& p) {
   SceneFeatures f;
   f.tubes = p.topology.tubes();
   f.contact = p.interaction.has_contact() && f.tubes > 1;
-  f.length = longest_tube(p.topology);
+  for (int t = 0; t < p.topology.tubes(); ++t) f.length = std::max(f.length, free_length(scene, p.topology, t));
   bond_features(p.topology, p.state, f);
   double turned = 0;
   for (const auto& load : p.loads) {

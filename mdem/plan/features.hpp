@@ -9,7 +9,7 @@ struct SceneFeatures {
   bool contact = false;  // tubes that can touch one another
   int tubes = 0;
   double curvature = 0, twist = 0;  // 1/nm, rad/nm, the largest expected
-  double length = 0;                // nm, of the longest tube
+  double length = 0;                // nm, the longest free length of a tube
   bool sudden = false;              // a force or a moment acts at once
   double strain = 0;                // of a tube, the largest expected
   double pressure = 0;              // eV/nm^3, on the innermost tube

@@ -10,6 +10,7 @@
 #include "scene/dissipation.hpp"
 #include "scene/kinds/scene_kind.hpp"
 #include "scene/laws/contact_law_kind.hpp"
+#include "scene/scene_to_model.hpp"
 #include "scene/scene_toml.hpp"
 
 namespace ropewalk {
@@ -71,22 +72,18 @@ void PlannedScene::lengthen(double times, const std::string& why) {
   if (!fixed_length(scene_).empty()) return;
   const double wanted = times * scene_.parameters().element_length, old = scene_.element_length;
   if (std::fabs(wanted / old - 1) < 1e-6) return;
-  // Whatever drives the elements, but for a bath, has hold of end elements.
-  const auto& drives = scene_.drives;
-  const bool held =
-      std::any_of(drives.begin(), drives.end(), [](const auto& drive) { return !drive->temperature(); });
-  const int overhang = held ? 1 : 0;
-  const double between = (elements_of(scene_) - overhang) * old;
-  const long parts = std::max(2L, std::lround(between / wanted));
-  const double length = between / static_cast<double>(parts);
+  const int held = elements_held(scene_, 0);
+  const double free = (elements_of(scene_) - held) * old;
+  const long parts = std::max(2L, std::lround(free / wanted));
+  const double length = free / static_cast<double>(parts);
   set("", "element_length_nm", fmt::format("{:.10g}", length), why);
   keep_dissipation(length);
-  const long now = parts + overhang;
+  const long now = parts + held;
   const SceneKey size = tube_size_key(scene_);
   set(size.table, size.key,
       size.tube_size == SceneKey::TubeSize::elements ? std::to_string(now)
                                                      : fmt::format("{:.10g}", static_cast<double>(now) * length),
-      overhang ? "the ends' centres stay as far apart" : "the tubes stay as long");
+      held ? "the ends' centres stay as far apart" : "the tubes stay as long");
 }
 
 void PlannedScene::keep_dissipation(double length) {

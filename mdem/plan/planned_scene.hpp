@@ -22,9 +22,8 @@ class PlannedScene {
   void start_from_default();
   // No contact for a lone tube that does not come back to itself.
   void drop_what_is_not_there();
-  // Makes elements `times` as long as the set's. Where loads act on the end elements, the distance between
-  // the centres of these elements stays; else the length of the tubes stays. Does nothing where fixed_length()
-  // forbids it.
+  // Makes elements `times` as long as the set's. The free length of the tubes stays (free_length()).
+  // Does nothing where fixed_length() forbids it.
   void lengthen(double times, const std::string& why);
   void default_length() { lengthen(1, "as in the set"); }
   // Written at the end: nodes go with the length of the elements, the time step with everything.

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "run/stages.hpp"
-#include "sim/dynamics/refine.hpp"
+#include "scene/finer.hpp"
 
 namespace ropewalk {
 namespace {
@@ -40,19 +40,19 @@ RefinementRecord go_on_finer(const RunParts& coarse, RunParts& fine) {
   const MovingScene& from = coarse.moving;
   MovingScene& to = fine.moving;
   Prepared at = to.prepared;
-  at.state = halved(from.prepared.topology, from.state());
+  const Splitting how = splitting_of(from.scene);
+  at.state = halved(from.prepared.topology, from.state(), how);
   if (!to.relaxes()) {
     at.state.step = std::llround(at.state.time / to.prepared.time_step);
     if (!coarse.schedule.ends_with_the_scene())
       fine.schedule.end_at(-1, static_cast<double>(coarse.schedule.last_step()) * from.prepared.time_step);
   }
   to.simulation = start(to.scene, at);
-  to.simulation.remember(from.simulation.halved_memory());
+  to.simulation.remember(from.simulation.halved_memory(heirs(from.prepared.topology, how)));
   to.simulation.inherit_from(to.simulation.forces().force, to.simulation.forces().torque,
                              from.simulation.account());
   to.simulation.set_gauges(to.observer.loading.ends, to.prepared.state);
   to.simulation.inherit_from(from.simulation.gauges().sums);
-  to.first = from.first;
   to.first_energy = from.first_energy + to.simulation.total_energy() - from.simulation.total_energy();
   fine.clock.earlier = coarse.clock.seconds();
   fine.limits.inherit(limits_left(coarse.limits), at.state.step);

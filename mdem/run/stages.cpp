@@ -46,9 +46,10 @@ DirectoryLock write_finer_scene(const RunDirectory& from, const Scene& scene, co
   write_file_atomically(to.scene(), text);
   for (std::size_t k = 0; k < scene.sets.size(); ++k)
     write_file_atomically(to.parameters(k), read_file(scene.sets[k].path));
+  const Splitting how = splitting_of(scene);
   if (scene.from_file())
-    write_file_atomically(to.state(),
-                          state_csv(halved(prepared.topology), halved(prepared.topology, prepared.state)));
+    write_file_atomically(
+        to.state(), state_csv(halved(prepared.topology, how), halved(prepared.topology, prepared.state, how)));
   return lock;
 }
 

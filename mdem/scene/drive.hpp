@@ -67,6 +67,11 @@ class Drive {
   virtual void warn(const Scene&, const Topology&, const LoadsAndConstraints&, std::vector<std::string>&) const {}
 
   virtual Ends ends() const { return Ends::free; }
+  // Whether it acts on single elements, whose centres stay where they are in a scene with shorter ones. By default if
+  // the drive clamps or loads ends, or has a key that numbers elements.
+  virtual bool holds_elements() const;
+  // Elements at this end of a tube that it holds as one rigid piece.
+  virtual int held(End /*end*/, int /*tube*/) const { return 0; }
   // The moment that it applies; null: none.
   virtual const MomentRamp* moment_ramp() const { return nullptr; }
   // K, of a bath that keeps the temperature; null: it is none.

@@ -25,26 +25,38 @@ toml::table& table_of(toml::table& top, const std::string& name) {
   return *top[name].as_table();
 }
 
-// "ends" or a list, as the reader takes them; from the end as well: -1 becomes -2 and -1.
-toml::array both_halves(const toml::node& typed) {
+// The elements in the places of these, from the end as well: -1 stays, and -2 becomes -3.
+toml::array in_the_same_places(const toml::array& typed) {
   toml::array elements;
-  const toml::array ends{0, -1};
-  for (const auto& e : typed.is_array() ? *typed.as_array() : ends) {
-    elements.push_back(2 * e.value_or(std::int64_t{0}));
-    elements.push_back(2 * e.value_or(std::int64_t{0}) + 1);
+  for (const auto& e : typed) {
+    const std::int64_t at = e.value_or(std::int64_t{0});
+    elements.push_back(at < 0 ? 2 * at + 1 : 2 * at);
   }
   return elements;
 }
 
+// Whether the table acts on elements that it numbers, and so on as many as before.
+bool numbers_elements(const SceneTable& keys, const toml::table& table) {
+  return std::any_of(keys.keys.begin(), keys.keys.end(), [&](const SceneKey& key) {
+    return key.numbers_elements && table[key.key].value_or(std::string()) != "all";
+  });
+}
+
 // The key where elements are half as long. Nothing is written for a key that has no effect on them, or that is left
 // to the program.
-void refine_key(const SceneKey& key, const Scene& scene, const Topology& topology, toml::table& table) {
-  const int elements = topology.length_of(0);
-  if (key.tube_size == SceneKey::TubeSize::length) table.insert_or_assign(key.key, elements * scene.element_length);
-  if (key.tube_size == SceneKey::TubeSize::elements) table.insert_or_assign(key.key, 2 * elements);
-  if (key.numbers_elements && table.contains(key.key) && table[key.key].value_or(std::string()) != "all")
-    table.insert_or_assign(key.key, both_halves(*table.get(key.key)));
-  if (key.length_power == 0) return;
+void refine_key(const SceneKey& key, const Scene& scene, const Topology& topology, bool numbered,
+                toml::table& table) {
+  const int elements = halved(topology, splitting_of(scene)).length_of(0);
+  if (key.tube_size == SceneKey::TubeSize::length)
+    table.insert_or_assign(key.key, elements * 0.5 * scene.element_length);
+  if (key.tube_size == SceneKey::TubeSize::elements) table.insert_or_assign(key.key, elements);
+  if (const auto* list = table[key.key].as_array(); list && key.numbers_elements) {
+    const toml::array there = in_the_same_places(*list);
+    table.insert_or_assign(key.key, there);
+  }
+  if (key.counts_held && table.contains(key.key))
+    table.insert_or_assign(key.key, 2 * table[key.key].value_or(std::int64_t{1}) - 1);
+  if (key.length_power == 0 || numbered) return;
   const double factor = std::pow(0.5, key.length_power);
   if (const auto* vector = table[key.key].as_array()) {
     toml::array refined;
@@ -75,7 +87,7 @@ void refine_tables(const Scene& scene, const Topology& topology, toml::table& to
     });
     if (table.name.empty() || table.listed || is_drive(table.name) || !matters) continue;
     if (!top.contains(table.name) && table.optional()) continue;
-    for (const SceneKey& key : table.keys) refine_key(key, scene, topology, table_of(top, table.name));
+    for (const SceneKey& key : table.keys) refine_key(key, scene, topology, false, table_of(top, table.name));
   }
 }
 
@@ -86,7 +98,8 @@ void refine_drives(const Scene& scene, const Topology& topology, toml::table& to
     toml::node& typed = *top.get(table.name);
     toml::table& keys =
         table.listed ? *typed.as_array()->get_as<toml::table>(found[table.name]++) : *typed.as_table();
-    for (const SceneKey& key : table.keys) refine_key(key, scene, topology, keys);
+    const bool numbered = numbers_elements(table, keys);
+    for (const SceneKey& key : table.keys) refine_key(key, scene, topology, numbered, keys);
   }
 }
 
@@ -97,7 +110,7 @@ double finer_time_step(const Scene& scene, const Prepared& p, const std::string&
   Scene finer = scene_of_text(text, scene.path, sets);
   finer.damping.contact.inner = scene.damping.contact.inner;
   finer.damping.contact.outer = scene.damping.contact.outer;
-  const Topology halves = halved(p.topology);
+  const Topology halves = halved(p.topology, splitting_of(scene));
   Interaction interaction = interaction_of(finer);
   add_terms(finer, halves, interaction);
   const double limit = time_step_limit(halves, interaction, p.spacing).limit;
@@ -112,6 +125,8 @@ std::string finer_text(const toml::table& top, const std::string& comment) {
 
 }  // namespace
 
+Splitting splitting_of(const Scene& scene) { return holds_elements(scene) ? Splitting::between : Splitting::whole; }
+
 std::string why_not_finer(const Scene& scene, const Topology& topology) {
   for (const auto& drive : scene.drives)
     if (const std::string why = drive->why_not_split(); !why.empty()) return why;
@@ -123,6 +138,9 @@ std::string why_not_finer(const Scene& scene, const Topology& topology) {
   if (half < 0.99 * radius)
     return fmt::format("elements of {:.4g} nm would be shorter than the radius of the tube, {:.4g} nm", half,
                        radius);
+  for (int t = 0; splitting_of(scene) == Splitting::between && t < topology.tubes(); ++t)
+    if (topology.length_of(t) == 1)
+      return fmt::format("tube {} has one element, and a drive holds single elements where they are", t);
   if (2.0 * topology.elements() > max_elements)
     return fmt::format("twice {} elements are more than the {} allowed", topology.elements(), max_elements);
   return "";

@@ -1,19 +1,23 @@
 // A scene with elements of half the length: what a run goes on with when its elements have become too long.
 //
-// Loads and properties of a length of tube stay where they are on the tube. Lengths are those that the tubes have, in
-// whole elements; a [[load]] on an element acts on both its halves; fixed and rotated elements are so with both halves.
-// The grips of [twist] are the end elements of the tubes as in any scene: the same ends, gripped half as long, a
-// quarter of a length farther out. How every other key goes with the length of an element stands with the key
-// (SceneKey::length_power): the halves share a force or couple, so that the total and its place are the same; nodes
-// of the line law keep their spacing, tubes their range of self-exclusion, and dissipation belongs to a length of
-// tube (scene/tables/damping.cpp). A typed time step keeps its share of the stability limit.
+// Where drives hold single elements, another element comes between every two (Splitting::between): the centres of those
+// that are held stay, and with them the free length of the tubes (free_length()), the place and the size of every load
+// on an element. Else every element is split in two, and the tubes stay as long. Lengths are those that the tubes have,
+// in whole elements. How every other key goes with the length of an element stands with the key
+// (SceneKey::length_power): of a load on all elements each takes its part; nodes of the line law keep their spacing,
+// tubes their range of self-exclusion, and dissipation belongs to a length of tube (scene/tables/damping.cpp). A typed
+// time step keeps its share of the stability limit.
 #pragma once
 
 #include <string>
 
 #include "scene/prepare.hpp"
+#include "sim/dynamics/refine.hpp"
 
 namespace ropewalk {
+
+// How the elements of a scene are split.
+Splitting splitting_of(const Scene& scene);
 
 // Why the elements of a scene cannot be split, in words for the user; empty: they can. Not below the radius of the
 // thickest tube: a rod is a model of lengths above the diameter, and the isotropic inertia of an element that short

@@ -131,6 +131,10 @@ struct KeyOf {
     doc.numbers_elements = true;
     return std::move(*this);
   }
+  KeyOf that_counts_held() && {
+    doc.counts_held = true;
+    return std::move(*this);
+  }
   KeyOf is_tube_size(SceneKey::TubeSize size) && {
     doc.tube_size = size;
     return std::move(*this);

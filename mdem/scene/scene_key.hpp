@@ -18,7 +18,10 @@ struct SceneKey {
   int length_power = 0;
   double most = std::numeric_limits<double>::infinity();
   bool whole = false;             // an integer, rounded up
-  bool numbers_elements = false;  // "ends" or a list of elements: both halves take the place of each
+  // "all", "ends" or a list of elements. A key of the same table that goes as the length of an element is what each of
+  // them takes of a whole, which matters for "all" alone: the others stay where they are.
+  bool numbers_elements = false;
+  bool counts_held = false;  // elements at an end of a tube that are held as one, between the same two places
   // Whether it is the size of every tube of the scene.
   enum class TubeSize { no, length, elements };
   TubeSize tube_size = TubeSize::no;

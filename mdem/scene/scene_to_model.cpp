@@ -19,22 +19,41 @@ Topology empty_topology(const Scene& scene) {
   return t;
 }
 
+bool holds_elements(const Scene& scene) {
+  return std::any_of(scene.drives.begin(), scene.drives.end(), [](const auto& d) { return d->holds_elements(); });
+}
+
+int elements_held(const Scene& scene, int tube) {
+  if (!holds_elements(scene)) return 0;
+  int sum = -1;
+  for (const End end : {lower_end, upper_end}) {
+    int most = 1;
+    for (const auto& drive : scene.drives) most = std::max(most, drive->held(end, tube));
+    sum += most;
+  }
+  return sum;
+}
+
+double free_length(const Scene& scene, const Topology& topology, int tube) {
+  return std::max(1, topology.length_of(tube) - elements_held(scene, tube)) * topology.type_of(tube).element_length;
+}
+
 namespace {
 
-// nm, of the longest tube of a type, which collapses first.
-double longest_tube(const Topology& topology, std::size_t type) {
-  int most = 0;
-  for (int t = 0; t < topology.tubes(); ++t)
+// nm, of the longest tube of a type, which collapses first; 0: endless.
+double collapsing_length(const Scene& scene, const Topology& topology, std::size_t type) {
+  double most = 0;
+  for (int t = 0; !scene.has_ends(Drive::Ends::endless) && t < topology.tubes(); ++t)
     if (topology.tube_type[static_cast<std::size_t>(t)] == static_cast<int>(type))
-      most = std::max(most, topology.length_of(t));
-  return most * topology.types[type].element_length;
+      most = std::max(most, free_length(scene, topology, t));
+  return most;
 }
 
 }  // namespace
 
 void set_collapse(const Scene& scene, Topology& topology) {
   for (std::size_t type = 0; scene.bond.anharmonic && type < topology.types.size(); ++type)
-    topology.types[type].bond = scene.sets[type].anharmonic_bond(longest_tube(topology, type));
+    topology.types[type].bond = scene.sets[type].anharmonic_bond(collapsing_length(scene, topology, type));
 }
 
 std::vector<Validity> validities(const Scene& scene, const Topology& topology) {
@@ -42,7 +61,7 @@ std::vector<Validity> validities(const Scene& scene, const Topology& topology) {
   for (std::size_t type = 0; type < scene.sets.size(); ++type) {
     const ParameterSet& set = scene.sets[type];
     all.push_back(set.validity);
-    all.back().twist_collapse = set.validity.collapse_at(set.radius, longest_tube(topology, type));
+    all.back().twist_collapse = set.validity.collapse_at(set.radius, collapsing_length(scene, topology, type));
   }
   return all;
 }

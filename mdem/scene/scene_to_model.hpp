@@ -8,12 +8,23 @@
 
 namespace ropewalk {
 
+// Whether drives hold single elements. The centres of these then stay where they are in a scene with elements of another
+// length, and a tube has no free length beyond the centres of its first and last elements.
+bool holds_elements(const Scene& scene);
+// Elements of a tube less those that make its free length.
+int elements_held(const Scene& scene, int tube);
+// nm, of a tube: what can stretch, bend and twist between its ends. Where drives hold single elements, it is the distance
+// at the start from the centre of the innermost element that is held at the lower end to that at the upper end; the first
+// and the last element count as held. Else it is the length of the tube.
+double free_length(const Scene& scene, const Topology& topology, int tube);
+
 // The validity of each tube type, for its longest tube.
 std::vector<Validity> validities(const Scene& scene, const Topology& topology);
 
 // The scene's tube types, and no tubes yet.
 Topology empty_topology(const Scene& scene);
-// The bonds of tubes as long as those that the topology holds: long ones collapse earlier.
+// The bonds of tubes with the free lengths of those that the topology holds: long ones collapse earlier, and those of a
+// slice without ends as endless ones.
 void set_collapse(const Scene& scene, Topology& topology);
 
 // The contact law of the scene; null: none. It takes searches for its wells: make it once and hand it on.

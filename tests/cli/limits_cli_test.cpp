@@ -96,7 +96,7 @@ TEST_F(Limits, StopKeepsTheCheckpoint) {
 TEST_F(Limits, RefineGoesOnBesideTheRun) {
   const Outcome o = run("run s.toml --out d --quiet --on-limit refine");
   ASSERT_EQ(o.code, 0) << o.err;
-  EXPECT_THAT(o.err, HasSubstr("63 elements of 1.378 nm became 126 of 0.6888 nm"));
+  EXPECT_THAT(o.err, HasSubstr("63 elements of 1.378 nm became 119 of 0.6888 nm"));
   EXPECT_EQ(lines(said(o.err)), 2) << o.err;
   EXPECT_THAT(o.out, HasSubstr("d.fine/report.html"));
   const auto before = log_of("d"), after = log_of("d.fine");
@@ -112,7 +112,7 @@ TEST_F(Limits, RefineGoesOnBesideTheRun) {
     const Json split = limits_of(name).at("refinements").at(0);
     EXPECT_EQ(split.at("from"), "d");
     EXPECT_EQ(split.at("to"), "d.fine");
-    EXPECT_EQ(split.at("elements_after"), 126);
+    EXPECT_EQ(split.at("elements_after"), 119);
     EXPECT_NEAR(split.at("energy_before_eV").at("twist"), before.back()["twist_eV"], 1e-9);
     EXPECT_NEAR(split.at("energy_after_eV").at("contact"), after.front()["vdw_eV"], 1e-9);
     const std::string report = slurp(dir / name / "report.html");

@@ -13,6 +13,7 @@
 #include "scene/finer.hpp"
 #include "scene/random.hpp"
 #include "scene/scene_toml.hpp"
+#include "scene/watch.hpp"
 
 namespace ropewalk {
 namespace {
@@ -202,6 +203,22 @@ TEST(PeriodicSlice, IsTheMiddleOfALongRope) {
   EXPECT_NEAR(slice["twist_eV"] / 15, rope["twist_eV"] / (elements - 1), 5e-3 * slice["twist_eV"] / 15);
 }
 
+// Its tubes are endless: they collapse where endless ones do, whatever the length of the slice, in the bonds and in
+// the limits that are watched.
+TEST(PeriodicSlice, CollapsesAsAnEndlessTubeDoes) {
+  for (const int elements : {9, 16, 44}) {  // 12, 22 and 60 nm
+    const Slice slice(
+        slice_text(7, elements, "[periodic]\ntwist_deg_per_nm = [[0, 0], [9, 4]]\n[run]\nduration_ps = 1\n"));
+    const ParameterSet& set = slice.scene.parameters();
+    const double endless = set.validity.collapse_at(set.radius, 0);
+    ASSERT_LT(endless, 0.95 * set.validity.collapse_at(set.radius, 60));
+    EXPECT_EQ(slice.p.topology.types[0].bond.anharmonic.max_shear, endless);
+    EXPECT_EQ(watched_of(slice.scene, slice.p.topology, slice.p.interaction.law.get()).limits.at(0).wall_twist,
+              endless);
+    EXPECT_EQ(validities(slice.scene, slice.p.topology).at(0).twist_collapse, endless);
+  }
+}
+
 TEST(PeriodicSlice, IsNotRefined) {
   const Slice slice(slice_text(7, 20, "[periodic]\ntwist_deg_per_nm = [[0, 1]]\n[run]\nduration_ps = 1\n"));
   EXPECT_THAT(why_not_finer(slice.scene, slice.p.topology), HasSubstr("counts its images in elements"));
@@ -225,6 +242,17 @@ TEST(PeriodicSlice, RefusesWhatHasNoMeaning) {
                               "[periodic]\ntwist_deg_per_nm = [[0, 0]]\n[twist]\nmoment_nN_nm = "
                               "5\nrate_nN_nm_per_ps = 1\nhold_ps = 1\n")),
               HasSubstr("does not go with [twist]"));
+  const auto pulled = [&](const char* elements) {
+    return said(
+        slice_text(7, 20,
+                   fmt::format("[periodic]\ntwist_deg_per_nm = [[0, 0]]\n[[load]]\nkind = \"force\"\nelements "
+                               "= {}\nforce_nN = [0, 0, 1]\n[run]\nduration_ps = 1\n",
+                               elements)));
+  };
+  EXPECT_THAT(pulled("\"ends\""),
+              HasSubstr("element 0 of tube 0 is an image of the slice, and a load on it has no effect"));
+  EXPECT_EQ(pulled("[10]"), "");
+  EXPECT_EQ(pulled("\"all\""), "");
   EXPECT_THAT(said(slice_text(7, 20, "[periodic]\ntwist_deg_per_nm = [[0, 0]]\n[run]\nmode = \"relax\"\n")),
               HasSubstr("follow it in time"));
 }

@@ -44,6 +44,12 @@ const bool registered = !kinds_of_drives().empty();
 
 }  // namespace
 
+bool Drive::holds_elements() const {
+  if (ends() == Ends::clamped || ends() == Ends::loaded) return true;
+  const SceneTable keys = table();
+  return std::any_of(keys.keys.begin(), keys.keys.end(), [](const SceneKey& key) { return key.numbers_elements; });
+}
+
 const std::vector<DriveKind>& drive_kinds() { return kinds_of_drives(); }
 
 bool add_drive_kind(DriveKind kind) {

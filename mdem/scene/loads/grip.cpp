@@ -11,6 +11,7 @@
 #include "scene/bounds.hpp"
 #include "scene/loads/drive_kind.hpp"
 #include "scene/scene.hpp"
+#include "scene/scene_to_model.hpp"
 #include "scene/schedule_rows.hpp"
 
 namespace ropewalk {
@@ -252,23 +253,24 @@ bool GripLoad::is_unfelt(std::size_t axis, const State& s) const {
   return false;
 }
 
-GripLoad GripLoad::on_elements(std::vector<int> on, const Topology& topology) const {
+GripLoad GripLoad::on_elements(std::vector<int> on, const Topology& topology, double length) const {
   GripLoad out = *this;
   out.elements = std::move(on);
   out.mass_.clear();
   out.inertia_.clear();
   out.clamp_.clear();
-  double length = 0, sound = 0;  // ps, that a wave needs from end to end
+  double longest = 0, sound = 0;  // ps, that a wave needs from end to end
   for (const int e : out.elements) {
     const TubeType& type = topology.type_of_element(e);
     out.clamp_.push_back(each ? static_cast<int>(out.clamp_.size()) / depth : 0);
     out.mass_.push_back(type.mass);
     out.inertia_.push_back(type.inertia);
     const double tube = (topology.length_of(topology.tube_of(e)) - 1) * type.element_length;
-    length = std::max(length, tube);
+    longest = std::max(longest, tube);
     sound = std::max({sound, tube / std::sqrt(type.bond.stretch * type.element_length / type.mass),
                       tube / std::sqrt(type.bond.twist * type.element_length / type.inertia)});
   }
+  if (length <= 0) length = longest;
   for (std::size_t k = 0; k < axes.size(); ++k) {
     std::vector<Schedule::Point> points = axes[k].points;
     for (Schedule::Point& p : points)
@@ -472,7 +474,7 @@ const KeyTable<GripLoad>& table_of_grip() {
        Key::word("as", Words<bool>{{"disc", false}, {"each", true}}, &GripLoad::each, standard(),
                  "one rigid \"disc\", or a clamp for \"each\" tube: all that is said below holds for every one"),
        Key::integer("elements", 1, 1000, &GripLoad::depth, standard(), "of each tube, in the clamp")
-           .goes_as_length(-1),
+           .that_counts_held(),
        axis_key(0, "held", "\"held\", \"free\", or what it follows: { displacement_nm = ... }, { force_nN = ... }"),
        axis_key(1, "held", "likewise"),
        axis_key(2, "held",
@@ -530,8 +532,10 @@ SceneTable GripDrive::table() const { return grip_table(); }
 void GripDrive::add_loads(const Scene& scene, const Topology& topology, const Interaction&,
                           LoadsAndConstraints& loads) const {
   std::vector<int> elements;
+  double free = 0;
   for (const int t : selected_tubes(scene, on, topology)) {
     const int length = topology.length_of(t);
+    free = std::max(free, free_length(scene, topology, t));
     if (2 * load.depth > length)
       throw InputError({scene.path, 0, "grip.elements"},
                        fmt::format("is {}, and tube {} has {}", load.depth, t, length),
@@ -539,7 +543,7 @@ void GripDrive::add_loads(const Scene& scene, const Topology& topology, const In
     const int first = load.end == lower_end ? 0 : length - load.depth;
     for (int e = 0; e < load.depth; ++e) elements.push_back(topology.tube_begin[t] + first + e);
   }
-  loads.add(load.on_elements(std::move(elements), topology));
+  loads.add(load.on_elements(std::move(elements), topology, free));
 }
 
 // Elements that two grips hold, and loads that nothing feels. The first grip looks at all.

@@ -39,8 +39,9 @@ class GripLoad : public Load {
   bool slide_free = false, spin_free = false, tilt_free = false;
   double smooth = -1;  // ps, of the corners of all schedules; negative: as long as sound needs to and fro
 
-  // On these elements of a scene, `depth` of each tube after one another.
-  GripLoad on_elements(std::vector<int> on, const Topology& topology) const;
+  // On these elements of a scene, `depth` of each tube after one another. A strain is one of `length` (nm); 0: of the
+  // longest tube from the centre of its first element to that of its last.
+  GripLoad on_elements(std::vector<int> on, const Topology& topology, double length = 0) const;
   const Schedule& schedule(std::size_t axis) const { return schedules_[axis]; }
   // "upper grip, one disc: z held, about z moved by up to ..." for the user.
   std::string words() const;
@@ -88,6 +89,7 @@ class GripDrive : public Drive {
   void add_loads(const Scene&, const Topology&, const Interaction&, LoadsAndConstraints&) const override;
   void refuse_start(const Scene&, const Topology&, const State&, const LoadsAndConstraints&) const override;
   Ends ends() const override { return Ends::clamped; }
+  int held(End end, int tube) const override { return load.end == end && on.has_tube(tube) ? load.depth : 0; }
   std::string why_not_lengthened() const override {
     return load.depth > 1 ? "a grip holds several elements of each tube" : "";
   }

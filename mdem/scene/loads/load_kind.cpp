@@ -112,6 +112,10 @@ void read_tube_selection(const TomlTable& t, const Scene& scene, Selection& on) 
   if (!on.all_tubes) on.tubes = read_indices(t, "tubes", "tube", 0, sizes.tubes);
 }
 
+bool Selection::has_tube(int tube) const {
+  return all_tubes || std::find(tubes.begin(), tubes.end(), tube) != tubes.end();
+}
+
 std::vector<int> selected_tubes(const Scene& scene, const Selection& on, const Topology& topology) {
   std::vector<int> tubes;
   if (on.all_tubes) {
@@ -180,6 +184,15 @@ void LoadDrive::add_loads(const Scene& scene, const Topology& topology, const In
   const std::shared_ptr<Load> acting = load->copy();
   acting->elements = selected_elements(scene, on, topology);
   loads.add(std::shared_ptr<const Load>(acting));
+}
+
+// Those that it keeps where they are, one after another from the end.
+int LoadDrive::held(End end, int tube) const {
+  if (on.all_elements || !on.has_tube(tube) || load->order() == Load::Order::force) return 0;
+  const auto has = [&](int e) { return std::find(on.elements.begin(), on.elements.end(), e) != on.elements.end(); };
+  int count = 0;
+  while (has(end == lower_end ? count : -1 - count)) ++count;
+  return count;
 }
 
 std::string LoadDrive::why_not_lengthened() const {

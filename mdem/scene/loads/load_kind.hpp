@@ -25,7 +25,7 @@ LoadKind load_kind(const KeyTable<L>& table) {
           }};
 }
 
-// A required vector that is not zero and that the halves of a split element share.
+// A required vector that is not zero, and of which each element takes its part where it acts on all.
 template <class L>
 KeyOf<L> vector_key(const std::string& key, Unit u, Vector3 L::*member, const std::string& example,
                     const std::string& meaning) {
@@ -48,6 +48,8 @@ bool add_load_kind(LoadKind kind);
 // Elements that a load acts on: every combination of a tube and an element index; negative indices count
 // from the end of the tube.
 struct Selection {
+  bool has_tube(int tube) const;
+
   bool all_tubes = true;
   std::vector<int> tubes;
   bool all_elements = false;
@@ -66,6 +68,8 @@ class LoadDrive : public Drive {
   std::string needs_time() const override { return load->needs_time(); }
   void add_loads(const Scene&, const Topology&, const Interaction&, LoadsAndConstraints&) const override;
   std::string why_not_lengthened() const override;
+  bool holds_elements() const override { return !on.all_elements; }
+  int held(End end, int tube) const override;
 };
 
 // The key `tubes`.

@@ -2,8 +2,8 @@
 //
 //   U = k/2 (d - d0)^2 until the first step with d > d_max, and 0 from then on;  F = -dU/dx
 //
-// d is the distance of its ends. An end is the centre of its elements, which share the force: of one element, or of
-// the halves that it has been split into. There are no couples. Units nm, eV.
+// d is the distance of its ends. An end is the centre of its elements, which share the force. There are no couples.
+// Units nm, eV.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -75,7 +75,23 @@ void set_pose(const Pose& p, int i, State& out) {
   out.orientation.set(at, p.turn.normalized());
 }
 
-void place_tube(const Topology& coarse, int tube, const State& s, State& out) {
+// The first element of a tube of the finer chain.
+int begin_of(const Topology& coarse, int tube, Splitting how) {
+  return 2 * coarse.tube_begin[tube] - (how == Splitting::between ? tube : 0);
+}
+
+void place_between(const Topology& coarse, int tube, const State& s, State& out) {
+  const TubeType& type = coarse.type_of(tube);
+  const double share = type.bond.shear_share(type.element_length);
+  int at = begin_of(coarse, tube, Splitting::between);
+  for (int i = coarse.tube_begin[tube]; i < coarse.tube_begin[tube + 1]; ++i) {
+    set_pose(pose_of(s, i), at++, out);
+    if (i + 1 < coarse.tube_begin[tube + 1])
+      set_pose(RodPiece(pose_of(s, i), pose_of(s, i + 1), share).inside(0.5), at++, out);
+  }
+}
+
+void place_halves(const Topology& coarse, int tube, const State& s, State& out) {
   const int from = coarse.tube_begin[tube], to = coarse.tube_begin[tube + 1];
   const TubeType& type = coarse.type_of(tube);
   const double share = type.bond.shear_share(type.element_length);
@@ -95,9 +111,10 @@ void place_tube(const Topology& coarse, int tube, const State& s, State& out) {
   }
 }
 
-State placed(const Topology& coarse, const State& s) {
-  State out(2 * s.size());
-  for (int t = 0; t < coarse.tubes(); ++t) place_tube(coarse, t, s, out);
+State placed(const Topology& coarse, const State& s, Splitting how) {
+  State out(static_cast<std::size_t>(begin_of(coarse, coarse.tubes(), how)));
+  for (int t = 0; t < coarse.tubes(); ++t)
+    (how == Splitting::between ? place_between : place_halves)(coarse, t, s, out);
   return out;
 }
 
@@ -116,14 +133,14 @@ double stencil_time(const Topology& coarse, const State& s) {
 }
 
 // Derivative of the map along the motion, by central differences of fourth order.
-void follow(const Topology& coarse, const State& s, State& fine) {
+void follow(const Topology& coarse, const State& s, Splitting how, State& fine) {
   const double h = stencil_time(coarse, s);
   if (h <= 0) return;
   constexpr std::array<std::array<double, 2>, 4> stencil = {{{1, 8}, {-1, -8}, {2, -1}, {-2, 1}}};
   for (const auto& [steps, weight] : stencil) {
     State moved = s;
     move_elements(moved, steps * h, 0, static_cast<std::ptrdiff_t>(s.size()));
-    const State at = placed(coarse, moved);
+    const State at = placed(coarse, moved, how);
     const double share = weight / (12 * h);
     for (std::size_t i = 0; i < fine.size(); ++i) {
       const Quaternion q = fine.orientation[i];
@@ -173,9 +190,9 @@ void restore_momenta(const Topology& coarse, const State& before, const Topology
 
 }  // namespace
 
-Topology halved(const Topology& coarse) {
+Topology halved(const Topology& coarse, Splitting how) {
   Topology fine = coarse;
-  for (int& begin : fine.tube_begin) begin *= 2;
+  for (int t = 0; t <= coarse.tubes(); ++t) fine.tube_begin[t] = begin_of(coarse, t, how);
   for (TubeType& type : fine.types) {
     type.element_length *= 0.5;
     type.mass *= 0.5;
@@ -184,15 +201,22 @@ Topology halved(const Topology& coarse) {
   return fine;
 }
 
-State halved(const Topology& coarse, const State& state) {
+State halved(const Topology& coarse, const State& state, Splitting how) {
   ROPEWALK_EXPECTS(!coarse.part && static_cast<int>(state.size()) == coarse.elements());
-  const Topology fine = halved(coarse);
-  State out = placed(coarse, state);
-  follow(coarse, state, out);
-  for (int t = 0; t < coarse.tubes(); ++t) restore_momenta(coarse, state, fine, t, out);
+  const Topology fine = halved(coarse, how);
+  State out = placed(coarse, state, how);
+  follow(coarse, state, how, out);
+  for (int t = 0; how == Splitting::whole && t < coarse.tubes(); ++t) restore_momenta(coarse, state, fine, t, out);
   out.time = state.time;
   out.step = state.step;
   ROPEWALK_ENSURES(static_cast<int>(out.size()) == fine.elements());
+  return out;
+}
+
+std::vector<int> heirs(const Topology& coarse, Splitting how) {
+  std::vector<int> out;
+  for (int t = 0; t < coarse.tubes(); ++t)
+    for (int k = 0; k < coarse.length_of(t); ++k) out.push_back(begin_of(coarse, t, how) + 2 * k);
   return out;
 }
 

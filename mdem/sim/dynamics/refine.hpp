@@ -1,7 +1,13 @@
-// The same rope on a finer chain: every element is split into two of half the length, e into 2 e and 2 e + 1.
+// The same rope on a finer chain, with elements of half the length.
+//
+//   whole     Every element is split into two, e into 2 e and 2 e + 1: n elements become 2 n, as long as before.
+//   between   Another element comes between every two: n elements become 2 n - 1. All centres stay where they are, so
+//             that what holds an element of the tube holds it at the same place, and the length between two holders
+//             stays. A tube ends a quarter of a length earlier.
 //
 // An element stands for the tube from half a length before its centre to half a length behind it, so that its
-// halves have their centres a quarter of a length to either side: at the shares u = 1/4 and 3/4 of the bonds.
+// halves have their centres a quarter of a length to either side: at the shares u = 1/4 and 3/4 of the bonds. One
+// between two is at u = 1/2.
 // Between two neighbours i, j (r = x_j - x_i, m the mean of their axes, theta their angle) the rod is taken as what
 // the bond says that it is, a Timoshenko beam bent by end loads:
 //
@@ -14,12 +20,13 @@
 // A straight, stretched, twisted or circular chain is carried over exactly, and so is the centre line where twist
 // is added; any other one with an error of higher order in the element length. Beyond the last centres the rod goes
 // on with the curvature, twist and strain of the last bond. In twist every bond counts: n - 1 bonds of angle phi
-// become 2 n - 1 of phi/2, since half a length more of the tube is now free to twist.
+// become 2 n - 1 of phi/2 where elements are split whole, since half a length more of the tube is now free to twist,
+// and 2 n - 2 where they come between.
 //
 // Velocities are those of the same map under the motion of the coarse elements, so that rigid motions stay what
-// they are. Then each tube is given the rigid motion that makes its linear and angular momentum those of the
-// coarse one: of all changes that do so this is the one of least kinetic energy. Mass is kept as it is. Energy is
-// not: the finer chain is another model, and has more bonds; the caller reports the difference. Waves of thermal
+// they are. Where elements are split whole, each tube is then given the rigid motion that makes its linear and angular
+// momentum those of the coarse one: of all changes that do so this is the one of least kinetic energy. Mass is kept as
+// it is there. Energy is not: the finer chain is another model; the caller reports the difference. Waves of thermal
 // motion that only the finer chain has start cold.
 //
 // Bends below 180 degrees, twists within (-180, 180] degrees per bond. Units nm, ps, eV.
@@ -27,14 +34,21 @@
 // (1968), section 5.6.
 #pragma once
 
+#include <vector>
+
 #include "sim/state/state.hpp"
 
 namespace ropewalk {
 
-// Lengths, masses and inertias halved, numbers of elements doubled.
-Topology halved(const Topology& coarse);
+enum class Splitting { whole, between };
+
+// Lengths, masses and inertias halved; 2 n or 2 n - 1 elements for n.
+Topology halved(const Topology& coarse, Splitting how = Splitting::whole);
 
 // Time and step stay.
-State halved(const Topology& coarse, const State& state);
+State halved(const Topology& coarse, const State& state, Splitting how = Splitting::whole);
+
+// For each coarse element the fine one that takes over what belongs to it: its first half, or the one in its place.
+std::vector<int> heirs(const Topology& coarse, Splitting how = Splitting::whole);
 
 }  // namespace ropewalk

@@ -103,8 +103,10 @@ class Simulation {
   // and energies are those of the present state.
   std::vector<double> memory() const { return engine_.terms().memory(); }
   void remember(const std::vector<double>& memory);
-  // As of the same simulation with every element split in two.
-  std::vector<double> halved_memory() const { return engine_.terms().halved_memory(); }
+  // As of the same simulation with elements half as long; `heirs` of sim/dynamics/refine.hpp.
+  std::vector<double> halved_memory(const std::vector<int>& heirs) const {
+    return engine_.terms().halved_memory(heirs);
+  }
   // As of an engine of its own, with all energies; in the precision that is asked for, without the loads.
   Forces forces_at(const State& state, Interaction::Precision precision) const;
   const Gauges& gauges() const { return gauges_; }

@@ -13,9 +13,9 @@ std::vector<TermKind>& all_kinds_of_terms() {
 
 }  // namespace
 
-TermMemory ForceTerm::halved(const TermMemory& coarse) const {
+TermMemory ForceTerm::halved(const TermMemory& coarse, const std::vector<int>& heirs) const {
   TermMemory fine = coarse;
-  for (TermRecord& record : fine) record.element *= 2;
+  for (TermRecord& record : fine) record.element = heirs[static_cast<std::size_t>(record.element)];
   return fine;
 }
 

@@ -27,7 +27,7 @@
 // contact point since the last step (taken from positions, which the memory holds), cuts it back to mu N/k where it
 // slips and returns the lost k u^2/2. add_pairs adds -k u and its couples, as contact viscosity does. memory() has
 // a record for each i: j, u and the last contact point, for all contacts of i; remember() keeps them until the next
-// list_chunk. halved() gives each half the contact with the nearer half.
+// list_chunk. halved() gives each contact to the heirs of its elements.
 //
 // Links that form where elements stay near (permanent bonds between tubes). prepare goes through the list in its
 // order, (i, j) rising, and forms a link with a probability by CounterRandom(seed, state.step, i, j), numbers of
@@ -118,8 +118,9 @@ class ForceTerm {
   virtual TermMemory memory() const { return {}; }
   // Throws std::runtime_error where the term cannot have had this memory.
   virtual void remember(const TermMemory&) {}
-  // The memory where every element e has been split into 2 e and 2 e + 1. As it stands it goes to the first half.
-  virtual TermMemory halved(const TermMemory& coarse) const;
+  // The memory where elements are half as long: what belongs to the element e goes to heirs[e], its first half or the
+  // one in its place (sim/dynamics/refine.hpp).
+  virtual TermMemory halved(const TermMemory& coarse, const std::vector<int>& heirs) const;
 
   // For the oracle (compute_reference): a plain form, over all pairs and in one thread, which adds to forces, energies
   // and power. Without one, false: add and add_pairs are called with a list of all pairs, whole tubes and one buffer.

@@ -153,9 +153,9 @@ void ForceTerms::remember(const std::vector<double>& numbers, int elements) {
   stamp_ = 0;
 }
 
-std::vector<double> ForceTerms::halved_memory() const {
+std::vector<double> ForceTerms::halved_memory(const std::vector<int>& heirs) const {
   std::vector<TermMemory> all;
-  for (const Working& w : terms_) all.push_back(w.term->halved(w.term->memory()));
+  for (const Working& w : terms_) all.push_back(w.term->halved(w.term->memory(), heirs));
   return numbers_of(all);
 }
 

@@ -42,7 +42,7 @@ class ForceTerms : private PairWork {
   std::vector<double> memory() const;
   // prepare() then finds all lists new. Throws std::runtime_error.
   void remember(const std::vector<double>& numbers, int elements);
-  std::vector<double> halved_memory() const;
+  std::vector<double> halved_memory(const std::vector<int>& heirs) const;
   std::size_t bytes() const;
 
  private:

@@ -91,15 +91,22 @@ TEST(SpringLoad, GivesTheEnergyThatItHad) {
   EXPECT_NEAR(s.total_energy() - total, s.work(), 1e-4 * first);
 }
 
-TEST(SpringLoad, IsSharedByTheHalvesOfAnElement) {
+TEST(SpringLoad, StaysWhereItPullsAndIsSharedWhereItPullsAtAll) {
   Scene scene = spring_scene(clamp + pull, "[run]\nduration_ps = 1\n");
   const Prepared p = prepare(scene);
   const Scene finer = scene_of_text(finer_scene_text(scene, p, "finer"), "spring.toml");
   const LoadDrive& load = *finer.drives_of<LoadDrive>().at(1);
   const auto& spring = dynamic_cast<const SpringLoad&>(*load.load);
-  EXPECT_EQ(load.on.elements, (std::vector<int>{-2, -1}));
-  EXPECT_DOUBLE_EQ(spring.stiffness, 0.01 * units::nN_nm);
+  EXPECT_EQ(load.on.elements, (std::vector<int>{-1}));
+  EXPECT_DOUBLE_EQ(spring.stiffness, 0.02 * units::nN_nm);
   EXPECT_EQ(spring.point.x(), 1);
+  std::string everywhere = pull;
+  everywhere.replace(everywhere.find("[-1]"), 4, "\"all\"");
+  Scene all = spring_scene(clamp + everywhere, "[run]\nduration_ps = 1\n");
+  const Prepared q = prepare(all);
+  const Scene finer_all = scene_of_text(finer_scene_text(all, q, "finer"), "spring.toml");
+  EXPECT_DOUBLE_EQ(dynamic_cast<const SpringLoad&>(*finer_all.drives_of<LoadDrive>().at(1)->load).stiffness,
+                   0.01 * units::nN_nm);
 }
 
 TEST(SpringLoad, IsInHelpTemplatesAndErrors) {

@@ -62,6 +62,25 @@ TEST_F(SweepFile, GridTakesEveryValueWithEveryOther) {
   EXPECT_LT(points[0].work, points[2].work);  // a longer ramp
 }
 
+// Elements of another length between the same ends: 10 of 1.378 nm, 9 of them free, are 19 of half the length. A
+// chain that nothing holds stays as long.
+TEST_F(SweepFile, OtherElementLengthsKeepTheFreeLength) {
+  const Sweep held = sweep("[vary]\nelement_length_nm = [1.3775870846, 0.6887935423, 0.9183913897]\n");
+  std::vector<int> elements;
+  for (const SweepPoint& p : points_of(held)) {
+    const Scene s = scene_of(held, p);
+    elements.push_back(s.source->sizes(s.element_length).elements);
+  }
+  EXPECT_THAT(elements, ElementsAre(10, 19, 14 + 1));
+  std::ofstream(dir / "rope.toml") << "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n"
+                                      "[chain]\nelements = 10\n[run]\nduration_ps = 1\n";
+  const Sweep loose = sweep("[vary]\nelement_length_nm = [0.6887935423]\nstart.seed = [1, 2]\n");
+  for (const SweepPoint& p : points_of(loose)) {
+    const Scene s = scene_of(loose, p);
+    EXPECT_EQ(s.source->sizes(s.element_length).elements, 20);
+  }
+}
+
 TEST_F(SweepFile, ZipTakesThemSideBySideAndSeedsAfterwards) {
   EXPECT_THAT(names("combine = \"zip\"\nreplicates = 2\n[vary]\nrope.tubes = [7, 19]\nrope.length_nm = [20, 30]\n"),
               ElementsAre("tubes-7_length_nm-20_seed-1", "tubes-7_length_nm-20_seed-2",

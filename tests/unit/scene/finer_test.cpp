@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "scene/loads/fix.hpp"
+#include "scene/loads/grip.hpp"
 #include "scene/loads/rotate.hpp"
 #include "scene/loads/twist.hpp"
 #include "scene/scene_toml.hpp"
@@ -99,15 +100,15 @@ void total_loads(const Prepared& p, Vector3& force, Vector3& torque, Vector3& mo
   }
 }
 
-TEST(FinerScene, LoadsActOnBothHalvesWithTheSameTotal) {
+TEST(FinerScene, LoadsStayAtTheirPlacesWithTheSameTotal) {
   const CoarseAndFine p(
       "[chain]\nelements = 7\n"
       "[[load]]\nkind = \"force\"\nelements = [-1, 2]\nforce_nN = [1, 2, 0.5]\n"
       "[[load]]\nkind = \"torque\"\nelements = \"ends\"\ntorque_nN_nm = [0, 0, 3]\n"
-      "[[load]]\nkind = \"torque\"\nelements = \"all\"\ntorque_nN_nm = [1, 0, 0]\n"
       "[[load]]\nkind = \"fix\"\nelements = [0, 5]\n"
       "[[load]]\nkind = \"rotate\"\nelements = [-2]\nrate_deg_per_ps = 1\nangle_deg = 90\n" +
       short_run);
+  ASSERT_EQ(p.after.topology.elements(), 13);
   Vector3 force, torque, moment, fine_force, fine_torque, fine_moment;
   total_loads(p.before, force, torque, moment);
   total_loads(p.after, fine_force, fine_torque, fine_moment);
@@ -118,11 +119,24 @@ TEST(FinerScene, LoadsActOnBothHalvesWithTheSameTotal) {
   std::vector<int> fixed;
   for (const FixLoad* f : p.after.loads.of<FixLoad>())
     fixed.insert(fixed.end(), f->elements.begin(), f->elements.end());
-  EXPECT_EQ(fixed, (std::vector<int>{0, 1, 10, 11}));
-  EXPECT_EQ(p.after.loads.of<PrescribedRotation>().at(0)->elements, (std::vector<int>{10, 11}));
+  EXPECT_EQ(fixed, (std::vector<int>{0, 10}));
+  EXPECT_EQ(p.after.loads.of<PrescribedRotation>().at(0)->elements, (std::vector<int>{10}));
 }
 
-TEST(FinerScene, GripsAreTheEndElements) {
+// Nothing holds a single element: the tube stays as long, and each half takes its part.
+TEST(FinerScene, ALoadOnAllElementsIsSharedByTheHalves) {
+  const CoarseAndFine p(
+      "[chain]\nelements = 7\n[[load]]\nkind = \"force\"\nelements = \"all\"\nforce_nN = [1, 2, 0.5]\n" +
+      short_run);
+  expect_halved(p);
+  Vector3 force, torque, moment, fine_force, fine_torque, fine_moment;
+  total_loads(p.before, force, torque, moment);
+  total_loads(p.after, fine_force, fine_torque, fine_moment);
+  EXPECT_GT(force.norm(), 1);
+  EXPECT_LT((fine_force - force).norm(), 1e-12 * force.norm());
+}
+
+TEST(FinerScene, EndsOfTheTwistStayWhereTheyAre) {
   const std::string twist = "[rope]\ntubes = 7\nlength_nm = 14\n[twist]\nmoment_nN_nm = 5\nrate_nN_nm_per_ps = 5\n";
   for (const char* reading : {"per-tube", "total"}) {
     const CoarseAndFine p(twist + "reading = \"" + reading + "\"\n");
@@ -130,15 +144,62 @@ TEST(FinerScene, GripsAreTheEndElements) {
     ASSERT_EQ(before.size(), 2u);
     ASSERT_EQ(after.size(), 2u);
     for (std::size_t grip = 0; grip < 2; ++grip) {
-      const int upper = before[grip]->sign > 0 ? 1 : 0;
       ASSERT_EQ(after[grip]->elements.size(), before[grip]->elements.size());
-      for (std::size_t t = 0; t < 7; ++t)
-        EXPECT_EQ(after[grip]->elements.at(t), 2 * before[grip]->elements.at(t) + upper);
+      for (std::size_t t = 0; t < 7; ++t) {
+        const Vector3 from = p.before.state.position[static_cast<std::size_t>(before[grip]->elements.at(t))],
+                      to = p.after.state.position[static_cast<std::size_t>(after[grip]->elements.at(t))];
+        EXPECT_LT((to - from).norm(), 1e-9);
+      }
       EXPECT_EQ(after[grip]->moment, before[grip]->moment);
       EXPECT_EQ(after[grip]->sign, before[grip]->sign);
     }
     EXPECT_EQ(before[0]->sign + before[1]->sign, 0);
   }
+}
+
+// Clamps of one and of three elements: the innermost ones stay in place, and so do free length, schedules and
+// collapse.
+TEST(FinerScene, ClampsKeepTheFreeLength) {
+  for (const int depth : {1, 3}) {
+    const std::string in_clamp = "elements = " + std::to_string(depth) + "\n";
+    const CoarseAndFine p(
+        "[rope]\ntubes = 7\nlength_nm = 13.78\n[[grip]]\nend = \"lower\"\n" + in_clamp +
+        "[[grip]]\nend = \"upper\"\n" + in_clamp +
+        "z = { strain = 0.01, rate_per_ps = 0.001 }\nabout_z = { rotation_deg = [[0, 0], [9, 40]] }\n");
+    const double a = p.before.topology.types[0].element_length, free = free_length(p.coarse, p.before.topology, 0);
+    EXPECT_NEAR(free, (11 - 2 * depth) * a, 1e-12);
+    EXPECT_NEAR(free_length(p.fine, p.after.topology, 0), free, 1e-9);
+    EXPECT_NEAR(p.before.loads.of<GripLoad>().at(1)->schedule(GripLoad::z).largest(), 0.01 * free, 1e-12)
+        << "a strain is one of what can stretch";
+    EXPECT_NEAR(p.after.loads.of<GripLoad>().at(1)->schedule(GripLoad::z).largest(), 0.01 * free, 1e-9);
+    EXPECT_NEAR(p.after.topology.types[0].bond.anharmonic.max_shear,
+                p.before.topology.types[0].bond.anharmonic.max_shear, 1e-9);
+    for (const double t : {1.0, 4.0, 8.0})
+      EXPECT_NEAR(p.after.loads.of<GripLoad>().at(1)->schedule(GripLoad::about_z).value(t),
+                  p.before.loads.of<GripLoad>().at(1)->schedule(GripLoad::about_z).value(t), 1e-9);
+    const std::vector<int>& held = p.after.loads.of<GripLoad>().at(0)->elements;
+    EXPECT_EQ(held.size(), 7u * static_cast<std::size_t>(2 * depth - 1));
+    EXPECT_NEAR(
+        p.after.state.position.z[static_cast<std::size_t>(held.at(static_cast<std::size_t>(2 * depth - 2)))],
+        p.before.state.position.z[static_cast<std::size_t>(depth - 1)], 1e-9);
+  }
+}
+
+TEST(FreeLength, IsThatBetweenWhatHoldsATube) {
+  const auto elements = [](const std::string& drives) {
+    Scene s = scene_of_text(
+        "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[chain]\nelements = 10\n" + drives +
+            short_run,
+        place);
+    const Prepared p = prepare(s);
+    return free_length(s, p.topology, 0) / p.topology.types[0].element_length;
+  };
+  EXPECT_NEAR(elements(""), 10, 1e-9);
+  EXPECT_NEAR(elements("[[load]]\nkind = \"force\"\nelements = \"all\"\nforce_nN = [1, 0, 0]\n"), 10, 1e-9);
+  EXPECT_NEAR(elements("[[load]]\nkind = \"fix\"\nelements = [0]\n"), 9, 1e-9);
+  EXPECT_NEAR(elements("[[load]]\nkind = \"fix\"\nelements = [0, 1, -1, 5]\n"), 8, 1e-9);
+  EXPECT_NEAR(elements("[[load]]\nkind = \"force\"\nelements = [0, 1, -1]\nforce_nN = [1, 0, 0]\n"), 9, 1e-9);
+  EXPECT_NEAR(elements("[[grip]]\nend = \"upper\"\nelements = 3\n"), 7, 1e-9);
 }
 
 TEST(FinerScene, NodesAndTypedStepGoWithTheLengthAndTheExclusionStays) {

@@ -50,6 +50,44 @@ TEST(Halved, TopologyKeepsMassAndLength) {
   }
 }
 
+// With another element between every two, centres and axes stay bit by bit, a stretched and twisted chain has half of both
+// in each bond, and a rigid motion stays one.
+TEST(Halved, ElementsBetweenLeaveTheOthersInPlace) {
+  Topology coarse = published_topology();
+  coarse.add_tube(5);
+  coarse.add_tube(4);
+  const Topology fine = halved(coarse, Splitting::between);
+  EXPECT_EQ(fine.tube_begin, (std::vector<int>{0, 9, 16}));
+  EXPECT_EQ(2 * fine.types[0].mass, coarse.types[0].mass);
+  EXPECT_EQ(heirs(coarse, Splitting::between), (std::vector<int>{0, 2, 4, 6, 8, 9, 11, 13, 15}));
+  EXPECT_EQ(heirs(coarse), (std::vector<int>{0, 2, 4, 6, 8, 10, 12, 14, 16}));
+  const Vector3 axis = Vector3(1, -2, 0.5).normalized(), velocity(0.1, 0.2, -0.3), spin(0.02, -0.01, 0.03);
+  const double phi = 0.4, d = 1.01 * element_length;
+  State s(9);
+  for (std::size_t i = 0; i < 9; ++i) {
+    const double along_tube = static_cast<double>(i < 5 ? i : i - 5);
+    s.position.set(i, Vector3(i < 5 ? 0 : 3, 1, -4) + d * along_tube * axis);
+    s.orientation.set(i, along(axis, phi * along_tube));
+    s.velocity.set(i, velocity + spin.cross(Vector3(s.position[i])));
+    s.angular_velocity.set(i, spin);
+  }
+  const State f = halved(coarse, s, Splitting::between);
+  ASSERT_EQ(f.size(), 16u);
+  for (std::size_t i = 0; i < 9; ++i) {
+    const auto there = static_cast<std::size_t>(heirs(coarse, Splitting::between)[i]);
+    EXPECT_EQ((f.position[there] - s.position[i]).norm(), 0);
+    EXPECT_LT(f.orientation[there].angularDistance(s.orientation[i]), 1e-7);
+  }
+  for (std::size_t i = 0; i < f.size(); ++i) {
+    EXPECT_LT((f.velocity[i] - velocity - spin.cross(Vector3(f.position[i]))).norm(), 1e-9) << i;
+    EXPECT_LT((f.angular_velocity[i] - spin).norm(), 1e-9) << i;
+  }
+  const BondEnergy<double> energy = bonds_of(fine, f);
+  const BondStiffness& k = fine.types[0].bond;
+  EXPECT_NEAR(energy.twist, 14 * 2 * k.twist / element_length * (1 - std::cos(0.5 * phi)), 1e-8);
+  EXPECT_NEAR(energy.stretch, 14 * 0.25 * k.stretch * element_length * 1e-4, 1e-8);
+}
+
 // Three and a half turns in 19 bonds, and stretched: each fine bond has half of both.
 TEST(Halved, StraightTwistedStretchedChainIsExact) {
   const int n = 20;
