@@ -1,10 +1,14 @@
 // `check`: what a scene would do and how long it would take.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <limits>
+
 #include "commands/commands.hpp"
 #include "io/clocks.hpp"
 #include "plan/forecast.hpp"
-#include "run/run_directory.hpp"
+#include "run/moving_scene.hpp"
+#include "scene/scene_to_model.hpp"
 #include "scene/scene_toml.hpp"
 #include "scene/watch.hpp"
 #include "sim/contact/line/law.hpp"
@@ -17,6 +21,15 @@ void say_source(const Scene& scene, const Prepared& p) {
   fmt::print("{} tubes, {} elements of {:.4g} nm", t.tubes(), t.elements(), t.longest_element());
   const std::string description = scene.source->description(t, p.state, p.spacing);
   fmt::print("{}{}\n", description.empty() ? "" : ": ", description);
+  if (holds_elements(scene) && !scene.has_ends(Drive::Ends::endless)) {
+    double least = std::numeric_limits<double>::infinity(), most = 0;
+    for (int tube = 0; tube < t.tubes(); ++tube) {
+      least = std::min(least, free_length(scene, t, tube));
+      most = std::max(most, free_length(scene, t, tube));
+    }
+    fmt::print("free length {}{:.5g} nm, from centre to centre of the innermost elements held at both ends\n",
+               least < most ? fmt::format("{:.5g} to ", least) : "", most);
+  }
   for (const ParameterSet& set : scene.sets)
     fmt::print("parameters {} ({}), EA {:.5g} nN, EI {:.5g} nN nm^2, GJ {:.5g} nN nm^2, {} bonds\n", set.name,
                set.path, set.bond.stretch * units::eV_in_nN_nm, set.bond.bend * units::eV_in_nN_nm,
@@ -48,6 +61,10 @@ int check_command(const std::string& path) {
   const Prepared p = prepare(scene);
   refuse_cooling(scene, p);
   Simulation simulation = start(scene, p);
+  if (!scene.stops.empty()) {
+    const EnergyAccount none = account_of(scene, simulation, {}, 0);
+    refuse_stops_without_value(scene, log_row(make_observer(scene, p), scene, p.topology, p.state, none));
+  }
   say_source(scene, p);
   for (const auto& drive : scene.drives) fmt::print("{}\n", drive->words());
   for (const std::string& warning : warnings_of(scene, p)) fmt::print("note: {}\n", warning);

@@ -78,6 +78,23 @@ int common_length(const Topology& topology) {
   return n;
 }
 
+bool run_the_same_way(const Topology& topology, const State& state) {
+  std::vector<Vector3> ways;
+  Vector3 sum = Vector3::Zero();
+  for (int t = 0; t < topology.tubes(); ++t) {
+    const auto first = static_cast<std::size_t>(topology.tube_begin[t]),
+               last = static_cast<std::size_t>(topology.tube_begin[t + 1]) - 1;
+    const Vector3 way =
+        first == last ? axis_of(state.orientation[first]) : unit_or_z(state.position[last] - state.position[first]);
+    ways.push_back(way);
+    sum += way;
+  }
+  // Where half of them run against the other half, the first tube is as good as any.
+  const double few = 1e-3 * static_cast<double>(ways.size());
+  const Vector3 mean = sum.norm() > few ? Vector3(sum.normalized()) : ways.empty() ? sum : ways.front();
+  return std::all_of(ways.begin(), ways.end(), [&](const Vector3& way) { return way.dot(mean) > -0.5; });
+}
+
 Vector3 tube_tangent(const Topology& topology, const State& state, int tube, int index) {
   const int first = topology.tube_begin[tube], n = topology.length_of(tube);
   if (n < 2) return axis_of(state.orientation[first + index]);

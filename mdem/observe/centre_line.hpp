@@ -15,6 +15,10 @@ struct CentreLine {
 // Elements per tube where all tubes have equally many, 0 otherwise.
 int common_length(const Topology& topology);
 
+// Whether all tubes run the same way, as those of a rope do: none from its first element to its last by more than 120
+// degrees against their mean direction.
+bool run_the_same_way(const Topology& topology, const State& state);
+
 // Empty where the tubes have no common length.
 CentreLine centre_line(const Topology& topology, const State& state);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "observe/centre_line.hpp"
 
@@ -47,6 +48,22 @@ double largest_curvature(const Topology& topology, const State& state, int tube)
   return most / topology.type_of(tube).element_length;
 }
 
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+
+// Slip is known between tubes of one length that run the same way at the start.
+bool knows_slip(const Topology& topology, const LoadingReference& reference) {
+  return topology.tubes() < 2 || !reference.radius.empty();
+}
+
+// nm, from the centre of an end to that of its innermost elements: they are held as one.
+double within(const Topology& topology, const std::vector<int>& end) {
+  std::set<int> tubes;
+  for (const int e : end) tubes.insert(topology.tube_of(e));
+  if (tubes.empty()) return 0;
+  const double each = static_cast<double>(end.size()) / static_cast<double>(tubes.size());
+  return 0.5 * (each - 1) * topology.type_of_element(end.front()).element_length;
+}
+
 double twist_of(const Topology& topology, const State& state, int tube) {
   double sum = 0;
   for (int e = topology.tube_begin[tube]; e + 1 < topology.tube_begin[tube + 1]; ++e)
@@ -68,7 +85,7 @@ LoadingReference loading_reference(const Topology& topology, const State& start,
   out.law = std::move(law);
   out.cell = 0.5 * std::sqrt(3.0) * spacing * spacing;
   const int n = common_length(topology);
-  if (n == 0) return out;
+  if (n == 0 || !run_the_same_way(topology, start)) return out;
   const Vector3 axis = centre_line(topology, start).tangents[static_cast<std::size_t>(n / 2)];
   const Vector3 centre = centre_line(topology, start).points[static_cast<std::size_t>(n / 2)];
   const auto middle = [&](int t) -> Vector3 {
@@ -155,6 +172,8 @@ std::vector<TubeLoading> tube_loadings(const Topology& topology, const State& st
     if (reference.law && reference.cell > 0)
       tube.pressure = tube_pressure(topology, state, *reference.law, reference.cell, t);
   }
+  if (!knows_slip(topology, reference))
+    for (TubeLoading& tube : out) tube.slip = none;
   const std::vector<double> slipped = slips(topology, state, reference);
   for (std::size_t k = 0; k < slipped.size(); ++k)
     for (const int t : {reference.neighbours[k].first, reference.neighbours[k].second})
@@ -167,7 +186,9 @@ Loading loading(const Topology& topology, const State& state, const LoadingRefer
   out.ends_apart = (centre_of(topology, state, reference.ends[upper_end]) -
                     centre_of(topology, state, reference.ends[lower_end]))
                        .norm();
-  out.strain = reference.ends_apart > 0 ? out.ends_apart / reference.ends_apart - 1 : 0;
+  const double free = reference.ends_apart - within(topology, reference.ends[lower_end]) -
+                      within(topology, reference.ends[upper_end]);
+  out.strain = free > 0 ? (out.ends_apart - reference.ends_apart) / free : 0;
   for (int t = 0; t < topology.tubes(); ++t) {
     const double tension = mean_of_middle(tensions(topology, state, t));
     out.least_tension = t == 0 ? tension : std::min(out.least_tension, tension);
@@ -175,7 +196,8 @@ Loading loading(const Topology& topology, const State& state, const LoadingRefer
     out.curvature = std::max(out.curvature, largest_curvature(topology, state, t));
   }
   for (const double slip : slips(topology, state, reference)) out.slip = std::max(out.slip, slip);
-  out.core_pressure = std::numeric_limits<double>::quiet_NaN();
+  if (!knows_slip(topology, reference)) out.slip = none;
+  out.core_pressure = none;
   if (reference.law && !reference.core.empty() && reference.cell > 0) {
     out.core_pressure = 0;
     for (const int t : reference.core)

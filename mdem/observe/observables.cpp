@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "model/units.hpp"
@@ -24,6 +25,11 @@ double stored(const M& m, double Energies::*part) {
 double stored(const M& m) { return (m.account.potential.potential() - m.account.first.potential()) / m.mass; }
 
 double torque(const M& m, End end, Eigen::Index axis) { return m.account.ends[end].torque[axis] / units::nN_nm; }
+
+// Of the middle section, which only tubes with a common centre line have.
+double in_section(const M& m, int count) {
+  return m.topology.tubes() > 0 && m.rope.centre_line.empty() ? std::numeric_limits<double>::quiet_NaN() : count;
+}
 
 std::vector<Observable>& table() {
   constexpr bool whole = true;
@@ -101,8 +107,8 @@ std::vector<Observable>& table() {
 
       {"ends_apart_nm", "nm", "distance between the centres of both ends", Group::shape,
        [](const M& m) { return m.loading.ends_apart; }},
-      {"ends_strain", "", "the change of that distance since the start, over the start's", Group::shape,
-       [](const M& m) { return m.loading.strain; }},
+      {"ends_strain", "", "the change of that distance since the start, over the free length between the ends",
+       Group::shape, [](const M& m) { return m.loading.strain; }},
       {"least_tension_nN", "nN", "tension of the tube with the least, over its middle third", Group::tubes,
        [](const M& m) { return m.loading.least_tension / units::nN_nm; }},
       {"most_tension_nN", "nN", "tension of the tube with the most, over its middle third", Group::tubes,
@@ -125,13 +131,13 @@ std::vector<Observable>& table() {
        Group::twist, [](const M& m) { return m.rope.geometric_twist / degree; }},
 
       {"Q", "", "packing charge of the middle section, neighbours by distance", Group::packing,
-       [](const M& m) { return static_cast<double>(m.rope.middle.charge); }, whole},
+       [](const M& m) { return in_section(m, m.rope.middle.charge); }, whole},
       {"Q_delaunay", "", "packing charge of the middle section, neighbours by Delaunay triangulation",
-       Group::packing, [](const M& m) { return static_cast<double>(m.rope.middle.charge_delaunay); }, whole},
+       Group::packing, [](const M& m) { return in_section(m, m.rope.middle.charge_delaunay); }, whole},
       {"contacts", "", "pairs of neighbours in the middle section, by distance", Group::packing,
-       [](const M& m) { return static_cast<double>(m.rope.middle.contacts); }, whole},
+       [](const M& m) { return in_section(m, m.rope.middle.contacts); }, whole},
       {"voids", "", "voids in the middle section", Group::packing,
-       [](const M& m) { return static_cast<double>(m.rope.middle.voids); }, whole},
+       [](const M& m) { return in_section(m, m.rope.middle.voids); }, whole},
       {"void_area_nm2", "nm^2", "area of the voids in the middle section", Group::packing,
        [](const M& m) { return m.rope.middle.void_area; }},
 

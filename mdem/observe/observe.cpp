@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "observe/centre_line.hpp"
 
@@ -122,6 +123,12 @@ RopeObservation observe(const Topology& topology, const State& state, const Rope
   RopeObservation out;
   observe_bonds(topology, state, validity, out);
   const int n = common_length(topology);
+  if (topology.tubes() > 0 && (n == 0 || !run_the_same_way(topology, state))) {
+    for (double* none : {&out.beta, &out.geometric_twist, &out.radius_mid, &out.radius_end, &out.length,
+                         &out.amplitude, &out.windings, &out.middle.void_area})
+      *none = std::numeric_limits<double>::quiet_NaN();
+    return out;
+  }
   if (n == 0) return out;
   const double scale = spacing > 0.0 ? spacing : 2.0 * topology.largest_radius();  // a lone tube has no spacing
   const CentreLine line = centre_line(topology, state);

@@ -70,7 +70,7 @@ Voids find_voids(const std::vector<Triangle>& triangles, const std::vector<Vecto
   if (spacing <= 0.0) return voids;
   const std::size_t n = triangles.size();
   std::vector<Measure> size(n);
-  std::vector<char> wide(n), open(n, 0), counted(n, 0);
+  std::vector<char> wide(n), open(n, 0);
   for (std::size_t t = 0; t < n; ++t) {
     size[t] = measure(triangles[t], points, tangents);
     wide[t] = size[t].circumradius > wide_ratio * packed_circumradius * spacing;
@@ -85,12 +85,26 @@ Voids find_voids(const std::vector<Triangle>& triangles, const std::vector<Vecto
       groups.join(sides.first, sides.second);
   for (const auto& [edge, sides] : edges)
     if (sides.second < 0 && wide[sides.first] && passage(edge)) open[groups.root(sides.first)] = 1;
+  // Sides of each group: tubes that are pressed together leave less between them than the untwisted rope would.
+  std::vector<double> length(n, 0), sides(n, 0), area(n, 0), triangles_in(n, 0);
+  for (const auto& [edge, both] : edges)
+    for (const int t : {both.first, both.second}) {
+      const int other = t == both.first ? both.second : both.first;
+      if (t < 0 || !wide[t] || (other >= 0 && groups.root(t) == groups.root(other))) continue;
+      length[groups.root(t)] += separation(edge.first, edge.second, points, tangents);
+      ++sides[groups.root(t)];
+    }
   for (std::size_t t = 0; t < n; ++t) {
     const int group = groups.root(static_cast<int>(t));
     if (!wide[t] || open[group]) continue;
-    voids.count += !counted[group];
-    counted[group] = 1;
-    voids.area += size[t].area - packed_area * spacing * spacing;
+    area[group] += size[t].area;
+    ++triangles_in[group];
+  }
+  for (std::size_t group = 0; group < n; ++group) {
+    if (triangles_in[group] == 0) continue;
+    const double side = sides[group] > 0 ? std::min(spacing, length[group] / sides[group]) : spacing;
+    ++voids.count;
+    voids.area += std::max(0.0, area[group] - triangles_in[group] * packed_area * side * side);
   }
   return voids;
 }

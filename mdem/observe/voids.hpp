@@ -23,7 +23,9 @@ namespace ropewalk {
 
 struct Voids {
   int count = 0;
-  double area = 0;  // nm^2, above that of as many packed triangles; one missing tube: sqrt(3)/2 spacing^2
+  // nm^2, above that of as many packed triangles with the mean side of the void, at most the spacing; one missing tube:
+  // sqrt(3)/2 spacing^2. Never negative.
+  double area = 0;
 };
 
 // points: in coordinates whose z is the rope axis (z = 0 in the section); tangents: unit vectors, same axes.

@@ -1,5 +1,9 @@
 #include "run/moving_scene.hpp"
 
+#include <cmath>
+
+#include "model/error.hpp"
+
 namespace ropewalk {
 
 EnergyAccount account_of(const Scene& scene, const Simulation& simulation, const Energies& first,
@@ -17,6 +21,15 @@ EnergyAccount account_of(const Scene& scene, const Simulation& simulation, const
   account.first_energy = first_energy;
   account.first = first;
   return account;
+}
+
+void refuse_stops_without_value(const Scene& scene, const LogRow& first) {
+  for (const StopRule& rule : scene.stops)
+    if (!rule.column.empty() && std::isnan(first[rule.column]))
+      throw InputError({scene.path, 0, "stop.column"},
+                       "\"" + rule.column + "\" has no value in this scene, so that the rule would never stop it",
+                       "take a column that has one; tubes that are not side by side have no centre line, a rope "
+                       "without inner tubes no core");
 }
 
 MovingScene::MovingScene(Scene of)

@@ -11,6 +11,9 @@ namespace ropewalk {
 EnergyAccount account_of(const Scene& scene, const Simulation& simulation, const Energies& first,
                          double first_energy);
 
+// Throws InputError for a [[stop]] rule whose column has no value in the first row: it would never fire.
+void refuse_stops_without_value(const Scene& scene, const LogRow& first);
+
 struct MovingScene {
   explicit MovingScene(Scene of);
 

@@ -132,7 +132,8 @@ Observer make_observer(const Scene& scene, const Prepared& prepared) {
   o.spacing = prepared.spacing;
   o.neighbour_radius = scene.observe.neighbour_radius > 0 ? scene.observe.neighbour_radius
                                                           : 0.5 * (1.0 + std::sqrt(3.0)) * prepared.spacing;
-  o.shells = rope_shells(prepared.topology, prepared.state, o.neighbour_radius);
+  // Inner tubes are those of the packing, whatever radius is typed for Q.
+  o.shells = rope_shells(prepared.topology, prepared.state, 0.5 * (1.0 + std::sqrt(3.0)) * prepared.spacing);
   for (int t = 0; t < prepared.topology.tubes(); ++t)
     o.mass += prepared.topology.length_of(t) * prepared.topology.type_of(t).mass / scene.run.mass_scale;
   // A slice goes on at both ends: as much of it as it has bonds.

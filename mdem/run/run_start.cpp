@@ -12,6 +12,9 @@ namespace ropewalk {
 
 void Run::check_before_start() const {
   refuse_cooling(parts_.moving.scene, parts_.moving.prepared);
+  const MovingScene& m = parts_.moving;
+  if (!m.scene.stops.empty())
+    refuse_stops_without_value(m.scene, log_row(m.observer, m.scene, m.prepared.topology, m.state(), m.account()));
   parts_.limits.check_before_start();
 }
 

@@ -6,6 +6,7 @@
 
 #include "io/grade.hpp"
 #include "model/self_contact.hpp"
+#include "observe/centre_line.hpp"
 #include "run/run_directory.hpp"
 #include "scene/laws/line.hpp"
 #include "scene/scene_to_model.hpp"
@@ -75,6 +76,29 @@ void warn_of_unlike_tubes(const Scene& scene, std::vector<std::string>& warnings
                   least->radius, most->radius));
 }
 
+// Observables of the rope as a whole go by elements of equal number.
+void warn_of_no_centre_line(const Topology& topology, const State& state, std::vector<std::string>& warnings) {
+  const bool unequal = common_length(topology) == 0, opposed = !run_the_same_way(topology, state);
+  if (topology.tubes() < 2 || (!unequal && !opposed)) return;
+  warnings.push_back(
+      fmt::format("Tubes {}: they have no common centre line, and beta_deg, geometric_twist_deg, slip_nm, Q and "
+                  "all else of the "
+                  "cross-section, radius_mid_nm, radius_end_nm, length_nm, amplitude_nm and windings are nan.{}",
+                  unequal ? "have different numbers of elements" : "run in opposite directions",
+                  opposed ? " The columns of the upper and the lower end mix both ends of the rope." : ""));
+}
+
+// A radius for Q that reaches the second shell of the packing.
+void warn_of_second_neighbours(const Scene& scene, double spacing, std::vector<std::string>& warnings) {
+  const double typed = scene.observe.neighbour_radius, second = std::sqrt(3.0) * spacing;
+  if (spacing > 0 && typed >= second)
+    warnings.push_back(fmt::format(
+        "observe.neighbour_radius_nm = {:.4g} reaches the second neighbours of the packing, at {:.4g} nm: "
+        "Q and contacts count them too, and Q of a perfect rope of 19 tubes or more is below zero. Q_delaunay needs "
+        "no radius.",
+        typed, second));
+}
+
 // Warns of tubes long enough to come back to themselves without a kink, where the contact is left out.
 void warn_of_long_exclusion(const Scene& scene, const Topology& topology, const ContactLaw* law,
                             std::vector<std::string>& warnings) {
@@ -130,6 +154,12 @@ std::vector<std::string> warnings_of(const Scene& scene, const Prepared& p) {
   warn_of_long_exclusion(scene, p.topology, law, warnings);
   warn_of_cutoff(scene, law, warnings);
   warn_of_unlike_tubes(scene, warnings);
+  warn_of_no_centre_line(p.topology, p.state, warnings);
+  if (const double last = protocol_time(scene);
+      scene.run.mode != RunOptions::Mode::relax && last > 1.001 * p.duration)
+    warnings.push_back(fmt::format(
+        "The run ends at {:.4g} ps, before all drives have done what they do, at {:.4g} ps.", p.duration, last));
+  warn_of_second_neighbours(scene, p.spacing, warnings);
   warn_of_paper(scene, law, warnings);
   for (const ParameterSet& set : scene.sets) warn_of_long_elements(set, scene.element_length, warnings);
   return warnings;

@@ -9,6 +9,7 @@
 #include "io/log.hpp"
 #include "model/error.hpp"
 #include "model/segments.hpp"
+#include "observe/centre_line.hpp"
 #include "sim/dynamics/blow_up.hpp"
 
 namespace ropewalk {
@@ -64,6 +65,32 @@ void refuse_overlaps(const Scene& scene, const Prepared& p) {
     });
   if (!overlap.empty() && scene.run.mode != RunOptions::Mode::relax)
     throw InputError(place, overlap, "move them apart, or relax the state first with mode = \"relax\"");
+}
+
+// The last elements are the upper end: the signs of torque and tension go by it, and a disc about the upper ends of
+// tubes that stand against one another holds both ends of the rope. What the program places itself stands upright.
+void refuse_upside_down(const Scene& scene, const Prepared& p) {
+  using Ends = Drive::Ends;
+  if (!scene.from_file() || !(scene.has_ends(Ends::clamped) || scene.has_ends(Ends::loaded))) return;
+  const InputError::Place place{scene.source->file(), 0, ""};
+  const char* remedy =
+      "write the lines of such a tube in the opposite order, each quaternion turned by 180 degrees about an axis "
+      "across "
+      "the tube";
+  for (int t = 0; t < p.topology.tubes(); ++t) {
+    const Vector3 first = p.state.position[static_cast<std::size_t>(p.topology.tube_begin[t])],
+                  way = p.state.position[static_cast<std::size_t>(p.topology.tube_begin[t + 1]) - 1] - first;
+    if (way.z() < -0.5 * way.norm())
+      throw InputError(
+          place,
+          fmt::format("tube {} stands upside down: its first element, which is its lower end, lies {:.4g} nm "
+                      "above its last one, and a drive holds the ends",
+                      t, -way.z()),
+          remedy);
+  }
+  if (!run_the_same_way(p.topology, p.state))
+    throw InputError(place, "the tubes run in opposite directions, and a drive holds their upper and lower ends",
+                     remedy);
 }
 
 void refuse_stop_rules(const Scene& scene) {
@@ -195,6 +222,7 @@ Prepared prepare(Scene& scene) {
   add_terms(scene, out.topology, out.interaction);
   out.loads = loads_of(scene, out.topology, out.interaction);
   out.stepping = scene.run.stepping;
+  refuse_upside_down(scene, out);
   for (const auto& drive : scene.drives) {
     drive->refuse_start(scene, out.topology, out.state, out.loads);
     drive->set_stepping(out.stepping);

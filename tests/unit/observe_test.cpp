@@ -9,9 +9,11 @@
 #include <functional>
 #include <random>
 
+#include "io/log.hpp"
 #include "model/units.hpp"
 #include "observe/centre_line.hpp"
 #include "observe/delaunay.hpp"
+#include "observe/loading.hpp"
 #include "observe/means.hpp"
 #include "observe/spacing.hpp"
 #include "observe/voids.hpp"
@@ -374,6 +376,18 @@ TEST(Voids, MissingCentreTubeIsOneVoidOfOneCell) {
   EXPECT_NEAR(section.void_area, one_cell, 1e-9);
 }
 
+// Tubes nearer than in the untwisted rope: the void of one missing tube is one of their own cells, never less than
+// none.
+TEST(Voids, InAPressedRopeHaveTheAreaOfItsOwnCells) {
+  for (const double pressed : {0.95, 0.8}) {
+    auto lattice = without(hexagonal(5), {0});
+    for (Vector2d& p : lattice) p *= pressed;
+    const CrossSection section = middle_of(straight_rope(lattice));
+    EXPECT_EQ(section.voids, 1);
+    EXPECT_NEAR(section.void_area, pressed * pressed * one_cell, 1e-9);
+  }
+}
+
 TEST(Voids, AnyMissingInternalTubeCountsWithNoiseToo) {
   for (int gone = 0; gone < 61; ++gone) {  // 37 .. 60 lie just below the surface
     Rope rope = straight_rope(without(hexagonal(5), {gone}));
@@ -644,12 +658,35 @@ TEST(ObservedNoRope, TubesOfUnequalLengthsGiveTheQuantitiesOfTubes) {
   const RopeObservation seen = observe(topology, state, shells, {Validity{0, 0.01, 0}}, 0.0, spacing);
   EXPECT_NEAR(seen.physical_twist, 0.1 * (7 + 7 + 4) / 3.0, 1e-12);
   EXPECT_EQ(seen.overtwisted, 18);
-  EXPECT_EQ(seen.length, 0.0);
-  EXPECT_EQ(seen.radius_mid, 0.0);
+  for (const double none : {seen.beta, seen.geometric_twist, seen.length, seen.radius_mid, seen.radius_end,
+                            seen.amplitude, seen.windings, seen.middle.void_area})
+    EXPECT_TRUE(std::isnan(none));
   EXPECT_TRUE(seen.centre_line.empty());
   EXPECT_TRUE(seen.radius_profile.empty());
   EXPECT_TRUE(seen.middle.points.empty());
   EXPECT_EQ(seen.middle.contacts, 0);
+}
+
+// One of two tubes begins at the other end: elements of equal number are nowhere near each other.
+TEST(ObservedNoRope, TubesThatRunAgainstEachOtherHaveNoCentreLine) {
+  for (const bool turned : {false, true}) {
+    Rope rope = straight_rope({{0, 0}, {spacing, 0}}, 8);
+    for (std::size_t i = 8; turned && i < 16; ++i) {
+      rope.state.position.z[i] *= -1;
+      rope.state.orientation.set(i, Quaternion(0, 1, 0, 0));
+    }
+    const RopeShells shells = rope_shells(rope.topology, rope.state, 0.0);
+    const RopeObservation seen = observe(rope.topology, rope.state, shells, {Validity{}}, 0.0, spacing);
+    const LoadingReference from = loading_reference(rope.topology, rope.state, shells, tube_ends(rope.topology),
+                                                    spacing, 1.2 * spacing, nullptr);
+    EXPECT_EQ(std::isnan(seen.beta), turned);
+    EXPECT_EQ(std::isnan(seen.length), turned);
+    EXPECT_EQ(std::isnan(loading(rope.topology, rope.state, from).slip), turned);
+    const Loading now = loading(rope.topology, rope.state, from);
+    const LogRow row({rope.topology, rope.state, seen, now, 1, EnergyAccount{}});
+    for (const char* none : {"Q", "Q_delaunay", "contacts", "voids", "void_area_nm2", "beta_deg", "slip_nm"})
+      EXPECT_EQ(std::isnan(row[none]), turned) << none;
+  }
 }
 
 TEST(ObservedNoRope, OneTubeIsItsOwnCentreLine) {

@@ -810,6 +810,38 @@ TEST(StateFile, KeepsVelocitiesAndSpins) {
   EXPECT_THAT(message("tube,x_nm\n0,0\n"), HasSubstr("wz_rad_per_ps"));
 }
 
+// Clamps and moments need to know which end is up: of a tube that runs down, and of tubes that run against one
+// another.
+TEST(StateFile, TubesUpsideDownAreNotHeldByTheirEnds) {
+  const auto file = [](const std::vector<int>& ways) {
+    std::string text = columns;
+    for (std::size_t t = 0; t < ways.size(); ++t)
+      for (int k = 0; k < 4; ++k)
+        text += fmt::format("{},{},0,{},{}\n", t, 3 * t, ways[t] * 1.356 * k - ways[t] * 2,
+                            ways[t] > 0 ? "1,0,0,0" : "0,1,0,0");
+    return text;
+  };
+  const auto said = [&](const std::vector<int>& ways, const std::string& drives) -> std::string {
+    try {
+      const Folder folder;
+      folder.write("elements.csv", file(ways));
+      Scene scene = read_scene(folder.write("scene.toml", head + "[state]\nfile = \"elements.csv\"\n" + drives));
+      prepare(scene);
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return "";
+  };
+  const std::string clamp = "[[grip]]\nend = \"upper\"\n[run]\nduration_ps = 1\n",
+                    moment = "[twist]\nmoment_nN_nm = 1\nrate_nN_nm_per_ps = 1\n";
+  for (const std::string& drive : {clamp, moment}) {
+    EXPECT_EQ(said({1, 1}, drive), "");
+    EXPECT_THAT(said({-1, -1}, drive), HasSubstr("tube 0 stands upside down"));
+    EXPECT_THAT(said({1, -1}, drive), HasSubstr("tube 1 stands upside down"));
+  }
+  EXPECT_EQ(said({1, -1}, run), "") << "nothing holds an end";
+}
+
 // Elements of 0.678 nm read as those of 1.356 nm are stretched by half: 10^5 eV without a word.
 TEST(StateFile, StatesTheLengthOfItsElements) {
   Topology t = test::published_topology();

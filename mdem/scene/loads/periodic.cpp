@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <set>
 
 #include "model/error.hpp"
 #include "scene/key_table.hpp"
 #include "scene/loads/drive_kind.hpp"
+#include "scene/loads/load_kind.hpp"
 #include "scene/scene.hpp"
 #include "scene/schedule_rows.hpp"
 
@@ -83,6 +85,25 @@ void PeriodicDrive::refuse(const TomlTable& top, const Scene& scene) const {
 void PeriodicDrive::add_loads(const Scene& scene, const Topology& topology, const Interaction& interaction,
                               LoadsAndConstraints& loads) const {
   loads.add(load.on_tubes(topology, interaction.cutoff(), scene.path));
+}
+
+// Images go where their originals go, whatever acts on them.
+void PeriodicDrive::refuse_start(const Scene& scene, const Topology& topology, const State&,
+                                 const LoadsAndConstraints& loads) const {
+  const PeriodicLoad& slice = *loads.of<PeriodicLoad>().front();
+  const std::set<int> images(slice.elements.begin(), slice.elements.end());
+  for (const LoadDrive* drive : scene.drives_of<LoadDrive>()) {
+    if (drive->on.all_elements) continue;
+    for (const int e : selected_elements(scene, drive->on, topology)) {
+      if (images.count(e) == 0) continue;
+      const int tube = topology.tube_of(e);
+      throw InputError(
+          {scene.path, 0, "load.elements"},
+          fmt::format("element {} of tube {} is an image of the slice, and a load on it has no effect",
+                      e - topology.tube_begin[tube], tube),
+          fmt::format("name elements from {} to {}", slice.images, topology.length_of(tube) - slice.images - 1));
+    }
+  }
 }
 
 void PeriodicDrive::warn(const Scene&, const Topology& topology, const LoadsAndConstraints& loads,

@@ -69,6 +69,7 @@ class PeriodicDrive : public Drive {
   std::string needs_time() const override { return load.needs_time(); }
   double lasts() const override { return load.twist.back().time; }
   void add_loads(const Scene&, const Topology&, const Interaction&, LoadsAndConstraints&) const override;
+  void refuse_start(const Scene&, const Topology&, const State&, const LoadsAndConstraints&) const override;
   void warn(const Scene&, const Topology&, const LoadsAndConstraints&, std::vector<std::string>&) const override;
   Ends ends() const override { return Ends::endless; }
   std::string why_not_split() const override { return "a periodic slice counts its images in elements"; }
