@@ -74,7 +74,7 @@ void PlannedScene::lengthen(double times, const std::string& why) {
   // Whatever drives the elements, but for a bath, has hold of end elements.
   const auto& drives = scene_.drives;
   const bool held =
-      std::any_of(drives.begin(), drives.end(), [](const auto& drive) { return !drive->temperature(); });
+      std::any_of(drives.begin(), drives.end(), [](const auto& drive) { return !drive->thermostat(); });
   const int overhang = held ? 1 : 0;
   const double between = (elements_of(scene_) - overhang) * old;
   const long parts = std::max(2L, std::lround(between / wanted));
