@@ -14,14 +14,10 @@
 #include <cstdlib>
 #include <thread>
 
+#include "io/clocks.hpp"
+
 namespace ropewalk::calibrate {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 // The process group of the child, which a signal to this process also ends. There is one child at a time; a second
 // child would still be ended by its parent-death signal.
@@ -121,7 +117,7 @@ std::vector<std::string> one_thread_environment() {
 }  // namespace
 
 ChildEnd run_child(const std::vector<std::string>& arguments, const ChildOptions& options) {
-  const Clock::time_point start = Clock::now();
+  const double start = steady_seconds();
   ChildEnd end;
   std::vector<std::string> argument_texts = arguments, environment_texts = one_thread_environment();
   const std::vector<char*> argument_list = pointers(argument_texts), environment = pointers(environment_texts);
@@ -160,7 +156,7 @@ ChildEnd run_child(const std::vector<std::string>& arguments, const ChildOptions
   ::close(report[0]);
 
   long long bytes = 0;
-  Clock::time_point last_growth = start;
+  double last_growth = start;
   double pause = 0.001;
   for (;;) {
     int status = 0;
@@ -177,7 +173,7 @@ ChildEnd run_child(const std::vector<std::string>& arguments, const ChildOptions
 
     if (const long long now = bytes_written(options); now != bytes) {
       bytes = now;
-      last_growth = Clock::now();
+      last_growth = steady_seconds();
     }
     end.seconds = seconds_since(start);
     const bool asked = options.interrupted && options.interrupted();

@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <sstream>
 
+#include "io/clocks.hpp"
 #include "io/files.hpp"
 
 namespace ropewalk::calibrate {
@@ -55,9 +55,9 @@ void write_data(const RunContext& run, const std::string& name, const std::strin
 }
 
 void run_stage(RunContext& run, const std::string& name, const std::string& input) {
-  const auto start = std::chrono::steady_clock::now();
+  const double start = steady_seconds();
   run_lammps(run.folder, name, input, run.options.lammps);
-  run.lammps_seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  run.lammps_seconds += seconds_since(start);
 }
 
 std::vector<std::vector<double>> read_results(const RunContext& run, const std::string& name, std::size_t least,

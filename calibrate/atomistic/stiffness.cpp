@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <filesystem>
 
 #include "atomistic/finite_tube.hpp"
 #include "atomistic/runs.hpp"
+#include "io/clocks.hpp"
 #include "io/grade.hpp"
 
 namespace ropewalk::calibrate {
@@ -79,9 +79,9 @@ void warn_of_width(Chirality c, std::vector<std::string>& warnings) {
 
 template <class Work>
 void timed(double& seconds, const Work& work) {
-  const auto start = std::chrono::steady_clock::now();
+  const double start = steady_seconds();
   work();
-  seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  seconds += seconds_since(start);
 }
 
 BendSeries elastic_bends(const StiffnessOptions& options, double curvature) {

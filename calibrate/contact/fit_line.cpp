@@ -1,16 +1,12 @@
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "contact/fit_contact.hpp"
 #include "contact/line_targets.hpp"
+#include "io/clocks.hpp"
 
 namespace ropewalk::calibrate {
 namespace {
-
-double seconds_since(std::chrono::steady_clock::time_point begin) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-}
 
 Well well(const LineWell& w) { return {w.distance, w.energy}; }
 
@@ -52,13 +48,13 @@ FitResult fit_density(const LineTargets& targets, const AtomLaw& law, double uni
 
 LineFit fit_line(const AtomLaw& law, const Shell& i, const Shell& j, const FitOptions& options) {
   LineFit out;
-  const auto begin = std::chrono::steady_clock::now();
+  const double begin = steady_seconds();
   const PairIntegral integral(law, i, j);
   const double contact = i.radius + j.radius;
   const LineTargets targets(integral, contact, line_gaps(law));
   out.seconds_integral = seconds_since(begin);
 
-  const auto fit_begin = std::chrono::steady_clock::now();
+  const double fit_begin = steady_seconds();
   out.density = with_gaps(line_gaps(law), contact);
   out.fit = fit_density(targets, law, unit_of_K(law, i, j), options, out.density);
   out.seconds_fit = seconds_since(fit_begin);

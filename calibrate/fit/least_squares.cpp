@@ -2,7 +2,6 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <exception>
@@ -11,12 +10,13 @@
 #include <random>
 #include <stdexcept>
 
+#include "io/clocks.hpp"
+
 namespace ropewalk::calibrate {
 namespace {
 
 using Vector = Eigen::VectorXd;
 using Matrix = Eigen::MatrixXd;
-using Clock = std::chrono::steady_clock;
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
@@ -42,7 +42,7 @@ class Problem {
  public:
   Problem(const std::vector<FitParameter>& parameters, std::size_t residuals, const Residuals& function,
           const FitOptions& options)
-      : parameters_(parameters), function_(function), options_(options), r_(residuals), begin_(Clock::now()) {
+      : parameters_(parameters), function_(function), options_(options), r_(residuals), begin_(steady_seconds()) {
     for (std::size_t k = 0; k < parameters.size(); ++k) {
       p_.push_back(parameters[k].start);
       if (parameters[k].free) free_.push_back(k);
@@ -114,7 +114,7 @@ class Problem {
     max_seconds_ = infinite;
   }
 
-  double seconds() const { return std::chrono::duration<double>(Clock::now() - begin_).count(); }
+  double seconds() const { return seconds_since(begin_); }
 
   int evaluations = 0, not_finite = 0;
   std::exception_ptr failure;
@@ -145,7 +145,7 @@ class Problem {
   const FitOptions& options_;
   std::vector<std::size_t> free_;
   std::vector<double> p_, r_;
-  Clock::time_point begin_;
+  double begin_;
   int max_evaluations_ = 0;
   double max_seconds_ = 0;
 };

@@ -49,17 +49,17 @@ std::vector<Number> numbers_of(const Calibration& c) {
   const auto nN = [](const Measured& m) {
     return Measured{m.value * units::eV_in_nN_nm, m.standard_error * units::eV_in_nN_nm};
   };
-  return {{"EA", "EA_nN", "nN", nN(s.EA), "bond.EA"},
+  return {{"radius", "radius_nm", "nm", s.radius},
+          {"atoms per length", "atoms_per_nm", "1/nm", s.atoms_per_length},
+          {"EA", "EA_nN", "nN", nN(s.EA), "bond.EA"},
           {"EI", "EI_nN_nm2", "nN nm^2", nN(s.EI), "bond.EI"},
           {"GJ", "GJ_nN_nm2", "nN nm^2", nN(s.GJ), "bond.GJ"},
-          {"radius", "radius_nm", "nm", s.radius},
-          {"atoms per length", "atoms_per_nm", "1/nm", s.atoms_per_length},
+          {"stretch-twist coupling", "coupling_nN_nm", "nN nm", nN(s.coupling)},
           {"natural twist", "natural_twist", "rad/nm", s.natural_twist},
+          {"Poisson contraction", "poisson", "", s.poisson},
           {"spacing of a pair", "pair_spacing_nm", "nm", sum.pair_spacing},
           {"energy of a pair", "pair_energy_eV_per_nm", "eV/nm", sum.pair_energy},
-          {"energy crossed at 90 deg", "cross90_energy_eV", "eV", sum.cross90_energy},
-          {"stretch-twist coupling", "coupling_nN_nm", "nN nm", nN(s.coupling)},
-          {"Poisson contraction", "poisson", "", s.poisson}};
+          {"energy crossed at 90 deg", "cross90_energy_eV", "eV", sum.cross90_energy}};
 }
 
 void print_result(const Calibration& c, const Grade& grade, const std::string& out) {

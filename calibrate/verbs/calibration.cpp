@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <filesystem>
 
 #include "atomistic/lattice.hpp"
+#include "io/clocks.hpp"
 #include "io/data_files.hpp"
 #include "io/files.hpp"
 #include "io/grade.hpp"
@@ -20,8 +20,6 @@ namespace ropewalk::calibrate {
 namespace {
 
 constexpr double right_angle = 0.5 * units::pi;
-
-double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 // --- Quantities of the file -----------------------------------------------------------------------------
 
@@ -267,7 +265,7 @@ std::string Calibration::name() const {
 }
 
 Calibration calibrate(const CalibrationRequest& request) {
-  const double begin = now();
+  const double begin = steady_seconds();
   Calibration c;
   c.request = request;
   c.stiffness = measure_stiffness(request.chirality, request.potential, request.folder, request.stiffness);
@@ -281,9 +279,9 @@ Calibration calibrate(const CalibrationRequest& request) {
   say("van der Waals contact: surface integral and line law");
   c.line = fit_line(request.law, shell, shell);
   say("van der Waals contact: the published form");
-  const double paper_begin = now();
+  const double paper_begin = steady_seconds();
   c.paper = fit_paper(request.law, shell, 2 * shell.radius);
-  c.paper_seconds = now() - paper_begin;
+  c.paper_seconds = seconds_since(paper_begin);
   c.universal = universal_law(request.law);
   if (c.universal)
     c.universal_error =
@@ -291,7 +289,7 @@ Calibration calibrate(const CalibrationRequest& request) {
   if (c.universal_error > unusable_contact) c.universal.reset();
   c.registry = registry_of(c);
   warn(c);
-  c.seconds = now() - begin;
+  c.seconds = seconds_since(begin);
   return c;
 }
 

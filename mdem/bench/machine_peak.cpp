@@ -23,7 +23,7 @@ VEC_INLINE std::size_t in_chains(std::size_t rounds, T by, T* out) {
   for (std::size_t r = 0; r < rounds; ++r)
     for (int k = 0; k < chains; ++k) a[k] = ops::MulAdd(a[k], factor, term);
   for (int k = 1; k < chains; ++k) a[0] = ops::Add(a[0], a[k]);
-  ops::StoreU(a[0], d, out);
+  ops::Store(a[0], d, out);
   return rounds * chains * 2 * ops::Lanes(d);
 }
 

@@ -6,7 +6,7 @@
 #include <memory>
 #include <numeric>
 
-#include "io/processor_time.hpp"
+#include "io/clocks.hpp"
 #include "sim/dynamics/simulation.hpp"
 #include "sim/state/part_of_scene.hpp"
 

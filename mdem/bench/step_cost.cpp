@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/step_bytes.hpp"
-#include "io/processor_time.hpp"
+#include "io/clocks.hpp"
 #include "sim/contact/line/engine.hpp"
 #include "sim/contact/line/law.hpp"
 

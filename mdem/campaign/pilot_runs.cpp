@@ -9,9 +9,9 @@
 #include <filesystem>
 
 #include "campaign/point_runs.hpp"
+#include "io/clocks.hpp"
 #include "io/files.hpp"
 #include "io/processes.hpp"
-#include "io/processor_time.hpp"
 #include "model/error.hpp"
 #include "run/run_time.hpp"
 #include "run/tell.hpp"

@@ -1,9 +1,8 @@
 // `check`: what a scene would do and how long it would take.
 #include <fmt/format.h>
 
-#include <chrono>
-
 #include "commands/commands.hpp"
+#include "io/clocks.hpp"
 #include "plan/forecast.hpp"
 #include "run/run_directory.hpp"
 #include "scene/scene_toml.hpp"
@@ -58,8 +57,8 @@ int check_command(const std::string& path) {
   say_limits(scene, p);
   fmt::print(
       "time step {:.4g} fs; stability limit {:.4g} fs (chain {:.3g}, contact {:.3g} rad/ps, damping {:.3g} 1/ps)\n",
-      p.time_step / units::fs, p.limit.limit / units::fs, p.limit.chain_frequency,
-      p.limit.contact_frequency, p.limit.damping_rate);
+      p.time_step / units::fs, p.limit.limit / units::fs, p.limit.chain_frequency, p.limit.contact_frequency,
+      p.limit.damping_rate);
   const Energies& e = simulation.forces().energy;
   fmt::print("start: {:.6g} eV in bonds, {:.6g} eV van der Waals, largest force {:.3g} eV/nm\n", e.bonds(), e.vdw,
              simulation.largest_force());
@@ -70,9 +69,9 @@ int check_command(const std::string& path) {
     return 0;
   }
   constexpr long sample = 20;
-  const auto began = std::chrono::steady_clock::now();
+  const double began = steady_seconds();
   simulation.steps(sample);
-  const double each = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count() / sample;
+  const double each = seconds_since(began) / sample;
   const double steps = p.duration / p.time_step;
   fmt::print("{:.4g} ps = {:.0f} steps, about {:.0f} s on all cores\n", p.duration, steps, steps * each);
   return 0;

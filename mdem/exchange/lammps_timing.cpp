@@ -7,8 +7,8 @@
 #include <filesystem>
 
 #include "exchange/export_run.hpp"
+#include "io/clocks.hpp"
 #include "io/files.hpp"
-#include "io/processor_time.hpp"
 #include "model/error.hpp"
 #include "run/cores.hpp"
 #include "run/threads.hpp"

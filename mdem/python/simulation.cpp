@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "io/clocks.hpp"
 #include "io/files.hpp"
 #include "model/error.hpp"
 #include "python/arrays.hpp"
@@ -13,9 +14,6 @@
 
 namespace ropewalk::python {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-double seconds_since(Clock::time_point then) { return std::chrono::duration<double>(Clock::now() - then).count(); }
 
 constexpr std::size_t digits = 16;  // of the sum behind a checkpoint
 
@@ -73,7 +71,7 @@ void SteppedScene::steps_with_breaks(long count, bool energies) {
   for (long done = 0; done < count;) {
     if (done > 0) look_for_signals();
     const long part = std::min(count - done, std::max(1L, static_cast<long>(patience / seconds_of_a_step_)));
-    const Clock::time_point began = Clock::now();
+    const double began = steady_seconds();
     simulation_.steps(part, energies && done + part == count);
     seconds_of_a_step_ = std::max(seconds_since(began) / static_cast<double>(part), 1e-9);
     done += part;
@@ -84,11 +82,11 @@ Relaxed SteppedScene::relax(const RelaxGoal& goal, long max_steps) {
   const Turn turn(*this);
   const py::gil_scoped_release release;
   forget();
-  Clock::time_point looked = Clock::now();
+  double looked = steady_seconds();
   std::optional<py::error_already_set> raised;
   const Relaxed end = simulation_.relax(goal, max_steps, [&](long) {
     if (seconds_since(looked) < patience) return true;
-    looked = Clock::now();
+    looked = steady_seconds();
     const py::gil_scoped_acquire acquire;
     if (PyErr_CheckSignals() == 0) return true;
     raised.emplace();
@@ -154,7 +152,9 @@ namespace {
 
 using Class = py::class_<SteppedScene, std::shared_ptr<SteppedScene>>;
 
-py::tuple tuple_of(const Energies& e) { return py::make_tuple(e.stretch, e.shear, e.bend, e.twist, e.vdw, e.terms); }
+py::tuple tuple_of(const Energies& e) {
+  return py::make_tuple(e.stretch, e.shear, e.bend, e.twist, e.vdw, e.terms);
+}
 
 // `of`: the simulation's array. The view keeps the Python object alive, and with it the memory, which never moves.
 template <class Of>

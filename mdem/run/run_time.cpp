@@ -10,10 +10,10 @@
 #include <limits>
 #include <vector>
 
+#include "io/clocks.hpp"
 #include "io/files.hpp"
 #include "io/frames/dump.hpp"
 #include "io/processes.hpp"
-#include "io/processor_time.hpp"
 #include "model/error.hpp"
 #include "plan/expected_state.hpp"
 #include "plan/features.hpp"

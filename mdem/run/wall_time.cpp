@@ -1,17 +1,12 @@
 #include "run/wall_time.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <ctime>
 #include <regex>
 
 #include "model/error.hpp"
 
 namespace ropewalk {
-
-double steady_seconds() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 namespace {
 

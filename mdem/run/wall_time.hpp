@@ -3,11 +3,11 @@
 
 #include <string>
 
+#include "io/clocks.hpp"
+
 namespace ropewalk {
 
-// The time of a clock that never goes back, s.
-double steady_seconds();
-// When this program was started, by that clock.
+// When this program was started, by steady_seconds().
 double program_start();
 
 // "5400" (seconds), "1:30:00" or "2-12:00:00" (days before the hyphen); empty: 0. Throws InputError.

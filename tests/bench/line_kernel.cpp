@@ -27,8 +27,8 @@ VEC_INLINE void radial_row(const Table& table, const typename Table::Value* X, s
     us = ops::Add(us, u[0]);
     slopes = ops::Add(slopes, slope[0]);
   }
-  ops::StoreU(us, d, out);
-  ops::StoreU(slopes, d, out + ops::Lanes(d));
+  ops::Store(us, d, out);
+  ops::Store(slopes, d, out + ops::Lanes(d));
 }
 
 void RadialMixed(const MixedTable& table, const float* X, std::size_t n, float* out) {
@@ -76,31 +76,18 @@ struct Distances {
 // Without the squared distance and the sums of forces; two more for each term of u.
 double radial_flop(Precision precision, int degree) { return radial_operations(precision) - (3 + 3) + 2 * degree; }
 
-void RadialTableFloat(benchmark::State& bench, const std::string& instructions) {
+template <class Table, Precision precision, class Radial>
+void RadialTableOf(benchmark::State& bench, const std::string& instructions, Radial radial) {
   use_instructions(instructions);
-  const MixedTable table(test::line_density(), 1);
-  const Distances<float> at;
-  float out[32];
+  const Table table(test::line_density(), 1);
+  const Distances<typename Table::Value> at;
+  typename Table::Value out[32];
   for (auto _ : bench) {
-    VEC_IN_USE(RadialMixed)(table, at.X, distances, out);
+    radial(table, at.X, distances, out);
     benchmark::ClobberMemory();
   }
   set_ns(bench, "ns/evaluation", distances);
-  set_giga(bench, "GFLOP/s", distances * radial_flop(Precision::mixed, MixedTable::degree));
-  use_instructions("");
-}
-
-void RadialTableDouble(benchmark::State& bench, const std::string& instructions) {
-  use_instructions(instructions);
-  const FullTable table(test::line_density(), 1);
-  const Distances<double> at;
-  double out[16];
-  for (auto _ : bench) {
-    VEC_IN_USE(RadialFull)(table, at.X, distances, out);
-    benchmark::ClobberMemory();
-  }
-  set_ns(bench, "ns/evaluation", distances);
-  set_giga(bench, "GFLOP/s", distances * radial_flop(Precision::full, FullTable::degree));
+  set_giga(bench, "GFLOP/s", distances * radial_flop(precision, Table::degree));
   use_instructions("");
 }
 
@@ -244,8 +231,12 @@ void register_kernels() {
 
 const bool registered = [] {
   for (const std::string& name : instruction_sets()) {
-    benchmark::RegisterBenchmark(("RadialTableFloat/" + name).c_str(), RadialTableFloat, name);
-    benchmark::RegisterBenchmark(("RadialTableDouble/" + name).c_str(), RadialTableDouble, name);
+    benchmark::RegisterBenchmark(("RadialTableFloat/" + name).c_str(), [name](benchmark::State& bench) {
+      RadialTableOf<MixedTable, Precision::mixed>(bench, name, [](auto&&... a) { VEC_IN_USE(RadialMixed)(a...); });
+    });
+    benchmark::RegisterBenchmark(("RadialTableDouble/" + name).c_str(), [name](benchmark::State& bench) {
+      RadialTableOf<FullTable, Precision::full>(bench, name, [](auto&&... a) { VEC_IN_USE(RadialFull)(a...); });
+    });
   }
   register_kernels();
   return true;

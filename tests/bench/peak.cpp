@@ -18,14 +18,14 @@ std::size_t LookUp([[maybe_unused]] std::size_t rounds, [[maybe_unused]] const f
 #if VEC_TARGET <= VEC_AVX512
   constexpr int chains = 12;  // independent, as in bench/machine_peak.cpp
   const ops::CappedTag<float, 16> d;
-  const auto low = ops::LoadU(d, table), high = ops::LoadU(d, table + 16);
+  const auto low = ops::Load(d, table), high = ops::Load(d, table + 16);
   ops::Vec<decltype(d)> a[chains];
   for (int k = 0; k < chains; ++k) a[k] = ops::Set(d, static_cast<float>(k));
   for (std::size_t r = 0; r < rounds; ++r)
     for (int k = 0; k < chains; ++k)
       a[k].raw = _mm512_permutex2var_ps(low.raw, _mm512_castps_si512(a[k].raw), high.raw);
   for (int k = 1; k < chains; ++k) a[0] = ops::Add(a[0], a[k]);
-  ops::StoreU(a[0], d, out);
+  ops::Store(a[0], d, out);
   return rounds * chains * 16;
 #else
   return 0;
@@ -47,22 +47,10 @@ VEC_EXPORT(LookUp);
 
 namespace {
 
-void PeakFloat(benchmark::State& bench, const std::string& instructions) {
+template <class T>
+void PeakOf(benchmark::State& bench, const std::string& instructions) {
   use_instructions(instructions);
-  float factor = 0.5F, out[16];
-  std::size_t flop = 0;
-  for (auto _ : bench) {
-    benchmark::DoNotOptimize(factor);
-    flop = multiply_adds(10000, factor, out);
-    benchmark::DoNotOptimize(out);
-  }
-  set_giga(bench, "GFLOP/s", static_cast<double>(flop));
-  use_instructions("");
-}
-
-void PeakDouble(benchmark::State& bench, const std::string& instructions) {
-  use_instructions(instructions);
-  double factor = 0.5, out[8];
+  T factor = 0.5, out[64 / sizeof(T)];
   std::size_t flop = 0;
   for (auto _ : bench) {
     benchmark::DoNotOptimize(factor);
@@ -105,8 +93,8 @@ BENCHMARK(PeakTriad)->Arg(24)->Arg(512)->Arg(8 << 10)->Arg(384 << 10);
 
 const bool registered = [] {
   for (const std::string& name : instruction_sets()) {
-    benchmark::RegisterBenchmark(("PeakFloat/" + name).c_str(), PeakFloat, name);
-    benchmark::RegisterBenchmark(("PeakDouble/" + name).c_str(), PeakDouble, name);
+    benchmark::RegisterBenchmark(("PeakFloat/" + name).c_str(), PeakOf<float>, name);
+    benchmark::RegisterBenchmark(("PeakDouble/" + name).c_str(), PeakOf<double>, name);
   }
   return true;
 }();

@@ -158,12 +158,8 @@ TEST_F(RunDirectoryOf, AForeignSceneIsRefused) {
 
 TEST_F(RunDirectoryOf, InstructionsAreKept) {
   scene("s.toml", "duration_ps = 1\n");
-  const std::string help = run("run --help").out;
-  const std::string all = std::regex_replace(help, std::regex("[^]*other\\s+processors:([^\\[]*)\\[[^]*"), "$1");
-  std::vector<std::string> sets;
-  const std::regex name("[A-Za-z][A-Za-z0-9_]+");
-  for (std::sregex_iterator at(all.begin(), all.end(), name), end; at != end; ++at) sets.push_back(at->str());
-  ASSERT_FALSE(sets.empty()) << help;
+  const std::vector<std::string> sets = instruction_sets_of_help();
+  ASSERT_FALSE(sets.empty());
   const std::string other = sets.back();  // the narrowest, which every processor has
   ASSERT_EQ(run("run s.toml --out d --quiet --until 0.5 --instructions " + other).code, 0)
       << slurp(dir / "stderr.txt");

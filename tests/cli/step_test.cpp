@@ -2,9 +2,9 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <sstream>
 
 #include "cli/support.hpp"
+#include "io/log.hpp"
 
 namespace ropewalk::test {
 namespace {
@@ -29,19 +29,8 @@ class FollowingStep : public Cli {
   }
 
   std::vector<double> column(const std::string& run, const std::string& name) const {
-    std::istringstream log(slurp(dir / run / "log.csv"));
-    std::string line, cell;
-    std::getline(log, line);
-    std::istringstream head(line);
-    int at = 0, k = 0;
-    for (; std::getline(head, cell, ','); ++k)
-      if (cell == name) at = k;
     std::vector<double> values;
-    while (std::getline(log, line)) {
-      std::istringstream row(line);
-      for (k = 0; k <= at; ++k) std::getline(row, cell, ',');
-      values.push_back(std::stod(cell));
-    }
+    for (const LogRow& row : read_log((dir / run / "log.csv").string())) values.push_back(row[name]);
     return values;
   }
 };

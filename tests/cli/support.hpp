@@ -9,7 +9,9 @@
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <regex>
 #include <string>
+#include <vector>
 
 namespace ropewalk::test {
 
@@ -48,6 +50,16 @@ class Cli : public ::testing::Test {
     o.out = slurp(dir / "stdout.txt");
     o.err = slurp(dir / "stderr.txt");
     return o;
+  }
+
+  // The sets that --instructions takes on this machine, widest first.
+  std::vector<std::string> instruction_sets_of_help() const {
+    const std::string help = run("run --help").out;
+    const std::string all = std::regex_replace(help, std::regex("[^]*other\\s+processors:([^\\[]*)\\[[^]*"), "$1");
+    std::vector<std::string> sets;
+    const std::regex name("\\w+");
+    for (std::sregex_iterator at(all.begin(), all.end(), name), end; at != end; ++at) sets.push_back(at->str());
+    return sets;
   }
 
   fs::path dir;

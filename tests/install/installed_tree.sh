@@ -66,7 +66,7 @@ cmake --build consumer >/dev/null
 ROPEWALK_DATA=$work/moved/share/ropewalk consumer/twist > said
 grep -q "70 elements" said || fail "the consumer's rope is wrong"
 grep -q "s of processor time" said || fail "the consumer cannot time a run"
-[ ! -e rope.toml ] || fail "the consumer left a file"
+[ ! -e from-memory.toml ] || fail "the consumer left a file"
 # A load of one's own, registered by a program outside of this tree, in a scene that names it.
 cmake -S "$here/own_load" -B own_load -DCMAKE_PREFIX_PATH="$work/moved" -DCMAKE_BUILD_TYPE=Release >/dev/null
 cmake --build own_load >/dev/null

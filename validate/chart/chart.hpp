@@ -24,6 +24,7 @@
 #include "chart/point.hpp"
 #include "io/outputs.hpp"
 #include "observe/observe.hpp"
+#include "scene/loads/fix.hpp"
 #include "scene/scene.hpp"
 #include "sim/dynamics/simulation.hpp"
 
@@ -84,9 +85,11 @@ struct Specimen {
   bool starts_at_rest = true;  // relaxed before it moves
   bool is_rope = true;         // parallel tubes, if there are more than two
 
+  void follow(double ramp_ps, double hold_ps, int steps = 1) { ramp = ramp_ps, hold = hold_ps, increments = steps; }
   double duration() const { return ramp + hold; }
   LoadsAndConstraints held() const;   // before the ramp; free in load control
   LoadsAndConstraints loads() const;  // of the ramp and the hold
+  FixLoad still(int grip) const;
 };
 
 struct ChartReference {

@@ -1,6 +1,5 @@
 // Measures one point: runs a model through the protocol of a scene and records cost and observables.
 #include <omp.h>
-#include <time.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -9,6 +8,7 @@
 #include <set>
 
 #include "chart/chart.hpp"
+#include "io/clocks.hpp"
 #include "model/error.hpp"
 #include "observe/bending.hpp"
 #include "observe/means.hpp"
@@ -25,12 +25,6 @@ constexpr int samples = 40;                                        // of the obs
 constexpr double sampled_part = 0.5;                               // of the hold, at its end
 constexpr double min_seconds = 0.25;                               // short runs are repeated
 constexpr int max_spans = 8;
-
-double processor_seconds() {
-  timespec t{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 // --- Motion of the grips ---
 

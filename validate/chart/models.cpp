@@ -43,22 +43,22 @@ void add_anchors(std::vector<ChartModel>& all) {
   }));
 }
 
+// One model for each value of a setting.
+template <class T>
+void vary(std::vector<ChartModel>& all, const char* kind, const char* name, T ChartModel::*setting,
+          std::initializer_list<T> values) {
+  for (const T value : values)
+    all.push_back(varied(kind, fmt::format(fmt::runtime(name), value), [&](ChartModel& m) { m.*setting = value; }));
+}
+
 void add_single_tube_knobs(std::vector<ChartModel>& all) {
-  for (const double times : {0.5, 2.0, 4.0, 8.0})
-    all.push_back(
-        varied("element_length", fmt::format("length-{:g}", times), [times](ChartModel& m) { m.length = times; }));
-  for (const double part : {0.3, 0.6})
-    all.push_back(
-        varied("time_step", fmt::format("step-{:g}", part), [part](ChartModel& m) { m.step_fraction = part; }));
+  vary(all, "element_length", "length-{:g}", &ChartModel::length, {0.5, 2.0, 4.0, 8.0});
+  vary(all, "time_step", "step-{:g}", &ChartModel::step_fraction, {0.3, 0.6});
   all.push_back(varied("integrator", "rk4", [](ChartModel& m) { m.stepping.runge_kutta = true; }));
-  for (const double scale : {4.0, 16.0, 64.0})
-    all.push_back(
-        varied("mass_scale", fmt::format("mass-{:g}", scale), [scale](ChartModel& m) { m.mass_scale = scale; }));
+  vary(all, "mass_scale", "mass-{:g}", &ChartModel::mass_scale, {4.0, 16.0, 64.0});
   all.push_back(varied("mode", "relax", [](ChartModel& m) { m.mode = RunOptions::Mode::relax; }));
   all.push_back(varied("bond", "hooke", [](ChartModel& m) { m.hooke = true; }));
-  for (const double rate : {0.0, 4.0})
-    all.push_back(varied("bond_damping", fmt::format("bond-damping-{:g}", rate),
-                         [rate](ChartModel& m) { m.bond_damping = rate; }));
+  vary(all, "bond_damping", "bond-damping-{:g}", &ChartModel::bond_damping, {0.0, 4.0});
 }
 
 void add_contact_knobs(std::vector<ChartModel>& all) {
@@ -73,15 +73,9 @@ void add_contact_knobs(std::vector<ChartModel>& all) {
     m.set = "cnt-10-10-paper";
     m.law = "paper";
   }));
-  for (const int nodes : {2, 3, 4, 6, 8})
-    all.push_back(
-        varied("nodes_per_element", fmt::format("nodes-{}", nodes), [nodes](ChartModel& m) { m.nodes = nodes; }));
-  for (const double cutoff : {2.6, 2.4, 2.2})
-    all.push_back(
-        varied("cutoff", fmt::format("cutoff-{:g}", cutoff), [cutoff](ChartModel& m) { m.cutoff = cutoff; }));
-  for (const double eta : {0.0, 5.0, 80.0})
-    all.push_back(varied("contact_viscosity", fmt::format("viscosity-{:g}", eta),
-                         [eta](ChartModel& m) { m.contact_viscosity = eta; }));
+  vary(all, "nodes_per_element", "nodes-{}", &ChartModel::nodes, {2, 3, 4, 6, 8});
+  vary(all, "cutoff", "cutoff-{:g}", &ChartModel::cutoff, {2.6, 2.4, 2.2});
+  vary(all, "contact_viscosity", "viscosity-{:g}", &ChartModel::contact_viscosity, {0.0, 5.0, 80.0});
   all.push_back(varied("precision", "double", [](ChartModel& m) { m.precision = Precision::full; }));
 }
 

@@ -1,10 +1,10 @@
 // `ropewalk validate chart`: measures the points, one file each, and writes the chart from them.
 #include <fmt/format.h>
 
-#include <chrono>
 #include <filesystem>
 
 #include "chart/chart.hpp"
+#include "io/clocks.hpp"
 #include "io/files.hpp"
 #include "model/error.hpp"
 #include "version.hpp"
@@ -13,8 +13,6 @@ namespace ropewalk::validate {
 namespace {
 
 namespace fs = std::filesystem;
-
-double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 struct Task {
   const ChartScene* scene;
@@ -112,12 +110,12 @@ int chart_command(const ChartArguments& a) {
   double left = 0, done = 0;
   for (const Task& t : tasks)
     if (!t.done()) left += guessed_work(t);
-  const double begin = now();
+  const double begin = steady_seconds();
   std::size_t number = 0;
   for (Task& t : tasks) {
     ++number;
     if (!a.quiet) {
-      const double eta = done > 0 ? (now() - begin) / done * left : 0;
+      const double eta = done > 0 ? seconds_since(begin) / done * left : 0;
       fmt::print(stderr, "{}/{} {} {}{}{}\n", number, tasks.size(), t.scene->name, t.model.name,
                  t.done() ? ": kept"
                  : t.kept ? ": counting"

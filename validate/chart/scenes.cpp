@@ -55,7 +55,8 @@ void scale_damping(Specimen& s) {
 }
 
 // Applies the model's settings to a specimen with topology and spacing.
-void settle(const ChartModel& model, Specimen& s) {
+Specimen settled(const ChartModel& model, Specimen s) {
+  set_collapse(s.scene, s.topology);
   scale_damping(s);
   s.interaction = interaction_of(s.scene);
   const double limit = time_step_limit(s.topology, s.interaction, s.spacing).limit;
@@ -66,6 +67,18 @@ void settle(const ChartModel& model, Specimen& s) {
                      fmt::format("{:.4g} fs is not below the stability limit of {:.4g} fs", s.time_step / units::fs,
                                  limit / units::fs),
                      "take a smaller step");
+  return s;
+}
+
+// A specimen without elements, which are `length` (nm) long; those of the default model `default_length`.
+Specimen empty_specimen(const ChartModel& model, double length, bool contact, const char* set = set_name,
+                        double default_length = element) {
+  Specimen s;
+  s.scene = knobs_of(model, set, length);
+  s.element = default_length;
+  s.topology = empty_topology(s.scene);
+  s.spacing = contact ? rest_spacing(s.scene) : 0;
+  return s;
 }
 
 // Number of bonds whose elements are not longer than this.
@@ -77,13 +90,9 @@ int bonds_of(const ChartModel& model, double length, double element_length = ele
 // length.
 Specimen parallel_tubes(const ChartModel& model, int tubes, double length, double band, const char* set = set_name,
                         double element_length = element) {
-  Specimen s;
   const int bonds = bonds_of(model, length, element_length);
   const double a = length / bonds;
-  s.scene = knobs_of(model, set, a);
-  s.element = element_length;
-  s.topology = empty_topology(s.scene);
-  s.spacing = tubes > 1 ? rest_spacing(s.scene) : 0;
+  Specimen s = empty_specimen(model, a, tubes > 1, set, element_length);
   const int beyond = std::max(0, static_cast<int>(std::lround(band / a - 0.5)));
   const int elements = bonds + 1 + 2 * beyond;
   s.state = State(static_cast<std::size_t>(tubes * elements));
@@ -96,9 +105,7 @@ Specimen parallel_tubes(const ChartModel& model, int tubes, double length, doubl
       if (e <= beyond || e >= bonds + beyond) s.grips.push_back(first + e);
     }
   }
-  set_collapse(s.scene, s.topology);
-  settle(model, s);
-  return s;
+  return settled(model, std::move(s));
 }
 
 // --- tube-twist ---
@@ -106,10 +113,8 @@ Specimen parallel_tubes(const ChartModel& model, int tubes, double length, doubl
 Specimen twisted_tube(const ChartModel& model) {
   Specimen s = parallel_tubes(model, 1, tube_length, 0);
   s.angle = tube_twist_rate * tube_length;
-  s.ramp = 200;
-  s.hold = 50;
+  s.follow(200, 50, 4);
   s.interior_follows = false;
-  s.increments = 4;
   return s;
 }
 
@@ -133,9 +138,7 @@ Specimen seven_tubes(const ChartModel& model) {
   const TwistedRope rope = rope_of_length("rope-7-short", 8, set);
   Specimen s = parallel_tubes(model, 7, clamped_length(rope, set), (rope.band_rows - 0.5) * row_distance(set));
   s.angle = md_angle;
-  s.ramp = 60;
-  s.hold = 30;
-  s.increments = md_increment;
+  s.follow(60, 30, md_increment);
   return s;
 }
 
@@ -152,9 +155,7 @@ Specimen rope_of_91(const ChartModel& model, double angle, double ramp, int incr
   Specimen s = parallel_tubes(model, 91, rope_length, 0);
   s.angle = angle;
   s.axial_free = true;
-  s.ramp = ramp;
-  s.hold = 20;
-  s.increments = increments;
+  s.follow(ramp, 20, increments);
   return s;
 }
 
@@ -167,9 +168,7 @@ Specimen rope_of_19(const ChartModel& model, const char* set) {
   Specimen s = parallel_tubes(model, 19, length, 0, set, parameters.element_length);
   s.angle = wall_shear / parameters.radius * length;
   s.axial_free = true;
-  s.ramp = 60;
-  s.hold = 30;
-  s.increments = 10;
+  s.follow(60, 30, 10);
   return s;
 }
 
@@ -178,8 +177,7 @@ Specimen rope_of_19(const ChartModel& model, const char* set) {
 Specimen rope_under_moment(const ChartModel& model, double moment) {
   Specimen s = parallel_tubes(model, 19, moment_length, 0);
   s.moment = moment * units::nN_nm;
-  s.ramp = moment_ramp;
-  s.hold = moment_hold;
+  s.follow(moment_ramp, moment_hold);
   return s;
 }
 
@@ -187,13 +185,9 @@ Specimen rope_under_moment(const ChartModel& model, double moment) {
 
 // One tube along x, the other at an angle above it; the crossing on the axis z.
 Specimen crossed_tubes(const ChartModel& model) {
-  Specimen s;
   const int bonds = bonds_of(model, crossed_length);
   const double a = crossed_length / bonds;
-  s.scene = knobs_of(model, set_name, a);
-  s.element = element;
-  s.topology = empty_topology(s.scene);
-  s.spacing = rest_spacing(s.scene);
+  Specimen s = empty_specimen(model, a, true);
   s.state = State(static_cast<std::size_t>(2 * (bonds + 1)));
   const ReferenceTable atoms = atoms_table("crossed-tubes");
   const double distance = atoms.column("distance_nm")[2];  // of the energy minimum at 90 degrees
@@ -212,14 +206,10 @@ Specimen crossed_tubes(const ChartModel& model) {
     s.grips.push_back(first + bonds);
   }
   s.angle = (crossed_to - crossed_from) * units::degree;
-  s.ramp = 300;
-  s.hold = 100;
-  s.increments = 6;
+  s.follow(300, 100, 6);
   s.moment_resists = false;
   s.above_start = false;
-  set_collapse(s.scene, s.topology);
-  settle(model, s);
-  return s;
+  return settled(model, std::move(s));
 }
 
 std::vector<ChartReference> atoms_of_crossed_tubes() {
@@ -235,12 +225,9 @@ std::vector<ChartReference> atoms_of_crossed_tubes() {
 
 // Round the line y through (R, 0, 0), from the origin along z and back to it: both ends in one place.
 Specimen closed_ring(const ChartModel& model) {
-  Specimen s;
   const int bonds = bonds_of(model, ring_length);
   const double a = ring_length / bonds, step = 2 * units::pi / bonds;
-  s.scene = knobs_of(model, set_name, a);
-  s.element = element;
-  s.topology = empty_topology(s.scene);
+  Specimen s = empty_specimen(model, a, false);
   s.topology.add_tube(bonds + 1);
   s.state = State(static_cast<std::size_t>(bonds + 1));
   const double radius = 0.5 * a / std::sin(0.5 * step);
@@ -253,25 +240,16 @@ Specimen closed_ring(const ChartModel& model) {
   s.about_itself = true;
   s.grips = {0, bonds};
   s.angle = ring_twist;
-  s.ramp = 200;
-  s.hold = 50;
+  s.follow(200, 50, 6);
   s.interior_follows = false;
-  s.increments = 6;
   s.above_start = false;
-  set_collapse(s.scene, s.topology);
-  settle(model, s);
-  return s;
+  return settled(model, std::move(s));
 }
 
 // --- film ---
 
 Specimen free_film(const ChartModel& model) {
-  Specimen s;
-  const int elements = bonds_of(model, film_length);
-  s.scene = knobs_of(model, set_name, film_length / elements);
-  s.element = element;
-  s.topology = empty_topology(s.scene);
-  s.spacing = rest_spacing(s.scene);
+  Specimen s = empty_specimen(model, film_length / bonds_of(model, film_length), true);
   FilmSource film;
   film.tubes = film_tubes;
   film.length = film_length;
@@ -281,10 +259,8 @@ Specimen free_film(const ChartModel& model) {
   film.place(s.scene, s.spacing, random, s.topology, s.state);
   s.twist_share.assign(s.state.size(), 0.0);
   s.is_rope = s.starts_at_rest = s.above_start = false;
-  s.ramp = s.hold = film_time;
-  set_collapse(s.scene, s.topology);
-  settle(model, s);
-  return s;
+  s.follow(film_time, film_time);
+  return settled(model, std::move(s));
 }
 
 std::vector<ChartScene> all_scenes() {
@@ -423,10 +399,12 @@ LoadsAndConstraints ramped_moment(const Specimen& s) {
 
 }  // namespace
 
+FixLoad Specimen::still(int grip) const { return FixLoad({grip}, true, true, !axial_free, true); }
+
 LoadsAndConstraints Specimen::held() const {
   LoadsAndConstraints loads;
   if (moment > 0) return loads;
-  for (const int e : grips) loads.add(FixLoad({e}, true, true, !axial_free, true));
+  for (const int e : grips) loads.add(still(e));
   return loads;
 }
 
@@ -445,7 +423,7 @@ LoadsAndConstraints Specimen::loads() const {
     if (part != 0)
       loads.add(load);
     else
-      for (const int e : load.elements) loads.add(FixLoad({e}, true, true, !axial_free, true));
+      for (const int e : load.elements) loads.add(still(e));
   }
   return loads;
 }
@@ -457,15 +435,14 @@ const std::vector<ChartScene>& chart_scenes() {
 
 const ChartScene& find_chart_scene(const std::string& name) {
   std::vector<std::string> names;
-  std::string all;
   for (const ChartScene& s : chart_scenes()) {
     if (s.name == name) return s;
     names.push_back(s.name);
-    all += (all.empty() ? "" : ", ") + s.name;
   }
   const std::string near = nearest_word(name, names);
   throw InputError({"", 0, "--scenes"}, fmt::format("there is no scene \"{}\"", printable(name, 60)),
-                   near.empty() ? "choose of " + all : fmt::format("did you mean \"{}\"?", near));
+                   near.empty() ? fmt::format("choose of {}", fmt::join(names, ", "))
+                                : fmt::format("did you mean \"{}\"?", near));
 }
 
 std::string observable_unit(const std::string& observable) {

@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <map>
@@ -12,6 +11,7 @@
 #include <optional>
 
 #include "core/reference.hpp"
+#include "io/clocks.hpp"
 #include "io/data_files.hpp"
 #include "io/failure.hpp"
 #include "io/files.hpp"
@@ -26,8 +26,6 @@ namespace ropewalk::validate {
 namespace {
 
 namespace fs = std::filesystem;
-
-double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 const char* tier_name(Case::Tier t) { return t == Case::Tier::quick ? "quick" : "full"; }
 
@@ -148,7 +146,7 @@ Outcome outcome_of(const Task& task, const Run& run) {
   const std::string work = (fs::path(run.arguments.out) / ("work-" + o.name)).string();
   fs::remove_all(work);
   fs::create_directories(work);
-  const double begin = now();
+  const double begin = steady_seconds();
   try {
     o.result = run_case(*task.of, context_of(task, run, work));
     fill_tubes(o);
@@ -157,7 +155,7 @@ Outcome outcome_of(const Task& task, const Run& run) {
   } catch (const std::exception& e) {
     o.error = failure_words(e);
   }
-  o.result.seconds = now() - begin;
+  o.result.seconds = seconds_since(begin);
   std::error_code ignored;
   if (!run.arguments.fresh && o.error.empty()) fs::remove_all(work, ignored);
   return o;

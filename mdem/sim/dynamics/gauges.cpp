@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "model/contract.hpp"
 #include "model/units.hpp"
 
 namespace ropewalk {
@@ -65,6 +66,7 @@ void Gauges::locate(const State& state) {
 }
 
 void Gauges::add(const State& state, int element, const Vector3& force, const Vector3& torque, double work) {
+  ROPEWALK_EXPECTS(element >= 0 && static_cast<std::size_t>(element) < end_of_.size());
   const auto i = static_cast<std::size_t>(element);
   if (end_of_[i] < 0) return;
   const auto end = static_cast<std::size_t>(end_of_[i]);
@@ -110,6 +112,7 @@ void Gauges::forget_work() {
 }
 
 EndReadings Gauges::read(const State& state) {
+  ROPEWALK_EXPECTS(state.time > sums.since);
   EndReadings out;
   const double time = state.time - sums.since;
   for (const End end : {lower_end, upper_end}) {

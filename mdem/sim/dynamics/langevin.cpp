@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/contract.hpp"
 #include "model/units.hpp"
 #include "sim/dynamics/counter_random.hpp"
 #include "sim/threads/vector_unit.hpp"
@@ -48,6 +49,7 @@ void draw(std::uint64_t seed, std::int64_t step, int part, std::ptrdiff_t first,
 }  // namespace
 
 void LangevinThermostat::apply(const Topology& topology, double dt, State& state) const {
+  ROPEWALK_EXPECTS(dt > 0 && friction_ >= 0 && static_cast<int>(state.size()) == topology.elements());
   const double keep = std::exp(-friction_ * dt);
   const double energy =
       -std::expm1(-2 * friction_ * dt) * units::boltzmann * temperature_.value(state.time);  // (1 - c^2) kT

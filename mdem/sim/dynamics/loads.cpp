@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "model/contract.hpp"
+
 namespace ropewalk {
 
 void Load::keep(const std::vector<std::size_t>& places, const LoadProcesses&) {
@@ -9,6 +11,7 @@ void Load::keep(const std::vector<std::size_t>& places, const LoadProcesses&) {
 }
 
 void LoadsAndConstraints::add(std::shared_ptr<const Load> load) {
+  ROPEWALK_EXPECTS(load != nullptr);
   const auto behind =
       std::find_if(all_.begin(), all_.end(), [&](const auto& l) { return l->order() > load->order(); });
   all_.insert(behind, std::move(load));
@@ -52,6 +55,7 @@ void constrain(const Topology& topology, const LoadsAndConstraints& loads, doubl
 void constrain(const Topology& topology, const LoadsAndConstraints& loads, const std::vector<int>& elements,
                double time, double ahead, const Forces& total, double kick, State& state,
                std::vector<ConstraintImpulse>& out) {
+  ROPEWALK_EXPECTS(total.force.size() == state.size() && std::is_sorted(elements.begin(), elements.end()));
   out.clear();
   for (const int e : elements) {
     const auto i = static_cast<std::size_t>(e);

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "model/contract.hpp"
 #include "sim/state/motion.hpp"
 
 namespace ropewalk {
@@ -184,12 +185,14 @@ Topology halved(const Topology& coarse) {
 }
 
 State halved(const Topology& coarse, const State& state) {
+  ROPEWALK_EXPECTS(!coarse.part && static_cast<int>(state.size()) == coarse.elements());
   const Topology fine = halved(coarse);
   State out = placed(coarse, state);
   follow(coarse, state, out);
   for (int t = 0; t < coarse.tubes(); ++t) restore_momenta(coarse, state, fine, t, out);
   out.time = state.time;
   out.step = state.step;
+  ROPEWALK_ENSURES(static_cast<int>(out.size()) == fine.elements());
   return out;
 }
 

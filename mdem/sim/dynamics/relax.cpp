@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "model/contract.hpp"
 #include "model/error.hpp"
 #include "sim/dynamics/counter_random.hpp"
 #include "sim/dynamics/fire.hpp"
@@ -253,6 +254,7 @@ bool Simulation::relax(double tolerance, long max_steps, const std::function<boo
 
 // If the forces are small and the energy is not, the forces have to become smaller.
 Relaxed Simulation::relax(const RelaxGoal& goal, long max_steps, const std::function<bool(long)>& progress) {
+  ROPEWALK_EXPECTS(goal.force > 0 && goal.energy > 0 && max_steps >= 0);
   constexpr double least_part = 1e-3;  // of the contact's energy, which stands for that of bonds that hardly bear
   constexpr double no_force = 1e-2;    // of the goal: what rests here without a minimum rests on a saddle
   constexpr long least_iterations = 300;
@@ -331,6 +333,7 @@ Simulation::PartEnd Simulation::relax_part(long max_steps, const std::function<b
     r.last_step = 0;
     r.longest_bond = std::max(2.0, 1.01 * longest_bond(topology_, state_.position).length);
   }
+  ROPEWALK_ENSURES(r.underway() && r.part_began >= r.began);
   while (state_.step - r.began < max_steps) {
     if ((state_.step - r.part_began) % Fire::check_every == 0) {
       const LongestBond longest = longest_bond(topology_, state_.position);

@@ -5,9 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/contract.hpp"
+
 namespace ropewalk {
 
 Schedule::Schedule(std::vector<Point> points, double smooth) : points_(std::move(points)) {
+  ROPEWALK_EXPECTS(smooth >= 0);
+  for (std::size_t k = 0; k + 1 < points_.size(); ++k) ROPEWALK_EXPECTS(points_[k].time < points_[k + 1].time);
   std::vector<double> slope;
   for (std::size_t k = 0; k + 1 < points_.size(); ++k)
     slope.push_back((points_[k + 1].value - points_[k].value) / (points_[k + 1].time - points_[k].time));
@@ -27,6 +31,7 @@ Schedule::Schedule(std::vector<Point> points, double smooth) : points_(std::move
 }
 
 double Schedule::Line::rate(double time) const {
+  ROPEWALK_EXPECTS(time >= begin && length > 0);
   const double since = time - begin, left = length - since;
   if (since < smooth) return enter + (along - enter) * since / smooth;
   if (left < smooth) return leave + (along - leave) * left / smooth;

@@ -8,7 +8,9 @@
 #include <numeric>
 #include <utility>
 
+#include "model/contract.hpp"
 #include "model/error.hpp"
+#include "sim/contact/shared/wrapped.hpp"
 #include "sim/dynamics/blow_up.hpp"
 #include "sim/forces/kick.hpp"
 #include "sim/dynamics/verlet.hpp"
@@ -20,12 +22,16 @@ namespace {
 bool finite(const Vector3& v) { return std::isfinite(v.squaredNorm()); }
 
 // Before any force spreads it to the neighbours.
-void refuse_not_finite(const State& s) {
+void refuse_places(const State& s) {
   for (std::size_t i = 0; i < s.size(); ++i)
     if (!finite(s.position[i]) || !finite(s.velocity[i]) || !finite(s.angular_velocity[i]) ||
         !std::isfinite(s.orientation[i].squaredNorm()))
       throw NumericalError(s.step, static_cast<int>(i), "its position, orientation or velocity is not finite",
                            "start from another state");
+  for (std::size_t i = 0; i < s.size(); ++i)
+    if (s.position[i].lpNorm<Eigen::Infinity>() > farthest_coordinate)
+      throw NumericalError(s.step, static_cast<int>(i), "it lies more than 3 cm from the origin, where coordinates end",
+                           "move the rope to the origin");
 }
 
 bool relaxes_spins(const LoadsAndConstraints& loads) { return loads.spin_relaxation_interval() > 0; }
@@ -65,7 +71,8 @@ Simulation::Simulation(Topology topology, Interaction interaction, LoadsAndConst
       changes_(blocks_of(state_.size())),
       fastest_(blocks_of(state_.size())),
       forces_(state_.size()) {
-  refuse_not_finite(state_);
+  ROPEWALK_EXPECTS(static_cast<int>(state_.size()) == topology_.elements() && time_step_ > 0 && skin >= 0);
+  refuse_places(state_);
   list_.build(topology_, state_);
   compute();
   constrain(topology_, loads_, state_.time, 0.0, state_);
@@ -90,6 +97,7 @@ struct Simulation::System {
 };
 
 void Simulation::steps(long count, bool energies) {
+  ROPEWALK_EXPECTS(count >= 0);
   end_relaxation();
   const bool always = relaxes_spins(loads_);
   for (long k = 0; k < count; ++k) {
@@ -228,6 +236,7 @@ void Simulation::remember(const std::vector<double>& memory) {
 }
 
 Forces Simulation::forces_at(const State& state, Interaction::Precision precision) const {
+  ROPEWALK_EXPECTS(state.size() == state_.size());
   Interaction in = interaction_;
   in.precision = precision;
   ForceEngine engine;

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "model/contract.hpp"
 #include "sim/dynamics/energy_supply.hpp"
 #include "sim/dynamics/gauges.hpp"
 #include "sim/dynamics/loads.hpp"
@@ -65,7 +66,10 @@ class Simulation {
   const ForceEngine& engine() const { return engine_; }
   double time_step() const { return time_step_; }
   // From now on each step is `parts` shorter ones. Steps are counted as before.
-  void divide_steps(int parts) { divided_ = parts; }
+  void divide_steps(int parts) {
+    ROPEWALK_EXPECTS(parts > 0);
+    divided_ = parts;
+  }
   int divided() const { return divided_; }
   const Stepping& stepping() const { return stepping_; }
   const EnergySupply& account() const { return account_; }
@@ -89,6 +93,7 @@ class Simulation {
   void restore(const std::string& bytes);
   // Goes on with a run that another engine has carried on: its last total forces and its account of energy.
   void inherit_from(const Vec3Array& force, const Vec3Array& torque, const EnergySupply& account) {
+    ROPEWALK_EXPECTS(force.size() == state_.size() && torque.size() == state_.size());
     forces_.force = force;
     forces_.torque = torque;
     account_ = account;

@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "model/contract.hpp"
 #include "sim/contact/contact_law.hpp"
 #include "sim/forces/force_term.hpp"
 
@@ -230,6 +231,7 @@ double excess_of_positions(const TimeStepLimit& limit, double step) {
 }
 
 double step_of_excess(const TimeStepLimit& limit, double excess) {
+  ROPEWALK_EXPECTS(excess > 0 && limit.chain_frequency > 0);
   double below = 0, above = 2 / limit.chain_frequency;
   for (int k = 0; k < 60; ++k) {
     const double middle = 0.5 * (below + above);
@@ -239,6 +241,7 @@ double step_of_excess(const TimeStepLimit& limit, double excess) {
 }
 
 double heat_left(const TimeStepLimit& limit, double time) {
+  ROPEWALK_EXPECTS(!limit.damping_rates.empty());
   double sum = 0;
   for (const double rate : limit.damping_rates) sum += std::exp(-rate * time);
   return sum / static_cast<double>(limit.damping_rates.size());

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "model/contract.hpp"
 #include "sim/state/plain_vector.hpp"
 #include "sim/threads/vector_unit.hpp"
 
@@ -63,6 +64,7 @@ void add_behind(const Joint& bond, int element, const ForceRows& out) {
 }
 
 Joint joint_behind(const BondInput& in, int tube, int i) {
+  ROPEWALK_EXPECTS(i >= in.topology.tube_begin[tube] && i + 1 < in.topology.tube_begin[tube + 1]);
   thread_local TubeBonds work;
   work.resize(2);
   ROPEWALK_IN_USE(frames_of)(in.state.orientation, i, i, i + 2, work.frames);
@@ -76,6 +78,10 @@ Joint joint_behind(const BondInput& in, int tube, int i) {
 
 BondSum compute_bonds(const BondInput& in, const Segment& of, const Joint* before, const Joint* behind,
                       const ForceRows& out) {
+  ROPEWALK_EXPECTS(of.begin < of.end && of.begin >= in.topology.tube_begin[of.tube] &&
+          of.end <= in.topology.tube_begin[of.tube + 1]);
+  ROPEWALK_EXPECTS(!before || of.begin > in.topology.tube_begin[of.tube]);
+  ROPEWALK_EXPECTS(!behind || of.end < in.topology.tube_begin[of.tube + 1]);
   thread_local TubeBonds work;
   const std::ptrdiff_t from = before ? 1 : 0, begin = of.begin - from, to = of.end - begin,
                        bonds = to - 1 + (behind ? 1 : 0);

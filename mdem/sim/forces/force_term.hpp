@@ -32,7 +32,7 @@
 // Links that form where elements stay near (permanent bonds between tubes). prepare goes through the list in its
 // order, (i, j) rising, and forms a link with a probability by CounterRandom(seed, state.step, i, j), numbers of
 // the scene; not where scene.again is true. add adds the springs of the links of a part's elements, as tethers
-// (scene/terms/tether.cpp) do. advance breaks long links and returns their energy. memory() has a record for each
+// (scene/loads/tether.cpp) do. advance breaks long links and returns their energy. memory() has a record for each
 // i: the partner and the rest length of each of its links.
 //
 // Units nm, ps, eV.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "model/contract.hpp"
 #include "sim/forces/forces.hpp"
 #include "sim/forces/terms/damping_terms.hpp"
 
@@ -75,6 +76,7 @@ void ForceTerms::prepare(const Topology& topology, const NeighbourList& list, co
 }
 
 void ForceTerms::begin(const State& state, int parts) {
+  ROPEWALK_EXPECTS(parts >= 0);
   state_ = &state;
   for (Working& w : terms_) {
     w.term->gather(state);
@@ -90,6 +92,7 @@ double ForceTerms::advance(double dt, const State& state) {
 }
 
 void ForceTerms::add(int part, const Segment& of, const ForceRows& out) {
+  ROPEWALK_EXPECTS(of.begin < of.end);
   for (Working& w : terms_)
     if (!w.term->acts_in_kick()) w.of_part[static_cast<std::size_t>(part)] = w.term->add(*state_, of, out);
 }
@@ -145,6 +148,7 @@ std::vector<double> ForceTerms::memory() const {
 
 void ForceTerms::remember(const std::vector<double>& numbers, int elements) {
   const std::vector<TermMemory> all = memories_of(numbers, terms_.size(), elements);
+  ROPEWALK_ENSURES(numbers_of(all).size() == numbers.size());
   for (std::size_t k = 0; k < terms_.size(); ++k) terms_[k].term->remember(all[k]);
   stamp_ = 0;
 }

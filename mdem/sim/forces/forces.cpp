@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "model/contract.hpp"
 #include "sim/forces/bonds.hpp"
 #include "sim/threads/vector_unit.hpp"
 
@@ -44,6 +45,8 @@ void ForceEngine::use_terms(const Interaction& interaction) {
 
 void ForceEngine::compute(const Topology& topology, const Interaction& interaction, const NeighbourList& list,
                           const State& state, Forces& out, const ForceOptions& options) {
+  ROPEWALK_EXPECTS(static_cast<int>(state.size()) == topology.elements() && out.force.size() == state.size());
+  ROPEWALK_EXPECTS(options.parts == Parts::bonds || !interaction.law || list.builds() > 0);
   const double began = omp_get_wtime();
   const bool bonds = options.parts != Parts::contact, all_parts = options.parts == Parts::all;
   use_terms(interaction);
@@ -117,6 +120,7 @@ void ForceEngine::compute(const Topology& topology, const Interaction& interacti
 }
 
 double kinetic_energy(const Topology& topology, const State& state) {
+  ROPEWALK_EXPECTS(static_cast<int>(state.size()) == topology.elements());
   double sum = 0;
   for (int t = 0; t < topology.tubes(); ++t) {
     double translation = 0, rotation = 0;
@@ -130,6 +134,7 @@ double kinetic_energy(const Topology& topology, const State& state) {
 }
 
 NetForce net_force(const State& state, const Forces& forces) {
+  ROPEWALK_EXPECTS(forces.force.size() == state.size() && forces.torque.size() == state.size());
   NetForce net;
   for (std::size_t i = 0; i < state.size(); ++i) {
     net.force += forces.force[i];

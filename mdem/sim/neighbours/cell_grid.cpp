@@ -42,9 +42,9 @@ std::size_t FindNear(const CellSearch& s, const MemberRange* first, const Member
   std::size_t count = 0;
   for (const MemberRange* r = first; r != last; ++r)
     for (int k = r->begin; k < r->end; k += lanes) {
-      const auto dx = ops::Sub(ops::LoadU(d, s.x + k), x), dy = ops::Sub(ops::LoadU(d, s.y + k), y),
-                 dz = ops::Sub(ops::LoadU(d, s.z + k), z);
-      const auto member = ops::LoadU(di, s.member + k);
+      const auto dx = ops::Sub(ops::Load(d, s.x + k), x), dy = ops::Sub(ops::Load(d, s.y + k), y),
+                 dz = ops::Sub(ops::Load(d, s.z + k), z);
+      const auto member = ops::Load(di, s.member + k);
       const auto near = ops::Lt(ops::MulAdd(dx, dx, ops::MulAdd(dy, dy, ops::Mul(dz, dz))), reach2);
       const auto met = ops::And(ops::And(ops::RebindMask(di, near), ops::Gt(member, after)),
                                ops::FirstN(di, static_cast<std::size_t>(r->end - k)));

@@ -5,10 +5,13 @@
 #include <limits>
 #include <utility>
 
+#include "model/contract.hpp"
+
 namespace ropewalk {
 
 // The axis of the twist passes through the mean position. The bounds hold for any other axis too.
 void MotionSince::start(const Topology& topology, Vec3Array position, Vec3Array axis, const AllProcesses* others) {
+  ROPEWALK_EXPECTS(position.size() == axis.size() && static_cast<int>(position.size()) == topology.elements());
   position_ = std::move(position);
   axis_ = std::move(axis);
   others_ = others;
@@ -49,6 +52,7 @@ Change MotionSince::change(const State& state, double lever, std::ptrdiff_t begi
 // A common twist changes the distance of two points by no more than their relative rotation times their distance
 // from the axis.
 double MotionSince::bound(Change all, double within, double lever) {
+  ROPEWALK_EXPECTS(within >= 0 && lever >= 0);
   if (others_) {
     double sums[3] = {all.sum, all.spin, all.spin_z};
     others_->join(all.moved, sums);

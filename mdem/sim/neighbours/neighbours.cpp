@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "model/contract.hpp"
 #include "sim/neighbours/cell_grid.hpp"
 #include "sim/threads/scratch.hpp"
 
@@ -50,6 +51,7 @@ void NeighbourList::build(const Topology& topology, const State& state) {
 }
 
 void NeighbourList::build(const Topology& topology, Vec3Array position, Vec3Array axis) {
+  ROPEWALK_EXPECTS(cutoff >= 0 && skin >= 0 && lever >= 0);
   static std::atomic<long> stamps{0};
   stamp_ = ++stamps;
   displacement_ = 0;
@@ -99,16 +101,14 @@ void NeighbourList::build(const Topology& topology, Vec3Array position, Vec3Arra
     for (const auto& list : found) spans_.insert(spans_.end(), list.begin(), list.end());
     for (std::size_t pairs : pairs_of_part) pairs_ += pairs;
     for (std::size_t i = 1; i < begin_.size(); ++i) begin_[i] += begin_[i - 1];
+    ROPEWALK_ENSURES(begin_.back() == spans_.size());
   }
   cut_into_chunks(n);
 }
 
 double NeighbourList::coordinate_unit() const {
-  double largest = 1;
-  for (const auto* v : {&reference().x, &reference().y, &reference().z})
-    for (double x : *v)
-      if (std::isfinite(x)) largest = std::max(largest, std::fabs(x));
-  return std::exp2(std::ceil(std::log2(largest + 64)) - 28);
+  const double period = 32 * (cutoff + 2 * lever);
+  return std::exp2(std::max(8.0, std::ceil(std::log2(period))) - 32);
 }
 
 // The chunks do not depend on the number of threads. Where tubes with distant numbers cross, the buffers of the chunks
@@ -147,6 +147,7 @@ void NeighbourList::cut_into_chunks(int n, int count) {
       for (const ElementSpan& span : spans(i)) chunk.written_end = std::max(chunk.written_end, span.end);
     from = to;
   }
+  ROPEWALK_ENSURES(from == n);
 }
 
 }  // namespace ropewalk

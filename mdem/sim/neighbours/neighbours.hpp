@@ -8,6 +8,7 @@
 #include <array>
 #include <vector>
 
+#include "model/contract.hpp"
 #include "sim/neighbours/motion_since.hpp"
 #include "sim/state/interaction.hpp"
 #include "sim/state/state.hpp"
@@ -73,7 +74,10 @@ class NeighbourList {
   void build(const Topology& topology, Vec3Array position, Vec3Array axis);
 
   // The neighbours j > i of element i, none of which is in two spans.
-  Span<ElementSpan> spans(int i) const { return entries_of(i, begin_, spans_); }
+  Span<ElementSpan> spans(int i) const {
+    ROPEWALK_EXPECTS(builds_ > 0);
+    return entries_of(i, begin_, spans_);
+  }
   template <class Work>
   void for_neighbours(int i, const Work& work) const {
     for (const ElementSpan& span : spans(i))
@@ -91,7 +95,8 @@ class NeighbourList {
   const Vec3Array& reference() const { return since_.position(); }
   const Vec3Array& reference_axis() const { return since_.axis(); }
   long builds() const { return builds_; }
-  // A unit of length (nm, a power of two) in which every coordinate fits into 29 bits until the next build.
+  // nm, a power of two: the unit of coordinates modulo 2^32 (sim/contact/shared/wrapped.hpp). 2^-24, or more where
+  // elements so long that 2^32 units are not 32 times as far as elements act on each other.
   double coordinate_unit() const;
   // Differs for every build of every list.
   long stamp() const { return stamp_; }

@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "model/contract.hpp"
+
 namespace ropewalk {
 
 // A part of a ColumnBlock.
@@ -17,8 +19,14 @@ class Column {
   std::size_t size() const { return size_; }
   double* data() { return data_; }
   const double* data() const { return data_; }
-  double& operator[](std::size_t i) { return data_[i]; }
-  double operator[](std::size_t i) const { return data_[i]; }
+  double& operator[](std::size_t i) {
+    ROPEWALK_EXPECTS(i < size_);
+    return data_[i];
+  }
+  double operator[](std::size_t i) const {
+    ROPEWALK_EXPECTS(i < size_);
+    return data_[i];
+  }
   double* begin() { return data_; }
   const double* begin() const { return data_; }
   double* end() { return data_ + size_; }
@@ -62,6 +70,7 @@ class ColumnBlock {
     }
   }
   void copy(const Columns& columns, const std::array<const Column*, N>& from) {
+    for (const Column* column : from) ROPEWALK_EXPECTS(column->size() == from[0]->size());
     resize(columns, from[0]->size());
     for (std::size_t k = 0; k < N; ++k) std::copy(from[k]->begin(), from[k]->end(), columns[k]->begin());
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/contract.hpp"
 #include "sim/threads/vector_unit.hpp"
 
 #define ROPEWALK_LOOPS "sim/state/motion_loops-inl.hpp"
@@ -12,10 +13,12 @@ namespace ropewalk {
 
 void kick_elements(const Vec3Array& force, double by, Vec3Array& velocity, std::ptrdiff_t begin,
                    std::ptrdiff_t end) {
+  ROPEWALK_EXPECTS(begin >= 0 && begin <= end && static_cast<std::size_t>(end) <= std::min(force.size(), velocity.size()));
   ROPEWALK_IN_USE(kick_elements)(force, by, velocity, begin, end);
 }
 
 void move_elements(State& s, double dt, std::ptrdiff_t begin, std::ptrdiff_t end) {
+  ROPEWALK_EXPECTS(begin >= 0 && begin <= end && static_cast<std::size_t>(end) <= s.size());
   ROPEWALK_IN_USE(move_elements)(s, dt, begin, end);
 }
 
@@ -45,6 +48,7 @@ Fastest fastest(const State& s, std::ptrdiff_t begin, std::ptrdiff_t end) {
 
 Change largest_change(const State& state, const Vec3Array& position, const Vec3Array& axis, double lever,
                       const TwistOfAll& twist, std::ptrdiff_t begin, std::ptrdiff_t end) {
+  ROPEWALK_EXPECTS(position.size() == state.size() && axis.size() == state.size());
   return ROPEWALK_IN_USE(largest_change)(state, position, axis, lever, twist, begin, end);
 }
 

@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <utility>
 
+#include "model/contract.hpp"
+
 namespace ropewalk {
 
 Topology part_of_scene(const Topology& scene, std::vector<int> number, std::vector<char> own) {
+  ROPEWALK_EXPECTS(!scene.part && number.size() == own.size() && std::is_sorted(number.begin(), number.end()));
   Topology out;
   out.types = scene.types;
   PartOfScene& part = out.part.emplace();
@@ -17,6 +20,7 @@ Topology part_of_scene(const Topology& scene, std::vector<int> number, std::vect
   }
   part.number = std::move(number);
   part.own = std::move(own);
+  ROPEWALK_ENSURES(out.elements() == static_cast<int>(part.number.size()));
   return out;
 }
 

@@ -10,6 +10,7 @@
 
 #include "model/bond.hpp"
 #include "model/contact/contact.hpp"
+#include "model/contract.hpp"
 #include "sim/state/columns.hpp"
 
 namespace ropewalk {
@@ -97,7 +98,10 @@ struct TubeType {
   BondStiffness bond;
 
   // The number of elements along a length `arc` (nm) of a tube, rounded up.
-  int elements_within(double arc) const { return static_cast<int>(std::ceil(arc / element_length - 1e-9)); }
+  int elements_within(double arc) const {
+    ROPEWALK_EXPECTS(arc >= 0 && element_length > 0);
+    return static_cast<int>(std::ceil(arc / element_length - 1e-9));
+  }
 };
 
 // Elements of a scene that one process owns, with copies of those near them, which other processes own. It computes
@@ -121,17 +125,27 @@ struct Topology {
   int tubes() const { return static_cast<int>(tube_begin.size()) - 1; }
   int elements() const { return tube_begin.back(); }
   int bonds() const { return elements() - tubes(); }
-  int length_of(int tube) const { return tube_begin[tube + 1] - tube_begin[tube]; }
+  int length_of(int tube) const {
+    ROPEWALK_EXPECTS(tube >= 0 && tube < tubes());
+    return tube_begin[tube + 1] - tube_begin[tube];
+  }
   void add_tube(int elements, int type = 0) {
+    ROPEWALK_EXPECTS(elements > 0 && type >= 0);
     tube_begin.push_back(tube_begin.back() + elements);
     tube_type.push_back(type);
   }
-  const TubeType& type_of(int tube) const { return types[static_cast<std::size_t>(tube_type[tube])]; }
+  const TubeType& type_of(int tube) const {
+    ROPEWALK_EXPECTS(tube >= 0 && tube < tubes() && static_cast<std::size_t>(tube_type[tube]) < types.size());
+    return types[static_cast<std::size_t>(tube_type[tube])];
+  }
   const TubeType& type_of_element(int element) const { return type_of(tube_of(element)); }
   double largest_radius() const;
   double longest_element() const;
   int tube_of(int element) const;
-  bool owns(int element) const { return !part || part->own[static_cast<std::size_t>(element)] != 0; }
+  bool owns(int element) const {
+    ROPEWALK_EXPECTS(element >= 0 && element < elements());
+    return !part || part->own[static_cast<std::size_t>(element)] != 0;
+  }
   // From `begin` on, the first element that is owned where that one is not, or the other way round; `end` at most.
   int change_of_owner(int begin, int end) const;
   // The last element of the same tube that is at most `elements` elements behind this one of `tube`.

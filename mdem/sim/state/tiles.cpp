@@ -7,6 +7,8 @@
 #include <limits>
 #include <tuple>
 
+#include "model/contract.hpp"
+
 namespace ropewalk {
 namespace {
 
@@ -133,9 +135,11 @@ void TubeParts::cut(const Topology& topology) {
     block_of_.push_back(static_cast<int>(block_begin_.size()) - 1);
   }
   block_begin_.push_back(count());
+  ROPEWALK_ENSURES(parts_.empty() || parts_.back().end == topology.elements());
 }
 
 int TubeParts::part_of(int element, int tube) const {
+  ROPEWALK_EXPECTS(tube >= 0 && tube + 1 < static_cast<int>(begin_.size()));
   const auto part = std::upper_bound(parts_.begin() + begin(tube), parts_.begin() + begin(tube + 1), element,
                                      [](int e, const Segment& s) { return e < s.end; });
   return static_cast<int>(part - parts_.begin());
@@ -143,10 +147,12 @@ int TubeParts::part_of(int element, int tube) const {
 
 std::vector<std::vector<Segment>> cut_into_tiles(const Topology& topology, const Vec3Array& position,
                                                  const std::vector<double>& cost, int count, CutBy first) {
+  ROPEWALK_EXPECTS(count > 0 && cost.size() == position.size());
   std::vector<Piece> pieces = pieces_of(topology, position, cost);
   std::vector<std::vector<Segment>> tiles;
   tiles.reserve(static_cast<std::size_t>(count));
   bisect(first, pieces.begin(), pieces.end(), count, tiles);
+  ROPEWALK_ENSURES(static_cast<int>(tiles.size()) == count);
   return tiles;
 }
 

@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "model/contract.hpp"
+
 namespace ropewalk {
 
 template <class T>
@@ -17,7 +19,9 @@ struct Span {
 // number of entries.
 template <class T, class Index>
 Span<T> entries_of(int k, const std::vector<Index>& begin, const std::vector<T>& all) {
+  ROPEWALK_EXPECTS(k >= 0 && static_cast<std::size_t>(k) + 1 < begin.size());
   const auto at = static_cast<std::size_t>(k);
+  ROPEWALK_EXPECTS(begin[at] <= begin[at + 1] && static_cast<std::size_t>(begin[at + 1]) <= all.size());
   return {all.data() + begin[at], all.data() + begin[at + 1]};
 }
 

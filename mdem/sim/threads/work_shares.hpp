@@ -9,6 +9,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "model/contract.hpp"
+
 namespace ropewalk {
 
 class WorkShares {
@@ -20,6 +22,7 @@ class WorkShares {
 
   // Call it before the team starts.
   void deal(int pieces, int threads) {
+    ROPEWALK_EXPECTS(pieces >= 0 && threads > 0);
     if (static_cast<int>(shares_.size()) != threads)
       shares_ = std::vector<Share>(static_cast<std::size_t>(threads));
     for (int t = 0; t < threads; ++t)
@@ -27,6 +30,7 @@ class WorkShares {
   }
   // The next piece for this thread; -1 if none is left.
   int take(int thread) {
+    ROPEWALK_EXPECTS(thread >= 0 && static_cast<std::size_t>(thread) < shares_.size());
     const int own = take_first(shares_[static_cast<std::size_t>(thread)]);
     if (own >= 0) return own;
     for (;;) {
@@ -86,7 +90,12 @@ class Countdowns {
     for (std::size_t k = 0; k < pieces.size(); ++k) left_[k].store(pieces[k], std::memory_order_relaxed);
   }
   // Counts block k down. Returns whether this was its last piece.
-  bool last(int k) { return left_[static_cast<std::size_t>(k)].fetch_sub(1, std::memory_order_acq_rel) == 1; }
+  bool last(int k) {
+    ROPEWALK_EXPECTS(k >= 0 && static_cast<std::size_t>(k) < left_.size());
+    const int before = left_[static_cast<std::size_t>(k)].fetch_sub(1, std::memory_order_acq_rel);
+    ROPEWALK_ENSURES(before > 0);
+    return before == 1;
+  }
 
  private:
   std::vector<std::atomic<int>> left_;

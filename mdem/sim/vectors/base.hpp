@@ -1,5 +1,6 @@
-// Kernels in explicit vector operations, compiled for three instruction sets: the compiler's default, AVX2 with FMA,
-// and AVX-512. The set in use is sim/threads/vector_unit.hpp's. A kernel's file includes itself once for each set:
+// Kernels in explicit vector operations, compiled for three instruction sets: the compiler's default, AVX2 with
+// FMA, and AVX-512. The set in use is sim/threads/vector_unit.hpp's. A kernel's file includes itself once for each
+// set:
 //
 //   #undef VEC_SOURCE
 //   #define VEC_SOURCE "path/of/this/file.cpp"
@@ -16,8 +17,8 @@
 //   ... VEC_IN_USE(function)(arguments)   // compiled once
 //   #endif
 //
-// The operations have the names and meanings of the library Highway's, which is not used: its version in Debian 12 is
-// under Apache-2.0, which does not go with LAMMPS's GPL-2.
+// The operations have the names and meanings of the library Highway's, which is not used: its version in Debian 12
+// is under Apache-2.0, which does not go with LAMMPS's GPL-2. Load and Store need no alignment.
 #pragma once
 
 #include <cstddef>

@@ -25,8 +25,8 @@ VEC_INLINE ops::Vec<D> load_some(D d, const double* p, int first, int last) {
 #if VEC_TARGET <= VEC_AVX2
   return ops::MaskedLoad(some_lanes(d, first, last), d, p);
 #else
-  if (first <= 0 && last >= static_cast<int>(ops::Lanes(d))) return ops::LoadU(d, p);
-  alignas(64) double some[ops::MaxLanes(d)] = {};
+  if (first <= 0 && last >= static_cast<int>(ops::Lanes(d))) return ops::Load(d, p);
+  alignas(64) double some[ops::Lanes(d)] = {};
   for (int k = first; k < last; ++k) some[k] = p[k];
   return ops::Load(d, some);
 #endif

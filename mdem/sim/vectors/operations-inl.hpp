@@ -28,77 +28,6 @@
 
 namespace ropewalk::vec {
 
-// A vector of N numbers. The member `raw` is of the type that the compiler's intrinsics take, where there is one of
-// this size.
-template <class T, std::size_t N>
-struct RawVector {
-  typedef T Type __attribute__((vector_size(sizeof(T) * N)));
-};
-#if defined(__x86_64__)
-template <>
-struct RawVector<float, 4> {
-  using Type = __m128;
-};
-template <>
-struct RawVector<float, 8> {
-  using Type = __m256;
-};
-template <>
-struct RawVector<float, 16> {
-  using Type = __m512;
-};
-template <>
-struct RawVector<double, 2> {
-  using Type = __m128d;
-};
-template <>
-struct RawVector<double, 4> {
-  using Type = __m256d;
-};
-template <>
-struct RawVector<double, 8> {
-  using Type = __m512d;
-};
-template <std::size_t bytes>
-struct RawIntegers;
-template <>
-struct RawIntegers<16> {
-  using Type = __m128i;
-};
-template <>
-struct RawIntegers<32> {
-  using Type = __m256i;
-};
-template <>
-struct RawIntegers<64> {
-  using Type = __m512i;
-};
-template <>
-struct RawVector<std::int32_t, 4> : RawIntegers<16> {};
-template <>
-struct RawVector<std::int32_t, 8> : RawIntegers<32> {};
-template <>
-struct RawVector<std::int32_t, 16> : RawIntegers<64> {};
-template <>
-struct RawVector<std::uint32_t, 4> : RawIntegers<16> {};
-template <>
-struct RawVector<std::uint32_t, 8> : RawIntegers<32> {};
-template <>
-struct RawVector<std::uint32_t, 16> : RawIntegers<64> {};
-template <>
-struct RawVector<std::int64_t, 2> : RawIntegers<16> {};
-template <>
-struct RawVector<std::int64_t, 4> : RawIntegers<32> {};
-template <>
-struct RawVector<std::int64_t, 8> : RawIntegers<64> {};
-template <>
-struct RawVector<std::uint64_t, 2> : RawIntegers<16> {};
-template <>
-struct RawVector<std::uint64_t, 4> : RawIntegers<32> {};
-template <>
-struct RawVector<std::uint64_t, 8> : RawIntegers<64> {};
-#endif
-
 template <std::size_t bytes>
 struct IntegerOf;
 template <>
@@ -176,22 +105,16 @@ template <class D>
 using RebindToSigned = Simd<typename IntegerOf<sizeof(TFromD<D>)>::Signed, D::lanes>;
 template <class D>
 using RebindToUnsigned = Simd<typename IntegerOf<sizeof(TFromD<D>)>::Unsigned, D::lanes>;
-template <class T, class D>
-using Repartition = Simd<T, D::lanes * sizeof(TFromD<D>) / sizeof(T)>;
-
 template <class D>
 struct VectorOf {
   using T = TFromD<D>;
-  static constexpr std::size_t N = D::lanes, bytes = N * sizeof(T);
-  typedef T Lanes __attribute__((vector_size(sizeof(T) * N)));
-  typedef typename IntegerOf<sizeof(T)>::Signed Bits __attribute__((vector_size(sizeof(T) * N)));
+  typedef T Lanes __attribute__((vector_size(sizeof(T) * D::lanes)));
+  typedef typename IntegerOf<sizeof(T)>::Signed Bits __attribute__((vector_size(sizeof(T) * D::lanes)));
   using Tag = D;
-  typename RawVector<T, N>::Type raw;
+  Lanes raw;
 
-  VEC_INLINE Lanes v() const { return reinterpret_cast<Lanes>(raw); }
   VEC_INLINE Bits bits() const { return reinterpret_cast<Bits>(raw); }
-  static VEC_INLINE VectorOf of(Lanes v) { return {reinterpret_cast<decltype(raw)>(v)}; }
-  static VEC_INLINE VectorOf of_bits(Bits v) { return {reinterpret_cast<decltype(raw)>(v)}; }
+  static VEC_INLINE VectorOf of_bits(Bits v) { return {reinterpret_cast<Lanes>(v)}; }
 };
 template <class D>
 using Vec = VectorOf<std::remove_cv_t<D>>;
@@ -215,70 +138,56 @@ template <class D>
 VEC_INLINE constexpr std::size_t Lanes(D) {
   return D::lanes;
 }
-template <class D>
-VEC_INLINE constexpr std::size_t MaxLanes(D) {
-  return D::lanes;
-}
-
 // --- memory ---------------------------------------------------------------------------------------------
 
 template <class D>
-VEC_INLINE Vec<D> LoadU(D, const TFromD<D>* p) {
+VEC_INLINE Vec<D> Load(D, const TFromD<D>* p) {
   Vec<D> v;
   std::memcpy(&v.raw, p, sizeof v.raw);
   return v;
 }
 template <class D>
-VEC_INLINE Vec<D> Load(D d, const TFromD<D>* p) {
-  return LoadU(d, p);
-}
-template <class D>
-VEC_INLINE void StoreU(Vec<D> v, D, TFromD<D>* p) {
+VEC_INLINE void Store(Vec<D> v, D, TFromD<D>* p) {
   std::memcpy(p, &v.raw, sizeof v.raw);
 }
-template <class D>
-VEC_INLINE void Store(Vec<D> v, D d, TFromD<D>* p) {
-  StoreU(v, d, p);
-}
-
 // --- arithmetic -----------------------------------------------------------------------------------------
 
 template <class D>
 VEC_INLINE Vec<D> Zero(D) {
-  return Vec<D>::of(typename Vec<D>::Lanes{});
+  return {typename Vec<D>::Lanes{}};
 }
 template <class D>
 VEC_INLINE Vec<D> Set(D, TFromD<D> x) {
-  return Vec<D>::of(x - typename Vec<D>::Lanes{});
+  return {x - typename Vec<D>::Lanes{}};
 }
 template <class D>
 VEC_INLINE VectorOf<D> Add(VectorOf<D> a, VectorOf<D> b) {
-  return Vec<D>::of(a.v() + b.v());
+  return {a.raw + b.raw};
 }
 template <class D>
 VEC_INLINE VectorOf<D> Sub(VectorOf<D> a, VectorOf<D> b) {
-  return Vec<D>::of(a.v() - b.v());
+  return {a.raw - b.raw};
 }
 template <class D>
 VEC_INLINE VectorOf<D> Mul(VectorOf<D> a, VectorOf<D> b) {
-  return Vec<D>::of(a.v() * b.v());
+  return {a.raw * b.raw};
 }
 template <class D>
 VEC_INLINE VectorOf<D> Div(VectorOf<D> a, VectorOf<D> b) {
-  return Vec<D>::of(a.v() / b.v());
+  return {a.raw / b.raw};
 }
 // The compiler makes one instruction of these where the machine has it.
 template <class D>
 VEC_INLINE VectorOf<D> MulAdd(VectorOf<D> a, VectorOf<D> b, VectorOf<D> c) {
-  return Vec<D>::of(a.v() * b.v() + c.v());
+  return {a.raw * b.raw + c.raw};
 }
 template <class D>
 VEC_INLINE VectorOf<D> MulSub(VectorOf<D> a, VectorOf<D> b, VectorOf<D> c) {
-  return Vec<D>::of(a.v() * b.v() - c.v());
+  return {a.raw * b.raw - c.raw};
 }
 template <class D>
 VEC_INLINE VectorOf<D> NegMulAdd(VectorOf<D> a, VectorOf<D> b, VectorOf<D> c) {
-  return Vec<D>::of(c.v() - a.v() * b.v());
+  return {c.raw - a.raw * b.raw};
 }
 template <class D>
 VEC_INLINE VectorOf<D> Sqrt(VectorOf<D> a) {
@@ -301,9 +210,9 @@ VEC_INLINE VectorOf<D> Sqrt(VectorOf<D> a) {
   }
 #endif
 #endif
-  auto v = a.v();
+  auto v = a.raw;
   for (std::size_t k = 0; k < D::lanes; ++k) v[k] = std::sqrt(v[k]);
-  return Vec<D>::of(v);
+  return {v};
 }
 template <class D>
 VEC_INLINE VectorOf<D> Abs(VectorOf<D> a) {
@@ -318,23 +227,15 @@ VEC_INLINE Vec<To> BitCast(To, VectorOf<D> v) {
 }
 template <class To, class D>
 VEC_INLINE Vec<To> ConvertTo(To, VectorOf<D> v) {
-  return Vec<To>::of(__builtin_convertvector(v.v(), typename Vec<To>::Lanes));
-}
-template <class To, class D>
-VEC_INLINE Vec<To> DemoteTo(To to, VectorOf<D> v) {
-  return ConvertTo(to, v);
-}
-template <class To, class D>
-VEC_INLINE Vec<To> TruncateTo(To to, VectorOf<D> v) {
-  return ConvertTo(to, v);
+  return {__builtin_convertvector(v.raw, typename Vec<To>::Lanes)};
 }
 template <int bits, class D>
 VEC_INLINE VectorOf<D> ShiftLeft(VectorOf<D> v) {
-  return Vec<D>::of(v.v() << bits);
+  return {v.raw << bits};
 }
 template <int bits, class D>
 VEC_INLINE VectorOf<D> ShiftRight(VectorOf<D> v) {
-  return Vec<D>::of(v.v() >> bits);
+  return {v.raw >> bits};
 }
 template <class D>
 VEC_INLINE VectorOf<D> And(VectorOf<D> a, VectorOf<D> b) {
@@ -342,13 +243,13 @@ VEC_INLINE VectorOf<D> And(VectorOf<D> a, VectorOf<D> b) {
 }
 template <class D>
 VEC_INLINE TFromD<D> GetLane(VectorOf<D> v) {
-  return v.v()[0];
+  return v.raw[0];
 }
 // The sum in all lanes.
 template <class D>
 VEC_INLINE Vec<D> SumOfLanes(D d, VectorOf<D> v) {
   TFromD<D> part[D::lanes];
-  StoreU(v, d, part);
+  Store(v, d, part);
   for (std::size_t half = D::lanes / 2; half > 0; half /= 2)
     for (std::size_t k = 0; k < half; ++k) part[k] += part[k + half];
   return Set(d, part[0]);
@@ -372,9 +273,12 @@ VEC_INLINE Mask<D> Lt(VectorOf<D> a, VectorOf<D> b) {
       if constexpr (sizeof a == 16) return _mm_cmp_pd_mask(a.raw, b.raw, _CMP_LT_OQ);
     } else {
       static_assert(std::is_same_v<T, std::int32_t>);
-      if constexpr (sizeof a == 64) return _mm512_cmplt_epi32_mask(a.raw, b.raw);
-      if constexpr (sizeof a == 32) return _mm256_cmplt_epi32_mask(a.raw, b.raw);
-      if constexpr (sizeof a == 16) return _mm_cmplt_epi32_mask(a.raw, b.raw);
+      if constexpr (sizeof a == 64)
+        return _mm512_cmplt_epi32_mask(reinterpret_cast<__m512i>(a.raw), reinterpret_cast<__m512i>(b.raw));
+      if constexpr (sizeof a == 32)
+        return _mm256_cmplt_epi32_mask(reinterpret_cast<__m256i>(a.raw), reinterpret_cast<__m256i>(b.raw));
+      if constexpr (sizeof a == 16)
+        return _mm_cmplt_epi32_mask(reinterpret_cast<__m128i>(a.raw), reinterpret_cast<__m128i>(b.raw));
     }
   };
   return {static_cast<typename Mask<D>::Raw>(mask())};
@@ -432,7 +336,7 @@ VEC_INLINE Vec<D> VecFromMask(D, Mask<D> m) {
 
 template <class D>
 VEC_INLINE Mask<D> Lt(VectorOf<D> a, VectorOf<D> b) {
-  return {a.v() < b.v()};
+  return {a.raw < b.raw};
 }
 template <class D>
 VEC_INLINE VectorOf<D> IfThenElse(Mask<D> m, VectorOf<D> yes, VectorOf<D> no) {
@@ -489,13 +393,6 @@ template <class D>
 VEC_INLINE Vec<D> VecFromMask(D, Mask<D> m) {
   return Vec<D>::of_bits(m.raw);
 }
-template <class D>
-VEC_INLINE std::size_t StoreMaskBits(D d, Mask<D> m, std::uint8_t* bits) {
-  static_assert(D::lanes <= 8);
-  bits[0] = static_cast<std::uint8_t>(bits_of_mask(d, m));
-  return 1;
-}
-
 #endif
 
 template <class D>
@@ -508,7 +405,7 @@ VEC_INLINE VectorOf<D> Min(VectorOf<D> a, VectorOf<D> b) {
   if constexpr (std::is_same_v<TFromD<D>, float> && sizeof a == 64) return {_mm512_min_ps(a.raw, b.raw)};
   if constexpr (std::is_same_v<TFromD<D>, double> && sizeof a == 64) return {_mm512_min_pd(a.raw, b.raw)};
 #endif
-  return Vec<D>::of(a.v() < b.v() ? a.v() : b.v());
+  return {a.raw < b.raw ? a.raw : b.raw};
 }
 template <class D>
 VEC_INLINE VectorOf<D> Max(VectorOf<D> a, VectorOf<D> b) {
@@ -516,7 +413,7 @@ VEC_INLINE VectorOf<D> Max(VectorOf<D> a, VectorOf<D> b) {
   if constexpr (std::is_same_v<TFromD<D>, float> && sizeof a == 64) return {_mm512_max_ps(a.raw, b.raw)};
   if constexpr (std::is_same_v<TFromD<D>, double> && sizeof a == 64) return {_mm512_max_pd(a.raw, b.raw)};
 #endif
-  return Vec<D>::of(a.v() > b.v() ? a.v() : b.v());
+  return {a.raw > b.raw ? a.raw : b.raw};
 }
 
 // --- some lanes -----------------------------------------------------------------------------------------
@@ -540,12 +437,12 @@ VEC_INLINE std::size_t CompressStore(Vec<D> v, Mask<D> m, D d, std::int32_t* to)
   std::uint64_t bits = bits_of_mask(d, m);
 #if VEC_TARGET == VEC_AVX512
   if constexpr (sizeof v == 64) {
-    StoreU(Vec<D>{_mm512_maskz_compress_epi32(m.raw, v.raw)}, d, to);
+    _mm512_storeu_si512(to, _mm512_maskz_compress_epi32(m.raw, reinterpret_cast<__m512i>(v.raw)));
     return static_cast<std::size_t>(__builtin_popcountll(bits));
   }
 #endif
   std::int32_t all[D::lanes];
-  StoreU(v, d, all);
+  Store(v, d, all);
   std::size_t count = 0;
   for (; bits != 0; bits &= bits - 1) to[count++] = all[first_bit(bits)];
   return count;
@@ -556,21 +453,19 @@ VEC_INLINE std::size_t CompressStore(Vec<D> v, Mask<D> m, D d, std::int32_t* to)
 template <class D, class I>
 VEC_INLINE Vec<D> GatherIndex(D, const TFromD<D>* table, VectorOf<I> index) {
 #if VEC_TARGET == VEC_AVX512
-  if constexpr (sizeof(TFromD<D>) == 8 && D::lanes == 8) return {_mm512_i64gather_pd(index.raw, table, 8)};
+  if constexpr (sizeof(TFromD<D>) == 8 && D::lanes == 8)
+    return {_mm512_i64gather_pd(reinterpret_cast<__m512i>(index.raw), table, 8)};
 #elif VEC_TARGET == VEC_AVX2
-  if constexpr (sizeof(TFromD<D>) == 8 && D::lanes == 4) return {_mm256_i64gather_pd(table, index.raw, 8)};
+  if constexpr (sizeof(TFromD<D>) == 8 && D::lanes == 4)
+    return {_mm256_i64gather_pd(table, reinterpret_cast<__m256i>(index.raw), 8)};
 #endif
   typename Vec<D>::Lanes v;
-  for (std::size_t k = 0; k < D::lanes; ++k) v[k] = table[index.v()[k]];
-  return Vec<D>::of(v);
-}
-template <class D, class I>
-VEC_INLINE VectorOf<I> IndicesFromVec(D, VectorOf<I> index) {
-  return index;
+  for (std::size_t k = 0; k < D::lanes; ++k) v[k] = table[index.raw[k]];
+  return {v};
 }
 template <class D, class I>
 VEC_INLINE VectorOf<D> TableLookupLanes(VectorOf<D> table, VectorOf<I> index) {
-  return Vec<D>::of(__builtin_shuffle(table.v(), index.v()));
+  return {__builtin_shuffle(table.raw, index.raw)};
 }
 #if VEC_TARGET == VEC_AVX2
 // The same four numbers in both halves.
@@ -581,46 +476,6 @@ VEC_INLINE Vec<D> LoadDup128(D, const float* p) {
   return {_mm256_insertf128_ps(_mm256_castps128_ps256(four), four, 1)};
 }
 #endif
-
-// --- shuffles, in blocks of 16 bytes --------------------------------------------------------------------
-
-namespace detail {
-// Lane k of the result is lane place(k) of a, or place(k) - lanes of b.
-template <class D, class Place>
-VEC_INLINE VectorOf<D> shuffled(VectorOf<D> a, VectorOf<D> b, Place place) {
-  using I = typename IntegerOf<sizeof(TFromD<D>)>::Signed;
-  typename VectorOf<D>::Bits places;
-  for (std::size_t k = 0; k < D::lanes; ++k) places[k] = static_cast<I>(place(k));
-  return Vec<D>::of(__builtin_shuffle(a.v(), b.v(), places));
-}
-template <class D>
-constexpr std::size_t in_block = 16 / sizeof(TFromD<D>);
-}  // namespace detail
-
-template <class D>
-VEC_INLINE Vec<D> InterleaveLower(D, VectorOf<D> a, VectorOf<D> b) {
-  constexpr std::size_t n = detail::in_block<D>;
-  return detail::shuffled(a, b, [](std::size_t k) { return k / n * n + k % n / 2 + (k % 2) * D::lanes; });
-}
-template <class D>
-VEC_INLINE Vec<D> InterleaveUpper(D, VectorOf<D> a, VectorOf<D> b) {
-  constexpr std::size_t n = detail::in_block<D>;
-  return detail::shuffled(a, b, [](std::size_t k) { return k / n * n + n / 2 + k % n / 2 + (k % 2) * D::lanes; });
-}
-template <class D>
-VEC_INLINE Vec<D> ConcatLowerLower(D, VectorOf<D> high, VectorOf<D> low) {
-  return detail::shuffled(low, high, [](std::size_t k) { return k < D::lanes / 2 ? k : k + D::lanes / 2; });
-}
-template <class D>
-VEC_INLINE Vec<D> ConcatUpperUpper(D, VectorOf<D> high, VectorOf<D> low) {
-  return detail::shuffled(low, high,
-                          [](std::size_t k) { return k < D::lanes / 2 ? k + D::lanes / 2 : k + D::lanes; });
-}
-template <class D>
-VEC_INLINE VectorOf<D> SwapAdjacentBlocks(VectorOf<D> v) {
-  constexpr std::size_t n = detail::in_block<D>;
-  return detail::shuffled(v, v, [](std::size_t k) { return k / n % 2 == 0 ? k + n : k - n; });
-}
 
 }  // namespace VEC_SET
 }  // namespace ropewalk::vec

@@ -21,7 +21,7 @@ VEC_BEFORE_NAMESPACE();
 namespace ropewalk::VEC_SET {
 namespace ops = vec::VEC_SET;
 
-// Vectors of a precision. Coordinates of `float` are 32-bit integers, so that differences are exact.
+// Vectors of a precision. Coordinates of `float` are whole numbers modulo 2^32 (sim/contact/shared/wrapped.hpp).
 template <class T>
 struct Lanes;
 template <>
@@ -29,8 +29,10 @@ struct Lanes<float> {
   using D = ops::CappedTag<float, 16>;
   static VEC_INLINE std::int32_t coordinate(double x) { return static_cast<std::int32_t>(std::lrint(x)); }
   static VEC_INLINE ops::Vec<D> difference(const std::int32_t* x, std::int32_t from) {
-    const ops::RebindToSigned<D> di;
-    return ops::ConvertTo(D(), ops::Sub(ops::LoadU(di, x), ops::Set(di, from)));
+    const ops::RebindToUnsigned<D> modulo;
+    const auto to = ops::Load(modulo, reinterpret_cast<const std::uint32_t*>(x)),
+               apart = ops::Sub(to, ops::Set(modulo, static_cast<std::uint32_t>(from)));
+    return ops::ConvertTo(D(), ops::BitCast(ops::RebindToSigned<D>(), apart));
   }
 };
 template <>
@@ -39,7 +41,7 @@ struct Lanes<double> {
   static VEC_INLINE double coordinate(double x) { return x; }
   static VEC_INLINE ops::Vec<D> difference(const double* x, double from) {
     const D d;
-    return ops::Sub(ops::LoadU(d, x), ops::Set(d, from));
+    return ops::Sub(ops::Load(d, x), ops::Set(d, from));
   }
 };
 
@@ -49,13 +51,12 @@ VEC_INLINE ops::Vec<D> look_up(D d, const T (&row)[segments], I index) {
   const auto entry = ops::And(index, ops::Set(ops::RebindToSigned<D>(), segments - 1));
 #if VEC_TARGET <= VEC_AVX512
   if constexpr (sizeof(T) == 4 && segments == 16)
-    return ops::Vec<D>{_mm512_permutexvar_ps(index.raw, ops::Load(d, row).raw)};
+    return ops::Vec<D>{_mm512_permutexvar_ps(reinterpret_cast<__m512i>(index.raw), ops::Load(d, row).raw)};
 #elif VEC_TARGET == VEC_AVX2
   if constexpr (sizeof(T) == 4 && segments == 4)
-    return ops::Vec<D>{_mm256_permutevar_ps(ops::LoadDup128(d, row).raw, index.raw)};
+    return ops::Vec<D>{_mm256_permutevar_ps(ops::LoadDup128(d, row).raw, reinterpret_cast<__m256i>(index.raw))};
 #else
-  if constexpr (sizeof(T) == 4 && segments == 4)
-    return ops::TableLookupLanes(ops::Load(d, row), ops::IndicesFromVec(d, entry));
+  if constexpr (sizeof(T) == 4 && segments == 4) return ops::TableLookupLanes(ops::Load(d, row), entry);
 #endif
   return ops::GatherIndex(d, row, entry);
 }
@@ -173,35 +174,10 @@ VEC_INLINE double total(D d, ops::Vec<D> v) {
   return static_cast<double>(ops::GetLane(ops::SumOfLanes(d, v)));
 }
 
-// x y z z in every block of four lanes, the blocks' sums those of the lanes: added while they are shuffled
-// together.
-template <class D, class V>
-VEC_INLINE V in_blocks(D d, V x, V y, V z) {
-  const ops::Repartition<std::uint64_t, D> pairs;
-  const auto xy = ops::Add(ops::InterleaveLower(d, x, y), ops::InterleaveUpper(d, x, y));  // x02 y02 x13 y13
-  const auto zz = ops::Add(ops::InterleaveLower(d, z, z), ops::InterleaveUpper(d, z, z));
-  const auto low = ops::InterleaveLower(pairs, ops::BitCast(pairs, xy), ops::BitCast(pairs, zz));
-  const auto high = ops::InterleaveUpper(pairs, ops::BitCast(pairs, xy), ops::BitCast(pairs, zz));
-  return ops::Add(ops::BitCast(d, low), ops::BitCast(d, high));
-}
-
 // The sums of the lanes of six vectors, force and moment.
 template <class V>
 VEC_INLINE void totals(V fx, V fy, V fz, V mx, V my, V mz, double (&f)[3], double (&m)[3]) {
   const ops::DFromV<V> d;
-  constexpr std::size_t lanes = ops::MaxLanes(d), half = lanes / 2;
-  if constexpr (sizeof(ops::TFromD<decltype(d)>) == 4 && lanes >= 8) {
-    const V force = in_blocks(d, fx, fy, fz), moment = in_blocks(d, mx, my, mz);
-    V sums = ops::Add(ops::ConcatLowerLower(d, moment, force), ops::ConcatUpperUpper(d, moment, force));
-    if constexpr (lanes == 16) sums = ops::Add(sums, ops::SwapAdjacentBlocks(sums));
-    alignas(64) float all[lanes];
-    ops::Store(sums, d, all);
-    for (std::size_t a = 0; a < 3; ++a) {
-      f[a] = static_cast<double>(all[a]);
-      m[a] = static_cast<double>(all[half + a]);
-    }
-    return;
-  }
   f[0] = total(d, fx), f[1] = total(d, fy), f[2] = total(d, fz);
   m[0] = total(d, mx), m[1] = total(d, my), m[2] = total(d, mz);
 }
@@ -214,7 +190,7 @@ struct ElementContact {
   using L = Lanes<T>;
   using D = typename L::D;
   using V = ops::Vec<D>;
-  static constexpr int lanes = static_cast<int>(ops::MaxLanes(D()));
+  static constexpr int lanes = static_cast<int>(ops::Lanes(D()));
   // Nodes of the element whose polynomials are evaluated at once: as many as the registers hold.
   static constexpr int at_once = N == 0 ? 2 : VEC_TARGET <= VEC_AVX512 ? std::min(N, 6) : (N + 1) / ((N + 2) / 3);
 
@@ -329,7 +305,7 @@ struct ElementContact {
       for (int a = 0; a < 3; ++a) {
         const V separation = ops::Load(d, nodes + a * lanes);
         const V f = ops::NegMulAdd(B, n[a], ops::Mul(A, separation));
-        ops::StoreU(ops::Add(ops::LoadU(d, on[a]), f), d, on[a]);
+        ops::Store(ops::Add(ops::Load(d, on[a]), f), d, on[a]);
         force[a] = ops::Add(force[a], f);
         moment[a] = ops::MulAdd(B, separation, moment[a]);
       }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "sim/contact/shared/wrapped.hpp"
+
 #undef VEC_SOURCE
 #define VEC_SOURCE "sim/contact/line/nodes.cpp"
 #include "sim/vectors/each_set-inl.hpp"
@@ -15,23 +17,20 @@ namespace ops = vec::VEC_SET;
 
 constexpr int block = 32;  // elements whose positions or sums stay in the first cache
 
-// Added to a number it leaves the nearest integer, of 32 bits, in front of the last 16 bits: 1.5 * 2^36, and a half
-// as they are cut off.
-constexpr int behind_point = 16;
 template <class C>
-constexpr double rounds = sizeof(C) == 4 ? 103079215104.5 : 0.0;
+constexpr double rounds = sizeof(C) == 4 ? rounds_to_whole : 0.0;
 
 template <class D>
 VEC_INLINE void store(D, ops::Vec<D> v, std::int32_t* to) {
   const ops::RebindToUnsigned<D> bits;
   const ops::Rebind<std::uint32_t, D> low;
   const ops::Rebind<std::int32_t, D> coordinate;
-  const auto number = ops::TruncateTo(low, ops::ShiftRight<behind_point>(ops::BitCast(bits, v)));
-  ops::StoreU(ops::BitCast(coordinate, number), coordinate, to);
+  const auto number = ops::ConvertTo(low, ops::ShiftRight<bits_behind_point>(ops::BitCast(bits, v)));
+  ops::Store(ops::BitCast(coordinate, number), coordinate, to);
 }
 template <class D>
 VEC_INLINE void store(D d, ops::Vec<D> v, double* to) {
-  ops::StoreU(v, d, to);
+  ops::Store(v, d, to);
 }
 
 // One component of the centres and of the axes of consecutive elements, in units of the nodes.
@@ -52,13 +51,13 @@ struct Component {
 template <int known, class D, class C>
 VEC_INLINE void position_row(D d, const Component (&of)[3], int elements, int each, const double* s,
                              C* const (&to)[3]) {
-  constexpr int lanes = static_cast<int>(ops::MaxLanes(D()));
+  constexpr int lanes = static_cast<int>(ops::Lanes(D()));
   const int vectors = known > 0 ? known : (each + lanes - 1) / lanes;
   for (int i = 0, at = 0; i < elements; ++i, at += each)
     for (int c = 0; c < 3; ++c) {
       const auto centre = ops::Set(d, of[c].centre[i]), along = ops::Set(d, of[c].along[i]);
       for (int v = 0; v < vectors; ++v)
-        store(d, ops::MulAdd(ops::LoadU(d, s + v * lanes), along, centre), to[c] + at + v * lanes);
+        store(d, ops::MulAdd(ops::Load(d, s + v * lanes), along, centre), to[c] + at + v * lanes);
     }
 }
 
@@ -66,8 +65,8 @@ template <class C>
 VEC_INLINE void position_row(const Component (&of)[3], int elements, int each, const double* s, C* const (&to)[3]) {
   const ops::CappedTag<double, 4> narrow;
   const ops::CappedTag<double, NodeOffsets::padding> wide;
-  if (each <= static_cast<int>(ops::MaxLanes(narrow))) return position_row<1>(narrow, of, elements, each, s, to);
-  if (each <= static_cast<int>(ops::MaxLanes(wide))) return position_row<1>(wide, of, elements, each, s, to);
+  if (each <= static_cast<int>(ops::Lanes(narrow))) return position_row<1>(narrow, of, elements, each, s, to);
+  if (each <= static_cast<int>(ops::Lanes(wide))) return position_row<1>(wide, of, elements, each, s, to);
   position_row<0>(wide, of, elements, each, s, to);
 }
 

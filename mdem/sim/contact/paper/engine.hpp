@@ -12,9 +12,9 @@
 
 namespace ropewalk {
 
-// Positions and axes of all elements as the kernel reads them. In single precision positions are 32-bit integers in
-// `unit`, so that their differences are exact; in double precision they are in nm. The kernel loads whole vectors,
-// hence the padding.
+// Positions and axes of all elements as the kernel reads them. In single precision positions are whole numbers of
+// `unit` modulo 2^32 (sim/contact/shared/wrapped.hpp); in double precision they are in nm. The kernel loads whole
+// vectors, hence the padding.
 template <class T>
 struct PaperElements {
   using Coordinate = std::conditional_t<sizeof(T) == 4, std::int32_t, double>;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sim/contact/paper/engine.hpp"
+#include "sim/contact/shared/wrapped.hpp"
 
 #undef VEC_SOURCE
 #define VEC_SOURCE "sim/contact/paper/kernel.cpp"
@@ -66,12 +67,12 @@ VEC_INLINE void copy_span(const PaperElements<T>& from, const ElementSpan& span,
   const auto *x = from.x.data(), *y = from.y.data(), *z = from.z.data();
   const auto *nx = from.nx.data(), *ny = from.ny.data(), *nz = from.nz.data();
   for (auto j = static_cast<std::size_t>(span.begin); j < end; j += lanes, at += lanes) {
-    ops::StoreU(ops::LoadU(dc, x + j), dc, to.x[0] + at);
-    ops::StoreU(ops::LoadU(dc, y + j), dc, to.x[1] + at);
-    ops::StoreU(ops::LoadU(dc, z + j), dc, to.x[2] + at);
-    ops::StoreU(ops::LoadU(dt, nx + j), dt, to.n[0] + at);
-    ops::StoreU(ops::LoadU(dt, ny + j), dt, to.n[1] + at);
-    ops::StoreU(ops::LoadU(dt, nz + j), dt, to.n[2] + at);
+    ops::Store(ops::Load(dc, x + j), dc, to.x[0] + at);
+    ops::Store(ops::Load(dc, y + j), dc, to.x[1] + at);
+    ops::Store(ops::Load(dc, z + j), dc, to.x[2] + at);
+    ops::Store(ops::Load(dt, nx + j), dt, to.n[0] + at);
+    ops::Store(ops::Load(dt, ny + j), dt, to.n[1] + at);
+    ops::Store(ops::Load(dt, nz + j), dt, to.n[2] + at);
   }
 }
 
@@ -85,8 +86,8 @@ VEC_INLINE void add_span(const Block<T>& s, std::size_t at, std::size_t count, s
     const auto wanted = ops::FirstN(d, count - m);
     T* out = to + first + m;
     for (int k = 0; k < 6; ++k, out += stride) {
-      const auto f = ops::IfThenElseZero(wanted, ops::LoadU(d, s.pair[fx + k] + at + m));
-      ops::StoreU(ops::Add(ops::LoadU(d, out), f), d, out);
+      const auto f = ops::IfThenElseZero(wanted, ops::Load(d, s.pair[fx + k] + at + m));
+      ops::Store(ops::Add(ops::Load(d, out), f), d, out);
     }
   }
 }
@@ -100,8 +101,8 @@ VEC_INLINE std::size_t fill_up(Block<T>& s, std::size_t count, const Centre<T>& 
   const std::size_t end = (count + Block<T>::lanes - 1) / Block<T>::lanes * Block<T>::lanes;
   for (std::size_t m = count; m < end; m += ops::Lanes(dt))
     for (int a = 0; a < 3; ++a) {
-      ops::StoreU(ops::Set(dc, static_cast<C>(centre.x[a] + (a == 0 ? far : 0))), dc, s.x[a] + m);
-      ops::StoreU(ops::Set(dt, centre.n[a]), dt, s.n[a] + m);
+      ops::Store(ops::Set(dc, wrapped_difference(centre.x[a], static_cast<C>(a == 0 ? far : 0))), dc, s.x[a] + m);
+      ops::Store(ops::Set(dt, centre.n[a]), dt, s.n[a] + m);
     }
   return end;
 }
@@ -118,8 +119,9 @@ VEC_INLINE T invariants(Block<T>& s, std::size_t count, const Centre<T>& centre,
   T least = 1;
 #pragma omp simd reduction(min : least)
   for (std::size_t m = 0; m < count; ++m) {
-    const T dx = static_cast<T>(x[m] - xi) * unit, dy = static_cast<T>(y[m] - yi) * unit,
-            dz = static_cast<T>(z[m] - zi) * unit;
+    const T dx = static_cast<T>(wrapped_difference(x[m], xi)) * unit,
+            dy = static_cast<T>(wrapped_difference(y[m], yi)) * unit,
+            dz = static_cast<T>(wrapped_difference(z[m], zi)) * unit;
     const T distance = std::sqrt(std::max(dx * dx + dy * dy + dz * dz, T(1e-12))), inverse = 1 / distance;
     const T vx = dx * inverse, vy = dy * inverse, vz = dz * inverse;
     const T cosine = nix * nx[m] + niy * ny[m] + niz * nz[m];

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "model/contract.hpp"
 #include "sim/contact/shared/neighbour_spans.hpp"
 
 namespace ropewalk {
@@ -52,6 +53,7 @@ void BufferedEngine::list_pairs(const ContactInput& in, PairWork& pairs) const {
 
 void BufferedEngine::compute(const Topology& topology, const Interaction& interaction, const NeighbourList& list,
                              const State& state, const Vec3Array& axis, bool /*energies*/, const TubeWork& tubes) {
+  ROPEWALK_EXPECTS(axis.size() == state.size());
   const bool parallel = state.size() > parallel_from;
   const ContactInput in{topology, interaction, list, state, axis};
   list_ = &list;
@@ -81,6 +83,7 @@ void BufferedEngine::compute(const Topology& topology, const Interaction& intera
 }
 
 void BufferedEngine::add_to(int part, const ForceRows& out) const {
+  ROPEWALK_EXPECTS(list_ && parts_ && buffers_.size() == list_->chunks().size());
   const Segment& of = (*parts_)[part];
   for (std::size_t k = 0; k < list_->chunks().size(); ++k) {
     const auto& chunk = list_->chunks()[k];

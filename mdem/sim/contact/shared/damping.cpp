@@ -4,6 +4,7 @@
 #include <tuple>
 #include <utility>
 
+#include "sim/contact/shared/wrapped.hpp"
 #include "sim/state/prefetch.hpp"
 
 #undef VEC_SOURCE
@@ -72,7 +73,7 @@ VEC_INLINE void add_to(const Vec3<V>& v, std::ptrdiff_t at, std::vector<T>& x, s
                        std::vector<T>& z) {
   const ops::DFromV<V> d;
   const auto add = [&](std::vector<T>& a, V what)
-                       VEC_ATTR { ops::StoreU(ops::Add(ops::LoadU(d, a.data() + at), what), d, a.data() + at); };
+                       VEC_ATTR { ops::Store(ops::Add(ops::Load(d, a.data() + at), what), d, a.data() + at); };
   add(x, v.x), add(y, v.y), add(z, v.z);
 }
 
@@ -99,7 +100,7 @@ struct Doubles {
 struct Floats {
   using D = ops::CappedTag<float, DampedBlock::max_lanes>;
   using V = ops::Vec<D>;
-  using Position = ops::Vec<ops::RebindToSigned<D>>;
+  using Position = ops::Vec<ops::RebindToUnsigned<D>>;
   const DampedElements& elements;
   ContactBuffer<float>& out;
   float unit;
@@ -107,8 +108,8 @@ struct Floats {
   template <class X>
   static VEC_INLINE auto whole(const X& x, const X& y, const X& z, std::ptrdiff_t at) {
     const ops::Rebind<typename X::value_type, D> d;
-    return Vec3<ops::Vec<decltype(d)>>{ops::LoadU(d, x.data() + at), ops::LoadU(d, y.data() + at),
-                                      ops::LoadU(d, z.data() + at)};
+    return Vec3<ops::Vec<decltype(d)>>{ops::Load(d, x.data() + at), ops::Load(d, y.data() + at),
+                                       ops::Load(d, z.data() + at)};
   }
   VEC_INLINE Motion<Position, V> load(std::ptrdiff_t, std::ptrdiff_t entry, int, int) const {
     const DampedElements& e = elements;
@@ -116,9 +117,10 @@ struct Floats {
   }
   VEC_INLINE Vec3<V> apart(const Vec3<Position>& j, const Vec3<Position>& i) const {
     const D d;
+    const ops::RebindToSigned<D> whole;
     const Vec3<Position> in_units = j - i;
-    return ops::Set(d, unit) *
-           Vec3<V>{ops::ConvertTo(d, in_units.x), ops::ConvertTo(d, in_units.y), ops::ConvertTo(d, in_units.z)};
+    const auto number = [&](const Position& modulo) VEC_ATTR { return ops::ConvertTo(d, ops::BitCast(whole, modulo)); };
+    return ops::Set(d, unit) * Vec3<V>{number(in_units.x), number(in_units.y), number(in_units.z)};
   }
 };
 
@@ -189,18 +191,21 @@ VEC_INLINE double all_groups(const ContactViscosity& viscosity, const Of& of,
 // Takes the elements of a part, in whole vectors, whose last lanes the next part's elements are stored over.
 VEC_INLINE void take(const State& s, const BufferRange& of, double per_unit, DampedElements& e) {
   const ops::CappedTag<double, 8> d;
-  const ops::Rebind<std::int32_t, decltype(d)> whole;
+  const ops::RebindToUnsigned<decltype(d)> bits;
+  const ops::Rebind<std::uint32_t, decltype(d)> whole;
   const ops::Rebind<float, decltype(d)> floats;
   const auto units = ops::Set(d, per_unit);
   const int lanes = static_cast<int>(ops::Lanes(d));
   for (int k = of.begin; k < of.end; k += lanes) {
     const int left = std::min(of.end - k, lanes), entry = k + of.shift;
     const auto some = [&](const Column& v) VEC_ATTR { return load_some(d, v.data() + k, 0, left); };
-    const auto position = [&](const Column& from, std::vector<std::int32_t>& to) VEC_ATTR {
-      ops::StoreU(ops::DemoteTo(whole, ops::Mul(some(from), units)), whole, to.data() + entry);
+    const auto position = [&](const Column& from, std::vector<std::uint32_t>& to) VEC_ATTR {
+      const auto rounded = ops::MulAdd(some(from), units, ops::Set(d, rounds_to_whole));
+      const auto number = ops::ShiftRight<bits_behind_point>(ops::BitCast(bits, rounded));
+      ops::Store(ops::ConvertTo(whole, number), whole, to.data() + entry);
     };
     const auto motion = [&](const Column& from, std::vector<float>& to)
-                            VEC_ATTR { ops::StoreU(ops::DemoteTo(floats, some(from)), floats, to.data() + entry); };
+                            VEC_ATTR { ops::Store(ops::ConvertTo(floats, some(from)), floats, to.data() + entry); };
     position(s.position.x, e.x), position(s.position.y, e.y), position(s.position.z, e.z);
     motion(s.velocity.x, e.vx), motion(s.velocity.y, e.vy), motion(s.velocity.z, e.vz);
     motion(s.angular_velocity.x, e.wx), motion(s.angular_velocity.y, e.wy), motion(s.angular_velocity.z, e.wz);

@@ -45,7 +45,7 @@ class DampedBlocks {
 // Copies of the elements of a chunk, by their entries in its buffer: positions in integer units, velocities in
 // nm/ps and rad/ps.
 struct DampedElements {
-  std::vector<std::int32_t> x, y, z;
+  std::vector<std::uint32_t> x, y, z;
   std::vector<float> vx, vy, vz, wx, wy, wz;
 
   void resize(int elements) {

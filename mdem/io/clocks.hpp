@@ -1,0 +1,21 @@
+// Processor time of this process, and a clock that never goes back.
+#pragma once
+
+#include <time.h>
+
+namespace ropewalk {
+
+// s.
+inline double seconds_by(clockid_t clock) {
+  timespec t{};
+  clock_gettime(clock, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+// Sum over all threads, s. Other work on the machine disturbs it less than the wall time.
+inline double processor_seconds() { return seconds_by(CLOCK_PROCESS_CPUTIME_ID); }
+// The time of a clock that never goes back, s.
+inline double steady_seconds() { return seconds_by(CLOCK_MONOTONIC); }
+inline double seconds_since(double began) { return steady_seconds() - began; }
+
+}  // namespace ropewalk
