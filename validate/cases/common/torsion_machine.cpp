@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "observe/loading.hpp"
+#include "scene/kinds/scene_kind.hpp"
 #include "scene/lattice.hpp"
 #include "scene/prepare.hpp"
 #include "scene/scene_toml.hpp"
