@@ -17,6 +17,7 @@
 #include "model/error.hpp"
 #include "plan/scene_edit.hpp"
 #include "scene/kinds/scene_kind.hpp"
+#include "scene/prepare.hpp"
 #include "scene/scene_to_model.hpp"
 #include "scene/scene_toml.hpp"
 
@@ -391,6 +392,26 @@ std::vector<SweepPoint> starts_of(const Sweep& s) {
     check_scene(s, starts.back());
   }
   return starts;
+}
+
+std::string why_replicates_are_equal(const Sweep& sweep, const std::vector<SweepPoint>& points) {
+  if (sweep.replicates < 2) return "";
+  for (const Replicates& r : replicates_of(sweep, points)) {
+    if (r.points.size() < 2) continue;
+    Scene one = scene_of(sweep, r.points[0]), other = scene_of(sweep, r.points[1]);
+    const bool bath = one.bath() && one.bath()->temperature.largest() > 0;
+    if (bath && one.bath()->seed != other.bath()->seed) return "";
+    const State a = prepare(one).state, b = prepare(other).state;
+    for (const auto of : {&State::position, &State::velocity})
+      if ((a.*of).x != (b.*of).x || (a.*of).y != (b.*of).y || (a.*of).z != (b.*of).z) return "";
+    return bath ? "replicates vary start.seed, and all have the noise of the thermostat.seed that is typed: take "
+                  "that "
+                  "key away"
+                : "replicates are one and the same run, since nothing in the scene is random: add "
+                  "rope.perturbation_nm "
+                  "or a temperature, or take replicates away";
+  }
+  return "";
 }
 
 std::vector<Replicates> replicates_of(const Sweep& sweep, const std::vector<SweepPoint>& points) {

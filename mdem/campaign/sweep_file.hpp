@@ -82,6 +82,9 @@ struct Replicates {
 };
 // In the order of the points.
 std::vector<Replicates> replicates_of(const Sweep& sweep, const std::vector<SweepPoint>& points);
+// Why replicates would be one and the same run, and their scatter no error; empty: they differ. Two seeds of the
+// first point are built.
+std::string why_replicates_are_equal(const Sweep& sweep, const std::vector<SweepPoint>& points);
 
 // "moment_nN_nm" of "twist.moment_nN_nm".
 std::string leaf_of(const std::string& key);

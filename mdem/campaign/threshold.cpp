@@ -61,13 +61,14 @@ void add_theory(const Sweep& sweep, const Scene& scene, const Prepared& p, Phase
 }  // namespace
 
 std::optional<GrowthThreshold> growth_threshold(const std::vector<Trial>& trials) {
-  double least = std::numeric_limits<double>::infinity();
+  double least = std::numeric_limits<double>::infinity(), most = -least;
   for (const Trial& t : trials)
-    if (t.passed) least = std::min(least, t.value);
+    if (t.passed) least = std::min(least, t.value), most = std::max(most, t.value);
+  const bool falling = bracketed(trials, 0, 0).falling;
   std::vector<double> squares, values;
   for (const Trial& t : trials) {
     const bool grows = t.passed && t.rate && *t.rate > 0 && t.error.value_or(0) < 0.3 * *t.rate;
-    if (!grows || t.value > far_above * least) continue;
+    if (!grows || (falling ? t.value < most / far_above : t.value > far_above * least)) continue;
     squares.push_back(*t.rate * *t.rate);
     values.push_back(t.value);
   }
@@ -76,6 +77,23 @@ std::optional<GrowthThreshold> growth_threshold(const std::vector<Trial>& trials
   const std::optional<StraightLine> line = different.size() > 2 ? line_through(squares, values) : std::nullopt;
   if (!line || !(line->a > 0)) return {};
   return GrowthThreshold{line->a, line->a_error, values.size()};
+}
+
+Threshold bracketed(std::vector<Trial> trials, double from, double to) {
+  Threshold out;
+  out.below = from;
+  out.above = to;
+  std::sort(trials.begin(), trials.end(), [](const Trial& a, const Trial& b) { return a.value < b.value; });
+  for (std::size_t k = 1; k < trials.size(); ++k) {
+    if (trials[k].passed == trials[k - 1].passed) continue;
+    if (++out.changes > 1) continue;
+    out.below = trials[k - 1].value;
+    out.above = trials[k].value;
+    out.falling = trials[k - 1].passed;
+  }
+  out.outside = out.changes == 0;
+  out.trials = std::move(trials);
+  return out;
 }
 
 std::optional<PowerLaw> power_law(const std::vector<double>& x, const std::vector<double>& y) {
@@ -165,17 +183,7 @@ Threshold threshold_of(const CampaignDirectory& dir, const Sweep& sweep, const S
                                   [&](const Trial& o) { return o.scene_hash == t.scene_hash; });
     if (!here) out.trials.push_back(t);
   }
-  std::sort(out.trials.begin(), out.trials.end(), [](const Trial& a, const Trial& b) { return a.value < b.value; });
-  out.below = q.from;
-  out.above = q.to;
-  for (const Trial& t : out.trials)
-    if (t.passed) out.above = std::min(out.above, t.value);
-  for (const Trial& t : out.trials)
-    if (!t.passed && t.value < out.above) out.below = std::max(out.below, t.value);
-  const bool any = std::any_of(out.trials.begin(), out.trials.end(), [](const Trial& t) { return t.passed; });
-  const bool all = std::all_of(out.trials.begin(), out.trials.end(), [](const Trial& t) { return t.passed; });
-  out.outside = !any || all;
-  return out;
+  return bracketed(std::move(out.trials), q.from, q.to);
 }
 
 std::vector<OutputColumn> trial_columns() {
@@ -233,6 +241,28 @@ double PhasePoint::bisection_error() const {
   for (const double m : middles) squares += std::pow(m - mean(middles), 2);
   const double scatter = n > 1 ? std::sqrt(squares / (n - 1) / n) : 0;
   return std::hypot(scatter, mean(widths) / std::sqrt(12 * n));
+}
+
+std::size_t PhasePoint::falling_seeds() const {
+  return static_cast<std::size_t>(
+      std::count_if(seeds.begin(), seeds.end(), [](const Threshold& t) { return t.falling; }));
+}
+
+std::size_t PhasePoint::unclear_seeds() const {
+  return static_cast<std::size_t>(
+      std::count_if(seeds.begin(), seeds.end(), [](const Threshold& t) { return t.changes > 1; }));
+}
+
+std::string PhasePoint::remarks() const {
+  const auto of_seeds = [&](std::size_t some) {
+    return some < seeds.size() ? fmt::format(" with {} of {} seeds", some, seeds.size()) : std::string();
+  };
+  std::string text;
+  if (const std::size_t n = falling_seeds(); n > 0) text = "runs pass below it" + of_seeds(n);
+  if (const std::size_t n = unclear_seeds(); n > 0)
+    text += (text.empty() ? "" : "; ") + ("the outcome changes more than once" + of_seeds(n)) +
+            ", and this is the lowest change";
+  return text;
 }
 
 std::optional<GrowthThreshold> PhasePoint::by_growth() const {

@@ -24,13 +24,18 @@ struct Trial {
 // The threshold of a point, by its runs; values rise.
 struct Threshold {
   std::vector<Trial> trials;
-  double below = 0, above = 0;  // the bracket of the bisection; equal: not bracketed within the range
-  bool outside = false;         // passed at the lower end already, or at no value that was tried
+  double below = 0, above = 0;  // the bracket of the bisection: the lowest values between which the outcome changes
+  bool outside = false;         // passed at all values that were tried, or at none
+  bool falling = false;         // passed below the threshold and not above it
+  int changes = 0;              // of the outcome, from value to value; more than one: no single threshold
   double middle() const { return 0.5 * (below + above); }
 };
+// Brackets the threshold of these trials, in any order, in a search from `from` to `to`.
+Threshold bracketed(std::vector<Trial> trials, double from, double to);
 
 // The load at which the square of the rate is zero: value = critical + slope rate^2, by least squares over the runs
-// that passed. An undamped mode w of a load M grows with w^2 = (M - Mc)/slope.
+// that passed. An undamped mode w of a load M grows with w^2 = (M - Mc)/slope; if the outcome falls, the slope is
+// negative.
 struct GrowthThreshold {
   double critical = 0, error = 0;
   std::size_t runs = 0;
@@ -70,6 +75,11 @@ struct PhasePoint {
   double sliding = 0, glued = 0;  // theory, in the unit of the key; zero where there is none
 
   double by_bisection() const, bisection_error() const;
+  // Seeds with which the outcome falls, and with which it changes more than once.
+  std::size_t falling_seeds() const, unclear_seeds() const;
+  // What else is to be known of the bisection: that runs pass below the value, that there is more than one change.
+  // Empty: nothing.
+  std::string remarks() const;
   std::optional<GrowthThreshold> by_growth() const;
 };
 std::vector<PhasePoint> phase_points(const CampaignDirectory& dir, const Sweep& sweep,

@@ -124,9 +124,13 @@ std::string ThresholdSearch::words_of(const SweepPoint& p) const {
   const Threshold t = threshold_of(dir_, sweep_, p, known_);
   if (t.trials.empty()) return fmt::format("{}: no run ended, see {}", p.name, dir_.messages(p.name));
   if (t.outside)
-    return fmt::format("{}: {}", p.name,
-                       t.trials.back().passed ? "passed at the lower end already" : "at none of the values tried");
-  return fmt::format("{}: {:.4g} to {:.4g}", p.name, t.below, t.above);
+    return fmt::format(
+        "{}: {}", p.name,
+        t.trials.back().passed ? "passed at all of the values tried" : "at none of the values tried");
+  PhasePoint point;
+  point.seeds = {t};
+  const std::string remarks = point.remarks();
+  return fmt::format("{}: {:.4g} to {:.4g}{}", p.name, t.below, t.above, remarks.empty() ? "" : "; " + remarks);
 }
 
 // The tables and the page of what is known so far.

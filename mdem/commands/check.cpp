@@ -70,6 +70,7 @@ int check_command(const std::string& path) {
   for (const std::string& warning : warnings_of(scene, p)) fmt::print("note: {}\n", warning);
   for (const std::string& warning : warmth_of(scene, p)) fmt::print("note: {}\n", warning);
   for (const std::string& warning : limits_ahead(scene, p)) fmt::print("note: {}\n", warning);
+  if (const auto turn = quasi_static(scene, p)) fmt::print("note: {}\n", words_of(*turn));
   say_limits(scene, p);
   fmt::print(
       "time step {:.4g} fs; stability limit {:.4g} fs (chain {:.3g}, contact {:.3g} rad/ps, damping {:.3g} 1/ps)\n",

@@ -1,6 +1,7 @@
 // `run` and `resume`.
 #include "commands/commands.hpp"
 #include "run/begin_run.hpp"
+#include "run/limit_watch.hpp"
 #include "run/terminal_listener.hpp"
 #include "run/threads.hpp"
 #include "scene/scene_toml.hpp"
@@ -19,6 +20,14 @@ Settings settings_of(const Arguments& a) {
   return s;
 }
 
+constexpr int beyond_a_limit = 7;
+
+// For scripts: a run that is done, and whose results should not be used.
+int code_of(const RunResult& r) {
+  const int code = tell_end(r);
+  return code == 0 && r.beyond > far_beyond ? beyond_a_limit : code;
+}
+
 }  // namespace
 
 int run_command(const RunArguments& a) {
@@ -28,7 +37,7 @@ int run_command(const RunArguments& a) {
   auto settings = settings_of<RunSettings>(a);
   settings.force = a.force;
   TerminalListener terminal(a.quiet);
-  return tell_end(go_through(begin_run(scene, {a.out}, settings, terminal)));
+  return code_of(go_through(begin_run(scene, {a.out}, settings, terminal)));
 }
 
 int resume_command(const ResumeArguments& a) {
@@ -37,7 +46,7 @@ int resume_command(const ResumeArguments& a) {
   settings.instructions = a.instructions;
   settings.accept_changes = a.accept_changes;
   TerminalListener terminal(a.quiet);
-  return tell_end(go_through(resume_run({a.dir}, settings, terminal)));
+  return code_of(go_through(resume_run({a.dir}, settings, terminal)));
 }
 
 }  // namespace ropewalk

@@ -76,6 +76,7 @@ int sweep_command(const SweepArguments& a) {
     throw InputError({a.file, 0, "threshold"}, "asks for critical values", "run it with `ropewalk threshold`");
   const CampaignDirectory dir = campaign_directory(a.file, a.out);
   const std::vector<SweepPoint> all = points_of(sweep), points = chosen_points(all, a.only);
+  if (const std::string why = why_replicates_are_equal(sweep, all); !why.empty()) tell("note: " + why);
   const int jobs = a.jobs > 0 ? a.jobs : omp_get_num_procs();
   if (a.dry_run) return dry_run(sweep, dir, points, jobs);
   if (!a.slurm.empty())

@@ -40,6 +40,7 @@ void print_results(const CampaignDirectory& dir, const std::vector<PhasePoint>& 
                    ? fmt::format("{:.4g} ± {:.2g}", p.by_bisection(), p.bisection_error())
                    : std::string("not in the range"),
                growth ? fmt::format("{:.4g} ± {:.2g}", growth->critical, growth->error) : std::string("-"));
+    if (const std::string remarks = p.remarks(); !remarks.empty()) fmt::print("  note: {}\n", remarks);
   }
   fmt::print("{} runs, {} of one core in all. Page: {}/thresholds.html\n", runs, duration_text(seconds), dir.path);
   for (const std::string& name : failed) fmt::print("not ended: {}, see {}\n", name, dir.messages(name));
@@ -54,6 +55,7 @@ int threshold_command(const ThresholdArguments& a) {
                      "add [threshold] with key, from, to, column and above, or run it with `ropewalk sweep`");
   if (!sweep.branch_axes.empty())
     throw InputError({a.file, 0, "branch"}, "does not go with [threshold]", "take it away");
+  if (const std::string why = why_replicates_are_equal(sweep, points_of(sweep)); !why.empty()) tell("note: " + why);
   const CampaignDirectory dir = campaign_directory(a.file, a.out);
   ThresholdSearch search(std::move(sweep), dir);
   search.begin(a.force);

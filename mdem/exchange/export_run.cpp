@@ -1,5 +1,7 @@
 #include "exchange/export_run.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <filesystem>
 
@@ -8,6 +10,7 @@
 #include "model/error.hpp"
 #include "run/begin_run.hpp"
 #include "run/origin_changes.hpp"
+#include "run/step_control.hpp"
 #include "scene/lammps_files.hpp"
 #include "scene/lammps_states.hpp"
 #include "sim/state/part_of_scene.hpp"
@@ -93,11 +96,38 @@ constexpr const char* readme =
     "Run on N ranks:   mpirun -np N lmp-ropewalk -in in.rope\n"
     "Bring it back:    ropewalk import .      (then observe, report or resume this directory)\n";
 
-void write_lammps_files(const RunDirectory& run) {
+// `run` divides steps with which its account of energy does not close, and LAMMPS keeps them.
+void tell_of_long_steps(const Simulation& from, RunListener& listener) {
+  const auto closes = [&](int parts) {
+    Simulation trial = from;
+    trial.divide_steps(parts);
+    const EnergyMark mark = energy_mark(trial);
+    try {
+      trial.steps(StepControl::window);
+    } catch (const NumericalError&) {
+      return false;
+    }
+    return account_closes(mark, trial);
+  };
+  int parts = 1;
+  while (parts < StepControl::most && !closes(parts)) parts *= 2;
+  if (parts == 1) return;
+  const double step = from.time_step() / units::fs;
+  listener.tell(
+      fmt::format("note: with steps of {:.4g} fs the account of energy does not close in the first {} of them, and "
+                  "LAMMPS cannot "
+                  "divide them as `run` does: {}",
+                  step, StepControl::window,
+                  closes(parts) ? fmt::format("set run.time_step_fs = {:.4g} and export again", step / parts)
+                                : fmt::format("nor does it with {:.4g} fs; see how `run` ends", step / parts)));
+}
+
+void write_lammps_files(const RunDirectory& run, RunListener& listener) {
   const LammpsDirectory dir{run.path};
   Scene scene = read_run_scene(run);
   const Prepared p = prepare(scene);
   const Simulation s = simulation_at(run, scene, p, read_checkpoint(run));
+  if (scene.run.mode != RunOptions::Mode::relax) tell_of_long_steps(s, listener);
   write_file_atomically(dir.start(), start_json(start_of(scene, s)));
   write_file_atomically(dir.tubes(), tubes_csv(p.topology));
   StateHeader header;
@@ -131,7 +161,7 @@ void export_scene(const Scene& scene, const RunDirectory& to, bool force, RunLis
   settings.force = force;
   // LAMMPS goes on with it, or `resume`.
   begin_run(scene, to, settings, listener)->write_manifest("interrupted", "not yet run");
-  write_lammps_files(to);
+  write_lammps_files(to, listener);
 }
 
 void export_run(const RunDirectory& from, const RunDirectory& to, bool force, RunListener& listener) {
@@ -141,7 +171,7 @@ void export_run(const RunDirectory& from, const RunDirectory& to, bool force, Ru
     throw InputError({to.path, 0, "--lammps"}, "is the run itself", "choose another directory");
   const DirectoryLock lock = create_run_directory(to, force);
   copy_run(from, to, listener);
-  write_lammps_files(to);
+  write_lammps_files(to, listener);
 }
 
 }  // namespace ropewalk

@@ -13,6 +13,7 @@
 #include "model/error.hpp"
 #include "run/colours.hpp"
 #include "run/limit_watch.hpp"
+#include "run/step_control.hpp"
 #include "scene/lammps_files.hpp"
 #include "scene/lammps_states.hpp"
 #include "scene/state_csv.hpp"
@@ -56,6 +57,8 @@ class Import {
     frames_ = std::make_unique<NewFrames>(there, format_of(there), 0, there, checkpoint_.frames.bytes);
     const std::int64_t from = reached_;
     watch_.inherit_from(checkpoint_.limits.limits, from);
+    mark_ = energy_mark(start_);
+    marked_at_ = from;
     take_states(files_.states());
     if (reached_ == from)
       throw InputError({files_.states(), 0, ""}, fmt::format("holds no whole state after step {}", from),
@@ -95,6 +98,7 @@ class Import {
     account.ends = readings_at(state);
     log_ += log_line(log_row(observer_, scene_, prepared_.topology, state, account));
     check_limits(state, account);
+    check_account(account, state.step);
     (*frames_)->write(prepared_.topology, state, element_colours(prepared_.topology, prepared_.interaction, state));
     prepared_.state = state;
     last_ = from;
@@ -109,6 +113,23 @@ class Import {
     const bool relax = scene_.run.mode == RunOptions::Mode::relax;
     const double drift = relax ? std::numeric_limits<double>::quiet_NaN() : energy_drift(account);
     for (const std::string& line : watch_.check(prepared_.topology, state, list, drift, true)) listener_.tell(line);
+  }
+
+  // As the step control of `run` does, over its window or longer.
+  void check_account(const EnergyAccount& account, std::int64_t step) {
+    if (scene_.run.mode == RunOptions::Mode::relax || step < marked_at_ + StepControl::window) return;
+    const EnergyMark now{account.potential.potential() + account.kinetic, {account.work, account.dissipated}};
+    const bool closes =
+        account_closes(mark_, now, account.kinetic, account.potential.bonds(), prepared_.state.size());
+    if (!closes && !told_of_account_)
+      listener_.tell(fmt::format(
+          "note: from step {} to {} the account of energy does not close. `run` would have gone back and divided "
+          "its "
+          "steps of {:.4g} fs, LAMMPS kept them: set run.time_step_fs to half of that, and export and run it again",
+          marked_at_, step, prepared_.time_step / units::fs));
+    told_of_account_ = told_of_account_ || !closes;
+    mark_ = now;
+    marked_at_ = step;
   }
 
   // Readings by the forces of this moment: LAMMPS keeps no means.
@@ -171,6 +192,9 @@ class Import {
   Energies first_;
   std::map<std::int64_t, LammpsRow> rows_;
   LammpsRow last_;
+  EnergyMark mark_;  // before the states that are not judged yet
+  std::int64_t marked_at_ = 0;
+  bool told_of_account_ = false;
   Forces force_;
   std::vector<double> memory_;  // of the force terms, in the last state
   std::string log_;

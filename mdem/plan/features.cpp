@@ -101,6 +101,8 @@ void add_clamps(const Prepared& p, SceneFeatures& f) {
     held = held && effect->clamp->keeps_length;
     straight = straight || effect->clamp->keeps_tilt;
   }
+  f.between_clamps = between;
+  f.length_held = held;
   f.strain += pulled / f.length + tension / k.stretch;
   f.curvature += bent / f.length;
   if (bent > 0) {
@@ -129,14 +131,14 @@ SceneFeatures features_of(const Scene& scene, const Prepared& p) {
   f.contact = p.interaction.has_contact() && f.tubes > 1;
   for (int t = 0; t < p.topology.tubes(); ++t) f.length = std::max(f.length, free_length(scene, p.topology, t));
   bond_features(p.topology, p.state, f);
-  double turned = 0;
   for (const auto& load : p.loads) {
     const std::optional<LoadEffect> effect = load->effect();
     if (!effect) continue;
     add_load(*effect, p, f);
-    turned += effect->angle;
+    f.turned += effect->angle;
+    f.turning += effect->turning;
   }
-  if (turned > 0) add_rope_twist(p, turned / f.length, f);
+  if (f.turned > 0) add_rope_twist(p, f.turned / f.length, f);
   add_clamps(p, f);
   if (const MomentRamp* ramp = scene.moment_ramp()) {
     const double each = ramp->of_each(f.tubes), turn_before = f.turn;

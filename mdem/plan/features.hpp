@@ -15,6 +15,8 @@ struct SceneFeatures {
   double pressure = 0;              // eV/nm^3, on the innermost tube
   double turn = 0;                  // rad/nm, twist of the rope as a whole at mechanical equilibrium
   double ramp = 0;                  // ps, in which it is turned
+  double turned = 0, turning = 0;   // rad and rad/ps, prescribed to an end against the other
+  bool between_clamps = false, length_held = false;  // tubes that clamps hold at both ends
 };
 
 // Upper estimates: a twisting moment twists each tube as if no other held it, M/GJ; a force bends a tube that is

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "plan/features.hpp"
 #include "scene/watch.hpp"
 
@@ -23,8 +25,7 @@ double expected(const SceneFeatures& f, const TubeType& type, double Limits::*li
 
 std::vector<std::string> limits_ahead(const Scene& scene, const Prepared& p) {
   std::vector<std::string> out;
-  SceneFeatures f = features_of(scene, p);
-  if (scene.moment_ramp() && scene.source->is_parallel()) f.twist = f.turn;
+  const SceneFeatures f = features_of(scene, p);
   const Limits limits = watched_of(scene, p.topology, p.interaction.law.get()).limits.front();
   for (const LimitKind& kind : limit_kinds()) {
     const double limit = limits.*kind.limit, value = expected(f, p.topology.types[0], kind.limit);
@@ -37,6 +38,45 @@ std::vector<std::string> limits_ahead(const Scene& scene, const Prepared& p) {
                               kind.remedy));
   }
   return out;
+}
+
+std::optional<QuasiStatic> quasi_static(const Scene& scene, const Prepared& p) {
+  const SceneFeatures f = features_of(scene, p);
+  if (!(f.turned > 0 && f.turning > 0) || !f.between_clamps) return std::nullopt;
+  double twist = 0, inertia = 0, second = 0, fourth = 0, stretch = 0;
+  for (int t = 0; t < p.topology.tubes(); ++t) {
+    const TubeType& type = p.topology.type_of(t);
+    const double rho2 =
+        Vector3(p.state.position[static_cast<std::size_t>(p.topology.tube_begin[t])]).head<2>().squaredNorm();
+    twist += type.bond.twist;
+    inertia += (type.mass * rho2 + type.inertia) / type.element_length;
+    stretch += type.bond.stretch;
+    second += type.bond.stretch * rho2;
+    fourth += type.bond.stretch * rho2 * rho2;
+  }
+  const double cubic = 0.5 * (f.length_held ? fourth : fourth - second * second / stretch);
+  const double phi = f.turned / f.length, torque = 0.5 * twist * phi + 0.25 * cubic * phi * phi * phi;
+  // From rest at one end to the whole rate at the other.
+  const double drag = scene.bath() ? scene.bath()->coupling * inertia * 0.5 * f.turning * f.length : 0;
+  return QuasiStatic{f.length * std::sqrt(inertia / twist), f.turned / f.turning, drag / torque,
+                     0.5 * f.turning * std::sqrt(twist * inertia) / torque};
+}
+
+std::string words_of(const QuasiStatic& q) {
+  constexpr double enough = 0.05;
+  std::string text = fmt::format(
+      "Twist needs {:.3g} ps from end to end, and the turn lasts {:.3g} ps: torques are those of rest within "
+      "{:.2g} % at most, by which both ends differ from their mean",
+      q.travel, q.time, 100 * q.error);
+  if (q.error > enough)
+    text += fmt::format("; for {:.2g} % turn in {:.3g} ps", 100 * enough, q.time * q.error / enough);
+  text += ".";
+  if (q.drag > 0.01)
+    text += fmt::format(
+        " The bath is at rest and brakes the turning rope by about {:.2g} % of that torque: lower "
+        "thermostat.coupling_per_ps, or turn more slowly.",
+        100 * q.drag);
+  return text;
 }
 
 }  // namespace ropewalk

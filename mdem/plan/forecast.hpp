@@ -1,6 +1,7 @@
-// Forecast, before a run, of the limits of the model that a scene will pass.
+// Forecast, before a run, of the limits of the model that a scene will pass, and of how far its torque is from rest.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,5 +11,23 @@ namespace ropewalk {
 
 // A sentence for each, by the upper estimates of features_of(); where the load grows, with the time when it gets there.
 std::vector<std::string> limits_ahead(const Scene& scene, const Prepared& prepared);
+
+// How far a prescribed turn is from rest. Twist travels along a rope as a wave of the speed (K/J)^1/2, with the
+// stiffness K against twist and the moment of inertia J per length. A clamp that begins to turn at the rate w sends
+// out the torque w (K J)^1/2, which goes to and fro: the ends feel it one after the other. The mean torque is that
+// of
+//   M = sum(GJ) phi + sum(EA rho^4) phi^3/2
+// at the twist phi per length, with the distance rho of a tube from the axis; where the length is not held, the
+// square of the mean of rho^2 is taken off. An upper estimate: what is seen is 0.3 to 0.8 of it, since damping,
+// rounded corners and the faster twist of each tube about its own axis take from the wave.
+struct QuasiStatic {
+  double travel = 0;  // ps, from end to end of the untwisted rope
+  double time = 0;    // ps, of the turn
+  double drag = 0;    // of a bath at rest on the turning rope, over the mean torque: what the driven end bears more
+  double error = 0;   // half the difference of the torques at both ends, over the mean torque of the turn
+};
+// None where no end is turned, or only one is held.
+std::optional<QuasiStatic> quasi_static(const Scene& scene, const Prepared& prepared);
+std::string words_of(const QuasiStatic& q);
 
 }  // namespace ropewalk

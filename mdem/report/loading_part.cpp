@@ -25,15 +25,29 @@ std::string against_rotation(const std::vector<LogRow>& log) {
   return largest(log, "rotation_deg") > 1 ? "rotation_deg" : "";
 }
 
+// Where clamps hold both ends, their mean with a band from one to the other: a wave on its way shows in the band.
 Panel torque(const std::vector<LogRow>& log) {
-  return {"Torque",
-          "Torque about z that twists the rope at either end, mean over the time between two rows. Both are equal where "
-          "nothing moves.",
-          {"torque", "nN nm", false},
-          {{"upper", logged("torque_upper_nN_nm"), 0}, {"lower", logged("torque_lower_nN_nm"), 1}},
-          false,
-          false,
-          against_rotation(log)};
+  const LogValue upper = logged("torque_upper_nN_nm"), lower = logged("torque_lower_nN_nm");
+  const double most_upper = largest(log, "torque_upper_nN_nm"), most_lower = largest(log, "torque_lower_nN_nm");
+  Panel out{"Torque", "", {"torque", "nN nm", false}, {}, false, false, against_rotation(log)};
+  if (std::min(most_upper, most_lower) < 1e-3 * std::max(most_upper, most_lower)) {
+    out.caption =
+        "Torque about z that twists the rope at the end that is held, mean over the time between two rows.";
+    out.traces = {most_upper > most_lower ? Trace{"upper", upper, 0} : Trace{"lower", lower, 1}};
+    return out;
+  }
+  const LogValue mean = [=](const LogRow&r) { return 0.5 * (upper(r) + lower(r)); },
+                 half = [=](const LogRow&r) { return 0.5 * std::fabs(upper(r) - lower(r)); };
+  double apart = 0, whole = 0;
+  for (const LogRow& r : log)
+    if (std::isfinite(mean(r))) apart += half(r), whole += std::fabs(mean(r));
+  out.caption = fmt::format(
+      "Torque about z that twists the rope, mean of both ends and of the time between two rows. The band goes from "
+      "one "
+      "end to the other, which are equal where nothing moves; here they are on average <b>{} %</b> off their mean.",
+      number_text(100 * apart / whole, 2));
+  out.traces = {{"mean of both ends", mean, 0, false, half}};
+  return out;
 }
 
 Panel tension(const std::vector<LogRow>& log) {

@@ -63,9 +63,9 @@ LineChart chart_of(const ReportInput& in, const Panel& panel, const Clock& clock
   for (const Trace& trace : panel.traces) {
     ChartLine line{trace.name, x, values_of(in.log, trace.value), trace.colour, trace.dashed, panel.steps};
     if (panel.since_start) take_first_off(line.y);
-    for (std::size_t k = 0; !in.errors.empty() && k < in.log.size(); ++k) {
-      const ResultError e = in.errors.of(k, trace.value);
-      line.error.push_back(std::hypot(e.error, e.potential));
+    for (std::size_t k = 0; (trace.half_width || !in.errors.empty()) && k < in.log.size(); ++k) {
+      const ResultError e = in.errors.empty() ? ResultError{} : in.errors.of(k, trace.value);
+      line.error.push_back(std::hypot(e.error, e.potential, trace.half_width ? trace.half_width(in.log[k]) : 0));
     }
     chart.lines.push_back(std::move(line));
   }
@@ -91,6 +91,10 @@ std::string log_figure(const ReportInput& in, const Panel& panel, Figures& figur
   std::vector<TableColumn> columns{{with_unit(clock.axis.quantity, clock.axis.unit), chart.lines[0].x}};
   for (const Trace& trace : panel.traces)
     columns.push_back({with_unit(trace.name, panel.axis.unit), values_of(in.log, trace.value)});
+  for (const Trace& trace : panel.traces)
+    if (trace.half_width)
+      columns.push_back(
+          {with_unit("half width of the band", panel.axis.unit), values_of(in.log, trace.half_width)});
   return fmt::format("<figure><h3>{}</h3>\n", escape_markup(panel.title)) + chart_svg(chart) +
          figures.caption(panel.caption) + data_table(columns, "Every row and column is in log.csv.") +
          "</figure>\n";

@@ -17,6 +17,7 @@ struct Trace {
   LogValue value;
   int colour = 0;
   bool dashed = false;
+  LogValue half_width = {};  // of a band about it
 };
 
 struct Panel {

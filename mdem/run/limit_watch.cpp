@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "model/error.hpp"
@@ -83,6 +84,13 @@ std::string passed_words(const std::vector<LimitRecord>& records) {
       words += fmt::format("{}{} up to {:.4g}{} (limit {:.4g})", words.empty() ? "" : ", ", r.key, r.largest,
                            with_space(r.unit), r.limit);
   return words;
+}
+
+double beyond_limits(const std::vector<LimitRecord>& records) {
+  double most = 0;
+  for (const LimitRecord& r : records)
+    if (r.passed && r.limit > 0) most = std::max(most, r.largest / r.limit);
+  return most;
 }
 
 }  // namespace ropewalk

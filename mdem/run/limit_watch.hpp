@@ -41,5 +41,9 @@ class LimitWatch {
 // One line that names every limit passed and its largest value, as "bend_deg up to 21.4 deg (limit 19.9)". The line
 // is empty if no limit was passed.
 std::string passed_words(const std::vector<LimitRecord>& records);
+// The largest value over its limit, of the limits that were passed; 0: none was. Beyond `far_beyond` the results of
+// a run are not those of the tubes.
+double beyond_limits(const std::vector<LimitRecord>& records);
+inline constexpr double far_beyond = 3;
 
 }  // namespace ropewalk

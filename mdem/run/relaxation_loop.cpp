@@ -47,12 +47,15 @@ std::string RelaxationLoop::words_of(const Relaxed& end, long max_steps) const {
   const RelaxGoal& goal = run_.moving.scene.run.goal;
   const std::string left = fmt::format("{:.2g} eV above the minimum, that of the bonds within {:.2g} of its value",
                                        end.above, end.error);
+  const std::string way = end.saddles > 0 ? fmt::format("; it left {} saddle{} of the energy on the way",
+                                                        end.saddles, end.saddles > 1 ? "s" : "")
+                                          : std::string();
   if (end.at_rest && std::isinf(end.above))
-    return fmt::format(
-        "relaxed: largest force {:.3g} eV/nm; on a saddle, or along some soft motion the energy may still fall",
-        end.force);
+    return fmt::format("relaxed: largest force {:.3g} eV/nm; along some soft motion the energy may still fall{}",
+                       end.force, way);
   if (end.at_rest)
-    return fmt::format("relaxed: largest force below {:.3g} eV/nm; energy {}, by estimate", goal.force, left);
+    return fmt::format("relaxed: largest force below {:.3g} eV/nm; energy {}, by estimate{}", goal.force, left,
+                       way);
   const std::string words = fmt::format("not relaxed after {} steps: largest force {:.3g} eV/nm, {:.3g} asked for",
                                         max_steps, end.force, goal.force);
   if (std::isinf(end.above)) return words + "; the energy may still fall along some motion: no minimum is near";

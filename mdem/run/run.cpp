@@ -62,6 +62,7 @@ RunResult Run::result(RunEnd end, const std::string& reason) const {
   r.directory = parts_.files.directory();
   r.reason = reason;
   r.passed = passed_words(parts_.limits.records());
+  r.beyond = beyond_limits(parts_.limits.records());
   r.missing = parts_.files.missing();
   r.steps = parts_.state().step;
   r.time_ps = parts_.state().time;

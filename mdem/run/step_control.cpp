@@ -27,15 +27,18 @@ void StepControl::lengthen(Simulation& simulation) {
 
 EnergyMark energy_mark(const Simulation& s) { return {s.total_energy(), s.account()}; }
 
-bool account_closes(const EnergyMark& mark, const Simulation& s) {
+bool account_closes(const EnergyMark& mark, const EnergyMark& now, double kinetic, double bonds,
+                    std::size_t elements) {
   constexpr double part = 0.03, part_of_bonds = 1e-3, rounding = 1e-9;  // rounding: eV for each element
   if (!std::isfinite(mark.energy)) return true;
-  const EnergyMark now = energy_mark(s);
   const double error = now.energy - mark.energy - (now.supply.supplied() - mark.supply.supplied());
-  const double moving =
-      kinetic_energy(s.topology(), s.state()) + std::fabs(now.supply.dissipated - mark.supply.dissipated);
-  return std::fabs(error) <= part * moving + part_of_bonds * s.forces().energy.bonds() +
-                                 rounding * static_cast<double>(s.state().size());
+  const double moving = kinetic + std::fabs(now.supply.dissipated - mark.supply.dissipated);
+  return std::fabs(error) <= part * moving + part_of_bonds * bonds + rounding * static_cast<double>(elements);
+}
+
+bool account_closes(const EnergyMark& mark, const Simulation& s) {
+  return account_closes(mark, energy_mark(s), kinetic_energy(s.topology(), s.state()), s.forces().energy.bonds(),
+                        s.state().size());
 }
 
 }  // namespace ropewalk

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "io/stop_signals.hpp"
+#include "run/limit_watch.hpp"
 #include "run/tell.hpp"
 
 namespace ropewalk {
@@ -37,6 +38,8 @@ int tell_end(const RunResult& r) {
   switch (r.end) {
     case RunEnd::finished:
       print_results(r);
+      if (r.beyond > far_beyond)
+        tell(fmt::format("{:.3g} times a limit was reached: these are not the results of such tubes", r.beyond));
       return 0;
     case RunEnd::incomplete:
       print_results(r);

@@ -74,8 +74,8 @@ class Drive {
   virtual int held(End /*end*/, int /*tube*/) const { return 0; }
   // The moment that it applies; null: none.
   virtual const MomentRamp* moment_ramp() const { return nullptr; }
-  // K, of a bath that keeps the temperature; null: it is none.
-  virtual const Schedule* temperature() const { return nullptr; }
+  // Of a bath that keeps a temperature; null: it is none.
+  virtual const ThermostatOptions* thermostat() const { return nullptr; }
 
   // Why its elements cannot be split in two, and why they cannot be of any other length; empty: they can.
   virtual std::string why_not_split() const { return ""; }

@@ -176,12 +176,23 @@ double automatic_step_fraction(const Scene& scene) {
 
 bool is_warm(const Scene& scene) {
   if (scene.run.mode == RunOptions::Mode::relax) return false;
-  if (const Schedule* bath = scene.bath()) return bath->largest() > 0;
+  if (const ThermostatOptions* bath = scene.bath()) return bath->temperature.largest() > 0;
   return scene.start.temperature > 0 && !scene.start.may_cool;
 }
 
 void refuse_cooling(const Scene& scene, const Prepared& p) {
-  if (!is_warm(scene) || scene.bath()) return;
+  if (!is_warm(scene)) return;
+  if (const ThermostatOptions* bath = scene.bath()) {
+    const double held = bath_held(p.limit, bath->coupling);
+    if (held < 0.5 && !scene.start.may_cool)
+      throw InputError({scene.path, 0, "thermostat.temperature_K"},
+                       fmt::format("is {} K, and damping leaves the tubes at about {:.2g} % of that: it takes the "
+                                   "heat faster than coupling_per_ps = {:.4g} brings it",
+                                   words_of(bath->temperature), 100 * held, bath->coupling),
+                       "set contact_viscosity_eV_ps_per_nm2 and bond_damping_per_ps of [damping] to 0, or write "
+                       "may_cool = true into [start]");
+    return;
+  }
   const double left = start_heat_left(scene, p, p.duration);
   if (left > 0.5) return;
   throw InputError(
@@ -201,6 +212,12 @@ std::vector<std::string> warmth_of(const Scene& scene, const Prepared& p) {
         fmt::format("The time step makes positions, and so the energies of the bonds, up to {:.2g} % hotter "
                     "than velocities.",
                     100 * excess_of_positions(p.limit, p.time_step)));
+  if (const ThermostatOptions* bath = scene.bath(); bath && is_warm(scene))
+    if (const double held = bath_held(p.limit, bath->coupling); held < 0.99)
+      out.push_back(
+          fmt::format("Damping takes out heat beside the thermostat: the tubes stay at about {:.2g} % of {} K. Set "
+                      "contact_viscosity_eV_ps_per_nm2 and bond_damping_per_ps of [damping] to 0 to hold it.",
+                      100 * held, words_of(bath->temperature)));
   if (scene.run.mode == RunOptions::Mode::relax || scene.start.temperature <= 0 || scene.bath()) return out;
   std::string text =
       fmt::format("The {:.4g} K at the start are in the velocities alone; bonds at rest take half of that heat.",

@@ -34,8 +34,9 @@ double automatic_step_fraction(const Scene& scene);
 bool is_warm(const Scene& scene);
 inline constexpr double warm_excess = 0.02;
 
-// Throws InputError where damping would take most of the heat that the scene starts with before the run ends. Not
-// part of prepare(), so that runs that are there already can be read.
+// Throws InputError where damping would take most of the heat that the scene starts with before the run ends, or
+// most of that of its thermostat at any time. Not part of prepare(), so that runs that are there already can be
+// read.
 void refuse_cooling(const Scene& scene, const Prepared& prepared);
 // Effects of time step and damping on the temperature of a scene that has one; a sentence each.
 std::vector<std::string> warmth_of(const Scene& scene, const Prepared& prepared);

@@ -106,7 +106,7 @@ struct Scene {
   }
   // The value of the first drive that has one; null: none has.
   const MomentRamp* moment_ramp() const { return first(&Drive::moment_ramp); }
-  const Schedule* bath() const { return first(&Drive::temperature); }  // K
+  const ThermostatOptions* bath() const { return first(&Drive::thermostat); }
 
  private:
   template <class T>

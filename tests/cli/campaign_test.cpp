@@ -154,6 +154,30 @@ TEST_F(Campaign, PictureIsAFigureInThreeFormats) {
   EXPECT_FALSE(fs::exists(dir / "b.svg"));
 }
 
+// A tube that is turned by an angle bears GJ angle/L: long tubes do not pass what short ones pass.
+TEST_F(Campaign, ThresholdOfAFallingOutcome) {
+  spit(dir / "tube.toml",
+       "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-paper\"\n[rope]\ntubes = 1\nlength_nm = 13.56\n"
+       "[damping]\nbond_damping_per_ps = 4\n[[grip]]\nend = \"lower\"\n[[grip]]\nend = \"upper\"\n"
+       "about_z = { rotation_deg = [[0, 0], [60, 20]] }\n[run]\nduration_ps = 70\nlog_every_ps = 1\n");
+  sweep_file(
+      "[threshold]\nkey = \"rope.length_nm\"\nfrom = 7.1\nto = 37\ncolumn = \"torque_upper_nN_nm\"\nabove = 5.5\n"
+      "accuracy = 0.05\n");
+  const Outcome o = run("threshold s.toml");
+  ASSERT_EQ(o.code, 0) << o.err;
+  EXPECT_NE(o.out.find("note: runs pass below it\n"), std::string::npos) << o.out;
+  const std::vector<std::string> rows = lines(slurp(dir / "s" / "thresholds.csv"));
+  ASSERT_EQ(rows.size(), 2u);
+  std::vector<std::string> cells;
+  std::istringstream in(rows[1]);
+  for (std::string cell; std::getline(in, cell, ',');) cells.push_back(cell);
+  const double expected = 319.5 * (20 * 3.14159265358979 / 180) / 5.5;
+  EXPECT_NEAR(std::stod(cells[4]), expected, 0.08 * expected) << rows[1];  // lengths go by elements
+  EXPECT_GT(std::stod(cells[5]), 0.1);
+  EXPECT_EQ(cells[cells.size() - 2], "1");
+  EXPECT_EQ(cells.back(), "0");
+}
+
 TEST_F(Campaign, ThresholdIsThatOfTheFormula) {
   // The ends of a tube turn by ML/GJ: its rotation passes 20 degrees at a moment that the set gives.
   spit(dir / "tube.toml",
@@ -210,9 +234,27 @@ TEST_F(Campaign, ThresholdIsThatOfTheFormula) {
   EXPECT_EQ(run("threshold s.toml --out u --known tube.toml").code, 2);
 }
 
+TEST_F(Campaign, ReplicatesThatAreOneRunAreSaid) {
+  const std::string warm = slurp(dir / "tube.toml"), key = "coupling_per_ps = 0.5\n";
+  std::string typed = warm, cold = warm;
+  typed.insert(typed.find(key), "seed = 3\n");
+  cold.erase(cold.find("[thermostat]"), cold.find("[damping]") - cold.find("[thermostat]"));
+  sweep_file("replicates = 2\n[vary]\nrope.tubes = [1]\n");
+  for (const auto& [scene, words] : {std::pair{typed, "the noise of the thermostat.seed that is typed"},
+                                     std::pair{cold, "nothing in the scene is random"}, std::pair{warm, ""}}) {
+    spit(dir / "tube.toml", scene);
+    const Outcome o = run("sweep s.toml --dry-run");
+    EXPECT_EQ(o.code, 0) << o.err;
+    EXPECT_EQ(o.err.find("note: replicates ") != std::string::npos, *words != 0) << o.err;
+    EXPECT_NE(o.err.find(words), std::string::npos) << o.err;
+  }
+}
+
 TEST_F(Campaign, CompareDrawsRunsAndEnsembles) {
   sweep_file("replicates = 3\n[vary]\nrope.tubes = [1, 7]\n");
-  ASSERT_EQ(run("sweep s.toml").code, 0);
+  const Outcome swept = run("sweep s.toml");
+  ASSERT_EQ(swept.code, 0);
+  EXPECT_EQ(swept.err.find("replicates"), std::string::npos) << swept.err;
   ASSERT_EQ(run("compare s --page page.html --x rotation_deg").code, 0) << slurp(dir / "stderr.txt");
   const std::string page = slurp(dir / "page.html");
   EXPECT_NE(page.find("The ends of 2 ensembles"), std::string::npos);

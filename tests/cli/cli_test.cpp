@@ -334,18 +334,52 @@ TEST_F(Cli, ExportRefusesWhatLammpsLacks) {
   EXPECT_FALSE(fs::exists(dir / "there"));
 }
 
-TEST_F(Cli, CheckSaysThatDampingCoolsBesideAThermostat) {
-  const std::string bath = "[thermostat]\ntemperature_K = 250\ncoupling_per_ps = 1\n",
-                    undamped = "[damping]\ncontact_viscosity_eV_ps_per_nm2 = 0\nbond_damping_per_ps = 0\n";
-  const auto cools = [&](const std::string& more) {
+// Where `run` goes back and halves its steps.
+TEST_F(Cli, ExportSaysThatStepsAreTooLongForLammps) {
+  const std::string rope =
+      "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[rope]\ntubes = 7\nlength_nm = 13.8\n"
+      "[[grip]]\nend = \"lower\"\n[[grip]]\nend = \"upper\"\nabout_z = { rotation_deg = [[0, 0], [1, 60]] }\n"
+      "smooth_ps = 0\n[run]\nduration_ps = 12\n";
+  const auto said = [&](const std::string& more) {
+    spit(dir / "s.toml", rope + more);
+    const Outcome o = run("export s.toml --lammps there --force");
+    EXPECT_EQ(o.code, 0) << o.err;
+    std::smatch found;
+    return std::regex_search(o.err, found, std::regex("set run.time_step_fs = (2[0-9.]+) and export again"))
+               ? found[1].str()
+               : "";
+  };
+  const std::string step = said("");
+  ASSERT_NE(step, "");
+  EXPECT_NE(run("run s.toml --out d --quiet").err.find("on with steps of " + step), std::string::npos);
+  EXPECT_EQ(said("time_step_fs = " + step + "\n"), "");
+}
+
+TEST_F(Cli, DampingThatCoolsBesideAThermostatIsRefusedOrSaid) {
+  const std::string bath = "[thermostat]\ntemperature_K = 250\ncoupling_per_ps = 1\n";
+  const auto damped = [](const char* viscosity, const char* rate) {
+    return fmt::format("[damping]\ncontact_viscosity_eV_ps_per_nm2 = {}\nbond_damping_per_ps = {}\n", viscosity,
+                       rate);
+  };
+  small_rope("s.toml", bath);
+  for (const char* command : {"check s.toml", "run s.toml --out d"}) {
+    const Outcome o = run(command);
+    EXPECT_EQ(o.code, 2);
+    EXPECT_NE(o.err.find("thermostat.temperature_K: is 250 K, and damping leaves the tubes at about "),
+              std::string::npos)
+        << o.err;
+  }
+  EXPECT_FALSE(fs::exists(dir / "d"));
+  const auto said = [&](const std::string& more) {
     small_rope("s.toml", more);
     const Outcome o = run("check s.toml");
     EXPECT_EQ(o.code, 0) << o.err;
-    return o.out.find("the tubes stay colder than 250 K") != std::string::npos;
+    return std::regex_search(o.out, std::regex("the tubes stay at about [1-9][0-9.]* % of 250 K"));
   };
-  EXPECT_TRUE(cools(bath));
-  EXPECT_FALSE(cools(bath + undamped));
-  EXPECT_FALSE(cools(""));
+  EXPECT_TRUE(said(bath + "[start]\nmay_cool = true\n"));
+  EXPECT_TRUE(said(bath + damped("0.1", "0.01")));
+  EXPECT_FALSE(said(bath + damped("0", "0")));
+  EXPECT_FALSE(said(""));
 }
 
 // The grade of a set stands in every place where a user would look.
@@ -394,7 +428,9 @@ TEST_F(Cli, WarmScenesSayWhatStepAndDampingDo) {
 
 // The heat is a column of the log, and a resumed run has the noise of one that was never stopped.
 TEST_F(Cli, ThermostatGoesOnAfterAResume) {
-  small_rope("s.toml", "[thermostat]\ntemperature_K = 300\ncoupling_per_ps = 2\n");
+  small_rope("s.toml",
+             "[thermostat]\ntemperature_K = 300\ncoupling_per_ps = 2\n[damping]\n"
+             "contact_viscosity_eV_ps_per_nm2 = 0\nbond_damping_per_ps = 0\n");
   ASSERT_EQ(run("run s.toml --out whole --threads 1").code, 0);
   ASSERT_EQ(run("run s.toml --out parts --threads 2 --steps 60").code, 0);
   ASSERT_EQ(run("resume parts --threads 2").code, 0);

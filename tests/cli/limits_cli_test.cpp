@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <regex>
 
 #include "cli/support.hpp"
 #include "io/log.hpp"
@@ -62,6 +63,61 @@ TEST_F(Limits, AreSaidOnceAndTheRunGoesOn) {
   EXPECT_GE(twist.at("largest_at_ps"), twist.at("passed_at_ps"));
   EXPECT_FALSE(json.at("limits").at(0).at("passed"));
   EXPECT_THAT(slurp(dir / "d/report.html"), HasSubstr("limits.twist_deg"));
+}
+
+// Moments on free grips twist each tube by M/GJ before the rope follows.
+TEST_F(Limits, OfAPublishedSpindleAreForeseen) {
+  const Outcome o = run("check " ROPEWALK_SOURCE_DIR "/data/scenes/spindle-67nm.toml");
+  EXPECT_EQ(o.code, 0) << o.err;
+  EXPECT_THAT(o.out,
+              ::testing::ContainsRegex("note: The load may bring wall_twist to 0.0743, from about [12][0-9.]+ "
+                                       "ps on, beyond its limit of 0.04"));
+}
+
+// For a script, whatever the run says. Campaigns go on.
+TEST_F(Limits, PassedByFarGiveAStatus) {
+  const std::string scene = slurp(dir / "s.toml");
+  for (const auto& [limit, code] : {std::pair{"20", 0}, std::pair{"7", 7}}) {
+    spit(dir / "f.toml", scene + "twist_deg = " + limit + "\n");
+    const Outcome o = run("run f.toml --out f --quiet --force");
+    EXPECT_EQ(o.code, code) << o.err;
+    EXPECT_EQ(o.err.find("times a limit was reached") != std::string::npos, code == 7) << o.err;
+    EXPECT_EQ(Json::parse(slurp(dir / "f/manifest.json")).at("status"), "finished");
+  }
+  EXPECT_EQ(run("resume f --quiet").code, 7);
+  spit(dir / "sweep.toml", "format = \"ropewalk-sweep-1\"\nscene = \"f.toml\"\n[vary]\nrope.tubes = [7]\n");
+  const Outcome swept = run("sweep sweep.toml");
+  EXPECT_EQ(swept.code, 0) << swept.err;
+  EXPECT_THAT(slurp(dir / "sweep/table.csv"), HasSubstr("twist_deg up to"));
+}
+
+// A turn at a rate against that of waves.
+TEST_F(Limits, OfASlowTurnAreForeseenAndReported) {
+  const auto said_for = [&](int ps) {
+    spit(dir / "t.toml", fmt::format("format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[rope]\n"
+                                     "tubes = 7\nlength_nm = 27.5\n[[grip]]\nend = \"lower\"\n[[grip]]\nend = "
+                                     "\"upper\"\nabout_z = {{ rotation_deg = [[0, 0], [{}, 40]] }}\n",
+                                     ps));
+    const std::string text = run("check t.toml").out;
+    std::smatch found;
+    EXPECT_TRUE(std::regex_search(text, found, std::regex("torques are those of rest within ([0-9.]+) % at most")))
+        << text;
+    EXPECT_EQ(text.find("; for 5 % turn in") != std::string::npos, ps < 50) << text;
+    return found.empty() ? 0.0 : std::stod(found[1]);
+  };
+  EXPECT_NEAR(said_for(120) / said_for(30), 0.25, 0.02);
+  const double foreseen = said_for(30);
+  ASSERT_EQ(run("run t.toml --out t --quiet").code, 0);
+  double apart = 0, whole = 0;
+  for (const LogRow& r : log_of("t"))
+    if (std::isfinite(r["torque_upper_nN_nm"]))
+      apart += std::fabs(r["torque_upper_nN_nm"] - r["torque_lower_nN_nm"]),
+          whole += std::fabs(r["torque_upper_nN_nm"] + r["torque_lower_nN_nm"]);
+  const double seen = 100 * apart / whole;
+  EXPECT_LT(seen, foreseen);
+  EXPECT_GT(seen, 0.2 * foreseen);
+  EXPECT_THAT(slurp(dir / "t/report.html"),
+              ::testing::ContainsRegex(fmt::format("on average <b>{:.2g}[0-9]* %</b> off their mean", seen)));
 }
 
 TEST_F(Limits, AreNamedByCheck) {

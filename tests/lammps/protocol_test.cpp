@@ -422,6 +422,20 @@ TEST_F(LammpsRun, ImportLooksForLimits) {
   EXPECT_GE(passed, 1);
 }
 
+// As `run` does there, by going back and halving them.
+TEST_F(LammpsRun, ImportSaysThatStepsWereTooLong) {
+  spit(dir / "scene.toml",
+       "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[rope]\ntubes = 7\nlength_nm = 13.8\n"
+       "[[grip]]\nend = \"lower\"\n[[grip]]\nend = \"upper\"\nabout_z = { rotation_deg = [[0, 0], [1, 60]] }\n"
+       "smooth_ps = 0\n[run]\nduration_ps = 12\nframes_every_ps = 1\n");
+  ASSERT_EQ(run("export scene.toml --lammps there").code, 0);
+  ASSERT_EQ(lmp(1, "there", "-in in.rope").code, 0);
+  const Outcome o = run("import there");
+  ASSERT_EQ(o.code, 0) << o.err;
+  EXPECT_NE(o.err.find("note: from step 0 to 1"), std::string::npos) << o.err;
+  EXPECT_NE(o.err.find("the account of energy does not close"), std::string::npos) << o.err;
+}
+
 // Of a killed run all whole states are taken.
 TEST_F(LammpsRun, ImportLeavesOutWhatIsCutOff) {
   exported(rope(""), "out");

@@ -121,6 +121,45 @@ TEST(Relaxation, InterruptedGoesOnToTheSameBits) {
   EXPECT_TRUE(s.serialise() == whole.serialise());
 }
 
+// Straight to the last bit, so that no force acts sideways.
+Chain column_under(double part_of_buckling_load) {
+  Chain c(31);
+  const double euler = units::pi * units::pi * c.topology.types[0].bond.bend / (c.length() * c.length());
+  c.loads.add(FixLoad({0}, true, true, true, false));
+  c.loads.add(FixLoad({c.last}, true, true, false, false));
+  c.loads.add(ForceLoad({c.last}, {0, 0, -part_of_buckling_load * euler}));
+  return c;
+}
+
+// With shear, a column buckles a little below its Euler load.
+TEST(Relaxation, LeavesTheSaddleOfAStraightColumnAboveItsBucklingLoad) {
+  for (const double part : {0.95, 1.05}) {
+    Simulation s = column_under(part).make();
+    const Relaxed end = s.relax(RelaxGoal{}, 400000, [](long) { return true; });
+    ASSERT_TRUE(end.at_rest);
+    EXPECT_TRUE(std::isfinite(end.above));
+    const double bow = s.state().position[15].head<2>().norm();
+    EXPECT_EQ(end.saddles, part > 1 ? 1 : 0) << bow;
+    // P/Pc = 1 + slope^2/8 with the slope at the ends, and bow = slope L/pi.
+    const double expected = part > 1 ? std::sqrt(8 * (part - 1)) * 30 * element_length / units::pi : 0;
+    EXPECT_NEAR(bow, expected, 0.1 * expected + 1e-4);
+  }
+}
+
+TEST(Relaxation, InterruptedOnASaddleGoesOnToTheSameBits) {
+  const Chain c = column_under(1.2);
+  Simulation whole = c.make();
+  ASSERT_EQ(whole.relax(RelaxGoal{}, 400000, [](long) { return true; }).saddles, 1);
+  Simulation s = c.make();
+  for (int steps = 0; !s.relax(RelaxGoal{}, 400000, [&](long) { return steps++ % 307 != 306; }).at_rest;) {
+    Simulation other = c.make();
+    other.restore(s.serialise());
+    s = std::move(other);
+  }
+  EXPECT_EQ(s.state().step, whole.state().step);
+  EXPECT_TRUE(s.serialise() == whole.serialise());
+}
+
 TEST(Relaxation, InterruptedIsAtRestBeforeAStep) {
   Chain c(11);
   c.loads.add(FixLoad({0}));

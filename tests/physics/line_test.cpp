@@ -1,6 +1,8 @@
 // The line law in the simulator: what rows of elements make of it.
 #include <gtest/gtest.h>
 
+#include "scene/prepare.hpp"
+#include "scene/scene_toml.hpp"
 #include "sim/contact/line/law.hpp"
 #include "sim/dynamics/simulation.hpp"
 #include "unit/support.hpp"
@@ -163,6 +165,20 @@ TEST(LineBundle, RelaxesToTheSpacingOfItsLaw) {
     EXPECT_NEAR(std::hypot(d.x(), d.y()), b.spacing, 1e-3 * b.spacing);
   }
   EXPECT_LT(net_force(s.state(), s.forces()).torque.norm(), 1e-6);
+}
+
+// It rattles there: on the axis no force acts on it, and beside the axis the energy is lower.
+TEST(LineBundle, RelaxationMovesAThinTubeOutOfTheMiddleOfSixWideOnes) {
+  Scene scene = scene_of_text(
+      "format = \"ropewalk-scene-1\"\nparameters = [\"cnt-10-10-tersoff\", \"cnt-5-5-tersoff\"]\n"
+      "tube_types = [1, 0, 0, 0, 0, 0, 0]\n[rope]\ntubes = 7\nlength_nm = 7\n[run]\nmode = \"relax\"\n",
+      "mixed.toml");
+  const Prepared p = prepare(scene);
+  Simulation s = start(scene, p);
+  const Relaxed end = s.relax(scene.run.goal, 12000, [](long) { return true; });
+  EXPECT_GE(end.saddles, 1);
+  EXPECT_LT(s.forces().energy.potential(), -50.7);  // on the axis: -42.1 eV
+  EXPECT_NEAR(s.total_energy() - s.account().supplied(), -42.0796, 1e-3);
 }
 
 }  // namespace

@@ -297,7 +297,10 @@ std::optional<LoadEffect> GripLoad::effect() const {
     if (axes[k].is == Is::loaded && k >= 3)
       out.torque[static_cast<Eigen::Index>(k - 3)] = most / shared;
   }
-  if (axes[about_z].is == Is::moved) out.angle = schedules_[about_z].largest();
+  if (axes[about_z].is == Is::moved) {
+    out.angle = schedules_[about_z].largest();
+    out.turning = schedules_[about_z].fastest();
+  }
   out.ramp = lasts();
   LoadEffect::Clamp clamp;
   const double tubes = each ? 1 : static_cast<double>(elements.size()) / depth;

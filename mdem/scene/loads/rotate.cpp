@@ -35,7 +35,9 @@ LoadKind rotate_kind() {
 }
 
 std::optional<LoadEffect> PrescribedRotation::effect() const {
-  return LoadEffect{0, Vector3::Zero(), std::fabs(angle), rate != 0 ? angle / rate : 0.0};
+  LoadEffect out{0, Vector3::Zero(), std::fabs(angle), rate != 0 ? angle / rate : 0.0};
+  out.turning = std::fabs(rate);
+  return out;
 }
 
 void PrescribedRotation::set_velocities(double time, std::size_t i, State& state) const {

@@ -77,13 +77,4 @@ void ThermostatDrive::refuse(const TomlTable& top, const Scene& scene) const {
       refuse(drive->table().name, "geometric_only", "the bath turns the spins that it relaxes");
 }
 
-void ThermostatDrive::warn(const Scene& scene, const Topology&, const LoadsAndConstraints&,
-                           std::vector<std::string>& warnings) const {
-  if (scene.damping.contact.eta > 0 || scene.damping.bond.rate > 0)
-    warnings.push_back(
-        fmt::format("Damping takes out heat beside the thermostat: the tubes stay colder than {} K. Set "
-                    "damping.contact_viscosity_eV_ps_per_nm2 and damping.bond_damping_per_ps to 0 to hold it.",
-                    words_of(options.temperature)));
-}
-
 }  // namespace ropewalk

@@ -14,8 +14,7 @@ class ThermostatDrive : public Drive {
   void refuse(const TomlTable& top, const Scene&) const override;
   double lasts() const override { return options.temperature.ends(); }
   void set_stepping(Stepping& stepping) const override { stepping.thermostat = make_thermostat(options); }
-  void warn(const Scene&, const Topology&, const LoadsAndConstraints&, std::vector<std::string>&) const override;
-  const Schedule* temperature() const override { return &options.temperature; }
+  const ThermostatOptions* thermostat() const override { return &options; }
   std::string not_for_lammps() const override { return "thermostat"; }
   std::optional<std::vector<std::pair<std::string, double>>> hastened(double) const override {
     return std::vector<std::pair<std::string, double>>();

@@ -10,8 +10,9 @@ const KeyTable<StartOptions>& start_table() {
       "the state at time zero",
       {Key::number("temperature_K", unit::kelvin, Bounds::range(0, 3000), &StartOptions::temperature, standard(),
                    "temperature of the random initial velocities; bonds at rest take half of that heat"),
-       Key::boolean("may_cool", &StartOptions::may_cool, standard(),
-                    "damping may take this heat away; without this key or [thermostat] such a run is refused"),
+       Key::boolean(
+           "may_cool", &StartOptions::may_cool, standard(),
+           "damping may take this heat, or that of [thermostat], away; without this key such a run is refused"),
        Key::integer("seed", 0, std::numeric_limits<long>::max(), &StartOptions::seed, standard(),
                     "of all random numbers: the same seed gives the same run"),
        Key::number("wave_nm", unit::nm, Bounds::range(0, 100), &StartOptions::wave, standard(),

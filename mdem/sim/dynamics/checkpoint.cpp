@@ -13,7 +13,7 @@
 namespace ropewalk {
 namespace {
 
-constexpr char magic[8] = "MDEM13";
+constexpr char magic[8] = "MDEM14";
 
 struct CheckpointHead {
   char format[sizeof magic];
@@ -97,8 +97,9 @@ template <class Archive, class R>
 void visit_relaxation(Archive& archive, R& r) {
   archive(r.began);
   archive(r.part_began);
+  archive(r.disturbances);
   for (auto* x : {&r.goal.force, &r.goal.energy, &r.first_energy, &r.force, &r.constant, &r.longest_bond,
-                  &r.last_step, &r.fire.dt_max, &r.fire.dt_min, &r.fire.dt, &r.fire.mix})
+                  &r.last_step, &r.disturbed_from, &r.fire.dt_max, &r.fire.dt_min, &r.fire.dt, &r.fire.mix})
     archive(*x);
   archive(r.fire.downhill);
 }
@@ -161,9 +162,11 @@ bool could_be(const Relaxation& r, std::int64_t step, double longest_step) {
   if (!r.underway()) return true;
   const Fire& f = r.fire;
   return r.began <= step && r.part_began <= step &&
-         all_within(std::array{r.goal.force, r.goal.energy, r.first_energy, r.force, r.constant, r.longest_bond}) &&
-         std::fabs(r.last_step) < longest_step && f.dt_max > 0 && f.dt_max < longest_step && f.dt_min >= 0 &&
-         f.dt_min <= f.dt && f.dt <= f.dt_max && f.mix >= 0 && f.mix <= 1 && f.downhill >= 0 && f.downhill <= step;
+         all_within(std::array{r.goal.force, r.goal.energy, r.first_energy, r.force, r.constant, r.longest_bond,
+                               r.disturbed_from}) &&
+         r.disturbances >= 0 && r.disturbances <= step && std::fabs(r.last_step) < longest_step && f.dt_max > 0 &&
+         f.dt_max < longest_step && f.dt_min >= 0 && f.dt_min <= f.dt && f.dt <= f.dt_max && f.mix >= 0 &&
+         f.mix <= 1 && f.downhill >= 0 && f.downhill <= step;
 }
 
 }  // namespace

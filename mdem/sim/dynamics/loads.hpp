@@ -42,6 +42,7 @@ struct LoadEffect {
   double ramp = 0;                   // ps, in which it is turned
   double twist = 0;                  // rad/nm, prescribed to the rope as a whole
   std::optional<Clamp> clamp = {};
+  double turning = 0;  // rad/ps, the fastest of a prescribed rotation
 };
 
 // The processes that have the elements of a load together.

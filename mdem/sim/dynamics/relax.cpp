@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "model/contract.hpp"
 #include "model/error.hpp"
+#include "sim/dynamics/counter_random.hpp"
 #include "sim/dynamics/fire.hpp"
 #include "sim/dynamics/simulation.hpp"
 #include "sim/state/motion.hpp"
@@ -89,59 +91,83 @@ double Simulation::largest_force() const {
   return largest;
 }
 
-// F.K^-1.F/2 by conjugate gradients, with masses as the preconditioner and K times a motion from the difference of
-// two forces, in double. It grows with the iterations: one that is more than `enough` (eV) is returned as it is. M.
-// R. Hestenes, E. Stiefel, J. Res. Natl. Bur. Stand. 49, 409 (1952), DOI 10.6028/jres.049.044: the
-// rest is estimated by the sum of the last iterations. Infinite where K is not positive or `most` iterations are
-// too few.
-double Simulation::above_minimum(double enough, long most) const {
-  constexpr double unknown = std::numeric_limits<double>::infinity();
-  constexpr double step = 1e-4;  // nm: less, and rounding hides the soft motions
-  Interaction in = interaction_;
-  in.precision = Interaction::Precision::full;
-  ForceEngine engine;
-  engine.take_terms_of(engine_);
-  const auto n = static_cast<std::ptrdiff_t>(state_.size());
-  std::vector<PointLoad> loads;
-  const auto forces_after = [&](const Motion& motion, double time) {
-    State s = state_;
+// K times a motion, from the difference of two forces, in double.
+class Simulation::Stiffness {
+ public:
+  explicit Stiffness(const Simulation& s)
+      : s_(s), in_(s.interaction_), at_rest_{s.state_.velocity, s.state_.velocity} {
+    in_.precision = Interaction::Precision::full;
+    engine_.take_terms_of(s.engine_);
+    at_rest_ = forces_after(at_rest_, 0);
+  }
+  const Motion& forces() const { return at_rest_; }
+  Motion times(const Motion& motion) {
+    constexpr double step = 1e-4;  // nm: less, and rounding hides the soft motions
+    const double time = step / s_.farthest(motion);
+    Motion fallen = forces_after(motion, time), out{Vec3Array(s_.state_.size()), Vec3Array(s_.state_.size())};
+    fallen.add(-1, at_rest_);
+    out.add(-1 / time, fallen);
+    return out;
+  }
+
+ private:
+  Motion forces_after(const Motion& motion, double time) {
+    State s = s_.state_;
     s.velocity = motion.linear;
     s.angular_velocity = motion.angular;
-    move_elements(s, time, 0, n);
-    s.velocity = s.angular_velocity = Vec3Array(state_.size());
-    Forces f(state_.size());
-    engine.compute(topology_, in, list_, s, f, {Parts::all, false});
-    point_loads(loads_, s, s.time, loads);
+    move_elements(s, time, 0, static_cast<std::ptrdiff_t>(s.size()));
+    s.velocity.set_to_zero();
+    s.angular_velocity.set_to_zero();
+    Forces f(s.size());
+    engine_.compute(s_.topology_, in_, s_.list_, s, f, {Parts::all, false});
+    point_loads(s_.loads_, s, s.time, loads_);
     Motion forces{f.force, f.torque};
-    for (const PointLoad& load : loads) {
+    for (const PointLoad& load : loads_) {
       forces.linear.add(static_cast<std::size_t>(load.element), load.force);
       forces.angular.add(static_cast<std::size_t>(load.element), load.torque);
     }
     return forces;
-  };
-  const Motion at_rest = forces_after({Vec3Array(state_.size()), Vec3Array(state_.size())}, 0);
-  Motion left = at_rest, free = free_accelerations(left), along = free;
+  }
+
+  const Simulation& s_;
+  Interaction in_;
+  ForceEngine engine_;
+  std::vector<PointLoad> loads_;
+  Motion at_rest_;
+};
+
+double Simulation::farthest(const Motion& motion) const {
+  double most = 0;
+  for (std::size_t i = 0; i < state_.size(); ++i)
+    most = std::max({most, motion.linear[i].norm(), topology_.largest_radius() * motion.angular[i].norm()});
+  return most;
+}
+
+// F.K^-1.F/2 by conjugate gradients, with masses as the preconditioner. It grows with the iterations: one that is
+// more than `enough` (eV) is returned as it is. M. R. Hestenes, E. Stiefel, J. Res. Natl. Bur. Stand. 49, 409
+// (1952), DOI 10.6028/jres.049.044: what the last iterations have added is what is still missing. Infinite where K
+// is not positive or `most` iterations are too few.
+double Simulation::above_minimum(double enough, long most) const {
+  constexpr double unknown = std::numeric_limits<double>::infinity();
+  Stiffness stiffness(*this);
+  Motion left = stiffness.forces(), free = free_accelerations(left), along = free;
   double power = left.dot(free), above = 0;
   const double first = power;
   std::vector<double> sums{0};
   long fewest = 30;  // an iteration reaches the next element of a tube
   for (int t = 0; t < topology_.tubes(); ++t) fewest = std::max(fewest, 3L * topology_.length_of(t));
   for (long k = 1; k <= most + fewest && power > 0; ++k) {
-    double farthest = 0;
-    for (std::size_t i = 0; i < state_.size(); ++i)
-      farthest = std::max({farthest, along.linear[i].norm(), topology_.largest_radius() * along.angular[i].norm()});
-    Motion resistance = forces_after(along, step / farthest);  // the forces fall by K times the motion
-    resistance.add(-1, at_rest);
-    const double stiffness = -along.dot(resistance) * farthest / step;
-    if (!(stiffness > 0)) return unknown;
-    const double by = power / stiffness;
+    const Motion resistance = stiffness.times(along);
+    const double curvature = along.dot(resistance);
+    if (!(curvature > 0)) return unknown;
+    const double by = power / curvature;
     above += 0.5 * by * power;
     sums.push_back(above);
     const auto before = static_cast<std::size_t>(std::min(k, std::max(15L, k / 2)));
     const double lately = above - sums[sums.size() - 1 - before];
     if (above > enough) return above;
     if (k >= fewest && lately < 0.05 * above) return above + lately;
-    left.add(by * farthest / step, resistance);
+    left.add(-by, resistance);
     free = free_accelerations(left);
     const double next = left.dot(free);
     Motion turned = free;
@@ -151,6 +177,48 @@ double Simulation::above_minimum(double enough, long most) const {
     power = next;
   }
   return power > 0 ? unknown : above;
+}
+
+// Conjugate gradients for (K + s M) x = r. r is random, with unit variance in every mode: a symmetric state has no
+// force along the motion that breaks its symmetry. The residual of a mode whose K is below -s M never falls, so
+// that there is none once all of it is small. s keeps motions apart that cost nothing, such as the spin of a tube.
+std::optional<Simulation::Motion> Simulation::falling_motion(long most) const {
+  constexpr double slowest = 1e-4;  // growth in a step that counts
+  constexpr double small = 1e-4;    // squared part in a mode, 1 at first
+  constexpr std::uint64_t seed = 1;
+  const double shift = std::pow(slowest / part_step(), 2);
+  const std::size_t n = state_.size();
+  Motion left{Vec3Array(n), Vec3Array(n)};
+  for_elements(topology_, [&](const TubeType& type, std::size_t i) {
+    Eigen::Matrix<double, 6, 1> normal;
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const auto bits = philox({static_cast<std::uint32_t>(i), k, 0, 0}, seed);
+      const auto pair = normal_pair(bits[0], bits[1]);
+      normal.segment<2>(2 * k) << pair[0], pair[1];
+    }
+    left.linear.set(i, std::sqrt(type.mass) * normal.head<3>());
+    left.angular.set(i, std::sqrt(type.inertia) * normal.tail<3>());
+  });
+  Stiffness stiffness(*this);
+  Motion free = free_accelerations(left), along = free;
+  double power = left.dot(free);
+  for (long k = 0; k < most && power > small; ++k) {
+    Motion resistance = stiffness.times(along);
+    for_elements(topology_, [&](const TubeType& type, std::size_t i) {
+      resistance.linear.add(i, shift * type.mass * along.linear[i]);
+      resistance.angular.add(i, shift * type.inertia * along.angular[i]);
+    });
+    const double curvature = along.dot(resistance);
+    if (curvature <= 0) return along;
+    left.add(-power / curvature, resistance);
+    free = free_accelerations(left);
+    const double next = left.dot(free);
+    Motion turned = free;
+    turned.add(next / power, along);
+    along = turned;
+    power = next;
+  }
+  return std::nullopt;
 }
 
 void Simulation::begin_relaxation(const RelaxGoal& goal) {
@@ -195,6 +263,7 @@ Relaxed Simulation::relax(const RelaxGoal& goal, long max_steps, const std::func
   if (!r.underway()) begin_relaxation(goal);
   Relaxed out;
   for (;;) {
+    out = {};
     const PartEnd end = relax_part(max_steps, progress);
     const bool small = end == PartEnd::small_forces;
     out.force = largest_force();
@@ -206,8 +275,27 @@ Relaxed Simulation::relax(const RelaxGoal& goal, long max_steps, const std::func
     out.error = 2 * std::sqrt(out.above / bonds);
     const bool saddle = std::isinf(out.above) && out.force < no_force * goal.force;
     out.at_rest = small && (out.above <= enough || saddle);
-    if (out.at_rest || !small) break;
-    r.force = out.force * (std::isfinite(out.above) ? std::max(0.01, 0.5 * std::sqrt(enough / out.above)) : 0.1);
+    out.saddles = r.disturbances;
+    if (!small) break;
+    if (!out.at_rest) {
+      r.force = out.force * (std::isfinite(out.above) ? std::max(0.01, 0.5 * std::sqrt(enough / out.above)) : 0.1);
+      continue;
+    }
+    // A disturbance from which it came back to the same energy was that of a minimum.
+    const double energy = forces_.energy.potential() - account_.work;
+    if (r.disturbances > 0 && !(energy < r.disturbed_from - enough)) {
+      --out.saddles;
+      break;
+    }
+    const std::optional<Motion> falling = falling_motion(least_iterations + done);
+    if (!falling) break;
+    ++r.disturbances;
+    r.disturbed_from = energy;
+    r.force = goal.force;
+    state_.velocity = falling->linear;
+    state_.angular_velocity = falling->angular;
+    move_in_relaxation(Fire::farthest(topology_.largest_radius()) / farthest(*falling));
+    stand_still();
   }
   const double first = r.first_energy, risen = forces_.energy.potential() - account_.work - first;
   end_relaxation();
@@ -215,6 +303,16 @@ Relaxed Simulation::relax(const RelaxGoal& goal, long max_steps, const std::func
     throw NumericalError(state_.step, -1, "the relaxation went up in energy, by " + std::to_string(risen) + " eV",
                          "start from a state without overlaps");
   return out;
+}
+
+void Simulation::move_in_relaxation(double step) {
+  account_.work += 0.5 * step * load_power(point_loads_, state_);
+  move(step);
+  ++state_.step;
+  update_list();
+  compute(true, 0);
+  account_.work += 0.5 * step * load_power(point_loads_, state_);
+  balance_relaxation();
 }
 
 // `max_steps`: of the whole relaxation.
@@ -284,14 +382,8 @@ Simulation::PartEnd Simulation::relax_part(long max_steps, const std::function<b
       fastest2 =
           std::max(fastest2, state_.velocity[i].squaredNorm() + scale2 * state_.angular_velocity[i].squaredNorm());
     const double step = std::min(dt, fastest2 > 0 ? max_move / std::sqrt(fastest2) : dt);
-    account_.work += 0.5 * step * load_power(point_loads_, state_);
-    move(step);
+    move_in_relaxation(step);
     r.last_step = step;
-    ++state_.step;
-    update_list();
-    compute(true, 0);
-    account_.work += 0.5 * step * load_power(point_loads_, state_);
-    balance_relaxation();
     if (forces_.slipping_bond >= 0) check_forces(true);
   }
   stand_still();

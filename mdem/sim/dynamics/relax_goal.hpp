@@ -25,10 +25,12 @@ struct Relaxed {
   // eV above the minimum; infinite: none is near, the energy falls along some motion; NaN: the forces are too large
   double above = std::numeric_limits<double>::quiet_NaN();
   double error = std::numeric_limits<double>::quiet_NaN();  // 2 sqrt(above/U)
+  std::int64_t saddles = 0;                                 // that it rested on and left
 };
 
 // The state of a relaxation between two of its steps. It has parts: if the forces are small and the energy is
-// not, the next part goes on to smaller forces.
+// not, the next part goes on to smaller forces. If both are small, and yet the energy falls along some motion,
+// the state is moved along it, and the next part goes on from there.
 struct Relaxation {
   std::int64_t began = -1;  // step; negative: none is underway
   RelaxGoal goal;
@@ -38,6 +40,8 @@ struct Relaxation {
   double constant = 0;           // eV, energy less supplied energy
   double longest_bond = 0;       // of an element's length; a longer one is torn
   double last_step = 0;          // ps
+  std::int64_t disturbances = 0;
+  double disturbed_from = 0;  // eV, potential less the work of the loads, before the last one
   Fire fire{0};
 
   bool underway() const { return began >= 0; }

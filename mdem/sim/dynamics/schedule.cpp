@@ -67,6 +67,14 @@ bool Schedule::constant() const {
   return std::all_of(points_.begin(), points_.end(), [&](const Point& p) { return p.value == first(); });
 }
 
+double Schedule::fastest() const {
+  double most = 0;
+  for (std::size_t k = 1; k < points_.size(); ++k)
+    most = std::max(most,
+                    std::fabs((points_[k].value - points_[k - 1].value) / (points_[k].time - points_[k - 1].time)));
+  return most;
+}
+
 double Schedule::largest() const {
   double most = 0;
   for (const Point& p : points_) most = std::max(most, std::fabs(p.value));

@@ -33,6 +33,7 @@ class Schedule {
   double first() const { return points_.empty() ? 0.0 : points_.front().value; }
   double last() const { return points_.empty() ? 0.0 : points_.back().value; }
   double largest() const;  // of its absolute values
+  double fastest() const;  // of its absolute rates between two points
 
  private:
   // Between two points: from the speed `enter` to `along` in the time `smooth`, and on to `leave` in the last of it.

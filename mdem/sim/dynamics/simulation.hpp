@@ -131,9 +131,13 @@ class Simulation {
   PartEnd relax_part(long max_steps, const std::function<bool(long)>& progress);
   void balance_relaxation();
   void stand_still();
+  void move_in_relaxation(double step);
   struct Motion;
+  class Stiffness;
+  double farthest(const Motion& motion) const;  // nm, of an element, its turn at the largest radius
   Motion free_accelerations(const Motion& forces) const;
   double above_minimum(double enough, long most) const;
+  std::optional<Motion> falling_motion(long most) const;
   template <class Archive, class Self, class ListOrigin>
   static void visit_checkpoint(Archive& archive, Self& self, ListOrigin& list);
   bool could_go_on(double step_of_scene) const;

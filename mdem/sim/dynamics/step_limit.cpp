@@ -247,4 +247,10 @@ double heat_left(const TimeStepLimit& limit, double time) {
   return sum / static_cast<double>(limit.damping_rates.size());
 }
 
+double bath_held(const TimeStepLimit& limit, double coupling) {
+  double sum = 0;
+  for (const double rate : limit.damping_rates) sum += coupling / (coupling + rate);
+  return sum / static_cast<double>(limit.damping_rates.size());
+}
+
 }  // namespace ropewalk

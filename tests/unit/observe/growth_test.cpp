@@ -124,5 +124,47 @@ TEST(StopWatch, KnowsWhenAQuestionIsDecided) {
   EXPECT_EQ(watch.decided({}), "");
 }
 
+Threshold bracket_of(const std::vector<std::pair<double, bool>>& outcomes) {
+  std::vector<Trial> trials;
+  for (const auto& [value, passed] : outcomes) {
+    trials.emplace_back();
+    trials.back().value = value;
+    trials.back().passed = passed;
+  }
+  return bracketed(trials, 1, 9);
+}
+
+TEST(BracketOfAThreshold, IsTheLowestChangeOfTheOutcome) {
+  const Threshold rising = bracket_of({{9, true}, {1, false}, {5, true}, {3, false}});
+  EXPECT_FALSE(rising.outside || rising.falling);
+  EXPECT_EQ(std::tuple(rising.below, rising.above, rising.changes), std::tuple(3.0, 5.0, 1));
+  const Threshold falling = bracket_of({{9, false}, {1, true}, {5, false}, {3, true}});
+  EXPECT_FALSE(falling.outside);
+  EXPECT_TRUE(falling.falling);
+  EXPECT_EQ(std::tuple(falling.below, falling.above, falling.changes), std::tuple(3.0, 5.0, 1));
+  const Threshold window = bracket_of({{9, false}, {1, false}, {5, true}});
+  EXPECT_EQ(std::tuple(window.below, window.above, window.changes), std::tuple(1.0, 5.0, 2));
+  for (const bool passed : {true, false}) {
+    const Threshold none = bracket_of({{1, passed}, {9, passed}});
+    EXPECT_TRUE(none.outside);
+    EXPECT_EQ(std::tuple(none.below, none.above, none.changes), std::tuple(1.0, 9.0, 0));
+  }
+}
+
+TEST(GrowthThresholdOfAFallingOutcome, IsAboveTheRunsThatPassed) {
+  std::vector<Trial> trials;
+  for (const double value : {2.0, 8.0, 9.0, 9.5, 10.5}) {
+    Trial t;
+    t.value = value;
+    t.passed = value < 10;
+    if (t.passed) t.rate = value < 5 ? 9 : std::sqrt((10 - value) / 4), t.error = 0.01 * *t.rate;
+    trials.push_back(t);
+  }
+  const auto found = growth_threshold(trials);
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(found->critical, 10, 1e-9);
+  EXPECT_EQ(found->runs, 3u);
+}
+
 }  // namespace
 }  // namespace ropewalk

@@ -157,9 +157,11 @@ CaseResult run(const CaseContext& context) {
       "is met too early.",
       {{"tolerance over the softest stiffness", part, allowed, 0}, model_points("at 1e-6 eV/nm", part, left)});
   result.remarks.push_back(
-      "Forces vanish on a saddle as they do at rest. A perfectly straight tube above its buckling load counts as "
-      "relaxed at any tolerance; give such a scene a perturbation. A relaxation that runs out of steps reports its "
-      "largest force and ends with exit code 4.");
+      "Forces vanish on a saddle as they do at rest. This is FIRE to a tolerance of the force alone, for which a "
+      "perfectly "
+      "straight tube above its buckling load is at rest. A run with mode = relax tries a random motion as well and "
+      "leaves "
+      "the saddle. A relaxation that runs out of steps reports its largest force and ends with exit code 4.");
   return result;
 }
 
