@@ -51,7 +51,7 @@ class Interpolation {
 
 template <class T, int segments_, int degree_>
 RadialTable<T, segments_, degree_>::RadialTable(const LineDensity& law, double unit_nm) {
-  ROPEWALK_EXPECTS(unit_nm > 0 && law.core_gap < law.switch_gap && law.switch_gap < law.cutoff_gap);
+  ROPEWALK_EXPECTS(unit_nm > 0 && law.core_gap < law.cutoff_gap);
   const auto squared = [](double x) { return x * x; };
   const double core_at = squared(law.contact + law.core_gap), end_at = squared(law.cutoff());
   const double delta = radial_delta(core_at, squared(law.contact + law.switch_gap), end_at, octaves, per_octave);
