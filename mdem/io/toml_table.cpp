@@ -236,7 +236,8 @@ constexpr double smallest_number = 1e-100;  // its square is above what a double
 double checked_number(const TomlTable& t, const std::string& key, const toml::node& n, const Bounds& bounds) {
   if (!n.is_number())
     refuse_type(t, key, n, "a number", n.is_string() ? "write it without quotes" : "write a plain number");
-  const double value = *n.value<double>();
+  // Not n.value<double>(), which is empty for whole numbers that a double rounds.
+  const double value = n.is_integer() ? static_cast<double>(n.as_integer()->get()) : n.as_floating_point()->get();
   if (value != 0 && std::fabs(value) < smallest_number)
     throw t.error(key, fmt::format("is {}, too small a number to be calculated with", value),
                   "write 0 if you mean none");
