@@ -202,9 +202,9 @@ double energy_drift(const EnergyAccount& a) {
   const double change = a.potential.potential() - a.first.potential();
   const double moved =
       a.kinetic + std::fabs(a.work) + std::fabs(a.heat) + std::fabs(a.dissipated) + std::fabs(change);
-  const double at_rest = rounding * (a.potential.bonds() + std::fabs(a.potential.vdw));
-  const double scale = moved + at_rest;
-  return scale > 0 || std::isnan(scale) ? std::fabs(energy_balance(a)) / scale : 0;
+  constexpr double nothing = 1e-12;  // eV: bonds at rest hold rounding alone, and less than that
+  const double at_rest = rounding * (a.potential.bonds() + std::fabs(a.potential.vdw)) + nothing;
+  return std::fabs(energy_balance(a)) / (moved + at_rest);
 }
 
 std::vector<std::string> term_energy_columns() {

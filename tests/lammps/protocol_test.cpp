@@ -400,7 +400,7 @@ TEST_F(LammpsRun, ImportLooksForLimits) {
        "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[rope]\ntubes = 7\nlength_nm = 14\n"
        "[[grip]]\nend = \"lower\"\n[[grip]]\nend = \"upper\"\nabout_z = { rotation_deg = [[0, 0], [3, 80]] }\n"
        "[run]\nduration_ps = 3\nframes_every_ps = 0.5\n");
-  ASSERT_EQ(run("run scene.toml --out here --quiet").code, 0);
+  ASSERT_EQ(run("run scene.toml --out here --quiet").code, 7);
   ASSERT_EQ(run("export scene.toml --lammps there").code, 0);
   ASSERT_EQ(lmp(2, "there", "-in in.rope").code, 0);
   const Outcome o = run("import there");
