@@ -36,7 +36,7 @@ TEST_F(ObservableExample, IsInTheLogTheJsonTheReportAndTheTable) {
   add_observable(longest_tube_entry);
   test::spit(dir / "s.toml",
              "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[rope]\ntubes = 7\n"
-             "length_nm = 14\n[twist]\nmoment_nN_nm = 30\nrate_nN_nm_per_ps = 10\nhold_ps = 1\n");
+             "length_nm = 14\n[twist]\nmoment_nN_nm = 5\nrate_nN_nm_per_ps = 5\nhold_ps = 1\n");
   RunArguments scene;
   scene.scene = dir / "s.toml";
   scene.out = dir / "d";
