@@ -258,9 +258,18 @@ Relaxed Simulation::relax(const RelaxGoal& goal, long max_steps, const std::func
   constexpr double least_part = 1e-3;  // of the contact's energy, which stands for that of bonds that hardly bear
   constexpr double no_force = 1e-2;    // of the goal: what rests here without a minimum rests on a saddle
   constexpr long least_iterations = 300;
+  constexpr std::int64_t most_saddles = 30;  // couples of fixed direction have no potential: they may pump for ever
   Relaxation& r = relaxation_;
   if (!(r.goal == goal)) end_relaxation();
   if (!r.underway()) begin_relaxation(goal);
+  // A motion that was tried starts from a higher energy.
+  const auto refuse_rise = [&] {
+    const double first = r.first_energy, risen = forces_.energy.potential() - account_.work - first;
+    if (r.disturbances > 0 || !(risen > 1e-6 * (1 + std::fabs(first)))) return;
+    end_relaxation();
+    throw NumericalError(state_.step, -1, "the relaxation went up in energy, by " + std::to_string(risen) + " eV",
+                         "start from a state without overlaps");
+  };
   Relaxed out;
   for (;;) {
     out = {};
@@ -281,12 +290,18 @@ Relaxed Simulation::relax(const RelaxGoal& goal, long max_steps, const std::func
       r.force = out.force * (std::isfinite(out.above) ? std::max(0.01, 0.5 * std::sqrt(enough / out.above)) : 0.1);
       continue;
     }
-    // A disturbance from which it came back to the same energy was that of a minimum.
     const double energy = forces_.energy.potential() - account_.work;
+    if (r.disturbances == 0 && rest_.step == state_.step) {
+      out.saddles = rest_.saddles;
+      break;
+    }
+    // A disturbance from which it came back to the same energy was that of a minimum.
     if (r.disturbances > 0 && !(energy < r.disturbed_from - enough)) {
       --out.saddles;
       break;
     }
+    if (r.disturbances == most_saddles) break;
+    refuse_rise();
     const std::optional<Motion> falling = falling_motion(least_iterations + done);
     if (!falling) break;
     ++r.disturbances;
@@ -297,11 +312,9 @@ Relaxed Simulation::relax(const RelaxGoal& goal, long max_steps, const std::func
     move_in_relaxation(Fire::farthest(topology_.largest_radius()) / farthest(*falling));
     stand_still();
   }
-  const double first = r.first_energy, risen = forces_.energy.potential() - account_.work - first;
+  refuse_rise();
   end_relaxation();
-  if (risen > 1e-6 * (1 + std::fabs(first)))
-    throw NumericalError(state_.step, -1, "the relaxation went up in energy, by " + std::to_string(risen) + " eV",
-                         "start from a state without overlaps");
+  if (out.at_rest) rest_ = {state_.step, out.saddles};
   return out;
 }
 
@@ -333,7 +346,7 @@ Simulation::PartEnd Simulation::relax_part(long max_steps, const std::function<b
     r.last_step = 0;
     r.longest_bond = std::max(2.0, 1.01 * longest_bond(topology_, state_.position).length);
   }
-  ROPEWALK_ENSURES(r.underway() && r.part_began >= r.began);
+  ROPEWALK_EXPECTS(r.underway() && r.part_began >= r.began);
   while (state_.step - r.began < max_steps) {
     if ((state_.step - r.part_began) % Fire::check_every == 0) {
       const LongestBond longest = longest_bond(topology_, state_.position);

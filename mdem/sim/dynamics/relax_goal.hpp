@@ -47,4 +47,11 @@ struct Relaxation {
   bool underway() const { return began >= 0; }
 };
 
+// The step at which the last relaxation came to rest, and the saddles that it left. From this step the next relaxation
+// tries no motion again, so that one which was killed after its end and is resumed gives the same bits.
+struct Rest {
+  std::int64_t step = -1;
+  std::int64_t saddles = 0;
+};
+
 }  // namespace ropewalk

@@ -103,7 +103,7 @@ class Simulation {
   // and energies are those of the present state.
   std::vector<double> memory() const { return engine_.terms().memory(); }
   void remember(const std::vector<double>& memory);
-  // As of the same simulation with elements half as long; `heirs` of sim/dynamics/refine.hpp.
+  // The memories of all force terms for the same rope on the finer chain; `heirs`: see sim/dynamics/refine.hpp.
   std::vector<double> halved_memory(const std::vector<int>& heirs) const {
     return engine_.terms().halved_memory(heirs);
   }
@@ -164,6 +164,7 @@ class Simulation {
   std::vector<PointLoad> point_loads_;  // those in the last forces: of the velocities in the middle of the step
   EnergySupply account_;
   Relaxation relaxation_;
+  Rest rest_;
   double list_seconds_ = 0, integration_seconds_ = 0;
 };
 
