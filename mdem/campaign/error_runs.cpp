@@ -53,14 +53,13 @@ std::vector<VariedNumber> varied_numbers(const Scene& scene, int tubes) {
     const ParameterSet& set = scene.sets[k];
     const std::string of = scene.sets.size() > 1 ? " of " + set.name : "";
     const auto add = [&](const std::string& name, double sigma, std::vector<std::string> keys,
-                         std::string correlated) {
+                         const std::string& correlated) {
       if (!(sigma > 0)) return;
       const std::string folder = (k > 0 ? fmt::format("type-{}-", k) : "") + name;
       all.push_back(
           {{name + of, folder + "-plus", folder + "-minus", sigma, std::max(least_step, sigma), correlated},
            k,
-           std::move(keys),
-           std::move(correlated)});
+           std::move(keys)});
     };
     const auto relative = [&](const char* key) {
       const Quantity* q = find_quantity(set, key);
@@ -86,8 +85,8 @@ std::vector<std::vector<double>> correlation_of(const std::vector<VariedNumber>&
     for (std::size_t j = 0; j < sources.size(); ++j) {
       out[i][j] = i == j ? 1 : 0;
       const VariedNumber &a = sources[i], &b = sources[j];
-      if (i == j || a.set != b.set || a.correlated.empty() || b.correlated.empty()) continue;
-      const auto c = covariance(scene.sets[a.set], {a.correlated, b.correlated});
+      if (i == j || a.set != b.set || a.error.key.empty() || b.error.key.empty()) continue;
+      const auto c = covariance(scene.sets[a.set], {a.error.key, b.error.key});
       out[i][j] = c[0][1] / std::sqrt(c[0][0] * c[1][1]);
     }
   return out;

@@ -14,7 +14,6 @@ struct VariedNumber {
   ErrorSource error;
   std::size_t set = 0;
   std::vector<std::string> keys;  // of the quantities that change together
-  std::string correlated;         // the key whose correlations count; empty: independent
 };
 
 // The numbers of the sets that have a standard error. Throws InputError where there is none. `tubes`: in the scene.

@@ -25,7 +25,7 @@ toml::table& table_of(toml::table& top, const std::string& name) {
   return *top[name].as_table();
 }
 
-// The elements in the places of these, from the end as well: -1 stays, and -2 becomes -3.
+// The numbers of the elements that take the places of the listed ones. Counted from the end, -1 stays and -2 becomes -3.
 toml::array in_the_same_places(const toml::array& typed) {
   toml::array elements;
   for (const auto& e : typed) {
@@ -35,18 +35,16 @@ toml::array in_the_same_places(const toml::array& typed) {
   return elements;
 }
 
-// Whether the table acts on elements that it numbers, and so on as many as before.
+// Whether the table lists the elements on which it acts. Their number then stays, and so does the load on each.
 bool numbers_elements(const SceneTable& keys, const toml::table& table) {
   return std::any_of(keys.keys.begin(), keys.keys.end(), [&](const SceneKey& key) {
     return key.numbers_elements && table[key.key].value_or(std::string()) != "all";
   });
 }
 
-// The key where elements are half as long. Nothing is written for a key that has no effect on them, or that is left
-// to the program.
-void refine_key(const SceneKey& key, const Scene& scene, const Topology& topology, bool numbered,
-                toml::table& table) {
-  const int elements = halved(topology, splitting_of(scene)).length_of(0);
+// Rewrites a key for elements of half the length, `elements` of them in a tube. Keys that do not depend on the elements,
+// and keys that the program chooses, stay unwritten. `numbered`: the table acts on elements that it numbers.
+void refine_key(const SceneKey& key, const Scene& scene, int elements, bool numbered, toml::table& table) {
   if (key.tube_size == SceneKey::TubeSize::length)
     table.insert_or_assign(key.key, elements * 0.5 * scene.element_length);
   if (key.tube_size == SceneKey::TubeSize::elements) table.insert_or_assign(key.key, elements);
@@ -80,18 +78,18 @@ bool is_drive(const std::string& table) {
                      [&](const DriveKind& kind) { return kind.table().name == table; });
 }
 
-void refine_tables(const Scene& scene, const Topology& topology, toml::table& top) {
+void refine_tables(const Scene& scene, int elements, toml::table& top) {
   for (const SceneTable& table : scene_tables()) {
     const bool matters = std::any_of(table.keys.begin(), table.keys.end(), [](const SceneKey& k) {
       return k.length_power != 0 || k.tube_size != SceneKey::TubeSize::no;
     });
     if (table.name.empty() || table.listed || is_drive(table.name) || !matters) continue;
     if (!top.contains(table.name) && table.optional()) continue;
-    for (const SceneKey& key : table.keys) refine_key(key, scene, topology, false, table_of(top, table.name));
+    for (const SceneKey& key : table.keys) refine_key(key, scene, elements, false, table_of(top, table.name));
   }
 }
 
-void refine_drives(const Scene& scene, const Topology& topology, toml::table& top) {
+void refine_drives(const Scene& scene, int elements, toml::table& top) {
   std::map<std::string, std::size_t> found;
   for (const auto& drive : scene.drives) {
     const SceneTable table = drive->table();
@@ -99,7 +97,7 @@ void refine_drives(const Scene& scene, const Topology& topology, toml::table& to
     toml::table& keys =
         table.listed ? *typed.as_array()->get_as<toml::table>(found[table.name]++) : *typed.as_table();
     const bool numbered = numbers_elements(table, keys);
-    for (const SceneKey& key : table.keys) refine_key(key, scene, topology, numbered, keys);
+    for (const SceneKey& key : table.keys) refine_key(key, scene, elements, numbered, keys);
   }
 }
 
@@ -150,8 +148,9 @@ std::string finer_scene_text(const Scene& scene, const Prepared& prepared, const
   toml::table top = toml::parse(scene.text);
   top.insert_or_assign("name", scene.name);
   top.insert_or_assign("element_length_nm", 0.5 * scene.element_length);
-  refine_tables(scene, prepared.topology, top);
-  refine_drives(scene, prepared.topology, top);
+  const int elements = halved(prepared.topology, splitting_of(scene)).length_of(0);
+  refine_tables(scene, elements, top);
+  refine_drives(scene, elements, top);
   if (scene.run.time_step > 0)
     table_of(top, "run")
         .insert_or_assign("time_step_fs", finer_time_step(scene, prepared, finer_text(top, comment)) / units::fs);

@@ -9,6 +9,7 @@
 #include <cstddef>
 
 #include "scene/bounds.hpp"
+#include "model/contract.hpp"
 #include "scene/loads/drive_kind.hpp"
 #include "scene/scene.hpp"
 #include "scene/scene_to_model.hpp"
@@ -253,28 +254,27 @@ bool GripLoad::is_unfelt(std::size_t axis, const State& s) const {
   return false;
 }
 
-GripLoad GripLoad::on_elements(std::vector<int> on, const Topology& topology, double length) const {
+GripLoad GripLoad::on_elements(std::vector<int> on, const Topology& topology, double free_length) const {
   GripLoad out = *this;
   out.elements = std::move(on);
   out.mass_.clear();
   out.inertia_.clear();
   out.clamp_.clear();
-  double longest = 0, sound = 0;  // ps, that a wave needs from end to end
+  double sound = 0;  // ps, that a wave needs from end to end
   for (const int e : out.elements) {
     const TubeType& type = topology.type_of_element(e);
     out.clamp_.push_back(each ? static_cast<int>(out.clamp_.size()) / depth : 0);
     out.mass_.push_back(type.mass);
     out.inertia_.push_back(type.inertia);
     const double tube = (topology.length_of(topology.tube_of(e)) - 1) * type.element_length;
-    longest = std::max(longest, tube);
     sound = std::max({sound, tube / std::sqrt(type.bond.stretch * type.element_length / type.mass),
                       tube / std::sqrt(type.bond.twist * type.element_length / type.inertia)});
   }
-  if (length <= 0) length = longest;
   for (std::size_t k = 0; k < axes.size(); ++k) {
+    ROPEWALK_EXPECTS(!axes[k].strain || free_length > 0);
     std::vector<Schedule::Point> points = axes[k].points;
     for (Schedule::Point& p : points)
-      if (axes[k].strain) p.value *= end == upper_end ? length : -length;
+      if (axes[k].strain) p.value *= end == upper_end ? free_length : -free_length;
     out.schedules_[k] = Schedule(points, smooth < 0 ? 2 * sound : smooth);
   }
   return out;
