@@ -156,6 +156,7 @@ TEST_F(LammpsRun, TethersHoldAndBreakAsHere) {
   EXPECT_EQ(energy[2], 0) << "it has broken";
   for (const int n : {1, 2, 4}) {
     SCOPED_TRACE(n);
+    fs::remove_all(dir / "parts");
     exported(scene_text, "parts");
     ASSERT_EQ(lmp(n, "parts", "-in in.rope -var steps 150").code, 0);
     ASSERT_EQ(lmp(n, "parts", "-in in.rope -var from lammps.states -var steps 300").code, 0);

@@ -44,7 +44,7 @@ read_dump $name/frames.lammpstrj $last x y z box yes add yes replace no format n
 print "read \$(atoms)"
 LAMMPS
   lmp -in in.read -log none > lammps.txt || { tail -3 lammps.txt >&2; exit 1; }
-  elements=$(($(wc -l < $name/final.csv) - 1))
+  elements=$(grep -c '^[0-9]' $name/final.csv)
   grep -qx "read $elements" lammps.txt || { echo "LAMMPS reads another number of elements of $name" >&2; exit 1; }
   /usr/bin/python3 -W ignore "$here/read_frames.py" $name
 done
