@@ -59,7 +59,7 @@ std::vector<std::string> potential_folders() {
   return {"/usr/share/lammps/potentials", "/usr/local/share/lammps/potentials"};
 }
 
-// Empty: it is in none of them.
+// The path of a file in the folders of potentials; empty: none of them has it.
 std::string file_in_folders(const std::string& name) {
   for (const std::string& folder : potential_folders()) {
     std::error_code ignored;

@@ -171,8 +171,8 @@ void leave_out_unusable_bond(Calibration& c, const std::string& text, const std:
   }
 }
 
-// The grade of the set as other commands will read it. A set that they would refuse, or whose contact is another
-// one, is not written.
+// Reads the text of a new set as other commands do and grades the set. Throws InputError for a set that other commands
+// would refuse, and for a set whose contact law changes by being written and read: such a set is not written.
 Grade usable_grade(const std::string& text, const std::string& path, Chirality tube) {
   const auto refuse = [&](const std::string& why) {
     throw InputError({"", 0, "--chirality"},

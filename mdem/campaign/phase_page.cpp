@@ -148,8 +148,7 @@ std::string phase_page(const Sweep& sweep, const std::vector<PhasePoint>& points
   html +=
       "<div class=\"scroll\"><table class=\"facts numbers\"><thead><tr><th>point</th><th>tubes</th><th>length, "
       "nm</th><th>length/radius</th><th>by bisection</th><th>by growth</th><th>runs that grow</th><th>theory, "
-      "sliding "
-      "tubes</th><th>glued tubes</th></tr></thead><tbody>\n";
+      "sliding tubes</th><th>glued tubes</th></tr></thead><tbody>\n";
   for (const PhasePoint& p : points) {
     const auto growth = p.by_growth();
     const auto number = [](double v) { return v > 0 ? fmt::format("{:.4g}", v) : std::string("–"); };

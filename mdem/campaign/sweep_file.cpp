@@ -210,9 +210,9 @@ struct Setting {
 
 constexpr const char* length_key = "element_length_nm";
 
-// Tubes with other elements in a scene that has none of this length yet: their free length stays as near as whole
-// elements go. Nothing is changed where the scene is wrong, which is said elsewhere, or where the size of the tubes
-// goes with the elements, value by value.
+// Resizes the tubes of a point for another element length, so that their free length stays as near as whole elements go.
+// `before`: the scene with its old element length. The text stays as it is for a wrong scene, which the check of the
+// point refuses, and for a sweep that gives a size of the tubes with each element length.
 void keep_free_length(const Sweep& s, const std::string& before, double length, std::string& text) {
   try {
     const Scene scene = scene_of_text(before, s.scene_path);
@@ -405,8 +405,7 @@ std::string why_replicates_are_equal(const Sweep& sweep, const std::vector<Sweep
     for (const auto of : {&State::position, &State::velocity})
       if ((a.*of).x != (b.*of).x || (a.*of).y != (b.*of).y || (a.*of).z != (b.*of).z) return "";
     return bath ? "replicates vary start.seed, and all have the noise of the thermostat.seed that is typed: take "
-                  "that "
-                  "key away"
+                  "that key away"
                 : "replicates are one and the same run, since nothing in the scene is random: add "
                   "rope.perturbation_nm "
                   "or a temperature, or take replicates away";

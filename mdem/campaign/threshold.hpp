@@ -77,8 +77,7 @@ struct PhasePoint {
   double by_bisection() const, bisection_error() const;
   // Seeds with which the outcome falls, and with which it changes more than once.
   std::size_t falling_seeds() const, unclear_seeds() const;
-  // What else is to be known of the bisection: that runs pass below the value, that there is more than one change.
-  // Empty: nothing.
+  // Remarks on the bisection: runs pass below the value, or the outcome changes more than once. Empty: neither.
   std::string remarks() const;
   std::optional<GrowthThreshold> by_growth() const;
 };

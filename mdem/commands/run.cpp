@@ -22,7 +22,7 @@ Settings settings_of(const Arguments& a) {
 
 constexpr int beyond_a_limit = 7;
 
-// For scripts: a run that is done, and whose results should not be used.
+// The exit code of a run that is done. A script learns from 7 that the results should not be used.
 int code_of(const RunResult& r) {
   const int code = tell_end(r);
   return code == 0 && r.beyond > far_beyond ? beyond_a_limit : code;

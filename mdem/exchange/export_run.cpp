@@ -115,8 +115,7 @@ void tell_of_long_steps(const Simulation& from, RunListener& listener) {
   const double step = from.time_step() / units::fs;
   listener.tell(
       fmt::format("note: with steps of {:.4g} fs the account of energy does not close in the first {} of them, and "
-                  "LAMMPS cannot "
-                  "divide them as `run` does: {}",
+                  "LAMMPS cannot divide them as `run` does: {}",
                   step, StepControl::window,
                   closes(parts) ? fmt::format("set run.time_step_fs = {:.4g} and export again", step / parts)
                                 : fmt::format("nor does it with {:.4g} fs; see how `run` ends", step / parts)));

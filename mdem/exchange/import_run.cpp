@@ -115,7 +115,7 @@ class Import {
     for (const std::string& line : watch_.check(prepared_.topology, state, list, drift, true)) listener_.tell(line);
   }
 
-  // As the step control of `run` does, over its window or longer.
+  // Judges the account of energy as the step control of `run` does, over a window of at least the same length.
   void check_account(const EnergyAccount& account, std::int64_t step) {
     if (scene_.run.mode == RunOptions::Mode::relax || step < marked_at_ + StepControl::window) return;
     const EnergyMark now{account.potential.potential() + account.kinetic, {account.work, account.dissipated}};
@@ -124,8 +124,7 @@ class Import {
     if (!closes && !told_of_account_)
       listener_.tell(fmt::format(
           "note: from step {} to {} the account of energy does not close. `run` would have gone back and divided "
-          "its "
-          "steps of {:.4g} fs, LAMMPS kept them: set run.time_step_fs to half of that, and export and run it again",
+          "its steps of {:.4g} fs, LAMMPS kept them: set run.time_step_fs to half of that, and export and run it again",
           marked_at_, step, prepared_.time_step / units::fs));
     told_of_account_ = told_of_account_ || !closes;
     mark_ = now;

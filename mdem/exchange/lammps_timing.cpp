@@ -58,8 +58,7 @@ StepsTime lammps_seconds(const std::string& folder, const std::string& program, 
   give_back_cores();
   const std::string command = fmt::format(
       "cd '{}' && OMP_NUM_THREADS=1 {}'{}' -in in.rope -log none -var steps {} -var every {} -var forces {} > '{}' "
-      "2>&1 "
-      "< /dev/null",
+      "2>&1 < /dev/null",
       folder, start, program, steps, steps + 1, plain ? "plain" : "engine", out);
   const int status = std::system(command.c_str());
   const std::string text = read_file(out), loop = "Loop time of ";

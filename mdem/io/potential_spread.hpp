@@ -16,7 +16,7 @@
 
 namespace ropewalk {
 
-// Of (10,10), as in its shipped sets. EA in nN, EI and GJ in nN nm^2.
+// Stiffnesses of (10,10) by one potential, as in its shipped set. EA in nN, EI and GJ in nN nm^2.
 struct PotentialStiffness {
   const char* potential;
   double EA, EI, GJ;
@@ -28,7 +28,7 @@ inline constexpr std::array<PotentialStiffness, 4> potentials_of_carbon = {{{"te
 
 // C of two quantities of a set, by their keys "bond.EA", "bond.EI", "bond.GJ", "bond.kGA"; 0 for all others.
 double potential_covariance(const std::string& one, const std::string& other);
-// Its root for one quantity: the relative standard deviation between potentials.
+// The relative standard deviation of one quantity between potentials, C(q, q)^1/2.
 double potential_spread(const std::string& key);
 
 }  // namespace ropewalk

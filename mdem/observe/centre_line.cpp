@@ -89,7 +89,7 @@ bool run_the_same_way(const Topology& topology, const State& state) {
     ways.push_back(way);
     sum += way;
   }
-  // Where half of them run against the other half, the first tube is as good as any.
+  // If half of the tubes run against the other half, their mean is zero: the first tube then gives the direction.
   const double few = 1e-3 * static_cast<double>(ways.size());
   const Vector3 mean = sum.norm() > few ? Vector3(sum.normalized()) : ways.empty() ? sum : ways.front();
   return std::all_of(ways.begin(), ways.end(), [&](const Vector3& way) { return way.dot(mean) > -0.5; });

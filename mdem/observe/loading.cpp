@@ -50,7 +50,7 @@ double largest_curvature(const Topology& topology, const State& state, int tube)
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
-// Slip is known between tubes of one length that run the same way at the start.
+// Whether slip has a value: only between tubes of one length that run the same way at the start.
 bool knows_slip(const Topology& topology, const LoadingReference& reference) {
   return topology.tubes() < 2 || !reference.radius.empty();
 }

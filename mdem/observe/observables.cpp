@@ -26,7 +26,7 @@ double stored(const M& m) { return (m.account.potential.potential() - m.account.
 
 double torque(const M& m, End end, Eigen::Index axis) { return m.account.ends[end].torque[axis] / units::nN_nm; }
 
-// Of the middle section, which only tubes with a common centre line have.
+// A count in the middle section; nan for tubes without a common centre line, which have no such section.
 double in_section(const M& m, int count) {
   return m.topology.tubes() > 0 && m.rope.centre_line.empty() ? std::numeric_limits<double>::quiet_NaN() : count;
 }

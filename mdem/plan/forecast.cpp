@@ -56,7 +56,7 @@ std::optional<QuasiStatic> quasi_static(const Scene& scene, const Prepared& p) {
   }
   const double cubic = 0.5 * (f.length_held ? fourth : fourth - second * second / stretch);
   const double phi = f.turned / f.length, torque = 0.5 * twist * phi + 0.25 * cubic * phi * phi * phi;
-  // From rest at one end to the whole rate at the other.
+  // The speed of rotation rises along the rope from zero at the held end to the whole rate at the turned one.
   const double drag = scene.bath() ? scene.bath()->coupling * inertia * 0.5 * f.turning * f.length : 0;
   return QuasiStatic{f.length * std::sqrt(inertia / twist), f.turned / f.turning, drag / torque,
                      0.5 * f.turning * std::sqrt(twist * inertia) / torque};

@@ -18,15 +18,15 @@ std::vector<std::string> limits_ahead(const Scene& scene, const Prepared& prepar
 // of
 //   M = sum(GJ) phi + sum(EA rho^4) phi^3/2
 // at the twist phi per length, with the distance rho of a tube from the axis; where the length is not held, the
-// square of the mean of rho^2 is taken off. An upper estimate: what is seen is 0.3 to 0.8 of it, since damping,
-// rounded corners and the faster twist of each tube about its own axis take from the wave.
+// square of the mean of rho^2 is taken off. The estimate is an upper one: runs show 0.3 to 0.8 of it, since damping,
+// rounded corners and the faster twist of each tube about its own axis weaken the wave.
 struct QuasiStatic {
   double travel = 0;  // ps, from end to end of the untwisted rope
   double time = 0;    // ps, of the turn
   double drag = 0;    // of a bath at rest on the turning rope, over the mean torque: what the driven end bears more
   double error = 0;   // half the difference of the torques at both ends, over the mean torque of the turn
 };
-// None where no end is turned, or only one is held.
+// Nothing for a scene in which no end is turned, or in which clamps do not hold both ends.
 std::optional<QuasiStatic> quasi_static(const Scene& scene, const Prepared& prepared);
 std::string words_of(const QuasiStatic& q);
 

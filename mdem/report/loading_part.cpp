@@ -25,7 +25,8 @@ std::string against_rotation(const std::vector<LogRow>& log) {
   return largest(log, "rotation_deg") > 1 ? "rotation_deg" : "";
 }
 
-// Where clamps hold both ends, their mean with a band from one to the other: a wave on its way shows in the band.
+// Draws the mean torque of both ends with a band from one end to the other if clamps hold both: a wave that travels along
+// the rope widens the band. Else it draws the torque at the held end.
 Panel torque(const std::vector<LogRow>& log) {
   const LogValue upper = logged("torque_upper_nN_nm"), lower = logged("torque_lower_nN_nm");
   const double most_upper = largest(log, "torque_upper_nN_nm"), most_lower = largest(log, "torque_lower_nN_nm");
@@ -43,8 +44,7 @@ Panel torque(const std::vector<LogRow>& log) {
     if (std::isfinite(mean(r))) apart += half(r), whole += std::fabs(mean(r));
   out.caption = fmt::format(
       "Torque about z that twists the rope, mean of both ends and of the time between two rows. The band goes from "
-      "one "
-      "end to the other, which are equal where nothing moves; here they are on average <b>{} %</b> off their mean.",
+      "one end to the other, which are equal where nothing moves; here they are on average <b>{} %</b> off their mean.",
       number_text(100 * apart / whole, 2));
   out.traces = {{"mean of both ends", mean, 0, false, half}};
   return out;

@@ -16,7 +16,7 @@ struct RunParts {
   const State& state() const { return moving.state(); }
   void write_row();
   void write_frame() { files.write_frame(moving); }
-  // Whether the listener or the wall time asks for an end.
+  // The reason for which the run has to stop now: a request of the listener, or the end of the allowed wall time.
   StopReason asked_to_stop();
 
   RunSettings settings;

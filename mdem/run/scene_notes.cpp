@@ -39,10 +39,8 @@ void warn_of_paper(const Scene& scene, const ContactLaw* law, std::vector<std::s
   if (off < 0.01) return;
   warnings.push_back(fmt::format(
       "law = \"paper\" is up to {:.2g} % off for {}: tubes crossed at 90 degrees bind with {:.2f} to {:.2f} eV by "
-      "where "
-      "along their elements they cross, and the surface integral gives {:.2f} eV; parallel ones with {:.3f} eV/nm "
-      "at "
-      "{:.3f} nm, and the integral gives {:.3f} eV/nm at {:.3f} nm. law = \"line\" agrees with the integral.",
+      "where along their elements they cross, and the surface integral gives {:.2f} eV; parallel ones with {:.3f} eV/nm "
+      "at {:.3f} nm, and the integral gives {:.3f} eV/nm at {:.3f} nm. law = \"line\" agrees with the integral.",
       100 * off, set.name, w.crossed_shallowest, w.crossed_deepest, integral.cross90_energy, w.parallel, w.spacing,
       integral.pair_energy, integral.pair_spacing));
 }
@@ -76,7 +74,7 @@ void warn_of_unlike_tubes(const Scene& scene, std::vector<std::string>& warnings
                   least->radius, most->radius));
 }
 
-// Observables of the rope as a whole go by elements of equal number.
+// Observables of the rope as a whole take sections through elements of equal number along their tubes.
 void warn_of_no_centre_line(const Topology& topology, const State& state, std::vector<std::string>& warnings) {
   const bool unequal = common_length(topology) == 0, opposed = !run_the_same_way(topology, state);
   if (topology.tubes() < 2 || (!unequal && !opposed)) return;
@@ -88,7 +86,7 @@ void warn_of_no_centre_line(const Topology& topology, const State& state, std::v
                   opposed ? " The columns of the upper and the lower end mix both ends of the rope." : ""));
 }
 
-// A radius for Q that reaches the second shell of the packing.
+// Warns of a radius for Q that reaches the second shell of the packing.
 void warn_of_second_neighbours(const Scene& scene, double spacing, std::vector<std::string>& warnings) {
   const double typed = scene.observe.neighbour_radius, second = std::sqrt(3.0) * spacing;
   if (spacing > 0 && typed >= second)
@@ -177,8 +175,7 @@ std::vector<std::string> error_bars_of(const Scene& scene, const Topology& topol
     return {
         what +
         "How much it counts for these tubes stands in no number of their parameter sets; of other tubes the "
-        "binding "
-        "energy has a standard deviation of 0.2 to 3 % over all registries, and twisting energies of small ropes "
+        "binding energy has a standard deviation of 0.2 to 3 % over all registries, and twisting energies of small ropes "
         "move by some per cent at small angles."};
   std::vector<std::string> out = {
       what +

@@ -36,7 +36,7 @@ EnergyMark energy_mark(const Simulation& simulation);
 // adds more than that soon before it blows up. The error of a sound run, cold or hot, is at most 1 %. Its
 // sum is judged by the limit energy_drift (observe/limits.hpp).
 bool account_closes(const EnergyMark& mark, const Simulation& simulation);
-// Likewise with the energies at the end by name, in eV.
+// The same verdict from energies in eV, for a run of another engine.
 bool account_closes(const EnergyMark& mark, const EnergyMark& now, double kinetic, double bonds,
                     std::size_t elements);
 

@@ -67,14 +67,14 @@ class Drive {
   virtual void warn(const Scene&, const Topology&, const LoadsAndConstraints&, std::vector<std::string>&) const {}
 
   virtual Ends ends() const { return Ends::free; }
-  // Whether it acts on single elements, whose centres stay where they are in a scene with shorter ones. By default if
-  // the drive clamps or loads ends, or has a key that numbers elements.
+  // Whether the drive acts on single elements. A scene with shorter elements then keeps the centres of these elements.
+  // The default is true for a drive that clamps or loads ends, and for a drive with a key that lists elements.
   virtual bool holds_elements() const;
-  // Elements at this end of a tube that it holds as one rigid piece.
+  // The number of elements at this end of a tube that the drive holds as one rigid piece.
   virtual int held(End /*end*/, int /*tube*/) const { return 0; }
   // The moment that it applies; null: none.
   virtual const MomentRamp* moment_ramp() const { return nullptr; }
-  // Of a bath that keeps a temperature; null: it is none.
+  // The options of a thermostat; null: the drive is none.
   virtual const ThermostatOptions* thermostat() const { return nullptr; }
 
   // Why its elements cannot be split in two, and why they cannot be of any other length; empty: they can.

@@ -1,12 +1,11 @@
 // A scene with elements of half the length: what a run goes on with when its elements have become too long.
 //
-// Where drives hold single elements, another element comes between every two (Splitting::between): the centres of those
-// that are held stay, and with them the free length of the tubes (free_length()), the place and the size of every load
-// on an element. Else every element is split in two, and the tubes stay as long. Lengths are those that the tubes have,
-// in whole elements. How every other key goes with the length of an element stands with the key
-// (SceneKey::length_power): of a load on all elements each takes its part; nodes of the line law keep their spacing,
-// tubes their range of self-exclusion, and dissipation belongs to a length of tube (scene/tables/damping.cpp). A typed
-// time step keeps its share of the stability limit.
+// If drives hold single elements, another element comes between every two (Splitting::between). The held elements keep
+// their centres, the tubes their free length (free_length()), and each load on an element its place and size. Else every
+// element is split in two, and the tubes keep their length. Lengths in the finer scene are whole elements. Each other key
+// states its dependence on the element length (SceneKey::length_power): a load on all elements divides among them, nodes
+// of the line law keep their spacing, tubes their range of self-exclusion, and dissipation its value per length of tube
+// (scene/tables/damping.cpp). A typed time step keeps its share of the stability limit.
 #pragma once
 
 #include <string>

@@ -67,16 +67,15 @@ void refuse_overlaps(const Scene& scene, const Prepared& p) {
     throw InputError(place, overlap, "move them apart, or relax the state first with mode = \"relax\"");
 }
 
-// The last elements are the upper end: the signs of torque and tension go by it, and a disc about the upper ends of
-// tubes that stand against one another holds both ends of the rope. What the program places itself stands upright.
+// The last elements of a tube are its upper end: the signs of torque and tension follow from that, and a clamp of the
+// upper ends of opposed tubes would hold both ends of the rope. Tubes that the program places itself stand upright.
 void refuse_upside_down(const Scene& scene, const Prepared& p) {
   using Ends = Drive::Ends;
   if (!scene.from_file() || !(scene.has_ends(Ends::clamped) || scene.has_ends(Ends::loaded))) return;
   const InputError::Place place{scene.source->file(), 0, ""};
   const char* remedy =
       "write the lines of such a tube in the opposite order, each quaternion turned by 180 degrees about an axis "
-      "across "
-      "the tube";
+      "across the tube";
   for (int t = 0; t < p.topology.tubes(); ++t) {
     const Vector3 first = p.state.position[static_cast<std::size_t>(p.topology.tube_begin[t])],
                   way = p.state.position[static_cast<std::size_t>(p.topology.tube_begin[t + 1]) - 1] - first;

@@ -8,13 +8,13 @@
 
 namespace ropewalk {
 
-// Whether drives hold single elements. The centres of these then stay where they are in a scene with elements of another
-// length, and a tube has no free length beyond the centres of its first and last elements.
+// Whether a drive holds single elements (Drive::holds_elements). A scene with elements of another length then keeps their
+// centres, and the free length of a tube ends at the centres of its first and last elements.
 bool holds_elements(const Scene& scene);
-// Elements of a tube less those that make its free length.
+// The number of elements of a tube less its free length in elements.
 int elements_held(const Scene& scene, int tube);
-// nm, of a tube: what can stretch, bend and twist between its ends. Where drives hold single elements, it is the distance
-// at the start from the centre of the innermost element that is held at the lower end to that at the upper end; the first
+// The free length of a tube (nm): the length that can stretch, bend and twist between its ends. If drives hold single
+// elements, it is the distance at the start between the centres of the innermost held elements at both ends; the first
 // and the last element count as held. Else it is the length of the tube.
 double free_length(const Scene& scene, const Topology& topology, int tube);
 
@@ -23,8 +23,8 @@ std::vector<Validity> validities(const Scene& scene, const Topology& topology);
 
 // The scene's tube types, and no tubes yet.
 Topology empty_topology(const Scene& scene);
-// The bonds of tubes with the free lengths of those that the topology holds: long ones collapse earlier, and those of a
-// slice without ends as endless ones.
+// Sets the bonds of all tube types by the free lengths of the tubes: a longer tube collapses at a smaller twist. The
+// tubes of a periodic slice count as endless.
 void set_collapse(const Scene& scene, Topology& topology);
 
 // The contact law of the scene; null: none. It takes searches for its wells: make it once and hand it on.

@@ -38,7 +38,8 @@ const std::string header = whole_header.substr(0, whole_header.find(",vx"));
 constexpr double farthest = 1e7;                          // nm
 constexpr double norm_slack = 1e-3;                       // of a quaternion
 constexpr double shortest_bond = 0.1, longest_bond = 10;  // element lengths
-// Of the median bond of a tube: beyond any strain that a tube bears, and short of elements split or joined in two.
+// Bounds of a tube's median bond over the element length. No strain that a tube bears reaches them, and elements of half
+// or twice the length lie beyond them.
 constexpr double shortest_usual = 0.75, longest_usual = 1.34;
 constexpr const char* length_words = "element_length_nm: ";
 
@@ -49,7 +50,7 @@ struct Row {
   Vector3 velocity, spin;
 };
 
-// In the comments before this line, nm; 0: nothing is said.
+// The element length (nm) that a comment before the present line states; 0: none does.
 double stated_length(const CsvReader& csv) {
   for (const std::string_view comment : csv.comments()) {
     if (comment.rfind(length_words, 0) != 0) continue;
@@ -98,7 +99,7 @@ class StateReader {
            fmt::format("it must be {0}, or {1}", header, whole_header));
   }
 
-  // What the file says of its elements against what they are read as.
+  // Compares the element length that the file states with the one that its elements are read with.
   void check_length() {
     const double length = stated_length(csv_);
     stated_ = length > 0;
@@ -109,7 +110,8 @@ class StateReader {
            fmt::format("take element_length_nm = {}, the length in the comment above", length));
   }
 
-  // Of a file that says nothing. One that does may hold the state of a run that blew up.
+  // Checks the spacing in a file that does not state its element length. A file that states the length is trusted: it may
+  // hold the state of a run that blew up.
   void check_spacing() const {
     std::size_t first = 0;
     for (int t = 0; t < topology_.tubes(); ++t, first = static_cast<std::size_t>(topology_.tube_begin[t])) {

@@ -103,8 +103,7 @@ std::vector<Recipe> recipes() {
         {"run", {{"duration_ps", "5000"}}}}},
       {"spindle",
        "91 tubes of 67.8 nm twisted into a spindle (Wang et al. 2015, Fig. 2); real tubes collapse under this "
-       "moment "
-       "(limits.wall_twist)",
+       "moment (limits.wall_twist)",
        twisted_rope("67.8", {{"moment_nN_nm", "35"}, {"rate_nN_nm_per_ps", "1.0"}, {"hold_ps", "100"}})},
       {"bird-cage",
        "91 tubes of 41 nm: a void opens inside, the bird cage (Fig. 3a); real tubes collapse under this moment "
@@ -128,8 +127,7 @@ std::vector<Recipe> recipes() {
         {"run", {{"duration_ps", "1000"}}}}},
       {"film",
        "a thin film of 100 tubes of 68.9 nm, laid down at random, at 300 K; where tubes fall on one another they "
-       "are "
-       "pressed beyond limits.press_nm for a while",
+       "are pressed beyond limits.press_nm for a while",
        {{"", {{"parameters", "\"cnt-10-10-tersoff\""}}},
         {"film", {{"tubes", "100"}, {"length_nm", "68.9"}, {"width_nm", "150"}, {"depth_nm", "100"}}},
         {"start", {{"temperature_K", "300"}}},

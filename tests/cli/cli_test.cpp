@@ -199,8 +199,8 @@ TEST_F(Cli, UnequalTubesHaveNoNumbersThatMeanNothing) {
   EXPECT_FALSE(fs::exists(dir / "e"));
 }
 
-// The published radius, 3.05 nm, counts second neighbours: inner tubes stay those of the packing, and Q is no 0 that looks
-// like a perfect one.
+// The published radius, 3.05 nm, counts second neighbours: inner tubes stay those of the packing, and Q is no 0 that
+// looks like a perfect one.
 TEST_F(Cli, ARadiusForQThatReachesSecondNeighboursIsTold) {
   small_rope("s.toml", "duration_ps = 0.1\n[observe]\nneighbour_radius_nm = 3.05\n");
   const Outcome o = run("run s.toml --out d --quiet");
@@ -869,7 +869,7 @@ hold_ps = 10
   ASSERT_EQ(table.code, 0);
   EXPECT_EQ(fs::last_write_time(dir / "r/errors/GJ-plus/log.csv"), made);
   EXPECT_NE(table.out.find("of the parameters alone"), std::string::npos) << table.out;
-  // Its last rows still move, by more than the error of the fit: no digit beyond is printed.
+  // The twist energy still moves in the last rows by more than the error of the fit: no digit beyond that is printed.
   EXPECT_GT(twist.at("moves_by").get<double>(), 2 * twist.at("standard_error").get<double>());
   EXPECT_TRUE(std::regex_search(table.out, std::regex("\ntwist_eV +[0-9]+\\.[0-9]{1,4} "))) << table.out;
   EXPECT_EQ(run("errors rope.toml").code, 2);

@@ -203,8 +203,8 @@ TEST(PeriodicSlice, IsTheMiddleOfALongRope) {
   EXPECT_NEAR(slice["twist_eV"] / 15, rope["twist_eV"] / (elements - 1), 5e-3 * slice["twist_eV"] / 15);
 }
 
-// Its tubes are endless: they collapse where endless ones do, whatever the length of the slice, in the bonds and in
-// the limits that are watched.
+// The tubes of a slice are endless. Bonds and watched limits take the collapse of an endless tube, whatever the length of
+// the slice.
 TEST(PeriodicSlice, CollapsesAsAnEndlessTubeDoes) {
   for (const int elements : {9, 16, 44}) {  // 12, 22 and 60 nm
     const Slice slice(

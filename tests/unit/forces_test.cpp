@@ -157,7 +157,8 @@ Forces by_parts(const Topology& topology, const Interaction& in, const State& st
   return sum;
 }
 
-// As accurate at the far end of a rope of millimetres. Nodes in double precision are rounded with their coordinates.
+// Forces are as accurate at the far end of a rope of millimetres. In double precision the coordinates of nodes are
+// rounded to the last digit of their size.
 TEST_P(ForcesTest, FastEqualsReferenceFarFromTheOrigin) {
   for (const Vector3& by : {Vector3(130.3, -129.1, 512), Vector3(7500.7, -2.1e5, 5.0e6)}) {
     SCOPED_TRACE(by.z());

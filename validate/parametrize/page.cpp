@@ -59,8 +59,7 @@ std::string agreement(const ParametrizedTube& t) {
   if (!rope) return "No rope of atoms was compared with. ";
   return fmt::format(
       "Twisting energies of ropes of seven tubes, up to r τ = 0.04, agree with those of atoms within {} %; nothing "
-      "was "
-      "fitted to a rope. ",
+      "was fitted to a rope. ",
       number_text(100 * std::fabs(rope->difference()), 2));
 }
 

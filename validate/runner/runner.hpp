@@ -30,8 +30,8 @@ struct ValidateArguments {
   bool json = false;
   bool quiet = false;
 };
-// `validate run` without its output: runs the cases that have no result in a.out yet and writes results
-// and reports. Throws InputError.
+// Does what the command `validate run` does, and prints nothing: runs each case that has no result in the folder
+// arguments.out yet, and writes results and reports. Throws InputError.
 std::vector<Outcome> run_cases(const ValidateArguments& arguments);
 int validate_command(const ValidateArguments& arguments);
 
@@ -67,8 +67,8 @@ struct Outcome {
   std::string with_tubes(std::string text) const;  // {tube} replaced
 };
 
-// What a set is worth: its grade by its own numbers, and the cases in which it misses. A set that misses is not
-// good.
+// The grade of a set in words: by its own numbers, and by the cases in which the set misses. A set that misses in a case
+// is not good.
 std::string grade_with_verdicts(const std::string& grade, const std::string& hash,
                                 const std::vector<Outcome>& outcomes);
 

@@ -186,7 +186,7 @@ void LoadDrive::add_loads(const Scene& scene, const Topology& topology, const In
   loads.add(std::shared_ptr<const Load>(acting));
 }
 
-// Those that it keeps where they are, one after another from the end.
+// Counts the consecutive elements from the end whose motion the load prescribes.
 int LoadDrive::held(End end, int tube) const {
   if (on.all_elements || !on.has_tube(tube) || load->order() == Load::Order::force) return 0;
   const auto has = [&](int e) { return std::find(on.elements.begin(), on.elements.end(), e) != on.elements.end(); };

@@ -87,7 +87,7 @@ void PeriodicDrive::add_loads(const Scene& scene, const Topology& topology, cons
   loads.add(load.on_tubes(topology, interaction.cutoff(), scene.path));
 }
 
-// Images go where their originals go, whatever acts on them.
+// Refuses loads on images: an image moves with its original, whatever load acts on the image.
 void PeriodicDrive::refuse_start(const Scene& scene, const Topology& topology, const State&,
                                  const LoadsAndConstraints& loads) const {
   const PeriodicLoad& slice = *loads.of<PeriodicLoad>().front();

@@ -1,9 +1,9 @@
 // The same rope on a finer chain, with elements of half the length.
 //
 //   whole     Every element is split into two, e into 2 e and 2 e + 1: n elements become 2 n, as long as before.
-//   between   Another element comes between every two: n elements become 2 n - 1. All centres stay where they are, so
-//             that what holds an element of the tube holds it at the same place, and the length between two holders
-//             stays. A tube ends a quarter of a length earlier.
+//   between   Another element comes between every two: n elements become 2 n - 1. All centres stay in place. A drive
+//             that holds an element thus holds the tube at the same place, and the length between two clamps stays. A
+//             tube ends a quarter of an old element earlier.
 //
 // An element stands for the tube from half a length before its centre to half a length behind it, so that its
 // halves have their centres a quarter of a length to either side: at the shares u = 1/4 and 3/4 of the bonds. One
@@ -23,10 +23,10 @@
 // become 2 n - 1 of phi/2 where elements are split whole, since half a length more of the tube is now free to twist,
 // and 2 n - 2 where they come between.
 //
-// Velocities are those of the same map under the motion of the coarse elements, so that rigid motions stay what
-// they are. Where elements are split whole, each tube is then given the rigid motion that makes its linear and angular
-// momentum those of the coarse one: of all changes that do so this is the one of least kinetic energy. Mass is kept as
-// it is there. Energy is not: the finer chain is another model; the caller reports the difference. Waves of thermal
+// Velocities follow from the same map under the motion of the coarse elements, so that a rigid motion stays rigid.
+// Splitting::whole keeps the mass of each tube. It also keeps the linear and the angular momentum: it adds to each tube
+// the rigid motion that restores both, the change of least kinetic energy. Splitting::between keeps none of the three.
+// Neither keeps the energy, since the finer chain is another model; the caller reports the difference. Waves of thermal
 // motion that only the finer chain has start cold.
 //
 // Bends below 180 degrees, twists within (-180, 180] degrees per bond. Units nm, ps, eV.
@@ -42,13 +42,15 @@ namespace ropewalk {
 
 enum class Splitting { whole, between };
 
-// Lengths, masses and inertias halved; 2 n or 2 n - 1 elements for n.
+// The topology of the finer chain. Its elements have half the length, mass and inertia; a tube of n elements has 2 n of
+// them (whole) or 2 n - 1 (between).
 Topology halved(const Topology& coarse, Splitting how = Splitting::whole);
 
-// Time and step stay.
+// The state on the finer chain, at the same time and step.
 State halved(const Topology& coarse, const State& state, Splitting how = Splitting::whole);
 
-// For each coarse element the fine one that takes over what belongs to it: its first half, or the one in its place.
+// For each coarse element, the fine element that takes over its record in a force term's memory: its first half (whole)
+// or the element in its place (between).
 std::vector<int> heirs(const Topology& coarse, Splitting how = Splitting::whole);
 
 }  // namespace ropewalk

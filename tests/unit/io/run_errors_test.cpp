@@ -22,7 +22,7 @@ double torque(const LogRow& row) { return row["torque_upper_nN_nm"]; }
 TEST(Movement, IsThatAboutALine) {
   EXPECT_NEAR(movement(log_of(200, [](double t) { return 16 + 0.032 * std::sin(0.7 * t); }), torque), 0.032, 0.004);
   EXPECT_NEAR(movement(log_of(200, [](double t) { return 16 + 0.5 * t; }), torque), 0, 1e-12);  // a ramp
-  // What moved long ago counts no more.
+  // Movement before the last tenth of the log does not count.
   EXPECT_NEAR(movement(log_of(200, [](double t) { return t < 100 ? std::sin(t) : 16; }), torque), 0, 1e-12);
   EXPECT_EQ(movement(log_of(3, [](double t) { return std::sin(t); }), torque), 0);
 }

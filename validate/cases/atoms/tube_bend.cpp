@@ -20,7 +20,8 @@ constexpr double step = 0.0025, most = 0.06, kink = 0.044;  // nm, of curvature 
 constexpr double end_band = 0.6;  // nm, held beyond either end, where a table does not say
 constexpr double max_turn = 5.6;  // rad, between the ends of a specimen with its bands; they meet at a larger turn
 
-// Of the usual lengths: a specimen of a thin tube is shorter, so that it kinks before it closes on itself.
+// The factor on the usual lengths of a specimen. A specimen of a thin tube is shorter, so that it kinks before it
+// closes on itself.
 double part_of_length(double radius, double band) {
   return std::min(1.0, (max_turn * radius * radius / kink - 2 * band) / long_length);
 }
@@ -74,8 +75,8 @@ ReferenceTable make_reference(const CaseContext& context, const ParameterSet& se
   return t;
 }
 
-// What is compared of a specimen: up to its kink, as long as its ends do not meet, and as long as nothing else than
-// bending is in its energy. Says what ends it before the kink of the set.
+// The number of points of a specimen that are compared. The comparison ends at the kink, where the ends of the specimen
+// meet, or where the energy leaps. A remark names the cause of an end before the kink of the set.
 std::size_t points_of(const std::string& which, const CaseTube& tube, const std::vector<double>& curvature,
                       const std::vector<double>& energy, double length, double band, CaseResult& result) {
   const std::size_t whole = points_before_collapse(curvature, energy),
@@ -142,8 +143,7 @@ CaseResult run(const CaseContext& context) {
       "third.");
   result.remarks.push_back(
       "A specimen that is bent far closes on itself. Those of thin tubes are shorter therefore, and turns beyond "
-      "5.6 "
-      "rad are neither drawn nor compared.");
+      "5.6 rad are neither drawn nor compared.");
   return result;
 }
 
@@ -162,8 +162,7 @@ const RegisteredCase registered([] {
   c.why = "EI decides when a rope buckles into a helix. At the kink the model of rigid elements ends.";
   c.setup =
       "Finite tubes of {tube}, 8 and 14 nm between held bands (of thin tubes less), are bent step by step to a "
-      "curvature of "
-      "0.06 nm/r^2 and relaxed. The bond was fitted to other lengths.";
+      "curvature of 0.06 nm/r^2 and relaxed. The bond was fitted to other lengths.";
   c.oracle =
       "Energies of LAMMPS with the interatomic potential of the set, (E_long - E_short)/(L_long - L_short); for a "
       "chain of elements U/L = EI k^2/2 + c4 (r k)^4. Within 1 % up to the kink.";

@@ -160,8 +160,7 @@ CaseResult run(const CaseContext& context) {
       "Forces vanish on a saddle as they do at rest. This is FIRE to a tolerance of the force alone, for which a "
       "perfectly "
       "straight tube above its buckling load is at rest. A run with mode = relax tries a random motion as well and "
-      "leaves "
-      "the saddle. A relaxation that runs out of steps reports its largest force and ends with exit code 4.");
+      "leaves the saddle. A relaxation that runs out of steps reports its largest force and ends with exit code 4.");
   return result;
 }
 

@@ -76,8 +76,7 @@ CaseResult run(const CaseContext& context) {
   }
   result.remarks.push_back(
       "The force does not depend on the overlap: smooth tubes bear no shear, and only the ends that part from each "
-      "other "
-      "count. Measured values of bundles of double-walled tubes, 1.7 ± 1.0 nN per contact, are five times the bare "
+      "other count. Measured values of bundles of double-walled tubes, 1.7 ± 1.0 nN per contact, are five times the bare "
       "mechanics (Filleter et al., Nano Letters 12, 732 (2012)): what holds real tubes is not in this model.");
   return result;
 }
@@ -93,12 +92,10 @@ const RegisteredCase registered([] {
   c.why = "Load goes from tube to tube by this force alone where nothing binds them.";
   c.setup =
       "Seven tubes of {tube}, 24 elements each. The centre tube or an outer one is held at its upper end, the "
-      "others at "
-      "their lower ends, drawn out by three and by nine elements, and brought to rest.";
+      "others at their lower ends, drawn out by three and by nine elements, and brought to rest.";
   c.oracle =
       "The energy per length with which two tubes side by side bind, for each contact: six of the centre tube, "
-      "three of "
-      "an outer one.";
+      "three of an outer one.";
   c.literature = "T. Filleter et al., Nano Lett. 12, 732 (2012), DOI 10.1021/nl203686d";
   c.run = run;
   c.turns_red = {wrong_contact(1.1)};

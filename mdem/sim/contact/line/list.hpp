@@ -64,7 +64,7 @@ class RangeOf {
   const WrittenRange* range_;
 };
 
-// The law of an interaction by the line law.
+// The law of an interaction whose law is known to be a LineLaw.
 inline const LineLaw& line_law_of(const Interaction& in) { return static_cast<const LineLaw&>(*in.law); }
 
 class LineList {

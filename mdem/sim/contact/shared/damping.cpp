@@ -188,7 +188,8 @@ VEC_INLINE double all_groups(const ContactViscosity& viscosity, const Of& of,
   return sum;
 }
 
-// Takes the elements of a part, in whole vectors, whose last lanes the next part's elements are stored over.
+// Copies the elements of a part, whole vectors at a time. The last vector may reach beyond the part; the elements of the
+// next part then overwrite its surplus lanes.
 VEC_INLINE void take(const State& s, const BufferRange& of, double per_unit, DampedElements& e) {
   const ops::CappedTag<double, 8> d;
   const ops::RebindToUnsigned<decltype(d)> bits;

@@ -50,8 +50,8 @@ TEST(Halved, TopologyKeepsMassAndLength) {
   }
 }
 
-// With another element between every two, centres and axes stay bit by bit, a stretched and twisted chain has half of both
-// in each bond, and a rigid motion stays one.
+// An element comes between every two. The old centres and axes keep their bits, each new bond has half of the stretch and
+// twist of an old one, and a rigid motion stays rigid.
 TEST(Halved, ElementsBetweenLeaveTheOthersInPlace) {
   Topology coarse = published_topology();
   coarse.add_tube(5);
