@@ -71,7 +71,6 @@ TEST_F(Cli, WrongVerbsAndOptionsSayWhatWasMeant) {
         std::pair{"run x.toml --out d --threads 5000", "--threads: 5000 must lie between 1 and 1024"},
         std::pair{"run x.toml --out d --until -1", "--until: -1 must not be negative"},
         std::pair{"plan --check d --stretch 0", "--stretch: 0 must be positive"},
-        std::pair{"validate chrt", "there is no verb \"chrt\"; did you mean chart?"},
         std::pair{"help scen", "did you mean scene?"},
         std::pair{"--xyz", "there is no option --xyz; see ropewalk --help"}}) {
     const Outcome o = run(line);

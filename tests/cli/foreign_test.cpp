@@ -108,7 +108,7 @@ TEST_F(Foreign, OutputThatCannotBeWrittenIsAnError) {
   scene("a.toml", "\"a\"");
   const std::string programs = fs::path(ROPEWALK_PROGRAM).parent_path().string();
   for (const char* command : {"--help", "--version", "check a.toml", "new --list", "calibrate --help",
-                              "calibrate show cnt-10-10-tersoff --table", "validate list"}) {
+                              "calibrate show cnt-10-10-tersoff --table"}) {
     const Outcome o = shell(fmt::format("ropewalk {} > /dev/full 2> err.txt < /dev/null", command));
     EXPECT_EQ(o.code, 2) << command;
     EXPECT_THAT(slurp(dir / "err.txt"), HasSubstr("the standard output cannot be written")) << command;

@@ -26,6 +26,9 @@ TEST_F(Validate, ListDescribesEveryCase) {
       EXPECT_FALSE(c.at(key).get<std::string>().empty()) << c;
   const Outcome table = run("validate list");
   EXPECT_EQ(static_cast<std::size_t>(std::count(table.out.begin(), table.out.end(), '\n')), all.size());
+  const Outcome full = run("validate list", "sh -c '\"$0\" \"$@\" > /dev/full'");
+  EXPECT_EQ(full.code, 2);
+  EXPECT_NE(full.err.find("the standard output cannot be written"), std::string::npos) << full.err;
 }
 
 TEST_F(Validate, WrongInputGetsOneLine) {
@@ -33,6 +36,7 @@ TEST_F(Validate, WrongInputGetsOneLine) {
   for (const auto& [line, words] :
        {std::pair{"validate", "subcommand"}, std::pair{"validate run no-such-case", "there is no case"},
         std::pair{"validate run euler-bucklin", "did you mean \"euler-buckling\"?"},
+        std::pair{"validate chrt", "there is no verb \"chrt\"; did you mean chart?"},
         std::pair{"validate run --tier medium", "choose quick or full"},
         std::pair{"validate run euler-buckling --out file", "not a directory"},
         std::pair{"validate run euler-buckling --parameters nowhere", "no parameter set"},
