@@ -181,5 +181,21 @@ TEST(LineBundle, RelaxationMovesAThinTubeOutOfTheMiddleOfSixWideOnes) {
   EXPECT_NEAR(s.total_energy() - s.account().supplied(), -42.0796, 1e-3);
 }
 
+// Its elements face each other, a crest of the contact's energy that is 1e-8 of it high.
+TEST(LineBundle, RelaxationOfAPlainRopeFollowsNoErrorOfItsElements) {
+  Scene scene = scene_of_text(
+      "format = \"ropewalk-scene-1\"\nparameters = \"cnt-5-5-tersoff\"\n[rope]\ntubes = 7\nlength_nm = 10\n"
+      "[run]\nmode = \"relax\"\n",
+      "plain.toml");
+  const Prepared p = prepare(scene);
+  Simulation s = start(scene, p);
+  const Relaxed end = s.relax(scene.run.goal, 3000, [](long) { return true; });
+  EXPECT_TRUE(end.at_rest);
+  EXPECT_EQ(end.saddles, 0);
+  const Vec3Array& at = s.state().position;
+  const double slip = at[7].z() - at[static_cast<std::size_t>(s.topology().tube_begin[1]) + 7].z();
+  EXPECT_NEAR(slip, 0, 0.01);
+}
+
 }  // namespace
 }  // namespace ropewalk
