@@ -1,6 +1,6 @@
 // ropewalk: the front door. Reads the command line, calls the verb, turns errors into one line and an exit
 // code: 0 done, 2 wrong input, 3 numerical failure or a disk that takes no more, 4 a relaxation that did not come
-// to rest, 5 stopped at a limit, 6 stopped by --wall-time, 128 + signal when interrupted.
+// to rest, 5 stopped at a limit, 6 stopped by --wall-time, 7 done but far beyond a limit, 128 + signal when interrupted.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <unistd.h>
@@ -477,7 +477,7 @@ int main(int argc, char** argv) {
       "ropewalk twists carbon-nanotube ropes by the mesoscopic distinct element method.\n"
       "Units: nm, ps, eV; moments nN nm. Every key of a scene carries its unit: ropewalk help scene.\n"
       "Exit code: 0 done, 2 wrong input, 3 stopped with the reason, 4 not relaxed within run.max_steps, 5 stopped "
-      "at a limit, 6 stopped by --wall-time, 128 + signal.");
+      "at a limit, 6 stopped by --wall-time, 7 done but more than three times beyond a limit, 128 + signal.");
   app.set_version_flag("--version", fmt::format("ropewalk {} ({}), {}, {}, {}", version, git_id, compiler,
                                                 build_type, instruction_sets().front()));
   app.require_subcommand(1);
