@@ -18,6 +18,7 @@
 #include "scene/loads/drive_kind.hpp"
 #include "scene/scene.hpp"
 #include "sim/forces/force_term.hpp"
+#include "sim/state/part_of_scene.hpp"
 
 namespace ropewalk {
 namespace {
@@ -32,19 +33,6 @@ struct TetherEnd {
   Vector3 centre = Vector3::Zero();  // nm
   std::vector<int> own;             // the elements of this process, by their places in its state
 };
-
-// The places, in this process's state, of those `elements` that it owns.
-std::vector<int> own_places(const Topology& topology, const std::vector<int>& elements) {
-  if (!topology.part) return elements;
-  std::vector<int> own;
-  const std::vector<int>& number = topology.part->number;
-  for (const int e : elements) {
-    const auto at = std::lower_bound(number.begin(), number.end(), e);
-    const auto place = static_cast<int>(at - number.begin());
-    if (at != number.end() && *at == e && topology.owns(place)) own.push_back(place);
-  }
-  return own;
-}
 
 class Tether : public ForceTerm {
  public:

@@ -36,6 +36,18 @@ State part_of_state(const State& scene, const std::vector<int>& number) {
   return part;
 }
 
+std::vector<int> own_places(const Topology& topology, const std::vector<int>& elements) {
+  if (!topology.part) return elements;
+  std::vector<int> own;
+  const std::vector<int>& number = topology.part->number;
+  for (const int e : elements) {
+    const auto at = std::lower_bound(number.begin(), number.end(), e);
+    const auto place = static_cast<int>(at - number.begin());
+    if (at != number.end() && *at == e && topology.owns(place)) own.push_back(place);
+  }
+  return own;
+}
+
 double copy_reach(const Topology& topology, const Interaction& in, double skin) {
   constexpr double longest_bond = 1.5;  // element lengths, far above any strain for which the model holds
   return std::max(in.cutoff(), longest_bond * topology.longest_element()) + skin;

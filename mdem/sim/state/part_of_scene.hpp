@@ -13,6 +13,9 @@ Topology part_of_scene(const Topology& scene, std::vector<int> number, std::vect
 // The motion of these elements.
 State part_of_state(const State& scene, const std::vector<int>& number);
 
+// The places of those `elements` (of the scene) that this process owns.
+std::vector<int> own_places(const Topology& topology, const std::vector<int>& elements);
+
 // A process needs copies of all elements within this distance (nm) of its own ones. The distance covers the
 // contacts, with the skin of the neighbour list, and the other end of a bond.
 double copy_reach(const Topology& topology, const Interaction& interaction, double skin);
