@@ -172,7 +172,7 @@ void bind_simulation(py::module_& m) {
   c.def("steps", &SteppedScene::steps, py::arg("count"), py::arg("energies"));
   c.def("relax", [](SteppedScene& s, double force, double energy, long max_steps) {
     const Relaxed end = s.relax({force, energy}, max_steps);
-    return py::make_tuple(end.at_rest, end.force, end.above, end.error);
+    return py::make_tuple(end.at_rest, end.force, end.above, end.error, end.saddles, end.falls);
   });
   def_view(c, "position", [](const Simulation& s) -> const Vec3Array& { return s.state().position; });
   def_view(c, "orientation", [](const Simulation& s) -> const QuaternionArray& { return s.state().orientation; });

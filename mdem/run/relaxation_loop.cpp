@@ -50,12 +50,16 @@ std::string RelaxationLoop::words_of(const Relaxed& end, long max_steps) const {
   const std::string way = end.saddles > 0 ? fmt::format("; it left {} saddle{} of the energy on the way",
                                                         end.saddles, end.saddles > 1 ? "s" : "")
                                           : std::string();
+  const std::string stays =
+      end.falls > 0 ? fmt::format("; it rests on a saddle, and stays there: along one motion the energy falls by {:.2g} eV or more",
+                                  end.falls)
+                    : std::string();
   if (end.at_rest && std::isinf(end.above))
     return fmt::format("relaxed: largest force {:.3g} eV/nm; along some soft motion the energy may still fall{}",
                        end.force, way);
   if (end.at_rest)
-    return fmt::format("relaxed: largest force below {:.3g} eV/nm; energy {}, by estimate{}", goal.force, left,
-                       way);
+    return fmt::format("relaxed: largest force below {:.3g} eV/nm; energy {}, by estimate{}{}", goal.force, left,
+                       way, stays);
   const std::string words = fmt::format("not relaxed after {} steps: largest force {:.3g} eV/nm, {:.3g} asked for",
                                         max_steps, end.force, goal.force);
   if (std::isinf(end.above)) return words + "; the energy may still fall along some motion: no minimum is near";

@@ -16,7 +16,7 @@ struct RunParts {
   const State& state() const { return moving.state(); }
   void write_row();
   void write_frame() { files.write_frame(moving); }
-  // The reason for which the run has to stop now: a request of the listener, or the end of the allowed wall time.
+  // Asks the listener and the clock whether the run has to stop now. Returns the reason, or StopReason::none.
   StopReason asked_to_stop();
 
   RunSettings settings;

@@ -74,7 +74,7 @@ class Drive {
   virtual int held(End /*end*/, int /*tube*/) const { return 0; }
   // The moment that it applies; null: none.
   virtual const MomentRamp* moment_ramp() const { return nullptr; }
-  // The options of a thermostat; null: the drive is none.
+  // Null, if this drive is no thermostat.
   virtual const ThermostatOptions* thermostat() const { return nullptr; }
 
   // Why its elements cannot be split in two, and why they cannot be of any other length; empty: they can.

@@ -30,8 +30,8 @@ struct ValidateArguments {
   bool json = false;
   bool quiet = false;
 };
-// Does what the command `validate run` does, and prints nothing: runs each case that has no result in the folder
-// arguments.out yet, and writes results and reports. Throws InputError.
+// `validate run` without its messages. Runs the cases whose results are not yet in the folder `arguments.out`, and writes
+// results and reports there. Throws InputError.
 std::vector<Outcome> run_cases(const ValidateArguments& arguments);
 int validate_command(const ValidateArguments& arguments);
 

@@ -58,12 +58,16 @@ class Relaxed:
         force_eV_per_nm: the largest force left, torques over the tube's radius included, eV/nm
         above_eV: energy above the minimum by estimate, eV; inf: no minimum is near; nan: not known
         error: relative error of the energy of the bonds by estimate (no unit)
+        saddles: saddles of the energy that the relaxation left on its way (no unit)
+        falls_eV: it ended on a saddle, beyond which the energy falls by so much or more, eV; 0: on none
     """
 
     at_rest: bool
     force_eV_per_nm: float
     above_eV: float
     error: float
+    saddles: int
+    falls_eV: float
 
 
 class Simulation:

@@ -186,7 +186,7 @@ void LoadDrive::add_loads(const Scene& scene, const Topology& topology, const In
   loads.add(std::shared_ptr<const Load>(acting));
 }
 
-// Counts the consecutive elements from the end whose motion the load prescribes.
+// A load that prescribes motion holds elements: the function counts the consecutive ones from this end of the tube on.
 int LoadDrive::held(End end, int tube) const {
   if (on.all_elements || !on.has_tube(tube) || load->order() == Load::Order::force) return 0;
   const auto has = [&](int e) { return std::find(on.elements.begin(), on.elements.end(), e) != on.elements.end(); };

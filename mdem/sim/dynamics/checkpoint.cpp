@@ -132,6 +132,7 @@ void Simulation::visit_checkpoint(Archive& archive, Self& self, List& list) {
   visit_relaxation(archive, self.relaxation_);
   archive(self.rest_.step);
   archive(self.rest_.saddles);
+  archive(self.rest_.falls);
 }
 
 namespace {
@@ -179,7 +180,7 @@ bool Simulation::could_go_on(double step_of_scene) const {
   constexpr std::int64_t most_steps = 1000000000000000;
   bool fine = time_step_ > 0 && time_step_ < 1e3 * step_of_scene && divided_ >= 1 && divided_ <= 1024 &&
               s.step >= 0 && s.step < most_steps && list_age_ >= 0 && list_age_ < most_steps &&
-              could_be(relaxation_, s.step, 1e3 * step_of_scene) && rest_.step <= s.step && rest_.saddles >= 0 &&
+              could_be(relaxation_, s.step, 1e3 * step_of_scene) && rest_.step <= s.step && rest_.saddles >= 0 && rest_.falls >= 0 &&
               all_within(std::array{s.time, account_.work, account_.dissipated, account_.heat, gauges_.sums.since});
   for (const Vec3Array* v : {&s.position, &s.velocity, &s.angular_velocity, &forces_.force, &forces_.torque})
     fine = fine && all_xyz_within(*v);

@@ -42,8 +42,8 @@ namespace ropewalk {
 
 enum class Splitting { whole, between };
 
-// The topology of the finer chain. Its elements have half the length, mass and inertia; a tube of n elements has 2 n of
-// them (whole) or 2 n - 1 (between).
+// The topology of the finer chain. Its elements have half the length, mass and inertia. A tube of n elements becomes one of
+// 2 n elements (whole) or 2 n - 1 elements (between).
 Topology halved(const Topology& coarse, Splitting how = Splitting::whole);
 
 // The state on the finer chain, at the same time and step.

@@ -1,5 +1,6 @@
 // Relaxation to a nearby minimum of the energy by FIRE (sim/dynamics/fire.hpp). Rotations take part with their
 // angular velocities scaled by sqrt(I/m), so that both kinds of motion mix in one power.
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -66,6 +67,7 @@ struct Simulation::Motion {
       angular.add(i, by * other.angular[i]);
     }
   }
+  void scale(double by) { add(by - 1, *this); }
 };
 
 // The accelerations that the constraints let through.
@@ -109,6 +111,7 @@ class Simulation::Stiffness {
     out.add(-1 / time, fallen);
     return out;
   }
+  Motion softest_mode(Motion x, long most);
   // The most that the energy falls while the elements go along a motion, eV: the forces' work, by the trapezoidal rule.
   double fall_along(const Motion& motion) {
     constexpr double step = 0.01, farthest = 0.2;  // nm, of the element that goes farthest
@@ -192,15 +195,83 @@ double Simulation::above_minimum(double enough, long most) const {
   return power > 0 ? unknown : above;
 }
 
+// The mode of K x = lambda M x with the lowest lambda, from a motion that has a part of it: the steepest way down of a
+// saddle. Without the stiff parts of that motion the energy falls along the mode much farther. LOBPCG with one vector:
+// A. V. Knyazev, SIAM J. Sci. Comput. 23, 517 (2001), DOI 10.1137/S1064827500366124.
+Simulation::Motion Simulation::Stiffness::softest_mode(Motion x, long most) {
+  constexpr long at_once = 25;     // iterations between two looks at lambda
+  constexpr double change = 0.01;  // of lambda, of one look to the next, that ends the search
+  const auto mass_product = [&](const Motion& a, const Motion& b) {
+    double sum = 0;
+    for_elements(s_.topology_, [&](const TubeType& type, std::size_t i) {
+      sum += type.mass * a.linear[i].dot(b.linear[i]) + type.inertia * a.angular[i].dot(b.angular[i]);
+    });
+    return sum;
+  };
+  struct Direction {
+    Motion motion, force;  // K times it
+    void add(double by, const Direction& other) {
+      motion.add(by, other.motion);
+      force.add(by, other.force);
+    }
+    void scale(double by) {
+      motion.scale(by);
+      force.scale(by);
+    }
+  };
+  // Of length one, and orthogonal to others; false: nothing is left of it.
+  const auto orthonormal = [&](Direction& d, const std::vector<const Direction*>& others) {
+    const double before = mass_product(d.motion, d.motion);
+    for (const Direction* other : others) d.add(-mass_product(d.motion, other->motion), *other);
+    const double left = mass_product(d.motion, d.motion);
+    if (!(left > 1e-20 * before)) return false;
+    d.scale(1 / std::sqrt(left));
+    return true;
+  };
+  x.scale(1 / std::sqrt(mass_product(x, x)));
+  Direction mode{x, times(x)};
+  std::optional<Direction> last;
+  double lambda_before = std::numeric_limits<double>::infinity();
+  for (long k = 1; k <= most; ++k) {
+    const double lambda = mode.motion.dot(mode.force);
+    if (k % at_once == 0) {
+      if (lambda > lambda_before - change * std::fabs(lambda)) break;
+      lambda_before = lambda;
+    }
+    Motion left = mode.force;
+    for_elements(s_.topology_, [&](const TubeType& type, std::size_t i) {
+      left.linear.add(i, -lambda * type.mass * mode.motion.linear[i]);
+      left.angular.add(i, -lambda * type.inertia * mode.motion.angular[i]);
+    });
+    Direction down{s_.free_accelerations(left), left};
+    down.force = times(down.motion);
+    if (!orthonormal(down, {&mode})) break;
+    std::vector<Direction*> basis{&mode, &down};
+    if (last && orthonormal(*last, {&mode, &down})) basis.push_back(&*last);
+    const auto size = static_cast<Eigen::Index>(basis.size());
+    Eigen::MatrixXd matrix(size, size);
+    for (Eigen::Index i = 0; i < size; ++i)
+      for (Eigen::Index j = 0; j < size; ++j)
+        matrix(i, j) = basis[static_cast<std::size_t>(i)]->motion.dot(basis[static_cast<std::size_t>(j)]->force);
+    const Eigen::VectorXd part =
+        Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(0.5 * (matrix + matrix.transpose())).eigenvectors().col(0);
+    Direction next = down;
+    next.scale(part[1]);
+    if (size > 2) next.add(part[2], *last);
+    mode.scale(part[0]);
+    mode.add(1, next);
+    last = next;
+  }
+  return mode.motion;
+}
+
 // Conjugate gradients for (K + s M) x = r. r is random, with unit variance in every mode: a symmetric state has no
 // force along the motion that breaks its symmetry. The residual of a mode whose K is below -s M never falls, so
 // that there is none once all of it is small. s keeps motions apart that cost nothing, such as the spin of a tube.
-// Elements that face each other lie on a crest of the contact's energy, which falls by 1e-8 of itself as the tubes
-// slide (measured: 7 and 19 tubes, 10 and 30 nm). That is an error of the elements, and no motion of the rope.
-std::optional<Simulation::Motion> Simulation::falling_motion(long most) const {
-  constexpr double slowest = 1e-4;      // growth in a step that counts
-  constexpr double small = 1e-4;        // squared part in a mode, 1 at first
-  constexpr double least_fall = 1e-6;  // of the energy of bonds and contact
+// Returns the softest mode, in the direction in which the energy falls farther, and that fall in eV.
+std::optional<std::pair<Simulation::Motion, double>> Simulation::falling_motion(long most) const {
+  constexpr double slowest = 1e-4;  // growth in a step that counts
+  constexpr double small = 1e-4;    // squared part in a mode, 1 at first
   constexpr std::uint64_t seed = 1;
   const double shift = std::pow(slowest / part_step(), 2);
   const std::size_t n = state_.size();
@@ -226,11 +297,12 @@ std::optional<Simulation::Motion> Simulation::falling_motion(long most) const {
     });
     const double curvature = along.dot(resistance);
     if (curvature <= 0) {
+      along = stiffness.softest_mode(along, most);
       Motion back = along;
-      back.add(-2, along);
+      back.scale(-1);
       const double ahead = stiffness.fall_along(along), behind = stiffness.fall_along(back);
-      if (std::max(ahead, behind) < least_fall * (forces_.energy.bonds() + std::fabs(forces_.energy.vdw))) break;
-      return ahead >= behind ? along : back;
+      if (ahead >= behind) return std::pair{along, ahead};
+      return std::pair{back, behind};
     }
     left.add(-power / curvature, resistance);
     free = free_accelerations(left);
@@ -280,6 +352,7 @@ Relaxed Simulation::relax(const RelaxGoal& goal, long max_steps, const std::func
   constexpr double least_part = 1e-3;  // of the contact's energy, which stands for that of bonds that hardly bear
   constexpr double no_force = 1e-2;    // of the goal: what rests here without a minimum rests on a saddle
   constexpr long least_iterations = 300;
+  constexpr double least_fall = 1e-4;  // of the energy of bonds and contact, that is followed
   constexpr std::int64_t most_saddles = 30;  // couples of fixed direction have no potential: they may pump for ever
   Relaxation& r = relaxation_;
   if (!(r.goal == goal)) end_relaxation();
@@ -315,6 +388,7 @@ Relaxed Simulation::relax(const RelaxGoal& goal, long max_steps, const std::func
     const double energy = forces_.energy.potential() - account_.work;
     if (r.disturbances == 0 && rest_.step == state_.step) {
       out.saddles = rest_.saddles;
+      out.falls = rest_.falls;
       break;
     }
     // A disturbance from which it came back to the same energy was that of a minimum.
@@ -324,19 +398,24 @@ Relaxed Simulation::relax(const RelaxGoal& goal, long max_steps, const std::func
     }
     if (r.disturbances == most_saddles) break;
     refuse_rise();
-    const std::optional<Motion> falling = falling_motion(least_iterations + done);
-    if (!falling) break;
+    const auto found = falling_motion(least_iterations + done);
+    if (!found) break;
+    const auto& [falling, fall] = *found;
+    if (fall < least_fall * (forces_.energy.bonds() + std::fabs(forces_.energy.vdw))) {
+      out.falls = fall;
+      break;
+    }
     ++r.disturbances;
     r.disturbed_from = energy;
     r.force = goal.force;
-    state_.velocity = falling->linear;
-    state_.angular_velocity = falling->angular;
-    move_in_relaxation(Fire::farthest(topology_.largest_radius()) / farthest(*falling));
+    state_.velocity = falling.linear;
+    state_.angular_velocity = falling.angular;
+    move_in_relaxation(Fire::farthest(topology_.largest_radius()) / farthest(falling));
     stand_still();
   }
   refuse_rise();
   end_relaxation();
-  if (out.at_rest) rest_ = {state_.step, out.saddles};
+  if (out.at_rest) rest_ = {state_.step, out.saddles, out.falls};
   return out;
 }
 

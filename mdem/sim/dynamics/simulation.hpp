@@ -137,7 +137,7 @@ class Simulation {
   double farthest(const Motion& motion) const;  // nm, of an element, its turn at the largest radius
   Motion free_accelerations(const Motion& forces) const;
   double above_minimum(double enough, long most) const;
-  std::optional<Motion> falling_motion(long most) const;
+  std::optional<std::pair<Motion, double>> falling_motion(long most) const;
   template <class Archive, class Self, class ListOrigin>
   static void visit_checkpoint(Archive& archive, Self& self, ListOrigin& list);
   bool could_go_on(double step_of_scene) const;
