@@ -164,7 +164,7 @@ bool could_be(const ListOrigin& list) {
 bool could_be(const Relaxation& r, std::int64_t step, double longest_step) {
   if (!r.underway()) return true;
   const Fire& f = r.fire;
-  return r.began <= step && r.part_began <= step &&
+  return r.began <= step && r.part_began <= step && (r.part_began < 0 || r.part_began >= r.began) &&
          all_within(std::array{r.goal.force, r.goal.energy, r.first_energy, r.force, r.constant, r.longest_bond,
                                r.disturbed_from}) &&
          r.disturbances >= 0 && r.disturbances <= step && std::fabs(r.last_step) < longest_step && f.dt_max > 0 &&
