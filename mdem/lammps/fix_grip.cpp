@@ -99,9 +99,9 @@ double FixGrip::own_power() {
   return load_power(loads_, state_);
 }
 
-double FixGrip::constrain(double time, double kick) {
+double FixGrip::constrain(double time, double ahead, double kick) {
   gather();
-  ropewalk::constrain(topology_, acting_, own_, time, kick, forces_, kick, state_, impulses_);
+  ropewalk::constrain(topology_, acting_, own_, time, ahead, forces_, kick, state_, impulses_);
   double work = 0;
   for (const ConstraintImpulse& c : impulses_) work += c.work;
   for (std::size_t k = 0; k < atom_.size(); ++k) {
@@ -116,7 +116,7 @@ void FixGrip::free_parts(double time, double** linear, double** angular) {
   double **v = atom->v, **omega = atom->omega;
   atom->v = linear;
   atom->omega = angular;
-  constrain(time, 0.0);
+  constrain(time, 0.0, 0.0);
   atom->v = v;
   atom->omega = omega;
 }

@@ -23,9 +23,9 @@ class FixGrip : public LMP::Fix {
   const std::vector<int>& atoms() const { return atom_; }
   // Work per time of the loads on this rank's elements, eV/ps.
   double own_power();
-  // Sets constrained velocities after a kick by the present forces. The kick lasts half as long as the drift.
+  // Sets constrained velocities after a kick by the present forces, for a drift that lasts twice `ahead` (ps).
   // Returns this rank's share of the work, eV.
-  double constrain(double time, double kick);
+  double constrain(double time, double ahead, double kick);
   // Sets the constrained components of `linear` and `angular` to zero; both are arrays like v and omega.
   void free_parts(double time, double** linear, double** angular);
 

@@ -319,7 +319,7 @@ void FixNve::kick(double dt, double time) {
     dissipated_ += push(alpha, &TubeType::inertia, dt, atom->omega, atom->torque);
   }
   if (!grip_) return;
-  work_ += grip_->constrain(time, dt);
+  work_ += grip_->constrain(time, dt, dt);
   work_ += 0.5 * dt * grip_->own_power();
 }
 
@@ -441,19 +441,21 @@ void FixRelax::initial_integrate(int) {
   if (sums().power > 0) {
     fire_.went_down();
   } else {
+    if (grip_) grip_->constrain(time, -0.25 * last_, 0.0);
     move(-0.5 * last_);
     stop();
     fire_.went_up();
   }
   kick();
-  if (grip_) grip_->constrain(time, 0.0);
+  if (grip_) grip_->constrain(time, 0.0, 0.0);
   turn_to_force(fire_.mix, sums());
-  if (grip_) grip_->constrain(time, 0.0);
+  if (grip_) grip_->constrain(time, 0.0, 0.0);
   const double speed = fastest();
   if (!std::isfinite(speed))
     refuse(lmp, "step " + std::to_string(update->ntimestep) + ": relaxation met a force that is not finite",
            "start from a state without overlaps");
   last_ = speed > 0 ? std::min(fire_.dt, Fire::farthest(radius_) / speed) : fire_.dt;
+  if (grip_) grip_->constrain(time, 0.5 * last_, 0.0);
   move(last_);
   ++steps_;
 }

@@ -1,10 +1,11 @@
 // Clamps of a testing machine: schedules, rigid discs, free components, and readings of the gauges at both ends.
+#include "scene/loads/grip.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numeric>
 
-#include "scene/loads/grip.hpp"
 #include "scene/loads/twist.hpp"
 #include "sim/contact/paper/law.hpp"
 #include "sim/dynamics/simulation.hpp"
@@ -195,6 +196,33 @@ TEST(Grip, LoadsAreWhatTheGaugesRead) {
   EXPECT_GT(r.turned, 0.01);
 }
 
+// A disc under a couple turns by half a radian or so on the way to its rest.
+TEST(Grip, KeepsItsShapeInARelaxationAndTheGaugesReadTurnAndWork) {
+  const Rope rope;
+  GripLoad upper;
+  upper.axes[GripLoad::about_z] = loaded(600);
+  upper.axes[GripLoad::z] = loaded(5);
+  Simulation s = rope.make(GripLoad(), upper);
+  ASSERT_TRUE(s.relax(RelaxGoal{}, 100000, [](long) { return true; }).at_rest);
+  const EndElements ends = tube_ends(rope.topology);
+  const auto arm = [&](const State& state, int k) -> Vector3 {
+    return state.position[static_cast<std::size_t>(ends[upper_end][static_cast<std::size_t>(k)])] -
+           state.position[static_cast<std::size_t>(ends[upper_end][0])];
+  };
+  for (int k = 1; k < 7; ++k) EXPECT_NEAR(arm(s.state(), k).norm(), arm(rope.state, k).norm(), 1e-4) << k;
+  const Vector3 a = arm(rope.state, 1), b = arm(s.state(), 1);
+  const double turned = std::atan2(a.cross(b).z(), a.dot(b));
+  EXPECT_GT(turned, 0.5);
+  const EndReadings read = s.read_gauges();
+  EXPECT_NEAR(read[upper_end].turned, turned, 1e-9);
+  EXPECT_EQ(read[lower_end].turned, 0);
+  const double work = 600 * turned + 5 * (centre_of(rope.topology, s.state(), ends[upper_end]).z() -
+                                          centre_of(rope.topology, rope.state, ends[upper_end]).z());
+  EXPECT_NEAR(read[upper_end].work, work, 1e-3 * work);
+  EXPECT_NEAR(read[upper_end].work, s.work(), 1e-9 * work);
+  EXPECT_EQ(read[lower_end].work, 0);
+}
+
 // A clamp for each tube with a couple on it is [twist] per tube.
 TEST(Grip, EachUnderACoupleIsTheTwistProtocol) {
   const Rope rope(12, 0.01);
@@ -234,7 +262,8 @@ TEST(Grip, LetsGoWhatItIsToLetGo) {
     grip.on_elements(all, topology).constrain(topology, 0, 0, s);
     return s;
   };
-  const State slides = after(true, false, false), spins = after(false, true, false), tilts = after(false, false, true);
+  const State slides = after(true, false, false), spins = after(false, true, false),
+              tilts = after(false, false, true);
   Vector3 axis = Vector3::Zero();
   for (const int e : all) axis += axis_of(state.orientation[static_cast<std::size_t>(e)]);
   axis.normalize();

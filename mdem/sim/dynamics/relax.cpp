@@ -41,6 +41,16 @@ LongestBond longest_bond(const Topology& topology, const Vec3Array& position) {
   return longest;
 }
 
+// Adds the work of the loads over `dt`. No time passes: the impulses that the gauges have summed stay as they are.
+void add_work(const std::vector<PointLoad>& loads, const State& state, double dt, EnergySupply& account,
+              Gauges& gauges) {
+  account.work += dt * load_power(loads, state);
+  Gauges::Sums sums = gauges.sums;
+  gauges.add_loads(state, loads, dt);
+  for (const End end : {lower_end, upper_end}) sums.of[end].work = gauges.sums.of[end].work;
+  gauges.sums = sums;
+}
+
 // Calls work(type, i) for every element.
 template <class Work>
 void for_elements(const Topology& topology, const Work& work) {
@@ -112,7 +122,8 @@ class Simulation::Stiffness {
     return out;
   }
   Motion softest_mode(Motion x, long most);
-  // The most that the energy falls while the elements go along a motion, eV: the forces' work, by the trapezoidal rule.
+  // The most that the energy falls while the elements go along a motion, eV: the forces' work, by the trapezoidal
+  // rule.
   double fall_along(const Motion& motion) {
     constexpr double step = 0.01, farthest = 0.2;  // nm, of the element that goes farthest
     const double time = step / s_.farthest(motion);
@@ -195,9 +206,9 @@ double Simulation::above_minimum(double enough, long most) const {
   return power > 0 ? unknown : above;
 }
 
-// The mode of K x = lambda M x with the lowest lambda, from a motion that has a part of it: the steepest way down of a
-// saddle. Without the stiff parts of that motion the energy falls along the mode much farther. LOBPCG with one vector:
-// A. V. Knyazev, SIAM J. Sci. Comput. 23, 517 (2001), DOI 10.1137/S1064827500366124.
+// The mode of K x = lambda M x with the lowest lambda, from a motion that has a part of it: the steepest way down
+// of a saddle. Without the stiff parts of that motion the energy falls along the mode much farther. LOBPCG with one
+// vector: A. V. Knyazev, SIAM J. Sci. Comput. 23, 517 (2001), DOI 10.1137/S1064827500366124.
 Simulation::Motion Simulation::Stiffness::softest_mode(Motion x, long most) {
   constexpr long at_once = 25;     // iterations between two looks at lambda
   constexpr double change = 0.01;  // of lambda, of one look to the next, that ends the search
@@ -352,7 +363,7 @@ Relaxed Simulation::relax(const RelaxGoal& goal, long max_steps, const std::func
   constexpr double least_part = 1e-3;  // of the contact's energy, which stands for that of bonds that hardly bear
   constexpr double no_force = 1e-2;    // of the goal: what rests here without a minimum rests on a saddle
   constexpr long least_iterations = 300;
-  constexpr double least_fall = 1e-4;  // of the energy of bonds and contact, that is followed
+  constexpr double least_fall = 1e-4;        // of the energy of bonds and contact, that is followed
   constexpr std::int64_t most_saddles = 30;  // couples of fixed direction have no potential: they may pump for ever
   Relaxation& r = relaxation_;
   if (!(r.goal == goal)) end_relaxation();
@@ -419,13 +430,16 @@ Relaxed Simulation::relax(const RelaxGoal& goal, long max_steps, const std::func
   return out;
 }
 
+// What turns as a rigid body moves along its chord, and so keeps its shape.
 void Simulation::move_in_relaxation(double step) {
-  account_.work += 0.5 * step * load_power(point_loads_, state_);
+  constrain(topology_, loads_, state_.time, 0.5 * step, state_);
+  add_work(point_loads_, state_, 0.5 * step, account_, gauges_);
   move(step);
+  gauges_.follow(state_);
   ++state_.step;
   update_list();
   compute(true, 0);
-  account_.work += 0.5 * step * load_power(point_loads_, state_);
+  add_work(point_loads_, state_, 0.5 * step, account_, gauges_);
   balance_relaxation();
 }
 
@@ -464,8 +478,10 @@ Simulation::PartEnd Simulation::relax_part(long max_steps, const std::function<b
     if (power > 0) {
       fire.went_down();
     } else {
-      account_.work -= 0.5 * r.last_step * load_power(point_loads_, state_);
+      constrain(topology_, loads_, state_.time, -0.25 * r.last_step, state_);
+      add_work(point_loads_, state_, -0.5 * r.last_step, account_, gauges_);
       move(-0.5 * r.last_step);
+      gauges_.follow(state_);
       stand_still();
       fire.went_up();
     }
