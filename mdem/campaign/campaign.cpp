@@ -96,15 +96,17 @@ CampaignDirectory campaign_directory(const std::string& sweep_file, const std::s
   return {out.empty() ? (fs::path(sweep_file).parent_path() / fs::path(sweep_file).stem()).string() : out};
 }
 
-bool is_run_of(const RunDirectory& dir, const std::string& text, const std::vector<std::string>& sets,
-               bool any_step) {
+bool is_run_of(const RunDirectory& dir, const std::string& text, const SweepPoint& point, bool any_step) {
   const auto comparable = [&](const std::string& scene) {
     return any_step ? with_value(scene, "run.time_step_fs", "0", dir.scene()) : scene;
   };
   if (comparable(read_file(dir.scene())) != comparable(text)) return false;
-  for (std::size_t k = 0; k < sets.size(); ++k)
-    if (!fs::exists(dir.parameters(k)) || read_file(dir.parameters(k)) != read_file(sets[k])) return false;
-  return true;
+  const auto copied = [](const std::string& copy, const std::string& file) {
+    return fs::exists(copy) && read_file(copy) == read_file(file);
+  };
+  for (std::size_t k = 0; k < point.sets.size(); ++k)
+    if (!copied(dir.parameters(k), point.sets[k])) return false;
+  return point.state.empty() || copied(dir.state(), point.state);
 }
 
 void create_campaign(const CampaignDirectory& dir, const Sweep& sweep, const std::vector<SweepPoint>& points,
@@ -112,16 +114,23 @@ void create_campaign(const CampaignDirectory& dir, const Sweep& sweep, const std
   if (fs::exists(dir.path) && !fs::exists(dir.sweep()) && !was_just_begun(dir))
     throw InputError({dir.path, 0, "--out"}, "is not the directory of a campaign (no sweep.toml in it)",
                      "choose another name");
+  // The scenes of the points do not tell when they left their shared start.
+  const bool other_start = !sweep.branch_axes.empty() && fs::exists(dir.sweep()) && fs::exists(dir.scene()) &&
+                           read_campaign(dir).branch_at != sweep.branch_at;
   for (const SweepPoint& p : points) {
     const RunDirectory run = dir.point(p.name);
     if (!fs::exists(run.scene()) || progress_of(run).stage == PointProgress::Stage::waiting) continue;
     // A point that goes on from a shared start has the time step of that start.
-    if (is_run_of(run, p.text, p.sets, !p.start.empty())) continue;
+    const bool same = is_run_of(run, p.text, p, !p.start.empty());
+    if (same && !other_start) continue;
     if (!force)
-      throw InputError({run.path, 0, "--out"}, "was run with another scene or parameter set",
+      throw InputError({run.path, 0, "--out"},
+                       same ? "left its shared start at another time, branch.at_ps"
+                            : "was run with another scene, parameter set or state file",
                        "choose another --out, or give --force to run this point anew");
     fs::remove_all(run.path);
   }
+  if (other_start) fs::remove_all(dir.path + "/starts");
   std::error_code error;
   for (const char* sub : {"points", "messages"}) fs::create_directories(dir.path + "/" + sub, error);
   if (error)

@@ -26,10 +26,9 @@ struct CampaignDirectory {
 // Beside the file of the sweep, where `out` is empty.
 CampaignDirectory campaign_directory(const std::string& sweep_file, const std::string& out);
 
-// Whether the directory holds a run of this scene with these parameter sets (files). With `any_step` its time step
-// may be another one.
-bool is_run_of(const RunDirectory& dir, const std::string& text, const std::vector<std::string>& sets,
-               bool any_step = false);
+// Whether the directory holds a run of this scene with the parameter sets and the state file of the point. With
+// `any_step` its time step may be another one.
+bool is_run_of(const RunDirectory& dir, const std::string& text, const SweepPoint& point, bool any_step = false);
 
 // How far the run of a point is.
 struct PointProgress {
@@ -42,7 +41,8 @@ struct PointProgress {
 PointProgress progress_of(const RunDirectory& dir);
 
 // Makes the directory with its copies. Throws InputError where it is not that of a campaign, or where a point in it
-// was run with another scene or parameter set, unless `force` is set: these points are then removed.
+// was run with another scene, parameter set, state file or time of its shared start, unless `force` is set: these
+// points are then removed.
 void create_campaign(const CampaignDirectory& dir, const Sweep& sweep, const std::vector<SweepPoint>& points,
                      bool force);
 

@@ -210,9 +210,9 @@ struct Setting {
 
 constexpr const char* length_key = "element_length_nm";
 
-// Resizes the tubes of a point for another element length, so that their free length stays as near as whole elements go.
-// `before`: the scene with its old element length. The text stays as it is for a wrong scene, which the check of the
-// point refuses, and for a sweep that gives a size of the tubes with each element length.
+// Resizes the tubes of a point for another element length, so that their free length stays as near as whole
+// elements go. `before`: the scene with its old element length. The text stays as it is for a wrong scene, which
+// the check of the point refuses, and for a sweep that gives a size of the tubes with each element length.
 void keep_free_length(const Sweep& s, const std::string& before, double length, std::string& text) {
   try {
     const Scene scene = scene_of_text(before, s.scene_path);
@@ -220,8 +220,7 @@ void keep_free_length(const Sweep& s, const std::string& before, double length, 
     const std::string key = size.table + "." + size.key;
     const auto same = [&](const SweepAxis& axis) { return axis.key == key; };
     if (size.tube_size == SceneKey::TubeSize::no || scene.has_ends(Drive::Ends::endless) ||
-        !(length > 1e-3 * scene.element_length) ||
-        (s.zip && std::any_of(s.axes.begin(), s.axes.end(), same)))
+        !(length > 1e-3 * scene.element_length) || (s.zip && std::any_of(s.axes.begin(), s.axes.end(), same)))
       return;
     const int held = elements_held(scene, 0), free = scene.source->sizes(scene.element_length).elements - held;
     const long elements = std::max(1L, std::lround(free * scene.element_length / length)) + held;
@@ -270,6 +269,7 @@ void check_scene(const Sweep& s, SweepPoint& p) {
   try {
     const Scene scene = scene_of(s, p);
     for (const ParameterSet& set : scene.sets) p.sets.push_back(set.path);
+    p.state = scene.source->file();
     const bool relaxes = scene.run.mode == RunOptions::Mode::relax;
     const double duration = scene.run.duration > 0 ? scene.run.duration : protocol_time(scene);
     const Source::Sizes sizes = scene.source->sizes(scene.element_length);

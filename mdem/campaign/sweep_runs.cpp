@@ -66,7 +66,7 @@ void SweepRuns::run_starts(const std::function<void(const SweepPoint&)>& failed)
       return q.start == p.name && progress_of(dir_.point(q.name)).stage == Stage::waiting;
     });
     const RunDirectory to = dir_.start(p.name);
-    if (fs::exists(to.scene()) && !is_run_of(to, p.text, p.sets)) fs::remove_all(to.path);
+    if (fs::exists(to.scene()) && !is_run_of(to, p.text, p)) fs::remove_all(to.path);
     if (!needed || progress_of(to).stage == Stage::ended) continue;
     tasks.push_back({[this, p, to] {
                        return in_a_process(dir_.messages("start-" + p.name), true, [&] {

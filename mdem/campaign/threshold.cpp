@@ -141,6 +141,7 @@ RunDirectory trial_directory(const CampaignDirectory& dir, const Sweep& sweep, c
 std::string trial_hash(const Sweep& sweep, const SweepPoint& point, double value) {
   std::string all = trial_text(sweep, point, value);
   for (const std::string& set : point.sets) all += read_file(set);
+  if (!point.state.empty()) all += read_file(point.state);
   return hash_hex(all);
 }
 
@@ -190,10 +191,11 @@ std::vector<OutputColumn> trial_columns() {
   return {{"seed", "", "1, 2, ... in the order of the sweep"},
           {"value", "that of the key", "value of the key in this run"},
           {"passed", "", "1: the column passed its value within the time of the scene; 0: it did not"},
-          {"at_ps", "ps", "when it passed; nan: it did not"},
+          {"at_ps", "ps", "when it passed, or when a [[stop]] of the scene ended it before; nan: neither"},
           {"rate_per_ps", "1/ps", "rate of the exponential growth up to then; nan: it cannot be told"},
           {"rate_error_per_ps", "1/ps", "its standard error"},
-          {"scene_xxh64", "", "hash of the scene and its parameter sets, by which `--known` finds it again"}};
+          {"scene_xxh64", "",
+           "hash of the scene, its parameter sets and its state file, by which `--known` finds it again"}};
 }
 
 std::vector<Trial> read_trials(const std::string& path) {

@@ -16,9 +16,10 @@ namespace ropewalk {
 struct Trial {
   double value = 0;
   bool passed = false;
-  double time = 0;                    // ps, at which it passed
+  double time = 0;                    // ps, at which it passed or was cut short
+  bool cut_short = false;             // it did not pass, and a [[stop]] of the scene ended it before its time
   std::optional<double> rate, error;  // 1/ps, of the exponential growth on the way; none: it cannot be told
-  std::string scene_hash;             // of its scene and parameter sets
+  std::string scene_hash;             // of its scene, parameter sets and state file
 };
 
 // The threshold of a point, by its runs; values rise.

@@ -43,7 +43,8 @@ void ThresholdSearch::begin(bool force) {
     if (others > 0 && !force)
       throw InputError(
           {dir_.trials(), 0, ""},
-          fmt::format("{} of its {} trials are of other scenes or parameter sets, and would be lost", others, all),
+          fmt::format("{} of its {} trials are of other scenes, parameter sets or state files, and would be lost",
+                      others, all),
           "choose another --out, or give --force");
   }
 }
@@ -53,9 +54,9 @@ void ThresholdSearch::refuse_other_scenes(bool force) const {
   for (const SweepPoint& p : points_) {
     for (const Trial& t : threshold_of(dir_, sweep_, p, {}).trials) {
       const RunDirectory run = trial_directory(dir_, sweep_, p, t.value);
-      if (is_run_of(run, trial_text(sweep_, p, t.value), p.sets)) continue;
+      if (is_run_of(run, trial_text(sweep_, p, t.value), p)) continue;
       if (!force)
-        throw InputError({run.path, 0, "--out"}, "was run with another scene or parameter set",
+        throw InputError({run.path, 0, "--out"}, "was run with another scene, parameter set or state file",
                          "choose another --out, or give --force to run it anew");
       fs::remove_all(run.path);
     }

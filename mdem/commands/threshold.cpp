@@ -20,10 +20,10 @@ namespace fs = std::filesystem;
 
 void take_known(ThresholdSearch& search, const std::string& trials) {
   if (const auto [others, all] = search.take(trials); others > 0)
-    tell_as_is(
-        fmt::format("ropewalk: note: {} of the {} trials in {} are of other scenes or parameter sets and "
-                    "are not used.\n",
-                    others, all, trials));
+    tell_as_is(fmt::format(
+        "ropewalk: note: {} of the {} trials in {} are of other scenes, parameter sets or state files and "
+        "are not used.\n",
+        others, all, trials));
 }
 
 void print_results(const CampaignDirectory& dir, const std::vector<PhasePoint>& points,

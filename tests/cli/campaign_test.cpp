@@ -74,6 +74,19 @@ TEST_F(Campaign, BranchesGoOnFromOneStart) {
   ASSERT_EQ(run("run alone.toml --out alone --quiet").code, 0);
   EXPECT_EQ(slurp(dir / "alone" / "final.csv"),
             slurp(dir / "s" / "points" / "tubes-7_duration_ps-8" / "final.csv"));
+  // Another time of the start makes other runs.
+  std::string later = slurp(dir / "s.toml");
+  later.replace(later.find("at_ps = 5"), 9, "at_ps = 4");
+  spit(dir / "s.toml", later);
+  const Outcome o = run("sweep s.toml");
+  EXPECT_EQ(o.code, 2);
+  EXPECT_NE(o.err.find("left its shared start at another time"), std::string::npos) << o.err;
+  ASSERT_EQ(run("sweep s.toml --force").code, 0) << slurp(dir / "stderr.txt");
+  EXPECT_NEAR(
+      std::stod(lines(slurp(dir / "s" / "starts" / "tubes-7" / "log.csv"))
+                    .back()
+                    .substr(lines(slurp(dir / "s" / "starts" / "tubes-7" / "log.csv")).back().find(',') + 1)),
+      4, 0.1);
 }
 
 TEST_F(Campaign, FailedPointsAreNamedAndKept) {
@@ -109,6 +122,23 @@ TEST_F(Campaign, RefusesWhatIsOfAnotherScene) {
   EXPECT_EQ(run("sweep s.toml --only 3").code, 2);
   EXPECT_EQ(run("sweep s.toml --only nobody").code, 2);
   EXPECT_EQ(run("gather mine").code, 2);
+}
+
+TEST_F(Campaign, RefusesAnotherStateFile) {
+  sweep_file("[vary]\nrope.tubes = [1]\nstart.seed = [1, 2]\n");
+  ASSERT_EQ(run("sweep s.toml").code, 0);
+  fs::copy(dir / "s" / "points" / "seed-1" / "final.csv", dir / "begin.csv");
+  spit(dir / "tube.toml",
+       "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[state]\nfile = \"begin.csv\"\n"
+       "[run]\nduration_ps = 1\n");
+  sweep_file("[vary]\ndamping.bond_damping_per_ps = [1, 2]\n");
+  ASSERT_EQ(run("sweep s.toml --out from-state").code, 0) << slurp(dir / "stderr.txt");
+  EXPECT_EQ(run("sweep s.toml --out from-state").code, 0);
+  fs::copy(dir / "s" / "points" / "seed-2" / "final.csv", dir / "begin.csv", fs::copy_options::overwrite_existing);
+  const Outcome state = run("sweep s.toml --out from-state");
+  EXPECT_EQ(state.code, 2);
+  EXPECT_NE(state.err.find("another scene, parameter set or state file"), std::string::npos) << state.err;
+  EXPECT_EQ(run("sweep s.toml --out from-state --force").code, 0);
 }
 
 TEST_F(Campaign, ClusterFilesRunEveryPoint) {
