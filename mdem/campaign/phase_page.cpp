@@ -106,17 +106,18 @@ ScatterChart diagram(const Sweep& sweep, int tubes, const std::vector<const Phas
 }  // namespace
 
 std::string thresholds_csv(const Sweep& sweep, const std::vector<PhasePoint>& points) {
-  std::string text = head(sweep) +
-                     "tubes,length_nm,radius_nm,seeds,by_bisection,by_bisection_error,by_growth,by_growth_error,"
-                     "growing_runs,sliding_tubes,glued_tubes,falling_seeds,unclear_seeds\n";
+  std::string text =
+      head(sweep) +
+      "tubes,length_nm,radius_nm,seeds,by_bisection,by_bisection_error,by_growth,by_growth_error,"
+      "growing_runs,sliding_tubes,glued_tubes,falling_seeds,unclear_seeds,outside_seeds,cut_short_runs\n";
   for (const PhasePoint& p : points) {
     const auto growth = p.by_growth();
-    text +=
-        values(p) + fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}\n", p.tubes, cell(p.length), cell(p.radius),
-                                p.seeds.size(), cell(p.by_bisection()), cell(p.bisection_error()),
-                                cell(growth ? growth->critical : nan), cell(growth ? growth->error : nan),
-                                growth ? growth->runs : 0, cell(p.sliding > 0 ? p.sliding : nan),
-                                cell(p.glued > 0 ? p.glued : nan), p.falling_seeds(), p.unclear_seeds());
+    text += values(p) + fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", p.tubes, cell(p.length),
+                                    cell(p.radius), p.seeds.size(), cell(p.by_bisection()),
+                                    cell(p.bisection_error()), cell(growth ? growth->critical : nan),
+                                    cell(growth ? growth->error : nan), growth ? growth->runs : 0,
+                                    cell(p.sliding > 0 ? p.sliding : nan), cell(p.glued > 0 ? p.glued : nan),
+                                    p.falling_seeds(), p.unclear_seeds(), p.outside_seeds(), p.cut_short_runs());
   }
   return text;
 }
@@ -127,7 +128,7 @@ std::string trials_csv(const Sweep& sweep, const std::vector<PhasePoint>& points
     for (std::size_t s = 0; s < p.seeds.size(); ++s)
       for (const Trial& t : p.seeds[s].trials)
         text += values(p) + fmt::format("{},{},{},{},{},{},{}\n", s + 1, cell(t.value), t.passed ? 1 : 0,
-                                        cell(t.passed ? t.time : nan), cell(t.rate.value_or(nan)),
+                                        cell(t.passed || t.cut_short ? t.time : nan), cell(t.rate.value_or(nan)),
                                         cell(t.error.value_or(nan)), t.scene_hash);
   return text;
 }
@@ -156,9 +157,9 @@ std::string phase_page(const Sweep& sweep, const std::vector<PhasePoint>& points
         "<tr><th>{}</th><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}"
         "</td></tr>\n",
         escape_markup(p.name), p.tubes, number(p.length), number(p.radius > 0 ? p.length / p.radius : 0),
-        std::isfinite(p.by_bisection())
-            ? measured_text(p.by_bisection(), p.bisection_error()) + (p.remarks().empty() ? "" : "; " + p.remarks())
-            : "not in the range",
+        escape_markup((std::isfinite(p.by_bisection()) ? measured_text(p.by_bisection(), p.bisection_error())
+                                                       : "not in the range") +
+                      (p.remarks().empty() ? "" : "; " + p.remarks())),
         growth ? measured_text(growth->critical, growth->error) : "–", growth ? growth->runs : 0, number(p.sliding),
         number(p.glued));
   }

@@ -14,6 +14,7 @@
 #include "model/error.hpp"
 #include "observe/growth.hpp"
 #include "plan/scene_edit.hpp"
+#include "run/stop_watch.hpp"
 #include "scene/kinds/scene_kind.hpp"
 #include "scene/prepare.hpp"
 #include "scene/scene_to_model.hpp"
@@ -106,12 +107,14 @@ std::optional<PowerLaw> power_law(const std::vector<double>& x, const std::vecto
 }
 
 Trial trial_of(const std::vector<LogRow>& log, const ThresholdQuestion& q, double value, double wave,
-               double constant_from) {
+               double constant_from, bool by_a_rule) {
   Trial trial;
   trial.value = value;
   std::size_t end = 0;
   while (end < log.size() && !(log[end][q.column] > q.above)) ++end;
   trial.passed = end < log.size();
+  trial.cut_short = !trial.passed && by_a_rule && !log.empty();
+  if (trial.cut_short) trial.time = log.back()["time_ps"];
   if (!trial.passed) return trial;
   trial.time = log[end]["time_ps"];
   // The last stretch of rows before it in which the observable is clear of the start.
@@ -165,7 +168,8 @@ std::vector<Trial> trials_in(const CampaignDirectory& dir, const Sweep& sweep, c
     const double from = ramp && ramp->moment > 0 && q.key == "twist.moment_nN_nm"
                             ? constant_from * value * units::nN_nm / ramp->moment
                             : constant_from;
-    trials.push_back(trial_of(read_log(run.log()), q, value, scene.start.wave, from));
+    const bool by_a_rule = progress_of(run).reason.rfind(decided_words, 0) == 0;
+    trials.push_back(trial_of(read_log(run.log()), q, value, scene.start.wave, from, by_a_rule));
     trials.back().scene_hash = trial_hash(sweep, point, value);
   }
   return trials;
@@ -217,7 +221,9 @@ std::vector<Trial> read_trials(const std::string& path) {
     Trial t;
     t.value = number(1);
     t.passed = number(2) != 0;
-    if (t.passed) t.time = number(3);
+    const double time = number(3);
+    t.cut_short = !t.passed && std::isfinite(time);
+    if (t.passed || t.cut_short) t.time = time;
     if (const double rate = number(4); std::isfinite(rate)) t.rate = rate, t.error = number(5);
     t.scene_hash = csv.cells()[first + 6];
     trials.push_back(t);
@@ -229,7 +235,7 @@ double PhasePoint::by_bisection() const {
   std::vector<double> middles;
   for (const Threshold& t : seeds)
     if (!t.outside) middles.push_back(t.middle());
-  return middles.empty() ? std::numeric_limits<double>::quiet_NaN() : mean(middles);
+  return middles.empty() || outside_seeds() > 0 ? std::numeric_limits<double>::quiet_NaN() : mean(middles);
 }
 
 // The error of the mean: scatter of the seeds, and a bracket in which every value is as likely.
@@ -237,7 +243,7 @@ double PhasePoint::bisection_error() const {
   std::vector<double> middles, widths;
   for (const Threshold& t : seeds)
     if (!t.outside) middles.push_back(t.middle()), widths.push_back(t.above - t.below);
-  if (middles.empty()) return std::numeric_limits<double>::quiet_NaN();
+  if (middles.empty() || outside_seeds() > 0) return std::numeric_limits<double>::quiet_NaN();
   const auto n = static_cast<double>(middles.size());
   double squares = 0;
   for (const double m : middles) squares += std::pow(m - mean(middles), 2);
@@ -255,15 +261,34 @@ std::size_t PhasePoint::unclear_seeds() const {
       std::count_if(seeds.begin(), seeds.end(), [](const Threshold& t) { return t.changes > 1; }));
 }
 
+// Of a search that has only begun, nothing is known.
+std::size_t PhasePoint::outside_seeds() const {
+  return static_cast<std::size_t>(std::count_if(
+      seeds.begin(), seeds.end(), [](const Threshold& t) { return t.outside && t.trials.size() > 1; }));
+}
+
+std::size_t PhasePoint::cut_short_runs() const {
+  std::size_t runs = 0;
+  for (const Threshold& t : seeds)
+    for (const Trial& trial : t.trials) runs += trial.cut_short ? 1 : 0;
+  return runs;
+}
+
 std::string PhasePoint::remarks() const {
   const auto of_seeds = [&](std::size_t some) {
     return some < seeds.size() ? fmt::format(" with {} of {} seeds", some, seeds.size()) : std::string();
   };
   std::string text;
-  if (const std::size_t n = falling_seeds(); n > 0) text = "runs pass below it" + of_seeds(n);
+  const auto add = [&](const std::string& words) { text += (text.empty() ? "" : "; ") + words; };
+  if (const std::size_t n = falling_seeds(); n > 0) add("runs pass below it" + of_seeds(n));
   if (const std::size_t n = unclear_seeds(); n > 0)
-    text += (text.empty() ? "" : "; ") + ("the outcome changes more than once" + of_seeds(n)) +
-            ", and this is the lowest change";
+    add("the outcome changes more than once" + of_seeds(n) + ", and this is the lowest change");
+  if (const std::size_t n = outside_seeds(); n > 0 && n < seeds.size())
+    add("the outcome is the same in all of the range" + of_seeds(n) +
+        ": widen it, the other seeds alone are no mean");
+  if (const std::size_t n = cut_short_runs(); n > 0)
+    add(fmt::format("{} run{} ended by a [[stop]] of the scene before the column passed, and count{} as not passed",
+                    n, n > 1 ? "s were" : " was", n > 1 ? "" : "s"));
   return text;
 }
 

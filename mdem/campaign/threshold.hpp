@@ -51,9 +51,9 @@ struct PowerLaw {
 std::optional<PowerLaw> power_law(const std::vector<double>& x, const std::vector<double>& y);
 
 // Reads the answer from the log of a run. `wave`: nm, that the scene began with; `constant_from`: ps, when the load
-// is whole.
+// is whole. `by_a_rule`: a [[stop]] rule ended the run.
 Trial trial_of(const std::vector<LogRow>& log, const ThresholdQuestion& question, double value, double wave,
-               double constant_from);
+               double constant_from, bool by_a_rule);
 
 // The scene of a trial: the point's, with the value, and ended where the question is decided.
 std::string trial_text(const Sweep& sweep, const SweepPoint& point, double value);
@@ -76,9 +76,12 @@ struct PhasePoint {
   double sliding = 0, glued = 0;  // theory, in the unit of the key; zero where there is none
 
   double by_bisection() const, bisection_error() const;
-  // Seeds with which the outcome falls, and with which it changes more than once.
-  std::size_t falling_seeds() const, unclear_seeds() const;
-  // Remarks on the bisection: runs pass below the value, or the outcome changes more than once. Empty: neither.
+  // Seeds with which the outcome falls, with which it changes more than once, and with which it is the same at all
+  // values that were tried. With one of the last kind there is no value by bisection: the others alone are not the
+  // mean.
+  std::size_t falling_seeds() const, unclear_seeds() const, outside_seeds() const;
+  std::size_t cut_short_runs() const;  // Trial::cut_short
+  // Remarks on the bisection: such seeds and runs. Empty: none.
   std::string remarks() const;
   std::optional<GrowthThreshold> by_growth() const;
 };

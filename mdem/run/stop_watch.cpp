@@ -23,7 +23,7 @@ std::string StopWatch::decided(const std::vector<LimitRecord>& passed) const {
   if (rows_.empty()) return "";
   for (const StopRule& rule : rules_)
     if (const std::string words = decided(rule, passed); !words.empty())
-      return fmt::format("decided at {:.4g} ps: {}", rows_.back()["time_ps"], words);
+      return fmt::format("{} {:.4g} ps: {}", decided_words, rows_.back()["time_ps"], words);
   return "";
 }
 

@@ -10,6 +10,9 @@
 
 namespace ropewalk {
 
+// With these words a decision begins, and so does the reason in the manifest of a run that it ended.
+inline constexpr const char* decided_words = "decided at";
+
 class StopWatch {
  public:
   StopWatch() = default;

@@ -78,13 +78,19 @@ TEST(Trial, GrowthIsThatUnderTheWholeLoadAndClearOfTheStart) {
   std::vector<LogRow> log;
   for (int k = 0; k <= 100; ++k) log.push_back(row(k, k < 20 ? 0.02 : 0.02 * std::exp(0.05 * (k - 20))));
   const ThresholdQuestion q{"twist.moment_nN_nm", "amplitude_nm", 0, 1, 1.0, 0.02};
-  const Trial t = trial_of(log, q, 30, 0.02, 10);
+  const Trial t = trial_of(log, q, 30, 0.02, 10, true);
   EXPECT_TRUE(t.passed);
   EXPECT_EQ(t.time, 99);  // 0.02 exp(0.05 x 79) = 1.04
   ASSERT_TRUE(t.rate);
   EXPECT_NEAR(*t.rate, 0.05, 1e-9);
-  EXPECT_FALSE(trial_of(log, q, 30, 0.02, 97).rate) << "too few rows under the whole load";
-  EXPECT_FALSE(trial_of({log.begin(), log.begin() + 50}, q, 30, 0.02, 10).passed);
+  EXPECT_FALSE(trial_of(log, q, 30, 0.02, 97, true).rate) << "too few rows under the whole load";
+  EXPECT_FALSE(t.cut_short);
+  for (const bool by_a_rule : {false, true}) {
+    const Trial none = trial_of({log.begin(), log.begin() + 50}, q, 30, 0.02, 10, by_a_rule);
+    EXPECT_FALSE(none.passed);
+    EXPECT_EQ(none.cut_short, by_a_rule);
+    EXPECT_EQ(none.time, by_a_rule ? log[49]["time_ps"] : 0);
+  }
 }
 
 TEST(StopWatch, KnowsWhenAQuestionIsDecided) {
@@ -149,6 +155,23 @@ TEST(BracketOfAThreshold, IsTheLowestChangeOfTheOutcome) {
     EXPECT_TRUE(none.outside);
     EXPECT_EQ(std::tuple(none.below, none.above, none.changes), std::tuple(1.0, 9.0, 0));
   }
+}
+
+// The seeds with a threshold in the range are not a sample of all.
+TEST(ThresholdOfSeeds, IsNoMeanWhereSomeLieOutsideOfTheRange) {
+  PhasePoint point;
+  point.seeds = {bracket_of({{1, false}, {9, true}, {5, false}}), bracket_of({{1, false}, {9, true}, {5, true}})};
+  EXPECT_NEAR(point.by_bisection(), 5, 1e-12);
+  EXPECT_EQ(point.remarks(), "");
+  point.seeds.push_back(bracketed({}, 1, 9));  // has not begun
+  EXPECT_NEAR(point.by_bisection(), 5, 1e-12);
+  EXPECT_EQ(point.outside_seeds(), 0u);
+  point.seeds.back() = bracket_of({{1, false}, {9, false}});
+  EXPECT_TRUE(std::isnan(point.by_bisection()) && std::isnan(point.bisection_error()));
+  EXPECT_EQ(point.outside_seeds(), 1u);
+  EXPECT_THAT(point.remarks(), ::testing::HasSubstr("the same in all of the range with 1 of 3 seeds"));
+  point.seeds[0].trials[0].cut_short = true;
+  EXPECT_THAT(point.remarks(), ::testing::HasSubstr("1 run was ended by a [[stop]] of the scene"));
 }
 
 TEST(GrowthThresholdOfAFallingOutcome, IsAboveTheRunsThatPassed) {
