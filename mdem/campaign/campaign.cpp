@@ -14,6 +14,7 @@
 #include "io/plain_text.hpp"
 #include "model/error.hpp"
 #include "plan/scene_edit.hpp"
+#include "report/runs_page.hpp"
 #include "run/limit_watch.hpp"
 
 namespace ropewalk {
@@ -165,6 +166,10 @@ std::string gathered_csv(const CampaignDirectory& dir, const Sweep& sweep, const
       for (const LogRow& row : log) text += begin + cells_of(row.values(), columns) + "\n";
       continue;
     }
+    if (options.mean_ps > 0 && stands_still(log))
+      throw InputError({run.log(), 0, "--mean"},
+                       "is the log of a relaxation: its rows are no times to average over",
+                       "leave --mean out, and the table has their ends");
     text += begin;
     text += log.empty() ? std::string(columns.size(), ',') : cells_of(end_of(log, options.mean_ps), columns);
     text += "," + csv_cell(limits_of(run)) + "\n";

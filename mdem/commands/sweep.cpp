@@ -4,6 +4,7 @@
 #include <sys/wait.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <map>
 
 #include "campaign/point_runs.hpp"
@@ -12,6 +13,7 @@
 #include "commands/sweep_progress.hpp"
 #include "io/failure.hpp"
 #include "io/files.hpp"
+#include "io/limits_file.hpp"
 #include "io/stop_signals.hpp"
 #include "model/error.hpp"
 #include "run/tell.hpp"
@@ -49,21 +51,30 @@ int write_script(const std::string& path, const char* option, bool force, const 
   return 0;
 }
 
+// How many times a limit was reached; 0: none was passed.
+double beyond_limits_of(const RunDirectory& dir) {
+  return std::filesystem::exists(dir.limits()) ? beyond_limits(read_limits(dir.limits()).limits) : 0;
+}
+
 int summary(const CampaignDirectory& dir, const std::vector<SweepPoint>& points, bool with_table) {
   std::map<std::string, std::size_t> counts;
-  std::vector<std::string> failed;
+  std::vector<std::string> failed, beyond;
   double seconds = 0;
   for (const SweepPoint& p : points) {
     const PointProgress progress = progress_of(dir.point(p.name));
     ++counts[progress.status];
     seconds += progress.wall_seconds;
     if (progress.stage != Stage::ended) failed.push_back(p.name);
+    if (const double times = beyond_limits_of(dir.point(p.name));
+        times > far_beyond && progress.stage == Stage::ended)
+      beyond.push_back(fmt::format("{} ({:.3g} times)", p.name, times));
   }
   std::string words;
   for (const auto& [status, count] : counts)
     words += fmt::format("{}{} {}", words.empty() ? "" : ", ", count, status);
   fmt::print("{} points: {}; {} of one core in all\n", points.size(), words, duration_text(seconds));
   for (const std::string& name : failed) fmt::print("not ended: {}, see {}\n", name, dir.messages(name));
+  for (const std::string& name : beyond) fmt::print("far beyond a limit: {}\n", name);
   if (with_table) fmt::print("Table: {}\n", dir.table());
   return failed.empty() ? 0 : 3;
 }

@@ -136,7 +136,15 @@ std::string ends(const std::vector<RunCurve>& runs, const std::vector<std::strin
 
 }  // namespace
 
-RunCurve mean_of(std::string name, const std::vector<std::vector<LogRow>>& logs) {
+bool stands_still(const std::vector<LogRow>& log) {
+  return log.size() > 1 && log.back()["time_ps"] == log.front()["time_ps"];
+}
+
+RunCurve mean_of(std::string name, const std::vector<std::vector<LogRow>>& all) {
+  const bool relaxed = all.size() > 1 && std::all_of(all.begin(), all.end(), stands_still);
+  std::vector<std::vector<LogRow>> logs = all;
+  for (std::vector<LogRow>& log : logs)
+    if (relaxed) log = {log.back()};
   RunCurve curve{std::move(name), logs.front(), {}, logs.size(), "", {}, 0};
   std::size_t rows = logs.front().size(), most = 0;
   for (const auto& log : logs) {
@@ -146,6 +154,7 @@ RunCurve mean_of(std::string name, const std::vector<std::vector<LogRow>>& logs)
       if (std::fabs(log[r]["time_ps"] - logs.front()[r]["time_ps"]) > 1e-6 * log[r]["time_ps"]) rows = r;
   }
   curve.log.resize(rows);
+  if (relaxed) curve.remark = "means of the last rows of relaxations";
   if (rows < most && rows > 0)
     curve.remark = fmt::format("means up to {:.6g} ps, as far as all of them have rows at the same times",
                                curve.log.back()["time_ps"]);

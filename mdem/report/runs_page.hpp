@@ -21,7 +21,11 @@ struct RunCurve {
   double tube_radius = 0;             // nm
 };
 
-// Means of logs with rows at the same times, as far as the shortest reaches.
+// Whether no time passes in its rows, as in the log of a relaxation.
+bool stands_still(const std::vector<LogRow>& log);
+
+// Means of logs with rows at the same times, as far as the shortest reaches. Of relaxations, whose rows have no
+// time, the last rows alone.
 RunCurve mean_of(std::string name, const std::vector<std::vector<LogRow>>& logs);
 
 // A value to compare with, drawn across the chart.

@@ -305,6 +305,38 @@ TEST_F(Campaign, ReplicatesThatAreOneRunAreSaid) {
   }
 }
 
+// The rows of a relaxation have no time: what counts is the last of each.
+TEST_F(Campaign, RelaxationsAreComparedAtTheirEnds) {
+  spit(dir / "tube.toml",
+       "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-paper\"\n[rope]\ntubes = 1\nlength_nm = 13.56\n"
+       "perturbation_nm = 0.05\n[run]\nmode = \"relax\"\n");
+  sweep_file("replicates = 3\n[vary]\nrope.tubes = [1]\n");
+  ASSERT_EQ(run("sweep s.toml").code, 0) << slurp(dir / "stderr.txt");
+  double sum = 0;
+  for (const char* seed : {"1", "2", "3"}) {
+    const auto log = lines(slurp(dir / "s" / "points" / (std::string("seed-") + seed) / "log.csv"));
+    sum += std::stod(log.back()) / 3;
+  }
+  ASSERT_EQ(run("compare s --csv c.csv --x step --y kinetic_eV").code, 0) << slurp(dir / "stderr.txt");
+  const auto rows = lines(slurp(dir / "c.csv"));
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_NEAR(std::stod(rows[1].substr(rows[1].find(",3,") + 3)), sum, 0.1);
+  const Outcome mean = run("gather s --mean 5");
+  EXPECT_EQ(mean.code, 2);
+  EXPECT_NE(mean.err.find("is the log of a relaxation"), std::string::npos) << mean.err;
+  EXPECT_EQ(run("gather s").code, 0);
+}
+
+// `run` ends with exit code 7 there.
+TEST_F(Campaign, PointsFarBeyondALimitAreNamed) {
+  spit(dir / "tube.toml", slurp(dir / "tube.toml") + "[limits]\ntwist_deg = 3\n");
+  sweep_file("[vary]\ngrip.1.about_z.rotation_deg = [3, 120]\ngrip.1.about_z.rate_deg_per_ps = [20]\n");
+  const Outcome o = run("sweep s.toml");
+  EXPECT_EQ(o.code, 0) << o.err;
+  EXPECT_NE(o.out.find("far beyond a limit: rotation_deg-120 ("), std::string::npos) << o.out;
+  EXPECT_EQ(o.out.find("far beyond a limit: rotation_deg-3 "), std::string::npos) << o.out;
+}
+
 TEST_F(Campaign, CompareDrawsRunsAndEnsembles) {
   sweep_file("replicates = 3\n[vary]\nrope.tubes = [1, 7]\n");
   const Outcome swept = run("sweep s.toml");
