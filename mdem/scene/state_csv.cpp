@@ -1,6 +1,7 @@
 #include "scene/state_csv.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -38,10 +39,11 @@ const std::string header = whole_header.substr(0, whole_header.find(",vx"));
 constexpr double farthest = 1e7;                          // nm
 constexpr double norm_slack = 1e-3;                       // of a quaternion
 constexpr double shortest_bond = 0.1, longest_bond = 10;  // element lengths
-// Bounds of a tube's median bond over the element length. No strain that a tube bears reaches them, and elements of half
-// or twice the length lie beyond them.
+// Bounds of a tube's median bond over the element length. No strain that a tube bears reaches them, and elements of
+// half or twice the length lie beyond them.
 constexpr double shortest_usual = 0.75, longest_usual = 1.34;
 constexpr const char* length_words = "element_length_nm: ";
+constexpr const char* types_words = "tube_types: ";
 
 struct Row {
   int tube = 0;
@@ -65,6 +67,26 @@ double stated_length(const CsvReader& csv) {
   return 0;
 }
 
+// The number of parameter sets that a comment before the present line names by the types of the tubes; 0: none
+// does.
+int stated_sets(const CsvReader& csv) {
+  for (const std::string_view comment : csv.comments()) {
+    if (comment.rfind(types_words, 0) != 0) continue;
+    const std::string text(comment.substr(std::string_view(types_words).size()));
+    long most = -1;
+    const char* at = text.c_str();
+    for (char* end = nullptr;; at = end + 1) {
+      const long type = std::strtol(at, &end, 10);
+      if (end == at || type < 0 || type >= max_elements || (*end != ',' && *end != '\0'))
+        csv.fail("", fmt::format("the comment above says \"{}\" of the types of tubes", printable(text, 40)),
+                 "write numbers from 0 with commas between them, or take the comment away");
+      most = std::max(most, type);
+      if (*end == '\0') return static_cast<int>(most) + 1;
+    }
+  }
+  return 0;
+}
+
 class StateReader {
  public:
   StateReader(const std::string& path, Topology& topology) : path_(path), csv_(path), topology_(topology) {}
@@ -73,7 +95,7 @@ class StateReader {
     if (!csv_.next()) fail("", "is empty", fmt::format("the first line must be {}", header));
     check_header();
     while (csv_.next()) {
-      if (rows_.empty()) check_length();
+      if (rows_.empty()) check_length(), check_sets();
       if (rows_.size() == static_cast<std::size_t>(max_elements))
         fail("", fmt::format("has more than {} elements", max_elements), "take fewer");
       const Row row = parsed();
@@ -110,8 +132,20 @@ class StateReader {
            fmt::format("take element_length_nm = {}, the length in the comment above", length));
   }
 
-  // Checks the spacing in a file that does not state its element length. A file that states the length is trusted: it may
-  // hold the state of a run that blew up.
+  // The energy of two kinds of tubes by the set of one is that of overlaps.
+  void check_sets() const {
+    const auto here = static_cast<int>(topology_.types.size());
+    if (const int sets = stated_sets(csv_); sets > here)
+      fail("",
+           fmt::format("tubes of this file are of {} parameter sets, and {} given", sets,
+                       here == 1 ? "1 is" : fmt::format("{} are", here)),
+           "give all of them, in the order of the comment above: parameters and tube_types of a scene, "
+           "--parameters and "
+           "--tube-types of `ropewalk energy`");
+  }
+
+  // Checks the spacing in a file that does not state its element length. A file that states the length is trusted:
+  // it may hold the state of a run that blew up.
   void check_spacing() const {
     std::size_t first = 0;
     for (int t = 0; t < topology_.tubes(); ++t, first = static_cast<std::size_t>(topology_.tube_begin[t])) {
@@ -219,6 +253,7 @@ double state_element_length(const std::string& path) {
 
 std::string state_csv(const Topology& topology, const State& s) {
   std::string text = fmt::format("{}\n# {}{}\n", whole_header, length_words, topology.types.front().element_length);
+  if (topology.types.size() > 1) text += fmt::format("# {}{}\n", types_words, fmt::join(topology.tube_type, ","));
   for (int t = 0; t < topology.tubes(); ++t)
     for (int e = topology.tube_begin[t]; e < topology.tube_begin[t + 1]; ++e) {
       const auto i = static_cast<std::size_t>(e);

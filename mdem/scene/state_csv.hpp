@@ -1,7 +1,8 @@
 // Elements from a CSV file: tube,x_nm,y_nm,z_nm,qw,qx,qy,qz and, where they move, velocities and spins; one element
 // a line, those of a tube one after another along it, tubes numbered 0, 1, 2, ... in order. Empty lines and lines
 // that start with # are skipped. The quaternion turns the element's own z into its tube axis. The line below the
-// header, "# element_length_nm: 1.356", states the length of an element; a file may leave it out.
+// header, "# element_length_nm: 1.356", states the length of an element, and "# tube_types: 0,1,1" which of several
+// parameter sets each tube has; a file may leave them out.
 #pragma once
 
 #include <string>
@@ -15,7 +16,8 @@ namespace ropewalk {
 std::vector<OutputColumn> state_columns();
 
 // Fills tubes and state; all elements have the length of the first of topology.types. Throws InputError with file,
-// line and column, also where the file states another length, or states none and neighbours along a tube lie at another.
+// line and column, also where the file states another length or more parameter sets, or states no length and neighbours along a tube lie
+// at another.
 void read_state_csv(const std::string& path, Topology& topology, State& state);
 
 // The length (nm) that a state file states; 0 where it states none. Throws InputError.

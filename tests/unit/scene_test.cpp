@@ -469,8 +469,7 @@ std::string choices(const Scene& s) {
   for (const ThermostatDrive* bath : s.drives_of<ThermostatDrive>())
     text += fmt::format("{} {:.10g} {:.10g} {} | ", bath->options.method, bath->options.temperature.first(),
                         bath->options.coupling, bath->options.seed);
-  text += fmt::format("{} {:.10g} {:.10g} | ", s.run.stepping.runge_kutta,
-                      s.run.mass_scale, s.contact.cutoff);
+  text += fmt::format("{} {:.10g} {:.10g} | ", s.run.stepping.runge_kutta, s.run.mass_scale, s.contact.cutoff);
   return text + fmt::format("{} {:.10g} {:.10g} {:.10g} {:.10g} {:.10g} {:.3g} {} | {:.10g}",
                             static_cast<int>(s.run.mode), s.run.time_step, s.run.duration, s.run.frames_every,
                             s.run.log_every, s.run.checkpoint_every, s.run.goal.force, s.run.max_steps,
@@ -840,6 +839,40 @@ TEST(StateFile, TubesUpsideDownAreNotHeldByTheirEnds) {
     EXPECT_THAT(said({1, -1}, drive), HasSubstr("tube 1 stands upside down"));
   }
   EXPECT_EQ(said({1, -1}, run), "") << "nothing holds an end";
+}
+
+// A thin tube between wide ones, read by the set of the wide ones alone, lies inside of them: 10^5 eV without a
+// word.
+TEST(StateFile, OfSeveralSetsIsNotReadWithOne) {
+  Topology t = test::published_topology();
+  t.types.push_back(t.types[0]);
+  for (int tube = 0; tube < 2; ++tube) t.add_tube(2);
+  State s(4);
+  for (int i = 0; i < 4; ++i)
+    s.position.set(static_cast<std::size_t>(i), Vector3(3.0 * (i / 2), 0, t.types[0].element_length * (i % 2)));
+  EXPECT_THAT(state_csv(t, s), HasSubstr("\n# tube_types: 0,0\n0,"));
+  EXPECT_NO_THROW(built_state(state_csv(t, s)));
+  t.tube_type = {0, 1};
+  const auto message = [&](const std::string& csv) -> std::string {
+    try {
+      built_state(csv);
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return "";
+  };
+  const std::string mixed = state_csv(t, s);
+  EXPECT_THAT(message(mixed),
+              HasSubstr("tubes of this file are of 2 parameter sets, and 1 is given; give all of them"));
+  const Folder folder;
+  Topology both;
+  both.types = t.types;
+  State read;
+  read_state_csv(folder.write("mixed.csv", mixed), both, read);
+  EXPECT_EQ(both.tubes(), 2);
+  std::string unreadable = mixed;
+  unreadable.replace(unreadable.find("0,1\n"), 3, "0;1");
+  EXPECT_THAT(message(unreadable), HasSubstr("says \"0;1\" of the types of tubes"));
 }
 
 // Elements of 0.678 nm read as those of 1.356 nm are stretched by half: 10^5 eV without a word.
