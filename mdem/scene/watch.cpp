@@ -14,10 +14,10 @@ Watched watched_of(const Scene& scene, const Topology& topology, const ContactLa
     Limits limits = default_limits(topology.types[type], validity[type]);
     const auto own = static_cast<int>(type);
     limits.overlap = law ? out.rest[type * scene.sets.size() + type] - law->core_distance({own, own}) : 0;
-    if (scene.run.mode == RunOptions::Mode::relax) limits.speed = 0;  // a minimiser's speed is not one of tubes
     if (scene.contact.legacy_torque) limits.energy_drift = 0;  // it gains energy, and is there to show it
     for (std::size_t k = 0; k < limit_count; ++k)
       if (scene.limits[k]) limits.*limit_kinds()[k].limit = *scene.limits[k];
+    if (scene.run.mode == RunOptions::Mode::relax) limits.speed = 0;  // a minimiser's speed is not one of tubes
     out.limits.push_back(limits);
   }
   return out;

@@ -504,6 +504,15 @@ TEST(SceneKeys, StatedDefaultsAreTheDefaults) {
   EXPECT_EQ(relax(true), relax(false));
 }
 
+TEST(SceneKeys, ARelaxationHasNoSpeedThatALimitCouldJudge) {
+  const auto speed = [](const std::string& run_mode) {
+    const Scene s = scene_from("[chain]\nelements = 5\n[limits]\nspeed_nm_per_ps = 0.1\n[run]\n" + run_mode);
+    return watched_of(s, empty_topology(s), contact_law(s).get()).limits.at(0).speed;
+  };
+  EXPECT_EQ(speed("mode = \"relax\"\n"), 0);
+  EXPECT_EQ(speed("duration_ps = 1\n"), 0.1);
+}
+
 TEST(SceneKeys, StatedLimitsAreTheDefaults) {
   const std::string start = "[chain]\nelements = 5\n[run]\nduration_ps = 1\n";
   const auto limits = [&](const std::string& more) {
