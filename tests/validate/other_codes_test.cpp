@@ -46,6 +46,18 @@ TEST(OtherCodes, GripsOfBeadsHoldPlacesAlone) {
   EXPECT_NEAR(test::check_of(result, "beads: bending energy").value, 10.91, 0.04 * 10.91);
 }
 
+// Second neighbours are 0.4 % of the cohesion of seven (6,2) tubes; of wider tubes they are nothing.
+TEST(OtherCodes, ThinTubesReachTheirSecondNeighbours) {
+  const ParameterSet thin = read_parameters(ROPEWALK_SOURCE_DIR "/tests/validate/cnt-6-2-tersoff.toml");
+  const PairIntegral integral = surface_integral(thin);
+  const Well pair = integral.parallel_well();
+  EXPECT_NEAR(rope_energy(integral, 7, pair.distance) / (12 * pair.energy), 1.0039, 2e-4);
+  for (const char* name : {"rope-bead-spring", "hexagonal-cohesion"}) {
+    EXPECT_TRUE(test::misses(test::run_with(thin, find_case(name))).empty()) << name;
+    EXPECT_FALSE(test::misses(test::run_with(thin, find_case(name), wrong_contact(1.01))).empty()) << name;
+  }
+}
+
 // Two long rows of beads at rest have the spacing and the cohesion of the tubes.
 TEST(OtherCodes, BeadsHaveTheMeanCohesion) {
   const ParameterSet set = shipped();

@@ -29,6 +29,15 @@ inline CaseResult run(const Case& c, const Fault& fault = {}) {
   return run_case(c, context);
 }
 
+// As with --parameters.
+inline CaseResult run_with(const ParameterSet& given, const Case& c, const Fault& fault = {}) {
+  CaseContext context = stored_context();
+  context.sets = {given};
+  context.given = true;
+  context.fault = fault;
+  return run_case(c, context);
+}
+
 // Names of the checks that decide and do not hold.
 inline std::set<std::string> misses(const CaseResult& result) {
   std::set<std::string> names;

@@ -1,5 +1,6 @@
 #include "cases/common/bundle.hpp"
 
+#include <cmath>
 #include <limits>
 
 #include "scene/kinds/scene_kind.hpp"
@@ -20,6 +21,15 @@ PairIntegral surface_integral(const ParameterSet& set) {
                     atoms.lj_cutoff > 0 ? atoms.lj_cutoff : std::numeric_limits<double>::infinity()};
   const Shell shell{set.radius, set.line->surface_density};
   return PairIntegral(law, shell, shell);
+}
+
+double rope_energy(const PairIntegral& integral, int tubes, double spacing) {
+  const auto places = hexagonal_lattice(tubes, spacing);
+  double sum = 0;
+  for (std::size_t i = 0; i < places.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      sum += integral.parallel(std::hypot(places[i].first - places[j].first, places[i].second - places[j].second));
+  return sum;
 }
 
 Bundle line_bundle(const ParameterSet& set, int tubes, int elements) {

@@ -229,7 +229,9 @@ CaseFigure figure_of(Ends ends, double sliding, double glued, const Curve& free,
 CaseResult run(const CaseContext& context) {
   const ParameterSet model = context.model(), oracle = context.set();
   const double sliding = sliding_bend(oracle);
-  const double glued = glued_bend(oracle, surface_integral(oracle).parallel_well().distance);
+  const PairIntegral integral = surface_integral(oracle);
+  const double spacing = integral.parallel_well().distance;
+  const double glued = glued_bend(oracle, spacing);
   CaseResult result;
   for (const Ends ends : {Ends::pinned, Ends::clamped}) {
     const Curve free = thresholds(Tubes::sliding, model, {24, 32, 40}, ends, sliding);
@@ -256,7 +258,7 @@ CaseResult run(const CaseContext& context) {
       "high for seven tubes and higher still for more.",
       fmt::format("Cohesion compresses the tubes lengthwise, with {:.3g} eV/nm here. Unless the bonds are at rest "
                   "under it, it acts as a tension and raises the threshold. In this case they are at rest.",
-                  -12 * surface_integral(oracle).parallel_well().energy),
+                  -rope_energy(integral, 7, spacing)),
       "The criterion is static, as Greenhill's: an eigenvalue of the tangent stiffness passes zero."};
   return result;
 }

@@ -2,7 +2,6 @@
 #include <cmath>
 
 #include "cases/common/bundle.hpp"
-#include "scene/lattice.hpp"
 
 namespace ropewalk::validate::hexagonal_cohesion {
 namespace {
@@ -19,18 +18,6 @@ double energy_per_length(const ParameterSet& set, int tubes) {
 
 double contacts(double tubes) { return 3 * tubes - std::sqrt(12 * tubes - 3); }
 
-// eV/nm, by the surface integral over pairs up to second neighbours.
-double integral_per_length(const PairIntegral& integral, int tubes, double spacing) {
-  const auto places = hexagonal_lattice(tubes, spacing);
-  double sum = 0;
-  for (std::size_t i = 0; i < places.size(); ++i)
-    for (std::size_t j = i + 1; j < places.size(); ++j) {
-      const double distance = std::hypot(places[i].first - places[j].first, places[i].second - places[j].second);
-      if (distance < 2 * spacing) sum += integral.parallel(distance);
-    }
-  return sum;
-}
-
 CaseResult run(const CaseContext& context) {
   const ParameterSet model = context.model(), oracle = context.set();
   const PairIntegral integral = surface_integral(oracle);
@@ -42,7 +29,7 @@ CaseResult run(const CaseContext& context) {
     tubes.push_back(n);
     energies.push_back(energy);
     result.check_relative("energy per length of " + std::to_string(n) + " tubes", energy,
-                          integral_per_length(integral, n, pair.distance), 3e-3, "eV/nm",
+                          rope_energy(integral, n, pair.distance), 3e-3, "eV/nm",
                           "contact fitted to 1.4e-3 of the well");
   }
   result.check_relative("spacing", line_parallel_well(model.line->density).distance, pair.distance, 1e-3, "nm",
@@ -57,8 +44,7 @@ CaseResult run(const CaseContext& context) {
        model_points("ropes", tubes, energies)});
   result.remarks.push_back(
       "Where the atoms of second neighbours are farther apart than the cutoff of the atom-atom law, the contacts "
-      "are "
-      "the whole energy. Thin tubes reach their second neighbours; the oracle includes these.");
+      "are the whole energy. Thin tubes reach their second neighbours; the oracle includes these.");
   return result;
 }
 
