@@ -16,8 +16,8 @@ namespace ropewalk {
 std::vector<OutputColumn> state_columns();
 
 // Fills tubes and state; all elements have the length of the first of topology.types. Throws InputError with file,
-// line and column, also where the file states another length or more parameter sets, or states no length and neighbours along a tube lie
-// at another.
+// line and column, also where the file states another length or more parameter sets, or states no length and
+// neighbours along a tube lie at another.
 void read_state_csv(const std::string& path, Topology& topology, State& state);
 
 // The length (nm) that a state file states; 0 where it states none. Throws InputError.
