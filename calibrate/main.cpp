@@ -22,6 +22,7 @@ struct Verbs {
   FitArguments fit;
   ShowArguments show;
   CheckShippedArguments check_shipped;
+  FrictionArguments friction;
   int code = 0;
 };
 
@@ -88,6 +89,24 @@ void add_verbs(CLI::App& app, Verbs& v) {
       ->check(number_within(Bounds::positive()));
   check->callback([&v] { v.code = check_shipped_command(v.check_shipped); });
 
+  CLI::App* friction = app.add_subcommand("friction", "Friction of two tubes side by side, from their atoms (minutes)");
+  FrictionArguments& f = v.friction;
+  friction->add_option("set", f.first, "Parameter set of a tube: a file, or the name of a shipped one")->required();
+  friction->add_option("other", f.second, "That of the other tube [default: the same]");
+  friction->add_option("--out", f.out, "File [default: friction-N-M-N-M-POTENTIAL.toml]");
+  friction->add_option("--keep", f.keep, "Keep LAMMPS's inputs and logs in this new directory");
+  friction->add_option("--registers", f.registers, "Turns of both tubes that the strengths are means of")
+      ->capture_default_str()
+      ->check(CLI::Range(4, 10000));
+  friction->add_option("--checks", f.checks, "Of these, how many LAMMPS relaxes")->capture_default_str()->check(CLI::Range(2, 100));
+  friction->add_option("--drag-ps", f.drag_ps, "Time at 300 K at each of three speeds, at least 10; 0: no drag")
+      ->capture_default_str()
+      ->check(number_within(Bounds::range(0, 1e5)));
+  friction->add_flag("--json", f.json, "JSON");
+  friction->add_flag("--force", f.force, "Replace an existing file");
+  friction->add_flag("--quiet", f.quiet, "No progress lines");
+  friction->callback([&v] { v.code = friction_command(v.friction); });
+
   CLI::App* universal = app.add_subcommand("universal", "Fit one contact law for all radii (minutes)");
   add_law(*universal, v.universal.lj, v.universal.lj_cutoff);
   universal->add_option("--out", v.universal.out, "File [default: the shipped one]");
@@ -114,7 +133,7 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", std::string("ropewalk-calibrate ") + version + " (" + git_id + ")");
   app.require_subcommand(0, 1);
   Verbs verbs;
-  verbs.calibrate.command = verbs.fit.command = verbs.universal.command = command_line(argc, argv);
+  verbs.calibrate.command = verbs.friction.command = verbs.fit.command = verbs.universal.command = command_line(argc, argv);
   add_calibrate(app, verbs);
   add_verbs(app, verbs);
   add_describe(app, {"ropewalk-calibrate", version, ""});

@@ -57,6 +57,18 @@ struct CheckShippedArguments {
 };
 int check_shipped_command(const CheckShippedArguments& arguments);
 
+struct FrictionArguments {
+  std::string first, second;  // sets; second empty: like the first
+  std::string out;            // empty: friction-N-M-N-M-POTENTIAL.toml in the current directory
+  std::string keep;           // empty: LAMMPS's files are removed at the end
+  int registers = 32, checks = 3;
+  double drag_ps = 20;  // at each speed; 0: no drag
+  bool json = false, force = false, quiet = false;
+  LammpsOptions lammps;
+  std::string command;
+};
+int friction_command(const FrictionArguments& arguments);
+
 // --- Shared by the verbs ---
 
 // On Ctrl-C and TERM the LAMMPS child is ended first and temporary files are removed. interrupted_by() is the

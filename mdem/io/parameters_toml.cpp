@@ -70,25 +70,8 @@ class Reader {
   }
 
  private:
-  // One number with its unit and origin; the value in `unit`.
   double quantity(const TomlTable& section, const std::string& key, const std::string& unit, const Bounds& bounds) {
-    const std::string form = fmt::format("{{ value, unit = \"{}\", standard_error, origin, doi }}", unit);
-    if (!section.has(key)) throw section.error(key, "is missing", fmt::format("add {} = {}", key, form));
-    const TomlTable q = section.table(key, form);
-    Quantity out;
-    out.key = section.path() + "." + key;
-    out.value = q.number("value", bounds);
-    out.unit = q.string("unit");
-    if (out.unit != unit)
-      throw q.error("unit", fmt::format("is \"{}\"", printable(out.unit, 40)),
-                    fmt::format("convert the value to \"{}\"", unit));
-    out.standard_error = read_standard_error(q);
-    out.origin = read_origin(q);
-    out.note = q.string_or("note", "");
-    if (out.origin == "published" || q.has("doi")) {
-      out.doi = q.string("doi");
-      check_doi(q, out.doi);
-    }
+    const Quantity out = read_quantity(section, key, unit, bounds);
     order_.emplace_back(section.line(key), out);
     return out.value;
   }
@@ -363,7 +346,26 @@ const Quantity* find_quantity(const ParameterSet& set, const std::string& key) {
   return nullptr;
 }
 
-namespace {
+Quantity read_quantity(const TomlTable& section, const std::string& key, const std::string& unit, const Bounds& bounds) {
+  const std::string form = fmt::format("{{ value, unit = \"{}\", standard_error, origin, doi }}", unit);
+  if (!section.has(key)) throw section.error(key, "is missing", fmt::format("add {} = {}", key, form));
+  const TomlTable q = section.table(key, form);
+  Quantity out;
+  out.key = section.path() + "." + key;
+  out.value = q.number("value", bounds);
+  out.unit = q.string("unit");
+  if (out.unit != unit)
+    throw q.error("unit", fmt::format("is \"{}\"", printable(out.unit, 40)),
+                  fmt::format("convert the value to \"{}\"", unit));
+  out.standard_error = read_standard_error(q);
+  out.origin = read_origin(q);
+  out.note = q.string_or("note", "");
+  if (out.origin == "published" || q.has("doi")) {
+    out.doi = q.string("doi");
+    check_doi(q, out.doi);
+  }
+  return out;
+}
 
 std::string quantity_text(const Quantity& q, const std::string& key) {
   std::string text = fmt::format(
@@ -374,6 +376,8 @@ std::string quantity_text(const Quantity& q, const std::string& key) {
   if (!q.note.empty()) text += ", note = " + toml_string(q.note);
   return text + " }\n";
 }
+
+namespace {
 
 std::string row_text(const char* key, const UniversalLine::Row& value, const UniversalLine::Row& error) {
   return fmt::format("{:<16} = {{ values = [{}], standard_errors = [{}] }}\n", key, fmt::join(value, ", "),

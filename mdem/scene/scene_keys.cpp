@@ -11,7 +11,7 @@
 namespace ropewalk {
 
 bool SceneTable::optional() const {
-  return std::any_of(keys.begin(), keys.end(), [](const SceneKey& k) { return k.required(); });
+  return listed || std::any_of(keys.begin(), keys.end(), [](const SceneKey& k) { return k.required(); });
 }
 
 std::string as_toml(double value) { return fmt::format("{:.6g}", value); }

@@ -45,6 +45,26 @@ TEST_F(Calibrate, WrongInputGetsOneLineAndLeavesNothing) {
   expect_refusal("--chirality 5,5 --quiet", "lmp", "ROPEWALK_LMP=/nowhere/lmp");
   expect_refusal("show nothing-of-the-kind", "no parameter set");
   expect_refusal("check-shipped cnt-10-10-paper", "only a set made by");
+  expect_refusal("friction", "set is required");
+  expect_refusal("friction cnt-10-10-paper", "contact.line: is missing");
+  expect_refusal("friction cnt-10-10-tersoff cnt-10-10-rebo", "provenance.potential");
+  expect_refusal("friction cnt-5-5-tersoff --drag-ps 3", "--drag-ps");
+  expect_refusal("friction cnt-5-5-tersoff --out no/such/friction.toml", "make the directory");
+}
+
+// What it prints for a scene is a scene's table.
+TEST_F(Calibrate, FrictionFromSetToScene) {
+  const Outcome made = run("calibrate friction cnt-5-5-tersoff cnt-9-0-tersoff --registers 4 --checks 2 --drag-ps 0 --quiet");
+  ASSERT_EQ(made.code, 0) << made.err;
+  EXPECT_TRUE(fs::exists(dir / "friction-5-5-9-0-tersoff.toml"));
+  const auto at = made.out.find("[[friction]]");
+  ASSERT_NE(at, std::string::npos) << made.out;
+  spit(dir / "scene.toml", "format = \"ropewalk-scene-1\"\nparameters = \"cnt-5-5-tersoff\"\n[rope]\ntubes = 7\nlength_nm = 7\n" +
+                               made.out.substr(at) + "[run]\nduration_ps = 1\n");
+  const Outcome checked = run("check scene.toml");
+  EXPECT_EQ(checked.code, 0) << checked.err;
+  EXPECT_NE(checked.out.find("pN at each end"), std::string::npos) << checked.out;
+  EXPECT_NE(run("calibrate friction cnt-5-5-tersoff cnt-9-0-tersoff --drag-ps 0 --quiet").err.find("exists"), std::string::npos);
 }
 
 // The universal law is off by more than the well for so thin a tube; without it every other command takes the set.

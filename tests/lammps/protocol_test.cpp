@@ -169,6 +169,32 @@ TEST_F(LammpsRun, TethersHoldAndBreakAsHere) {
   }
 }
 
+// Contacts across ranks, tubes that slide over several elements, and a run that goes on.
+TEST_F(LammpsRun, FrictionSlidesAsHere) {
+  const std::string scene_text = line_scene(
+      "double", small_rope,
+      "[[friction]]\nstrength_pN_per_nm = 40\nspin_strength_pN_per_nm = 60\nend_strength_pN = 5\ndrag_eV_ps_per_nm3 = 0.02\n"
+      "[[load]]\nkind = \"force\"\ntubes = [0]\nelements = \"all\"\nforce_nN = [0, 0, 0.4]\n"
+      "[start]\ntemperature_K = 100\nmay_cool = true\n");
+  expect_equal_steps(scene_text, 300, {1, 2, 4}, 1e-9);
+  Scene scene = read_scene((dir / "scene.toml").string());
+  Simulation native = start(scene, prepare(scene));
+  native.steps(300);
+  const double energy = native.forces().term_energy.at(0);
+  EXPECT_GT(energy, 0.1);
+  EXPECT_GT(native.dissipated(), 0.1);
+  for (const int n : {1, 2, 4}) {
+    SCOPED_TRACE(n);
+    fs::remove_all(dir / "parts");
+    exported(scene_text, "parts");
+    ASSERT_EQ(lmp(n, "parts", "-in in.rope -var steps 150").code, 0);
+    ASSERT_EQ(lmp(n, "parts", "-in in.rope -var from lammps.states -var steps 300").code, 0);
+    const LammpsRow row = read_lammps_rows(LammpsDirectory{(dir / "parts").string()}, 1).back();
+    EXPECT_NEAR(row.terms[0], energy, 1e-8 * energy);
+    EXPECT_NEAR(row.dissipated, native.dissipated(), 1e-8 * native.dissipated());
+  }
+}
+
 TEST_F(LammpsRun, AFilmIsCutAndBalancedAgainAndAgain) {
   expect_equal_steps(line_scene("double", "[film]\ntubes = 8\nwidth_nm = 40\ndepth_nm = 40\nlength_nm = 40\n",
                                 "[start]\ntemperature_K = 300\nmay_cool = true\n"),

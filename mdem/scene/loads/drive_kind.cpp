@@ -14,6 +14,7 @@ DriveKind grip_drive();
 DriveKind load_drive();
 DriveKind periodic_drive();
 DriveKind tether_drive();
+DriveKind friction_drive();
 
 namespace {
 
@@ -35,6 +36,7 @@ std::vector<DriveKind>& kinds_of_drives() {
       load_drive(),
       periodic_drive(),
       tether_drive(),
+      friction_drive(),
   });
   return kinds;
 }

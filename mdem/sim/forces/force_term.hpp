@@ -19,15 +19,7 @@
 // prepare and advance change it. It is handed out as records of numbers that belong to elements of the scene, so
 // that a checkpoint can hold it and elements can take it along to another process.
 //
-// Two terms to come, and how they fit:
-//
-// Friction with a spring in each contact (P. A. Cundall, O. D. L. Strack, Geotechnique 29, 47 (1979), DOI
-// 10.1680/geot.1979.29.1.47). pair_reach() is that of the contact; list_chunk collects the contacts (i, j) of a
-// chunk and finds the strain u of each in the earlier records, or zero. advance turns u by the motion of the
-// contact point since the last step (taken from positions, which the memory holds), cuts it back to mu N/k where it
-// slips and returns the lost k u^2/2. add_pairs adds -k u and its couples, as contact viscosity does. memory() has
-// a record for each i: j, u and the last contact point, for all contacts of i; remember() keeps them until the next
-// list_chunk. halved() gives each contact to the heirs of its elements.
+// Friction of tubes side by side is such a term (terms/dry_friction.cpp). One to come, and how it fits:
 //
 // Links that form where elements stay near (permanent bonds between tubes). prepare goes through the list in its
 // order, (i, j) rising, and forms a link with a probability by CounterRandom(seed, state.step, i, j), numbers of

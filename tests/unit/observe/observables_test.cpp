@@ -29,7 +29,7 @@ TEST(Observables, LogHasTheColumnsAndBytesThatItAlwaysHad) {
       "stored_contact_MJ_per_kg,cohesion_lost,ends_apart_nm,ends_strain,least_tension_nN,most_tension_nN,"
       "most_curvature_per_nm,slip_nm,core_pressure_GPa,beta_deg,physical_twist_deg,geometric_twist_deg,Q,Q_delaunay,"
       "contacts,voids,void_area_nm2,radius_mid_nm,radius_end_nm,length_nm,amplitude_nm,windings,kinked,overtwisted,"
-      "overstretched,largest_bond_twist_deg,tether_eV\n");
+      "overstretched,largest_bond_twist_deg,tether_eV,friction_eV\n");
   const Topology topology;
   State state;
   state.step = 123456789012345;
@@ -75,7 +75,7 @@ TEST(Observables, LogHasTheColumnsAndBytesThatItAlwaysHad) {
   EXPECT_EQ(log_line(LogRow({topology, state, o, l, 2, a})),
             "123456789012345,0.1,25,30,8,32,4,2,16,8,4,4,360,7,1,1,2,3,4,-1e-300,0.25,8,0.5,0.125,0.25,5.5,1,1,1.5,2,1,66,"
             "-0.0625,-1,2,0.125,0.75,2,28.64788975654116,71.6197243913529,-143.2394487827058,-1,2,210,3,"
-            "0.3333333333333333,6.5,6.25,66.1,7e-07,-0,4,5,6,42.97183463481174,0\n");
+            "0.3333333333333333,6.5,6.25,66.1,7e-07,-0,4,5,6,42.97183463481174,0,0\n");
 }
 
 TEST(Observables, NamesAreUniqueAndEndInTheirUnit) {

@@ -1,0 +1,139 @@
+#include "io/friction_toml.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "io/data_files.hpp"
+#include "io/files.hpp"
+#include "io/parameters_toml.hpp"
+#include "io/toml_table.hpp"
+
+namespace ropewalk {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double pN = 1e-3 * units::nN_nm;  // eV/nm; pN/nm in eV/nm^2
+
+bool same_tube(Chirality a, Chirality b) { return a.n == b.n && a.m == b.m; }
+
+Chirality chirality_in(const TomlTable& t, const char* key) {
+  const std::vector<long> nm = t.integers(key, 0, 1000);
+  Chirality c;
+  if (nm.size() == 2) c = {static_cast<int>(nm[0]), static_cast<int>(nm[1])};
+  if (nm.size() != 2 || !c.valid()) throw t.error(key, "is not that of a tube", "write [n, m], neither negative, not both 0");
+  return c;
+}
+
+std::vector<std::string> shipped_frictions() {
+  std::vector<std::string> paths;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(fs::path(data_directory()) / "friction", error))
+    if (entry.path().extension() == ".toml") paths.push_back(entry.path().string());
+  std::sort(paths.begin(), paths.end());
+  return paths;
+}
+
+// How far the radii of both pairs are from each other, nm; the order of two tubes does not matter.
+double radii_apart(Chirality a, Chirality b, const PairFriction& f) {
+  const auto apart = [](Chirality x, Chirality y) { return std::fabs(ropewalk::tube_radius(x) - ropewalk::tube_radius(y)); };
+  return std::min(apart(a, f.a) + apart(b, f.b), apart(a, f.b) + apart(b, f.a));
+}
+
+}  // namespace
+
+PairFriction friction_of_text(const std::string& text, const std::string& path) {
+  const TomlTable top = TomlTable::parse(text, path);
+  PairFriction f;
+  f.path = path;
+  f.hash = hash_hex(text);
+  const TomlTable meta = top.table("meta");
+  if (meta.string("format") != friction_format)
+    throw meta.error("format", fmt::format("is \"{}\"", printable(meta.string("format"), 40)),
+                     fmt::format("this program reads \"{}\"", friction_format));
+  f.name = meta.string("name");
+  f.a = chirality_in(meta, "chirality_a");
+  f.b = chirality_in(meta, "chirality_b");
+  f.potential = meta.string("potential");
+  const auto number = [&](const TomlTable& t, const char* key, const char* unit, const Bounds& bounds) {
+    f.quantities.push_back(read_quantity(t, key, unit, bounds));
+    return f.quantities.back().value;
+  };
+  const TomlTable law = top.table("friction");
+  f.strength = number(law, "strength", "pN/nm", Bounds::non_negative(1e5)) * pN;
+  f.spin_strength = number(law, "spin_strength", "pN/nm", Bounds::non_negative(1e5)) * pN;
+  f.end_strength = number(law, "end_strength", "pN", Bounds::non_negative(1e6)) * pN;
+  f.elastic_slip = number(law, "elastic_slip", "nm", Bounds::range(1e-3, 1));
+  f.drag = number(law, "drag", "eV ps/nm^3", Bounds::non_negative(1e4));
+  // What the numbers above follow from, and what changes them.
+  struct Other {
+    const char *section, *key, *unit;
+  };
+  constexpr Other others[] = {{"register", "strength_least", "pN/nm"},      {"register", "strength_largest", "pN/nm"},
+                              {"register", "strength_spread", "pN/nm"},     {"register", "spin_strength_least", "pN/nm"},
+                              {"register", "spin_strength_largest", "pN/nm"}, {"register", "spin_strength_spread", "pN/nm"},
+                              {"pressure", "ratio_at_10_pm", "1"},          {"pressure", "ratio_at_20_pm", "1"},
+                              {"crossing", "force_at_2_deg", "pN"},         {"crossing", "force_at_5_deg", "pN"},
+                              {"crossing", "force_at_10_deg", "pN"}};
+  std::vector<std::pair<std::string, TomlTable>> sections;
+  for (const char* name : {"register", "pressure", "crossing"})
+    if (top.has(name)) sections.emplace_back(name, top.table(name));
+  for (const Other& other : others)
+    for (const auto& [name, t] : sections)
+      if (name == other.section && t.has(other.key)) number(t, other.key, other.unit, Bounds::any());
+  const TomlTable provenance = top.table("provenance");
+  for (const std::string& key : provenance.keys()) f.provenance.emplace_back(key, provenance.string(key));
+  top.finish();
+  return f;
+}
+
+PairFriction read_friction(const std::string& path) { return friction_of_text(read_file(path), path); }
+
+std::string friction_text(const PairFriction& f, const std::string& comment) {
+  std::string text = comment + fmt::format("\n[meta]\nformat = \"{}\"\nname = {}\nchirality_a = [{}, {}]\nchirality_b = [{}, {}]\n"
+                                           "potential = {}\n",
+                                           friction_format, toml_string(f.name), f.a.n, f.a.m, f.b.n, f.b.m, toml_string(f.potential));
+  std::string section;
+  for (const Quantity& q : f.quantities) {
+    const std::size_t dot = q.key.rfind('.');
+    if (q.key.substr(0, dot) != section) text += fmt::format("\n[{}]\n", section = q.key.substr(0, dot));
+    text += quantity_text(q, q.key.substr(dot + 1));
+  }
+  text += "\n[provenance]\n";
+  for (const auto& [key, value] : f.provenance) text += fmt::format("{:<16} = {}\n", key, toml_string(value));
+  return text;
+}
+
+PairFriction find_friction(const std::string& name, const InputError::Place& place) {
+  std::string names;
+  for (const std::string& path : shipped_frictions()) {
+    const std::string stem = fs::path(path).stem().string();
+    if (stem == name) return read_friction(path);
+    names += fmt::format("{}\"{}\"", names.empty() ? "" : ", ", stem);
+  }
+  throw InputError(place, fmt::format("is \"{}\", and no such friction is shipped", printable(name, 40)),
+                   "write \"atoms\", or one of " + names + ", or type the strengths");
+}
+
+std::string kind_of_pair(Chirality a, Chirality b) {
+  const auto kind = [](Chirality c) { return c.n == c.m ? "armchair" : c.n == 0 || c.m == 0 ? "zigzag" : "chiral"; };
+  const std::string of_a = kind(a), of_b = kind(b);
+  return same_tube(a, b) || (of_a == of_b && of_a != "chiral") ? of_a : "unlike";
+}
+
+PairFriction friction_between(Chirality a, Chirality b, const InputError::Place& place) {
+  const std::string kind = kind_of_pair(a, b);
+  const std::vector<std::string> paths = shipped_frictions();
+  std::vector<PairFriction> known;
+  for (const std::string& path : paths)
+    if (PairFriction f = read_friction(path); kind_of_pair(f.a, f.b) == kind) known.push_back(std::move(f));
+  if (known.empty())
+    throw InputError(place, fmt::format("no friction of ({},{}) beside ({},{}) was measured, nor of any pair of their kind", a.n, a.m, b.n, b.m),
+                     "measure it (ropewalk calibrate friction) and name its file, or type strengths");
+  return *std::min_element(known.begin(), known.end(), [&](const PairFriction& x, const PairFriction& y) { return radii_apart(a, b, x) < radii_apart(a, b, y); });
+}
+
+}  // namespace ropewalk

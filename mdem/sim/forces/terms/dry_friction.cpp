@@ -1,0 +1,446 @@
+#include "sim/forces/terms/dry_friction.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "model/contract.hpp"
+#include "model/units.hpp"
+#include "sim/threads/span.hpp"
+
+namespace ropewalk {
+namespace {
+
+constexpr double begins_within = 0.42, ends_beyond = 0.47;  // nm between the walls
+constexpr double begins_above = 0.5, ends_below = 0.4;       // cosine of the angle of the axes
+constexpr double passes_on_beyond = 0.6;                     // of an element, from its centre
+
+double square(double x) { return x * x; }
+
+// (cos, -sin) of the turn alpha of a tube against the line from a to b, which has this direction in the tube's frame.
+struct Direction {
+  double x = 1, y = 0;
+};
+// By how much alpha has grown from one direction to another, within half a turn. The arc sine's series is exact to 1e-12.
+double turned(const Direction& from, const Direction& to) {
+  const double sine = from.y * to.x - from.x * to.y, cosine = from.x * to.x + from.y * to.y, q = sine * sine;
+  if (cosine > 0 && q < 0.01)
+    return sine * (1 + q * (1.0 / 6 + q * (3.0 / 40 + q * (15.0 / 336 + q * (105.0 / 3456)))));
+  return std::atan2(sine, cosine);
+}
+
+// What a contact remembers. Its elastic slips were (z, y) where the pair was at `s`, `of_a`, `of_b`.
+struct Contact {
+  int a = 0, b = 0;  // places in this process
+  double z = 0, y = 0, s = 0;
+  Direction of_a, of_b;
+  bool placed = false;  // s and the directions are known
+  bool over = false;
+};
+
+// Where a pair is. With the forces A on s and B on g, and w from a to b,
+//   v_a = A along_a + B turning_a, v_b likewise:  force on a  v_a + v_b,  torque on a  w x v_a,  on b  w x v_b.
+struct Pair {
+  double s = 0, cosine = 1, across = 0;  // of the axes; nm from a's centre to b's, square of its part across the axes
+  Direction of_a, of_b;
+  Vector3 w, along_a, along_b, turning_a, turning_b;
+  // Rate of a slip whose parts are v_a and v_b.
+  double rate(const State& state, std::size_t a, std::size_t b, const Vector3& v_a, const Vector3& v_b) const {
+    return (v_a + v_b).dot(state.velocity[a] - state.velocity[b]) + w.cross(v_a).dot(state.angular_velocity[a]) +
+           w.cross(v_b).dot(state.angular_velocity[b]);
+  }
+};
+
+// What a contact does: the force on a, the opposite one on b, and torques.
+struct Action {
+  Vector3 force = Vector3::Zero(), torque_a = Vector3::Zero(), torque_b = Vector3::Zero();
+  double energy = 0, power = 0;
+};
+
+// A contact in the state of the evaluation.
+struct Now {
+  double z = 0, y = 0, s = 0;
+  Direction of_a, of_b;
+  bool apart = false;
+  Action action;
+};
+
+class DryFrictionTerm : public ForceTerm {
+ public:
+  DryFrictionTerm(const DryFriction& law, const Topology& scene)
+      : law_(law),
+        tube_begin_(scene.tube_begin),
+        stiffness_(12 * (std::max(law.axial, law.spin) * scene.longest_element() + 2 * law.end) / law.elastic_slip) {}
+  std::unique_ptr<ForceTerm> copy() const override { return std::make_unique<DryFrictionTerm>(*this); }
+  std::string name() const override { return "friction"; }
+
+  void prepare(const ListedScene& scene) override {
+    know(scene.topology, scene.state);
+    take_up(scene.state);
+    if (!scene.again) {
+      drop_those_that_are_over();
+      find(scene);
+    }
+    index();
+  }
+
+  void gather(const State& state) override {
+    const auto elements = static_cast<std::ptrdiff_t>(state.size()), n = static_cast<std::ptrdiff_t>(contacts_.size());
+    frames_.resize(state.size());
+    now_.resize(contacts_.size());
+#pragma omp parallel if (state.size() > parallel_from)
+    {
+#pragma omp for schedule(static)
+      for (std::ptrdiff_t i = 0; i < elements; ++i)
+        frames_[static_cast<std::size_t>(i)] = frame_of(state.orientation[static_cast<std::size_t>(i)]);
+#pragma omp for schedule(static)
+      for (std::ptrdiff_t i = 0; i < n; ++i) {
+        const auto k = static_cast<std::size_t>(i);
+        if (!contacts_[k].over) now_[k] = now_of(contacts_[k], state);
+      }
+    }
+  }
+
+  // In blocks of contacts, whose sums are added up in their order whatever the threads.
+  double advance(double, const State& state) override {
+    const auto blocks = static_cast<std::ptrdiff_t>((contacts_.size() + block - 1) / block);
+    std::vector<Advanced> advanced(static_cast<std::size_t>(blocks));
+#pragma omp parallel for schedule(static) if (contacts_.size() > parallel_from)
+    for (std::ptrdiff_t b = 0; b < blocks; ++b) {
+      const std::size_t begin = static_cast<std::size_t>(b) * block, end = std::min(begin + block, contacts_.size());
+      for (std::size_t k = begin; k < end; ++k)
+        if (!contacts_[k].over) advance(k, state, advanced[static_cast<std::size_t>(b)]);
+    }
+    Advanced all;
+    for (const Advanced& of : advanced) {
+      all.lost += of.lost;
+      all.others = all.others || of.others;
+    }
+    if (all.others) index();
+    return all.lost;
+  }
+
+  TermSum add(const State&, const Segment& part, const ForceRows& out) const override {
+    TermSum sum;
+    for (int i = part.begin; i < part.end; ++i) {
+      Vector3 force = Vector3::Zero(), torque = Vector3::Zero();
+      for (const int k : of_first_.of(i)) {
+        const Action& action = now_[static_cast<std::size_t>(k)].action;
+        force += action.force;
+        torque += action.torque_a;
+        sum.energy += action.energy;
+        sum.power += action.power;
+      }
+      for (const int k : of_second_.of(i)) {
+        const Action& action = now_[static_cast<std::size_t>(k)].action;
+        force -= action.force;
+        torque += action.torque_b;
+      }
+      out.force.add(static_cast<std::size_t>(i - out.origin), force);
+      out.torque.add(static_cast<std::size_t>(i - out.origin), torque);
+    }
+    return sum;
+  }
+
+  // Six tubes around one, 2 K of two elements.
+  double stiffness() const override { return stiffness_; }
+
+  TermMemory memory() const override {
+    TermMemory out;
+    for (const Contact& c : contacts_)
+      if (!c.over && element(c.a).own)
+        out.push_back({element(c.a).number, {static_cast<double>(element(c.b).number), c.z, c.y, c.s, c.of_a.x, c.of_a.y, c.of_b.x, c.of_b.y, 1.0}});
+    return out;
+  }
+
+  void remember(const TermMemory& memory) override {
+    for (const TermRecord& r : memory) {
+      const std::vector<double>& x = r.numbers;
+      if (x.size() != 9 || !std::all_of(x.begin(), x.end(), [](double v) { return std::isfinite(v); }) ||
+          !(x[0] >= 0 && x[0] < tube_begin_.back()) || x[0] != std::floor(x[0]) || (x[8] != 0 && x[8] != 1) ||
+          std::hypot(x[1], x[2]) > 1.001 * law_.elastic_slip)
+        throw std::runtime_error("the memory of friction is damaged");
+    }
+    remembered_ = memory;
+    contacts_.clear();
+  }
+
+  // Both elements in the place of one have its slips, and find out anew which elements they face.
+  TermMemory halved(const TermMemory& coarse, const std::vector<int>& heirs) const override {
+    const bool last_has_two = heirs.back() == 2 * (static_cast<int>(heirs.size()) - 1) && tube_begin_.size() > 2;
+    TermMemory fine;
+    for (const TermRecord& r : coarse) {
+      const auto e = static_cast<std::size_t>(r.element);
+      TermRecord heir{heirs[e], r.numbers};
+      heir.numbers[0] = heirs[static_cast<std::size_t>(r.numbers[0])];
+      heir.numbers[8] = 0;
+      fine.push_back(heir);
+      ++heir.element;
+      if (e + 1 < heirs.size() ? heirs[e + 1] != heir.element : last_has_two) fine.push_back(heir);
+    }
+    return fine;
+  }
+
+  std::size_t bytes() const override { return contacts_.size() * (sizeof(Contact) + sizeof(Now)) + elements_.size() * sizeof(Frame<double>); }
+
+ private:
+  static constexpr std::size_t block = 512;
+  struct Advanced {
+    double lost = 0;      // eV
+    bool others = false;  // elements of contacts have changed
+  };
+  // The contacts of each element.
+  struct Index {
+    std::vector<int> begin, contacts;
+    Span<int> of(int element) const { return entries_of(element, begin, contacts); }
+  };
+  // What a contact has to know of an element, since a scene may move in memory.
+  struct Element {
+    int number = 0;  // in the scene
+    int type = 0;
+    bool own = true, ends_tube = false;
+    double length = 0, radius = 0;  // nm
+  };
+
+  // --- elements ---
+  void know(const Topology& topology, const State& state) {
+    elements_.resize(static_cast<std::size_t>(topology.elements()));
+    frames_.resize(state.size());
+    for (std::size_t i = 0; i < state.size(); ++i) frames_[i] = frame_of(state.orientation[i]);
+    for (int tube = 0; tube < topology.tubes(); ++tube) {
+      const TubeType& type = topology.type_of(tube);
+      for (int i = topology.tube_begin[static_cast<std::size_t>(tube)]; i < topology.tube_begin[static_cast<std::size_t>(tube) + 1]; ++i) {
+        const int number = topology.part ? topology.part->number[static_cast<std::size_t>(i)] : i;
+        const std::size_t of_scene = tube_of(number);
+        elements_[static_cast<std::size_t>(i)] = {
+            number, topology.tube_type[static_cast<std::size_t>(tube)], topology.owns(i),
+            number == tube_begin_[of_scene] || number + 1 == tube_begin_[of_scene + 1], type.element_length, type.radius};
+      }
+    }
+  }
+  const Element& element(int place) const { return elements_[static_cast<std::size_t>(place)]; }
+  // -1: this process does not have it. Elements rise with their numbers.
+  int place_of(int number) const {
+    const auto at = std::lower_bound(elements_.begin(), elements_.end(), number,
+                                     [](const Element& e, int n) { return e.number < n; });
+    return at != elements_.end() && at->number == number ? static_cast<int>(at - elements_.begin()) : -1;
+  }
+  // Of the scene, of an element's number.
+  std::size_t tube_of(int number) const {
+    return static_cast<std::size_t>(std::upper_bound(tube_begin_.begin(), tube_begin_.end(), number) - tube_begin_.begin()) - 1;
+  }
+  bool acts_between(int a, int b) const {
+    if (law_.types.empty()) return true;
+    const int of_a = element(a).type, of_b = element(b).type;
+    return (of_a == law_.types[0] && of_b == law_.types[1]) || (of_a == law_.types[1] && of_b == law_.types[0]);
+  }
+
+  // --- a contact ---
+  double stiff_along(const Contact& c) const {
+    return (law_.axial * element(c.a).length + law_.end * (element(c.a).ends_tube + element(c.b).ends_tube)) / law_.elastic_slip;
+  }
+  double stiff_turning(const Contact& c) const { return law_.spin * element(c.a).length / law_.elastic_slip; }
+
+  Pair pair_of(int first, int second, const State& state) const {
+    const auto a = static_cast<std::size_t>(first), b = static_cast<std::size_t>(second);
+    const Frame<double>&at_a = frames_[a], &at_b = frames_[b];
+    Pair p;
+    p.w = state.position[b] - state.position[a];
+    p.cosine = at_a.t.dot(at_b.t);
+    p.along_a = (p.cosine > 0 ? 0.5 : -0.5) * at_a.t;
+    p.along_b = 0.5 * at_b.t;
+    p.s = -(p.along_a + p.along_b).dot(p.w);
+    p.across = p.w.squaredNorm() - p.s * p.s;
+    const double r_b = elements_[b].radius;
+    p.turning_a = turning_part(at_a, p.w, elements_[a].radius, p.of_a);
+    p.turning_b = turning_part(at_b, p.w, p.cosine > 0 ? r_b : -r_b, p.of_b);
+    return p;
+  }
+  // Of arm alpha; `direction`: of w in the frame.
+  static Vector3 turning_part(const Frame<double>& frame, const Vector3& w, double arm, Direction& direction) {
+    const double x = frame.e1.dot(w), y = frame.e2.dot(w), inverse = 1 / std::sqrt(std::max(x * x + y * y, 1e-12));
+    direction = {x * inverse, y * inverse};
+    const double by = arm * inverse;
+    return by * direction.x * frame.e2 - by * direction.y * frame.e1;
+  }
+  static void place(Contact& c, const Pair& p) {
+    c.s = p.s;
+    c.of_a = p.of_a;
+    c.of_b = p.of_b;
+    c.placed = true;
+  }
+
+  // A slip that costs nothing is none.
+  Now now_of(const Contact& c, const State& state) const {
+    const Pair p = pair_of(c.a, c.b, state);
+    const double stiff_s = stiff_along(c), stiff_g = stiff_turning(c), r_a = element(c.a).radius, r_b = element(c.b).radius;
+    Now now;
+    now.s = p.s;
+    now.apart = p.across > square(r_a + r_b + ends_beyond) || std::fabs(p.cosine) < ends_below;
+    now.of_a = p.of_a;
+    now.of_b = p.of_b;
+    if (stiff_s > 0) now.z = c.z + p.s - c.s;
+    if (stiff_g > 0) now.y = c.y + r_a * turned(c.of_a, p.of_a) + (p.cosine > 0 ? r_b : -r_b) * turned(c.of_b, p.of_b);
+    act(now, c, p, state);
+    return now;
+  }
+  void act(Now& now, const Contact& c, const Pair& p, const State& state) const {
+    const double stiff_s = stiff_along(c), stiff_g = stiff_turning(c);
+    double along = -stiff_s * now.z, turning = -stiff_g * now.y, power = 0;
+    if (law_.drag > 0) {
+      const auto a = static_cast<std::size_t>(c.a), b = static_cast<std::size_t>(c.b);
+      const double eta = law_.drag * element(c.a).length, v = p.rate(state, a, b, p.along_a, p.along_b),
+                   w = p.rate(state, a, b, p.turning_a, p.turning_b);
+      along -= eta * v;
+      turning -= eta * w;
+      power = -eta * (v * v + w * w);
+    }
+    const Vector3 v_a = along * p.along_a + turning * p.turning_a, v_b = along * p.along_b + turning * p.turning_b;
+    now.action = {v_a + v_b, p.w.cross(v_a), p.w.cross(v_b), 0.5 * (stiff_s * now.z * now.z + stiff_g * now.y * now.y), power};
+  }
+
+  void advance(std::size_t k, const State& state, Advanced& all) {
+    Contact& c = contacts_[k];
+    Now& now = now_[k];
+    const double squared = now.z * now.z + now.y * now.y;
+    double lost = 0;
+    bool acts_otherwise = false;
+    if (squared > law_.elastic_slip * law_.elastic_slip) {
+      const double part = law_.elastic_slip / std::sqrt(squared), stiff_s = stiff_along(c), stiff_g = stiff_turning(c);
+      // The work of sliding under the strength.
+      lost = (stiff_s * now.z * now.z + stiff_g * now.y * now.y) * part * (1 - part);
+      now.z *= part;
+      now.y *= part;
+      acts_otherwise = true;
+    }
+    c.z = now.z;
+    c.y = now.y;
+    c.s = now.s;
+    c.of_a = now.of_a;
+    c.of_b = now.of_b;
+    if (std::fabs(c.s) > passes_on_beyond * element(c.b).length) {
+      all.others = acts_otherwise = true;
+      c.over = !pass_on(c, state);
+    }
+    if (now.apart) all.others = c.over = true;
+    if (c.over) {
+      lost += 0.5 * (stiff_along(c) * c.z * c.z + stiff_turning(c) * c.y * c.y);
+      c.z = c.y = 0;
+    } else if (acts_otherwise) {
+      now = now_of(c, state);
+    }
+    if (element(c.a).own) all.lost += lost;
+  }
+
+  // To the element of b's tube that a faces now. The slips stay. False: there is none.
+  bool pass_on(Contact& c, const State& state) const {
+    for (;;) {
+      const int step = c.s > 0 ? 1 : -1, number = element(c.b).number + step;
+      if (number < 0 || number >= tube_begin_.back() || tube_of(number) != tube_of(element(c.b).number)) return false;
+      const int next = place_of(number);
+      if (next < 0) return false;
+      const Pair p = pair_of(c.a, next, state);
+      if (std::fabs(p.s) >= std::fabs(c.s)) return std::fabs(c.s) <= passes_on_beyond * element(c.b).length;
+      c.b = next;
+      place(c, p);
+      if (std::fabs(c.s) <= 0.5 * element(next).length) return true;
+    }
+  }
+
+  // --- all contacts ---
+  // The records of a memory become contacts, where this process owns one of both elements.
+  void take_up(const State& state) {
+    for (const TermRecord& r : remembered_) {
+      Contact c{place_of(r.element), place_of(static_cast<int>(r.numbers[0])), r.numbers[1], r.numbers[2],
+                r.numbers[3], {r.numbers[4], r.numbers[5]}, {r.numbers[6], r.numbers[7]}, r.numbers[8] == 1, false};
+      if (c.a < 0 || c.b < 0 || !(element(c.a).own || element(c.b).own)) continue;
+      if (!c.placed) {
+        place(c, pair_of(c.a, c.b, state));
+        if (std::fabs(c.s) > 0.5 * element(c.b).length && !pass_on(c, state)) continue;
+      }
+      contacts_.push_back(c);
+    }
+    remembered_.clear();
+  }
+
+  void drop_those_that_are_over() {
+    contacts_.erase(std::remove_if(contacts_.begin(), contacts_.end(), [](const Contact& c) { return c.over; }),
+                    contacts_.end());
+  }
+
+  // New ones, from the pairs of the list. Each process has the pairs of some elements, and all must know the others.
+  void find(const ListedScene& scene) {
+    std::vector<int> found;  // numbers of a and b, one after another
+    const double reach = begins_within + 2 * scene.topology.largest_radius() + scene.topology.longest_element();
+    for (int i = 0; i < scene.topology.elements(); ++i) {
+      if (!element(i).own) continue;
+      scene.list.for_neighbours(i, [&](int j) {
+        const Vector3 w = scene.state.position[static_cast<std::size_t>(j)] - scene.state.position[static_cast<std::size_t>(i)];
+        if (!(w.squaredNorm() < reach * reach) || !acts_between(i, j)) return;
+        const Pair p = pair_of(i, j, scene.state);
+        const double near = element(i).radius + element(j).radius + begins_within;
+        if (p.across < square(near) && std::fabs(p.cosine) > begins_above && std::fabs(p.s) <= 0.5 * element(j).length) {
+          found.push_back(element(i).number);
+          found.push_back(element(j).number);
+        }
+      });
+    }
+    if (scene.others) found = scene.others->join(found);
+    for (std::size_t k = 0; k < found.size(); k += 2) {
+      const int a = place_of(found[k]), b = place_of(found[k + 1]);
+      if (a < 0 || b < 0 || !(element(a).own || element(b).own)) continue;
+      Contact c;
+      c.a = a;
+      c.b = b;
+      place(c, pair_of(a, b, scene.state));
+      contacts_.push_back(c);
+    }
+    // Older contacts stand first where two are one.
+    std::stable_sort(contacts_.begin(), contacts_.end(), [](const Contact& x, const Contact& y) { return x.a < y.a; });
+    std::vector<Contact> kept;
+    for (const Contact& c : contacts_) {
+      bool known = false;
+      for (auto old = kept.rbegin(); old != kept.rend() && old->a == c.a && !known; ++old)
+        known = tube_of(element(old->b).number) == tube_of(element(c.b).number) && std::abs(element(old->b).number - element(c.b).number) <= 2;
+      if (!known) kept.push_back(c);
+    }
+    contacts_ = std::move(kept);
+    std::stable_sort(contacts_.begin(), contacts_.end(),
+                     [](const Contact& x, const Contact& y) { return std::pair(x.a, x.b) < std::pair(y.a, y.b); });
+  }
+
+  void index() {
+    index_by(of_first_, [](const Contact& c) { return c.a; });
+    index_by(of_second_, [](const Contact& c) { return c.b; });
+  }
+  template <class End>
+  void index_by(Index& index, const End& end) const {
+    index.begin.assign(elements_.size() + 1, 0);
+    for (const Contact& c : contacts_)
+      if (!c.over) ++index.begin[static_cast<std::size_t>(end(c)) + 1];
+    for (std::size_t e = 1; e < index.begin.size(); ++e) index.begin[e] += index.begin[e - 1];
+    index.contacts.resize(static_cast<std::size_t>(index.begin.back()));
+    std::vector<int> next(index.begin.begin(), index.begin.end() - 1);
+    for (std::size_t k = 0; k < contacts_.size(); ++k)
+      if (!contacts_[k].over)
+        index.contacts[static_cast<std::size_t>(next[static_cast<std::size_t>(end(contacts_[k]))]++)] = static_cast<int>(k);
+  }
+
+  DryFriction law_;
+  std::vector<int> tube_begin_;  // of the scene
+  double stiffness_ = 0;
+  std::vector<Element> elements_;
+  TermMemory remembered_;  // until the next list
+  std::vector<Contact> contacts_;
+  std::vector<Frame<double>> frames_;  // of the elements, in the state of the evaluation
+  std::vector<Now> now_;               // of the contacts, likewise
+  Index of_first_, of_second_;
+};
+
+}  // namespace
+
+std::shared_ptr<const ForceTerm> dry_friction_term(const DryFriction& law, const Topology& scene) {
+  return std::make_shared<const DryFrictionTerm>(law, scene);
+}
+
+}  // namespace ropewalk

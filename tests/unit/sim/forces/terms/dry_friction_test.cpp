@@ -1,0 +1,276 @@
+// [[friction]]: sim/forces/terms/dry_friction.hpp and its table, scene/loads/friction.cpp.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <omp.h>
+
+#include <cmath>
+#include <random>
+
+#include "io/log.hpp"
+#include "model/error.hpp"
+#include "model/units.hpp"
+#include "scene/finer.hpp"
+#include "scene/prepare.hpp"
+#include "scene/scene_toml.hpp"
+#include "sim/dynamics/refine.hpp"
+
+namespace ropewalk {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr double pN = 1e-3 * units::nN_nm;  // eV/nm
+
+const std::string both = "[[friction]]\nstrength_pN_per_nm = 40\nspin_strength_pN_per_nm = 60\nend_strength_pN = 5\n",
+                  axial = "[[friction]]\nstrength_pN_per_nm = 40\n", ends = "[[friction]]\nend_strength_pN = 5\n",
+                  cold = "[contact]\nprecision = \"double\"\n[damping]\ncontact_viscosity_eV_ps_per_nm2 = 0\n"
+                         "bond_damping_per_ps = 0\n";
+
+Scene rope(const std::string& friction, const std::string& run = "duration_ps = 5\n", const std::string& more = "") {
+  return scene_of_text("format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[rope]\ntubes = 7\nlength_nm = "
+                       "13.8\n" + more + friction + "[run]\n" + run,
+                       "friction.toml");
+}
+
+// The forces of the friction alone. Contacts begin where the rope starts, and remember.
+class Alone {
+ public:
+  explicit Alone(const std::string& friction, const std::string& more = "") : scene_(rope(friction, "duration_ps = 5\n", more)), p(prepare(scene_)) {
+    in_ = p.interaction;
+    in_.damping = {};
+    in_.precision = Interaction::Precision::full;
+    without_ = in_;
+    without_.terms.clear();
+    list_ = NeighbourList(in_, 2);
+    list_.build(p.topology, p.state);
+    at(p.state);
+  }
+  // As in a step when `passed`: what is beyond its strength slides.
+  Forces at(const State& state, bool passed = false) {
+    Forces with(state.size()), without(state.size());
+    engine_.compute(p.topology, in_, list_, state, with, {Parts::all, true, passed ? std::optional(0.01) : std::nullopt});
+    plain_.compute(p.topology, without_, list_, state, without);
+    for (std::size_t i = 0; i < state.size(); ++i) {
+      with.force.add(i, -without.force[i]);
+      with.torque.add(i, -without.torque[i]);
+    }
+    return with;
+  }
+  double length() const { return p.topology.length_of(0) * p.topology.types[0].element_length; }
+  // The first tube, in the middle of six others, moved along them and turned about its axis.
+  State moved(double along, double turn) const {
+    State s = p.state;
+    for (int e = p.topology.tube_begin[0]; e < p.topology.tube_begin[1]; ++e) {
+      const auto i = static_cast<std::size_t>(e);
+      s.position.add(i, Vector3(0, 0, along));
+      s.orientation.set(i, Quaternion(Eigen::AngleAxisd(turn, Vector3::UnitZ())) * s.orientation[i]);
+    }
+    return s;
+  }
+  State shaken(double by) const {
+    State s = p.state;
+    std::mt19937 engine(3);
+    std::uniform_real_distribution<double> any(-by, by);
+    for (std::size_t i = 0; i < s.size(); ++i) {
+      s.position.add(i, Vector3(any(engine), any(engine), any(engine)));
+      const Vector3 turn(any(engine), any(engine), any(engine));
+      s.orientation.set(i, Quaternion(Eigen::AngleAxisd(turn.norm(), turn.normalized())) * s.orientation[i]);
+    }
+    return s;
+  }
+
+ private:
+  Scene scene_;
+
+ public:
+  Prepared p;
+
+ private:
+  Interaction in_, without_;
+  NeighbourList list_;
+  ForceEngine engine_, plain_;
+};
+
+Vector3 on_first_tube(const Alone& rope, const Vec3Array& rows) {
+  Vector3 sum = Vector3::Zero();
+  for (int e = 0; e < rope.p.topology.tube_begin[1]; ++e) sum += rows[static_cast<std::size_t>(e)];
+  return sum;
+}
+
+TEST(DryFriction, ForcesAreTheGradientOfItsEnergyAndBalance) {
+  Alone rope(both);
+  const State s = rope.shaken(0.02);
+  const Forces f = rope.at(s);
+  EXPECT_GT(f.energy.terms, 0.01);
+  const NetForce net = net_force(s, f);
+  EXPECT_LT(net.force.norm(), 1e-10);
+  EXPECT_LT(net.torque.norm(), 1e-9);
+  constexpr double h = 1e-5;
+  double largest = 0;
+  for (std::size_t i = 0; i < s.size(); i += 3)
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto energy = [&](double move, double turn) {
+        State other = s;
+        Vector3 unit = Vector3::Zero();
+        unit[axis] = 1;
+        other.position.set(i, s.position[i] + move * unit);
+        other.orientation.set(i, Quaternion(Eigen::AngleAxisd(turn, unit)) * s.orientation[i]);
+        return rope.at(other).energy.terms;
+      };
+      EXPECT_NEAR(f.force[i][axis], -(energy(h, 0) - energy(-h, 0)) / (2 * h), 1e-6) << i;
+      EXPECT_NEAR(f.torque[i][axis], -(energy(0, h) - energy(0, -h)) / (2 * h), 1e-6) << i;
+      largest = std::max({largest, std::fabs(f.force[i][axis]), std::fabs(f.torque[i][axis])});
+    }
+  EXPECT_GT(largest, 0.1);
+}
+
+TEST(DryFriction, ARopeThatMovesAsAWholeFeelsNothing) {
+  Alone rope(both);
+  const auto whole = [](const State& s) {
+    State out = s;
+    const Quaternion q(Eigen::AngleAxisd(2.3, Vector3(1, 2, -0.5).normalized()));
+    for (std::size_t i = 0; i < s.size(); ++i) {
+      out.position.set(i, q * s.position[i] + Vector3(3, -7, 11));
+      out.orientation.set(i, q * s.orientation[i]);
+    }
+    return out;
+  };
+  EXPECT_LT(rope.at(whole(rope.p.state)).energy.terms, 1e-20);
+  const State s = rope.shaken(0.02);
+  EXPECT_NEAR(rope.at(whole(s)).energy.terms, rope.at(s).energy.terms, 1e-11);
+}
+
+// Along the axis and against spin, by hand: elastic up to delta, then the strength times the length and six neighbours.
+TEST(DryFriction, HoldsUpToItsStrengthAndLosesWhatItSlides) {
+  constexpr double delta = 0.06;
+  {
+    Alone rope(axial);
+    const double strength = 40 * pN * 6 * rope.length();
+    EXPECT_NEAR(on_first_tube(rope, rope.at(rope.moved(delta / 2, 0), true).force).z(), -strength / 2, 1e-9 * strength);
+    double lost = 0;
+    for (double slip = 0.04; slip < 0.3005; slip += 0.01) lost += rope.at(rope.moved(slip, 0), true).lost;
+    EXPECT_NEAR(lost, strength * (0.3 - delta), 1e-3 * strength);
+    EXPECT_NEAR(on_first_tube(rope, rope.at(rope.moved(0.3, 0)).force).z(), -strength, 1e-6 * strength);
+    EXPECT_NEAR(on_first_tube(rope, rope.at(rope.moved(0.3 - delta, 0)).force).z(), 0, 1e-6 * strength) << "and backwards";
+  }
+  {
+    Alone rope("[[friction]]\nspin_strength_pN_per_nm = 60\n");
+    const double radius = rope.p.topology.types[0].radius, strength = 60 * pN * 6 * rope.length() * radius;
+    EXPECT_NEAR(on_first_tube(rope, rope.at(rope.moved(0, delta / 2 / radius), true).torque).z(), -strength / 2, 1e-6);
+    for (double turn = 0.1; turn < 7; turn += 0.1) rope.at(rope.moved(0, turn), true);
+    EXPECT_NEAR(on_first_tube(rope, rope.at(rope.moved(0, 7.0), true).torque).z(), -strength, 1e-6) << "after a whole turn";
+  }
+  {
+    Alone rope(ends);
+    for (double slip = 0.05; slip < 0.3; slip += 0.05) rope.at(rope.moved(slip, 0), true);
+    // Two ends of the first tube and two of each of the six others beside it, of which one pair stands clear by 0.25 nm
+    // and is still beside it.
+    EXPECT_NEAR(on_first_tube(rope, rope.at(rope.moved(0.25, 0)).force).z(), -5 * pN * 24, 1e-6);
+  }
+}
+
+// A tube that is drawn out holds on to what lies beside it.
+TEST(DryFriction, FollowsTheOverlap) {
+  Alone rope(axial);
+  const double a = rope.p.topology.types[0].element_length, n = rope.p.topology.length_of(0);
+  double z = 0;
+  for (; z < 5.5 * a; z += 0.05) rope.at(rope.moved(z, 0), true);
+  const double beside = n - 5.5;  // elements, to one of them
+  EXPECT_NEAR(on_first_tube(rope, rope.at(rope.moved(z, 0), true).force).z(), -40 * pN * 6 * beside * a, 40 * pN * 6 * 1.01 * a);
+}
+
+TEST(DryFriction, ActsBetweenItsTypesOnly) {
+  const auto energy = [](const std::string& types) {
+    Scene scene = scene_of_text("format = \"ropewalk-scene-1\"\nparameters = [\"cnt-10-10-tersoff\", \"cnt-17-0-tersoff\"]\n"
+                                "tube_types = [1, 0, 0, 0, 0, 0, 0]\n[rope]\ntubes = 7\nlength_nm = 13.8\n" +
+                                    axial + types + "[[load]]\nkind = \"force\"\ntubes = [0]\nelements = \"all\"\nforce_nN = [0, 0, 0.001]\n"
+                                    "[run]\nduration_ps = 1\ntime_step_fs = 2\n",
+                                "types.toml");
+    Simulation s = start(scene, prepare(scene));
+    s.steps(200);
+    return s.forces().energy.terms;
+  };
+  EXPECT_GT(energy("types = [0, 1]\n"), 1e-6);
+  EXPECT_GT(energy(""), energy("types = [0, 1]\n") * 0.9);
+  EXPECT_LT(energy("types = [1, 1]\n"), 1e-12);
+}
+
+const std::string pulled = "[[load]]\nkind = \"force\"\ntubes = [0]\nelements = \"all\"\nforce_nN = [0, 0, 0.3]\n"
+                           "[[load]]\nkind = \"fix\"\ntubes = [1, 3, 5]\nelements = [0]\n";
+
+TEST(DryFriction, TheAccountOfEnergyStaysClosedWhereTubesSlide) {
+  Scene scene = rope(both + pulled, "duration_ps = 20\ntime_step_fs = 2\n", cold);
+  Simulation s = start(scene, prepare(scene));
+  const double total = s.total_energy();
+  double error = 0;
+  for (int n = 0; n < 2000; ++n) {
+    s.step();
+    error = std::max(error, std::fabs(s.total_energy() - s.account().supplied() - total));
+  }
+  EXPECT_GT(s.dissipated(), 1) << "it slides";
+  EXPECT_LT(error, 1e-5 * s.dissipated());
+}
+
+TEST(DryFriction, SameBitsOnAnyThreadsAndAfterResume) {
+  Scene scene = rope(both + "drag_eV_ps_per_nm3 = 0.05\n" + pulled, "duration_ps = 20\ntime_step_fs = 5\n",
+                     "[start]\ntemperature_K = 300\nmay_cool = true\n");
+  const auto begun = [&] { return start(scene, prepare(scene)); };
+  omp_set_num_threads(1);
+  Simulation whole = begun();
+  std::vector<std::string> saved;
+  for (int n = 0; n < 400; ++n) {
+    if (n % 50 == 0) saved.push_back(whole.serialise());
+    whole.step(n % 50 == 49);
+  }
+  EXPECT_GT(whole.forces().term_energy[0], 0.01);
+  const std::string end = whole.serialise();
+  for (const int threads : {2, 3}) {
+    omp_set_num_threads(threads);
+    Simulation other = begun();
+    for (int n = 0; n < 400; ++n) other.step(n % 50 == 49);
+    EXPECT_EQ(other.serialise(), end) << threads;
+  }
+  for (std::size_t at = 0; at < saved.size(); ++at) {
+    Simulation resumed = begun();
+    resumed.restore(saved[at]);
+    EXPECT_EQ(resumed.serialise(), saved[at]);
+    for (int n = 50 * static_cast<int>(at); n < 400; ++n) resumed.step(n % 50 == 49);
+    EXPECT_EQ(resumed.serialise(), end) << at;
+  }
+}
+
+TEST(DryFriction, IsCarriedOverWhereElementsAreSplit) {
+  Scene coarse = rope(axial + pulled, "duration_ps = 20\ntime_step_fs = 2\n", cold);
+  const Prepared p = prepare(coarse);
+  Simulation s = start(coarse, p);
+  s.steps(500);
+  Scene finer = scene_of_text(finer_scene_text(coarse, p, "finer"), "finer.toml");
+  Prepared q = prepare(finer);
+  q.state = halved(p.topology, s.state(), splitting_of(coarse));
+  Simulation split = start(finer, q);
+  split.remember(s.halved_memory(heirs(p.topology, splitting_of(coarse))));
+  EXPECT_GT(s.forces().term_energy[0], 0.05);
+  EXPECT_NEAR(split.forces().term_energy[0] / s.forces().term_energy[0], 1, 0.05);
+}
+
+TEST(DryFriction, BadOnesAreRefused) {
+  const auto message = [](const std::string& friction, const std::string& more = "") -> std::string {
+    try {
+      Scene scene = rope(friction, "duration_ps = 5\n", more);
+      prepare(scene);
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return "";
+  };
+  EXPECT_THAT(message("[[friction]]\n"), HasSubstr("friction.strength_pN_per_nm"));
+  EXPECT_THAT(message(axial + "types = [0]\n"), HasSubstr("two entries"));
+  EXPECT_THAT(message(axial + "types = [0, 1]\n"), HasSubstr("there is no tube type 1"));
+  EXPECT_THAT(message(axial + "elastic_slip_nm = 0\n"), HasSubstr("elastic_slip_nm"));
+  EXPECT_THAT(message(axial, "[contact]\nlaw = \"none\"\n"), HasSubstr("contact.law"));
+  EXPECT_THAT(message(axial, "[periodic]\n"), HasSubstr("[periodic]"));
+  EXPECT_THAT(log_header(), HasSubstr(",friction_eV"));
+}
+
+}  // namespace
+}  // namespace ropewalk
