@@ -36,7 +36,8 @@ std::vector<RegisterForces> RigidPair::forces(const Register& at, double distanc
     y.push_back(p.y());
     z.push_back(p.z());
   }
-  const double cos_b = std::cos(at.turn_b), sin_b = std::sin(at.turn_b), cos_t = std::cos(at.tilt), sin_t = std::sin(at.tilt);
+  const double cos_b = std::cos(at.turn_b), sin_b = std::sin(at.turn_b), cos_t = std::cos(at.tilt),
+               sin_t = std::sin(at.tilt);
   const double middle = low_ + 0.5 * length_;
   std::vector<RegisterForces> out(lengths.size());
   RegisterForces sum;
@@ -45,7 +46,8 @@ std::vector<RegisterForces> RigidPair::forces(const Register& at, double distanc
     while (part + 1 < lengths.size() && atom.z() - low_ > lengths[part]) out[part++] = sum;
     const Vector3 own = turned(atom, cos_b, sin_b);
     const double up = own.z() - middle;
-    const double bx = own.x() + distance, by = own.y() * cos_t - up * sin_t, bz = middle + own.y() * sin_t + up * cos_t + at.shift;
+    const double bx = own.x() + distance, by = own.y() * cos_t - up * sin_t,
+                 bz = middle + own.y() * sin_t + up * cos_t + at.shift;
     if (bx > radius_a_ + cutoff) continue;
     const auto first = std::lower_bound(z.begin(), z.end(), bz - cutoff) - z.begin(),
                last = std::upper_bound(z.begin(), z.end(), bz + cutoff) - z.begin();

@@ -1,7 +1,7 @@
 // Two rigid tubes side by side, atom by atom: the forces against sliding and spinning at any register.
 //
-// Tube a lies on the z axis, tube b beside it on x = distance. E is the sum of the Lennard-Jones law over the pairs of
-// atoms of both, and
+// Tube a lies on the z axis, tube b beside it on x = distance. E is the sum of the Lennard-Jones law over the pairs
+// of atoms of both, and
 //
 //   along = -dE/dz of b,   spin_b = -(dE/d turn of b)/r_b,   spin_a = -(dE/d turn of a)/r_a
 //
@@ -21,9 +21,9 @@ struct Register {
 };
 
 struct RegisterForces {
-  double energy = 0;    // eV
-  double apart = 0;     // -dE/d distance, eV/nm
-  double along = 0;     // eV/nm
+  double energy = 0;  // eV
+  double apart = 0;   // -dE/d distance, eV/nm
+  double along = 0;   // eV/nm
   double spin_a = 0, spin_b = 0;
 };
 
@@ -32,7 +32,8 @@ class RigidPair {
   // Atoms (nm) about the z axis; b is the shorter one.
   RigidPair(const AtomLaw& law, std::vector<Vector3> a, double radius_a, std::vector<Vector3> b, double radius_b);
 
-  // Of parts of b that begin at its lower end and have these lengths (nm), in rising order, the last being all of b.
+  // Of parts of b that begin at its lower end and have these lengths (nm), in rising order, the last being all of
+  // b.
   std::vector<RegisterForces> forces(const Register& at, double distance, const std::vector<double>& lengths) const;
 
   // The distance (nm) near `start` at which all of b is neither pulled nor pushed.

@@ -41,15 +41,18 @@ std::string start(const SlidingTubes& tubes, const Register& at, double distance
                         data_file({turned(tubes.a, at.turn_a, Vector3::Zero()),
                                    turned(tubes.b, at.turn_b, Vector3(distance, 0, at.shift))},
                                   half, -top - 2, top + 2));
-  return header_commands("s s s", 0.1) + fmt::format("read_data {}.data\n", name) + pair_commands(tubes.potential, tubes.law) +
-         fmt::format("group a type 1\ngroup b type 2\n"
-                     "region far_a block INF {:.6f} INF INF INF INF\nregion far_b block {:.6f} INF INF INF INF INF\n"
-                     "group side_a region far_a\ngroup side_b region far_b\n"
-                     "group still intersect side_a a\ngroup led intersect side_b b\n"
-                     "fix still still setforce 0.0 0.0 0.0\nfix rigid led aveforce 0.0 NULL NULL\nfix led led setforce NULL 0.0 0.0\n"
-                     "compute push b group/group a\n"
-                     "thermo_style custom step pe c_push\nthermo 500\nthermo_modify flush yes lost error norm no\n",
-                     -0.6 * tubes.radius_a / angstrom, (distance + 0.6 * tubes.radius_b) / angstrom);
+  return header_commands("s s s", 0.1) + fmt::format("read_data {}.data\n", name) +
+         pair_commands(tubes.potential, tubes.law) +
+         fmt::format(
+             "group a type 1\ngroup b type 2\n"
+             "region far_a block INF {:.6f} INF INF INF INF\nregion far_b block {:.6f} INF INF INF INF INF\n"
+             "group side_a region far_a\ngroup side_b region far_b\n"
+             "group still intersect side_a a\ngroup led intersect side_b b\n"
+             "fix still still setforce 0.0 0.0 0.0\nfix rigid led aveforce 0.0 NULL NULL\nfix led led setforce "
+             "NULL 0.0 0.0\n"
+             "compute push b group/group a\n"
+             "thermo_style custom step pe c_push\nthermo 500\nthermo_modify flush yes lost error norm no\n",
+             -0.6 * tubes.radius_a / angstrom, (distance + 0.6 * tubes.radius_b) / angstrom);
 }
 
 std::vector<std::vector<double>> results(const std::string& folder, const std::string& name, std::size_t columns,
@@ -59,15 +62,17 @@ std::vector<std::vector<double>> results(const std::string& folder, const std::s
   for (std::string line; std::getline(lines, line);) {
     std::vector<double> row;
     for (const std::string& word : words_of(line)) row.push_back(std::strtod(word.c_str(), nullptr));
-    if (row.size() == columns && std::all_of(row.begin(), row.end(), [](double x) { return std::isfinite(x); })) rows.push_back(row);
+    if (row.size() == columns && std::all_of(row.begin(), row.end(), [](double x) { return std::isfinite(x); }))
+      rows.push_back(row);
   }
   if (rows.size() < least)
-    throw LammpsError(fmt::format("LAMMPS ({}/{}.in) left {} of {} results; its log is in that folder", folder, name, rows.size(), least));
+    throw LammpsError(fmt::format("LAMMPS ({}/{}.in) left {} of {} results; its log is in that folder", folder,
+                                  name, rows.size(), least));
   return rows;
 }
 
-// The mean of a force that also has the corrugation's period along its way `s` (nm). Blocks of 1 ps say how many of its
-// samples are independent.
+// The mean of a force that also has the corrugation's period along its way `s` (nm). Blocks of 1 ps say how many of
+// its samples are independent.
 Measured mean_without_period(const std::vector<double>& force, const std::vector<double>& s, double period) {
   const auto n = static_cast<Eigen::Index>(force.size());
   Eigen::MatrixXd form(n, 5);
@@ -82,8 +87,10 @@ Measured mean_without_period(const std::vector<double>& force, const std::vector
   const auto block = static_cast<Eigen::Index>(std::lround(1 / sampled_every));
   double blocks = 0;
   Eigen::Index count = 0;
-  for (Eigen::Index k = 0; k + block <= n; k += block, ++count) blocks += std::pow(rest.segment(k, block).mean(), 2);
-  const double variance = std::max(static_cast<double>(block) * blocks / static_cast<double>(count), rest.squaredNorm() / static_cast<double>(n - 5));
+  for (Eigen::Index k = 0; k + block <= n; k += block, ++count)
+    blocks += std::pow(rest.segment(k, block).mean(), 2);
+  const double variance = std::max(static_cast<double>(block) * blocks / static_cast<double>(count),
+                                   rest.squaredNorm() / static_cast<double>(n - 5));
   return {fit[0], std::sqrt(variance * inverse(0, 0))};
 }
 
@@ -97,28 +104,34 @@ std::string pair_commands(const Potential& potential, const AtomLaw& law) {
   };
   if (potential.commands.size() != 2) refuse(potential.commands.empty() ? "" : potential.commands.back());
   const std::vector<std::string> style = words_of(potential.commands[0]), coeff = words_of(potential.commands[1]);
-  if (style.size() < 2 || style[0] != "pair_style" || style[1].rfind("hybrid", 0) == 0) refuse(potential.commands[0]);
-  if (coeff.size() != 5 || coeff[0] != "pair_coeff" || coeff[1] != "*" || coeff[2] != "*") refuse(potential.commands[1]);
+  if (style.size() < 2 || style[0] != "pair_style" || style[1].rfind("hybrid", 0) == 0)
+    refuse(potential.commands[0]);
+  if (coeff.size() != 5 || coeff[0] != "pair_coeff" || coeff[1] != "*" || coeff[2] != "*")
+    refuse(potential.commands[1]);
   std::string own = style[1];
   for (std::size_t k = 2; k < style.size(); ++k) own += " " + style[k];
-  return fmt::format("pair_style hybrid {} {} lj/cut {:.8g}\npair_coeff * * {} 1 {} {} NULL\npair_coeff * * {} 2 {} NULL {}\n"
-                     "pair_coeff 1 2 lj/cut {:.10g} {:.10g}\n",
-                     own, own, law.cutoff / angstrom, style[1], coeff[3], coeff[4], style[1], coeff[3], coeff[4], law.epsilon,
-                     law.sigma / angstrom);
+  return fmt::format(
+      "pair_style hybrid {} {} lj/cut {:.8g}\npair_coeff * * {} 1 {} {} NULL\npair_coeff * * {} 2 {} NULL {}\n"
+      "pair_coeff 1 2 lj/cut {:.10g} {:.10g}\n",
+      own, own, law.cutoff / angstrom, style[1], coeff[3], coeff[4], style[1], coeff[3], coeff[4], law.epsilon,
+      law.sigma / angstrom);
 }
 
-RelaxedStrength relaxed_strength(const SlidingTubes& tubes, const Register& at, Slip slip, const std::string& folder,
-                                 const std::string& name, const LammpsOptions& options) {
+RelaxedStrength relaxed_strength(const SlidingTubes& tubes, const Register& at, Slip slip,
+                                 const std::string& folder, const std::string& name, const LammpsOptions& options) {
   const RigidPair rigid(tubes.law, tubes.a, tubes.radius_a, tubes.b, tubes.radius_b);
   const SlipCurve curve = slip_curve(rigid, slip, at, {rigid.length()}, 0, place_step, way);
   const double distance = curve.distance[0];
-  std::string input = start(tubes, at, distance, folder, name) + "min_style cg\nmin_modify dmax 0.05 line quadratic\n";
+  std::string input =
+      start(tubes, at, distance, folder, name) + "min_style cg\nmin_modify dmax 0.05 line quadratic\n";
   for (std::size_t k = 0; k < curve.forces.size(); ++k) {
-    if (k > 0 && slip == Slip::along) input += fmt::format("displace_atoms b move 0 0 {:.8g}\n", place_step / angstrom);
+    if (k > 0 && slip == Slip::along)
+      input += fmt::format("displace_atoms b move 0 0 {:.8g}\n", place_step / angstrom);
     if (k > 0 && slip == Slip::spin_b)
-      input += fmt::format("variable x equal xcm(b,x)\nvariable y equal xcm(b,y)\n"
-                           "displace_atoms b rotate $x $y 0 0 0 1 {:.10g}\n",
-                           place_step / tubes.radius_b / units::degree);
+      input += fmt::format(
+          "variable x equal xcm(b,x)\nvariable y equal xcm(b,y)\n"
+          "displace_atoms b rotate $x $y 0 0 0 1 {:.10g}\n",
+          place_step / tubes.radius_b / units::degree);
     input += fmt::format("minimize 0 3e-4 3000 30000\nprint \"$(pe)\" append {}.dat\n", name);
   }
   run_lammps(folder, name, input, options);
@@ -126,7 +139,8 @@ RelaxedStrength relaxed_strength(const SlidingTubes& tubes, const Register& at, 
   RelaxedStrength out;
   for (std::size_t k = 1; k < curve.forces.size(); ++k) {
     out.relaxed = std::max(out.relaxed, std::fabs(energies[k][0] - energies[k - 1][0]) / place_step);
-    out.rigid = std::max(out.rigid, std::fabs(curve.forces[k][0].energy - curve.forces[k - 1][0].energy) / place_step);
+    out.rigid =
+        std::max(out.rigid, std::fabs(curve.forces[k][0].energy - curve.forces[k - 1][0].energy) / place_step);
   }
   return out;
 }
@@ -140,12 +154,18 @@ Drag measured_drag(const SlidingTubes& tubes, const Register& at, double duratio
   for (const double speed : out.speeds) {
     const std::string run = fmt::format("{}-{:.0f}", name, 1000 * speed);
     const long steps = std::lround(duration / 0.001), sample = std::lround(sampled_every / 0.001);
-    std::string input = start(tubes, at, rigid.free_distance(at, tubes.radius_a + tubes.radius_b + 0.32), folder, run) +
-                        "group held union still led\ngroup free subtract all held\ngroup moving subtract all still\n"
-                        "timestep 0.001\nmin_style cg\nminimize 0 1e-3 1000 10000\n";
-    input += fmt::format("velocity free create {} 4711 mom yes dist gaussian\nvelocity led set 0 0 {:.8g}\n", 2 * temperature, speed / angstrom);
-    input += fmt::format("fix go moving nve\nfix warm free langevin {0} {0} 0.1 4712\nrun 3000\nunfix warm\n", temperature);
-    input += fmt::format("reset_timestep 0\nfix mean all ave/time 1 {0} {0} c_push[3]\nrun {1} every {0} \"print '$(f_mean)' append {2}.dat\"\n", sample, steps, run);
+    std::string input =
+        start(tubes, at, rigid.free_distance(at, tubes.radius_a + tubes.radius_b + 0.32), folder, run) +
+        "group held union still led\ngroup free subtract all held\ngroup moving subtract all still\n"
+        "timestep 0.001\nmin_style cg\nminimize 0 1e-3 1000 10000\n";
+    input += fmt::format("velocity free create {} 4711 mom yes dist gaussian\nvelocity led set 0 0 {:.8g}\n",
+                         2 * temperature, speed / angstrom);
+    input += fmt::format("fix go moving nve\nfix warm free langevin {0} {0} 0.1 4712\nrun 3000\nunfix warm\n",
+                         temperature);
+    input += fmt::format(
+        "reset_timestep 0\nfix mean all ave/time 1 {0} {0} c_push[3]\nrun {1} every {0} \"print '$(f_mean)' append "
+        "{2}.dat\"\n",
+        sample, steps, run);
     run_lammps(folder, run, input, options);
     std::vector<double> force, way_gone;
     for (const auto& row : results(folder, run, 1, static_cast<std::size_t>(steps / sample) / 2)) {

@@ -12,7 +12,8 @@ struct Line {
 };
 Line line_through(const std::vector<double>& x, const std::vector<double>& y) {
   const auto n = static_cast<double>(x.size());
-  const double mean_x = std::accumulate(x.begin(), x.end(), 0.0) / n, mean_y = std::accumulate(y.begin(), y.end(), 0.0) / n;
+  const double mean_x = std::accumulate(x.begin(), x.end(), 0.0) / n,
+               mean_y = std::accumulate(y.begin(), y.end(), 0.0) / n;
   double xx = 0, xy = 0;
   for (std::size_t k = 0; k < x.size(); ++k) {
     xx += (x[k] - mean_x) * (x[k] - mean_x);
@@ -25,7 +26,8 @@ Line line_through(const std::vector<double>& x, const std::vector<double>& y) {
 double stiffness(const SlipCurve& curve, Slip slip, double step) {
   double steepest = 0;
   for (std::size_t k = 1; k < curve.forces.size(); ++k)
-    steepest = std::max(steepest, (force_of(curve.forces[k - 1].back(), slip) - force_of(curve.forces[k].back(), slip)) / step);
+    steepest = std::max(
+        steepest, (force_of(curve.forces[k - 1].back(), slip) - force_of(curve.forces[k].back(), slip)) / step);
   return steepest;
 }
 
@@ -60,8 +62,8 @@ double force_of(const RegisterForces& f, Slip slip) {
   return slip == Slip::along ? f.along : slip == Slip::spin_a ? f.spin_a : f.spin_b;
 }
 
-SlipCurve slip_curve(const RigidPair& pair, Slip slip, Register at, const std::vector<double>& lengths, double pressed,
-                     double step, double range) {
+SlipCurve slip_curve(const RigidPair& pair, Slip slip, Register at, const std::vector<double>& lengths,
+                     double pressed, double step, double range) {
   SlipCurve curve;
   const Register begin = at;
   double distance = pair.radius_a() + pair.radius_b() + 0.32;
@@ -80,7 +82,8 @@ SlipCurve slip_curve(const RigidPair& pair, Slip slip, Register at, const std::v
 std::vector<double> strengths(const SlipCurve& curve, Slip slip) {
   std::vector<double> largest(curve.forces.front().size(), 0.0);
   for (const auto& place : curve.forces)
-    for (std::size_t k = 0; k < largest.size(); ++k) largest[k] = std::max(largest[k], std::fabs(force_of(place[k], slip)));
+    for (std::size_t k = 0; k < largest.size(); ++k)
+      largest[k] = std::max(largest[k], std::fabs(force_of(place[k], slip)));
   return largest;
 }
 
@@ -107,7 +110,8 @@ Measured mean_of(const std::vector<double>& values) {
   return {mean, values.size() > 1 ? std::sqrt(squares / (n * (n - 1))) : 0};
 }
 
-Strength along_strength(const RigidPair& pair, const std::vector<Register>& at, const std::vector<double>& lengths) {
+Strength along_strength(const RigidPair& pair, const std::vector<Register>& at,
+                        const std::vector<double>& lengths) {
   return strength(pair, {Slip::along}, at, lengths);
 }
 Strength spin_strength(const RigidPair& pair, const std::vector<Register>& at, const std::vector<double>& lengths) {
@@ -122,7 +126,8 @@ std::vector<Pressed> pressed_strengths(const RigidPair& pair, const std::vector<
     std::vector<double> ratios, forces;
     for (const Register& r : at) {
       const SlipCurve pressed = slip_curve(pair, Slip::along, r, all, by);
-      ratios.push_back(strengths(pressed, Slip::along)[0] / strengths(slip_curve(pair, Slip::along, r, all), Slip::along)[0]);
+      ratios.push_back(strengths(pressed, Slip::along)[0] /
+                       strengths(slip_curve(pair, Slip::along, r, all), Slip::along)[0]);
       for (const auto& place : pressed.forces) forces.push_back(place[0].apart / pair.length());
     }
     out.push_back({by, mean_of(ratios), mean_of(forces).value});

@@ -1,8 +1,9 @@
 // Static friction of two rigid tubes side by side, over registers.
 //
-// At a register (both turns and the shift, random) one tube slips past the other one by 1 nm, along the axis or around its own axis; at
-// each place the distance is that at which the tubes neither pull nor push. The strength is the largest force on that
-// way. Its growth with the length of the contact is the strength per length, what remains at length zero that of two ends.
+// At a register (both turns and the shift, random) one tube slips past the other one by 1 nm, along the axis or
+// around its own axis; at each place the distance is that at which the tubes neither pull nor push. The strength is
+// the largest force on that way. Its growth with the length of the contact is the strength per length, what remains
+// at length zero that of two ends.
 #pragma once
 
 #include <vector>
@@ -32,30 +33,32 @@ std::vector<Register> registers(int count, double period);
 
 // Over registers; errors are those of the mean.
 struct Strength {
-  Measured per_length;              // eV/nm^2
-  Measured of_ends;                 // eV/nm, both
-  double least = 0, largest = 0;    // per length, of one register
-  double spread = 0;                // standard deviation over registers
-  Measured elastic_slip;            // nm: strength over steepest stiffness, of the longest contact
+  Measured per_length;            // eV/nm^2
+  Measured of_ends;               // eV/nm, both
+  double least = 0, largest = 0;  // per length, of one register
+  double spread = 0;              // standard deviation over registers
+  Measured elastic_slip;          // nm: strength over steepest stiffness, of the longest contact
 };
 // Spins of a and b count together.
 Strength along_strength(const RigidPair& pair, const std::vector<Register>& at, const std::vector<double>& lengths);
 Strength spin_strength(const RigidPair& pair, const std::vector<Register>& at, const std::vector<double>& lengths);
 
-// Mean strength of the longest contact over that of the same registers pressed together by nothing, and what presses
-// (eV/nm^2).
+// Mean strength of the longest contact over that of the same registers pressed together by nothing, and what
+// presses (eV/nm^2).
 struct Pressed {
   double nearer = 0;  // nm
   Measured ratio;
   double force = 0;
 };
-std::vector<Pressed> pressed_strengths(const RigidPair& pair, const std::vector<Register>& at, const std::vector<double>& nearer);
+std::vector<Pressed> pressed_strengths(const RigidPair& pair, const std::vector<Register>& at,
+                                       const std::vector<double>& nearer);
 
 struct Crossed {
   double angle = 0;  // rad
   Measured force;    // eV/nm, of all of b
 };
-std::vector<Crossed> crossed_strengths(const RigidPair& pair, const std::vector<Register>& at, const std::vector<double>& angles);
+std::vector<Crossed> crossed_strengths(const RigidPair& pair, const std::vector<Register>& at,
+                                       const std::vector<double>& angles);
 
 Measured mean_of(const std::vector<double>& values);
 

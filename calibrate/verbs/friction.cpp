@@ -20,7 +20,7 @@
 namespace ropewalk::calibrate {
 namespace {
 
-constexpr double pN = 1e-3 * units::nN_nm;  // eV/nm
+constexpr double pN = 1e-3 * units::nN_nm;                     // eV/nm
 constexpr double longest = 10, past_ends = 5, led_length = 4;  // nm
 
 struct Tube {
@@ -30,10 +30,12 @@ struct Tube {
   // About as long (nm), its middle at z = 0.
   std::vector<Vector3> atoms(double length) const {
     const long step = std::gcd(set.chirality.n, set.chirality.m);
-    const long hexagons = step * std::max(1L, std::lround(length / (shape.length_per_hexagon * static_cast<double>(step))));
+    const long hexagons =
+        step * std::max(1L, std::lround(length / (shape.length_per_hexagon * static_cast<double>(step))));
     std::vector<Vector3> out;
     for (const Site& site : strip_sites(set.chirality, hexagons))
-      out.push_back(place(set.chirality, site, shape) - Vector3(0, 0, 0.5 * static_cast<double>(hexagons) * shape.length_per_hexagon));
+      out.push_back(place(set.chirality, site, shape) -
+                    Vector3(0, 0, 0.5 * static_cast<double>(hexagons) * shape.length_per_hexagon));
     return out;
   }
 };
@@ -42,10 +44,12 @@ Tube tube_of(const std::string& name) {
   Tube tube;
   tube.set = read_parameters(find_parameters(name, "", {"", 0, "set"}));
   if (!tube.set.line)
-    throw InputError({tube.set.path, 0, "contact.line"}, "is missing: the set does not say how atoms of two tubes attract",
+    throw InputError({tube.set.path, 0, "contact.line"},
+                     "is missing: the set does not say how atoms of two tubes attract",
                      "take a set that ropewalk calibrate made");
   if (!(tube.set.line->universal.lj_cutoff > 0))
-    throw InputError({tube.set.path, 0, "contact.line.lj_cutoff"}, "is 0, and friction needs a cutoff", "take a set with one");
+    throw InputError({tube.set.path, 0, "contact.line.lj_cutoff"}, "is 0, and friction needs a cutoff",
+                     "take a set with one");
   const Quantity* twist = find_quantity(tube.set, "atomistic.natural_twist");
   tube.shape.radius = tube.set.radius;
   tube.shape.length_per_hexagon = 2 / tube.set.atoms_per_length;
@@ -56,22 +60,26 @@ Tube tube_of(const std::string& name) {
 AtomLaw atom_law(const Tube& a, const Tube& b) {
   const UniversalLine &of_a = a.set.line->universal, &of_b = b.set.line->universal;
   if (of_a.epsilon != of_b.epsilon || of_a.sigma != of_b.sigma || of_a.lj_cutoff != of_b.lj_cutoff)
-    throw InputError({b.set.path, 0, "contact.line"}, "has another Lennard-Jones law than " + a.set.path, "take two sets with the same one");
+    throw InputError({b.set.path, 0, "contact.line"}, "has another Lennard-Jones law than " + a.set.path,
+                     "take two sets with the same one");
   return {of_a.epsilon, of_a.sigma, of_a.lj_cutoff};
 }
 
 // What the relaxation of the atoms multiplies the strengths of rigid tubes by.
-Measured relaxation(const SlidingTubes& tubes, const std::vector<Register>& at, Slip slip, const std::string& folder,
-                    const FrictionArguments& a) {
+Measured relaxation(const SlidingTubes& tubes, const std::vector<Register>& at, Slip slip,
+                    const std::string& folder, const FrictionArguments& a) {
   double relaxed = 0, rigid = 0;
   std::vector<RelaxedStrength> all;
   for (const Register& r : at) {
-    all.push_back(relaxed_strength(tubes, r, slip, folder, fmt::format("{}-{}", slip == Slip::along ? "along" : "spin", all.size()), a.lammps));
+    all.push_back(relaxed_strength(tubes, r, slip, folder,
+                                   fmt::format("{}-{}", slip == Slip::along ? "along" : "spin", all.size()),
+                                   a.lammps));
     relaxed += all.back().relaxed;
     rigid += all.back().rigid;
     if (!a.quiet)
-      fmt::print(stderr, "{}: {:.1f} pN relaxed, {:.1f} pN rigid\n", slip == Slip::along ? "along the axis" : "against spin",
-                 all.back().relaxed / pN, all.back().rigid / pN);
+      fmt::print(stderr, "{}: {:.1f} pN relaxed, {:.1f} pN rigid\n",
+                 slip == Slip::along ? "along the axis" : "against spin", all.back().relaxed / pN,
+                 all.back().rigid / pN);
   }
   const double ratio = relaxed / rigid;
   double squares = 0;
@@ -93,8 +101,8 @@ double corrugation(const Tube& t) {
 class Writer {
  public:
   explicit Writer(PairFriction& out) : out_(out) {}
-  void operator()(const std::string& key, double value, const std::string& unit, double error, const std::string& note,
-                  const char* origin = "calibrated") {
+  void operator()(const std::string& key, double value, const std::string& unit, double error,
+                  const std::string& note, const char* origin = "calibrated") {
     out_.quantities.push_back({key, value, unit, error, origin, "", note});
   }
   // A strength below zero is none.
@@ -108,15 +116,17 @@ class Writer {
 
 // As a scene has them.
 std::string scene_lines(const PairFriction& f) {
-  return fmt::format("[[friction]]\nstrength_pN_per_nm = {:.4g}\nspin_strength_pN_per_nm = {:.4g}\nend_strength_pN = {:.4g}\n"
-                     "elastic_slip_nm = {:.3g}\ndrag_eV_ps_per_nm3 = {:.3g}\n",
-                     f.strength / pN, f.spin_strength / pN, f.end_strength / pN, f.elastic_slip, f.drag);
+  return fmt::format(
+      "[[friction]]\nstrength_pN_per_nm = {:.4g}\nspin_strength_pN_per_nm = {:.4g}\nend_strength_pN = {:.4g}\n"
+      "elastic_slip_nm = {:.3g}\ndrag_eV_ps_per_nm3 = {:.3g}\n",
+      f.strength / pN, f.spin_strength / pN, f.end_strength / pN, f.elastic_slip, f.drag);
 }
 
 void print(const PairFriction& f, const std::string& path, double seconds) {
   fmt::print("({},{}) beside ({},{}), {}\n", f.a.n, f.a.m, f.b.n, f.b.m, f.potential);
   for (const Quantity& q : f.quantities)
-    fmt::print("  {:<28} {:>12.5g} +- {:<10.2g} {:<11} {}\n", q.key, q.value, q.standard_error.value_or(0), q.unit, q.note);
+    fmt::print("  {:<28} {:>12.5g} +- {:<10.2g} {:<11} {}\n", q.key, q.value, q.standard_error.value_or(0), q.unit,
+               q.note);
   fmt::print("{:.0f} s\nFriction: {}\n\nFor a scene:\n{}", seconds, path, scene_lines(f));
 }
 
@@ -124,7 +134,8 @@ void print_json(const PairFriction& f, const std::string& path) {
   nlohmann::ordered_json j;
   j["chirality_a"] = {f.a.n, f.a.m};
   j["chirality_b"] = {f.b.n, f.b.m};
-  for (const Quantity& q : f.quantities) j[q.key] = {{"value", q.value}, {"unit", q.unit}, {"standard_error", q.standard_error.value_or(0)}};
+  for (const Quantity& q : f.quantities)
+    j[q.key] = {{"value", q.value}, {"unit", q.unit}, {"standard_error", q.standard_error.value_or(0)}};
   j["file"] = path;
   fmt::print("{}\n", j.dump(1));
 }
@@ -140,7 +151,8 @@ int friction_command(const FrictionArguments& arguments) {
   const AtomLaw law = atom_law(first, second);
   const std::string potential_name = provenance_value(first.set, "potential");
   if (potential_name != provenance_value(second.set, "potential"))
-    throw InputError({second.set.path, 0, "provenance.potential"}, "is another one than that of " + first.set.path, "take two sets of the same potential");
+    throw InputError({second.set.path, 0, "provenance.potential"}, "is another one than that of " + first.set.path,
+                     "take two sets of the same potential");
   PairFriction f;
   f.a = first.set.chirality;
   f.b = second.set.chirality;
@@ -150,19 +162,27 @@ int friction_command(const FrictionArguments& arguments) {
   check_output(f.path, "--out", a.force);
   a.lammps.interrupted = [] { return interrupted_by() != 0; };
   const LammpsVersion lammps = lammps_version(a.lammps);
-  SlidingTubes tubes{find_potential(potential_name), law, first.atoms(led_length + 2 * 2.2), second.atoms(led_length), first.set.radius, second.set.radius};
+  SlidingTubes tubes{find_potential(potential_name),
+                     law,
+                     first.atoms(led_length + 2 * 2.2),
+                     second.atoms(led_length),
+                     first.set.radius,
+                     second.set.radius};
   pair_commands(tubes.potential, law);  // refuses
 
   const auto say = [&](const std::string& line) {
     if (!a.quiet) fmt::print(stderr, "{}\n", line);
   };
   say(fmt::format("rigid tubes at {} registers", a.registers));
-  const RigidPair pair(law, first.atoms(longest + past_ends), first.set.radius, second.atoms(longest), second.set.radius);
+  const RigidPair pair(law, first.atoms(longest + past_ends), first.set.radius, second.atoms(longest),
+                       second.set.radius);
   std::vector<double> lengths = {3, 4, 5, 6, 7, 8, 9, pair.length()};
-  const std::vector<Register> at = registers(a.registers, corrugation(second)), few(at.begin(), at.begin() + std::min<std::ptrdiff_t>(4, a.registers));
+  const std::vector<Register> at = registers(a.registers, corrugation(second)),
+                              few(at.begin(), at.begin() + std::min<std::ptrdiff_t>(4, a.registers));
   const Strength along = along_strength(pair, at, lengths), spin = spin_strength(pair, at, lengths);
   const std::vector<Pressed> pressed = pressed_strengths(pair, few, {0.01, 0.02});
-  const std::vector<Crossed> crossed = crossed_strengths(pair, few, {2 * units::degree, 5 * units::degree, 10 * units::degree});
+  const std::vector<Crossed> crossed =
+      crossed_strengths(pair, few, {2 * units::degree, 5 * units::degree, 10 * units::degree});
 
   WorkFolder folder(a.keep);
   Measured relaxed_along, relaxed_spin;
@@ -182,39 +202,60 @@ int friction_command(const FrictionArguments& arguments) {
   }
 
   Writer write(f);
-  const std::string over = fmt::format("mean over {} registers of rigid tubes, times {{:.3g}} +- {{:.2g}} for relaxed atoms", a.registers);
-  write.strength("friction.strength", product(along.per_length, relaxed_along), "pN/nm", fmt::format(fmt::runtime(over), relaxed_along.value, relaxed_along.standard_error));
-  write.strength("friction.spin_strength", product(spin.per_length, relaxed_spin), "pN/nm", fmt::format(fmt::runtime(over), relaxed_spin.value, relaxed_spin.standard_error));
+  const std::string over = fmt::format(
+      "mean over {} registers of rigid tubes, times {{:.3g}} +- {{:.2g}} for relaxed atoms", a.registers);
+  write.strength("friction.strength", product(along.per_length, relaxed_along), "pN/nm",
+                 fmt::format(fmt::runtime(over), relaxed_along.value, relaxed_along.standard_error));
+  write.strength("friction.spin_strength", product(spin.per_length, relaxed_spin), "pN/nm",
+                 fmt::format(fmt::runtime(over), relaxed_spin.value, relaxed_spin.standard_error));
   const Measured ends = product(along.of_ends, relaxed_along);
-  write.strength("friction.end_strength", {0.5 * ends.value, 0.5 * ends.standard_error}, "pN", "of each end; an open end");
-  write("friction.elastic_slip", along.elastic_slip.value, "nm", along.elastic_slip.standard_error, fmt::format("strength over steepest stiffness, along the axis; against spin {:.3g} nm", spin.elastic_slip.value));
+  write.strength("friction.end_strength", {0.5 * ends.value, 0.5 * ends.standard_error}, "pN",
+                 "of each end; an open end");
+  write("friction.elastic_slip", along.elastic_slip.value, "nm", along.elastic_slip.standard_error,
+        fmt::format("strength over steepest stiffness, along the axis; against spin {:.3g} nm",
+                    spin.elastic_slip.value));
   if (a.drag_ps > 0) {
     std::string forces;
     for (std::size_t k = 0; k < drag.speeds.size(); ++k)
-      forces += fmt::format("{}{:.2g} +- {:.2g} pN/nm at {:.0f} m/s", k ? ", " : "", drag.force[k].value / pN, drag.force[k].standard_error / pN, 1000 * drag.speeds[k]);
+      forces += fmt::format("{}{:.2g} +- {:.2g} pN/nm at {:.0f} m/s", k ? ", " : "", drag.force[k].value / pN,
+                            drag.force[k].standard_error / pN, 1000 * drag.speeds[k]);
     const bool seen = drag.drag.value > 2 * drag.drag.standard_error;
     write("friction.drag", std::max(0.0, drag.drag.value), "eV ps/nm^3", drag.drag.standard_error,
-          fmt::format("300 K; {}{}", forces, seen ? "" : fmt::format("; not above its error: at most {:.2g}", std::max(0.0, drag.drag.value) + 2 * drag.drag.standard_error)));
+          fmt::format("300 K; {}{}", forces,
+                      seen ? ""
+                           : fmt::format("; not above its error: at most {:.2g}",
+                                         std::max(0.0, drag.drag.value) + 2 * drag.drag.standard_error)));
   } else {
     write("friction.drag", 0, "eV ps/nm^3", 0, "not measured", "chosen");
   }
   const auto of_register = [&](const std::string& kind, const Strength& s, const Measured& factor) {
     write("register." + kind + "_least", s.least * factor.value / pN, "pN/nm", 0, "of one register", "derived");
     write("register." + kind + "_largest", s.largest * factor.value / pN, "pN/nm", 0, "of one register", "derived");
-    write("register." + kind + "_spread", s.spread * factor.value / pN, "pN/nm", 0, "standard deviation over registers", "derived");
+    write("register." + kind + "_spread", s.spread * factor.value / pN, "pN/nm", 0,
+          "standard deviation over registers", "derived");
   };
   of_register("strength", along, relaxed_along);
   of_register("spin_strength", spin, relaxed_spin);
   for (const Pressed& p : pressed)
     write(fmt::format("pressure.ratio_at_{:.0f}_pm", 1000 * p.nearer), p.ratio.value, "1", p.ratio.standard_error,
-          fmt::format("strength of tubes {:.2g} nm nearer, pressed by {:.0f} pN/nm, over that of free ones", p.nearer, p.force / pN), "derived");
+          fmt::format("strength of tubes {:.2g} nm nearer, pressed by {:.0f} pN/nm, over that of free ones",
+                      p.nearer, p.force / pN),
+          "derived");
   for (const Crossed& c : crossed)
-    write(fmt::format("crossing.force_at_{:.0f}_deg", c.angle / units::degree), c.force.value / pN, "pN", c.force.standard_error / pN,
-          fmt::format("of {:.3g} nm, crossed", pair.length()), "derived");
-  f.provenance = {{"command", a.command}, {"program", fmt::format("ropewalk {} ({})", version, git_id)}, {"lammps", lammps.text},
-                  {"potential_hash", tubes.potential.file_hash}, {"set_a", first.set.name}, {"set_a_hash", first.set.hash},
-                  {"set_b", second.set.name}, {"set_b_hash", second.set.hash}, {"seconds", fmt::format("{:.0f}", seconds_since(began))}};
-  const std::string text = friction_text(f, fmt::format("# Friction of ({},{}) beside ({},{}), {} potential. Made by\n#   {}\n", f.a.n, f.a.m, f.b.n, f.b.m, potential_name, a.command));
+    write(fmt::format("crossing.force_at_{:.0f}_deg", c.angle / units::degree), c.force.value / pN, "pN",
+          c.force.standard_error / pN, fmt::format("of {:.3g} nm, crossed", pair.length()), "derived");
+  f.provenance = {{"command", a.command},
+                  {"program", fmt::format("ropewalk {} ({})", version, git_id)},
+                  {"lammps", lammps.text},
+                  {"potential_hash", tubes.potential.file_hash},
+                  {"set_a", first.set.name},
+                  {"set_a_hash", first.set.hash},
+                  {"set_b", second.set.name},
+                  {"set_b_hash", second.set.hash},
+                  {"seconds", fmt::format("{:.0f}", seconds_since(began))}};
+  const std::string text =
+      friction_text(f, fmt::format("# Friction of ({},{}) beside ({},{}), {} potential. Made by\n#   {}\n", f.a.n,
+                                   f.a.m, f.b.n, f.b.m, potential_name, a.command));
   write_file_atomically(f.path, text);
   if (a.json) {
     print_json(f, f.path);

@@ -24,7 +24,8 @@ Chirality chirality_in(const TomlTable& t, const char* key) {
   const std::vector<long> nm = t.integers(key, 0, 1000);
   Chirality c;
   if (nm.size() == 2) c = {static_cast<int>(nm[0]), static_cast<int>(nm[1])};
-  if (nm.size() != 2 || !c.valid()) throw t.error(key, "is not that of a tube", "write [n, m], neither negative, not both 0");
+  if (nm.size() != 2 || !c.valid())
+    throw t.error(key, "is not that of a tube", "write [n, m], neither negative, not both 0");
   return c;
 }
 
@@ -39,7 +40,9 @@ std::vector<std::string> shipped_frictions() {
 
 // How far the radii of both pairs are from each other, nm; the order of two tubes does not matter.
 double radii_apart(Chirality a, Chirality b, const PairFriction& f) {
-  const auto apart = [](Chirality x, Chirality y) { return std::fabs(ropewalk::tube_radius(x) - ropewalk::tube_radius(y)); };
+  const auto apart = [](Chirality x, Chirality y) {
+    return std::fabs(ropewalk::tube_radius(x) - ropewalk::tube_radius(y));
+  };
   return std::min(apart(a, f.a) + apart(b, f.b), apart(a, f.b) + apart(b, f.a));
 }
 
@@ -72,11 +75,16 @@ PairFriction friction_of_text(const std::string& text, const std::string& path) 
   struct Other {
     const char *section, *key, *unit;
   };
-  constexpr Other others[] = {{"register", "strength_least", "pN/nm"},      {"register", "strength_largest", "pN/nm"},
-                              {"register", "strength_spread", "pN/nm"},     {"register", "spin_strength_least", "pN/nm"},
-                              {"register", "spin_strength_largest", "pN/nm"}, {"register", "spin_strength_spread", "pN/nm"},
-                              {"pressure", "ratio_at_10_pm", "1"},          {"pressure", "ratio_at_20_pm", "1"},
-                              {"crossing", "force_at_2_deg", "pN"},         {"crossing", "force_at_5_deg", "pN"},
+  constexpr Other others[] = {{"register", "strength_least", "pN/nm"},
+                              {"register", "strength_largest", "pN/nm"},
+                              {"register", "strength_spread", "pN/nm"},
+                              {"register", "spin_strength_least", "pN/nm"},
+                              {"register", "spin_strength_largest", "pN/nm"},
+                              {"register", "spin_strength_spread", "pN/nm"},
+                              {"pressure", "ratio_at_10_pm", "1"},
+                              {"pressure", "ratio_at_20_pm", "1"},
+                              {"crossing", "force_at_2_deg", "pN"},
+                              {"crossing", "force_at_5_deg", "pN"},
                               {"crossing", "force_at_10_deg", "pN"}};
   std::vector<std::pair<std::string, TomlTable>> sections;
   for (const char* name : {"register", "pressure", "crossing"})
@@ -93,9 +101,11 @@ PairFriction friction_of_text(const std::string& text, const std::string& path) 
 PairFriction read_friction(const std::string& path) { return friction_of_text(read_file(path), path); }
 
 std::string friction_text(const PairFriction& f, const std::string& comment) {
-  std::string text = comment + fmt::format("\n[meta]\nformat = \"{}\"\nname = {}\nchirality_a = [{}, {}]\nchirality_b = [{}, {}]\n"
-                                           "potential = {}\n",
-                                           friction_format, toml_string(f.name), f.a.n, f.a.m, f.b.n, f.b.m, toml_string(f.potential));
+  std::string text =
+      comment + fmt::format(
+                    "\n[meta]\nformat = \"{}\"\nname = {}\nchirality_a = [{}, {}]\nchirality_b = [{}, {}]\n"
+                    "potential = {}\n",
+                    friction_format, toml_string(f.name), f.a.n, f.a.m, f.b.n, f.b.m, toml_string(f.potential));
   std::string section;
   for (const Quantity& q : f.quantities) {
     const std::size_t dot = q.key.rfind('.');
@@ -119,7 +129,9 @@ PairFriction find_friction(const std::string& name, const InputError::Place& pla
 }
 
 std::string kind_of_pair(Chirality a, Chirality b) {
-  const auto kind = [](Chirality c) { return c.n == c.m ? "armchair" : c.n == 0 || c.m == 0 ? "zigzag" : "chiral"; };
+  const auto kind = [](Chirality c) {
+    return c.n == c.m ? "armchair" : c.n == 0 || c.m == 0 ? "zigzag" : "chiral";
+  };
   const std::string of_a = kind(a), of_b = kind(b);
   return same_tube(a, b) || (of_a == of_b && of_a != "chiral") ? of_a : "unlike";
 }
@@ -131,9 +143,14 @@ PairFriction friction_between(Chirality a, Chirality b, const InputError::Place&
   for (const std::string& path : paths)
     if (PairFriction f = read_friction(path); kind_of_pair(f.a, f.b) == kind) known.push_back(std::move(f));
   if (known.empty())
-    throw InputError(place, fmt::format("no friction of ({},{}) beside ({},{}) was measured, nor of any pair of their kind", a.n, a.m, b.n, b.m),
-                     "measure it (ropewalk calibrate friction) and name its file, or type strengths");
-  return *std::min_element(known.begin(), known.end(), [&](const PairFriction& x, const PairFriction& y) { return radii_apart(a, b, x) < radii_apart(a, b, y); });
+    throw InputError(
+        place,
+        fmt::format("no friction of ({},{}) beside ({},{}) was measured, nor of any pair of their kind", a.n, a.m,
+                    b.n, b.m),
+        "measure it (ropewalk calibrate friction) and name its file, or type strengths");
+  return *std::min_element(known.begin(), known.end(), [&](const PairFriction& x, const PairFriction& y) {
+    return radii_apart(a, b, x) < radii_apart(a, b, y);
+  });
 }
 
 }  // namespace ropewalk

@@ -1,10 +1,9 @@
 // The file of the friction of two kinds of tubes, as `ropewalk calibrate friction` writes it.
 //
 //   [meta]        format = "ropewalk-friction-1", name, chirality_a, chirality_b, potential
-//   [friction]    the law of sim/forces/terms/dry_friction.hpp: strength, spin_strength, end_strength, elastic_slip, drag
-//   [register]    how the strengths spread over the turns of the tubes
-//   [pressure], [crossing]   what changes them
-//   [provenance]  texts
+//   [friction]    the law of sim/forces/terms/dry_friction.hpp: strength, spin_strength, end_strength,
+//   elastic_slip, drag [register]    how the strengths spread over the turns of the tubes [pressure], [crossing]
+//   what changes them [provenance]  texts
 #pragma once
 
 #include <string>
@@ -39,12 +38,12 @@ std::string friction_text(const PairFriction& friction, const std::string& comme
 // The shipped one of this name. Throws InputError at `place`.
 PairFriction find_friction(const std::string& name, const InputError::Place& place);
 
-// "armchair", "zigzag" or "chiral" for two tubes that fit each other, "unlike" for others. Tubes fit where both are armchair,
-// both are zigzag, or both have the same chirality.
+// "armchair", "zigzag" or "chiral" for two tubes that fit each other, "unlike" for others. Tubes fit where both are
+// armchair, both are zigzag, or both have the same chirality.
 std::string kind_of_pair(Chirality a, Chirality b);
 
-// The shipped friction of these tubes; where there is none, that of the pair of the same kind whose radii are nearest.
-// An estimate then: its tubes are others. Throws InputError at `place` if no pair of this kind is shipped.
+// The shipped friction of these tubes; where there is none, that of the pair of the same kind whose radii are
+// nearest. An estimate then: its tubes are others. Throws InputError at `place` if no pair of this kind is shipped.
 PairFriction friction_between(Chirality a, Chirality b, const InputError::Place& place);
 
 }  // namespace ropewalk

@@ -17,10 +17,12 @@ constexpr double pN = 1e-3 * units::nN_nm, lattice = 0.2493;
 
 std::vector<Vector3> tube(Chirality c, double length) {
   const TubeShape shape = rolled_shape(c, lattice);
-  const long step = std::gcd(c.n, c.m), hexagons = step * std::lround(length / shape.length_per_hexagon / static_cast<double>(step));
+  const long step = std::gcd(c.n, c.m),
+             hexagons = step * std::lround(length / shape.length_per_hexagon / static_cast<double>(step));
   std::vector<Vector3> atoms;
   for (const Site& site : strip_sites(c, hexagons))
-    atoms.push_back(place(c, site, shape) - Vector3(0, 0, 0.5 * static_cast<double>(hexagons) * shape.length_per_hexagon));
+    atoms.push_back(place(c, site, shape) -
+                    Vector3(0, 0, 0.5 * static_cast<double>(hexagons) * shape.length_per_hexagon));
   return atoms;
 }
 double radius(Chirality c) { return rolled_shape(c, lattice).radius; }
@@ -47,7 +49,9 @@ TEST(RigidPair, ForcesAreTheGradientOfItsEnergy) {
     EXPECT_NEAR(f.spin_a * pair.radius_a(), -(energy(h, 0, 0, 0) - energy(-h, 0, 0, 0)) / (2 * h), 1e-6);
     EXPECT_NEAR(f.spin_b * pair.radius_b(), -(energy(0, h, 0, 0) - energy(0, -h, 0, 0)) / (2 * h), 1e-6);
     EXPECT_NEAR(f.apart, -(energy(0, 0, 0, h) - energy(0, 0, 0, -h)) / (2 * h), 1e-5);
-    if (tilt == 0) { EXPECT_NEAR(f.along, -(energy(0, 0, h, 0) - energy(0, 0, -h, 0)) / (2 * h), 1e-6); }
+    if (tilt == 0) {
+      EXPECT_NEAR(f.along, -(energy(0, 0, h, 0) - energy(0, 0, -h, 0)) / (2 * h), 1e-6);
+    }
     EXPECT_GT(std::fabs(f.spin_a) + std::fabs(f.along), 1e-4);
   }
 }
@@ -102,18 +106,21 @@ TEST(Strength, RisesWhereTubesArePressedTogether) {
 
 class SlidingInLammps : public ::testing::Test {
  protected:
-  std::string folder_ = (std::filesystem::temp_directory_path() / ("ropewalk-friction-test-" + std::to_string(::getpid()))).string();
+  std::string folder_ =
+      (std::filesystem::temp_directory_path() / ("ropewalk-friction-test-" + std::to_string(::getpid()))).string();
   void SetUp() override { std::filesystem::create_directories(folder_); }
   void TearDown() override { std::filesystem::remove_all(folder_); }
   SlidingTubes tubes() const {
-    return {find_potential("tersoff"), AtomLaw(), tube({5, 5}, 6.4), tube({5, 5}, 3), radius({5, 5}), radius({5, 5})};
+    return {find_potential("tersoff"), AtomLaw(),      tube({5, 5}, 6.4),
+            tube({5, 5}, 3),           radius({5, 5}), radius({5, 5})};
   }
 };
 
 // A second way to the same numbers: all atoms relax, energies by LAMMPS.
 TEST_F(SlidingInLammps, RelaxedAtomsHoldAsRigidTubesDo) {
   for (const Slip slip : {Slip::along, Slip::spin_b}) {
-    const RelaxedStrength s = relaxed_strength(tubes(), Register{1.6, 0.44, 0, 0}, slip, folder_, slip == Slip::along ? "along" : "spin", LammpsOptions());
+    const RelaxedStrength s = relaxed_strength(tubes(), Register{1.6, 0.44, 0, 0}, slip, folder_,
+                                               slip == Slip::along ? "along" : "spin", LammpsOptions());
     EXPECT_GT(s.rigid / pN, 50);
     EXPECT_NEAR(s.relaxed / s.rigid, 1, 0.15);
   }

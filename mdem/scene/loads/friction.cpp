@@ -35,11 +35,12 @@ class FrictionDrive : public Drive {
   std::string words() const override {
     std::string text;
     for (const FrictionLaw& f : laws)
-      text += fmt::format("{}friction{}: {:.4g} pN/nm along the axis, {:.4g} pN/nm against spin, {:.4g} pN at each end, elastic "
-                          "up to {:.4g} nm, drag {:.4g} eV ps/nm^3{}",
-                          text.empty() ? "" : "\n",
-                          f.law.types.empty() ? "" : fmt::format(" between types {}", fmt::join(f.law.types, " and ")),
-                          f.law.axial / pN, f.law.spin / pN, f.law.end / pN, f.law.elastic_slip, f.law.drag, f.words);
+      text += fmt::format(
+          "{}friction{}: {:.4g} pN/nm along the axis, {:.4g} pN/nm against spin, {:.4g} pN at each end, elastic "
+          "up to {:.4g} nm, drag {:.4g} eV ps/nm^3{}",
+          text.empty() ? "" : "\n",
+          f.law.types.empty() ? "" : fmt::format(" between types {}", fmt::join(f.law.types, " and ")),
+          f.law.axial / pN, f.law.spin / pN, f.law.end / pN, f.law.elastic_slip, f.law.drag, f.words);
     return text;
   }
   void refuse(const TomlTable& top, const Scene& scene) const override {
@@ -47,7 +48,8 @@ class FrictionDrive : public Drive {
       throw top.error("friction", "does not go with [periodic]: the images of the slice have no friction",
                       "take one of the two away");
     if (scene.contact.law == "none")
-      throw top.error("friction", "acts between tubes in contact, and contact.law is \"none\"", "take one of the two away");
+      throw top.error("friction", "acts between tubes in contact, and contact.law is \"none\"",
+                      "take one of the two away");
   }
   void add_terms(const Scene&, const Topology& topology, Interaction& interaction) const override {
     for (const FrictionLaw& f : laws) {
@@ -63,13 +65,15 @@ class FrictionDrive : public Drive {
 void read_types(const TomlTable& t, const Scene&, FrictionDrive& friction) {
   if (!t.has("types")) return;
   for (const long type : t.integers("types", 0, 1000)) friction.typed.types.push_back(static_cast<int>(type));
-  if (friction.typed.types.size() != 2) throw t.error("types", "must have two entries", "write [0, 1], or [0, 0] for like tubes");
+  if (friction.typed.types.size() != 2)
+    throw t.error("types", "must have two entries", "write [0, 1], or [0, 0] for like tubes");
 }
 
 void read_from(const TomlTable& t, const Scene&, FrictionDrive& friction) {
   if (!t.has("from")) return;
   friction.from = t.string("from");
-  for (const char* key : {"strength_pN_per_nm", "spin_strength_pN_per_nm", "end_strength_pN", "elastic_slip_nm", "drag_eV_ps_per_nm3"})
+  for (const char* key : {"strength_pN_per_nm", "spin_strength_pN_per_nm", "end_strength_pN", "elastic_slip_nm",
+                          "drag_eV_ps_per_nm3"})
     if (t.has(key)) throw t.error(key, "is typed where friction.from has it", "take one of the two away");
 }
 
@@ -79,17 +83,24 @@ FrictionLaw law_of(const PairFriction& f, std::vector<int> types, const std::str
 }
 
 // Of all pairs of tube types, or the pair that is given.
-std::vector<FrictionLaw> laws_of_atoms(const Scene& scene, const std::vector<int>& types, const InputError::Place& place) {
+std::vector<FrictionLaw> laws_of_atoms(const Scene& scene, const std::vector<int>& types,
+                                       const InputError::Place& place) {
   std::vector<FrictionLaw> laws;
   const auto n = static_cast<int>(scene.sets.size());
   for (int i = 0; i < n; ++i)
     for (int j = i; j < n; ++j) {
       if (!types.empty() && std::minmax(types[0], types[1]) != std::pair<const int&, const int&>(i, j)) continue;
-      const Chirality a = scene.sets[static_cast<std::size_t>(i)].chirality, b = scene.sets[static_cast<std::size_t>(j)].chirality;
+      const Chirality a = scene.sets[static_cast<std::size_t>(i)].chirality,
+                      b = scene.sets[static_cast<std::size_t>(j)].chirality;
       const PairFriction f = friction_between(a, b, place);
-      const auto is = [&](Chirality x, Chirality y) { return a.n == x.n && a.m == x.m && b.n == y.n && b.m == y.m; };
-      laws.push_back(law_of(f, {i, j}, is(f.a, f.b) || is(f.b, f.a) ? ""
-                                            : fmt::format(", an estimate: ({},{}) beside ({},{}) was not measured", a.n, a.m, b.n, b.m)));
+      const auto is = [&](Chirality x, Chirality y) {
+        return a.n == x.n && a.m == x.m && b.n == y.n && b.m == y.m;
+      };
+      laws.push_back(
+          law_of(f, {i, j},
+                 is(f.a, f.b) || is(f.b, f.a)
+                     ? ""
+                     : fmt::format(", an estimate: ({},{}) beside ({},{}) was not measured", a.n, a.m, b.n, b.m)));
     }
   return laws;
 }
@@ -104,7 +115,8 @@ void check(const TomlTable& t, const Scene& scene, FrictionDrive& friction) {
     friction.laws = {law_of(find_friction(friction.from, place), law.types, "")};
   } else {
     if (!(law.axial > 0 || law.spin > 0 || law.end > 0 || law.drag > 0))
-      throw t.error("strength_pN_per_nm", "and all other strengths are zero", "give one of them, write from = \"atoms\", or take the table away");
+      throw t.error("strength_pN_per_nm", "and all other strengths are zero",
+                    "give one of them, write from = \"atoms\", or take the table away");
     friction.laws = {{law, ""}};
   }
 }
@@ -115,20 +127,34 @@ const KeyTable<FrictionDrive>& friction_table() {
   const Unit per_length{"pN/nm", pN};
   static const KeyTable<FrictionDrive> table = {
       "friction",
-      "any number of these: dry friction of tubes side by side; slips are elastic up to a strength, then tubes slide",
+      "any number of these: dry friction of tubes side by side; slips are elastic up to a strength, then tubes "
+      "slide",
       {Key::custom("from", "", otherwise("\"atoms\"", "typed below"),
-                   "strengths that were measured from atoms: \"atoms\" for all pairs of tubes, or the shipped ones of one pair", read_from),
-       Key::number("strength_pN_per_nm", per_length, Bounds::non_negative(1e5), [](auto& d) -> auto& { return d.typed.axial; }, standard(),
-                   "force per length of contact, along the tubes"),
-       Key::number("spin_strength_pN_per_nm", per_length, Bounds::non_negative(1e5), [](auto& d) -> auto& { return d.typed.spin; }, standard(),
-                   "force per length of contact on the surface of a tube that spins; times its radius: the torque per length"),
-       Key::number("end_strength_pN", {"pN", pN}, Bounds::non_negative(1e6), [](auto& d) -> auto& { return d.typed.end; }, standard(),
-                   "force along the tubes at each end of a tube beside another one"),
-       Key::number("elastic_slip_nm", unit::nm, Bounds::range(1e-3, 1), [](auto& d) -> auto& { return d.typed.elastic_slip; }, standard(),
-                   "slip at which the strength is reached"),
-       Key::number("drag_eV_ps_per_nm3", {"eV ps/nm^3", 1}, Bounds::non_negative(1e4), [](auto& d) -> auto& { return d.typed.drag; }, standard(),
-                   "force per length of contact and speed of sliding"),
-       Key::custom("types", "", otherwise("[0, 1]", "all tubes"), "the two tube types between which it acts, from 0", read_types)},
+                   "strengths that were measured from atoms: \"atoms\" for all pairs of tubes, or the shipped ones "
+                   "of one pair",
+                   read_from),
+       Key::number(
+           "strength_pN_per_nm", per_length, Bounds::non_negative(1e5),
+           [](auto& d) -> auto& { return d.typed.axial; }, standard(),
+           "force per length of contact, along the tubes"),
+       Key::number(
+           "spin_strength_pN_per_nm", per_length, Bounds::non_negative(1e5),
+           [](auto& d) -> auto& { return d.typed.spin; }, standard(),
+           "force per length of contact on the surface of a tube that spins; times its radius: the torque per "
+           "length"),
+       Key::number(
+           "end_strength_pN", {"pN", pN}, Bounds::non_negative(1e6), [](auto& d) -> auto& { return d.typed.end; },
+           standard(), "force along the tubes at each end of a tube beside another one"),
+       Key::number(
+           "elastic_slip_nm", unit::nm, Bounds::range(1e-3, 1),
+           [](auto& d) -> auto& { return d.typed.elastic_slip; }, standard(),
+           "slip at which the strength is reached"),
+       Key::number(
+           "drag_eV_ps_per_nm3", {"eV ps/nm^3", 1}, Bounds::non_negative(1e4),
+           [](auto& d) -> auto& { return d.typed.drag; }, standard(),
+           "force per length of contact and speed of sliding"),
+       Key::custom("types", "", otherwise("[0, 1]", "all tubes"),
+                   "the two tube types between which it acts, from 0", read_types)},
       check};
   return table;
 }

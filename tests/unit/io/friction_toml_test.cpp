@@ -13,13 +13,15 @@ namespace {
 using ::testing::HasSubstr;
 
 const std::string valid =
-    "[meta]\nformat = \"ropewalk-friction-1\"\nname = \"mine\"\nchirality_a = [10, 10]\nchirality_b = [17, 0]\npotential = "
+    "[meta]\nformat = \"ropewalk-friction-1\"\nname = \"mine\"\nchirality_a = [10, 10]\nchirality_b = [17, "
+    "0]\npotential = "
     "\"tersoff\"\n[friction]\n"
     "strength = { value = 40, unit = \"pN/nm\", standard_error = 1, origin = \"calibrated\" }\n"
     "spin_strength = { value = 60, unit = \"pN/nm\", standard_error = 1, origin = \"calibrated\" }\n"
     "end_strength = { value = 5, unit = \"pN\", standard_error = 1, origin = \"calibrated\" }\n"
     "elastic_slip = { value = 0.04, unit = \"nm\", standard_error = 0, origin = \"calibrated\" }\n"
-    "drag = { value = 0.02, unit = \"eV ps/nm^3\", standard_error = 0.1, origin = \"calibrated\", note = \"a bound\" }\n"
+    "drag = { value = 0.02, unit = \"eV ps/nm^3\", standard_error = 0.1, origin = \"calibrated\", note = \"a "
+    "bound\" }\n"
     "[register]\nstrength_largest = { value = 50, unit = \"pN/nm\", standard_error = 0, origin = \"derived\" }\n"
     "[provenance]\ncommand = \"by hand\"\n";
 
@@ -78,8 +80,10 @@ TEST(FrictionToml, ShippedOnesServeTheirTubesAndThoseNearThem) {
 TEST(FrictionToml, AScenesFrictionComesFromAtomsAndSaysWhatIsAnEstimate) {
   const auto words = [](const std::string& friction) {
     const Scene scene = scene_of_text(
-        "format = \"ropewalk-scene-1\"\nparameters = [\"cnt-12-12-tersoff\", \"cnt-17-0-tersoff\"]\ntube_types = [1, 0, 0, 0, "
-        "0, 0, 0]\n[rope]\ntubes = 7\nlength_nm = 13.8\n[[friction]]\n" + friction + "[run]\nduration_ps = 1\n",
+        "format = \"ropewalk-scene-1\"\nparameters = [\"cnt-12-12-tersoff\", \"cnt-17-0-tersoff\"]\ntube_types = "
+        "[1, 0, 0, 0, "
+        "0, 0, 0]\n[rope]\ntubes = 7\nlength_nm = 13.8\n[[friction]]\n" +
+            friction + "[run]\nduration_ps = 1\n",
         "atoms.toml");
     std::string text;
     for (const auto& drive : scene.drives) text += drive->words();

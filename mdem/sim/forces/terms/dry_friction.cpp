@@ -12,16 +12,18 @@ namespace ropewalk {
 namespace {
 
 constexpr double begins_within = 0.42, ends_beyond = 0.47;  // nm between the walls
-constexpr double begins_above = 0.5, ends_below = 0.4;       // cosine of the angle of the axes
-constexpr double passes_on_beyond = 0.6;                     // of an element, from its centre
+constexpr double begins_above = 0.5, ends_below = 0.4;      // cosine of the angle of the axes
+constexpr double passes_on_beyond = 0.6;                    // of an element, from its centre
 
 double square(double x) { return x * x; }
 
-// (cos, -sin) of the turn alpha of a tube against the line from a to b, which has this direction in the tube's frame.
+// (cos, -sin) of the turn alpha of a tube against the line from a to b, which has this direction in the tube's
+// frame.
 struct Direction {
   double x = 1, y = 0;
 };
-// By how much alpha has grown from one direction to another, within half a turn. The arc sine's series is exact to 1e-12.
+// By how much alpha has grown from one direction to another, within half a turn. The arc sine's series is exact to
+// 1e-12.
 double turned(const Direction& from, const Direction& to) {
   const double sine = from.y * to.x - from.x * to.y, cosine = from.x * to.x + from.y * to.y, q = sine * sine;
   if (cosine > 0 && q < 0.01)
@@ -41,7 +43,8 @@ struct Contact {
 // Where a pair is. With the forces A on s and B on g, and w from a to b,
 //   v_a = A along_a + B turning_a, v_b likewise:  force on a  v_a + v_b,  torque on a  w x v_a,  on b  w x v_b.
 struct Pair {
-  double s = 0, cosine = 1, across = 0;  // of the axes; nm from a's centre to b's, square of its part across the axes
+  double s = 0, cosine = 1,
+         across = 0;  // of the axes; nm from a's centre to b's, square of its part across the axes
   Direction of_a, of_b;
   Vector3 w, along_a, along_b, turning_a, turning_b;
   // Rate of a slip whose parts are v_a and v_b.
@@ -70,7 +73,8 @@ class DryFrictionTerm : public ForceTerm {
   DryFrictionTerm(const DryFriction& law, const Topology& scene)
       : law_(law),
         tube_begin_(scene.tube_begin),
-        stiffness_(12 * (std::max(law.axial, law.spin) * scene.longest_element() + 2 * law.end) / law.elastic_slip) {}
+        stiffness_(12 * (std::max(law.axial, law.spin) * scene.longest_element() + 2 * law.end) /
+                   law.elastic_slip) {}
   std::unique_ptr<ForceTerm> copy() const override { return std::make_unique<DryFrictionTerm>(*this); }
   std::string name() const override { return "friction"; }
 
@@ -85,7 +89,8 @@ class DryFrictionTerm : public ForceTerm {
   }
 
   void gather(const State& state) override {
-    const auto elements = static_cast<std::ptrdiff_t>(state.size()), n = static_cast<std::ptrdiff_t>(contacts_.size());
+    const auto elements = static_cast<std::ptrdiff_t>(state.size()),
+               n = static_cast<std::ptrdiff_t>(contacts_.size());
     frames_.resize(state.size());
     now_.resize(contacts_.size());
 #pragma omp parallel if (state.size() > parallel_from)
@@ -107,7 +112,8 @@ class DryFrictionTerm : public ForceTerm {
     std::vector<Advanced> advanced(static_cast<std::size_t>(blocks));
 #pragma omp parallel for schedule(static) if (contacts_.size() > parallel_from)
     for (std::ptrdiff_t b = 0; b < blocks; ++b) {
-      const std::size_t begin = static_cast<std::size_t>(b) * block, end = std::min(begin + block, contacts_.size());
+      const std::size_t begin = static_cast<std::size_t>(b) * block,
+                        end = std::min(begin + block, contacts_.size());
       for (std::size_t k = begin; k < end; ++k)
         if (!contacts_[k].over) advance(k, state, advanced[static_cast<std::size_t>(b)]);
     }
@@ -149,7 +155,9 @@ class DryFrictionTerm : public ForceTerm {
     TermMemory out;
     for (const Contact& c : contacts_)
       if (!c.over && element(c.a).own)
-        out.push_back({element(c.a).number, {static_cast<double>(element(c.b).number), c.z, c.y, c.s, c.of_a.x, c.of_a.y, c.of_b.x, c.of_b.y, 1.0}});
+        out.push_back({element(c.a).number,
+                       {static_cast<double>(element(c.b).number), c.z, c.y, c.s, c.of_a.x, c.of_a.y, c.of_b.x,
+                        c.of_b.y, 1.0}});
     return out;
   }
 
@@ -181,7 +189,9 @@ class DryFrictionTerm : public ForceTerm {
     return fine;
   }
 
-  std::size_t bytes() const override { return contacts_.size() * (sizeof(Contact) + sizeof(Now)) + elements_.size() * sizeof(Frame<double>); }
+  std::size_t bytes() const override {
+    return contacts_.size() * (sizeof(Contact) + sizeof(Now)) + elements_.size() * sizeof(Frame<double>);
+  }
 
  private:
   static constexpr std::size_t block = 512;
@@ -209,12 +219,17 @@ class DryFrictionTerm : public ForceTerm {
     for (std::size_t i = 0; i < state.size(); ++i) frames_[i] = frame_of(state.orientation[i]);
     for (int tube = 0; tube < topology.tubes(); ++tube) {
       const TubeType& type = topology.type_of(tube);
-      for (int i = topology.tube_begin[static_cast<std::size_t>(tube)]; i < topology.tube_begin[static_cast<std::size_t>(tube) + 1]; ++i) {
+      for (int i = topology.tube_begin[static_cast<std::size_t>(tube)];
+           i < topology.tube_begin[static_cast<std::size_t>(tube) + 1]; ++i) {
         const int number = topology.part ? topology.part->number[static_cast<std::size_t>(i)] : i;
         const std::size_t of_scene = tube_of(number);
         elements_[static_cast<std::size_t>(i)] = {
-            number, topology.tube_type[static_cast<std::size_t>(tube)], topology.owns(i),
-            number == tube_begin_[of_scene] || number + 1 == tube_begin_[of_scene + 1], type.element_length, type.radius};
+            number,
+            topology.tube_type[static_cast<std::size_t>(tube)],
+            topology.owns(i),
+            number == tube_begin_[of_scene] || number + 1 == tube_begin_[of_scene + 1],
+            type.element_length,
+            type.radius};
       }
     }
   }
@@ -227,7 +242,9 @@ class DryFrictionTerm : public ForceTerm {
   }
   // Of the scene, of an element's number.
   std::size_t tube_of(int number) const {
-    return static_cast<std::size_t>(std::upper_bound(tube_begin_.begin(), tube_begin_.end(), number) - tube_begin_.begin()) - 1;
+    return static_cast<std::size_t>(std::upper_bound(tube_begin_.begin(), tube_begin_.end(), number) -
+                                    tube_begin_.begin()) -
+           1;
   }
   bool acts_between(int a, int b) const {
     if (law_.types.empty()) return true;
@@ -237,7 +254,8 @@ class DryFrictionTerm : public ForceTerm {
 
   // --- a contact ---
   double stiff_along(const Contact& c) const {
-    return (law_.axial * element(c.a).length + law_.end * (element(c.a).ends_tube + element(c.b).ends_tube)) / law_.elastic_slip;
+    return (law_.axial * element(c.a).length + law_.end * (element(c.a).ends_tube + element(c.b).ends_tube)) /
+           law_.elastic_slip;
   }
   double stiff_turning(const Contact& c) const { return law_.spin * element(c.a).length / law_.elastic_slip; }
 
@@ -273,14 +291,16 @@ class DryFrictionTerm : public ForceTerm {
   // A slip that costs nothing is none.
   Now now_of(const Contact& c, const State& state) const {
     const Pair p = pair_of(c.a, c.b, state);
-    const double stiff_s = stiff_along(c), stiff_g = stiff_turning(c), r_a = element(c.a).radius, r_b = element(c.b).radius;
+    const double stiff_s = stiff_along(c), stiff_g = stiff_turning(c), r_a = element(c.a).radius,
+                 r_b = element(c.b).radius;
     Now now;
     now.s = p.s;
     now.apart = p.across > square(r_a + r_b + ends_beyond) || std::fabs(p.cosine) < ends_below;
     now.of_a = p.of_a;
     now.of_b = p.of_b;
     if (stiff_s > 0) now.z = c.z + p.s - c.s;
-    if (stiff_g > 0) now.y = c.y + r_a * turned(c.of_a, p.of_a) + (p.cosine > 0 ? r_b : -r_b) * turned(c.of_b, p.of_b);
+    if (stiff_g > 0)
+      now.y = c.y + r_a * turned(c.of_a, p.of_a) + (p.cosine > 0 ? r_b : -r_b) * turned(c.of_b, p.of_b);
     act(now, c, p, state);
     return now;
   }
@@ -296,7 +316,8 @@ class DryFrictionTerm : public ForceTerm {
       power = -eta * (v * v + w * w);
     }
     const Vector3 v_a = along * p.along_a + turning * p.turning_a, v_b = along * p.along_b + turning * p.turning_b;
-    now.action = {v_a + v_b, p.w.cross(v_a), p.w.cross(v_b), 0.5 * (stiff_s * now.z * now.z + stiff_g * now.y * now.y), power};
+    now.action = {v_a + v_b, p.w.cross(v_a), p.w.cross(v_b),
+                  0.5 * (stiff_s * now.z * now.z + stiff_g * now.y * now.y), power};
   }
 
   void advance(std::size_t k, const State& state, Advanced& all) {
@@ -306,7 +327,8 @@ class DryFrictionTerm : public ForceTerm {
     double lost = 0;
     bool acts_otherwise = false;
     if (squared > law_.elastic_slip * law_.elastic_slip) {
-      const double part = law_.elastic_slip / std::sqrt(squared), stiff_s = stiff_along(c), stiff_g = stiff_turning(c);
+      const double part = law_.elastic_slip / std::sqrt(squared), stiff_s = stiff_along(c),
+                   stiff_g = stiff_turning(c);
       // The work of sliding under the strength.
       lost = (stiff_s * now.z * now.z + stiff_g * now.y * now.y) * part * (1 - part);
       now.z *= part;
@@ -336,7 +358,8 @@ class DryFrictionTerm : public ForceTerm {
   bool pass_on(Contact& c, const State& state) const {
     for (;;) {
       const int step = c.s > 0 ? 1 : -1, number = element(c.b).number + step;
-      if (number < 0 || number >= tube_begin_.back() || tube_of(number) != tube_of(element(c.b).number)) return false;
+      if (number < 0 || number >= tube_begin_.back() || tube_of(number) != tube_of(element(c.b).number))
+        return false;
       const int next = place_of(number);
       if (next < 0) return false;
       const Pair p = pair_of(c.a, next, state);
@@ -351,8 +374,15 @@ class DryFrictionTerm : public ForceTerm {
   // The records of a memory become contacts, where this process owns one of both elements.
   void take_up(const State& state) {
     for (const TermRecord& r : remembered_) {
-      Contact c{place_of(r.element), place_of(static_cast<int>(r.numbers[0])), r.numbers[1], r.numbers[2],
-                r.numbers[3], {r.numbers[4], r.numbers[5]}, {r.numbers[6], r.numbers[7]}, r.numbers[8] == 1, false};
+      Contact c{place_of(r.element),
+                place_of(static_cast<int>(r.numbers[0])),
+                r.numbers[1],
+                r.numbers[2],
+                r.numbers[3],
+                {r.numbers[4], r.numbers[5]},
+                {r.numbers[6], r.numbers[7]},
+                r.numbers[8] == 1,
+                false};
       if (c.a < 0 || c.b < 0 || !(element(c.a).own || element(c.b).own)) continue;
       if (!c.placed) {
         place(c, pair_of(c.a, c.b, state));
@@ -368,18 +398,21 @@ class DryFrictionTerm : public ForceTerm {
                     contacts_.end());
   }
 
-  // New ones, from the pairs of the list. Each process has the pairs of some elements, and all must know the others.
+  // New ones, from the pairs of the list. Each process has the pairs of some elements, and all must know the
+  // others.
   void find(const ListedScene& scene) {
     std::vector<int> found;  // numbers of a and b, one after another
     const double reach = begins_within + 2 * scene.topology.largest_radius() + scene.topology.longest_element();
     for (int i = 0; i < scene.topology.elements(); ++i) {
       if (!element(i).own) continue;
       scene.list.for_neighbours(i, [&](int j) {
-        const Vector3 w = scene.state.position[static_cast<std::size_t>(j)] - scene.state.position[static_cast<std::size_t>(i)];
+        const Vector3 w =
+            scene.state.position[static_cast<std::size_t>(j)] - scene.state.position[static_cast<std::size_t>(i)];
         if (!(w.squaredNorm() < reach * reach) || !acts_between(i, j)) return;
         const Pair p = pair_of(i, j, scene.state);
         const double near = element(i).radius + element(j).radius + begins_within;
-        if (p.across < square(near) && std::fabs(p.cosine) > begins_above && std::fabs(p.s) <= 0.5 * element(j).length) {
+        if (p.across < square(near) && std::fabs(p.cosine) > begins_above &&
+            std::fabs(p.s) <= 0.5 * element(j).length) {
           found.push_back(element(i).number);
           found.push_back(element(j).number);
         }
@@ -396,12 +429,14 @@ class DryFrictionTerm : public ForceTerm {
       contacts_.push_back(c);
     }
     // Older contacts stand first where two are one.
-    std::stable_sort(contacts_.begin(), contacts_.end(), [](const Contact& x, const Contact& y) { return x.a < y.a; });
+    std::stable_sort(contacts_.begin(), contacts_.end(),
+                     [](const Contact& x, const Contact& y) { return x.a < y.a; });
     std::vector<Contact> kept;
     for (const Contact& c : contacts_) {
       bool known = false;
       for (auto old = kept.rbegin(); old != kept.rend() && old->a == c.a && !known; ++old)
-        known = tube_of(element(old->b).number) == tube_of(element(c.b).number) && std::abs(element(old->b).number - element(c.b).number) <= 2;
+        known = tube_of(element(old->b).number) == tube_of(element(c.b).number) &&
+                std::abs(element(old->b).number - element(c.b).number) <= 2;
       if (!known) kept.push_back(c);
     }
     contacts_ = std::move(kept);
@@ -423,7 +458,8 @@ class DryFrictionTerm : public ForceTerm {
     std::vector<int> next(index.begin.begin(), index.begin.end() - 1);
     for (std::size_t k = 0; k < contacts_.size(); ++k)
       if (!contacts_[k].over)
-        index.contacts[static_cast<std::size_t>(next[static_cast<std::size_t>(end(contacts_[k]))]++)] = static_cast<int>(k);
+        index.contacts[static_cast<std::size_t>(next[static_cast<std::size_t>(end(contacts_[k]))]++)] =
+            static_cast<int>(k);
   }
 
   DryFriction law_;

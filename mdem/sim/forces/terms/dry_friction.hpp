@@ -1,25 +1,27 @@
-// Dry friction of parallel tubes in contact, per length: an elastic slip up to a strength, then sliding at it, with a drag.
+// Dry friction of parallel tubes in contact, per length: an elastic slip up to a strength, then sliding at it, with
+// a drag.
 //
-// Each element a of one tube has a contact with the element b of another tube which it faces. Two lengths, measured on the
-// tubes themselves, say how far the surfaces have slipped:
+// Each element a of one tube has a contact with the element b of another tube which it faces. Two lengths, measured
+// on the tubes themselves, say how far the surfaces have slipped:
 //
 //   along the axis   s = (u_b +- u_a)/2 . (x_a - x_b)
 //   against spin     g = r_a alpha_a +- r_b alpha_b
 //
-// alpha is the angle by which a tube has turned about its own axis u against the line to the other one; the signs are minus
-// for tubes in opposite directions. The contact remembers the elastic parts (z, y) of the slips (s, g):
+// alpha is the angle by which a tube has turned about its own axis u against the line to the other one; the signs
+// are minus for tubes in opposite directions. The contact remembers the elastic parts (z, y) of the slips (s, g):
 //
 //   U = K_s z^2/2 + K_g y^2/2 while z^2 + y^2 <= delta^2;   F = -dU/dx,  torques likewise
 //
-// A step that leads beyond delta cuts (z, y) back to it in the same direction: the work of sliding under the strength is lost.
+// A step that leads beyond delta cuts (z, y) back to it in the same direction: the work of sliding under the
+// strength is lost.
 //
 //   K_s = (F_s l + n F_end)/delta,   K_g = F_g l/delta
 //
-// l is the length of a, n counts those of a and b that end a tube. The drag adds -eta l ds/dt and -eta l dg/dt. U depends
-// on distances and angles within the pair alone, so that momentum and angular momentum are kept, and a rope that moves
-// as a whole feels nothing. A contact begins where the axes come nearer than r_a + r_b + 0.42 nm. It ends beyond 0.47 nm,
-// at angles above 66 degrees, and where a passes the end of the tube. It is a law for tubes side by side: crossed
-// ones have a contact or none, by chance.
+// l is the length of a, n counts those of a and b that end a tube. The drag adds -eta l ds/dt and -eta l dg/dt. U
+// depends on distances and angles within the pair alone, so that momentum and angular momentum are kept, and a rope
+// that moves as a whole feels nothing. A contact begins where the axes come nearer than r_a + r_b + 0.42 nm. It
+// ends beyond 0.47 nm, at angles above 66 degrees, and where a passes the end of the tube. It is a law for tubes
+// side by side: crossed ones have a contact or none, by chance.
 //
 // Source: springs that remember contacts, P. A. Cundall, O. D. L. Strack, Geotechnique 29, 47 (1979),
 // DOI 10.1680/geot.1979.29.1.47. Slips that are measured on the bodies, in place of sums of velocities, are ours.

@@ -21,21 +21,27 @@ using ::testing::HasSubstr;
 
 constexpr double pN = 1e-3 * units::nN_nm;  // eV/nm
 
-const std::string both = "[[friction]]\nstrength_pN_per_nm = 40\nspin_strength_pN_per_nm = 60\nend_strength_pN = 5\n",
+const std::string both =
+                      "[[friction]]\nstrength_pN_per_nm = 40\nspin_strength_pN_per_nm = 60\nend_strength_pN = 5\n",
                   axial = "[[friction]]\nstrength_pN_per_nm = 40\n", ends = "[[friction]]\nend_strength_pN = 5\n",
-                  cold = "[contact]\nprecision = \"double\"\n[damping]\ncontact_viscosity_eV_ps_per_nm2 = 0\n"
-                         "bond_damping_per_ps = 0\n";
+                  cold =
+                      "[contact]\nprecision = \"double\"\n[damping]\ncontact_viscosity_eV_ps_per_nm2 = 0\n"
+                      "bond_damping_per_ps = 0\n";
 
-Scene rope(const std::string& friction, const std::string& run = "duration_ps = 5\n", const std::string& more = "") {
-  return scene_of_text("format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[rope]\ntubes = 7\nlength_nm = "
-                       "13.8\n" + more + friction + "[run]\n" + run,
-                       "friction.toml");
+Scene rope(const std::string& friction, const std::string& run = "duration_ps = 5\n",
+           const std::string& more = "") {
+  return scene_of_text(
+      "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[rope]\ntubes = 7\nlength_nm = "
+      "13.8\n" +
+          more + friction + "[run]\n" + run,
+      "friction.toml");
 }
 
 // The forces of the friction alone. Contacts begin where the rope starts, and remember.
 class Alone {
  public:
-  explicit Alone(const std::string& friction, const std::string& more = "") : scene_(rope(friction, "duration_ps = 5\n", more)), p(prepare(scene_)) {
+  explicit Alone(const std::string& friction, const std::string& more = "")
+      : scene_(rope(friction, "duration_ps = 5\n", more)), p(prepare(scene_)) {
     in_ = p.interaction;
     in_.damping = {};
     in_.precision = Interaction::Precision::full;
@@ -48,7 +54,8 @@ class Alone {
   // As in a step when `passed`: what is beyond its strength slides.
   Forces at(const State& state, bool passed = false) {
     Forces with(state.size()), without(state.size());
-    engine_.compute(p.topology, in_, list_, state, with, {Parts::all, true, passed ? std::optional(0.01) : std::nullopt});
+    engine_.compute(p.topology, in_, list_, state, with,
+                    {Parts::all, true, passed ? std::optional(0.01) : std::nullopt});
     plain_.compute(p.topology, without_, list_, state, without);
     for (std::size_t i = 0; i < state.size(); ++i) {
       with.force.add(i, -without.force[i]);
@@ -140,31 +147,36 @@ TEST(DryFriction, ARopeThatMovesAsAWholeFeelsNothing) {
   EXPECT_NEAR(rope.at(whole(s)).energy.terms, rope.at(s).energy.terms, 1e-11);
 }
 
-// Along the axis and against spin, by hand: elastic up to delta, then the strength times the length and six neighbours.
+// Along the axis and against spin, by hand: elastic up to delta, then the strength times the length and six
+// neighbours.
 TEST(DryFriction, HoldsUpToItsStrengthAndLosesWhatItSlides) {
   constexpr double delta = 0.06;
   {
     Alone rope(axial);
     const double strength = 40 * pN * 6 * rope.length();
-    EXPECT_NEAR(on_first_tube(rope, rope.at(rope.moved(delta / 2, 0), true).force).z(), -strength / 2, 1e-9 * strength);
+    EXPECT_NEAR(on_first_tube(rope, rope.at(rope.moved(delta / 2, 0), true).force).z(), -strength / 2,
+                1e-9 * strength);
     double lost = 0;
     for (double slip = 0.04; slip < 0.3005; slip += 0.01) lost += rope.at(rope.moved(slip, 0), true).lost;
     EXPECT_NEAR(lost, strength * (0.3 - delta), 1e-3 * strength);
     EXPECT_NEAR(on_first_tube(rope, rope.at(rope.moved(0.3, 0)).force).z(), -strength, 1e-6 * strength);
-    EXPECT_NEAR(on_first_tube(rope, rope.at(rope.moved(0.3 - delta, 0)).force).z(), 0, 1e-6 * strength) << "and backwards";
+    EXPECT_NEAR(on_first_tube(rope, rope.at(rope.moved(0.3 - delta, 0)).force).z(), 0, 1e-6 * strength)
+        << "and backwards";
   }
   {
     Alone rope("[[friction]]\nspin_strength_pN_per_nm = 60\n");
     const double radius = rope.p.topology.types[0].radius, strength = 60 * pN * 6 * rope.length() * radius;
-    EXPECT_NEAR(on_first_tube(rope, rope.at(rope.moved(0, delta / 2 / radius), true).torque).z(), -strength / 2, 1e-6);
+    EXPECT_NEAR(on_first_tube(rope, rope.at(rope.moved(0, delta / 2 / radius), true).torque).z(), -strength / 2,
+                1e-6);
     for (double turn = 0.1; turn < 7; turn += 0.1) rope.at(rope.moved(0, turn), true);
-    EXPECT_NEAR(on_first_tube(rope, rope.at(rope.moved(0, 7.0), true).torque).z(), -strength, 1e-6) << "after a whole turn";
+    EXPECT_NEAR(on_first_tube(rope, rope.at(rope.moved(0, 7.0), true).torque).z(), -strength, 1e-6)
+        << "after a whole turn";
   }
   {
     Alone rope(ends);
     for (double slip = 0.05; slip < 0.3; slip += 0.05) rope.at(rope.moved(slip, 0), true);
-    // Two ends of the first tube and two of each of the six others beside it, of which one pair stands clear by 0.25 nm
-    // and is still beside it.
+    // Two ends of the first tube and two of each of the six others beside it, of which one pair stands clear by
+    // 0.25 nm and is still beside it.
     EXPECT_NEAR(on_first_tube(rope, rope.at(rope.moved(0.25, 0)).force).z(), -5 * pN * 24, 1e-6);
   }
 }
@@ -176,16 +188,19 @@ TEST(DryFriction, FollowsTheOverlap) {
   double z = 0;
   for (; z < 5.5 * a; z += 0.05) rope.at(rope.moved(z, 0), true);
   const double beside = n - 5.5;  // elements, to one of them
-  EXPECT_NEAR(on_first_tube(rope, rope.at(rope.moved(z, 0), true).force).z(), -40 * pN * 6 * beside * a, 40 * pN * 6 * 1.01 * a);
+  EXPECT_NEAR(on_first_tube(rope, rope.at(rope.moved(z, 0), true).force).z(), -40 * pN * 6 * beside * a,
+              40 * pN * 6 * 1.01 * a);
 }
 
 TEST(DryFriction, ActsBetweenItsTypesOnly) {
   const auto energy = [](const std::string& types) {
-    Scene scene = scene_of_text("format = \"ropewalk-scene-1\"\nparameters = [\"cnt-10-10-tersoff\", \"cnt-17-0-tersoff\"]\n"
-                                "tube_types = [1, 0, 0, 0, 0, 0, 0]\n[rope]\ntubes = 7\nlength_nm = 13.8\n" +
-                                    axial + types + "[[load]]\nkind = \"force\"\ntubes = [0]\nelements = \"all\"\nforce_nN = [0, 0, 0.001]\n"
-                                    "[run]\nduration_ps = 1\ntime_step_fs = 2\n",
-                                "types.toml");
+    Scene scene = scene_of_text(
+        "format = \"ropewalk-scene-1\"\nparameters = [\"cnt-10-10-tersoff\", \"cnt-17-0-tersoff\"]\n"
+        "tube_types = [1, 0, 0, 0, 0, 0, 0]\n[rope]\ntubes = 7\nlength_nm = 13.8\n" +
+            axial + types +
+            "[[load]]\nkind = \"force\"\ntubes = [0]\nelements = \"all\"\nforce_nN = [0, 0, 0.001]\n"
+            "[run]\nduration_ps = 1\ntime_step_fs = 2\n",
+        "types.toml");
     Simulation s = start(scene, prepare(scene));
     s.steps(200);
     return s.forces().energy.terms;
@@ -195,8 +210,9 @@ TEST(DryFriction, ActsBetweenItsTypesOnly) {
   EXPECT_LT(energy("types = [1, 1]\n"), 1e-12);
 }
 
-const std::string pulled = "[[load]]\nkind = \"force\"\ntubes = [0]\nelements = \"all\"\nforce_nN = [0, 0, 0.3]\n"
-                           "[[load]]\nkind = \"fix\"\ntubes = [1, 3, 5]\nelements = [0]\n";
+const std::string pulled =
+    "[[load]]\nkind = \"force\"\ntubes = [0]\nelements = \"all\"\nforce_nN = [0, 0, 0.3]\n"
+    "[[load]]\nkind = \"fix\"\ntubes = [1, 3, 5]\nelements = [0]\n";
 
 TEST(DryFriction, TheAccountOfEnergyStaysClosedWhereTubesSlide) {
   Scene scene = rope(both + pulled, "duration_ps = 20\ntime_step_fs = 2\n", cold);
