@@ -87,7 +87,7 @@ std::vector<AtomisticRow> bend_rows(RunContext& run, const RelaxedTube& tube, co
     }
   run_stage(run, series.name, input);
   const std::size_t all = rows.size() * static_cast<std::size_t>(planes);
-  const auto found = read_results(run, series.name, all, all, 2);
+  const auto found = read_results(run.folder, series.name, all, all, 2);
   for (int plane = 0; plane < planes; ++plane) {
     double straight = 0;
     for (std::size_t i = 0; i < rows.size(); ++i) {

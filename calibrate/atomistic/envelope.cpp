@@ -172,7 +172,7 @@ Envelope measured_envelope(RunContext& run, const RelaxedTube& tube, const Stiff
     input += "label gave_way\n";
     run_stage(run, name, input);
     const std::size_t most = static_cast<std::size_t>(steps) + 2;
-    const auto table = read_results(run, name, 4, most, 2);
+    const auto table = read_results(run.folder, name, 4, most, 2);
     const double unit = loading.name == "compression" ? 1.0 : 1.0 / angstrom;
     for (const auto& line : table) {
       AtomisticRow row;

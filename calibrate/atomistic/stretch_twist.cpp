@@ -152,7 +152,7 @@ RelaxedTube relax_tube(RunContext& run) {
                 "change_box all z scale 1.005 remap units box\n"
                 "minimize 0.0 1e-7 500 5000\n" +
                 values);
-  const auto result = read_results(run, "relax", 2, 2, 4);
+  const auto result = read_results(run.folder, "relax", 2, 2, 4);
 
   check_still_a_tube(run, result[0][3] * angstrom / shape.radius, result[0][2] * angstrom / length);
 
@@ -228,7 +228,7 @@ std::vector<CellResult> stretch_twist_cells(RunContext& run, const RelaxedTube& 
     }
   }
   run_stage(run, grid.name, input);
-  const auto results = read_results(run, grid.name, cells.size(), cells.size(), 4);
+  const auto results = read_results(run.folder, grid.name, cells.size(), cells.size(), 4);
   for (std::size_t i = 0; i < cells.size(); ++i) {
     cells[i].energy = results[i][0];
     cells[i].force = results[i][1] / angstrom;
@@ -282,7 +282,7 @@ std::vector<AtomisticRow> collapse_rows(RunContext& run, const RelaxedTube& tube
     rows.push_back(row);
   }
   run_stage(run, "collapse", input);
-  const auto results = read_results(run, "collapse", rows.size(), rows.size(), 2);
+  const auto results = read_results(run.folder, "collapse", rows.size(), rows.size(), 2);
   for (std::size_t i = 0; i < rows.size(); ++i)
     rows[i].energy = results[i][0] - 0.5 * rows[i].atoms * tube.energy_per_hexagon;
   return rows;

@@ -248,25 +248,29 @@ double parallel_energy_of_atoms(const AtomLaw& law, const AtomColumn& i, const A
   return sum / i.period;
 }
 
+std::array<double, 3> registry_parts(int k) {
+  // Additive recurrence of the three powers of the root of x^4 = x + 1 (a golden ratio in three dimensions).
+  constexpr double root = 1.2207440846057594;
+  const auto part = [&](double step) { return std::fmod(0.5 + k / step, 1.0); };
+  return {part(root), part(root * root), part(root * root * root)};
+}
+
 RegistrySpread registry_spread(const AtomLaw& law, const AtomColumn& i, const AtomColumn& j, double distance,
                                int samples) {
   if (samples < 1) throw std::invalid_argument("van der Waals: at least one registry");
   RegistrySpread out;
   out.least = infinite;
   out.largest = -infinite;
-  // Additive recurrence of the three powers of the root of x^4 = x + 1 (a golden ratio in three dimensions).
-  constexpr double root = 1.2207440846057594;
   double squares = 0;
   AtomColumn turned = i;
   for (int k = 1; k <= samples; ++k) {
-    const auto part = [&](double step) { return std::fmod(0.5 + k / step, 1.0); };
-    const double c = std::cos(2 * pi * part(root)), s = std::sin(2 * pi * part(root));
+    const auto [turn_i, turn_j, shift] = registry_parts(k);
+    const double c = std::cos(2 * pi * turn_i), s = std::sin(2 * pi * turn_i);
     for (std::size_t a = 0; a < i.atoms.size(); ++a) {
       const Vector3& x = i.atoms[a];
       turned.atoms[a] = {c * x.x() - s * x.y(), s * x.x() + c * x.y(), x.z()};
     }
-    const double energy = parallel_energy_of_atoms(law, turned, j, distance, 2 * pi * part(root * root),
-                                                   j.period * part(root * root * root));
+    const double energy = parallel_energy_of_atoms(law, turned, j, distance, 2 * pi * turn_j, j.period * shift);
     out.mean += energy / samples;
     squares += energy * energy / samples;
     out.least = std::min(out.least, energy);

@@ -15,6 +15,7 @@
 // A. N. Volkov, L. V. Zhigilei, J. Phys. Chem. C 114, 5513 (2010), DOI 10.1021/jp906142h.
 #pragma once
 
+#include <array>
 #include <limits>
 #include <string>
 #include <vector>
@@ -62,8 +63,11 @@ struct AtomColumn {
 double parallel_energy_of_atoms(const AtomLaw& law, const AtomColumn& i, const AtomColumn& j, double distance,
                                 double turn, double shift);
 
-// Mean and spread over registries (eV/nm): both tubes are turned and j is shifted by a part of its period, by a
-// low-discrepancy sequence in three dimensions, which suits any symmetry of the tubes.
+// The k-th point, k = 1, 2, ..., of a low-discrepancy sequence in three dimensions, which suits any symmetry of two
+// tubes: the turns of both and the shift, as parts of a turn and of a period.
+std::array<double, 3> registry_parts(int k);
+
+// Mean and spread over registries (eV/nm), by this sequence.
 struct RegistrySpread {
   double mean = 0, deviation = 0, least = 0, largest = 0;
 };

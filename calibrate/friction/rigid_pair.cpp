@@ -80,7 +80,7 @@ double RigidPair::free_distance(const Register& at, double start) const {
   double f = forces(at, x, all)[0].apart, f_before = forces(at, before, all)[0].apart;
   for (int n = 0; n < 20 && std::fabs(x - before) > 1e-6; ++n) {
     const double slope = (f - f_before) / (x - before);
-    // Beyond the steepest pull the slope is positive: the well lies nearer.
+    // At distances where the attraction weakens, Newton's step would lead away from the well, which lies nearer.
     const double step = slope < 0 ? std::clamp(-f / slope, -0.02, 0.02) : -0.02;
     before = x;
     f_before = f;

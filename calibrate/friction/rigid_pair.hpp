@@ -5,7 +5,7 @@
 //
 //   along = -dE/dz of b,   spin_b = -(dE/d turn of b)/r_b,   spin_a = -(dE/d turn of a)/r_a
 //
-// are forces: two of them act on a surface that slips around its axis. Units nm, eV.
+// are forces (eV/nm). spin_a and spin_b act on the surface of a tube that turns. Units nm, eV.
 #pragma once
 
 #include <vector>
@@ -32,8 +32,7 @@ class RigidPair {
   // Atoms (nm) about the z axis; b is the shorter one.
   RigidPair(const AtomLaw& law, std::vector<Vector3> a, double radius_a, std::vector<Vector3> b, double radius_b);
 
-  // Of parts of b that begin at its lower end and have these lengths (nm), in rising order, the last being all of
-  // b.
+  // The forces on parts of b. Each part begins at the lower end of b; `lengths` (nm) rise, and the last part is b.
   std::vector<RegisterForces> forces(const Register& at, double distance, const std::vector<double>& lengths) const;
 
   // The distance (nm) near `start` at which all of b is neither pulled nor pushed.

@@ -55,22 +55,6 @@ std::string start(const SlidingTubes& tubes, const Register& at, double distance
              -0.6 * tubes.radius_a / angstrom, (distance + 0.6 * tubes.radius_b) / angstrom);
 }
 
-std::vector<std::vector<double>> results(const std::string& folder, const std::string& name, std::size_t columns,
-                                         std::size_t least) {
-  std::vector<std::vector<double>> rows;
-  std::istringstream lines(read_file(folder + "/" + name + ".dat"));
-  for (std::string line; std::getline(lines, line);) {
-    std::vector<double> row;
-    for (const std::string& word : words_of(line)) row.push_back(std::strtod(word.c_str(), nullptr));
-    if (row.size() == columns && std::all_of(row.begin(), row.end(), [](double x) { return std::isfinite(x); }))
-      rows.push_back(row);
-  }
-  if (rows.size() < least)
-    throw LammpsError(fmt::format("LAMMPS ({}/{}.in) left {} of {} results; its log is in that folder", folder,
-                                  name, rows.size(), least));
-  return rows;
-}
-
 // The mean of a force that also has the corrugation's period along its way `s` (nm). Blocks of 1 ps say how many of
 // its samples are independent.
 Measured mean_without_period(const std::vector<double>& force, const std::vector<double>& s, double period) {
@@ -135,7 +119,7 @@ RelaxedStrength relaxed_strength(const SlidingTubes& tubes, const Register& at, 
     input += fmt::format("minimize 0 3e-4 3000 30000\nprint \"$(pe)\" append {}.dat\n", name);
   }
   run_lammps(folder, name, input, options);
-  const auto energies = results(folder, name, 1, curve.forces.size());
+  const auto energies = read_results(folder, name, curve.forces.size(), curve.forces.size(), 1);
   RelaxedStrength out;
   for (std::size_t k = 1; k < curve.forces.size(); ++k) {
     out.relaxed = std::max(out.relaxed, std::fabs(energies[k][0] - energies[k - 1][0]) / place_step);
@@ -168,7 +152,8 @@ Drag measured_drag(const SlidingTubes& tubes, const Register& at, double duratio
         sample, steps, run);
     run_lammps(folder, run, input, options);
     std::vector<double> force, way_gone;
-    for (const auto& row : results(folder, run, 1, static_cast<std::size_t>(steps / sample) / 2)) {
+    const auto samples = static_cast<std::size_t>(steps / sample);
+    for (const auto& row : read_results(folder, run, samples, samples + 1, 1)) {
       force.push_back(-row[0] / angstrom / rigid.length());
       way_gone.push_back(speed * sampled_every * static_cast<double>(force.size()));
     }

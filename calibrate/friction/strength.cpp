@@ -88,16 +88,10 @@ std::vector<double> strengths(const SlipCurve& curve, Slip slip) {
 }
 
 std::vector<Register> registers(int count, double period) {
-  // Powers of the root of x^4 = x + 1: M. Roberts (2018), R_3.
-  constexpr double g = 1.22074408460575947536;
   std::vector<Register> out;
   for (int k = 1; k <= count; ++k) {
-    const auto part = [k](double ratio) { return std::fmod(0.5 + k * ratio, 1.0); };
-    Register r;
-    r.turn_a = 2 * units::pi * part(1 / g);
-    r.turn_b = 2 * units::pi * part(1 / (g * g));
-    r.shift = period * part(1 / (g * g * g));
-    out.push_back(r);
+    const auto [turn_a, turn_b, shift] = registry_parts(k);
+    out.push_back({2 * units::pi * turn_a, 2 * units::pi * turn_b, period * shift, 0});
   }
   return out;
 }
@@ -121,13 +115,14 @@ Strength spin_strength(const RigidPair& pair, const std::vector<Register>& at, c
 std::vector<Pressed> pressed_strengths(const RigidPair& pair, const std::vector<Register>& at,
                                        const std::vector<double>& nearer) {
   const std::vector<double> all = {pair.length()};
+  std::vector<double> free;
+  for (const Register& r : at) free.push_back(strengths(slip_curve(pair, Slip::along, r, all), Slip::along)[0]);
   std::vector<Pressed> out;
   for (const double by : nearer) {
     std::vector<double> ratios, forces;
-    for (const Register& r : at) {
-      const SlipCurve pressed = slip_curve(pair, Slip::along, r, all, by);
-      ratios.push_back(strengths(pressed, Slip::along)[0] /
-                       strengths(slip_curve(pair, Slip::along, r, all), Slip::along)[0]);
+    for (std::size_t k = 0; k < at.size(); ++k) {
+      const SlipCurve pressed = slip_curve(pair, Slip::along, at[k], all, by);
+      ratios.push_back(strengths(pressed, Slip::along)[0] / free[k]);
       for (const auto& place : pressed.forces) forces.push_back(place[0].apart / pair.length());
     }
     out.push_back({by, mean_of(ratios), mean_of(forces).value});

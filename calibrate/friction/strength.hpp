@@ -1,9 +1,9 @@
 // Static friction of two rigid tubes side by side, over registers.
 //
-// At a register (both turns and the shift, random) one tube slips past the other one by 1 nm, along the axis or
-// around its own axis; at each place the distance is that at which the tubes neither pull nor push. The strength is
-// the largest force on that way. Its growth with the length of the contact is the strength per length, what remains
-// at length zero that of two ends.
+// A register is a pair of turns and a shift. From each register one tube slips past the other one by 1 nm, along
+// the axis or around its own axis. At each place the tubes have the distance at which they neither attract nor
+// repel. The strength is the largest force on the way. The strength grows with the length of the contact: its slope
+// is the strength per length, and the line meets length zero at the strength of two ends.
 #pragma once
 
 #include <vector>
@@ -21,7 +21,7 @@ struct SlipCurve {
   std::vector<double> distance;                     // nm between the axes, at each place
   std::vector<std::vector<RegisterForces>> forces;  // at each place, of each length
 };
-// `pressed`: nm by which the tubes stand nearer than they would.
+// `pressed` (nm) is subtracted from the distance at which the tubes neither attract nor repel.
 SlipCurve slip_curve(const RigidPair& pair, Slip slip, Register at, const std::vector<double>& lengths,
                      double pressed = 0, double step = slip_step, double range = slip_range);
 double force_of(const RegisterForces& forces, Slip slip);
@@ -39,16 +39,15 @@ struct Strength {
   double spread = 0;              // standard deviation over registers
   Measured elastic_slip;          // nm: strength over steepest stiffness, of the longest contact
 };
-// Spins of a and b count together.
+// The strength against spin is the mean of that of a and that of b.
 Strength along_strength(const RigidPair& pair, const std::vector<Register>& at, const std::vector<double>& lengths);
 Strength spin_strength(const RigidPair& pair, const std::vector<Register>& at, const std::vector<double>& lengths);
 
-// Mean strength of the longest contact over that of the same registers pressed together by nothing, and what
-// presses (eV/nm^2).
+// Strength of the longest contact where the tubes are pressed together.
 struct Pressed {
-  double nearer = 0;  // nm
-  Measured ratio;
-  double force = 0;
+  double nearer = 0;  // nm, less than the distance at which they neither attract nor repel
+  Measured ratio;     // of the strength to that of free tubes
+  double force = 0;   // mean force that presses, eV/nm^2
 };
 std::vector<Pressed> pressed_strengths(const RigidPair& pair, const std::vector<Register>& at,
                                        const std::vector<double>& nearer);

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <numeric>
 
+#include "atomistic/finite_tube.hpp"
 #include "friction/sliding.hpp"
 #include "friction/strength.hpp"
 #include "io/clocks.hpp"
@@ -29,9 +29,7 @@ struct Tube {
 
   // About as long (nm), its middle at z = 0.
   std::vector<Vector3> atoms(double length) const {
-    const long step = std::gcd(set.chirality.n, set.chirality.m);
-    const long hexagons =
-        step * std::max(1L, std::lround(length / (shape.length_per_hexagon * static_cast<double>(step))));
+    const long hexagons = hexagons_in(set.chirality, shape, length);
     std::vector<Vector3> out;
     for (const Site& site : strip_sites(set.chirality, hexagons))
       out.push_back(place(set.chirality, site, shape) -

@@ -26,8 +26,8 @@ struct CampaignDirectory {
 // Beside the file of the sweep, where `out` is empty.
 CampaignDirectory campaign_directory(const std::string& sweep_file, const std::string& out);
 
-// Whether the directory holds a run of this scene with the parameter sets and the state file of the point. With
-// `any_step` its time step may be another one.
+// Whether the directory holds a run of the scene `text` with the parameter sets and the state file of the point. If
+// `any_step` is true, the run may have another time step than the scene.
 bool is_run_of(const RunDirectory& dir, const std::string& text, const SweepPoint& point, bool any_step = false);
 
 // How far the run of a point is.

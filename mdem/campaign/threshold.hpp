@@ -76,9 +76,9 @@ struct PhasePoint {
   double sliding = 0, glued = 0;  // theory, in the unit of the key; zero where there is none
 
   double by_bisection() const, bisection_error() const;
-  // Seeds with which the outcome falls, with which it changes more than once, and with which it is the same at all
-  // values that were tried. With one of the last kind there is no value by bisection: the others alone are not the
-  // mean.
+  // The number of seeds whose outcome falls with the key, whose outcome changes more than once, and whose outcome is
+  // the same at all values of the key that were tried. A seed of the third kind has no threshold, and then there is no
+  // mean: by_bisection() is nan.
   std::size_t falling_seeds() const, unclear_seeds() const, outside_seeds() const;
   std::size_t cut_short_runs() const;  // Trial::cut_short
   // Remarks on the bisection: such seeds and runs. Empty: none.

@@ -48,6 +48,10 @@ double radii_apart(Chirality a, Chirality b, const PairFriction& f) {
 
 }  // namespace
 
+bool PairFriction::is_of(Chirality x, Chirality y) const {
+  return (same_tube(a, x) && same_tube(b, y)) || (same_tube(a, y) && same_tube(b, x));
+}
+
 PairFriction friction_of_text(const std::string& text, const std::string& path) {
   const TomlTable top = TomlTable::parse(text, path);
   PairFriction f;

@@ -27,6 +27,8 @@ struct PairFriction {
   double end_strength = 0;                 // eV/nm
   double elastic_slip = 0;                 // nm
   double drag = 0;                         // eV ps/nm^3
+
+  bool is_of(Chirality x, Chirality y) const;  // in either order
 };
 
 // Throws InputError.
@@ -38,8 +40,8 @@ std::string friction_text(const PairFriction& friction, const std::string& comme
 // The shipped one of this name. Throws InputError at `place`.
 PairFriction find_friction(const std::string& name, const InputError::Place& place);
 
-// "armchair", "zigzag" or "chiral" for two tubes that fit each other, "unlike" for others. Tubes fit where both are
-// armchair, both are zigzag, or both have the same chirality.
+// "armchair", "zigzag" or "chiral" for two tubes that fit each other, "unlike" for others. Two tubes fit each other
+// if both are armchair tubes, both are zigzag tubes, or both have the same chirality.
 std::string kind_of_pair(Chirality a, Chirality b);
 
 // The shipped friction of these tubes; where there is none, that of the pair of the same kind whose radii are

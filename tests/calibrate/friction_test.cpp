@@ -4,8 +4,8 @@
 
 #include <cmath>
 #include <filesystem>
-#include <numeric>
 
+#include "atomistic/finite_tube.hpp"
 #include "atomistic/lattice.hpp"
 #include "friction/sliding.hpp"
 #include "friction/strength.hpp"
@@ -17,8 +17,7 @@ constexpr double pN = 1e-3 * units::nN_nm, lattice = 0.2493;
 
 std::vector<Vector3> tube(Chirality c, double length) {
   const TubeShape shape = rolled_shape(c, lattice);
-  const long step = std::gcd(c.n, c.m),
-             hexagons = step * std::lround(length / shape.length_per_hexagon / static_cast<double>(step));
+  const long hexagons = hexagons_in(c, shape, length);
   std::vector<Vector3> atoms;
   for (const Site& site : strip_sites(c, hexagons))
     atoms.push_back(place(c, site, shape) -

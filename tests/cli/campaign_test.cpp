@@ -208,8 +208,8 @@ TEST_F(Campaign, ThresholdOfAFallingOutcome) {
   EXPECT_EQ(counts, (std::vector<std::string>{"1", "0", "0", "0"})) << rows[1];
 }
 
-// Seeds whose stretch by heat passes at no value leave no mean, and a rule of the scene ends runs before their
-// time.
+// The bonds of a warm rope stretch above the limit at no temperature of the range with three of four seeds: there is no
+// mean threshold. Then a [[stop]] of the scene ends each run at 0.1 ps.
 TEST_F(Campaign, ThresholdSaysWhichSeedsAndRunsAreNoAnswer) {
   spit(dir / "tube.toml",
        "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[rope]\ntubes = 7\nlength_nm = 7\n"

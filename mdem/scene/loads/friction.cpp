@@ -29,7 +29,6 @@ class FrictionDrive : public Drive {
   DryFriction typed{0, 0, 0, 0.06, 0, {}};
   std::string from;               // "atoms", or a shipped pair; empty: typed
   std::vector<FrictionLaw> laws;  // for each pair of types where they come from atoms
-  std::string path;               // of the scene
 
   SceneTable table() const override;
   std::string words() const override {
@@ -52,13 +51,7 @@ class FrictionDrive : public Drive {
                       "take one of the two away");
   }
   void add_terms(const Scene&, const Topology& topology, Interaction& interaction) const override {
-    for (const FrictionLaw& f : laws) {
-      for (const int type : f.law.types)
-        if (static_cast<std::size_t>(type) >= topology.types.size())
-          throw InputError({path, 0, "friction.types"}, fmt::format("there is no tube type {}", type),
-                           fmt::format("they are 0 to {}", topology.types.size() - 1));
-      add_term(dry_friction_term(f.law, topology), interaction);
-    }
+    for (const FrictionLaw& f : laws) add_term(dry_friction_term(f.law, topology), interaction);
   }
 };
 
@@ -89,25 +82,25 @@ std::vector<FrictionLaw> laws_of_atoms(const Scene& scene, const std::vector<int
   const auto n = static_cast<int>(scene.sets.size());
   for (int i = 0; i < n; ++i)
     for (int j = i; j < n; ++j) {
-      if (!types.empty() && std::minmax(types[0], types[1]) != std::pair<const int&, const int&>(i, j)) continue;
+      if (!types.empty() && (i != std::min(types[0], types[1]) || j != std::max(types[0], types[1]))) continue;
       const Chirality a = scene.sets[static_cast<std::size_t>(i)].chirality,
                       b = scene.sets[static_cast<std::size_t>(j)].chirality;
       const PairFriction f = friction_between(a, b, place);
-      const auto is = [&](Chirality x, Chirality y) {
-        return a.n == x.n && a.m == x.m && b.n == y.n && b.m == y.m;
-      };
-      laws.push_back(
-          law_of(f, {i, j},
-                 is(f.a, f.b) || is(f.b, f.a)
-                     ? ""
-                     : fmt::format(", an estimate: ({},{}) beside ({},{}) was not measured", a.n, a.m, b.n, b.m)));
+      const std::string estimate =
+          f.is_of(a, b) ? ""
+                        : fmt::format(", an estimate: ({},{}) beside ({},{}) was not measured", a.n, a.m, b.n, b.m);
+      laws.push_back(law_of(f, {i, j}, estimate));
     }
   return laws;
 }
 
 void check(const TomlTable& t, const Scene& scene, FrictionDrive& friction) {
   DryFriction& law = friction.typed;
-  friction.path = scene.path;
+  const auto sets = static_cast<int>(scene.sets.size());
+  for (const int type : law.types)
+    if (type >= sets)
+      throw t.error("types", fmt::format("there is no tube type {}", type),
+                    fmt::format("they are 0 to {}", sets - 1));
   const InputError::Place place = {scene.path, t.line("from"), "friction.from"};
   if (friction.from == "atoms") {
     friction.laws = laws_of_atoms(scene, law.types, place);

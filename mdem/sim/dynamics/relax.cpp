@@ -206,9 +206,9 @@ double Simulation::above_minimum(double enough, long most) const {
   return power > 0 ? unknown : above;
 }
 
-// The mode of K x = lambda M x with the lowest lambda, from a motion that has a part of it: the steepest way down
-// of a saddle. Without the stiff parts of that motion the energy falls along the mode much farther. LOBPCG with one
-// vector: A. V. Knyazev, SIAM J. Sci. Comput. 23, 517 (2001), DOI 10.1137/S1064827500366124.
+// The mode of K x = lambda M x with the lowest lambda: the steepest way down from a saddle. The search begins at the
+// motion x, which must have a part of the mode. The energy falls much farther along the mode than along x, whose stiff
+// parts cost energy. The method is LOBPCG with one vector: A. V. Knyazev, SIAM J. Sci. Comput. 23, 517 (2001), DOI 10.1137/S1064827500366124.
 Simulation::Motion Simulation::Stiffness::softest_mode(Motion x, long most) {
   constexpr long at_once = 25;     // iterations between two looks at lambda
   constexpr double change = 0.01;  // of lambda, of one look to the next, that ends the search

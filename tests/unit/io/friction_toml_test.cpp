@@ -104,6 +104,7 @@ TEST(FrictionToml, AScenesFrictionComesFromAtomsAndSaysWhatIsAnEstimate) {
     return "";
   };
   EXPECT_THAT(refused("from = \"atom\"\n"), HasSubstr("friction.from"));
+  EXPECT_THAT(refused("from = \"atoms\"\ntypes = [0, 5]\n"), HasSubstr("there is no tube type 5"));
   EXPECT_THAT(refused("from = \"atoms\"\nend_strength_pN = 3\n"), HasSubstr("friction.end_strength_pN"));
 }
 

@@ -301,11 +301,6 @@ class DryFrictionTerm : public ForceTerm {
     if (stiff_s > 0) now.z = c.z + p.s - c.s;
     if (stiff_g > 0)
       now.y = c.y + r_a * turned(c.of_a, p.of_a) + (p.cosine > 0 ? r_b : -r_b) * turned(c.of_b, p.of_b);
-    act(now, c, p, state);
-    return now;
-  }
-  void act(Now& now, const Contact& c, const Pair& p, const State& state) const {
-    const double stiff_s = stiff_along(c), stiff_g = stiff_turning(c);
     double along = -stiff_s * now.z, turning = -stiff_g * now.y, power = 0;
     if (law_.drag > 0) {
       const auto a = static_cast<std::size_t>(c.a), b = static_cast<std::size_t>(c.b);
@@ -318,6 +313,7 @@ class DryFrictionTerm : public ForceTerm {
     const Vector3 v_a = along * p.along_a + turning * p.turning_a, v_b = along * p.along_b + turning * p.turning_b;
     now.action = {v_a + v_b, p.w.cross(v_a), p.w.cross(v_b),
                   0.5 * (stiff_s * now.z * now.z + stiff_g * now.y * now.y), power};
+    return now;
   }
 
   void advance(std::size_t k, const State& state, Advanced& all) {

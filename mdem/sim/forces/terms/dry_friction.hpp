@@ -10,10 +10,10 @@
 // alpha is the angle by which a tube has turned about its own axis u against the line to the other one; the signs
 // are minus for tubes in opposite directions. The contact remembers the elastic parts (z, y) of the slips (s, g):
 //
-//   U = K_s z^2/2 + K_g y^2/2 while z^2 + y^2 <= delta^2;   F = -dU/dx,  torques likewise
+//   U = K_s z^2/2 + K_g y^2/2   for z^2 + y^2 <= delta^2
 //
-// A step that leads beyond delta cuts (z, y) back to it in the same direction: the work of sliding under the
-// strength is lost.
+// Forces and torques are minus the derivatives of U. A step that leads beyond delta cuts (z, y) back to delta in
+// the same direction: the work of sliding under the strength is lost.
 //
 //   K_s = (F_s l + n F_end)/delta,   K_g = F_g l/delta
 //
