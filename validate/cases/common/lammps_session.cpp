@@ -93,7 +93,7 @@ std::vector<std::vector<double>> MdSession::run(const std::string& name, const s
   calibrate::run_stage(context, name, input);
   inputs_ += input;
   seconds_ += context.lammps_seconds;
-  return calibrate::read_results(context, name, min_rows > 0 ? min_rows : rows, rows, columns);
+  return calibrate::read_results(folder_, name, min_rows > 0 ? min_rows : rows, rows, columns);
 }
 
 ReferenceTable MdSession::table(const std::string& title, const std::string& case_name, bool contact,
