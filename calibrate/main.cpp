@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "cli/command_line.hpp"
+#include "io/data_files.hpp"
 #include "io/failure.hpp"
 #include "io/plain_text.hpp"
 #include "io/program.hpp"
@@ -45,7 +46,7 @@ void add_law(CLI::App& app, std::string& lj, double& cutoff) {
 
 void add_calibrate(CLI::App& app, Verbs& v) {
   CalibrateArguments& a = v.calibrate;
-  app.add_option("--chirality", a.chirality, "n,m with n >= m");
+  app.add_option("--chirality", a.chirality, "n,m, as in 10,10 or 7,3");
   app.add_option("--potential", a.potential, "tersoff, airebo, rebo or lcbop")->capture_default_str();
   app.add_option("--potential-file", a.user_potential, "Your own pair_style and pair_coeff lines, one atom type");
   add_law(app, a.lj, a.lj_cutoff);
@@ -136,7 +137,8 @@ int main(int argc, char** argv) {
   verbs.calibrate.command = verbs.friction.command = verbs.fit.command = verbs.universal.command = command_line(argc, argv);
   add_calibrate(app, verbs);
   add_verbs(app, verbs);
-  add_describe(app, {"ropewalk-calibrate", version, ""});
+  const std::vector<std::string> sets = shipped_sets();
+  add_describe(app, {"ropewalk-calibrate", version, "", {}, {{"show", sets}, {"friction", sets}}});
   catch_interrupts();
   try {
     refuse_control_characters(argv);

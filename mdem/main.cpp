@@ -13,6 +13,7 @@
 #include "cli/command_line.hpp"
 #include "commands/commands.hpp"
 #include "commands/siblings.hpp"
+#include "io/data_files.hpp"
 #include "io/failure.hpp"
 #include "io/plain_text.hpp"
 #include "io/program.hpp"
@@ -22,6 +23,7 @@
 #include "run/cores.hpp"
 #include "scene/scene_keys.hpp"
 #include "scene/scene_toml.hpp"
+#include "scene/templates.hpp"
 #include "sim/contact/line/engine.hpp"
 #include "version.hpp"
 
@@ -98,6 +100,7 @@ void add_new(CLI::App& app, Verbs& v) {
   c->add_option("name", v.make.name, "Name of the scene; NAME.toml is written");
   c->add_option("--kind", v.make.kind, "Which template, see --list")->capture_default_str();
   c->add_flag("--list", v.make.list, "List the templates");
+  c->add_flag("--short", v.make.brief, "Only the keys that matter, without those that have their defaults");
   c->add_flag("--force", v.make.force, "Overwrite an existing file");
   c->callback([&v] { v.code = new_command(v.make); });
 }
@@ -507,7 +510,11 @@ int main(int argc, char** argv) {
   add_energy(app, verbs);
   add_bench(app, verbs);
   add_help(app, verbs);
-  add_describe(app, {"ropewalk", version, scene_key_help(), scenes_and_limits()});
+  std::vector<std::string> kinds;
+  for (const SceneTemplate& t : scene_templates()) kinds.push_back(t.name);
+  const std::vector<std::string> sets = shipped_sets();
+  add_describe(app, {"ropewalk", version, scene_key_help(), scenes_and_limits(),
+                     {{"--kind", kinds}, {"--parameters", sets}, {"compare", sets}}, {"calibrate", "validate"}});
   try {
     refuse_control_characters(argv);
     verb_before_help(app, argc, argv);

@@ -5,6 +5,7 @@
 
 #include "chart/chart.hpp"
 #include "cli/command_line.hpp"
+#include "io/data_files.hpp"
 #include "io/failure.hpp"
 #include "io/plain_text.hpp"
 #include "io/program.hpp"
@@ -129,7 +130,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   Verbs verbs;
   add_verbs(app, verbs);
-  add_describe(app, {"ropewalk-validate", version, ""});
+  add_describe(app, {"ropewalk-validate", version, "", {}, {{"--parameters", shipped_sets()}}});
   try {
     refuse_control_characters(argv);
     app.parse(argc, argv);

@@ -168,7 +168,7 @@ Potential user_potential(const std::string& path) {
   for (std::istringstream lines(content); lines;) {
     std::string line;
     if (!std::getline(lines, line)) break;
-    ++number;
+    if (++number == 1 && line.rfind("\xef\xbb\xbf", 0) == 0) line.erase(0, 3);  // a byte order mark
     if (const auto comment = line.find('#'); comment != std::string::npos) line.resize(comment);
     refuse_reach(path, number, line);
     std::vector<std::string> words;

@@ -98,13 +98,39 @@ std::string zsh_words(const std::string& text) {
 
 std::string identifier(const std::string& program) { return "_" + replaced(program, "-", "_"); }
 
-std::string zsh_arguments(const CLI::App& app) {
+// The values that an option takes, where it names them: those of the description, or "a" and "b" of "TEXT:{a,b}".
+std::vector<std::string> option_values(Option o, const Description& d) {
+  for (const std::string& name : names_of(o))
+    if (const auto at = d.values.find(name); at != d.values.end()) return at->second;
+  const std::string type = o->get_type_name();
+  const std::size_t open = type.find('{'), close = type.rfind('}');
+  if (open == std::string::npos || close < open) return {};
+  return CLI::detail::split(type.substr(open + 1, close - open - 1), ',');
+}
+
+std::string zsh_arguments(const CLI::App& app, const Description& d) {
   std::string text;
   for (Option o : options_of(app))
-    for (const std::string& name : names_of(o))
+    for (const std::string& name : names_of(o)) {
+      const std::vector<std::string> values = option_values(o, d);
       text += fmt::format(" \\\n        '{}[{}]{}'", name, zsh_words(o->get_description()),
-                          takes_value(o) ? ":value:_files" : "");
+                          !takes_value(o)  ? ""
+                          : values.empty() ? ":value:_files"
+                                           : ":value:(" + joined(values) + ")");
+    }
   return text;
+}
+
+// The branches of bash that take the values of options.
+std::string bash_values(const CLI::App& app, const Description& d) {
+  std::string text;
+  for (Option o : options_of(app)) {
+    std::string names;
+    for (const std::string& name : names_of(o)) names += (names.empty() ? "" : "|") + name;
+    if (const auto values = option_values(o, d); takes_value(o) && !values.empty())
+      text += fmt::format(" {}) words='{}' named=yes ;;", names, joined(values));
+  }
+  return text.empty() ? "" : fmt::format(" case $previous in{} esac ;", text);
 }
 
 // Empty where the value is allowed.
@@ -181,20 +207,32 @@ std::string bash_completion(const CLI::App& app, const Description& d) {
   const std::string name = identifier(d.program);
   std::string text = fmt::format(
       "# bash completion of {0}\n{1}() {{\n"
-      "  local current=${{COMP_WORDS[COMP_CWORD]}} verb= words= word\n"
+      "  local current=${{COMP_WORDS[COMP_CWORD]}} previous=${{COMP_WORDS[COMP_CWORD-1]}} verb= words= values= "
+      "named= word\n"
       "  for word in \"${{COMP_WORDS[@]:1:COMP_CWORD-1}}\"; do\n"
       "    if [[ $word != -* ]]; then verb=$word; break; fi\n"
       "  done\n"
-      "  case $verb in\n    '') words='{2} {3}' ;;\n",
-      d.program, name, verb_names(app), joined(all_names(app)));
-  for (Verb verb : verbs_of(app))
-    text += fmt::format("    {}) words='{}' ;;\n", verb->get_name(), joined(all_names(*verb)));
+      "  case $verb in\n    '') words='{2} {3}' ;{4};\n",
+      d.program, name, verb_names(app), joined(all_names(app)), bash_values(app, d));
+  for (const std::string& verb : d.siblings) {
+    const std::string other = d.program + "-" + verb, function = identifier(other);
+    text += fmt::format(
+        "    {0}) declare -F {1} >/dev/null || source \"${{BASH_SOURCE[0]%/*}}/{2}\"\n"
+        "      COMP_WORDS=({2} \"${{COMP_WORDS[@]:2}}\") COMP_CWORD=$((COMP_CWORD-1)); {1}; return ;;\n",
+        verb, function, other);
+  }
+  for (Verb verb : verbs_of(app)) {
+    const auto values = d.values.find(verb->get_name());
+    text += fmt::format("    {}) words='{}' {};{};\n", verb->get_name(), joined(all_names(*verb)),
+                        values == d.values.end() ? "" : "values='" + joined(values->second) + "' ",
+                        bash_values(*verb, d));
+  }
   return text + fmt::format(
                     "  esac\n"
-                    "  if [[ $current == -* || -z $verb ]]; then\n"
+                    "  if [[ $current == -* || -z $verb || -n $named ]]; then\n"
                     "    mapfile -t COMPREPLY < <(compgen -W \"$words\" -- \"$current\")\n"
                     "  else\n"
-                    "    mapfile -t COMPREPLY < <(compgen -f -- \"$current\")\n"
+                    "    mapfile -t COMPREPLY < <(compgen -W \"$values\" -f -- \"$current\")\n"
                     "  fi\n}}\ncomplete -o filenames -F {} {}\n",
                     name, d.program);
 }
@@ -207,10 +245,10 @@ std::string zsh_completion(const CLI::App& app, const Description& d) {
   text += fmt::format(
       "  )\n  _arguments -C{} \\\n        '1:verb:->verb' '*::rest:->rest'\n"
       "  case $state in\n    verb) _describe verb verbs ;;\n    rest)\n      case $words[1] in\n",
-      zsh_arguments(app));
+      zsh_arguments(app, d));
   for (Verb verb : verbs_of(app))
     text += fmt::format("      {}) _arguments{} \\\n        '*:file:_files' ;;\n", verb->get_name(),
-                        zsh_arguments(*verb));
+                        zsh_arguments(*verb, d));
   return text + fmt::format("      esac ;;\n  esac\n}}\n{} \"$@\"\n", identifier(d.program));
 }
 
@@ -221,6 +259,8 @@ std::string fish_completion(const CLI::App& app, const Description& d) {
       text += "complete -c " + d.program + " -n " + quoted(where);
       for (const std::string& s : o->get_snames()) text += " -s " + s;
       for (const std::string& l : o->get_lnames()) text += " -l " + l;
+      if (const auto values = option_values(o, d); takes_value(o) && !values.empty())
+        text += " -f -a " + quoted(joined(values));
       text += (takes_value(o) ? " -r -d " : " -d ") + quoted(o->get_description()) + "\n";
     }
   };

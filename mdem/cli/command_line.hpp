@@ -1,11 +1,13 @@
-// Command lines of all programs of Ropewalk: they name mistyped words, and describe themselves to the shell, to `man` and
-// to the pages of the documentation.
+// Command lines of all programs of Ropewalk: they name mistyped words, and describe themselves to the shell, to
+// `man` and to the pages of the documentation.
 #pragma once
 
 #include <CLI/CLI.hpp>
 #include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "io/toml_table.hpp"  // Bounds
 
@@ -25,6 +27,10 @@ struct Description {
   std::string version;
   std::string long_text;                                           // ends the man page; lines are kept
   nlohmann::ordered_json more = nlohmann::ordered_json::object();  // of a program alone, for describe json
+  // For completion, besides those that an option lists itself: values by the option, as "--kind", or the verb that
+  // takes them.
+  std::map<std::string, std::vector<std::string>> values = {};
+  std::vector<std::string> siblings = {};  // verbs that other programs have, named after this one and the verb
 };
 std::string man_page(const CLI::App& app, const Description& d);
 std::string bash_completion(const CLI::App& app, const Description& d);

@@ -8,6 +8,7 @@
 #include "io/clocks.hpp"
 #include "plan/forecast.hpp"
 #include "run/moving_scene.hpp"
+#include "scene/memory.hpp"
 #include "scene/scene_to_model.hpp"
 #include "scene/scene_toml.hpp"
 #include "scene/watch.hpp"
@@ -54,6 +55,21 @@ void say_limits(const Scene& scene, const Prepared& p) {
   }
 }
 
+// The largest files and the memory of a run, as measured on ropes of thousands of elements.
+void say_sizes(const Scene& scene, const Prepared& p) {
+  const double elements = p.topology.elements(), steps = p.duration / p.time_step;
+  const auto outputs = [&](double every, double otherwise) {
+    return std::min(every > 0 ? p.duration / every : otherwise, steps) + 1;
+  };
+  constexpr double row = 810, page = 2e5;                                        // bytes
+  constexpr double checkpoints = 600, end = 280;                                 // bytes of an element
+  const double frame = scene.run.frames_format == FrameFormat::dump ? 153 : 44;  // likewise
+  const double frames = outputs(scene.run.frames_every, 40), rows = outputs(scene.run.log_every, 400);
+  const double files = elements * (frames * frame + checkpoints + end) + rows * row + page;
+  fmt::print("about {:.2g} MB of memory and {:.2g} MB of files, {:.0f} frames in them\n",
+             10 + memory_needed(elements) / 1e6, files / 1e6, frames);
+}
+
 }  // namespace
 
 int check_command(const std::string& path) {
@@ -91,6 +107,7 @@ int check_command(const std::string& path) {
   const double each = seconds_since(began) / sample;
   const double steps = p.duration / p.time_step;
   fmt::print("{:.4g} ps = {:.0f} steps, about {:.0f} s on all cores\n", p.duration, steps, steps * each);
+  say_sizes(scene, p);
   return 0;
 }
 

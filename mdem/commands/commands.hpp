@@ -150,6 +150,7 @@ struct NewArguments {
   std::string name;
   std::string kind = "rope";
   bool list = false;
+  bool brief = false;  // without the keys that have their defaults
   bool force = false;
 };
 int new_command(const NewArguments& arguments);

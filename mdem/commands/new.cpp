@@ -5,6 +5,8 @@
 
 #include "commands/commands.hpp"
 #include "io/files.hpp"
+#include "io/plain_text.hpp"
+#include "io/toml_table.hpp"
 #include "model/error.hpp"
 #include "scene/templates.hpp"
 
@@ -35,9 +37,9 @@ int new_command(const NewArguments& a) {
       a.name.size() > 5 && a.name.compare(a.name.size() - 5, 5, ".toml") == 0 ? a.name : a.name + ".toml";
   if (std::filesystem::exists(path) && !a.force)
     throw InputError({path, 0, ""}, "exists", "choose another name or give --force");
-  write_file_atomically(path, t.text);
-  fmt::print("{} written. Look it over, then: ropewalk check {}; ropewalk run {} --out {}\n", path, path, path,
-             "runs/" + std::filesystem::path(path).stem().string());
+  write_file_atomically(path, a.brief ? t.brief : t.text);
+  fmt::print("{} written: {}\nLook it over, then: ropewalk check {}; ropewalk run {} --out {}\n", path,
+             t.description, path, path, "runs/" + std::filesystem::path(path).stem().string());
   return 0;
 }
 

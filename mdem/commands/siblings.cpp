@@ -40,7 +40,8 @@ void hand_over_to_sibling(char** argv) {
     give_back_cores();
     execvp(program.c_str(), sibling.keeps_verb ? argv : argv + 1);
     throw InputError({"", 0, sibling.verb}, fmt::format("the program {} cannot be started", program),
-                     "build all targets: cmake --build --preset release, or install the package ropewalk-calibrate");
+                     "after ./demo: .ci/install && cmake --preset release && cmake --build --preset release; or install "
+                     "the package ropewalk-calibrate");
   }
 }
 

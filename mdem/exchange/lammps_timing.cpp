@@ -63,6 +63,9 @@ StepsTime lammps_seconds(const std::string& folder, const std::string& program, 
   const int status = std::system(command.c_str());
   const std::string text = read_file(out), loop = "Loop time of ";
   const std::size_t at = text.find(loop);
+  if (text.find("OMPI_ALLOW_RUN_AS_ROOT") != std::string::npos)
+    throw InputError({"mpirun", 0, ""}, "does not start programs for root",
+                     "in a container, set OMPI_ALLOW_RUN_AS_ROOT=1 and OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1");
   if (status != 0 || at == std::string::npos)
     throw InputError(
         {program, 0, ""},

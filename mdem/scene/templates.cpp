@@ -157,45 +157,47 @@ std::string key_line(const SceneKey& k, const std::string* value) {
   return fmt::format("{:40} # {}\n", setting, comment);
 }
 
-// All keys of a table; those that the block does not set stand as comments.
-std::string keys_text(const SceneTable& table, const std::map<std::string, std::string>& set) {
+// All keys of a table; those that the block does not set stand as comments, or are left out of a brief text.
+std::string keys_text(const SceneTable& table, const std::map<std::string, std::string>& set, bool brief) {
   std::string text;
   for (const SceneKey& k : table.keys) {
     const auto at = set.find(k.key);
-    text += key_line(k, at == set.end() ? nullptr : &at->second);
+    if (!brief || at != set.end()) text += key_line(k, at == set.end() ? nullptr : &at->second);
   }
   return text;
 }
 
-std::string table_text(const SceneTable& table, const std::vector<Block>& blocks) {
-  std::string text = "\n# " + table.meaning + "\n";
+std::string table_text(const SceneTable& table, const std::vector<Block>& blocks, bool brief) {
+  std::string text = brief ? "\n" : "\n# " + table.meaning + "\n";
   bool any = false;
   for (const Block& b : blocks) {
     if (b.table != table.name) continue;
-    text += (any ? "\n" : "") + table.header() + "\n" + keys_text(table, b.set);
+    text += (any ? "\n" : "") + table.header() + "\n" + keys_text(table, b.set, brief);
     any = true;
   }
   if (any) return text;
+  if (brief) return "";
   // Tables without required keys are always there, for their keys to be switched on by taking a # away.
-  return text + (table.optional() ? "# " : "") + table.header() + "\n" + keys_text(table, {});
+  return text + (table.optional() ? "# " : "") + table.header() + "\n" + keys_text(table, {}, false);
 }
 
-std::string text_of(const Recipe& recipe) {
+std::string text_of(const Recipe& recipe, bool brief) {
   std::string text = fmt::format("# {}.\n", recipe.description);
-  text += "# Every key has its unit in its name; lines with a # in front show keys that are not set.\n\n";
+  text += brief ? "# All other keys have their defaults; `ropewalk help scene` lists them.\n\n"
+                : "# Every key has its unit in its name; lines with a # in front show keys that are not set.\n\n";
   std::map<std::string, std::string> top = {{"format", fmt::format("\"{}\"", scene_format)},
                                             {"parameters", "\"cnt-10-10-paper\""}};
   for (const Block& b : recipe.blocks)
     if (b.table.empty())
       for (const auto& [key, value] : b.set) top[key] = value;
   for (const SceneTable& t : scene_tables())
-    text += t.name.empty() ? keys_text(t, top) : table_text(t, recipe.blocks);
+    text += t.name.empty() ? keys_text(t, top, brief) : table_text(t, recipe.blocks, brief);
   return text;
 }
 
 std::vector<SceneTemplate> all_templates() {
   std::vector<SceneTemplate> out;
-  for (const Recipe& r : recipes()) out.push_back({r.name, r.description, text_of(r)});
+  for (const Recipe& r : recipes()) out.push_back({r.name, r.description, text_of(r, false), text_of(r, true)});
   return out;
 }
 

@@ -10,6 +10,7 @@ struct SceneTemplate {
   std::string name;
   std::string description;  // one line
   std::string text;         // TOML; every key with unit, meaning and default
+  std::string brief;        // the keys that it sets, alone
 };
 
 const std::vector<SceneTemplate>& scene_templates();

@@ -101,14 +101,22 @@ TEST_F(Cli, EveryTemplateIsWrittenAndPassesItsCheck) {
   while (std::getline(lines, line)) {
     const std::string kind = line.substr(0, line.find(' '));
     if (kind == "helix") continue;  // 10 920 elements: checked by scene_test without the trial steps
-    ASSERT_EQ(run("new my-" + kind + " --kind " + kind).code, 0);
+    const Outcome made = run("new my-" + kind + " --kind " + kind);
+    ASSERT_EQ(made.code, 0);
     const Outcome o = run("check my-" + kind + ".toml");
     EXPECT_EQ(o.code, 0) << o.err;
+    // A limit that the scene passes stands in the first line.
+    std::smatch limit;
+    if (std::regex_search(o.out, limit, std::regex("note: The load may bring (\\S+) to"))) {
+      EXPECT_NE(made.out.substr(0, made.out.find('\n')).find("limits." + limit.str(1)), std::string::npos) << made.out;
+    }
     EXPECT_NE(o.out.find("time step"), std::string::npos);
     ++count;
   }
   EXPECT_GE(count, 5);
   EXPECT_EQ(run("new my-rope --kind rope").code, 2) << "an existing file must stand";
+  ASSERT_EQ(run("new brief --short").code, 0);
+  EXPECT_EQ(run("check brief.toml").out.substr(0, 60), run("check my-rope.toml").out.substr(0, 60));
 }
 
 // The pages of the documentation are made from this output.
@@ -501,6 +509,26 @@ TEST_F(Cli, RunStopsAtATime) {
   EXPECT_EQ(o.code, 2);
   EXPECT_EQ(o.err, "ropewalk: --until: a relaxation has no time; take --steps\n");
   EXPECT_FALSE(fs::exists(dir / "f"));
+}
+
+TEST_F(Cli, CheckSaysWhichTubesAGripHoldsAndWhatARunTakes) {
+  for (const char* format : {"gsd", "lammpstrj"}) {
+    spit(dir / "s.toml", fmt::format("format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[rope]\ntubes = 37\n"
+                                     "length_nm = 60\n[[grip]]\nend = \"lower\"\n[[grip]]\nend = \"upper\"\ntubes = [0, 3]\n"
+                                     "about_z = {{ rotation_deg = [[0, 0], [2, 1]] }}\n[run]\nduration_ps = 2\n"
+                                     "frames_every_ps = 0.1\nframes_format = \"{}\"\n",
+                                     format));
+    const std::string out = run("check s.toml").out;
+    EXPECT_NE(out.find("1 deg in 2 ps; on tubes 0, 3\n"), std::string::npos) << out;
+    EXPECT_EQ(out.find("; on tube", out.find("; on tube") + 1), std::string::npos) << "the lower one holds all";
+    std::smatch found;
+    ASSERT_TRUE(std::regex_search(out, found, std::regex("about (\\S+) MB of memory and (\\S+) MB of files, (\\d+) frames"))) << out;
+    EXPECT_EQ(found[3], "21");
+    ASSERT_EQ(run(fmt::format("run s.toml --out {} --quiet", format)).code, 0);
+    double bytes = 0;
+    for (const auto& entry : fs::directory_iterator(dir / format)) bytes += static_cast<double>(entry.file_size());
+    EXPECT_NEAR(std::stod(found[2]) * 1e6 / bytes, 1, 0.25) << out;
+  }
 }
 
 TEST_F(Cli, CheckSaysWhereTubesCannotTouchThemselves) {

@@ -101,6 +101,7 @@ TEST_F(Foreign, APotentialReachesNoFurtherThanItsLines) {
   refused("pair_style tersoff\npair_coeff * * \"\"\"BNC.tersoff C\n", "p.txt:2: holds quotes");
   refused("pair_style tersoff\x01\npair_coeff * * BNC.tersoff C\n", "p.txt:1: holds a control character");
   refused("shell touch pwned\n", "p.txt:1: shell: only pair_style");
+  refused("\xef\xbb\xbfpair_style tersoff\n", "p.txt: pair_coeff: is missing");
   EXPECT_FALSE(fs::exists(dir / "pwned"));
 }
 

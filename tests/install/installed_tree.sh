@@ -39,9 +39,19 @@ grep -q EI table || fail "ropewalk calibrate is not found"
 grep -q euler cases || fail "ropewalk validate is not found"
 
 grep -q 'time_step_fs' moved/share/man/man1/ropewalk.1 || fail "the man page lacks the keys of a scene"
-completed=$(bash -c 'source moved/share/bash-completion/completions/ropewalk
-  COMP_WORDS=(ropewalk thr) COMP_CWORD=1; _ropewalk; echo "${COMPREPLY[@]}"')
-[ "$completed" = threshold ] || fail "bash completes thr to: $completed"
+completed() {
+  bash -c 'source moved/share/bash-completion/completions/ropewalk
+  COMP_WORDS=("$@") COMP_CWORD=$(($# - 1)); _ropewalk; echo "${COMPREPLY[@]}"' - "$@"
+}
+completes() { [ "$(completed ropewalk "${@:2}")" = "$1" ] || fail "bash completes ${*:2} to: $(completed ropewalk "${@:2}")"; }
+completes threshold thr
+completes "spindle" new x --kind sp
+completes "stop" sweep --on-limit st
+completes "refine" run x.toml --on-limit re
+completes "cnt-6-4-tersoff cnt-6-6-tersoff" energy --parameters cnt-6
+completes "cnt-6-4-tersoff cnt-6-6-tersoff" calibrate show cnt-6
+completes "friction" calibrate fric
+completes "seven.toml" check sev
 for program in ropewalk ropewalk-calibrate ropewalk-validate; do
   for file in "share/man/man1/$program.1" "share/zsh/vendor-completions/_$program" \
     "share/fish/vendor_completions.d/$program.fish"; do

@@ -362,6 +362,19 @@ TEST_F(LammpsRun, BenchTimesBoth) {
   EXPECT_GT(times["lammps_processor_ns_per_element_step"], 1);
 }
 
+TEST_F(LammpsRun, BenchSaysWhatOpenMpiAsksOfRoot) {
+  if (geteuid() != 0) GTEST_SKIP() << "only root is refused";
+  const auto without = [&](const std::string& variables) {
+    return run("bench rope-91x50 --lammps 2 --steps 3",
+               "env -u OMPI_ALLOW_RUN_AS_ROOT -u OMPI_ALLOW_RUN_AS_ROOT_CONFIRM " + variables);
+  };
+  const Outcome o = without("");
+  EXPECT_EQ(o.code, 2);
+  EXPECT_EQ(o.err, "ropewalk: mpirun: does not start programs for root; in a container, set OMPI_ALLOW_RUN_AS_ROOT=1 and "
+                   "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1\n");
+  EXPECT_EQ(without("OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1").code, 0);
+}
+
 // --- there and back -----------------------------------------------------------------------------------
 
 TEST_F(LammpsRun, ThereAndBackIsOneRun) {

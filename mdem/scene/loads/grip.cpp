@@ -532,6 +532,16 @@ DriveKind grip_drive() {
 
 SceneTable GripDrive::table() const { return grip_table(); }
 
+std::string GripDrive::words() const {
+  constexpr std::size_t most = 12;
+  if (on.all_tubes) return load.words();
+  const std::vector<int>& all = on.tubes;
+  const auto named = static_cast<std::ptrdiff_t>(std::min(most, all.size()));
+  return load.words() + fmt::format("; on tube{} {}{}", all.size() > 1 ? "s" : "",
+                                    fmt::join(all.begin(), all.begin() + named, ", "),
+                                    all.size() > most ? fmt::format(" and {} more", all.size() - most) : "");
+}
+
 void GripDrive::add_loads(const Scene& scene, const Topology& topology, const Interaction&,
                           LoadsAndConstraints& loads) const {
   std::vector<int> elements;

@@ -83,7 +83,7 @@ class GripDrive : public Drive {
   GripLoad load;
 
   SceneTable table() const override;
-  std::string words() const override { return load.words(); }
+  std::string words() const override;
   std::string needs_time() const override { return load.needs_time(); }
   double lasts() const override { return load.lasts(); }
   void add_loads(const Scene&, const Topology&, const Interaction&, LoadsAndConstraints&) const override;
