@@ -115,19 +115,29 @@ const std::vector<double>& SteppedScene::measure() {
   return *measured_;
 }
 
+// The scene with its sets, by which a checkpoint knows where it belongs.
+std::string SteppedScene::scene_hash() const {
+  std::string all = model_->scene.text;
+  for (const ParameterSet& set : model_->scene.sets) all += set.hash;
+  return hash_hex(all);
+}
+
 std::string SteppedScene::checkpoint() const {
-  const std::string bytes = simulation().serialise();
+  const std::string bytes = scene_hash() + simulation().serialise();
   return bytes + hash_hex(bytes);
 }
 
 void SteppedScene::restore(const std::string& bytes) {
   simulation();
-  const std::size_t size = bytes.size() < digits ? 0 : bytes.size() - digits;
+  const std::size_t size = bytes.size() < 2 * digits ? 0 : bytes.size() - digits;
   if (size == 0 || hash_hex(std::string_view(bytes).substr(0, size)) != std::string_view(bytes).substr(size))
     throw InputError({"", 0, "checkpoint"}, "is damaged, or none", "give what Simulation.checkpoint() returned");
+  if (bytes.compare(0, digits, scene_hash()) != 0)
+    throw InputError({"", 0, "checkpoint"}, "is of another scene, or of other parameter sets",
+                     "restore it into a simulation of the scene that it came from");
   const std::string now = simulation_.serialise();
   try {
-    simulation_.restore(bytes.substr(0, size));
+    simulation_.restore(bytes.substr(digits, size - digits));
   } catch (const std::runtime_error& e) {
     simulation_.restore(now);
     throw InputError({"", 0, "checkpoint"}, e.what(),
