@@ -416,7 +416,7 @@ std::string refinements_part(const std::vector<RefinementRecord>& refinements) {
       "<ul>\n";
   for (const RefinementRecord& r : refinements)
     html += fmt::format(
-        "<li>At {}: <b>{}</b>, {} elements of {} nm, goes on as <b>{}</b>, {} elements of {} nm. Energy "
+        "<li>At {}: <b>DIR{}</b>, {} elements of {} nm, goes on as <b>DIR{}</b>, {} elements of {} nm. Energy "
         "{} → {} eV ({}).</li>\n",
         picoseconds(r.time_ps), escape_markup(r.from), r.elements_before, number_text(r.length_before),
         escape_markup(r.to), r.elements_after, number_text(r.length_after), number_text(r.before.total(), 6),

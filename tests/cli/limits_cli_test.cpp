@@ -168,14 +168,14 @@ TEST_F(Limits, RefineGoesOnBesideTheRun) {
 
   for (const char* name : {"d", "d.fine"}) {
     const Json split = limits_of(name).at("refinements").at(0);
-    EXPECT_EQ(split.at("from"), "d");
-    EXPECT_EQ(split.at("to"), "d.fine");
+    EXPECT_EQ(split.at("from"), "");
+    EXPECT_EQ(split.at("to"), ".fine");
     EXPECT_EQ(split.at("elements_after"), 119);
     EXPECT_NEAR(split.at("energy_before_eV").at("twist"), before.back()["twist_eV"], 1e-9);
     EXPECT_NEAR(split.at("energy_after_eV").at("contact"), after.front()["vdw_eV"], 1e-9);
     const std::string report = slurp(dir / name / "report.html");
     EXPECT_THAT(report, HasSubstr("Elements split on the way"));
-    EXPECT_THAT(report, HasSubstr("<b>d.fine</b>"));
+    EXPECT_THAT(report, HasSubstr("<b>DIR.fine</b>"));
   }
   EXPECT_EQ(Json::parse(slurp(dir / "d/manifest.json")).at("status"), "refined");
   EXPECT_THAT(slurp(dir / "d.fine/scene.toml"), HasSubstr("of the run d: every element split in two"));
@@ -191,6 +191,14 @@ TEST_F(Limits, RefineGoesOnBesideTheRun) {
   const Outcome back = run("resume d");
   EXPECT_EQ(back.code, 2);
   EXPECT_THAT(back.err, HasSubstr("ropewalk resume d.fine"));
+  // So it is under other names.
+  fs::rename(dir / "d", dir / "moved");
+  fs::rename(dir / "d.fine", dir / "moved.fine");
+  const Outcome moved = run("resume moved");
+  EXPECT_EQ(moved.code, 2);
+  EXPECT_THAT(moved.err, HasSubstr("ropewalk resume moved.fine"));
+  fs::rename(dir / "moved", dir / "d");
+  fs::rename(dir / "moved.fine", dir / "d.fine");
   EXPECT_EQ(run("resume d.fine --quiet --until 7.5").code, 0);
   EXPECT_NEAR(log_of("d.fine").back()["time_ps"], 7.5, 0.02);
   // Nothing is overwritten by chance, and both on demand.
