@@ -70,10 +70,18 @@ struct SweepPoint {
   double work = 0;                // elements times ps, which the time of a run goes by; a guess for relaxations
 };
 
-// With `check`, every scene is read once, so that a key or a value that is wrong is found here: InputError.
-std::vector<SweepPoint> points_of(const Sweep& sweep, bool check = true);
-// The runs that branches share: each once, in the order of the points.
-std::vector<SweepPoint> starts_of(const Sweep& sweep);
+// What is found out about the points; each takes more time than the one before.
+enum class PointsAs {
+  names,   // with values and starts, and without scenes
+  scenes,  // their texts
+  read,    // every scene is read once, so that a key or a value that is wrong is found: InputError
+  built,   // and made, as at the begin of a run
+};
+std::vector<SweepPoint> points_of(const Sweep& sweep, PointsAs as = PointsAs::built);
+// Makes the same of a point that is known by name.
+void complete(const Sweep& sweep, SweepPoint& point, PointsAs as = PointsAs::built);
+// The runs that these points share by their branches: each once.
+std::vector<SweepPoint> starts_of(const Sweep& sweep, const std::vector<SweepPoint>& points);
 
 // Points that differ in their seed alone.
 struct Replicates {

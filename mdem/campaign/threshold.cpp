@@ -141,11 +141,34 @@ RunDirectory trial_directory(const CampaignDirectory& dir, const Sweep& sweep, c
   return {fmt::format("{}/{}-{}", dir.point(point.name).path, leaf_of(sweep.threshold->key), value_text(value))};
 }
 
-std::string trial_hash(const Sweep& sweep, const SweepPoint& point, double value) {
-  std::string all = trial_text(sweep, point, value);
+namespace {
+
+std::string files_of(const SweepPoint& point) {
+  std::string all;
   for (const std::string& set : point.sets) all += read_file(set);
   if (!point.state.empty()) all += read_file(point.state);
-  return hash_hex(all);
+  return all;
+}
+
+constexpr double marked = 9.87654e+77;  // a value that no scene has
+
+}  // namespace
+
+std::string trial_hash(const Sweep& sweep, const SweepPoint& point, double value) {
+  return hash_hex(trial_text(sweep, point, value) + files_of(point));
+}
+
+TrialHashes::TrialHashes(const Sweep& sweep, const SweepPoint& point) : sweep_(sweep), point_(point) {
+  const std::string text = trial_text(sweep, point, marked), mark = value_text(marked);
+  const std::size_t at = text.find(mark);
+  plain_ = at != std::string::npos && text.find(mark, at + 1) == std::string::npos;
+  if (!plain_) return;
+  head_ = text.substr(0, at);
+  tail_ = text.substr(at + mark.size()) + files_of(point);
+}
+
+std::string TrialHashes::of(double value) const {
+  return plain_ ? hash_hex(head_ + value_text(value) + tail_) : trial_hash(sweep_, point_, value);
 }
 
 namespace {
@@ -156,6 +179,7 @@ std::vector<Trial> trials_in(const CampaignDirectory& dir, const Sweep& sweep, c
   const ThresholdQuestion& q = *sweep.threshold;
   const std::string folder = dir.point(point.name).path, begins = leaf_of(q.key) + "-";
   if (!fs::exists(folder)) return trials;
+  refuse_strange(folder, true);
   const Scene scene = scene_of(sweep, point);
   const MomentRamp* ramp = scene.moment_ramp();
   const double constant_from = ramp ? ramp->ramp_time() : 0;

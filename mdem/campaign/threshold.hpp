@@ -60,6 +60,18 @@ std::string trial_text(const Sweep& sweep, const SweepPoint& point, double value
 RunDirectory trial_directory(const CampaignDirectory& dir, const Sweep& sweep, const SweepPoint& point,
                              double value);
 std::string trial_hash(const Sweep& sweep, const SweepPoint& point, double value);
+// The same for many values of one point: its scene is written and its files are read once.
+class TrialHashes {
+ public:
+  TrialHashes(const Sweep& sweep, const SweepPoint& point);
+  std::string of(double value) const;
+
+ private:
+  const Sweep& sweep_;
+  const SweepPoint& point_;
+  std::string head_, tail_;  // of the text around the value, with the files behind
+  bool plain_;               // the value stands in one place
+};
 // Trials of earlier searches by the name of their point.
 using KnownTrials = std::map<std::string, std::vector<Trial>>;
 // From the runs of this point in the directory, and from its known trials.
@@ -76,9 +88,9 @@ struct PhasePoint {
   double sliding = 0, glued = 0;  // theory, in the unit of the key; zero where there is none
 
   double by_bisection() const, bisection_error() const;
-  // The number of seeds whose outcome falls with the key, whose outcome changes more than once, and whose outcome is
-  // the same at all values of the key that were tried. A seed of the third kind has no threshold, and then there is no
-  // mean: by_bisection() is nan.
+  // The number of seeds whose outcome falls with the key, whose outcome changes more than once, and whose outcome
+  // is the same at all values of the key that were tried. A seed of the third kind has no threshold, and then there
+  // is no mean: by_bisection() is nan.
   std::size_t falling_seeds() const, unclear_seeds() const, outside_seeds() const;
   std::size_t cut_short_runs() const;  // Trial::cut_short
   // Remarks on the bisection: such seeds and runs. Empty: none.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
 
 #include "campaign/point_runs.hpp"
 #include "io/files.hpp"
@@ -14,11 +15,8 @@
 #include "scene/scene_toml.hpp"
 
 namespace ropewalk {
-namespace {
 
 namespace fs = std::filesystem;
-
-}  // namespace
 
 ThresholdSearch::ThresholdSearch(Sweep sweep, CampaignDirectory dir)
     : sweep_(std::move(sweep)), dir_(std::move(dir)), points_(points_of(sweep_)) {
@@ -35,7 +33,7 @@ Scene ThresholdSearch::scene_at(const SweepPoint& p, double value) const {
 }
 
 void ThresholdSearch::begin(bool force) {
-  create_campaign(dir_, sweep_, {}, force);
+  lock_ = create_campaign(dir_, sweep_, {}, force);
   refuse_other_scenes(force);
   // Runs of its own table that are not in the directory.
   if (fs::exists(dir_.trials())) {
@@ -58,22 +56,34 @@ void ThresholdSearch::refuse_other_scenes(bool force) const {
       if (!force)
         throw InputError({run.path, 0, "--out"}, "was run with another scene, parameter set or state file",
                          "choose another --out, or give --force to run it anew");
-      fs::remove_all(run.path);
+      remove_run(run, "--force");
     }
   }
 }
 
 std::pair<std::size_t, std::size_t> ThresholdSearch::take(const std::string& path) {
   const std::vector<Trial> trials = read_trials(path);
-  std::size_t others = 0;
+  std::vector<TrialHashes> hashes;
+  for (const SweepPoint& p : points_) hashes.emplace_back(sweep_, p);
+  std::size_t others = 0, last = 0;
+  std::map<std::string, const Trial*> seen;
   for (const Trial& t : trials) {
-    const auto at = std::find_if(points_.begin(), points_.end(), [&](const SweepPoint& p) {
-      return trial_hash(sweep_, p, t.value) == t.scene_hash;
-    });
-    if (at == points_.end())
+    const auto [at, is_new] = seen.emplace(t.scene_hash, &t);
+    if (!is_new && (at->second->passed != t.passed || at->second->time != t.time))
+      throw InputError(
+          {path, 0, "scene_xxh64"},
+          fmt::format("two rows of the scene {} at {:g} differ in what came of it", t.scene_hash, t.value),
+          "one of them was changed: take it away, or leave --known out");
+    if (!is_new) continue;
+    // Rows of one point follow one another.
+    std::size_t k = 0;
+    while (k < points_.size() && hashes[(last + k) % points_.size()].of(t.value) != t.scene_hash) ++k;
+    if (k == points_.size()) {
       ++others;
-    else
-      known_[at->name].push_back(t);
+      continue;
+    }
+    last = (last + k) % points_.size();
+    known_[points_[last].name].push_back(t);
   }
   return {others, trials.size()};
 }

@@ -39,6 +39,7 @@ class ThresholdSearch {
   CampaignDirectory dir_;
   std::vector<SweepPoint> points_;
   KnownTrials known_;
+  DirectoryLock lock_;
 };
 
 }  // namespace ropewalk

@@ -51,7 +51,7 @@ class Import {
                        "run in.rope with lmp-ropewalk first, as README.txt says");
     for (const LammpsRow& row : read_lammps_rows(files_, prepared_.interaction.terms.size()))
       rows_[static_cast<std::int64_t>(row.step)] = row;
-    remove_parts(dir_.path);
+    remove_run_parts(dir_);
     log_ = read_file(dir_.log()).substr(0, checkpoint_.log.bytes);
     const std::string there = dir_.frames();
     frames_ = std::make_unique<NewFrames>(there, format_of(there), 0, there, checkpoint_.frames.bytes);

@@ -50,6 +50,17 @@ std::string run_files_markdown();  // the table in Markdown
 // process works there, and if it holds other files, even with `force`.
 DirectoryLock create_run_directory(const RunDirectory& dir, bool force);
 
+// Removes the directory of a run. Throws InputError, and removes nothing, where another process works there and
+// where it holds anything else. No directory: nothing happens.
+void remove_run(const RunDirectory& dir, const char* option);
+// Removes all files of a run but the lock, which the caller holds.
+void empty_run_directory(const RunDirectory& dir);
+// Throws InputError where a file of a run is a link, a pipe or another thing that is no file. Called before any is
+// read, since a directory may come from somebody else.
+void refuse_strange_files(const RunDirectory& dir);
+// Removes what killed processes left half written.
+void remove_run_parts(const RunDirectory& dir);
+
 // Whether there is a checkpoint, of either generation.
 bool has_checkpoint(const RunDirectory& dir);
 

@@ -101,7 +101,7 @@ TEST_F(SweepFile, BranchesShareAStart) {
   ASSERT_EQ(points.size(), 4u);
   EXPECT_EQ(points[0].start, "tubes-7");
   EXPECT_EQ(points[3].start, "tubes-19");
-  EXPECT_EQ(starts_of(sweep(text)).size(), 2u);
+  EXPECT_EQ(starts_of(sweep(text), points).size(), 2u);
 }
 
 TEST_F(SweepFile, WrongOnesGetOneClearLine) {
