@@ -74,11 +74,16 @@ bool was_just_begun(const CampaignDirectory& dir) {
 
 }  // namespace
 
+RunDirectory CampaignDirectory::run_in(const std::string& folder, const std::string& name) const {
+  const std::string parent = path + "/" + folder;
+  for (const std::string& place : {parent, parent + "/" + name}) refuse_strange(place, true);
+  return {parent + "/" + name};
+}
+
 PointProgress progress_of(const RunDirectory& dir) {
   using Stage = PointProgress::Stage;
   PointProgress p;
   p.status = "waiting";
-  refuse_strange(dir.path, true);
   refuse_strange_files(dir);
   if (!fs::exists(dir.manifest())) {
     if (has_checkpoint(dir)) p.stage = Stage::begun, p.status = "interrupted";

@@ -18,9 +18,11 @@ struct CampaignDirectory {
   std::string scene() const { return path + "/scene.toml"; }
   std::string table() const { return path + "/table.csv"; }
   std::string trials() const { return path + "/trials.csv"; }
-  RunDirectory point(const std::string& name) const { return {path + "/points/" + name}; }
-  RunDirectory start(const std::string& name) const { return {path + "/starts/" + name}; }
+  // Throw InputError where it is a link.
+  RunDirectory point(const std::string& name) const { return run_in("points", name); }
+  RunDirectory start(const std::string& name) const { return run_in("starts", name); }
   std::string messages(const std::string& name) const { return path + "/messages/" + name + ".txt"; }
+  RunDirectory run_in(const std::string& folder, const std::string& name) const;
 };
 
 // Beside the file of the sweep, where `out` is empty.

@@ -54,6 +54,7 @@ std::vector<RunGroup> groups_in(const std::string& path) {
 RunCurve curve_of(const RunGroup& group, bool pictured) {
   std::vector<std::vector<LogRow>> logs;
   for (const RunDirectory& run : group.runs) {
+    refuse_strange_files(run);
     std::vector<LogRow> log = read_log(run.log());
     if (!log.empty()) logs.push_back(std::move(log));
   }

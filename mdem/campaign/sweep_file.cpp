@@ -282,6 +282,7 @@ void check_scene(const Sweep& s, SweepPoint& p, bool build) {
   try {
     Scene scene = scene_of(s, p);
     if (build) refuse_cooling(scene, prepare(scene));
+    p.sets.clear();
     for (const ParameterSet& set : scene.sets) p.sets.push_back(set.path);
     p.state = scene.source->file();
     const bool relaxes = scene.run.mode == RunOptions::Mode::relax;

@@ -186,6 +186,7 @@ std::vector<Trial> trials_in(const CampaignDirectory& dir, const Sweep& sweep, c
   for (const auto& entry : fs::directory_iterator(folder)) {
     const std::string name = entry.path().filename().string();
     const RunDirectory run{entry.path().string()};
+    refuse_strange(run.path, true);
     if (name.rfind(begins, 0) != 0 || progress_of(run).stage != PointProgress::Stage::ended) continue;
     const double value = std::stod(name.substr(begins.size()));
     // A moment that the ramp takes less time to.

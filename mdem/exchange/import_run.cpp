@@ -120,7 +120,8 @@ class Import {
     if (scene_.run.mode == RunOptions::Mode::relax || step < marked_at_ + StepControl::window) return;
     const EnergyMark now{account.potential.potential() + account.kinetic, {account.work, account.dissipated}};
     const bool closes =
-        account_closes(mark_, now, account.kinetic, account.potential.bonds(), prepared_.state.size());
+        account_closes(mark_, now, account.kinetic, account.potential.bonds(), account.potential.vdw,
+                       prepared_.state.size());
     if (!closes && !told_of_account_)
       listener_.tell(fmt::format(
           "note: from step {} to {} the account of energy does not close. `run` would have gone back and divided "

@@ -73,13 +73,13 @@ void refuse_foreign(const std::string& directory, const IsOurs& ours, const char
 }
 
 void remove_inside(const std::string& directory, const IsOurs& ours, const char* what, const char* option,
-                   const std::string& keep) {
+                   const IsOurs& keep) {
   refuse_foreign(directory, ours, what, option);
   const std::vector<fs::path> all = all_below(directory);
   for (auto path = all.rbegin(); path != all.rend(); ++path) {
     const std::string inside = path->lexically_relative(directory).string();
     std::error_code error;
-    if (inside == keep || !ours(inside)) continue;
+    if ((keep && keep(inside)) || !ours(inside)) continue;
     fs::remove(*path, error);
     if (error) throw not_removed(*path, option, error);
   }

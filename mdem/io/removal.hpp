@@ -1,4 +1,5 @@
-// Directories that this program makes and removes. Nothing else in the sources removes a directory with its content.
+// Directories that this program makes and removes. Nothing else in the sources removes a directory with its
+// content.
 #pragma once
 
 #include <functional>
@@ -31,13 +32,14 @@ using IsOurs = std::function<bool(const std::string& inside)>;
 // Throws InputError, which names it, where a directory holds anything that is not `ours`. `what`: "of a run".
 // `option`: of the command line, for the message. No directory: nothing happens.
 void refuse_foreign(const std::string& directory, const IsOurs& ours, const char* what, const char* option);
-// Removes what is in the directory, apart from `keep`; links, and not what they name. Removes nothing where
-// refuse_foreign() throws.
+// Removes what is in the directory, apart from what is to `keep`; links, and not what they name. Removes nothing
+// where refuse_foreign() throws.
 void remove_inside(const std::string& directory, const IsOurs& ours, const char* what, const char* option,
-                   const std::string& keep = "");
+                   const IsOurs& keep = nullptr);
 
-// Makes an empty directory for a program whose files this one does not know by name, such as LAMMPS, and marks it by
-// a file. One that is there already is made empty if it has that file; InputError where it has not and is not empty.
+// Makes an empty directory for a program whose files this one does not know by name, such as LAMMPS, and marks it
+// by a file. One that is there already is made empty if it has that file; InputError where it has not and is not
+// empty.
 void make_work_folder(const std::string& path, const char* option);
 // Removes a directory that make_work_folder() made.
 void remove_work_folder(const std::string& path);

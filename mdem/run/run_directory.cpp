@@ -127,12 +127,12 @@ DirectoryLock create_run_directory(const RunDirectory& dir, bool force) {
     throw InputError({dir.path, 0, "--out"}, fmt::format("cannot be made: {}", error.message()),
                      "choose a place that you may write to");
   DirectoryLock lock(dir.path);
-  remove_inside(dir.path, belongs_to_a_run, of_a_run, "--force", lock_name);
+  remove_inside(dir.path, belongs_to_a_run, of_a_run, "--force", is_lock_file);
   return lock;
 }
 
 void empty_run_directory(const RunDirectory& dir) {
-  remove_inside(dir.path, belongs_to_a_run, of_a_run, "", lock_name);
+  remove_inside(dir.path, belongs_to_a_run, of_a_run, "", is_lock_file);
 }
 
 void remove_run(const RunDirectory& dir, const char* option) {
@@ -141,7 +141,7 @@ void remove_run(const RunDirectory& dir, const char* option) {
   refuse_foreign(dir.path, belongs_to_a_run, of_a_run, option);
   {
     const DirectoryLock lock(dir.path);
-    remove_inside(dir.path, belongs_to_a_run, of_a_run, option, lock_name);
+    remove_inside(dir.path, belongs_to_a_run, of_a_run, option, is_lock_file);
   }
   std::error_code error;
   fs::remove(dir.path, error);
@@ -153,6 +153,11 @@ void refuse_strange_files(const RunDirectory& dir) {
   for (fs::directory_iterator at(dir.path, error), end; !error && at != end; at.increment(error)) {
     const std::string name = at->path().filename().string();
     if (is_run_file(name)) refuse_strange(at->path().string(), name == "errors");
+  }
+  for (fs::directory_iterator at(dir.file("errors"), error), end; !error && at != end; at.increment(error)) {
+    const bool run = fs::is_directory(at->path());
+    refuse_strange(at->path().string(), run);
+    if (run) refuse_strange_files({at->path().string()});
   }
 }
 

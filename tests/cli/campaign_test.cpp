@@ -272,6 +272,15 @@ TEST_F(Campaign, ThresholdIsThatOfTheFormula) {
   ASSERT_EQ(run("threshold s.toml --out t --known s/trials.csv").code, 0);
   EXPECT_EQ(slurp(dir / "t/thresholds.csv"), before);
   EXPECT_EQ(runs_of("t"), 0u);
+  // Rows of one scene that differ in what came of it.
+  std::string row = lines(slurp(dir / "s/trials.csv")).back();
+  std::size_t at = row.size();
+  for (int k = 0; k < 5; ++k) at = row.rfind(',', at - 1);
+  row[at + 1] = row[at + 1] == '1' ? '0' : '1';
+  spit(dir / "both.csv", slurp(dir / "s/trials.csv") + row + "\n");
+  const Outcome both = run("threshold s.toml --out v --known both.csv");
+  EXPECT_EQ(both.code, 2);
+  EXPECT_NE(both.err.find("differ in what came of it"), std::string::npos) << both.err;
   fs::remove_all(dir / "s/points");
   std::string finer = slurp(dir / "s.toml");
   finer.replace(finer.find("0.01"), 4, "0.005");
