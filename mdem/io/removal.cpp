@@ -49,9 +49,9 @@ void remove_whole(const std::string& directory) {
 }  // namespace
 
 TemporaryFolder::TemporaryFolder(const std::string& in) : process_(::getpid()) {
-  std::error_code error;
-  const fs::path place = in.empty() ? fs::temp_directory_path(error) : fs::path(in);
-  path_ = ((error ? fs::path("/tmp") : place) / "ropewalk-XXXXXX").string();
+  const char* named = std::getenv("TMPDIR");
+  const fs::path place = !in.empty() ? in : named && *named ? named : "/tmp";
+  path_ = (place / "ropewalk-XXXXXX").string();
   if (!::mkdtemp(path_.data()))
     throw InputError({path_, 0, ""}, fmt::format("cannot be made: {}", std::strerror(errno)),
                      in.empty() ? "set TMPDIR to a directory that can be written and has room"
