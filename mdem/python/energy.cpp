@@ -56,7 +56,7 @@ void refuse_no_numbers(const Forces& f) {
     if (!Vector3(f.force[i]).allFinite() || !Vector3(f.torque[i]).allFinite())
       throw InputError({"", 0, "state"}, fmt::format("the force on element {} is no finite number", i),
                        "two elements lie in one place, or much too close");
-  if (!std::isfinite(f.energy.total()))
+  if (!std::isfinite(f.energy.potential()))
     throw InputError({"", 0, "state"}, "its energy is no finite number",
                      "two elements lie in one place, or much too close");
 }
