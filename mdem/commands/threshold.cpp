@@ -55,7 +55,8 @@ int threshold_command(const ThresholdArguments& a) {
                      "add [threshold] with key, from, to, column and above, or run it with `ropewalk sweep`");
   if (!sweep.branch_axes.empty())
     throw InputError({a.file, 0, "branch"}, "does not go with [threshold]", "take it away");
-  if (const std::string why = why_replicates_are_equal(sweep, points_of(sweep, PointsAs::scenes)); !why.empty()) tell("note: " + why);
+  if (const std::string why = why_replicates_are_equal(sweep, points_of(sweep, PointsAs::scenes)); !why.empty())
+    tell("note: " + why);
   const CampaignDirectory dir = campaign_directory(a.file, a.out);
   ThresholdSearch search(std::move(sweep), dir);
   search.begin(a.force);
