@@ -113,7 +113,7 @@ Outputs time_outputs(const Scene& scene, const Prepared& p, const RunTime& t) {
   LimitWatch watch(watched_of(scene, p.topology, p.interaction.law.get()));
   const double began = processor_seconds();
   const LogRow row = log_row(observer, scene, p.topology, s.state(), {});
-  watch.check(p.topology, s.state(), s.list(), std::numeric_limits<double>::quiet_NaN(), false);
+  watch.check(p.topology, s.state(), s.list(), {}, false);
   log_line(row);
   o.row = processor_seconds() - began;
   const ElementColours colours = element_colours(p.topology, p.interaction, s.state());
