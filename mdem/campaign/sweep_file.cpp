@@ -13,6 +13,7 @@
 
 #include "io/files.hpp"
 #include "io/log.hpp"
+#include "io/plain_text.hpp"
 #include "io/toml_table.hpp"
 #include "model/error.hpp"
 #include "plan/scene_edit.hpp"
@@ -257,7 +258,7 @@ SweepPoint point_of(const Sweep& s, const std::vector<Setting>& settings) {
     const std::string& value = setting.axis->values[setting.number];
     if (setting.axis->key == length_key) {
       set(setting);
-      keep_free_length(s, before, std::strtod(value.c_str(), nullptr), p.text);
+      keep_free_length(s, before, leading_number(value).value_or(0), p.text);
     }
     p.values.push_back(value);
     if (setting.axis->values.size() == 1) continue;  // the same for all

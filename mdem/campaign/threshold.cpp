@@ -11,6 +11,7 @@
 #include "io/csv_reader.hpp"
 #include "io/files.hpp"
 #include "io/log.hpp"
+#include "io/plain_text.hpp"
 #include "model/error.hpp"
 #include "observe/growth.hpp"
 #include "plan/scene_edit.hpp"
@@ -138,7 +139,7 @@ std::vector<Trial> trials_in(const CampaignDirectory& dir, const Sweep& sweep, c
     const std::string name = entry.path().filename().string();
     const RunDirectory run{entry.path().string()};
     if (name.rfind(begins, 0) != 0 || progress_of(run).stage != PointProgress::Stage::ended) continue;
-    const double value = std::stod(name.substr(begins.size()));
+    const double value = leading_number(std::string_view(name).substr(begins.size())).value_or(0);
     // A moment that the ramp takes less time to.
     const double from = ramp && ramp->moment > 0 && q.key == "twist.moment_nN_nm"
                             ? constant_from * value * units::nN_nm / ramp->moment

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <regex>
 
+#include "io/plain_text.hpp"
 #include "model/error.hpp"
 #include "plan/model_changes.hpp"
 #include "plan/outcome.hpp"
@@ -305,10 +306,10 @@ Expectations expectations_of(const std::string& text) {
   Expectations out;
   const std::regex line("# plan: expect (\\S+) (\\S+)");
   for (auto at = std::sregex_iterator(text.begin(), text.end(), line); at != std::sregex_iterator(); ++at)
-    out.errors[(*at)[1]] = std::strtod((*at)[2].str().c_str(), nullptr);
+    out.errors[(*at)[1]] = leading_number((*at)[2].str()).value_or(0);
   const auto number = [&](const char* pattern) {
     std::smatch found;
-    return std::regex_search(text, found, std::regex(pattern)) ? std::strtod(found[1].str().c_str(), nullptr) : 0.0;
+    return std::regex_search(text, found, std::regex(pattern)) ? leading_number(found[1].str()).value_or(0) : 0.0;
   };
   out.asked = number("# plan: asked (\\S+)");
   out.seconds = number("# plan: seconds (\\S+)");
