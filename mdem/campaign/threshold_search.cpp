@@ -9,6 +9,7 @@
 
 #include "campaign/point_runs.hpp"
 #include "io/files.hpp"
+#include "io/plain_text.hpp"
 #include "io/processes.hpp"
 #include "model/error.hpp"
 #include "scene/scene_toml.hpp"
@@ -19,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // To three digits, so that runs have short names.
-double rounded(double value) { return std::isfinite(value) ? std::stod(fmt::format("{:.3g}", value)) : value; }
+double rounded(double value) { return leading_number(fmt::format("{:.3g}", value)).value_or(value); }
 
 }  // namespace
 
