@@ -216,6 +216,10 @@ std::vector<Trial> read_trials(const std::string& path) {
   return trials;
 }
 
+bool PhasePoint::begun() const {
+  return std::any_of(seeds.begin(), seeds.end(), [](const Threshold& t) { return !t.trials.empty(); });
+}
+
 double PhasePoint::by_bisection() const {
   std::vector<double> middles;
   for (const Threshold& t : seeds)
