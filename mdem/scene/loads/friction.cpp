@@ -167,7 +167,12 @@ DriveKind friction_drive() {
           [](const TomlTable& t, const Scene& scene) -> std::shared_ptr<const Drive> {
             return std::make_shared<const FrictionDrive>(friction_table().read(t, scene));
           },
-          "elastic energy of friction"};
+          "elastic energy of friction",
+          {{"friction_slip_eV", "eV", "energy lost to slip under the strength of friction since the start",
+            &TermAccount::lost},
+           {"friction_drag_eV", "eV", "energy lost to the drag of friction since the start", &TermAccount::drag},
+           {"friction_slips", "", "slips since the start: contacts of two elements that began to slide",
+            &TermAccount::events}}};
 }
 
 }  // namespace ropewalk

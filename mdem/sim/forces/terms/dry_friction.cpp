@@ -107,7 +107,7 @@ class DryFrictionTerm : public ForceTerm {
   }
 
   // In blocks of contacts, whose sums are added up in their order whatever the threads.
-  double advance(double, const State& state) override {
+  Happened advance(double, const State& state) override {
     const auto blocks = static_cast<std::ptrdiff_t>((contacts_.size() + block - 1) / block);
     std::vector<Advanced> advanced(static_cast<std::size_t>(blocks));
 #pragma omp parallel for schedule(static) if (contacts_.size() > parallel_from)
@@ -119,11 +119,12 @@ class DryFrictionTerm : public ForceTerm {
     }
     Advanced all;
     for (const Advanced& of : advanced) {
-      all.lost += of.lost;
+      all.happened.lost += of.happened.lost;
+      all.happened.events += of.happened.events;
       all.others = all.others || of.others;
     }
     if (all.others) index();
-    return all.lost;
+    return all.happened;
   }
 
   TermSum add(const State&, const Segment& part, const ForceRows& out) const override {
@@ -196,7 +197,7 @@ class DryFrictionTerm : public ForceTerm {
  private:
   static constexpr std::size_t block = 512;
   struct Advanced {
-    double lost = 0;      // eV
+    Happened happened;
     bool others = false;  // elements of contacts have changed
   };
   // The contacts of each element.
@@ -320,9 +321,11 @@ class DryFrictionTerm : public ForceTerm {
     Contact& c = contacts_[k];
     Now& now = now_[k];
     const double squared = now.z * now.z + now.y * now.y;
+    const double limit = law_.elastic_slip * law_.elastic_slip;
     double lost = 0;
-    bool acts_otherwise = false;
-    if (squared > law_.elastic_slip * law_.elastic_slip) {
+    bool acts_otherwise = false, begins_to_slide = false;
+    if (squared > limit) {
+      begins_to_slide = c.z * c.z + c.y * c.y < (1 - 1e-9) * limit;
       const double part = law_.elastic_slip / std::sqrt(squared), stiff_s = stiff_along(c),
                    stiff_g = stiff_turning(c);
       // The work of sliding under the strength.
@@ -347,7 +350,9 @@ class DryFrictionTerm : public ForceTerm {
     } else if (acts_otherwise) {
       now = now_of(c, state);
     }
-    if (element(c.a).own) all.lost += lost;
+    if (!element(c.a).own) return;
+    all.happened.lost += lost;
+    all.happened.events += begins_to_slide;
   }
 
   // To the element of b's tube that a faces now. The slips stay. False: there is none.

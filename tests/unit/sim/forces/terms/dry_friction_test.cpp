@@ -9,6 +9,7 @@
 #include "io/log.hpp"
 #include "model/error.hpp"
 #include "model/units.hpp"
+#include "run/moving_scene.hpp"
 #include "scene/finer.hpp"
 #include "scene/prepare.hpp"
 #include "scene/scene_toml.hpp"
@@ -215,7 +216,7 @@ const std::string pulled =
     "[[load]]\nkind = \"fix\"\ntubes = [1, 3, 5]\nelements = [0]\n";
 
 TEST(DryFriction, TheAccountOfEnergyStaysClosedWhereTubesSlide) {
-  Scene scene = rope(both + pulled, "duration_ps = 20\ntime_step_fs = 2\n", cold);
+  Scene scene = rope(both + "drag_eV_ps_per_nm3 = 0.05\n" + pulled, "duration_ps = 20\ntime_step_fs = 2\n", cold);
   Simulation s = start(scene, prepare(scene));
   const double total = s.total_energy();
   double error = 0;
@@ -225,6 +226,37 @@ TEST(DryFriction, TheAccountOfEnergyStaysClosedWhereTubesSlide) {
   }
   EXPECT_GT(s.dissipated(), 1) << "it slides";
   EXPECT_LT(error, 1e-5 * s.dissipated());
+  const TermAccount of_friction = s.term_accounts().at(0);
+  EXPECT_GT(of_friction.lost, 0.5);
+  EXPECT_GT(of_friction.drag, 0.01);
+  EXPECT_GE(of_friction.events, 6 * 10) << "the elements of a tube begin to slide on six others";
+  EXPECT_NEAR(of_friction.lost + of_friction.drag, s.dissipated(), 1e-9 * s.dissipated()) << "nothing else loses";
+}
+
+// Below the strength nothing slips.
+TEST(DryFriction, HeldTubesLoseNothing) {
+  Scene scene = rope(axial + "[[load]]\nkind = \"force\"\ntubes = [0]\nelements = \"all\"\nforce_nN = [0, 0, 0.05]\n",
+                     "duration_ps = 20\ntime_step_fs = 2\n", cold);
+  Simulation s = start(scene, prepare(scene));
+  s.steps(500);
+  EXPECT_GT(s.forces().term_energy.at(0), 1e-3);
+  const TermAccount of_friction = s.term_accounts().at(0);
+  EXPECT_EQ(of_friction.lost, 0);
+  EXPECT_EQ(of_friction.events, 0);
+}
+
+TEST(DryFriction, TheLogTellsItsLossesFromThoseOfDamping) {
+  Scene scene = rope(both + "drag_eV_ps_per_nm3 = 0.05\n" + pulled, "duration_ps = 20\ntime_step_fs = 2\n");
+  MovingScene moving(scene);
+  moving.simulation.steps(1000);
+  const LogRow row = moving.row();
+  const TermAccount of_friction = moving.simulation.term_accounts().at(0);
+  EXPECT_EQ(row["friction_slip_eV"], of_friction.lost);
+  EXPECT_EQ(row["friction_drag_eV"], of_friction.drag);
+  EXPECT_EQ(row["friction_slips"], of_friction.events);
+  EXPECT_GT(row["damping_eV"], 0.1);
+  EXPECT_NEAR(row["damping_eV"] + row["friction_slip_eV"] + row["friction_drag_eV"], row["dissipated_eV"], 1e-9);
+  EXPECT_THAT(damping_words(row), HasSubstr("which atoms do not have"));
 }
 
 TEST(DryFriction, SameBitsOnAnyThreadsAndAfterResume) {
@@ -239,6 +271,7 @@ TEST(DryFriction, SameBitsOnAnyThreadsAndAfterResume) {
     whole.step(n % 50 == 49);
   }
   EXPECT_GT(whole.forces().term_energy[0], 0.01);
+  EXPECT_GT(whole.term_accounts()[0].events, 10);
   const std::string end = whole.serialise();
   for (const int threads : {2, 3}) {
     omp_set_num_threads(threads);
@@ -267,6 +300,8 @@ TEST(DryFriction, IsCarriedOverWhereElementsAreSplit) {
   split.remember(s.halved_memory(heirs(p.topology, splitting_of(coarse))));
   EXPECT_GT(s.forces().term_energy[0], 0.05);
   EXPECT_NEAR(split.forces().term_energy[0] / s.forces().term_energy[0], 1, 0.05);
+  EXPECT_GT(s.term_accounts()[0].lost, 0);
+  EXPECT_EQ(split.term_accounts()[0].lost, s.term_accounts()[0].lost);
 }
 
 TEST(DryFriction, BadOnesAreRefused) {
