@@ -81,7 +81,7 @@ std::vector<Observable>& table() {
        [](const M& m) { return m.account.kinetic; }},
       {"work_eV", "eV", "work done by the loads since the start", Group::energy,
        [](const M& m) { return m.account.work; }},
-      {"dissipated_eV", "eV", "energy taken out by damping since the start", Group::energy,
+      {"dissipated_eV", "eV", "energy lost since the start, to damping and to friction", Group::energy,
        [](const M& m) { return m.account.dissipated; }},
       {"damping_eV", "eV", "the part of it that numerical damping has taken, which atoms do not have", Group::energy,
        [](const M& m) { return lost_to_damping(m.account); }},

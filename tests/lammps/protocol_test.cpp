@@ -62,6 +62,12 @@ INSTANTIATE_TEST_SUITE_P(
         Protocol{"Total", "[twist]\nmoment_nN_nm = 60\nrate_nN_nm_per_ps = 100\nreading = \"total\"\n"},
         Protocol{"Tangential",
                  "[twist]\nmoment_nN_nm = 10\nrate_nN_nm_per_ps = 30\napplication = \"tangential\"\n"},
+        Protocol{"Follower",
+                 "[twist]\nmoment_nN_nm = 20\nrate_nN_nm_per_ps = 30\napplication = \"follower\"\n"
+                 "[start]\ntemperature_K = 100\nmay_cool = true\n"},
+        Protocol{"Conservative",
+                 "[twist]\nmoment_nN_nm = 20\nrate_nN_nm_per_ps = 30\napplication = \"conservative\"\n"
+                 "[start]\ntemperature_K = 100\nmay_cool = true\n"},
         Protocol{"Held",
                  "[twist]\nmoment_nN_nm = 20\nrate_nN_nm_per_ps = 30\nlateral = \"held\"\naxial = \"held\"\n"
                  "[start]\ntemperature_K = 100\nmay_cool = true\n"},
