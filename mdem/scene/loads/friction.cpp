@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <filesystem>
 
 #include "io/friction_toml.hpp"
 #include "model/error.hpp"
@@ -21,7 +22,7 @@ constexpr double pN = 1e-3 * units::nN_nm;  // eV/nm; a force per length in pN/n
 // A law, and the atoms that it was measured from.
 struct FrictionLaw {
   DryFriction law;
-  std::string words;
+  std::string words, file;
 };
 
 class FrictionDrive : public Drive {
@@ -41,6 +42,12 @@ class FrictionDrive : public Drive {
           f.law.types.empty() ? "" : fmt::format(" between types {}", fmt::join(f.law.types, " and ")),
           f.law.axial / pN, f.law.spin / pN, f.law.end / pN, f.law.elastic_slip, f.law.drag, f.words);
     return text;
+  }
+  std::vector<std::string> files() const override {
+    std::vector<std::string> all;
+    for (const FrictionLaw& f : laws)
+      if (!f.file.empty()) all.push_back(f.file);
+    return all;
   }
   void refuse(const TomlTable& top, const Scene& scene) const override {
     if (scene.has_ends(Ends::endless))
@@ -72,12 +79,12 @@ void read_from(const TomlTable& t, const Scene&, FrictionDrive& friction) {
 
 FrictionLaw law_of(const PairFriction& f, std::vector<int> types, const std::string& estimate) {
   return {{f.strength, f.spin_strength, f.end_strength, f.elastic_slip, f.drag, std::move(types)},
-          fmt::format(", of atoms ({}{})", f.name, estimate)};
+          fmt::format(", of atoms ({}{})", f.name, estimate), f.path};
 }
 
 // Of all pairs of tube types, or the pair that is given.
 std::vector<FrictionLaw> laws_of_atoms(const Scene& scene, const std::vector<int>& types,
-                                       const InputError::Place& place) {
+                                       const std::vector<std::string>& folders, const InputError::Place& place) {
   std::vector<FrictionLaw> laws;
   const auto n = static_cast<int>(scene.sets.size());
   for (int i = 0; i < n; ++i)
@@ -85,7 +92,7 @@ std::vector<FrictionLaw> laws_of_atoms(const Scene& scene, const std::vector<int
       if (!types.empty() && (i != std::min(types[0], types[1]) || j != std::max(types[0], types[1]))) continue;
       const Chirality a = scene.sets[static_cast<std::size_t>(i)].chirality,
                       b = scene.sets[static_cast<std::size_t>(j)].chirality;
-      const PairFriction f = friction_between(a, b, place);
+      const PairFriction f = friction_between(a, b, folders, place);
       const std::string estimate =
           f.is_of(a, b) ? ""
                         : fmt::format(", an estimate: ({},{}) beside ({},{}) was not measured", a.n, a.m, b.n, b.m);
@@ -102,15 +109,19 @@ void check(const TomlTable& t, const Scene& scene, FrictionDrive& friction) {
       throw t.error("types", fmt::format("there is no tube type {}", type),
                     fmt::format("they are 0 to {}", sets - 1));
   const InputError::Place place = {scene.path, t.line("from"), "friction.from"};
+  // Beside the scene and beside its sets.
+  std::vector<std::string> folders = {std::filesystem::path(scene.path).parent_path().string()};
+  for (const ParameterSet& set : scene.sets)
+    folders.push_back(std::filesystem::path(set.path).parent_path().string());
   if (friction.from == "atoms") {
-    friction.laws = laws_of_atoms(scene, law.types, place);
+    friction.laws = laws_of_atoms(scene, law.types, folders, place);
   } else if (!friction.from.empty()) {
-    friction.laws = {law_of(find_friction(friction.from, place), law.types, "")};
+    friction.laws = {law_of(find_friction(friction.from, folders, place), law.types, "")};
   } else {
     if (!(law.axial > 0 || law.spin > 0 || law.end > 0 || law.drag > 0))
       throw t.error("strength_pN_per_nm", "and all other strengths are zero",
                     "give one of them, write from = \"atoms\", or take the table away");
-    friction.laws = {{law, ""}};
+    friction.laws = {{law, "", ""}};
   }
 }
 
@@ -123,8 +134,8 @@ const KeyTable<FrictionDrive>& friction_table() {
       "any number of these: dry friction of tubes side by side; slips are elastic up to a strength, then tubes "
       "slide",
       {Key::custom("from", "", otherwise("\"atoms\"", "typed below"),
-                   "strengths that were measured from atoms: \"atoms\" for all pairs of tubes, or the shipped ones "
-                   "of one pair",
+                   "strengths that were measured from atoms: \"atoms\" for all pairs of tubes, or the name of a shipped "
+                   "pair, or a file",
                    read_from),
        Key::number(
            "strength_pN_per_nm", per_length, Bounds::non_negative(1e5),
