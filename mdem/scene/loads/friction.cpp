@@ -27,7 +27,7 @@ struct FrictionLaw {
 
 class FrictionDrive : public Drive {
  public:
-  DryFriction typed{0, 0, 0, 0.06, 0, {}};
+  DryFriction typed{0, 0, 0, 0.06, 0, false, {}};
   std::string from;               // "atoms", or a shipped pair; empty: typed
   std::vector<FrictionLaw> laws;  // for each pair of types where they come from atoms
 
@@ -36,11 +36,11 @@ class FrictionDrive : public Drive {
     std::string text;
     for (const FrictionLaw& f : laws)
       text += fmt::format(
-          "{}friction{}: {:.4g} pN/nm along the axis, {:.4g} pN/nm against spin, {:.4g} pN at each end, elastic "
+          "{}friction{}, {}: {:.4g} pN/nm along the axis, {:.4g} pN/nm against spin, {:.4g} pN at each end, elastic "
           "up to {:.4g} nm, drag {:.4g} eV ps/nm^3{}",
           text.empty() ? "" : "\n",
           f.law.types.empty() ? "" : fmt::format(" between types {}", fmt::join(f.law.types, " and ")),
-          f.law.axial / pN, f.law.spin / pN, f.law.end / pN, f.law.elastic_slip, f.law.drag, f.words);
+          f.law.corrugated ? "a corrugation" : "dry", f.law.axial / pN, f.law.spin / pN, f.law.end / pN, f.law.elastic_slip, f.law.drag, f.words);
     return text;
   }
   std::vector<std::string> files() const override {
@@ -77,18 +77,19 @@ void read_from(const TomlTable& t, const Scene&, FrictionDrive& friction) {
     if (t.has(key)) throw t.error(key, "is typed where friction.from has it", "take one of the two away");
 }
 
-FrictionLaw law_of(const PairFriction& f, std::vector<int> types, const std::string& estimate) {
-  return {{f.strength, f.spin_strength, f.end_strength, f.elastic_slip, f.drag, std::move(types)},
+FrictionLaw law_of(const PairFriction& f, const DryFriction& typed, std::vector<int> types, const std::string& estimate) {
+  return {{f.strength, f.spin_strength, f.end_strength, f.elastic_slip, f.drag, typed.corrugated, std::move(types)},
           fmt::format(", of atoms ({}{})", f.name, estimate), f.path};
 }
 
 // Of all pairs of tube types, or the pair that is given.
-std::vector<FrictionLaw> laws_of_atoms(const Scene& scene, const std::vector<int>& types,
+std::vector<FrictionLaw> laws_of_atoms(const Scene& scene, const DryFriction& typed,
                                        const std::vector<std::string>& folders, const InputError::Place& place) {
   std::vector<FrictionLaw> laws;
   const auto n = static_cast<int>(scene.sets.size());
   for (int i = 0; i < n; ++i)
     for (int j = i; j < n; ++j) {
+      const std::vector<int>& types = typed.types;
       if (!types.empty() && (i != std::min(types[0], types[1]) || j != std::max(types[0], types[1]))) continue;
       const Chirality a = scene.sets[static_cast<std::size_t>(i)].chirality,
                       b = scene.sets[static_cast<std::size_t>(j)].chirality;
@@ -96,7 +97,7 @@ std::vector<FrictionLaw> laws_of_atoms(const Scene& scene, const std::vector<int
       const std::string estimate =
           f.is_of(a, b) ? ""
                         : fmt::format(", an estimate: ({},{}) beside ({},{}) was not measured", a.n, a.m, b.n, b.m);
-      laws.push_back(law_of(f, {i, j}, estimate));
+      laws.push_back(law_of(f, typed, {i, j}, estimate));
     }
   return laws;
 }
@@ -114,9 +115,9 @@ void check(const TomlTable& t, const Scene& scene, FrictionDrive& friction) {
   for (const ParameterSet& set : scene.sets)
     folders.push_back(std::filesystem::path(set.path).parent_path().string());
   if (friction.from == "atoms") {
-    friction.laws = laws_of_atoms(scene, law.types, folders, place);
+    friction.laws = laws_of_atoms(scene, law, folders, place);
   } else if (!friction.from.empty()) {
-    friction.laws = {law_of(find_friction(friction.from, folders, place), law.types, "")};
+    friction.laws = {law_of(find_friction(friction.from, folders, place), law, law.types, "")};
   } else {
     if (!(law.axial > 0 || law.spin > 0 || law.end > 0 || law.drag > 0))
       throw t.error("strength_pN_per_nm", "and all other strengths are zero",
@@ -157,6 +158,10 @@ const KeyTable<FrictionDrive>& friction_table() {
            "drag_eV_ps_per_nm3", {"eV ps/nm^3", 1}, Bounds::non_negative(1e4),
            [](auto& d) -> auto& { return d.typed.drag; }, standard(),
            "force per length of contact and speed of sliding"),
+       Key::word("slip", Words<bool>{{"dry", false}, {"corrugation", true}}, [](auto& d) -> auto& { return d.typed.corrugated; },
+                 standard(),
+                 "beyond its strength a contact slides and loses the work, \"dry\"; or its force is that of a "
+                 "\"corrugation\", which loses nothing"),
        Key::custom("types", "", otherwise("[0, 1]", "all tubes"),
                    "the two tube types between which it acts, from 0", read_types)},
       check};

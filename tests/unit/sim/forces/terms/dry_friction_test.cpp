@@ -105,8 +105,16 @@ Vector3 on_first_tube(const Alone& rope, const Vec3Array& rows) {
   return sum;
 }
 
-TEST(DryFriction, ForcesAreTheGradientOfItsEnergyAndBalance) {
-  Alone rope(both);
+const std::string pulled =
+    "[[load]]\nkind = \"force\"\ntubes = [0]\nelements = \"all\"\nforce_nN = [0, 0, 0.3]\n"
+    "[[load]]\nkind = \"fix\"\ntubes = [1, 3, 5]\nelements = [0]\n";
+
+const std::string corrugation = "slip = \"corrugation\"\n";
+
+class FrictionLaw : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(FrictionLaw, ForcesAreTheGradientOfItsEnergyAndBalance) {
+  Alone rope(both + GetParam());
   const State s = rope.shaken(0.02);
   const Forces f = rope.at(s);
   EXPECT_GT(f.energy.terms, 0.01);
@@ -130,6 +138,43 @@ TEST(DryFriction, ForcesAreTheGradientOfItsEnergyAndBalance) {
       largest = std::max({largest, std::fabs(f.force[i][axis]), std::fabs(f.torque[i][axis])});
     }
   EXPECT_GT(largest, 0.1);
+}
+
+INSTANTIATE_TEST_SUITE_P(Each, FrictionLaw, ::testing::Values("", corrugation));
+
+// The largest force is the strength, each period is like the first, and nothing is lost.
+TEST(DryFriction, ACorrugationComesBackInEachPeriod) {
+  constexpr double delta = 0.06;
+  Alone rope(axial + corrugation);
+  const double strength = 40 * pN * 6 * rope.length();
+  double lost = 0;
+  for (double slip = 0.01; slip < 0.6; slip += 0.01) {
+    const Forces f = rope.at(rope.moved(slip, 0), true);
+    lost += f.lost;
+    EXPECT_NEAR(on_first_tube(rope, f.force).z(), -strength * std::sin(slip / delta), 1e-6 * strength) << slip;
+    EXPECT_NEAR(f.energy.terms, strength * delta * (1 - std::cos(slip / delta)), 1e-6 * strength) << slip;
+  }
+  EXPECT_EQ(lost, 0);
+  Alone spins("[[friction]]\nspin_strength_pN_per_nm = 60\n" + corrugation);
+  const double radius = spins.p.topology.types[0].radius, most = 60 * pN * 6 * spins.length() * radius;
+  for (double turn = 0.02; turn < 2; turn += 0.02)
+    EXPECT_NEAR(on_first_tube(spins, spins.at(spins.moved(0, turn), true).torque).z(),
+                -most * std::sin(turn * radius / delta), 1e-5 * most) << turn;
+}
+
+TEST(DryFriction, TubesThatRideOverACorrugationLoseNothing) {
+  Scene scene = rope(both + corrugation + pulled, "duration_ps = 20\ntime_step_fs = 2\n", cold);
+  Simulation s = start(scene, prepare(scene));
+  const double total = s.total_energy();
+  double error = 0;
+  for (int n = 0; n < 2000; ++n) {
+    s.step();
+    error = std::max(error, std::fabs(s.total_energy() - s.account().supplied() - total));
+  }
+  const TermAccount of_friction = s.term_accounts().at(0);
+  EXPECT_EQ(of_friction.lost, 0);
+  EXPECT_GT(of_friction.events, 6 * 10) << "it slides over periods";
+  EXPECT_LT(error, 1e-4 * s.work());
 }
 
 TEST(DryFriction, ARopeThatMovesAsAWholeFeelsNothing) {
@@ -211,10 +256,6 @@ TEST(DryFriction, ActsBetweenItsTypesOnly) {
   EXPECT_LT(energy("types = [1, 1]\n"), 1e-12);
 }
 
-const std::string pulled =
-    "[[load]]\nkind = \"force\"\ntubes = [0]\nelements = \"all\"\nforce_nN = [0, 0, 0.3]\n"
-    "[[load]]\nkind = \"fix\"\ntubes = [1, 3, 5]\nelements = [0]\n";
-
 TEST(DryFriction, TheAccountOfEnergyStaysClosedWhereTubesSlide) {
   Scene scene = rope(both + "drag_eV_ps_per_nm3 = 0.05\n" + pulled, "duration_ps = 20\ntime_step_fs = 2\n", cold);
   Simulation s = start(scene, prepare(scene));
@@ -259,8 +300,8 @@ TEST(DryFriction, TheLogTellsItsLossesFromThoseOfDamping) {
   EXPECT_THAT(damping_words(row), HasSubstr("which atoms do not have"));
 }
 
-TEST(DryFriction, SameBitsOnAnyThreadsAndAfterResume) {
-  Scene scene = rope(both + "drag_eV_ps_per_nm3 = 0.05\n" + pulled, "duration_ps = 20\ntime_step_fs = 5\n",
+TEST_P(FrictionLaw, SameBitsOnAnyThreadsAndAfterResume) {
+  Scene scene = rope(both + GetParam() + "drag_eV_ps_per_nm3 = 0.05\n" + pulled, "duration_ps = 20\ntime_step_fs = 5\n",
                      "[start]\ntemperature_K = 300\nmay_cool = true\n");
   const auto begun = [&] { return start(scene, prepare(scene)); };
   omp_set_num_threads(1);
