@@ -75,6 +75,8 @@ void read_from(const TomlTable& t, const Scene&, FrictionDrive& friction) {
   for (const char* key : {"strength_pN_per_nm", "spin_strength_pN_per_nm", "end_strength_pN", "elastic_slip_nm",
                           "drag_eV_ps_per_nm3"})
     if (t.has(key)) throw t.error(key, "is typed where friction.from has it", "take one of the two away");
+  // Relaxed atoms that are led past each other lose nothing.
+  if (!t.has("slip")) friction.typed.corrugated = true;
 }
 
 FrictionLaw law_of(const PairFriction& f, const DryFriction& typed, std::vector<int> types, const std::string& estimate) {
@@ -159,7 +161,7 @@ const KeyTable<FrictionDrive>& friction_table() {
            [](auto& d) -> auto& { return d.typed.drag; }, standard(),
            "force per length of contact and speed of sliding"),
        Key::word("slip", Words<bool>{{"dry", false}, {"corrugation", true}}, [](auto& d) -> auto& { return d.typed.corrugated; },
-                 standard(),
+                 otherwise("\"dry\"", "\"corrugation\" for strengths of atoms"),
                  "beyond its strength a contact slides and loses the work, \"dry\"; or its force is that of a "
                  "\"corrugation\", which loses nothing"),
        Key::custom("types", "", otherwise("[0, 1]", "all tubes"),

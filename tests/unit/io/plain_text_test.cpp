@@ -72,7 +72,7 @@ TEST(PlainText, ACellIsNoFormula) {
 
 TEST(Cluster, FilesHoldNamesAsData) {
   const std::string odd = "it's $(touch pwned) `x` \"y\"";
-  const SweepPoint point{"tubes-7", {}, "", "", {}, "", 1};
+  const SweepPoint point{"tubes-7", {}, "", "", {}, {}, "", 1};
   const std::string slurm = slurm_script(odd, {"a b"}, 3);
   EXPECT_NE(slurm.find("#SBATCH --output=\"a b/slurm-%a.txt\"\n"), std::string::npos) << slurm;
   EXPECT_NE(slurm.find("ropewalk sweep " + shell_quoted(odd) + " --out 'a b' --only"), std::string::npos) << slurm;
