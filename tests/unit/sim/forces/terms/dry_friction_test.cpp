@@ -173,7 +173,7 @@ TEST(DryFriction, TubesThatRideOverACorrugationLoseNothing) {
   }
   const TermAccount of_friction = s.term_accounts().at(0);
   EXPECT_EQ(of_friction.lost, 0);
-  EXPECT_GT(of_friction.events, 6 * 10) << "it slides over periods";
+  EXPECT_GT(of_friction.events, 20) << "it slides over periods";
   EXPECT_LT(error, 1e-4 * s.work());
 }
 
@@ -286,6 +286,36 @@ TEST(DryFriction, HeldTubesLoseNothing) {
   EXPECT_EQ(of_friction.events, 0);
 }
 
+// Shear lag: a tube that is pulled by one end slides as far as its tension N outweighs the friction q per length of its six
+// neighbours. With the elastic layer l = sqrt(EA delta/q) before the front, at the depth d behind an end that has moved by u,
+//   N = sqrt(2 EA q (u - delta/2)) - q d.
+TEST(DryFriction, ATubePulledByOneEndSlidesAsFarAsItsTensionReaches) {
+  constexpr double u = 0.2, delta = 0.005;
+  Scene scene = scene_of_text(
+      "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[rope]\ntubes = 7\nlength_nm = 69\n[bond]\nlaw = "
+      "\"harmonic\"\n[damping]\ncontact_viscosity_eV_ps_per_nm2 = 0\nbond_damping_per_ps = 2\n[[friction]]\nstrength_pN_per_nm = "
+      "100\nelastic_slip_nm = 0.005\n[[load]]\nkind = \"fix\"\ntubes = [1, 2, 3, 4, 5, 6]\nelements = \"all\"\n[[grip]]\ntubes = "
+      "[0]\nend = \"upper\"\nz = { displacement_nm = [[0, 0], [60, 0.2]] }\nsmooth_ps = 5\n[run]\nduration_ps = 75\n",
+      "pull.toml");
+  const Prepared p = prepare(scene);
+  Simulation s = start(scene, p);
+  s.steps(std::lround(p.duration / p.time_step));
+  const TubeType& type = p.topology.types[0];
+  const double q = 6 * 100 * pN, EA = type.bond.stretch, front = std::sqrt(2 * EA * q * (u - 0.5 * delta)) / q;
+  const int last = p.topology.tube_begin[1] - 1;
+  const auto tension = [&](int bonds) {  // so many bonds behind the end
+    const auto i = static_cast<std::size_t>(last - bonds);
+    return EA * ((s.state().position[i] - s.state().position[i - 1]).norm() / type.element_length - 1);
+  };
+  EXPECT_NEAR(s.state().position[static_cast<std::size_t>(last)].z() - p.state.position[static_cast<std::size_t>(last)].z(), u, 1e-6);
+  EXPECT_GT(front, 25);
+  for (const int bonds : {3, 8, 13, 18}) {
+    const double depth = bonds * type.element_length;
+    EXPECT_NEAR(tension(bonds), q * (front - depth), 0.03 * q * front) << depth << " nm";
+  }
+  EXPECT_NEAR(tension(40), 0, 0.02 * q * front) << "nothing moves there";
+}
+
 TEST(DryFriction, TheLogTellsItsLossesFromThoseOfDamping) {
   Scene scene = rope(both + "drag_eV_ps_per_nm3 = 0.05\n" + pulled, "duration_ps = 20\ntime_step_fs = 2\n");
   MovingScene moving(scene);
@@ -301,7 +331,8 @@ TEST(DryFriction, TheLogTellsItsLossesFromThoseOfDamping) {
 }
 
 TEST_P(FrictionLaw, SameBitsOnAnyThreadsAndAfterResume) {
-  Scene scene = rope(both + GetParam() + "drag_eV_ps_per_nm3 = 0.05\n" + pulled, "duration_ps = 20\ntime_step_fs = 5\n",
+  Scene scene = rope("[[friction]]\nstrength_pN_per_nm = 10\nspin_strength_pN_per_nm = 10\nend_strength_pN = 5\nelastic_slip_nm = 0.01\n" + GetParam() +
+                         "drag_eV_ps_per_nm3 = 0.05\n" + pulled, "duration_ps = 20\ntime_step_fs = 20\n",
                      "[start]\ntemperature_K = 300\nmay_cool = true\n");
   const auto begun = [&] { return start(scene, prepare(scene)); };
   omp_set_num_threads(1);
@@ -311,7 +342,7 @@ TEST_P(FrictionLaw, SameBitsOnAnyThreadsAndAfterResume) {
     if (n % 50 == 0) saved.push_back(whole.serialise());
     whole.step(n % 50 == 49);
   }
-  EXPECT_GT(whole.forces().term_energy[0], 0.01);
+  EXPECT_GT(whole.forces().term_energy[0], 1e-4);
   EXPECT_GT(whole.term_accounts()[0].events, 10);
   const std::string end = whole.serialise();
   for (const int threads : {2, 3}) {
@@ -330,17 +361,17 @@ TEST_P(FrictionLaw, SameBitsOnAnyThreadsAndAfterResume) {
 }
 
 TEST(DryFriction, IsCarriedOverWhereElementsAreSplit) {
-  Scene coarse = rope(axial + pulled, "duration_ps = 20\ntime_step_fs = 2\n", cold);
+  Scene coarse = rope("[[friction]]\nstrength_pN_per_nm = 20\n" + pulled, "duration_ps = 20\ntime_step_fs = 2\n", cold);
   const Prepared p = prepare(coarse);
   Simulation s = start(coarse, p);
-  s.steps(500);
+  s.steps(1000);
   Scene finer = scene_of_text(finer_scene_text(coarse, p, "finer"), "finer.toml");
   Prepared q = prepare(finer);
   q.state = halved(p.topology, s.state(), splitting_of(coarse));
   Simulation split = start(finer, q);
   split.remember(s.halved_memory(heirs(p.topology, splitting_of(coarse))));
   EXPECT_GT(s.forces().term_energy[0], 0.05);
-  EXPECT_NEAR(split.forces().term_energy[0] / s.forces().term_energy[0], 1, 0.05);
+  EXPECT_NEAR(split.forces().term_energy[0] / s.forces().term_energy[0], 1, 0.1) << "the overlap counts in whole elements";
   EXPECT_GT(s.term_accounts()[0].lost, 0);
   EXPECT_EQ(split.term_accounts()[0].lost, s.term_accounts()[0].lost);
 }
