@@ -181,11 +181,9 @@ std::string gathered_csv(const CampaignDirectory& dir, const Sweep& sweep, const
 
 namespace {
 
-// A path in a file where `what` has a meaning of its own for some characters, which no quotes take away.
-void refuse_characters(const std::string& path, const char* characters, const char* option, const char* what) {
-  if (path.find_first_of(characters) == std::string::npos) return;
-  throw InputError({path, 0, option}, fmt::format("holds one of {}, which {} reads as its own", characters, what),
-                   "choose a path without");
+// The tasks of a job array may start in another folder.
+std::string absolute_quoted(const std::string& path) {
+  return shell_quoted(fs::absolute(path).lexically_normal().string());
 }
 
 // A string of Python; all that JSON escapes, Python does alike.
@@ -193,26 +191,36 @@ std::string python_string(const std::string& text) { return nlohmann::json(text)
 
 }  // namespace
 
-std::string slurm_script(const std::string& sweep_file, const CampaignDirectory& dir, std::size_t points) {
-  refuse_characters(dir.path, "\"'\\#%$`", "--slurm", "sbatch");
-  const bool plain = dir.path.find(' ') == std::string::npos;
+// Each task of SLURM's array runs every so manieth point: by default SLURM knows no task above 1000 (MaxArraySize).
+std::string slurm_script(const std::string& program, const std::string& sweep_file, const CampaignDirectory& dir,
+                         std::size_t points, const std::string& options) {
+  constexpr std::size_t most_tasks = 1000;
+  const std::size_t each = (points + most_tasks - 1) / most_tasks, tasks = (points + each - 1) / each;
+  const std::string messages = absolute_quoted(dir.path + "/messages");
   return fmt::format(
       "#!/bin/sh\n"
       "#SBATCH --job-name=ropewalk\n"
       "#SBATCH --array=1-{}\n"
       "#SBATCH --ntasks=1\n"
       "#SBATCH --cpus-per-task=1\n"
-      "#SBATCH --output={}\n"
+      "#SBATCH --output=/dev/null\n"
       "# Add --time, --partition and --account as your cluster asks. Submitted again, it goes on where points "
       "stopped.\n"
-      "ropewalk sweep {} --out {} --only \"$SLURM_ARRAY_TASK_ID\" --quiet\n",
-      points, fmt::format(plain ? "{}/slurm-%a.txt" : "\"{}/slurm-%a.txt\"", dir.path), shell_quoted(sweep_file),
-      shell_quoted(dir.path));
+      "mkdir -p {} || exit\n"
+      "exec >> {}/slurm-\"$SLURM_ARRAY_TASK_ID\".txt 2>&1\n"
+      "exec {} sweep {} --out {} --only {} --jobs \"${{SLURM_CPUS_PER_TASK:-1}}\" --quiet{}\n",
+      tasks, messages, messages, shell_quoted(program), absolute_quoted(sweep_file), absolute_quoted(dir.path),
+      each == 1 ? std::string("\"$SLURM_ARRAY_TASK_ID\"")
+                : fmt::format("\"$(seq -s , \"$SLURM_ARRAY_TASK_ID\" {} {})\"", tasks, points),
+      options);
 }
 
-std::string snakemake_file(const std::string& sweep_file, const CampaignDirectory& dir,
-                           const std::vector<SweepPoint>& points) {
-  for (const std::string& path : {dir.path, sweep_file}) refuse_characters(path, "{}", "--snakemake", "Snakemake");
+std::string snakemake_file(const std::string& program, const std::string& sweep_file, const CampaignDirectory& dir,
+                           const std::vector<SweepPoint>& points, const std::string& options) {
+  for (const std::string& path : {program, dir.path, sweep_file})
+    if (path.find_first_of("{}") != std::string::npos)
+      throw InputError({path, 0, "--snakemake"}, "holds one of {}, which Snakemake reads as its own",
+                       "choose a path without");
   std::string names;
   for (const SweepPoint& p : points) names += fmt::format("    {},\n", python_string(p.name));
   const std::string reports = python_string(dir.path + "/points/{point}/report.html");
@@ -227,11 +235,11 @@ std::string snakemake_file(const std::string& sweep_file, const CampaignDirector
       "    output: {}\n"
       "    shell: {}\n",
       names, reports, python_string(dir.table()),
-      python_string(
-          fmt::format("ropewalk gather {} -o {} --force", shell_quoted(dir.path), shell_quoted(dir.table()))),
+      python_string(fmt::format("{} gather {} -o {} --force", shell_quoted(program), shell_quoted(dir.path),
+                                shell_quoted(dir.table()))),
       python_string(sweep_file), reports,
-      python_string(fmt::format("ropewalk sweep {} --out {} --only {{wildcards.point}} --quiet",
-                                shell_quoted(sweep_file), shell_quoted(dir.path))));
+      python_string(fmt::format("{} sweep {} --out {} --only {{wildcards.point}} --quiet{}", shell_quoted(program),
+                                shell_quoted(sweep_file), shell_quoted(dir.path), options)));
 }
 
 }  // namespace ropewalk

@@ -10,6 +10,7 @@
 #include "campaign/point_runs.hpp"
 #include "campaign/sweep_runs.hpp"
 #include "commands/commands.hpp"
+#include "commands/siblings.hpp"
 #include "commands/sweep_progress.hpp"
 #include "io/failure.hpp"
 #include "io/files.hpp"
@@ -90,10 +91,14 @@ int sweep_command(const SweepArguments& a) {
   if (const std::string why = why_replicates_are_equal(sweep, all); !why.empty()) tell("note: " + why);
   const int jobs = a.jobs > 0 ? a.jobs : omp_get_num_procs();
   if (a.dry_run) return dry_run(sweep, dir, points, jobs);
+  const std::string program = find_program("", "ropewalk");
+  const std::string options =
+      (a.on_limit == "warn" ? "" : " --on-limit " + a.on_limit) + (a.again ? " --again" : "");
   if (!a.slurm.empty())
-    return write_script(a.slurm, "--slurm", a.force, slurm_script(a.file, dir, all.size()), "sbatch " + a.slurm);
+    return write_script(a.slurm, "--slurm", a.force, slurm_script(program, a.file, dir, all.size(), options),
+                        "sbatch " + a.slurm);
   if (!a.snakemake.empty())
-    return write_script(a.snakemake, "--snakemake", a.force, snakemake_file(a.file, dir, all),
+    return write_script(a.snakemake, "--snakemake", a.force, snakemake_file(program, a.file, dir, all, options),
                         fmt::format("snakemake -s {} --cores {}", a.snakemake, jobs));
   create_campaign(dir, sweep, all, a.force);
   listen_to_stop_signals();

@@ -26,7 +26,7 @@ def public_callables():
         for member, value in vars(thing).items():
             if dataclasses.is_dataclass(thing) and member in ("__init__", "__repr__", "__eq__", "__setattr__", "__delattr__"):
                 continue
-            if issubclass(thing, (tuple, dict)) or member in ("__hash__", "__module__"):
+            if issubclass(thing, tuple) or hasattr(thing, "__total__") or member in ("__hash__", "__module__"):
                 continue
             if isinstance(value, property):
                 yield f"{name}.{member}", value.fget
@@ -43,6 +43,9 @@ class PackageTest(unittest.TestCase):
         self.assertGreater(len(ropewalk.__all__), 25)
         for name in ropewalk.__all__:
             self.assertTrue(hasattr(ropewalk, name), name)
+
+    def test_nothing_internal_is_shown(self):
+        self.assertEqual([n for n in dir(ropewalk) if not n.startswith("__")], sorted(ropewalk.__all__))
 
     def test_everything_is_annotated(self):
         seen = 0

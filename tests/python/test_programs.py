@@ -1,6 +1,7 @@
 """Programs as functions: run, resume, sweep, gather, validate, and how their ends are told."""
 from __future__ import annotations
 
+import math
 import os
 import pathlib
 import signal
@@ -72,6 +73,39 @@ class ProgramsTest(FolderTest):
         with self.assertRaisesRegex(ropewalk.InputError, "tubs"):
             ropewalk.sweep(ROPE, {"rope.tubs": [1, 7]}, "other")
 
+    def test_threshold_and_compare(self):
+        tube = {"parameters": "cnt-10-10-paper", "rope": {"tubes": 1, "length_nm": 13.56}, "damping": {"bond_damping_per_ps": 4},
+                "grip": [{"end": "lower"}, {"end": "upper", "about_z": {"rotation_deg": [[0, 0], [60, 20]]}}],
+                "run": {"duration_ps": 70, "log_every_ps": 1}}
+        found = ropewalk.threshold(tube, "rope.length_nm", (7.1, 37), "torque_upper_nN_nm", 5.5, "search", accuracy=0.05)
+        critical, = found["by_bisection"]
+        self.assertAlmostEqual(critical, 319.5 * math.radians(20) / 5.5, delta=1.6)  # lengths go by elements
+        one, other = ropewalk.run(ROPE, "one"), ropewalk.run(ropewalk.Scene(ROPE).changed({"twist.moment_nN_nm": 4}), "other")
+        curves = ropewalk.compare([one, other.path], y=["twist_eV", "beta_deg"], page="both.html")
+        self.assertIn("<svg", pathlib.Path("both.html").read_text())
+        self.assertTrue(any("beta_deg" in name for name in curves), list(curves))
+
+    def test_plan(self):
+        scene = ropewalk.Scene({**ROPE, "run": {"duration_ps": 1}})
+        planned = ropewalk.plan(scene, error=0.05, pilot_seconds=5)
+        self.assertEqual(planned["rope.tubes"], 7)
+        self.assertIn("# Planned for an error of 5 %", planned.text)
+        self.assertEqual(os.listdir("."), [])
+
+    def test_pictures_pages_and_formats(self):
+        run = ropewalk.run(ROPE, "run")
+        self.assertIn("<svg", pathlib.Path(ropewalk.picture(run, "a.svg", at_ps=[0, 1.5], curves=["beta_deg"])).read_text())
+        self.assertTrue(os.path.exists(ropewalk.convert(run, "a.lammpstrj", from_ps=1)))
+        self.assertEqual(ropewalk.view(run, frames=3), "run/view.html")
+        with self.assertRaisesRegex(ropewalk.InputError, "exists"):
+            ropewalk.convert(run, "a.lammpstrj")
+
+    def test_errors_of_a_run(self):
+        run = ropewalk.run({**ROPE, "rope": {"tubes": 1, "length_nm": 7}, "run": {"duration_ps": 0.5}}, "run")
+        found = ropewalk.errors(run)
+        self.assertTrue(os.path.exists("run/errors.csv"))
+        self.assertTrue(found)
+
     def test_validate(self):
         case, = ropewalk.validate(["ring-energy"], parameters="cnt-5-5-tersoff", out="validation")
         self.assertTrue(case.holds)
@@ -89,6 +123,23 @@ class ProgramsTest(FolderTest):
         self.assertGreater(tube["bond.GJ"].standard_error, 0)
         with self.assertRaisesRegex(ropewalk.InputError, "no parameter set"):
             ropewalk.ParameterSet("cnt-99-99")
+
+    def test_a_changed_set(self):
+        tube = ropewalk.ParameterSet("cnt-10-10-tersoff")
+        other = tube.changed(EA=650, out="mine.toml")
+        self.assertEqual((other.name, other["bond.EA"].value, other["bond.EA"].origin), ("mine", 650, "chosen"))
+        self.assertEqual({k: v for k, v in other.items() if k != "bond.EA"}, {k: v for k, v in tube.items() if k != "bond.EA"})
+        scene = ropewalk.Scene({**ROPE, "parameters": "mine.toml"})
+        self.assertEqual(ropewalk.run(scene, "run").status, "finished")
+        for changes, words in (({"EB": 1, "out": "b.toml"}, "no number"), ({"EA": 1, "out": "mine.toml"}, "exists"),
+                               ({"EA": -1, "out": "b.toml"}, "bond.EA"), ({"EA": 1}, "name the file")):
+            with self.assertRaisesRegex(ropewalk.InputError, words):
+                tube.changed(**changes)
+        self.assertFalse(os.path.exists("b.toml"))
+
+    def test_parametrize_says_what_is_wrong(self):
+        with self.assertRaises(ropewalk.Error):
+            ropewalk.parametrize([(0, 0)], "never")
 
     def test_calibrate_says_what_is_wrong(self):
         with self.assertRaises(ropewalk.InputError):

@@ -1,9 +1,13 @@
 """Directories of runs: log, frames, manifest, limits."""
 from __future__ import annotations
 
+import concurrent.futures
+import copy
 import csv
 import json
+import multiprocessing
 import pathlib
+import pickle
 import unittest
 
 import numpy as np
@@ -31,6 +35,12 @@ def frames_of(path: str) -> list[dict[str, np.ndarray]]:
     return frames
 
 
+def end_of(scene: ropewalk.Scene) -> tuple[ropewalk.Scene, np.ndarray]:
+    simulation = ropewalk.Simulation(scene)
+    simulation.step(5)
+    return scene, simulation.state.position.copy()
+
+
 class RunTest(FolderTest):
     def setUp(self) -> None:
         super().setUp()
@@ -50,6 +60,69 @@ class RunTest(FolderTest):
         with self.assertRaisesRegex(ropewalk.InputError, 'did you mean "torque_upper_nN_nm"'):
             log["torque_uper_nN_nm"]
         self.assertNotIn("torque_uper_nN_nm", log)
+
+    def test_log_as_a_table_of_pandas(self):
+        try:
+            import pandas
+        except ImportError:
+            self.skipTest("pandas is not installed")
+        log = self.run_.log
+        wanted = pandas.read_csv("run/log.csv")
+        for table in (log.to_dataframe(), pandas.DataFrame(log)):
+            pandas.testing.assert_frame_equal(table, wanted, check_dtype=False)  # the file has 0 for 0.0
+        self.assertEqual(log.to_dataframe().attrs["units"]["torque_upper_nN_nm"], "nN nm")
+
+    def test_frames_as_atoms_of_ase(self):
+        try:
+            import ase  # noqa: F401
+        except ImportError:
+            self.skipTest("ASE is not installed")
+        frame = self.run_.frames[-1]
+        atoms = frame.to_ase()
+        np.testing.assert_allclose(atoms.positions, 10 * frame.flat.position)
+        np.testing.assert_array_equal(atoms.get_array("tube"), frame.tube)
+        np.testing.assert_allclose(atoms.get_array("axis"), frame.flat.axis)
+        self.assertEqual(atoms.info["time_ps"], frame.time_ps)
+        carbon = ropewalk.ParameterSet("cnt-10-10-tersoff")["tube.atoms_per_length"].value * frame.element_length_nm
+        self.assertAlmostEqual(atoms.get_masses()[0] / (12.011 * carbon), 1, delta=1e-3)
+
+    def test_frames_in_mdanalysis_have_their_times(self):
+        try:
+            import MDAnalysis  # noqa: F401
+        except ImportError:
+            self.skipTest("MDAnalysis is not installed")
+        run = ropewalk.run(ROPE, "binary")
+        universe = run.to_mdanalysis()
+        self.assertEqual(len(universe.trajectory), len(run.frames))
+        for ts, frame in zip(universe.trajectory, run.frames):
+            self.assertEqual(ts.time, frame.time_ps)
+            np.testing.assert_allclose(ts.positions, 10 * frame.flat.position, atol=1e-4)
+        self.assertEqual(universe.trajectory[2].time, run.frames[2].time_ps)
+        with self.assertRaisesRegex(ropewalk.InputError, "frames.gsd"):
+            self.run_.to_mdanalysis()
+
+    def test_scenes_runs_logs_and_frames_are_copied_and_compared(self):
+        with open("rope.toml", "w", encoding="utf-8") as file:
+            file.write(ropewalk.Scene(ROPE).text + "# a comment\n")
+        for scene in (ropewalk.Scene(ROPE), ropewalk.Scene("rope.toml")):
+            for again in (copy.deepcopy(scene), pickle.loads(pickle.dumps(scene))):
+                self.assertEqual((again, again.text, again.name, hash(again)), (scene, scene.text, scene.name, hash(scene)))
+        self.assertNotEqual(scene, scene.changed({"rope.tubes": 19}))
+        run = self.run_
+        for thing in (run, run.log, run.frames, run.frames[-1], run.scene, run.limits, run.scene.start):
+            for again in (copy.deepcopy(thing), pickle.loads(pickle.dumps(thing))):
+                self.assertEqual(again, thing)
+        frame = pickle.loads(pickle.dumps(run.frames[1]))
+        self.assertEqual(frame.measure("beta_deg"), run.frames[1].measure("beta_deg"))
+        self.assertNotEqual(run.frames[0], run.frames[1])
+        self.assertNotEqual(run.log, ropewalk.run(ROPE, "shorter", steps=10).log)
+
+    def test_a_pool_over_scenes(self):
+        scenes = [ropewalk.Scene(ROPE).changed({"rope.tubes": tubes}) for tubes in (1, 7)]
+        with concurrent.futures.ProcessPoolExecutor(2, multiprocessing.get_context("spawn")) as pool:
+            for scene, (again, position) in zip(scenes, pool.map(end_of, scenes)):
+                self.assertEqual(again, scene)
+                np.testing.assert_array_equal(position, end_of(scene)[1])
 
     def test_log_as_npz(self):
         self.run_.log.to_npz("log.npz")

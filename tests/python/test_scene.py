@@ -69,6 +69,15 @@ class SceneTest(FolderTest):
         with self.assertRaisesRegex(ropewalk.InputError, "stability limit"):
             scene.time_step_fs
 
+    def test_keys_are_read_as_they_are_changed(self):
+        scene = ropewalk.Scene({**{k: v for k, v in ROPE.items() if k != "twist"}, "grip": [{"end": "lower"}]})
+        self.assertEqual((scene["rope.tubes"], scene["rope"], scene["grip.0.end"]), (7, ROPE["rope"], "lower"))
+        self.assertIn("rope.length_nm", scene)
+        for name in ("rope.tubs", "grip.1.end", "rope.tubes.x", "run.mode"):
+            self.assertNotIn(name, scene)
+            with self.assertRaises(KeyError):
+                scene[name]
+
     def test_changed_sets_keys_anywhere(self):
         scene = ropewalk.Scene({**{k: v for k, v in ROPE.items() if k != "twist"}, "grip": [
             {"end": "lower"}, {"end": "upper", "about_z": {"rotation_deg": [[0, 0], [10, 20]]}}]})

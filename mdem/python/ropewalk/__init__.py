@@ -45,7 +45,9 @@ from .frames import Frame, Frames  # noqa: E402
 from .log import Log  # noqa: E402
 from .observables import Observable, observables  # noqa: E402
 from .parameters import ParameterSet, Quantity, parameter_sets  # noqa: E402
-from .programs import calibrate, gather, sweep, validate  # noqa: E402
+from .programs import (  # noqa: E402
+    calibrate, compare, convert, errors, gather, parametrize, picture, plan, sweep, threshold, validate, view,
+)
 from .results import Campaign, Check, ValidationCase  # noqa: E402
 from .running import resume, run  # noqa: E402
 from .runs import Limit, Run, open  # noqa: E402
@@ -56,7 +58,13 @@ from .threads import set_threads, threads  # noqa: E402
 
 __all__ = [
     "Campaign", "Check", "Elements", "Energies", "Error", "Frame", "Frames", "InputError", "Limit", "Log",
-    "NumericalError", "Observable", "ParameterSet", "ProgramError", "Quantity", "Relaxed", "Run", "Scene", "Simulation",
-    "State", "StateEnergy", "ValidationCase", "calibrate", "energy", "gather", "observables", "open", "parameter_sets",
-    "resume", "run", "set_threads", "sweep", "threads", "validate", "write_state",
+    "NumericalError", "Observable", "ParameterSet", "ProgramError", "Quantity", "Relaxed", "Run", "Scene",
+    "Simulation", "State", "StateEnergy", "ValidationCase", "calibrate", "compare", "convert", "energy", "errors", "gather",
+    "observables", "open", "parameter_sets", "parametrize", "picture", "plan", "resume", "run", "set_threads", "sweep",
+    "threads", "threshold", "validate", "view", "write_state",
 ]
+
+
+def __dir__() -> list[str]:
+    """The public names alone, as completion shows them (no unit)."""
+    return sorted([*__all__, "__doc__", "__version__"])

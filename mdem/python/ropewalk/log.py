@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import io
 import os
-from collections.abc import Iterator, Mapping
+from importlib import import_module
 from typing import Any
 
 import numpy as np
@@ -14,8 +14,10 @@ from .files import write_whole
 from .observables import index_of, observables
 
 
-class Log(Mapping[str, NDArray[Any]]):
+class Log(dict[str, NDArray[Any]]):
     """The columns of log.csv: log["torque_upper_nN_nm"] is an array (rows,) in the unit log.units["torque_upper_nN_nm"].
+
+    It is a dict of them, as pandas.DataFrame() takes it.
 
     A last row that is not whole, as of a run at work, is left out. Integers are int64, all others float64.
     """
@@ -26,30 +28,29 @@ class Log(Mapping[str, NDArray[Any]]):
         Arguments:
             path: of a log.csv
         """
-        self._table = _core.read_log(os.fspath(path))
-        self._columns: dict[str, NDArray[Any]] = {}
+        table = _core.read_log(os.fspath(path))
+        columns = {}
         for k, o in enumerate(observables()):
-            values = self._table[:, k]
-            whole = o.whole and bool(np.isfinite(values).all())
-            self._columns[o.name] = values.astype(np.int64) if whole else values
+            whole = o.whole and bool(np.isfinite(table[:, k]).all())
+            columns[o.name] = table[:, k].astype(np.int64) if whole else table[:, k].copy()
+        super().__init__(columns)
 
-    def __getitem__(self, name: str) -> NDArray[Any]:
-        """A column, (rows,), in the unit that its name ends in."""
-        if name not in self._columns:
-            index_of(name)
-        return self._columns[name]
+    def __missing__(self, name: str) -> NDArray[Any]:
+        """Says which column (rows,) may be meant by `name`; units stand in the names."""
+        index_of(name)
+        raise KeyError(name)
 
-    def __contains__(self, name: object) -> bool:
-        """Whether there is such a column (no unit)."""
-        return name in self._columns
+    def __eq__(self, other: object) -> bool:
+        """Whether all columns of `other` hold the same numbers (no unit)."""
+        return isinstance(other, Log) and all(np.array_equal(other[n], self[n], equal_nan=True) for n in self)
 
-    def __iter__(self) -> Iterator[str]:
-        """Names of the columns (no unit)."""
-        return iter(self._columns)
+    def __ne__(self, other: object) -> bool:
+        """Whether a column of `other` differs (no unit)."""
+        return not self == other
 
-    def __len__(self) -> int:
-        """Number of columns (no unit)."""
-        return len(self._columns)
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickled by its columns (rows,), in the units of their names."""
+        return _log_of, (dict(self),)
 
     def __repr__(self) -> str:
         """Size and time span, ps."""
@@ -60,7 +61,7 @@ class Log(Mapping[str, NDArray[Any]]):
     @property
     def rows(self) -> int:
         """Number of rows (no unit)."""
-        return len(self._table)
+        return len(self["step"])
 
     @property
     def units(self) -> dict[str, str]:
@@ -72,6 +73,12 @@ class Log(Mapping[str, NDArray[Any]]):
         """What each column is, a clause; its unit is in `units`."""
         return {o.name: o.meaning for o in observables()}
 
+    def to_dataframe(self) -> Any:
+        """The columns (rows,) as a pandas.DataFrame, whose `attrs` have "units" and "meanings"."""
+        frame = import_module("pandas").DataFrame(dict(self))
+        frame.attrs.update(units=self.units, meanings=self.meanings)
+        return frame
+
     def to_npz(self, path: str | os.PathLike[str]) -> None:
         """Writes the columns as a file of numpy, each by its name and in its unit, with "names", "units" and "meanings".
 
@@ -81,5 +88,11 @@ class Log(Mapping[str, NDArray[Any]]):
         listed = {"names": np.array(list(self)), "units": np.array([self.units[n] for n in self])}
         listed["meanings"] = np.array([self.meanings[n] for n in self])
         buffer = io.BytesIO()
-        np.savez_compressed(buffer, **self._columns, **listed)
+        np.savez_compressed(buffer, **self, **listed)
         write_whole(path, buffer.getvalue())
+
+
+def _log_of(columns: dict[str, NDArray[Any]]) -> Log:
+    log = Log.__new__(Log)
+    log.update(columns)
+    return log

@@ -8,6 +8,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from . import _core
+from .errors import InputError
+from .files import write_whole
+from .toml import toml_of
 
 
 @dataclass(frozen=True)
@@ -72,6 +75,45 @@ class ParameterSet(Mapping[str, Quantity]):
     def __repr__(self) -> str:
         """Name and grade (no unit)."""
         return f"<ParameterSet {self.name}: {self.grade}>"
+
+    def changed(
+        self, changes: Mapping[str, float] = {}, out: str | os.PathLike[str] = "", **more: float
+    ) -> ParameterSet:
+        """Another set with other numbers, as a file. They count as chosen and exact; all else stays as it is.
+
+        Arguments:
+            changes: values by name, each in the unit that this set has it in: {"bond.EA": 650}
+            out: the file to write, never one that exists; its name becomes that of the set (no unit)
+            more: the same, in the same units, by the last part of a name that no other number has: EA=650
+        """
+        if not out:
+            raise InputError("changed: out: is missing; name the file to write", key="out")
+        target = os.path.abspath(out)
+        if os.path.exists(target):
+            raise InputError(f"{os.fspath(out)}: exists; choose another name", os.fspath(out), key="out")
+        with open(self._path, "rb") as file:
+            tables = tomllib.load(file)
+        for name, value in {**changes, **{self._by_last(k): v for k, v in more.items()}}.items():
+            if name not in self._quantities:
+                raise InputError(f'{self.name}: there is no number "{name}"; see list() of the set', self._path, key=name)
+            at = tables
+            for key in name.split("."):
+                at = at[key]
+            at.update(value=float(value), standard_error=0.0, origin="chosen")
+        tables["meta"]["name"] = os.path.splitext(os.path.basename(target))[0]
+        write_whole(target, toml_of(tables).encode())
+        try:
+            return ParameterSet(target)
+        except InputError:
+            os.unlink(target)
+            raise
+
+    def _by_last(self, key: str) -> str:
+        names = [name for name in self._quantities if name.split(".")[-1] == key]
+        if len(names) != 1:
+            which = f"is one of {', '.join(names)}" if names else "is no number of it"
+            raise InputError(f"{self.name}: {key} {which}; give the whole name", self._path, key=key)
+        return names[0]
 
     @property
     def name(self) -> str:

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from .errors import InputError, NumericalError, ProgramError
 from .parameters import ParameterSet
 from .results import Campaign, Check, ValidationCase, table_of
+from .runs import Run
 from .scene import Scene, SceneLike, as_scene
 from .toml import toml_of
 
@@ -160,6 +161,242 @@ def gather(
     directory = campaign.path if isinstance(campaign, Campaign) else os.fspath(campaign)
     words = ["--columns", *columns] if columns else []
     return table_of(_call(["gather", directory, *_options(mean=mean_ps, series=series), *words]))
+
+
+def threshold(
+    scene: SceneLike,
+    key: str,
+    between: tuple[float, float],
+    column: str,
+    above: float,
+    out: str | os.PathLike[str],
+    *,
+    vary: Mapping[str, Any] = {},
+    accuracy: float = 0.02,
+    replicates: Optional[int] = None,
+    known: Optional[str | os.PathLike[str]] = None,
+    jobs: Optional[int] = None,
+    force: bool = False,
+) -> dict[str, NDArray[Any]]:
+    """The critical value of a key at each point of a sweep, as `ropewalk threshold`: columns (points,), units in the names.
+
+    The same call goes on after an interruption. `out` then has thresholds.html, and all trials in trials.csv.
+
+    Arguments:
+        scene: a scene, a dict of its keys (units stand in their names), or a file
+        key: that is searched, "twist.moment_nN_nm"
+        between: its lowest and largest value, in the unit of the key
+        column: observable that decides, by its name
+        above: the value that it must pass, in the unit of the column
+        out: directory of the campaign
+        vary: values by key, as of sweep(); empty: the scene alone
+        accuracy: relative, of the critical value (no unit)
+        replicates: each point so many times, with other seeds (no unit)
+        known: trials.csv of an earlier search, whose trials of the same scenes are not run again
+        jobs: points at a time; None: one on each core (no unit)
+        force: replaces runs of another scene
+    """
+    of = as_scene(scene)
+    with tempfile.TemporaryDirectory(prefix="ropewalk-") as folder, _scene_file(of) as path:
+        table: dict[str, Any] = {"format": "ropewalk-sweep-1", "scene": path}
+        if replicates is not None:
+            table["replicates"] = replicates
+        if vary:
+            table["vary"] = dict(vary)
+        table["threshold"] = {"key": key, "from": between[0], "to": between[1], "column": column, "above": above,
+                              "accuracy": accuracy}
+        file_name = os.path.join(folder, "sweep.toml")
+        with open(file_name, "w", encoding="utf-8") as file:
+            file.write(toml_of(table))
+        _call(["threshold", file_name, f"--out={os.fspath(out)}", "--quiet",
+               *_options(known=known, jobs=jobs, force=force)])
+    with open(os.path.join(os.fspath(out), "thresholds.csv"), encoding="utf-8", newline="") as read:
+        return table_of(read.read())
+
+
+def plan(
+    scene: SceneLike,
+    *,
+    error: float = 0.02,
+    observables: Sequence[str] = (),
+    end_state: bool = False,
+    pilot_seconds: Optional[float] = None,
+    jobs: Optional[int] = None,
+) -> Scene:
+    """The scene with the cheapest model that holds an error, as `ropewalk plan`. What it found is logged, and stands in the
+    comments of the scene's text.
+
+    Arguments:
+        scene: a scene, a dict of its keys (units stand in their names), or a file
+        error: largest relative error of each observable (no unit)
+        observables: "energy", or columns of log.csv; empty: energies, twist angle, torque, tension
+        end_state: only the end is asked for, not the motion
+        pilot_seconds: processor time for all pilots, about, s; None: a tenth of the run's, or a minute of each core
+        jobs: pilots at a time; None: one for each core (no unit)
+    """
+    with tempfile.TemporaryDirectory(prefix="ropewalk-") as folder:
+        given, planned = os.path.join(folder, _SCENE), os.path.join(folder, "planned.toml")
+        with open(given, "w", encoding="utf-8") as file:
+            file.write(toml_of(as_scene(scene)._whole_keys()))
+        words = ["--observables", *observables] if observables else []
+        told = _call(["plan", given, "-o", planned, *_options(error=repr(error), end_state=end_state,
+                                                              pilot_seconds=pilot_seconds, jobs=jobs), *words])
+        for line in told.splitlines():
+            _log.info(line)
+        with open(planned, encoding="utf-8") as file:
+            return Scene.from_toml(file.read())
+
+
+def _directory(run: Run | str | os.PathLike[str]) -> str:
+    return run.path if isinstance(run, Run) else os.fspath(run)
+
+
+def compare(
+    runs: Sequence[Run | Campaign | str | os.PathLike[str]],
+    *,
+    x: str = "time_ps",
+    y: Sequence[str] = (),
+    page: Optional[str | os.PathLike[str]] = None,
+    force: bool = False,
+) -> dict[str, NDArray[Any]]:
+    """The curves of runs and campaigns side by side, as `ropewalk compare`: columns (rows,) by name, units in the names.
+
+    Replicates of a campaign are one curve, with its standard errors.
+
+    Arguments:
+        runs: runs and campaigns, or their directories
+        x: observable on the horizontal axis
+        y: observables; empty: the usual ones that vary
+        page: a page with all curves (HTML) to write as well
+        force: replaces an existing page
+    """
+    names = [r.path if isinstance(r, Campaign) else _directory(r) for r in runs]
+    words = ["--y", ",".join(y)] if y else []
+    if page is not None:
+        _call(["compare", *names, f"--page={os.fspath(page)}", f"--x={x}", *_options(force=force), *words])
+    with tempfile.TemporaryDirectory(prefix="ropewalk-") as folder:
+        path = os.path.join(folder, "curves.csv")
+        _call(["compare", *names, f"--csv={path}", f"--x={x}", *words])
+        with open(path, encoding="utf-8", newline="") as file:
+            return table_of(file.read())
+
+
+def picture(
+    run: Run | str | os.PathLike[str],
+    out: str | os.PathLike[str],
+    *,
+    at_ps: Sequence[float] = (),
+    seen_from: str = "side",
+    curves: Sequence[str] = (),
+    sections: bool = False,
+    width: Optional[float] = None,
+    highest: Optional[float] = None,
+    zoom: Optional[float] = None,
+    force: bool = False,
+) -> str:
+    """Draws states of a run for a paper, as `ropewalk picture`, and returns the file.
+
+    Arguments:
+        run: a run, or its directory
+        out: file to write: .svg, .pdf or .png
+        at_ps: times of the states, ps; empty: four over the run
+        seen_from: "side" (the largest deflection in the page), "x", "y", "z", or two angles "30,20" in deg
+        curves: charts below: columns of log.csv, "twist_eV+bend_eV" for two in one
+        sections: the cross-section of each state beside it
+        width: of the figure, pixels (no unit)
+        highest: largest height of a state, pixels (no unit)
+        zoom: pixels of a PNG per pixel of the figure (no unit)
+        force: replaces the file
+    """
+    lists = {"at": ",".join(map(repr, map(float, at_ps))) or None, "curves": ",".join(curves) or None}
+    _call(["picture", _directory(run), "-o", os.fspath(out), f"--from={seen_from}",
+           *_options(sections=sections, width=width, highest=highest, zoom=zoom, force=force, **lists)])
+    return os.fspath(out)
+
+
+def view(
+    run: Run | str | os.PathLike[str],
+    out: Optional[str | os.PathLike[str]] = None,
+    *,
+    frames: int = 100,
+    megabytes: float = 15,
+    force: bool = False,
+) -> str:
+    """Writes a page to turn, play and cut through the frames of a run, as `ropewalk view`, and returns the file.
+
+    Arguments:
+        run: a run, or its directory
+        out: page to write; None: view.html in the directory of the run
+        frames: at most so many, evenly over the run (no unit)
+        megabytes: the page is not longer, 10^6 bytes (no unit of the model)
+        force: replaces the file
+    """
+    file = os.fspath(out) if out is not None else os.path.join(_directory(run), "view.html")
+    _call(["view", _directory(run), "-o", file, *_options(frames=frames, megabytes=megabytes, force=force)])
+    return file
+
+
+def convert(
+    run: Run | str | os.PathLike[str],
+    out: str | os.PathLike[str],
+    *,
+    from_ps: float = 0,
+    to_ps: Optional[float] = None,
+    every: int = 1,
+    force: bool = False,
+) -> str:
+    """Writes the frames of a run in another format, as `ropewalk convert`, and returns the file.
+
+    Arguments:
+        run: a run, or its directory
+        out: file to write: .gsd, .lammpstrj or .pvd (ParaView)
+        from_ps: leaves out what is earlier, ps
+        to_ps: leaves out what is later, ps; None: nothing
+        every: every so manieth frame (no unit)
+        force: replaces the file
+    """
+    _call(["convert", _directory(run), os.fspath(out), *_options(from_ps=from_ps, to_ps=to_ps, every=every, force=force)])
+    return os.fspath(out)
+
+
+def errors(run: Run | str | os.PathLike[str], *, jobs: Optional[int] = None, again: bool = False) -> dict[str, Any]:
+    """Errors of a finished run's results that follow from those of its parameters, as `ropewalk errors`, which repeats the
+    run: what `--json` says, with units in the names.
+
+    Arguments:
+        run: a run, or its directory
+        jobs: runs at a time; None: one for each core (no unit)
+        again: repeats also what is finished
+    """
+    found: dict[str, Any] = json.loads(_call(["errors", _directory(run), "--json", "--quiet",
+                                              *_options(jobs=jobs, again=again)]))
+    return found
+
+
+def parametrize(
+    chiralities: Sequence[tuple[int, int]],
+    out: str | os.PathLike[str] = "parametrized",
+    *,
+    potentials: Sequence[str] = ("tersoff",),
+    budget_min: Optional[float] = None,
+    jobs: Optional[int] = None,
+    again: bool = False,
+) -> list[ParameterSet]:
+    """From chiralities to validated sets, as `ropewalk parametrize`: calibrates, makes atoms, validates, reports. It takes from
+    minutes to hours; the same call goes on after an interruption. Returns the sets (units as of Quantity).
+
+    Arguments:
+        chiralities: (n, m) of each tube (no unit)
+        out: directory of sets, atoms and reports, with report.html
+        potentials: "tersoff", "airebo", "rebo", "lcbop" (no unit)
+        budget_min: that the references of one tube may take, min (60 s); None: any
+        jobs: processes at a time; None: one for each core (no unit)
+        again: makes sets and results anew; references of atoms are kept
+    """
+    _call(["parametrize", *(f"{n},{m}" for n, m in chiralities), f"--out={os.fspath(out)}", "--quiet",
+           f"--potential={','.join(potentials)}", *_options(budget=budget_min, jobs=jobs, again=again)])
+    names = [f"cnt-{n}-{m}-{potential}.toml" for n, m in chiralities for potential in potentials]
+    return [ParameterSet(os.path.join(os.fspath(out), name)) for name in names]
 
 
 def calibrate(

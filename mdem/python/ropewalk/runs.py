@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import json
 import os
+from importlib import import_module
 from typing import Any, TypedDict
 
 from . import _core
@@ -50,11 +51,24 @@ class Run:
             directory: that `ropewalk run --out` made (no unit)
         """
         self._path = os.fspath(directory)
+        self._absolute = os.path.abspath(self._path)
         self._scene = Scene._of_run(self._path)
 
     def __repr__(self) -> str:
         """Directory and status (no unit)."""
         return f"<Run {self.path}: {self.status}>"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickled by its directory (no unit)."""
+        return Run, (self._absolute,)
+
+    def __eq__(self, other: object) -> bool:
+        """Whether `other` is the same directory (no unit)."""
+        return isinstance(other, Run) and os.path.realpath(self._absolute) == os.path.realpath(other._absolute)
+
+    def __hash__(self) -> int:
+        """Equal for equal directories (no unit)."""
+        return hash(os.path.realpath(self._absolute))
 
     def _file(self, name: str) -> str:
         return os.path.join(self._path, name)
@@ -77,7 +91,25 @@ class Run:
     @property
     def frames(self) -> Frames:
         """The stored frames: positions in nm, energies in eV, times in ps."""
-        return Frames(_core.Frames(_core.frames_file(self._path), self._scene._core), self._scene._core)
+        return Frames(os.path.abspath(_core.frames_file(self._path)), self._scene)
+
+    def to_mdanalysis(self) -> Any:
+        """The frames as an MDAnalysis.Universe in its units: positions in Å, and the times of the frames in ps, for which the
+        file frames.gsd has no place that MDAnalysis reads."""
+        path = _core.frames_file(self._path)
+        if not path.endswith(".gsd"):
+            raise InputError(f"{path}: has positions that MDAnalysis takes relative to a box that moves; make frames.gsd by "
+                             "`ropewalk convert`", path)
+        times = [frame.time_ps for frame in self.frames]
+
+        def in_its_units(timestep: Any) -> Any:
+            timestep.data["time"] = times[timestep.frame]
+            timestep.positions = 10 * timestep.positions
+            return timestep
+
+        universe = import_module("MDAnalysis").Universe(path)
+        universe.trajectory.add_transformations(in_its_units)
+        return universe
 
     @property
     def manifest(self) -> dict[str, Any]:

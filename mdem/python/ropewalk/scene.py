@@ -101,6 +101,42 @@ class Scene:
                 keys["state"]["file"] = os.path.join(self._folder, "state.csv")
         return keys
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickled by its text; units stand in the names of its keys."""
+        return _scene_again, (self.text, self._path, self._folder, self._of_a_run)
+
+    def __eq__(self, other: object) -> bool:
+        """Whether `other` has the same name, keys and files; units stand in the names of the keys."""
+        return isinstance(other, Scene) and self._whole_keys() == other._whole_keys()
+
+    def __hash__(self) -> int:
+        """Equal for equal scenes (no unit)."""
+        return hash(self.name)
+
+    def __getitem__(self, name: str) -> Any:
+        """The value that it gives to a key, in the unit of its name; KeyError where the key is left out and has its default.
+
+        Arguments:
+            name: with the table before it, "rope.tubes"; `grip.1.end` is of the second [[grip]]
+        """
+        at: Any = self.keys
+        for key in name.split("."):
+            try:
+                at = at[int(key)] if isinstance(at, list) else at[key]
+            except (LookupError, TypeError, ValueError):
+                raise KeyError(f"{name} does not stand in this scene") from None
+        return at
+
+    __iter__: None = None  # it is no sequence
+
+    def __contains__(self, name: object) -> bool:
+        """Whether it gives a value to the key `name` (no unit)."""
+        try:
+            self[str(name)]
+        except KeyError:
+            return False
+        return True
+
     def _to_run(self) -> _core.Scene:
         """The scene as a run keeps it: one without a file has its name in it, and files by their whole paths."""
         return self._core if self._path is not None else self._of_keys(self._whole_keys())
@@ -196,6 +232,15 @@ class Scene:
     def notes(self) -> list[str]:
         """What `ropewalk run` says of the scene before it starts, a sentence each, with units."""
         return list(self._core.notes())
+
+
+def _scene_again(text: str, path: Optional[str], folder: str, of_a_run: bool) -> Scene:
+    if of_a_run:
+        return Scene._of_run(folder)
+    scene = Scene.from_toml(text, folder=folder)
+    if path is not None:
+        scene._path, scene._core = path, _core.Scene.of_text(text, path)
+    return scene
 
 
 SceneLike = Union[Scene, Mapping[str, Any], str, "os.PathLike[str]"]

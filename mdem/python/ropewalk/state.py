@@ -4,7 +4,7 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
-from typing import Optional
+from typing import Any, Optional
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -48,9 +48,19 @@ class Elements:
         """Number of elements (no unit)."""
         return len(self.position)
 
+    def __eq__(self, other: object) -> bool:
+        """Whether the same is known of `other`, with the same numbers (no unit)."""
+        return isinstance(other, Elements) and all(_same(getattr(self, f.name), getattr(other, f.name)) for f in fields(self))
+
+    __hash__ = None  # type: ignore[assignment]
+
     def _part(self, begin: int, end: int) -> Elements:
         given = {f.name: getattr(self, f.name) for f in fields(self)}
         return replace(self, **{k: v[begin:end] for k, v in given.items() if v is not None})
+
+
+def _same(one: Optional[Floats], other: Optional[Floats]) -> bool:
+    return one is other or (one is not None and other is not None and np.array_equal(one, other))
 
 
 class State:
@@ -72,6 +82,17 @@ class State:
         self._flat = flat
         self._begin = list(tube_begin)
         self._element_length = element_length_nm
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickled by its values, as copies where it has views (nm, ps, eV, rad)."""
+        return State, (self.flat, self._begin, self._element_length)
+
+    def __eq__(self, other: object) -> bool:
+        """Whether `other` has the same tubes and elements (no unit)."""
+        return isinstance(other, State) and (self._begin, self._element_length, self.flat) == (
+            other._begin, other._element_length, other.flat)
+
+    __hash__ = None  # type: ignore[assignment]
 
     @property
     def flat(self) -> Elements:

@@ -1,0 +1,80 @@
+#!/usr/bin/env bash
+# The job array of `ropewalk sweep --slurm` on a cluster of one node, which this test starts as whoever runs it. ropewalk is
+# not on the PATH. Argument: ropewalk.
+set -euo pipefail
+command -v slurmctld slurmd sbatch >/dev/null || { echo "slurm: skipped, apt-get install slurm-wlm" >&2; exit 77; }
+ropewalk=$(realpath "$1")
+work=$(mktemp -d)
+started=()
+finish() {
+  for pid in "${started[@]}"; do kill "$pid" && wait "$pid" || true; done
+  rm -rf "$work"
+}
+trap finish EXIT
+fail() { echo "slurm: $*" >&2; tail -n 5 "$work"/slurm*.log "$work"/study/messages/slurm-*.txt >&2 || true; exit 1; }
+patiently() { for _ in $(seq 240); do "$@" && return; sleep 0.25; done; return 1; }
+cd "$work"
+
+mkdir state spool scenes elsewhere
+port=$(/usr/bin/python3 -c 'import socket; s = [socket.socket() for _ in "12"]; [x.bind(("", 0)) for x in s]; print(*(x.getsockname()[1] for x in s))')
+export SLURM_CONF=$work/slurm.conf
+cat > slurm.conf <<CONF
+ClusterName=one
+SlurmctldHost=$(hostname -s)(127.0.0.1)
+SlurmctldPort=${port% *}
+SlurmdPort=${port#* }
+SlurmUser=$(id -un)
+SlurmdUser=$(id -un)
+AuthType=auth/none
+CredType=cred/none
+ProctrackType=proctrack/linuxproc
+TaskPlugin=task/none
+SelectType=select/cons_tres
+SelectTypeParameters=CR_CPU
+MailProg=/bin/true
+StateSaveLocation=$work/state
+SlurmdSpoolDir=$work/spool
+SlurmctldPidFile=$work/slurmctld.pid
+SlurmdPidFile=$work/slurmd.pid
+SlurmctldLogFile=$work/slurmctld.log
+SlurmdLogFile=$work/slurmd.log
+NodeName=$(hostname -s) NodeAddr=127.0.0.1 CPUs=$(nproc)
+PartitionName=all Nodes=ALL Default=YES
+CONF
+for daemon in slurmctld slurmd; do
+  $daemon -D > /dev/null 2>&1 &
+  started+=($!)
+done
+is_up() { sinfo -h -o %T 2> /dev/null | grep -q idle; }
+patiently is_up || fail "the cluster does not start"
+
+cat > scenes/rope.toml <<'SCENE'
+format = "ropewalk-scene-1"
+parameters = "cnt-10-10-tersoff"
+[rope]
+tubes = 1
+length_nm = 14
+[twist]
+moment_nN_nm = 5
+rate_nN_nm_per_ps = 5
+[run]
+duration_ps = 0.5
+SCENE
+sweep() { printf 'format = "ropewalk-sweep-1"\nscene = "rope.toml"\n[vary]\n%s\n' "$2" > "scenes/$1.toml"; }
+sweep sizes 'rope.tubes = [1, 7]'
+sweep many 'start.seed = { from = 1, to = 1500, points = 1500 }'
+
+"$ropewalk" sweep scenes/sizes.toml --out study --slurm job.sh >/dev/null
+is_done() { [ -z "$(squeue -h)" ]; }
+(cd elsewhere && sbatch ../job.sh >/dev/null) || fail "the array is refused"
+patiently is_done || fail "the array does not end"
+"$ropewalk" gather study --columns time_ps > table.csv || fail "the campaign is none"
+[ "$(grep -c ',finished,' table.csv)" = 2 ] || fail "not all points are done: $(cat table.csv)"
+[ -z "$(ls elsewhere)" ] || fail "files are left where the job was submitted: $(ls elsewhere)"
+
+# More points than SLURM has tasks by default.
+"$ropewalk" sweep scenes/many.toml --slurm many.sh >/dev/null
+sbatch --hold many.sh > said 2>&1 || fail "an array of 1500 points is refused: $(cat said)"
+scancel --me
+chosen=$(SLURM_ARRAY_TASK_ID=750 bash -c "$(sed -n 's/^exec .*--only \(".*"\) --jobs.*/echo \1/p' many.sh)")
+[ "$chosen" = 750,1500 ] || fail "the last task of 1500 points runs $chosen"
