@@ -61,16 +61,21 @@ install(TARGETS ${library_targets} EXPORT RopewalkTargets ARCHIVE DESTINATION ${
 install(DIRECTORY mdem/ DESTINATION include/ropewalk COMPONENT development FILES_MATCHING PATTERN "*.hpp"
         PATTERN bench EXCLUDE PATTERN commands EXCLUDE PATTERN lammps EXCLUDE PATTERN python EXCLUDE)
 install(EXPORT RopewalkTargets NAMESPACE Ropewalk:: DESTINATION ${config_directory} COMPONENT development)
+set(ROPEWALK_INSTALLED_DATA ${CMAKE_INSTALL_DATADIR}/ropewalk)
 configure_package_config_file(cmake/RopewalkConfig.cmake.in ${CMAKE_CURRENT_BINARY_DIR}/RopewalkConfig.cmake
-  INSTALL_DESTINATION ${config_directory})
+  INSTALL_DESTINATION ${config_directory} PATH_VARS ROPEWALK_INSTALLED_DATA)
 write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/RopewalkConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/RopewalkConfig.cmake ${CMAKE_CURRENT_BINARY_DIR}/RopewalkConfigVersion.cmake
-        DESTINATION ${config_directory} COMPONENT development)
+        cmake/installed_data.cpp DESTINATION ${config_directory} COMPONENT development)
 
 # cpack -G DEB: a package for each component.
 set(CPACK_PACKAGE_NAME ropewalk)
 set(CPACK_PACKAGE_VENDOR "Ropewalk")
-set(CPACK_PACKAGE_CONTACT "the Ropewalk developers")
+if(DEFINED ENV{DEBEMAIL})  # as for Debian's own tools
+  set(CPACK_PACKAGE_CONTACT "$ENV{DEBFULLNAME} <$ENV{DEBEMAIL}>")
+else()
+  set(CPACK_PACKAGE_CONTACT "Ropewalk developers <ropewalk@localhost>")
+endif()
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY ${PROJECT_DESCRIPTION})
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_GENERATOR DEB)
@@ -87,7 +92,7 @@ set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-ropewalk)
 set(CPACK_DEBIAN_CALIBRATE_PACKAGE_DEPENDS "ropewalk (= ${PROJECT_VERSION})")
 set(CPACK_DEBIAN_LAMMPS_PACKAGE_DEPENDS "ropewalk (= ${PROJECT_VERSION}), openmpi-bin")  # not one rank starts without
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
-    "libeigen3-dev, libfmt-dev, nlohmann-json3-dev, libtomlplusplus-dev, libqhull-dev, libxxhash-dev")
+    "ropewalk (= ${PROJECT_VERSION}), libeigen3-dev, libfmt-dev, nlohmann-json3-dev, libtomlplusplus-dev, libqhull-dev, zlib1g-dev")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "ropewalk (= ${PROJECT_VERSION}), python3-numpy")
 if(Python3_VERSION_MAJOR)
   # An extension module is for one version of Python.

@@ -5,12 +5,12 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 
 #include "campaign/point_runs.hpp"
 #include "io/clocks.hpp"
 #include "io/files.hpp"
+#include "io/plain_text.hpp"
 #include "io/processes.hpp"
 #include "model/error.hpp"
 #include "run/run_time.hpp"
@@ -41,7 +41,7 @@ PilotEnd end_of(const std::string& run, int status) {
     const std::string said = read_file(run + ".txt");
     end.failure = last_line(said);
   } else {
-    end.seconds = std::strtod(read_file(run + ".seconds").c_str(), nullptr);
+    end.seconds = leading_number(read_file(run + ".seconds")).value_or(0);
     end.log = read_log(RunDirectory{run}.log());
   }
   return end;

@@ -13,6 +13,7 @@
 
 #include "io/files.hpp"
 #include "io/log.hpp"
+#include "io/plain_text.hpp"
 #include "io/toml_table.hpp"
 #include "model/error.hpp"
 #include "plan/scene_edit.hpp"
@@ -124,9 +125,6 @@ void collect_axes(const toml::table& table, const std::string& above, const std:
     } else {
       throw InputError(at, "is one value", "write a list, [1, 2, 3], or { from = 1, to = 9, points = 5 }");
     }
-    const std::set<std::string> different(axis.values.begin(), axis.values.end());
-    if (different.size() < axis.values.size())
-      throw InputError(at, "has a value twice", "take one of the two away");
     axes.push_back(std::move(axis));
   }
 }
@@ -139,6 +137,13 @@ std::vector<SweepAxis> axes_in(const toml::table* table, const std::string& file
 }
 
 void check_zip(const Sweep& s) {
+  for (const auto* axes : {&s.axes, &s.branch_axes})
+    for (const SweepAxis& axis : *axes) {
+      const std::set<std::string> different(axis.values.begin(), axis.values.end());
+      if ((!s.zip || axes == &s.branch_axes) && different.size() < axis.values.size())
+        throw InputError({s.path, axis.line, printable(axis.key)}, "has a value twice",
+                         "take one of the two away, or write combine = \"zip\" if points are lists of values");
+    }
   for (const SweepAxis& axis : s.axes)
     if (s.zip && axis.values.size() != s.axes.front().values.size())
       throw InputError({s.path, axis.line, axis.key},
@@ -253,7 +258,7 @@ SweepPoint point_of(const Sweep& s, const std::vector<Setting>& settings) {
     const std::string& value = setting.axis->values[setting.number];
     if (setting.axis->key == length_key) {
       set(setting);
-      keep_free_length(s, before, std::strtod(value.c_str(), nullptr), p.text);
+      keep_free_length(s, before, leading_number(value).value_or(0), p.text);
     }
     p.values.push_back(value);
     if (setting.axis->values.size() == 1) continue;  // the same for all
@@ -292,8 +297,17 @@ ThresholdQuestion read_threshold(const TomlTable& t) {
   q.from = t.number("from", Bounds::any());
   q.to = t.number("to", Bounds::any());
   if (!(q.to > q.from)) throw t.error("to", "is not above from", "give the range in which the value lies");
-  q.column = t.string_or("column", q.column);
-  q.above = t.number("above", Bounds::any());
+  if (t.has("shape")) {
+    for (const char* other : {"column", "above"})
+      if (t.has(other))
+        throw t.error(other, "stands beside shape, and both are the question", "take one of them away");
+    Words<RopeShape> words;
+    for (const RopeShape shape : rope_shapes) words.emplace_back(name_of(shape), shape);
+    q.shape = t.word("shape", words);
+  } else {
+    q.column = t.string_or("column", q.column);
+    q.above = t.number("above", Bounds::any());
+  }
   q.accuracy = t.number_or("accuracy", q.accuracy, Bounds::range(1e-4, 0.5));
   return q;
 }
@@ -379,7 +393,8 @@ std::vector<SweepPoint> points_of(const Sweep& s, bool check) {
       if (check) check_scene(s, points.back());
       if (!names.insert(points.back().name).second)
         throw InputError({s.path, 0, "vary"}, fmt::format("two points would be named {}", points.back().name),
-                         "write values that differ in more than their signs");
+                         s.zip ? "each point must differ from the others in a value"
+                               : "write values that differ in more than their signs");
     }
   }
   return points;

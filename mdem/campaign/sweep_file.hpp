@@ -13,7 +13,7 @@
 //   to = 60
 //   column = "amplitude_nm"
 //   above = 1
-//   accuracy = 0.02
+//   accuracy = 0.02            # or, in place of column and above: shape = "helix"
 //   [branch]                     # points that differ only below here share one run up to this time
 //   at_ps = 135
 //   [branch.vary]
@@ -38,8 +38,9 @@ struct SweepAxis {
 struct ThresholdQuestion {
   std::string key, column = "amplitude_nm";
   double from = 0, to = 0;
-  double above = 1;        // in the unit of the column
-  double accuracy = 0.02;  // the bracket is narrowed to this part of its middle
+  double above = 1;                     // in the unit of the column
+  std::optional<RopeShape> shape = {};  // that the rope takes, in place of a column that passes a value
+  double accuracy = 0.02;               // the bracket is narrowed to this part of its middle
 };
 
 struct Sweep {

@@ -9,6 +9,7 @@
 
 #include "campaign/point_runs.hpp"
 #include "io/files.hpp"
+#include "io/plain_text.hpp"
 #include "io/processes.hpp"
 #include "model/error.hpp"
 #include "scene/scene_toml.hpp"
@@ -17,6 +18,9 @@ namespace ropewalk {
 namespace {
 
 namespace fs = std::filesystem;
+
+// To three digits, so that runs have short names.
+double rounded(double value) { return leading_number(fmt::format("{:.3g}", value)).value_or(value); }
 
 }  // namespace
 
@@ -102,11 +106,29 @@ int ThresholdSearch::try_at(const SweepPoint& p, double value) const {
   return run_or_resume(run, scene, -1, OnLimit::warn);
 }
 
+// Walks from the value that theory foresees, in steps that grow, until the outcome changes or the range ends.
+int ThresholdSearch::walk_from(double value, const SweepPoint& p) const {
+  const ThresholdQuestion& q = *sweep_.threshold;
+  for (double step = 1.12;; step *= step) {
+    if (const int code = try_at(p, value)) return code;
+    const Threshold t = threshold_of(dir_, sweep_, p, known_);
+    if (!t.outside || t.trials.empty()) return 0;
+    const bool down = t.trials.front().passed;
+    const double least = t.trials.front().value, most = t.trials.back().value;
+    if (down ? least <= q.from : most >= q.to) return 0;
+    value = down ? std::max(q.from, rounded(least / step)) : std::min(q.to, rounded(most * step));
+  }
+}
+
 int ThresholdSearch::bisect(const SweepPoint& p) const {
   const ThresholdQuestion& q = *sweep_.threshold;
+  const double foreseen = rounded(point_in_theory(sweep_, p).kinetic_theory());
+  if (foreseen > q.from && foreseen < q.to)
+    if (const int code = walk_from(foreseen, p)) return code;
   // The upper end first: it is soon decided.
   for (const double end : {q.to, q.from})
-    if (const int code = try_at(p, end)) return code;
+    if (threshold_of(dir_, sweep_, p, known_).outside)
+      if (const int code = try_at(p, end)) return code;
   // An outcome may have a window: above it, a rope opens into a cage before it becomes a helix.
   for (const double part : {0.5, 0.25, 0.75}) {
     const auto passed = [](const Trial& t) { return t.passed; };

@@ -111,8 +111,9 @@ class Import {
     NeighbourList list(prepared_.interaction, default_skin(prepared_.interaction));
     list.build(prepared_.topology, state);
     const bool relax = scene_.run.mode == RunOptions::Mode::relax;
-    const double drift = relax ? std::numeric_limits<double>::quiet_NaN() : energy_drift(account);
-    for (const std::string& line : watch_.check(prepared_.topology, state, list, drift, true)) listener_.tell(line);
+    const RunEnergies energies = relax ? RunEnergies() : RunEnergies{energy_drift(account), account.kinetic};
+    for (const std::string& line : watch_.check(prepared_.topology, state, list, energies, true))
+      listener_.tell(line);
   }
 
   // Judges the account of energy as the step control of `run` does, over a window of at least the same length.
@@ -124,7 +125,8 @@ class Import {
     if (!closes && !told_of_account_)
       listener_.tell(fmt::format(
           "note: from step {} to {} the account of energy does not close. `run` would have gone back and divided "
-          "its steps of {:.4g} fs, LAMMPS kept them: set run.time_step_fs to half of that, and export and run it again",
+          "its steps of {:.4g} fs, LAMMPS kept them: set run.time_step_fs to half of that, and export and run it "
+          "again",
           marked_at_, step, prepared_.time_step / units::fs));
     told_of_account_ = told_of_account_ || !closes;
     mark_ = now;

@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
-#include <set>
 
 #include "io/toml_table.hpp"
 
@@ -14,14 +14,12 @@ namespace {
 namespace fs = std::filesystem;
 
 std::string said_directory;
+const char* added_directory = nullptr;  // there before any static variable
 
-std::string instead_of(const std::string& name, const fs::path& folder) {
-  std::set<std::string> shipped;
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(folder, error))
-    if (entry.path().extension() == ".toml") shipped.insert(entry.path().stem().string());
-  if (shipped.empty()) return fmt::format("no set is shipped in {}; is ROPEWALK_DATA right?", folder.string());
-  const std::string near = nearest_word(name, {shipped.begin(), shipped.end()});
+std::string instead_of(const std::string& name, const std::string& data) {
+  const std::vector<std::string> shipped = shipped_sets(data);
+  if (shipped.empty()) return fmt::format("no set is shipped in {}/parameters; is ROPEWALK_DATA right?", data);
+  const std::string near = nearest_word(name, shipped);
   std::string text = near.empty() ? "" : fmt::format("did you mean \"{}\"? Or ", near);
   text += "name a file, or a shipped set";
   const char* before = ": ";
@@ -41,10 +39,25 @@ std::string data_directory() {
   // As installed, wherever the tree was moved to.
   std::error_code error;
   const fs::path beside = fs::read_symlink("/proc/self/exe", error).parent_path() / "../share/ropewalk";
-  return fs::is_directory(beside / "parameters", error) ? beside.lexically_normal().string() : ROPEWALK_DATA_DIR;
+  if (fs::is_directory(beside / "parameters", error)) return beside.lexically_normal().string();
+  return added_directory ? added_directory : ROPEWALK_DATA_DIR;
+}
+
+bool add_data_directory(const char* folder) {
+  added_directory = folder;
+  return true;
 }
 
 void set_data_directory(const std::string& folder) { said_directory = folder; }
+
+std::vector<std::string> shipped_sets(const std::string& data) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(fs::path(data) / "parameters", error))
+    if (entry.path().extension() == ".toml") names.push_back(entry.path().stem().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
 
 std::string find_parameters(const std::string& name, const std::string& folder, const InputError::Place& place,
                             const std::string& data) {
@@ -55,7 +68,7 @@ std::string find_parameters(const std::string& name, const std::string& folder, 
   for (const std::string& file : {name + ".toml", name})
     if (fs::is_regular_file(shipped / file, error)) return (shipped / file).string();
   throw InputError(place, fmt::format("there is no parameter set \"{}\"", printable(name)),
-                   instead_of(name, shipped));
+                   instead_of(name, data));
 }
 
 }  // namespace ropewalk

@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
 #include "io/parameters_toml.hpp"
+#include "io/plain_text.hpp"
 
 namespace ropewalk {
 namespace {
@@ -129,7 +129,7 @@ double line_fit_error(const ParameterSet& set) {
   const Quantity* q = find_quantity(set, "contact.line.K");
   const std::string words = "fit error ";
   const std::size_t at = q ? q->note.find(words) : std::string::npos;
-  return at == std::string::npos ? -1 : std::strtod(q->note.c_str() + at + words.size(), nullptr);
+  return at == std::string::npos ? -1 : leading_number(std::string_view(q->note).substr(at + words.size())).value_or(0);
 }
 
 double universal_error(const ParameterSet& set) {

@@ -61,6 +61,12 @@ LogRow::LogRow(const Measurement& measurement) {
   for (const Observable& observable : observables()) values_.push_back(observable.value(measurement));
 }
 
+RopeShape shape_of(const LogRow& row, const LogRow& first) {
+  return rope_shape({row["middle_amplitude_nm"], row["writhe"], row["turned_back"], row["radius_mid_nm"],
+                     row["radius_end_nm"], row["void_area_nm2"]},
+                    first["radius_mid_nm"]);
+}
+
 double potential_energy(const LogRow& row) {
   double sum = row["stretch_eV"] + row["shear_eV"] + row["bend_eV"] + row["twist_eV"] + row["vdw_eV"];
   for (const std::string& column : term_energy_columns()) sum += row[column];

@@ -7,6 +7,7 @@
 
 #include "model/error.hpp"
 #include "observe/observables.hpp"
+#include "observe/rope_shape.hpp"
 
 namespace ropewalk {
 
@@ -27,6 +28,9 @@ class LogRow {
  private:
   std::vector<double> values_;
 };
+
+// The shape of the rope in a row of the log that begins with the row `first`.
+RopeShape shape_of(const LogRow& row, const LogRow& first);
 
 // eV: bonds, contacts and force terms.
 double potential_energy(const LogRow& row);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 
 #include "model/error.hpp"
 
@@ -29,6 +30,15 @@ bool has_control_character(std::string_view text) {
   for (std::size_t k = 0; k < text.size(); ++k)
     if (control_bytes(text, k) > 0) return true;
   return false;
+}
+
+std::optional<double> leading_number(std::string_view text, std::size_t* length) {
+  const std::size_t at = std::min(text.find_first_not_of(" \t\n"), text.size());
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data() + at, text.data() + text.size(), value);
+  if (error != std::errc()) return std::nullopt;
+  if (length) *length = static_cast<std::size_t>(end - text.data());
+  return value;
 }
 
 bool is_utf8(std::string_view text) {

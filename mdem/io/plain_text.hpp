@@ -1,6 +1,7 @@
 // Texts of users in places where something else interprets them: terminals, shells, LAMMPS.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -9,6 +10,9 @@ namespace ropewalk {
 // C0, DEL and C1, the last in UTF-8.
 bool has_control_character(std::string_view text);
 bool is_utf8(std::string_view text);
+
+// The number that a text begins with, behind spaces: with a decimal point, in every locale. `length`: of what was read.
+std::optional<double> leading_number(std::string_view text, std::size_t* length = nullptr);
 
 // The text with control characters as escapes, cut to fit into a line of a message.
 std::string printable(const std::string& text, std::size_t longest = 200);

@@ -152,6 +152,12 @@ std::vector<Observable>& table() {
        [](const M& m) { return m.rope.amplitude; }},
       {"windings", "", "turns of the centre line about its chord", Group::shape,
        [](const M& m) { return m.rope.windings; }},
+      {"middle_amplitude_nm", "nm", "largest distance of the middle 80 % of the centre line from its own chord",
+       Group::shape, [](const M& m) { return m.rope.middle_amplitude; }},
+      {"writhe", "", "writhe of the centre line, in turns; right-handed: positive", Group::shape,
+       [](const M& m) { return m.rope.writhe; }},
+      {"turned_back", "", "part of the centre line that runs against its chord, as some of every loop does",
+       Group::shape, [](const M& m) { return m.rope.turned_back; }},
 
       {"kinked", "", "bonds beyond the kink curvature of the parameter set", Group::limits,
        [](const M& m) { return static_cast<double>(m.rope.kinked); }, whole},

@@ -6,11 +6,13 @@
 #include <cmath>
 #include <regex>
 
+#include "io/plain_text.hpp"
 #include "model/error.hpp"
 #include "plan/model_changes.hpp"
 #include "plan/outcome.hpp"
 #include "plan/pilot_scene.hpp"
 #include "plan/scene_edit.hpp"
+#include "plan/sliding_rope.hpp"
 #include "scene/kinds/rope.hpp"
 #include "scene/scene_toml.hpp"
 
@@ -252,10 +254,9 @@ class Planner {
 
   // Pilots that are shorter stay straight where the whole rope buckles.
   void add_buckling() {
-    const BondStiffness& k = scene_.parameters().bond;
-    const double each = scene_.moment_ramp()->of_each(features_.tubes);
-    const double theory = 2 * units::pi * k.bend / features_.length;
-    if (each > theory)
+    const std::optional<HelixTheory> helix = helix_theory(scene_, prepare(scene_));
+    const double theory = helix ? helix->static_moment / helix->tubes_in_unit : 0;
+    if (helix && scene_.moment_ramp()->of_each(features_.tubes) > theory)
       plan_.remarks.push_back(
           fmt::format("The whole rope may buckle: tubes that slide do so from {:.3g} nN nm per tube on, by theory. "
                       "The promise is for the "
@@ -305,10 +306,10 @@ Expectations expectations_of(const std::string& text) {
   Expectations out;
   const std::regex line("# plan: expect (\\S+) (\\S+)");
   for (auto at = std::sregex_iterator(text.begin(), text.end(), line); at != std::sregex_iterator(); ++at)
-    out.errors[(*at)[1]] = std::strtod((*at)[2].str().c_str(), nullptr);
+    out.errors[(*at)[1]] = leading_number((*at)[2].str()).value_or(0);
   const auto number = [&](const char* pattern) {
     std::smatch found;
-    return std::regex_search(text, found, std::regex(pattern)) ? std::strtod(found[1].str().c_str(), nullptr) : 0.0;
+    return std::regex_search(text, found, std::regex(pattern)) ? leading_number(found[1].str()).value_or(0) : 0.0;
   };
   out.asked = number("# plan: asked (\\S+)");
   out.seconds = number("# plan: seconds (\\S+)");

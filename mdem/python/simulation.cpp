@@ -1,6 +1,9 @@
 #include "python/simulation.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <charconv>
 #include <stdexcept>
 
 #include "io/clocks.hpp"
@@ -9,6 +12,7 @@
 #include "python/arrays.hpp"
 #include "run/moving_scene.hpp"
 #include "run/run_checkpoint.hpp"
+#include "scene/scene_toml.hpp"
 #include "scene/single_state.hpp"
 #include "scene/state_csv.hpp"
 
@@ -23,10 +27,17 @@ void look_for_signals() {
   if (PyErr_CheckSignals() != 0) throw py::error_already_set();
 }
 
+Simulation simulation_with(const Model& model, const std::vector<std::shared_ptr<OwnForce>>& own) {
+  if (own.empty()) return start(model.scene, model.prepared);
+  Prepared with = model.prepared;
+  for (const auto& force : own) OwnForce::add(force, with.state, with.interaction, with.loads);
+  return start(model.scene, with);
+}
+
 }  // namespace
 
-SteppedScene::SteppedScene(std::shared_ptr<const Model> model)
-    : model_(std::move(model)), simulation_(start(model_->scene, model_->prepared)) {
+SteppedScene::SteppedScene(std::shared_ptr<const Model> model, std::vector<std::shared_ptr<OwnForce>> own)
+    : model_(std::move(model)), own_(std::move(own)), simulation_(simulation_with(*model_, own_)) {
   first_ = simulation_.forces().energy;
   energies_ = first_;
   first_energy_ = simulation_.total_energy();
@@ -59,7 +70,9 @@ void SteppedScene::steps(long count, bool energies) {
   if (count == 0) return;
   const Turn turn(*this);
   forget();
-  if (static_cast<double>(count) * seconds_of_a_step_ < brief)
+  if (!own_.empty())
+    steps_with_own_forces(count, energies);
+  else if (static_cast<double>(count) * seconds_of_a_step_ < brief)
     simulation_.steps(count, energies);
   else
     steps_with_breaks(count, energies);
@@ -78,20 +91,40 @@ void SteppedScene::steps_with_breaks(long count, bool energies) {
   }
 }
 
+void SteppedScene::steps_with_own_forces(long count, bool energies) {
+  for (long done = 0; done < count; ++done) {
+    const std::string before = simulation_.serialise();
+    try {
+      simulation_.steps(1, energies && done + 1 == count);
+    } catch (...) {
+      go_to(before, driven_);
+      throw;
+    }
+    look_for_signals();
+  }
+}
+
 Relaxed SteppedScene::relax(const RelaxGoal& goal, long max_steps) {
   const Turn turn(*this);
   const py::gil_scoped_release release;
   forget();
   double looked = steady_seconds();
   std::optional<py::error_already_set> raised;
-  const Relaxed end = simulation_.relax(goal, max_steps, [&](long) {
-    if (seconds_since(looked) < patience) return true;
-    looked = steady_seconds();
-    const py::gil_scoped_acquire acquire;
-    if (PyErr_CheckSignals() == 0) return true;
-    raised.emplace();
-    return false;
-  });
+  const std::string before = own_.empty() ? "" : simulation_.serialise();
+  Relaxed end;
+  try {
+    end = simulation_.relax(goal, max_steps, [&](long) {
+      if (seconds_since(looked) < patience) return true;
+      looked = steady_seconds();
+      const py::gil_scoped_acquire acquire;
+      if (PyErr_CheckSignals() == 0) return true;
+      raised.emplace();
+      return false;
+    });
+  } catch (...) {
+    if (!own_.empty()) go_to(before, driven_);
+    throw;
+  }
   simulation_.end_relaxation();
   energies_ = simulation_.forces().energy;
   if (raised) throw std::move(*raised);
@@ -108,7 +141,7 @@ Energies SteppedScene::energies() {
 const std::vector<double>& SteppedScene::measure() {
   const Simulation& s = simulation();
   if (measured_) return *measured_;
-  EnergyAccount account = account_of(model_->scene, s, first_, first_energy_);
+  EnergyAccount account = account_of(scene(), s, first_, first_energy_);
   account.potential = energies();  // the last step may have left them out
   account.ends = simulation_.read_gauges();
   measured_ = model_->measure(s.state(), account);
@@ -116,20 +149,64 @@ const std::vector<double>& SteppedScene::measure() {
 }
 
 std::string SteppedScene::checkpoint() const {
-  const std::string bytes = simulation().serialise();
+  const std::string text = driven_as();
+  const std::string bytes = simulation().serialise() + text + fmt::format("{:0{}x}", text.size(), digits);
   return bytes + hash_hex(bytes);
+}
+
+void SteppedScene::drive(std::shared_ptr<const Scene> as) {
+  const Simulation& s = simulation();
+  const Scene& scene = as ? *as : model_->scene;
+  LoadsAndConstraints loads = loads_of(scene, s.topology(), s.interaction());
+  if (ends_of(loads, s.topology()) != ends_of(model_->prepared.loads, s.topology()))
+    throw InputError({scene.path, 0, "grip"}, "is on other elements than before",
+                     "a clamp stays where it is; let go of it by \"free\" for each of its axes");
+  for (const auto& force : own_) OwnForce::add_load(force, loads);
+  simulation_.use_loads(std::move(loads));
+  driven_ = std::move(as);
+  forget();
+}
+
+void SteppedScene::drive(const SceneHandle& as) {
+  if (as.scene().has_ends(Drive::Ends::endless))
+    throw InputError({as.scene().path, 0, "periodic"}, "stays as it is while a simulation runs",
+                     "make a simulation of the other scene");
+  const Simulation& s = simulation();
+  const LoadsAndConstraints loads = loads_of(as.scene(), s.topology(), s.interaction());
+  for (const auto& drive : as.scene().drives) drive->refuse_start(as.scene(), s.topology(), s.state(), loads);
+  drive(std::make_shared<const Scene>(as.scene()));
+}
+
+void SteppedScene::go_to(const std::string& bytes, const std::shared_ptr<const Scene>& driven) {
+  for (const auto& force : own_) force->rest(true);
+  try {
+    if (driven != driven_) drive(driven);
+    simulation_.restore(bytes);
+  } catch (...) {
+    for (const auto& force : own_) force->rest(false);
+    throw;
+  }
+  for (const auto& force : own_) force->rest(false);
 }
 
 void SteppedScene::restore(const std::string& bytes) {
   simulation();
-  const std::size_t size = bytes.size() < digits ? 0 : bytes.size() - digits;
-  if (size == 0 || hash_hex(std::string_view(bytes).substr(0, size)) != std::string_view(bytes).substr(size))
+  const std::string_view all = bytes;
+  const std::size_t size = all.size() < 2 * digits ? 0 : all.size() - 2 * digits;
+  std::size_t text = 0;
+  if (size > 0) std::from_chars(all.data() + size, all.data() + size + digits, text, 16);
+  if (size == 0 || hash_hex(all.substr(0, size + digits)) != all.substr(size + digits) || text > size)
     throw InputError({"", 0, "checkpoint"}, "is damaged, or none", "give what Simulation.checkpoint() returned");
-  const std::string now = simulation_.serialise();
+  const std::string now = simulation_.serialise(), driven_as_then = bytes.substr(size - text, text);
+  const std::shared_ptr<const Scene> driven_now = driven_;
   try {
-    simulation_.restore(bytes.substr(0, size));
+    const bool same = driven_as_then == driven_as();
+    go_to(bytes.substr(0, size - text),
+          same        ? driven_
+          : text == 0 ? nullptr
+                      : std::make_shared<const Scene>(scene_of_text(driven_as_then, "scene")));
   } catch (const std::runtime_error& e) {
-    simulation_.restore(now);
+    go_to(now, driven_now);
     throw InputError({"", 0, "checkpoint"}, e.what(),
                      "restore it into a simulation of the scene that it came from");
   }
@@ -140,7 +217,7 @@ void SteppedScene::restore_run(const std::string& dir) {
   simulation();
   const RunCheckpoint c = read_checkpoint({dir});
   try {
-    simulation_.restore(c.simulation);
+    go_to(c.simulation, nullptr);
   } catch (const std::runtime_error& e) {
     throw InputError({RunDirectory{dir}.checkpoint(), 0, ""}, e.what(), "start the run anew with `ropewalk run`");
   }
@@ -168,7 +245,14 @@ void def_view(Class& c, const char* name, Of of) {
 
 void bind_simulation(py::module_& m) {
   Class c(m, "Simulation");
-  c.def(py::init([](const SceneHandle& scene) { return std::make_shared<SteppedScene>(scene.model()); }));
+  c.def(py::init([](const SceneHandle& scene, const std::vector<py::function>& functions) {
+          std::vector<std::shared_ptr<OwnForce>> own;
+          for (const py::function& f : functions) own.push_back(OwnForce::make(f));
+          return std::make_shared<SteppedScene>(scene.model(), std::move(own));
+        }),
+        py::arg("scene"), py::arg("forces"));
+  c.def("drive", py::overload_cast<const SceneHandle&>(&SteppedScene::drive));
+  c.def_property_readonly("driven_as", &SteppedScene::driven_as);
   c.def("steps", &SteppedScene::steps, py::arg("count"), py::arg("energies"));
   c.def("relax", [](SteppedScene& s, double force, double energy, long max_steps) {
     const Relaxed end = s.relax({force, energy}, max_steps);

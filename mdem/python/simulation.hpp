@@ -8,14 +8,16 @@
 #include <string>
 #include <vector>
 
+#include "python/own_force.hpp"
 #include "python/scene.hpp"
 
 namespace ropewalk::python {
 
 class SteppedScene {
  public:
-  explicit SteppedScene(std::shared_ptr<const Model> model);
+  SteppedScene(std::shared_ptr<const Model> model, std::vector<std::shared_ptr<OwnForce>> own);
 
+  // What a force of one's own throws leaves everything as it was before the step or the relaxation that it ends.
   // Where it takes longer than `brief`, other threads of Python run meanwhile, and Ctrl-C is looked for every
   // `patience`.
   void steps(long count, bool energies);
@@ -25,6 +27,10 @@ class SteppedScene {
   const Simulation& simulation() const;
   const Model& model() const { return *model_; }
   void divide_steps(int parts);
+  // From now on the loads and clamps are those of this scene. Throws InputError where these are on other ends.
+  void drive(const SceneHandle& as);
+  // The text of that scene; empty: they have never changed.
+  std::string driven_as() const { return driven_ ? driven_->text : ""; }
 
   // Where the last step left them out, they are computed here.
   Energies energies();
@@ -48,8 +54,15 @@ class SteppedScene {
 
   void forget();
   void steps_with_breaks(long count, bool energies);
+  void steps_with_own_forces(long count, bool energies);
+  const Scene& scene() const { return driven_ ? *driven_ : model_->scene; }
+  void drive(std::shared_ptr<const Scene> as);
+  // As the bytes say, with these loads. The forces of one's own rest meanwhile.
+  void go_to(const std::string& bytes, const std::shared_ptr<const Scene>& driven);
 
   std::shared_ptr<const Model> model_;
+  std::vector<std::shared_ptr<OwnForce>> own_;
+  std::shared_ptr<const Scene> driven_;  // null: as the model's
   Simulation simulation_;
   std::atomic<bool> stepping_ = false;
   double seconds_of_a_step_ = patience;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "io/plain_text.hpp"
 #include "report/log_figures.hpp"
 #include "report/scatter.hpp"
 
@@ -26,7 +27,7 @@ std::string placed(const std::string& svg, double x, double y) {
 double height_of(const std::string& svg) {
   const std::string key = " height=\"";
   const std::size_t at = svg.find(key);
-  return at == std::string::npos ? 0 : std::stod(svg.substr(at + key.size()));
+  return at == std::string::npos ? 0 : leading_number(std::string_view(svg).substr(at + key.size())).value_or(0);
 }
 
 std::string text_at(double x, double y, const std::string& text, bool bold = false) {
@@ -76,8 +77,8 @@ std::string chart_of(const PlateInput& in, const std::vector<std::string>& colum
   return scatter_svg(scatter);
 }
 
-// Scales the pictures so that a whole number of them fills the width, shrunk a little or enlarged, in full rows if that
-// is possible; returns the number.
+// Scales the pictures so that a whole number of them fills the width, shrunk a little or enlarged, in full rows if
+// that is possible; returns the number.
 std::size_t fill(PlateInput& in, double section) {
   constexpr double least = 0.7, most = 1.8;
   const double picture = in.camera.width * in.camera.scale;

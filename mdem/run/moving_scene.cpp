@@ -24,12 +24,15 @@ EnergyAccount account_of(const Scene& scene, const Simulation& simulation, const
 }
 
 void refuse_stops_without_value(const Scene& scene, const LogRow& first) {
-  for (const StopRule& rule : scene.stops)
-    if (!rule.column.empty() && std::isnan(first[rule.column]))
-      throw InputError({scene.path, 0, "stop.column"},
-                       "\"" + rule.column + "\" has no value in this scene, so that the rule would never stop it",
+  for (const StopRule& rule : scene.stops) {
+    const bool shape = rule.when == StopRule::When::shape;
+    const std::string column = shape ? "radius_mid_nm" : rule.column;
+    if (!column.empty() && std::isnan(first[column]))
+      throw InputError({scene.path, 0, shape ? "stop.shape" : "stop.column"},
+                       "\"" + column + "\" has no value in this scene, so that the rule would never stop it",
                        "take a column that has one; tubes that are not side by side have no centre line, a rope "
                        "without inner tubes no core");
+  }
 }
 
 MovingScene::MovingScene(Scene of)

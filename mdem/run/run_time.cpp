@@ -13,6 +13,7 @@
 #include "io/clocks.hpp"
 #include "io/files.hpp"
 #include "io/frames/dump.hpp"
+#include "io/plain_text.hpp"
 #include "io/processes.hpp"
 #include "model/error.hpp"
 #include "plan/expected_state.hpp"
@@ -113,7 +114,7 @@ Outputs time_outputs(const Scene& scene, const Prepared& p, const RunTime& t) {
   LimitWatch watch(watched_of(scene, p.topology, p.interaction.law.get()));
   const double began = processor_seconds();
   const LogRow row = log_row(observer, scene, p.topology, s.state(), {});
-  watch.check(p.topology, s.state(), s.list(), std::numeric_limits<double>::quiet_NaN(), false);
+  watch.check(p.topology, s.state(), s.list(), {}, false);
   log_line(row);
   o.row = processor_seconds() - began;
   const ElementColours colours = element_colours(p.topology, p.interaction, s.state());
@@ -169,7 +170,7 @@ double seconds_of_a_run(const std::string& text, const std::string& path, long s
   run_processes({{work, [&](int status) { ended = WIFEXITED(status) && WEXITSTATUS(status) == 0; }}}, 1);
   if (!ended)
     throw std::runtime_error("a short run of the scene, to see what it takes, failed: try it with `ropewalk run`");
-  return std::stod(read_file(seconds));
+  return leading_number(read_file(seconds)).value_or(0);
 }
 
 void time_outputs_of_a_run(const std::string& text, const std::string& path, const Scene& scene, const Prepared& p,

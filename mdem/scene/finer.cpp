@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <map>
 #include <sstream>
 
+#include "io/plain_text.hpp"
 #include "scene/bounds.hpp"
 #include "scene/laws/contact_law_kind.hpp"
 #include "scene/loads/drive_kind.hpp"
@@ -64,7 +64,7 @@ void refine_key(const SceneKey& key, const Scene& scene, int elements, bool numb
   }
   const bool typed = table.contains(key.key);
   if (!typed && !key.standard.empty()) return;
-  const double value = typed ? table[key.key].value_or(0.0) : std::strtod(key.value.c_str(), nullptr);
+  const double value = typed ? table[key.key].value_or(0.0) : leading_number(key.value).value_or(0);
   const double refined = std::min(factor * value, key.most);
   if (key.whole)
     table.insert_or_assign(key.key, static_cast<std::int64_t>(std::ceil(refined)));

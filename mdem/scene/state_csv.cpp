@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "io/csv_reader.hpp"
+#include "io/plain_text.hpp"
 #include "io/toml_table.hpp"  // printable
 #include "model/error.hpp"
 #include "scene/bounds.hpp"
@@ -57,9 +58,9 @@ double stated_length(const CsvReader& csv) {
   for (const std::string_view comment : csv.comments()) {
     if (comment.rfind(length_words, 0) != 0) continue;
     const std::string text(comment.substr(std::string_view(length_words).size()));
-    char* end = nullptr;
-    const double length = std::strtod(text.c_str(), &end);
-    if (text.empty() || *end != '\0' || !(length > 0 && length <= farthest))
+    std::size_t read = 0;
+    const double length = leading_number(text, &read).value_or(0);
+    if (read != text.size() || !(length > 0 && length <= farthest))
       csv.fail("", fmt::format("the comment above says \"{}\" of the element length", printable(text, 40)),
                "write a positive number of nm, or take the comment away");
     return length;

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The Debian packages on a bare Debian 12: installed, a rope twisted by an ordinary user, moved and read-only, removed without
-# a trace. As root, with debootstrap and a network; not a part of ctest. Arguments: a folder with the packages (`cd
+# The Debian packages on a bare Debian 12: installed, a rope twisted by an ordinary user, moved and read-only, a program built
+# against the libraries and run elsewhere, removed without a trace. As root, with debootstrap and a network; not a part of ctest. Arguments: a folder with the packages (`cd
 # build/release && cpack`), and a bare Debian 12, which is not changed (default: one is made by debootstrap).
 set -euo pipefail
 packages=$(realpath "$1") bare=${2:+$(realpath "$2")}
@@ -72,7 +72,15 @@ as_user 'ropewalk calibrate show cnt-10-10-tersoff --table && ropewalk validate 
 as_user 'ropewalk export seven.toml --lammps there && cd there && lmp-ropewalk -in in.rope && mpirun --oversubscribe -np 2 lmp-ropewalk -in in.rope && ropewalk import .' > "$work/said" 2>&1 ||
   fail "LAMMPS: $(tail -30 "$work/said")"
 
-rm -rf "$root"/home/somebody/{seven,moved,there,validation,seven.toml}
+# A program of one's own, with what libropewalk-dev brings, a compiler and CMake.
+inside apt-get install -y -qq --no-install-recommends cmake g++ make >/dev/null
+cp -r "$(dirname "$0")/consumer" "$root/home/somebody/"
+as_user 'cmake -S consumer -B built -DCMAKE_BUILD_TYPE=Release && cmake --build built && mkdir elsewhere && mv built/twist elsewhere && rm -r built consumer && cd elsewhere && ./twist' > "$work/said" 2>&1 ||
+  fail "a program of one's own: $(tail -3 "$work/said")"
+grep -q "70 elements" "$work/said" || fail "a program of one's own has another rope: $(tail -3 "$work/said")"
+inside apt-get purge -y -qq cmake g++ make >/dev/null
+
+rm -rf "$root"/home/somebody/{elsewhere,seven,moved,there,validation,seven.toml}
 inside apt-get purge -y -qq 'ropewalk*' libropewalk-dev >/dev/null
 inside apt-get autoremove --purge -y -qq >/dev/null
 inside dpkg-query -W | diff "$work/packages-before" - >&2 || fail "packages are left"

@@ -63,14 +63,13 @@ fi
 [ "${2:-}" = libraries ] || exit 0
 cmake -S "$here/consumer" -B consumer -DCMAKE_PREFIX_PATH="$work/moved" -DCMAKE_BUILD_TYPE=Release >/dev/null
 cmake --build consumer >/dev/null
-ROPEWALK_DATA=$work/moved/share/ropewalk consumer/twist > said
+consumer/twist only-here > said || fail "the consumer does not find the data of the tree that it was built against"
 grep -q "70 elements" said || fail "the consumer's rope is wrong"
 grep -q "s of processor time" said || fail "the consumer cannot time a run"
 [ ! -e from-memory.toml ] || fail "the consumer left a file"
 # A load of one's own, registered by a program outside of this tree, in a scene that names it.
 cmake -S "$here/own_load" -B own_load -DCMAKE_PREFIX_PATH="$work/moved" -DCMAKE_BUILD_TYPE=Release >/dev/null
 cmake --build own_load >/dev/null
-export ROPEWALK_DATA=$work/moved/share/ropewalk
 own_load/own_load "$here/own_load/wind.toml" || fail "the tube in the wind does not bend as a beam does"
 sed '/^growth/d' "$here/own_load/wind.toml" > calm.toml
 own_load/own_load calm.toml 2> said && fail "a scene without growth_nN_per_nm runs"

@@ -14,6 +14,9 @@ for package in "${packages[@]}"; do dpkg-deb -x "$package" tree; done
 dpkg-deb -f "${packages[0]}" Depends > depends
 grep -q libfmt depends || fail "the package of the simulator does not name its libraries"
 grep -qE 'nlopt|gsl|lammps' depends && fail "the simulator asks for what only calibration needs"
+dpkg-deb -f libropewalk-dev_*.deb Depends Maintainer > depends
+grep -q zlib1g-dev depends || fail "the libraries do not ask for zlib"
+grep -qE '^Maintainer: .+ <.+@.+>$' depends || fail "the maintainer has no address: $(cat depends)"
 if compgen -G 'python3-ropewalk_*.deb' >/dev/null; then
   dpkg-deb -x python3-ropewalk_*.deb tree
   dpkg-deb -f python3-ropewalk_*.deb Depends > depends

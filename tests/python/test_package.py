@@ -7,7 +7,10 @@ import os
 import re
 import subprocess
 import sys
+import tempfile
 import unittest
+
+from support import ROPE
 
 import ropewalk
 
@@ -46,6 +49,26 @@ class PackageTest(unittest.TestCase):
 
     def test_nothing_internal_is_shown(self):
         self.assertEqual([n for n in dir(ropewalk) if not n.startswith("__")], sorted(ropewalk.__all__))
+
+    def test_a_decimal_comma_changes_nothing(self):
+        with tempfile.TemporaryDirectory() as folder:
+            made = subprocess.run(["localedef", "-i", "de_DE", "-f", "UTF-8", f"{folder}/de_DE.UTF-8"], capture_output=True)
+            if made.returncode != 0:
+                self.skipTest("the locale de_DE cannot be made: package locales")
+            code = ("import locale, os, ropewalk\n"
+                    "if os.environ.get('LC_ALL'): assert locale.setlocale(locale.LC_ALL, '') and locale.str(1.5) == '1,5'\n"
+                    f"run = ropewalk.run({ROPE!r}, os.environ['OUT'])\n"
+                    "ropewalk.write_state(os.environ['OUT'] + '/s.csv', run.frames[-1].position, run.frames[-1].orientation)\n"
+                    "state = ropewalk.Scene({'parameters': 'cnt-10-10-tersoff', 'state': {'file': os.environ['OUT'] + '/final.csv'},"
+                    " 'run': {'duration_ps': 1}}).start\n"
+                    "print(*[ropewalk.ParameterSet(n).grade for n in ropewalk.parameter_sets()], run.log['twist_eV'][-1],"
+                    " ropewalk.energy(run.scene).total, state.position.sum())\n"
+                    "print(open(os.environ['OUT'] + '/log.csv').read())")
+            said = [subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True,
+                                   env={**os.environ, **env, "OUT": f"{folder}/{n}"}).stdout
+                    for n, env in enumerate(({"LC_ALL": ""}, {"LC_ALL": "de_DE.UTF-8", "LOCPATH": folder}))]
+        self.assertIn("good", said[0])
+        self.assertEqual(*said)
 
     def test_everything_is_annotated(self):
         seen = 0

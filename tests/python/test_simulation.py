@@ -263,7 +263,7 @@ class CheckpointTest(FolderTest):
         first.save("here")
         first.step(20)
         second = ropewalk.Simulation(ROPE)
-        second.load("here")
+        second.restore("here")
         self.assertEqual(second.step_number, 13)
         second.step(20)
         np.testing.assert_array_equal(first.state.position, second.state.position)

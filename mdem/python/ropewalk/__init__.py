@@ -53,11 +53,11 @@ from .running import resume, run  # noqa: E402
 from .runs import Limit, Run, open  # noqa: E402
 from .scene import Scene  # noqa: E402
 from .simulation import Energies, Relaxed, Simulation  # noqa: E402
-from .state import Elements, State, write_state  # noqa: E402
+from .state import Elements, Instant, State, write_state  # noqa: E402
 from .threads import set_threads, threads  # noqa: E402
 
 __all__ = [
-    "Campaign", "Check", "Elements", "Energies", "Error", "Frame", "Frames", "InputError", "Limit", "Log",
+    "Campaign", "Check", "Elements", "Energies", "Error", "Frame", "Frames", "InputError", "Instant", "Limit", "Log",
     "NumericalError", "Observable", "ParameterSet", "ProgramError", "Quantity", "Relaxed", "Run", "Scene",
     "Simulation", "State", "StateEnergy", "ValidationCase", "calibrate", "compare", "convert", "energy", "errors", "gather",
     "observables", "open", "parameter_sets", "parametrize", "picture", "plan", "resume", "run", "set_threads", "sweep",

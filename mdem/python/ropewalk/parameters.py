@@ -1,6 +1,7 @@
 """Parameter sets."""
 from __future__ import annotations
 
+import math
 import os
 import tomllib
 from collections.abc import Iterator, Mapping
@@ -20,7 +21,7 @@ class Quantity:
     Attributes:
         value: in `unit`
         unit: "nN", "nN nm^2", ...; "1" for a pure number
-        standard_error: in `unit`
+        standard_error: in `unit`; nan: not published
         origin: "calibrated", "derived", "chosen" or "published"
     """
 
@@ -53,7 +54,8 @@ class ParameterSet(Mapping[str, Quantity]):
             if not isinstance(value, Mapping):
                 continue
             if isinstance(value.get("value"), (int, float)):
-                error = float(value.get("standard_error", 0.0))
+                stated = value.get("standard_error", 0.0)
+                error = float(stated) if isinstance(stated, (int, float)) else math.nan
                 self._quantities[before + key] = Quantity(
                     float(value["value"]), value.get("unit", "1"), error, value.get("origin", "")
                 )

@@ -2,16 +2,20 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Optional, Union, overload
 
 from . import _core
-from .errors import Error
+from .errors import Error, InputError
 from .files import write_whole
+from .forces import OwnForce, checked
 from .observables import index_of, observables
 from .scene import Scene, as_scene
 from .state import Elements, Floats, State
+
+
+_DRIVES = ("grip", "load", "twist")  # the tables that change() may change
 
 
 @dataclass(frozen=True)
@@ -80,25 +84,51 @@ class Simulation:
     Another Python thread may run while this one steps. The simulation itself belongs to one thread at a time.
     """
 
-    def __init__(self, scene: Scene | Mapping[str, Any] | str | os.PathLike[str]) -> None:
+    def __init__(
+        self, scene: Scene | Mapping[str, Any] | str | os.PathLike[str], *, forces: Sequence[OwnForce] = ()
+    ) -> None:
         """The state of the scene at time zero.
 
         Arguments:
             scene: a scene, a dict of its keys (units stand in their names), or a file
+            forces: forces of one's own: functions that get an Instant and return forces (elements, 3) in eV/nm, or a
+                tuple of forces, torques about the centres (elements, 3) in eV, and energy in eV. None stands for zeros.
+                A force with an energy is one of the system; the work of one without counts as that of loads. The time
+                step does not know how stiff they are: set run.time_step_fs for stiff ones.
         """
-        self._scene = as_scene(scene)
-        self._core = _core.Simulation(self._scene._core)
+        self._of_start = self._scene = as_scene(scene)
+        self._forces = tuple(forces)
+        core = self._of_start._core
+        own = [checked(f, core.tube_begin, core.element_length) for f in self._forces]
+        self._core = _core.Simulation(core, own)
+        self._hooks: list[tuple[Callable[[Simulation], object], int]] = []
         self._observers: list[tuple[Callable[[Simulation], object], int]] = []
-        self._observing = False
+        self._calling = False
 
     def __repr__(self) -> str:
         """Scene, step and time, ps."""
         return f"<Simulation of {self._scene.name}: step {self.step_number}, {self.time_ps:g} ps>"
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickled by the scene, the forces and the checkpoint, without hooks and observers (no unit)."""
+        return _simulation_again, (self._of_start, self._forces, self.checkpoint())
+
+    def __eq__(self, other: object) -> bool:
+        """Whether `other` has the same scene and forces, and stands at the same state to the bit (no unit)."""
+        return isinstance(other, Simulation) and (self._of_start, self._forces, self.checkpoint()) == (
+            other._of_start, other._forces, other.checkpoint())
+
+    __hash__ = None  # type: ignore[assignment]
+
     @property
     def scene(self) -> Scene:
-        """The scene; units stand in the names of its keys."""
+        """The scene, with the changes of change(); units stand in the names of its keys."""
         return self._scene
+
+    @property
+    def forces(self) -> tuple[OwnForce, ...]:
+        """The forces of one's own."""
+        return self._forces
 
     @property
     def step_number(self) -> int:
@@ -137,17 +167,18 @@ class Simulation:
         if n != int(n) or n < 0:
             raise ValueError(f"{n} is no number of steps")
         n = int(n)
-        if not self._observers:
+        if self._calling:
+            raise Error("a hook or an observer cannot step the simulation that calls it")
+        if not self._observers and not self._hooks:
             self._core.steps(n, energies)
             return
-        if self._observing:
-            raise Error("an observer cannot step the simulation that calls it")
         end = self.step_number + n
         while self.step_number < end:
+            self._call(self._hooks)
             at = self.step_number
-            stop = min([end, *(at - at % every + every for _, every in self._observers)])
+            stop = min([end, *(at - at % every + every for _, every in self._observers + self._hooks)])
             self._core.steps(stop - at, energies or stop < end)
-            self._call_observers()
+            self._call(self._observers)
 
     def step_until(self, time_ps: float) -> None:
         """Steps on to a time, in whole steps.
@@ -179,7 +210,43 @@ class Simulation:
             of_scene[2] if max_steps is None else max_steps,
         ))
 
-    # --- observers ---
+    def change(self, changes: Mapping[str, Any]) -> None:
+        """From now on grips, loads and twist are those of `scene.changed(changes)` at this time: a moment jumps to its new
+        value, a clamp moves on from where it is, by what its new schedule rises. All else of the scene stays.
+
+        Arguments:
+            changes: values by key, with the table before it, as of Scene.changed: {"twist.moment_nN_nm": 6},
+                {"grip.1.about_z.rotation_deg": [[0, 0], [20, 5]]}. Times in schedules count from the start, ps.
+        """
+        scene = self._scene.changed(changes)
+        before, after = self._scene._whole_keys(), scene._whole_keys()
+        for name in {**before, **after}:
+            if name not in _DRIVES and before.get(name) != after.get(name):
+                raise InputError(f"{name}: stays as it is while a simulation runs; make a simulation of the other scene",
+                                 key=name)
+        self._core.drive(scene._core)
+        self._scene = scene
+
+    # --- hooks and observers ---
+
+    def add_hook(self, hook: Callable[[Simulation], object], every: int = 1) -> None:
+        """Calls a function before every so many steps: where the number of steps so far is a multiple of `every`.
+
+        Arguments:
+            hook: gets this simulation and may change() it; what it returns is not used, what it raises ends step()
+            every: steps (no unit)
+        """
+        if every < 1:
+            raise ValueError("`every` is 1 or more")
+        self._hooks.append((hook, every))
+
+    def remove_hook(self, hook: Callable[[Simulation], object]) -> None:
+        """Takes a hook away.
+
+        Arguments:
+            hook: the function that was given to add_hook (no unit)
+        """
+        self._hooks = [(f, every) for f, every in self._hooks if f is not hook]
 
     def add_observer(self, observer: Callable[[Simulation], object], every: int) -> None:
         """Calls a function after every so many steps: those whose number is a multiple of `every`.
@@ -200,14 +267,14 @@ class Simulation:
         """
         self._observers = [(f, every) for f, every in self._observers if f is not observer]
 
-    def _call_observers(self) -> None:
-        self._observing = True
+    def _call(self, functions: Sequence[tuple[Callable[[Simulation], object], int]]) -> None:
+        self._calling = True
         try:
-            for observer, every in list(self._observers):
+            for function, every in list(functions):
                 if self.step_number % every == 0:
-                    observer(self)
+                    function(self)
         finally:
-            self._observing = False
+            self._calling = False
 
     # --- what it is like now ---
 
@@ -220,7 +287,7 @@ class Simulation:
         """
         c = self._core
         flat = Elements(c.position, c.orientation, c.velocity, c.angular_velocity)
-        return State(flat, self._scene._core.tube_begin, self._scene.element_length_nm)
+        return State(flat, self._of_start._core.tube_begin, self._of_start.element_length_nm)
 
     @property
     def force(self) -> Floats:
@@ -267,30 +334,26 @@ class Simulation:
         """Everything that the future depends on, for restore() (no unit)."""
         return self._core.checkpoint()
 
-    def restore(self, checkpoint: bytes) -> None:
+    def restore(self, checkpoint: bytes | str | os.PathLike[str]) -> None:
         """Goes back to a checkpoint of a simulation of the same scene: from there on all is the same, bit for bit.
 
         Arguments:
-            checkpoint: what checkpoint() returned (no unit)
+            checkpoint: what checkpoint() returned, or the file that save() wrote (no unit)
         """
+        if not isinstance(checkpoint, bytes):
+            with open(checkpoint, "rb") as file:
+                checkpoint = file.read()
         self._core.restore(checkpoint)
+        text = self._core.driven_as
+        self._scene = Scene.from_toml(text) if text else self._of_start
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Writes the checkpoint to a file, whole or not at all.
+        """Writes the checkpoint to a file for restore(), whole or not at all.
 
         Arguments:
             path: the file (no unit)
         """
         write_whole(path, self.checkpoint())
-
-    def load(self, path: str | os.PathLike[str]) -> None:
-        """Goes back to a checkpoint that save() wrote.
-
-        Arguments:
-            path: the file (no unit)
-        """
-        with open(path, "rb") as file:
-            self.restore(file.read())
 
     def write_state(self, path: str | os.PathLike[str]) -> None:
         """Writes the state as final.csv of a run: nm, nm/ps, rad/ps. Scenes start from it by {"state": {"file": path}}.
@@ -299,3 +362,9 @@ class Simulation:
             path: the file (no unit)
         """
         write_whole(path, self._core.state_csv().encode())
+
+
+def _simulation_again(scene: Scene, forces: tuple[OwnForce, ...], checkpoint: bytes) -> Simulation:
+    simulation = Simulation(scene, forces=forces)
+    simulation.restore(checkpoint)
+    return simulation

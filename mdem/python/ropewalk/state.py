@@ -155,6 +155,36 @@ class State:
         return self._by_tube("angular_velocity")
 
 
+class Instant(State):
+    """The elements at one time: what a force of one's own acts on. The arrays are copies."""
+
+    def __init__(self, flat: Elements, tube_begin: Sequence[int], element_length_nm: float, step: int, time_ps: float) -> None:
+        """As Simulation makes it.
+
+        Arguments:
+            flat, tube_begin, element_length_nm: as of State (nm)
+            step: time step (no unit)
+            time_ps: ps
+        """
+        super().__init__(flat, tube_begin, element_length_nm)
+        self._step = step
+        self._time = time_ps
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickled by its values (nm, ps, rad)."""
+        return Instant, (self.flat, self._begin, self._element_length, self._step, self._time)
+
+    @property
+    def step(self) -> int:
+        """Time step (no unit)."""
+        return self._step
+
+    @property
+    def time_ps(self) -> float:
+        """Time, ps."""
+        return self._time
+
+
 def write_state(path: str | os.PathLike[str], position: ArrayLike, orientation: ArrayLike) -> None:
     """Writes a state file, from which a scene starts with {"state": {"file": path}}.
 

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "io/plain_text.hpp"
 #include "model/error.hpp"
 #include "report/page.hpp"
 
@@ -59,12 +59,14 @@ RopeCamera camera_from(const std::string& from, const std::vector<RopeView>& vie
   if (from == "x") return rope_camera(views, radius, Vector3::UnitX(), width, height);
   if (from == "y") return rope_camera(views, radius, Vector3::UnitY(), width, height);
   if (from == "z" || from == "end") return rope_camera(views, radius, Vector3::UnitZ(), width, height);
-  double azimuth = 0, elevation = 0;
-  char rest = 0;
-  if (std::sscanf(from.c_str(), "%lf,%lf%c", &azimuth, &elevation, &rest) != 2)
+  const std::size_t comma = std::min(from.find(','), from.size());
+  std::size_t read = 0, read_behind = 0;
+  const std::string_view behind = std::string_view(from).substr(std::min(comma + 1, from.size()));
+  const auto azimuth = leading_number(from, &read), elevation = leading_number(behind, &read_behind);
+  if (!azimuth || !elevation || read != comma || read_behind != behind.size())
     throw InputError({"", 0, "--from"}, fmt::format("there is no side \"{}\"", from),
                      "take side, x, y, z, or two angles in degrees: 30,20");
-  const double a = azimuth * units::degree, e = elevation * units::degree;
+  const double a = *azimuth * units::degree, e = *elevation * units::degree;
   return rope_camera(views, radius, {std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e)}, width,
                      height);
 }

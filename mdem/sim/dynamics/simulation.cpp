@@ -224,6 +224,21 @@ void Simulation::relax_spins_if_due() {
   account_.dissipated += had - total_energy();
 }
 
+void Simulation::use_loads(LoadsAndConstraints loads) {
+  end_relaxation();
+  const auto add = [this](double sign) {
+    for (const PointLoad& load : point_loads_) {
+      forces_.force.add(static_cast<std::size_t>(load.element), sign * load.force);
+      forces_.torque.add(static_cast<std::size_t>(load.element), sign * load.torque);
+    }
+  };
+  add(-1);
+  loads_ = std::move(loads);
+  loaded_ = loaded_elements(loads_);
+  point_loads(loads_, state_, state_.time, point_loads_);
+  add(1);
+}
+
 EndReadings Simulation::read_gauges() {
   if (state_.time > gauges_.sums.since) return gauges_.read(state_);
   return gauges_.read_still(state_, reactions_at_rest(topology_, loads_, loaded_, forces_, state_), point_loads_);

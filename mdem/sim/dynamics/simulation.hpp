@@ -78,6 +78,9 @@ class Simulation {
   double heat() const { return account_.heat; }
   double list_seconds() const { return list_seconds_; }
   double integration_seconds() const { return integration_seconds_; }
+  // From now on these loads and constraints act. Those that set velocities do so from the next kick on, and their work
+  // there counts. The gauges stay on their elements.
+  void use_loads(LoadsAndConstraints loads);
   // On these elements, before the first step; without it they are the ends of all tubes. Turns count from `start`.
   void set_gauges(EndElements ends, const State& start) { gauges_ = Gauges(topology_, std::move(ends), start); }
   // Mean forces and torques at both ends since the last reading; those of this moment where no time has passed.

@@ -1,5 +1,5 @@
 // A program outside of this tree, built against the installed libraries: ten steps of a rope, and what a run would
-// take.
+// take. Argument: a shipped parameter set.
 #include <cstdio>
 #include <string>
 
@@ -7,9 +7,10 @@
 #include "scene/prepare.hpp"
 #include "scene/scene_toml.hpp"
 
-int main() {
+int main(int argc, char** argv) {
+  const std::string set = argc > 1 ? argv[1] : "cnt-10-10-tersoff";
   const std::string text =
-      "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[rope]\ntubes = 7\nlength_nm = 14\n"
+      "format = \"ropewalk-scene-1\"\nparameters = \"" + set + "\"\n[rope]\ntubes = 7\nlength_nm = 14\n"
       "[twist]\nmoment_nN_nm = 5\nrate_nN_nm_per_ps = 1\n";
   ropewalk::Scene scene = ropewalk::scene_of_text(text, "from-memory.toml");
   const ropewalk::Prepared prepared = ropewalk::prepare(scene);

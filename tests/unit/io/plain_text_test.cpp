@@ -60,6 +60,16 @@ TEST(PlainText, LammpsReadsANameOrNothing) {
   EXPECT_LE(lammps_comment(std::string(1000, 'x')).size(), 80u);
 }
 
+TEST(PlainText, ANumberIsReadUpToItsEnd) {
+  std::size_t length = 0;
+  EXPECT_EQ(leading_number(" 1.5 eV", &length), 1.5);
+  EXPECT_EQ(length, 4u);
+  EXPECT_EQ(leading_number("-2e-3%", &length), -2e-3);
+  EXPECT_EQ(length, 5u);
+  EXPECT_EQ(leading_number("1,5"), 1);
+  for (const char* none : {"", " ", "x1", ",5"}) EXPECT_FALSE(leading_number(none)) << none;
+}
+
 TEST(PlainText, ACellIsNoFormula) {
   for (const char* same : {"a", "-1.5", "+2", "1e-3", "rope 7"})
     EXPECT_EQ(csv_cell(same), same[0] == '+' ? "'+2" : same);

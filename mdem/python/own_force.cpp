@@ -1,0 +1,83 @@
+#include "python/own_force.hpp"
+
+#include <stdexcept>
+
+#include "python/arrays.hpp"
+#include "sim/forces/force_term.hpp"
+
+namespace ropewalk::python {
+namespace {
+
+class OwnTerm : public ForceTerm {
+ public:
+  explicit OwnTerm(std::shared_ptr<OwnForce> force) : force_(std::move(force)) {}
+
+  std::unique_ptr<ForceTerm> copy() const override { return std::make_unique<OwnTerm>(*this); }
+  std::string name() const override { return "own"; }
+  void gather(const State& state) override {
+    if (auto found = force_->at(state)) now_ = std::move(*found);
+  }
+  TermSum add(const State&, const Segment& part, const ForceRows& out) const override {
+    for (int i = part.begin; i < part.end; ++i) {
+      out.force.add(static_cast<std::size_t>(i - out.origin), now_.force[static_cast<std::size_t>(i)]);
+      out.torque.add(static_cast<std::size_t>(i - out.origin), now_.torque[static_cast<std::size_t>(i)]);
+    }
+    return {part.begin == 0 ? now_.energy : 0, 0};
+  }
+
+ private:
+  std::shared_ptr<OwnForce> force_;
+  OwnForce::Found now_;
+};
+
+class OwnLoad : public Load {
+ public:
+  explicit OwnLoad(std::shared_ptr<OwnForce> force) : force_(std::move(force)) {}
+
+  std::shared_ptr<Load> copy() const override { return std::make_shared<OwnLoad>(*this); }
+  void add_forces(const State& state, double, std::vector<PointLoad>& out) const override {
+    const auto found = force_->at(state);
+    for (std::size_t i = 0; found && i < state.size(); ++i)
+      out.push_back({static_cast<int>(i), found->force[i], found->torque[i]});
+  }
+
+ private:
+  std::shared_ptr<OwnForce> force_;
+};
+
+}  // namespace
+
+std::shared_ptr<OwnForce> OwnForce::make(py::function function) {
+  return {new OwnForce(std::move(function)), [](OwnForce* force) {
+            const py::gil_scoped_acquire acquire;
+            delete force;
+          }};
+}
+
+void OwnForce::add(const std::shared_ptr<OwnForce>& force, const State& start, Interaction& interaction,
+                   LoadsAndConstraints& loads) {
+  force->at(start);
+  if (*force->has_energy_)
+    add_term(std::make_shared<OwnTerm>(force), interaction);
+  else
+    add_load(force, loads);
+}
+
+void OwnForce::add_load(const std::shared_ptr<OwnForce>& force, LoadsAndConstraints& loads) {
+  if (!*force->has_energy_) loads.add(OwnLoad(force));
+}
+
+std::optional<OwnForce::Found> OwnForce::at(const State& state) {
+  if (rests_) return std::nullopt;
+  const py::gil_scoped_acquire acquire;
+  const auto [force, torque, energy] =
+      function_(state.step, state.time, copy_of(state.position), copy_of(state.orientation),
+                copy_of(state.velocity), copy_of(state.angular_velocity))
+          .cast<std::tuple<py::array_t<double>, py::array_t<double>, std::optional<double>>>();
+  if (!has_energy_) has_energy_ = energy.has_value();
+  if (*has_energy_ != energy.has_value())
+    throw std::invalid_argument("a force of one's own gives an energy at some times and none at others");
+  return Found{vectors_from(force), vectors_from(torque), energy.value_or(0)};
+}
+
+}  // namespace ropewalk::python

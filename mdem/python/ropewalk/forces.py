@@ -1,0 +1,46 @@
+"""Forces of one's own: functions of Python that act in a simulation."""
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any, Optional
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from .state import Elements, Floats, Instant
+
+OwnForce = Callable[[Instant], Any]
+_Found = tuple[Floats, Floats, Optional[float]]
+
+
+def _vectors(values: Optional[ArrayLike], elements: int, what: str) -> Floats:
+    if values is None:
+        return np.zeros((elements, 3))
+    array = np.asarray(values, float)
+    if array.shape[-1:] != (3,) or array.size != 3 * elements:
+        raise ValueError(f"a force of one's own has {what} of shape {array.shape}; ({elements}, 3) is needed")
+    if not np.isfinite(array).all():
+        raise ValueError(f"a force of one's own has {what} that are not finite")
+    return array.reshape(elements, 3)
+
+
+def checked(force: OwnForce, tube_begin: Sequence[int], element_length_nm: float) -> Callable[..., _Found]:
+    """The function as the core calls it: arrays in, checked arrays and the energy out.
+
+    Arguments:
+        force: of the user
+        tube_begin, element_length_nm: as of State (nm)
+    """
+
+    def call(step: int, time: float, *arrays: Floats) -> _Found:
+        found = force(Instant(Elements(*arrays), tube_begin, element_length_nm, step, time))
+        parts = found if isinstance(found, tuple) else (found,)
+        if len(parts) > 3:
+            raise ValueError("a force of one's own returns forces, torques and energy at most")
+        forces, torques, energy = (*parts, None, None, None)[:3]
+        n = len(arrays[0])
+        if energy is not None and not np.isfinite(energy):
+            raise ValueError(f"the energy of a force of one's own is {energy}")
+        return _vectors(forces, n, "forces"), _vectors(torques, n, "torques"), None if energy is None else float(energy)
+
+    return call

@@ -1,0 +1,256 @@
+"""Simulations that Python steers: forces of one's own, hooks, loads that change, copies."""
+from __future__ import annotations
+
+import math
+import pickle
+import unittest
+
+import numpy as np
+from support import ROPE, FolderTest
+
+import ropewalk
+
+# One tube between clamps, the upper one of which turns.
+TUBE = {
+    "parameters": "cnt-10-10-tersoff",
+    "rope": {"tubes": 1, "length_nm": 20},
+    "damping": {"bond_damping_per_ps": 4},
+    "grip": [{"end": "lower"}, {"end": "upper", "smooth_ps": 0, "about_z": {"rotation_deg": [[0, 0], [1, 0]]}}],
+    "run": {"duration_ps": 100},
+}
+FREE = {"parameters": "cnt-10-10-tersoff", "rope": {"tubes": 7, "length_nm": 14},
+        "damping": {"bond_damping_per_ps": 0, "contact_viscosity_eV_ps_per_nm2": 0}, "run": {"duration_ps": 5}}
+
+
+class Trap:
+    """A spring for every element to its first place, and a field that turns axes towards x."""
+
+    def __init__(self, scene, spring=3.0, field=2.0):  # eV/nm^2, eV
+        self.places, self.spring, self.field = scene.start.flat.position, spring, field
+
+    def __call__(self, now):
+        away, axis = now.flat.position - self.places, now.flat.axis
+        energy = 0.5 * self.spring * (away**2).sum() - self.field * axis[:, 0].sum()
+        return -self.spring * away, self.field * np.cross(axis, [1.0, 0, 0]), energy
+
+    def __eq__(self, other):
+        return np.array_equal(self.places, other.places)
+
+
+def pull(now):
+    """0.05 eV/nm along x on each element, as from outside."""
+    force = np.zeros((len(now.flat), 3))
+    force[:, 0] = 0.05
+    return force
+
+
+class OwnForceTest(FolderTest):
+    def test_a_force_with_an_energy_closes_the_account(self):
+        scene, off = ropewalk.Scene(FREE), []
+        for parts in (1, 2):
+            simulation = ropewalk.Simulation(scene, forces=[Trap(scene, 0.3, 30)])
+            simulation.divided = parts
+            before = simulation.energies
+            self.assertEqual(before.terms, 0)
+            simulation.step(200)
+            after = simulation.energies
+            self.assertGreater(after.kinetic, 1000)
+            self.assertLess(after.terms, -1000)
+            self.assertAlmostEqual(after.total - before.total, simulation.measure("balance_eV"), places=9)
+            self.assertLess(abs(simulation.measure("work_eV")), 1e-12)
+            off.append(abs(after.total - before.total))
+        self.assertLess(off[0], 1e-3 * after.kinetic)
+        self.assertLess(off[1], 0.35 * off[0])  # of second order in the step
+
+    def test_a_force_without_an_energy_does_work(self):
+        simulation = ropewalk.Simulation(FREE, forces=[pull])
+        begin = simulation.state.flat.position[:, 0].mean()
+        simulation.step(200)
+        path = simulation.state.flat.position[:, 0].mean() - begin
+        work = 0.05 * 70 * path
+        time, mass = simulation.time_ps, simulation.scene._core.mass[0]
+        self.assertAlmostEqual(path / (0.5 * 0.05 / mass * time**2), 1, delta=1e-7)
+        self.assertAlmostEqual(simulation.measure("work_eV") / work, 1, delta=1e-9)
+        self.assertLess(abs(simulation.measure("balance_eV")), 2e-3 * work)
+
+    def test_it_is_the_tether_of_the_program(self):
+        def spring(now):
+            z = now.flat.position[-1] - [0, 0, 30]
+            force = np.zeros((len(now.flat), 3))
+            force[-1] = -k * (1 - 10 / np.linalg.norm(z)) * z
+            return force, None, 0.5 * k * (np.linalg.norm(z) - 10) ** 2
+
+        k = 0.5 / 0.1602176634  # nN/nm in eV/nm^2
+        typed = ropewalk.Simulation({**FREE, "tether": [{
+            "tube": 6, "elements": [-1], "to_point_nm": [0, 0, 30], "stiffness_nN_per_nm": 0.5, "rest_nm": 10}]})
+        own = ropewalk.Simulation(ropewalk.Scene({**FREE, "run": {"duration_ps": 5, "time_step_fs": typed.time_step_fs}}),
+                                  forces=[spring])
+        for simulation in (typed, own):
+            simulation.step(100)
+        np.testing.assert_allclose(own.state.flat.position, typed.state.flat.position, atol=1e-9)
+        self.assertAlmostEqual(own.energies.terms, typed.energies.terms, places=7)
+        self.assertGreater(np.abs(own.state.flat.velocity).max(), 1e-3)
+
+    def test_bits_depend_on_neither_threads_nor_calls_nor_checkpoints(self):
+        scene = ropewalk.Scene({**FREE, "rope": {"tubes": 37, "length_nm": 28}})
+        before = ropewalk.threads()
+        self.addCleanup(ropewalk.set_threads, before)
+        ends = []
+        for n in (1, 2):
+            ropewalk.set_threads(n)
+            simulation = ropewalk.Simulation(scene, forces=[Trap(scene), pull])
+            simulation.step(10)
+            here = simulation.checkpoint()
+            simulation.step(10)
+            ends.append(simulation.checkpoint())
+            simulation.restore(here)
+            for _ in range(10):
+                simulation.step()
+            ends.append(simulation.checkpoint())
+        self.assertEqual(len(set(ends)), 1)
+
+    def test_what_it_raises_leaves_the_step_before(self):
+        def fails(now):
+            if now.step == 3 and failing:
+                raise failing[0]("no")
+            return pull(now)
+
+        for error in (RuntimeError, KeyboardInterrupt):
+            failing = []
+            whole = ropewalk.Simulation(FREE, forces=[fails])
+            whole.step(6)
+            failing = [error]
+            broken = ropewalk.Simulation(FREE, forces=[fails])
+            with self.assertRaisesRegex(error, "no"):
+                broken.step(6)
+            self.assertEqual(broken.step_number, 2)
+            failing = []
+            broken.step(4)
+            self.assertEqual(broken.checkpoint(), whole.checkpoint())
+
+    def test_a_relaxation_finds_the_minimum_with_it(self):
+        scene = ropewalk.Scene({**FREE, "run": {"mode": "relax"}})
+        simulation = ropewalk.Simulation(scene, forces=[Trap(scene)])
+        self.assertTrue(simulation.relax(1e-4).at_rest)
+        self.assertLess(simulation.energies.terms, -3)
+        self.assertLess(simulation.largest_force_eV_per_nm, 1e-4)
+
+    def test_what_is_wrong_is_said(self):
+        for wrong, words in ((lambda now: np.zeros((3, 3)), r"\(70, 3\) is needed"),
+                             (lambda now: np.full((70, 3), np.nan), "not finite"),
+                             (lambda now: (None, None, math.inf), "energy"),
+                             (lambda now: (None, None, None if now.step else 1.0), "an energy at some times")):
+            with self.assertRaisesRegex(ValueError, words):
+                ropewalk.Simulation(FREE, forces=[wrong]).step()
+
+
+class ChangeTest(FolderTest):
+    def test_a_torque_is_held_by_turning(self):
+        wanted, angle, every = 15.0, 0.0, 40  # nN nm, deg
+        simulation = ropewalk.Simulation(TUBE)
+        simulation.divided = 4  # each jump of the clamp's speed costs the account an error of first order in the step
+
+        def control(s):
+            nonlocal angle
+            now, ahead = s.time_ps, every * 1e-3 * s.time_step_fs
+            more = float(np.clip(0.2 * (wanted - s.measure("torque_upper_nN_nm")), -2, 2))
+            s.change({"grip.1.about_z.rotation_deg": [[0, 0], [now, angle], [now + ahead, angle + more]] if now else
+                      [[0, 0], [ahead, more]]})
+            angle += more
+
+        simulation.add_hook(control, every)
+        simulation.step(every * 150)
+        torques = []
+        simulation.add_observer(lambda s: torques.append(s.measure("torque_upper_nN_nm")), every)
+        simulation.step(every * 10)
+        self.assertAlmostEqual(np.mean(torques), wanted, delta=0.02 * wanted)
+        # The clamp has turned as the schedule says, and as the stiffness of the tube asks.
+        self.assertAlmostEqual(simulation.measure("rotation_deg"), angle, delta=1e-6)
+        stiffness = ropewalk.ParameterSet("cnt-10-10-tersoff")["bond.GJ"].value
+        length = (simulation.scene.elements - 1) * simulation.scene.element_length_nm
+        self.assertAlmostEqual(math.radians(angle) * stiffness / length, wanted, delta=0.03 * wanted)
+        self.assertLess(abs(simulation.measure("balance_eV")), 0.005 * simulation.measure("work_eV"))
+
+    def test_a_change_is_what_the_other_scene_does(self):
+        faster = {"grip.1.about_z.rotation_deg": [[0, 0], [5, 50]]}
+        slow = ropewalk.Scene(TUBE).changed({"grip.1.about_z.rotation_deg": [[0, 0], [5, 10]], "grip.1.smooth_ps": None})
+        one, other = ropewalk.Simulation(slow), ropewalk.Simulation(slow.changed(faster))
+        one.change(faster)
+        for simulation in (one, other):
+            simulation.step(50)
+        np.testing.assert_array_equal(one.state.position, other.state.position)
+        self.assertEqual(one.scene, other.scene)
+
+    def test_moments_change_and_their_work_counts(self):
+        simulation = ropewalk.Simulation(ROPE)
+        simulation.step(20)
+        before = simulation.measure("moment_nN_nm")
+        simulation.change({"twist.moment_nN_nm": 2})
+        self.assertEqual((simulation.measure("moment_nN_nm"), simulation.scene["twist.moment_nN_nm"]), (2, 2))
+        self.assertGreater(before, 2)
+        simulation.step(50)
+        self.assertLess(abs(simulation.measure("balance_eV")), 0.02 * simulation.measure("work_eV"))
+
+    def test_checkpoints_hold_the_change(self):
+        simulation = ropewalk.Simulation(TUBE)
+        simulation.step(10)
+        simulation.change({"grip.1.about_z.rotation_deg": [[0, 0], [5, 50]]})
+        simulation.step(10)
+        simulation.save("here")
+        again = ropewalk.Simulation(TUBE)
+        begin = again.checkpoint()
+        again.restore("here")
+        self.assertEqual(again.scene, simulation.scene)
+        for s in (simulation, again):
+            s.step(10)
+        self.assertEqual(again, simulation)
+        again.restore(begin)
+        self.assertEqual(again, ropewalk.Simulation(TUBE))
+        damaged = bytearray(simulation.checkpoint())
+        damaged[-40] ^= 1  # in the text of the change
+        with self.assertRaisesRegex(ropewalk.InputError, "damaged"):
+            again.restore(bytes(damaged))
+        self.assertEqual(again, ropewalk.Simulation(TUBE))
+
+    def test_the_rest_of_the_scene_stays(self):
+        simulation = ropewalk.Simulation(TUBE)
+        before = simulation.checkpoint()
+        for changes, words in (({"rope.tubes": 7}, "rope: stays as it is"), ({"grip.1.elements": 3}, "other elements"),
+                               ({"grip.1.about_z.rotation_deg": [[0, 1], [2, 3]]}, "begins at 1"),
+                               ({"grip.0.ende": "upper"}, "ende")):
+            with self.assertRaisesRegex(ropewalk.InputError, words):
+                simulation.change(changes)
+        self.assertEqual(simulation.checkpoint(), before)
+
+    def test_hooks_are_called_before_steps(self):
+        simulation, seen = ropewalk.Simulation(ROPE), []
+        hook = lambda s: seen.append(s.step_number)  # noqa: E731
+        simulation.add_hook(hook, 3)
+        simulation.step(4)
+        simulation.step(3)
+        self.assertEqual(seen, [0, 3, 6])
+        simulation.remove_hook(hook)
+        simulation.step(3)
+        self.assertEqual(seen, [0, 3, 6])
+        simulation.add_hook(lambda s: s.step())
+        with self.assertRaisesRegex(ropewalk.Error, "cannot step"):
+            simulation.step()
+
+
+class CopyTest(FolderTest):
+    def test_simulations(self):
+        scene = ropewalk.Scene(ROPE)
+        simulation = ropewalk.Simulation(scene, forces=[Trap(scene)])
+        simulation.step(5)
+        again = pickle.loads(pickle.dumps(simulation))
+        self.assertEqual(again, simulation)
+        again.step()
+        self.assertNotEqual(again, simulation)
+        simulation.step()
+        self.assertEqual(again, simulation)
+        state = pickle.loads(pickle.dumps(simulation.state))
+        self.assertEqual(state, simulation.state)
+
+
+if __name__ == "__main__":
+    unittest.main()
