@@ -120,6 +120,7 @@ RunDirectory trial_directory(const CampaignDirectory& dir, const Sweep& sweep, c
 std::string trial_hash(const Sweep& sweep, const SweepPoint& point, double value) {
   std::string all = trial_text(sweep, point, value);
   for (const std::string& set : point.sets) all += read_file(set);
+  for (const std::string& file : point.files) all += read_file(file);
   if (!point.state.empty()) all += read_file(point.state);
   return hash_hex(all);
 }
