@@ -117,6 +117,8 @@ bool is_run_of(const RunDirectory& dir, const std::string& text, const SweepPoin
   };
   for (std::size_t k = 0; k < point.sets.size(); ++k)
     if (!copied(dir.parameters(k), point.sets[k])) return false;
+  for (std::size_t k = 0; k < point.files.size(); ++k)
+    if (!copied(dir.friction(k), point.files[k])) return false;
   return point.state.empty() || copied(dir.state(), point.state);
 }
 

@@ -166,7 +166,8 @@ std::string phase_page(const Sweep& sweep, const std::vector<PhasePoint>& points
         "<tr><th>{}</th><td>{}</td><td>{}</td><td>{}</td><td>{}</td>", escape_markup(p.name), p.tubes,
         number(p.length), number(p.radius > 0 ? p.length / p.radius : 0),
         escape_markup((std::isfinite(p.by_bisection()) ? measured_text(p.by_bisection(), p.bisection_error())
-                                                       : "not in the range") +
+                       : p.begun()                     ? "not in the range"
+                                                       : "not run yet") +
                       (p.remarks().empty() ? "" : "; " + p.remarks())));
     if (theory)
       html += fmt::format("<td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td>",

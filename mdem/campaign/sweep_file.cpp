@@ -289,6 +289,7 @@ void check_scene(const Sweep& s, SweepPoint& p, bool build) {
     if (build) refuse_cooling(scene, prepare(scene));
     p.sets.clear();
     for (const ParameterSet& set : scene.sets) p.sets.push_back(set.path);
+    p.files = scene.files_of_drives();
     p.state = scene.source->file();
     const bool relaxes = scene.run.mode == RunOptions::Mode::relax;
     const double duration = scene.run.duration > 0 ? scene.run.duration : protocol_time(scene);

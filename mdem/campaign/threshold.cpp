@@ -122,6 +122,7 @@ namespace {
 std::string files_of(const SweepPoint& point) {
   std::string all;
   for (const std::string& set : point.sets) all += read_file(set);
+  for (const std::string& file : point.files) all += read_file(file);
   if (!point.state.empty()) all += read_file(point.state);
   return all;
 }
@@ -239,6 +240,10 @@ std::vector<Trial> read_trials(const std::string& path) {
     trials.push_back(t);
   }
   return trials;
+}
+
+bool PhasePoint::begun() const {
+  return std::any_of(seeds.begin(), seeds.end(), [](const Threshold& t) { return !t.trials.empty(); });
 }
 
 double PhasePoint::by_bisection() const {

@@ -82,6 +82,7 @@ struct PhasePoint {
   std::optional<HelixTheory> theory;  // where the key is the moment of [twist]
   double passing = 0;                 // nm, of the amplitude that is asked for; zero: it is another observable
 
+  bool begun() const;  // has a run that ended
   double by_bisection() const, bisection_error() const;
   // The number of seeds whose outcome falls with the key, whose outcome changes more than once, and whose outcome
   // is the same at all values of the key that were tried. A seed of the third kind has no threshold, and then there

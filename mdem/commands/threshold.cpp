@@ -38,7 +38,7 @@ void print_results(const CampaignDirectory& dir, const std::vector<PhasePoint>& 
     fmt::print("{:<40} by bisection {:<18} theory {}{}\n", p.name,
                std::isfinite(p.by_bisection())
                    ? fmt::format("{:.4g} ± {:.2g}", p.by_bisection(), p.bisection_error())
-                   : std::string("not in the range"),
+                   : std::string(p.begun() ? "not in the range" : "not run yet"),
                std::isfinite(theory) ? fmt::format("{:.4g}", theory) : std::string("-"),
                std::isfinite(least) ? fmt::format(", none grows below {:.4g}", least) : std::string());
     if (const std::string remarks = p.remarks(); !remarks.empty()) fmt::print("  note: {}\n", remarks);

@@ -73,6 +73,14 @@ double potential_energy(const LogRow& row) {
   return sum;
 }
 
+std::string damping_words(const LogRow& row) {
+  const double lost = row["dissipated_eV"], damping = row["damping_eV"];
+  if (!(lost > 0.01 * std::fabs(row["work_eV"])) || !(damping > 0.1 * lost)) return "";
+  return fmt::format("Numerical damping, which atoms do not have, took {:.3g} % of the {:.3g} eV that are lost: trust "
+                     "where the rope rests, not how it came there, nor which of several states of rest it chose.",
+                     100 * damping / lost, lost);
+}
+
 std::string log_header() {
   std::string text;
   for (const Observable& column : observables()) text += (text.empty() ? "" : ",") + column.name;

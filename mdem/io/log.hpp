@@ -35,6 +35,10 @@ RopeShape shape_of(const LogRow& row, const LogRow& first);
 // eV: bonds, contacts and force terms.
 double potential_energy(const LogRow& row);
 
+// Which part of the lost energy numerical damping has taken, and what that means. Empty: a hundredth of the work or
+// less is lost, or less than a tenth of it to damping.
+std::string damping_words(const LogRow& row);
+
 std::string log_header();
 std::string log_line(const LogRow& row);  // full precision: reading it back gives the same bits
 

@@ -70,8 +70,7 @@ std::unique_ptr<Run> begin_run(const Scene& scene, const RunDirectory& dir, cons
   run->hold(create_run_directory(dir, asked.force));
   try {
     write_file_atomically(dir.scene(), scene.text);
-    for (std::size_t k = 0; k < scene.sets.size(); ++k)
-      write_file_atomically(dir.parameters(k), read_file(scene.sets[k].path));
+    copy_parameters(scene, dir);
     if (scene.from_file()) write_file_atomically(dir.state(), read_file(scene.source->file()));
     run->tell_notes();
     run->begin_files();

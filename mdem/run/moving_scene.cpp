@@ -13,7 +13,7 @@ EnergyAccount account_of(const Scene& scene, const Simulation& simulation, const
   account.time_step = simulation.time_step() / simulation.divided();
   if (const MomentRamp* ramp = scene.moment_ramp()) account.moment = ramp->moment_at(s.time);
   account.potential = simulation.forces().energy;
-  account.terms = term_energies(simulation.interaction(), simulation.forces().term_energy);
+  account.terms = term_readings(simulation.interaction(), simulation.forces().term_energy, simulation.term_accounts());
   account.kinetic = kinetic_energy(simulation.topology(), s);
   account.work = simulation.work();
   account.dissipated = simulation.dissipated();

@@ -75,6 +75,7 @@ const std::vector<OutputFile>& run_files() {
       {"scene.toml", "run", "the scene"},
       {"parameters.toml", "run", "the parameter set of the first type of tube"},
       {"parameters-*.toml", "run", "the parameter sets of further types, from 1"},
+      {"friction-*.toml", "run", "friction of pairs of tubes, of a scene that takes it from files, from 0"},
       {"state.csv", "run", "the start, of a scene that reads its state from a file"},
       {"log.csv", "run", "observables against time"},
       {"frames.gsd", "run", "elements against time, for OVITO and MDAnalysis"},
@@ -173,6 +174,13 @@ void remove_run_parts(const RunDirectory& dir) {
 
 bool has_checkpoint(const RunDirectory& dir) {
   return fs::exists(dir.checkpoint()) || fs::exists(dir.checkpoint_before());
+}
+
+void copy_parameters(const Scene& scene, const RunDirectory& to) {
+  for (std::size_t k = 0; k < scene.sets.size(); ++k)
+    write_file_atomically(to.parameters(k), read_file(scene.sets[k].path));
+  const std::vector<std::string> files = scene.files_of_drives();
+  for (std::size_t k = 0; k < files.size(); ++k) write_file_atomically(to.friction(k), read_file(files[k]));
 }
 
 Scene read_run_scene(const RunDirectory& dir) {

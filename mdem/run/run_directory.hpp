@@ -28,6 +28,7 @@ struct RunDirectory {
   std::string parameters(std::size_t type) const {
     return type == 0 ? file("parameters.toml") : path + "/parameters-" + std::to_string(type) + ".toml";
   }
+  std::string friction(std::size_t k) const { return path + "/friction-" + std::to_string(k) + ".toml"; }
   std::string state() const { return file("state.csv"); }
   std::string report() const { return file("report.html"); }
   std::string view() const { return file("view.html"); }
@@ -63,6 +64,9 @@ void remove_run_parts(const RunDirectory& dir);
 
 // Whether there is a checkpoint, of either generation.
 bool has_checkpoint(const RunDirectory& dir);
+
+// Copies the parameter sets of a scene to the directory, and the files that its drives were read from.
+void copy_parameters(const Scene& scene, const RunDirectory& to);
 
 // The scene as the run had it: scene.toml, parameters.toml and state.csv of the directory.
 Scene read_run_scene(const RunDirectory& dir);

@@ -51,8 +51,7 @@ DirectoryLock write_finer_scene(const RunDirectory& from, const Scene& scene, co
       fmt::format("Made by ropewalk at {:.6g} ps of the run {}: every element split in two.", time, name_of(from)));
   DirectoryLock lock = create_run_directory(to, force || !has_checkpoint(to));
   write_file_atomically(to.scene(), text);
-  for (std::size_t k = 0; k < scene.sets.size(); ++k)
-    write_file_atomically(to.parameters(k), read_file(scene.sets[k].path));
+  copy_parameters(scene, to);
   const Splitting how = splitting_of(scene);
   if (scene.from_file())
     write_file_atomically(

@@ -183,6 +183,8 @@ TEST(ThresholdOfSeeds, IsNoMeanWhereSomeLieOutsideOfTheRange) {
   point.seeds = {bracket_of({{1, false}, {9, true}, {5, false}}), bracket_of({{1, false}, {9, true}, {5, true}})};
   EXPECT_NEAR(point.by_bisection(), 5, 1e-12);
   EXPECT_EQ(point.remarks(), "");
+  EXPECT_TRUE(point.begun());
+  EXPECT_FALSE(PhasePoint().begun());
   point.seeds.push_back(bracketed({}, 1, 9));  // has not begun
   EXPECT_NEAR(point.by_bisection(), 5, 1e-12);
   EXPECT_EQ(point.outside_seeds(), 0u);
