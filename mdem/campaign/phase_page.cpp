@@ -18,6 +18,9 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 std::string cell(double value) { return std::isfinite(value) ? fmt::format("{:.6g}", value) : "nan"; }
 
+// To the digits that a run and its row in trials.csv share.
+std::string rough_cell(double value) { return std::isfinite(value) ? fmt::format("{:.4g}", value) : "nan"; }
+
 std::vector<std::string> keys_without_seed(const Sweep& sweep) {
   std::vector<std::string> keys = sweep.keys();
   keys.erase(std::remove(keys.begin(), keys.end(), "start.seed"), keys.end());
@@ -120,9 +123,9 @@ std::string thresholds_csv(const Sweep& sweep, const std::vector<PhasePoint>& po
     text +=
         values(p) + fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", p.tubes, cell(p.length),
                                 cell(p.radius), p.seeds.size(), cell(p.by_bisection()), cell(p.bisection_error()),
-                                cell(p.kinetic_theory()), cell(p.static_theory()), cell(p.glued_theory()),
-                                cell(p.winding()), cell(p.rate_over_theory()), p.rates(), p.falling_seeds(),
-                                p.unclear_seeds(), p.outside_seeds(), p.cut_short_runs());
+                                rough_cell(p.kinetic_theory()), cell(p.static_theory()), cell(p.glued_theory()),
+                                rough_cell(p.winding()), rough_cell(p.rate_over_theory()), p.rates(),
+                                p.falling_seeds(), p.unclear_seeds(), p.outside_seeds(), p.cut_short_runs());
   return text;
 }
 
