@@ -1,6 +1,7 @@
 // ropewalk: the front door. Reads the command line, calls the verb, turns errors into one line and an exit
 // code: 0 done, 2 wrong input, 3 numerical failure or a disk that takes no more, 4 a relaxation that did not come
-// to rest, 5 stopped at a limit, 6 stopped by --wall-time, 7 done but far beyond a limit, 128 + signal when interrupted.
+// to rest, 5 stopped at a limit, 6 stopped by --wall-time, 7 done but far beyond a limit, 128 + signal when
+// interrupted.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <unistd.h>
@@ -315,8 +316,9 @@ void add_sweep(CLI::App& app, Verbs& v) {
 void add_threshold(CLI::App& app, Verbs& v) {
   CLI::App* c = app.add_subcommand(
       "threshold",
-      "The critical value of a key at each point of a sweep, by bisection and by growth rates: a phase diagram");
-  c->add_option("file", v.threshold.file, "Sweep (TOML) with [threshold]: key, from, to, column, above")
+      "The critical value of a key at each point of a sweep, by bisection, beside theory: a phase diagram");
+  c->add_option("file", v.threshold.file,
+                "Sweep (TOML) with [threshold]: key, from, to, and column and above, or shape")
       ->required();
   c->add_option("--out", v.threshold.out, "Directory of the campaign; the same command goes on [default: FILE]");
   c->add_option("-j,--jobs", v.threshold.jobs, "Points at a time, each on one core [default: all cores]")

@@ -75,6 +75,10 @@ void add_parametrize(CLI::App& app, Verbs& v) {
       ->capture_default_str();
   verb->add_option("--out", a.out, "Directory of sets, atoms and reports; what is finished in it is kept")
       ->capture_default_str();
+  verb->add_option("--friction", a.friction,
+                   "Friction from atoms: of each tube beside its like, of all pairs of tubes, or none; some minutes a pair")
+      ->check(CLI::IsMember({"like", "all", "none"}))
+      ->capture_default_str();
   verb->add_option("--budget", a.budget, "Minutes that the references of one tube may take [default: any]")
       ->check(number_within(Bounds::positive()));
   verb->add_option("-j,--jobs", a.jobs, "Processes at a time [default: one for each core]")->check(whole_number(1));

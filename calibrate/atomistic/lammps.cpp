@@ -14,6 +14,7 @@
 
 #include "atomistic/child_process.hpp"
 #include "io/files.hpp"
+#include "io/removal.hpp"
 
 namespace ropewalk::calibrate {
 namespace {
@@ -116,21 +117,11 @@ bool LammpsVersion::has_pair_style(const std::string& style) const {
 
 LammpsVersion lammps_version(const LammpsOptions& options) {
   const std::string program = program_of(options);
-  std::string pattern = (fs::temp_directory_path() / "ropewalk-lmp-XXXXXX").string();
-  if (!::mkdtemp(pattern.data()))
-    throw InputError({pattern, 0, ""}, fmt::format("cannot be made: {}", std::strerror(errno)),
-                     "name a writable folder with TMPDIR");
-  const struct Cleaner {
-    std::string folder;
-    ~Cleaner() {
-      std::error_code ignored;
-      fs::remove_all(folder, ignored);
-    }
-  } cleaner{pattern};
+  const TemporaryFolder folder;
 
   ChildOptions child;
-  child.folder = pattern;
-  child.output = pattern + "/help.out";
+  child.folder = folder.path();
+  child.output = folder.file("help.out");
   child.quiet_seconds = std::min(options.quiet_seconds, 30.0);
   child.max_seconds = 60;
   child.interrupted = options.interrupted;

@@ -246,16 +246,8 @@ WorkFolder::WorkFolder(const std::string& keep) : path_(keep) {
                        "choose a place that you may write to");
     return;
   }
-  std::string name = (fs::temp_directory_path() / "ropewalk-XXXXXX").string();
-  if (!mkdtemp(name.data()))
-    throw InputError({name, 0, ""}, "no temporary directory can be made", "set TMPDIR to a place with room");
-  path_ = name;
-  temporary_ = true;
-}
-
-WorkFolder::~WorkFolder() {
-  std::error_code error;
-  if (temporary_) fs::remove_all(path_, error);
+  temporary_.emplace();
+  path_ = temporary_->path();
 }
 
 int calibrate_command(const CalibrateArguments& a) {

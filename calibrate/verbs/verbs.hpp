@@ -1,8 +1,10 @@
 // The verbs of `ropewalk calibrate`. Each returns the exit code.
 #pragma once
 
+#include <optional>
 #include <string>
 
+#include "io/removal.hpp"
 #include "verbs/calibration.hpp"
 
 namespace ropewalk::calibrate {
@@ -85,15 +87,14 @@ AtomLaw parse_atom_law(const std::string& lj, double cutoff);
 class WorkFolder {
  public:
   explicit WorkFolder(const std::string& keep);
-  ~WorkFolder();
-  WorkFolder(const WorkFolder&) = delete;
-  WorkFolder& operator=(const WorkFolder&) = delete;
   const std::string& path() const { return path_; }
-  void stay() { temporary_ = false; }
+  void stay() {
+    if (temporary_) temporary_->keep();
+  }
 
  private:
   std::string path_;
-  bool temporary_ = false;
+  std::optional<TemporaryFolder> temporary_;
 };
 
 // Refuses an existing file unless forced. Throws InputError.

@@ -10,7 +10,7 @@ for figure in fig2 fig3 fig3-pfc fig3-calibrated fig4 video; do
     --columns time_ps,beta_deg,twist_eV,bend_eV,vdw_eV,dissipated_eV,Q,Q_delaunay,void_area_nm2,amplitude_nm,windings
   "$program" gather runs/$figure --series --columns time_ps,moment_nN_nm,twist_eV,Q | awk -f release.awk >$figure-release.csv
 done
-"$program" threshold fig5.toml --out runs/fig5 --known fig5-known.csv
+"$program" threshold fig5.toml --out runs/fig5
 cp runs/fig5/thresholds.csv fig5-thresholds.csv
 cp runs/fig5/trials.csv fig5-trials.csv
 cp runs/fig5/thresholds.html fig5.html

@@ -67,18 +67,28 @@ bool was_just_begun(const CampaignDirectory& dir) {
   if (!fs::is_directory(dir.path)) return false;
   for (const auto& entry : fs::directory_iterator(dir.path)) {
     const std::string name = entry.path().filename().string();
-    if (name != "points" && name != "messages" && without_part(name).empty()) return false;
+    if (name != "points" && name != "messages" && !is_lock_file(name) && without_part(name).empty()) return false;
   }
   return true;
 }
 
 }  // namespace
 
+RunDirectory CampaignDirectory::run_in(const std::string& folder, const std::string& name) const {
+  const std::string parent = path + "/" + folder;
+  for (const std::string& place : {parent, parent + "/" + name}) refuse_strange(place, true);
+  return {parent + "/" + name};
+}
+
 PointProgress progress_of(const RunDirectory& dir) {
   using Stage = PointProgress::Stage;
   PointProgress p;
   p.status = "waiting";
-  if (!fs::exists(dir.manifest())) return p;
+  refuse_strange_files(dir);
+  if (!fs::exists(dir.manifest())) {
+    if (has_checkpoint(dir)) p.stage = Stage::begun, p.status = "interrupted";
+    return p;
+  }
   const Manifest m = read_manifest(dir.manifest());
   p.status = m.status;
   p.reason = m.reason;
@@ -89,7 +99,7 @@ PointProgress progress_of(const RunDirectory& dir) {
     p.stage = has_checkpoint(dir) ? Stage::begun : Stage::waiting;
   else
     p.stage = Stage::ended;
-  if (p.stage == Stage::begun) p.status = "interrupted";  // by whoever looks: nothing of it runs here
+  if (p.stage == Stage::begun) p.status = holder_of(dir.path).empty() ? "interrupted" : "running";
   return p;
 }
 
@@ -107,14 +117,34 @@ bool is_run_of(const RunDirectory& dir, const std::string& text, const SweepPoin
   };
   for (std::size_t k = 0; k < point.sets.size(); ++k)
     if (!copied(dir.parameters(k), point.sets[k])) return false;
+  for (std::size_t k = 0; k < point.files.size(); ++k)
+    if (!copied(dir.friction(k), point.files[k])) return false;
   return point.state.empty() || copied(dir.state(), point.state);
 }
 
-void create_campaign(const CampaignDirectory& dir, const Sweep& sweep, const std::vector<SweepPoint>& points,
-                     bool force) {
+namespace {
+
+InputError other_run(const RunDirectory& run, bool other_time) {
+  return InputError({run.path, 0, "--out"},
+                    other_time ? "left its shared start at another time, branch.at_ps"
+                               : "was run with another scene, parameter set or state file",
+                    "choose another --out, or give --force to run this point anew");
+}
+
+}  // namespace
+
+DirectoryLock create_campaign(const CampaignDirectory& dir, const Sweep& sweep,
+                              const std::vector<SweepPoint>& points, bool force) {
   if (fs::exists(dir.path) && !fs::exists(dir.sweep()) && !was_just_begun(dir))
     throw InputError({dir.path, 0, "--out"}, "is not the directory of a campaign (no sweep.toml in it)",
                      "choose another name");
+  for (const char* sub : {"points", "messages", "starts"}) refuse_strange(dir.path + "/" + sub, true);
+  std::error_code error;
+  for (const char* sub : {"points", "messages"}) fs::create_directories(dir.path + "/" + sub, error);
+  if (error)
+    throw InputError({dir.path, 0, "--out"}, fmt::format("cannot be made: {}", error.message()),
+                     "choose a place that you may write to");
+  DirectoryLock lock(dir.path, force ? DirectoryLock::Kind::alone : DirectoryLock::Kind::together);
   // The scenes of the points do not tell when they left their shared start.
   const bool other_start = !sweep.branch_axes.empty() && fs::exists(dir.sweep()) && fs::exists(dir.scene()) &&
                            read_campaign(dir).branch_at != sweep.branch_at;
@@ -124,24 +154,23 @@ void create_campaign(const CampaignDirectory& dir, const Sweep& sweep, const std
     // A point that goes on from a shared start has the time step of that start.
     const bool same = is_run_of(run, p.text, p, !p.start.empty());
     if (same && !other_start) continue;
-    if (!force)
-      throw InputError({run.path, 0, "--out"},
-                       same ? "left its shared start at another time, branch.at_ps"
-                            : "was run with another scene, parameter set or state file",
-                       "choose another --out, or give --force to run this point anew");
-    fs::remove_all(run.path);
+    if (!force) throw other_run(run, same);
+    remove_run(run, "--force");
   }
-  if (other_start) fs::remove_all(dir.path + "/starts");
-  std::error_code error;
-  for (const char* sub : {"points", "messages"}) fs::create_directories(dir.path + "/" + sub, error);
-  if (error)
-    throw InputError({dir.path, 0, "--out"}, fmt::format("cannot be made: {}", error.message()),
-                     "choose a place that you may write to");
+  for (const SweepPoint& p : starts_of(sweep, points)) {
+    const RunDirectory run = dir.start(p.name);
+    if (!fs::exists(run.scene()) || progress_of(run).stage == PointProgress::Stage::waiting) continue;
+    if (!other_start && is_run_of(run, p.text, p)) continue;
+    if (!force) throw other_run(run, other_start);
+    remove_run(run, "--force");
+  }
   write_file_atomically(dir.sweep(), sweep.text);
   write_file_atomically(dir.scene(), sweep.scene_text);
+  return lock;
 }
 
 Sweep read_campaign(const CampaignDirectory& dir) {
+  for (const std::string& file : {dir.sweep(), dir.scene()}) refuse_strange(file);
   if (!fs::exists(dir.sweep()))
     throw InputError({dir.path, 0, ""}, "is not the directory of a campaign (no sweep.toml in it)",
                      "name the directory that `ropewalk sweep` made");

@@ -18,9 +18,11 @@ struct CampaignDirectory {
   std::string scene() const { return path + "/scene.toml"; }
   std::string table() const { return path + "/table.csv"; }
   std::string trials() const { return path + "/trials.csv"; }
-  RunDirectory point(const std::string& name) const { return {path + "/points/" + name}; }
-  RunDirectory start(const std::string& name) const { return {path + "/starts/" + name}; }
+  // Throw InputError where it is a link.
+  RunDirectory point(const std::string& name) const { return run_in("points", name); }
+  RunDirectory start(const std::string& name) const { return run_in("starts", name); }
   std::string messages(const std::string& name) const { return path + "/messages/" + name + ".txt"; }
+  RunDirectory run_in(const std::string& folder, const std::string& name) const;
 };
 
 // Beside the file of the sweep, where `out` is empty.
@@ -40,11 +42,12 @@ struct PointProgress {
 };
 PointProgress progress_of(const RunDirectory& dir);
 
-// Makes the directory with its copies. Throws InputError where it is not that of a campaign, or where a point in it
-// was run with another scene, parameter set, state file or time of its shared start, unless `force` is set: these
-// points are then removed.
-void create_campaign(const CampaignDirectory& dir, const Sweep& sweep, const std::vector<SweepPoint>& points,
-                     bool force);
+// Makes the directory with its copies, and holds it: together with other processes, alone with `force`. Throws
+// InputError where it is not that of a campaign, where another process holds it alone, and where a point or a
+// shared start in it was run with another scene, parameter set, state file or time of its shared start, unless
+// `force` is set: these runs are then removed.
+[[nodiscard]] DirectoryLock create_campaign(const CampaignDirectory& dir, const Sweep& sweep,
+                                            const std::vector<SweepPoint>& points, bool force);
 
 // The sweep as the directory has it, with names and values of its points.
 Sweep read_campaign(const CampaignDirectory& dir);

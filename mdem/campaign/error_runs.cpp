@@ -94,9 +94,10 @@ std::vector<std::vector<double>> correlation_of(const std::vector<VariedNumber>&
 
 int ErrorRuns::run(const VariedNumber& source, bool plus) const {
   const RunDirectory dir{base_.path + "/errors/" + (plus ? source.error.plus : source.error.minus)};
+  refuse_strange_files(base_);
   const std::string text = changed_set(source, plus);
   if (!again_ && fs::exists(dir.file("changed.toml")) && finished(dir, text)) return 0;
-  fs::remove_all(dir.path);
+  remove_run(dir, "--again");
   fs::create_directories(base_.path + "/errors");
   const std::string set = dir.path + ".toml";
   write_file_atomically(set, text);

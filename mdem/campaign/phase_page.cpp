@@ -18,6 +18,9 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 std::string cell(double value) { return std::isfinite(value) ? fmt::format("{:.6g}", value) : "nan"; }
 
+// To the digits that a run and its row in trials.csv share.
+std::string rough_cell(double value) { return std::isfinite(value) ? fmt::format("{:.4g}", value) : "nan"; }
+
 std::vector<std::string> keys_without_seed(const Sweep& sweep) {
   std::vector<std::string> keys = sweep.keys();
   keys.erase(std::remove(keys.begin(), keys.end(), "start.seed"), keys.end());
@@ -51,14 +54,13 @@ Series by_bisection(const std::vector<const PhasePoint*>& points) {
   for (const PhasePoint* p : points) s.x.push_back(p->length), s.y.push_back(p->by_bisection());
   return s;
 }
-Series by_growth(const std::vector<const PhasePoint*>& points) {
+Series by_theory(const std::vector<const PhasePoint*>& points, double (PhasePoint::*theory)() const) {
   Series s;
-  for (const PhasePoint* p : points) {
-    const auto g = p->by_growth();
-    s.x.push_back(p->length);
-    s.y.push_back(g ? g->critical : nan);
-  }
+  for (const PhasePoint* p : points) s.x.push_back(p->length), s.y.push_back((p->*theory)());
   return s;
+}
+bool has_values(const Series& s) {
+  return std::any_of(s.y.begin(), s.y.end(), [](double y) { return std::isfinite(y); });
 }
 
 std::string law_words(const Series& s) {
@@ -77,30 +79,37 @@ ScatterChart diagram(const Sweep& sweep, int tubes, const std::vector<const Phas
   chart.x = {"length", "nm", false};
   chart.y = {leaf_of(sweep.threshold->key), "", false};
   chart.height = 380;
-  ChartLine yes{"passes", {}, {}, 1}, no{"does not", {}, {}, 0};
-  yes.points = no.points = true;
+  // The runs by the shape that they took, hollow where they did not pass.
+  std::map<std::string, std::size_t> lines;
   for (const PhasePoint* p : points)
     for (const Threshold& seed : p->seeds)
       for (const Trial& t : seed.trials) {
-        ChartLine& line = t.passed ? yes : no;
-        line.x.push_back(p->length);
-        line.y.push_back(t.value);
+        const std::string name = t.shape.empty() ? "shape not known" : t.shape;
+        if (lines.emplace(name, chart.lines.size()).second) {
+          ChartLine line{name, {}, {}, static_cast<int>(chart.lines.size())};
+          line.points = true;
+          chart.lines.push_back(line);
+          scatter.styles.push_back({static_cast<Mark>(scatter.styles.size() % marks), {}, {}});
+        }
+        const std::size_t k = lines[name];
+        chart.lines[k].x.push_back(p->length);
+        chart.lines[k].y.push_back(t.value);
+        scatter.styles[k].titles.push_back(
+            fmt::format("{:g}: {}, {}", t.value, name, t.passed ? "passes" : "does not"));
+        scatter.styles[k].hollow.push_back(!t.passed);
       }
-  const Series bisection = by_bisection(points), growth = by_growth(points);
-  chart.lines = {yes, no, {"by bisection", bisection.x, bisection.y, 2}, {"by growth", growth.x, growth.y, 3}};
-  ChartLine sliding{"sliding tubes", {}, {}, 5, true}, glued{"glued tubes", {}, {}, 4, true};
-  for (const PhasePoint* p : points) {
-    sliding.x.push_back(p->length);
-    sliding.y.push_back(p->sliding > 0 ? p->sliding : nan);
-    glued.x.push_back(p->length);
-    glued.y.push_back(p->glued > 0 ? p->glued : nan);
-  }
-  if (!points.empty() && points.front()->sliding > 0) {
-    chart.lines.push_back(sliding);
-    // Far above all else, it would press the rest together.
-    if (points.front()->glued < 3 * sweep.threshold->to) chart.lines.push_back(glued);
-  }
+  const auto add = [&](const char* name, const Series& s, bool dashed) {
+    if (has_values(s)) chart.lines.push_back({name, s.x, s.y, static_cast<int>(chart.lines.size()), dashed});
+  };
+  add("by bisection", by_bisection(points), false);
+  add("theory, in this time", by_theory(points, &PhasePoint::kinetic_theory), true);
+  add("theory, for ever", by_theory(points, &PhasePoint::static_theory), true);
   return scatter;
+}
+
+std::string off_theory(const PhasePoint& p) {
+  const double off = p.by_bisection() / p.kinetic_theory() - 1;
+  return std::isfinite(off) ? fmt::format("{:+.0f} %", 100 * off) : std::string("–");
 }
 
 }  // namespace
@@ -108,17 +117,15 @@ ScatterChart diagram(const Sweep& sweep, int tubes, const std::vector<const Phas
 std::string thresholds_csv(const Sweep& sweep, const std::vector<PhasePoint>& points) {
   std::string text =
       head(sweep) +
-      "tubes,length_nm,radius_nm,seeds,by_bisection,by_bisection_error,by_growth,by_growth_error,"
-      "growing_runs,sliding_tubes,glued_tubes,falling_seeds,unclear_seeds,outside_seeds,cut_short_runs\n";
-  for (const PhasePoint& p : points) {
-    const auto growth = p.by_growth();
-    text += values(p) + fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", p.tubes, cell(p.length),
-                                    cell(p.radius), p.seeds.size(), cell(p.by_bisection()),
-                                    cell(p.bisection_error()), cell(growth ? growth->critical : nan),
-                                    cell(growth ? growth->error : nan), growth ? growth->runs : 0,
-                                    cell(p.sliding > 0 ? p.sliding : nan), cell(p.glued > 0 ? p.glued : nan),
-                                    p.falling_seeds(), p.unclear_seeds(), p.outside_seeds(), p.cut_short_runs());
-  }
+      "tubes,length_nm,radius_nm,seeds,by_bisection,by_bisection_error,theory,static_theory,glued_theory,"
+      "winding,rate_over_theory,rates,falling_seeds,unclear_seeds,outside_seeds,cut_short_runs\n";
+  for (const PhasePoint& p : points)
+    text +=
+        values(p) + fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", p.tubes, cell(p.length),
+                                cell(p.radius), p.seeds.size(), cell(p.by_bisection()), cell(p.bisection_error()),
+                                rough_cell(p.kinetic_theory()), cell(p.static_theory()), cell(p.glued_theory()),
+                                rough_cell(p.winding()), rough_cell(p.rate_over_theory()), p.rates(),
+                                p.falling_seeds(), p.unclear_seeds(), p.outside_seeds(), p.cut_short_runs());
   return text;
 }
 
@@ -127,9 +134,10 @@ std::string trials_csv(const Sweep& sweep, const std::vector<PhasePoint>& points
   for (const PhasePoint& p : points)
     for (std::size_t s = 0; s < p.seeds.size(); ++s)
       for (const Trial& t : p.seeds[s].trials)
-        text += values(p) + fmt::format("{},{},{},{},{},{},{}\n", s + 1, cell(t.value), t.passed ? 1 : 0,
+        text += values(p) + fmt::format("{},{},{},{},{},{},{},{},{}\n", s + 1, cell(t.value), t.passed ? 1 : 0,
                                         cell(t.passed || t.cut_short ? t.time : nan), cell(t.rate.value_or(nan)),
-                                        cell(t.error.value_or(nan)), t.scene_hash);
+                                        cell(t.error.value_or(nan)), cell(t.turn ? *t.turn / units::degree : nan),
+                                        t.shape, t.scene_hash);
   return text;
 }
 
@@ -139,40 +147,59 @@ std::string phase_page(const Sweep& sweep, const std::vector<PhasePoint>& points
   std::string html = page_head("Thresholds") +
                      "<body>\n<main>\n<p class=\"kicker\">Ropewalk: critical values</p>\n<h1>" +
                      escape_markup(q.key) + "</h1>\n";
-  html +=
-      paragraph(escape_markup(fmt::format("Where {} passes {:g}. By bisection: within the time of the scene, "
-                                          "narrowed to {:g} % of the value. By growth: where "
-                                          "the square of the rate of its exponential growth, extrapolated over the "
-                                          "runs that passed, goes to zero; a longer run "
-                                          "does not change it. Errors are standard errors over seeds and fits.",
-                                          q.column, q.above, 100 * q.accuracy)));
+  html += paragraph(escape_markup(fmt::format(
+      "{} within the time of the scene, narrowed to {:g} % of the value. Errors are standard errors over seeds and "
+      "brackets.",
+      q.shape ? fmt::format("Where the rope becomes a {},", name_of(*q.shape))
+              : fmt::format("Where {} passes {:g}", q.column, q.above),
+      100 * q.accuracy)));
+  const bool theory = std::any_of(points.begin(), points.end(),
+                                  [](const PhasePoint& p) { return std::isfinite(p.static_theory()); });
   html +=
       "<div class=\"scroll\"><table class=\"facts numbers\"><thead><tr><th>point</th><th>tubes</th><th>length, "
-      "nm</th><th>length/radius</th><th>by bisection</th><th>by growth</th><th>runs that grow</th><th>theory, "
-      "sliding tubes</th><th>glued tubes</th></tr></thead><tbody>\n";
+      "nm</th><th>length/radius</th><th>by bisection</th>";
+  if (theory)
+    html +=
+        "<th>theory, in this time</th><th>off it by</th><th>for ever</th><th>winding</th><th>rates of runs over "
+        "theory</th><th>glued tubes</th>";
+  html += "</tr></thead><tbody>\n";
   for (const PhasePoint& p : points) {
-    const auto growth = p.by_growth();
     const auto number = [](double v) { return v > 0 ? fmt::format("{:.4g}", v) : std::string("–"); };
     html += fmt::format(
-        "<tr><th>{}</th><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}"
-        "</td></tr>\n",
-        escape_markup(p.name), p.tubes, number(p.length), number(p.radius > 0 ? p.length / p.radius : 0),
+        "<tr><th>{}</th><td>{}</td><td>{}</td><td>{}</td><td>{}</td>", escape_markup(p.name), p.tubes,
+        number(p.length), number(p.radius > 0 ? p.length / p.radius : 0),
         escape_markup((std::isfinite(p.by_bisection()) ? measured_text(p.by_bisection(), p.bisection_error())
-                                                       : "not in the range") +
-                      (p.remarks().empty() ? "" : "; " + p.remarks())),
-        growth ? measured_text(growth->critical, growth->error) : "–", growth ? growth->runs : 0, number(p.sliding),
-        number(p.glued));
+                       : p.begun()                     ? "not in the range"
+                                                       : "not run yet") +
+                      (p.remarks().empty() ? "" : "; " + p.remarks())));
+    if (theory)
+      html += fmt::format("<td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td>",
+                          number(p.kinetic_theory()), off_theory(p), number(p.static_theory()), number(p.winding()),
+                          p.rates() > 0 ? fmt::format("{:.2f}, of {}", p.rate_over_theory(), p.rates()) : "–",
+                          number(p.glued_theory()));
+    html += "</tr>\n";
   }
   html += "</tbody></table></div>\n";
+  if (theory)
+    html += paragraph(escape_markup(
+        "Theory: tubes that slide on each other against the viscosity of their contacts bend as one rod with the "
+        "stiffness EI and the mass of one tube. Under couples of fixed direction on free ends a helix grows from "
+        "8.987 EI/L on each tube on, however long one waits; in the time of the scene it passes where the growth, "
+        "summed over ramp and hold, has made half of the wave at the start as large as is asked. The winding is "
+        "the "
+        "turn of the rope over ML/EI, as its runs had it: 1 for tubes that are free of contact forces, less in a "
+        "rope "
+        "that stays packed. Glued tubes would need EI + EA<rho^2>/2 in place of EI."));
   for (const auto& [tubes, some] : by_size(points)) {
     const std::string svg = scatter_svg(diagram(sweep, tubes, some));
     if (svg.empty()) continue;
+    const Series foreseen = by_theory(some, &PhasePoint::kinetic_theory);
     html += heading(fmt::format("{} tubes", tubes)) + "<figure>" + svg +
-            figures.caption(escape_markup(
-                fmt::format("Every run, and the thresholds. By bisection it {}; by growth it {}. Theory: a rope "
-                            "whose ends may tilt, of "
-                            "tubes that slide on each other freely, 2 pi EI/L for each of them, and of glued ones.",
-                            law_words(by_bisection(some)), law_words(by_growth(some))))) +
+            figures.caption(escape_markup(fmt::format(
+                "Every run by the shape that the rope took, filled where it passed; and the thresholds. By "
+                "bisection it {}{}.",
+                law_words(by_bisection(some)),
+                has_values(foreseen) ? "; by theory it " + law_words(foreseen) : std::string()))) +
             "</figure>\n";
   }
   return html + "</main>\n</body>\n</html>\n";

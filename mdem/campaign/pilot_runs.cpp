@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <filesystem>
 
 #include "campaign/point_runs.hpp"
 #include "io/clocks.hpp"
@@ -19,8 +18,6 @@
 
 namespace ropewalk {
 namespace {
-
-namespace fs = std::filesystem;
 
 // The last message of a failed run, without the place of its files, which are gone.
 std::string last_line(std::string said) {
@@ -49,23 +46,11 @@ PilotEnd end_of(const std::string& run, int status) {
 
 }  // namespace
 
-PilotRuns::PilotRuns(std::string scene_path, int jobs)
-    : path_(std::move(scene_path)),
-      jobs_(jobs),
-      folder_((fs::temp_directory_path() / fmt::format("ropewalk-plan-{}", getpid())).string()) {
-  fs::create_directories(folder_);
-}
-
-PilotRuns::~PilotRuns() {
-  std::error_code error;
-  fs::remove_all(folder_, error);
-}
-
 std::vector<PilotEnd> PilotRuns::operator()(const std::vector<PilotTask>& tasks) {
   std::vector<PilotEnd> ends(tasks.size());
   std::vector<ProcessTask> processes;
   for (std::size_t k = 0; k < tasks.size(); ++k) {
-    const std::string run = fmt::format("{}/{}", folder_, count_++);
+    const std::string run = folder_.file(std::to_string(count_++));
     processes.push_back({[this, run, &task = tasks[k]] { return work(run, task); },
                          [this, run, &task = tasks[k], &end = ends[k]](int status) {
                            end = end_of(run, status);
@@ -79,9 +64,10 @@ std::vector<PilotEnd> PilotRuns::operator()(const std::vector<PilotTask>& tasks)
     throw InputError({path_, 0, ""}, "planning was stopped by a signal", "nothing was written; start it again");
   return ends;
 }
+
 int PilotRuns::work(const std::string& run, const PilotTask& task) const {
   return in_a_process(run + ".txt", false, [&] {
-    const int code = run_or_resume({run}, scene_of_text(task.text, path_), task.until, OnLimit::warn);
+    const int code = run_anew({run}, scene_of_text(task.text, path_), task.until, OnLimit::warn);
     write_file_atomically(run + ".seconds", fmt::format("{:.6g}", processor_seconds()));
     return code;
   });

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "io/removal.hpp"
 #include "plan/planner.hpp"
 
 namespace ropewalk {
@@ -11,10 +12,7 @@ namespace ropewalk {
 class PilotRuns {
  public:
   // `scene_path`: where the scene stands. Runs are kept in a temporary folder as long as this is there.
-  PilotRuns(std::string scene_path, int jobs);
-  PilotRuns(const PilotRuns&) = delete;
-  PilotRuns& operator=(const PilotRuns&) = delete;
-  ~PilotRuns();
+  PilotRuns(std::string scene_path, int jobs) : path_(std::move(scene_path)), jobs_(jobs) {}
 
   // Throws InputError where a signal ends it (io/stop_signals.hpp).
   std::vector<PilotEnd> operator()(const std::vector<PilotTask>& tasks);
@@ -25,7 +23,7 @@ class PilotRuns {
 
   std::string path_;
   int jobs_;
-  std::string folder_;
+  TemporaryFolder folder_;
   int count_ = 0;
   double seconds_ = 0;
 };

@@ -4,11 +4,15 @@
 #include <fmt/format.h>
 #include <sys/file.h>
 
+#include <algorithm>
+#include <cerrno>
 #include <cstdio>
 #include <filesystem>
 
 #include "campaign/campaign.hpp"
 #include "io/failure.hpp"
+#include "io/files.hpp"
+#include "model/error.hpp"
 #include "run/begin_run.hpp"
 #include "run/terminal_listener.hpp"
 #include "run/threads.hpp"
@@ -18,10 +22,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Until the process ends.
-bool lock(const std::string& path, bool wait) {
-  const int file = open(path.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0666);
-  return file >= 0 && flock(file, LOCK_EX | (wait ? 0 : LOCK_NB)) == 0;
+// Until the process ends. False: another process has it. Where the file system knows no locks there is none, and
+// that of the run's directory alone counts.
+bool lock(int file, bool wait) {
+  return uninterrupted([&] { return flock(file, LOCK_EX | (wait ? 0 : LOCK_NB)); }) == 0 || errno != EWOULDBLOCK;
 }
 
 }  // namespace
@@ -29,6 +33,27 @@ bool lock(const std::string& path, bool wait) {
 std::string duration_text(double s) {
   if (s >= 5400) return fmt::format("{:.1f} h", s / 3600);
   return s >= 90 ? fmt::format("{:.0f} min", s / 60) : fmt::format("{:.0f} s", s);
+}
+
+void remove_hardly_begun(const RunDirectory& dir) {
+  if (!fs::exists(dir.path)) return;
+  refuse_strange_files(dir);
+  if (fs::exists(dir.log())) {
+    const std::string log = read_file(dir.log());
+    if (std::count(log.begin(), log.end(), '\n') > 2)
+      throw InputError({dir.path, 0, ""}, "holds a log, and no checkpoint with which it could go on",
+                       "take it away, or bring checkpoint.bin and manifest.json back from a copy");
+  }
+  remove_run(dir, "");
+}
+
+int run_anew(const RunDirectory& dir, const Scene& scene, double until_ps, OnLimit on_limit) {
+  use_threads(1);
+  TerminalListener terminal(true);
+  RunSettings asked;
+  asked.until_ps = until_ps;
+  asked.on_limit = on_limit;
+  return tell_end(go_through(begin_run(scene, dir, asked, terminal)));
 }
 
 int run_or_resume(const RunDirectory& dir, const Scene& scene, double until_ps, OnLimit on_limit) {
@@ -40,18 +65,17 @@ int run_or_resume(const RunDirectory& dir, const Scene& scene, double until_ps, 
     asked.on_limit = on_limit;
     return tell_end(go_through(resume_run(dir, asked, terminal)));
   }
-  fs::remove_all(dir.path);  // of a run that was killed before its first checkpoint
-  RunSettings asked;
-  asked.until_ps = until_ps;
-  asked.on_limit = on_limit;
-  return tell_end(go_through(begin_run(scene, dir, asked, terminal)));
+  remove_hardly_begun(dir);
+  return run_anew(dir, scene, until_ps, on_limit);
 }
 
 int in_a_process(const std::string& messages, bool wait, const std::function<int()>& work) {
-  if (!std::freopen(messages.c_str(), "a", stderr) || !std::freopen(messages.c_str(), "a", stdout)) return 3;
-  setvbuf(stdout, nullptr, _IOLBF, 1 << 12);
-  if (!lock(messages, wait)) return point_busy;
   try {
+    const Descriptor file = opened_to_write(messages, O_RDWR | O_APPEND);
+    if (!lock(file.get(), wait)) return point_busy;
+    if (dup2(file.get(), STDERR_FILENO) < 0 || dup2(file.get(), STDOUT_FILENO) < 0)
+      throw file_error(messages, "cannot be written", errno);
+    setvbuf(stdout, nullptr, _IOLBF, 1 << 12);
     return work();
   } catch (const std::exception& e) {
     return tell_failure("ropewalk", e);

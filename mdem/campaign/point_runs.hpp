@@ -14,7 +14,12 @@ inline constexpr int point_busy = 75;  // exit code of a process that found its 
 
 std::string duration_text(double seconds);  // "12 min"
 
-// A run that was begun goes on, another one is started, on one thread. Negative `until_ps`: to the scene's end.
+// Removes a run that was killed before its first checkpoint. Throws InputError where the directory holds anything
+// else: more than the first row of a log, or a file that is not of a run.
+void remove_hardly_begun(const RunDirectory& dir);
+// Starts a run on one thread in a directory that is not there. Negative `until_ps`: to the scene's end.
+int run_anew(const RunDirectory& dir, const Scene& scene, double until_ps, OnLimit on_limit);
+// A run that was begun goes on, another one is started.
 int run_or_resume(const RunDirectory& dir, const Scene& scene, double until_ps, OnLimit on_limit);
 
 // Prints to the file `messages` and keeps other processes from the same work, by a lock on it: waits for them, or

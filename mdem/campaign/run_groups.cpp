@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 std::vector<RunGroup> groups_of(const CampaignDirectory& dir) {
   const Sweep sweep = read_campaign(dir);
   std::vector<RunGroup> groups;
-  for (const Replicates& r : replicates_of(sweep, points_of(sweep, false))) {
+  for (const Replicates& r : replicates_of(sweep, points_of(sweep, PointsAs::scenes))) {
     RunGroup group{r.name, {}};
     for (const SweepPoint& p : r.points)
       if (fs::exists(dir.point(p.name).log())) group.runs.push_back(dir.point(p.name));
@@ -54,6 +54,7 @@ std::vector<RunGroup> groups_in(const std::string& path) {
 RunCurve curve_of(const RunGroup& group, bool pictured) {
   std::vector<std::vector<LogRow>> logs;
   for (const RunDirectory& run : group.runs) {
+    refuse_strange_files(run);
     std::vector<LogRow> log = read_log(run.log());
     if (!log.empty()) logs.push_back(std::move(log));
   }

@@ -28,6 +28,7 @@ namespace {
 constexpr const char* format_name = "ropewalk-sweep-1";
 constexpr std::size_t most_points = 100000;
 constexpr double relax_ps = 40;            // of dynamics, which cost as much as a relaxation, by guess
+constexpr std::size_t longest_name = 230;  // bytes, of a point; file systems take 255, "start-" and ".txt" included
 constexpr std::size_t longest_value = 24;  // in the name of a point; a longer one is named by its number
 
 // --- Reading [vary] ---
@@ -125,9 +126,6 @@ void collect_axes(const toml::table& table, const std::string& above, const std:
     } else {
       throw InputError(at, "is one value", "write a list, [1, 2, 3], or { from = 1, to = 9, points = 5 }");
     }
-    const std::set<std::string> different(axis.values.begin(), axis.values.end());
-    if (different.size() < axis.values.size())
-      throw InputError(at, "has a value twice", "take one of the two away");
     axes.push_back(std::move(axis));
   }
 }
@@ -140,6 +138,13 @@ std::vector<SweepAxis> axes_in(const toml::table* table, const std::string& file
 }
 
 void check_zip(const Sweep& s) {
+  for (const auto* axes : {&s.axes, &s.branch_axes})
+    for (const SweepAxis& axis : *axes) {
+      const std::set<std::string> different(axis.values.begin(), axis.values.end());
+      if ((!s.zip || axes == &s.branch_axes) && different.size() < axis.values.size())
+        throw InputError({s.path, axis.line, printable(axis.key)}, "has a value twice",
+                         "take one of the two away, or write combine = \"zip\" if points are lists of values");
+    }
   for (const SweepAxis& axis : s.axes)
     if (s.zip && axis.values.size() != s.axes.front().values.size())
       throw InputError({s.path, axis.line, axis.key},
@@ -234,42 +239,57 @@ void keep_free_length(const Sweep& s, const std::string& before, double length, 
   }
 }
 
-SweepPoint point_of(const Sweep& s, const std::vector<Setting>& settings) {
+SweepPoint named_point(const std::vector<std::string>& keys, const std::vector<Setting>& settings) {
   SweepPoint p;
-  p.text = s.scene_text;
-  const auto set = [&](const Setting& setting) {
+  for (const Setting& setting : settings) {
     const std::string& value = setting.axis->values[setting.number];
+    p.values.push_back(value);
+    if (setting.axis->values.size() == 1) continue;  // the same for all
+    p.name += (p.name.empty() ? "" : "_") + short_name(setting.axis->key, keys) + "-" +
+              in_a_name(value, setting.number + 1);
+  }
+  if (p.name.empty()) p.name = "all";
+  if (p.name.size() > longest_name) {
+    const std::string hash = "-" + hash_hex(p.name);
+    p.name = p.name.substr(0, longest_name - hash.size()) + hash;
+  }
+  return p;
+}
+
+// The scene of a point, by its values. That of a start has those of the first axes alone.
+void write_scene(const Sweep& s, SweepPoint& p) {
+  std::vector<const SweepAxis*> axes;
+  for (const auto* list : {&s.axes, &s.branch_axes})
+    for (const SweepAxis& axis : *list)
+      if (axes.size() < p.values.size()) axes.push_back(&axis);
+  p.text = s.scene_text;
+  const auto set = [&](std::size_t k) {
     try {
-      p.text = with_value(p.text, setting.axis->key, value, s.scene_path);
+      p.text = with_value(p.text, axes[k]->key, p.values[k], s.scene_path);
     } catch (const toml::parse_error& e) {
-      throw InputError({s.path, setting.axis->line, setting.axis->key},
+      throw InputError({s.path, axes[k]->line, axes[k]->key},
                        fmt::format("cannot be set in {}: {}", s.scene_path, std::string(e.description())),
                        "write the key as it would stand in the scene");
     }
   };
-  for (const Setting& setting : settings)
-    if (setting.axis->key != length_key) set(setting);
+  for (std::size_t k = 0; k < axes.size(); ++k)
+    if (axes[k]->key != length_key) set(k);
   const std::string before = p.text;
-  for (const Setting& setting : settings) {
-    const std::string& value = setting.axis->values[setting.number];
-    if (setting.axis->key == length_key) {
-      set(setting);
-      keep_free_length(s, before, leading_number(value).value_or(0), p.text);
-    }
-    p.values.push_back(value);
-    if (setting.axis->values.size() == 1) continue;  // the same for all
-    p.name += (p.name.empty() ? "" : "_") + short_name(setting.axis->key, s.keys()) + "-" +
-              in_a_name(value, setting.number + 1);
+  for (std::size_t k = 0; k < axes.size(); ++k) {
+    if (axes[k]->key != length_key) continue;
+    set(k);
+    keep_free_length(s, before, leading_number(p.values[k]).value_or(0), p.text);
   }
-  if (p.name.empty()) p.name = "all";
-  return p;
 }
 
 // A wrong scene: named by the point, since it is in no file yet.
-void check_scene(const Sweep& s, SweepPoint& p) {
+void check_scene(const Sweep& s, SweepPoint& p, bool build) {
   try {
-    const Scene scene = scene_of(s, p);
+    Scene scene = scene_of(s, p);
+    if (build) refuse_cooling(scene, prepare(scene));
+    p.sets.clear();
     for (const ParameterSet& set : scene.sets) p.sets.push_back(set.path);
+    p.files = scene.files_of_drives();
     p.state = scene.source->file();
     const bool relaxes = scene.run.mode == RunOptions::Mode::relax;
     const double duration = scene.run.duration > 0 ? scene.run.duration : protocol_time(scene);
@@ -292,8 +312,17 @@ ThresholdQuestion read_threshold(const TomlTable& t) {
   q.from = t.number("from", Bounds::any());
   q.to = t.number("to", Bounds::any());
   if (!(q.to > q.from)) throw t.error("to", "is not above from", "give the range in which the value lies");
-  q.column = t.string_or("column", q.column);
-  q.above = t.number("above", Bounds::any());
+  if (t.has("shape")) {
+    for (const char* other : {"column", "above"})
+      if (t.has(other))
+        throw t.error(other, "stands beside shape, and both are the question", "take one of them away");
+    Words<RopeShape> words;
+    for (const RopeShape shape : rope_shapes) words.emplace_back(name_of(shape), shape);
+    q.shape = t.word("shape", words);
+  } else {
+    q.column = t.string_or("column", q.column);
+    q.above = t.number("above", Bounds::any());
+  }
   q.accuracy = t.number_or("accuracy", q.accuracy, Bounds::range(1e-4, 0.5));
   return q;
 }
@@ -366,31 +395,44 @@ Sweep sweep_of_text(const std::string& text, const std::string& path, const std:
 
 Sweep read_sweep(const std::string& path) { return sweep_of_text(read_file(path), path); }
 
-std::vector<SweepPoint> points_of(const Sweep& s, bool check) {
+void complete(const Sweep& s, SweepPoint& p, PointsAs as) {
+  if (as == PointsAs::names) return;
+  write_scene(s, p);
+  if (as != PointsAs::scenes) check_scene(s, p, as == PointsAs::built);
+}
+
+std::vector<SweepPoint> points_of(const Sweep& s, PointsAs as) {
   std::vector<SweepPoint> points;
   std::set<std::string> names;
+  const std::vector<std::string> keys = s.keys();
+  const auto later = combinations(s.branch_axes, false);
   for (const auto& numbers : combinations_of(s)) {
     const std::vector<Setting> shared = settings_of(s.axes, numbers);
-    for (const auto& later : combinations(s.branch_axes, false)) {
+    for (const auto& branch : later) {
       std::vector<Setting> all = shared;
-      for (const Setting& setting : settings_of(s.branch_axes, later)) all.push_back(setting);
-      points.push_back(point_of(s, all));
-      if (!s.branch_axes.empty()) points.back().start = point_of(s, shared).name;
-      if (check) check_scene(s, points.back());
-      if (!names.insert(points.back().name).second)
-        throw InputError({s.path, 0, "vary"}, fmt::format("two points would be named {}", points.back().name),
-                         "write values that differ in more than their signs");
+      for (const Setting& setting : settings_of(s.branch_axes, branch)) all.push_back(setting);
+      SweepPoint& p = points.emplace_back(named_point(keys, all));
+      if (!s.branch_axes.empty()) p.start = named_point(keys, shared).name;
+      if (!names.insert(p.name).second)
+        throw InputError({s.path, 0, "vary"}, fmt::format("two points would be named {}", p.name),
+                         s.zip ? "each point must differ from the others in a value"
+                               : "write values that differ in more than their signs");
+      complete(s, p, as);
     }
   }
   return points;
 }
 
-std::vector<SweepPoint> starts_of(const Sweep& s) {
+std::vector<SweepPoint> starts_of(const Sweep& s, const std::vector<SweepPoint>& points) {
   std::vector<SweepPoint> starts;
-  if (s.branch_axes.empty()) return starts;
-  for (const auto& numbers : combinations_of(s)) {
-    starts.push_back(point_of(s, settings_of(s.axes, numbers)));
-    check_scene(s, starts.back());
+  std::set<std::string> names;
+  for (const SweepPoint& p : points) {
+    if (p.start.empty() || !names.insert(p.start).second) continue;
+    SweepPoint& start = starts.emplace_back();
+    start.name = p.start;
+    start.values = p.values;
+    start.values.resize(s.axes.size());
+    complete(s, start);
   }
   return starts;
 }

@@ -13,7 +13,7 @@
 //   to = 60
 //   column = "amplitude_nm"
 //   above = 1
-//   accuracy = 0.02
+//   accuracy = 0.02            # or, in place of column and above: shape = "helix"
 //   [branch]                     # points that differ only below here share one run up to this time
 //   at_ps = 135
 //   [branch.vary]
@@ -38,8 +38,9 @@ struct SweepAxis {
 struct ThresholdQuestion {
   std::string key, column = "amplitude_nm";
   double from = 0, to = 0;
-  double above = 1;        // in the unit of the column
-  double accuracy = 0.02;  // the bracket is narrowed to this part of its middle
+  double above = 1;                     // in the unit of the column
+  std::optional<RopeShape> shape = {};  // that the rope takes, in place of a column that passes a value
+  double accuracy = 0.02;               // the bracket is narrowed to this part of its middle
 };
 
 struct Sweep {
@@ -66,14 +67,23 @@ struct SweepPoint {
   std::string start;                // name of the run that it goes on from; empty: none
   // Found out where its scene was checked:
   std::vector<std::string> sets;  // files of the parameter sets
+  std::vector<std::string> files;  // that drives were read from
   std::string state;              // file of the start; empty: the scene makes it
   double work = 0;                // elements times ps, which the time of a run goes by; a guess for relaxations
 };
 
-// With `check`, every scene is read once, so that a key or a value that is wrong is found here: InputError.
-std::vector<SweepPoint> points_of(const Sweep& sweep, bool check = true);
-// The runs that branches share: each once, in the order of the points.
-std::vector<SweepPoint> starts_of(const Sweep& sweep);
+// What is found out about the points; each takes more time than the one before.
+enum class PointsAs {
+  names,   // with values and starts, and without scenes
+  scenes,  // their texts
+  read,    // every scene is read once, so that a key or a value that is wrong is found: InputError
+  built,   // and made, as at the begin of a run
+};
+std::vector<SweepPoint> points_of(const Sweep& sweep, PointsAs as = PointsAs::built);
+// Makes the same of a point that is known by name.
+void complete(const Sweep& sweep, SweepPoint& point, PointsAs as = PointsAs::built);
+// The runs that these points share by their branches: each once.
+std::vector<SweepPoint> starts_of(const Sweep& sweep, const std::vector<SweepPoint>& points);
 
 // Points that differ in their seed alone.
 struct Replicates {

@@ -61,12 +61,11 @@ bool SweepRuns::is_to_run(const SweepPoint& p) const {
 void SweepRuns::run_starts(const std::function<void(const SweepPoint&)>& failed) const {
   fs::create_directories(dir_.path + "/starts");
   std::vector<ProcessTask> tasks;
-  for (const SweepPoint& p : starts_of(sweep_)) {
+  for (const SweepPoint& p : starts_of(sweep_, points_)) {
     const bool needed = std::any_of(points_.begin(), points_.end(), [&](const SweepPoint& q) {
       return q.start == p.name && progress_of(dir_.point(q.name)).stage == Stage::waiting;
     });
     const RunDirectory to = dir_.start(p.name);
-    if (fs::exists(to.scene()) && !is_run_of(to, p.text, p)) fs::remove_all(to.path);
     if (!needed || progress_of(to).stage == Stage::ended) continue;
     tasks.push_back({[this, p, to] {
                        return in_a_process(dir_.messages("start-" + p.name), true, [&] {
@@ -88,9 +87,9 @@ void SweepRuns::branch_off(const SweepPoint& p) const {
   if (progress_of(from).stage != Stage::ended)
     throw InputError({from.path, 0, ""}, "did not reach its end, and this point goes on from there",
                      "see its messages");
-  fs::remove_all(to.path);
+  remove_hardly_begun(to);
   const std::string half = to.path + ".part";
-  fs::remove_all(half);
+  remove_run({half}, "");
   fs::copy(from.path, half, fs::copy_options::recursive);
   const RunDirectory made{half};
   const double step = read_manifest(from.manifest()).time_step_fs;
@@ -111,7 +110,7 @@ void SweepRuns::branch_off(const SweepPoint& p) const {
 int SweepRuns::run_point(const SweepPoint& p) const {
   const RunDirectory dir = dir_.point(p.name);
   if (!is_to_run(p)) return 0;  // done by another process meanwhile
-  if (progress_of(dir).stage == Stage::failed) fs::remove_all(dir.path);
+  if (progress_of(dir).stage == Stage::failed) remove_run(dir, "--again");
   if (!p.start.empty() && progress_of(dir).stage == Stage::waiting) branch_off(p);
   return run_or_resume(dir, scene_of(sweep_, p), -1, on_limit_);
 }

@@ -26,8 +26,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double clear_of_wave = 3, of_the_value = 0.1;  // growth is looked at from the larger of the two on
-constexpr double far_above = 1.8;                        // times the threshold: growth there says nothing about it
 constexpr std::size_t fewest_rows = 4;
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 std::string value_text(double value) { return fmt::format("{:.6g}", value); }
 
@@ -37,49 +37,13 @@ double mean(const std::vector<double>& v) {
   return sum / static_cast<double>(v.size());
 }
 
-// Moments per tube at which a rope whose ends may tilt becomes a helix: tubes that slide on each other freely, and
-// tubes that are glued.
-void add_theory(const Sweep& sweep, const Scene& scene, const Prepared& p, PhasePoint& point) {
-  point.tubes = p.topology.tubes();
-  if (!scene.source->is_parallel() || scene.sets.size() > 1) return;
-  double sum = 0, farthest = 0;
-  for (int t = 0; t < point.tubes; ++t) {
-    const auto i = static_cast<std::size_t>(p.topology.tube_begin[t]);
-    const double r = Vector3(p.state.position[i]).head<2>().norm();
-    sum += r * r;
-    farthest = std::max(farthest, r);
-  }
-  point.length = p.topology.length_of(0) * p.topology.longest_element();
-  point.radius = farthest + p.topology.largest_radius();
-  const MomentRamp* ramp = scene.moment_ramp();
-  const bool per_tube = ramp && ramp->reading == MomentRamp::Reading::per_tube;
-  if (sweep.threshold->key != "twist.moment_nN_nm" || !per_tube) return;
-  const BondStiffness& bond = scene.parameters().bond;
-  const double glued = bond.bend + bond.stretch * sum / (2 * point.tubes);
-  point.sliding = 2 * units::pi * bond.bend / point.length / units::nN_nm;
-  point.glued = 2 * units::pi * glued / point.length / units::nN_nm;
+double median(std::vector<double> v) {
+  if (v.empty()) return unknown;
+  std::sort(v.begin(), v.end());
+  return 0.5 * (v[(v.size() - 1) / 2] + v[v.size() / 2]);
 }
 
 }  // namespace
-
-std::optional<GrowthThreshold> growth_threshold(const std::vector<Trial>& trials) {
-  double least = std::numeric_limits<double>::infinity(), most = -least;
-  for (const Trial& t : trials)
-    if (t.passed) least = std::min(least, t.value), most = std::max(most, t.value);
-  const bool falling = bracketed(trials, 0, 0).falling;
-  std::vector<double> squares, values;
-  for (const Trial& t : trials) {
-    const bool grows = t.passed && t.rate && *t.rate > 0 && t.error.value_or(0) < 0.3 * *t.rate;
-    if (!grows || (falling ? t.value < most / far_above : t.value > far_above * least)) continue;
-    squares.push_back(*t.rate * *t.rate);
-    values.push_back(t.value);
-  }
-  // Three different values at least, whatever the seeds.
-  const std::set<double> different(values.begin(), values.end());
-  const std::optional<StraightLine> line = different.size() > 2 ? line_through(squares, values) : std::nullopt;
-  if (!line || !(line->a > 0)) return {};
-  return GrowthThreshold{line->a, line->a_error, values.size()};
-}
 
 Threshold bracketed(std::vector<Trial> trials, double from, double to) {
   Threshold out;
@@ -111,15 +75,25 @@ Trial trial_of(const std::vector<LogRow>& log, const ThresholdQuestion& q, doubl
                double constant_from, bool by_a_rule) {
   Trial trial;
   trial.value = value;
+  const auto passes = [&](const LogRow& row) {
+    return q.shape ? shape_of(row, log.front()) == *q.shape : row[q.column] > q.above;
+  };
   std::size_t end = 0;
-  while (end < log.size() && !(log[end][q.column] > q.above)) ++end;
+  while (end < log.size() && !passes(log[end])) ++end;
   trial.passed = end < log.size();
   trial.cut_short = !trial.passed && by_a_rule && !log.empty();
-  if (trial.cut_short) trial.time = log.back()["time_ps"];
+  if (log.empty()) return trial;
+  const LogRow& last = trial.passed ? log[end] : log.back();
+  if (trial.passed || trial.cut_short) trial.time = last["time_ps"];
+  if (std::isfinite(last["radius_mid_nm"])) trial.shape = name_of(shape_of(last, log.front()));
+  std::vector<double> turns;
+  for (std::size_t k = 0; k < std::min(end + 1, log.size()); ++k)
+    if (log[k]["time_ps"] >= constant_from && std::isfinite(log[k]["geometric_twist_deg"]))
+      turns.push_back(log[k]["geometric_twist_deg"] * units::degree);
+  if (!turns.empty()) trial.turn = mean(turns);
   if (!trial.passed) return trial;
-  trial.time = log[end]["time_ps"];
   // The last stretch of rows before it in which the observable is clear of the start.
-  const double clear = std::max(clear_of_wave * wave, of_the_value * q.above);
+  const double clear = std::max(clear_of_wave * wave, of_the_value * last[q.column]);
   std::vector<double> times, values;
   std::size_t begin = end;
   while (begin > 0 && log[begin - 1][q.column] > clear && log[begin - 1]["time_ps"] >= constant_from) --begin;
@@ -134,7 +108,8 @@ Trial trial_of(const std::vector<LogRow>& log, const ThresholdQuestion& q, doubl
 std::string trial_text(const Sweep& sweep, const SweepPoint& point, double value) {
   const ThresholdQuestion& q = *sweep.threshold;
   return with_value(point.text, q.key, value_text(value), sweep.scene_path) +
-         fmt::format("\n[[stop]]\nwhen = \"above\"\ncolumn = \"{}\"\nvalue = {}\n", q.column, q.above);
+         (q.shape ? fmt::format("\n[[stop]]\nwhen = \"shape\"\nshape = \"{}\"\n", name_of(*q.shape))
+                  : fmt::format("\n[[stop]]\nwhen = \"above\"\ncolumn = \"{}\"\nvalue = {}\n", q.column, q.above));
 }
 
 RunDirectory trial_directory(const CampaignDirectory& dir, const Sweep& sweep, const SweepPoint& point,
@@ -142,11 +117,35 @@ RunDirectory trial_directory(const CampaignDirectory& dir, const Sweep& sweep, c
   return {fmt::format("{}/{}-{}", dir.point(point.name).path, leaf_of(sweep.threshold->key), value_text(value))};
 }
 
-std::string trial_hash(const Sweep& sweep, const SweepPoint& point, double value) {
-  std::string all = trial_text(sweep, point, value);
+namespace {
+
+std::string files_of(const SweepPoint& point) {
+  std::string all;
   for (const std::string& set : point.sets) all += read_file(set);
+  for (const std::string& file : point.files) all += read_file(file);
   if (!point.state.empty()) all += read_file(point.state);
-  return hash_hex(all);
+  return all;
+}
+
+constexpr double marked = 9.87654e+77;  // a value that no scene has
+
+}  // namespace
+
+std::string trial_hash(const Sweep& sweep, const SweepPoint& point, double value) {
+  return hash_hex(trial_text(sweep, point, value) + files_of(point));
+}
+
+TrialHashes::TrialHashes(const Sweep& sweep, const SweepPoint& point) : sweep_(sweep), point_(point) {
+  const std::string text = trial_text(sweep, point, marked), mark = value_text(marked);
+  const std::size_t at = text.find(mark);
+  plain_ = at != std::string::npos && text.find(mark, at + 1) == std::string::npos;
+  if (!plain_) return;
+  head_ = text.substr(0, at);
+  tail_ = text.substr(at + mark.size()) + files_of(point);
+}
+
+std::string TrialHashes::of(double value) const {
+  return plain_ ? hash_hex(head_ + value_text(value) + tail_) : trial_hash(sweep_, point_, value);
 }
 
 namespace {
@@ -157,12 +156,14 @@ std::vector<Trial> trials_in(const CampaignDirectory& dir, const Sweep& sweep, c
   const ThresholdQuestion& q = *sweep.threshold;
   const std::string folder = dir.point(point.name).path, begins = leaf_of(q.key) + "-";
   if (!fs::exists(folder)) return trials;
+  refuse_strange(folder, true);
   const Scene scene = scene_of(sweep, point);
   const MomentRamp* ramp = scene.moment_ramp();
   const double constant_from = ramp ? ramp->ramp_time() : 0;
   for (const auto& entry : fs::directory_iterator(folder)) {
     const std::string name = entry.path().filename().string();
     const RunDirectory run{entry.path().string()};
+    refuse_strange(run.path, true);
     if (name.rfind(begins, 0) != 0 || progress_of(run).stage != PointProgress::Stage::ended) continue;
     const double value = leading_number(std::string_view(name).substr(begins.size())).value_or(0);
     // A moment that the ramp takes less time to.
@@ -195,41 +196,54 @@ Threshold threshold_of(const CampaignDirectory& dir, const Sweep& sweep, const S
 std::vector<OutputColumn> trial_columns() {
   return {{"seed", "", "1, 2, ... in the order of the sweep"},
           {"value", "that of the key", "value of the key in this run"},
-          {"passed", "", "1: the column passed its value within the time of the scene; 0: it did not"},
+          {"passed", "",
+           "1: the column passed its value, or the rope took the shape, within the time of the scene; 0: not"},
           {"at_ps", "ps", "when it passed, or when a [[stop]] of the scene ended it before; nan: neither"},
           {"rate_per_ps", "1/ps", "rate of the exponential growth up to then; nan: it cannot be told"},
           {"rate_error_per_ps", "1/ps", "its standard error"},
+          {"turn_deg", "deg", "rotation of the tubes about the centre line, mean under the whole load; nan: none"},
+          {"shape", "", "of the rope then, or at its end: straight, spindle, helix, brush, cage, snarl"},
           {"scene_xxh64", "",
            "hash of the scene, its parameter sets and its state file, by which `--known` finds it again"}};
 }
 
+// By the names of their columns: earlier versions had fewer of them.
 std::vector<Trial> read_trials(const std::string& path) {
   CsvReader csv(path);
-  const std::vector<OutputColumn> columns = trial_columns();
-  std::size_t first = 0;  // of these columns, behind the keys
-  bool right = csv.next() && csv.cells().size() >= columns.size();
-  if (right) first = csv.cells().size() - columns.size();
-  for (std::size_t k = 0; right && k < columns.size(); ++k) right = csv.cells()[first + k] == columns[k].name;
-  if (!right)
-    throw InputError({path, 1, ""}, fmt::format("has not the columns {} at its end", column_names(columns)),
-                     "it is another table, or an earlier version wrote it: take it away");
+  std::map<std::string, std::size_t> at;
+  if (csv.next())
+    for (std::size_t k = 0; k < csv.cells().size(); ++k) at[std::string(csv.cells()[k])] = k;
+  const std::size_t columns = csv.cells().size();
+  for (const char* needed : {"value", "passed", "at_ps", "scene_xxh64"})
+    if (at.count(needed) == 0)
+      throw InputError({path, 1, ""}, fmt::format("has no column {}", needed),
+                       "it is another table, or an earlier version wrote it: take it away");
   std::vector<Trial> trials;
   while (csv.next()) {
-    if (csv.cells().size() != first + columns.size())
-      csv.fail("", fmt::format("has {} columns, the header {}", csv.cells().size(), first + columns.size()),
+    if (csv.cells().size() != columns)
+      csv.fail("", fmt::format("has {} columns, the header {}", csv.cells().size(), columns),
                "the file was changed or damaged; restore it");
-    const auto number = [&](std::size_t k) { return csv.number(first + k, columns[k].name); };
+    const auto number = [&](const char* name) { return at.count(name) ? csv.number(at[name], name) : unknown; };
     Trial t;
-    t.value = number(1);
-    t.passed = number(2) != 0;
-    const double time = number(3);
+    t.value = number("value");
+    t.passed = number("passed") != 0;
+    const double time = number("at_ps");
     t.cut_short = !t.passed && std::isfinite(time);
     if (t.passed || t.cut_short) t.time = time;
-    if (const double rate = number(4); std::isfinite(rate)) t.rate = rate, t.error = number(5);
-    t.scene_hash = csv.cells()[first + 6];
+    if (const double rate = number("rate_per_ps"); std::isfinite(rate)) {
+      t.rate = rate;
+      t.error = number("rate_error_per_ps");
+    }
+    if (const double turn = number("turn_deg"); std::isfinite(turn)) t.turn = turn * units::degree;
+    if (at.count("shape")) t.shape = csv.cells()[at["shape"]];
+    t.scene_hash = csv.cells()[at["scene_xxh64"]];
     trials.push_back(t);
   }
   return trials;
+}
+
+bool PhasePoint::begun() const {
+  return std::any_of(seeds.begin(), seeds.end(), [](const Threshold& t) { return !t.trials.empty(); });
 }
 
 double PhasePoint::by_bisection() const {
@@ -293,22 +307,70 @@ std::string PhasePoint::remarks() const {
   return text;
 }
 
-std::optional<GrowthThreshold> PhasePoint::by_growth() const {
-  std::vector<Trial> all;
-  for (const Threshold& t : seeds) all.insert(all.end(), t.trials.begin(), t.trials.end());
-  return growth_threshold(all);
+double PhasePoint::static_theory() const { return theory ? theory->static_moment / units::nN_nm : unknown; }
+
+double PhasePoint::glued_theory() const { return theory ? theory->glued_over_sliding * static_theory() : unknown; }
+
+double PhasePoint::winding() const {
+  std::vector<double> all;
+  for (const Threshold& seed : seeds)
+    for (const Trial& t : seed.trials)
+      if (theory && t.turn && t.value > 0) all.push_back(theory->winding_of(*t.turn, t.value * units::nN_nm));
+  return median(all);
+}
+
+double PhasePoint::kinetic_theory() const {
+  if (kinetic_) return *kinetic_;
+  const double wound = winding();
+  const double moment = theory ? theory->moment_to_pass(passing, std::isfinite(wound) ? wound : 1) : 0;
+  kinetic_ = moment > 0 ? moment / units::nN_nm : unknown;
+  return *kinetic_;
+}
+
+std::vector<double> PhasePoint::rate_ratios() const {
+  std::vector<double> ratios;
+  for (const Threshold& seed : seeds)
+    for (const Trial& t : seed.trials) {
+      if (!theory || !t.rate || !t.turn || passing <= 0) continue;
+      const double moment = t.value * units::nN_nm,
+                   rate = theory->growth(moment, theory->winding_of(*t.turn, moment));
+      if (rate > 0) ratios.push_back(*t.rate / rate);
+    }
+  return ratios;
+}
+
+double PhasePoint::rate_over_theory() const { return median(rate_ratios()); }
+
+std::size_t PhasePoint::rates() const { return rate_ratios().size(); }
+
+PhasePoint point_in_theory(const Sweep& sweep, const SweepPoint& p) {
+  PhasePoint point;
+  Scene scene = scene_of(sweep, p);
+  const Prepared prepared = prepare(scene);
+  point.tubes = prepared.topology.tubes();
+  if (!scene.source->is_parallel() || scene.sets.size() > 1) return point;
+  double farthest = 0;
+  for (int t = 0; t < point.tubes; ++t)
+    farthest = std::max(farthest,
+                        Vector3(prepared.state.position[static_cast<std::size_t>(prepared.topology.tube_begin[t])])
+                            .head<2>()
+                            .norm());
+  point.length = prepared.topology.length_of(0) * prepared.topology.longest_element();
+  point.radius = farthest + prepared.topology.largest_radius();
+  const ThresholdQuestion& q = *sweep.threshold;
+  if (q.key == "twist.moment_nN_nm") point.theory = helix_theory(scene, prepared);
+  if (q.shape == RopeShape::helix) point.passing = 0.5 * point.radius;
+  if (!q.shape && (q.column == "amplitude_nm" || q.column == "middle_amplitude_nm")) point.passing = q.above;
+  return point;
 }
 
 std::vector<PhasePoint> phase_points(const CampaignDirectory& dir, const Sweep& sweep,
                                      const std::vector<SweepPoint>& points, const KnownTrials& known) {
   std::vector<PhasePoint> out;
   for (const Replicates& r : replicates_of(sweep, points)) {
-    PhasePoint point;
+    PhasePoint point = point_in_theory(sweep, r.points.front());
     point.name = r.name;
     point.values = r.values;
-    Scene scene = scene_of(sweep, r.points.front());
-    const Prepared prepared = prepare(scene);
-    add_theory(sweep, scene, prepared, point);
     for (const SweepPoint& p : r.points) point.seeds.push_back(threshold_of(dir, sweep, p, known));
     out.push_back(std::move(point));
   }

@@ -1,5 +1,5 @@
-// The critical value of a key: where a rope begins to pass a value of an observable within the time of its scene,
-// and where the rate of its growth goes to zero.
+// The critical value of a key: where a rope begins to pass a value of an observable, or to take a shape, within the
+// time of its scene; beside it what theory says of the helix (plan/sliding_rope.hpp).
 #pragma once
 
 #include <map>
@@ -9,6 +9,7 @@
 
 #include "campaign/campaign.hpp"
 #include "io/outputs.hpp"
+#include "plan/sliding_rope.hpp"
 
 namespace ropewalk {
 
@@ -19,6 +20,8 @@ struct Trial {
   double time = 0;                    // ps, at which it passed or was cut short
   bool cut_short = false;             // it did not pass, and a [[stop]] of the scene ended it before its time
   std::optional<double> rate, error;  // 1/ps, of the exponential growth on the way; none: it cannot be told
+  std::optional<double> turn;         // rad, of the ends of the rope about its axis, mean under the whole load
+  std::string shape;                  // of the rope then (observe/rope_shape.hpp); empty: not known
   std::string scene_hash;             // of its scene, parameter sets and state file
 };
 
@@ -33,15 +36,6 @@ struct Threshold {
 };
 // Brackets the threshold of these trials, in any order, in a search from `from` to `to`.
 Threshold bracketed(std::vector<Trial> trials, double from, double to);
-
-// The load at which the square of the rate is zero: value = critical + slope rate^2, by least squares over the runs
-// that passed. An undamped mode w of a load M grows with w^2 = (M - Mc)/slope; if the outcome falls, the slope is
-// negative.
-struct GrowthThreshold {
-  double critical = 0, error = 0;
-  std::size_t runs = 0;
-};
-std::optional<GrowthThreshold> growth_threshold(const std::vector<Trial>& trials);
 
 // The exponent p of y = C x^p, by least squares of the logarithms. `error` is its standard error, NaN with two
 // points.
@@ -60,6 +54,18 @@ std::string trial_text(const Sweep& sweep, const SweepPoint& point, double value
 RunDirectory trial_directory(const CampaignDirectory& dir, const Sweep& sweep, const SweepPoint& point,
                              double value);
 std::string trial_hash(const Sweep& sweep, const SweepPoint& point, double value);
+// The same for many values of one point: its scene is written and its files are read once.
+class TrialHashes {
+ public:
+  TrialHashes(const Sweep& sweep, const SweepPoint& point);
+  std::string of(double value) const;
+
+ private:
+  const Sweep& sweep_;
+  const SweepPoint& point_;
+  std::string head_, tail_;  // of the text around the value, with the files behind
+  bool plain_;               // the value stands in one place
+};
 // Trials of earlier searches by the name of their point.
 using KnownTrials = std::map<std::string, std::vector<Trial>>;
 // From the runs of this point in the directory, and from its known trials.
@@ -72,21 +78,38 @@ struct PhasePoint {
   std::vector<std::string> values;  // of the keys, without the seed
   std::vector<Threshold> seeds;
   int tubes = 0;
-  double length = 0, radius = 0;  // nm, of the rope; zero where it is none
-  double sliding = 0, glued = 0;  // theory, in the unit of the key; zero where there is none
+  double length = 0, radius = 0;      // nm, of the rope; zero where it is none
+  std::optional<HelixTheory> theory;  // where the key is the moment of [twist]
+  double passing = 0;                 // nm, of the amplitude that is asked for; zero: it is another observable
 
+  bool begun() const;  // has a run that ended
   double by_bisection() const, bisection_error() const;
-  // The number of seeds whose outcome falls with the key, whose outcome changes more than once, and whose outcome is
-  // the same at all values of the key that were tried. A seed of the third kind has no threshold, and then there is no
-  // mean: by_bisection() is nan.
+  // The number of seeds whose outcome falls with the key, whose outcome changes more than once, and whose outcome
+  // is the same at all values of the key that were tried. A seed of the third kind has no threshold, and then there
+  // is no mean: by_bisection() is nan.
   std::size_t falling_seeds() const, unclear_seeds() const, outside_seeds() const;
   std::size_t cut_short_runs() const;  // Trial::cut_short
   // Remarks on the bisection: such seeds and runs. Empty: none.
   std::string remarks() const;
-  std::optional<GrowthThreshold> by_growth() const;
+  // Theory, all in the unit of the key; nan: none. The static moment, below which no helix grows; the moment that
+  // passes within the time of the scene, of a rope with the winding of its runs, or with 1 as long as there is
+  // none; and the static moment of a rope whose tubes are glued.
+  double static_theory() const, kinetic_theory() const, glued_theory() const;
+  // The median over the runs of f of plan/sliding_rope.hpp; nan: no run says.
+  double winding() const;
+  // The median of rates over those of theory at the same moment and winding, and the number of runs that have one.
+  double rate_over_theory() const;
+  std::size_t rates() const;
+
+ private:
+  std::vector<double> rate_ratios() const;
+  mutable std::optional<double> kinetic_;  // which takes some tenths of a second
 };
 std::vector<PhasePoint> phase_points(const CampaignDirectory& dir, const Sweep& sweep,
                                      const std::vector<SweepPoint>& points, const KnownTrials& known);
+
+// The theory of a point, without its runs.
+PhasePoint point_in_theory(const Sweep& sweep, const SweepPoint& point);
 
 // Columns of trials.csv behind those of the keys that vary.
 std::vector<OutputColumn> trial_columns();

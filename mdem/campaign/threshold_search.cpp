@@ -6,17 +6,23 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
 
 #include "campaign/point_runs.hpp"
 #include "io/files.hpp"
+#include "io/plain_text.hpp"
 #include "io/processes.hpp"
 #include "model/error.hpp"
 #include "scene/scene_toml.hpp"
 
 namespace ropewalk {
-namespace {
 
 namespace fs = std::filesystem;
+
+namespace {
+
+// To three digits, so that runs have short names.
+double rounded(double value) { return leading_number(fmt::format("{:.3g}", value)).value_or(value); }
 
 }  // namespace
 
@@ -35,7 +41,7 @@ Scene ThresholdSearch::scene_at(const SweepPoint& p, double value) const {
 }
 
 void ThresholdSearch::begin(bool force) {
-  create_campaign(dir_, sweep_, {}, force);
+  lock_ = create_campaign(dir_, sweep_, {}, force);
   refuse_other_scenes(force);
   // Runs of its own table that are not in the directory.
   if (fs::exists(dir_.trials())) {
@@ -58,22 +64,34 @@ void ThresholdSearch::refuse_other_scenes(bool force) const {
       if (!force)
         throw InputError({run.path, 0, "--out"}, "was run with another scene, parameter set or state file",
                          "choose another --out, or give --force to run it anew");
-      fs::remove_all(run.path);
+      remove_run(run, "--force");
     }
   }
 }
 
 std::pair<std::size_t, std::size_t> ThresholdSearch::take(const std::string& path) {
   const std::vector<Trial> trials = read_trials(path);
-  std::size_t others = 0;
+  std::vector<TrialHashes> hashes;
+  for (const SweepPoint& p : points_) hashes.emplace_back(sweep_, p);
+  std::size_t others = 0, last = 0;
+  std::map<std::string, const Trial*> seen;
   for (const Trial& t : trials) {
-    const auto at = std::find_if(points_.begin(), points_.end(), [&](const SweepPoint& p) {
-      return trial_hash(sweep_, p, t.value) == t.scene_hash;
-    });
-    if (at == points_.end())
+    const auto [at, is_new] = seen.emplace(t.scene_hash, &t);
+    if (!is_new && (at->second->passed != t.passed || at->second->time != t.time))
+      throw InputError(
+          {path, 0, "scene_xxh64"},
+          fmt::format("two rows of the scene {} at {:g} differ in what came of it", t.scene_hash, t.value),
+          "one of them was changed: take it away, or leave --known out");
+    if (!is_new) continue;
+    // Rows of one point follow one another.
+    std::size_t k = 0;
+    while (k < points_.size() && hashes[(last + k) % points_.size()].of(t.value) != t.scene_hash) ++k;
+    if (k == points_.size()) {
       ++others;
-    else
-      known_[at->name].push_back(t);
+      continue;
+    }
+    last = (last + k) % points_.size();
+    known_[points_[last].name].push_back(t);
   }
   return {others, trials.size()};
 }
@@ -102,11 +120,29 @@ int ThresholdSearch::try_at(const SweepPoint& p, double value) const {
   return run_or_resume(run, scene, -1, OnLimit::warn);
 }
 
+// Walks from the value that theory foresees, in steps that grow, until the outcome changes or the range ends.
+int ThresholdSearch::walk_from(double value, const SweepPoint& p) const {
+  const ThresholdQuestion& q = *sweep_.threshold;
+  for (double step = 1.12;; step *= step) {
+    if (const int code = try_at(p, value)) return code;
+    const Threshold t = threshold_of(dir_, sweep_, p, known_);
+    if (!t.outside || t.trials.empty()) return 0;
+    const bool down = t.trials.front().passed;
+    const double least = t.trials.front().value, most = t.trials.back().value;
+    if (down ? least <= q.from : most >= q.to) return 0;
+    value = down ? std::max(q.from, rounded(least / step)) : std::min(q.to, rounded(most * step));
+  }
+}
+
 int ThresholdSearch::bisect(const SweepPoint& p) const {
   const ThresholdQuestion& q = *sweep_.threshold;
+  const double foreseen = rounded(point_in_theory(sweep_, p).kinetic_theory());
+  if (foreseen > q.from && foreseen < q.to)
+    if (const int code = walk_from(foreseen, p)) return code;
   // The upper end first: it is soon decided.
   for (const double end : {q.to, q.from})
-    if (const int code = try_at(p, end)) return code;
+    if (threshold_of(dir_, sweep_, p, known_).outside)
+      if (const int code = try_at(p, end)) return code;
   // An outcome may have a window: above it, a rope opens into a cage before it becomes a helix.
   for (const double part : {0.5, 0.25, 0.75}) {
     const auto passed = [](const Trial& t) { return t.passed; };

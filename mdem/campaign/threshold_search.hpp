@@ -32,6 +32,7 @@ class ThresholdSearch {
   Scene scene_at(const SweepPoint& point, double value) const;
   void refuse_other_scenes(bool force) const;
   int try_at(const SweepPoint& point, double value) const;
+  int walk_from(double value, const SweepPoint& point) const;
   int bisect(const SweepPoint& point) const;
   void write() const;
 
@@ -39,6 +40,7 @@ class ThresholdSearch {
   CampaignDirectory dir_;
   std::vector<SweepPoint> points_;
   KnownTrials known_;
+  DirectoryLock lock_;
 };
 
 }  // namespace ropewalk

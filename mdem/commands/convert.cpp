@@ -37,8 +37,11 @@ class FramesOutput : public Output {
 // A PVD file and a folder of its name with the frames.
 class ParaviewOutput : public Output {
  public:
-  explicit ParaviewOutput(const fs::path& pvd) : pvd_(pvd), folder_(fs::path(pvd).replace_extension("")) {
+  ParaviewOutput(const fs::path& pvd, bool force) : pvd_(pvd), folder_(fs::path(pvd).replace_extension("")) {
     std::error_code error;
+    refuse_strange(folder_.string(), true);
+    if (fs::exists(folder_, error) && !fs::is_empty(folder_, error))
+      refuse_existing(folder_.string(), "FILE", force);
     fs::create_directories(folder_, error);
     if (error) throw file_error(folder_.string(), "cannot be made", error.value());
   }
@@ -54,9 +57,9 @@ class ParaviewOutput : public Output {
   std::vector<PvdEntry> entries_;
 };
 
-std::unique_ptr<Output> output_for(const std::string& path) {
+std::unique_ptr<Output> output_for(const std::string& path, bool force) {
   const std::string end = fs::path(path).extension().string();
-  if (end == ".pvd") return std::make_unique<ParaviewOutput>(path);
+  if (end == ".pvd") return std::make_unique<ParaviewOutput>(path, force);
   if (end == ".gsd" || end == ".lammpstrj") return std::make_unique<FramesOutput>(path);
   throw InputError({path, 0, "FILE"}, "ends in none of .gsd, .lammpstrj, .pvd",
                    "choose the format by the end of the name");
@@ -74,7 +77,7 @@ int convert_command(const ConvertArguments& a) {
   Scene scene = read_run_scene(dir);
   const Topology topology = prepare(scene).topology;
   const auto frames = open_frames(from);
-  const std::unique_ptr<Output> out = output_for(a.out);
+  const std::unique_ptr<Output> out = output_for(a.out, a.force);
   StoredFrame frame;
   long read = 0, written = 0;
   for (; frames->next(topology, frame); ++read) {

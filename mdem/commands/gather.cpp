@@ -15,7 +15,7 @@ int gather_command(const GatherArguments& a) {
   options.mean_ps = a.mean_ps;
   options.series = a.series;
   options.columns = a.columns;
-  const std::string table = gathered_csv(dir, sweep, points_of(sweep, false), options);
+  const std::string table = gathered_csv(dir, sweep, points_of(sweep, PointsAs::names), options);
   if (a.out.empty()) {
     fmt::print("{}", table);
     return 0;

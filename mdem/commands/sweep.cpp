@@ -24,6 +24,8 @@ namespace {
 
 using Stage = PointProgress::Stage;
 
+constexpr std::size_t most_built = 20;  // scenes of points, where a script is written
+
 int dry_run(const Sweep& sweep, const CampaignDirectory& dir, const std::vector<SweepPoint>& points, int jobs) {
   const std::vector<double> seconds =
       seconds_of_points(sweep, points, [](const SweepPoint& p, const std::exception& e) {
@@ -59,13 +61,16 @@ double beyond_limits_of(const RunDirectory& dir) {
 
 int summary(const CampaignDirectory& dir, const std::vector<SweepPoint>& points, bool with_table) {
   std::map<std::string, std::size_t> counts;
-  std::vector<std::string> failed, beyond;
+  std::vector<std::string> failed, beyond, elsewhere;
   double seconds = 0;
   for (const SweepPoint& p : points) {
     const PointProgress progress = progress_of(dir.point(p.name));
     ++counts[progress.status];
     seconds += progress.wall_seconds;
-    if (progress.stage != Stage::ended) failed.push_back(p.name);
+    if (progress.status == "running")
+      elsewhere.push_back(fmt::format("{}, by {}", p.name, holder_of(dir.point(p.name).path)));
+    else if (progress.stage != Stage::ended)
+      failed.push_back(p.name);
     if (const double times = beyond_limits_of(dir.point(p.name));
         times > far_beyond && progress.stage == Stage::ended)
       beyond.push_back(fmt::format("{} ({:.3g} times)", p.name, times));
@@ -75,9 +80,10 @@ int summary(const CampaignDirectory& dir, const std::vector<SweepPoint>& points,
     words += fmt::format("{}{} {}", words.empty() ? "" : ", ", count, status);
   fmt::print("{} points: {}; {} of one core in all\n", points.size(), words, duration_text(seconds));
   for (const std::string& name : failed) fmt::print("not ended: {}, see {}\n", name, dir.messages(name));
+  for (const std::string& name : elsewhere) fmt::print("run elsewhere: {}\n", name);
   for (const std::string& name : beyond) fmt::print("far beyond a limit: {}\n", name);
   if (with_table) fmt::print("Table: {}\n", dir.table());
-  return failed.empty() ? 0 : 3;
+  return failed.empty() && elsewhere.empty() ? 0 : 3;
 }
 
 }  // namespace
@@ -87,8 +93,14 @@ int sweep_command(const SweepArguments& a) {
   if (sweep.threshold)
     throw InputError({a.file, 0, "threshold"}, "asks for critical values", "run it with `ropewalk threshold`");
   const CampaignDirectory dir = campaign_directory(a.file, a.out);
-  const std::vector<SweepPoint> all = points_of(sweep), points = chosen_points(all, a.only);
-  if (const std::string why = why_replicates_are_equal(sweep, all); !why.empty()) tell("note: " + why);
+  // A job of an array looks at its own point alone; who writes an array reads all scenes and builds some.
+  const bool script = !a.slurm.empty() || !a.snakemake.empty();
+  const std::vector<SweepPoint> all = points_of(sweep, script ? PointsAs::read : PointsAs::names);
+  std::vector<SweepPoint> points = chosen_points(all, a.only);
+  const std::size_t apart = script ? std::max<std::size_t>(1, points.size() / most_built) : 1;
+  for (std::size_t k = 0; k < points.size(); k += apart) complete(sweep, points[k]);
+  if (a.only.empty())
+    if (const std::string why = why_replicates_are_equal(sweep, points); !why.empty()) tell("note: " + why);
   const int jobs = a.jobs > 0 ? a.jobs : omp_get_num_procs();
   if (a.dry_run) return dry_run(sweep, dir, points, jobs);
   const std::string program = find_program("", "ropewalk");
@@ -100,7 +112,7 @@ int sweep_command(const SweepArguments& a) {
   if (!a.snakemake.empty())
     return write_script(a.snakemake, "--snakemake", a.force, snakemake_file(program, a.file, dir, all, options),
                         fmt::format("snakemake -s {} --cores {}", a.snakemake, jobs));
-  create_campaign(dir, sweep, all, a.force);
+  const DirectoryLock lock = create_campaign(dir, sweep, points, a.force);
   listen_to_stop_signals();
   const SweepRuns runs(sweep, dir, points, on_limit_of(a.on_limit), jobs, a.again);
   SweepProgress progress(dir, points, runs, a.quiet);

@@ -34,12 +34,13 @@ void print_results(const CampaignDirectory& dir, const std::vector<PhasePoint>& 
     if (entry.path().filename() == "manifest.json")
       seconds += progress_of({entry.path().parent_path().string()}).wall_seconds, ++runs;
   for (const PhasePoint& p : points) {
-    const auto growth = p.by_growth();
-    fmt::print("{:<40} by bisection {:<18} by growth {}\n", p.name,
+    const double theory = p.kinetic_theory(), least = p.static_theory();
+    fmt::print("{:<40} by bisection {:<18} theory {}{}\n", p.name,
                std::isfinite(p.by_bisection())
                    ? fmt::format("{:.4g} ± {:.2g}", p.by_bisection(), p.bisection_error())
-                   : std::string("not in the range"),
-               growth ? fmt::format("{:.4g} ± {:.2g}", growth->critical, growth->error) : std::string("-"));
+                   : std::string(p.begun() ? "not in the range" : "not run yet"),
+               std::isfinite(theory) ? fmt::format("{:.4g}", theory) : std::string("-"),
+               std::isfinite(least) ? fmt::format(", none grows below {:.4g}", least) : std::string());
     if (const std::string remarks = p.remarks(); !remarks.empty()) fmt::print("  note: {}\n", remarks);
   }
   fmt::print("{} runs, {} of one core in all. Page: {}/thresholds.html\n", runs, duration_text(seconds), dir.path);
@@ -51,11 +52,13 @@ void print_results(const CampaignDirectory& dir, const std::vector<PhasePoint>& 
 int threshold_command(const ThresholdArguments& a) {
   Sweep sweep = read_sweep(a.file);
   if (!sweep.threshold)
-    throw InputError({a.file, 0, "threshold"}, "is missing",
-                     "add [threshold] with key, from, to, column and above, or run it with `ropewalk sweep`");
+    throw InputError(
+        {a.file, 0, "threshold"}, "is missing",
+        "add [threshold] with key, from, to, column and above (or shape), or run it with `ropewalk sweep`");
   if (!sweep.branch_axes.empty())
     throw InputError({a.file, 0, "branch"}, "does not go with [threshold]", "take it away");
-  if (const std::string why = why_replicates_are_equal(sweep, points_of(sweep)); !why.empty()) tell("note: " + why);
+  if (const std::string why = why_replicates_are_equal(sweep, points_of(sweep, PointsAs::scenes)); !why.empty())
+    tell("note: " + why);
   const CampaignDirectory dir = campaign_directory(a.file, a.out);
   ThresholdSearch search(std::move(sweep), dir);
   search.begin(a.force);

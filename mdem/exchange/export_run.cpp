@@ -29,7 +29,7 @@ void copy_run(const RunDirectory& from, const RunDirectory& to, RunListener& lis
   };
   const auto all = std::string::npos;
   copy(from.scene(), to.scene(), all);
-  for (std::size_t k = 0; k < scene.sets.size(); ++k) copy(from.parameters(k), to.parameters(k), all);
+  copy_parameters(scene, to);
   if (fs::exists(from.state())) copy(from.state(), to.state(), all);
   if (fs::exists(from.limits())) copy(from.limits(), to.limits(), all);
   copy(from.log(), to.log(), c.log.bytes);

@@ -51,7 +51,7 @@ class Import {
                        "run in.rope with lmp-ropewalk first, as README.txt says");
     for (const LammpsRow& row : read_lammps_rows(files_, prepared_.interaction.terms.size()))
       rows_[static_cast<std::int64_t>(row.step)] = row;
-    remove_parts(dir_.path);
+    remove_run_parts(dir_);
     log_ = read_file(dir_.log()).substr(0, checkpoint_.log.bytes);
     const std::string there = dir_.frames();
     frames_ = std::make_unique<NewFrames>(there, format_of(there), 0, there, checkpoint_.frames.bytes);
@@ -89,7 +89,7 @@ class Import {
     if (const MomentRamp* ramp = scene_.moment_ramp()) account.moment = ramp->moment_at(from.time);
     account.potential = {from.stretch, from.shear, from.bend, from.twist, from.vdw,
                          std::accumulate(from.terms.begin(), from.terms.end(), 0.0)};
-    account.terms = term_energies(prepared_.interaction, from.terms);
+    account.terms = term_readings(prepared_.interaction, from.terms, from.accounts);
     account.kinetic = from.kinetic;
     account.work = from.work;
     account.dissipated = from.dissipated;
@@ -111,8 +111,9 @@ class Import {
     NeighbourList list(prepared_.interaction, default_skin(prepared_.interaction));
     list.build(prepared_.topology, state);
     const bool relax = scene_.run.mode == RunOptions::Mode::relax;
-    const double drift = relax ? std::numeric_limits<double>::quiet_NaN() : energy_drift(account);
-    for (const std::string& line : watch_.check(prepared_.topology, state, list, drift, true)) listener_.tell(line);
+    const RunEnergies energies = relax ? RunEnergies() : RunEnergies{energy_drift(account), account.kinetic};
+    for (const std::string& line : watch_.check(prepared_.topology, state, list, energies, true))
+      listener_.tell(line);
   }
 
   // Judges the account of energy as the step control of `run` does, over a window of at least the same length.
@@ -120,11 +121,13 @@ class Import {
     if (scene_.run.mode == RunOptions::Mode::relax || step < marked_at_ + StepControl::window) return;
     const EnergyMark now{account.potential.potential() + account.kinetic, {account.work, account.dissipated}};
     const bool closes =
-        account_closes(mark_, now, account.kinetic, account.potential.bonds(), prepared_.state.size());
+        account_closes(mark_, now, account.kinetic, account.potential.bonds(), account.potential.vdw,
+                       prepared_.state.size());
     if (!closes && !told_of_account_)
       listener_.tell(fmt::format(
           "note: from step {} to {} the account of energy does not close. `run` would have gone back and divided "
-          "its steps of {:.4g} fs, LAMMPS kept them: set run.time_step_fs to half of that, and export and run it again",
+          "its steps of {:.4g} fs, LAMMPS kept them: set run.time_step_fs to half of that, and export and run it "
+          "again",
           marked_at_, step, prepared_.time_step / units::fs));
     told_of_account_ = told_of_account_ || !closes;
     mark_ = now;

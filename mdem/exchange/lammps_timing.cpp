@@ -4,11 +4,11 @@
 #include <omp.h>
 
 #include <cstdlib>
-#include <filesystem>
 
 #include "exchange/export_run.hpp"
 #include "io/clocks.hpp"
 #include "io/files.hpp"
+#include "io/removal.hpp"
 #include "model/error.hpp"
 #include "run/cores.hpp"
 #include "run/threads.hpp"
@@ -16,26 +16,6 @@
 
 namespace ropewalk {
 namespace {
-
-namespace fs = std::filesystem;
-
-class TemporaryFolder {
- public:
-  TemporaryFolder() : path_((fs::temp_directory_path() / "ropewalk-bench-XXXXXX").string()) {
-    if (!mkdtemp(path_.data()))
-      throw InputError({path_, 0, ""}, "cannot be made", "set TMPDIR to a directory that can be written");
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  std::string file(const std::string& name) const { return path_ + "/" + name; }
-
- private:
-  std::string path_;
-};
 
 StepsTime native_seconds(const Scene& scene, const Prepared& prepared, int threads, long steps) {
   use_threads(threads);

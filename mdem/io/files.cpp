@@ -9,12 +9,10 @@
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
-#include <filesystem>
-#include <vector>
+#include <utility>
 
 #define XXH_INLINE_ALL
 #include <xxhash.h>
-
 
 namespace ropewalk {
 namespace {
@@ -69,6 +67,11 @@ class TemporaryFile {
   }
 
   int descriptor() const { return fd_; }
+  // Closed, and not removed.
+  std::string keep() {
+    ::close(std::exchange(fd_, -1));
+    return name_;
+  }
   bool rename_to(const std::string& path) {
     renamed_ = uninterrupted([&] { return ::rename(name_.c_str(), path.c_str()); }) == 0;
     return renamed_;
@@ -93,6 +96,33 @@ void flush_directory_of(const std::string& path) {
 
 InputError file_error(const std::string& path, const char* what, int code) {
   return InputError({path, 0, ""}, fmt::format("{}: {}", what, std::strerror(code)), remedy_for(code));
+}
+
+void refuse_strange(const std::string& path, bool directory) {
+  struct stat status {};
+  if (::lstat(path.c_str(), &status) != 0) return;
+  if (directory ? S_ISDIR(status.st_mode) : S_ISREG(status.st_mode)) return;
+  throw InputError(
+      {path, 0, ""},
+      S_ISLNK(status.st_mode) ? "is a link, which may lead anywhere"
+      : directory             ? "is no directory"
+                              : "is no regular file",
+      directory ? "put the directory itself here, or take it away" : "put the file itself here, or take it away");
+}
+
+Descriptor opened_to_write(const std::string& path, int flags) {
+  refuse_strange(path);
+  // A pipe that took its place meanwhile would hold open() up.
+  Descriptor file(uninterrupted(
+      [&] { return ::open(path.c_str(), flags | O_CREAT | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC, 0666); }));
+  if (!file.open()) throw file_error(path, "cannot be written", errno);
+  struct stat status {};
+  if (::fstat(file.get(), &status) != 0) throw file_error(path, "cannot be written", errno);
+  if (!S_ISREG(status.st_mode)) throw InputError({path, 0, ""}, "is no regular file", "take it away");
+  if (status.st_nlink > 1)
+    throw InputError({path, 0, ""}, "has a second name (a hard link), and that file would be written as well",
+                     "replace it by a copy: cp FILE NEW && mv NEW FILE");
+  return file;
 }
 
 Descriptor opened_to_read(const std::string& path) {
@@ -126,7 +156,7 @@ void write_file_atomically(const std::string& path, std::string_view content, co
   Descriptor fd(temporary.descriptor());
   if (!fd.open()) throw file_error(path, what, errno);
   struct stat old {};
-  if (::stat(path.c_str(), &old) == 0 && S_ISREG(old.st_mode) && ::fchmod(fd.get(), old.st_mode & 0777) != 0)
+  if (::lstat(path.c_str(), &old) == 0 && S_ISREG(old.st_mode) && ::fchmod(fd.get(), old.st_mode & 0777) != 0)
     throw file_error(path, what, errno);
   if (!write_all(fd.get(), content)) throw file_error(path, what, errno);
   if (uninterrupted([&] { return ::fsync(fd.get()); }) != 0) throw file_error(path, what, errno);
@@ -138,21 +168,17 @@ void write_file_atomically(const std::string& path, std::string_view content, co
   flush_directory_of(path);
 }
 
-std::string part_of(const std::string& path) { return fmt::format("{}{}{}", path, part, ::getpid()); }
+std::string new_part_of(const std::string& path) {
+  TemporaryFile temporary(path);
+  if (temporary.descriptor() < 0) throw file_error(path, "cannot be written", errno);
+  return temporary.keep();
+}
 
 std::string without_part(const std::string& name) {
   const std::size_t at = name.rfind(part);
   if (at == std::string::npos || at == 0) return "";
   const std::string number = name.substr(at + std::strlen(part));
   return number.find_first_not_of("0123456789-") == std::string::npos ? name.substr(0, at) : "";
-}
-
-void remove_parts(const std::string& directory) {
-  std::error_code error;
-  std::vector<std::filesystem::path> parts;
-  for (std::filesystem::directory_iterator at(directory, error), end; !error && at != end; at.increment(error))
-    if (!without_part(at->path().filename().string()).empty()) parts.push_back(at->path());
-  for (const auto& path : parts) std::filesystem::remove(path, error);
 }
 
 const char* remedy_for_errno(int code) { return remedy_for(code); }

@@ -23,15 +23,19 @@ void refuse_devices(const std::string& path);
 // between the two renames it alone is there.
 void write_file_atomically(const std::string& path, std::string_view content, const std::string& keep_old_as = "");
 
-// The name under which this process writes a file before it is whole.
-std::string part_of(const std::string& path);
+// Makes an empty file beside `path` under a name that was free, for what is renamed to `path` once it is whole.
+std::string new_part_of(const std::string& path);
 // The name of the file that a process was writing when it left one of this name; empty for any other name.
 std::string without_part(const std::string& name);
-// Removes what such processes left.
-void remove_parts(const std::string& directory);
 
 // "cannot be written: No space left on device", with a remedy. code: errno.
 InputError file_error(const std::string& path, const char* what, int code);
+// Throws InputError where the path is there and is no regular file, or no directory: a link leads to other people's
+// files, and a pipe has no end.
+void refuse_strange(const std::string& path, bool directory = false);
+// A file that is written in place, made where it is not there; `flags`: O_RDWR or O_WRONLY, and others. Throws
+// InputError where it is a link, not a regular file, or one with a second name, which would be written as well.
+Descriptor opened_to_write(const std::string& path, int flags);
 // Throws InputError where the file cannot be opened.
 Descriptor opened_to_read(const std::string& path);
 

@@ -29,13 +29,30 @@ Chirality chirality_in(const TomlTable& t, const char* key) {
   return c;
 }
 
-std::vector<std::string> shipped_frictions() {
+std::vector<PairFriction> frictions_in(const fs::path& folder) {
   std::vector<std::string> paths;
   std::error_code error;
-  for (const auto& entry : fs::directory_iterator(fs::path(data_directory()) / "friction", error))
-    if (entry.path().extension() == ".toml") paths.push_back(entry.path().string());
+  for (const auto& entry : fs::directory_iterator(folder.empty() ? "." : folder, error)) {
+    const std::string name = entry.path().filename().string();
+    if (name.rfind("friction-", 0) == 0 && entry.path().extension() == ".toml" && entry.is_regular_file(error))
+      paths.push_back(entry.path().string());
+  }
   std::sort(paths.begin(), paths.end());
-  return paths;
+  std::vector<PairFriction> all;
+  for (const std::string& path : paths) all.push_back(read_friction(path));
+  return all;
+}
+
+// The folders' own ones first.
+std::vector<PairFriction> known_frictions(const std::vector<std::string>& folders) {
+  std::vector<PairFriction> all;
+  std::vector<fs::path> places(folders.begin(), folders.end());
+  places.push_back(fs::path(data_directory()) / "friction");
+  for (std::size_t k = 0; k < places.size(); ++k)
+    if (std::find(places.begin(), places.begin() + static_cast<std::ptrdiff_t>(k), places[k]) ==
+        places.begin() + static_cast<std::ptrdiff_t>(k))
+      for (PairFriction& f : frictions_in(places[k])) all.push_back(std::move(f));
+  return all;
 }
 
 // How far the radii of both pairs are from each other, nm; the order of two tubes does not matter.
@@ -121,14 +138,26 @@ std::string friction_text(const PairFriction& f, const std::string& comment) {
   return text;
 }
 
-PairFriction find_friction(const std::string& name, const InputError::Place& place) {
+PairFriction find_friction(const std::string& name, const std::vector<std::string>& folders,
+                           const InputError::Place& place) {
+  const std::string stem = fs::path(name).extension() == ".toml" ? fs::path(name).stem().string()
+                                                                  : fs::path(name).filename().string();
+  std::error_code error;
+  for (const std::string& folder : folders)
+    for (const std::string& file : {name, name + ".toml"})
+      if (const fs::path path = fs::path(folder) / file; fs::is_regular_file(path, error)) {
+        PairFriction f = read_friction(path.string());
+        if (f.name != stem)
+          throw InputError({f.path, 0, "meta.name"}, fmt::format("is \"{}\", and the file is called {}", printable(f.name, 60), path.filename().string()),
+                           "give both the same name");
+        return f;
+      }
   std::string names;
-  for (const std::string& path : shipped_frictions()) {
-    const std::string stem = fs::path(path).stem().string();
-    if (stem == name) return read_friction(path);
-    names += fmt::format("{}\"{}\"", names.empty() ? "" : ", ", stem);
+  for (PairFriction& f : known_frictions(folders)) {
+    if (f.name == stem) return std::move(f);
+    names += fmt::format("{}\"{}\"", names.empty() ? "" : ", ", printable(f.name, 60));
   }
-  throw InputError(place, fmt::format("is \"{}\", and no such friction is shipped", printable(name, 40)),
+  throw InputError(place, fmt::format("is \"{}\", and there is no such friction", printable(name, 40)),
                    "write \"atoms\", or one of " + names + ", or type the strengths");
 }
 
@@ -140,18 +169,20 @@ std::string kind_of_pair(Chirality a, Chirality b) {
   return same_tube(a, b) || (of_a == of_b && of_a != "chiral") ? of_a : "unlike";
 }
 
-PairFriction friction_between(Chirality a, Chirality b, const InputError::Place& place) {
+PairFriction friction_between(Chirality a, Chirality b, const std::vector<std::string>& folders,
+                              const InputError::Place& place) {
   const std::string kind = kind_of_pair(a, b);
-  const std::vector<std::string> paths = shipped_frictions();
   std::vector<PairFriction> known;
-  for (const std::string& path : paths)
-    if (PairFriction f = read_friction(path); kind_of_pair(f.a, f.b) == kind) known.push_back(std::move(f));
+  for (PairFriction& f : known_frictions(folders))
+    if (kind_of_pair(f.a, f.b) == kind) known.push_back(std::move(f));
   if (known.empty())
     throw InputError(
         place,
         fmt::format("no friction of ({},{}) beside ({},{}) was measured, nor of any pair of their kind", a.n, a.m,
                     b.n, b.m),
         "measure it (ropewalk calibrate friction) and name its file, or type strengths");
+  const auto exact = std::find_if(known.begin(), known.end(), [&](const PairFriction& f) { return f.is_of(a, b); });
+  if (exact != known.end()) return *exact;
   return *std::min_element(known.begin(), known.end(), [&](const PairFriction& x, const PairFriction& y) {
     return radii_apart(a, b, x) < radii_apart(a, b, y);
   });

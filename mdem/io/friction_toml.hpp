@@ -37,15 +37,19 @@ PairFriction friction_of_text(const std::string& text, const std::string& path);
 // From names, quantities and provenance, below `comment`.
 std::string friction_text(const PairFriction& friction, const std::string& comment);
 
-// The shipped one of this name. Throws InputError at `place`.
-PairFriction find_friction(const std::string& name, const InputError::Place& place);
+// The friction of this name: a file NAME or NAME.toml in one of the folders, a copy friction-K.toml there which has it
+// as its meta.name, or a shipped one. Throws InputError at `place`.
+PairFriction find_friction(const std::string& name, const std::vector<std::string>& folders,
+                           const InputError::Place& place);
 
 // "armchair", "zigzag" or "chiral" for two tubes that fit each other, "unlike" for others. Two tubes fit each other
 // if both are armchair tubes, both are zigzag tubes, or both have the same chirality.
 std::string kind_of_pair(Chirality a, Chirality b);
 
-// The shipped friction of these tubes; where there is none, that of the pair of the same kind whose radii are
-// nearest. An estimate then: its tubes are others. Throws InputError at `place` if no pair of this kind is shipped.
-PairFriction friction_between(Chirality a, Chirality b, const InputError::Place& place);
+// The friction of these tubes, from a file friction-*.toml in one of the folders or a shipped one; where there is none,
+// that of the pair of the same kind whose radii are nearest. An estimate then: its tubes are others. Throws InputError
+// at `place` if no pair of this kind is there.
+PairFriction friction_between(Chirality a, Chirality b, const std::vector<std::string>& folders,
+                              const InputError::Place& place);
 
 }  // namespace ropewalk

@@ -57,9 +57,7 @@ bool reaches(const std::string& path, const FileMark& mark) {
 }
 
 GrowingFile::GrowingFile(std::string path, std::uint64_t keep)
-    : path_(std::move(path)),
-      file_(uninterrupted([&] { return ::open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666); })) {
-  if (!file_.open()) fail();
+    : path_(std::move(path)), file_(opened_to_write(path_, O_RDWR)) {
   cut(keep);
 }
 
@@ -96,7 +94,7 @@ FileMark GrowingFile::mark() const {
 
 void GrowingFile::fail() const {
   throw InputError({path_, 0, ""}, fmt::format("cannot be written: {}", std::strerror(errno)),
-                   fmt::format("{}; the last checkpoint stands", remedy_for_errno(errno)));
+                   remedy_for_errno(errno));
 }
 
 }  // namespace ropewalk

@@ -30,8 +30,8 @@ void visit_limit(R&& r, const Visit& v) {
 
 template <class R, class Visit>
 void visit_refinement(R&& r, const Visit& v) {
-  v({"from", "", "directory of the run that was refined"}, r.from);
-  v({"to", "", "directory of the run that goes on"}, r.to);
+  v({"from", "", "end of the name of the directory that was refined: none, `.fine`, `.fine2`"}, r.from);
+  v({"to", "", "end of the name of the directory that goes on"}, r.to);
   v({"time_ps", "ps", "time of the refinement"}, r.time_ps);
   v({"step_before", "", "time step in the coarse run"}, r.step_before);
   v({"step_after", "", "time step in the fine run"}, r.step_after);

@@ -61,10 +61,24 @@ LogRow::LogRow(const Measurement& measurement) {
   for (const Observable& observable : observables()) values_.push_back(observable.value(measurement));
 }
 
+RopeShape shape_of(const LogRow& row, const LogRow& first) {
+  return rope_shape({row["middle_amplitude_nm"], row["writhe"], row["turned_back"], row["radius_mid_nm"],
+                     row["radius_end_nm"], row["void_area_nm2"]},
+                    first["radius_mid_nm"]);
+}
+
 double potential_energy(const LogRow& row) {
   double sum = row["stretch_eV"] + row["shear_eV"] + row["bend_eV"] + row["twist_eV"] + row["vdw_eV"];
   for (const std::string& column : term_energy_columns()) sum += row[column];
   return sum;
+}
+
+std::string damping_words(const LogRow& row) {
+  const double lost = row["dissipated_eV"], damping = row["damping_eV"];
+  if (!(lost > 0.01 * std::fabs(row["work_eV"])) || !(damping > 0.1 * lost)) return "";
+  return fmt::format("Numerical damping, which atoms do not have, took {:.3g} % of the {:.3g} eV that are lost: trust "
+                     "where the rope rests, not how it came there, nor which of several states of rest it chose.",
+                     100 * damping / lost, lost);
 }
 
 std::string log_header() {

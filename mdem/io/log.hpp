@@ -7,6 +7,7 @@
 
 #include "model/error.hpp"
 #include "observe/observables.hpp"
+#include "observe/rope_shape.hpp"
 
 namespace ropewalk {
 
@@ -28,8 +29,15 @@ class LogRow {
   std::vector<double> values_;
 };
 
+// The shape of the rope in a row of the log that begins with the row `first`.
+RopeShape shape_of(const LogRow& row, const LogRow& first);
+
 // eV: bonds, contacts and force terms.
 double potential_energy(const LogRow& row);
+
+// Which part of the lost energy numerical damping has taken, and what that means. Empty: a hundredth of the work or
+// less is lost, or less than a tenth of it to damping.
+std::string damping_words(const LogRow& row);
 
 std::string log_header();
 std::string log_line(const LogRow& row);  // full precision: reading it back gives the same bits

@@ -6,6 +6,8 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 
 #include "io/files.hpp"
 #include "io/toml_table.hpp"
@@ -304,7 +306,17 @@ class Reader {
 
 }  // namespace
 
-ParameterSet read_parameters(const std::string& path) { return parameters_of_text(read_file(path), path); }
+// Sweeps read the same few sets for thousands of scenes.
+ParameterSet read_parameters(const std::string& path) {
+  thread_local std::map<std::string, std::pair<std::string, ParameterSet>> known;  // by path: text and set
+  std::string text = read_file(path);
+  const auto at = known.find(path);
+  if (at != known.end() && at->second.first == text) return at->second.second;
+  ParameterSet set = parameters_of_text(text, path);
+  if (known.size() >= 16) known.clear();
+  known[path] = {std::move(text), set};
+  return set;
+}
 
 ParameterSet parameters_of_text(const std::string& text, const std::string& path) {
   return Reader(text, path).read();
@@ -346,7 +358,8 @@ const Quantity* find_quantity(const ParameterSet& set, const std::string& key) {
   return nullptr;
 }
 
-Quantity read_quantity(const TomlTable& section, const std::string& key, const std::string& unit, const Bounds& bounds) {
+Quantity read_quantity(const TomlTable& section, const std::string& key, const std::string& unit,
+                       const Bounds& bounds) {
   const std::string form = fmt::format("{{ value, unit = \"{}\", standard_error, origin, doi }}", unit);
   if (!section.has(key)) throw section.error(key, "is missing", fmt::format("add {} = {}", key, form));
   const TomlTable q = section.table(key, form);

@@ -42,7 +42,10 @@ void run_processes(const std::vector<ProcessTask>& tasks, int jobs, const volati
   bool told = false;
   const auto wait_for_one = [&] {
     int status = 0;
-    const pid_t child = waitpid(-1, &status, 0);  // ends early, with -1, where a signal comes
+    // A signal that asks to stop does not end waitpid(): it is looked for in between.
+    const bool look = stop && !told;
+    const pid_t child = waitpid(-1, &status, look ? WNOHANG : 0);
+    if (look && child == 0) usleep(2000);
     if (stop && *stop && !told)
       for (const auto& [id, task] : at_work) kill(id, SIGTERM);
     told = told || (stop && *stop);

@@ -45,7 +45,7 @@ FixMotion::FixMotion(LMP::LAMMPS* lmp, int count, char** words) : Fix(lmp, count
   restart_global = 1;
   comm_forward = 4;
   vector_flag = 1;
-  size_vector = 9 + static_cast<int>(model_->interaction.terms.size());
+  size_vector = 9 + 4 * static_cast<int>(model_->interaction.terms.size());
   global_freq = 1;
   extvector = 0;
   const auto* states = find_fix<FixStates>(lmp);
@@ -231,7 +231,13 @@ std::vector<double> FixMotion::energies() const {
   std::vector<double> own = {
       bonds.stretch,        bonds.shear, bonds.bend, bonds.twist, pair ? pair->own_energy() : 0.0,
       own_kinetic_energy(), work_,       dissipated_};
-  if (engine_) own.insert(own.end(), engine_->term_energy().begin(), engine_->term_energy().end());
+  if (engine_) {
+    const std::vector<TermAccount> accounts = engine_->term_accounts();
+    for (std::size_t k = 0; k < accounts.size(); ++k) {
+      const TermAccount& a = accounts[k];
+      own.insert(own.end(), {engine_->term_energy()[k], a.lost, a.drag, a.events});
+    }
+  }
   MPI_Allreduce(MPI_IN_PLACE, own.data(), static_cast<int>(own.size()), MPI_DOUBLE, MPI_SUM, world);
   return own;
 }

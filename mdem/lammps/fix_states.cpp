@@ -28,7 +28,7 @@ constexpr int sent = 1 + numbers;  // the element and its record
 class File {
  public:
   File(std::string path, int flags)
-      : path_(std::move(path)), file_(::open(path_.c_str(), flags | O_CLOEXEC, 0666)) {
+      : path_(std::move(path)), file_(::open(path_.c_str(), flags | O_NOFOLLOW | O_CLOEXEC, 0666)) {
     if (file_ < 0) throw file_error(path_, "cannot be opened", errno);
   }
   ~File() {

@@ -4,6 +4,8 @@
 #include <numeric>
 #include <utility>
 
+#include "comm.h"
+
 #include "sim/contact/contact_law.hpp"
 #include "sim/contact/line/engine.hpp"
 #include "sim/forces/kick.hpp"
@@ -283,7 +285,7 @@ void RankEngine::build() {
   for (const Stretch& s : own_)
     for (int k = 0; k < s.count; ++k) element_[static_cast<std::size_t>(s.atom + k)] = s.element + k;
   list_.build(topology_, state_);
-  engine_.remember(model_->interaction, memories, model_->topology.elements());
+  engine_.remember(model_->interaction, memories, model_->topology.elements(), lmp_->comm->me == 0);
   steps_ = 0;
 }
 

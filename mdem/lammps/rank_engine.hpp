@@ -80,6 +80,7 @@ class RankEngine {
   double contact_energy();  // evaluates the contact again where the last time left it out
   double damping_power() const { return forces_.damping_power; }  // eV/ps
   const std::vector<double>& term_energy() const { return forces_.term_energy; }  // of each force term
+  std::vector<TermAccount> term_accounts() const { return engine_.terms().accounts(); }  // this rank's share
   double lost() const { return forces_.lost; }  // eV, by force terms whose memory has moved on
   int slipping_element() const;                                   // of the scene; -1: none
   // xx, yy, zz, xy, xz, yz of separation times force, without damping.

@@ -1,6 +1,8 @@
 #include "observe/centre_line.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 #include "model/units.hpp"
 
@@ -129,6 +131,58 @@ double chord_amplitude(const std::vector<Vector3>& line) {
   double largest = 0.0;
   for (const Vector3& p : line) largest = std::max(largest, (p - line.front()).norm());
   return largest;
+}
+
+std::vector<Vector3> middle_of(const std::vector<Vector3>& line) {
+  const auto left_out = static_cast<std::ptrdiff_t>(line.size() / 10);
+  return {line.begin() + left_out, line.end() - left_out};
+}
+
+namespace {
+
+// The solid angle of the directions in which the pieces a to b and c to d cross, with the sign of their crossing; 0
+// where they lie in a plane.
+double crossing_angle(const Vector3& a, const Vector3& b, const Vector3& c, const Vector3& d) {
+  const std::array<Vector3, 4> sides{c - a, d - a, d - b, c - b};
+  std::array<Vector3, 4> normals;
+  for (std::size_t k = 0; k < 4; ++k) {
+    const Vector3 normal = sides[k].cross(sides[(k + 1) % 4]);
+    const double size = normal.norm();
+    if (!(size > 0)) return 0;
+    normals[k] = normal / size;
+  }
+  double angle = 0;
+  for (std::size_t k = 0; k < 4; ++k)
+    angle += std::asin(std::clamp(normals[k].dot(normals[(k + 1) % 4]), -1.0, 1.0));
+  const double side = (d - c).cross(b - a).dot(sides[0]);
+  return side > 0 ? angle : side < 0 ? -angle : 0;
+}
+
+}  // namespace
+
+double writhe_of(const std::vector<Vector3>& line) {
+  constexpr std::size_t most = 128;
+  const std::size_t step = (line.size() + most - 1) / most;
+  std::vector<Vector3> points;
+  for (std::size_t k = 0; k < line.size(); k += step) points.push_back(line[k]);
+  if (!line.empty() && (line.size() - 1) % step != 0) points.push_back(line.back());
+  double sum = 0;
+  for (std::size_t i = 0; i + 1 < points.size(); ++i)
+    for (std::size_t j = i + 2; j + 1 < points.size(); ++j)
+      sum += crossing_angle(points[i], points[i + 1], points[j], points[j + 1]);
+  return sum / (2 * units::pi);
+}
+
+double turned_back(const std::vector<Vector3>& line) {
+  if (line.size() < 2) return 0;
+  const Vector3 chord = line.back() - line.front();
+  double back = 0;
+  for (std::size_t k = 0; k + 1 < line.size(); ++k) {
+    const Vector3 piece = line[k + 1] - line[k];
+    if (piece.dot(chord) < 0) back += piece.norm();
+  }
+  const double whole = arc_length(line);
+  return whole > 0 ? back / whole : 0;
 }
 
 // Counting the azimuth from end to end fails on real ropes: a helix whose ends lie on its axis has no azimuth

@@ -8,7 +8,7 @@
 namespace ropewalk {
 namespace {
 
-constexpr double shock = 0.1;  // strain
+constexpr double stopped = 0.1;  // strain
 
 enum Kind : std::size_t { bend, twist, kink_curvature, wall_twist, strain, overlap, speed };
 
@@ -93,6 +93,8 @@ const std::array<LimitKind, limit_count>& limit_kinds() {
        "the account of energy is off, over the energy that has moved, by",
        "the steps themselves give or take energy", "take a shorter run.time_step_fs, or no step of your own", false,
        true},
+      {"shock", "", 1, &Limits::shock, "the kinetic energy, over the energy of twist under the whole moment, is",
+       "the load is a blow, and where the rope ends depends on it", "ramp the moment more slowly", false, true},
   }};
   return kinds;
 }
@@ -121,7 +123,7 @@ Limits default_limits(const TubeType& type, const Validity& validity) {
   limits.wall_twist = validity.twist_collapse;
   limits.strain = validity.stretch;
   limits.pressure = collapse_pressure(type.radius);
-  limits.speed = shock * std::sqrt(type.bond.stretch * type.element_length / type.mass);
+  limits.speed = stopped * std::sqrt(type.bond.stretch * type.element_length / type.mass);
   return limits;
 }
 

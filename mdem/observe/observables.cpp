@@ -81,8 +81,10 @@ std::vector<Observable>& table() {
        [](const M& m) { return m.account.kinetic; }},
       {"work_eV", "eV", "work done by the loads since the start", Group::energy,
        [](const M& m) { return m.account.work; }},
-      {"dissipated_eV", "eV", "energy taken out by damping since the start", Group::energy,
+      {"dissipated_eV", "eV", "energy lost since the start, to damping and to friction", Group::energy,
        [](const M& m) { return m.account.dissipated; }},
+      {"damping_eV", "eV", "the part of it that numerical damping has taken, which atoms do not have", Group::energy,
+       [](const M& m) { return lost_to_damping(m.account); }},
       {"thermostat_eV", "eV", "heat that the thermostat has brought in since the start", Group::energy,
        [](const M& m) { return m.account.heat; }},
       {"balance_eV", "eV",
@@ -150,6 +152,12 @@ std::vector<Observable>& table() {
        [](const M& m) { return m.rope.amplitude; }},
       {"windings", "", "turns of the centre line about its chord", Group::shape,
        [](const M& m) { return m.rope.windings; }},
+      {"middle_amplitude_nm", "nm", "largest distance of the middle 80 % of the centre line from its own chord",
+       Group::shape, [](const M& m) { return m.rope.middle_amplitude; }},
+      {"writhe", "", "writhe of the centre line, in turns; right-handed: positive", Group::shape,
+       [](const M& m) { return m.rope.writhe; }},
+      {"turned_back", "", "part of the centre line that runs against its chord, as some of every loop does",
+       Group::shape, [](const M& m) { return m.rope.turned_back; }},
 
       {"kinked", "", "bonds beyond the kink curvature of the parameter set", Group::limits,
        [](const M& m) { return static_cast<double>(m.rope.kinked); }, whole},
@@ -162,12 +170,19 @@ std::vector<Observable>& table() {
   };
   // Kinds register before main() begins, in no certain order with those who ask for the table there.
   static std::size_t terms = 0;
-  for (; terms < term_kinds().size(); ++terms)
-    entries.push_back({term_kinds()[terms].name + "_eV", "eV", term_kinds()[terms].energy, Group::energy,
-                       [name = term_kinds()[terms].name](const M& m) {
-                         const auto at = m.account.terms.find(name);
-                         return at == m.account.terms.end() ? 0.0 : at->second;
-                       }});
+  for (; terms < term_kinds().size(); ++terms) {
+    const TermKind& kind = term_kinds()[terms];
+    const auto reading = [name = kind.name](const M& m) {
+      const auto at = m.account.terms.find(name);
+      return at == m.account.terms.end() ? TermReading() : at->second;
+    };
+    entries.push_back({kind.name + "_eV", "eV", kind.energy, Group::energy,
+                       [reading](const M& m) { return reading(m).energy; }});
+    for (const TermColumn& c : kind.account)
+      entries.push_back({c.name, c.unit, c.meaning, Group::energy,
+                         [reading, value = c.value](const M& m) { return reading(m).account.*value; },
+                         c.value == &TermAccount::events});
+  }
   return entries;
 }
 
@@ -193,6 +208,12 @@ bool ends_in(const std::string& name, const std::string& suffix) {
 }
 
 }  // namespace
+
+double lost_to_damping(const EnergyAccount& a) {
+  double left = a.dissipated;
+  for (const auto& [name, term] : a.terms) left -= term.account.lost + term.account.drag;
+  return left;
+}
 
 double energy_balance(const EnergyAccount& a) {
   return a.potential.potential() + a.kinetic - a.work + a.dissipated - a.heat - a.first_energy;

@@ -10,6 +10,7 @@
 
 #include "observe/loading.hpp"
 #include "observe/observe.hpp"
+#include "sim/forces/force_term.hpp"
 #include "sim/state/interaction.hpp"
 #include "sim/state/state.hpp"
 
@@ -26,10 +27,12 @@ struct EnergyAccount {
   double heat = 0;          // eV, brought in by the thermostat since the start
   double first_energy = 0;  // eV, total at the start
   Energies first;           // potential at the start
-  std::map<std::string, double> terms;  // eV, of the force terms by their names
+  std::map<std::string, TermReading> terms;  // of the force terms by their names
   EndReadings ends;         // means since the row before
 };
 
+// Of what was dissipated (eV), the part that numerical damping has taken: all but what force terms have lost.
+double lost_to_damping(const EnergyAccount& account);
 // The error of the integration: total energy less its first value and what has been supplied, eV.
 double energy_balance(const EnergyAccount& account);
 // That error over the energy that has moved: kinetic energy, work, heat, what was dissipated and the change of the

@@ -14,7 +14,6 @@ constexpr double on_axis = 0.25;  // of the spacing: the azimuth of a tube neare
 
 double angle_between(const Vector3& a, const Vector3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
-
 double twist_of_bond(const State& state, int i) {
   return bond_twist_angle(frame_of(state.orientation[i]), frame_of(state.orientation[i + 1]));
 }
@@ -124,8 +123,9 @@ RopeObservation observe(const Topology& topology, const State& state, const Rope
   observe_bonds(topology, state, validity, out);
   const int n = common_length(topology);
   if (topology.tubes() > 0 && (n == 0 || !run_the_same_way(topology, state))) {
-    for (double* none : {&out.beta, &out.geometric_twist, &out.radius_mid, &out.radius_end, &out.length,
-                         &out.amplitude, &out.windings, &out.middle.void_area})
+    for (double* none :
+         {&out.beta, &out.geometric_twist, &out.radius_mid, &out.radius_end, &out.length, &out.amplitude,
+          &out.middle_amplitude, &out.writhe, &out.turned_back, &out.windings, &out.middle.void_area})
       *none = std::numeric_limits<double>::quiet_NaN();
     return out;
   }
@@ -139,6 +139,9 @@ RopeObservation observe(const Topology& topology, const State& state, const Rope
   out.radius_end = 0.5 * (out.radius_profile.front() + out.radius_profile.back());
   out.length = arc_length(line.points);
   out.amplitude = chord_amplitude(line.points);
+  out.middle_amplitude = chord_amplitude(middle_of(line.points));
+  out.writhe = writhe_of(line.points);
+  out.turned_back = turned_back(line.points);
   if (out.amplitude > scale) out.windings = chord_windings(line.points);
   out.centre_line = line.points;
   out.middle = cross_section(topology, state, shells, n / 2, neighbour_radius, spacing);

@@ -32,16 +32,19 @@ struct CrossSection {
 };
 
 struct RopeObservation {
-  double beta = 0;             // rad: mean angle of the outermost tubes to the local axis, middle third
-  double physical_twist = 0;   // rad: sum of bond twist angles along a tube, mean over tubes
-  double geometric_twist = 0;  // rad: rotation of the tubes about the centre line, end to end, mean over the
-                               // tubes that stay away from it; the writhe of a bent rope does not enter
-  double radius_mid = 0;       // nm: outer radius (largest axis distance + r) of the middle section
-  double radius_end = 0;       // nm: mean of the two end sections
-  double length = 0;           // nm: arc length of the centre line
-  double amplitude = 0;        // nm: largest distance of the centre line from its chord
-  double windings = 0;         // turns of the centre line about its chord (helix), mean rate times length;
-                               // 0 where the amplitude is below one spacing
+  double beta = 0;              // rad: mean angle of the outermost tubes to the local axis, middle third
+  double physical_twist = 0;    // rad: sum of bond twist angles along a tube, mean over tubes
+  double geometric_twist = 0;   // rad: rotation of the tubes about the centre line, end to end, mean over the
+                                // tubes that stay away from it; the writhe of a bent rope does not enter
+  double radius_mid = 0;        // nm: outer radius (largest axis distance + r) of the middle section
+  double radius_end = 0;        // nm: mean of the two end sections
+  double length = 0;            // nm: arc length of the centre line
+  double amplitude = 0;         // nm: largest distance of the centre line from its chord
+  double middle_amplitude = 0;  // nm: the same of its middle 80 %, which open ends do not move
+  double writhe = 0;            // turns: centre_line.hpp
+  double turned_back = 0;       // the part of its length that runs against the chord
+  double windings = 0;          // turns of the centre line about its chord (helix), mean rate times length;
+                                // 0 where the amplitude is below one spacing
   std::vector<double> radius_profile;  // nm: outer radius, per element index
   std::vector<Vector3> centre_line;    // nm
   CrossSection middle;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "plan/features.hpp"
+#include "scene/loads/twist.hpp"
 #include "scene/watch.hpp"
 
 namespace ropewalk {
@@ -21,21 +22,48 @@ double expected(const SceneFeatures& f, const TubeType& type, double Limits::*li
   return 0;
 }
 
+// The shock goes as the square of the rate.
+std::string gentle_ramp(const Scene& scene, double part) {
+  const MomentRamp& ramp = *scene.moment_ramp();
+  if (!(ramp.rate > 0)) return "ramp the moment";
+  return fmt::format("a twist.rate_nN_nm_per_ps of {:.2g} would be gentle",
+                     ramp.rate * std::sqrt(part) / units::nN_nm);
+}
+
 }  // namespace
+
+double expected_shock(const Scene& scene, const Prepared& p) {
+  const double twist = twist_energy_of(scene, p.topology);
+  if (!(twist > 0) || scene.drives_of<TwistDrive>().empty() || !scene.source->is_parallel()) return 0;
+  const MomentRamp& ramp = *scene.moment_ramp();
+  if (!(ramp.rate > 0)) return 1;
+  const double rate = ramp.rate * ramp.of_each(p.topology.tubes()) / ramp.moment;
+  double kinetic = 0;
+  for (int t = 0; t < p.topology.tubes(); ++t) {
+    const TubeType& type = p.topology.type_of(t);
+    const double rho2 =
+        Vector3(p.state.position[static_cast<std::size_t>(p.topology.tube_begin[t])]).head<2>().squaredNorm();
+    const double length = p.topology.length_of(t) * type.element_length, winds = length * rate / type.bond.bend;
+    kinetic += 4 * type.mass / type.element_length * rho2 * length * winds * winds / 24;
+  }
+  return kinetic / twist;
+}
 
 std::vector<std::string> limits_ahead(const Scene& scene, const Prepared& p) {
   std::vector<std::string> out;
   const SceneFeatures f = features_of(scene, p);
   const Limits limits = watched_of(scene, p.topology, p.interaction.law.get()).limits.front();
   for (const LimitKind& kind : limit_kinds()) {
-    const double limit = limits.*kind.limit, value = expected(f, p.topology.types[0], kind.limit);
+    const bool shock = kind.limit == &Limits::shock;
+    const double limit = limits.*kind.limit,
+                 value = shock ? expected_shock(scene, p) : expected(f, p.topology.types[0], kind.limit);
     if (limit <= 0 || value <= limit) continue;
     const std::string unit = *kind.unit ? " " + std::string(kind.unit) : "";
     const std::string when =
-        f.ramp > 0 ? fmt::format(", from about {:.3g} ps on", f.ramp * limit / value) : std::string();
+        f.ramp > 0 && !shock ? fmt::format(", from about {:.3g} ps on", f.ramp * limit / value) : std::string();
     out.push_back(fmt::format("The load may bring {} to {:.3g}{}{}, beyond its limit of {:.3g}: {}; {}.", kind.key,
                               value / kind.unit_size, unit, when, limit / kind.unit_size, kind.consequence,
-                              kind.remedy));
+                              shock ? gentle_ramp(scene, limit / value) : kind.remedy));
   }
   return out;
 }

@@ -12,6 +12,7 @@
 #include "plan/outcome.hpp"
 #include "plan/pilot_scene.hpp"
 #include "plan/scene_edit.hpp"
+#include "plan/sliding_rope.hpp"
 #include "scene/kinds/rope.hpp"
 #include "scene/scene_toml.hpp"
 
@@ -253,10 +254,9 @@ class Planner {
 
   // Pilots that are shorter stay straight where the whole rope buckles.
   void add_buckling() {
-    const BondStiffness& k = scene_.parameters().bond;
-    const double each = scene_.moment_ramp()->of_each(features_.tubes);
-    const double theory = 2 * units::pi * k.bend / features_.length;
-    if (each > theory)
+    const std::optional<HelixTheory> helix = helix_theory(scene_, prepare(scene_));
+    const double theory = helix ? helix->static_moment / helix->tubes_in_unit : 0;
+    if (helix && scene_.moment_ramp()->of_each(features_.tubes) > theory)
       plan_.remarks.push_back(
           fmt::format("The whole rope may buckle: tubes that slide do so from {:.3g} nN nm per tube on, by theory. "
                       "The promise is for the "

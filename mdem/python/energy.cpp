@@ -1,4 +1,9 @@
 // Energies, forces and torques of one state.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "model/error.hpp"
 #include "python/arrays.hpp"
 #include "python/scene.hpp"
 #include "scene/kinds/state.hpp"
@@ -6,6 +11,8 @@
 
 namespace ropewalk::python {
 namespace {
+
+constexpr double norm_slack = 1e-3;  // of a quaternion, as state files have it
 
 // Elements at rest that a caller gives.
 class GivenState : public Source {
@@ -20,6 +27,15 @@ class GivenState : public Source {
     if (tube_begin.empty() || tube_begin.back() != static_cast<int>(state_.size()) ||
         state_.orientation.size() != state_.size())
       throw std::invalid_argument("positions, orientations and tubes do not have the same number of elements");
+    for (std::size_t i = 0; i < state_.size(); ++i) {
+      const auto wrong = [&](const std::string& what, const char* remedy) {
+        throw InputError({"", 0, "state"}, fmt::format("element {} {}", i, what), remedy);
+      };
+      if (!Vector3(state_.position[i]).allFinite()) wrong("has no finite position", "give numbers in nm");
+      const Quaternion q = state_.orientation[i];
+      if (!(std::fabs(q.norm() - 1) <= norm_slack))
+        wrong(fmt::format("has a quaternion of length {:.6g}", q.norm()), "it must be 1 within 0.001");
+    }
   }
 
   void place(const Scene&, double, Random&, Topology& topology, State& state) const override {
@@ -34,7 +50,19 @@ class GivenState : public Source {
   State state_;
 };
 
+// Two elements in one place have no forces.
+void refuse_no_numbers(const Forces& f) {
+  for (std::size_t i = 0; i < f.force.size(); ++i)
+    if (!Vector3(f.force[i]).allFinite() || !Vector3(f.torque[i]).allFinite())
+      throw InputError({"", 0, "state"}, fmt::format("the force on element {} is no finite number", i),
+                       "two elements lie in one place, or much too close");
+  if (!std::isfinite(f.energy.potential()))
+    throw InputError({"", 0, "state"}, "its energy is no finite number",
+                     "two elements lie in one place, or much too close");
+}
+
 py::dict as_dict(const State& state, const Forces& f) {
+  refuse_no_numbers(f);
   const NetForce net = net_force(state, f);
   py::dict out;
   out["stretch"] = f.energy.stretch;

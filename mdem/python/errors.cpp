@@ -1,4 +1,6 @@
 // InputError and NumericalError become the exceptions of ropewalk/errors.py, with the same line of text.
+#include <new>
+
 #include "model/error.hpp"
 #include "python/module.hpp"
 
@@ -18,6 +20,9 @@ void translate(std::exception_ptr thrown) {
     raise(input_error, py::make_tuple(e.what(), e.place().file, e.place().line, e.place().key));
   } catch (const NumericalError& e) {
     raise(numerical_error, py::make_tuple(e.what(), e.step(), e.element()));
+  } catch (const std::bad_alloc&) {
+    PyErr_SetString(PyExc_MemoryError,
+                    "the memory does not suffice; take fewer or shorter tubes, or fewer threads");
   }
 }
 

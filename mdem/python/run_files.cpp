@@ -1,5 +1,6 @@
 // log.csv as columns; manifest and limits as checked JSON; parameter sets.
 #include "io/data_files.hpp"
+#include "io/files.hpp"
 #include "io/grade.hpp"
 #include "io/limits_file.hpp"
 #include "io/log.hpp"
@@ -13,6 +14,7 @@ namespace ropewalk::python {
 void bind_run_files(py::module_& m) {
   // (rows, columns), with the columns of observables().
   m.def("read_log", [](const std::string& path) {
+    refuse_strange(path);
     const std::vector<LogRow> rows = read_log(path);
     const auto columns = static_cast<py::ssize_t>(observables().size());
     py::array_t<double> out({static_cast<py::ssize_t>(rows.size()), columns});
@@ -24,14 +26,20 @@ void bind_run_files(py::module_& m) {
   });
   // The frames of a run: GSD or the text dump, whichever is there.
   m.def("frames_file", [](const std::string& directory) { return RunDirectory{directory}.frames(); });
-  m.def("manifest_json", [](const std::string& path) { return manifest_json(read_manifest(path)); });
+  m.def("manifest_json", [](const std::string& path) {
+    refuse_strange(path);
+    return manifest_json(read_manifest(path));
+  });
   // A file, or the name of a shipped set: its path, name and grade.
   m.def("parameter_set", [](const std::string& name) {
     const std::string path = find_parameters(name, "", {"", 0, "parameters"});
     const ParameterSet set = read_parameters(path);
     return py::make_tuple(path, set.name, grade_of(set).words());
   });
-  m.def("limits_json", [](const std::string& path) { return limits_json(read_limits(path)); });
+  m.def("limits_json", [](const std::string& path) {
+    refuse_strange(path);
+    return limits_json(read_limits(path));
+  });
 }
 
 }  // namespace ropewalk::python

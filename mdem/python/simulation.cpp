@@ -148,9 +148,17 @@ const std::vector<double>& SteppedScene::measure() {
   return *measured_;
 }
 
+// The scene with its sets, by which a checkpoint knows where it belongs.
+std::string SteppedScene::scene_hash() const {
+  std::string all = model_->scene.text;
+  for (const ParameterSet& set : model_->scene.sets) all += set.hash;
+  return hash_hex(all);
+}
+
 std::string SteppedScene::checkpoint() const {
   const std::string text = driven_as();
-  const std::string bytes = simulation().serialise() + text + fmt::format("{:0{}x}", text.size(), digits);
+  const std::string bytes =
+      scene_hash() + simulation().serialise() + text + fmt::format("{:0{}x}", text.size(), digits);
   return bytes + hash_hex(bytes);
 }
 
@@ -192,16 +200,19 @@ void SteppedScene::go_to(const std::string& bytes, const std::shared_ptr<const S
 void SteppedScene::restore(const std::string& bytes) {
   simulation();
   const std::string_view all = bytes;
-  const std::size_t size = all.size() < 2 * digits ? 0 : all.size() - 2 * digits;
+  const std::size_t size = all.size() < 3 * digits ? 0 : all.size() - 2 * digits;
   std::size_t text = 0;
   if (size > 0) std::from_chars(all.data() + size, all.data() + size + digits, text, 16);
-  if (size == 0 || hash_hex(all.substr(0, size + digits)) != all.substr(size + digits) || text > size)
+  if (size == 0 || hash_hex(all.substr(0, size + digits)) != all.substr(size + digits) || text > size - digits)
     throw InputError({"", 0, "checkpoint"}, "is damaged, or none", "give what Simulation.checkpoint() returned");
+  if (all.substr(0, digits) != scene_hash())
+    throw InputError({"", 0, "checkpoint"}, "is of another scene, or of other parameter sets",
+                     "restore it into a simulation of the scene that it came from");
   const std::string now = simulation_.serialise(), driven_as_then = bytes.substr(size - text, text);
   const std::shared_ptr<const Scene> driven_now = driven_;
   try {
     const bool same = driven_as_then == driven_as();
-    go_to(bytes.substr(0, size - text),
+    go_to(bytes.substr(digits, size - text - digits),
           same        ? driven_
           : text == 0 ? nullptr
                       : std::make_shared<const Scene>(scene_of_text(driven_as_then, "scene")));

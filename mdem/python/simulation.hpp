@@ -38,6 +38,7 @@ class SteppedScene {
   const std::vector<double>& measure();
 
   // With a sum over the bytes behind.
+  std::string scene_hash() const;
   std::string checkpoint() const;
   void restore(const std::string& bytes);
   void restore_run(const std::string& dir);

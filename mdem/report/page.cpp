@@ -180,7 +180,7 @@ std::string warnings_part(const std::vector<std::string>& warnings) {
 
 namespace {
 
-std::string head(const std::string& name, const char* allowed, const std::string& more_css) {
+std::string head(const std::string& name, const std::string& allowed, const std::string& more_css) {
   return std::string(
              "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n"
              "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; ") +
@@ -195,8 +195,8 @@ std::string head(const std::string& name, const char* allowed, const std::string
 
 std::string page_head(const std::string& name) { return head(name, "style-src 'unsafe-inline'", ""); }
 
-std::string scripted_page_head(const std::string& name, const std::string& css) {
-  return head(name, "style-src 'unsafe-inline'; script-src 'unsafe-inline'", css);
+std::string scripted_page_head(const std::string& name, const std::string& css, const std::string& nonce) {
+  return head(name, "style-src 'unsafe-inline'; script-src 'nonce-" + nonce + "'", css);
 }
 
 }  // namespace ropewalk

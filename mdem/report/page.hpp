@@ -51,6 +51,6 @@ std::string warnings_part(const std::vector<std::string>& warnings);
 // Everything before <body>.
 std::string page_head(const std::string& name);
 // The head of a page with scripts in itself, and with more rules for its style.
-std::string scripted_page_head(const std::string& name, const std::string& css);
+std::string scripted_page_head(const std::string& name, const std::string& css, const std::string& nonce);
 
 }  // namespace ropewalk

@@ -120,11 +120,18 @@ Panel tube_twist() {
           {{"twist", logged("physical_twist_deg"), 1}}};
 }
 
-Panel work_and_heat() {
-  return {"Work and dissipation",
-          "Work done by the loads, and energy taken out by the damping, since the start.",
-          {"energy", "eV", false},
-          {{"work", logged("work_eV"), 0}, {"dissipated", logged("dissipated_eV"), 1}}};
+Panel work_and_heat(const std::vector<LogRow>& log) {
+  Panel panel{"Work and dissipation",
+              "Work done by the loads, and energy that is lost, since the start.",
+              {"energy", "eV", false},
+              {{"work", logged("work_eV"), 0}, {"lost", logged("dissipated_eV"), 1}}};
+  if (log.empty() || clock_of(log).counts_steps()) return panel;
+  int colour = 2;
+  for (const auto& [to, column] : {std::pair{"to damping", "damping_eV"}, {"to slip", "friction_slip_eV"}, {"to drag", "friction_drag_eV"}})
+    if (log.back()[column] != 0 && log.back()[column] != log.back()["dissipated_eV"])
+      panel.traces.push_back({to, logged(column), colour++});
+  panel.caption += " " + damping_words(log.back());
+  return panel;
 }
 
 std::string balance_words(const ReportInput& in) {
@@ -416,7 +423,7 @@ std::string refinements_part(const std::vector<RefinementRecord>& refinements) {
       "<ul>\n";
   for (const RefinementRecord& r : refinements)
     html += fmt::format(
-        "<li>At {}: <b>{}</b>, {} elements of {} nm, goes on as <b>{}</b>, {} elements of {} nm. Energy "
+        "<li>At {}: <b>DIR{}</b>, {} elements of {} nm, goes on as <b>DIR{}</b>, {} elements of {} nm. Energy "
         "{} → {} eV ({}).</li>\n",
         picoseconds(r.time_ps), escape_markup(r.from), r.elements_before, number_text(r.length_before),
         escape_markup(r.to), r.elements_after, number_text(r.length_after), number_text(r.before.total(), 6),
@@ -511,7 +518,7 @@ std::string log_part(const ReportInput& in, const std::vector<ReportSection>& se
     if (in.tubes == 1) html += panel(amplitude());
   }
   html += heading("Energy balance");
-  const std::string work = panel(work_and_heat()), error = panel(balance(in));
+  const std::string work = panel(work_and_heat(in.log)), error = panel(balance(in));
   return html + pair_of(work, error);
 }
 

@@ -28,7 +28,7 @@ void refuse_refined(const RunDirectory& dir) {
   const RunDirectory next = finer_directory(dir);
   if (!has_checkpoint(next)) return;
   const std::vector<RefinementRecord> splits = read_checkpoint(next).limits.refinements;
-  if (splits.empty() || splits.back().from != name_of(dir)) return;
+  if (splits.empty() || splits.back().from != stage_of(dir)) return;
   throw InputError({dir.path, 0, ""}, fmt::format("had its elements split at {:.4g} ps", splits.back().time_ps),
                    "go on with: ropewalk resume " + next.path);
 }
@@ -46,6 +46,17 @@ void use_instructions_of(const RunOrigin& origin, const std::string& asked_for, 
                               instructions_in_use()));
 }
 
+// Leaves no part of a run that has no checkpoint, as far as the disk lets it.
+void give_up(const RunDirectory& dir, std::unique_ptr<Run> run, bool keep_directory) {
+  try {
+    empty_run_directory(dir);
+  } catch (const InputError&) {
+  }
+  run.reset();  // and with it the lock
+  std::error_code ignored;
+  if (!keep_directory) std::filesystem::remove(dir.path, ignored);
+}
+
 }  // namespace
 
 std::unique_ptr<Run> begin_run(const Scene& scene, const RunDirectory& dir, const RunSettings& asked,
@@ -55,22 +66,28 @@ std::unique_ptr<Run> begin_run(const Scene& scene, const RunDirectory& dir, cons
   run->end_at(asked.steps, asked.until_ps);
   listener.before_files();
   check_finer_directory(dir, asked, false);
+  const bool was_there = std::filesystem::exists(dir.path);
   run->hold(create_run_directory(dir, asked.force));
-  write_file_atomically(dir.scene(), scene.text);
-  for (std::size_t k = 0; k < scene.sets.size(); ++k)
-    write_file_atomically(dir.parameters(k), read_file(scene.sets[k].path));
-  if (scene.from_file()) write_file_atomically(dir.state(), read_file(scene.source->file()));
-  run->tell_notes();
-  run->begin_files();
+  try {
+    write_file_atomically(dir.scene(), scene.text);
+    copy_parameters(scene, dir);
+    if (scene.from_file()) write_file_atomically(dir.state(), read_file(scene.source->file()));
+    run->tell_notes();
+    run->begin_files();
+  } catch (const InputError& e) {
+    give_up(dir, std::move(run), was_there);
+    throw std::runtime_error(fmt::format("{}; then give the same command again: nothing was kept", e.what()));
+  }
   return run;
 }
 
 std::unique_ptr<Run> resume_run(const RunDirectory& dir, const ResumeSettings& asked, RunListener& listener) {
+  refuse_strange_files(dir);
   read_checkpoint(dir);  // is there one at all?
   refuse_refined(dir);
   check_finer_directory(dir, asked, true);
   DirectoryLock lock(dir.path);
-  remove_parts(dir.path);
+  remove_run_parts(dir);
   check_log_header(dir.log());
   ResumePoint point = find_resume_point(dir);
   use_instructions_of(point.checkpoint.origin, asked.instructions, listener);

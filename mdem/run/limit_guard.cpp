@@ -38,8 +38,10 @@ double LimitGuard::drift() const {
 
 StopReason LimitGuard::check(bool with_pressure) {
   const Topology& topology = moving_.prepared.topology;
-  const std::vector<std::string> passed =
-      watch_.check(topology, moving_.state(), moving_.simulation.list(), drift(), with_pressure);
+  const std::vector<std::string> passed = watch_.check(
+      topology, moving_.state(), moving_.simulation.list(),
+      {drift(), moving_.relaxes() ? std::numeric_limits<double>::quiet_NaN() : moving_.account().kinetic},
+      with_pressure);
   for (const std::string& line : passed) listener_.tell(line);
   if (!passed.empty()) write();
   if (on_limit_ == OnLimit::stop && !passed.empty()) return StopReason::limit;

@@ -40,13 +40,17 @@ void LimitWatch::inherit_from(const std::vector<LimitRecord>& earlier, std::int6
 }
 
 std::vector<std::string> LimitWatch::check(const Topology& topology, const State& state, const NeighbourList& list,
-                                           double energy_drift, bool with_pressure) {
+                                           const RunEnergies& energies, bool with_pressure) {
   std::vector<std::string> lines;
   Peaks now = peaks(topology, state, list, watched_);
   for (std::size_t k = 0; k < limit_count; ++k) {
     const auto limit = limit_kinds()[k].limit;
     if (limit == &Limits::pressure && with_pressure) now[k] = pressure_peak(topology, state, watched_);
-    if (limit == &Limits::energy_drift) now[k] = {energy_drift, watched_.limits.front().energy_drift};
+    if (limit == &Limits::energy_drift) now[k] = {energies.drift, watched_.limits.front().energy_drift};
+    if (limit == &Limits::shock)
+      now[k] = {watched_.twist_energy > 0 ? energies.kinetic / watched_.twist_energy
+                                          : std::numeric_limits<double>::quiet_NaN(),
+                watched_.limits.front().shock};
   }
   records_.resize(limit_count);
   finer_would_help_ = false;

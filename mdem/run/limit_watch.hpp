@@ -2,6 +2,7 @@
 // in one line when a limit is passed for the first time, and keeps the records for limits.json.
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,12 @@ enum class OnLimit { warn, stop, refine };
 // From the word of the command line. Throws InputError.
 OnLimit on_limit_of(const std::string& word);
 
+// Energies that limits of the whole run are judged by. NaN: not known, or not to be judged.
+struct RunEnergies {
+  double drift = std::numeric_limits<double>::quiet_NaN();    // of the account: energy_drift()
+  double kinetic = std::numeric_limits<double>::quiet_NaN();  // eV
+};
+
 class LimitWatch {
  public:
   explicit LimitWatch(Watched watched) : watched_(std::move(watched)) {}
@@ -23,10 +30,9 @@ class LimitWatch {
   // split, without those passed after `step`.
   void inherit_from(const std::vector<LimitRecord>& earlier, std::int64_t step);
 
-  // One line for each limit that is passed for the first time. The pressure costs several steps. `energy_drift` is
-  // NaN where the energies are not known.
+  // One line for each limit that is passed for the first time. The pressure costs several steps.
   std::vector<std::string> check(const Topology& topology, const State& state, const NeighbourList& list,
-                                 double energy_drift, bool with_pressure);
+                                 const RunEnergies& energies, bool with_pressure);
 
   // Whether at the last check a limit was passed that shorter elements would cure.
   bool finer_would_help() const { return finer_would_help_; }

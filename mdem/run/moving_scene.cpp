@@ -13,7 +13,7 @@ EnergyAccount account_of(const Scene& scene, const Simulation& simulation, const
   account.time_step = simulation.time_step() / simulation.divided();
   if (const MomentRamp* ramp = scene.moment_ramp()) account.moment = ramp->moment_at(s.time);
   account.potential = simulation.forces().energy;
-  account.terms = term_energies(simulation.interaction(), simulation.forces().term_energy);
+  account.terms = term_readings(simulation.interaction(), simulation.forces().term_energy, simulation.term_accounts());
   account.kinetic = kinetic_energy(simulation.topology(), s);
   account.work = simulation.work();
   account.dissipated = simulation.dissipated();
@@ -24,12 +24,15 @@ EnergyAccount account_of(const Scene& scene, const Simulation& simulation, const
 }
 
 void refuse_stops_without_value(const Scene& scene, const LogRow& first) {
-  for (const StopRule& rule : scene.stops)
-    if (!rule.column.empty() && std::isnan(first[rule.column]))
-      throw InputError({scene.path, 0, "stop.column"},
-                       "\"" + rule.column + "\" has no value in this scene, so that the rule would never stop it",
+  for (const StopRule& rule : scene.stops) {
+    const bool shape = rule.when == StopRule::When::shape;
+    const std::string column = shape ? "radius_mid_nm" : rule.column;
+    if (!column.empty() && std::isnan(first[column]))
+      throw InputError({scene.path, 0, shape ? "stop.shape" : "stop.column"},
+                       "\"" + column + "\" has no value in this scene, so that the rule would never stop it",
                        "take a column that has one; tubes that are not side by side have no centre line, a rope "
                        "without inner tubes no core");
+  }
 }
 
 MovingScene::MovingScene(Scene of)

@@ -91,6 +91,7 @@ OriginChanges changes_of(const RunOrigin& before, const RunOrigin& now, const Ru
   for (std::size_t k = 0; k < std::max(before.sets.size(), now.sets.size()); ++k)
     if (k >= before.sets.size() || k >= now.sets.size() || before.sets[k] != now.sets[k])
       out.others.push_back(std::filesystem::path(dir.parameters(k)).filename().string() + " is another one");
+  if (before.files != now.files) out.others.push_back("friction-*.toml: another file of friction");
   if (before.state != now.state) out.others.push_back("state.csv is another one");
   if (before.version != now.version)
     out.others.push_back(fmt::format("ropewalk {} -> {}", before.version, now.version));

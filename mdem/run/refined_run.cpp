@@ -12,8 +12,8 @@ namespace {
 
 RefinementRecord record_of(const RunParts& coarse, const RunParts& fine) {
   RefinementRecord r;
-  r.from = name_of(coarse.files.directory());
-  r.to = name_of(fine.files.directory());
+  r.from = stage_of(coarse.files.directory());
+  r.to = stage_of(fine.files.directory());
   r.time_ps = fine.state().time;
   r.step_before = coarse.state().step;
   r.step_after = fine.state().step;

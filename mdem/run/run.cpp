@@ -63,6 +63,7 @@ RunResult Run::result(RunEnd end, const std::string& reason) const {
   r.reason = reason;
   r.passed = passed_words(parts_.limits.records());
   r.beyond = beyond_limits(parts_.limits.records());
+  if (!parts_.moving.relaxes()) r.damping = damping_words(parts_.last_row);
   r.missing = parts_.files.missing();
   r.steps = parts_.state().step;
   r.time_ps = parts_.state().time;

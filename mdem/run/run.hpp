@@ -28,6 +28,7 @@ struct RunResult {
   std::string reason;   // in words
   std::string passed;   // limits, in words
   double beyond = 0;    // the largest value over its limit, of the limits that were passed
+  std::string damping;  // its part of the lost energy, in words
   std::string plan;     // planned and seen errors, in words
   std::string missing;  // files
   std::int64_t steps = 0;

@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* title = "ROPEWALK-CHECKPOINT 4 ";
+constexpr const char* title = "ROPEWALK-CHECKPOINT 5 ";
 constexpr std::size_t hash_length = 16;
 
 struct Writer : ByteWriter {
@@ -46,10 +46,12 @@ struct Reader : ByteReader {
 template <class Archive, class Origin>
 void visit_origin(Archive& archive, Origin& o) {
   archive(o.scene);
-  auto count = static_cast<std::uint64_t>(o.sets.size());
-  archive(count);
-  if constexpr (!std::is_const_v<Origin>) o.sets.resize(std::min<std::uint64_t>(count, 1000));
-  for (auto& set : o.sets) archive(set);
+  for (auto* hashes : {&o.sets, &o.files}) {
+    auto count = static_cast<std::uint64_t>(hashes->size());
+    archive(count);
+    if constexpr (!std::is_const_v<Origin>) hashes->resize(std::min<std::uint64_t>(count, 1000));
+    for (auto& hash : *hashes) archive(hash);
+  }
   for (auto* text : {&o.state, &o.version, &o.git_id, &o.instructions}) archive(*text);
 }
 
@@ -146,6 +148,7 @@ RunOrigin origin_of(const RunDirectory& dir, const Scene& scene) {
   RunOrigin o;
   o.scene = scene.text;
   for (const ParameterSet& set : scene.sets) o.sets.push_back(set.hash);
+  for (const std::string& file : scene.files_of_drives()) o.files.push_back(hash_hex(read_file(file)));
   if (scene.from_file()) o.state = hash_hex(read_file(dir.state()));
   o.version = version;
   o.git_id = git_id;

@@ -18,6 +18,7 @@ namespace ropewalk {
 struct RunOrigin {
   std::string scene;              // the text
   std::vector<std::string> sets;  // hashes of the parameter sets
+  std::vector<std::string> files;  // hashes of the files that drives were read from
   std::string state;              // hash of the start, of a scene that reads its state from a file
   std::string version, git_id;    // of the program
   std::string instructions;       // see instructions_in_use()

@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
 #include "io/files.hpp"
+#include "io/removal.hpp"
 #include "model/error.hpp"
 #include "scene/kinds/state.hpp"
 #include "scene/scene_toml.hpp"
@@ -16,14 +18,45 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool belongs_to_a_run(const std::string& file_name) {
+constexpr const char* of_a_run = "of a run";
+
+// A * of the pattern stands for a number.
+bool fits(const std::string& name, const std::string& pattern) {
+  const std::size_t star = pattern.find('*');
+  if (star == std::string::npos) return name == pattern;
+  const std::string end = pattern.substr(star + 1);
+  if (name.size() <= star + end.size() || name.compare(0, star, pattern, 0, star) != 0 ||
+      name.compare(name.size() - end.size(), end.size(), end) != 0)
+    return false;
+  const std::string number = name.substr(star, name.size() - star - end.size());
+  return number.find_first_not_of("0123456789") == std::string::npos;
+}
+
+bool is_run_file(const std::string& file_name) {
   const std::string whole = without_part(file_name), name = whole.empty() ? file_name : whole;
-  for (const OutputFile& file : run_files()) {
-    const std::string pattern = file.name;
-    const std::size_t star = pattern.find('*');
-    if (name == pattern || (star != std::string::npos && name.compare(0, star, pattern, 0, star) == 0)) return true;
-  }
-  return false;
+  return is_lock_file(name) ||
+         std::any_of(run_files().begin(), run_files().end(), [&](const auto& f) { return fits(name, f.name); });
+}
+
+bool ends_in(const std::string& text, const std::string& end) {
+  return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+// Of the directory `errors`: errors.json, and for each run behind it NAME-plus.toml and the directory NAME-plus.
+bool is_errors_file(const std::string& name) {
+  for (const char* side : {"-plus", "-minus"})
+    if (ends_in(name, side) || ends_in(name, std::string(side) + ".toml")) return true;
+  const std::string whole = without_part(name);
+  return name == "errors.json" || (!whole.empty() && (whole == "errors.json" || is_errors_file(whole)));
+}
+
+bool belongs_to_a_run(const std::string& inside) {
+  const fs::path path = inside;
+  std::vector<std::string> parts;
+  for (const fs::path& part : path) parts.push_back(part.string());
+  if (parts.size() == 1) return is_run_file(parts[0]);
+  if (parts[0] != "errors" || parts.size() > 3) return false;
+  return is_errors_file(parts[1]) && (parts.size() == 2 || is_run_file(parts[2]));
 }
 
 }  // namespace
@@ -42,6 +75,7 @@ const std::vector<OutputFile>& run_files() {
       {"scene.toml", "run", "the scene"},
       {"parameters.toml", "run", "the parameter set of the first type of tube"},
       {"parameters-*.toml", "run", "the parameter sets of further types, from 1"},
+      {"friction-*.toml", "run", "friction of pairs of tubes, of a scene that takes it from files, from 0"},
       {"state.csv", "run", "the start, of a scene that reads its state from a file"},
       {"log.csv", "run", "observables against time"},
       {"frames.gsd", "run", "elements against time, for OVITO and MDAnalysis"},
@@ -56,6 +90,7 @@ const std::vector<OutputFile>& run_files() {
       {"errors.csv", "errors", "standard errors of the observables by the fits of the sets, as log.csv"},
       {"errors-potential.csv", "errors", "their errors by the spread between interatomic potentials, as log.csv"},
       {"errors", "errors", "directory with the runs behind errors.csv, and errors.json"},
+      {"changed.toml", "errors", "in the runs behind errors.csv: the set with its changed number"},
       {"plan-check.csv", "plan", "of a planned run: how far it is off a finer model"},
       {"final.csv", "run, import",
        "the state at the end, interrupted or not: the start of another scene by [state]"},
@@ -87,34 +122,69 @@ DirectoryLock create_run_directory(const RunDirectory& dir, bool force) {
     throw InputError(
         {dir.path, 0, "--out"}, "is not empty",
         "choose another name, give --force to replace an earlier run, or go on with `ropewalk resume`");
-  if (there)
-    for (const auto& entry : fs::directory_iterator(dir.path, error))
-      if (!belongs_to_a_run(entry.path().filename().string()))
-        throw InputError({dir.path, 0, "--force"},
-                         fmt::format("holds {}, which is not of a run", entry.path().filename().string()),
-                         "choose another directory");
+  refuse_foreign(dir.path, belongs_to_a_run, of_a_run, "--force");
   fs::create_directories(dir.path, error);
   if (error)
     throw InputError({dir.path, 0, "--out"}, fmt::format("cannot be made: {}", error.message()),
                      "choose a place that you may write to");
   DirectoryLock lock(dir.path);
-  std::vector<fs::path> old;
-  for (const auto& entry : fs::directory_iterator(dir.path, error))
-    if (entry.path().filename() != lock_name) old.push_back(entry.path());
-  for (const fs::path& path : old) {
-    fs::remove_all(path, error);
-    if (error)
-      throw InputError({path.string(), 0, "--force"}, fmt::format("cannot be removed: {}", error.message()),
-                       "remove it, or choose another directory");
-  }
+  remove_inside(dir.path, belongs_to_a_run, of_a_run, "--force", is_lock_file);
   return lock;
+}
+
+void empty_run_directory(const RunDirectory& dir) {
+  remove_inside(dir.path, belongs_to_a_run, of_a_run, "", is_lock_file);
+}
+
+void remove_run(const RunDirectory& dir, const char* option) {
+  if (!fs::exists(dir.path)) return;
+  refuse_strange_files(dir);
+  refuse_foreign(dir.path, belongs_to_a_run, of_a_run, option);
+  {
+    const DirectoryLock lock(dir.path);
+    remove_inside(dir.path, belongs_to_a_run, of_a_run, option, is_lock_file);
+  }
+  std::error_code error;
+  fs::remove(dir.path, error);
+  if (error) throw file_error(dir.path, "cannot be removed", error.value());
+}
+
+void refuse_strange_files(const RunDirectory& dir) {
+  std::error_code error;
+  for (fs::directory_iterator at(dir.path, error), end; !error && at != end; at.increment(error)) {
+    const std::string name = at->path().filename().string();
+    if (is_run_file(name)) refuse_strange(at->path().string(), name == "errors");
+  }
+  for (fs::directory_iterator at(dir.file("errors"), error), end; !error && at != end; at.increment(error)) {
+    const bool run = fs::is_directory(at->path());
+    refuse_strange(at->path().string(), run);
+    if (run) refuse_strange_files({at->path().string()});
+  }
+}
+
+void remove_run_parts(const RunDirectory& dir) {
+  std::error_code error;
+  std::vector<fs::path> parts;
+  for (fs::directory_iterator at(dir.path, error), end; !error && at != end; at.increment(error)) {
+    const std::string name = at->path().filename().string();
+    if (!without_part(name).empty() && is_run_file(name)) parts.push_back(at->path());
+  }
+  for (const fs::path& path : parts) fs::remove(path, error);
 }
 
 bool has_checkpoint(const RunDirectory& dir) {
   return fs::exists(dir.checkpoint()) || fs::exists(dir.checkpoint_before());
 }
 
+void copy_parameters(const Scene& scene, const RunDirectory& to) {
+  for (std::size_t k = 0; k < scene.sets.size(); ++k)
+    write_file_atomically(to.parameters(k), read_file(scene.sets[k].path));
+  const std::vector<std::string> files = scene.files_of_drives();
+  for (std::size_t k = 0; k < files.size(); ++k) write_file_atomically(to.friction(k), read_file(files[k]));
+}
+
 Scene read_run_scene(const RunDirectory& dir) {
+  refuse_strange_files(dir);
   if (!fs::exists(dir.scene()))
     throw InputError({dir.path, 0, ""}, "is not the directory of a run (no scene.toml in it)",
                      "name the directory that `ropewalk run --out` made");

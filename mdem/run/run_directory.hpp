@@ -28,6 +28,7 @@ struct RunDirectory {
   std::string parameters(std::size_t type) const {
     return type == 0 ? file("parameters.toml") : path + "/parameters-" + std::to_string(type) + ".toml";
   }
+  std::string friction(std::size_t k) const { return path + "/friction-" + std::to_string(k) + ".toml"; }
   std::string state() const { return file("state.csv"); }
   std::string report() const { return file("report.html"); }
   std::string view() const { return file("view.html"); }
@@ -50,8 +51,22 @@ std::string run_files_markdown();  // the table in Markdown
 // process works there, and if it holds other files, even with `force`.
 DirectoryLock create_run_directory(const RunDirectory& dir, bool force);
 
+// Removes the directory of a run. Throws InputError, and removes nothing, where another process works there and
+// where it holds anything else. No directory: nothing happens.
+void remove_run(const RunDirectory& dir, const char* option);
+// Removes all files of a run but the lock, which the caller holds.
+void empty_run_directory(const RunDirectory& dir);
+// Throws InputError where a file of a run is a link, a pipe or another thing that is no file. Called before any is
+// read, since a directory may come from somebody else.
+void refuse_strange_files(const RunDirectory& dir);
+// Removes what killed processes left half written.
+void remove_run_parts(const RunDirectory& dir);
+
 // Whether there is a checkpoint, of either generation.
 bool has_checkpoint(const RunDirectory& dir);
+
+// Copies the parameter sets of a scene to the directory, and the files that its drives were read from.
+void copy_parameters(const Scene& scene, const RunDirectory& to);
 
 // The scene as the run had it: scene.toml, parameters.toml and state.csv of the directory.
 Scene read_run_scene(const RunDirectory& dir);

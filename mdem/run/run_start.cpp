@@ -76,7 +76,10 @@ void Run::restore(RunCheckpoint c) {
   p.limits.inherit(c.limits, p.state().step);
   if (!p.stops.empty())
     for (const LogRow& earlier : read_log(dir.log())) p.stops.add(earlier);
-  if (p.limits.would_refine()) p.at_once = p.limits.check(true);
+  // A run that a rule has ended stands at its last row, and is not taken further.
+  if (p.stops.last_step() == p.state().step && p.state().step > 0)
+    if (p.reason = p.stops.decided(p.limits.records()); !p.reason.empty()) p.at_once = StopReason::complete;
+  if (p.at_once == StopReason::none && p.limits.would_refine()) p.at_once = p.limits.check(true);
   p.checkpoints.stands_at_checkpoint();
   p.first_step = p.state().step;
   if (c.mark)

@@ -3,10 +3,8 @@
 #include <fmt/format.h>
 #include <omp.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <limits>
 #include <vector>
 
@@ -15,6 +13,7 @@
 #include "io/frames/dump.hpp"
 #include "io/plain_text.hpp"
 #include "io/processes.hpp"
+#include "io/removal.hpp"
 #include "model/error.hpp"
 #include "plan/expected_state.hpp"
 #include "plan/features.hpp"
@@ -27,8 +26,6 @@
 
 namespace ropewalk {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr double enough = 0.2;  // s, of each thing that is timed
 constexpr long min_steps = 12, max_steps = 2000;
@@ -114,7 +111,7 @@ Outputs time_outputs(const Scene& scene, const Prepared& p, const RunTime& t) {
   LimitWatch watch(watched_of(scene, p.topology, p.interaction.law.get()));
   const double began = processor_seconds();
   const LogRow row = log_row(observer, scene, p.topology, s.state(), {});
-  watch.check(p.topology, s.state(), s.list(), std::numeric_limits<double>::quiet_NaN(), false);
+  watch.check(p.topology, s.state(), s.list(), {}, false);
   log_line(row);
   o.row = processor_seconds() - began;
   const ElementColours colours = element_colours(p.topology, p.interaction, s.state());
@@ -132,25 +129,14 @@ Outputs time_outputs(const Scene& scene, const Prepared& p, const RunTime& t) {
   return o;
 }
 
-// A folder, gone afterwards.
-struct Scratch {
-  std::string path = (fs::temp_directory_path() / fmt::format("ropewalk-timing-{}", getpid())).string();
-  Scratch() { fs::create_directories(path); }
-  Scratch(const Scratch&) = delete;
-  ~Scratch() {
-    std::error_code error;
-    fs::remove_all(path, error);
-  }
-};
-
 class Nobody : public RunListener {
   void tell(const std::string&) override {}
 };
 
 // Processor time of the first steps of a run, with all its files. Throws where it fails.
 double seconds_of_a_run(const std::string& text, const std::string& path, long steps) {
-  const Scratch scratch;
-  const std::string seconds = scratch.path + "/seconds";
+  const TemporaryFolder scratch;
+  const std::string seconds = scratch.file("seconds");
   bool ended = false;
   const auto work = [&] {
     try {
@@ -159,7 +145,7 @@ double seconds_of_a_run(const std::string& text, const std::string& path, long s
       RunSettings settings;
       settings.steps = steps;
       const Scene scene = scene_of_text(text, path);
-      const RunEnd end = go_through(begin_run(scene, {scratch.path + "/run"}, settings, nobody)).end;
+      const RunEnd end = go_through(begin_run(scene, {scratch.file("run")}, settings, nobody)).end;
       if (end != RunEnd::finished && end != RunEnd::not_relaxed) return 1;
       write_file_atomically(seconds, fmt::format("{:.9g}", processor_seconds()));
       return 0;

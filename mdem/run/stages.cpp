@@ -27,13 +27,20 @@ fs::path plain(const std::string& path) {
 
 std::string name_of(const RunDirectory& dir) { return plain(dir.path).filename().string(); }
 
+std::string stage_of(const RunDirectory& dir) {
+  const std::string name = name_of(dir), mark = ".fine";
+  const std::size_t at = name.rfind(mark);
+  if (at == std::string::npos) return "";
+  const std::string number = name.substr(at + mark.size());
+  const bool ours = number.size() <= 3 && number.find_first_not_of("0123456789") == std::string::npos;
+  return ours ? name.substr(at) : "";
+}
+
 RunDirectory finer_directory(const RunDirectory& dir) {
-  const std::string path = plain(dir.path).string(), mark = ".fine";
-  const std::size_t at = path.rfind(mark);
-  const std::string number = at == std::string::npos ? "x" : path.substr(at + mark.size());
-  if (number.size() > 3 || number.find_first_not_of("0123456789") != std::string::npos) return {path + mark};
-  const int stage = number.empty() ? 1 : std::atoi(number.c_str());
-  return {fmt::format("{}{}{}", path.substr(0, at), mark, stage + 1)};
+  const std::string path = plain(dir.path).string(), mark = ".fine", stage = stage_of(dir);
+  if (stage.empty()) return {path + mark};
+  const int number = stage == mark ? 1 : std::atoi(stage.c_str() + mark.size());
+  return {fmt::format("{}{}{}", path.substr(0, path.size() - stage.size()), mark, number + 1)};
 }
 
 DirectoryLock write_finer_scene(const RunDirectory& from, const Scene& scene, const Prepared& prepared, double time,
@@ -44,8 +51,7 @@ DirectoryLock write_finer_scene(const RunDirectory& from, const Scene& scene, co
       fmt::format("Made by ropewalk at {:.6g} ps of the run {}: every element split in two.", time, name_of(from)));
   DirectoryLock lock = create_run_directory(to, force || !has_checkpoint(to));
   write_file_atomically(to.scene(), text);
-  for (std::size_t k = 0; k < scene.sets.size(); ++k)
-    write_file_atomically(to.parameters(k), read_file(scene.sets[k].path));
+  copy_parameters(scene, to);
   const Splitting how = splitting_of(scene);
   if (scene.from_file())
     write_file_atomically(

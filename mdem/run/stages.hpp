@@ -13,6 +13,9 @@ RunDirectory finer_directory(const RunDirectory& dir);
 
 // Name of a directory without its path.
 std::string name_of(const RunDirectory& dir);
+// The end of its name that says how often the elements were split: "", ".fine", ".fine2". It stays when the
+// directory moves.
+std::string stage_of(const RunDirectory& dir);
 
 // Makes the directory of the next stage with the finer scene, the parameter sets and, for [state], the halved state
 // of time zero. `force` replaces an earlier run there; one that was killed before its first checkpoint is replaced

@@ -18,7 +18,8 @@ struct StepControl {
   std::int64_t kept_until = 0;     // the step before which steps stay divided
   std::int64_t keep = least_keep;  // for how many they are divided when it happens next
 
-  // Halves the steps after a failure with steps divided into `divided` parts. The simulation stands at the mark again.
+  // Halves the steps after a failure with steps divided into `divided` parts. The simulation stands at the mark
+  // again.
   void shorten(int divided, Simulation& simulation);
   // At a mark, after a window without failure.
   void lengthen(Simulation& simulation);
@@ -34,10 +35,13 @@ EnergyMark energy_mark(const Simulation& simulation);
 // Whether the account of energy closes since the mark: the work of the loads and of the bath, less what damping
 // took, equals the change of the energy. The error may be 3 % of the energies that move. A step that is too long
 // adds more than that soon before it blows up. The error of a sound run, cold or hot, is at most 1 %. Its
-// sum is judged by the limit energy_drift (observe/limits.hpp).
+// sum is judged by the limit energy_drift (observe/limits.hpp). Where next to nothing moves, the error may be as
+// large as the rounding of the energies: 1e-9 eV for each element, and in mixed precision 1.2e-7 of the contact
+// energy.
 bool account_closes(const EnergyMark& mark, const Simulation& simulation);
-// The same verdict from energies in eV, for a run of another engine.
-bool account_closes(const EnergyMark& mark, const EnergyMark& now, double kinetic, double bonds,
+// The same verdict from energies in eV, for a run of another engine. `contact`: its energy in mixed precision, else
+// 0.
+bool account_closes(const EnergyMark& mark, const EnergyMark& now, double kinetic, double bonds, double contact,
                     std::size_t elements);
 
 }  // namespace ropewalk

@@ -35,6 +35,10 @@ std::string StopWatch::decided(const StopRule& rule, const std::vector<LimitReco
       if (r.passed && (rule.limit.empty() || r.key == rule.limit)) return fmt::format("limits.{} is passed", r.key);
     return "";
   }
+  if (rule.when == When::shape) {
+    if (shape_of(rows_.back(), rows_.front()) != rule.shape) return "";
+    return fmt::format("the shape of the rope is {}", name_of(rule.shape));
+  }
   const double value = rows_.back()[rule.column];
   if (rule.when == When::above || rule.when == When::below) {
     const bool above = rule.when == When::above;

@@ -1,6 +1,8 @@
 // Whether the question of a run is decided, by the [[stop]] rules of its scene.
 #pragma once
 
+#include <cmath>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -18,6 +20,10 @@ class StopWatch {
   StopWatch() = default;
   explicit StopWatch(std::vector<StopRule> rules) : rules_(std::move(rules)) {}
 
+  // The step of the last row; -1: there is none.
+  std::int64_t last_step() const {
+    return rows_.empty() ? -1 : static_cast<std::int64_t>(std::llround(rows_.back()["step"]));
+  }
   bool empty() const { return rules_.empty(); }
   void add(const LogRow& row);
   // Rows after this step did not happen.

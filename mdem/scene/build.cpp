@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "model/error.hpp"
+#include "observe/centre_line.hpp"
 #include "scene/maxwell.hpp"
 #include "scene/memory.hpp"
 #include "scene/scene_to_model.hpp"
@@ -27,12 +28,41 @@ void set_tube_types(const Scene& scene, Topology& topology) {
   topology.tube_type = scene.tube_types;
 }
 
+// The mean of the first elements, or of the last ones, of all tubes.
+Vector3 end_of(const Topology& topology, const State& state, bool last) {
+  Vector3 sum = Vector3::Zero();
+  for (int t = 0; t < topology.tubes(); ++t)
+    sum += state.position[static_cast<std::size_t>(last ? topology.tube_begin[t + 1] - 1 : topology.tube_begin[t])];
+  return sum / topology.tubes();
+}
+
+// A rope of a state file, wound or not: every section of it is moved and leans as one, across the chord and as near
+// to x as that allows.
+void add_wave_to_rope(const Scene& scene, const Topology& topology, State& state) {
+  const Vector3 from = end_of(topology, state, false), chord = end_of(topology, state, true) - from;
+  const double length = chord.norm();
+  if (topology.tubes() == 0 || !run_the_same_way(topology, state) || !(length > 0) ||
+      !(normal_part(Vector3::UnitX(), chord / length).norm() > 0.1))
+    throw InputError({scene.path, 0, "start.wave_nm"}, "is for tubes that stand upright side by side",
+                     "take it away, or bend the tubes of the state file");
+  const Vector3 along = chord / length, aside = normal_part(Vector3::UnitX(), along).normalized();
+  const double k = scene.start.half_waves * units::pi / length;
+  for (std::size_t i = 0; i < state.size(); ++i) {
+    const double phase = k * (state.position[i] - from).dot(along);
+    state.position.add(i, scene.start.wave * std::sin(phase) * aside);
+    const Quaternion lean(
+        Eigen::AngleAxisd(std::atan(scene.start.wave * k * std::cos(phase)), along.cross(aside).normalized()));
+    state.orientation.set(i, lean * state.orientation[i]);
+  }
+}
+
 // u = A sin(pi n z/L) along x from the first to the last element, which lean as the line does.
 void add_wave(const Scene& scene, const Topology& topology, State& state) {
   if (!(scene.start.wave > 0)) return;
-  if (!scene.source->is_parallel())
-    throw InputError({scene.path, 0, "start.wave_nm"}, "is for straight parallel tubes alone",
-                     "take it away, or bend the tubes of the state file");
+  if (!scene.source->is_parallel()) {
+    add_wave_to_rope(scene, topology, state);
+    return;
+  }
   for (int t = 0; t < topology.tubes(); ++t) {
     const int first = topology.tube_begin[t], last = topology.tube_begin[t + 1] - 1;
     const double z0 = state.position.z[first], length = state.position.z[last] - z0;

@@ -48,6 +48,9 @@ class Drive {
   // For the user, in one line.
   virtual std::string words() const = 0;
 
+  // Files that it was read from. A run keeps copies of them, under their names, and reads these again.
+  virtual std::vector<std::string> files() const { return {}; }
+
   // Throws InputError if the rest of the scene, which has been read, contradicts it.
   virtual void refuse(const TomlTable& /*top*/, const Scene&) const {}
   // Why it has no meaning in a relaxation; empty: it has.

@@ -163,16 +163,19 @@ void read_tubes(const LammpsDirectory& dir, Topology& topology) {
 
 namespace {
 
+constexpr std::array<const char*, 4> of_a_term = {"term", "lost", "drag", "events"};
+
 // Names of the numbers that fix `motion` writes in a row.
 std::vector<std::string> row_names(int terms) {
   std::vector<std::string> names = {"time", "stretch", "shear", "bend", "twist", "vdw", "kinetic", "work", "dissipated"};
-  for (int k = 1; k <= terms; ++k) names.push_back(fmt::format("term{}", k));
+  for (int k = 1; k <= terms; ++k)
+    for (const char* number : of_a_term) names.push_back(fmt::format("{}{}", number, k));
   return names;
 }
 
 std::string row_title(int terms) {
   std::string title = column_names(row_columns);
-  for (int k = 1; k <= terms; ++k) title += fmt::format(",term{}_eV", k);
+  for (int k = 1; k <= terms; ++k) title += fmt::format(",term{0}_eV,lost{0}_eV,drag{0}_eV,events{0}", k);
   return title;
 }
 
@@ -263,10 +266,14 @@ std::vector<LammpsRow> read_lammps_rows(const LammpsDirectory& dir, std::size_t 
     if (line == title) return;  // a restarted run writes it again
     LammpsRow r;
     r.terms.resize(terms);
+    r.accounts.resize(terms);
     std::size_t column = 0;
     std::vector<double*> values = {&r.step, &r.time, &r.stretch, &r.shear,   &r.bend,
                                    &r.twist, &r.vdw, &r.kinetic, &r.work, &r.dissipated};
-    for (double& energy : r.terms) values.push_back(&energy);
+    for (std::size_t k = 0; k < terms; ++k) {
+      TermAccount& a = r.accounts[k];
+      values.insert(values.end(), {&r.terms[k], &a.lost, &a.drag, &a.events});
+    }
     for (double* value : values) {
       if (!take(line, *value))
         throw InputError({dir.rows(), number, ""}, "has fewer numbers than the title names",

@@ -14,6 +14,7 @@
 
 #include "io/outputs.hpp"
 #include "scene/scene.hpp"
+#include "sim/forces/force_term.hpp"
 #include "sim/state/state.hpp"
 
 namespace ropewalk {
@@ -68,7 +69,7 @@ struct LammpsScript {
   int excluded_elements = 3;  // neighbours along any tube that contact skips, at least
   double time_step = 0;
   std::int64_t first_step = 0, steps = 0, every = 1;
-  int terms = 0;  // force terms, each with its energy in a row
+  int terms = 0;  // force terms, each with its energy and its account in a row
 };
 std::string lammps_input(const LammpsScript& script);
 
@@ -77,7 +78,8 @@ struct LammpsRow {
   double step = 0, time = 0;
   double stretch = 0, shear = 0, bend = 0, twist = 0, vdw = 0, kinetic = 0;
   double work = 0, dissipated = 0;
-  std::vector<double> terms;  // eV, of each force term
+  std::vector<double> terms;          // eV, of each force term
+  std::vector<TermAccount> accounts;  // likewise
 };
 inline constexpr int lammps_row_numbers = 9;  // without the step and the terms
 // A last line without its end, as after a kill, is left out.

@@ -104,6 +104,13 @@ struct Scene {
   bool has_ends(Drive::Ends ends) const {
     return std::any_of(drives.begin(), drives.end(), [&](const auto& drive) { return drive->ends() == ends; });
   }
+  // Of all drives.
+  std::vector<std::string> files_of_drives() const {
+    std::vector<std::string> all;
+    for (const auto& drive : drives)
+      for (const std::string& file : drive->files()) all.push_back(file);
+    return all;
+  }
   // The value of the first drive that has one; null: none has.
   const MomentRamp* moment_ramp() const { return first(&Drive::moment_ramp); }
   const ThermostatOptions* bath() const { return first(&Drive::thermostat); }

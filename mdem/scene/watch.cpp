@@ -4,11 +4,25 @@
 
 namespace ropewalk {
 
+double twist_energy_of(const Scene& scene, const Topology& topology) {
+  const MomentRamp* ramp = scene.moment_ramp();
+  if (!ramp || ramp->geometric_only || topology.tubes() < 2 || scene.start.temperature > 0 || scene.bath())
+    return 0;
+  const double moment = ramp->of_each(topology.tubes());
+  double energy = 0;
+  for (int t = 0; t < topology.tubes(); ++t) {
+    const TubeType& type = topology.type_of(t);
+    energy += moment * moment * topology.length_of(t) * type.element_length / (2 * type.bond.twist);
+  }
+  return energy;
+}
+
 Watched watched_of(const Scene& scene, const Topology& topology, const ContactLaw* law) {
   Watched out;
   const auto types = static_cast<int>(scene.sets.size());
   for (int i = 0; law && i < types; ++i)
     for (int j = 0; j < types; ++j) out.rest.push_back(law->parallel_distance({i, j}, scene.element_length));
+  out.twist_energy = twist_energy_of(scene, topology);
   const std::vector<Validity> validity = validities(scene, topology);
   for (std::size_t type = 0; type < scene.sets.size(); ++type) {
     Limits limits = default_limits(topology.types[type], validity[type]);

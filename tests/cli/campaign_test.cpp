@@ -1,4 +1,5 @@
 // Campaigns: interrupted, resumed, gathered and compared.
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -272,6 +273,15 @@ TEST_F(Campaign, ThresholdIsThatOfTheFormula) {
   ASSERT_EQ(run("threshold s.toml --out t --known s/trials.csv").code, 0);
   EXPECT_EQ(slurp(dir / "t/thresholds.csv"), before);
   EXPECT_EQ(runs_of("t"), 0u);
+  // Rows of one scene that differ in what came of it.
+  std::string row = lines(slurp(dir / "s/trials.csv")).back();
+  std::size_t at = row.size();
+  for (int k = 0; k < 5; ++k) at = row.rfind(',', at - 1);
+  row[at + 1] = row[at + 1] == '1' ? '0' : '1';
+  spit(dir / "both.csv", slurp(dir / "s/trials.csv") + row + "\n");
+  const Outcome both = run("threshold s.toml --out v --known both.csv");
+  EXPECT_EQ(both.code, 2);
+  EXPECT_NE(both.err.find("differ in what came of it"), std::string::npos) << both.err;
   fs::remove_all(dir / "s/points");
   std::string finer = slurp(dir / "s.toml");
   finer.replace(finer.find("0.01"), 4, "0.005");
@@ -285,6 +295,42 @@ TEST_F(Campaign, ThresholdIsThatOfTheFormula) {
   EXPECT_NE(others.find("trials in s/trials.csv are of other scenes"), std::string::npos) << others;
   EXPECT_GT(runs_of("t"), 8u);
   EXPECT_EQ(run("threshold s.toml --out u --known tube.toml").code, 2);
+}
+
+// Seven tubes under couples: the search begins where theory puts the threshold, and its table has both.
+TEST_F(Campaign, ThresholdOfAHelixBeginsAtTheory) {
+  spit(dir / "tube.toml",
+       "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-paper\"\n[rope]\ntubes = 7\nlength_nm = 54.24\n"
+       "perturbation_nm = 0.0005\n[start]\nwave_nm = 0.02\n[twist]\nmoment_nN_nm = 40\nrate_nN_nm_per_ps = 3\n"
+       "hold_ps = 100\n[run]\nlog_every_ps = 1\n");
+  sweep_file(
+      "[threshold]\nkey = \"twist.moment_nN_nm\"\nfrom = 20\nto = 150\nshape = \"helix\"\naccuracy = 0.05\n");
+  const Outcome o = run("threshold s.toml");
+  ASSERT_EQ(o.code, 0) << o.err;
+  EXPECT_NE(o.out.find("none grows below 59.38"), std::string::npos) << o.out;
+  const auto cells_of = [](const std::string& line) {
+    std::vector<std::string> cells;
+    std::istringstream in(line);
+    for (std::string cell; std::getline(in, cell, ',');) cells.push_back(cell);
+    return cells;
+  };
+  const std::vector<std::string> rows = lines(slurp(dir / "s" / "thresholds.csv"));
+  ASSERT_EQ(rows.size(), 2u);
+  const std::vector<std::string> names = cells_of(rows[0]), cells = cells_of(rows[1]);
+  const auto number = [&](const char* name) {
+    return std::stod(cells[static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin())]);
+  };
+  EXPECT_NEAR(number("static_theory"), 8.986819 * 358.4 / 54.24, 1e-2);
+  EXPECT_GT(number("by_bisection"), number("static_theory"));
+  EXPECT_NEAR(number("by_bisection") / number("theory"), 1, 0.2);
+  EXPECT_NEAR(number("winding"), 0.95, 0.15);
+  EXPECT_NEAR(number("rate_over_theory"), 1, 0.5);
+  const std::vector<std::string> trials = lines(slurp(dir / "s" / "trials.csv"));
+  EXPECT_LT(trials.size(), 8u) << "a search from both ends takes nine runs";
+  int helices = 0;
+  for (const std::string& trial : trials) helices += trial.find(",helix,") != std::string::npos ? 1 : 0;
+  EXPECT_GE(helices, 1);
+  EXPECT_NE(slurp(dir / "s" / "thresholds.html").find("theory, in this time"), std::string::npos);
 }
 
 TEST_F(Campaign, ReplicatesThatAreOneRunAreSaid) {

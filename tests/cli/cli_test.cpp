@@ -206,6 +206,30 @@ TEST_F(Cli, UnequalTubesHaveNoNumbersThatMeanNothing) {
   EXPECT_FALSE(fs::exists(dir / "e"));
 }
 
+// Nothing moves before its grips do: the account is not held below the rounding of the contact energy.
+TEST_F(Cli, AQuietRopeKeepsItsSteps) {
+  spit(dir / "s.toml",
+       "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[rope]\ntubes = 7\nlength_nm = 13.6\n"
+       "[[grip]]\nend = \"upper\"\nabout_z = { rotation_deg = [[5, 0], [6, 10]] }\n[[grip]]\nend = \"lower\"\n"
+       "[run]\nduration_ps = 1\nlog_every_ps = 0.2\n");
+  const Outcome o = run("run s.toml --out d --quiet");
+  ASSERT_EQ(o.code, 0) << o.err;
+  EXPECT_THAT(o.err, ::testing::Not(HasSubstr("did not close")));
+}
+
+TEST_F(Cli, ARunThatARuleEndedIsNotTakenFurther) {
+  small_rope("s.toml", "[[stop]]\nwhen = \"above\"\ncolumn = \"time_ps\"\nvalue = 0.7\n");
+  ASSERT_EQ(run("run s.toml --out d --quiet").code, 0) << slurp(dir / "stderr.txt");
+  const std::string log = slurp(dir / "d/log.csv"), frames = slurp(dir / "d/frames.gsd"),
+                    end = slurp(dir / "d/final.csv");
+  for (int k = 0; k < 2; ++k) {
+    ASSERT_EQ(run("resume d --quiet").code, 0) << slurp(dir / "stderr.txt");
+    EXPECT_EQ(slurp(dir / "d/log.csv"), log);
+    EXPECT_TRUE(slurp(dir / "d/frames.gsd") == frames && slurp(dir / "d/final.csv") == end);
+    EXPECT_THAT(slurp(dir / "d/manifest.json"), HasSubstr("decided at"));
+  }
+}
+
 // The published radius, 3.05 nm, counts second neighbours: inner tubes stay those of the packing, and Q is no 0 that
 // looks like a perfect one.
 TEST_F(Cli, ARadiusForQThatReachesSecondNeighboursIsTold) {

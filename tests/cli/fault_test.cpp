@@ -266,6 +266,67 @@ TEST_F(Faults, SweepKilledAndGoneOnWith) {
   fmt::print("kill in sweep: {} tried\n", tried);
 }
 
+// Verbs around a run, each killed, or with the disk full, at some of its calls. The same command then does its
+// work, and what it leaves is that of a command that was left alone.
+TEST_F(Faults, OtherVerbsKilledOrOutOfDisk) {
+  spit(dir / "s.toml", calm);
+  ASSERT_EQ(run("run s.toml --out ready --quiet").code, 0) << slurp(dir / "stderr.txt");
+  struct Verb {
+    const char *command, *result;
+    long stride;
+  };
+  for (const Verb& verb :
+       {Verb{"convert d d/c.lammpstrj --force", "d/c.lammpstrj", 3},
+        Verb{"convert d d/c.pvd --force", "d/c.pvd", 7}, Verb{"view d --force", "d/view.html", 2},
+        Verb{"report d", "d/report.html", 2}, Verb{"export ready --lammps d --force", "d/rope.state", 5}}) {
+    const std::string command = verb.command, name = command.substr(0, command.find(' '));
+    const bool of_a_run = command.find(" d ") == name.size() || command == "report d";
+    const auto prepare = [&] { begin(of_a_run ? "ready" : ""); };
+    const auto result = [&] {
+      const std::string text = slurp(dir / verb.result);
+      return name == "view" ? std::to_string(text.size()) : text;  // its nonce is new each time
+    };
+    prepare();
+    calls_of(command);
+    const std::string whole = result();
+    EXPECT_FALSE(whole.empty()) << command << slurp(dir / "stderr.txt");
+    int tried = 0;
+    for (const char* how : {"kill:{}", "ENOSPC:{}:on"})
+      for (long n = 1;; n += stride(verb.stride), ++tried) {
+        const std::string fault = fmt::format(fmt::runtime(how), n), when = fault + " in " + command;
+        prepare();
+        const Outcome o = with(fault, command);
+        if (std::string(how).rfind("kill", 0) != 0) expect_clear(o, when);
+        if (o.code != 0) {
+          const Outcome again = run(command);
+          EXPECT_EQ(again.code, 0) << when << ": " << again.err;
+        }
+        EXPECT_TRUE(result() == whole) << when;
+        if (HasFailure()) return;
+        if (o.code == 0) break;
+      }
+    fmt::print("kill and full disk in {}: {} tried\n", command, tried);
+  }
+}
+
+// A full disk before the first checkpoint: one line, exit code 3, and nothing stands in the way of the same
+// command.
+TEST_F(Faults, DiskFullBeforeTheFirstCheckpoint) {
+  const long calls = calls_of(run_it);
+  for (long n = 3; n < std::min(calls, 40L); n += 2) {
+    begin("");
+    const Outcome o = with(fmt::format("ENOSPC:{}", n), run_it);
+    if (o.code == 0 || fs::exists(dir / "d/checkpoint.bin")) continue;
+    EXPECT_EQ(o.code, 3) << n << o.err;
+    EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << n << o.err;
+    EXPECT_THAT(o.err, ::testing::Not(HasSubstr("last checkpoint"))) << n;
+    EXPECT_THAT(o.err, ::testing::Not(HasSubstr("resume"))) << n;
+    EXPECT_THAT(o.err, HasSubstr("give the same command again")) << n;
+    EXPECT_FALSE(fs::exists(dir / "d")) << n;
+    ASSERT_EQ(run(run_it).code, 0) << n << slurp(dir / "stderr.txt");
+  }
+}
+
 // A run that splits its elements goes on in a second directory. After a kill, `resume` of either directory goes on.
 TEST_F(Faults, RefinedRunKilledAndGoneOnWith) {
   spit(dir / "s.toml",

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <regex>
@@ -168,14 +169,14 @@ TEST_F(Limits, RefineGoesOnBesideTheRun) {
 
   for (const char* name : {"d", "d.fine"}) {
     const Json split = limits_of(name).at("refinements").at(0);
-    EXPECT_EQ(split.at("from"), "d");
-    EXPECT_EQ(split.at("to"), "d.fine");
+    EXPECT_EQ(split.at("from"), "");
+    EXPECT_EQ(split.at("to"), ".fine");
     EXPECT_EQ(split.at("elements_after"), 119);
     EXPECT_NEAR(split.at("energy_before_eV").at("twist"), before.back()["twist_eV"], 1e-9);
     EXPECT_NEAR(split.at("energy_after_eV").at("contact"), after.front()["vdw_eV"], 1e-9);
     const std::string report = slurp(dir / name / "report.html");
     EXPECT_THAT(report, HasSubstr("Elements split on the way"));
-    EXPECT_THAT(report, HasSubstr("<b>d.fine</b>"));
+    EXPECT_THAT(report, HasSubstr("<b>DIR.fine</b>"));
   }
   EXPECT_EQ(Json::parse(slurp(dir / "d/manifest.json")).at("status"), "refined");
   EXPECT_THAT(slurp(dir / "d.fine/scene.toml"), HasSubstr("of the run d: every element split in two"));
@@ -191,6 +192,14 @@ TEST_F(Limits, RefineGoesOnBesideTheRun) {
   const Outcome back = run("resume d");
   EXPECT_EQ(back.code, 2);
   EXPECT_THAT(back.err, HasSubstr("ropewalk resume d.fine"));
+  // So it is under other names.
+  fs::rename(dir / "d", dir / "moved");
+  fs::rename(dir / "d.fine", dir / "moved.fine");
+  const Outcome moved = run("resume moved");
+  EXPECT_EQ(moved.code, 2);
+  EXPECT_THAT(moved.err, HasSubstr("ropewalk resume moved.fine"));
+  fs::rename(dir / "moved", dir / "d");
+  fs::rename(dir / "moved.fine", dir / "d.fine");
   EXPECT_EQ(run("resume d.fine --quiet --until 7.5").code, 0);
   EXPECT_NEAR(log_of("d.fine").back()["time_ps"], 7.5, 0.02);
   // Nothing is overwritten by chance, and both on demand.
@@ -256,7 +265,8 @@ TEST_F(Limits, ARelaxationIsRefinedAsWell) {
   EXPECT_THAT(o.out, HasSubstr("relaxed: largest force below"));
   EXPECT_THAT(o.err + o.out, Not(HasSubstr("speed_nm_per_ps")));  // a minimiser's speed is not one of tubes
   // Fourteen bonds between the fifteen elements carry the couple, EI/a ((1 - 3 s) sin phi + 6 s sin phi/2).
-  const ropewalk::BondStiffness bond = ropewalk::read_parameters(ROPEWALK_SOURCE_DIR "/data/parameters/cnt-10-10-tersoff.toml").bond;
+  const ropewalk::BondStiffness bond =
+      ropewalk::read_parameters(ROPEWALK_SOURCE_DIR "/data/parameters/cnt-10-10-tersoff.toml").bond;
   const double a = 0.5 * 1.3775870846515064, s = bond.shear_share(a), moment = 100 * ropewalk::units::nN_nm;
   double below = 0, above = 1;
   for (int k = 0; k < 60; ++k) {
@@ -284,7 +294,11 @@ TEST_F(Limits, EnergyDriftIsALimitOfTheWholeRun) {
   EXPECT_THAT(o.err, HasSubstr("the account of energy is off, over the energy that has moved, by"));
   EXPECT_THAT(o.err, HasSubstr("beyond limits.energy_drift = 0.01"));
   EXPECT_THAT(o.out, HasSubstr("Limits passed: energy_drift up to 0.0"));
-  const Json limit = limits_of("d").at("limits").back();
+  const auto drift_of = [&](const char* folder) {
+    const Json all = limits_of(folder).at("limits");
+    return *std::find_if(all.begin(), all.end(), [](const Json& l) { return l.at("key") == "energy_drift"; });
+  };
+  const Json limit = drift_of("d");
   EXPECT_EQ(limit.at("key"), "energy_drift");
   EXPECT_EQ(limit.at("tube"), -1);
   EXPECT_TRUE(limit.at("passed").get<bool>());
@@ -296,9 +310,32 @@ TEST_F(Limits, EnergyDriftIsALimitOfTheWholeRun) {
   EXPECT_EQ(slurp(dir / "f/limits.json"), slurp(dir / "d/limits.json"));
   hot("short.toml", "10", "");
   EXPECT_THAT(run("run short.toml --out g --quiet").err, Not(HasSubstr("limits.energy_drift")));
-  EXPECT_LT(limits_of("g").at("limits").back().at("largest").get<double>(), 0.01);
+  EXPECT_LT(drift_of("g").at("largest").get<double>(), 0.01);
   hot("unwatched.toml", "32", "[limits]\nenergy_drift = 0\n");
   EXPECT_THAT(run("run unwatched.toml --out h --quiet").err, Not(HasSubstr("limits.energy_drift")));
+}
+
+TEST_F(Limits, AShockIsForeseenAndSeen) {
+  const auto rope = [&](const char* name, const char* rate, const char* more) {
+    spit(dir / name,
+         fmt::format("format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-paper\"\n[rope]\ntubes = 7\n"
+                     "length_nm = 40.68\n[twist]\nmoment_nN_nm = 30\nrate_nN_nm_per_ps = {}\nhold_ps = 20\n{}",
+                     rate, more));
+  };
+  rope("fast.toml", "12", "");
+  const Outcome foreseen = run("check fast.toml");
+  EXPECT_THAT(foreseen.out, HasSubstr("The load may bring shock to 1.79, beyond its limit of 0.25"));
+  EXPECT_THAT(foreseen.out, HasSubstr("a twist.rate_nN_nm_per_ps of 4.5 would be gentle"));
+  const Outcome seen = run("run fast.toml --out fast --quiet");
+  EXPECT_THAT(seen.err, HasSubstr("the kinetic energy, over the energy of twist under the whole moment, is"));
+  EXPECT_THAT(seen.err, HasSubstr("beyond limits.shock = 0.25"));
+  EXPECT_EQ(run("run fast.toml --out stopped --quiet --on-limit stop").code, 5);
+  for (const auto& [name, rate, more] :
+       {std::tuple("slow.toml", "1", ""), std::tuple("unwatched.toml", "12", "[limits]\nshock = 0\n")}) {
+    rope(name, rate, more);
+    EXPECT_THAT(run(std::string("check ") + name).out, Not(HasSubstr("may bring shock")));
+    EXPECT_THAT(run(std::string("run ") + name + " --out d --force --quiet").err, Not(HasSubstr("limits.shock")));
+  }
 }
 
 }  // namespace

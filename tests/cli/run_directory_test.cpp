@@ -156,6 +156,35 @@ TEST_F(RunDirectoryOf, AForeignSceneIsRefused) {
   EXPECT_EQ(run("resume d --quiet").code, 0) << slurp(dir / "stderr.txt");
 }
 
+// A run keeps the friction that it was begun with, whatever becomes of the user's file.
+TEST_F(RunDirectoryOf, FilesOfFrictionAreKept) {
+  const auto quantity = [](const char* key, const char* unit) {
+    return fmt::format("{} = {{ value = 0.05, unit = \"{}\", standard_error = 0, origin = \"chosen\" }}\n", key, unit);
+  };
+  spit(dir / "friction-mine.toml",
+       "[meta]\nformat = \"ropewalk-friction-1\"\nname = \"friction-mine\"\nchirality_a = [10, 10]\nchirality_b = [10, "
+       "10]\npotential = \"none\"\n[friction]\n" +
+           quantity("strength", "pN/nm") + quantity("spin_strength", "pN/nm") + quantity("end_strength", "pN") +
+           quantity("elastic_slip", "nm") + quantity("drag", "eV ps/nm^3") + "[provenance]\n");
+  for (const char* from : {"friction-mine", "friction-mine.toml", "atoms"}) {
+    SCOPED_TRACE(from);
+    scene("s.toml", "duration_ps = 2\n", fmt::format("[[friction]]\nfrom = \"{}\"\n", from));
+    Outcome o = run("run s.toml --out d --force --quiet --until 1");
+    ASSERT_EQ(o.code, 0) << o.err;
+    const std::string kept = slurp(dir / "d/friction-0.toml");
+    EXPECT_EQ(kept, slurp(dir / "friction-mine.toml"));
+    fs::rename(dir / "friction-mine.toml", dir / "away.toml");
+    spit(dir / "d/friction-0.toml", kept + "# mine\n");
+    o = run("resume d --quiet");
+    EXPECT_EQ(o.code, 2);
+    EXPECT_THAT(o.err, HasSubstr("friction-*.toml"));
+    spit(dir / "d/friction-0.toml", kept);
+    o = run("resume d --quiet");
+    EXPECT_EQ(o.code, 0) << o.err;
+    fs::rename(dir / "away.toml", dir / "friction-mine.toml");
+  }
+}
+
 TEST_F(RunDirectoryOf, InstructionsAreKept) {
   scene("s.toml", "duration_ps = 1\n");
   const std::vector<std::string> sets = instruction_sets_of_help();

@@ -2,8 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <regex>
 
 #include "cli/support.hpp"
+#include "io/parameters_toml.hpp"
 #include "outputs_page.hpp"
 
 namespace {
@@ -116,13 +118,20 @@ TEST_F(Validate, ParametrizeGoesOnWithWhatIsThere) {
   fs::create_directories(dir / "p");
   for (const char* file : {".toml", "-stiffness.csv", "-contact.csv"})
     fs::copy(std::string(ROPEWALK_SOURCE_DIR "/data/parameters/cnt-5-5-tersoff") + file, dir / "p");
+  // Its friction belongs to this very set, whichever one it was shipped with.
+  const std::string own = "hash       = \"" + ropewalk::read_parameters((dir / "p/cnt-5-5-tersoff.toml").string()).hash + "\"";
+  spit(dir / "p/friction-5-5-5-5-tersoff.toml",
+       std::regex_replace(slurp(ROPEWALK_SOURCE_DIR "/data/friction/friction-5-5-5-5-tersoff.toml"),
+                          std::regex("(set_[ab]_)hash +=[^\n]*"), "$1" + own));
   const Outcome o = run("parametrize 5,5 --out p --budget 0.1");
   ASSERT_EQ(o.code, 0) << o.out << o.err;
   EXPECT_NE(o.err.find("set kept"), std::string::npos) << o.err;
+  EXPECT_NE(o.err.find("friction-5-5-5-5-tersoff: kept"), std::string::npos) << o.err;
   EXPECT_TRUE(fs::exists(dir / "p/cnt-5-5-tersoff-atoms/pair-sliding.csv"));
   EXPECT_FALSE(fs::exists(dir / "p/cnt-5-5-tersoff-atoms/crossed-tubes.csv"));
   const std::string page = slurp(dir / "p/report.html");
   EXPECT_NE(page.find("What the set is for"), std::string::npos);
+  EXPECT_NE(page.find("(5,5) beside (5,5)"), std::string::npos);
   EXPECT_NE(page.find("--budget 0.1"), std::string::npos);
   const std::string table = slurp(dir / "p/tubes.csv");
   EXPECT_NE(table.find("cnt-5-5-tersoff,5,5,tersoff,30.0000,"), std::string::npos) << table;

@@ -77,6 +77,40 @@ def chart_points(browser, repository):
     pages.expect(found["marks"] > 500 and found["named"] == found["marks"], f"chart.html: points without a name: {found}")
 
 
+# A value for every mark of every template: marks of the page in space, ends and begins of scripts and comments, an image.
+hostile = "{{facts}}{{scripts}}{{nonce}}{{name}}<!--<script></script><script>window.ran=1</script><img src=x onerror=window.ran=1>\\u003c&amp;"
+
+
+def hostile_pages(browser, program, folder):
+    """Names of scenes and sets are texts in every page that shows them."""
+    shipped_set = Path(__file__).resolve().parents[2] / "data/parameters/cnt-10-10-tersoff.toml"
+    quoted = "'" + hostile + "'"
+    lines = [f"name = {quoted}" if line.startswith("name = ") else line for line in shipped_set.read_text().splitlines()]
+    (folder / "set.toml").write_text("\n".join(lines) + "\n")
+    (folder / "scene.toml").write_text(scene.replace('"looked-at"', quoted).replace('"cnt-10-10-tersoff"', '"set.toml"')
+                                       .replace("hold_ps = 2", "hold_ps = 0.1").replace("tubes = 19", "tubes = 1"))
+    for words in (["run", "scene.toml", "--out", "hostile", "--quiet"], ["view", "hostile"],
+                  ["compare", "hostile", "hostile", "--page", "compared.html"],
+                  ["compare", "set.toml", "set.toml", "--page", "sets.html"]):
+        subprocess.run([program, *words], cwd=folder, check=True, stdout=subprocess.DEVNULL)
+    for page in ("hostile/report.html", "hostile/view.html", "compared.html", "sets.html"):
+        browser.size(*pages.desk)
+        browser.open((folder / page).as_uri())
+        pages.expect(browser.value("typeof window.ran") == "undefined", f"{page}: a name of a scene has run a script")
+        if page != "compared.html":  # which has the names of directories
+            pages.expect(hostile in browser.value("document.documentElement.textContent"), f"{page}: does not show the name")
+        pages.expect(browser.value("document.images.length") == 0, f"{page}: a name has become an image")
+        browser.said(), browser.asked()
+        if page.endswith("view.html"):
+            facts = browser.value("JSON.parse(document.getElementById('facts').textContent).name")
+            pages.expect(facts == hostile, f"{page}: its facts have the name {facts}")
+            pages.expect(browser.value("typeof THREE") == "object", f"{page}: its own scripts do not run")
+            browser.value("""(() => { const s = document.createElement('script'); s.textContent = 'window.ran = 1';
+              document.body.append(s); })()""")
+            pages.expect(browser.value("typeof window.ran") == "undefined", f"{page}: a script without the nonce runs")
+            browser.said()
+
+
 def main():
     if not shutil.which("chromium"):
         print("Chromium is not installed")
@@ -87,6 +121,7 @@ def main():
             pages.look(browser, repository, page)
         chart_points(browser, repository)
         report_of_a_run(browser, Path(sys.argv[2]).resolve(), Path(folder).resolve())
+        hostile_pages(browser, Path(sys.argv[2]).resolve(), Path(folder).resolve())
     print(f"{len(shipped) + 1} pages at three sizes")
     for error in pages.errors:
         print(error, file=sys.stderr)

@@ -6,6 +6,7 @@
 //   ROPEWALK_FAULT         HOW:N[:on]   at the Nth call, from 1; "on": from then on. HOW: kill (before the call),
 //                          torn (in the middle of a write; nothing at other calls), term (SIGTERM, and the call
 //                          goes on), ENOSPC, EIO, EDQUOT, EINTR, EROFS
+//   ROPEWALK_FAULTS_NO_LOCKS   set: no file system has locks
 //   ROPEWALK_FAULTS_COUNT  file that takes the number of calls at the end
 //
 // With HOW = memory the calls are those of operator new, and the directory does not matter. The Nth fails until the
@@ -213,6 +214,14 @@ int ftruncate(int fd, off_t size) {
 int rename(const char* from, const char* to) {
   static const auto call = real<int (*)(const char*, const char*)>("rename");
   return fails(is_below(to)) ? -1 : call(from, to);
+}
+
+int flock(int fd, int operation) {
+  static const auto call = real<int (*)(int, int)>("flock");
+  static const bool none = std::getenv("ROPEWALK_FAULTS_NO_LOCKS");
+  if (!none) return call(fd, operation);
+  errno = ENOLCK;
+  return -1;
 }
 
 int unlink(const char* path) {

@@ -62,6 +62,12 @@ INSTANTIATE_TEST_SUITE_P(
         Protocol{"Total", "[twist]\nmoment_nN_nm = 60\nrate_nN_nm_per_ps = 100\nreading = \"total\"\n"},
         Protocol{"Tangential",
                  "[twist]\nmoment_nN_nm = 10\nrate_nN_nm_per_ps = 30\napplication = \"tangential\"\n"},
+        Protocol{"Follower",
+                 "[twist]\nmoment_nN_nm = 20\nrate_nN_nm_per_ps = 30\napplication = \"follower\"\n"
+                 "[start]\ntemperature_K = 100\nmay_cool = true\n"},
+        Protocol{"Conservative",
+                 "[twist]\nmoment_nN_nm = 20\nrate_nN_nm_per_ps = 30\napplication = \"conservative\"\n"
+                 "[start]\ntemperature_K = 100\nmay_cool = true\n"},
         Protocol{"Held",
                  "[twist]\nmoment_nN_nm = 20\nrate_nN_nm_per_ps = 30\nlateral = \"held\"\naxial = \"held\"\n"
                  "[start]\ntemperature_K = 100\nmay_cool = true\n"},
@@ -181,8 +187,11 @@ TEST_F(LammpsRun, FrictionSlidesAsHere) {
   Simulation native = start(scene, prepare(scene));
   native.steps(300);
   const double energy = native.forces().term_energy.at(0);
+  const TermAccount account = native.term_accounts().at(0);
   EXPECT_GT(energy, 0.1);
-  EXPECT_GT(native.dissipated(), 0.1);
+  EXPECT_GT(account.lost, 0.01);
+  EXPECT_GT(account.drag, 1e-3);
+  EXPECT_GT(account.events, 10);
   for (const int n : {1, 2, 4}) {
     SCOPED_TRACE(n);
     fs::remove_all(dir / "parts");
@@ -192,6 +201,13 @@ TEST_F(LammpsRun, FrictionSlidesAsHere) {
     const LammpsRow row = read_lammps_rows(LammpsDirectory{(dir / "parts").string()}, 1).back();
     EXPECT_NEAR(row.terms[0], energy, 1e-8 * energy);
     EXPECT_NEAR(row.dissipated, native.dissipated(), 1e-8 * native.dissipated());
+    EXPECT_NEAR(row.accounts[0].lost, account.lost, 1e-8 * account.lost);
+    EXPECT_NEAR(row.accounts[0].drag, account.drag, 1e-8 * account.drag);
+    EXPECT_NEAR(row.accounts[0].events, account.events, 1 + 0.01 * account.events) << "rounding decides some";
+    ASSERT_EQ(run("import parts").code, 0);
+    const LogRow imported = read_log((dir / "parts/log.csv").string()).back();
+    EXPECT_EQ(imported["friction_slip_eV"], row.accounts[0].lost);
+    EXPECT_EQ(imported["friction_slips"], row.accounts[0].events);
   }
 }
 

@@ -167,7 +167,8 @@ TEST(EnergyAccount, BalancesUnderLoadAndDamping) {
   TwistLoad twist;
   twist.moment = 100;
   twist.rate = 10;
-  for (const auto application : {TwistLoad::Application::couple, TwistLoad::Application::tangential}) {
+  using A = TwistLoad::Application;
+  for (const auto application : {A::couple, A::follower, A::conservative, A::tangential}) {
     twist.application = application;
     LoadsAndConstraints loads;
     add_twist(twist, b.topology, loads);
@@ -179,6 +180,74 @@ TEST(EnergyAccount, BalancesUnderLoadAndDamping) {
     EXPECT_GT(s.dissipated(), 1);
     EXPECT_LT(std::fabs(balance), 2e-3 * s.work()) << "work " << s.work() << " dissipated " << s.dissipated();
   }
+}
+
+// An end that is tilted by theta is led once around z and turns back about its axis: it is as before. Of the three
+// couples only the conservative one has then done no work.
+TEST(Twist, CouplesOnAClosedPath) {
+  const auto work = [](TwistLoad::Application application, double theta) {
+    TwistLoad twist;
+    twist.moment = 10, twist.application = application;
+    const TwistLoad load = twist.on_grip({0}, 1);
+    const auto orientation = [&](double alpha) {
+      return Quaternion(Eigen::AngleAxisd(alpha, Vector3::UnitZ()) * Eigen::AngleAxisd(-theta, Vector3::UnitX()) *
+                        Eigen::AngleAxisd(-alpha, Vector3::UnitZ()));
+    };
+    constexpr int steps = 2000;
+    const double h = 2 * units::pi / steps;
+    double sum = 0;
+    for (int k = 0; k < steps; ++k) {
+      State state(1);
+      state.orientation.set(0, orientation((k + 0.5) * h));
+      std::vector<PointLoad> loads;
+      load.add_forces(state, 0, loads);
+      const Eigen::AngleAxisd turn(orientation((k + 1) * h) * orientation(k * h).conjugate());
+      sum += loads.at(0).torque.dot(turn.angle() * turn.axis());
+    }
+    return sum;
+  };
+  using A = TwistLoad::Application;
+  for (const double theta : {0.3, 1.0, 2.0}) {
+    const double around = 10 * 2 * units::pi * (1 - std::cos(theta));
+    EXPECT_NEAR(work(A::couple, theta), around, 1e-4 * around);
+    EXPECT_NEAR(work(A::follower, theta), -around, 1e-4 * around);
+    EXPECT_NEAR(work(A::conservative, theta), 0, 1e-4 * around);
+  }
+}
+
+// The work of a conservative couple is the moment times the growth of psi, whatever the way.
+TEST(Twist, TheWorkOfAConservativeCoupleFollowsFromItsPotential) {
+  Bundle b(7, 12, 0.05);
+  TwistLoad twist;
+  twist.moment = 150, twist.application = TwistLoad::Application::conservative;
+  LoadsAndConstraints loads;
+  add_twist(twist, b.topology, loads);
+  Simulation s(b.topology, b.in, loads, b.state, 0.004);
+  const auto psi = [&](int element) {
+    const Quaternion q = s.state().orientation[static_cast<std::size_t>(element)];
+    return 2 * std::atan2(q.z(), q.w());
+  };
+  std::vector<double> turned(static_cast<std::size_t>(b.topology.elements())), last = turned;
+  for (int e = 0; e < b.topology.elements(); ++e) last[static_cast<std::size_t>(e)] = psi(e);
+  double tilted = 0;
+  for (int n = 0; n < 3000; ++n) {
+    s.step();
+    for (int e = 0; e < b.topology.elements(); ++e) {
+      const auto i = static_cast<std::size_t>(e);
+      const double now = psi(e);
+      turned[i] += std::remainder(now - last[i], 2 * units::pi);
+      last[i] = now;
+    }
+  }
+  double expected = 0;
+  for (int t = 0; t < b.topology.tubes(); ++t) {
+    const auto first = static_cast<std::size_t>(b.topology.tube_begin[t]),
+               end = static_cast<std::size_t>(b.topology.tube_begin[t + 1] - 1);
+    expected += twist.moment * (turned[end] - turned[first]);
+    tilted = std::max(tilted, std::acos(axis_of(s.state().orientation[end]).z()));
+  }
+  EXPECT_GT(tilted, 0.3) << "or the three couples are one";
+  EXPECT_NEAR(s.work() / expected, 1, 1e-3);
 }
 
 TEST(EnergyAccount, PrescribedRotationDoesTheWork) {

@@ -14,6 +14,7 @@ import numpy as np
 from support import ROPE, FolderTest
 
 import ropewalk
+from ropewalk.state import Elements
 
 
 class StepTest(FolderTest):
@@ -241,6 +242,36 @@ class MeasureTest(FolderTest):
         with self.assertRaises(TypeError):
             ropewalk.energy(simulation.state)
 
+    def test_energy_is_a_number_or_an_error(self):
+        start = ropewalk.Scene(ROPE).start
+
+        def of(position, orientation, **more):
+            flat = Elements(position.reshape(-1, 3), orientation.reshape(-1, 4))
+            state = ropewalk.State(flat, start.tube_begin, start.element_length_nm)
+            ropewalk.energy(state, "cnt-10-10-tersoff", **more)
+
+        of(start.position, start.orientation)
+        for value in (np.nan, np.inf):
+            position = start.position.copy()
+            position[0, 2, 1] = value
+            with self.assertRaisesRegex(ropewalk.InputError, "state: element 2 has no finite position"):
+                of(position, start.orientation)
+        for length in (0, 3, np.nan):
+            orientation = start.orientation.copy()
+            orientation[0, 1] *= length
+            with self.assertRaisesRegex(ropewalk.InputError, "state: element 1 has a quaternion of length"):
+                of(start.position, orientation)
+        position = start.position.copy()
+        position[0, 2] = position[0, 1]
+        with self.assertRaisesRegex(ropewalk.InputError, "state: .*finite number; two elements lie in one place"):
+            of(position, start.orientation)
+
+    def test_numbers_of_steps_have_an_end(self):
+        simulation = ropewalk.Simulation(ROPE)
+        for call in (simulation.step, lambda n: simulation.relax(max_steps=n)):
+            with self.assertRaisesRegex(ValueError, "is no number of steps: give 0 to"):
+                call(10**30)
+
     def test_forces_are_the_slope_of_the_energy(self):
         scene = ropewalk.Scene(ROPE)
         position, step = scene.start.position.copy(), 1e-5
@@ -276,7 +307,9 @@ class CheckpointTest(FolderTest):
         good = simulation.checkpoint()
         before = simulation.state.position.copy()
         other = ropewalk.Simulation({**ROPE, "rope": {"tubes": 7, "length_nm": 28}})
-        for bad in (b"", good[:100], good[:-1], good[:500] + b"x" + good[501:], other.checkpoint()):
+        stiffer = ropewalk.Simulation({**ROPE, "damping": {"bond_damping_per_ps": 3}})
+        self.assertEqual(stiffer.state.position.shape, before.shape)
+        for bad in (b"", good[:100], good[:-1], good[:500] + b"x" + good[501:], other.checkpoint(), stiffer.checkpoint()):
             with self.assertRaisesRegex(ropewalk.InputError, "^checkpoint: "):
                 simulation.restore(bad)
         np.testing.assert_array_equal(simulation.state.position, before)

@@ -386,7 +386,7 @@ Forces line_contact_of(const Topology& topology, const Interaction& in, const St
   };
   engine.compute(topology, in, list, state, axis, true, {parts, place, finish, terms.pairs()});
   for (const auto& n : times) EXPECT_EQ(n, 1);
-  terms.sum_up(out);
+  terms.sum_up(out, 0);
   out.energy.vdw = engine.energy();
   return out;
 }

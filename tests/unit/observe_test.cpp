@@ -15,6 +15,7 @@
 #include "observe/delaunay.hpp"
 #include "observe/loading.hpp"
 #include "observe/means.hpp"
+#include "observe/rope_shape.hpp"
 #include "observe/spacing.hpp"
 #include "observe/voids.hpp"
 
@@ -736,6 +737,128 @@ TEST(TubeSpacing, IsThatOfInnerTubesAndTheirNeighbours) {
   const Rope pair = straight_rope({{0, 0}, {2.1, 0}}), lone = straight_rope({{0, 0}});
   EXPECT_NEAR(tube_spacing(pair.topology, pair.state, {}), 2.1, 1e-12);
   EXPECT_EQ(tube_spacing(lone.topology, lone.state, {}), 0);
+}
+
+// --- Writhe and shapes
+
+TEST(Writhe, IsThatOfHelicesAndLoops) {
+  EXPECT_NEAR(writhe_of(helix(80, 100, 0, 3)), 0, 1e-9);
+  // Two turns more of a helix have 1 - sin(angle of pitch) each, right-handed positive.
+  constexpr double radius = 3, pitch = 12;
+  const auto turns = [](int count, double hand) {
+    std::vector<Vector3> line;
+    for (int k = 0; k <= 120; ++k) {
+      const double phase = 2 * units::pi * count * k / 120;
+      line.emplace_back(radius * std::cos(phase), hand * radius * std::sin(phase), pitch * count * k / 120);
+    }
+    return line;
+  };
+  const double each = 1 - pitch / std::hypot(pitch, 2 * units::pi * radius);
+  for (const double hand : {1.0, -1.0}) {
+    EXPECT_NEAR(0.5 * (writhe_of(turns(6, hand)) - writhe_of(turns(4, hand))), hand * each, 0.05 * each);
+    EXPECT_EQ(turned_back(turns(6, hand)), 0);
+  }
+  EXPECT_NEAR(writhe_of(helix(90, 120, 5, 3)), -writhe_of(helix(90, 120, 5, -3)), 1e-9);
+  EXPECT_EQ(writhe_of({}), 0);
+  EXPECT_EQ(writhe_of({{0, 0, 0}, {0, 0, 1}}), 0);
+}
+
+// A line that turns once round in a plane, and whose two strands pass each other at the distance `apart`.
+std::vector<Vector3> loop(int elements, double apart) {
+  std::vector<Vector3> line{Vector3::Zero()};
+  for (int s = 1; s < elements; ++s) {
+    const double u = static_cast<double>(s) / elements, in_loop = std::clamp((u - 0.3) / 0.4, 0.0, 1.0);
+    const double angle = 2 * units::pi * in_loop;
+    const double aside = in_loop > 0 && in_loop < 1 ? apart / (0.4 * elements) : 0;
+    line.push_back(line.back() +
+                   Vector3(element_length * std::sin(angle), aside, element_length * std::cos(angle)));
+  }
+  return line;
+}
+
+struct Deformed {
+  std::string name;
+  Rope rope;
+};
+
+// Rope of 37 tubes and 90 elements in each shape.
+std::vector<Deformed> shapes() {
+  constexpr int n = 90;
+  const std::vector<Vector2d> lattice = hexagonal(3);
+  const auto tubes = static_cast<int>(lattice.size());
+  const auto scaled = [&](const std::function<double(double)>& by) {
+    return place(lattice, n, [=](const Vector2d& p, int s) {
+      const Vector2d q = Eigen::Rotation2Dd(0.02 * s) * p * by(s / (n - 1.0));
+      return Vector3(q.x(), q.y(), height(s, n));
+    });
+  };
+  // In its middle all tubes stand on a ring, in the order of their azimuth at the ends.
+  std::vector<int> order(lattice.size());
+  for (int t = 0; t < tubes; ++t) order[static_cast<std::size_t>(t)] = t;
+  const auto azimuth = [&](int t) {
+    return std::atan2(lattice[static_cast<std::size_t>(t)].y(), lattice[static_cast<std::size_t>(t)].x());
+  };
+  std::sort(order.begin(), order.end(), [&](int a, int b) { return azimuth(a) < azimuth(b); });
+  std::vector<int> rank(lattice.size());
+  for (int k = 0; k < tubes; ++k) rank[static_cast<std::size_t>(order[static_cast<std::size_t>(k)])] = k;
+  int next = 0;
+  Rope cage{equal_tubes(tubes, n), State()};
+  cage.state = State(static_cast<std::size_t>(cage.topology.elements()));
+  for (int t = 0; t < tubes; ++t)
+    for (int s = 0; s < n; ++s, ++next) {
+      const double part = std::sin(units::pi * s / (n - 1.0)), ring = 1.05 * spacing * tubes / (2 * units::pi);
+      const double angle = 2 * units::pi * rank[static_cast<std::size_t>(t)] / tubes;
+      const Vector2d q = (1 - part) * lattice[static_cast<std::size_t>(t)] +
+                         part * ring * Vector2d(std::cos(angle), std::sin(angle));
+      cage.state.position.set(static_cast<std::size_t>(next), {q.x(), q.y(), height(s, n)});
+    }
+  return {
+      {"straight", twisted_rope(lattice, n, 0.03)},
+      {"straight", bent_rope(lattice, helix(n, 120, 1.5, 2), 2)},  // as voids move a line
+      {"spindle", scaled([](double u) { return 1 + 0.25 * std::sin(units::pi * u); })},
+      {"cage", cage},
+      {"helix", bent_rope(lattice, helix(n, 120, 6, 2), 4)},
+      {"helix", bent_rope(lattice, helix(n, 120, 12, -2), 0)},
+      {"brush",
+       scaled([](double u) { return 1 + 4 * std::pow(std::max(0.0, std::fabs(2 * u - 1) - 0.8) / 0.2, 2); })},
+      {"snarl", bent_rope(lattice, loop(n, 13), 3)},
+      {"snarl", bent_rope(lattice, loop(n, -13), 3)},
+  };
+}
+
+TEST(RopeShapes, AreNamedAsTheyWereMade) {
+  const Rope start = straight_rope(hexagonal(3), 90);
+  const RopeShells shells = rope_shells(start.topology, start.state, 0.0);
+  const double radius = observe_rope(start, shells).radius_mid;
+  for (const Deformed& d : shapes()) {
+    const RopeObservation seen = observe_rope(d.rope, shells);
+    const RopeShape shape = rope_shape({seen.middle_amplitude, seen.writhe, seen.turned_back, seen.radius_mid,
+                                        seen.radius_end, seen.middle.void_area},
+                                       radius);
+    EXPECT_EQ(name_of(shape), d.name) << "amplitude " << seen.middle_amplitude << ", writhe " << seen.writhe
+                                      << ", back " << seen.turned_back << ", radius " << seen.radius_mid << " and "
+                                      << seen.radius_end << ", voids " << seen.middle.void_area;
+  }
+  // A brush whose bent ends move the whole line, which `amplitude` takes for a helix.
+  Rope brush = shapes()[6].rope;
+  for (std::size_t i = 0; i < brush.state.size(); ++i) {
+    const int s = static_cast<int>(i) % 90;
+    if (s < 9) brush.state.position.add(i, {0.9 * (9 - s), 0, 0});
+  }
+  const RopeObservation seen = observe_rope(brush, shells);
+  EXPECT_GT(seen.amplitude, 4);
+  EXPECT_LT(seen.middle_amplitude, 0.01);
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(rope_shape({none, none, none, none, none, none}, none), RopeShape::straight);
+}
+
+// Rows of runs of the published set: 19 tubes under 39 nN nm at 2 nN nm/ps, 190 nm; 91 tubes, 41 nm, at 64 and 35
+// nN nm.
+TEST(RopeShapes, OfRunsAreWhatTheirPicturesShow) {
+  EXPECT_EQ(rope_shape({1.2, 0.3, 0, 4.15, 14.54, 0}, 4.10), RopeShape::brush);
+  EXPECT_EQ(rope_shape({0.2, 0, 0, 17.37, 13.85, 58.9}, 9.24), RopeShape::cage);
+  EXPECT_EQ(rope_shape({0.02, 0, 0, 11.67, 11.08, 1.35}, 9.24), RopeShape::spindle);
+  EXPECT_EQ(rope_shape({7, 0.4, 0, 4.55, 4.38, 0}, 4.10), RopeShape::helix);
 }
 
 TEST(Means, AreThoseOfAllLooks) {

@@ -12,6 +12,7 @@
 #include "io/parameters_toml.hpp"
 #include "io/toml_table.hpp"
 #include "model/error.hpp"
+#include "observe/centre_line.hpp"
 #include "scene/build.hpp"
 #include "scene/kinds/rope.hpp"
 #include "scene/lattice.hpp"
@@ -937,6 +938,40 @@ TEST(StateFile, StatesTheLengthOfItsElements) {
 TEST(StateFile, OneElementHasNoTemperature) {
   EXPECT_THROW(built_state(columns + "0,0,0,0,1,0,0,0\n", "[start]\ntemperature_K = 1\n" + run), InputError);
   EXPECT_EQ(built_state(columns + "0,0,0,0,1,0,0,0\n").topology.elements(), 1);
+}
+
+// A straight rope of a state file is bent as that of a scene; a wound one keeps its sections.
+TEST(StartWave, BendsStatesAsItBendsRopes) {
+  const std::string rope = "[rope]\ntubes = 7\nlength_nm = 27.12\n", wave = "[start]\nwave_nm = 0.2\n",
+                    run = "[run]\nduration_ps = 1\n";
+  const BuiltScene straight = built_from(rope + run), bent = built_from(rope + wave + run);
+  const BuiltScene read = built_state(state_csv(straight.topology, straight.state), wave + run);
+  ASSERT_EQ(read.state.size(), bent.state.size());
+  for (std::size_t i = 0; i < read.state.size(); ++i) {
+    EXPECT_LT((Vector3(read.state.position[i]) - Vector3(bent.state.position[i])).norm(), 1e-12);
+    EXPECT_LT((axis_of(read.state.orientation[i]) - axis_of(bent.state.orientation[i])).norm(), 1e-12);
+  }
+  // Wound by a turn, and tilted.
+  State wound = straight.state;
+  for (std::size_t i = 0; i < wound.size(); ++i) {
+    const Vector3 x = wound.position[i];
+    const Quaternion turned(Eigen::AngleAxisd(2 * units::pi * x.z() / 27.12, Vector3::UnitZ()));
+    const Quaternion tilt(Eigen::AngleAxisd(0.3, Vector3::UnitY()));
+    wound.position.set(i, tilt * (turned * x));
+    wound.orientation.set(i, tilt * (turned * wound.orientation[i]));
+  }
+  const BuiltScene still = built_state(state_csv(straight.topology, wound), run),
+                   moved = built_state(state_csv(straight.topology, wound), wave + run);
+  EXPECT_NEAR(chord_amplitude(centre_line(moved.topology, moved.state).points), 0.2, 1e-3);
+  for (int t = 1; t < 7; ++t)
+    for (int k = 0; k < moved.topology.length_of(0); ++k) {
+      const auto first = static_cast<std::size_t>(k),
+                 i = static_cast<std::size_t>(moved.topology.tube_begin[t] + k);
+      const auto apart = [&](const State& s) {
+        return (Vector3(s.position[i]) - Vector3(s.position[first])).norm();
+      };
+      EXPECT_NEAR(apart(moved.state), apart(still.state), 1e-9);
+    }
 }
 
 }  // namespace

@@ -40,6 +40,26 @@ std::string numbers_part(const ParametrizedTube& t) {
             "standard deviation of the pair energy over all registries, over the well: an error bar")});
 }
 
+// Each number with its error.
+std::string friction_part(const ParametrizedTube& t) {
+  if (t.frictions.empty()) return t.no_friction.empty() ? "" : heading("Friction") + paragraph(escape_markup(t.no_friction));
+  std::string html =
+      heading("Friction") +
+      paragraph("Of two tubes side by side at 0 K, mean over their turns. A scene with this set and "
+                "<code>[[friction]] from = \"atoms\"</code> has it. The drag was not measured.") +
+      "<div class=\"scroll\"><table class=\"facts\"><thead><tr><th>Tubes</th><th class=\"number\">Along the axis, "
+      "pN/nm</th><th class=\"number\">Against spin, pN/nm</th><th class=\"number\">Of an end, pN</th><th "
+      "class=\"number\">Elastic slip, nm</th></tr></thead><tbody>\n";
+  for (const PairFriction& f : t.frictions) {
+    html += fmt::format("<tr><th>({},{}) beside ({},{})</th>", f.a.n, f.a.m, f.b.n, f.b.m);
+    for (const char* key : {"friction.strength", "friction.spin_strength", "friction.end_strength", "friction.elastic_slip"})
+      for (const Quantity& q : f.quantities)
+        if (q.key == key) html += fmt::format("<td class=\"number\">{}</td>", measured_text(q));
+    html += "</tr>\n";
+  }
+  return html + "</tbody></table></div>\n";
+}
+
 std::string limits_part(const ParametrizedTube& t) {
   const ParameterSet& set = t.set;
   const double r = set.radius;
@@ -241,7 +261,7 @@ std::string tube_page(const ParametrizedTube& t) {
                        ". Its tables lie beside it. <code>ropewalk calibrate "
                        "show " +
                        escape_markup(t.name) + ".toml</code> draws every fit.") +
-             heading("Limits") + limits_part(t) + heading("What was compared");
+             friction_part(t) + heading("Limits") + limits_part(t) + heading("What was compared");
   std::vector<std::string> facts = page_facts(t.outcomes);
   facts.insert(facts.begin(), times(t));
   return validation_page(t.outcomes, facts, top);

@@ -36,6 +36,8 @@ struct Place {
   std::string file(const char* ending) const { return (folder / (name + ending)).string(); }
 };
 
+std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
+
 std::vector<Place> places(const ParametrizeArguments& a) {
   std::vector<Place> all;
   for (const std::string& text : a.tubes)
@@ -91,6 +93,92 @@ void calibrate_all(const std::vector<Place>& all, const ParametrizeArguments& a,
   run_processes(tasks, jobs);
 }
 
+// --- friction ---
+
+// Two sets and the file of their friction.
+struct PairPlace {
+  Place a, b;
+  std::string name;
+
+  std::string file(const char* ending) const { return (a.folder / (name + ending)).string(); }
+  bool has_sets() const { return fs::exists(a.file(".toml")) && fs::exists(b.file(".toml")); }
+};
+
+std::vector<PairPlace> pairs_of(const std::vector<Place>& all, const std::string& which) {
+  std::vector<PairPlace> pairs;
+  if (which == "none") return pairs;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    for (std::size_t j = i; j < (which == "all" ? all.size() : i + 1); ++j) {
+      if (all[i].potential != all[j].potential) continue;
+      const Chirality a = calibrate::parse_chirality(all[i].tube), b = calibrate::parse_chirality(all[j].tube);
+      pairs.push_back({all[i], all[j], fmt::format("friction-{}-{}-{}-{}-{}", a.n, a.m, b.n, b.m, all[i].potential)});
+    }
+  return pairs;
+}
+
+// Whether the file is there and was made with these sets.
+bool friction_is_kept(const PairPlace& pair) {
+  if (!fs::exists(pair.file(".toml"))) return false;
+  const PairFriction f = read_friction(pair.file(".toml"));
+  const auto provenance = [&](const char* key) {
+    for (const auto& [name, value] : f.provenance)
+      if (name == key) return value;
+    return std::string();
+  };
+  return provenance("set_a_hash") == read_parameters(pair.a.file(".toml")).hash &&
+         provenance("set_b_hash") == read_parameters(pair.b.file(".toml")).hash;
+}
+
+// In a process of its own. The reason of a failure goes to NAME-error.txt.
+int measure_friction(const PairPlace& pair) {
+  calibrate::FrictionArguments f;
+  f.first = pair.a.file(".toml");
+  f.second = pair.b.file(".toml");
+  f.out = pair.file(".toml");
+  f.drag_ps = 0;
+  f.json = f.force = f.quiet = true;
+  f.command = fmt::format("ropewalk calibrate friction {}.toml {}.toml --drag-ps 0", pair.a.name, pair.b.name);
+  try {
+    if (!std::freopen("/dev/null", "w", stdout)) throw std::runtime_error(std::strerror(errno));
+    return calibrate::friction_command(f);
+  } catch (const std::exception& e) {
+    write_file_atomically(pair.file("-error.txt"), failure_words(e) + "\n");
+    return 3;
+  }
+}
+
+void measure_frictions(const std::vector<PairPlace>& pairs, const ParametrizeArguments& a, int jobs) {
+  std::vector<ProcessTask> tasks;
+  for (const PairPlace& pair : pairs) {
+    if (!pair.has_sets()) continue;
+    if (!a.again && friction_is_kept(pair)) {
+      if (!a.quiet) fmt::print(stderr, "{}: kept\n", pair.name);
+      continue;
+    }
+    fs::remove(pair.file("-error.txt"));
+    fs::remove(pair.file(".toml"));  // of other sets
+    tasks.push_back({[pair, &a] {
+                       if (!a.quiet) fmt::print(stderr, "{}: measuring\n", pair.name);
+                       return measure_friction(pair);
+                     },
+                     [pair](int status) {
+                       if (status == 0 || fs::exists(pair.file("-error.txt"))) return;
+                       write_file_atomically(pair.file("-error.txt"), death_words(status) + "\n");
+                     }});
+  }
+  run_processes(tasks, jobs);
+}
+
+void take_frictions(const std::vector<PairPlace>& pairs, ParametrizedTube& tube) {
+  for (const PairPlace& pair : pairs) {
+    if (pair.a.name != tube.name && pair.b.name != tube.name) continue;
+    if (fs::exists(pair.file(".toml")))
+      tube.frictions.push_back(read_friction(pair.file(".toml")));
+    else if (fs::exists(pair.file("-error.txt")))
+      tube.no_friction += (tube.no_friction.empty() ? "" : "; ") + pair.name + ": " + first_line(read_file(pair.file("-error.txt")));
+  }
+}
+
 double calibration_seconds(const Place& place) {
   try {
     return nlohmann::json::parse(read_file(place.file("-calibration.json"))).at("seconds").at("total");
@@ -105,8 +193,7 @@ ParametrizedTube validated(const Place& place, const ParametrizeArguments& a, in
   const Chirality c = calibrate::parse_chirality(place.tube);
   tube.tube = fmt::format("({},{})", c.n, c.m);
   if (!fs::exists(place.file(".toml"))) {
-    tube.error = fs::exists(place.file("-error.txt")) ? read_file(place.file("-error.txt")) : "was interrupted";
-    while (!tube.error.empty() && tube.error.back() == '\n') tube.error.pop_back();
+    tube.error = fs::exists(place.file("-error.txt")) ? first_line(read_file(place.file("-error.txt"))) : "was interrupted";
     return tube;
   }
   tube.set = read_parameters(place.file(".toml"));
@@ -147,6 +234,10 @@ void print_line(const ParametrizedTube& t) {
              t.set.bond.bend * units::eV_in_nN_nm, t.set.bond.twist * units::eV_in_nN_nm,
              t.set.line ? t.set.line->pair_energy : 0,
              rope ? fmt::format(", ropes within {:.1f} %", 100 * std::fabs(rope->difference())) : "");
+  for (const PairFriction& f : t.frictions)
+    fmt::print("{:<24}         friction {:.3g} pN/nm along the axis, {:.3g} pN/nm against spin: {}.toml\n", "",
+               1e3 * f.strength * units::eV_in_nN_nm, 1e3 * f.spin_strength * units::eV_in_nN_nm, f.name);
+  if (!t.no_friction.empty()) fmt::print("{:<24}         no friction: {}\n", "", t.no_friction);
 }
 
 }  // namespace
@@ -181,12 +272,15 @@ const Check* worst_rope(const ParametrizedTube& tube) {
 
 int parametrize_command(const ParametrizeArguments& a) {
   const std::vector<Place> all = places(a);
+  const std::vector<PairPlace> pairs = pairs_of(all, a.friction);
   make_directory(a.out);
   const int jobs = a.jobs > 0 ? a.jobs : omp_get_num_procs();
   calibrate_all(all, a, jobs);
+  measure_frictions(pairs, a, jobs);
   std::vector<ParametrizedTube> tubes;
   for (const Place& place : all) {
     tubes.push_back(validated(place, a, jobs));
+    take_frictions(pairs, tubes.back());
     write_pages(tubes, all.size(), a.out);
     print_line(tubes.back());
     std::fflush(stdout);
@@ -194,7 +288,7 @@ int parametrize_command(const ParametrizeArguments& a) {
   fmt::print("Report: {}/report.html; table: {}/tubes.csv\n", a.out, a.out);
   int code = 0;
   for (const ParametrizedTube& tube : tubes) {
-    if (!tube.error.empty()) code = 3;
+    if (!tube.error.empty() || !tube.no_friction.empty()) code = 3;
     for (const Outcome& o : tube.outcomes)
       if (o.verdict() == Outcome::Verdict::failed) code = 3;
     if (code == 0 && !tube.holds()) code = 1;

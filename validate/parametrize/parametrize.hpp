@@ -1,13 +1,14 @@
 // `ropewalk parametrize`: from chiralities to validated parameter sets and one report.
 //
-// For each tube (n,m) and interatomic potential the set is calibrated with its envelope, the references of its
-// atoms are made, all cases of validation that the set allows are run, and a page says what the set is worth. What
+// For each tube (n,m) and interatomic potential the set is calibrated with its envelope, its friction is measured
+// (friction-*.toml beside the set, where scenes with this set find it), the references of its atoms are made, all cases of validation that the set allows are run, and a page says what the set is worth. What
 // is finished is kept, so that a stopped command goes on where it was.
 #pragma once
 
 #include <string>
 #include <vector>
 
+#include "io/friction_toml.hpp"
 #include "model/parameters.hpp"
 #include "runner/runner.hpp"
 
@@ -17,6 +18,7 @@ struct ParametrizeArguments {
   std::vector<std::string> tubes;  // "7,3"
   std::vector<std::string> potentials = {"tersoff"};
   std::string out = "parametrized";
+  std::string friction = "like";  // of each tube beside its like; "all": of all pairs of one potential; "none"
   double budget = 0;  // minutes of each tube's references; 0: any
   int jobs = 0;       // processes at a time; 0: one for each core
   bool again = false;
@@ -32,6 +34,8 @@ struct ParametrizedTube {
   std::string tube;   // "(7,3)"
   std::string error;  // why there is no set; empty otherwise
   ParameterSet set;
+  std::vector<PairFriction> frictions;  // of this tube and another one
+  std::string no_friction;              // why some are missing; empty: none is
   std::vector<Outcome> outcomes;
   double calibration_seconds = 0;  // wall time
 

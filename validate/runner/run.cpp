@@ -18,6 +18,7 @@
 #include "io/grade.hpp"
 #include "io/parameters_toml.hpp"
 #include "io/processes.hpp"
+#include "io/removal.hpp"
 #include "io/toml_table.hpp"
 #include "runner/runner.hpp"
 #include "version.hpp"
@@ -144,8 +145,7 @@ Outcome outcome_of(const Task& task, const Run& run) {
   o.not_applicable = task.not_applicable;
   if (!o.not_applicable.empty()) return o;
   const std::string work = (fs::path(run.arguments.out) / ("work-" + o.name)).string();
-  fs::remove_all(work);
-  fs::create_directories(work);
+  make_work_folder(work, "--out");
   const double begin = steady_seconds();
   try {
     o.result = run_case(*task.of, context_of(task, run, work));
@@ -156,8 +156,7 @@ Outcome outcome_of(const Task& task, const Run& run) {
     o.error = failure_words(e);
   }
   o.result.seconds = seconds_since(begin);
-  std::error_code ignored;
-  if (!run.arguments.fresh && o.error.empty()) fs::remove_all(work, ignored);
+  if (!run.arguments.fresh && o.error.empty()) remove_work_folder(work);
   return o;
 }
 

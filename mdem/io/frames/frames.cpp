@@ -55,21 +55,22 @@ std::unique_ptr<FrameWriter> frame_writer(const std::string& path, FrameFormat f
 
 NewFrames::NewFrames(const std::string& path, FrameFormat format, std::size_t expected, const std::string& from,
                      std::uint64_t keep)
-    : path_(path), part_(part_of(path)) {
+    : path_(path), part_{new_part_of(path)} {
   std::error_code error;
-  if (keep > 0 && !fs::copy_file(from, part_, fs::copy_options::overwrite_existing, error))
+  if (keep > 0 && !fs::copy_file(from, part_.name, fs::copy_options::overwrite_existing, error))
     throw file_error(from, "cannot be copied", error.value());
-  writer_ = frame_writer(part_, format, keep, expected);
+  writer_ = frame_writer(part_.name, format, keep, expected);
 }
 
-NewFrames::~NewFrames() {
-  if (writer_) ::unlink(part_.c_str());
+NewFrames::Part::~Part() {
+  if (!renamed) ::unlink(name.c_str());
 }
 
 void NewFrames::replace() {
   writer_->sync();
-  if (uninterrupted([&] { return ::rename(part_.c_str(), path_.c_str()); }) != 0)
+  if (uninterrupted([&] { return ::rename(part_.name.c_str(), path_.c_str()); }) != 0)
     throw file_error(path_, "cannot be written", errno);
+  part_.renamed = true;
   writer_.reset();
 }
 

@@ -59,13 +59,19 @@ class NewFrames {
             std::uint64_t keep = 0);
   NewFrames(const NewFrames&) = delete;
   NewFrames& operator=(const NewFrames&) = delete;
-  ~NewFrames();
 
   FrameWriter* operator->() { return writer_.get(); }
   void replace();
 
  private:
-  std::string path_, part_;
+  struct Part {
+    std::string name;
+    bool renamed = false;
+    ~Part();
+  };
+
+  std::string path_;
+  Part part_;
   std::unique_ptr<FrameWriter> writer_;
 };
 

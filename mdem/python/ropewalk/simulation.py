@@ -14,6 +14,8 @@ from .observables import index_of, observables
 from .scene import Scene, as_scene
 from .state import Elements, Floats, State
 
+_most_steps = 2**53  # beyond, a log has no place for their number
+
 
 _DRIVES = ("grip", "load", "twist")  # the tables that change() may change
 
@@ -164,8 +166,8 @@ class Simulation:
             energies: whether the last step computes the energies, a tenth of a step; without, they are computed when
                 they are asked for, which takes a whole evaluation of the forces
         """
-        if n != int(n) or n < 0:
-            raise ValueError(f"{n} is no number of steps")
+        if n != int(n) or n < 0 or n > _most_steps:
+            raise ValueError(f"{n} is no number of steps: give 0 to {_most_steps}")
         n = int(n)
         if self._calling:
             raise Error("a hook or an observer cannot step the simulation that calls it")
@@ -203,6 +205,8 @@ class Simulation:
             energy: relative error of the energy of the bonds at the end, by estimate (no unit)
             max_steps: at most so many steps (no unit)
         """
+        if max_steps is not None and not 0 <= max_steps <= _most_steps:
+            raise ValueError(f"{max_steps} is no number of steps: give 0 to {_most_steps}")
         of_scene = self._scene._core.goal
         return Relaxed(*self._core.relax(
             of_scene[0] if force_eV_per_nm is None else force_eV_per_nm,

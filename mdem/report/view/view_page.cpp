@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <numeric>
+#include <random>
 
 #include "io/base64.hpp"
 #include "report/page.hpp"
@@ -120,16 +122,31 @@ Json numbers_to_check(const ViewInput& in) {
   return out;
 }
 
-// Ends a <script> early no more.
-std::string in_script(std::string text) {
-  for (std::size_t at = text.find("</"); at != std::string::npos; at = text.find("</", at))
-    text.insert(at + 1, "\\");
-  return text;
+// JSON in a <script>: `<` stands in strings alone, and unescaped it could end the script or begin a comment in it.
+std::string in_script(const std::string& json) {
+  std::string out;
+  for (const char c : json) c == '<' ? out += "\\u003c" : out += c;
+  return out;
 }
 
-void put(std::string& page, const std::string& mark, const std::string& text) {
-  const std::size_t at = page.find("{{" + mark + "}}");
-  page.replace(at, mark.size() + 4, text);
+// The template with a text in the place of each {{mark}}. Texts are not looked at for marks.
+std::string filled(std::string_view page, const std::map<std::string, std::string, std::less<>>& texts) {
+  std::string out;
+  for (std::size_t at; (at = page.find("{{")) != std::string_view::npos;) {
+    const std::size_t end = page.find("}}", at);
+    out += page.substr(0, at);
+    out += texts.at(std::string(page.substr(at + 2, end - at - 2)));
+    page.remove_prefix(end + 2);
+  }
+  return out += page;
+}
+
+// Only scripts that carry it run. Whoever chose the names in a page cannot know it.
+std::string random_nonce() {
+  std::random_device random;
+  std::string bytes;
+  for (int k = 0; k < 16; ++k) bytes += static_cast<char>(random() & 0xff);
+  return base64(bytes);
 }
 
 ViewPage page_with(const ViewInput& in, int levels) {
@@ -175,14 +192,15 @@ ViewPage page_with(const ViewInput& in, int levels) {
                       {"colours", colours},
                       {"check", numbers_to_check(in)}};
 
-  std::string body = view_body_html;
-  put(body, "name", escape_markup(in.name));
-  put(body, "three.js", three_js);
-  put(body, "OrbitControls.js", three_orbit_js);
-  put(body, "facts", in_script(facts.dump()));
-  put(body, "frames", base64(packer.deflated()));
-  put(body, "scripts", view_js);
-  out.html = scripted_page_head(in.name, view_css) + body;
+  const std::string nonce = random_nonce();
+  out.html =
+      scripted_page_head(in.name, view_css, nonce) + filled(view_body_html, {{"name", escape_markup(in.name)},
+                                                                             {"nonce", nonce},
+                                                                             {"three.js", three_js},
+                                                                             {"OrbitControls.js", three_orbit_js},
+                                                                             {"facts", in_script(facts.dump())},
+                                                                             {"frames", base64(packer.deflated())},
+                                                                             {"scripts", view_js}});
   return out;
 }
 

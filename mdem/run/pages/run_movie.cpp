@@ -10,6 +10,7 @@
 
 #include "io/files.hpp"
 #include "io/processes.hpp"
+#include "io/removal.hpp"
 #include "model/error.hpp"
 #include "report/movie_picture.hpp"
 #include "report/page.hpp"
@@ -19,24 +20,6 @@ namespace ropewalk {
 namespace {
 
 namespace fs = std::filesystem;
-
-// Removed with its files at the end.
-struct Folder {
-  std::string path;
-
-  explicit Folder(const std::string& name) : path(name) {
-    std::error_code error;
-    fs::remove_all(path, error);
-    fs::create_directories(path, error);
-    if (error)
-      throw InputError({path, 0, "--movie"}, fmt::format("cannot be made: {}", error.message()),
-                       "choose a place that you may write to");
-  }
-  ~Folder() {
-    std::error_code ignored;
-    fs::remove_all(path, ignored);
-  }
-};
 
 // Before minutes go into pictures. One black picture, thrown away.
 void need_ffmpeg() {
@@ -83,8 +66,10 @@ MovieSize make_movie(const RunDirectory& dir, const MovieOptions& a) {
     views.push_back(view_of(prepared.topology, f, std::numeric_limits<double>::quiet_NaN()));
   const double radius = prepared.topology.largest_radius();
   const RopeCamera camera = camera_from(a.from, views, radius, a.width - 40, 0.5625 * a.width);
-  const Folder folder(a.file + ".frames");
-  draw(views, movie_stage(views, camera, radius, a.width), folder.path);
+  // Beside the movie, which is renamed out of it.
+  const fs::path place = fs::path(a.file).parent_path();
+  const TemporaryFolder folder(place.empty() ? "." : place.string());
+  draw(views, movie_stage(views, camera, radius, a.width), folder.path());
   std::vector<std::string> words = {"ffmpeg",
                                     "-nostdin",
                                     "-v",
@@ -93,7 +78,7 @@ MovieSize make_movie(const RunDirectory& dir, const MovieOptions& a) {
                                     "-framerate",
                                     fmt::format("{}", a.fps),
                                     "-i",
-                                    folder.path + "/%06d.png",
+                                    folder.file("%06d.png"),
                                     "-pix_fmt",
                                     "yuv420p"};
   const std::vector<std::string> webm = {"-c:v", "libvpx-vp9", "-crf", "30",      "-b:v",
@@ -101,7 +86,7 @@ MovieSize make_movie(const RunDirectory& dir, const MovieOptions& a) {
                                  mp4 = {"-c:v", "libx264", "-crf", "18", "-movflags", "+faststart"};
   const auto& codec = format == ".webm" ? webm : mp4;
   words.insert(words.end(), codec.begin(), codec.end());
-  const std::string draft = folder.path + "/movie" + format;
+  const std::string draft = folder.file("movie" + format);
   words.push_back(draft);
   std::error_code error;
   const bool made = run_program(words) == ProgramEnd::well;

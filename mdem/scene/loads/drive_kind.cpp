@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cassert>
 
-#include "sim/forces/force_term.hpp"
-
 namespace ropewalk {
 
 // One line for each shipped drive, and one below.
@@ -19,7 +17,7 @@ DriveKind friction_drive();
 namespace {
 
 DriveKind with_its_energy(DriveKind kind) {
-  if (kind.energy) add_term_kind({kind.table().name, kind.energy});
+  if (kind.energy) add_term_kind({kind.table().name, kind.energy, kind.account});
   return kind;
 }
 

@@ -7,6 +7,7 @@
 
 #include "io/toml_table.hpp"
 #include "scene/drive.hpp"
+#include "sim/forces/force_term.hpp"
 
 namespace ropewalk {
 
@@ -17,6 +18,8 @@ struct DriveKind {
   // Describes the energy of its force terms, which have the name of the table; the log then has the column NAME_eV.
   // Null: it adds no energy.
   const char* energy = nullptr;
+  // More columns, of what these terms have done.
+  std::vector<TermColumn> account = {};
 };
 
 // In the order of help and templates.

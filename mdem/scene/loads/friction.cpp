@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <filesystem>
 
 #include "io/friction_toml.hpp"
 #include "model/error.hpp"
@@ -21,12 +22,12 @@ constexpr double pN = 1e-3 * units::nN_nm;  // eV/nm; a force per length in pN/n
 // A law, and the atoms that it was measured from.
 struct FrictionLaw {
   DryFriction law;
-  std::string words;
+  std::string words, file;
 };
 
 class FrictionDrive : public Drive {
  public:
-  DryFriction typed{0, 0, 0, 0.06, 0, {}};
+  DryFriction typed{0, 0, 0, 0.06, 0, false, {}};
   std::string from;               // "atoms", or a shipped pair; empty: typed
   std::vector<FrictionLaw> laws;  // for each pair of types where they come from atoms
 
@@ -35,12 +36,18 @@ class FrictionDrive : public Drive {
     std::string text;
     for (const FrictionLaw& f : laws)
       text += fmt::format(
-          "{}friction{}: {:.4g} pN/nm along the axis, {:.4g} pN/nm against spin, {:.4g} pN at each end, elastic "
+          "{}friction{}, {}: {:.4g} pN/nm along the axis, {:.4g} pN/nm against spin, {:.4g} pN at each end, elastic "
           "up to {:.4g} nm, drag {:.4g} eV ps/nm^3{}",
           text.empty() ? "" : "\n",
           f.law.types.empty() ? "" : fmt::format(" between types {}", fmt::join(f.law.types, " and ")),
-          f.law.axial / pN, f.law.spin / pN, f.law.end / pN, f.law.elastic_slip, f.law.drag, f.words);
+          f.law.corrugated ? "a corrugation" : "dry", f.law.axial / pN, f.law.spin / pN, f.law.end / pN, f.law.elastic_slip, f.law.drag, f.words);
     return text;
+  }
+  std::vector<std::string> files() const override {
+    std::vector<std::string> all;
+    for (const FrictionLaw& f : laws)
+      if (!f.file.empty()) all.push_back(f.file);
+    return all;
   }
   void refuse(const TomlTable& top, const Scene& scene) const override {
     if (scene.has_ends(Ends::endless))
@@ -68,28 +75,31 @@ void read_from(const TomlTable& t, const Scene&, FrictionDrive& friction) {
   for (const char* key : {"strength_pN_per_nm", "spin_strength_pN_per_nm", "end_strength_pN", "elastic_slip_nm",
                           "drag_eV_ps_per_nm3"})
     if (t.has(key)) throw t.error(key, "is typed where friction.from has it", "take one of the two away");
+  // Relaxed atoms that are led past each other lose nothing.
+  if (!t.has("slip")) friction.typed.corrugated = true;
 }
 
-FrictionLaw law_of(const PairFriction& f, std::vector<int> types, const std::string& estimate) {
-  return {{f.strength, f.spin_strength, f.end_strength, f.elastic_slip, f.drag, std::move(types)},
-          fmt::format(", of atoms ({}{})", f.name, estimate)};
+FrictionLaw law_of(const PairFriction& f, const DryFriction& typed, std::vector<int> types, const std::string& estimate) {
+  return {{f.strength, f.spin_strength, f.end_strength, f.elastic_slip, f.drag, typed.corrugated, std::move(types)},
+          fmt::format(", of atoms ({}{})", f.name, estimate), f.path};
 }
 
 // Of all pairs of tube types, or the pair that is given.
-std::vector<FrictionLaw> laws_of_atoms(const Scene& scene, const std::vector<int>& types,
-                                       const InputError::Place& place) {
+std::vector<FrictionLaw> laws_of_atoms(const Scene& scene, const DryFriction& typed,
+                                       const std::vector<std::string>& folders, const InputError::Place& place) {
   std::vector<FrictionLaw> laws;
   const auto n = static_cast<int>(scene.sets.size());
   for (int i = 0; i < n; ++i)
     for (int j = i; j < n; ++j) {
+      const std::vector<int>& types = typed.types;
       if (!types.empty() && (i != std::min(types[0], types[1]) || j != std::max(types[0], types[1]))) continue;
       const Chirality a = scene.sets[static_cast<std::size_t>(i)].chirality,
                       b = scene.sets[static_cast<std::size_t>(j)].chirality;
-      const PairFriction f = friction_between(a, b, place);
+      const PairFriction f = friction_between(a, b, folders, place);
       const std::string estimate =
           f.is_of(a, b) ? ""
                         : fmt::format(", an estimate: ({},{}) beside ({},{}) was not measured", a.n, a.m, b.n, b.m);
-      laws.push_back(law_of(f, {i, j}, estimate));
+      laws.push_back(law_of(f, typed, {i, j}, estimate));
     }
   return laws;
 }
@@ -102,15 +112,19 @@ void check(const TomlTable& t, const Scene& scene, FrictionDrive& friction) {
       throw t.error("types", fmt::format("there is no tube type {}", type),
                     fmt::format("they are 0 to {}", sets - 1));
   const InputError::Place place = {scene.path, t.line("from"), "friction.from"};
+  // Beside the scene and beside its sets.
+  std::vector<std::string> folders = {std::filesystem::path(scene.path).parent_path().string()};
+  for (const ParameterSet& set : scene.sets)
+    folders.push_back(std::filesystem::path(set.path).parent_path().string());
   if (friction.from == "atoms") {
-    friction.laws = laws_of_atoms(scene, law.types, place);
+    friction.laws = laws_of_atoms(scene, law, folders, place);
   } else if (!friction.from.empty()) {
-    friction.laws = {law_of(find_friction(friction.from, place), law.types, "")};
+    friction.laws = {law_of(find_friction(friction.from, folders, place), law, law.types, "")};
   } else {
     if (!(law.axial > 0 || law.spin > 0 || law.end > 0 || law.drag > 0))
       throw t.error("strength_pN_per_nm", "and all other strengths are zero",
                     "give one of them, write from = \"atoms\", or take the table away");
-    friction.laws = {{law, ""}};
+    friction.laws = {{law, "", ""}};
   }
 }
 
@@ -123,8 +137,8 @@ const KeyTable<FrictionDrive>& friction_table() {
       "any number of these: dry friction of tubes side by side; slips are elastic up to a strength, then tubes "
       "slide",
       {Key::custom("from", "", otherwise("\"atoms\"", "typed below"),
-                   "strengths that were measured from atoms: \"atoms\" for all pairs of tubes, or the shipped ones "
-                   "of one pair",
+                   "strengths that were measured from atoms: \"atoms\" for all pairs of tubes, or the name of a shipped "
+                   "pair, or a file",
                    read_from),
        Key::number(
            "strength_pN_per_nm", per_length, Bounds::non_negative(1e5),
@@ -146,6 +160,10 @@ const KeyTable<FrictionDrive>& friction_table() {
            "drag_eV_ps_per_nm3", {"eV ps/nm^3", 1}, Bounds::non_negative(1e4),
            [](auto& d) -> auto& { return d.typed.drag; }, standard(),
            "force per length of contact and speed of sliding"),
+       Key::word("slip", Words<bool>{{"dry", false}, {"corrugation", true}}, [](auto& d) -> auto& { return d.typed.corrugated; },
+                 otherwise("\"dry\"", "\"corrugation\" for strengths of atoms"),
+                 "beyond its strength a contact slides and loses the work, \"dry\"; or its force is that of a "
+                 "\"corrugation\", which loses nothing"),
        Key::custom("types", "", otherwise("[0, 1]", "all tubes"),
                    "the two tube types between which it acts, from 0", read_types)},
       check};
@@ -167,7 +185,12 @@ DriveKind friction_drive() {
           [](const TomlTable& t, const Scene& scene) -> std::shared_ptr<const Drive> {
             return std::make_shared<const FrictionDrive>(friction_table().read(t, scene));
           },
-          "elastic energy of friction"};
+          "elastic energy of friction",
+          {{"friction_slip_eV", "eV", "energy lost to slip under the strength of friction since the start",
+            &TermAccount::lost},
+           {"friction_drag_eV", "eV", "energy lost to the drag of friction since the start", &TermAccount::drag},
+           {"friction_slips", "", "slips since the start: contacts of two elements that began to slide",
+            &TermAccount::events}}};
 }
 
 }  // namespace ropewalk

@@ -68,10 +68,10 @@ class Tether : public ForceTerm {
         ends_[e].centre = Vector3(sums[3 * e], sums[3 * e + 1], sums[3 * e + 2]) / count(ends_[e]);
   }
 
-  double advance(double, const State&) override {
-    if (broken_ || away_ || !(distance() > breaks_at_)) return 0;
+  Happened advance(double, const State&) override {
+    if (broken_ || away_ || !(distance() > breaks_at_)) return {};
     broken_ = true;
-    return first_ == elsewhere ? 0 : stored();
+    return first_ == elsewhere ? Happened() : Happened{stored(), 1};
   }
 
   TermSum add(const State&, const Segment& part, const ForceRows& out) const override {
@@ -250,7 +250,9 @@ DriveKind tether_drive() {
           [](const TomlTable& t, const Scene& scene) -> std::shared_ptr<const Drive> {
             return std::make_shared<const TetherDrive>(tether_table().read(t, scene));
           },
-          "energy of the tethers"};
+          "energy of the tethers",
+          {{"tether_lost_eV", "eV", "energy that broken tethers have lost", &TermAccount::lost},
+           {"tethers_broken", "", "tethers that have broken", &TermAccount::events}}};
 }
 
 }  // namespace ropewalk

@@ -14,6 +14,15 @@ namespace {
 
 constexpr const char* rate_key = "rate_nN_nm_per_ps";
 
+const Words<TwistLoad::Application>& words_of_application() {
+  using A = TwistLoad::Application;
+  static const Words<A> words = {{"couple", A::couple},
+                                 {"follower", A::follower},
+                                 {"conservative", A::conservative},
+                                 {"tangential", A::tangential}};
+  return words;
+}
+
 void check_twist(const TomlTable& t, const Scene&, TwistLoad& twist) {
   if (twist.ramp_time() > longest_time)
     throw t.error(rate_key, fmt::format("makes a ramp of {:.3g} ps", twist.ramp_time()), "ramp faster");
@@ -36,9 +45,9 @@ const KeyTable<TwistLoad>& twist_table() {
                  &T::reading, standard(), "the moment is that of each grip element, or of all: \"total\""),
        Key::word(
            "application",
-           Words<T::Application>{{"couple", T::Application::couple}, {"tangential", T::Application::tangential}},
-           &T::application, standard(),
-           "a couple on each grip element, or \"tangential\" forces about the rope's axis"),
+           words_of_application(), &T::application, standard(),
+           "a couple on each grip element: \"couple\" about z, \"follower\" about the tube, \"conservative\" with a "
+           "potential; or \"tangential\" forces about the rope's axis"),
        Key::word("lateral", grips, &T::lateral_free, standard(),
                  "\"held\": the centre of mass of a grip stays on the axis"),
        Key::word("axial", grips, &T::axial_free, standard(), "\"held\": grip elements keep their z"),
@@ -48,6 +57,31 @@ const KeyTable<TwistLoad>& twist_table() {
                    "time between such relaxations")},
       check_twist};
   return table;
+}
+
+const char* applied_by(TwistLoad::Application application) {
+  switch (application) {
+    case TwistLoad::Application::couple:
+      return "couples of fixed direction";
+    case TwistLoad::Application::follower:
+      return "couples that follow the tubes";
+    case TwistLoad::Application::conservative:
+      return "couples with a potential";
+    case TwistLoad::Application::tangential:
+      return "tangential forces";
+  }
+  return "";
+}
+
+Vector3 direction_of_couple(TwistLoad::Application application, const Vector3& axis) {
+  switch (application) {
+    case TwistLoad::Application::follower:
+      return axis;
+    case TwistLoad::Application::conservative:
+      return (Vector3::UnitZ() + axis) / (1 + axis.z());
+    default:
+      return Vector3::UnitZ();
+  }
 }
 
 // A couple on the last element of a tube goes through its last bond. A single tube bears it in every bond.
@@ -91,7 +125,7 @@ std::string TwistDrive::words() const {
       "twist: {:.4g} nN nm {} by {} on the grips, ramped in {:.4g} ps, held for {:.4g} ps; grips {} along the "
       "axis, {} sideways{}",
       load.moment / units::nN_nm, load.reading == TwistLoad::Reading::per_tube ? "per tube" : "in total",
-      load.application == TwistLoad::Application::couple ? "couples" : "tangential forces", load.ramp_time(),
+      applied_by(load.application), load.ramp_time(),
       load.hold, load.axial_free ? "free" : "held", load.lateral_free ? "free" : "held",
       load.geometric_only ? "; spins relaxed (geometric twist only)" : "");
 }
@@ -119,7 +153,7 @@ void TwistDrive::refuse_start(const Scene& scene, const Topology& topology, cons
     if (topology.length_of(t) < 2)
       throw InputError({scene.path, 0, "twist"}, fmt::format("tube {} has one element and no two grips", t),
                        "take tubes of two elements or more");
-  if (load.application == TwistLoad::Application::couple) refuse_moment(scene, topology, load);
+  if (load.application != TwistLoad::Application::tangential) refuse_moment(scene, topology, load);
 }
 
 // Collapsed tubes twist on without end where nothing else holds the moment.
@@ -185,7 +219,10 @@ void TwistLoad::add_forces(const State& state, double time, std::vector<PointLoa
     return;
   }
   const double each = reading == Reading::per_tube ? now : now / count;
-  for (const int e : elements) out.push_back({e, Vector3::Zero(), Vector3(0, 0, each)});
+  for (const int e : elements) {
+    const Vector3 axis = axis_of(state.orientation[static_cast<std::size_t>(e)]);
+    out.push_back({e, Vector3::Zero(), each * direction_of_couple(application, axis)});
+  }
 }
 
 // Taking the velocity of the centre of mass from every element does no work on the others; a mean of another weight

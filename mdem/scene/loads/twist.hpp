@@ -1,6 +1,16 @@
 // [twist] the two-stage protocol: the moment on the grip elements (first and last of every tube; + at the upper
 // end, - at the lower) is ramped at a rate and then held. One such load acts on one grip.
 //
+// A moment M reaches an element with the axis t as
+//
+//   couple        M e_z, of fixed direction. It has no potential (H. Ziegler, Principles of Structural Stability (1968)):
+//                 an open rope under it turns its tubes for ever, and the load goes on doing work
+//   follower      M t: it turns with the tube, and has no potential either
+//   conservative  M (e_z + t)/(1 + t_z), from the potential -M psi. psi is the turn about z that is left of the
+//                 element's rotation after the shortest turn which tilts its axis: alpha + gamma of Euler's angles
+//                 z-x-z. It grows without bound where a tube's end points backwards
+//   tangential    forces about the middle of the grip
+//
 // Two grips with a couple on each tube give the same motion to rounding where everything is free (tests/physics/
 // grip_test.cpp). Held sideways, tangential forces and relaxed spins are no motions of rigid clamps.
 #pragma once
@@ -13,7 +23,7 @@ namespace ropewalk {
 
 class TwistLoad : public Load, public MomentRamp {
  public:
-  enum class Application { couple, tangential };  // a couple on each element, or tangential forces on the grip
+  enum class Application { couple, follower, conservative, tangential };
   double hold = 0;                                // ps after the ramp
   Application application = Application::couple;
   bool lateral_free = true;

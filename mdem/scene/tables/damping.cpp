@@ -20,7 +20,8 @@ const KeyTable<Damping>& damping_table() {
   using Key = KeyOf<Damping>;
   static const KeyTable<Damping> table = {
       "damping",
-      "dissipation; 0 switches a term off",
+      "numerical damping, which atoms do not have: it brings a scene to rest. Where the way there counts, set the contact "
+      "viscosity to 0 and take [[friction]] from = \"atoms\"; 0 switches a term off",
       {Key::number(
            "contact_viscosity_eV_ps_per_nm2", {"eV ps/nm^2", 1}, Bounds::non_negative(1e6),
            [](auto& d) -> auto& { return d.contact.eta; }, standard(), "against sliding at contact points")

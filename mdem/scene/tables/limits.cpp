@@ -20,6 +20,7 @@ const std::array<Text, limit_count>& texts() {
       {otherwise("2", "a tenth of the speed of sound along the tube"), "of an element"},
       {otherwise("2.3", "where a tube of this diameter collapses"), "of the contacts across a tube"},
       {standard("0.05"), "error of the account of energy over the energy that has moved"},
+      {standard("0.25"), "kinetic energy of a cold rope over its energy of twist under the whole moment"},
   }};
   return all;
 }

@@ -16,7 +16,7 @@ const KeyTable<StartOptions>& start_table() {
        Key::integer("seed", 0, std::numeric_limits<long>::max(), &StartOptions::seed, standard(),
                     "of all random numbers: the same seed gives the same run"),
        Key::number("wave_nm", unit::nm, Bounds::range(0, 100), &StartOptions::wave, standard(),
-                   "straight parallel tubes begin bent sideways by this, all alike, in sine waves along x"),
+                   "tubes side by side begin bent sideways by this, all alike, in sine waves along x"),
        Key::integer("half_waves", 1, 1000, &StartOptions::half_waves, standard(), "of wave_nm, from end to end")},
       {}};
   return table;

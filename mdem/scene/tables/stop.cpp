@@ -8,26 +8,27 @@ namespace {
 using When = StopRule::When;
 
 Words<When> occasions() {
-  return {{"above", When::above},
-          {"below", When::below},
-          {"steady", When::steady},
-          {"growth", When::growth},
-          {"limit", When::limit}};
+  return {{"above", When::above},   {"below", When::below}, {"steady", When::steady},
+          {"growth", When::growth}, {"limit", When::limit}, {"shape", When::shape}};
 }
 
+bool reads_a_column(const StopRule& rule) { return rule.when != When::limit && rule.when != When::shape; }
+
 void read_column(const TomlTable& t, const Scene&, StopRule& rule) {
-  if (rule.when == When::limit) {
+  if (!reads_a_column(rule)) {
     if (t.has("column"))
-      throw t.error("column", "is not for when = \"limit\"", "write limit = \"wall_twist\", or neither");
+      throw t.error("column", "is not for when = \"limit\" and \"shape\"",
+                    "write limit = \"wall_twist\" or shape = \"helix\"");
     return;
   }
   rule.column = t.string("column");
 }
 
 void read_value(const TomlTable& t, const Scene&, StopRule& rule) {
-  if (rule.when == When::limit && !t.has("value")) return;
+  if (!reads_a_column(rule) && !t.has("value")) return;
   const bool any = rule.when == When::above || rule.when == When::below;
   if (rule.when == When::limit) throw t.error("value", "is not for when = \"limit\"", "set the value in [limits]");
+  if (rule.when == When::shape) throw t.error("value", "is not for when = \"shape\"", "take it away");
   rule.value = t.number("value", any ? Bounds::any() : Bounds::positive(1e12));
 }
 
@@ -37,6 +38,17 @@ void read_limit(const TomlTable& t, const Scene&, StopRule& rule) {
   Words<std::string> words;
   for (const LimitKind& kind : limit_kinds()) words.emplace_back(kind.key, kind.key);
   rule.limit = t.word("limit", words);
+}
+
+void read_shape(const TomlTable& t, const Scene&, StopRule& rule) {
+  if (!t.has("shape")) {
+    if (rule.when == When::shape) throw t.error("shape", "is missing", "write shape = \"helix\"");
+    return;
+  }
+  if (rule.when != When::shape) throw t.error("shape", "is for when = \"shape\" alone", "take it away");
+  Words<RopeShape> words;
+  for (const RopeShape shape : rope_shapes) words.emplace_back(name_of(shape), shape);
+  rule.shape = t.word("shape", words);
 }
 
 }  // namespace
@@ -50,16 +62,18 @@ const KeyTable<StopRule>& stop_table() {
            "when", occasions(), &StopRule::when, required("\"above\""),
            "\"above\", \"below\": a column of the log passes a value; \"steady\": it changes by less than the "
            "value; \"growth\": the rate of its exponential growth is known to this relative error; \"limit\": a "
-           "limit is passed"),
-       Key::custom("column", "", otherwise("\"amplitude_nm\"", "required but for \"limit\""), "of log.csv",
-                   read_column),
-       Key::custom("value", "", otherwise("1", "required but for \"limit\""),
+           "limit is passed; \"shape\": the rope has taken this shape"),
+       Key::custom("column", "", otherwise("\"amplitude_nm\"", "required but for \"limit\" and \"shape\""),
+                   "of log.csv", read_column),
+       Key::custom("value", "", otherwise("1", "required but for \"limit\" and \"shape\""),
                    "in the unit of the column; growth: 0.05 is 5 %", read_value),
        Key::number("over_ps", unit::ps, Bounds::positive(longest_time), &StopRule::over, standard(),
                    "steady, growth: in the last rows of so much time"),
        Key::number("from_ps", unit::ps, Bounds::non_negative(longest_time), &StopRule::from, standard(),
                    "not looked at before"),
-       Key::custom("limit", "", otherwise("\"wall_twist\"", "any"), "limit: which key of [limits]", read_limit)},
+       Key::custom("limit", "", otherwise("\"wall_twist\"", "any"), "limit: which key of [limits]", read_limit),
+       Key::custom("shape", "", otherwise("\"helix\"", "required for \"shape\""),
+                   "\"straight\", \"spindle\", \"helix\", \"brush\", \"cage\" or \"snarl\"", read_shape)},
       {},
       StopRule(),
       true};

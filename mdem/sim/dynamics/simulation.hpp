@@ -102,6 +102,8 @@ class Simulation {
     account_ = account;
   }
   void inherit_from(const Gauges::Sums& sums) { gauges_.sums = sums; }
+  // What each of the interaction's terms has done since the start.
+  std::vector<TermAccount> term_accounts() const { return engine_.terms().accounts(); }
   // The memories of all force terms, ForceTerms::memory(), and a simulation that goes on with such ones: its forces
   // and energies are those of the present state.
   std::vector<double> memory() const { return engine_.terms().memory(); }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "model/contract.hpp"
+
 namespace ropewalk {
 namespace {
 
@@ -31,9 +33,15 @@ void add_term(std::shared_ptr<const ForceTerm> term, Interaction& interaction) {
   interaction.terms.push_back(std::move(term));
 }
 
-std::map<std::string, double> term_energies(const Interaction& interaction, const std::vector<double>& energies) {
-  std::map<std::string, double> all;
-  for (std::size_t k = 0; k < energies.size(); ++k) all[interaction.terms[k]->name()] += energies[k];
+std::map<std::string, TermReading> term_readings(const Interaction& interaction, const std::vector<double>& energies,
+                                                 const std::vector<TermAccount>& accounts) {
+  ROPEWALK_EXPECTS(energies.size() == interaction.terms.size() && accounts.size() == energies.size());
+  std::map<std::string, TermReading> all;
+  for (std::size_t k = 0; k < energies.size(); ++k) {
+    TermReading& reading = all[interaction.terms[k]->name()];
+    reading.energy += energies[k];
+    reading.account.add(accounts[k]);
+  }
   return all;
 }
 

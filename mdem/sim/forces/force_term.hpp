@@ -52,6 +52,25 @@ struct TermSum {
   double power = 0;   // work per time of the term's dissipative forces, eV/ps
 };
 
+// Energy that a memory has lost as it moved on (eV), and events that are counted: slips begin, tethers break.
+struct Happened {
+  double lost = 0;
+  long events = 0;
+};
+
+// What a term has done since the start.
+struct TermAccount {
+  double lost = 0;    // eV, by its memory
+  double drag = 0;    // eV, by its dissipative forces
+  double events = 0;  // a whole number
+
+  void add(const TermAccount& other) {
+    lost += other.lost;
+    drag += other.drag;
+    events += other.events;
+  }
+};
+
 // A new list, and the state that it was built for.
 struct ListedScene {
   const Topology& topology;
@@ -81,8 +100,8 @@ class ForceTerm {
   // Collects here whatever depends on elements of other processes.
   virtual void gather(const State&) {}
   // Moves the memory on to the present positions; `dt` (ps) has passed since the last call, none in a relaxation.
-  // Returns the energy (eV) that the term has lost thereby: it counts as dissipated.
-  virtual double advance(double /*dt*/, const State&) { return 0; }
+  // The energy that is lost thereby counts as dissipated.
+  virtual Happened advance(double /*dt*/, const State&) { return {}; }
 
   // Adds the forces on elements of a part, which are own ones. A force between two elements is computed for each of
   // them; one of them has its energy.
@@ -122,9 +141,17 @@ class ForceTerm {
   virtual std::size_t bytes() const { return 0; }
 };
 
-// A kind of term that scenes can have: the log has its energy as the column NAME_eV, with this meaning.
+// A column of the log with a part of a term's account.
+struct TermColumn {
+  std::string name, unit, meaning;
+  double TermAccount::*value;
+};
+
+// A kind of term that scenes can have: the log has its energy as the column NAME_eV, with this meaning, and these
+// parts of its account.
 struct TermKind {
   std::string name, energy;
+  std::vector<TermColumn> account = {};
 };
 const std::vector<TermKind>& term_kinds();
 // To be called before main() begins, for a static variable.
@@ -133,8 +160,13 @@ bool add_term_kind(TermKind kind);
 // Adds a term, and sees that the neighbour list reaches as far as it does.
 void add_term(std::shared_ptr<const ForceTerm> term, Interaction& interaction);
 
-// Energies of the terms (eV) by their names; those of one name are added up.
-std::map<std::string, double> term_energies(const Interaction& interaction, const std::vector<double>& energies);
+// Energy (eV) and account of all terms of one name.
+struct TermReading {
+  double energy = 0;
+  TermAccount account;
+};
+std::map<std::string, TermReading> term_readings(const Interaction& interaction, const std::vector<double>& energies,
+                                                 const std::vector<TermAccount>& accounts);
 
 // Calls work(i, j) for all pairs i < j that are not excluded as near along one tube, in rising order.
 void for_all_pairs(const Topology& topology, const Interaction& interaction,

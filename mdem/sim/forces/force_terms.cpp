@@ -11,6 +11,8 @@
 namespace ropewalk {
 namespace {
 
+constexpr int the_account = -1;  // in the place of an element
+
 void add_sum(TermSum& all, const TermSum& one) {
   all.energy += one.energy;
   all.power += one.power;
@@ -23,34 +25,44 @@ bool same_terms(const Damping& a, const Damping& b) {
 
 }  // namespace
 
-std::vector<double> numbers_of(const std::vector<TermMemory>& memories) {
+std::vector<double> numbers_of(const TermMemories& memories) {
   std::vector<double> numbers;
-  for (std::size_t term = 0; term < memories.size(); ++term)
-    for (const TermRecord& r : memories[term]) {
-      for (const double head : {static_cast<double>(term), static_cast<double>(r.element),
-                                static_cast<double>(r.numbers.size())})
-        numbers.push_back(head);
-      numbers.insert(numbers.end(), r.numbers.begin(), r.numbers.end());
-    }
+  const auto add = [&](std::size_t term, int element, const std::vector<double>& of) {
+    numbers.insert(numbers.end(), {static_cast<double>(term), static_cast<double>(element), static_cast<double>(of.size())});
+    numbers.insert(numbers.end(), of.begin(), of.end());
+  };
+  for (std::size_t term = 0; term < memories.records.size(); ++term) {
+    const TermAccount& a = memories.accounts[term];
+    if (a.lost != 0 || a.drag != 0 || a.events != 0) add(term, the_account, {a.lost, a.drag, a.events});
+    for (const TermRecord& r : memories.records[term]) add(term, r.element, r.numbers);
+  }
   return numbers;
 }
 
-std::vector<TermMemory> memories_of(const std::vector<double>& numbers, std::size_t terms, int elements) {
-  std::vector<TermMemory> all(terms);
+TermMemories memories_of(const std::vector<double>& numbers, std::size_t terms, int elements) {
+  TermMemories all{std::vector<TermMemory>(terms), std::vector<TermAccount>(terms)};
+  const auto fail = [] { throw std::runtime_error("the memory of the force terms is damaged"); };
   const auto whole = [&](std::size_t at, double end) {
-    if (at >= numbers.size() || !(numbers[at] >= 0 && numbers[at] < end) || numbers[at] != std::floor(numbers[at]))
-      throw std::runtime_error("the memory of the force terms is damaged");
+    if (at >= numbers.size() || !(numbers[at] >= 0 && numbers[at] < end) || numbers[at] != std::floor(numbers[at])) fail();
     return static_cast<std::size_t>(numbers[at]);
   };
   for (std::size_t at = 0; at < numbers.size();) {
-    const std::size_t term = whole(at, static_cast<double>(terms)), element = whole(at + 1, elements),
+    const std::size_t term = whole(at, static_cast<double>(terms)),
                       left = numbers.size() - at - std::min(numbers.size() - at, std::size_t{3}),
                       count = whole(at + 2, static_cast<double>(left) + 1);
     const auto begin = numbers.begin() + static_cast<std::ptrdiff_t>(at + 3);
-    all[term].push_back({static_cast<int>(element), {begin, begin + static_cast<std::ptrdiff_t>(count)}});
+    if (numbers[at + 1] == the_account) {
+      const bool could_be = count == 3 && std::isfinite(begin[0]) && std::isfinite(begin[1]) && begin[2] >= 0 &&
+                            std::isfinite(begin[2]);
+      if (!could_be) fail();
+      all.accounts[term].add({begin[0], begin[1], begin[2]});
+    } else {
+      const auto element = static_cast<int>(whole(at + 1, elements));
+      all.records[term].push_back({element, {begin, begin + static_cast<std::ptrdiff_t>(count)}});
+    }
     at += 3 + count;
   }
-  for (TermMemory& records : all)
+  for (TermMemory& records : all.records)
     std::stable_sort(records.begin(), records.end(),
                      [](const TermRecord& a, const TermRecord& b) { return a.element < b.element; });
   return all;
@@ -87,7 +99,11 @@ void ForceTerms::begin(const State& state, int parts) {
 
 double ForceTerms::advance(double dt, const State& state) {
   double lost = 0;
-  for (Working& w : terms_) lost += w.term->advance(dt, state);
+  for (Working& w : terms_) {
+    const Happened now = w.term->advance(dt, state);
+    w.account.add({now.lost, 0, static_cast<double>(now.events)});
+    lost += now.lost;
+  }
   return lost;
 }
 
@@ -98,7 +114,7 @@ void ForceTerms::add(int part, const Segment& of, const ForceRows& out) {
 }
 
 // Parts and chunks in their order, whatever the threads.
-void ForceTerms::sum_up(Forces& out) const {
+void ForceTerms::sum_up(Forces& out, double passed) {
   out.term_energy.assign(copied_.size(), 0);
   for (std::size_t k = 0; k < terms_.size(); ++k) {
     TermSum all;
@@ -106,6 +122,7 @@ void ForceTerms::sum_up(Forces& out) const {
     for (const TermSum& sum : terms_[k].of_chunk) add_sum(all, sum);
     out.energy.terms += all.energy;
     out.damping_power += all.power;
+    terms_[k].account.drag -= passed * all.power;
     if (k < copied_.size()) out.term_energy[k] = all.energy;
   }
 }
@@ -140,22 +157,36 @@ void ForceTerms::add_in_kick(const State& state, const ForceRows& total, const S
     if (w.term->acts_in_kick()) w.term->add_in_kick(state, total, of, out);
 }
 
+std::vector<TermAccount> ForceTerms::accounts() const {
+  std::vector<TermAccount> all;
+  for (std::size_t k = 0; k < copied_.size(); ++k) all.push_back(terms_[k].account);
+  return all;
+}
+
 std::vector<double> ForceTerms::memory() const {
-  std::vector<TermMemory> all;
-  for (const Working& w : terms_) all.push_back(w.term->memory());
+  TermMemories all;
+  for (const Working& w : terms_) {
+    all.records.push_back(w.term->memory());
+    all.accounts.push_back(w.account);
+  }
   return numbers_of(all);
 }
 
-void ForceTerms::remember(const std::vector<double>& numbers, int elements) {
-  const std::vector<TermMemory> all = memories_of(numbers, terms_.size(), elements);
-  ROPEWALK_ENSURES(numbers_of(all).size() == numbers.size());
-  for (std::size_t k = 0; k < terms_.size(); ++k) terms_[k].term->remember(all[k]);
+void ForceTerms::remember(const std::vector<double>& numbers, int elements, bool with_accounts) {
+  const TermMemories all = memories_of(numbers, terms_.size(), elements);
+  for (std::size_t k = 0; k < terms_.size(); ++k) {
+    terms_[k].term->remember(all.records[k]);
+    terms_[k].account = with_accounts ? all.accounts[k] : TermAccount();
+  }
   stamp_ = 0;
 }
 
 std::vector<double> ForceTerms::halved_memory(const std::vector<int>& heirs) const {
-  std::vector<TermMemory> all;
-  for (const Working& w : terms_) all.push_back(w.term->halved(w.term->memory(), heirs));
+  TermMemories all;
+  for (const Working& w : terms_) {
+    all.records.push_back(w.term->halved(w.term->memory(), heirs));
+    all.accounts.push_back(w.account);
+  }
   return numbers_of(all);
 }
 

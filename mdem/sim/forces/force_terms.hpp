@@ -10,12 +10,18 @@
 
 namespace ropewalk {
 
-// The memories of several terms as one list of numbers: for each record the number of its term, its element, how
-// many numbers follow, and these. Lists of several processes may stand behind one another.
-std::vector<double> numbers_of(const std::vector<TermMemory>& memories);
-// Records in the order of their elements. Throws std::runtime_error if these are not the memories of `terms` terms
-// in a scene of `elements` elements.
-std::vector<TermMemory> memories_of(const std::vector<double>& numbers, std::size_t terms, int elements);
+// Of several terms.
+struct TermMemories {
+  std::vector<TermMemory> records;
+  std::vector<TermAccount> accounts;
+};
+
+// Memories as one list of numbers: for each record the number of its term, its element, how many numbers follow, and
+// these; an account stands as a record of the element -1. Lists of several processes may stand behind one another.
+std::vector<double> numbers_of(const TermMemories& memories);
+// Records in the order of their elements, accounts added up. Throws std::runtime_error if these are not the memories
+// of `terms` terms in a scene of `elements` elements.
+TermMemories memories_of(const std::vector<double>& numbers, std::size_t terms, int elements);
 
 class ForceTerms : private PairWork {
  public:
@@ -26,11 +32,12 @@ class ForceTerms : private PairWork {
 
   // Prepares the terms for a list that is new to them.
   void prepare(const Topology& topology, const NeighbourList& list, const State& state, bool again = false);
-  // In the order of one evaluation. advance() returns the energy that the terms have lost, eV.
+  // In the order of one evaluation. advance() returns the energy that the terms have lost, eV. `passed`: since the
+  // last evaluation, ps; none where this one is not of the way.
   void begin(const State& state, int parts);
   double advance(double dt, const State& state);
   void add(int part, const Segment& of, const ForceRows& out);
-  void sum_up(Forces& out) const;
+  void sum_up(Forces& out, double passed);
   // For the contact engine; null: no term acts on pairs.
   PairWork* pairs() { return reach() > 0 ? this : nullptr; }
 
@@ -39,9 +46,12 @@ class ForceTerms : private PairWork {
 
   void add_reference(const Topology& topology, const Interaction& in, const State& state, Forces& out) const;
 
+  // Of the interaction's own terms, one after another.
+  std::vector<TermAccount> accounts() const;
+
   std::vector<double> memory() const;
-  // prepare() then finds all lists new. Throws std::runtime_error.
-  void remember(const std::vector<double>& numbers, int elements);
+  // prepare() then finds all lists new. `with_accounts`: false in all processes but one. Throws std::runtime_error.
+  void remember(const std::vector<double>& numbers, int elements, bool with_accounts = true);
   std::vector<double> halved_memory(const std::vector<int>& heirs) const;
   std::size_t bytes() const;
 
@@ -49,6 +59,7 @@ class ForceTerms : private PairWork {
   struct Working {
     Cloned<ForceTerm> term;
     std::vector<TermSum> of_part, of_chunk;
+    TermAccount account = {};
   };
   double reach() const override;
   void start(std::size_t chunks) override;

@@ -31,9 +31,10 @@ std::size_t ForceEngine::bytes() const {
   return 3 * axis_.size() * sizeof(double) + (contact_ ? contact_->bytes() : 0) + terms_.bytes();
 }
 
-void ForceEngine::remember(const Interaction& interaction, const std::vector<double>& memory, int elements) {
+void ForceEngine::remember(const Interaction& interaction, const std::vector<double>& memory, int elements,
+                           bool with_accounts) {
   use_terms(interaction);
-  terms_.remember(memory, elements);
+  terms_.remember(memory, elements, with_accounts);
 }
 
 // A contact engine has listed the pairs of the terms that were there before.
@@ -111,7 +112,7 @@ void ForceEngine::compute(const Topology& topology, const Interaction& interacti
   out.energy = {all.energy.stretch, all.energy.shear, all.energy.bend, all.energy.twist,
                 contact ? contact->energy() : 0, 0};
   out.damping_power = all.power;
-  if (options.parts != Parts::bonds) terms_.sum_up(out);
+  if (options.parts != Parts::bonds) terms_.sum_up(out, options.passed.value_or(0));
   out.slipping_bond = all.slipping;
   const double spent = omp_get_wtime() - began,
                finished = contact ? contact->finish_seconds() - finished_before : spent;

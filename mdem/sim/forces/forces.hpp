@@ -107,7 +107,8 @@ class ForceEngine {
   // Goes on with the memories of another engine, for the same list.
   void take_terms_of(const ForceEngine& other) { terms_ = other.terms_; }
   // Goes on with these memories, ForceTerms::memory(). Throws std::runtime_error.
-  void remember(const Interaction& interaction, const std::vector<double>& memory, int elements);
+  void remember(const Interaction& interaction, const std::vector<double>& memory, int elements,
+                bool with_accounts = true);
   // Makes the terms ready for a list that a state with this memory has had before.
   void prepare_again(const Topology& topology, const NeighbourList& list, const State& state) {
     terms_.prepare(topology, list, state, true);

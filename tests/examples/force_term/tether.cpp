@@ -123,6 +123,10 @@ TEST(Tether, TheAccountOfEnergyStaysClosedAlsoWhereOneBreaks) {
       EXPECT_NEAR(s.total_energy() - s.account().supplied(), total, 2e-3 * (1 + first + s.work())) << n;
     }
     EXPECT_GT(s.dissipated(), 0.01);
+    const TermAccount account = s.term_accounts().at(0);
+    EXPECT_EQ(account.events, broke ? 1 : 0);
+    EXPECT_EQ(account.lost > 0, broke);
+    EXPECT_LE(account.lost, s.dissipated());
     return broke;
   };
   EXPECT_FALSE(run(tether(to_point, "rest_nm = 1\n")));
@@ -216,8 +220,8 @@ TEST(Tether, HasItsColumnInTheLog) {
   EXPECT_THAT(scene_key_help(), HasSubstr("[[tether]]"));
   Scene scene = rope(tether(to_point, "rest_nm = 1\n"));
   Simulation s = simulation_of(scene);
-  const auto energies = term_energies(s.interaction(), s.forces().term_energy);
-  EXPECT_EQ(energies.at("tether"), s.forces().energy.terms);
+  const auto readings = term_readings(s.interaction(), s.forces().term_energy, s.term_accounts());
+  EXPECT_EQ(readings.at("tether").energy, s.forces().energy.terms);
 }
 
 TEST(Tether, BadOnesAreRefused) {

@@ -1,4 +1,6 @@
 // Sweeps: their points, names and refusals.
+#include "campaign/sweep_file.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -6,7 +8,6 @@
 #include <fstream>
 #include <set>
 
-#include "campaign/sweep_file.hpp"
 #include "model/error.hpp"
 
 namespace ropewalk {
@@ -101,11 +102,17 @@ TEST_F(SweepFile, BranchesShareAStart) {
   ASSERT_EQ(points.size(), 4u);
   EXPECT_EQ(points[0].start, "tubes-7");
   EXPECT_EQ(points[3].start, "tubes-19");
-  EXPECT_EQ(starts_of(sweep(text)).size(), 2u);
+  EXPECT_EQ(starts_of(sweep(text), points).size(), 2u);
 }
 
 TEST_F(SweepFile, WrongOnesGetOneClearLine) {
+  EXPECT_THAT(names("combine = \"zip\"\n[vary]\nrope.tubes = [7, 7, 19]\nrope.length_nm = [20, 30, 30]\n"),
+              ElementsAre("tubes-7_length_nm-20", "tubes-7_length_nm-30", "tubes-19_length_nm-30"));
   const std::pair<const char*, const char*> wrong[] = {
+      {"combine = \"zip\"\n[vary]\nrope.tubes = [7, 7]\nrope.length_nm = [20, 20]\n", "two points would be named"},
+      {"[threshold]\nkey = \"a.b\"\nfrom = 3\nto = 4\nabove = 1\nshape = \"helix\"\n",
+       "above: stands beside shape"},
+      {"[threshold]\nkey = \"a.b\"\nfrom = 3\nto = 4\nshape = \"helx\"\n", "helix"},
       {"", "vary: is missing or empty"},
       {"[vary]\nrope.tubes = 7\n", "rope.tubes: is one value"},
       {"[vary]\nrope.tubes = []\n", "is an empty list"},

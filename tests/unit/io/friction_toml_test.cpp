@@ -3,7 +3,11 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <filesystem>
+
+#include "io/files.hpp"
 #include "model/error.hpp"
 #include "scene/scene_toml.hpp"
 
@@ -11,6 +15,7 @@ namespace ropewalk {
 namespace {
 
 using ::testing::HasSubstr;
+namespace fs = std::filesystem;
 
 const std::string valid =
     "[meta]\nformat = \"ropewalk-friction-1\"\nname = \"mine\"\nchirality_a = [10, 10]\nchirality_b = [17, "
@@ -68,13 +73,32 @@ TEST(FrictionToml, KindsOfPairs) {
 
 TEST(FrictionToml, ShippedOnesServeTheirTubesAndThoseNearThem) {
   const InputError::Place place{"scene.toml", 1, "friction.from"};
-  const PairFriction own = friction_between({17, 0}, {10, 10}, place);
+  const PairFriction own = friction_between({17, 0}, {10, 10}, {}, place);
   EXPECT_EQ(kind_of_pair(own.a, own.b), "unlike");
   EXPECT_EQ(own.a.n + own.b.n, 27);
-  const PairFriction near = friction_between({12, 12}, {12, 12}, place);
+  const PairFriction near = friction_between({12, 12}, {12, 12}, {}, place);
   EXPECT_EQ(near.a.n, 10);
   EXPECT_EQ(near.b.m, 10);
   EXPECT_GT(near.strength, 20 * own.strength) << "like tubes hold each other, unlike ones slide";
+}
+
+// A user's own file serves its pair before a shipped one, and is found by its name.
+TEST(FrictionToml, OwnFilesStandBesideTheScene) {
+  const fs::path folder = fs::temp_directory_path() / ("ropewalk-friction-" + std::to_string(::getpid()));
+  fs::create_directories(folder);
+  const InputError::Place place{"scene.toml", 1, "friction.from"};
+  write_file_atomically((folder / "friction-mine.toml").string(), with("name = \"mine\"", "name = \"friction-mine\""));
+  const std::vector<std::string> folders = {folder.string()};
+  EXPECT_EQ(friction_between({10, 10}, {17, 0}, folders, place).name, "friction-mine");
+  EXPECT_EQ(friction_between({10, 10}, {10, 10}, folders, place).name, "friction-10-10-10-10-tersoff");
+  EXPECT_EQ(find_friction("friction-mine", folders, place).name, "friction-mine");
+  EXPECT_EQ(find_friction("friction-mine.toml", folders, place).name, "friction-mine");
+  // As in the directory of a run.
+  fs::rename(folder / "friction-mine.toml", folder / "friction-0.toml");
+  EXPECT_EQ(find_friction("elsewhere/friction-mine.toml", folders, place).name, "friction-mine");
+  fs::rename(folder / "friction-0.toml", folder / "other.toml");
+  EXPECT_THROW(find_friction("other.toml", folders, place), InputError) << "two names";
+  fs::remove_all(folder);
 }
 
 TEST(FrictionToml, AScenesFrictionComesFromAtomsAndSaysWhatIsAnEstimate) {

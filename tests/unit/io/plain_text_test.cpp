@@ -82,7 +82,7 @@ TEST(PlainText, ACellIsNoFormula) {
 
 TEST(Cluster, FilesHoldNamesAsData) {
   const std::string odd = "it's $(touch pwned) `x` \"y\"";
-  const SweepPoint point{"tubes-7", {}, "", "", {}, "", 1};
+  const SweepPoint point{"tubes-7", {}, "", "", {}, {}, "", 1};
   const std::string program = "/a b/ropewalk";
   const std::string slurm = slurm_script(program, "/" + odd, {"/c d"}, 1000, " --again");
   EXPECT_NE(slurm.find("#SBATCH --array=1-1000\n"), std::string::npos) << slurm;

@@ -40,23 +40,6 @@ TEST(Growth, OscillationAboutGrowthCountsAsFewValues) {
   EXPECT_GT(g.error, 2e-4);  // 1.7e-4 if all rows were independent
 }
 
-TEST(Threshold, SquareOfTheRateGoesToZero) {
-  std::vector<Trial> trials;
-  for (const double m : {30.0, 41.0, 43.0, 46.0, 60.0, 100.0}) {
-    Trial t;
-    t.value = m;
-    t.passed = m > 41;
-    if (t.passed) t.rate = std::sqrt((m - 40) / 1000) * (m > 90 ? 5 : 1), t.error = 1e-4;
-    trials.push_back(t);
-  }
-  const auto found = growth_threshold(trials);
-  ASSERT_TRUE(found);
-  EXPECT_NEAR(found->critical, 40, 1e-9);
-  EXPECT_EQ(found->runs, 3u) << "without the one far above";
-  trials[3].rate.reset();
-  EXPECT_FALSE(growth_threshold(trials)) << "two runs have no error";
-}
-
 TEST(Threshold, PowerLawWithItsError) {
   const auto law = power_law({1, 2, 4, 8}, {10, 5, 2.5, 1.25});
   ASSERT_TRUE(law);
@@ -77,7 +60,7 @@ LogRow row(double time, double amplitude) {
 TEST(Trial, GrowthIsThatUnderTheWholeLoadAndClearOfTheStart) {
   std::vector<LogRow> log;
   for (int k = 0; k <= 100; ++k) log.push_back(row(k, k < 20 ? 0.02 : 0.02 * std::exp(0.05 * (k - 20))));
-  const ThresholdQuestion q{"twist.moment_nN_nm", "amplitude_nm", 0, 1, 1.0, 0.02};
+  ThresholdQuestion q{"twist.moment_nN_nm"};
   const Trial t = trial_of(log, q, 30, 0.02, 10, true);
   EXPECT_TRUE(t.passed);
   EXPECT_EQ(t.time, 99);  // 0.02 exp(0.05 x 79) = 1.04
@@ -90,6 +73,34 @@ TEST(Trial, GrowthIsThatUnderTheWholeLoadAndClearOfTheStart) {
     EXPECT_FALSE(none.passed);
     EXPECT_EQ(none.cut_short, by_a_rule);
     EXPECT_EQ(none.time, by_a_rule ? log[49]["time_ps"] : 0);
+  }
+}
+
+// A rope whose centre line leaves its chord by `amplitude` in all of its length, or at its open ends alone.
+LogRow rope_row(double time, double amplitude, bool open_ends) {
+  LogRow r = row(time, amplitude);
+  r["radius_mid_nm"] = 4.14;
+  r["radius_end_nm"] = open_ends ? 20 : 4.14;
+  r["middle_amplitude_nm"] = open_ends ? 0.1 : amplitude;
+  r["geometric_twist_deg"] = time < 20 ? 100 : 720;
+  return r;
+}
+
+TEST(Trial, AHelixIsNoBrush) {
+  for (const bool open_ends : {false, true}) {
+    std::vector<LogRow> log;
+    for (int k = 0; k <= 80; ++k) log.push_back(rope_row(k, 0.05 * k, open_ends && k > 30));
+    ThresholdQuestion q{"twist.moment_nN_nm"};
+    const Trial by_amplitude = trial_of(log, q, 30, 0.02, 20, false);
+    EXPECT_TRUE(by_amplitude.passed);
+    EXPECT_EQ(by_amplitude.time, 21);
+    q.shape = RopeShape::helix;
+    const Trial t = trial_of(log, q, 30, 0.02, 20, false);
+    EXPECT_EQ(t.passed, !open_ends);
+    EXPECT_EQ(t.shape, open_ends ? "brush" : "helix");
+    EXPECT_EQ(t.time, open_ends ? 0 : 42);  // half of the radius
+    ASSERT_TRUE(t.turn);
+    EXPECT_NEAR(*t.turn, 4 * units::pi, 1e-12) << "under the whole load";
   }
 }
 
@@ -128,6 +139,15 @@ TEST(StopWatch, KnowsWhenAQuestionIsDecided) {
   EXPECT_THAT(watch.decided({}), ::testing::HasSubstr("decided at 2 ps: amplitude_nm is 3, above 2"));
   watch.cut(15);
   EXPECT_EQ(watch.decided({}), "");
+  StopRule helix;
+  helix.when = StopRule::When::shape;
+  StopWatch shapes({helix});
+  for (const double amplitude : {0.02, 2.0}) {
+    shapes.add(rope_row(0, amplitude, false));
+    EXPECT_EQ(shapes.decided({}), "");
+  }
+  shapes.add(rope_row(3, 2.1, false));
+  EXPECT_EQ(shapes.decided({}), "decided at 3 ps: the shape of the rope is helix");
 }
 
 Threshold bracket_of(const std::vector<std::pair<double, bool>>& outcomes) {
@@ -163,6 +183,8 @@ TEST(ThresholdOfSeeds, IsNoMeanWhereSomeLieOutsideOfTheRange) {
   point.seeds = {bracket_of({{1, false}, {9, true}, {5, false}}), bracket_of({{1, false}, {9, true}, {5, true}})};
   EXPECT_NEAR(point.by_bisection(), 5, 1e-12);
   EXPECT_EQ(point.remarks(), "");
+  EXPECT_TRUE(point.begun());
+  EXPECT_FALSE(PhasePoint().begun());
   point.seeds.push_back(bracketed({}, 1, 9));  // has not begun
   EXPECT_NEAR(point.by_bisection(), 5, 1e-12);
   EXPECT_EQ(point.outside_seeds(), 0u);
@@ -172,21 +194,6 @@ TEST(ThresholdOfSeeds, IsNoMeanWhereSomeLieOutsideOfTheRange) {
   EXPECT_THAT(point.remarks(), ::testing::HasSubstr("the same in all of the range with 1 of 3 seeds"));
   point.seeds[0].trials[0].cut_short = true;
   EXPECT_THAT(point.remarks(), ::testing::HasSubstr("1 run was ended by a [[stop]] of the scene"));
-}
-
-TEST(GrowthThresholdOfAFallingOutcome, IsAboveTheRunsThatPassed) {
-  std::vector<Trial> trials;
-  for (const double value : {2.0, 8.0, 9.0, 9.5, 10.5}) {
-    Trial t;
-    t.value = value;
-    t.passed = value < 10;
-    if (t.passed) t.rate = value < 5 ? 9 : std::sqrt((10 - value) / 4), t.error = 0.01 * *t.rate;
-    trials.push_back(t);
-  }
-  const auto found = growth_threshold(trials);
-  ASSERT_TRUE(found);
-  EXPECT_NEAR(found->critical, 10, 1e-9);
-  EXPECT_EQ(found->runs, 3u);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 
 #include "io/files.hpp"
 #include "io/parameters_toml.hpp"
+#include "io/removal.hpp"
 #include "model/error.hpp"
 
 namespace ropewalk::validate {
@@ -66,7 +67,7 @@ const RelaxedTube& MdSession::relaxed() {
   progress(fmt::format("relaxing {}", tube_name(set_)));
   const std::string folder =
       (fs::path(folder_) / fmt::format("relax-{}-{}", set_.chirality.n, set_.chirality.m)).string();
-  fs::remove_all(folder);
+  make_work_folder(folder, "");
   calibrate::RunContext run = context_of(folder);
   relaxed_ = calibrate::relax_tube(run);
   inputs_ += read_file(folder + "/relax.data") + read_file(folder + "/relax.in");

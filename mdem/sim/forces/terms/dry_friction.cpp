@@ -107,7 +107,7 @@ class DryFrictionTerm : public ForceTerm {
   }
 
   // In blocks of contacts, whose sums are added up in their order whatever the threads.
-  double advance(double, const State& state) override {
+  Happened advance(double, const State& state) override {
     const auto blocks = static_cast<std::ptrdiff_t>((contacts_.size() + block - 1) / block);
     std::vector<Advanced> advanced(static_cast<std::size_t>(blocks));
 #pragma omp parallel for schedule(static) if (contacts_.size() > parallel_from)
@@ -119,11 +119,12 @@ class DryFrictionTerm : public ForceTerm {
     }
     Advanced all;
     for (const Advanced& of : advanced) {
-      all.lost += of.lost;
+      all.happened.lost += of.happened.lost;
+      all.happened.events += of.happened.events;
       all.others = all.others || of.others;
     }
     if (all.others) index();
-    return all.lost;
+    return all.happened;
   }
 
   TermSum add(const State&, const Segment& part, const ForceRows& out) const override {
@@ -166,7 +167,7 @@ class DryFrictionTerm : public ForceTerm {
       const std::vector<double>& x = r.numbers;
       if (x.size() != 9 || !std::all_of(x.begin(), x.end(), [](double v) { return std::isfinite(v); }) ||
           !(x[0] >= 0 && x[0] < tube_begin_.back()) || x[0] != std::floor(x[0]) || (x[8] != 0 && x[8] != 1) ||
-          std::hypot(x[1], x[2]) > 1.001 * law_.elastic_slip)
+          (!law_.corrugated && std::hypot(x[1], x[2]) > 1.001 * law_.elastic_slip))
         throw std::runtime_error("the memory of friction is damaged");
     }
     remembered_ = memory;
@@ -196,7 +197,7 @@ class DryFrictionTerm : public ForceTerm {
  private:
   static constexpr std::size_t block = 512;
   struct Advanced {
-    double lost = 0;      // eV
+    Happened happened;
     bool others = false;  // elements of contacts have changed
   };
   // The contacts of each element.
@@ -288,6 +289,17 @@ class DryFrictionTerm : public ForceTerm {
     c.placed = true;
   }
 
+  // Of a slip, over the stiffness: nm^2, nm.
+  struct Potential {
+    double value = 0, slope = 0;
+  };
+  Potential potential(double z) const {
+    if (!law_.corrugated) return {0.5 * z * z, z};
+    const double delta = law_.elastic_slip;
+    return {delta * delta * (1 - std::cos(z / delta)), delta * std::sin(z / delta)};
+  }
+  double periods(double z) const { return std::floor(z / (2 * units::pi * law_.elastic_slip) + 0.5); }
+
   // A slip that costs nothing is none.
   Now now_of(const Contact& c, const State& state) const {
     const Pair p = pair_of(c.a, c.b, state);
@@ -301,7 +313,8 @@ class DryFrictionTerm : public ForceTerm {
     if (stiff_s > 0) now.z = c.z + p.s - c.s;
     if (stiff_g > 0)
       now.y = c.y + r_a * turned(c.of_a, p.of_a) + (p.cosine > 0 ? r_b : -r_b) * turned(c.of_b, p.of_b);
-    double along = -stiff_s * now.z, turning = -stiff_g * now.y, power = 0;
+    const Potential of_z = potential(now.z), of_y = potential(now.y);
+    double along = -stiff_s * of_z.slope, turning = -stiff_g * of_y.slope, power = 0;
     if (law_.drag > 0) {
       const auto a = static_cast<std::size_t>(c.a), b = static_cast<std::size_t>(c.b);
       const double eta = law_.drag * element(c.a).length, v = p.rate(state, a, b, p.along_a, p.along_b),
@@ -312,7 +325,7 @@ class DryFrictionTerm : public ForceTerm {
     }
     const Vector3 v_a = along * p.along_a + turning * p.turning_a, v_b = along * p.along_b + turning * p.turning_b;
     now.action = {v_a + v_b, p.w.cross(v_a), p.w.cross(v_b),
-                  0.5 * (stiff_s * now.z * now.z + stiff_g * now.y * now.y), power};
+                  stiff_s * of_z.value + stiff_g * of_y.value, power};
     return now;
   }
 
@@ -320,9 +333,13 @@ class DryFrictionTerm : public ForceTerm {
     Contact& c = contacts_[k];
     Now& now = now_[k];
     const double squared = now.z * now.z + now.y * now.y;
+    const double limit = law_.elastic_slip * law_.elastic_slip;
     double lost = 0;
-    bool acts_otherwise = false;
-    if (squared > law_.elastic_slip * law_.elastic_slip) {
+    bool acts_otherwise = false, begins_to_slide = false;
+    if (law_.corrugated) {
+      begins_to_slide = periods(now.z) != periods(c.z) || periods(now.y) != periods(c.y);
+    } else if (squared > limit) {
+      begins_to_slide = c.z * c.z + c.y * c.y < (1 - 1e-9) * limit;
       const double part = law_.elastic_slip / std::sqrt(squared), stiff_s = stiff_along(c),
                    stiff_g = stiff_turning(c);
       // The work of sliding under the strength.
@@ -342,12 +359,14 @@ class DryFrictionTerm : public ForceTerm {
     }
     if (now.apart) all.others = c.over = true;
     if (c.over) {
-      lost += 0.5 * (stiff_along(c) * c.z * c.z + stiff_turning(c) * c.y * c.y);
+      lost += stiff_along(c) * potential(c.z).value + stiff_turning(c) * potential(c.y).value;
       c.z = c.y = 0;
     } else if (acts_otherwise) {
       now = now_of(c, state);
     }
-    if (element(c.a).own) all.lost += lost;
+    if (!element(c.a).own) return;
+    all.happened.lost += lost;
+    all.happened.events += begins_to_slide;
   }
 
   // To the element of b's tube that a faces now. The slips stay. False: there is none.

@@ -1,5 +1,5 @@
-// Dry friction of parallel tubes in contact, per length: an elastic slip up to a strength, then sliding at it, with
-// a drag.
+// Friction of parallel tubes in contact, per length: an elastic slip up to a strength, then sliding at it, or a
+// corrugation with this strength; and a drag.
 //
 // Each element a of one tube has a contact with the element b of another tube which it faces. Two lengths, measured
 // on the tubes themselves, say how far the surfaces have slipped:
@@ -14,6 +14,13 @@
 //
 // Forces and torques are minus the derivatives of U. A step that leads beyond delta cuts (z, y) back to delta in
 // the same direction: the work of sliding under the strength is lost.
+//
+// Or nothing is lost, and the strength is the largest force of a corrugation of the period 2 pi delta:
+//
+//   U = K_s delta^2 (1 - cos(z/delta)) + K_g delta^2 (1 - cos(y/delta))
+//
+// with z = s and y = g from where the contact began. The laws agree for small slips. Smooth tubes that are led past each
+// other have the corrugation: their force comes back in each period, and its mean is the drag.
 //
 //   K_s = (F_s l + n F_end)/delta,   K_g = F_g l/delta
 //
@@ -41,6 +48,7 @@ struct DryFriction {
   double end = 0;           // F_end, eV/nm: of each end of a tube beside another one
   double elastic_slip = 0;  // delta, nm
   double drag = 0;          // eta, eV ps/nm^3
+  bool corrugated = false;  // the second potential
   std::vector<int> types;   // the two types of tubes between which it acts; none: between all
 };
 

@@ -1,0 +1,186 @@
+#include "plan/sliding_rope.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <complex>
+
+#include "scene/loads/twist.hpp"
+#include "scene/source.hpp"
+
+namespace ropewalk {
+namespace {
+
+using Eigen::MatrixXcd;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using Complex = std::complex<double>;
+
+constexpr int slip_waves = 64;                 // Legendre polynomials of the slip, which turns with the winding
+constexpr double tilting = 4.493409457909064;  // tan x = x
+constexpr double most_over_static = 100;       // moments beyond are not looked for
+
+// Legendre polynomials of the deflection, whose growing motions turn by up to 3 mu/4. Rates are right to 1e-5.
+int waves_of(double mu) { return static_cast<int>(std::clamp(12 + 0.5 * mu, 16.0, 40.0)); }
+
+// Nodes and weights of Gauss and Legendre on [0, 1], by the eigenvectors of the recurrence of the polynomials.
+struct Quadrature {
+  VectorXd at, weight;
+};
+Quadrature gauss_legendre(int n) {
+  MatrixXd recurrence = MatrixXd::Zero(n, n);
+  for (int k = 1; k < n; ++k) recurrence(k, k - 1) = recurrence(k - 1, k) = k / std::sqrt(4.0 * k * k - 1);
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> solved(recurrence);
+  return {0.5 * (solved.eigenvalues().array() + 1), solved.eigenvectors().row(0).cwiseAbs2().transpose()};
+}
+
+// Polynomials of Legendre on [0, 1], a row each, and their first two derivatives at the nodes.
+struct Basis {
+  Quadrature nodes = gauss_legendre(96);
+  MatrixXd value, slope, curvature;
+  MatrixXd bending, turning;  // <v'', u''> and <v'', u'>
+  VectorXd norm;              // <v, v>
+
+  Basis() {
+    const Eigen::Index q = nodes.at.size();
+    value = slope = curvature = MatrixXd::Zero(slip_waves, q);
+    value.row(0).setOnes();
+    value.row(1) = 2 * nodes.at.transpose().array() - 1;
+    slope.row(1).setConstant(2);
+    for (int n = 1; n + 1 < slip_waves; ++n) {
+      value.row(n + 1) = ((2 * n + 1) * value.row(1).cwiseProduct(value.row(n)) - n * value.row(n - 1)) / (n + 1);
+      slope.row(n + 1) = slope.row(n - 1) + 2 * (2 * n + 1) * value.row(n);
+      curvature.row(n + 1) = curvature.row(n - 1) + 2 * (2 * n + 1) * slope.row(n);
+    }
+    norm = VectorXd(slip_waves);
+    for (int n = 0; n < slip_waves; ++n) norm(n) = 1.0 / (2 * n + 1);
+    const MatrixXd weighted = curvature * nodes.weight.asDiagonal();
+    bending = weighted * curvature.transpose();
+    turning = weighted * slope.transpose();
+  }
+};
+const Basis& basis() {
+  static const Basis made;
+  return made;
+}
+
+// <a_v - mean, a_u - mean> for the winding `turn` (rad from end to end). The integral of a polynomial is
+// int_0^x P_j = (P_j+1 - P_j-1)/(4 j + 2) and (P_1 + P_0)/2 for j = 0; P_0 is the mean.
+MatrixXcd slip_of(double turn, int waves) {
+  const Basis& b = basis();
+  const Eigen::VectorXcd phase = (Complex(0, -turn) * b.nodes.at.cast<Complex>()).array().exp();
+  MatrixXcd series = b.curvature.topRows(waves).cast<Complex>() *
+                     (phase.array() * b.nodes.weight.array().cast<Complex>()).matrix().asDiagonal() *
+                     b.value.transpose().cast<Complex>();
+  series.array().rowwise() /= b.norm.transpose().array().cast<Complex>();
+  MatrixXcd whole = MatrixXcd::Zero(waves, slip_waves);
+  for (int j = 0; j < slip_waves; ++j) {
+    if (j + 1 < slip_waves) whole.col(j + 1) += series.col(j) / (4.0 * j + 2);
+    if (j > 1) whole.col(j - 1) -= series.col(j) / (4.0 * j + 2);
+  }
+  return whole.conjugate() * b.norm.cast<Complex>().asDiagonal() * whole.transpose();
+}
+
+// The largest real part of lambda with lambda^2 c + lambda z D c + (K - i mu G) c = 0, in units of L^2 (m/B)^1/2.
+double fastest(double mu, double z, double winding) {
+  const Basis& b = basis();
+  const int waves = waves_of(mu);
+  const VectorXd inverse = b.norm.head(waves).cwiseInverse();
+  MatrixXcd system = MatrixXcd::Zero(2 * waves, 2 * waves);
+  system.topRightCorner(waves, waves).setIdentity();
+  system.bottomLeftCorner(waves, waves) = inverse.cast<Complex>().asDiagonal() *
+                                          (Complex(0, mu) * b.turning.topLeftCorner(waves, waves).cast<Complex>() -
+                                           b.bending.topLeftCorner(waves, waves).cast<Complex>());
+  if (z > 0)
+    system.bottomRightCorner(waves, waves) =
+        -z * inverse.cast<Complex>().asDiagonal() * slip_of(mu * winding, waves);
+  return Eigen::ComplexEigenSolver<MatrixXcd>(system, false).eigenvalues().real().maxCoeff();
+}
+
+}  // namespace
+
+double SlidingRope::static_moment() const { return 2 * tilting * bend / length; }
+
+double SlidingRope::growth(double moment, double winding) const {
+  if (moment <= static_moment()) return 0;  // the eigenvalues there are zero, and their errors are not
+  const double time = length * length * std::sqrt(mass / bend);
+  return std::max(0.0, fastest(moment * length / bend, slip / std::sqrt(mass * bend), winding)) / time;
+}
+
+// The integral over the ramp by Gauss's rule in the root of the moment beyond the static one, in which the rate of
+// an undamped rope is straight.
+double SlidingRope::gain(double moment, double winding, double rate, double hold) const {
+  const double least = static_moment();
+  if (moment <= least) return 0;
+  double sum = growth(moment, winding) * hold;
+  if (!(rate > 0)) return sum;
+  static const Quadrature rule = gauss_legendre(4);
+  const double reach = std::sqrt(moment - least);
+  for (Eigen::Index k = 0; k < rule.at.size(); ++k) {
+    const double root = reach * rule.at(k);
+    sum += rule.weight(k) * growth(least + root * root, winding) * 2 * root * reach / rate;
+  }
+  return sum;
+}
+
+double SlidingRope::moment_of_gain(double wanted, double winding, double rate, double hold) const {
+  double below = static_moment(), above = 1.05 * below;
+  while (gain(above, winding, rate, hold) < wanted && above < most_over_static * static_moment())
+    below = above, above *= 1.25;
+  while (above - below > 1e-3 * above) {
+    const double middle = 0.5 * (below + above);
+    (gain(middle, winding, rate, hold) < wanted ? below : above) = middle;
+  }
+  return 0.5 * (below + above);
+}
+
+double HelixTheory::moment_to_pass(double amplitude, double winding) const {
+  if (!grows || !(first_amplitude > 0) || !(amplitude > first_amplitude)) return 0;
+  return tubes_in_unit * rope.moment_of_gain(std::log(amplitude / first_amplitude), winding, rate, hold);
+}
+
+double HelixTheory::growth(double moment, double winding) const {
+  return grows ? rope.growth(moment / tubes_in_unit, winding) : 0;
+}
+
+double HelixTheory::winding_of(double turn, double moment) const {
+  return turn / (moment / tubes_in_unit * rope.length / rope.bend);
+}
+
+std::optional<HelixTheory> helix_theory(const Scene& scene, const Prepared& p) {
+  const auto twists = scene.drives_of<TwistDrive>();
+  if (!scene.source->is_parallel() || scene.sets.size() > 1 || twists.size() != 1) return {};
+  const TwistLoad& load = twists.front()->load;
+  if (load.application != TwistLoad::Application::couple || load.geometric_only) return {};
+  const int tubes = p.topology.tubes();
+  const TubeType& tube = p.topology.type_of(0);
+  const double a = tube.element_length;
+  HelixTheory out;
+  SlidingRope& rope = out.rope;
+  rope.length = p.topology.length_of(0) * a;
+  rope.bend = tube.bond.bend;
+  rope.mass = tube.mass / a;
+  const ContactViscosity& viscosity = p.interaction.damping.contact;
+  const int reach = static_cast<int>(viscosity.outer / a) + 1;
+  const auto place_of = [&](int t) -> Eigen::Vector2d {
+    return Vector3(p.state.position[static_cast<std::size_t>(p.topology.tube_begin[t])]).head<2>();
+  };
+  for (int t = 0; t < tubes; ++t) {
+    out.glued_over_sliding += tube.bond.stretch * place_of(t).squaredNorm() / (2 * tubes * rope.bend);
+    for (int u = t + 1; u < tubes && viscosity.eta > 0; ++u) {
+      const double apart2 = (place_of(t) - place_of(u)).squaredNorm();
+      for (int k = -reach; k <= reach; ++k)
+        rope.slip += viscosity.eta * viscosity.weight(std::sqrt(apart2 + k * k * a * a)) * apart2 / (2 * a * tubes);
+    }
+  }
+  out.tubes_in_unit = load.reading == MomentRamp::Reading::per_tube ? 1 : tubes;
+  out.static_moment =
+      out.tubes_in_unit * (load.lateral_free ? rope.static_moment() : 2 * units::pi * rope.bend / rope.length);
+  out.grows = load.lateral_free && scene.damping.local == 0 && !scene.bath() && p.interaction.terms.empty();
+  out.rate = load.rate / out.tubes_in_unit;
+  out.hold = p.duration - load.ramp_time();
+  out.first_amplitude = scene.start.half_waves == 1 ? 0.5 * scene.start.wave : 0;
+  return out;
+}
+
+}  // namespace ropewalk
