@@ -138,7 +138,7 @@ int main(int argc, char** argv) {
   add_calibrate(app, verbs);
   add_verbs(app, verbs);
   const std::vector<std::string> sets = shipped_sets();
-  add_describe(app, {"ropewalk-calibrate", version, "", {}, {{"show", sets}, {"friction", sets}}});
+  add_describe(app, {"ropewalk-calibrate", version, "", nlohmann::ordered_json::object(), {{"show", sets}, {"friction", sets}}});
   catch_interrupts();
   try {
     refuse_control_characters(argv);

@@ -657,7 +657,7 @@ TEST_F(Cli, ResumeRefusesALogOfOtherColumns) {
   const Outcome o = run("resume d");
   EXPECT_EQ(o.code, 2);
   EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << o.err;
-  EXPECT_NE(o.err.find("log.csv:1: column 39 of the header is \"beta_rad\", \"beta_deg\" is needed"),
+  EXPECT_NE(o.err.find("log.csv:1: column 40 of the header is \"beta_rad\", \"beta_deg\" is needed"),
             std::string::npos)
       << o.err;
   EXPECT_EQ(slurp(dir / "d/log.csv"), log) << "nothing is written";

@@ -51,7 +51,7 @@ completes "refine" run x.toml --on-limit re
 completes "cnt-6-4-tersoff cnt-6-6-tersoff" energy --parameters cnt-6
 completes "cnt-6-4-tersoff cnt-6-6-tersoff" calibrate show cnt-6
 completes "friction" calibrate fric
-completes "seven.toml" check sev
+completes "seven seven.toml" check sev
 for program in ropewalk ropewalk-calibrate ropewalk-validate; do
   for file in "share/man/man1/$program.1" "share/zsh/vendor-completions/_$program" \
     "share/fish/vendor_completions.d/$program.fish"; do
