@@ -33,7 +33,7 @@ class Surroundings : public Cli {
 
   // Exit code 1000: it did not end.
   Outcome soon(const std::string& arguments, const std::string& before = "") const {
-    return run(arguments, before + " timeout -s KILL 30");
+    return run(arguments, before + " timeout -s KILL 180");
   }
 
   // Names, kinds and contents of everything in a folder.
@@ -50,12 +50,12 @@ class Surroundings : public Cli {
     return all;
   }
 
-  // The script is killed after a minute.
+  // The script is killed after four minutes.
   Outcome script(const std::string& commands) const {
     spit(dir / "script.sh", fmt::format("cd '{}'\nPATH='{}':$PATH\n{}\n", dir.string(),
                                         fs::path(ROPEWALK_PROGRAM).parent_path().string(), commands));
     const int status = std::system(
-        fmt::format("timeout 60 bash '{0}/script.sh' > '{0}/stdout.txt' 2> '{0}/stderr.txt'", dir.string())
+        fmt::format("timeout 240 bash '{0}/script.sh' > '{0}/stdout.txt' 2> '{0}/stderr.txt'", dir.string())
             .c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : 1000, slurp(dir / "stdout.txt"), slurp(dir / "stderr.txt")};
   }
