@@ -122,8 +122,9 @@ void ForceTerms::sum_up(Forces& out, double passed) {
     for (const TermSum& sum : terms_[k].of_chunk) add_sum(all, sum);
     out.energy.terms += all.energy;
     out.damping_power += all.power;
+    if (k >= copied_.size()) continue;
+    out.term_energy[k] = all.energy;
     terms_[k].account.drag -= passed * all.power;
-    if (k < copied_.size()) out.term_energy[k] = all.energy;
   }
 }
 
