@@ -208,7 +208,7 @@ std::string gathered_csv(const CampaignDirectory& dir, const Sweep& sweep, const
 
 namespace {
 
-// The tasks of a job array may start in another folder.
+// A script for a cluster names absolute paths, since a task of a job array may start in another folder.
 std::string absolute_quoted(const std::string& path) {
   return shell_quoted(fs::absolute(path).lexically_normal().string());
 }

@@ -1,19 +1,16 @@
 // The shape that a twisted rope has taken, by name.
 //
 //   straight   none of the others
-//   spindle    wider in its middle, by more than a tenth of the radius at the start, but closed: between its tubes
-//   the
-//              voids are less than a twentieth of its section at the start
-//   cage       likewise, with more voids: the tubes have parted
-//   helix      its centre line, without a tenth at either end, lies off its chord by more than half of its radius
-//   (at the
-//              start or now, the larger); closed voids and open ends move the line of a straight rope by less
-//   brush      its ends are open: more than 1.5 times as wide as its middle and as at the start. Its centre line
-//   there is
-//              a mean over tubes that stand in all directions, and no helix
-//   snarl      a loop: more than a fiftieth of the centre line runs against its chord, and its writhe is more than
-//   half a
-//              turn of either sign
+//   spindle    the middle is wider than at the start by more than a tenth of the radius, and closed: its voids are
+//              less than a twentieth of the section at the start
+//   cage       the middle is as wide as that of a spindle, and its tubes have parted: the voids are larger
+//   helix      the centre line, without a tenth at either end, leaves its chord by more than half of the radius of
+//              the rope, at the start or now, the larger of both; voids and open ends move the line of a straight
+//              rope by less
+//   brush      the ends are open: more than 1.5 times as wide as the middle and as at the start. The centre line
+//              of such an end is a mean over tubes in all directions
+//   snarl      a loop: more than a fiftieth of the centre line runs against its chord, and the writhe is more than
+//              half a turn, of either sign
 //
 // If several fit, the first of: snarl, brush, helix, cage, spindle.
 #pragma once

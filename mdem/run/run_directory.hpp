@@ -65,7 +65,7 @@ void remove_run_parts(const RunDirectory& dir);
 // Whether there is a checkpoint, of either generation.
 bool has_checkpoint(const RunDirectory& dir);
 
-// Copies the parameter sets of a scene to the directory, and the files that its drives were read from.
+// Copies to the directory the parameter sets of a scene and the files of its drives (Drive::files).
 void copy_parameters(const Scene& scene, const RunDirectory& to);
 
 // The scene as the run had it: scene.toml, parameters.toml and state.csv of the directory.

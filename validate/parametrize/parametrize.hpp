@@ -18,7 +18,7 @@ struct ParametrizeArguments {
   std::vector<std::string> tubes;  // "7,3"
   std::vector<std::string> potentials = {"tersoff"};
   std::string out = "parametrized";
-  std::string friction = "like";  // of each tube beside its like; "all": of all pairs of one potential; "none"
+  std::string friction = "like";  // pairs to measure: each tube beside its "like", "all" pairs, "none"
   double budget = 0;  // minutes of each tube's references; 0: any
   int jobs = 0;       // processes at a time; 0: one for each core
   bool again = false;

@@ -1,8 +1,8 @@
 // Friction of parallel tubes in contact, per length: an elastic slip up to a strength, then sliding at it, or a
 // corrugation with this strength; and a drag.
 //
-// Each element a of one tube has a contact with the element b of another tube which it faces. Two lengths, measured
-// on the tubes themselves, say how far the surfaces have slipped:
+// An element a of one tube has a contact with the element b of another tube that lies opposite. Positions and
+// orientations of both give two slips, lengths by which the surfaces have moved past each other:
 //
 //   along the axis   s = (u_b +- u_a)/2 . (x_a - x_b)
 //   against spin     g = r_a alpha_a +- r_b alpha_b
@@ -45,7 +45,7 @@ namespace ropewalk {
 struct DryFriction {
   double axial = 0;         // F_s, eV/nm^2: force per length of contact
   double spin = 0;          // F_g, eV/nm^2: force on the surface per length; the torque per length is r F_g
-  double end = 0;           // F_end, eV/nm: of each end of a tube beside another one
+  double end = 0;           // F_end, eV/nm: force along the axis that each end of a tube adds to its contact
   double elastic_slip = 0;  // delta, nm
   double drag = 0;          // eta, eV ps/nm^3
   bool corrugated = false;  // the second potential
