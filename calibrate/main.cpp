@@ -100,6 +100,10 @@ void add_verbs(CLI::App& app, Verbs& v) {
       ->capture_default_str()
       ->check(CLI::Range(4, 10000));
   friction->add_option("--checks", f.checks, "Of these, how many LAMMPS relaxes")->capture_default_str()->check(CLI::Range(2, 100));
+  friction->add_option("--budget", f.budget_min, "Minutes, by which registers and checks are chosen; drag comes on top")
+      ->check(CLI::Range(0.5, 1e4))
+      ->excludes("--registers")
+      ->excludes("--checks");
   friction->add_option("--drag-ps", f.drag_ps, "Time at 300 K at each of three speeds, at least 10; 0: no drag")
       ->capture_default_str()
       ->check(number_within(Bounds::range(0, 1e5)));

@@ -59,6 +59,7 @@ struct Verbs {
   CompareArguments compare;
   SweepArguments sweep;
   ThresholdArguments threshold;
+  RestArguments rest;
   GatherArguments gather;
   PlanArguments plan;
   ExportArguments to_lammps;
@@ -331,6 +332,24 @@ void add_threshold(CLI::App& app, Verbs& v) {
   c->callback([&v] { v.code = threshold_command(v.threshold); });
 }
 
+void add_rest(CLI::App& app, Verbs& v) {
+  CLI::App* c = app.add_subcommand(
+      "rest", "Where a rope under a moment comes to rest: approached from below and from above, beside theory");
+  c->add_option("scene", v.rest.scene, "Scene (TOML): a [rope] with [twist]")->required();
+  c->add_option("--out", v.rest.out, "Directory of both runs; the same command goes on [default: runs/NAME-rest]");
+  c->add_option("--viscosity", v.rest.viscosity,
+                "Contact viscosity (eV ps/nm^2) [default: the scene's, or a tenth of the default]")
+      ->check(CLI::NonNegativeNumber);
+  c->add_option("--tolerance", v.rest.tolerance, "Part of the twist within which both sides agree")
+      ->capture_default_str()
+      ->check(CLI::Range(1e-4, 0.5));
+  c->add_option("-j,--jobs", v.rest.jobs, "Runs at a time [default: one for each core]")->check(thread_range());
+  c->add_flag("--force", v.rest.force, "Replace runs of another scene");
+  c->add_flag("--json", v.rest.json, "JSON");
+  c->add_flag("--quiet", v.rest.quiet, "No progress");
+  c->callback([&v] { v.code = rest_command(v.rest); });
+}
+
 void add_gather(CLI::App& app, Verbs& v) {
   CLI::App* c = app.add_subcommand("gather", "One table (CSV) of all points of a campaign, at their ends");
   c->add_option("dir", v.gather.dir, "Directory of the campaign")->required();
@@ -500,6 +519,7 @@ int main(int argc, char** argv) {
   add_compare(app, verbs);
   add_sweep(app, verbs);
   add_threshold(app, verbs);
+  add_rest(app, verbs);
   add_gather(app, verbs);
   add_plan(app, verbs);
   add_export(app, verbs);

@@ -1,8 +1,10 @@
 // `ropewalk calibrate friction SET [SET]`: friction of two tubes from their atoms.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "atomistic/finite_tube.hpp"
@@ -21,6 +23,8 @@ namespace ropewalk::calibrate {
 namespace {
 
 constexpr double pN = 1e-3 * units::nN_nm;                     // eV/nm
+constexpr double rigid_part = 0.5;                             // of --budget, for rigid tubes
+constexpr int most_checks = 16;                                // registers that LAMMPS relaxes within --budget
 constexpr double longest = 10, past_ends = 5, led_length = 4;  // nm
 
 struct Tube {
@@ -63,12 +67,14 @@ AtomLaw atom_law(const Tube& a, const Tube& b) {
   return {of_a.epsilon, of_a.sigma, of_a.lj_cutoff};
 }
 
-// What the relaxation of the atoms multiplies the strengths of rigid tubes by.
-Measured relaxation(const SlidingTubes& tubes, const std::vector<Register>& at, Slip slip,
+// What the relaxation of the atoms multiplies the strengths of rigid tubes by. From the second register on it ends
+// where the time is up (steady_seconds()); infinite: never.
+Measured relaxation(const SlidingTubes& tubes, const std::vector<Register>& at, Slip slip, double until,
                     const std::string& folder, const FrictionArguments& a) {
   double relaxed = 0, rigid = 0;
   std::vector<RelaxedStrength> all;
   for (const Register& r : at) {
+    if (all.size() >= 2 && steady_seconds() > until) break;
     all.push_back(relaxed_strength(tubes, r, slip, folder,
                                    fmt::format("{}-{}", slip == Slip::along ? "along" : "spin", all.size()),
                                    a.lammps));
@@ -125,7 +131,8 @@ void print(const PairFriction& f, const std::string& path, double seconds) {
   for (const Quantity& q : f.quantities)
     fmt::print("  {:<28} {:>12.5g} +- {:<10.2g} {:<11} {}\n", q.key, q.value, q.standard_error.value_or(0), q.unit,
                q.note);
-  fmt::print("{:.0f} s\nFriction: {}\n\nFor a scene:\n{}", seconds, path, scene_lines(f));
+  fmt::print("grade: {}\n{:.0f} s\nFriction: {}\n\nFor a scene:\n{}", grade_of(f).words(), seconds, path,
+             scene_lines(f));
 }
 
 void print_json(const PairFriction& f, const std::string& path) {
@@ -134,6 +141,7 @@ void print_json(const PairFriction& f, const std::string& path) {
   j["chirality_b"] = {f.b.n, f.b.m};
   for (const Quantity& q : f.quantities)
     j[q.key] = {{"value", q.value}, {"unit", q.unit}, {"standard_error", q.standard_error.value_or(0)}};
+  j["grade"] = grade_of(f).words();
   j["file"] = path;
   fmt::print("{}\n", j.dump(1));
 }
@@ -171,10 +179,18 @@ int friction_command(const FrictionArguments& arguments) {
   const auto say = [&](const std::string& line) {
     if (!a.quiet) fmt::print(stderr, "{}\n", line);
   };
-  say(fmt::format("rigid tubes at {} registers", a.registers));
   const RigidPair pair(law, first.atoms(longest + past_ends), first.set.radius, second.atoms(longest),
                        second.set.radius);
   std::vector<double> lengths = {3, 4, 5, 6, 7, 8, 9, pair.length()};
+  if (a.budget_min > 0) {
+    const double pilot = steady_seconds();
+    along_strength(pair, registers(2, corrugation(second)), lengths);
+    // Along and against spin; the pressed and the crossed tubes take as long as some ten registers.
+    const double each = (steady_seconds() - pilot) / 2 * 2;
+    a.registers = std::clamp(static_cast<int>(rigid_part * 60 * a.budget_min / each) - 10, 8, 64);
+    a.checks = most_checks;
+  }
+  say(fmt::format("rigid tubes at {} registers", a.registers));
   const std::vector<Register> at = registers(a.registers, corrugation(second)),
                               few(at.begin(), at.begin() + std::min<std::ptrdiff_t>(4, a.registers));
   const Strength along = along_strength(pair, at, lengths), spin = spin_strength(pair, at, lengths);
@@ -188,8 +204,12 @@ int friction_command(const FrictionArguments& arguments) {
   try {
     say(fmt::format("relaxed atoms at {} registers, LAMMPS {}", a.checks, lammps.text));
     const std::vector<Register> checked = registers(a.checks, corrugation(second));
-    relaxed_along = relaxation(tubes, checked, Slip::along, folder.path(), a);
-    relaxed_spin = relaxation(tubes, checked, Slip::spin_b, folder.path(), a);
+    const double left = 60 * a.budget_min - seconds_since(began), now = steady_seconds();
+    const auto until = [&](double part) {
+      return a.budget_min > 0 ? now + part * left : std::numeric_limits<double>::infinity();
+    };
+    relaxed_along = relaxation(tubes, checked, Slip::along, until(0.5), folder.path(), a);
+    relaxed_spin = relaxation(tubes, checked, Slip::spin_b, until(1), folder.path(), a);
     if (a.drag_ps > 0) {
       say(fmt::format("drag at 300 K, {} ps at each of three speeds", a.drag_ps));
       drag = measured_drag(tubes, checked[0], a.drag_ps, corrugation(second), folder.path(), "drag", a.lammps);

@@ -88,6 +88,18 @@ struct ViewArguments {
 };
 int view_command(const ViewArguments& arguments);
 
+struct RestArguments {
+  std::string scene;
+  std::string out;                  // empty: runs/NAME-rest
+  std::optional<double> viscosity;  // eV ps/nm^2
+  double tolerance = 0.02;          // of the geometric twist, within which both sides agree
+  int jobs = 0;                         // 0: one for each core
+  bool force = false;
+  bool json = false;
+  bool quiet = false;
+};
+int rest_command(const RestArguments& arguments);
+
 struct ErrorsArguments {
   std::string dir;
   int jobs = 0;  // runs at a time; 0: one for each core

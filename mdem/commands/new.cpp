@@ -38,8 +38,9 @@ int new_command(const NewArguments& a) {
   if (std::filesystem::exists(path) && !a.force)
     throw InputError({path, 0, ""}, "exists", "choose another name or give --force");
   write_file_atomically(path, a.brief ? t.brief : t.text);
-  fmt::print("{} written: {}\nLook it over, then: ropewalk check {}; ropewalk run {} --out {}\n", path,
-             t.description, path, path, "runs/" + std::filesystem::path(path).stem().string());
+  fmt::print("{} written: {}\n{}Look it over, then: ropewalk check {}; ropewalk run {} --out {}\n", path,
+             t.description, t.dissipation.empty() ? "" : t.dissipation + "\n", path, path,
+             "runs/" + std::filesystem::path(path).stem().string());
   return 0;
 }
 

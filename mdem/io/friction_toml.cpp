@@ -119,6 +119,24 @@ PairFriction friction_of_text(const std::string& text, const std::string& path) 
   return f;
 }
 
+Grade grade_of(const PairFriction& f) {
+  constexpr double known = 0.2, half = 0.5, nothing = 1;  // of the value, of the value, pN/nm
+  Grade out;
+  const auto look = [&](const char* key, const char* name, double smallest) {
+    const auto q =
+        std::find_if(f.quantities.begin(), f.quantities.end(), [&](const Quantity& x) { return x.key == key; });
+    if (q == f.quantities.end()) return;
+    const double error = q->standard_error.value_or(0), value = std::fabs(q->value);
+    if (error <= std::max(known * value, smallest)) return;
+    out.level = std::max(out.level, error > half * value ? Grade::Level::unfit : Grade::Level::limited);
+    out.reasons.push_back(fmt::format("{} {:.3g} +- {:.2g} {}", name, q->value, error, q->unit));
+  };
+  look("friction.strength", "along the axis", nothing);
+  look("friction.spin_strength", "against spin", nothing);
+  look("friction.elastic_slip", "elastic slip", 0);
+  return out;
+}
+
 PairFriction read_friction(const std::string& path) { return friction_of_text(read_file(path), path); }
 
 std::string friction_text(const PairFriction& f, const std::string& comment) {
@@ -140,16 +158,18 @@ std::string friction_text(const PairFriction& f, const std::string& comment) {
 
 PairFriction find_friction(const std::string& name, const std::vector<std::string>& folders,
                            const InputError::Place& place) {
-  const std::string stem = fs::path(name).extension() == ".toml" ? fs::path(name).stem().string()
-                                                                  : fs::path(name).filename().string();
+  const std::string stem =
+      fs::path(name).extension() == ".toml" ? fs::path(name).stem().string() : fs::path(name).filename().string();
   std::error_code error;
   for (const std::string& folder : folders)
     for (const std::string& file : {name, name + ".toml"})
       if (const fs::path path = fs::path(folder) / file; fs::is_regular_file(path, error)) {
         PairFriction f = read_friction(path.string());
         if (f.name != stem)
-          throw InputError({f.path, 0, "meta.name"}, fmt::format("is \"{}\", and the file is called {}", printable(f.name, 60), path.filename().string()),
-                           "give both the same name");
+          throw InputError(
+              {f.path, 0, "meta.name"},
+              fmt::format("is \"{}\", and the file is called {}", printable(f.name, 60), path.filename().string()),
+              "give both the same name");
         return f;
       }
   std::string names;

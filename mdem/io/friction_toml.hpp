@@ -1,15 +1,18 @@
 // The file of the friction of two kinds of tubes, as `ropewalk calibrate friction` writes it.
 //
-//   [meta]        format = "ropewalk-friction-1", name, chirality_a, chirality_b, potential
-//   [friction]    the law of sim/forces/terms/dry_friction.hpp: strength, spin_strength, end_strength,
-//   elastic_slip, drag [register]    how the strengths spread over the turns of the tubes [pressure], [crossing]
-//   what changes them [provenance]  texts
+//   [meta]         format = "ropewalk-friction-1", name, chirality_a, chirality_b, potential
+//   [friction]     the law of sim/forces/terms/dry_friction.hpp: strength, spin_strength, end_strength, elastic_slip,
+//                  drag
+//   [register]     how the strengths spread over the turns of the tubes
+//   [pressure], [crossing]   what changes them
+//   [provenance]   texts
 #pragma once
 
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "io/grade.hpp"
 #include "model/error.hpp"
 #include "model/parameters.hpp"
 
@@ -30,6 +33,10 @@ struct PairFriction {
 
   bool is_of(Chirality x, Chirality y) const;  // in either order
 };
+
+// good: both strengths known to a fifth, or to 1 pN/nm, and the elastic slip to a fifth. unfit: a strength of which
+// not even a half is sure. limited: between.
+Grade grade_of(const PairFriction& friction);
 
 // Throws InputError.
 PairFriction read_friction(const std::string& path);

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <regex>
+#include <sstream>
 
 #include "io/plain_text.hpp"
 #include "model/error.hpp"
@@ -304,15 +304,18 @@ std::string default_text(const Scene& scene) {
 
 Expectations expectations_of(const std::string& text) {
   Expectations out;
-  const std::regex line("# plan: expect (\\S+) (\\S+)");
-  for (auto at = std::sregex_iterator(text.begin(), text.end(), line); at != std::sregex_iterator(); ++at)
-    out.errors[(*at)[1]] = leading_number((*at)[2].str()).value_or(0);
-  const auto number = [&](const char* pattern) {
-    std::smatch found;
-    return std::regex_search(text, found, std::regex(pattern)) ? leading_number(found[1].str()).value_or(0) : 0.0;
-  };
-  out.asked = number("# plan: asked (\\S+)");
-  out.seconds = number("# plan: seconds (\\S+)");
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line);
+    std::string hash, plan, what, name, number;
+    if (!(words >> hash >> plan >> what) || hash != "#" || plan != "plan:") continue;
+    if (what == "expect") words >> name;
+    words >> number;
+    const double value = leading_number(number).value_or(0);
+    if (what == "expect") out.errors[name] = value;
+    if (what == "asked") out.asked = value;
+    if (what == "seconds") out.seconds = value;
+  }
   return out;
 }
 

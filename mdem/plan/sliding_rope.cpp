@@ -3,7 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <complex>
+#include <utility>
 
 #include "scene/loads/twist.hpp"
 #include "scene/source.hpp"
@@ -11,10 +11,8 @@
 namespace ropewalk {
 namespace {
 
-using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-using Complex = std::complex<double>;
 
 constexpr int slip_waves = 64;                 // Legendre polynomials of the slip, which turns with the winding
 constexpr double tilting = 4.493409457909064;  // tan x = x
@@ -23,15 +21,25 @@ constexpr double most_over_static = 100;       // moments beyond are not looked 
 // Legendre polynomials of the deflection, whose growing motions turn by up to 3 mu/4. Rates are right to 1e-5.
 int waves_of(double mu) { return static_cast<int>(std::clamp(12 + 0.5 * mu, 16.0, 40.0)); }
 
-// Nodes and weights of Gauss and Legendre on [0, 1], by the eigenvectors of the recurrence of the polynomials.
+// Nodes and weights of Gauss and Legendre on [0, 1]: Newton's method for the zeros of the polynomial.
 struct Quadrature {
   VectorXd at, weight;
 };
 Quadrature gauss_legendre(int n) {
-  MatrixXd recurrence = MatrixXd::Zero(n, n);
-  for (int k = 1; k < n; ++k) recurrence(k, k - 1) = recurrence(k - 1, k) = k / std::sqrt(4.0 * k * k - 1);
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> solved(recurrence);
-  return {0.5 * (solved.eigenvalues().array() + 1), solved.eigenvectors().row(0).cwiseAbs2().transpose()};
+  Quadrature out{VectorXd(n), VectorXd(n)};
+  for (int i = 0; i < n; ++i) {
+    double x = -std::cos(units::pi * (i + 0.75) / (n + 0.5)), slope = 0;
+    for (double step = 1; std::abs(step) > 1e-15;) {
+      double value = x, before = 1;
+      for (int k = 2; k <= n; ++k) before = std::exchange(value, ((2 * k - 1) * x * value - (k - 1) * before) / k);
+      slope = n * (x * value - before) / (x * x - 1);
+      step = value / slope;
+      x -= step;
+    }
+    out.at(i) = 0.5 * (x + 1);
+    out.weight(i) = 1 / ((1 - x * x) * slope * slope);
+  }
+  return out;
 }
 
 // Polynomials of Legendre on [0, 1], a row each, and their first two derivatives at the nodes.
@@ -64,37 +72,55 @@ const Basis& basis() {
   return made;
 }
 
+// Real and imaginary part. Complex matrices of Eigen take most of a minute to compile.
+struct ComplexMatrix {
+  MatrixXd real, imaginary;
+};
+
 // <a_v - mean, a_u - mean> for the winding `turn` (rad from end to end). The integral of a polynomial is
 // int_0^x P_j = (P_j+1 - P_j-1)/(4 j + 2) and (P_1 + P_0)/2 for j = 0; P_0 is the mean.
-MatrixXcd slip_of(double turn, int waves) {
+ComplexMatrix slip_of(double turn, int waves) {
   const Basis& b = basis();
-  const Eigen::VectorXcd phase = (Complex(0, -turn) * b.nodes.at.cast<Complex>()).array().exp();
-  MatrixXcd series = b.curvature.topRows(waves).cast<Complex>() *
-                     (phase.array() * b.nodes.weight.array().cast<Complex>()).matrix().asDiagonal() *
-                     b.value.transpose().cast<Complex>();
-  series.array().rowwise() /= b.norm.transpose().array().cast<Complex>();
-  MatrixXcd whole = MatrixXcd::Zero(waves, slip_waves);
-  for (int j = 0; j < slip_waves; ++j) {
-    if (j + 1 < slip_waves) whole.col(j + 1) += series.col(j) / (4.0 * j + 2);
-    if (j > 1) whole.col(j - 1) -= series.col(j) / (4.0 * j + 2);
-  }
-  return whole.conjugate() * b.norm.cast<Complex>().asDiagonal() * whole.transpose();
+  const VectorXd angle = turn * b.nodes.at;
+  const auto integrals = [&](const VectorXd& wave) {
+    MatrixXd series =
+        b.curvature.topRows(waves) * wave.cwiseProduct(b.nodes.weight).asDiagonal() * b.value.transpose();
+    series.array().rowwise() /= b.norm.transpose().array();
+    MatrixXd whole = MatrixXd::Zero(waves, slip_waves);
+    for (int j = 0; j < slip_waves; ++j) {
+      if (j + 1 < slip_waves) whole.col(j + 1) += series.col(j) / (4.0 * j + 2);
+      if (j > 1) whole.col(j - 1) -= series.col(j) / (4.0 * j + 2);
+    }
+    return whole;
+  };
+  const MatrixXd even = integrals(angle.array().cos()), odd = integrals(-angle.array().sin());
+  const MatrixXd weighted_even = even * b.norm.asDiagonal(), weighted_odd = odd * b.norm.asDiagonal();
+  return {weighted_even * even.transpose() + weighted_odd * odd.transpose(),
+          weighted_even * odd.transpose() - weighted_odd * even.transpose()};
 }
 
-// The largest real part of lambda with lambda^2 c + lambda z D c + (K - i mu G) c = 0, in units of L^2 (m/B)^1/2.
+// The largest real part of lambda with lambda^2 c + lambda z D c + (K - i mu G) c = 0, in units of L^2 (m/B)^1/2:
+// that of the real matrix with the real and the imaginary parts of c, which has each lambda and its conjugate.
 double fastest(double mu, double z, double winding) {
   const Basis& b = basis();
   const int waves = waves_of(mu);
-  const VectorXd inverse = b.norm.head(waves).cwiseInverse();
-  MatrixXcd system = MatrixXcd::Zero(2 * waves, 2 * waves);
-  system.topRightCorner(waves, waves).setIdentity();
-  system.bottomLeftCorner(waves, waves) = inverse.cast<Complex>().asDiagonal() *
-                                          (Complex(0, mu) * b.turning.topLeftCorner(waves, waves).cast<Complex>() -
-                                           b.bending.topLeftCorner(waves, waves).cast<Complex>());
-  if (z > 0)
-    system.bottomRightCorner(waves, waves) =
-        -z * inverse.cast<Complex>().asDiagonal() * slip_of(mu * winding, waves);
-  return Eigen::ComplexEigenSolver<MatrixXcd>(system, false).eigenvalues().real().maxCoeff();
+  const auto inverse = b.norm.head(waves).cwiseInverse().asDiagonal();
+  const MatrixXd bending = inverse * b.bending.topLeftCorner(waves, waves);
+  const MatrixXd turning = mu * (inverse * b.turning.topLeftCorner(waves, waves));
+  MatrixXd system = MatrixXd::Zero(4 * waves, 4 * waves);  // of real c, imaginary c, and the rates of both
+  const auto block = [&](int row, int column) { return system.block(row * waves, column * waves, waves, waves); };
+  block(0, 2).setIdentity();
+  block(1, 3).setIdentity();
+  block(2, 0) = block(3, 1) = -bending;
+  block(2, 1) = -turning;
+  block(3, 0) = turning;
+  if (z > 0) {
+    const ComplexMatrix slip = slip_of(mu * winding, waves);
+    block(2, 2) = block(3, 3) = -z * (inverse * slip.real);
+    block(2, 3) = z * (inverse * slip.imaginary);
+    block(3, 2) = -z * (inverse * slip.imaginary);
+  }
+  return Eigen::EigenSolver<MatrixXd>(system, false).eigenvalues().real().maxCoeff();
 }
 
 }  // namespace
@@ -178,7 +204,7 @@ std::optional<HelixTheory> helix_theory(const Scene& scene, const Prepared& p) {
       out.tubes_in_unit * (load.lateral_free ? rope.static_moment() : 2 * units::pi * rope.bend / rope.length);
   out.grows = load.lateral_free && scene.damping.local == 0 && !scene.bath() && p.interaction.terms.empty();
   out.rate = load.rate / out.tubes_in_unit;
-  out.hold = p.duration - load.ramp_time();
+  out.hold = load.unload_rate > 0 ? load.hold : p.duration - load.ramp_time();
   out.first_amplitude = scene.start.half_waves == 1 ? 0.5 * scene.start.wave : 0;
   return out;
 }

@@ -15,13 +15,13 @@
 #include "io/processes.hpp"
 #include "io/removal.hpp"
 #include "model/error.hpp"
-#include "plan/expected_state.hpp"
 #include "plan/features.hpp"
 #include "plan/scene_edit.hpp"
 #include "run/begin_run.hpp"
 #include "run/colours.hpp"
 #include "run/threads.hpp"
 #include "scene/scene_toml.hpp"
+#include "scene/wound.hpp"
 #include "scene/watch.hpp"
 
 namespace ropewalk {
@@ -60,7 +60,7 @@ double seconds_from_the_start(const Scene& scene, const Prepared& p) {
 double seconds_turned_by(const Scene& scene, const Prepared& p, double turn, double rate, double time) {
   constexpr double less = 0.7, least = 0.2;  // of the turn
   for (double part = 1; part > least; part *= less) {
-    State state = turned_rope(p, part * turn, rate);
+    State state = wound(p.state, part * turn, rate);
     state.time = time;
     try {
       return seconds_from(scene, p, std::move(state));

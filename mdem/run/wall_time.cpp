@@ -1,8 +1,8 @@
 #include "run/wall_time.hpp"
 
 #include <algorithm>
+#include <cstdio>
 #include <ctime>
-#include <regex>
 
 #include "model/error.hpp"
 
@@ -18,13 +18,17 @@ double program_start() { return started; }
 
 double seconds_of_wall_time(const std::string& text) {
   if (text.empty()) return 0;
-  std::smatch m;
-  double seconds = 0;
-  if (std::regex_match(text, m, std::regex(R"((?:(\d{1,4})-)?(\d{1,4}):([0-5]\d):([0-5]\d))")))
-    seconds = 86400 * (m[1].matched ? std::stod(m[1]) : 0) + 3600 * std::stod(m[2]) + 60 * std::stod(m[3]) +
-              std::stod(m[4]);
-  else if (std::regex_match(text, std::regex(R"(\d{1,9})")))
-    seconds = std::stod(text);
+  unsigned days = 0, hours = 0, minutes = 0, whole_seconds = 0;
+  const auto is = [&](const char* form, int fields, auto*... field) {
+    int end = -1;
+    return std::sscanf(text.c_str(), form, field..., &end) == fields && end == static_cast<int>(text.size());
+  };
+  const bool read =
+      text.find_first_not_of("0123456789:-") == std::string::npos &&
+      (is("%9u%n", 1, &whole_seconds) || ((is("%4u:%2u:%2u%n", 3, &hours, &minutes, &whole_seconds) ||
+                                           is("%4u-%4u:%2u:%2u%n", 4, &days, &hours, &minutes, &whole_seconds)) &&
+                                          days < 10000 && hours < 10000 && minutes < 60 && whole_seconds < 60));
+  const double seconds = read ? 86400.0 * days + 3600.0 * hours + 60.0 * minutes + whole_seconds : 0;
   if (!(seconds > 0))
     throw InputError({"", 0, "--wall-time"}, "\"" + text + "\" is no time",
                      "take seconds, as 5400, or H:MM:SS, as 1:30:00 or 2-12:00:00");

@@ -12,6 +12,7 @@
 #include "scene/memory.hpp"
 #include "scene/scene_to_model.hpp"
 #include "scene/spacing.hpp"
+#include "scene/wound.hpp"
 
 namespace ropewalk {
 namespace {
@@ -77,6 +78,26 @@ void add_wave(const Scene& scene, const Topology& topology, State& state) {
   }
 }
 
+// Tubes that begin in helices about the axis of the rope.
+void wind(const Scene& scene, State& state) {
+  if (scene.start.turn == 0) return;
+  if (!scene.source->is_parallel())
+    throw InputError({scene.path, 0, "start.twist_deg_per_nm"}, "is for straight tubes side by side",
+                     "take it away, or a [rope]");
+  if (scene.start.wave > 0)
+    throw InputError({scene.path, 0, "start.twist_deg_per_nm"}, "and wave_nm do not go together",
+                     "bend the rope that this one has become: [state] with wave_nm");
+  double rim = 0;
+  for (std::size_t i = 0; i < state.size(); ++i)
+    rim = std::max(rim, std::hypot(state.position.x[i], state.position.y[i]));
+  if (const double slope = rim * std::fabs(scene.start.turn); slope > 1)
+    throw InputError(
+        {scene.path, 0, "start.twist_deg_per_nm"},
+        fmt::format("lays the outermost tubes at {:.3g} degrees to the axis", std::atan(slope) / units::degree),
+        fmt::format("at most 45 degrees, {:.3g} deg/nm, can be built", 1 / rim / units::degree));
+  state = wound(state, scene.start.turn);
+}
+
 // Refuses state files that lack what the rest of the scene needs.
 void check_state(const Scene& scene, const BuiltScene& built) {
   if (scene.start.temperature > 0 && built.state.size() < 2)
@@ -106,6 +127,7 @@ BuiltScene build(Scene& scene) {
     throw InputError({scene.path, 0, scene.kind},
                      fmt::format("holds {} elements, {}", out.topology.elements(), memory),
                      "take fewer elements, or another machine");
+  wind(scene, out.state);
   add_wave(scene, out.topology, out.state);
   set_tube_types(scene, out.topology);
   set_collapse(scene, out.topology);

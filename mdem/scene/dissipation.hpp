@@ -13,6 +13,10 @@
 
 namespace ropewalk {
 
+// The viscosity (eV ps/nm^2) of a pair of elements of a scene that gives none: 20 for the published set. Others get
+// the same per length of contact, eta/a^2 times the distance of the axes of two tubes, 2 r and the gap of graphite.
+double default_contact_viscosity(double element_length, double radius);
+
 // Lengths in nm. The reach of the viscosity must be set where there is one.
 Damping same_dissipation(Damping damping, double from, double to);
 

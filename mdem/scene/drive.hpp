@@ -24,12 +24,17 @@ struct MomentRamp {
   enum class Reading { per_tube, total };  // the moment is that of each end element, or of all of them
   double moment = 0;                       // eV, in its reading
   double rate = 0;                         // eV/ps; 0: it acts at once
+  double hold = 0;                         // ps after the ramp
+  double unload_rate = 0;                  // eV/ps, after the hold; 0: the moment stays
   Reading reading = Reading::per_tube;
   bool geometric_only = false;  // spins are relaxed, so that no bond holds the moment by its twist
 
-  double ramp_time() const { return rate > 0 ? moment / rate : 0.0; }  // ps
+  double ramp_time() const { return rate > 0 ? moment / rate : 0.0; }                  // ps
+  double unload_time() const { return unload_rate > 0 ? moment / unload_rate : 0.0; }  // ps
   // eV, without a sign.
   double moment_at(double time) const {
+    if (const double unloading = time - ramp_time() - hold; unload_rate > 0 && unloading > 0)
+      return unload_rate * unloading < moment ? moment - unload_rate * unloading : 0;
     const double ramped = rate > 0 ? rate * time : moment;
     return ramped < moment ? ramped : moment;
   }

@@ -29,6 +29,7 @@ struct StartOptions {
   double temperature = 0;  // K, of the initial velocities
   bool may_cool = false;   // damping may take that heat away
   std::uint64_t seed = 1;
+  double turn = 0;     // rad/nm, by which straight tubes are wound about their axis at first
   double wave = 0;     // nm, by which straight tubes are bent sideways at first
   int half_waves = 1;  // along them
 };

@@ -7,8 +7,6 @@
 namespace ropewalk {
 namespace {
 
-constexpr double graphite_gap = 0.335;  // nm, between the walls of tubes for which there is no law
-
 // The largest of all pairs of tube types, by this function of the law.
 double largest_distance(const Scene& scene, const ContactLaw* law,
                         double (ContactLaw::*distance)(TypePair, double) const) {

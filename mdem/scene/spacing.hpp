@@ -6,6 +6,8 @@ namespace ropewalk {
 class ContactLaw;
 struct Scene;
 
+inline constexpr double graphite_gap = 0.335;  // nm, between the walls of tubes for which there is no law
+
 double largest_radius(const Scene& scene);  // nm, of the tube types
 
 // The distances of two parallel and of two crossed tubes (nm) at which their energy is lowest; without a law, that

@@ -23,6 +23,22 @@ struct Recipe {
   std::vector<Block> blocks;
 };
 
+// What takes energy out of a scene whose tubes touch each other, and why.
+const char* dissipation_of(const std::vector<Block>& blocks) {
+  const auto sets = [&](const char* table, const char* key, const char* value) {
+    return std::any_of(blocks.begin(), blocks.end(), [&](const Block& b) {
+      const auto at = b.set.find(key);
+      return b.table == table && at != b.set.end() && at->second == value;
+    });
+  };
+  if (sets("friction", "from", "\"atoms\""))
+    return "The way counts here: tubes rub on each other as atoms do, and contact viscosity is off.";
+  if (sets("damping", "contact_viscosity_eV_ps_per_nm2", "0") || sets("contact", "law", "\"none\"") ||
+      sets("run", "mode", "\"relax\""))
+    return "";
+  return "Numerical damping brings it to rest, which atoms do not have: trust where it rests, not the way there.";
+}
+
 std::vector<Block> twisted_rope(const char* length, std::map<std::string, std::string> twist) {
   return {{"rope", {{"tubes", "91"}, {"length_nm", length}, {"perturbation_nm", "0.0005"}}},
           {"twist", std::move(twist)}};
@@ -57,26 +73,32 @@ std::vector<Recipe> recipes() {
        {{"", calibrated()},
         rope_of("37", "67.8"),
         grip("lower"),
+        {"damping", {{"contact_viscosity_eV_ps_per_nm2", "0"}}},
+        {"friction", {{"from", "\"atoms\""}}},
         grip("upper", {{"about_z", "{ rotation_deg = [[0, 0], [200, 150], [250, 150], [450, 0], [500, 0]] }"}})}},
       {"pull-out",
        "7 tubes of 40.7 nm: the centre tube is drawn out of the rope by 10 nm",
        {{"", calibrated()},
         rope_of("7", "40.7"),
         grip("lower", {{"tubes", "[1, 2, 3, 4, 5, 6]"}}),
-        {"damping", {{"contact_viscosity_eV_ps_per_nm2", "0.1"}}},
+        {"damping", {{"contact_viscosity_eV_ps_per_nm2", "0"}}},
+        {"friction", {{"from", "\"atoms\""}}},
         grip("upper", {{"tubes", "[0]"}, {"z", "{ displacement_nm = 10, rate_nm_per_ps = 0.02 }"}})}},
       {"pull-out-outer",
        "7 tubes of 40.7 nm: an outer tube is drawn along the rope by 10 nm",
        {{"", calibrated()},
         rope_of("7", "40.7"),
         grip("lower", {{"tubes", "[0, 2, 3, 4, 5, 6]"}}),
-        {"damping", {{"contact_viscosity_eV_ps_per_nm2", "0.1"}}},
+        {"damping", {{"contact_viscosity_eV_ps_per_nm2", "0"}}},
+        {"friction", {{"from", "\"atoms\""}}},
         grip("upper", {{"tubes", "[1]"}, {"z", "{ displacement_nm = 10, rate_nm_per_ps = 0.02 }"}})}},
       {"load-transfer",
        "19 tubes of 67.8 nm: the seven inner ones are pulled, the twelve outer ones are held below",
        {{"", calibrated()},
         rope_of("19", "67.8"),
         grip("lower", {{"tubes", "[7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18]"}}),
+        {"damping", {{"contact_viscosity_eV_ps_per_nm2", "0"}}},
+        {"friction", {{"from", "\"atoms\""}}},
         grip("upper",
              {{"tubes", "[0, 1, 2, 3, 4, 5, 6]"}, {"z", "{ displacement_nm = 2, rate_nm_per_ps = 0.01 }"}})}},
       {"interior",
@@ -183,6 +205,7 @@ std::string table_text(const SceneTable& table, const std::vector<Block>& blocks
 
 std::string text_of(const Recipe& recipe, bool brief) {
   std::string text = fmt::format("# {}.\n", recipe.description);
+  if (const std::string words = dissipation_of(recipe.blocks); !words.empty()) text += "# " + words + "\n";
   text += brief ? "# All other keys have their defaults; `ropewalk help scene` lists them.\n\n"
                 : "# Every key has its unit in its name; lines with a # in front show keys that are not set.\n\n";
   std::map<std::string, std::string> top = {{"format", fmt::format("\"{}\"", scene_format)},
@@ -197,7 +220,8 @@ std::string text_of(const Recipe& recipe, bool brief) {
 
 std::vector<SceneTemplate> all_templates() {
   std::vector<SceneTemplate> out;
-  for (const Recipe& r : recipes()) out.push_back({r.name, r.description, text_of(r, false), text_of(r, true)});
+  for (const Recipe& r : recipes())
+    out.push_back({r.name, r.description, dissipation_of(r.blocks), text_of(r, false), text_of(r, true)});
   return out;
 }
 

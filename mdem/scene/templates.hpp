@@ -9,6 +9,7 @@ namespace ropewalk {
 struct SceneTemplate {
   std::string name;
   std::string description;  // one line
+  std::string dissipation;  // what takes energy out, and why; empty where nothing does, or no tubes touch
   std::string text;         // TOML; every key with unit, meaning and default
   std::string brief;        // the keys that it sets, alone
 };

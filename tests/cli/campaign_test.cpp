@@ -3,10 +3,14 @@
 #include <cmath>
 #include <sstream>
 
+#include <nlohmann/json.hpp>
+
 #include "cli/support.hpp"
 
 namespace ropewalk::test {
 namespace {
+
+using Json = nlohmann::json;
 
 class Campaign : public Cli {
  protected:
@@ -404,6 +408,34 @@ TEST_F(Campaign, CompareDrawsRunsAndEnsembles) {
   EXPECT_EQ(run("compare s --y nothing").code, 2);
   EXPECT_EQ(run("compare s --level x").code, 2);
   EXPECT_EQ(run("compare s cnt-10-10-tersoff").code, 2);
+}
+
+// Seven tubes, from both sides; the same command goes on, and a longer hold asks for another directory.
+TEST_F(Campaign, RestComesFromBothSides) {
+  const auto scene = [&](const char* hold) {
+    spit(dir / "rope.toml",
+         std::string("format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-paper\"\n[rope]\ntubes = 7\n"
+                     "length_nm = 20.34\n[twist]\nmoment_nN_nm = 35\nrate_nN_nm_per_ps = 1\nhold_ps = ") +
+             hold + "\n");
+  };
+  scene("10");
+  const Outcome early = run("rest rope.toml --quiet");
+  ASSERT_EQ(early.code, 0) << early.err;
+  EXPECT_NE(early.out.find("Not at rest: in the last 9 ps"), std::string::npos) << early.out;
+  scene("150");
+  EXPECT_NE(run("rest rope.toml --quiet").code, 0) << "runs of another scene are there";
+  const Outcome whole = run("rest rope.toml --quiet --out whole");
+  ASSERT_EQ(whole.code, 0) << whole.err;
+  EXPECT_NE(whole.out.find("Rests compact"), std::string::npos) << whole.out;
+  const Json found = Json::parse(run("rest rope.toml --quiet --out whole --json").out);
+  EXPECT_EQ(found, Json::parse(slurp(dir / "whole" / "rest.json")));
+  EXPECT_TRUE(found.at("agree").get<bool>());
+  EXPECT_NEAR(found.at("geometric_twist_deg").get<double>(), 94.3, 0.2);
+  // From a start apart, the same rest.
+  EXPECT_NE(found.at("sides")[0].at("start_deg_per_nm"), found.at("sides")[1].at("start_deg_per_nm"));
+  const Outcome no_rope = run("rest tube.toml");
+  EXPECT_EQ(no_rope.code, 2);
+  EXPECT_NE(no_rope.err.find("7 tubes or more"), std::string::npos) << no_rope.err;
 }
 
 }  // namespace

@@ -106,6 +106,15 @@ class ProgramsTest(FolderTest):
         self.assertTrue(os.path.exists("run/errors.csv"))
         self.assertTrue(found)
 
+    def test_rest(self):
+        rope = {"rope": {"tubes": 7, "length_nm": 20.34}, "parameters": "cnt-10-10-paper",
+                "twist": {"moment_nN_nm": 35, "rate_nN_nm_per_ps": 1, "hold_ps": 2}}
+        found = ropewalk.rest(rope, "rest")
+        self.assertEqual([side["from"] for side in found["sides"]], ["below", "above"])
+        self.assertFalse(found["agree"])
+        self.assertIsNone(found["beta_deg"])
+        self.assertEqual(ropewalk.rest(rope, "rest"), found)
+
     def test_validate(self):
         case, = ropewalk.validate(["ring-energy"], parameters="cnt-5-5-tersoff", out="validation")
         self.assertTrue(case.holds)

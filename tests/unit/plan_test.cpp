@@ -13,7 +13,6 @@
 #include "model/error.hpp"
 #include "observe/observe.hpp"
 #include "plan/check.hpp"
-#include "plan/expected_state.hpp"
 #include "plan/features.hpp"
 #include "plan/outcome.hpp"
 #include "plan/planner.hpp"
@@ -22,6 +21,7 @@
 #include "scene/kinds/rope.hpp"
 #include "scene/loads/twist.hpp"
 #include "scene/scene_toml.hpp"
+#include "scene/wound.hpp"
 
 namespace ropewalk {
 namespace {
@@ -305,7 +305,7 @@ TEST(ExpectedState, IsARopeThatHasBeenTwisted) {
   Scene scene = scene_from(bundle);
   const Prepared p = prepare(scene);
   const double turn = 0.04, rate = 0.002;
-  const State s = turned_rope(p, turn, rate);
+  const State s = wound(p.state, turn, rate);
   const RopeObservation o =
       observe(p.topology, s, rope_shells(p.topology, p.state, 0), validities(scene, p.topology), 0, p.spacing);
   EXPECT_NEAR(o.beta, std::atan(p.spacing * turn), 1e-3);
@@ -318,7 +318,7 @@ TEST(ExpectedState, IsARopeThatHasBeenTwisted) {
   EXPECT_LT(energy(s).stretch, 1e-3 * energy(s).twist);
   EXPECT_NEAR(energy(s).twist, 0.5 * p.topology.types[0].bond.twist * turn * turn * length, 0.02 * energy(s).twist);
   // Velocities are those with which it goes on turning, without its growing shorter.
-  const State later = turned_rope(p, turn + 1e-4 * rate, rate);
+  const State later = wound(p.state, turn + 1e-4 * rate, rate);
   for (std::size_t i = 0; i < s.size(); i += 17) {
     const Vector3 moved = (Vector3(later.position[i]) - Vector3(s.position[i])) / 1e-4;
     EXPECT_LT((moved - Vector3(s.velocity[i])).head<2>().norm(), 1e-2 * p.spacing * rate * std::fabs(height));
@@ -412,7 +412,7 @@ TEST(SpotCheck, SeesWhatLongElementsCost) {
 TEST(SpotCheck, LooksAtSpacingAndEndAngleOfARope) {
   Scene scene = scene_from(head + "[rope]\ntubes = 7\nlength_nm = 13.6\n[run]\nduration_ps = 1\n");
   const Prepared p = prepare(scene);
-  const SpotCheck check = spot_check(scene, p, turned_rope(p, 0.02, 0), 0.2);
+  const SpotCheck check = spot_check(scene, p, wound(p.state, 0.02, 0), 0.2);
   const SpotCheck::Comparison spacing = check.observables.at("spacing"),
                               angle = check.observables.at("geometric_twist_deg");
   EXPECT_NEAR(spacing.planned, p.spacing, 0.01 * p.spacing);

@@ -13,6 +13,7 @@
 #include "io/toml_table.hpp"
 #include "model/error.hpp"
 #include "observe/centre_line.hpp"
+#include "observe/observe.hpp"
 #include "scene/build.hpp"
 #include "scene/kinds/rope.hpp"
 #include "scene/lattice.hpp"
@@ -437,7 +438,8 @@ TEST(Templates, AllAreReadAndBuilt) {
       if (!line.empty() && line[0] != '#' && line[0] != '[') brief.push_back(line);
     EXPECT_EQ(brief, set);
     EXPECT_LE(std::count(t.brief.begin(), t.brief.end(), '\n'), 30) << t.brief;
-    EXPECT_EQ(t.brief.find("\n# "), t.brief.find("\n# All other keys")) << t.brief;
+    const std::string first = "\n# " + (t.dissipation.empty() ? std::string("All other keys") : t.dissipation);
+    EXPECT_EQ(t.brief.find("\n# "), t.brief.find(first)) << t.brief;
     for (const SceneKey& k : scene_keys()) EXPECT_THAT(t.text, HasSubstr(k.key + " = ")) << k.table;
   }
 }
@@ -673,6 +675,62 @@ TEST(Rope, ViscosityReachesFromTheSpacingToOneAndAHalf) {
   EXPECT_EQ(s.damping.contact.eta, 20);
   EXPECT_EQ(s.damping.contact.inner, b.spacing);
   EXPECT_EQ(s.damping.contact.outer, 1.5 * b.spacing);
+}
+
+// The mean over where two rows of elements stand along each other, for thin and thick tubes, and for finer elements.
+TEST(Rope, ViscosityPerLengthOfContactIsThatOfThePublishedTubes) {
+  const auto per_length = [](const std::string& set, double element) {
+    Scene s = scene_of_text(fmt::format("format = \"ropewalk-scene-1\"\nparameters = \"{}\"\nelement_length_nm = {}\n"
+                                        "[rope]\ntubes = 7\nlength_nm = 20\n",
+                                        set, element) +
+                                run,
+                            "scene.toml");
+    build(s);
+    const ContactViscosity& v = s.damping.contact;
+    double sum = 0;
+    for (int k = -4000; k <= 4000; ++k) sum += v.weight(std::hypot(v.inner, 0.001 * k)) * 0.001;
+    return v.eta * sum / (element * element);
+  };
+  const double published = per_length("cnt-10-10-paper", 1.356);
+  EXPECT_NEAR(published, 27, 0.5);
+  EXPECT_NEAR(per_length("cnt-5-5-tersoff", 0.694) / published, 1, 0.04);
+  EXPECT_NEAR(per_length("cnt-20-20-tersoff", 2.75) / published, 1, 0.04);
+  EXPECT_NEAR(per_length("cnt-10-10-tersoff", 0.689) / published, 1, 0.04);
+  EXPECT_EQ(scene_from("[rope]\ntubes = 7\nlength_nm = 20\n[damping]\ncontact_viscosity_eV_ps_per_nm2 = 3\n" + run)
+                .damping.contact.eta,
+            3);
+}
+
+TEST(Rope, BeginsWoundByTheTwistOfItsStart) {
+  const std::string rope = "[rope]\ntubes = 19\nlength_nm = 27.12\n[start]\n";
+  Scene scene = scene_from(rope + "twist_deg_per_nm = -0.8\n" + run);
+  const Prepared p = prepare(scene);
+  const RopeObservation o =
+      observe(p.topology, p.state, rope_shells(p.topology, p.state, 0), validities(scene, p.topology), 0, p.spacing);
+  // End to end of the mean tube, which leans.
+  const double rim = 0.5 * (2 + std::sqrt(3.0)) * p.spacing, turn = 0.8 * units::degree;  // corners and sides
+  EXPECT_LT(o.geometric_twist, 0);
+  EXPECT_NEAR(-o.geometric_twist, turn * 19 * 1.356, 0.01 * turn * 19 * 1.356);
+  EXPECT_NEAR(o.beta, std::atan(rim * turn), 0.02 * rim * turn);
+  EXPECT_THROW(built_from(rope + "twist_deg_per_nm = 20\n" + run), InputError);  // the rim at 50 degrees
+  EXPECT_THROW(built_from(rope + "twist_deg_per_nm = 1\nwave_nm = 0.1\n" + run), InputError);
+  EXPECT_THROW(built_from("[film]\ntubes = 5\nlength_nm = 20\nwidth_nm = 40\ndepth_nm = 40\n[start]\ntwist_deg_per_nm = 1\n" + run),
+               InputError);
+}
+
+TEST(Twist, IsTakenAwayAgainAndMayBeLeftHanded) {
+  const std::string rope = "[rope]\ntubes = 1\nlength_nm = 13.56\n[twist]\nmoment_nN_nm = 4\nrate_nN_nm_per_ps = 2\nhold_ps = 3\n";
+  Scene s = scene_from(rope + "unload_rate_nN_nm_per_ps = 1\nunloaded_ps = 5\nhand = \"left\"\n");
+  const double times[] = {0, 1, 2, 5, 7, 9, 12}, moments[] = {0, 2, 4, 4, 2, 0, 0};
+  for (int k = 0; k < 7; ++k) EXPECT_NEAR(twist_of(s).moment_at(times[k]), moments[k] * units::nN_nm, 1e-12) << times[k];
+  const Prepared p = prepare(s);
+  EXPECT_NEAR(p.duration, 14, 1e-9);
+  std::vector<PointLoad> on;
+  for (const auto& load : p.loads) load->add_forces(p.state, 7, on);
+  ASSERT_EQ(on.size(), 2u);
+  for (const PointLoad& at : on)
+    EXPECT_NEAR(at.torque.z(), (at.element == 0 ? 2 : -2) * units::nN_nm, 1e-12) << "the lower end turns to the right";
+  EXPECT_THROW(scene_from(rope + "unloaded_ps = 5\n"), InputError);
 }
 
 TEST(Rope, PerturbationIsLateralBoundedAndOfTheSeed) {

@@ -49,13 +49,13 @@ std::string friction_part(const ParametrizedTube& t) {
                 "<code>[[friction]] from = \"atoms\"</code> has it. The drag was not measured.") +
       "<div class=\"scroll\"><table class=\"facts\"><thead><tr><th>Tubes</th><th class=\"number\">Along the axis, "
       "pN/nm</th><th class=\"number\">Against spin, pN/nm</th><th class=\"number\">Of an end, pN</th><th "
-      "class=\"number\">Elastic slip, nm</th></tr></thead><tbody>\n";
+      "class=\"number\">Elastic slip, nm</th><th>Grade</th></tr></thead><tbody>\n";
   for (const PairFriction& f : t.frictions) {
     html += fmt::format("<tr><th>({},{}) beside ({},{})</th>", f.a.n, f.a.m, f.b.n, f.b.m);
     for (const char* key : {"friction.strength", "friction.spin_strength", "friction.end_strength", "friction.elastic_slip"})
       for (const Quantity& q : f.quantities)
         if (q.key == key) html += fmt::format("<td class=\"number\">{}</td>", measured_text(q));
-    html += "</tr>\n";
+    html += fmt::format("<td>{}</td></tr>\n", escape_markup(grade_of(f).words()));
   }
   return html + "</tbody></table></div>\n";
 }

@@ -373,6 +373,33 @@ def errors(run: Run | str | os.PathLike[str], *, jobs: Optional[int] = None, aga
     return found
 
 
+def rest(
+    scene: SceneLike,
+    out: str | os.PathLike[str],
+    *,
+    viscosity: Optional[float] = None,
+    tolerance: float = 0.02,
+    jobs: Optional[int] = None,
+    force: bool = False,
+) -> dict[str, Any]:
+    """Where a rope under a moment comes to rest, from below and from above, as `ropewalk rest`: what `--json` says, with
+    units in the names. "agree" tells whether both sides do; angles are None where they do not.
+
+    Arguments:
+        scene: a scene, a dict of its keys (units stand in their names), or a file
+        out: directory of both runs; the same call goes on after an interruption
+        viscosity: contact viscosity (eV ps/nm^2); None: the scene's, or a tenth of the default
+        tolerance: part of the twist within which both sides agree (no unit)
+        jobs: runs at a time; None: one on each core (no unit)
+        force: replaces runs of another scene
+    """
+    with _scene_file(as_scene(scene)) as path:
+        found: dict[str, Any] = json.loads(_call(["rest", path, f"--out={os.fspath(out)}", "--json", "--quiet",
+                                                  *_options(viscosity=viscosity, tolerance=tolerance, jobs=jobs,
+                                                            force=force)]))
+    return found
+
+
 def parametrize(
     chiralities: Sequence[tuple[int, int]],
     out: str | os.PathLike[str] = "parametrized",

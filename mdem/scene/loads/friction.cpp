@@ -36,11 +36,13 @@ class FrictionDrive : public Drive {
     std::string text;
     for (const FrictionLaw& f : laws)
       text += fmt::format(
-          "{}friction{}, {}: {:.4g} pN/nm along the axis, {:.4g} pN/nm against spin, {:.4g} pN at each end, elastic "
+          "{}friction{}, {}: {:.4g} pN/nm along the axis, {:.4g} pN/nm against spin, {:.4g} pN at each end, "
+          "elastic "
           "up to {:.4g} nm, drag {:.4g} eV ps/nm^3{}",
           text.empty() ? "" : "\n",
           f.law.types.empty() ? "" : fmt::format(" between types {}", fmt::join(f.law.types, " and ")),
-          f.law.corrugated ? "a corrugation" : "dry", f.law.axial / pN, f.law.spin / pN, f.law.end / pN, f.law.elastic_slip, f.law.drag, f.words);
+          f.law.corrugated ? "a corrugation" : "dry", f.law.axial / pN, f.law.spin / pN, f.law.end / pN,
+          f.law.elastic_slip, f.law.drag, f.words);
     return text;
   }
   std::vector<std::string> files() const override {
@@ -79,9 +81,11 @@ void read_from(const TomlTable& t, const Scene&, FrictionDrive& friction) {
   if (!t.has("slip")) friction.typed.corrugated = true;
 }
 
-FrictionLaw law_of(const PairFriction& f, const DryFriction& typed, std::vector<int> types, const std::string& estimate) {
+FrictionLaw law_of(const PairFriction& f, const DryFriction& typed, std::vector<int> types,
+                   const std::string& estimate) {
   return {{f.strength, f.spin_strength, f.end_strength, f.elastic_slip, f.drag, typed.corrugated, std::move(types)},
-          fmt::format(", of atoms ({}{})", f.name, estimate), f.path};
+          fmt::format(", of atoms ({}, {}{})", f.name, grade_of(f).words(), estimate),
+          f.path};
 }
 
 // Of all pairs of tube types, or the pair that is given.
@@ -136,10 +140,11 @@ const KeyTable<FrictionDrive>& friction_table() {
       "friction",
       "any number of these: dry friction of tubes side by side; slips are elastic up to a strength, then tubes "
       "slide",
-      {Key::custom("from", "", otherwise("\"atoms\"", "typed below"),
-                   "strengths that were measured from atoms: \"atoms\" for all pairs of tubes, or the name of a shipped "
-                   "pair, or a file",
-                   read_from),
+      {Key::custom(
+           "from", "", otherwise("\"atoms\"", "typed below"),
+           "strengths that were measured from atoms: \"atoms\" for all pairs of tubes, or the name of a shipped "
+           "pair, or a file",
+           read_from),
        Key::number(
            "strength_pN_per_nm", per_length, Bounds::non_negative(1e5),
            [](auto& d) -> auto& { return d.typed.axial; }, standard(),
@@ -160,10 +165,12 @@ const KeyTable<FrictionDrive>& friction_table() {
            "drag_eV_ps_per_nm3", {"eV ps/nm^3", 1}, Bounds::non_negative(1e4),
            [](auto& d) -> auto& { return d.typed.drag; }, standard(),
            "force per length of contact and speed of sliding"),
-       Key::word("slip", Words<bool>{{"dry", false}, {"corrugation", true}}, [](auto& d) -> auto& { return d.typed.corrugated; },
-                 otherwise("\"dry\"", "\"corrugation\" for strengths of atoms"),
-                 "beyond its strength a contact slides and loses the work, \"dry\"; or its force is that of a "
-                 "\"corrugation\", which loses nothing"),
+       Key::word(
+           "slip", Words<bool>{{"dry", false}, {"corrugation", true}},
+           [](auto& d) -> auto& { return d.typed.corrugated; },
+           otherwise("\"dry\"", "\"corrugation\" for strengths of atoms"),
+           "beyond its strength a contact slides and loses the work, \"dry\"; or its force is that of a "
+           "\"corrugation\", which loses nothing"),
        Key::custom("types", "", otherwise("[0, 1]", "all tubes"),
                    "the two tube types between which it acts, from 0", read_types)},
       check};

@@ -26,6 +26,10 @@ const Words<TwistLoad::Application>& words_of_application() {
 void check_twist(const TomlTable& t, const Scene&, TwistLoad& twist) {
   if (twist.ramp_time() > longest_time)
     throw t.error(rate_key, fmt::format("makes a ramp of {:.3g} ps", twist.ramp_time()), "ramp faster");
+  if (twist.unload_time() > longest_time)
+    throw t.error("unload_rate_nN_nm_per_ps", fmt::format("takes {:.3g} ps", twist.unload_time()), "unload faster");
+  if (twist.unloaded > 0 && twist.unload_rate == 0)
+    throw t.error("unloaded_ps", "follows upon the unloading, and unload_rate_nN_nm_per_ps is 0", "give a rate");
 }
 
 const KeyTable<TwistLoad>& twist_table() {
@@ -41,13 +45,18 @@ const KeyTable<TwistLoad>& twist_table() {
                    "rate of the ramp; 0: the moment acts at once"),
        Key::number("hold_ps", unit::ps, Bounds::non_negative(longest_time), &T::hold, standard(),
                    "time under the full moment, after the ramp"),
+       Key::number("unload_rate_nN_nm_per_ps", {"nN nm/ps", units::nN_nm}, Bounds::non_negative(1e6),
+                   &T::unload_rate, standard(), "after that the moment is taken away at this rate; 0: it stays"),
+       Key::number("unloaded_ps", unit::ps, Bounds::non_negative(longest_time), &T::unloaded, standard(),
+                   "time without a moment, at the end"),
+       Key::word("hand", Words<bool>{{"right", false}, {"left", true}}, &T::left_handed, standard(),
+                 "\"left\": the moment at the upper end turns the other way"),
        Key::word("reading", Words<T::Reading>{{"per-tube", T::Reading::per_tube}, {"total", T::Reading::total}},
                  &T::reading, standard(), "the moment is that of each grip element, or of all: \"total\""),
-       Key::word(
-           "application",
-           words_of_application(), &T::application, standard(),
-           "a couple on each grip element: \"couple\" about z, \"follower\" about the tube, \"conservative\" with a "
-           "potential; or \"tangential\" forces about the rope's axis"),
+       Key::word("application", words_of_application(), &T::application, standard(),
+                 "a couple on each grip element: \"couple\" about z, \"follower\" about the tube, \"conservative\" "
+                 "with a "
+                 "potential; or \"tangential\" forces about the rope's axis"),
        Key::word("lateral", grips, &T::lateral_free, standard(),
                  "\"held\": the centre of mass of a grip stays on the axis"),
        Key::word("axial", grips, &T::axial_free, standard(), "\"held\": grip elements keep their z"),
@@ -122,11 +131,13 @@ SceneTable TwistDrive::table() const { return twist_table().doc(); }
 
 std::string TwistDrive::words() const {
   return fmt::format(
-      "twist: {:.4g} nN nm {} by {} on the grips, ramped in {:.4g} ps, held for {:.4g} ps; grips {} along the "
+      "twist{}: {:.4g} nN nm {} by {} on the grips, ramped in {:.4g} ps, held for {:.4g} ps{}; grips {} along the "
       "axis, {} sideways{}",
-      load.moment / units::nN_nm, load.reading == TwistLoad::Reading::per_tube ? "per tube" : "in total",
-      applied_by(load.application), load.ramp_time(),
-      load.hold, load.axial_free ? "free" : "held", load.lateral_free ? "free" : "held",
+      load.left_handed ? ", left-handed" : "", load.moment / units::nN_nm,
+      load.reading == TwistLoad::Reading::per_tube ? "per tube" : "in total", applied_by(load.application),
+      load.ramp_time(), load.hold,
+      load.unload_rate > 0 ? fmt::format(", taken away in {:.4g} ps", load.unload_time()) : "",
+      load.axial_free ? "free" : "held", load.lateral_free ? "free" : "held",
       load.geometric_only ? "; spins relaxed (geometric twist only)" : "");
 }
 
@@ -171,6 +182,10 @@ void TwistDrive::warn(const Scene& scene, const Topology& topology, const LoadsA
 std::optional<std::vector<std::pair<std::string, double>>> TwistDrive::hastened(double part) const {
   std::vector<std::pair<std::string, double>> keys = {{"twist.hold_ps", load.hold * part}};
   if (load.rate > 0) keys.emplace_back("twist.rate_nN_nm_per_ps", load.rate / units::nN_nm / part);
+  if (load.unload_rate > 0) {
+    keys.emplace_back("twist.unload_rate_nN_nm_per_ps", load.unload_rate / units::nN_nm / part);
+    keys.emplace_back("twist.unloaded_ps", load.unloaded * part);
+  }
   return keys;
 }
 
@@ -257,8 +272,9 @@ void add_twist(const TwistLoad& twist, const Topology& topology, LoadsAndConstra
     lower.push_back(topology.tube_begin[t]);
     upper.push_back(topology.tube_begin[t + 1] - 1);
   }
-  loads.add(twist.on_grip(upper, 1));
-  loads.add(twist.on_grip(lower, -1));
+  const double upper_sign = twist.left_handed ? -1 : 1;
+  loads.add(twist.on_grip(upper, upper_sign));
+  loads.add(twist.on_grip(lower, -upper_sign));
 }
 
 }  // namespace ropewalk

@@ -1,5 +1,6 @@
 // [twist] the two-stage protocol: the moment on the grip elements (first and last of every tube; + at the upper
-// end, - at the lower) is ramped at a rate and then held. One such load acts on one grip.
+// end, - at the lower, or the other way round) is ramped at a rate, held, and taken away again if asked for. One such
+// load acts on one grip.
 //
 // A moment M reaches an element with the axis t as
 //
@@ -24,7 +25,8 @@ namespace ropewalk {
 class TwistLoad : public Load, public MomentRamp {
  public:
   enum class Application { couple, follower, conservative, tangential };
-  double hold = 0;                                // ps after the ramp
+  double unloaded = 0;     // ps without a moment, at the end
+  bool left_handed = false;
   Application application = Application::couple;
   bool lateral_free = true;
   bool axial_free = true;
@@ -64,7 +66,7 @@ class TwistDrive : public Drive {
   std::string words() const override;
   void refuse(const TomlTable& top, const Scene&) const override;
   std::string needs_time() const override;
-  double lasts() const override { return load.ramp_time() + load.hold; }
+  double lasts() const override { return load.ramp_time() + load.hold + load.unload_time() + load.unloaded; }
   void add_loads(const Scene&, const Topology& topology, const Interaction&,
                  LoadsAndConstraints& loads) const override {
     add_twist(load, topology, loads);

@@ -15,6 +15,8 @@ const KeyTable<StartOptions>& start_table() {
            "damping may take this heat, or that of [thermostat], away; without this key such a run is refused"),
        Key::integer("seed", 0, std::numeric_limits<long>::max(), &StartOptions::seed, standard(),
                     "of all random numbers: the same seed gives the same run"),
+       Key::number("twist_deg_per_nm", {"deg/nm", units::degree}, Bounds::range(-30, 30), &StartOptions::turn,
+                   standard(), "tubes side by side begin wound about the axis of the rope, by this along it"),
        Key::number("wave_nm", unit::nm, Bounds::range(0, 100), &StartOptions::wave, standard(),
                    "tubes side by side begin bent sideways by this, all alike, in sine waves along x"),
        Key::integer("half_waves", 1, 1000, &StartOptions::half_waves, standard(), "of wave_nm, from end to end")},

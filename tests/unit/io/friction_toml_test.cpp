@@ -53,6 +53,19 @@ TEST(FrictionToml, IsReadAndWritten) {
   EXPECT_EQ(again.b.n, 17);
 }
 
+TEST(FrictionToml, GradeFollowsFromTheErrors) {
+  const auto grade = [](const std::string& text) { return grade_of(friction_of_text(text, "mine.toml")); };
+  EXPECT_EQ(grade(valid).words(), "good");
+  const Grade limited = grade(with("value = 40, unit = \"pN/nm\", standard_error = 1", "value = 40, unit = \"pN/nm\", standard_error = 10"));
+  EXPECT_EQ(limited.level, Grade::Level::limited);
+  EXPECT_THAT(limited.words(), HasSubstr("along the axis 40 +- 10 pN/nm"));
+  EXPECT_EQ(grade(with("value = 60, unit = \"pN/nm\", standard_error = 1", "value = 60, unit = \"pN/nm\", standard_error = 40")).level,
+            Grade::Level::unfit);
+  // Next to nothing, known to be next to nothing.
+  EXPECT_EQ(grade(with("value = 40, unit = \"pN/nm\", standard_error = 1", "value = 0.1, unit = \"pN/nm\", standard_error = 0.2")).words(),
+            "good");
+}
+
 TEST(FrictionToml, BadOnesAreRefused) {
   EXPECT_THAT(message(with("ropewalk-friction-1", "ropewalk-friction-2")), HasSubstr("meta.format"));
   EXPECT_THAT(message(with("[17, 0]", "[17]")), HasSubstr("meta.chirality_b"));
@@ -117,7 +130,7 @@ TEST(FrictionToml, AScenesFrictionComesFromAtomsAndSaysWhatIsAnEstimate) {
   EXPECT_THAT(all, HasSubstr("between types 0 and 0"));
   EXPECT_THAT(all, HasSubstr("between types 0 and 1"));
   EXPECT_THAT(all, HasSubstr("an estimate: (12,12) beside (12,12) was not measured"));
-  EXPECT_THAT(all, HasSubstr("of atoms (friction-17-0-17-0-tersoff)"));
+  EXPECT_THAT(all, HasSubstr("of atoms (friction-17-0-17-0-tersoff, good)"));
   EXPECT_THAT(words("from = \"atoms\"\ntypes = [1, 1]\n"), ::testing::Not(HasSubstr("types 0")));
   const auto refused = [&](const std::string& friction) -> std::string {
     try {

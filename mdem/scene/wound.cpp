@@ -1,20 +1,20 @@
-#include "plan/expected_state.hpp"
+#include "scene/wound.hpp"
 
 #include <Eigen/Geometry>
 #include <cmath>
 
 namespace ropewalk {
 
-State turned_rope(const Prepared& p, double turn, double rate) {
-  State out = p.state;
+State wound(const State& straight, double turn, double rate) {
+  State out = straight;
   Vector3 middle = Vector3::Zero();
-  for (std::size_t i = 0; i < out.size(); ++i) middle += p.state.position[i] / static_cast<double>(out.size());
+  for (std::size_t i = 0; i < out.size(); ++i) middle += straight.position[i] / static_cast<double>(out.size());
   for (std::size_t i = 0; i < out.size(); ++i) {
-    const Vector3 arm = Vector3(p.state.position[i]) - middle;
+    const Vector3 arm = Vector3(straight.position[i]) - middle;
     const Vector3 radial(arm.x(), arm.y(), 0);
     const double slope = radial.norm() * turn, height = arm.z() / std::sqrt(1 + slope * slope);
     const Quaternion about(Eigen::AngleAxisd(turn * height, Vector3::UnitZ()));
-    Quaternion q = p.state.orientation[i];
+    Quaternion q = straight.orientation[i];
     if (slope != 0) q = Quaternion(Eigen::AngleAxisd(-std::atan(slope), radial.normalized())) * q;
     const Vector3 turned = about * radial, spin(0, 0, rate * height);
     out.position.set(i, middle + turned + Vector3(0, 0, height));

@@ -1,0 +1,92 @@
+// `rest`: where a rope comes to rest, approached from both sides.
+#include "campaign/rest.hpp"
+
+#include <fmt/format.h>
+#include <omp.h>
+
+#include <filesystem>
+
+#include "campaign/sweep_runs.hpp"
+#include "commands/commands.hpp"
+#include "commands/sweep_progress.hpp"
+#include "io/files.hpp"
+#include "io/stop_signals.hpp"
+#include "model/error.hpp"
+#include "run/tell.hpp"
+#include "scene/dissipation.hpp"
+
+namespace ropewalk {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A tenth of the default: ropes of 7 to 91 tubes come to rest several times sooner, and hardly swing.
+constexpr double of_the_default = 0.1;
+
+double viscosity_of(const RestArguments& a, const Scene& scene) {
+  if (a.viscosity) return *a.viscosity;
+  const double standard = default_contact_viscosity(scene.element_length, scene.parameters().radius);
+  return scene.damping.contact.eta == standard ? of_the_default * standard : -1;
+}
+
+void print_sides(const std::array<RestSide, 2>& sides, const RestTheory& theory, double length) {
+  fmt::print("{:<8} {:>10} {:>14} {:>16} {:>22} {:>6}  {}\n", "from", "time, ps", "twist, deg", "in 100 ps, deg",
+             "beta, deg (range)", "Q", "branch");
+  for (const RestSide& s : sides)
+    fmt::print("{:<8} {:>10.4g} {:>14.4g} {:>16.2g} {:>22} {:>6.3g}  {}\n", &s == &sides[0] ? "below" : "above",
+               s.time, s.twist, 100 * s.drift, fmt::format("{:.3g} ({:.3g} to {:.3g})", s.beta, s.least, s.most),
+               s.Q, s.branch());
+  fmt::print(
+      "theory: tubes that crowd like a disc {:.4g} deg (of few tubes a fifth too little), tubes apart {:.4g} deg\n",
+      theory.compact * length / units::degree, theory.open * length / units::degree);
+}
+
+}  // namespace
+
+int rest_command(const RestArguments& a) {
+  Scene scene = read_scene(a.scene);
+  if (scene.start.turn != 0)
+    throw InputError({a.scene, 0, "start.twist_deg_per_nm"}, "is what this command varies", "take it away");
+  const Prepared p = prepare(scene);
+  const RestTheory theory = rest_theory(scene, p);
+  const double length = p.topology.length_of(0) * p.topology.longest_element();
+  const std::string name = fs::path(a.scene).stem().string();
+  const CampaignDirectory dir{a.out.empty() ? "runs/" + name + "-rest" : a.out};
+  scene.path = fs::absolute(a.scene).string();
+  const Sweep sweep = sweep_of_text(rest_sweep(scene, p, theory, viscosity_of(a, scene)), dir.sweep());
+  const std::vector<SweepPoint> points = points_of(sweep);
+  const DirectoryLock lock = create_campaign(dir, sweep, points, a.force);
+  listen_to_stop_signals();
+  const SweepRuns runs(sweep, dir, points, OnLimit::warn, a.jobs > 0 ? a.jobs : omp_get_num_procs(), false);
+  SweepProgress progress(dir, points, runs, a.quiet);
+  progress.begin();
+  runs.run_points([&](const SweepPoint& point, int status) { progress.ended(point, status); });
+  if (stop_signal) {
+    tell_as_is(fmt::format("ropewalk: stopped by signal {}; go on with the same command\n",
+                           static_cast<int>(stop_signal)));
+    return 128 + stop_signal;
+  }
+  progress.clear_line();
+  std::array<RestSide, 2> sides;
+  for (std::size_t k = 0; k < 2; ++k) {
+    const RunDirectory run = dir.point(points.at(k).name);
+    if (progress_of(run).stage != PointProgress::Stage::ended) {
+      fmt::print("not ended: {}, see {}\n", points[k].name, dir.messages(points[k].name));
+      return 3;
+    }
+    sides[k] = rest_side(read_log(run.log()), std::stod(points[k].values.front()));
+  }
+  const RestVerdict verdict = rest_verdict(sides, a.tolerance);
+  write_file_atomically(dir.path + "/rest.csv", rest_csv(sides));
+  const std::string json = rest_json(sides, verdict, theory, length);
+  write_file_atomically(dir.path + "/rest.json", json);
+  if (a.json) {
+    fmt::print("{}", json);
+    return 0;
+  }
+  print_sides(sides, theory, length);
+  fmt::print("{}\nNumbers: {}/rest.csv, rest.json; runs: {}/points\n", verdict.words, dir.path, dir.path);
+  return 0;
+}
+
+}  // namespace ropewalk
