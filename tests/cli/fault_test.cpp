@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <functional>
+#include <nlohmann/json.hpp>
 #include <regex>
 #include <set>
 #include <thread>
@@ -341,7 +342,9 @@ class FaultsOfProcesses : public Faults {
 
   std::set<std::string> temporary_folders() const {
     std::set<std::string> names;
-    for (const auto& entry : fs::directory_iterator(dir / "d/t")) names.insert(entry.path().filename().string());
+    for (const auto& entry : fs::directory_iterator(dir / "d/t"))
+      if (const std::string name = entry.path().filename().string(); name.rfind("ompi.", 0) != 0)  // of Open MPI
+        names.insert(name);
     return names;
   }
 
@@ -389,7 +392,7 @@ class FaultsOfProcesses : public Faults {
         EXPECT_EQ(temporary_folders(), left) << when;
         if (HasFailure()) return;
       }
-    EXPECT_GT(tried, 4) << verb.command;
+    EXPECT_GT(tried, 2) << verb.command;
     fmt::print("kill and full disk in {}: {} tried\n", verb.command, tried);
   }
 
@@ -431,6 +434,32 @@ TEST_F(FaultsOfProcesses, ErrorsBrokenOff) {
                         {"errors.csv", "errors-potential.csv", "errors/errors.json", "report.html"},
                         [&] { begin("ready"); },
                         19});
+}
+
+// The set is there, and the results of all cases but one.
+TEST_F(FaultsOfProcesses, ParametrizeBrokenOff) {
+  const std::string name = "cnt-5-5-tersoff", of_one = "euler-buckling";
+  fs::create_directories(dir / "ready/p");
+  for (const char* file : {".toml", "-stiffness.csv", "-contact.csv"})
+    fs::copy(ROPEWALK_SOURCE_DIR "/data/parameters/" + name + file, dir / "ready/p");
+  const std::string folder = "ready/p/" + name + "-validation";
+  ASSERT_EQ(run("validate run " + of_one + " --parameters ready/p/" + name + ".toml --quiet --out " + folder).code, 0)
+      << slurp(dir / "stderr.txt");
+  nlohmann::ordered_json result = nlohmann::ordered_json::parse(slurp(dir / folder / (of_one + ".json")));
+  const auto cases = nlohmann::json::parse(run("validate list --json").out);
+  for (const auto& one : cases) {
+    result["case"] = one.at("name");
+    spit(dir / folder / (one.at("name").get<std::string>() + ".json"), result.dump(1) + "\n");
+  }
+  fs::remove(dir / folder / (of_one + ".json"));
+  const auto without_times = [](const std::string& text) {
+    return std::regex_replace(text, std::regex("[0-9.]+ s\\b|,[0-9.]+,[0-9.]+\n"), "");
+  };
+  break_off_everywhere({"parametrize 5,5 --out d/p --friction none --budget 0.001 -j 1 --quiet",
+                        {"p/report.html", "p/tubes.csv"},
+                        [&] { begin("ready"); },
+                        6,
+                        without_times});
 }
 
 // A full disk before the first checkpoint: one line, exit code 3, and nothing stands in the way of the same
