@@ -264,7 +264,8 @@ int show_command(const ShowArguments& a) {
   const ParameterSet set = read_parameters(find_parameters(a.set, "", {"", 0, "set"}));
   print_set(set);
   if (a.table_only) return 0;
-  const std::string page = a.page.empty() ? set.name + ".html" : a.page;
+  // The name is a text of whoever made the set, and no path.
+  const std::string page = a.page.empty() ? fs::path(set.name).filename().string() + ".html" : a.page;
   // Only a page of this command may be replaced.
   if (fs::exists(page) && read_file(page).find(page_mark) == std::string::npos)
     throw InputError({page, 0, "--page"}, "exists and is not such a page", "choose another name");

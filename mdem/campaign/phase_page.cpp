@@ -21,18 +21,6 @@ std::string cell(double value) { return std::isfinite(value) ? fmt::format("{:.6
 // To the digits that a run and its row in trials.csv share.
 std::string rough_cell(double value) { return std::isfinite(value) ? fmt::format("{:.4g}", value) : "nan"; }
 
-std::vector<std::string> keys_without_seed(const Sweep& sweep) {
-  std::vector<std::string> keys = sweep.keys();
-  keys.erase(std::remove(keys.begin(), keys.end(), "start.seed"), keys.end());
-  return keys;
-}
-
-std::string head(const Sweep& sweep) {
-  std::string text;
-  for (const std::string& key : keys_without_seed(sweep)) text += key + ",";
-  return text;
-}
-
 std::string values(const PhasePoint& p) {
   std::string text;
   for (const std::string& v : p.values) text += csv_cell(v) + ",";
@@ -116,7 +104,7 @@ std::string off_theory(const PhasePoint& p) {
 
 std::string thresholds_csv(const Sweep& sweep, const std::vector<PhasePoint>& points) {
   std::string text =
-      head(sweep) +
+      key_cells(sweep, sweep.keys()) +
       "tubes,length_nm,radius_nm,seeds,by_bisection,by_bisection_error,theory,static_theory,glued_theory,"
       "winding,rate_over_theory,rates,falling_seeds,unclear_seeds,outside_seeds,cut_short_runs\n";
   for (const PhasePoint& p : points)
@@ -130,7 +118,7 @@ std::string thresholds_csv(const Sweep& sweep, const std::vector<PhasePoint>& po
 }
 
 std::string trials_csv(const Sweep& sweep, const std::vector<PhasePoint>& points) {
-  std::string text = head(sweep) + column_names(trial_columns()) + "\n";
+  std::string text = key_cells(sweep, sweep.keys()) + column_names(trial_columns()) + "\n";
   for (const PhasePoint& p : points)
     for (std::size_t s = 0; s < p.seeds.size(); ++s)
       for (const Trial& t : p.seeds[s].trials)

@@ -5,10 +5,13 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <stdexcept>
 
 #include "campaign/point_runs.hpp"
 #include "io/clocks.hpp"
 #include "io/files.hpp"
+#include "io/manifest.hpp"
 #include "io/plain_text.hpp"
 #include "io/processes.hpp"
 #include "model/error.hpp"
@@ -18,6 +21,8 @@
 
 namespace ropewalk {
 namespace {
+
+namespace fs = std::filesystem;
 
 // The last message of a failed run, without the place of its files, which are gone.
 std::string last_line(std::string said) {
@@ -29,14 +34,28 @@ std::string last_line(std::string said) {
   return said.substr(0, said.find(". State written to"));
 }
 
+bool came_to_an_end(int status) {
+  constexpr int not_at_rest = 4;
+  return WIFEXITED(status) && (WEXITSTATUS(status) == 0 || WEXITSTATUS(status) == not_at_rest);
+}
+
+// What ended a pilot where it was not its own scene, which was refused or came to no end: a signal, a full disk.
+// Empty: it was the scene.
+std::string broken_by(const std::string& run, int status) {
+  if (came_to_an_end(status)) return "";
+  if (!WIFEXITED(status)) return death_words(status);
+  const RunDirectory dir{run};
+  const bool has_words = fs::exists(run + ".txt"), begun = fs::exists(dir.manifest());
+  if (begun && read_manifest(dir.manifest()).status == "failed") return "";
+  if (has_words && !fs::exists(dir.path) && WEXITSTATUS(status) == 2) return "";
+  const std::string said = has_words ? last_line(read_file(run + ".txt")) : "";
+  return said.empty() ? "its files could not be written" : said.substr(0, said.find("; then "));
+}
+
 PilotEnd end_of(const std::string& run, int status) {
   PilotEnd end;
-  constexpr int not_at_rest = 4;
-  if (!WIFEXITED(status)) {
-    end.failure = death_words(status);
-  } else if (WEXITSTATUS(status) != 0 && WEXITSTATUS(status) != not_at_rest) {
-    const std::string said = read_file(run + ".txt");
-    end.failure = last_line(said);
+  if (!came_to_an_end(status)) {
+    end.failure = last_line(read_file(run + ".txt"));
   } else {
     end.seconds = leading_number(read_file(run + ".seconds")).value_or(0);
     end.log = read_log(RunDirectory{run}.log());
@@ -49,10 +68,15 @@ PilotEnd end_of(const std::string& run, int status) {
 std::vector<PilotEnd> PilotRuns::operator()(const std::vector<PilotTask>& tasks) {
   std::vector<PilotEnd> ends(tasks.size());
   std::vector<ProcessTask> processes;
+  std::string broken;
   for (std::size_t k = 0; k < tasks.size(); ++k) {
     const std::string run = folder_.file(std::to_string(count_++));
     processes.push_back({[this, run, &task = tasks[k]] { return work(run, task); },
-                         [this, run, &task = tasks[k], &end = ends[k]](int status) {
+                         [this, run, &broken, &task = tasks[k], &end = ends[k]](int status) {
+                           if (const std::string why = broken_by(run, status); !why.empty()) {
+                             broken = fmt::format("a pilot ({}) was broken off: {}", task.name, why);
+                             return;
+                           }
                            end = end_of(run, status);
                            seconds_ += end.seconds;
                            if (isatty(STDERR_FILENO)) tell_as_is(fmt::format("\r\033[Kpilot: {}", task.name));
@@ -62,6 +86,8 @@ std::vector<PilotEnd> PilotRuns::operator()(const std::vector<PilotTask>& tasks)
   if (isatty(STDERR_FILENO)) tell_as_is("\r\033[K");
   if (stop_signal)
     throw InputError({path_, 0, ""}, "planning was stopped by a signal", "nothing was written; start it again");
+  // A model that the machine left no result of has not been judged: a plan without it would be another one.
+  if (!broken.empty()) throw std::runtime_error(broken + "; nothing was written: give the same command again");
   return ends;
 }
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
-#include <set>
+#include <unordered_set>
 
 #include "io/csv_reader.hpp"
 #include "io/files.hpp"
@@ -184,12 +184,11 @@ Threshold threshold_of(const CampaignDirectory& dir, const Sweep& sweep, const S
   Threshold out;
   const ThresholdQuestion& q = *sweep.threshold;
   out.trials = trials_in(dir, sweep, point);
-  const auto earlier = known.find(point.name);
-  for (const Trial& t : earlier == known.end() ? std::vector<Trial>() : earlier->second) {
-    const bool here = std::any_of(out.trials.begin(), out.trials.end(),
-                                  [&](const Trial& o) { return o.scene_hash == t.scene_hash; });
-    if (!here) out.trials.push_back(t);
-  }
+  std::unordered_set<std::string> here;
+  for (const Trial& t : out.trials) here.insert(t.scene_hash);
+  if (const auto earlier = known.find(point.name); earlier != known.end())
+    for (const Trial& t : earlier->second)
+      if (here.insert(t.scene_hash).second) out.trials.push_back(t);
   return bracketed(std::move(out.trials), q.from, q.to);
 }
 
@@ -207,39 +206,60 @@ std::vector<OutputColumn> trial_columns() {
            "hash of the scene, its parameter sets and its state file, by which `--known` finds it again"}};
 }
 
-// By the names of their columns: earlier versions had fewer of them.
-std::vector<Trial> read_trials(const std::string& path) {
+std::string key_cells(const Sweep& sweep, const std::vector<std::string>& of_keys) {
+  const std::vector<std::string> keys = sweep.keys();
+  std::string text;
+  for (std::size_t k = 0; k < keys.size(); ++k)
+    if (keys[k] != "start.seed") text += csv_cell(of_keys[k]) + ",";
+  return text;
+}
+
+TrialTable read_trials(const std::string& path) {
   CsvReader csv(path);
-  std::map<std::string, std::size_t> at;
-  if (csv.next())
-    for (std::size_t k = 0; k < csv.cells().size(); ++k) at[std::string(csv.cells()[k])] = k;
-  const std::size_t columns = csv.cells().size();
+  csv.next();
+  const std::vector<std::string> names(csv.cells().begin(), csv.cells().end());
+  // The place of a column; that behind the last where there is none.
+  const auto place = [&](const char* name) {
+    return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+  };
   for (const char* needed : {"value", "passed", "at_ps", "scene_xxh64"})
-    if (at.count(needed) == 0)
+    if (place(needed) == names.size())
       throw InputError({path, 1, ""}, fmt::format("has no column {}", needed),
                        "it is another table, or an earlier version wrote it: take it away");
-  std::vector<Trial> trials;
+  const auto column = [&](const char* name) {
+    return [&csv, name, at = place(name), count = names.size()] { return at < count ? csv.number(at, name) : unknown; };
+  };
+  const auto value = column("value"), passed = column("passed"), at_ps = column("at_ps"),
+             rate = column("rate_per_ps"), rate_error = column("rate_error_per_ps"), turn = column("turn_deg");
+  const std::size_t shape = place("shape"), hash = place("scene_xxh64"), keys = std::min(place("seed"), place("value"));
+  const auto cells_of_keys = [&] {
+    std::string text;
+    for (std::size_t k = 0; k < keys; ++k) text += csv_cell(std::string(csv.cells()[k])) + ",";
+    return text;
+  };
+  TrialTable table;
+  table.keys = cells_of_keys();
   while (csv.next()) {
-    if (csv.cells().size() != columns)
-      csv.fail("", fmt::format("has {} columns, the header {}", csv.cells().size(), columns),
+    if (csv.cells().size() != names.size())
+      csv.fail("", fmt::format("has {} columns, the header {}", csv.cells().size(), names.size()),
                "the file was changed or damaged; restore it");
-    const auto number = [&](const char* name) { return at.count(name) ? csv.number(at[name], name) : unknown; };
     Trial t;
-    t.value = number("value");
-    t.passed = number("passed") != 0;
-    const double time = number("at_ps");
+    t.value = value();
+    t.passed = passed() != 0;
+    const double time = at_ps();
     t.cut_short = !t.passed && std::isfinite(time);
     if (t.passed || t.cut_short) t.time = time;
-    if (const double rate = number("rate_per_ps"); std::isfinite(rate)) {
-      t.rate = rate;
-      t.error = number("rate_error_per_ps");
+    if (const double r = rate(); std::isfinite(r)) {
+      t.rate = r;
+      t.error = rate_error();
     }
-    if (const double turn = number("turn_deg"); std::isfinite(turn)) t.turn = turn * units::degree;
-    if (at.count("shape")) t.shape = csv.cells()[at["shape"]];
-    t.scene_hash = csv.cells()[at["scene_xxh64"]];
-    trials.push_back(t);
+    if (const double turned = turn(); std::isfinite(turned)) t.turn = turned * units::degree;
+    if (shape < names.size()) t.shape = csv.cells()[shape];
+    t.scene_hash = csv.cells()[hash];
+    table.trials.push_back(std::move(t));
+    table.values.push_back(cells_of_keys());
   }
-  return trials;
+  return table;
 }
 
 bool PhasePoint::begun() const {

@@ -113,7 +113,16 @@ PhasePoint point_in_theory(const Sweep& sweep, const SweepPoint& point);
 
 // Columns of trials.csv behind those of the keys that vary.
 std::vector<OutputColumn> trial_columns();
-std::vector<Trial> read_trials(const std::string& path);
+// The cells of one row before those: of each key that varies, but the seed. `of_keys`: a text for each key of the sweep.
+std::string key_cells(const Sweep& sweep, const std::vector<std::string>& of_keys);
+
+// A table of trials, read by the names of its columns: earlier versions had fewer of them.
+struct TrialTable {
+  std::string keys;  // key_cells() of its header
+  std::vector<Trial> trials;
+  std::vector<std::string> values;  // key_cells() of each trial
+};
+TrialTable read_trials(const std::string& path);
 
 std::string thresholds_csv(const Sweep& sweep, const std::vector<PhasePoint>& points);
 std::string trials_csv(const Sweep& sweep, const std::vector<PhasePoint>& points);

@@ -6,9 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <map>
+#include <unordered_map>
 
 #include "campaign/point_runs.hpp"
+#include "io/clocks.hpp"
 #include "io/files.hpp"
 #include "io/plain_text.hpp"
 #include "io/processes.hpp"
@@ -70,12 +71,23 @@ void ThresholdSearch::refuse_other_scenes(bool force) const {
 }
 
 std::pair<std::size_t, std::size_t> ThresholdSearch::take(const std::string& path) {
-  const std::vector<Trial> trials = read_trials(path);
+  const TrialTable table = read_trials(path);
+  // Where the table has the keys of this sweep, a trial can only be of a point with its values.
+  struct Candidates {
+    std::vector<std::size_t> points;
+    std::size_t last = 0;  // of these, the one that a row was found to be of
+  };
+  const bool same_keys = table.keys == key_cells(sweep_, sweep_.keys());
+  std::unordered_map<std::string, Candidates> by_values;
   std::vector<TrialHashes> hashes;
-  for (const SweepPoint& p : points_) hashes.emplace_back(sweep_, p);
-  std::size_t others = 0, last = 0;
-  std::map<std::string, const Trial*> seen;
-  for (const Trial& t : trials) {
+  for (std::size_t k = 0; k < points_.size(); ++k) {
+    hashes.emplace_back(sweep_, points_[k]);
+    by_values[same_keys ? key_cells(sweep_, points_[k].values) : ""].points.push_back(k);
+  }
+  std::size_t others = 0;
+  std::unordered_map<std::string, const Trial*> seen;
+  for (std::size_t row = 0; row < table.trials.size(); ++row) {
+    const Trial& t = table.trials[row];
     const auto [at, is_new] = seen.emplace(t.scene_hash, &t);
     if (!is_new && (at->second->passed != t.passed || at->second->time != t.time))
       throw InputError(
@@ -84,24 +96,34 @@ std::pair<std::size_t, std::size_t> ThresholdSearch::take(const std::string& pat
           "one of them was changed: take it away, or leave --known out");
     if (!is_new) continue;
     // Rows of one point follow one another.
+    Candidates& some = by_values[same_keys ? table.values[row] : ""];
+    const std::size_t count = some.points.size();
     std::size_t k = 0;
-    while (k < points_.size() && hashes[(last + k) % points_.size()].of(t.value) != t.scene_hash) ++k;
-    if (k == points_.size()) {
+    while (k < count && hashes[some.points[(some.last + k) % count]].of(t.value) != t.scene_hash) ++k;
+    if (k == count) {
       ++others;
       continue;
     }
-    last = (last + k) % points_.size();
-    known_[points_[last].name].push_back(t);
+    some.last = (some.last + k) % count;
+    known_[points_[some.points[some.last]].name].push_back(t);
   }
-  return {others, trials.size()};
+  return {others, table.trials.size()};
 }
 
 void ThresholdSearch::go(int jobs, const std::function<void(const SweepPoint&, bool)>& ended) {
   std::vector<ProcessTask> tasks;
+  // Writing takes seconds where many trials are known: a twentieth of the time at most.
+  double next = 0;
+  const auto write_now_and_then = [&] {
+    const double begin = steady_seconds();
+    if (begin < next) return;
+    write();
+    next = begin + 20 * seconds_since(begin);
+  };
   for (const SweepPoint& p : points_)
     tasks.push_back({[this, &p] { return in_a_process(dir_.messages(p.name), false, [&] { return bisect(p); }); },
-                     [this, &p, &ended](int status) {
-                       write();
+                     [&, this](int status) {
+                       write_now_and_then();
                        ended(p, WIFEXITED(status) && WEXITSTATUS(status) == 0);
                      }});
   run_processes(tasks, jobs, &stop_signal);

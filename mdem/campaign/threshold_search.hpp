@@ -19,8 +19,8 @@ class ThresholdSearch {
   // Takes trials of an earlier search (trials.csv). Returns how many of the file are of other scenes, and all.
   std::pair<std::size_t, std::size_t> take(const std::string& trials);
 
-  // `ended` hears of each point, and whether its search came to its end. Tables and page are written again each
-  // time. Ends early by io/stop_signals.hpp.
+  // `ended` hears of each point, and whether its search came to its end. Tables and page are written again
+  // from time to time, and at the end. Ends early by io/stop_signals.hpp.
   void go(int jobs, const std::function<void(const SweepPoint& point, bool well)>& ended);
 
   std::size_t size() const { return points_.size(); }

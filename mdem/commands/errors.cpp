@@ -1,6 +1,7 @@
 // `errors`: how the standard errors of the parameter sets carry through a run.
 #include <fmt/format.h>
 #include <omp.h>
+#include <sys/wait.h>
 
 #include <algorithm>
 #include <cmath>
@@ -89,14 +90,14 @@ int errors_command(const ErrorsArguments& a) {
                          }
                        },
                        [&failed, name](int status) {
-                         if (status != 0) failed.push_back(name);
+                         if (status != 0) failed.push_back(WIFEXITED(status) ? name : name + ": " + death_words(status));
                        }});
     }
   run_processes(tasks, jobs);
   if (!failed.empty())
     throw std::runtime_error(
-        fmt::format("{} of {} runs did not finish ({}): these results are too sensitive for an error "
-                    "to be given",
+        fmt::format("{} of {} runs did not finish ({}): a run that fails by itself is too sensitive for an error to be "
+                    "given; else give the same command again, which keeps those that are finished",
                     failed.size(), tasks.size(), failed.front()));
   std::vector<ErrorSource> described;
   for (const VariedNumber& s : sources) described.push_back(s.error);

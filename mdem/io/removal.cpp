@@ -41,6 +41,15 @@ bool has_work_mark(const std::string& directory) {
          fs::is_regular_file(fs::symlink_status(directory + "/" + work_mark, error));
 }
 
+// Empty, or with nothing but parts of the mark, which a killed process may leave.
+bool is_hardly_made(const std::string& directory) {
+  std::error_code error;
+  if (!fs::is_directory(fs::symlink_status(directory, error))) return false;
+  for (const auto& entry : fs::directory_iterator(directory))
+    if (without_part(entry.path().filename().string()) != work_mark) return false;
+  return true;
+}
+
 void remove_whole(const std::string& directory) {
   std::error_code ignored;
   fs::remove_all(directory, ignored);
@@ -88,8 +97,7 @@ void remove_inside(const std::string& directory, const IsOurs& ours, const char*
 void make_work_folder(const std::string& path, const char* option) {
   std::error_code error;
   remove_work_folder(path);
-  const fs::file_status there = fs::symlink_status(path, error);
-  if (fs::exists(there) && !(fs::is_directory(there) && fs::is_empty(path, error)))
+  if (fs::exists(fs::symlink_status(path, error)) && !is_hardly_made(path))
     throw InputError({path, 0, option}, "is there already, and this program did not make it",
                      "take it away, or choose another directory");
   fs::create_directories(path, error);
@@ -98,7 +106,13 @@ void make_work_folder(const std::string& path, const char* option) {
 }
 
 void remove_work_folder(const std::string& path) {
-  if (has_work_mark(path)) remove_whole(path);
+  if (!has_work_mark(path)) return;
+  // The mark last: a process that is killed here leaves a directory that is known as its own.
+  for (const auto& entry : fs::directory_iterator(path))
+    if (entry.path().filename() != work_mark) remove_whole(entry.path().string());
+  std::error_code ignored;
+  fs::remove(path + "/" + work_mark, ignored);
+  fs::remove(path, ignored);
 }
 
 }  // namespace ropewalk

@@ -4,6 +4,12 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <chrono>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <regex>
+#include <set>
+#include <thread>
 
 #include "cli/support.hpp"
 #include "io/frames/gsd.hpp"
@@ -38,8 +44,10 @@ class Faults : public Cli {
 
   Outcome with(const std::string& fault, const std::string& arguments) const {
     return run(arguments, fmt::format("env LD_PRELOAD='{}' OMP_NUM_THREADS=1 GOMP_SPINCOUNT=0 "
-                                      "ROPEWALK_FAULTS_BELOW='{}' ROPEWALK_FAULT={} ROPEWALK_FAULTS_COUNT='{}'",
-                                      ROPEWALK_FAULTS, (dir / "d").string(), fault, (dir / "count").string()));
+                                      "ROPEWALK_FAULTS_BELOW='{}' ROPEWALK_FAULT={} ROPEWALK_FAULTS_COUNT='{}' "
+                                      "ROPEWALK_FAULTS_MADE='{}'",
+                                      ROPEWALK_FAULTS, (dir / "d").string(), fault, (dir / "count").string(),
+                                      (dir / "made").string()));
   }
 
   long calls_of(const std::string& arguments, const std::string& fault = "none:0") const {
@@ -65,7 +73,7 @@ class Faults : public Cli {
     EXPECT_EQ(o.code == 0 || !o.err.empty(), true) << when;
     std::istringstream lines(o.err);
     for (std::string line; std::getline(lines, line);)
-      EXPECT_EQ(line.rfind("ropewalk: ", 0), 0u) << when << ": " << line;
+      EXPECT_EQ(line.rfind("ropewalk", 0), 0u) << when << ": " << line;
     EXPECT_EQ(o.err.find("std::"), std::string::npos) << when << ": " << o.err;
   }
 
@@ -307,6 +315,151 @@ TEST_F(Faults, OtherVerbsKilledOrOutOfDisk) {
       }
     fmt::print("kill and full disk in {}: {} tried\n", command, tried);
   }
+}
+
+// A verb that starts processes of its own, killed in whichever of them, or with the disk full from a call on. Its files
+// are whole or not there, the same command then ends as if it had been left alone, and leaves no temporary folder.
+struct VerbOfProcesses {
+  std::string command;
+  std::vector<std::string> results;  // below d
+  std::function<void()> prepare;     // d before the command
+  long stride;
+  std::function<std::string(const std::string&)> comparable = [](const std::string& text) { return text; };
+  int code = 0;          // of the command that is left alone
+  bool once = false;     // it does not write over what it has made
+};
+
+class FaultsOfProcesses : public Faults {
+ protected:
+  void SetUp() override {
+    Faults::SetUp();
+    setenv("TMPDIR", (dir / "d/t").c_str(), 1);
+  }
+  void TearDown() override {
+    unsetenv("TMPDIR");
+    Faults::TearDown();
+  }
+
+  std::set<std::string> temporary_folders() const {
+    std::set<std::string> names;
+    for (const auto& entry : fs::directory_iterator(dir / "d/t"))
+      if (const std::string name = entry.path().filename().string(); name.rfind("ompi.", 0) != 0)  // of Open MPI
+        names.insert(name);
+    return names;
+  }
+
+  void break_off_everywhere(const VerbOfProcesses& verb) const {
+    const auto prepare = [&] {
+      verb.prepare();
+      fs::create_directories(dir / "d/t");
+      fs::remove(dir / "made");
+    };
+    const auto result = [&](const std::string& name) { return verb.comparable(slurp(dir / "d" / name)); };
+    prepare();
+    ASSERT_EQ(run(verb.command).code, verb.code) << verb.command << slurp(dir / "stderr.txt");
+    std::vector<std::string> whole;
+    for (const std::string& name : verb.results) {
+      whole.push_back(result(name));
+      ASSERT_FALSE(whole.back().empty()) << name;
+    }
+    EXPECT_TRUE(temporary_folders().empty()) << verb.command;
+    int tried = 0;
+    for (const char* how : {"kill:{}", "ENOSPC:{}:on"})
+      for (long n = 1;; n += stride(verb.stride), ++tried) {
+        const std::string fault = fmt::format(fmt::runtime(how), n), when = fault + " in " + verb.command;
+        prepare();
+        const Outcome o = with(fault, verb.command);
+        if (!fs::exists(dir / "made")) break;
+        // Processes whose parent was killed end by themselves.
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));
+        // What became of each point stands with the results.
+        const bool told = o.err.empty() && o.out.find("not ended: ") != std::string::npos;
+        if (std::string(how).rfind("kill", 0) != 0 && !told) expect_clear(o, when);
+        bool made = true;
+        for (std::size_t k = 0; k < whole.size(); ++k) {
+          made = made && fs::exists(dir / "d" / verb.results[k]);
+          if (fs::exists(dir / "d" / verb.results[k]) && !of_a_failure(verb.results[k])) {
+            EXPECT_TRUE(result(verb.results[k]) == whole[k]) << when << ": " << verb.results[k];
+          }
+        }
+        const std::set<std::string> left = temporary_folders();
+        if (!(verb.once && made)) {
+          const Outcome again = run(verb.command);
+          EXPECT_EQ(again.code, verb.code) << when << ": " << o.err << again.err;
+        }
+        for (std::size_t k = 0; k < whole.size(); ++k)
+          EXPECT_TRUE(result(verb.results[k]) == whole[k]) << when << ", gone on with: " << verb.results[k];
+        EXPECT_EQ(temporary_folders(), left) << when;
+        if (HasFailure()) return;
+      }
+    EXPECT_GT(tried, 2) << verb.command;
+    fmt::print("kill and full disk in {}: {} tried\n", verb.command, tried);
+  }
+
+  // Tables and pages of what is there so far, and results of a case that was killed: they say so.
+  static bool of_a_failure(const std::string& name) {
+    return name.find("w/t") == 0 || name.find(".json") != std::string::npos ||
+           name.find("report.html") != std::string::npos || name.find("tubes.csv") != std::string::npos;
+  }
+};
+
+TEST_F(FaultsOfProcesses, PlanBrokenOff) {
+  spit(dir / "s.toml", calm);
+  // The times are new each time.
+  const auto without_times = [](const std::string& text) {
+    return std::regex_replace(text, std::regex("# plan: seconds [^\n]*"), "");
+  };
+  break_off_everywhere({"plan s.toml -o d/planned.toml -j 1", {"planned.toml"}, [&] { begin(""); }, 23, without_times, 0,
+                        true});
+}
+
+TEST_F(FaultsOfProcesses, ThresholdBrokenOff) {
+  spit(dir / "tube.toml",
+       "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-paper\"\n[rope]\ntubes = 1\nlength_nm = 6.78\n"
+       "[damping]\nbond_damping_per_ps = 4\n[twist]\nmoment_nN_nm = 5\nrate_nN_nm_per_ps = 5\nhold_ps = 1\n[run]\n"
+       "log_every_ps = 0.2\n");
+  spit(dir / "w.toml",
+       "format = \"ropewalk-sweep-1\"\nscene = \"tube.toml\"\n[threshold]\nkey = \"twist.moment_nN_nm\"\nfrom = 18\n"
+       "to = 20\ncolumn = \"rotation_deg\"\nabove = 20\naccuracy = 0.2\n");
+  break_off_everywhere({"threshold w.toml --out d/w -j 1 --quiet",
+                        {"w/thresholds.csv", "w/trials.csv", "w/thresholds.html"},
+                        [&] { begin(""); },
+                        25});
+}
+
+TEST_F(FaultsOfProcesses, ErrorsBrokenOff) {
+  spit(dir / "s.toml", std::regex_replace(std::string(calm), std::regex("paper"), "tersoff"));
+  ASSERT_EQ(run("run s.toml --out ready --quiet").code, 0) << slurp(dir / "stderr.txt");
+  break_off_everywhere({"errors d --quiet -j 1",
+                        {"errors.csv", "errors-potential.csv", "errors/errors.json", "report.html"},
+                        [&] { begin("ready"); },
+                        19});
+}
+
+// The set is there, and the results of all cases but one.
+TEST_F(FaultsOfProcesses, ParametrizeBrokenOff) {
+  const std::string name = "cnt-5-5-tersoff", of_one = "euler-buckling";
+  fs::create_directories(dir / "ready/p");
+  for (const char* file : {".toml", "-stiffness.csv", "-contact.csv"})
+    fs::copy(ROPEWALK_SOURCE_DIR "/data/parameters/" + name + file, dir / "ready/p");
+  const std::string folder = "ready/p/" + name + "-validation";
+  ASSERT_EQ(run("validate run " + of_one + " --parameters ready/p/" + name + ".toml --quiet --out " + folder).code, 0)
+      << slurp(dir / "stderr.txt");
+  nlohmann::ordered_json result = nlohmann::ordered_json::parse(slurp(dir / folder / (of_one + ".json")));
+  const auto cases = nlohmann::json::parse(run("validate list --json").out);
+  for (const auto& one : cases) {
+    result["case"] = one.at("name");
+    spit(dir / folder / (one.at("name").get<std::string>() + ".json"), result.dump(1) + "\n");
+  }
+  fs::remove(dir / folder / (of_one + ".json"));
+  const auto without_times = [](const std::string& text) {
+    return std::regex_replace(text, std::regex("[0-9.]+ s\\b|,[0-9.]+,[0-9.]+\n"), "");
+  };
+  break_off_everywhere({"parametrize 5,5 --out d/p --friction none --budget 0.001 -j 1 --quiet",
+                        {"p/report.html", "p/tubes.csv"},
+                        [&] { begin("ready"); },
+                        6,
+                        without_times});
 }
 
 // A full disk before the first checkpoint: one line, exit code 3, and nothing stands in the way of the same

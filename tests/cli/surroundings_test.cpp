@@ -224,6 +224,59 @@ TEST_F(Surroundings, AValidationRemovesTheWorkOfItsCasesAlone) {
               HasSubstr("this program did not make it"));
 }
 
+// A folder of the user's may hold a report.html of another kind.
+TEST_F(Surroundings, ResultsReplaceNoFilesOfTheUser) {
+  fs::create_directories(dir / "v");
+  for (const auto& [name, verb] : {std::pair{"report.html", "validate run euler-buckling --quiet --out v"},
+                                   std::pair{"report.json", "validate run euler-buckling --quiet --out v"},
+                                   std::pair{"report.html", "parametrize 5,5 --quiet --out v"},
+                                   std::pair{"tubes.csv", "parametrize 5,5 --quiet --out v"},
+                                   std::pair{"cnt-5-5-tersoff.html", "parametrize 5,5 --quiet --out v"},
+                                   std::pair{"chart.html", "validate chart --quick --quiet --out v"},
+                                   std::pair{"points.csv", "validate chart --quick --quiet --out v"}}) {
+    spit(dir / "v" / name, "mine");
+    const Outcome o = soon(verb);
+    EXPECT_EQ(o.code, 2) << verb << o.err;
+    EXPECT_THAT(o.err, HasSubstr(std::string(name) + ": --out: exists, and this program did not make it")) << verb;
+    EXPECT_EQ(slurp(dir / "v" / name), "mine") << verb;
+    fs::remove(dir / "v" / name);
+  }
+  // Nor friction that was measured with other sets.
+  for (const char* file : {".toml", "-stiffness.csv", "-contact.csv"})
+    fs::copy(std::string(ROPEWALK_SOURCE_DIR "/data/parameters/cnt-5-5-tersoff") + file, dir / "v");
+  const std::string friction =
+      std::regex_replace(slurp(ROPEWALK_SOURCE_DIR "/data/friction/friction-5-5-5-5-tersoff.toml"),
+                         std::regex("(set_[ab]_)hash +=[^\n]*"), "$1hash = \"0123456789abcdef\"");
+  spit(dir / "v/friction-5-5-5-5-tersoff.toml", friction);
+  script("ropewalk parametrize 5,5 --quiet --budget 0.0001 --out v &\n"
+         "for k in $(seq 600); do [ -e v/friction-5-5-5-5-tersoff-error.txt ] && break; sleep 0.1; done\n"
+         "kill $!; wait $!");
+  EXPECT_TRUE(slurp(dir / "v/friction-5-5-5-5-tersoff.toml") == friction);
+  EXPECT_THAT(slurp(dir / "v/friction-5-5-5-5-tersoff-error.txt"), HasSubstr("was measured with other sets"));
+}
+
+// The name of a set is a text, and no path.
+TEST_F(Surroundings, TheNameOfASetLeadsNowhere) {
+  fs::create_directories(dir / "outside");
+  spit(dir / "set.toml",
+       std::regex_replace(slurp(ROPEWALK_SOURCE_DIR "/data/parameters/cnt-10-10-paper.toml"),
+                          std::regex("\nname = [^\n]*"), "\nname = \"outside/mine\""));
+  const Outcome o = run("calibrate show set.toml");
+  EXPECT_EQ(o.code, 0) << o.err;
+  EXPECT_TRUE(fs::is_empty(dir / "outside"));
+  EXPECT_TRUE(fs::exists(dir / "mine.html"));
+}
+
+// A killed process leaves a folder of work with its mark, or hardly made.
+TEST_F(Surroundings, AFolderOfWorkThatWasHardlyMadeIsTaken) {
+  const std::string work = "v/work-euler-buckling";
+  fs::create_directories(dir / work);
+  spit(dir / work / ".ropewalk-work.part-12-3", "");
+  const Outcome o = run("validate run euler-buckling --quiet --out v");
+  EXPECT_EQ(o.code, 0) << o.err << o.out;
+  EXPECT_FALSE(fs::exists(dir / work));
+}
+
 // A point goes on from its checkpoint without a manifest, and one with a log and no checkpoint is left to its
 // owner.
 TEST_F(Surroundings, ASweepRemovesNoPointThatItCannotGoOnWith) {

@@ -4,6 +4,8 @@ report of a run, whose tables are held against its log.
 
     product_pages.py REPOSITORY ROPEWALK"""
 import csv
+import json
+import os
 import shutil
 import subprocess
 import sys
@@ -81,6 +83,81 @@ def chart_points(browser, repository):
 hostile = "{{facts}}{{scripts}}{{nonce}}{{name}}<!--<script></script><script>window.ran=1</script><img src=x onerror=window.ran=1>\\u003c&amp;"
 
 
+def hostile_texts(value, kept):
+    """All texts of a JSON value but those of the keys `kept`."""
+    if isinstance(value, dict):
+        return {key: v if key in kept else hostile_texts(v, kept) for key, v in value.items()}
+    if isinstance(value, list):
+        return [hostile_texts(v, kept) for v in value]
+    return hostile if isinstance(value, str) else value
+
+
+def pages_of_thresholds(program, folder):
+    """Names of points from the sweep, shapes from a table of trials that comes from somebody else."""
+    (folder / "short.toml").write_text(scene.replace("hold_ps = 2", "hold_ps = 0.1").replace("tubes = 19", "tubes = 1"))
+    other = hostile.replace("{{facts}}", "{{other}}")
+    (folder / "sweep.toml").write_text(
+        'format = "ropewalk-sweep-1"\nscene = "short.toml"\n[threshold]\nkey = "twist.moment_nN_nm"\nfrom = 1\nto = 2\n'
+        f"column = \"rotation_deg\"\nabove = 1e-3\naccuracy = 0.5\n[vary]\nname = ['{hostile}', '{other}']\n")
+    threshold = [program, "threshold", "sweep.toml", "--quiet", "--out"]
+    subprocess.run([*threshold, "first"], cwd=folder, check=True, stdout=subprocess.DEVNULL)
+    with open(folder / "first/trials.csv", newline="") as file:
+        rows = list(csv.DictReader(file))
+    with open(folder / "known.csv", "w", newline="") as file:
+        table = csv.DictWriter(file, rows[0])
+        table.writeheader()
+        table.writerows({**row, "shape": hostile} for row in rows)
+    subprocess.run([*threshold, "thresholds", "--known", "known.csv"], cwd=folder, check=True, stdout=subprocess.DEVNULL)
+
+
+def pages_of_validations(program, folder):
+    """Results of cases, and parameter sets, that come from somebody else."""
+    data = Path(__file__).resolve().parents[2] / "data/parameters"
+    kept = ("format", "case", "verdict", "key", "guard", "hash", "error", "not_applicable")  # such cases are run anew
+
+    def put(directory, names, outcome, **changed):
+        (folder / directory).mkdir(parents=True, exist_ok=True)
+        for name in names:
+            (folder / directory / f"{name}.json").write_text(json.dumps({**outcome, "case": name, **changed}))
+
+    cases = json.loads(subprocess.run([program, "validate", "list", "--json"], check=True, capture_output=True).stdout)
+    of = {group: [c["name"] for c in cases if c["against"] == group] for group in ("theory", "stability")}
+    not_limits = [c["name"] for c in cases if c["against"] != "stability"]
+    for tube in ("5-5", "9-0"):
+        name = f"cnt-{tube}-tersoff"
+        for directory in ("tube", "tubes"):
+            (folder / directory).mkdir(exist_ok=True)
+            for ending in ("-stiffness.csv", "-contact.csv"):
+                shutil.copy(data / (name + ending), folder / directory)
+            lines = (data / (name + ".toml")).read_text().splitlines()
+            # The potential stands in titles, the reference in the page of the set.
+            (folder / directory / (name + ".toml")).write_text("\n".join(
+                f"{line.split('=')[0]}= '{hostile}'" if line.split(" ")[0] in ("potential", "reference") else line
+                for line in lines) + "\n")
+        subprocess.run([program, "validate", "run", "euler-buckling", "--parameters", f"tube/{name}.toml", "--quiet", "--out", "one"],
+                       cwd=folder, check=True, stdout=subprocess.DEVNULL)
+        outcome = hostile_texts(json.loads((folder / "one/euler-buckling.json").read_text()), kept)
+        for directory in ("tube", "tubes"):
+            put(f"{directory}/{name}-validation", not_limits, outcome)
+    outcome["checks"] += [{**outcome["checks"][0], "relative": False, "informative": False},
+                          {**outcome["checks"][0], "known_miss": {"difference": 1, "within": 1}}]
+    outcome["limits"] = [{"method": hostile, "found": 1, "theory": 1, "unit": hostile, "guard": "told", "how": hostile}]
+    outcome["remarks"] = outcome["sources"] = [hostile]
+    put("validation", of["theory"], outcome)
+    put("validation-failed", of["theory"][:1], outcome, error=hostile)
+    put("validation-failed", of["theory"][1:2], outcome, not_applicable=hostile)
+    put("stability", of["stability"], outcome)
+    for directory in ("validation", "validation-failed", "stability"):
+        subprocess.run([program, "validate", "report", directory], cwd=folder, check=True, stdout=subprocess.DEVNULL)
+    # Some of the cases miss with such results, which is no fault of the page.
+    for directory, tubes in (("tube", ["5,5"]), ("tubes", ["5,5", "9,0"])):
+        subprocess.run([program, "parametrize", *tubes, "--out", directory, "--friction", "none", "--quiet"], cwd=folder,
+                       stdout=subprocess.DEVNULL)
+    # A tube without a set, with the reason that LAMMPS does not start.
+    subprocess.run([program, "parametrize", "5,5", "9,0", "6,0", "--out", "tubes", "--friction", "none", "--quiet"], cwd=folder,
+                   stdout=subprocess.DEVNULL, env={**os.environ, "ROPEWALK_LMP": f"/nowhere/{hostile}"})
+
+
 def hostile_pages(browser, program, folder):
     """Names of scenes and sets are texts in every page that shows them."""
     shipped_set = Path(__file__).resolve().parents[2] / "data/parameters/cnt-10-10-tersoff.toml"
@@ -93,13 +170,26 @@ def hostile_pages(browser, program, folder):
                   ["compare", "hostile", "hostile", "--page", "compared.html"],
                   ["compare", "set.toml", "set.toml", "--page", "sets.html"]):
         subprocess.run([program, *words], cwd=folder, check=True, stdout=subprocess.DEVNULL)
-    for page in ("hostile/report.html", "hostile/view.html", "compared.html", "sets.html"):
+    # Texts of the files of a run that comes from somebody else.
+    for name, kept in (("manifest.json", ("format", "status", "scene_hash", "parameter_hash")), ("limits.json", ("format", "key"))):
+        path = folder / "hostile" / name
+        path.write_text(json.dumps(hostile_texts(json.loads(path.read_text()), kept)))
+    subprocess.run([program, "report", "hostile"], cwd=folder, check=True, stdout=subprocess.DEVNULL)
+    subprocess.run([program.parent.parent / "calibrate/ropewalk-calibrate", "show", "set.toml", "--page", "set.html"], cwd=folder,
+                   check=True, stdout=subprocess.DEVNULL)
+    pages_of_thresholds(program, folder)
+    pages_of_validations(program, folder)
+    # The page of a comparison has the names of directories, that of a parametrization those of its tubes.
+    for page, shown in (("hostile/report.html", True), ("hostile/view.html", True), ("compared.html", False), ("sets.html", True),
+                        ("set.html", True), ("thresholds/thresholds.html", True), ("validation/report.html", True),
+                        ("validation-failed/report.html", True), ("stability/report.html", True), ("tubes/report.html", True),
+                        ("tube/report.html", True)):
         browser.size(*pages.desk)
         browser.open((folder / page).as_uri())
-        pages.expect(browser.value("typeof window.ran") == "undefined", f"{page}: a name of a scene has run a script")
-        if page != "compared.html":  # which has the names of directories
-            pages.expect(hostile in browser.value("document.documentElement.textContent"), f"{page}: does not show the name")
-        pages.expect(browser.value("document.images.length") == 0, f"{page}: a name has become an image")
+        pages.expect(browser.value("typeof window.ran") == "undefined", f"{page}: a text has run a script")
+        if shown:
+            pages.expect(hostile in browser.value("document.documentElement.textContent"), f"{page}: does not show the text")
+        pages.expect(browser.value("document.images.length") == 0, f"{page}: a text has become an image")
         browser.said(), browser.asked()
         if page.endswith("view.html"):
             facts = browser.value("JSON.parse(document.getElementById('facts').textContent).name")

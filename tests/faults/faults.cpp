@@ -8,6 +8,8 @@
 //                          goes on), ENOSPC, EIO, EDQUOT, EINTR, EROFS
 //   ROPEWALK_FAULTS_NO_LOCKS   set: no file system has locks
 //   ROPEWALK_FAULTS_COUNT  file that takes the number of calls at the end
+//   ROPEWALK_FAULTS_MADE   file that is there once a fault was made, in whichever process: each counts from the
+//                          number of its parent on
 //
 // With HOW = memory the calls are those of operator new, and the directory does not matter. The Nth fails until the
 // program's new_handler has given something up; "on": and from then on all large ones fail.
@@ -86,12 +88,20 @@ int code_of(const std::string& how) {
   return EIO;
 }
 
+void note_the_fault() {
+  static const auto call = real<int (*)(const char*, int, ...)>("open");
+  const char* path = std::getenv("ROPEWALK_FAULTS_MADE");
+  const int fd = path ? call(path, O_WRONLY | O_CREAT | O_CLOEXEC, 0666) : -1;
+  if (fd >= 0) close(fd);
+}
+
 // The number of the call is counted here. True: it is to fail, with errno.
 bool fails(bool counts, bool* torn = nullptr) {
   if (!counts || fault().how == "memory") return false;
   const long k = ++calls;
   const Fault& f = fault();
   if (f.at == 0 || !(k == f.at || (f.on && k > f.at))) return false;
+  note_the_fault();
   if (f.how == "torn") {
     if (torn) *torn = true;
     return false;

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "chart/chart.hpp"
+#include "core/own_files.hpp"
 #include "io/clocks.hpp"
 #include "io/files.hpp"
 #include "model/error.hpp"
@@ -56,6 +57,8 @@ std::vector<Task> tasks_of(const ChartArguments& a) {
   if (scenes.empty())
     for (const ChartScene& s : chart_scenes()) scenes.push_back(&s);
   make_directory(a.out);
+  refuse_foreign_file(a.out + "/chart.html", page_mark);
+  refuse_foreign_file(a.out + "/points.csv", "scene,model,");
   std::vector<Task> tasks;
   for (const ChartScene* scene : scenes)
     for (const ChartModel& model : chart_models(*scene, a.quick)) {

@@ -105,8 +105,10 @@ std::string reference_csv(const ReferenceTable& table) {
   return text;
 }
 
+std::string leaf_of_name(const ParameterSet& set) { return fs::path(set.name).filename().string(); }
+
 std::string atoms_folder(const ParameterSet& set) {
-  return (fs::path(set.path).parent_path() / (set.name + "-atoms")).string();
+  return (fs::path(set.path).parent_path() / (leaf_of_name(set) + "-atoms")).string();
 }
 
 std::string find_reference(const CaseContext& context, const ParameterSet& set, const std::string& name) {
@@ -138,7 +140,8 @@ ReferenceTable reference(const CaseContext& context, const ParameterSet& set, co
     throw NotApplicable("the set names no interatomic potential, so that there are no atoms to compare it with");
   if (!provenance_value(set, "fit_command").empty())
     throw NotApplicable("the set was fitted to data of yours, whose atoms are not known");
-  const std::string stored = find_reference(context, set, name), label = fmt::format("{}/{}.csv", set.name, name);
+  const std::string stored = find_reference(context, set, name),
+                    label = fmt::format("{}/{}.csv", leaf_of_name(set), name);
   if (!context.fresh && !stored.empty()) {
     try {
       ReferenceTable table = read_reference(stored);
@@ -156,7 +159,7 @@ ReferenceTable reference(const CaseContext& context, const ParameterSet& set, co
   ReferenceTable table = make();
   if (context.fresh) {
     if (!stored.empty()) compare(read_reference(stored), table, label, tolerance, result);
-    fs::create_directories(fs::path(context.work) / set.name);
+    fs::create_directories(fs::path(context.work) / leaf_of_name(set));
     write_file_atomically((fs::path(context.work) / label).string(), reference_csv(table));
   } else {
     fs::create_directories(atoms_folder(set));

@@ -35,6 +35,8 @@ struct ReferenceTable {
 ReferenceTable read_reference(const std::string& path);
 std::string reference_csv(const ReferenceTable& table);
 
+// The name of the set without what would make a path of it: the name is a text of whoever made the set.
+std::string leaf_of_name(const ParameterSet& set);
 // The folder in which references of this set are made.
 std::string atoms_folder(const ParameterSet& set);
 // The stored table of a set: beside it or, for the same tube and potential, among the shipped ones. Empty: none.

@@ -14,6 +14,7 @@
 #include <nlohmann/json.hpp>
 
 #include "atomistic/potential.hpp"
+#include "core/own_files.hpp"
 #include "io/failure.hpp"
 #include "io/files.hpp"
 #include "io/grade.hpp"
@@ -60,14 +61,18 @@ int calibrate(const Place& place) {
   c.out = place.file(".toml");
   c.command =
       fmt::format("ropewalk calibrate --chirality {} --potential {} --envelope", place.tube, place.potential);
+  const std::string numbers = place.file("-calibration.json");
+  std::string part;
   try {
-    if (!std::freopen(place.file("-calibration.json").c_str(), "w", stdout))
-      throw std::runtime_error(fmt::format("{}: {}", place.file("-calibration.json"), std::strerror(errno)));
+    part = new_part_of(numbers);
+    if (!std::freopen(part.c_str(), "w", stdout))
+      throw std::runtime_error(fmt::format("{}: {}", part, std::strerror(errno)));
     const int code = calibrate::calibrate_command(c);
     if (std::fflush(stdout) != 0) throw std::runtime_error(std::strerror(errno));
+    fs::rename(part, numbers);
     return code;
   } catch (const std::exception& e) {
-    fs::remove(place.file("-calibration.json"));
+    if (!part.empty()) fs::remove(part);
     write_file_atomically(place.file("-error.txt"), failure_words(e) + "\n");
     return 3;
   }
@@ -151,12 +156,17 @@ void measure_frictions(const std::vector<PairPlace>& pairs, const ParametrizeArg
   std::vector<ProcessTask> tasks;
   for (const PairPlace& pair : pairs) {
     if (!pair.has_sets()) continue;
+    fs::remove(pair.file("-error.txt"));
     if (!a.again && friction_is_kept(pair)) {
       if (!a.quiet) fmt::print(stderr, "{}: kept\n", pair.name);
       continue;
     }
-    fs::remove(pair.file("-error.txt"));
-    fs::remove(pair.file(".toml"));  // of other sets
+    // Hours may be in it.
+    if (!a.again && fs::exists(pair.file(".toml"))) {
+      write_file_atomically(pair.file("-error.txt"),
+                            pair.name + ".toml was measured with other sets: take it away, or give --again\n");
+      continue;
+    }
     tasks.push_back({[pair, &a] {
                        if (!a.quiet) fmt::print(stderr, "{}: measuring\n", pair.name);
                        return measure_friction(pair);
@@ -172,10 +182,11 @@ void measure_frictions(const std::vector<PairPlace>& pairs, const ParametrizeArg
 void take_frictions(const std::vector<PairPlace>& pairs, ParametrizedTube& tube) {
   for (const PairPlace& pair : pairs) {
     if (pair.a.name != tube.name && pair.b.name != tube.name) continue;
-    if (fs::exists(pair.file(".toml")))
+    if (fs::exists(pair.file("-error.txt")))
+      tube.no_friction += (tube.no_friction.empty() ? "" : "; ") + pair.name + ": " +
+                          first_line(read_file(pair.file("-error.txt")));
+    else if (fs::exists(pair.file(".toml")))
       tube.frictions.push_back(read_friction(pair.file(".toml")));
-    else if (fs::exists(pair.file("-error.txt")))
-      tube.no_friction += (tube.no_friction.empty() ? "" : "; ") + pair.name + ": " + first_line(read_file(pair.file("-error.txt")));
   }
 }
 
@@ -274,6 +285,9 @@ int parametrize_command(const ParametrizeArguments& a) {
   const std::vector<Place> all = places(a);
   const std::vector<PairPlace> pairs = pairs_of(all, a.friction);
   make_directory(a.out);
+  refuse_foreign_file(a.out + "/report.html", page_mark);
+  refuse_foreign_file(a.out + "/tubes.csv", "set,n,m,potential,");
+  for (const Place& place : all) refuse_foreign_file(place.file(".html"), page_mark);
   const int jobs = a.jobs > 0 ? a.jobs : omp_get_num_procs();
   calibrate_all(all, a, jobs);
   measure_frictions(pairs, a, jobs);

@@ -15,8 +15,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* outcome_format = "ropewalk-validation-1";
-
 // JSON has no NaN: null stands for it.
 Json number(double v) { return std::isfinite(v) ? Json(v) : Json(nullptr); }
 double number(const Json& j) { return j.is_null() ? std::numeric_limits<double>::quiet_NaN() : j.get<double>(); }

@@ -41,7 +41,8 @@ std::string unit_of(const Check& c) { return c.unit.empty() || c.unit == "1" ? "
 
 std::string percent(const Check& c) {
   if (!std::isfinite(c.value)) return "not finite";
-  return c.relative ? number_text(100 * c.difference(), 3) + " %" : number_text(c.difference(), 3) + unit_of(c);
+  return c.relative ? number_text(100 * c.difference(), 3) + " %"
+                    : number_text(c.difference(), 3) + escape_markup(unit_of(c));
 }
 
 std::string allowed(const Check& c) {
@@ -245,8 +246,9 @@ std::string validation_page(const std::vector<Outcome>& outcomes, const std::vec
   Figures figures;
   std::string head = page_head(top.title);
   head.insert(head.find("</style>"), verdict_css);
-  std::string html = head + "<body>\n<main>\n<p class=\"kicker\">Ropewalk: " + top.kicker + "</p>\n<h1>" +
-                     top.title + "</h1>\n<p class=\"lead\">" + lead(outcomes) + "</p>\n" + top.html +
+  std::string html = head + "<body>\n<main>\n<p class=\"kicker\">Ropewalk: " + escape_markup(top.kicker) +
+                     "</p>\n<h1>" + escape_markup(top.title) + "</h1>\n<p class=\"lead\">" + lead(outcomes) + "</p>\n" +
+                     top.html +
                      "<div class=\"scroll\"><table class=\"verdicts\"><thead><tr><th>Verdict</th>"
                      "<th>Case</th><th>Tube</th><th>Tightest check</th><th>Against</th></tr></thead><tbody>\n";
   for (const Outcome& o : outcomes) html += summary_row(o);

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "core/own_files.hpp"
 #include "core/reference.hpp"
 #include "io/clocks.hpp"
 #include "io/data_files.hpp"
@@ -342,6 +343,8 @@ std::vector<Outcome> run_cases(const ValidateArguments& a) {
     throw InputError({"", 0, "--budget"}, "limits what --atoms makes, which is not there", "add --atoms");
   const std::vector<const Case*> cases = chosen_cases(a);
   make_directory(a.out);
+  refuse_foreign_file(a.out + "/report.html", page_mark);
+  refuse_foreign_file(a.out + "/report.json", outcome_format);
   run.key = fmt::format("{} {}{} {}", git_id, run.given ? run.given->hash : "shipped",
                         run.second ? " with " + run.second->hash : "", a.fresh ? "fresh" : "stored");
   run.jobs = a.jobs > 0 ? a.jobs : omp_get_num_procs();

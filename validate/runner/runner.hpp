@@ -72,6 +72,7 @@ struct Outcome {
 std::string grade_with_verdicts(const std::string& grade, const std::string& hash,
                                 const std::vector<Outcome>& outcomes);
 
+inline constexpr const char* outcome_format = "ropewalk-validation-1";
 std::string outcome_json(const Outcome& outcome);
 // Throws InputError where the file is not such a result.
 Outcome read_outcome(const std::string& path);

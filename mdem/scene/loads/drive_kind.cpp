@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cassert>
+#include <optional>
+#include <utility>
 
 namespace ropewalk {
 
@@ -16,18 +18,8 @@ DriveKind friction_drive();
 
 namespace {
 
-DriveKind with_its_energy(DriveKind kind) {
-  if (kind.energy) add_term_kind({kind.table().name, kind.energy, kind.account});
-  return kind;
-}
-
-std::vector<DriveKind> with_their_energies(std::vector<DriveKind> kinds) {
-  for (const DriveKind& kind : kinds) with_its_energy(kind);
-  return kinds;
-}
-
-std::vector<DriveKind>& kinds_of_drives() {
-  static std::vector<DriveKind> kinds = with_their_energies({
+std::vector<DriveKind> shipped_drives() {
+  return {
       thermostat_drive(),
       twist_drive(),
       grip_drive(),
@@ -35,14 +27,28 @@ std::vector<DriveKind>& kinds_of_drives() {
       periodic_drive(),
       tether_drive(),
       friction_drive(),
-  });
+  };
+}
+
+std::vector<DriveKind>& kinds_of_drives() {
+  static std::vector<DriveKind> kinds = shipped_drives();
   return kinds;
 }
 
-// The columns of the log must be there before main() begins.
-const bool registered = !kinds_of_drives().empty();
+// A drive without an energy has no terms.
+std::optional<TermKind> term_kind_of(const DriveKind& kind) {
+  if (!kind.energy) return {};
+  return TermKind{kind.table().name, kind.energy, kind.account};
+}
 
 }  // namespace
+
+std::vector<TermKind> shipped_term_kinds() {
+  std::vector<TermKind> kinds;
+  for (const DriveKind& drive : shipped_drives())
+    if (auto kind = term_kind_of(drive)) kinds.push_back(*std::move(kind));
+  return kinds;
+}
 
 bool Drive::holds_elements() const {
   if (ends() == Ends::clamped || ends() == Ends::loaded) return true;
@@ -55,7 +61,8 @@ const std::vector<DriveKind>& drive_kinds() { return kinds_of_drives(); }
 bool add_drive_kind(DriveKind kind) {
   assert(std::none_of(kinds_of_drives().begin(), kinds_of_drives().end(),
                       [&](const DriveKind& other) { return other.table().name == kind.table().name; }));
-  kinds_of_drives().push_back(with_its_energy(kind));
+  if (auto term = term_kind_of(kind)) add_term_kind(*std::move(term));
+  kinds_of_drives().push_back(std::move(kind));
   return true;
 }
 

@@ -73,7 +73,7 @@ struct PairCurve {
 };
 
 PairCurve curve_of(const CaseTube& i, const CaseTube& j, const CaseContext& context, CaseResult& result) {
-  const std::string name = "pair-distance" + (i.set.name == j.set.name ? "" : "-with-" + j.set.name);
+  const std::string name = "pair-distance" + (i.set.name == j.set.name ? "" : "-with-" + leaf_of_name(j.set));
   const ReferenceTable data = reference(
       context, i.set, name, 0.001, [&] { return make_reference(context, i.set, j.set, "pair-distance"); }, result);
   PairCurve c;
