@@ -24,7 +24,7 @@ double seconds_of_wall_time(const std::string& text) {
     return std::sscanf(text.c_str(), form, field..., &end) == fields && end == static_cast<int>(text.size());
   };
   const bool read =
-      text.find_first_not_of("0123456789:-") == std::string::npos &&
+      text.front() != '-' && text.find_first_not_of("0123456789:-") == std::string::npos &&
       (is("%9u%n", 1, &whole_seconds) || ((is("%4u:%2u:%2u%n", 3, &hours, &minutes, &whole_seconds) ||
                                            is("%4u-%4u:%2u:%2u%n", 4, &days, &hours, &minutes, &whole_seconds)) &&
                                           days < 10000 && hours < 10000 && minutes < 60 && whole_seconds < 60));

@@ -31,7 +31,7 @@ bool WayBack::go_back(const std::string& why) {
   checkpoints_.save_mark_over_later();
   files_.cut(c.log, c.frames);
   // The remedy, after the semicolon of the message, is left out: a shorter step is what the run takes now.
-  listener_.tell(fmt::format("{:.4g} ps: {}; back to {:.4g} ps, on with steps of {:.3g} fs", time,
+  listener_.tell(fmt::format("{:.4g} ps: {}; back to {:.4g} ps, on with steps of {:.4g} fs", time,
                              why.substr(0, why.find(';')), simulation.state().time,
                              simulation.time_step() / simulation.divided() / units::fs));
   return true;
