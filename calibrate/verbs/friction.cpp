@@ -185,8 +185,9 @@ int friction_command(const FrictionArguments& arguments) {
   if (a.budget_min > 0) {
     const double pilot = steady_seconds();
     along_strength(pair, registers(2, corrugation(second)), lengths);
-    // Along and against spin; the pressed and the crossed tubes take as long as some ten registers.
-    const double each = (steady_seconds() - pilot) / 2 * 2;
+    // Two registers along the axis take as long as one along it and against spin. The pressed and the crossed tubes
+    // take as long as some ten such registers.
+    const double each = steady_seconds() - pilot;
     a.registers = std::clamp(static_cast<int>(rigid_part * 60 * a.budget_min / each) - 10, 8, 64);
     a.checks = most_checks;
   }

@@ -12,7 +12,6 @@
 #include "io/files.hpp"
 #include "io/stop_signals.hpp"
 #include "model/error.hpp"
-#include "run/tell.hpp"
 #include "scene/dissipation.hpp"
 
 namespace ropewalk {
@@ -61,11 +60,7 @@ int rest_command(const RestArguments& a) {
   SweepProgress progress(dir, points, runs, a.quiet);
   progress.begin();
   runs.run_points([&](const SweepPoint& point, int status) { progress.ended(point, status); });
-  if (stop_signal) {
-    tell_as_is(fmt::format("ropewalk: stopped by signal {}; go on with the same command\n",
-                           static_cast<int>(stop_signal)));
-    return 128 + stop_signal;
-  }
+  if (stop_signal) return tell_stop();
   progress.clear_line();
   std::array<RestSide, 2> sides;
   for (std::size_t k = 0; k < 2; ++k) {

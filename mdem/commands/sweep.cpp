@@ -119,11 +119,7 @@ int sweep_command(const SweepArguments& a) {
   if (!sweep.branch_axes.empty()) runs.run_starts([&](const SweepPoint& p) { progress.start_failed(p); });
   progress.begin();
   runs.run_points([&](const SweepPoint& p, int status) { progress.ended(p, status); });
-  if (stop_signal) {
-    tell_as_is(fmt::format("ropewalk: stopped by signal {}; go on with the same command\n",
-                           static_cast<int>(stop_signal)));
-    return 128 + stop_signal;
-  }
+  if (stop_signal) return tell_stop();
   if (a.only.empty()) write_file_atomically(dir.table(), gathered_csv(dir, sweep, all, {}));
   progress.clear_line();
   return summary(dir, points, a.only.empty());

@@ -64,4 +64,10 @@ void SweepProgress::say(const std::string& line) const {
   if (!quiet_) tell_as_is(fmt::format("{}{}\n", isatty(STDERR_FILENO) ? "\r\033[K" : "", line));
 }
 
+int tell_stop() {
+  tell_as_is(fmt::format("ropewalk: stopped by signal {}; go on with the same command\n",
+                         static_cast<int>(stop_signal)));
+  return 128 + stop_signal;
+}
+
 }  // namespace ropewalk

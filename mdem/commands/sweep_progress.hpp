@@ -28,4 +28,7 @@ class SweepProgress {
   double work_left_ = 0, work_to_do_ = 0, began_, next_line_ = 0;
 };
 
+// Says that a signal stopped the command, which may be given again. Returns its exit code.
+int tell_stop();
+
 }  // namespace ropewalk

@@ -8,6 +8,7 @@
 #include "campaign/point_runs.hpp"
 #include "campaign/threshold_search.hpp"
 #include "commands/commands.hpp"
+#include "commands/sweep_progress.hpp"
 #include "io/stop_signals.hpp"
 #include "model/error.hpp"
 #include "run/tell.hpp"
@@ -74,11 +75,7 @@ int threshold_command(const ThresholdArguments& a) {
       tell_as_is(fmt::format("{} of {} points, {} passed: {}\n", done, search.size(),
                              duration_text(steady_seconds() - began), search.words_of(p)));
   });
-  if (stop_signal) {
-    tell_as_is(fmt::format("ropewalk: stopped by signal {}; go on with the same command\n",
-                           static_cast<int>(stop_signal)));
-    return 128 + stop_signal;
-  }
+  if (stop_signal) return tell_stop();
   print_results(dir, search.results(), failed);
   return failed.empty() ? 0 : 3;
 }

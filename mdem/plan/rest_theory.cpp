@@ -50,7 +50,7 @@ RestTheory rest_theory(const Scene& scene, const Prepared& p) {
   const double modulus = 2 / std::sqrt(3.0) * pair_stiffness(*p.interaction.law, tube.element_length);
   const double disc2 = tubes * std::sqrt(3.0) / 2 * p.spacing * p.spacing / units::pi;
   const double crowding = 9 * units::pi * modulus * std::pow(disc2, 3) / 384;
-  const double moment = load.moment / (load.reading == MomentRamp::Reading::per_tube ? 1 : tubes);
+  const double moment = load.of_each(tubes);
   return {moment / (tube.bond.bend + 2 * crowding / moment_of_area), moment / tube.bond.bend};
 }
 

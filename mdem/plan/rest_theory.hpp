@@ -9,8 +9,8 @@
 // c4 p^4 is the crowding energy per length of a lattice with Young's modulus Y = 2 k/sqrt(3) on a disc of the
 // radius R (G. M. Grason, Rev. Mod. Phys. 87, 401 (2015), DOI 10.1103/RevModPhys.87.401); k is the stiffness per
 // length of a pair of neighbours. A compact rope rests at p = M/X: 0.82, 0.81, 0.88 and 0.99 of what 7, 19, 37 and
-// 91 published tubes of 67.8 nm come to under 35 nN nm. Where its tubes have parted nothing crowds them, and each
-// is nearly a free helix: p = M/EI per arc length.
+// 91 published tubes of 67.8 nm come to under 35 nN nm. In an open rope the tubes have parted and do not crowd
+// each other. Each tube then bends as a free rod into a helix that turns by p = M/EI per length of the tube.
 #pragma once
 
 #include "scene/prepare.hpp"

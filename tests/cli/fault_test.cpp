@@ -396,7 +396,8 @@ class FaultsOfProcesses : public Faults {
     fmt::print("kill and full disk in {}: {} tried\n", verb.command, tried);
   }
 
-  // Tables and pages of what is there so far, and results of a case that was killed: they say so.
+  // Files that a broken command may leave different from those of an undisturbed one: tables and pages of the points
+  // that have ended, and the results of a case that was killed, which name the failure.
   static bool of_a_failure(const std::string& name) {
     return name.find("w/t") == 0 || name.find(".json") != std::string::npos ||
            name.find("report.html") != std::string::npos || name.find("tubes.csv") != std::string::npos;

@@ -255,7 +255,7 @@ TEST_F(Surroundings, ResultsReplaceNoFilesOfTheUser) {
   EXPECT_THAT(slurp(dir / "v/friction-5-5-5-5-tersoff-error.txt"), HasSubstr("was measured with other sets"));
 }
 
-// The name of a set is a text, and no path.
+// A set named "outside/mine" makes a page in the current folder, and none in the folder `outside`.
 TEST_F(Surroundings, TheNameOfASetLeadsNowhere) {
   fs::create_directories(dir / "outside");
   spit(dir / "set.toml",
