@@ -24,9 +24,10 @@ void say_source(const Scene& scene, const Prepared& p) {
   fmt::print("{}{}\n", description.empty() ? "" : ": ", description);
   if (holds_elements(scene) && !scene.has_ends(Drive::Ends::endless)) {
     double least = std::numeric_limits<double>::infinity(), most = 0;
-    for (int tube = 0; tube < t.tubes(); ++tube) {
-      least = std::min(least, free_length(scene, t, tube));
-      most = std::max(most, free_length(scene, t, tube));
+    const Topology strands = strands_of(t);
+    for (int strand = 0; strand < strands.tubes(); ++strand) {
+      least = std::min(least, free_length(scene, strands, strand));
+      most = std::max(most, free_length(scene, strands, strand));
     }
     fmt::print("free length {}{:.5g} nm, from centre to centre of the innermost elements held at both ends\n",
                least < most ? fmt::format("{:.5g} to ", least) : "", most);

@@ -23,7 +23,7 @@ LammpsModel load_lammps_model(const std::string& directory) {
   read_tubes(dir, m.topology);
   set_collapse(scene, m.topology);
   m.interaction = interaction_of(scene);
-  add_terms(scene, m.topology, m.interaction);
+  add_terms(scene, m.topology, State(static_cast<std::size_t>(m.topology.elements())), m.interaction);
   m.loads = loads_of(scene, m.topology, m.interaction);
   m.law = scene.contact.law;
   m.relax = scene.run.mode == RunOptions::Mode::relax;

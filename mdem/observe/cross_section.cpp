@@ -120,7 +120,8 @@ Vector3 along(const Vector3& tangent, const Vector3& axis) { return tangent.dot(
 
 }  // namespace
 
-RopeShells rope_shells(const Topology& topology, const State& reference, double neighbour_radius) {
+RopeShells rope_shells(const Topology& of, const State& reference, double neighbour_radius) {
+  const Topology topology = strands_of(of);
   const int tubes = topology.tubes(), n = common_length(topology);
   RopeShells shells;
   shells.internal.assign(tubes, 0);
@@ -136,9 +137,10 @@ RopeShells rope_shells(const Topology& topology, const State& reference, double 
   return shells;
 }
 
-CrossSection cross_section(const Topology& topology, const State& state, const RopeShells& shells, int section,
+CrossSection cross_section(const Topology& of, const State& state, const RopeShells& shells, int section,
                            double neighbour_radius, double spacing) {
   CrossSection out;
+  const Topology topology = strands_of(of);
   const int tubes = topology.tubes(), n = common_length(topology);
   if (n == 0) return out;
   section = std::clamp(section, 0, n - 1);

@@ -42,6 +42,17 @@ Peaks peaks_of_tube(const Topology& topology, const State& state, int tube, cons
   return out;
 }
 
+bool ends_tube(const Topology& topology, int element) {
+  const auto& begin = topology.tube_begin;
+  return std::binary_search(begin.begin(), begin.end(), element) ||
+         std::binary_search(begin.begin(), begin.end(), element + 1);
+}
+// Whether two elements are the ends of tubes in line: these rest nearer to each other than tubes side by side.
+bool are_in_line(const Topology& topology, int i, int j, const Vector3& separation, const Vector3& axis,
+                 double halves) {
+  return std::fabs(separation.dot(axis)) > halves && ends_tube(topology, i) && ends_tube(topology, j);
+}
+
 // The pairs of each element that come nearer than they rest. Most are seen not to be the deepest by far.
 void overlap_of_tube(const Topology& topology, const State& state, const Vec3Array& axes, const NeighbourList& list,
                      const Watched& watched, int tube, Peak& peak) {
@@ -62,7 +73,8 @@ void overlap_of_tube(const Topology& topology, const State& state, const Vec3Arr
       const double wanted = rest - deepest;
       if (min_squared_distance(separation, axis, axes[j], half_i + half_j, 2 * half_j) > wanted * wanted) return;
       const double distance2 = squared_segment_distance(separation, axis, axes[j], half_i, half_j);
-      if (distance2 < rest * rest) deepest = std::max(deepest, rest - std::sqrt(distance2));
+      if (distance2 < rest * rest && !are_in_line(topology, i, element, separation, axis, half_i + half_j))
+        deepest = std::max(deepest, rest - std::sqrt(distance2));
     });
     raise(peak, deepest, i);
   }

@@ -41,6 +41,9 @@ double mean_of_middle(const std::vector<double>& all) {
 double largest_curvature(const Topology& topology, const State& state, int tube) {
   double most = 0;
   for (int e = topology.tube_begin[tube]; e + 1 < topology.tube_begin[tube + 1]; ++e) {
+    if (has_parted(topology.type_of(tube),
+                   state.position[static_cast<std::size_t>(e) + 1] - state.position[static_cast<std::size_t>(e)]))
+      continue;
     const Vector3 a = axis_of(state.orientation[static_cast<std::size_t>(e)]),
                   b = axis_of(state.orientation[static_cast<std::size_t>(e) + 1]);
     most = std::max(most, std::atan2(a.cross(b).norm(), a.dot(b)));
@@ -50,7 +53,7 @@ double largest_curvature(const Topology& topology, const State& state, int tube)
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
-// Whether slip has a value: only between tubes of one length that run the same way at the start.
+// Whether slip has a value: only between strands of one length that run the same way at the start.
 bool knows_slip(const Topology& topology, const LoadingReference& reference) {
   return topology.tubes() < 2 || !reference.radius.empty();
 }
@@ -66,34 +69,41 @@ double within(const Topology& topology, const std::vector<int>& end) {
 
 double twist_of(const Topology& topology, const State& state, int tube) {
   double sum = 0;
-  for (int e = topology.tube_begin[tube]; e + 1 < topology.tube_begin[tube + 1]; ++e)
-    sum += bond_twist_angle(frame_of(state.orientation[static_cast<std::size_t>(e)]),
-                            frame_of(state.orientation[static_cast<std::size_t>(e) + 1]));
-  const int bonds = topology.length_of(tube) - 1;
+  int bonds = 0;
+  for (int e = topology.tube_begin[tube]; e + 1 < topology.tube_begin[tube + 1]; ++e) {
+    const auto i = static_cast<std::size_t>(e);
+    if (has_parted(topology.type_of(tube), state.position[i + 1] - state.position[i])) continue;
+    sum += bond_twist_angle(frame_of(state.orientation[i]), frame_of(state.orientation[i + 1]));
+    ++bonds;
+  }
   return bonds > 0 ? sum / (bonds * topology.type_of(tube).element_length) : 0;
 }
 
 }  // namespace
 
-LoadingReference loading_reference(const Topology& topology, const State& start, const RopeShells& shells,
+LoadingReference loading_reference(const Topology& tubes, const State& start, const RopeShells& shells,
                                    EndElements ends, double spacing, double neighbour_radius,
                                    std::shared_ptr<const ContactLaw> law) {
   LoadingReference out;
-  out.ends_apart =
-      (centre_of(topology, start, ends[upper_end]) - centre_of(topology, start, ends[lower_end])).norm();
+  const Topology topology = strands_of(tubes);
+  out.ends_apart = (centre_of(tubes, start, ends[upper_end]) - centre_of(tubes, start, ends[lower_end])).norm();
   out.ends = std::move(ends);
   out.law = std::move(law);
   out.cell = 0.5 * std::sqrt(3.0) * spacing * spacing;
   const int n = common_length(topology);
-  if (n == 0 || !run_the_same_way(topology, start)) return out;
+  if (n == 0 || !run_the_same_way(tubes, start)) return out;
   const Vector3 axis = centre_line(topology, start).tangents[static_cast<std::size_t>(n / 2)];
   const Vector3 centre = centre_line(topology, start).points[static_cast<std::size_t>(n / 2)];
   const auto middle = [&](int t) -> Vector3 {
     const Vector3 arm = start.position[static_cast<std::size_t>(topology.tube_begin[t] + n / 2)] - centre;
     return arm - arm.dot(axis) * axis;
   };
+  std::vector<double> radii;  // of the strands
   for (int a = 0; a < topology.tubes(); ++a) {
-    out.radius.push_back(middle(a).norm());
+    const double radius = middle(a).norm();
+    radii.push_back(radius);
+    for (int e = topology.tube_begin[a]; e < topology.tube_begin[a + 1]; e = tubes.tube_begin[tubes.tube_of(e) + 1])
+      out.radius.push_back(radius);
     for (int b = a + 1; b < topology.tubes(); ++b) {
       if ((middle(b) - middle(a)).norm() > neighbour_radius) continue;
       out.neighbours.emplace_back(a, b);
@@ -103,10 +113,10 @@ LoadingReference loading_reference(const Topology& topology, const State& start,
   double nearest = std::numeric_limits<double>::infinity();
   for (int t = 0; t < topology.tubes(); ++t)
     if (shells.internal[static_cast<std::size_t>(t)])
-      nearest = std::min(nearest, out.radius[static_cast<std::size_t>(t)]);
+      nearest = std::min(nearest, radii[static_cast<std::size_t>(t)]);
   for (int t = 0; t < topology.tubes(); ++t)
     if (shells.internal[static_cast<std::size_t>(t)] &&
-        out.radius[static_cast<std::size_t>(t)] < nearest + 0.1 * spacing)
+        radii[static_cast<std::size_t>(t)] < nearest + 0.1 * spacing)
       out.core.push_back(t);
   return out;
 }
@@ -117,6 +127,10 @@ std::vector<double> tensions(const Topology& topology, const State& state, int t
   for (int e = topology.tube_begin[tube]; e + 1 < topology.tube_begin[tube + 1]; ++e) {
     const auto i = static_cast<std::size_t>(e), j = i + 1;
     const Vector3 d = state.position[j] - state.position[i];
+    if (has_parted(type, d)) {
+      out.push_back(0);
+      continue;
+    }
     const BondForce<double> f = bond_energy_and_gradient(
         type.bond, type.element_length, d, frame_of(state.orientation[i]), frame_of(state.orientation[j]));
     out.push_back(-f.force_j.dot(d.normalized()));
@@ -174,10 +188,15 @@ std::vector<TubeLoading> tube_loadings(const Topology& topology, const State& st
   }
   if (!knows_slip(topology, reference))
     for (TubeLoading& tube : out) tube.slip = none;
-  const std::vector<double> slipped = slips(topology, state, reference);
+  const Topology strands = strands_of(topology);
+  const std::vector<double> slipped = slips(strands, state, reference);
   for (std::size_t k = 0; k < slipped.size(); ++k)
-    for (const int t : {reference.neighbours[k].first, reference.neighbours[k].second})
-      out[static_cast<std::size_t>(t)].slip = std::max(out[static_cast<std::size_t>(t)].slip, slipped[k]);
+    for (const int s : {reference.neighbours[k].first, reference.neighbours[k].second})
+      for (int e = strands.tube_begin[s]; e < strands.tube_begin[s + 1];) {
+        const int t = topology.tube_of(e);
+        out[static_cast<std::size_t>(t)].slip = std::max(out[static_cast<std::size_t>(t)].slip, slipped[k]);
+        e = topology.tube_begin[t + 1];
+      }
   return out;
 }
 
@@ -195,13 +214,15 @@ Loading loading(const Topology& topology, const State& state, const LoadingRefer
     out.most_tension = t == 0 ? tension : std::max(out.most_tension, tension);
     out.curvature = std::max(out.curvature, largest_curvature(topology, state, t));
   }
-  for (const double slip : slips(topology, state, reference)) out.slip = std::max(out.slip, slip);
+  const Topology strands = strands_of(topology);
+  for (const double slip : slips(strands, state, reference)) out.slip = std::max(out.slip, slip);
   if (!knows_slip(topology, reference)) out.slip = none;
+  out.area = reference.cell > 0 ? reference.cell * topology.strands() : none;
   out.core_pressure = none;
   if (reference.law && !reference.core.empty() && reference.cell > 0) {
     out.core_pressure = 0;
     for (const int t : reference.core)
-      out.core_pressure += tube_pressure(topology, state, *reference.law, reference.cell, t) /
+      out.core_pressure += tube_pressure(strands, state, *reference.law, reference.cell, t) /
                            static_cast<double>(reference.core.size());
   }
   return out;

@@ -16,11 +16,11 @@ namespace ropewalk {
 struct LoadingReference {
   EndElements ends;
   double ends_apart = 0;                        // nm, between the centres of the ends
-  std::vector<std::pair<int, int>> neighbours;  // tubes, of equal length
+  std::vector<std::pair<int, int>> neighbours;  // strands, of equal length
   std::vector<double>
-      offset;  // nm: element by element along each pair, the displacement of the second tube against the first
+      offset;  // nm: element by element along each pair, the displacement of the second one against the first
   std::vector<double> radius;             // nm, of each tube from the axis of the rope; empty: no common length
-  std::vector<int> core;                  // the internal tubes nearest to the axis
+  std::vector<int> core;                  // the internal strands nearest to the axis
   double cell = 0;                        // nm^2, of the cross-section for each tube
   std::shared_ptr<const ContactLaw> law;  // null: no contact
 };
@@ -36,6 +36,7 @@ struct Loading {
   double curvature = 0;      // 1/nm, the largest
   double slip = 0;           // nm, the largest displacement of a tube along its neighbour since the start
   double core_pressure = 0;  // eV/nm^3; NaN where no tube is internal
+  double area = 0;           // nm^2, of the cross-section at the start: the cells of its strands; NaN for one tube
 };
 Loading loading(const Topology& topology, const State& state, const LoadingReference& reference);
 
@@ -44,13 +45,13 @@ struct TubeLoading {
   double tension = 0, most_tension = 0;  // eV/nm: mean over the middle third, largest absolute value
   double twist = 0;                      // rad/nm, mean
   double curvature = 0;                  // 1/nm, the largest
-  double slip = 0;                       // nm, the largest
+  double slip = 0;                       // nm, the largest, of its strand
   double pressure = 0;                   // eV/nm^3
 };
 std::vector<TubeLoading> tube_loadings(const Topology& topology, const State& state,
                                        const LoadingReference& reference);
 
-// eV/nm, in each bond of a tube.
+// eV/nm, in each bond of a tube; 0 where it has broken.
 std::vector<double> tensions(const Topology& topology, const State& state, int tube);
 
 // The contact pressure on a tube (eV/nm^3), from the virial of the contact forces F_ij that act on its elements i:

@@ -24,6 +24,14 @@ double stored(const M& m, double Energies::*part) {
 }
 double stored(const M& m) { return (m.account.potential.potential() - m.account.first.potential()) / m.mass; }
 
+// eV/nm, mean of both ends.
+double end_tension(const M& m) {
+  return 0.5 * (m.account.ends[upper_end].force.z() - m.account.ends[lower_end].force.z());
+}
+// eV ps^2/nm^3
+double mass_per_length(const M& m) {
+  return m.mass * m.topology.strands() / (m.topology.elements() * m.topology.longest_element());
+}
 double torque(const M& m, End end, Eigen::Index axis) { return m.account.ends[end].torque[axis] / units::nN_nm; }
 
 // A count in the middle section; nan for tubes without a common centre line, which have no such section.
@@ -83,8 +91,8 @@ std::vector<Observable>& table() {
        [](const M& m) { return m.account.work; }},
       {"dissipated_eV", "eV", "energy lost since the start, to damping and to friction", Group::energy,
        [](const M& m) { return m.account.dissipated; }},
-      {"damping_eV", "eV", "the part of it that numerical damping has taken, which atoms do not have", Group::energy,
-       [](const M& m) { return lost_to_damping(m.account); }},
+      {"damping_eV", "eV", "the part of it that numerical damping has taken, which atoms do not have",
+       Group::energy, [](const M& m) { return lost_to_damping(m.account); }},
       {"thermostat_eV", "eV", "heat that the thermostat has brought in since the start", Group::energy,
        [](const M& m) { return m.account.heat; }},
       {"balance_eV", "eV",
@@ -167,6 +175,12 @@ std::vector<Observable>& table() {
        [](const M& m) { return static_cast<double>(m.rope.overstretched); }, whole},
       {"largest_bond_twist_deg", "deg", "largest twist of one bond, absolute", Group::limits,
        [](const M& m) { return m.rope.largest_bond_twist / degree; }},
+      {"stress_GPa", "GPa",
+       "tension, the mean of both ends, over the cross-section of the rope: for each tube a cell of the hexagonal "
+       "packing",
+       Group::load, [](const M& m) { return end_tension(m) / m.loading.area / units::nN_nm; }},
+      {"specific_stress_N_per_tex", "N/tex", "the same tension over the mass per length", Group::load,
+       [](const M& m) { return end_tension(m) / mass_per_length(m); }},
   };
   // Kinds register before main() begins, in no certain order with those who ask for the table there.
   static std::size_t terms = 0;
@@ -176,12 +190,13 @@ std::vector<Observable>& table() {
       const auto at = m.account.terms.find(name);
       return at == m.account.terms.end() ? TermReading() : at->second;
     };
-    entries.push_back({kind.name + "_eV", "eV", kind.energy, Group::energy,
-                       [reading](const M& m) { return reading(m).energy; }});
+    if (!kind.energy.empty())
+      entries.push_back(
+          {kind.name + "_eV", "eV", kind.energy, Group::energy, [reading](const M& m) { return reading(m).energy; }});
     for (const TermColumn& c : kind.account)
       entries.push_back({c.name, c.unit, c.meaning, Group::energy,
                          [reading, value = c.value](const M& m) { return reading(m).account.*value; },
-                         c.value == &TermAccount::events});
+                         c.value == &TermAccount::events || c.value == &TermAccount::begun});
   }
   return entries;
 }
@@ -230,7 +245,8 @@ double energy_drift(const EnergyAccount& a) {
 
 std::vector<std::string> term_energy_columns() {
   std::vector<std::string> columns;
-  for (const TermKind& kind : term_kinds()) columns.push_back(kind.name + "_eV");
+  for (const TermKind& kind : term_kinds())
+    if (!kind.energy.empty()) columns.push_back(kind.name + "_eV");
   return columns;
 }
 

@@ -38,12 +38,13 @@ void observe_bonds(const Topology& topology, const State& state, const std::vect
   double sum = 0.0;
   for (int t = 0; t < topology.tubes(); ++t)
     for (int i = topology.tube_begin[t]; i + 1 < topology.tube_begin[t + 1]; ++i) {
+      if (has_parted(topology.type_of(t), state.position[i + 1] - state.position[i])) continue;
       const double twist = twist_of_bond(state, i);
       sum += twist;
       count_bond(topology.type_of(t), state, validity[static_cast<std::size_t>(topology.tube_type[t])], i, twist,
                  out);
     }
-  if (topology.tubes() > 0) out.physical_twist = sum / topology.tubes();
+  if (topology.tubes() > 0) out.physical_twist = sum / topology.strands();
 }
 
 // Mean angle of the outermost tubes to the local axis in the middle third.
@@ -117,10 +118,11 @@ std::vector<double> outer_radii(const Topology& topology, const State& state, co
 
 }  // namespace
 
-RopeObservation observe(const Topology& topology, const State& state, const RopeShells& shells,
+RopeObservation observe(const Topology& tubes, const State& state, const RopeShells& shells,
                         const std::vector<Validity>& validity, double neighbour_radius, double spacing) {
   RopeObservation out;
-  observe_bonds(topology, state, validity, out);
+  observe_bonds(tubes, state, validity, out);
+  const Topology topology = strands_of(tubes);
   const int n = common_length(topology);
   if (topology.tubes() > 0 && (n == 0 || !run_the_same_way(topology, state))) {
     for (double* none :
@@ -144,7 +146,7 @@ RopeObservation observe(const Topology& topology, const State& state, const Rope
   out.turned_back = turned_back(line.points);
   if (out.amplitude > scale) out.windings = chord_windings(line.points);
   out.centre_line = line.points;
-  out.middle = cross_section(topology, state, shells, n / 2, neighbour_radius, spacing);
+  out.middle = cross_section(tubes, state, shells, n / 2, neighbour_radius, spacing);
   return out;
 }
 

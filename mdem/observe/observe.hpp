@@ -1,8 +1,9 @@
 // Geometry of a twisted rope. Everything is computed from Topology and State alone, so that `observe` on stored
 // frames gives the numbers that the run logged.
 //
-// Centre line C(s): mean position of the elements of equal index s over all tubes (tubes of equal length;
-// otherwise only the quantities of single tubes are given: physical twist and the counts of bonds). Its tangent
+// Centre line C(s): mean position of the elements of equal index s over all strands. A strand is a tube, or a row of
+// tubes in line (Topology::strand_begin); sections follow the material. Strands of unequal numbers of elements have no
+// centre line: only the quantities of single tubes are then given, physical twist and the counts of bonds. Its tangent
 // is the local rope axis. Twists and windings are positive where they are right-handed.
 #pragma once
 
@@ -14,7 +15,10 @@
 
 namespace ropewalk {
 
-// The internal and the outermost tubes, from the untwisted state.
+// A bond so long has broken: no tube bears such a strain. Stored frames do not tell otherwise.
+inline bool has_parted(const TubeType& type, const Vector3& bond) { return bond.norm() > 1.5 * type.element_length; }
+
+// The internal and the outermost strands, from the untwisted state.
 struct RopeShells {
   std::vector<char> internal;   // has six neighbours in the reference state
   std::vector<char> outermost;  // not internal

@@ -24,7 +24,8 @@ double distance_to(const Topology& topology, const State& state, int tube, const
 
 }  // namespace
 
-double tube_spacing(const Topology& topology, const State& state, const RopeShells& shells) {
+double tube_spacing(const Topology& of, const State& state, const RopeShells& shells) {
+  const Topology topology = strands_of(of);
   const bool rope = topology.tubes() > 2;
   double sum = 0;
   int count = 0;

@@ -66,7 +66,7 @@ Model finer_model(const Model& planned, bool half) {
                         planned.topology.tube_type[t]);
   set_collapse(m.scene, m.topology);
   m.interaction = interaction_of(m.scene);
-  add_terms(m.scene, m.topology, m.interaction);
+  add_terms(m.scene, m.topology, m.start, m.interaction);
   m.loads = loads_of(m.scene, m.topology, m.interaction);
   m.time_step = step_part * default_step_fraction * time_step_limit(m.topology, m.interaction, m.spacing).limit;
   return m;

@@ -37,7 +37,7 @@ double expected_shock(const Scene& scene, const Prepared& p) {
   if (!(twist > 0) || scene.drives_of<TwistDrive>().empty() || !scene.source->is_parallel()) return 0;
   const MomentRamp& ramp = *scene.moment_ramp();
   if (!(ramp.rate > 0)) return 1;
-  const double rate = ramp.rate * ramp.of_each(p.topology.tubes()) / ramp.moment;
+  const double rate = ramp.rate * ramp.of_each(p.topology.strands()) / ramp.moment;
   double kinetic = 0;
   for (int t = 0; t < p.topology.tubes(); ++t) {
     const TubeType& type = p.topology.type_of(t);

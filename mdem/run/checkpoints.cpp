@@ -36,6 +36,7 @@ void Checkpoints::write(const FileMark& log, const FileMark& frames) {
   saved_step_ = moving_.state().step;
   fails_ = false;
   limits_.write();
+  files_.write_events(moving_);
   files_.try_again();
   longest_save_ = std::max(longest_save_, steady_seconds() - began);
 }

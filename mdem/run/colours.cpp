@@ -60,10 +60,11 @@ void colour_bonds(const Topology& topology, const State& s, ElementColours& c) {
 
 }  // namespace
 
-ElementColours element_colours(const Topology& topology, const Interaction& in, const State& s) {
+ElementColours element_colours(const Topology& topology, const Interaction& in, const State& s,
+                               const Topology& bonded) {
   ElementColours c;
   for (auto* v : {&c.bond_energy, &c.vdw_energy, &c.bending_moment, &c.twist_angle}) v->assign(s.size(), 0.0);
-  colour_bonds(topology, s, c);
+  colour_bonds(bonded, s, c);
   if (in.has_contact()) colour_contacts(topology, in, s, c);
   return c;
 }

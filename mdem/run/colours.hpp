@@ -5,7 +5,12 @@
 
 namespace ropewalk {
 
-// Per-element energies, bending moment and twist of a state, for frames and pictures.
-ElementColours element_colours(const Topology& topology, const Interaction& interaction, const State& state);
+// Per-element energies, bending moment and twist of a state, for frames and pictures. `bonded`: the tubes where they
+// have not broken (Simulation::tubes_now).
+ElementColours element_colours(const Topology& topology, const Interaction& interaction, const State& state,
+                               const Topology& bonded);
+inline ElementColours element_colours(const Topology& topology, const Interaction& interaction, const State& state) {
+  return element_colours(topology, interaction, state, topology);
+}
 
 }  // namespace ropewalk

@@ -50,7 +50,7 @@ EnergyParts MovingScene::energies() const {
 LogRow MovingScene::row() {
   EnergyAccount now = account();
   now.ends = simulation.read_gauges();
-  return log_row(observer, scene, prepared.topology, simulation.state(), now);
+  return log_row(observer, scene, simulation.tubes_now(), simulation.state(), now);
 }
 
 }  // namespace ropewalk

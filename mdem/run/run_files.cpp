@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "run/colours.hpp"
+#include "run/events_file.hpp"
 #include "scene/state_csv.hpp"
 
 namespace ropewalk {
@@ -21,7 +22,7 @@ void RunFiles::write_row(const LogRow& row) { log_->write(log_line(row)); }
 
 void RunFiles::write_frame(const MovingScene& m) {
   frames_->write(m.prepared.topology, m.state(),
-                 element_colours(m.prepared.topology, m.prepared.interaction, m.state()));
+                 element_colours(m.prepared.topology, m.prepared.interaction, m.state(), m.simulation.tubes_now()));
 }
 
 void RunFiles::cut(const FileMark& log, const FileMark& frames) {
@@ -34,8 +35,13 @@ void RunFiles::sync() {
   frames_->sync();
 }
 
+void RunFiles::write_events(const MovingScene& m) {
+  const std::vector<TermEvent> events = m.simulation.term_events();
+  if (!events.empty()) pending_.write(dir_.events(), events_csv(m.prepared.topology, events));
+}
+
 void RunFiles::write_state(const std::string& path, const MovingScene& m) {
-  pending_.write(path, state_csv(m.prepared.topology, m.state()));
+  pending_.write(path, state_csv(m.simulation.tubes_now(), m.state()));
 }
 
 }  // namespace ropewalk

@@ -38,6 +38,8 @@ class RunFiles {
   // These end no run where they cannot be written.
   void write_limits(const LimitsFile& limits) { pending_.write(dir_.limits(), limits_json(limits)); }
   void write_manifest(const Manifest& manifest) { pending_.write(dir_.manifest(), manifest_json(manifest)); }
+  // Where a force term has a history.
+  void write_events(const MovingScene& moving);
   void write_final_state(const MovingScene& moving) { write_state(dir_.final_state(), moving); }
   void write_failed_state(const MovingScene& moving) { write_state(dir_.failed_state(), moving); }
   void write_report(std::string page) { pending_.write(dir_.report(), std::move(page)); }

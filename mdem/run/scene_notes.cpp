@@ -76,7 +76,7 @@ void warn_of_unlike_tubes(const Scene& scene, std::vector<std::string>& warnings
 
 // Observables of the rope as a whole take sections through elements of equal number along their tubes.
 void warn_of_no_centre_line(const Topology& topology, const State& state, std::vector<std::string>& warnings) {
-  const bool unequal = common_length(topology) == 0, opposed = !run_the_same_way(topology, state);
+  const bool unequal = common_length(strands_of(topology)) == 0, opposed = !run_the_same_way(topology, state);
   if (topology.tubes() < 2 || (!unequal && !opposed)) return;
   warnings.push_back(
       fmt::format("Tubes {}: they have no common centre line, and beta_deg, geometric_twist_deg, slip_nm, Q and "

@@ -13,20 +13,41 @@
 #include "scene/scene_to_model.hpp"
 #include "scene/spacing.hpp"
 #include "scene/wound.hpp"
+#include "sim/dynamics/counter_random.hpp"
 
 namespace ropewalk {
 namespace {
 
 constexpr double viscosity_reach = 1.5;  // spacings
 
+// Each tube by itself: a share is met in the mean.
+void draw_tube_types(const Scene& scene, Topology& topology) {
+  for (int t = 0; t < topology.tubes(); ++t) {
+    double left = unit_interval(philox({static_cast<std::uint32_t>(t), 0, 0, 0}, scene.start.seed)[0]);
+    std::size_t type = 0;
+    while (type + 1 < scene.type_shares.size() && left > scene.type_shares[type]) left -= scene.type_shares[type++];
+    topology.tube_type[static_cast<std::size_t>(t)] = static_cast<int>(type);
+  }
+}
+
 void set_tube_types(const Scene& scene, Topology& topology) {
+  if (!scene.type_shares.empty()) draw_tube_types(scene, topology);
   if (scene.tube_types.empty()) return;
-  if (static_cast<int>(scene.tube_types.size()) != topology.tubes())
-    throw InputError(
-        {scene.path, 0, "tube_types"},
-        fmt::format("has {} numbers, and the scene has {} tubes", scene.tube_types.size(), topology.tubes()),
-        "write one for each tube");
-  topology.tube_type = scene.tube_types;
+  const int tubes = topology.tubes(), strands = topology.strands(),
+            typed = static_cast<int>(scene.tube_types.size());
+  if (typed != tubes && typed != strands)
+    throw InputError({scene.path, 0, "tube_types"},
+                     fmt::format("has {} numbers, and the scene has {} tubes{}", typed, tubes,
+                                 strands < tubes ? fmt::format(" in {} strands", strands) : ""),
+                     strands < tubes ? "write one for each strand or for each tube" : "write one for each tube");
+  if (typed == tubes) {
+    topology.tube_type = scene.tube_types;
+    return;
+  }
+  for (int t = 0, strand = -1; t < tubes; ++t) {
+    strand += topology.begins_strand(t);
+    topology.tube_type[static_cast<std::size_t>(t)] = scene.tube_types[static_cast<std::size_t>(strand)];
+  }
 }
 
 // The mean of the first elements, or of the last ones, of all tubes.

@@ -66,7 +66,7 @@ class Drive {
   // Adds its loads and constraints. Throws InputError for elements that do not exist.
   virtual void add_loads(const Scene&, const Topology&, const Interaction&, LoadsAndConstraints&) const {}
   // Adds its force terms (sim/forces/force_term.hpp), with add_term(). Throws likewise.
-  virtual void add_terms(const Scene&, const Topology&, Interaction&) const {}
+  virtual void add_terms(const Scene&, const Topology&, const State& /*start*/, Interaction&) const {}
   virtual void set_stepping(Stepping&) const {}
   // Throws InputError if the elements at the start do not bear it; `loads` are those of all drives.
   virtual void refuse_start(const Scene&, const Topology&, const State&,

@@ -110,7 +110,7 @@ double finer_time_step(const Scene& scene, const Prepared& p, const std::string&
   finer.damping.contact.outer = scene.damping.contact.outer;
   const Topology halves = halved(p.topology, splitting_of(scene));
   Interaction interaction = interaction_of(finer);
-  add_terms(finer, halves, interaction);
+  add_terms(finer, halves, halved(p.topology, p.state, splitting_of(scene)), interaction);
   const double limit = time_step_limit(halves, interaction, p.spacing).limit;
   return scene.run.time_step / p.limit.limit * limit;
 }

@@ -91,7 +91,7 @@ std::vector<OutputColumn> lammps_tube_columns() { return listed(tube_columns); }
 std::vector<OutputColumn> lammps_row_columns() { return listed(row_columns); }
 
 void refuse_what_lammps_lacks(const Scene& scene) {
-  std::string lacking;
+  std::string lacking = scene.source->not_for_lammps();
   for (const auto& drive : scene.drives)
     if (lacking.empty()) lacking = drive->not_for_lammps();
   if (lacking.empty() && scene.run.stepping.runge_kutta) lacking = "run.integrator";

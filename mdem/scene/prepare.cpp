@@ -235,7 +235,7 @@ Prepared prepare(Scene& scene) {
   out.state = std::move(built.state);
   out.spacing = built.spacing;
   out.interaction = interaction_of(scene, std::move(built.law));
-  add_terms(scene, out.topology, out.interaction);
+  add_terms(scene, out.topology, out.state, out.interaction);
   out.loads = loads_of(scene, out.topology, out.interaction);
   out.stepping = scene.run.stepping;
   refuse_upside_down(scene, out);

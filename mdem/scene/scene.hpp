@@ -77,7 +77,8 @@ struct Scene {
   std::string text;                // the file as read, for the copy in the run directory
   std::string hash;                // xxh64 of text, hex
   std::vector<ParameterSet> sets;  // of the tube types; never empty
-  std::vector<int> tube_types;     // of each tube, an index of `sets`; empty: all are of the first
+  std::vector<int> tube_types;     // of each tube, an index of `sets`; empty: all are of the first, or drawn:
+  std::vector<double> type_shares;  // of each set, the part of the tubes that are of it; empty: tube_types holds
   double element_length = 0;       // nm
   std::string kind;                // the table of its source: "rope"; empty where it was not read from a file
   std::shared_ptr<const Source> source;

@@ -99,8 +99,8 @@ Interaction interaction_of(const Scene& scene, std::shared_ptr<const ContactLaw>
   return in;
 }
 
-void add_terms(const Scene& scene, const Topology& topology, Interaction& interaction) {
-  for (const auto& drive : scene.drives) drive->add_terms(scene, topology, interaction);
+void add_terms(const Scene& scene, const Topology& topology, const State& start, Interaction& interaction) {
+  for (const auto& drive : scene.drives) drive->add_terms(scene, topology, start, interaction);
 }
 
 double protocol_time(const Scene& scene) {

@@ -46,7 +46,7 @@ Interaction interaction_of(const Scene& scene, std::shared_ptr<const ContactLaw>
 inline Interaction interaction_of(const Scene& scene) { return interaction_of(scene, contact_law(scene)); }
 
 // Adds the force terms of the drives. Throws InputError for elements that do not exist.
-void add_terms(const Scene& scene, const Topology& topology, Interaction& interaction);
+void add_terms(const Scene& scene, const Topology& topology, const State& start, Interaction& interaction);
 
 // ps, from when on no drive changes anything.
 double protocol_time(const Scene& scene);

@@ -30,6 +30,8 @@ class Source {
   virtual bool is_parallel() const { return false; }
   // The file that the elements are read from; empty: no file.
   virtual std::string file() const { return ""; }
+  // The key that LAMMPS cannot carry; empty: it can.
+  virtual std::string not_for_lammps() const { return ""; }
   // Describes the placed elements to the user.
   virtual std::string description(const Topology&, const State&, double /*spacing*/) const { return ""; }
 };

@@ -45,6 +45,7 @@ constexpr double shortest_bond = 0.1, longest_bond = 10;  // element lengths
 constexpr double shortest_usual = 0.75, longest_usual = 1.34;
 constexpr const char* length_words = "element_length_nm: ";
 constexpr const char* types_words = "tube_types: ";
+constexpr const char* strands_words = "strands_begin_with_tubes: ";
 
 struct Row {
   int tube = 0;
@@ -88,6 +89,26 @@ int stated_sets(const CsvReader& csv) {
   return 0;
 }
 
+// The first tubes of strands that a comment before the present line names; none: no comment does.
+std::vector<int> stated_strands(const CsvReader& csv) {
+  std::vector<int> first;
+  for (const std::string_view comment : csv.comments()) {
+    if (comment.rfind(strands_words, 0) != 0) continue;
+    const std::string text(comment.substr(std::string_view(strands_words).size()));
+    const char* at = text.c_str();
+    for (char* end = nullptr;; at = end + 1) {
+      const long tube = std::strtol(at, &end, 10);
+      if (end == at || tube != (first.empty() ? 0 : std::max<long>(tube, first.back() + 1L)) || tube >= max_elements ||
+          (*end != ',' && *end != '\0'))
+        csv.fail("", fmt::format("the comment above says \"{}\" of the strands", printable(text, 40)),
+                 "write the first tube of each strand, rising from 0, with commas between them, or take the comment away");
+      first.push_back(static_cast<int>(tube));
+      if (*end == '\0') return first;
+    }
+  }
+  return first;
+}
+
 class StateReader {
  public:
   StateReader(const std::string& path, Topology& topology) : path_(path), csv_(path), topology_(topology) {}
@@ -96,7 +117,11 @@ class StateReader {
     if (!csv_.next()) fail("", "is empty", fmt::format("the first line must be {}", header));
     check_header();
     while (csv_.next()) {
-      if (rows_.empty()) check_length(), check_sets();
+      if (rows_.empty()) {
+        check_length();
+        check_sets();
+        topology_.strand_begin = stated_strands(csv_);
+      }
       if (rows_.size() == static_cast<std::size_t>(max_elements))
         fail("", fmt::format("has more than {} elements", max_elements), "take fewer");
       const Row row = parsed();
@@ -105,6 +130,7 @@ class StateReader {
     }
     if (rows_.empty()) fail("", "has no elements", "write one line for each, below the header");
     if (!stated_) check_spacing();
+    close_strands();
     return state();
   }
 
@@ -120,6 +146,17 @@ class StateReader {
     if (!right)
       fail("", fmt::format("the header is \"{}\"", printable(std::string(csv_.line_text()), 60)),
            fmt::format("it must be {0}, or {1}", header, whole_header));
+  }
+
+  void close_strands() {
+    std::vector<int>& begin = topology_.strand_begin;
+    if (begin.empty()) return;
+    if (begin.back() >= topology_.tubes())
+      throw InputError({path_, 0, ""},
+                       fmt::format("its comment has a strand that begins with tube {}, and there are {} tubes",
+                                   begin.back(), topology_.tubes()),
+                       "take the comment away, or complete the file");
+    begin.push_back(topology_.tubes());
   }
 
   // Compares the element length that the file states with the one that its elements are read with.
@@ -244,6 +281,7 @@ std::vector<OutputColumn> state_columns() { return {columns.begin(), columns.end
 void read_state_csv(const std::string& path, Topology& topology, State& state) {
   topology.tube_begin = {0};
   topology.tube_type.clear();
+  topology.strand_begin.clear();
   state = StateReader(path, topology).read();
 }
 
@@ -255,6 +293,9 @@ double state_element_length(const std::string& path) {
 std::string state_csv(const Topology& topology, const State& s) {
   std::string text = fmt::format("{}\n# {}{}\n", whole_header, length_words, topology.types.front().element_length);
   if (topology.types.size() > 1) text += fmt::format("# {}{}\n", types_words, fmt::join(topology.tube_type, ","));
+  if (!topology.strand_begin.empty())
+    text += fmt::format("# {}{}\n", strands_words,
+                        fmt::join(topology.strand_begin.begin(), topology.strand_begin.end() - 1, ","));
   for (int t = 0; t < topology.tubes(); ++t)
     for (int e = topology.tube_begin[t]; e < topology.tube_begin[t + 1]; ++e) {
       const auto i = static_cast<std::size_t>(e);

@@ -8,7 +8,7 @@ double twist_energy_of(const Scene& scene, const Topology& topology) {
   const MomentRamp* ramp = scene.moment_ramp();
   if (!ramp || ramp->geometric_only || topology.tubes() < 2 || scene.start.temperature > 0 || scene.bath())
     return 0;
-  const double moment = ramp->of_each(topology.tubes());
+  const double moment = ramp->of_each(topology.strands());
   double energy = 0;
   for (int t = 0; t < topology.tubes(); ++t) {
     const TubeType& type = topology.type_of(t);

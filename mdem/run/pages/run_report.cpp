@@ -60,6 +60,26 @@ void add_run_facts(const Scene& scene, const Prepared& p, const Manifest& m, Rep
   add("wall time", fmt::format("{:.0f} s on {} threads", m.wall_seconds, m.threads), "started " + m.started);
 }
 
+// What a testing machine tells, of a rope that may come apart.
+void add_strength(const Scene& scene, ReportInput& in) {
+  const bool breaks = std::any_of(scene.drives.begin(), scene.drives.end(), [](const auto& drive) {
+    return drive->table().name == "links" || drive->table().name == "failure";
+  });
+  const LogRow* strongest = nullptr;
+  for (const LogRow& row : in.log)
+    if (!strongest || row["stress_GPa"] > (*strongest)["stress_GPa"]) strongest = &row;
+  if (!breaks || !strongest || !std::isfinite((*strongest)["stress_GPa"])) return;
+  const LogRow &most = *strongest, &last = in.log.back();
+  in.facts.push_back({"strength",
+                      fmt::format("{:.3g} GPa, {:.3g} N/tex, at a strain of {:.3g}", most["stress_GPa"],
+                                  most["specific_stress_N_per_tex"], most["ends_strain"]),
+                      "the largest stress in the log, over the cells of the cross-section"});
+  in.facts.push_back({"broken",
+                      fmt::format("{:.0f} of {:.0f} links and {:.0f} bonds of tubes", last["links_broken"],
+                                  last["links_formed"], last["bonds_broken"]),
+                      "events.csv says when and where"});
+}
+
 // Within some twenty degrees of one direction.
 bool are_parallel(const State& state) {
   Vector3 sum = Vector3::Zero();
@@ -116,6 +136,7 @@ ReportInput gather(const RunDirectory& dir, const Scene& scene, const Prepared& 
   in.bonds = p.topology.bonds();
   if (scene.sets.size() == 1)
     in.validity = validities(scene, p.topology).front();  // of more than one, no number holds for all
+  add_strength(scene, in);
   if (std::filesystem::exists(dir.limits())) in.watched = read_limits(dir.limits());
   const Observer observer = make_observer(scene, p);
   in.rope = is_rope(p, observer);

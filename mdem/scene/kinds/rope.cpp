@@ -2,26 +2,41 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "scene/bounds.hpp"
 #include "scene/lattice.hpp"
 #include "scene/scene.hpp"
+#include "scene/spacing.hpp"
 
 namespace ropewalk {
 namespace {
 
+constexpr int least_elements = 3;  // of a tube
+
 void check_rope(const TomlTable& t, const Scene& scene, RopeSource& rope) {
   const auto [below, above] = nearest_hexagonal(rope.tubes);
-  if (below != above)
+  if (below != above && rope.packing == RopeSource::Packing::hexagonal)
     throw t.error("tubes", fmt::format("is {}, not a hexagonal number", rope.tubes),
-                  fmt::format("the nearest are {} and {}", below, above));
+                  fmt::format("the nearest are {} and {}; packing = \"round\" takes any number", below, above));
   const double elements = std::round(rope.length / scene.element_length);
   if (elements < 3)
     throw t.error("length_nm",
                   fmt::format("is {} nm, {} elements of {} nm", rope.length, elements, scene.element_length),
                   fmt::format("at least 3 elements, {:.4g} nm, are needed", 3 * scene.element_length));
   check_size(t, "length_nm", rope.tubes, elements);
+  const double least = least_elements * scene.element_length;
+  for (const char* key : {"tube_length_deviation_nm", "gap_nm", "stagger"})
+    if (t.has(key) && !(rope.tube_length > 0))
+      throw t.error(key, "is about tubes that end inside of the rope", "give tube_length_nm too");
+  if (rope.tube_length > 0 && rope.tube_length < least)
+    throw t.error("tube_length_nm",
+                  fmt::format("is {:.4g} nm, less than {} elements", rope.tube_length, least_elements),
+                  fmt::format("take at least {:.4g} nm, or shorter elements", least));
+  if (rope.tube_length > 0 && rope.deviation > 0.5 * rope.tube_length)
+    throw t.error("tube_length_deviation_nm", "is more than half of the mean length",
+                  fmt::format("take at most {:.4g}", 0.5 * rope.tube_length));
 }
 
 void displace(double amplitude, Random& random, State& state) {
@@ -39,31 +54,128 @@ SceneKind rope_kind() {
       {"rope",
        "parallel tubes along z in hexagonal packing, centred on the origin",
        {Key::integer("tubes", 1, max_elements, &RopeSource::tubes, required("91"),
-                     "a hexagonal number: 1, 7, 19, 37, 61, 91, 127, 169, 217, ..."),
+                     "in a cross-section: a hexagonal number 1, 7, 19, 37, 61, 91, 127, 169, 217, ..."),
+        Key::word(
+            "packing",
+            Words<RopeSource::Packing>{{"hexagonal", RopeSource::Packing::hexagonal},
+                                       {"round", RopeSource::Packing::round}},
+            &RopeSource::packing, standard(),
+            "full shells of the lattice, or \"round\": any number of tubes on the places nearest to the axis"),
         Key::number("length_nm", unit::nm, Bounds::positive(1e9), &RopeSource::length, required("67.8"),
                     "length of the tubes, rounded to whole elements")
             .is_tube_size(SceneKey::TubeSize::length),
         Key::number("spacing_nm", unit::nm, spacing_bounds, &RopeSource::spacing,
                     otherwise("1.713", "where two tubes bind best"), "distance between tube axes"),
         Key::number("perturbation_nm", unit::nm, Bounds::non_negative(0.1), &RopeSource::perturbation, standard(),
-                    "each element is displaced at random by up to this in x and y")},
+                    "each element is displaced at random by up to this in x and y"),
+        Key::number(
+            "tube_length_nm", unit::nm, Bounds::positive(1e9), &RopeSource::tube_length,
+            otherwise("20", "length_nm"),
+            "mean length of the tubes: shorter ones follow one another in line, with ends inside of the rope"),
+        Key::number("tube_length_deviation_nm", unit::nm, Bounds::non_negative(1e9), &RopeSource::deviation,
+                    standard(), "standard deviation of their lengths"),
+        Key::word(
+            "stagger",
+            Words<RopeSource::Stagger>{{"none", RopeSource::Stagger::none},
+                                       {"brick", RopeSource::Stagger::brick},
+                                       {"random", RopeSource::Stagger::random}},
+            &RopeSource::stagger, standard(),
+            "ends of neighbouring tubes: \"none\" at one height, \"brick\" a third of a tube apart, \"random\""),
+        Key::number("gap_nm", unit::nm, Bounds::positive(10), &RopeSource::gap,
+                    otherwise("1.2", "where the ends rest"), "between the walls of two tubes in line")},
        check_rope});
 }
 
 Source::Sizes RopeSource::sizes(double element_length) const {
-  return {tubes, whole_elements(length, element_length)};
+  return {tube_length > 0 ? 0 : tubes, whole_elements(length, element_length)};
+}
+
+std::vector<std::pair<double, double>> RopeSource::places(double spacing_of_tubes) const {
+  if (packing == Packing::hexagonal) return hexagonal_lattice(tubes, spacing_of_tubes);
+  std::vector<std::pair<double, double>> all = hexagonal_lattice(nearest_hexagonal(tubes).second, spacing_of_tubes);
+  // Distances that differ by rounding are one.
+  const auto shell = [&](const std::pair<double, double>& p) {
+    return std::lround(1e6 * std::hypot(p.first, p.second) / spacing_of_tubes);
+  };
+  std::stable_sort(all.begin(), all.end(), [&](const auto& p, const auto& q) { return shell(p) < shell(q); });
+  all.resize(static_cast<std::size_t>(tubes));
+  return all;
 }
 
 void RopeSource::place(const Scene& scene, double spacing_of_tubes, Random& random, Topology& topology,
                        State& state) const {
-  add_straight_tubes(hexagonal_lattice(tubes, spacing_of_tubes), sizes(scene.element_length).elements,
-                     scene.element_length, topology, state);
+  if (tube_length > 0)
+    place_strands(scene, spacing_of_tubes, random, topology, state);
+  else
+    add_straight_tubes(places(spacing_of_tubes), sizes(scene.element_length).elements, scene.element_length,
+                       topology, state);
   if (perturbation > 0) displace(perturbation, random, state);
 }
 
+std::vector<int> RopeSource::cuts(int strand_shift, double element_length, double gap_here, Random& random) const {
+  const int n = whole_elements(length, element_length);
+  const auto drawn = [&] {
+    const double drawn_length = deviation > 0 ? tube_length + deviation * random.normal() : tube_length;
+    return std::clamp(drawn_length, least_elements * element_length, 2 * tube_length) + gap_here;
+  };
+  // The first tube is the rest of one that began below the rope.
+  double part = 1;
+  if (stagger == Stagger::brick) part = (strand_shift + 1) / 3.0;
+  if (stagger == Stagger::random) part = random.uniform();
+  std::vector<int> out;
+  int last = 0;
+  for (double at = part * drawn();; at += drawn()) {
+    const int cut = static_cast<int>(std::lround(at / element_length));
+    if (cut > n - least_elements) return out;
+    if (cut < last + least_elements) continue;
+    out.push_back(cut);
+    last = cut;
+  }
+}
+
+// All strands have the same number of elements and the length of the rope; gaps take what the elements leave.
+void RopeSource::place_strands(const Scene& scene, double spacing_of_tubes, Random& random, Topology& topology,
+                               State& state) const {
+  const double a = scene.element_length, least_gap = gap > 0 ? gap : coaxial_gap(scene);
+  const std::vector<std::pair<double, double>> at = places(spacing_of_tubes);
+  std::vector<std::vector<int>> cuts_of;
+  std::size_t most = 0;
+  for (const auto& [x, y] : at) {
+    // Neighbours on the lattice have different shifts of 0, 1, 2.
+    const long j = std::lround(y / (0.5 * std::sqrt(3.0) * spacing_of_tubes)),
+               i = std::lround(x / spacing_of_tubes - 0.5 * static_cast<double>(j));
+    cuts_of.push_back(cuts(static_cast<int>(((i - j) % 3 + 3) % 3), a, least_gap, random));
+    most = std::max(most, cuts_of.back().size());
+  }
+  const int whole = whole_elements(length, a);
+  const int elements = whole - static_cast<int>(std::ceil(static_cast<double>(most) * least_gap / a - 1e-9));
+  topology.strand_begin = {0};
+  std::vector<Vector3> positions;
+  for (std::size_t s = 0; s < at.size(); ++s) {
+    std::vector<int>& cut = cuts_of[s];
+    while (!cut.empty() && cut.back() > elements - least_elements) cut.pop_back();
+    cut.push_back(elements);
+    const double here = cut.size() > 1 ? (whole - elements) * a / static_cast<double>(cut.size() - 1) : 0;
+    double z = cut.size() > 1 ? -0.5 * (whole - 1) * a : -0.5 * (elements - 1) * a;
+    int from = 0;
+    for (const int to : cut) {
+      topology.add_tube(to - from);
+      for (; from < to; ++from, z += a) positions.emplace_back(at[s].first, at[s].second, z);
+      z += here;
+    }
+    topology.strand_begin.push_back(topology.tubes());
+  }
+  state = State(positions.size());
+  for (std::size_t i = 0; i < positions.size(); ++i) state.position.set(i, positions[i]);
+}
+
 std::string RopeSource::description(const Topology& t, const State&, double spacing_of_tubes) const {
-  return fmt::format("a rope of {:.4g} nm, spacing {:.4g} nm", t.length_of(0) * t.longest_element(),
-                     spacing_of_tubes);
+  if (!(tube_length > 0))
+    return fmt::format("a rope of {:.4g} nm, spacing {:.4g} nm", t.length_of(0) * t.longest_element(),
+                       spacing_of_tubes);
+  return fmt::format("a rope of {:.4g} nm, spacing {:.4g} nm, of {} tubes of {:.4g} nm in the mean, in {} strands",
+                     whole_elements(length, t.longest_element()) * t.longest_element(), spacing_of_tubes, t.tubes(),
+                     t.elements() * t.longest_element() / t.tubes(), t.strands());
 }
 
 }  // namespace ropewalk

@@ -1,4 +1,5 @@
-// [rope] hexagonally packed parallel tubes along z, centred on the origin.
+// [rope] parallel tubes along z on a hexagonal lattice, centred on the origin. Each place of the cross-section has one
+// tube as long as the rope, or a strand: tubes of given lengths in line, with their ends inside.
 #pragma once
 
 #include "scene/kinds/scene_kind.hpp"
@@ -7,16 +8,33 @@ namespace ropewalk {
 
 class RopeSource : public Source {
  public:
-  int tubes = 91;           // a hexagonal number 1, 7, 19, 37, 61, 91, 127, 169, 217, ...
+  // Places: full shells, or those nearest to the axis whatever their number.
+  enum class Packing { hexagonal, round };
+  // Where tubes of neighbouring strands end: at one height, shifted by a third of a tube, anywhere.
+  enum class Stagger { none, brick, random };
+
+  int tubes = 91;           // in a cross-section; full shells have 1, 7, 19, 37, 61, 91, 127, 169, 217, ...
+  Packing packing = Packing::hexagonal;
   double length = 0;        // nm, rounded to whole elements
   double spacing = 0;       // nm; 0: that at which two tubes bind best
   double perturbation = 0;  // nm: amplitude of a random lateral displacement of every element
+  double tube_length = 0;   // nm, the mean; 0: as long as the rope
+  double deviation = 0;     // nm, standard deviation of the lengths
+  double gap = 0;           // nm, between the walls of tubes in line; 0: where their ends rest
+  Stagger stagger = Stagger::random;
 
   Sizes sizes(double element_length) const override;
   void place(const Scene&, double spacing_of_tubes, Random&, Topology&, State&) const override;
   double typed_spacing() const override { return spacing; }
   bool is_parallel() const override { return true; }
   std::string description(const Topology&, const State&, double spacing_of_tubes) const override;
+  std::string not_for_lammps() const override { return tube_length > 0 ? "rope.tube_length_nm" : ""; }
+
+ private:
+  std::vector<std::pair<double, double>> places(double spacing_of_tubes) const;
+  void place_strands(const Scene& scene, double spacing_of_tubes, Random& random, Topology&, State&) const;
+  // Numbers of elements from the lower end of a strand at which one tube ends and the next begins.
+  std::vector<int> cuts(int strand_shift, double element_length, double gap_here, Random& random) const;
 };
 
 }  // namespace ropewalk

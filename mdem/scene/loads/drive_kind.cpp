@@ -15,6 +15,8 @@ DriveKind load_drive();
 DriveKind periodic_drive();
 DriveKind tether_drive();
 DriveKind friction_drive();
+DriveKind links_drive();
+DriveKind failure_drive();
 
 namespace {
 
@@ -27,6 +29,8 @@ std::vector<DriveKind> shipped_drives() {
       periodic_drive(),
       tether_drive(),
       friction_drive(),
+      links_drive(),
+      failure_drive(),
   };
 }
 
@@ -35,7 +39,7 @@ std::vector<DriveKind>& kinds_of_drives() {
   return kinds;
 }
 
-// A drive without an energy has no terms.
+// Without `energy` a drive has no terms.
 std::optional<TermKind> term_kind_of(const DriveKind& kind) {
   if (!kind.energy) return {};
   return TermKind{kind.table().name, kind.energy, kind.account};

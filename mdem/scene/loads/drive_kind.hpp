@@ -16,7 +16,7 @@ struct DriveKind {
   // `scene` holds its elements and what precedes the drives in help.
   std::shared_ptr<const Drive> (*read)(const TomlTable&, const Scene& scene);
   // Describes the energy of its force terms, which have the name of the table; the log then has the column NAME_eV.
-  // Null: it adds no energy.
+  // Null: it has no terms. No words: its terms store no energy, and there is no such column.
   const char* energy = nullptr;
   // More columns, of what these terms have done.
   std::vector<TermColumn> account = {};

@@ -59,7 +59,7 @@ class FrictionDrive : public Drive {
       throw top.error("friction", "acts between tubes in contact, and contact.law is \"none\"",
                       "take one of the two away");
   }
-  void add_terms(const Scene&, const Topology& topology, Interaction& interaction) const override {
+  void add_terms(const Scene&, const Topology& topology, const State&, Interaction& interaction) const override {
     for (const FrictionLaw& f : laws) add_term(dry_friction_term(f.law, topology), interaction);
   }
 };

@@ -546,9 +546,12 @@ void GripDrive::add_loads(const Scene& scene, const Topology& topology, const In
                           LoadsAndConstraints& loads) const {
   std::vector<int> elements;
   double free = 0;
+  const Topology strands = strands_of(topology);
   for (const int t : selected_tubes(scene, on, topology)) {
+    // A tube that is named is held where it ends, inside of the rope too.
+    if (on.all_tubes && !(load.end == lower_end ? topology.begins_strand(t) : topology.ends_strand(t))) continue;
     const int length = topology.length_of(t);
-    free = std::max(free, free_length(scene, topology, t));
+    free = std::max(free, free_length(scene, strands, strands.tube_of(topology.tube_begin[t])));
     if (2 * load.depth > length)
       throw InputError({scene.path, 0, "grip.elements"},
                        fmt::format("is {}, and tube {} has {}", load.depth, t, length),

@@ -96,7 +96,7 @@ Vector3 direction_of_couple(TwistLoad::Application application, const Vector3& a
 // A couple on the last element of a tube goes through its last bond. A single tube bears it in every bond.
 void refuse_moment(const Scene& scene, const Topology& topology, const TwistLoad& twist) {
   const bool per_tube = twist.reading == TwistLoad::Reading::per_tube;
-  const double moment = twist.of_each(topology.tubes());
+  const double moment = twist.of_each(topology.strands());
   const TubeType& t = topology.type_of(0);
   const double slip = t.bond.twist / t.element_length, most = largest_torque(t.bond, t.element_length);
   const auto refuse = [&](const std::string& what, const char* remedy) {
@@ -107,7 +107,7 @@ void refuse_moment(const Scene& scene, const Topology& topology, const TwistLoad
   };
   if (moment > slip)
     refuse(fmt::format("{}a bond of {:.4g} nm bears before it slips, GJ/a = {:.4g}",
-                       per_tube ? "" : fmt::format("the {} tubes bear: of each, ", topology.tubes()),
+                       per_tube ? "" : fmt::format("the {} tubes bear: of each, ", topology.strands()),
                        t.element_length, slip / units::nN_nm),
            "lower the moment or take shorter elements");
   if (topology.tubes() == 1 && moment > most)
@@ -269,8 +269,8 @@ void TwistLoad::constrain(const Topology& topology, double, double, State& state
 void add_twist(const TwistLoad& twist, const Topology& topology, LoadsAndConstraints& loads) {
   std::vector<int> lower, upper;
   for (int t = 0; t < topology.tubes(); ++t) {
-    lower.push_back(topology.tube_begin[t]);
-    upper.push_back(topology.tube_begin[t + 1] - 1);
+    if (topology.begins_strand(t)) lower.push_back(topology.tube_begin[t]);
+    if (topology.ends_strand(t)) upper.push_back(topology.tube_begin[t + 1] - 1);
   }
   const double upper_sign = twist.left_handed ? -1 : 1;
   loads.add(twist.on_grip(upper, upper_sign));

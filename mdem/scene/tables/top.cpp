@@ -1,6 +1,7 @@
 // The top of a scene: format, name, parameter sets and the length of the elements.
 #include <fmt/format.h>
 
+#include <cmath>
 #include <filesystem>
 
 #include "io/data_files.hpp"
@@ -48,10 +49,23 @@ void read_tube_types(const TomlTable& top, const Scene&, Scene& out) {
   if (top.has("tube_types")) {
     const std::vector<long> types = top.integers("tube_types", 0, sets - 1);
     out.tube_types = {types.begin(), types.end()};
-  } else if (sets > 1) {
-    throw top.error("tube_types", "is missing",
-                    "say for each tube which of the sets it is: tube_types = [0, 1, ...]");
+  } else if (sets > 1 && !top.has("type_shares")) {
+    throw top.error(
+        "tube_types", "is missing",
+        "say for each tube which of the sets it is: tube_types = [0, 1, ...]; or the part of each: type_shares "
+        "= [0.7, 0.3]");
   }
+}
+
+void read_type_shares(const TomlTable& top, const Scene&, Scene& out) {
+  if (!top.has("type_shares")) return;
+  if (!out.tube_types.empty())
+    throw top.error("type_shares", "stands beside tube_types", "take one of the two away");
+  out.type_shares = top.numbers("type_shares", Bounds::range(0, 1), out.sets.size());
+  double sum = 0;
+  for (const double share : out.type_shares) sum += share;
+  if (std::fabs(sum - 1) > 1e-6)
+    throw top.error("type_shares", fmt::format("add up to {:.4g}", sum), "they must add up to 1");
 }
 
 void read_element_length(const TomlTable& top, const Scene&, Scene& out) {
@@ -74,7 +88,11 @@ KeyTable<Scene> top_table(const std::vector<std::string>& copies) {
                          out.sets = read_sets(top, scene, copies);
                        }),
            Key::custom("tube_types", "", otherwise("[0, 1, 1]", "all of the first"),
-                       "which of the sets each tube is, from 0", read_tube_types),
+                       "which of the sets each tube is, from 0; in a rope of finite tubes also: each strand",
+                       read_tube_types),
+           Key::custom("type_shares", "", otherwise("[0.7, 0.3]", "tube_types"),
+                       "or the part of the tubes that are of each set: drawn at random with start.seed",
+                       read_type_shares),
            Key::custom("element_length_nm", "nm", otherwise("1.356", "the set's"),
                        "length of an element; law \"paper\" needs the set's", read_element_length)},
           {}};

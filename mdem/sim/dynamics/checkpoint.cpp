@@ -13,7 +13,7 @@
 namespace ropewalk {
 namespace {
 
-constexpr char magic[8] = "MDEM14";
+constexpr char magic[8] = "MDEM15";
 
 struct CheckpointHead {
   char format[sizeof magic];

@@ -17,8 +17,8 @@ Vector3 vector(PlainVector v) { return {v.x, v.y, v.z}; }
 EndElements tube_ends(const Topology& topology) {
   EndElements ends;
   for (int t = 0; t < topology.tubes(); ++t) {
-    ends[lower_end].push_back(topology.tube_begin[t]);
-    ends[upper_end].push_back(topology.tube_begin[t + 1] - 1);
+    if (topology.begins_strand(t)) ends[lower_end].push_back(topology.tube_begin[t]);
+    if (topology.ends_strand(t)) ends[upper_end].push_back(topology.tube_begin[t + 1] - 1);
   }
   return ends;
 }

@@ -104,6 +104,12 @@ class Simulation {
   void inherit_from(const Gauges::Sums& sums) { gauges_.sums = sums; }
   // What each of the interaction's terms has done since the start.
   std::vector<TermAccount> term_accounts() const { return engine_.terms().accounts(); }
+  // The tubes as they are now: cut where they have broken.
+  Topology tubes_now() const {
+    const std::vector<char>* broken = engine_.terms().broken_bonds();
+    return broken ? cut_behind(topology_, *broken) : topology_;
+  }
+  std::vector<TermEvent> term_events() const { return engine_.terms().events(); }
   // The memories of all force terms, ForceTerms::memory(), and a simulation that goes on with such ones: its forces
   // and energies are those of the present state.
   std::vector<double> memory() const { return engine_.terms().memory(); }

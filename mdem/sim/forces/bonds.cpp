@@ -23,8 +23,8 @@ struct BondRange {
 namespace ropewalk {
 namespace {
 
-// The bonds of the range, with their damping: into `work`, from the frames in it.
-BondSum bonds_of(const BondInput& in, int tube, const BondRange& range, TubeBonds& work) {
+// The bonds of the range, none of which is broken, with their damping: into `work`, from the frames in it.
+BondSum whole_bonds(const BondInput& in, int tube, const BondRange& range, TubeBonds& work) {
   const TubeType& type = in.topology.type_of(tube);
   BondSum sum;
   double slips = 1;
@@ -37,6 +37,21 @@ BondSum bonds_of(const BondInput& in, int tube, const BondRange& range, TubeBond
     if (!(fi.e1.dot(fj.e1) + fi.e2.dot(fj.e2) > 0)) sum.slipping = static_cast<int>(range.begin + i);
   }
   if (in.damping.rate > 0) sum.power = ROPEWALK_IN_USE(bond_damping)(type, in.damping, in.state, range, work.bonds);
+  return sum;
+}
+
+BondSum bonds_of(const BondInput& in, int tube, const BondRange& range, TubeBonds& work) {
+  if (!in.broken) return whole_bonds(in, tube, range, work);
+  BondSum sum;
+  std::ptrdiff_t from = range.from;
+  for (std::ptrdiff_t i = range.from; i <= range.to; ++i) {
+    if (i < range.to && !(*in.broken)[static_cast<std::size_t>(range.begin + i)]) continue;
+    if (from < i) add(whole_bonds(in, tube, {range.begin, from, i}, work), sum);
+    if (i < range.to)
+      for (Vec3Array* of : {&work.bonds.force_j, &work.bonds.torque_i, &work.bonds.torque_j})
+        of->set(static_cast<std::size_t>(i), Vector3::Zero());
+    from = i + 1;
+  }
   return sum;
 }
 

@@ -11,6 +11,7 @@ struct BondInput {
   const Topology& topology;
   const BondDamping& damping;
   const State& state;
+  const std::vector<char>* broken = nullptr;  // ForceTerm::broken_bonds
 };
 
 // Adds the sums of other bonds; the first slipping bond stays.

@@ -19,13 +19,8 @@
 // prepare and advance change it. It is handed out as records of numbers that belong to elements of the scene, so
 // that a checkpoint can hold it and elements can take it along to another process.
 //
-// Friction of tubes side by side is such a term (terms/dry_friction.cpp). One to come, and how it fits:
-//
-// Links that form where elements stay near (permanent bonds between tubes). prepare goes through the list in its
-// order, (i, j) rising, and forms a link with a probability by CounterRandom(seed, state.step, i, j), numbers of
-// the scene; not where scene.again is true. add adds the springs of the links of a part's elements, as tethers
-// (scene/loads/tether.cpp) do. advance breaks long links and returns their energy. memory() has a record for each
-// i: the partner and the rest length of each of its links.
+// Friction of tubes side by side (terms/dry_friction.cpp) and links that form and break (terms/links.cpp) are such
+// terms.
 //
 // Units nm, ps, eV.
 #pragma once
@@ -52,10 +47,11 @@ struct TermSum {
   double power = 0;   // work per time of the term's dissipative forces, eV/ps
 };
 
-// Energy that a memory has lost as it moved on (eV), and events that are counted: slips begin, tethers break.
+// Energy that a memory has lost as it moved on (eV), events that are counted: slips begin, tethers break; and what
+// has begun to act: links form.
 struct Happened {
   double lost = 0;
-  long events = 0;
+  long events = 0, begun = 0;
 };
 
 // What a term has done since the start.
@@ -63,11 +59,13 @@ struct TermAccount {
   double lost = 0;    // eV, by its memory
   double drag = 0;    // eV, by its dissipative forces
   double events = 0;  // a whole number
+  double begun = 0;   // likewise
 
   void add(const TermAccount& other) {
     lost += other.lost;
     drag += other.drag;
     events += other.events;
+    begun += other.begun;
   }
 };
 
@@ -86,6 +84,14 @@ struct TermRecord {
   std::vector<double> numbers;
 };
 using TermMemory = std::vector<TermRecord>;
+
+// Something that happened in the course of a run: when (ps), what, between which elements of the scene, where (nm).
+struct TermEvent {
+  double time = 0;
+  const char* what = "";
+  int a = 0, b = 0;
+  Vector3 place;
+};
 
 class ForceTerm {
  public:
@@ -133,6 +139,16 @@ class ForceTerm {
   // one in its place (sim/dynamics/refine.hpp).
   virtual TermMemory halved(const TermMemory& coarse, const std::vector<int>& heirs) const;
 
+  // Bonds that hold nothing any more, as flags of the elements before them; null: all hold. One term of a scene can
+  // have some. Only advance() and remember() change them.
+  virtual const std::vector<char>* broken_bonds() const { return nullptr; }
+
+  // What acts from the start on, for the account.
+  virtual long begun_at_start() const { return 0; }
+  // Its history, for the run's file events.csv. It follows from the memory, so that a run that goes on from a
+  // checkpoint knows all of it.
+  virtual std::vector<TermEvent> events() const { return {}; }
+
   // For the oracle (compute_reference): a plain form, over all pairs and in one thread, which adds to forces, energies
   // and power. Without one, false: add and add_pairs are called with a list of all pairs, whole tubes and one buffer.
   virtual bool add_reference(const Topology&, const Interaction&, const State&, Forces&) const { return false; }
@@ -150,7 +166,7 @@ struct TermColumn {
 // A kind of term that scenes can have: the log has its energy as the column NAME_eV, with this meaning, and these
 // parts of its account.
 struct TermKind {
-  std::string name, energy;
+  std::string name, energy;  // no words: it has none, and no column of it
   std::vector<TermColumn> account = {};
 };
 const std::vector<TermKind>& term_kinds();

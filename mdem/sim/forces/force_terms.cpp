@@ -33,7 +33,8 @@ std::vector<double> numbers_of(const TermMemories& memories) {
   };
   for (std::size_t term = 0; term < memories.records.size(); ++term) {
     const TermAccount& a = memories.accounts[term];
-    if (a.lost != 0 || a.drag != 0 || a.events != 0) add(term, the_account, {a.lost, a.drag, a.events});
+    if (a.lost != 0 || a.drag != 0 || a.events != 0 || a.begun != 0)
+      add(term, the_account, {a.lost, a.drag, a.events, a.begun});
     for (const TermRecord& r : memories.records[term]) add(term, r.element, r.numbers);
   }
   return numbers;
@@ -52,10 +53,10 @@ TermMemories memories_of(const std::vector<double>& numbers, std::size_t terms, 
                       count = whole(at + 2, static_cast<double>(left) + 1);
     const auto begin = numbers.begin() + static_cast<std::ptrdiff_t>(at + 3);
     if (numbers[at + 1] == the_account) {
-      const bool could_be = count == 3 && std::isfinite(begin[0]) && std::isfinite(begin[1]) && begin[2] >= 0 &&
-                            std::isfinite(begin[2]);
+      const bool could_be = count == 4 && std::isfinite(begin[0]) && std::isfinite(begin[1]) && begin[2] >= 0 &&
+                            std::isfinite(begin[2]) && begin[3] >= 0 && std::isfinite(begin[3]);
       if (!could_be) fail();
-      all.accounts[term].add({begin[0], begin[1], begin[2]});
+      all.accounts[term].add({begin[0], begin[1], begin[2], begin[3]});
     } else {
       const auto element = static_cast<int>(whole(at + 1, elements));
       all.records[term].push_back({element, {begin, begin + static_cast<std::ptrdiff_t>(count)}});
@@ -73,7 +74,8 @@ bool ForceTerms::use(const Interaction& in) {
   copied_ = in.terms;
   damping_ = in.damping;
   terms_.clear();
-  for (const auto& term : in.terms) terms_.push_back({term->copy(), {}, {}});
+  for (const auto& term : in.terms)
+    terms_.push_back({term->copy(), {}, {}, {0, 0, 0, static_cast<double>(term->begun_at_start())}});
   if (damping_.contact.eta > 0) terms_.push_back({contact_viscosity_term(damping_.contact), {}, {}});
   if (damping_.local > 0) terms_.push_back({local_damping_term(damping_.local), {}, {}});
   in_kick_ = std::any_of(terms_.begin(), terms_.end(), [](const Working& w) { return w.term->acts_in_kick(); });
@@ -101,7 +103,7 @@ double ForceTerms::advance(double dt, const State& state) {
   double lost = 0;
   for (Working& w : terms_) {
     const Happened now = w.term->advance(dt, state);
-    w.account.add({now.lost, 0, static_cast<double>(now.events)});
+    w.account.add({now.lost, 0, static_cast<double>(now.events), static_cast<double>(now.begun)});
     lost += now.lost;
   }
   return lost;
@@ -161,6 +163,22 @@ void ForceTerms::add_in_kick(const State& state, const ForceRows& total, const S
 std::vector<TermAccount> ForceTerms::accounts() const {
   std::vector<TermAccount> all;
   for (std::size_t k = 0; k < copied_.size(); ++k) all.push_back(terms_[k].account);
+  return all;
+}
+
+const std::vector<char>* ForceTerms::broken_bonds() const {
+  for (const Working& w : terms_)
+    if (const std::vector<char>* broken = w.term->broken_bonds()) return broken;
+  return nullptr;
+}
+
+std::vector<TermEvent> ForceTerms::events() const {
+  std::vector<TermEvent> all;
+  for (const Working& w : terms_) {
+    const std::vector<TermEvent> of_term = w.term->events();
+    all.insert(all.end(), of_term.begin(), of_term.end());
+  }
+  std::stable_sort(all.begin(), all.end(), [](const TermEvent& x, const TermEvent& y) { return x.time < y.time; });
   return all;
 }
 

@@ -48,6 +48,10 @@ class ForceTerms : private PairWork {
 
   // Of the interaction's own terms, one after another.
   std::vector<TermAccount> accounts() const;
+  // ForceTerm::broken_bonds of the one that has some; null: none has.
+  const std::vector<char>* broken_bonds() const;
+  // Of all terms, in the order of time.
+  std::vector<TermEvent> events() const;
 
   std::vector<double> memory() const;
   // prepare() then finds all lists new. `with_accounts`: false in all processes but one. Throws std::runtime_error.

@@ -57,13 +57,13 @@ void ForceEngine::compute(const Topology& topology, const Interaction& interacti
   joints_.resize(static_cast<std::size_t>(parts_.count()));
   sums_.assign(static_cast<std::size_t>(parts_.count()), {});
   if (contact) axis_.resize(state.size());
-  const BondInput bonded{topology, interaction.damping.bond, state};
   const ForceRows on = rows_of(out);
   if (options.parts != Parts::bonds) {
     terms_.prepare(topology, list, state);
     terms_.begin(state, parts_.count());
   }
   out.lost = options.passed ? terms_.advance(*options.passed, state) : 0;
+  const BondInput bonded{topology, interaction.damping.bond, state, terms_.broken_bonds()};
 
   // Before any element moves: the axes of a tube, and the bonds between its parts.
   const auto place = [&](int tube) {

@@ -12,6 +12,43 @@ int Topology::tube_of(int element) const {
   return static_cast<int>(after - tube_begin.begin()) - 1;
 }
 
+bool Topology::begins_strand(int tube) const {
+  return strand_begin.empty() || std::binary_search(strand_begin.begin(), strand_begin.end(), tube);
+}
+
+bool Topology::ends_strand(int tube) const {
+  return strand_begin.empty() || std::binary_search(strand_begin.begin(), strand_begin.end(), tube + 1);
+}
+
+Topology cut_behind(const Topology& topology, const std::vector<char>& flags) {
+  ROPEWALK_EXPECTS(static_cast<int>(flags.size()) == topology.elements() && !topology.part);
+  Topology cut;
+  cut.types = topology.types;
+  cut.strand_begin = {0};
+  for (int t = 0; t < topology.tubes(); ++t) {
+    int begin = topology.tube_begin[t];
+    for (int i = begin; i < topology.tube_begin[t + 1]; ++i) {
+      if (i + 1 < topology.tube_begin[t + 1] && !flags[static_cast<std::size_t>(i)]) continue;
+      cut.add_tube(i + 1 - begin, topology.tube_type[t]);
+      begin = i + 1;
+    }
+    if (topology.ends_strand(t)) cut.strand_begin.push_back(cut.tubes());
+  }
+  return cut;
+}
+
+Topology strands_of(const Topology& topology) {
+  if (topology.strand_begin.empty()) return topology;
+  Topology strands;
+  strands.types = topology.types;
+  for (int s = 0; s < topology.strands(); ++s) {
+    const auto first = static_cast<std::size_t>(topology.strand_begin[static_cast<std::size_t>(s)]),
+               behind = static_cast<std::size_t>(topology.strand_begin[static_cast<std::size_t>(s) + 1]);
+    strands.add_tube(topology.tube_begin[behind] - topology.tube_begin[first], topology.tube_type[first]);
+  }
+  return strands;
+}
+
 int Topology::change_of_owner(int begin, int end) const {
   ROPEWALK_EXPECTS(begin < end);
   int i = begin;

@@ -120,11 +120,18 @@ struct Topology {
   std::vector<int> tube_begin{0};
   std::vector<int> tube_type;  // of each tube, an index of `types`
   std::vector<TubeType> types = std::vector<TubeType>(1);
+  // A strand is a row of tubes that follow one another in line, as in a rope of finite tubes: the first tube of each
+  // strand, and the number of tubes. Empty: each tube is a strand.
+  std::vector<int> strand_begin;
   std::optional<PartOfScene> part;  // none: these elements are the scene
 
   int tubes() const { return static_cast<int>(tube_begin.size()) - 1; }
   int elements() const { return tube_begin.back(); }
   int bonds() const { return elements() - tubes(); }
+  int strands() const { return strand_begin.empty() ? tubes() : static_cast<int>(strand_begin.size()) - 1; }
+  // Whether the first end of a tube, or its last one, is that of its strand.
+  bool begins_strand(int tube) const;
+  bool ends_strand(int tube) const;
   int length_of(int tube) const {
     ROPEWALK_EXPECTS(tube >= 0 && tube < tubes());
     return tube_begin[tube + 1] - tube_begin[tube];
@@ -153,6 +160,12 @@ struct Topology {
   // The least elements_within() of all types.
   int fewest_within(double arc) const;
 };
+
+// The tubes cut behind the elements with a flag; the pieces of a tube belong to its strand.
+Topology cut_behind(const Topology& topology, const std::vector<char>& flags);
+
+// The strands of a scene as its tubes, each of the type of its first tube. The elements keep their numbers.
+Topology strands_of(const Topology& topology);
 
 struct State {
   Vec3Array position;           // nm

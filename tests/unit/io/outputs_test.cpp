@@ -12,6 +12,7 @@
 #include "io/tube_table.hpp"
 #include "observe/observables.hpp"
 #include "outputs_page.hpp"
+#include "run/events_file.hpp"
 #include "run/plan_check.hpp"
 #include "run/run_directory.hpp"
 #include "scene/lammps_files.hpp"
@@ -32,6 +33,7 @@ TEST(OutputsPage, HasTheTablesOfTheCode) {
   EXPECT_EQ(outputs_table("`rope/frame-*.vtp`"), columns_markdown(vtp_arrays()));
   EXPECT_EQ(outputs_table("`state.csv`, `final.csv` and `failed-state.csv`"), columns_markdown(state_columns()));
   EXPECT_EQ(outputs_table("`manifest.json`"), columns_markdown(manifest_keys()));
+  EXPECT_EQ(outputs_table("`events.csv`"), columns_markdown(event_columns()));
   EXPECT_EQ(outputs_table("`plan-check.csv`"), columns_markdown(plan_check_columns()));
   EXPECT_EQ(outputs_table("`trials.csv`"), columns_markdown(trial_columns()));
   EXPECT_EQ(outputs_table("An entry of `limits`"), columns_markdown(limit_keys()));

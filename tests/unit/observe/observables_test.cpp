@@ -32,7 +32,7 @@ TEST(Observables, LogHasTheColumnsAndBytesThatItAlwaysHad) {
       "delaunay,"
       "contacts,voids,void_area_nm2,radius_mid_nm,radius_end_nm,length_nm,amplitude_nm,windings,middle_amplitude_"
       "nm,"
-      "writhe,turned_back,kinked,overtwisted,overstretched,largest_bond_twist_deg,"
+      "writhe,turned_back,kinked,overtwisted,overstretched,largest_bond_twist_deg,stress_GPa,specific_stress_N_per_tex,"
       "tether_eV,tether_lost_eV,tethers_broken,friction_eV,friction_slip_eV,friction_drag_eV,friction_slips\n");
   const Topology topology;
   State state;

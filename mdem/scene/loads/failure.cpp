@@ -1,0 +1,215 @@
+// [failure] tubes that break: a bond between two elements breaks for good in the first step in which it is
+// strained, or bends, beyond its limit.
+//
+//   |x_j - x_i|/a - 1 > strain,   or   bending moment > moment
+//
+// The limit of strain may scatter from bond to bond: a normal number, at least a tenth of the mean, by the seed and
+// the number of the element. The energy of the bond is lost. The parts of the tube are then joined by nothing but
+// contact; as before, elements within the exclusion along the tube do not touch each other. Units nm, ps, eV.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "model/error.hpp"
+#include "observe/bending.hpp"
+#include "scene/bounds.hpp"
+#include "scene/key_table.hpp"
+#include "scene/loads/drive_kind.hpp"
+#include "scene/scene.hpp"
+#include "sim/dynamics/counter_random.hpp"
+#include "sim/forces/force_term.hpp"
+
+namespace ropewalk {
+namespace {
+
+constexpr double never_breaks = std::numeric_limits<double>::infinity();
+constexpr double least_share = 0.1;  // of the mean strain
+
+struct FailureLaw {
+  double strain = never_breaks, deviation = 0;
+  double moment = never_breaks;  // eV
+  std::uint64_t seed = 1;
+
+  double strain_of(int element) const {
+    if (!(deviation > 0)) return strain;
+    const auto bits = philox({static_cast<std::uint32_t>(element), 0, 0, 0}, seed);
+    return std::max(least_share * strain, strain + deviation * normal_pair(bits[0], bits[1])[0]);
+  }
+};
+
+struct BrokenBond {
+  int element = 0;  // before the break
+  double time = 0;  // ps
+  Vector3 place;
+};
+
+// --- the term -----------------------------------------------------------------------------------------
+
+class TubeFailure : public ForceTerm {
+ public:
+  TubeFailure(FailureLaw law, const Topology& scene) : law_(law), topology_(scene) {
+    limit_.resize(static_cast<std::size_t>(scene.elements()), never_breaks);
+    for (int t = 0; t < scene.tubes(); ++t)
+      for (int i = scene.tube_begin[t]; i + 1 < scene.tube_begin[t + 1]; ++i)
+        limit_[static_cast<std::size_t>(i)] = law.strain_of(i);
+    broken_.assign(limit_.size(), 0);
+  }
+  std::unique_ptr<ForceTerm> copy() const override { return std::make_unique<TubeFailure>(*this); }
+  std::string name() const override { return "failure"; }
+  const std::vector<char>* broken_bonds() const override { return all_.empty() ? nullptr : &broken_; }
+
+  Happened advance(double, const State& state) override {
+    Happened now;
+    for (int t = 0; t < topology_.tubes(); ++t)
+      for (int i = topology_.tube_begin[t]; i + 1 < topology_.tube_begin[t + 1]; ++i)
+        if (breaks(topology_.type_of(t), state, i))
+          now.lost += break_at(topology_.type_of(t), state, i), ++now.events;
+    return now;
+  }
+
+  TermMemory memory() const override {
+    TermMemory out;
+    for (const BrokenBond& b : all_) out.push_back({b.element, {b.time, b.place.x(), b.place.y(), b.place.z()}});
+    return out;
+  }
+  void remember(const TermMemory& memory) override {
+    all_.clear();
+    broken_.assign(limit_.size(), 0);
+    for (const TermRecord& r : memory) {
+      const std::vector<double>& x = r.numbers;
+      if (x.size() != 4 || !std::isfinite(limit_[static_cast<std::size_t>(r.element)]) ||
+          !std::all_of(x.begin(), x.end(), [](double v) { return std::isfinite(v); }))
+        throw std::runtime_error("the memory of broken tubes is damaged");
+      all_.push_back({r.element, x[0], Vector3(x[1], x[2], x[3])});
+      broken_[static_cast<std::size_t>(r.element)] = 1;
+    }
+  }
+  std::vector<TermEvent> events() const override {
+    std::vector<TermEvent> out;
+    for (const BrokenBond& b : all_) out.push_back({b.time, "tube broke", b.element, b.element + 1, b.place});
+    return out;
+  }
+  std::size_t bytes() const override { return limit_.size() * (sizeof(double) + 1); }
+
+ private:
+  bool breaks(const TubeType& type, const State& state, int element) const {
+    const auto i = static_cast<std::size_t>(element);
+    if (broken_[i]) return false;
+    const Vector3 d = state.position[i + 1] - state.position[i];
+    const double longest = type.element_length * (1 + limit_[i]);
+    return d.squaredNorm() > longest * longest ||
+           (law_.moment < never_breaks &&
+            bending_moment(type.bond, type.element_length, axis_of(state.orientation[i]),
+                           axis_of(state.orientation[i + 1])) > law_.moment);
+  }
+  double break_at(const TubeType& type, const State& state, int element) {
+    const auto i = static_cast<std::size_t>(element);
+    const Vector3 d = state.position[i + 1] - state.position[i];
+    broken_[i] = 1;
+    // In the order of the elements, as a memory comes back.
+    const BrokenBond one{element, state.time, state.position[i] + 0.5 * d};
+    all_.insert(std::upper_bound(all_.begin(), all_.end(), one,
+                                 [](const BrokenBond& x, const BrokenBond& y) { return x.element < y.element; }),
+                one);
+    return bond_energy<double>(type.bond, type.element_length, d, frame_of(state.orientation[i]),
+                               frame_of(state.orientation[i + 1]))
+        .total();
+  }
+
+  FailureLaw law_;
+  Topology topology_;
+  std::vector<double> limit_;  // of strain, of the bond behind each element
+  std::vector<char> broken_;   // likewise
+  std::vector<BrokenBond> all_;
+};
+
+// --- its table ----------------------------------------------------------------------------------------
+
+class FailureDrive : public Drive {
+ public:
+  FailureLaw law;
+
+  SceneTable table() const override;
+  std::string words() const override {
+    const std::string by_strain =
+        law.strain < never_breaks ? fmt::format("strained by {:.4g}{}", law.strain,
+                                                law.deviation > 0 ? fmt::format(" ± {:.3g}", law.deviation) : "")
+                                  : "";
+    const std::string by_moment =
+        law.moment < never_breaks ? fmt::format("bent with {:.4g} nN nm", law.moment / units::nN_nm) : "";
+    return fmt::format("tubes break where they are {}{}{}", by_strain,
+                       by_strain.empty() || by_moment.empty() ? "" : " or ", by_moment);
+  }
+  void refuse(const TomlTable& top, const Scene& scene) const override {
+    if (scene.has_ends(Ends::endless))
+      throw top.error("failure", "does not go with [periodic]: a slice has no place where a tube breaks",
+                      "take one of the two away");
+  }
+  void add_terms(const Scene&, const Topology& topology, const State&, Interaction& interaction) const override {
+    add_term(std::make_shared<TubeFailure>(law, topology), interaction);
+  }
+  void warn(const Scene& scene, const Topology&, const LoadsAndConstraints&,
+            std::vector<std::string>& warnings) const override {
+    for (const ParameterSet& set : scene.sets)
+      if (law.strain < never_breaks && set.validity.stretch > 0 && law.strain > set.validity.stretch)
+        warnings.push_back(
+            fmt::format("Tubes break at a strain of {:.3g}, and the bonds of {} were fitted up to {:.3g}: what "
+                        "they hold in between is "
+                        "that fit, continued.",
+                        law.strain, set.name, set.validity.stretch));
+  }
+  std::string why_not_split() const override { return "[failure] has limits of single bonds"; }
+  std::string why_not_lengthened() const override { return ""; }
+  std::string not_for_lammps() const override { return "failure"; }
+};
+
+void check_failure(const TomlTable& t, const Scene&, FailureDrive& failure) {
+  const FailureLaw& law = failure.law;
+  if (!(law.strain < never_breaks) && !(law.moment < never_breaks))
+    throw t.error("strain", "is missing, and so is moment_nN_nm", "say at what a tube breaks");
+  if (law.deviation > 0 && !(law.strain < never_breaks))
+    throw t.error("strain_deviation", "belongs to strain", "give that too");
+}
+
+const KeyTable<FailureDrive>& failure_table() {
+  using Key = KeyOf<FailureDrive>;
+  static const KeyTable<FailureDrive> table = {
+      "failure",
+      "tubes break; without this table they do not, at whatever load",
+      {Key::number(
+           "strain", unit::none, Bounds::range(0.001, 1), [](auto& d) -> auto& { return d.law.strain; },
+           otherwise("0.16", "never"),
+           "of a bond, at which it breaks: 0.16 of defect-free tubes (DOI 10.1103/PhysRevB.65.235430), 0.02 to "
+           "0.12 "
+           "in experiments (DOI 10.1126/science.287.5453.637)"),
+       Key::number(
+           "strain_deviation", unit::none, Bounds::range(0, 1), [](auto& d) -> auto& { return d.law.deviation; },
+           standard(), "standard deviation of that strain from bond to bond, as defects make it"),
+       Key::number(
+           "moment_nN_nm", unit::nN_nm, Bounds::positive(1e6), [](auto& d) -> auto& { return d.law.moment; },
+           otherwise("200", "never"), "bending moment at which a bond breaks"),
+       Key::integer(
+           "seed", 0, 1000000000, [](auto& d) -> auto& { return d.law.seed; }, standard(), "of the scatter")},
+      check_failure};
+  return table;
+}
+
+SceneTable FailureDrive::table() const { return failure_table().doc(); }
+
+}  // namespace
+
+DriveKind failure_drive() {
+  return {
+      [] { return failure_table().doc(); },
+      [](const TomlTable& t, const Scene& scene) -> std::shared_ptr<const Drive> {
+        return std::make_shared<const FailureDrive>(failure_table().read(t, scene));
+      },
+      "",
+      {{"failure_lost_eV", "eV", "energy that bonds have lost as tubes broke, since the start", &TermAccount::lost},
+       {"bonds_broken", "", "bonds of tubes that have broken since the start", &TermAccount::events}}};
+}
+
+}  // namespace ropewalk

@@ -1,0 +1,217 @@
+// [[links]] elastic links between the walls of tubes that touch, which form and break; their law:
+// sim/forces/terms/links.hpp.
+#include "sim/forces/terms/links.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "model/error.hpp"
+#include "model/units.hpp"
+#include "scene/bounds.hpp"
+#include "scene/key_table.hpp"
+#include "scene/loads/drive_kind.hpp"
+#include "scene/scene.hpp"
+
+namespace ropewalk {
+namespace {
+
+class LinksDrive : public Drive {
+ public:
+  LinkLaw law;
+  std::vector<int> between;  // tube, element, to tube, to element, ...
+  std::string path;          // of the scene
+
+  SceneTable table() const override;
+  std::string words() const override;
+  void refuse(const TomlTable& top, const Scene& scene) const override {
+    if (scene.has_ends(Ends::endless))
+      throw top.error("links", "does not go with [periodic]: the images of the slice have no links",
+                      "take one of the two away");
+    if (scene.contact.law == "none")
+      throw top.error("links", "join tubes in contact, and contact.law is \"none\"", "take one of the two away");
+  }
+  void add_terms(const Scene&, const Topology& topology, const State& state,
+                 Interaction& interaction) const override {
+    add_term(link_term(law, at_start(topology, state), topology), interaction);
+  }
+  void refuse_start(const Scene&, const Topology& topology, const State& state,
+                    const LoadsAndConstraints&) const override {
+    if (law.forming > 0 || law.placed_at > 0 || !at_start(topology, state).empty()) return;
+    throw InputError(
+        {path, 0, "links"},
+        fmt::format("none is placed: no two of the tubes face each other within {:.3g} nm between their walls",
+                    law.reach),
+        "raise reach_nm or per_nm, or bring the tubes nearer");
+  }
+  std::string why_not_lengthened() const override { return between.empty() ? "" : "links name elements by number"; }
+  std::string not_for_lammps() const override { return "links"; }
+
+ private:
+  std::vector<LinkPlace> at_start(const Topology& topology, const State& state) const {
+    if (law.placed_at > 0) return {};
+    return placed_links(law, topology, state, pairs(topology));
+  }
+  std::vector<std::pair<int, int>> pairs(const Topology& topology) const {
+    std::vector<std::pair<int, int>> all;
+    for (std::size_t k = 0; k + 3 < between.size(); k += 4) {
+      const int a = element(topology, between[k], between[k + 1]),
+                b = element(topology, between[k + 2], between[k + 3]);
+      if (between[k] == between[k + 2])
+        throw InputError({path, 0, "links.between"}, fmt::format("links tube {} with itself", between[k]),
+                         "name elements of two tubes");
+      all.emplace_back(a, b);
+    }
+    return all;
+  }
+  int element(const Topology& topology, int tube, int e) const {
+    const auto fail = [&](const std::string& what, int count) {
+      throw InputError({path, 0, "links.between"}, what, fmt::format("they are 0 to {}", count - 1));
+    };
+    if (tube < 0 || tube >= topology.tubes()) fail(fmt::format("there is no tube {}", tube), topology.tubes());
+    const int length = topology.length_of(tube), at = e < 0 ? length + e : e;
+    if (at < 0 || at >= length) fail(fmt::format("tube {} has no element {}", tube, e), length);
+    return topology.tube_begin[static_cast<std::size_t>(tube)] + at;
+  }
+};
+
+std::string LinksDrive::words() const {
+  std::vector<std::string> where;
+  if (law.density > 0)
+    where.push_back(fmt::format("{:.4g} per nm of contact at {}", law.density,
+                                law.placed_at > 0 ? fmt::format("{:.4g} ps", law.placed_at) : "the start"));
+  if (law.at_ends > 0) where.push_back(fmt::format("{} at each end of a tube", law.at_ends));
+  if (!between.empty()) where.push_back(fmt::format("{} between named elements", between.size() / 4));
+  if (law.forming > 0)
+    where.push_back(
+        fmt::format("{:.4g} form per nm of contact and ps, up to {:.4g} per nm of a tube", law.forming, law.most));
+  std::vector<std::string> ends;
+  if (law.strength > 0) ends.push_back(fmt::format("at {:.4g} nN", law.strength / units::nN_nm));
+  if (law.toughness > 0) ends.push_back(fmt::format("at {:.4g} eV", law.toughness));
+  return fmt::format("links{}: {}; {:.4g} nN/nm in stretch, {:.4g} nN/nm in shear, at rest {}; {}",
+                     law.types.empty() ? "" : fmt::format(" between types {}", fmt::join(law.types, " and ")),
+                     fmt::join(where, ", "), law.stretch / units::nN_nm, law.shear / units::nN_nm,
+                     law.rest < 0 ? "as they form" : fmt::format("with {:.4g} nm between the walls", law.rest),
+                     ends.empty() ? "they do not break" : fmt::format("they break {}", fmt::join(ends, " or ")));
+}
+
+void read_links_between(const TomlTable& t, const Scene&, LinksDrive& links) {
+  if (!t.has("between")) return;
+  for (const long number : t.integers("between", -long{max_elements}, max_elements))
+    links.between.push_back(static_cast<int>(number));
+  if (links.between.empty() || links.between.size() % 4 != 0)
+    throw t.error("between", fmt::format("has {} numbers, and a link takes four", links.between.size()),
+                  "write [tube, element, other tube, its element], and so on");
+}
+
+void read_linked_types(const TomlTable& t, const Scene& scene, LinksDrive& links) {
+  if (!t.has("types")) return;
+  const auto sets = static_cast<long>(scene.sets.size());
+  for (const long type : t.integers("types", 0, 1000)) {
+    if (type >= sets)
+      throw t.error("types", fmt::format("there is no tube type {}", type),
+                    fmt::format("they are 0 to {}", sets - 1));
+    links.law.types.push_back(static_cast<int>(type));
+  }
+  if (links.law.types.size() != 2)
+    throw t.error("types", "must have two entries", "write [0, 1], or [0, 0] for like tubes");
+}
+
+void check_links(const TomlTable& t, const Scene& scene, LinksDrive& links) {
+  LinkLaw& law = links.law;
+  links.path = scene.path;
+  if (!t.has("shear_stiffness_nN_per_nm")) law.shear = law.stretch;
+  if (!(law.density > 0 || law.at_ends > 0 || law.forming > 0 || !links.between.empty()))
+    throw t.error("per_nm", "is 0, and so is everything else that places links",
+                  "give per_nm, at_ends, between or forming_per_nm_ps");
+  if (law.placed_at > 0 && !(law.density > 0 || law.at_ends > 0))
+    throw t.error("placed_at_ps", "is for links that per_nm or at_ends place",
+                  "give one of them, or take this away");
+  if (law.placed_at > 0 && !links.between.empty())
+    throw t.error("placed_at_ps", "stands beside between, whose links are there from the start",
+                  "write two [[links]]");
+  if (law.forming > 0 && !(law.most > 0))
+    throw t.error("most_per_nm", "is missing beside forming_per_nm_ps",
+                  "say how many links a tube can have per nm: the time step must bear them");
+  if (law.most > 0 && law.forming == 0)
+    throw t.error("most_per_nm", "belongs to forming_per_nm_ps", "give that too, or take this away");
+}
+
+const KeyTable<LinksDrive>& links_table() {
+  using Key = KeyOf<LinksDrive>;
+  const Unit spring{"nN/nm", units::nN_nm}, per_nm{"1/nm", 1};
+  static const KeyTable<LinksDrive> table = {
+      "links",
+      "any number of these: elastic links between the walls of tubes that touch; they may form and break",
+      {Key::number(
+           "per_nm", per_nm, Bounds::non_negative(100), [](auto& d) -> auto& { return d.law.density; },
+           otherwise("0.1", "0"), "links per length of contact of two tubes at the start, at random places"),
+       Key::integer(
+           "at_ends", 0, 100, [](auto& d) -> auto& { return d.law.at_ends; }, standard(),
+           "links of each end of a tube with tubes beside it"),
+       Key::number(
+           "placed_at_ps", unit::ps, Bounds::non_negative(longest_time),
+           [](auto& d) -> auto& { return d.law.placed_at; }, standard(),
+           "time at which the links of per_nm and at_ends are placed, as a rope is cured once it is spun"),
+       Key::custom("between", "", otherwise("[0, 5, 1, 5]", "none"),
+                   "links by name: tube, element, other tube, its element, and so on; numbers from 0, negative "
+                   "elements from the end",
+                   read_links_between)
+           .that_numbers_elements(),
+       Key::number(
+           "stiffness_nN_per_nm", spring, Bounds::positive(1e5), [](auto& d) -> auto& { return d.law.stretch; },
+           required("100"), "force per stretch of a link"),
+       Key::number(
+           "shear_stiffness_nN_per_nm", spring, Bounds::non_negative(1e5),
+           [](auto& d) -> auto& { return d.law.shear; }, otherwise("100", "stiffness_nN_per_nm"),
+           "force per shear of a link"),
+       Key::number(
+           "rest_nm", unit::nm, Bounds::non_negative(10), [](auto& d) -> auto& { return d.law.rest; },
+           otherwise("0.34", "as they form"), "distance of the walls at which a link does not pull"),
+       Key::number(
+           "breaks_at_nN", unit::nN, Bounds::positive(1e6), [](auto& d) -> auto& { return d.law.strength; },
+           otherwise("5", "never"), "force at which a link breaks for good"),
+       Key::number(
+           "breaks_at_eV", {"eV", 1}, Bounds::positive(1e6), [](auto& d) -> auto& { return d.law.toughness; },
+           otherwise("3", "never"), "energy at which a link breaks for good"),
+       Key::number(
+           "reach_nm", unit::nm, Bounds::range(0.01, 5), [](auto& d) -> auto& { return d.law.reach; }, standard(),
+           "distance of the walls within which links form"),
+       Key::number(
+           "forming_per_nm_ps", {"1/(nm ps)", 1}, Bounds::non_negative(100),
+           [](auto& d) -> auto& { return d.law.forming; }, standard(),
+           "links that form while the scene moves, per length of contact and time"),
+       Key::number(
+           "most_per_nm", per_nm, Bounds::positive(100), [](auto& d) -> auto& { return d.law.most; },
+           otherwise("1", "required by forming_per_nm_ps"), "links per length of a tube beyond which none form"),
+       Key::custom("types", "", otherwise("[0, 1]", "all tubes"), "the two tube types that they join, from 0",
+                   read_linked_types),
+       Key::integer(
+           "seed", 0, 1000000000, [](auto& d) -> auto& { return d.law.seed; }, standard(), "of the random places")},
+      check_links};
+  return table;
+}
+
+SceneTable links_keys() {
+  SceneTable table = links_table().doc();
+  table.listed = true;
+  return table;
+}
+
+SceneTable LinksDrive::table() const { return links_keys(); }
+
+}  // namespace
+
+DriveKind links_drive() {
+  return {links_keys,
+          [](const TomlTable& t, const Scene& scene) -> std::shared_ptr<const Drive> {
+            return std::make_shared<const LinksDrive>(links_table().read(t, scene));
+          },
+          "energy of the links",
+          {{"links_lost_eV", "eV", "energy that broken links have lost since the start", &TermAccount::lost},
+           {"links_formed", "", "links at the start, and those that have formed since", &TermAccount::begun},
+           {"links_broken", "", "links that have broken since the start", &TermAccount::events}}};
+}
+
+}  // namespace ropewalk

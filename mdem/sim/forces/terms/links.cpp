@@ -1,0 +1,470 @@
+#include "sim/forces/terms/links.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "model/contract.hpp"
+#include "sim/dynamics/counter_random.hpp"
+#include "sim/neighbours/cell_grid.hpp"
+#include "sim/threads/span.hpp"
+
+namespace ropewalk {
+namespace {
+
+constexpr double never = -1;            // ps
+constexpr double forming_interval = 1;  // ps
+
+// --- where tubes face each other -----------------------------------------------------------------------
+
+struct Axis {
+  Vector3 centre, along;
+  double half = 0, radius = 0;
+};
+Axis axis_at(const Topology& topology, const State& state, int element) {
+  const auto i = static_cast<std::size_t>(element);
+  const TubeType& type = topology.type_of_element(element);
+  return {state.position[i], axis_of(state.orientation[i]), 0.5 * type.element_length, type.radius};
+}
+
+// The place at s (nm from the centre) on a, and the one of b that it faces. False: it faces none within reach.
+struct Facing {
+  double on_b = 0;  // nm
+  Vector3 to_b;     // from axis to axis
+};
+bool faces(const Axis& a, const Axis& b, double s, double reach, Facing& out) {
+  const Vector3 from_b = a.centre + s * a.along - b.centre;
+  out.on_b = from_b.dot(b.along);
+  if (!(out.on_b >= -b.half && out.on_b < b.half)) return false;
+  out.to_b = out.on_b * b.along - from_b;
+  return out.to_b.norm() < a.radius + b.radius + reach;
+}
+
+// In the frames of both elements. The points stand at half of the rest length from the walls, or in the middle.
+LinkPlace place_of(const LinkLaw& law, const State& state, int i, int j, const Axis& a, const Axis& b, double s,
+                   const Facing& facing) {
+  LinkPlace link;
+  link.a = i;
+  link.b = j;
+  const double apart = facing.to_b.norm();
+  const Vector3 to_b = facing.to_b / apart;
+  const auto across = [&](const Vector3& v, const Axis& of) -> Vector3 {
+    return (v - v.dot(of.along) * of.along).normalized();
+  };
+  const Vector3 n_a = across(to_b, a), n_b = across(-to_b, b);
+  const Quaternion to_a = state.orientation[static_cast<std::size_t>(i)].conjugate(),
+                   into_b = state.orientation[static_cast<std::size_t>(j)].conjugate();
+  if (law.rest >= 0) {
+    link.p_a = to_a * Vector3(s * a.along + (a.radius + 0.5 * law.rest) * n_a);
+    link.p_b = into_b * Vector3(facing.on_b * b.along + (b.radius + 0.5 * law.rest) * n_b);
+  } else {
+    const Vector3 middle = a.centre + s * a.along + 0.5 * (apart + a.radius - b.radius) * to_b;
+    link.p_a = to_a * Vector3(middle - a.centre);
+    link.p_b = into_b * Vector3(middle - b.centre);
+  }
+  link.n_a = to_a * n_a;
+  link.n_b = into_b * n_b;
+  return link;
+}
+
+// A random number in (0, 1) for the k-th question about a pair of elements of the scene at this step.
+double drawn(const LinkLaw& law, int i, int j, std::uint32_t step, std::uint32_t k) {
+  return unit_interval(
+      philox({static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j), step, k}, law.seed)[0]);
+}
+
+// A number of events with this mean, by inversion. Means are small: an element is short.
+int poisson(double mean, double u) {
+  double term = std::exp(-mean), sum = term;
+  int n = 0;
+  while (u > sum && n < 1000) {
+    term *= mean / ++n;
+    sum += term;
+  }
+  return n;
+}
+
+bool is_linked(const LinkLaw& law, const Topology& topology, int i, int j) {
+  const int tube_i = topology.tube_of(i), tube_j = topology.tube_of(j);
+  return tube_i != tube_j && law.links(topology.tube_type[static_cast<std::size_t>(tube_i)],
+                                       topology.tube_type[static_cast<std::size_t>(tube_j)]);
+}
+
+// Chosen for a pair of elements with this mean number per length.
+template <class Add>
+void choose(const LinkLaw& law, const Topology& topology, const State& state, int i, int j, double per_length,
+            std::uint32_t step, const Add& add) {
+  const Axis a = axis_at(topology, state, i), b = axis_at(topology, state, j);
+  const int count = poisson(2 * a.half * per_length, drawn(law, i, j, step, 0));
+  for (int k = 0; k < count; ++k) {
+    const double s = a.half * (2 * drawn(law, i, j, step, static_cast<std::uint32_t>(k) + 1) - 1);
+    Facing facing;
+    if (faces(a, b, s, law.reach, facing)) add(place_of(law, state, i, j, a, b, s, facing));
+  }
+}
+
+// `count` links of an end element with whatever it faces.
+void choose_at_end(const LinkLaw& law, const Topology& topology, const State& state, int i,
+                   const std::vector<int>& near, std::uint32_t step, std::vector<LinkPlace>& links) {
+  const Axis a = axis_at(topology, state, i);
+  for (int n = 0; n < law.at_ends; ++n) {
+    const auto k = 2 * static_cast<std::uint32_t>(n);
+    const double s = a.half * (2 * drawn(law, i, i, step, k) - 1);
+    std::vector<int> faced;
+    Facing facing;
+    for (const int j : near)
+      if (is_linked(law, topology, i, j) && faces(a, axis_at(topology, state, j), s, law.reach, facing))
+        faced.push_back(j);
+    if (faced.empty()) continue;
+    const int j =
+        faced[static_cast<std::size_t>(drawn(law, i, i, step, k + 1) * static_cast<double>(faced.size()))];
+    const Axis b = axis_at(topology, state, j);
+    faces(a, b, s, law.reach, facing);
+    links.push_back(place_of(law, state, i, j, a, b, s, facing));
+  }
+}
+
+// --- the term ------------------------------------------------------------------------------------------
+
+// With times (ps) and places (nm) of its forming and breaking.
+struct Link {
+  LinkPlace at;
+  double formed = 0, broke = never;
+  Vector3 formed_at, broke_at;
+};
+
+struct LinkAction {
+  Vector3 force, torque_a, torque_b;  // the force on a; b has the opposite one
+  Vector3 place;                      // between its points
+  double energy = 0;
+};
+
+constexpr std::size_t numbers_of_link = 21;
+
+class LinkTerm : public ForceTerm {
+ public:
+  LinkTerm(LinkLaw law, std::vector<LinkPlace> at_start, const Topology& scene)
+      : law_(std::move(law)), scene_(scene), waits_(law_.placed_at > 0), stiffness_(stiffness_of(at_start)) {
+    for (LinkPlace& place : at_start)
+      links_.push_back({std::move(place), 0, never, Vector3::Zero(), Vector3::Zero()});
+    sort();
+  }
+  std::unique_ptr<ForceTerm> copy() const override { return std::make_unique<LinkTerm>(*this); }
+  std::string name() const override { return "links"; }
+
+  void prepare(const ListedScene& scene) override {
+    ROPEWALK_EXPECTS(!scene.topology.part);
+    if (!placed_) {
+      for (Link& link : links_) link.formed_at = action_of(link, scene.state).place;
+      placed_ = true;
+    }
+    index(scene.topology.elements());
+  }
+
+  void gather(const State& state) override {
+    actions_.resize(links_.size());
+    const auto n = static_cast<std::ptrdiff_t>(links_.size());
+#pragma omp parallel for schedule(static) if (links_.size() > parallel_from)
+    for (std::ptrdiff_t i = 0; i < n; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      if (links_[k].broke == never) actions_[k] = action_of(links_[k], state);
+    }
+  }
+
+  Happened advance(double, const State& state) override {
+    if (waits_ && state.time >= law_.placed_at) place_all(state);
+    if (law_.forming > 0 && state.time - last_formed_ >= forming_interval) form(state);
+    Happened all{-given_, 0, begun_};
+    given_ = 0;
+    begun_ = 0;
+    for (std::size_t k = 0; k < links_.size(); ++k) {
+      Link& link = links_[k];
+      if (link.broke != never) continue;
+      LinkAction& now = actions_[k];
+      const bool breaks = (law_.strength > 0 && now.force.norm() > law_.strength) ||
+                          (law_.toughness > 0 && now.energy > law_.toughness);
+      if (!breaks) continue;
+      link.broke = state.time;
+      link.broke_at = now.place;
+      all.lost += now.energy;
+      ++all.events;
+    }
+    if (all.events > 0) index(static_cast<int>(state.size()));
+    return all;
+  }
+
+  TermSum add(const State&, const Segment& part, const ForceRows& out) const override {
+    TermSum sum;
+    for (int i = part.begin; i < part.end; ++i) {
+      Vector3 force = Vector3::Zero(), torque = Vector3::Zero();
+      for (const int k : entries_of(i, first_, of_first_)) {
+        const LinkAction& action = actions_[static_cast<std::size_t>(k)];
+        force += action.force;
+        torque += action.torque_a;
+        sum.energy += action.energy;
+      }
+      for (const int k : entries_of(i, second_, of_second_)) {
+        const LinkAction& action = actions_[static_cast<std::size_t>(k)];
+        force -= action.force;
+        torque += action.torque_b;
+      }
+      out.force.add(static_cast<std::size_t>(i - out.origin), force);
+      out.torque.add(static_cast<std::size_t>(i - out.origin), torque);
+    }
+    return sum;
+  }
+
+  double stiffness() const override { return stiffness_; }
+  long begun_at_start() const override { return static_cast<long>(links_.size()); }
+
+  TermMemory memory() const override {
+    TermMemory out{{0, {last_formed_, static_cast<double>(begun_), given_, waits_ ? 1.0 : 0.0}}};
+    for (const Link& link : links_) {
+      TermRecord record{link.at.a, {static_cast<double>(link.at.b)}};
+      const auto add = [&](const Vector3& v) {
+        record.numbers.insert(record.numbers.end(), {v.x(), v.y(), v.z()});
+      };
+      for (const Vector3* v :
+           {&link.at.p_a, &link.at.p_b, &link.at.n_a, &link.at.n_b, &link.formed_at, &link.broke_at})
+        add(*v);
+      record.numbers.insert(record.numbers.end(), {link.formed, link.broke});
+      out.push_back(std::move(record));
+    }
+    return out;
+  }
+
+  void remember(const TermMemory& memory) override {
+    if (memory.empty()) return;  // nothing has happened yet
+    const auto fail = [] { throw std::runtime_error("the memory of links is damaged"); };
+    links_.clear();
+    bool has_head = false;
+    for (const TermRecord& r : memory) {
+      const std::vector<double>& x = r.numbers;
+      if (!std::all_of(x.begin(), x.end(), [](double v) { return std::isfinite(v); })) fail();
+      if (x.size() == 4 && !has_head) {
+        last_formed_ = x[0];
+        begun_ = std::lround(x[1]);
+        given_ = x[2];
+        waits_ = x[3] != 0;
+        has_head = true;
+        continue;
+      }
+      if (x.size() != numbers_of_link || !(x[0] >= 0 && x[0] < scene_.tube_begin.back()) ||
+          x[0] != std::floor(x[0]))
+        fail();
+      const auto vector = [&](std::size_t at) { return Vector3(x[at], x[at + 1], x[at + 2]); };
+      Link link;
+      link.at = {r.element, static_cast<int>(x[0]), vector(1), vector(4), vector(7), vector(10)};
+      link.formed_at = vector(13);
+      link.broke_at = vector(16);
+      link.formed = x[19];
+      link.broke = x[20];
+      links_.push_back(link);
+    }
+    if (!has_head) fail();
+    placed_ = true;
+  }
+
+  // Where all elements are cut in two, each point goes to the half that it stands beside. Where the shorter
+  // elements stand in the old places, with new ones between them, it stays with the old one.
+  TermMemory halved(const TermMemory& coarse, const std::vector<int>& heirs) const override {
+    const bool cut = scene_.tube_begin.size() > 2 &&
+                     heirs[static_cast<std::size_t>(scene_.tube_begin[1])] == 2 * scene_.tube_begin[1];
+    const auto move = [&](int element, double* p) {
+      const int heir = heirs[static_cast<std::size_t>(element)];
+      if (!cut) return heir;
+      const bool second = p[2] >= 0;
+      p[2] += (second ? -0.25 : 0.25) * element_length_;
+      return heir + second;
+    };
+    TermMemory fine;
+    for (const TermRecord& r : coarse) {
+      TermRecord heir = r;
+      if (r.numbers.size() == numbers_of_link) {
+        heir.element = move(r.element, &heir.numbers[1]);
+        heir.numbers[0] = move(static_cast<int>(r.numbers[0]), &heir.numbers[4]);
+      }
+      fine.push_back(std::move(heir));
+    }
+    return fine;
+  }
+
+  std::vector<TermEvent> events() const override {
+    std::vector<TermEvent> all;
+    for (const Link& link : links_) {
+      all.push_back({link.formed, "link formed", link.at.a, link.at.b, link.formed_at});
+      if (link.broke != never) all.push_back({link.broke, "link broke", link.at.a, link.at.b, link.broke_at});
+    }
+    return all;
+  }
+
+  std::size_t bytes() const override { return links_.size() * (sizeof(Link) + sizeof(LinkAction)); }
+
+ private:
+  LinkAction action_of(const Link& link, const State& state) const {
+    const auto a = static_cast<std::size_t>(link.at.a), b = static_cast<std::size_t>(link.at.b);
+    const Quaternion q_a = state.orientation[a], q_b = state.orientation[b];
+    const Vector3 arm_a = q_a * link.at.p_a, arm_b = q_b * link.at.p_b, n_a = q_a * link.at.n_a,
+                  n_b = q_b * link.at.n_b;
+    const Vector3 d = (state.position[b] + arm_b) - (state.position[a] + arm_a);
+    const double half = 0.5 * (law_.stretch - law_.shear), d_a = d.dot(n_a), d_b = d.dot(n_b);
+    LinkAction out;
+    out.force = law_.shear * d + half * (d_a * n_a + d_b * n_b);
+    out.torque_a = arm_a.cross(out.force) - half * d_a * n_a.cross(d);
+    out.torque_b = -arm_b.cross(out.force) - half * d_b * n_b.cross(d);
+    out.energy = 0.5 * (law_.shear * d.squaredNorm() + half * (d_a * d_a + d_b * d_b));
+    out.place = state.position[a] + arm_a + 0.5 * d;
+    return out;
+  }
+
+  // 2 K of two elements, n links on each, and the same by the levers of their points.
+  double stiffness_of(const std::vector<LinkPlace>& at_start) {
+    std::vector<int> count(static_cast<std::size_t>(scene_.elements()), 0);
+    double lever = 0;
+    for (const LinkPlace& link : at_start) {
+      ++count[static_cast<std::size_t>(link.a)];
+      ++count[static_cast<std::size_t>(link.b)];
+    }
+    for (const TubeType& type : scene_.types) {
+      const double arm = type.radius + 0.5 * law_.reach, half = 0.5 * type.element_length;
+      lever = std::max(lever, type.mass * (arm * arm + half * half) / type.inertia);
+      element_length_ = type.element_length;
+    }
+    // Of those that are to come, six neighbours and five standard deviations.
+    const double mean = waits_ ? 6 * law_.density * element_length_ + 2 * law_.at_ends : 0;
+    const int later = waits_ ? static_cast<int>(std::ceil(mean + 5 * std::sqrt(mean))) : 0,
+              formed =
+                  std::max(later, law_.forming > 0 ? static_cast<int>(std::ceil(law_.most * element_length_)) : 0),
+              most = std::max(formed, count.empty() ? 0 : *std::max_element(count.begin(), count.end()));
+    return 2 * most * std::max(law_.stretch, law_.shear) * (1 + lever);
+  }
+
+  void place_all(const State& state) {
+    for (LinkPlace& place : placed_links(law_, scene_, state, {})) take_in(std::move(place), state);
+    waits_ = false;
+    set_in_order(state);
+  }
+  void take_in(LinkPlace place, const State& state) {
+    Link link{std::move(place), state.time, never, Vector3::Zero(), Vector3::Zero()};
+    const LinkAction action = action_of(link, state);
+    link.formed_at = action.place;
+    given_ += action.energy;
+    ++begun_;
+    links_.push_back(link);
+  }
+
+  // New links, for the time since the last ones.
+  void form(const State& state) {
+    LinkLaw now = law_;
+    now.density = law_.forming * (state.time - last_formed_);
+    now.at_ends = 0;
+    last_formed_ = state.time;
+    std::vector<int> count(state.size(), 0);
+    for (const Link& link : links_)
+      if (link.broke == never)
+        for (const int e : {link.at.a, link.at.b}) ++count[static_cast<std::size_t>(e)];
+    const auto full = [&](int e) { return count[static_cast<std::size_t>(e)] + 1 > law_.most * element_length_; };
+    const auto step = static_cast<std::uint32_t>(state.step) + 1;
+    for (LinkPlace& place : placed_links(now, scene_, state, {}, step)) {
+      if (full(place.a) || full(place.b)) continue;
+      for (const int e : {place.a, place.b}) ++count[static_cast<std::size_t>(e)];
+      take_in(std::move(place), state);
+    }
+    set_in_order(state);
+  }
+  void set_in_order(const State& state) {
+    sort();
+    index(scene_.elements());
+    gather(state);
+  }
+  // As a memory comes back: sums then have the same order after `resume`.
+  void sort() {
+    std::stable_sort(links_.begin(), links_.end(), [](const Link& x, const Link& y) { return x.at.a < y.at.a; });
+  }
+
+  void index(int elements) {
+    index_by(elements, first_, of_first_, [](const LinkPlace& l) { return l.a; });
+    index_by(elements, second_, of_second_, [](const LinkPlace& l) { return l.b; });
+  }
+  // The links of each element that are whole.
+  template <class End>
+  void index_by(int elements, std::vector<int>& begin, std::vector<int>& entries, const End& end) const {
+    begin.assign(static_cast<std::size_t>(elements) + 1, 0);
+    for (const Link& l : links_)
+      if (l.broke == never) ++begin[static_cast<std::size_t>(end(l.at)) + 1];
+    for (std::size_t e = 1; e < begin.size(); ++e) begin[e] += begin[e - 1];
+    entries.resize(static_cast<std::size_t>(begin.back()));
+    std::vector<int> next(begin.begin(), begin.end() - 1);
+    for (std::size_t k = 0; k < links_.size(); ++k)
+      if (links_[k].broke == never)
+        entries[static_cast<std::size_t>(next[static_cast<std::size_t>(end(links_[k].at))]++)] =
+            static_cast<int>(k);
+  }
+
+  LinkLaw law_;
+  Topology scene_;
+  bool waits_ = false;         // for the time at which its links are placed
+  double element_length_ = 0;  // nm; all types of a scene have the same
+  double stiffness_ = 0;
+  std::vector<Link> links_;  // broken ones too: they are the history
+  bool placed_ = false;
+  double last_formed_ = 0;  // ps
+  long begun_ = 0;          // links that advance() has yet to count
+  double given_ = 0;        // eV, that links formed with; likewise
+  std::vector<LinkAction> actions_;
+  std::vector<int> first_, of_first_, second_, of_second_;
+};
+
+}  // namespace
+
+bool LinkLaw::links(int type, int other) const {
+  return types.empty() || (type == types[0] && other == types[1]) || (type == types[1] && other == types[0]);
+}
+
+std::vector<LinkPlace> placed_links(const LinkLaw& law, const Topology& topology, const State& state,
+                                    const std::vector<std::pair<int, int>>& pairs, std::uint32_t step) {
+  std::vector<LinkPlace> links;
+  for (const auto& [i, j] : pairs) {
+    const Axis a = axis_at(topology, state, i), b = axis_at(topology, state, j);
+    // The foot of the common normal on a, within the element; along parallel axes that of b's centre.
+    const Vector3 apart = b.centre - a.centre;
+    const double cosine = a.along.dot(b.along), sine2 = 1 - cosine * cosine;
+    double s = apart.dot(a.along);
+    if (sine2 > 1e-6)
+      s = (s - cosine * apart.dot(b.along)) / sine2;
+    else
+      s *= 0.5;
+    s = std::clamp(s, -a.half, a.half);
+    Facing facing;
+    faces(a, b, s, law.reach, facing);
+    facing.on_b = std::clamp(facing.on_b, -b.half, b.half);
+    facing.to_b = b.centre + facing.on_b * b.along - a.centre - s * a.along;
+    links.push_back(place_of(law, state, i, j, a, b, s, facing));
+  }
+  if (!(law.density > 0 || law.at_ends > 0)) return links;
+  const CellGrid grid(state.position, 2 * topology.largest_radius() + law.reach + topology.longest_element());
+  std::vector<int> found, near;
+  for (int i = 0; i < topology.elements(); ++i) {
+    const int tube = topology.tube_of(i);
+    const bool end = i == topology.tube_begin[static_cast<std::size_t>(tube)] ||
+                     i + 1 == topology.tube_begin[static_cast<std::size_t>(tube) + 1];
+    if (!(law.density > 0) && !end) continue;
+    const std::size_t count = grid.find(i, end && law.at_ends > 0 ? -1 : i, found);
+    near.assign(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count));
+    std::sort(near.begin(), near.end());
+    for (const int j : near)
+      if (law.density > 0 && j > i && is_linked(law, topology, i, j))
+        choose(law, topology, state, i, j, law.density, step,
+               [&](LinkPlace place) { links.push_back(std::move(place)); });
+    if (end && law.at_ends > 0) choose_at_end(law, topology, state, i, near, step, links);
+  }
+  return links;
+}
+
+std::shared_ptr<const ForceTerm> link_term(const LinkLaw& law, std::vector<LinkPlace> at_start,
+                                           const Topology& scene) {
+  return std::make_shared<const LinkTerm>(law, std::move(at_start), scene);
+}
+
+}  // namespace ropewalk

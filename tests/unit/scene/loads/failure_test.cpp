@@ -1,0 +1,180 @@
+// [failure]: scene/loads/failure.cpp.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <omp.h>
+
+#include <cmath>
+
+#include "io/log.hpp"
+#include "model/error.hpp"
+#include "model/units.hpp"
+#include "run/moving_scene.hpp"
+#include "scene/prepare.hpp"
+#include "scene/scene_toml.hpp"
+
+namespace ropewalk {
+namespace {
+
+using ::testing::HasSubstr;
+
+// One tube of sixty elements between two clamps that draw it out.
+Scene chain(const std::string& failure, const std::string& more = "",
+            const std::string& run = "duration_ps = 60\n") {
+  return scene_of_text(
+      "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[chain]\nelements = 60\n"
+      "[contact]\nlaw = \"none\"\n[[grip]]\nend = \"lower\"\n[[grip]]\nend = \"upper\"\nz = { strain = 0.06, "
+      "rate_per_ps = 0.001 }\n" +
+          failure + more + "[run]\n" + run,
+      "failure.toml");
+}
+const std::string weak = "[failure]\nstrain = 0.03\nstrain_deviation = 0.002\nseed = 4\n";
+
+Scene rope(const std::string& more = "", const std::string& run = "duration_ps = 60\ntime_step_fs = 16\n") {
+  return scene_of_text(
+      "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[rope]\ntubes = 7\nlength_nm = 110\n"
+      "[[grip]]\nend = \"lower\"\n[[grip]]\nend = \"upper\"\nz = { strain = 0.06, rate_per_ps = 0.001 }\n" +
+          weak + more + "[run]\n" + run,
+      "failure.toml");
+}
+
+Simulation begun(Scene scene) {
+  const Prepared p = prepare(scene);
+  return start(scene, p);
+}
+double broken(const Simulation& s) { return s.term_accounts().at(0).events; }
+
+TEST(Failure, BreaksATubeAtItsWeakestBondOnce) {
+  // Without this damping the recoil breaks the tube in more places.
+  Scene scene = chain(weak, "[damping]\nbond_damping_per_ps = 40\n");
+  MovingScene m(scene);
+  double largest = 0;
+  while (m.state().time < 50 && broken(m.simulation) == 0) {
+    m.simulation.step();
+    largest = std::max(largest, m.row()["most_tension_nN"]);
+  }
+  ASSERT_EQ(broken(m.simulation), 1);
+  EXPECT_GT(m.row()["ends_strain"], 0.02);
+  EXPECT_LT(m.row()["ends_strain"], 0.031) << "the weakest of 59 bonds";
+  EXPECT_GT(largest, 0.6 * 0.03 * 1519);
+  m.simulation.steps(8000);
+  EXPECT_EQ(broken(m.simulation), 1) << "nothing pulls the parts any more";
+  const LogRow row = m.row();
+  EXPECT_LT(std::fabs(row["most_tension_nN"]), 1);
+  EXPECT_EQ(row["overstretched"], 0) << "a broken bond is no bond";
+  EXPECT_EQ(row["kinked"], 0);
+  EXPECT_EQ(row["bonds_broken"], 1);
+  EXPECT_GT(row["failure_lost_eV"], 0);
+  const Topology now = m.simulation.tubes_now();
+  EXPECT_EQ(now.tubes(), 2);
+  EXPECT_EQ(now.strands(), 1);
+  const std::vector<TermEvent> events = m.simulation.term_events();
+  ASSERT_EQ(events.size(), 1u);
+  EXPECT_STREQ(events[0].what, "tube broke");
+  EXPECT_EQ(events[0].a + 1, now.tube_begin[1]);
+  EXPECT_EQ(events[0].b, now.tube_begin[1]);
+}
+
+TEST(Failure, BrokenBondsActAsEndsOfTubes) {
+  Scene scene = rope();
+  Simulation s = begun(scene);
+  while (s.state().time < 60 && broken(s) < 3) s.step();
+  ASSERT_GE(broken(s), 3);
+  const Topology cut = s.tubes_now();
+  // Bonds of tubes that were cut there from the start.
+  Interaction bare = s.interaction();
+  bare.law = nullptr;
+  bare.terms.clear();
+  bare.term_reach = 0;
+  Forces plain(s.state().size());
+  NeighbourList none;
+  ForceEngine engine;
+  engine.compute(cut, bare, none, s.state(), plain, {Parts::bonds});
+  EXPECT_NEAR(s.forces().energy.bonds(), plain.energy.bonds(), 1e-9 * plain.energy.bonds());
+  Interaction with = s.interaction();
+  with.law = nullptr;
+  with.damping = {};
+  bare.damping = {};
+  NeighbourList list(with, 0.1);
+  list.build(s.topology(), s.state());
+  ForceEngine failing;
+  failing.remember(with, s.memory(), s.topology().elements());
+  Forces broken_bonds(s.state().size());
+  failing.compute(s.topology(), with, list, s.state(), broken_bonds);
+  engine.compute(cut, bare, none, s.state(), plain, {Parts::bonds});
+  for (std::size_t i = 0; i < s.state().size(); ++i) {
+    EXPECT_LT((broken_bonds.force[i] - plain.force[i]).norm(), 1e-9) << i;
+    EXPECT_LT((broken_bonds.torque[i] - plain.torque[i]).norm(), 1e-9) << i;
+  }
+}
+
+TEST(Failure, TheAccountStaysClosed) {
+  Scene scene = rope("[contact]\nprecision = \"double\"\n", "duration_ps = 60\ntime_step_fs = 8\n");
+  Simulation s = begun(scene);
+  const double total = s.total_energy();
+  while (s.state().time < 45) {
+    s.step();
+    ASSERT_NEAR(s.total_energy() - s.account().supplied(), total, 0.01 * (1 + s.work())) << s.state().time;
+  }
+  EXPECT_GE(broken(s), 3);
+  EXPECT_GT(s.term_accounts().at(0).lost, 1);
+}
+
+TEST(Failure, SameBitsOnAnyThreadsAndAfterResume) {
+  Scene scene = rope();
+  const long steps = 2800;
+  omp_set_num_threads(1);
+  Simulation whole = begun(scene);
+  std::vector<std::string> saved;
+  for (long n = 0; n < steps; ++n) {
+    if (n % 700 == 0) saved.push_back(whole.serialise());
+    whole.step(n % 100 == 99);
+  }
+  EXPECT_GT(broken(whole), 3);
+  const std::string end = whole.serialise();
+  for (const int threads : {2, 3}) {
+    omp_set_num_threads(threads);
+    Simulation other = begun(scene);
+    for (long n = 0; n < steps; ++n) other.step(n % 100 == 99);
+    EXPECT_EQ(other.serialise(), end) << threads;
+  }
+  for (std::size_t at = 0; at < saved.size(); ++at) {
+    Simulation resumed = begun(scene);
+    resumed.restore(saved[at]);
+    EXPECT_EQ(resumed.serialise(), saved[at]);
+    for (long n = 700 * static_cast<long>(at); n < steps; ++n) resumed.step(n % 100 == 99);
+    EXPECT_EQ(resumed.serialise(), end) << at;
+  }
+}
+
+TEST(Failure, BreaksWhereATubeIsBentTooFar) {
+  Scene scene = scene_of_text(
+      "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[chain]\nelements = 30\n"
+      "[contact]\nlaw = \"none\"\n[[grip]]\nend = \"lower\"\n[[grip]]\nend = \"upper\"\nx = "
+      "\"free\"\nz = \"free\"\nabout_y = { rotation_deg = 120, rate_deg_per_ps = 2 }\n[failure]\nmoment_nN_nm = "
+      "15\n"
+      "[run]\nduration_ps = 60\n",
+      "failure.toml");
+  Simulation s = begun(scene);
+  while (s.state().time < 60 && broken(s) == 0) s.step();
+  EXPECT_GE(broken(s), 1);
+}
+
+TEST(Failure, BadOnesAreRefused) {
+  const auto message = [](const std::string& failure, const std::string& more = "") -> std::string {
+    try {
+      Scene scene = chain(failure, more);
+      const Prepared p = prepare(scene);
+      return "none";
+    } catch (const InputError& e) {
+      return e.what();
+    }
+  };
+  EXPECT_THAT(message("[failure]\n"), HasSubstr("say at what a tube breaks"));
+  EXPECT_THAT(message("[failure]\nstrain_deviation = 0.01\nmoment_nN_nm = 5\n"), HasSubstr("belongs to strain"));
+  EXPECT_THAT(message("[failure]\nstrain = 0\n"), HasSubstr("strain"));
+  EXPECT_THAT(log_header(), HasSubstr(",failure_lost_eV,bonds_broken"));
+  EXPECT_THAT(log_header(), ::testing::Not(HasSubstr("failure_eV")));
+}
+
+}  // namespace
+}  // namespace ropewalk

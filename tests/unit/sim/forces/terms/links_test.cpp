@@ -1,0 +1,332 @@
+// [[links]]: sim/forces/terms/links.hpp and its table, scene/loads/links.cpp.
+#include "sim/forces/terms/links.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <omp.h>
+
+#include <cmath>
+#include <random>
+
+#include "io/log.hpp"
+#include "model/error.hpp"
+#include "model/units.hpp"
+#include "run/events_file.hpp"
+#include "scene/finer.hpp"
+#include "scene/prepare.hpp"
+#include "scene/scene_toml.hpp"
+#include "sim/dynamics/refine.hpp"
+
+namespace ropewalk {
+namespace {
+
+using ::testing::HasSubstr;
+
+Scene rope(const std::string& links, const std::string& run = "duration_ps = 5\n", const std::string& more = "",
+           const std::string& of_rope = "") {
+  return scene_of_text(
+      "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[rope]\ntubes = 7\n"
+      "length_nm = 13.8\n" +
+          of_rope + more + links + "[run]\n" + run,
+      "links.toml");
+}
+const std::string stiff = "[[links]]\nper_nm = 0.5\nstiffness_nN_per_nm = 100\n",
+                  lopsided = "[[links]]\nper_nm = 0.5\nstiffness_nN_per_nm = 100\nshear_stiffness_nN_per_nm = 30\n",
+                  breaking = "[[links]]\nper_nm = 0.5\nstiffness_nN_per_nm = 40\nbreaks_at_nN = 2\n",
+                  pulled =
+                      "[[grip]]\nend = \"lower\"\n[[load]]\nkind = \"force\"\ntubes = [0]\nelements = \"all\"\n"
+                      "force_nN = [0, 0, 15]\n";
+
+// Forces and energy of the links alone.
+class Alone {
+ public:
+  explicit Alone(Scene scene) : p(prepare(scene)) {
+    in_ = p.interaction;
+    in_.damping = {};
+    in_.precision = Interaction::Precision::full;
+    without_ = in_;
+    without_.terms.clear();
+    list_ = NeighbourList(in_, 2);
+    list_.build(p.topology, p.state);
+    at(p.state);
+  }
+  Forces at(const State& state) {
+    Forces with(state.size()), without(state.size());
+    engine_.compute(p.topology, in_, list_, state, with);
+    plain_.compute(p.topology, without_, list_, state, without);
+    for (std::size_t i = 0; i < state.size(); ++i) {
+      with.force.add(i, -without.force[i]);
+      with.torque.add(i, -without.torque[i]);
+    }
+    return with;
+  }
+  double energy(const State& state) { return at(state).energy.terms; }
+  State shaken(double by, unsigned seed) const {
+    State s = p.state;
+    std::mt19937 engine(seed);
+    std::normal_distribution<double> normal(0, by);
+    for (std::size_t i = 0; i < s.size(); ++i) {
+      s.position.add(i, Vector3(normal(engine), normal(engine), normal(engine)));
+      const Vector3 turn(normal(engine), normal(engine), normal(engine));
+      s.orientation.set(i, Quaternion(Eigen::AngleAxisd(turn.norm(), turn.normalized())) * s.orientation[i]);
+    }
+    return s;
+  }
+
+  Prepared p;
+
+ private:
+  Interaction in_, without_;
+  NeighbourList list_;
+  ForceEngine engine_, plain_;
+};
+
+void expect_gradient(Alone& links, const State& s) {
+  const Forces at = links.at(s);
+  constexpr double h = 1e-5;
+  double largest = 0;
+  for (std::size_t i = 0; i < s.size(); i += 3)
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto energy = [&](double move, double turn) {
+        State moved = s;
+        moved.position.add(i, move * Vector3::Unit(axis));
+        moved.orientation.set(i, Quaternion(Eigen::AngleAxisd(turn, Vector3::Unit(axis))) * moved.orientation[i]);
+        return links.energy(moved);
+      };
+      EXPECT_NEAR(at.force[i][axis], -(energy(h, 0) - energy(-h, 0)) / (2 * h), 1e-5) << i;
+      EXPECT_NEAR(at.torque[i][axis], -(energy(0, h) - energy(0, -h)) / (2 * h), 1e-5) << i;
+      largest = std::max({largest, std::fabs(at.force[i][axis]), std::fabs(at.torque[i][axis])});
+    }
+  EXPECT_GT(largest, 1);
+}
+
+TEST(Links, ForcesAndTorquesAreTheGradientAndKeepMomentum) {
+  for (const std::string& table : {stiff, lopsided, lopsided + "rest_nm = 0.4\n"}) {
+    Alone links(rope(table));
+    const State s = links.shaken(0.05, 3);
+    expect_gradient(links, s);
+    const NetForce net = net_force(s, links.at(s));
+    EXPECT_LT(net.force.norm(), 1e-9);
+    EXPECT_LT(net.torque.norm(), 1e-8);
+  }
+}
+
+TEST(Links, PullAsOneSpringInStretchAndOneInShear) {
+  const std::string table =
+      "[[links]]\nbetween = [0, 5, 1, 5]\nstiffness_nN_per_nm = 100\nshear_stiffness_nN_per_nm = 30\n";
+  Alone links(rope(table));
+  EXPECT_EQ(links.energy(links.p.state), 0) << "at rest as they form";
+  const int e = links.p.topology.tube_begin[1] + 5;
+  const auto i = static_cast<std::size_t>(e);
+  const Vector3 out = links.p.state.position[i] - links.p.state.position[5];
+  const double k = units::nN_nm;
+  for (const auto& [along, stiffness] :
+       {std::pair(Vector3(out.normalized()), 100 * k), std::pair(Vector3(Vector3::UnitZ()), 30 * k),
+        std::pair(Vector3(Vector3::UnitZ().cross(out.normalized())), 30 * k)}) {
+    State s = links.p.state;
+    s.position.add(i, 0.01 * along);
+    EXPECT_NEAR(links.energy(s), 0.5 * stiffness * 1e-4, 1e-9 * stiffness);
+    EXPECT_LT((links.at(s).force[i] + 0.01 * stiffness * along).norm(), 1e-8);
+  }
+  Alone pressed(rope(table + "rest_nm = 0.4\n"));
+  const TubeType& tube = pressed.p.topology.types[0];
+  const double stretched = out.norm() - 2 * tube.radius - 0.4;
+  EXPECT_NEAR(pressed.energy(pressed.p.state), 50 * k * stretched * stretched, 1e-9);
+}
+
+TEST(Links, FeelNoMotionOfTheRopeAsAWhole) {
+  Alone links(rope(lopsided + "rest_nm = 0.4\n"));
+  const State s = links.shaken(0.05, 5);
+  State turned = s;
+  const Quaternion q(Eigen::AngleAxisd(1.1, Vector3(1, 2, 3).normalized()));
+  for (std::size_t i = 0; i < s.size(); ++i) {
+    turned.position.set(i, q * s.position[i] + Vector3(3, -2, 1));
+    turned.orientation.set(i, q * s.orientation[i]);
+  }
+  EXPECT_NEAR(links.energy(turned), links.energy(s), 1e-9 * links.energy(s));
+}
+
+// Seven tubes have twelve contacts of the length of the rope.
+TEST(Links, AreAsManyAsTheLengthOfContactHas) {
+  double sum = 0;
+  const int seeds = 20;
+  double contact = 0;
+  for (int seed = 0; seed < seeds; ++seed) {
+    Scene scene = rope("[[links]]\nper_nm = 1.5\nstiffness_nN_per_nm = 1\nseed = " + std::to_string(seed) + "\n");
+    const Prepared p = prepare(scene);
+    contact = 12 * p.topology.length_of(0) * p.topology.types[0].element_length;
+    sum += static_cast<double>(p.interaction.terms.at(0)->begun_at_start());
+  }
+  const double expected = 1.5 * contact * seeds;
+  EXPECT_NEAR(sum, expected, 4 * std::sqrt(expected));
+  Scene ends = rope("[[links]]\nat_ends = 2\nstiffness_nN_per_nm = 1\n");
+  EXPECT_EQ(prepare(ends).interaction.terms.at(0)->begun_at_start(), 28) << "two at each of fourteen ends";
+}
+
+TEST(Links, BreakAtTheirStrengthAndTheAccountStaysClosed) {
+  Scene scene =
+      rope(breaking, "duration_ps = 20\ntime_step_fs = 4\n", pulled + "[contact]\nprecision = \"double\"\n");
+  const Prepared p = prepare(scene);
+  Simulation s = start(scene, p);
+  const double total = s.total_energy();
+  const TermAccount first = s.term_accounts().at(0);
+  EXPECT_GT(first.begun, 20) << "from the first row on";
+  for (int n = 0; n < 4000; ++n) {
+    s.step();
+    ASSERT_NEAR(s.total_energy() - s.account().supplied(), total, 0.01 * (1 + s.work())) << n;
+  }
+  const TermAccount account = s.term_accounts().at(0);
+  EXPECT_GT(account.events, 3);
+  EXPECT_EQ(account.begun, first.begun) << "none forms";
+  // Each has lost k/2 (F/k)^2 or a little more: it breaks in the first step beyond.
+  const double each = 0.5 * 4 / 40 * units::nN_nm;
+  EXPECT_GT(account.lost, each * account.events);
+  EXPECT_LT(account.lost, 1.3 * each * account.events);
+  const std::vector<TermEvent> events = s.term_events();
+  ASSERT_EQ(static_cast<double>(events.size()), account.begun + account.events);
+  for (std::size_t k = 1; k < events.size(); ++k) EXPECT_GE(events[k].time, events[k - 1].time);
+  EXPECT_STREQ(events.front().what, "link formed");
+  EXPECT_STREQ(events.back().what, "link broke");
+  EXPECT_GT(events.back().time, 0);
+  const std::string csv = events_csv(p.topology, events);
+  EXPECT_THAT(csv, HasSubstr(",link broke,"));
+}
+
+TEST(Links, BreakAtAnEnergyToo) {
+  Scene scene =
+      rope("[[links]]\nper_nm = 0.5\nstiffness_nN_per_nm = 40\nbreaks_at_eV = 0.2\n", "duration_ps = 10\n", pulled);
+  const Prepared p = prepare(scene);
+  Simulation s = start(scene, p);
+  s.steps(1500);
+  const TermAccount account = s.term_accounts().at(0);
+  EXPECT_GT(account.events, 3);
+  EXPECT_GT(account.lost, 0.2 * account.events);
+}
+
+const std::string
+    forming =
+        "[[links]]\nforming_per_nm_ps = 0.1\nmost_per_nm = 1\nstiffness_nN_per_nm = 40\nbreaks_at_nN = "
+        "2\n",
+    warm = "[start]\ntemperature_K = 300\nmay_cool = true\n";
+
+TEST(Links, FormWhereTubesTouchUpToTheirNumber) {
+  Scene scene = rope(forming, "duration_ps = 60\n", warm);
+  const Prepared p = prepare(scene);
+  Simulation s = start(scene, p);
+  EXPECT_EQ(s.term_accounts().at(0).begun, 0);
+  double before = 0;
+  for (const double until : {5.0, 60.0}) {
+    while (s.state().time < until) s.step();
+    const double begun = s.term_accounts().at(0).begun;
+    EXPECT_GT(begun, before);
+    before = begun;
+  }
+  std::vector<int> count(s.state().size(), 0);
+  for (const TermEvent& e : s.term_events())
+    for (const int element : {e.a, e.b})
+      count[static_cast<std::size_t>(element)] += std::string(e.what) == "link formed" ? 1 : -1;
+  EXPECT_LE(*std::max_element(count.begin(), count.end()), static_cast<int>(p.topology.types[0].element_length));
+}
+
+TEST(Links, ArePlacedAtALaterTimeToo) {
+  Scene scene = rope("[[links]]\nper_nm = 0.5\nplaced_at_ps = 2\nstiffness_nN_per_nm = 40\n", "duration_ps = 5\n");
+  const Prepared p = prepare(scene);
+  Simulation s = start(scene, p);
+  while (s.state().time < 4) {
+    s.step();
+    EXPECT_EQ(s.term_accounts().at(0).begun > 0, s.state().time >= 2) << s.state().time;
+  }
+  const double expected = 0.5 * 12 * p.topology.length_of(0) * p.topology.types[0].element_length;
+  EXPECT_NEAR(s.term_accounts().at(0).begun, expected, 4 * std::sqrt(expected));
+  EXPECT_GE(s.term_events().front().time, 2);
+}
+
+TEST(Links, SameBitsOnAnyThreadsAndAfterResume) {
+  Scene scene = rope(forming + breaking + "placed_at_ps = 4\n" + breaking, "duration_ps = 20\ntime_step_fs = 16\n",
+                     warm + pulled);
+  const auto simulation = [&] {
+    const Prepared p = prepare(scene);
+    return start(scene, p);
+  };
+  omp_set_num_threads(1);
+  Simulation whole = simulation();
+  std::vector<std::string> saved;
+  for (int n = 0; n < 800; ++n) {
+    if (n % 100 == 0) saved.push_back(whole.serialise());
+    whole.step(n % 50 == 49);
+  }
+  EXPECT_GT(whole.term_accounts().at(0).begun, 0);
+  EXPECT_GT(whole.term_accounts().at(1).begun, 0) << "at 4 ps";
+  EXPECT_GT(whole.term_accounts().at(2).events, 0);
+  const std::string end = whole.serialise();
+  for (const int threads : {2, 3}) {
+    omp_set_num_threads(threads);
+    Simulation other = simulation();
+    for (int n = 0; n < 800; ++n) other.step(n % 50 == 49);
+    EXPECT_EQ(other.serialise(), end) << threads;
+  }
+  for (std::size_t at = 0; at < saved.size(); ++at) {
+    Simulation resumed = simulation();
+    resumed.restore(saved[at]);
+    EXPECT_EQ(resumed.serialise(), saved[at]);
+    for (int n = 100 * static_cast<int>(at); n < 800; ++n) resumed.step(n % 50 == 49);
+    EXPECT_EQ(resumed.serialise(), end) << at;
+  }
+}
+
+TEST(Links, KeepTheirEnergyWhereElementsAreSplit) {
+  for (const std::string& grips : {std::string(), std::string("[[grip]]\nend = \"lower\"\n")}) {
+    Scene coarse = rope(stiff + "rest_nm = 0.4\n", "duration_ps = 20\n", grips);
+    const Prepared p = prepare(coarse);
+    Simulation s = start(coarse, p);
+    Scene finer = scene_of_text(finer_scene_text(coarse, p, "finer"), "finer.toml");
+    Prepared q = prepare(finer);
+    q.state = halved(p.topology, s.state(), splitting_of(coarse));
+    Simulation split = start(finer, q);
+    split.remember(s.halved_memory(heirs(p.topology, splitting_of(coarse))));
+    EXPECT_GT(s.forces().energy.terms, 0.1);
+    EXPECT_NEAR(split.forces().energy.terms, s.forces().energy.terms, 1e-9) << grips;
+  }
+}
+
+TEST(Links, LowerTheStabilityLimit) {
+  Scene soft = rope("[[links]]\nper_nm = 0.5\nstiffness_nN_per_nm = 1\n"),
+        hard = rope("[[links]]\nper_nm = 0.5\nstiffness_nN_per_nm = 3000\n", "duration_ps = 5\n", warm);
+  const Prepared a = prepare(soft), b = prepare(hard);
+  EXPECT_LT(b.limit.limit, 0.5 * a.limit.limit);
+  Simulation s = start(hard, b);
+  const double total = s.total_energy();
+  s.steps(3000);
+  EXPECT_NEAR(s.total_energy() - s.account().supplied(), total, 0.05 * std::fabs(total));
+}
+
+TEST(Links, BadOnesAreRefused) {
+  const auto message = [](const std::string& links, const std::string& more = "") -> std::string {
+    try {
+      Scene scene = rope(links, "duration_ps = 5\n", more);
+      const Prepared p = prepare(scene);
+      return "none";
+    } catch (const InputError& e) {
+      return e.what();
+    }
+  };
+  const std::string k = "stiffness_nN_per_nm = 1\n";
+  EXPECT_THAT(message("[[links]]\n" + k), HasSubstr("give per_nm, at_ends, between or forming_per_nm_ps"));
+  EXPECT_THAT(message("[[links]]\nper_nm = 1\nreach_nm = 0.1\n" + k), HasSubstr("none is placed"));
+  EXPECT_THAT(message("[[links]]\nbetween = [0, 1, 2]\n" + k), HasSubstr("a link takes four"));
+  EXPECT_THAT(message("[[links]]\nbetween = [0, 1, 0, 2]\n" + k), HasSubstr("links tube 0 with itself"));
+  EXPECT_THAT(message("[[links]]\nbetween = [0, 1, 7, 2]\n" + k), HasSubstr("there is no tube 7"));
+  EXPECT_THAT(message("[[links]]\nbetween = [0, 1, 1, 10]\n" + k), HasSubstr("tube 1 has no element 10"));
+  EXPECT_THAT(message("[[links]]\nforming_per_nm_ps = 1\n" + k), HasSubstr("most_per_nm: is missing"));
+  EXPECT_THAT(message("[[links]]\nper_nm = 1\ntypes = [0, 1]\n" + k), HasSubstr("there is no tube type 1"));
+  EXPECT_THAT(message("[[links]]\nper_nm = 1\n" + k, "[contact]\nlaw = \"none\"\n"),
+              HasSubstr("contact.law is \"none\""));
+}
+
+TEST(Links, HaveTheirColumnsInTheLog) {
+  EXPECT_THAT(log_header(), HasSubstr(",links_eV,links_lost_eV,links_formed,links_broken"));
+  EXPECT_THAT(scene_key_help(), HasSubstr("[[links]]"));
+}
+
+}  // namespace
+}  // namespace ropewalk
