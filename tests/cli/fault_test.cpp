@@ -356,7 +356,9 @@ class FaultsOfProcesses : public Faults {
     };
     const auto result = [&](const std::string& name) { return verb.comparable(slurp(dir / "d" / name)); };
     prepare();
-    ASSERT_EQ(run(verb.command).code, verb.code) << verb.command << slurp(dir / "stderr.txt");
+    const Outcome alone = run(verb.command);
+    ASSERT_EQ(alone.code, verb.code) << verb.command << alone.err;
+    EXPECT_EQ(alone.err, "") << verb.command;
     std::vector<std::string> whole;
     for (const std::string& name : verb.results) {
       whole.push_back(result(name));
@@ -372,9 +374,8 @@ class FaultsOfProcesses : public Faults {
         if (!fs::exists(dir / "made")) break;
         // Processes whose parent was killed end by themselves.
         std::this_thread::sleep_for(std::chrono::milliseconds(50));
-        // What became of each point stands with the results.
-        const bool told = o.err.empty() && o.out.find("not ended: ") != std::string::npos;
-        if (std::string(how).rfind("kill", 0) != 0 && !told) expect_clear(o, when);
+        if (std::string(how).rfind("kill", 0) != 0) expect_clear(o, when);
+        EXPECT_EQ(o.out.find("not ended"), std::string::npos) << when << ": " << o.out;
         bool made = true;
         for (std::size_t k = 0; k < whole.size(); ++k) {
           made = made && fs::exists(dir / "d" / verb.results[k]);
