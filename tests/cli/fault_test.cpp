@@ -336,7 +336,7 @@ class FaultsOfProcesses : public Faults {
     setenv("TMPDIR", (dir / "d/t").c_str(), 1);
   }
   void TearDown() override {
-    unsetenv("TMPDIR");
+    for (const char* name : {"TMPDIR", "ROPEWALK_FAULTS_TOGETHER", "ROPEWALK_FAULTS_CALL"}) unsetenv(name);
     Faults::TearDown();
   }
 
@@ -413,6 +413,28 @@ TEST_F(FaultsOfProcesses, PlanBrokenOff) {
   };
   break_off_everywhere({"plan s.toml -o d/planned.toml -j 1", {"planned.toml"}, [&] { begin(""); }, 23, without_times, 0,
                         true});
+}
+
+// The disk of TMPDIR is full where a pilot's directory is to be made: no model is refused by that.
+TEST_F(FaultsOfProcesses, PlanWithoutRoomForAPilot) {
+  spit(dir / "s.toml", calm);
+  setenv("ROPEWALK_FAULTS_CALL", "mkdir", 1);
+  setenv("ROPEWALK_FAULTS_TOGETHER", (dir / "together").c_str(), 1);
+  int pilots = 0;
+  for (int n = 1;; ++n) {
+    begin("");
+    fs::create_directories(dir / "d/t");
+    for (const char* name : {"made", "together", "planned.toml"}) fs::remove(dir / name);
+    const Outcome o = with(fmt::format("ENOSPC:{}", n), "plan s.toml -o planned.toml -j 1");
+    if (!fs::exists(dir / "made")) break;
+    EXPECT_EQ(o.code, 3) << n << o.err;
+    EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << n << o.err;
+    EXPECT_FALSE(fs::exists(dir / "planned.toml")) << n;
+    EXPECT_THAT(temporary_folders(), ::testing::IsEmpty()) << n;
+    pilots +=
+        o.err.find("was broken off: ") != std::string::npos && o.err.find("No space left") != std::string::npos;
+  }
+  EXPECT_GT(pilots, 0);
 }
 
 TEST_F(FaultsOfProcesses, ThresholdBrokenOff) {
