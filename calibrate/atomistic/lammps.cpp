@@ -74,7 +74,7 @@ std::string remedy_for(const std::string& error) {
     const char* text;
   };
   static constexpr Remedy remedies[] = {
-      {"PMIX", "its MPI could not start: a limit on files, memory or disk may be reached (ulimit -a, df)"},
+      {"PMIX", "its MPI could not start: a limit on files, memory or disk may be reached (ulimit -a, df, TMPDIR)"},
       {"Lost atoms", "an atom left the box: make the strains smaller, or the potential does not hold this tube"},
       {"Non-numeric", "atoms came too close: make the strains smaller, or the potential does not hold this tube"},
       {"Unrecognized pair style",
@@ -90,11 +90,12 @@ std::string remedy_for(const std::string& error) {
   return "its input and log are in that folder";
 }
 
-// Free disk space for an ordinary user in bytes; a large number if it is unknown.
-double free_bytes(const std::string& folder) {
+// Unknown: not full.
+bool disk_is_full(const std::string& folder) {
+  constexpr double least = 1e5;  // bytes for an ordinary user
   struct statvfs status {};
-  if (::statvfs(folder.c_str(), &status) != 0) return 1e18;
-  return static_cast<double>(status.f_bavail) * static_cast<double>(status.f_frsize);
+  if (::statvfs(folder.c_str(), &status) != 0) return false;
+  return static_cast<double>(status.f_bavail) * static_cast<double>(status.f_frsize) < least;
 }
 
 std::string signal_name(int number) {
@@ -103,6 +104,8 @@ std::string signal_name(int number) {
 }
 
 std::string remedy_for_signal(int number) {
+  if (number == SIGBUS)
+    return "the disk of TMPDIR may be full, which MPI keeps its memory on: free some space (df)";
   if (number == SIGXFSZ) return "the limit on the size of files is reached: raise it (ulimit -f)";
   if (number == SIGXCPU) return "the limit on the processor time is reached: raise it (ulimit -t)";
   if (number == SIGKILL) return "someone killed it, or the memory was full: run it again, with shorter cells";
@@ -113,6 +116,14 @@ std::string remedy_for_signal(int number) {
 
 bool LammpsVersion::has_pair_style(const std::string& style) const {
   return std::find(pair_styles.begin(), pair_styles.end(), style) != pair_styles.end();
+}
+
+void refuse_full_disk(const std::string& folder) {
+  if (disk_is_full(folder))
+    throw LammpsDiskFull(
+        fmt::format("LAMMPS could not write its files: the disk of {} is full; free some space, or choose another "
+                    "disk (TMPDIR, --keep DIR)",
+                    folder));
 }
 
 LammpsVersion lammps_version(const LammpsOptions& options) {
@@ -126,6 +137,7 @@ LammpsVersion lammps_version(const LammpsOptions& options) {
   child.max_seconds = 60;
   child.interrupted = options.interrupted;
   const ChildEnd end = run_child({program, "-h"}, child);
+  refuse_full_disk(folder.path());
   if (end.kind == ChildEnd::Kind::not_started) throw not_startable(program, end.code);
   if (end.kind == ChildEnd::Kind::killed_by_signal)
     throw InputError({"", 0, "lmp"}, fmt::format("'{} -h' was ended by {}", program, signal_name(end.code)),
@@ -141,7 +153,9 @@ LammpsVersion lammps_version(const LammpsOptions& options) {
     throw InputError({"", 0, "lmp"},
                      fmt::format("'{} -h' does not answer as LAMMPS does{}", program,
                                  complaint.empty() ? "" : " (" + complaint + ")"),
-                     fmt::format("install it ({}) or name it with ROPEWALK_LMP", install_line));
+                     complaint.find("PMIX") != std::string::npos
+                         ? remedy_for(complaint)
+                         : fmt::format("install it ({}) or name it with ROPEWALK_LMP", install_line));
 
   // Two lists of words: one up to an empty line, one up to the next heading.
   const auto words_after = [&](const char* heading, const char* stop) {
@@ -181,6 +195,7 @@ void run_lammps(const std::string& folder, const std::string& name, const std::s
   const ChildEnd end = run_child({program, "-in", name + ".in", "-log", name + ".log", "-nocite"}, child);
 
   const auto fail = [&](const std::string& what, const std::string& remedy) {
+    refuse_full_disk(place);
     const LammpsComplaint complaint = complaint_in(read_if_there(base + ".out") + read_if_there(base + ".log"));
     std::string text = fmt::format("LAMMPS ({}.in) {}", base, what);
     if (!complaint.error.empty()) text += fmt::format(": {}", complaint.error);
@@ -209,12 +224,8 @@ void run_lammps(const std::string& folder, const std::string& name, const std::s
       break;
   }
   if (end.code != 0) fail(fmt::format("stopped with status {}", end.code), "");
-  // LAMMPS does not check its own writes: a full disk shows only by incomplete files.
-  if (read_if_there(base + ".log").find("Total wall time") == std::string::npos) {
-    const bool full = free_bytes(place) < 1e5;
-    fail(full ? "could not write its log: the disk is full" : "left an incomplete log",
-         full ? "free some space, or choose another folder (--keep DIR)" : "check the disk and the folder");
-  }
+  if (read_if_there(base + ".log").find("Total wall time") == std::string::npos)
+    fail("left an incomplete log", "check the disk and the folder");
 }
 
 }  // namespace ropewalk::calibrate

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "io/disk_full.hpp"
 #include "model/error.hpp"
 
 namespace ropewalk::calibrate {
@@ -30,6 +31,16 @@ class LammpsError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
+
+// The disk of the child's files is full.
+class LammpsDiskFull : public LammpsError, public DiskFull {
+ public:
+  using LammpsError::LammpsError;
+};
+
+// Throws LammpsDiskFull where the disk that a folder of LAMMPS lies on is full. LAMMPS does not check its own
+// writes: it ends well, and leaves files cut short or none.
+void refuse_full_disk(const std::string& folder);
 
 // Version, packages and pair styles of the program. Throws InputError with the apt line if there is no LAMMPS.
 LammpsVersion lammps_version(const LammpsOptions& options);

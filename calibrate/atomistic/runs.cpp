@@ -64,6 +64,7 @@ std::vector<std::vector<double>> read_results(const std::string& folder, const s
                                               std::size_t least, std::size_t most, std::size_t columns) {
   const std::string path = folder + "/" + name + ".dat";
   const auto fail = [&](const std::string& what) {
+    refuse_full_disk(folder);
     throw LammpsError(
         fmt::format("LAMMPS ({}/{}.in) {}; its input and log are in that folder, and the disk may be full",
                     folder, name, what));

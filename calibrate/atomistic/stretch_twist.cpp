@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <sstream>
 
 #include "atomistic/runs.hpp"
@@ -79,7 +80,9 @@ LatticeVector untwisted_cell(Chirality c, double min_length) {
 
 // Atoms as LAMMPS dumped them, in order of their ids.
 std::vector<Vector3> read_atoms(const RunContext& run, const std::string& name, std::size_t count) {
-  std::istringstream lines(read_file(run.folder + "/" + name));
+  const std::string path = run.folder + "/" + name;
+  if (!std::filesystem::exists(path)) refuse_full_disk(run.folder);
+  std::istringstream lines(read_file(path));
   std::vector<Vector3> atoms;
   std::string line;
   while (std::getline(lines, line) && line.rfind("ITEM: ATOMS", 0) != 0) {
@@ -90,10 +93,10 @@ std::vector<Vector3> read_atoms(const RunContext& run, const std::string& name, 
     double x = 0, y = 0, z = 0;
     if (words >> id >> x >> y >> z) atoms.push_back(Vector3(x, y, z) * angstrom);
   }
-  if (atoms.size() != count)
-    throw LammpsError(fmt::format("LAMMPS left {} of {} atoms in {}/{}; the disk may be full", atoms.size(), count,
-                                  run.folder, name));
-  return atoms;
+  if (atoms.size() == count) return atoms;
+  refuse_full_disk(run.folder);
+  throw LammpsError(
+      fmt::format("LAMMPS left {} of {} atoms in {}; the disk may be full", atoms.size(), count, path));
 }
 
 // Mean displacement of the second sublattice against the first, from where `shape` places them.

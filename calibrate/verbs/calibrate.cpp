@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "io/data_files.hpp"
+#include "io/file_group.hpp"
 #include "io/files.hpp"
 #include "io/grade.hpp"
 #include "io/parameters_toml.hpp"
@@ -116,7 +117,25 @@ struct OutputFiles {
   std::string set, stiffness, contact;
 };
 
-OutputFiles output_files(const CalibrateArguments& a, const std::string& name) {
+// A table with such a beginning whose set is not there: perhaps left by this very calibration, ended before its set
+// had its name.
+bool may_be_left_over(const OutputFiles& files, const std::string& table, const std::string& beginning) {
+  std::error_code error;
+  return !fs::exists(files.set, error) && fs::is_regular_file(fs::symlink_status(table, error)) &&
+         read_file(table).rfind(beginning, 0) == 0;
+}
+
+// The text, unless a table of other energies stands in its place.
+std::string of_this_calibration(const std::string& path, std::string text, bool force) {
+  if (!force && fs::exists(path) && read_file(path) != text)
+    throw InputError({path, 0, "--out"}, "exists, without its set and with other energies than this calibration",
+                     "choose another name, or give --force to replace it; nothing was written");
+  return text;
+}
+
+OutputFiles output_files(const CalibrateArguments& a, const CalibrationRequest& request) {
+  const Chirality tube = request.chirality;
+  const std::string name = fmt::format("cnt-{}-{}-{}", tube.n, tube.m, request.potential.name);
   OutputFiles f;
   f.set = a.out.empty() ? name + ".toml" : a.out;
   if (fs::path(f.set).extension() != ".toml")
@@ -124,7 +143,12 @@ OutputFiles output_files(const CalibrateArguments& a, const std::string& name) {
   const std::string stem = f.set.substr(0, f.set.size() - 5);
   f.stiffness = stem + "-stiffness.csv";
   f.contact = stem + "-contact.csv";
-  for (const std::string& path : {f.set, f.stiffness, f.contact}) check_output(path, "--out", a.force);
+  check_output(f.set, "--out", a.force);
+  const auto check_table = [&](const std::string& table, const std::string& beginning) {
+    check_output(table, "--out", a.force || may_be_left_over(f, table, beginning));
+  };
+  check_table(f.stiffness, fmt::format("# ropewalk-atomistic-1\n# chirality: {},{}\n", tube.n, tube.m));
+  check_table(f.contact, fmt::format("# Surface integral of two ({},{}) tubes, ", tube.n, tube.m));
   return f;
 }
 
@@ -250,6 +274,11 @@ WorkFolder::WorkFolder(const std::string& keep) : path_(keep) {
   path_ = temporary_->path();
 }
 
+void WorkFolder::stay_for(const LammpsError& error) {
+  const bool names_files = interrupted_by() == 0 && !dynamic_cast<const LammpsDiskFull*>(&error);
+  if (temporary_ && names_files) temporary_->keep();
+}
+
 int calibrate_command(const CalibrateArguments& a) {
   CalibrationRequest request;
   request.chirality = parse_chirality(a.chirality);
@@ -265,16 +294,15 @@ int calibrate_command(const CalibrateArguments& a) {
   request.stiffness.lammps.interrupted = [] { return interrupted_by() != 0; };
   request.command = a.command;
   if (!a.envelope_of.empty()) request.stiffness.known_envelope = envelope_of(a.envelope_of, request);
-  const OutputFiles files = output_files(
-      a, fmt::format("cnt-{}-{}-{}", request.chirality.n, request.chirality.m, request.potential.name));
+  const OutputFiles files = output_files(a, request);
   if (!a.quiet) request.stiffness.progress = [](const std::string& line) { fmt::print(stderr, "{}\n", line); };
   WorkFolder folder(a.keep);
   request.folder = folder.path();
   Calibration c;
   try {
     c = calibrate(request);
-  } catch (const LammpsError&) {
-    if (interrupted_by() == 0) folder.stay();  // the error message names files in the folder
+  } catch (const LammpsError& e) {
+    folder.stay_for(e);
     throw;
   }
   const auto set_text = [&] {
@@ -285,9 +313,9 @@ int calibrate_command(const CalibrateArguments& a) {
   leave_out_unusable_bond(c, set_text(), files.set);
   const std::string text = set_text();
   const Grade grade = usable_grade(text, files.set, request.chirality);
-  write_file_atomically(files.stiffness, stiffness_csv(c));
-  write_file_atomically(files.contact, contact_csv(c));
-  write_file_atomically(files.set, text);
+  write_files_together({{files.stiffness, of_this_calibration(files.stiffness, stiffness_csv(c), a.force)},
+                        {files.contact, of_this_calibration(files.contact, contact_csv(c), a.force)},
+                        {files.set, text}});
   if (a.json) {
     fmt::print("{}\n", result_json(c, grade, files.set).dump(1));
   } else {

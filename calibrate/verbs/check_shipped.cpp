@@ -34,7 +34,12 @@ Calibration remake(const ParameterSet& set) {
   request.stiffness.lammps.interrupted = [] { return interrupted_by() != 0; };
   WorkFolder folder("");
   request.folder = folder.path();
-  return calibrate(request);
+  try {
+    return calibrate(request);
+  } catch (const LammpsError& e) {
+    folder.stay_for(e);
+    throw;
+  }
 }
 
 // The numbers that are compared. K, s, c, p and q are not compared one by one, since they are strongly correlated.

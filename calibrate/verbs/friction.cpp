@@ -215,8 +215,8 @@ int friction_command(const FrictionArguments& arguments) {
       say(fmt::format("drag at 300 K, {} ps at each of three speeds", a.drag_ps));
       drag = measured_drag(tubes, checked[0], a.drag_ps, corrugation(second), folder.path(), "drag", a.lammps);
     }
-  } catch (const LammpsError&) {
-    if (interrupted_by() == 0) folder.stay();
+  } catch (const LammpsError& e) {
+    folder.stay_for(e);
     throw;
   }
 

@@ -84,14 +84,12 @@ Chirality parse_chirality(const std::string& text);
 AtomLaw parse_atom_law(const std::string& lj, double cutoff);
 
 // A folder for LAMMPS's files: `keep`, which must be new or empty, or a temporary folder. The destructor removes a
-// temporary folder, unless stay() was called.
+// temporary folder, unless an error names files in it.
 class WorkFolder {
  public:
   explicit WorkFolder(const std::string& keep);
   const std::string& path() const { return path_; }
-  void stay() {
-    if (temporary_) temporary_->keep();
-  }
+  void stay_for(const LammpsError& error);
 
  private:
   std::string path_;

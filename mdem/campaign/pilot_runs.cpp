@@ -5,11 +5,13 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <filesystem>
 #include <stdexcept>
 
 #include "campaign/point_runs.hpp"
 #include "io/clocks.hpp"
+#include "io/failure.hpp"
 #include "io/files.hpp"
 #include "io/manifest.hpp"
 #include "io/plain_text.hpp"
@@ -17,6 +19,7 @@
 #include "model/error.hpp"
 #include "run/run_time.hpp"
 #include "run/tell.hpp"
+#include "run/terminal_listener.hpp"
 #include "scene/scene_toml.hpp"
 
 namespace ropewalk {
@@ -39,6 +42,20 @@ bool came_to_an_end(int status) {
   return WIFEXITED(status) && (WEXITSTATUS(status) == 0 || WEXITSTATUS(status) == not_at_rest);
 }
 
+// Once a scene is found good, wrong input can only be a directory or a file that cannot be made.
+class PilotListener : public TerminalListener {
+ public:
+  PilotListener() : TerminalListener(true) {}
+  void before_files() override {
+    TerminalListener::before_files();
+    scene_is_good = true;
+  }
+
+  bool scene_is_good = false;
+};
+
+constexpr int refused = 2, broken_off = 3;  // exit codes of a pilot
+
 // What ended a pilot where it was not its own scene, which was refused or came to no end: a signal, a full disk.
 // Empty: it was the scene.
 std::string broken_by(const std::string& run, int status) {
@@ -47,9 +64,10 @@ std::string broken_by(const std::string& run, int status) {
   const RunDirectory dir{run};
   const bool has_words = fs::exists(run + ".txt"), begun = fs::exists(dir.manifest());
   if (begun && read_manifest(dir.manifest()).status == "failed") return "";
-  if (has_words && !fs::exists(dir.path) && WEXITSTATUS(status) == 2) return "";
+  if (has_words && WEXITSTATUS(status) == refused) return "";
   const std::string said = has_words ? last_line(read_file(run + ".txt")) : "";
-  return said.empty() ? "its files could not be written" : said.substr(0, said.find("; then "));
+  return said.empty() ? "its files could not be written; see whether there is room (TMPDIR names another place)"
+                      : said.substr(0, said.find("; then "));
 }
 
 PilotEnd end_of(const std::string& run, int status) {
@@ -92,10 +110,18 @@ std::vector<PilotEnd> PilotRuns::operator()(const std::vector<PilotTask>& tasks)
 }
 
 int PilotRuns::work(const std::string& run, const PilotTask& task) const {
+  // Where there is no room for its messages, the plan alone says so.
+  if (!std::freopen("/dev/null", "w", stderr)) return broken_off;
   return in_a_process(run + ".txt", false, [&] {
-    const int code = run_anew({run}, scene_of_text(task.text, path_), task.until, OnLimit::warn);
-    write_file_atomically(run + ".seconds", fmt::format("{:.6g}", processor_seconds()));
-    return code;
+    PilotListener listener;
+    try {
+      const int code = run_anew({run}, scene_of_text(task.text, path_), task.until, OnLimit::warn, listener);
+      write_file_atomically(run + ".seconds", fmt::format("{:.6g}", processor_seconds()));
+      return code;
+    } catch (const InputError& e) {
+      const int code = tell_failure("ropewalk", e);
+      return listener.scene_is_good ? broken_off : code;
+    }
   });
 }
 

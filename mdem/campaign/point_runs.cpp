@@ -47,13 +47,13 @@ void remove_hardly_begun(const RunDirectory& dir) {
   remove_run(dir, "");
 }
 
-int run_anew(const RunDirectory& dir, const Scene& scene, double until_ps, OnLimit on_limit) {
+int run_anew(const RunDirectory& dir, const Scene& scene, double until_ps, OnLimit on_limit,
+             RunListener& listener) {
   use_threads(1);
-  TerminalListener terminal(true);
   RunSettings asked;
   asked.until_ps = until_ps;
   asked.on_limit = on_limit;
-  return tell_end(go_through(begin_run(scene, dir, asked, terminal)));
+  return tell_end(go_through(begin_run(scene, dir, asked, listener)));
 }
 
 int run_or_resume(const RunDirectory& dir, const Scene& scene, double until_ps, OnLimit on_limit) {
@@ -66,7 +66,7 @@ int run_or_resume(const RunDirectory& dir, const Scene& scene, double until_ps, 
     return tell_end(go_through(resume_run(dir, asked, terminal)));
   }
   remove_hardly_begun(dir);
-  return run_anew(dir, scene, until_ps, on_limit);
+  return run_anew(dir, scene, until_ps, on_limit, terminal);
 }
 
 int in_a_process(const std::string& messages, bool wait, const std::function<int()>& work) {

@@ -7,6 +7,7 @@
 #include "io/stop_signals.hpp"
 #include "run/limit_watch.hpp"
 #include "run/run_directory.hpp"
+#include "run/run_listener.hpp"
 
 namespace ropewalk {
 
@@ -18,7 +19,7 @@ std::string duration_text(double seconds);  // "12 min"
 // else: more than the first row of a log, or a file that is not of a run.
 void remove_hardly_begun(const RunDirectory& dir);
 // Starts a run on one thread in a directory that is not there. Negative `until_ps`: to the scene's end.
-int run_anew(const RunDirectory& dir, const Scene& scene, double until_ps, OnLimit on_limit);
+int run_anew(const RunDirectory& dir, const Scene& scene, double until_ps, OnLimit on_limit, RunListener& listener);
 // A run that was begun goes on, another one is started.
 int run_or_resume(const RunDirectory& dir, const Scene& scene, double until_ps, OnLimit on_limit);
 

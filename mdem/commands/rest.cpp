@@ -66,7 +66,7 @@ int rest_command(const RestArguments& a) {
   for (std::size_t k = 0; k < 2; ++k) {
     const RunDirectory run = dir.point(points.at(k).name);
     if (progress_of(run).stage != PointProgress::Stage::ended) {
-      fmt::print("not ended: {}, see {}\n", points[k].name, dir.messages(points[k].name));
+      tell_not_ended(dir, points[k].name);
       return 3;
     }
     sides[k] = rest_side(read_log(run.log()), std::stod(points[k].values.front()));

@@ -79,8 +79,8 @@ int summary(const CampaignDirectory& dir, const std::vector<SweepPoint>& points,
   for (const auto& [status, count] : counts)
     words += fmt::format("{}{} {}", words.empty() ? "" : ", ", count, status);
   fmt::print("{} points: {}; {} of one core in all\n", points.size(), words, duration_text(seconds));
-  for (const std::string& name : failed) fmt::print("not ended: {}, see {}\n", name, dir.messages(name));
-  for (const std::string& name : elsewhere) fmt::print("run elsewhere: {}\n", name);
+  for (const std::string& name : failed) tell_not_ended(dir, name);
+  for (const std::string& name : elsewhere) tell("run elsewhere: " + name);
   for (const std::string& name : beyond) fmt::print("far beyond a limit: {}\n", name);
   if (with_table) fmt::print("Table: {}\n", dir.table());
   return failed.empty() && elsewhere.empty() ? 0 : 3;

@@ -64,6 +64,10 @@ void SweepProgress::say(const std::string& line) const {
   if (!quiet_) tell_as_is(fmt::format("{}{}\n", isatty(STDERR_FILENO) ? "\r\033[K" : "", line));
 }
 
+void tell_not_ended(const CampaignDirectory& dir, const std::string& point) {
+  tell(fmt::format("not ended: {}, see {}", point, dir.messages(point)));
+}
+
 int tell_stop() {
   tell_as_is(fmt::format("ropewalk: stopped by signal {}; go on with the same command\n",
                          static_cast<int>(stop_signal)));

@@ -28,6 +28,9 @@ class SweepProgress {
   double work_left_ = 0, work_to_do_ = 0, began_, next_line_ = 0;
 };
 
+// Says on stderr, also with --quiet, where the messages of a point are that did not end.
+void tell_not_ended(const CampaignDirectory& dir, const std::string& point);
+
 // Says that a signal stopped the command, which may be given again. Returns its exit code.
 int tell_stop();
 

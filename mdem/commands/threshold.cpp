@@ -27,8 +27,7 @@ void take_known(ThresholdSearch& search, const std::string& trials) {
         others, all, trials));
 }
 
-void print_results(const CampaignDirectory& dir, const std::vector<PhasePoint>& points,
-                   const std::vector<std::string>& failed) {
+void print_results(const CampaignDirectory& dir, const std::vector<PhasePoint>& points) {
   double seconds = 0;
   std::size_t runs = 0;
   for (const auto& entry : fs::recursive_directory_iterator(dir.path + "/points"))
@@ -45,7 +44,6 @@ void print_results(const CampaignDirectory& dir, const std::vector<PhasePoint>& 
     if (const std::string remarks = p.remarks(); !remarks.empty()) fmt::print("  note: {}\n", remarks);
   }
   fmt::print("{} runs, {} of one core in all. Page: {}/thresholds.html\n", runs, duration_text(seconds), dir.path);
-  for (const std::string& name : failed) fmt::print("not ended: {}, see {}\n", name, dir.messages(name));
 }
 
 }  // namespace
@@ -76,7 +74,8 @@ int threshold_command(const ThresholdArguments& a) {
                              duration_text(steady_seconds() - began), search.words_of(p)));
   });
   if (stop_signal) return tell_stop();
-  print_results(dir, search.results(), failed);
+  print_results(dir, search.results());
+  for (const std::string& name : failed) tell_not_ended(dir, name);
   return failed.empty() ? 0 : 3;
 }
 

@@ -9,7 +9,10 @@
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
+#include <list>
 #include <utility>
+
+#include "io/file_group.hpp"
 
 #define XXH_INLINE_ALL
 #include <xxhash.h>
@@ -17,6 +20,7 @@
 namespace ropewalk {
 namespace {
 
+constexpr const char* not_written = "cannot be written";
 constexpr const char* part = ".part-";                          // of the name of a file that is being written
 constexpr std::size_t longest_stream = std::size_t{256} << 20;  // bytes of a file that is not a regular one
 
@@ -92,6 +96,19 @@ void flush_directory_of(const std::string& path) {
   if (fd.open()) uninterrupted([&] { return ::fsync(fd.get()); });
 }
 
+// Closed, and on the disk.
+void fill_part(const TemporaryFile& temporary, const std::string& path, std::string_view content) {
+  Descriptor fd(temporary.descriptor());
+  if (!fd.open()) throw file_error(path, not_written, errno);
+  struct stat old {};
+  if (::lstat(path.c_str(), &old) == 0 && S_ISREG(old.st_mode) && ::fchmod(fd.get(), old.st_mode & 0777) != 0)
+    throw file_error(path, not_written, errno);
+  if (!write_all(fd.get(), content)) throw file_error(path, not_written, errno);
+  if (uninterrupted([&] { return ::fsync(fd.get()); }) != 0) throw file_error(path, not_written, errno);
+  if (fd.close() != 0 && errno != EINTR)
+    throw file_error(path, not_written, errno);  // where interrupted it is closed
+}
+
 }  // namespace
 
 InputError file_error(const std::string& path, const char* what, int code) {
@@ -115,9 +132,9 @@ Descriptor opened_to_write(const std::string& path, int flags) {
   // A pipe that took its place meanwhile would hold open() up.
   Descriptor file(uninterrupted(
       [&] { return ::open(path.c_str(), flags | O_CREAT | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC, 0666); }));
-  if (!file.open()) throw file_error(path, "cannot be written", errno);
+  if (!file.open()) throw file_error(path, not_written, errno);
   struct stat status {};
-  if (::fstat(file.get(), &status) != 0) throw file_error(path, "cannot be written", errno);
+  if (::fstat(file.get(), &status) != 0) throw file_error(path, not_written, errno);
   if (!S_ISREG(status.st_mode)) throw InputError({path, 0, ""}, "is no regular file", "take it away");
   if (status.st_nlink > 1)
     throw InputError({path, 0, ""}, "has a second name (a hard link), and that file would be written as well",
@@ -151,26 +168,28 @@ std::string read_file(const std::string& path) {
 }
 
 void write_file_atomically(const std::string& path, std::string_view content, const std::string& keep_old_as) {
-  constexpr const char* what = "cannot be written";
   TemporaryFile temporary(path);
-  Descriptor fd(temporary.descriptor());
-  if (!fd.open()) throw file_error(path, what, errno);
-  struct stat old {};
-  if (::lstat(path.c_str(), &old) == 0 && S_ISREG(old.st_mode) && ::fchmod(fd.get(), old.st_mode & 0777) != 0)
-    throw file_error(path, what, errno);
-  if (!write_all(fd.get(), content)) throw file_error(path, what, errno);
-  if (uninterrupted([&] { return ::fsync(fd.get()); }) != 0) throw file_error(path, what, errno);
-  if (fd.close() != 0 && errno != EINTR) throw file_error(path, what, errno);  // where interrupted it is closed
+  fill_part(temporary, path, content);
   if (!keep_old_as.empty() && uninterrupted([&] { return ::rename(path.c_str(), keep_old_as.c_str()); }) != 0 &&
       errno != ENOENT)
-    throw file_error(keep_old_as, what, errno);
-  if (!temporary.rename_to(path)) throw file_error(path, what, errno);
+    throw file_error(keep_old_as, not_written, errno);
+  if (!temporary.rename_to(path)) throw file_error(path, not_written, errno);
   flush_directory_of(path);
+}
+
+void write_files_together(const std::vector<std::pair<std::string, std::string>>& files) {
+  std::list<TemporaryFile> parts;
+  for (const auto& [path, content] : files) fill_part(parts.emplace_back(path), path, content);
+  auto at = parts.begin();
+  for (const auto& [path, content] : files) {
+    if (!(at++)->rename_to(path)) throw file_error(path, not_written, errno);
+    flush_directory_of(path);
+  }
 }
 
 std::string new_part_of(const std::string& path) {
   TemporaryFile temporary(path);
-  if (temporary.descriptor() < 0) throw file_error(path, "cannot be written", errno);
+  if (temporary.descriptor() < 0) throw file_error(path, not_written, errno);
   return temporary.keep();
 }
 

@@ -102,7 +102,12 @@ void make_work_folder(const std::string& path, const char* option) {
                      "take it away, or choose another directory");
   fs::create_directories(path, error);
   if (error) throw file_error(path, "cannot be made", error.value());
-  write_file_atomically(path + "/" + work_mark, "ropewalk made this directory and removes it.\n");
+  try {
+    write_file_atomically(path + "/" + work_mark, "ropewalk made this directory and removes it.\n");
+  } catch (const InputError&) {
+    remove_whole(path);
+    throw;
+  }
 }
 
 void remove_work_folder(const std::string& path) {

@@ -127,7 +127,7 @@ DirectoryLock create_run_directory(const RunDirectory& dir, bool force) {
   fs::create_directories(dir.path, error);
   if (error)
     throw InputError({dir.path, 0, "--out"}, fmt::format("cannot be made: {}", error.message()),
-                     "choose a place that you may write to");
+                     remedy_for_errno(error.value()));
   DirectoryLock lock(dir.path);
   remove_inside(dir.path, belongs_to_a_run, of_a_run, "--force", is_lock_file);
   return lock;

@@ -12,6 +12,8 @@ class RunListener {
 
   // A remark, one line without the name of the program.
   virtual void tell(const std::string& line) = 0;
+  // A remark on the scene, before its first step.
+  virtual void tell_note(const std::string& note) { tell("note: " + note); }
   // A remark for a listener that wants to hear everything.
   virtual void tell_detail(const std::string&) {}
   // The input is good, and the first file is about to be written.

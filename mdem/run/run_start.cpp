@@ -39,7 +39,7 @@ void Run::tell_notes() const {
   for (const std::string& grade : grades_of(scene)) parts_.listener.tell_detail("parameters " + grade);
   for (const auto& notes :
        {warnings_of(scene, prepared), warmth_of(scene, prepared), limits_ahead(scene, prepared)})
-    for (const std::string& note : notes) parts_.listener.tell("note: " + note);
+    for (const std::string& note : notes) parts_.listener.tell_note(note);
 }
 
 void Run::begin_files() {

@@ -102,7 +102,8 @@ TEST_F(Campaign, FailedPointsAreNamedAndKept) {
   const Outcome o = run("sweep s.toml");
   EXPECT_EQ(o.code, 3);
   EXPECT_NE(o.out.find("1 failed, 1 finished"), std::string::npos) << o.out;
-  EXPECT_NE(o.out.find("not ended: moment_nN_nm-20000"), std::string::npos) << o.out;
+  EXPECT_NE(o.err.find("ropewalk: not ended: moment_nN_nm-20000"), std::string::npos) << o.err;
+  EXPECT_EQ(o.out.find("not ended"), std::string::npos) << o.out;
   EXPECT_NE(slurp(dir / "s" / "table.csv").find("moment_nN_nm-20000,20000,failed,"), std::string::npos);
   const auto written = fs::last_write_time(dir / "s" / "points" / "moment_nN_nm-20000" / "manifest.json");
   EXPECT_EQ(run("sweep s.toml").code, 3);

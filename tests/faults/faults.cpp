@@ -1,6 +1,6 @@
 // A library to be loaded before a program (LD_PRELOAD): one of its calls that change files fails, or the program is
 // killed there. Only calls on files in one directory count: open, write, pwrite, fsync, fdatasync, ftruncate,
-// rename, unlink.
+// rename, mkdir, unlink.
 //
 //   ROPEWALK_FAULTS_BELOW  the directory, absolute
 //   ROPEWALK_FAULT         HOW:N[:on]   at the Nth call, from 1; "on": from then on. HOW: kill (before the call),
@@ -10,11 +10,15 @@
 //   ROPEWALK_FAULTS_COUNT  file that takes the number of calls at the end
 //   ROPEWALK_FAULTS_MADE   file that is there once a fault was made, in whichever process: each counts from the
 //                          number of its parent on
+//   ROPEWALK_FAULTS_TOGETHER   file that holds one count for all processes
+//   ROPEWALK_FAULTS_CALL   the name of the only call that counts
 //
 // With HOW = memory the calls are those of operator new, and the directory does not matter. The Nth fails until the
 // program's new_handler has given something up; "on": and from then on all large ones fail.
 #include <dlfcn.h>
 #include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -27,11 +31,13 @@
 #include <cstring>
 #include <new>
 #include <string>
+#include <string_view>
 
 namespace {
 
+// Texts of the environment: a string would ask for memory, and that asks for the fault.
 struct Fault {
-  std::string how, below;
+  std::string_view how, below;
   long at = 0;
   bool on = false;
 
@@ -39,10 +45,10 @@ struct Fault {
     if (const char* text = std::getenv("ROPEWALK_FAULTS_BELOW")) below = text;
     const char* text = std::getenv("ROPEWALK_FAULT");
     if (!text) return;
-    const std::string all = text;
+    const std::string_view all = text;
     const std::size_t colon = all.find(':');
     how = all.substr(0, colon);
-    at = std::atol(all.c_str() + colon + 1);
+    at = std::atol(text + colon + 1);
     on = all.size() > 3 && all.compare(all.size() - 3, 3, ":on") == 0;
   }
 };
@@ -52,11 +58,24 @@ const Fault& fault() {
   return f;
 }
 
-std::atomic<long> calls{0};
-
 template <class F>
 F real(const char* name) {
   return reinterpret_cast<F>(dlsym(RTLD_NEXT, name));
+}
+
+// The number of calls so far.
+std::atomic<long>& calls() {
+  static std::atomic<long> own{0};
+  static std::atomic<long>* const counted = [] {
+    const char* path = std::getenv("ROPEWALK_FAULTS_TOGETHER");
+    const int fd =
+        path ? real<int (*)(const char*, int, ...)>("open")(path, O_RDWR | O_CREAT | O_CLOEXEC, 0666) : -1;
+    if (fd < 0 || real<int (*)(int, off_t)>("ftruncate")(fd, sizeof(long)) != 0) return &own;
+    void* shared = mmap(nullptr, sizeof(long), PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0);
+    close(fd);
+    return shared == MAP_FAILED ? &own : static_cast<std::atomic<long>*>(shared);
+  }();
+  return *counted;
 }
 
 bool is_below(const char* path) {
@@ -67,7 +86,7 @@ bool is_below(const char* path) {
     if (!getcwd(here, sizeof here)) return false;
     absolute = std::string(here) + "/" + path;
   }
-  const std::string& below = fault().below;
+  const std::string_view below = fault().below;
   return absolute.compare(0, below.size(), below) == 0;
 }
 
@@ -80,7 +99,7 @@ bool is_below(int fd) {
   return is_below(path);
 }
 
-int code_of(const std::string& how) {
+int code_of(std::string_view how) {
   if (how == "ENOSPC") return ENOSPC;
   if (how == "EDQUOT") return EDQUOT;
   if (how == "EINTR") return EINTR;
@@ -96,9 +115,10 @@ void note_the_fault() {
 }
 
 // The number of the call is counted here. True: it is to fail, with errno.
-bool fails(bool counts, bool* torn = nullptr) {
-  if (!counts || fault().how == "memory") return false;
-  const long k = ++calls;
+bool fails(const char* name, bool counts, bool* torn = nullptr) {
+  static const char* const only = std::getenv("ROPEWALK_FAULTS_CALL");
+  if (!counts || fault().how == "memory" || (only && std::strcmp(only, name) != 0)) return false;
+  const long k = ++calls();
   const Fault& f = fault();
   if (f.at == 0 || !(k == f.at || (f.on && k > f.at))) return false;
   note_the_fault();
@@ -123,7 +143,7 @@ void* allocated(std::size_t size, std::size_t alignment) {
   if (!here) {
     here = true;
     const Fault& f = fault();
-    const long k = f.how == "memory" ? ++calls : 0;
+    const long k = f.how == "memory" ? ++calls() : 0;
     here = false;
     const bool for_good = f.on && size > large;
     if (k > 0 && f.at > 0 && (k == f.at || (for_good && k > f.at))) do {
@@ -141,7 +161,7 @@ struct AtEnd {
   ~AtEnd() {
     const char* path = std::getenv("ROPEWALK_FAULTS_COUNT");
     if (std::FILE* file = path ? std::fopen(path, "w") : nullptr) {
-      std::fprintf(file, "%ld\n", calls.load());
+      std::fprintf(file, "%ld\n", calls().load());
       std::fclose(file);
     }
   }
@@ -176,7 +196,7 @@ int open(const char* path, int flags, ...) {
   const mode_t mode = flags & O_CREAT ? va_arg(rest, mode_t) : 0;
   va_end(rest);
   static const auto call = real<int (*)(const char*, int, ...)>("open");
-  return fails((flags & writing) && is_below(path)) ? -1 : call(path, flags, mode);
+  return fails("open", (flags & writing) && is_below(path)) ? -1 : call(path, flags, mode);
 }
 
 int open64(const char* path, int flags, ...) {
@@ -185,13 +205,13 @@ int open64(const char* path, int flags, ...) {
   const mode_t mode = flags & O_CREAT ? va_arg(rest, mode_t) : 0;
   va_end(rest);
   static const auto call = real<int (*)(const char*, int, ...)>("open64");
-  return fails((flags & writing) && is_below(path)) ? -1 : call(path, flags, mode);
+  return fails("open64", (flags & writing) && is_below(path)) ? -1 : call(path, flags, mode);
 }
 
 ssize_t write(int fd, const void* data, size_t size) {
   static const auto call = real<ssize_t (*)(int, const void*, size_t)>("write");
   bool torn = false;
-  if (fails(is_below(fd), &torn)) return -1;
+  if (fails("write", is_below(fd), &torn)) return -1;
   if (!torn) return call(fd, data, size);
   if (call(fd, data, size / 2) >= 0) raise(SIGKILL);
   return -1;
@@ -200,7 +220,7 @@ ssize_t write(int fd, const void* data, size_t size) {
 ssize_t pwrite(int fd, const void* data, size_t size, off_t at) {
   static const auto call = real<ssize_t (*)(int, const void*, size_t, off_t)>("pwrite");
   bool torn = false;
-  if (fails(is_below(fd), &torn)) return -1;
+  if (fails("pwrite", is_below(fd), &torn)) return -1;
   if (!torn) return call(fd, data, size, at);
   if (call(fd, data, size / 2, at) >= 0) raise(SIGKILL);
   return -1;
@@ -208,22 +228,27 @@ ssize_t pwrite(int fd, const void* data, size_t size, off_t at) {
 
 int fsync(int fd) {
   static const auto call = real<int (*)(int)>("fsync");
-  return fails(is_below(fd)) ? -1 : call(fd);
+  return fails("fsync", is_below(fd)) ? -1 : call(fd);
 }
 
 int fdatasync(int fd) {
   static const auto call = real<int (*)(int)>("fdatasync");
-  return fails(is_below(fd)) ? -1 : call(fd);
+  return fails("fdatasync", is_below(fd)) ? -1 : call(fd);
 }
 
 int ftruncate(int fd, off_t size) {
   static const auto call = real<int (*)(int, off_t)>("ftruncate");
-  return fails(is_below(fd)) ? -1 : call(fd, size);
+  return fails("ftruncate", is_below(fd)) ? -1 : call(fd, size);
 }
 
 int rename(const char* from, const char* to) {
   static const auto call = real<int (*)(const char*, const char*)>("rename");
-  return fails(is_below(to)) ? -1 : call(from, to);
+  return fails("rename", is_below(to)) ? -1 : call(from, to);
+}
+
+int mkdir(const char* path, mode_t mode) {  // which no signal interrupts
+  static const auto call = real<int (*)(const char*, mode_t)>("mkdir");
+  return fails("mkdir", fault().how != "EINTR" && is_below(path)) ? -1 : call(path, mode);
 }
 
 int flock(int fd, int operation) {
@@ -236,7 +261,7 @@ int flock(int fd, int operation) {
 
 int unlink(const char* path) {
   static const auto call = real<int (*)(const char*)>("unlink");
-  return fails(is_below(path)) ? -1 : call(path);
+  return fails("unlink", is_below(path)) ? -1 : call(path);
 }
 
 }  // extern "C"

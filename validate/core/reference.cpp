@@ -162,8 +162,10 @@ ReferenceTable reference(const CaseContext& context, const ParameterSet& set, co
     fs::create_directories(fs::path(context.work) / leaf_of_name(set));
     write_file_atomically((fs::path(context.work) / label).string(), reference_csv(table));
   } else {
+    const std::string path = (fs::path(atoms_folder(set)) / (name + ".csv")).string();
     fs::create_directories(atoms_folder(set));
-    write_file_atomically((fs::path(atoms_folder(set)) / (name + ".csv")).string(), reference_csv(table));
+    write_file_atomically(path, reference_csv(table));
+    table = read_reference(path);  // the digits that a later command finds
   }
   result.sources.push_back(fmt::format("{} (fresh, {} s of LAMMPS)", label, table.value("wall_seconds")));
   return table;

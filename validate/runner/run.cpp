@@ -14,6 +14,7 @@
 #include "core/reference.hpp"
 #include "io/clocks.hpp"
 #include "io/data_files.hpp"
+#include "io/disk_full.hpp"
 #include "io/failure.hpp"
 #include "io/files.hpp"
 #include "io/grade.hpp"
@@ -148,6 +149,7 @@ Outcome outcome_of(const Task& task, const Run& run) {
   const std::string work = (fs::path(run.arguments.out) / ("work-" + o.name)).string();
   make_work_folder(work, "--out");
   const double begin = steady_seconds();
+  bool names_files = false;  // of the work folder
   try {
     o.result = run_case(*task.of, context_of(task, run, work));
     fill_tubes(o);
@@ -155,9 +157,10 @@ Outcome outcome_of(const Task& task, const Run& run) {
     o.not_applicable = reason.what();
   } catch (const std::exception& e) {
     o.error = failure_words(e);
+    names_files = failure_code(e) == 3 && !dynamic_cast<const DiskFull*>(&e);
   }
   o.result.seconds = seconds_since(begin);
-  if (!run.arguments.fresh && o.error.empty()) remove_work_folder(work);
+  if (!run.arguments.fresh && !names_files) remove_work_folder(work);
   return o;
 }
 

@@ -6,7 +6,7 @@ namespace {
 constexpr const char* names[] = {"baseline", "AVX2", "AVX512"};
 
 VectorUnit best_unit() {
-#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__)
+#ifdef ROPEWALK_HAS_VECTOR_UNITS
   __builtin_cpu_init();
   if (__builtin_cpu_supports("x86-64-v4")) return VectorUnit::v4;
   if (__builtin_cpu_supports("x86-64-v3")) return VectorUnit::v3;

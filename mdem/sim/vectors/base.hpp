@@ -34,9 +34,9 @@
 #define VEC_AVX2 2
 #define VEC_BASE 4
 
-// Under the sanitizers there is the default set alone: one set shows the errors of all, and the checks in every vector
-// operation take the compiler minutes.
-#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__)
+// Under the sanitizers there is the default set alone: one set shows the errors of all, and the checks in every
+// vector operation take the compiler minutes. Clang does not know GCC's pragmas for the other sets.
+#ifdef ROPEWALK_HAS_VECTOR_UNITS
 #define VEC_HAS_AVX512
 #define VEC_HAS_AVX2
 #endif

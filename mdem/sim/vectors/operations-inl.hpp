@@ -465,7 +465,13 @@ VEC_INLINE Vec<D> GatherIndex(D, const TFromD<D>* table, VectorOf<I> index) {
 }
 template <class D, class I>
 VEC_INLINE VectorOf<D> TableLookupLanes(VectorOf<D> table, VectorOf<I> index) {
+#ifdef __clang__  // its shuffles want the index at compile time
+  typename VectorOf<D>::Lanes v;
+  for (std::size_t k = 0; k < D::lanes; ++k) v[k] = table.raw[static_cast<std::size_t>(index.raw[k]) % D::lanes];
+  return {v};
+#else
   return {__builtin_shuffle(table.raw, index.raw)};
+#endif
 }
 #if VEC_TARGET == VEC_AVX2
 // The same four numbers in both halves.
