@@ -28,9 +28,11 @@ double stored(const M& m) { return (m.account.potential.potential() - m.account.
 double end_tension(const M& m) {
   return 0.5 * (m.account.ends[upper_end].force.z() - m.account.ends[lower_end].force.z());
 }
-// eV ps^2/nm^3
+// eV ps^2/nm^3; none without elements.
 double mass_per_length(const M& m) {
-  return m.mass * m.topology.strands() / (m.topology.elements() * m.topology.longest_element());
+  const int elements = m.topology.elements();
+  return elements > 0 ? m.mass * m.topology.strands() / (elements * m.topology.longest_element())
+                      : std::numeric_limits<double>::quiet_NaN();
 }
 double torque(const M& m, End end, Eigen::Index axis) { return m.account.ends[end].torque[axis] / units::nN_nm; }
 

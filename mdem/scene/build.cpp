@@ -13,7 +13,7 @@
 #include "scene/scene_to_model.hpp"
 #include "scene/spacing.hpp"
 #include "scene/wound.hpp"
-#include "sim/dynamics/counter_random.hpp"
+#include "model/counter_random.hpp"
 
 namespace ropewalk {
 namespace {

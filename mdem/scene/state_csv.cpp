@@ -290,6 +290,11 @@ double state_element_length(const std::string& path) {
   return csv.next() && csv.next() ? stated_length(csv) : 0;
 }
 
+bool state_has_strands(const std::string& path) {
+  CsvReader csv(path);
+  return csv.next() && csv.next() && !stated_strands(csv).empty();
+}
+
 std::string state_csv(const Topology& topology, const State& s) {
   std::string text = fmt::format("{}\n# {}{}\n", whole_header, length_words, topology.types.front().element_length);
   if (topology.types.size() > 1) text += fmt::format("# {}{}\n", types_words, fmt::join(topology.tube_type, ","));

@@ -2,7 +2,8 @@
 // a line, those of a tube one after another along it, tubes numbered 0, 1, 2, ... in order. Empty lines and lines
 // that start with # are skipped. The quaternion turns the element's own z into its tube axis. The line below the
 // header, "# element_length_nm: 1.356", states the length of an element, and "# tube_types: 0,1,1" which of several
-// parameter sets each tube has; a file may leave them out.
+// parameter sets each tube has, "# strands_begin_with_tubes: 0,3" which tubes follow one another in line; a file may
+// leave them out.
 #pragma once
 
 #include <string>
@@ -22,6 +23,8 @@ void read_state_csv(const std::string& path, Topology& topology, State& state);
 
 // The length (nm) that a state file states; 0 where it states none. Throws InputError.
 double state_element_length(const std::string& path);
+// Whether the file says that its tubes follow one another in strands (Topology::strand_begin).
+bool state_has_strands(const std::string& path);
 
 // The file, with velocities, in all digits.
 std::string state_csv(const Topology& topology, const State& state);

@@ -101,6 +101,7 @@ std::vector<Recipe> recipes() {
        "19 strands of 100 nm, of tubes of 40 nm that end inside of the rope and are linked: pulled until the links break",
        {{"", calibrated()},
         {"rope", {{"tubes", "19"}, {"length_nm", "100"}, {"tube_length_nm", "40"}}},
+        {"damping", {{"contact_viscosity_eV_ps_per_nm2", "1"}}},
         grip("lower"),
         grip("upper", {{"z", "{ strain = 0.04, rate_per_ps = 0.0002 }"}}),
         {"links", {{"per_nm", "0.1"}, {"stiffness_nN_per_nm", "100"}, {"breaks_at_nN", "5"}}}}},

@@ -671,12 +671,12 @@ TEST_F(Faults, LostTails) {
   EXPECT_EQ(run("observe d").code, 0) << slurp(dir / "stderr.txt");
   // A log is not.
   begin("half");
-  fs::resize_file(dir / "d/log.csv", 1000);
+  fs::resize_file(dir / "d/log.csv", 2000);
   const std::string log = slurp(dir / "d/log.csv");
   const Outcome o = run(go_on);
   EXPECT_EQ(o.code, 2);
   EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << o.err;
-  EXPECT_THAT(o.err, HasSubstr("log.csv: has 1000 of the"));
+  EXPECT_THAT(o.err, HasSubstr("log.csv: has 2000 of the"));
   EXPECT_THAT(o.err, HasSubstr("bring it back from a copy, or start the run anew"));
   EXPECT_EQ(slurp(dir / "d/log.csv"), log) << "nothing is written";
 }

@@ -327,7 +327,7 @@ TEST_F(Surroundings, SweepsOfOneDirectory) {
     EXPECT_THAT(o.out, HasSubstr("forced 2\n")) << o.err;
     EXPECT_THAT(o.err, HasSubstr("ropewalk: w: is in use by ")) << o.err;
     EXPECT_THAT(o.out, HasSubstr("2 points: 2 running")) << o.err;
-    EXPECT_THAT(o.out, HasSubstr("run elsewhere: seed-1, by process ")) << o.err;
+    EXPECT_THAT(o.err, HasSubstr("run elsewhere: seed-1, by process ")) << o.err;
     EXPECT_THAT(o.out, HasSubstr("second 3\nw/points/seed-1/checkpoint.bin\nfirst 143\n")) << o.err;
     EXPECT_THAT(o.out, HasSubstr("2 points: 2 finished")) << o.err;
     EXPECT_THAT(o.out, HasSubstr("forced later 0\nmessages points scene.toml sweep.toml table.csv")) << o.err;

@@ -12,7 +12,7 @@
 #include "scene/loads/torque.hpp"
 #include "scene/loads/twist.hpp"
 #include "sim/contact/line/law.hpp"
-#include "sim/dynamics/counter_random.hpp"
+#include "model/counter_random.hpp"
 #include "sim/dynamics/langevin.hpp"
 #include "sim/dynamics/simulation.hpp"
 #include "sim/dynamics/verlet.hpp"

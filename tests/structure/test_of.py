@@ -19,7 +19,7 @@ ELSEWHERE = {
     # One body holds all that sums forces to the reference over all pairs; the motion is held to theory.
     "sim": "unit/forces_test.cpp",
     "sim/dynamics": "physics/stepping_test.cpp",
-    "sim/dynamics/counter_random": "physics/thermostat_test.cpp",
+    "model/counter_random": "physics/thermostat_test.cpp",
     "sim/dynamics/fire": "physics/chain_test.cpp",
     "sim/dynamics/gauges": "physics/grip_test.cpp",
     "sim/dynamics/langevin": "physics/thermostat_test.cpp",

@@ -27,8 +27,11 @@ void check_rope(const TomlTable& t, const Scene& scene, RopeSource& rope) {
                   fmt::format("at least 3 elements, {:.4g} nm, are needed", 3 * scene.element_length));
   check_size(t, "length_nm", rope.tubes, elements);
   const double least = least_elements * scene.element_length;
-  for (const char* key : {"tube_length_deviation_nm", "gap_nm", "stagger"})
-    if (t.has(key) && !(rope.tube_length > 0))
+  const std::pair<const char*, bool> of_ends[] = {{"tube_length_deviation_nm", rope.deviation > 0},
+                                                  {"gap_nm", rope.gap > 0},
+                                                  {"stagger", rope.stagger != RopeSource::Stagger::random}};
+  for (const auto& [key, said] : of_ends)
+    if (said && !(rope.tube_length > 0))
       throw t.error(key, "is about tubes that end inside of the rope", "give tube_length_nm too");
   if (rope.tube_length > 0 && rope.tube_length < least)
     throw t.error("tube_length_nm",

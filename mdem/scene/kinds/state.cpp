@@ -20,6 +20,11 @@ SceneKind state_kind() {
        {}});
 }
 
+// LAMMPS gets tubes without their strands, and loads would hold the ends inside.
+std::string StateSource::not_for_lammps() const {
+  return std::filesystem::exists(path_) && state_has_strands(path_) ? "state.file with strands" : "";
+}
+
 void StateSource::place(const Scene&, double, Random&, Topology& topology, State& state) const {
   read_state_csv(path_, topology, state);
 }

@@ -11,6 +11,7 @@ class StateSource : public Source {
 
   void place(const Scene&, double spacing, Random&, Topology&, State&) const override;
   std::string file() const override { return path_; }
+  std::string not_for_lammps() const override;
 
  private:
   std::string path_;

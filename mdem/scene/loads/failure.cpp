@@ -19,7 +19,7 @@
 #include "scene/key_table.hpp"
 #include "scene/loads/drive_kind.hpp"
 #include "scene/scene.hpp"
-#include "sim/dynamics/counter_random.hpp"
+#include "model/counter_random.hpp"
 #include "sim/forces/force_term.hpp"
 
 namespace ropewalk {
@@ -29,7 +29,7 @@ constexpr double never_breaks = std::numeric_limits<double>::infinity();
 constexpr double least_share = 0.1;  // of the mean strain
 
 struct FailureLaw {
-  double strain = never_breaks, deviation = 0;
+  double strain = 0, deviation = 0;
   double moment = never_breaks;  // eV
   std::uint64_t seed = 1;
 
@@ -134,14 +134,10 @@ class FailureDrive : public Drive {
 
   SceneTable table() const override;
   std::string words() const override {
-    const std::string by_strain =
-        law.strain < never_breaks ? fmt::format("strained by {:.4g}{}", law.strain,
-                                                law.deviation > 0 ? fmt::format(" ± {:.3g}", law.deviation) : "")
-                                  : "";
-    const std::string by_moment =
-        law.moment < never_breaks ? fmt::format("bent with {:.4g} nN nm", law.moment / units::nN_nm) : "";
-    return fmt::format("tubes break where they are {}{}{}", by_strain,
-                       by_strain.empty() || by_moment.empty() ? "" : " or ", by_moment);
+    return fmt::format(
+        "tubes break where they are strained by {:.4g}{}{}", law.strain,
+        law.deviation > 0 ? fmt::format(" ± {:.3g}", law.deviation) : "",
+        law.moment < never_breaks ? fmt::format(" or bent with {:.4g} nN nm", law.moment / units::nN_nm) : "");
   }
   void refuse(const TomlTable& top, const Scene& scene) const override {
     if (scene.has_ends(Ends::endless))
@@ -154,7 +150,7 @@ class FailureDrive : public Drive {
   void warn(const Scene& scene, const Topology&, const LoadsAndConstraints&,
             std::vector<std::string>& warnings) const override {
     for (const ParameterSet& set : scene.sets)
-      if (law.strain < never_breaks && set.validity.stretch > 0 && law.strain > set.validity.stretch)
+      if (set.validity.stretch > 0 && law.strain > set.validity.stretch)
         warnings.push_back(
             fmt::format("Tubes break at a strain of {:.3g}, and the bonds of {} were fitted up to {:.3g}: what "
                         "they hold in between is "
@@ -166,14 +162,6 @@ class FailureDrive : public Drive {
   std::string not_for_lammps() const override { return "failure"; }
 };
 
-void check_failure(const TomlTable& t, const Scene&, FailureDrive& failure) {
-  const FailureLaw& law = failure.law;
-  if (!(law.strain < never_breaks) && !(law.moment < never_breaks))
-    throw t.error("strain", "is missing, and so is moment_nN_nm", "say at what a tube breaks");
-  if (law.deviation > 0 && !(law.strain < never_breaks))
-    throw t.error("strain_deviation", "belongs to strain", "give that too");
-}
-
 const KeyTable<FailureDrive>& failure_table() {
   using Key = KeyOf<FailureDrive>;
   static const KeyTable<FailureDrive> table = {
@@ -181,7 +169,7 @@ const KeyTable<FailureDrive>& failure_table() {
       "tubes break; without this table they do not, at whatever load",
       {Key::number(
            "strain", unit::none, Bounds::range(0.001, 1), [](auto& d) -> auto& { return d.law.strain; },
-           otherwise("0.16", "never"),
+           required("0.16"),
            "of a bond, at which it breaks: 0.16 of defect-free tubes (DOI 10.1103/PhysRevB.65.235430), 0.02 to "
            "0.12 "
            "in experiments (DOI 10.1126/science.287.5453.637)"),
@@ -192,8 +180,11 @@ const KeyTable<FailureDrive>& failure_table() {
            "moment_nN_nm", unit::nN_nm, Bounds::positive(1e6), [](auto& d) -> auto& { return d.law.moment; },
            otherwise("200", "never"), "bending moment at which a bond breaks"),
        Key::integer(
-           "seed", 0, 1000000000, [](auto& d) -> auto& { return d.law.seed; }, standard(), "of the scatter")},
-      check_failure};
+           "seed", 0, 1000000000, [](auto& d) -> auto& { return d.law.seed; }, otherwise("1", "start.seed"),
+           "of the scatter")},
+      [](const TomlTable& t, const Scene& scene, FailureDrive& failure) {
+        if (!t.has("seed")) failure.law.seed = scene.start.seed;
+      }};
   return table;
 }
 

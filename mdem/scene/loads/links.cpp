@@ -45,7 +45,7 @@ class LinksDrive : public Drive {
                     law.reach),
         "raise reach_nm or per_nm, or bring the tubes nearer");
   }
-  std::string why_not_lengthened() const override { return between.empty() ? "" : "links name elements by number"; }
+  std::string why_not_split() const override { return between.empty() ? "" : "links name elements by number"; }
   std::string not_for_lammps() const override { return "links"; }
 
  private:
@@ -121,6 +121,7 @@ void read_linked_types(const TomlTable& t, const Scene& scene, LinksDrive& links
 void check_links(const TomlTable& t, const Scene& scene, LinksDrive& links) {
   LinkLaw& law = links.law;
   links.path = scene.path;
+  if (!t.has("seed")) law.seed = scene.start.seed;
   if (!t.has("shear_stiffness_nN_per_nm")) law.shear = law.stretch;
   if (!(law.density > 0 || law.at_ends > 0 || law.forming > 0 || !links.between.empty()))
     throw t.error("per_nm", "is 0, and so is everything else that places links",
@@ -157,8 +158,7 @@ const KeyTable<LinksDrive>& links_table() {
        Key::custom("between", "", otherwise("[0, 5, 1, 5]", "none"),
                    "links by name: tube, element, other tube, its element, and so on; numbers from 0, negative "
                    "elements from the end",
-                   read_links_between)
-           .that_numbers_elements(),
+                   read_links_between),
        Key::number(
            "stiffness_nN_per_nm", spring, Bounds::positive(1e5), [](auto& d) -> auto& { return d.law.stretch; },
            required("100"), "force per stretch of a link"),
@@ -188,7 +188,8 @@ const KeyTable<LinksDrive>& links_table() {
        Key::custom("types", "", otherwise("[0, 1]", "all tubes"), "the two tube types that they join, from 0",
                    read_linked_types),
        Key::integer(
-           "seed", 0, 1000000000, [](auto& d) -> auto& { return d.law.seed; }, standard(), "of the random places")},
+           "seed", 0, 1000000000, [](auto& d) -> auto& { return d.law.seed; }, otherwise("1", "start.seed"),
+           "of the random places")},
       check_links};
   return table;
 }

@@ -150,7 +150,7 @@ class TetherDrive : public Drive {
       throw top.error("tether", "does not go with [periodic]: the images of the slice have no tethers",
                       "take one of the two away");
   }
-  void add_terms(const Scene&, const Topology& topology, const State&, Interaction& interaction) const override {
+  void add_terms(const Scene&, const Topology& topology, const State& /*start*/, Interaction& interaction) const override {
     add_term(std::make_shared<Tether>(std::array<TetherEnd, 2>{on(topology, from), on(topology, to)}, k, rest, breaks_at),
              interaction);
   }

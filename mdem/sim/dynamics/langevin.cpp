@@ -5,7 +5,7 @@
 
 #include "model/contract.hpp"
 #include "model/units.hpp"
-#include "sim/dynamics/counter_random.hpp"
+#include "model/counter_random.hpp"
 #include "sim/threads/vector_unit.hpp"
 
 namespace ropewalk {

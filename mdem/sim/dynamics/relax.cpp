@@ -10,7 +10,7 @@
 
 #include "model/contract.hpp"
 #include "model/error.hpp"
-#include "sim/dynamics/counter_random.hpp"
+#include "model/counter_random.hpp"
 #include "sim/dynamics/fire.hpp"
 #include "sim/dynamics/simulation.hpp"
 #include "sim/state/motion.hpp"

@@ -7,7 +7,7 @@
 #include "model/units.hpp"
 #include "scene/prepare.hpp"
 #include "scene/scene_toml.hpp"
-#include "sim/dynamics/counter_random.hpp"
+#include "model/counter_random.hpp"
 #include "sim/dynamics/simulation.hpp"
 
 namespace ropewalk {

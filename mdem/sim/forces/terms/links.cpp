@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "model/contract.hpp"
-#include "sim/dynamics/counter_random.hpp"
+#include "model/counter_random.hpp"
 #include "sim/neighbours/cell_grid.hpp"
 #include "sim/threads/span.hpp"
 
