@@ -53,6 +53,20 @@ double largest_curvature(const Topology& topology, const State& state, int tube)
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
+// nm^2: for each strand a cell of the packing, of its own kind of tube where there are several.
+double area_of(const Topology& topology, const LoadingReference& reference) {
+  if (!(reference.cell > 0)) return none;
+  if (topology.types.size() < 2 || !reference.law) return reference.cell * topology.strands();
+  const Topology strands = strands_of(topology);
+  double sum = 0;
+  for (const int type : strands.tube_type) {
+    const double apart = reference.law->parallel_distance(
+        {type, type}, topology.types[static_cast<std::size_t>(type)].element_length);
+    sum += 0.5 * std::sqrt(3.0) * apart * apart;
+  }
+  return sum;
+}
+
 // Whether slip has a value: only between strands of one length that run the same way at the start.
 bool knows_slip(const Topology& topology, const LoadingReference& reference) {
   return topology.tubes() < 2 || !reference.radius.empty();
@@ -217,7 +231,7 @@ Loading loading(const Topology& topology, const State& state, const LoadingRefer
   const Topology strands = strands_of(topology);
   for (const double slip : slips(strands, state, reference)) out.slip = std::max(out.slip, slip);
   if (!knows_slip(topology, reference)) out.slip = none;
-  out.area = reference.cell > 0 ? reference.cell * topology.strands() : none;
+  out.area = area_of(topology, reference);
   out.core_pressure = none;
   if (reference.law && !reference.core.empty() && reference.cell > 0) {
     out.core_pressure = 0;

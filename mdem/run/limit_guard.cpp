@@ -39,7 +39,7 @@ double LimitGuard::drift() const {
 StopReason LimitGuard::check(bool with_pressure) {
   const Topology& topology = moving_.prepared.topology;
   const std::vector<std::string> passed = watch_.check(
-      moving_.simulation.tubes_now(), moving_.state(), moving_.simulation.list(),
+      topology, moving_.simulation.tubes_now(), moving_.state(), moving_.simulation.list(),
       {drift(), moving_.relaxes() ? std::numeric_limits<double>::quiet_NaN() : moving_.account().kinetic},
       with_pressure);
   for (const std::string& line : passed) listener_.tell(line);

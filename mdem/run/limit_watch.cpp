@@ -39,10 +39,11 @@ void LimitWatch::inherit_from(const std::vector<LimitRecord>& earlier, std::int6
     if (r.passed_at_step > step) r.passed = false;
 }
 
-std::vector<std::string> LimitWatch::check(const Topology& topology, const State& state, const NeighbourList& list,
-                                           const RunEnergies& energies, bool with_pressure) {
+std::vector<std::string> LimitWatch::check(const Topology& topology, const Topology& tubes_now, const State& state,
+                                           const NeighbourList& list, const RunEnergies& energies,
+                                           bool with_pressure) {
   std::vector<std::string> lines;
-  Peaks now = peaks(topology, state, list, watched_);
+  Peaks now = peaks(tubes_now, state, list, watched_);
   for (std::size_t k = 0; k < limit_count; ++k) {
     const auto limit = limit_kinds()[k].limit;
     if (limit == &Limits::pressure && with_pressure) now[k] = pressure_peak(topology, state, watched_);

@@ -30,9 +30,14 @@ class LimitWatch {
   // split, without those passed after `step`.
   void inherit_from(const std::vector<LimitRecord>& earlier, std::int64_t step);
 
-  // One line for each limit that is passed for the first time. The pressure costs several steps.
+  // One line for each limit that is passed for the first time. The pressure costs several steps. `now`: the tubes
+  // where they have not broken (Simulation::tubes_now).
+  std::vector<std::string> check(const Topology& topology, const Topology& now, const State& state,
+                                 const NeighbourList& list, const RunEnergies& energies, bool with_pressure);
   std::vector<std::string> check(const Topology& topology, const State& state, const NeighbourList& list,
-                                 const RunEnergies& energies, bool with_pressure);
+                                 const RunEnergies& energies, bool with_pressure) {
+    return check(topology, topology, state, list, energies, with_pressure);
+  }
 
   // Whether at the last check a limit was passed that shorter elements would cure.
   bool finer_would_help() const { return finer_would_help_; }

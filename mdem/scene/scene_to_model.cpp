@@ -35,7 +35,9 @@ int elements_held(const Scene& scene, int tube) {
 }
 
 double free_length(const Scene& scene, const Topology& topology, int tube) {
-  return std::max(1, topology.length_of(tube) - elements_held(scene, tube)) * topology.type_of(tube).element_length;
+  const double holes = topology.strand_begin.empty() ? topology.strand_holes : 0;
+  return std::max(1, topology.length_of(tube) - elements_held(scene, tube)) * topology.type_of(tube).element_length +
+         holes;
 }
 
 namespace {

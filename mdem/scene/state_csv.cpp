@@ -98,10 +98,11 @@ std::vector<int> stated_strands(const CsvReader& csv) {
     const char* at = text.c_str();
     for (char* end = nullptr;; at = end + 1) {
       const long tube = std::strtol(at, &end, 10);
-      if (end == at || tube != (first.empty() ? 0 : std::max<long>(tube, first.back() + 1L)) || tube >= max_elements ||
-          (*end != ',' && *end != '\0'))
+      if (end == at || tube != (first.empty() ? 0 : std::max<long>(tube, first.back() + 1L)) ||
+          tube >= max_elements || (*end != ',' && *end != '\0'))
         csv.fail("", fmt::format("the comment above says \"{}\" of the strands", printable(text, 40)),
-                 "write the first tube of each strand, rising from 0, with commas between them, or take the comment away");
+                 "write the first tube of each strand, rising from 0, with commas between them, or take the "
+                 "comment away");
       first.push_back(static_cast<int>(tube));
       if (*end == '\0') return first;
     }
@@ -157,6 +158,17 @@ class StateReader {
                                    begin.back(), topology_.tubes()),
                        "take the comment away, or complete the file");
     begin.push_back(topology_.tubes());
+    // Along the chord of both elements at a hole.
+    double holes = 0;
+    for (int t = 0; t < topology_.tubes(); ++t) {
+      if (topology_.begins_strand(t)) {
+        holes = 0;
+        continue;
+      }
+      const auto i = static_cast<std::size_t>(topology_.tube_begin[static_cast<std::size_t>(t)]);
+      holes += (rows_[i].position - rows_[i - 1].position).norm() - element_length_;
+      topology_.strand_holes = std::max(topology_.strand_holes, holes);
+    }
   }
 
   // Compares the element length that the file states with the one that its elements are read with.
@@ -282,6 +294,7 @@ void read_state_csv(const std::string& path, Topology& topology, State& state) {
   topology.tube_begin = {0};
   topology.tube_type.clear();
   topology.strand_begin.clear();
+  topology.strand_holes = 0;
   state = StateReader(path, topology).read();
 }
 

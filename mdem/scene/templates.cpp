@@ -98,7 +98,7 @@ std::vector<Recipe> recipes() {
         grip("upper",
              {{"tubes", "[0, 1, 2, 3, 4, 5, 6]"}, {"z", "{ displacement_nm = 2, rate_nm_per_ps = 0.01 }"}})}},
       {"strands",
-       "19 strands of 100 nm, of tubes of 40 nm that end inside of the rope and are linked: pulled until the links break",
+       "19 strands of 100 nm, of tubes of 40 nm that end inside of the rope and are linked: pulled until it parts",
        {{"", calibrated()},
         {"rope", {{"tubes", "19"}, {"length_nm", "100"}, {"tube_length_nm", "40"}}},
         {"damping", {{"contact_viscosity_eV_ps_per_nm2", "1"}}},

@@ -13,7 +13,8 @@
 namespace ropewalk {
 namespace {
 
-constexpr int least_elements = 3;  // of a tube
+constexpr int least_elements = 3;      // of a tube
+constexpr double hardest_push = 0.15;  // nm, of ends in line
 
 void check_rope(const TomlTable& t, const Scene& scene, RopeSource& rope) {
   const auto [below, above] = nearest_hexagonal(rope.tubes);
@@ -85,7 +86,9 @@ SceneKind rope_kind() {
             &RopeSource::stagger, standard(),
             "ends of neighbouring tubes: \"none\" at one height, \"brick\" a third of a tube apart, \"random\""),
         Key::number("gap_nm", unit::nm, Bounds::positive(10), &RopeSource::gap,
-                    otherwise("1.2", "where the ends rest"), "between the walls of two tubes in line")},
+                    otherwise("1.5", "where the ends rest"),
+                    "least hole between the walls of two tubes in line; holes grow until all strands have as many "
+                    "elements")},
        check_rope});
 }
 
@@ -119,7 +122,7 @@ std::vector<int> RopeSource::cuts(int strand_shift, double element_length, doubl
   const int n = whole_elements(length, element_length);
   const auto drawn = [&] {
     const double drawn_length = deviation > 0 ? tube_length + deviation * random.normal() : tube_length;
-    return std::clamp(drawn_length, least_elements * element_length, 2 * tube_length) + gap_here;
+    return std::clamp(drawn_length, least_elements * element_length, 2 * tube_length);
   };
   // The first tube is the rest of one that began below the rope.
   double part = 1;
@@ -127,9 +130,10 @@ std::vector<int> RopeSource::cuts(int strand_shift, double element_length, doubl
   if (stagger == Stagger::random) part = random.uniform();
   std::vector<int> out;
   int last = 0;
-  for (double at = part * drawn();; at += drawn()) {
-    const int cut = static_cast<int>(std::lround(at / element_length));
-    if (cut > n - least_elements) return out;
+  for (double tubes_so_far = part * drawn();; tubes_so_far += drawn()) {
+    const int cut = static_cast<int>(std::lround(tubes_so_far / element_length));
+    if (tubes_so_far + static_cast<double>(out.size() + 1) * gap_here > (n - least_elements) * element_length)
+      return out;
     if (cut < last + least_elements) continue;
     out.push_back(cut);
     last = cut;
@@ -139,7 +143,14 @@ std::vector<int> RopeSource::cuts(int strand_shift, double element_length, doubl
 // All strands have the same number of elements and the length of the rope; gaps take what the elements leave.
 void RopeSource::place_strands(const Scene& scene, double spacing_of_tubes, Random& random, Topology& topology,
                                State& state) const {
-  const double a = scene.element_length, least_gap = gap > 0 ? gap : coaxial_gap(scene);
+  const double a = scene.element_length, rests = coaxial_gap(scene), least_gap = gap > 0 ? gap : rests;
+  if (least_gap < rests - hardest_push)
+    throw InputError(
+        {scene.path, 0, "rope.gap_nm"},
+        fmt::format("is {:.4g} nm, and ends of tubes rest {:.4g} nm apart by this contact law: they would be "
+                    "driven into one another",
+                    least_gap, rests),
+        fmt::format("take at least {:.3g}", rests - hardest_push));
   const std::vector<std::pair<double, double>> at = places(spacing_of_tubes);
   std::vector<std::vector<int>> cuts_of;
   std::size_t most = 0;
@@ -166,6 +177,7 @@ void RopeSource::place_strands(const Scene& scene, double spacing_of_tubes, Rand
       for (; from < to; ++from, z += a) positions.emplace_back(at[s].first, at[s].second, z);
       z += here;
     }
+    if (cut.size() > 1) topology.strand_holes = (whole - elements) * a;
     topology.strand_begin.push_back(topology.tubes());
   }
   state = State(positions.size());

@@ -13,13 +13,13 @@
 #include <limits>
 #include <stdexcept>
 
+#include "model/counter_random.hpp"
 #include "model/error.hpp"
 #include "observe/bending.hpp"
 #include "scene/bounds.hpp"
 #include "scene/key_table.hpp"
 #include "scene/loads/drive_kind.hpp"
 #include "scene/scene.hpp"
-#include "model/counter_random.hpp"
 #include "sim/forces/force_term.hpp"
 
 namespace ropewalk {
@@ -178,12 +178,15 @@ const KeyTable<FailureDrive>& failure_table() {
            standard(), "standard deviation of that strain from bond to bond, as defects make it"),
        Key::number(
            "moment_nN_nm", unit::nN_nm, Bounds::positive(1e6), [](auto& d) -> auto& { return d.law.moment; },
-           otherwise("200", "never"), "bending moment at which a bond breaks"),
+           otherwise("15", "never"), "bending moment at which a bond breaks too"),
        Key::integer(
            "seed", 0, 1000000000, [](auto& d) -> auto& { return d.law.seed; }, otherwise("1", "start.seed"),
            "of the scatter")},
       [](const TomlTable& t, const Scene& scene, FailureDrive& failure) {
         if (!t.has("seed")) failure.law.seed = scene.start.seed;
+        if (failure.law.deviation > 0.34 * failure.law.strain)
+          throw t.error("strain_deviation", "is more than a third of strain: some bonds would break at rest",
+                        fmt::format("take at most {:.2g}", failure.law.strain / 3));
       }};
   return table;
 }

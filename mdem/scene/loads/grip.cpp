@@ -552,7 +552,8 @@ void GripDrive::add_loads(const Scene& scene, const Topology& topology, const In
     if (on.all_tubes && !(load.end == lower_end ? topology.begins_strand(t) : topology.ends_strand(t))) continue;
     const int length = topology.length_of(t);
     free = std::max(free, free_length(scene, strands, strands.tube_of(topology.tube_begin[t])));
-    if (2 * load.depth > length)
+    const bool both = topology.begins_strand(t) && topology.ends_strand(t);
+    if ((both ? 2 : 1) * load.depth > length)
       throw InputError({scene.path, 0, "grip.elements"},
                        fmt::format("is {}, and tube {} has {}", load.depth, t, length),
                        "leave half of each tube to the other end");

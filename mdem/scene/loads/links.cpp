@@ -6,8 +6,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "model/error.hpp"
+#include "model/segments.hpp"
 #include "model/units.hpp"
 #include "scene/bounds.hpp"
 #include "scene/key_table.hpp"
@@ -38,11 +40,14 @@ class LinksDrive : public Drive {
   }
   void refuse_start(const Scene&, const Topology& topology, const State& state,
                     const LoadsAndConstraints&) const override {
-    if (law.forming > 0 || law.placed_at > 0 || !at_start(topology, state).empty()) return;
+    if (law.forming > 0 || law.placed_at > 0 || !(law.density > 0 || law.at_ends > 0 || !between.empty())) return;
+    if (!at_start(topology, state).empty()) return;
     throw InputError(
         {path, 0, "links"},
-        fmt::format("none is placed: no two of the tubes face each other within {:.3g} nm between their walls",
-                    law.reach),
+        fmt::format(
+            "none is placed: no two tubes that they join face each other within {:.3g} nm between their walls, or "
+            "the number per length is so small that chance gave none",
+            law.reach),
         "raise reach_nm or per_nm, or bring the tubes nearer");
   }
   std::string why_not_split() const override { return between.empty() ? "" : "links name elements by number"; }
@@ -51,6 +56,19 @@ class LinksDrive : public Drive {
  private:
   std::vector<LinkPlace> at_start(const Topology& topology, const State& state) const {
     if (law.placed_at > 0) return {};
+    for (const auto& [a, b] : pairs(topology)) {
+      const auto i = static_cast<std::size_t>(a), j = static_cast<std::size_t>(b);
+      const TubeType &of_a = topology.type_of_element(a), &of_b = topology.type_of_element(b);
+      const double apart =
+          std::sqrt(squared_segment_distance(state.position[j] - state.position[i], axis_of(state.orientation[i]),
+                                             axis_of(state.orientation[j]), 0.5 * of_a.element_length,
+                                             0.5 * of_b.element_length)) -
+          of_a.radius - of_b.radius;
+      if (apart > law.reach)
+        throw InputError({path, 0, "links.between"},
+                         fmt::format("links elements {} and {} whose walls are {:.3g} nm apart", a, b, apart),
+                         fmt::format("name elements that touch, or raise reach_nm above {:.3g}", law.reach));
+    }
     return placed_links(law, topology, state, pairs(topology));
   }
   std::vector<std::pair<int, int>> pairs(const Topology& topology) const {
@@ -121,11 +139,17 @@ void read_linked_types(const TomlTable& t, const Scene& scene, LinksDrive& links
 void check_links(const TomlTable& t, const Scene& scene, LinksDrive& links) {
   LinkLaw& law = links.law;
   links.path = scene.path;
-  if (!t.has("seed")) law.seed = scene.start.seed;
+  // Each table has places of its own.
+  const auto before = static_cast<std::uint64_t>(scene.drives_of<LinksDrive>().size());
+  if (!t.has("seed")) law.seed = scene.start.seed + (before << 32);
   if (!t.has("shear_stiffness_nN_per_nm")) law.shear = law.stretch;
-  if (!(law.density > 0 || law.at_ends > 0 || law.forming > 0 || !links.between.empty()))
-    throw t.error("per_nm", "is 0, and so is everything else that places links",
+  // A typed 0 is the control of a sweep.
+  if (!t.has("per_nm") && !(law.at_ends > 0 || law.forming > 0 || !links.between.empty()))
+    throw t.error("per_nm", "is missing, and so is everything else that places links",
                   "give per_nm, at_ends, between or forming_per_nm_ps");
+  if (law.rest > law.reach && t.has("rest_nm"))
+    throw t.error("rest_nm", fmt::format("is {:.4g} nm, and links form within {:.4g} nm", law.rest, law.reach),
+                  "take at most reach_nm: longer links would push the tubes apart");
   if (law.placed_at > 0 && !(law.density > 0 || law.at_ends > 0))
     throw t.error("placed_at_ps", "is for links that per_nm or at_ends place",
                   "give one of them, or take this away");
@@ -210,7 +234,9 @@ DriveKind links_drive() {
             return std::make_shared<const LinksDrive>(links_table().read(t, scene));
           },
           "energy of the links",
-          {{"links_lost_eV", "eV", "energy that broken links have lost since the start", &TermAccount::lost},
+          {{"links_lost_eV", "eV",
+            "energy that broken links have lost since the start, less what links had as they formed",
+            &TermAccount::lost},
            {"links_formed", "", "links at the start, and those that have formed since", &TermAccount::begun},
            {"links_broken", "", "links that have broken since the start", &TermAccount::events}}};
 }

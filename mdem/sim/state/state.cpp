@@ -24,6 +24,7 @@ Topology cut_behind(const Topology& topology, const std::vector<char>& flags) {
   ROPEWALK_EXPECTS(static_cast<int>(flags.size()) == topology.elements() && !topology.part);
   Topology cut;
   cut.types = topology.types;
+  cut.strand_holes = topology.strand_holes;
   cut.strand_begin = {0};
   for (int t = 0; t < topology.tubes(); ++t) {
     int begin = topology.tube_begin[t];
@@ -41,6 +42,7 @@ Topology strands_of(const Topology& topology) {
   if (topology.strand_begin.empty()) return topology;
   Topology strands;
   strands.types = topology.types;
+  strands.strand_holes = topology.strand_holes;
   for (int s = 0; s < topology.strands(); ++s) {
     const auto first = static_cast<std::size_t>(topology.strand_begin[static_cast<std::size_t>(s)]),
                behind = static_cast<std::size_t>(topology.strand_begin[static_cast<std::size_t>(s) + 1]);

@@ -123,6 +123,7 @@ struct Topology {
   // A strand is a row of tubes that follow one another in line, as in a rope of finite tubes: the first tube of each
   // strand, and the number of tubes. Empty: each tube is a strand.
   std::vector<int> strand_begin;
+  double strand_holes = 0;  // nm, between the tubes of a strand at the start: their sum, of the strand with most
   std::optional<PartOfScene> part;  // none: these elements are the scene
 
   int tubes() const { return static_cast<int>(tube_begin.size()) - 1; }

@@ -13,8 +13,9 @@
 namespace ropewalk {
 namespace {
 
-constexpr double never = -1;            // ps
-constexpr double forming_interval = 1;  // ps
+constexpr double never = -1;                         // ps
+constexpr double forming_interval = 1;               // ps
+constexpr std::uint32_t room_question = 0xFFFFFFFF;  // of drawn(), that no link asks
 
 // --- where tubes face each other -----------------------------------------------------------------------
 
@@ -138,6 +139,7 @@ struct LinkAction {
   Vector3 force, torque_a, torque_b;  // the force on a; b has the opposite one
   Vector3 place;                      // between its points
   double energy = 0;
+  double pull = 0;  // the size of the force, without what pushes the walls apart
 };
 
 constexpr std::size_t numbers_of_link = 21;
@@ -182,8 +184,8 @@ class LinkTerm : public ForceTerm {
       Link& link = links_[k];
       if (link.broke != never) continue;
       LinkAction& now = actions_[k];
-      const bool breaks = (law_.strength > 0 && now.force.norm() > law_.strength) ||
-                          (law_.toughness > 0 && now.energy > law_.toughness);
+      const bool breaks =
+          (law_.strength > 0 && now.pull > law_.strength) || (law_.toughness > 0 && now.energy > law_.toughness);
       if (!breaks) continue;
       link.broke = state.time;
       link.broke_at = now.place;
@@ -315,6 +317,9 @@ class LinkTerm : public ForceTerm {
     out.torque_b = -arm_b.cross(out.force) - half * d_b * n_b.cross(d);
     out.energy = 0.5 * (law_.shear * d.squaredNorm() + half * (d_a * d_a + d_b * d_b));
     out.place = state.position[a] + arm_a + 0.5 * d;
+    const Vector3 outwards = (n_a - n_b).normalized();
+    const double push = std::min(out.force.dot(outwards), 0.0);
+    out.pull = (out.force - push * outwards).norm();
     return out;
   }
 
@@ -364,7 +369,11 @@ class LinkTerm : public ForceTerm {
     for (const Link& link : links_)
       if (link.broke == never)
         for (const int e : {link.at.a, link.at.b}) ++count[static_cast<std::size_t>(e)];
-    const auto full = [&](int e) { return count[static_cast<std::size_t>(e)] + 1 > law_.most * element_length_; };
+    // Whole links for each element: of every one its own share, so that their mean is that of the length.
+    const auto full = [&](int e) {
+      const double room = law_.most * element_length_ + drawn(law_, e, e, 0, room_question);
+      return count[static_cast<std::size_t>(e)] + 1 > room;
+    };
     const auto step = static_cast<std::uint32_t>(state.step) + 1;
     for (LinkPlace& place : placed_links(now, scene_, state, {}, step)) {
       if (full(place.a) || full(place.b)) continue;

@@ -8,8 +8,8 @@
 //
 // p and n (unit, from the tube's axis towards the other tube) stay as they were when the link formed, in the frames
 // of the elements. k_n is the stiffness of stretch, k_s that of shear. Forces and torques are minus the derivatives
-// of U, so that momentum and angular momentum are kept. A link breaks for good in the first step with |dU/dd| above
-// its strength, or with U above its toughness. Its energy is then lost.
+// of U, so that momentum and angular momentum are kept. A link breaks for good in the first step with |dU/dd|,
+// without what pushes, above its strength, or with U above its toughness. Its energy is then lost.
 //
 // At the start there are, in the mean, `density` links for each length along which two tubes face each other within
 // `reach` between their walls, at random places (Poisson), or `at_ends` links of each tube end with the tubes that

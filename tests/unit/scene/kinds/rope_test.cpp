@@ -15,6 +15,7 @@
 #include "run/run_directory.hpp"
 #include "scene/loads/grip.hpp"
 #include "scene/prepare.hpp"
+#include "scene/scene_to_model.hpp"
 #include "scene/scene_toml.hpp"
 #include "scene/spacing.hpp"
 #include "scene/state_csv.hpp"
@@ -132,6 +133,26 @@ TEST(RopeOfFiniteTubes, ClampsHoldTheEndsOfTheRope) {
   for (const auto& load : q.loads) EXPECT_EQ(load->elements.size(), 7u) << "no couple on ends inside";
 }
 
+TEST(RopeOfFiniteTubes, StrainIsThatOfTheWholeFreeLength) {
+  Scene scene = scene_of(finite, clamps);
+  const Prepared p = prepare(scene);
+  const auto at = [&](End end) {
+    double sum = 0;
+    for (const GripLoad* grip : p.loads.of<GripLoad>())
+      if (grip->end == end)
+        for (const int e : grip->elements) sum += p.state.position.z[static_cast<std::size_t>(e)] / 7;
+    return sum;
+  };
+  EXPECT_NEAR(free_length(scene, strands_of(p.topology), 0), at(upper_end) - at(lower_end), 1e-9);
+  // Whole tubes have the length that was asked for.
+  Scene brick = scene_of("tubes = 7\nlength_nm = 100\ntube_length_nm = 20\nstagger = \"brick\"\n");
+  const Topology t = prepare(brick).topology;
+  for (int tube = 0; tube < t.tubes(); ++tube)
+    if (!t.begins_strand(tube) && !t.ends_strand(tube)) {
+      EXPECT_NEAR(t.length_of(tube) * t.types[0].element_length, 20, 0.7 * t.types[0].element_length) << tube;
+    }
+}
+
 TEST(RopeOfFiniteTubes, HasSectionsAndKeepsThemInAStateFile) {
   Scene scene = scene_of(finite, clamps);
   const Prepared p = prepare(scene);
@@ -149,6 +170,7 @@ TEST(RopeOfFiniteTubes, HasSectionsAndKeepsThemInAStateFile) {
   read_state_csv(file.string(), read, state);
   EXPECT_EQ(read.tube_begin, p.topology.tube_begin);
   EXPECT_EQ(read.strand_begin, p.topology.strand_begin);
+  EXPECT_NEAR(read.strand_holes, p.topology.strand_holes, 1e-9);
   std::string damaged = state_csv(p.topology, p.state);
   const auto at = damaged.find("strands_begin_with_tubes: ");
   ASSERT_NE(at, std::string::npos);
@@ -207,6 +229,7 @@ TEST(Rope, RefusesTubesThatCannotBePlaced) {
   EXPECT_THAT(message(seven + "tube_length_nm = 2\n"), HasSubstr("less than 3 elements"));
   EXPECT_THAT(message(seven + "stagger = \"brick\"\n"), HasSubstr("give tube_length_nm too"));
   EXPECT_THAT(message(finite + "tube_length_deviation_nm = 10\n"), HasSubstr("more than half of the mean length"));
+  EXPECT_THAT(message(finite + "gap_nm = 0.34\n"), HasSubstr("they would be driven into one another"));
 }
 
 }  // namespace

@@ -8,7 +8,9 @@
 #include "io/log.hpp"
 #include "model/error.hpp"
 #include "model/units.hpp"
+#include "run/limit_watch.hpp"
 #include "run/moving_scene.hpp"
+#include "run/run_directory.hpp"
 #include "scene/prepare.hpp"
 #include "scene/scene_toml.hpp"
 
@@ -150,13 +152,28 @@ TEST(Failure, BreaksWhereATubeIsBentTooFar) {
   Scene scene = scene_of_text(
       "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[chain]\nelements = 30\n"
       "[contact]\nlaw = \"none\"\n[[grip]]\nend = \"lower\"\n[[grip]]\nend = \"upper\"\nx = "
-      "\"free\"\nz = \"free\"\nabout_y = { rotation_deg = 120, rate_deg_per_ps = 2 }\n[failure]\nstrain = 0.5\nmoment_nN_nm = "
+      "\"free\"\nz = \"free\"\nabout_y = { rotation_deg = 120, rate_deg_per_ps = 2 }\n[failure]\nstrain = "
+      "0.5\nmoment_nN_nm = "
       "15\n"
       "[run]\nduration_ps = 60\n",
       "failure.toml");
   Simulation s = begun(scene);
   while (s.state().time < 60 && broken(s) == 0) s.step();
   EXPECT_GE(broken(s), 1);
+}
+
+// The pressure on the tubes of the scene, whatever has become of them.
+TEST(Failure, LimitsAreThoseOfTheTubesOfTheScene) {
+  Scene scene = rope();
+  MovingScene m(scene);
+  LimitWatch watch(watched_by_run(m.scene, m.prepared, m.observer));
+  while (m.state().time < 60 && broken(m.simulation) < 5) m.simulation.step();
+  m.simulation.steps(200);
+  watch.check(m.prepared.topology, m.simulation.tubes_now(), m.state(), m.simulation.list(), {}, true);
+  for (const LimitRecord& r : watch.records()) {
+    EXPECT_LT(r.tube, 7) << r.key;
+    EXPECT_LT(r.largest, 1e3) << r.key;
+  }
 }
 
 TEST(Failure, BadOnesAreRefused) {
@@ -171,6 +188,7 @@ TEST(Failure, BadOnesAreRefused) {
   };
   EXPECT_THAT(message("[failure]\n"), HasSubstr("strain: is missing"));
   EXPECT_THAT(message("[failure]\nstrain = 0\n"), HasSubstr("strain"));
+  EXPECT_THAT(message("[failure]\nstrain = 0.05\nstrain_deviation = 0.05\n"), HasSubstr("take at most 0.017"));
   EXPECT_THAT(log_header(), HasSubstr(",failure_lost_eV,bonds_broken"));
   EXPECT_THAT(log_header(), ::testing::Not(HasSubstr("failure_eV")));
 }
