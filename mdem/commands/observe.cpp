@@ -11,6 +11,7 @@
 #include "model/error.hpp"
 #include "observe/observables.hpp"
 #include "plan/planner.hpp"
+#include "run/events_file.hpp"
 #include "run/run_directory.hpp"
 
 namespace ropewalk {
@@ -67,20 +68,23 @@ int observe_command(const ObserveArguments& a) {
   const auto reader = open_frames(dir.frames());
   const std::vector<Observable> chosen = observables_of_frames();
   const Console console(chosen);
+  const StoredBreaks breaks(dir.events(), prepared.topology);
   if (a.tubes) {
     const std::optional<StoredFrame> last = last_frame(dir.frames(), prepared.topology);
     if (!last)
       throw InputError({dir.frames(), 0, ""}, "holds no frame", "run the scene further with `ropewalk resume`");
-    fmt::print("{}", tube_table_csv(prepared.topology, last->state, observer.loading));
+    const Topology now = breaks.tubes_at(last->state.time);
+    fmt::print("{}", tube_table_csv(now, last->state, of_parts(observer.loading, prepared.topology, now)));
     return 0;
   }
   if (!a.json) console.print_heading();
   Json all = Json::array();
   StoredFrame frame;
   while (reader->next(prepared.topology, frame)) {
-    const RopeObservation rope = observe(observer, scene, prepared.topology, frame.state);
-    const Loading load = loading(prepared.topology, frame.state, observer.loading);
-    const Measurement measurement{prepared.topology, frame.state, rope, load, observer.mass, {}};
+    const Topology now = breaks.tubes_at(frame.state.time);
+    const RopeObservation rope = observe(observer, scene, now, frame.state);
+    const Loading load = loading(now, frame.state, observer.loading);
+    const Measurement measurement{now, frame.state, rope, load, observer.mass, {}};
     if (a.json) {
       all.push_back(as_json(measurement, chosen));
     } else {

@@ -135,6 +135,15 @@ LoadingReference loading_reference(const Topology& tubes, const State& start, co
   return out;
 }
 
+LoadingReference of_parts(LoadingReference reference, const Topology& whole, const Topology& parts) {
+  if (reference.radius.empty()) return reference;
+  std::vector<double> radius;
+  for (int t = 0; t < parts.tubes(); ++t)
+    radius.push_back(reference.radius[static_cast<std::size_t>(whole.tube_of(parts.tube_begin[t]))]);
+  reference.radius = std::move(radius);
+  return reference;
+}
+
 std::vector<double> tensions(const Topology& topology, const State& state, int tube) {
   std::vector<double> out;
   const TubeType& type = topology.type_of(tube);

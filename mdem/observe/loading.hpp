@@ -28,6 +28,9 @@ LoadingReference loading_reference(const Topology& topology, const State& start,
                                    EndElements ends, double spacing, double neighbour_radius,
                                    std::shared_ptr<const ContactLaw> law);
 
+// The same of the parts of tubes that have broken (cut_behind).
+LoadingReference of_parts(LoadingReference reference, const Topology& whole, const Topology& parts);
+
 struct Loading {
   double ends_apart = 0;     // nm, between the centres of the ends
   double strain = 0;         // of that distance

@@ -10,6 +10,7 @@
 #include "io/grade.hpp"
 #include "model/error.hpp"
 #include "report/report.hpp"
+#include "run/events_file.hpp"
 #include "run/pages/run_views.hpp"
 #include "run/plan_check.hpp"
 #include "run/run_directory.hpp"
@@ -90,7 +91,9 @@ bool are_parallel(const State& state) {
   return true;
 }
 
-ReportLoading loading_of(const Topology& topology, const State& state, const LoadingReference& reference) {
+// `now`: the tubes cut where they have broken.
+ReportLoading loading_of(const Topology& topology, const Topology& now, const State& state,
+                         const LoadingReference& reference) {
   ReportLoading out;
   out.time_ps = state.time;
   out.radius = reference.radius;
@@ -99,8 +102,12 @@ ReportLoading loading_of(const Topology& topology, const State& state, const Loa
       out.pressure_GPa.push_back(pressure / units::nN_nm);  // nN/nm^2
   for (int t = 0; t < topology.tubes(); ++t) {
     out.tension_nN.emplace_back();
-    for (const double tension : tensions(topology, state, t))
-      out.tension_nN.back().push_back(tension / units::nN_nm);
+    const std::vector<double> whole = tensions(topology, state, t);
+    for (std::size_t k = 0; k < whole.size(); ++k) {
+      const int element = topology.tube_begin[t] + static_cast<int>(k);
+      out.tension_nN.back().push_back(now.tube_of(element) == now.tube_of(element + 1) ? whole[k] / units::nN_nm
+                                                                                       : 0);
+    }
   }
   return out;
 }
@@ -142,12 +149,14 @@ ReportInput gather(const RunDirectory& dir, const Scene& scene, const Prepared& 
   in.rope = is_rope(p, observer);
   in.loaded = !p.loads.empty();
   in.shells = observer.shells;
+  const StoredBreaks breaks(dir.events(), p.topology);
   for (const StoredFrame& frame : read_frames(dir, p.topology)) {
-    const RopeObservation o = observe(observer, scene, p.topology, frame.state);
+    const Topology now = breaks.tubes_at(frame.state.time);
+    const RopeObservation o = observe(observer, scene, now, frame.state);
     const double beta = o.beta / units::degree;
     in.sections.push_back({frame.state.time, beta, o.middle, o.radius_profile});
     in.views.push_back(view_of(p.topology, frame, beta));
-    if (in.rope) in.loading.push_back(loading_of(p.topology, frame.state, observer.loading));
+    if (in.rope) in.loading.push_back(loading_of(p.topology, now, frame.state, observer.loading));
   }
   in.in_space = has_view(dir);
   in.parameter_name = scene.parameters().name;
