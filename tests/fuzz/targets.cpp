@@ -25,6 +25,7 @@
 #include "io/parameters_toml.hpp"
 #include "io/run_errors.hpp"
 #include "model/error.hpp"
+#include "run/events_file.hpp"
 #include "run/run_checkpoint.hpp"
 #include "run/run_directory.hpp"
 #include "scene/lammps_files.hpp"
@@ -231,6 +232,11 @@ void limits(const std::string& bytes) {
   taken_or_refused([&] { limits_json(read_limits(file.path())); });
 }
 
+void events(const std::string& bytes) {
+  const File file(bytes);
+  taken_or_refused([&] { StoredBreaks(file.path(), small_simulation().topology()).tubes_at(1); });
+}
+
 void log(const std::string& bytes) {
   const File file(bytes);
   taken_or_refused([&] { read_log(file.path()); });
@@ -312,6 +318,7 @@ const std::vector<Target>& targets() {
                                           {"gsd", gsd},
                                           {"dump", dump},
                                           {"manifest", manifest},
+                                          {"events", events},
                                           {"limits", limits},
                                           {"log", log},
                                           {"lammps_states", lammps_states},
