@@ -28,7 +28,7 @@ LoadingReference loading_reference(const Topology& topology, const State& start,
                                    EndElements ends, double spacing, double neighbour_radius,
                                    std::shared_ptr<const ContactLaw> law);
 
-// The same of the parts of tubes that have broken (cut_behind).
+// The reference for tubes cut where they have broken (cut_behind): each part has the radius of its tube.
 LoadingReference of_parts(LoadingReference reference, const Topology& whole, const Topology& parts);
 
 struct Loading {
@@ -54,7 +54,7 @@ struct TubeLoading {
 std::vector<TubeLoading> tube_loadings(const Topology& topology, const State& state,
                                        const LoadingReference& reference);
 
-// eV/nm, in each bond of a tube; 0 where it has broken.
+// The tension in each bond of a tube, eV/nm; 0 in a bond that has broken (has_parted).
 std::vector<double> tensions(const Topology& topology, const State& state, int tube);
 
 // The contact pressure on a tube (eV/nm^3), from the virial of the contact forces F_ij that act on its elements i:

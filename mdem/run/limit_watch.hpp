@@ -30,8 +30,8 @@ class LimitWatch {
   // split, without those passed after `step`.
   void inherit_from(const std::vector<LimitRecord>& earlier, std::int64_t step);
 
-  // One line for each limit that is passed for the first time. The pressure costs several steps. `now`: the tubes
-  // where they have not broken (Simulation::tubes_now).
+  // One line for each limit that is passed for the first time. Computing the pressure costs as much as several
+  // steps. `topology`: the tubes of the scene; `now`: the same, cut where they have broken (Simulation::tubes_now).
   std::vector<std::string> check(const Topology& topology, const Topology& now, const State& state,
                                  const NeighbourList& list, const RunEnergies& energies, bool with_pressure);
   std::vector<std::string> check(const Topology& topology, const State& state, const NeighbourList& list,

@@ -170,7 +170,7 @@ def hostile_pages(browser, program, folder):
                   ["compare", "hostile", "hostile", "--page", "compared.html"],
                   ["compare", "set.toml", "set.toml", "--page", "sets.html"]):
         subprocess.run([program, *words], cwd=folder, check=True, stdout=subprocess.DEVNULL)
-    # A stranger may have written these files of a run: every text in them is hostile.
+    # A run directory may come from a stranger. Each text of its manifest and limits is therefore a hostile one here.
     for name, kept in (("manifest.json", ("format", "status", "scene_hash", "parameter_hash")), ("limits.json", ("format", "key"))):
         path = folder / "hostile" / name
         path.write_text(json.dumps(hostile_texts(json.loads(path.read_text()), kept)))

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <cstddef>
 
-#include "scene/bounds.hpp"
 #include "model/contract.hpp"
+#include "scene/bounds.hpp"
 #include "scene/loads/drive_kind.hpp"
 #include "scene/scene.hpp"
 #include "scene/scene_to_model.hpp"
@@ -41,8 +41,8 @@ Matrix3 chord(const Vector3& turning, double time) {
 
 // Values of the components from `first` on that are driven like this.
 template <class Of>
-Vector3 driven(const std::array<Schedule, 6>& schedules, const std::array<GripAxis, 6>& axes, std::size_t first, Is is,
-               const Of& of) {
+Vector3 driven(const std::array<Schedule, 6>& schedules, const std::array<GripAxis, 6>& axes, std::size_t first,
+               Is is, const Of& of) {
   Vector3 out = Vector3::Zero();
   for (std::size_t k = 0; k < 3; ++k)
     if (axes[first + k].is == is) out[static_cast<Eigen::Index>(k)] = of(schedules[first + k]);
@@ -180,7 +180,8 @@ void solve_free(const std::array<GripAxis, 6>& axes, const Matrix6& inertia, con
 void GripLoad::constrain(const Topology&, double time, double ahead, State& s) const {
   // The mean over the drift, so that a schedule is met exactly.
   const auto rate = [&](const Schedule& schedule) {
-    return ahead > 0 ? (schedule.value(time + 2 * ahead) - schedule.value(time)) / (2 * ahead) : schedule.rate(time);
+    return ahead > 0 ? (schedule.value(time + 2 * ahead) - schedule.value(time)) / (2 * ahead)
+                     : schedule.rate(time);
   };
   Vector6 prescribed;
   prescribed << driven(schedules_, axes, 0, Is::moved, rate), driven(schedules_, axes, 3, Is::moved, rate);
@@ -282,7 +283,8 @@ GripLoad GripLoad::on_elements(std::vector<int> on, const Topology& topology, do
 
 std::string GripLoad::needs_time() const {
   for (std::size_t k = 0; k < axes.size(); ++k) {
-    if (axes[k].is == Is::moved || !Schedule(axes[k].points).constant()) return fmt::format("the schedule of grip.{} needs time", grip_axis_names[k]);
+    if (axes[k].is == Is::moved || !Schedule(axes[k].points).constant())
+      return fmt::format("the schedule of grip.{} needs time", grip_axis_names[k]);
   }
   return "";
 }
@@ -294,8 +296,7 @@ std::optional<LoadEffect> GripLoad::effect() const {
   for (std::size_t k = 0; k < axes.size(); ++k) {
     const double most = schedules_[k].largest();
     if (axes[k].is == Is::loaded && k < z) out.force = std::max(out.force, most / shared);
-    if (axes[k].is == Is::loaded && k >= 3)
-      out.torque[static_cast<Eigen::Index>(k - 3)] = most / shared;
+    if (axes[k].is == Is::loaded && k >= 3) out.torque[static_cast<Eigen::Index>(k - 3)] = most / shared;
   }
   if (axes[about_z].is == Is::moved) {
     out.angle = schedules_[about_z].largest();
@@ -325,19 +326,21 @@ std::string GripLoad::words() const {
     if (a.is != Is::moved && a.is != Is::loaded) continue;
     const double last = a.points.back().value;
     const double unit = a.is == Is::loaded ? units::nN_nm : turn ? units::degree : 1.0;
-    const char* unit_name = a.strain ? "of its length" : a.is == Is::loaded ? (turn ? "nN nm" : "nN") : turn ? "deg" : "nm";
+    const char* unit_name = a.strain             ? "of its length"
+                            : a.is == Is::loaded ? (turn ? "nN nm" : "nN")
+                            : turn               ? "deg"
+                                                 : "nm";
     double most = 0;
     for (const Schedule::Point& p : a.points) most = std::max(most, std::fabs(p.value));
-    rest += fmt::format("; {} {} {:.4g} {}", name, a.is == Is::loaded ? "loaded with" : "moved to", last / unit, unit_name);
+    rest += fmt::format("; {} {} {:.4g} {}", name, a.is == Is::loaded ? "loaded with" : "moved to", last / unit,
+                        unit_name);
     if (most > std::fabs(last)) rest += fmt::format(" by way of {:.4g}", most / unit);
     if (a.points.size() > 1) rest += fmt::format(" in {:.4g} ps", a.points.back().time);
   }
   std::string text = fmt::format("{} grip, {}: ", end == upper_end ? "upper" : "lower",
                                  each ? "a clamp for each tube" : "one disc");
   const auto is_held = [](const GripAxis& a) { return a.is == Is::held; };
-  text += held.empty()                                         ? "nothing held"
-          : std::all_of(axes.begin(), axes.end(), is_held) ? "held"
-                                                               : held + " held";
+  text += held.empty() ? "nothing held" : std::all_of(axes.begin(), axes.end(), is_held) ? "held" : held + " held";
   if (slide_free) rest += "; tubes slide";
   if (spin_free) rest += "; tubes spin";
   if (tilt_free) rest += "; tubes tilt";
@@ -390,7 +393,8 @@ std::vector<Schedule::Point> at_rate(const TomlTable& t, const Course& d, const 
 }
 
 std::vector<Schedule::Point> in_time(const TomlTable& t, const Course& d) {
-  const std::vector<Schedule::Point> points = points_in_time(t, d.key, Bounds::range(-largest_value, largest_value));
+  const std::vector<Schedule::Point> points =
+      points_in_time(t, d.key, Bounds::range(-largest_value, largest_value));
   if (!d.load && points.front().value != 0)
     throw t.error(d.key, fmt::format("begins at {}", points.front().value),
                   "begin with 0: it counts from where the elements are at the start");
@@ -411,7 +415,8 @@ GripAxis read_drive(const TomlTable& t, const std::string& axis, bool rotation) 
     for (const std::string& key : t.keys()) {
       const std::string near = nearest_word(
           key, {courses[0].key, courses[1].key, courses[2].key, courses[3].key, courses[4].key, courses[5].key});
-      if (!near.empty()) throw t.error(key, fmt::format("is not for {}", axis), fmt::format("choose one of {}", names));
+      if (!near.empty())
+        throw t.error(key, fmt::format("is not for {}", axis), fmt::format("choose one of {}", names));
     }
     throw t.error("", "says nothing that the clamp follows", fmt::format("write one of {}", names));
   }
@@ -431,8 +436,9 @@ GripAxis read_drive(const TomlTable& t, const std::string& axis, bool rotation) 
     } else if (d.load) {
       out.points = {{0, value}};
     } else {
-      throw t.error(d.key, "has no time to happen in",
-                    fmt::format("add {} = ..., or write points: {} = [[0, 0], [100, {}]]", d.rate_key, d.key, value));
+      throw t.error(
+          d.key, "has no time to happen in",
+          fmt::format("add {} = ..., or write points: {} = [[0, 0], [100, {}]]", d.rate_key, d.key, value));
     }
   }
   for (Schedule::Point& p : out.points) p.value *= d.unit;
@@ -548,7 +554,8 @@ void GripDrive::add_loads(const Scene& scene, const Topology& topology, const In
   double free = 0;
   const Topology strands = strands_of(topology);
   for (const int t : selected_tubes(scene, on, topology)) {
-    // A tube that is named is held where it ends, inside of the rope too.
+    // "all" means the tubes at this end of the rope. A tube named by its number is held at its own end, also inside
+    // the rope.
     if (on.all_tubes && !(load.end == lower_end ? topology.begins_strand(t) : topology.ends_strand(t))) continue;
     const int length = topology.length_of(t);
     free = std::max(free, free_length(scene, strands, strands.tube_of(topology.tube_begin[t])));

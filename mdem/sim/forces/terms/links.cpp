@@ -15,7 +15,7 @@ namespace {
 
 constexpr double never = -1;                         // ps
 constexpr double forming_interval = 1;               // ps
-constexpr std::uint32_t room_question = 0xFFFFFFFF;  // of drawn(), that no link asks
+constexpr std::uint32_t room_question = 0xFFFFFFFF;  // a number k of drawn() that no link takes
 
 // --- where tubes face each other -----------------------------------------------------------------------
 
@@ -29,7 +29,8 @@ Axis axis_at(const Topology& topology, const State& state, int element) {
   return {state.position[i], axis_of(state.orientation[i]), 0.5 * type.element_length, type.radius};
 }
 
-// The place at s (nm from the centre) on a, and the one of b that it faces. False: it faces none within reach.
+// A point of the axis a, at s (nm) from its centre, and the point of the axis b opposite to it. False: the wall of
+// b is not within reach there.
 struct Facing {
   double on_b = 0;  // nm
   Vector3 to_b;     // from axis to axis
@@ -69,7 +70,7 @@ LinkPlace place_of(const LinkLaw& law, const State& state, int i, int j, const A
   return link;
 }
 
-// A random number in (0, 1) for the k-th question about a pair of elements of the scene at this step.
+// Random number k, in (0, 1), of the elements i and j at this step.
 double drawn(const LinkLaw& law, int i, int j, std::uint32_t step, std::uint32_t k) {
   return unit_interval(
       philox({static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j), step, k}, law.seed)[0]);
@@ -323,7 +324,8 @@ class LinkTerm : public ForceTerm {
     return out;
   }
 
-  // 2 K of two elements, n links on each, and the same by the levers of their points.
+  // Two elements with n links on each have the eigenvalue 2 n K by their positions; turning adds the share of the
+  // levers.
   double stiffness_of(const std::vector<LinkPlace>& at_start) {
     std::vector<int> count(static_cast<std::size_t>(scene_.elements()), 0);
     double lever = 0;
@@ -336,7 +338,7 @@ class LinkTerm : public ForceTerm {
       lever = std::max(lever, type.mass * (arm * arm + half * half) / type.inertia);
       element_length_ = type.element_length;
     }
-    // Of those that are to come, six neighbours and five standard deviations.
+    // Links to come: the mean number with six neighbours, and five standard deviations more.
     const double mean = waits_ ? 6 * law_.density * element_length_ + 2 * law_.at_ends : 0;
     const int later = waits_ ? static_cast<int>(std::ceil(mean + 5 * std::sqrt(mean))) : 0,
               formed =
@@ -369,7 +371,8 @@ class LinkTerm : public ForceTerm {
     for (const Link& link : links_)
       if (link.broke == never)
         for (const int e : {link.at.a, link.at.b}) ++count[static_cast<std::size_t>(e)];
-    // Whole links for each element: of every one its own share, so that their mean is that of the length.
+    // An element has room for a whole number of links. The fraction is rounded up or down at random, element by
+    // element, so that the mean room is `most` times the length.
     const auto full = [&](int e) {
       const double room = law_.most * element_length_ + drawn(law_, e, e, 0, room_question);
       return count[static_cast<std::size_t>(e)] + 1 > room;
@@ -387,7 +390,7 @@ class LinkTerm : public ForceTerm {
     index(scene_.elements());
     gather(state);
   }
-  // As a memory comes back: sums then have the same order after `resume`.
+  // The order in which a memory returns: a resumed run adds up the forces in the same order.
   void sort() {
     std::stable_sort(links_.begin(), links_.end(), [](const Link& x, const Link& y) { return x.at.a < y.at.a; });
   }

@@ -34,12 +34,12 @@ struct LinkLaw {
   double rest = -1;                    // nm, between the walls; negative: as far as they are when a link forms
   double strength = 0, toughness = 0;  // eV/nm, eV; 0: it never breaks for that
   double reach = 0.45;                 // nm, between walls
-  double density = 0;                  // 1/nm, at the start
-  int at_ends = 0;                     // at the start
-  double placed_at = 0;                // ps: these are placed not at the start but in the first step from here on
-  double forming = 0, most = 0;        // 1/(nm ps), 1/nm
+  double density = 0;                  // links per length of contact at the start, 1/nm
+  int at_ends = 0;                     // links of each end of a tube at the start
+  double placed_at = 0;  // ps; above 0: `density` and `at_ends` place links in the first step after this time
+  double forming = 0, most = 0;  // 1/(nm ps), 1/nm
   std::uint64_t seed = 1;
-  std::vector<int> types;  // the two types of tubes that it links; none: all
+  std::vector<int> types;  // two types of tubes, whose contacts get links; none: all contacts do
 
   // Whether it joins tubes of these types.
   bool links(int type, int other) const;
