@@ -1,9 +1,14 @@
 #include "scene/loads/drive_kind.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cassert>
 #include <optional>
 #include <utility>
+
+#include "model/error.hpp"
+#include "scene/scene.hpp"
 
 namespace ropewalk {
 
@@ -22,15 +27,8 @@ namespace {
 
 std::vector<DriveKind> shipped_drives() {
   return {
-      thermostat_drive(),
-      twist_drive(),
-      grip_drive(),
-      load_drive(),
-      periodic_drive(),
-      tether_drive(),
-      friction_drive(),
-      links_drive(),
-      failure_drive(),
+      thermostat_drive(), twist_drive(),    grip_drive(),  load_drive(),    periodic_drive(),
+      tether_drive(),     friction_drive(), links_drive(), failure_drive(),
   };
 }
 
@@ -46,6 +44,30 @@ std::optional<TermKind> term_kind_of(const DriveKind& kind) {
 }
 
 }  // namespace
+
+int element_of_tube(const Topology& topology, int tube, int element, const InputError::Place& place) {
+  const auto fail = [&](const std::string& what, int count) {
+    throw InputError(place, what, fmt::format("they are 0 to {}", count - 1));
+  };
+  if (tube < 0 || tube >= topology.tubes()) fail(fmt::format("there is no tube {}", tube), topology.tubes());
+  const int length = topology.length_of(tube), at = element < 0 ? length + element : element;
+  if (at < 0 || at >= length) fail(fmt::format("tube {} has no element {}", tube, element), length);
+  return topology.tube_begin[static_cast<std::size_t>(tube)] + at;
+}
+
+std::vector<int> pair_of_types(const TomlTable& t, const Scene& scene) {
+  std::vector<int> pair;
+  if (!t.has("types")) return pair;
+  const auto sets = static_cast<long>(scene.sets.size());
+  for (const long type : t.integers("types", 0, 1000)) {
+    if (type >= sets)
+      throw t.error("types", fmt::format("there is no tube type {}", type),
+                    fmt::format("they are 0 to {}", sets - 1));
+    pair.push_back(static_cast<int>(type));
+  }
+  if (pair.size() != 2) throw t.error("types", "must have two entries", "write [0, 1], or [0, 0] for like tubes");
+  return pair;
+}
 
 std::vector<TermKind> shipped_term_kinds() {
   std::vector<TermKind> kinds;

@@ -22,6 +22,13 @@ struct DriveKind {
   std::vector<TermColumn> account = {};
 };
 
+// The number of an element of a tube in the scene; a negative one counts from the end of the tube. Throws
+// InputError at the place where there is no such tube or element.
+int element_of_tube(const Topology& topology, int tube, int element, const InputError::Place& place);
+
+// The two tube types of the key `types`; none where the key is missing. Throws InputError.
+std::vector<int> pair_of_types(const TomlTable& t, const Scene& scene);
+
 // In the order of help and templates.
 const std::vector<DriveKind>& drive_kinds();
 // For drives from elsewhere; returns true, so that a static variable can do it. The table's name must be new.

@@ -64,11 +64,8 @@ class FrictionDrive : public Drive {
   }
 };
 
-void read_types(const TomlTable& t, const Scene&, FrictionDrive& friction) {
-  if (!t.has("types")) return;
-  for (const long type : t.integers("types", 0, 1000)) friction.typed.types.push_back(static_cast<int>(type));
-  if (friction.typed.types.size() != 2)
-    throw t.error("types", "must have two entries", "write [0, 1], or [0, 0] for like tubes");
+void read_types(const TomlTable& t, const Scene& scene, FrictionDrive& friction) {
+  friction.typed.types = pair_of_types(t, scene);
 }
 
 void read_from(const TomlTable& t, const Scene&, FrictionDrive& friction) {
@@ -110,11 +107,6 @@ std::vector<FrictionLaw> laws_of_atoms(const Scene& scene, const DryFriction& ty
 
 void check(const TomlTable& t, const Scene& scene, FrictionDrive& friction) {
   DryFriction& law = friction.typed;
-  const auto sets = static_cast<int>(scene.sets.size());
-  for (const int type : law.types)
-    if (type >= sets)
-      throw t.error("types", fmt::format("there is no tube type {}", type),
-                    fmt::format("they are 0 to {}", sets - 1));
   const InputError::Place place = {scene.path, t.line("from"), "friction.from"};
   // Beside the scene and beside its sets.
   std::vector<std::string> folders = {std::filesystem::path(scene.path).parent_path().string()};

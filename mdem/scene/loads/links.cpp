@@ -74,23 +74,14 @@ class LinksDrive : public Drive {
   std::vector<std::pair<int, int>> pairs(const Topology& topology) const {
     std::vector<std::pair<int, int>> all;
     for (std::size_t k = 0; k + 3 < between.size(); k += 4) {
-      const int a = element(topology, between[k], between[k + 1]),
-                b = element(topology, between[k + 2], between[k + 3]);
+      const InputError::Place place = {path, 0, "links.between"};
+      const int a = element_of_tube(topology, between[k], between[k + 1], place),
+                b = element_of_tube(topology, between[k + 2], between[k + 3], place);
       if (between[k] == between[k + 2])
-        throw InputError({path, 0, "links.between"}, fmt::format("links tube {} with itself", between[k]),
-                         "name elements of two tubes");
+        throw InputError(place, fmt::format("links tube {} with itself", between[k]), "name elements of two tubes");
       all.emplace_back(a, b);
     }
     return all;
-  }
-  int element(const Topology& topology, int tube, int e) const {
-    const auto fail = [&](const std::string& what, int count) {
-      throw InputError({path, 0, "links.between"}, what, fmt::format("they are 0 to {}", count - 1));
-    };
-    if (tube < 0 || tube >= topology.tubes()) fail(fmt::format("there is no tube {}", tube), topology.tubes());
-    const int length = topology.length_of(tube), at = e < 0 ? length + e : e;
-    if (at < 0 || at >= length) fail(fmt::format("tube {} has no element {}", tube, e), length);
-    return topology.tube_begin[static_cast<std::size_t>(tube)] + at;
   }
 };
 
@@ -124,16 +115,7 @@ void read_links_between(const TomlTable& t, const Scene&, LinksDrive& links) {
 }
 
 void read_linked_types(const TomlTable& t, const Scene& scene, LinksDrive& links) {
-  if (!t.has("types")) return;
-  const auto sets = static_cast<long>(scene.sets.size());
-  for (const long type : t.integers("types", 0, 1000)) {
-    if (type >= sets)
-      throw t.error("types", fmt::format("there is no tube type {}", type),
-                    fmt::format("they are 0 to {}", sets - 1));
-    links.law.types.push_back(static_cast<int>(type));
-  }
-  if (links.law.types.size() != 2)
-    throw t.error("types", "must have two entries", "write [0, 1], or [0, 0] for like tubes");
+  links.law.types = pair_of_types(t, scene);
 }
 
 void check_links(const TomlTable& t, const Scene& scene, LinksDrive& links) {

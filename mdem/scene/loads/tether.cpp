@@ -162,15 +162,8 @@ class TetherDrive : public Drive {
   TetherEnd on(const Topology& topology, const TypedEnd& typed) const {
     TetherEnd end;
     end.centre = typed.point;
-    const auto fail = [&](const std::string& what, int count) {
-      throw InputError({path, 0, "tether"}, what, fmt::format("they are 0 to {}", count - 1));
-    };
-    for (const int e : typed.elements) {
-      if (typed.tube >= topology.tubes()) fail(fmt::format("there is no tube {}", typed.tube), topology.tubes());
-      const int length = topology.length_of(typed.tube), at = e < 0 ? length + e : e;
-      if (at < 0 || at >= length) fail(fmt::format("tube {} has no element {}", typed.tube, e), length);
-      end.elements.push_back(topology.tube_begin[typed.tube] + at);
-    }
+    for (const int e : typed.elements)
+      end.elements.push_back(element_of_tube(topology, typed.tube, e, {path, 0, "tether"}));
     return end;
   }
 };

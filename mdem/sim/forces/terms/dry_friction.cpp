@@ -200,11 +200,6 @@ class DryFrictionTerm : public ForceTerm {
     Happened happened;
     bool others = false;  // elements of contacts have changed
   };
-  // The contacts of each element.
-  struct Index {
-    std::vector<int> begin, contacts;
-    Span<int> of(int element) const { return entries_of(element, begin, contacts); }
-  };
   // What a contact has to know of an element, since a scene may move in memory.
   struct Element {
     int number = 0;  // in the scene
@@ -324,8 +319,7 @@ class DryFrictionTerm : public ForceTerm {
       power = -eta * (v * v + w * w);
     }
     const Vector3 v_a = along * p.along_a + turning * p.turning_a, v_b = along * p.along_b + turning * p.turning_b;
-    now.action = {v_a + v_b, p.w.cross(v_a), p.w.cross(v_b),
-                  stiff_s * of_z.value + stiff_g * of_y.value, power};
+    now.action = {v_a + v_b, p.w.cross(v_a), p.w.cross(v_b), stiff_s * of_z.value + stiff_g * of_y.value, power};
     return now;
   }
 
@@ -460,21 +454,9 @@ class DryFrictionTerm : public ForceTerm {
   }
 
   void index() {
-    index_by(of_first_, [](const Contact& c) { return c.a; });
-    index_by(of_second_, [](const Contact& c) { return c.b; });
-  }
-  template <class End>
-  void index_by(Index& index, const End& end) const {
-    index.begin.assign(elements_.size() + 1, 0);
-    for (const Contact& c : contacts_)
-      if (!c.over) ++index.begin[static_cast<std::size_t>(end(c)) + 1];
-    for (std::size_t e = 1; e < index.begin.size(); ++e) index.begin[e] += index.begin[e - 1];
-    index.contacts.resize(static_cast<std::size_t>(index.begin.back()));
-    std::vector<int> next(index.begin.begin(), index.begin.end() - 1);
-    for (std::size_t k = 0; k < contacts_.size(); ++k)
-      if (!contacts_[k].over)
-        index.contacts[static_cast<std::size_t>(next[static_cast<std::size_t>(end(contacts_[k]))]++)] =
-            static_cast<int>(k);
+    const auto whole = [&](std::size_t k, int end) { return contacts_[k].over ? -1 : end; };
+    of_first_.sort_in(elements_.size(), contacts_.size(), [&](std::size_t k) { return whole(k, contacts_[k].a); });
+    of_second_.sort_in(elements_.size(), contacts_.size(), [&](std::size_t k) { return whole(k, contacts_[k].b); });
   }
 
   DryFriction law_;
@@ -485,7 +467,7 @@ class DryFrictionTerm : public ForceTerm {
   std::vector<Contact> contacts_;
   std::vector<Frame<double>> frames_;  // of the elements, in the state of the evaluation
   std::vector<Now> now_;               // of the contacts, likewise
-  Index of_first_, of_second_;
+  Rows of_first_, of_second_;          // contacts by a and by b
 };
 
 }  // namespace

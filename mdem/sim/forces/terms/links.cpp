@@ -162,7 +162,7 @@ class LinkTerm : public ForceTerm {
       for (Link& link : links_) link.formed_at = action_of(link, scene.state).place;
       placed_ = true;
     }
-    index(scene.topology.elements());
+    index();
   }
 
   void gather(const State& state) override {
@@ -193,7 +193,7 @@ class LinkTerm : public ForceTerm {
       all.lost += now.energy;
       ++all.events;
     }
-    if (all.events > 0) index(static_cast<int>(state.size()));
+    if (all.events > 0) index();
     return all;
   }
 
@@ -201,13 +201,13 @@ class LinkTerm : public ForceTerm {
     TermSum sum;
     for (int i = part.begin; i < part.end; ++i) {
       Vector3 force = Vector3::Zero(), torque = Vector3::Zero();
-      for (const int k : entries_of(i, first_, of_first_)) {
+      for (const int k : of_first_.of(i)) {
         const LinkAction& action = actions_[static_cast<std::size_t>(k)];
         force += action.force;
         torque += action.torque_a;
         sum.energy += action.energy;
       }
-      for (const int k : entries_of(i, second_, of_second_)) {
+      for (const int k : of_second_.of(i)) {
         const LinkAction& action = actions_[static_cast<std::size_t>(k)];
         force -= action.force;
         torque += action.torque_b;
@@ -387,7 +387,7 @@ class LinkTerm : public ForceTerm {
   }
   void set_in_order(const State& state) {
     sort();
-    index(scene_.elements());
+    index();
     gather(state);
   }
   // The order in which a memory returns: a resumed run adds up the forces in the same order.
@@ -395,23 +395,12 @@ class LinkTerm : public ForceTerm {
     std::stable_sort(links_.begin(), links_.end(), [](const Link& x, const Link& y) { return x.at.a < y.at.a; });
   }
 
-  void index(int elements) {
-    index_by(elements, first_, of_first_, [](const LinkPlace& l) { return l.a; });
-    index_by(elements, second_, of_second_, [](const LinkPlace& l) { return l.b; });
-  }
-  // The links of each element that are whole.
-  template <class End>
-  void index_by(int elements, std::vector<int>& begin, std::vector<int>& entries, const End& end) const {
-    begin.assign(static_cast<std::size_t>(elements) + 1, 0);
-    for (const Link& l : links_)
-      if (l.broke == never) ++begin[static_cast<std::size_t>(end(l.at)) + 1];
-    for (std::size_t e = 1; e < begin.size(); ++e) begin[e] += begin[e - 1];
-    entries.resize(static_cast<std::size_t>(begin.back()));
-    std::vector<int> next(begin.begin(), begin.end() - 1);
-    for (std::size_t k = 0; k < links_.size(); ++k)
-      if (links_[k].broke == never)
-        entries[static_cast<std::size_t>(next[static_cast<std::size_t>(end(links_[k].at))]++)] =
-            static_cast<int>(k);
+  // Without those that have broken.
+  void index() {
+    const auto elements = static_cast<std::size_t>(scene_.elements());
+    const auto whole = [&](std::size_t k, int end) { return links_[k].broke == never ? end : -1; };
+    of_first_.sort_in(elements, links_.size(), [&](std::size_t k) { return whole(k, links_[k].at.a); });
+    of_second_.sort_in(elements, links_.size(), [&](std::size_t k) { return whole(k, links_[k].at.b); });
   }
 
   LinkLaw law_;
@@ -425,7 +414,7 @@ class LinkTerm : public ForceTerm {
   long begun_ = 0;          // links that advance() has yet to count
   double given_ = 0;        // eV, that links formed with; likewise
   std::vector<LinkAction> actions_;
-  std::vector<int> first_, of_first_, second_, of_second_;
+  Rows of_first_, of_second_;  // links by a and by b
 };
 
 }  // namespace
