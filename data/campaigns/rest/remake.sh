@@ -23,5 +23,10 @@ cnt-10-10-paper 19 35 2000 0.2
 cnt-10-10-paper 19 35 2000 20
 cnt-10-10-paper 37 20 1500 2
 cnt-10-10-paper 37 35 1000 2
+cnt-10-10-paper 91 35 800 2
+cnt-10-10-paper 91 50 800 2
+cnt-10-10-tersoff 37 15 1500 2
+cnt-10-10-tersoff 91 15 1500 2
+cnt-10-10-tersoff 91 9 2500 2
 END
 mv "$work/states.csv" states.csv
